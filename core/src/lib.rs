@@ -87,6 +87,8 @@
 #![no_std]
 
 extern crate alloc;
+#[macro_use(hot)]
+extern crate liestep_macros;
 #[cfg(any(feature = "std", test))]
 extern crate std;
 

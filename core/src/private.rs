@@ -117,7 +117,7 @@ impl<T: Real, const R: usize, const C: usize> Parameter for SMatrix<T, R, C> {
     type Value = Self;
     type Scalar = T;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn value(&self) -> Self {
         *self
     }
@@ -137,7 +137,7 @@ macro_rules! inertia_parameter {
             type Value = Matrix3<T>;
             type Scalar = T;
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn value(&self) -> Matrix3<T> {
                 $get(self)
             }
@@ -163,7 +163,7 @@ macro_rules! advected_parameter {
             type Value = $value<$($argument),+>;
             type Scalar = T;
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn value(&self) -> Self::Value {
                 self.0
             }
@@ -192,7 +192,7 @@ macro_rules! point_parameter {
             type Value = SVector<T, $size>;
             type Scalar = T;
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn value(&self) -> SVector<T, $size> {
                 homogeneous(self)
             }

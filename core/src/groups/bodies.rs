@@ -10,7 +10,7 @@ use crate::numbers::{BlockDiagonal, Blocks, Bodies, Coordinates, Join, Mask, Twi
 use nalgebra::SimdBool as _;
 
 /// Increments of nothing.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn zero<G: LieGroup, const N: usize>() -> [G::Matrix; N] {
     [crate::numbers::zero::<G::Scalar, G::Matrix>(); N]
 }
@@ -37,22 +37,22 @@ impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
         filled!(*self, |k| self[k].inverse())
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn matrix(&self) -> Self::Matrix {
         filled!(zero::<G, N>(), |k| self[k].matrix())
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn from_matrix_unchecked(matrix: Self::Matrix) -> Self {
         filled!([G::identity(); N], |k| G::from_matrix_unchecked(matrix[k]))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn hat(components: &Self::Vector) -> Self::Matrix {
         filled!(zero::<G, N>(), |k| G::hat(&components.0[k]))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn vee(matrix: &Self::Matrix) -> Self::Vector {
         Bodies(filled!([G::Vector::zero(); N], |k| G::vee(&matrix[k])))
     }
@@ -61,7 +61,7 @@ impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
         Bodies(filled!(velocity.0, |k| self[k].adjoint(&velocity.0[k])))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn adjoint_transpose(&self, momentum: &Self::Vector) -> Self::Vector {
         Bodies(filled!(momentum.0, |k| self[k].adjoint_transpose(&momentum.0[k])))
     }
@@ -74,32 +74,32 @@ impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
         Bodies(filled!(xi.0, |k| G::lie_bracket_transpose(&xi.0[k], &momentum.0[k])))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn from_increment(increment: &Self::Matrix) -> Self {
         filled!([G::identity(); N], |k| G::from_increment(&increment[k]))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn increment(&self) -> Self::Matrix {
         filled!(zero::<G, N>(), |k| self[k].increment())
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn inverse_increment(increment: &Self::Matrix) -> Self::Matrix {
         filled!(*increment, |k| G::inverse_increment(&increment[k]))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn change(&self, increment: &Self::Matrix) -> Self::Matrix {
         filled!(*increment, |k| self[k].change(&increment[k]))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn advance(&self, increment: &Self::Matrix) -> Self {
         filled!(*self, |k| self[k].advance(&increment[k]))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn adjoint_transpose_increment(increment: &Self::Matrix, momentum: &Self::Vector) -> Self::Vector {
         Bodies(filled!(momentum.0, |k| G::adjoint_transpose_increment(&increment[k], &momentum.0[k])))
     }
@@ -156,12 +156,12 @@ macro_rules! all_near {
 
 /// Body by body.
 impl<R: Retraction<G>, G: LieGroup, const N: usize> Retraction<[G; N]> for R {
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn increment(xi: &Bodies<G::Vector, N>) -> [G::Matrix; N] {
         filled!(zero::<G, N>(), |k| R::increment(&xi.0[k]))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn increment_of_half(half: &Bodies<G::Vector, N>) -> [G::Matrix; N] {
         filled!(zero::<G, N>(), |k| R::increment_of_half(&half.0[k]))
     }
@@ -178,17 +178,17 @@ impl<R: Retraction<G>, G: LieGroup, const N: usize> Retraction<[G; N]> for R {
         BlockDiagonal(from_fn(|k| R::tangent(&xi.0[k])))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn is_near_identity(xi: &Bodies<G::Vector, N>) -> Mask<G::Scalar> {
         all_near!(is_near_identity, xi)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn is_half_near_identity(half: &Bodies<G::Vector, N>) -> Mask<G::Scalar> {
         all_near!(is_half_near_identity, half)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn is_half_well_near_identity(half: &Bodies<G::Vector, N>) -> Mask<G::Scalar> {
         all_near!(is_half_well_near_identity, half)
     }
@@ -198,19 +198,19 @@ impl<R: Retraction<G>, G: LieGroup, const N: usize> Retraction<[G; N]> for R {
 impl<G: LieGroup, const K: usize, const N: usize> Factor<K> for [G; N] {
     type Of = G;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn factor(&self) -> G {
         const { assert!(K < N, "there is no body with this number: they are counted from zero") };
         self[K]
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn of_matrix(matrix: &[G::Matrix; N]) -> G::Matrix {
         const { assert!(K < N, "there is no body with this number: they are counted from zero") };
         matrix[K]
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn components(joined: &Bodies<G::Vector, N>) -> G::Vector {
         const { assert!(K < N, "there is no body with this number: they are counted from zero") };
         joined.0[K]
@@ -223,12 +223,12 @@ impl<G: LieGroup, W: Advected<G>, const N: usize> Advected<[G; N]> for [W; N] {
         filled!(*self, |k| self[k].seen_from(&attitude[k]))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn change(&self, increment: &[G::Matrix; N]) -> Self {
         filled!(*self, |k| self[k].change(&increment[k]))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn advect(&self, increment: &[G::Matrix; N]) -> Self {
         filled!(*self, |k| self[k].advect(&increment[k]))
     }
@@ -241,7 +241,7 @@ impl<G: LieGroup, W: Advected<G>, const N: usize> Advected<[G; N]> for [W; N] {
         filled!(*self, |k| self[k].seen_through(&matrix[k], &inverse[k]))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn is_finite(&self) -> bool {
         self.iter().all(W::is_finite)
     }
@@ -282,27 +282,27 @@ where
 {
     type Body = G;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn pair(first: &G, second: &G) -> Self {
         (*first, *second)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn matrices(first: &G::Matrix, second: &G::Matrix) -> Self::Matrix {
         (*first, *second)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn parts(joined: &Self::Vector) -> [G::Vector; 2] {
         G::Vector::split(joined).into()
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn joined(first: &G::Vector, second: &G::Vector) -> Self::Vector {
         first.join(second)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn blocks(matrix: &SquareOf<Self>) -> [[SquareOf<G>; 2]; 2] {
         G::Vector::blocks(matrix)
     }
@@ -326,27 +326,27 @@ where
 {
     type Body = (A, B);
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn pair(first: &(A, B), second: &(A, B)) -> Self {
         (first.0, first.1, second.0, second.1)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn matrices(first: &(A::Matrix, B::Matrix), second: &(A::Matrix, B::Matrix)) -> Self::Matrix {
         (first.0, first.1, second.0, second.1)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn parts(joined: &Self::Vector) -> [<(A, B) as LieGroup>::Vector; 2] {
         <(A, B) as LieGroup>::Vector::split(joined).into()
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn joined(first: &<(A, B) as LieGroup>::Vector, second: &<(A, B) as LieGroup>::Vector) -> Self::Vector {
         first.join(second)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn blocks(matrix: &SquareOf<Self>) -> [[SquareOf<(A, B)>; 2]; 2] {
         <(A, B) as LieGroup>::Vector::blocks(matrix)
     }

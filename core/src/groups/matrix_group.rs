@@ -147,27 +147,27 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
         Self::from_matrix_unchecked(SMatrix::identity())
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn compose(&self, right: &Self) -> Self {
         Self::from_matrix_unchecked(self.0 * right.0)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn inverse(&self) -> Self {
         Self::from_matrix_unchecked(Self::inverse_of(&self.0))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn matrix(&self) -> SMatrix<T, N, N> {
         self.0
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn from_matrix_unchecked(matrix: SMatrix<T, N, N>) -> Self {
         Self(matrix, PhantomData)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn hat(components: &SVector<T, D>) -> SMatrix<T, N, N> {
         let mut algebra = SMatrix::zeros();
         for (k, (entries, count)) in Self::ENTRIES.iter().enumerate() {
@@ -179,24 +179,24 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
     }
 
     /// Of a matrix that isn't in the algebra, the components of its orthogonal projection.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn vee(matrix: &SMatrix<T, N, N>) -> SVector<T, D> {
         let pairings = Self::pairings(matrix);
         SVector::from_fn(|k, _| pairings[k] * real(1.0 / Self::SQUARED_LENGTHS[k]))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn adjoint(&self, velocity: &SVector<T, D>) -> SVector<T, D> {
         Self::vee(&(self.0 * Self::hat(velocity) * Self::inverse_of(&self.0)))
     }
 
     /// Components `⟨μ, F E_k F⁻¹⟩`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn adjoint_transpose(&self, momentum: &SVector<T, D>) -> SVector<T, D> {
         Self::pairings(&(self.0.transpose() * Self::dual_hat(momentum) * Self::inverse_of(&self.0).transpose()))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn lie_bracket(xi: &SVector<T, D>, eta: &SVector<T, D>) -> SVector<T, D> {
         let mut bracket = SVector::zeros();
         for (i, constants) in Self::STRUCTURE.iter().enumerate() {
@@ -207,7 +207,7 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
         bracket
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn lie_bracket_transpose(xi: &SVector<T, D>, momentum: &SVector<T, D>) -> SVector<T, D> {
         let mut transposed = SVector::zeros();
         for (i, constants) in Self::STRUCTURE.iter().enumerate() {
@@ -218,17 +218,17 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
         transposed
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn from_increment(increment: &SMatrix<T, N, N>) -> Self {
         Self::from_matrix_unchecked(increment + SMatrix::identity())
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn increment(&self) -> SMatrix<T, N, N> {
         self.0 - SMatrix::identity()
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn inverse_increment(increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
         if const { Self::IS_ADDED } {
             return -increment;
@@ -236,7 +236,7 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
         -(Self::inverse_of(&(increment + SMatrix::identity())) * increment)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn change(&self, increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
         if const { Self::IS_ADDED } {
             return *increment;
@@ -245,7 +245,7 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
     }
 
     /// With `F⁻¹ = I + E`, `E = −F⁻¹D`: components `⟨DᵀM + (M + DᵀM) Eᵀ, E_k⟩` for the covector's matrix `M`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn adjoint_transpose_increment(increment: &SMatrix<T, N, N>, momentum: &SVector<T, D>) -> SVector<T, D> {
         if const { Self::IS_ADDED } {
             return SVector::zeros();

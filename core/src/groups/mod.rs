@@ -137,7 +137,7 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
 
     /// `Ad_F` as a matrix, where it is to map many: `D × D` for the `D` components of the algebra, column `k` being
     /// `Ad_F E_k`; for several equal bodies its blocks on the diagonal, one of each body.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     #[must_use]
     fn adjoint_matrix(&self) -> <Self::Vector as Coordinates<Self::Scalar>>::Square {
         Self::Vector::square(|k| self.adjoint(&Self::Vector::axis(k)))
@@ -177,7 +177,7 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
     ///
     /// Adding `g D` loses less to rounding than multiplying by `F ≈ I`: the error of a product of size one becomes
     /// one of size `|D|`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     #[must_use]
     fn advance(&self, increment: &Self::Matrix) -> Self {
         Self::from_matrix_unchecked(sum(&self.matrix(), &self.change(increment)))

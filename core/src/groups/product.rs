@@ -90,18 +90,18 @@ macro_rules! product {
                 ($(self.$place.matrix(),)+)
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn from_matrix_unchecked(matrix: Self::Matrix) -> Self {
                 ($($group::from_matrix_unchecked(matrix.$place),)+)
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn hat($joined: &Self::Vector) -> Self::Matrix {
                 let ($($part,)+) = $split;
                 ($($group::hat(&$part),)+)
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn vee(matrix: &Self::Matrix) -> Self::Vector {
                 let ($($part,)+) = ($($group::vee(&matrix.$place),)+);
                 $join
@@ -113,7 +113,7 @@ macro_rules! product {
                 $join
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn adjoint_transpose(&self, $joined: &Self::Vector) -> Self::Vector {
                 let ($($part,)+) = $split;
                 let ($($part,)+) = ($(self.$place.adjoint_transpose(&$part),)+);
@@ -136,32 +136,32 @@ macro_rules! product {
                 $join
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn from_increment(increment: &Self::Matrix) -> Self {
                 ($($group::from_increment(&increment.$place),)+)
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn increment(&self) -> Self::Matrix {
                 ($(self.$place.increment(),)+)
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn inverse_increment(increment: &Self::Matrix) -> Self::Matrix {
                 ($($group::inverse_increment(&increment.$place),)+)
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn change(&self, increment: &Self::Matrix) -> Self::Matrix {
                 ($(self.$place.change(&increment.$place),)+)
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn advance(&self, increment: &Self::Matrix) -> Self {
                 ($(self.$place.advance(&increment.$place),)+)
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn adjoint_transpose_increment(increment: &Self::Matrix, $joined: &Self::Vector) -> Self::Vector {
                 let ($($part,)+) = $split;
                 let ($($part,)+) = ($($group::adjoint_transpose_increment(&increment.$place, &$part),)+);
@@ -206,13 +206,13 @@ macro_rules! product {
             $(R: Retraction<$group>,)+
             $($bound)*
         {
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn increment($joined: &<($($group,)+) as LieGroup>::Vector) -> ($($group::Matrix,)+) {
                 let ($($part,)+) = $split;
                 ($(<R as Retraction<$group>>::increment(&$part),)+)
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn increment_of_half($joined: &<($($group,)+) as LieGroup>::Vector) -> ($($group::Matrix,)+) {
                 let ($($part,)+) = $split;
                 ($(<R as Retraction<$group>>::increment_of_half(&$part),)+)
@@ -231,19 +231,19 @@ macro_rules! product {
                 $squares
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn is_near_identity($joined: &<($($group,)+) as LieGroup>::Vector) -> Mask<$scalar> {
                 let ($($part,)+) = $split;
                 !nowhere::<$scalar>() $(& <R as Retraction<$group>>::is_near_identity(&$part))+
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn is_half_near_identity($joined: &<($($group,)+) as LieGroup>::Vector) -> Mask<$scalar> {
                 let ($($part,)+) = $split;
                 !nowhere::<$scalar>() $(& <R as Retraction<$group>>::is_half_near_identity(&$part))+
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn is_half_well_near_identity($joined: &<($($group,)+) as LieGroup>::Vector) -> Mask<$scalar> {
                 let ($($part,)+) = $split;
                 !nowhere::<$scalar>() $(& <R as Retraction<$group>>::is_half_well_near_identity(&$part))+
@@ -265,17 +265,17 @@ macro_rules! product {
         {
             type Of = $own;
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn factor(&self) -> $own {
                 self.$own_place
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn of_matrix(matrix: &Self::Matrix) -> $own::Matrix {
                 matrix.$own_place
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn components($joined: &Self::Vector) -> $own::Vector {
                 let ($($part,)+) = $split;
                 let _ = ($(&$part,)+);

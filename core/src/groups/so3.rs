@@ -217,7 +217,7 @@ impl<T: Real> LieGroup for SO3<T> {
         self.0
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn from_matrix_unchecked(matrix: Matrix3<T>) -> Self {
         Self(matrix)
     }
@@ -239,7 +239,7 @@ impl<T: Real> LieGroup for SO3<T> {
         self.0 * velocity
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn adjoint_matrix(&self) -> Matrix3<T> {
         self.0
     }
@@ -271,12 +271,12 @@ impl<T: Real> LieGroup for SO3<T> {
     }
 
     /// `Dᵀ`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn inverse_increment(increment: &Matrix3<T>) -> Matrix3<T> {
         increment.transpose()
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn change(&self, increment: &Matrix3<T>) -> Matrix3<T> {
         // Of the product of matrices, which isn't always inlined, lanes would have the target's common instructions.
         let mut product = Matrix3::zeros();
@@ -289,7 +289,7 @@ impl<T: Real> LieGroup for SO3<T> {
         product
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn adjoint_transpose_increment(increment: &Matrix3<T>, momentum: &Vector3<T>) -> Vector3<T> {
         transpose_mul(increment, momentum)
     }
@@ -303,7 +303,7 @@ impl<T: Real> LieGroup for SO3<T> {
     }
 
     // Inlined, so that nothing checks a length that the caller's array has.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn write_numbers<'a>(&self, numbers: &'a mut [T]) -> &'a mut [T] {
         let quaternion = quaternion(&self.0);
         let Some((own, behind)) = numbers.split_first_chunk_mut::<4>() else { return &mut [] };
@@ -324,7 +324,7 @@ impl<T: Real> LieGroup for SO3<T> {
 
     /// `‖RᵀR − I‖` in the Frobenius norm.
     // Inlined into `restored`, which every step asks.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn defect(&self) -> T {
         let entry = |i: usize, j: usize| self.0.column(i).dot(&self.0.column(j));
         let on = [0, 1, 2].map(|i| entry(i, i) - T::one());
@@ -336,7 +336,7 @@ impl<T: Real> LieGroup for SO3<T> {
     /// From 2¹¹ ε on, which a random walk reaches in some ten million steps: one Newton step of the polar
     /// decomposition, `½ R (3 I − RᵀR)`, which squares the defect.
     // Inlined, as the optimiser otherwise decides by the rest of the program.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn restored(&self) -> Option<(Self, Mask<T>)> {
         let far = self.defect().simd_gt(T::simd_default_epsilon() * real(2048.0));
         far.any().then(|| (self.nearer(far), far))
@@ -356,7 +356,7 @@ impl<T: Real> SO3<T> {
 
 /// The unit quaternion of a rotation, real part first, from a part whose square is a quarter at least. Every lane has its
 /// own.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn quaternion<T: Real>(r: &Matrix3<T>) -> [T; 4] {
     let one = T::one();
     let (wx, wy, wz) = (r.m32 - r.m23, r.m13 - r.m31, r.m21 - r.m12);
@@ -379,7 +379,7 @@ fn quaternion<T: Real>(r: &Matrix3<T>) -> [T; 4] {
 }
 
 /// One or the other in each lane; both are found only where lanes differ.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn either<T: Real>(is_one: Mask<T>, one: impl FnOnce() -> [T; 4], other: impl FnOnce() -> [T; 4]) -> [T; 4] {
     if is_one.all() {
         one()
@@ -392,14 +392,14 @@ fn either<T: Real>(is_one: Mask<T>, one: impl FnOnce() -> [T; 4], other: impl Fn
 }
 
 /// The quaternion `q` from its part `p`: `products[k] = 4 p q_k` and `square = 4 p²`.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn scaled<T: Real>(square: T, products: [T; 4]) -> [T; 4] {
     let scale = real::<T>(0.5) / square.simd_sqrt();
     products.map(|product| product * scale)
 }
 
 /// `Aᵀ v`, unrolled.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(crate) fn transpose_mul<T: Real>(a: &Matrix3<T>, v: &Vector3<T>) -> Vector3<T> {
     Vector3::new(
         a.m11 * v.x + a.m21 * v.y + a.m31 * v.z,

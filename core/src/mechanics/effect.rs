@@ -80,7 +80,7 @@ pub struct NewtonUpdate<V, S, T> {
 
 impl<T: Real, V: Coordinates<T>> NewtonUpdate<V, V::Square, T> {
     /// Of a residual and its Jacobian.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     #[must_use]
     pub fn of(residual: &V, jacobian: &V::Square, pattern: Pattern) -> Self {
         let (factors, det) = V::factorise_with(jacobian, pattern);
@@ -89,7 +89,7 @@ impl<T: Real, V: Coordinates<T>> NewtonUpdate<V, V::Square, T> {
 }
 
 /// One of Newton's iterations, by this residual and Jacobian unless neighbours are joined.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(crate) fn update_by<E: Effect + ?Sized>(
     system: impl FnOnce(&E::Constants, &E::StepTerms, &Vector<E>) -> (Vector<E>, Square<E>),
     constants: &E::Constants,
@@ -107,7 +107,7 @@ pub(crate) fn update_by<E: Effect + ?Sized>(
 }
 
 /// What is known of the Newton matrix of an effect.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(crate) const fn pattern<E: Effect + ?Sized>() -> Pattern {
     Pattern { factors: <Group<E> as LieGroup>::FACTORS, apart: E::APART }
 }
@@ -254,7 +254,7 @@ pub trait Effect: Term {
     /// `exp(−t v̂)·w`. `None` where it isn't known.
     ///
     /// The kicks of a [`SplittingScheme`](crate::methods::SplittingScheme) with force gradients are made with it.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     #[must_use]
     fn kick_derivative(_: &Self::Constants, _: &Self::Advected, _: &Vector<Self>) -> Option<Vector<Self>> {
         None
@@ -276,19 +276,26 @@ pub trait Effect: Term {
 
     /// One of Newton's iterations: the update that is to be subtracted, and what it was solved from, as
     /// [`Coordinates::factorise_with`] gives it. A system of many bodies makes it body by body.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     #[must_use]
     fn newton_update(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
         half: &Vector<Self>,
     ) -> NewtonUpdate<Vector<Self>, Square<Self>, Self::Scalar> {
-        update_by::<Self>(Self::newton_system, constants, terms, half)
+        // The function itself would be called through `FnOnce`, without the machine's vector instructions.
+        update_by::<Self>(
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            |constants, terms, half| Self::newton_system(constants, terms, half),
+            constants,
+            terms,
+            half,
+        )
     }
 
     /// [`newton_system`](Self::newton_system), with the blocks that join neighbours in a row of bodies added to those that
     /// are given.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn newton_linked(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -299,7 +306,7 @@ pub trait Effect: Term {
     }
 
     /// The residual of [`newton_system`](Self::newton_system) without its Jacobian.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn newton_residual(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -310,7 +317,7 @@ pub trait Effect: Term {
 
     /// What of [`kick_after`](Self::kick_after) isn't in the [`moving_kick`](Residual::moving_kick) of
     /// [`newton_residual`](Self::newton_residual): that of the other terms of a sum.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     #[must_use]
     fn kick_beside(_: &Self::Constants, _: &Matrix<Self>, _: &Self::Advected) -> Option<Vector<Self>> {
         None
@@ -378,7 +385,7 @@ pub(crate) fn factored_inertia<E: Effect>(effect: &E) -> Option<FactoredInertia<
 }
 
 /// The body velocity of the momentum `μ` and the energy, by the inertia in factors if there is one: the same, to the bit.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(crate) fn velocity_and_energy<E: Effect>(
     effect: &E,
     inertia: Option<&FactoredInertia<Group<E>>>,
@@ -443,7 +450,7 @@ fn energy_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advect
     quadratic_energy(effect, velocity, &effect.inertia(w), w)
 }
 
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn quadratic_energy<E: Effect>(effect: &E, velocity: &Vector<E>, inertia: &Square<E>, w: &E::Advected) -> Scalar<E> {
     velocity.dot(&(*inertia * *velocity)) * real(0.5) + effect.potential(w)
 }

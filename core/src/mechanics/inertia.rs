@@ -225,7 +225,7 @@ impl<T: RealField + Copy> DiagonalNonstandardInertia<T> {
 
 impl<T: Real> DiagonalNonstandardInertia<T> {
     /// From principal moments, of which nothing is asked: those of a body nearly flat may be modified beyond it.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(crate) fn of_moments_unchecked(moments: &Vector3<T>) -> Self {
         let half = (moments.x + moments.y + moments.z) * real(0.5);
         Self(moments.map(|moment| half - moment))

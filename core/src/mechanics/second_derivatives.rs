@@ -149,7 +149,7 @@ pub struct StepDerivatives<M> {
 impl<M: Add<Output = M>> Add for StepDerivatives<M> {
     type Output = Self;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn add(self, other: Self) -> Self {
         Self {
             start_by_turn: self.start_by_turn + other.start_by_turn,
@@ -167,7 +167,7 @@ where
 {
     const PARAMETERS: usize = A::PARAMETERS + B::PARAMETERS;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn step_derivatives(
         &self,
         increment: &Matrix<Self>,
@@ -177,7 +177,7 @@ where
         self.first.step_derivatives(increment, &w.0, h) + self.second.step_derivatives(increment, &w.1, h)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn by_parameters(
         &self,
         increment: &Matrix<Self>,
@@ -191,7 +191,7 @@ where
         });
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn by_advected(
         &self,
         increment: &Matrix<Self>,
@@ -204,14 +204,14 @@ where
         self.second.by_advected(increment, &w.1, h, &mut |number, start, end| visit(before + number, start, end));
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn carried_parameters(visit: &mut impl FnMut(usize, usize)) {
         let before = scalars::<Scalar<Self>, A::Advected>();
         A::carried_parameters(visit);
         B::carried_parameters(&mut |place, number| visit(before + place, A::PARAMETERS + number));
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn adjoint_system(
         &self,
         increment: &Matrix<Self>,
@@ -224,7 +224,7 @@ where
         (first + second, right_side + other)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn adjoint_gradient(
         &self,
         increment: &Matrix<Self>,
@@ -239,7 +239,7 @@ where
         (first + second, (seen, other))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn kick_gradient(
         &self,
         w: &Self::Advected,
@@ -255,7 +255,7 @@ where
 }
 
 /// How many there are.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn scalars<T: Real, A: Entries<T>>() -> usize {
     let mut count = 0;
     zero::<T, A>().each(&mut |_| count += 1);

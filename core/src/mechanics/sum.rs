@@ -208,7 +208,7 @@ where
         A::are_finite(&constants.0) && B::are_finite(&constants.1)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> Vector<Self> {
         match (A::PARTS.kick_before, B::PARTS.kick_before) {
             (true, true) => A::kick_before(&constants.0, &w.0) + B::kick_before(&constants.1, &w.1),
@@ -217,7 +217,7 @@ where
         }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn kick_derivative(
         constants: &Self::Constants,
         w: &Self::Advected,
@@ -233,7 +233,7 @@ where
     }
 
     /// The right side `a` belongs to one unknown part, zero to the other.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &Self::Advected) -> Self::StepTerms {
         let zero = Vector::<Self>::zero();
         // What only joins bodies would take it twice.
@@ -242,7 +242,7 @@ where
         (A::step_terms(&constants.0, first, &w.0), B::step_terms(&constants.1, second, &w.1))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn newton_system(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -262,20 +262,26 @@ where
         }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn newton_update(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
         half: &Vector<Self>,
     ) -> NewtonUpdate<Vector<Self>, Square<Self>, Self::Scalar> {
         match (A::PARTS.unknown, B::PARTS.unknown) {
-            (true, true) => update_by::<Self>(Self::newton_system, constants, terms, half),
+            (true, true) => update_by::<Self>(
+                #[cfg_attr(not(debug_assertions), inline(always))]
+                |constants, terms, half| Self::newton_system(constants, terms, half),
+                constants,
+                terms,
+                half,
+            ),
             (true, false) => A::newton_update(&constants.0, &terms.0, half),
             (false, _) => B::newton_update(&constants.1, &terms.1, half),
         }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn newton_linked(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -293,7 +299,7 @@ where
         }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn newton_residual(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -308,7 +314,7 @@ where
         }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn kick_beside(
         constants: &Self::Constants,
         increment: &Matrix<Self>,
@@ -327,7 +333,7 @@ where
         }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self> {
         match (A::PARTS.kick_after, B::PARTS.kick_after) {
             (true, true) => {

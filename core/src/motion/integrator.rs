@@ -284,7 +284,7 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
         factored_inertia(self.scene())
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn velocity_and_energy(
         &self,
         motion: &Motion<Group<S>, S::Advected>,

@@ -82,7 +82,7 @@ pub trait Plan<S: Effect> {
     /// # Errors
     ///
     /// As [`step`](Self::step).
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn run<M: Summation<Group<S>, S::Advected>>(
         &self,
         scene: &S,
@@ -113,7 +113,7 @@ pub trait Plan<S: Effect> {
     /// # Errors
     ///
     /// [`StepError::SingularJoint`] where that isn't determined.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn push<M: Summation<Group<S>, S::Advected>>(
         &self,
         _scene: &S,
@@ -126,7 +126,7 @@ pub trait Plan<S: Effect> {
     }
 
     /// Puts other advected values in the place of those that the body sees, and forgets what is kept of them.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn see(&self, motion: &mut Motion<Group<S>, S::Advected>, _kept: &mut Self::Kept, advected: S::Advected) {
         motion.advected = advected;
     }
@@ -188,7 +188,7 @@ impl<S: Effect, P: Plan<S>> Kernel for Run<'_, '_, S, P> {
     const VECTORS: Vectors = P::VECTORS;
 
     /// Those who look at the motion are called from here, so that constants needn't be loaded again after them.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn run(self) -> Self::Output {
         let Self(plan, scene, motion, kept, (mut steps, mut next)) = self;
         let mut iterations = 0;

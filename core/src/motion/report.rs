@@ -17,14 +17,14 @@ pub struct StepReport {
 
 impl StepReport {
     /// Of a step that was made as it was asked for.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     #[must_use]
     pub const fn of(iterations: u32) -> Self {
         Self { iterations, remedy: None }
     }
 
     /// Of a step that was made as a run of one.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(crate) fn of_run(iterations: u64) -> Self {
         Self::of(u32::try_from(iterations).unwrap_or(u32::MAX))
     }

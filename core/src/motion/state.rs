@@ -22,7 +22,7 @@ pub struct State<G: LieGroup, A, K = Warm<<G as LieGroup>::Vector>> {
 impl<G: LieGroup, A, K> Deref for State<G, A, K> {
     type Target = Motion<G, A>;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn deref(&self) -> &Motion<G, A> {
         &self.motion
     }

@@ -158,7 +158,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// [`StepError`] where an equation of the method has no solution, for a scene's own step (2.7) on the branch of the
     /// identity, or a value isn't finite. [`StepError::BeyondSolvable`] names the largest step that would do.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub fn step(&self, state: &mut StateOf<S, P>) -> Result<StepReport, StepError> {
         let made = if const { P::STEPS_BY_RUNS } {
             self.run_unexplained(state, 1).map(StepReport::of_run)
@@ -586,7 +586,7 @@ impl<S: Effect, P: Plan<S>> Kernel for Step<'_, S, P> {
     type Output = Result<StepReport, StepError>;
     const VECTORS: Vectors = P::VECTORS;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn run(self) -> Self::Output {
         self.0.plan.step(&self.0.scene, &mut self.1.motion, &mut self.1.kept)
     }

@@ -133,7 +133,7 @@ pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
     fn push(&mut self, change: &G::Vector);
 
     /// One after the other: a turn that carries the momentum along.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn turn_and_push(&mut self, increment: &G::Matrix, change: &G::Vector) {
         self.turn(increment);
         self.push(change);
@@ -143,7 +143,7 @@ pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
     fn proceed(&mut self, step: &Proceeded<G, A>);
 
     /// Counts a step.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn count(&mut self) {
         self.recount(self.now().steps + 1);
     }
@@ -162,7 +162,7 @@ pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
     fn show(&mut self, motion: Motion<G, A>);
 
     /// Counts a step, and now and then [restores](Self::restore).
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn finish(&mut self, spatial: impl FnOnce() -> A) {
         self.count();
         if is_due(self.now().steps) {
@@ -176,7 +176,7 @@ pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
 /// What such a function is shown stays in memory in all the steps between, too. There the next step reads what the last
 /// one has just written, often in other pieces than it was written in, and waits for it. A copy leaves the motion in
 /// registers.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn by_copy<M: Copy>(motion: &mut M, change: impl FnOnce(&mut M)) {
     let mut changed = *motion;
     change(&mut changed);
@@ -184,7 +184,7 @@ fn by_copy<M: Copy>(motion: &mut M, change: impl FnOnce(&mut M)) {
 }
 
 /// Whether it is time to look how far roundings have gone.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(crate) fn is_due(steps: u64) -> bool {
     steps.is_multiple_of(u64::from(STEPS_BETWEEN_CHECKS))
 }
@@ -205,35 +205,35 @@ pub struct Proceeded<G: LieGroup, A> {
 impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Motion<G, A> {
     const CARRIES: bool = false;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn now(&self) -> &Motion<G, A> {
         self
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn turn(&mut self, increment: &G::Matrix) {
         self.attitude = self.attitude.advance(increment);
         self.advected = self.advected.advect(increment);
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn turned(&self, increment: &G::Matrix) -> A {
         self.advected.advect(increment)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn push(&mut self, change: &G::Vector) {
         self.momentum = self.momentum + *change;
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn proceed(&mut self, step: &Proceeded<G, A>) {
         self.attitude = self.attitude.advance(&step.increment);
         self.momentum = step.momentum;
         self.advected = step.advected;
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn recount(&mut self, steps: u64) {
         self.steps = steps;
     }
@@ -247,7 +247,7 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Motion<G, A> {
         *self = motion;
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn show(&mut self, motion: Motion<G, A>) {
         *self = motion;
     }

@@ -81,7 +81,7 @@ where
 {
     type Joined = SVector<T, C>;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn join(&self, other: &SVector<T, B>) -> SVector<T, C> {
         let mut joined = SVector::<T, C>::zeros();
         for k in 0..A {
@@ -93,7 +93,7 @@ where
         joined
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn split(joined: &SVector<T, C>) -> (Self, SVector<T, B>) {
         let (mut first, mut second) = (Self::zeros(), SVector::<T, B>::zeros());
         for k in 0..A {
@@ -125,7 +125,7 @@ impl<T: Real, const A: usize, const C: usize> Twice<T> for SVector<T, A>
 where
     Const<A>: DimAdd<Const<A>, Output = Const<C>>,
 {
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn blocks(joined: &SMatrix<T, C, C>) -> [[SMatrix<T, A, A>; 2]; 2] {
         let block = |row: usize, column: usize| joined.fixed_view::<A, A>(row, column).into_owned();
         [[block(0, 0), block(0, A)], [block(A, 0), block(A, A)]]
@@ -153,20 +153,20 @@ impl<T: Real> Product<T> {
         Self { value: T::one(), is_negative: nowhere::<T>() }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn times(&mut self, determinant: T, diagonal: T) {
         self.value *= determinant / diagonal.simd_abs();
         self.is_negative = self.is_negative | determinant.simd_lt(T::zero());
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn signed(self) -> T {
         (-self.value.simd_abs()).select(self.is_negative, self.value)
     }
 }
 
 /// [`Coordinates::factorise_with`] for matrices of numbers.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn factorise<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>, pattern: Pattern) -> (SMatrix<T, D, D>, T) {
     let (mut factors, mut product) = (*matrix, Product::one());
     let mut start = 0;
@@ -190,7 +190,7 @@ pub(super) fn factorise<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>, patt
 }
 
 /// Puts the inverse of a block of at most three unknowns in its place.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn invert<T: Real, const D: usize, const B: usize>(
     matrix: &mut SMatrix<T, D, D>,
     start: usize,
@@ -217,7 +217,7 @@ fn invert<T: Real, const D: usize, const B: usize>(
 
 /// Gaussian elimination of a block in the order of the basis; its pivots between two ends of factors, multiplied, are the
 /// determinant of a factor's block once those before are eliminated.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn eliminate<T: Real, const D: usize>(
     a: &mut SMatrix<T, D, D>,
     block: core::ops::Range<usize>,
@@ -249,7 +249,7 @@ fn eliminate<T: Real, const D: usize>(
 }
 
 /// [`Coordinates::solve_again_with`] for matrices of numbers.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn solve_again<T: Real, const D: usize>(
     factors: &SMatrix<T, D, D>,
     pattern: Pattern,

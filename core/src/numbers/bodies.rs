@@ -35,7 +35,7 @@ pub(crate) use filled;
 impl<V: Copy + Add<Output = V>, const N: usize> Add for Bodies<V, N> {
     type Output = Self;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn add(self, other: Self) -> Self {
         Self(filled!(self.0, |k| self.0[k] + other.0[k]))
     }
@@ -44,7 +44,7 @@ impl<V: Copy + Add<Output = V>, const N: usize> Add for Bodies<V, N> {
 impl<V: Copy + Sub<Output = V>, const N: usize> Sub for Bodies<V, N> {
     type Output = Self;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn sub(self, other: Self) -> Self {
         Self(filled!(self.0, |k| self.0[k] - other.0[k]))
     }
@@ -53,7 +53,7 @@ impl<V: Copy + Sub<Output = V>, const N: usize> Sub for Bodies<V, N> {
 impl<V: Copy + Neg<Output = V>, const N: usize> Neg for Bodies<V, N> {
     type Output = Self;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn neg(self) -> Self {
         Self(filled!(self.0, |k| -self.0[k]))
     }
@@ -62,7 +62,7 @@ impl<V: Copy + Neg<Output = V>, const N: usize> Neg for Bodies<V, N> {
 impl<T: Real, V: Copy + Mul<T, Output = V>, const N: usize> Mul<T> for Bodies<V, N> {
     type Output = Self;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn mul(self, factor: T) -> Self {
         Self(filled!(self.0, |k| self.0[k] * factor))
     }
@@ -71,7 +71,7 @@ impl<T: Real, V: Copy + Mul<T, Output = V>, const N: usize> Mul<T> for Bodies<V,
 impl<S: Copy + Add<Output = S>, const N: usize> Add for BlockDiagonal<S, N> {
     type Output = Self;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn add(self, other: Self) -> Self {
         Self(filled!(self.0, |k| self.0[k] + other.0[k]))
     }
@@ -80,7 +80,7 @@ impl<S: Copy + Add<Output = S>, const N: usize> Add for BlockDiagonal<S, N> {
 impl<T: Real, S: Copy + Mul<T, Output = S>, const N: usize> Mul<T> for BlockDiagonal<S, N> {
     type Output = Self;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn mul(self, factor: T) -> Self {
         Self(filled!(self.0, |k| self.0[k] * factor))
     }
@@ -89,7 +89,7 @@ impl<T: Real, S: Copy + Mul<T, Output = S>, const N: usize> Mul<T> for BlockDiag
 impl<V: Copy, S: Copy + Mul<V, Output = V>, const N: usize> Mul<Bodies<V, N>> for BlockDiagonal<S, N> {
     type Output = Bodies<V, N>;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn mul(self, components: Bodies<V, N>) -> Bodies<V, N> {
         Bodies(filled!(components.0, |k| self.0[k] * components.0[k]))
     }
@@ -100,14 +100,14 @@ impl<T: Real, E: Entries<T>, const N: usize> Entries<T> for [E; N] {
         from_fn(|_| E::from_entries(next))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn each(&self, visit: &mut impl FnMut(T)) {
         for body in self {
             body.each(visit);
         }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
         filled!(*self, |k| self[k].zip(&other[k], combine))
     }
@@ -118,12 +118,12 @@ impl<T: Real, E: Entries<T>, const N: usize> Entries<T> for Bodies<E, N> {
         Self(Entries::from_entries(next))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn each(&self, visit: &mut impl FnMut(T)) {
         self.0.each(visit);
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
         Self(self.0.zip(&other.0, combine))
     }
@@ -138,7 +138,7 @@ lanes_of_fields!(
 const WHOLE: Pattern = Pattern { factors: Blocks::WHOLE, apart: Blocks::WHOLE };
 
 /// How many components there are.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn dimension<T: Real, V: Coordinates<T>>() -> usize {
     let mut dimension = 0;
     V::zero().each(&mut |_| dimension += 1);
@@ -146,13 +146,13 @@ fn dimension<T: Real, V: Coordinates<T>>() -> usize {
 }
 
 /// The lesser of two numbers; what isn't a number stays.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(crate) fn least<T: Real>(a: T, b: T) -> T {
     b.select(b.simd_lt(a) | b.simd_ne(b), a)
 }
 
 /// More than anything is.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(crate) fn most<T: Real>() -> T {
     real(f64::INFINITY)
 }
@@ -167,17 +167,17 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
     type Links = [[V::Square; 2]; N];
     type Four = Bodies<V::Four, N>;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn beside(columns: &[Self; 4]) -> Self::Four {
         Bodies(from_fn(|body| V::beside(&from_fn(|k| columns[k].0[body]))))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn of_four(four: &Self::Four, k: usize) -> Self {
         Self(from_fn(|body| V::of_four(&four.0[body], k)))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn map_four(matrix: &Self::Square, four: &Self::Four) -> Self::Four {
         Bodies(filled!(four.0, |body| V::map_four(&matrix.0[body], &four.0[body])))
     }
@@ -194,7 +194,7 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         column
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn zero() -> Self {
         Self([V::zero(); N])
     }
@@ -206,7 +206,7 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         axis
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn dot(&self, other: &Self) -> T {
         let mut sum = T::zero();
         for k in 0..N {
@@ -215,49 +215,49 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         sum
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn outer(&self, other: &Self) -> Self::Square {
         BlockDiagonal(from_fn(|k| self.0[k].outer(&other.0[k])))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn is_finite(&self) -> bool {
         self.0.iter().all(V::is_finite)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn select(self, mask: Mask<T>, other: Self) -> Self {
         Self(filled!(self.0, |k| self.0[k].select(mask, other.0[k])))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn factorise(matrix: &Self::Square) -> (Self::Square, T) {
         Self::factorise_apart(matrix, WHOLE)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn solve_again(factors: &Self::Square, _: T, right_side: &Self) -> Self {
         Self::solve_apart(factors, WHOLE, right_side)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn factorise_with(matrix: &Self::Square, pattern: Pattern) -> (Self::Square, T) {
         Self::factorise_apart(matrix, pattern)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn solve_again_with(factors: &Self::Square, _: T, pattern: Pattern, right_side: &Self) -> Self {
         Self::solve_apart(factors, pattern, right_side)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn inverse_with(factors: &Self::Square, _: T, pattern: Pattern) -> Self::Square {
         let of_body = |factors| V::square(|k| V::solve_apart(factors, pattern, &V::axis(k)));
         BlockDiagonal(filled!(factors.0, |body| of_body(&factors.0[body])))
     }
 
     /// The pattern is that of one body.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn factorise_apart(matrix: &Self::Square, pattern: Pattern) -> (Self::Square, T) {
         let (mut factors, mut smallest) = (*matrix, most());
         for k in 0..N {
@@ -268,19 +268,19 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         (factors, smallest)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn solve_apart(factors: &Self::Square, pattern: Pattern, right_side: &Self) -> Self {
         Self(filled!(right_side.0, |k| V::solve_apart(&factors.0[k], pattern, &right_side.0[k])))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn no_links() -> Self::Links {
         let zero = V::zero();
         [[zero.outer(&zero); 2]; N]
     }
 
     /// By elimination from the first body to the last, `A_{k+1} ← A_{k+1} − L_k A_k⁻¹ U_k`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn solve_linked(matrix: &mut Self::Square, links: &Self::Links, pattern: Pattern, right_side: &mut Self) -> T {
         let pattern = Pattern { apart: Blocks::WHOLE, ..pattern };
         let (BlockDiagonal(own), Bodies(solution), mut smallest) = (matrix, right_side, most());
@@ -315,12 +315,12 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         matrix.0.iter().fold(most(), |smallest, body| least(smallest, V::least_trace(body, blocks)))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn trace(matrix: &Self::Square) -> T {
         matrix.0.iter().fold(T::zero(), |sum, body| sum + V::trace(body))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn transpose(matrix: &Self::Square) -> Self::Square {
         BlockDiagonal(filled!(matrix.0, |k| V::transpose(&matrix.0[k])))
     }
@@ -334,7 +334,7 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         of_bodies.fold((most(), 0), lesser_pivot)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn raised(residual: &Self, jacobian: &Self::Square, power: u32, half: &Self) -> (Self, Self::Square) {
         let mut raised = (*residual, *jacobian);
         for k in 0..N {

@@ -13,7 +13,7 @@ pub struct FourVectors<T, const D: usize>(pub(super) [[T; 4]; D]);
 
 impl<T: Real, const D: usize> FourVectors<T, D> {
     /// Each mapped by the matrix.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn mapped(&self, matrix: &SMatrix<T, D, D>) -> Self {
         let mut mapped = [[T::zero(); 4]; D];
         for (i, sums) in mapped.iter_mut().enumerate() {
@@ -32,7 +32,7 @@ impl<T: Real, const D: usize> FourVectors<T, D> {
 impl<T: Real, const D: usize> Add for FourVectors<T, D> {
     type Output = Self;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn add(self, other: Self) -> Self {
         self.zip(&other, &mut |a, b| a + b)
     }
@@ -41,7 +41,7 @@ impl<T: Real, const D: usize> Add for FourVectors<T, D> {
 impl<T: Real, const D: usize> Sub for FourVectors<T, D> {
     type Output = Self;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn sub(self, other: Self) -> Self {
         self.zip(&other, &mut |a, b| a - b)
     }
@@ -52,12 +52,12 @@ impl<T: Real, const D: usize> Entries<T> for FourVectors<T, D> {
         Self(core::array::from_fn(|_| core::array::from_fn(|_| next())))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn each(&self, visit: &mut impl FnMut(T)) {
         self.0.as_flattened().iter().for_each(|entry| visit(*entry));
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
         let mut combined = *self;
         for (entry, other) in combined.0.as_flattened_mut().iter_mut().zip(other.0.as_flattened()) {

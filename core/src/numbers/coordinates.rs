@@ -93,7 +93,7 @@ pub trait Coordinates<T: Real>:
 
     /// The solution `z` of `A z = b`, and `det A`.
     #[must_use]
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn solve(matrix: &Self::Square, right_side: &Self) -> (Self, T) {
         let (factors, det) = Self::factorise(matrix);
         (Self::solve_again(&factors, det, right_side), det)
@@ -133,7 +133,7 @@ pub trait Coordinates<T: Real>:
     /// `Dᵏ r` and its derivative, for `D = 1 + |y|²` of half the coordinates `y` and a residual `r` with its derivative;
     /// of several bodies each with its own `D`.
     #[must_use]
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn raised(residual: &Self, jacobian: &Self::Square, power: u32, half: &Self) -> (Self, Self::Square) {
         if power == 0 {
             return (*residual, *jacobian);
@@ -164,22 +164,22 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     type Links = ();
     type Four = FourVectors<T, D>;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn beside(columns: &[Self; 4]) -> FourVectors<T, D> {
         FourVectors(core::array::from_fn(|row| core::array::from_fn(|k| columns[k][row])))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn of_four(four: &FourVectors<T, D>, k: usize) -> Self {
         entries::<T, D>(|row| four.0[row][k])
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn map_four(matrix: &SMatrix<T, D, D>, four: &FourVectors<T, D>) -> FourVectors<T, D> {
         four.mapped(matrix)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn square(column: impl Fn(usize) -> Self) -> SMatrix<T, D, D> {
         let mut square = SMatrix::<T, D, D>::zeros();
         for k in 0..D {
@@ -191,12 +191,12 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         square
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn column(matrix: &SMatrix<T, D, D>, k: usize) -> Self {
         matrix.column(k).into()
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn zero() -> Self {
         Self::zeros()
     }
@@ -207,28 +207,28 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         axis
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn dot(&self, other: &Self) -> T {
         sum::<T, D>(|k| self[k] * other[k])
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn outer(&self, other: &Self) -> SMatrix<T, D, D> {
         SMatrix::from_fn(|row, column| self[row] * other[column])
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn is_finite(&self) -> bool {
         // Zero times an infinity or a NaN is NaN; the sum itself could overflow.
         sum::<T, D>(|k| self[k] * T::zero()).simd_eq(T::zero()).all()
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn select(self, mask: Mask<T>, other: Self) -> Self {
         self.zip_map(&other, |a, b| a.select(mask, b))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn factorise(matrix: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
         // `D` is a constant, so that one of these is left.
         match D {
@@ -239,7 +239,7 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn solve_again(factors: &SMatrix<T, D, D>, det: T, b: &Self) -> Self {
         match D {
             1 => b / det,
@@ -251,12 +251,12 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn factorise_with(matrix: &SMatrix<T, D, D>, pattern: Pattern) -> (SMatrix<T, D, D>, T) {
         if pattern.factors.is_whole() { Self::factorise(matrix) } else { Self::factorise_apart(matrix, pattern) }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn solve_again_with(factors: &SMatrix<T, D, D>, det: T, pattern: Pattern, b: &Self) -> Self {
         if pattern.factors.is_whole() {
             Self::solve_again(factors, det, b)
@@ -265,7 +265,7 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn inverse_with(factors: &SMatrix<T, D, D>, det: T, pattern: Pattern) -> SMatrix<T, D, D> {
         if pattern.factors.is_whole() && D <= 3 {
             // For these the factors are the adjugate.
@@ -274,20 +274,20 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         Self::square(|k| Self::solve_again_with(factors, det, pattern, &Self::axis(k)))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn factorise_apart(matrix: &SMatrix<T, D, D>, pattern: Pattern) -> (SMatrix<T, D, D>, T) {
         blocks::factorise(matrix, pattern)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn solve_apart(factors: &SMatrix<T, D, D>, pattern: Pattern, b: &Self) -> Self {
         blocks::solve_again(factors, pattern, b)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn no_links() {}
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn solve_linked(matrix: &mut SMatrix<T, D, D>, (): &(), pattern: Pattern, right_side: &mut Self) -> T {
         let (factors, det) = Self::factorise_with(matrix, pattern);
         *right_side = Self::solve_again_with(&factors, det, pattern, right_side);
@@ -298,12 +298,12 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         blocks::least_trace(matrix, blocks)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn trace(matrix: &SMatrix<T, D, D>) -> T {
         sum::<T, D>(|k| matrix[(k, k)])
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn transpose(matrix: &SMatrix<T, D, D>) -> SMatrix<T, D, D> {
         matrix.transpose()
     }
@@ -328,7 +328,7 @@ pub(super) fn lesser_pivot<T: Real>((pivot, place): (T, usize), (next, behind): 
 // of the machine. With loops, on the other hand, steps of single bodies are up to a sixth slower.
 
 /// `term(0) + term(1) + …`, in that order.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn sum<T: Real, const D: usize>(term: impl Fn(usize) -> T) -> T {
     if D == 0 {
         return T::zero();
@@ -344,7 +344,7 @@ fn sum<T: Real, const D: usize>(term: impl Fn(usize) -> T) -> T {
 }
 
 /// `entry(0), entry(1), …`.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn entries<T: Real, const D: usize>(entry: impl Fn(usize) -> T) -> SVector<T, D> {
     if T::LANES == 1 {
         return SVector::from_fn(|i, _| entry(i));
@@ -356,7 +356,7 @@ fn entries<T: Real, const D: usize>(entry: impl Fn(usize) -> T) -> SVector<T, D>
     entries
 }
 
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn adjugate_2<T: Real, const D: usize>(m: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
     let det = m[(0, 0)] * m[(1, 1)] - m[(0, 1)] * m[(1, 0)];
     let mut adjugate = SMatrix::zeros();
@@ -368,7 +368,7 @@ pub(super) fn adjugate_2<T: Real, const D: usize>(m: &SMatrix<T, D, D>) -> (SMat
 }
 
 /// Its rows are cross products of columns.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(crate) fn adjugate_3<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
     let m = |row: usize, column: usize| matrix[(row - 1, column - 1)];
     let c11 = m(2, 2) * m(3, 3) - m(2, 3) * m(3, 2);

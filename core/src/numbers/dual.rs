@@ -26,22 +26,22 @@ pub(crate) trait Number:
     /// Zero in these lanes, where it is zero but for a rounding. A derivative stays.
     fn vanishing(self, mask: Self::Mask) -> Self;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn zero() -> Self {
         Self::number(0.0)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn one() -> Self {
         Self::number(1.0)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn simd_gt(self, other: Self) -> Self::Mask {
         other.simd_lt(self)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn simd_ge(self, other: Self) -> Self::Mask {
         other.simd_le(self)
     }
@@ -50,47 +50,47 @@ pub(crate) trait Number:
 impl<T: Real> Number for T {
     type Mask = Mask<T>;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn number(value: f64) -> Self {
         real(value)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn simd_default_epsilon() -> Self {
         <T as nalgebra::SimdRealField>::simd_default_epsilon()
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn simd_sqrt(self) -> Self {
         nalgebra::SimdComplexField::simd_sqrt(self)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn simd_abs(self) -> Self {
         nalgebra::SimdComplexField::simd_abs(self)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn simd_max(self, other: Self) -> Self {
         nalgebra::SimdPartialOrd::simd_max(self, other)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn simd_lt(self, other: Self) -> Self::Mask {
         nalgebra::SimdPartialOrd::simd_lt(self, other)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn simd_le(self, other: Self) -> Self::Mask {
         nalgebra::SimdPartialOrd::simd_le(self, other)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn select(self, mask: Self::Mask, other: Self) -> Self {
         nalgebra::SimdValue::select(self, mask, other)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn vanishing(self, mask: Self::Mask) -> Self {
         nalgebra::SimdValue::select(T::zero(), mask, self)
     }
@@ -105,24 +105,24 @@ pub(crate) struct Dual<T> {
 
 impl<T: Real> Dual<T> {
     /// What doesn't vary.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(crate) fn constant(value: T) -> Self {
         Self { value, slopes: [T::zero(); 3] }
     }
 
     /// What varies along one of the directions.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(crate) fn along(value: T, direction: usize) -> Self {
         Self { value, slopes: core::array::from_fn(|k| if k == direction { T::one() } else { T::zero() }) }
     }
 
     /// A function with this value, and this derivative by the number.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn chained(self, value: T, slope: T) -> Self {
         Self { value, slopes: self.slopes.map(|own| own * slope) }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn zip(self, other: Self, value: T, slope: impl Fn(T, T) -> T) -> Self {
         Self { value, slopes: core::array::from_fn(|k| slope(self.slopes[k], other.slopes[k])) }
     }
@@ -131,7 +131,7 @@ impl<T: Real> Dual<T> {
 impl<T: Real> Add for Dual<T> {
     type Output = Self;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn add(self, other: Self) -> Self {
         self.zip(other, self.value + other.value, |a, b| a + b)
     }
@@ -140,7 +140,7 @@ impl<T: Real> Add for Dual<T> {
 impl<T: Real> Sub for Dual<T> {
     type Output = Self;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn sub(self, other: Self) -> Self {
         self.zip(other, self.value - other.value, |a, b| a - b)
     }
@@ -149,7 +149,7 @@ impl<T: Real> Sub for Dual<T> {
 impl<T: Real> Mul for Dual<T> {
     type Output = Self;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     #[allow(clippy::suspicious_arithmetic_impl)] // the rule for products has a sum
     fn mul(self, other: Self) -> Self {
         self.zip(other, self.value * other.value, |a, b| a * other.value + self.value * b)
@@ -159,7 +159,7 @@ impl<T: Real> Mul for Dual<T> {
 impl<T: Real> Div for Dual<T> {
     type Output = Self;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn div(self, other: Self) -> Self {
         let (inverse, ratio) = (T::one() / other.value, self.value / other.value);
         self.zip(other, ratio, |a, b| (a - ratio * b) * inverse)
@@ -169,7 +169,7 @@ impl<T: Real> Div for Dual<T> {
 impl<T: Real> Neg for Dual<T> {
     type Output = Self;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn neg(self) -> Self {
         self.chained(-self.value, -T::one())
     }
@@ -178,49 +178,49 @@ impl<T: Real> Neg for Dual<T> {
 impl<T: Real> Number for Dual<T> {
     type Mask = Mask<T>;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn number(value: f64) -> Self {
         Self::constant(real(value))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn simd_default_epsilon() -> Self {
         Self::constant(<T as nalgebra::SimdRealField>::simd_default_epsilon())
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn simd_sqrt(self) -> Self {
         let root = nalgebra::SimdComplexField::simd_sqrt(self.value);
         self.chained(root, real::<T>(0.5) / root)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn simd_abs(self) -> Self {
         (-self).select(self.simd_lt(Self::zero()), self)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn simd_max(self, other: Self) -> Self {
         other.select(self.simd_lt(other), self)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn simd_lt(self, other: Self) -> Self::Mask {
         nalgebra::SimdPartialOrd::simd_lt(self.value, other.value)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn simd_le(self, other: Self) -> Self::Mask {
         nalgebra::SimdPartialOrd::simd_le(self.value, other.value)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn select(self, mask: Self::Mask, other: Self) -> Self {
         let value = nalgebra::SimdValue::select(self.value, mask, other.value);
         self.zip(other, value, |a, b| nalgebra::SimdValue::select(a, mask, b))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn vanishing(self, mask: Self::Mask) -> Self {
         Self { value: nalgebra::SimdValue::select(T::zero(), mask, self.value), slopes: self.slopes }
     }

@@ -24,7 +24,7 @@ impl<T: Real, const R: usize, const C: usize> Entries<T> for SMatrix<T, R, C> {
         SMatrix::<T, C, R>::from_fn(|_, _| next()).transpose()
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn each(&self, visit: &mut impl FnMut(T)) {
         for row in 0..R {
             for column in 0..C {
@@ -33,7 +33,7 @@ impl<T: Real, const R: usize, const C: usize> Entries<T> for SMatrix<T, R, C> {
         }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
         if T::LANES == 1 {
             return self.zip_map(other, combine);
@@ -53,7 +53,7 @@ impl<T: Real, const R: usize, const C: usize> Entries<T> for SMatrix<T, R, C> {
 impl<T> Entries<T> for () {
     fn from_entries(_: &mut impl FnMut() -> T) -> Self {}
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn each(&self, _: &mut impl FnMut(T)) {}
 
     fn zip(&self, (): &Self, _: &mut impl FnMut(T, T) -> T) -> Self {}
@@ -66,12 +66,12 @@ macro_rules! tuple {
                 ($($name::from_entries(next),)+)
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn each(&self, visit: &mut impl FnMut(S)) {
                 $(self.$index.each(visit);)+
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn zip(&self, other: &Self, combine: &mut impl FnMut(S, S) -> S) -> Self {
                 ($(self.$index.zip(&other.$index, combine),)+)
             }
@@ -86,7 +86,7 @@ tuple!(A 0, B 1, C 2, D 3, E 4);
 tuple!(A 0, B 1, C 2, D 3, E 4, F 5);
 
 /// `a + b`, place by place.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(crate) fn sum<T: Real, E: Entries<T>>(a: &E, b: &E) -> E {
     a.zip(b, &mut |a, b| a + b)
 }

@@ -5,7 +5,7 @@ use crate::numbers::scalar::{Real, real};
 use nalgebra::SimdBool as _;
 
 /// `a + b` rounded and what the rounding left behind, by Knuth's sum, which asks for no order of the sizes.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(crate) fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
     let sum = a + b;
     let of_b = sum - a;
@@ -15,7 +15,7 @@ pub(crate) fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
 /// `a + (b + carry)` rounded, and what the rounding left behind, place by place.
 ///
 /// A stage at a time, as all places go through each side by side.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(crate) fn carried_sum<T: Real, E: Entries<T>>(a: &E, b: &E, carry: &E) -> (E, E) {
     let b = b.zip(carry, &mut |b, carry| b + carry);
     let sum = a.zip(&b, &mut |a, b| a + b);
@@ -26,7 +26,7 @@ pub(crate) fn carried_sum<T: Real, E: Entries<T>>(a: &E, b: &E, carry: &E) -> (E
 }
 
 /// `a²` rounded and what the rounding left behind, by Dekker's product.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(crate) fn two_square<T: Real>(a: T) -> (T, T) {
     // Half of the digits: of 53 or of 24.
     let single = T::simd_default_epsilon().simd_gt(real(1e-10)).any();

@@ -44,20 +44,20 @@ impl<T: SimdRealField<Element: RealField + Copy> + Copy> Real for T {}
 pub type Mask<T> = <T as SimdValue>::SimdBool;
 
 /// The mask that no lane is in.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(crate) fn nowhere<T: Real>() -> Mask<T> {
     T::zero().simd_ne(T::zero())
 }
 
 /// The scalar nearest to `value`.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 #[must_use]
 pub fn real<T: Real>(value: f64) -> T {
     nalgebra::convert(value)
 }
 
 /// Whether every lane is finite: zero times an infinity or a NaN is NaN.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(crate) fn is_finite<T: Real>(value: T) -> bool {
     (value * T::zero()).simd_eq(T::zero()).all()
 }

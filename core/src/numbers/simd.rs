@@ -33,7 +33,7 @@ pub(crate) trait Kernel {
 
 /// Does it with the best instructions that the machine has, up to those asked for, if the feature `dispatch` is on.
 #[cfg(feature = "dispatch")]
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
     use pulp::{Arch, Simd, WithSimd};
 
@@ -42,7 +42,7 @@ pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
     impl<K: Kernel> WithSimd for Dispatched<K> {
         type Output = K::Output;
 
-        #[cfg_attr(not(debug_assertions), inline(always))]
+        #[hot]
         fn with_simd<S: Simd>(self, _: S) -> K::Output {
             self.0.run()
         }
@@ -64,7 +64,7 @@ pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
 
 /// Does it with the instructions that it was compiled for.
 #[cfg(not(feature = "dispatch"))]
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
     let _ = K::VECTORS;
     kernel.run()

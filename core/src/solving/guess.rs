@@ -38,7 +38,7 @@ impl<V: Copy> Guess<V> {
     }
 
     /// Guesses by the line through the last two increments, the later of which has half these coordinates.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(crate) fn follow<T: Real>(&mut self, half: V, far: Mask<T>)
     where
         V: Coordinates<T>,
@@ -53,7 +53,7 @@ impl<V: Copy> Guess<V> {
 /// Those are the lanes in which coordinates are no longer near the identity at 3/2 of their length. Near the fold they
 /// change too fast for a guess by what has been; a factor of 3/2 keeps well away from it. A selection without the branch
 /// would lie on the way to the next iteration, and cost a tenth of a step.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn near_of<T: Real, V: Coordinates<T>>(half: V, guess: V, far: Mask<T>) -> V {
     if far.any() { half.select(far, guess) } else { guess }
 }
@@ -76,7 +76,7 @@ impl<V: Copy> Warm<V> {
     }
 
     /// Guesses the next increment by continuing the last ones, the latest of which has half these coordinates.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(crate) fn follow<T: Real>(&mut self, half: V, far: Mask<T>, continued: Continued)
     where
         V: Coordinates<T>,
@@ -106,7 +106,7 @@ impl<V: Copy> Warm<V> {
     /// were stored apart waits until both stores are done. The compiler stores them and loads them in pairs, and in
     /// different ones if it may. With the last component loaded for itself they are the same; it was a tenth of a step
     /// of (3.13).
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(crate) fn guess<T: Real>(&self, dimension: usize) -> V
     where
         V: Coordinates<T>,
@@ -145,7 +145,7 @@ impl<V: Copy> History<V> {
     ///
     /// The first increment of all has no difference to the one before, which counts as zero; the guess after the second
     /// is that much worse.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(crate) fn parabola<T: Real>(&mut self, last: V, y: V) -> V
     where
         V: Coordinates<T>,
@@ -158,7 +158,7 @@ impl<V: Copy> History<V> {
 
     /// Takes notice of the increment after `last`, and returns `y + ∇ y + ∇² y + …`: where the polynomial through all
     /// of them goes next.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(crate) fn next<T: Real>(&mut self, last: V, y: V) -> V
     where
         V: Coordinates<T>,

@@ -29,7 +29,7 @@ pub(super) trait System<G: LieGroup> {
     fn newton_update(&self, half: &G::Vector) -> Iteration<G>;
 
     /// The update from another place by the same Jacobian, in these factors.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn simplified(&self, factors: &SquareOf<G>, det: G::Scalar, half: &G::Vector) -> G::Vector {
         G::Vector::solve_again_with(factors, det, self.pattern(), &self.residual(half))
     }
@@ -61,7 +61,7 @@ pub(crate) struct Kick<G: LieGroup> {
 }
 
 impl<G: LieGroup> Kick<G> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn none() -> Self {
         Self { value: G::Vector::zero(), found: nowhere::<G::Scalar>() }
     }
@@ -73,7 +73,7 @@ impl<G: LieGroup> Root<G> {
     }
 
     /// With no lane far from the identity, and no kick.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn of(half: &G::Vector, increment: G::Matrix, iterations: u32) -> Self {
         Self { half: *half, increment, iterations, far: nowhere::<G::Scalar>(), kick: Kick::none() }
     }
@@ -89,13 +89,13 @@ pub(super) struct Lanes<G: LieGroup> {
 }
 
 impl<G: LieGroup> Lanes<G> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn starting_at(half: &G::Vector) -> Self {
         Self { half: *half, det: real(0.0), settled: nowhere::<G::Scalar>(), kick: Kick::none() }
     }
 
     /// Takes `part` of the update in the lanes that haven't settled.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn advance(&mut self, update: &G::Vector, det: G::Scalar, part: &G::Vector) {
         let next = self.half - *part;
         let settled = settled::<G>(update, &next);
@@ -118,20 +118,20 @@ impl<G: LieGroup> Lanes<G> {
 }
 
 /// Whether the next update would be below rounding; see [`SETTLED`].
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn settled<G: LieGroup>(update: &G::Vector, half: &G::Vector) -> Mask<G::Scalar> {
     use nalgebra::SimdRealField as _;
     let tolerance = G::Scalar::simd_default_epsilon() * real(SETTLED);
     update.dot(update).simd_le(half.dot(half) * tolerance)
 }
 
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn far<R: Retraction<G>, G: LieGroup>(half: &G::Vector) -> Mask<G::Scalar> {
     !R::is_half_well_near_identity(half)
 }
 
 /// The sign that the Jacobian's determinant has at the identity, where it is that of the inertia.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn is_positive<T: Real>(value: T) -> Mask<T> {
     value.simd_gt(real(0.0))
 }

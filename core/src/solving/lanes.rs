@@ -17,7 +17,7 @@ use nalgebra::{SimdBool as _, SimdPartialOrd as _};
 
 impl<L: Effect> Problem<'_, L> {
     /// [`solve_directly`](Self::solve_directly) for several lanes: the same digits.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn solve_together<const REUSE: bool>(
         &self,
         equation: &Usual<'_, L>,

@@ -43,17 +43,17 @@ pub(super) struct Usual<'a, L: Effect> {
 }
 
 impl<L: Effect> System<Group<L>> for Usual<'_, L> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn pattern(&self) -> Pattern {
         pattern::<L>()
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn newton_update(&self, half: &Vector<L>) -> Iteration<Group<L>> {
         L::newton_update(self.constants, &self.terms, half)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn residual(&self, half: &Vector<L>) -> Vector<L> {
         L::newton_residual(self.constants, &self.terms, half).momentum_defect
     }
@@ -68,7 +68,7 @@ impl<L: Effect> Problem<'_, L> {
     /// `REUSE` says whether a Jacobian may be [reused](super::reused_jacobian).
     ///
     /// Nothing here is lent to a function that isn't inlined; that is a sixth of the time of a step.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(crate) fn solve_directly<const REUSE: bool>(
         &self,
         guess: &Vector<L>,
@@ -94,7 +94,7 @@ impl<L: Effect> Problem<'_, L> {
     }
 
     /// What an iteration has settled on, if nothing about it is doubtful.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn usual(
         &self,
         half: &Vector<L>,

@@ -177,7 +177,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
         self.0.is_in_step(&kept.kept)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn step<M: Summation<Group<S>, S::Advected>>(
         &self,
         scene: &S,
@@ -191,7 +191,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
         Ok(report)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn run<M: Summation<Group<S>, S::Advected>>(
         &self,
         scene: &S,
@@ -274,12 +274,12 @@ struct Sums<G: LieGroup, A> {
 impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Sums<G, A> {
     const CARRIES: bool = true;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn now(&self) -> &Motion<G, A> {
         &self.motion
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn turn(&mut self, increment: &G::Matrix) {
         let Self { motion, carry } = self;
         let attitude = carried_sum(&motion.attitude.matrix(), &motion.attitude.change(increment), &carry.attitude);
@@ -289,25 +289,25 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Sums<G, A> {
         (carry.attitude, carry.advected) = (attitude.1, advected.1);
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn turned(&self, increment: &G::Matrix) -> A {
         let Self { motion, carry } = self;
         carried_sum(&motion.advected, &motion.advected.change(increment), &carry.advected).0
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn push(&mut self, change: &G::Vector) {
         let momentum = carried_sum(&self.motion.momentum, change, &self.carry.momentum);
         (self.motion.momentum, self.carry.momentum) = momentum;
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn proceed(&mut self, step: &Proceeded<G, A>) {
         self.turn(&step.increment);
         Summation::push(self, &step.change);
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn recount(&mut self, steps: u64) {
         self.motion.steps = steps;
     }
@@ -325,7 +325,7 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Sums<G, A> {
         *self = Self { motion, carry: Carry::nothing() };
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn show(&mut self, motion: Motion<G, A>) {
         self.motion = motion;
     }

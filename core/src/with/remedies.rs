@@ -135,7 +135,7 @@ impl<S: Effect, P: Plan<S>, R: Instead<S>> Plan<S> for OrElse<P, R> {
         self.plan.is_in_step(kept)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn step<M: Summation<Group<S>, S::Advected>>(
         &self,
         scene: &S,

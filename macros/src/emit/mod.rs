@@ -19,7 +19,7 @@ mod verbatim;
 use std::collections::BTreeMap;
 
 use proc_macro2::{Span, TokenStream};
-use quote::quote_spanned;
+use quote::{quote, quote_spanned};
 
 use crate::declared::lower::Lowered;
 use crate::declared::{Declaration, FieldKind, Name, Role};
@@ -34,6 +34,13 @@ pub(crate) use continuous::alone as continuous;
 pub(crate) use fallback::mistakes;
 use header::Header;
 pub(crate) use own_group::{ask, own_group};
+
+/// A function that is inlined but where it is to be built soon.
+pub(crate) fn hot(item: TokenStream) -> TokenStream {
+    let mut marked = quote!(#[cfg_attr(not(debug_assertions), inline(always))]);
+    marked.extend(item);
+    marked
+}
 
 /// The item with the whole implementation.
 pub(crate) fn implementation(

@@ -16,7 +16,7 @@ pub struct Given<T, const R: usize = 1, const C: usize = 1>(pub SMatrix<T, R, C>
 
 impl<T: Real> Given<T> {
     /// A scalar.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub const fn scalar(value: T) -> Self {
         Self(Vector1::new(value))
     }
@@ -29,34 +29,34 @@ impl<T: Real, const R: usize, const C: usize> Entries<T> for Given<T, R, C> {
         Self(Entries::from_entries(next))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn each(&self, visit: &mut impl FnMut(T)) {
         self.0.each(visit);
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
         Self(self.0.zip(&other.0, combine))
     }
 }
 
 impl<T: Real, G: LieGroup<Scalar = T>, const R: usize, const C: usize> Advected<G> for Given<T, R, C> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn seen_from(&self, _: &G) -> Self {
         *self
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn pulled_back(&self, _: &G) -> Self {
         *self
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn change(&self, _: &G::Matrix) -> Self {
         Self(SMatrix::zeros())
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn rate(&self, _: &G::Matrix) -> Self {
         Self(SMatrix::zeros())
     }
@@ -65,7 +65,7 @@ impl<T: Real, G: LieGroup<Scalar = T>, const R: usize, const C: usize> Advected<
         *self
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn advect(&self, _: &G::Matrix) -> Self {
         *self
     }

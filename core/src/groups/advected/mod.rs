@@ -49,7 +49,7 @@ pub trait Advected<G: LieGroup>: Entries<G::Scalar> + Debug + PartialEq {
     fn change(&self, increment: &G::Matrix) -> Self;
 
     /// `f⁻¹ · w` for `f = I + D`, \[RDAE, (2.4)\].
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     #[must_use]
     fn advect(&self, increment: &G::Matrix) -> Self {
         sum(self, &self.change(increment))
@@ -126,19 +126,19 @@ where
     }
 
     /// `ρ(g)` times the gradient.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn pulled_back(&self, attitude: &G) -> Self {
         mul(&attitude.matrix(), self)
     }
 
     /// `Dᵀ w`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn change(&self, increment: &SMatrix<T, N, N>) -> Self {
         transpose_mul(increment, self)
     }
 
     /// `ξ̂ᵀ w`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn rate(&self, velocity: &SMatrix<T, N, N>) -> Self {
         transpose_mul(velocity, self)
     }
@@ -147,14 +147,14 @@ where
         transpose_mul(matrix, self)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn is_finite(&self) -> bool {
         Coordinates::is_finite(self)
     }
 }
 
 /// `Aᵀ v`, unrolled.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn transpose_mul<T: Real, const N: usize>(a: &SMatrix<T, N, N>, v: &SVector<T, N>) -> SVector<T, N> {
     let mut product = SVector::zeros();
     for i in 0..N {
@@ -168,7 +168,7 @@ fn transpose_mul<T: Real, const N: usize>(a: &SMatrix<T, N, N>, v: &SVector<T, N
 }
 
 /// `A v`, unrolled.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn mul<T: Real, const N: usize>(a: &SMatrix<T, N, N>, v: &SVector<T, N>) -> SVector<T, N> {
     let mut product = SVector::zeros();
     for i in 0..N {
@@ -184,22 +184,22 @@ fn mul<T: Real, const N: usize>(a: &SMatrix<T, N, N>, v: &SVector<T, N>) -> SVec
 macro_rules! tuple {
     ($($name:ident $index:tt),+) => {
         impl<G: LieGroup, $($name: Advected<G>),+> Advected<G> for ($($name,)+) {
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn seen_from(&self, attitude: &G) -> Self {
                 ($(self.$index.seen_from(attitude),)+)
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn pulled_back(&self, attitude: &G) -> Self {
                 ($(self.$index.pulled_back(attitude),)+)
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn change(&self, increment: &G::Matrix) -> Self {
                 ($(self.$index.change(increment),)+)
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn rate(&self, velocity: &G::Matrix) -> Self {
                 ($(self.$index.rate(velocity),)+)
             }
@@ -208,7 +208,7 @@ macro_rules! tuple {
                 ($(self.$index.seen_through(matrix, inverse),)+)
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn is_finite(&self) -> bool {
                 $(self.$index.is_finite())&&+
             }

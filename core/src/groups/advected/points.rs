@@ -10,7 +10,7 @@ use crate::groups::LieGroup;
 use crate::numbers::{Entries, Real, is_finite};
 
 /// `(p, 1)`.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(crate) fn homogeneous<T: Real, const N: usize, const M: usize>(point: &Point<T, N>) -> SVector<T, M> {
     const { assert!(M == N + 1) };
     SVector::from_fn(|row, _| if row < N { point[row] } else { T::one() })

@@ -63,12 +63,12 @@ macro_rules! of_its_value {
                 Self(Entries::from_entries(next))
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn each(&self, visit: &mut impl FnMut(S)) {
                 self.0.each(visit);
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn zip(&self, other: &Self, combine: &mut impl FnMut(S, S) -> S) -> Self {
                 Self(self.0.zip(&other.0, combine))
             }
@@ -86,17 +86,17 @@ impl<const A: usize, G: Factor<A>, W: Advected<G::Of>> Advected<G> for SeenFrom<
         Self(self.0.seen_from(&attitude.factor()))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn pulled_back(&self, attitude: &G) -> Self {
         Self(self.0.pulled_back(&attitude.factor()))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn change(&self, increment: &G::Matrix) -> Self {
         Self(self.0.change(&G::of_matrix(increment)))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn rate(&self, velocity: &G::Matrix) -> Self {
         Self(self.0.rate(&G::of_matrix(velocity)))
     }
@@ -105,7 +105,7 @@ impl<const A: usize, G: Factor<A>, W: Advected<G::Of>> Advected<G> for SeenFrom<
         Self(self.0.seen_through(&G::of_matrix(matrix), &G::of_matrix(inverse)))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn is_finite(&self) -> bool {
         self.0.is_finite()
     }
@@ -134,7 +134,7 @@ where
     }
 
     /// `E Q + (Q + E Q) D_B` with `E = F_A⁻¹ − I`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn change(&self, increment: &G::Matrix) -> Self {
         let (from, to) = (<G as Factor<A>>::of_matrix(increment), <G as Factor<B>>::of_matrix(increment));
         let turned = product(&<G as Factor<A>>::Of::inverse_increment(&from), &self.0);
@@ -142,7 +142,7 @@ where
     }
 
     /// `Q ξ̂_B − ξ̂_A Q`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn rate(&self, velocity: &G::Matrix) -> Self {
         let (from, to) = (<G as Factor<A>>::of_matrix(velocity), <G as Factor<B>>::of_matrix(velocity));
         Self(product(&self.0, &to) - product(&from, &self.0))
@@ -153,7 +153,7 @@ where
         Self(product(&product(&from, &self.0), &to))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn is_finite(&self) -> bool {
         all_finite(&self.0)
     }
@@ -175,13 +175,13 @@ where
     }
 
     /// `R D`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn change(&self, increment: &G::Matrix) -> Self {
         Self(product(&self.0, &G::of_matrix(increment)))
     }
 
     /// `R ξ̂`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn rate(&self, velocity: &G::Matrix) -> Self {
         Self(product(&self.0, &G::of_matrix(velocity)))
     }
@@ -190,14 +190,14 @@ where
         Self(product(&self.0, &G::of_matrix(matrix)))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn is_finite(&self) -> bool {
         all_finite(&self.0)
     }
 }
 
 /// `A B`, unrolled; of nalgebra's product, which isn't always inlined, lanes would have the target's common instructions.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn product<T: Real, const N: usize>(a: &SMatrix<T, N, N>, b: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
     let mut product = SMatrix::zeros();
     for column in 0..N {
@@ -212,7 +212,7 @@ fn product<T: Real, const N: usize>(a: &SMatrix<T, N, N>, b: &SMatrix<T, N, N>) 
     product
 }
 
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn all_finite<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool {
     matrix.iter().all(|&entry| is_finite(entry))
 }

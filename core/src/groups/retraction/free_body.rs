@@ -15,7 +15,7 @@ use crate::numbers::{Real, real};
 ///
 /// and its right momentum `h p = g + ½ x × g + (1/12) x × (x × g)` with `g = ∂(hK)/∂x`, up to `O(x⁵)`. With
 /// `x = y (1 − |y|²/12 + |y|⁴/80)` the result is right to the relative order of `|y|⁴`.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn momentum_tangent<T: Real>(inertia: &Matrix3<T>, y: &Vector3<T>) -> Matrix3<T> {
     let twelfth = real::<T>(1.0 / 12.0);
     let n = y.dot(y);

@@ -33,7 +33,7 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> Retraction<Ma
     for CayleyRetraction
 {
     /// `D = (I − ξ̂/2)⁻¹ ξ̂`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn increment(xi: &SVector<T, D>) -> SMatrix<T, N, N> {
         let () = Closure::<K, N, D>::CHECKED;
         let hat = MatrixGroup::<K, T, N, D>::hat(xi);
@@ -67,7 +67,7 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> Retraction<Ma
     }
 
     /// Lane by lane, as the group's own answer is.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn is_near_identity(xi: &SVector<T, D>) -> Mask<T> {
         let far = lane_by_lane::<T, Vector1<T>, N>(&MatrixGroup::<K, T, N, D>::hat(xi), |lane| {
             Vector1::new(if K::is_near_identity(lane) { zero() } else { one() })

@@ -20,7 +20,7 @@ pub trait Retraction<G: LieGroup> {
     /// `D` for half the coordinates, `y = ξ/2`, which are what Newton's iteration solves for: on SO(3) in Cayley
     /// coordinates `tan(θ/2) n`, in which formulas are shortest.
     #[must_use]
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn increment_of_half(half: &G::Vector) -> G::Matrix {
         Self::increment(&(*half + *half))
     }
@@ -39,7 +39,7 @@ pub trait Retraction<G: LieGroup> {
 
     /// The same for half the coordinates, `y = ξ/2`: `dF F⁻¹ = (T dy)^`.
     #[must_use]
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn tangent_of_half(half: &G::Vector) -> <G::Vector as crate::numbers::Coordinates<G::Scalar>>::Square {
         Self::tangent(&(*half + *half)) * real::<G::Scalar>(2.0)
     }
@@ -68,14 +68,14 @@ pub trait Retraction<G: LieGroup> {
 
     /// [`is_near_identity`](Self::is_near_identity) for half the coordinates.
     #[must_use]
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn is_half_near_identity(half: &G::Vector) -> Mask<G::Scalar> {
         Self::is_near_identity(&(*half + *half))
     }
 
     /// The same for 3/2 of these, which keeps well away from where increments change fast from step to step.
     #[must_use]
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn is_half_well_near_identity(half: &G::Vector) -> Mask<G::Scalar> {
         Self::is_near_identity(&(*half * real(3.0)))
     }
@@ -92,7 +92,7 @@ pub struct CayleyRetraction;
 
 impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
     /// `D = (ξ̂ + ξ̂²/2) · 4/(4 + |ξ|²)`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn increment(xi: &Vector3<T>) -> Matrix3<T> {
         let squared = xi.x * xi.x + xi.y * xi.y + xi.z * xi.z;
         let four = real::<T>(4.0);
@@ -101,7 +101,7 @@ impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
     }
 
     /// `D = (ŷ + ŷ²) · 2/(1 + |y|²)`: the same bits.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn increment_of_half(half: &Vector3<T>) -> Matrix3<T> {
         let squared = half.x * half.x + half.y * half.y + half.z * half.z;
         let scale = real::<T>(2.0) / (T::one() + squared);
@@ -124,22 +124,22 @@ impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
     }
 
     /// To the relative order of `|ξ|⁴`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn free_momentum_tangent(inertia: &Matrix3<T>, xi: &Vector3<T>) -> Matrix3<T> {
         free_body::momentum_tangent(inertia, xi)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn is_near_identity(xi: &Vector3<T>) -> Mask<T> {
         (xi.x * xi.x + xi.y * xi.y + xi.z * xi.z).simd_lt(real(4.0))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn is_half_near_identity(half: &Vector3<T>) -> Mask<T> {
         (half.x * half.x + half.y * half.y + half.z * half.z).simd_lt(T::one())
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn is_half_well_near_identity(half: &Vector3<T>) -> Mask<T> {
         (half.x * half.x + half.y * half.y + half.z * half.z).simd_lt(real(4.0 / 9.0))
     }
@@ -187,7 +187,7 @@ impl<T: RealField + Copy> Retraction<SO3<T>> for ExponentialRetraction {
 }
 
 /// `a ξ̂ + b ξ̂²`.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn quadratic_increment<T: Real>(xi: &Vector3<T>, a: T, b: T) -> Matrix3<T> {
     let (x, y, z) = (xi.x, xi.y, xi.z);
     let (bx, by, bz) = (b * x, b * y, b * z);

@@ -22,12 +22,12 @@ const FAR: f64 = 100.0;
 /// two products and doesn't cancel: with `S` and `V` at `q/4`, `S(q) = S (1 − q V/4)` and `V(q) = S²/2`. Each doubles
 /// the absolute error, as the angle's own rounding does. What that adds to the length of `(cos θ, sin θ)` is taken out
 /// again, so that large angles are those of rotations, too; one without a digit left gives NaN.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(crate) fn rotation_coefficients<T: Number>(q: T) -> (T, T) {
     if q.simd_le(T::number(SMALL)).all() { small(q) } else { large(q) }
 }
 
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn small<T: Number>(q: T) -> (T, T) {
     const SINC: [f64; 8] = coefficients(1);
     const VERSINE: [f64; 8] = coefficients(2);
@@ -68,7 +68,7 @@ fn large<T: Number>(q: T) -> (T, T) {
 
 /// `Σ a_k q^k` in pairs, which don't wait for each other; the small ones first, or what is less than half of
 /// a rounding would be lost each time.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn polynomial<T: Number>(a: &[f64; 8], q: T, q2: T, q4: T) -> T {
     let pair = |k: usize| T::number(a[k]) + q * T::number(a[k + 1]);
     pair(0) + (q2 * pair(2) + q4 * (pair(4) + q2 * pair(6)))

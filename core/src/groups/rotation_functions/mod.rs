@@ -159,7 +159,7 @@ impl<const N: usize> Series<N> {
 
 /// By Horner's rule in `x⁴`: four chains that the processor runs side by side. A single one's latency would be that of
 /// the step.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn polynomial<T: Real, const N: usize>(coefficients: &[f64; N], x: T) -> T {
     let square = x * x;
     let fourth = square * square;

@@ -35,7 +35,7 @@ where
     }
 
     /// Residual and Jacobian at each place.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn systems(
         constants: &Folded<E, M>,
         terms: &P::Of<E::StepTerms>,
@@ -125,7 +125,7 @@ where
         constants.iter().all(|(constants, _)| E::are_finite(constants))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn kick_before(constants: &Self::Constants, w: &P::Advected) -> Vector<Self> {
         P::sum(
             #[cfg_attr(not(debug_assertions), inline(always))]
@@ -136,7 +136,7 @@ where
         )
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn kick_derivative(constants: &Self::Constants, w: &P::Advected, velocity: &Vector<Self>) -> Option<Vector<Self>> {
         let mut is_known = true;
         let all = P::sum(
@@ -151,7 +151,7 @@ where
         is_known.then_some(all)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &P::Advected) -> Self::StepTerms {
         P::gather(
             #[cfg_attr(not(debug_assertions), inline(always))]
@@ -162,7 +162,7 @@ where
         )
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn newton_system(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -171,7 +171,7 @@ where
         P::system(Self::systems(constants, terms, half))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn newton_linked(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -181,7 +181,7 @@ where
         P::linked(links, Self::systems(constants, terms, half))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn newton_update(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -190,7 +190,7 @@ where
         P::newton_update(pattern::<Self>(), Self::systems(constants, terms, half))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn newton_residual(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -206,7 +206,7 @@ where
         Residual { momentum_defect, moving_kick: None }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &P::Advected) -> Vector<Self> {
         P::sum(
             #[cfg_attr(not(debug_assertions), inline(always))]

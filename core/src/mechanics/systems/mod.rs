@@ -171,7 +171,7 @@ impl<W, P: Copy + PartialEq, E: InLanes<W>, const M: usize> InLanes<W> for Place
 }
 
 /// The number of the term at a place.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 const fn term_at<const M: usize>(place: usize) -> usize {
     if M == 1 { 0 } else { place }
 }

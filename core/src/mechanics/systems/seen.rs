@@ -31,12 +31,12 @@ macro_rules! entries {
                 Self(Entries::from_entries(next), $($marker)?)
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn each(&self, visit: &mut impl FnMut(S)) {
                 self.0.each(visit);
             }
 
-            #[cfg_attr(not(debug_assertions), inline(always))]
+            #[hot]
             fn zip(&self, other: &Self, combine: &mut impl FnMut(S, S) -> S) -> Self {
                 Self(self.0.zip(&other.0, combine), $($marker)?)
             }
@@ -65,7 +65,7 @@ lanes_of_fields!(
 
 impl<P, W: Copy, const N: usize> Neighbours<P, W, N> {
     /// Something of each two neighbours in the place of what is there; the one behind stays.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn with(mut self, each: impl Fn(usize) -> W) -> Self {
         for k in 1..N {
             self.0[k - 1] = each(k - 1);
@@ -84,7 +84,7 @@ where
         Self(self.0, PhantomData).with(|k| self.0[k].seen_from(&P::pair(&attitude[k], &attitude[k + 1])))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn change(&self, increment: &[G::Matrix; N]) -> Self {
         Self([zero::<G::Scalar, W>(); N], PhantomData).with(
             #[cfg_attr(not(debug_assertions), inline(always))]
@@ -92,7 +92,7 @@ where
         )
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn advect(&self, increment: &[G::Matrix; N]) -> Self {
         Self(self.0, PhantomData).with(
             #[cfg_attr(not(debug_assertions), inline(always))]
@@ -110,7 +110,7 @@ where
         Self(self.0, PhantomData).with(|k| self.0[k].seen_through(&pair(matrix, k), &pair(inverse, k)))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn is_finite(&self) -> bool {
         self.0.iter().all(W::is_finite)
     }
@@ -126,7 +126,7 @@ where
         Self(self.0.seen_from(&P::pair(&attitude[A], &attitude[B])), PhantomData)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn change(&self, increment: &[G::Matrix; N]) -> Self {
         Self(self.0.change(&P::matrices(&increment[A], &increment[B])), PhantomData)
     }
@@ -140,7 +140,7 @@ where
         Self(self.0.seen_through(&pair(matrix), &pair(inverse)), PhantomData)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn is_finite(&self) -> bool {
         self.0.is_finite()
     }
@@ -152,7 +152,7 @@ impl<G: LieGroup, const N: usize> Advected<[G; N]> for WhereAllAre<G, N> {
     }
 
     /// `R D`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn change(&self, increment: &[G::Matrix; N]) -> Self {
         Self(filled!(self.0, |k| G::from_matrix_unchecked(self.0[k]).change(&increment[k])))
     }

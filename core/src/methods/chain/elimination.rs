@@ -92,7 +92,7 @@ impl Work {
     };
 
     /// What doesn't change from step to step.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn set(&mut self, link: &Link) {
         self.nonstandard = *link.J_d.as_matrix();
         self.m = link.m;
@@ -106,13 +106,13 @@ impl Work {
     }
 
     /// The link's momentum times `h`, `m (u + D c)`, kg m.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn momentum(&self) -> Vector3<f64> {
         self.u * self.m + self.of_mc
     }
 
     /// Turns it, where the way of its upper joint is `u`; returns that of the lower one, as the next link sees it.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn turn(&mut self, u: Vector3<f64>) -> Vector3<f64> {
         self.increment = increment(&self.half);
         self.of_rho = self.increment * self.rho;
@@ -122,7 +122,7 @@ impl Work {
     }
 
     /// `(D J − J Dᵀ)^∨ + m c × u + ρ × P − h a` with `D J`, and `P` beyond.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn residual(&self, dj: &Matrix3<f64>, beyond: &Vector3<f64>) -> Vector3<f64> {
         Vector3::new(dj.m32 - dj.m23, dj.m13 - dj.m31, dj.m21 - dj.m12)
             + self.mc.cross(&self.u)
@@ -140,7 +140,7 @@ pub(super) struct Updated {
 }
 
 /// `D = 2 (ŷ + ŷ²)/(1 + |y|²)`.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn increment(y: &Vector3<f64>) -> Matrix3<f64> {
     let (xx, yy, zz) = (y.x * y.x, y.y * y.y, y.z * y.z);
     let (xy, xz, yz) = (y.x * y.y, y.x * y.z, y.y * y.z);
@@ -149,7 +149,7 @@ fn increment(y: &Vector3<f64>) -> Matrix3<f64> {
 }
 
 /// Where the joints go.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn outwards(work: &mut [Work]) {
     let mut u = Vector3::zeros();
     for work in work {
@@ -159,7 +159,7 @@ pub(super) fn outwards(work: &mut [Work]) {
 
 /// One of Newton's iterations, from where the joints go to where they go by it; where a link's update is longer than
 /// `longest`, all are shortened.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn newton(work: &mut [Work], longest: f64) -> Updated {
     let (mut beyond, mut mass, mut q) = (Vector3::zeros(), Matrix3::zeros(), Vector3::zeros());
     for work in work.iter_mut().rev() {
@@ -191,7 +191,7 @@ pub(super) fn newton(work: &mut [Work], longest: f64) -> Updated {
 }
 
 /// Another with the matrix of the last.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn simplified(work: &mut [Work]) -> Updated {
     let (mut beyond, mut q) = (Vector3::zeros(), Vector3::zeros());
     for work in work.iter_mut().rev() {
@@ -206,7 +206,7 @@ pub(super) fn simplified(work: &mut [Work]) -> Updated {
 }
 
 /// Outwards the update, and where the joints go by it.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn solved(work: &mut [Work], longest: f64) -> Updated {
     // What has taken a whole update doesn't tell what it was: of that a rounding of the update is lost, which has no bound.
     if longest.is_finite() {
@@ -255,13 +255,13 @@ pub(super) fn momenta_of_velocities(work: &mut [Work]) {
 }
 
 /// The ordinary inertia about a joint, `tr(J) I − J`.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn inertia(nonstandard: &Matrix3<f64>) -> Matrix3<f64> {
     Matrix3::from_diagonal_element(nonstandard.trace()) - nonstandard
 }
 
 /// `â M`.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn cross_columns(a: &Vector3<f64>, m: &Matrix3<f64>) -> Matrix3<f64> {
     Matrix3::new(
         a.y * m.m31 - a.z * m.m21,
@@ -277,7 +277,7 @@ fn cross_columns(a: &Vector3<f64>, m: &Matrix3<f64>) -> Matrix3<f64> {
 }
 
 /// `M â`: each row times `a`.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn cross_rows(m: &Matrix3<f64>, a: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(
         m.m12 * a.z - m.m13 * a.y,
@@ -293,13 +293,13 @@ fn cross_rows(m: &Matrix3<f64>, a: &Vector3<f64>) -> Matrix3<f64> {
 }
 
 /// `M + â`.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn add_hat(m: &Matrix3<f64>, a: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(m.m11, m.m12 - a.z, m.m13 + a.y, m.m21 + a.z, m.m22, m.m23 - a.x, m.m31 - a.y, m.m32 + a.x, m.m33)
 }
 
 /// The inverse, by Cramer's rule, and the determinant. Where it is zero nothing is finite.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn inverted(m: &Matrix3<f64>) -> (Matrix3<f64>, f64) {
     let (adjugate, determinant) = crate::numbers::adjugate_3(m);
     (adjugate * (1.0 / determinant), determinant)

@@ -244,7 +244,7 @@ impl<const N: usize> ChainStepper<N> {
 }
 
 /// The links, with the attitude of each relative to that before.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn place(links: &[Link], attitudes: &[SO3], work: &mut [Work]) {
     for (link, work) in links.iter().zip(&mut *work) {
         work.set(link);
@@ -288,7 +288,7 @@ impl Kernel for Moving<'_> {
 
     const VECTORS: Vectors = Vectors::Four;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn run(mut self) -> Result<u32, NoStep> {
         self.prepare();
         let iterations = if self.h == 0.0 { 0 } else { self.solve()? };
@@ -299,7 +299,7 @@ impl Kernel for Moving<'_> {
 
 impl Moving<'_> {
     /// What the increments are to satisfy.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn prepare(&mut self) {
         place(self.links, self.attitudes, self.work);
         let links = self.weights.iter().zip(&*self.attitudes).zip(&*self.momenta);
@@ -312,7 +312,7 @@ impl Moving<'_> {
 
     /// From the guess, if there is one; where that fails from rest, and then with shortened updates. Returns the
     /// iterations, those of abandoned attempts included.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn solve(&mut self) -> Result<u32, NoStep> {
         const ATTEMPTS: [(Start, u32, f64); 3] = [
             (Start::Guess, MAX_ITERATIONS, f64::INFINITY),
@@ -337,7 +337,7 @@ impl Moving<'_> {
     }
 
     /// The parabola through the last three increments, or as many as there are.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn guess(&mut self) {
         for (work, &[a, b, c]) in self.work.iter_mut().zip(&*self.last) {
             let guess = match self.known {
@@ -351,7 +351,7 @@ impl Moving<'_> {
     }
 
     /// The end of a step with these increments.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn proceed(&mut self) -> Result<(), NoStep> {
         let (h, inverse_step) = (self.h, if self.h == 0.0 { 0.0 } else { 1.0 / self.h });
         let (mut beyond, mut sum) = (Vector3::zeros(), 0.0);
@@ -405,7 +405,7 @@ fn first_of_newton(work: &mut [Work]) {
 /// The determinants are those before the last updates. Near a fold that needs no guard: two updates suffice where
 /// `2C²|u₁|³ ≤ ε|y|/16`, and the first is longer than `√ε|y|/8`, so `C|u₁| < 1e-4`. The Jacobian changes by twice that of
 /// itself, and for another sign it would have to change by all.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn iterate(work: &mut [Work], most: u32, longest: f64) -> (u32, bool) {
     outwards(work);
     // The last update, if Newton's next is of its second order: of one that was shortened too much is left, and after one

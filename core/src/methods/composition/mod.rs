@@ -181,7 +181,7 @@ impl<S: Effect> Plan<S> for Composed<S> {
     }
 
     /// The iterations of the report are those of all stages.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn step<M: Summation<Group<S>, S::Advected>>(
         &self,
         scene: &S,
@@ -192,7 +192,10 @@ impl<S: Effect> Plan<S> for Composed<S> {
         let mut iterations = 0;
         for stage in &self.stages {
             let (now, declared) = (next.now(), &self.substeps[stage.substep]);
-            let turned = |increment: &Matrix<S>| next.turned(increment);
+            let turned = {
+                #[cfg_attr(not(debug_assertions), inline(always))]
+                |increment: &Matrix<S>| next.turned(increment)
+            };
             let stepped = if const { M::CARRIES } {
                 declared.step_from::<true>(scene, &now.momentum, &now.advected, &guess.next, &turned)?
             } else {
@@ -239,7 +242,7 @@ impl<S: SecondDerivatives> Linearisable<S> for Composed<S> {
         self.stages.len()
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn visit(&self, scene: &S, index: usize, event: &Change<Group<S>, S::Advected>, pass: &mut impl Pass<Group<S>>) {
         if let Some(substep) = self.stages.get(index).and_then(|stage| self.substeps.get(stage.substep)) {
             pass.stage(&Linear::step(scene, substep.step_size(), event, event.before.advected));
@@ -263,7 +266,7 @@ impl<T: Real> Stage<T> {
         Self { substep, scale: real(scale), last: real(scale * (1.0 + ratio)), earlier: real(-ratio * next / before) }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn half_guess<V: Coordinates<T>>(&self, last: V, far: Mask<T>, earlier: V) -> V {
         let guess = last * self.last + earlier * self.earlier;
         // Near the fold coordinates change too fast for a straight line.

@@ -209,12 +209,12 @@ impl Constraint<3> for BallJoint {
         check([("above", &self.above), ("below", &self.below)])
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn gap(&self, above: &Place, below: &Place) -> Vector3<f64> {
         below.of(&self.below) - above.of(&self.above)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn slope(&self, above: &Place, below: &Place) -> [Slope<3>; 2] {
         let arm = |place: &Place, point: &Vector3<f64>| (place.attitude * point).cross_matrix();
         [

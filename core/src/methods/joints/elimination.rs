@@ -53,7 +53,7 @@ pub(super) struct Body<const K: usize> {
 }
 
 impl<const K: usize> Body<K> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn new() -> Self {
         Self {
             matrix: SMatrix::zeros(),
@@ -275,7 +275,7 @@ fn substitute<const K: usize, const N: usize, const C: usize>(
 }
 
 /// By the factors of a body's matrix, column by column.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn solved<const C: usize>(factors: &Matrix6, right: &SMatrix<f64, 6, C>) -> SMatrix<f64, 6, C> {
     let mut solved = *right;
     for mut column in solved.column_iter_mut() {
@@ -287,7 +287,7 @@ fn solved<const C: usize>(factors: &Matrix6, right: &SMatrix<f64, 6, C>) -> SMat
 
 /// The inverse, by elimination in the order of the rows, the least pivot relative to `sizes`, and the determinant relative
 /// to their absolute values; both are zero where a size is. Behind the first `rows` there are no functions.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn inverted<const K: usize>(
     matrix: &SMatrix<f64, K, K>,
     sizes: &SVector<f64, K>,

@@ -43,7 +43,7 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
 {
     /// Without slopes and matrices.
     // Written where it is used, so that it isn't copied there.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn new(joints: &'a Joints<C, T, L>, tree: &'a Tree<N>) -> Self {
         let loops =
             joints.loops.each_ref().map(|joined| Closing::new([Some(joined.below), joined.above], joined.joint.rows()));
@@ -56,7 +56,7 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
     }
 
     /// What `of` makes of the slopes of all joints at these places.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn each(&mut self, places: &Places<N>, of: impl Fn(&mut Ends<K>, usize, &Slope<K>)) {
         for (k, (body, member)) in self.bodies.iter_mut().zip(&self.tree.members).enumerate() {
             let Some(joined) = member.joint.and_then(|joint| self.joints.tree.get(joint)) else { continue };

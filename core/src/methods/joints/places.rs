@@ -64,7 +64,7 @@ impl<const N: usize> Places<N> {
         Self(bodies.map(|(attitude, place)| Place { attitude: *attitude.as_matrix(), position: place.translation() }))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn get(&self, body: Option<usize>) -> &Place {
         body.map_or(&Place::SPACE, |body| &self.0[body])
     }
@@ -75,7 +75,7 @@ impl<const N: usize> Places<N> {
     }
 
     /// Their derivatives, that of the body below first.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn slope<C: Constraint<K>, const K: usize>(&self, joined: &Joined<C>) -> [Slope<K>; 2] {
         let [above, below] = joined.joint.slope(self.get(joined.above), &self.0[joined.below]);
         [below, above]
@@ -83,7 +83,7 @@ impl<const N: usize> Places<N> {
 }
 
 /// `Eᵀ` of a body with this attitude.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn before<const K: usize>(slope: &Slope<K>, attitude: &Matrix3<f64>) -> SMatrix<f64, 6, K> {
     let mut before = SMatrix::<f64, 6, K>::zeros();
     before.fixed_rows_mut::<3>(0).copy_from(&(slope.turn * attitude).transpose());
@@ -92,7 +92,7 @@ pub(super) fn before<const K: usize>(slope: &Slope<K>, attitude: &Matrix3<f64>) 
 }
 
 /// `C` of a body whose unknowns turn it by this map, in the axes of space, and shift it by themselves.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn after<const K: usize>(slope: &Slope<K>, turn: &Matrix3<f64>) -> SMatrix<f64, K, 6> {
     let mut after = SMatrix::<f64, K, 6>::zeros();
     after.fixed_columns_mut::<3>(0).copy_from(&(slope.turn * turn));
@@ -101,7 +101,7 @@ pub(super) fn after<const K: usize>(slope: &Slope<K>, turn: &Matrix3<f64>) -> SM
 }
 
 /// The turning part of a body's components, and the other.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn parts(components: &nalgebra::Vector6<f64>) -> (Vector3<f64>, Vector3<f64>) {
     (components.fixed_rows::<3>(0).into_owned(), components.fixed_rows::<3>(3).into_owned())
 }

@@ -37,7 +37,7 @@ where
     }
 
     /// Without slopes and matrices.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn equations(&self) -> Equations<'_, C, K, N, T, L> {
         Equations::new(&self.joints, &self.tree)
     }

@@ -76,7 +76,7 @@ pub(super) fn series<T: Real>(moments: &Vector3<T>) -> ([T; TERMS], [T; TERMS]) 
 /// The sum of the terms up to a degree.
 ///
 /// Horner's scheme in `H` for each degree, its coefficients multiplied with the powers of `C` on the way.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn sum<T: Real>(coefficients: &[T; TERMS], degree: usize, c: T, h: T) -> T {
     let (mut sum, mut rest) = (T::zero(), coefficients.as_slice());
     for n in 1..=degree {

@@ -149,7 +149,7 @@ impl<T: Real> Plan<PrincipalBody<T>> for Preprocessed<T> {
         Guess::of(half_coordinates(scene, motion, self.h))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn step<M: Summation<SO3<T>, ()>>(
         &self,
         _: &PrincipalBody<T>,

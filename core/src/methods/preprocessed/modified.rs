@@ -35,7 +35,7 @@ impl<T: Real> ModifiedBody<T> {
     }
 
     /// The increment over the time `h`, s, from the body momentum `y`; the guess is of half the coordinates.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(crate) fn solve(&self, h: T, y: &Vector3<T>, half_guess: &Vector3<T>) -> Result<Root<SO3<T>>, StepError> {
         let (yy, half_squared) = (y.component_mul(y), h * h * real(0.5));
         let energy = yy.dot(&self.inverse_moments) * half_squared;

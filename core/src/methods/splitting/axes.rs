@@ -33,7 +33,7 @@ impl Axes {
 
     /// Components along these axes of a vector that turns. To the left-handed three all rotations are the other way,
     /// which is made good by the signs of all of them: in these components each three are right-handed.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn of<T: Real>(self, v: &Vector3<T>) -> [T; 3] {
         let (x, y, z) = (v.x, v.y, v.z);
         match self {
@@ -47,7 +47,7 @@ impl Axes {
     }
 
     /// A quaternion from those components of its vector to the body's.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn back<T: Real>(self, [w, a, b, c]: [T; 4]) -> [T; 4] {
         match self {
             Self::Xyz => [w, a, b, c],

@@ -60,7 +60,7 @@ where
 ///
 /// since the second derivatives `η·∂_v τ` of the potential along left-invariant fields commute but for their bracket;
 /// the commutator itself is that of \[Ch97\]. Body frame; kg m²/s⁴, so that `h³` makes it a momentum.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn force_gradient<L>(
     torque: &L::Constants,
     inverse_inertia: &Matrix3<L::Scalar>,

@@ -67,7 +67,7 @@ pub trait KineticFlow<T: Real>: Clone {
     /// # Errors
     ///
     /// As [`advance`](Self::advance).
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn advance_without_spin(drift: &Self::Drift, momentum: &Vector3<T>) -> Result<Turn<T>, StepError> {
         const { assert!(Self::OPERATIONS_OF_SPIN == 0, "a flow with a spin needs an `advance_without_spin`") };
         Self::advance(drift, momentum)
@@ -173,7 +173,7 @@ impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
         Some(drift.about_axis)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn advance_without_spin(drift: &Self::Drift, p: &Vector3<T>) -> Result<Turn<T>, StepError> {
         let [(a11, a21, a31), (a12, a22, a32), (a13, a23, a33)] = rotation(p, drift.about_momentum);
         let increment = Matrix3::new(a11, a12, a13, a21, a22, a23, a31, a32, a33);
@@ -181,7 +181,7 @@ impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
         Ok(Turn { increment, change: Vector3::repeat(a33 * T::zero()), iterations: 0 })
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn advance(drift: &Self::Drift, p: &Vector3<T>) -> Result<Turn<T>, StepError> {
         let angle = drift.about_axis * p.z;
         let (sinc, versine) = rotation_coefficients(angle * angle);
@@ -204,7 +204,7 @@ impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
 }
 
 /// `exp(t p̂) − I` by Rodrigues' formula, column by column.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn rotation<T: Real>(p: &Vector3<T>, t: T) -> [(T, T, T); 3] {
     let (x, y, z) = (p.x * t, p.y * t, p.z * t);
     let (xx, yy) = (x * x, y * y);
@@ -248,7 +248,7 @@ where
         Ok(DeclaredDrift { flow: DiscreteLiePoisson::new(self.clone(), h)?, inverse })
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn advance(drift: &Self::Drift, momentum: &Vector3<T>) -> Result<Turn<T>, StepError> {
         // Half an explicit step ahead is the velocity in the middle, to second order that of the whole.
         let h = drift.flow.step_size();

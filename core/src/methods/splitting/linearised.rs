@@ -48,7 +48,7 @@ where
         Effect::describe(flow, visitor);
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn visit<A>(flow: &Self, time: T, event: &Change<SO3<T>, A>, first_parameter: usize, pass: &mut impl Pass<SO3<T>>) {
         pass.stage(&Stage::step(flow, time, event, ()).behind(first_parameter));
     }
@@ -66,7 +66,7 @@ impl<T: Real> DifferentiableFlow<T> for SymmetricBody<T> {
         Self::describe(flow, visitor);
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn visit<A>(flow: &Self, time: T, event: &Change<SO3<T>, A>, first_parameter: usize, pass: &mut impl Pass<SO3<T>>) {
         let (transverse, axial) = Self::moments(flow);
         let (momentum, increment) = (event.before.momentum, event.increment);
@@ -88,7 +88,7 @@ impl<T: Real> DifferentiableFlow<T> for SymmetricBody<T> {
 }
 
 /// A turn by `F`, whose increment this is, of a body with this momentum before it.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn flown<'a, T: Real>(
     turn_by_momentum: Matrix3<T>,
     increment: &Matrix3<T>,
@@ -124,7 +124,7 @@ where
 
     /// A step that turns about the axis once, after all drifts, is the same only for potentials that are symmetric about
     /// it. The derivative with respect to the potential leaves those, so the drifts are made again with their own turns.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn record<M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
         scene: &S,
@@ -137,7 +137,7 @@ where
         self.record_beside((self, kept), scene, motion, (*motion, [&self.first, &self.last]))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn visit(
         &self,
         scene: &S,
@@ -159,7 +159,7 @@ where
 {
     /// A step of a plan of these drifts and kicks, beside the changes that it is made of: these shares one after another,
     /// from a copy of the motion.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn record_beside<P: Plan<S>, M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
         (plan, kept): (&P, &mut P::Kept),
@@ -184,7 +184,7 @@ where
     }
 
     /// Shows a pass what a share of this length did.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn show(
         &self,
         scene: &S,

@@ -288,7 +288,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         &self.kinetic
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn make_all<const WITH_SPIN: bool, M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
         shares: &StagesOf<S, K>,
@@ -310,7 +310,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
 
     /// The steps of a run with these shares at its beginning, if it has any, and at the end of its last step, and the number
     /// of iterations. The spin is that of each drift, or of a step.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn make_steps<const WITH_SPIN: bool, M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
         scene: &S,
@@ -339,7 +339,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         Ok(all)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn drift<const WITH_SPIN: bool, M: Summation<SO3<Scalar<S>>, S::Advected>>(
         drift: &K::Drift,
         motion: &mut M,
@@ -352,7 +352,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         Ok(())
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn kick<M: Summation<SO3<Scalar<S>>, S::Advected>>(&self, kick: &Kick<Scalar<S>>, motion: &mut M) {
         let advected = motion.now().advected;
         let torque: Vector3<Scalar<S>> = S::kick_before(&self.torque, &advected);
@@ -419,7 +419,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
 
     fn keep(&self, _: &S, _: &Motion<SO3<Scalar<S>>, S::Advected>) {}
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn step<M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
         scene: &S,
@@ -432,7 +432,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
     const STEPS_BY_RUNS: bool = true;
 
     /// The last drift of a step and the first of the next are made as one.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn run<M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
         scene: &S,

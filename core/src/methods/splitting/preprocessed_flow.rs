@@ -59,7 +59,7 @@ impl<T: Real> KineticFlow<T> for PreprocessedFlow<T> {
         Ok(PreprocessedDrift { modified: ModifiedBody::new(&self.inertia, self.order.degree()), h })
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn advance(drift: &Self::Drift, momentum: &Vector3<T>) -> Result<Turn<T>, StepError> {
         let PreprocessedDrift { modified, h } = drift;
         if *h == T::zero() {

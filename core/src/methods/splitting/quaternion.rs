@@ -8,7 +8,7 @@ use crate::numbers::{Number, Real};
 pub(super) type Quaternion<T> = [T; 4];
 
 /// The product: first the right one.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn product<T: Number>([s, a, b, c]: Quaternion<T>, [w, x, y, z]: Quaternion<T>) -> Quaternion<T> {
     [
         s * w - (a * x + (b * y + c * z)),
@@ -19,13 +19,13 @@ pub(super) fn product<T: Number>([s, a, b, c]: Quaternion<T>, [w, x, y, z]: Quat
 }
 
 /// The product with one that has no part along the third axis.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn product_across<T: Number>([s, a, b, c]: Quaternion<T>, [w, x, y]: [T; 3]) -> Quaternion<T> {
     [s * w - (a * x + b * y), (s * x + a * w) - c * y, (s * y + b * w) + c * x, c * w + (a * y - b * x)]
 }
 
 /// `F − I` times the square of the length.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn scaled_increment<T: Real>([w, x, y, z]: Quaternion<T>) -> Matrix3<T> {
     let (tx, ty, tz) = (x + x, y + y, z + z);
     let (wx, wy, wz) = (w * tx, w * ty, w * tz);

@@ -34,14 +34,14 @@ where
 }
 
 /// Turns the body by `−θ` about its third axis.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn turn<T: Real, A: Advected<SO3<T>>>(angle: T, motion: &mut impl Summation<SO3<T>, A>) {
     let (s, v) = sine_and_versine(angle);
     move_by(&diagonal_block(v, s), motion);
 }
 
 /// `sin θ` and `cos θ − 1`, without cancellation.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn sine_and_versine<T: Real>(angle: T) -> (T, T) {
     let (sinc, versine) = rotation_coefficients(angle * angle);
     (angle * sinc, -(angle * angle * versine))
@@ -60,7 +60,7 @@ pub(super) fn make_good<T: Real, A: Advected<SO3<T>>>(angle: T, turns: u32, moti
     move_by(&diagonal_block(-excess * real(0.5 * f64::from(turns)), T::zero()), motion);
 }
 
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn move_by<T: Real, A: Advected<SO3<T>>>(increment: &Matrix3<T>, motion: &mut impl Summation<SO3<T>, A>) {
     motion.turn(increment);
     let change = SO3::adjoint_transpose_increment(increment, &motion.now().momentum);

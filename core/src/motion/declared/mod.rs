@@ -115,7 +115,7 @@ impl<S: Effect> Declared<S> {
 
     /// One step from `(μ, w)` and a guess of half the coordinates of `F`; `turned` gives `w⁺` of `F − I`, and `CARRIES`
     /// says that what rounding leaves behind will be carried.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(crate) fn step_from<const CARRIES: bool>(
         &self,
         scene: &S,
@@ -131,7 +131,7 @@ impl<S: Effect> Declared<S> {
     }
 
     /// The step, if nothing about it is doubtful.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(crate) fn step_directly<const CARRIES: bool>(
         &self,
         scene: &S,
@@ -177,7 +177,7 @@ impl<S: Effect> Declared<S> {
     }
 
     /// By `F` from `(μ, w)`, with `a = μ + kick_before(w)`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn moved<const CARRIES: bool>(
         &self,
         momentum: &Vector<S>,
@@ -213,7 +213,7 @@ impl<S: Effect> Declared<S> {
     }
 
     /// `kick_after(F, w⁺)`, in the lanes that have come by it from what the solve has found.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn kick_after(&self, increment: &Matrix<S>, next: &S::Advected, kick: &Kick<Group<S>>) -> Vector<S> {
         let direct = || S::kick_after(&self.constants, increment, next);
         if const { !S::JACOBIAN_IS_EXPENSIVE } || !kick.found.any() {
@@ -226,7 +226,7 @@ impl<S: Effect> Declared<S> {
         if kick.found.all() { found } else { found.select(kick.found, direct()) }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn problem<'a>(&'a self, scene: &'a S, momentum: &Vector<S>, w: &'a S::Advected) -> Problem<'a, S> {
         Problem {
             scene,
@@ -270,7 +270,7 @@ impl<S: Effect> Plan<S> for Declared<S> {
         Warm::of(half_coordinates(scene, motion, self.h))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn step<M: Summation<Group<S>, S::Advected>>(
         &self,
         scene: &S,
@@ -278,7 +278,10 @@ impl<S: Effect> Plan<S> for Declared<S> {
         kept: &mut Self::Kept,
     ) -> Result<StepReport, StepError> {
         let (now, guess) = (motion.now(), kept.guess(<Group<S> as LieGroup>::DIMENSION));
-        let turned = |increment: &Matrix<S>| motion.turned(increment);
+        let turned = {
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            |increment: &Matrix<S>| motion.turned(increment)
+        };
         let stepped = if const { M::CARRIES } {
             self.step_directly::<true>(scene, &now.momentum, &now.advected, &guess, &turned)
         } else {
@@ -325,7 +328,7 @@ impl<S: Effect> Declared<S> {
     }
 }
 
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn taken<S: Effect, M: Summation<Group<S>, S::Advected>>(
     scene: &S,
     motion: &mut M,
@@ -367,7 +370,7 @@ pub(crate) fn half_coordinates<S: Effect>(
 }
 
 /// `a = μ + kick_before(w)`.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn kicked<S: Effect>(constants: &S::Constants, momentum: &Vector<S>, w: &S::Advected) -> Vector<S> {
     if const { S::PARTS.kick_before } { *momentum + S::kick_before(constants, w) } else { *momentum }
 }

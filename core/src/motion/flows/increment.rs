@@ -31,14 +31,14 @@ pub(crate) struct Stepped<L: Effect> {
 
 impl<L: Effect> Stepped<L> {
     /// As it is added to a motion.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(crate) fn proceeded(&self) -> Proceeded<Group<L>, L::Advected> {
         let Increment { increment, momentum, advected, .. } = self.step;
         Proceeded { increment, change: self.change, momentum, advected }
     }
 
     /// The sum of all that the step has made.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(crate) fn total(&self) -> Scalar<L> {
         let mut total = real(0.0);
         self.step.momentum.each(&mut |entry| total += entry);

@@ -79,7 +79,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
     ///
     /// [`StepError`] where the momentum equation has no solution on the branch of the identity, or a value isn't
     /// finite.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub fn step(
         &self,
         momentum: &Vector<L>,
@@ -90,7 +90,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
     }
 
     /// As [`step`](Self::step), from half the guess.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(crate) fn step_from(
         &self,
         momentum: &Vector<L>,

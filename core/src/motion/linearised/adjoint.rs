@@ -44,19 +44,19 @@ struct Back<'a, G: LieGroup> {
 }
 
 impl<G: LieGroup> Pass<G> for Back<'_, G> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>) {
         self.cotangent = stage.pull(&self.cotangent, self.gradient);
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn flown(&mut self, flown: &Flown<'_, G>) {
         self.cotangent = flown.pull(&self.cotangent, self.gradient);
     }
 }
 
 impl<G: LieGroup> Back<'_, G> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn add(&mut self, cotangent: &Cotangent<G::Vector>) {
         let Cotangent { attitude, momentum } = self.cotangent;
         self.cotangent = Cotangent { attitude: attitude + cotangent.attitude, momentum: momentum + cotangent.momentum };
@@ -83,7 +83,7 @@ where
     /// For AVX's three-operand instructions; there is nothing to do four at a time.
     const VECTORS: Vectors = Vectors::Four;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn run(self) {
         let Stepper { scene, plan } = self.stepper;
         // As many of each step: all steps of a plan have the same stages.

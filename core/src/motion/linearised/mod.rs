@@ -149,7 +149,7 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> {
     /// # Errors
     ///
     /// As [`Plan::step`].
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn record<M: Summation<Group<S>, S::Advected>>(
         &self,
         scene: &S,
@@ -166,7 +166,7 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> {
     ///
     /// The lengths of most plans are odd in `h`: stage `i` of a step of `−h` has minus the length of stage `i` of one of
     /// `h`, and that is what it undoes. A plan whose lengths aren't says so here, as a processed splitting does.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn visit_undone(
         &self,
         scene: &S,
@@ -183,7 +183,7 @@ impl<S: SecondDerivatives> Linearisable<S> for Declared<S> {
         1
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn visit(&self, scene: &S, _: usize, event: &Change<Group<S>, S::Advected>, pass: &mut impl Pass<Group<S>>) {
         pass.stage(&Stage::step(scene, self.step_size(), event, event.before.advected));
     }
@@ -303,7 +303,7 @@ impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearised<'a, S, P> {
     }
 
     /// One step, whose stages are written down.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn recorded(
         &self,
         state: &mut StateOf<S, P>,
@@ -336,7 +336,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Carry<'_, S, P> {
     /// As many as there are columns side by side.
     const VECTORS: Vectors = Vectors::Four;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn run(self) -> bool {
         self.tangent.keep();
         for (index, event) in self.events.iter().enumerate() {

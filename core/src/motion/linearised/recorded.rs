@@ -24,7 +24,7 @@ pub(super) struct Recorded<'a, G: LieGroup, A> {
 }
 
 impl<G: LieGroup, A: Advected<G>> Recorded<'_, G, A> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn note(&self, increment: G::Matrix) {
         self.events.borrow_mut().push(Change { before: self.motion, increment });
     }
@@ -33,41 +33,41 @@ impl<G: LieGroup, A: Advected<G>> Recorded<'_, G, A> {
 impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Recorded<'_, G, A> {
     const CARRIES: bool = false;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn now(&self) -> &Motion<G, A> {
         &self.motion
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn turn(&mut self, increment: &G::Matrix) {
         self.note(*increment);
         self.motion.turn(increment);
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn turned(&self, increment: &G::Matrix) -> A {
         self.motion.turned(increment)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn push(&mut self, change: &G::Vector) {
         self.note(zero());
         Summation::push(&mut self.motion, change);
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn turn_and_push(&mut self, increment: &G::Matrix, change: &G::Vector) {
         self.note(*increment);
         self.motion.turn_and_push(increment, change);
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn proceed(&mut self, step: &Proceeded<G, A>) {
         self.note(step.increment);
         self.motion.proceed(step);
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn recount(&mut self, steps: u64) {
         self.motion.recount(steps);
     }
@@ -81,7 +81,7 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Recorded<'_, G, A> {
         self.motion = motion;
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn show(&mut self, motion: Motion<G, A>) {
         self.motion = motion;
     }

@@ -68,25 +68,25 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     }
 
     /// What the stage does.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn kind(&self) -> Kind<Scalar<E>> {
         self.kind
     }
 
     /// The blocks of the tangent map of a step of this length.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn blocks(&self, h: Scalar<E>) -> StepDerivatives<Square<E>> {
         self.effect.step_derivatives(&self.increment, &self.advected, h)
     }
 
     /// `Ad_{F⁻¹}`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn turned_back(&self) -> Square<E> {
         Group::<E>::from_increment(&self.increment).inverse().adjoint_matrix()
     }
 
     /// The slope `S` of a kick in this time, `δμ⁺ = δμ + S ζ`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn slope(&self, time: Scalar<E>) -> Square<E> {
         let blocks = self.blocks(real(1.0));
         let slope = (blocks.end_by_place + blocks.start_by_place * real::<Scalar<E>>(-1.0)) * time;
@@ -98,7 +98,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     }
 
     /// The derivatives of `μ` and `μ⁺` by the parameters, those that are carried not among them.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn by_parameters(&self, visit: &mut impl FnMut(usize, Vector<E>, Vector<E>)) {
         let h = self.length();
         let first = self.first;
@@ -107,13 +107,13 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         });
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn by_advected(&self, visit: &mut impl FnMut(usize, Vector<E>, Vector<E>)) {
         self.effect.by_advected(&self.increment, &self.advected, self.length(), visit);
     }
 
     /// The `h` of the derivatives; of a kick, which is proportional to it, one second.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn length(&self) -> Scalar<E> {
         match self.kind {
             Kind::Step(h) => h,
@@ -146,7 +146,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
 
     /// Adds the gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` by the parameters at a fixed increment, for `[u, p]`, and returns that along
     /// displacements.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn fixed_increment(&self, ends: [&Vector<E>; 2], add: &mut impl FnMut(usize, Scalar<E>)) -> Vector<E> {
         let (by_place, by_seen) =
             self.effect.adjoint_gradient(&self.increment, &self.advected, self.length(), ends, &mut *add);
@@ -159,7 +159,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     ///
     /// `⟨p, f⟩ = ⟨u, D_v τ⟩` with `J u = τ` and, `s` being the share, `v = s p`. How `u` changes is in the gradient of
     /// `⟨u, D_v τ⟩ + ⟨r, τ − J u⟩` at fixed `u` and `r` where `J r = D_v τ`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn of_gradient(&self, paired: &Vector<E>, add: &mut impl FnMut(usize, Scalar<E>)) -> Vector<E> {
         let Some(ForceGradient { share, torque, inverse_inertia }) = self.gradient else {
             return Vector::<E>::zero();
@@ -177,7 +177,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     }
 
     /// Adds what the parameters that are carried have in the gradient by what the body sees.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn add_carried(&self, by_seen: &E::Advected, add: &mut impl FnMut(usize, Scalar<E>)) {
         let mut by_carried = None;
         E::carried_parameters(&mut |place, parameter| {
@@ -187,7 +187,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     }
 
     /// Takes the gradient at the end of the stage to its beginning, and adds the parameters' shares.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn pull(&self, end: &Cotangent<Vector<E>>, gradient: &mut [Scalar<E>]) -> Cotangent<Vector<E>> {
         // One check of the range, not one for each scalar.
         let own = gradient.get_mut(self.first..self.first + E::PARAMETERS).unwrap_or_default();
@@ -274,7 +274,7 @@ pub struct Flown<'a, G: LieGroup> {
 
 impl<G: LieGroup> Flown<'_, G> {
     /// Takes the gradient at the end to the beginning, and adds the parameters' shares.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn pull(&self, end: &Cotangent<G::Vector>, gradient: &mut [G::Scalar]) -> Cotangent<G::Vector> {
         let attitude = pulled::<G>(&self.turned_back, &end.attitude);
         let by_turn = attitude + pulled::<G>(&self.end_by_turn, &end.momentum);
@@ -289,7 +289,7 @@ impl<G: LieGroup> Flown<'_, G> {
 }
 
 /// `Mᵀ a`
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn pulled<G: LieGroup>(matrix: &SquareOf<G>, a: &G::Vector) -> G::Vector {
     G::Vector::of_four(&G::Vector::map_four(&G::Vector::transpose(matrix), &G::Vector::beside(&[*a; 4])), 0)
 }
@@ -304,7 +304,7 @@ pub trait Pass<G: LieGroup> {
 }
 
 /// One of the scalars.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn entry<T: Real, A: Entries<T>>(values: &A, number: usize) -> T {
     let (mut place, mut found) = (0, T::zero());
     values.each(&mut |value| {

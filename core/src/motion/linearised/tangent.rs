@@ -73,7 +73,7 @@ impl<G: LieGroup, A> Tangent<G, A> {
     }
 
     /// How many parameters its plan has; `None` without columns for them, where any plan of the scene will do.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn parameters(&self) -> Option<usize> {
         (!self.shares.is_empty()).then_some(self.shares.len())
     }
@@ -137,7 +137,7 @@ impl<G: LieGroup, A> Tangent<G, A> {
     }
 
     /// Remembers the columns.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn keep(&mut self) {
         for (kept, four) in self.kept.iter_mut().zip(&self.columns) {
             *kept = *four;
@@ -151,7 +151,7 @@ impl<G: LieGroup, A> Tangent<G, A> {
     }
 
     /// Whether all entries are numbers.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn is_finite(&self) -> bool {
         let zero = G::Vector::zero();
         let mut sums = G::Vector::beside(&[zero; 4]);
@@ -165,7 +165,7 @@ impl<G: LieGroup, A> Tangent<G, A> {
 
     /// The shares of the parameters in four columns, at the start and at the end of the stage; nothing where there are
     /// none.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn shares_of(&self, four: usize) -> Option<(Four<G>, Four<G>)> {
         let (start, zero) = (2 * G::DIMENSION, G::Vector::zero());
         if self.numbers.is_empty() || 4 * four + 4 <= start {
@@ -181,7 +181,7 @@ impl<G: LieGroup, A> Tangent<G, A> {
 }
 
 impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>) {
         if !self.shares.is_empty() {
             let zero = G::Vector::zero();
@@ -232,7 +232,7 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
         }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn flown(&mut self, flown: &Flown<'_, G>) {
         if !self.shares.is_empty() {
             let zero = G::Vector::zero();

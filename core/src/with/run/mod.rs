@@ -278,7 +278,7 @@ impl<I: Integrator> Observers<'_, I> {
 
     /// Shows a step to those whose turn it is; returns how many there are to the next that somebody wants to see, and none
     /// at the end of the run, which an observer or a condition may be.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn show(&mut self, now: &Moment<'_, I>, ended: &mut Ended) -> Result<u64, RunError> {
         let (made, mut next, mut stops) = (now.steps(), self.seldom, false);
         for Regular { every, due, observer } in &mut self.regular {
@@ -375,7 +375,7 @@ where
 }
 
 /// An answer, but for that to go on.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn unless_it_goes_on(answer: impl Answer) -> Option<Box<Verdict>> {
     match answer.verdict() {
         Ok(ControlFlow::Continue(())) => None,

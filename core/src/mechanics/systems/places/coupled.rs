@@ -72,7 +72,7 @@ impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Coupled<N> {
     at_two_bodies!();
     neighbours!("coupled along the row");
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn gather<T: Copy>(mut make: impl FnMut(At) -> T) -> [T; N] {
         let mut all = [make(At { place: 0, bodies: [0, 1] }); N];
         for (place, of) in all.iter_mut().enumerate().take(N - 1).skip(1) {
@@ -89,7 +89,7 @@ impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Coupled<N> {
         <Self as Places<E>>::linked(&mut Bodies::<BodyVector<E>, N>::no_links(), of)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn linked(
         links: &mut LinksOf<Self::Group>,
         mut of: impl FnMut(At) -> (Vector<E>, Square<E>),

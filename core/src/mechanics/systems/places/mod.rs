@@ -67,7 +67,7 @@ pub trait Places<E: Effect> {
     fn squares(of: impl FnMut(At) -> Square<E>) -> SquareOf<Self::Group>;
 
     /// Both, from a vector and a matrix of each place.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn system(
         mut of: impl FnMut(At) -> (Vector<E>, Square<E>),
     ) -> (<Self::Group as LieGroup>::Vector, SquareOf<Self::Group>) {
@@ -84,7 +84,7 @@ pub trait Places<E: Effect> {
     }
 
     /// The same, with the blocks that join neighbours added to those that are given.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn linked(
         _: &mut LinksOf<Self::Group>,
         of: impl FnMut(At) -> (Vector<E>, Square<E>),
@@ -93,7 +93,7 @@ pub trait Places<E: Effect> {
     }
 
     /// One of Newton's iterations, from residual and Jacobian of each place.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn newton_update(
         pattern: Pattern,
         system: impl FnMut(At) -> (Vector<E>, Square<E>),

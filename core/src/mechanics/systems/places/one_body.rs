@@ -22,12 +22,12 @@ macro_rules! at_one_body {
 
         const AT_ONE_BODY: bool = true;
 
-        #[cfg_attr(not(debug_assertions), inline(always))]
+        #[hot]
         fn matrix(all: &[Matrix<E>; N], at: At) -> Matrix<E> {
             all[at.bodies[0]]
         }
 
-        #[cfg_attr(not(debug_assertions), inline(always))]
+        #[hot]
         fn components(all: &Bodies<Vector<E>, N>, at: At) -> Vector<E> {
             all.0[at.bodies[0]]
         }
@@ -45,14 +45,14 @@ impl<E: Effect, const N: usize> Places<E> for Each<N> {
 
     at_one_body!();
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn visit(mut each: impl FnMut(At)) {
         for place in 0..N {
             each(At { place, bodies: [place; 2] });
         }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn gather<T: Copy>(mut make: impl FnMut(At) -> T) -> [T; N] {
         let mut all = [make(At { place: 0, bodies: [0; 2] }); N];
         for (place, of) in all.iter_mut().enumerate().skip(1) {
@@ -65,24 +65,24 @@ impl<E: Effect, const N: usize> Places<E> for Each<N> {
         from_fn(of)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn seen(all: &[E::Advected; N], _: &E::Advected, at: At) -> E::Advected {
         all[at.place]
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn sum(mut of: impl FnMut(At) -> Vector<E>) -> Bodies<Vector<E>, N> {
         Bodies(filled!([Vector::<E>::zero(); N], |place| of(At { place, bodies: [place; 2] })))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn squares(mut of: impl FnMut(At) -> Square<E>) -> BlockDiagonal<Square<E>, N> {
         let zero = Vector::<E>::zero();
         BlockDiagonal(filled!([zero.outer(&zero); N], |place| of(At { place, bodies: [place; 2] })))
     }
 
     /// Body by body: what both have in common is computed once.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn system(mut of: impl FnMut(At) -> (Vector<E>, Square<E>)) -> (Bodies<Vector<E>, N>, BlockDiagonal<Square<E>, N>) {
         let zero = Vector::<E>::zero();
         let (mut vectors, mut squares) = ([zero; N], [zero.outer(&zero); N]);
@@ -93,7 +93,7 @@ impl<E: Effect, const N: usize> Places<E> for Each<N> {
     }
 
     /// Body by body, so that what is solved for one stays in registers.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn newton_update(
         pattern: Pattern,
         mut system: impl FnMut(At) -> (Vector<E>, Square<E>),
@@ -125,12 +125,12 @@ impl<E: Effect, const K: usize, const N: usize> Places<E> for On<K, N> {
 
     at_one_body!();
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn visit(mut each: impl FnMut(At)) {
         each(At { place: 0, bodies: [K; 2] });
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn gather<T: Copy>(mut make: impl FnMut(At) -> T) -> [T; 1] {
         [make(At { place: 0, bodies: [K; 2] })]
     }
@@ -139,12 +139,12 @@ impl<E: Effect, const K: usize, const N: usize> Places<E> for On<K, N> {
         SeenFrom(of(0))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn seen(all: &Self::Advected, _: &E::Advected, _: At) -> E::Advected {
         all.0
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn sum(mut of: impl FnMut(At) -> Vector<E>) -> Bodies<Vector<E>, N> {
         let mut all = [Vector::<E>::zero(); N];
         all[K] = of(At { place: 0, bodies: [K; 2] });

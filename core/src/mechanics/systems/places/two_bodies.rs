@@ -33,17 +33,17 @@ macro_rules! at_two_bodies {
 
         const AT_ONE_BODY: bool = false;
 
-        #[cfg_attr(not(debug_assertions), inline(always))]
+        #[hot]
         fn matrix(all: &[BodyMatrix<E>; N], at: At) -> Matrix<E> {
             Group::<E>::matrices(&all[at.bodies[0]], &all[at.bodies[1]])
         }
 
-        #[cfg_attr(not(debug_assertions), inline(always))]
+        #[hot]
         fn components(all: &Bodies<BodyVector<E>, N>, at: At) -> Vector<E> {
             Group::<E>::joined(&all.0[at.bodies[0]], &all.0[at.bodies[1]])
         }
 
-        #[cfg_attr(not(debug_assertions), inline(always))]
+        #[hot]
         fn sum(mut of: impl FnMut(At) -> Vector<E>) -> Bodies<BodyVector<E>, N> {
             let mut all = [BodyVector::<E>::zero(); N];
             <Self as Places<E>>::visit(
@@ -82,7 +82,7 @@ macro_rules! neighbours {
             if N > 1 { None } else { Some("neighbours are two bodies at least: write how many there are") };
         const NAME: (&'static str, [usize; 2]) = ($name, [0, N]);
 
-        #[cfg_attr(not(debug_assertions), inline(always))]
+        #[hot]
         fn visit(mut each: impl FnMut(At)) {
             for place in 1..N {
                 each(At { place: place - 1, bodies: [place - 1, place] });
@@ -94,7 +94,7 @@ macro_rules! neighbours {
             Neighbours(core::array::from_fn(|place| of(place.min(N - 2))), PhantomData)
         }
 
-        #[cfg_attr(not(debug_assertions), inline(always))]
+        #[hot]
         fn seen(all: &Self::Advected, _: &E::Advected, at: At) -> E::Advected {
             all.0[at.place]
         }
@@ -104,7 +104,7 @@ macro_rules! neighbours {
 pub(super) use {at_two_bodies, neighbours};
 
 /// Adds the part of each of the two bodies.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn add_parts<E: Effect<Group: Pair>, const N: usize>(
     all: &mut [BodyVector<E>; N],
     at: At,
@@ -137,7 +137,7 @@ impl<E: Effect<Group: Pair>, const A: usize, const B: usize, const N: usize> Pla
     at_two_bodies!();
     of_ends!();
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn visit(mut each: impl FnMut(At)) {
         each(At { place: 0, bodies: [A, B] });
     }
@@ -146,7 +146,7 @@ impl<E: Effect<Group: Pair>, const A: usize, const B: usize, const N: usize> Pla
         SeenBetween(of(0), PhantomData)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn seen(all: &Self::Advected, _: &E::Advected, _: At) -> E::Advected {
         all.0
     }
@@ -163,7 +163,7 @@ impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Pairs<N> {
     at_two_bodies!();
     of_ends!();
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn visit(mut each: impl FnMut(At)) {
         let mut place = 0;
         for first in 0..N {
@@ -179,7 +179,7 @@ impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Pairs<N> {
     }
 
     /// Formed where it is needed: so many wouldn't be kept.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn seen(all: &Self::Advected, spatial: &E::Advected, at: At) -> E::Advected {
         let [first, second] = at.bodies.map(|body| Body::<E>::from_matrix_unchecked(all.0[body]));
         spatial.seen_from(&Group::<E>::pair(&first, &second))

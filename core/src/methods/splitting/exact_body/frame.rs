@@ -43,7 +43,7 @@ impl<T: Real> Frame<T> {
     }
 
     /// The components of a body's vector along the axes.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn within(&self, v: &Vector3<T>) -> [T; 3] {
         match self {
             Self::Along(axes) => axes.of(v),
@@ -55,7 +55,7 @@ impl<T: Real> Frame<T> {
     }
 
     /// A quaternion with those components in the body's.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn back(&self, quaternion: Quaternion<T>) -> Quaternion<T> {
         match self {
             Self::Along(axes) => axes.back(quaternion),

@@ -32,7 +32,7 @@ impl<T: Real> DifferentiableFlow<T> for ExactBody<T> {
         }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn visit<A>(flow: &Self, time: T, event: &Change<SO3<T>, A>, first_parameter: usize, pass: &mut impl Pass<SO3<T>>) {
         let (momentum, increment) = (event.before.momentum, event.increment);
         let along = flow.frame.within(&momentum);
@@ -56,7 +56,7 @@ impl<T: Real> DifferentiableFlow<T> for ExactBody<T> {
 
 impl<T: Real> ExactBody<T> {
     /// The turns `ε`, `δF = ε̂ F`, along three directions, in the body's axes.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn turns(&self, form: &Form<Dual<T>>, u: impl Fn(usize) -> Dual<T>) -> [Vector3<T>; 3] {
         let turned = form.turned([u(0), u(1), u(2)]);
         let [w, x, y, z] = turned.quaternion.map(|part| part.value);

@@ -183,7 +183,7 @@ impl<T: Real> KineticFlow<T> for ExactBody<T> {
 
     /// Which axis is which is decided once: a straight line of code for each case is faster than one that parts and meets
     /// again twice.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn advance(drift: &Self::Drift, momentum: &Vector3<T>) -> Result<Turn<T>, StepError> {
         use Axes::{Xyz, Yzx, Zxy};
         Ok(match &drift.frame {
@@ -205,7 +205,7 @@ struct Half<T> {
 }
 
 impl<T: Number> Half<T> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn select(&self, mask: T::Mask, other: &Self) -> Self {
         let about = core::array::from_fn(|k| self.about[k].select(mask, other.about[k]));
         Self { n: self.n.select(mask, other.n), mu: self.mu.select(mask, other.mu), about }
@@ -213,7 +213,7 @@ impl<T: Number> Half<T> {
 }
 
 impl<T: Real> ExactDrift<T> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn turn(&self, frame: &Frame<T>, momentum: &Vector3<T>) -> Turn<T> {
         let turned = self.form.turned(frame.within(&(momentum * self.form.scale)));
         let increment = scaled_increment(frame.back(turned.quaternion)) * turned.inverse_square;
@@ -232,7 +232,7 @@ impl<T: Number> Form<T> {
         Self { scale, a, b, b_less_a, c_squared: -(a * b), a_squared, b_squared }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn invariants(&self, [a, b, c]: [T; 3]) -> Invariants<T> {
         let (aa, bb, cc) = (a * a, b * b, c * c);
         let of_c = self.c_squared * cc;
@@ -241,13 +241,13 @@ impl<T: Number> Form<T> {
     }
 
     /// `A a² + B b²`: zero on the separatrix and for spherical bodies.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn difference(&self, [a, b, _]: [T; 3]) -> T {
         self.a * (a * a) + self.b * (b * b)
     }
 
     /// The drift, for the momentum in units of half of it.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn turned(&self, u: [T; 3]) -> Turned<T> {
         let invariants = self.invariants(u);
         let size = invariants.size();
@@ -262,7 +262,7 @@ impl<T: Number> Form<T> {
     }
 
     /// Where the functions are those of half the drift.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn near(&self, u: [T; 3], functions: &Functions<T>) -> Half<T> {
         let Functions { n, mu, integral } = *functions;
         let more = -(self.c_squared * self.difference(u)) * integral;
@@ -273,7 +273,7 @@ impl<T: Number> Form<T> {
     ///
     /// What takes the time is the chain from the momentum to the increment, so nothing is divided before the end of it,
     /// and sums are ordered by what is there first.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn whole(&self, [a, b, c]: [T; 3], invariants: &Invariants<T>, half: &Half<T>) -> Turned<T> {
         let Invariants { kb, ka, .. } = *invariants;
         let Half { n, mu, about } = *half;
@@ -297,7 +297,7 @@ impl<T: Number> Form<T> {
     ///
     /// By the points of the curve `μ² = 4 n (n − K_a)(n − K_b)`, whose doubling is rational. The turn about the momentum is
     /// twice that of half the time and once more, by the tangent to the curve at the point; see [`doubling`].
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn farther<const DOUBLINGS: usize>(&self, u: [T; 3], invariants: &Invariants<T>) -> Half<T> {
         let k = T::number;
         let (difference, q) = (self.difference(u), dot(u));
@@ -351,7 +351,7 @@ impl<T: Number> Kernel for Beyond<'_, T> {
     type Output = Turned<T>;
     const VECTORS: Vectors = Vectors::Four;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn run(self) -> Turned<T> {
         let Self { form, u, invariants } = self;
         let size = invariants.size();
@@ -380,7 +380,7 @@ const FAR: f64 = 4.0 * LONG;
 const FARTHER: f64 = 16.0 * LONG;
 
 /// `exp(2 (1 + I) û)` as a quaternion.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn rotor_and_more<T: Number>(u: [T; 3], more: T) -> Quaternion<T> {
     let [w, f] = turn_and_more(dot(u), more);
     [w, f * u[0], f * u[1], f * u[2]]
@@ -388,7 +388,7 @@ fn rotor_and_more<T: Number>(u: [T; 3], more: T) -> Quaternion<T> {
 
 /// `w` and `f` of the quaternion `(w, f u)` of `exp(2 (1 + I) û)` where `|u|² = q` and `I` is small: `I |u|` is less than
 /// 0.006, so that few terms of its sine and cosine do, and those of `|u|` needn't wait for it.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn turn_and_more<T: Number>(q: T, more: T) -> [T; 2] {
     let (sinc, versine) = rotation_coefficients(q);
     let cosine = T::one() - q * versine;
@@ -399,13 +399,13 @@ fn turn_and_more<T: Number>(q: T, more: T) -> [T; 2] {
 }
 
 /// `|u|²`
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn dot<T: Number>([a, b, c]: [T; 3]) -> T {
     (a * a + b * b) + c * c
 }
 
 /// `exp(2v̂)` as a quaternion.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn rotor<T: Number>([x, y, z]: [T; 3]) -> Quaternion<T> {
     let q = dot([x, y, z]);
     let (sinc, versine) = rotation_coefficients(q);
@@ -422,7 +422,7 @@ struct Turned<T> {
 
 impl<T: Number> Turned<T> {
     /// A rotation about the momentum after one across the middle axis, both of any length.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn by(about: Quaternion<T>, across: [T; 3]) -> Self {
         let ([w, x, y, z], [real_part, along_a, along_b]) = (about, across);
         // What roundings do to the one is divided out, too: the rotation may be the same in each step.
@@ -431,7 +431,7 @@ impl<T: Number> Turned<T> {
         Self { quaternion: product_across(about, across), inverse_square: T::one() / (square * length) }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn select(&self, mask: T::Mask, other: &Self) -> Self {
         let quaternion = core::array::from_fn(|k| self.quaternion[k].select(mask, other.quaternion[k]));
         Self { quaternion, inverse_square: self.inverse_square.select(mask, other.inverse_square) }

@@ -15,7 +15,7 @@ pub(super) struct Invariants<T> {
 
 impl<T: Number> Invariants<T> {
     /// What tells how short the drift is.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn size(&self) -> T {
         self.kb.simd_max(self.ka)
     }
@@ -44,7 +44,7 @@ pub(super) const SHORT: f64 = 0.0075;
 pub(super) const LONG: f64 = 0.05;
 
 /// With `℘` to its fifth coefficient and the integral to its fifth; terms that are far below a rounding are left out.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn short<T: Number>(invariants: &Invariants<T>) -> Functions<T> {
     let k = T::number;
     let Start { e, x, y, c } = start(invariants);
@@ -62,7 +62,7 @@ pub(super) fn short<T: Number>(invariants: &Invariants<T>) -> Functions<T> {
 }
 
 /// With `℘` to its ninth coefficient and the integral to its eighth, likewise.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 pub(super) fn long<T: Number>(invariants: &Invariants<T>) -> Functions<T> {
     let k = T::number;
     let Start { e, x, y, c } = start(invariants);
@@ -102,7 +102,7 @@ struct Start<T> {
     c: T,
 }
 
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn start<T: Number>(invariants: &Invariants<T>) -> Start<T> {
     let Invariants { kb, ka, apart, pole } = *invariants;
     let (k, sum) = (T::number, kb + ka);

@@ -38,7 +38,7 @@ where
     }
 
     /// The way in is made anew in each step, for its derivatives alone.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn record<M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
         scene: &S,
@@ -53,7 +53,7 @@ where
         self.kernel.record_beside((self, kept), scene, motion, (whole, [&self.kernel.step, &self.leave]))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn visit(
         &self,
         scene: &S,
@@ -67,7 +67,7 @@ where
     }
 
     /// The processor is that of `|h|` in a step of `−h` too, and so isn't undone by itself.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn visit_undone(
         &self,
         scene: &S,

@@ -195,7 +195,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Processed<S, K> {
     }
 
     /// What a step goes on from, if that was left there by steps of its own length.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn inside(&self, kept: &Inside<Scalar<S>, S::Advected>) -> Option<Stepped<Scalar<S>, S::Advected>> {
         kept.0.filter(|inside| inside.h.simd_eq(self.kernel.h).all())
     }
@@ -230,7 +230,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
         })
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn step<M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
         scene: &S,
@@ -242,7 +242,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
 
     const STEPS_BY_RUNS: bool = true;
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn run<M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
         scene: &S,

@@ -177,7 +177,7 @@ impl<const ROTATIONS: usize, T: Real> KineticFlow<T> for SplitBody<ROTATIONS, T>
         Ok(SplitDrift { axes: self.axes, scale, reach, rotors })
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     fn advance(drift: &Self::Drift, momentum: &Vector3<T>) -> Result<Turn<T>, StepError> {
         let angles = drift.axes.of(&(momentum * drift.scale));
         let squared = (angles[0] * angles[0] + angles[1] * angles[1]) + angles[2] * angles[2];
@@ -218,7 +218,7 @@ fn far<const ROTATIONS: usize, T: Real>(
 ///
 /// What takes the time is that each angle waits for the rotation before; the quaternion is multiplied meanwhile. That
 /// is half of the arithmetic of products of matrices, and what roundings do to its length is divided out in the end.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn rotated<const ROTATIONS: usize, T: Real>(
     drift: &SplitDrift<T>,
     [mut a, mut b, mut c]: [T; 3],
@@ -255,7 +255,7 @@ fn rotated<const ROTATIONS: usize, T: Real>(
 
 /// What a rotation about the first of three axes makes of the other two components of the momentum and of the
 /// quaternion, given the sine of half its angle over the first component, and the cosine.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn turned<T: Real>([a, b, c]: [T; 3], (s, cosine): (T, T), [w, x, y, z]: Quaternion<T>) -> (T, T, Quaternion<T>) {
     let sine = s * a;
     let quaternion = [w * cosine - x * sine, x * cosine + w * sine, y * cosine + z * sine, z * cosine - y * sine];
@@ -269,7 +269,7 @@ fn turned<T: Real>([a, b, c]: [T; 3], (s, cosine): (T, T), [w, x, y, z]: Quatern
 }
 
 /// `F − I` of a quaternion whose length is one to some roundings.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[hot]
 fn increment<T: Real>([w, x, y, z]: Quaternion<T>) -> Matrix3<T> {
     let (xx, yy, zz) = (x * x, y * y, z * z);
     // 1/(1 + ε), which the products beside it don't wait for.

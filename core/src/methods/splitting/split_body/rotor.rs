@@ -58,7 +58,7 @@ impl<T: Real> Rotor<T> {
     }
 
     /// `sin(κ p)/p` and `cos(κ p)` of `p²`. Pairs don't wait for each other.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn near(&self, q: T) -> (T, T) {
         let q2 = q * q;
         let q4 = q2 * q2;
@@ -67,7 +67,7 @@ impl<T: Real> Rotor<T> {
     }
 
     /// The same for any angle.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[hot]
     pub(super) fn anywhere(&self, q: T) -> (T, T) {
         let square = self.rate * self.rate * q;
         let (sinc, versine) = rotation_coefficients(square);
