@@ -270,6 +270,7 @@ where
     ) -> NewtonUpdate<Vector<Self>, Square<Self>, Self::Scalar> {
         match (A::PARTS.unknown, B::PARTS.unknown) {
             (true, true) => update_by::<Self>(
+                #[allow(clippy::redundant_closure)] // the function itself wouldn't be inlined
                 #[cfg_attr(not(debug_assertions), inline(always))]
                 |constants, terms, half| Self::newton_system(constants, terms, half),
                 constants,
