@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use liestep::SO3;
 use liestep::accuracy::{Accuracy, AccurateStepper, Candidates, Effort};
-use liestep::methods::{ExactBody, PreprocessedFlow, PreprocessedOrder, SplitBody, SymmetricBody};
+use liestep::methods::{ExactBody, SymmetricBody};
 use nalgebra::Vector3;
 use workbench::table::{aligned, number};
 
@@ -82,7 +82,6 @@ impl Question {
             let candidates = Candidates::of(scene.free_body(), 2)
                 .and_declared("K4", scene.fourth_order_body(), 4)
                 .and_declared("K6", scene.sixth_order_body(), 6)
-                .and_preprocessed(scene.nonstandard())
                 .and_splittings("exact", scene.free_body(), ExactBody::new(&scene.inertia()))
                 .and_gauss(scene.free_body());
             return Self { ask: asking(candidates, start, velocity), fixed };
@@ -94,28 +93,12 @@ impl Question {
         );
         let candidates = match SymmetricBody::new(&scene.inertia()) {
             Ok(body) => candidates.and_splittings("exact", scene.top(), body).and_gauss(scene.top()),
-            Err(_) => split(candidates, scene)
+            Err(_) => candidates
                 .and_splittings("exact", scene.top(), ExactBody::new(&scene.inertia()))
                 .and_gauss(scene.top())
-                .and_splittings("K6", scene.top(), scene.sixth_order_body())
-                .and_splittings(
-                    "preprocessed",
-                    scene.top(),
-                    PreprocessedFlow::new(scene.nonstandard(), PreprocessedOrder::Ten),
-                ),
+                .and_splittings("K6", scene.top(), scene.sixth_order_body()),
         };
         Self { ask: asking(candidates, start, velocity), fixed }
-    }
-}
-
-/// With rotations about the body axes, which are the principal ones.
-fn split(candidates: Candidates<SO3, Vector3<f64>>, scene: &Scene) -> Candidates<SO3, Vector3<f64>> {
-    let inertia = scene.inertia();
-    match (SplitBody::<7>::new(&inertia), SplitBody::<9>::new(&inertia)) {
-        (Ok(seven), Ok(nine)) => {
-            candidates.and_splittings("split 7", scene.top(), seven).and_splittings("split 9", scene.top(), nine)
-        }
-        _ => candidates,
     }
 }
 

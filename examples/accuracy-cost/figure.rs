@@ -44,7 +44,7 @@ enum Kind {
 
 fn kind(method: &Measured) -> Kind {
     let name = method.name.as_str();
-    let is_flow = ["preprocessed", "K6,", "split"].iter().any(|flow| name.starts_with(flow)) && name != "K6, Suzuki 8";
+    let is_flow = name.starts_with("K6,") && name != "K6, Suzuki 8";
     match name {
         _ if method.family == Family::Rival => Kind::Rival,
         _ if name.starts_with("Gauss") => Kind::Collocation,

@@ -2,10 +2,7 @@
 
 use declarations::motions::End;
 use liestep::mechanics::{DiscreteLagrangian, Regular};
-use liestep::methods::{
-    CompositionScheme, ExactBody, KineticFlow, PreprocessedFlow, PreprocessedOrder, ProcessedScheme, SplitBody,
-    SplittingScheme, SymmetricBody,
-};
+use liestep::methods::{CompositionScheme, ExactBody, KineticFlow, ProcessedScheme, SplittingScheme, SymmetricBody};
 use liestep::motion::Plan;
 use liestep::prelude::*;
 
@@ -116,7 +113,6 @@ pub fn ours(scene: &Scene) -> Vec<Method> {
     }
     match scene.kind {
         Kind::Free => {
-            methods.extend(preprocessed());
             methods.push(exact_alone());
         }
         Kind::SymmetricTop => {
@@ -129,16 +125,7 @@ pub fn ours(scene: &Scene) -> Vec<Method> {
             methods.extend(splittings("exact", Family::Poisson, Scene::top, |scene| {
                 Some(ExactBody::new(&scene.inertia()))
             }));
-            methods.extend(splittings("preprocessed", Family::NearlyPoisson, Scene::top, |scene| {
-                Some(PreprocessedFlow::new(scene.nonstandard(), PreprocessedOrder::Ten))
-            }));
             methods.extend(splittings("K6", Family::Poisson, Scene::top, |scene| Some(scene.sixth_order_body())));
-            methods.extend(splittings("split 7", Family::Poisson, Scene::top, |scene| {
-                SplitBody::<7>::new(&scene.inertia()).ok()
-            }));
-            methods.extend(splittings("split 9", Family::Poisson, Scene::top, |scene| {
-                SplitBody::<9>::new(&scene.inertia()).ok()
-            }));
         }
     }
     if scene.kind == Kind::Free {
@@ -177,16 +164,6 @@ where
 {
     let name = format!("Gauss, {} stages", 2 * PAIRS);
     stepped(name, Family::Poisson, 2.0, move |scene, h| Stepper::collocated::<PAIRS>(lagrangian(scene), h).ok())
-}
-
-/// The free body with modified moments of inertia.
-fn preprocessed() -> [Method; 4] {
-    use PreprocessedOrder::{Eight, Four, Six, Ten};
-    [("4", Four), ("6", Six), ("8", Eight), ("10", Ten)].map(|(name, order)| {
-        stepped(format!("preprocessed, {name}"), Family::Poisson, 2.0, move |scene, h| {
-            Stepper::preprocessed(PrincipalBody { J_d: scene.nonstandard() }, h, order).ok()
-        })
-    })
 }
 
 /// The exact motion of the free body: its kicks are none, so that any splitting is it.

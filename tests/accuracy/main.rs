@@ -17,8 +17,6 @@ mod gauss;
 mod higher_order;
 mod many_digits;
 mod poisson;
-mod preprocessed;
 mod processed;
 mod refinement;
-mod split_body;
 mod splitting;

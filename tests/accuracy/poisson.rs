@@ -3,7 +3,7 @@
 use checks::random::Random;
 use checks::structure::poisson::{TOLERANCE, defect_of};
 use declarations::{FourthOrderBody, FreeBody, HeavyTop, SixthOrderBody};
-use liestep::methods::{KineticFlow, PreprocessedFlow, PreprocessedOrder, SplittingScheme};
+use liestep::methods::{KineticFlow, SplittingScheme};
 use liestep::{SO3, Stepper};
 use nalgebra::Vector3;
 
@@ -45,27 +45,4 @@ fn p1_splittings_are_poisson_maps() {
     assert_poisson(&asymmetric, || FreeBody { J_d: asymmetric.J_d.into() }, "(3.13)");
     assert_poisson(&asymmetric, || FourthOrderBody { J: asymmetric.ordinary_inertia() }, "K4");
     assert_poisson(&asymmetric, || SixthOrderBody { J: asymmetric.ordinary_inertia() }, "K6");
-}
-
-/// The preprocessed flow isn't symplectic: what is missing falls with the eleventh power of the step until it is
-/// rounding.
-#[test]
-fn preprocessed_flows_are_poisson_to_their_order() {
-    let top = HeavyTop::asymmetric();
-    let (momentum, w) = (Vector3::new(2.0, -1.0, 3.0), Vector3::new(0.6, 0.0, 0.8));
-    let defect = |order, h: f64| {
-        let kinetic = || PreprocessedFlow::new(top.J_d, order);
-        poisson_defect(&top, kinetic, (SplittingScheme::STRANG, h), (&momentum, &w))
-    };
-    for (order, preprocessing) in [(4, PreprocessedOrder::Four), (10, PreprocessedOrder::Ten)] {
-        let (coarse, fine) = (defect(preprocessing, 0.8), defect(preprocessing, 0.4));
-        let measured = (coarse / fine).log2();
-        println!("order {order}: defects {coarse:.1e} and {fine:.1e}, order {measured:.2}");
-        assert!(measured > f64::from(order), "order {order}: {coarse:e}, {fine:e}");
-    }
-    for h in [0.1, 0.2] {
-        let defect = defect(PreprocessedOrder::Ten, h);
-        println!("h = {h}: {defect:.1e}");
-        assert!(defect < TOLERANCE, "{defect:e}");
-    }
 }

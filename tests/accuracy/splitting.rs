@@ -4,9 +4,7 @@ use checks::random::Random;
 use declarations::{FourthOrderBody, FourthOrderTop, FreeBody, HeavyTop, LogTop, Motion, SixthOrderBody, Top as _};
 use liestep::effects::{GravityGradient, Rotor, Spring};
 use liestep::mechanics::{Effect, Term as _};
-use liestep::methods::{
-    CompositionScheme, Flow, KineticFlow, PreprocessedFlow, PreprocessedOrder, SplittingScheme, SymmetricBody,
-};
+use liestep::methods::{CompositionScheme, Flow, KineticFlow, SplittingScheme, SymmetricBody};
 use liestep::prelude::*;
 use nalgebra::Vector3;
 use workbench::measure::relative;
@@ -228,20 +226,6 @@ fn many_steps_are_single_steps() {
         assert_eq!(many.steps(), single.steps());
         assert!(relative(&many.momentum(), &single.momentum()) < 2e-13, "{}", scheme.name());
         assert!(relative(&many.attitude().matrix(), &single.attitude().matrix()) < 2e-13, "{}", scheme.name());
-    }
-}
-
-#[test]
-fn preprocessed_flows_keep_the_order() {
-    for (scheme, coarsest) in [(SplittingScheme::NYSTROM_11, 60), (SplittingScheme::NEAR_INTEGRABLE_8_6_4, 200)] {
-        assert_order(
-            (scheme.name(), scheme.order()),
-            (TOPS[3], 10.0),
-            &counts(coarsest, 1.35, 5),
-            |motion, h, steps| {
-                end(PreprocessedFlow::new(motion.top.J_d, PreprocessedOrder::Ten), scheme, motion, h, steps)
-            },
-        );
     }
 }
 

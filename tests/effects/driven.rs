@@ -1,7 +1,7 @@
 //! Scenes that each step is given values for.
 
 use declarations::{FluidDrag, Flyer, Thruster, Torquer};
-use liestep::effects::{CayleyBody, Dipole, GravityGradient, RigidBody};
+use liestep::effects::{Dipole, GravityGradient, RigidBody};
 use liestep::groups::{Given, SE3};
 use liestep::laws::samples::Random;
 use liestep::mechanics::{Scene, Sum};
@@ -68,11 +68,6 @@ fn given_values_are_those_of_the_scene() {
     let fast = Vector3::new(10.0, -20.0, 30.0);
     let substepped = |torquer| Stepper::new(body() + torquer, 0.1).unwrap().or_substeps(64);
     assert!(steps_of_such_a_scene(fast, substepped) > 10);
-    let fallen_back = |torquer| {
-        let other = Stepper::new(CayleyBody { J: body().J_d.to_inertia() } + torquer, 0.1).unwrap();
-        Stepper::new(body() + torquer, 0.1).unwrap().or_fallback(other).unwrap()
-    };
-    assert!(steps_of_such_a_scene(fast, fallen_back) > 10);
     is_the_step_of_such_a_scene(|torquer| {
         Stepper::composed(body() + torquer, 0.1, CompositionScheme::SUZUKI_4).unwrap()
     });

@@ -1,7 +1,7 @@
 //! Drifts that turn by very many radians: the attitude stays a rotation, or the step is refused.
 
 use liestep::effects::{Gravity, RigidBody};
-use liestep::methods::{ExactBody, KineticFlow, SplitBody, SplittingScheme, SymmetricBody};
+use liestep::methods::{ExactBody, KineticFlow, SplittingScheme, SymmetricBody};
 use liestep::prelude::*;
 use liestep::{StepError, Stepper};
 use nalgebra::Vector3;
@@ -39,14 +39,6 @@ fn of_a_symmetric_body() {
     let moments = Vector3::new(2.0, 2.0, 3.0);
     let flow = SymmetricBody::new(&Inertia::from_principal_moments(moments).unwrap()).unwrap();
     assert_rotations(moments, &flow);
-}
-
-#[test]
-fn of_rotations_about_the_axes() {
-    let moments = Vector3::new(2.0, 2.5, 3.0);
-    let inertia = Inertia::from_principal_moments(moments).unwrap();
-    assert_rotations(moments, &SplitBody::<7>::new(&inertia).unwrap());
-    assert_rotations(moments, &SplitBody::<9>::new(&inertia).unwrap());
 }
 
 #[test]

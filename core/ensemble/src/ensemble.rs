@@ -64,7 +64,7 @@ impl<M: Integrator> Ensemble<M> {
     /// Scenes are generic over their scalar for that, as the library's are: `Top<f64>` here, declared as `Top<T>`. Of methods,
     /// [`Stepper::new`](liestep::Stepper::new), [`composed`](liestep::Stepper::composed), [`split`](liestep::Stepper::split),
     /// [`processed`](liestep::Stepper::processed), and all of them [`compensated`](liestep::Stepper::compensated), have lanes.
-    /// Members of any other scene or method go [`one_by_one`](Self::one_by_one): Gauss collocation, preprocessed steps and
+    /// Members of any other scene or method go [`one_by_one`](Self::one_by_one): Gauss collocation and
     /// remedies.
     pub fn new(
         name: &str,

@@ -10,14 +10,12 @@ use core::ops::Deref;
 use super::error::AccuracyError;
 use super::search::search;
 use super::trials::{Start, Tried};
-use super::{Accuracy, AccurateStepper, Choice, SavedChoice};
-use crate::effects::PrincipalBody;
+use super::{Accuracy, AccurateStepper, Choice};
 use crate::error::SetupError;
 use crate::groups::{Advected, LieGroup, Retraction as _, SO3};
-use crate::mechanics::{DiagonalNonstandardInertia, Effect, Group, Inertia, Scalar, Scene, Vector};
+use crate::mechanics::{Effect, Group, Inertia, Scalar, Scene, Vector};
 use crate::methods::{
-    CompositionScheme, ExactBody, KineticFlow, PreprocessedOrder, ProcessedScheme, SplittingScheme, SymmetricBody,
-    has_force_gradient,
+    CompositionScheme, ExactBody, KineticFlow, ProcessedScheme, SplittingScheme, SymmetricBody, has_force_gradient,
 };
 use crate::motion::{AnyStepper, Cost, Plan, Stepper};
 
@@ -83,8 +81,8 @@ type Make<G, A> = Box<dyn Fn(f64) -> Result<AnyStepper<G, A>, SetupError>>;
 /// The methods that [`Stepper::for_accuracy`] chooses from, with more than a scene alone can tell.
 ///
 /// Every self-adjoint scene has its own step and its symmetric compositions. Added to them are splittings, where the
-/// potential can be split off and the free body's motion is known; Gauss collocation, where it can be split off; other
-/// declarations of the same scene, of higher order; and for a free body the preprocessed step.
+/// potential can be split off and the free body's motion is known; Gauss collocation, where it can be split off; and other
+/// declarations of the same scene, of higher order.
 ///
 /// # Examples
 ///
@@ -113,7 +111,6 @@ pub struct Candidates<G: LieGroup, A: Advected<G>> {
     inertia: Vec<f64>,
     seen: Vec<Seen>,
     mistake: Option<SetupError>,
-    saved: Option<SavedChoice>,
 }
 
 impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
@@ -127,8 +124,7 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
     where
         S: Scene<Scalar = f64, Group = G, Advected = A>,
     {
-        let empty =
-            Self { methods: Vec::new(), inertia: inertia(&scene), seen: seen(&scene), mistake: None, saved: None };
+        let empty = Self { methods: Vec::new(), inertia: inertia(&scene), seen: seen(&scene), mistake: None };
         empty.and_steps_of("", &scene, order)
     }
 
@@ -197,16 +193,6 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
         }
     }
 
-    /// A choice to be taken where it still holds, which one more run by shorter steps tells; otherwise the search is made
-    /// as without, and both runs count as trials. It may be that of another start, horizon or tolerance; for a larger
-    /// tolerance it is kept, though longer steps would do. Of the other methods nothing is then known but bounds, in
-    /// [`Choice::offers`](super::Choice::offers).
-    #[must_use]
-    pub fn with_saved(mut self, choice: SavedChoice) -> Self {
-        self.saved = Some(choice);
-        self
-    }
-
     /// The cheapest of these methods that comes within the accuracy, with its step, for the motion from an attitude
     /// (body to space) and a body velocity; see [`Stepper::for_accuracy`].
     ///
@@ -231,11 +217,8 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
             stepper.start(start.attitude, start.velocity)?;
             candidates.push(Candidate { method, cost: stepper.cost() });
         }
-        let mut tried = Tried::new(&start);
-        let found = match self.saved.as_ref().and_then(|saved| saved.again(&candidates, accuracy, &mut tried)) {
-            Some(found) => found,
-            None => search(&candidates, accuracy, tried)?,
-        };
+        let tried = Tried::new(&start);
+        let found = search(&candidates, accuracy, tried)?;
         let stepper = (self.methods[found.index].make)(accuracy.horizon / found.steps)?;
         let state = stepper.start(start.attitude, start.velocity)?;
         let choice = Choice::new(&candidates, accuracy, &found);
@@ -322,20 +305,6 @@ impl<A: Advected<SO3> + 'static> Candidates<SO3, A> {
         let (scene, stages) = (scene.clone(), count(2 * PAIRS));
         let make = move |h| Stepper::collocated::<PAIRS>(scene.clone(), h);
         self.add(format!("Gauss, {stages} stages"), (2 * stages, stages * ITERATIONS), make);
-    }
-}
-
-impl Candidates<SO3, ()> {
-    /// The [`Preprocessed`](crate::methods::Preprocessed) step of the free body with this inertia, to all its orders.
-    #[must_use]
-    pub fn and_preprocessed(mut self, body: DiagonalNonstandardInertia) -> Self {
-        use PreprocessedOrder::{Eight, Four, Six, Ten};
-        let body = PrincipalBody { J_d: body };
-        self.compare(&body);
-        for (order, number) in [(Four, 4), (Six, 6), (Eight, 8), (Ten, 10)] {
-            self.add(format!("preprocessed, {number}"), (number, 1), move |h| Stepper::preprocessed(body, h, order));
-        }
-        self
     }
 }
 

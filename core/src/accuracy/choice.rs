@@ -7,7 +7,6 @@ use core::fmt;
 
 use super::Accuracy;
 use super::candidates::Candidate;
-use super::saved::SavedChoice;
 use super::search::Found;
 use crate::groups::{Advected, LieGroup};
 
@@ -88,13 +87,6 @@ impl Choice {
             offers: candidates.iter().zip(&found.offers).map(offer).collect(),
             chosen: found.index,
         }
-    }
-
-    /// What to give the same scene when it is asked again.
-    #[must_use]
-    pub fn saved(&self) -> SavedChoice {
-        let Offer { name, step, .. } = self.chosen();
-        SavedChoice { method: name.clone(), step: *step }
     }
 
     /// The method chosen.

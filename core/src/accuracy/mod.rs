@@ -24,8 +24,7 @@
 //! start is made twice. In the tests, some three hundred questions with answers of one step to thousands, all trials
 //! together cost at most thirty times the run, and half of them at most ten times. Once a run is near enough, another is
 //! made only if all are thought to stay within thirty runs of the cheapest. Before that what a run will cost isn't known,
-//! and the operations alone are bounded: a scene that would take more than some seconds is refused with what was tried. A
-//! choice that was made can be [saved](SavedChoice): then one run besides the chosen one is enough.
+//! and the operations alone are bounded: a scene that would take more than some seconds is refused with what was tried.
 
 mod candidates;
 mod choice;
@@ -33,7 +32,6 @@ mod error;
 mod ladder;
 mod part;
 mod refinement;
-mod saved;
 mod search;
 mod trials;
 
@@ -43,7 +41,6 @@ pub use error::AccuracyError;
 #[cfg(feature = "std")]
 pub use refinement::{Effort, work_precision};
 pub use refinement::{End, Measurement, Reference, Refinement, RefinementError, convergence};
-pub use saved::SavedChoice;
 pub use trials::Trials;
 
 use core::ops::Deref;

@@ -155,7 +155,6 @@
 //! | \[HLW06\] | E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration*, 2nd edition, Springer, 2006 |
 //! | \[HW96\] | E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd edition, Springer, 1996 |
 //! | \[AMM17\] | M. Antoñana, J. Makazaga, A. Murua, *Reducing and monitoring round-off error propagation for symplectic implicit Runge–Kutta schemes*, Numerical Algorithms 76, 2017 |
-//! | \[HV06\] | E. Hairer, G. Vilmart, *Preprocessed discrete Moser–Veselov algorithm for the full dynamics of the rigid body*, Journal of Physics A 39, 2006 |
 //!
 //! The Lagrangian (3.13) gives the integrator of \[LML05\], with the same momentum; the discrete Legendre transforms
 //! and the order of accuracy they imply are those of \[MW01\]; the continuous theory of chapter 1 is in \[HSS09\].

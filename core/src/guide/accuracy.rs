@@ -100,13 +100,10 @@
 //!
 //! The highest orders drown in the rounding of a double; `tests/accuracy/many_digits` measures them with 32 digits.
 //!
-//! `cargo run --release --example coefficients` finds kernels and processors of processed splittings from random starts,
-//! polishes them to 30 digits, and with `--unseen` tries them on tops that none was chosen by.
-//!
 //! # Asking for an accuracy
 //!
 //! ```
-//! use liestep::accuracy::{Accuracy, AccuracyError, Candidates};
+//! use liestep::accuracy::{Accuracy, AccuracyError};
 //! use liestep::prelude::*;
 //!
 //! let body = RigidBody { J_d: NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5))? };
@@ -117,11 +114,6 @@
 //! println!("{choice}"); // method, step, error measured, and what the others would cost
 //! assert!(choice.error <= 1e-6 && choice.trials < 30.0);
 //! stepper.run(&mut stepper.start())?;
-//!
-//! // What was found is text that a program can keep: with it one run is enough.
-//! let saved = choice.saved();
-//! let again = Candidates::of(body, 2).with_saved(saved).for_accuracy(accuracy, attitude, velocity)?;
-//! assert!(again.choice().trials < choice.trials);
 //!
 //! // What can't be had is said, with what can.
 //! let refused = Stepper::for_accuracy(body, Accuracy { tolerance: 1e-17, ..accuracy }, attitude, velocity);

@@ -47,13 +47,10 @@
 //! let mut state = patient.start(SO3::identity(), velocity)?;
 //! assert_eq!(patient.step(&mut state)?.remedy, Some(Remedy::Substeps(4)));
 //!
-//! // 3. A kinetic term that has a solution at every step, alone or where the first has none.
+//! // 3. A kinetic term that has a solution at every step.
 //! let cayley = Stepper::new(CayleyBody { J }, h)?;
 //! let mut state = cayley.start(SO3::identity(), velocity)?;
 //! assert!(cayley.step(&mut state).is_ok());
-//! let either = Stepper::new(body, h)?.or_fallback(cayley)?;
-//! let mut state = either.start(SO3::identity(), velocity)?;
-//! assert_eq!(either.step(&mut state)?.remedy, Some(Remedy::Fallback));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

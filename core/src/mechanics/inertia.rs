@@ -224,13 +224,6 @@ impl<T: RealField + Copy> DiagonalNonstandardInertia<T> {
 }
 
 impl<T: Real> DiagonalNonstandardInertia<T> {
-    /// From principal moments, of which nothing is asked: those of a body nearly flat may be modified beyond it.
-    #[hot]
-    pub(crate) fn of_moments_unchecked(moments: &Vector3<T>) -> Self {
-        let half = (moments.x + moments.y + moments.z) * real(0.5);
-        Self(moments.map(|moment| half - moment))
-    }
-
     /// The principal moments of the ordinary inertia `J`, kg m², in the order of the axes.
     #[must_use]
     pub fn principal_moments(&self) -> Vector3<T> {

@@ -10,13 +10,11 @@
 //! | [`CotangentGauss`], a map of its own | `4 PAIRS` | any `l(ξ, w)` on any one group, `f64` | the same |
 //! | [`ChainStepper`], a map of its own | 2 | links on ball joints, `f64` | Poisson structure, momentum about the vertical |
 //! | [`Jointed`], by [`Stepper::jointed`](crate::Stepper::jointed) | the declaration's, mostly 2 | bodies `(SO3, R3)` and joints, `f64` | Poisson structure, momentum maps |
-//! | [`Preprocessed`], by [`Stepper::preprocessed`](crate::Stepper::preprocessed) | 4 to 10 | a free body | energy, momentum maps |
 
 mod chain;
 mod composition;
 mod gauss;
 mod joints;
-mod preprocessed;
 mod splitting;
 #[cfg(test)]
 mod tests;
@@ -25,9 +23,8 @@ pub use chain::{Chain, ChainMemory, ChainStepper, Link};
 pub use composition::{Composed, CompositionScheme};
 pub use gauss::{Collocated, CotangentCarry, CotangentGauss, Gauss};
 pub use joints::{BallJoint, Constraint, Joined, Joint, Jointed, Joints, PinJoint, Place, Slope};
-pub use preprocessed::{Preprocessed, PreprocessedOrder};
 pub(crate) use splitting::has_force_gradient;
 pub use splitting::{
-    DifferentiableFlow, ExactBody, Flow, Inside, KineticFlow, PreprocessedFlow, Processed, ProcessedScheme, Split,
-    SplitBody, SplittingScheme, SymmetricBody, Turn,
+    DifferentiableFlow, ExactBody, Flow, Inside, KineticFlow, Processed, ProcessedScheme, Split, SplittingScheme,
+    SymmetricBody, Turn,
 };

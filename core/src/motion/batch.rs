@@ -12,7 +12,7 @@ use crate::numbers::{InLanes, Lanes};
     message = "bodies stepped by `{Self}` can't be in lanes of `{W}`",
     label = "can't be put into lanes",
     note = "a scene generic over its scalar can: `struct Top<T> {{ weight: T, … }}`, and `Top<f64>` here",
-    note = "of methods the declared step can, compositions of it, splittings and preprocessed bodies, with compensated sums too; others go one by one"
+    note = "of methods the declared step can, compositions of it and splittings, with compensated sums too; others go one by one"
 )]
 pub trait Batchable<W>:
     Integrator + InLanes<W, Together: Integrator<State: Lanes<Lane = <Self as Integrator>::State>>>

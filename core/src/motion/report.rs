@@ -10,8 +10,7 @@ pub struct StepReport {
     /// eight, and the iterations with the Jacobian where these weren't enough. A solve whose first guess had to be
     /// given up counts more than 20.
     pub iterations: u32,
-    /// What was done in the place of this step; only with [`or_substeps`](crate::Stepper::or_substeps) or
-    /// [`or_fallback`](crate::Stepper::or_fallback).
+    /// What was done in the place of this step; only with [`or_substeps`](crate::Stepper::or_substeps).
     pub remedy: Option<Remedy>,
 }
 
@@ -36,6 +35,4 @@ impl StepReport {
 pub enum Remedy {
     /// So many steps of an equal part of `h`.
     Substeps(u32),
-    /// A step of another scene.
-    Fallback,
 }

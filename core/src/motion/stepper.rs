@@ -29,7 +29,6 @@ pub(crate) type StateOf<S, P> = State<Group<S>, <S as Term>::Advected, <P as Pla
 /// Stepper::split(scene, h, flow, scheme)          kinetic flow and kicks by turns, to order 10
 /// Stepper::processed(scene, h, flow, scheme)      the same between the ends of a processor, for fewer flows a step
 /// Stepper::collocated::<PAIRS>(scene, h)          Gauss collocation, to any order
-/// Stepper::preprocessed(body, h, order)           a free body, to order 10 in one solve
 /// Stepper::for_accuracy(scene, accuracy, …)       the cheapest of its own step and its compositions
 /// ```
 ///

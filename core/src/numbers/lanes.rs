@@ -69,7 +69,7 @@ pub trait Lanes: Sized {
 /// Scenes that are generic over their scalar can: of one body, of several that are declared together, and
 /// [systems](crate::mechanics::Placed) of bodies with terms at their places. So can the methods [`Stepper::new`](crate::Stepper::new),
 /// [`composed`](crate::Stepper::composed), [`split`](crate::Stepper::split) and [`processed`](crate::Stepper::processed), and
-/// all of them [`compensated`](crate::Stepper::compensated), and [`preprocessed`](crate::Stepper::preprocessed).
+/// all of them [`compensated`](crate::Stepper::compensated).
 ///
 /// With the others bodies take their turns, each of these for a reason of its own:
 ///
@@ -85,7 +85,7 @@ pub trait Lanes: Sized {
     message = "`{Self}` can't be put into lanes of `{W}`",
     label = "can't be put into lanes",
     note = "a declaration generic over its scalar can be: `struct Top<T> {{ weight: T, … }}`, and `Top<f64>` here",
-    note = "of methods the declared step can, compositions of it, splittings and preprocessed bodies, with compensated sums too; others go one by one"
+    note = "of methods the declared step can, compositions of it and splittings, with compensated sums too; others go one by one"
 )]
 pub trait InLanes<W>: Sized {
     /// Several of them.

@@ -36,16 +36,6 @@ impl<V: Copy> Guess<V> {
     pub(crate) fn of(half: V) -> Self {
         Self { half, next: half }
     }
-
-    /// Guesses by the line through the last two increments, the later of which has half these coordinates.
-    #[hot]
-    pub(crate) fn follow<T: Real>(&mut self, half: V, far: Mask<T>)
-    where
-        V: Coordinates<T>,
-    {
-        let last = core::mem::replace(&mut self.half, half);
-        self.next = near_of(half, half + (half - last), far);
-    }
 }
 
 /// The guess, but where the last increment is `far`: there it is that increment.

@@ -8,12 +8,12 @@
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
-use crate::methods::{Composed, Jointed, KineticFlow, Preprocessed, Processed, Split};
+use crate::methods::{Composed, Jointed, KineticFlow, Processed, Split};
 use crate::motion::{
     Cost, Declared, Kept, Motion, Plan, Proceeded, Steerable, StepReport, Stepper, Summation, restored,
 };
-use crate::numbers::{Entries, InLanes, Lanes, Real, Vectors, carried_sum, lanes_of_fields, zero};
-use crate::with::remedies::OrElse;
+use crate::numbers::{Entries, InLanes, Lanes, Vectors, carried_sum, lanes_of_fields, zero};
+use crate::with::remedies::Substepped;
 use nalgebra::SimdValue as _;
 
 /// A plan whose sums are compensated, by [`Stepper::compensated`].
@@ -85,8 +85,7 @@ impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Compe
 }
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Split<S, K> {}
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Processed<S, K> {}
-impl<T: Real> Compensable for Preprocessed<T> {}
-impl<P: Compensable, R> Compensable for OrElse<P, R> {}
+impl<P: Compensable> Compensable for Substepped<P> {}
 
 impl<P: Steerable> Steerable for Compensated<P> {}
 

@@ -19,5 +19,5 @@ pub use frames::Frames;
 #[cfg(feature = "std")]
 pub use record::{Background, Csv};
 pub use record::{Column, RecordError, Recorder, Sink, SinkError, Table};
-pub use remedies::{Instead, OrElse, Substeps};
+pub use remedies::Substepped;
 pub use run::{Ended, Event, Reason, Run, RunError};

@@ -1,50 +1,18 @@
 //! What to do about a step that has no solution, for those who would rather go on than stop.
 //!
-//! A [`Stepper`] refuses such a step and leaves the state alone. A remedy makes another step in its place, and the report
-//! says so. Both remedies here give up something; a motion that needs them often wants a smaller step.
+//! A [`Stepper`] refuses such a step and leaves the state alone. Substeps go on in its place, and the report says so.
+//! They give up a constant step; a motion that needs them often wants a smaller one.
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
 use crate::motion::{Cost, Motion, Plan, Remedy, Steerable, StepReport, Stepper, Summation, rare_step};
 use crate::numbers::{Vectors, real};
 
-/// A plan that has a remedy for steps without a solution, by [`Stepper::or_substeps`] or [`Stepper::or_fallback`].
+/// A plan that takes a step without a solution in equal parts, by [`Stepper::or_substeps`].
 #[derive(Clone, Copy, Debug)]
-pub struct OrElse<P, R> {
+pub struct Substepped<P> {
     plan: P,
-    remedy: R,
-}
-
-/// The remedy that takes a step in equal parts.
-#[derive(Clone, Copy, Debug)]
-pub struct Substeps {
     at_most: u32,
-}
-
-/// Another step in the place of one that has no solution: [`Substeps`], or the step of another [`Stepper`].
-pub trait Instead<S: Effect>: Sized {
-    /// The remedy for the same plan with another step.
-    ///
-    /// # Errors
-    ///
-    /// [`SetupError`] where there is no such step.
-    fn refolded(&self, h: Scalar<S>) -> Result<Self, SetupError>;
-
-    /// Makes the step in another way, or leaves everything as it was and returns the error.
-    ///
-    /// # Errors
-    ///
-    /// The error that the step was refused with, where there is no other way either.
-    fn step<P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
-        &self,
-        plan: &P,
-        scene: &S,
-        moved: (&mut M, &mut P::Kept),
-        error: StepError,
-    ) -> Result<StepReport, StepError>;
-
-    /// Shows its name and every constant.
-    fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>);
 }
 
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
@@ -80,36 +48,12 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
-    pub fn or_substeps(self, at_most: u32) -> Stepper<S, OrElse<P, Substeps>> {
-        Stepper { scene: self.scene, plan: OrElse { plan: self.plan, remedy: Substeps { at_most } } }
-    }
-
-    /// The same steps, and where there is none the step of another scene, or another method, with the same group and
-    /// advected parameters.
-    ///
-    /// The one that is meant is the same system with a kinetic term that has a solution at every `h`, like that of
-    /// [`CayleyBody`](crate::effects::CayleyBody) (for bodies that aren't needles). It is variational too, of the same
-    /// order, with an error about twice as large; but another map, so that changing over has the effect on the energy
-    /// that [substeps](Self::or_substeps) have.
-    ///
-    /// # Errors
-    ///
-    /// [`SetupError::InvalidStep`] where the other step isn't of the same length.
-    #[allow(clippy::type_complexity)] // a stepper with a stepper in it
-    pub fn or_fallback<R, Q>(self, other: Stepper<R, Q>) -> Result<Stepper<S, OrElse<P, Stepper<R, Q>>>, SetupError>
-    where
-        R: Effect<Scalar = S::Scalar, Group = S::Group, Advected = S::Advected>,
-        Q: Plan<R>,
-    {
-        use nalgebra::{SimdBool as _, SimdPartialOrd as _};
-        if !other.step_size().simd_eq(self.step_size()).all() {
-            return Err(SetupError::InvalidStep { step: crate::numbers::reported(other.step_size()) });
-        }
-        Ok(Stepper { scene: self.scene, plan: OrElse { plan: self.plan, remedy: other } })
+    pub fn or_substeps(self, at_most: u32) -> Stepper<S, Substepped<P>> {
+        Stepper { scene: self.scene, plan: Substepped { plan: self.plan, at_most } }
     }
 }
 
-impl<S: Effect, P: Plan<S>, R: Instead<S>> Plan<S> for OrElse<P, R> {
+impl<S: Effect, P: Plan<S>> Plan<S> for Substepped<P> {
     type Kept = P::Kept;
 
     const VECTORS: Vectors = P::VECTORS;
@@ -120,7 +64,7 @@ impl<S: Effect, P: Plan<S>, R: Instead<S>> Plan<S> for OrElse<P, R> {
     }
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
-        Ok(Self { plan: self.plan.refolded(scene, h)?, remedy: self.remedy.refolded(h)? })
+        Ok(Self { plan: self.plan.refolded(scene, h)?, at_most: self.at_most })
     }
 
     fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
@@ -144,7 +88,7 @@ impl<S: Effect, P: Plan<S>, R: Instead<S>> Plan<S> for OrElse<P, R> {
     ) -> Result<StepReport, StepError> {
         match self.plan.step(scene, motion, kept) {
             Ok(report) => Ok(report),
-            Err(error) => self.remedy.step(&self.plan, scene, (motion, kept), error),
+            Err(error) => in_parts(&self.plan, scene, (motion, kept), (self.at_most, error)),
         }
     }
 
@@ -172,13 +116,14 @@ impl<S: Effect, P: Plan<S>, R: Instead<S>> Plan<S> for OrElse<P, R> {
         self.plan.explained(error, scene, motion, kept)
     }
 
-    /// Of the plan itself: a step that only its remedy makes is none of its own.
+    /// Of the plan itself: a step that only its parts make is none of its own.
     fn max_step(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, kept: &Self::Kept) -> Scalar<S> {
         self.plan.max_step(scene, motion, kept)
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
-        self.remedy.describe(visitor);
+        visitor.term("or substeps");
+        visitor.parameter("at most", real(f64::from(self.at_most)));
         self.plan.describe(visitor);
     }
 
@@ -187,46 +132,34 @@ impl<S: Effect, P: Plan<S>, R: Instead<S>> Plan<S> for OrElse<P, R> {
     }
 }
 
-impl<P: Steerable> Steerable for OrElse<P, Substeps> {}
-impl<P: Steerable, R: Effect, Q: Steerable> Steerable for OrElse<P, Stepper<R, Q>> {}
+impl<P: Steerable> Steerable for Substepped<P> {}
 
-impl<S: Effect> Instead<S> for Substeps {
-    fn refolded(&self, _: Scalar<S>) -> Result<Self, SetupError> {
-        Ok(*self)
+/// Makes the step in equal parts, or leaves everything as it was and returns the error.
+#[cold]
+#[inline(never)]
+fn in_parts<S: Effect, P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
+    plan: &P,
+    scene: &S,
+    (motion, kept): (&mut M, &mut P::Kept),
+    (at_most, error): (u32, StepError),
+) -> Result<StepReport, StepError> {
+    if matches!(error, StepError::NonFinite { .. }) {
+        return Err(error);
     }
-
-    #[cold]
-    #[inline(never)]
-    fn step<P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
-        &self,
-        plan: &P,
-        scene: &S,
-        (motion, kept): (&mut M, &mut P::Kept),
-        error: StepError,
-    ) -> Result<StepReport, StepError> {
-        if matches!(error, StepError::NonFinite { .. }) {
-            return Err(error);
+    let steps = motion.now().steps;
+    let mut parts = 2;
+    while parts <= at_most {
+        if let Some((mut moved, iterations)) = substepped(plan, scene, *motion, parts) {
+            moved.recount(steps + 1);
+            // What isn't a step of the whole tells nothing of the next one's increment.
+            *kept = plan.keep(scene, moved.now());
+            *motion = moved;
+            return Ok(StepReport { iterations, remedy: Some(Remedy::Substeps(parts)) });
         }
-        let steps = motion.now().steps;
-        let mut parts = 2;
-        while parts <= self.at_most {
-            if let Some((mut moved, iterations)) = substepped(plan, scene, *motion, parts) {
-                moved.recount(steps + 1);
-                // What isn't a step of the whole tells nothing of the next one's increment.
-                *kept = plan.keep(scene, moved.now());
-                *motion = moved;
-                return Ok(StepReport { iterations, remedy: Some(Remedy::Substeps(parts)) });
-            }
-            let Some(more) = parts.checked_mul(2) else { break };
-            parts = more;
-        }
-        Err(error)
+        let Some(more) = parts.checked_mul(2) else { break };
+        parts = more;
     }
-
-    fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
-        visitor.term("or substeps");
-        visitor.parameter("at most", real(f64::from(self.at_most)));
-    }
+    Err(error)
 }
 
 /// The motion after so many steps of an equal part of `h`, and all their iterations.
@@ -244,37 +177,4 @@ fn substepped<S: Effect, P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
         iterations += rare_step(&small, scene, &mut motion, &mut kept).ok()?.iterations;
     }
     Some((motion, iterations))
-}
-
-impl<S, R, Q> Instead<S> for Stepper<R, Q>
-where
-    S: Effect,
-    R: Effect<Scalar = S::Scalar, Group = S::Group, Advected = S::Advected> + Clone,
-    Q: Plan<R>,
-{
-    fn refolded(&self, h: Scalar<S>) -> Result<Self, SetupError> {
-        Ok(Self { scene: self.scene.clone(), plan: self.plan.refolded(&self.scene, h)? })
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn step<P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
-        &self,
-        plan: &P,
-        scene: &S,
-        (motion, kept): (&mut M, &mut P::Kept),
-        error: StepError,
-    ) -> Result<StepReport, StepError> {
-        let mut remembered = self.plan.keep(&self.scene, motion.now());
-        let Ok(report) = rare_step(&self.plan, &self.scene, motion, &mut remembered) else { return Err(error) };
-        // Its increments are those of another map.
-        *kept = plan.keep(scene, motion.now());
-        Ok(StepReport { remedy: Some(Remedy::Fallback), ..report })
-    }
-
-    fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
-        visitor.term("or fallback");
-        self.scene.describe(visitor);
-        self.plan.describe(visitor);
-    }
 }

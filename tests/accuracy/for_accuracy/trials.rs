@@ -1,4 +1,4 @@
-//! What the trials of a choice cost, where they end, and what a saved choice spares.
+//! What the trials of a choice cost, and where they end.
 
 use super::*;
 
@@ -36,7 +36,7 @@ fn trials_cost_at_most_thirty_runs_and_half_of_them_ten() {
 fn steps_too_long_to_be_solved_end_the_search_for_longer_ones() {
     let motion = Motion::read("chaotic");
     let accuracy = Accuracy { tolerance: 0.05, horizon: 30.0 };
-    let stepper = all(&motion).for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap();
+    let stepper = of_body(&motion).for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap();
     // A search that goes on to a finer reference takes thousands of runs.
     assert!(stepper.choice().trials <= 30.0, "{}", stepper.choice());
 }
@@ -74,70 +74,6 @@ fn a_set_up_that_fails_for_shorter_steps_is_the_error() {
     let accuracy = Accuracy { tolerance: 1e-12, horizon };
     let refusal = Candidates::of(body, 8).for_accuracy(accuracy, SO3::identity(), velocity).unwrap_err();
     assert!(matches!(refusal, AccuracyError::Setup(SetupError::InvalidStep { .. })), "{refusal}");
-}
-
-#[test]
-fn a_saved_choice_is_looked_at_once() {
-    let motion = Motion::read("chaotic");
-    let ask = |candidates: Candidates<SO3, Vector3<f64>>, accuracy, velocity| {
-        candidates.for_accuracy(accuracy, motion.attitude, velocity).unwrap()
-    };
-    let accuracy = Accuracy { tolerance: 1e-7, horizon: 10.0 };
-    let first = ask(of_body(&motion), accuracy, motion.velocity);
-    let saved = first.choice().saved();
-    let text = serde_json::to_string(&saved).unwrap();
-    let saved: SavedChoice = serde_json::from_str(&text).unwrap();
-    let again = ask(of_body(&motion).with_saved(saved.clone()), accuracy, motion.velocity);
-    assert_eq!((again.choice().saved(), end(&again)), (saved.clone(), end(&first)));
-    assert!(again.choice().trials < 3.0 && again.choice().error <= 1e-7, "{}", again.choice());
-    // What is said of the error is of the size of the true one.
-    let true_error = error(&end(&again), &motion.at(10.0), &motion.velocity, 10.0);
-    assert!((again.choice().error / true_error - 1.0).abs() < 0.2, "{} {true_error}", again.choice());
-    // Another start and horizon, for which it still does, as a search for a thousandth of the error shows.
-    let (accuracy, velocity) = (Accuracy { tolerance: 1e-6, horizon: 9.0 }, motion.velocity * 0.9);
-    let elsewhere = ask(of_body(&motion).with_saved(saved.clone()), accuracy, velocity);
-    let finer = ask(of_body(&motion), Accuracy { tolerance: 1e-9, ..accuracy }, velocity);
-    assert!(elsewhere.choice().trials < 3.0, "{}", elsewhere.choice());
-    assert!(error(&end(&elsewhere), &end(&finer), &velocity, 9.0) <= 1e-6, "{}", elsewhere.choice());
-    assert!(elsewhere.choice().saved().step <= saved.step * (1.0 + 1e-9));
-    // One for which it doesn't is searched for, and its two runs, by fewer steps than are taken then, are counted.
-    let accuracy = Accuracy { tolerance: 1e-10, horizon: 10.0 };
-    let searched = ask(of_body(&motion), accuracy, motion.velocity);
-    let found = ask(of_body(&motion).with_saved(saved.clone()), accuracy, motion.velocity);
-    assert_eq!((found.choice().saved(), end(&found)), (searched.choice().saved(), end(&searched)));
-    let besides = found.choice().trials - searched.choice().trials;
-    assert!(besides > 0.1 && besides < 2.5, "{besides}");
-    // Those that say nothing take no run.
-    let nameless = SavedChoice { method: "another".to_owned(), ..saved.clone() };
-    let steps = [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-300].map(|step| SavedChoice { step, ..saved.clone() });
-    for wrong in core::iter::once(nameless).chain(steps) {
-        let found = ask(of_body(&motion).with_saved(wrong), accuracy, motion.velocity);
-        assert_eq!(found.choice(), searched.choice());
-    }
-}
-
-/// Where one step is enough, too.
-#[test]
-fn bounds_of_methods_that_were_not_tried_are_below_what_they_cost() {
-    let mut compared = 0;
-    for name in MOTIONS {
-        let motion = Motion::read(name);
-        for (tolerance, horizon) in [(3e-2, 0.03), (1e-3, 0.1), (1e-6, 1.0)] {
-            let ask = |candidates: Candidates<SO3, Vector3<f64>>| {
-                candidates.for_accuracy(Accuracy { tolerance, horizon }, motion.attitude, motion.velocity).unwrap()
-            };
-            let searched = ask(of_body(&motion));
-            let again = ask(of_body(&motion).with_saved(searched.choice().saved()));
-            for (known, bound) in searched.choice().offers().iter().zip(again.choice().offers()) {
-                if bound.is_bound && !known.is_bound {
-                    let is_below = bound.cost <= known.cost * (1.0 + 1e-12);
-                    assert!(is_below, "{name} {}\n{}", again.choice(), searched.choice());
-                    compared += 1;
-                }
-            }
-        }
-    }
-    assert!(compared > 30, "{compared}");
 }
 
 /// Trials end after so many operations, some seconds, whatever is asked, and an error says how many were made.

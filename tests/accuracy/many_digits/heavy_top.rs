@@ -68,18 +68,6 @@ impl<'a> Top<'a> {
         self.move_by(&turn);
     }
 
-    /// As a sphere with the second moment, and then about other axes by turns: an axis and its share of the time each.
-    pub(crate) fn drift_by_rotations(&mut self, time: DoubleDouble, shares: &[(usize, f64)]) {
-        let inverse_moments = self.motion.moments.map(|moment| DoubleDouble::one() / moment);
-        self.move_by(&rotation(&(self.momentum * (inverse_moments.y * time))));
-        for &(axis, share) in shares {
-            let rate = (inverse_moments[axis] - inverse_moments.y) * self.momentum[axis];
-            let mut angle = Vector::zeros();
-            angle[axis] = rate * time * long(share);
-            self.move_by(&rotation(&angle));
-        }
-    }
-
     /// The turn `exp ξ̂` of a discrete kinetic energy `κ(ξ)/h`, a polynomial of degree six or less: its momentum `p` at
     /// the beginning satisfies `∇κ(ξ) = h (I − a ξ̂ + b ξ̂²) p` with `a = (1 − cos θ)/θ²`, `b = (θ − sin θ)/θ³`, `θ = |ξ|`.
     pub(crate) fn drift_of_polynomial(&mut self, h: DoubleDouble, kinetic: impl Fn(&Vector, &Vector) -> DoubleDouble) {

@@ -9,12 +9,8 @@ use super::heavy_top::Top;
 use super::motion::Motion;
 use super::{DoubleDouble, Matrix, Vector, hat, long};
 use crate::convergence::TOPS;
-use crate::split_body;
 use declarations::{FourthOrderBody, FreeBody, HeavyTop, SixthOrderBody};
-use liestep::effects::PrincipalBody;
-use liestep::methods::{
-    CompositionScheme, ExactBody, Flow, KineticFlow, PreprocessedOrder, ProcessedScheme, SplitBody, SplittingScheme,
-};
+use liestep::methods::{CompositionScheme, ExactBody, Flow, KineticFlow, ProcessedScheme, SplittingScheme};
 use liestep::motion::Plan;
 use liestep::{SO3, Stepper};
 
@@ -189,96 +185,6 @@ fn polynomial(moments: &Vector, xi: &Vector, order: u32) -> DoubleDouble {
     let c = a.cross(xi);
     let b = moments.component_mul(&a).cross(xi) + momentum.cross(&a) + moments.component_mul(&c);
     fourth + (of(&c) + momentum.dot(&a.cross(&c))) / long(240.0) - of(&divided(&b)) / long(1440.0)
-}
-
-/// The second moment of the top is the middle one; seven rotations begin about the first axis, nine about the third.
-#[test]
-fn p1_splittings_with_rotations_are_poisson_maps_to_twenty_digits() {
-    let (seven, nine) = split_body::halves();
-    let all = |half: &[f64], first: [usize; 2]| -> Vec<(usize, f64)> {
-        let shares = half.iter().chain(half.iter().rev().skip(1));
-        first.into_iter().cycle().zip(shares.copied()).collect()
-    };
-    let (seven, nine) = (all(&seven, [0, 2]), all(&nine, [2, 0]));
-    let drift = |top: &mut Top<'_>, h| top.drift_by_rotations(h, &seven);
-    assert_poisson_with("7 rotations", drift, |top| SplitBody::<7>::new(&top.ordinary_inertia()).unwrap());
-    let drift = |top: &mut Top<'_>, h| top.drift_by_rotations(h, &nine);
-    assert_poisson_with("9 rotations", drift, |top| SplitBody::<9>::new(&top.ordinary_inertia()).unwrap());
-}
-
-/// `s − 1` and `d` of a body with these moments, from `C` and `H`.
-type Modification = fn(&Vector, [DoubleDouble; 2]) -> [DoubleDouble; 2];
-
-/// The terms of first degree in `C` and `H`, from \[HV06\], for the energy `H` and `C = ½ |p|²` of a step of one second.
-fn to_first_degree(moments: &Vector, [c, h]: [DoubleDouble; 2]) -> [DoubleDouble; 2] {
-    let [x, y, z] = [moments.x, moments.y, moments.z];
-    let delta = x * y * z;
-    let (sum, inverse) = (x + y + z, (x * y + y * z + z * x) / delta);
-    let s = c * sum / (delta * long(6.0)) - h * inverse / long(3.0);
-    let d = h * sum / (delta * long(6.0)) - c / (delta * long(3.0));
-    [s, d]
-}
-
-/// With those of second degree.
-fn to_second_degree(moments: &Vector, [c, h]: [DoubleDouble; 2]) -> [DoubleDouble; 2] {
-    let [s, d] = to_first_degree(moments, [c, h]);
-    let [x, y, z] = [moments.x, moments.y, moments.z];
-    let delta = x * y * z;
-    let (sum, inverse) = (x + y + z, (x * y + y * z + z * x) / delta);
-    let squares = x * x + y * y + z * z;
-    let inverse_squares = inverse * inverse - long(2.0) * sum / delta;
-    let ratios = sum * inverse - long(3.0);
-    let s = s
-        + c * c * (squares - delta * inverse) / (delta * delta * long(30.0))
-        + c * h * (long(1.0) - ratios) / (delta * long(30.0))
-        + h * h * (sum * long(3.0) + delta * inverse_squares * long(2.0)) / (delta * long(60.0));
-    let d = d - c * c * sum / (delta * delta * long(60.0))
-        + c * h * (delta * inverse * long(6.0) - squares) / (delta * delta * long(60.0))
-        - h * h * (long(9.0) + ratios) / (delta * long(60.0));
-    [s, d]
-}
-
-/// The map is Poisson because `C` and `H` are kept, whatever functions of them the two are: these make no order.
-fn any_other(_: &Vector, [c, h]: [DoubleDouble; 2]) -> [DoubleDouble; 2] {
-    [c * h * (c - h) * long(0.3) + c, h * h * long(0.5) - c * c * (c + h * h) * long(0.2)]
-}
-
-/// Free bodies: nothing is carried along.
-#[test]
-fn p1_preprocessed_bodies_are_poisson_maps_to_twenty_digits() {
-    let of = |momentum: &Vector| phase(momentum, &Vector::zeros());
-    let start = Vector3::new(2.0, -1.0, 1.5);
-    let all: [(&str, Modification, Option<PreprocessedOrder>); 3] = [
-        ("order 4", to_first_degree, Some(PreprocessedOrder::Four)),
-        ("order 6", to_second_degree, Some(PreprocessedOrder::Six)),
-        ("none", any_other, None),
-    ];
-    for (name, modification, order) in all {
-        let map = |z: &Phase| {
-            let mut motion = top_at(z);
-            let momentum = motion.momentum();
-            let constants = [momentum, motion.velocity].map(|v| momentum.dot(&v) * long(0.5 * H) * long(H));
-            let [s, d] = modification(&motion.moments, constants);
-            let moments = motion.moments.map(|moment| long(1.0) / ((s + long(1.0)) / moment + d));
-            (motion.nonstandard, motion.moments) = (moments.map(|moment| moments.sum() * long(0.5) - moment), moments);
-            let mut top = Top::at_start_of(&motion);
-            top.momentum = momentum;
-            top.drift_of_the_step(long(H));
-            phase(&top.momentum, &top.w)
-        };
-        let defect = defect(map, &of(&start.map(long)));
-        println!("{name}: {defect:.1e}");
-        assert!(defect < 1e-20, "{name}: {defect:e}");
-        if let Some(order) = order {
-            let body = PrincipalBody { J_d: declarations::Motion::read(TOPS[3]).top.J_d };
-            let stepper = Stepper::preprocessed(body, H, order).unwrap();
-            let mut state = stepper.start_with_momentum(SO3::identity(), start).unwrap();
-            stepper.step(&mut state).unwrap();
-            let end = map(&of(&start.map(long))).map(DoubleDouble::rounded);
-            let apart = (state.momentum() - end.fixed_rows::<3>(0)).norm();
-            assert!(apart < 1e-14, "{name}: {apart:e}");
-        }
-    }
 }
 
 /// Out of the processor, a step of the kernel and back.

@@ -1,7 +1,6 @@
 //! Splittings in lanes: shares are gathered as they were folded for each body alone.
 
-use super::preprocessed_flow::PreprocessedDrift;
-use super::{Kick, KineticFlow, PreprocessedFlow, Spin, Split, Stage, Stages};
+use super::{Kick, KineticFlow, Spin, Split, Stage, Stages};
 use crate::mechanics::{Effect, Scalar};
 use crate::numbers::{InLanes, Lanes, Real, lanes_of_fields};
 use nalgebra::SimdValue;
@@ -49,23 +48,11 @@ lanes_of_fields!(
 
 /// A flow of the free body that is a type of its scalar.
 macro_rules! flow_in_lanes {
-    ($([$($generics:tt)*] $flow:ident<$($before:ident,)* _>),+ $(,)?) => {$(
-        impl<$($generics)* W: Real> InLanes<W> for super::$flow<$($before,)* W::Element> {
-            type Together = super::$flow<$($before,)* W>;
+    ($($flow:ident),+) => {$(
+        impl<W: Real> InLanes<W> for super::$flow<W::Element> {
+            type Together = super::$flow<W>;
         }
     )+};
 }
 
-flow_in_lanes!(
-    [] SymmetricBody<_>, [] ExactBody<_>, [] PreprocessedFlow<_>, [const ROTATIONS: usize,] SplitBody<ROTATIONS, _>
-);
-
-lanes_of_fields!(
-    impl[T: Real] PreprocessedFlow<T> => PreprocessedFlow<T::Element>, as PreprocessedFlow
-    { lanes: [inertia], scalars: [], shared: [order] }
-);
-
-lanes_of_fields!(
-    impl[T: Real] PreprocessedDrift<T> => PreprocessedDrift<T::Element>, as PreprocessedDrift
-    { lanes: [modified], scalars: [h], shared: [] }
-);
+flow_in_lanes!(SymmetricBody, ExactBody);

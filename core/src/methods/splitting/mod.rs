@@ -7,22 +7,18 @@ mod kick;
 mod kinetic_flow;
 mod lanes;
 mod linearised;
-mod preprocessed_flow;
 mod processed;
 mod quaternion;
 mod scheme;
 mod spin;
-mod split_body;
 
 pub use exact_body::ExactBody;
 pub(crate) use kick::{has_force_gradient, torque};
 pub(crate) use kinetic_flow::inverse_inertia;
 pub use kinetic_flow::{KineticFlow, SymmetricBody, Turn};
 pub use linearised::DifferentiableFlow;
-pub use preprocessed_flow::PreprocessedFlow;
 pub use processed::{Inside, Processed, ProcessedScheme};
 pub use scheme::{Flow, SplittingScheme};
-pub use split_body::SplitBody;
 
 use alloc::vec::Vec;
 

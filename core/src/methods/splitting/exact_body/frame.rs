@@ -22,11 +22,11 @@ impl<T: Real> Frame<T> {
         let beside = inertia - Matrix3::from_diagonal(&diagonal);
         if beside.iter().all(|entry| entry.simd_eq(T::zero()).all()) {
             let is_between = |axes: &Axes| {
-                let [a, b, c] = axes.moments(&diagonal);
+                let [a, b, c] = axes.of(&diagonal);
                 ((c - a) * (c - b)).simd_le(T::zero()).all()
             };
             if let Some(axes) = [Axes::Xyz, Axes::Yzx, Axes::Zxy].into_iter().find(is_between) {
-                return (axes.moments(&diagonal), Self::Along(axes));
+                return (axes.of(&diagonal), Self::Along(axes));
             }
         }
         let (moments, axes) = principal_axes(inertia);

@@ -2,8 +2,7 @@
 //!
 //! All were found for this library: kernels and processors by Levenberg and Marquardt's method on the conditions in the
 //! Lie algebra with `[B, [B, [B, A]]] = 0`, from random starts, what is left at the next order made small, and polished
-//! to 30 digits. `cargo run --release --example coefficients` finds and polishes them; `tests/accuracy/conditions.rs` has
-//! the conditions once more.
+//! to 30 digits. `tests/accuracy/conditions.rs` has the conditions.
 
 // All digits that were found, whatever a double keeps of them.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
