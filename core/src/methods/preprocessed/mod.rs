@@ -12,7 +12,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::{LieGroup as _, SO3};
 use crate::mechanics::{Effect, Operations, SceneVisitor};
 use crate::motion::{Cost, Declared, Motion, Plan, StepReport, Stepper, Summation, beyond_solvable, half_coordinates};
-use crate::numbers::{Coordinates, InLanes, Lanes, Real, lanes_of_fields};
+use crate::numbers::{Coordinates, Real};
 use crate::solving::Guess;
 
 /// The order of a [`Preprocessed`].
@@ -86,23 +86,12 @@ impl PreprocessedOrder {
 /// # Source
 ///
 /// \[HV06\]; see [`conventions`](crate::conventions).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Lanes, InLanes)]
 pub struct Preprocessed<T: Real = f64> {
     modified: ModifiedBody<T>,
+    #[shared]
     order: PreprocessedOrder,
     h: T,
-}
-
-lanes_of_fields!(
-    impl[T: Real] Preprocessed<T> => Preprocessed<T::Element>, as Preprocessed
-    { lanes: [modified], scalars: [h], shared: [order] }
-);
-
-impl<W: Real> InLanes<W> for Preprocessed<W::Element>
-where
-    Preprocessed<W>: Lanes<Lane = Self>,
-{
-    type Together = Preprocessed<W>;
 }
 
 impl<T: Real> Stepper<PrincipalBody<T>> {

@@ -7,23 +7,19 @@ use crate::effects::PrincipalBody;
 use crate::error::StepError;
 use crate::groups::SO3;
 use crate::mechanics::{DiagonalNonstandardInertia, Effect as _};
-use crate::numbers::{Numbers, Real, lanes_of_fields, real};
+use crate::numbers::{Numbers, Real, real};
 use crate::solving::{Problem, Root, safe};
 
 /// A body and the series for its modified moments.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Lanes)]
 pub(crate) struct ModifiedBody<T> {
     pub(crate) inverse_moments: Vector3<T>,
     /// In `h² H` and `h² C`, to which the series are taken.
+    #[shared]
     degree: usize,
     s: Numbers<T, TERMS>,
     d: Numbers<T, TERMS>,
 }
-
-lanes_of_fields!(
-    impl[T: Real] ModifiedBody<T> => ModifiedBody<T::Element>, as ModifiedBody
-    { lanes: [inverse_moments, s, d], scalars: [], shared: [degree] }
-);
 
 impl<T: Real> ModifiedBody<T> {
     pub(crate) fn new(inertia: &DiagonalNonstandardInertia<T>, degree: usize) -> Self {

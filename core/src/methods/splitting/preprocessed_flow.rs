@@ -17,9 +17,10 @@ use crate::numbers::{Real, real};
 /// kicks the Poisson structure is kept as well as the flow is approximated. Where a share of the step turns the body by less than a tenth of a radian,
 /// order 10 does both to rounding; at coarse steps energy drifts. [`SplitBody`](crate::methods::SplitBody) and declared kinetic
 /// flows, such as that of a Lagrangian of order 6, are Poisson at any step.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Lanes, InLanes)]
 pub struct PreprocessedFlow<T = f64> {
     pub(super) inertia: DiagonalNonstandardInertia<T>,
+    #[shared]
     pub(super) order: PreprocessedOrder,
 }
 
@@ -32,7 +33,7 @@ impl<T: Real> PreprocessedFlow<T> {
 }
 
 /// A preprocessed flow over one share of the step.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Lanes)]
 pub struct PreprocessedDrift<T> {
     pub(super) modified: ModifiedBody<T>,
     pub(super) h: T,

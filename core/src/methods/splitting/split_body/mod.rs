@@ -12,7 +12,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::rotation_coefficients;
 use crate::groups::{LieGroup as _, SO3};
 use crate::mechanics::{Inertia, Operations, SceneVisitor};
-use crate::numbers::{Lanes, Mask, Real, is_finite, lanes_of_fields, real, reported};
+use crate::numbers::{Mask, Real, is_finite, real, reported};
 
 /// The free motion of a body with three different moments, split into rotations about body axes; of order 4.
 ///
@@ -66,9 +66,10 @@ use crate::numbers::{Lanes, Mask, Real, is_finite, lanes_of_fields, real, report
 ///
 /// \[TW94\], \[ML93\], \[Fa03\] for splittings of the free body; \[FR90\] for the seven rotations, \[ML95\] for the
 /// order of the nine. See [`conventions`](crate::conventions).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes, InLanes)]
 pub struct SplitBody<const ROTATIONS: usize, T = f64> {
     moments: Vector3<T>,
+    #[shared]
     axes: Axes,
 }
 
@@ -108,8 +109,9 @@ fn coefficients<T: Real>(moments: &Vector3<T>, axes: Axes) -> [T; 2] {
 }
 
 /// The flow over one share of the step.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Lanes)]
 pub struct SplitDrift<T> {
+    #[shared]
     axes: Axes,
     /// `h/J_c`, which makes the momentum an angle.
     scale: T,
@@ -117,34 +119,6 @@ pub struct SplitDrift<T> {
     reach: T,
     /// From the first to the middle one; of seven rotations that is the fourth.
     rotors: [Rotor<T>; 5],
-}
-
-lanes_of_fields!(
-    impl[const ROTATIONS: usize, T: Real] SplitBody<ROTATIONS, T> => SplitBody<ROTATIONS, T::Element>,
-    as SplitBody { lanes: [moments], scalars: [], shared: [axes] }
-);
-
-impl<T: Real> Lanes for SplitDrift<T> {
-    type Lane = SplitDrift<T::Element>;
-
-    fn splat(lane: &Self::Lane) -> Self {
-        let SplitDrift { axes, scale, reach, rotors } = lane;
-        let rotors = rotors.each_ref().map(Rotor::splat);
-        Self { axes: *axes, scale: T::splat(*scale), reach: T::splat(*reach), rotors }
-    }
-
-    fn lane(&self, k: usize) -> Self::Lane {
-        let Self { axes, scale, reach, rotors } = self;
-        let rotors = rotors.each_ref().map(|rotor| rotor.lane(k));
-        SplitDrift { axes: *axes, scale: scale.extract(k), reach: reach.extract(k), rotors }
-    }
-
-    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
-        self.scale.replace(k, lane.scale);
-        self.reach.replace(k, lane.reach);
-        let mut rotors = self.rotors.iter_mut().zip(&lane.rotors);
-        self.axes == lane.axes && rotors.all(|(own, rotor)| own.set_lane(k, rotor))
-    }
 }
 
 impl<const ROTATIONS: usize, T: Real> KineticFlow<T> for SplitBody<ROTATIONS, T> {

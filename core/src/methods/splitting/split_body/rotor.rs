@@ -1,7 +1,7 @@
 //! One rotation about a body axis by an angle in proportion to the momentum about it, and how many there are.
 
 use crate::groups::rotation_coefficients;
-use crate::numbers::{Numbers, Real, lanes_of_fields, real};
+use crate::numbers::{Numbers, Real, real};
 
 /// Shares of the first and the second axis by turns, from the first to the middle one. \[FR90\]
 pub(super) const SEVEN: [f64; 5] =
@@ -25,7 +25,7 @@ const REACH: f64 = 0.06;
 const LARGEST_RATE: f64 = 1e3;
 
 /// A rotation by `2 κ p`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Lanes)]
 pub(super) struct Rotor<T> {
     /// `κ`.
     rate: T,
@@ -33,11 +33,6 @@ pub(super) struct Rotor<T> {
     sine: Numbers<T, 6>,
     cosine: Numbers<T, 6>,
 }
-
-lanes_of_fields!(
-    impl[T: Real] Rotor<T> => Rotor<T::Element>, as Rotor
-    { lanes: [sine, cosine], scalars: [rate], shared: [] }
-);
 
 impl<T: Real> Rotor<T> {
     pub(super) fn new(rate: T) -> Self {
