@@ -10,7 +10,7 @@ use std::error::Error;
 
 use liestep::effects::{Gravity, RigidBody};
 use liestep::groups::CayleyRetraction;
-use liestep::mechanics::{DiscreteLagrangian, Effect, Parts, SceneVisitor, Term, WithKinetic};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Limit, Parts, SceneVisitor, Term, WithKinetic};
 use liestep::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper};
 
@@ -92,16 +92,8 @@ impl Effect for Body {
         Matrix3::from_diagonal_element(p.trace()) - p
     }
 
-    fn inertia(&self, (): &()) -> Matrix3<f64> {
-        *self.inertia.to_inertia().as_matrix()
-    }
-
-    fn momentum_bias(&self, (): &()) -> Vector3<f64> {
-        Vector3::zeros()
-    }
-
-    fn potential(&self, (): &()) -> f64 {
-        0.0
+    fn limit(&self, velocity: Option<&Vector3<f64>>, (): &()) -> Limit<Self> {
+        Limit::quadratic(velocity, *self.inertia.to_inertia().as_matrix(), Vector3::zeros(), 0.0)
     }
 
     fn constants(&self, h: f64) -> Self::Constants {

@@ -87,7 +87,7 @@
 #![no_std]
 
 extern crate alloc;
-#[macro_use(hot)]
+#[macro_use(hot, InLanes, Lanes)]
 extern crate liestep_macros;
 #[cfg(any(feature = "std", test))]
 extern crate std;

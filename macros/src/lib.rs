@@ -222,3 +222,19 @@ pub fn matrix_group(tokens: proc_macro::TokenStream) -> proc_macro::TokenStream 
 pub fn hot(_: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
     emit::hot(item.into()).into()
 }
+
+/// `Lanes` of a struct, field by field: fields marked `#[shared]` are the same in all lanes.
+///
+/// For the sources of liestep alone, as [`hot`](macro@hot).
+#[doc(hidden)]
+#[proc_macro_derive(Lanes, attributes(shared))]
+pub fn lanes(item: proc_macro::TokenStream) -> proc_macro::TokenStream {
+    emit::lanes(item.into(), false).into()
+}
+
+/// `InLanes` of a struct that has `Lanes`.
+#[doc(hidden)]
+#[proc_macro_derive(InLanes, attributes(shared))]
+pub fn in_lanes(item: proc_macro::TokenStream) -> proc_macro::TokenStream {
+    emit::lanes(item.into(), true).into()
+}

@@ -4,11 +4,11 @@
 //! ```text
 //! cargo bench --bench lanes                                    scalars by the target's common instructions
 //! RUSTFLAGS="-C target-cpu=native" cargo bench --bench lanes   by those of this machine
+//! cargo bench --bench lanes -- instructions                    fails where a step in lanes takes more than it may
 //! cargo bench --bench lanes -- count f64-lanes 1000            1000 steps of all tops by one kernel, nothing else
 //! ```
 //!
-//! The last is for counting instructions, as in `heavy_top_step.rs`; the kernels are `f64`, `f64-lanes`, `f32` and
-//! `f32-lanes`. A step of lanes takes the instructions of the machine, whatever it was compiled for, but types of lanes
+//! The kernels of the last are `f64`, `f64-lanes`, `f32` and `f32-lanes`; valgrind counts their instructions. A step of lanes takes the instructions of the machine, whatever it was compiled for, but types of lanes
 //! differ in what they make of that. Those of simba that are arrays leave it to the compiler, which makes registers of
 //! four `f64` of most of `AutoF64x8` where there is AVX2, and of less of narrower ones. `WideF64x4` and `WideF32x8` are
 //! pairs of registers of x86-64's common instructions, two `f64` or four `f32` each, unless the program is compiled for
@@ -19,6 +19,7 @@
 //! each counts: what else the machine does only slows, and slows the longer batches more often, so that medians would
 //! flatter the lanes.
 
+mod counting;
 mod eight_scenes;
 mod eight_tops;
 
@@ -31,6 +32,7 @@ use liestep::prelude::*;
 use nalgebra::{RealField, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
 
+use counting::{Uncounted, instructions};
 use eight_tops::{TOPS, Top, top};
 
 /// Steps of each top in a batch: well below a slice of the scheduler's time, so that some batches of each kernel meet
@@ -153,13 +155,35 @@ fn count(kernel: &str, steps: u32) {
     }
 }
 
-fn main() {
+/// Instructions of a step of all tops in `AutoF64x8` with AVX2. A function of the step that is called and not inlined
+/// leaves the vector instructions, and takes a third more.
+const MOST_INSTRUCTIONS: f64 = 1_550.0;
+
+/// Whether a step in lanes is still one straight line.
+fn instructions_in_lanes() -> Result<(), Uncounted> {
+    #[cfg(target_arch = "x86_64")]
+    let has_avx2 = std::arch::is_x86_feature_detected!("avx2");
+    #[cfg(not(target_arch = "x86_64"))]
+    let has_avx2 = false;
+    if !has_avx2 {
+        println!("skipped: the bound is for AVX2, which this machine hasn't");
+        return Ok(());
+    }
+    let made = instructions(&std::env::current_exe()?, &["count", "f64-lanes"], 2_000)?;
+    println!("eight tops in AutoF64x8{made:>10.1} instructions a step, at most {MOST_INSTRUCTIONS}");
+    if made <= MOST_INSTRUCTIONS { Ok(()) } else { Err("a step in lanes takes more instructions than it may".into()) }
+}
+
+fn main() -> Result<(), Uncounted> {
     // Cargo adds `--bench`.
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
-    if let [word, kernel, steps] = arguments.as_slice()
-        && word == "count"
-    {
-        return count(kernel, steps.parse().expect("a number of steps"));
+    match arguments.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
+        ["count", kernel, steps] => {
+            count(kernel, steps.parse()?);
+            return Ok(());
+        }
+        ["instructions"] => return instructions_in_lanes(),
+        _ => {}
     }
     println!("{:<20}{:>12}{:>12}{:>12}", "10⁶ steps a second", "alone", "in lanes", "ratio");
     compare::<AutoF64x8, 8, 1>("f64, AutoF64x8", [lanes::<AutoF64x8>(0)], core::array::from_fn(single));
@@ -168,4 +192,5 @@ fn main() {
     compare::<WideF32x8, 8, 1>("f32, WideF32x8", [lanes::<WideF32x8>(0)], core::array::from_fn(single));
     println!("\n{:<20}{:>12}{:>12}{:>12}", "AutoF64x8", "alone", "in lanes", "ratio");
     eight_scenes::visit_all(&mut Several);
+    Ok(())
 }

@@ -75,15 +75,7 @@ macro_rules! staged_as {
             self.0.momentum_jacobian(f, w, h)
         }
 
-        fn momentum_bias(&self, w: &Self::Advected) -> Vector<Self> {
-            self.0.momentum_bias(w)
-        }
-
-        fn potential(&self, w: &Self::Advected) -> Self::Scalar {
-            self.0.potential(w)
-        }
-
-        fn limit(&self, velocity: &Vector<Self>, w: &Self::Advected) -> Limit<Self> {
+        fn limit(&self, velocity: Option<&Vector<Self>>, w: &Self::Advected) -> Limit<Self> {
             let Limit { l, momentum, hessian } = self.0.limit(velocity, w);
             Limit { l, momentum, hessian }
         }
@@ -99,10 +91,6 @@ macro_rules! solved_as {
         const DENOMINATORS: u32 = $L::DENOMINATORS;
 
         staged_as!($L);
-
-        fn inertia(&self, w: &Self::Advected) -> Square<Self> {
-            self.0.inertia(w)
-        }
 
         fn constants(&self, h: Self::Scalar) -> Self::Constants {
             self.0.constants(h)

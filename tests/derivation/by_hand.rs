@@ -2,7 +2,7 @@
 
 use liestep::accuracy::{Accuracy, Candidates};
 use liestep::groups::CayleyRetraction;
-use liestep::mechanics::{DiscreteLagrangian, Effect, Inertia, SceneVisitor, Term, WithKinetic};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Inertia, Limit, SceneVisitor, Term, WithKinetic};
 use liestep::methods::{SplittingScheme, SymmetricBody};
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper};
 use nalgebra::{Matrix3, Vector3};
@@ -96,16 +96,9 @@ impl Effect for HandWrittenTop {
         Matrix3::from_diagonal_element(p.trace()) - p
     }
 
-    fn inertia(&self, _: &Vector3<f64>) -> Matrix3<f64> {
-        *self.inertia.to_inertia().as_matrix()
-    }
-
-    fn momentum_bias(&self, _: &Vector3<f64>) -> Vector3<f64> {
-        Vector3::zeros()
-    }
-
-    fn potential(&self, w: &Vector3<f64>) -> f64 {
-        self.weight * w.dot(&self.rho)
+    fn limit(&self, velocity: Option<&Vector3<f64>>, w: &Vector3<f64>) -> Limit<Self> {
+        let inertia = *self.inertia.to_inertia().as_matrix();
+        Limit::quadratic(velocity, inertia, Vector3::zeros(), self.weight * w.dot(&self.rho))
     }
 
     fn constants(&self, h: f64) -> Self::Constants {

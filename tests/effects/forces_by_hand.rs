@@ -1,7 +1,7 @@
 //! Forces fit into scenes as effects that aren't Lagrangians: viscous drag, written by hand.
 
 use liestep::groups::CayleyRetraction;
-use liestep::mechanics::{Effect, Parts, SceneVisitor, Sum, Term, WithoutKinetic};
+use liestep::mechanics::{Effect, Limit, Parts, SceneVisitor, Sum, Term, WithoutKinetic};
 use liestep::prelude::*;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
@@ -63,16 +63,8 @@ impl Effect for Drag {
         Matrix3::from_columns(&[moved(0), moved(1), moved(2)])
     }
 
-    fn inertia(&self, (): &()) -> Matrix3<f64> {
-        Matrix3::zeros()
-    }
-
-    fn momentum_bias(&self, (): &()) -> Vector3<f64> {
-        Vector3::zeros()
-    }
-
-    fn potential(&self, (): &()) -> f64 {
-        0.0
+    fn limit(&self, velocity: Option<&Vector3<f64>>, (): &()) -> Limit<Self> {
+        Limit::quadratic(velocity, Matrix3::zeros(), Vector3::zeros(), 0.0)
     }
 
     fn constants(&self, h: f64) -> Coefficients {

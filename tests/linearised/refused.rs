@@ -2,7 +2,7 @@
 
 use liestep::groups::CayleyRetraction;
 use liestep::mechanics::{
-    DiscreteLagrangian, Effect, Inertia, SceneVisitor, SecondDerivatives, StepDerivatives, Term, WithKinetic,
+    DiscreteLagrangian, Effect, Inertia, Limit, SceneVisitor, SecondDerivatives, StepDerivatives, Term, WithKinetic,
 };
 use liestep::methods::{ExactBody, ProcessedScheme, SplittingScheme};
 use liestep::{SO3, SetupError, Stepper};
@@ -64,11 +64,14 @@ impl Effect for ByHand {
     as_the_librarys! {
         fn describe(visitor: &mut dyn SceneVisitor<f64>);
         fn momentum_jacobian(f: &M, w: &W, h: f64) -> M;
-        fn inertia(w: &W) -> M;
-        fn momentum_bias(w: &W) -> V;
-        fn potential(w: &W) -> f64;
         fn constants(h: f64) -> Self::Constants;
     }
+
+    fn limit(&self, velocity: Option<&V>, w: &W) -> Limit<Self> {
+        let Limit { l, momentum, hessian } = self.0.limit(velocity, w);
+        Limit { l, momentum, hessian }
+    }
+
     as_the_librarys! { static:
         fn kick_before(constants: &Self::Constants, w: &W) -> V;
         fn kick_derivative(constants: &Self::Constants, w: &W, velocity: &V) -> Option<V>;

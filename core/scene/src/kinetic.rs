@@ -180,19 +180,7 @@ impl Effect for ChosenBody {
         whichever!(self, body => body.momentum_jacobian(f, &(), h))
     }
 
-    fn inertia(&self, (): &()) -> Matrix3<f64> {
-        whichever!(self, body => body.inertia(&()))
-    }
-
-    fn momentum_bias(&self, (): &()) -> Vector3<f64> {
-        whichever!(self, body => body.momentum_bias(&()))
-    }
-
-    fn potential(&self, (): &()) -> f64 {
-        whichever!(self, body => body.potential(&()))
-    }
-
-    fn limit(&self, velocity: &Vector3<f64>, (): &()) -> Limit<Self> {
+    fn limit(&self, velocity: Option<&Vector3<f64>>, (): &()) -> Limit<Self> {
         whichever!(self, body => {
             let Limit { l, momentum, hessian } = body.limit(velocity, &());
             Limit { l, momentum, hessian }

@@ -50,25 +50,13 @@ impl<E: Effect<Scalar = f64, Group = SO3>> Effect for Switched<E> {
         self.0.as_ref().map_or_else(Matrix3::zeros, |effect| effect.momentum_jacobian(f, w, h))
     }
 
-    fn inertia(&self, w: &E::Advected) -> Matrix3<f64> {
-        self.0.as_ref().map_or_else(Matrix3::zeros, |effect| effect.inertia(w))
-    }
-
-    fn limit(&self, velocity: &Vector3<f64>, w: &E::Advected) -> Limit<Self> {
+    fn limit(&self, velocity: Option<&Vector3<f64>>, w: &E::Advected) -> Limit<Self> {
         let zero = (0.0, Vector3::zeros(), Matrix3::zeros());
         let (l, momentum, hessian) = self.0.as_ref().map_or(zero, |effect| {
             let Limit { l, momentum, hessian } = effect.limit(velocity, w);
             (l, momentum, hessian)
         });
         Limit { l, momentum, hessian }
-    }
-
-    fn momentum_bias(&self, w: &E::Advected) -> Vector3<f64> {
-        self.0.as_ref().map_or_else(Vector3::zeros, |effect| effect.momentum_bias(w))
-    }
-
-    fn potential(&self, w: &E::Advected) -> f64 {
-        self.0.as_ref().map_or(0.0, |effect| effect.potential(w))
     }
 
     fn constants(&self, h: f64) -> Self::Constants {

@@ -5,7 +5,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use core::array::from_fn;
 
-use super::{Advected, Factor, LieGroup, Retraction, SquareOf};
+use super::{Advected, CayleyRetraction, ExponentialRetraction, Factor, LieGroup, Retraction, SquareOf};
 use crate::numbers::{BlockDiagonal, Blocks, Bodies, Coordinates, Join, Mask, Twice, filled, nowhere};
 use nalgebra::SimdBool as _;
 
@@ -143,56 +143,52 @@ fn of_bodies<U: Copy, const N: usize>(names: &[(String, U)]) -> Vec<(String, U)>
     (1..=N).flat_map(of_body).collect()
 }
 
-/// The lanes in which all bodies are near the identity. A macro, as a function given to another isn't inlined for sure.
-macro_rules! all_near {
-    ($is_near:ident, $coordinates:ident) => {{
-        let mut near = !nowhere::<G::Scalar>();
-        for body in &$coordinates.0 {
-            near = near & R::$is_near(body);
-        }
-        near
-    }};
-}
-
 /// Body by body.
-impl<R: Retraction<G>, G: LieGroup, const N: usize> Retraction<[G; N]> for R {
-    #[hot]
-    fn increment(xi: &Bodies<G::Vector, N>) -> [G::Matrix; N] {
-        filled!(zero::<G, N>(), |k| R::increment(&xi.0[k]))
-    }
+macro_rules! retraction_of_bodies {
+    ($retraction:ident) => {
+        impl<G: LieGroup, const N: usize> Retraction<[G; N]> for $retraction
+        where
+            $retraction: Retraction<G>,
+        {
+            #[hot]
+            fn increment(xi: &Bodies<G::Vector, N>) -> [G::Matrix; N] {
+                filled!(zero::<G, N>(), |k| <Self as Retraction<G>>::increment(&xi.0[k]))
+            }
 
-    #[hot]
-    fn increment_of_half(half: &Bodies<G::Vector, N>) -> [G::Matrix; N] {
-        filled!(zero::<G, N>(), |k| R::increment_of_half(&half.0[k]))
-    }
+            #[hot]
+            fn increment_of_half(half: &Bodies<G::Vector, N>) -> [G::Matrix; N] {
+                filled!(zero::<G, N>(), |k| <Self as Retraction<G>>::increment_of_half(&half.0[k]))
+            }
 
-    fn local_coordinates(element: &[G; N]) -> Option<Bodies<G::Vector, N>> {
-        let mut coordinates = Bodies::zero();
-        for (of_body, body) in coordinates.0.iter_mut().zip(element) {
-            *of_body = R::local_coordinates(body)?;
+            fn local_coordinates(element: &[G; N]) -> Option<Bodies<G::Vector, N>> {
+                let mut coordinates = Bodies::zero();
+                for (of_body, body) in coordinates.0.iter_mut().zip(element) {
+                    *of_body = <Self as Retraction<G>>::local_coordinates(body)?;
+                }
+                Some(coordinates)
+            }
+
+            fn tangent(xi: &Bodies<G::Vector, N>) -> BlockDiagonal<<G::Vector as Coordinates<G::Scalar>>::Square, N> {
+                BlockDiagonal(from_fn(|k| <Self as Retraction<G>>::tangent(&xi.0[k])))
+            }
+
+            retraction_of_bodies!(@near is_near_identity is_half_near_identity is_half_well_near_identity);
         }
-        Some(coordinates)
-    }
-
-    fn tangent(xi: &Bodies<G::Vector, N>) -> BlockDiagonal<<G::Vector as Coordinates<G::Scalar>>::Square, N> {
-        BlockDiagonal(from_fn(|k| R::tangent(&xi.0[k])))
-    }
-
-    #[hot]
-    fn is_near_identity(xi: &Bodies<G::Vector, N>) -> Mask<G::Scalar> {
-        all_near!(is_near_identity, xi)
-    }
-
-    #[hot]
-    fn is_half_near_identity(half: &Bodies<G::Vector, N>) -> Mask<G::Scalar> {
-        all_near!(is_half_near_identity, half)
-    }
-
-    #[hot]
-    fn is_half_well_near_identity(half: &Bodies<G::Vector, N>) -> Mask<G::Scalar> {
-        all_near!(is_half_well_near_identity, half)
-    }
+    };
+    (@near $($is_near:ident)+) => {$(
+        #[hot]
+        fn $is_near(coordinates: &Bodies<G::Vector, N>) -> Mask<G::Scalar> {
+            let mut near = !nowhere::<G::Scalar>();
+            for body in &coordinates.0 {
+                near = near & <Self as Retraction<G>>::$is_near(body);
+            }
+            near
+        }
+    )+};
 }
+
+retraction_of_bodies!(CayleyRetraction);
+retraction_of_bodies!(ExponentialRetraction);
 
 /// The body `K`, counted from zero.
 impl<G: LieGroup, const K: usize, const N: usize> Factor<K> for [G; N] {

@@ -10,7 +10,7 @@ use super::LieGroup;
 use super::generators::{
     Generators, NonZero, dynamic, nonzero_entries, products_vanish, squared_lengths, structure_constants,
 };
-use crate::numbers::{Lanes, Real, lanes_of_fields, real, reported};
+use crate::numbers::{Lanes, Real, real, reported};
 
 /// An element of the matrix group that `K` declares by its [`Generators`].
 ///
@@ -21,8 +21,8 @@ use crate::numbers::{Lanes, Real, lanes_of_fields, real, reported};
 /// # Shape and units
 ///
 /// An `N` × `N` matrix; the units of its entries are those that the group's own page gives.
-#[derive(Clone, Copy, PartialEq)]
-pub struct MatrixGroup<K, T, const N: usize, const D: usize>(SMatrix<T, N, N>, PhantomData<K>);
+#[derive(Clone, Copy, PartialEq, Lanes)]
+pub struct MatrixGroup<K, T, const N: usize, const D: usize>(SMatrix<T, N, N>, #[shared] PhantomData<K>);
 
 /// A matrix that isn't in the group was given as an element.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -268,11 +268,6 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
         self.relation() + self.0.sum() * T::zero()
     }
 }
-
-lanes_of_fields!(
-    impl[K, T: Real, const N: usize, const D: usize] MatrixGroup<K, T, N, D> => MatrixGroup<K, T::Element, N, D>, as MatrixGroup
-    { lanes: [0], scalars: [], shared: [1] }
-);
 
 /// The generators as matrices of the scalar.
 pub(crate) fn basis<K: Generators<N, D>, T: Real, const N: usize, const D: usize>(k: usize) -> SMatrix<T, N, N> {

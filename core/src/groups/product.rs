@@ -4,7 +4,7 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use super::{LieGroup, Retraction};
+use super::{CayleyRetraction, ExponentialRetraction, LieGroup, Retraction};
 use crate::numbers::{Blocks, Coordinates, Join, Mask, nowhere};
 use nalgebra::SimdBool as _;
 
@@ -200,26 +200,34 @@ macro_rules! product {
             }
         }
 
+        product!(@retraction CayleyRetraction [$($group $place $part),+] $scalar $joined $split $join, $squares, [$($bound)*]);
+        product!(@retraction ExponentialRetraction [$($group $place $part),+] $scalar $joined $split $join, $squares, [$($bound)*]);
+        product!(@factors [$($group $place $part),+] [$($group $place $part),+] $scalar $joined $split [$($bound)*]);
+    };
+    (
+        @retraction $retraction:ident [$($group:ident $place:tt $part:ident),+]
+        $scalar:ident $joined:ident $split:block $join:expr, $squares:expr, [$($bound:tt)*]
+    ) => {
         /// Factor by factor.
-        impl<R, $($group: LieGroup<Scalar = $scalar>,)+ $scalar: crate::numbers::Real> Retraction<($($group,)+)> for R
+        impl<$($group: LieGroup<Scalar = $scalar>,)+ $scalar: crate::numbers::Real> Retraction<($($group,)+)> for $retraction
         where
-            $(R: Retraction<$group>,)+
+            $($retraction: Retraction<$group>,)+
             $($bound)*
         {
             #[hot]
             fn increment($joined: &<($($group,)+) as LieGroup>::Vector) -> ($($group::Matrix,)+) {
                 let ($($part,)+) = $split;
-                ($(<R as Retraction<$group>>::increment(&$part),)+)
+                ($(<$retraction as Retraction<$group>>::increment(&$part),)+)
             }
 
             #[hot]
             fn increment_of_half($joined: &<($($group,)+) as LieGroup>::Vector) -> ($($group::Matrix,)+) {
                 let ($($part,)+) = $split;
-                ($(<R as Retraction<$group>>::increment_of_half(&$part),)+)
+                ($(<$retraction as Retraction<$group>>::increment_of_half(&$part),)+)
             }
 
             fn local_coordinates(element: &($($group,)+)) -> Option<<($($group,)+) as LieGroup>::Vector> {
-                let ($($part,)+) = ($(<R as Retraction<$group>>::local_coordinates(&element.$place)?,)+);
+                let ($($part,)+) = ($(<$retraction as Retraction<$group>>::local_coordinates(&element.$place)?,)+);
                 Some($join)
             }
 
@@ -227,30 +235,28 @@ macro_rules! product {
                 $joined: &<($($group,)+) as LieGroup>::Vector,
             ) -> <<($($group,)+) as LieGroup>::Vector as Coordinates<$scalar>>::Square {
                 let ($($part,)+) = $split;
-                let ($($part,)+) = ($(<R as Retraction<$group>>::tangent(&$part),)+);
+                let ($($part,)+) = ($(<$retraction as Retraction<$group>>::tangent(&$part),)+);
                 $squares
             }
 
             #[hot]
             fn is_near_identity($joined: &<($($group,)+) as LieGroup>::Vector) -> Mask<$scalar> {
                 let ($($part,)+) = $split;
-                !nowhere::<$scalar>() $(& <R as Retraction<$group>>::is_near_identity(&$part))+
+                !nowhere::<$scalar>() $(& <$retraction as Retraction<$group>>::is_near_identity(&$part))+
             }
 
             #[hot]
             fn is_half_near_identity($joined: &<($($group,)+) as LieGroup>::Vector) -> Mask<$scalar> {
                 let ($($part,)+) = $split;
-                !nowhere::<$scalar>() $(& <R as Retraction<$group>>::is_half_near_identity(&$part))+
+                !nowhere::<$scalar>() $(& <$retraction as Retraction<$group>>::is_half_near_identity(&$part))+
             }
 
             #[hot]
             fn is_half_well_near_identity($joined: &<($($group,)+) as LieGroup>::Vector) -> Mask<$scalar> {
                 let ($($part,)+) = $split;
-                !nowhere::<$scalar>() $(& <R as Retraction<$group>>::is_half_well_near_identity(&$part))+
+                !nowhere::<$scalar>() $(& <$retraction as Retraction<$group>>::is_half_well_near_identity(&$part))+
             }
         }
-
-        product!(@factors [$($group $place $part),+] [$($group $place $part),+] $scalar $joined $split [$($bound)*]);
     };
     (@factors [$($own:ident $place:tt $part:ident),+] $all:tt $scalar:ident $joined:ident $split:block $bound:tt) => {
         $(product!(@factor $own $place $part $all $scalar $joined $split $bound);)+

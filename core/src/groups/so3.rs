@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, RealField, Rotation3, SimdBool as _, UnitQuaternion, Vec
 
 use super::LieGroup;
 use super::rotation_functions::{rotation_exp, rotation_log};
-use crate::numbers::{Mask, Real, lanes_of_wrapper, real};
+use crate::numbers::{Mask, Real, real};
 
 /// The rotation group SO(3): `F Fᵀ = I`, `det F = 1`.
 ///
@@ -30,7 +30,7 @@ use crate::numbers::{Mask, Real, lanes_of_wrapper, real};
 /// let attitude = SO3::from(UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0)));
 /// assert!(attitude.defect() < 1e-15);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct SO3<T = f64>(Matrix3<T>);
 
 /// A matrix that isn't a rotation was given as one.
@@ -170,8 +170,6 @@ impl<T: Real> From<Rotation3<T>> for SO3<T> {
         Self(rotation.into_inner())
     }
 }
-
-lanes_of_wrapper!([T] SO3<T>);
 
 impl<T: RealField + Copy> TryFrom<Matrix3<T>> for SO3<T> {
     type Error = NotARotation;

@@ -88,18 +88,27 @@ impl<T: Real, V: Coordinates<T>> NewtonUpdate<V, V::Square, T> {
     }
 }
 
-/// One of Newton's iterations, by this residual and Jacobian unless neighbours are joined.
+/// One of Newton's iterations, by the residual and the Jacobian of the effect unless neighbours are joined.
 #[hot]
-pub(crate) fn update_by<E: Effect + ?Sized>(
-    system: impl FnOnce(&E::Constants, &E::StepTerms, &Vector<E>) -> (Vector<E>, Square<E>),
+pub(crate) fn update_of<E: Effect + ?Sized>(
     constants: &E::Constants,
     terms: &E::StepTerms,
     half: &Vector<E>,
 ) -> NewtonUpdate<Vector<E>, Square<E>, Scalar<E>> {
-    if const { !E::LINKS_NEIGHBOURS } {
-        let (residual, jacobian) = system(constants, terms, half);
-        return NewtonUpdate::of(&residual, &jacobian, pattern::<E>());
+    if const { E::LINKS_NEIGHBOURS } {
+        return linked_update::<E>(constants, terms, half);
     }
+    let (residual, jacobian) = E::newton_system(constants, terms, half);
+    NewtonUpdate::of(&residual, &jacobian, pattern::<E>())
+}
+
+/// One of Newton's iterations where neighbours are joined.
+#[hot]
+pub(crate) fn linked_update<E: Effect + ?Sized>(
+    constants: &E::Constants,
+    terms: &E::StepTerms,
+    half: &Vector<E>,
+) -> NewtonUpdate<Vector<E>, Square<E>, Scalar<E>> {
     let mut links = Vector::<E>::no_links();
     let (mut update, mut jacobian) = E::newton_linked(constants, terms, half, &mut links);
     let det = Vector::<E>::solve_linked(&mut jacobian, &links, pattern::<E>(), &mut update);
@@ -121,6 +130,18 @@ pub struct Limit<E: Effect + ?Sized> {
     pub momentum: Vector<E>,
     /// `∂²l/∂ξ²`.
     pub hessian: Square<E>,
+}
+
+impl<E: Effect + ?Sized> Limit<E> {
+    /// Of `l = ½ ξ·Jξ + s·ξ − V` with `J`, `s` and `V`, at the velocity `ξ` or at rest.
+    #[hot]
+    #[must_use]
+    pub fn quadratic(velocity: Option<&Vector<E>>, inertia: Square<E>, bias: Vector<E>, potential: E::Scalar) -> Self {
+        let Some(velocity) = velocity else { return Self { l: -potential, momentum: bias, hessian: inertia } };
+        let image = inertia * *velocity;
+        let l = velocity.dot(&image) * real(0.5) + bias.dot(velocity) - potential;
+        Self { l, momentum: image + bias, hessian: inertia }
+    }
 }
 
 /// One term of a scene, with all that a stepper needs of it: a [`DiscreteLagrangian`](crate::mechanics::DiscreteLagrangian), or a
@@ -218,23 +239,26 @@ pub trait Effect: Term {
     /// between two are missing.
     fn momentum_jacobian(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Square<Self>;
 
-    /// The matrix `J(w)` of the continuous limit `l(ξ, w) = ½ ξ·Jξ + s·ξ − V`, `l_d(exp hξ, w) = h l(ξ, w) + O(h²)`; of
-    /// a body alone it is the same for all `w`.
-    fn inertia(&self, w: &Self::Advected) -> Square<Self>;
+    /// The continuous limit `l(ξ, w)`, `l_d(exp hξ, w) = h l(ξ, w) + O(h²)`, at a velocity, or with `None` at rest: then
+    /// nothing is multiplied by zeros. Where it is `½ ξ·Jξ + s·ξ − V`, it is [`Limit::quadratic`].
+    fn limit(&self, velocity: Option<&Vector<Self>>, w: &Self::Advected) -> Limit<Self>;
 
-    /// The covector `s` of the continuous limit: what is linear in the velocity.
-    fn momentum_bias(&self, w: &Self::Advected) -> Vector<Self>;
+    /// The matrix `J(w)` of the [limit](Self::limit) at rest; of a body alone it is the same for all `w`.
+    #[hot]
+    fn inertia(&self, w: &Self::Advected) -> Square<Self> {
+        self.limit(None, w).hessian
+    }
 
-    /// The potential `V(w)` of the continuous limit, in J.
-    fn potential(&self, w: &Self::Advected) -> Self::Scalar;
+    /// The covector `s` of the [limit](Self::limit): what is linear in the velocity.
+    #[hot]
+    fn momentum_bias(&self, w: &Self::Advected) -> Vector<Self> {
+        self.limit(None, w).momentum
+    }
 
-    /// The continuous limit at a velocity.
-    #[must_use]
-    fn limit(&self, velocity: &Vector<Self>, w: &Self::Advected) -> Limit<Self> {
-        let (hessian, bias) = (self.inertia(w), self.momentum_bias(w));
-        let image = hessian * *velocity;
-        let l = velocity.dot(&image) * real(0.5) + bias.dot(velocity) - self.potential(w);
-        Limit { l, momentum: image + bias, hessian }
+    /// The potential `V(w)` of the [limit](Self::limit), in J.
+    #[hot]
+    fn potential(&self, w: &Self::Advected) -> Self::Scalar {
+        -self.limit(None, w).l
     }
 
     /// Folds the parameters and the step into the constants of the stages below.
@@ -283,14 +307,7 @@ pub trait Effect: Term {
         terms: &Self::StepTerms,
         half: &Vector<Self>,
     ) -> NewtonUpdate<Vector<Self>, Square<Self>, Self::Scalar> {
-        // The function itself would be called through `FnOnce`, without the machine's vector instructions.
-        update_by::<Self>(
-            #[cfg_attr(not(debug_assertions), inline(always))]
-            |constants, terms, half| Self::newton_system(constants, terms, half),
-            constants,
-            terms,
-            half,
-        )
+        update_of::<Self>(constants, terms, half)
     }
 
     /// [`newton_system`](Self::newton_system), with the blocks that join neighbours in a row of bodies added to those that
@@ -352,7 +369,7 @@ pub(crate) fn momentum_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, 
     if E::IS_QUADRATIC {
         effect.inertia(w) * *velocity + effect.momentum_bias(w)
     } else {
-        effect.limit(velocity, w).momentum
+        effect.limit(Some(velocity), w).momentum
     }
 }
 
@@ -363,7 +380,8 @@ pub(crate) fn velocity_of_momentum<E: Effect>(effect: &E, momentum: &Vector<E>, 
     if E::IS_QUADRATIC {
         return near_rest;
     }
-    let (of, hessian) = (|xi: &Vector<E>| effect.limit(xi, w).momentum, |xi: &Vector<E>| effect.limit(xi, w).hessian);
+    let (of, hessian) =
+        (|xi: &Vector<E>| effect.limit(Some(xi), w).momentum, |xi: &Vector<E>| effect.limit(Some(xi), w).hessian);
     let found = Newton::<Scalar<E>, _>::new(momentum, near_rest, of, hessian);
     found.velocity.select(found.is_settled & found.is_regular, Vector::<E>::zero() * real(f64::NAN))
 }
@@ -444,7 +462,7 @@ pub(crate) fn energy<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advecte
 /// The same, of a velocity that is known.
 fn energy_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advected) -> Scalar<E> {
     if !E::IS_QUADRATIC {
-        let Limit { l, momentum, .. } = effect.limit(velocity, w);
+        let Limit { l, momentum, .. } = effect.limit(Some(velocity), w);
         return velocity.dot(&momentum) - l;
     }
     quadratic_energy(effect, velocity, &effect.inertia(w), w)

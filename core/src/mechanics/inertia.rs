@@ -15,7 +15,7 @@ use core::fmt;
 
 use nalgebra::{Matrix3, RealField, Vector3};
 
-use crate::numbers::{Real, lanes_of_wrapper, real, reported};
+use crate::numbers::{Real, real, reported};
 
 /// Why a matrix isn't the inertia of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,7 +116,7 @@ impl core::error::Error for InertiaError {}
 /// assert_eq!(body.as_matrix().diagonal(), Vector3::new(2.0, 2.0, 1.0));
 /// # Ok::<(), liestep::mechanics::InertiaError>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 #[doc(alias = "J_d")]
 pub struct NonstandardInertia<T = f64>(Matrix3<T>);
 
@@ -127,7 +127,7 @@ pub struct NonstandardInertia<T = f64>(Matrix3<T>);
 /// # Shape and units
 ///
 /// The diagonal of a 3 × 3 matrix, body frame, kg m².
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 #[doc(alias = "J_d")]
 pub struct DiagonalNonstandardInertia<T = f64>(Vector3<T>);
 
@@ -136,7 +136,7 @@ pub struct DiagonalNonstandardInertia<T = f64>(Vector3<T>);
 /// # Shape and units
 ///
 /// 3 × 3, symmetric, body frame, kg m².
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 #[doc(alias = "J")]
 pub struct Inertia<T = f64>(Matrix3<T>);
 
@@ -301,8 +301,6 @@ impl<T: Real> From<DiagonalNonstandardInertia<T>> for NonstandardInertia<T> {
         Self(inertia.to_matrix())
     }
 }
-
-lanes_of_wrapper!([T] NonstandardInertia<T>, [T] DiagonalNonstandardInertia<T>, [T] Inertia<T>);
 
 fn nonstandard_diagonal<T: RealField + Copy>(moments: &Vector3<T>) -> Vector3<T> {
     Vector3::from_element(moments.sum() * real(0.5)) - moments

@@ -8,13 +8,13 @@ use crate::error::SetupError;
 use crate::groups::LieGroup;
 use crate::mechanics::description::SceneVisitor;
 use crate::mechanics::effect::{
-    Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, update_by,
+    Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, update_of,
 };
 use crate::mechanics::kinetic_part::KineticPart;
 use crate::mechanics::lagrangian::DiscreteLagrangian;
 use crate::mechanics::operations::Operations;
 use crate::mechanics::term::Term;
-use crate::numbers::{Blocks, Coordinates as _, InLanes, Lanes};
+use crate::numbers::{Blocks, Coordinates as _};
 
 /// The sum of two terms of one group, effects or continuous Lagrangians; what `+` makes of them.
 ///
@@ -40,7 +40,7 @@ use crate::numbers::{Blocks, Coordinates as _, InLanes, Lanes};
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes, InLanes)]
 pub struct Sum<A, B> {
     /// The left term.
     pub first: A,
@@ -53,26 +53,6 @@ impl<A, B> Sum<A, B> {
     pub const fn new(first: A, second: B) -> Self {
         Self { first, second }
     }
-}
-
-impl<A: Lanes, B: Lanes> Lanes for Sum<A, B> {
-    type Lane = Sum<A::Lane, B::Lane>;
-
-    fn splat(lane: &Self::Lane) -> Self {
-        Self { first: A::splat(&lane.first), second: B::splat(&lane.second) }
-    }
-
-    fn lane(&self, k: usize) -> Self::Lane {
-        Sum { first: self.first.lane(k), second: self.second.lane(k) }
-    }
-
-    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
-        self.first.set_lane(k, &lane.first) && self.second.set_lane(k, &lane.second)
-    }
-}
-
-impl<W, A: InLanes<W>, B: InLanes<W>> InLanes<W> for Sum<A, B> {
-    type Together = Sum<A::Together, B::Together>;
 }
 
 /// The group `G` itself: what the effects `A` and `B` have to share to add. It is there for its message.
@@ -117,6 +97,17 @@ where
     }
 }
 
+/// What both terms have added, or the only one there is.
+macro_rules! of_those_with {
+    ($part:ident: $both:expr, $first:expr, $second:expr $(,)?) => {
+        match (A::PARTS.$part, B::PARTS.$part) {
+            (true, true) => $both,
+            (true, false) => $first,
+            (false, _) => $second,
+        }
+    };
+}
+
 impl<A, B> Effect for Sum<A, B>
 where
     A: Effect,
@@ -128,16 +119,12 @@ where
     type StepTerms = (A::StepTerms, B::StepTerms);
 
     const PARTS: Parts = A::PARTS.or(B::PARTS);
-    const DENOMINATORS: u32 = match (A::PARTS.unknown, B::PARTS.unknown) {
-        (true, true) if A::DENOMINATORS < B::DENOMINATORS => B::DENOMINATORS,
-        (true, _) => A::DENOMINATORS,
-        (false, _) => B::DENOMINATORS,
-    };
-    const APART: Blocks = match (A::PARTS.unknown, B::PARTS.unknown) {
-        (true, true) => A::APART.or(B::APART),
-        (true, false) => A::APART,
-        (false, _) => B::APART,
-    };
+    const DENOMINATORS: u32 = of_those_with!(
+        unknown: if A::DENOMINATORS < B::DENOMINATORS { B::DENOMINATORS } else { A::DENOMINATORS },
+        A::DENOMINATORS,
+        B::DENOMINATORS,
+    );
+    const APART: Blocks = of_those_with!(unknown: A::APART.or(B::APART), A::APART, B::APART);
     const LINKS_NEIGHBOURS: bool = {
         let links = A::LINKS_NEIGHBOURS || B::LINKS_NEIGHBOURS;
         assert!(
@@ -147,20 +134,17 @@ where
         links
     };
     // The one unknown part's own kernel is run; two are added with their Jacobians.
-    const JACOBIAN_IS_EXPENSIVE: bool = match (A::PARTS.unknown, B::PARTS.unknown) {
-        (true, true) => false,
-        (true, false) => A::JACOBIAN_IS_EXPENSIVE,
-        (false, _) => B::JACOBIAN_IS_EXPENSIVE,
-    };
+    const JACOBIAN_IS_EXPENSIVE: bool =
+        of_those_with!(unknown: false, A::JACOBIAN_IS_EXPENSIVE, B::JACOBIAN_IS_EXPENSIVE);
     const INERTIA_IS_CONSTANT: bool = A::INERTIA_IS_CONSTANT && B::INERTIA_IS_CONSTANT;
     const IS_QUADRATIC: bool = A::IS_QUADRATIC && B::IS_QUADRATIC;
     const OPERATIONS: Operations = Operations {
         step: A::OPERATIONS.step.saturating_add(B::OPERATIONS.step),
-        iteration: match (A::PARTS.unknown, B::PARTS.unknown) {
-            (true, true) => A::OPERATIONS.iteration.saturating_add(B::OPERATIONS.iteration),
-            (true, false) => A::OPERATIONS.iteration,
-            (false, _) => B::OPERATIONS.iteration,
-        },
+        iteration: of_those_with!(
+            unknown: A::OPERATIONS.iteration.saturating_add(B::OPERATIONS.iteration),
+            A::OPERATIONS.iteration,
+            B::OPERATIONS.iteration,
+        ),
     };
     const DERIVATION: &'static str = "the sum of two effects: their momentum maps, diamonds, unknown parts, kicks, \
                                       Jacobians and energies, each added; see DERIVATION of either\n";
@@ -179,19 +163,8 @@ where
         self.first.momentum_jacobian(f, &w.0, h) + self.second.momentum_jacobian(f, &w.1, h)
     }
 
-    fn inertia(&self, w: &Self::Advected) -> Square<Self> {
-        self.first.inertia(&w.0) + self.second.inertia(&w.1)
-    }
-
-    fn momentum_bias(&self, w: &Self::Advected) -> Vector<Self> {
-        self.first.momentum_bias(&w.0) + self.second.momentum_bias(&w.1)
-    }
-
-    fn potential(&self, w: &Self::Advected) -> Self::Scalar {
-        self.first.potential(&w.0) + self.second.potential(&w.1)
-    }
-
-    fn limit(&self, velocity: &Vector<Self>, w: &Self::Advected) -> Limit<Self> {
+    #[hot]
+    fn limit(&self, velocity: Option<&Vector<Self>>, w: &Self::Advected) -> Limit<Self> {
         let (first, second) = (self.first.limit(velocity, &w.0), self.second.limit(velocity, &w.1));
         Limit {
             l: first.l + second.l,
@@ -210,11 +183,11 @@ where
 
     #[hot]
     fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> Vector<Self> {
-        match (A::PARTS.kick_before, B::PARTS.kick_before) {
-            (true, true) => A::kick_before(&constants.0, &w.0) + B::kick_before(&constants.1, &w.1),
-            (true, false) => A::kick_before(&constants.0, &w.0),
-            (false, _) => B::kick_before(&constants.1, &w.1),
-        }
+        of_those_with!(
+            kick_before: A::kick_before(&constants.0, &w.0) + B::kick_before(&constants.1, &w.1),
+            A::kick_before(&constants.0, &w.0),
+            B::kick_before(&constants.1, &w.1),
+        )
     }
 
     #[hot]
@@ -225,11 +198,7 @@ where
     ) -> Option<Vector<Self>> {
         let first = || A::kick_derivative(&constants.0, &w.0, velocity);
         let second = || B::kick_derivative(&constants.1, &w.1, velocity);
-        match (A::PARTS.kick_before, B::PARTS.kick_before) {
-            (true, true) => Some(first()? + second()?),
-            (true, false) => first(),
-            (false, _) => second(),
-        }
+        of_those_with!(kick_before: Some(first()? + second()?), first(), second())
     }
 
     /// The right side `a` belongs to one unknown part, zero to the other.
@@ -248,18 +217,18 @@ where
         terms: &Self::StepTerms,
         half: &Vector<Self>,
     ) -> (Vector<Self>, Square<Self>) {
-        match (A::PARTS.unknown, B::PARTS.unknown) {
-            (true, true) => {
+        of_those_with!(
+            unknown: {
                 let raised = Vector::<Self>::raised;
                 let first = A::newton_system(&constants.0, &terms.0, half);
                 let second = B::newton_system(&constants.1, &terms.1, half);
                 let first = raised(&first.0, &first.1, Self::DENOMINATORS - A::DENOMINATORS, half);
                 let second = raised(&second.0, &second.1, Self::DENOMINATORS - B::DENOMINATORS, half);
                 (first.0 + second.0, first.1 + second.1)
-            }
-            (true, false) => A::newton_system(&constants.0, &terms.0, half),
-            (false, _) => B::newton_system(&constants.1, &terms.1, half),
-        }
+            },
+            A::newton_system(&constants.0, &terms.0, half),
+            B::newton_system(&constants.1, &terms.1, half),
+        )
     }
 
     #[hot]
@@ -268,18 +237,11 @@ where
         terms: &Self::StepTerms,
         half: &Vector<Self>,
     ) -> NewtonUpdate<Vector<Self>, Square<Self>, Self::Scalar> {
-        match (A::PARTS.unknown, B::PARTS.unknown) {
-            (true, true) => update_by::<Self>(
-                #[allow(clippy::redundant_closure)] // the function itself wouldn't be inlined
-                #[cfg_attr(not(debug_assertions), inline(always))]
-                |constants, terms, half| Self::newton_system(constants, terms, half),
-                constants,
-                terms,
-                half,
-            ),
-            (true, false) => A::newton_update(&constants.0, &terms.0, half),
-            (false, _) => B::newton_update(&constants.1, &terms.1, half),
-        }
+        of_those_with!(
+            unknown: update_of::<Self>(constants, terms, half),
+            A::newton_update(&constants.0, &terms.0, half),
+            B::newton_update(&constants.1, &terms.1, half),
+        )
     }
 
     #[hot]
@@ -289,15 +251,15 @@ where
         half: &Vector<Self>,
         links: &mut Links<Self>,
     ) -> (Vector<Self>, Square<Self>) {
-        match (A::PARTS.unknown, B::PARTS.unknown) {
-            (true, true) => {
+        of_those_with!(
+            unknown: {
                 let first = A::newton_linked(&constants.0, &terms.0, half, links);
                 let second = B::newton_linked(&constants.1, &terms.1, half, links);
                 (first.0 + second.0, first.1 + second.1)
-            }
-            (true, false) => A::newton_linked(&constants.0, &terms.0, half, links),
-            (false, _) => B::newton_linked(&constants.1, &terms.1, half, links),
-        }
+            },
+            A::newton_linked(&constants.0, &terms.0, half, links),
+            B::newton_linked(&constants.1, &terms.1, half, links),
+        )
     }
 
     #[hot]
@@ -306,13 +268,11 @@ where
         terms: &Self::StepTerms,
         half: &Vector<Self>,
     ) -> Residual<Vector<Self>> {
-        match (A::PARTS.unknown, B::PARTS.unknown) {
-            (true, true) => {
-                Residual { momentum_defect: Self::newton_system(constants, terms, half).0, moving_kick: None }
-            }
-            (true, false) => A::newton_residual(&constants.0, &terms.0, half),
-            (false, _) => B::newton_residual(&constants.1, &terms.1, half),
-        }
+        of_those_with!(
+            unknown: Residual { momentum_defect: Self::newton_system(constants, terms, half).0, moving_kick: None },
+            A::newton_residual(&constants.0, &terms.0, half),
+            B::newton_residual(&constants.1, &terms.1, half),
+        )
     }
 
     #[hot]
@@ -336,13 +296,11 @@ where
 
     #[hot]
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self> {
-        match (A::PARTS.kick_after, B::PARTS.kick_after) {
-            (true, true) => {
-                A::kick_after(&constants.0, increment, &next.0) + B::kick_after(&constants.1, increment, &next.1)
-            }
-            (true, false) => A::kick_after(&constants.0, increment, &next.0),
-            (false, _) => B::kick_after(&constants.1, increment, &next.1),
-        }
+        of_those_with!(
+            kick_after: A::kick_after(&constants.0, increment, &next.0) + B::kick_after(&constants.1, increment, &next.1),
+            A::kick_after(&constants.0, increment, &next.0),
+            B::kick_after(&constants.1, increment, &next.1),
+        )
     }
 }
 

@@ -4,7 +4,7 @@ use core::ops::Deref;
 
 use crate::groups::LieGroup;
 use crate::motion::summation::Motion;
-use crate::numbers::Lanes;
+
 use crate::solving::Warm;
 
 /// A [`Motion`], that is attitude, momentum and advected parameters at one time, and what the method keeps for its next
@@ -13,7 +13,7 @@ use crate::solving::Warm;
 /// It is made by [`Stepper::start`](crate::Stepper::start), read by the methods of [`Motion`], and moved by
 /// [`Stepper::step`](crate::Stepper::step). A copy goes on with the same bits. What is kept, `K`, is the method's own:
 /// [`Stepper::adopt`](crate::Stepper::adopt) takes a motion over to another.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct State<G: LieGroup, A, K = Warm<<G as LieGroup>::Vector>> {
     pub(crate) motion: Motion<G, A>,
     pub(crate) kept: K,
@@ -25,28 +25,5 @@ impl<G: LieGroup, A, K> Deref for State<G, A, K> {
     #[hot]
     fn deref(&self) -> &Motion<G, A> {
         &self.motion
-    }
-}
-
-/// With the guess and the history of the method, so that a lane goes on with the bits that it would have had.
-impl<G, A, K> Lanes for State<G, A, K>
-where
-    G: LieGroup + Lanes<Lane: LieGroup>,
-    Motion<G, A>: Lanes<Lane = Motion<G::Lane, A::Lane>>,
-    A: Lanes,
-    K: Lanes,
-{
-    type Lane = State<G::Lane, A::Lane, K::Lane>;
-
-    fn splat(lane: &Self::Lane) -> Self {
-        Self { motion: Lanes::splat(&lane.motion), kept: Lanes::splat(&lane.kept) }
-    }
-
-    fn lane(&self, k: usize) -> Self::Lane {
-        State { motion: self.motion.lane(k), kept: self.kept.lane(k) }
-    }
-
-    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
-        self.motion.set_lane(k, &lane.motion) && self.kept.set_lane(k, &lane.kept)
     }
 }

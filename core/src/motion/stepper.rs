@@ -14,7 +14,7 @@ use crate::motion::plan::{Next, Plan, Steerable, run_called};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
 use crate::motion::summation::Motion;
-use crate::numbers::{Coordinates as _, InLanes, Kernel, Lanes, Vectors, dispatch, real, reported};
+use crate::numbers::{Coordinates as _, Kernel, Vectors, dispatch, real, reported};
 use crate::solving::Solvability;
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _};
 
@@ -70,7 +70,7 @@ pub(crate) type StateOf<S, P> = State<Group<S>, <S as Term>::Advected, <P as Pla
 /// # use liestep::groups::LieGroup;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Lanes, InLanes)]
 pub struct Stepper<S: Effect, P = Declared<S>> {
     pub(crate) scene: S,
     pub(crate) plan: P,
@@ -543,31 +543,6 @@ impl<S: Effect> Stepper<S> {
     pub fn solvability(&self, motion: &Motion<Group<S>, S::Advected>) -> Solvability {
         self.plan.solvability(&self.scene, &motion.momentum, &motion.advected)
     }
-}
-
-/// Each lane steps as the stepper that was put into it, to the bit: constants are gathered, not folded again.
-impl<S: Effect + Lanes<Lane: Effect>, P: Lanes> Lanes for Stepper<S, P> {
-    type Lane = Stepper<S::Lane, P::Lane>;
-
-    fn splat(lane: &Self::Lane) -> Self {
-        Self { scene: Lanes::splat(&lane.scene), plan: Lanes::splat(&lane.plan) }
-    }
-
-    fn lane(&self, k: usize) -> Self::Lane {
-        Stepper { scene: self.scene.lane(k), plan: self.plan.lane(k) }
-    }
-
-    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
-        self.scene.set_lane(k, &lane.scene) && self.plan.set_lane(k, &lane.plan)
-    }
-}
-
-impl<W, S, P> InLanes<W> for Stepper<S, P>
-where
-    S: Effect + InLanes<W, Together: Effect>,
-    P: InLanes<W>,
-{
-    type Together = Stepper<S::Together, P::Together>;
 }
 
 /// Whether a motion may start here.

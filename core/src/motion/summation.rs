@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::groups::{Advected, Factor, LieGroup, SO3};
-use crate::numbers::{Lanes, Real};
+use crate::numbers::Real;
 
 /// How many steps go by between two looks at what roundings have done to the attitude.
 ///
@@ -14,11 +14,12 @@ pub(crate) const STEPS_BETWEEN_CHECKS: u32 = 1024;
 /// Attitude, momentum and advected parameters at one time, and the number of steps up to it.
 ///
 /// A [`State`](crate::State) is this and what its method remembers.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Motion<G: LieGroup, A> {
     pub(crate) attitude: G,
     pub(crate) momentum: G::Vector,
     pub(crate) advected: A,
+    #[shared]
     pub(crate) steps: u64,
 }
 
@@ -66,40 +67,6 @@ impl<G: LieGroup, A: Advected<G>> Motion<G, A> {
     #[must_use]
     pub fn orthogonality_defect(&self) -> G::Scalar {
         self.attitude.defect()
-    }
-}
-
-/// Lanes count their steps together.
-impl<G, A> Lanes for Motion<G, A>
-where
-    G: LieGroup<Vector: Lanes<Lane = <G::Lane as LieGroup>::Vector>> + Lanes<Lane: LieGroup>,
-    A: Lanes,
-{
-    type Lane = Motion<G::Lane, A::Lane>;
-
-    fn splat(lane: &Self::Lane) -> Self {
-        Self {
-            attitude: Lanes::splat(&lane.attitude),
-            momentum: Lanes::splat(&lane.momentum),
-            advected: Lanes::splat(&lane.advected),
-            steps: lane.steps,
-        }
-    }
-
-    fn lane(&self, k: usize) -> Self::Lane {
-        Motion {
-            attitude: self.attitude.lane(k),
-            momentum: self.momentum.lane(k),
-            advected: self.advected.lane(k),
-            steps: self.steps,
-        }
-    }
-
-    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
-        self.steps == lane.steps
-            && self.attitude.set_lane(k, &lane.attitude)
-            && self.momentum.set_lane(k, &lane.momentum)
-            && self.advected.set_lane(k, &lane.advected)
     }
 }
 

@@ -6,11 +6,11 @@ use core::ops::{Add, Mul, Neg, Sub};
 use super::blocks::{Blocks, Pattern};
 use super::coordinates::{Coordinates, lesser_pivot};
 use super::entries::Entries;
-use super::lanes::{Lanes, lanes_of_fields};
+
 use super::scalar::{Mask, Real, real};
 
 /// The components of `N` equal bodies, one after the other.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Bodies<V, const N: usize>(pub [V; N]);
 
 /// A linear map of [`Bodies`] that maps each by itself: a matrix that is zero but for the blocks on its diagonal.
@@ -128,11 +128,6 @@ impl<T: Real, E: Entries<T>, const N: usize> Entries<T> for Bodies<E, N> {
         Self(self.0.zip(&other.0, combine))
     }
 }
-
-lanes_of_fields!(
-    impl[V: Lanes, const N: usize] Bodies<V, N> => Bodies<V::Lane, N>, as Bodies
-    { lanes: [0], scalars: [], shared: [] }
-);
 
 /// One block a body.
 const WHOLE: Pattern = Pattern { factors: Blocks::WHOLE, apart: Blocks::WHOLE };

@@ -12,6 +12,9 @@ use crate::numbers::scalar::Real;
 /// A declaration that is generic over its scalar has it derived, with [`InLanes`]; sums, steppers and
 /// [states](crate::State) of such scenes have it, too. A scalar of one lane is as good as any.
 ///
+/// A stepper's constants are gathered and not folded again, and a state has the guess and the history of its method: each
+/// lane goes on with the bits that it would have had alone.
+///
 /// # Examples
 ///
 /// ```
@@ -255,67 +258,3 @@ tuple!(A 0, B 1, C 2);
 tuple!(A 0, B 1, C 2, D 3);
 tuple!(A 0, B 1, C 2, D 3, E 4);
 tuple!(A 0, B 1, C 2, D 3, E 4, F 5);
-
-/// The lanes of wrappers around one value that has them.
-macro_rules! lanes_of_wrapper {
-    ($([$($generics:tt)*] $type:ident<$scalar:ident $(, $argument:ident)*>),+ $(,)?) => {$(
-        impl<$($generics)*> $crate::numbers::Lanes for $type<$scalar $(, $argument)*>
-        where
-            $scalar: $crate::numbers::Real,
-        {
-            type Lane = $type<$scalar::Element $(, $argument)*>;
-
-            fn splat(lane: &Self::Lane) -> Self {
-                Self($crate::numbers::Lanes::splat(&lane.0))
-            }
-
-            fn lane(&self, k: usize) -> Self::Lane {
-                $type($crate::numbers::Lanes::lane(&self.0, k))
-            }
-
-            fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
-                $crate::numbers::Lanes::set_lane(&mut self.0, k, &lane.0)
-            }
-        }
-    )+};
-}
-
-/// The lanes of a struct of the scalar `T`, field by field: those that have lanes, scalars, and what lanes share.
-macro_rules! lanes_of_fields {
-    (
-        impl[$($generics:tt)*] $self:ty => $lane:ty, as $name:ident
-        $(where [$($bounds:tt)*])?
-        { lanes: [$($field:tt),*], scalars: [$($scalar:ident),*], shared: [$($shared:tt),*] }
-    ) => {
-        impl<$($generics)*> $crate::numbers::Lanes for $self
-        $(where $($bounds)*)?
-        {
-            type Lane = $lane;
-
-            fn splat(lane: &Self::Lane) -> Self {
-                $name {
-                    $($field: $crate::numbers::Lanes::splat(&lane.$field),)*
-                    $($scalar: nalgebra::SimdValue::splat(lane.$scalar),)*
-                    $($shared: lane.$shared.clone(),)*
-                }
-            }
-
-            fn lane(&self, k: usize) -> Self::Lane {
-                $name {
-                    $($field: $crate::numbers::Lanes::lane(&self.$field, k),)*
-                    $($scalar: nalgebra::SimdValue::extract(&self.$scalar, k),)*
-                    $($shared: self.$shared.clone(),)*
-                }
-            }
-
-            fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
-                $(nalgebra::SimdValue::replace(&mut self.$scalar, k, lane.$scalar);)*
-                true
-                    $(&& self.$shared == lane.$shared)*
-                    $(&& $crate::numbers::Lanes::set_lane(&mut self.$field, k, &lane.$field))*
-            }
-        }
-    };
-}
-
-pub(crate) use {lanes_of_fields, lanes_of_wrapper};

@@ -24,7 +24,6 @@ pub use entries::Entries;
 pub(crate) use entries::{sum, zero};
 pub(crate) use exact::{carried_sum, two_square, two_sum};
 pub use lanes::{InLanes, Lanes, Numbers};
-pub(crate) use lanes::{lanes_of_fields, lanes_of_wrapper};
 pub use scalar::real;
 pub use scalar::{Mask, Real};
 pub(crate) use scalar::{is_finite, largest_lane, nowhere, reported};

@@ -2,7 +2,7 @@
 
 use nalgebra::SimdBool as _;
 
-use crate::numbers::{Coordinates, Lanes, Mask, Real, lanes_of_fields};
+use crate::numbers::{Coordinates, Mask, Real};
 
 /// Of increments at equal times eight tell the next to some `(h ω)⁸` for the fastest frequency `ω` in them. Each more
 /// would double the roundings in the guess, and gains little where `h ω` is near one.
@@ -25,7 +25,7 @@ impl Continued {
 }
 
 /// Half the coordinates of the last increment, and a guess of half the next ones.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Guess<V> {
     pub(crate) half: V,
     pub(crate) next: V,
@@ -49,7 +49,7 @@ fn near_of<T: Real, V: Coordinates<T>>(half: V, guess: V, far: Mask<T>) -> V {
 }
 
 /// What a declared Lagrangian's step keeps for the next solve: a guess, and the last increments that it is made of.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Warm<V> {
     pub(crate) guess: Guess<V>,
     /// Of many increments where the Jacobian is expensive, elsewhere of the last three.
@@ -113,10 +113,11 @@ impl<V: Copy> Warm<V> {
 }
 
 /// The backward differences `∇ y, ∇² y, …` of the last increments `y`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub(crate) struct History<V> {
     pub(crate) differences: [V; DIFFERENCES],
     /// How many increments have been taken notice of; more than there are differences count as one more.
+    #[shared]
     pub(crate) increments: usize,
 }
 
@@ -161,32 +162,6 @@ impl<V: Copy> History<V> {
         }
         self.increments = (self.increments + 1).min(DIFFERENCES + 1);
         guess
-    }
-}
-
-lanes_of_fields!(
-    impl[V: Lanes] Guess<V> => Guess<V::Lane>, as Guess { lanes: [half, next], scalars: [], shared: [] }
-);
-
-lanes_of_fields!(
-    impl[V: Lanes] Warm<V> => Warm<V::Lane>, as Warm { lanes: [guess, history], scalars: [], shared: [] }
-);
-
-/// Lanes count their increments together.
-impl<V: Lanes> Lanes for History<V> {
-    type Lane = History<V::Lane>;
-
-    fn splat(lane: &Self::Lane) -> Self {
-        Self { differences: lane.differences.each_ref().map(V::splat), increments: lane.increments }
-    }
-
-    fn lane(&self, k: usize) -> Self::Lane {
-        History { differences: self.differences.each_ref().map(|d| d.lane(k)), increments: self.increments }
-    }
-
-    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
-        let mut differences = self.differences.iter_mut().zip(&lane.differences);
-        self.increments == lane.increments && differences.all(|(together, lane)| together.set_lane(k, lane))
     }
 }
 

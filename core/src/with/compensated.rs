@@ -12,7 +12,7 @@ use crate::methods::{Composed, Jointed, KineticFlow, Processed, Split};
 use crate::motion::{
     Cost, Declared, Kept, Motion, Plan, Proceeded, Steerable, StepReport, Stepper, Summation, restored,
 };
-use crate::numbers::{Entries, InLanes, Lanes, Vectors, carried_sum, lanes_of_fields, zero};
+use crate::numbers::{Entries, Vectors, carried_sum, zero};
 use crate::with::remedies::Substepped;
 use nalgebra::SimdValue as _;
 
@@ -43,18 +43,18 @@ use nalgebra::SimdValue as _;
 /// assert!(state.orthogonality_defect() < 1e-15);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Lanes, InLanes)]
 pub struct Compensated<P>(P);
 
 /// What a plan keeps, and what the rounding of its sums has left behind.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Carried<K, G: LieGroup, A> {
     kept: K,
     carry: Carry<G, A>,
 }
 
 /// The exact sums less the rounded ones.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 struct Carry<G: LieGroup, A> {
     attitude: G::Matrix,
     momentum: G::Vector,
@@ -88,44 +88,6 @@ impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Processed<S, K> {}
 impl<P: Compensable> Compensable for Substepped<P> {}
 
 impl<P: Steerable> Steerable for Compensated<P> {}
-
-impl<P: Lanes> Lanes for Compensated<P> {
-    type Lane = Compensated<P::Lane>;
-
-    fn splat(lane: &Self::Lane) -> Self {
-        Self(P::splat(&lane.0))
-    }
-
-    fn lane(&self, k: usize) -> Self::Lane {
-        Compensated(self.0.lane(k))
-    }
-
-    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
-        self.0.set_lane(k, &lane.0)
-    }
-}
-
-impl<W, P: InLanes<W>> InLanes<W> for Compensated<P> {
-    type Together = Compensated<P::Together>;
-}
-
-lanes_of_fields!(
-    impl[K: Lanes, G: LieGroup + Lanes<Lane: LieGroup>, A: Lanes] Carried<K, G, A> =>
-        Carried<K::Lane, G::Lane, A::Lane>, as Carried
-    where [Carry<G, A>: Lanes<Lane = Carry<G::Lane, A::Lane>>]
-    { lanes: [kept, carry], scalars: [], shared: [] }
-);
-
-lanes_of_fields!(
-    impl[G, A: Lanes] Carry<G, A> => Carry<G::Lane, A::Lane>, as Carry
-    where [
-        G: LieGroup<
-            Matrix: Lanes<Lane = <G::Lane as LieGroup>::Matrix>,
-            Vector: Lanes<Lane = <G::Lane as LieGroup>::Vector>,
-        > + Lanes<Lane: LieGroup>
-    ]
-    { lanes: [attitude, momentum, advected], scalars: [], shared: [] }
-);
 
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// The same step with compensated sums: what rounding takes from attitude, momentum and advected parameters is kept

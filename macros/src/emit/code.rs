@@ -30,13 +30,23 @@ impl Code<'_> {
         outputs: &[NodeId],
         input: &dyn Fn(crate::program::Input) -> TokenStream,
     ) -> TokenStream {
+        let (lets, values) = self.values(graph, outputs, input);
+        let value = self.assembled(form, &values);
+        quote_spanned!(Span::mixed_site()=> #lets #value)
+    }
+
+    /// The `let`s that the outputs need, and the outputs.
+    pub(super) fn values(
+        &self,
+        graph: &Graph,
+        outputs: &[NodeId],
+        input: &dyn Fn(crate::program::Input) -> TokenStream,
+    ) -> (TokenStream, Vec<TokenStream>) {
         let given = |id: NodeId| match graph.node(id) {
             Node::Input(entry) => Some(input(entry)),
             _ => None,
         };
-        let (lets, values) = self.statements(graph, outputs, &given);
-        let value = self.assembled(form, &values);
-        quote_spanned!(Span::mixed_site()=> #lets #value)
+        self.statements(graph, outputs, &given)
     }
 
     /// One value from its entries, a square matrix row by row.
@@ -60,11 +70,7 @@ impl Code<'_> {
         blocks: &[Vec<NodeId>],
         input: &dyn Fn(crate::program::Input) -> TokenStream,
     ) -> TokenStream {
-        let given = |id: NodeId| match graph.node(id) {
-            Node::Input(entry) => Some(input(entry)),
-            _ => None,
-        };
-        let (lets, mut values) = self.statements(graph, &blocks.concat(), &given);
+        let (lets, mut values) = self.values(graph, &blocks.concat(), input);
         let matrices = blocks.iter().zip(self.declaration.group.factors()).map(|(block, own)| {
             let rest = values.split_off(block.len().min(values.len()));
             self.matrix(own.size, &std::mem::replace(&mut values, rest))

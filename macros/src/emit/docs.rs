@@ -128,12 +128,15 @@ pub(super) fn equations_of_force(derived: &Derived, declared: &Declared) -> Vec<
     ]
 }
 
-/// The documentation of one method, with the operations of its code.
-pub(super) fn of(equations: &[Equation], method: &str, graph: &Graph, outputs: &[NodeId]) -> String {
+/// The documentation of a method that has the equations of these, with the operations of its code.
+pub(super) fn of(equations: &[Equation], methods: &[&str], graph: &Graph, outputs: &[NodeId]) -> String {
     let operations = count(graph, outputs, None);
-    let found = equations.iter().find(|equation| equation.method == method);
-    let equation = found.map(|equation| format!("```text\n{}\n```\n\n", equation.line()));
-    format!("{}{operations}.", equation.unwrap_or_default())
+    let found = equations.iter().filter(|equation| methods.contains(&&*equation.method));
+    let lines: Vec<String> = found.map(Equation::line).collect();
+    if lines.is_empty() {
+        return format!("{operations}.");
+    }
+    format!("```text\n{}\n```\n\n{operations}.", lines.join("\n"))
 }
 
 /// The documentation of a stage.

@@ -113,9 +113,7 @@ fn of_effect(declaration: &Declaration, header: &Header) -> TokenStream {
             const DERIVATION: &'static #core::primitive::str = "";
             fn describe(&self, _: &mut dyn #private::SceneVisitor<#scalar>) { loop {} }
             fn momentum_jacobian(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #square { loop {} }
-            fn inertia(&self, _: &Self::Advected) -> #square { loop {} }
-            fn momentum_bias(&self, _: &Self::Advected) -> #vector { loop {} }
-            fn potential(&self, _: &Self::Advected) -> #scalar { loop {} }
+            fn limit(&self, _: #core::option::Option<&#vector>, _: &Self::Advected) -> #private::Limit<Self> { loop {} }
             fn constants(&self, _: #scalar) -> Self::Constants {}
             fn kick_before(_: &Self::Constants, _: &Self::Advected) -> #vector { loop {} }
             fn step_terms(_: &Self::Constants, _: &#vector, _: &Self::Advected) -> Self::StepTerms {}

@@ -42,6 +42,12 @@ pub(crate) fn hot(item: TokenStream) -> TokenStream {
     marked
 }
 
+/// What the derive macros `Lanes` and `InLanes` make of a struct of liestep.
+pub(crate) fn lanes(item: TokenStream, is_in_lanes: bool) -> TokenStream {
+    let item = syn::parse2(item);
+    item.map_or_else(|mistake: syn::Error| mistake.to_compile_error(), |item| lanes::derived(&item, is_in_lanes))
+}
+
 /// The item with the whole implementation.
 pub(crate) fn implementation(
     item: &TokenStream,
@@ -63,7 +69,6 @@ pub(crate) fn implementation(
         None => verbatim::declared(declaration, &header),
     };
     let continuous = equations.map(|equations| continuous::implementation(declaration, &header, equations, true));
-    let at_velocity = equations.and_then(|equations| continuous::at_velocity(&header, equations));
     let section = equations.map(|equations| continuous::text::section(declaration, equations));
     let derivation = docs::derivation(declaration, chosen, &texts, section, findings);
     let documentation = format!("```text\n{derivation}```");
@@ -113,7 +118,6 @@ pub(crate) fn implementation(
 
             #describe
             #effect
-            #at_velocity
             #body
         }
 
@@ -138,13 +142,6 @@ fn invariance(declaration: &Declaration, header: &Header) -> Option<TokenStream>
             #implementation {}
         }
     })
-}
-
-/// The arguments of a method.
-#[derive(Clone, Copy, Debug)]
-enum Takes {
-    Advected,
-    Increment,
 }
 
 /// What code is written with.
@@ -185,32 +182,54 @@ impl Emitter<'_> {
         } else {
             docs::equations(d, &self.lowered.declared, self.equations)
         };
-        let method = |(name, takes, form, expression)| self.method(name, takes, form, expression, &equations);
+        let method = |(name, form, expression)| self.method(name, form, expression, &equations);
         let of_lagrangian = [
-            ("right_momentum", Takes::Increment, Form::Vector, &d.right_momentum),
-            ("left_momentum", Takes::Increment, Form::Vector, &d.left_momentum),
-            ("diamond", Takes::Increment, Form::Vector, &d.diamond),
-            ("legendre_minus", Takes::Increment, Form::Vector, &d.momentum),
-            ("discrete_energy", Takes::Increment, Form::Scalar, &d.energy),
+            ("right_momentum", Form::Vector, &d.right_momentum),
+            ("left_momentum", Form::Vector, &d.left_momentum),
+            ("diamond", Form::Vector, &d.diamond),
+            ("legendre_minus", Form::Vector, &d.momentum),
+            ("discrete_energy", Form::Scalar, &d.energy),
         ];
-        let of_effect = [
-            ("momentum_jacobian", Takes::Increment, Form::Square, &d.jacobian),
-            ("inertia", Takes::Advected, Form::Square, &d.limit.inertia),
-            ("momentum_bias", Takes::Advected, Form::Vector, &d.limit.bias),
-            ("potential", Takes::Advected, Form::Scalar, &d.limit.potential),
-        ];
-        (of_lagrangian.map(method).into_iter().collect(), of_effect.map(method).into_iter().collect(), equations)
+        let jacobian = method(("momentum_jacobian", Form::Square, &d.jacobian));
+        let limit = self.limit(&equations);
+        (of_lagrangian.map(method).into_iter().collect(), quote!(#jacobian #limit), equations)
+    }
+
+    /// The continuous limit, which the other limits of an effect are read from.
+    fn limit(&self, equations: &[docs::Equation]) -> TokenStream {
+        let (span, d, private) = (Span::mixed_site(), self.derived, &self.header.private);
+        let (mut graph, none) = self.lets.clone();
+        let mut outputs = square(&mut graph, d, &none, &d.limit.inertia);
+        let bias = components(&mut graph, d, &none, &d.limit.bias);
+        let bias_from = outputs.len();
+        outputs.extend(bias);
+        let potential_from = outputs.len();
+        let mut scalariser = Scalariser { graph: &mut graph, symbols: &d.symbols, given: none };
+        outputs.push(scalariser.scalar(&d.limit.potential));
+        let documentation = docs::of(equations, &["inertia", "momentum_bias", "potential"], &graph, &outputs);
+        let (lets, values) = self.values(&graph, &outputs, &|input| self.input_token(input));
+        let (at_rest, potential) = values.split_at(potential_from);
+        let (inertia, bias) = at_rest.split_at(bias_from);
+        let (inertia, bias) = (self.assembled(Form::Square, inertia), self.assembled(Form::Vector, bias));
+        let at_velocity = self.equations.and_then(|equations| continuous::at_velocity(private, equations));
+        let vector = self.header.vector();
+        quote_spanned! {span=>
+            #[doc = #documentation]
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            fn limit(
+                &self,
+                velocity: #private::core::option::Option<&#vector>,
+                w: &<Self as #private::Term>::Advected,
+            ) -> #private::Limit<Self> {
+                #at_velocity
+                #lets
+                #private::Limit::quadratic(velocity, #inertia, #bias, #(#potential)*)
+            }
+        }
     }
 
     /// One derived term as a method, with its equation as documentation.
-    fn method(
-        &self,
-        name: &str,
-        takes: Takes,
-        form: Form,
-        expression: &Expression,
-        equations: &[docs::Equation],
-    ) -> TokenStream {
+    fn method(&self, name: &str, form: Form, expression: &Expression, equations: &[docs::Equation]) -> TokenStream {
         let (span, d, private) = (Span::mixed_site(), self.derived, &self.header.private);
         let (mut graph, none) = self.lets.clone();
         let (outputs, result) = match form {
@@ -221,7 +240,7 @@ impl Emitter<'_> {
             Form::Vector => (components(&mut graph, d, &none, expression), self.header.vector()),
             Form::Square => (square(&mut graph, d, &none, expression), self.header.square()),
         };
-        let documentation = docs::of(equations, name, &graph, &outputs);
+        let documentation = docs::of(equations, &[name], &graph, &outputs);
         let inverse =
             d.directions.factors.iter().any(|one| stages::uses(&graph, &outputs, one.inverse)).then(
                 || quote_spanned!(span=> let inverse = #private::inverse_of::<<Self as #private::Term>::Group>(*f);),
@@ -229,14 +248,12 @@ impl Emitter<'_> {
         let body = self.body(form, &graph, &outputs, &|input| self.input_token(input));
         let name = syn::Ident::new(name, span);
         let (matrix, scalar) = (self.header.matrix(), &self.header.scalar);
-        let w = quote_spanned!(span=> w: &<Self as #private::Term>::Advected);
-        let arguments = match takes {
-            Takes::Advected => w,
-            Takes::Increment => quote_spanned!(span=> f: &#matrix, #w, h: #scalar),
-        };
         quote_spanned! {span=>
             #[doc = #documentation]
-            fn #name(&self, #arguments) -> #result { #inverse #body }
+            fn #name(&self, f: &#matrix, w: &<Self as #private::Term>::Advected, h: #scalar) -> #result {
+                #inverse
+                #body
+            }
         }
     }
 }

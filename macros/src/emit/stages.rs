@@ -50,7 +50,7 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
     let kick_before = value(&kernel.kick_before, &from_constants);
     let kick_after = value(&kernel.kick_after, &from_constants);
     let kick_derivative = kernel.kick_derivative.as_ref().map(|outputs| {
-        let documentation = super::docs::of(equations, "kick_derivative", graph, outputs);
+        let documentation = super::docs::of(equations, &["kick_derivative"], graph, outputs);
         kick_derivative(emitter, &documentation, &value(outputs, &from_constants))
     });
     let (lets, values) = emitter.statements(graph, &system, &from_terms);
@@ -72,7 +72,7 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
     let iteration = super::docs::stage(graph, &system, Stage::Iteration, "a Newton iteration, residual and Jacobian");
     let iteration = format!("```text\n{}\n```\n\n{iteration}", super::docs::candidates(kernel));
     let [before, after] = [("kick_before", &kernel.kick_before), ("kick_after", &kernel.kick_after)]
-        .map(|(method, outputs)| super::docs::of(equations, method, graph, outputs));
+        .map(|(method, outputs)| super::docs::of(equations, &[method], graph, outputs));
     let step = super::docs::stage(
         graph,
         &[kernel.kick_before.clone(), step_terms.keys().copied().collect()].concat(),

@@ -5,7 +5,7 @@
 
 use declarations::motions::{matrix, number, read, vector};
 use liestep::groups::{CayleyRetraction, LieGroup, Relative};
-use liestep::mechanics::{Effect, Parts, SceneVisitor, Term, WithKinetic};
+use liestep::mechanics::{Effect, Limit, Parts, SceneVisitor, Term, WithKinetic};
 use liestep::numbers::Blocks;
 use liestep::{SO3, SetupError, Stepper};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
@@ -87,16 +87,9 @@ impl Effect for Row {
         jacobian
     }
 
-    fn inertia(&self, _: &Seen) -> Square {
-        Square::from_diagonal(&stacked(&self.J))
-    }
-
-    fn momentum_bias(&self, _: &Seen) -> Components {
-        Components::zeros()
-    }
-
-    fn potential(&self, w: &Seen) -> f64 {
-        [w.0.0, w.1.0, w.2.0].iter().map(|q| self.kappa * (3.0 - q.trace())).sum()
+    fn limit(&self, velocity: Option<&Components>, w: &Seen) -> Limit<Self> {
+        let potential = [w.0.0, w.1.0, w.2.0].iter().map(|q| self.kappa * (3.0 - q.trace())).sum();
+        Limit::quadratic(velocity, Square::from_diagonal(&stacked(&self.J)), Components::zeros(), potential)
     }
 
     fn constants(&self, h: f64) -> (Self, f64) {

@@ -11,7 +11,7 @@
 use checks::solvers::Badly;
 use declarations::motions::{matrix, number, read, vector};
 use liestep::groups::{CayleyRetraction, LieGroup as _, Relative, Retraction, SeenFrom};
-use liestep::mechanics::{DiscreteLagrangian, Effect, SceneVisitor, Term, WithKinetic};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Limit, SceneVisitor, Term, WithKinetic};
 use liestep::methods::CompositionScheme;
 use liestep::{SO3, SetupError, StepError, Stepper};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
@@ -181,16 +181,9 @@ impl Effect for Chain {
         self.slope(f, w) / h
     }
 
-    fn inertia(&self, w: &Seen) -> Square {
-        self.slope(&Group::identity().matrix(), w)
-    }
-
-    fn momentum_bias(&self, _: &Seen) -> Components {
-        Components::zeros()
-    }
-
-    fn potential(&self, w: &Seen) -> f64 {
-        (0..3).map(|a| self.g * seen(w).0[a].dot(&self.s[a])).sum()
+    fn limit(&self, velocity: Option<&Components>, w: &Seen) -> Limit<Self> {
+        let potential = (0..3).map(|a| self.g * seen(w).0[a].dot(&self.s[a])).sum();
+        Limit::quadratic(velocity, self.slope(&Group::identity().matrix(), w), Components::zeros(), potential)
     }
 
     fn constants(&self, h: f64) -> (Self, f64) {

@@ -1,7 +1,9 @@
 //! Springs between points of bodies: kicks at the ends of a step.
 
 use liestep::groups::{CayleyRetraction, LieGroup as _, R3};
-use liestep::mechanics::{Effect, Matrix, Parts, SceneVisitor, Square, Term, Vector, WhereAllAre, WithoutKinetic};
+use liestep::mechanics::{
+    Effect, Limit, Matrix, Parts, SceneVisitor, Square, Term, Vector, WhereAllAre, WithoutKinetic,
+};
 use liestep::numbers::{BlockDiagonal, Bodies};
 use liestep::{SO3, SetupError};
 use nalgebra::{Matrix6, Vector3, Vector6};
@@ -103,20 +105,13 @@ impl<const N: usize> Effect for Springs<N> {
         BlockDiagonal([Matrix6::zeros(); N])
     }
 
-    fn inertia(&self, _: &Seen<N>) -> Square<Self> {
-        BlockDiagonal([Matrix6::zeros(); N])
-    }
-
-    fn momentum_bias(&self, _: &Seen<N>) -> Vector<Self> {
-        Bodies([Vector6::zeros(); N])
-    }
-
-    fn potential(&self, seen: &Seen<N>) -> f64 {
+    fn limit(&self, velocity: Option<&Vector<Self>>, seen: &Seen<N>) -> Limit<Self> {
         let of_one = |between: &Between<Spring>| {
             let stretch = between.along(seen).norm() - between.of.length;
             0.5 * between.of.k * stretch * stretch
         };
-        self.all().map(of_one).sum()
+        let zero = (BlockDiagonal([Matrix6::zeros(); N]), Bodies([Vector6::zeros(); N]));
+        Limit::quadratic(velocity, zero.0, zero.1, self.all().map(of_one).sum())
     }
 
     fn constants(&self, h: f64) -> (Self, f64) {

@@ -4,14 +4,14 @@ use nalgebra::{SMatrix, Vector1};
 
 use super::Advected;
 use crate::groups::LieGroup;
-use crate::numbers::{Entries, Real, is_finite, lanes_of_wrapper};
+use crate::numbers::{Entries, Real, is_finite};
 
 /// A value that a step may be [given](crate::Stepper::step_with) anew: what `given(u = torque)` makes of the field
 /// `torque`, a scalar as a 1 × 1 matrix, a vector or a matrix.
 ///
 /// It is a parameter in the trivial representation: `f⁻¹ · x = x`, and its diamond is zero. What is given as it is seen
 /// from the body, as most torques are, has components in the body's axes; units are those of the field.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Given<T, const R: usize = 1, const C: usize = 1>(pub SMatrix<T, R, C>);
 
 impl<T: Real> Given<T> {
@@ -21,8 +21,6 @@ impl<T: Real> Given<T> {
         Self(Vector1::new(value))
     }
 }
-
-lanes_of_wrapper!([T, const R: usize, const C: usize] Given<T, R, C>);
 
 impl<T: Real, const R: usize, const C: usize> Entries<T> for Given<T, R, C> {
     fn from_entries(next: &mut impl FnMut() -> T) -> Self {

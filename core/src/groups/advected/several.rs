@@ -10,21 +10,21 @@ use nalgebra::SMatrix;
 
 use super::Advected;
 use crate::groups::{Factor, LieGroup};
-use crate::numbers::{Entries, Lanes, Real, is_finite};
+use crate::numbers::{Entries, Real, is_finite};
 
 /// What the body that is the factor `A` of a product sees; the others don't move it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct SeenFrom<const A: usize, W>(pub W);
 
 /// The configuration `Q = g_A⁻¹ g_B` of the body `B` as the body `A` sees it: of two bodies that turn, the matrix that
 /// brings a vector from `B` to `A`. Its spatial value is the identity.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Relative<const A: usize, const B: usize, M>(pub M);
 
 /// The configuration `g_B` of the body `B` itself, seen from space. Its spatial value is the identity.
 ///
 /// What depends on it isn't the same for a whole that is turned or moved in space.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Configuration<const B: usize, M>(pub M);
 
 impl<const A: usize, const B: usize, T: Real, const N: usize> Default for Relative<A, B, SMatrix<T, N, N>> {
@@ -39,25 +39,9 @@ impl<const B: usize, T: Real, const N: usize> Default for Configuration<B, SMatr
     }
 }
 
-/// Entries and lanes are those of the value.
+/// Entries are those of the value.
 macro_rules! of_its_value {
     ($type:ident, $($place:ident),+) => {
-        impl<$(const $place: usize,)+ W: Lanes> Lanes for $type<$($place,)+ W> {
-            type Lane = $type<$($place,)+ W::Lane>;
-
-            fn splat(lane: &Self::Lane) -> Self {
-                Self(W::splat(&lane.0))
-            }
-
-            fn lane(&self, k: usize) -> Self::Lane {
-                $type(self.0.lane(k))
-            }
-
-            fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
-                self.0.set_lane(k, &lane.0)
-            }
-        }
-
         impl<$(const $place: usize,)+ S, W: Entries<S>> Entries<S> for $type<$($place,)+ W> {
             fn from_entries(next: &mut impl FnMut() -> S) -> Self {
                 Self(Entries::from_entries(next))

@@ -7,32 +7,25 @@ use nalgebra::{SMatrix, SVector};
 
 use super::Advected;
 use crate::groups::LieGroup;
-use crate::numbers::{Entries, Real, is_finite, lanes_of_wrapper};
+use crate::numbers::{Entries, Real, is_finite};
 
 /// An element of `V`, moved by `ρ(f)⁻¹`: what is fixed in space, as the body sees it.
 ///
 /// On SE(3) with `N = 4` for example a direction `(d, 0)`. A point is better declared as one, by nalgebra's `Point3`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct ContravariantVector<T, const N: usize>(pub SVector<T, N>);
 
 /// An element of `V ⊗ V`, moved by `ρ(f)⁻¹ S ρ(f)⁻ᵀ`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct ContravariantTensor<T, const N: usize>(pub SMatrix<T, N, N>);
 
 /// An element of `V* ⊗ V*`, a bilinear form, moved by `ρ(f)ᵀ S ρ(f)`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct CovariantTensor<T, const N: usize>(pub SMatrix<T, N, N>);
 
 /// An element of `V ⊗ V*`, a linear map, moved by `ρ(f)⁻¹ S ρ(f)`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct MixedTensor<T, const N: usize>(pub SMatrix<T, N, N>);
-
-lanes_of_wrapper!(
-    [T, const N: usize] ContravariantVector<T, N>,
-    [T, const N: usize] ContravariantTensor<T, N>,
-    [T, const N: usize] CovariantTensor<T, N>,
-    [T, const N: usize] MixedTensor<T, N>,
-);
 
 macro_rules! kind {
     ($type:ident, $seen:expr, $pulled:expr, $change:expr, $rate:expr, $through:expr) => {

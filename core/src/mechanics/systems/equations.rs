@@ -91,22 +91,11 @@ where
         })
     }
 
-    fn inertia(&self, w: &P::Advected) -> Square<Self> {
-        P::squares(|at| self.term(at).inertia(&P::seen(w, &self.term(at).advected(), at)))
-    }
-
-    fn momentum_bias(&self, w: &P::Advected) -> Vector<Self> {
-        self.gathered(w, |term, w, _| term.momentum_bias(w))
-    }
-
-    fn potential(&self, w: &P::Advected) -> Self::Scalar {
-        self.total(w, |term, w, _| term.potential(w))
-    }
-
-    fn limit(&self, velocity: &Vector<Self>, w: &P::Advected) -> Limit<Self> {
+    #[hot]
+    fn limit(&self, velocity: Option<&Vector<Self>>, w: &P::Advected) -> Limit<Self> {
         let at_its_place = |at: At| {
-            let term = self.term(at);
-            term.limit(&P::components(velocity, at), &P::seen(w, &term.advected(), at))
+            let (term, velocity) = (self.term(at), velocity.map(|velocity| P::components(velocity, at)));
+            term.limit(velocity.as_ref(), &P::seen(w, &term.advected(), at))
         };
         let mut l = real(0.0);
         P::visit(|at| l += at_its_place(at).l);

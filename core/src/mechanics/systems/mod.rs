@@ -33,7 +33,6 @@ use crate::mechanics::effect::Effect;
 use crate::mechanics::kinetic_part::KineticPart as _;
 use crate::mechanics::sum::{SharedBy, Sum};
 use crate::mechanics::term::Term;
-use crate::numbers::{InLanes, Lanes, lanes_of_fields};
 
 /// A term at the places `P` of a system; made by [`of`](Each::of). With `M = 1` it is the same at all of them, otherwise
 /// there is one for each.
@@ -91,8 +90,9 @@ use crate::numbers::{InLanes, Lanes, lanes_of_fields};
 /// }
 /// let joint = Along::<3>::of([Linked { rho: Vector3::z(), s: Vector3::z() }]);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes, InLanes)]
 pub struct Placed<P, E, const M: usize> {
+    #[shared]
     places: P,
     /// One for all or one for each, as [`of`](Each::of) has checked.
     terms: [E; M],
@@ -159,15 +159,6 @@ where
     fn add(self, other: C) -> Sum<Self, C> {
         Sum::new(self, other)
     }
-}
-
-lanes_of_fields!(
-    impl[P: Copy + PartialEq, E: Lanes, const M: usize] Placed<P, E, M> => Placed<P, E::Lane, M>, as Placed
-    { lanes: [terms], scalars: [], shared: [places] }
-);
-
-impl<W, P: Copy + PartialEq, E: InLanes<W>, const M: usize> InLanes<W> for Placed<P, E, M> {
-    type Together = Placed<P, E::Together, M>;
 }
 
 /// The number of the term at a place.

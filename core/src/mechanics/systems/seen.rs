@@ -3,19 +3,19 @@
 use core::marker::PhantomData;
 
 use crate::groups::{Advected, LieGroup, Pair};
-use crate::numbers::{Entries, Lanes, Real, filled, lanes_of_fields, zero};
+use crate::numbers::{Entries, Real, filled, zero};
 
 /// What each two neighbours see, as a group `P` of two bodies moves it. Behind it there is one more, which never changes:
 /// stable Rust has no arrays of `N − 1`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Neighbours<P, W, const N: usize>(pub [W; N], pub(super) PhantomData<P>);
 
 /// What the bodies `A` and `B` see, as a group `P` of two bodies moves it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct SeenBetween<P, W, const A: usize, const B: usize>(pub W, pub(super) PhantomData<P>);
 
 /// The configurations of all bodies in space, of which what each pair sees is formed.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct WhereAllAre<G: LieGroup, const N: usize>(pub [G::Matrix; N]);
 
 impl<G: LieGroup, const N: usize> Default for WhereAllAre<G, N> {
@@ -47,21 +47,6 @@ macro_rules! entries {
 entries!([P: Copy, W: Entries<S>, const N: usize] Neighbours<P, W, N>, PhantomData);
 entries!([P: Copy, W: Entries<S>, const A: usize, const B: usize] SeenBetween<P, W, A, B>, PhantomData);
 entries!([G: LieGroup<Scalar = S>, const N: usize] WhereAllAre<G, N>,);
-
-lanes_of_fields!(
-    impl[P: Lanes, W: Lanes, const N: usize] Neighbours<P, W, N> => Neighbours<P::Lane, W::Lane, N>, as Neighbours
-    { lanes: [0, 1], scalars: [], shared: [] }
-);
-lanes_of_fields!(
-    impl[P: Lanes, W: Lanes, const A: usize, const B: usize] SeenBetween<P, W, A, B>
-        => SeenBetween<P::Lane, W::Lane, A, B>, as SeenBetween
-    { lanes: [0, 1], scalars: [], shared: [] }
-);
-lanes_of_fields!(
-    impl[G, const N: usize] WhereAllAre<G, N> => WhereAllAre<G::Lane, N>, as WhereAllAre
-    where [G: LieGroup<Matrix: Lanes<Lane = <G::Lane as LieGroup>::Matrix>> + Lanes<Lane: LieGroup>]
-    { lanes: [0], scalars: [], shared: [] }
-);
 
 impl<P, W: Copy, const N: usize> Neighbours<P, W, N> {
     /// Something of each two neighbours in the place of what is there; the one behind stays.

@@ -14,7 +14,7 @@ use crate::motion::linearised::{Change, Linearisable, Pass, Stage as Linear};
 use crate::motion::{
     Cost, Declared, Motion, Plan, Steerable, StepReport, Stepped, Stepper, Summation, beyond_solvable, half_coordinates,
 };
-use crate::numbers::{Coordinates, InLanes, Lanes, Mask, Real, lanes_of_fields, real};
+use crate::numbers::{Coordinates, Mask, Real, real};
 use crate::solving::Guess;
 use nalgebra::SimdBool as _;
 
@@ -81,8 +81,9 @@ use nalgebra::SimdBool as _;
 /// # Source
 ///
 /// \[Su90\], \[KL97\], \[SS05\]; see [`conventions`](crate::conventions).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Lanes, InLanes)]
 pub struct Composed<S: Effect> {
+    #[shared]
     scheme: CompositionScheme,
     h: Scalar<S>,
     /// One for each of the distinct substeps, that of the first stage first.
@@ -91,8 +92,9 @@ pub struct Composed<S: Effect> {
 }
 
 /// A stage, and how the guess for the next one is made of its coordinates and of those of the stage before.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Lanes)]
 struct Stage<T> {
+    #[shared]
     substep: usize,
     /// Of the coordinates of this stage, when only these are to be trusted.
     scale: T,
@@ -142,28 +144,6 @@ impl<S: Effect> Composed<S> {
 }
 
 impl<S: Effect> Steerable for Composed<S> {}
-
-lanes_of_fields!(
-    impl[S] Composed<S> => Composed<S::Lane>, as Composed
-    where [
-        S: Effect + Lanes<Lane: Effect<Scalar = <S::Scalar as nalgebra::SimdValue>::Element>>,
-        Declared<S>: Lanes<Lane = Declared<S::Lane>>
-    ]
-    { lanes: [substeps, stages], scalars: [h], shared: [scheme] }
-);
-
-impl<W, S> InLanes<W> for Composed<S>
-where
-    S: Effect + InLanes<W, Together: Effect>,
-    Composed<S::Together>: Lanes<Lane = Self>,
-{
-    type Together = Composed<S::Together>;
-}
-
-lanes_of_fields!(
-    impl[T: Real] Stage<T> => Stage<T::Element>, as Stage
-    { lanes: [], scalars: [scale, last, earlier], shared: [substep] }
-);
 
 impl<S: Effect> Plan<S> for Composed<S> {
     type Kept = Guess<Vector<S>>;

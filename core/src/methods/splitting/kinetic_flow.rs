@@ -7,7 +7,7 @@ use crate::groups::SO3;
 use crate::groups::rotation_coefficients;
 use crate::mechanics::{DiscreteLagrangian, Effect, Inertia, Operations, Regular, SceneVisitor};
 use crate::motion::{DiscreteLiePoisson, Stepped};
-use crate::numbers::{Coordinates as _, Lanes, Real, lanes_of_fields, real, reported};
+use crate::numbers::{Coordinates as _, Real, real, reported};
 
 /// A flow, or a structure-preserving approximation of it, of the free body's motion.
 ///
@@ -92,7 +92,7 @@ pub struct Turn<T> {
 /// ```
 ///
 /// It is exact, there is nothing to solve, and `p_3` isn't even computed anew.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes, InLanes)]
 pub struct SymmetricBody<T = f64> {
     transverse: T,
     axial: T,
@@ -124,21 +124,11 @@ impl<T: Real> SymmetricBody<T> {
 }
 
 /// `h/J_1` and `h (1/J_1 − 1/J_3)`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Lanes)]
 pub struct SymmetricDrift<T> {
     about_momentum: T,
     about_axis: T,
 }
-
-lanes_of_fields!(
-    impl[T: Real] SymmetricBody<T> => SymmetricBody<T::Element>, as SymmetricBody
-    { lanes: [], scalars: [transverse, axial], shared: [] }
-);
-
-lanes_of_fields!(
-    impl[T: Real] SymmetricDrift<T> => SymmetricDrift<T::Element>, as SymmetricDrift
-    { lanes: [], scalars: [about_momentum, about_axis], shared: [] }
-);
 
 impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
     type Drift = SymmetricDrift<T>;
@@ -269,19 +259,8 @@ pub(crate) fn inverse_inertia<T: Real, L: DiscreteLagrangian<Scalar = T, Group =
 }
 
 /// A declared flow, and the inverse inertia that its guesses are made with.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Lanes)]
 pub struct DeclaredDrift<L: DiscreteLagrangian<Group = SO3<T>, Scalar = T>, T: Real = crate::mechanics::Scalar<L>> {
     flow: DiscreteLiePoisson<L>,
     inverse: Matrix3<T>,
 }
-
-lanes_of_fields!(
-    impl[L, T] DeclaredDrift<L, T> => DeclaredDrift<L::Lane, T::Element>, as DeclaredDrift
-    where [
-        T: Real,
-        L: DiscreteLagrangian<Group = SO3<T>, Scalar = T>
-            + Lanes<Lane: DiscreteLagrangian<Group = SO3<T::Element>, Scalar = T::Element>>,
-        DiscreteLiePoisson<L>: Lanes<Lane = DiscreteLiePoisson<L::Lane>>
-    ]
-    { lanes: [flow, inverse], scalars: [], shared: [] }
-);

@@ -5,7 +5,6 @@ mod bias;
 mod exact_body;
 mod kick;
 mod kinetic_flow;
-mod lanes;
 mod linearised;
 mod processed;
 mod quaternion;
@@ -88,8 +87,9 @@ use nalgebra::{
 /// # Source
 ///
 /// \[BM02\], \[ML95\], \[BCF13\], with force gradients \[Ch97\], \[OMF02\]; see [`conventions`](crate::conventions).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Lanes, InLanes)]
 pub struct Split<S: Effect, K: KineticFlow<Scalar<S>>> {
+    #[shared]
     scheme: SplittingScheme,
     torque: S::Constants,
     /// `J⁻¹`, for force gradients.
@@ -107,7 +107,7 @@ pub struct Split<S: Effect, K: KineticFlow<Scalar<S>>> {
 }
 
 /// The rotation `exp(−s p_3 E_3)`, by its `s`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Lanes)]
 struct Spin<T> {
     angle: T,
 }
@@ -121,7 +121,7 @@ enum Share<D, T> {
 
 /// Shares by turns, in pairs: a kick is a straight line with the drift before it, so that the motion needn't be put away
 /// between the two.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Lanes)]
 struct Stages<D, T> {
     /// Before the first drift.
     lead: Option<Kick<T>>,
@@ -129,7 +129,7 @@ struct Stages<D, T> {
 }
 
 /// A drift, and the kick after it, if that isn't the end.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Lanes)]
 struct Stage<D, T> {
     drift: D,
     kick: Option<Kick<T>>,
@@ -158,7 +158,7 @@ impl<D, T> Stages<D, T> {
     }
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Lanes)]
 struct Kick<T> {
     /// That the torque acts, s.
     time: T,

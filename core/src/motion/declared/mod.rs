@@ -13,12 +13,12 @@ use crate::motion::flows::{Increment, Stepped};
 use crate::motion::plan::{Cost, Plan, Steerable};
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, Summation, is_due};
-use crate::numbers::{Coordinates as _, InLanes, Lanes, is_finite, lanes_of_fields, real, reported};
+use crate::numbers::{Coordinates as _, is_finite, real, reported};
 use crate::solving::{Continued, Kick, Problem, Root, Warm, newton_system, safe, step_terms, trusted_radius};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 
 /// The step of the scene itself, by its momentum equation (2.7): the plan of [`Stepper::new`](crate::Stepper::new).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Lanes, InLanes)]
 pub struct Declared<S: Effect> {
     h: Scalar<S>,
     constants: S::Constants,
@@ -27,26 +27,6 @@ pub struct Declared<S: Effect> {
     trusted: Scalar<S>,
     /// What the Jacobian's determinant has to exceed for a solve to do without a second one.
     safe: Scalar<S>,
-}
-
-lanes_of_fields!(
-    impl[S] Declared<S> => Declared<S::Lane>, as Declared
-    where [
-        S: Effect<Constants: Lanes<Lane = <S::Lane as Effect>::Constants>>
-            + Lanes<Lane: Effect<Scalar = Element<S>>>
-    ]
-    { lanes: [constants], scalars: [h, largest_target, trusted, safe], shared: [] }
-);
-
-/// The scalar of one lane.
-type Element<S> = <Scalar<S> as nalgebra::SimdValue>::Element;
-
-impl<W, S> InLanes<W> for Declared<S>
-where
-    S: Effect + InLanes<W, Together: Effect>,
-    Declared<S::Together>: Lanes<Lane = Self>,
-{
-    type Together = Declared<S::Together>;
 }
 
 impl<S: Effect> Declared<S> {

@@ -6,24 +6,18 @@ use crate::mechanics::{Effect, Group, Matrix, Regular, Scalar, Vector};
 use crate::motion::declared::Declared;
 use crate::motion::flows::{Increment, Stepped};
 use crate::motion::plan::Plan as _;
-use crate::numbers::{Lanes, lanes_of_fields, real};
+use crate::numbers::real;
 use crate::solving::Solvability;
 
 /// The discrete advected Lie–Poisson flow `(μ_i, w_i) ↦ (μ_{i+1}, w_{i+1})`, \[RDAE, (2.8), (2.9)\].
 ///
 /// It is `𝔽l_d⁺ ∘ (𝔽l_d⁻)⁻¹`: Newton's iteration inverts the momentum equation (2.7). A [`Stepper`](crate::Stepper)
 /// makes it a motion, with the attitude and with guesses.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Lanes)]
 pub struct DiscreteLiePoisson<L: Effect> {
     scene: L,
     declared: Declared<L>,
 }
-
-lanes_of_fields!(
-    impl[L: Effect + Lanes<Lane: Effect>] DiscreteLiePoisson<L> => DiscreteLiePoisson<L::Lane>, as DiscreteLiePoisson
-    where [Declared<L>: Lanes<Lane = Declared<L::Lane>>]
-    { lanes: [scene, declared], scalars: [], shared: [] }
-);
 
 impl<L: Effect> DiscreteLiePoisson<L> {
     /// Checks the parameters and folds the constants for the step `h`, in seconds.

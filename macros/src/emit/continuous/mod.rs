@@ -7,7 +7,7 @@ use quote::quote_spanned;
 use syn::Ident;
 
 use super::code::Form;
-use super::{Code, Emitter, Header, Takes, docs, page, stages, verbatim};
+use super::{Code, Emitter, Header, docs, page, stages, verbatim};
 use crate::declared::{Coordinates, Declaration, Discretisation, Quadrature};
 use crate::judged::Equations;
 use crate::mathematics::derive::Inverse;
@@ -100,17 +100,16 @@ fn of_effect(header: &Header) -> TokenStream {
     }
 }
 
-/// What a stepper has to know of an `l` that isn't quadratic in the velocity.
-pub(super) fn at_velocity(header: &Header, equations: &Equations) -> Option<TokenStream> {
-    let (private, vector) = (&header.private, header.vector());
+/// The limit of an `l` that isn't quadratic in the velocity.
+pub(super) fn at_velocity(private: &syn::Path, equations: &Equations) -> Option<TokenStream> {
     (equations.derived.inverse == Inverse::Nonlinear).then(|| {
         quote_spanned! {Span::mixed_site()=>
-            fn limit(&self, velocity: &#vector, w: &Self::Advected) -> #private::Limit<Self> {
-                #private::Limit {
+            if let #private::core::option::Option::Some(velocity) = velocity {
+                return #private::Limit {
                     l: #private::ContinuousLagrangian::l(self, velocity, w),
                     momentum: #private::ContinuousLagrangian::momentum(self, velocity, w),
                     hessian: #private::ContinuousLagrangian::velocity_hessian(self, velocity, w),
-                }
+                };
             }
         }
     })
@@ -138,7 +137,7 @@ pub(super) fn discretised(emitter: &Emitter, discretisation: Discretisation) -> 
     }
     let lagrangian = &emitter.lowered.declared.expression;
     let equations = docs::equations(emitter.derived, &emitter.lowered.declared, emitter.equations);
-    emitter.method("l_d", Takes::Increment, Form::Scalar, lagrangian, &equations)
+    emitter.method("l_d", Form::Scalar, lagrangian, &equations)
 }
 
 impl Code<'_> {
@@ -155,7 +154,7 @@ impl Code<'_> {
         let (span, header) = (Span::mixed_site(), self.header);
         let mut graph = Graph::default();
         let outputs = along_directions(&mut graph, &equations.derived, rank, expression);
-        let documentation = docs::of(texts, name, &graph, &outputs);
+        let documentation = docs::of(texts, &[name], &graph, &outputs);
         let body = self.body(form, &graph, &outputs, &|input| self.input_token(input));
         let result = match form {
             Form::Scalar => header.scalar.clone(),
@@ -174,7 +173,7 @@ impl Code<'_> {
         let (span, header) = (Span::mixed_site(), self.header);
         let mut graph = Graph::default();
         let blocks = diamond_matrices(&mut graph, &equations.derived);
-        let documentation = docs::of(&[], "diamond_matrix", &graph, &blocks.concat());
+        let documentation = docs::of(&[], &[], &graph, &blocks.concat());
         let body = self.blocks(&graph, &blocks, &|input| self.input_token(input));
         let (vector, matrix) = (header.vector(), header.matrix());
         quote_spanned! {span=>

@@ -45,7 +45,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::rotation_coefficients;
 use crate::groups::{LieGroup as _, SO3};
 use crate::mechanics::{Inertia, Operations, SceneVisitor};
-use crate::numbers::{Kernel, Number, Numbers, Real, Vectors, dispatch, is_finite, lanes_of_fields, reported};
+use crate::numbers::{Kernel, Number, Numbers, Real, Vectors, dispatch, is_finite, reported};
 
 /// The free motion of a body with any three moments, exactly: to rounding, over any time.
 ///
@@ -100,7 +100,7 @@ use crate::numbers::{Kernel, Number, Numbers, Real, Vectors, dispatch, is_finite
 ///
 /// The equations are those of the page of this flow in the sources; the coefficients of `℘` are in \[AS64, 18.5\]. See
 /// [`conventions`](crate::conventions).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes, InLanes)]
 pub struct ExactBody<T = f64> {
     inertia: Matrix3<T>,
     /// About the three axes, the last the middle one.
@@ -119,14 +119,14 @@ impl<T: Real> ExactBody<T> {
 }
 
 /// The flow over one share of the step.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Lanes)]
 pub struct ExactDrift<T> {
     frame: Frame<T>,
     form: Form<T>,
 }
 
 /// Its constants about the principal axes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Lanes)]
 struct Form<T> {
     /// `h/(2 J_c)`, which makes `u` of the momentum.
     scale: T,
@@ -138,21 +138,6 @@ struct Form<T> {
     a_squared: T,
     b_squared: T,
 }
-
-lanes_of_fields!(
-    impl[T: Real] ExactBody<T> => ExactBody<T::Element>, as ExactBody
-    { lanes: [inertia, moments, frame], scalars: [], shared: [] }
-);
-
-lanes_of_fields!(
-    impl[T: Real] ExactDrift<T> => ExactDrift<T::Element>, as ExactDrift
-    { lanes: [frame, form], scalars: [], shared: [] }
-);
-
-lanes_of_fields!(
-    impl[T: Real] Form<T> => Form<T::Element>, as Form
-    { lanes: [], scalars: [scale, a, b, b_less_a, c_squared, a_squared, b_squared], shared: [] }
-);
 
 impl<T: Real> KineticFlow<T> for ExactBody<T> {
     type Drift = ExactDrift<T>;

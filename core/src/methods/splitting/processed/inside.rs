@@ -2,16 +2,16 @@
 
 use crate::groups::{Advected, LieGroup as _, SO3};
 use crate::motion::{Kept, Motion, count, counted};
-use crate::numbers::{Entries, Lanes, Real, lanes_of_fields, real, zero};
+use crate::numbers::{Entries, Real, real, zero};
 use nalgebra::SimdBool as _;
 
 /// Where a run is inside of its processor, by [`Processed`](super::Processed), and by which step; or that it isn't there:
 /// at the start, after a push and after another method's steps.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Inside<T: Real, A>(pub(super) Option<Stepped<T, A>>);
 
 /// Without the number of steps, which is that of the motion that is read.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub(super) struct Stepped<T: Real, A> {
     attitude: SO3<T>,
     momentum: nalgebra::Vector3<T>,
@@ -19,27 +19,6 @@ pub(super) struct Stepped<T: Real, A> {
     /// The step whose processor it is inside of.
     pub(super) h: T,
 }
-
-impl<T: Real, A: Lanes> Lanes for Inside<T, A> {
-    type Lane = Inside<T::Element, A::Lane>;
-
-    fn splat(lane: &Self::Lane) -> Self {
-        Self(Lanes::splat(&lane.0))
-    }
-
-    fn lane(&self, k: usize) -> Self::Lane {
-        Inside(self.0.lane(k))
-    }
-
-    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
-        self.0.set_lane(k, &lane.0)
-    }
-}
-
-lanes_of_fields!(
-    impl[T: Real, A: Lanes] Stepped<T, A> => Stepped<T::Element, A::Lane>, as Stepped
-    { lanes: [attitude, momentum, advected], scalars: [h], shared: [] }
-);
 
 impl<T: Real, A: Advected<SO3<T>>> Stepped<T, A> {
     pub(super) fn of(motion: &Motion<SO3<T>, A>, h: T) -> Self {

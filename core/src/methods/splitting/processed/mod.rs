@@ -17,7 +17,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, SO3};
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor, Term};
 use crate::motion::{Cost, Declared, Motion, Plan, Steerable, StepReport, Stepper, Summation};
-use crate::numbers::{Coordinates, InLanes, Lanes, Real, Vectors, lanes_of_fields, real};
+use crate::numbers::{Coordinates, Real, Vectors, real};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector3};
 
 /// The plan of [`Stepper::processed`](crate::Stepper::processed): a kinetic-potential splitting whose steps are made inside of a processor, so that three drifts give order 6.
@@ -68,36 +68,18 @@ use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector
 /// # Source
 ///
 /// \[BCR99\], \[BCM06\]; see [`conventions`](crate::conventions).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Lanes, InLanes)]
 pub struct Processed<S: Effect, K: KineticFlow<Scalar<S>>> {
+    #[shared]
     scheme: ProcessedScheme,
     /// [`leave`](Self::leave)'s; reversed and with the other sign, [`enter`](Self::enter)'s.
+    #[shared]
     parts: Vec<Part>,
     kernel: Split<S, K>,
     /// From what is read to the end of the first share of the kernel, from which its steps are all the same.
     enter: Stages<K::Drift, Scalar<S>>,
     /// From there to what is read.
     leave: Stages<K::Drift, Scalar<S>>,
-}
-
-lanes_of_fields!(
-    impl[S, K] Processed<S, K> => Processed<S::Lane, K::Lane>, as Processed
-    where [
-        S: Effect + Lanes<Lane: Effect>,
-        K: KineticFlow<Scalar<S>> + Lanes<Lane: KineticFlow<Scalar<S::Lane>>>,
-        Split<S, K>: Lanes<Lane = Split<S::Lane, K::Lane>>,
-        Stages<K::Drift, Scalar<S>>: Lanes<Lane = Stages<<K::Lane as KineticFlow<Scalar<S::Lane>>>::Drift, Scalar<S::Lane>>>
-    ]
-    { lanes: [kernel, enter, leave], scalars: [], shared: [scheme, parts] }
-);
-
-impl<W, S, K> InLanes<W> for Processed<S, K>
-where
-    S: Effect + InLanes<W, Together: Effect>,
-    K: KineticFlow<Scalar<S>> + InLanes<W, Together: KineticFlow<Scalar<S::Together>>>,
-    Processed<S::Together, K::Together>: Lanes<Lane = Self>,
-{
-    type Together = Processed<S::Together, K::Together>;
 }
 
 impl<S: Effect> Stepper<S> {
