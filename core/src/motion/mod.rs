@@ -26,7 +26,6 @@ pub use any::{AnyKept, AnyState, AnyStepper};
 pub use batch::{Batch, Batchable};
 pub use declared::Declared;
 pub(crate) use declared::{beyond_solvable, half_coordinates};
-pub(crate) use flows::Stepped;
 pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, Increment, reconstruct};
 pub use integrator::{Answer, Integrator, Moment, ScalarIn};
 pub use kept::Kept;
@@ -39,7 +38,7 @@ pub use state::State;
 pub(crate) use stepper::StateOf;
 pub use stepper::Stepper;
 pub(crate) use stepper::check_attitude;
-pub use summation::{Motion, Proceeded, Summation};
+pub use summation::{Motion, Summation};
 pub(crate) use summation::{STEPS_BETWEEN_CHECKS, is_due, restored};
 
 pub use crate::solving::{Guess, Solvability, Warm};

@@ -12,7 +12,7 @@ use crate::mechanics::{
 };
 use crate::motion::linearised::{Change, Linearisable, Pass, Stage as Linear};
 use crate::motion::{
-    Cost, Declared, Motion, Plan, Steerable, StepReport, Stepped, Stepper, Summation, beyond_solvable, half_coordinates,
+    Cost, Declared, Motion, Plan, Steerable, StepReport, Stepper, Summation, beyond_solvable, half_coordinates,
 };
 use crate::numbers::{Coordinates, InLanes, Lanes, Mask, Real, lanes_of_fields, real};
 use crate::solving::Guess;
@@ -201,10 +201,10 @@ impl<S: Effect> Plan<S> for Composed<S> {
             } else {
                 declared.step_from::<false>(scene, &now.momentum, &now.advected, &guess.next, &turned)?
             };
-            next.proceed(&stepped.proceeded());
-            let Stepped { step, half, far, .. } = stepped;
-            guess = Guess { half, next: stage.half_guess(half, far, guess.half) };
-            iterations += step.iterations;
+            next.proceed(&stepped.increment, &stepped.change, (stepped.momentum, stepped.advected));
+            let half = stepped.half;
+            guess = Guess { half, next: stage.half_guess(half, stepped.far, guess.half) };
+            iterations += stepped.iterations;
         }
         next.finish(|| scene.advected());
         (*motion, *kept) = (next, guess);

@@ -9,7 +9,7 @@ use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{
     Effect, Group, Matrix, Regular, Scalar, SceneVisitor, Vector, check_inertia, estimated_velocity, pattern,
 };
-use crate::motion::flows::{Increment, Stepped};
+use crate::motion::flows::Increment;
 use crate::motion::plan::{Cost, Plan, Steerable};
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, Summation, is_due};
@@ -123,7 +123,7 @@ impl<S: Effect> Declared<S> {
         advected: &S::Advected,
         half_guess: &Vector<S>,
         turned: &impl Fn(&Matrix<S>) -> S::Advected,
-    ) -> Result<Stepped<S>, StepError> {
+    ) -> Result<Increment<S>, StepError> {
         match self.step_directly::<CARRIES>(scene, momentum, advected, half_guess, turned) {
             Some(stepped) => Ok(stepped),
             None => self.step_carefully::<CARRIES>(scene, momentum, advected, half_guess, turned),
@@ -139,7 +139,7 @@ impl<S: Effect> Declared<S> {
         advected: &S::Advected,
         half_guess: &Vector<S>,
         turned: &impl Fn(&Matrix<S>) -> S::Advected,
-    ) -> Option<Stepped<S>> {
+    ) -> Option<Increment<S>> {
         let problem = self.problem(scene, momentum, advected);
         let root = problem.solve_directly::<true>(half_guess, self.largest_target)?;
         let stepped = self.moved::<CARRIES>(momentum, advected, &problem.a, &root, turned(&root.increment));
@@ -157,7 +157,7 @@ impl<S: Effect> Declared<S> {
         advected: &S::Advected,
         half_guess: &Vector<S>,
         turned: &impl Fn(&Matrix<S>) -> S::Advected,
-    ) -> Result<Stepped<S>, StepError> {
+    ) -> Result<Increment<S>, StepError> {
         if self.h == real(0.0) {
             return Ok(Self::stand_still(momentum, advected));
         }
@@ -169,7 +169,7 @@ impl<S: Effect> Declared<S> {
             &root,
             turned(&root.increment),
         );
-        if stepped.step.momentum.is_finite() && stepped.step.advected.is_finite() {
+        if stepped.momentum.is_finite() && stepped.advected.is_finite() {
             Ok(stepped)
         } else {
             Err(StepError::NonFinite { what: "momentum after the step" })
@@ -185,7 +185,7 @@ impl<S: Effect> Declared<S> {
         a: &Vector<S>,
         root: &Root<Group<S>>,
         next: S::Advected,
-    ) -> Stepped<S> {
+    ) -> Increment<S> {
         let Root { half, increment, iterations, far, ref kick } = *root;
         let mut change = Group::<S>::adjoint_transpose_increment(&increment, a);
         if CARRIES {
@@ -208,8 +208,7 @@ impl<S: Effect> Declared<S> {
             }
         }
         let momentum = *momentum + change;
-        let step = Increment { coordinates: half + half, increment, momentum, advected: next, iterations };
-        Stepped { step, change, half, far }
+        Increment { coordinates: half + half, increment, momentum, advected: next, iterations, change, half, far }
     }
 
     /// `kick_after(F, w⁺)`, in the lanes that have come by it from what the solve has found.
@@ -244,10 +243,10 @@ impl<S: Effect> Declared<S> {
     }
 
     #[cold]
-    fn stand_still(momentum: &Vector<S>, advected: &S::Advected) -> Stepped<S> {
+    fn stand_still(momentum: &Vector<S>, advected: &S::Advected) -> Increment<S> {
         let Root { half, increment, iterations, far, .. } = Root::at::<S::Retraction>(&Vector::<S>::zero(), 0);
-        let step = Increment { coordinates: half, increment, momentum: *momentum, advected: *advected, iterations };
-        Stepped { step, change: Vector::<S>::zero(), half, far }
+        let (momentum, advected, change) = (*momentum, *advected, Vector::<S>::zero());
+        Increment { coordinates: half, increment, momentum, advected, iterations, change, half, far }
     }
 }
 
@@ -333,16 +332,16 @@ fn taken<S: Effect, M: Summation<Group<S>, S::Advected>>(
     scene: &S,
     motion: &mut M,
     kept: &mut Warm<Vector<S>>,
-    stepped: &Stepped<S>,
+    stepped: &Increment<S>,
 ) -> StepReport {
-    motion.proceed(&stepped.proceeded());
+    motion.proceed(&stepped.increment, &stepped.change, (stepped.momentum, stepped.advected));
     let continued = Continued::for_jacobian(S::JACOBIAN_IS_EXPENSIVE);
     kept.follow(stepped.half, stepped.far, continued);
     if is_due(motion.now().steps) {
         look(scene, motion, kept, continued);
     }
     motion.count();
-    StepReport::of(stepped.step.iterations)
+    StepReport::of(stepped.iterations)
 }
 
 /// What is done after the first step, and after many more.

@@ -4,7 +4,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::Advected as _;
 use crate::mechanics::{Effect, Group, Matrix, Regular, Scalar, Vector};
 use crate::motion::declared::Declared;
-use crate::motion::flows::{Increment, Stepped};
+use crate::motion::flows::Increment;
 use crate::motion::plan::Plan as _;
 use crate::numbers::{Lanes, lanes_of_fields, real};
 use crate::solving::Solvability;
@@ -86,7 +86,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         advected: &L::Advected,
         guess: &Vector<L>,
     ) -> Result<Increment<L>, StepError> {
-        self.step_from(momentum, advected, &(*guess * real(0.5))).map(|stepped| stepped.step)
+        self.step_from(momentum, advected, &(*guess * real(0.5)))
     }
 
     /// As [`step`](Self::step), from half the guess.
@@ -96,7 +96,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         momentum: &Vector<L>,
         advected: &L::Advected,
         half_guess: &Vector<L>,
-    ) -> Result<Stepped<L>, StepError> {
+    ) -> Result<Increment<L>, StepError> {
         let turned = |increment: &Matrix<L>| advected.advect(increment);
         self.declared.step_from::<false>(&self.scene, momentum, advected, half_guess, &turned)
     }

@@ -6,5 +6,4 @@ mod lie_poisson;
 
 pub use euler_poincare::{DiscreteEulerPoincare, reconstruct};
 pub use increment::Increment;
-pub(crate) use increment::Stepped;
 pub use lie_poisson::DiscreteLiePoisson;

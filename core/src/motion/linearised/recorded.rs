@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::cell::RefCell;
 
 use crate::groups::{Advected, LieGroup};
-use crate::motion::summation::{Motion, Proceeded, Summation};
+use crate::motion::summation::{Motion, Summation};
 use crate::numbers::zero;
 
 /// One change that one of the library's own plans has made: a turn, a push, or both.
@@ -62,9 +62,9 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Recorded<'_, G, A> {
     }
 
     #[hot]
-    fn proceed(&mut self, step: &Proceeded<G, A>) {
-        self.note(step.increment);
-        self.motion.proceed(step);
+    fn proceed(&mut self, increment: &G::Matrix, change: &G::Vector, end: (G::Vector, A)) {
+        self.note(*increment);
+        self.motion.proceed(increment, change, end);
     }
 
     #[hot]

@@ -209,7 +209,8 @@ impl<'a, I: Integrator> Run<'a, I> {
         } else {
             while next > 0 {
                 let before = self.state.clone();
-                ended.iterations += integrator.run_as_far(self.state, 1).map_err(|cause| self.stuck(cause))?;
+                ended.iterations +=
+                    integrator.run_shown(self.state, 1, &mut |_| 0).map_err(|cause| self.stuck(cause))?;
                 next = if self.show_between(&before, &mut ended)? {
                     0
                 } else {
