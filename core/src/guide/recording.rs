@@ -41,7 +41,7 @@
 //! | to memory, to CSV, by a thread of its own | [`Table`](crate::with::Table), [`Csv`](crate::with::Csv), [`Background`](crate::with::Background) |
 //! | to Arrow | `liestep_arrow::ArrowStream`, the package in `core/arrow` |
 //! | to a format of one's own | [`Sink`](crate::with::Sink): three functions |
-//! | when a run stops, and what it returns | [`Run`](crate::with::Run), [`Ended`](crate::with::Ended), [`RunError`](crate::with::RunError) |
+//! | when a run stops, and what it returns | [`Run`](crate::with::Run), [`RunReport`](crate::with::RunReport), [`RunError`](crate::with::RunError) |
 //! | what the files mean elsewhere | [`files`](super::files) |
 //! | what it costs | `cargo bench --bench recording` |
 //!

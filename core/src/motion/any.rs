@@ -267,7 +267,7 @@ impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
 struct Hiding<G: LieGroup, A>(AnyStepper<G, A>);
 
 #[derive(Clone, Debug, PartialEq)]
-struct Hidden<A> {
+struct HiddenState<A> {
     advected: A,
     kept: AnyKept,
 }
@@ -278,7 +278,7 @@ impl<G: LieGroup, A: Advected<G>> Hiding<G, A> {
         self.0.adopt(&seeing(motion, A::from_entries(&mut || real(0.0))))
     }
 
-    fn change<R>(&self, state: &mut State<G, (), Hidden<A>>, steps: impl FnOnce(&mut AnyState<G, A>) -> R) -> R {
+    fn change<R>(&self, state: &mut State<G, (), HiddenState<A>>, steps: impl FnOnce(&mut AnyState<G, A>) -> R) -> R {
         let kept = mem::replace(&mut state.kept.kept, AnyKept::of(()));
         let mut own = State { motion: seeing(&state.motion, state.kept.advected), kept };
         let made = steps(&mut own);
@@ -292,14 +292,14 @@ fn seeing<G: LieGroup, A, B>(motion: &Motion<G, A>, advected: B) -> Motion<G, B>
     Motion { attitude: motion.attitude, momentum: motion.momentum, advected, steps: motion.steps }
 }
 
-fn hidden<G: LieGroup, A: Copy>(State { motion, kept }: AnyState<G, A>) -> State<G, (), Hidden<A>> {
-    State { motion: seeing(&motion, ()), kept: Hidden { advected: motion.advected, kept } }
+fn hidden<G: LieGroup, A: Copy>(State { motion, kept }: AnyState<G, A>) -> State<G, (), HiddenState<A>> {
+    State { motion: seeing(&motion, ()), kept: HiddenState { advected: motion.advected, kept } }
 }
 
 impl<G: LieGroup, A: Advected<G>> Integrator for Hiding<G, A> {
     type Group = G;
     type Advected = ();
-    type State = State<G, (), Hidden<A>>;
+    type State = State<G, (), HiddenState<A>>;
 
     fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
         self.change(state, |own| self.0.step(own))
@@ -323,7 +323,7 @@ impl<G: LieGroup, A: Advected<G>> Integrator for Hiding<G, A> {
     }
 
     fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, ()>, StepError> {
-        let Hidden { advected, kept } = state.kept.clone();
+        let HiddenState { advected, kept } = state.kept.clone();
         let part = self.0.part(&State { motion: seeing(&state.motion, advected), kept }, fraction)?;
         Ok(seeing(&part, ()))
     }

@@ -185,15 +185,6 @@ pub trait Integrator {
     }
 }
 
-#[cold]
-fn step_by_step<I: Integrator + ?Sized>(integrator: &I, state: &mut I::State, steps: u64) -> Result<u64, StepError> {
-    let mut iterations = 0;
-    for _ in 0..steps {
-        iterations += u64::from(integrator.step(state)?.iterations);
-    }
-    Ok(iterations)
-}
-
 /// [`Integrator::run_shown`] by means of the other functions.
 pub(super) fn run_by_run<I: Integrator + ?Sized>(
     integrator: &I,
@@ -203,7 +194,14 @@ pub(super) fn run_by_run<I: Integrator + ?Sized>(
 ) -> Result<u64, StepError> {
     let mut iterations = 0;
     while steps > 0 {
-        iterations += integrator.run(state, steps).or_else(|_| step_by_step(integrator, state, steps))?;
+        match integrator.run(state, steps) {
+            Ok(made) => iterations += made,
+            Err(_) => {
+                for _ in 0..steps {
+                    iterations += u64::from(integrator.step(state)?.iterations);
+                }
+            }
+        }
         steps = next(state);
     }
     Ok(iterations)

@@ -30,7 +30,6 @@ pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, Increment, reconstruc
 pub use integrator::{Answer, Integrator, Moment, ScalarIn};
 pub use kept::Kept;
 pub(crate) use kept::{count, counted};
-pub(crate) use plan::rare_step;
 pub use plan::{Cost, NextSteps, Plan, Steerable};
 pub use report::{Remedy, StepReport};
 pub use right_hand_side::RightHandSide;

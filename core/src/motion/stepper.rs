@@ -12,7 +12,7 @@ use crate::mechanics::{
 use crate::motion::declared::Declared;
 use crate::motion::flows::DiscreteLiePoisson;
 use crate::motion::integrator::{Integrator, run_by_run};
-use crate::motion::plan::{Next, NextSteps, Plan, Steerable, run_called};
+use crate::motion::plan::{Next, NextSteps, Plan, Steerable, run_plan};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
 use crate::motion::summation::Motion;
@@ -198,7 +198,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         steps: u64,
         next: Next<'_, Group<S>, S::Advected>,
     ) -> Result<u64, StepError> {
-        let made = run_called(&self.plan, &self.scene, &mut state.motion, &mut state.kept, (steps, next));
+        let made = run_plan(&self.plan, &self.scene, &mut state.motion, &mut state.kept, (steps, next));
         made.map_err(|error| self.plan.explained(error, &self.scene, &state.motion, &state.kept))
     }
 
@@ -526,7 +526,7 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
 
     #[inline]
     fn attempt(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
-        run_called(&self.plan, &self.scene, &mut state.motion, &mut state.kept, (steps, None))
+        run_plan(&self.plan, &self.scene, &mut state.motion, &mut state.kept, (steps, None))
     }
 
     fn run_shown(
@@ -558,7 +558,7 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
         let part = part.map_err(|_| StepError::NonFinite { what: "part of the step" })?;
         let mut next = state.motion;
         let mut kept = part.keep(scene, &next);
-        run_called(&part, scene, &mut next, &mut kept, (1, None))
+        run_plan(&part, scene, &mut next, &mut kept, (1, None))
             .map_err(|error| part.explained(error, scene, &state.motion, &kept))?;
         next.steps = state.steps;
         Ok(next)

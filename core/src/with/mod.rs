@@ -20,4 +20,4 @@ pub use frames::Frames;
 pub use record::{Background, Csv};
 pub use record::{Column, RecordError, Recorder, Sink, SinkError, Table};
 pub use remedies::{Instead, OrElse, Substeps};
-pub use run::{Ended, Event, Reason, Run, RunError};
+pub use run::{Event, Reason, Run, RunError, RunReport};

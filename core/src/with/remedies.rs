@@ -5,7 +5,7 @@
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
-use crate::motion::{Cost, Motion, Plan, Remedy, Steerable, StepReport, Stepper, Summation, rare_step};
+use crate::motion::{Cost, Motion, Plan, Remedy, Steerable, StepReport, Stepper, Summation};
 use crate::numbers::{Vectors, real};
 
 /// A plan that has a remedy for steps without a solution, by [`Stepper::or_substeps`] or [`Stepper::or_fallback`].
@@ -229,7 +229,9 @@ impl<S: Effect> Instead<S> for Substeps {
     }
 }
 
-/// The motion after so many steps of an equal part of `h`, and all their iterations.
+/// The motion after `parts` steps of an equal part of `h`, and all their iterations.
+#[cold]
+#[inline(never)]
 fn substepped<S: Effect, P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
     plan: &P,
     scene: &S,
@@ -241,7 +243,7 @@ fn substepped<S: Effect, P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
     let mut kept = small.keep(scene, motion.now());
     let mut iterations = 0;
     for _ in 0..parts {
-        iterations += rare_step(&small, scene, &mut motion, &mut kept).ok()?.iterations;
+        iterations += small.step(scene, &mut motion, &mut kept).ok()?.iterations;
     }
     Some((motion, iterations))
 }
@@ -266,7 +268,7 @@ where
         error: StepError,
     ) -> Result<StepReport, StepError> {
         let mut remembered = self.plan.keep(&self.scene, motion.now());
-        let Ok(report) = rare_step(&self.plan, &self.scene, motion, &mut remembered) else { return Err(error) };
+        let Ok(report) = self.plan.step(&self.scene, motion, &mut remembered) else { return Err(error) };
         // Its increments are those of another map.
         *kept = plan.keep(scene, motion.now());
         Ok(StepReport { remedy: Some(Remedy::Fallback), ..report })

@@ -197,9 +197,9 @@ impl<S: Effect> Plan<S> for Composed<S> {
                 |increment: &Matrix<S>| next.turned(increment)
             };
             let stepped = if const { M::CARRIES } {
-                declared.step_from::<true>(scene, &now.momentum, &now.advected, &guess.next, &turned)?
+                declared.increment_from::<true>(scene, &now.momentum, &now.advected, &guess.next, &turned)?
             } else {
-                declared.step_from::<false>(scene, &now.momentum, &now.advected, &guess.next, &turned)?
+                declared.increment_from::<false>(scene, &now.momentum, &now.advected, &guess.next, &turned)?
             };
             next.proceed(&stepped.increment, &stepped.change, (stepped.momentum, stepped.advected));
             let half = stepped.half;

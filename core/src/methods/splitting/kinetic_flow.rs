@@ -254,7 +254,7 @@ where
         let h = drift.flow.step_size();
         let velocity = drift.inverse * momentum;
         let half_guess = (velocity + drift.inverse * momentum.cross(&velocity) * (h * real(0.5))) * (h * real(0.5));
-        let step = drift.flow.step_from(momentum, &(), &half_guess)?;
+        let step = drift.flow.increment_from(momentum, &(), &half_guess)?;
         Ok(Turn { increment: step.increment, change: step.momentum - momentum, iterations: step.iterations })
     }
 }

@@ -8,7 +8,7 @@ use core::ops::Range;
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Scalar, SecondDerivatives, Vector};
-use crate::motion::linearised::recorded::Change;
+use crate::motion::linearised::recording::Change;
 use crate::motion::linearised::stage::{Cotangent, Flown, Pass, Stage};
 use crate::motion::linearised::{Linearisable, Linearised};
 use crate::motion::stepper::{StateOf, Stepper};

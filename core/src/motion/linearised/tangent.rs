@@ -7,7 +7,7 @@ use core::cell::RefCell;
 use crate::groups::LieGroup;
 use crate::mechanics::pattern;
 use crate::mechanics::{Group, SecondDerivatives, Term, Vector};
-use crate::motion::linearised::recorded::Change;
+use crate::motion::linearised::recording::Change;
 use crate::motion::linearised::stage::{Flown, Kind, Pass, Stage};
 use crate::numbers::{Coordinates, Entries as _, is_finite, real};
 use nalgebra::SimdComplexField as _;

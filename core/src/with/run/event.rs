@@ -4,7 +4,7 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use super::crossing::{Looks, zeros};
-use super::error::{Ended, Reason, RunError};
+use super::error::{Reason, RunError, RunReport};
 use super::{Observer, Run, show, unless_it_goes_on};
 use crate::motion::{Answer, Integrator, Moment, Motion, ScalarIn};
 use crate::numbers::{real, reported};
@@ -80,7 +80,7 @@ impl Event {
 type Function<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> f64 + 'a>;
 
 /// An event, and what is done when it happens.
-pub(super) struct Watched<'a, I: Integrator> {
+pub(super) struct Watch<'a, I: Integrator> {
     event: Event,
     function: Function<'a, I>,
     then: Observer<'a, I>,
@@ -91,7 +91,7 @@ pub(super) struct Watched<'a, I: Integrator> {
 }
 
 /// A zero that was found.
-pub(super) struct Found<I: Integrator> {
+pub(super) struct Crossing<I: Integrator> {
     /// Which event.
     event: usize,
     fraction: f64,
@@ -142,7 +142,7 @@ where
         mut function: impl FnMut(&Moment<'_, I>) -> Y + 'a,
         mut then: impl FnMut(&Moment<'_, I>) -> R + 'a,
     ) -> Self {
-        self.watched.push(Watched {
+        self.watched.push(Watch {
             event,
             function: Box::new(move |now| function(now).into()),
             then: Box::new(move |now: &Moment<'_, I>| unless_it_goes_on(then(now))),
@@ -165,7 +165,7 @@ impl<I: Integrator> Run<'_, I> {
     }
 
     /// All zeros in the step from this state, in their order.
-    pub(super) fn crossings(&mut self, before: &I::State) -> Result<Vec<Found<I>>, RunError> {
+    pub(super) fn crossings(&mut self, before: &I::State) -> Result<Vec<Crossing<I>>, RunError> {
         let integrator = self.integrator;
         let (begun, h) = (reported(integrator.time(before)), reported(integrator.step_size()));
         let now = Moment::of_step(integrator, self.state);
@@ -197,7 +197,7 @@ impl<I: Integrator> Run<'_, I> {
             {
                 let motion = integrator.part(before, real(fraction));
                 let motion = motion.map_err(|cause| RunError::Step { time: time(fraction), cause })?;
-                found.push(Found { event, fraction, time: time(fraction), rising, motion });
+                found.push(Crossing { event, fraction, time: time(fraction), rising, motion });
             }
         }
         found.sort_by(|a, b| a.fraction.total_cmp(&b.fraction));
@@ -205,8 +205,8 @@ impl<I: Integrator> Run<'_, I> {
     }
 
     /// Shows an event; returns whether the run ends.
-    pub(super) fn happen(&mut self, found: &Found<I>, ended: &mut Ended) -> Result<bool, RunError> {
-        let &Found { event, time, rising, ref motion, .. } = found;
+    pub(super) fn happen(&mut self, found: &Crossing<I>, ended: &mut RunReport) -> Result<bool, RunError> {
+        let &Crossing { event, time, rising, ref motion, .. } = found;
         let Some(watched) = self.watched.get_mut(event) else { return Ok(false) };
         let moment = Moment::at(self.integrator, motion, real(time), Some(rising));
         let mut stops = show(&mut watched.then, &moment, ended)?;
@@ -218,7 +218,7 @@ impl<I: Integrator> Run<'_, I> {
     }
 }
 
-impl<I: Integrator> Watched<'_, I> {
+impl<I: Integrator> Watch<'_, I> {
     /// The function, if it has a value.
     fn look(&mut self, now: &Moment<'_, I>, event: usize) -> Result<f64, RunError> {
         let value = (self.function)(now);

@@ -4,13 +4,13 @@ mod crossing;
 mod error;
 mod event;
 
-pub use error::{Ended, Reason, RunError};
+pub use error::{Reason, RunError, RunReport};
 pub use event::Event;
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
-use event::Watched;
+use event::Watch;
 
 use core::iter::Peekable;
 use core::ops::ControlFlow;
@@ -75,13 +75,13 @@ pub struct Run<'a, I: Integrator> {
     integrator: &'a I,
     state: &'a mut I::State,
     observers: Observers<'a, I>,
-    timed: Vec<Timed<'a, I>>,
-    watched: Vec<Watched<'a, I>>,
+    timed: Vec<TimedObserver<'a, I>>,
+    watched: Vec<Watch<'a, I>>,
 }
 
 /// Who looks at the ends of steps only.
 struct Observers<'a, I: Integrator> {
-    regular: Vec<Regular<'a, I>>,
+    regular: Vec<RegularObserver<'a, I>>,
     conditions: Vec<Condition<'a, I>>,
     progress: Option<Box<dyn FnMut(f64) + 'a>>,
     /// The steps from which and up to which the run goes.
@@ -94,7 +94,7 @@ struct Observers<'a, I: Integrator> {
 }
 
 /// An observer that is shown every so many steps.
-struct Regular<'a, I: Integrator> {
+struct RegularObserver<'a, I: Integrator> {
     every: u64,
     /// The next of its steps.
     due: u64,
@@ -102,7 +102,7 @@ struct Regular<'a, I: Integrator> {
 }
 
 /// An observer that is shown given times.
-struct Timed<'a, I: Integrator> {
+struct TimedObserver<'a, I: Integrator> {
     times: Peekable<Box<dyn Iterator<Item = f64> + 'a>>,
     /// The last that was shown.
     shown: Option<f64>,
@@ -160,7 +160,7 @@ impl<'a, I: Integrator> Run<'a, I> {
     pub fn every<R: Answer>(mut self, steps: u64, mut observer: impl FnMut(&Moment<'_, I>) -> R + 'a) -> Self {
         if steps > 0 {
             let observer = Box::new(move |now: &Moment<'_, I>| unless_it_goes_on(observer(now)));
-            self.observers.regular.push(Regular { every: steps, due: 0, observer });
+            self.observers.regular.push(RegularObserver { every: steps, due: 0, observer });
         }
         self
     }
@@ -183,8 +183,8 @@ impl<'a, I: Integrator> Run<'a, I> {
     /// # Errors
     ///
     /// [`RunError`].
-    pub fn steps(mut self, steps: u64) -> Result<Ended, RunError> {
-        let mut ended = Ended { steps: 0, iterations: 0, reason: Reason::Done };
+    pub fn steps(mut self, steps: u64) -> Result<RunReport, RunError> {
+        let mut ended = RunReport { steps: 0, iterations: 0, reason: Reason::Done };
         let (integrator, start) = (self.integrator, self.state.steps());
         self.observers.begin(start, start.saturating_add(steps));
         self.look_first()?;
@@ -228,7 +228,7 @@ impl<'a, I: Integrator> Run<'a, I> {
     }
 
     /// Shows what there is within a step.
-    fn show_between(&mut self, before: &I::State, ended: &mut Ended) -> Result<bool, RunError> {
+    fn show_between(&mut self, before: &I::State, ended: &mut RunReport) -> Result<bool, RunError> {
         for found in self.crossings(before)? {
             if self.show_timed(Some(before), found.time, ended)? || self.happen(&found, ended)? {
                 return Ok(true);
@@ -238,12 +238,12 @@ impl<'a, I: Integrator> Run<'a, I> {
     }
 
     /// Shows the times from the state before up to this time.
-    fn show_timed(&mut self, before: Option<&I::State>, up_to: f64, ended: &mut Ended) -> Result<bool, RunError> {
+    fn show_timed(&mut self, before: Option<&I::State>, up_to: f64, ended: &mut RunReport) -> Result<bool, RunError> {
         let time = self.integrator.time(self.state);
         let (now, h) = (reported(time), reported(self.integrator.step_size()));
         let begun = before.map_or(now, |before| reported(self.integrator.time(before)));
         let mut stops = false;
-        for Timed { times, shown, observer } in &mut self.timed {
+        for TimedObserver { times, shown, observer } in &mut self.timed {
             // Backwards where the step is negative.
             let is_after = |asked: f64, time: f64| (asked - time) * h.signum() > 0.0;
             while let Some(asked) = times.next_if(|asked| !is_after(*asked, up_to)) {
@@ -272,7 +272,7 @@ impl<I: Integrator> Observers<'_, I> {
     /// Looks for what is due from one step to another.
     fn begin(&mut self, start: u64, end: u64) {
         (self.start, self.end, self.told, self.seldom) = (start, end, start, start);
-        for Regular { every, due, .. } in &mut self.regular {
+        for RegularObserver { every, due, .. } in &mut self.regular {
             *due = if start == 0 { 0 } else { (start / *every).saturating_add(1).saturating_mul(*every) };
         }
     }
@@ -280,9 +280,9 @@ impl<I: Integrator> Observers<'_, I> {
     /// Shows a step to those whose turn it is; returns how many there are to the next that somebody wants to see, and none
     /// at the end of the run, which an observer or a condition may be.
     #[hot]
-    fn show(&mut self, now: &Moment<'_, I>, ended: &mut Ended) -> Result<u64, RunError> {
+    fn show(&mut self, now: &Moment<'_, I>, ended: &mut RunReport) -> Result<u64, RunError> {
         let (made, mut next, mut stops) = (now.steps(), self.seldom, false);
-        for Regular { every, due, observer } in &mut self.regular {
+        for RegularObserver { every, due, observer } in &mut self.regular {
             if *due == made {
                 *due = due.saturating_add(*every);
                 // As `show` does; by that a row of every tenth step costs 23 instructions more.
@@ -304,7 +304,7 @@ impl<I: Integrator> Observers<'_, I> {
     /// Conditions, progress and the end; returns as [`show`](Self::show).
     #[cold]
     #[allow(clippy::cast_precision_loss)] // a share
-    fn look_seldom(&mut self, now: &Moment<'_, I>, ended: &mut Ended) -> u64 {
+    fn look_seldom(&mut self, now: &Moment<'_, I>, ended: &mut RunReport) -> u64 {
         let made = now.steps();
         if self.conditions.iter_mut().any(|condition| condition(now)) {
             ended.reason = Reason::Stopped { time: reported(now.time()) };
@@ -346,7 +346,7 @@ where
     ) -> Self {
         let times: Box<dyn Iterator<Item = f64> + 'a> = Box::new(times.into_iter());
         let observer = Box::new(move |now: &Moment<'_, I>| unless_it_goes_on(observer(now)));
-        self.timed.push(Timed { times: times.peekable(), shown: None, observer });
+        self.timed.push(TimedObserver { times: times.peekable(), shown: None, observer });
         self
     }
 
@@ -359,7 +359,7 @@ where
     ///
     /// [`RunError`].
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // checked
-    pub fn until(self, time: f64) -> Result<Ended, RunError> {
+    pub fn until(self, time: f64) -> Result<RunReport, RunError> {
         /// More are no number of steps that a run can make.
         const MOST: f64 = 9e15;
         let h: f64 = self.integrator.step_size().into();
@@ -388,7 +388,7 @@ fn unless_it_goes_on(answer: impl Answer) -> Option<Box<Verdict>> {
 fn show<I: Integrator>(
     observer: &mut Observer<'_, I>,
     now: &Moment<'_, I>,
-    ended: &mut Ended,
+    ended: &mut RunReport,
 ) -> Result<bool, RunError> {
     observer(now).map_or(Ok(false), |verdict| stopped(verdict, reported(now.time()), ended))
 }
@@ -396,7 +396,7 @@ fn show<I: Integrator>(
 #[cold]
 #[inline(never)]
 #[allow(clippy::boxed_local)] // so that its memory is freed here, too
-fn stopped(verdict: Box<Verdict>, time: f64, ended: &mut Ended) -> Result<bool, RunError> {
+fn stopped(verdict: Box<Verdict>, time: f64, ended: &mut RunReport) -> Result<bool, RunError> {
     let _ = verdict.map_err(|cause| RunError::Observer { time, cause })?;
     ended.reason = Reason::Stopped { time };
     Ok(true)

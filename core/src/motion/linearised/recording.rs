@@ -18,19 +18,19 @@ pub struct Change<G: LieGroup, A> {
 
 /// A motion that writes down each change; its bits are those of [`Motion`] alone.
 #[derive(Clone, Copy)]
-pub(super) struct Recorded<'a, G: LieGroup, A> {
+pub(super) struct Recording<'a, G: LieGroup, A> {
     pub(super) motion: Motion<G, A>,
     pub(super) events: &'a RefCell<Vec<Change<G, A>>>,
 }
 
-impl<G: LieGroup, A: Advected<G>> Recorded<'_, G, A> {
+impl<G: LieGroup, A: Advected<G>> Recording<'_, G, A> {
     #[hot]
     fn note(&self, increment: G::Matrix) {
         self.events.borrow_mut().push(Change { before: self.motion, increment });
     }
 }
 
-impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Recorded<'_, G, A> {
+impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Recording<'_, G, A> {
     const CARRIES: bool = false;
 
     #[hot]
