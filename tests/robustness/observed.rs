@@ -6,7 +6,7 @@ use declarations::HeavyTop;
 use liestep::groups::LieGroup;
 use liestep::motion::{Integrator, Motion, ScalarIn, StepReport};
 use liestep::prelude::*;
-use liestep::with::{Event, Reason, RunError, RunReport, sections};
+use liestep::recording::{Event, Reason, RunError, RunReport, sections};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::one_top::{VELOCITY, top};

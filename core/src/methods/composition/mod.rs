@@ -7,10 +7,10 @@ pub use scheme::CompositionScheme;
 use alloc::vec::Vec;
 
 use crate::error::{SetupError, StepError};
+use crate::gradients::{Change, Linearisable, Pass, Stage as Linear};
 use crate::mechanics::{
     DiscreteLagrangian, Effect, Group, Matrix, Regular, Scalar, SceneVisitor, SecondDerivatives, Vector,
 };
-use crate::motion::linearised::{Change, Linearisable, Pass, Stage as Linear};
 use crate::motion::{
     Cost, Declared, Motion, Plan, Steerable, StepReport, Stepper, Summation, beyond_solvable, half_coordinates,
 };

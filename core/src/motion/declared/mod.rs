@@ -9,7 +9,7 @@ use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{
     Effect, Group, Matrix, Regular, Scalar, SceneVisitor, Vector, check_inertia, estimated_velocity, pattern,
 };
-use crate::motion::flows::Increment;
+use crate::motion::increment::Increment;
 use crate::motion::plan::{Cost, Plan, Steerable};
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, Summation, is_due};

@@ -4,7 +4,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::Advected as _;
 use crate::mechanics::{Effect, Group, Matrix, Regular, Scalar, Vector};
 use crate::motion::declared::Declared;
-use crate::motion::flows::Increment;
+use crate::motion::increment::Increment;
 use crate::motion::plan::Plan as _;
 use crate::numbers::{Lanes, lanes_of_fields, real};
 use crate::solving::Solvability;

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::cell::RefCell;
 
 use crate::groups::{Advected, LieGroup};
-use crate::motion::summation::{Motion, Summation};
+use crate::motion::{Motion, Summation};
 use crate::numbers::zero;
 
 /// One change that one of the library's own plans has made: a turn, a push, or both.

@@ -105,11 +105,7 @@ use core::ops::Range;
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, SecondDerivatives};
-use crate::motion::declared::Declared;
-use crate::motion::plan::Plan;
-use crate::motion::report::StepReport;
-use crate::motion::stepper::{StateOf, Stepper};
-use crate::motion::summation::Summation;
+use crate::motion::{Declared, Plan, StateOf, StepReport, Stepper, Summation};
 use crate::numbers::{Kernel, Vectors, dispatch};
 use recording::Recording;
 

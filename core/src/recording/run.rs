@@ -1,20 +1,12 @@
 //! A run that is observed: by functions that are called every so many steps or at given times, and that may stop it.
 
-mod crossing;
-mod error;
-mod event;
-
-pub use error::{Reason, RunError, RunReport};
-pub use event::Event;
-
 use alloc::boxed::Box;
 use alloc::vec::Vec;
-
-use event::Watch;
-
 use core::iter::Peekable;
-use core::ops::ControlFlow;
 
+use super::error::{Reason, RunError, RunReport};
+use super::event::{Event, Watch, crossings, happen, look_first};
+use super::observer::{Observer, show, stopped, unless_it_goes_on};
 use crate::error::StepError;
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::Effect;
@@ -26,20 +18,16 @@ use crate::numbers::{real, reported};
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _;
 
-/// What an observer answers.
-type Verdict = Result<ControlFlow<()>, Box<dyn core::error::Error + Send + Sync>>;
-/// `None` means go on: it comes back in a register, and a whole answer in memory.
-type Observer<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> Option<Box<Verdict>> + 'a>;
 type Condition<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> bool + 'a>;
 
 /// A run that is to be observed, by [`Stepper::observed`]; generic code makes it by [`Run::new`].
 ///
-/// Observers are closures that are shown a [`Moment`]. They return nothing, a [`ControlFlow`] that may stop the run, or a
+/// Observers are closures that are shown a [`Moment`]. They return nothing, a [`ControlFlow`](core::ops::ControlFlow) that may stop the run, or a
 /// `Result` whose error ends it:
 ///
 /// ```
 /// use liestep::effects::{Drag, RigidBody};
-/// use liestep::with::{Csv, Reason, Recorder};
+/// use liestep::recording::{Csv, Reason, Recorder};
 /// use liestep::mechanics::Inertia;
 /// use liestep::{SO3, Stepper};
 /// use nalgebra::Vector3;
@@ -76,7 +64,7 @@ pub struct Run<'a, I: Integrator> {
     state: &'a mut I::State,
     observers: Observers<'a, I>,
     timed: Vec<TimedObserver<'a, I>>,
-    watched: Vec<Watch<'a, I>>,
+    watches: Vec<Watch<'a, I>>,
 }
 
 /// Who looks at the ends of steps only.
@@ -149,7 +137,7 @@ impl<'a, I: Integrator> Run<'a, I> {
                 seldom: 0,
             },
             timed: Vec::new(),
-            watched: Vec::new(),
+            watches: Vec::new(),
         }
     }
 
@@ -187,7 +175,7 @@ impl<'a, I: Integrator> Run<'a, I> {
         let mut ended = RunReport { steps: 0, iterations: 0, reason: Reason::Done };
         let (integrator, start) = (self.integrator, self.state.steps());
         self.observers.begin(start, start.saturating_add(steps));
-        self.look_first()?;
+        look_first(&mut self.watches, &Moment::of_step(integrator, self.state))?;
         if self.show_timed(None, reported(integrator.time(self.state)), &mut ended)? {
             return Ok(ended);
         }
@@ -195,7 +183,7 @@ impl<'a, I: Integrator> Run<'a, I> {
         if next == 0 {
             return Ok(ended);
         }
-        if self.timed.is_empty() && self.watched.is_empty() {
+        if self.timed.is_empty() && self.watches.is_empty() {
             let mut shown = Ok(());
             let made = integrator.run_shown(self.state, next, &mut |motion| {
                 let next = self.observers.show(&Moment::of_step(integrator, motion), &mut ended);
@@ -229,8 +217,10 @@ impl<'a, I: Integrator> Run<'a, I> {
 
     /// Shows what there is within a step.
     fn show_between(&mut self, before: &I::State, ended: &mut RunReport) -> Result<bool, RunError> {
-        for found in self.crossings(before)? {
-            if self.show_timed(Some(before), found.time, ended)? || self.happen(&found, ended)? {
+        for found in crossings(&mut self.watches, before, &Moment::of_step(self.integrator, self.state))? {
+            if self.show_timed(Some(before), found.time, ended)?
+                || happen(&mut self.watches, self.integrator, &found, ended)?
+            {
                 return Ok(true);
             }
         }
@@ -350,6 +340,50 @@ where
         self
     }
 
+    /// Finds the zeros of a function of the motion, and shows each with its time: events of one step in their order,
+    /// whichever function they are of.
+    ///
+    /// Between two steps the motion is [`Integrator::part`] of one, and a zero is located on it until its time has no
+    /// further digit. The time is right to two of its roundings, or to the time in which the function changes by four of
+    /// its own, whichever is longer. The moment that is shown has that time and the motion then, and [`Moment::rising`] the
+    /// direction. The steps stay what they are. [`sections`](crate::recording::sections) has functions that are ready made.
+    ///
+    /// A function that is zero at the end of a step, to the bit, is crossed there if its signs before and after differ; one
+    /// that is zero at the start of the run isn't crossed then.
+    ///
+    /// # Examples
+    ///
+    /// When does a body that flips about its middle axis change sign?
+    ///
+    /// ```
+    /// use liestep::effects::RigidBody;
+    /// use liestep::recording::Event;
+    /// use liestep::{NonstandardInertia, SO3, Stepper};
+    /// use nalgebra::Vector3;
+    ///
+    /// let body = RigidBody { J_d: NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 3.0))? };
+    /// let stepper = Stepper::new(body, 0.01)?;
+    /// let mut state = stepper.start(SO3::identity(), Vector3::new(0.01, 2.0, 0.02))?;
+    /// let mut flips = Vec::new();
+    /// stepper
+    ///     .observed(&mut state)
+    ///     .event(Event::crossing(), |now| now.momentum().y, |now| flips.push(now.time()))
+    ///     .until(20.0)?;
+    /// assert!(flips.len() == 2 && flips.is_sorted());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn event<Y: Into<f64>, R: Answer>(
+        mut self,
+        event: Event,
+        mut function: impl FnMut(&Moment<'_, I>) -> Y + 'a,
+        mut then: impl FnMut(&Moment<'_, I>) -> R + 'a,
+    ) -> Self {
+        let function = Box::new(move |now: &Moment<'_, I>| function(now).into());
+        let then = Box::new(move |now: &Moment<'_, I>| unless_it_goes_on(then(now)));
+        self.watches.push(Watch::new(event, function, then));
+        self
+    }
+
     /// Makes steps up to the first that ends at this time or after it, s, unless an observer stops the run; none where the
     /// motion is there already.
     ///
@@ -373,31 +407,4 @@ where
         let made = self.state.steps();
         self.steps(if end > 0.0 { (end as u64).saturating_sub(made) } else { 0 })
     }
-}
-
-/// An answer, but for that to go on.
-#[hot]
-fn unless_it_goes_on(answer: impl Answer) -> Option<Box<Verdict>> {
-    match answer.verdict() {
-        Ok(ControlFlow::Continue(())) => None,
-        verdict => Some(Box::new(verdict)),
-    }
-}
-
-/// Shows a moment; returns whether the observer stops the run.
-fn show<I: Integrator>(
-    observer: &mut Observer<'_, I>,
-    now: &Moment<'_, I>,
-    ended: &mut RunReport,
-) -> Result<bool, RunError> {
-    observer(now).map_or(Ok(false), |verdict| stopped(verdict, reported(now.time()), ended))
-}
-
-#[cold]
-#[inline(never)]
-#[allow(clippy::boxed_local)] // so that its memory is freed here, too
-fn stopped(verdict: Box<Verdict>, time: f64, ended: &mut RunReport) -> Result<bool, RunError> {
-    let _ = verdict.map_err(|cause| RunError::Observer { time, cause })?;
-    ended.reason = Reason::Stopped { time };
-    Ok(true)
 }
