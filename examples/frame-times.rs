@@ -13,9 +13,9 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use liestep::effects::{Gravity, RigidBody};
-use liestep::motion::AnyStepper;
+use liestep::motion::{AnyStepper, Integrator as _};
 use liestep::nalgebra::{UnitQuaternion, Vector3};
-use liestep::with::Frames;
+use liestep::recording::Frames;
 use liestep::{NonstandardInertia, SO3, Stepper};
 
 /// In single precision, as games have it; of one type, whatever acts on it.

@@ -49,7 +49,7 @@
 //! | begin with the continuous Lagrangian `l(ξ, w)` | [`lagrangian`] with `l = …`, [`mechanics::ContinuousLagrangian`] |
 //! | hand the equations of motion to an ODE solver, or integrate them on any matrix group, of one body | [`motion::RightHandSide`], [`methods::CotangentGauss`] |
 //! | step, run, force, save and resume a motion | [`Stepper`], [`State`] |
-//! | record a run, stop it, be called at given times | [`Stepper::observed`](motion::Stepper#method.observed), [`with::Recorder`] |
+//! | record a run, stop it, be called at given times | [`Stepper::observed`](motion::Stepper#method.observed), [`recording::Recorder`] |
 //! | read a motion between its steps | [`motion::Integrator::state_at`] |
 //! | be more accurate | [`methods`]: orders 4 to 16 |
 //! | say how accurate, and not how | [`accuracy`] |
@@ -57,7 +57,7 @@
 //! | go on where a step has no solution, or lose less to rounding | [`with`] |
 //! | move on another group, or on one of your own | [`groups`], [`laws`] |
 //! | use `f32`, SIMD lanes, dual numbers | [`numbers::Real`] |
-//! | know how a motion depends on its start and its parameters; Lyapunov exponents | [`motion::linearised`] |
+//! | know how a motion depends on its start and its parameters; Lyapunov exponents | [`gradients`] |
 //! | know what is conserved, and what left and right mean here | [`conventions::guarantees`], [`conventions`] |
 //! | read from the beginning: first program, effects, groups, accuracy, hard cases, recording, … | [`guide`] |
 //! | come from the thesis' equations to a program | [`guide::thesis`] |
@@ -70,7 +70,7 @@
 //! | feature | |
 //! |---|---|
 //! | `dispatch` (default) | lanes, systems, chains, splittings and collocation take the vector instructions that the machine is found to have; no digit depends on it |
-//! | `std` (default) | tables as files and in threads of their own: [`with::Csv`], [`with::Background`] |
+//! | `std` (default) | tables as files and in threads of their own: [`recording::Csv`], [`recording::Background`] |
 //! | `libm` | in the place of `std` on targets without a standard library, which need an allocator: roots and sines are those of the crate `libm`, and so may differ in their last bit |
 //! | `glam033`, `mint` | nalgebra's vectors, matrices and rotations are converted from and to those of glam 0.33 and of mint; attitudes by way of `UnitQuaternion` |
 //! | `serde` | [`Stepper::checkpoint`](motion::Stepper#method.checkpoint): files that a run goes on from, bit for bit |
@@ -81,7 +81,8 @@
 //! direction, which `tests/rooms.rs` checks:
 //!
 //! ```text
-//! error, numbers ← groups ← mechanics ← {effects, solving} ← motion ← methods ← {with, accuracy};  groups ← laws
+//! error, numbers ← groups ← mechanics ← {effects, solving} ← motion ← gradients ← methods
+//! methods ← {recording, with, accuracy};  groups ← laws
 //! ```
 
 #![no_std]
@@ -109,6 +110,7 @@ mod solving;
 pub mod accuracy;
 pub mod conventions;
 pub mod effects;
+pub mod gradients;
 pub mod groups;
 pub mod guide;
 pub mod laws;
@@ -116,6 +118,7 @@ pub mod mechanics;
 pub mod methods;
 pub mod numbers;
 pub mod prelude;
+pub mod recording;
 pub mod with;
 
 #[doc(hidden)]

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 /// What each room may import besides itself, as `src/lib.rs` draws it. Documentation may name everything.
-const MAY_IMPORT: [(&str, &[&str]); 14] = [
+const MAY_IMPORT: [(&str, &[&str]); 16] = [
     ("error", &[]),
     ("numbers", &[]),
     ("groups", &["numbers"]),
@@ -13,8 +13,10 @@ const MAY_IMPORT: [(&str, &[&str]); 14] = [
     ("effects", &["error", "numbers", "groups", "mechanics"]),
     ("solving", &["error", "numbers", "groups", "mechanics"]),
     ("motion", &["error", "numbers", "groups", "mechanics", "solving"]),
-    ("methods", &["error", "numbers", "groups", "mechanics", "effects", "solving", "motion"]),
-    ("with", &["error", "numbers", "groups", "mechanics", "effects", "solving", "motion", "methods"]),
+    ("gradients", &["error", "numbers", "groups", "mechanics", "motion"]),
+    ("methods", &["error", "numbers", "groups", "mechanics", "effects", "solving", "motion", "gradients"]),
+    ("recording", &["error", "numbers", "groups", "mechanics", "motion", "methods"]),
+    ("with", &["error", "numbers", "groups", "mechanics", "motion", "recording"]),
     ("accuracy", &["error", "numbers", "groups", "mechanics", "effects", "solving", "motion", "methods"]),
     ("laws", &["numbers", "groups"]),
     ("conventions", &[]),

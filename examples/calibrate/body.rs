@@ -1,11 +1,11 @@
 //! The top, its gyroscope, and how the readings depend on twelve numbers.
 
 use liestep::effects::{Gravity, PrincipalBody};
+use liestep::gradients::Linearised;
 use liestep::groups::{CayleyRetraction, LieGroup as _, Retraction as _};
 use liestep::laws::samples::Random;
 use liestep::mechanics::{DiagonalNonstandardInertia, Sum};
 use liestep::methods::{Composed, CompositionScheme};
-use liestep::motion::linearised::Linearised;
 use liestep::{SO3, Stepper};
 use nalgebra::{Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
 use workbench::args::Failure;

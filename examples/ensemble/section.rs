@@ -8,7 +8,7 @@
 use liestep::effects::{Gravity, PrincipalBody};
 use liestep::mechanics::{DiagonalNonstandardInertia, Sum};
 use liestep::motion::Moment;
-use liestep::with::{Event, sections};
+use liestep::recording::{Event, sections};
 use liestep::{SO3, Stepper};
 use liestep_ensemble::{Ensemble, Failure, Member, Section, Store};
 use nalgebra::Vector3;

@@ -6,7 +6,7 @@ use liestep::mechanics::Effect;
 use liestep::methods::{CompositionScheme, ExactBody, SplittingScheme, SymmetricBody};
 use liestep::motion::{Integrator as _, Plan};
 use liestep::prelude::*;
-use liestep::with::{Event, sections};
+use liestep::recording::{Event, sections};
 use nalgebra::Vector3;
 
 use crate::convergence::{End, assert_order, counts};

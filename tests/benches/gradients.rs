@@ -19,9 +19,9 @@ mod counting;
 use core::hint::black_box;
 use std::time::Instant;
 
+use liestep::gradients::{Cotangent, Linearisable, Tape};
 use liestep::mechanics::{DiagonalNonstandardInertia, Inertia};
 use liestep::methods::{ExactBody, ProcessedScheme, SplittingScheme};
-use liestep::motion::linearised::{Cotangent, Linearisable, Tape};
 use liestep::{SO3, Stepper, lagrangian};
 use nalgebra::{UnitQuaternion, Vector3};
 

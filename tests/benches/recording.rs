@@ -16,7 +16,7 @@ use std::error::Error;
 use std::time::Instant;
 
 use liestep::effects::{Gravity, RigidBody};
-use liestep::with::{Background, Column, Csv, Recorder, Sink, SinkError};
+use liestep::recording::{Background, Column, Csv, Recorder, Sink, SinkError};
 use liestep::{NonstandardInertia, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -75,7 +75,7 @@ fn run(way: &str, steps: u32) -> Result<(), Box<dyn Error>> {
         "csv in a thread" => recorded!(Background::new(Csv::new(std::io::sink()))),
         "events" => {
             // One that never happens.
-            let event = liestep::with::Event::crossing();
+            let event = liestep::recording::Event::crossing();
             stepper.observed(&mut state).event(event, |now| now.momentum().x + 1e3, |_| ()).steps(steps)?;
         }
         other => return Err(format!("there is no way `{other}`").into()),

@@ -11,7 +11,7 @@ use liestep::mechanics::{ContinuousLagrangian, Inertia};
 use liestep::methods::{CotangentGauss, ExactBody, SplittingScheme};
 use liestep::motion::Moment;
 use liestep::numbers::{Coordinates, Lanes as _, Real};
-use liestep::with::{Event, RunError};
+use liestep::recording::{Event, RunError};
 use liestep::{SetupError, StepError, Stepper, lagrangian};
 use nalgebra::{
     Matrix2, Matrix3, Matrix4, RealField, SMatrix, SVector, SimdValue as _, Vector2, Vector3, Vector4, convert,

@@ -1,9 +1,9 @@
 //! Tangent maps and adjoints against dual numbers through the steps themselves, or differences of them.
 
+use liestep::gradients::{Cotangent, Linearisable, TangentOf, Tape};
 use liestep::groups::LieGroup;
 use liestep::laws::samples::{MatrixLieGroup, Random, along};
 use liestep::mechanics::{Effect, SecondDerivatives};
-use liestep::motion::linearised::{Cotangent, Linearisable, TangentOf, Tape};
 use liestep::motion::{Plan, Stepper};
 use liestep::numbers::Coordinates;
 use nalgebra::{SMatrix, SVector};

@@ -1,11 +1,11 @@
 //! What structure-preserving steps alone have: symplectic transition matrices, and adjoints by steps of `−h`.
 
 use liestep::effects::{Gravity, PrincipalBody};
+use liestep::gradients::{Cotangent, Gradient, Linearisable, Tape};
 use liestep::mechanics::{DiagonalNonstandardInertia, Effect, Inertia, Sum, Term as _};
 use liestep::methods::{
     CompositionScheme, ExactBody, Processed, ProcessedScheme, Split, SplittingScheme, SymmetricBody,
 };
-use liestep::motion::linearised::{Cotangent, Gradient, Linearisable, Tape};
 use liestep::{SO3, StepError, Stepper};
 use nalgebra::{SMatrix, Vector3};
 

@@ -9,7 +9,8 @@ use liestep::mechanics::{DiscreteLagrangian, Effect, Term};
 use liestep::methods::{CompositionScheme, ExactBody, ProcessedScheme, SplittingScheme, SymmetricBody};
 use liestep::motion::{AnyStepper, Integrator as _, Plan, Remedy, StepReport};
 use liestep::prelude::*;
-use liestep::with::{Checkpoint, CheckpointError, Compensable, Recorder, Table};
+use liestep::recording::{Recorder, Table};
+use liestep::with::{Checkpoint, CheckpointError, Compensable};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::relative;
 

@@ -6,7 +6,7 @@ use declarations::HeavyTop;
 use liestep::groups::LieGroup;
 use liestep::motion::{Integrator, Motion, ScalarIn, StepReport};
 use liestep::prelude::*;
-use liestep::with::{Ended, Event, Reason, RunError, sections};
+use liestep::recording::{Event, Reason, RunError, RunReport, sections};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::one_top::{VELOCITY, top};
@@ -26,7 +26,7 @@ fn a_run_ends_when_it_is_told_to() {
 
     let mut state = start.clone();
     let ended = stepper.observed(&mut state).stop_when(|now| now.momentum().x < -0.5).steps(1000).unwrap();
-    let Ended { steps, reason: Reason::Stopped { time }, iterations } = ended else { panic!("{ended:?}") };
+    let RunReport { steps, reason: Reason::Stopped { time }, iterations } = ended else { panic!("{ended:?}") };
     assert!(state.momentum().x < -0.5 && iterations >= steps);
     assert_eq!((state.steps(), time), (steps, stepper.time(&state)));
     // Where it is so at the start, no step is made, of a run that goes on neither.

@@ -13,7 +13,7 @@ use liestep::methods::CotangentGauss;
 use liestep::motion::{Integrator, Moment, Motion};
 use liestep::numbers::Entries as _;
 use liestep::prelude::*;
-use liestep::with::{Background, Column, Csv, RecordError, Recorder, RunError, Sink, SinkError, Table};
+use liestep::recording::{Background, Column, Csv, RecordError, Recorder, RunError, Sink, SinkError, Table};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::one_top::{Top, TopState, VELOCITY, top};

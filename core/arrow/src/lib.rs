@@ -5,7 +5,7 @@
 //! ```
 //! use liestep::effects::RigidBody;
 //! use liestep::nalgebra::Vector3;
-//! use liestep::with::Recorder;
+//! use liestep::recording::Recorder;
 //! use liestep::{NonstandardInertia, SO3, Stepper};
 //! use liestep_arrow::ArrowStream;
 //!
@@ -32,7 +32,7 @@ use std::sync::Arc;
 use arrow_array::{ArrayRef, Float64Array, RecordBatch};
 use arrow_ipc::writer::StreamWriter;
 use arrow_schema::{ArrowError, DataType, Field, Schema, SchemaRef};
-use liestep::with::{Column, RecordError, Sink, SinkError};
+use liestep::recording::{Column, RecordError, Sink, SinkError};
 
 /// A table as an Arrow IPC stream, a record batch for each block of rows.
 ///
@@ -138,7 +138,7 @@ mod tests {
     use arrow_ipc::reader::StreamReader;
     use liestep::effects::RigidBody;
     use liestep::nalgebra::Vector3;
-    use liestep::with::{Background, Column, Recorder, Sink as _, Table};
+    use liestep::recording::{Background, Column, Recorder, Sink as _, Table};
     use liestep::{NonstandardInertia, SO3, Stepper};
     use std::io::{self, Write};
     use std::sync::{Arc, Mutex};

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::ArgMatches;
-use liestep::with::{Column, Csv, Sink, SinkError};
+use liestep::recording::{Column, Csv, Sink, SinkError};
 use liestep_arrow::ArrowStream;
 use liestep_scene::{Mistake, Scene, SceneFile, System};
 

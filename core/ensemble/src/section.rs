@@ -3,7 +3,7 @@
 use core::fmt;
 
 use liestep::motion::{Integrator, Moment, ScalarIn};
-use liestep::with::{Event, Run, RunError};
+use liestep::recording::{Event, Run, RunError};
 
 use crate::Failure;
 use crate::digest::Digest;
@@ -16,7 +16,7 @@ type Find<M> = fn(&Section<M>, &M, &<M as Integrator>::State, u64) -> Result<Vec
 
 /// A surface, and what is kept where members cross it: [`Ensemble::section`] takes it.
 ///
-/// The surface is where a function of the motion is zero; [`sections`](liestep::with::sections) has some. Crossings lie
+/// The surface is where a function of the motion is zero; [`sections`](liestep::recording::sections) has some. Crossings lie
 /// between the ends of steps and are found as [`Run::event`] finds them, to the bit, with its contract of what isn't
 /// missed.
 ///
@@ -24,7 +24,7 @@ type Find<M> = fn(&Section<M>, &M, &<M as Integrator>::State, u64) -> Result<Vec
 ///
 /// ```
 /// use liestep::effects::RigidBody;
-/// use liestep::with::{Event, sections};
+/// use liestep::recording::{Event, sections};
 /// use liestep::{NonstandardInertia, SO3, Stepper};
 /// use liestep_ensemble::{Ensemble, Section};
 /// use nalgebra::Vector3;

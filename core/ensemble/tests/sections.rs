@@ -5,7 +5,7 @@
 use std::sync::{Arc, Mutex};
 
 use liestep::motion::Moment;
-use liestep::with::{Event, sections};
+use liestep::recording::{Event, sections};
 use liestep_ensemble::{Ensemble, Failed, Failure, Local, Reduced, Reduction, Section, Shard, Status, Store, Table};
 use nalgebra::Vector3;
 

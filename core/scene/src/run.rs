@@ -6,7 +6,7 @@ use std::fmt;
 
 use liestep::accuracy::{AccuracyError, Choice};
 use liestep::groups::Advected;
-use liestep::motion::{AnyState, AnyStepper, Moment};
+use liestep::motion::{AnyState, AnyStepper, Integrator as _, Moment};
 use liestep::with::{self, Csv, Reason, RecordError, Recorder, RunError, Sink};
 use liestep::{SO3, SetupError, StepError};
 use nalgebra::{Matrix3, Vector3};

@@ -48,7 +48,7 @@ use core::ops::Deref;
 use crate::error::StepError;
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scene, Vector};
-use crate::motion::{AnyState, AnyStepper, Stepper};
+use crate::motion::{AnyState, AnyStepper, Integrator as _, Stepper};
 
 /// How near to the true motion, and until when.
 ///

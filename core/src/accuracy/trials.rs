@@ -6,6 +6,7 @@ use super::Accuracy;
 use super::candidates::{Candidate, Method};
 use super::error::AccuracyError;
 use crate::groups::{Advected, LieGroup};
+use crate::motion::Integrator as _;
 use crate::numbers::{Coordinates as _, Entries};
 
 // Roots and powers without a standard library.
@@ -164,7 +165,7 @@ impl Trials {
         let run = || -> Result<_, AccuracyError> {
             let stepper = (candidate.make)(start.horizon / steps)?;
             let mut state = stepper.start(start.attitude, start.velocity)?;
-            let iterations = stepper.run_unexplained(&mut state, steps as u64).map_err(AccuracyError::Step)?;
+            let iterations = stepper.attempt(&mut state, steps as u64).map_err(AccuracyError::Step)?;
             let once = stepper.cost().once;
             let a_step = (stepper.cost().of_run(steps as u64, iterations) - once) / steps;
             let end = End { attitude: state.attitude(), velocity: stepper.velocity(&state) };

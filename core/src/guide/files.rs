@@ -6,7 +6,7 @@
 //!
 //! | file | written by | format |
 //! |---|---|---|
-//! | `top.csv` | [`Csv`](crate::with::Csv); `liestep run --csv` | comma-separated values, RFC 4180 with line feeds |
+//! | `top.csv` | [`Csv`](crate::recording::Csv); `liestep run --csv` | comma-separated values, RFC 4180 with line feeds |
 //! | `top.arrows` | `liestep_arrow::ArrowStream` in `core/arrow`; `liestep run --arrow` | Arrow IPC stream |
 //! | `00000000-….arrow` in a folder | `liestep-ensemble` | Arrow IPC file ("Feather"), one for each chunk of members |
 //! | tables of errors and costs | [`Refinement::to_csv`](crate::accuracy::Refinement::to_csv), [`to_json`](crate::accuracy::Refinement::to_json) | CSV, JSON |
@@ -14,7 +14,7 @@
 //!
 //! # What a table has
 //!
-//! A row is a moment, a column a double. The names are those of the [`Recorder`](crate::with::Recorder): `t`, the unit quaternion
+//! A row is a moment, a column a double. The names are those of the [`Recorder`](crate::recording::Recorder): `t`, the unit quaternion
 //! `q_w, q_x, q_y, q_z` (body to space), `velocity_x, …` and `momentum_x, …` (body frame), `energy`, `defect`, then
 //! those of one's own. On other groups the attitude is its matrix, `g_11, g_12, …`. Of the two quaternions of an attitude the
 //! one nearer to the row before is written, so columns have no jumps.
@@ -30,7 +30,7 @@
 //!
 //! ```
 //! use liestep::prelude::*;
-//! use liestep::with::{Csv, Recorder};
+//! use liestep::recording::{Csv, Recorder};
 //!
 //! let body = RigidBody { J_d: NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0))? };
 //! let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };

@@ -11,12 +11,12 @@
 //!
 //! | you ask | |
 //! |---|---|
-//! | how one number at the end depends on everything | [`adjoint`](crate::motion::linearised::Linearised::adjoint) |
-//! | how everything at the end depends on a few numbers | [`step`](crate::motion::linearised::Linearised::step) with a [`Tangent`](crate::motion::linearised::Tangent) |
-//! | the state transition matrix | [`Tangent::transition`](crate::motion::linearised::Tangent::transition) |
-//! | Lyapunov exponents | [`lyapunov_exponents`](crate::motion::linearised::Linearised::lyapunov_exponents) |
+//! | how one number at the end depends on everything | [`adjoint`](crate::gradients::Linearised::adjoint) |
+//! | how everything at the end depends on a few numbers | [`step`](crate::gradients::Linearised::step) with a [`Tangent`](crate::gradients::Tangent) |
+//! | the state transition matrix | [`Tangent::transition`](crate::gradients::Tangent::transition) |
+//! | Lyapunov exponents | [`lyapunov_exponents`](crate::gradients::Linearised::lyapunov_exponents) |
 //!
-//! [`motion::linearised`](crate::motion::linearised) has the formulas, and the coordinates: a change of the state is `(ζ, δμ)`, with
+//! [`gradients`](crate::gradients) has the formulas, and the coordinates: a change of the state is `(ζ, δμ)`, with
 //! `g ← g exp ζ̂`.
 //!
 //! # The adjoint
@@ -25,7 +25,7 @@
 //! difference:
 //!
 //! ```
-//! use liestep::motion::linearised::{Cotangent, Tape};
+//! use liestep::gradients::{Cotangent, Tape};
 //! use liestep::prelude::*;
 //!
 //! let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0))?;
@@ -59,8 +59,8 @@
 //! cost) are as simple as a number at the end. A whole gradient takes two plain steps for each step of a heavy top
 //! (`cargo bench --bench gradients`): beside the step itself one linear system, and the chain rule from both momenta back,
 //! which costs a few times what they cost themselves; a parameter more is a few operations more. It needs the states on the
-//! way: a [`Tape`](crate::motion::linearised::Tape) keeps all or checkpoints, and where `l_d` is self-adjoint
-//! [`backwards`](crate::motion::linearised::Linearised::backwards) keeps nothing and goes back by steps of `−h`.
+//! way: a [`Tape`](crate::gradients::Tape) keeps all or checkpoints, and where `l_d` is self-adjoint
+//! [`backwards`](crate::gradients::Linearised::backwards) keeps nothing and goes back by steps of `−h`.
 //!
 //! # The transition matrix and chaos
 //!

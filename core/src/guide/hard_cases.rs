@@ -10,8 +10,8 @@
 //! | parameters or a start that can't be used | [`SetupError`](crate::SetupError), from `new` and `start` |
 //! | a step without a solution | [`StepError`](crate::StepError), from `step` and `run`; the state is what it was |
 //! | an accuracy that can't be had | [`AccuracyError`](crate::accuracy::AccuracyError) |
-//! | a run that is observed and can't go on | [`RunError`](crate::with::RunError), with the time |
-//! | a file that can't be written, a checkpoint of another scene | [`RecordError`](crate::with::RecordError), `with::CheckpointError` (feature `serde`) |
+//! | a run that is observed and can't go on | [`RunError`](crate::recording::RunError), with the time |
+//! | a file that can't be written, a checkpoint of another scene | [`RecordError`](crate::recording::RecordError), `with::CheckpointError` (feature `serde`) |
 //!
 //! No input makes the library panic, hang, or go on with NaN. What is read off a state may be NaN where there is nothing to
 //! read: the velocity and the energy of a momentum that no velocity has, which an `l` that isn't quadratic in the velocity

@@ -89,8 +89,10 @@
 //! | `core/src/mechanics` | terms, sums, inertias, continuous equations: [`mechanics`](crate::mechanics) |
 //! | `core/src/effects` | the library of bodies, potentials and forces, each a declaration: [`effects`](crate::effects) |
 //! | `core/src/solving` | the equation of a step |
-//! | `core/src/motion` | states, steppers, plans, derivatives: [`motion`](crate::motion) |
+//! | `core/src/motion` | states, steppers, plans: [`motion`](crate::motion) |
+//! | `core/src/gradients` | derivatives of steps: [`gradients`](crate::gradients) |
 //! | `core/src/methods` | plans of higher order: [`methods`](crate::methods) |
+//! | `core/src/recording` | runs that are observed, recorded and stopped: [`recording`](crate::recording) |
 //! | `core/src/with` | what is put around a plan: [`with`](crate::with) |
 //! | `core/src/accuracy` | choosing and measuring: [`accuracy`](crate::accuracy) |
 //! | `core/src/laws` | the laws of groups as tests: [`laws`](crate::laws) |

@@ -10,7 +10,7 @@
 //!
 //! ```
 //! use liestep::prelude::*;
-//! use liestep::with::{Csv, Event, Reason, Recorder, sections};
+//! use liestep::recording::{Csv, Event, Reason, Recorder, sections};
 //!
 //! let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0))?;
 //! let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
@@ -37,11 +37,11 @@
 //!
 //! | | |
 //! |---|---|
-//! | the columns, with their units | [`Recorder`](crate::with::Recorder) |
-//! | to memory, to CSV, by a thread of its own | [`Table`](crate::with::Table), [`Csv`](crate::with::Csv), [`Background`](crate::with::Background) |
+//! | the columns, with their units | [`Recorder`](crate::recording::Recorder) |
+//! | to memory, to CSV, by a thread of its own | [`Table`](crate::recording::Table), [`Csv`](crate::recording::Csv), [`Background`](crate::recording::Background) |
 //! | to Arrow | `liestep_arrow::ArrowStream`, the package in `core/arrow` |
-//! | to a format of one's own | [`Sink`](crate::with::Sink): three functions |
-//! | when a run stops, and what it returns | [`Run`](crate::with::Run), [`Ended`](crate::with::Ended), [`RunError`](crate::with::RunError) |
+//! | to a format of one's own | [`Sink`](crate::recording::Sink): three functions |
+//! | when a run stops, and what it returns | [`Run`](crate::recording::Run), [`RunReport`](crate::recording::RunReport), [`RunError`](crate::recording::RunError) |
 //! | what the files mean elsewhere | [`files`](super::files) |
 //! | what it costs | `cargo bench --bench recording` |
 //!
@@ -58,14 +58,14 @@
 //!
 //! Events are located on it until their time has no further digit. Of a function that changes its sign over a step one
 //! zero is found in any case. With a bound of the second derivative
-//! ([`Event::curvature`](crate::with::Event::curvature)) none is missed. [`sections`](crate::with::sections) has
+//! ([`Event::curvature`](crate::recording::Event::curvature)) none is missed. [`sections`](crate::recording::sections) has
 //! functions ready made: a plane, a cone, the passage of the vertical, the end of a tumble.
 //!
 //! A symmetric free body turns steadily about its momentum, so the times are known:
 //!
 //! ```
 //! use liestep::prelude::*;
-//! use liestep::with::{Event, sections};
+//! use liestep::recording::{Event, sections};
 //!
 //! let body = RigidBody { J_d: NonstandardInertia::from_principal_moments(Vector3::new(2.0, 2.0, 1.0))? };
 //! let stepper = Stepper::composed(body, 0.05, liestep::methods::CompositionScheme::SUZUKI_4)?;
@@ -87,7 +87,7 @@
 //!
 //! # In a game, by frame times
 //!
-//! A renderer has times of its own: 16 ms, 17 ms, once 100 ms, and half of that in slow motion. [`Frames`](crate::with::Frames)
+//! A renderer has times of its own: 16 ms, 17 ms, once 100 ms, and half of that in slow motion. [`Frames`](crate::recording::Frames)
 //! makes the whole steps that are due and shows a part of the next one. Nothing lags, and the motion is the same at any frame
 //! rate, to the bit. A real toy spins at 100 to 300 rad/s, which is more than a step of 1/60 s can turn, 90°:
 //! `or_substeps` divides such steps. In single precision:
@@ -95,7 +95,7 @@
 //! ```
 //! use liestep::effects::{Gravity, RigidBody};
 //! use liestep::nalgebra::{UnitQuaternion, Vector3};
-//! use liestep::with::Frames;
+//! use liestep::recording::Frames;
 //! use liestep::{NonstandardInertia, StepError, Stepper};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {

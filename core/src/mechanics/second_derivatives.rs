@@ -23,7 +23,7 @@ use crate::numbers::{Entries, Real, zero};
 ///
 /// # Source
 ///
-/// \[RDAE, (2.6), (2.7)\], differentiated; [`motion::linearised`](crate::motion::linearised) has the formulas.
+/// \[RDAE, (2.6), (2.7)\], differentiated; [`gradients`](crate::gradients) has the formulas.
 #[diagnostic::on_unimplemented(
     message = "the derivatives of the steps of `{Self}` aren't known",
     label = "declared without `gradients`",

@@ -4,29 +4,38 @@ use alloc::boxed::Box;
 use alloc::rc::Rc;
 use core::any::Any;
 use core::fmt::{self, Debug};
+use core::mem;
 
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
-use crate::mechanics::{Effect, FactoredInertia, Group, Scalar, Vector};
+use crate::mechanics::{Effect, FactoredInertia, Group};
 use crate::motion::integrator::Integrator;
 use crate::motion::plan::{Cost, NextSteps, Plan};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
-use crate::motion::stepper::{StateOf, Stepper};
+use crate::motion::stepper::Stepper;
 use crate::motion::summation::Motion;
 use crate::numbers::real;
 
 /// A [`Stepper`] of any scene and any method on the group `G`, by [`Stepper::into_any`]: for programs that find out when
 /// they run what they step.
 ///
-/// A step costs an indirect call more.
+/// It steps, runs and is read as an [`Integrator`]. A step costs an indirect call more. A state of another stepper on this
+/// group goes on from its attitude and momentum.
 ///
 /// A copy is the same stepper, and costs nothing.
-pub struct AnyStepper<G: LieGroup, A>(Rc<dyn Erased<G, A>>);
+pub struct AnyStepper<G: LieGroup, A> {
+    stepper: Rc<dyn Integrator<Group = G, Advected = A, State = AnyState<G, A>>>,
+    start: Rc<Start<G, A>>,
+    cost: Cost,
+}
+
+/// Starts a motion from an attitude and a velocity.
+type Start<G, A> = dyn Fn(G, <G as LieGroup>::Vector) -> Result<AnyState<G, A>, SetupError>;
 
 impl<G: LieGroup, A> Clone for AnyStepper<G, A> {
     fn clone(&self) -> Self {
-        Self(Rc::clone(&self.0))
+        Self { stepper: Rc::clone(&self.stepper), start: Rc::clone(&self.start), cost: self.cost }
     }
 }
 
@@ -61,6 +70,12 @@ impl<K: Any + Clone + Debug + PartialEq> ErasedKept for K {
     }
 }
 
+impl AnyKept {
+    fn of(kept: impl ErasedKept) -> Self {
+        Self(Box::new(kept))
+    }
+}
+
 impl Clone for AnyKept {
     fn clone(&self) -> Self {
         // Through the box: that is such a memory, too.
@@ -80,279 +95,195 @@ impl Debug for AnyKept {
     }
 }
 
-/// A stepper with its types left out. A run is so many steps, and whether an error is explained.
-trait Erased<G: LieGroup, A> {
-    fn start(&self, attitude: G, velocity: G::Vector) -> Result<AnyState<G, A>, SetupError>;
-    fn step(&self, motion: &mut Motion<G, A>, kept: &mut AnyKept) -> Result<StepReport, StepError>;
-    fn run(&self, motion: &mut Motion<G, A>, kept: &mut AnyKept, run: (u64, bool)) -> Result<u64, StepError>;
-    fn run_shown(
-        &self,
-        motion: &mut Motion<G, A>,
-        kept: &mut AnyKept,
-        steps: u64,
-        next: &mut NextSteps<'_, G, A>,
-    ) -> Result<u64, StepError>;
-    fn part(&self, motion: &Motion<G, A>, kept: &AnyKept, fraction: G::Scalar) -> Result<Motion<G, A>, StepError>;
-    fn adopt(&self, motion: &Motion<G, A>) -> AnyState<G, A>;
-    fn step_size(&self) -> G::Scalar;
-    fn velocity(&self, motion: &Motion<G, A>) -> G::Vector;
-    fn energy(&self, motion: &Motion<G, A>) -> G::Scalar;
-    fn factored_inertia(&self) -> Option<FactoredInertia<G>>;
-    fn velocity_and_energy(
-        &self,
-        motion: &Motion<G, A>,
-        inertia: Option<&FactoredInertia<G>>,
-    ) -> (G::Vector, G::Scalar);
-    fn cost(&self) -> Cost;
+/// How a wrapper is read: as what it wraps, of this motion.
+macro_rules! read_by {
+    ($self:ident, $motion:ident: $type:ty, $inner:expr, $seen:expr) => {
+        fn step_size(&$self) -> G::Scalar {
+            $inner.step_size()
+        }
+
+        fn velocity(&$self, $motion: $type) -> G::Vector {
+            $inner.velocity($seen)
+        }
+
+        fn energy(&$self, $motion: $type) -> G::Scalar {
+            $inner.energy($seen)
+        }
+
+        fn factored_inertia(&$self) -> Option<FactoredInertia<G>> {
+            $inner.factored_inertia()
+        }
+
+        fn velocity_and_energy(
+            &$self,
+            $motion: $type,
+            inertia: Option<&FactoredInertia<G>>,
+        ) -> (G::Vector, G::Scalar) {
+            $inner.velocity_and_energy($seen, inertia)
+        }
+    };
 }
 
-/// The state that a stepper of its own type needs: what another has kept is of no use, and it begins anew.
-fn own<S, P>(stepper: &Stepper<S, P>, motion: &Motion<Group<S>, S::Advected>, kept: &AnyKept) -> StateOf<S, P>
+/// An integrator that leaves out the type of its state.
+struct Erased<I>(I);
+
+impl<I, G, A, K> Erased<I>
 where
-    S: Effect,
-    P: Plan<S, Kept: 'static>,
+    I: Integrator<Group = G, Advected = A, State = State<G, A, K>>,
+    G: LieGroup,
+    A: Advected<G>,
+    K: ErasedKept + Clone,
 {
-    let kept = kept.0.as_ref().as_any().downcast_ref::<P::Kept>().copied();
-    State { motion: *motion, kept: kept.unwrap_or_else(|| stepper.plan.keep(&stepper.scene, motion)) }
-}
-
-/// Writes a state back.
-fn back<G: LieGroup, A, K: Any + Copy + Debug + PartialEq>(
-    state: State<G, A, K>,
-    motion: &mut Motion<G, A>,
-    kept: &mut AnyKept,
-) {
-    *motion = state.motion;
-    match kept.0.as_mut().as_any_mut().downcast_mut::<K>() {
-        Some(place) => *place = state.kept,
-        None => *kept = AnyKept(Box::new(state.kept)),
-    }
-}
-
-impl<S, P> Erased<Group<S>, S::Advected> for Stepper<S, P>
-where
-    S: Effect,
-    P: Plan<S, Kept: 'static>,
-{
-    fn start(&self, attitude: Group<S>, velocity: Vector<S>) -> Result<AnyState<Group<S>, S::Advected>, SetupError> {
-        let State { motion, kept } = self.start(attitude, velocity)?;
-        Ok(State { motion, kept: AnyKept(Box::new(kept)) })
+    /// The state that the integrator needs: what another has kept is of no use, and it begins anew.
+    fn own(&self, state: &AnyState<G, A>) -> I::State {
+        match state.kept.0.as_ref().as_any().downcast_ref::<K>() {
+            Some(kept) => State { motion: state.motion, kept: kept.clone() },
+            None => {
+                let mut own = self.0.adopt(&state.motion);
+                own.motion.steps = state.steps;
+                own
+            }
+        }
     }
 
-    fn step(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut AnyKept) -> Result<StepReport, StepError> {
-        let mut state = own(self, motion, kept);
-        let report = self.step_or_run(&mut state)?;
-        back(state, motion, kept);
-        Ok(report)
-    }
-
-    fn run(
-        &self,
-        motion: &mut Motion<Group<S>, S::Advected>,
-        kept: &mut AnyKept,
-        (steps, explain): (u64, bool),
-    ) -> Result<u64, StepError> {
-        let mut state = own(self, motion, kept);
-        let iterations = if explain { self.run(&mut state, steps)? } else { self.run_unexplained(&mut state, steps)? };
-        back(state, motion, kept);
-        Ok(iterations)
-    }
-
-    fn run_shown(
-        &self,
-        motion: &mut Motion<Group<S>, S::Advected>,
-        kept: &mut AnyKept,
-        steps: u64,
-        next: &mut NextSteps<'_, Group<S>, S::Advected>,
-    ) -> Result<u64, StepError> {
-        let mut state = own(self, motion, kept);
-        let made = Integrator::run_shown(self, &mut state, steps, next);
-        // After an error, too, there are the steps before it.
-        if state.steps != motion.steps {
-            back(state, motion, kept);
+    /// Makes steps. After an error, too, the state is that after the last of them.
+    fn change<R>(&self, state: &mut AnyState<G, A>, steps: impl FnOnce(&mut I::State) -> R) -> R {
+        let mut own = self.own(state);
+        let made = steps(&mut own);
+        if own.steps != state.steps {
+            state.motion = own.motion;
+            match state.kept.0.as_mut().as_any_mut().downcast_mut::<K>() {
+                Some(place) => *place = own.kept,
+                None => state.kept = AnyKept::of(own.kept),
+            }
         }
         made
     }
+}
 
-    fn part(
-        &self,
-        motion: &Motion<Group<S>, S::Advected>,
-        kept: &AnyKept,
-        fraction: Scalar<S>,
-    ) -> Result<Motion<Group<S>, S::Advected>, StepError> {
-        self.fraction_of_a_step(&own(self, motion, kept), fraction)
+fn erased<G: LieGroup, A, K: ErasedKept>(state: State<G, A, K>) -> AnyState<G, A> {
+    State { motion: state.motion, kept: AnyKept::of(state.kept) }
+}
+
+impl<I, G, A, K> Integrator for Erased<I>
+where
+    I: Integrator<Group = G, Advected = A, State = State<G, A, K>>,
+    G: LieGroup,
+    A: Advected<G>,
+    K: ErasedKept + Clone,
+{
+    type Group = G;
+    type Advected = A;
+    type State = AnyState<G, A>;
+
+    fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
+        self.change(state, |own| self.0.step(own))
     }
 
-    fn adopt(&self, motion: &Motion<Group<S>, S::Advected>) -> AnyState<Group<S>, S::Advected> {
-        let State { motion, kept } = self.adopt(motion);
-        State { motion, kept: AnyKept(Box::new(kept)) }
+    fn run(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
+        self.change(state, |own| self.0.run(own, steps))
     }
 
-    fn step_size(&self) -> Scalar<S> {
-        self.step_size()
+    fn attempt(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
+        self.change(state, |own| self.0.attempt(own, steps))
     }
 
-    fn velocity(&self, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
-        self.velocity(motion)
+    fn run_shown(&self, state: &mut Self::State, steps: u64, next: &mut NextSteps<'_, G, A>) -> Result<u64, StepError> {
+        self.change(state, |own| self.0.run_shown(own, steps, next))
     }
 
-    fn energy(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S> {
-        self.energy(motion)
+    fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, A>, StepError> {
+        self.0.part(&self.own(state), fraction)
     }
 
-    fn factored_inertia(&self) -> Option<FactoredInertia<Group<S>>> {
-        Integrator::factored_inertia(self)
+    fn adopt(&self, motion: &Motion<G, A>) -> Self::State {
+        erased(self.0.adopt(motion))
     }
 
-    fn velocity_and_energy(
-        &self,
-        motion: &Motion<Group<S>, S::Advected>,
-        inertia: Option<&FactoredInertia<Group<S>>>,
-    ) -> (Vector<S>, Scalar<S>) {
-        Integrator::velocity_and_energy(self, motion, inertia)
-    }
-
-    fn cost(&self) -> Cost {
-        self.plan.cost()
-    }
+    read_by!(self, motion: &Motion<G, A>, self.0, motion);
 }
 
 impl<S: Effect + 'static, P: Plan<S, Kept: 'static> + 'static> Stepper<S, P> {
     /// This stepper without its scene and method in the type.
     #[must_use]
     pub fn into_any(self) -> AnyStepper<Group<S>, S::Advected> {
-        AnyStepper(Rc::new(self))
+        let (cost, stepper) = (self.plan.cost(), Rc::new(Erased(self)));
+        let start = Rc::clone(&stepper);
+        let start = Rc::new(move |attitude, velocity| start.0.start(attitude, velocity).map(erased));
+        AnyStepper { stepper, start, cost }
     }
 }
 
-impl<G: LieGroup, A: Copy> AnyStepper<G, A> {
+impl<G: LieGroup, A> AnyStepper<G, A> {
     /// As [`Stepper::start`].
     ///
     /// # Errors
     ///
     /// As [`Stepper::start`].
     pub fn start(&self, attitude: impl Into<G>, velocity: G::Vector) -> Result<AnyState<G, A>, SetupError> {
-        self.0.start(attitude.into(), velocity)
-    }
-
-    /// As [`Stepper::step`]. A state of another stepper on this group goes on from its attitude and momentum.
-    ///
-    /// # Errors
-    ///
-    /// As [`Stepper::step`].
-    pub fn step(&self, state: &mut AnyState<G, A>) -> Result<StepReport, StepError> {
-        self.0.step(&mut state.motion, &mut state.kept)
-    }
-
-    /// As [`Stepper::run`].
-    ///
-    /// # Errors
-    ///
-    /// As [`Stepper::run`].
-    pub fn run(&self, state: &mut AnyState<G, A>, steps: u64) -> Result<u64, StepError> {
-        self.0.run(&mut state.motion, &mut state.kept, (steps, true))
-    }
-
-    /// As [`Stepper::run_unexplained`].
-    pub(crate) fn run_unexplained(&self, state: &mut AnyState<G, A>, steps: u64) -> Result<u64, StepError> {
-        self.0.run(&mut state.motion, &mut state.kept, (steps, false))
-    }
-
-    /// As [`Integrator::run_shown`].
-    pub(crate) fn run_shown(
-        &self,
-        state: &mut AnyState<G, A>,
-        steps: u64,
-        next: &mut NextSteps<'_, G, A>,
-    ) -> Result<u64, StepError> {
-        self.0.run_shown(&mut state.motion, &mut state.kept, steps, next)
-    }
-
-    /// As [`Integrator::part`].
-    pub(crate) fn fraction_of_a_step(
-        &self,
-        state: &AnyState<G, A>,
-        fraction: G::Scalar,
-    ) -> Result<Motion<G, A>, StepError> {
-        self.0.part(&state.motion, &state.kept, fraction)
-    }
-
-    /// As [`Stepper::adopt`].
-    #[must_use]
-    pub fn adopt(&self, motion: &Motion<G, A>) -> AnyState<G, A> {
-        self.0.adopt(motion)
-    }
-
-    /// The step `h`, s.
-    #[must_use]
-    pub fn step_size(&self) -> G::Scalar {
-        self.0.step_size()
-    }
-
-    /// The time since the start, `n h`, s; never accumulated.
-    #[must_use]
-    #[allow(clippy::cast_precision_loss)] // as `Stepper::time`
-    pub fn time(&self, motion: &Motion<G, A>) -> G::Scalar {
-        self.step_size() * real(motion.steps as f64)
-    }
-
-    /// As [`Stepper::velocity`].
-    #[must_use]
-    pub fn velocity(&self, motion: &Motion<G, A>) -> G::Vector {
-        self.0.velocity(motion)
-    }
-
-    /// As [`Stepper::energy`].
-    #[must_use]
-    pub fn energy(&self, motion: &Motion<G, A>) -> G::Scalar {
-        self.0.energy(motion)
-    }
-
-    /// As [`Integrator::factored_inertia`].
-    pub(crate) fn factored_inertia(&self) -> Option<FactoredInertia<G>> {
-        self.0.factored_inertia()
-    }
-
-    /// As [`Integrator::velocity_and_energy`].
-    pub(crate) fn velocity_and_energy(
-        &self,
-        motion: &Motion<G, A>,
-        inertia: Option<&FactoredInertia<G>>,
-    ) -> (G::Vector, G::Scalar) {
-        self.0.velocity_and_energy(motion, inertia)
+        (self.start)(attitude.into(), velocity)
     }
 
     /// As [`Plan::cost`].
     #[must_use]
     pub fn cost(&self) -> Cost {
-        self.0.cost()
+        self.cost
     }
+}
+
+impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
+    type Group = G;
+    type Advected = A;
+    type State = AnyState<G, A>;
+
+    fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
+        self.stepper.step(state)
+    }
+
+    fn run(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
+        self.stepper.run(state, steps)
+    }
+
+    fn attempt(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
+        self.stepper.attempt(state, steps)
+    }
+
+    fn run_shown(&self, state: &mut Self::State, steps: u64, next: &mut NextSteps<'_, G, A>) -> Result<u64, StepError> {
+        self.stepper.run_shown(state, steps, next)
+    }
+
+    fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, A>, StepError> {
+        self.stepper.part(state, fraction)
+    }
+
+    fn adopt(&self, motion: &Motion<G, A>) -> Self::State {
+        self.stepper.adopt(motion)
+    }
+
+    read_by!(self, motion: &Motion<G, A>, self.stepper, motion);
 }
 
 /// A stepper that hides what is advected: it is kept with what the method keeps.
 struct Hiding<G: LieGroup, A>(AnyStepper<G, A>);
 
 #[derive(Clone, Debug, PartialEq)]
-struct Hidden<A> {
+struct HiddenState<A> {
     advected: A,
     kept: AnyKept,
 }
 
-impl<G: LieGroup, A: Advected<G> + 'static> Hiding<G, A> {
-    /// As [`own`].
-    fn own(&self, motion: &Motion<G, ()>, kept: &AnyKept) -> AnyState<G, A> {
-        match kept.0.as_ref().as_any().downcast_ref::<Hidden<A>>() {
-            Some(hidden) => State { motion: seeing(motion, hidden.advected), kept: hidden.kept.clone() },
-            None => self.anew(motion),
-        }
+impl<G: LieGroup, A: Advected<G>> Hiding<G, A> {
+    /// Which values it is told to see makes no difference: it sees its own.
+    fn seen(&self, motion: &Motion<G, ()>) -> AnyState<G, A> {
+        self.0.adopt(&seeing(motion, A::from_entries(&mut || real(0.0))))
     }
 
-    /// The state of this stepper with the attitude and the momentum of another.
-    fn anew(&self, motion: &Motion<G, ()>) -> AnyState<G, A> {
-        // Which values it is told to see makes no difference: it sees its own.
-        let mut state = self.0.adopt(&seeing(motion, A::from_entries(&mut || real(0.0))));
-        state.motion.steps = motion.steps;
-        state
+    fn change<R>(&self, state: &mut State<G, (), HiddenState<A>>, steps: impl FnOnce(&mut AnyState<G, A>) -> R) -> R {
+        let kept = mem::replace(&mut state.kept.kept, AnyKept::of(()));
+        let mut own = State { motion: seeing(&state.motion, state.kept.advected), kept };
+        let made = steps(&mut own);
+        *state = hidden(own);
+        made
     }
 }
 
@@ -361,103 +292,59 @@ fn seeing<G: LieGroup, A, B>(motion: &Motion<G, A>, advected: B) -> Motion<G, B>
     Motion { attitude: motion.attitude, momentum: motion.momentum, advected, steps: motion.steps }
 }
 
-fn hidden<G: LieGroup, A: Debug + PartialEq + Copy + 'static>(state: AnyState<G, A>) -> AnyState<G, ()> {
-    let State { motion, kept } = state;
-    State { motion: seeing(&motion, ()), kept: AnyKept(Box::new(Hidden { advected: motion.advected, kept })) }
+fn hidden<G: LieGroup, A: Copy>(State { motion, kept }: AnyState<G, A>) -> State<G, (), HiddenState<A>> {
+    State { motion: seeing(&motion, ()), kept: HiddenState { advected: motion.advected, kept } }
 }
 
-fn taken_apart<G: LieGroup>(state: AnyState<G, ()>) -> (Motion<G, ()>, AnyKept) {
-    (state.motion, state.kept)
-}
+impl<G: LieGroup, A: Advected<G>> Integrator for Hiding<G, A> {
+    type Group = G;
+    type Advected = ();
+    type State = State<G, (), HiddenState<A>>;
 
-impl<G: LieGroup, A: Advected<G> + 'static> Erased<G, ()> for Hiding<G, A> {
-    fn start(&self, attitude: G, velocity: G::Vector) -> Result<AnyState<G, ()>, SetupError> {
-        self.0.start(attitude, velocity).map(hidden)
+    fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
+        self.change(state, |own| self.0.step(own))
     }
 
-    fn step(&self, motion: &mut Motion<G, ()>, kept: &mut AnyKept) -> Result<StepReport, StepError> {
-        let mut state = self.own(motion, kept);
-        let report = self.0.step(&mut state)?;
-        (*motion, *kept) = taken_apart(hidden(state));
-        Ok(report)
+    fn run(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
+        self.change(state, |own| self.0.run(own, steps))
     }
 
-    fn run(
-        &self,
-        motion: &mut Motion<G, ()>,
-        kept: &mut AnyKept,
-        (steps, explain): (u64, bool),
-    ) -> Result<u64, StepError> {
-        let mut state = self.own(motion, kept);
-        let made = if explain { self.0.run(&mut state, steps) } else { self.0.run_unexplained(&mut state, steps) };
-        let iterations = made?;
-        (*motion, *kept) = taken_apart(hidden(state));
-        Ok(iterations)
+    fn attempt(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
+        self.change(state, |own| self.0.attempt(own, steps))
     }
 
     fn run_shown(
         &self,
-        motion: &mut Motion<G, ()>,
-        kept: &mut AnyKept,
+        state: &mut Self::State,
         steps: u64,
         next: &mut NextSteps<'_, G, ()>,
     ) -> Result<u64, StepError> {
-        let mut state = self.own(motion, kept);
-        let made = self.0.run_shown(&mut state, steps, &mut |shown| next(&seeing(shown, ())));
-        if state.steps != motion.steps {
-            (*motion, *kept) = taken_apart(hidden(state));
-        }
-        made
+        self.change(state, |own| self.0.run_shown(own, steps, &mut |shown| next(&seeing(shown, ()))))
     }
 
-    fn part(&self, motion: &Motion<G, ()>, kept: &AnyKept, fraction: G::Scalar) -> Result<Motion<G, ()>, StepError> {
-        let part = self.0.fraction_of_a_step(&self.own(motion, kept), fraction)?;
+    fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, ()>, StepError> {
+        let HiddenState { advected, kept } = state.kept.clone();
+        let part = self.0.part(&State { motion: seeing(&state.motion, advected), kept }, fraction)?;
         Ok(seeing(&part, ()))
     }
 
-    fn adopt(&self, motion: &Motion<G, ()>) -> AnyState<G, ()> {
-        let mut state = self.anew(motion);
-        state.motion.steps = 0;
-        hidden(state)
+    fn adopt(&self, motion: &Motion<G, ()>) -> Self::State {
+        hidden(self.seen(motion))
     }
 
-    fn step_size(&self) -> G::Scalar {
-        self.0.step_size()
-    }
-
-    fn velocity(&self, motion: &Motion<G, ()>) -> G::Vector {
-        self.0.velocity(&self.anew(motion))
-    }
-
-    fn energy(&self, motion: &Motion<G, ()>) -> G::Scalar {
-        self.0.energy(&self.anew(motion))
-    }
-
-    fn factored_inertia(&self) -> Option<FactoredInertia<G>> {
-        self.0.factored_inertia()
-    }
-
-    fn velocity_and_energy(
-        &self,
-        motion: &Motion<G, ()>,
-        inertia: Option<&FactoredInertia<G>>,
-    ) -> (G::Vector, G::Scalar) {
-        self.0.velocity_and_energy(&self.anew(motion), inertia)
-    }
-
-    fn cost(&self) -> Cost {
-        self.0.cost()
-    }
+    read_by!(self, motion: &Motion<G, ()>, self.0, &self.seen(motion));
 }
 
 impl<G: LieGroup, A: Advected<G> + 'static> AnyStepper<G, A> {
     /// The same without what is advected in its type: for programs that keep steppers of different scenes side by side.
     ///
     /// The steps are the same to the bit. Of a motion alone what is advected is as its attitude sees it, so that a
-    /// [velocity](Self::velocity) and an [energy](Self::energy) that depend on it are the same to rounding.
+    /// [velocity](Integrator::velocity) and an [energy](Integrator::energy) that depend on it are the same to rounding.
     #[must_use]
     pub fn hiding_advected(self) -> AnyStepper<G, ()> {
-        AnyStepper(Rc::new(Hiding(self)))
+        let (start, cost) = (Rc::clone(&self.start), self.cost);
+        let start = Rc::new(move |attitude, velocity| start(attitude, velocity).map(hidden).map(erased));
+        AnyStepper { stepper: Rc::new(Erased(Hiding(self))), start, cost }
     }
 }
 

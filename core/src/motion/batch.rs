@@ -98,13 +98,13 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         self.stepper.set_lane(lane, stepper) && self.state.set_lane(lane, state) && self.stepper.is_in_step(&self.state)
     }
 
-    /// So many steps of every body that hasn't stopped, as by [`run_as_far`](Integrator::run_as_far) of its own.
+    /// So many steps of every body that hasn't stopped, as by [`run_shown`](Integrator::run_shown) of its own.
     pub fn run(&mut self, steps: u64) {
         if self.running().next().is_none() {
             return;
         }
         let before = self.state.clone();
-        if !self.stepper.attempt(&mut self.state, steps) {
+        if self.stepper.attempt(&mut self.state, steps).is_err() {
             self.state = before;
             self.run_each(steps);
         }
@@ -117,7 +117,7 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         let mut moved: Vec<(usize, M, M::State)> = Vec::with_capacity(running.len());
         for lane in running {
             let (stepper, mut state) = (self.stepper.lane(lane), self.state.lane(lane));
-            match stepper.run_as_far(&mut state, steps) {
+            match stepper.run_shown(&mut state, steps, &mut |_| 0) {
                 Ok(_) => moved.push((lane, stepper, state)),
                 Err(error) => self.seats[lane] = Seat::Stopped(state, error),
             }

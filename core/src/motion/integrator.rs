@@ -5,11 +5,9 @@ use core::ops::{ControlFlow, Deref};
 
 use crate::error::StepError;
 use crate::groups::{Advected, LieGroup};
-use crate::mechanics::{Effect, FactoredInertia, Group, Scalar, Vector, factored_inertia, velocity_and_energy};
-use crate::motion::any::{AnyState, AnyStepper};
-use crate::motion::plan::{NextSteps, Plan};
+use crate::mechanics::FactoredInertia;
+use crate::motion::plan::NextSteps;
 use crate::motion::report::StepReport;
-use crate::motion::stepper::{StateOf, Stepper};
 use crate::motion::summation::Motion;
 use crate::numbers::real;
 
@@ -17,11 +15,11 @@ use crate::numbers::real;
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _;
 
-/// Something that steps a motion by a fixed step: a [`Stepper`] with any plan, an [`AnyStepper`], a
+/// Something that steps a motion by a fixed step: a [`Stepper`](crate::Stepper) with any plan, an [`AnyStepper`](crate::motion::AnyStepper), a
 /// [`CotangentGauss`](crate::methods::CotangentGauss).
 ///
 /// Recording, events and frames are written for this trait, and so go with every method. Its methods are those of
-/// [`Stepper`], but for two, which are the dense output: [`part`](Self::part) and [`state_at`](Self::state_at).
+/// [`Stepper`](crate::Stepper), but for two, which are the dense output: [`part`](Self::part) and [`state_at`](Self::state_at).
 pub trait Integrator {
     /// The group.
     type Group: LieGroup;
@@ -34,40 +32,35 @@ pub trait Integrator {
     ///
     /// # Errors
     ///
-    /// As [`Stepper::step`].
+    /// As [`Stepper::step`](crate::Stepper::step).
     fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError>;
 
     /// So many steps; returns all their iterations. On an error the state is unchanged.
     ///
     /// # Errors
     ///
-    /// As [`Stepper::run`].
+    /// As [`Stepper::run`](crate::Stepper::run).
     fn run(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError>;
 
-    /// As [`run`](Self::run), but says only whether it could be done; where not, the state may be anywhere.
-    #[must_use]
-    fn attempt(&self, state: &mut Self::State, steps: u64) -> bool {
-        self.run(state, steps).is_ok()
-    }
-
-    /// As [`run`](Self::run), but where there are fewer steps it makes those: on an error the state is that of the last.
-    ///
-    /// Where the run has an error and none of its single steps has, which digits of a splitting may do, it is made of
-    /// these.
+    /// As [`run`](Self::run), without a copy to go back to: on an error the state may be anywhere, and the error doesn't
+    /// say which step would have a solution.
     ///
     /// # Errors
     ///
-    /// Of the step that has no solution, as [`Stepper::step`].
-    fn run_as_far(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
-        self.run(state, steps).or_else(|_| step_by_step(self, state, steps))
+    /// [`StepError`] where one of the steps has no solution.
+    fn attempt(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
+        self.run(state, steps)
     }
 
-    /// So many steps, and then as many as `next` says of the motion after the last, until it says none; returns all
-    /// iterations. Where the first number is zero, nothing is made and `next` isn't asked.
+    /// As [`run`](Self::run), and then as many steps as `next` returns for the motion reached, until it returns 0;
+    /// returns all iterations. Where `steps` is 0, nothing is made and `next` isn't asked.
+    ///
+    /// Where there are fewer steps it makes those: on an error the state is that of the last. Where a run has an error
+    /// and none of its single steps has, which digits of a splitting may do, it is made of these.
     ///
     /// # Errors
     ///
-    /// As [`run_as_far`](Self::run_as_far).
+    /// Of the step that has no solution, as [`Stepper::step`](crate::Stepper::step).
     fn run_shown(
         &self,
         state: &mut Self::State,
@@ -94,20 +87,20 @@ pub trait Integrator {
     ///
     /// # Errors
     ///
-    /// As [`Stepper::step`].
+    /// As [`Stepper::step`](crate::Stepper::step).
     fn part(
         &self,
         state: &Self::State,
         fraction: ScalarIn<Self>,
     ) -> Result<Motion<Self::Group, Self::Advected>, StepError>;
 
-    /// The state of another motion, to go on from its attitude and momentum; see [`Stepper::adopt`].
+    /// The state of another motion, to go on from its attitude and momentum; see [`Stepper::adopt`](crate::Stepper::adopt).
     fn adopt(&self, motion: &Motion<Self::Group, Self::Advected>) -> Self::State;
 
     /// The step `h`, s.
     fn step_size(&self) -> ScalarIn<Self>;
 
-    /// The body velocity, on SO(3) in rad/s; NaN where a momentum has none, see [`Stepper::velocity`].
+    /// The body velocity, on SO(3) in rad/s; NaN where a momentum has none, see [`Stepper::velocity`](crate::Stepper::velocity).
     fn velocity(&self, motion: &Motion<Self::Group, Self::Advected>) -> <Self::Group as LieGroup>::Vector;
 
     /// The energy, J; NaN where a momentum has none.
@@ -146,7 +139,7 @@ pub trait Integrator {
     /// # Errors
     ///
     /// [`StepError::NonFinite`] for a time that isn't finite, or so far away that its steps can't be counted; otherwise as
-    /// [`Stepper::step`].
+    /// [`Stepper::step`](crate::Stepper::step).
     ///
     /// # Examples
     ///
@@ -192,16 +185,8 @@ pub trait Integrator {
     }
 }
 
-#[cold]
-fn step_by_step<I: Integrator + ?Sized>(integrator: &I, state: &mut I::State, steps: u64) -> Result<u64, StepError> {
-    let mut iterations = 0;
-    for _ in 0..steps {
-        iterations += u64::from(integrator.step(state)?.iterations);
-    }
-    Ok(iterations)
-}
-
-fn run_by_run<I: Integrator + ?Sized>(
+/// [`Integrator::run_shown`] by means of the other functions.
+pub(super) fn run_by_run<I: Integrator + ?Sized>(
     integrator: &I,
     state: &mut I::State,
     mut steps: u64,
@@ -209,7 +194,14 @@ fn run_by_run<I: Integrator + ?Sized>(
 ) -> Result<u64, StepError> {
     let mut iterations = 0;
     while steps > 0 {
-        iterations += integrator.run_as_far(state, steps)?;
+        match integrator.run(state, steps) {
+            Ok(made) => iterations += made,
+            Err(_) => {
+                for _ in 0..steps {
+                    iterations += u64::from(integrator.step(state)?.iterations);
+                }
+            }
+        }
         steps = next(state);
     }
     Ok(iterations)
@@ -217,132 +209,6 @@ fn run_by_run<I: Integrator + ?Sized>(
 
 /// The scalar of an integrator.
 pub type ScalarIn<I> = <<I as Integrator>::Group as LieGroup>::Scalar;
-
-impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
-    type Group = Group<S>;
-    type Advected = S::Advected;
-    type State = StateOf<S, P>;
-
-    fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
-        Stepper::step(self, state)
-    }
-
-    fn run(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
-        Stepper::run(self, state, steps)
-    }
-
-    fn attempt(&self, state: &mut Self::State, steps: u64) -> bool {
-        self.run_unexplained(state, steps).is_ok()
-    }
-
-    fn run_as_far(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
-        if const { P::RUNS_BY_STEPS } {
-            // It stops where they do, and nothing need be copied.
-            return self.run_in_place(state, steps, None);
-        }
-        self.run(state, steps).or_else(|_| step_by_step(self, state, steps))
-    }
-
-    fn run_shown(
-        &self,
-        state: &mut Self::State,
-        steps: u64,
-        next: &mut NextSteps<'_, Group<S>, S::Advected>,
-    ) -> Result<u64, StepError> {
-        if const { P::RUNS_BY_STEPS } {
-            self.run_in_place(state, steps, Some(next))
-        } else {
-            run_by_run(self, state, steps, next)
-        }
-    }
-
-    fn is_in_step(&self, state: &Self::State) -> bool {
-        self.plan.is_in_step(&state.kept)
-    }
-
-    fn part(&self, state: &Self::State, fraction: Scalar<S>) -> Result<Motion<Group<S>, S::Advected>, StepError> {
-        self.fraction_of_a_step(state, fraction)
-    }
-
-    fn adopt(&self, motion: &Motion<Group<S>, S::Advected>) -> Self::State {
-        Stepper::adopt(self, motion)
-    }
-
-    fn step_size(&self) -> Scalar<S> {
-        Stepper::step_size(self)
-    }
-
-    fn velocity(&self, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
-        Stepper::velocity(self, motion)
-    }
-
-    fn energy(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S> {
-        Stepper::energy(self, motion)
-    }
-
-    fn factored_inertia(&self) -> Option<FactoredInertia<Group<S>>> {
-        factored_inertia(self.scene())
-    }
-
-    #[hot]
-    fn velocity_and_energy(
-        &self,
-        motion: &Motion<Group<S>, S::Advected>,
-        inertia: Option<&FactoredInertia<Group<S>>>,
-    ) -> (Vector<S>, Scalar<S>) {
-        velocity_and_energy(self.scene(), inertia, &motion.momentum, &motion.advected)
-    }
-}
-
-impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
-    type Group = G;
-    type Advected = A;
-    type State = AnyState<G, A>;
-
-    fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
-        AnyStepper::step(self, state)
-    }
-
-    fn run(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
-        AnyStepper::run(self, state, steps)
-    }
-
-    fn run_shown(&self, state: &mut Self::State, steps: u64, next: &mut NextSteps<'_, G, A>) -> Result<u64, StepError> {
-        AnyStepper::run_shown(self, state, steps, next)
-    }
-
-    fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, A>, StepError> {
-        self.fraction_of_a_step(state, fraction)
-    }
-
-    fn adopt(&self, motion: &Motion<G, A>) -> Self::State {
-        AnyStepper::adopt(self, motion)
-    }
-
-    fn step_size(&self) -> G::Scalar {
-        AnyStepper::step_size(self)
-    }
-
-    fn velocity(&self, motion: &Motion<G, A>) -> G::Vector {
-        AnyStepper::velocity(self, motion)
-    }
-
-    fn energy(&self, motion: &Motion<G, A>) -> G::Scalar {
-        AnyStepper::energy(self, motion)
-    }
-
-    fn factored_inertia(&self) -> Option<FactoredInertia<G>> {
-        AnyStepper::factored_inertia(self)
-    }
-
-    fn velocity_and_energy(
-        &self,
-        motion: &Motion<G, A>,
-        inertia: Option<&FactoredInertia<G>>,
-    ) -> (G::Vector, G::Scalar) {
-        AnyStepper::velocity_and_energy(self, motion, inertia)
-    }
-}
 
 /// A motion at a time, at the end of a step or between two, with what steps it.
 ///

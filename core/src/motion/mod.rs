@@ -4,7 +4,7 @@
 //! the plan keeps from step to step. [`Declared`] is the plan of the scene's own step; the others are in
 //! [`methods`](crate::methods), and what is put around a plan in [`with`](crate::with). A [`RightHandSide`] is the
 //! continuous motion, for an ODE solver of another library. What steps is an [`Integrator`], whatever its method: with
-//! it a motion is read between its steps, and [recorded and stopped](crate::with).
+//! it a motion is read between its steps, and [recorded and stopped](crate::recording).
 
 // First, as on its page in the documentation.
 mod stepper;
@@ -13,9 +13,9 @@ mod any;
 mod batch;
 mod declared;
 mod flows;
+mod increment;
 mod integrator;
 mod kept;
-pub mod linearised;
 mod plan;
 mod report;
 mod right_hand_side;
@@ -26,12 +26,11 @@ pub use any::{AnyKept, AnyState, AnyStepper};
 pub use batch::{Batch, Batchable};
 pub use declared::Declared;
 pub(crate) use declared::{beyond_solvable, half_coordinates};
-pub(crate) use flows::Stepped;
-pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, Increment, reconstruct};
+pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, reconstruct};
+pub use increment::Increment;
 pub use integrator::{Answer, Integrator, Moment, ScalarIn};
 pub use kept::Kept;
 pub(crate) use kept::{count, counted};
-pub(crate) use plan::rare_step;
 pub use plan::{Cost, NextSteps, Plan, Steerable};
 pub use report::{Remedy, StepReport};
 pub use right_hand_side::RightHandSide;
@@ -39,7 +38,7 @@ pub use state::State;
 pub(crate) use stepper::StateOf;
 pub use stepper::Stepper;
 pub(crate) use stepper::check_attitude;
-pub use summation::{Motion, Proceeded, Summation};
+pub use summation::{Motion, Summation};
 pub(crate) use summation::{STEPS_BETWEEN_CHECKS, is_due, restored};
 
 pub use crate::solving::{Guess, Solvability, Warm};

@@ -155,7 +155,7 @@ pub trait Plan<S: Effect> {
         let solvable = |fraction: f64| {
             self.refolded(scene, self.step_size() * real(fraction)).is_ok_and(|part| {
                 let (mut motion, mut kept) = (*motion, part.keep(scene, motion));
-                run_called(&part, scene, &mut motion, &mut kept, (1, None)).is_ok()
+                run_plan(&part, scene, &mut motion, &mut kept, (1, None)).is_ok()
             })
         };
         largest_fraction(solvable).map_or(real(0.0), |fraction| self.step_size() * real(fraction))
@@ -169,7 +169,7 @@ pub trait Plan<S: Effect> {
     fn cost(&self) -> Cost;
 }
 
-/// Says how many steps are to be made after those that were, by the motion then.
+/// Returns how many more steps to make, from the motion reached so far; 0 ends the run.
 pub type NextSteps<'a, G, A> = dyn FnMut(&Motion<G, A>) -> u64 + 'a;
 
 pub(crate) type Next<'a, G, A> = Option<&'a mut NextSteps<'a, G, A>>;
@@ -205,7 +205,7 @@ impl<S: Effect, P: Plan<S>> Kernel for Run<'_, '_, S, P> {
 ///
 /// [`Integrator::run_shown`]: crate::motion::Integrator::run_shown
 #[inline(never)]
-pub(crate) fn run_called<S: Effect, P: Plan<S>>(
+pub(crate) fn run_plan<S: Effect, P: Plan<S>>(
     plan: &P,
     scene: &S,
     motion: &mut Motion<Group<S>, S::Advected>,
@@ -213,18 +213,6 @@ pub(crate) fn run_called<S: Effect, P: Plan<S>>(
     steps: (u64, Next<'_, Group<S>, S::Advected>),
 ) -> Result<u64, StepError> {
     dispatch(Run(plan, scene, motion, kept, steps))
-}
-
-/// [`Plan::step`] where steps are rare: compiled once, and not anew into each of its callers.
-#[cold]
-#[inline(never)]
-pub(crate) fn rare_step<S: Effect, P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
-    plan: &P,
-    scene: &S,
-    motion: &mut M,
-    kept: &mut P::Kept,
-) -> Result<StepReport, StepError> {
-    plan.step(scene, motion, kept)
 }
 
 /// A plan whose steps see what is advected in the motion and nowhere else, so that each can be

@@ -5,12 +5,14 @@ use alloc::string::String;
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup, SO3};
 use crate::mechanics::{
-    AxiallyInvariant, DiscreteLagrangian, Effect, Group, LeftInvariant, Regular, Scalar, Term, Vector, check_inertia,
-    check_velocity, energy, momentum_of_velocity, velocity_of_momentum,
+    AxiallyInvariant, DiscreteLagrangian, Effect, FactoredInertia, Group, LeftInvariant, Regular, Scalar, Term, Vector,
+    check_inertia, check_velocity, energy, factored_inertia, momentum_of_velocity, velocity_and_energy,
+    velocity_of_momentum,
 };
 use crate::motion::declared::Declared;
 use crate::motion::flows::DiscreteLiePoisson;
-use crate::motion::plan::{Next, Plan, Steerable, run_called};
+use crate::motion::integrator::{Integrator, run_by_run};
+use crate::motion::plan::{Next, NextSteps, Plan, Steerable, run_plan};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
 use crate::motion::summation::Motion;
@@ -160,7 +162,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     #[hot]
     pub fn step(&self, state: &mut StateOf<S, P>) -> Result<StepReport, StepError> {
         let made = if const { P::STEPS_BY_RUNS } {
-            self.run_unexplained(state, 1).map(StepReport::of_run)
+            self.attempt(state, 1).map(StepReport::of_run)
         } else {
             dispatch(Step(self, state))
         };
@@ -168,12 +170,6 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
             Err(error) if P::EXPLAINS => Err(self.plan.explained(error, &self.scene, &state.motion, &state.kept)),
             made => made,
         }
-    }
-
-    /// [`step`](Self::step), called: one copy of it for all that is put around a step.
-    #[inline(never)]
-    pub(crate) fn step_called(&self, state: &mut StateOf<S, P>) -> Result<StepReport, StepError> {
-        self.step(state)
     }
 
     /// So many steps, of which the states between aren't asked for; returns all their iterations. On an error the state
@@ -194,52 +190,15 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     }
 
     /// As [`run`](Self::run), but after an error the state may be anywhere; it goes on as
-    /// [`Integrator::run_shown`](crate::motion::Integrator::run_shown) does.
-    pub(crate) fn run_in_place(
+    /// [`Integrator::run_shown`] does.
+    fn run_in_place(
         &self,
         state: &mut StateOf<S, P>,
         steps: u64,
         next: Next<'_, Group<S>, S::Advected>,
     ) -> Result<u64, StepError> {
-        let made = run_called(&self.plan, &self.scene, &mut state.motion, &mut state.kept, (steps, next));
+        let made = run_plan(&self.plan, &self.scene, &mut state.motion, &mut state.kept, (steps, next));
         made.map_err(|error| self.plan.explained(error, &self.scene, &state.motion, &state.kept))
-    }
-
-    /// As [`run`](Self::run), but after an error the state may be anywhere, and what would do isn't looked for.
-    #[inline]
-    pub(crate) fn run_unexplained(&self, state: &mut StateOf<S, P>, steps: u64) -> Result<u64, StepError> {
-        run_called(&self.plan, &self.scene, &mut state.motion, &mut state.kept, (steps, None))
-    }
-
-    /// One step as a run of one, where that is the same: for callers that would else have another copy of it compiled.
-    pub(crate) fn step_or_run(&self, state: &mut StateOf<S, P>) -> Result<StepReport, StepError> {
-        if const { P::STEPS_BY_RUNS || P::RUNS_BY_STEPS } {
-            self.run_in_place(state, 1, None).map(StepReport::of_run)
-        } else {
-            self.step_called(state)
-        }
-    }
-
-    /// The motion after a step of this fraction of `h`; see [`Integrator::part`](crate::motion::Integrator::part).
-    pub(crate) fn fraction_of_a_step(
-        &self,
-        state: &StateOf<S, P>,
-        fraction: Scalar<S>,
-    ) -> Result<Motion<Group<S>, S::Advected>, StepError> {
-        // Nothing of a change so small would be seen, and of a step so small constants may leave the scalar's range.
-        let least = Scalar::<S>::simd_default_epsilon() * Scalar::<S>::simd_default_epsilon();
-        if fraction.simd_abs().simd_lt(least).all() {
-            return Ok(state.motion);
-        }
-        let scene = &self.scene;
-        let part = self.plan.refolded(scene, self.step_size() * fraction);
-        let part = part.map_err(|_| StepError::NonFinite { what: "part of the step" })?;
-        let mut next = state.motion;
-        let mut kept = part.keep(scene, &next);
-        run_called(&part, scene, &mut next, &mut kept, (1, None))
-            .map_err(|error| part.explained(error, scene, &state.motion, &kept))?;
-        next.steps = state.steps;
-        Ok(next)
     }
 
     /// The states after each step from here on; after an error, nothing more.
@@ -247,7 +206,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         let mut current = Some(state);
         core::iter::from_fn(move || {
             let mut next = current.take()?;
-            Some(self.step_called(&mut next).map(|_| {
+            Some(Integrator::step(self, &mut next).map(|_| {
                 current = Some(next);
                 next
             }))
@@ -297,7 +256,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         let half = *force * (self.step_size() * real(0.5));
         let mut next = *state;
         self.plan.push(&self.scene, &mut next.motion, &mut next.kept, &half)?;
-        let report = self.step_called(&mut next)?;
+        let report = Integrator::step(self, &mut next)?;
         self.plan.push(&self.scene, &mut next.motion, &mut next.kept, &half)?;
         if !next.motion.momentum.is_finite() {
             return Err(StepError::NonFinite { what: "momentum after the step" });
@@ -354,7 +313,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         let mut next = *state;
         let State { motion, kept } = &mut next;
         self.plan.see(motion, kept, values.seen_from(&motion.attitude));
-        let report = self.step_called(&mut next)?;
+        let report = Integrator::step(self, &mut next)?;
         let State { motion, kept } = &mut next;
         self.plan.see(motion, kept, self.scene.advected().seen_from(&motion.attitude));
         *state = next;
@@ -542,6 +501,95 @@ impl<S: Effect> Stepper<S> {
     #[must_use]
     pub fn solvability(&self, motion: &Motion<Group<S>, S::Advected>) -> Solvability {
         self.plan.solvability(&self.scene, &motion.momentum, &motion.advected)
+    }
+}
+
+impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
+    type Group = Group<S>;
+    type Advected = S::Advected;
+    type State = StateOf<S, P>;
+
+    /// By one copy of a step, that of a run where this is the same, for all that is put around steps.
+    #[inline(never)]
+    fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
+        if const { P::STEPS_BY_RUNS || P::RUNS_BY_STEPS } {
+            self.run_in_place(state, 1, None).map(StepReport::of_run)
+        } else {
+            Stepper::step(self, state)
+        }
+    }
+
+    fn run(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
+        Stepper::run(self, state, steps)
+    }
+
+    #[inline]
+    fn attempt(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
+        run_plan(&self.plan, &self.scene, &mut state.motion, &mut state.kept, (steps, None))
+    }
+
+    fn run_shown(
+        &self,
+        state: &mut Self::State,
+        steps: u64,
+        next: &mut NextSteps<'_, Group<S>, S::Advected>,
+    ) -> Result<u64, StepError> {
+        if const { P::RUNS_BY_STEPS } {
+            // It stops where they do, and nothing need be copied.
+            self.run_in_place(state, steps, Some(next))
+        } else {
+            run_by_run(self, state, steps, next)
+        }
+    }
+
+    fn is_in_step(&self, state: &Self::State) -> bool {
+        self.plan.is_in_step(&state.kept)
+    }
+
+    fn part(&self, state: &Self::State, fraction: Scalar<S>) -> Result<Motion<Group<S>, S::Advected>, StepError> {
+        // Nothing of a change so small would be seen, and of a step so small constants may leave the scalar's range.
+        let least = Scalar::<S>::simd_default_epsilon() * Scalar::<S>::simd_default_epsilon();
+        if fraction.simd_abs().simd_lt(least).all() {
+            return Ok(state.motion);
+        }
+        let scene = &self.scene;
+        let part = self.plan.refolded(scene, self.step_size() * fraction);
+        let part = part.map_err(|_| StepError::NonFinite { what: "part of the step" })?;
+        let mut next = state.motion;
+        let mut kept = part.keep(scene, &next);
+        run_plan(&part, scene, &mut next, &mut kept, (1, None))
+            .map_err(|error| part.explained(error, scene, &state.motion, &kept))?;
+        next.steps = state.steps;
+        Ok(next)
+    }
+
+    fn adopt(&self, motion: &Motion<Group<S>, S::Advected>) -> Self::State {
+        Stepper::adopt(self, motion)
+    }
+
+    fn step_size(&self) -> Scalar<S> {
+        Stepper::step_size(self)
+    }
+
+    fn velocity(&self, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
+        Stepper::velocity(self, motion)
+    }
+
+    fn energy(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S> {
+        Stepper::energy(self, motion)
+    }
+
+    fn factored_inertia(&self) -> Option<FactoredInertia<Group<S>>> {
+        factored_inertia(&self.scene)
+    }
+
+    #[hot]
+    fn velocity_and_energy(
+        &self,
+        motion: &Motion<Group<S>, S::Advected>,
+        inertia: Option<&FactoredInertia<Group<S>>>,
+    ) -> (Vector<S>, Scalar<S>) {
+        velocity_and_energy(&self.scene, inertia, &motion.momentum, &motion.advected)
     }
 }
 

@@ -106,8 +106,8 @@ pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
         self.push(change);
     }
 
-    /// Both, where the rounded sums are there already.
-    fn proceed(&mut self, step: &Proceeded<G, A>);
+    /// As [`turn_and_push`](Self::turn_and_push), where the rounded sums `(μ⁺, w⁺)` are there already.
+    fn proceed(&mut self, increment: &G::Matrix, change: &G::Vector, end: (G::Vector, A));
 
     /// Counts a step.
     #[hot]
@@ -156,19 +156,6 @@ pub(crate) fn is_due(steps: u64) -> bool {
     steps.is_multiple_of(u64::from(STEPS_BETWEEN_CHECKS))
 }
 
-/// The end of a step and the changes that lead to it.
-#[derive(Clone, Copy, Debug)]
-pub struct Proceeded<G: LieGroup, A> {
-    /// `F − I`.
-    pub increment: G::Matrix,
-    /// `μ⁺ − μ`.
-    pub change: G::Vector,
-    /// `μ⁺`.
-    pub momentum: G::Vector,
-    /// `w⁺ = F⁻¹·w`.
-    pub advected: A,
-}
-
 impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Motion<G, A> {
     const CARRIES: bool = false;
 
@@ -194,10 +181,9 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Motion<G, A> {
     }
 
     #[hot]
-    fn proceed(&mut self, step: &Proceeded<G, A>) {
-        self.attitude = self.attitude.advance(&step.increment);
-        self.momentum = step.momentum;
-        self.advected = step.advected;
+    fn proceed(&mut self, increment: &G::Matrix, _: &G::Vector, end: (G::Vector, A)) {
+        self.attitude = self.attitude.advance(increment);
+        (self.momentum, self.advected) = end;
     }
 
     #[hot]

@@ -9,9 +9,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
 use crate::methods::{Composed, Jointed, KineticFlow, Processed, Split};
-use crate::motion::{
-    Cost, Declared, Kept, Motion, Plan, Proceeded, Steerable, StepReport, Stepper, Summation, restored,
-};
+use crate::motion::{Cost, Declared, Kept, Motion, Plan, Steerable, StepReport, Stepper, Summation, restored};
 use crate::numbers::{Entries, Vectors, carried_sum, zero};
 use crate::with::remedies::Substepped;
 use nalgebra::SimdValue as _;
@@ -263,9 +261,8 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Sums<G, A> {
     }
 
     #[hot]
-    fn proceed(&mut self, step: &Proceeded<G, A>) {
-        self.turn(&step.increment);
-        Summation::push(self, &step.change);
+    fn proceed(&mut self, increment: &G::Matrix, change: &G::Vector, _: (G::Vector, A)) {
+        self.turn_and_push(increment, change);
     }
 
     #[hot]

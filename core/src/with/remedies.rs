@@ -5,7 +5,7 @@
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
-use crate::motion::{Cost, Motion, Plan, Remedy, Steerable, StepReport, Stepper, Summation, rare_step};
+use crate::motion::{Cost, Motion, Plan, Remedy, Steerable, StepReport, Stepper, Summation};
 use crate::numbers::{Vectors, real};
 
 /// A plan that takes a step without a solution in equal parts, by [`Stepper::or_substeps`].
@@ -162,7 +162,9 @@ fn in_parts<S: Effect, P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
     Err(error)
 }
 
-/// The motion after so many steps of an equal part of `h`, and all their iterations.
+/// The motion after `parts` steps of an equal part of `h`, and all their iterations.
+#[cold]
+#[inline(never)]
 fn substepped<S: Effect, P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
     plan: &P,
     scene: &S,
@@ -174,7 +176,7 @@ fn substepped<S: Effect, P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
     let mut kept = small.keep(scene, motion.now());
     let mut iterations = 0;
     for _ in 0..parts {
-        iterations += rare_step(&small, scene, &mut motion, &mut kept).ok()?.iterations;
+        iterations += small.step(scene, &mut motion, &mut kept).ok()?.iterations;
     }
     Some((motion, iterations))
 }

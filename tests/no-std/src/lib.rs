@@ -7,7 +7,7 @@
 use core::panic::PanicInfo;
 
 use liestep::nalgebra::{UnitQuaternion, Vector3};
-use liestep::with::{Frames, RecordError, Recorder, Table};
+use liestep::recording::{Frames, RecordError, Recorder, Table};
 use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper, force, lagrangian};
 
 #[panic_handler]

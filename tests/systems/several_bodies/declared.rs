@@ -10,7 +10,7 @@ use liestep::groups::{Advected as _, CayleyRetraction, LieGroup as _, Retraction
 use liestep::laws::samples::Random;
 use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Effect, Term};
 use liestep::methods::CompositionScheme;
-use liestep::with::{Recorder, Table};
+use liestep::recording::{Recorder, Table};
 use liestep::{NonstandardInertia, SO3, Stepper};
 use nalgebra::{SVector, UnitQuaternion, Vector3, Vector6};
 

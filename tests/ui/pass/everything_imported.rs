@@ -4,6 +4,7 @@
 
 use liestep::accuracy::*;
 use liestep::effects::*;
+use liestep::gradients::*;
 use liestep::groups::*;
 use liestep::mechanics::*;
 use liestep::methods::*;
@@ -11,6 +12,7 @@ use liestep::motion::*;
 use liestep::nalgebra::Vector3;
 use liestep::numbers::*;
 use liestep::prelude::*;
+use liestep::recording::*;
 use liestep::with::*;
 use liestep::*;
 

@@ -11,7 +11,7 @@ use liestep::effects::{Dipole, Drag, GravityGradient, MagneticDamping, Rotor, Sp
 use liestep::methods::{CompositionScheme, ExactBody, ProcessedScheme, SplittingScheme};
 use liestep::motion::Moment;
 use liestep::prelude::*;
-use liestep::with::{Csv, Recorder};
+use liestep::recording::{Csv, Recorder};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::called::{PROGRAM, TOP, folder, mistake, printed, rows, simulate, table};

@@ -7,12 +7,12 @@ pub use scheme::CompositionScheme;
 use alloc::vec::Vec;
 
 use crate::error::{SetupError, StepError};
+use crate::gradients::{Change, Linearisable, Pass, Stage as Linear};
 use crate::mechanics::{
     DiscreteLagrangian, Effect, Group, Matrix, Regular, Scalar, SceneVisitor, SecondDerivatives, Vector,
 };
-use crate::motion::linearised::{Change, Linearisable, Pass, Stage as Linear};
 use crate::motion::{
-    Cost, Declared, Motion, Plan, Steerable, StepReport, Stepped, Stepper, Summation, beyond_solvable, half_coordinates,
+    Cost, Declared, Motion, Plan, Steerable, StepReport, Stepper, Summation, beyond_solvable, half_coordinates,
 };
 use crate::numbers::{Coordinates, Mask, Real, real};
 use crate::solving::Guess;
@@ -177,14 +177,14 @@ impl<S: Effect> Plan<S> for Composed<S> {
                 |increment: &Matrix<S>| next.turned(increment)
             };
             let stepped = if const { M::CARRIES } {
-                declared.step_from::<true>(scene, &now.momentum, &now.advected, &guess.next, &turned)?
+                declared.increment_from::<true>(scene, &now.momentum, &now.advected, &guess.next, &turned)?
             } else {
-                declared.step_from::<false>(scene, &now.momentum, &now.advected, &guess.next, &turned)?
+                declared.increment_from::<false>(scene, &now.momentum, &now.advected, &guess.next, &turned)?
             };
-            next.proceed(&stepped.proceeded());
-            let Stepped { step, half, far, .. } = stepped;
-            guess = Guess { half, next: stage.half_guess(half, far, guess.half) };
-            iterations += step.iterations;
+            next.proceed(&stepped.increment, &stepped.change, (stepped.momentum, stepped.advected));
+            let half = stepped.half;
+            guess = Guess { half, next: stage.half_guess(half, stepped.far, guess.half) };
+            iterations += stepped.iterations;
         }
         next.finish(|| scene.advected());
         (*motion, *kept) = (next, guess);

@@ -15,9 +15,7 @@ use super::{Constraint, Place};
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, CayleyRetraction, LieGroup, R3, Retraction, SO3};
 use crate::mechanics::{Effect, Operations, Regular, SceneVisitor};
-use crate::motion::{
-    Cost, Motion, Plan, Proceeded, Steerable, StepReport, Stepper, Summation, half_coordinates, is_due,
-};
+use crate::motion::{Cost, Motion, Plan, Steerable, StepReport, Stepper, Summation, half_coordinates, is_due};
 use crate::numbers::{Bodies, Coordinates as _, Vectors, filled};
 use crate::solving::{
     Continued, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, SETTLED, Warm, has_sufficed, may_suffice,
@@ -446,7 +444,7 @@ where
         if !momentum.is_finite() || !half.is_finite() {
             return Err(StepError::NonFinite { what: "momentum after the step" });
         }
-        next.proceed(&Proceeded { increment, change, momentum, advected });
+        next.proceed(&increment, &change, (momentum, advected));
         if is_restored {
             let seen = Motion { advected: scene.advected().seen_from(&next.now().attitude), ..*next.now() };
             next.show(seen);

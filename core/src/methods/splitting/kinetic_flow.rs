@@ -6,7 +6,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::SO3;
 use crate::groups::rotation_coefficients;
 use crate::mechanics::{DiscreteLagrangian, Effect, Inertia, Operations, Regular, SceneVisitor};
-use crate::motion::{DiscreteLiePoisson, Stepped};
+use crate::motion::DiscreteLiePoisson;
 use crate::numbers::{Coordinates as _, Real, real, reported};
 
 /// A flow, or a structure-preserving approximation of it, of the free body's motion.
@@ -244,7 +244,7 @@ where
         let h = drift.flow.step_size();
         let velocity = drift.inverse * momentum;
         let half_guess = (velocity + drift.inverse * momentum.cross(&velocity) * (h * real(0.5))) * (h * real(0.5));
-        let Stepped { step, .. } = drift.flow.step_from(momentum, &(), &half_guess)?;
+        let step = drift.flow.increment_from(momentum, &(), &half_guess)?;
         Ok(Turn { increment: step.increment, change: step.momentum - momentum, iterations: step.iterations })
     }
 }

@@ -7,10 +7,10 @@ use nalgebra::{Matrix3, Vector3};
 use super::kinetic_flow::SymmetricBody;
 use super::{Flow, KineticFlow, Length, Split, StagesOf};
 use crate::error::{SetupError, StepError};
+use crate::gradients::{Change, Flown, ForceGradient, Linearisable, Pass, Stage};
 use crate::groups::SO3;
 use crate::groups::rotation_functions::stumpff;
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor, SecondDerivatives};
-use crate::motion::linearised::{Change, Flown, ForceGradient, Linearisable, Pass, Stage};
 use crate::motion::{Plan, StepReport, Summation};
 use crate::numbers::{Real, real};
 

@@ -9,7 +9,7 @@ use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{
     Effect, Group, Matrix, Regular, Scalar, SceneVisitor, Vector, check_inertia, estimated_velocity, pattern,
 };
-use crate::motion::flows::{Increment, Stepped};
+use crate::motion::increment::Increment;
 use crate::motion::plan::{Cost, Plan, Steerable};
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, Summation, is_due};
@@ -96,61 +96,61 @@ impl<S: Effect> Declared<S> {
     /// One step from `(μ, w)` and a guess of half the coordinates of `F`; `turned` gives `w⁺` of `F − I`, and `CARRIES`
     /// says that what rounding leaves behind will be carried.
     #[hot]
-    pub(crate) fn step_from<const CARRIES: bool>(
+    pub(crate) fn increment_from<const CARRIES: bool>(
         &self,
         scene: &S,
         momentum: &Vector<S>,
         advected: &S::Advected,
         half_guess: &Vector<S>,
         turned: &impl Fn(&Matrix<S>) -> S::Advected,
-    ) -> Result<Stepped<S>, StepError> {
-        match self.step_directly::<CARRIES>(scene, momentum, advected, half_guess, turned) {
-            Some(stepped) => Ok(stepped),
-            None => self.step_carefully::<CARRIES>(scene, momentum, advected, half_guess, turned),
+    ) -> Result<Increment<S>, StepError> {
+        match self.increment_directly::<CARRIES>(scene, momentum, advected, half_guess, turned) {
+            Some(made) => Ok(made),
+            None => self.increment_carefully::<CARRIES>(scene, momentum, advected, half_guess, turned),
         }
     }
 
     /// The step, if nothing about it is doubtful.
     #[hot]
-    pub(crate) fn step_directly<const CARRIES: bool>(
+    pub(crate) fn increment_directly<const CARRIES: bool>(
         &self,
         scene: &S,
         momentum: &Vector<S>,
         advected: &S::Advected,
         half_guess: &Vector<S>,
         turned: &impl Fn(&Matrix<S>) -> S::Advected,
-    ) -> Option<Stepped<S>> {
+    ) -> Option<Increment<S>> {
         let problem = self.problem(scene, momentum, advected);
         let root = problem.solve_directly::<true>(half_guess, self.largest_target)?;
-        let stepped = self.moved::<CARRIES>(momentum, advected, &problem.a, &root, turned(&root.increment));
+        let made = self.moved::<CARRIES>(momentum, advected, &problem.a, &root, turned(&root.increment));
         // A finite sum has finite terms. Where it isn't, it may have overflowed.
-        is_finite(stepped.total()).then_some(stepped)
+        is_finite(made.total()).then_some(made)
     }
 
     /// The step, or why there is none.
     #[cold]
     #[inline(never)]
-    pub(crate) fn step_carefully<const CARRIES: bool>(
+    pub(crate) fn increment_carefully<const CARRIES: bool>(
         &self,
         scene: &S,
         momentum: &Vector<S>,
         advected: &S::Advected,
         half_guess: &Vector<S>,
         turned: &impl Fn(&Matrix<S>) -> S::Advected,
-    ) -> Result<Stepped<S>, StepError> {
+    ) -> Result<Increment<S>, StepError> {
         if self.h == real(0.0) {
             return Ok(Self::stand_still(momentum, advected));
         }
         let root = self.solve_carefully(scene, momentum, advected, half_guess)?;
-        let stepped = self.moved::<CARRIES>(
+        let made = self.moved::<CARRIES>(
             momentum,
             advected,
             &kicked::<S>(&self.constants, momentum, advected),
             &root,
             turned(&root.increment),
         );
-        if stepped.step.momentum.is_finite() && stepped.step.advected.is_finite() {
-            Ok(stepped)
+        if made.momentum.is_finite() && made.advected.is_finite() {
+            Ok(made)
         } else {
             Err(StepError::NonFinite { what: "momentum after the step" })
         }
@@ -165,7 +165,7 @@ impl<S: Effect> Declared<S> {
         a: &Vector<S>,
         root: &Root<Group<S>>,
         next: S::Advected,
-    ) -> Stepped<S> {
+    ) -> Increment<S> {
         let Root { half, increment, iterations, far, ref kick } = *root;
         let mut change = Group::<S>::adjoint_transpose_increment(&increment, a);
         if CARRIES {
@@ -188,8 +188,7 @@ impl<S: Effect> Declared<S> {
             }
         }
         let momentum = *momentum + change;
-        let step = Increment { coordinates: half + half, increment, momentum, advected: next, iterations };
-        Stepped { step, change, half, far }
+        Increment { coordinates: half + half, increment, momentum, advected: next, iterations, change, half, far }
     }
 
     /// `kick_after(F, w⁺)`, in the lanes that have come by it from what the solve has found.
@@ -224,10 +223,10 @@ impl<S: Effect> Declared<S> {
     }
 
     #[cold]
-    fn stand_still(momentum: &Vector<S>, advected: &S::Advected) -> Stepped<S> {
+    fn stand_still(momentum: &Vector<S>, advected: &S::Advected) -> Increment<S> {
         let Root { half, increment, iterations, far, .. } = Root::at::<S::Retraction>(&Vector::<S>::zero(), 0);
-        let step = Increment { coordinates: half, increment, momentum: *momentum, advected: *advected, iterations };
-        Stepped { step, change: Vector::<S>::zero(), half, far }
+        let (momentum, advected, change) = (*momentum, *advected, Vector::<S>::zero());
+        Increment { coordinates: half, increment, momentum, advected, iterations, change, half, far }
     }
 }
 
@@ -262,14 +261,14 @@ impl<S: Effect> Plan<S> for Declared<S> {
             #[cfg_attr(not(debug_assertions), inline(always))]
             |increment: &Matrix<S>| motion.turned(increment)
         };
-        let stepped = if const { M::CARRIES } {
-            self.step_directly::<true>(scene, &now.momentum, &now.advected, &guess, &turned)
+        let made = if const { M::CARRIES } {
+            self.increment_directly::<true>(scene, &now.momentum, &now.advected, &guess, &turned)
         } else {
-            self.step_directly::<false>(scene, &now.momentum, &now.advected, &guess, &turned)
+            self.increment_directly::<false>(scene, &now.momentum, &now.advected, &guess, &turned)
         };
-        match stepped {
-            Some(stepped) => Ok(taken(scene, motion, kept, &stepped)),
-            None => self.to_its_end(scene, motion, kept),
+        match made {
+            Some(made) => Ok(taken(scene, motion, kept, &made)),
+            None => self.step_carefully(scene, motion, kept),
         }
     }
 
@@ -291,7 +290,7 @@ impl<S: Effect> Declared<S> {
     /// registers.
     #[cold]
     #[inline(never)]
-    fn to_its_end<M: Summation<Group<S>, S::Advected>>(
+    fn step_carefully<M: Summation<Group<S>, S::Advected>>(
         &self,
         scene: &S,
         motion: &mut M,
@@ -299,12 +298,12 @@ impl<S: Effect> Declared<S> {
     ) -> Result<StepReport, StepError> {
         let (now, guess) = (motion.now(), kept.guess(<Group<S> as LieGroup>::DIMENSION));
         let turned = |increment: &Matrix<S>| motion.turned(increment);
-        let stepped = if const { M::CARRIES } {
-            self.step_carefully::<true>(scene, &now.momentum, &now.advected, &guess, &turned)?
+        let made = if const { M::CARRIES } {
+            self.increment_carefully::<true>(scene, &now.momentum, &now.advected, &guess, &turned)?
         } else {
-            self.step_carefully::<false>(scene, &now.momentum, &now.advected, &guess, &turned)?
+            self.increment_carefully::<false>(scene, &now.momentum, &now.advected, &guess, &turned)?
         };
-        Ok(taken(scene, motion, kept, &stepped))
+        Ok(taken(scene, motion, kept, &made))
     }
 }
 
@@ -313,16 +312,16 @@ fn taken<S: Effect, M: Summation<Group<S>, S::Advected>>(
     scene: &S,
     motion: &mut M,
     kept: &mut Warm<Vector<S>>,
-    stepped: &Stepped<S>,
+    made: &Increment<S>,
 ) -> StepReport {
-    motion.proceed(&stepped.proceeded());
+    motion.proceed(&made.increment, &made.change, (made.momentum, made.advected));
     let continued = Continued::for_jacobian(S::JACOBIAN_IS_EXPENSIVE);
-    kept.follow(stepped.half, stepped.far, continued);
+    kept.follow(made.half, made.far, continued);
     if is_due(motion.now().steps) {
         look(scene, motion, kept, continued);
     }
     motion.count();
-    StepReport::of(stepped.step.iterations)
+    StepReport::of(made.iterations)
 }
 
 /// What is done after the first step, and after many more.

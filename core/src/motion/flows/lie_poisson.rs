@@ -4,7 +4,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::Advected as _;
 use crate::mechanics::{Effect, Group, Matrix, Regular, Scalar, Vector};
 use crate::motion::declared::Declared;
-use crate::motion::flows::{Increment, Stepped};
+use crate::motion::increment::Increment;
 use crate::motion::plan::Plan as _;
 use crate::numbers::real;
 use crate::solving::Solvability;
@@ -80,19 +80,19 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         advected: &L::Advected,
         guess: &Vector<L>,
     ) -> Result<Increment<L>, StepError> {
-        self.step_from(momentum, advected, &(*guess * real(0.5))).map(|stepped| stepped.step)
+        self.increment_from(momentum, advected, &(*guess * real(0.5)))
     }
 
     /// As [`step`](Self::step), from half the guess.
     #[hot]
-    pub(crate) fn step_from(
+    pub(crate) fn increment_from(
         &self,
         momentum: &Vector<L>,
         advected: &L::Advected,
         half_guess: &Vector<L>,
-    ) -> Result<Stepped<L>, StepError> {
+    ) -> Result<Increment<L>, StepError> {
         let turned = |increment: &Matrix<L>| advected.advect(increment);
-        self.declared.step_from::<false>(&self.scene, momentum, advected, half_guess, &turned)
+        self.declared.increment_from::<false>(&self.scene, momentum, advected, half_guess, &turned)
     }
 
     /// Whether the step from `(μ, w)` surely has a solution or surely has none, where bounds are known: for the kinetic

@@ -1,10 +1,7 @@
 //! The two flows of the thesis: on increments, (2.5), and on momenta, (2.8).
 
 mod euler_poincare;
-mod increment;
 mod lie_poisson;
 
 pub use euler_poincare::{DiscreteEulerPoincare, reconstruct};
-pub use increment::Increment;
-pub(crate) use increment::Stepped;
 pub use lie_poisson::DiscreteLiePoisson;

@@ -12,9 +12,9 @@ use nalgebra::{Matrix3, Vector3};
 use super::super::linearised::{DifferentiableFlow, flown};
 use super::super::quaternion::product;
 use super::{ExactBody, Form};
+use crate::gradients::{Change, Pass};
 use crate::groups::SO3;
 use crate::mechanics::SceneVisitor;
-use crate::motion::linearised::{Change, Pass};
 use crate::numbers::{Dual, Real};
 
 /// The parameters are those of the docs of [`ExactBody`], under "Derivatives".

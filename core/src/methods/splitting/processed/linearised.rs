@@ -7,9 +7,9 @@ use super::super::Length;
 use super::super::linearised::DifferentiableFlow;
 use super::{Part, Processed};
 use crate::error::{SetupError, StepError};
+use crate::gradients::{Change, Linearisable, Pass};
 use crate::groups::SO3;
 use crate::mechanics::{RigidScene, Scalar, SceneVisitor, SecondDerivatives};
-use crate::motion::linearised::{Change, Linearisable, Pass};
 use crate::motion::{StepReport, Summation};
 use nalgebra::SimdComplexField as _;
 

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::cell::RefCell;
 
 use crate::groups::{Advected, LieGroup};
-use crate::motion::summation::{Motion, Proceeded, Summation};
+use crate::motion::{Motion, Summation};
 use crate::numbers::zero;
 
 /// One change that one of the library's own plans has made: a turn, a push, or both.
@@ -18,19 +18,19 @@ pub struct Change<G: LieGroup, A> {
 
 /// A motion that writes down each change; its bits are those of [`Motion`] alone.
 #[derive(Clone, Copy)]
-pub(super) struct Recorded<'a, G: LieGroup, A> {
+pub(super) struct Recording<'a, G: LieGroup, A> {
     pub(super) motion: Motion<G, A>,
     pub(super) events: &'a RefCell<Vec<Change<G, A>>>,
 }
 
-impl<G: LieGroup, A: Advected<G>> Recorded<'_, G, A> {
+impl<G: LieGroup, A: Advected<G>> Recording<'_, G, A> {
     #[hot]
     fn note(&self, increment: G::Matrix) {
         self.events.borrow_mut().push(Change { before: self.motion, increment });
     }
 }
 
-impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Recorded<'_, G, A> {
+impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Recording<'_, G, A> {
     const CARRIES: bool = false;
 
     #[hot]
@@ -62,9 +62,9 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Recorded<'_, G, A> {
     }
 
     #[hot]
-    fn proceed(&mut self, step: &Proceeded<G, A>) {
-        self.note(step.increment);
-        self.motion.proceed(step);
+    fn proceed(&mut self, increment: &G::Matrix, change: &G::Vector, end: (G::Vector, A)) {
+        self.note(*increment);
+        self.motion.proceed(increment, change, end);
     }
 
     #[hot]

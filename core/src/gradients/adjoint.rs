@@ -6,13 +6,12 @@ use core::cell::RefCell;
 use core::ops::Range;
 
 use crate::error::{SetupError, StepError};
+use crate::gradients::recording::Change;
+use crate::gradients::stage::{Cotangent, Flown, Pass, Stage};
+use crate::gradients::{Linearisable, Linearised};
 use crate::groups::LieGroup;
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Scalar, SecondDerivatives, Vector};
-use crate::motion::linearised::recorded::Change;
-use crate::motion::linearised::stage::{Cotangent, Flown, Pass, Stage};
-use crate::motion::linearised::{Linearisable, Linearised};
-use crate::motion::stepper::{StateOf, Stepper};
-use crate::motion::summation::Motion;
+use crate::motion::{Motion, StateOf, Stepper};
 use crate::numbers::{Coordinates as _, Kernel, Vectors, dispatch, is_finite, real};
 
 /// What an adjoint keeps of the way forwards.
@@ -116,7 +115,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
     ///
     /// ```
     /// use liestep::effects::{Gravity, RigidBody};
-    /// use liestep::motion::linearised::{Cotangent, Tape};
+    /// use liestep::gradients::{Cotangent, Tape};
     /// use liestep::{NonstandardInertia, SO3, Stepper};
     /// use liestep::groups::LieGroup as _;
     /// use nalgebra::Vector3;

@@ -4,10 +4,10 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::error::StepError;
+use crate::gradients::{Linearisable, Linearised};
 use crate::groups::LieGroup as _;
 use crate::mechanics::{Group, Scalar, SecondDerivatives};
-use crate::motion::linearised::{Linearisable, Linearised};
-use crate::motion::stepper::StateOf;
+use crate::motion::StateOf;
 use crate::numbers::{is_finite, real};
 use nalgebra::SimdComplexField as _;
 

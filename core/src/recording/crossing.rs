@@ -3,8 +3,6 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::event::side;
-
 /// What is known of the function, and how closely it is looked at.
 #[derive(Clone, Copy)]
 pub(super) struct Looks {
@@ -135,6 +133,11 @@ fn located<E>(
         share = if share.is_nan() { 0.5 } else { share.clamp(least, 1.0 - least) };
     }
     Ok(if a.1.abs() <= b.1.abs() { a.0 } else { b.0 })
+}
+
+/// Whether a value is above zero; nothing where it is zero.
+pub(super) fn side(value: f64) -> Option<bool> {
+    if value == 0.0 { None } else { Some(value > 0.0) }
 }
 
 #[cfg(test)]

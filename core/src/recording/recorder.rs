@@ -1,17 +1,5 @@
 //! A table of a run: a row for each moment that is recorded, handed on in blocks to a file or to memory.
 
-#[cfg(feature = "std")]
-mod background;
-#[cfg(feature = "std")]
-mod csv;
-mod table;
-
-#[cfg(feature = "std")]
-pub use background::Background;
-#[cfg(feature = "std")]
-pub use csv::Csv;
-pub use table::Table;
-
 use alloc::borrow::ToOwned as _;
 use alloc::boxed::Box;
 use alloc::format;
@@ -135,7 +123,7 @@ const ROWS_IN_A_BLOCK: usize = 1024;
 ///
 /// On a product of groups a name has the place of its factor behind it: `q_w_1`, …, `velocity_x_1`, …, `velocity_x_2`.
 /// Of the two quaternions of an attitude the one nearer to the row before is written. Other columns are
-/// [quantities](Self::quantity) of one's own. [`Run`](crate::with::Run) has an example.
+/// [quantities](Self::quantity) of one's own. [`Run`](crate::recording::Run) has an example.
 ///
 /// Rows that are left when the recorder is dropped are written then, but an error is lost:
 /// [`finish`](Self::finish) reports it. After an error the sink gets nothing more, and no end.

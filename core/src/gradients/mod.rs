@@ -89,12 +89,12 @@
 
 mod adjoint;
 mod exponents;
-mod recorded;
+mod recording;
 mod stage;
 mod tangent;
 
 pub use adjoint::{Backwards, Gradient, Tape};
-pub use recorded::Change;
+pub use recording::Change;
 pub(crate) use stage::ForceGradient;
 pub use stage::{Cotangent, Flown, Pass, Stage};
 pub use tangent::{Tangent, TangentOf};
@@ -105,13 +105,9 @@ use core::ops::Range;
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, SecondDerivatives};
-use crate::motion::declared::Declared;
-use crate::motion::plan::Plan;
-use crate::motion::report::StepReport;
-use crate::motion::stepper::{StateOf, Stepper};
-use crate::motion::summation::Summation;
+use crate::motion::{Declared, Plan, StateOf, StepReport, Stepper, Summation};
 use crate::numbers::{Kernel, Vectors, dispatch};
-use recorded::Recorded;
+use recording::Recording;
 
 /// A plan whose steps can be differentiated: some of the library's own plans.
 ///
@@ -310,7 +306,7 @@ impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearised<'a, S, P> {
         events: &RefCell<Vec<Change<Group<S>, S::Advected>>>,
     ) -> Result<StepReport, StepError> {
         let Stepper { scene, plan } = self.stepper;
-        let mut recorded = Recorded { motion: state.motion, events };
+        let mut recorded = Recording { motion: state.motion, events };
         match plan.record(scene, &mut recorded, &mut state.kept) {
             Ok(report) => {
                 state.motion = recorded.motion;

@@ -4,11 +4,11 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::cell::RefCell;
 
+use crate::gradients::recording::Change;
+use crate::gradients::stage::{Flown, Kind, Pass, Stage};
 use crate::groups::LieGroup;
 use crate::mechanics::pattern;
 use crate::mechanics::{Group, SecondDerivatives, Term, Vector};
-use crate::motion::linearised::recorded::Change;
-use crate::motion::linearised::stage::{Flown, Kind, Pass, Stage};
 use crate::numbers::{Coordinates, Entries as _, is_finite, real};
 use nalgebra::SimdComplexField as _;
 

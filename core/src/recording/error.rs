@@ -91,7 +91,7 @@ impl core::error::Error for RunError {
 
 /// What a run has done.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ended {
+pub struct RunReport {
     /// How many steps it made.
     pub steps: u64,
     /// Their iterations, as [`StepReport`](crate::motion::StepReport) counts them.

@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{Column, RecordError, Sink, SinkError};
+use super::recorder::{Column, RecordError, Sink, SinkError};
 
 /// A table as comma-separated values (RFC 4180, with line feeds): a line of names, then a line for each row.
 ///

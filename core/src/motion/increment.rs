@@ -1,12 +1,13 @@
 //! What one application of a flow makes.
 
+use core::fmt;
+
 use crate::groups::LieGroup;
 use crate::mechanics::{Effect, Group, Scalar, Vector};
-use crate::motion::summation::Proceeded;
 use crate::numbers::{Entries as _, Mask, real};
 
 /// One application of a flow.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct Increment<L: Effect> {
     /// The coordinates `ξ` of `F_i = τ(ξ)`: a guess for the next solve.
     pub coordinates: Vector<L>,
@@ -18,33 +19,11 @@ pub struct Increment<L: Effect> {
     pub advected: L::Advected,
     /// Newton iterations, counted as in [`StepReport`](crate::motion::StepReport).
     pub iterations: u32,
-}
-
-/// A step, with what its successor needs of the [`Root`](crate::solving::Root).
-pub(crate) struct Stepped<L: Effect> {
-    pub(crate) step: Increment<L>,
-    /// `μ⁺ − μ`, before it was rounded to the digits of `μ`.
+    /// `μ_{i+1} − μ_i`, before it was rounded to the digits of `μ_i`.
     pub(crate) change: Vector<L>,
+    /// `ξ/2` and whether it is far from zero, as the solve has found them.
     pub(crate) half: Vector<L>,
     pub(crate) far: Mask<Scalar<L>>,
-}
-
-impl<L: Effect> Stepped<L> {
-    /// As it is added to a motion.
-    #[hot]
-    pub(crate) fn proceeded(&self) -> Proceeded<Group<L>, L::Advected> {
-        let Increment { increment, momentum, advected, .. } = self.step;
-        Proceeded { increment, change: self.change, momentum, advected }
-    }
-
-    /// The sum of all that the step has made.
-    #[hot]
-    pub(crate) fn total(&self) -> Scalar<L> {
-        let mut total = real(0.0);
-        self.step.momentum.each(&mut |entry| total += entry);
-        self.step.advected.each(&mut |entry| total += entry);
-        total
-    }
 }
 
 impl<L: Effect> Increment<L> {
@@ -52,5 +31,23 @@ impl<L: Effect> Increment<L> {
     #[must_use]
     pub fn element(&self) -> Group<L> {
         Group::<L>::from_increment(&self.increment)
+    }
+
+    /// The sum of all that the step has made.
+    #[hot]
+    pub(crate) fn total(&self) -> Scalar<L> {
+        let mut total = real(0.0);
+        self.momentum.each(&mut |entry| total += entry);
+        self.advected.each(&mut |entry| total += entry);
+        total
+    }
+}
+
+impl<L: Effect> fmt::Debug for Increment<L> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { coordinates, momentum, advected, iterations, .. } = self;
+        let mut shown = f.debug_struct("Increment");
+        shown.field("coordinates", coordinates).field("momentum", momentum).field("advected", advected);
+        shown.field("iterations", iterations).finish_non_exhaustive()
     }
 }

@@ -1,8 +1,8 @@
 //! Functions of a rotating body whose zeros are events: Poincaré sections, the passage of the vertical, the end of a
 //! tumble.
 //!
-//! [`Run::event`](crate::with::Run::event) takes them. With `Ω` the body velocity, each page bounds the second derivative,
-//! for [`Event::curvature`](crate::with::Event::curvature).
+//! [`Run::event`](crate::recording::Run::event) takes them. With `Ω` the body velocity, each page bounds the second derivative,
+//! for [`Event::curvature`](crate::recording::Event::curvature).
 
 use nalgebra::Vector3;
 

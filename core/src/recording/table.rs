@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::{Column, Sink, SinkError};
+use super::recorder::{Column, Sink, SinkError};
 
 /// A table in memory, for runs whose rows are few: it is the only [`Sink`] that grows with the run.
 #[derive(Clone, Debug, Default, PartialEq)]

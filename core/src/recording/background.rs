@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{JoinHandle, spawn};
 
-use super::{Column, RecordError, Sink, SinkError};
+use super::recorder::{Column, RecordError, Sink, SinkError};
 
 /// A sink that writes in a thread of its own, so that a run waits only where it makes rows faster than they are written.
 ///

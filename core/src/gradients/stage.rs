@@ -1,9 +1,9 @@
 //! The tangent map of one stage and its transpose.
 
+use crate::gradients::recording::Change;
 use crate::groups::{Advected as _, LieGroup, SquareOf, seen_of_unit};
 use crate::mechanics::pattern;
 use crate::mechanics::{Effect, Group, Matrix, Scalar, SecondDerivatives, Square, StepDerivatives, Vector};
-use crate::motion::linearised::recorded::Change;
 use crate::numbers::{Coordinates, Entries, Real, real, zero};
 
 /// One change of the motion and the effect that made it: what is differentiated, by an own step of the effect or by a

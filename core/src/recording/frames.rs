@@ -24,7 +24,7 @@ use nalgebra::ComplexField as _;
 /// ```
 /// use liestep::effects::{Gravity, RigidBody};
 /// use liestep::nalgebra::{UnitQuaternion, Vector3};
-/// use liestep::with::Frames;
+/// use liestep::recording::Frames;
 /// use liestep::{NonstandardInertia, Stepper};
 ///
 /// let body = RigidBody { J_d: NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0))? };

@@ -1,20 +1,12 @@
 //! A run that is observed: by functions that are called every so many steps or at given times, and that may stop it.
 
-mod crossing;
-mod error;
-mod event;
-
-pub use error::{Ended, Reason, RunError};
-pub use event::Event;
-
 use alloc::boxed::Box;
 use alloc::vec::Vec;
-
-use event::Watched;
-
 use core::iter::Peekable;
-use core::ops::ControlFlow;
 
+use super::error::{Reason, RunError, RunReport};
+use super::event::{Event, Watch, crossings, happen, look_first};
+use super::observer::{Observer, show, stopped, unless_it_goes_on};
 use crate::error::StepError;
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::Effect;
@@ -26,20 +18,16 @@ use crate::numbers::{real, reported};
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _;
 
-/// What an observer answers.
-type Verdict = Result<ControlFlow<()>, Box<dyn core::error::Error + Send + Sync>>;
-/// `None` means go on: it comes back in a register, and a whole answer in memory.
-type Observer<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> Option<Box<Verdict>> + 'a>;
 type Condition<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> bool + 'a>;
 
 /// A run that is to be observed, by [`Stepper::observed`]; generic code makes it by [`Run::new`].
 ///
-/// Observers are closures that are shown a [`Moment`]. They return nothing, a [`ControlFlow`] that may stop the run, or a
+/// Observers are closures that are shown a [`Moment`]. They return nothing, a [`ControlFlow`](core::ops::ControlFlow) that may stop the run, or a
 /// `Result` whose error ends it:
 ///
 /// ```
 /// use liestep::effects::{Drag, RigidBody};
-/// use liestep::with::{Csv, Reason, Recorder};
+/// use liestep::recording::{Csv, Reason, Recorder};
 /// use liestep::mechanics::Inertia;
 /// use liestep::{SO3, Stepper};
 /// use nalgebra::Vector3;
@@ -75,13 +63,13 @@ pub struct Run<'a, I: Integrator> {
     integrator: &'a I,
     state: &'a mut I::State,
     observers: Observers<'a, I>,
-    timed: Vec<Timed<'a, I>>,
-    watched: Vec<Watched<'a, I>>,
+    timed: Vec<TimedObserver<'a, I>>,
+    watches: Vec<Watch<'a, I>>,
 }
 
 /// Who looks at the ends of steps only.
 struct Observers<'a, I: Integrator> {
-    regular: Vec<Regular<'a, I>>,
+    regular: Vec<RegularObserver<'a, I>>,
     conditions: Vec<Condition<'a, I>>,
     progress: Option<Box<dyn FnMut(f64) + 'a>>,
     /// The steps from which and up to which the run goes.
@@ -94,7 +82,7 @@ struct Observers<'a, I: Integrator> {
 }
 
 /// An observer that is shown every so many steps.
-struct Regular<'a, I: Integrator> {
+struct RegularObserver<'a, I: Integrator> {
     every: u64,
     /// The next of its steps.
     due: u64,
@@ -102,7 +90,7 @@ struct Regular<'a, I: Integrator> {
 }
 
 /// An observer that is shown given times.
-struct Timed<'a, I: Integrator> {
+struct TimedObserver<'a, I: Integrator> {
     times: Peekable<Box<dyn Iterator<Item = f64> + 'a>>,
     /// The last that was shown.
     shown: Option<f64>,
@@ -149,7 +137,7 @@ impl<'a, I: Integrator> Run<'a, I> {
                 seldom: 0,
             },
             timed: Vec::new(),
-            watched: Vec::new(),
+            watches: Vec::new(),
         }
     }
 
@@ -160,7 +148,7 @@ impl<'a, I: Integrator> Run<'a, I> {
     pub fn every<R: Answer>(mut self, steps: u64, mut observer: impl FnMut(&Moment<'_, I>) -> R + 'a) -> Self {
         if steps > 0 {
             let observer = Box::new(move |now: &Moment<'_, I>| unless_it_goes_on(observer(now)));
-            self.observers.regular.push(Regular { every: steps, due: 0, observer });
+            self.observers.regular.push(RegularObserver { every: steps, due: 0, observer });
         }
         self
     }
@@ -183,11 +171,11 @@ impl<'a, I: Integrator> Run<'a, I> {
     /// # Errors
     ///
     /// [`RunError`].
-    pub fn steps(mut self, steps: u64) -> Result<Ended, RunError> {
-        let mut ended = Ended { steps: 0, iterations: 0, reason: Reason::Done };
+    pub fn steps(mut self, steps: u64) -> Result<RunReport, RunError> {
+        let mut ended = RunReport { steps: 0, iterations: 0, reason: Reason::Done };
         let (integrator, start) = (self.integrator, self.state.steps());
         self.observers.begin(start, start.saturating_add(steps));
-        self.look_first()?;
+        look_first(&mut self.watches, &Moment::of_step(integrator, self.state))?;
         if self.show_timed(None, reported(integrator.time(self.state)), &mut ended)? {
             return Ok(ended);
         }
@@ -195,7 +183,7 @@ impl<'a, I: Integrator> Run<'a, I> {
         if next == 0 {
             return Ok(ended);
         }
-        if self.timed.is_empty() && self.watched.is_empty() {
+        if self.timed.is_empty() && self.watches.is_empty() {
             let mut shown = Ok(());
             let made = integrator.run_shown(self.state, next, &mut |motion| {
                 let next = self.observers.show(&Moment::of_step(integrator, motion), &mut ended);
@@ -209,7 +197,8 @@ impl<'a, I: Integrator> Run<'a, I> {
         } else {
             while next > 0 {
                 let before = self.state.clone();
-                ended.iterations += integrator.run_as_far(self.state, 1).map_err(|cause| self.stuck(cause))?;
+                ended.iterations +=
+                    integrator.run_shown(self.state, 1, &mut |_| 0).map_err(|cause| self.stuck(cause))?;
                 next = if self.show_between(&before, &mut ended)? {
                     0
                 } else {
@@ -227,9 +216,11 @@ impl<'a, I: Integrator> Run<'a, I> {
     }
 
     /// Shows what there is within a step.
-    fn show_between(&mut self, before: &I::State, ended: &mut Ended) -> Result<bool, RunError> {
-        for found in self.crossings(before)? {
-            if self.show_timed(Some(before), found.time, ended)? || self.happen(&found, ended)? {
+    fn show_between(&mut self, before: &I::State, ended: &mut RunReport) -> Result<bool, RunError> {
+        for found in crossings(&mut self.watches, before, &Moment::of_step(self.integrator, self.state))? {
+            if self.show_timed(Some(before), found.time, ended)?
+                || happen(&mut self.watches, self.integrator, &found, ended)?
+            {
                 return Ok(true);
             }
         }
@@ -237,12 +228,12 @@ impl<'a, I: Integrator> Run<'a, I> {
     }
 
     /// Shows the times from the state before up to this time.
-    fn show_timed(&mut self, before: Option<&I::State>, up_to: f64, ended: &mut Ended) -> Result<bool, RunError> {
+    fn show_timed(&mut self, before: Option<&I::State>, up_to: f64, ended: &mut RunReport) -> Result<bool, RunError> {
         let time = self.integrator.time(self.state);
         let (now, h) = (reported(time), reported(self.integrator.step_size()));
         let begun = before.map_or(now, |before| reported(self.integrator.time(before)));
         let mut stops = false;
-        for Timed { times, shown, observer } in &mut self.timed {
+        for TimedObserver { times, shown, observer } in &mut self.timed {
             // Backwards where the step is negative.
             let is_after = |asked: f64, time: f64| (asked - time) * h.signum() > 0.0;
             while let Some(asked) = times.next_if(|asked| !is_after(*asked, up_to)) {
@@ -271,7 +262,7 @@ impl<I: Integrator> Observers<'_, I> {
     /// Looks for what is due from one step to another.
     fn begin(&mut self, start: u64, end: u64) {
         (self.start, self.end, self.told, self.seldom) = (start, end, start, start);
-        for Regular { every, due, .. } in &mut self.regular {
+        for RegularObserver { every, due, .. } in &mut self.regular {
             *due = if start == 0 { 0 } else { (start / *every).saturating_add(1).saturating_mul(*every) };
         }
     }
@@ -279,9 +270,9 @@ impl<I: Integrator> Observers<'_, I> {
     /// Shows a step to those whose turn it is; returns how many there are to the next that somebody wants to see, and none
     /// at the end of the run, which an observer or a condition may be.
     #[hot]
-    fn show(&mut self, now: &Moment<'_, I>, ended: &mut Ended) -> Result<u64, RunError> {
+    fn show(&mut self, now: &Moment<'_, I>, ended: &mut RunReport) -> Result<u64, RunError> {
         let (made, mut next, mut stops) = (now.steps(), self.seldom, false);
-        for Regular { every, due, observer } in &mut self.regular {
+        for RegularObserver { every, due, observer } in &mut self.regular {
             if *due == made {
                 *due = due.saturating_add(*every);
                 // As `show` does; by that a row of every tenth step costs 23 instructions more.
@@ -303,7 +294,7 @@ impl<I: Integrator> Observers<'_, I> {
     /// Conditions, progress and the end; returns as [`show`](Self::show).
     #[cold]
     #[allow(clippy::cast_precision_loss)] // a share
-    fn look_seldom(&mut self, now: &Moment<'_, I>, ended: &mut Ended) -> u64 {
+    fn look_seldom(&mut self, now: &Moment<'_, I>, ended: &mut RunReport) -> u64 {
         let made = now.steps();
         if self.conditions.iter_mut().any(|condition| condition(now)) {
             ended.reason = Reason::Stopped { time: reported(now.time()) };
@@ -345,7 +336,51 @@ where
     ) -> Self {
         let times: Box<dyn Iterator<Item = f64> + 'a> = Box::new(times.into_iter());
         let observer = Box::new(move |now: &Moment<'_, I>| unless_it_goes_on(observer(now)));
-        self.timed.push(Timed { times: times.peekable(), shown: None, observer });
+        self.timed.push(TimedObserver { times: times.peekable(), shown: None, observer });
+        self
+    }
+
+    /// Finds the zeros of a function of the motion, and shows each with its time: events of one step in their order,
+    /// whichever function they are of.
+    ///
+    /// Between two steps the motion is [`Integrator::part`] of one, and a zero is located on it until its time has no
+    /// further digit. The time is right to two of its roundings, or to the time in which the function changes by four of
+    /// its own, whichever is longer. The moment that is shown has that time and the motion then, and [`Moment::rising`] the
+    /// direction. The steps stay what they are. [`sections`](crate::recording::sections) has functions that are ready made.
+    ///
+    /// A function that is zero at the end of a step, to the bit, is crossed there if its signs before and after differ; one
+    /// that is zero at the start of the run isn't crossed then.
+    ///
+    /// # Examples
+    ///
+    /// When does a body that flips about its middle axis change sign?
+    ///
+    /// ```
+    /// use liestep::effects::RigidBody;
+    /// use liestep::recording::Event;
+    /// use liestep::{NonstandardInertia, SO3, Stepper};
+    /// use nalgebra::Vector3;
+    ///
+    /// let body = RigidBody { J_d: NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 3.0))? };
+    /// let stepper = Stepper::new(body, 0.01)?;
+    /// let mut state = stepper.start(SO3::identity(), Vector3::new(0.01, 2.0, 0.02))?;
+    /// let mut flips = Vec::new();
+    /// stepper
+    ///     .observed(&mut state)
+    ///     .event(Event::crossing(), |now| now.momentum().y, |now| flips.push(now.time()))
+    ///     .until(20.0)?;
+    /// assert!(flips.len() == 2 && flips.is_sorted());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn event<Y: Into<f64>, R: Answer>(
+        mut self,
+        event: Event,
+        mut function: impl FnMut(&Moment<'_, I>) -> Y + 'a,
+        mut then: impl FnMut(&Moment<'_, I>) -> R + 'a,
+    ) -> Self {
+        let function = Box::new(move |now: &Moment<'_, I>| function(now).into());
+        let then = Box::new(move |now: &Moment<'_, I>| unless_it_goes_on(then(now)));
+        self.watches.push(Watch::new(event, function, then));
         self
     }
 
@@ -358,7 +393,7 @@ where
     ///
     /// [`RunError`].
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // checked
-    pub fn until(self, time: f64) -> Result<Ended, RunError> {
+    pub fn until(self, time: f64) -> Result<RunReport, RunError> {
         /// More are no number of steps that a run can make.
         const MOST: f64 = 9e15;
         let h: f64 = self.integrator.step_size().into();
@@ -372,31 +407,4 @@ where
         let made = self.state.steps();
         self.steps(if end > 0.0 { (end as u64).saturating_sub(made) } else { 0 })
     }
-}
-
-/// An answer, but for that to go on.
-#[hot]
-fn unless_it_goes_on(answer: impl Answer) -> Option<Box<Verdict>> {
-    match answer.verdict() {
-        Ok(ControlFlow::Continue(())) => None,
-        verdict => Some(Box::new(verdict)),
-    }
-}
-
-/// Shows a moment; returns whether the observer stops the run.
-fn show<I: Integrator>(
-    observer: &mut Observer<'_, I>,
-    now: &Moment<'_, I>,
-    ended: &mut Ended,
-) -> Result<bool, RunError> {
-    observer(now).map_or(Ok(false), |verdict| stopped(verdict, reported(now.time()), ended))
-}
-
-#[cold]
-#[inline(never)]
-#[allow(clippy::boxed_local)] // so that its memory is freed here, too
-fn stopped(verdict: Box<Verdict>, time: f64, ended: &mut Ended) -> Result<bool, RunError> {
-    let _ = verdict.map_err(|cause| RunError::Observer { time, cause })?;
-    ended.reason = Reason::Stopped { time };
-    Ok(true)
 }
