@@ -140,5 +140,5 @@ fn functions_of_what_is_seen() {
     }
     let about_another_point = "0.5 * m * (v + R * O.cross(&rho)).norm_squared() - m * (x + R * rho).z";
     let l = format!("{turning} + {about_another_point}");
-    assert_accepted(&l, &format!("{both}, velocity(O, v), l = {l}, discretise = trapezoid"), &fields);
+    assert_accepted(&l, &format!("{both}, velocity(O, v), l = {l}, discretise = trapezoid(Cayley)"), &fields);
 }

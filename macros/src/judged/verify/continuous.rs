@@ -14,12 +14,12 @@ use super::number::Number;
 use super::residue::Residue;
 use super::series::PowerSeries;
 use super::value::Value;
-use super::{SAMPLES, block, exponential, increments, parameter, stream, translation, velocities};
+use super::{SAMPLES, block, dot, evaluated, exponential, increments, parameter, stream, translation, velocities};
 use crate::declared::{Declaration, FieldKind, Name, Tree};
 use crate::mathematics::derive::{Continuous, Derived, Seen};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId, Variance};
-use crate::program::{Graph, Input, Node, NodeId, along_directions, components, diamond_matrices, square};
+use crate::program::{Graph, NodeId, along_directions, components, diamond_matrices, square};
 
 /// Independent points.
 const POINTS: u64 = 3;
@@ -58,28 +58,6 @@ impl Terms {
         let inputs = names.iter().filter_map(|(name, symbol)| Some((*symbol, at.get(name)?.clone())));
         evaluated(&self.graph, outputs, &inputs.collect())
     }
-}
-
-/// The values of operations on numbers of any kind.
-fn evaluated<T: Number>(graph: &Graph, outputs: &[NodeId], inputs: &BTreeMap<SymbolId, Value<T>>) -> Vec<T> {
-    let mut known: BTreeMap<NodeId, T> = BTreeMap::new();
-    let input =
-        |input: Input| inputs.get(&input.symbol).map_or(T::UNDEFINED, |value| value.at(input.row, input.column));
-    for id in graph.reachable(outputs) {
-        let at = |operand: NodeId| known.get(&operand).copied().unwrap_or(T::UNDEFINED);
-        let value = match graph.node(id) {
-            Node::Constant(value) => T::of(value),
-            Node::Input(entry) => input(entry),
-            Node::Negate(a) => -at(a),
-            Node::Add(a, b) => at(a) + at(b),
-            Node::Subtract(a, b) => at(a) - at(b),
-            Node::Multiply(a, b) => at(a) * at(b),
-            Node::Divide(a, b) => at(a) / at(b),
-            Node::Apply(function, a) => at(a).apply(function),
-        };
-        known.insert(id, value);
-    }
-    outputs.iter().map(|output| known.get(output).copied().unwrap_or(T::UNDEFINED)).collect()
 }
 
 /// A point with its kinds of parameters.
@@ -154,12 +132,7 @@ impl<'a, T: Number> Point<'a, T> {
 
     /// In other numbers.
     fn in_numbers<U: Number>(&self, of: impl Fn(T) -> U) -> Values<U> {
-        let lifted = |value: &Value<T>| Value {
-            rows: value.rows,
-            columns: value.columns,
-            entries: value.entries.iter().map(|&entry| of(entry)).collect(),
-        };
-        self.values.iter().map(|(name, value)| (*name, lifted(value))).collect()
+        self.values.iter().map(|(name, value)| (*name, value.over(&of))).collect()
     }
 }
 
@@ -236,10 +209,6 @@ fn coadjoint_of_factor<T: Number>(group: &Group, xi: &[T], momentum: &[T]) -> Ve
         })
     };
     group.generators.iter().map(of_generator).collect()
-}
-
-fn dot<T: Number>(a: &[T], b: &[T]) -> T {
-    a.iter().zip(b).fold(T::ZERO, |sum, (&x, &y)| sum + x * y)
 }
 
 /// The first equation that doesn't hold; `tree` is the declared `l`, where it is one.
