@@ -110,7 +110,8 @@ pub trait ContinuousLagrangian: Term {
 
     /// The diamond along all matrices: entries `−⟨∂l/∂w, e_ij·w⟩`, where the matrix `e_ij` has a one at `(i, j)`; paired with
     /// `E_k`, entry by entry, it is [`diamond_rate`](Self::diamond_rate). Of a product each factor has its own; where it is
-    /// translated, the last column of its matrix counts.
+    /// translated, the last column of its matrix counts. Where an attitude is seen, `RᵀR = I` may be used: there nothing but
+    /// the pairing is meant.
     fn diamond_matrix(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Matrix<Self>;
 
     /// `(∂²l/∂w∂ξ)(ξ·w)`: by how much the momentum of a fixed velocity falls as `w` is carried along. Zero where `l` is

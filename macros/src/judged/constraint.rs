@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::explain;
-use super::verify::{self, Row};
+use super::verify::{self, Row, Sureness};
 use crate::declared::errors::Errors;
 use crate::declared::lower::{self, LoweredConstraint};
 use crate::declared::{Declaration, Tree};
@@ -21,6 +21,7 @@ pub(crate) struct Held {
     pub(crate) graph: Graph,
     /// The same as matrices with a row for each function, row by row.
     pub(crate) entries: [[Vec<NodeId>; 2]; 2],
+    pub(crate) sureness: Sureness,
 }
 
 impl Held {
@@ -66,10 +67,10 @@ pub(crate) fn held(declaration: &Declaration, functions: Vec<Rc<Tree>>, errors: 
             slopes[body][by].iter().flat_map(&mut of).collect()
         })
     });
-    let held = Held { functions, lowered, slopes, graph, entries };
+    let held = Held { functions, lowered, slopes, graph, entries, sureness: Sureness::TooHigh };
     match verify::constraint(declaration, &held) {
-        Ok(rows) if rows.iter().all(|row| *row == Row::New) => return Some(held),
-        Ok(rows) => held.report(&rows, errors),
+        Ok((sureness, rows)) if rows.iter().all(|row| *row == Row::New) => return Some(Held { sureness, ..held }),
+        Ok((_, rows)) => held.report(&rows, errors),
         Err(unconfirmed) => explain::unconfirmed(unconfirmed, declaration, &held.functions[0], errors),
     }
     None

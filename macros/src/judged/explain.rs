@@ -285,9 +285,6 @@ pub(super) fn unconfirmed(unconfirmed: Unconfirmed, declaration: &Declaration, t
         Unconfirmed::NoValue => "this has no value at the points where it was tried: what is under a root or a \
                                  logarithm has to be positive for parameters of some size and sign"
             .to_owned(),
-        Unconfirmed::Rough => "this is too steep at the points where it was tried for its derivatives to be checked: \
-                               write it with lower powers, or in units in which its numbers are nearer to one"
-            .to_owned(),
         Unconfirmed::NotSmooth => {
             let place = verify::not_smooth_at_identity(declaration, tree);
             let (message, ends) = not_smooth(place, tree);

@@ -3,7 +3,8 @@
 use std::rc::Rc;
 
 use super::choose::Chosen;
-use super::{explain, hypotheses, verify};
+use super::verify::{self, Sureness, Verified};
+use super::{explain, hypotheses};
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Role, Tree};
 use crate::mathematics::derive::SelfAdjointness;
@@ -11,6 +12,7 @@ use crate::mathematics::derive::SelfAdjointness;
 /// What its documentation says beside the equations.
 pub(crate) struct Findings {
     pub(crate) self_adjointness: SelfAdjointness,
+    pub(crate) sureness: Sureness,
     pub(crate) hypotheses: Vec<String>,
 }
 
@@ -28,20 +30,15 @@ pub(crate) fn findings(
         explain::kinetic_part(&verify::kinetic_part(declaration, tree, lowered, derived), declaration, errors)?;
     }
     let is_force = declaration.role == Role::Force;
-    let verified = if is_force {
-        verify::force(declaration, tree, chosen).map(|()| SelfAdjointness::No)
-    } else {
-        verify::verify(declaration, tree, lowered, derived, kernel)
-    };
-    match verified {
-        Ok(self_adjointness) => {
+    match verify::verify(declaration, tree, lowered, (derived, kernel)) {
+        Ok(Verified { self_adjointness, sureness }) => {
             let asked = declaration.discretisation().filter(|_| self_adjointness == SelfAdjointness::No);
             if let Some(asked) = asked {
                 explain::not_self_adjoint(asked, errors);
                 return None;
             }
             let hypotheses = if is_force { Vec::new() } else { hypotheses::hypotheses(declaration, tree, lowered) };
-            Some(Findings { self_adjointness, hypotheses })
+            Some(Findings { self_adjointness, sureness, hypotheses })
         }
         Err(unconfirmed) => {
             explain::unconfirmed(unconfirmed, declaration, tree, errors);

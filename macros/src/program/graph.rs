@@ -357,7 +357,12 @@ impl Graph {
         (0..self.nodes.len()).filter(|&id| needed[id]).map(NodeId).collect()
     }
 
+    pub(crate) fn nodes(&self) -> impl Iterator<Item = &Node> {
+        self.nodes.iter().map(|(node, _)| node)
+    }
+
     /// The values of the outputs for given inputs.
+    #[cfg(test)]
     pub(crate) fn evaluate(&self, outputs: &[NodeId], input: &dyn Fn(Input) -> f64) -> Vec<f64> {
         let mut values = vec![0.0; self.nodes.len()];
         for id in self.reachable(outputs) {

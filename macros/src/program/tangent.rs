@@ -59,6 +59,12 @@ impl<'a> Linearisation<'a> {
         linearisation
     }
 
+    /// The components of `μ` and of `μ⁺`.
+    pub(crate) fn momenta(&self) -> [Vec<NodeId>; 2] {
+        let (start, end) = self.momenta.split_at(self.derived.group.dimension());
+        [start.to_vec(), end.to_vec()]
+    }
+
     /// Whether none of these depends on the symbols that stand for weights.
     fn are_free(&self, weights: [SymbolId; 2], outputs: &[NodeId]) -> bool {
         let is_weight = |id| matches!(self.graph.node(id), Node::Input(input) if weights.contains(&input.symbol));

@@ -103,3 +103,42 @@ fn of_unusual_orders() {
         assert_eq!(refusal(&format!("{kinetic} - h * m * w.dot(&rho)")), None, "{kinetic}");
     }
 }
+
+/// Of what another body sees and of what is advected, `log` and `exp`; and a body's place with its attitude, twice.
+#[test]
+fn functions_of_what_is_seen() {
+    let assert_accepted = |what: &str, arguments: &str, fields: &[&str]| {
+        let is_used = |field: &&&str| {
+            let name = field.split(':').next();
+            arguments.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| Some(word) == name)
+        };
+        let fields: Vec<&str> = fields.iter().filter(is_used).copied().collect();
+        let expansion = expanded(arguments, &format!("struct Body {{ {} }}", fields.join(", ")));
+        assert!(!is_refused(&expansion), "{what}: {expansion}");
+    };
+    let fields =
+        ["J_d: NonstandardInertia", "B: NonstandardInertia", "m: f64", "rho: Vector3<f64>", "up: Vector3<f64>"];
+    let square = |f: &str, j: &str| format!("(({f} - I) * {j} * ({f} - I).transpose()).trace() / (2.0 * h)");
+    for u in
+        ["log(Q).norm_squared()", "log(Q).dot(&rho)", "log(F_1.transpose() * Q * F_2).norm_squared()", "log(Q).norm()"]
+    {
+        let kinetic = square("F_1", "J_d") + " + " + &square("F_2", "B");
+        let seen = "group(F_1 = SO3, F_2 = SO3), advected(Q = F_2.seen_from(F_1))";
+        assert_accepted(u, &format!("{seen}, l_d = {kinetic} - h * m * {u}"), &fields);
+    }
+    for u in ["exp(w)[(0, 2)]", "exp(w).trace()", "exp(0.1 * w.cross(&rho))[(0, 2)]", "w.norm().sqrt().sin()"] {
+        let kinetic = square("F", "J_d");
+        assert_accepted(u, &format!("group = SO3, advected(w = up), l_d = {kinetic} - h * m * {u}"), &fields);
+    }
+    let both = "group(F = SO3, d = R3), advected(R = F.seen_from(space), x = d.seen_from(space))";
+    let turning = "0.5 * (hat(O) * J_d * hat(O).transpose()).trace()";
+    for u in ["(x + R * rho).norm_squared()", "(x + R * rho - up).norm_squared()", "(x + R * rho).norm()"] {
+        let l_d = square("F", "J_d") + " + 0.5 * m * d.norm_squared() / h";
+        assert_accepted(u, &format!("{both}, l_d = {l_d} - h * m * {u}"), &fields);
+        let l = format!("{turning} + 0.5 * m * v.norm_squared() - m * {u}");
+        assert_accepted(u, &format!("{both}, velocity(O, v), l = {l}, discretise = trapezoid"), &fields);
+    }
+    let about_another_point = "0.5 * m * (v + R * O.cross(&rho)).norm_squared() - m * (x + R * rho).z";
+    let l = format!("{turning} + {about_another_point}");
+    assert_accepted(&l, &format!("{both}, velocity(O, v), l = {l}, discretise = trapezoid(Cayley)"), &fields);
+}

@@ -1,20 +1,22 @@
 //! The self-check of a constraint: its derivatives against dual numbers of the declared functions, and what each of these
-//! adds to those before it, at a random point of a finite field, where nothing is rounded.
+//! adds to those before it, at random points of a finite field, where nothing is rounded.
 
 use std::collections::BTreeMap;
 
+use super::degree::{self, Degree, Largest};
 use super::dual::Dual;
+use super::exact::{confirmed, same};
+use super::identities::Same;
 use super::number::Number;
 use super::residue::Residue;
-use super::{DRAWS, Evaluation, Fault, Unconfirmed, Value, confirmed, evaluated, parameter, stream};
+use super::{DRAWS, Evaluation, Fault, Sureness, Unconfirmed, Value, dot, evaluated, parameter, stream};
 use crate::declared::{Declaration, FieldKind, Name};
 use crate::judged::constraint::Held;
 use crate::mathematics::derive::Seen;
 use crate::mathematics::symbolic::SymbolId;
 
-/// What two ways to the same slopes may differ by, relative to these: both are right but for roundings, and this leaves seven
-/// digits for what cancels.
-const ROUNDING: f64 = 1e-9;
+/// Points that are compared where no bound is small enough.
+const POINTS: u32 = 3;
 
 /// Attitude and position of a body.
 type Place<T> = [Value<T>; 2];
@@ -30,20 +32,43 @@ pub(crate) enum Row {
     Constant,
 }
 
-/// Checks the slopes of both bodies, and finds what each function adds to those before it.
-pub(crate) fn constraint(declaration: &Declaration, held: &Held) -> Result<Vec<Row>, Unconfirmed> {
-    let draws = (1..=DRAWS).map(|seed| Point::new(declaration, stream(seed)));
-    let finite = draws.filter(|point| {
+/// Checks the slopes of both bodies, and finds how sure that is, and what each function adds to those before it.
+pub(crate) fn constraint(declaration: &Declaration, held: &Held) -> Result<(Sureness, Vec<Row>), Unconfirmed> {
+    let has_value = |seed| {
+        let point = Point::new(declaration, stream(seed));
         let value = point.value(held, &point.places.each_ref().map(lifted));
         value.iter().all(|entry| entry.value.is_finite())
-    });
-    confirmed(finite, |point| point.check(held))?;
+    };
+    if !(1..=DRAWS).any(has_value) {
+        return Err(Unconfirmed::NoValue);
+    }
+    let found = sureness(declaration, held);
+    confirmed(found.map_or(POINTS, |found| found.points), |seed| {
+        let mut number = Residue::stream(seed);
+        Point::new(declaration, &mut number).holds(held, number, &mut same)
+    })?;
     let rows = Point::new(declaration, Residue::stream(1)).rows(held);
-    Ok(rows.unwrap_or_else(|| vec![Row::New; held.rows()]))
+    let sureness = found.map_or(Sureness::TooHigh, |found| Sureness::Certified(found.exponent));
+    Ok((sureness, rows.unwrap_or_else(|| vec![Row::New; held.rows()])))
+}
+
+fn sureness(declaration: &Declaration, held: &Held) -> Option<degree::Sureness> {
+    let mut point = Point::new(declaration, || Degree::VARIABLE);
+    // The attitudes of both bodies are Cayley transforms.
+    for [attitude, _] in &mut point.places {
+        *attitude = attitude.map(|_| Degree::of_element(4));
+    }
+    let mut largest = Largest::default();
+    let compared = point.holds(held, || Degree::VARIABLE, &mut |_, found, expected| {
+        largest.compared(found, expected);
+        Ok(())
+    });
+    let functions = held.functions.iter().map(degree::functions).sum::<u64>() + degree::calls(&held.graph);
+    compared.ok().and_then(|()| largest.sureness(functions))
 }
 
 /// Where two bodies are, and the values of the fields.
-struct Point<'a, T = f64> {
+struct Point<'a, T> {
     declaration: &'a Declaration,
     places: [Place<T>; 2],
     fields: BTreeMap<Name, Value<T>>,
@@ -54,11 +79,7 @@ fn lifted<T: Number>(place: &Place<T>) -> Place<Dual<T>> {
 }
 
 fn constant<T: Number>(value: &Value<T>) -> Value<Dual<T>> {
-    Value {
-        rows: value.rows,
-        columns: value.columns,
-        entries: value.entries.iter().map(|&entry| Dual::constant(entry)).collect(),
-    }
+    value.over(Dual::constant)
 }
 
 impl<'a, T: Number> Point<'a, T> {
@@ -90,14 +111,38 @@ impl<'a, T: Number> Point<'a, T> {
     }
 
     /// Their slopes where a body turns about an axis, `by = 0`, or is shifted along it.
-    fn slopes(&self, held: &Held, body: usize, by: usize, k: usize) -> Vec<T> {
-        let slope = |row: usize| if row == k { T::ONE } else { T::ZERO };
-        let axis = Value::new(3, 1, |row, _| Dual { value: T::ZERO, slope: slope(row) });
+    fn slopes(&self, held: &Held, body: usize, by: usize, axis: &[T]) -> Vec<T> {
+        let axis = Value::column(axis).over(|slope| Dual { value: T::ZERO, slope });
         let mut places = self.places.each_ref().map(lifted);
         let moved = &mut places[body][by];
         // exp(εη̂) R is R + εη̂ R.
         *moved = if by == 0 { moved.plus(&Value::hat(&axis).times(moved)) } else { moved.plus(&axis) };
         self.value(held, &places).iter().map(|value| value.slope).collect()
+    }
+
+    fn inputs(&self, held: &Held) -> BTreeMap<SymbolId, Value<T>> {
+        let mut inputs = BTreeMap::new();
+        for (body, [attitude, position]) in held.lowered.declared.bodies.iter().zip(&self.places) {
+            inputs.extend([(body.attitude, attitude.clone()), (body.position, position.clone())]);
+        }
+        for (name, value) in &self.fields {
+            inputs.extend(held.lowered.names.get(name).map(|&symbol| (symbol, value.clone())));
+        }
+        inputs
+    }
+
+    /// Along a direction of these numbers.
+    fn holds(&self, held: &Held, mut number: impl FnMut() -> T, same: &mut Same<T>) -> Result<(), Fault> {
+        let (inputs, axis) = (self.inputs(held), [(); 3].map(|()| number()));
+        for (body, slopes) in held.entries.iter().enumerate() {
+            for (by, entries) in slopes.iter().enumerate() {
+                let found = evaluated(&held.graph, entries, &inputs);
+                for (row, expected) in found.chunks(3).zip(self.slopes(held, body, by, &axis)) {
+                    same("slope", dot(row, &axis), expected)?;
+                }
+            }
+        }
+        Ok(())
     }
 }
 
@@ -112,7 +157,12 @@ impl Point<'_, Residue> {
     /// Nor is what follows on the constraint alone, where the point isn't: of `R_1 a − R_2 b` with vectors of one length two of
     /// the three functions say all.
     fn rows(&self, held: &Held) -> Option<Vec<Row>> {
-        let ways: Vec<Vec<Residue>> = (0..12).map(|way| self.slopes(held, way / 6, way / 3 % 2, way % 3)).collect();
+        let ways: Vec<Vec<Residue>> = (0..12)
+            .map(|way| {
+                let axis = [0, 1, 2].map(|k| if k == way % 3 { Residue::ONE } else { Residue::ZERO });
+                self.slopes(held, way / 6, way / 3 % 2, &axis)
+            })
+            .collect();
         // Each with the place of its first entry that isn't zero, which is one.
         let mut before: Vec<(usize, Vec<Residue>)> = Vec::new();
         let mut rows = Vec::new();
@@ -135,38 +185,5 @@ impl Point<'_, Residue> {
             before.extend(first(&rest).map(|at| (at, rest.iter().map(|&entry| entry / rest[at]).collect())));
         }
         Some(rows)
-    }
-}
-
-impl Point<'_> {
-    fn inputs(&self, held: &Held) -> BTreeMap<SymbolId, Value> {
-        let mut inputs = BTreeMap::new();
-        for (body, [attitude, position]) in held.lowered.declared.bodies.iter().zip(&self.places) {
-            inputs.extend([(body.attitude, attitude.clone()), (body.position, position.clone())]);
-        }
-        for (name, value) in &self.fields {
-            inputs.extend(held.lowered.names.get(name).map(|&symbol| (symbol, value.clone())));
-        }
-        inputs
-    }
-
-    fn check(&self, held: &Held) -> Result<(), Fault> {
-        let inputs = self.inputs(held);
-        for (body, slopes) in held.entries.iter().enumerate() {
-            for (by, entries) in slopes.iter().enumerate() {
-                let found = evaluated(&held.graph, entries, &inputs);
-                let size = 1.0 + found.iter().map(|entry| entry.abs()).sum::<f64>();
-                for k in 0..3 {
-                    let expected = self.slopes(held, body, by, k);
-                    for (row, expected) in expected.iter().enumerate() {
-                        let off = found.get(3 * row + k).map_or(f64::NAN, |found| (found - expected).abs());
-                        if off.partial_cmp(&(ROUNDING * size)) != Some(std::cmp::Ordering::Less) {
-                            return Err(Fault::Disagrees("slope"));
-                        }
-                    }
-                }
-            }
-        }
-        Ok(())
     }
 }

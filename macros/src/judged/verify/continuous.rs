@@ -14,12 +14,12 @@ use super::number::Number;
 use super::residue::Residue;
 use super::series::PowerSeries;
 use super::value::Value;
-use super::{SAMPLES, block, exponential, increments, parameter, stream, translation, velocities};
+use super::{SAMPLES, block, dot, evaluated, exponential, increments, parameter, stream, translation, velocities};
 use crate::declared::{Declaration, FieldKind, Name, Tree};
 use crate::mathematics::derive::{Continuous, Derived, Seen};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId, Variance};
-use crate::program::{Graph, Input, Node, NodeId, along_directions, components, diamond_matrices, square};
+use crate::program::{Graph, NodeId, along_directions, components, diamond_matrices, square};
 
 /// Independent points.
 const POINTS: u64 = 3;
@@ -58,28 +58,6 @@ impl Terms {
         let inputs = names.iter().filter_map(|(name, symbol)| Some((*symbol, at.get(name)?.clone())));
         evaluated(&self.graph, outputs, &inputs.collect())
     }
-}
-
-/// The values of operations on numbers of any kind.
-fn evaluated<T: Number>(graph: &Graph, outputs: &[NodeId], inputs: &BTreeMap<SymbolId, Value<T>>) -> Vec<T> {
-    let mut known: BTreeMap<NodeId, T> = BTreeMap::new();
-    let input =
-        |input: Input| inputs.get(&input.symbol).map_or(T::UNDEFINED, |value| value.at(input.row, input.column));
-    for id in graph.reachable(outputs) {
-        let at = |operand: NodeId| known.get(&operand).copied().unwrap_or(T::UNDEFINED);
-        let value = match graph.node(id) {
-            Node::Constant(value) => T::of(value),
-            Node::Input(entry) => input(entry),
-            Node::Negate(a) => -at(a),
-            Node::Add(a, b) => at(a) + at(b),
-            Node::Subtract(a, b) => at(a) - at(b),
-            Node::Multiply(a, b) => at(a) * at(b),
-            Node::Divide(a, b) => at(a) / at(b),
-            Node::Apply(function, a) => at(a).apply(function),
-        };
-        known.insert(id, value);
-    }
-    outputs.iter().map(|output| known.get(output).copied().unwrap_or(T::UNDEFINED)).collect()
 }
 
 /// A point with its kinds of parameters.
@@ -154,12 +132,7 @@ impl<'a, T: Number> Point<'a, T> {
 
     /// In other numbers.
     fn in_numbers<U: Number>(&self, of: impl Fn(T) -> U) -> Values<U> {
-        let lifted = |value: &Value<T>| Value {
-            rows: value.rows,
-            columns: value.columns,
-            entries: value.entries.iter().map(|&entry| of(entry)).collect(),
-        };
-        self.values.iter().map(|(name, value)| (*name, lifted(value))).collect()
+        self.values.iter().map(|(name, value)| (*name, value.over(&of))).collect()
     }
 }
 
@@ -238,10 +211,6 @@ fn coadjoint_of_factor<T: Number>(group: &Group, xi: &[T], momentum: &[T]) -> Ve
     group.generators.iter().map(of_generator).collect()
 }
 
-fn dot<T: Number>(a: &[T], b: &[T]) -> T {
-    a.iter().zip(b).fold(T::ZERO, |sum, (&x, &y)| sum + x * y)
-}
-
 /// The first equation that doesn't hold; `tree` is the declared `l`, where it is one.
 pub(crate) fn disagreement(
     declaration: &Declaration,
@@ -269,8 +238,6 @@ fn disagreement_at(
         };
         value.slope
     };
-    // What has no value here, or no derivative, isn't told.
-    let differs = |a: Residue, b: Residue| a.is_defined() && b.is_defined() && a != b;
     let (dimension, xi) = (point.group().dimension(), point.velocity());
     let at = |outputs: &[NodeId]| terms.values(outputs, names, &point.values);
     let (momentum, hessian, diamond, advection) =
@@ -290,16 +257,8 @@ fn disagreement_at(
             return Some("diamond term ∂l/∂w ⋄ w");
         }
     }
-    let all = point.group().size;
-    for (factor, entries) in terms.diamond_matrices.iter().enumerate() {
-        let (first, size) = (point.group().row_of(factor), point.group().factor(factor).size);
-        for (place, found) in at(entries).into_iter().enumerate() {
-            let is_one = |i, j| (i, j) == (first + place / size, first + place % size);
-            let unit = Value::new(all, all, |i, j| if is_one(i, j) { Residue::ONE } else { Residue::ZERO });
-            if differs(found, -slope(&point.carried_by_matrix(&unit))) {
-                return Some("diamond along all matrices");
-            }
-        }
+    if let Some(term) = diamond_matrix_disagrees(point, &diamond, &at, terms, &slope) {
+        return Some(term);
     }
     let carried = point.carried_by(&xi);
     if differs(energy_rate(point, &momentum, &diamond, slope(&carried)), Residue::ZERO) {
@@ -308,6 +267,46 @@ fn disagreement_at(
     let varied = terms.values(&terms.momentum, names, &carried);
     let is_wrong = advection.iter().zip(&varied).any(|(&found, varied)| differs(found, varied.slope));
     is_wrong.then_some("change of the momentum with w")
+}
+
+/// The diamond as a matrix, paired with the generators, and where it is meant along all matrices.
+///
+/// Of an attitude that is seen `RᵀR = I` may have been used. So it is compared on the group, where that holds.
+fn diamond_matrix_disagrees(
+    point: &Point<Residue>,
+    diamond: &[Residue],
+    at: &dyn Fn(&[NodeId]) -> Vec<Residue>,
+    terms: &Terms,
+    slope: &dyn Fn(&Values<Dual<Residue>>) -> Residue,
+) -> Option<&'static str> {
+    let group = point.group();
+    let kinds = (0..point.declaration.advected.len()).map(|index| point.declaration.advected_kind(index));
+    let is_general = kinds.into_iter().all(|kind| !matches!(kind, FieldKind::Configuration(_)));
+    for (factor, entries) in terms.diamond_matrices.iter().enumerate() {
+        let (own, found) = (group.factor(factor), at(entries));
+        let first = group.component_of(factor);
+        for (k, generator) in own.generators.iter().enumerate() {
+            let paired = dot(&found, &Value::square(own.size, generator).entries);
+            if diamond.get(first + k).is_none_or(|&expected| differs(paired, expected)) {
+                return Some("diamond along all matrices");
+            }
+        }
+        let row = group.row_of(factor);
+        for (place, &found) in found.iter().enumerate().filter(|_| is_general) {
+            let is_one = |i, j| (i, j) == (row + place / own.size, row + place % own.size);
+            let unit =
+                Value::new(group.size, group.size, |i, j| if is_one(i, j) { Residue::ONE } else { Residue::ZERO });
+            if differs(found, -slope(&point.carried_by_matrix(&unit))) {
+                return Some("diamond along all matrices");
+            }
+        }
+    }
+    None
+}
+
+/// What has no value here, or no derivative, isn't told.
+fn differs(a: Residue, b: Residue) -> bool {
+    a.is_defined() && b.is_defined() && a != b
 }
 
 /// `⟨∂h/∂μ, μ̇⟩ + ⟨∂h/∂w, ẇ⟩` with `∂h/∂μ = ξ`, `∂h/∂w = −∂l/∂w` and `ẇ = −ξ·w`; `carried` is `⟨∂l/∂w, ξ·w⟩`.
@@ -371,7 +370,6 @@ pub(crate) fn rest_disagrees(
     (symbols, derived): (&BTreeMap<Name, SymbolId>, &Derived),
 ) -> bool {
     let (terms, limit) = (Terms::new(continuous), LimitTerms::new(derived));
-    let differs = |a: &Residue, b: &Residue| a.is_defined() && b.is_defined() && a != b;
     (1..=POINTS).any(|seed| {
         let mut point = Point::new(declaration, Residue::stream(seed));
         point.set_velocity(&vec![Residue::ZERO; declaration.group.dimension()]);
@@ -379,7 +377,7 @@ pub(crate) fn rest_disagrees(
         let (inertia, bias, potential) = limit.at(symbols, &point);
         let pairs =
             [(at(&terms.hessian), inertia), (at(&terms.momentum), bias), (at(&[terms.lagrangian]), vec![-potential])];
-        pairs.iter().any(|(here, there)| here.iter().zip(there).any(|(a, b)| differs(a, b)))
+        pairs.iter().any(|(here, there)| here.iter().zip(there).any(|(&a, b)| differs(a, *b)))
     })
 }
 

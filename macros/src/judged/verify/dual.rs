@@ -45,9 +45,12 @@ impl<T: Number> Mul for Dual<T> {
 impl<T: Number> Div for Dual<T> {
     type Output = Self;
 
+    #[allow(clippy::suspicious_arithmetic_impl)] // by the reciprocal
     fn div(self, other: Self) -> Self {
-        let value = self.value / other.value;
-        Self { value, slope: (self.slope - value * other.slope) / other.value }
+        // Once, as in a finite field it is a hundred products.
+        let reciprocal = T::ONE / other.value;
+        let value = self.value * reciprocal;
+        Self { value, slope: (self.slope - value * other.slope) * reciprocal }
     }
 }
 

@@ -1,89 +1,168 @@
-//! Self-adjointness at random points of a finite field, where nothing is rounded.
-//!
-//! `F` is a product of Cayley transforms `cay(tE_k) = (I − tE_k)⁻¹(I + tE_k)`. Where `E³ = c E`, they are elements of
-//! the one-parameter group of `E`, rational in `t`: for all of the built-in groups' generators. The products for all
-//! generators have elements near the identity for all that the group has there, so that an identity that holds for them
-//! holds for the connected group; and being an identity of rational functions with rational coefficients, it holds in
-//! the field as well.
+//! All identities at random points, as many as are needed.
 
 use std::rc::Rc;
 
+use super::degree::{self, Degree, Largest};
+use super::identities::Identities;
 use super::number::Number;
 use super::residue::Residue;
+use super::sample::{Element, Sample};
+use super::series::PowerSeries;
 use super::value::Value;
-use super::{Sample, degree, inverse_of};
+use super::{Fault, Sureness, Unconfirmed, exponential};
 use crate::declared::lower::Lowered;
-use crate::declared::{Declaration, Kind, Tree};
-use crate::mathematics::derive::Derived;
+use crate::declared::{Declaration, FieldKind, Name, Tree};
 use crate::mathematics::group::Group;
 
-/// Independent points.
-const POINTS: u64 = 3;
-/// With more coincidences than this three points don't decide: together they leave a probability of `2⁻⁶³`.
-const MOST_COINCIDENCES: u64 = 1 << 40;
+/// Compared without a bound.
+const POINTS: u32 = 3;
+/// So many more are tried, as one may have no value.
+const SPARE: u32 = 5;
 
-/// Whether `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`, wrongly yes with a probability below `2⁻⁵⁰`; nothing where the field
-/// doesn't say.
-pub(super) fn is_self_adjoint(
-    declaration: &Declaration,
-    tree: &Rc<Tree>,
-    lowered: &Lowered,
-    derived: &Derived,
-) -> Option<bool> {
-    if degree::coincidences(tree, derived.group.dimension()) > MOST_COINCIDENCES {
-        return None;
+/// Numbers that can be told from each other.
+pub(super) trait Exact: Number {
+    fn stream(seed: u64) -> impl FnMut() -> Self;
+
+    /// A random element of the group, if this kind of numbers has any.
+    fn element(group: &Group, number: &mut impl FnMut() -> Self) -> Option<Element<Self>>;
+
+    fn is_defined(self) -> bool;
+
+    fn is(self, other: Self) -> bool;
+}
+
+impl Exact for Residue {
+    fn stream(seed: u64) -> impl FnMut() -> Self {
+        Self::stream(seed)
     }
-    let mut is_equal = true;
-    for seed in 1..=POINTS {
+
+    fn element(group: &Group, number: &mut impl FnMut() -> Self) -> Option<Element<Self>> {
+        Element::by_cayley(group, number)
+    }
+
+    fn is_defined(self) -> bool {
+        self.is_defined()
+    }
+
+    fn is(self, other: Self) -> bool {
+        self == other
+    }
+}
+
+impl Exact for PowerSeries<Residue> {
+    fn stream(seed: u64) -> impl FnMut() -> Self {
         let mut number = Residue::stream(seed);
-        let elements = element(&derived.group, &mut number)?;
-        let sample = Sample::with_numbers(declaration, lowered, derived, elements, number);
-        let (value, reversed) = (sample.declared(tree), sample.reversed(tree));
-        if !value.is_defined() || !reversed.is_defined() {
-            return None;
-        }
-        is_equal &= value == reversed;
+        move || Self::constant(number())
     }
-    // A function may have relations that a random one hasn't.
-    if is_equal || !has_function(tree) { Some(is_equal) } else { None }
+
+    /// A product of exponentials of multiples of the variable.
+    fn element(group: &Group, number: &mut impl FnMut() -> Self) -> Option<Element<Self>> {
+        let mut element = Element::identity(group);
+        for entries in &group.generators {
+            let t = number() * Self::STEP;
+            let x = Value::square(group.size, entries).map(|entry: Self| t * entry);
+            element.matrix = element.matrix.times(&exponential(group, &x));
+            element.inverse = exponential(group, &x.map(|entry| -entry)).times(&element.inverse);
+        }
+        Some(element)
+    }
+
+    fn is_defined(self) -> bool {
+        Self::is_defined(&self)
+    }
+
+    fn is(self, other: Self) -> bool {
+        (self - other).is_zero()
+    }
 }
 
-/// A random element with its inverse; nothing where a generator's one-parameter group isn't rational in this way.
-fn element(group: &Group, number: &mut impl FnMut() -> Residue) -> Option<(Value<Residue>, Value<Residue>)> {
-    let identity = Value::identity(group.size);
-    let (mut element, mut inverse) = (identity.clone(), identity.clone());
-    for entries in &group.generators {
-        let generator = Value::square(group.size, entries);
-        if !is_multiple(&generator.times(&generator).times(&generator), &generator) {
-            return None;
-        }
-        let t = number();
-        let forwards = identity.zip(&generator, |one, e| one + t * e);
-        let backwards = identity.zip(&generator, |one, e| one - t * e);
-        element = element.times(&inverse_of(group, &backwards).times(&forwards));
-        inverse = inverse_of(group, &forwards).times(&backwards).times(&inverse);
-    }
-    Some((element, inverse))
+/// Of a declaration.
+pub(super) struct Check<'a> {
+    pub(super) declaration: &'a Declaration,
+    pub(super) lowered: &'a Lowered,
+    pub(super) identities: Identities<'a>,
 }
 
-/// Whether `A = c B` for a number `c`.
-fn is_multiple(a: &Value<Residue>, b: &Value<Residue>) -> bool {
-    let Some((&first, &scale)) = a.entries.iter().zip(&b.entries).find(|(_, b)| **b != Residue::ZERO) else {
-        return false;
-    };
-    a.entries.iter().zip(&b.entries).all(|(&a, &b)| a * scale == b * first)
+impl<'a> Check<'a> {
+    /// How sure the check is, and the points at which all agrees where they are those of the field.
+    pub(super) fn confirmed(&self, tree: &Rc<Tree>) -> Result<(Sureness, Vec<Sample<'a, Residue>>), Unconfirmed> {
+        if Residue::element(&self.declaration.group, &mut Residue::stream(1)).is_none() {
+            self.points::<PowerSeries<Residue>>(POINTS)?;
+            return Ok((Sureness::Series, Vec::new()));
+        }
+        let found = self.sureness(tree);
+        let points = self.points(found.map_or(POINTS, |found| found.points))?;
+        let sureness = found.map_or(Sureness::TooHigh, |found| Sureness::Certified(found.exponent));
+        Ok((sureness, if found.is_some() { points } else { Vec::new() }))
+    }
+
+    fn sample<T: Number>(&self, element: Element<T>, number: &mut impl FnMut() -> T) -> Sample<'a, T> {
+        Sample::with_numbers(self.declaration, self.lowered, self.identities.derived, element, number)
+    }
+
+    /// As many points at which everything agrees.
+    fn points<T: Exact>(&self, count: u32) -> Result<Vec<Sample<'a, T>>, Unconfirmed> {
+        confirmed(count, |seed| {
+            let mut number = T::stream(seed);
+            let element = T::element(&self.declaration.group, &mut number).ok_or(Fault::Untold)?;
+            let sample = self.sample(element, &mut number);
+            self.identities.hold(&sample, number, &mut same)?;
+            Ok(sample)
+        })
+    }
+
+    fn sureness(&self, tree: &Rc<Tree>) -> Option<degree::Sureness> {
+        let kinds = (0..self.declaration.advected.len()).map(|index| self.declaration.advected_kind(index));
+        let kinds: Vec<FieldKind> = kinds.collect();
+        let is_attitude = |kind: &&FieldKind| matches!(kind, FieldKind::Configuration(_));
+        let attitudes = kinds.iter().filter(is_attitude).count();
+        let (element, entry) = degree::element(&self.declaration.group, attitudes);
+        let mut sample = self.sample(element, &mut || Degree::VARIABLE);
+        for (index, kind) in kinds.iter().enumerate().filter(|(_, kind)| is_attitude(kind)) {
+            let rows = kind.shape().rows();
+            sample.values.insert(Name::Advected(index), Value::new(rows, rows, |_, _| entry));
+        }
+        let mut largest = Largest::default();
+        largest.compared(sample.declared(tree), sample.reversed(tree));
+        let compared = self.identities.hold(&sample, || Degree::VARIABLE, &mut |_, found, expected| {
+            largest.compared(found, expected);
+            Ok(())
+        });
+        compared.ok().and_then(|()| largest.sureness(self.identities.functions()))
+    }
+
+    /// Whether the momentum and its Jacobian have values where a step begins: in the field nothing but a division by zero
+    /// and a root or a logarithm of zero hasn't.
+    pub(super) fn is_smooth(&self) -> bool {
+        let mut number = Residue::stream(1);
+        let sample = self.sample(Element::identity(&self.declaration.group), &mut number);
+        self.identities.are_smooth_at_identity(&sample, Residue::is_defined)
+    }
 }
 
-fn has_function(tree: &Rc<Tree>) -> bool {
-    let mut seen = std::collections::BTreeSet::new();
-    let mut open = vec![tree];
-    while let Some(tree) = open.pop() {
-        if matches!(tree.kind, Kind::Apply(..)) {
-            return true;
+/// Whether both are one number.
+pub(super) fn same<T: Exact>(term: &'static str, found: T, expected: T) -> Result<(), Fault> {
+    match (found.is_defined(), expected.is_defined()) {
+        (_, false) => Err(Fault::Untold),
+        (false, true) => Err(Fault::NoValue(term)),
+        _ if found.is(expected) => Ok(()),
+        _ => Err(Fault::Disagrees(term)),
+    }
+}
+
+/// The first points at which what was derived agrees with the declaration. A point without values is no agreement.
+pub(super) fn confirmed<S>(count: u32, point: impl Fn(u64) -> Result<S, Fault>) -> Result<Vec<S>, Unconfirmed> {
+    let (mut found, mut nothing) = (Vec::new(), Unconfirmed::NoValue);
+    for seed in 1..=u64::from(count + SPARE) {
+        match point(seed) {
+            Ok(one) => found.push(one),
+            Err(Fault::Untold) => {}
+            Err(Fault::NoValue(term)) => nothing = Unconfirmed::Disagrees(term),
+            Err(Fault::Disagrees(term)) => return Err(Unconfirmed::Disagrees(term)),
         }
-        if seen.insert(Rc::as_ptr(tree)) {
-            open.extend(tree.kind.operands().into_iter().flatten());
+        if u32::try_from(found.len()) == Ok(count) {
+            return Ok(found);
         }
     }
-    false
+    Err(nothing)
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::{SAMPLES, Sample, Value, evaluated, linear};
+use super::{Element, SAMPLES, Sample, Value, evaluated, linear};
 use crate::declared::lower::Lowered;
 use crate::declared::{Declaration, FieldKind, Name, Tree};
 use crate::mathematics::derive::Derived;
@@ -120,7 +120,7 @@ fn largest(entries: &[f64]) -> f64 {
 }
 
 fn at_identity(sample: &Sample, graph: &Graph, outputs: &[NodeId]) -> Vec<f64> {
-    evaluated(graph, outputs, &sample.inputs(&Value::identity(sample.increment.rows)))
+    evaluated(graph, outputs, &sample.inputs_at(&Element::identity(&sample.derived.group), &sample.values))
 }
 
 /// Whether a field is a matrix of which nothing is known.

@@ -1,7 +1,33 @@
 //! The self-check: derived terms and the emitted step against the declared expression, before anything is emitted.
 //!
 //! The declared tree is evaluated on numbers by itself, without the symbolic form, so a wrong rewrite can't agree with
-//! itself. First derivatives are compared with its central differences; what is built from them, with them.
+//! itself. The numbers are those of the field of `p = 2⁶¹ − 1` elements, where nothing is rounded: two of them are equal, or
+//! the derivation is wrong.
+//!
+//! # Why that is enough
+//!
+//! 1. *Points.* `F`, and each attitude that is seen, is a product of Cayley transforms with random numbers for coordinates
+//!    ([`Element::by_cayley`]), a symmetric matrix is `Z Zᵀ`, and all else is random. So each relation that may be used,
+//!    `FᵀF = I`, `det F = 1`, `Jᵀ = J`, a last coordinate of one, holds at the point. Such elements fill a neighbourhood of
+//!    the identity, so what holds for them as rational functions of the coordinates holds on the connected group.
+//! 2. *Directions.* `(I + ε v̂) F` with `ε² = 0` is an element of the group to the order that counts. Dual numbers are exact,
+//!    so a slope is the derivative along the group.
+//! 3. *Functions.* Let each call `f(u)` stand for a new variable, one for each `f` and each value of `u`, with the relations of
+//!    [`residue`](residue::Residue) and no others. The true functions obey these, and so do the derivatives that dual numbers
+//!    take: so what is an identity in the variables is one of the true functions. In the field the variables are
+//!    pseudorandom numbers. An identity that needs more, as `√u² = u` or `sin² + cos² = 1`, fails: that refuses too much,
+//!    never too little. No derivation needs one.
+//! 4. *Sureness.* A difference that isn't zero is a quotient of polynomials with rational coefficients in random numbers. At
+//!    a random point it vanishes with a probability of at most the numerator's degree over `p`, and two arguments of functions
+//!    that differ have one value with a probability of their degree over `p` ([`degree`]). Points are independent: as many
+//!    are compared as bring the probability for a wrong identity, whichever it is, below `2⁻¹⁰⁰`. That takes the numbers
+//!    of the stream and the stand-ins for random ones, and it takes numerators that aren't multiples of `p`.
+//! 5. *What runs.* The graph of the [`Kernel`] is compared, stage by stage as a stepper calls it, with the derivatives of the
+//!    terms that were compared before. Tokens are written from that graph.
+//!
+//! A group whose generators' multiples have no Cayley transforms in it has points that are power series instead,
+//! `exp(t v̂_1) ⋯ exp(t v̂_n)`. There all is compared to the order to which series are known, without rounding, and without a
+//! bound. What only real numbers have stays with them: whether there is a value at all, and the sign of the inertia.
 
 mod cayley;
 mod constraint;
@@ -10,16 +36,15 @@ mod degree;
 mod dual;
 mod evaluation;
 mod exact;
-mod force;
+mod identities;
 mod inertia;
 mod linear;
 mod number;
 mod orders;
 mod residue;
 mod reversal;
+mod sample;
 mod series;
-mod step;
-mod terms;
 #[cfg(test)]
 mod tests;
 mod value;
@@ -29,10 +54,10 @@ use std::rc::Rc;
 
 use crate::declared::lower::Lowered;
 use crate::declared::{Declaration, FieldKind, Name, Role, Shape, Tree};
-use crate::mathematics::derive::{Derived, Seen, SelfAdjointness};
+use crate::mathematics::derive::{Derived, SelfAdjointness};
 use crate::mathematics::group::Group;
-use crate::mathematics::symbolic::{Rational, SymbolId, Variance};
-use crate::program::{Graph, Input, Kernel, NodeId};
+use crate::mathematics::symbolic::{Rational, SymbolId};
+use crate::program::{Graph, Input, Kernel, Node, NodeId};
 
 pub(super) use cayley::{is_cayley_coordinates, nilpotency};
 pub(super) use constraint::{Row, constraint};
@@ -42,18 +67,13 @@ pub(crate) use continuous::{
     disagreement, has_limit, kinetic_hessian, limit_disagrees, rest_disagrees, right_symmetries,
 };
 use evaluation::Evaluation;
-pub(super) use force::force;
+use identities::Identities;
 pub(super) use inertia::{KineticPart, kinetic_part};
 use number::Number;
 pub(super) use orders::{TermMistake, not_smooth_at_identity, term_mistakes};
-use step::Step;
-use terms::Terms;
+use sample::{Element, Sample};
 use value::Value;
 
-/// Central differences at this spacing are right to about eight digits.
-const SPACING: f64 = 1e-5;
-/// What they leave, relative to the size of the terms.
-const TOLERANCE: f64 = 1e-5;
 /// So many points are compared, of so many that are tried.
 const SAMPLES: usize = 3;
 const DRAWS: u64 = 60;
@@ -65,8 +85,6 @@ pub(super) enum Unconfirmed {
     Disagrees(&'static str),
     /// The declaration has no value at any point that was tried.
     NoValue,
-    /// Its differences tell nothing at any point that was tried.
-    Rough,
     /// It isn't smooth where `F = I`.
     NotSmooth,
 }
@@ -74,10 +92,30 @@ pub(super) enum Unconfirmed {
 /// What is found at one point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fault {
-    /// The declaration has no value there, or differences that tell nothing.
+    /// The declaration has no value there.
     Untold,
+    /// A derived term has none.
+    NoValue(&'static str),
     /// A derived term disagrees with the declaration.
     Disagrees(&'static str),
+}
+
+/// What the self-check has found of a declaration that it confirms.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Verified {
+    pub(crate) self_adjointness: SelfAdjointness,
+    pub(crate) sureness: Sureness,
+}
+
+/// How sure it is that what was derived is right.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sureness {
+    /// What is wrong passes with a probability below `2⁻ⁿ`.
+    Certified(u32),
+    /// No bound is small enough, as degrees are too high.
+    TooHigh,
+    /// The group has no Cayley transforms: compared in power series.
+    Series,
 }
 
 /// Checks all that was derived. The error is the first term that disagrees.
@@ -85,72 +123,61 @@ pub(super) fn verify(
     declaration: &Declaration,
     tree: &Rc<Tree>,
     lowered: &Lowered,
-    derived: &Derived,
-    kernel: &Kernel,
-) -> Result<SelfAdjointness, Unconfirmed> {
-    let (terms, step) = (Terms::new(derived), Step { derived, kernel });
-    let samples = confirmed(Sample::draws(declaration, lowered, derived, tree), |sample| {
-        terms.check(sample, tree).and_then(|()| step.check(sample, &terms))
-    })?;
-    if !samples.iter().any(|sample| terms.are_finite_at_identity(sample)) {
+    (derived, kernel): (&Derived, &Kernel),
+) -> Result<Verified, Unconfirmed> {
+    let draws: Vec<Sample> = Sample::draws(declaration, lowered, derived, tree).take(SAMPLES).collect();
+    if draws.is_empty() {
+        return Err(Unconfirmed::NoValue);
+    }
+    let check =
+        exact::Check { declaration, lowered, identities: Identities::new(declaration, tree, (derived, kernel)) };
+    let (sureness, points) = check.confirmed(tree)?;
+    if !check.is_smooth() {
         return Err(Unconfirmed::NotSmooth);
     }
-    let exact = || exact::is_self_adjoint(declaration, tree, lowered, derived);
-    reversal::self_adjointness(&samples, tree, &derived.adjoint_defect, exact).map_err(Unconfirmed::Disagrees)
+    let self_adjointness = match declaration.role {
+        Role::Force => Ok(SelfAdjointness::No),
+        _ => reversal::self_adjointness(&draws, &points, tree, derived.adjoint_defect.is_zero()),
+    };
+    Ok(Verified { self_adjointness: self_adjointness.map_err(Unconfirmed::Disagrees)?, sureness })
 }
 
-/// The first points at which what was derived agrees with the declaration.
-fn confirmed<S>(
-    draws: impl Iterator<Item = S>,
-    check: impl Fn(&S) -> Result<(), Fault>,
-) -> Result<Vec<S>, Unconfirmed> {
-    let (mut samples, mut nothing) = (Vec::new(), Unconfirmed::NoValue);
-    for sample in draws {
-        match check(&sample) {
-            Ok(()) => samples.push(sample),
-            Err(Fault::Untold) => nothing = Unconfirmed::Rough,
-            Err(Fault::Disagrees(term)) => return Err(Unconfirmed::Disagrees(term)),
+/// The values of operations.
+fn evaluated<T: Number>(graph: &Graph, outputs: &[NodeId], inputs: &BTreeMap<SymbolId, Value<T>>) -> Vec<T> {
+    let order = graph.reachable(outputs);
+    let mut known = vec![T::UNDEFINED; order.last().map_or(0, |last| last.0 + 1)];
+    let input =
+        |input: Input| inputs.get(&input.symbol).map_or(T::UNDEFINED, |value| value.at(input.row, input.column));
+    for id in order {
+        let at = |operand: NodeId| known[operand.0];
+        known[id.0] = match graph.node(id) {
+            Node::Constant(value) => T::of(value),
+            Node::Input(entry) => input(entry),
+            Node::Negate(a) => -at(a),
+            Node::Add(a, b) => at(a) + at(b),
+            Node::Subtract(a, b) => at(a) - at(b),
+            Node::Multiply(a, b) => at(a) * at(b),
+            Node::Divide(a, b) => at(a) / at(b),
+            Node::Apply(function, a) => at(a).apply(function),
+        };
+    }
+    outputs.iter().map(|output| known[output.0]).collect()
+}
+
+fn dot<T: Number>(a: &[T], b: &[T]) -> T {
+    a.iter().zip(b).fold(T::ZERO, |sum, (&x, &y)| sum + x * y)
+}
+
+/// The components of an element of the algebra, of a product factor by factor.
+fn components_of<T: Number>(group: &Group, element: &Value<T>) -> Vec<T> {
+    let mut components = vec![T::ZERO; group.dimension()];
+    for (factor, own) in group.factors().iter().enumerate() {
+        let (first, entries) = (group.component_of(factor), block(group, element, factor));
+        for (k, row, column, share) in own.dual() {
+            components[first + k] = components[first + k] + T::of(share) * entries.at(row, column);
         }
-        if samples.len() == SAMPLES {
-            break;
-        }
     }
-    if samples.is_empty() { Err(nothing) } else { Ok(samples) }
-}
-
-/// The slope of a function at zero.
-fn slope(function: &dyn Fn(f64) -> f64, spacing: f64) -> f64 {
-    (function(spacing) - function(-spacing)) / (2.0 * spacing)
-}
-
-/// Whether a derivative is that of a function at zero, whose terms have that size.
-///
-/// Where another spacing gives another slope, neither is right: near a pole, or where a function is so steep that its
-/// differences lose their digits.
-fn compare(term: &'static str, found: f64, function: &dyn Fn(f64) -> f64, size: f64) -> Result<(), Fault> {
-    let allowed = TOLERANCE * size;
-    let expected = slope(function, SPACING);
-    if (found - expected).abs() <= allowed {
-        return Ok(());
-    }
-    let finer = slope(function, 0.1 * SPACING);
-    if (found - finer).abs() <= allowed {
-        return Ok(());
-    }
-    let is_told = (finer - expected).abs() <= 0.5 * allowed;
-    Err(if is_told { Fault::Disagrees(term) } else { Fault::Untold })
-}
-
-/// A function of one number whose values are asked for more than once.
-fn remembered<T: Clone>(function: impl Fn(f64) -> T) -> impl Fn(f64) -> T {
-    let known = std::cell::RefCell::new(BTreeMap::new());
-    move |t| known.borrow_mut().entry(t.to_bits()).or_insert_with(|| function(t)).clone()
-}
-
-fn evaluated(graph: &Graph, outputs: &[NodeId], inputs: &BTreeMap<SymbolId, Value>) -> Vec<f64> {
-    graph.evaluate(outputs, &|input: Input| {
-        inputs.get(&input.symbol).map_or(f64::NAN, |value| value.at(input.row, input.column))
-    })
+    components
 }
 
 /// Numbers between zero and one.
@@ -172,7 +199,8 @@ fn turn(group: &Group, k: usize, s: f64) -> Value {
 
 /// The exponential, by its series, of an element of the algebra that is small or a power of `h`.
 fn exponential<T: Number>(group: &Group, exponent: &Value<T>) -> Value<T> {
-    by_blocks(group, exponent, |exponent| {
+    by_blocks(group, |factor| {
+        let exponent = &block(group, exponent, factor);
         let mut power = Value::identity(exponent.rows);
         let mut sum = power.clone();
         for order in 1..20 {
@@ -185,185 +213,6 @@ fn exponential<T: Number>(group: &Group, exponent: &Value<T>) -> Value<T> {
         }
         sum
     })
-}
-
-/// Numbers for all names.
-#[derive(Clone)]
-struct Sample<'a, T = f64> {
-    derived: &'a Derived,
-    /// Of a product all increments, in blocks.
-    increment: Value<T>,
-    inverse: Value<T>,
-    values: BTreeMap<Name, Value<T>>,
-    symbols: BTreeMap<SymbolId, Name>,
-    advected: Vec<(Name, Variance, Seen)>,
-}
-
-impl<'a> Sample<'a> {
-    /// The points at which the declaration has a value. The later ones are farther away, and may be anywhere.
-    fn draws(
-        declaration: &'a Declaration,
-        lowered: &'a Lowered,
-        derived: &'a Derived,
-        tree: &'a Rc<Tree>,
-    ) -> impl Iterator<Item = Self> {
-        let samples = (1..=DRAWS).map(|seed| Self::new(declaration, lowered, derived, seed));
-        samples.filter(|sample| sample.declared(tree).is_finite())
-    }
-
-    fn new(declaration: &Declaration, lowered: &Lowered, derived: &'a Derived, seed: u64) -> Self {
-        let mut number = stream(seed);
-        let group = &declaration.group;
-        let (mut increment, mut inverse) = (Value::identity(group.size), Value::identity(group.size));
-        for k in 0..group.dimension() {
-            let angle = 0.6 * number() - 0.3;
-            increment = increment.times(&turn(group, k, angle));
-            inverse = turn(group, k, -angle).times(&inverse);
-        }
-        let mut sample = Self::with_numbers(declaration, lowered, derived, (increment, inverse), &mut number);
-        // From one draw in five on, another scale for each parameter, and another sign for scalars.
-        let reach = f64::from(u32::try_from(seed / (DRAWS / 5)).unwrap_or(0));
-        for (name, value) in sample.values.iter_mut().filter(|_| reach > 0.0) {
-            let (scale, sign) = ((8.0 * number() - 2.0).exp2().powf(reach / 4.0), number() < 0.5);
-            let kind = match name {
-                Name::Field(index) => declaration.fields.get(*index).map(|field| field.kind),
-                Name::Advected(index) => Some(declaration.advected_kind(*index)),
-                _ => None,
-            };
-            *value = match kind {
-                None | Some(FieldKind::Point(_) | FieldKind::Configuration(_)) => continue,
-                Some(FieldKind::Scalar) if sign => value.map(|x| -scale * x),
-                Some(_) => value.map(|x| scale * x),
-            };
-        }
-        sample
-    }
-
-    /// `F` turned by `exp(s E_k)` from the left.
-    fn turned(&self, k: usize, s: f64) -> Value {
-        turn(&self.derived.group, k, s).times(&self.increment)
-    }
-
-    /// The values of all symbols at an increment: of the names, and of what the derivation adds.
-    fn inputs(&self, f: &Value) -> BTreeMap<SymbolId, Value> {
-        let mut inputs: BTreeMap<SymbolId, Value> = BTreeMap::new();
-        for (symbol, name) in &self.symbols {
-            inputs.extend(self.values.get(name).map(|value| (*symbol, value.clone())));
-        }
-        for (factor, one) in self.derived.directions.factors.iter().enumerate() {
-            let group = &self.derived.group;
-            let f = block(group, f, factor);
-            if group.factor(factor).is_added {
-                let d = translation(&f);
-                inputs.extend([(one.small, d.clone()), (one.increment, d)]);
-                continue;
-            }
-            let (inverse, identity) = (f.inverse(), Value::identity(f.rows));
-            inputs.insert(one.small, f.zip(&identity, |x, y| x - y));
-            inputs.insert(one.increment, f);
-            inputs.insert(one.small_inverse, inverse.zip(&identity, |x, y| x - y));
-            inputs.insert(one.inverse, inverse);
-        }
-        inputs
-    }
-
-    /// `l_d` at another step.
-    fn at_step(&self, tree: &Rc<Tree>, h: f64) -> f64 {
-        let mut values = self.values.clone();
-        values.insert(Name::Step, Value::scalar(h));
-        Evaluation::new(&values).of(tree).first()
-    }
-
-    /// `l_d` at another `F`, with all advected parameters moved by a group element, given with its inverse.
-    fn moved(&self, tree: &Rc<Tree>, f: &Value, element: (&Value, &Value)) -> f64 {
-        let values = self.moved_values(f, element);
-        Evaluation::new(&values).of(tree).first()
-    }
-}
-
-impl<'a, T: Number> Sample<'a, T> {
-    /// At a group element, given with its inverse, with numbers that are taken to lie between zero and one.
-    fn with_numbers(
-        declaration: &Declaration,
-        lowered: &Lowered,
-        derived: &'a Derived,
-        (increment, inverse): (Value<T>, Value<T>),
-        mut number: impl FnMut() -> T,
-    ) -> Self {
-        let mut values = BTreeMap::from_iter(increments(&declaration.group, &increment));
-        let tenth = T::of(Rational::new(1, 10));
-        values.insert(Name::Step, Value::scalar(tenth + tenth * number()));
-        for (index, field) in declaration.fields.iter().enumerate() {
-            values.insert(Name::Field(index), parameter(field.kind, &mut number));
-        }
-        if declaration.role == Role::Force {
-            values.extend(displacements(&declaration.group, &mut number));
-        }
-        let mut advected = Vec::new();
-        for index in 0..declaration.advected.len() {
-            let kind = declaration.advected_kind(index);
-            values.insert(Name::Advected(index), parameter(kind, &mut number));
-            let seen = declaration.advected.get(index).map_or(Seen::From(0), |w| w.seen);
-            advected.push((Name::Advected(index), kind.variance(), seen));
-        }
-        let symbols = lowered.names.iter().map(|(name, id)| (*id, *name)).collect();
-        Self { derived, increment, inverse, values, symbols, advected }
-    }
-
-    /// `l_d` at this point.
-    fn declared(&self, tree: &Rc<Tree>) -> T {
-        Evaluation::new(&self.values).of(tree).first()
-    }
-
-    /// `−l_d` turned back: at `F⁻¹`, `F⁻¹·w` and `−h`.
-    fn reversed(&self, tree: &Rc<Tree>) -> T {
-        let mut values = self.moved_values(&self.inverse, (&self.inverse, &self.increment));
-        if let Some(h) = self.values.get(&Name::Step) {
-            values.insert(Name::Step, h.map(|h| -h));
-        }
-        -Evaluation::new(&values).of(tree).first()
-    }
-
-    fn moved_values(&self, f: &Value<T>, (g, inverse): (&Value<T>, &Value<T>)) -> BTreeMap<Name, Value<T>> {
-        let mut values = self.values.clone();
-        let group = &self.derived.group;
-        values.extend(increments(group, f));
-        for (name, variance, seen) in &self.advected {
-            let Some(w) = self.values.get(name) else { continue };
-            let added = |moving: &Value<T>, factor| translation(&block(group, moving, factor));
-            let factor = match *seen {
-                Seen::From(factor) => factor,
-                Seen::Relative { of, from } if group.factor(of).is_added => {
-                    values.insert(*name, added(g, from).plus(w).plus(&added(inverse, of)));
-                    continue;
-                }
-                Seen::Configuration(of) if group.factor(of).is_added => {
-                    values.insert(*name, w.plus(&added(inverse, of)));
-                    continue;
-                }
-                Seen::Relative { of, from } => {
-                    let moved = block(group, g, from).times(w).times(&block(group, inverse, of));
-                    values.insert(*name, moved);
-                    continue;
-                }
-                Seen::Configuration(of) => {
-                    values.insert(*name, w.times(&block(group, inverse, of)));
-                    continue;
-                }
-            };
-            let (g, inverse) = (&block(group, g, factor), &block(group, inverse, factor));
-            let moved = match variance {
-                Variance::Vector => g.times(w),
-                Variance::Covector => inverse.transpose().times(w),
-                Variance::Contravariant => g.times(w).times(&g.transpose()),
-                Variance::Covariant => inverse.transpose().times(w).times(inverse),
-                Variance::Mixed => g.times(w).times(inverse),
-                Variance::Fixed => w.clone(),
-            };
-            values.insert(*name, moved);
-        }
-        values
-    }
 }
 
 /// The block of a matrix that belongs to a factor of the group; of a group that isn't a product all of it.
@@ -405,15 +254,10 @@ fn translation<T: Number>(matrix: &Value<T>) -> Value<T> {
     Value::new(matrix.rows - 1, 1, |row, _| matrix.at(row, matrix.rows - 1))
 }
 
-/// The inverse of an element, block by block.
-fn inverse_of<T: Number>(group: &Group, all: &Value<T>) -> Value<T> {
-    by_blocks(group, all, Value::inverse)
-}
-
-/// What is made of each block, in its place.
-fn by_blocks<T: Number>(group: &Group, all: &Value<T>, of_block: impl Fn(&Value<T>) -> Value<T>) -> Value<T> {
+/// A matrix of blocks, one for each factor.
+fn by_blocks<T: Number>(group: &Group, of_factor: impl Fn(usize) -> Value<T>) -> Value<T> {
     let blocks: Vec<(usize, Value<T>)> =
-        (0..group.factors().len()).map(|factor| (group.row_of(factor), of_block(&block(group, all, factor)))).collect();
+        (0..group.factors().len()).map(|factor| (group.row_of(factor), of_factor(factor))).collect();
     Value::new(group.size, group.size, |row, column| {
         let own = blocks.iter().rev().find(|(start, _)| *start <= row);
         let entry = own.and_then(|(start, own)| own.checked_at(row - start, column.checked_sub(*start)?));

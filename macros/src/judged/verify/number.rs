@@ -47,3 +47,29 @@ impl Number for f64 {
         self.abs() < 1e-18
     }
 }
+
+/// The members of a family that follow from its first ones, from these.
+///
+/// ```text
+/// c_{k+2} = (1/k! − c_k)/q
+/// 2 u G′ = 1 − s G      u G⁽ᵏ⁺²⁾ = (k + 1)² G⁽ᵏ⁾ − (k + 3/2) s G⁽ᵏ⁺¹⁾      u = n(1 − n),  s = 1 − 2n
+/// ```
+pub(super) fn of_those_below<T: Number>(function: Function, x: T) -> Option<T> {
+    let of = |numerator, denominator| T::of(Rational::new(numerator, denominator));
+    let (rest, s) = (T::ONE - x, T::ONE - x - x);
+    match function {
+        Function::Stumpff(k @ 2..) => {
+            let below = Function::Stumpff(k - 2);
+            let first = below.at_zero().map_or(T::UNDEFINED, T::of);
+            Some((first - x.apply(below)) / x)
+        }
+        Function::LogRatio(1) => Some((T::ONE - s * x.apply(Function::LogRatio(0))) / (of(2, 1) * x * rest)),
+        Function::LogRatio(k @ 2..) => {
+            let below = i128::from(k) - 2;
+            let [first, second] = [k - 2, k - 1].map(|k| x.apply(Function::LogRatio(k)));
+            let sum = of((below + 1) * (below + 1), 1) * first - of(2 * below + 3, 2) * s * second;
+            Some(sum / (x * rest))
+        }
+        _ => None,
+    }
+}

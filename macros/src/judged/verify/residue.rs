@@ -3,7 +3,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::number::Number;
+use super::number::{self, Number};
 use crate::mathematics::symbolic::{Function, Rational};
 
 const PRIME: u64 = (1 << 61) - 1;
@@ -14,6 +14,13 @@ const LARGEST: i128 = 64;
 /// An element of the field; nothing where there is no value, as after a division by zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Residue(Option<u64>);
+
+/// `x mod p`, as `2⁶¹ = 1` there: of what is below `2¹²²`.
+fn folded(x: u128) -> u64 {
+    let low = |x: u128| u64::try_from(x & u128::from(PRIME)).unwrap_or(0);
+    let sum = low(x) + low(x >> 61);
+    if sum >= PRIME { sum - PRIME } else { sum }
+}
 
 impl Residue {
     /// Any whole number.
@@ -42,9 +49,10 @@ impl Residue {
         fractions.into_iter().find(|(p, _)| p.abs() <= LARGEST).map(|(p, q)| Rational::new(p, q))
     }
 
-    fn with(self, other: Self, operation: impl Fn(i128, i128) -> i128) -> Self {
+    /// Of what is below `2¹²²` for any two elements.
+    fn with(self, other: Self, operation: impl Fn(u64, u64) -> u128) -> Self {
         match (self.0, other.0) {
-            (Some(a), Some(b)) => Self::reduced(operation(a.into(), b.into())),
+            (Some(a), Some(b)) => Self(Some(folded(operation(a, b)))),
             _ => Self(None),
         }
     }
@@ -70,7 +78,7 @@ impl Add for Residue {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
-        self.with(other, |a, b| a + b)
+        self.with(other, |a, b| (a + b).into())
     }
 }
 
@@ -78,7 +86,7 @@ impl Sub for Residue {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
-        self.with(other, |a, b| a - b)
+        self.with(other, |a, b| (a + PRIME - b).into())
     }
 }
 
@@ -86,7 +94,7 @@ impl Mul for Residue {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
-        self.with(other, |a, b| a * b)
+        self.with(other, |a, b| u128::from(a) * u128::from(b))
     }
 }
 
@@ -127,21 +135,6 @@ impl Number for Residue {
     /// The field has no sines or logarithms. A pseudorandom function of the same symmetry, even or odd, stands in for
     /// them. If two expressions agree with the stand-in, they agree whatever the function is.
     fn apply(self, function: Function) -> Self {
-        let of = |numerator, denominator| Self::of(Rational::new(numerator, denominator));
-        // Those that follow from others of their family follow from them here, too.
-        match function {
-            Function::Stumpff(k @ 0..5) => {
-                let first = function.at_zero().map_or(Self::UNDEFINED, Self::of);
-                return first - self * self.apply(Function::Stumpff(k + 2));
-            }
-            Function::LogRatio(k @ 0..2) => {
-                let (u, s) = (self * (Self::ONE - self), Self::ONE - of(2, 1) * self);
-                let second = self.apply(Function::LogRatio(2));
-                let first = of(2, 1) * (Self::ONE - s * u * second) / (of(3, 1) - of(8, 1) * u);
-                return if k == 1 { first } else { u * second + of(3, 2) * s * first };
-            }
-            _ => {}
-        }
         let partner = match function {
             Function::Sin | Function::Cos | Function::Exp => -self,
             Function::Ln => self.reciprocal(),
@@ -153,9 +146,11 @@ impl Number for Residue {
         {
             return Self::of(value);
         }
-        let name = function.name();
-        let value = name.bytes().fold(mixed(argument.min(other)), |state, byte| mixed(state ^ u64::from(byte)));
-        let value = Self(Some(value % PRIME));
+        if let Some(value) = number::of_those_below(function, self) {
+            return value;
+        }
+        let number = u64::try_from(function.number()).unwrap_or(u64::MAX);
+        let value = Self(Some(mixed(mixed(argument.min(other)) ^ number) % PRIME));
         match function {
             Function::Ln if argument == other => Self::ZERO,
             _ if argument <= other => value,
@@ -177,6 +172,7 @@ fn mixed(state: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::{Number as _, Residue};
+    use crate::judged::verify::dual::Dual;
     use crate::mathematics::symbolic::{Function, Rational};
 
     #[test]
@@ -210,9 +206,60 @@ mod tests {
             assert_eq!((Residue::ONE / x).apply(Function::Ln), -x.apply(Function::Ln));
             assert_ne!((-x).apply(Function::Sqrt), x.apply(Function::Sqrt));
             assert_ne!(x.apply(Function::Stumpff(1)), x.apply(Function::Stumpff(2)));
+            // Relations that no derivation uses.
+            let squared = |function| x.apply(function) * x.apply(function);
+            assert_ne!((x * x).apply(Function::Sqrt), x);
+            assert_ne!(squared(Function::Sqrt), x);
+            assert_ne!(squared(Function::Sin) + squared(Function::Cos), Residue::ONE);
+            assert_ne!(squared(Function::Stumpff(0)) + x * squared(Function::Stumpff(1)), Residue::ONE);
+            assert_ne!(x.apply(Function::Exp).apply(Function::Ln), x);
+            assert_ne!((x + x).apply(Function::Exp), squared(Function::Exp));
+            assert_ne!((x * x).apply(Function::Ln), x.apply(Function::Ln) + x.apply(Function::Ln));
         }
         assert_eq!(Residue::ZERO.apply(Function::Cos), Residue::ONE);
         assert_eq!(Residue::ONE.apply(Function::Ln), Residue::ZERO);
         assert!(!Residue::ZERO.apply(Function::Ln).is_defined());
+    }
+    /// `c_k = 1/k! − q c_{k+2}`, and what the derivatives of `θ/sin θ` follow from, as far as either is asked for.
+    #[test]
+    fn families_keep_their_recurrences() {
+        let of = |value: u8| Residue::of(Rational::integer(value.into()));
+        let mut next = Residue::stream(3);
+        for _ in 0..20 {
+            let x = next();
+            let mut factorial = Residue::ONE;
+            for k in 0..12 {
+                factorial = if k == 0 { factorial } else { factorial * of(k) };
+                let [value, above] = [k, k + 2].map(|k| x.apply(Function::Stumpff(k)));
+                assert_eq!(value + x * above, Residue::ONE / factorial);
+            }
+            let (u, s) = (x * (Residue::ONE - x), Residue::ONE - of(2) * x);
+            let g = |k| x.apply(Function::LogRatio(k));
+            assert_eq!(of(2) * u * g(1), Residue::ONE - s * g(0));
+            for k in 0..6 {
+                assert_eq!(of(2) * u * g(k + 2) + of(2 * k + 3) * s * g(k + 1), of(2) * of(k + 1) * of(k + 1) * g(k));
+            }
+            // What a graph makes of the second derivative.
+            assert_eq!(g(1) * (of(3) - of(8) * u), of(2) * (Residue::ONE - s * u * g(2)));
+        }
+    }
+
+    /// The derivative of each relation is a relation: dual numbers and stand-ins know the same functions.
+    #[test]
+    fn derivatives_keep_the_recurrences() {
+        let mut next = Residue::stream(4);
+        let x = Dual { value: next(), slope: next() };
+        let of = |value: u8| Dual::<Residue>::of(Rational::integer(value.into()));
+        for k in 0..6 {
+            let [value, above] = [k, k + 2].map(|k| x.apply(Function::Stumpff(k)));
+            assert_eq!((value + x * above).slope, Residue::ZERO);
+            let (u, s) = (x * (Dual::ONE - x), Dual::ONE - of(2) * x);
+            let g = |k| x.apply(Function::LogRatio(k));
+            let rest = of(2) * u * g(k + 2) + of(2 * k + 3) * s * g(k + 1) - of(2) * of(k + 1) * of(k + 1) * g(k);
+            assert_eq!(rest.slope, Residue::ZERO);
+        }
+        assert_eq!((x.apply(Function::Exp) * (-x).apply(Function::Exp)).slope, Residue::ZERO);
+        assert_eq!((x.apply(Function::Ln) + (Dual::ONE / x).apply(Function::Ln)).slope, Residue::ZERO);
+        assert_eq!((x.apply(Function::Sin) + (-x).apply(Function::Sin)).slope, Residue::ZERO);
     }
 }

@@ -2,47 +2,68 @@
 
 use std::rc::Rc;
 
-use super::Sample;
+use super::degree;
+use super::exact::Exact;
+use super::number::Number;
+use super::residue::Residue;
+use super::sample::Sample;
 use crate::declared::{Name, Tree};
 use crate::mathematics::derive::SelfAdjointness;
-use crate::mathematics::symbolic::{Expression, Variance};
+use crate::mathematics::symbolic::Variance;
 
 /// What rounding leaves of `l_d(F, w, h) + l_d(F⁻¹, F⁻¹·w, −h)`, relative to the size of its terms.
 const TOLERANCE: f64 = 1e-11;
 
-/// Whether the Lagrangian is self-adjoint for all values of its parameters; an error if the symbolic form is wrong.
+/// Whether the Lagrangian is self-adjoint for all values of its parameters; an error if the symbolic form, which may have
+/// found it, is wrong. `points` are those of the field, where they decide.
 pub(super) fn self_adjointness(
-    samples: &[Sample],
+    draws: &[Sample],
+    points: &[Sample<Residue>],
     tree: &Rc<Tree>,
-    defect: &Expression,
-    exact: impl FnOnce() -> Option<bool>,
+    is_symbolic: bool,
 ) -> Result<SelfAdjointness, &'static str> {
-    match (is_equal(samples, tree), defect.is_zero()) {
-        (None, _) => Ok(SelfAdjointness::Unknown),
-        (Some(true), true) => Ok(SelfAdjointness::Symbolic),
-        (Some(true), false) => Ok(match exact() {
-            Some(true) => SelfAdjointness::Exact,
-            Some(false) => SelfAdjointness::No,
-            None => SelfAdjointness::Numeric,
-        }),
-        (Some(false), true) => Err("adjoint"),
-        (Some(false), false) => {
-            let points: Vec<Sample> = samples.iter().filter_map(Sample::with_points).collect();
-            let is_found = is_equal(&points, tree) == Some(true);
+    // A root may have no value at the negative step.
+    let Some(is_close) = are_all(draws, tree, f64::is_finite, is_close) else { return Ok(SelfAdjointness::Unknown) };
+    let exact = are_all(points, tree, Exact::is_defined, Exact::is);
+    // A function may have relations that a random one hasn't.
+    let exact = exact.filter(|&is_equal| is_equal || degree::functions(tree) == 0);
+    match (exact.unwrap_or(is_close), is_symbolic) {
+        (true, true) => Ok(SelfAdjointness::Symbolic),
+        (true, false) if exact.is_some() => Ok(SelfAdjointness::Exact),
+        (true, false) => Ok(SelfAdjointness::Numeric),
+        (false, true) => Err("adjoint"),
+        (false, false) => {
+            let is_found = match exact {
+                Some(_) => are_all(&with_points(points), tree, Exact::is_defined, Exact::is),
+                None => are_all(&with_points(draws), tree, f64::is_finite, self::is_close),
+            };
+            let is_found = is_found == Some(true);
             Ok(if is_found { SelfAdjointness::ForPoints } else { SelfAdjointness::No })
         }
     }
 }
 
-/// Whether both values are equal at all samples that have them; none if there is no such sample.
-fn is_equal(samples: &[Sample], tree: &Rc<Tree>) -> Option<bool> {
-    let values = samples.iter().map(|sample| (sample.declared(tree), sample.reversed(tree)));
-    let finite: Vec<(f64, f64)> = values.filter(|(l, reversed)| l.is_finite() && reversed.is_finite()).collect();
-    let is_equal = |&(l, reversed): &(f64, f64)| (l - reversed).abs() <= TOLERANCE * (1.0 + l.abs() + reversed.abs());
-    (!finite.is_empty()).then(|| finite.iter().all(is_equal))
+/// Whether both values are equal at all points that have them; none if there is no such point.
+fn are_all<T: Number>(
+    points: &[Sample<T>],
+    tree: &Rc<Tree>,
+    is_defined: fn(T) -> bool,
+    are_equal: fn(T, T) -> bool,
+) -> Option<bool> {
+    let values = points.iter().map(|point| (point.declared(tree), point.reversed(tree)));
+    let defined: Vec<(T, T)> = values.filter(|(l, reversed)| is_defined(*l) && is_defined(*reversed)).collect();
+    (!defined.is_empty()).then(|| defined.iter().all(|&(l, reversed)| are_equal(l, reversed)))
 }
 
-impl Sample<'_> {
+fn with_points<'a, T: Number>(samples: &[Sample<'a, T>]) -> Vec<Sample<'a, T>> {
+    samples.iter().filter_map(Sample::with_points).collect()
+}
+
+fn is_close(l: f64, reversed: f64) -> bool {
+    (l - reversed).abs() <= TOLERANCE * (1.0 + l.abs() + reversed.abs())
+}
+
+impl<T: Number> Sample<'_, T> {
     /// On a group of affine maps, the same with one for the last coordinate of all vectors.
     fn with_points(&self) -> Option<Self> {
         let group = &self.derived.group;
@@ -62,7 +83,7 @@ impl Sample<'_> {
             };
             if is_vector && (value.rows, value.columns) == (group.size, 1) {
                 value.entries.pop();
-                value.entries.push(1.0);
+                value.entries.push(T::ONE);
             }
         }
         Some(sample)

@@ -1,13 +1,17 @@
-//! Each check fails on a broken term; and what is derived for several bodies is right to rounding.
+//! Each check fails on a broken term.
 
 mod products;
 
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::{KineticPart, Row, Unconfirmed, constraint, degree, kinetic_part, verify};
+use super::degree::{Degree, Largest};
+use super::evaluation::Evaluation;
+use super::value::Value;
+use super::{KineticPart, Row, Sureness, Unconfirmed, constraint, degree, increments, kinetic_part, verify};
 use crate::declared::errors::Errors;
 use crate::declared::lower::{Lowered, readings};
-use crate::declared::{Declaration, Role, Tree, check, parse};
+use crate::declared::{Declaration, Name, Role, Tree, check, parse};
 use crate::expand::tests::{HEAVY_TOP, top};
 use crate::judged::{Chosen, cheapest, held};
 use crate::mathematics::derive::{Derived, SelfAdjointness, derive};
@@ -48,7 +52,8 @@ impl Declared {
     }
 
     fn found(&self, derived: &Derived, kernel: &Kernel) -> Result<SelfAdjointness, &'static str> {
-        verify(&self.declaration, &self.tree, &self.lowered, derived, kernel).map_err(|unconfirmed| match unconfirmed {
+        let found = verify(&self.declaration, &self.tree, &self.lowered, (derived, kernel));
+        found.map(|verified| verified.self_adjointness).map_err(|unconfirmed| match unconfirmed {
             Unconfirmed::Disagrees(term) => term,
             other => panic!("{other:?}"),
         })
@@ -56,6 +61,12 @@ impl Declared {
 
     fn verified(&self) -> Result<SelfAdjointness, &'static str> {
         self.found(&self.derived, &kernel(&self.derived))
+    }
+
+    fn sureness(&self) -> Sureness {
+        let kernel = kernel(&self.derived);
+        let found = verify(&self.declaration, &self.tree, &self.lowered, (&self.derived, &kernel));
+        found.expect("right").sureness
     }
 
     /// What is found after a change of the derived terms.
@@ -119,7 +130,7 @@ fn with_one_sign_changed(expression: &Expression) -> Expression {
 fn a_wrong_step_is_named() {
     for declared in both() {
         assert_eq!(declared.after(|d| negate(&mut d.kick_after)), Err("transported momentum"));
-        assert_eq!(declared.after(|d| negate(&mut d.kick_before)), Err("Newton residual at the solution"));
+        assert_eq!(declared.after(|d| negate(&mut d.kick_before)), Err("Newton residual"));
         let change = |d: &mut Derived| {
             d.kick_derivative.as_mut().is_some_and(|change| {
                 negate(change);
@@ -167,12 +178,15 @@ fn a_wrong_slope_is_named() {
     let (declaration, trees) =
         checked_as(Role::Constraint, arguments, "struct Joint { below: Vector3<f64>, axis: Vector3<f64> }");
     let held = || held(&declaration, trees.clone(), &mut Errors::default()).expect("a constraint");
-    assert_eq!(constraint(&declaration, &held()), Ok(vec![Row::New; 4]));
+    let found = constraint(&declaration, &held()).expect("right");
+    assert!(matches!(found.0, Sureness::Certified(100..)), "{found:?}");
+    assert_eq!(found.1, vec![Row::New; 4]);
     for (body, by) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
         let mut held = held();
         let of = held.entries[body][by].iter().position(|&entry| !held.graph.is_zero(entry)).expect("a slope");
         held.entries[body][by][of] = held.graph.negate(held.entries[body][by][of]);
-        assert_eq!(constraint(&declaration, &held), Err(Unconfirmed::Disagrees("slope")), "{body} {by}");
+        let found = constraint(&declaration, &held).map(|(_, rows)| rows);
+        assert_eq!(found, Err(Unconfirmed::Disagrees("slope")), "{body} {by}");
     }
 }
 
@@ -309,23 +323,45 @@ fn small_terms_count() {
     assert_eq!(body("F[(0, 3)]"), Ok(SelfAdjointness::No));
 }
 
-/// By hand: a field counts as 2, `F` on a group of dimension one as 2/2.
+/// By hand: a field and `h` count as 1, `F` on a group of dimension one as 2/Δ with a denominator of degree 2.
 #[test]
 fn degrees() {
     let of = |l_d: &str| {
         let (declaration, tree) = checked(&format!("group = R1, l_d = {l_d}"), "struct Body { k: f64 }");
-        degree::coincidences(&tree, declaration.group.dimension())
+        let (element, _) = degree::element(&declaration.group, 0);
+        let mut values = BTreeMap::from_iter(increments(&declaration.group, &element.matrix));
+        let variable = || Value::scalar(Degree::VARIABLE);
+        values.extend([(Name::Step, variable()), (Name::Field(0), variable())]);
+        let (value, mut largest) = (Evaluation::new(&values).of(&tree).first(), Largest::default());
+        largest.compared(value, value);
+        largest.coincidences(degree::functions(&tree))
     };
-    // k F²/h is (2 + 4)/(4 + 2).
-    assert_eq!(of("k * F[(0, 1)].powi(2) / h"), 12);
-    // Over a common denominator: (2 + 2)/2, and (4 + 4)/(4 + 4).
-    assert_eq!(of("k + F[(0, 1)]"), 6);
-    assert_eq!(of("k * F[(0, 1)] / h + F[(0, 1)].powi(2)"), 8 + 8);
-    // One function, whose argument has four values on the two sides with their negatives.
-    assert_eq!(of("(k + F[(0, 1)]).sin()"), 2 + 16 * 6);
-    // A tower of powers is too high for three points to decide.
-    let tower = (1..12).map(|k| format!("let x{k} = x{}.powi(16);", k - 1)).collect::<Vec<_>>().concat();
-    assert!(of(&format!("{{ let x0 = k * F[(0, 1)]; {tower} x11 }}")) > 1 << 40);
+    // k F²/h is 5/(Δ² h), and a difference of two such fractions, with equal powers of Δ, is 6/(Δ² h²).
+    assert_eq!(of("k * F[(0, 1)].powi(2) / h"), 6);
+    assert_eq!(of("k + F[(0, 1)]"), 3);
+    // Over a common denominator 5/(Δ² h).
+    assert_eq!(of("k * F[(0, 1)] / h + F[(0, 1)].powi(2)"), 6);
+    // One function, whose argument is 3/Δ and has four values on the two sides with their negatives.
+    assert_eq!(of("(k + F[(0, 1)]).sin()"), 2 + 16 * 10);
+    // A tower of powers is too high for few points to decide.
+    let tower = (1..13).map(|k| format!("let x{k} = x{}.powi(16);", k - 1)).collect::<Vec<_>>().concat();
+    assert!(of(&format!("{{ let x0 = k * F[(0, 1)]; {tower} x12 }}")) > 1 << 48);
+    let declared = Declared::new("group = R1, l_d = k * F[(0, 1)].powi(2) / h", "struct Body { k: f64 }");
+    assert!(matches!(declared.sureness(), Sureness::Certified(100..)));
+}
+
+/// Groups of other generators have no Cayley transforms; there series are compared, and see what is wrong.
+#[test]
+fn groups_without_points() {
+    let squeezes = "group = Mine, generators = [[[1.0, 0.0], [0.0, -2.0]]]";
+    let l_d = "k * (F[(0, 0)] + 1.0 / F[(0, 0)]) / h";
+    let declared = Declared::new(&format!("{squeezes}, l_d = {l_d}"), "struct Body { k: f64 }");
+    assert_eq!(declared.sureness(), Sureness::Series);
+    assert_eq!(declared.after(|d| negate(&mut d.right_momentum)), Err("right momentum map"));
+    let nearly = Rational::new(10_000_001, 10_000_000);
+    assert_eq!(declared.after(|d| d.energy = d.energy.clone().scaled(nearly)), Err("discrete energy"));
+    assert_eq!(declared.after(|d| negate(&mut d.kick_after)), Ok(SelfAdjointness::Numeric));
+    assert_eq!(declared.after(|d| negate(&mut d.jacobian)), Err("Newton Jacobian"));
 }
 
 /// Where the field doesn't say, rounded values do.

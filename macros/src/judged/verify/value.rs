@@ -21,6 +21,15 @@ impl<T: Number> Value<T> {
         Self { rows: 1, columns: 1, entries: vec![value] }
     }
 
+    pub(super) fn column(entries: &[T]) -> Self {
+        Self { rows: entries.len(), columns: 1, entries: entries.to_vec() }
+    }
+
+    /// The same in other numbers.
+    pub(super) fn over<U>(&self, of: impl Fn(T) -> U) -> Value<U> {
+        Value { rows: self.rows, columns: self.columns, entries: self.entries.iter().map(|&entry| of(entry)).collect() }
+    }
+
     /// A matrix of rational entries.
     pub(super) fn square(size: usize, entries: &[Rational]) -> Self {
         Self { rows: size, columns: size, entries: entries.iter().map(|&entry| T::of(entry)).collect() }

@@ -1,0 +1,312 @@
+//! What has to hold of a derivation, in numbers of any kind.
+//!
+//! A covector is compared along one random direction `v` and a Jacobian times `v`: both are linear in it, so that an
+//! identity in `v` is one of every component. First derivatives are those of dual numbers `x + ε x′`, in which
+//! `(I + ε v̂) F` is an element of the group to the order that counts; second ones are those of what has been compared before.
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use super::dual::Dual;
+use super::evaluation::Evaluation;
+use super::number::Number;
+use super::sample::{Element, Sample, exponentials};
+use super::value::Value;
+use super::{Fault, components_of, degree, dot, evaluated, increments};
+use crate::declared::{Declaration, Name, Role, Tree};
+use crate::mathematics::derive::Derived;
+use crate::mathematics::symbolic::{Rational, SymbolId};
+use crate::program::{Given, Graph, Kernel, Linearisation, NodeId, Scalariser, components, square, with_lets};
+
+/// Compares what was found with what is expected, of a term.
+pub(super) type Same<'a, T> = dyn FnMut(&'static str, T, T) -> Result<(), Fault> + 'a;
+
+/// The derived terms as operations.
+struct Terms {
+    graph: Graph,
+    momentum: Vec<NodeId>,
+    jacobian: Vec<NodeId>,
+    /// Of a Lagrangian alone.
+    right: Vec<NodeId>,
+    left: Vec<NodeId>,
+    diamond: Vec<NodeId>,
+    energy: Option<NodeId>,
+}
+
+impl Terms {
+    fn new(derived: &Derived, role: Role) -> Self {
+        let mut graph = Graph::default();
+        let given = with_lets(&mut graph, derived, Given::new());
+        let momentum = components(&mut graph, derived, &given, &derived.momentum);
+        let jacobian = square(&mut graph, derived, &given, &derived.jacobian);
+        let none = Self { momentum, jacobian, right: vec![], left: vec![], diamond: vec![], energy: None, graph };
+        if role == Role::Force {
+            return none;
+        }
+        let mut graph = none.graph;
+        let [right, left, diamond] = [&derived.right_momentum, &derived.left_momentum, &derived.diamond]
+            .map(|covector| components(&mut graph, derived, &given, covector));
+        let energy = Scalariser { graph: &mut graph, symbols: &derived.symbols, given }.scalar(&derived.energy);
+        Self { right, left, diamond, energy: Some(energy), graph, ..none }
+    }
+}
+
+/// The derivatives of the momenta at both ends of a step, where they are asked for.
+struct Derivatives {
+    graph: Graph,
+    /// Along turns of the increment, then along displacements of the body: those of `μ` and of `μ⁺`, row by row.
+    blocks: [[Vec<NodeId>; 2]; 2],
+    momenta: [Vec<NodeId>; 2],
+}
+
+/// A declaration with all that was derived of it.
+pub(super) struct Identities<'a> {
+    role: Role,
+    tree: &'a Rc<Tree>,
+    pub(super) derived: &'a Derived,
+    kernel: &'a Kernel,
+    terms: Terms,
+    derivatives: Option<Derivatives>,
+}
+
+/// One point with one direction.
+struct Point<'a, T> {
+    sample: &'a Sample<'a, T>,
+    dual: Sample<'a, Dual<T>>,
+    /// `v`, `v̂` and `exp(±ε v̂)`.
+    direction: Vec<T>,
+    element: Value<T>,
+    exponentials: [Value<Dual<T>>; 2],
+    turned: Element<Dual<T>>,
+    /// Another covector than that of the solution.
+    target: Vec<T>,
+}
+
+/// Along the direction of a point, what the declaration says.
+struct Declared<T> {
+    momentum: T,
+    /// At the end of the step.
+    left: T,
+}
+
+impl<'a> Identities<'a> {
+    pub(super) fn new(
+        declaration: &Declaration,
+        tree: &'a Rc<Tree>,
+        (derived, kernel): (&'a Derived, &'a Kernel),
+    ) -> Self {
+        let derivatives = derived.ends.as_ref().map(|ends| {
+            let mut linearisation = Linearisation::new(derived, ends);
+            let (blocks, momenta) = (linearisation.blocks(), linearisation.momenta());
+            Derivatives { graph: linearisation.graph, blocks, momenta }
+        });
+        let (role, terms) = (declaration.role, Terms::new(derived, declaration.role));
+        Self { role, tree, derived, kernel, terms, derivatives }
+    }
+
+    /// How many functions are called, in the declaration and in what was derived.
+    pub(super) fn functions(&self) -> u64 {
+        let derivatives = self.derivatives.as_ref().map_or(0, |derivatives| degree::calls(&derivatives.graph));
+        degree::functions(self.tree)
+            + degree::calls(&self.terms.graph)
+            + degree::calls(&self.kernel.graph)
+            + derivatives
+    }
+
+    /// Whether the momentum and its Jacobian have values where a step begins.
+    pub(super) fn are_smooth_at_identity<T: Number>(&self, sample: &Sample<T>, is_defined: fn(T) -> bool) -> bool {
+        let inputs = sample.inputs_at(&Element::identity(&self.derived.group), &sample.values);
+        let outputs = [self.terms.momentum.as_slice(), &self.terms.jacobian].concat();
+        evaluated(&self.terms.graph, &outputs, &inputs).into_iter().all(is_defined)
+    }
+
+    /// Compares everything at one point, along a direction of these numbers.
+    pub(super) fn hold<T: Number>(
+        &self,
+        sample: &Sample<T>,
+        mut number: impl FnMut() -> T,
+        same: &mut Same<T>,
+    ) -> Result<(), Fault> {
+        let group = &self.derived.group;
+        let mut vector = || group.generators.iter().map(|_| number()).collect::<Vec<T>>();
+        let (direction, target) = (vector(), vector());
+        let element = Value::combination(group.size, &group.generators, &direction);
+        let exponentials = exponentials(&element);
+        let turned = sample.element.turned(&exponentials);
+        let point = Point { sample, dual: sample.lifted(), direction, element, exponentials, turned, target };
+        let declared = match self.role {
+            Role::Force => self.declared_work(&point),
+            _ => self.lagrangian_holds(&point, same)?,
+        };
+        let momentum = self.momentum_holds(&point, &declared, same)?;
+        self.step_holds(&point, &momentum, &declared, same)?;
+        self.derivatives_hold(&point, &momentum, &declared, same)
+    }
+
+    fn at<T: Number>(&self, values: &BTreeMap<Name, Value<T>>) -> T {
+        Evaluation::new(values).of(self.tree).first()
+    }
+
+    /// The declared work along the direction, of displacements at either end alone.
+    fn declared_work<T: Number>(&self, point: &Point<T>) -> Declared<T> {
+        let group = &self.derived.group;
+        let work = |is_before: bool| {
+            let mut values = point.sample.values.clone();
+            for (factor, own) in group.factors().iter().enumerate() {
+                let first = group.component_of(factor);
+                let along = Value::column(&point.direction[first..first + own.dimension()]);
+                let still = along.map(|_| T::ZERO);
+                let (before, after) = if is_before { (along, still) } else { (still, along) };
+                values.extend([(Name::DisplacementBefore(factor), before), (Name::DisplacementAfter(factor), after)]);
+            }
+            self.at(&values)
+        };
+        Declared { momentum: -work(true), left: work(false) }
+    }
+
+    /// Both momentum maps, the diamond and the energy are derivatives of the declared Lagrangian.
+    fn lagrangian_holds<T: Number>(&self, point: &Point<T>, same: &mut Same<T>) -> Result<Declared<T>, Fault> {
+        let (group, dual) = (&self.derived.group, &point.dual);
+        let [forwards, backwards] = &point.exponentials;
+        let at_increment = |f: &Value<Dual<T>>| {
+            let mut values = dual.values.clone();
+            values.extend(increments(group, f));
+            self.at(&values).slope
+        };
+        let right = at_increment(&point.turned.matrix);
+        let left = at_increment(&dual.element.matrix.times(forwards));
+        let carried = self.at(&dual.moved([forwards, backwards])).slope;
+        let mut at_step = dual.values.clone();
+        if let Some(h) = at_step.get_mut(&Name::Step) {
+            *h = h.map(|h| Dual { slope: T::ONE, ..h });
+        }
+        let terms = &self.terms;
+        let outputs = [terms.right.as_slice(), &terms.left, &terms.diamond, terms.energy.as_slice()].concat();
+        let found = evaluated(&terms.graph, &outputs, &point.sample.inputs());
+        let (covectors, energy) = found.split_at(3 * group.dimension());
+        let names = [("right momentum map", right), ("left momentum map", left), ("diamond term", -carried)];
+        for ((name, expected), found) in names.into_iter().zip(covectors.chunks(group.dimension())) {
+            same(name, dot(found, &point.direction), expected)?;
+        }
+        for &found in energy {
+            same("discrete energy", found, -self.at(&at_step).slope)?;
+        }
+        Ok(Declared { momentum: right + carried, left })
+    }
+
+    /// The momentum is what the declaration says, and the Jacobian its derivative; returns the momentum.
+    fn momentum_holds<T: Number>(
+        &self,
+        point: &Point<T>,
+        declared: &Declared<T>,
+        same: &mut Same<T>,
+    ) -> Result<Vec<T>, Fault> {
+        let (graph, dual) = (&self.terms.graph, &point.dual);
+        let along = evaluated(graph, &self.terms.momentum, &dual.inputs_at(&point.turned, &dual.values));
+        let momentum: Vec<T> = along.iter().map(|one| one.value).collect();
+        let name = if self.role == Role::Force { "force" } else { "momentum equation" };
+        same(name, dot(&momentum, &point.direction), declared.momentum)?;
+        let jacobian = evaluated(graph, &self.terms.jacobian, &point.sample.inputs());
+        for (row, one) in jacobian.chunks(along.len()).zip(&along) {
+            same("Newton Jacobian", dot(row, &point.direction), one.slope)?;
+        }
+        Ok(momentum)
+    }
+
+    /// The stages of the step, as a stepper calls them.
+    fn step_holds<T: Number>(
+        &self,
+        point: &Point<T>,
+        momentum: &[T],
+        declared: &Declared<T>,
+        same: &mut Same<T>,
+    ) -> Result<(), Fault> {
+        let (sample, directions, kernel) = (point.sample, &self.derived.directions, self.kernel);
+        let (dimension, group) = (momentum.len(), &self.derived.group);
+        let mut inputs = sample.inputs();
+        let Element { matrix, inverse, coordinates } = &sample.element;
+        let carried = sample.moved([inverse, matrix]);
+        for ((name, ..), &next) in sample.advected.iter().zip(&directions.next) {
+            inputs.extend(carried.get(name).map(|w| (next, w.clone())));
+        }
+        inputs.insert(directions.target, Value::column(&point.target));
+        inputs.insert(directions.along, Value::column(&point.direction));
+        let parts = [&kernel.kick_before, &kernel.jacobian, &kernel.kick_after, &kernel.moved].map(Vec::as_slice);
+        let change = kernel.kick_derivative.as_deref().unwrap_or_default();
+        let found = evaluated(&kernel.graph, &[parts.concat().as_slice(), change].concat(), &inputs);
+        let (before, found) = found.split_at(dimension);
+        let (jacobian, found) = found.split_at(dimension * dimension);
+        let (after, found) = found.split_at(dimension);
+        let (moved, change) = found.split_at(kernel.moved.len());
+        let a: Vec<T> = momentum.iter().zip(before).map(|(&momentum, &kick)| momentum + kick).collect();
+        // (h/2) (1 + |y|²)ⁿ (U − a), whose factor is positive.
+        let square = dot(coordinates, coordinates);
+        let half = sample.values.get(&Name::Step).map_or(T::UNDEFINED, Value::first) * T::of(Rational::new(1, 2));
+        let factor = (0..kernel.denominators).fold(half, |factor, _| factor * (T::ONE + square));
+        let residual = evaluated(&kernel.graph, &kernel.residual, &self.displaced(point));
+        for (k, found) in residual.iter().enumerate() {
+            same("Newton residual", found.value, factor * (a[k] - point.target[k]))?;
+            let row = &jacobian[dimension * k..dimension * (k + 1)];
+            same("Newton Jacobian of the step", dot(row, &point.direction), found.slope)?;
+        }
+        // μ⁺ = Ad*_F a + k₁⁺, and what the gradient gives beside the residual is k₁⁺ before Ad*_F.
+        let turned = components_of(group, &matrix.times(&point.element).times(inverse));
+        let after = dot(after, &point.direction);
+        same("transported momentum", dot(&a, &turned) + after, declared.left)?;
+        if !moved.is_empty() {
+            same("transported momentum", dot(moved, &turned), after)?;
+        }
+        if !change.is_empty() {
+            let [forwards, backwards] = &point.exponentials;
+            let (dual, values) = (&point.dual, point.dual.moved([backwards, forwards]));
+            let kick = evaluated(&kernel.graph, &kernel.kick_before, &dual.inputs_at(&dual.element, &values));
+            for (&found, expected) in change.iter().zip(kick) {
+                same("derivative of the kick", found, expected.slope)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// In the coordinates of the Newton system: `y + ε v` or `exp(ε v̂) F`.
+    fn displaced<T: Number>(&self, point: &Point<T>) -> BTreeMap<SymbolId, Value<Dual<T>>> {
+        let (dual, directions) = (&point.dual, &self.derived.directions);
+        let mut inputs = if self.kernel.in_increment {
+            dual.inputs_at(&point.turned, &dual.values)
+        } else {
+            let mut inputs = dual.inputs();
+            let along = point.sample.element.coordinates.iter().zip(&point.direction);
+            let along: Vec<Dual<T>> = along.map(|(&value, &slope)| Dual { value, slope }).collect();
+            inputs.insert(directions.coordinates, Value::column(&along));
+            inputs
+        };
+        inputs.insert(directions.target, Value::column(&point.target).over(Dual::constant));
+        inputs
+    }
+
+    /// The momenta at both ends with their derivatives, along a turn of the increment and along `δw = −v̂·w`.
+    fn derivatives_hold<T: Number>(
+        &self,
+        point: &Point<T>,
+        momentum: &[T],
+        declared: &Declared<T>,
+        same: &mut Same<T>,
+    ) -> Result<(), Fault> {
+        let Some(Derivatives { graph, blocks, momenta }) = &self.derivatives else { return Ok(()) };
+        let (dual, [forwards, backwards]) = (&point.dual, &point.exponentials);
+        let seen = dual.inputs_at(&dual.element, &dual.moved([backwards, forwards]));
+        let turned = dual.inputs_at(&point.turned, &dual.values);
+        let plain = point.sample.inputs();
+        for (inputs, blocks) in [turned, seen].iter().zip(blocks) {
+            for (end, (outputs, block)) in momenta.iter().zip(blocks).enumerate() {
+                let along = evaluated(graph, outputs, inputs);
+                let values: Vec<T> = along.iter().map(|one| one.value).collect();
+                let expected = if end == 0 { dot(momentum, &point.direction) } else { declared.left };
+                same("momentum to be differentiated", dot(&values, &point.direction), expected)?;
+                for (row, one) in evaluated(graph, block, &plain).chunks(along.len()).zip(&along) {
+                    same("derivative of a step", dot(row, &point.direction), one.slope)?;
+                }
+            }
+        }
+        Ok(())
+    }
+}

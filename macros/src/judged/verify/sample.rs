@@ -1,0 +1,275 @@
+//! Numbers for all names of a declaration, at an element of its group.
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use super::dual::Dual;
+use super::evaluation::Evaluation;
+use super::number::Number;
+use super::value::Value;
+use super::{DRAWS, block, by_blocks, displacements, increments, parameter, stream, translation, turn};
+use crate::declared::lower::Lowered;
+use crate::declared::{Declaration, FieldKind, Name, Role, Tree};
+use crate::mathematics::derive::{Derived, Seen};
+use crate::mathematics::group::Group;
+use crate::mathematics::symbolic::{Rational, SymbolId, Variance};
+
+/// An element of the group.
+#[derive(Clone, Debug)]
+pub(super) struct Element<T = f64> {
+    /// Of a product all increments, in blocks.
+    pub(super) matrix: Value<T>,
+    pub(super) inverse: Value<T>,
+    /// `y` with `F = cay(2y)`, or `d = 2y` of what is translated, for groups of nothing else.
+    pub(super) coordinates: Vec<T>,
+}
+
+impl<T: Number> Element<T> {
+    pub(super) fn identity(group: &Group) -> Self {
+        let identity = Value::identity(group.size);
+        Self { matrix: identity.clone(), inverse: identity, coordinates: vec![T::ZERO; group.dimension()] }
+    }
+
+    /// A product of Cayley transforms `cay(x) = (I − x)⁻¹(I + x)`: of a rotation of space the one of a random element, else
+    /// those of multiples of all generators; nothing where these aren't of the group.
+    ///
+    /// Where `E³ = c E`, `cay(tE)` is an element of the one-parameter group of `E`, rational in `t`: for all of the built-in
+    /// groups' generators. The products for all generators have elements near the identity for all that the group has there.
+    pub(super) fn by_cayley(group: &Group, number: &mut impl FnMut() -> T) -> Option<Self>
+    where
+        T: PartialEq,
+    {
+        let (mut parts, mut coordinates) = (Vec::new(), Vec::new());
+        for own in group.factors() {
+            let identity = Value::identity(own.size);
+            let components: Vec<T> = own.generators.iter().map(|_| number()).collect();
+            let one_by_one = || {
+                let each = own.generators.iter().zip(&components);
+                each.map(|(entries, &t)| Value::square(own.size, entries).map(|entry: T| t * entry))
+            };
+            let is_of_group = |x: &Value<T>| is_multiple(&x.times(x).times(x), x);
+            let elements: Vec<Value<T>> = if own.is_so3 {
+                vec![Value::combination(own.size, &own.generators, &components)]
+            } else {
+                one_by_one().collect()
+            };
+            let (mut matrix, mut inverse) = (identity.clone(), identity.clone());
+            for x in elements {
+                if !own.is_so3 && !is_of_group(&x) {
+                    return None;
+                }
+                let (forwards, backwards) = (identity.plus(&x), identity.zip(&x, |one, x| one - x));
+                matrix = matrix.times(&backwards.inverse().times(&forwards));
+                inverse = forwards.inverse().times(&backwards).times(&inverse);
+            }
+            parts.push((matrix, inverse));
+            coordinates.extend(components);
+        }
+        let of = |part: &dyn Fn(&(Value<T>, Value<T>)) -> Value<T>| {
+            let blocks: Vec<Value<T>> = parts.iter().map(part).collect();
+            by_blocks(group, |factor| blocks[factor].clone())
+        };
+        Some(Self { matrix: of(&|part| part.0.clone()), inverse: of(&|part| part.1.clone()), coordinates })
+    }
+
+    /// As constants among dual numbers.
+    fn lifted(&self) -> Element<Dual<T>> {
+        Element {
+            matrix: self.matrix.over(Dual::constant),
+            inverse: self.inverse.over(Dual::constant),
+            coordinates: self.coordinates.iter().map(|&y| Dual::constant(y)).collect(),
+        }
+    }
+
+    /// `exp(ε v̂) F`; its coordinates aren't turned.
+    pub(super) fn turned(&self, [forwards, backwards]: &[Value<Dual<T>>; 2]) -> Element<Dual<T>> {
+        let still = self.lifted();
+        Element { matrix: forwards.times(&still.matrix), inverse: still.inverse.times(backwards), ..still }
+    }
+}
+
+/// `exp(±ε x) = I ± ε x`.
+pub(super) fn exponentials<T: Number>(x: &Value<T>) -> [Value<Dual<T>>; 2] {
+    let identity = Value::identity(x.rows);
+    let along = |x: Value<T>| Value {
+        rows: x.rows,
+        columns: x.columns,
+        entries: identity.entries.iter().zip(&x.entries).map(|(&value, &slope)| Dual { value, slope }).collect(),
+    };
+    [along(x.clone()), along(x.map(|entry| -entry))]
+}
+
+/// Whether `A = c B` for a number `c`.
+fn is_multiple<T: Number + PartialEq>(a: &Value<T>, b: &Value<T>) -> bool {
+    let Some((&first, &scale)) = a.entries.iter().zip(&b.entries).find(|(_, b)| **b != T::ZERO) else {
+        return false;
+    };
+    a.entries.iter().zip(&b.entries).all(|(&a, &b)| a * scale == b * first)
+}
+
+/// Numbers for all names.
+#[derive(Clone)]
+pub(super) struct Sample<'a, T = f64> {
+    pub(super) derived: &'a Derived,
+    pub(super) element: Element<T>,
+    pub(super) values: BTreeMap<Name, Value<T>>,
+    symbols: BTreeMap<SymbolId, Name>,
+    pub(super) advected: Vec<(Name, Variance, Seen)>,
+}
+
+impl<'a> Sample<'a> {
+    /// The points at which the declaration has a value. The later ones are farther away, and may be anywhere.
+    pub(super) fn draws(
+        declaration: &'a Declaration,
+        lowered: &'a Lowered,
+        derived: &'a Derived,
+        tree: &'a Rc<Tree>,
+    ) -> impl Iterator<Item = Self> {
+        let samples = (1..=DRAWS).map(|seed| Self::new(declaration, lowered, derived, seed));
+        samples.filter(|sample| sample.declared(tree).is_finite())
+    }
+
+    fn new(declaration: &Declaration, lowered: &Lowered, derived: &'a Derived, seed: u64) -> Self {
+        let mut number = stream(seed);
+        let group = &declaration.group;
+        let mut element = Element::identity(group);
+        for k in 0..group.dimension() {
+            let angle = 0.6 * number() - 0.3;
+            element.matrix = element.matrix.times(&turn(group, k, angle));
+            element.inverse = turn(group, k, -angle).times(&element.inverse);
+        }
+        let mut sample = Self::with_numbers(declaration, lowered, derived, element, &mut number);
+        // From one draw in five on, another scale for each parameter, and another sign for scalars.
+        let reach = f64::from(u32::try_from(seed / (DRAWS / 5)).unwrap_or(0));
+        for (name, value) in sample.values.iter_mut().filter(|_| reach > 0.0) {
+            let (scale, sign) = ((8.0 * number() - 2.0).exp2().powf(reach / 4.0), number() < 0.5);
+            let kind = match name {
+                Name::Field(index) => declaration.fields.get(*index).map(|field| field.kind),
+                Name::Advected(index) => Some(declaration.advected_kind(*index)),
+                _ => None,
+            };
+            *value = match kind {
+                None | Some(FieldKind::Point(_) | FieldKind::Configuration(_)) => continue,
+                Some(FieldKind::Scalar) if sign => value.map(|x| -scale * x),
+                Some(_) => value.map(|x| scale * x),
+            };
+        }
+        sample
+    }
+}
+
+impl<'a, T: Number> Sample<'a, T> {
+    /// At a group element, with numbers that are taken to lie between zero and one.
+    pub(super) fn with_numbers(
+        declaration: &Declaration,
+        lowered: &Lowered,
+        derived: &'a Derived,
+        element: Element<T>,
+        mut number: impl FnMut() -> T,
+    ) -> Self {
+        let mut values = BTreeMap::from_iter(increments(&declaration.group, &element.matrix));
+        let tenth = T::of(Rational::new(1, 10));
+        values.insert(Name::Step, Value::scalar(tenth + tenth * number()));
+        for (index, field) in declaration.fields.iter().enumerate() {
+            values.insert(Name::Field(index), parameter(field.kind, &mut number));
+        }
+        if declaration.role == Role::Force {
+            values.extend(displacements(&declaration.group, &mut number));
+        }
+        let mut advected = Vec::new();
+        for index in 0..declaration.advected.len() {
+            let kind = declaration.advected_kind(index);
+            values.insert(Name::Advected(index), parameter(kind, &mut number));
+            let seen = declaration.advected.get(index).map_or(Seen::From(0), |w| w.seen);
+            advected.push((Name::Advected(index), kind.variance(), seen));
+        }
+        let symbols = lowered.names.iter().map(|(name, id)| (*id, *name)).collect();
+        Self { derived, element, values, symbols, advected }
+    }
+
+    pub(super) fn lifted(&self) -> Sample<'a, Dual<T>> {
+        Sample {
+            derived: self.derived,
+            element: self.element.lifted(),
+            values: self.values.iter().map(|(name, value)| (*name, value.over(Dual::constant))).collect(),
+            symbols: self.symbols.clone(),
+            advected: self.advected.clone(),
+        }
+    }
+
+    /// `l_d` at this point.
+    pub(super) fn declared(&self, tree: &Rc<Tree>) -> T {
+        Evaluation::new(&self.values).of(tree).first()
+    }
+
+    /// `−l_d` turned back: at `F⁻¹`, `F⁻¹·w` and `−h`.
+    pub(super) fn reversed(&self, tree: &Rc<Tree>) -> T {
+        let Element { matrix, inverse, .. } = &self.element;
+        let mut values = self.moved([inverse, matrix]);
+        values.extend(increments(&self.derived.group, inverse));
+        if let Some(h) = self.values.get(&Name::Step) {
+            values.insert(Name::Step, h.map(|h| -h));
+        }
+        -Evaluation::new(&values).of(tree).first()
+    }
+
+    /// The values of all symbols: of the names, and of what the derivation adds.
+    pub(super) fn inputs(&self) -> BTreeMap<SymbolId, Value<T>> {
+        self.inputs_at(&self.element, &self.values)
+    }
+
+    /// The same at another increment, and at other values.
+    pub(super) fn inputs_at(
+        &self,
+        element: &Element<T>,
+        values: &BTreeMap<Name, Value<T>>,
+    ) -> BTreeMap<SymbolId, Value<T>> {
+        let (group, directions) = (&self.derived.group, &self.derived.directions);
+        let named = self.symbols.iter().filter_map(|(symbol, name)| Some((*symbol, values.get(name)?.clone())));
+        let mut inputs: BTreeMap<SymbolId, Value<T>> = named.collect();
+        for (factor, one) in directions.factors.iter().enumerate() {
+            let [f, inverse] = [&element.matrix, &element.inverse].map(|matrix| block(group, matrix, factor));
+            if group.factor(factor).is_added {
+                let d = translation(&f);
+                inputs.extend([(one.small, d.clone()), (one.increment, d)]);
+                continue;
+            }
+            let small = |f: &Value<T>| f.zip(&Value::identity(f.rows), |x, y| x - y);
+            inputs.extend([(one.small, small(&f)), (one.small_inverse, small(&inverse))]);
+            inputs.extend([(one.increment, f), (one.inverse, inverse)]);
+        }
+        inputs.insert(directions.coordinates, Value::column(&element.coordinates));
+        inputs
+    }
+
+    /// The values with all that is advected moved by a group element, given with its inverse.
+    pub(super) fn moved(&self, [g, inverse]: [&Value<T>; 2]) -> BTreeMap<Name, Value<T>> {
+        let mut values = self.values.clone();
+        let group = &self.derived.group;
+        for (name, variance, seen) in &self.advected {
+            let Some(w) = self.values.get(name) else { continue };
+            let added = |moving: &Value<T>, factor| translation(&block(group, moving, factor));
+            let moved = match *seen {
+                Seen::Relative { of, from } if group.factor(of).is_added => {
+                    added(g, from).plus(w).plus(&added(inverse, of))
+                }
+                Seen::Configuration(of) if group.factor(of).is_added => w.plus(&added(inverse, of)),
+                Seen::Relative { of, from } => block(group, g, from).times(w).times(&block(group, inverse, of)),
+                Seen::Configuration(of) => w.times(&block(group, inverse, of)),
+                Seen::From(factor) => {
+                    let (g, inverse) = (&block(group, g, factor), &block(group, inverse, factor));
+                    match variance {
+                        Variance::Vector => g.times(w),
+                        Variance::Covector => inverse.transpose().times(w),
+                        Variance::Contravariant => g.times(w).times(&g.transpose()),
+                        Variance::Covariant => inverse.transpose().times(w).times(inverse),
+                        Variance::Mixed => g.times(w).times(inverse),
+                        Variance::Fixed => w.clone(),
+                    }
+                }
+            };
+            values.insert(*name, moved);
+        }
+        values
+    }
+}
