@@ -1,7 +1,7 @@
 //! Error against time, a panel for each scene.
 
 use plotters::prelude::*;
-use workbench::plot::{Area, BLUE, Drawn, GREEN, ORANGE, PURPLE, heading, legend, px, render};
+use workbench::plot::{Area, BLUE, GREEN, ORANGE, PURPLE, PlotResult, heading, legend, px, render};
 
 use crate::invariants::{Kept, Lost};
 use crate::methods::Family;
@@ -56,7 +56,7 @@ fn kind(method: &Measured) -> Kind {
 }
 
 /// Of each kind of method the lower envelope: what a user can have of it.
-pub fn figure(panels: &[Panel<'_>]) -> Drawn<String> {
+pub fn figure(panels: &[Panel<'_>]) -> PlotResult<String> {
     const COLUMNS: usize = 2;
     let rows = panels.len().div_ceil(COLUMNS);
     let height = 70 + 300 * u32::try_from(rows)?;
@@ -72,7 +72,7 @@ pub fn figure(panels: &[Panel<'_>]) -> Drawn<String> {
 }
 
 /// Deviations of the invariants against the number of steps, a scene a row.
-pub fn invariants_figure(scenes: &[(&str, Vec<Kept>)]) -> Drawn<String> {
+pub fn invariants_figure(scenes: &[(&str, Vec<Kept>)]) -> PlotResult<String> {
     let height = 70 + 260 * u32::try_from(scenes.len())?;
     render((1000, height), |area| {
         heading(
@@ -92,7 +92,7 @@ pub fn invariants_figure(scenes: &[(&str, Vec<Kept>)]) -> Drawn<String> {
     })
 }
 
-fn losses(area: &Area<'_>, title: &str, methods: &[Kept], of: impl Fn(&Lost) -> f64) -> Drawn {
+fn losses(area: &Area<'_>, title: &str, methods: &[Kept], of: impl Fn(&Lost) -> f64) -> PlotResult {
     let most = methods.iter().flat_map(|kept| &kept.lost).map(|lost| lost.steps).fold(10.0, f64::max);
     let mut chart = ChartBuilder::on(area)
         .caption(title, ("sans-serif", px(13)))
@@ -120,7 +120,7 @@ fn losses(area: &Area<'_>, title: &str, methods: &[Kept], of: impl Fn(&Lost) -> 
 }
 
 impl Panel<'_> {
-    fn draw(&self, area: &Area<'_>) -> Drawn {
+    fn draw(&self, area: &Area<'_>) -> PlotResult {
         let points = || self.methods.iter().flat_map(costs);
         let (least, most) = points().fold((f64::INFINITY, 0.0_f64), |(low, high), (x, _)| (low.min(x), high.max(x)));
         if !least.is_finite() {

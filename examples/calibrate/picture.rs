@@ -2,7 +2,9 @@
 
 use nalgebra::Vector3;
 use workbench::args::Failure;
-use workbench::plot::{BLUE, Drawn, GREEN, INK, Line, ORANGE, PURPLE, Panel, Vertical, heading, legend, px, render};
+use workbench::plot::{
+    BLUE, GREEN, INK, Line, ORANGE, PURPLE, Panel, PlotResult, Vertical, heading, legend, px, render,
+};
 
 use crate::READINGS;
 use crate::body::{STEP, measured, truth};
@@ -33,7 +35,7 @@ pub(crate) fn picture(fits: &[Fitted]) -> Result<String, Failure> {
     }
     let colours = [BLUE, ORANGE, GREEN, PURPLE];
     let spread = spread.into_iter().zip(colours).map(|(points, colour)| Line { colour, width: 3, points }).collect();
-    let drawn: Drawn<String> = render((1000, 420), |area| {
+    let drawn: PlotResult<String> = render((1000, 420), |area| {
         heading(area, "The inertia of a top from a gyroscope", "readings of seed 1, and what a record can tell")?;
         let (_, body) = area.split_vertically(px(56));
         let (left, right) = body.split_horizontally(px(500));

@@ -14,7 +14,6 @@ pub mod free_body;
 pub mod heavy_top;
 pub mod measure;
 pub mod newton_tolerance;
-pub mod output;
 pub mod progress;
 pub mod run;
 pub mod runge_kutta;
@@ -24,3 +23,4 @@ pub mod top_equations;
 pub mod variational;
 
 pub use liestep_plot as plot;
+pub use liestep_plot::output;

@@ -25,7 +25,7 @@ use nalgebra::{Matrix4, Point3, Rotation3, Vector3, Vector4, Vector6};
 
 use workbench::args::{Failure, example};
 use workbench::output::{Output, print};
-use workbench::plot::{BLUE, Drawn, GREEN, Line, ORANGE, Panel, Vertical, heading, legend, px, render};
+use workbench::plot::{BLUE, GREEN, Line, ORANGE, Panel, PlotResult, Vertical, heading, legend, px, render};
 
 const HELP: &str = "Drives a satellite in its orbit, a thruster on SE(3), and switched magnetic torquers
 
@@ -60,7 +60,7 @@ fn figure(
     about: &str,
     names: &[(&str, plotters::style::RGBColor)],
     panels: &[Panel<'_>; 2],
-) -> Drawn<String> {
+) -> PlotResult<String> {
     render((900, 700), |area| {
         let (header, body) = area.split_vertically(px(84));
         heading(&header, title, about)?;

@@ -25,7 +25,7 @@ use plotters::style::RGBColor;
 
 use workbench::args::{Failure, example};
 use workbench::output::{Output, print};
-use workbench::plot::{BLUE, Drawn, GREEN, Line, ORANGE, Panel, Vertical, heading, legend, px, render};
+use workbench::plot::{BLUE, GREEN, Line, ORANGE, Panel, PlotResult, Vertical, heading, legend, px, render};
 
 const HELP: &str = "Draws a double pendulum, two asteroids, and a load under a quadrotor
 
@@ -66,7 +66,7 @@ fn path<'a>(title: &'a str, [across, up]: [&'a str; 2], lines: Vec<Line>) -> Pan
 }
 
 /// Two panels, one above the other.
-fn figure(title: &str, about: &str, names: &[(&str, RGBColor)], panels: &[Panel<'_>; 2]) -> Drawn<String> {
+fn figure(title: &str, about: &str, names: &[(&str, RGBColor)], panels: &[Panel<'_>; 2]) -> PlotResult<String> {
     render((700, 900), |area| {
         let (header, body) = area.split_vertically(px(84));
         heading(&header, title, about)?;

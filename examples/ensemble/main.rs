@@ -15,12 +15,12 @@ use std::process::ExitCode;
 use ensembles::map::Grid;
 use ensembles::{Mistake, satellite, section};
 use liestep::motion::Integrator;
-use liestep_ensemble::{Ensemble, Local, Reduced, Report, Store, share_of};
+use liestep_ensemble::{Ensemble, Local, Report, Store, Summary, share_of};
 use plotters::prelude::{Circle, RGBColor, Rectangle};
 use plotters::style::Color as _;
 use workbench::args::example;
 use workbench::output::{Output, print};
-use workbench::plot::{Area, BLUE, Drawn, GREEN, Line, ORANGE, Panel, Vertical, heading, legend, px, render};
+use workbench::plot::{Area, BLUE, GREEN, Line, ORANGE, Panel, PlotResult, Vertical, heading, legend, px, render};
 use workbench::progress::Progress;
 
 const HELP: &str =
@@ -87,7 +87,7 @@ fn run(arguments: &Arguments) -> Result<(), Mistake> {
     let largest = exponents.iter().flatten().fold(0.0_f64, |largest, exponent| largest.max(*exponent));
     let chaotic = exponents.iter().flatten().filter(|exponent| **exponent > CHAOTIC).count();
     let energy = match report.reduced("energy") {
-        Some(Reduced::Moments(moments)) => format!("{:.4} ± {:.4} J", moments.mean, moments.variance().sqrt()),
+        Some(Summary::Moments(moments)) => format!("{:.4} ± {:.4} J", moments.mean, moments.variance().sqrt()),
         _ => String::new(),
     };
     print(&format!(
@@ -124,7 +124,7 @@ fn made<M: Integrator>(ensemble: &Ensemble<M>, arguments: &Arguments, name: &str
     Ok((store, report))
 }
 
-fn of_spread(spread: &[(f64, [f64; 3])]) -> Drawn<String> {
+fn of_spread(spread: &[(f64, [f64; 3])]) -> PlotResult<String> {
     let colours = [GREEN, BLUE, ORANGE];
     let line = |(place, colour): (usize, &RGBColor)| {
         let points = spread.iter().map(|(time, angles)| (*time, angles[place])).collect();
@@ -144,7 +144,7 @@ fn of_spread(spread: &[(f64, [f64; 3])]) -> Drawn<String> {
     })
 }
 
-fn of_exponents(grid: Grid, exponents: &[Option<f64>]) -> Drawn<String> {
+fn of_exponents(grid: Grid, exponents: &[Option<f64>]) -> PlotResult<String> {
     let largest = exponents.iter().flatten().fold(CHAOTIC, |largest, exponent| largest.max(*exponent));
     render((820, 560), |area| {
         let (header, body) = area.split_vertically(px(60));
@@ -157,7 +157,7 @@ fn of_exponents(grid: Grid, exponents: &[Option<f64>]) -> Drawn<String> {
     })
 }
 
-fn of_section_points(crossings: &[section::Orbit]) -> Drawn<String> {
+fn of_section_points(crossings: &[section::Orbit]) -> PlotResult<String> {
     const COLOURS: [RGBColor; 3] = [BLUE, ORANGE, GREEN];
     render((820, 620), |area| {
         let (header, body) = area.split_vertically(px(60));
@@ -182,7 +182,7 @@ fn of_section_points(crossings: &[section::Orbit]) -> Drawn<String> {
 }
 
 /// A square for each point of the grid, the darker the larger its value; grey where there is none.
-fn squares(area: &Area<'_>, grid: Grid, value: impl Fn(usize) -> Option<f64>) -> Drawn {
+fn squares(area: &Area<'_>, grid: Grid, value: impl Fn(usize) -> Option<f64>) -> PlotResult {
     let (width, height) = area.dim_in_pixel();
     let margin = px(16);
     let place = |part: u64, whole: u64, room: u32| -> Result<i32, Mistake> {

@@ -1,7 +1,7 @@
 //! One figure of all that the rows leave.
 
 use plotters::style::RGBColor;
-use workbench::plot::{Area, Drawn, Line, Panel, Vertical, heading, legend, px, render};
+use workbench::plot::{Area, Line, Panel, PlotResult, Vertical, heading, legend, px, render};
 
 use crate::curves::{Curve, Curves};
 use crate::rivals::GREY;
@@ -33,7 +33,7 @@ fn with_limits(mut place: Place<'_>, limits: [f64; 3], top: f64) -> Place<'_> {
     place
 }
 
-pub fn figure(curves: &Curves) -> Drawn<String> {
+pub fn figure(curves: &Curves) -> PlotResult<String> {
     let count = ("log₁₀ of the number of steps", "‖RᵀR − I‖");
     let mut places: Vec<_> = curves
         .energies
@@ -75,7 +75,7 @@ pub fn figure(curves: &Curves) -> Drawn<String> {
 }
 
 impl Place<'_> {
-    fn draw(&self, area: &Area<'_>) -> Drawn {
+    fn draw(&self, area: &Area<'_>) -> PlotResult {
         let (panel, names) = area.split_vertically(px(300));
         self.panel.draw(&panel)?;
         legend(&names, (16, 8), &self.names)

@@ -50,7 +50,7 @@ pub(crate) fn command() -> Command {
                     Arg::new("threads")
                         .long("threads")
                         .value_name("N")
-                        .help("So many threads; 0 for as many as there are processors")
+                        .help("The number of threads; 0 for as many as there are processors")
                         .default_value("0")
                         .value_parser(value_parser!(usize)),
                 )

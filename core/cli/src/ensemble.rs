@@ -7,17 +7,18 @@ use std::sync::Mutex;
 use clap::ArgMatches;
 use liestep::SO3;
 use liestep::motion::{AnyStepper, Moment};
-use liestep_ensemble::{Failed, Failure, Local, Reduced, Reduction, Report, Store};
-use liestep_scene::{Column, Drawn, Mistake, SceneFile, Spread};
+use liestep_ensemble::{Failure, Local, MemberFailure, Reduction, Report, Store, Summary};
+use liestep_plot::output::Output;
+use liestep_scene::{Column, Mistake, SceneEnsemble, SceneFile, Spread};
 
-use crate::failure::Failure as Ended;
-use crate::output::{Output, Progress, print};
-use crate::{different_files, folder, name, scenes};
+use crate::failure::Failure as ProgramFailure;
+use crate::files::{different_files, folder, name, scenes};
+use crate::output::{Progress, print};
 
-/// So many failures are printed; all are in the files.
+/// The most failures that are printed; all are in the files.
 const SHOWN: usize = 10;
 
-pub(crate) fn ensemble(given: &ArgMatches) -> Result<(), Ended> {
+pub(crate) fn ensemble(given: &ArgMatches) -> Result<(), ProgramFailure> {
     let paths = different_files(given)?;
     let scenes = scenes(&paths)?;
     let threads = given.get_one::<usize>("threads").copied().unwrap_or_default();
@@ -38,12 +39,18 @@ pub(crate) fn ensemble(given: &ArgMatches) -> Result<(), Ended> {
     if missing > 0 {
         print(&format!("{missing} chunks are left to other shares.\n"))?;
     }
-    if failed == 0 { Ok(()) } else { Err(Ended::Runs(format!("{failed} members weren't finished"))) }
+    if failed == 0 { Ok(()) } else { Err(ProgramFailure::Runs(format!("{failed} members weren't finished"))) }
 }
 
 /// Makes what is missing in the folder of a file's shards, and prints what is there then.
-fn made(path: &Path, scene: &SceneFile, drawn: &Drawn, local: &Local<'_>, output: &Output) -> Result<Report, Ended> {
-    let cannot = |error: &dyn std::fmt::Display| Ended::Output(format!("{}: {error}", path.display()));
+fn made(
+    path: &Path,
+    scene: &SceneFile,
+    drawn: &SceneEnsemble,
+    local: &Local<'_>,
+    output: &Output,
+) -> Result<Report, ProgramFailure> {
+    let cannot = |error: &dyn std::fmt::Display| ProgramFailure::Output(format!("{}: {error}", path.display()));
     if scene.events().next().is_some() {
         eprintln!("note: {}: events aren't looked for in an ensemble", path.display());
     }
@@ -62,7 +69,7 @@ fn made(path: &Path, scene: &SceneFile, drawn: &Drawn, local: &Local<'_>, output
     for fault in &report.faults {
         eprintln!("note: {fault}; it was made anew");
     }
-    let mut failures: Vec<Failed> = Vec::new();
+    let mut failures: Vec<MemberFailure> = Vec::new();
     if report.failed > 0 {
         for shard in store.shards(plan.fingerprint()).map_err(|error| cannot(&error))? {
             let shard = shard.map_err(|fault| cannot(&fault))?;
@@ -72,7 +79,7 @@ fn made(path: &Path, scene: &SceneFile, drawn: &Drawn, local: &Local<'_>, output
             }
         }
     }
-    for Failed { member, steps, failure } in &failures {
+    for MemberFailure { member, steps, failure } in &failures {
         eprintln!("note: member {member} failed after {steps} steps: {failure}");
     }
     print(&told_of(scene, drawn, &report, &folder.display().to_string()))?;
@@ -82,7 +89,7 @@ fn made(path: &Path, scene: &SceneFile, drawn: &Drawn, local: &Local<'_>, output
 type Member = AnyStepper<SO3, ()>;
 
 /// What is run: the file as a whole tells it from others.
-fn plan(scene: &SceneFile, drawn: &Drawn) -> liestep_ensemble::Ensemble<Member> {
+fn plan(scene: &SceneFile, drawn: &SceneEnsemble) -> liestep_ensemble::Ensemble<Member> {
     let own = drawn.clone();
     let make = move |member: &liestep_ensemble::Member<'_>| {
         let mut draw = |name: &str, spread: Spread| match spread {
@@ -118,7 +125,7 @@ fn plan(scene: &SceneFile, drawn: &Drawn) -> liestep_ensemble::Ensemble<Member> 
 
 /// A quaternion and its opposite are one attitude, and which of them a member ends with means nothing.
 fn has_moments(column: Column) -> bool {
-    column != Column::Quaternion
+    column.key() != "quaternion"
 }
 
 /// Each number of the scene's columns: its column, its place there and its name.
@@ -127,7 +134,7 @@ fn columns(scene: &SceneFile) -> impl Iterator<Item = (Column, usize, &'static s
     scene.columns().iter().copied().flat_map(numbers)
 }
 
-fn told_of(scene: &SceneFile, drawn: &Drawn, report: &Report, folder: &str) -> String {
+fn told_of(scene: &SceneFile, drawn: &SceneEnsemble, report: &Report, folder: &str) -> String {
     let mut text = format!(
         "{}\n  {} members drawn by the seed {}: {} finished, {} failed\n",
         scene.title(),
@@ -140,7 +147,7 @@ fn told_of(scene: &SceneFile, drawn: &Drawn, report: &Report, folder: &str) -> S
         let _ =
             writeln!(text, "  {:<20}{:>16}{:>16}{:>16}{:>16}", "at the end", "mean", "deviation", "least", "largest");
         for (_, _, name) in columns(scene) {
-            if let Some(Reduced::Moments(moments)) = report.reduced(name) {
+            if let Some(Summary::Moments(moments)) = report.reduced(name) {
                 let spread = moments.variance().sqrt();
                 let [mean, least, largest] = [moments.mean, moments.least, moments.largest];
                 let _ = writeln!(text, "  {name:<20}{mean:>16.6e}{spread:>16.6e}{least:>16.6e}{largest:>16.6e}");

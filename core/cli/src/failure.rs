@@ -3,6 +3,7 @@
 use std::fmt;
 use std::process::ExitCode;
 
+use liestep_plot::output::CannotWrite;
 use liestep_scene::{Kind, Mistake};
 
 /// Why there is no answer: one exit code each, as `liestep --help` lists them.
@@ -32,6 +33,12 @@ impl Failure {
 impl From<Mistake> for Failure {
     fn from(mistake: Mistake) -> Self {
         Self::Scene(mistake)
+    }
+}
+
+impl From<CannotWrite> for Failure {
+    fn from(cause: CannotWrite) -> Self {
+        Self::Output(cause.to_string())
     }
 }
 

@@ -10,19 +10,22 @@
 mod command;
 mod ensemble;
 mod failure;
+mod files;
 mod output;
 mod sweep;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::ArgMatches;
 use liestep::recording::{Column, Csv, Sink, SinkError};
 use liestep_arrow::ArrowStream;
-use liestep_scene::{Mistake, Scene, SceneFile, System};
+use liestep_plot::output::Output;
+use liestep_scene::{Mistake, Run, Scene, SceneFile, System, visible};
 
 use failure::Failure;
-use output::{Output, Progress, print};
+use files::{different_files, files, folder, name};
+use output::{Progress, print};
 
 fn main() -> ExitCode {
     // A wrong command line ends here, with its message and the code 2.
@@ -30,7 +33,7 @@ fn main() -> ExitCode {
     match answer(&matches) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("error: {failure}");
+            eprintln!("error: {}", visible(&failure.to_string()));
             failure.code()
         }
     }
@@ -49,33 +52,6 @@ fn answer(matches: &ArgMatches) -> Result<(), Failure> {
     }
 }
 
-/// The files that a command is given.
-fn files(given: &ArgMatches) -> Vec<&PathBuf> {
-    given.get_many("FILE").map(Iterator::collect).unwrap_or_default()
-}
-
-/// The same of a command that writes a file for each, by its name.
-pub(crate) fn different_files(given: &ArgMatches) -> Result<Vec<&PathBuf>, Failure> {
-    let paths = files(given);
-    for (number, path) in paths.iter().enumerate() {
-        if let Some(other) = paths[..number].iter().find(|other| other.file_stem() == path.file_stem()) {
-            let message = format!("{} and {} would be written to the same files", other.display(), path.display());
-            return Err(Failure::Command(message));
-        }
-    }
-    Ok(paths)
-}
-
-pub(crate) fn folder(given: &ArgMatches) -> Result<Output, Failure> {
-    let folder: PathBuf = given.get_one::<PathBuf>("out").cloned().unwrap_or_default();
-    Output::new(folder)
-}
-
-/// Reads all files, so a mistake in the last doesn't come after minutes.
-pub(crate) fn scenes(paths: &[&PathBuf]) -> Result<Vec<SceneFile>, Failure> {
-    paths.iter().map(|path| liestep_scene::read(path).map_err(Failure::from)).collect()
-}
-
 /// What a stream of Arrow IPC is called; `.arrow` is a file of it, which readers open in another way.
 const ARROW_STREAM: &str = "arrows";
 
@@ -90,7 +66,7 @@ fn run(given: &ArgMatches) -> Result<(), Failure> {
     let mut output = folder(given)?;
     for (number, (path, scene)) in (1..).zip(paths.iter().zip(&scenes)) {
         if paths.len() > 1 {
-            eprintln!("[{number}/{}] {}", paths.len(), path.display());
+            eprintln!("[{number}/{}] {}", paths.len(), visible(&path.display().to_string()));
         }
         match scene {
             Scene::Body(scene) => run_body(given, path, scene, &mut output)?,
@@ -101,21 +77,18 @@ fn run(given: &ArgMatches) -> Result<(), Failure> {
 }
 
 fn run_body(given: &ArgMatches, path: &Path, scene: &SceneFile, output: &mut Output) -> Result<(), Failure> {
-    let run = simulate(given, path, output, |told, table| match table {
-        Some(table) => scene.run_recorded(told, table),
-        None => scene.run_told(told),
-    })?;
+    let run = simulate(given, path, output, |progress, table| scene.run_with(progress, table))?;
     let picture = scene.picture(&run).map_err(|cause| Failure::Output(cause.to_string()))?;
     output.write(&name(path, "svg"), &picture)?;
     tables_have_grown(given, path, output)?;
     if given.get_flag("csv") && scene.events().next().is_some() {
-        let table = run.event_table(scene).map_err(|cause| Failure::Output(cause.to_string()))?;
+        let table = scene.event_table(&run).map_err(|cause| Failure::Output(cause.to_string()))?;
         output.write(&name(path, "events.csv"), &table)?;
     }
     if given.get_flag("html") {
         output.write(&name(path, "html"), &scene.page(&run))?;
     }
-    print(&run.summary(scene))?;
+    print(&scene.summary(&run))?;
     if let Some(sweep) = scene.sweep() {
         eprintln!("note: `liestep sweep` runs the {} scenes of the file's sweep", sweep.points().len());
     }
@@ -126,14 +99,11 @@ fn run_body(given: &ArgMatches, path: &Path, scene: &SceneFile, output: &mut Out
 }
 
 fn run_system(given: &ArgMatches, path: &Path, system: &System, output: &mut Output) -> Result<(), Failure> {
-    let run = simulate(given, path, output, |told, table| match table {
-        Some(table) => system.run_recorded(told, table),
-        None => system.run_told(told),
-    })?;
+    let run = simulate(given, path, output, |progress, table| system.run_with(progress, table))?;
     let picture = system.picture(&run).map_err(|cause| Failure::Output(cause.to_string()))?;
     output.write(&name(path, "svg"), &picture)?;
     tables_have_grown(given, path, output)?;
-    print(&run.summary(system))
+    print(&system.summary(&run))
 }
 
 /// The endings of the tables that are asked for.
@@ -143,25 +113,25 @@ fn tables(given: &ArgMatches) -> impl Iterator<Item = &'static str> {
 }
 
 fn tables_have_grown(given: &ArgMatches, path: &Path, output: &mut Output) -> Result<(), Failure> {
-    tables(given).try_for_each(|table| output.grown(&name(path, table)))
+    Ok(tables(given).try_for_each(|table| output.grown(&name(path, table)))?)
 }
 
 /// The run, with its tables as they grow.
-fn simulate<R>(
+fn simulate(
     given: &ArgMatches,
     path: &Path,
     output: &Output,
-    run: impl FnOnce(&mut dyn FnMut(f64), Option<&mut dyn Sink>) -> Result<R, Mistake>,
-) -> Result<R, Mistake> {
+    run: impl for<'a> FnOnce(&'a mut dyn FnMut(f64), Option<&'a mut dyn Sink>) -> Result<Run, Mistake>,
+) -> Result<Run, Mistake> {
     let mut progress = Progress::new();
-    let mut told = |share| progress.show(share);
+    let mut show = |share| progress.show(share);
     let sink = |kind: &'static str| -> Box<dyn Sink> {
         let file = output.grows(&name(path, kind));
         if kind == ARROW_STREAM { Box::new(ArrowStream::new(file)) } else { Box::new(Csv::new(file)) }
     };
     let mut tables = Tables(tables(given).map(sink).collect());
     let has_tables = !tables.0.is_empty();
-    run(&mut told, has_tables.then_some(&mut tables as &mut dyn Sink))
+    run(&mut show, has_tables.then_some(&mut tables as &mut dyn Sink))
 }
 
 /// Several tables of one run.
@@ -190,7 +160,7 @@ fn check(given: &ArgMatches) -> Result<(), Failure> {
             Ok(about) => print(&format!("{}: {about}\n", path.display()))?,
             Err(failure) => {
                 if let Some(before) = wrong.replace(failure) {
-                    eprintln!("error: {before}");
+                    eprintln!("error: {}", visible(&before.to_string()));
                 }
             }
         }
@@ -244,10 +214,4 @@ fn replay(given: &ArgMatches) -> Result<(), Failure> {
         output.write(&name(path, "html"), &recording.page())?;
     }
     print(&output.to_string())
-}
-
-/// The file's name with another ending.
-pub(crate) fn name(path: &Path, extension: &str) -> String {
-    let stem = path.file_stem().unwrap_or(path.as_os_str());
-    format!("{}.{extension}", stem.to_string_lossy())
 }

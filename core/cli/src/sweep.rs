@@ -10,8 +10,8 @@ use clap::ArgMatches;
 use liestep_scene::{Mistake, SceneFile, Sweep};
 
 use crate::failure::Failure;
+use crate::files::{different_files, folder, name, scenes};
 use crate::output::print;
-use crate::{different_files, folder, name, scenes};
 
 pub(crate) fn sweep(given: &ArgMatches) -> Result<(), Failure> {
     let paths = different_files(given)?;
@@ -50,7 +50,7 @@ pub(crate) fn sweep(given: &ArgMatches) -> Result<(), Failure> {
                 }
             }
             row.push('\n');
-            file.add(&row)
+            Ok(file.add(&row)?)
         })?;
         output.grown(&name)?;
     }

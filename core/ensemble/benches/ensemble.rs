@@ -2,9 +2,9 @@
 //!
 //! ```text
 //! cargo bench -p liestep-ensemble --bench steps                     with and without files, on one and two threads, in turns
-//! cargo bench -p liestep-ensemble --bench steps -- plain 4096       so many tops and no files: to count instructions
+//! cargo bench -p liestep-ensemble --bench steps -- plain 4096       that many tops and no files: to count instructions
 //! cargo bench -p liestep-ensemble --bench steps -- failing 4096     one of a hundred falls too fast at some time
-//! cargo bench -p liestep-ensemble --bench steps -- many 10000000    so many of ten steps into files, and the memory for it
+//! cargo bench -p liestep-ensemble --bench steps -- many 10000000    that many of ten steps into files, and the memory for it
 //! cargo bench -p liestep-ensemble --bench steps -- splittings       symmetric tops, beside heyoka where Python has it
 //! ```
 
@@ -25,14 +25,14 @@ type Top = Stepper<Sum<Sum<PrincipalBody, Gravity>, Torque>>;
 const STEPS: u64 = 1_000;
 const TURNS: usize = 5;
 
-/// Of so many one is spun up until it is too fast for the step, at some time of the run.
+/// One top in this number is spun up until it is too fast for the step, at some time of the run.
 fn tops(members: u64, steps: u64, failing: Option<u64>) -> Ensemble<Top> {
     let make = move |member: &Member<'_>| -> Result<_, Failure> {
         let moments = Vector3::new(3.0, member.normal("J_2", 3.1, 0.01), member.normal("J_3", 4.0, 0.01));
         let body = PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(moments)? };
         let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
         let fails = failing.is_some_and(|failing| member.number() % failing == failing / 2);
-        // A turn of 1.5 rad a step after so many steps.
+        // It turns by 1.5 rad a step after this number of steps.
         let size = if fails { 6e4 / member.uniform("end", 1.0..1e3) } else { 0.0 };
         let stepper = Stepper::new(body + gravity + Torque { torque: Vector3::z() * size }, 0.01)?;
         let tilt = member.uniform("tilt", 0.2..0.6);
@@ -61,7 +61,7 @@ fn compute(ensemble: &Ensemble<Top>, members: u64) -> (u64, usize) {
     ((members - count as u64) * STEPS + failures.into_iter().sum::<u64>(), count)
 }
 
-/// Into files, by so many threads; in seconds.
+/// Into files, by a number of threads; in seconds.
 fn written(ensemble: &Ensemble<Top>, threads: usize) -> Result<f64, Box<dyn Error>> {
     let folder = folder("written");
     let start = Instant::now();

@@ -168,7 +168,7 @@ fn compare<S: Scheme>(schemes: &[S], exact: &[End], best: &mut [(f64, &'static s
     Ok(())
 }
 
-/// The same by `with_heyoka.py`, where Python has it.
+/// The time of `with_heyoka.py`, where Python has heyoka.
 fn theirs(exact: &[End]) -> Result<Option<[f64; 2]>, Failure> {
     let mut python = Command::new("python3");
     python.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/benches/with_heyoka.py"));

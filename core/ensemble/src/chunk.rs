@@ -5,9 +5,9 @@ use core::ops::Range;
 use liestep::motion::Integrator;
 
 use crate::ensemble::{Ensemble, Run};
-use crate::failure::{Failed, Failure};
+use crate::failure::{Failure, MemberFailure};
 use crate::group::{Group, Start};
-use crate::reduce::Reduced;
+use crate::reduce::Summary;
 use crate::section::{Crossing, Watch};
 use crate::shard::{Crossings, Rows, Shard, Status};
 
@@ -28,9 +28,9 @@ impl<M: Integrator> Ensemble<M> {
     pub(crate) fn shard(&self, plan: u64, chunk: u64, is_stopped: &dyn Fn() -> bool) -> Option<Shard> {
         let members = self.range(chunk);
         let mut made =
-            Made { rows: self.no_rows(), finished: 0, failures: Vec::new(), reduced: self.nothing_reduced() };
+            Tally { rows: self.no_rows(), finished: 0, failures: Vec::new(), reduced: self.nothing_reduced() };
         // Those that can't be made are taken out first, so that they leave no lane empty.
-        let mut waiting: Vec<(u64, Option<Failed>)> = Vec::new();
+        let mut waiting: Vec<(u64, Option<MemberFailure>)> = Vec::new();
         let mut starts: Vec<Start<M>> = Vec::new();
         for member in members {
             if is_stopped() {
@@ -38,13 +38,13 @@ impl<M: Integrator> Ensemble<M> {
             }
             let start = (self.make)(&self.member(member));
             let impossible = start.map(|start| starts.push(start)).err();
-            waiting.push((member, impossible.map(|failure| Failed { member, steps: 0, failure })));
+            waiting.push((member, impossible.map(|failure| MemberFailure { member, steps: 0, failure })));
             if starts.len() == crate::group::LANES {
                 self.move_on(&mut waiting, &mut starts, &mut made, is_stopped)?;
             }
         }
         self.move_on(&mut waiting, &mut starts, &mut made, is_stopped)?;
-        let Made { rows, finished, failures, reduced } = made;
+        let Tally { rows, finished, failures, reduced } = made;
         Some(Shard { plan, chunk, names: self.names.clone(), rows, finished, failures, reduced })
     }
 
@@ -52,9 +52,9 @@ impl<M: Integrator> Ensemble<M> {
     /// it is told to stop.
     fn move_on(
         &self,
-        waiting: &mut Vec<(u64, Option<Failed>)>,
+        waiting: &mut Vec<(u64, Option<MemberFailure>)>,
         starts: &mut Vec<Start<M>>,
-        made: &mut Made,
+        made: &mut Tally,
         is_stopped: &dyn Fn() -> bool,
     ) -> Option<()> {
         let possible: Vec<u64> =
@@ -144,7 +144,7 @@ impl<M: Integrator> Ensemble<M> {
             self.keep_row(&run, made, status, &mut course.rows);
             course.end = match failure {
                 None => Ok(self.reductions.iter().map(|(_, _, value)| value(&run)).collect()),
-                Some(failure) => Err(Failed { member, steps: made, failure }),
+                Some(failure) => Err(MemberFailure { member, steps: made, failure }),
             };
         }
         Some(())
@@ -203,11 +203,11 @@ impl<M: Integrator> Ensemble<M> {
 }
 
 /// What there is of a chunk so far.
-struct Made {
+struct Tally {
     rows: Rows,
     finished: u64,
-    failures: Vec<Failed>,
-    reduced: Vec<Reduced>,
+    failures: Vec<MemberFailure>,
+    reduced: Vec<Summary>,
 }
 
 /// What there is of one member so far.
@@ -220,5 +220,5 @@ struct Course<M: Integrator> {
     /// Where it could be followed no further, as the function of a section had no value.
     lost: Option<(M::State, Failure)>,
     /// What is reduced of its end.
-    end: Result<Vec<f64>, Failed>,
+    end: Result<Vec<f64>, MemberFailure>,
 }

@@ -46,7 +46,7 @@ impl<'a> Local<'a> {
         Self { threads, share: 0, shares: 1, stop: None }
     }
 
-    /// Only this share of so many.
+    /// Only this one of the shares.
     ///
     /// # Panics
     ///

@@ -7,8 +7,8 @@ use simba::simd::AutoF64x8;
 
 use crate::digest::Digest;
 use crate::draw::Member;
-use crate::group::{Grouped, LANES, Start, in_lanes, one_by_one};
-use crate::reduce::Reduction;
+use crate::group::{Grouping, LANES, Start, in_lanes, one_by_one};
+use crate::reduce::{Reduction, Summary};
 use crate::section::Section;
 use crate::{Failure, Table};
 
@@ -42,7 +42,7 @@ pub struct Ensemble<M: Integrator> {
     pub(crate) every: Option<u64>,
     pub(crate) chunk: Option<u64>,
     pub(crate) make: Box<Make<M>>,
-    pub(crate) grouped: Grouped<M>,
+    pub(crate) grouped: Grouping<M>,
     takes_turns: bool,
     pub(crate) names: Vec<String>,
     pub(crate) columns: Vec<Box<Values<M>>>,
@@ -55,7 +55,7 @@ impl<M: Integrator> Ensemble<M> {
     /// step by step.
     pub const PIECE: u64 = 64;
 
-    /// So many members of so many steps, eight at a time in [lanes](liestep::numbers::Real#lanes).
+    /// An ensemble of a number of members with a number of steps each, eight members at a time in [lanes](liestep::numbers::Real#lanes).
     ///
     /// The name tells one ensemble from another in the files. `make` is a member's stepper and its start, or why there is
     /// none; it has to give the same each time. Who changes `make` takes another name or another folder: of what it
@@ -91,7 +91,7 @@ impl<M: Integrator> Ensemble<M> {
         Self::of(name, members, steps, Box::new(make), one_by_one::<M>, true)
     }
 
-    fn of(name: &str, members: u64, steps: u64, make: Box<Make<M>>, grouped: Grouped<M>, takes_turns: bool) -> Self {
+    fn of(name: &str, members: u64, steps: u64, make: Box<Make<M>>, grouped: Grouping<M>, takes_turns: bool) -> Self {
         Self {
             name: name.to_owned(),
             members,
@@ -124,7 +124,7 @@ impl<M: Integrator> Ensemble<M> {
         self
     }
 
-    /// Keeps the columns at the start, after each so many steps and at the end; if nothing is said, at the end only.
+    /// Keeps the columns at the start, after each multiple of a number of steps, and at the end; without it at the end only.
     ///
     /// A chunk is made in memory, all rows of its members: those of one member are bounded by this number only.
     ///
@@ -133,7 +133,7 @@ impl<M: Integrator> Ensemble<M> {
     /// Where the number is zero.
     #[must_use]
     pub fn every(mut self, steps: u64) -> Self {
-        assert!(steps > 0, "columns are kept after each so many steps, and that isn't none");
+        assert!(steps > 0, "columns are kept after a number of steps above zero");
         self.every = Some(steps);
         self
     }
@@ -238,7 +238,7 @@ impl<M: Integrator> Ensemble<M> {
         // What a core makes in a second of the steps of (3.13) in lanes, and of any one by one.
         const STEPS: [u64; 2] = [1 << 25, 1 << 22];
         const ROWS: u64 = 1 << 20;
-        // One by one, where there are so many members.
+        // Of members that are made one by one, where there are that many members.
         const CHUNKS: u64 = 64;
         self.chunk.unwrap_or_else(|| {
             let rows = self.every.map_or(1, |every| self.steps / every + 2);
@@ -300,6 +300,44 @@ impl<M: Integrator> Ensemble<M> {
             }
             Err(failure) => digest.text(&failure.to_line()),
         }
+    }
+}
+
+impl<M: Integrator> Ensemble<M> {
+    /// Keeps columns where members cross a surface.
+    ///
+    /// Members stay in lanes; each of their steps is looked at, and those that cross are made again alone. As in every run
+    /// with [events](liestep::with::Run::event) a member makes each step by itself. Rows are kept as without, and in each are the
+    /// crossings since the one before: how many these are nothing bounds but the motion, and a chunk is made in memory.
+    ///
+    /// # Panics
+    ///
+    /// As [`keep`](Self::keep) and [`reduce`](Self::reduce), for its columns and reductions, and for the 256th section.
+    #[must_use]
+    pub fn section(mut self, section: Section<M>) -> Self {
+        for (place, name) in section.names.iter().enumerate() {
+            self.assert_new_column(name);
+            assert!(!section.names[..place].contains(name), "there is a column `{name}` already");
+        }
+        for (place, (name, reduction, _)) in section.reductions.iter().enumerate() {
+            self.assert_new_reduction(name, reduction);
+            let is_new = section.reductions[..place].iter().all(|(own, ..)| own != name);
+            assert!(is_new, "there is a reduction `{name}` already");
+        }
+        self.sections.push(section);
+        assert!(self.sections.len() < 256, "an ensemble has less than 256 sections");
+        self
+    }
+
+    /// All reductions and their names: of ends, then of sections.
+    pub(crate) fn all_reductions(&self) -> impl Iterator<Item = (&String, &Reduction)> {
+        let of_ends = self.reductions.iter().map(|(name, reduction, _)| (name, reduction));
+        let of_sections = self.sections.iter().flat_map(|section| &section.reductions);
+        of_ends.chain(of_sections.map(|(name, reduction, _)| (name, reduction)))
+    }
+
+    pub(crate) fn nothing_reduced(&self) -> Vec<Summary> {
+        self.all_reductions().map(|(_, reduction)| reduction.begin()).collect()
     }
 }
 

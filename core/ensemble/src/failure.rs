@@ -23,7 +23,7 @@ pub enum Failure {
 
 /// A member that has failed, and the number of steps that it had made.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Failed {
+pub struct MemberFailure {
     /// Its number.
     pub member: u64,
     /// The steps that it made; none where it couldn't be made itself.

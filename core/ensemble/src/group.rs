@@ -15,7 +15,7 @@ pub(crate) trait Group<M: Integrator> {
 }
 
 /// Members as [`group`s](Group), in their order: as few as will do.
-pub(crate) type Grouped<M> = fn(&[Start<M>]) -> Vec<(Box<dyn Group<M>>, usize)>;
+pub(crate) type Grouping<M> = fn(&[Start<M>]) -> Vec<(Box<dyn Group<M>>, usize)>;
 
 /// A member's stepper and where it starts.
 pub(crate) type Start<M> = (M, <M as Integrator>::State);
@@ -54,13 +54,13 @@ pub(crate) fn in_lanes<M: Batchable<AutoF64x8> + 'static>(members: &[Start<M>]) 
 }
 
 /// One member.
-struct Alone<M: Integrator> {
+struct SingleMember<M: Integrator> {
     stepper: M,
     state: M::State,
     error: Option<StepError>,
 }
 
-impl<M: Integrator> Group<M> for Alone<M> {
+impl<M: Integrator> Group<M> for SingleMember<M> {
     /// As [`Batch::run`].
     fn run(&mut self, steps: u64) {
         if self.error.is_some() {
@@ -81,7 +81,7 @@ impl<M: Integrator> Group<M> for Alone<M> {
 /// Each by itself.
 pub(crate) fn one_by_one<M: Integrator + Clone + 'static>(members: &[Start<M>]) -> Vec<(Box<dyn Group<M>>, usize)> {
     let alone = |(stepper, state): &Start<M>| -> (Box<dyn Group<M>>, usize) {
-        (Box::new(Alone { stepper: stepper.clone(), state: state.clone(), error: None }), 1)
+        (Box::new(SingleMember { stepper: stepper.clone(), state: state.clone(), error: None }), 1)
     };
     members.iter().map(alone).collect()
 }

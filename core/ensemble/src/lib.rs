@@ -49,7 +49,7 @@
 //! | keep columns at the end, or at times | [`Ensemble::keep`], [`Ensemble::every`] |
 //! | keep columns where members cross a surface | [`Ensemble::section`] |
 //! | moments and histograms of the ends, or of crossings | [`Ensemble::reduce`], [`Section::reduce`] |
-//! | find out who failed, when and why | [`Store::shards`], [`Failed`] |
+//! | find out who failed, when and why | [`Store::shards`], [`MemberFailure`] |
 //! | read the files elsewhere | [`Store`] |
 //! | use several machines | [`engines`] |
 
@@ -71,8 +71,8 @@ mod table;
 pub use draw::Member;
 pub use engine::{Engine, Local, MakeChunk, share_of};
 pub use ensemble::{Ensemble, Run};
-pub use failure::{Failed, Failure};
-pub use reduce::{Histogram, Moments, Reduced, Reduction};
+pub use failure::{Failure, MemberFailure};
+pub use reduce::{Histogram, Moments, Reduction, Summary};
 pub use report::{Progress, Report};
 pub use section::Section;
 pub use shard::{Crossings, Rows, Shard, Status};

@@ -22,7 +22,7 @@ pub enum Reduction {
 
 /// Values reduced.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Reduced {
+pub enum Summary {
     /// By [`Reduction::Moments`].
     Moments(Moments),
     /// By [`Reduction::Histogram`].
@@ -141,10 +141,10 @@ impl Reduction {
     }
 
     /// Of no values.
-    pub(crate) fn begin(&self) -> Reduced {
+    pub(crate) fn begin(&self) -> Summary {
         match self {
-            Self::Moments => Reduced::Moments(Moments::NONE),
-            Self::Histogram { range, bins } => Reduced::Histogram(Histogram {
+            Self::Moments => Summary::Moments(Moments::NONE),
+            Self::Histogram { range, bins } => Summary::Histogram(Histogram {
                 range: range.clone(),
                 counts: vec![0; *bins],
                 below: 0,
@@ -155,7 +155,7 @@ impl Reduction {
     }
 }
 
-impl Reduced {
+impl Summary {
     pub(crate) fn add(&mut self, value: f64) {
         match self {
             Self::Moments(moments) => moments.add(value),
@@ -214,7 +214,7 @@ fn next<'a, T: FromStr>(words: &mut impl Iterator<Item = &'a str>) -> Option<T> 
 
 #[cfg(test)]
 mod tests {
-    use super::{Reduced, Reduction};
+    use super::{Reduction, Summary};
 
     #[test]
     fn moments_are_those_of_the_values() {
@@ -228,11 +228,11 @@ mod tests {
         }
         all.merge(&Reduction::Moments.begin());
         all.merge(&more);
-        let Reduced::Moments(moments) = &all else { panic!("they are moments") };
+        let Summary::Moments(moments) = &all else { panic!("they are moments") };
         assert_eq!((moments.count, moments.not_finite, moments.least, moments.largest), (5, 1, -1.0, 7.0));
         // Of 1, 2, 6, −1 and 7: the mean 3, and 4 + 1 + 9 + 16 + 16 about it.
         assert!((moments.mean - 3.0).abs() < 1e-15 && (moments.variance() - 46.0 / 4.0).abs() < 1e-14);
-        assert_eq!(Reduced::of_line(&all.to_line()), Some(all));
+        assert_eq!(Summary::of_line(&all.to_line()), Some(all));
     }
 
     /// Their squares aren't doubles.
@@ -241,7 +241,7 @@ mod tests {
         let mut all = Reduction::Moments.begin();
         all.add(f64::NAN);
         all.add(1e200);
-        let Reduced::Moments(moments) = &all else { panic!("they are moments") };
+        let Summary::Moments(moments) = &all else { panic!("they are moments") };
         assert_eq!((moments.count, moments.not_finite), (1, 1));
         assert_eq!([moments.mean, moments.squares].map(f64::to_bits), [1e200, 0.0].map(f64::to_bits));
         let mut merged = Reduction::Moments.begin();
@@ -256,7 +256,7 @@ mod tests {
             histogram.add(value);
         }
         assert_eq!(histogram.to_line(), "histogram -1.0 1.0 1 2 1 2 1 0 1");
-        assert_eq!(Reduced::of_line(&histogram.to_line()), Some(histogram.clone()));
+        assert_eq!(Summary::of_line(&histogram.to_line()), Some(histogram.clone()));
         histogram.merge(&histogram.clone());
         assert_eq!(histogram.to_line(), "histogram -1.0 1.0 2 4 2 4 2 0 2");
     }

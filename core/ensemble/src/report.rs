@@ -6,7 +6,7 @@ use liestep::motion::Integrator;
 
 use crate::engine::Engine;
 use crate::ensemble::Ensemble;
-use crate::reduce::Reduced;
+use crate::reduce::Summary;
 use crate::store::{Fault, Store, StoreError};
 
 /// What is there of an ensemble after a run.
@@ -25,13 +25,13 @@ pub struct Report {
     /// The files that were damaged. They are now called `….damaged`, and their chunks were made anew; but for those that
     /// have only been damaged since this run began, which are left to the next.
     pub faults: Vec<Fault>,
-    reductions: Vec<(String, Reduced)>,
+    reductions: Vec<(String, Summary)>,
 }
 
 impl Report {
     /// What a reduction has come to, over the chunks that are there.
     #[must_use]
-    pub fn reduced(&self, name: &str) -> Option<&Reduced> {
+    pub fn reduced(&self, name: &str) -> Option<&Summary> {
         self.reductions.iter().find(|(own, _)| own == name).map(|(_, reduced)| reduced)
     }
 }

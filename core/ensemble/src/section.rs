@@ -7,14 +7,13 @@ use liestep::recording::{Event, Run, RunError};
 
 use crate::Failure;
 use crate::digest::Digest;
-use crate::ensemble::Ensemble;
-use crate::reduce::{Reduced, Reduction};
+use crate::reduce::Reduction;
 
 type Value<M> = dyn Fn(&Moment<'_, M>) -> f64 + Send + Sync;
 type Values<M> = dyn Fn(&Moment<'_, M>, &mut Vec<f64>) + Send + Sync;
 type Find<M> = fn(&Section<M>, &M, &<M as Integrator>::State, u64) -> Result<Vec<Crossing>, RunError>;
 
-/// A surface, and what is kept where members cross it: [`Ensemble::section`] takes it.
+/// A surface, and what is kept where members cross it: [`Ensemble::section`](crate::Ensemble::section) takes it.
 ///
 /// The surface is where a function of the motion is zero; [`sections`](liestep::recording::sections) has some. Crossings lie
 /// between the ends of steps and are found as [`Run::event`] finds them, to the bit, with its contract of what isn't
@@ -198,44 +197,6 @@ fn failure(error: RunError) -> Failure {
     match error {
         RunError::Step { cause, .. } => Failure::Step(cause),
         other => Failure::Other(format!("at a section: {other}")),
-    }
-}
-
-impl<M: Integrator> Ensemble<M> {
-    /// Keeps columns where members cross a surface.
-    ///
-    /// Members stay in lanes; each of their steps is looked at, and those that cross are made again alone. As in every run
-    /// with [events](Run::event) a member makes each step by itself. Rows are kept as without, and in each are the
-    /// crossings since the one before: how many these are nothing bounds but the motion, and a chunk is made in memory.
-    ///
-    /// # Panics
-    ///
-    /// As [`keep`](Self::keep) and [`reduce`](Self::reduce), for its columns and reductions, and for the 256th section.
-    #[must_use]
-    pub fn section(mut self, section: Section<M>) -> Self {
-        for (place, name) in section.names.iter().enumerate() {
-            self.assert_new_column(name);
-            assert!(!section.names[..place].contains(name), "there is a column `{name}` already");
-        }
-        for (place, (name, reduction, _)) in section.reductions.iter().enumerate() {
-            self.assert_new_reduction(name, reduction);
-            let is_new = section.reductions[..place].iter().all(|(own, ..)| own != name);
-            assert!(is_new, "there is a reduction `{name}` already");
-        }
-        self.sections.push(section);
-        assert!(self.sections.len() < 256, "an ensemble has less than 256 sections");
-        self
-    }
-
-    /// All reductions and their names: of ends, then of sections.
-    pub(crate) fn all_reductions(&self) -> impl Iterator<Item = (&String, &Reduction)> {
-        let of_ends = self.reductions.iter().map(|(name, reduction, _)| (name, reduction));
-        let of_sections = self.sections.iter().flat_map(|section| &section.reductions);
-        of_ends.chain(of_sections.map(|(name, reduction, _)| (name, reduction)))
-    }
-
-    pub(crate) fn nothing_reduced(&self) -> Vec<Reduced> {
-        self.all_reductions().map(|(_, reduction)| reduction.begin()).collect()
     }
 }
 

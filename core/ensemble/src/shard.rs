@@ -12,8 +12,8 @@ use arrow_ipc::reader::FileReader;
 use arrow_ipc::writer::FileWriter;
 use arrow_schema::{ArrowError, DataType, Field, Schema};
 
-use crate::failure::{Failed, Failure};
-use crate::reduce::Reduced;
+use crate::failure::{Failure, MemberFailure};
+use crate::reduce::Summary;
 
 /// What has become of a member by the time of a row; in a file its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +71,7 @@ impl Crossings {
         self.columns.iter_mut().zip(values).for_each(|(column, value)| column.push(*value));
     }
 
-    /// For each of so many rows how many there are.
+    /// How many crossings each of the rows has.
     fn counts(&self, rows: usize) -> Vec<usize> {
         let mut counts = vec![0; rows];
         for row in &self.row {
@@ -82,7 +82,7 @@ impl Crossings {
         counts
     }
 
-    /// A column as lists, one for each of so many rows.
+    /// A column as lists, one for each row.
     fn lists(&self, column: &[f64], rows: usize) -> ArrayRef {
         let item = Field::new(ITEM, DataType::Float64, false);
         let mut lists = ListBuilder::new(Float64Builder::with_capacity(column.len())).with_field(item);
@@ -168,9 +168,9 @@ pub struct Shard {
     /// How many members came to their ends.
     pub finished: u64,
     /// Those that didn't.
-    pub failures: Vec<Failed>,
+    pub failures: Vec<MemberFailure>,
     /// What the ends were reduced to, in the order of the plan.
-    pub reduced: Vec<Reduced>,
+    pub reduced: Vec<Summary>,
 }
 
 /// The key of the schema's metadata that holds what isn't in rows. One only: the order of several isn't fixed.
@@ -275,9 +275,9 @@ impl Shard {
         ];
         lines.extend(self.reduced.iter().map(|reduced| format!("reduced {}", reduced.to_line())));
         lines.extend(
-            self.failures
-                .iter()
-                .map(|Failed { member, steps, failure }| format!("failed {member} {steps} {}", failure.to_line())),
+            self.failures.iter().map(|MemberFailure { member, steps, failure }| {
+                format!("failed {member} {steps} {}", failure.to_line())
+            }),
         );
         lines.join("\n")
     }
@@ -298,12 +298,12 @@ impl Shard {
         };
         for line in lines {
             match line.split_once(' ')? {
-                ("reduced", reduced) => shard.reduced.push(Reduced::of_line(reduced)?),
+                ("reduced", reduced) => shard.reduced.push(Summary::of_line(reduced)?),
                 ("failed", failed) => {
                     let (member, rest) = failed.split_once(' ')?;
                     let (steps, failure) = rest.split_once(' ')?;
                     let (member, steps) = (member.parse().ok()?, steps.parse().ok()?);
-                    shard.failures.push(Failed { member, steps, failure: Failure::of_line(failure)? });
+                    shard.failures.push(MemberFailure { member, steps, failure: Failure::of_line(failure)? });
                 }
                 _ => return None,
             }

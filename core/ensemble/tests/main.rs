@@ -17,8 +17,8 @@ use liestep::methods::CompositionScheme;
 use liestep::motion::{Integrator, Motion, StepReport};
 use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
 use liestep_ensemble::{
-    Engine, Ensemble, Failed, Failure, Fault, Histogram, Local, MakeChunk, Reduced, Reduction, Report, Shard, Status,
-    Store, StoreError, Table, share_of,
+    Engine, Ensemble, Failure, Fault, Histogram, Local, MakeChunk, MemberFailure, Reduction, Report, Shard, Status,
+    Store, StoreError, Summary, Table, share_of,
 };
 use nalgebra::Vector3;
 
@@ -54,7 +54,7 @@ fn files_and_sums_are_the_same_for_threads_shares_and_one_by_one() {
         assert_eq!(part.missing, missing, "share {share}");
     }
     assert!(contents(&folder.0) == expected, "shares");
-    // The same plan, without lanes.
+    // Without lanes the plan is the same.
     let folder = Folder::new("one-by-one");
     let alone = with_columns(Ensemble::one_by_one("tops", MEMBERS, STEPS, top));
     assert_eq!(run(&alone, &Local::threads(2), &folder), report);
@@ -97,7 +97,7 @@ fn members_are_what_they_are_alone() {
             Ok(made) => made,
             Err(failure) => {
                 expected.push((member, 0, Status::Impossible, [f64::NAN.to_bits(); 4]));
-                expected_failures.push(Failed { member, steps: 0, failure });
+                expected_failures.push(MemberFailure { member, steps: 0, failure });
                 continue;
             }
         };
@@ -120,7 +120,7 @@ fn members_are_what_they_are_alone() {
             None => keep(STEPS, Status::Finished, &state),
             Some((steps, error)) => {
                 keep(steps, Status::Stopped, &state);
-                expected_failures.push(Failed { member, steps, failure: error.into() });
+                expected_failures.push(MemberFailure { member, steps, failure: error.into() });
             }
         }
     }
@@ -130,7 +130,7 @@ fn members_are_what_they_are_alone() {
     assert_eq!(failures.len(), 14);
     assert!(matches!(
         failures[0],
-        Failed { member: 3, failure: Failure::Inertia(InertiaError::TriangleInequality { .. }), .. }
+        MemberFailure { member: 3, failure: Failure::Inertia(InertiaError::TriangleInequality { .. }), .. }
     ));
     assert!(failures[1..].iter().all(|failed| failed.member % 10 == 5
         && failed.steps > 0
@@ -153,13 +153,13 @@ fn sums_are_those_of_the_files() {
         assert_eq!(finished, ends.len() - last);
     }
     assert_eq!(ends.len() as u64, report.finished);
-    let Some(Reduced::Moments(moments)) = report.reduced("z") else { panic!("{report:?}") };
+    let Some(Summary::Moments(moments)) = report.reduced("z") else { panic!("{report:?}") };
     #[allow(clippy::cast_precision_loss)] // a hundred
     let mean = ends.iter().sum::<f64>() / ends.len() as f64;
     assert!((moments.mean - mean).abs() < 1e-14, "{moments:?}, {mean}");
     let squares: f64 = ends.iter().map(|z| (z - mean).powi(2)).sum();
     assert!((moments.squares - squares).abs() < 1e-13, "{moments:?}, {squares}");
-    let Some(Reduced::Histogram(Histogram { counts, below, above, .. })) = report.reduced("zs") else {
+    let Some(Summary::Histogram(Histogram { counts, below, above, .. })) = report.reduced("zs") else {
         panic!("{report:?}")
     };
     assert_eq!((counts.iter().sum::<u64>(), *below, *above), (report.finished, 0, 0));

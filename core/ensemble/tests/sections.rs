@@ -6,7 +6,9 @@ use std::sync::{Arc, Mutex};
 
 use liestep::motion::Moment;
 use liestep::recording::{Event, sections};
-use liestep_ensemble::{Ensemble, Failed, Failure, Local, Reduced, Reduction, Section, Shard, Status, Store, Table};
+use liestep_ensemble::{
+    Ensemble, Failure, Local, MemberFailure, Reduction, Section, Shard, Status, Store, Summary, Table,
+};
 use nalgebra::Vector3;
 
 use crate::common::{Folder, Top, contents, top, tops, with_columns};
@@ -118,7 +120,7 @@ fn files_with_sections_are_the_same_for_threads_shares_and_one_by_one() {
     assert!(table.column("spin").is_none() && table.column("energy").is_some());
     // The sums are those of the crossings in the files.
     let spins: Vec<f64> = shards.iter().flat_map(|shard| shard.rows.crossings[0].columns[1].clone()).collect();
-    let Some(Reduced::Moments(moments)) = report.reduced("spins") else { panic!("{report:?}") };
+    let Some(Summary::Moments(moments)) = report.reduced("spins") else { panic!("{report:?}") };
     let mean = spins.iter().sum::<f64>() / spins.len() as f64;
     assert_eq!(moments.count, spins.len() as u64);
     assert!((moments.mean - mean).abs() < 1e-13, "{moments:?}, {mean}");
@@ -153,7 +155,7 @@ fn a_function_without_a_value_stops_its_member() {
         Section::new(event, function).keep(["t"], |now| [now.time()])
     };
     let undisturbed = tops(12, STEPS).every(1).chunk(0, &|| false).unwrap();
-    // The same condition, of each member's steps.
+    // Each member's steps meet the same condition.
     let spins = Section::new(Event::crossing(), |_: &Moment<'_, Top>| 1.0);
     let watched = tops(12, STEPS).every(1).section(spins).keep(["w"], |run| [run.stepper.velocity(run.state).z]);
     let watched = watched.chunk(0, &|| false).unwrap().rows;
@@ -164,7 +166,7 @@ fn a_function_without_a_value_stops_its_member() {
     };
     for event in [Event::crossing(), Event::crossing().curvature(1.0)] {
         let shard = tops(12, STEPS).section(section(event)).chunk(0, &|| false).unwrap();
-        let is_lost = |failed: &&Failed| matches!(failed.failure, Failure::Other(_));
+        let is_lost = |failed: &&MemberFailure| matches!(failed.failure, Failure::Other(_));
         let lost: Vec<_> = shard.failures.iter().filter(is_lost).collect();
         assert!((1..10).contains(&lost.len()), "{lost:?}");
         assert_eq!(shard.finished + lost.len() as u64, undisturbed.finished, "{lost:?}");

@@ -7,7 +7,7 @@ use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, InertiaError, Rigi
 use liestep::methods::{ExactBody, ProcessedScheme, SplittingScheme, SymmetricBody};
 use liestep::motion::{Batch, Batchable, Integrator, Plan};
 use liestep::{SO3, SetupError, State, StepError, Stepper};
-use liestep_ensemble::{Ensemble, Failed, Failure, Member, Shard};
+use liestep_ensemble::{Ensemble, Failure, Member, MemberFailure, Shard};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use simba::simd::AutoF64x8;
 
@@ -65,7 +65,7 @@ fn same<S, P>(
     is_symmetric: bool,
     beside: f64,
     make: impl Fn(Top) -> Result<Stepper<S, P>, SetupError> + Copy + Send + Sync + 'static,
-) -> Vec<Failed>
+) -> Vec<MemberFailure>
 where
     S: RigidScene<Scalar = f64> + Clone + 'static,
     P: Plan<S> + Clone + 'static,
@@ -129,7 +129,7 @@ fn other_bodies_in_lanes_move_as_alone() {
     assert!(failures.iter().any(|failed| failed.member == 6) && failures.len() < 8, "{failures:?}");
 }
 
-/// The same body and weight, in other axes where the third moment is so.
+/// The body and its weight, in other axes where the third moment is so.
 fn turned(top: &Top, is_turned: bool) -> Result<(Sum<RigidBody, Gravity>, Inertia), SetupError> {
     let turn = if is_turned { Rotation3::new(Vector3::new(0.4, -0.3, 0.7)).into_inner() } else { Matrix3::identity() };
     let matrix = turn * top.inertia.as_matrix() * turn.transpose();
@@ -185,7 +185,7 @@ fn a_processed_body_of_another_step_has_lanes_of_its_own() {
 /// Unlike schemes share no lanes; spheres share them with other bodies.
 #[test]
 fn unlike_splittings_have_lanes_of_their_own() {
-    assert_same("two schemes by turns", true, 0.0, |top| {
+    assert_same("two alternating schemes", true, 0.0, |top| {
         let scheme =
             if top.inertia.as_matrix().m33 > 1.8 { SplittingScheme::STRANG } else { SplittingScheme::NYSTROM_6 };
         Stepper::split(top.scene, 0.05, SymmetricBody::new(&top.inertia)?, scheme)

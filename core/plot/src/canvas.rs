@@ -3,16 +3,28 @@
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::style::px;
-
 /// A rectangle of a drawing.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// Drawing into a string fails only for an impossible layout.
-pub type Drawn<T = ()> = Result<T, Box<dyn std::error::Error>>;
+pub type PlotResult<T = ()> = Result<T, Box<dyn std::error::Error>>;
 
-/// The SVG of a drawing of so many pixels.
-pub fn render((width, height): (u32, u32), draw: impl FnOnce(&Area<'_>) -> Drawn) -> Drawn<String> {
+/// The back end draws on whole units, so a pixel is made of two of them: lines stay smooth.
+pub(super) const UNITS: u32 = 2;
+
+/// Pixels in the units of the drawing.
+#[must_use]
+pub const fn px(pixels: u32) -> u32 {
+    pixels * UNITS
+}
+
+#[allow(clippy::cast_possible_wrap)] // sizes of a drawing are thousands at most
+pub(super) const fn at(pixels: u32) -> i32 {
+    px(pixels) as i32
+}
+
+/// The SVG of a drawing of this width and height in pixels.
+pub fn render((width, height): (u32, u32), draw: impl FnOnce(&Area<'_>) -> PlotResult) -> PlotResult<String> {
     let (wide, high) = (px(width), px(height));
     let mut svg = String::new();
     {

@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use plotters::prelude::*;
 
-use super::canvas::{Area, Drawn};
+use super::canvas::{Area, PlotResult, at, px};
 use super::envelope::{crest, envelope};
-use super::style::{GRID, INK, at, letters, px};
+use super::style::{GRID, INK, letters};
 use super::thin::thinned;
 
 /// A line of one colour.
@@ -57,7 +57,7 @@ impl<'a> Panel<'a> {
 
 impl Panel<'_> {
     /// Draws it into the area.
-    pub fn draw(&self, area: &Area<'_>) -> Drawn {
+    pub fn draw(&self, area: &Area<'_>) -> PlotResult {
         let (width, height) = area.dim_in_pixel();
         // Two pixels each: a line has about that width.
         let columns = width / px(2);

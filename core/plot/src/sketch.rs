@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::canvas::{Area, Drawn};
-use super::style::{at, letters, px};
+use super::canvas::{Area, PlotResult, at, px};
+use super::style::letters;
 
 /// A place to draw in, seen from outside and above.
 pub struct Sketch<'a, 'b> {
@@ -22,7 +22,7 @@ const AZIMUTH: f64 = 0.55;
 const ELEVATION: f64 = 0.35;
 
 impl<'a, 'b> Sketch<'a, 'b> {
-    /// With the origin at a share of the width and the height, and so many pixels for one of length.
+    /// With the origin at a share of the width and the height, and pixels for one of length.
     #[must_use]
     pub fn new(area: &'a Area<'b>, (across, down): (f64, f64), pixels: u32) -> Self {
         let (width, height) = area.dim_in_pixel();
@@ -46,27 +46,27 @@ impl<'a, 'b> Sketch<'a, 'b> {
     }
 
     /// A line through points; `width` in half pixels.
-    pub fn line(&self, points: &[Vector3<f64>], colour: RGBColor, width: u32) -> Drawn {
+    pub fn line(&self, points: &[Vector3<f64>], colour: RGBColor, width: u32) -> PlotResult {
         let places: Vec<_> = points.iter().map(|point| self.place(point)).collect();
         self.area.draw(&PathElement::new(places, colour.stroke_width(width)))?;
         Ok(())
     }
 
     /// A surface within a closed line.
-    pub fn surface(&self, points: &[Vector3<f64>], colour: RGBColor) -> Drawn {
+    pub fn surface(&self, points: &[Vector3<f64>], colour: RGBColor) -> PlotResult {
         let places: Vec<_> = points.iter().map(|point| self.place(point)).collect();
         self.area.draw(&Polygon::new(places, colour.filled()))?;
         Ok(())
     }
 
     /// A dot.
-    pub fn dot(&self, point: &Vector3<f64>, colour: RGBColor) -> Drawn {
+    pub fn dot(&self, point: &Vector3<f64>, colour: RGBColor) -> PlotResult {
         self.area.draw(&Circle::new(self.place(point), px(4), colour.filled()))?;
         Ok(())
     }
 
-    /// A name, so many pixels right of and below a point.
-    pub fn name(&self, name: &str, point: &Vector3<f64>, (right, below): (i32, i32), colour: RGBColor) -> Drawn {
+    /// A name, at a distance in pixels right of and below a point.
+    pub fn name(&self, name: &str, point: &Vector3<f64>, (right, below): (i32, i32), colour: RGBColor) -> PlotResult {
         let (x, y) = self.place(point);
         let text = letters(14, colour).pos(Pos::new(HPos::Center, VPos::Center));
         self.area.draw_text(name, &text, (x + right * at(1), y + below * at(1)))?;
@@ -74,7 +74,7 @@ impl<'a, 'b> Sketch<'a, 'b> {
     }
 
     /// A line with a head at its end.
-    pub fn arrow(&self, points: &[Vector3<f64>], colour: RGBColor, width: u32) -> Drawn {
+    pub fn arrow(&self, points: &[Vector3<f64>], colour: RGBColor, width: u32) -> PlotResult {
         self.line(points, colour, width)?;
         let places: Vec<_> = points.iter().map(|point| self.place(point)).collect();
         let (Some(end), Some(before)) = (places.last(), places.iter().rev().nth(1)) else { return Ok(()) };

@@ -3,8 +3,8 @@
 use nalgebra::Vector3;
 use plotters::prelude::*;
 
-use super::canvas::{Area, Drawn};
-use super::style::{INK, at, letters, px};
+use super::canvas::{Area, PlotResult, at, px};
+use super::style::{INK, letters};
 use super::thin::thinned;
 
 /// A path near the unit sphere.
@@ -30,7 +30,7 @@ const FAR_GRATICULE: RGBColor = RGBColor(228, 231, 235);
 const NEAR_GRATICULE: RGBColor = RGBColor(190, 196, 203);
 
 /// Draws the sphere and the path, its visible arcs over its hidden ones.
-pub fn sphere(area: &Area<'_>, path: &Path<'_>) -> Drawn {
+pub fn sphere(area: &Area<'_>, path: &Path<'_>) -> PlotResult {
     let view = View::of(area);
     area.draw_text(path.title, &letters(13, INK), (at(16), at(6)))?;
     area.draw(&Circle::new(view.centre, view.size, SEA.filled()))?;
@@ -125,7 +125,7 @@ impl View {
     }
 
     /// A direction, from the surface outwards.
-    fn axis(&self, area: &Area<'_>, (direction, name): (Vector3<f64>, &str)) -> Drawn {
+    fn axis(&self, area: &Area<'_>, (direction, name): (Vector3<f64>, &str)) -> PlotResult {
         let ends = [1.0, 1.3].map(|length| self.project(&(direction * length)));
         area.draw(&PathElement::new(ends.to_vec(), INK.stroke_width(px(1))))?;
         area.draw_text(name, &letters(12, INK), (ends[1].0 + at(5), ends[1].1 - at(6)))?;

@@ -3,7 +3,7 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::canvas::{Area, Drawn};
+use super::canvas::{Area, PlotResult, at, px};
 
 // Okabe and Ito's palette, which stays distinct under the common forms of colour blindness.
 /// The first of a series.
@@ -14,32 +14,18 @@ pub const ORANGE: RGBColor = RGBColor(230, 159, 0);
 pub const GREEN: RGBColor = RGBColor(0, 158, 115);
 /// A path.
 pub const PURPLE: RGBColor = RGBColor(204, 121, 167);
-/// For more lines than four.
+/// The fifth of a series.
 pub const SKY: RGBColor = RGBColor(86, 180, 233);
-/// The same.
+/// The sixth of a series.
 pub const VERMILION: RGBColor = RGBColor(213, 94, 0);
-/// The same, and the faintest.
+/// The last of a series, and the faintest.
 pub const YELLOW: RGBColor = RGBColor(240, 228, 66);
 
 /// Letters and axes.
 pub const INK: RGBColor = RGBColor(45, 45, 45);
 pub(super) const GRID: RGBColor = RGBColor(226, 226, 226);
 
-/// The back end draws on whole units, so a pixel is made of two of them: lines stay smooth.
-pub(super) const UNITS: u32 = 2;
-
-/// Pixels in the units of the drawing.
-#[must_use]
-pub const fn px(pixels: u32) -> u32 {
-    pixels * UNITS
-}
-
-#[allow(clippy::cast_possible_wrap)] // sizes of a drawing are thousands at most
-pub(super) const fn at(pixels: u32) -> i32 {
-    px(pixels) as i32
-}
-
-/// A text style of so many pixels.
+/// A text style with letters of a size in pixels.
 pub(super) fn letters(size: u32, colour: RGBColor) -> TextStyle<'static> {
     // The back end divides by this ratio.
     let size = f64::from(px(size)) * 1.24;
@@ -47,14 +33,14 @@ pub(super) fn letters(size: u32, colour: RGBColor) -> TextStyle<'static> {
 }
 
 /// A title and a fainter line below it.
-pub fn heading(area: &Area<'_>, title: &str, subtitle: &str) -> Drawn {
+pub fn heading(area: &Area<'_>, title: &str, subtitle: &str) -> PlotResult {
     area.draw_text(title, &letters(17, INK), (at(16), at(12)))?;
     area.draw_text(subtitle, &letters(12, RGBColor(100, 100, 100)), (at(16), at(36)))?;
     Ok(())
 }
 
 /// Names beside strokes of their colours, in one row that starts `left`, `top` pixels into the area.
-pub fn legend(area: &Area<'_>, (left, top): (u32, u32), entries: &[(&str, RGBColor)]) -> Drawn {
+pub fn legend(area: &Area<'_>, (left, top): (u32, u32), entries: &[(&str, RGBColor)]) -> PlotResult {
     let mut x = at(left);
     let y = at(top);
     for (name, colour) in entries {

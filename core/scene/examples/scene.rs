@@ -1,4 +1,4 @@
-//! Scene files from a program of one's own: each is read, simulated and drawn, and a page made that plays it.
+//! Scene files from a program: each is read, simulated and drawn, and a page made that plays it.
 //!
 //! ```text
 //! cargo run --release --example scene -- examples/scenes/sleeping-top.toml
@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for path in std::env::args_os().skip(1).map(PathBuf::from) {
         let scene = liestep_scene::read(&path)?;
         let run = scene.run()?;
-        println!("{}", run.summary(&scene));
+        println!("{}", scene.summary(&run));
         let result = folder.join(path.file_name().unwrap_or_default());
         fs::write(result.with_extension("svg"), scene.picture(&run)?)?;
         fs::write(result.with_extension("html"), scene.page(&run))?;

@@ -3,7 +3,7 @@
 use super::quantities::Series;
 use crate::args::Schedule;
 use crate::output::Output;
-use crate::plot::{Area, BLUE, Drawn, GREEN, Line, ORANGE, Panel, Vertical, heading, legend, px, render};
+use crate::plot::{Area, BLUE, GREEN, Line, ORANGE, Panel, PlotResult, Vertical, heading, legend, px, render};
 
 /// What the figures are of: the variational run first, then its rivals.
 pub struct Figures<'a> {
@@ -18,14 +18,14 @@ const DISTINCT: f64 = 200.0;
 
 impl Figures<'_> {
     /// Writes all of them.
-    pub fn write(&self, output: &mut Output) -> Drawn {
+    pub fn write(&self, output: &mut Output) -> PlotResult {
         output.write("energy.svg", &self.energy()?)?;
         output.write("spatial-momentum.svg", &self.momentum()?)?;
         output.write("body-rates.svg", &self.body_rates()?)?;
         Ok(())
     }
 
-    fn energy(&self) -> Drawn<String> {
+    fn energy(&self) -> PlotResult<String> {
         render((900, 700), |area| {
             let body = self.header(area, "Energy of a free body that flips")?;
             let (above, below) = body.split_vertically(px(308));
@@ -34,14 +34,14 @@ impl Figures<'_> {
         })
     }
 
-    fn momentum(&self) -> Drawn<String> {
+    fn momentum(&self) -> PlotResult<String> {
         render((900, 480), |area| {
             let body = self.header(area, "Spatial angular momentum of a free body: how far from its start")?;
             self.momentum_error("").draw(&body)
         })
     }
 
-    fn body_rates(&self) -> Drawn<String> {
+    fn body_rates(&self) -> PlotResult<String> {
         render((900, 900), |area| {
             let (header, body) = area.split_vertically(px(HEADER));
             heading(&header, "Body rates: the middle axis flips", &self.setting())?;
@@ -86,7 +86,7 @@ impl Figures<'_> {
     }
 
     /// Draws the title, the setting and the legend, and returns the rest.
-    pub fn header<'a>(&self, area: &Area<'a>, title: &str) -> Drawn<Area<'a>> {
+    pub fn header<'a>(&self, area: &Area<'a>, title: &str) -> PlotResult<Area<'a>> {
         let (header, body) = area.split_vertically(px(HEADER));
         heading(&header, title, &self.setting())?;
         let entries: Vec<_> = self.series.iter().map(|s| (s.name, s.colour)).collect();

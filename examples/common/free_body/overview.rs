@@ -1,14 +1,14 @@
 //! One figure with all of it, for a front page.
 
 use super::figures::Figures;
-use crate::plot::{Drawn, Path, px, render, sphere};
+use crate::plot::{Path, PlotResult, px, render, sphere};
 use crate::table::short;
 
 /// Two flips, s: more would cover their own path.
 const SHOWN: f64 = 19.0;
 
 /// The path of the middle axis on the sphere, the flips, and what is conserved.
-pub fn overview(figures: &Figures<'_>) -> Drawn<String> {
+pub fn overview(figures: &Figures<'_>) -> PlotResult<String> {
     let Some(ours) = figures.series.first() else {
         return Err("no runs to draw".into());
     };

@@ -3,7 +3,7 @@
 use nalgebra::{Rotation3, Vector3};
 use plotters::style::RGBColor;
 
-use crate::plot::{BLUE, Drawn, GREEN, INK, ORANGE, PURPLE, Sketch, arc, heading, px, render};
+use crate::plot::{BLUE, GREEN, INK, ORANGE, PURPLE, PlotResult, Sketch, arc, heading, px, render};
 
 const LIGHT: RGBColor = RGBColor(200, 205, 210);
 const PALE: RGBColor = RGBColor(226, 238, 246);
@@ -21,13 +21,13 @@ fn axes() -> [Vector3<f64>; 4] {
     [frame * Vector3::x(), frame * Vector3::y(), frame * Vector3::z(), body * Vector3::x()]
 }
 
-fn axis(sketch: &Sketch<'_, '_>, direction: &Vector3<f64>, name: &str, colour: RGBColor) -> Drawn {
+fn axis(sketch: &Sketch<'_, '_>, direction: &Vector3<f64>, name: &str, colour: RGBColor) -> PlotResult {
     sketch.arrow(&[Vector3::zeros(), *direction], colour, 3)?;
     sketch.name(name, &(direction * 1.09), (0, 0), colour)
 }
 
 /// Figure 3.1.
-pub fn euler_angles() -> Drawn<String> {
+pub fn euler_angles() -> PlotResult<String> {
     let [x, y, z, body] = axes();
     let [precession, nutation, spin] = ANGLES;
     let (origin, ex, ey, ez) = (Vector3::zeros(), Vector3::x(), Vector3::y(), Vector3::z());
@@ -65,7 +65,7 @@ pub fn euler_angles() -> Drawn<String> {
 }
 
 /// Figure 3.2.
-pub fn top() -> Drawn<String> {
+pub fn top() -> PlotResult<String> {
     let [x, y, z, _] = axes();
     let (origin, ez) = (Vector3::zeros(), Vector3::z());
     let node = ez.cross(&x);

@@ -6,7 +6,7 @@ use super::cases::{Case, Reading};
 use super::quantities::{Quantities, Series};
 use crate::args::{ENDING, Schedule};
 use crate::output::Output;
-use crate::plot::{Area, BLUE, Drawn, GREEN, Line, PURPLE, Panel, Path, Vertical, heading, legend, px};
+use crate::plot::{Area, BLUE, GREEN, Line, PURPLE, Panel, Path, PlotResult, Vertical, heading, legend, px};
 use crate::plot::{render, sphere};
 use crate::table::short;
 
@@ -26,7 +26,7 @@ const HEADER: u32 = 62;
 
 impl Figures<'_> {
     /// Writes all but the overview.
-    pub fn write(&self, output: &mut Output) -> Drawn {
+    pub fn write(&self, output: &mut Output) -> PlotResult {
         output.write("geometry.svg", &self.rigidity()?)?;
         output.write("vertical-momentum.svg", &self.momentum()?)?;
         output.write("energy.svg", &self.energy()?)?;
@@ -35,7 +35,7 @@ impl Figures<'_> {
     }
 
     /// Writes the path of the tip, figure 3.8, 3.9 or 3.10.
-    pub fn write_tip(&self, output: &mut Output) -> Drawn {
+    pub fn write_tip(&self, output: &mut Output) -> PlotResult {
         output.write(&format!("tip-{}.svg", self.case), &self.tip()?)?;
         Ok(())
     }
@@ -47,7 +47,7 @@ impl Figures<'_> {
     }
 
     /// The names and colours of all series.
-    pub fn legend(&self, area: &Area<'_>, place: (u32, u32)) -> Drawn {
+    pub fn legend(&self, area: &Area<'_>, place: (u32, u32)) -> PlotResult {
         let entries: Vec<_> = self.series.iter().map(|s| (s.name, s.colour)).collect();
         legend(area, place, &entries)
     }
@@ -114,23 +114,23 @@ impl Figures<'_> {
     }
 
     /// Figure 3.4.
-    pub fn rigidity(&self) -> Drawn<String> {
+    pub fn rigidity(&self) -> PlotResult<String> {
         self.single(&[self.geometry("")], "3.4", "How far R leaves the rotations")
     }
 
     /// Figure 3.5.
-    pub fn momentum(&self) -> Drawn<String> {
+    pub fn momentum(&self) -> PlotResult<String> {
         self.single(&[self.vertical_momentum("")], "3.5", "Angular momentum about the vertical")
     }
 
     /// Figure 3.6, (a) and (b).
-    pub fn energy(&self) -> Drawn<String> {
+    pub fn energy(&self) -> PlotResult<String> {
         let end = self.schedule.end();
         let [short, long] = [format!("(a) the first {} s", short(SHORT.min(end))), format!("(b) all {} s", short(end))];
         self.single(&[self.energy_short(&short), self.energy_long(&long)], "3.6", "Energy")
     }
 
-    fn single(&self, panels: &[Panel<'_>], figure: &str, title: &str) -> Drawn<String> {
+    fn single(&self, panels: &[Panel<'_>], figure: &str, title: &str) -> PlotResult<String> {
         let height = u32::try_from(panels.len()).unwrap_or(1) * 390 + HEADER + 16;
         render((900, height), |area| {
             let (header, body) = area.split_vertically(px(HEADER + 16));
@@ -144,7 +144,7 @@ impl Figures<'_> {
     }
 
     /// Figure 3.7.
-    pub fn body_rates(&self) -> Drawn<String> {
+    pub fn body_rates(&self) -> PlotResult<String> {
         let end = SHORT.min(self.schedule.end());
         let axes = [("Ω_X, rad/s", BLUE), ("Ω_Y, rad/s", PURPLE), ("Ω_Z, rad/s", GREEN)];
         let name = self.series.first().map_or("", |s| s.name);
@@ -164,7 +164,7 @@ impl Figures<'_> {
     }
 
     /// Figure 3.8, 3.9 or 3.10: the variational run beside the thesis' Runge–Kutta, which is the last of the series.
-    pub fn tip(&self) -> Drawn<String> {
+    pub fn tip(&self) -> PlotResult<String> {
         let (start, end) = self.late();
         let (Some(ours), Some(theirs)) = (self.series.first(), self.series.last()) else {
             return Err("no runs to draw".into());
@@ -195,7 +195,7 @@ impl Figures<'_> {
 }
 
 /// Figure 3.3: the variational paths of some runs, side by side, with a name for each.
-pub fn precessions(runs: &[(&str, &Series)], end: f64) -> Drawn<String> {
+pub fn precessions(runs: &[(&str, &Series)], end: f64) -> PlotResult<String> {
     render((1140, 460), |area| {
         let (header, body) = area.split_vertically(px(HEADER));
         let subtitle = format!("the path of the tip, the first {} s; after figure 3.3 of the thesis", short(end));

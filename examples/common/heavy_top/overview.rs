@@ -3,11 +3,11 @@
 use nalgebra::Vector3;
 
 use super::figures::Figures;
-use crate::plot::{Drawn, Path, heading, px, render, sphere};
+use crate::plot::{Path, PlotResult, heading, px, render, sphere};
 use crate::table::short;
 
 /// The path on the sphere, its last seconds, and what is conserved.
-pub fn overview(figures: &Figures<'_>) -> Drawn<String> {
+pub fn overview(figures: &Figures<'_>) -> PlotResult<String> {
     let (start, end) = figures.late();
     let Some(ours) = figures.series.first() else {
         return Err("no runs to draw".into());

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use nalgebra::Vector3;
 
-use liestep_scene::{Drawn, Mistake, Scene, Spread, System};
+use liestep::motion::Integrator as _;
+use liestep_scene::{Mistake, Scene, SceneEnsemble, Spread, System};
 
 /// Marsaglia's xorshift.
 struct Random(u64);
@@ -141,7 +142,7 @@ fn assert_placed(mistake: &Mistake, text: &str) {
 }
 
 /// Makes two members of an ensemble and some of their steps.
-fn make_members(drawn: &Drawn, text: &str, random: &mut Random) {
+fn make_members(drawn: &SceneEnsemble, text: &str, random: &mut Random) {
     for _ in 0..2 {
         #[allow(clippy::cast_precision_loss)] // a share
         let mut draw = |_: &str, spread: Spread| {
@@ -176,7 +177,8 @@ fn make_system(system: &System, text: &str, draws: bool) -> Result<(), Mistake> 
     Ok(())
 }
 
-/// Runs so many files, and returns how many of them ran, of how many members were made, and how many had several bodies.
+/// Runs this number of files, and returns how many of them ran, of how many members were made, and how many had several
+/// bodies.
 fn survive(cases: usize, seed: u64) -> [usize; 3] {
     let (seeds, mut random, mut ran, mut drawn, mut several) = (seeds(), Random(seed), 0, 0, 0);
     for case in 0..cases {
@@ -195,7 +197,8 @@ fn survive(cases: usize, seed: u64) -> [usize; 3] {
             }
             let run = scene.first(30)?;
             let are_finite = |sample: &liestep_scene::Sample| {
-                let vectors = [sample.momentum, sample.velocity, sample.spatial_momentum()];
+                let body = &sample.bodies[0];
+                let vectors = [body.momentum, body.velocity, sample.angular_momentum];
                 sample.energy.is_finite() && vectors.iter().flatten().all(|number| number.is_finite())
             };
             assert!(run.samples().iter().all(are_finite), "{case}: {text}");

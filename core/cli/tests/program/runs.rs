@@ -1,4 +1,4 @@
-//! What the runs of scene files give: what programs of one's own do, and every file of `examples/scenes`.
+//! What the runs of scene files give: what programs do, and every file of `examples/scenes`.
 
 use std::f64::consts::PI;
 use std::fs;
@@ -446,7 +446,7 @@ fn a_run_as_a_stream_of_arrow() {
     }
 }
 
-/// The top, so many steps long, with a row of each hundredth, by a program that gets no more memory than this.
+/// The top with a number of steps and a row of each hundredth, by a program that gets no more memory than this.
 #[cfg(target_os = "linux")]
 fn long_run(steps: u64) {
     let folder = folder("long_run");

@@ -1,4 +1,4 @@
-//! Files of several bodies: what programs of one's own do, to the bit; springs, loops, and mistakes with their places.
+//! Files of several bodies: what programs do, to the bit; springs, loops, and mistakes with their places.
 
 use std::fs;
 use std::process::Command;
@@ -9,7 +9,7 @@ use liestep::mechanics::Each;
 use liestep::methods::{BallJoint, Joined, Joint, Joints, PinJoint};
 use liestep::numbers::Bodies;
 use liestep::prelude::*;
-use liestep_scene::{BodySample, Scene, System, SystemSample};
+use liestep_scene::{BodySample, Sample, Scene, System};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
 use crate::called::{PROGRAM, TOP, folder, printed, simulate};
@@ -199,7 +199,7 @@ fn bodies_that_rest_change_nothing() {
             for (sample, expected) in run.samples().iter().zip(runs[0].samples()) {
                 let all = sample.bodies.len();
                 // What is behind the bodies of the file has no energy and no momentum either.
-                let of_all = |sample: &SystemSample| {
+                let of_all = |sample: &Sample| {
                     let momenta = [sample.momentum, sample.angular_momentum];
                     (sample.energy.to_bits(), sample.gap.to_bits(), momenta)
                 };

@@ -127,7 +127,7 @@ fn mistakes_have_places() {
     "#]].assert_eq(&messages.concat());
 }
 
-/// The same of kinetic terms, methods, outputs and sweeps.
+/// Mistakes in kinetic terms, methods, outputs and sweeps have places, too.
 #[test]
 fn mistakes_in_choices_have_places() {
     let folder = folder("choices");
@@ -276,6 +276,8 @@ fn command_lines() {
     refused(&["check", "no-such.toml"], 1, "no-such.toml: cannot be read");
     refused(&["sweep", "top.toml"], 1, "top.toml:1:1: has no table `sweep`");
     refused(&["replay", "top.toml"], 1, "top.toml:3:1: isn't a number");
+    fs::write(folder.join("top.arrows"), [0xff; 8]).unwrap();
+    refused(&["replay", "top.arrows"], 1, "top.arrows:1:1: is a table of Arrow IPC; pages are made of CSV");
     refused(&["derive", "no-such-effect"], 2, "'no-such-effect' is neither a scene file (*.toml) nor one of");
     refused(&["derive", "no-such.toml"], 1, "no-such.toml: cannot be read");
     refused(&["completions", "cmd"], 2, "invalid value 'cmd'");
@@ -328,5 +330,42 @@ fn what_is_printed() {
     assert_eq!(terms, ["principal-body", "gravity", "drag"]);
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         assert!(printed(&folder, &["completions", shell]).contains("replay"), "{shell}");
+    }
+}
+
+/// A duration that ends within a step is refused, with the nearest that doesn't; it was changed without a word.
+#[test]
+fn a_duration_is_a_whole_number_of_steps() {
+    let folder = folder("durations");
+    let check = |run: &str| {
+        let text = TOP.replace("step = \"10 ms\"\nduration = 2\n", run);
+        assert_ne!(text, TOP);
+        fs::write(folder.join("top.toml"), text).unwrap();
+        let output = Command::new(PROGRAM).current_dir(&folder).args(["check", "top.toml"]).output().unwrap();
+        (output.status.code(), String::from_utf8([output.stdout, output.stderr].concat()).unwrap())
+    };
+    let message = "error: top.toml:21:12: `duration` is 1 s, which isn't a whole number of steps of 0.3 s; the nearest is 0.9 s\n";
+    assert_eq!(check("step = 0.3\nduration = 1\n"), (Some(1), message.to_owned()));
+    let message = "error: top.toml:19:1: `duration` is 1 s, shorter than one `step` of 2 s\n";
+    assert_eq!(check("step = \"2 s\"\nduration = \"1 s\"\n"), (Some(1), message.to_owned()));
+    // Neither number is a double, and their ratio isn't ten.
+    let (code, about) = check("step = \"0.1 ms\"\nduration = 0.001\n");
+    assert!(code == Some(0) && about.ends_with("10 steps of 0.0001 s\n"), "{about}");
+}
+
+/// A terminal would obey what a file has in its keys and units, and what a file is called.
+#[test]
+fn control_characters_in_mistakes_are_written_out() {
+    let folder = folder("controls");
+    for (line, by) in [("[drag]", "\"dr\\u001bag\" = 1\n[drag]"), ("m = \"1 kg\"", "m = \"5 k\\u0007g\"")] {
+        let text = TOP.replace(line, by);
+        assert_ne!(text, TOP, "{line}");
+        fs::write(folder.join("top\u{1b}.toml"), text).unwrap();
+        for command in ["check", "run"] {
+            let output = Command::new(PROGRAM).current_dir(&folder).args([command, "top\u{1b}.toml"]).output().unwrap();
+            let message = String::from_utf8(output.stderr).unwrap();
+            assert!(output.status.code() == Some(1) && message.contains("top\\u{1b}.toml:"), "{message}");
+            assert!(message.chars().all(|letter| letter == '\n' || !letter.is_control()), "{message:?}");
+        }
     }
 }

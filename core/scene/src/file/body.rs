@@ -1,0 +1,157 @@
+//! The table of a body.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+use std::fmt;
+
+use liestep::NonstandardInertia;
+use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, InertiaError};
+use nalgebra::{Matrix3, Vector3};
+use serde::Deserialize;
+use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
+
+use crate::file::key::refuse;
+use crate::file::quantity;
+use crate::file::quantity::Triple;
+
+/// A body by one of its inertias, and how its kinetic energy is discretised.
+#[derive(Clone, Copy)]
+pub(crate) struct Body {
+    pub(crate) mass: Distribution,
+    pub(crate) kinetic: Kinetic,
+}
+
+/// In principal axes, or in any.
+#[derive(Clone, Copy)]
+pub(crate) enum Distribution {
+    Principal(DiagonalNonstandardInertia),
+    Full(NonstandardInertia),
+}
+
+/// The kinetic term, by the names of [`liestep::effects`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Kinetic {
+    /// (3.13).
+    #[default]
+    Rigid,
+    Cayley,
+    Geodesic,
+    FourthOrder,
+    SixthOrder,
+}
+
+impl Kinetic {
+    /// Of the step of a body that is free.
+    pub(crate) fn order(self) -> u32 {
+        match self {
+            Self::Rigid | Self::Cayley | Self::Geodesic => 2,
+            Self::FourthOrder => 4,
+            Self::SixthOrder => 6,
+        }
+    }
+}
+
+impl Body {
+    pub(crate) fn inertia(&self) -> Inertia {
+        match self.mass {
+            Distribution::Principal(J_d) => NonstandardInertia::from(J_d).to_inertia(),
+            Distribution::Full(J_d) => J_d.to_inertia(),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(field_identifier)]
+enum Key {
+    #[serde(rename = "moments")]
+    Moments,
+    #[serde(rename = "J_d")]
+    Nonstandard,
+    #[serde(rename = "J")]
+    Full,
+    #[serde(rename = "kinetic")]
+    Kinetic,
+}
+
+pub(crate) const INERTIA: &str =
+    "a body has one of `moments` (of inertia, principal), `J_d` (nonstandard, principal), `J` (of inertia, 3 by 3)";
+
+impl<'de> Deserialize<'de> for Body {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        source.deserialize_map(BodyTable)
+    }
+}
+
+struct BodyTable;
+
+/// By hand, so that a key too many is refused where it stands.
+impl<'de> Visitor<'de> for BodyTable {
+    type Value = Body;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a table with an inertia")
+    }
+
+    fn visit_map<M: MapAccess<'de>>(self, mut table: M) -> Result<Body, M::Error> {
+        let (mut mass, mut kinetic) = (None, Kinetic::default());
+        while let Some(key) = table.next_key()? {
+            match key {
+                Key::Kinetic => kinetic = table.next_value()?,
+                _ if mass.is_some() => return refuse(&mut table, INERTIA),
+                Key::Moments => mass = Some(Distribution::Principal(table.next_value::<Moments>()?.0)),
+                Key::Nonstandard => mass = Some(Distribution::Principal(table.next_value::<Nonstandard>()?.0)),
+                Key::Full => mass = Some(Distribution::Full(table.next_value::<Full>()?.0)),
+            }
+        }
+        let mass = mass.ok_or_else(|| M::Error::custom(INERTIA))?;
+        Ok(Body { mass, kinetic })
+    }
+}
+
+/// Moments of inertia that a body can have.
+#[derive(Deserialize)]
+#[serde(try_from = "Triple<quantity::Inertia>")]
+pub(crate) struct Moments(pub(crate) DiagonalNonstandardInertia);
+
+impl TryFrom<Triple<quantity::Inertia>> for Moments {
+    type Error = InertiaError;
+
+    fn try_from(moments: Triple<quantity::Inertia>) -> Result<Self, InertiaError> {
+        DiagonalNonstandardInertia::from_principal_moments(moments.value).map(Self)
+    }
+}
+
+/// Nonstandard moments that a body can have.
+#[derive(Deserialize)]
+#[serde(try_from = "Triple<quantity::Inertia>")]
+pub(crate) struct Nonstandard(pub(crate) DiagonalNonstandardInertia);
+
+impl TryFrom<Triple<quantity::Inertia>> for Nonstandard {
+    type Error = InertiaError;
+
+    fn try_from(diagonal: Triple<quantity::Inertia>) -> Result<Self, InertiaError> {
+        DiagonalNonstandardInertia::from_diagonal(diagonal.value).map(Self)
+    }
+}
+
+/// The tensor of inertia in any axes, by its rows.
+#[derive(Deserialize)]
+#[serde(try_from = "Vec<Triple<quantity::Inertia>>")]
+pub(crate) struct Full(pub(crate) NonstandardInertia);
+
+impl TryFrom<Vec<Triple<quantity::Inertia>>> for Full {
+    type Error = String;
+
+    fn try_from(rows: Vec<Triple<quantity::Inertia>>) -> Result<Self, String> {
+        let [x, y, z]: [Vector3<f64>; 3] = rows
+            .iter()
+            .map(|row| row.value)
+            .collect::<Vec<_>>()
+            .try_into()
+            .map_err(|_| format!("`J` has three rows of three components, found {} rows", rows.len()))?;
+        let J = Inertia::new(Matrix3::from_columns(&[x, y, z]).transpose()).map_err(|error| error.to_string())?;
+        Ok(Self(J.to_nonstandard()))
+    }
+}

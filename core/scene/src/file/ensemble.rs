@@ -1,0 +1,117 @@
+//! The scenes of an ensemble, and what doesn't go with one.
+
+use std::path::Path;
+
+use toml::Spanned;
+use toml::de::{DeArray, DeTable, DeValue};
+
+use crate::file::document::{Document, scene, set, span};
+use crate::file::draws::{Axis, DRAW, SceneEnsemble, Spread, parts};
+use crate::file::mistake::{Mistake, Wrong, place_of};
+use crate::file::scene::SceneFile;
+
+impl SceneEnsemble {
+    /// The scene of a member, with numbers that are drawn by their names: `gravity.m`, and of components
+    /// `start.velocity.1` to `start.velocity.3`.
+    ///
+    /// # Errors
+    ///
+    /// A [`Mistake`] where there is no such scene, as of a mass below zero.
+    pub fn member(&self, draw: &mut dyn FnMut(&str, Spread) -> f64) -> Result<SceneFile, Mistake> {
+        let mut document =
+            DeTable::parse(&self.text).map_err(|error| Mistake::of_toml(&self.path, &self.text, &error))?;
+        for table in ["sweep", "ensemble"] {
+            document.get_mut().remove(table);
+        }
+        self.with_values(document, draw)
+    }
+
+    fn with_values(
+        &self,
+        document: Document<'_>,
+        draw: &mut dyn FnMut(&str, Spread) -> f64,
+    ) -> Result<SceneFile, Mistake> {
+        let located = |(span, message): Wrong| Mistake::at(&self.path, place_of(&self.text, &span), message);
+        // As they could have been written.
+        let texts: Vec<Vec<String>> = self
+            .axes
+            .iter()
+            .map(|axis| axis.components.iter().map(|part| part.text(&self.text, draw)).collect())
+            .collect();
+        let span = document.span();
+        let mut varied = document.into_inner();
+        for (Axis { keys, components, is_list, span }, texts) in self.axes.iter().zip(&texts) {
+            let mut values = DeArray::new();
+            for (component, text) in components.iter().zip(texts) {
+                let value = DeValue::parse(text).map_err(|_| located((component.span(), DRAW.to_owned())))?;
+                values.push(Spanned::new(component.span(), value.into_inner()));
+            }
+            let value = match values.iter().next() {
+                Some(value) if !is_list => value.clone(),
+                _ => Spanned::new(span.clone(), DeValue::Array(values)),
+            };
+            set(&mut varied, keys, value).map_err(located)?;
+        }
+        scene(&self.path, &self.text, &Spanned::new(span, varied))
+    }
+}
+
+/// The ensemble that a table says; `scene` has what isn't drawn.
+pub(crate) fn read(
+    (path, text): (&Path, &str),
+    document: &Document<'_>,
+    table: &Spanned<DeValue<'_>>,
+    file: &SceneFile,
+) -> Result<SceneEnsemble, Mistake> {
+    let located = |(span, message): Wrong| Mistake::at(path, place_of(text, &span), message);
+    let mut ensemble = parts(table).map_err(located)?;
+    let wrong = |keys: &[&str], message: String| Err(located((span(document, keys), message)));
+    if file.asks_for_accuracy() {
+        return wrong(&["run", "accuracy"], "the members of an ensemble make the same steps: give a `step`".to_owned());
+    }
+    if let Some(column) = file.columns().iter().find(|column| column.is_since_the_start()) {
+        let names = column.names().join(", ");
+        return wrong(
+            &["output", "columns"],
+            format!("an ensemble keeps states, and `{names}` is measured from the start of a run; leave it out"),
+        );
+    }
+    let written = table.get_ref().as_table().and_then(|table| table.get("every"));
+    if let (Some(every), Some(steps), Some(value)) = (ensemble.every, file.steps(), written)
+        && every > steps
+    {
+        let message =
+            format!("a run has {steps} steps, so none is kept on its way; leave `every` out to keep the ends only");
+        return Err(located((value.span(), message)));
+    }
+    for Axis { keys, .. } in &ensemble.axes {
+        // What a file doesn't have isn't there because of a number that is drawn.
+        let [tables @ .., _] = keys.as_slice() else { continue };
+        let mut here = Some(document.get_ref());
+        for key in tables {
+            let name = key.get_ref();
+            let inner = here.and_then(|table| table.get(name.as_str()));
+            if inner.is_none() {
+                let message =
+                    format!("the file has no `{name}`, of which something could be drawn; write the table `[{name}]`");
+                return Err(located((key.span(), message)));
+            }
+            here = inner.and_then(|value| value.get_ref().as_table());
+        }
+    }
+    (ensemble.path, ensemble.text) = (path.to_owned(), text.to_owned());
+    // What is wrong with a unit or a key is wrong with every member.
+    for end in [true, false] {
+        ensemble.with_values(document.clone(), &mut |_, spread| match spread {
+            Spread::Uniform { from, to } => {
+                if end {
+                    from
+                } else {
+                    to
+                }
+            }
+            Spread::Normal { mean, .. } => mean,
+        })?;
+    }
+    Ok(ensemble)
+}

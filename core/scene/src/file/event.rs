@@ -1,0 +1,83 @@
+//! Events: the tables `[[event]]`.
+
+use serde::Deserialize;
+
+use crate::file::quantity::{Angle, Energy, Number, Positive, Rate, Scalar};
+
+/// What is looked for along a run: that a quantity passes a value.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(try_from = "EventTable")]
+pub(crate) struct Event {
+    pub(crate) name: String,
+    pub(crate) quantity: Quantity,
+    pub(crate) direction: Direction,
+    pub(crate) stops: bool,
+}
+
+/// A quantity and the value, in SI units.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Quantity {
+    Tilt(f64),
+    Speed(f64),
+    Energy(f64),
+    Velocity(usize, f64),
+    Axis(usize, f64),
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Direction {
+    Rising,
+    Falling,
+    #[default]
+    Either,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct EventTable {
+    name: String,
+    tilt: Option<Scalar<Angle>>,
+    speed: Option<Positive<Rate>>,
+    energy: Option<Scalar<Energy>>,
+    velocity_1: Option<Scalar<Rate>>,
+    velocity_2: Option<Scalar<Rate>>,
+    velocity_3: Option<Scalar<Rate>>,
+    axis_1: Option<Scalar<Number>>,
+    axis_2: Option<Scalar<Number>>,
+    axis_3: Option<Scalar<Number>>,
+    #[serde(default)]
+    direction: Direction,
+    #[serde(default)]
+    stop: bool,
+}
+
+impl TryFrom<EventTable> for Event {
+    type Error = &'static str;
+
+    fn try_from(table: EventTable) -> Result<Self, &'static str> {
+        let mut quantities = [
+            table.tilt.map(|angle| Quantity::Tilt(angle.value)),
+            table.speed.map(|speed| Quantity::Speed(speed.value)),
+            table.energy.map(|energy| Quantity::Energy(energy.value)),
+            table.velocity_1.map(|rate| Quantity::Velocity(0, rate.value)),
+            table.velocity_2.map(|rate| Quantity::Velocity(1, rate.value)),
+            table.velocity_3.map(|rate| Quantity::Velocity(2, rate.value)),
+            table.axis_1.map(|part| Quantity::Axis(0, part.value)),
+            table.axis_2.map(|part| Quantity::Axis(1, part.value)),
+            table.axis_3.map(|part| Quantity::Axis(2, part.value)),
+        ]
+        .into_iter()
+        .flatten();
+        let (Some(quantity), None) = (quantities.next(), quantities.next()) else {
+            return Err("an event has one of `tilt`, `speed`, `energy`, `velocity_1`, `velocity_2`, `velocity_3`, \
+                        `axis_1`, `axis_2`, `axis_3`");
+        };
+        // It is the name of a column.
+        let is_plain = |letter: char| letter.is_alphanumeric() || "_-".contains(letter);
+        if table.name.is_empty() || !table.name.chars().all(is_plain) {
+            return Err("the `name` of an event has letters, digits, - and _ only");
+        }
+        Ok(Self { name: table.name, quantity, direction: table.direction, stops: table.stop })
+    }
+}

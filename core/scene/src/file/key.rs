@@ -1,0 +1,20 @@
+//! A key that may not stand where it does: the error has its place, not that of its table.
+
+use std::convert::Infallible;
+
+use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess};
+
+struct Refusal(&'static str);
+
+impl<'de> DeserializeSeed<'de> for Refusal {
+    type Value = Infallible;
+
+    fn deserialize<D: Deserializer<'de>>(self, _: D) -> Result<Infallible, D::Error> {
+        Err(D::Error::custom(self.0))
+    }
+}
+
+/// Refuses the key that was read last, in the place of its value.
+pub(crate) fn refuse<'de, T, M: MapAccess<'de>>(table: &mut M, why: &'static str) -> Result<T, M::Error> {
+    match table.next_value_seed(Refusal(why))? {}
+}

@@ -1,0 +1,88 @@
+//! The methods that a file can name.
+
+use liestep::methods::{CompositionScheme, ProcessedScheme, SplittingScheme};
+use serde::Deserialize;
+
+/// How a scene is stepped, by the names of [`liestep::methods`].
+#[derive(Clone, Copy, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Method {
+    /// The scene's own step.
+    #[default]
+    Step,
+    Composition(Named<CompositionScheme>),
+    /// With the exact motion of the free body.
+    Splitting(Named<SplittingScheme>),
+    /// With the exact motion of the free body, inside of a processor.
+    Processed(Named<ProcessedScheme>),
+    /// By its number of stages.
+    Collocation(Stages),
+}
+
+impl Method {
+    /// In words, behind an article.
+    pub(crate) fn name(&self) -> &'static str {
+        match self {
+            Self::Step => "a step",
+            Self::Composition(_) => "a composition",
+            Self::Splitting(_) | Self::Processed(_) => "a splitting",
+            Self::Collocation(_) => "a collocation",
+        }
+    }
+}
+
+/// A scheme by its name.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(try_from = "String", bound = "S: Scheme")]
+pub(crate) struct Named<S: Scheme>(pub(crate) S);
+
+pub(crate) trait Scheme: Copy + 'static {
+    const ALL: &'static [Self];
+
+    fn called(&self) -> &'static str;
+}
+
+impl<S: Scheme> TryFrom<String> for Named<S> {
+    type Error = String;
+
+    fn try_from(wanted: String) -> Result<Self, String> {
+        S::ALL.iter().find(|scheme| scheme.called().eq_ignore_ascii_case(&wanted)).copied().map(Self).ok_or_else(|| {
+            let names: Vec<_> = S::ALL.iter().map(|scheme| format!("`{}`", scheme.called())).collect();
+            format!("no such scheme; there are {}", names.join(", "))
+        })
+    }
+}
+
+macro_rules! schemes {
+    ($($scheme:ident)+) => {$(
+        impl Scheme for $scheme {
+            const ALL: &'static [Self] = &$scheme::ALL;
+
+            fn called(&self) -> &'static str {
+                self.name()
+            }
+        }
+    )+};
+}
+
+schemes! { CompositionScheme SplittingScheme ProcessedScheme }
+
+/// Those that fill the machine's vectors.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(try_from = "i64")]
+pub(crate) enum Stages {
+    Four,
+    Eight,
+}
+
+impl TryFrom<i64> for Stages {
+    type Error = &'static str;
+
+    fn try_from(stages: i64) -> Result<Self, &'static str> {
+        match stages {
+            4 => Ok(Self::Four),
+            8 => Ok(Self::Eight),
+            _ => Err("a collocation has 4 or 8 stages"),
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! A mistake in a scene file, with its place.
+
+use std::fmt;
+use std::io;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::string::FromUtf8Error;
+
+/// What is wrong with a scene file or with its run, and where.
+///
+/// It is shown as `file:line:column: message`, with control characters [written out](visible).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mistake {
+    path: PathBuf,
+    /// Line and column, from one; none where there is no text.
+    place: Option<(usize, usize)>,
+    message: String,
+    kind: Kind,
+}
+
+/// What is wrong, and where in the text.
+pub(crate) type Wrong = (Range<usize>, String);
+
+/// Whose fault it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The file can't be read, or says nothing that could be run.
+    File,
+    /// The run of a scene that could be: a parameter out of range, a step that is too long.
+    Run,
+    /// The table of a run can't be written.
+    Table,
+}
+
+impl Mistake {
+    pub(crate) fn unreadable(path: &Path, cause: &io::Error) -> Self {
+        Self { path: path.to_owned(), place: None, message: format!("cannot be read: {cause}"), kind: Kind::File }
+    }
+
+    pub(crate) fn too_large(path: &Path, most: u64) -> Self {
+        let message = format!("has more than {most} bytes, so it is no scene");
+        Self { path: path.to_owned(), place: None, message, kind: Kind::File }
+    }
+
+    /// At the first byte that belongs to no character.
+    pub(crate) fn not_text(path: &Path, error: &FromUtf8Error) -> Self {
+        let (before, _) = error.as_bytes().split_at(error.utf8_error().valid_up_to());
+        let before = String::from_utf8_lossy(before);
+        Self::at(path, place(&before, before.len()), "isn't a text in UTF-8".to_owned())
+    }
+
+    pub(crate) fn of_toml(path: &Path, text: &str, error: &toml::de::Error) -> Self {
+        let start = error.span().map_or(0, |span| span.start);
+        Self::at(path, place(text, start), error.message().to_owned())
+    }
+
+    pub(crate) fn at(path: &Path, place: (usize, usize), message: String) -> Self {
+        Self { path: path.to_owned(), place: Some(place), message, kind: Kind::File }
+    }
+
+    pub(crate) fn of_run(path: &Path, place: (usize, usize), message: String) -> Self {
+        Self { kind: Kind::Run, ..Self::at(path, place, message) }
+    }
+
+    pub(crate) fn of_table(path: &Path, message: String) -> Self {
+        Self { path: path.to_owned(), place: None, message, kind: Kind::Table }
+    }
+
+    /// That a file has no table of this name.
+    #[must_use]
+    pub fn no_table(path: &Path, name: &str) -> Self {
+        Self::at(path, (1, 1), format!("has no table `{name}`"))
+    }
+
+    /// The line and the column in characters, from one; none for a file that has no text.
+    #[must_use]
+    pub fn place(&self) -> Option<(usize, usize)> {
+        self.place
+    }
+
+    /// Whether the file is wrong or its run.
+    #[must_use]
+    pub fn kind(&self) -> Kind {
+        self.kind
+    }
+}
+
+/// Line and column, in characters, of a byte.
+pub(crate) fn place(text: &str, offset: usize) -> (usize, usize) {
+    let before = text.get(..offset).unwrap_or(text);
+    let line = before.rsplit('\n').next().unwrap_or("");
+    (before.matches('\n').count() + 1, line.chars().count() + 1)
+}
+
+/// The place of the beginning of a stretch.
+pub(crate) fn place_of(text: &str, span: &Range<usize>) -> (usize, usize) {
+    place(text, span.start)
+}
+
+/// A text with its control characters written out, which a terminal would obey; tabs and ends of lines stay.
+#[must_use]
+pub fn visible(text: &str) -> String {
+    let mut all = String::with_capacity(text.len());
+    for character in text.chars() {
+        if character.is_control() && !"\n\t".contains(character) {
+            all.extend(character.escape_default());
+        } else {
+            all.push(character);
+        }
+    }
+    all
+}
+
+impl fmt::Display for Mistake {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:", visible(&self.path.display().to_string()))?;
+        if let Some((line, column)) = self.place {
+            write!(f, "{line}:{column}:")?;
+        }
+        write!(f, " {}", visible(&self.message))
+    }
+}
+
+impl std::error::Error for Mistake {}

@@ -1,0 +1,23 @@
+//! What files say: the tables of a document as types, and what is wrong in them with its place.
+
+pub(crate) mod arrangement;
+pub(crate) mod body;
+pub(crate) mod column;
+pub(crate) mod document;
+pub(crate) mod draws;
+pub(crate) mod effects;
+pub(crate) mod ensemble;
+pub(crate) mod event;
+pub(crate) mod key;
+pub(crate) mod method;
+pub(crate) mod mistake;
+pub(crate) mod picture;
+pub(crate) mod quantity;
+pub(crate) mod read;
+pub(crate) mod sample;
+pub(crate) mod scene;
+pub(crate) mod schedule;
+pub(crate) mod start;
+pub(crate) mod sweep;
+pub(crate) mod system;
+pub(crate) mod text;

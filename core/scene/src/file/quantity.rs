@@ -1,0 +1,156 @@
+//! Numbers with units: a number in SI units, or a text such as `"30 deg"`.
+
+use std::fmt;
+use std::marker::PhantomData;
+
+use nalgebra::Vector3;
+use serde::Deserialize;
+use serde::de::{Deserializer, Error, Visitor};
+
+/// A physical quantity.
+pub(crate) trait Quantity {
+    /// Its name with an article.
+    const NAME: &'static str;
+    /// Its units, each with its size in the first, which is that of SI.
+    const UNITS: &'static [(&'static str, f64)];
+}
+
+macro_rules! quantities {
+    ($($quantity:ident: $name:literal in $($unit:literal $size:expr),+;)+) => {$(
+        #[derive(Clone, Copy)]
+        pub(crate) struct $quantity;
+
+        impl Quantity for $quantity {
+            const NAME: &'static str = $name;
+            const UNITS: &'static [(&'static str, f64)] = &[$(($unit, $size)),+];
+        }
+    )+};
+}
+
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+quantities! {
+    Acceleration: "an acceleration" in "m/s²" 1.0;
+    Angle: "an angle" in "rad" 1.0, "deg" DEGREE, "°" DEGREE;
+    Damping: "a damping coefficient" in "N m s" 1.0;
+    Duration: "a time" in "s" 1.0, "ms" 1e-3, "min" 60.0, "h" 3600.0;
+    FluxDensity: "a magnetic flux density" in "T" 1.0, "mT" 1e-3, "µT" 1e-6, "nT" 1e-9;
+    Energy: "an energy" in "J" 1.0, "mJ" 1e-3, "kJ" 1e3;
+    Force: "a force" in "N" 1.0, "mN" 1e-3, "kN" 1e3;
+    GravitationalParameter: "a gravitational parameter" in "m³/s²" 1.0, "km³/s²" 1e9;
+    Inertia: "a moment of inertia" in "kg m²" 1.0, "g cm²" 1e-7;
+    Length: "a length" in "m" 1.0, "cm" 1e-2, "mm" 1e-3, "km" 1e3;
+    MagneticGain: "a magnetic gain" in "A m² s/T" 1.0;
+    MagneticMoment: "a magnetic moment" in "A m²" 1.0;
+    Mass: "a mass" in "kg" 1.0, "g" 1e-3, "t" 1e3;
+    Momentum: "an angular momentum" in "kg m²/s" 1.0;
+    Number: "a number" in "" 1.0;
+    Rate: "an angular velocity" in "rad/s" 1.0, "deg/s" DEGREE, "°/s" DEGREE, "rpm" 6.0 * DEGREE;
+    Speed: "a speed" in "m/s" 1.0, "km/h" 1.0 / 3.6, "km/s" 1e3;
+    Stiffness: "a stiffness" in "N/m" 1.0;
+    Torque: "a torque" in "N m" 1.0, "mN m" 1e-3, "µN m" 1e-6;
+}
+
+/// A finite number, in SI units.
+#[derive(Clone, Copy)]
+pub(crate) struct Scalar<Q> {
+    pub(crate) value: f64,
+    quantity: PhantomData<Q>,
+}
+
+/// A finite number above zero, in SI units.
+#[derive(Clone, Copy)]
+pub(crate) struct Positive<Q> {
+    pub(crate) value: f64,
+    quantity: PhantomData<Q>,
+}
+
+/// Three finite numbers, in SI units.
+#[derive(Clone, Copy)]
+pub(crate) struct Triple<Q> {
+    pub(crate) value: Vector3<f64>,
+    quantity: PhantomData<Q>,
+}
+
+/// Three numbers that aren't all zero, brought to length one.
+#[derive(Clone, Copy)]
+pub(crate) struct Direction(pub(crate) Vector3<f64>);
+
+impl<'de, Q: Quantity> Deserialize<'de> for Scalar<Q> {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        let value = source.deserialize_any(NumberOrText::<Q>(PhantomData))?;
+        Ok(Self { value, quantity: PhantomData })
+    }
+}
+
+impl<'de, Q: Quantity> Deserialize<'de> for Positive<Q> {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        let Scalar { value, quantity } = Scalar::<Q>::deserialize(source)?;
+        if value > 0.0 { Ok(Self { value, quantity }) } else { Err(D::Error::custom("must be above zero")) }
+    }
+}
+
+impl<'de, Q: Quantity> Deserialize<'de> for Triple<Q> {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        let components = Vec::<Scalar<Q>>::deserialize(source)?;
+        match components.as_slice() {
+            [x, y, z] => Ok(Self { value: Vector3::new(x.value, y.value, z.value), quantity: PhantomData }),
+            other => Err(D::Error::custom(format!("expected three components, found {}", other.len()))),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Direction {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        let vector = Triple::<Number>::deserialize(source)?.value;
+        // By the largest first, as squares may be too large or too small for a number.
+        let unit = (vector / vector.amax()).try_normalize(0.5).filter(|unit| unit.iter().all(|x| x.is_finite()));
+        unit.map(Self).ok_or_else(|| D::Error::custom("a direction can't be zero"))
+    }
+}
+
+struct NumberOrText<Q>(PhantomData<Q>);
+
+impl<Q: Quantity> Visitor<'_> for NumberOrText<Q> {
+    type Value = f64;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match Q::UNITS {
+            [(si, _), ..] if !si.is_empty() => write!(f, "{} in {si}, or a text with a unit", Q::NAME),
+            _ => f.write_str(Q::NAME),
+        }
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<f64, E> {
+        if value.is_finite() { Ok(value) } else { Err(E::custom("must be finite")) }
+    }
+
+    #[allow(clippy::cast_precision_loss)] // as if it had been written with a point
+    fn visit_i64<E: Error>(self, value: i64) -> Result<f64, E> {
+        Ok(value as f64)
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<f64, E> {
+        let (number, unit) = text.trim().split_once(' ').unwrap_or((text.trim(), ""));
+        let value: f64 = number.parse().map_err(|_| {
+            E::custom(format!("`{text}` doesn't begin with a number; a quantity is written as in \"30 deg\""))
+        })?;
+        let written = unit.trim().replace("^2", "²").replace("^3", "³");
+        match Q::UNITS.iter().find(|(name, _)| *name == written) {
+            Some((_, size)) => self.visit_f64(value * size),
+            None => Err(E::custom(format!("{} isn't in `{unit}` but in {}", Q::NAME, listed::<Q>()))),
+        }
+    }
+}
+
+fn listed<Q: Quantity>() -> String {
+    let names: Vec<_> = Q::UNITS.iter().map(|(name, _)| format!("`{name}`")).collect();
+    names.join(", ")
+}
+
+/// A number as a person would write it, without the rounding errors of the last digits.
+pub(crate) fn short(value: f64) -> String {
+    // Debug has an exponent where there would be many zeros, and a point where there needn't be one.
+    let text = format!("{:?}", format!("{value:.9e}").parse::<f64>().unwrap_or(value));
+    text.strip_suffix(".0").map(str::to_owned).unwrap_or(text)
+}

@@ -1,0 +1,90 @@
+//! Reading: a file's text, its tables, and then those that make several scenes of one.
+
+use std::path::Path;
+
+use toml::de::{DeTable, DeValue};
+
+use crate::file::document::{Document, scene, span};
+use crate::file::mistake::{Mistake, Wrong, place_of};
+use crate::file::scene::SceneFile;
+use crate::file::system::System;
+use crate::file::text::text;
+use crate::file::{ensemble, sweep};
+
+/// What a file has: one body, or several.
+#[derive(Clone)]
+pub enum Scene {
+    /// With a table `[body]`.
+    Body(Box<SceneFile>),
+    /// With tables `[[body]]`.
+    System(Box<System>),
+}
+
+impl Scene {
+    /// Reads a file.
+    ///
+    /// # Errors
+    ///
+    /// The first [`Mistake`] in it.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, Mistake> {
+        let path = path.as_ref();
+        Self::parse(path, &text(path)?)
+    }
+
+    /// The scene that a text describes; `path` is for messages.
+    ///
+    /// # Errors
+    ///
+    /// The first [`Mistake`] in it.
+    pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<Self, Mistake> {
+        let path = path.as_ref();
+        let document = DeTable::parse(text).map_err(|error| Mistake::of_toml(path, text, &error))?;
+        if has_several(document.get_ref()) {
+            System::parse(path, text).map(|system| Self::System(Box::new(system)))
+        } else {
+            parse(path, text).map(|scene| Self::Body(Box::new(scene)))
+        }
+    }
+}
+
+/// Reads the file of a scene with one body; [`Scene::read`] reads that of several, too.
+///
+/// # Errors
+///
+/// The first [`Mistake`] in it.
+pub fn read(path: impl AsRef<Path>) -> Result<SceneFile, Mistake> {
+    let path = path.as_ref();
+    parse(path, &text(path)?)
+}
+
+/// The scene that a text describes; `path` is for messages.
+///
+/// # Errors
+///
+/// The first [`Mistake`] in it.
+pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<SceneFile, Mistake> {
+    let path = path.as_ref();
+    let located = |(span, message): Wrong| Mistake::at(path, place_of(text, &span), message);
+    let mut document = DeTable::parse(text).map_err(|error| Mistake::of_toml(path, text, &error))?;
+    if has_several(document.get_ref()) {
+        let message =
+            "the file has several bodies, and sweeps, ensembles and pages are of one body: `liestep run` runs it"
+                .to_owned();
+        return Err(located((span(&document, &["body"]), message)));
+    }
+    let [sweep, drawn] = ["sweep", "ensemble"].map(|table| document.get_mut().remove(table));
+    let read = |document: &Document<'_>| scene(path, text, document);
+    let mut file = read(&document)?;
+    if let Some(table) = sweep {
+        file.sweep = Some(sweep::read(&document, &table, &located, &read)?);
+    }
+    if let Some(table) = drawn {
+        file.ensemble = Some(ensemble::read((path, text), &document, &table, &file)?);
+    }
+    Ok(file)
+}
+
+/// Whether its bodies are listed.
+fn has_several(document: &DeTable<'_>) -> bool {
+    document.get("body").is_some_and(|body| matches!(body.get_ref(), DeValue::Array(_)))
+}

@@ -1,0 +1,79 @@
+//! How long a run is, and by which steps: the table `run`.
+
+use serde::Deserialize;
+
+use crate::file::method::Method;
+use crate::file::quantity::{Duration, Number, Positive, short};
+
+/// The duration, the steps and the method.
+#[derive(Clone, Deserialize)]
+#[serde(try_from = "ScheduleTable")]
+pub(crate) struct Schedule {
+    /// s.
+    pub(crate) duration: f64,
+    pub(crate) pace: Pace,
+    pub(crate) method: Method,
+}
+
+/// What sets the step.
+#[derive(Clone, Copy)]
+pub(crate) enum Pace {
+    /// A whole number of equal steps, s.
+    Step { step: f64, steps: u32 },
+    /// The error at the end.
+    Accuracy(f64),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ScheduleTable {
+    step: Option<Positive<Duration>>,
+    accuracy: Option<Positive<Number>>,
+    duration: Positive<Duration>,
+    #[serde(default)]
+    method: Method,
+}
+
+/// A few minutes of stepping.
+const MOST_STEPS: f64 = 1e8;
+
+impl TryFrom<ScheduleTable> for Schedule {
+    type Error = String;
+
+    fn try_from(table: ScheduleTable) -> Result<Self, String> {
+        let duration = table.duration.value;
+        let pace = match (table.step, table.accuracy) {
+            (Some(step), _) => Pace::Step { step: step.value, steps: equal_steps(step.value, duration)? },
+            (None, Some(accuracy)) => Pace::Accuracy(accuracy.value),
+            (None, None) => return Err("a run has either a `step` or an `accuracy`".to_owned()),
+        };
+        Ok(Self { duration, pace, method: table.method })
+    }
+}
+
+/// How far a duration may be from a whole number of steps, as a share: the digits that messages have.
+const ROUNDING: f64 = 1e-9;
+
+/// The number of equal steps in a duration, s; of one that isn't [whole](fraction) it is the nearest.
+pub(crate) fn equal_steps(step: f64, duration: f64) -> Result<u32, String> {
+    if duration < step * (1.0 - ROUNDING) {
+        let (duration, step) = (short(duration), short(step));
+        return Err(format!("`duration` is {duration} s, shorter than one `step` of {step} s"));
+    }
+    let steps = (duration / step).round();
+    if steps > MOST_STEPS {
+        return Err(format!("`duration` makes {steps:.1e} steps, more than {MOST_STEPS:.0e}; take a larger `step`"));
+    }
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // between the two
+    let steps = steps as u32;
+    Ok(steps)
+}
+
+/// What is wrong with a duration that ends within a step, s.
+pub(crate) fn fraction(step: f64, duration: f64) -> Option<String> {
+    let whole = (duration / step).round() * step;
+    ((whole - duration).abs() > ROUNDING * duration).then(|| {
+        let [duration, step, whole] = [duration, step, whole].map(short);
+        format!("`duration` is {duration} s, which isn't a whole number of steps of {step} s; the nearest is {whole} s")
+    })
+}

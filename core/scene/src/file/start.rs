@@ -1,0 +1,123 @@
+//! Where a motion starts: attitude and velocity.
+
+use std::fmt;
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use serde::Deserialize;
+use serde::de::{Deserializer, Error, MapAccess, Visitor};
+
+use crate::file::key::refuse;
+use crate::file::quantity::{Angle, Number, Rate, Scalar, Triple};
+
+/// The attitude, body to space, and the body velocity in rad/s.
+#[derive(Clone, Copy)]
+pub(crate) struct Start {
+    pub(crate) attitude: UnitQuaternion<f64>,
+    pub(crate) velocity: Vector3<f64>,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(field_identifier, rename_all = "snake_case")]
+enum Key {
+    /// Precession, nutation and spin: the attitude `R_z(φ) R_x(θ) R_z(ψ)`.
+    Euler,
+    /// `[w, x, y, z]`, brought to length one.
+    Quaternion,
+    /// Body frame.
+    Velocity,
+    /// Rates of the Euler angles.
+    EulerRates,
+}
+
+#[derive(Clone, Copy)]
+enum Attitude {
+    Euler(Vector3<f64>),
+    Quaternion(UnitQuaternion<f64>),
+}
+
+#[derive(Clone, Copy)]
+enum Velocity {
+    Body(Vector3<f64>),
+    EulerRates(Vector3<f64>),
+}
+
+const ATTITUDE: &str = "an attitude is given by either `euler` or `quaternion`";
+const VELOCITY: &str = "a velocity is given by either `velocity` or `euler_rates`";
+const RATES: &str = "`euler_rates` need the attitude by `euler`";
+
+impl<'de> Deserialize<'de> for Start {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        source.deserialize_map(StartTable)
+    }
+}
+
+struct StartTable;
+
+/// By hand, so that a key that doesn't go with another is refused where it stands.
+impl<'de> Visitor<'de> for StartTable {
+    type Value = Start;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a table with an attitude and a velocity")
+    }
+
+    fn visit_map<M: MapAccess<'de>>(self, mut table: M) -> Result<Start, M::Error> {
+        let (mut attitude, mut velocity) = (None, None);
+        while let Some(key) = table.next_key()? {
+            match (key, attitude, velocity) {
+                (Key::Euler | Key::Quaternion, Some(_), _) => return refuse(&mut table, ATTITUDE),
+                (Key::Velocity | Key::EulerRates, _, Some(_)) => return refuse(&mut table, VELOCITY),
+                (Key::Quaternion, _, Some(Velocity::EulerRates(_)))
+                | (Key::EulerRates, Some(Attitude::Quaternion(_)), _) => return refuse(&mut table, RATES),
+                (Key::Euler, ..) => attitude = Some(Attitude::Euler(table.next_value::<Triple<Angle>>()?.value)),
+                (Key::Quaternion, ..) => attitude = Some(Attitude::Quaternion(table.next_value::<Components>()?.0)),
+                (Key::Velocity, ..) => velocity = Some(Velocity::Body(table.next_value::<Triple<Rate>>()?.value)),
+                (Key::EulerRates, ..) => {
+                    velocity = Some(Velocity::EulerRates(table.next_value::<Triple<Rate>>()?.value));
+                }
+            }
+        }
+        let attitude = attitude.ok_or_else(|| M::Error::custom(ATTITUDE))?;
+        let velocity = match (velocity.ok_or_else(|| M::Error::custom(VELOCITY))?, attitude) {
+            (Velocity::Body(velocity), _) => velocity,
+            (Velocity::EulerRates(rates), Attitude::Euler(angles)) => body_velocity(&angles, &rates),
+            (Velocity::EulerRates(_), Attitude::Quaternion(_)) => return Err(M::Error::custom(RATES)),
+        };
+        let attitude = match attitude {
+            Attitude::Euler(angles) => from_euler(&angles),
+            Attitude::Quaternion(quaternion) => quaternion,
+        };
+        Ok(Start { attitude, velocity })
+    }
+}
+
+/// A quaternion of any length.
+struct Components(UnitQuaternion<f64>);
+
+impl<'de> Deserialize<'de> for Components {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        let components = Vec::<Scalar<Number>>::deserialize(source)?;
+        let [w, x, y, z] = components.as_slice() else {
+            let message = format!("`quaternion` has the four components w, x, y, z, found {}", components.len());
+            return Err(D::Error::custom(message));
+        };
+        // By the largest first, as squares may be too large or too small for a number.
+        let quaternion = Quaternion::new(w.value, x.value, y.value, z.value);
+        let scaled = quaternion / quaternion.coords.amax();
+        let unit = UnitQuaternion::try_new(scaled, 0.5).filter(|unit| unit.coords.iter().all(|x| x.is_finite()));
+        unit.map(Self).ok_or_else(|| D::Error::custom("`quaternion` can't be zero"))
+    }
+}
+
+fn from_euler(angles: &Vector3<f64>) -> UnitQuaternion<f64> {
+    let about_z = |angle| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);
+    about_z(angles.x) * UnitQuaternion::from_axis_angle(&Vector3::x_axis(), angles.y) * about_z(angles.z)
+}
+
+/// `Ω = (RᵀR')^∨` of `R = R_z(φ) R_x(θ) R_z(ψ)`.
+fn body_velocity(angles: &Vector3<f64>, rates: &Vector3<f64>) -> Vector3<f64> {
+    let ((sin_tilt, cos_tilt), (sin_spin, cos_spin)) = (angles.y.sin_cos(), angles.z.sin_cos());
+    let along_nodes = Vector3::new(cos_spin, -sin_spin, 0.0);
+    let vertical = Vector3::new(sin_tilt * sin_spin, sin_tilt * cos_spin, cos_tilt);
+    vertical * rates.x + along_nodes * rates.y + Vector3::z() * rates.z
+}

@@ -1,0 +1,154 @@
+//! The scenes that differ in some of their values: the table `sweep`.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::file::document::{Document, set};
+use crate::file::draws::measured;
+use crate::file::mistake::{Mistake, Wrong};
+use crate::file::scene::{SceneFile, Sweep};
+
+/// A run each: more take their time, and another file.
+const MOST_POINTS: usize = 10_000;
+
+/// A key that is varied, and where its values are.
+struct Axis<'a> {
+    keys: Vec<Spanned<String>>,
+    values: Values<'a>,
+    span: Range<usize>,
+}
+
+enum Values<'a> {
+    Listed(Vec<Spanned<DeValue<'a>>>),
+    /// Of a range, each as it could have been written.
+    Spread(Vec<String>),
+}
+
+impl Axis<'_> {
+    fn len(&self) -> usize {
+        match &self.values {
+            Values::Listed(values) => values.len(),
+            Values::Spread(texts) => texts.len(),
+        }
+    }
+
+    fn value(&self, number: usize) -> Result<Spanned<DeValue<'_>>, Wrong> {
+        match &self.values {
+            Values::Listed(values) => Ok(values[number].clone()),
+            Values::Spread(texts) => {
+                let value = DeValue::parse(&texts[number]).map_err(|_| (self.span.clone(), RANGE.to_owned()))?;
+                Ok(Spanned::new(self.span.clone(), value.into_inner()))
+            }
+        }
+    }
+}
+
+/// The scenes that the table makes of a document; `located` finds the place of what is wrong, and `scene` reads one.
+pub(crate) fn read(
+    document: &Document<'_>,
+    table: &Spanned<DeValue<'_>>,
+    located: &dyn Fn(Wrong) -> Mistake,
+    scene: &dyn Fn(&Document<'_>) -> Result<SceneFile, Mistake>,
+) -> Result<Sweep, Mistake> {
+    let DeValue::Table(inner) = table.get_ref() else {
+        return Err(located((table.span(), "`sweep` is a table".to_owned())));
+    };
+    let mut axes = Vec::new();
+    collect(inner, &[], &mut axes).map_err(located)?;
+    axes.sort_by_key(|axis| axis.span.start);
+    let count = axes.iter().try_fold(1_usize, |count, axis| count.checked_mul(axis.len()));
+    let Some(count) = count.filter(|count| *count <= MOST_POINTS) else {
+        return Err(located((table.span(), format!("`sweep` makes more than {MOST_POINTS} scenes"))));
+    };
+    if axes.is_empty() {
+        return Err(located((table.span(), "`sweep` has no key to vary".to_owned())));
+    }
+    let mut points = Vec::with_capacity(count);
+    for number in 0..count {
+        let mut varied = document.clone();
+        let (mut values, mut rest) = (Vec::new(), number);
+        for axis in axes.iter().rev() {
+            let value = axis.value(rest % axis.len()).map_err(located)?;
+            rest /= axis.len();
+            values.push(shown(value.get_ref()));
+            set(varied.get_mut(), &axis.keys, value).map_err(located)?;
+        }
+        values.reverse();
+        points.push((values, scene(&varied)?));
+    }
+    let name = |axis: &Axis<'_>| axis.keys.iter().map(|key| key.get_ref().as_str()).collect::<Vec<_>>().join(".");
+    Ok(Sweep { names: axes.iter().map(name).collect(), points })
+}
+
+/// Tables are ways, lists and ranges their ends.
+fn collect<'a>(table: &DeTable<'a>, way: &[Spanned<String>], axes: &mut Vec<Axis<'a>>) -> Result<(), Wrong> {
+    for (key, value) in table {
+        let key = Spanned::new(key.span(), key.get_ref().to_string());
+        let keys: Vec<_> = way.iter().cloned().chain([key]).collect();
+        match value.get_ref() {
+            DeValue::Array(values) if values.is_empty() => {
+                return Err((value.span(), "a sweep has a value at least".to_owned()));
+            }
+            DeValue::Array(values) => {
+                let values = Values::Listed(values.iter().cloned().collect());
+                axes.push(Axis { keys, values, span: value.span() });
+            }
+            DeValue::Table(range) if range.contains_key("from") => {
+                let values = Values::Spread(spread(range, &value.span())?);
+                axes.push(Axis { keys, values, span: value.span() });
+            }
+            DeValue::Table(inner) => collect(inner, &keys, axes)?,
+            _ => {
+                return Err((
+                    value.span(),
+                    "a sweep is a list of values, or `{ from = …, to = …, count = … }`".to_owned(),
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+const RANGE: &str =
+    "a range is `{ from = …, to = …, count = … }`: two numbers, or texts with the same unit, and how many";
+
+/// Equal distances, both ends included.
+fn spread(range: &DeTable<'_>, span: &Range<usize>) -> Result<Vec<String>, Wrong> {
+    let wrong = || (span.clone(), RANGE.to_owned());
+    let get = |key| range.get(key).map(Spanned::get_ref).filter(|_| range.len() == 3).ok_or_else(wrong);
+    let end = |key| measured(get(key)?).ok_or_else(wrong);
+    let ((from, unit), (to, other)) = (end("from")?, end("to")?);
+    let count = get("count")?.as_integer().and_then(|count| count.as_str().parse::<u32>().ok()).ok_or_else(wrong)?;
+    if unit != other || count < 2 {
+        return Err(wrong());
+    }
+    if count as usize > MOST_POINTS {
+        return Err((span.clone(), format!("a range has at most {MOST_POINTS} values")));
+    }
+    let text = |k: u32| {
+        let part = f64::from(k) / f64::from(count - 1);
+        let number = from * (1.0 - part) + to * part;
+        if unit.is_empty() { format!("{number:?}") } else { format!("\"{number:?} {unit}\"") }
+    };
+    Ok((0..count).map(text).collect())
+}
+
+/// As it is written; lists by spaces, as commas part columns.
+fn shown(value: &DeValue<'_>) -> String {
+    match value {
+        DeValue::String(text) => {
+            text.chars().filter(|letter| !letter.is_control() && !",\"".contains(*letter)).collect()
+        }
+        DeValue::Integer(number) => number.to_string(),
+        DeValue::Float(number) => number.to_string(),
+        DeValue::Boolean(truth) => truth.to_string(),
+        DeValue::Datetime(time) => time.to_string(),
+        DeValue::Array(values) => values.iter().map(|value| shown(value.get_ref())).collect::<Vec<_>>().join(" "),
+        DeValue::Table(table) => {
+            let entries = table.iter().map(|(key, value)| format!("{} {}", key.get_ref(), shown(value.get_ref())));
+            entries.collect::<Vec<_>>().join(" ")
+        }
+    }
+}

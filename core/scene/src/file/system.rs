@@ -1,0 +1,378 @@
+//! What the file of a system says.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use liestep::NonstandardInertia;
+use liestep::methods::{BallJoint, Joint, PinJoint};
+use liestep::with;
+use nalgebra::Vector3;
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::file::arrangement::{Arrangement, BODIES, LOOPS};
+use crate::file::body::{Full, INERTIA, Moments, Nonstandard};
+use crate::file::column::{Column, Output};
+use crate::file::mistake::{Mistake, Wrong, place_of};
+use crate::file::picture::PlanePicture;
+use crate::file::quantity::{
+    Acceleration, Direction, Duration, Length, Mass, Positive, Scalar, Speed, Stiffness, Triple, short,
+};
+use crate::file::schedule::{equal_steps, fraction};
+use crate::file::start::Start;
+use crate::file::text::title;
+
+/// The most springs of a file.
+pub(crate) const SPRINGS: usize = 16;
+
+/// Several bodies, with joints and springs between them.
+///
+/// | table | keys |
+/// |---|---|
+/// | | `title` |
+/// | `[[body]]`, up to eight | `name`; `m`, kg; one of `moments`, `J_d`, `J`, kg m², about the centre of mass, in the body's frame; `position` of that in space, m, and how fast it is `moving` there, m/s; `start` as of [one body](crate::SceneFile) |
+/// | `gravity` | `g`, m/s²; `up`, in space |
+/// | `[[joint]]`, up to four more than make a tree | `kind`: `ball` or `pin`; `bodies`: two names, of which one may be `space`; `at`: the point of each, m, from its centre of mass in its own frame, of `space` from the origin; `axes` of a pin: that of each, in the same frames |
+/// | `[[spring]]`, up to sixteen | `bodies`, `at` as of joints; `k`, N/m, and `length`, m, at rest |
+/// | `run` | `duration`; `step`, of which that is a whole number; `nearest`: whether joints that are open at the start are closed, with the velocities that keep them so |
+/// | `picture` | `plane`: `xy`, `xz`, `yz` |
+/// | `output` | `columns` of a table behind the time, see [`Column`]; `every`: the number of steps from row to row |
+///
+/// Joints may form loops, up to four of them. Everything else that several bodies can have is for programs: [`liestep::Stepper::jointed`].
+#[derive(Clone)]
+pub struct System {
+    pub(crate) title: String,
+    pub(crate) bodies: Vec<SystemBody>,
+    pub(crate) gravity: Option<(f64, Vector3<f64>)>,
+    pub(crate) joints: Vec<Between<Joint>>,
+    pub(crate) springs: Vec<Between<Spring>>,
+    pub(crate) step: f64,
+    pub(crate) steps: u32,
+    pub(crate) nearest: bool,
+    pub(crate) picture: PlanePicture,
+    pub(crate) output: Output<true>,
+    pub(crate) path: PathBuf,
+    pub(crate) places: SystemPlaces,
+    pub(crate) arrangement: Arrangement,
+}
+
+/// Lines and columns of tables, from one.
+#[derive(Clone)]
+pub(crate) struct SystemPlaces {
+    pub(crate) bodies: Vec<(usize, usize)>,
+    pub(crate) joints: Vec<(usize, usize)>,
+    pub(crate) pace: (usize, usize),
+}
+
+#[derive(Clone)]
+pub(crate) struct SystemBody {
+    pub(crate) name: String,
+    pub(crate) m: f64,
+    pub(crate) J_d: NonstandardInertia,
+    pub(crate) position: Vector3<f64>,
+    pub(crate) moving: Vector3<f64>,
+    pub(crate) start: Start,
+}
+
+/// Something between two bodies, by their numbers; `None` is space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Between<T> {
+    pub(crate) bodies: [Option<usize>; 2],
+    pub(crate) of: T,
+}
+
+/// Between a point of each, from its centre of mass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Spring {
+    pub(crate) k: f64,
+    pub(crate) length: f64,
+    pub(crate) at: [Vector3<f64>; 2],
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SystemTable {
+    #[serde(deserialize_with = "title")]
+    title: String,
+    body: Vec<Spanned<BodyTable>>,
+    gravity: Option<FieldTable>,
+    #[serde(default)]
+    joint: Vec<Spanned<JointTable>>,
+    #[serde(default)]
+    spring: Vec<Spanned<SpringTable>>,
+    run: RunTable,
+    #[serde(default)]
+    picture: PlanePicture,
+    #[serde(default)]
+    output: Output<true>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BodyTable {
+    name: Spanned<String>,
+    m: Positive<Mass>,
+    moments: Option<Moments>,
+    J_d: Option<Nonstandard>,
+    J: Option<Full>,
+    position: Triple<Length>,
+    moving: Option<Triple<Speed>>,
+    start: Start,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FieldTable {
+    g: Scalar<Acceleration>,
+    up: Direction,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Kind {
+    Ball,
+    Pin,
+}
+
+type Names = Spanned<[Spanned<String>; 2]>;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct JointTable {
+    kind: Spanned<Kind>,
+    bodies: Names,
+    at: [Triple<Length>; 2],
+    axes: Option<Spanned<[Direction; 2]>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SpringTable {
+    bodies: Names,
+    at: [Triple<Length>; 2],
+    k: Positive<Stiffness>,
+    length: Scalar<Length>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RunTable {
+    step: Spanned<Positive<Duration>>,
+    duration: Spanned<Positive<Duration>>,
+    #[serde(default)]
+    nearest: bool,
+}
+
+impl System {
+    /// The system that a text describes; `path` is for messages.
+    ///
+    /// # Errors
+    ///
+    /// The first [`Mistake`] in it.
+    pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<Self, Mistake> {
+        let path = path.as_ref();
+        let table: SystemTable = toml::from_str(text).map_err(|error| Mistake::of_toml(path, text, &error))?;
+        let place = |span: &Range<usize>| place_of(text, span);
+        let places = SystemPlaces {
+            bodies: table.body.iter().map(|body| place(&body.span())).collect(),
+            joints: table.joint.iter().map(|joint| place(&joint.span())).collect(),
+            pace: place(&table.run.step.span()),
+        };
+        of_table(table, path, places).map_err(|(span, message)| Mistake::at(path, place(&span), message))
+    }
+
+    /// What the scene is called.
+    #[must_use]
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// The names of the bodies.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.bodies.iter().map(|body| body.name.as_str())
+    }
+
+    /// The columns of a table behind the time. Where there are pins the unit of the gap is `m, 1`.
+    #[must_use]
+    pub fn columns(&self) -> Vec<with::Column> {
+        let listed = Column::listed(&self.output.columns, &self.names().collect::<Vec<_>>());
+        let unit = |column: with::Column| {
+            // A length and the cosines of axes.
+            let is_mixed = column.name == "gap" && self.has_pins();
+            if is_mixed { with::Column { unit: "m, 1".to_owned(), ..column } } else { column }
+        };
+        listed.into_iter().map(|(column, _)| unit(column)).collect()
+    }
+
+    /// What there is, and how it is stepped, in words.
+    #[must_use]
+    pub fn about(&self) -> String {
+        format!("{}, {} steps of {} s", self.sum(), self.steps, short(self.step))
+    }
+
+    pub(crate) fn has_pins(&self) -> bool {
+        self.joints.iter().any(|joint| matches!(joint.of, Joint::Pin(_)))
+    }
+
+    /// What there is, in words.
+    pub(crate) fn sum(&self) -> String {
+        let counted = |count: usize, one: &str| match count {
+            0 => None,
+            1 => Some(format!("1 {one}")),
+            count => Some(format!("{count} {one}s")),
+        };
+        let bodies =
+            if self.bodies.len() == 1 { Some("1 body".to_owned()) } else { counted(self.bodies.len(), "bodie") };
+        let gravity = self.gravity.is_some().then(|| "gravity".to_owned());
+        let all = [bodies, gravity, counted(self.joints.len(), "joint"), counted(self.springs.len(), "spring")];
+        all.into_iter().flatten().collect::<Vec<_>>().join(" + ")
+    }
+}
+
+fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<System, Wrong> {
+    if let Some(body) = table.body.get(BODIES) {
+        return Err((body.span(), format!("a file has up to {BODIES} bodies; a program may have any number")));
+    }
+    if let Some(spring) = table.spring.get(SPRINGS) {
+        return Err((spring.span(), format!("a file has up to {SPRINGS} springs; a program may have any number")));
+    }
+    let (mut bodies, mut names): (Vec<SystemBody>, Vec<Range<usize>>) = Default::default();
+    for body in table.body {
+        let body = body_of(body)?;
+        if bodies.iter().any(|other| other.name == body.0.name) {
+            return Err((body.1, format!("there are two bodies called `{}`", body.0.name)));
+        }
+        bodies.push(body.0);
+        names.push(body.1);
+    }
+    if bodies.is_empty() {
+        return Err((0..0, "a system has a body at least".to_owned()));
+    }
+    let called: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
+    if let Some((body, name)) = name_twice(&table.output.columns, &called) {
+        let message = format!("two columns of the table would be called `{name}`: give the body another name");
+        return Err((names[body].clone(), message));
+    }
+    let spans: Vec<Range<usize>> = table.joint.iter().map(Spanned::span).collect();
+    let joints: Vec<_> =
+        table.joint.into_iter().map(|joint| joint_of(joint.into_inner(), &bodies)).collect::<Result<_, _>>()?;
+    let arrangement = Arrangement::of(joints.iter().map(|joint| joint.bodies)).map_err(|joint| {
+        let message = format!(
+            "this joint closes one loop more than the {LOOPS} that a file may have; a program may have any number"
+        );
+        (spans[joint].clone(), message)
+    })?;
+    let springs = table.spring.into_iter().map(|spring| {
+        let SpringTable { bodies: names, at, k, length } = spring.into_inner();
+        let spring = Spring { k: k.value, length: length.value, at: at.map(|point| point.value) };
+        Ok(Between { bodies: numbers(&names, &bodies)?, of: spring })
+    });
+    let springs = springs.collect::<Result<_, Wrong>>()?;
+    let step = table.run.step.get_ref().value;
+    let duration = table.run.duration.get_ref().value;
+    let steps = equal_steps(step, duration).map_err(|message| (table.run.step.span(), message))?;
+    if let Some(message) = fraction(step, duration) {
+        return Err((table.run.duration.span(), message));
+    }
+    Ok(System {
+        title: table.title,
+        bodies,
+        gravity: table.gravity.map(|field| (field.g.value, field.up.0)),
+        joints,
+        springs,
+        step,
+        steps,
+        nearest: table.run.nearest,
+        picture: table.picture,
+        output: table.output,
+        path: path.to_owned(),
+        places,
+        arrangement,
+    })
+}
+
+/// A name that two columns have, and the number of the body that one is of.
+fn name_twice(columns: &[Column], bodies: &[&str]) -> Option<(usize, String)> {
+    let all = Column::listed(columns, bodies);
+    all.iter().enumerate().find_map(|(number, (column, body))| {
+        let (_, other) = all[..number].iter().find(|(other, _)| other.name == column.name)?;
+        Some((body.or(*other)?, column.name.clone()))
+    })
+}
+
+/// A body, and where its name is.
+fn body_of(body: Spanned<BodyTable>) -> Result<(SystemBody, Range<usize>), Wrong> {
+    let span = body.span();
+    let BodyTable { name, m, moments, J_d, J, position, moving, start } = body.into_inner();
+    // It begins the names of columns.
+    let is_plain = |letter: char| letter.is_alphanumeric() || "_-".contains(letter);
+    if name.get_ref().is_empty() || !name.get_ref().chars().all(is_plain) {
+        return Err((name.span(), "the `name` of a body has letters, digits, - and _ only".to_owned()));
+    }
+    if name.get_ref() == SPACE {
+        return Err((name.span(), "`space` is what bodies move in; give the body another name".to_owned()));
+    }
+    let principal = |J_d| NonstandardInertia::from(J_d);
+    let J_d = match (moments, J_d, J) {
+        (Some(Moments(J_d)), None, None) | (None, Some(Nonstandard(J_d)), None) => principal(J_d),
+        (None, None, Some(Full(J_d))) => J_d,
+        _ => return Err((span, INERTIA.to_owned())),
+    };
+    let moving = moving.map_or_else(Vector3::zeros, |moving| moving.value);
+    let place = name.span();
+    Ok((SystemBody { name: name.into_inner(), m: m.value, J_d, position: position.value, moving, start }, place))
+}
+
+/// What isn't a body.
+const SPACE: &str = "space";
+
+/// The numbers of two that are named.
+fn numbers(names: &Names, bodies: &[SystemBody]) -> Result<[Option<usize>; 2], Wrong> {
+    let mut numbers = [None; 2];
+    for (number, name) in numbers.iter_mut().zip(names.get_ref()) {
+        if name.get_ref() == SPACE {
+            continue;
+        }
+        *number = bodies.iter().position(|body| body.name == *name.get_ref());
+        if number.is_none() {
+            let known: Vec<_> = bodies.iter().map(|body| format!("`{}`", body.name)).collect();
+            let message = format!("there is no body `{}`; there are {}, and `space`", name.get_ref(), known.join(", "));
+            return Err((name.span(), message));
+        }
+    }
+    if numbers[0] == numbers[1] {
+        return Err((names.span(), "two different ones are joined, of which one may be `space`".to_owned()));
+    }
+    Ok(numbers)
+}
+
+fn joint_of(joint: JointTable, bodies: &[SystemBody]) -> Result<Between<Joint>, Wrong> {
+    let JointTable { kind, bodies: names, at, axes } = joint;
+    let mut between = numbers(&names, bodies)?;
+    let mut ends = at.map(|point| point.value);
+    let mut axes_of = axes.as_ref().map(|axes| axes.get_ref().each_ref().map(|axis| axis.0));
+    // Space is always above.
+    if between[1].is_none() {
+        between.swap(0, 1);
+        ends.swap(0, 1);
+        if let Some(axes) = &mut axes_of {
+            axes.swap(0, 1);
+        }
+    }
+    let [above, below] = ends;
+    let of = match (kind.get_ref(), axes_of) {
+        (Kind::Ball, None) => Joint::Ball(BallJoint { above, below }),
+        (Kind::Pin, Some([axis_above, axis_below])) => Joint::Pin(PinJoint { above, below, axis_above, axis_below }),
+        (Kind::Ball, Some(_)) => {
+            let span = axes.map_or_else(|| kind.span(), |axes| axes.span());
+            return Err((span, "a ball joint turns about any axis; leave `axes` out, or make it a `pin`".to_owned()));
+        }
+        (Kind::Pin, None) => {
+            return Err((kind.span(), "a pin has `axes`: that of each of its bodies, in that body's frame".to_owned()));
+        }
+    };
+    Ok(Between { bodies: between, of })
+}

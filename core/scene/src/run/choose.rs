@@ -1,0 +1,184 @@
+//! The choice of a scene's type and method, once a run.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+use liestep::accuracy::Accuracy;
+use liestep::effects::{PrincipalBody, RigidBody};
+use liestep::groups::Advected;
+use liestep::methods::ExactBody;
+use liestep::motion::AnyStepper;
+use liestep::{SO3, SetupError, Stepper};
+
+use crate::file::body::Distribution;
+use crate::file::effects::Table as _;
+use crate::file::method::{Method, Stages};
+use crate::file::scene::SceneFile;
+use crate::file::schedule::Pace;
+use crate::run::course::{MemberStart, course, sample, watches};
+use crate::run::kinetic::ChosenBody;
+use crate::run::make::{Listeners, Run, Stop, make};
+use crate::run::switched::Switched;
+
+/// The sums of a body and what is switched, each of one type; a file's scene is the shortest that has all that it names.
+///
+/// An effect with an unknown part makes each iteration longer, and that of magnetic damping raises the degree of the
+/// equation. Which effects there are beside is asked at run time: all subsets would be 512 types of each kinetic term.
+macro_rules! sums {
+    ($file:expr, $body:expr) => {{
+        let (file, body, J) = ($file, $body, $file.body.inertia());
+        macro_rules! switched {
+            ($effect:ident) => {
+                Switched(file.$effect.as_ref().map(|table| table.effect(&J)))
+            };
+        }
+        let potentials =
+            body + switched!(gravity) + switched!(gravity_gradient) + switched!(dipole) + switched!(spring);
+        let with_rotor = potentials + switched!(rotor);
+        let dragged = with_rotor + switched!(drag);
+        let driven = dragged + switched!(torque) + switched!(thrust);
+        let damped = dragged + switched!(magnetic_damping) + switched!(torque) + switched!(thrust);
+        (potentials, with_rotor, driven, damped)
+    }};
+}
+
+/// Simulates the sum of the body and those effects that the file has.
+///
+/// Every run by (3.13) has the bits of the sum of just those. By other kinetic terms it is the same to rounding: beside an
+/// unknown part that is switched off, their equation is solved with its Jacobian from the first iteration on.
+pub(crate) fn run(file: &SceneFile, listeners: Listeners<'_>) -> Result<Run, Stop> {
+    let mut run = None;
+    match file.run.pace {
+        Pace::Accuracy(tolerance) => return ask(file, tolerance, listeners),
+        Pace::Step { step, steps } => by_steps(file, step, Purpose::Run { steps, listeners, run: &mut run })?,
+    }
+    run.ok_or_else(nothing)
+}
+
+/// What steps the scene by its `step`, and its start.
+pub(crate) fn stepper(file: &SceneFile) -> Result<MemberStart, Stop> {
+    let mut stepper = None;
+    match file.run.pace {
+        Pace::Accuracy(_) => return Err(Stop::Other("the step is chosen for an accuracy by trial runs".to_owned())),
+        Pace::Step { step, .. } => by_steps(file, step, Purpose::Stepper(&mut stepper))?,
+    }
+    let stepper = stepper.ok_or_else(nothing)?;
+    let state = stepper.start(file.start.attitude, file.start.velocity).map_err(Stop::Start)?;
+    Ok((stepper, state))
+}
+
+/// What is done with the stepper of a scene: asked for in its type, each would be compiled for every scene's.
+enum Purpose<'a, 'b> {
+    Run { steps: u32, listeners: Listeners<'b>, run: &'a mut Option<Run> },
+    Stepper(&'a mut Option<AnyStepper<SO3, ()>>),
+}
+
+/// A stepper that is made is used.
+fn nothing() -> Stop {
+    Stop::Other("there is no such scene".to_owned())
+}
+
+fn by_steps(file: &SceneFile, h: f64, purpose: Purpose<'_, '_>) -> Result<(), Stop> {
+    match file.run.method {
+        Method::Step | Method::Composition(_) => stepped(file, h, purpose),
+        _ => with_exact_body(file, h, purpose),
+    }
+}
+
+/// By the declared steps of one of the kinetic terms, or a composition of them.
+fn stepped(file: &SceneFile, h: f64, purpose: Purpose<'_, '_>) -> Result<(), Stop> {
+    macro_rules! step {
+        ($scene:expr) => {
+            match file.run.method {
+                Method::Composition(scheme) => {
+                    simulate(file, Stepper::composed($scene, h, scheme.0).map(Stepper::into_any), purpose)
+                }
+                _ => step!(only $scene),
+            }
+        };
+        (only $scene:expr) => {
+            simulate(file, Stepper::new($scene, h).map(Stepper::into_any), purpose)
+        };
+    }
+    macro_rules! with_effects {
+        ($body:expr) => {{
+            let (_, with_rotor, _, damped) = sums!(file, $body);
+            if file.force().is_some() { step!(only damped) } else { step!(with_rotor) }
+        }};
+    }
+    match (ChosenBody::of(file.body.kinetic, file.body.inertia()), file.body.mass) {
+        (Some(body), _) => with_effects!(body),
+        // The kinetic term that most files have is there in four sums, not two.
+        (None, Distribution::Principal(J_d)) => {
+            let (potentials, with_rotor, driven, damped) = sums!(file, PrincipalBody { J_d });
+            if file.magnetic_damping.is_some() {
+                step!(only damped)
+            } else if file.force().is_some() {
+                step!(only driven)
+            } else if file.rotor.is_some() {
+                step!(with_rotor)
+            } else {
+                step!(potentials)
+            }
+        }
+        (None, Distribution::Full(J_d)) => with_effects!(RigidBody { J_d }),
+    }
+}
+
+/// By methods that look at inertia and potential only.
+fn with_exact_body(file: &SceneFile, h: f64, purpose: Purpose<'_, '_>) -> Result<(), Stop> {
+    let J = file.body.inertia();
+    let (_, scene, _, _) = sums!(file, RigidBody { J_d: J.to_nonstandard() });
+    let stepper = match file.run.method {
+        Method::Step | Method::Composition(_) => Stepper::new(scene, h).map(Stepper::into_any),
+        Method::Splitting(scheme) => Stepper::split(scene, h, ExactBody::new(&J), scheme.0).map(Stepper::into_any),
+        Method::Processed(scheme) => Stepper::processed(scene, h, ExactBody::new(&J), scheme.0).map(Stepper::into_any),
+        Method::Collocation(Stages::Four) => Stepper::collocated::<2>(scene, h).map(Stepper::into_any),
+        Method::Collocation(Stages::Eight) => Stepper::collocated::<4>(scene, h).map(Stepper::into_any),
+    };
+    simulate(file, stepper, purpose)
+}
+
+/// Makes the steps of a scene, or hands over what makes them.
+fn simulate<A: Advected<SO3> + 'static>(
+    file: &SceneFile,
+    stepper: Result<AnyStepper<SO3, A>, SetupError>,
+    purpose: Purpose<'_, '_>,
+) -> Result<(), Stop> {
+    let stepper = stepper.map_err(Stop::Setup)?;
+    match purpose {
+        Purpose::Run { steps, listeners, run } => {
+            let state = stepper.start(file.start.attitude, file.start.velocity).map_err(Stop::Start)?;
+            let course = course(file, u64::from(steps));
+            *run = Some(make(&stepper, state, course, sample, watches(file), listeners)?);
+        }
+        Purpose::Stepper(place) => *place = Some(stepper.hiding_advected()),
+    }
+    Ok(())
+}
+
+/// Makes the steps that an accuracy takes.
+fn ask(file: &SceneFile, tolerance: f64, listeners: Listeners<'_>) -> Result<Run, Stop> {
+    let accuracy = Accuracy { tolerance, horizon: file.run.duration };
+    macro_rules! ask {
+        ($scene:expr) => {{
+            let stepper = Stepper::for_accuracy($scene, accuracy, file.start.attitude, file.start.velocity)
+                .map_err(Stop::Accuracy)?;
+            let choice = stepper.choice().clone();
+            let course = course(file, choice.steps);
+            let mut run = make(&*stepper, stepper.start(), course, sample, watches(file), listeners)?;
+            run.choice = Some(choice);
+            Ok(run)
+        }};
+    }
+    match file.body.mass {
+        Distribution::Principal(J_d) => {
+            let (potentials, with_rotor, _, _) = sums!(file, PrincipalBody { J_d });
+            if file.rotor.is_some() { ask!(with_rotor) } else { ask!(potentials) }
+        }
+        Distribution::Full(J_d) => {
+            let (_, with_rotor, _, _) = sums!(file, RigidBody { J_d });
+            ask!(with_rotor)
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! What is kept of a run of one body, and the functions of its events.
+
+use liestep::SO3;
+use liestep::groups::Advected;
+use liestep::motion::{AnyState, AnyStepper, Moment};
+use liestep::with;
+use nalgebra::Vector3;
+
+use crate::file::event::{Direction, Event, Quantity};
+use crate::file::sample::{BodySample, Sample};
+use crate::file::scene::SceneFile;
+use crate::run::make::{Course, EventFunction};
+
+/// What steps a scene, and the state that it starts from.
+pub type MemberStart = (AnyStepper<SO3, ()>, AnyState<SO3, ()>);
+
+/// The motion of one body now.
+pub(crate) fn sample<A: Advected<SO3>>(now: &Moment<'_, AnyStepper<SO3, A>>) -> Sample {
+    let body = BodySample::turning(now.attitude(), now.velocity(), now.momentum());
+    Sample {
+        time: now.time(),
+        energy: now.energy(),
+        momentum: nalgebra::zero(),
+        angular_momentum: body.matrix() * body.momentum,
+        gap: 0.0,
+        bodies: vec![body],
+    }
+}
+
+/// The length and the table of a run of this many steps.
+pub(crate) fn course(file: &SceneFile, steps: u64) -> Course<'_> {
+    Course { steps, stride: file.output.stride(steps), columns: file.columns(), listed: file.listed() }
+}
+
+/// The events that a run looks for.
+pub(crate) fn watches<A: Advected<SO3> + 'static>(
+    file: &SceneFile,
+) -> Vec<(with::Event, EventFunction<AnyStepper<SO3, A>>)> {
+    let axis = file.picture.axis.0;
+    file.event.iter().map(|event| (kind(event), function(event.quantity, axis))).collect()
+}
+
+/// What counts as the event.
+fn kind(event: &Event) -> with::Event {
+    let kind = match event.direction {
+        Direction::Rising => with::Event::rising(),
+        Direction::Falling => with::Event::falling(),
+        Direction::Either => with::Event::crossing(),
+    };
+    if event.stops { kind.terminal() } else { kind }
+}
+
+/// The function that rises through zero as the quantity rises through its value; a tilt is that of this body axis.
+fn function<A: Advected<SO3> + 'static>(quantity: Quantity, axis: Vector3<f64>) -> EventFunction<AnyStepper<SO3, A>> {
+    Box::new(move |now| match quantity {
+        // By the cosine, which is smooth at the vertical.
+        Quantity::Tilt(angle) => angle.cos() - (now.attitude().as_matrix() * axis).z,
+        Quantity::Speed(speed) => now.velocity().norm_squared() - speed * speed,
+        Quantity::Energy(energy) => now.energy() - energy,
+        Quantity::Velocity(component, rate) => now.velocity()[component] - rate,
+        Quantity::Axis(component, part) => (now.attitude().as_matrix() * axis)[component] - part,
+    })
+}

@@ -1,0 +1,46 @@
+//! What a sweep keeps of a run: its end.
+
+use crate::file::column::Column;
+use crate::file::scene::SceneFile;
+use crate::run::make::Run;
+
+impl SceneFile {
+    /// The names of what [`end`](Self::end) gives.
+    #[must_use]
+    pub fn end_names(&self) -> Vec<String> {
+        let columns = self.columns().iter().flat_map(|column| column.names()).copied();
+        let columns = std::iter::once("t")
+            .chain(columns)
+            .chain(["greatest_energy_error", "greatest_momentum_error"])
+            .map(str::to_owned);
+        let events = self.events().flat_map(|name| [format!("{name}_times"), format!("{name}_first")]);
+        columns.chain(events).collect()
+    }
+
+    /// The time and the scene's columns at the end of a run, how far energy and angular momentum in space were from their
+    /// start, and of each event how often and when first it happened, s; NaN if never.
+    ///
+    /// The greatest are those of the [samples](Run::samples), which are all steps of a run of up to 20 000; NaN where one
+    /// of them has no value.
+    #[must_use]
+    pub fn end(&self, run: &Run) -> Vec<f64> {
+        let (Some(first), Some(last)) = (run.samples().first(), run.samples().last()) else { return Vec::new() };
+        let mut greatest = [0.0_f64; 2];
+        for sample in run.samples() {
+            let errors = Column::row(&[Column::ENERGY_ERROR, Column::MOMENTUM_ERROR], first, sample);
+            for (greatest, value) in greatest.iter_mut().zip(errors) {
+                // `max` would leave out what isn't a number.
+                *greatest = if greatest.is_nan() || value.is_nan() { f64::NAN } else { greatest.max(value.abs()) };
+            }
+        }
+        let columns = std::iter::once(last.time).chain(Column::row(self.columns(), first, last));
+        let events = (0..self.event.len()).flat_map(|number| {
+            let mut times = run.times(number);
+            let first = times.next();
+            #[allow(clippy::cast_precision_loss)] // a million at most
+            let count = (times.count() + usize::from(first.is_some())) as f64;
+            [count, first.unwrap_or(f64::NAN)]
+        });
+        columns.chain(greatest).chain(events).collect()
+    }
+}

@@ -1,0 +1,228 @@
+//! The steps of a run, and what is kept of them.
+
+use std::cell::RefCell;
+use std::fmt;
+
+use liestep::accuracy::{AccuracyError, Choice};
+use liestep::groups::LieGroup;
+use liestep::motion::{Integrator, Moment};
+use liestep::with::{self, Reason, RecordError, Recorder, RunError, Sink};
+use liestep::{SetupError, StepError};
+
+use crate::file::column::{Column, picture_stride};
+use crate::file::sample::Sample;
+
+/// A run that came to its end.
+#[derive(Clone, Debug)]
+pub struct Run {
+    samples: Vec<Sample>,
+    /// s.
+    step: f64,
+    steps: u64,
+    happenings: Vec<Happening>,
+    /// The event that ended it.
+    pub(crate) ending: Option<usize>,
+    /// Where an accuracy was asked for.
+    pub(crate) choice: Option<Choice>,
+}
+
+/// An event that has happened.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Happening {
+    /// Which of the scene's events, from zero.
+    pub event: usize,
+    /// Whether the quantity rose.
+    pub rising: bool,
+    /// The motion then.
+    pub sample: Sample,
+}
+
+/// More are no events but the course of the motion.
+const MOST_HAPPENINGS: usize = 1_000_000;
+
+/// Why a run couldn't be started or finished.
+#[derive(Debug)]
+pub(crate) enum Stop {
+    Setup(SetupError),
+    Start(SetupError),
+    Accuracy(AccuracyError),
+    Step {
+        time: f64,
+        cause: StepError,
+    },
+    /// Not the run, but its table.
+    Table(String),
+    Other(String),
+}
+
+impl fmt::Display for Stop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Setup(cause) | Self::Start(cause) => cause.fmt(f),
+            Self::Accuracy(cause) => cause.fmt(f),
+            Self::Table(cause) | Self::Other(cause) => f.write_str(cause),
+            Self::Step { time, cause } => write!(f, "stopped at t = {time} s: {cause}"),
+        }
+    }
+}
+
+/// Who learns of a run while it is made.
+pub(crate) struct Listeners<'a> {
+    /// The share that is made, from 0 to 1, at most a hundred times.
+    pub(crate) progress: &'a mut dyn FnMut(f64),
+    /// Where the rows of its table go.
+    pub(crate) table: Option<&'a mut dyn Sink>,
+}
+
+/// What of a run a file says: its length and its table.
+pub(crate) struct Course<'a> {
+    pub(crate) steps: u64,
+    /// In steps from row to row.
+    pub(crate) stride: u64,
+    pub(crate) columns: &'a [Column],
+    /// Those of the table, one for each number.
+    pub(crate) listed: Vec<with::Column>,
+}
+
+/// The function that passes zero where an event happens.
+pub(crate) type EventFunction<I> = Box<dyn Fn(&Moment<'_, I>) -> f64>;
+
+/// Makes the steps, unless an event stops the run, and keeps as many states as a picture has room for.
+pub(crate) fn make<I: Integrator<Group: LieGroup<Scalar: Into<f64>>>>(
+    stepper: &I,
+    mut state: I::State,
+    course: Course<'_>,
+    sample: impl Fn(&Moment<'_, I>) -> Sample,
+    events: Vec<(with::Event, EventFunction<I>)>,
+    listeners: Listeners<'_>,
+) -> Result<Run, Stop> {
+    let (mut samples, happenings) = (Vec::new(), RefCell::new(Vec::new()));
+    let (numbers, steps, stride) = (RefCell::new(Vec::new()), course.steps, course.stride);
+    let mut table = listeners.table.map(|sink| TableRecorder::new(course, &numbers, stepper, sink));
+    // The one who writes is asked where nothing is written, too, so that the steps are the same.
+    let mut observed = with::Run::new(stepper, &mut state)
+        .every(picture_stride(steps), |now| keep(&mut samples, sample(now)))
+        .every(stride, |now| table.as_mut().map_or(Ok(()), |table| table.record(now, sample(now))))
+        .progress(listeners.progress);
+    for (event, (kind, function)) in events.into_iter().enumerate() {
+        let (happenings, sample) = (&happenings, &sample);
+        observed = observed.event(kind, function, move |now| {
+            let mut happenings = happenings.borrow_mut();
+            if happenings.len() >= MOST_HAPPENINGS {
+                return Err("an event happens more than a million times");
+            }
+            happenings.push(Happening { event, rising: now.rising().unwrap_or_default(), sample: sample(now) });
+            Ok(())
+        });
+    }
+    let end = observed.steps(steps).map_err(|error| match error {
+        RunError::Step { time, cause } => Stop::Step { time, cause },
+        RunError::Observer { cause, .. } if cause.is::<RecordError>() => Stop::Table(cause.to_string()),
+        other => Stop::Other(other.to_string()),
+    });
+    let now = Moment::of_step(stepper, &state);
+    let last = sample(&now);
+    if samples.last().is_none_or(|sample| sample.time < last.time) {
+        keep(&mut samples, last.clone());
+    }
+    // A run that stops leaves its rows, and its own error comes first.
+    let written = table.map_or(Ok(()), |table| table.finish(&now, last));
+    let end = end?;
+    written.map_err(|error| Stop::Table(error.to_string()))?;
+    let ending = match end.reason {
+        Reason::Event { event, .. } => Some(event),
+        _ => None,
+    };
+    let (step, happenings) = (stepper.step_size().into(), happenings.into_inner());
+    Ok(Run { samples, happenings, step, steps: end.steps, ending, choice: None })
+}
+
+fn keep(samples: &mut Vec<Sample>, mut now: Sample) {
+    if let Some(before) = samples.last() {
+        now.follow(before);
+    }
+    samples.push(now);
+}
+
+/// A table that is written while a run is made.
+struct TableRecorder<'a, I: Integrator> {
+    columns: &'a [Column],
+    recorder: Recorder<'a, I, &'a mut dyn Sink>,
+    /// The first state of the table, and the last.
+    ends: Option<(Sample, Sample)>,
+    /// The row that is written last, in which all quantities of the recorder look their number up.
+    numbers: &'a RefCell<Vec<f64>>,
+}
+
+impl<'a, I: Integrator<Group: LieGroup<Scalar: Into<f64>>>> TableRecorder<'a, I> {
+    fn new(course: Course<'a>, numbers: &'a RefCell<Vec<f64>>, stepper: &I, sink: &'a mut dyn Sink) -> Self {
+        let mut recorder = Recorder::bare(stepper, sink);
+        for (place, with::Column { name, unit }) in course.listed.into_iter().enumerate() {
+            let number = move |_: &Moment<'_, _>| numbers.borrow().get(place).copied().unwrap_or(f64::NAN);
+            recorder = recorder.quantity(name, unit, number);
+        }
+        Self { columns: course.columns, recorder, ends: None, numbers }
+    }
+
+    fn record(&mut self, now: &Moment<'_, I>, mut sample: Sample) -> Result<(), RecordError> {
+        let (first, last) = self.ends.get_or_insert_with(|| (sample.clone(), sample.clone()));
+        sample.follow(last);
+        *last = sample;
+        self.numbers.replace(Column::row(self.columns, first, last));
+        self.recorder.record(now)
+    }
+
+    /// With the end of the run as its last row.
+    fn finish(mut self, end: &Moment<'_, I>, sample: Sample) -> Result<(), RecordError> {
+        let is_written = self.ends.as_ref().is_some_and(|(_, last)| last.time >= sample.time);
+        let recorded = if is_written { Ok(()) } else { self.record(end, sample) };
+        recorded.and_then(|()| self.recorder.finish().map(|_| ()))
+    }
+}
+
+impl Run {
+    /// The states that were kept for pictures, the first and the last among them: those of each `k`-th step between, with
+    /// the least `k` for which that is 20 000 at most.
+    #[must_use]
+    pub fn samples(&self) -> &[Sample] {
+        &self.samples
+    }
+
+    /// The events that happened, in their order.
+    #[must_use]
+    pub fn happenings(&self) -> &[Happening] {
+        &self.happenings
+    }
+
+    /// When an event happened, s.
+    pub(crate) fn times(&self, event: usize) -> impl Iterator<Item = f64> {
+        self.happenings.iter().filter(move |happening| happening.event == event).map(|happening| happening.sample.time)
+    }
+
+    /// The step, s.
+    #[must_use]
+    pub fn step(&self) -> f64 {
+        self.step
+    }
+
+    /// How many steps were made.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// What was chosen where an accuracy was asked for.
+    #[must_use]
+    pub fn choice(&self) -> Option<&Choice> {
+        self.choice.as_ref()
+    }
+
+    /// The scene, the steps and the energy at both ends; what else is said of the ends comes behind it.
+    pub(crate) fn summary(&self, title: &str, sum: &str, rest: impl FnOnce(&Sample, &Sample) -> String) -> String {
+        let (Some(first), Some(last)) = (self.samples.first(), self.samples.last()) else { return String::new() };
+        let (steps, step, rest) = (self.steps, self.step, rest(first, last));
+        let [before, after] = [first.energy, last.energy];
+        format!("{title}\n  {sum}, {steps} steps of {step} s\n  energy {before:.6} J → {after:.6} J{rest}\n")
+    }
+}

@@ -1,0 +1,12 @@
+//! Running scenes: the choice of a stepper, its steps, and what is kept of them.
+
+pub(crate) mod bodies;
+pub(crate) mod choose;
+pub(crate) mod course;
+mod ends;
+pub(crate) mod kinetic;
+pub(crate) mod make;
+mod scene;
+pub(crate) mod springs;
+pub(crate) mod switched;
+mod system;

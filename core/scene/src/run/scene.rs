@@ -1,0 +1,160 @@
+//! The run of a scene with one body.
+
+use std::error::Error;
+
+use liestep::motion::{AnyStepper, Moment};
+use liestep::with::{self, Csv, Sink};
+use liestep::{SO3, SetupError, StepError};
+
+use crate::file::column::Column;
+use crate::file::event::Event;
+use crate::file::mistake::Mistake;
+use crate::file::scene::{Origin, SceneFile};
+use crate::file::schedule::Pace;
+use crate::run::choose;
+use crate::run::course::{MemberStart, sample};
+use crate::run::make::{Listeners, Run, Stop};
+
+impl SceneFile {
+    /// Simulates the scene.
+    ///
+    /// # Errors
+    ///
+    /// A [`Mistake`] of the kind [`Run`](crate::Kind::Run) where the scene can't be started or a step not be made.
+    pub fn run(&self) -> Result<Run, Mistake> {
+        self.run_with(&mut |_| (), None)
+    }
+
+    /// As [`run`](Self::run), with a function that learns a hundred times what share of the run is made, from 0 to 1; and
+    /// with a table of the time and the scene's [columns](Self::columns), a row of each `every`-th step and of the last. The
+    /// rows are written as they come: of a run that stops those up to then.
+    ///
+    /// ```
+    /// # fn recorded(scene: &liestep_scene::SceneFile) -> Result<(), Box<dyn std::error::Error>> {
+    /// use liestep::with::Csv;
+    ///
+    /// scene.run_with(&mut |_| (), Some(&mut Csv::create("top.csv")?))?;
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run), and of the kind [`Table`](crate::Kind::Table) where a row can't be written.
+    pub fn run_with<'a>(
+        &self,
+        progress: &'a mut dyn FnMut(f64),
+        table: Option<&'a mut dyn Sink>,
+    ) -> Result<Run, Mistake> {
+        choose::run(self, Listeners { progress, table }).map_err(|stop| self.mistake(stop))
+    }
+
+    /// Simulates the scene up to a number of steps; all of one that asks for an accuracy, as its step isn't known before.
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run).
+    pub fn first(&self, most: u32) -> Result<Run, Mistake> {
+        let mut first = self.clone();
+        if let Pace::Step { steps, .. } = &mut first.run.pace {
+            *steps = most.min(*steps);
+        }
+        first.run()
+    }
+
+    /// What steps the scene, with the state that it starts from.
+    ///
+    /// # Errors
+    ///
+    /// A [`Mistake`] of the kind [`Run`](crate::Kind::Run) where it can't be started.
+    pub fn stepper(&self) -> Result<MemberStart, Mistake> {
+        choose::stepper(self).map_err(|stop| self.mistake(stop))
+    }
+
+    /// The numbers of its columns in a moment of such a stepper, one after the other. Of the two quaternions it is either.
+    #[must_use]
+    pub fn numbers(columns: &[Column], now: &Moment<'_, AnyStepper<SO3, ()>>) -> Vec<f64> {
+        let now = sample(now);
+        Column::row(columns, &now, &now)
+    }
+
+    /// Why a run stopped, with the place in the file that it is about.
+    fn mistake(&self, stop: Stop) -> Mistake {
+        let Origin { path, places } = &self.origin;
+        let mut message = stop.to_string();
+        let place = match stop {
+            Stop::Table(message) => return Mistake::of_table(path, message),
+            Stop::Step { cause: StepError::BeyondSolvable { .. }, .. } => {
+                message.push_str(", and is `kinetic = \"cayley\"` of the body here");
+                places.pace
+            }
+            Stop::Setup(SetupError::InvalidStep { .. }) | Stop::Accuracy(_) | Stop::Step { .. } | Stop::Other(_) => {
+                places.pace
+            }
+            // What a method asks of a scene.
+            Stop::Setup(
+                SetupError::NotSeparable { .. }
+                | SetupError::InertiaMismatch { .. }
+                | SetupError::BiasMismatch
+                | SetupError::NoForceGradient,
+            ) => places.method,
+            Stop::Setup(_) => places.body,
+            Stop::Start(_) => places.start,
+        };
+        Mistake::of_run(path, place, message)
+    }
+
+    /// The events of a run as comma-separated values: the event's name, 1 where the quantity rose and 0 where it fell, the
+    /// time, and the scene's columns.
+    ///
+    /// # Errors
+    ///
+    /// None: it is written to memory.
+    pub fn event_table(&self, run: &Run) -> Result<String, Box<dyn Error + Send + Sync>> {
+        let mut rows = Csv::new(Vec::new());
+        let time = with::Column { name: "t".to_owned(), unit: "s".to_owned() };
+        rows.begin(&std::iter::once(time).chain(self.listed()).collect::<Vec<_>>())?;
+        let first = run.samples().first();
+        let mut before = first.cloned();
+        for happening in run.happenings() {
+            let mut now = happening.sample.clone();
+            if let Some(before) = &before {
+                now.follow(before);
+            }
+            let numbers = Column::row(self.columns(), first.unwrap_or(&now), &now);
+            rows.write(&std::iter::once(now.time).chain(numbers).collect::<Vec<_>>())?;
+            before = Some(now);
+        }
+        let rows = String::from_utf8(rows.into_inner()?)?;
+        let mut rows = rows.lines();
+        let mut text = format!("event,rising,{}\n", rows.next().unwrap_or_default());
+        for (happening, row) in run.happenings().iter().zip(rows) {
+            let name = self.event.get(happening.event).map_or("", |event| event.name.as_str());
+            text.extend([name, if happening.rising { ",1," } else { ",0," }, row, "\n"]);
+        }
+        Ok(text)
+    }
+
+    /// Lines about the beginning and the end of a run, its events, and the table of the choice if there was one.
+    #[must_use]
+    pub fn summary(&self, run: &Run) -> String {
+        let line = |(number, event): (usize, &Event)| {
+            let mut times = run.times(number);
+            let (first, others) = (times.next(), times.count());
+            let when = first.map_or_else(String::new, |first| format!(", first at t = {first} s"));
+            let ending = if run.ending == Some(number) { ", which ended the run" } else { "" };
+            let often = match others + usize::from(first.is_some()) {
+                1 => "once".to_owned(),
+                count => format!("{count} times"),
+            };
+            format!("\n  {}: {often}{when}{ending}", event.name)
+        };
+        let events: String = self.event.iter().enumerate().map(line).collect();
+        let ends = run.summary(&self.title, &self.sum(), |first, last| {
+            let [before, after] = [first, last].map(|sample| sample.angular_momentum.norm());
+            format!(", momentum {before:.6} → {after:.6} kg m²/s{events}")
+        });
+        let choice = run.choice.as_ref().map(ToString::to_string).unwrap_or_default();
+        format!("{ends}{choice}")
+    }
+}

@@ -1,0 +1,217 @@
+//! The run of a system.
+
+use liestep::motion::Moment;
+use liestep::with::Sink;
+use liestep::{SetupError, StepError};
+use nalgebra::{Vector3, Vector6};
+
+use crate::file::arrangement::{BODIES, LOOPS};
+use crate::file::mistake::Mistake;
+use crate::file::sample::{BodySample, Sample};
+use crate::file::system::System;
+use crate::run::bodies::SystemStepper;
+use crate::run::make::{Course, Listeners, Run, Stop, make};
+
+/// The systems that there are, the smallest first. With loops there is the largest only: each is code of its own.
+const SIZES: [Size; 4] = [Size::of::<2, 0>(), Size::of::<4, 0>(), Size::of::<BODIES, 0>(), Size::of::<BODIES, LOOPS>()];
+
+/// The room of a system: for this many bodies and loops.
+#[derive(Clone, Copy)]
+struct Size {
+    bodies: usize,
+    loops: usize,
+    simulate: Simulate,
+}
+
+/// Simulates a number of steps.
+type Simulate = fn(&System, u64, Listeners<'_>) -> Result<Run, Stop>;
+
+impl Size {
+    const fn of<const N: usize, const L: usize>() -> Self {
+        Self { bodies: N, loops: L, simulate: System::simulate_in::<N, L> }
+    }
+}
+
+/// What tells how far joints are open.
+const GAP: &str = "lengths in m and cosines of axes together";
+
+/// The motion of the first bodies of a system now.
+fn sample<const N: usize, const L: usize>(
+    stepper: &SystemStepper<N, L>,
+    bodies: usize,
+    now: &Moment<'_, SystemStepper<N, L>>,
+) -> Sample {
+    let (attitudes, momenta, velocities) = (now.attitude(), now.momentum(), now.velocity());
+    let three = |of: &Vector6<f64>, first: usize| of.fixed_rows::<3>(first).into_owned();
+    let (mut momentum, mut angular_momentum) = (Vector3::zeros(), Vector3::zeros());
+    let body = |place: usize| {
+        let (attitude, position) = (attitudes[place].0, attitudes[place].1.translation());
+        let (turning, linear) = (three(&momenta.0[place], 0), three(&momenta.0[place], 3));
+        momentum += linear;
+        angular_momentum += attitude.as_matrix() * turning + position.cross(&linear);
+        let velocity = &velocities.0[place];
+        let body = BodySample::turning(attitude, three(velocity, 0), turning);
+        BodySample { position, moving: three(velocity, 3), ..body }
+    };
+    let bodies = (0..bodies).map(body).collect();
+    let (energy, gap) = (now.energy(), stepper.widest_gap(now));
+    Sample { time: now.time(), bodies, energy, momentum, angular_momentum, gap }
+}
+
+impl System {
+    /// Simulates the system.
+    ///
+    /// # Errors
+    ///
+    /// A [`Mistake`] of the kind [`Run`](crate::Kind::Run) where it can't be started or a step not be made.
+    pub fn run(&self) -> Result<Run, Mistake> {
+        self.run_with(&mut |_| (), None)
+    }
+
+    /// As [`SceneFile::run_with`](crate::SceneFile::run_with).
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run), and of the kind [`Table`](crate::Kind::Table) where a row can't be written.
+    pub fn run_with<'a>(
+        &self,
+        progress: &'a mut dyn FnMut(f64),
+        table: Option<&'a mut dyn Sink>,
+    ) -> Result<Run, Mistake> {
+        self.simulate(u64::from(self.steps), Listeners { progress, table })
+    }
+
+    /// Simulates the system up to a number of steps.
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run).
+    pub fn first(&self, most: u32) -> Result<Run, Mistake> {
+        self.simulate(u64::from(most.min(self.steps)), Listeners { progress: &mut |_| (), table: None })
+    }
+
+    fn simulate(&self, steps: u64, listeners: Listeners<'_>) -> Result<Run, Mistake> {
+        (self.size().simulate)(self, steps, listeners).map_err(|stop| self.mistake(stop))
+    }
+
+    /// The smallest that has room for the bodies and the loops.
+    fn size(&self) -> Size {
+        let [.., largest] = SIZES;
+        let fits = |size: &Size| size.bodies >= self.bodies.len() && size.loops >= self.arrangement.loops.len();
+        SIZES.into_iter().find(fits).unwrap_or(largest)
+    }
+
+    fn simulate_in<const N: usize, const L: usize>(&self, steps: u64, listeners: Listeners<'_>) -> Result<Run, Stop> {
+        let stepper = self.stepper::<N, L>().map_err(Stop::Setup)?;
+        let (bodies, velocities) = self.start();
+        let started =
+            if self.nearest { stepper.start_nearest(bodies, velocities) } else { stepper.start(bodies, velocities) };
+        let state = started.map_err(Stop::Start)?;
+        let (stride, columns) = (self.output.stride(steps), self.output.columns.as_slice());
+        let course = Course { steps, stride, columns, listed: self.columns() };
+        let sample = |now: &Moment<'_, _>| sample(&stepper, self.bodies.len(), now);
+        make(&stepper, state, course, sample, Vec::new(), listeners)
+    }
+
+    /// Lines about the beginning and the end of a run.
+    #[must_use]
+    pub fn summary(&self, run: &Run) -> String {
+        run.summary(&self.title, &self.sum(), |_, _| {
+            if self.joints.is_empty() {
+                return String::new();
+            }
+            let widest = run.samples().iter().map(|sample| sample.gap).fold(0.0, f64::max);
+            let unit = if self.has_pins() { "(m and cosines)" } else { "m" };
+            format!(", joints open by {widest:.1e} {unit} at most")
+        })
+    }
+
+    /// Where the joint is that the library gives this number.
+    fn of_joint(&self, joint: usize) -> (usize, usize) {
+        let of_loop = || self.arrangement.loops.get(joint.checked_sub(self.size().bodies)?);
+        let number = self.arrangement.tree.get(joint).or_else(of_loop);
+        number.map_or(self.places.pace, |&joint| self.places.joints[joint])
+    }
+
+    /// Why a run stopped, with the place in the file that it is about.
+    fn mistake(&self, stop: Stop) -> Mistake {
+        let (place, message) = match stop {
+            Stop::Table(message) => return Mistake::of_table(&self.path, message),
+            Stop::Setup(error) | Stop::Start(error) => self.obstacle(error),
+            Stop::Step { time, cause } => {
+                let (place, why) = self.end_of_steps(&cause);
+                (place, format!("stopped at t = {time} s: {why}"))
+            }
+            stop => (self.places.pace, stop.to_string()),
+        };
+        Mistake::of_run(&self.path, place, message)
+    }
+
+    /// Why it can't be started, behind the place of the body or the joint.
+    fn obstacle(&self, error: SetupError) -> ((usize, usize), String) {
+        match error {
+            SetupError::OffConstraint { joint, by } => {
+                let message = if self.nearest {
+                    format!(
+                        "no places next to these were found where the joints are closed: this one stays open by {by:e} ({GAP}); give places nearer to such, or other joints"
+                    )
+                } else {
+                    format!(
+                        "this joint is open by {by:e} ({GAP}) at the start; give other places, or let `nearest = true` of `run` close the joints"
+                    )
+                };
+                (self.of_joint(joint), message)
+            }
+            SetupError::OffVelocity { joint, by } => {
+                let message = if self.nearest {
+                    format!(
+                        "no velocities next to these were found that keep this joint closed: they open it by {by:e} ({GAP}, per second); give others"
+                    )
+                } else {
+                    format!(
+                        "the velocities open this joint by {by:e} ({GAP}, per second); give others, or let `nearest = true` of `run` find those next to them"
+                    )
+                };
+                (self.of_joint(joint), message)
+            }
+            SetupError::RedundantJoint { joint, pivot } => {
+                let message = format!(
+                    "the other joints, or its own functions, do a part of what this one is to do (pivot {pivot:e}); leave it out, or make a `pin` a `ball`"
+                );
+                (self.of_joint(joint), message)
+            }
+            SetupError::Joint { joint, cause } => {
+                (self.of_joint(joint), format!("this joint {cause}; check the bodies that it joins"))
+            }
+            SetupError::JointParameter { joint, field, cause } => {
+                (self.of_joint(joint), format!("parameter `{field}` of this joint {cause}; give it another value"))
+            }
+            SetupError::BodyParameter { body, field, cause } if body < self.bodies.len() => {
+                let name = &self.bodies[body].name;
+                let message = format!("parameter `{field}` of the body `{name}` {cause}; give it another value");
+                (self.places.bodies[body], message)
+            }
+            error => (self.places.pace, error.to_string()),
+        }
+    }
+
+    /// Why a step can't be made.
+    fn end_of_steps(&self, cause: &StepError) -> ((usize, usize), String) {
+        match *cause {
+            StepError::SingularJoint { joint, pivot } => {
+                let why = format!(
+                    "this joint comes to a singular position (pivot {pivot:e}), where its force isn't determined; make a `pin` a `ball`, take a smaller `step`, or another start"
+                );
+                (self.of_joint(joint), why)
+            }
+            StepError::UnsolvedBody { body, turn, determinant } if body < self.bodies.len() => {
+                let name = &self.bodies[body].name;
+                let why = format!(
+                    "no increment of the body `{name}` that continues the identity: it would turn by {turn:.2e} rad, and its part of the Jacobian has the determinant {determinant:e}; take a smaller `step`"
+                );
+                (self.places.bodies[body], why)
+            }
+            _ => (self.places.pace, cause.to_string()),
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! What is shown of scenes and their runs: pictures, pages, and derived equations.
+
+pub(crate) mod derivation;
+mod page;
+mod paths;
+mod picture;
+pub(crate) mod recording;

@@ -1,0 +1,227 @@
+//! What a page plays: a scene's run, or one that was written as a table.
+
+use std::fs;
+use std::path::Path;
+
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+
+use crate::file::column::Column;
+use crate::file::mistake::Mistake;
+use crate::file::quantity::short;
+use crate::file::sample::Sample;
+use crate::file::scene::SceneFile;
+use crate::run::make::{Happening, Run};
+use crate::show::page::{Chart, Figure, Page};
+
+/// A motion with what was recorded of it beside the attitude.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    title: String,
+    about: String,
+    figure: Figure,
+    times: Vec<f64>,
+    attitudes: Vec<UnitQuaternion<f64>>,
+    charts: Vec<Chart>,
+    events: Vec<(f64, String)>,
+}
+
+/// A recording isn't a scene, but it has an end.
+const MOST_BYTES: u64 = 1 << 30;
+
+/// How streams of Arrow IPC and its files begin.
+const ARROW: [&[u8]; 2] = [&[0xff; 4], b"ARROW1"];
+
+impl Recording {
+    /// Reads a table that `liestep run --csv` or [`Csv`](liestep::with::Csv) wrote: comma-separated values below names. It
+    /// needs the time and the quaternion; energy, momentum and velocity are drawn where they are there, with gaps where
+    /// they aren't finite.
+    ///
+    /// # Errors
+    ///
+    /// The first [`Mistake`] in it.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, Mistake> {
+        let path = path.as_ref();
+        let length = fs::metadata(path).map_err(|cause| Mistake::unreadable(path, &cause))?.len();
+        if length > MOST_BYTES {
+            return Err(Mistake::at(path, (1, 1), format!("has more than {MOST_BYTES} bytes")));
+        }
+        let bytes = fs::read(path).map_err(|cause| Mistake::unreadable(path, &cause))?;
+        let wrong = |line, column, message: String| Mistake::at(path, (line, column), message);
+        if ARROW.iter().any(|beginning| bytes.starts_with(beginning)) {
+            return Err(wrong(
+                1,
+                1,
+                "is a table of Arrow IPC; pages are made of CSV, as `liestep run --csv` writes it".to_owned(),
+            ));
+        }
+        let text = String::from_utf8(bytes).map_err(|error| Mistake::not_text(path, &error))?;
+        let Table { names, columns, below, lines } =
+            numbers(&text).map_err(|(line, column, message)| wrong(line, column, message))?;
+        let get = |name: &str| names.iter().position(|other| other == name).map(|place| columns[place].clone());
+        let all = |column: Column| column.names().iter().map(|name| get(name)).collect::<Option<Vec<_>>>();
+        let missing = |names: &[&str]| {
+            let names = names.join(", ");
+            wrong(1, 1, format!("has no columns {names}; a recording needs them, as `liestep run --csv` writes them"))
+        };
+        let times = get("t").ok_or_else(|| missing(&["t"]))?;
+        if times.is_empty() {
+            return Err(wrong(below, 1, "has no row".to_owned()));
+        }
+        if let Some(row) = times.windows(2).position(|pair| pair[1] <= pair[0]) {
+            return Err(wrong(lines[row + 1], 1, "is not later than the row before".to_owned()));
+        }
+        let [w, x, y, z] = &all(Column::QUATERNION).ok_or_else(|| missing(Column::QUATERNION.names()))?[..] else {
+            return Err(missing(Column::QUATERNION.names()));
+        };
+        let attitude = |row: usize| {
+            let quaternion = Quaternion::new(w[row], x[row], y[row], z[row]);
+            UnitQuaternion::try_new(quaternion, 0.5).filter(|unit| (quaternion.norm() - unit.norm()).abs() < 0.01)
+        };
+        let attitudes = (0..times.len())
+            .map(|row| attitude(row).ok_or_else(|| wrong(lines[row], 1, "the quaternion isn't a unit one".to_owned())))
+            .collect::<Result<Vec<_>, _>>()?;
+        let mut charts = vec![tilt(&attitudes, &Vector3::z())];
+        if let Some(energy) = get("energy") {
+            charts.push(energy_error(&energy));
+        }
+        if let Some([x, y, z]) = all(Column::SPATIAL_MOMENTUM).as_deref() {
+            let momentum: Vec<_> = (0..times.len()).map(|row| Vector3::new(x[row], y[row], z[row])).collect();
+            charts.push(momentum_error(&momentum));
+        }
+        if let Some([x, y, z]) = all(Column::VELOCITY).as_deref() {
+            charts.push(rates([x.clone(), y.clone(), z.clone()]));
+        }
+        let title = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let figure = Figure::of(&Matrix3::identity(), None, &Vector3::z());
+        let about = path.display().to_string();
+        Ok(Self { title, about, figure, times, attitudes, charts, events: Vec::new() })
+    }
+
+    fn of(scene: &SceneFile, run: &Run) -> Self {
+        let samples = run.samples();
+        let collect = |value: &dyn Fn(&Sample) -> f64| samples.iter().map(value).collect::<Vec<_>>();
+        let attitude = |sample: &Sample| {
+            let [w, x, y, z] = sample.bodies[0].quaternion;
+            UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z))
+        };
+        let attitudes: Vec<_> = samples.iter().map(attitude).collect();
+        let momentum: Vec<_> = samples.iter().map(|sample| sample.angular_momentum).collect();
+        let (axis, arm) = (scene.picture.axis.0, scene.gravity.map(|gravity| gravity.rho.value));
+        let charts = vec![
+            tilt(&attitudes, &axis),
+            energy_error(&collect(&|sample| sample.energy)),
+            momentum_error(&momentum),
+            rates([0, 1, 2].map(|k| collect(&|sample| sample.bodies[0].velocity[k]))),
+        ];
+        let event = |happening: &Happening| {
+            scene.event.get(happening.event).map(|event| (happening.sample.time, event.name.clone()))
+        };
+        Self {
+            title: scene.title.clone(),
+            about: format!("{}, {} steps of {} s", scene.sum(), run.steps(), short(run.step())),
+            figure: Figure::of(scene.body.inertia().as_matrix(), arm, &axis),
+            times: collect(&|sample| sample.time),
+            attitudes,
+            charts,
+            events: run.happenings().iter().filter_map(event).collect(),
+        }
+    }
+
+    /// One page with all that it needs, which plays the motion in a browser: the body and the path of its axis in space,
+    /// and what was recorded over time.
+    #[must_use]
+    pub fn page(&self) -> String {
+        let Self { title, about, figure, times, attitudes, charts, events } = self;
+        Page { title, about, figure, times, attitudes, charts, events }.to_string()
+    }
+}
+
+impl SceneFile {
+    /// As [`Recording::page`], of a run of this scene.
+    #[must_use]
+    pub fn page(&self, run: &Run) -> String {
+        Recording::of(self, run).page()
+    }
+}
+
+fn tilt(attitudes: &[UnitQuaternion<f64>], axis: &Vector3<f64>) -> Chart {
+    let degrees = attitudes.iter().map(|attitude| (attitude * axis).angle(&Vector3::z()).to_degrees());
+    Chart::linear("Tilt of the axis from e₃", "°", vec![("tilt", degrees.collect())])
+}
+
+fn energy_error(energy: &[f64]) -> Chart {
+    let start = energy.iter().copied().find(|energy| energy.is_finite()).unwrap_or_default();
+    let error = energy.iter().map(|energy| (energy - start).abs()).collect();
+    Chart::logarithmic("Energy, from its start", "J", vec![("energy", error)])
+}
+
+fn momentum_error(momentum: &[Vector3<f64>]) -> Chart {
+    let is_finite = |momentum: &Vector3<f64>| momentum.iter().all(|part| part.is_finite());
+    let start = momentum.iter().copied().find(is_finite).unwrap_or_default();
+    let error = |length: fn(Vector3<f64>) -> f64| momentum.iter().map(|m| length(m - start)).collect();
+    let lines = vec![("along e₃", error(|m| m.z.abs())), ("all", error(|m| m.norm()))];
+    Chart::logarithmic("Momentum in space, from its start", "kg m²/s", lines)
+}
+
+fn rates(components: [Vec<f64>; 3]) -> Chart {
+    let lines = ["Ω₁", "Ω₂", "Ω₃"].into_iter().zip(components).collect();
+    Chart::linear("Angular velocity in the body", "rad/s", lines)
+}
+
+/// Comma-separated values.
+struct Table {
+    names: Vec<String>,
+    columns: Vec<Vec<f64>>,
+    /// The line below the names.
+    below: usize,
+    /// Of each row.
+    lines: Vec<usize>,
+}
+
+/// The table in a text, or line, column and what is wrong.
+fn numbers(text: &str) -> Result<Table, (usize, usize, String)> {
+    let (names, below, rows) = header(text.strip_prefix('\u{feff}').unwrap_or(text));
+    // Without these there is no motion.
+    let is_needed = |name: &String| name == "t" || Column::QUATERNION.names().contains(&name.as_str());
+    let needed: Vec<_> = names.iter().map(is_needed).collect();
+    let (mut columns, mut lines) = (vec![Vec::new(); names.len()], Vec::new());
+    for (number, line) in (below..).zip(rows.lines()).filter(|(_, line)| !line.trim().is_empty()) {
+        let mut place = 1;
+        let mut found = 0;
+        for (column, cell) in line.split(',').enumerate() {
+            let value = cell.trim().parse::<f64>().map_err(|_| (number, place, "isn't a number".to_owned()))?;
+            if !value.is_finite() && needed.get(column).is_some_and(|needed| *needed) {
+                return Err((number, place, "isn't a finite number".to_owned()));
+            }
+            if let Some(values) = columns.get_mut(column) {
+                values.push(value);
+            }
+            place += cell.chars().count() + 1;
+            found = column + 1;
+        }
+        if found != names.len() {
+            return Err((number, 1, format!("has {found} values below {} names", names.len())));
+        }
+        lines.push(number);
+    }
+    Ok(Table { names, columns, below, lines })
+}
+
+/// The names, of which those with commas, quotes or line feeds are quoted, the number of the next line, and what is there.
+fn header(text: &str) -> (Vec<String>, usize, &str) {
+    let (mut names, mut is_quoted, mut line) = (vec![String::new()], false, 2);
+    let trimmed = |names: Vec<String>| names.iter().map(|name| name.trim().to_owned()).collect();
+    let mut letters = text.char_indices().peekable();
+    while let Some((at, letter)) = letters.next() {
+        match letter {
+            '"' if !is_quoted || letters.next_if(|(_, next)| *next == '"').is_none() => is_quoted = !is_quoted,
+            ',' if !is_quoted => names.push(String::new()),
+            '\n' if !is_quoted => return (trimmed(names), line, &text[at + 1..]),
+            letter => {
+                line += usize::from(letter == '\n');
+                names.iter_mut().last().into_iter().for_each(|name| name.push(letter));
+            }
+        }
+    }
+    (trimmed(names), line, "")
+}
