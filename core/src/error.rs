@@ -188,7 +188,7 @@ impl fmt::Display for SetupError {
             Self::NonFiniteConstant => f.write_str(
                 "a constant of the scene is not finite: a divisor is zero, a root or a logarithm has no value, or a product is out of range; give the parameters other values",
             ),
-            Self::NonFinite { what } => write!(f, "the initial {what} is not finite; give finite numbers"),
+            Self::NonFinite { what } => write!(f, "the initial {what} is not finite; give finite numbers, far from the ends of the scalar's range"),
             Self::NoVelocity => f.write_str(
                 "no velocity that rest can be continued to has the initial momentum; choose a momentum nearer to that at rest",
             ),
@@ -217,6 +217,22 @@ impl fmt::Display for SetupError {
                     "the initial attitude is not in the group (defect {defect:e}, more than rounding); normalise it first"
                 )
             }
+            Self::NotSeparable { .. }
+            | Self::InertiaMismatch { .. }
+            | Self::VaryingInertia
+            | Self::BiasMismatch
+            | Self::NoForceGradient
+            | Self::NoSecondDerivatives
+            | Self::PotentialMismatch
+            | Self::Unlike { .. } => self.fmt_method(f),
+        }
+    }
+}
+
+impl SetupError {
+    /// What a method asks of a scene.
+    fn fmt_method(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
             Self::NotSeparable { defect } => write!(
                 f,
                 "the Lagrangian is not K(F) − (h/2) (V(w) + V(F⁻¹·w)) (defect {defect:e}, more than rounding), so it can't be split; compose it instead"
@@ -244,6 +260,7 @@ impl fmt::Display for SetupError {
                 f,
                 "the body of lane {lane} can't be stepped beside those before it: they have another method, or have made another number of steps; build a batch of like ones"
             ),
+            _ => Ok(()),
         }
     }
 }

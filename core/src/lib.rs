@@ -129,7 +129,7 @@ pub use error::{SetupError, StepError};
 pub use groups::SO3;
 pub use liestep_macros::{constraint, force, lagrangian};
 pub use mechanics::NonstandardInertia;
-pub use motion::{State, Stepper};
+pub use motion::{State, StateOf, Stepper};
 pub use nalgebra;
 
 #[cfg(doctest)]

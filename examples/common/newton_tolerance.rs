@@ -6,7 +6,7 @@
 use liestep::groups::{Advected, LieGroup as _, Retraction as _};
 use liestep::mechanics::{DiscreteLagrangian, Effect};
 use liestep::numbers::Coordinates as _;
-use liestep::{SO3, State, StepError, Stepper};
+use liestep::{SO3, StateOf, StepError, Stepper};
 use nalgebra::Vector3;
 
 use crate::tenths::{Tenths, float, greater};
@@ -100,15 +100,11 @@ where
 }
 
 /// So many steps of the library's own.
-pub fn by_the_library<L>(
-    stepper: &Stepper<L>,
-    mut state: State<SO3, Vector3<f64>>,
-    steps: u64,
-) -> Result<Left, StepError>
+pub fn by_the_library<L>(stepper: &Stepper<L>, mut state: StateOf<L>, steps: u64) -> Result<Left, StepError>
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
 {
-    let momenta = |state: &State<SO3, Vector3<f64>>| (state.momentum().dot(&state.advected()), state.momentum().z);
+    let momenta = |state: &StateOf<L>| (state.momentum().dot(&state.advected()), state.momentum().z);
     let (start, (vertical, axial)) = (stepper.energy(&state), momenta(&state));
     let (mut left, mut energies, mut iterations) = (Left::default(), Tenths::new(steps), 0);
     for step in 1..=steps {

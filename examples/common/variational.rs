@@ -1,14 +1,14 @@
 //! The integrator that a declared Lagrangian gives, as a method to run.
 
 use liestep::mechanics::DiscreteLagrangian;
-use liestep::{SO3, State, Stepper};
+use liestep::{SO3, StateOf, Stepper};
 
 use super::run::{Method, Sample, Stopped};
 
 /// A motion, with the stepper that moves it.
 pub struct Variational<'a, L: DiscreteLagrangian<Scalar = f64, Group = SO3>> {
     pub stepper: &'a Stepper<L>,
-    pub state: State<SO3, L::Advected>,
+    pub state: StateOf<L>,
 }
 
 impl<L: DiscreteLagrangian<Scalar = f64, Group = SO3>> Clone for Variational<'_, L> {

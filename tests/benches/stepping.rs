@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use liestep::groups::LieGroup;
 use liestep::mechanics::Regular;
-use liestep::{SO3, State, Stepper};
+use liestep::{SO3, StateOf, Stepper};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
 const STEP: f64 = 0.01;
@@ -19,7 +19,7 @@ pub(crate) trait Visit {
 }
 
 #[inline(never)]
-fn run<L: Regular<Scalar = f64>>(stepper: &Stepper<L>, state: &mut State<L::Group, L::Advected>, steps: u32) {
+fn run<L: Regular<Scalar = f64>>(stepper: &Stepper<L>, state: &mut StateOf<L>, steps: u32) {
     for _ in 0..steps {
         stepper.step(state).expect("a solvable step");
     }
@@ -46,7 +46,7 @@ impl Begin for (SO3, SO3) {
     }
 }
 
-fn start<L: Regular<Scalar = f64, Group: Begin>>(scene: L) -> (Stepper<L>, State<L::Group, L::Advected>) {
+fn start<L: Regular<Scalar = f64, Group: Begin>>(scene: L) -> (Stepper<L>, StateOf<L>) {
     let stepper = Stepper::new(scene, STEP).expect("a usable step");
     let (attitude, velocity) = L::Group::begin();
     let state = stepper.start(attitude, velocity).expect("a usable start");

@@ -6,7 +6,7 @@ use core::fmt::Debug;
 use liestep::groups::Retraction as _;
 use liestep::mechanics::{
     DiscreteLagrangian, Effect, Group, Limit, Matrix, Parts, Residual, Scalar, SceneVisitor, Square, Term, Vector,
-    WithKinetic,
+    WithExpensiveKinetic, WithKinetic,
 };
 use liestep::numbers::Real;
 use liestep::prelude::*;
@@ -60,7 +60,6 @@ macro_rules! term_as {
 macro_rules! staged_as {
     ($inner:ty) => {
         type Retraction = <$inner as Effect>::Retraction;
-        type Kinetic = WithKinetic;
 
         const PARTS: Parts = <$inner>::PARTS;
         const INERTIA_IS_CONSTANT: bool = <$inner>::INERTIA_IS_CONSTANT;
@@ -89,6 +88,8 @@ macro_rules! solved_as {
         type StepTerms = $L::StepTerms;
 
         const DENOMINATORS: u32 = $L::DENOMINATORS;
+
+        type Kinetic = WithKinetic;
 
         staged_as!($L);
 
@@ -193,10 +194,9 @@ where
 {
     type Constants = (L::Constants, L, T);
     type StepTerms = (Vector3<T>, L::Advected);
+    type Kinetic = WithExpensiveKinetic;
 
     staged_as!(L);
-
-    const JACOBIAN_IS_EXPENSIVE: bool = true;
 
     fn inertia(&self, _: &Self::Advected) -> Matrix3<T> {
         self.1

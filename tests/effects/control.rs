@@ -2,7 +2,7 @@
 
 use liestep::effects::{Drag, Gravity, RigidBody, Thrust, Torque};
 use liestep::mechanics::Regular;
-use liestep::{NonstandardInertia, SO3, State, StepError, Stepper};
+use liestep::{NonstandardInertia, SO3, StateOf, StepError, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::relative;
 
@@ -14,7 +14,7 @@ fn gravity() -> Gravity {
     Gravity { m: 1.0, g: 9.81, rho: Vector3::new(0.3, 0.2, 0.4), up: Vector3::z() }
 }
 
-fn started<L: Regular<Scalar = f64, Group = SO3>>(scene: L, h: f64) -> (Stepper<L>, State<SO3, L::Advected>) {
+fn started<L: Regular<Scalar = f64, Group = SO3>>(scene: L, h: f64) -> (Stepper<L>, StateOf<L>) {
     let stepper = Stepper::new(scene, h).unwrap();
     let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.3, -0.2));
     let state = stepper.start(attitude, Vector3::new(0.5, 1.0, 3.0)).unwrap();

@@ -19,7 +19,7 @@ fn gravity() -> Gravity {
     Gravity { m: 1.0, g: 9.81, rho: Vector3::new(0.3, 0.2, 0.4), up: Vector3::z() }
 }
 
-fn moved<L: Regular<Scalar = f64, Group = SO3>>(scene: L, count: u32) -> State<SO3, L::Advected> {
+fn moved<L: Regular<Scalar = f64, Group = SO3>>(scene: L, count: u32) -> StateOf<L> {
     let stepper = Stepper::new(scene, 0.01).unwrap();
     let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.3, -0.2));
     let mut state = stepper.start(attitude, Vector3::new(0.5, -1.0, 3.0)).unwrap();

@@ -12,7 +12,7 @@ fn body(moments: [f64; 3]) -> PrincipalBody {
 }
 
 /// The state after so many steps of 0.01 s, and how far from its first value the axial momentum has been.
-fn moved<L>(scene: L, count: usize) -> (State<SO3, L::Advected>, f64)
+fn moved<L>(scene: L, count: usize) -> (StateOf<L>, f64)
 where
     L: Regular<Scalar = f64, Group = SO3> + AxiallyInvariant,
 {

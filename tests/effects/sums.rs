@@ -2,11 +2,12 @@
 
 use checks::random::Random;
 use declarations::{FreeBody, FullTop, HeavyTop};
-use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, RigidBody, Rotor, Spring};
+use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, RigidBody, Rotor, SixthOrderBody, Spring};
 use liestep::groups::{Advected, LieGroup as _, Retraction as _};
 use liestep::laws::samples::derivative;
 use liestep::mechanics::{DiscreteLagrangian, Effect, Inertia, Regular, Term as _};
-use liestep::{NonstandardInertia, SO3, State, Stepper, lagrangian};
+use liestep::motion::Motion;
+use liestep::{NonstandardInertia, SO3, State, StateOf, Stepper, lagrangian};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::relative;
 
@@ -114,13 +115,13 @@ fn gravity(top: &HeavyTop) -> Gravity {
 }
 
 /// How far attitude and momentum of two motions are apart.
-fn apart<A: Advected<SO3>, B: Advected<SO3>>(a: &State<SO3, A>, b: &State<SO3, B>) -> f64 {
+fn apart<A: Advected<SO3>, B: Advected<SO3>>(a: &Motion<SO3, A>, b: &Motion<SO3, B>) -> f64 {
     let attitude = (a.attitude().as_matrix() - b.attitude().as_matrix()).norm();
     attitude.max(relative(&a.momentum(), &b.momentum()))
 }
 
 /// The state after so many steps from one start.
-fn moved<L: Regular<Scalar = f64, Group = SO3>>(lagrangian: L, h: f64, count: usize) -> State<SO3, L::Advected> {
+fn moved<L: Regular<Scalar = f64, Group = SO3>>(lagrangian: L, h: f64, count: usize) -> StateOf<L> {
     let stepper = Stepper::new(lagrangian, h).unwrap();
     let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.3, -0.2));
     let mut state = stepper.start_with_momentum(attitude, Vector3::new(1.5, -4.0, 9.0)).unwrap();
@@ -253,10 +254,12 @@ fn a_scene_holds_what_its_terms_name() {
         size_of::<State<SO3, (A::Advected, B::Advected)>>()
     }
     const VECTOR: usize = 3 * size_of::<f64>();
-    // Seven differences of increments and their number, in the state of any scene: expensive Lagrangians guess by them.
+    // Seven differences of increments and their number, by which expensive Lagrangians guess; elsewhere there is one.
     const HISTORY: usize = 7 * VECTOR + size_of::<usize>();
     const {
-        assert!(size::<RigidBody>() == size_of::<[f64; 9]>() + 3 * VECTOR + HISTORY + size_of::<u64>());
+        assert!(size::<RigidBody>() == size_of::<[f64; 9]>() + 4 * VECTOR + size_of::<u64>());
+        assert!(size_of::<StateOf<RigidBody>>() == size::<RigidBody>());
+        assert!(size_of::<StateOf<SixthOrderBody>>() == size::<RigidBody>() - VECTOR + HISTORY);
         assert!(size_of_sum::<RigidBody, Rotor>() == size::<RigidBody>());
         assert!(size_of_sum::<RigidBody, Gravity>() == size::<RigidBody>() + VECTOR);
         assert!(size_of_sum::<RigidBody, Gravity>() == size::<FullTop>());

@@ -2,9 +2,10 @@
 
 #![allow(non_snake_case)]
 
+use liestep::effects::{Gravity, RigidBody};
 use liestep::groups::{R2, SE2};
-use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
-use nalgebra::{Matrix3, Vector3};
+use liestep::{NonstandardInertia, SO3, SetupError, Stepper, lagrangian};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 /// A body whose type says nothing of its inertia.
 #[lagrangian(group = SO3, l_d = ((F - I) * A * (F - I).transpose()).trace() / (2.0 * h))]
@@ -74,4 +75,32 @@ fn a_constant_that_is_not_finite() {
     };
     assert_eq!(refusal!(divided(2.0)), "");
     assert!(refusal!(divided(1.0)).contains("constant"), "{}", refusal!(divided(1.0)));
+}
+
+/// What is orthogonal and no rotation, and finite numbers that leave the scalar's range once a start is made of them.
+#[test]
+fn a_start_is_looked_at_once_it_is_made() {
+    let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5)).unwrap();
+    let reflected = SO3::from_matrix_unchecked(-Matrix3::identity());
+    let long = Vector3::repeat(1.2e308);
+    let turned: SO3 = UnitQuaternion::rotation_between(&Vector3::x(), &Vector3::repeat(1.0)).unwrap().into();
+    let scene = RigidBody { J_d } + Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+    let far = RigidBody { J_d } + Gravity { m: 1e-300, g: 9.81, rho: Vector3::z(), up: long };
+    let velocity = Vector3::new(0.1, 0.2, 0.3);
+    macro_rules! assert_refused {
+        ($stepper:expr, $distant:expr) => {
+            let (stepper, distant) = ($stepper.unwrap(), $distant.unwrap());
+            assert!(stepper.start(turned, velocity).is_ok());
+            let refused = |start: Result<_, SetupError>| start.err().map(|error| error.to_string()).unwrap_or_default();
+            assert!(refused(stepper.start(reflected, velocity).map(drop)).contains("not in the group (defect 2e0"));
+            assert!(refused(distant.start(SO3::identity(), velocity).map(drop)).is_empty());
+            assert!(refused(distant.start(turned, velocity).map(drop)).contains("view of what is advected"));
+        };
+    }
+    assert_refused!(Stepper::new(scene, 0.01), Stepper::new(far, 0.01));
+    assert_refused!(Stepper::collocated::<1>(scene, 0.01), Stepper::collocated::<1>(far, 0.01));
+    // Collocation keeps twice the momentum.
+    let collocated = Stepper::collocated::<1>(scene, 0.01).unwrap();
+    let refused = collocated.start_with_momentum(turned, Vector3::repeat(1.7e308)).unwrap_err();
+    assert_eq!(refused, SetupError::NonFinite { what: "velocity of the momentum" });
 }

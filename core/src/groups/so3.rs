@@ -9,6 +9,7 @@ use core::fmt;
 use nalgebra::{Matrix3, RealField, Rotation3, SimdBool as _, UnitQuaternion, Vector3};
 
 use super::LieGroup;
+use super::quaternion::quaternion;
 use super::rotation_functions::{rotation_exp, rotation_log};
 use crate::numbers::{Mask, Real, real};
 
@@ -177,7 +178,7 @@ impl<T: RealField + Copy> TryFrom<Matrix3<T>> for SO3<T> {
     /// Accepts a matrix that is orthogonal to 10⁴ roundings, so that one printed to a dozen digits passes.
     fn try_from(matrix: Matrix3<T>) -> Result<Self, NotARotation> {
         let candidate = Self(matrix);
-        let (defect, determinant) = (candidate.defect(), matrix.determinant());
+        let (defect, determinant) = (candidate.departure(), matrix.determinant());
         if defect < T::default_epsilon() * real(1e4) && determinant > T::zero() {
             Ok(candidate)
         } else {
@@ -320,15 +321,11 @@ impl<T: Real> LieGroup for SO3<T> {
         vec![true; 3]
     }
 
-    /// `‖RᵀR − I‖` in the Frobenius norm.
-    // Inlined into `restored`, which every step asks.
+    /// `‖RᵀR − I‖` in the Frobenius norm; of a reflection, which is orthogonal too, `|det R − 1|` more.
     #[hot]
     fn defect(&self) -> T {
-        let entry = |i: usize, j: usize| self.0.column(i).dot(&self.0.column(j));
-        let on = [0, 1, 2].map(|i| entry(i, i) - T::one());
-        let off = [entry(0, 1), entry(0, 2), entry(1, 2)];
-        let square = |[a, b, c]: [T; 3]| a * a + b * b + c * c;
-        (square(on) + square(off) * real(2.0)).simd_sqrt()
+        let determinant = self.0.column(0).cross(&self.0.column(1)).dot(&self.0.column(2));
+        self.departure() + (T::one() - determinant).select(determinant.simd_lt(T::zero()), T::zero())
     }
 
     /// From 2¹¹ ε on, which a random walk reaches in some ten million steps: one Newton step of the polar
@@ -336,12 +333,23 @@ impl<T: Real> LieGroup for SO3<T> {
     // Inlined, as the optimiser otherwise decides by the rest of the program.
     #[hot]
     fn restored(&self) -> Option<(Self, Mask<T>)> {
-        let far = self.defect().simd_gt(T::simd_default_epsilon() * real(2048.0));
+        let far = self.departure().simd_gt(T::simd_default_epsilon() * real(2048.0));
         far.any().then(|| (self.nearer(far), far))
     }
 }
 
 impl<T: Real> SO3<T> {
+    /// `‖RᵀR − I‖` in the Frobenius norm.
+    // Inlined into `restored`, which every step asks.
+    #[hot]
+    fn departure(&self) -> T {
+        let entry = |i: usize, j: usize| self.0.column(i).dot(&self.0.column(j));
+        let on = [0, 1, 2].map(|i| entry(i, i) - T::one());
+        let off = [entry(0, 1), entry(0, 2), entry(1, 2)];
+        let square = |[a, b, c]: [T; 3]| a * a + b * b + c * c;
+        (square(on) + square(off) * real(2.0)).simd_sqrt()
+    }
+
     /// Nearer to the group in these lanes.
     #[cold]
     #[inline(never)]
@@ -350,50 +358,6 @@ impl<T: Real> SO3<T> {
         let nearest = self.0 * (Matrix3::from_diagonal_element(real(3.0)) - gram) * real::<T>(0.5);
         Self(nearest.zip_map(&self.0, |nearest, entry| nearest.select(far, entry)))
     }
-}
-
-/// The unit quaternion of a rotation, real part first, from a part whose square is a quarter at least. Every lane has its
-/// own.
-#[hot]
-fn quaternion<T: Real>(r: &Matrix3<T>) -> [T; 4] {
-    let one = T::one();
-    let (wx, wy, wz) = (r.m32 - r.m23, r.m13 - r.m31, r.m21 - r.m12);
-    // Four times the square of a part, and that part times all. The four squares have the sum four.
-    let ww = one + r.m11 + r.m22 + r.m33;
-    // Within 120° of the identity no other part need be asked. Beyond, the largest of the others is large enough.
-    let from_another = || {
-        let (xy, xz, yz) = (r.m21 + r.m12, r.m13 + r.m31, r.m32 + r.m23);
-        let xx = one + r.m11 - r.m22 - r.m33;
-        let yy = one - r.m11 + r.m22 - r.m33;
-        let zz = one - r.m11 - r.m22 + r.m33;
-        let from_x = || scaled(xx, [wx, xx, xy, xz]);
-        let from_y = || scaled(yy, [wy, xy, yy, yz]);
-        let from_z = || scaled(zz, [wz, xz, yz, zz]);
-        let without_y = || either(xx.simd_ge(zz), from_x, from_z);
-        let without_x = || either(yy.simd_ge(zz), from_y, from_z);
-        either(xx.simd_ge(yy), without_y, without_x)
-    };
-    either(ww.simd_ge(one), || scaled(ww, [ww, wx, wy, wz]), from_another)
-}
-
-/// One or the other in each lane; both are found only where lanes differ.
-#[hot]
-fn either<T: Real>(is_one: Mask<T>, one: impl FnOnce() -> [T; 4], other: impl FnOnce() -> [T; 4]) -> [T; 4] {
-    if is_one.all() {
-        one()
-    } else if is_one.any() {
-        let (one, other) = (one(), other());
-        core::array::from_fn(|k| one[k].select(is_one, other[k]))
-    } else {
-        other()
-    }
-}
-
-/// The quaternion `q` from its part `p`: `products[k] = 4 p q_k` and `square = 4 p²`.
-#[hot]
-fn scaled<T: Real>(square: T, products: [T; 4]) -> [T; 4] {
-    let scale = real::<T>(0.5) / square.simd_sqrt();
-    products.map(|product| product * scale)
 }
 
 /// `Aᵀ v`, unrolled.
@@ -419,69 +383,6 @@ mod tests {
         assert_eq!(SO3::from(Rotation3::from(attitude)), attitude);
         let back = attitude.compose(&attitude.inverse());
         assert!((back.as_matrix() - SO3::identity().as_matrix()).norm() < 1e-15);
-    }
-
-    /// Near every half turn and far from it, and with the sign of the one before.
-    #[test]
-    fn a_rotation_is_shown_by_its_quaternion() {
-        use crate::groups::LieGroup as _;
-        let mut numbers = [0.0; 4];
-        let mut before: Option<[f64; 4]> = None;
-        for turn in 0..2000 {
-            let turn = f64::from(turn);
-            let axis = Vector3::new((0.01 * turn).sin(), (0.017 * turn).cos(), (0.003 * turn).sin());
-            let quaternion = UnitQuaternion::from_scaled_axis(axis.normalize() * (0.01 * turn));
-            SO3::from(quaternion).write_numbers(&mut numbers);
-            let expected = [quaternion.w, quaternion.i, quaternion.j, quaternion.k];
-            let sign = if numbers.iter().zip(expected).map(|(a, b)| a * b).sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
-            let error = numbers.iter().zip(expected).map(|(a, b)| (a - sign * b).abs()).fold(0.0, f64::max);
-            assert!(error < 1e-15, "{error}");
-            let moved = before.map_or(0.0, |before| (0..4).map(|k| (numbers[k] - before[k]).abs()).fold(0.0, f64::max));
-            assert!(moved < 0.1, "it jumps");
-            before = Some(numbers);
-        }
-    }
-
-    /// Lanes with a largest part each, and lanes that agree, have the bits of each alone.
-    #[test]
-    fn each_lane_has_its_own_quaternion() {
-        use crate::groups::LieGroup as _;
-        use crate::numbers::Lanes as _;
-        use simba::simd::{SimdValue as _, WideF64x4};
-        // The fifth has a real part that is enough, though another is larger.
-        let quaternions = [[2.0, 0.3, -0.2, 0.5], [0.3, 2.0, 0.5, -0.2], [-0.2, 0.5, 2.0, 0.3], [0.5, -0.2, 0.3, 2.0]]
-            .into_iter()
-            .chain([[0.6, 0.0, 0.8, 0.0]])
-            .map(|[w, x, y, z]| UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z)));
-        let quaternions: alloc::vec::Vec<_> = quaternions.collect();
-        let together = [
-            [0, 1, 2, 3],
-            [3, 2, 1, 0],
-            [1, 3, 0, 2],
-            [1, 1, 1, 1],
-            [2, 2, 2, 2],
-            [3, 3, 3, 3],
-            [0, 3, 3, 3],
-            [4, 1, 2, 3],
-            [0, 4, 4, 3],
-        ];
-        for parts in together {
-            let alone = parts.map(|k| SO3::from(quaternions[k]));
-            let mut numbers = [WideF64x4::splat(0.0); 4];
-            SO3::<WideF64x4>::gathered(&alone).unwrap().write_numbers(&mut numbers);
-            for (lane, (attitude, k)) in alone.iter().zip(parts).enumerate() {
-                let mut expected = [0.0; 4];
-                attitude.write_numbers(&mut expected);
-                assert_eq!(
-                    numbers.map(|number| number.extract(lane).to_bits()),
-                    expected.map(f64::to_bits),
-                    "{parts:?}"
-                );
-                let [w, x, y, z] = expected;
-                let error = nalgebra::Quaternion::new(w, x, y, z) - quaternions[k].into_inner();
-                assert!(error.norm() < 1e-15, "{error}");
-            }
-        }
     }
 
     /// The matrix of a top's Euler angles, typed from its three factors.

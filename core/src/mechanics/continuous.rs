@@ -4,7 +4,7 @@ use crate::error::StepError;
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::sum::Sum;
 use crate::mechanics::term::Term;
-use crate::numbers::{Coordinates, Mask, Real, real, sum};
+use crate::numbers::{Coordinates, NewtonEnd, Real, newton_halving, reported, sum};
 use nalgebra::SimdBool as _;
 
 type Velocity<L> = <<L as Term>::Group as LieGroup>::Vector;
@@ -143,7 +143,7 @@ pub trait ContinuousLagrangian: Term {
             Legendre::Constant | Legendre::Varying => finite(velocity),
             Legendre::Nonlinear => {
                 let (of, hessian) = (|xi: &_| self.momentum(xi, w), |xi: &_| self.velocity_hessian(xi, w));
-                Newton::<Self::Scalar, _>::new(momentum, velocity, of, hessian).velocity()
+                self::velocity(newton_halving(momentum, velocity, of, hessian))
             }
         }
     }
@@ -197,96 +197,13 @@ fn finite<T: Real, V: Coordinates<T>>(value: V) -> Result<V, StepError> {
     if value.is_finite() { Ok(value) } else { Err(StepError::Singular) }
 }
 
-/// More than any regular Lagrangian needs: Newton's iteration doubles the digits, and a halved step is a lost one.
-const MOST_ITERATIONS: u32 = 50;
-/// A step of `2⁻²⁰` of Newton's is no longer one that the linear model speaks of.
-const MOST_HALVINGS: u32 = 20;
-/// What rounding leaves of the equation, in units of the scalar's epsilon and of the size of its terms.
-const ROUNDINGS: f64 = 1e4;
-
-/// Where Newton's iteration for `∂l/∂ξ = μ` ends; of several lanes each goes as it would alone.
-pub(super) struct Newton<T: Real, V> {
-    pub(super) velocity: V,
-    /// Whether the equation holds, to rounding.
-    pub(super) is_settled: Mask<T>,
-    /// Whether the velocity is on the side of the singularities of `∂²l/∂ξ²` that rest is on: of two velocities with one
-    /// momentum that one is meant.
-    pub(super) is_regular: Mask<T>,
-    iterations: u32,
-    /// By how much the equation is missed, relative to its terms.
-    residual: T,
-}
-
-impl<T: Real, V: Coordinates<T>> Newton<T, V> {
-    /// With steps that are halved until they help; it ends where none does. `momentum_of` is `∂l/∂ξ`, and `hessian_of` its
-    /// derivative.
-    pub(super) fn new(
-        momentum: &V,
-        mut velocity: V,
-        momentum_of: impl Fn(&V) -> V,
-        hessian_of: impl Fn(&V) -> V::Square,
-    ) -> Self {
-        let defect_at = |velocity: &V| *momentum - momentum_of(velocity);
-        let (rest, first) = (V::zero(), defect_at(&V::zero()));
-        // Where the first step leaves the domain of `l`, the iteration begins at rest.
-        let mut defect = defect_at(&velocity);
-        let starts = defect.dot(&defect).simd_le(first.dot(&first));
-        velocity = velocity.select(starts, rest);
-        defect = defect.select(starts, first);
-        // The terms that cancel: the momentum, and what there is of it at rest and at the first velocity.
-        let bias = *momentum - first;
-        let terms = momentum.dot(momentum) + bias.dot(&bias) + (*momentum - defect).dot(&(*momentum - defect));
-        let allowed = T::simd_default_epsilon() * real(ROUNDINGS);
-        let bound = terms * allowed * allowed;
-        let half = real::<T>(0.5);
-        let mut iterations = 0;
-        while iterations < MOST_ITERATIONS {
-            let size = defect.dot(&defect);
-            // Near rounding a step that doesn't help ends it; farther away it is too long.
-            let is_near = size.simd_le(bound);
-            let step = V::solve(&hessian_of(&velocity), &defect).0;
-            let (mut fraction, mut next, mut next_defect) = (real::<T>(1.0), velocity, defect);
-            let mut helped: Mask<T> = size.simd_lt(size);
-            let mut tried = helped;
-            for _ in 0..MOST_HALVINGS {
-                let candidate = velocity + step * fraction;
-                let candidate_defect = defect_at(&candidate);
-                let helps = candidate_defect.dot(&candidate_defect).simd_lt(size) & !tried;
-                next = candidate.select(helps, next);
-                next_defect = candidate_defect.select(helps, next_defect);
-                helped = helped | helps;
-                tried = helped | is_near;
-                if tried.all() {
-                    break;
-                }
-                fraction *= half;
-            }
-            (velocity, defect) = (next, next_defect);
-            iterations += 1;
-            if helped.none() {
-                break;
-            }
-        }
-        let residual = defect.dot(&defect);
-        let sign = |velocity: &V| V::least_pivot(&hessian_of(velocity)).0;
-        let is_lost = sign(&rest).simd_gt(real(0.0)) & sign(&velocity).simd_le(real(0.0));
-        Self {
-            velocity,
-            is_settled: residual.simd_le(bound),
-            is_regular: !is_lost,
-            iterations,
-            residual: (residual / terms).simd_sqrt(),
-        }
+/// The velocity that Newton's iteration has ended at, if it is one in all lanes.
+fn velocity<T: Real, V: Coordinates<T>>(ended: NewtonEnd<T, V>) -> Result<V, StepError> {
+    let NewtonEnd { solution, is_settled, is_regular, iterations, residual } = ended;
+    if !is_settled.all() {
+        return Err(StepError::NotConverged { iterations, residual: reported(residual) });
     }
-
-    /// The velocity, if it is one in all lanes.
-    fn velocity(self) -> Result<V, StepError> {
-        let Self { velocity, is_settled, is_regular, iterations, residual } = self;
-        if !is_settled.all() {
-            return Err(StepError::NotConverged { iterations, residual: crate::numbers::reported(residual) });
-        }
-        if is_regular.all() { finite(velocity) } else { Err(StepError::Singular) }
-    }
+    if is_regular.all() { finite(solution) } else { Err(StepError::Singular) }
 }
 
 impl<A, B> ContinuousLagrangian for Sum<A, B>

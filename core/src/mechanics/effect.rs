@@ -6,12 +6,11 @@ use core::fmt::Debug;
 
 use crate::error::SetupError;
 use crate::groups::{LieGroup, Retraction, SquareOf, body_of};
-use crate::mechanics::continuous::Newton;
 use crate::mechanics::description::SceneVisitor;
-use crate::mechanics::kinetic_part::{KineticPart, WithKinetic};
+use crate::mechanics::kinetic_part::{KineticPart, WithExpensiveKinetic, WithKinetic};
 use crate::mechanics::operations::Operations;
 use crate::mechanics::term::Term;
-use crate::numbers::{Blocks, Coordinates, Pattern, Real, real, reported};
+use crate::numbers::{Blocks, Coordinates, Pattern, Real, newton_halving, real, reported};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField};
 
 /// The scalar of an effect.
@@ -176,7 +175,7 @@ impl<E: Effect + ?Sized> Limit<E> {
 pub trait Effect: Term {
     /// The coordinates of the Newton unknown.
     type Retraction: Retraction<Self::Group>;
-    /// Whether there is a kinetic part: [`WithKinetic`](crate::mechanics::WithKinetic) or
+    /// Whether there is a kinetic part: [`WithKinetic`], [`WithExpensiveKinetic`] or
     /// [`WithoutKinetic`](crate::mechanics::WithoutKinetic).
     type Kinetic: KineticPart;
     /// What the parameters and `h` determine.
@@ -194,8 +193,9 @@ pub trait Effect: Term {
     ///
     /// Then a solve starts with the [residual](Self::newton_residual) alone and the Jacobian of the free body with the
     /// same [`inertia`](Self::inertia), [`Retraction::free_momentum_tangent`], with which
-    /// [`DENOMINATORS`](Self::DENOMINATORS) must be zero. The macro decides it by counting operations.
-    const JACOBIAN_IS_EXPENSIVE: bool = false;
+    /// [`DENOMINATORS`](Self::DENOMINATORS) must be zero. The macro decides it by counting operations, and says it by
+    /// [`Kinetic`](Self::Kinetic): of it a state keeps a longer history.
+    const JACOBIAN_IS_EXPENSIVE: bool = Self::Kinetic::JACOBIAN_IS_EXPENSIVE;
 
     /// Whether [`inertia`](Self::inertia) is the same for all `w`. Then it is checked once, when a stepper is built, and
     /// methods that have the motion of one free body in them may be used.
@@ -364,6 +364,8 @@ pub trait Moves<E: ?Sized> {}
 
 impl<E: ?Sized> Moves<E> for WithKinetic {}
 
+impl<E: ?Sized> Moves<E> for WithExpensiveKinetic {}
+
 /// `μ = ∂l/∂ξ`, `Jξ + s(w)` where `l` is quadratic: the momentum of the body velocity `ξ`.
 pub(crate) fn momentum_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advected) -> Vector<E> {
     if E::IS_QUADRATIC {
@@ -382,8 +384,8 @@ pub(crate) fn velocity_of_momentum<E: Effect>(effect: &E, momentum: &Vector<E>, 
     }
     let (of, hessian) =
         (|xi: &Vector<E>| effect.limit(Some(xi), w).momentum, |xi: &Vector<E>| effect.limit(Some(xi), w).hessian);
-    let found = Newton::<Scalar<E>, _>::new(momentum, near_rest, of, hessian);
-    found.velocity.select(found.is_settled & found.is_regular, Vector::<E>::zero() * real(f64::NAN))
+    let found = newton_halving(momentum, near_rest, of, hessian);
+    found.solution.select(found.is_settled & found.is_regular, Vector::<E>::zero() * real(f64::NAN))
 }
 
 /// An inertia that is the same wherever a body is, with the factors by which the velocities of many momenta are solved

@@ -1,17 +1,33 @@
 //! Whether a scene has a kinetic part, as types: without one a momentum determines no velocity, and nothing moves.
 
-/// [`WithKinetic`] or [`WithoutKinetic`].
+use crate::numbers::{Coordinates, History, Parabola, Polynomial, Real};
+
+/// [`WithKinetic`], [`WithExpensiveKinetic`] or [`WithoutKinetic`].
 pub trait KineticPart {
     /// Whether there is one.
     const IS_THERE: bool;
 
+    /// See [`Effect::JACOBIAN_IS_EXPENSIVE`](crate::mechanics::Effect::JACOBIAN_IS_EXPENSIVE).
+    const JACOBIAN_IS_EXPENSIVE: bool;
+
+    /// What a state keeps of the last increments to guess the next one. It is copied with each state, so it is no longer
+    /// than the solve pays for.
+    type History<T: Real, V: Coordinates<T>>: History<T, V>;
+
     /// Of a sum: with, if one of the two is.
     type Or<Other: KineticPart>: KineticPart;
+
+    /// Of what is solved by Newton's iteration, whatever the Jacobian costs.
+    type ByNewton: KineticPart;
 }
 
 /// There is a term in `1/h`.
 #[derive(Clone, Copy, Debug)]
 pub struct WithKinetic;
+
+/// There is a term in `1/h`, whose Jacobian costs more than several residuals.
+#[derive(Clone, Copy, Debug)]
+pub struct WithExpensiveKinetic;
 
 /// There is none, as in a potential.
 #[derive(Clone, Copy, Debug)]
@@ -19,12 +35,27 @@ pub struct WithoutKinetic;
 
 impl KineticPart for WithKinetic {
     const IS_THERE: bool = true;
+    const JACOBIAN_IS_EXPENSIVE: bool = false;
 
+    type History<T: Real, V: Coordinates<T>> = Parabola<V>;
     type Or<Other: KineticPart> = Self;
+    type ByNewton = Self;
+}
+
+impl KineticPart for WithExpensiveKinetic {
+    const IS_THERE: bool = true;
+    const JACOBIAN_IS_EXPENSIVE: bool = true;
+
+    type History<T: Real, V: Coordinates<T>> = Polynomial<V>;
+    type Or<Other: KineticPart> = Self;
+    type ByNewton = WithKinetic;
 }
 
 impl KineticPart for WithoutKinetic {
     const IS_THERE: bool = false;
+    const JACOBIAN_IS_EXPENSIVE: bool = false;
 
+    type History<T: Real, V: Coordinates<T>> = Parabola<V>;
     type Or<Other: KineticPart> = Other;
+    type ByNewton = Self;
 }

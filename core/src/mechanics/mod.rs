@@ -33,7 +33,7 @@ pub(crate) use effect::{
 };
 pub use force::Force;
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
-pub use kinetic_part::{KineticPart, WithKinetic, WithoutKinetic};
+pub use kinetic_part::{KineticPart, WithExpensiveKinetic, WithKinetic, WithoutKinetic};
 pub use lagrangian::{DiscreteLagrangian, RigidScene, Scene};
 pub(crate) use noether::{left_symmetries, right_symmetries};
 pub use operations::Operations;

@@ -2,12 +2,8 @@
 
 use core::fmt::Debug;
 
-use crate::numbers::{Coordinates, Real, real, reported};
-use crate::solving::{DIFFERENCES, Guess, History, Warm};
-
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+use crate::numbers::{Coordinates, History, Real};
+use crate::solving::{Guess, WarmStart};
 
 /// What a [`Plan`](crate::motion::Plan) keeps from step to step, as numbers that a checkpoint stores.
 pub trait Kept<T: Real>: Copy + Debug + PartialEq {
@@ -38,45 +34,31 @@ impl<T: Real, V: Coordinates<T>> Kept<T> for Guess<V> {
     }
 }
 
-impl<T: Real, V: Coordinates<T>> Kept<T> for Warm<V> {
-    fn each(&self, mut visit: &mut dyn FnMut(T)) {
+impl<T: Real, V: Coordinates<T>, H: History<T, V>> Kept<T> for WarmStart<V, H> {
+    fn each(&self, visit: &mut dyn FnMut(T)) {
         Kept::each(&self.guess, visit);
-        visit(count(self.history.increments));
-        self.history.differences.iter().for_each(|difference| difference.each(&mut visit));
+        self.history.each(visit);
     }
 
-    fn from_numbers(mut next: &mut dyn FnMut() -> T) -> Option<Self> {
-        let guess = Guess::from_numbers(next)?;
-        let increments = counted(next()).filter(|&increments| increments <= DIFFERENCES + 1)?;
-        let differences = core::array::from_fn(|_| V::from_entries(&mut next));
-        Some(Self { guess, history: History { differences, increments } })
+    fn from_numbers(next: &mut dyn FnMut() -> T) -> Option<Self> {
+        Some(Self { guess: Guess::from_numbers(next)?, history: H::from_numbers(next)? })
     }
-}
-
-/// A small whole number as a scalar.
-#[allow(clippy::cast_precision_loss)] // far fewer than a float counts
-pub(crate) fn count<T: Real>(number: usize) -> T {
-    real(number as f64)
-}
-
-/// The whole number that a scalar is, if it is one.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked
-pub(crate) fn counted<T: Real>(number: T) -> Option<usize> {
-    let number = reported(number);
-    ((0.0..1e6).contains(&number) && number.fract() == 0.0).then_some(number as usize)
 }
 
 #[cfg(test)]
 mod tests {
     use super::Kept as _;
-    use crate::solving::Warm;
+    use crate::numbers::Polynomial;
+    use crate::solving::WarmStart;
     use alloc::vec::Vec;
     use nalgebra::Vector2;
 
+    type Memory = WarmStart<Vector2<f64>, Polynomial<Vector2<f64>>>;
+
     /// Half the increment, a guess, how many increments there were, and their differences.
-    fn read(increments: f64) -> Option<Warm<Vector2<f64>>> {
+    fn read(increments: f64) -> Option<Memory> {
         let mut numbers = [1.0, 2.0, 3.0, 4.0, increments].into_iter().chain((0..14).map(f64::from));
-        Warm::from_numbers(&mut || numbers.next().unwrap())
+        Memory::from_numbers(&mut || numbers.next().unwrap())
     }
 
     #[test]
@@ -84,8 +66,13 @@ mod tests {
         let mut numbers = Vec::new();
         read(3.0).unwrap().each(&mut |number| numbers.push(number));
         let mut again = numbers.iter().copied();
-        assert_eq!(Warm::<Vector2<f64>>::from_numbers(&mut || again.next().unwrap()), read(3.0));
+        assert_eq!(Memory::from_numbers(&mut || again.next().unwrap()), read(3.0));
         assert_eq!((numbers.len(), again.next()), (19, None));
+        let mut three = numbers[..6].iter().copied();
+        let short = WarmStart::<Vector2<f64>>::from_numbers(&mut || three.next().unwrap()).unwrap();
+        let mut again = Vec::new();
+        short.each(&mut |number| again.push(number));
+        assert_eq!(again, numbers[..6]);
     }
 
     #[test]

@@ -30,15 +30,13 @@ pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, reconstruct};
 pub use increment::Increment;
 pub use integrator::{Answer, Integrator, Moment, ScalarIn};
 pub use kept::Kept;
-pub(crate) use kept::{count, counted};
 pub use plan::{Cost, NextSteps, Plan, Steerable};
 pub use report::{Remedy, StepReport};
 pub use right_hand_side::RightHandSide;
 pub use state::State;
-pub(crate) use stepper::StateOf;
-pub use stepper::Stepper;
 pub(crate) use stepper::check_attitude;
+pub use stepper::{StateOf, Stepper};
 pub use summation::{Motion, Summation};
 pub(crate) use summation::{STEPS_BETWEEN_CHECKS, is_due, restored};
 
-pub use crate::solving::{Guess, Solvability, Warm};
+pub use crate::solving::{Guess, Solvability, WarmStart};

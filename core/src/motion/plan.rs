@@ -76,7 +76,7 @@ pub trait Plan<S: Effect> {
         kept: &mut Self::Kept,
     ) -> Result<StepReport, StepError>;
 
-    /// So many steps, of which the states between aren't asked for; returns all iterations. After an error motion and
+    /// A number of steps, of which the states between aren't asked for; returns all iterations. After an error motion and
     /// memory may be anywhere.
     ///
     /// # Errors
@@ -174,7 +174,7 @@ pub type NextSteps<'a, G, A> = dyn FnMut(&Motion<G, A>) -> u64 + 'a;
 
 pub(crate) type Next<'a, G, A> = Option<&'a mut NextSteps<'a, G, A>>;
 
-/// So many steps, and what comes after them.
+/// A number of steps, and what comes after them.
 struct Run<'a, 'n, S: Effect, P: Plan<S>>(
     &'a P,
     &'a S,

@@ -3,7 +3,7 @@
 use alloc::string::String;
 
 use crate::error::{SetupError, StepError};
-use crate::groups::{Advected as _, LieGroup, SO3};
+use crate::groups::{Advected, LieGroup, SO3};
 use crate::mechanics::{
     AxiallyInvariant, DiscreteLagrangian, Effect, FactoredInertia, Group, LeftInvariant, Regular, Scalar, Term, Vector,
     check_inertia, check_velocity, energy, factored_inertia, momentum_of_velocity, velocity_and_energy,
@@ -12,16 +12,17 @@ use crate::mechanics::{
 use crate::motion::declared::Declared;
 use crate::motion::flows::DiscreteLiePoisson;
 use crate::motion::integrator::{Integrator, run_by_run};
+use crate::motion::kept::Kept;
 use crate::motion::plan::{Next, NextSteps, Plan, Steerable, run_plan};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
 use crate::motion::summation::Motion;
-use crate::numbers::{Coordinates as _, Kernel, Vectors, dispatch, real, reported};
+use crate::numbers::{Coordinates as _, Kernel, Real, Vectors, dispatch, is_finite, real, reported};
 use crate::solving::Solvability;
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _};
 
-/// The state of a scene `S` that is stepped by the plan `P`.
-pub(crate) type StateOf<S, P> = State<Group<S>, <S as Term>::Advected, <P as Plan<S>>::Kept>;
+/// The state of a scene `S` that is stepped by the plan `P`, its own step unless another is named.
+pub type StateOf<S, P = Declared<S>> = State<Group<S>, <S as Term>::Advected, <P as Plan<S>>::Kept>;
 
 /// An integrator with a fixed step: a scene, and a method whose constants are folded for it.
 ///
@@ -149,6 +150,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
             }
         }
         let state = self.begin(attitude, momentum);
+        check_range(&state)?;
         self.plan.admits(&self.scene, &state.motion)?;
         Ok(state)
     }
@@ -599,6 +601,20 @@ pub(crate) fn check_attitude<G: LieGroup>(attitude: &G) -> Result<(), SetupError
     let allowed = G::Scalar::simd_default_epsilon() * real(1e4);
     let defect = attitude.defect();
     if defect.simd_le(allowed).all() { Ok(()) } else { Err(SetupError::NotInGroup { defect: reported(defect) }) }
+}
+
+/// Whether what was made of finite numbers is finite, too: a turned vector may leave the scalar's range, and so may a
+/// velocity.
+fn check_range<T: Real, G: LieGroup<Scalar = T>, A: Advected<G>, K: Kept<T>>(
+    state: &State<G, A, K>,
+) -> Result<(), SetupError> {
+    let mut is_kept = true;
+    state.kept.each(&mut |number| is_kept &= is_finite(number));
+    match (state.motion.advected.is_finite(), is_kept) {
+        (false, _) => Err(SetupError::NonFinite { what: "view of what is advected" }),
+        (true, false) => Err(SetupError::NonFinite { what: "velocity of the momentum" }),
+        (true, true) => Ok(()),
+    }
 }
 
 /// A step of this state.

@@ -9,7 +9,9 @@ mod coordinates;
 mod dual;
 mod entries;
 mod exact;
+mod history;
 mod lanes;
+mod newton;
 mod scalar;
 mod simd;
 
@@ -23,10 +25,12 @@ pub(crate) use dual::{Dual, Number};
 pub use entries::Entries;
 pub(crate) use entries::{sum, zero};
 pub(crate) use exact::{carried_sum, two_square, two_sum};
+pub(crate) use history::{History, Parabola, Polynomial};
 pub use lanes::{InLanes, Lanes, Numbers};
+pub(crate) use newton::{NewtonEnd, newton_halving};
 pub use scalar::real;
 pub use scalar::{Mask, Real};
-pub(crate) use scalar::{is_finite, largest_lane, nowhere, reported};
+pub(crate) use scalar::{count, counted, is_finite, largest_lane, nowhere, reported};
 
 pub use simd::Vectors;
 pub(crate) use simd::{Kernel, dispatch};

@@ -2,6 +2,10 @@
 
 use nalgebra::{RealField, SimdBool as _, SimdRealField, SimdValue};
 
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
+
 /// A real scalar: `f64`, `f32`, a dual number, or several of them in SIMD lanes.
 ///
 /// Everything that nalgebra accepts as a real field is a `Real`, and lanes of these; there is nothing to implement.
@@ -54,6 +58,19 @@ pub(crate) fn nowhere<T: Real>() -> Mask<T> {
 #[must_use]
 pub fn real<T: Real>(value: f64) -> T {
     nalgebra::convert(value)
+}
+
+/// A small whole number as a scalar.
+#[allow(clippy::cast_precision_loss)] // far fewer than a float counts
+pub(crate) fn count<T: Real>(number: usize) -> T {
+    real(number as f64)
+}
+
+/// The whole number that a scalar is, if it is one.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked
+pub(crate) fn counted<T: Real>(number: T) -> Option<usize> {
+    let number = reported(number);
+    ((0.0..1e6).contains(&number) && number.fract() == 0.0).then_some(number as usize)
 }
 
 /// Whether every lane is finite: zero times an infinity or a NaN is NaN.

@@ -15,12 +15,40 @@ use crate::mechanics::{Effect, Group, NewtonUpdate, Square, Vector, linked_updat
 use crate::numbers::{Coordinates as _, Mask, Pattern, nowhere, real, reported};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
 
-/// What else is asked of a momentum equation where a solution is doubtful.
+impl<L: Effect> Problem<'_, L> {
+    /// From the guess; where that fails from the identity; where that fails, once more with shortened steps.
+    pub(crate) fn solve(&self, guess: &Vector<L>) -> Result<Root<Group<L>>, StepError> {
+        if !self.a.is_finite() {
+            return Err(StepError::NonFinite { what: "momentum" });
+        }
+        let equation = CalledEquation::new(self);
+        let (start, spent) = self.start(&equation.terms, guess);
+        equation.careful().solve(start, spent)
+    }
+
+    /// Starts all lanes at the guess, but keeps those that [`solve_directly`](Self::solve_directly) has solved without the
+    /// Jacobian while another lane has failed.
+    fn start(&self, terms: &L::StepTerms, guess: &Vector<L>) -> (Lanes<Group<L>>, u32) {
+        if const { !L::JACOBIAN_IS_EXPENSIVE } || !Self::goes_by_secants() {
+            return (Lanes::starting_at(guess), 0);
+        }
+        let (lanes, iterations) = self.iterate_by_secants(terms, guess);
+        let settled = lanes.settled;
+        (lanes.keeping(settled, guess), iterations)
+    }
+
+    /// Newton's iteration from one guess, refused where it settles on another branch.
+    pub(crate) fn attempt(&self, guess: &Vector<L>) -> Result<Root<Group<L>>, StepError> {
+        CalledEquation::new(self).careful().attempt(guess)
+    }
+}
+
+/// What a momentum equation answers where a solution is doubtful.
 trait Equation<G: LieGroup>: System<G> {
     /// The residual and the Jacobian.
     fn newton_system(&self, half: &G::Vector) -> (G::Vector, SquareOf<G>);
 
-    /// The same with nothing on its right side.
+    /// Residual and Jacobian with zero on the right side.
     fn unforced_system(&self, half: &G::Vector) -> (G::Vector, SquareOf<G>);
 
     /// `h` times the [right-trivialised Jacobian](Effect::momentum_jacobian). None where neighbours are joined: it lacks the
@@ -29,22 +57,22 @@ trait Equation<G: LieGroup>: System<G> {
 }
 
 /// The equation of a [`Problem`], by functions that aren't inlined.
-pub(super) struct Seldom<'a, L: Effect> {
+struct CalledEquation<'a, L: Effect> {
     problem: &'a Problem<'a, L>,
-    pub(super) terms: L::StepTerms,
+    terms: L::StepTerms,
 }
 
-impl<'a, L: Effect> Seldom<'a, L> {
-    pub(super) fn new(problem: &'a Problem<'a, L>) -> Self {
+impl<'a, L: Effect> CalledEquation<'a, L> {
+    fn new(problem: &'a Problem<'a, L>) -> Self {
         Self { problem, terms: step_terms::<L>(problem.constants, &problem.a, problem.w) }
     }
 
-    pub(super) fn careful(&self) -> Careful<'_, Group<L>, L::Retraction> {
-        Careful { equation: self, safe: self.problem.safe, retraction: PhantomData }
+    fn careful(&self) -> CarefulSolve<'_, Group<L>, L::Retraction> {
+        CarefulSolve { equation: self, safe: self.problem.safe, retraction: PhantomData }
     }
 }
 
-impl<L: Effect> System<Group<L>> for Seldom<'_, L> {
+impl<L: Effect> System<Group<L>> for CalledEquation<'_, L> {
     fn pattern(&self) -> Pattern {
         pattern::<L>()
     }
@@ -62,7 +90,7 @@ impl<L: Effect> System<Group<L>> for Seldom<'_, L> {
     }
 }
 
-impl<L: Effect> Equation<Group<L>> for Seldom<'_, L> {
+impl<L: Effect> Equation<Group<L>> for CalledEquation<'_, L> {
     fn newton_system(&self, half: &Vector<L>) -> (Vector<L>, Square<L>) {
         newton_system::<L>(self.problem.constants, &self.terms, half)
     }
@@ -83,17 +111,17 @@ impl<L: Effect> Equation<Group<L>> for Seldom<'_, L> {
 }
 
 /// A solve of this equation.
-pub(super) struct Careful<'a, G: LieGroup, R> {
+struct CarefulSolve<'a, G: LieGroup, R> {
     equation: &'a dyn Equation<G>,
     /// See [`Problem::safe`].
     safe: G::Scalar,
     retraction: PhantomData<R>,
 }
 
-impl<G: LieGroup, R: Retraction<G>> Careful<'_, G, R> {
+impl<G: LieGroup, R: Retraction<G>> CarefulSolve<'_, G, R> {
     /// From this start; where that fails from the identity; where that fails, once more with shortened steps. With the
     /// iterations that the start has taken.
-    pub(super) fn solve(&self, start: Lanes<G>, spent: u32) -> Result<Root<G>, StepError> {
+    fn solve(&self, start: Lanes<G>, spent: u32) -> Result<Root<G>, StepError> {
         let (warm, iterations) = self.iterate(start);
         let accepted = self.accepted(&warm);
         if accepted.all() {
@@ -113,35 +141,28 @@ impl<G: LieGroup, R: Retraction<G>> Careful<'_, G, R> {
     }
 
     /// Newton's iteration from one guess, refused where it settles on another branch.
-    pub(super) fn attempt(&self, guess: &G::Vector) -> Result<Root<G>, StepError> {
+    fn attempt(&self, guess: &G::Vector) -> Result<Root<G>, StepError> {
         let (lanes, iterations) = self.iterate(Lanes::starting_at(guess));
         self.conclude(&lanes, iterations)
     }
 
     /// Until all lanes have settled or the iterations are used up; how many there were.
     fn iterate(&self, mut lanes: Lanes<G>) -> (Lanes<G>, u32) {
-        for iteration in 1..=MAX_ITERATIONS {
-            let again = lanes.iterate_once::<true>(self.equation, self.safe);
-            if lanes.settled.all() {
-                return (lanes, iteration + u32::from(again));
-            }
-        }
-        (lanes, MAX_ITERATIONS)
+        let made = lanes.iterate(MAX_ITERATIONS, |lanes| lanes.iterate_once::<true>(self.equation, self.safe));
+        (lanes, made.unwrap_or(MAX_ITERATIONS))
     }
 
     /// As [`iterate`](Self::iterate), with no update longer than [`LONGEST_DAMPED`].
     fn iterate_damped(&self, mut lanes: Lanes<G>) -> (Lanes<G>, u32) {
-        for iteration in 1..=MAX_DAMPED_ITERATIONS {
+        let made = lanes.iterate(MAX_DAMPED_ITERATIONS, |lanes| {
             let (update, det) = self.update(&lanes.half);
             let length = update.dot(&update).simd_sqrt();
             let longest = real::<G::Scalar>(LONGEST_DAMPED);
             let factor = (longest / length).select(length.simd_gt(longest), real(1.0));
             lanes.advance(&update, det, &(update * factor));
-            if lanes.settled.all() {
-                return (lanes, iteration);
-            }
-        }
-        (lanes, MAX_DAMPED_ITERATIONS)
+            false
+        });
+        (lanes, made.unwrap_or(MAX_DAMPED_ITERATIONS))
     }
 
     fn update(&self, half: &G::Vector) -> (G::Vector, G::Scalar) {
@@ -176,7 +197,7 @@ impl<G: LieGroup, R: Retraction<G>> Careful<'_, G, R> {
         size(&residual).simd_le(scale * G::Scalar::simd_default_epsilon().simd_sqrt())
     }
 
-    /// The root if all lanes have one, otherwise what the others have failed from.
+    /// The root if all lanes have one, otherwise the reason why a lane has none.
     fn conclude(&self, lanes: &Lanes<G>, iterations: u32) -> Result<Root<G>, StepError> {
         let accepted = self.accepted(lanes);
         if accepted.all() {

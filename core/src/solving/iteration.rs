@@ -3,7 +3,7 @@
 use crate::groups::{LieGroup, Retraction, SquareOf};
 use crate::mechanics::NewtonUpdate;
 use crate::numbers::{Coordinates as _, Mask, Pattern, Real, nowhere, real};
-use nalgebra::{SimdPartialOrd as _, SimdValue as _};
+use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue as _};
 
 /// Quadratic convergence needs at most nine up to 0.999 of the fold; more means that there is no solution.
 pub(crate) const MAX_ITERATIONS: u32 = 20;
@@ -28,7 +28,7 @@ pub(super) trait System<G: LieGroup> {
     /// One of Newton's iterations from half the coordinates.
     fn newton_update(&self, half: &G::Vector) -> Iteration<G>;
 
-    /// The update from another place by the same Jacobian, in these factors.
+    /// The update at `half` by the Jacobian of another place, which is given in factors.
     #[hot]
     fn simplified(&self, factors: &SquareOf<G>, det: G::Scalar, half: &G::Vector) -> G::Vector {
         G::Vector::solve_again_with(factors, det, self.pattern(), &self.residual(half))
@@ -79,7 +79,7 @@ impl<G: LieGroup> Root<G> {
     }
 }
 
-/// Where the lanes of an iteration have come to.
+/// The iterates of all lanes.
 pub(super) struct Lanes<G: LieGroup> {
     pub(super) half: G::Vector,
     /// Of the last Jacobian: at the iterate before `half`, or before two [short updates](super::reused_jacobian).
@@ -94,6 +94,20 @@ impl<G: LieGroup> Lanes<G> {
         Self { half: *half, det: real(0.0), settled: nowhere::<G::Scalar>(), kick: Kick::none() }
     }
 
+    /// Iterates until all lanes have settled, at most `most` times. `once` makes an iteration, and returns whether a lane
+    /// has settled by a [second one](super::reused_jacobian) in it. Returns how many there were; `None` where some lane
+    /// hasn't settled.
+    #[hot]
+    pub(super) fn iterate(&mut self, most: u32, mut once: impl FnMut(&mut Self) -> bool) -> Option<u32> {
+        for iteration in 1..=most {
+            let again = once(self);
+            if self.settled.all() {
+                return Some(iteration + u32::from(again));
+            }
+        }
+        None
+    }
+
     /// Takes `part` of the update in the lanes that haven't settled.
     #[hot]
     pub(super) fn advance(&mut self, update: &G::Vector, det: G::Scalar, part: &G::Vector) {
@@ -104,7 +118,7 @@ impl<G: LieGroup> Lanes<G> {
         self.settled = self.settled | settled;
     }
 
-    /// The lanes of the mask as they are, the others at another start.
+    /// Keeps the lanes of the mask, and puts the others at `start`.
     pub(super) fn keeping(mut self, accepted: Mask<G::Scalar>, start: &G::Vector) -> Self {
         self.half = self.half.select(accepted, *start);
         self.settled = accepted;

@@ -9,18 +9,18 @@
 use core::hint::black_box;
 
 use super::iteration::{Lanes, MAX_ITERATIONS, Root, System, settled};
-use super::problem::{Problem, Usual};
+use super::problem::{InlinedEquation, Problem};
 use super::reused_jacobian::{has_no_derivatives, has_sufficed, may_suffice};
 use crate::mechanics::{Effect, Group, Scalar, Vector};
 use crate::numbers::Coordinates as _;
 use nalgebra::{SimdBool as _, SimdPartialOrd as _};
 
 impl<L: Effect> Problem<'_, L> {
-    /// [`solve_directly`](Self::solve_directly) for several lanes: the same digits.
+    /// [`solve_directly`](Self::solve_directly) for several lanes, with equal digits.
     #[hot]
     pub(super) fn solve_together<const REUSE: bool>(
         &self,
-        equation: &Usual<'_, L>,
+        equation: &InlinedEquation<'_, L>,
         guess: &Vector<L>,
         largest: Scalar<L>,
     ) -> Option<Root<Group<L>>> {
@@ -50,13 +50,16 @@ impl<L: Effect> Problem<'_, L> {
         let made = black_box(made);
         let mut lanes = Lanes::starting_at(guess);
         lanes.advance(&made.update, made.det, &made.update);
-        let mut again = lanes.reuse_jacobian::<REUSE>(equation, &made, self.safe);
-        for iteration in 1..=MAX_ITERATIONS {
-            if lanes.settled.all() {
-                return self.usual(&lanes.half, lanes.det, iteration + u32::from(again), largest);
-            }
-            again = lanes.iterate_once::<REUSE>(equation, self.safe);
-        }
-        None
+        let again = lanes.reuse_jacobian::<REUSE>(equation, &made, self.safe);
+        let iterations = if lanes.settled.all() {
+            1 + u32::from(again)
+        } else {
+            1 + lanes.iterate(
+                MAX_ITERATIONS - 1,
+                #[cfg_attr(not(debug_assertions), inline(always))]
+                |lanes| lanes.iterate_once::<REUSE>(equation, self.safe),
+            )?
+        };
+        self.usual(&lanes.half, lanes.det, iterations, largest)
     }
 }

@@ -16,8 +16,7 @@ mod secants;
 mod solvability;
 
 pub(crate) use branch::trusted_radius;
-pub(crate) use guess::{Continued, DIFFERENCES, History};
-pub use guess::{Guess, Warm};
+pub use guess::{Guess, WarmStart};
 pub(crate) use iteration::{Kick, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, Root, SETTLED};
 pub(crate) use largest_step::{largest_fraction, six_digits};
 pub(crate) use problem::{Problem, newton_system, step_terms};

@@ -15,9 +15,7 @@
 //! or an exponential in the Lagrangian takes the series that the lane farthest from the identity needs, and rounds by
 //! it.
 
-use super::careful::Seldom;
 use super::iteration::{Iteration, Lanes, MAX_ITERATIONS, Root, System, far, is_positive};
-use crate::error::StepError;
 use crate::groups::Retraction;
 use crate::mechanics::{Effect, Group, Scalar, Square, Vector, pattern};
 use crate::numbers::{Coordinates as _, Pattern};
@@ -37,12 +35,12 @@ pub(crate) struct Problem<'a, L: Effect> {
 }
 
 /// The equation where steps are made: inlined, so that all of a solve can stay in registers.
-pub(super) struct Usual<'a, L: Effect> {
+pub(super) struct InlinedEquation<'a, L: Effect> {
     pub(super) constants: &'a L::Constants,
     pub(super) terms: L::StepTerms,
 }
 
-impl<L: Effect> System<Group<L>> for Usual<'_, L> {
+impl<L: Effect> System<Group<L>> for InlinedEquation<'_, L> {
     #[hot]
     fn pattern(&self) -> Pattern {
         pattern::<L>()
@@ -79,18 +77,17 @@ impl<L: Effect> Problem<'_, L> {
             let (lanes, iterations) = self.iterate_by_secants(&terms, guess);
             return lanes.settled.all().then(|| lanes.root::<L::Retraction>(iterations));
         }
-        let equation = Usual::<L> { constants: self.constants, terms };
+        let equation = InlinedEquation::<L> { constants: self.constants, terms };
         if const { Scalar::<L>::LANES > 1 } {
             return self.solve_together::<REUSE>(&equation, guess, largest);
         }
         let mut lanes = Lanes::starting_at(guess);
-        for iteration in 1..=MAX_ITERATIONS {
-            let again = lanes.iterate_once::<REUSE>(&equation, self.safe);
-            if lanes.settled.all() {
-                return self.usual(&lanes.half, lanes.det, iteration + u32::from(again), largest);
-            }
-        }
-        None
+        let iterations = lanes.iterate(
+            MAX_ITERATIONS,
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            |lanes| lanes.iterate_once::<REUSE>(&equation, self.safe),
+        )?;
+        self.usual(&lanes.half, lanes.det, iterations, largest)
     }
 
     /// What an iteration has settled on, if nothing about it is doubtful.
@@ -110,32 +107,6 @@ impl<L: Effect> Problem<'_, L> {
         }
         let increment = L::Retraction::increment_of_half(half);
         Some(Root { far, ..Root::of(half, increment, iterations) })
-    }
-
-    /// From the guess; where that fails from the identity; where that fails, once more with shortened steps.
-    pub(crate) fn solve(&self, guess: &Vector<L>) -> Result<Root<Group<L>>, StepError> {
-        if !self.a.is_finite() {
-            return Err(StepError::NonFinite { what: "momentum" });
-        }
-        let equation = Seldom::new(self);
-        let (start, spent) = self.start(&equation.terms, guess);
-        equation.careful().solve(start, spent)
-    }
-
-    /// All lanes at the guess but those that [`solve_directly`](Self::solve_directly) has solved without the Jacobian,
-    /// which alone wouldn't be here.
-    fn start(&self, terms: &L::StepTerms, guess: &Vector<L>) -> (Lanes<Group<L>>, u32) {
-        if const { !L::JACOBIAN_IS_EXPENSIVE } || !Self::goes_by_secants() {
-            return (Lanes::starting_at(guess), 0);
-        }
-        let (lanes, iterations) = self.iterate_by_secants(terms, guess);
-        let settled = lanes.settled;
-        (lanes.keeping(settled, guess), iterations)
-    }
-
-    /// Newton's iteration from one guess, refused where it settles on another branch.
-    pub(crate) fn attempt(&self, guess: &Vector<L>) -> Result<Root<Group<L>>, StepError> {
-        Seldom::new(self).careful().attempt(guess)
     }
 }
 

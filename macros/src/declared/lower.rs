@@ -427,13 +427,7 @@ impl Lowering<'_> {
                 let (left, right) = self.factors(a, b)?;
                 self.product(tree, &left.diagonal(&self.symbols), &right)?
             }
-            Kind::Power(a, exponent) => {
-                let base = self.factor(a)?;
-                if base.len().checked_pow(exponent.unsigned_abs().min(4)).is_none_or(|terms| terms > MOST_TERMS) {
-                    return Err(Failure::TooLarge(tree.span));
-                }
-                base.power(*exponent, &self.symbols)
-            }
+            Kind::Power(a, exponent) => self.power(tree, a, *exponent)?,
             Kind::Apply(function, a) => {
                 // Alone, however small, as the derivative is a function of it too.
                 let argument = self.expression(a)?;
@@ -464,16 +458,24 @@ impl Lowering<'_> {
             },
             Kind::Entry(a, row, column) => {
                 let operand = self.expression(a)?;
-                let (rows, columns) = operand.shape();
-                let left = unit(*row, rows, true, &self.symbols).times(&operand, &self.symbols);
-                if columns == 1 {
-                    left
-                } else {
-                    left.times(&unit(*column, columns, false, &self.symbols), &self.symbols)
-                }
+                self.entry(&operand, *row, *column)
             }
         };
         Ok(result)
+    }
+
+    fn power(&mut self, tree: &Tree, base: &Rc<Tree>, exponent: i32) -> Result<Expression, Failure> {
+        let base = self.factor(base)?;
+        if base.len().checked_pow(exponent.unsigned_abs().min(4)).is_none_or(|terms| terms > MOST_TERMS) {
+            return Err(Failure::TooLarge(tree.span));
+        }
+        Ok(base.power(exponent, &self.symbols))
+    }
+
+    fn entry(&self, operand: &Expression, row: usize, column: usize) -> Expression {
+        let (rows, columns) = operand.shape();
+        let left = unit(row, rows, true, &self.symbols).times(operand, &self.symbols);
+        if columns == 1 { left } else { left.times(&unit(column, columns, false, &self.symbols), &self.symbols) }
     }
 
     fn product(&self, tree: &Tree, left: &Expression, right: &Expression) -> Result<Expression, Failure> {

@@ -6,9 +6,21 @@ use proc_macro2::{Literal, Span, TokenStream};
 use quote::{ToTokens as _, quote_spanned};
 use syn::Ident;
 
-use super::Code;
-use crate::mathematics::symbolic::{Function, Rational};
+use super::header::Header;
+use crate::declared::{Declaration, Name};
+use crate::mathematics::derive::Directions;
+use crate::mathematics::symbolic::{Function, Rational, SymbolId, Symbols};
 use crate::program::{Graph, Node, NodeId};
+
+/// What code is written with.
+pub(super) struct Code<'a> {
+    pub(super) declaration: &'a Declaration,
+    pub(super) header: &'a Header,
+    pub(super) names: &'a BTreeMap<Name, SymbolId>,
+    pub(super) symbols: &'a Symbols,
+    /// The symbols that the derivation of a step adds.
+    pub(super) directions: Option<&'a Directions>,
+}
 
 /// What the outputs make together.
 #[derive(Clone, Copy, Debug)]

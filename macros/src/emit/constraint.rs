@@ -5,15 +5,13 @@ use quote::quote_spanned;
 use syn::Ident;
 
 use super::inputs::entry;
-use super::{Code, Header, page, verbatim};
-use crate::declared::{AdvectedParameter, Declaration, FieldKind, Shape, check};
+use super::verbatim::{self, BODIES};
+use super::{Code, Header, page};
+use crate::declared::{Declaration, FieldKind, Shape, check};
 use crate::judged::Held;
-use crate::mathematics::derive::{Body, Seen};
+use crate::mathematics::derive::Body;
 use crate::mathematics::symbolic::{Expression, text};
 use crate::program::{Input, Node, NodeId};
-
-/// The bodies, as the methods call them.
-const BODIES: [&str; 2] = ["above", "below"];
 
 /// The item with its implementation.
 pub(crate) fn constraint(item: &TokenStream, declaration: &Declaration, held: &Held) -> TokenStream {
@@ -85,34 +83,6 @@ fn gap(declaration: &Declaration, header: &Header, held: &Held) -> TokenStream {
     quote_spanned! {span=>
         let #pattern: #types = { #expression };
         #private::nalgebra::SVector::from_array_storage(#private::nalgebra::ArrayStorage([[#(#entries),*]]))
-    }
-}
-
-/// What a name of `advected(…)` is, where both bodies are.
-pub(super) fn seen(declaration: &Declaration, header: &Header, w: &AdvectedParameter) -> TokenStream {
-    let (span, private) = (Span::mixed_site(), &header.private);
-    let place = |factor: usize| {
-        let body = Ident::new(BODIES[factor / 2 % 2], span);
-        let part = Ident::new(["attitude", "position"][factor % 2], span);
-        quote_spanned!(span=> #body.#part)
-    };
-    match w.seen {
-        Seen::Configuration(of) => place(of),
-        Seen::Relative { of, from } => {
-            let (of_place, from_place) = (place(of), place(from));
-            if of % 2 == 1 {
-                quote_spanned!(span=> #of_place - #from_place)
-            } else {
-                quote_spanned!(span=> #from_place.transpose() * #of_place)
-            }
-        }
-        Seen::From(factor) => {
-            let Some(field) = w.field.and_then(|field| declaration.fields.get(field)) else {
-                return TokenStream::new();
-            };
-            let (name, attitude) = (&field.name, place(factor));
-            quote_spanned!(span=> #attitude.transpose() * #private::Parameter::value(&self.#name))
-        }
     }
 }
 

@@ -2,8 +2,8 @@
 
 use crate::declared::{Declaration, Factor};
 use crate::judged::{Chosen, Equations, Findings};
-use crate::mathematics::derive::{Declared, Derived, Inverse, Seen, SelfAdjointness};
-use crate::mathematics::symbolic::{Stage, Variance, covector_text, text};
+use crate::mathematics::derive::{Continuous, Declared, Derived, Inverse, Seen, SelfAdjointness};
+use crate::mathematics::symbolic::{Stage, Variance, covector_text, matrix_text, text};
 use crate::program::{Candidate, Graph, Kernel, NodeId, count};
 
 /// A method with its equation.
@@ -103,7 +103,7 @@ fn of_limit(continuous: Option<&Equations>) -> &'static str {
 /// `J` as a matrix, where it can be written as one.
 fn inertia(derived: &Derived, continuous: Option<&Equations>) -> Equation {
     let quadratic = continuous.filter(|equations| equations.derived.inverse != Inverse::Nonlinear);
-    let as_matrix = quadratic.and_then(|equations| super::continuous::text::inertia(&equations.derived));
+    let as_matrix = quadratic.and_then(|equations| inertia_matrix(&equations.derived));
     match as_matrix {
         Some(text) if text.len() <= LONGEST => Equation::new("inertia", "J", text, "continuous limit"),
         _ => {
@@ -188,6 +188,12 @@ pub(super) fn costs(kernel: &Kernel) -> String {
         count(&kernel.graph, &kernel.kick_after, Some(Stage::Step))
             + count(&kernel.graph, &kernel.kick_after, Some(Stage::Iteration)),
     )
+}
+
+/// `∂²l/∂ξ²` as a matrix, where it can be written as one.
+pub(super) fn inertia_matrix(derived: &Continuous) -> Option<String> {
+    let [directions] = derived.directions.as_slice() else { return None };
+    matrix_text(&derived.hessian, directions.map(|direction| direction.components), &derived.symbols)
 }
 
 /// The group, and how it moves the advected parameters.

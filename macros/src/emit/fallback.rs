@@ -34,11 +34,53 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
 fn of_effect(declaration: &Declaration, header: &Header) -> TokenStream {
     let (span, private) = (Span::mixed_site(), &header.private);
     let none = quote_spanned!(span=> ());
-    let types = header.types(true, &none, &none);
+    let types = header.types("WithKinetic", &none, &none);
     let (vector, square, matrix, scalar) = (header.vector(), header.square(), header.matrix(), &header.scalar);
     let effect = header.implementation("Effect");
     let addition = header.addition();
     let lanes = super::lanes::lanes(header, None);
+    let core = quote_spanned!(span=> #private::core);
+    let of_role = of_role(declaration, header);
+    let gradients = declaration.gradients.map(|_| gradients(header));
+    let term = header.term(&quote_spanned! {span=>
+        fn validate(&self) -> #core::result::Result<(), #private::SetupError> { loop {} }
+        fn advected(&self) -> Self::Advected { loop {} }
+    });
+    let implementations = quote_spanned! {span=>
+        #term
+
+        #[automatically_derived]
+        #[allow(clippy::all, clippy::pedantic)]
+        #of_role
+
+        #[automatically_derived]
+        #[allow(clippy::all, clippy::pedantic)]
+        #effect {
+            #types
+            const INERTIA_IS_CONSTANT: #core::primitive::bool = true;
+            const IS_QUADRATIC: #core::primitive::bool = true;
+            const DERIVATION: &'static #core::primitive::str = "";
+            fn describe(&self, _: &mut dyn #private::SceneVisitor<#scalar>) { loop {} }
+            fn momentum_jacobian(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #square { loop {} }
+            fn limit(&self, _: #core::option::Option<&#vector>, _: &Self::Advected) -> #private::Limit<Self> { loop {} }
+            fn constants(&self, _: #scalar) -> Self::Constants {}
+            fn kick_before(_: &Self::Constants, _: &Self::Advected) -> #vector { loop {} }
+            fn step_terms(_: &Self::Constants, _: &#vector, _: &Self::Advected) -> Self::StepTerms {}
+            fn newton_system(_: &Self::Constants, _: &Self::StepTerms, _: &#vector) -> (#vector, #square) { loop {} }
+            fn kick_after(_: &Self::Constants, _: &#matrix, _: &Self::Advected) -> #vector { loop {} }
+        }
+
+        #gradients
+        #addition
+        #lanes
+    };
+    header.enclosing(implementations)
+}
+
+/// What a Lagrangian or a force is besides an effect.
+fn of_role(declaration: &Declaration, header: &Header) -> TokenStream {
+    let (span, private) = (Span::mixed_site(), &header.private);
+    let (vector, square, matrix, scalar) = (header.vector(), header.square(), header.matrix(), &header.scalar);
     let core = quote_spanned!(span=> #private::core);
     let of_increment = [
         ("right_momentum", &vector),
@@ -51,7 +93,7 @@ fn of_effect(declaration: &Declaration, header: &Header) -> TokenStream {
         let name = syn::Ident::new(name, span);
         quote_spanned!(span=> fn #name(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #result { loop {} })
     });
-    let of_role = match declaration.role {
+    match declaration.role {
         Role::Lagrangian => {
             let (lagrangian, invariance) =
                 (header.implementation("DiscreteLagrangian"), header.implementation("LeftInvariant"));
@@ -91,41 +133,7 @@ fn of_effect(declaration: &Declaration, header: &Header) -> TokenStream {
                 }
             }
         }
-    };
-    let gradients = declaration.gradients.map(|_| gradients(header));
-    let term = header.term(&quote_spanned! {span=>
-        fn validate(&self) -> #core::result::Result<(), #private::SetupError> { loop {} }
-        fn advected(&self) -> Self::Advected { loop {} }
-    });
-    let implementations = quote_spanned! {span=>
-        #term
-
-        #[automatically_derived]
-        #[allow(clippy::all, clippy::pedantic)]
-        #of_role
-
-        #[automatically_derived]
-        #[allow(clippy::all, clippy::pedantic)]
-        #effect {
-            #types
-            const INERTIA_IS_CONSTANT: #core::primitive::bool = true;
-            const IS_QUADRATIC: #core::primitive::bool = true;
-            const DERIVATION: &'static #core::primitive::str = "";
-            fn describe(&self, _: &mut dyn #private::SceneVisitor<#scalar>) { loop {} }
-            fn momentum_jacobian(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #square { loop {} }
-            fn limit(&self, _: #core::option::Option<&#vector>, _: &Self::Advected) -> #private::Limit<Self> { loop {} }
-            fn constants(&self, _: #scalar) -> Self::Constants {}
-            fn kick_before(_: &Self::Constants, _: &Self::Advected) -> #vector { loop {} }
-            fn step_terms(_: &Self::Constants, _: &#vector, _: &Self::Advected) -> Self::StepTerms {}
-            fn newton_system(_: &Self::Constants, _: &Self::StepTerms, _: &#vector) -> (#vector, #square) { loop {} }
-            fn kick_after(_: &Self::Constants, _: &#matrix, _: &Self::Advected) -> #vector { loop {} }
-        }
-
-        #gradients
-        #addition
-        #lanes
-    };
-    header.enclosing(implementations)
+    }
 }
 
 /// One function: how many there are can't be known.

@@ -275,8 +275,8 @@ impl Header {
     }
 
     /// The associated types of an effect.
-    pub(crate) fn types(&self, has_kinetic: bool, constants: &TokenStream, step_terms: &TokenStream) -> TokenStream {
-        let kinetic = Ident::new(if has_kinetic { "WithKinetic" } else { "WithoutKinetic" }, Span::mixed_site());
+    pub(crate) fn types(&self, kinetic: &str, constants: &TokenStream, step_terms: &TokenStream) -> TokenStream {
+        let kinetic = Ident::new(kinetic, Span::mixed_site());
         let private = &self.private;
         quote_spanned! {Span::mixed_site()=>
             type Retraction = #private::CayleyRetraction;

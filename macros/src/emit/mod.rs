@@ -16,19 +16,17 @@ mod page;
 mod stages;
 mod verbatim;
 
-use std::collections::BTreeMap;
-
 use proc_macro2::{Span, TokenStream};
 use quote::{quote, quote_spanned};
 
 use crate::declared::lower::Lowered;
-use crate::declared::{Declaration, FieldKind, Name, Role};
+use crate::declared::{Declaration, FieldKind, Role};
 use crate::judged::{Chosen, Equations, Findings};
-use crate::mathematics::derive::{Derived, Directions};
-use crate::mathematics::symbolic::{Expression, SymbolId, Symbols};
+use crate::mathematics::derive::Derived;
+use crate::mathematics::symbolic::Expression;
 use crate::program::{Given, Graph, Scalariser, components, square, with_lets};
 
-use code::Form;
+use code::{Code, Form};
 pub(crate) use constraint::constraint;
 pub(crate) use continuous::alone as continuous;
 pub(crate) use fallback::mistakes;
@@ -70,13 +68,12 @@ pub(crate) fn implementation(
     };
     let continuous = equations.map(|equations| continuous::implementation(declaration, &header, equations, true));
     let section = equations.map(|equations| continuous::text::section(declaration, equations));
-    let derivation = docs::derivation(declaration, chosen, &texts, section, findings);
-    let documentation = format!("```text\n{derivation}```");
+    let derivation = derivation(&header, &docs::derivation(declaration, chosen, &texts, section, findings));
     let item = page::documented(item, &page::page(declaration, chosen, &texts, equations, findings));
     let describe = emitter.describe();
     let private = &header.private;
     let span = Span::mixed_site();
-    let types = header.types(derived.limit.has_kinetic, &stages.constants_type, &stages.step_terms_type);
+    let types = header.types(kinetic(chosen), &stages.constants_type, &stages.step_terms_type);
     let parts = stages::parts(&emitter, kernel);
     let is_force = declaration.role == Role::Force;
     let (name, mathematics) =
@@ -109,13 +106,7 @@ pub(crate) fn implementation(
             #types
             #parts
 
-            #[doc = #documentation]
-            const DERIVATION: &'static #private::core::primitive::str = {
-                // So that rustdoc shows no value: it would escape each letter that isn't ASCII.
-                const TEXT: &#private::core::primitive::str = #derivation;
-                TEXT
-            };
-
+            #derivation
             #describe
             #effect
             #body
@@ -131,6 +122,28 @@ pub(crate) fn implementation(
     quote_spanned!(span=> #item #implementations)
 }
 
+/// Whether there is a kinetic part, and what its solve costs.
+fn kinetic(chosen: &Chosen) -> &'static str {
+    match (chosen.derived.limit.has_kinetic, chosen.kernel.jacobian_is_expensive()) {
+        (false, _) => "WithoutKinetic",
+        (true, false) => "WithKinetic",
+        (true, true) => "WithExpensiveKinetic",
+    }
+}
+
+fn derivation(header: &Header, text: &str) -> TokenStream {
+    let (span, private) = (Span::mixed_site(), &header.private);
+    let documentation = format!("```text\n{text}```");
+    quote_spanned! {span=>
+        #[doc = #documentation]
+        const DERIVATION: &'static #private::core::primitive::str = {
+            // So that rustdoc shows no value: it would escape each letter that isn't ASCII.
+            const TEXT: &#private::core::primitive::str = #text;
+            TEXT
+        };
+    }
+}
+
 /// What advects nothing is invariant under the whole group.
 fn invariance(declaration: &Declaration, header: &Header) -> Option<TokenStream> {
     let implementation = header.implementation("LeftInvariant");
@@ -142,16 +155,6 @@ fn invariance(declaration: &Declaration, header: &Header) -> Option<TokenStream>
             #implementation {}
         }
     })
-}
-
-/// What code is written with.
-struct Code<'a> {
-    declaration: &'a Declaration,
-    header: &'a Header,
-    names: &'a BTreeMap<Name, SymbolId>,
-    symbols: &'a Symbols,
-    /// The symbols that the derivation of a step adds.
-    directions: Option<&'a Directions>,
 }
 
 /// What the pieces of a step share.

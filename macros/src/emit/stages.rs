@@ -21,16 +21,11 @@ pub(super) struct Stages {
 
 pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::docs::Equation]) -> Stages {
     let graph = &kernel.graph;
-    let system: Vec<NodeId> = [kernel.residual.as_slice(), &kernel.jacobian].concat();
-    // The moved part of the diamond is emitted only with a residual alone.
-    let moved: &[NodeId] = if kernel.jacobian_is_expensive() { &kernel.moved } else { &[] };
-    let solved = [system.as_slice(), moved].concat();
-    let change = kernel.kick_derivative.as_deref().unwrap_or_default();
-    let everything: Vec<NodeId> = [kernel.kick_before.as_slice(), &solved, &kernel.kick_after, change].concat();
+    let [system, solved, everything] = outputs(kernel);
     let constants = boundary(graph, &everything, Stage::Construction);
     let step_terms = boundary(graph, &solved, Stage::Step);
     let (span, private) = (Span::mixed_site(), &emitter.header.private);
-    let (vector, square, scalar) = (emitter.header.vector(), emitter.header.square(), &emitter.header.scalar);
+    let (vector, scalar) = (emitter.header.vector(), &emitter.header.scalar);
     let matrix = emitter.header.matrix();
     let from_parameters = |id: NodeId| input(emitter, graph, id);
     let from_constants = |id: NodeId| slot(&constants, id, "constants").or_else(|| input(emitter, graph, id));
@@ -53,24 +48,12 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
         let documentation = super::docs::of(equations, &["kick_derivative"], graph, outputs);
         kick_derivative(emitter, &documentation, &value(outputs, &from_constants))
     });
-    let (lets, values) = emitter.statements(graph, &system, &from_terms);
-    let (residual, jacobian) = values.split_at(kernel.residual.len());
-    let (residual, jacobian) = (emitter.assembled(Form::Vector, residual), emitter.assembled(Form::Square, jacobian));
-    let residual_alone = kernel.jacobian_is_expensive().then(|| residual_alone(emitter, kernel, &from_terms));
-    let (increment, jacobian) = in_coordinates(emitter, kernel, &system, jacobian);
-    let inverse =
-        emitter.derived.directions.factors.iter().any(|one| uses(graph, &kernel.kick_after, one.inverse)).then(|| {
-            let group = quote_spanned!(span=> <Self::Group as #private::LieGroup>);
-            quote_spanned! {span=>
-                let inverse = #group::matrix(&#group::inverse(&#group::from_increment(increment)));
-            }
-        });
+    let newton_system = newton_system(emitter, kernel, &system, &from_terms);
+    let inverse = inverse(emitter, kernel);
     let length = |nodes: &BTreeMap<NodeId, usize>| {
         let length = Literal::usize_unsuffixed(nodes.len());
         quote_spanned!(span=> #private::Numbers<#scalar, #length>)
     };
-    let iteration = super::docs::stage(graph, &system, Stage::Iteration, "a Newton iteration, residual and Jacobian");
-    let iteration = format!("```text\n{}\n```\n\n{iteration}", super::docs::candidates(kernel));
     let [before, after] = [("kick_before", &kernel.kick_before), ("kick_after", &kernel.kick_after)]
         .map(|(method, outputs)| super::docs::of(equations, &[method], graph, outputs));
     let step = super::docs::stage(
@@ -103,6 +86,41 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
             #step_terms_body
         }
 
+        #newton_system
+
+        #[doc = #after]
+        #[cfg_attr(not(debug_assertions), inline(always))]
+        fn kick_after(constants: &Self::Constants, increment: &#matrix, next: &Self::Advected) -> #vector {
+            #inverse
+            #kick_after
+        }
+    };
+    Stages { methods, constants_type: length(&constants), step_terms_type: length(&step_terms) }
+}
+
+/// What the Newton system computes, with it what a solve computes, and what all stages do.
+fn outputs(kernel: &Kernel) -> [Vec<NodeId>; 3] {
+    let system: Vec<NodeId> = [kernel.residual.as_slice(), &kernel.jacobian].concat();
+    // The moved part of the diamond is emitted only with a residual alone.
+    let moved: &[NodeId] = if kernel.jacobian_is_expensive() { &kernel.moved } else { &[] };
+    let solved = [system.as_slice(), moved].concat();
+    let change = kernel.kick_derivative.as_deref().unwrap_or_default();
+    let everything = [kernel.kick_before.as_slice(), &solved, &kernel.kick_after, change].concat();
+    [system, solved, everything]
+}
+
+/// The Newton system, and where that is worth it its residual alone; `given` has what the stages before leave.
+fn newton_system(emitter: &Emitter, kernel: &Kernel, system: &[NodeId], given: super::code::Given) -> TokenStream {
+    let (span, graph) = (Span::mixed_site(), &kernel.graph);
+    let (vector, square) = (emitter.header.vector(), emitter.header.square());
+    let (lets, values) = emitter.statements(graph, system, given);
+    let (residual, jacobian) = values.split_at(kernel.residual.len());
+    let (residual, jacobian) = (emitter.assembled(Form::Vector, residual), emitter.assembled(Form::Square, jacobian));
+    let residual_alone = kernel.jacobian_is_expensive().then(|| residual_alone(emitter, kernel, given));
+    let (increment, jacobian) = in_coordinates(emitter, kernel, system, jacobian);
+    let iteration = super::docs::stage(graph, system, Stage::Iteration, "a Newton iteration, residual and Jacobian");
+    let iteration = format!("```text\n{}\n```\n\n{iteration}", super::docs::candidates(kernel));
+    quote_spanned! {span=>
         #[doc = #iteration]
         #[cfg_attr(not(debug_assertions), inline(always))]
         fn newton_system(
@@ -116,15 +134,18 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
         }
 
         #residual_alone
+    }
+}
 
-        #[doc = #after]
-        #[cfg_attr(not(debug_assertions), inline(always))]
-        fn kick_after(constants: &Self::Constants, increment: &#matrix, next: &Self::Advected) -> #vector {
-            #inverse
-            #kick_after
+/// `F⁻¹`, where the kick after a step has it.
+fn inverse(emitter: &Emitter, kernel: &Kernel) -> Option<TokenStream> {
+    let (span, private, graph) = (Span::mixed_site(), &emitter.header.private, &kernel.graph);
+    emitter.derived.directions.factors.iter().any(|one| uses(graph, &kernel.kick_after, one.inverse)).then(|| {
+        let group = quote_spanned!(span=> <Self::Group as #private::LieGroup>);
+        quote_spanned! {span=>
+            let inverse = #group::matrix(&#group::inverse(&#group::from_increment(increment)));
         }
-    };
-    Stages { methods, constants_type: length(&constants), step_terms_type: length(&step_terms) }
+    })
 }
 
 /// What comes before the Newton system, and its Jacobian along the coordinates.
@@ -209,8 +230,6 @@ fn residual_alone(emitter: &Emitter, kernel: &Kernel, from_terms: super::code::G
     let when = "an iteration without the Jacobian";
     let documentation = super::docs::stage(&kernel.graph, &gradient, Stage::Iteration, when);
     quote_spanned! {span=>
-        const JACOBIAN_IS_EXPENSIVE: #private::core::primitive::bool = true;
-
         #[doc = #documentation]
         #[cfg_attr(not(debug_assertions), inline(always))]
         fn newton_residual(

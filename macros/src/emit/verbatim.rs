@@ -12,86 +12,20 @@ use syn::visit_mut::{self, VisitMut};
 use syn::{Expr, Ident};
 
 use super::Header;
-use crate::declared::{Declaration, FieldKind, Role, Shape, Spelling};
+use crate::declared::{AdvectedParameter, Declaration, FieldKind, Role, Shape, Spelling};
+use crate::mathematics::derive::Seen;
+
+/// The bodies, as the methods call them.
+pub(super) const BODIES: [&str; 2] = ["above", "below"];
 
 /// The Lagrangian's `l_d` or `l`, a force's `virtual_work`, or a constraint's `gap`.
 pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStream {
     let span = Span::mixed_site();
-    let (private, scalar) = (&header.private, &header.scalar);
+    let private = &header.private;
     let Some(mut expression) = declaration.expression.clone() else { return TokenStream::new() };
     let mut rewrite = Rewrite { header, mentioned: Vec::new(), scopes: Vec::new() };
     rewrite.visit_expr_mut(&mut expression);
-    let mut names: Vec<Ident> = Vec::new();
-    let mut values: Vec<TokenStream> = Vec::new();
-    let mut bind = |name: &str, value: TokenStream| {
-        if rewrite.mentioned.iter().any(|used| used == name) {
-            names.push(Ident::new_raw_or_plain(name, span));
-            values.push(value);
-        }
-    };
-    for (index, factor) in declaration.factors.iter().enumerate() {
-        // No increment may stand in a constraint.
-        if declaration.role == Role::Constraint {
-            break;
-        }
-        let group = declaration.group.factor(index);
-        let value = if declaration.group.is_product() {
-            let index = syn::Index::from(index);
-            let matrix = quote_spanned!(span=> f.#index);
-            if group.is_added { translation(header, &matrix, group.dimension()) } else { matrix }
-        } else {
-            quote_spanned!(span=> *f)
-        };
-        bind(&factor.name, value);
-    }
-    let one = header.matrix_of_factor();
-    bind("I", quote_spanned!(span=> <#one>::identity()));
-    let three = quote_spanned!(span=> #private::nalgebra::Matrix3<#scalar>);
-    bind("vee", quote_spanned!(span=> |matrix: #three| <#private::SO3<#scalar> as #private::LieGroup>::vee(&matrix)));
-    let vector = header.vector();
-    if declaration.group.is_product() {
-        let vector = quote_spanned!(span=> #private::nalgebra::Vector3<#scalar>);
-        bind("hat", quote_spanned!(span=> |v: #vector| <#private::SO3<#scalar> as #private::LieGroup>::hat(&v)));
-    } else {
-        let group = header.group();
-        bind("hat", quote_spanned!(span=> |v: #vector| <#group as #private::LieGroup>::hat(&v)));
-    }
-    for (factor, name) in declaration.velocities().iter().enumerate() {
-        let velocity = Ident::new("velocity", span);
-        bind(&name.unraw().to_string(), of_factor(declaration, header, &velocity, factor));
-    }
-    for factor in 0..declaration.factors.len() {
-        let Some(names) = declaration.displacement(factor) else { continue };
-        for (name, components) in names.iter().zip(["eta", "eta_next"]) {
-            bind(name, of_factor(declaration, header, &Ident::new(components, span), factor));
-        }
-    }
-    bind("log", quote_spanned!(span=> #private::rotation_log::<#scalar>));
-    bind("exp", quote_spanned!(span=> #private::rotation_exp::<#scalar>));
-    for (index, parameter) in declaration.advected.iter().enumerate() {
-        let value = if declaration.role == Role::Constraint {
-            super::constraint::seen(declaration, header, parameter)
-        } else {
-            let part = if declaration.advected.len() == 1 {
-                quote_spanned!(span=> (*w))
-            } else {
-                let index = syn::Index::from(index);
-                quote_spanned!(span=> w.#index)
-            };
-            advected(declaration, header, index, part)
-        };
-        bind(&parameter.plain_name(), value);
-    }
-    for field in &declaration.fields {
-        let (member, span) = (&field.name, field.at.resolved_at(span));
-        let private = header.private_at(span);
-        let value = if field.kind == FieldKind::Scalar {
-            quote_spanned!(span=> self.#member)
-        } else {
-            quote_spanned!(span=> #private::Parameter::value(&self.#member))
-        };
-        bind(&field.plain_name(), value);
-    }
+    let Bound { names, values, .. } = bound(declaration, header, rewrite.mentioned);
     // In the user's scope `F` and `I` may be constants or unit structs, which a pattern would compare with instead of
     // binding the name; the nearer functions can be hidden.
     let imposed = names.iter().filter(|name| *name == "F" || *name == "I");
@@ -110,6 +44,133 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
     let signature = signature(declaration, header);
     quote_spanned! {span=>
         #signature { #declared }
+    }
+}
+
+/// The names that the macro knows and the expression mentions, with their values.
+struct Bound {
+    mentioned: Vec<String>,
+    names: Vec<Ident>,
+    values: Vec<TokenStream>,
+}
+
+impl Bound {
+    fn bind(&mut self, name: &str, value: TokenStream) {
+        if self.mentioned.iter().any(|used| used == name) {
+            self.names.push(Ident::new_raw_or_plain(name, Span::mixed_site()));
+            self.values.push(value);
+        }
+    }
+}
+
+fn bound(declaration: &Declaration, header: &Header, mentioned: Vec<String>) -> Bound {
+    let (span, private, scalar) = (Span::mixed_site(), &header.private, &header.scalar);
+    let mut bound = Bound { mentioned, names: Vec::new(), values: Vec::new() };
+    // No increment may stand in a constraint.
+    if declaration.role != Role::Constraint {
+        increments(declaration, header, &mut bound);
+    }
+    maps(declaration, header, &mut bound);
+    for (factor, name) in declaration.velocities().iter().enumerate() {
+        let velocity = Ident::new("velocity", span);
+        bound.bind(&name.unraw().to_string(), of_factor(declaration, header, &velocity, factor));
+    }
+    for factor in 0..declaration.factors.len() {
+        let Some(names) = declaration.displacement(factor) else { continue };
+        for (name, components) in names.iter().zip(["eta", "eta_next"]) {
+            bound.bind(name, of_factor(declaration, header, &Ident::new(components, span), factor));
+        }
+    }
+    bound.bind("log", quote_spanned!(span=> #private::rotation_log::<#scalar>));
+    bound.bind("exp", quote_spanned!(span=> #private::rotation_exp::<#scalar>));
+    for (index, parameter) in declaration.advected.iter().enumerate() {
+        let value = if declaration.role == Role::Constraint {
+            seen(declaration, header, parameter)
+        } else {
+            let part = if declaration.advected.len() == 1 {
+                quote_spanned!(span=> (*w))
+            } else {
+                let index = syn::Index::from(index);
+                quote_spanned!(span=> w.#index)
+            };
+            advected(declaration, header, index, part)
+        };
+        bound.bind(&parameter.plain_name(), value);
+    }
+    for field in &declaration.fields {
+        let (member, span) = (&field.name, field.at.resolved_at(span));
+        let private = header.private_at(span);
+        let value = if field.kind == FieldKind::Scalar {
+            quote_spanned!(span=> self.#member)
+        } else {
+            quote_spanned!(span=> #private::Parameter::value(&self.#member))
+        };
+        bound.bind(&field.plain_name(), value);
+    }
+    bound
+}
+
+/// The increments.
+fn increments(declaration: &Declaration, header: &Header, bound: &mut Bound) {
+    let span = Span::mixed_site();
+    for (index, factor) in declaration.factors.iter().enumerate() {
+        let group = declaration.group.factor(index);
+        let value = if declaration.group.is_product() {
+            let index = syn::Index::from(index);
+            let matrix = quote_spanned!(span=> f.#index);
+            if group.is_added { translation(header, &matrix, group.dimension()) } else { matrix }
+        } else {
+            quote_spanned!(span=> *f)
+        };
+        bound.bind(&factor.name, value);
+    }
+}
+
+/// The identity, and the maps between vectors and matrices.
+fn maps(declaration: &Declaration, header: &Header, bound: &mut Bound) {
+    let (span, private, scalar) = (Span::mixed_site(), &header.private, &header.scalar);
+    let one = header.matrix_of_factor();
+    bound.bind("I", quote_spanned!(span=> <#one>::identity()));
+    let three = quote_spanned!(span=> #private::nalgebra::Matrix3<#scalar>);
+    bound.bind(
+        "vee",
+        quote_spanned!(span=> |matrix: #three| <#private::SO3<#scalar> as #private::LieGroup>::vee(&matrix)),
+    );
+    let vector = header.vector();
+    if declaration.group.is_product() {
+        let vector = quote_spanned!(span=> #private::nalgebra::Vector3<#scalar>);
+        bound.bind("hat", quote_spanned!(span=> |v: #vector| <#private::SO3<#scalar> as #private::LieGroup>::hat(&v)));
+    } else {
+        let group = header.group();
+        bound.bind("hat", quote_spanned!(span=> |v: #vector| <#group as #private::LieGroup>::hat(&v)));
+    }
+}
+
+/// What a name of `advected(…)` is, where both bodies are.
+fn seen(declaration: &Declaration, header: &Header, w: &AdvectedParameter) -> TokenStream {
+    let (span, private) = (Span::mixed_site(), &header.private);
+    let place = |factor: usize| {
+        let body = Ident::new(BODIES[factor / 2 % 2], span);
+        let part = Ident::new(["attitude", "position"][factor % 2], span);
+        quote_spanned!(span=> #body.#part)
+    };
+    match w.seen {
+        Seen::Configuration(of) => place(of),
+        Seen::Relative { of, from } => {
+            let (of_place, from_place) = (place(of), place(from));
+            if of % 2 == 1 {
+                quote_spanned!(span=> #of_place - #from_place)
+            } else {
+                quote_spanned!(span=> #from_place.transpose() * #of_place)
+            }
+        }
+        Seen::From(factor) => {
+            let Some(field) = w.field.and_then(|field| declaration.fields.get(field)) else {
+                return TokenStream::new();
+            };
+            let (name, attitude) = (&field.name, place(factor));
+            quote_spanned!(span=> #attitude.transpose() * #private::Parameter::value(&self.#name))
+        }
     }
 }
 

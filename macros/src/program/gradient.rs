@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 
 use super::graph::{Graph, Node, NodeId};
-use super::tangent::slope;
+use crate::mathematics::symbolic::{Function, Rational};
 
 /// The derivative by each node that the sum depends on.
 pub(super) type Gradient = BTreeMap<NodeId, NodeId>;
@@ -62,5 +62,30 @@ fn give(graph: &mut Graph, found: &mut Gradient, node: NodeId, share: NodeId) {
     if graph.value(node).is_none() && !graph.is_zero(share) {
         let sum = found.get(&node).map_or(share, |&sum| graph.add(sum, share));
         found.insert(node, sum);
+    }
+}
+
+/// `f'(a)`, where `f(a)` is a node already; the rules of [`variation`](crate::mathematics::symbolic::variation).
+pub(super) fn slope(graph: &mut Graph, function: Function, a: NodeId, value: NodeId) -> NodeId {
+    let half = graph.constant(Rational::new(1, 2));
+    match function {
+        Function::Sqrt => graph.divide(half, value),
+        Function::Ln => {
+            let one = graph.one();
+            graph.divide(one, a)
+        }
+        Function::Exp => value,
+        Function::Sin => graph.apply(Function::Cos, a),
+        Function::Cos => {
+            let sine = graph.apply(Function::Sin, a);
+            graph.negate(sine)
+        }
+        Function::Stumpff(k) => {
+            let (second, first) = (graph.apply(Function::Stumpff(k + 2), a), graph.apply(Function::Stumpff(k + 1), a));
+            let factor = graph.constant(Rational::new(k.into(), 2));
+            let (second, first) = (graph.multiply(factor, second), graph.multiply(half, first));
+            graph.subtract(second, first)
+        }
+        Function::LogRatio(k) => graph.apply(Function::LogRatio(k + 1), a),
     }
 }

@@ -3,7 +3,7 @@
 //! A hash table with a fixed rule in place of a seed, so that nothing depends on the run. It is asked some hundred
 //! thousand times in a long declaration; a tree took a fifth of an expansion, which runs unoptimised in most builds.
 
-use super::graph::{Node, NodeId};
+use super::node::{Node, NodeId};
 
 /// The places of nodes; their values are the graph's.
 #[derive(Clone, Debug, Default)]

@@ -6,6 +6,7 @@ use super::closed::{Given, entries, with_lets, with_tangents};
 use super::count::{Operations, count};
 use super::expand::expanded;
 use super::graph::{Graph, Input, Node, NodeId};
+use super::retraction::{denominator, rotation, translation};
 use super::scalarise::{Entries, Scalariser};
 use crate::mathematics::derive::{Cleared, Continuous, Derived, OfFactor, unit};
 use crate::mathematics::group::Group;
@@ -397,14 +398,6 @@ fn coordinates(graph: &mut Graph, derived: &Derived) -> Vec<NodeId> {
     (0..dimension).map(|row| graph.input(Input { symbol, row, column: 0 }, Stage::Iteration)).collect()
 }
 
-/// `1 + |y|²`.
-fn denominator(graph: &mut Graph, y: &[NodeId]) -> NodeId {
-    let squares: Vec<NodeId> = y.iter().map(|&x| graph.multiply(x, x)).collect();
-    let sum = graph.sum(&squares);
-    let one = graph.one();
-    graph.add(one, sum)
-}
-
 /// Residual and Jacobian of the cleared equation, nine and three; the denominator's node.
 fn cleared_system(graph: &mut Graph, derived: &Derived, cleared: &Cleared) -> (Vec<NodeId>, NodeId) {
     let directions = &derived.directions;
@@ -466,43 +459,4 @@ fn retracted(graph: &mut Graph, derived: &Derived) -> (Vec<NodeId>, Vec<NodeId>,
 fn component_range(group: &Group, factor: usize) -> std::ops::Range<usize> {
     let first = group.component_of(factor);
     first..first + group.factor(factor).dimension()
-}
-
-/// `d = 2y` of a translation, and the tangent in `y`.
-fn translation(graph: &mut Graph, y: &[NodeId]) -> (Entries, Entries) {
-    let (zero, two) = (graph.zero(), graph.constant(Rational::integer(2)));
-    let displacement = Entries::new(y.len(), 1, |row, _| graph.multiply(two, y[row]));
-    (displacement, Entries::new(y.len(), y.len(), |row, column| if row == column { two } else { zero }))
-}
-
-/// `D = cay(2y) − I` of a rotation, and the tangent in `y`.
-fn rotation(graph: &mut Graph, y: &[NodeId]) -> (Entries, Entries) {
-    let d = denominator(graph, y);
-    let two = graph.constant(Rational::integer(2));
-    let scale = graph.divide(two, d);
-    let hat = |graph: &mut Graph, row: usize, column: usize| match (3 + column - row) % 3 {
-        0 => graph.zero(),
-        1 => graph.negate(y[3 - row - column]),
-        _ => y[3 - row - column],
-    };
-    let tangent = Entries::new(3, 3, |row, column| {
-        let entry = hat(graph, row, column);
-        let scaled = graph.multiply(scale, entry);
-        if row == column { scale } else { scaled }
-    });
-    // D = (ŷ + ŷ²) · 2/(1 + |y|²), ŷ² = yyᵀ − |y|² I; on the diagonal the squares cancel before they are formed.
-    let small = Entries::new(3, 3, |row, column| {
-        if row == column {
-            let others: Vec<NodeId> = (0..3).filter(|&k| k != row).map(|k| graph.multiply(y[k], y[k])).collect();
-            let sum = graph.sum(&others);
-            let shrink = graph.multiply(scale, sum);
-            return graph.negate(shrink);
-        }
-        let product = graph.multiply(y[row], y[column]);
-        let outer = graph.multiply(scale, product);
-        let skew = hat(graph, row, column);
-        let skew = graph.multiply(scale, skew);
-        graph.sum(&[outer, skew])
-    });
-    (small, tangent)
 }

@@ -1,7 +1,7 @@
 //! Programs: matrix expressions as straight-line scalar code, with stages, shared subexpressions and counts.
 //!
-//! `scalarise` takes matrices to their entries, `graph` keeps equal operations once, `expand` multiplies out, `closed`
-//! has the `let`s that stay closed, `kernel` the step, `tangent` and `gradient` its derivatives, and `count` what it costs.
+//! `scalarise` takes matrices to their entries, `graph` keeps equal operations once, each a `node`, `expand` multiplies out, `closed`
+//! has the `let`s that stay closed, `kernel` the step, in the coordinates of `retraction`, `tangent` and `gradient` its derivatives, and `count` what it costs.
 //!
 //! Deliberately not here: tokens, the group of the user's declaration by any name, and the choice between two programs
 //! of different declarations. The room knows `mathematics`.
@@ -13,6 +13,8 @@ mod gradient;
 mod graph;
 mod index;
 mod kernel;
+mod node;
+mod retraction;
 mod scalarise;
 mod tangent;
 #[cfg(test)]

@@ -15,12 +15,12 @@
 use std::collections::BTreeMap;
 
 use super::closed::{Given, entries, with_lets};
-use super::gradient::{Gradient, gradient};
+use super::gradient::{Gradient, gradient, slope};
 use super::graph::{Graph, Input, Node, NodeId};
 use super::kernel::{by_increment, components, generator, square, velocity, with_inverse};
 use super::scalarise::Entries;
 use crate::mathematics::derive::{Derived, Ends};
-use crate::mathematics::symbolic::{Function, Rational, Stage, SymbolId};
+use crate::mathematics::symbolic::{Rational, Stage, SymbolId};
 
 /// The momenta at both ends of a step, to be differentiated.
 pub(crate) struct Linearisation<'a> {
@@ -321,30 +321,5 @@ fn either(
     match (a, b) {
         (Some(a), Some(b)) => Some(both(graph, a, b)),
         (one, other) => one.or(other),
-    }
-}
-
-/// `f'(a)`, where `f(a)` is a node already; the rules of [`variation`](crate::mathematics::symbolic::variation).
-pub(super) fn slope(graph: &mut Graph, function: Function, a: NodeId, value: NodeId) -> NodeId {
-    let half = graph.constant(Rational::new(1, 2));
-    match function {
-        Function::Sqrt => graph.divide(half, value),
-        Function::Ln => {
-            let one = graph.one();
-            graph.divide(one, a)
-        }
-        Function::Exp => value,
-        Function::Sin => graph.apply(Function::Cos, a),
-        Function::Cos => {
-            let sine = graph.apply(Function::Sin, a);
-            graph.negate(sine)
-        }
-        Function::Stumpff(k) => {
-            let (second, first) = (graph.apply(Function::Stumpff(k + 2), a), graph.apply(Function::Stumpff(k + 1), a));
-            let factor = graph.constant(Rational::new(k.into(), 2));
-            let (second, first) = (graph.multiply(factor, second), graph.multiply(half, first));
-            graph.subtract(second, first)
-        }
-        Function::LogRatio(k) => graph.apply(Function::LogRatio(k + 1), a),
     }
 }

@@ -17,8 +17,8 @@ fn end<L>(
     h: f64,
     t: f64,
     start: (SO3, Vector3<f64>),
-    mut see: impl FnMut(&Stepper<L>, &State<SO3, L::Advected>),
-) -> (Stepper<L>, State<SO3, L::Advected>)
+    mut see: impl FnMut(&Stepper<L>, &StateOf<L>),
+) -> (Stepper<L>, StateOf<L>)
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular,
 {

@@ -8,6 +8,7 @@ use super::{Folded, Placed, term_at};
 use crate::groups::Retraction;
 use crate::mechanics::description::SceneVisitor;
 use crate::mechanics::effect::{Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, pattern};
+use crate::mechanics::kinetic_part::KineticPart;
 use crate::mechanics::lagrangian::DiscreteLagrangian;
 use crate::mechanics::operations::Operations;
 use crate::numbers::{Blocks, Coordinates as _, real};
@@ -56,7 +57,7 @@ where
     E::Retraction: Retraction<P::Group>,
 {
     type Retraction = E::Retraction;
-    type Kinetic = E::Kinetic;
+    type Kinetic = <E::Kinetic as KineticPart>::ByNewton;
     type Constants = Folded<E, M>;
     type StepTerms = P::Of<E::StepTerms>;
 

@@ -223,7 +223,7 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
         visitor.term("Gauss");
-        visitor.parameter("pairs of stages", crate::motion::count(PAIRS));
+        visitor.parameter("pairs of stages", crate::numbers::count(PAIRS));
     }
 
     fn cost(&self) -> Cost {

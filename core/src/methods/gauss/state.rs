@@ -5,7 +5,8 @@ use nalgebra::Vector3;
 use super::lift::{Lifted, length_squared, lifted, rotation, times, twice_momentum};
 use super::stages::Stages;
 use crate::groups::SO3;
-use crate::motion::{Kept, count, counted};
+use crate::motion::Kept;
+use crate::numbers::{count, counted};
 
 // Roots and powers without a standard library.
 #[cfg(not(feature = "std"))]

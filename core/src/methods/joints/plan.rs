@@ -16,9 +16,9 @@ use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, CayleyRetraction, LieGroup, R3, Retraction, SO3};
 use crate::mechanics::{Effect, Operations, Regular, SceneVisitor};
 use crate::motion::{Cost, Motion, Plan, Steerable, StepReport, Stepper, Summation, half_coordinates, is_due};
-use crate::numbers::{Bodies, Coordinates as _, Vectors, filled};
+use crate::numbers::{Bodies, Coordinates as _, Polynomial, Vectors, filled};
 use crate::solving::{
-    Continued, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, SETTLED, Warm, has_sufficed, may_suffice,
+    LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, SETTLED, WarmStart, has_sufficed, may_suffice,
     newton_system, step_terms,
 };
 
@@ -355,7 +355,7 @@ where
     S: Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,
     C: Constraint<K>,
 {
-    type Kept = Warm<Components<N>>;
+    type Kept = WarmStart<Components<N>, Polynomial<Components<N>>>;
 
     // Most of a step is called, so that it is compiled once.
     const VECTORS: Vectors = Vectors::AsCompiled;
@@ -370,7 +370,7 @@ where
     }
 
     fn keep(&self, scene: &S, motion: &Motion<[Body; N], S::Advected>) -> Self::Kept {
-        Warm::of(half_coordinates(scene, motion, self.h))
+        WarmStart::of(half_coordinates(scene, motion, self.h))
     }
 
     fn admits(&self, scene: &S, motion: &Motion<[Body; N], S::Advected>) -> Result<(), SetupError> {
@@ -450,9 +450,9 @@ where
             next.show(seen);
         }
         let far = !<CayleyRetraction as Retraction<[Body; N]>>::is_half_well_near_identity(&half);
-        kept.follow(half, far, Continued::Polynomial);
+        kept.follow(half, far);
         if next.now().steps == 0 {
-            kept.forget_the_estimate(Continued::Polynomial);
+            kept.forget_the_estimate();
         }
         next.count();
         *motion = next;

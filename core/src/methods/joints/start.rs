@@ -10,8 +10,8 @@ use crate::error::SetupError;
 use crate::groups::{Advected as _, CayleyRetraction, LieGroup as _, Retraction};
 use crate::mechanics::Effect;
 use crate::motion::{Motion, State, Stepper, check_attitude};
-use crate::numbers::{Bodies, Coordinates as _};
-use crate::solving::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, Warm};
+use crate::numbers::{Bodies, Coordinates as _, Polynomial};
+use crate::solving::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, WarmStart};
 
 /// How far joints may be open, relative to the terms of their functions, and velocities may part them, relative to
 /// theirs: what is left of values that are printed to a dozen digits.
@@ -22,7 +22,8 @@ const CLOSED: f64 = 2.0 * f64::EPSILON;
 const LONGEST: f64 = 2.0 * LONGEST_DAMPED;
 
 /// What a state of joined bodies is.
-type StateOf<A, const N: usize> = State<[Body; N], A, Warm<Bodies<Vector6<f64>, N>>>;
+type StateOf<A, const N: usize> =
+    State<[Body; N], A, WarmStart<Bodies<Vector6<f64>, N>, Polynomial<Bodies<Vector6<f64>, N>>>>;
 
 impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Jointed<S, C, K, N, T, L>
 where

@@ -27,9 +27,9 @@ use crate::mechanics::{
     DiscreteLagrangian, Effect, Operations, Regular, RigidScene, Scalar, SceneVisitor, Term, constant_inertia,
 };
 use crate::motion::{
-    Cost, Declared, Motion, Plan, STEPS_BETWEEN_CHECKS, Steerable, StepReport, Stepper, Summation, count, is_due,
+    Cost, Declared, Motion, Plan, STEPS_BETWEEN_CHECKS, Steerable, StepReport, Stepper, Summation, is_due,
 };
-use crate::numbers::{Coordinates, Real, Vectors, largest_lane, real, reported};
+use crate::numbers::{Coordinates, Real, Vectors, count, largest_lane, real, reported};
 use nalgebra::{
     Matrix3, SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue, Vector3,
 };

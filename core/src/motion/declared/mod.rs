@@ -7,14 +7,15 @@ pub(crate) use diagnosis::beyond_solvable;
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{
-    Effect, Group, Matrix, Regular, Scalar, SceneVisitor, Vector, check_inertia, estimated_velocity, pattern,
+    Effect, Group, KineticPart, Matrix, Regular, Scalar, SceneVisitor, Vector, check_inertia, estimated_velocity,
+    pattern,
 };
 use crate::motion::increment::Increment;
 use crate::motion::plan::{Cost, Plan, Steerable};
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, Summation, is_due};
 use crate::numbers::{Coordinates as _, is_finite, real, reported};
-use crate::solving::{Continued, Kick, Problem, Root, Warm, newton_system, safe, step_terms, trusted_radius};
+use crate::solving::{Kick, Problem, Root, WarmStart, newton_system, safe, step_terms, trusted_radius};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 
 /// The step of the scene itself, by its momentum equation (2.7): the plan of [`Stepper::new`](crate::Stepper::new).
@@ -28,6 +29,9 @@ pub struct Declared<S: Effect> {
     /// What the Jacobian's determinant has to exceed for a solve to do without a second one.
     safe: Scalar<S>,
 }
+
+/// What a step keeps for the next: as much history as its solve makes use of.
+type Memory<S> = WarmStart<Vector<S>, <<S as Effect>::Kinetic as KineticPart>::History<Scalar<S>, Vector<S>>>;
 
 impl<S: Effect> Declared<S> {
     /// Checks the parameters and folds the constants for the step `h`.
@@ -233,7 +237,7 @@ impl<S: Effect> Declared<S> {
 impl<S: Effect> Steerable for Declared<S> {}
 
 impl<S: Effect> Plan<S> for Declared<S> {
-    type Kept = Warm<Vector<S>>;
+    type Kept = Memory<S>;
 
     const RUNS_BY_STEPS: bool = true;
 
@@ -246,7 +250,7 @@ impl<S: Effect> Plan<S> for Declared<S> {
     }
 
     fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
-        Warm::of(half_coordinates(scene, motion, self.h))
+        WarmStart::of(half_coordinates(scene, motion, self.h))
     }
 
     #[hot]
@@ -294,7 +298,7 @@ impl<S: Effect> Declared<S> {
         &self,
         scene: &S,
         motion: &mut M,
-        kept: &mut Warm<Vector<S>>,
+        kept: &mut Memory<S>,
     ) -> Result<StepReport, StepError> {
         let (now, guess) = (motion.now(), kept.guess(<Group<S> as LieGroup>::DIMENSION));
         let turned = |increment: &Matrix<S>| motion.turned(increment);
@@ -311,14 +315,13 @@ impl<S: Effect> Declared<S> {
 fn taken<S: Effect, M: Summation<Group<S>, S::Advected>>(
     scene: &S,
     motion: &mut M,
-    kept: &mut Warm<Vector<S>>,
+    kept: &mut Memory<S>,
     made: &Increment<S>,
 ) -> StepReport {
     motion.proceed(&made.increment, &made.change, (made.momentum, made.advected));
-    let continued = Continued::for_jacobian(S::JACOBIAN_IS_EXPENSIVE);
-    kept.follow(made.half, made.far, continued);
+    kept.follow(made.half, made.far);
     if is_due(motion.now().steps) {
-        look(scene, motion, kept, continued);
+        look(scene, motion, kept);
     }
     motion.count();
     StepReport::of(made.iterations)
@@ -327,14 +330,9 @@ fn taken<S: Effect, M: Summation<Group<S>, S::Advected>>(
 /// What is done after the first step, and after many more.
 #[cold]
 #[inline(never)]
-fn look<S: Effect, M: Summation<Group<S>, S::Advected>>(
-    scene: &S,
-    motion: &mut M,
-    kept: &mut Warm<Vector<S>>,
-    continued: Continued,
-) {
+fn look<S: Effect, M: Summation<Group<S>, S::Advected>>(scene: &S, motion: &mut M, kept: &mut Memory<S>) {
     if motion.now().steps == 0 {
-        kept.forget_the_estimate(continued);
+        kept.forget_the_estimate();
     }
     motion.restore(&scene.advected());
 }

@@ -50,38 +50,7 @@ impl Checker<'_> {
             "t" | "time" => format!(
                 "; {noun} has no time: declare what changes with it by `given(u = field)`, and go on by `step_with`"
             ),
-            "omega" | "Omega" | "xi" | "velocity" if self.declaration.continuous.is_some() => {
-                match self.declaration.velocities() {
-                    [] if is_product => {
-                        format!("; name the velocities by `{}`", named_velocities(&self.declaration.factors))
-                    }
-                    [] => format!("; name the velocity by `velocity = {name}`"),
-                    [one] => format!("; the velocity is called `{one}`"),
-                    several => {
-                        let names: Vec<String> = several.iter().map(|name| format!("`{name}`")).collect();
-                        format!("; the velocities are called {}", names.join(", "))
-                    }
-                }
-            }
-            "omega" | "Omega" | "xi" | "velocity" if self.is_constraint() => {
-                "; a holonomic constraint is a function of positions, and sees no velocity".to_owned()
-            }
-            "omega" | "Omega" | "xi" | "velocity" => {
-                let (increment, group) = self.body(name);
-                let velocity = if group.is_added {
-                    format!("`{increment} / h`")
-                } else if group.is_so3 {
-                    format!("`log({increment}) / h`")
-                } else {
-                    format!("`({increment} - I) / h`")
-                };
-                let continuous = match (self.is_force(), is_product) {
-                    (true, _) => String::new(),
-                    (_, true) => format!(", or declare `l = …` with `{}`", named_velocities(&self.declaration.factors)),
-                    _ => format!(", or declare `l = …` with `velocity = {name}`"),
-                };
-                format!("; the velocity of a step is in `{increment}`: write {velocity}{continuous}")
-            }
+            "omega" | "Omega" | "xi" | "velocity" => self.advice_on_velocity(name),
             "R" | "rotation" | "attitude" | "orientation" if !is_product => format!(
                 "; {noun} is reduced, and sees no `{name}`: what is fixed in space is declared with `advected(w = field)`"
             ),
@@ -98,6 +67,41 @@ impl Checker<'_> {
                 format!(": make it a field of the struct, or write {value}\nknown: {}", known.join(", "))
             }
         }
+    }
+
+    /// The same for what is a velocity elsewhere.
+    fn advice_on_velocity(&self, name: &str) -> String {
+        let is_product = self.declaration.group.is_product();
+        if self.declaration.continuous.is_some() {
+            return match self.declaration.velocities() {
+                [] if is_product => {
+                    format!("; name the velocities by `{}`", named_velocities(&self.declaration.factors))
+                }
+                [] => format!("; name the velocity by `velocity = {name}`"),
+                [one] => format!("; the velocity is called `{one}`"),
+                several => {
+                    let names: Vec<String> = several.iter().map(|name| format!("`{name}`")).collect();
+                    format!("; the velocities are called {}", names.join(", "))
+                }
+            };
+        }
+        if self.is_constraint() {
+            return "; a holonomic constraint is a function of positions, and sees no velocity".to_owned();
+        }
+        let (increment, group) = self.body(name);
+        let velocity = if group.is_added {
+            format!("`{increment} / h`")
+        } else if group.is_so3 {
+            format!("`log({increment}) / h`")
+        } else {
+            format!("`({increment} - I) / h`")
+        };
+        let continuous = match (self.is_force(), is_product) {
+            (true, _) => String::new(),
+            (_, true) => format!(", or declare `l = …` with `{}`", named_velocities(&self.declaration.factors)),
+            _ => format!(", or declare `l = …` with `velocity = {name}`"),
+        };
+        format!("; the velocity of a step is in `{increment}`: write {velocity}{continuous}")
     }
 
     /// The names of the increments.

@@ -32,37 +32,14 @@ impl Checker<'_> {
         if !is_seen {
             return None;
         }
-        let (span, operator) = (binary.span(), binary.op.span());
+        let span = binary.span();
         match binary.op {
             BinOp::Add(_) | BinOp::Sub(_) => {
-                if left.shape != right.shape {
-                    let (a, b) = (left.shape.describe(), right.shape.describe());
-                    let verb = if matches!(binary.op, BinOp::Add(_)) { "added to" } else { "subtracted from" };
-                    let (a, b) = if matches!(binary.op, BinOp::Add(_)) { (a, b) } else { (b, a) };
-                    let advice = match (left.shape, right.shape) {
-                        (Shape::Scalar, Shape::Matrix(1, 1)) | (Shape::Matrix(1, 1), Shape::Scalar) => {
-                            ": write `a.dot(&b)` for `a.transpose() * b`"
-                        }
-                        (Shape::Scalar, Shape::Matrix(_, 1)) | (Shape::Matrix(_, 1), Shape::Scalar) => {
-                            ": take a `.dot(…)` or a component of the vector"
-                        }
-                        (Shape::Scalar, Shape::Matrix(rows, columns))
-                        | (Shape::Matrix(rows, columns), Shape::Scalar)
-                            if rows == columns =>
-                        {
-                            ": write `a * I` for a scalar `a`, or take the `.trace()` of the matrix"
-                        }
-                        _ => ": both sides need one shape",
-                    };
-                    self.errors.push(operator, format!("{a} can't be {verb} {b}{advice}"));
-                    return None;
+                let (shape, is_sum) = (left.shape, matches!(binary.op, BinOp::Add(_)));
+                if shape != right.shape {
+                    return self.unlike(binary.op, shape, right.shape);
                 }
-                let shape = left.shape;
-                let kind = if matches!(binary.op, BinOp::Add(_)) {
-                    Kind::Add(left, right)
-                } else {
-                    Kind::Subtract(left, right)
-                };
+                let kind = if is_sum { Kind::Add(left, right) } else { Kind::Subtract(left, right) };
                 Some(Tree::new(span, shape, kind))
             }
             BinOp::Mul(_) => {
@@ -71,25 +48,7 @@ impl Checker<'_> {
                     (Shape::Matrix(rows, inner), Shape::Matrix(same, columns)) if inner == same => {
                         Shape::Matrix(rows, columns)
                     }
-                    (a, b) => {
-                        let group = &self.declaration.group;
-                        let hint = match (a, b) {
-                            (Shape::Matrix(m, 1), Shape::Matrix(n, 1)) if m == n => {
-                                "write `a.dot(&b)`, or `a * b.transpose()`".to_owned()
-                            }
-                            (Shape::Matrix(_, columns), Shape::Matrix(rows @ 1..=3, 1))
-                                if group.is_affine() && columns == group.size && columns == rows + 1 =>
-                            {
-                                format!("on this group a point of the body has the type Point{rows}<f64>")
-                            }
-                            _ => "the columns of the left must be as many as the rows of the right".to_owned(),
-                        };
-                        self.errors.push(
-                            operator,
-                            format!("{} can't be multiplied by {}: {hint}", a.describe(), b.describe()),
-                        );
-                        return None;
-                    }
+                    (a, b) => return self.no_product(binary.op, a, b),
                 };
                 Some(Tree::new(span, shape, Kind::Multiply(left, right)))
             }
@@ -97,7 +56,7 @@ impl Checker<'_> {
                 if right.shape != Shape::Scalar {
                     let shape = right.shape.describe();
                     self.errors.push(
-                        operator,
+                        binary.op.span(),
                         format!(
                             "only a scalar can divide, and this is {shape}: multiply by `inverse(F)`, or by that of a \
                              field"
@@ -110,6 +69,47 @@ impl Checker<'_> {
             }
             _ => self.unknown_operator(binary.op),
         }
+    }
+
+    /// A sum or a difference of two shapes.
+    fn unlike(&mut self, operator: BinOp, left: Shape, right: Shape) -> Option<Rc<Tree>> {
+        let (a, b) = (left.describe(), right.describe());
+        let (a, verb, b) =
+            if matches!(operator, BinOp::Add(_)) { (a, "added to", b) } else { (b, "subtracted from", a) };
+        let advice = match (left, right) {
+            (Shape::Scalar, Shape::Matrix(1, 1)) | (Shape::Matrix(1, 1), Shape::Scalar) => {
+                ": write `a.dot(&b)` for `a.transpose() * b`"
+            }
+            (Shape::Scalar, Shape::Matrix(_, 1)) | (Shape::Matrix(_, 1), Shape::Scalar) => {
+                ": take a `.dot(…)` or a component of the vector"
+            }
+            (Shape::Scalar, Shape::Matrix(rows, columns)) | (Shape::Matrix(rows, columns), Shape::Scalar)
+                if rows == columns =>
+            {
+                ": write `a * I` for a scalar `a`, or take the `.trace()` of the matrix"
+            }
+            _ => ": both sides need one shape",
+        };
+        self.errors.push(operator.span(), format!("{a} can't be {verb} {b}{advice}"));
+        None
+    }
+
+    /// A product of two shapes that have none.
+    fn no_product(&mut self, operator: BinOp, a: Shape, b: Shape) -> Option<Rc<Tree>> {
+        let group = &self.declaration.group;
+        let hint = match (a, b) {
+            (Shape::Matrix(m, 1), Shape::Matrix(n, 1)) if m == n => {
+                "write `a.dot(&b)`, or `a * b.transpose()`".to_owned()
+            }
+            (Shape::Matrix(_, columns), Shape::Matrix(rows @ 1..=3, 1))
+                if group.is_affine() && columns == group.size && columns == rows + 1 =>
+            {
+                format!("on this group a point of the body has the type Point{rows}<f64>")
+            }
+            _ => "the columns of the left must be as many as the rows of the right".to_owned(),
+        };
+        self.errors.push(operator.span(), format!("{} can't be multiplied by {}: {hint}", a.describe(), b.describe()));
+        None
     }
 
     /// A product that the compiler has for `f64` and `f32` alone.

@@ -119,11 +119,7 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
         }
         "displacement" if role == Role::Force => {
             once(arguments.displacement.is_some());
-            let message = "write `displacement(eta_1, eta_2)`: a name for each factor of the group, in their order";
-            if !input.peek(syn::token::Paren) {
-                return Err(syn::Error::new(key.span(), message));
-            }
-            let names = in_parentheses(input, message)?;
+            let names = displacements(&key, input)?;
             arguments.displacement = Some((key, names));
         }
         "discretise" if role == Role::Lagrangian => {
@@ -153,17 +149,24 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             let message = "a holonomic constraint is a function of positions, and sees no velocity: remove this";
             return Err(syn::Error::new(key.span(), message));
         }
-        other => {
-            let near = suggestion(other, known.iter().copied());
-            let list = if near.is_empty() { format!("\nknown: {}", known.join(", ")) } else { String::new() };
-            let attribute = role.attribute();
-            return Err(syn::Error::new(
-                key.span(),
-                format!("`{other}` isn't an argument of `{attribute}`{near}{list}"),
-            ));
-        }
+        _ => return Err(unknown(role, &key, &known)),
     }
     comma(input)
+}
+
+fn unknown(role: Role, key: &Ident, known: &[&'static str]) -> syn::Error {
+    let near = suggestion(&key.to_string(), known.iter().copied());
+    let list = if near.is_empty() { format!("\nknown: {}", known.join(", ")) } else { String::new() };
+    let attribute = role.attribute();
+    syn::Error::new(key.span(), format!("`{key}` isn't an argument of `{attribute}`{near}{list}"))
+}
+
+fn displacements(key: &Ident, input: ParseStream) -> syn::Result<Vec<Ident>> {
+    let message = "write `displacement(eta_1, eta_2)`: a name for each factor of the group, in their order";
+    if !input.peek(syn::token::Paren) {
+        return Err(syn::Error::new(key.span(), message));
+    }
+    in_parentheses(input, message)
 }
 
 /// `group = SO3`, `group(F_1 = SO3, F_2 = SO3)`.

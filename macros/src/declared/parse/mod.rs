@@ -82,49 +82,12 @@ pub(crate) fn as_far_as_readable(
     item: ItemStruct,
     errors: &mut Errors,
 ) -> Declaration {
-    // In braces that span the last token, so that what ends too early is reported there.
-    let last = arguments.clone().into_iter().last().map_or(Span::call_site(), |token| token.span());
-    let mut braces = proc_macro2::Group::new(Delimiter::Brace, arguments);
-    braces.set_span(last);
-    let parser = |input: ParseStream| {
-        let content;
-        braced!(content in input);
-        Ok(arguments_from(role, &content, errors))
-    };
-    let mut arguments = parser.parse2(TokenTree::Group(braces).into()).unwrap_or_else(|error| {
-        // What a mistake has left unread isn't another.
-        if errors.is_empty() {
-            errors.extend(error);
-        }
-        Arguments::default()
-    });
+    let mut arguments = read_arguments(role, arguments, errors);
     // What seems to be missing may stand in an argument that couldn't be read.
     let is_readable = errors.is_empty();
-    let named = std::mem::take(&mut arguments.factors);
-    let (group_path, group, factors) = if named.len() > 1 {
-        if let Some((key, _)) = &arguments.generators {
-            errors.push(key.span(), "`generators` belong to `group = Name`: remove them");
-        }
-        let (factors, group) = group::product(named, errors);
-        (factors.first().and_then(|factor| factor.path.clone()), group, factors)
-    } else {
-        let single = named.into_iter().next();
-        let name = single.as_ref().map_or_else(|| "F".to_owned(), |(name, _)| name.unraw().to_string());
-        let place = single.as_ref().map_or_else(Span::call_site, |(name, _)| name.span());
-        let named = arguments.group.take().or(single.map(|(_, named)| named));
-        let (path, group) = group::group(named, arguments.generators.take(), is_readable, errors);
-        (path.clone(), group, vec![Factor { name, place, path }])
-    };
+    let (group_path, group, factors) = groups(&mut arguments, is_readable, errors);
     if arguments.expression.is_none() && arguments.continuous.is_none() && is_readable {
-        let message = match role {
-            Role::Lagrangian => {
-                "the Lagrangian is missing: write `l_d = …` with an expression in `F` and `h`, or `velocity = Omega, \
-                 l = …` with one in `Omega`"
-            }
-            Role::Force => "the virtual work is missing: write `work = …`, linear in `eta` and `eta_next`",
-            Role::Constraint => "the constraint is missing: write `zero = …`, a function of where two bodies are",
-        };
-        errors.push(Span::call_site(), message);
+        errors.push(Span::call_site(), missing(role));
     }
     let (mut fields, unreadable) = fields::fields((role, group.is_product()), &item, errors);
     if errors.is_empty() {
@@ -181,6 +144,56 @@ pub(crate) fn as_far_as_readable(
         unreadable,
         scalar,
         item,
+    }
+}
+
+fn read_arguments(role: Role, arguments: TokenStream, errors: &mut Errors) -> Arguments {
+    // In braces that span the last token, so that what ends too early is reported there.
+    let last = arguments.clone().into_iter().last().map_or(Span::call_site(), |token| token.span());
+    let mut braces = proc_macro2::Group::new(Delimiter::Brace, arguments);
+    braces.set_span(last);
+    let parser = |input: ParseStream| {
+        let content;
+        braced!(content in input);
+        Ok(arguments_from(role, &content, errors))
+    };
+    parser.parse2(TokenTree::Group(braces).into()).unwrap_or_else(|error| {
+        // What a mistake has left unread isn't another.
+        if errors.is_empty() {
+            errors.extend(error);
+        }
+        Arguments::default()
+    })
+}
+
+/// The group, its factors, and how it is named, if it is known.
+fn groups(arguments: &mut Arguments, is_readable: bool, errors: &mut Errors) -> (Option<Path>, Group, Vec<Factor>) {
+    let named = std::mem::take(&mut arguments.factors);
+    if named.len() > 1 {
+        if let Some((key, _)) = &arguments.generators {
+            errors.push(key.span(), "`generators` belong to `group = Name`: remove them");
+        }
+        let (factors, group) = group::product(named, errors);
+        (factors.first().and_then(|factor| factor.path.clone()), group, factors)
+    } else {
+        let single = named.into_iter().next();
+        let name = single.as_ref().map_or_else(|| "F".to_owned(), |(name, _)| name.unraw().to_string());
+        let place = single.as_ref().map_or_else(Span::call_site, |(name, _)| name.span());
+        let named = arguments.group.take().or(single.map(|(_, named)| named));
+        let (path, group) = group::group(named, arguments.generators.take(), is_readable, errors);
+        (path.clone(), group, vec![Factor { name, place, path }])
+    }
+}
+
+/// What is said where the expression is missing.
+fn missing(role: Role) -> &'static str {
+    match role {
+        Role::Lagrangian => {
+            "the Lagrangian is missing: write `l_d = …` with an expression in `F` and `h`, or `velocity = Omega, \
+             l = …` with one in `Omega`"
+        }
+        Role::Force => "the virtual work is missing: write `work = …`, linear in `eta` and `eta_next`",
+        Role::Constraint => "the constraint is missing: write `zero = …`, a function of where two bodies are",
     }
 }
 

@@ -1,11 +1,11 @@
 //! The continuous equations in print.
 
 use crate::declared::{Declaration, FieldKind};
-use crate::emit::docs::{Equation, setting};
+use crate::emit::docs::{Equation, inertia_matrix, setting};
 use crate::judged::Equations;
 use crate::mathematics::derive::{Carried, Continuous, Element, Inverse, Seen};
 use crate::mathematics::group::Group;
-use crate::mathematics::symbolic::{Expression, Rational, Variance, matrix_text, monomial_contains, text, vector_text};
+use crate::mathematics::symbolic::{Expression, Rational, Variance, monomial_contains, text, vector_text};
 
 /// A longer equation is said in words.
 const LONGEST: usize = 1_500;
@@ -58,7 +58,7 @@ pub(super) fn equations(declaration: &Declaration, equations: &Equations) -> Vec
         Equation::new("l", &format!("l({at})"), scalar(&derived.lagrangian), source),
         paired("momentum", "μ", &derived.momentum, "∂l/∂ξ, (1.14)"),
     ];
-    list.push(match inertia(derived) {
+    list.push(match inertia_matrix(derived) {
         Some(text) if text.len() <= LONGEST => Equation::new("velocity_hessian", "𝕀", text, "∂²l/∂ξ², the inertia"),
         _ => Equation::new("velocity_hessian", "⟨𝕀η, ζ⟩", scalar(&derived.hessian), "∂²l/∂ξ², the inertia"),
     });
@@ -89,12 +89,6 @@ fn of_bodies(derived: &Continuous, expression: &Expression) -> String {
         if found.len() <= LONGEST { found } else { "…, which is long".to_owned() }
     };
     derived.directions.iter().enumerate().map(of_body).collect::<Vec<_>>().join(";  ")
-}
-
-/// `∂²l/∂ξ²` as a matrix, where it can be written as one.
-pub(in crate::emit) fn inertia(derived: &Continuous) -> Option<String> {
-    let [directions] = derived.directions.as_slice() else { return None };
-    matrix_text(&derived.hessian, directions.map(|direction| direction.components), &derived.symbols)
 }
 
 /// The names of what is advected.

@@ -7,6 +7,7 @@ mod discretised_bodies;
 mod fuzz;
 mod higher_order;
 mod mutants;
+mod not_quadratic;
 mod own_group;
 mod right;
 mod rooms;

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use super::series::Expansion;
+use super::series::{Expansion, LimitError};
 use super::{Context, Continuous, momentum_equation};
 use crate::mathematics::symbolic::{
     Expression, Monomial, Rational, SymbolId, Variations, degree, substitute, variation,
@@ -31,19 +31,6 @@ pub(crate) struct Limit {
     pub(crate) inertia: Expression,
     pub(crate) bias: Expression,
     pub(crate) potential: Expression,
-}
-
-/// Why there is no continuous Lagrangian behind `l_d`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum LimitError {
-    /// `h` stands under a function or in a sum that is divided by.
-    StepInsideFunction,
-    /// A power of `h` below −1.
-    TooSingular(i32),
-    /// The limit isn't `½ ξ·Jξ + s·ξ − V`.
-    NotALagrangian,
-    /// The limit has too many terms.
-    TooLarge,
 }
 
 pub(super) fn limit(context: &Context, momentum: &Expression) -> Result<Limit, LimitError> {

@@ -29,8 +29,9 @@ pub(crate) use closed::{Closed, Let};
 pub(crate) use constraint::{Body, DeclaredConstraint};
 pub(crate) use continuous::{Continuous, DeclaredContinuous, Element, Inverse, continuous, of_limit};
 pub(crate) use force::{Displacements, ForceError};
-pub(crate) use limit::{Discretised, Limit, LimitError};
+pub(crate) use limit::{Discretised, Limit};
 pub(crate) use self_adjoint::SelfAdjointness;
+pub(crate) use series::LimitError;
 
 /// A declared Lagrangian with the symbols that it is written in.
 #[derive(Clone, Debug)]

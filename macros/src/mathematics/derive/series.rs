@@ -2,10 +2,23 @@
 
 use std::collections::BTreeMap;
 
-use super::{Context, LimitError};
+use super::Context;
 use crate::mathematics::symbolic::{
     Atom, Expression, Factor, Function, Rational, SymbolId, Variations, substitute, variation,
 };
+
+/// Why there is no continuous Lagrangian behind `l_d`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LimitError {
+    /// `h` stands under a function or in a sum that is divided by.
+    StepInsideFunction,
+    /// A power of `h` below −1.
+    TooSingular(i32),
+    /// The limit isn't `½ ξ·Jξ + s·ξ − V`.
+    NotALagrangian,
+    /// The limit has too many terms.
+    TooLarge,
+}
 
 /// Terms of this order and above are dropped. The limit needs `l_d` to the first order, and `l_d` may divide by `h`.
 const CUTOFF: i32 = 3;

@@ -1,8 +1,8 @@
 //! What a processed splitting keeps: the motion that is stepped, which isn't the one that is read.
 
 use crate::groups::{Advected, LieGroup as _, SO3};
-use crate::motion::{Kept, Motion, count, counted};
-use crate::numbers::{Entries, Real, real, zero};
+use crate::motion::{Kept, Motion};
+use crate::numbers::{Entries, Real, count, counted, real, zero};
 use nalgebra::SimdBool as _;
 
 /// Where a run is inside of its processor, by [`Processed`](super::Processed), and by which step; or that it isn't there:

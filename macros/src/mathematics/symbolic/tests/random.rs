@@ -119,34 +119,51 @@ pub(crate) struct Both {
     pub(crate) value: Matrix,
 }
 
-/// A random expression of at most so many nested operations.
-pub(crate) fn both(random: &mut Random, world: &World, shape: (usize, usize), depth: usize) -> Both {
-    let symbols = &world.symbols;
-    let leaf = |id: SymbolId| Both { expression: world.expression(id), value: world.values[&id].clone() };
-    if depth == 0 {
-        return match shape {
-            (1, 1) => leaf([world.h, world.k][random.below(2)]),
-            (3, 1) if random.below(6) == 0 => {
-                let index = random.below(3);
-                let unit = vec![Factor::Unit { index, size: 3, transposed: false }];
-                Both { expression: Expression::from_word(unit, shape, symbols), value: Matrix::unit(index, 3) }
-            }
-            (3, 1) => leaf([world.u, world.v, world.w][random.below(3)]),
-            _ if random.below(8) == 0 => Both { expression: Expression::identity(3), value: Matrix::identity(3) },
-            _ => {
-                let all = [world.f, world.f, world.symmetric, world.diagonal, world.a, world.b, world.e];
-                leaf(all[random.below(all.len())])
-            }
-        };
+impl Both {
+    fn times(&self, other: &Self, symbols: &Symbols) -> Self {
+        Self { expression: self.expression.times(&other.expression, symbols), value: self.value.times(&other.value) }
     }
+}
+
+/// A symbol or a constant.
+fn leaf(random: &mut Random, world: &World, shape: (usize, usize)) -> Both {
+    let symbol = |id: SymbolId| Both { expression: world.expression(id), value: world.values[&id].clone() };
+    match shape {
+        (1, 1) => symbol([world.h, world.k][random.below(2)]),
+        (3, 1) if random.below(6) == 0 => {
+            let index = random.below(3);
+            let unit = vec![Factor::Unit { index, size: 3, transposed: false }];
+            Both { expression: Expression::from_word(unit, shape, &world.symbols), value: Matrix::unit(index, 3) }
+        }
+        (3, 1) => symbol([world.u, world.v, world.w][random.below(3)]),
+        _ if random.below(8) == 0 => Both { expression: Expression::identity(3), value: Matrix::identity(3) },
+        _ => {
+            let all = [world.f, world.f, world.symmetric, world.diagonal, world.a, world.b, world.e];
+            symbol(all[random.below(all.len())])
+        }
+    }
+}
+
+/// `sin a + 2`, between 1 and 3: away from singularities, and small enough for central differences.
+fn bounded(a: Both) -> Both {
+    let sine = Expression::function(Function::Sin, a.expression);
+    Both {
+        expression: sine.plus(Expression::rational(Rational::integer(2))),
+        value: Matrix::scalar(a.value.at(0, 0).sin() + 2.0),
+    }
+}
+
+/// A random expression of at most `depth` nested operations.
+pub(crate) fn both(random: &mut Random, world: &World, shape: (usize, usize), depth: usize) -> Both {
+    if depth == 0 {
+        return leaf(random, world, shape);
+    }
+    let symbols = &world.symbols;
     let pick = random.below(9);
     let exponent = [-2, -1, 2, 3, 5][random.below(5)];
     let function = Function::METHODS[random.below(Function::METHODS.len())];
     let mut part = |shape| both(random, world, shape, depth - 1);
-    let product = |a: &Both, b: &Both| Both {
-        expression: a.expression.times(&b.expression, symbols),
-        value: a.value.times(&b.value),
-    };
+    let product = |a: &Both, b: &Both| a.times(b, symbols);
     let turned = |a: Both| Both { expression: a.expression.transpose(symbols), value: a.value.transpose() };
     let (scalar, vector, square) = ((1, 1), (3, 1), (3, 3));
     match (shape, pick) {
@@ -159,19 +176,15 @@ pub(crate) fn both(random: &mut Random, world: &World, shape: (usize, usize), de
             Both { expression: a.expression.plus(b.expression), value: a.value.plus(&b.value) }
         }
         ((1, 1), 5) => {
-            // Between 1/3 and 1: away from singularities, and small enough for central differences.
-            let a = part(scalar);
-            let sine = Expression::function(Function::Sin, a.expression);
-            let base = sine.plus(Expression::rational(Rational::integer(2))).scaled(Rational::new(1, 3));
-            let value = (a.value.at(0, 0).sin() + 2.0) / 3.0;
+            let a = bounded(part(scalar));
+            let base = a.expression.scaled(Rational::new(1, 3));
+            let value = a.value.at(0, 0) / 3.0;
             Both { expression: base.power(exponent, symbols), value: Matrix::scalar(value.powi(exponent)) }
         }
         ((1, 1), 6) => {
-            let a = part(scalar);
-            let sine = Expression::function(Function::Sin, a.expression);
-            let two = Expression::rational(Rational::integer(2));
-            let value = function.apply(a.value.at(0, 0).sin() + 2.0);
-            Both { expression: Expression::function(function, sine.plus(two)), value: Matrix::scalar(value) }
+            let a = bounded(part(scalar));
+            let value = function.apply(a.value.at(0, 0));
+            Both { expression: Expression::function(function, a.expression), value: Matrix::scalar(value) }
         }
         (_, 8) => {
             let (a, b) = (part(shape), part(shape));

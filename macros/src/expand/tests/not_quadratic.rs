@@ -1,0 +1,96 @@
+//! Lagrangians that aren't quadratic in the velocity, and the limits of what is made of them.
+
+use super::continuous::{equations, read};
+use super::expanded;
+use crate::declared::errors::Errors;
+use crate::declared::lower;
+use crate::judged::{self, verify};
+use crate::mathematics::derive;
+use crate::mathematics::symbolic::Rational;
+
+/// The limit of what is made of an `l` that isn't quadratic is `l`, by the series in `h`; that of another isn't.
+#[test]
+fn the_limit_of_what_isnt_quadratic() {
+    let kinetic = "0.5 * Omega.dot(&(J_d * Omega)) * (1.0 + w.dot(&rho)) + m * Omega.norm_squared().powi(2)";
+    let l = |kinetic: &str, sign: char| {
+        format!("group = SO3, velocity = Omega, advected(w = up), l = {kinetic} {sign} m * (2.0 + w.dot(&rho)).sqrt()")
+    };
+    let fields = "struct Top { J_d: Inertia, m: f64, rho: Vector3<f64>, up: Vector3<f64> }";
+    for rule in ["trapezoid", "trapezoid(Cayley)", "trapezoid(exp)", "midpoint(exp)", "chord", "chord(exp)"] {
+        let (declaration, tree) = read(&format!("{}, discretise = {rule}", l(kinetic, '-')), fields);
+        let mut errors = Errors::default();
+        let asked = declaration.discretisation().expect("a rule");
+        let discrete = judged::discretised(&declaration, &tree, asked, &mut errors).expect("a fit");
+        assert!(verify::has_limit(&declaration, &tree, &discrete), "{rule}");
+        let (_, other) = read(&l(kinetic, '+'), fields);
+        assert!(!verify::has_limit(&declaration, &other, &discrete), "{rule}: the potential's sign");
+        let (_, other) = read(&l(&kinetic.replace("+ m", "- m"), '-'), fields);
+        assert!(!verify::has_limit(&declaration, &other, &discrete), "{rule}: the quartic term's sign");
+    }
+}
+
+/// A root that has values below the velocity of light alone, and one that has none. The field has roots of all numbers, so
+/// this says nothing of where `l` has a value.
+#[test]
+fn the_limit_of_a_root() {
+    let l = |inside: &str, sign: char| {
+        format!(
+            "group = R3, velocity = v, advected(w = field), discretise = trapezoid(exp), \
+             l = -(m * c * c) * ({inside}).sqrt() {sign} m * w.dot(&origin)"
+        )
+    };
+    let fields = "struct Fast { m: f64, c: f64, origin: Vector4<f64>, field: Vector4<f64> }";
+    let limit = |made: &str, other: &str| {
+        let (declaration, tree) = read(made, fields);
+        let mut errors = Errors::default();
+        let asked = declaration.discretisation().expect("a rule");
+        let discrete = judged::discretised(&declaration, &tree, asked, &mut errors).expect("a fit");
+        verify::has_limit(&declaration, &read(other, fields).1, &discrete)
+    };
+    let [root, turned] = ["1.0 - v.norm_squared() / (c * c)", "1.0 + v.norm_squared() / (c * c)"];
+    assert!(limit(&l(root, '+'), &l(root, '+')));
+    assert!(!limit(&l(root, '+'), &l(turned, '+')));
+    assert!(!limit(&l(root, '+'), &l(root, '-')));
+    // Where no point tells, nothing is claimed; such an `l` is refused before that is asked.
+    for undefined in ["1.0 / (v.norm_squared() - v.norm_squared())", "1.0 / v[0].powi(0).ln()"] {
+        assert!(!limit(&l(undefined, '+'), &l(undefined, '+')), "{undefined}");
+        let refused = expanded(&l(undefined, '+'), fields).to_string();
+        assert!(refused.contains("what is divided by it has no value"), "{undefined}: {refused}");
+    }
+    let nowhere = "-1.0 - v.norm_squared() / (c * c)";
+    assert!(limit(&l(nowhere, '+'), &l(nowhere, '+')));
+    assert!(!limit(&l(nowhere, '+'), &l(nowhere, '-')));
+    // A term that rounding would hide.
+    let small = "1.0 + 1e-15 - v.norm_squared() / (c * c)";
+    assert!(!limit(&l(root, '+'), &l(small, '+')));
+    assert!(limit(&l(small, '+'), &l(small, '+')));
+}
+
+/// What a stepper has of an `l` at rest is what its derivatives are there.
+#[test]
+fn what_isnt_quadratic_at_rest() {
+    let fields = "struct Top { J_d: Inertia, m: f64, rho: Vector3<f64>, up: Vector3<f64> }";
+    let arguments = "group = SO3, velocity = Omega, advected(w = up), discretise = trapezoid, \
+        l = 0.5 * Omega.dot(&(J_d * Omega)) * (1.0 + w.dot(&rho)) + m * Omega.norm_squared().powi(2) \
+            + Omega.dot(&rho) * w.dot(&rho) - m * w.dot(&rho)";
+    let (declaration, tree) = read(arguments, fields);
+    let mut errors = Errors::default();
+    let asked = declaration.discretisation().expect("a rule");
+    let discrete = judged::discretised(&declaration, &tree, asked, &mut errors).expect("a fit");
+    let equations = equations(arguments, fields);
+    let readings = lower::readings(&declaration, &discrete, &mut errors).expect("small");
+    let readings = readings.into_iter().map(|reading| equations.behind(reading)).collect();
+    let chosen = judged::cheapest(readings, derive::derive, &declaration, &discrete, &mut errors).expect("derived");
+    let disagrees = |derived: &derive::Derived| {
+        let (here, there) = (&equations.names, &chosen.lowered.names);
+        verify::rest_disagrees(&declaration, (here, &equations.derived), (there, derived))
+    };
+    assert!(!disagrees(&chosen.derived));
+    for change in [0, 1, 2] {
+        let mut changed = chosen.derived.clone();
+        let limit = &mut changed.limit;
+        let term = [&mut limit.inertia, &mut limit.bias, &mut limit.potential].into_iter().nth(change).expect("three");
+        *term = term.clone().scaled(-Rational::ONE);
+        assert!(disagrees(&changed), "{change}");
+    }
+}

@@ -1,0 +1,38 @@
+//! The operations of a graph, each alone.
+
+use crate::mathematics::symbolic::{Function, Rational, SymbolId};
+
+/// An index into a [`Graph`](super::Graph); operands come before their operation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(crate) struct NodeId(pub(crate) usize);
+
+/// One entry of a symbol.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(crate) struct Input {
+    pub(crate) symbol: SymbolId,
+    pub(crate) row: usize,
+    pub(crate) column: usize,
+}
+
+/// A constant, an input, or one operation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Node {
+    Constant(Rational),
+    Input(Input),
+    Negate(NodeId),
+    Add(NodeId, NodeId),
+    Subtract(NodeId, NodeId),
+    Multiply(NodeId, NodeId),
+    Divide(NodeId, NodeId),
+    Apply(Function, NodeId),
+}
+
+impl Node {
+    pub(crate) fn operands(&self) -> [Option<NodeId>; 2] {
+        match *self {
+            Self::Constant(_) | Self::Input(_) => [None, None],
+            Self::Negate(a) | Self::Apply(_, a) => [Some(a), None],
+            Self::Add(a, b) | Self::Subtract(a, b) | Self::Multiply(a, b) | Self::Divide(a, b) => [Some(a), Some(b)],
+        }
+    }
+}
