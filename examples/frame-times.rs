@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 #[cfg(test)]
 mod tests {
-    use super::{STEP, toy};
+    use super::{Integrator as _, STEP, toy};
     use liestep::nalgebra::{UnitQuaternion, Vector3};
 
     /// At three rates, one of them uneven, with late frames, slow motion and pauses.

@@ -6,7 +6,7 @@ use std::sync::Mutex;
 
 use clap::ArgMatches;
 use liestep::SO3;
-use liestep::motion::{AnyStepper, Moment};
+use liestep::motion::{AnyStepper, Integrator as _, Moment};
 use liestep_ensemble::{Failure, Local, MemberFailure, Reduction, Report, Store, Summary};
 use liestep_plot::output::Output;
 use liestep_scene::{Column, Mistake, SceneEnsemble, SceneFile, Spread};
