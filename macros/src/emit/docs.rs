@@ -103,7 +103,7 @@ fn of_limit(continuous: Option<&Equations>) -> &'static str {
 /// `J` as a matrix, where it can be written as one.
 fn inertia(derived: &Derived, continuous: Option<&Equations>) -> Equation {
     let quadratic = continuous.filter(|equations| equations.derived.inverse != Inverse::Nonlinear);
-    let as_matrix = quadratic.and_then(|equations| inertia(&equations.derived));
+    let as_matrix = quadratic.and_then(|equations| inertia_matrix(&equations.derived));
     match as_matrix {
         Some(text) if text.len() <= LONGEST => Equation::new("inertia", "J", text, "continuous limit"),
         _ => {
@@ -188,7 +188,7 @@ pub(super) fn costs(kernel: &Kernel) -> String {
 }
 
 /// `∂²l/∂ξ²` as a matrix, where it can be written as one.
-pub(super) fn inertia(derived: &Continuous) -> Option<String> {
+pub(super) fn inertia_matrix(derived: &Continuous) -> Option<String> {
     let [directions] = derived.directions.as_slice() else { return None };
     matrix_text(&derived.hessian, directions.map(|direction| direction.components), &derived.symbols)
 }

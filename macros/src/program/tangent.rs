@@ -20,7 +20,7 @@ use super::graph::{Graph, Input, Node, NodeId};
 use super::kernel::{by_increment, components, generator, square, velocity, with_inverse};
 use super::scalarise::Entries;
 use crate::mathematics::derive::{Derived, Ends};
-use crate::mathematics::symbolic::{Function, Rational, Stage, SymbolId};
+use crate::mathematics::symbolic::{Rational, Stage, SymbolId};
 
 /// The momenta at both ends of a step, to be differentiated.
 pub(crate) struct Linearisation<'a> {

@@ -20,7 +20,7 @@ use syn::spanned::Spanned as _;
 use syn::{Block, Expr, Lit, Pat, Stmt, UnOp};
 
 use crate::declared::errors::Errors;
-use crate::declared::{Declaration, Kind, Name, Role, Shape, Spelling, Tree, named_velocities};
+use crate::declared::{Declaration, Kind, Name, Role, Shape, Spelling, Tree};
 use crate::mathematics::group::{Group, built_in};
 use crate::mathematics::symbolic::Rational;
 use closures::Closure;

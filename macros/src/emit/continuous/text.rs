@@ -1,7 +1,7 @@
 //! The continuous equations in print.
 
 use crate::declared::{Declaration, FieldKind};
-use crate::emit::docs::{Equation, inertia, setting};
+use crate::emit::docs::{Equation, inertia_matrix, setting};
 use crate::judged::Equations;
 use crate::mathematics::derive::{Carried, Continuous, Element, Inverse, Seen};
 use crate::mathematics::group::Group;
@@ -58,7 +58,7 @@ pub(super) fn equations(declaration: &Declaration, equations: &Equations) -> Vec
         Equation::new("l", &format!("l({at})"), scalar(&derived.lagrangian), source),
         paired("momentum", "μ", &derived.momentum, "∂l/∂ξ, (1.14)"),
     ];
-    list.push(match inertia(derived) {
+    list.push(match inertia_matrix(derived) {
         Some(text) if text.len() <= LONGEST => Equation::new("velocity_hessian", "𝕀", text, "∂²l/∂ξ², the inertia"),
         _ => Equation::new("velocity_hessian", "⟨𝕀η, ζ⟩", scalar(&derived.hessian), "∂²l/∂ξ², the inertia"),
     });
