@@ -281,7 +281,7 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
     }
 
     fn factored_inertia(&self) -> Option<FactoredInertia<Group<S>>> {
-        factored_inertia(self.scene())
+        if const { P::HAS_OWN_INERTIA } { None } else { factored_inertia(self.scene()) }
     }
 
     #[hot]
@@ -290,6 +290,9 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
         motion: &Motion<Group<S>, S::Advected>,
         inertia: Option<&FactoredInertia<Group<S>>>,
     ) -> (Vector<S>, Scalar<S>) {
+        if const { P::HAS_OWN_INERTIA } {
+            return (self.velocity(motion), self.energy(motion));
+        }
         velocity_and_energy(self.scene(), inertia, &motion.momentum, &motion.advected)
     }
 }
