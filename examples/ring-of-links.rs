@@ -82,7 +82,7 @@ fn chain<const N: usize>(h: f64) -> Result<(Joined3<N>, ChainStepper<N>, [SO3; N
     let c = Vector3::x() * 0.5;
     let about_joint = NonstandardInertia::new(rod.J_d.as_matrix() + c * c.transpose())?;
     let link = Link { J_d: about_joint, m: rod.m, c, rho: Vector3::x() };
-    let minimal = ChainStepper::new(Chain { links: [link; N], g: rod.g, up: rod.up }, h)?;
+    let minimal = Chain { links: [link; N], g: rod.g, up: rod.up }.stepper(h)?;
     let tilted = from_fn(|k| SO3::from_euler_angles(0.0, if k % 2 == 0 { 1.2 } else { 1.7 }, 0.5));
     Ok((joined, minimal, tilted))
 }

@@ -44,7 +44,7 @@
 //! | move many bodies that feel each other's attitudes and positions | [`mechanics::Placed`]: terms on one body or on two, put at places ([`Each`](mechanics::Each), [`On`](mechanics::On), [`Along`](mechanics::Along), [`Between`](mechanics::Between), [`Pairs`](mechanics::Pairs), [`Coupled`](mechanics::Coupled)) |
 //! | step over the oscillations of stiff rods | [`mechanics::Coupled`] |
 //! | start a rod or a spherical pendulum by its direction | [`NonstandardInertia::pointing`] |
-//! | move a chain of links on ball joints | [`methods::ChainStepper`] |
+//! | move a chain of links on ball joints | [`methods::Chain`]; with other potentials [`Stepper::linked`](motion::Stepper#method.linked) |
 //! | hold bodies together by joints, loops among them | [`Stepper::jointed`](motion::Stepper#method.jointed); joints of your own by [`constraint`](macro@constraint) |
 //! | begin with the continuous Lagrangian `l(ξ, w)` | [`lagrangian`] with `l = …`, [`mechanics::ContinuousLagrangian`] |
 //! | hand the equations of motion to an ODE solver, or integrate them on any matrix group, of one body | [`motion::RightHandSide`], [`methods::CotangentGauss`] |

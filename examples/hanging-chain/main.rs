@@ -14,7 +14,7 @@ use std::error::Error;
 use std::fmt::Write as _;
 use std::time::Instant;
 
-use liestep::methods::{Chain, ChainStepper, Link};
+use liestep::methods::{Chain, Link};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3};
 use nalgebra::{Matrix3, Vector3};
@@ -43,7 +43,8 @@ fn rods<const N: usize>() -> Result<Chain<N>, Failure> {
 
 /// The picture of one chain every few steps, and how far the energy was off.
 fn picture() -> Result<(String, f64), Failure> {
-    let stepper = ChainStepper::new(rods::<LINKS>()?, STEP)?;
+    let chain = rods::<LINKS>()?;
+    let stepper = chain.stepper(STEP)?;
     let flat = SO3::exp(Vector3::new(0.0, -core::f64::consts::FRAC_PI_2, 0.0));
     let mut state = stepper.start([flat; LINKS], Bodies([Vector3::zeros(); LINKS]))?;
     let (energy, mut off) = (stepper.energy(&state), 0.0_f64);
@@ -78,10 +79,9 @@ fn picture() -> Result<(String, f64), Failure> {
     writeln!(svg, "<path d=\"M{}\" stroke=\"#d9730d\" stroke-width=\"1\"/>", way.trim_start())?;
     writeln!(svg, "<circle cx=\"{}\" cy=\"{}\" r=\"3\" fill=\"#333\"/>\n</svg>", PIVOT[0], PIVOT[1])?;
     // What the fall turns over: the weight of all, from the height of the pivot to hanging down.
-    let links = stepper.chain().links;
     let (mut fall, mut length) = (0.0, 0.0);
-    for link in &links {
-        fall += stepper.chain().g * link.m * (length - link.c.z);
+    for link in &chain.links {
+        fall += chain.g * link.m * (length - link.c.z);
         length -= link.rho.z;
     }
     Ok((svg, off / fall))
@@ -95,7 +95,7 @@ fn time<const N: usize>(h: f64, asked: Option<usize>) -> Result<(), Failure> {
     if asked.is_some_and(|links| links != N) {
         return Ok(());
     }
-    let stepper = ChainStepper::new(rods::<N>()?, h)?;
+    let stepper = rods::<N>()?.stepper(h)?;
     let tilted = core::array::from_fn(|k| {
         let phase = if k % 2 == 0 { 0.4 } else { -0.3 };
         SO3::from_euler_angles(phase, 0.5, 0.0)

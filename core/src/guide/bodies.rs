@@ -162,8 +162,8 @@
 //! turn by more than a right angle then: such a step is an error that names the body. `examples/elastic-rod.rs` has one
 //! either way, and what a step takes: with `times` some 2 µs a body in a row of 10 as of 100, three iterations, and 0.3
 //! µs with potentials of the ends. A term that couples velocities doesn't compile there. Links on ball joints couple
-//! them, and have a stepper of their own, whose step takes a time proportional to their number:
-//! [`ChainStepper`](crate::methods::ChainStepper). `examples/hanging-chain` draws twenty of them.
+//! them, and have a method of their own, whose step takes a time proportional to their number:
+//! [`Chain`](crate::methods::Chain). `examples/hanging-chain` draws twenty of them.
 //!
 //! # Joints
 //!
@@ -185,7 +185,7 @@
 //! (the fourth pin of a planar linkage: three of its five functions), a loop that has come to a singular position.
 //!
 //! The step is that of the minimal form, so momenta and energy are kept as ever. A chain of links is faster in
-//! coordinates of its own, by [`ChainStepper`](crate::methods::ChainStepper).
+//! coordinates of its own, by [`Chain::stepper`](crate::methods::Chain::stepper).
 //!
 //! # Directions
 //!
@@ -195,7 +195,7 @@
 //! where it points and of how fast. Alone, in a product, in a system or in a chain:
 //!
 //! ```
-//! use liestep::methods::{Chain, ChainStepper, Link};
+//! use liestep::methods::{Chain, Link};
 //! use liestep::numbers::Bodies;
 //! use liestep::prelude::*;
 //!
@@ -203,7 +203,7 @@
 //! let (down, up) = (-Vector3::z(), Vector3::z());
 //! let J_d = NonstandardInertia::of_rod(1.0 / 3.0, &down)?;
 //! let link = Link { J_d, m: 1.0, c: down * 0.5, rho: down };
-//! let stepper = ChainStepper::new(Chain { links: [link; 3], g: 9.81, up }, 0.002)?;
+//! let stepper = Chain { links: [link; 3], g: 9.81, up }.stepper(0.002)?;
 //! let (attitude, velocity) = J_d.pointing(&down, &Vector3::x(), &(up * 2.0))?;
 //! let mut state = stepper.start([attitude; 3], Bodies([velocity; 3]))?;
 //! stepper.run(&mut state, 500)?;

@@ -8,7 +8,7 @@
 //! | [`Processed`], by [`Stepper::processed`](crate::Stepper::processed) | 4, 6 | the same, and kick derivatives | the same |
 //! | [`Gauss`], by [`Stepper::collocated`](crate::Stepper::collocated) | `4 PAIRS` | SO(3), a potential apart, `f64` | the same |
 //! | [`CotangentGauss`], a map of its own | `4 PAIRS` | any `l(ξ, w)` on any one group, `f64` | the same |
-//! | [`ChainStepper`], a map of its own | 2 | links on ball joints, `f64` | Poisson structure, momentum about the vertical |
+//! | [`Linked`], by [`Stepper::linked`](crate::Stepper::linked) | 2 | links on ball joints, potentials, `f64` | Poisson structure, momentum maps |
 //! | [`Jointed`], by [`Stepper::jointed`](crate::Stepper::jointed) | the declaration's, mostly 2 | bodies `(SO3, R3)` and joints, `f64` | Poisson structure, momentum maps |
 
 mod chain;
@@ -19,7 +19,7 @@ mod splitting;
 #[cfg(test)]
 mod tests;
 
-pub use chain::{Chain, ChainMemory, ChainStepper, Link};
+pub use chain::{Chain, ChainStepper, Link, Linked, Weights};
 pub use composition::{Composed, CompositionScheme};
 pub use gauss::{Collocated, CotangentCarry, CotangentGauss, Gauss};
 pub use joints::{BallJoint, Constraint, Joined, Joint, Jointed, Joints, PinJoint, Place, Slope};

@@ -2,7 +2,9 @@
 
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
-use crate::mechanics::{Effect, Group, Operations, Scalar, SceneVisitor, Vector};
+use crate::mechanics::{
+    Effect, Group, Operations, Scalar, SceneVisitor, Vector, momentum_of_velocity, velocity_of_momentum,
+};
 use crate::motion::kept::Kept;
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, Summation};
@@ -55,6 +57,20 @@ pub trait Plan<S: Effect> {
     /// [`SetupError`] where it may not.
     fn admits(&self, _scene: &S, _motion: &Motion<Group<S>, S::Advected>) -> Result<(), SetupError> {
         Ok(())
+    }
+
+    /// Whether the plan has the inertia, and not the scene: that of bodies whose coordinates couple their velocities. The
+    /// scene is of potentials alone then.
+    const HAS_OWN_INERTIA: bool = false;
+
+    /// The momentum of a body velocity.
+    fn momentum(&self, scene: &S, _attitude: &Group<S>, velocity: &Vector<S>, w: &S::Advected) -> Vector<S> {
+        momentum_of_velocity(scene, velocity, w)
+    }
+
+    /// The body velocity, as [`Stepper::velocity`](crate::Stepper::velocity) says it.
+    fn velocity(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
+        velocity_of_momentum(scene, &motion.momentum, &motion.advected)
     }
 
     /// Whether the lanes of what is kept go on in one way. A body alone has no other beside it.

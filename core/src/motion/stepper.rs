@@ -6,8 +6,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup, SO3};
 use crate::mechanics::{
     AxiallyInvariant, DiscreteLagrangian, Effect, FactoredInertia, Group, LeftInvariant, Regular, Scalar, Term, Vector,
-    check_inertia, check_velocity, energy, factored_inertia, momentum_of_velocity, velocity_and_energy,
-    velocity_of_momentum,
+    check_inertia, check_velocity, energy, factored_inertia, velocity_and_energy, velocity_of_momentum,
 };
 use crate::motion::declared::Declared;
 use crate::motion::flows::DiscreteLiePoisson;
@@ -115,7 +114,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         let attitude = attitude.into();
         check_attitude(&attitude)?;
         let w = self.scene.advected().seen_from(&attitude);
-        let momentum = momentum_of_velocity(&self.scene, &velocity, &w);
+        let momentum = self.plan.momentum(&self.scene, &attitude, &velocity, &w);
         if !S::IS_QUADRATIC {
             let found = velocity_of_momentum(&self.scene, &momentum, &w);
             check_velocity::<Scalar<S>, _>(&velocity, &found, &momentum, &self.scene.inertia(&w))?;
@@ -411,7 +410,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// says why, as an error. A [control force](Self::step_forced) and an event that are made of NaN are refused.
     #[must_use]
     pub fn velocity(&self, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
-        velocity_of_momentum(&self.scene, &motion.momentum, &motion.advected)
+        self.plan.velocity(&self.scene, motion)
     }
 
     /// The energy of the continuous system, `½ Ω·JΩ + V(w)` where it is quadratic in the velocity, J; where there is no
@@ -421,6 +420,9 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// doesn't drift.
     #[must_use]
     pub fn energy(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S> {
+        if const { P::HAS_OWN_INERTIA } {
+            return self.velocity(motion).dot(&motion.momentum) * real(0.5) + self.scene.potential(&motion.advected);
+        }
         energy(&self.scene, &motion.momentum, &motion.advected)
     }
 
@@ -582,7 +584,7 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
     }
 
     fn factored_inertia(&self) -> Option<FactoredInertia<Group<S>>> {
-        factored_inertia(&self.scene)
+        if const { P::HAS_OWN_INERTIA } { None } else { factored_inertia(&self.scene) }
     }
 
     #[hot]
@@ -591,6 +593,9 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
         motion: &Motion<Group<S>, S::Advected>,
         inertia: Option<&FactoredInertia<Group<S>>>,
     ) -> (Vector<S>, Scalar<S>) {
+        if const { P::HAS_OWN_INERTIA } {
+            return (self.velocity(motion), self.energy(motion));
+        }
         velocity_and_energy(&self.scene, inertia, &motion.momentum, &motion.advected)
     }
 }

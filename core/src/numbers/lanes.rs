@@ -82,8 +82,8 @@ pub trait Lanes: Sized {
 ///   for it.
 /// - Bodies in joints are solved along a graph: pivots, the joint that is named, and how often a step is begun anew are
 ///   those of one system, and would have to be found for all lanes at once.
-/// - [`ChainStepper`](crate::methods::ChainStepper) isn't generic over its scalar. It is written with branches that a
-///   chain takes alone.
+/// - [Links](crate::methods::Linked) are solved with branches that a chain takes alone: shortened updates, Jacobians that
+///   are used again.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` can't be put into lanes of `{W}`",
     label = "can't be put into lanes",

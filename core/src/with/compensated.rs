@@ -8,7 +8,7 @@
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
-use crate::methods::{Composed, Jointed, KineticFlow, Processed, Split};
+use crate::methods::{Composed, Jointed, KineticFlow, Linked, Processed, Split};
 use crate::motion::{Cost, Declared, Kept, Motion, Plan, Steerable, StepReport, Stepper, Summation, restored};
 use crate::numbers::{Entries, Vectors, carried_sum, zero};
 use crate::with::remedies::Substepped;
@@ -81,6 +81,7 @@ impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Compe
     S: Effect
 {
 }
+impl<S: Effect, const N: usize> Compensable for Linked<S, N> {}
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Split<S, K> {}
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Processed<S, K> {}
 impl<P: Compensable> Compensable for Substepped<P> {}
@@ -115,6 +116,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
 
     const VECTORS: Vectors = P::VECTORS;
     const EXPLAINS: bool = P::EXPLAINS;
+    const HAS_OWN_INERTIA: bool = P::HAS_OWN_INERTIA;
 
     fn step_size(&self) -> Scalar<S> {
         self.0.step_size()
@@ -130,6 +132,14 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
 
     fn admits(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Result<(), SetupError> {
         self.0.admits(scene, motion)
+    }
+
+    fn momentum(&self, scene: &S, attitude: &Group<S>, velocity: &Vector<S>, w: &S::Advected) -> Vector<S> {
+        self.0.momentum(scene, attitude, velocity, w)
+    }
+
+    fn velocity(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
+        self.0.velocity(scene, motion)
     }
 
     fn is_in_step(&self, kept: &Self::Kept) -> bool {

@@ -58,6 +58,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Substepped<P> {
 
     const VECTORS: Vectors = P::VECTORS;
     const EXPLAINS: bool = P::EXPLAINS;
+    const HAS_OWN_INERTIA: bool = P::HAS_OWN_INERTIA;
 
     fn step_size(&self) -> Scalar<S> {
         self.plan.step_size()
@@ -73,6 +74,14 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Substepped<P> {
 
     fn admits(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Result<(), SetupError> {
         self.plan.admits(scene, motion)
+    }
+
+    fn momentum(&self, scene: &S, attitude: &Group<S>, velocity: &Vector<S>, w: &S::Advected) -> Vector<S> {
+        self.plan.momentum(scene, attitude, velocity, w)
+    }
+
+    fn velocity(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
+        self.plan.velocity(scene, motion)
     }
 
     fn is_in_step(&self, kept: &Self::Kept) -> bool {

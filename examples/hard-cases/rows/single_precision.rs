@@ -4,7 +4,7 @@
 
 #![allow(non_snake_case)] // the letter of the field
 
-use declarations::Motion as Case;
+use declarations::Motion;
 use liestep::mechanics::{DiscreteLagrangian, InertiaError, Regular, Sum};
 use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
@@ -35,7 +35,7 @@ where
     let inverse = body.inertia(&body.advected()).cast::<f64>().try_inverse().ok_or("a singular inertia")?;
     let stepper = Stepper::new(body, single(h))?;
     let mut state = stepper.start(SO3::identity(), Vector3::from(velocity).cast::<f32>())?;
-    let kept = |state: &Motion<SO3<f32>, ()>| {
+    let kept = |state: &liestep::motion::Motion<SO3<f32>, ()>| {
         let momentum = state.momentum().cast::<f64>();
         (momentum.dot(&(inverse * momentum)), state.attitude().matrix().cast::<f64>() * momentum)
     };

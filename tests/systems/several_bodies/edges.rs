@@ -9,7 +9,7 @@ use core::fmt::Debug;
 
 use declarations::{DoublePendulum, TwoBodies};
 use liestep::groups::R3;
-use liestep::methods::ChainStepper;
+
 use liestep::motion::Integrator;
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, StepError, Stepper};
@@ -81,11 +81,14 @@ fn scanned<I>(
     let [coarse, fine] = [200, 400].map(changes);
     let [largest, then] = [&coarse, &fine].map(|changes| changes.iter().copied().fold(0.0, f64::max));
     assert!(then < 0.6 * largest, "{then} after {largest}");
-    let behind = turns(longest * (1.0 + 1e-5)).unwrap_err();
-    println!("{longest:.4} s, where changes are {:.1e} and then {:.1e}; {behind}", fine[0], fine[20]);
-    let is_turned = matches!(behind, StepError::UnsolvedBody { determinant, .. } if determinant < 0.0);
+    // Behind a fold the iteration ends anywhere, and now and then on the other side, too.
+    let behind = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10].map(|k| turns(longest * (1.0 + 1e-6 * f64::from(k))).unwrap_err());
+    println!("{longest:.4} s, where changes are {:.1e} and then {:.1e}; {}", fine[0], fine[20], behind[9]);
+    let turned = |error: &StepError| matches!(error, StepError::UnsolvedBody { determinant, .. } if *determinant < 0.0);
+    let is_turned = behind.iter().all(turned);
+    println!("{:?}", behind.each_ref().map(turned));
     let end = if is_turned { End::Turned } else { End::Fold };
-    assert_eq!(end, *expected, "{behind}");
+    assert_eq!(end, *expected, "{behind:?}");
     // At a fold the first change is as large as that twenty behind it. Without one it would be 1/41 of that, as lengths change
     // by `2k + 1` parts there.
     assert!(end == End::Turned || fine[0] > 0.5 * fine[20], "{:?}", &fine[..20]);
@@ -122,7 +125,7 @@ fn steps_of_a_chain_up_to_the_longest() {
         let attitudes = [(); 5].map(|()| SO3::exp(random.sample::<Vector3<f64>>()));
         let velocities = Bodies([(); 5].map(|()| random.sample::<Vector3<f64>>() * speed));
         let started = |h: f64| {
-            let stepper = ChainStepper::new(chain, h).unwrap();
+            let stepper = chain.stepper(h).unwrap();
             let state = stepper.start(attitudes, velocities).unwrap();
             (stepper, state)
         };

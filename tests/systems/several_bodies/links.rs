@@ -6,11 +6,13 @@
 
 use declarations::DoublePendulum;
 use declarations::motions::{matrix, number, read, vector};
+use liestep::effects::Spring;
 use liestep::groups::{CayleyRetraction, Retraction};
 use liestep::laws::samples::{Random, derivative};
-use liestep::methods::{Chain, ChainStepper, Link};
+use liestep::mechanics::On;
+use liestep::methods::{Chain, Link};
 use liestep::motion::Integrator as _;
-use liestep::numbers::Bodies;
+use liestep::numbers::{Bodies, Coordinates as _};
 use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper};
 use nalgebra::{Matrix3, Vector3, Vector6};
 
@@ -52,7 +54,7 @@ fn farthest<const N: usize>(a: &Bodies<Vector3<f64>, N>, b: &[Vector3<f64>]) -> 
 #[test]
 fn golden_step() {
     let golden = &read("several bodies")["golden steps"]["chain3"];
-    let stepper = ChainStepper::new(chain3(), number(&golden["h"])).unwrap();
+    let stepper = chain3().stepper(number(&golden["h"])).unwrap();
     let start = array(attitudes_of(&golden["R0"]));
     let mut state = stepper.start_with_momentum(start, Bodies(array(all(&golden["mu0"], vector)))).unwrap();
     stepper.step(&mut state).unwrap();
@@ -70,7 +72,7 @@ fn trajectory() {
     let states = &read("several bodies")["chain3"]["states"];
     let (attitudes, velocities) = start3();
     let errors = [(0.02, 100), (0.01, 200), (0.005, 400), (0.0025, 800)].map(|(h, steps)| {
-        let stepper = ChainStepper::new(chain3(), h).unwrap();
+        let stepper = chain3().stepper(h).unwrap();
         let mut state = stepper.start(attitudes, velocities).unwrap();
         assert!((stepper.energy(&state) - number(&states[0]["energy"])).abs() < 1e-13);
         assert!(farthest(&stepper.velocity(&state), &velocities.0) < 1e-14);
@@ -95,7 +97,7 @@ fn two_links_are_the_declared_double_pendulum() {
     let (s_1, s_2) = (upper.c * upper.m + rho * lower.m, lower.c * lower.m);
     let declared = DoublePendulum { J_1, J_2: lower.J_d, rho, s_1, s_2, g: 9.81, up };
     let declared = Stepper::new(declared, 0.01).unwrap();
-    let stepper = ChainStepper::new(Chain { links: [upper, lower], g: 9.81, up }, 0.01).unwrap();
+    let stepper = Chain { links: [upper, lower], g: 9.81, up }.stepper(0.01).unwrap();
     let attitudes = [SO3::from_euler_angles(0.3, 1.0, -0.2), SO3::from_euler_angles(-0.5, 0.4, 0.1)];
     let velocity = Vector6::new(0.5, -1.0, 2.0, 1.0, 0.3, -0.5);
     let mut whole = declared.start((attitudes[0], attitudes[1]), velocity).unwrap();
@@ -151,7 +153,7 @@ fn a_step_is_that_of_the_action() {
     let mut random = Random::new(11);
     for h in [0.02, -0.01] {
         let chain = irregular::<N>(&mut random);
-        let stepper = ChainStepper::new(chain, h).unwrap();
+        let stepper = chain.stepper(h).unwrap();
         let attitudes = [(); N].map(|()| {
             let xi: Vector3<f64> = random.sample();
             <CayleyRetraction as Retraction<SO3>>::retract(&xi)
@@ -182,7 +184,7 @@ fn a_step_is_that_of_the_action() {
 #[test]
 fn energy_and_momentum_of_a_million_steps() {
     let (attitudes, velocities) = start3();
-    let stepper = ChainStepper::new(chain3(), 0.01).unwrap();
+    let stepper = chain3().stepper(0.01).unwrap();
     let mut state = stepper.start(attitudes, velocities).unwrap();
     let (energy, vertical) = (stepper.energy(&state), stepper.vertical_momentum(&state));
     let (means, most) = tenths(|| {
@@ -208,7 +210,7 @@ fn energy_and_momentum_of_a_million_steps() {
 #[ignore = "takes a minute: `cargo test -p liestep-tests --test systems three_million_steps -- --ignored --nocapture`"]
 fn three_million_steps() {
     let (attitudes, velocities) = start3();
-    let stepper = ChainStepper::new(chain3(), 0.01).unwrap();
+    let stepper = chain3().stepper(0.01).unwrap();
     let mut state = stepper.start(attitudes, velocities).unwrap();
     let (energy, vertical) = (stepper.energy(&state), stepper.vertical_momentum(&state));
     let mut moved = 0.0_f64;
@@ -222,11 +224,70 @@ fn three_million_steps() {
     assert!(moved < 2e-12, "{moved:e}");
 }
 
+/// What is put around a step goes with links as with any method: a checkpoint goes on to the bit, a torque does its work, a
+/// remedy and compensated sums leave the inertia to the links.
+#[test]
+fn what_goes_with_every_stepper() {
+    let (attitudes, velocities) = start3();
+    let stepper = chain3().stepper(0.001).unwrap();
+    let mut state = stepper.start(attitudes, velocities).unwrap();
+    stepper.run(&mut state, 100).unwrap();
+    let mut resumed = stepper.resume(&stepper.checkpoint(&state)).unwrap();
+    for _ in 0..10 {
+        stepper.step(&mut state).unwrap();
+        stepper.step(&mut resumed).unwrap();
+        assert_eq!(resumed, state);
+    }
+    let (energy, mut work) = (stepper.energy(&state), 0.0);
+    for _ in 0..500 {
+        let before = stepper.velocity(&state);
+        let torque = Bodies([Vector3::new(0.3, -0.2, 0.1), Vector3::new(0.0, 0.1, 0.2), Vector3::new(-0.1, 0.0, 0.1)]);
+        stepper.step_forced(&mut state, &torque).unwrap();
+        work += 0.0005 * torque.dot(&(before + stepper.velocity(&state)));
+    }
+    let gained = stepper.energy(&state) - energy;
+    println!("gained {gained:.6} of the work {work:.6}");
+    assert!((gained - work).abs() < 1e-4 && work.abs() > 0.1, "{gained} {work}");
+
+    let compensated = chain3().stepper(0.001).unwrap().compensated().or_substeps(4);
+    let mut carried = compensated.start(attitudes, velocities).unwrap();
+    let mut plain = stepper.start(attitudes, velocities).unwrap();
+    assert_eq!(compensated.energy(&carried), stepper.energy(&plain));
+    compensated.run(&mut carried, 1000).unwrap();
+    stepper.run(&mut plain, 1000).unwrap();
+    let off = farthest(&compensated.velocity(&carried), &stepper.velocity(&plain).0);
+    assert!(off < 1e-11 && carried.orthogonality_defect() < 1e-15, "{off:e}");
+}
+
+/// Other potentials add to the weight: a spring holds the last link, and the energy is kept with its own.
+#[test]
+fn links_in_a_scene() {
+    let (attitudes, velocities) = start3();
+    let chain = chain3();
+    let spring = Spring { k: 30.0, length: 0.2, at: chain.links[0].rho, anchor: Vector3::new(1.0, 0.5, -0.5) };
+    let scene = chain.weights() + On::<0, 3>::of([spring]);
+    let stepper = Stepper::linked(scene, chain.links, 0.002).unwrap();
+    let free = chain.stepper(0.002).unwrap();
+    let mut state = stepper.start(attitudes, velocities).unwrap();
+    let mut other = free.start(attitudes, velocities).unwrap();
+    let stretched = (stepper.joints(&state)[0] - spring.anchor).norm() - spring.length;
+    let before = stepper.energy(&state);
+    assert!((before - free.energy(&other) - 0.5 * spring.k * stretched * stretched).abs() < 1e-12);
+    let mut off = 0.0_f64;
+    for _ in 0..100 {
+        stepper.run(&mut state, 10).unwrap();
+        off = off.max((stepper.energy(&state) - before).abs());
+    }
+    free.run(&mut other, 1000).unwrap();
+    println!("energy {before:.3} within {off:.1e}");
+    assert!(off < 5e-3 && apart(&state.attitude(), &other.attitude()) > 0.1, "{off:e}");
+}
+
 /// A step of `−h` undoes one of `h`; parts of a step are steps.
 #[test]
 fn a_step_back_undoes_a_step() {
     let (attitudes, velocities) = start3();
-    let [there, back] = [0.01, -0.01].map(|h| ChainStepper::new(chain3(), h).unwrap());
+    let [there, back] = [0.01, -0.01].map(|h| chain3().stepper(h).unwrap());
     let mut state = there.start(attitudes, velocities).unwrap();
     there.run(&mut state, 50).unwrap();
     let mut returned = back.adopt(&state);
@@ -235,7 +296,7 @@ fn a_step_back_undoes_a_step() {
     let start = there.start(attitudes, velocities).unwrap();
     let at = there.state_at(&start, 0.5).unwrap();
     assert!(apart(&at.attitude(), &state.attitude()) < 1e-12);
-    let standing = ChainStepper::new(chain3(), 0.0).unwrap();
+    let standing = chain3().stepper(0.0).unwrap();
     let mut state = start;
     standing.step(&mut state).unwrap();
     assert_eq!((state.attitude(), state.momentum()), (start.attitude(), start.momentum()));
@@ -255,7 +316,7 @@ pub(super) fn rods<const N: usize>(last: f64) -> Chain<N> {
 #[test]
 fn a_hundred_links_let_go_horizontally() {
     for (last, h, steps, allowed) in [(1.0, 0.005, 400, 1e-4), (1e4, 0.002, 500, 1e-5), (1e-4, 0.002, 500, 1e-4)] {
-        let stepper = ChainStepper::new(rods::<100>(last), h).unwrap();
+        let stepper = rods::<100>(last).stepper(h).unwrap();
         let flat = SO3::from_euler_angles(0.3, core::f64::consts::FRAC_PI_2, 0.0);
         let mut state = stepper.start([flat; 100], Bodies([Vector3::zeros(); 100])).unwrap();
         let before = stepper.energy(&state);
@@ -277,7 +338,7 @@ fn a_hundred_links_let_go_horizontally() {
 fn errors_name_the_link() {
     let mut chain = rods::<4>(1.0);
     chain.links[2].m = -1.0;
-    let refused = |chain: Chain<4>| ChainStepper::new(chain, 0.01).unwrap_err();
+    let refused = |chain: Chain<4>| chain.stepper(0.01).unwrap_err();
     assert!(matches!(refused(chain), SetupError::BodyParameter { body: 2, field: "m", .. }));
     chain = rods(1.0);
     chain.links[1].c = Vector3::new(0.0, 0.0, -5.0);
@@ -286,9 +347,9 @@ fn errors_name_the_link() {
     chain.links[3].rho.x = f64::NAN;
     assert!(matches!(refused(chain), SetupError::BodyParameter { body: 3, field: "rho", .. }));
     assert!(matches!(refused(Chain { g: f64::INFINITY, ..rods(1.0) }), SetupError::Parameter { field: "g", .. }));
-    assert!(matches!(ChainStepper::new(rods::<4>(1.0), f64::NAN), Err(SetupError::InvalidStep { .. })));
+    assert!(matches!(rods::<4>(1.0).stepper(f64::NAN), Err(SetupError::InvalidStep { .. })));
 
-    let stepper = ChainStepper::new(rods::<4>(1.0), 0.1).unwrap();
+    let stepper = rods::<4>(1.0).stepper(0.1).unwrap();
     let mut velocities = [Vector3::zeros(); 4];
     assert!(matches!(
         stepper.start([SO3::identity(); 4], Bodies([Vector3::new(f64::NAN, 0.0, 0.0); 4])),
@@ -325,7 +386,7 @@ fn rods_move_as_directions() {
     let rates = [0.3, -1.0, 2.0, 0.5].map(|rate| Vector3::new(0.5, 1.0, -0.3) * rate);
     let ends = [slim, slimmer].map(|J_d| {
         let links = [Link { J_d, m: 1.0, c: along * 0.5, rho: along }; 4];
-        let stepper = ChainStepper::new(Chain { links, g: 9.81, up: Vector3::z() }, 0.005).unwrap();
+        let stepper = Chain { links, g: 9.81, up: Vector3::z() }.stepper(0.005).unwrap();
         let started = [0, 1, 2, 3].map(|k| {
             let q = directions[k];
             J_d.pointing(&e, &q, &(rates[k] - q * q.dot(&rates[k]))).unwrap()

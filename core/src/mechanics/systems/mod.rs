@@ -15,7 +15,7 @@
 //! Between bodies potentials of the ends of a step leave the Newton matrix block diagonal, and each body's equation is
 //! solved by its own block. A potential of the middle of a step, as of a stiff rod, is put at [`Coupled`] places, and the
 //! equations of the row are solved together, in time proportional to `N`. A term on two bodies that couples velocities
-//! doesn't compile here; a chain of links on ball joints is a [system of its own](crate::methods::ChainStepper).
+//! doesn't compile here; a chain of links on ball joints has a [plan of its own](crate::methods::Linked).
 
 mod equations;
 mod places;
@@ -128,7 +128,7 @@ const fn check<P: Places<E>, E: Effect, const M: usize>() {
     assert!(
         !E::PARTS.unknown || !E::Kinetic::IS_THERE,
         "between the bodies of a system only potentials are possible: this term couples their velocities; declare all of \
-         these bodies as one product, `group(F_1 = SO3, F_2 = SO3, …)`, or take `liestep::methods::ChainStepper`"
+         these bodies as one product, `group(F_1 = SO3, F_2 = SO3, …)`, or take `liestep::methods::Chain`"
     );
     assert!(
         P::LINKS_NEIGHBOURS || !E::PARTS.unknown,

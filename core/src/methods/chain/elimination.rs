@@ -29,25 +29,36 @@ use nalgebra::{Matrix3, Vector3};
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _;
 
-use super::Link;
+use super::link::Link;
+use crate::groups::{CayleyRetraction, Retraction, SO3};
 
-/// What is known of a link while a step is solved.
-#[derive(Clone, Copy)]
+/// What a link is, as a step takes it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Folded {
+    /// `J`, `m`, `m c` and `ρ` of the [`Link`].
+    pub(super) nonstandard: Matrix3<f64>,
+    pub(super) m: f64,
+    pub(super) mc: Vector3<f64>,
+    pub(super) rho: Vector3<f64>,
+}
+
+impl From<&Link> for Folded {
+    fn from(link: &Link) -> Self {
+        Self { nonstandard: *link.J_d.as_matrix(), m: link.m, mc: link.c * link.m, rho: link.rho }
+    }
+}
+
+/// What is known of a link while a step is solved; at first of one without a neighbour, at rest.
+#[derive(Clone, Copy, Default)]
 pub(super) struct Work {
     /// `Q`, from the axes of the next link to these; zero where there is none.
     pub(super) next: Matrix3<f64>,
-    /// `J`, `m`, `m c` and `ρ` of the [`Link`].
-    nonstandard: Matrix3<f64>,
-    pub(super) m: f64,
-    mc: Vector3<f64>,
-    rho: Vector3<f64>,
     /// `h a`.
     pub(super) target: Vector3<f64>,
     /// Half the Cayley coordinates of `F`, and what they were before an update that may be shortened.
     pub(super) half: Vector3<f64>,
     before: Vector3<f64>,
-    /// The last update, which was taken from `half`, or a part of it. At the end of a step it has done, and its place is
-    /// taken by the change of the momentum, kg m²/s: one of its own takes longer.
+    /// The last update, which was taken from `half`, or a part of it.
     pub(super) update: Vector3<f64>,
     /// `D`, and `D ρ`, `D m c`.
     pub(super) increment: Matrix3<f64>,
@@ -66,40 +77,6 @@ pub(super) struct Work {
 }
 
 impl Work {
-    /// Of no link: [`set`](Self::set) gives it one.
-    pub(super) const NONE: Self = {
-        let (vector, matrix) = (Vector3::new(0.0, 0.0, 0.0), Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0));
-        Self {
-            next: matrix,
-            nonstandard: matrix,
-            m: 0.0,
-            mc: vector,
-            rho: vector,
-            target: vector,
-            half: vector,
-            before: vector,
-            update: vector,
-            increment: matrix,
-            of_rho: vector,
-            of_mc: vector,
-            u: vector,
-            t: vector,
-            inverse: matrix,
-            g: matrix,
-            h: matrix,
-            determinant: 0.0,
-        }
-    };
-
-    /// What doesn't change from step to step.
-    #[hot]
-    pub(super) fn set(&mut self, link: &Link) {
-        self.nonstandard = *link.J_d.as_matrix();
-        self.m = link.m;
-        self.mc = link.c * link.m;
-        self.rho = link.rho;
-    }
-
     /// Whether the link turns by less than 90° and its determinant has the sign that it has at rest.
     pub(super) fn is_wanted(&self) -> bool {
         self.determinant > 0.0 && self.half.norm_squared() < 1.0
@@ -107,26 +84,26 @@ impl Work {
 
     /// The link's momentum times `h`, `m (u + D c)`, kg m.
     #[hot]
-    pub(super) fn momentum(&self) -> Vector3<f64> {
-        self.u * self.m + self.of_mc
+    pub(super) fn momentum(&self, link: &Folded) -> Vector3<f64> {
+        self.u * link.m + self.of_mc
     }
 
     /// Turns it, where the way of its upper joint is `u`; returns that of the lower one, as the next link sees it.
     #[hot]
-    fn turn(&mut self, u: Vector3<f64>) -> Vector3<f64> {
-        self.increment = increment(&self.half);
-        self.of_rho = self.increment * self.rho;
-        self.of_mc = self.increment * self.mc;
+    fn turn(&mut self, link: &Folded, u: Vector3<f64>) -> Vector3<f64> {
+        self.increment = <CayleyRetraction as Retraction<SO3>>::increment_of_half(&self.half);
+        self.of_rho = self.increment * link.rho;
+        self.of_mc = self.increment * link.mc;
         self.u = u;
         self.next.tr_mul(&(u + self.of_rho))
     }
 
     /// `(D J − J Dᵀ)^∨ + m c × u + ρ × P − h a` with `D J`, and `P` beyond.
     #[hot]
-    fn residual(&self, dj: &Matrix3<f64>, beyond: &Vector3<f64>) -> Vector3<f64> {
+    fn residual(&self, link: &Folded, dj: &Matrix3<f64>, beyond: &Vector3<f64>) -> Vector3<f64> {
         Vector3::new(dj.m32 - dj.m23, dj.m13 - dj.m31, dj.m21 - dj.m12)
-            + self.mc.cross(&self.u)
-            + self.rho.cross(beyond)
+            + link.mc.cross(&self.u)
+            + link.rho.cross(beyond)
             - self.target
     }
 }
@@ -139,75 +116,66 @@ pub(super) struct Updated {
     pub(super) is_whole: bool,
 }
 
-/// `D = 2 (ŷ + ŷ²)/(1 + |y|²)`.
-#[hot]
-fn increment(y: &Vector3<f64>) -> Matrix3<f64> {
-    let (xx, yy, zz) = (y.x * y.x, y.y * y.y, y.z * y.z);
-    let (xy, xz, yz) = (y.x * y.y, y.x * y.z, y.y * y.z);
-    Matrix3::new(-(yy + zz), xy - y.z, xz + y.y, xy + y.z, -(xx + zz), yz - y.x, xz - y.y, yz + y.x, -(xx + yy))
-        * (2.0 / (1.0 + (xx + yy + zz)))
-}
-
 /// Where the joints go.
 #[hot]
-pub(super) fn outwards(work: &mut [Work]) {
+pub(super) fn outwards(links: &[Folded], work: &mut [Work]) {
     let mut u = Vector3::zeros();
-    for work in work {
-        u = work.turn(u);
+    for (link, work) in links.iter().zip(work) {
+        u = work.turn(link, u);
     }
 }
 
 /// One of Newton's iterations, from where the joints go to where they go by it; where a link's update is longer than
 /// `longest`, all are shortened.
 #[hot]
-pub(super) fn newton(work: &mut [Work], longest: f64) -> Updated {
+pub(super) fn newton(links: &[Folded], work: &mut [Work], longest: f64) -> Updated {
     let (mut beyond, mut mass, mut q) = (Vector3::zeros(), Matrix3::zeros(), Vector3::zeros());
-    for work in work.iter_mut().rev() {
+    for (link, work) in links.iter().zip(&mut *work).rev() {
         // From the axes of the next link; at the end all are zero.
         let turn = work.next;
         beyond = turn * beyond;
         q = turn * q;
         mass = turn * mass * turn.transpose();
 
-        let dj = work.increment * work.nonstandard;
-        let own = inertia(&(dj + work.nonstandard));
-        let (turned_rho, turned_mc) = (work.rho + work.of_rho, work.mc + work.of_mc);
-        let g = cross_columns(&work.rho, &mass);
+        let dj = work.increment * link.nonstandard;
+        let own = inertia(&(dj + link.nonstandard));
+        let (turned_rho, turned_mc) = (link.rho + work.of_rho, link.mc + work.of_mc);
+        let g = cross_columns(&link.rho, &mass);
         let b = own - cross_rows(&g, &turned_rho);
-        let g = add_hat(&g, &work.mc);
+        let g = add_hat(&g, &link.mc);
         let h = add_hat(&cross_rows(&mass, &turned_rho), &turned_mc);
         let (inverse, determinant) = inverted(&b);
         let g = inverse * g;
-        let t = inverse * (work.rho.cross(&q) + work.residual(&dj, &beyond));
+        let t = inverse * (link.rho.cross(&q) + work.residual(link, &dj, &beyond));
         mass += h * g;
-        mass.m11 += work.m;
-        mass.m22 += work.m;
-        mass.m33 += work.m;
+        mass.m11 += link.m;
+        mass.m22 += link.m;
+        mass.m33 += link.m;
         q += h * t;
-        beyond += work.momentum();
+        beyond += work.momentum(link);
         (work.inverse, work.g, work.h, work.t, work.determinant) = (inverse, g, h, t, determinant);
     }
-    solved(work, longest)
+    solved(links, work, longest)
 }
 
 /// Another with the matrix of the last.
 #[hot]
-pub(super) fn simplified(work: &mut [Work]) -> Updated {
+pub(super) fn simplified(links: &[Folded], work: &mut [Work]) -> Updated {
     let (mut beyond, mut q) = (Vector3::zeros(), Vector3::zeros());
-    for work in work.iter_mut().rev() {
+    for (link, work) in links.iter().zip(&mut *work).rev() {
         beyond = work.next * beyond;
         q = work.next * q;
-        let dj = work.increment * work.nonstandard;
-        work.t = work.inverse * (work.rho.cross(&q) + work.residual(&dj, &beyond));
+        let dj = work.increment * link.nonstandard;
+        work.t = work.inverse * (link.rho.cross(&q) + work.residual(link, &dj, &beyond));
         q += work.h * work.t;
-        beyond += work.momentum();
+        beyond += work.momentum(link);
     }
-    solved(work, f64::INFINITY)
+    solved(links, work, f64::INFINITY)
 }
 
 /// Outwards the update, and where the joints go by it.
 #[hot]
-fn solved(work: &mut [Work], longest: f64) -> Updated {
+fn solved(links: &[Folded], work: &mut [Work], longest: f64) -> Updated {
     // What has taken a whole update doesn't tell what it was: of that a rounding of the update is lost, which has no bound.
     if longest.is_finite() {
         for work in work.iter_mut() {
@@ -215,13 +183,13 @@ fn solved(work: &mut [Work], longest: f64) -> Updated {
         }
     }
     let (mut u, mut v) = (Vector3::zeros(), Vector3::zeros());
-    for work in work.iter_mut() {
+    for (link, work) in links.iter().zip(&mut *work) {
         let (y, z) = (work.half, work.g * v + work.t);
-        v = work.next.tr_mul(&(v - z.cross(&(work.rho + work.of_rho))));
+        v = work.next.tr_mul(&(v - z.cross(&(link.rho + work.of_rho))));
         // dF F⁻¹ = (2 (I + ŷ) dy/(1 + |y|²))^ = −ẑ, solved for `−dy`.
         work.update = (z - y.cross(&z) + y * y.dot(&z)) * 0.5;
         work.half -= work.update;
-        u = work.turn(u);
+        u = work.turn(link, u);
     }
     let largest = work.iter().map(|work| work.update.norm_squared()).fold(0.0, f64::max);
     if largest > longest * longest {
@@ -229,7 +197,7 @@ fn solved(work: &mut [Work], longest: f64) -> Updated {
         for work in work.iter_mut() {
             work.half = work.before - work.update * part;
         }
-        outwards(work);
+        outwards(links, work);
     }
     // What isn't a number makes the size none either.
     let (mut update, mut size) = (0.0, 0.0);
@@ -241,16 +209,16 @@ fn solved(work: &mut [Work], longest: f64) -> Updated {
 }
 
 /// The momenta `target` of the velocities `half`.
-pub(super) fn momenta_of_velocities(work: &mut [Work]) {
+pub(super) fn momenta_of_velocities(links: &[Folded], work: &mut [Work]) {
     let (mut u, mut beyond) = (Vector3::zeros(), Vector3::zeros());
-    for work in work.iter_mut() {
-        (work.of_rho, work.of_mc, work.u) = (work.half.cross(&work.rho), work.half.cross(&work.mc), u);
+    for (link, work) in links.iter().zip(&mut *work) {
+        (work.of_rho, work.of_mc, work.u) = (work.half.cross(&link.rho), work.half.cross(&link.mc), u);
         u = work.next.tr_mul(&(u + work.of_rho));
     }
-    for work in work.iter_mut().rev() {
+    for (link, work) in links.iter().zip(&mut *work).rev() {
         beyond = work.next * beyond;
-        work.target = inertia(&work.nonstandard) * work.half + work.mc.cross(&work.u) + work.rho.cross(&beyond);
-        beyond += work.momentum();
+        work.target = inertia(&link.nonstandard) * work.half + link.mc.cross(&work.u) + link.rho.cross(&beyond);
+        beyond += work.momentum(link);
     }
 }
 

@@ -12,38 +12,33 @@
 //! eliminated from the end of the chain to the pivot, as in the articulated-body algorithm.
 
 mod elimination;
-mod stepper;
+mod link;
+mod plan;
 #[cfg(test)]
 mod tests;
 
 use nalgebra::Vector3;
 
-pub use stepper::{ChainMemory, ChainStepper};
+pub use link::Link;
+pub use plan::Linked;
 
+use crate::effects::Gravity;
 use crate::error::SetupError;
-use crate::mechanics::NonstandardInertia;
+use crate::groups::SO3;
+use crate::mechanics::{Each, Placed, Term as _};
+use crate::motion::{Motion, Stepper};
+use crate::numbers::{Bodies, Coordinates as _};
 
 /// How far from one what should be of length one may be: what a unit quaternion or a matrix printed to a dozen digits leaves.
 const ROUNDED: f64 = f64::EPSILON * 1e4;
 
-/// A link of a [`Chain`], in its own axes, with the joint it hangs on as the origin.
-// The letters of the field.
-#[allow(non_snake_case)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Link {
-    /// Nonstandard inertia about the joint, kg m².
-    pub J_d: NonstandardInertia,
-    /// Mass, kg.
-    pub m: f64,
-    /// Centre of mass, m.
-    pub c: Vector3<f64>,
-    /// The joint of the next link, m.
-    pub rho: Vector3<f64>,
-}
+/// The weight of each link and of what it carries.
+pub type Weights<const N: usize> = Placed<Each<N>, Gravity, N>;
+
+/// What [`Chain::stepper`] makes: an integrator of links under gravity alone.
+pub type ChainStepper<const N: usize> = Stepper<Weights<N>, Linked<Weights<N>, N>>;
 
 /// Links on ball joints, the first on a fixed pivot, under uniform gravity.
-///
-/// It is stepped by a [`ChainStepper`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chain<const N: usize> {
     /// From the pivot on.
@@ -55,49 +50,69 @@ pub struct Chain<const N: usize> {
 }
 
 impl<const N: usize> Chain<N> {
-    /// Checks the parameters.
+    /// An integrator of these links with a fixed step, s; of second order, symmetric and symplectic. A negative step is the
+    /// inverse map; `h = 0` is the identity. [`Linked`] says how steps are made, and what they cost.
     ///
     /// # Errors
     ///
-    /// [`SetupError::Parameter`] and [`SetupError::BodyParameter`], which names the link.
-    fn validate(&self) -> Result<(), SetupError> {
-        if !self.g.is_finite() {
-            return Err(SetupError::Parameter { field: "g", cause: "is not finite" });
-        }
+    /// As [`Stepper::linked`].
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use liestep::methods::{Chain, Link};
+    /// use liestep::numbers::Bodies;
+    /// use liestep::{NonstandardInertia, SO3};
+    /// use nalgebra::Vector3;
+    ///
+    /// // Rods of one metre, of one kilogram, that hang along their axis.
+    /// let J_d = NonstandardInertia::from_diagonal(Vector3::new(1e-3, 1e-3, 1.0 / 3.0))?;
+    /// let link = Link { J_d, m: 1.0, c: Vector3::new(0.0, 0.0, -0.5), rho: Vector3::new(0.0, 0.0, -1.0) };
+    /// let stepper = Chain { links: [link; 5], g: 9.81, up: Vector3::z() }.stepper(0.01)?;
+    /// let tilted = SO3::from_euler_angles(0.0, 1.0, 0.0);
+    /// let mut state = stepper.start([tilted; 5], Bodies([Vector3::new(0.0, 0.2, 0.0); 5]))?;
+    /// let (energy, vertical) = (stepper.energy(&state), stepper.vertical_momentum(&state));
+    /// stepper.run(&mut state, 1000)?;
+    /// assert!((stepper.energy(&state) - energy).abs() < 1e-2 * energy.abs());
+    /// assert!((stepper.vertical_momentum(&state) - vertical).abs() < 1e-11);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn stepper(self, h: f64) -> Result<ChainStepper<N>, SetupError> {
         if !self.up.iter().all(|entry| entry.is_finite()) {
             return Err(SetupError::Parameter { field: "up", cause: "is not finite" });
         }
         if (self.up.norm_squared() - 1.0).abs() > ROUNDED {
             return Err(SetupError::Parameter { field: "up", cause: "is not of length one" });
         }
-        for (body, link) in self.links.iter().enumerate() {
-            let refused = |field, cause| Err(SetupError::BodyParameter { body, field, cause });
-            if !link.m.is_finite() || link.m < 0.0 {
-                return refused("m", "is not a mass: neither negative, nor infinite, nor NaN");
-            }
-            for (field, vector) in [("c", link.c), ("rho", link.rho)] {
-                if !vector.iter().all(|entry| entry.is_finite()) {
-                    return refused(field, "is not finite");
-                }
-            }
-            let about_joint = *link.J_d.as_matrix();
-            let central = about_joint - link.c * link.c.transpose() * link.m;
-            // What rounding leaves of a point at the end of a rod.
-            let is_possible = central.symmetric_eigenvalues().min() >= -1e-12 * about_joint.trace();
-            if !is_possible {
-                return refused("J_d", "is less than the mass at the centre of mass has about the joint");
-            }
+        if !self.g.is_finite() {
+            return Err(SetupError::Parameter { field: "g", cause: "is not finite" });
         }
-        Ok(())
+        Stepper::linked(self.weights(), self.links, h)
     }
 
-    /// `g s_a`, N m.
-    fn weights(&self) -> [Vector3<f64>; N] {
-        let (mut beyond, mut weights) = (0.0, [Vector3::zeros(); N]);
-        for (weight, link) in weights.iter_mut().zip(&self.links).rev() {
-            *weight = (link.c * link.m + link.rho * beyond) * self.g;
+    /// The weight of each link, and at its lower joint that of all that hangs there: what gravity adds to the scene of
+    /// [`Stepper::linked`].
+    #[must_use]
+    pub fn weights(&self) -> Weights<N> {
+        let mut gravity = [Gravity { m: 0.0, g: self.g, rho: Vector3::zeros(), up: self.up }; N];
+        let mut beyond = 0.0;
+        for (gravity, link) in gravity.iter_mut().zip(&self.links).rev() {
+            let moment = link.c * link.m + link.rho * beyond;
             beyond += link.m;
+            gravity.m = beyond;
+            if beyond != 0.0 {
+                gravity.rho = moment / beyond;
+            }
         }
-        weights
+        Each::of(gravity)
+    }
+}
+
+impl<const N: usize> ChainStepper<N> {
+    /// The momentum of all links about the vertical through the pivot, kg m²/s; it is conserved.
+    #[must_use]
+    pub fn vertical_momentum(&self, motion: &Motion<[SO3; N], [Vector3<f64>; N]>) -> f64 {
+        let up = self.scene().advected();
+        motion.spatial_momentum().dot(&Bodies(up))
     }
 }

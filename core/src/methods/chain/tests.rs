@@ -5,14 +5,14 @@ use std::println;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::elimination::{Work, newton, outwards};
-use super::{Chain, ChainStepper, Link};
+use super::elimination::{Folded, Work, newton, outwards};
+use super::{Chain, Link};
 use crate::groups::SO3;
 use crate::mechanics::NonstandardInertia;
 use crate::numbers::Bodies;
 
 /// What is done in the place of a solution.
-type Solve<'a> = &'a dyn Fn(&mut [Work]);
+type Solve<'a> = &'a dyn Fn(&[Folded], &mut [Work]);
 
 fn link(central: Matrix3<f64>, m: f64, c: [f64; 3], rho: [f64; 3]) -> Link {
     let [c, rho] = [c, rho].map(Vector3::from);
@@ -56,35 +56,33 @@ fn reference() -> Started {
 /// the first case; so what rounding may move is relative to the largest.
 #[test]
 fn momentum_of_badly_solved_steps() {
-    let unsolved = |work: &mut [Work]| {
+    let unsolved = |links: &[Folded], work: &mut [Work]| {
         for work in &mut *work {
             work.half *= 0.999;
         }
-        outwards(work);
+        outwards(links, work);
     };
-    let once = |work: &mut [Work]| {
-        newton(work, f64::INFINITY);
+    let once = |links: &[Folded], work: &mut [Work]| {
+        newton(links, work, f64::INFINITY);
     };
     let badly: [(f64, u32, Solve<'_>, f64); 3] =
         [(0.01, 10_000, &unsolved, 1e-3), (0.0025, 10_000, &unsolved, 5e-4), (0.01, 100_000, &once, 1e-10)];
     let cases = [oblique(), reference()].into_iter().flat_map(|started| badly.map(|case| (started, case)));
     for ((chain, attitudes, start), (h, steps, solve, off)) in cases {
-        let stepper = ChainStepper::new(chain, h).unwrap();
+        let stepper = chain.stepper(h).unwrap();
         let mut state = stepper.start(attitudes, Bodies(start)).unwrap();
         let before = stepper.vertical_momentum(&state);
         let (mut least, mut largest) = (f64::INFINITY, 0.0_f64);
         for _ in 0..steps {
-            let mut work = [Work::NONE; 3];
-            let mut moving = stepper.moving(&mut state, &mut work);
-            moving.prepare();
-            outwards(moving.work);
-            newton(moving.work, f64::INFINITY);
-            solve(moving.work);
+            let (plan, mut work) = (stepper.plan(), [Work::default(); 3]);
+            let kick = plan.prepare(&state, &mut work);
+            outwards(&plan.links, &mut work);
+            newton(&plan.links, &mut work, f64::INFINITY);
+            solve(&plan.links, &mut work);
             // How far one of Newton's iterations would move them, which isn't made.
-            let mut more: [Work; 3] = moving.work.try_into().unwrap();
-            let update = newton(&mut more, f64::INFINITY);
+            let update = newton(&plan.links, &mut work.clone(), f64::INFINITY);
             least = least.min((update.update / update.size).sqrt());
-            assert!(moving.proceed().is_ok());
+            plan.proceed(stepper.scene(), &mut state.motion, &work, kick).unwrap();
             largest = state.momentum().0.iter().map(Vector3::norm).fold(largest, f64::max);
         }
         let moved = (stepper.vertical_momentum(&state) - before).abs();
@@ -128,25 +126,26 @@ fn nothing_but_roundings_is_missing() {
         (1.0, 0.2, 1.0, 100.0, 0.001),
     ] {
         let (chain, attitudes, velocities) = slim(slimness, off, last, spin);
-        let stepper = ChainStepper::new(chain, h).unwrap();
+        let stepper = chain.stepper(h).unwrap();
         let mut state = stepper.start(attitudes, Bodies(velocities)).unwrap();
         let (mut missing, mut worst, mut iterations) = (0.0_f64, 0.0_f64, 0);
         for step in 0..2000 {
-            let mut work = [Work::NONE; 5];
-            let mut moving = stepper.moving(&mut state, &mut work);
-            moving.prepare();
-            let Ok(made) = moving.solve() else { panic!("{slimness:e} {off} {last:e} {spin} {h}: no step {step}") };
+            let (plan, mut work) = (stepper.plan(), [Work::default(); 5]);
+            let kick = plan.prepare(&state, &mut work);
+            let (made, is_solved) = plan.solve(&mut work, &state.kept.guess.next);
+            assert!(is_solved, "{slimness:e} {off} {last:e} {spin} {h}: no step {step}");
             iterations += made;
-            let mut more: [Work; 5] = moving.work.try_into().unwrap();
+            let mut more = work;
             // In roundings of all unknowns.
             let mut further = || {
-                let updated = newton(&mut more, f64::INFINITY);
+                let updated = newton(&plan.links, &mut more, f64::INFINITY);
                 (updated.update / updated.size).sqrt() / f64::EPSILON
             };
             let first = further();
             let left = (0..4).map(|_| further()).fold(1.0, f64::max);
             (missing, worst) = (missing.max(first), worst.max(first / left));
-            assert!(moving.proceed().is_ok());
+            plan.proceed(stepper.scene(), &mut state.motion, &work, kick).unwrap();
+            plan.follow(&mut state.kept, &work, step == 0);
         }
         println!(
             "{slimness:e} {off} {last:e} {spin} {h}: {missing:.1} roundings, {worst:.1} times what is left; {iterations}"
@@ -159,14 +158,14 @@ fn nothing_but_roundings_is_missing() {
 #[test]
 fn a_shortened_update_is_a_part_of_the_whole() {
     let (chain, ..) = oblique();
+    let links = [Folded::from(&chain.links[2])];
     for size in [1e2, 1e10, 1e17, 1e30] {
         for start in [0.0, 0.3] {
-            let mut work = [Work::NONE];
-            work[0].set(&chain.links[2]);
+            let mut work = [Work::default()];
             (work[0].half, work[0].target) = (Vector3::new(start, -start, start), Vector3::new(0.3, -1.0, 2.0) * size);
-            outwards(&mut work);
+            outwards(&links, &mut work);
             let before = work[0].half;
-            let updated = newton(&mut work, 0.25);
+            let updated = newton(&links, &mut work, 0.25);
             let moved = work[0].half - before;
             assert!(!updated.is_whole && updated.update.sqrt() > 0.01 * size, "{size:e} {start}");
             assert!((moved.norm() - 0.25).abs() < 1e-15, "{size:e} {start}: {moved}");
@@ -180,16 +179,15 @@ fn a_shortened_update_is_a_part_of_the_whole() {
 #[cfg(all(feature = "dispatch", not(debug_assertions)))]
 #[test]
 fn vector_instructions_change_no_digit() {
-    use crate::numbers::Kernel as _;
+    use crate::motion::Plan as _;
 
     for (chain, attitudes, velocities) in [oblique(), reference()] {
-        let stepper = ChainStepper::new(chain, 0.01).unwrap();
+        let stepper = chain.stepper(0.01).unwrap();
         let mut state = stepper.start(attitudes, Bodies(velocities)).unwrap();
         let mut other = state;
         for step in 0..1000 {
-            let iterations = stepper.step(&mut state).unwrap().iterations;
-            let mut work = [Work::NONE; 3];
-            assert!(stepper.moving(&mut other, &mut work).run().is_ok_and(|made| made == iterations), "{step}");
+            let report = stepper.step(&mut state);
+            assert_eq!(report, stepper.plan().step(stepper.scene(), &mut other.motion, &mut other.kept), "{step}");
             assert_eq!(state, other, "{step}");
         }
     }

@@ -12,8 +12,8 @@
 //!
 //! That is RATTLE of (2.7) and (2.9). As `λ` takes what `ν` has left, positions are those of SHAKE; with `ν`
 //! velocities keep to the joints, too. The step is variational: order 2, symmetric and symplectic where the scene's
-//! is, and in the coordinates that are left, if one has them, the same as the step of the minimal form. A
-//! [`ChainStepper`](super::ChainStepper) has these for chains.
+//! is, and in the coordinates that are left, if one has them, the same as the step of the minimal form.
+//! [`Linked`](super::Linked) has these for chains.
 //!
 //! What [`Stepper::jointed`](crate::Stepper::jointed) takes is a scene on bodies `(SO3, R3)`, of which terms may
 //! couple anything but velocities, and [`Joints`]. There are no limits, motors or contacts.
@@ -25,10 +25,11 @@ mod constraint;
 mod elimination;
 mod equations;
 mod graph;
+mod jointed;
 mod places;
 mod plan;
 mod start;
 
 pub use constraint::{BallJoint, Constraint, Joint, PinJoint, Place, Slope};
 pub use graph::{Joined, Joints};
-pub use plan::Jointed;
+pub use jointed::Jointed;

@@ -4,8 +4,8 @@ use nalgebra::{SVector, Vector6};
 
 use super::Constraint;
 use super::equations::{Equations, Widest};
+use super::jointed::{Body, Jointed};
 use super::places::Places;
-use super::plan::{Body, Jointed};
 use crate::error::SetupError;
 use crate::groups::{Advected as _, CayleyRetraction, LieGroup as _, Retraction};
 use crate::mechanics::Effect;
@@ -91,16 +91,22 @@ where
 
     /// Places next to these where joints are closed, by corrections that are least as the inertia measures it.
     fn closed(&self, scene: &S, attitude: &[Body; N]) -> Result<[Body; N], SetupError> {
-        let mut attitude = *attitude;
-        let mut last = f64::INFINITY;
-        for _ in 0..MAX_DAMPED_ITERATIONS {
+        let (mut attitude, mut last) = (*attitude, f64::INFINITY);
+        // Where joints were nearest to being closed: towards a place that can't be reached they come near a singular one.
+        let mut nearest = (0, f64::INFINITY);
+        for iteration in 0..MAX_DAMPED_ITERATIONS {
             let places = Places::of(&attitude);
             let mut equations = self.of_velocities(scene, &places, &scene.advected().seen_from(&attitude));
-            check_redundance(&equations)?;
             let Widest { relative, .. } = equations.widest_gap(&places, &self.lengths);
+            match check_redundance(&equations) {
+                Err(_) if iteration > 0 && relative > PRINTED => break,
+                checked => checked?,
+            }
             if relative <= CLOSED || relative <= PRINTED && relative >= last {
                 return Ok(attitude);
             }
+            let gap = self.largest_gap(&places);
+            nearest = if gap.1 < nearest.1 { gap } else { nearest };
             last = relative;
             equations.solve(&[Vector6::zeros(); N], |joined| places.gap(joined));
             let updates = equations.unknowns.bodies;
@@ -109,7 +115,7 @@ where
             let increment = <CayleyRetraction as Retraction<[Body; N]>>::increment(&Bodies(updates.map(|u| u * part)));
             attitude = attitude.advance(&increment);
         }
-        let (joint, by) = self.largest_gap(&Places::of(&attitude));
+        let (joint, by) = nearest;
         Err(SetupError::OffConstraint { joint, by })
     }
 }
@@ -133,8 +139,8 @@ where
     ///
     /// # Errors
     ///
-    /// [`SetupError::OffConstraint`] where no such place is found, [`SetupError::RedundantJoint`] where a joint has
-    /// nothing to do on the way to it; otherwise as [`start`](Stepper::start).
+    /// [`SetupError::OffConstraint`] where no such place is found, with the gap that is left where joints are nearest to
+    /// being closed; [`SetupError::RedundantJoint`] where a joint has nothing to do here or there; otherwise as [`start`](Stepper::start).
     pub fn start_nearest(
         &self,
         attitude: [Body; N],

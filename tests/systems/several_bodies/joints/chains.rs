@@ -4,7 +4,7 @@ use core::array::from_fn;
 
 use liestep::groups::{CayleyRetraction, LieGroup as _, R3, Retraction};
 use liestep::laws::samples::Random;
-use liestep::methods::{BallJoint, Chain, ChainStepper, Joined, Joints, PinJoint};
+use liestep::methods::{BallJoint, Chain, Joined, Joints, PinJoint};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper};
 use nalgebra::{Vector3, Vector6};
@@ -55,7 +55,7 @@ fn a_chain_moves_as_in_its_minimal_form() {
     let mut random = Random::new(21);
     for h in [0.01, -0.005] {
         let chain = irregular::<N>(&mut random);
-        let minimal = ChainStepper::new(chain, h).unwrap();
+        let minimal = chain.stepper(h).unwrap();
         let stepper = with_joints(&chain, h);
         let attitudes: [SO3; N] = from_fn(|_| {
             let xi: Vector3<f64> = random.sample();
@@ -89,7 +89,7 @@ fn a_chain_moves_as_in_its_minimal_form() {
 fn a_hundred_links_let_go_horizontally() {
     for (last, h, steps, allowed) in [(1.0, 0.005, 200, 1e-12), (1e4, 0.002, 100, 1e-11), (1e-4, 0.002, 100, 1e-12)] {
         let chain = rods::<100>(last);
-        let (stepper, minimal) = (with_joints(&chain, h), ChainStepper::new(chain, h).unwrap());
+        let (stepper, minimal) = (with_joints(&chain, h), chain.stepper(h).unwrap());
         let flat = [SO3::from_euler_angles(0.3, core::f64::consts::FRAC_PI_2, 0.0); 100];
         let at_rest = Bodies([Vector3::zeros(); 100]);
         let (places, moving) = placed(&chain, &flat, &at_rest);

@@ -299,6 +299,29 @@ fn a_singular_position_names_the_joint() {
     assert!(matches!(error, StepError::SingularJoint { joint: 2, .. }) && taken == before);
 }
 
+/// Three rods of 1 m between pivots that are farther apart stay open, and the error says by how much.
+#[test]
+fn joints_that_cannot_close_stay_open() {
+    let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.1)).unwrap();
+    let [left, right] = [-0.5, 0.5].map(|x| Vector3::x() * x);
+    let ball = |above, below| BallJoint { above, below };
+    let tree = Joints::tree([
+        Joined::to_space(ball(Vector3::zeros(), left), 0),
+        Joined::between(ball(right, left), 0, 1),
+        Joined::between(ball(right, left), 1, 2),
+    ]);
+    for (apart, missing) in [(3.001, 1e-3), (3.1, 0.1), (4.0, 1.0)] {
+        let last = Joined::to_space(ball(Vector3::x() * apart, right), 2);
+        let scene = scene([Free { m: 1.0, K }; 3], 9.81, Vector3::z());
+        let stepper = Stepper::jointed(scene, tree.closed_by([last]), 0.005).unwrap();
+        let error = stepper.start_nearest(row([0.9, 0.0, -0.9]).0, Bodies([Vector6::zeros(); 3])).unwrap_err();
+        println!("{error}");
+        let SetupError::OffConstraint { by, .. } = error else { panic!("{error}") };
+        // Of four joints.
+        assert!(by > 0.25 * missing && by < 2.0 * missing, "{by:e} of {missing}");
+    }
+}
+
 /// A planar linkage of pins alone: the others do a part of what the last is to do.
 #[test]
 fn redundant_pins_are_named() {

@@ -1,0 +1,358 @@
+//! The plan of links on ball joints.
+
+use nalgebra::{Matrix3, Vector3};
+
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
+
+use super::elimination::{Folded, Updated, Work, momenta_of_velocities, newton, outwards, simplified};
+use super::link::Link;
+use crate::error::{SetupError, StepError};
+use crate::groups::{Advected as _, CayleyRetraction, Retraction, SO3};
+use crate::mechanics::{Effect, Operations, SceneVisitor};
+use crate::motion::{Cost, Motion, Plan, Steerable, StepReport, Stepper, Summation};
+use crate::numbers::{Bodies, Coordinates as _, filled};
+use crate::solving::{Curvature, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, WarmStart};
+
+/// How many steps go by until attitudes are put back among the rotations. What links feel of each other cancels as far as
+/// they are such: in a thousand steps the momentum of a chain would drift by some `1e-12` of itself.
+const STEPS_BETWEEN: u64 = 64;
+
+/// Operations of a link beside those of its potentials, in a step and in an iteration: of its products with matrices.
+const OF_A_LINK: Operations = Operations { step: 150, iteration: 600 };
+
+type Components<const N: usize> = Bodies<Vector3<f64>, N>;
+
+/// Links on ball joints, the first on a fixed pivot, in a scene of potentials: the plan of [`Stepper::linked`], in the
+/// minimal form on SO(3)ᴺ. Its step is of second order, symmetric and symplectic, and takes time proportional to `N`.
+///
+/// # Contract
+///
+/// - Joints don't open: attitudes are all there is.
+/// - The momentum about the vertical is kept to rounding where there is nothing but weight.
+/// - A step satisfies its momentum equations to rounding, or is an error that leaves the state as it was; it names a link
+///   where one is to blame.
+/// - Nothing is allocated. A chain of `N` links takes about `2 N` kB of stack.
+///
+/// # Source
+///
+/// The equations are (2.7) and (2.9) of \[RDAE\] for the Lagrangian of a [`Chain`](super::Chain), relative attitudes being advected;
+/// the minimal form is that of the authors of \[LML05\], the elimination that of Featherstone's articulated bodies.
+#[derive(Clone, Debug)]
+pub struct Linked<S: Effect, const N: usize> {
+    h: f64,
+    constants: S::Constants,
+    pub(super) links: [Folded; N],
+}
+
+impl<S: Effect> Stepper<S> {
+    /// Links on ball joints, the first on a fixed pivot; the scene is what acts on them: potentials of where each is, put
+    /// at their [places](crate::mechanics::Each). [`Chain::stepper`](crate::methods::Chain::stepper) has those of gravity, and a listing.
+    ///
+    /// Momenta are conjugate to the turns of the links: what each has to do with it that those beyond it move, too.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError::BodyParameter`] names the link whose parameters can't be used; [`SetupError::Parameter`] for those
+    /// of the scene, [`SetupError::InvalidStep`] for a step that isn't finite or whose inverse isn't.
+    pub fn linked<const N: usize>(scene: S, links: [Link; N], h: f64) -> Result<Stepper<S, Linked<S, N>>, SetupError>
+    where
+        S: Effect<Scalar = f64, Group = [SO3; N]>,
+    {
+        for (body, link) in links.iter().enumerate() {
+            link.validate(body)?;
+        }
+        let plan = Linked::new(&scene, links.each_ref().map(Folded::from), h)?;
+        Ok(Stepper { scene, plan })
+    }
+}
+
+impl<S: Effect<Group = [SO3; N]>, const N: usize> Stepper<S, Linked<S, N>> {
+    /// Where each link's lower joint is in space, m from the pivot.
+    #[must_use]
+    pub fn joints(&self, motion: &Motion<[SO3; N], S::Advected>) -> [Vector3<f64>; N] {
+        let mut place = Vector3::zeros();
+        filled!([place; N], |k| {
+            place += motion.attitude[k].as_matrix() * self.plan.links[k].rho;
+            place
+        })
+    }
+}
+
+impl<S, const N: usize> Linked<S, N>
+where
+    S: Effect<Scalar = f64, Group = [SO3; N]>,
+{
+    fn new(scene: &S, links: [Folded; N], h: f64) -> Result<Self, SetupError> {
+        const {
+            assert!(N > 0, "a chain has a link");
+            assert!(
+                !S::PARTS.unknown,
+                "links are moved by potentials of the ends of a step; their inertia is their own"
+            );
+        }
+        scene.validate()?;
+        if !h.is_finite() || (h != 0.0 && !(1.0 / h).is_finite()) {
+            return Err(SetupError::InvalidStep { step: h });
+        }
+        Ok(Self { h, constants: scene.constants(h), links })
+    }
+
+    /// The attitude of each link relative to that before.
+    #[hot]
+    fn place(attitudes: &[SO3; N], work: &mut [Work; N]) {
+        for (pair, work) in attitudes.windows(2).zip(work) {
+            work.next = pair[0].as_matrix().tr_mul(pair[1].as_matrix());
+        }
+    }
+
+    /// What the increments are to satisfy; returns what the scene gives before the step.
+    #[hot]
+    pub(super) fn prepare(&self, now: &Motion<[SO3; N], S::Advected>, work: &mut [Work; N]) -> Components<N> {
+        let kick = if S::PARTS.kick_before { S::kick_before(&self.constants, &now.advected) } else { Bodies::zero() };
+        Self::place(&now.attitude, work);
+        for (k, work) in work.iter_mut().enumerate() {
+            work.target = (now.momentum.0[k] + kick.0[k]) * self.h;
+        }
+        kick
+    }
+
+    /// From the guess; where that fails from rest, and then with shortened updates. Returns the iterations, those of
+    /// abandoned attempts included, and whether they have led to a solution.
+    #[hot]
+    pub(super) fn solve(&self, work: &mut [Work; N], guess: &Components<N>) -> (u32, bool) {
+        const ATTEMPTS: [(bool, u32, f64); 3] = [
+            (true, MAX_ITERATIONS, f64::INFINITY),
+            (false, MAX_ITERATIONS, f64::INFINITY),
+            (false, MAX_DAMPED_ITERATIONS, LONGEST_DAMPED),
+        ];
+        let mut spent = 0;
+        // A loop, as `iterate` is inlined where it is called, and is to be compiled once.
+        for (is_guessed, most, longest) in ATTEMPTS {
+            for (work, guess) in work.iter_mut().zip(&guess.0) {
+                work.half = if is_guessed { *guess } else { Vector3::zeros() };
+            }
+            let (iterations, is_solved) = iterate(&self.links, work, most, longest);
+            spent += iterations;
+            if is_solved {
+                return (spent, true);
+            }
+        }
+        (spent, false)
+    }
+
+    /// The end of a step with these increments, whose links the scene has given this kick before it.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError::NonFinite`] where a momentum after it isn't finite.
+    #[hot]
+    pub(super) fn proceed<M: Summation<[SO3; N], S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        work: &[Work; N],
+        kick: Components<N>,
+    ) -> Result<(), StepError> {
+        let (now, inverse_step) = (motion.now(), 1.0 / self.h);
+        let increment = filled!([Matrix3::zeros(); N], |k| work[k].increment);
+        let advected = motion.turned(&increment);
+        let mut change =
+            if S::PARTS.kick_after { S::kick_after(&self.constants, &increment, &advected) } else { Bodies::zero() };
+        let (mut beyond, mut momentum) = (Vector3::zeros(), now.momentum);
+        for (k, work) in work.iter().enumerate().rev() {
+            beyond = work.next * beyond;
+            // The diamond: what moves the links, and what the scene gives them.
+            let kick = kick.0[k] + (work.of_mc.cross(&work.u) + work.of_rho.cross(&beyond)) * inverse_step;
+            beyond += work.momentum(&self.links[k]);
+            // μ⁺ = Fᵀ(μ + κ), (2.9): the change.
+            change.0[k] += kick + work.increment.tr_mul(&(momentum.0[k] + kick));
+            momentum.0[k] += change.0[k];
+        }
+        if !momentum.is_finite() {
+            return Err(StepError::NonFinite { what: "momentum after the step" });
+        }
+        motion.proceed(&increment, &change, (momentum, advected));
+        motion.count();
+        if motion.now().steps.is_multiple_of(STEPS_BETWEEN) {
+            put_back(scene, motion);
+        }
+        Ok(())
+    }
+
+    /// Guesses the next increments by these.
+    #[hot]
+    pub(super) fn follow(&self, kept: &mut WarmStart<Components<N>>, work: &[Work; N], is_first: bool) {
+        let half = Bodies(filled!([Vector3::zeros(); N], |k| work[k].half));
+        let far = !<CayleyRetraction as Retraction<[SO3; N]>>::is_half_well_near_identity(&half);
+        kept.follow(half, far);
+        if is_first {
+            kept.forget_the_estimate();
+        }
+    }
+
+    /// Which link is to blame, by where the iteration has ended, and by how far each would turn at its velocity; where it
+    /// has no values, the one that turns farthest.
+    #[cold]
+    fn reason(&self, motion: &Motion<[SO3; N], S::Advected>, work: &[Work; N], iterations: u32) -> StepError {
+        let turn = self.velocities(motion).0.map(|velocity| (velocity * self.h).norm());
+        let blamed =
+            |body: usize| StepError::UnsolvedBody { body, turn: turn[body], determinant: work[body].determinant };
+        if !work.iter().all(|work| work.half.norm_squared().is_finite()) {
+            let farthest = (0..N).max_by(|&a, &b| turn[a].total_cmp(&turn[b]));
+            return blamed(farthest.unwrap_or(0));
+        }
+        if let Some(body) = work.iter().position(|work| !work.is_wanted()) {
+            return blamed(body);
+        }
+        let sum = |of: fn(&Work) -> &Vector3<f64>| work.iter().map(|work| of(work).norm_squared()).sum::<f64>();
+        let (update, size) = (sum(|work| &work.update), sum(|work| &work.half));
+        StepError::NotConverged { iterations, residual: (update / size).sqrt() }
+    }
+
+    /// Near rest the momenta times `h` are linear in `y`: those of the velocities `2 y`, which one iteration solves for.
+    #[inline(never)]
+    fn velocities(&self, motion: &Motion<[SO3; N], S::Advected>) -> Components<N> {
+        let mut work = [Work::default(); N];
+        Self::place(&motion.attitude, &mut work);
+        for (work, momentum) in work.iter_mut().zip(&motion.momentum.0) {
+            work.target = *momentum;
+        }
+        outwards(&self.links, &mut work);
+        newton(&self.links, &mut work, f64::INFINITY);
+        Bodies(work.map(|work| work.half * 2.0))
+    }
+}
+
+/// Puts the attitudes where the rotations next to them are, `R (3 I − RᵀR)/2`, and what is advected to what they see. With
+/// compensated sums they are among the rotations, and what is carried belongs to where they are.
+#[cold]
+fn put_back<S, M, const N: usize>(scene: &S, motion: &mut M)
+where
+    S: Effect<Scalar = f64, Group = [SO3; N]>,
+    M: Summation<[SO3; N], S::Advected>,
+{
+    if M::CARRIES {
+        return motion.restore(&scene.advected());
+    }
+    let attitude = motion.now().attitude.map(|attitude| {
+        let r = attitude.as_matrix();
+        SO3::from_matrix_unchecked(r + r * (Matrix3::identity() - r.tr_mul(r)) * 0.5)
+    });
+    let advected = scene.advected().seen_from(&attitude);
+    motion.show(Motion { attitude, advected, ..*motion.now() });
+}
+
+/// At most so many of Newton's iterations, and what is made with their Jacobians: how many both are, and whether it has
+/// settled near the identity with all determinants positive.
+///
+/// The determinants are those before the last updates. Near a fold that needs no guard: two updates suffice where
+/// `2C²|u₁|³ ≤ ε|y|/16`, and the first is longer than `√ε|y|/8`, so `C|u₁| < 1e-4`. The Jacobian changes by twice that of
+/// itself, and for another sign it would have to change by all.
+#[hot]
+fn iterate(links: &[Folded], work: &mut [Work], most: u32, longest: f64) -> (u32, bool) {
+    outwards(links, work);
+    // The last update, if Newton's next is of its second order: of one that was shortened too much is left, and after one
+    // with a Jacobian used again what is left is that Jacobian's.
+    let (mut made, mut before) = (0, None);
+    for _ in 0..most {
+        made += 1;
+        let Updated { update, size, is_whole } = newton(links, work, longest);
+        if !size.is_finite() {
+            break;
+        }
+        let curvature = Curvature::told(before, update);
+        if curvature.has_settled(update, size) {
+            return (made, work.iter().all(Work::is_wanted));
+        }
+        before = is_whole.then_some(update);
+        if is_whole && curvature.may_suffice(update, size) {
+            let second = simplified(links, work);
+            made += 1;
+            if curvature.has_sufficed(update, second.update, second.size) {
+                return (made, work.iter().all(Work::is_wanted));
+            }
+            before = None;
+        }
+    }
+    (made, false)
+}
+
+impl<S: Effect, const N: usize> Steerable for Linked<S, N> {}
+
+impl<S, const N: usize> Plan<S> for Linked<S, N>
+where
+    S: Effect<Scalar = f64, Group = [SO3; N]>,
+{
+    type Kept = WarmStart<Components<N>>;
+
+    const RUNS_BY_STEPS: bool = true;
+    const HAS_OWN_INERTIA: bool = true;
+
+    fn step_size(&self) -> f64 {
+        self.h
+    }
+
+    fn refolded(&self, scene: &S, h: f64) -> Result<Self, SetupError> {
+        Self::new(scene, self.links, h)
+    }
+
+    fn keep(&self, _: &S, motion: &Motion<[SO3; N], S::Advected>) -> Self::Kept {
+        WarmStart::of(self.velocities(motion) * (0.5 * self.h))
+    }
+
+    #[hot]
+    fn step<M: Summation<[SO3; N], S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
+        if self.h == 0.0 {
+            motion.count();
+            return Ok(StepReport::of(0));
+        }
+        let mut work = [Work::default(); N];
+        let kick = self.prepare(motion.now(), &mut work);
+        let (iterations, is_solved) = self.solve(&mut work, &kept.guess.next);
+        if !is_solved {
+            return Err(self.reason(motion.now(), &work, iterations));
+        }
+        let is_first = motion.now().steps == 0;
+        self.proceed(scene, motion, &work, kick)?;
+        self.follow(kept, &work, is_first);
+        Ok(StepReport::of(iterations))
+    }
+
+    fn momentum(&self, _: &S, attitude: &[SO3; N], velocity: &Components<N>, _: &S::Advected) -> Components<N> {
+        let mut work = [Work::default(); N];
+        Self::place(attitude, &mut work);
+        for (work, velocity) in work.iter_mut().zip(&velocity.0) {
+            work.half = *velocity;
+        }
+        momenta_of_velocities(&self.links, &mut work);
+        Bodies(work.map(|work| work.target))
+    }
+
+    fn velocity(&self, _: &S, motion: &Motion<[SO3; N], S::Advected>) -> Components<N> {
+        self.velocities(motion)
+    }
+
+    fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
+        visitor.term("its own step, of links on ball joints");
+        for link in &self.links {
+            link.nonstandard.iter().for_each(|&entry| visitor.parameter("J_d", entry));
+            visitor.parameter("m", link.m);
+            link.mc.iter().for_each(|&entry| visitor.parameter("m c", entry));
+            link.rho.iter().for_each(|&entry| visitor.parameter("rho", entry));
+        }
+    }
+
+    #[allow(clippy::cast_possible_truncation)] // far fewer
+    fn cost(&self) -> Cost {
+        let links = N as u32;
+        let (step, iteration) = (S::OPERATIONS.step + links * OF_A_LINK.step, links * OF_A_LINK.iteration);
+        Cost::of_stages(Operations { step, iteration }, 1)
+    }
+}
