@@ -100,12 +100,11 @@ fn plan(scene: &SceneFile, drawn: &SceneEnsemble) -> liestep_ensemble::Ensemble<
         started.map_err(|mistake| Failure::Other(mistake.to_string()))
     };
     let steps = scene.steps().unwrap_or_default();
-    let mut plan =
-        liestep_ensemble::Ensemble::one_by_one(drawn.text(), drawn.members(), steps, make).seed(drawn.seed());
-    if let Some(every) = drawn.every() {
+    let mut plan = liestep_ensemble::Ensemble::one_by_one(&drawn.text, drawn.members, steps, make).seed(drawn.seed);
+    if let Some(every) = drawn.every {
         plan = plan.every(every);
     }
-    if let Some(members) = drawn.chunk() {
+    if let Some(members) = drawn.chunk {
         plan = plan.chunks_of(members);
     }
     let names: Vec<_> = columns(scene).map(|(_, _, name)| name).collect();
@@ -138,8 +137,8 @@ fn told_of(scene: &SceneFile, drawn: &SceneEnsemble, report: &Report, folder: &s
     let mut text = format!(
         "{}\n  {} members drawn by the seed {}: {} finished, {} failed\n",
         scene.title(),
-        drawn.members(),
-        drawn.seed(),
+        drawn.members,
+        drawn.seed,
         report.finished,
         report.failed
     );

@@ -90,10 +90,10 @@ fn run_body(given: &ArgMatches, path: &Path, scene: &SceneFile, output: &mut Out
     }
     print(&scene.summary(&run))?;
     if let Some(sweep) = scene.sweep() {
-        eprintln!("note: `liestep sweep` runs the {} scenes of the file's sweep", sweep.points().len());
+        eprintln!("note: `liestep sweep` runs the {} scenes of the file's sweep", sweep.points.len());
     }
     if let Some(ensemble) = scene.ensemble() {
-        eprintln!("note: `liestep ensemble` runs the {} members of the file's ensemble", ensemble.members());
+        eprintln!("note: `liestep ensemble` runs the {} members of the file's ensemble", ensemble.members);
     }
     Ok(())
 }
@@ -180,7 +180,7 @@ fn checked(path: &Path) -> Result<String, Failure> {
     // A search for an accuracy takes as long as a run, and begins with the first step.
     if !scene.asks_for_accuracy() {
         scene.first(1)?;
-        for (_, point) in scene.sweep().map(liestep_scene::Sweep::points).unwrap_or_default() {
+        for (_, point) in scene.sweep().map(|sweep| sweep.points.as_slice()).unwrap_or_default() {
             point.first(1)?;
         }
     }

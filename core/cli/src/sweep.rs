@@ -30,12 +30,9 @@ pub(crate) fn sweep(given: &ArgMatches) -> Result<(), Failure> {
         // Beside the table of a run.
         let name = name(path, "sweep.csv");
         let mut file = output.grows(&name);
-        let points = sweep.points();
+        let points = &sweep.points;
         let ends = points.first().map(|(_, scene)| scene.end_names()).unwrap_or_default();
-        file.add(&format!(
-            "{}\n",
-            sweep.names().iter().chain(&ends).map(String::as_str).collect::<Vec<_>>().join(",")
-        ))?;
+        file.add(&format!("{}\n", sweep.names.iter().chain(&ends).map(String::as_str).collect::<Vec<_>>().join(",")))?;
         let end = |(_, scene): &(Vec<String>, SceneFile)| scene.run().map(|run| scene.end(&run));
         in_order(points, end, |(values, _), end| {
             let mut row = values.join(",");
@@ -45,7 +42,7 @@ pub(crate) fn sweep(given: &ArgMatches) -> Result<(), Failure> {
                     stopped += 1;
                     row.push_str(&",".repeat(ends.len()));
                     let point: Vec<_> =
-                        sweep.names().iter().zip(values).map(|(name, value)| format!("{name} = {value}")).collect();
+                        sweep.names.iter().zip(values).map(|(name, value)| format!("{name} = {value}")).collect();
                     eprintln!("note: {} gave no row: {mistake}", point.join(", "));
                 }
             }

@@ -18,7 +18,7 @@ fn its_scenes_run() {
     let several = blocks.iter().find(|block| block.contains("[[body]]")).unwrap();
     liestep_scene::System::parse("README.md", several).unwrap().run().unwrap();
     let varied = liestep_scene::parse("README.md", &format!("{scene}{more}")).unwrap();
-    assert_eq!(varied.sweep().unwrap().points().len(), 6);
+    assert_eq!(varied.sweep().unwrap().points.len(), 6);
     assert_eq!(varied.events().collect::<Vec<_>>(), ["fallen"]);
     varied.first(100).unwrap();
 }

@@ -1,13 +1,14 @@
 //! What a table of a run has: the table `output`.
 
-use std::fmt;
-
 use liestep::with;
 use nalgebra::Vector3;
 use serde::Deserialize;
-use serde::de::{Deserializer, Error, Visitor};
+use toml::Spanned;
 
+use crate::file::mistake::Wrong;
 use crate::file::sample::{BodySample, Sample};
+
+use Numbers::{OfBody, OfScene, SinceStart};
 
 /// A key of `columns`: numbers of a state, each a column of the table.
 ///
@@ -52,80 +53,64 @@ enum Numbers {
 
 impl Column {
     pub(crate) const QUATERNION: Self =
-        Self::of_body("quaternion", &["q_w", "q_x", "q_y", "q_z"], "1", |body| body.quaternion.to_vec());
-    pub(crate) const VELOCITY: Self =
-        Self::of_body("velocity", &["velocity_x", "velocity_y", "velocity_z"], "rad/s", |body| three(body.velocity));
-    pub(crate) const SPATIAL_MOMENTUM: Self = Self::of_scene(
+        Self::new("quaternion", &["q_w", "q_x", "q_y", "q_z"], "1", OfBody(|body| body.quaternion.to_vec()));
+    pub(crate) const VELOCITY: Self = Self::new(
+        "velocity",
+        &["velocity_x", "velocity_y", "velocity_z"],
+        "rad/s",
+        OfBody(|body| three(body.velocity)),
+    );
+    pub(crate) const SPATIAL_MOMENTUM: Self = Self::new(
         "spatial-momentum",
         &["spatial_momentum_x", "spatial_momentum_y", "spatial_momentum_z"],
         "kg m²/s",
-        |sample| three(sample.angular_momentum),
+        OfScene(|sample| three(sample.angular_momentum)),
     );
-    pub(crate) const ENERGY: Self = Self::of_scene("energy", &["energy"], "J", |sample| vec![sample.energy]);
+    const ENERGY: Self = Self::new("energy", &["energy"], "J", OfScene(|sample| vec![sample.energy]));
     pub(crate) const ENERGY_ERROR: Self =
-        Self::since_start("energy-error", &["energy_error"], "J", |first, now| now.energy - first.energy);
-    pub(crate) const MOMENTUM_ERROR: Self =
-        Self::since_start("momentum-error", &["momentum_error"], "kg m²/s", |first, now| {
-            (now.angular_momentum - first.angular_momentum).norm()
-        });
+        Self::new("energy-error", &["energy_error"], "J", SinceStart(|first, now| now.energy - first.energy));
+    pub(crate) const MOMENTUM_ERROR: Self = Self::new(
+        "momentum-error",
+        &["momentum_error"],
+        "kg m²/s",
+        SinceStart(|first, now| (now.angular_momentum - first.angular_momentum).norm()),
+    );
 
-    const OF_ONE_BODY: [Self; 9] = [
+    pub(crate) const OF_ONE_BODY: [Self; 9] = [
         Self::QUATERNION,
-        Self::of_body("axis", &["axis_x", "axis_y", "axis_z"], "1", |body| three(body.matrix().column(2).into())),
+        Self::new("axis", &["axis_x", "axis_y", "axis_z"], "1", OfBody(|body| three(body.matrix().column(2).into()))),
         Self::VELOCITY,
-        Self::of_body("momentum", &["momentum_x", "momentum_y", "momentum_z"], "kg m²/s", |body| three(body.momentum)),
+        Self::new("momentum", &MOMENTUM, "kg m²/s", OfBody(|body| three(body.momentum))),
         Self::SPATIAL_MOMENTUM,
         Self::ENERGY,
         Self::ENERGY_ERROR,
-        Self::since_start("vertical-momentum-error", &["vertical_momentum_error"], "kg m²/s", |first, now| {
-            (now.angular_momentum - first.angular_momentum).z
-        }),
+        Self::new(
+            "vertical-momentum-error",
+            &["vertical_momentum_error"],
+            "kg m²/s",
+            SinceStart(|first, now| (now.angular_momentum - first.angular_momentum).z),
+        ),
         Self::MOMENTUM_ERROR,
     ];
 
-    const OF_SEVERAL_BODIES: [Self; 8] = [
-        Self::of_body("position", &["x", "y", "z"], "m", |body| three(body.position)),
+    pub(crate) const OF_SEVERAL_BODIES: [Self; 8] = [
+        Self::new("position", &["x", "y", "z"], "m", OfBody(|body| three(body.position))),
         Self::QUATERNION,
         Self::VELOCITY,
-        Self::of_body("moving", &["moving_x", "moving_y", "moving_z"], "m/s", |body| three(body.moving)),
+        Self::new("moving", &["moving_x", "moving_y", "moving_z"], "m/s", OfBody(|body| three(body.moving))),
         Self::ENERGY,
-        Self::of_scene("momentum", &["momentum_x", "momentum_y", "momentum_z"], "kg m/s", |sample| {
-            three(sample.momentum)
-        }),
-        Self::of_scene(
+        Self::new("momentum", &MOMENTUM, "kg m/s", OfScene(|sample| three(sample.momentum))),
+        Self::new(
             "angular-momentum",
             &["angular_momentum_x", "angular_momentum_y", "angular_momentum_z"],
             "kg m²/s",
-            |sample| three(sample.angular_momentum),
+            OfScene(|sample| three(sample.angular_momentum)),
         ),
-        Self::of_scene("gap", &["gap"], "m", |sample| vec![sample.gap]),
+        Self::new("gap", &["gap"], "m", OfScene(|sample| vec![sample.gap])),
     ];
 
-    const fn of_body(
-        key: &'static str,
-        names: &'static [&'static str],
-        unit: &'static str,
-        numbers: fn(&BodySample) -> Vec<f64>,
-    ) -> Self {
-        Self { key, names, unit, numbers: Numbers::OfBody(numbers) }
-    }
-
-    const fn of_scene(
-        key: &'static str,
-        names: &'static [&'static str],
-        unit: &'static str,
-        numbers: fn(&Sample) -> Vec<f64>,
-    ) -> Self {
-        Self { key, names, unit, numbers: Numbers::OfScene(numbers) }
-    }
-
-    const fn since_start(
-        key: &'static str,
-        names: &'static [&'static str],
-        unit: &'static str,
-        number: fn(&Sample, &Sample) -> f64,
-    ) -> Self {
-        Self { key, names, unit, numbers: Numbers::SinceStart(number) }
+    const fn new(key: &'static str, names: &'static [&'static str], unit: &'static str, numbers: Numbers) -> Self {
+        Self { key, names, unit, numbers }
     }
 
     /// What it is called in a file.
@@ -140,35 +125,19 @@ impl Column {
         self.names
     }
 
-    /// The unit of its numbers.
-    #[must_use]
-    pub const fn unit(self) -> &'static str {
-        self.unit
-    }
-
-    /// Whether each body has it.
-    #[must_use]
-    pub const fn is_of_bodies(self) -> bool {
-        matches!(self.numbers, Numbers::OfBody(_))
-    }
-
     /// Whether it is measured from the start of a run, and so isn't known of a state alone.
     pub(crate) const fn is_since_the_start(self) -> bool {
-        matches!(self.numbers, Numbers::SinceStart(_))
+        matches!(self.numbers, SinceStart(_))
     }
 
-    /// Its numbers in a state of a run with this first one.
-    pub(crate) fn numbers(self, first: &Sample, now: &Sample) -> Vec<f64> {
-        match self.numbers {
-            Numbers::OfBody(numbers) => now.bodies.iter().flat_map(numbers).collect(),
-            Numbers::OfScene(numbers) => numbers(now),
-            Numbers::SinceStart(number) => vec![number(first, now)],
-        }
-    }
-
-    /// The numbers of columns, one after the other.
+    /// The numbers of columns in a state of a run with this first one.
     pub(crate) fn row(columns: &[Self], first: &Sample, now: &Sample) -> Vec<f64> {
-        columns.iter().flat_map(|column| column.numbers(first, now)).collect()
+        let numbers = |column: &Self| match column.numbers {
+            OfBody(numbers) => now.bodies.iter().flat_map(numbers).collect(),
+            OfScene(numbers) => numbers(now),
+            SinceStart(number) => vec![number(first, now)],
+        };
+        columns.iter().flat_map(numbers).collect()
     }
 
     /// The columns of a table, each with the number of its body; the name of one body that is alone is empty.
@@ -179,91 +148,30 @@ impl Column {
                 let named = |name| with::Column { name: format!("{before}{name}"), unit: column.unit.to_owned() };
                 all.extend(column.names.iter().map(|name| (named(name), body)));
             };
-            if column.is_of_bodies() {
-                for (number, body) in bodies.iter().enumerate() {
-                    let before = if body.is_empty() { String::new() } else { format!("{body}_") };
-                    add(&before, Some(number));
+            match column.numbers {
+                OfBody(_) if bodies != [""] => {
+                    bodies.iter().enumerate().for_each(|(number, body)| add(&format!("{body}_"), Some(number)));
                 }
-            } else {
-                add("", None);
+                _ => add("", None),
             }
         }
         all
     }
 }
 
+const MOMENTUM: [&str; 3] = ["momentum_x", "momentum_y", "momentum_z"];
+
 fn three(vector: Vector3<f64>) -> Vec<f64> {
     vec![vector.x, vector.y, vector.z]
 }
 
-/// What a table has, of one body or of several.
-#[derive(Clone, Deserialize)]
+/// What a table has.
+#[derive(Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Output<const SEVERAL: bool> {
-    #[serde(default = "default_columns::<SEVERAL>", deserialize_with = "different::<_, SEVERAL>")]
-    pub(crate) columns: Vec<Column>,
+pub(crate) struct Output {
+    columns: Option<Spanned<Vec<Spanned<String>>>>,
     /// In steps from row to row; as many as a picture has room for, where it isn't given.
     every: Option<Stride>,
-}
-
-impl<const SEVERAL: bool> Default for Output<SEVERAL> {
-    fn default() -> Self {
-        Self { columns: default_columns::<SEVERAL>(), every: None }
-    }
-}
-
-fn default_columns<const SEVERAL: bool>() -> Vec<Column> {
-    let keys: &[&str] = if SEVERAL {
-        &["position", "quaternion", "energy", "gap"]
-    } else {
-        &["velocity", "spatial-momentum", "energy", "axis", "quaternion"]
-    };
-    keys.iter().filter_map(|key| find::<SEVERAL>(key)).collect()
-}
-
-fn all<const SEVERAL: bool>() -> &'static [Column] {
-    if SEVERAL { &Column::OF_SEVERAL_BODIES } else { &Column::OF_ONE_BODY }
-}
-
-fn find<const SEVERAL: bool>(key: &str) -> Option<Column> {
-    all::<SEVERAL>().iter().find(|column| column.key == key).copied()
-}
-
-/// Columns of different names.
-fn different<'de, D: Deserializer<'de>, const SEVERAL: bool>(source: D) -> Result<Vec<Column>, D::Error> {
-    let columns: Vec<Column> =
-        Vec::<Key<SEVERAL>>::deserialize(source)?.into_iter().map(|Key(column)| column).collect();
-    let is_there_before = |place: usize| columns[..place].iter().any(|other| other.key == columns[place].key);
-    if (1..columns.len()).any(is_there_before) {
-        return Err(D::Error::custom("a table has each of its columns once"));
-    }
-    Ok(columns)
-}
-
-/// A column by its key.
-struct Key<const SEVERAL: bool>(Column);
-
-impl<'de, const SEVERAL: bool> Deserialize<'de> for Key<SEVERAL> {
-    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
-        source.deserialize_str(KeyText::<SEVERAL>).map(Self)
-    }
-}
-
-struct KeyText<const SEVERAL: bool>;
-
-impl<const SEVERAL: bool> Visitor<'_> for KeyText<SEVERAL> {
-    type Value = Column;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("the name of a column")
-    }
-
-    fn visit_str<E: Error>(self, key: &str) -> Result<Column, E> {
-        find::<SEVERAL>(key).ok_or_else(|| {
-            let known: Vec<_> = all::<SEVERAL>().iter().map(|column| format!("`{}`", column.key)).collect();
-            E::custom(format!("unknown variant `{key}`, expected one of {}", known.join(", ")))
-        })
-    }
 }
 
 /// A number of steps.
@@ -291,7 +199,26 @@ pub(crate) fn picture_stride(steps: u64) -> u64 {
     steps.div_ceil(SAMPLES_IN_A_PICTURE).max(1)
 }
 
-impl<const SEVERAL: bool> Output<SEVERAL> {
+impl Output {
+    /// Its columns among those that there are, or these if it names none.
+    pub(crate) fn columns(&self, known: &[Column], default: &[&str]) -> Result<Vec<Column>, Wrong> {
+        let find = |key: &str| known.iter().find(|column| column.key == key).copied();
+        let Some(keys) = &self.columns else { return Ok(default.iter().filter_map(|key| find(key)).collect()) };
+        let column = |key: &Spanned<String>| {
+            find(key.get_ref()).ok_or_else(|| {
+                let known: Vec<_> = known.iter().map(|column| format!("`{}`", column.key)).collect();
+                let message = format!("unknown variant `{}`, expected one of {}", key.get_ref(), known.join(", "));
+                (key.span(), message)
+            })
+        };
+        let columns = keys.get_ref().iter().map(column).collect::<Result<Vec<_>, _>>()?;
+        let is_there_before = |place: usize| columns[..place].iter().any(|other| other.key == columns[place].key);
+        if (1..columns.len()).any(is_there_before) {
+            return Err((keys.span(), "a table has each of its columns once".to_owned()));
+        }
+        Ok(columns)
+    }
+
     /// Steps from one row to the next, in a run of this many steps.
     pub(crate) fn stride(&self, steps: u64) -> u64 {
         self.every.map_or_else(|| picture_stride(steps), |every| every.0)

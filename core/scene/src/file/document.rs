@@ -1,47 +1,32 @@
-//! The scene in a text: TOML with the place of each key and value, then what the tables say, then what doesn't go
-//! together.
+//! The scene of a document: what its tables say, then what doesn't go together.
 
-use std::ops::Range;
 use std::path::Path;
 
 use serde::Deserialize as _;
-use toml::Spanned;
-use toml::de::{DeTable, DeValue, Deserializer};
+use toml::de::Deserializer;
 
 use crate::file::body::Kinetic;
+use crate::file::column::Column;
 use crate::file::method::{Method, Scheme as _};
 use crate::file::mistake::{Mistake, Wrong, place_of};
 use crate::file::scene::{Origin, Places, SceneFile};
 use crate::file::schedule::{Pace, fraction};
-
-/// A text as tables.
-pub(crate) type Document<'a> = Spanned<DeTable<'a>>;
+use crate::file::tables::{Document, span};
 
 /// The scene of a document without a sweep and an ensemble.
 pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<SceneFile, Mistake> {
     let mut file = SceneFile::deserialize(Deserializer::from(document.clone()))
         .map_err(|error| Mistake::of_toml(path, text, &error))?;
-    if let Some((span, message)) = at_odds(document, &file) {
-        return Err(Mistake::at(path, place_of(text, &span), message));
-    }
+    let located = |(span, message): Wrong| Mistake::at(path, place_of(text, &span), message);
+    at_odds(document, &file).map_or(Ok(()), Err).map_err(located)?;
+    let default = ["velocity", "spatial-momentum", "energy", "axis", "quaternion"];
+    file.columns = file.output.columns(&Column::OF_ONE_BODY, &default).map_err(located)?;
     let at = |keys: &[&str]| place_of(text, &span(document, keys));
     let pace = if matches!(file.run.pace, Pace::Accuracy(_)) { "accuracy" } else { "step" };
     let places =
         Places { body: at(&["body"]), start: at(&["start"]), pace: at(&["run", pace]), method: at(&["run", "method"]) };
     file.origin = Origin { path: path.to_owned(), places };
     Ok(file)
-}
-
-/// Where a value is, or the innermost table that there is around it.
-pub(crate) fn span(document: &Document<'_>, keys: &[&str]) -> Range<usize> {
-    let mut span = document.span();
-    let mut table = Some(document.get_ref());
-    for key in keys {
-        let Some(value) = table.and_then(|table| table.get(*key)) else { break };
-        span = value.span();
-        table = value.get_ref().as_table();
-    }
-    span
 }
 
 fn has(document: &Document<'_>, table: &str, key: &str) -> bool {
@@ -101,23 +86,4 @@ fn at_odds(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
         return wrong(&["body", "kinetic"], message);
     }
     None
-}
-
-/// Puts a value where the keys lead, into new tables where there are none.
-pub(crate) fn set<'a>(
-    table: &mut DeTable<'a>,
-    keys: &[Spanned<String>],
-    value: Spanned<DeValue<'a>>,
-) -> Result<(), Wrong> {
-    let [key, rest @ ..] = keys else { return Ok(()) };
-    let name = || Spanned::new(key.span(), key.get_ref().clone().into());
-    if rest.is_empty() {
-        table.insert(name(), value);
-        return Ok(());
-    }
-    let inner = table.entry(name()).or_insert_with(|| Spanned::new(key.span(), DeValue::Table(DeTable::new())));
-    match inner.get_mut() {
-        DeValue::Table(inner) => set(inner, rest, value),
-        _ => Err((key.span(), format!("`{}` isn't a table", key.get_ref()))),
-    }
 }

@@ -8,17 +8,24 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::file::mistake::Wrong;
+use crate::file::tables::{Keys, dotted, ends};
 
 /// The scenes of an ensemble: each draws its values, by what the one who runs it draws with.
 #[derive(Clone)]
+#[non_exhaustive]
 pub struct SceneEnsemble {
-    members: u64,
-    seed: u64,
-    pub(crate) every: Option<u64>,
-    pub(crate) chunk: Option<u64>,
+    /// How many members there are.
+    pub members: u64,
+    /// What they are drawn with.
+    pub seed: u64,
+    /// The number of steps from one row of a member to the next; if it isn't given the columns are kept at the end only.
+    pub every: Option<u64>,
+    /// The number of members that are made at a time and kept in one file, and at most lost where a run is ended.
+    pub chunk: Option<u64>,
+    /// The whole file, by which one ensemble is told from another.
+    pub text: String,
     pub(crate) axes: Vec<Axis>,
     pub(crate) path: PathBuf,
-    pub(crate) text: String,
 }
 
 /// What a value is drawn from; in the unit that the file has.
@@ -43,7 +50,7 @@ pub enum Spread {
 /// A key, and what of its value is drawn.
 #[derive(Clone)]
 pub(crate) struct Axis {
-    pub(crate) keys: Vec<Spanned<String>>,
+    pub(crate) keys: Keys,
     /// One where the value is none of a list.
     pub(crate) components: Vec<Component>,
     pub(crate) is_list: bool,
@@ -85,38 +92,6 @@ const DRAWN: [&str; 11] = [
     "thrust",
     "start",
 ];
-
-impl SceneEnsemble {
-    /// How many members there are.
-    #[must_use]
-    pub fn members(&self) -> u64 {
-        self.members
-    }
-
-    /// What they are drawn with.
-    #[must_use]
-    pub fn seed(&self) -> u64 {
-        self.seed
-    }
-
-    /// The number of steps from one row of a member to the next; if it isn't given the columns are kept at the end only.
-    #[must_use]
-    pub fn every(&self) -> Option<u64> {
-        self.every
-    }
-
-    /// The number of members that are made at a time and kept in one file, and at most lost where a run is ended.
-    #[must_use]
-    pub fn chunk(&self) -> Option<u64> {
-        self.chunk
-    }
-
-    /// The whole file, by which one ensemble is told from another.
-    #[must_use]
-    pub fn text(&self) -> &str {
-        &self.text
-    }
-}
 
 impl Component {
     pub(crate) fn text(&self, file: &str, draw: &mut dyn FnMut(&str, Spread) -> f64) -> String {
@@ -165,7 +140,9 @@ pub(crate) fn parts(table: &Spanned<DeValue<'_>>) -> Result<SceneEnsemble, Wrong
             "every" => ensemble.every = Some(whole(1..=MOST_MEMBERS)?),
             "chunk" => ensemble.chunk = Some(whole(1..=MOST_MEMBERS)?),
             "draw" => match value.get_ref() {
-                DeValue::Table(draws) => collect(draws, &[], &mut ensemble.axes)?,
+                DeValue::Table(draws) => {
+                    ensemble.axes = ends(draws, &leads_on).into_iter().map(axis).collect::<Result<_, _>>()?;
+                }
                 _ => return Err((value.span(), "`draw` is a table of keys".to_owned())),
             },
             _ => return Err((key.span(), PARTS.to_owned())),
@@ -182,45 +159,36 @@ pub(crate) fn parts(table: &Spanned<DeValue<'_>>) -> Result<SceneEnsemble, Wrong
     Ok(ensemble)
 }
 
-/// Tables are ways, distributions and lists of them their ends.
-fn collect(table: &DeTable<'_>, way: &[Spanned<String>], axes: &mut Vec<Axis>) -> Result<(), Wrong> {
-    for (key, value) in table {
-        if way.is_empty() && !DRAWN.contains(&key.get_ref().as_ref()) {
-            return Err((
-                key.span(),
-                format!("an ensemble draws what is in {}", DRAWN.map(|name| format!("`{name}`")).join(", ")),
-            ));
-        }
-        let key = Spanned::new(key.span(), key.get_ref().to_string());
-        let keys: Vec<_> = way.iter().cloned().chain([key]).collect();
-        let name = keys.iter().map(|key| key.get_ref().as_str()).collect::<Vec<_>>().join(".");
-        let (components, is_list) = match value.get_ref() {
-            DeValue::Table(inner) if DISTRIBUTIONS.as_flattened().iter().any(|end| inner.contains_key(*end)) => {
-                (vec![Component::Draw(drawn(inner, &value.span(), name)?)], false)
-            }
-            DeValue::Table(inner) if inner.is_empty() => return Err((value.span(), DRAW.to_owned())),
-            DeValue::Table(inner) => {
-                collect(inner, &keys, axes)?;
-                continue;
-            }
-            DeValue::Array(values) => {
-                let component = |(place, part): (usize, &Spanned<DeValue<'_>>)| match part.get_ref() {
-                    DeValue::Table(inner) => {
-                        drawn(inner, &part.span(), format!("{name}.{}", place + 1)).map(Component::Draw)
-                    }
-                    _ => Ok(Component::Fixed(part.span())),
-                };
-                let components = values.iter().enumerate().map(component).collect::<Result<Vec<_>, _>>()?;
-                if !components.iter().any(|component| matches!(component, Component::Draw(_))) {
-                    return Err((value.span(), DRAW.to_owned()));
-                }
-                (components, true)
-            }
-            _ => return Err((value.span(), DRAW.to_owned())),
-        };
-        axes.push(Axis { keys, components, is_list, span: value.span() });
+/// A key with what of its value is drawn.
+fn axis((keys, value): (Keys, &Spanned<DeValue<'_>>)) -> Result<Axis, Wrong> {
+    if let Some(key) = keys.first().filter(|key| !DRAWN.contains(&key.get_ref().as_str())) {
+        let drawn = DRAWN.map(|name| format!("`{name}`")).join(", ");
+        return Err((key.span(), format!("an ensemble draws what is in {drawn}")));
     }
-    Ok(())
+    let name = dotted(&keys);
+    let (components, is_list) = match value.get_ref() {
+        DeValue::Table(inner) => (vec![Component::Draw(drawn(inner, &value.span(), name)?)], false),
+        DeValue::Array(values) => {
+            let component = |(place, part): (usize, &Spanned<DeValue<'_>>)| match part.get_ref() {
+                DeValue::Table(inner) => {
+                    drawn(inner, &part.span(), format!("{name}.{}", place + 1)).map(Component::Draw)
+                }
+                _ => Ok(Component::Fixed(part.span())),
+            };
+            let components = values.iter().enumerate().map(component).collect::<Result<Vec<_>, _>>()?;
+            if !components.iter().any(|component| matches!(component, Component::Draw(_))) {
+                return Err((value.span(), DRAW.to_owned()));
+            }
+            (components, true)
+        }
+        _ => return Err((value.span(), DRAW.to_owned())),
+    };
+    Ok(Axis { keys, components, is_list, span: value.span() })
+}
+
+/// Whether a table says no distribution, but has tables that do.
+fn leads_on(table: &DeTable<'_>) -> bool {
+    !table.is_empty() && !DISTRIBUTIONS.as_flattened().iter().any(|end| table.contains_key(*end))
 }
 
 /// The two numbers of each distribution.

@@ -5,10 +5,11 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
-use crate::file::document::{Document, scene, set, span};
+use crate::file::document::scene;
 use crate::file::draws::{Axis, DRAW, SceneEnsemble, Spread, parts};
 use crate::file::mistake::{Mistake, Wrong, place_of};
 use crate::file::scene::SceneFile;
+use crate::file::tables::{Document, set, span};
 
 impl SceneEnsemble {
     /// The scene of a member, with numbers that are drawn by their names: `gravity.m`, and of components

@@ -20,4 +20,5 @@ pub(crate) mod schedule;
 pub(crate) mod start;
 pub(crate) mod sweep;
 pub(crate) mod system;
+pub(crate) mod tables;
 pub(crate) mod text;

@@ -4,10 +4,11 @@ use std::path::Path;
 
 use toml::de::{DeTable, DeValue};
 
-use crate::file::document::{Document, scene, span};
+use crate::file::document::scene;
 use crate::file::mistake::{Mistake, Wrong, place_of};
 use crate::file::scene::SceneFile;
 use crate::file::system::System;
+use crate::file::tables::{Document, span};
 use crate::file::text::text;
 use crate::file::{ensemble, sweep};
 

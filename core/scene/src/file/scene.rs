@@ -63,7 +63,9 @@ pub struct SceneFile {
     #[serde(default)]
     pub(crate) event: Vec<Event>,
     #[serde(default)]
-    pub(crate) output: Output<false>,
+    pub(crate) output: Output,
+    #[serde(skip)]
+    pub(crate) columns: Vec<Column>,
     /// Of the whole file: the scenes that a sweep makes have none.
     #[serde(skip)]
     pub(crate) sweep: Option<Sweep>,
@@ -112,12 +114,12 @@ impl SceneFile {
     /// What a table of the run has behind the time.
     #[must_use]
     pub fn columns(&self) -> &[Column] {
-        &self.output.columns
+        &self.columns
     }
 
     /// The columns of a table behind the time, one for each number.
     pub(crate) fn listed(&self) -> Vec<with::Column> {
-        Column::listed(&self.output.columns, &[""]).into_iter().map(|(column, _)| column).collect()
+        Column::listed(&self.columns, &[""]).into_iter().map(|(column, _)| column).collect()
     }
 
     /// The scenes that are drawn, if the file has a table `ensemble`.
@@ -148,8 +150,8 @@ impl SceneFile {
             Pace::Step { step, steps } => format!("{steps} steps of {} s", short(step)),
             Pace::Accuracy(tolerance) => format!("{} s to {tolerance:e}", short(self.run.duration)),
         };
-        let sweep = self.sweep.as_ref().map(|sweep| format!(", a sweep of {}", sweep.points().len()));
-        let ensemble = self.ensemble.as_ref().map(|ensemble| format!(", an ensemble of {}", ensemble.members()));
+        let sweep = self.sweep.as_ref().map(|sweep| format!(", a sweep of {}", sweep.points.len()));
+        let ensemble = self.ensemble.as_ref().map(|ensemble| format!(", an ensemble of {}", ensemble.members));
         format!("{}, {pace}{}{}", self.sum(), sweep.unwrap_or_default(), ensemble.unwrap_or_default())
     }
 
@@ -189,21 +191,10 @@ impl SceneFile {
 
 /// The scenes of a sweep: one for each combination of its values, the last key fastest.
 #[derive(Clone)]
+#[non_exhaustive]
 pub struct Sweep {
-    pub(crate) names: Vec<String>,
-    pub(crate) points: Vec<(Vec<String>, SceneFile)>,
-}
-
-impl Sweep {
     /// What is varied, as `gravity.m`, in the order of the file.
-    #[must_use]
-    pub fn names(&self) -> &[String] {
-        &self.names
-    }
-
+    pub names: Vec<String>,
     /// The values of each, as the file has them, and the scene with them.
-    #[must_use]
-    pub fn points(&self) -> &[(Vec<String>, SceneFile)] {
-        &self.points
-    }
+    pub points: Vec<(Vec<String>, SceneFile)>,
 }

@@ -5,17 +5,17 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::file::document::{Document, set};
 use crate::file::draws::measured;
 use crate::file::mistake::{Mistake, Wrong};
 use crate::file::scene::{SceneFile, Sweep};
+use crate::file::tables::{Document, Keys, dotted, ends, set};
 
 /// A run each: more take their time, and another file.
 const MOST_POINTS: usize = 10_000;
 
 /// A key that is varied, and where its values are.
 struct Axis<'a> {
-    keys: Vec<Spanned<String>>,
+    keys: Keys,
     values: Values<'a>,
     span: Range<usize>,
 }
@@ -55,8 +55,8 @@ pub(crate) fn read(
     let DeValue::Table(inner) = table.get_ref() else {
         return Err(located((table.span(), "`sweep` is a table".to_owned())));
     };
-    let mut axes = Vec::new();
-    collect(inner, &[], &mut axes).map_err(located)?;
+    let ends = ends(inner, &|table| !table.contains_key("from"));
+    let mut axes = ends.into_iter().map(axis).collect::<Result<Vec<_>, _>>().map_err(located)?;
     axes.sort_by_key(|axis| axis.span.start);
     let count = axes.iter().try_fold(1_usize, |count, axis| count.checked_mul(axis.len()));
     let Some(count) = count.filter(|count| *count <= MOST_POINTS) else {
@@ -78,37 +78,19 @@ pub(crate) fn read(
         values.reverse();
         points.push((values, scene(&varied)?));
     }
-    let name = |axis: &Axis<'_>| axis.keys.iter().map(|key| key.get_ref().as_str()).collect::<Vec<_>>().join(".");
-    Ok(Sweep { names: axes.iter().map(name).collect(), points })
+    Ok(Sweep { names: axes.iter().map(|axis| dotted(&axis.keys)).collect(), points })
 }
 
-/// Tables are ways, lists and ranges their ends.
-fn collect<'a>(table: &DeTable<'a>, way: &[Spanned<String>], axes: &mut Vec<Axis<'a>>) -> Result<(), Wrong> {
-    for (key, value) in table {
-        let key = Spanned::new(key.span(), key.get_ref().to_string());
-        let keys: Vec<_> = way.iter().cloned().chain([key]).collect();
-        match value.get_ref() {
-            DeValue::Array(values) if values.is_empty() => {
-                return Err((value.span(), "a sweep has a value at least".to_owned()));
-            }
-            DeValue::Array(values) => {
-                let values = Values::Listed(values.iter().cloned().collect());
-                axes.push(Axis { keys, values, span: value.span() });
-            }
-            DeValue::Table(range) if range.contains_key("from") => {
-                let values = Values::Spread(spread(range, &value.span())?);
-                axes.push(Axis { keys, values, span: value.span() });
-            }
-            DeValue::Table(inner) => collect(inner, &keys, axes)?,
-            _ => {
-                return Err((
-                    value.span(),
-                    "a sweep is a list of values, or `{ from = …, to = …, count = … }`".to_owned(),
-                ));
-            }
-        }
-    }
-    Ok(())
+/// A key with its values.
+fn axis<'a>((keys, value): (Keys, &Spanned<DeValue<'a>>)) -> Result<Axis<'a>, Wrong> {
+    let wrong = |message: &str| Err((value.span(), message.to_owned()));
+    let values = match value.get_ref() {
+        DeValue::Array(values) if values.is_empty() => return wrong("a sweep has a value at least"),
+        DeValue::Array(values) => Values::Listed(values.iter().cloned().collect()),
+        DeValue::Table(range) => Values::Spread(spread(range, &value.span())?),
+        _ => return wrong("a sweep is a list of values, or `{ from = …, to = …, count = … }`"),
+    };
+    Ok(Axis { keys, values, span: value.span() })
 }
 
 const RANGE: &str =

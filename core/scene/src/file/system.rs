@@ -53,7 +53,8 @@ pub struct System {
     pub(crate) steps: u32,
     pub(crate) nearest: bool,
     pub(crate) picture: PlanePicture,
-    pub(crate) output: Output<true>,
+    pub(crate) output: Output,
+    pub(crate) columns: Vec<Column>,
     pub(crate) path: PathBuf,
     pub(crate) places: SystemPlaces,
     pub(crate) arrangement: Arrangement,
@@ -107,7 +108,7 @@ struct SystemTable {
     #[serde(default)]
     picture: PlanePicture,
     #[serde(default)]
-    output: Output<true>,
+    output: Output,
 }
 
 #[derive(Deserialize)]
@@ -198,7 +199,7 @@ impl System {
     /// The columns of a table behind the time. Where there are pins the unit of the gap is `m, 1`.
     #[must_use]
     pub fn columns(&self) -> Vec<with::Column> {
-        let listed = Column::listed(&self.output.columns, &self.names().collect::<Vec<_>>());
+        let listed = Column::listed(&self.columns, &self.names().collect::<Vec<_>>());
         let unit = |column: with::Column| {
             // A length and the cosines of axes.
             let is_mixed = column.name == "gap" && self.has_pins();
@@ -252,7 +253,8 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         return Err((0..0, "a system has a body at least".to_owned()));
     }
     let called: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
-    if let Some((body, name)) = name_twice(&table.output.columns, &called) {
+    let columns = table.output.columns(&Column::OF_SEVERAL_BODIES, &["position", "quaternion", "energy", "gap"])?;
+    if let Some((body, name)) = name_twice(&columns, &called) {
         let message = format!("two columns of the table would be called `{name}`: give the body another name");
         return Err((names[body].clone(), message));
     }
@@ -288,6 +290,7 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         nearest: table.run.nearest,
         picture: table.picture,
         output: table.output,
+        columns,
         path: path.to_owned(),
         places,
         arrangement,

@@ -107,7 +107,7 @@ impl System {
         let started =
             if self.nearest { stepper.start_nearest(bodies, velocities) } else { stepper.start(bodies, velocities) };
         let state = started.map_err(Stop::Start)?;
-        let (stride, columns) = (self.output.stride(steps), self.output.columns.as_slice());
+        let (stride, columns) = (self.output.stride(steps), self.columns.as_slice());
         let course = Course { steps, stride, columns, listed: self.columns() };
         let sample = |now: &Moment<'_, _>| sample(&stepper, self.bodies.len(), now);
         make(&stepper, state, course, sample, Vec::new(), listeners)

@@ -2,6 +2,5 @@
 
 pub(crate) mod derivation;
 mod page;
-mod paths;
 mod picture;
 pub(crate) mod recording;

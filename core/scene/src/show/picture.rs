@@ -1,17 +1,22 @@
-//! The picture of a scene: a path on the sphere, and quantities over time.
+//! The picture of a run: a path, and curves over time.
 
 use liestep_plot::{
-    Area, BLUE, Colour, GREEN, Line, ORANGE, PURPLE, Panel, Path, PlotResult, Vertical, heading, legend, px, render,
-    sphere,
+    Area, BLUE, Colour, GREEN, INK, Line, ORANGE, PURPLE, Panel, Path, PlotResult, SKY, VERMILION, Vertical, YELLOW,
+    heading, legend, px, render, sphere,
 };
 use nalgebra::Vector3;
 
-use crate::file::picture::{Curve, SpherePicture, Trace};
+use crate::file::arrangement::BODIES;
+use crate::file::picture::{Curve, Plane, SpherePicture, Trace};
 use crate::file::sample::Sample;
 use crate::file::scene::SceneFile;
+use crate::file::system::System;
 use crate::run::make::Run;
 
+/// One for each component of a vector.
 const COLOURS: [Colour; 3] = [BLUE, ORANGE, GREEN];
+/// One for each body.
+const BODY_COLOURS: [Colour; BODIES] = [BLUE, ORANGE, GREEN, PURPLE, SKY, VERMILION, INK, YELLOW];
 
 impl SceneFile {
     /// The picture of a run as SVG.
@@ -19,24 +24,76 @@ impl SceneFile {
     /// # Errors
     ///
     /// None but of the drawing library, for an impossible layout.
-    pub fn picture(&self, run: &Run) -> Result<String, Box<dyn std::error::Error>> {
-        draw(self, run)
+    pub fn picture(&self, run: &Run) -> PlotResult<String> {
+        let (picture, samples) = (&self.picture, run.samples());
+        // A step that was chosen for an accuracy has more digits than anyone reads.
+        let step = format!("{:.4e}", run.step()).parse().unwrap_or(run.step());
+        let subtitle = format!("{}, h = {step} s", self.sum());
+        let path = |area: &Area<'_>| picture.draw_path(area, samples);
+        let curve = |curve: &Curve, area: &Area<'_>| curve.draw(area, samples, &picture.axis.0);
+        draw((&self.title, &subtitle), &[], path, &picture.panels, curve)
     }
 }
 
-fn draw(file: &SceneFile, run: &Run) -> PlotResult<String> {
-    let (picture, samples) = (&file.picture, run.samples());
+impl System {
+    /// The picture of a run as SVG: the paths of the centres of mass, how far each body is turned from its start, and how
+    /// far the energy is from its start.
+    ///
+    /// # Errors
+    ///
+    /// None but of the drawing library, for an impossible layout.
+    pub fn picture(&self, run: &Run) -> PlotResult<String> {
+        let samples = run.samples();
+        let Some(start) = samples.first() else { return Err("a run has a state".into()) };
+        let ([across, up], axes) = match self.picture.plane {
+            Plane::Xy => (["x, m", "y, m"], [0, 1]),
+            Plane::Xz => (["x, m", "z, m"], [0, 2]),
+            Plane::Yz => (["y, m", "z, m"], [1, 2]),
+        };
+        let names: Vec<_> = self.names().zip(BODY_COLOURS).collect();
+        let of_bodies = |point: &dyn Fn(&Sample, usize) -> (f64, f64)| -> Vec<Line> {
+            let points = |body| samples.iter().map(|sample| point(sample, body)).collect();
+            let bodies = names.iter().enumerate();
+            bodies.map(|(body, (_, colour))| Line { colour: *colour, width: 3, points: points(body) }).collect()
+        };
+        let place = |sample: &Sample, body: usize| {
+            let position = sample.bodies[body].position;
+            (position[axes[0]], position[axes[1]])
+        };
+        let turn = |sample: &Sample, body: usize| {
+            let [now, before] = [sample, start].map(|sample| sample.bodies[body].attitude);
+            let cosine = ((before.as_matrix().transpose() * now.as_matrix()).trace() - 1.0) / 2.0;
+            (sample.time, cosine.clamp(-1.0, 1.0).acos().to_degrees())
+        };
+        let path = |area: &Area<'_>| {
+            let (title, lines) = ("Ways of the centres of mass", of_bodies(&place));
+            Panel { title, across, up, vertical: Vertical::Linear, function: false, lines }.draw(area)
+        };
+        let turns = Panel::over_time("Turned from the start by", "degrees", Vertical::Linear, of_bodies(&turn));
+        let energy = over_time("Energy: how far from its start", "J", Vertical::Logarithmic, samples, &|sample| {
+            (sample.energy - start.energy).abs()
+        });
+        let subtitle = format!("{}, h = {} s", self.sum(), self.step);
+        draw((&self.title, &subtitle), &names, path, &[turns, energy], Panel::draw)
+    }
+}
+
+/// A heading with a legend of the bodies, a path on the left, and curves below each other on the right.
+fn draw<C>(
+    (title, subtitle): (&str, &str),
+    bodies: &[(&str, Colour)],
+    path: impl Fn(&Area<'_>) -> PlotResult,
+    curves: &[C],
+    curve: impl Fn(&C, &Area<'_>) -> PlotResult,
+) -> PlotResult<String> {
     render((1200, 640), |area| {
-        let (header, body) = area.split_vertically(px(64));
-        // A step that was chosen for an accuracy has more digits than anyone reads.
-        let step = format!("{:.4e}", run.step()).parse().unwrap_or(run.step());
-        let subtitle = format!("{}, h = {step} s", file.sum());
-        heading(&header, &file.title, &subtitle)?;
+        let (header, body) = area.split_vertically(px(if bodies.is_empty() { 64 } else { 88 }));
+        heading(&header, title, subtitle)?;
+        legend(&header, (16, 74), bodies)?;
         let (left, right) = body.split_horizontally(px(520));
-        picture.draw_path(&left, samples)?;
-        let panels = picture.panels.as_slice();
-        for (place, quantity) in right.split_evenly((panels.len().max(1), 1)).iter().zip(panels) {
-            quantity.draw(place, samples, &picture.axis.0)?;
+        path(&left)?;
+        for (place, which) in right.split_evenly((curves.len().max(1), 1)).iter().zip(curves) {
+            curve(which, place)?;
         }
         Ok(())
     })
@@ -66,7 +123,7 @@ impl Curve {
             return Ok(());
         };
         let one = |title, up, vertical, height: &dyn Fn(&Sample) -> f64| {
-            Panel::over_time(title, up, vertical, vec![line(samples, BLUE, height)]).draw(area)
+            over_time(title, up, vertical, samples, height).draw(area)
         };
         let three = |title, up, vector: &dyn Fn(&Sample) -> Vector3<f64>| {
             let lines = COLOURS.iter().enumerate();
@@ -100,4 +157,15 @@ impl Curve {
 
 fn line(samples: &[Sample], colour: Colour, height: &dyn Fn(&Sample) -> f64) -> Line {
     Line { colour, width: 3, points: samples.iter().map(|s| (s.time, height(s))).collect() }
+}
+
+/// A panel with one line.
+fn over_time<'a>(
+    title: &'a str,
+    up: &'a str,
+    vertical: Vertical,
+    samples: &[Sample],
+    height: &dyn Fn(&Sample) -> f64,
+) -> Panel<'a> {
+    Panel::over_time(title, up, vertical, vec![line(samples, BLUE, height)])
 }

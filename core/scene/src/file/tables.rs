@@ -1,0 +1,69 @@
+//! The text of a file as tables: TOML with the place of each key and value.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::file::mistake::Wrong;
+
+/// A text as tables.
+pub(crate) type Document<'a> = Spanned<DeTable<'a>>;
+
+/// Where a value is, or the innermost table that there is around it.
+pub(crate) fn span(document: &Document<'_>, keys: &[&str]) -> Range<usize> {
+    let mut span = document.span();
+    let mut table = Some(document.get_ref());
+    for key in keys {
+        let Some(value) = table.and_then(|table| table.get(*key)) else { break };
+        span = value.span();
+        table = value.get_ref().as_table();
+    }
+    span
+}
+
+/// The keys that lead to a value.
+pub(crate) type Keys = Vec<Spanned<String>>;
+
+/// The ends of a table of tables: all values but those tables that lead on.
+pub(crate) fn ends<'t, 'a>(
+    table: &'t DeTable<'a>,
+    leads_on: &dyn Fn(&DeTable<'a>) -> bool,
+) -> Vec<(Keys, &'t Spanned<DeValue<'a>>)> {
+    let mut all = Vec::new();
+    for (key, value) in table {
+        let first = Spanned::new(key.span(), key.get_ref().to_string());
+        match value.get_ref() {
+            DeValue::Table(inner) if leads_on(inner) => {
+                let behind = |(keys, value): (Keys, _)| ([vec![first.clone()], keys].concat(), value);
+                all.extend(ends(inner, leads_on).into_iter().map(behind));
+            }
+            _ => all.push((vec![first], value)),
+        }
+    }
+    all
+}
+
+/// Keys as they are written.
+pub(crate) fn dotted(keys: &[Spanned<String>]) -> String {
+    keys.iter().map(|key| key.get_ref().as_str()).collect::<Vec<_>>().join(".")
+}
+
+/// Puts a value where the keys lead, into new tables where there are none.
+pub(crate) fn set<'a>(
+    table: &mut DeTable<'a>,
+    keys: &[Spanned<String>],
+    value: Spanned<DeValue<'a>>,
+) -> Result<(), Wrong> {
+    let [key, rest @ ..] = keys else { return Ok(()) };
+    let name = || Spanned::new(key.span(), key.get_ref().clone().into());
+    if rest.is_empty() {
+        table.insert(name(), value);
+        return Ok(());
+    }
+    let inner = table.entry(name()).or_insert_with(|| Spanned::new(key.span(), DeValue::Table(DeTable::new())));
+    match inner.get_mut() {
+        DeValue::Table(inner) => set(inner, rest, value),
+        _ => Err((key.span(), format!("`{}` isn't a table", key.get_ref()))),
+    }
+}
