@@ -7,7 +7,7 @@ use core::fmt::Debug;
 use crate::error::SetupError;
 use crate::groups::{LieGroup, Retraction, SquareOf, body_of};
 use crate::mechanics::description::SceneVisitor;
-use crate::mechanics::kinetic_part::{KineticPart, WithExpensiveKinetic, WithKinetic};
+use crate::mechanics::kinetic_part::{KineticPart, WithKinetic};
 use crate::mechanics::operations::Operations;
 use crate::mechanics::term::Term;
 use crate::numbers::{Blocks, Coordinates, Pattern, Real, newton_halving, real, reported};
@@ -175,7 +175,7 @@ impl<E: Effect + ?Sized> Limit<E> {
 pub trait Effect: Term {
     /// The coordinates of the Newton unknown.
     type Retraction: Retraction<Self::Group>;
-    /// Whether there is a kinetic part: [`WithKinetic`], [`WithExpensiveKinetic`] or
+    /// Whether there is a kinetic part: [`WithKinetic`], [`WithExpensiveKinetic`](crate::mechanics::WithExpensiveKinetic) or
     /// [`WithoutKinetic`](crate::mechanics::WithoutKinetic).
     type Kinetic: KineticPart;
     /// What the parameters and `h` determine.
@@ -351,7 +351,7 @@ pub trait Effect: Term {
 /// on `w`, by [`Stepper::start`](crate::motion::Stepper::start).
 pub trait Regular: Effect {}
 
-impl<E: Effect> Regular for E where E::Kinetic: Moves<E> {}
+impl<E: Effect> Regular for E where <E::Kinetic as KineticPart>::ByNewton: Moves<E> {}
 
 /// The kinetic part of the effect `E`; names it in the message where there is none.
 #[diagnostic::on_unimplemented(
@@ -363,8 +363,6 @@ impl<E: Effect> Regular for E where E::Kinetic: Moves<E> {}
 pub trait Moves<E: ?Sized> {}
 
 impl<E: ?Sized> Moves<E> for WithKinetic {}
-
-impl<E: ?Sized> Moves<E> for WithExpensiveKinetic {}
 
 /// `μ = ∂l/∂ξ`, `Jξ + s(w)` where `l` is quadratic: the momentum of the body velocity `ξ`.
 pub(crate) fn momentum_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advected) -> Vector<E> {

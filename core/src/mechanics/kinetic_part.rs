@@ -17,7 +17,7 @@ pub trait KineticPart {
     /// Of a sum: with, if one of the two is.
     type Or<Other: KineticPart>: KineticPart;
 
-    /// Of what is solved by Newton's iteration, whatever the Jacobian costs.
+    /// The part where the solve takes the Jacobian, whatever that costs.
     type ByNewton: KineticPart;
 }
 
