@@ -223,12 +223,14 @@ struct Carried {
 #[test]
 fn a_form_is_carried_forwards() {
     let mut random = Random::new(11);
-    let (M, r, form) = (tensor(&mut random), column(&mut random), CovariantTensor(tensor(&mut random)));
+    let (M, r): (Matrix3<f64>, Vector2<f64>) = (tensor(&mut random), column(&mut random));
+    let form = CovariantTensor(tensor(&mut random));
     let (long_m, long_r) = (M.map(HyperDual64::from), r.map(HyperDual64::from));
     let rule = |f: &Matrix2<HyperDual64>, form: &CovariantTensor<HyperDual64, 2>, h: HyperDual64| {
-        let inverse = (f + Matrix2::identity()).try_inverse().expect("an increment that isn't large");
-        let xi = SL2::vee(&((f - Matrix2::identity()) * inverse)) * (HyperDual64::from(2.0) / h);
-        let l = |form: &Matrix2<_>| xi.dot(&(long_m * xi)) * 0.5 - long_r.dot(&(form * long_r));
+        let inverse: Matrix2<HyperDual64> =
+            (f + Matrix2::identity()).try_inverse().expect("an increment that isn't large");
+        let xi = SL2::<HyperDual64>::vee(&((f - Matrix2::identity()) * inverse)) * (HyperDual64::from(2.0) / h);
+        let l = |form: &Matrix2<HyperDual64>| xi.dot(&(long_m * xi)) * 0.5 - long_r.dot(&(form * long_r));
         (l(&form.0) + l(&(f.transpose() * form.0 * f))) * h * 0.5
     };
     assert_terms("SL(2), a form", (&Carried { M, r, form }, 0.05, 0.0), rule, 5);
