@@ -286,7 +286,27 @@ fn a_momentum_without_a_velocity_is_an_error() {
     assert!(matches!(error, StepError::NotConverged { .. } | StepError::Singular), "{error}");
 }
 
-/// The same with a momentum at rest, as of a charge in a vector potential.
+/// The momentum `v (1 + 10 v² − 20 v⁴)` falls again beyond `v = 0.575`.
+#[lagrangian(
+    group = R3,
+    velocity = v,
+    l = m * (0.5 * v.norm_squared() + 2.5 * v.norm_squared().powi(2) - (10.0 / 3.0) * v.norm_squared().powi(3)),
+)]
+struct Falling {
+    m: f64,
+}
+
+/// Newton's iteration finds `v = 0.7056` for it, where rest isn't continued to.
+#[test]
+fn a_velocity_beyond_a_singularity_is_an_error() {
+    let falling = Falling { m: 1.0 };
+    let beyond = Vector3::new(0.705_6, 0.0, 0.0);
+    assert!((falling.momentum(&beyond, &()).x - 0.72).abs() < 1e-3);
+    let error = falling.velocity(&Vector3::new(0.72, 0.0, 0.0), &()).unwrap_err();
+    assert!(matches!(error, StepError::Singular), "{error}");
+}
+
+/// `Bounded` with a momentum at rest, as of a charge in a vector potential.
 #[lagrangian(group = R3, velocity = v, l = (c * c) * (1.0 + v.norm_squared() / (c * c)).sqrt() + s.dot(&v))]
 #[derive(Clone)]
 struct Charged {
@@ -390,6 +410,20 @@ fn an_inertia_that_depends_on_what_is_advected() {
     let error = unit.velocity(&Vector3::new(1.0, 2.0, 3.0), &Vector3::z()).unwrap_err();
     assert!(matches!(error, StepError::Singular), "{error}");
     assert!(matches!(RightHandSide::new(unit), Err(SetupError::SingularKinetic { .. })));
+}
+
+/// A body and a sliding top are a sliding top with the inertias of both, whichever is first.
+#[test]
+fn a_sum_carries_the_momenta_of_both_terms() {
+    let (m, g, rho, up, A) = (1.1, 9.81, Vector3::new(0.5, -0.2, 1.0), Vector3::z(), Matrix3::identity() * 0.4);
+    let inertia = |moments: [f64; 3]| Inertia::from_principal_moments(moments.into()).unwrap();
+    let sliding = |moments| Sliding { J: inertia(moments), A, m, g, rho, up };
+    let turning = Turning { J: inertia([1.0, 1.5, 2.0]) };
+    let (velocity, w) = (Vector3::new(0.5, 2.0, 1.2), Vector3::new(0.1, 0.6, 0.7));
+    let (expected, _) = sliding([3.0, 4.0, 4.5]).euler_poincare(&velocity, &w).unwrap();
+    let (second, _) = (turning + sliding([2.0, 2.5, 2.5])).euler_poincare(&velocity, &((), w)).unwrap();
+    let (first, _) = (sliding([2.0, 2.5, 2.5]) + turning).euler_poincare(&velocity, &(w, ())).unwrap();
+    assert!((first - expected).norm() < 1e-13 && (second - expected).norm() < 1e-13, "{first} {second} {expected}");
 }
 
 /// Of a symmetric top the momenta about the vertical and about its axis, of an asymmetric one the first, of a free body

@@ -6,7 +6,7 @@ use checks::affine::Affine;
 use checks::random::Random;
 use checks::structure::{System, poisson, stages, symmetry};
 use liestep::effects::Gravity;
-use liestep::groups::{LieGroup, R3, SE3, SL2, SO3};
+use liestep::groups::{CovariantTensor, LieGroup, R3, SE3, SL2, SO3};
 use liestep::mechanics::{ContinuousLagrangian, Inertia};
 use liestep::methods::{CotangentGauss, ExactBody, SplittingScheme};
 use liestep::motion::Moment;
@@ -204,6 +204,36 @@ fn on_sl2() {
     let rule = |f: &_, w: &_, h| by_cayley("trapezoid(Cayley)", quartic((J, k, r)), (f, w, h));
     assert_terms("SL(2), trapezoid(Cayley)", (&OnSl2::new(), 0.05, 0.0), rule, 5);
     assert_discretised(&OnSl2::new(), "SL(2), trapezoid(Cayley)");
+}
+
+/// A bilinear form, which goes over to `Fᵀ B F`.
+#[lagrangian(
+    group = SL2,
+    velocity = xi,
+    advected(B = form),
+    l = 0.5 * xi.dot(&(M * xi)) - r.dot(&(B * r)),
+    discretise = trapezoid(Cayley),
+)]
+struct Carried {
+    M: Matrix3<f64>,
+    r: Vector2<f64>,
+    form: CovariantTensor<f64, 2>,
+}
+
+#[test]
+fn a_form_is_carried_forwards() {
+    let mut random = Random::new(11);
+    let (M, r): (Matrix3<f64>, Vector2<f64>) = (tensor(&mut random), column(&mut random));
+    let form = CovariantTensor(tensor(&mut random));
+    let (long_m, long_r) = (M.map(HyperDual64::from), r.map(HyperDual64::from));
+    let rule = |f: &Matrix2<HyperDual64>, form: &CovariantTensor<HyperDual64, 2>, h: HyperDual64| {
+        let inverse: Matrix2<HyperDual64> =
+            (f + Matrix2::identity()).try_inverse().expect("an increment that isn't large");
+        let xi = SL2::<HyperDual64>::vee(&((f - Matrix2::identity()) * inverse)) * (HyperDual64::from(2.0) / h);
+        let l = |form: &Matrix2<HyperDual64>| xi.dot(&(long_m * xi)) * 0.5 - long_r.dot(&(form * long_r));
+        (l(&form.0) + l(&(f.transpose() * form.0 * f))) * h * 0.5
+    };
+    assert_terms("SL(2), a form", (&Carried { M, r, form }, 0.05, 0.0), rule, 5);
 }
 
 #[test]

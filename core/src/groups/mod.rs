@@ -32,7 +32,6 @@ mod generators;
 mod heisenberg;
 mod matrix_group;
 mod product;
-mod quaternion;
 mod retraction;
 pub(crate) mod rotation_functions;
 mod se2;

@@ -9,8 +9,7 @@ use core::fmt;
 use nalgebra::{Matrix3, RealField, Rotation3, SimdBool as _, UnitQuaternion, Vector3};
 
 use super::LieGroup;
-use super::quaternion::quaternion;
-use super::rotation_functions::{rotation_exp, rotation_log};
+use super::rotation_functions::{quaternion, rotation_exp, rotation_log, skew_components};
 use crate::numbers::{Mask, Real, real};
 
 /// The rotation group SO(3): `F Fᵀ = I`, `det F = 1`.
@@ -230,7 +229,7 @@ impl<T: Real> LieGroup for SO3<T> {
     /// Of a matrix that isn't skew, the components of its skew part.
     #[inline]
     fn vee(m: &Matrix3<T>) -> Vector3<T> {
-        Vector3::new(m.m32 - m.m23, m.m13 - m.m31, m.m21 - m.m12) * real::<T>(0.5)
+        skew_components(m)
     }
 
     #[inline]

@@ -2,7 +2,7 @@
 
 use crate::error::StepError;
 use crate::groups::{Advected as _, LieGroup};
-use crate::mechanics::sum::Sum;
+use crate::mechanics::sum::{Sum, added};
 use crate::mechanics::term::Term;
 use crate::numbers::{Coordinates, NewtonEnd, Real, newton_halving, reported, sum};
 use nalgebra::SimdBool as _;
@@ -215,27 +215,15 @@ where
     const CONTINUOUS_DERIVATION: &'static str =
         "the sum of two Lagrangians: l, its momenta and diamonds, each added; see CONTINUOUS_DERIVATION of either\n";
 
-    fn l(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Self::Scalar {
-        self.first.l(velocity, &w.0) + self.second.l(velocity, &w.1)
-    }
-
-    fn momentum(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Covector<Self> {
-        self.first.momentum(velocity, &w.0) + self.second.momentum(velocity, &w.1)
-    }
-
-    fn velocity_hessian(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Hessian<Self> {
-        self.first.velocity_hessian(velocity, &w.0) + self.second.velocity_hessian(velocity, &w.1)
-    }
-
-    fn diamond_rate(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Covector<Self> {
-        self.first.diamond_rate(velocity, &w.0) + self.second.diamond_rate(velocity, &w.1)
+    added! {
+        fn l(velocity: &Velocity<Self>, w) -> Self::Scalar;
+        fn momentum(velocity: &Velocity<Self>, w) -> Covector<Self>;
+        fn velocity_hessian(velocity: &Velocity<Self>, w) -> Hessian<Self>;
+        fn diamond_rate(velocity: &Velocity<Self>, w) -> Covector<Self>;
+        fn momentum_advection(velocity: &Velocity<Self>, w) -> Covector<Self>;
     }
 
     fn diamond_matrix(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Matrix<Self> {
         sum(&self.first.diamond_matrix(velocity, &w.0), &self.second.diamond_matrix(velocity, &w.1))
-    }
-
-    fn momentum_advection(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Covector<Self> {
-        self.first.momentum_advection(velocity, &w.0) + self.second.momentum_advection(velocity, &w.1)
     }
 }

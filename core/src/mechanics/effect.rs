@@ -87,27 +87,18 @@ impl<T: Real, V: Coordinates<T>> NewtonUpdate<V, V::Square, T> {
     }
 }
 
-/// One of Newton's iterations, by the residual and the Jacobian of the effect unless neighbours are joined.
+/// One of Newton's iterations, by this residual and Jacobian unless neighbours are joined.
 #[hot]
-pub(crate) fn update_of<E: Effect + ?Sized>(
+pub(crate) fn update_by<E: Effect + ?Sized>(
+    system: impl FnOnce(&E::Constants, &E::StepTerms, &Vector<E>) -> (Vector<E>, Square<E>),
     constants: &E::Constants,
     terms: &E::StepTerms,
     half: &Vector<E>,
 ) -> NewtonUpdate<Vector<E>, Square<E>, Scalar<E>> {
-    if const { E::LINKS_NEIGHBOURS } {
-        return linked_update::<E>(constants, terms, half);
+    if const { !E::LINKS_NEIGHBOURS } {
+        let (residual, jacobian) = system(constants, terms, half);
+        return NewtonUpdate::of(&residual, &jacobian, pattern::<E>());
     }
-    let (residual, jacobian) = E::newton_system(constants, terms, half);
-    NewtonUpdate::of(&residual, &jacobian, pattern::<E>())
-}
-
-/// One of Newton's iterations where neighbours are joined.
-#[hot]
-pub(crate) fn linked_update<E: Effect + ?Sized>(
-    constants: &E::Constants,
-    terms: &E::StepTerms,
-    half: &Vector<E>,
-) -> NewtonUpdate<Vector<E>, Square<E>, Scalar<E>> {
     let mut links = Vector::<E>::no_links();
     let (mut update, mut jacobian) = E::newton_linked(constants, terms, half, &mut links);
     let det = Vector::<E>::solve_linked(&mut jacobian, &links, pattern::<E>(), &mut update);
@@ -307,7 +298,14 @@ pub trait Effect: Term {
         terms: &Self::StepTerms,
         half: &Vector<Self>,
     ) -> NewtonUpdate<Vector<Self>, Square<Self>, Self::Scalar> {
-        update_of::<Self>(constants, terms, half)
+        // The function itself would be called through `FnOnce`, without the machine's vector instructions.
+        update_by::<Self>(
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            |constants, terms, half| Self::newton_system(constants, terms, half),
+            constants,
+            terms,
+            half,
+        )
     }
 
     /// [`newton_system`](Self::newton_system), with the blocks that join neighbours in a row of bodies added to those that

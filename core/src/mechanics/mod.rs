@@ -28,8 +28,8 @@ pub use effect::{
     Vector,
 };
 pub(crate) use effect::{
-    check_inertia, check_velocity, constant_inertia, energy, estimated_velocity, factored_inertia, linked_update,
-    momentum_of_velocity, pattern, velocity_and_energy, velocity_of_momentum,
+    check_inertia, check_velocity, constant_inertia, energy, estimated_velocity, factored_inertia,
+    momentum_of_velocity, pattern, update_by, velocity_and_energy, velocity_of_momentum,
 };
 pub use force::Force;
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};

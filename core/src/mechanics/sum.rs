@@ -8,7 +8,7 @@ use crate::error::SetupError;
 use crate::groups::LieGroup;
 use crate::mechanics::description::SceneVisitor;
 use crate::mechanics::effect::{
-    Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, update_of,
+    Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, update_by,
 };
 use crate::mechanics::kinetic_part::KineticPart;
 use crate::mechanics::lagrangian::DiscreteLagrangian;
@@ -97,6 +97,16 @@ where
     }
 }
 
+/// Methods that add what the terms have, each with its own advected parameters.
+macro_rules! added {
+    ($(fn $name:ident($at:ident: $type:ty, w $(, $h:ident: $scalar:ty)?) -> $result:ty;)+) => {$(
+        fn $name(&self, $at: $type, w: &Self::Advected $(, $h: $scalar)?) -> $result {
+            self.first.$name($at, &w.0 $(, $h)?) + self.second.$name($at, &w.1 $(, $h)?)
+        }
+    )+};
+}
+pub(super) use added;
+
 /// What both terms have added, or the only one there is.
 macro_rules! of_those_with {
     ($part:ident: $both:expr, $first:expr, $second:expr $(,)?) => {
@@ -159,8 +169,8 @@ where
         self.second.describe(visitor);
     }
 
-    fn momentum_jacobian(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Square<Self> {
-        self.first.momentum_jacobian(f, &w.0, h) + self.second.momentum_jacobian(f, &w.1, h)
+    added! {
+        fn momentum_jacobian(f: &Matrix<Self>, w, h: Self::Scalar) -> Square<Self>;
     }
 
     #[hot]
@@ -238,7 +248,14 @@ where
         half: &Vector<Self>,
     ) -> NewtonUpdate<Vector<Self>, Square<Self>, Self::Scalar> {
         of_those_with!(
-            unknown: update_of::<Self>(constants, terms, half),
+            unknown: update_by::<Self>(
+                #[allow(clippy::redundant_closure)] // the function itself wouldn't be inlined
+                #[cfg_attr(not(debug_assertions), inline(always))]
+                |constants, terms, half| Self::newton_system(constants, terms, half),
+                constants,
+                terms,
+                half,
+            ),
             A::newton_update(&constants.0, &terms.0, half),
             B::newton_update(&constants.1, &terms.1, half),
         )
@@ -311,27 +328,12 @@ where
 {
     const SELF_ADJOINT: bool = A::SELF_ADJOINT && B::SELF_ADJOINT;
 
-    fn l_d(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar {
-        self.first.l_d(f, &w.0, h) + self.second.l_d(f, &w.1, h)
-    }
-
-    fn right_momentum(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self> {
-        self.first.right_momentum(f, &w.0, h) + self.second.right_momentum(f, &w.1, h)
-    }
-
-    fn left_momentum(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self> {
-        self.first.left_momentum(f, &w.0, h) + self.second.left_momentum(f, &w.1, h)
-    }
-
-    fn diamond(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self> {
-        self.first.diamond(f, &w.0, h) + self.second.diamond(f, &w.1, h)
-    }
-
-    fn legendre_minus(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self> {
-        self.first.legendre_minus(f, &w.0, h) + self.second.legendre_minus(f, &w.1, h)
-    }
-
-    fn discrete_energy(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar {
-        self.first.discrete_energy(f, &w.0, h) + self.second.discrete_energy(f, &w.1, h)
+    added! {
+        fn l_d(f: &Matrix<Self>, w, h: Self::Scalar) -> Self::Scalar;
+        fn right_momentum(f: &Matrix<Self>, w, h: Self::Scalar) -> Vector<Self>;
+        fn left_momentum(f: &Matrix<Self>, w, h: Self::Scalar) -> Vector<Self>;
+        fn diamond(f: &Matrix<Self>, w, h: Self::Scalar) -> Vector<Self>;
+        fn legendre_minus(f: &Matrix<Self>, w, h: Self::Scalar) -> Vector<Self>;
+        fn discrete_energy(f: &Matrix<Self>, w, h: Self::Scalar) -> Self::Scalar;
     }
 }

@@ -146,7 +146,7 @@ pub(crate) fn least<T: Real>(a: T, b: T) -> T {
     b.select(b.simd_lt(a) | b.simd_ne(b), a)
 }
 
-/// More than anything is.
+/// Infinity: what every least value is less than.
 #[hot]
 pub(crate) fn most<T: Real>() -> T {
     real(f64::INFINITY)

@@ -5,8 +5,9 @@ use core::ops::{Add, Mul, Neg, Sub};
 
 use nalgebra::{SMatrix, SVector, SimdBool as _};
 
-use crate::numbers::blocks::{self, Blocks, Pattern};
+use crate::numbers::blocks::{Blocks, Pattern};
 use crate::numbers::columns::FourVectors;
+use crate::numbers::elimination::{self, adjugate_2, adjugate_3, eliminate, substitute};
 use crate::numbers::entries::Entries;
 use crate::numbers::scalar::{Mask, Real, real};
 
@@ -276,12 +277,12 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
 
     #[hot]
     fn factorise_apart(matrix: &SMatrix<T, D, D>, pattern: Pattern) -> (SMatrix<T, D, D>, T) {
-        blocks::factorise(matrix, pattern)
+        elimination::factorise(matrix, pattern)
     }
 
     #[hot]
     fn solve_apart(factors: &SMatrix<T, D, D>, pattern: Pattern, b: &Self) -> Self {
-        blocks::solve_again(factors, pattern, b)
+        elimination::solve_again(factors, pattern, b)
     }
 
     #[hot]
@@ -295,7 +296,7 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     }
 
     fn least_trace(matrix: &SMatrix<T, D, D>, blocks: Blocks) -> T {
-        blocks::least_trace(matrix, blocks)
+        elimination::least_trace(matrix, blocks)
     }
 
     #[hot]
@@ -354,73 +355,4 @@ fn entries<T: Real, const D: usize>(entry: impl Fn(usize) -> T) -> SVector<T, D>
         entries[i] = entry(i);
     }
     entries
-}
-
-#[hot]
-pub(super) fn adjugate_2<T: Real, const D: usize>(m: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
-    let det = m[(0, 0)] * m[(1, 1)] - m[(0, 1)] * m[(1, 0)];
-    let mut adjugate = SMatrix::zeros();
-    adjugate[(0, 0)] = m[(1, 1)];
-    adjugate[(0, 1)] = -m[(0, 1)];
-    adjugate[(1, 0)] = -m[(1, 0)];
-    adjugate[(1, 1)] = m[(0, 0)];
-    (adjugate, det)
-}
-
-/// Its rows are cross products of columns.
-#[hot]
-pub(crate) fn adjugate_3<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
-    let m = |row: usize, column: usize| matrix[(row - 1, column - 1)];
-    let c11 = m(2, 2) * m(3, 3) - m(2, 3) * m(3, 2);
-    let c21 = m(2, 3) * m(3, 1) - m(2, 1) * m(3, 3);
-    let c31 = m(2, 1) * m(3, 2) - m(2, 2) * m(3, 1);
-    let c12 = m(1, 3) * m(3, 2) - m(1, 2) * m(3, 3);
-    let c22 = m(1, 1) * m(3, 3) - m(1, 3) * m(3, 1);
-    let c32 = m(1, 2) * m(3, 1) - m(1, 1) * m(3, 2);
-    let c13 = m(1, 2) * m(2, 3) - m(1, 3) * m(2, 2);
-    let c23 = m(1, 3) * m(2, 1) - m(1, 1) * m(2, 3);
-    let c33 = m(1, 1) * m(2, 2) - m(1, 2) * m(2, 1);
-    // By the first column: that is the shorter code.
-    let det = m(1, 1) * c11 + m(2, 1) * c12 + m(3, 1) * c13;
-    let rows = [[c11, c12, c13], [c21, c22, c23], [c31, c32, c33]];
-    (SMatrix::from_fn(|i, j| rows[i][j]), det)
-}
-
-/// Gaussian elimination in the given order: the upper triangle that is left, and below it the factors of the rows.
-///
-/// A zero pivot divides its own component, which then can't be finite; nothing has to be tested.
-#[inline]
-fn eliminate<T: Real, const D: usize>(mut a: SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
-    let mut det = T::one();
-    for k in 0..D {
-        det *= a[(k, k)];
-        for i in k + 1..D {
-            let factor = a[(i, k)] / a[(k, k)];
-            a[(i, k)] = factor;
-            for j in k + 1..D {
-                let product = factor * a[(k, j)];
-                a[(i, j)] -= product;
-            }
-        }
-    }
-    (a, det)
-}
-
-/// Through both triangles of [`eliminate`].
-#[inline]
-fn substitute<T: Real, const D: usize>(a: &SMatrix<T, D, D>, mut z: SVector<T, D>) -> SVector<T, D> {
-    for k in 0..D {
-        for i in k + 1..D {
-            let product = a[(i, k)] * z[k];
-            z[i] -= product;
-        }
-    }
-    for k in (0..D).rev() {
-        for j in k + 1..D {
-            let product = a[(k, j)] * z[j];
-            z[k] -= product;
-        }
-        z[k] /= a[(k, k)];
-    }
-    z
 }

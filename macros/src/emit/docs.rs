@@ -131,7 +131,7 @@ pub(super) fn equations_of_force(derived: &Derived, declared: &Declared) -> Vec<
 /// The documentation of a method that has the equations of these, with the operations of its code.
 pub(super) fn of(equations: &[Equation], methods: &[&str], graph: &Graph, outputs: &[NodeId]) -> String {
     let operations = count(graph, outputs, None);
-    let found = equations.iter().filter(|equation| methods.contains(&&*equation.method));
+    let found = equations.iter().filter(|equation| methods.contains(&equation.method));
     let lines: Vec<String> = found.map(Equation::line).collect();
     if lines.is_empty() {
         return format!("{operations}.");

@@ -8,7 +8,7 @@ use super::Header;
 use crate::declared::{Field, FieldKind};
 
 /// A struct with lanes.
-struct Laned<'a> {
+struct Struct<'a> {
     private: TokenStream,
     name: &'a Ident,
     /// Those of the type of one lane.
@@ -39,7 +39,7 @@ struct Part {
 #[derive(Clone, Copy)]
 enum Kind {
     Scalar,
-    Laned,
+    Lanes,
     /// All lanes have the same.
     Shared,
 }
@@ -51,7 +51,7 @@ pub(super) fn lanes(header: &Header, fields: Option<&[Field]>) -> TokenStream {
     let part = |field: &Field| Part {
         private: header.private_at(field.at.resolved_at(span)),
         member: field.name.clone().into(),
-        kind: if field.kind == FieldKind::Scalar { Kind::Scalar } else { Kind::Laned },
+        kind: if field.kind == FieldKind::Scalar { Kind::Scalar } else { Kind::Lanes },
     };
     // A `RealField` has one lane, and is its element. That it might have another would be a contradiction.
     let is_single = [header.generics.to_token_stream(), header.generics.where_clause.to_token_stream()]
@@ -59,7 +59,7 @@ pub(super) fn lanes(header: &Header, fields: Option<&[Field]>) -> TokenStream {
         .any(|bounds| names(bounds, &["RealField", "ComplexField"]));
     // A name that no type of the user's has.
     let several = if is_single { scalar.clone() } else { Ident::new("LiestepLanes", span) };
-    let laned = Laned {
+    let target = Struct {
         private: header.private.to_token_stream(),
         name: &header.name,
         generics: &header.generics,
@@ -67,7 +67,7 @@ pub(super) fn lanes(header: &Header, fields: Option<&[Field]>) -> TokenStream {
         conditions: Vec::new(),
         parts: fields.map(|fields| fields.iter().map(part).collect()),
     };
-    let (lanes, in_lanes) = (laned.lanes(), laned.in_lanes());
+    let (lanes, in_lanes) = (target.lanes(), target.in_lanes());
     quote_spanned!(span=> #lanes #in_lanes)
 }
 
@@ -91,11 +91,11 @@ pub(crate) fn derived(item: &syn::ItemStruct, is_in_lanes: bool) -> TokenStream 
             // Said of the parameter already.
             _ if matches!(one, Type::Path(path) if path.path.get_ident().is_some()) => None,
             Kind::Scalar => Some(parse_quote!(#several: #private::nalgebra::SimdValue<Element = #one>)),
-            Kind::Laned => Some(parse_quote!(#several: #private::Lanes<Lane = #one>)),
+            Kind::Lanes => Some(parse_quote!(#several: #private::Lanes<Lane = #one>)),
         }
     };
     let part = |(member, field)| Part { private: private.clone(), member, kind: kind(field) };
-    let laned = Laned {
+    let target = Struct {
         private: private.clone(),
         name: &item.ident,
         generics: &item.generics,
@@ -103,7 +103,7 @@ pub(crate) fn derived(item: &syn::ItemStruct, is_in_lanes: bool) -> TokenStream 
         parts: Some(item.fields.members().zip(&item.fields).map(part).collect()),
         parameters,
     };
-    if is_in_lanes { laned.in_lanes() } else { laned.lanes() }
+    if is_in_lanes { target.in_lanes() } else { target.lanes() }
 }
 
 fn is_shared(field: &syn::Field) -> bool {
@@ -115,11 +115,11 @@ fn kind(field: &syn::Field) -> Kind {
         _ if is_shared(field) => Kind::Shared,
         Type::Path(path) if path.path.is_ident("T") => Kind::Scalar,
         Type::Path(path) if path.path.segments.last().is_some_and(|last| last.ident == "Scalar") => Kind::Scalar,
-        _ => Kind::Laned,
+        _ => Kind::Lanes,
     }
 }
 
-impl Laned<'_> {
+impl Struct<'_> {
     fn lanes(&self) -> TokenStream {
         let (private, name, generics) = (&self.private, self.name, self.generics_of_both());
         let (before, _, conditions) = generics.split_for_impl();
@@ -210,19 +210,19 @@ impl Laned<'_> {
         let (span, name) = (Span::mixed_site(), self.name);
         let splat = parts.iter().map(|Part { private, member, kind }| match kind {
             Kind::Scalar => quote_spanned!(span=> #member: #private::nalgebra::SimdValue::splat(lane.#member)),
-            Kind::Laned => quote_spanned!(span=> #member: #private::Lanes::splat(&lane.#member)),
+            Kind::Lanes => quote_spanned!(span=> #member: #private::Lanes::splat(&lane.#member)),
             Kind::Shared => quote_spanned!(span=> #member: Clone::clone(&lane.#member)),
         });
         let lane = parts.iter().map(|Part { private, member, kind }| match kind {
             Kind::Scalar => quote_spanned!(span=> #member: #private::nalgebra::SimdValue::extract(&self.#member, k)),
-            Kind::Laned => quote_spanned!(span=> #member: #private::Lanes::lane(&self.#member, k)),
+            Kind::Lanes => quote_spanned!(span=> #member: #private::Lanes::lane(&self.#member, k)),
             Kind::Shared => quote_spanned!(span=> #member: Clone::clone(&self.#member)),
         });
         let set_lane = parts.iter().map(|Part { private, member, kind }| match kind {
             Kind::Scalar => quote_spanned! {span=>
                 { #private::nalgebra::SimdValue::replace(&mut self.#member, k, lane.#member); true }
             },
-            Kind::Laned => quote_spanned!(span=> #private::Lanes::set_lane(&mut self.#member, k, &lane.#member)),
+            Kind::Lanes => quote_spanned!(span=> #private::Lanes::set_lane(&mut self.#member, k, &lane.#member)),
             Kind::Shared => quote_spanned!(span=> self.#member == lane.#member),
         });
         [

@@ -45,9 +45,7 @@ fn term(mistake: TermMistake) -> String {
             power_of_step(order),
             by_a_power(2)
         ),
-        TermMistake::TooSingular(power) => {
-            format!("a term with `F` goes like h^{power}: the kinetic part of a discrete Lagrangian goes like 1/h")
-        }
+        TermMistake::TooSingular(power) => too_singular(power),
         TermMistake::Constant => {
             "this is the same for all `F`, so it does nothing: leave it out, or write `F - I` for `F`".to_owned()
         }
@@ -94,15 +92,17 @@ pub(super) fn refusal(refusal: Refusal, declaration: &Declaration, tree: &Rc<Tre
             );
             return;
         }
-        LimitError::TooSingular(power) => {
-            format!("a term with `F` goes like h^{power}: the kinetic part of a discrete Lagrangian goes like 1/h")
-        }
+        LimitError::TooSingular(power) => too_singular(power),
         LimitError::TooLarge => "the limit h → 0 has too many terms: the expression is too large".to_owned(),
         LimitError::NotALagrangian => {
             "as h → 0 this doesn't become h times a Lagrangian that is quadratic in the velocity".to_owned()
         }
     };
     errors.push_over(declaration.expression.as_ref().map(check::value), message);
+}
+
+fn too_singular(power: i32) -> String {
+    format!("a term with `F` goes like h^{power}: the kinetic part of a discrete Lagrangian goes like 1/h")
 }
 
 /// Reports virtual work that isn't the work of a force.
@@ -233,8 +233,11 @@ pub(super) fn not_self_adjoint(asked: Discretisation, errors: &mut Errors) {
 
 /// Reports a term of the continuous equations that the exact check doesn't confirm.
 pub(super) fn unconfirmed_term(term: &str, declaration: &Declaration, errors: &mut Errors) {
-    let message = format!("the derived {term} disagrees with what is declared: please report this declaration");
-    errors.push_over(declaration.expression.as_ref().map(check::value), message);
+    errors.push_over(declaration.expression.as_ref().map(check::value), disagreement(term));
+}
+
+fn disagreement(term: &str) -> String {
+    format!("the derived {term} disagrees with what is declared: please report this declaration")
 }
 
 /// Reports a constraint that leaves the body above free, or that below.
@@ -279,9 +282,7 @@ pub(super) fn follows(part: &Tree, rows: &[Row], errors: &mut Errors) {
 /// Reports what the self-check doesn't confirm.
 pub(super) fn unconfirmed(unconfirmed: Unconfirmed, declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) {
     let message = match unconfirmed {
-        Unconfirmed::Disagrees(term) => {
-            format!("the derived {term} disagrees with what is declared: please report this declaration")
-        }
+        Unconfirmed::Disagrees(term) => disagreement(term),
         Unconfirmed::NoValue => "this has no value at the points where it was tried: what is under a root or a \
                                  logarithm has to be positive for parameters of some size and sign"
             .to_owned(),

@@ -88,7 +88,7 @@ impl Effect for Row {
     }
 
     fn limit(&self, velocity: Option<&Components>, w: &Seen) -> Limit<Self> {
-        let potential = [w.0.0, w.1.0, w.2.0].iter().map(|q| self.kappa * (3.0 - q.trace())).sum();
+        let potential: f64 = [w.0.0, w.1.0, w.2.0].iter().map(|q| self.kappa * (3.0 - q.trace())).sum();
         Limit::quadratic(velocity, Square::from_diagonal(&stacked(&self.J)), Components::zeros(), potential)
     }
 

@@ -182,7 +182,7 @@ impl Effect for Chain {
     }
 
     fn limit(&self, velocity: Option<&Components>, w: &Seen) -> Limit<Self> {
-        let potential = (0..3).map(|a| self.g * seen(w).0[a].dot(&self.s[a])).sum();
+        let potential: f64 = (0..3).map(|a| self.g * seen(w).0[a].dot(&self.s[a])).sum();
         Limit::quadratic(velocity, self.slope(&Group::identity().matrix(), w), Components::zeros(), potential)
     }
 

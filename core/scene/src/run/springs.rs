@@ -111,7 +111,7 @@ impl<const N: usize> Effect for Springs<N> {
             0.5 * between.of.k * stretch * stretch
         };
         let zero = (BlockDiagonal([Matrix6::zeros(); N]), Bodies([Vector6::zeros(); N]));
-        Limit::quadratic(velocity, zero.0, zero.1, self.all().map(of_one).sum())
+        Limit::quadratic(velocity, zero.0, zero.1, self.all().map(of_one).sum::<f64>())
     }
 
     fn constants(&self, h: f64) -> (Self, f64) {

@@ -11,10 +11,11 @@
 //! one in place of the first term for `k = 0`.
 
 mod by_halving;
+mod quaternion;
 
 pub(crate) use by_halving::rotation_coefficients;
+pub(super) use quaternion::quaternion;
 
-use crate::groups::{LieGroup as _, SO3};
 use crate::numbers::{Real, real};
 use nalgebra::{Matrix3, SMatrix, SimdBool as _, Vector3};
 
@@ -88,7 +89,13 @@ pub fn log_ratio<T: Real, const K: usize>(n: T) -> T {
 #[inline]
 pub fn rotation_log<T: Real>(rotation: Matrix3<T>) -> Vector3<T> {
     let n = (real::<T>(3.0) - rotation.trace()) * real(0.25);
-    SO3::<T>::vee(&rotation) * log_ratio::<T, 0>(n)
+    skew_components(&rotation) * log_ratio::<T, 0>(n)
+}
+
+/// The components of the skew part of a matrix: `v` of `v̂`.
+#[inline]
+pub(super) fn skew_components<T: Real>(m: &Matrix3<T>) -> Vector3<T> {
+    Vector3::new(m.m32 - m.m23, m.m13 - m.m31, m.m21 - m.m12) * real::<T>(0.5)
 }
 
 /// `exp(v̂)`.

@@ -4,7 +4,7 @@ use alloc::string::String;
 use core::fmt::Debug;
 
 use super::places::{At, Places};
-use super::{Folded, Placed, term_at};
+use super::{Placed, TermConstants, term_at};
 use crate::groups::Retraction;
 use crate::mechanics::description::SceneVisitor;
 use crate::mechanics::effect::{Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, pattern};
@@ -38,7 +38,7 @@ where
     /// Residual and Jacobian at each place.
     #[hot]
     fn systems(
-        constants: &Folded<E, M>,
+        constants: &TermConstants<E, M>,
         terms: &P::Of<E::StepTerms>,
         half: &Vector<Self>,
     ) -> impl Fn(At) -> (Vector<E>, Square<E>) {
@@ -58,7 +58,7 @@ where
 {
     type Retraction = E::Retraction;
     type Kinetic = <E::Kinetic as KineticPart>::ByNewton;
-    type Constants = Folded<E, M>;
+    type Constants = TermConstants<E, M>;
     type StepTerms = P::Of<E::StepTerms>;
 
     const PARTS: Parts = E::PARTS;

@@ -168,7 +168,7 @@ const fn term_at<const M: usize>(place: usize) -> usize {
 }
 
 /// Constants of a term, and its spatial values.
-type Folded<E, const M: usize> = [(<E as Effect>::Constants, <E as Term>::Advected); M];
+type TermConstants<E, const M: usize> = [(<E as Effect>::Constants, <E as Term>::Advected); M];
 
 impl<P, E, const M: usize> Term for Placed<P, E, M>
 where
