@@ -6,7 +6,7 @@ use std::sync::Mutex;
 
 use clap::ArgMatches;
 use liestep::SO3;
-use liestep::motion::{AnyStepper, Moment};
+use liestep::motion::{AnyStepper, Integrator as _, Moment};
 use liestep_ensemble::{Failed, Failure, Local, Reduced, Reduction, Report, Store};
 use liestep_scene::{Column, Drawn, Mistake, SceneFile, Spread};
 

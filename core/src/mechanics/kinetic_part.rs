@@ -1,6 +1,7 @@
 //! Whether a scene has a kinetic part, as types: without one a momentum determines no velocity, and nothing moves.
 
 /// [`WithKinetic`] or [`WithoutKinetic`].
+#[doc(hidden)]
 pub trait KineticPart {
     /// Whether there is one.
     const IS_THERE: bool;

@@ -43,6 +43,7 @@ impl<G: LieGroup, A> Clone for AnyStepper<G, A> {
 pub type AnyState<G, A> = State<G, A, AnyKept>;
 
 /// What a method keeps, whichever it is.
+#[doc(hidden)]
 pub struct AnyKept(Box<dyn ErasedKept>);
 
 trait ErasedKept: Any + Debug {

@@ -58,6 +58,7 @@ impl Blocks {
 }
 
 /// Components side by side: those of a product of groups are those of its factors, one after the other.
+#[doc(hidden)]
 pub trait Join<T: Real, Other: Coordinates<T>>: Coordinates<T> {
     /// Both.
     type Joined: Coordinates<T> + 'static;

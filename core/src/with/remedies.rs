@@ -10,6 +10,7 @@ use crate::numbers::{Vectors, real};
 
 /// A plan that has a remedy for steps without a solution, by [`Stepper::or_substeps`] or [`Stepper::or_fallback`].
 #[derive(Clone, Copy, Debug)]
+#[doc(hidden)]
 pub struct OrElse<P, R> {
     plan: P,
     remedy: R,
@@ -22,6 +23,7 @@ pub struct Substeps {
 }
 
 /// Another step in the place of one that has no solution: [`Substeps`], or the step of another [`Stepper`].
+#[doc(hidden)]
 pub trait Instead<S: Effect>: Sized {
     /// The remedy for the same plan with another step.
     ///

@@ -26,6 +26,7 @@ type ChainState<const N: usize> = State<[SO3; N], (), ChainMemory<N>>;
 /// What a [`ChainStepper`] keeps from step to step: of each link half the coordinates of the last increments, by which
 /// the next are guessed.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct ChainMemory<const N: usize> {
     last: [[Vector3<f64>; 3]; N],
     /// How many there are.
