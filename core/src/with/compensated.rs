@@ -126,6 +126,7 @@ lanes_of_fields!(
     { lanes: [attitude, momentum, advected], scalars: [], shared: [] }
 );
 
+/// # Wrap: compensated sums
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// The same step with compensated sums: what rounding takes from attitude, momentum and advected parameters is kept
     /// and added to the next step's changes.

@@ -49,6 +49,7 @@ pub trait Instead<S: Effect>: Sized {
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>);
 }
 
+/// # Wrap: remedies
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// The same steps, and where there is none that step in 2, 4, 8, … equal parts, as few as will do and no more than
     /// these.

@@ -8,7 +8,7 @@ use crate::motion::plan::Plan;
 
 /// # Make
 ///
-/// A scene and a step; other methods are made by further functions below.
+/// A scene and a step; other methods below.
 impl<S: Effect> Stepper<S> {
     /// Checks the parameters and folds the constants for the step `h`, in seconds.
     ///
@@ -28,7 +28,7 @@ impl<S: Effect> Stepper<S> {
 }
 
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
-    /// A scene and a plan of one's own, folded for it; `examples/how-to-add-a-method.rs` has one.
+    /// A user's scene and plan, folded for each other; `examples/how-to-add-a-method.rs` has one.
     ///
     /// # Errors
     ///

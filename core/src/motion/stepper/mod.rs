@@ -26,7 +26,7 @@ pub(crate) type StateOf<S, P> = State<Group<S>, <S as Term>::Advected, <P as Pla
 /// ```text
 /// Stepper::new(scene, h)                          its own step, of the order of the declared Lagrangian
 /// Stepper::composed(scene, h, scheme)             symmetric compositions of it, to order 10
-/// Stepper::split(scene, h, flow, scheme)          kinetic flow and kicks by turns, to order 10
+/// Stepper::split(scene, h, flow, scheme)          kinetic flow and kicks in turn, to order 10
 /// Stepper::processed(scene, h, flow, scheme)      the same between the ends of a processor, for fewer flows a step
 /// Stepper::collocated::<PAIRS>(scene, h)          Gauss collocation, to any order
 /// Stepper::preprocessed(body, h, order)           a free body, to order 10 in one solve

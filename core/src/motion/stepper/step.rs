@@ -35,7 +35,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         }
     }
 
-    /// So many steps, of which the states between aren't asked for; returns all their iterations. On an error the state
+    /// Makes `steps` steps without showing the states between; returns the sum of their iterations. On an error the state
     /// is unchanged.
     ///
     /// A [splitting](Self::split) makes the last flow of a step and the first of the next as one: where its kinetic flow

@@ -9,7 +9,7 @@ use crate::numbers::{InLanes, Lanes};
 
 /// # Wrap
 ///
-/// Other steppers of the same scene: backwards, on momenta alone; and below with what is put around a step.
+/// The same scene backwards, or on momenta alone; and below what is put around a step.
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// The stepper of `−h`, which undoes the steps of this one exactly.
     ///

@@ -89,6 +89,7 @@ impl<T: Stored> Checkpoint<T> {
     }
 }
 
+/// # Wrap: checkpoints
 impl<S: Effect<Scalar: Stored>, P: Plan<S>> Stepper<S, P> {
     /// The state for a file, with all that its method keeps.
     #[must_use]

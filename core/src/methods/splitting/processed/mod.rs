@@ -100,6 +100,7 @@ where
     type Together = Processed<S::Together, K::Together>;
 }
 
+/// # Make: a processed splitting
 impl<S: Effect> Stepper<S> {
     /// A processed kinetic-potential splitting with this flow of the free body; see [`Processed`].
     ///
