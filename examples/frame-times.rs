@@ -13,7 +13,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use liestep::effects::{Gravity, RigidBody};
-use liestep::motion::{AnyStepper, Integrator as _};
+use liestep::motion::AnyStepper;
 use liestep::nalgebra::{UnitQuaternion, Vector3};
 use liestep::recording::Frames;
 use liestep::{NonstandardInertia, SO3, Stepper};
@@ -57,7 +57,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Integrator as _, STEP, toy};
+    use super::{STEP, toy};
+    use liestep::motion::Integrator as _;
     use liestep::nalgebra::{UnitQuaternion, Vector3};
 
     /// At three rates, one of them uneven, with late frames, slow motion and pauses.

@@ -1,5 +1,8 @@
 //! The rooms of the sources import each other in one direction; and what the guide and README name is there.
 
+#[path = "rooms/scale.rs"]
+mod scale;
+
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
@@ -16,7 +19,7 @@ const MAY_IMPORT: [(&str, &[&str]); 16] = [
     ("gradients", &["error", "numbers", "groups", "mechanics", "motion"]),
     ("methods", &["error", "numbers", "groups", "mechanics", "effects", "solving", "motion", "gradients"]),
     ("recording", &["error", "numbers", "groups", "mechanics", "motion", "methods"]),
-    ("with", &["error", "numbers", "groups", "mechanics", "motion", "recording"]),
+    ("with", &["error", "numbers", "groups", "mechanics", "motion", "methods", "recording"]),
     ("accuracy", &["error", "numbers", "groups", "mechanics", "effects", "solving", "motion", "methods"]),
     ("laws", &["numbers", "groups"]),
     ("conventions", &[]),

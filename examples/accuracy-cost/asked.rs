@@ -6,6 +6,7 @@ use std::time::Duration;
 use liestep::SO3;
 use liestep::accuracy::{Accuracy, AccurateStepper, Candidates, Effort};
 use liestep::methods::{ExactBody, SymmetricBody};
+use liestep::motion::Integrator as _;
 use nalgebra::Vector3;
 use workbench::table::{aligned, number};
 

@@ -98,7 +98,7 @@ where
 }
 
 impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
-    /// Makes so many steps, and returns the gradient of `Σ_n c_n(state_n)`, by the state before them and by all
+    /// Makes `steps` steps, and returns the gradient of `Σ_n c_n(state_n)`, by the state before them and by all
     /// parameters; on an error the state is unchanged.
     ///
     /// `cost` is asked for the derivatives of `c_n` at each state, from `n = steps` to `n = 0`; what a cost takes from the

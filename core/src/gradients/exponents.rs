@@ -12,7 +12,7 @@ use crate::numbers::{is_finite, real};
 use nalgebra::SimdComplexField as _;
 
 impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
-    /// The Lyapunov exponents over so many steps, 1/s, from the largest about to the least: one for each dimension of
+    /// The Lyapunov exponents over `steps` steps, 1/s, from the largest about to the least: one for each dimension of
     /// `(ζ, μ)`. On an error the state is unchanged.
     ///
     /// The columns are made orthonormal every `between` steps; an interval in which none grows a million times is short

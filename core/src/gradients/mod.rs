@@ -202,6 +202,7 @@ pub struct Parameter<T> {
     pub value: T,
 }
 
+/// # Wrap: derivatives
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// The derivatives of the steps, by the start and by every parameter.
     ///

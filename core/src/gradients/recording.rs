@@ -9,6 +9,7 @@ use crate::numbers::zero;
 
 /// One change that one of the library's own plans has made: a turn, a push, or both.
 #[derive(Clone, Copy, Debug)]
+#[doc(hidden)]
 pub struct Change<G: LieGroup, A> {
     /// The motion before.
     pub(crate) before: Motion<G, A>,

@@ -259,6 +259,7 @@ impl<V> Cotangent<V> {
 ///
 /// As a [`Stage`], it is made by the library's own plans and read by its derivatives.
 #[derive(Clone, Copy, Debug)]
+#[doc(hidden)]
 pub struct Flown<'a, G: LieGroup> {
     /// `∂ε/∂μ`
     pub(crate) turn_by_momentum: SquareOf<G>,
@@ -295,6 +296,7 @@ fn pulled<G: LieGroup>(matrix: &SquareOf<G>, a: &G::Vector) -> G::Vector {
 }
 
 /// What is done with the stages of a step, one after the other: by the derivatives of the library's own plans.
+#[doc(hidden)]
 pub trait Pass<G: LieGroup> {
     /// Takes notice of a stage.
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>);

@@ -28,6 +28,7 @@ pub type Heisenberg<T = f64> = MatrixGroup<HeisenbergGenerators, T, 3, 3>;
 
 /// Declares [`Heisenberg`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct HeisenbergGenerators;
 
 impl Generators<3, 3> for HeisenbergGenerators {

@@ -31,6 +31,7 @@ pub type SE2<T = f64> = MatrixGroup<SE2Generators, T, 3, 3>;
 
 /// Declares [`SE2`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct SE2Generators;
 
 impl Generators<3, 3> for SE2Generators {

@@ -34,6 +34,7 @@ pub type SE3<T = f64> = MatrixGroup<SE3Generators, T, 4, 6>;
 
 /// Declares [`SE3`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct SE3Generators;
 
 impl Generators<4, 6> for SE3Generators {

@@ -32,6 +32,7 @@ pub type SL2<T = f64> = MatrixGroup<SL2Generators, T, 2, 3>;
 
 /// Declares [`SL2`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct SL2Generators;
 
 impl Generators<2, 3> for SL2Generators {

@@ -28,6 +28,7 @@ pub type SO2<T = f64> = MatrixGroup<SO2Generators, T, 2, 1>;
 
 /// Declares [`SO2`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct SO2Generators;
 
 impl Generators<2, 1> for SO2Generators {

@@ -32,6 +32,7 @@ pub type SU2<T = f64> = MatrixGroup<SU2Generators, T, 4, 3>;
 
 /// Declares [`SU2`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct SU2Generators;
 
 impl Generators<4, 3> for SU2Generators {

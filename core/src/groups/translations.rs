@@ -37,6 +37,7 @@ pub type R3<T = f64> = MatrixGroup<TranslationGenerators, T, 4, 3>;
 
 /// Declares [`R1`], [`R2`] and [`R3`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct TranslationGenerators;
 
 macro_rules! translations {

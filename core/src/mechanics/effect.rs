@@ -68,6 +68,7 @@ pub struct Residual<V> {
 
 /// What one of Newton's iterations finds.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct NewtonUpdate<V, S, T> {
     /// What is to be subtracted from half the coordinates.
     pub update: V,
@@ -358,6 +359,7 @@ impl<E: Effect> Regular for E where <E::Kinetic as KineticPart>::ByNewton: Moves
     note = "add it to a body, as in `RigidBody {{ J_d }} + Gravity {{ m, g, rho, up }}`",
     note = "a kinetic part is a term quadratic in `F - I` and divided by `h`: it makes a momentum determine a velocity"
 )]
+#[doc(hidden)]
 pub trait Moves<E: ?Sized> {}
 
 impl<E: ?Sized> Moves<E> for WithKinetic {}

@@ -3,6 +3,7 @@
 use crate::numbers::{Coordinates, History, Parabola, Polynomial, Real};
 
 /// [`WithKinetic`], [`WithExpensiveKinetic`] or [`WithoutKinetic`].
+#[doc(hidden)]
 pub trait KineticPart {
     /// Whether there is one.
     const IS_THERE: bool;

@@ -61,6 +61,7 @@ impl<A, B> Sum<A, B> {
     label = "effects of different groups, or of different scalars",
     note = "all effects of a scene share one group and one scalar"
 )]
+#[doc(hidden)]
 pub trait SharedBy<G, A, B> {}
 
 impl<G: LieGroup, A, B> SharedBy<G, A, B> for G {}

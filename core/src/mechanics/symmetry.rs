@@ -34,6 +34,7 @@ where
     note = "with two or more, rotations about either change the other; with none, all of the spatial momentum is \
             conserved: `Stepper::spatial_momentum`"
 )]
+#[doc(hidden)]
 pub trait OneVector {
     /// The scalar of its components.
     type Scalar: Real;

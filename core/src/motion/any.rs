@@ -43,12 +43,11 @@ impl<G: LieGroup, A> Clone for AnyStepper<G, A> {
 pub type AnyState<G, A> = State<G, A, AnyKept>;
 
 /// What a method keeps, whichever it is.
+#[doc(hidden)]
 pub struct AnyKept(Box<dyn ErasedKept>);
 
 trait ErasedKept: Any + Debug {
     fn copied(&self) -> Box<dyn ErasedKept>;
-    fn as_any(&self) -> &dyn Any;
-    fn as_any_mut(&mut self) -> &mut dyn Any;
     fn equals(&self, other: &dyn ErasedKept) -> bool;
 }
 
@@ -57,16 +56,8 @@ impl<K: Any + Clone + Debug + PartialEq> ErasedKept for K {
         Box::new(self.clone())
     }
 
-    fn as_any(&self) -> &dyn Any {
-        self
-    }
-
-    fn as_any_mut(&mut self) -> &mut dyn Any {
-        self
-    }
-
     fn equals(&self, other: &dyn ErasedKept) -> bool {
-        other.as_any().downcast_ref::<K>() == Some(self)
+        (other as &dyn Any).downcast_ref::<K>() == Some(self)
     }
 }
 
@@ -95,9 +86,21 @@ impl Debug for AnyKept {
     }
 }
 
-/// How a wrapper is read: as what it wraps, of this motion.
-macro_rules! read_by {
-    ($self:ident, $motion:ident: $type:ty, $inner:expr, $seen:expr) => {
+/// How a wrapper steps, as its `change` lets what it wraps, and is read: as this, of the motion that it sees.
+macro_rules! wraps {
+    ($self:ident, $inner:expr, $motion:ident: $type:ty, $seen:expr) => {
+        fn step(&$self, state: &mut Self::State) -> Result<StepReport, StepError> {
+            $self.change(state, |own| $inner.step(own))
+        }
+
+        fn run(&$self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
+            $self.change(state, |own| $inner.run(own, steps))
+        }
+
+        fn attempt(&$self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
+            $self.change(state, |own| $inner.attempt(own, steps))
+        }
+
         fn step_size(&$self) -> G::Scalar {
             $inner.step_size()
         }
@@ -136,14 +139,12 @@ where
 {
     /// The state that the integrator needs: what another has kept is of no use, and it begins anew.
     fn own(&self, state: &AnyState<G, A>) -> I::State {
-        match state.kept.0.as_ref().as_any().downcast_ref::<K>() {
-            Some(kept) => State { motion: state.motion, kept: kept.clone() },
-            None => {
-                let mut own = self.0.adopt(&state.motion);
-                own.motion.steps = state.steps;
-                own
-            }
+        if let Some(kept) = (state.kept.0.as_ref() as &dyn Any).downcast_ref::<K>() {
+            return State { motion: state.motion, kept: kept.clone() };
         }
+        let mut own = self.0.adopt(&state.motion);
+        own.motion.steps = state.steps;
+        own
     }
 
     /// Makes steps. After an error, too, the state is that after the last of them.
@@ -152,7 +153,7 @@ where
         let made = steps(&mut own);
         if own.steps != state.steps {
             state.motion = own.motion;
-            match state.kept.0.as_mut().as_any_mut().downcast_mut::<K>() {
+            match (state.kept.0.as_mut() as &mut dyn Any).downcast_mut::<K>() {
                 Some(place) => *place = own.kept,
                 None => state.kept = AnyKept::of(own.kept),
             }
@@ -176,18 +177,6 @@ where
     type Advected = A;
     type State = AnyState<G, A>;
 
-    fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
-        self.change(state, |own| self.0.step(own))
-    }
-
-    fn run(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
-        self.change(state, |own| self.0.run(own, steps))
-    }
-
-    fn attempt(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
-        self.change(state, |own| self.0.attempt(own, steps))
-    }
-
     fn run_shown(&self, state: &mut Self::State, steps: u64, next: &mut NextSteps<'_, G, A>) -> Result<u64, StepError> {
         self.change(state, |own| self.0.run_shown(own, steps, next))
     }
@@ -200,9 +189,10 @@ where
         erased(self.0.adopt(motion))
     }
 
-    read_by!(self, motion: &Motion<G, A>, self.0, motion);
+    wraps!(self, self.0, motion: &Motion<G, A>, motion);
 }
 
+/// # Wrap: a stepper of any type
 impl<S: Effect + 'static, P: Plan<S, Kept: 'static> + 'static> Stepper<S, P> {
     /// This stepper without its scene and method in the type.
     #[must_use]
@@ -229,24 +219,17 @@ impl<G: LieGroup, A> AnyStepper<G, A> {
     pub fn cost(&self) -> Cost {
         self.cost
     }
+
+    #[allow(clippy::unused_self)] // by the form that `wraps` asks for
+    fn change<R>(&self, state: &mut AnyState<G, A>, steps: impl FnOnce(&mut AnyState<G, A>) -> R) -> R {
+        steps(state)
+    }
 }
 
 impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
     type Group = G;
     type Advected = A;
     type State = AnyState<G, A>;
-
-    fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
-        self.stepper.step(state)
-    }
-
-    fn run(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
-        self.stepper.run(state, steps)
-    }
-
-    fn attempt(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
-        self.stepper.attempt(state, steps)
-    }
 
     fn run_shown(&self, state: &mut Self::State, steps: u64, next: &mut NextSteps<'_, G, A>) -> Result<u64, StepError> {
         self.stepper.run_shown(state, steps, next)
@@ -260,7 +243,7 @@ impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
         self.stepper.adopt(motion)
     }
 
-    read_by!(self, motion: &Motion<G, A>, self.stepper, motion);
+    wraps!(self, self.stepper, motion: &Motion<G, A>, motion);
 }
 
 /// A stepper that hides what is advected: it is kept with what the method keeps.
@@ -278,6 +261,7 @@ impl<G: LieGroup, A: Advected<G>> Hiding<G, A> {
         self.0.adopt(&seeing(motion, A::from_entries(&mut || real(0.0))))
     }
 
+    #[allow(clippy::unused_self)] // by the form that `wraps` asks for
     fn change<R>(&self, state: &mut State<G, (), HiddenState<A>>, steps: impl FnOnce(&mut AnyState<G, A>) -> R) -> R {
         let kept = mem::replace(&mut state.kept.kept, AnyKept::of(()));
         let mut own = State { motion: seeing(&state.motion, state.kept.advected), kept };
@@ -301,18 +285,6 @@ impl<G: LieGroup, A: Advected<G>> Integrator for Hiding<G, A> {
     type Advected = ();
     type State = State<G, (), HiddenState<A>>;
 
-    fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
-        self.change(state, |own| self.0.step(own))
-    }
-
-    fn run(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
-        self.change(state, |own| self.0.run(own, steps))
-    }
-
-    fn attempt(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
-        self.change(state, |own| self.0.attempt(own, steps))
-    }
-
     fn run_shown(
         &self,
         state: &mut Self::State,
@@ -332,7 +304,7 @@ impl<G: LieGroup, A: Advected<G>> Integrator for Hiding<G, A> {
         hidden(self.seen(motion))
     }
 
-    read_by!(self, motion: &Motion<G, ()>, self.0, &self.seen(motion));
+    wraps!(self, self.0, motion: &Motion<G, ()>, &self.seen(motion));
 }
 
 impl<G: LieGroup, A: Advected<G> + 'static> AnyStepper<G, A> {

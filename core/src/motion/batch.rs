@@ -98,7 +98,7 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         self.stepper.set_lane(lane, stepper) && self.state.set_lane(lane, state) && self.stepper.is_in_step(&self.state)
     }
 
-    /// So many steps of every body that hasn't stopped, as by [`run_shown`](Integrator::run_shown) of its own.
+    /// Makes `steps` steps of every body that hasn't stopped, as by [`run_shown`](Integrator::run_shown) of its own.
     pub fn run(&mut self, steps: u64) {
         if self.running().next().is_none() {
             return;

@@ -35,7 +35,7 @@ pub trait Integrator {
     /// As [`Stepper::step`](crate::Stepper::step).
     fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError>;
 
-    /// So many steps; returns all their iterations. On an error the state is unchanged.
+    /// Makes `steps` steps; returns the sum of their iterations. On an error the state is unchanged.
     ///
     /// # Errors
     ///

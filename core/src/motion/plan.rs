@@ -92,7 +92,7 @@ pub trait Plan<S: Effect> {
         kept: &mut Self::Kept,
     ) -> Result<StepReport, StepError>;
 
-    /// A number of steps, of which the states between aren't asked for; returns all iterations. After an error motion and
+    /// Makes `steps` steps without showing the states between; returns the sum of their iterations. After an error motion and
     /// memory may be anywhere.
     ///
     /// # Errors
@@ -190,7 +190,7 @@ pub type NextSteps<'a, G, A> = dyn FnMut(&Motion<G, A>) -> u64 + 'a;
 
 pub(crate) type Next<'a, G, A> = Option<&'a mut NextSteps<'a, G, A>>;
 
-/// A number of steps, and what comes after them.
+/// A run: the number of steps, and what comes after them.
 struct Run<'a, 'n, S: Effect, P: Plan<S>>(
     &'a P,
     &'a S,
@@ -253,14 +253,14 @@ pub struct Cost {
     pub once: f64,
 }
 
-/// Besides what an effect counts, a solve and its reconstruction make so many operations on SO(3).
+/// Besides what an effect counts, the operations of a solve and its reconstruction on SO(3).
 const OF_A_STAGE: f64 = 150.0;
 /// Besides the Newton system, an iteration solves it and looks whether it has settled. These wait for each other, as
 /// the products of matrices don't.
 const OF_AN_ITERATION: f64 = 90.0;
 
 impl Cost {
-    /// Of a step with so many stages, each a solve or a flow with these operations.
+    /// Of a step with `stages` stages, each a solve or a flow with these operations.
     #[must_use]
     pub fn of_stages(operations: Operations, stages: u32) -> Self {
         Self {
@@ -278,7 +278,7 @@ impl Cost {
         self.step + f64::from(self.fewest) * self.iteration
     }
 
-    /// Of so many steps with so many iterations in all.
+    /// Of `steps` steps with `iterations` iterations in all.
     #[must_use]
     #[allow(clippy::cast_precision_loss)] // an estimate
     pub fn of_run(&self, steps: u64, iterations: u64) -> f64 {

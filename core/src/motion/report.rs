@@ -33,6 +33,6 @@ impl StepReport {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Remedy {
-    /// So many steps of an equal part of `h`.
+    /// This number of steps, each of an equal part of `h`.
     Substeps(u32),
 }

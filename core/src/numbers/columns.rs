@@ -9,6 +9,7 @@ use super::scalar::Real;
 
 /// Four vectors with `D` components: for each component the four numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct FourVectors<T, const D: usize>(pub(super) [[T; 4]; D]);
 
 impl<T: Real, const D: usize> FourVectors<T, D> {

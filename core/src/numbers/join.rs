@@ -6,6 +6,7 @@ use super::coordinates::Coordinates;
 use super::scalar::Real;
 
 /// Components side by side: those of a product of groups are those of its factors, one after the other.
+#[doc(hidden)]
 pub trait Join<T: Real, Other: Coordinates<T>>: Coordinates<T> {
     /// Both.
     type Joined: Coordinates<T> + 'static;

@@ -51,7 +51,7 @@ pub struct Frames<I: Integrator> {
     most_steps: u64,
 }
 
-/// After a pause no more than so many steps are made up for in one frame, unless another number is asked for.
+/// The most steps that are made up for in one frame after a pause, unless another number is asked for.
 const MOST_STEPS: u64 = 1000;
 
 impl<I: Integrator> Frames<I>
@@ -63,7 +63,7 @@ where
         Self { integrator, state, left: 0.0, most_steps: MOST_STEPS }
     }
 
-    /// Makes at most so many steps in one frame, where 1000 are the rule; time beyond that isn't made up for, as after a
+    /// Makes at most `steps` steps in one frame, by default 1000; time beyond that isn't made up for, as after a
     /// debugger has held the program.
     #[must_use]
     pub fn with_at_most(mut self, steps: u64) -> Self {

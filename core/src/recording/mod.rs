@@ -1,6 +1,6 @@
 //! Runs that are observed, recorded and stopped, and the events in them.
 //!
-//! A [`Run`] shows the motion to observers: every so many steps, at given times, at events. A [`Recorder`] is such an
+//! A [`Run`] shows the motion to observers: every `n` steps, at given times, at events. A [`Recorder`] is such an
 //! observer, whose rows go to a [`Sink`]. [`Frames`] shows it at the times of a renderer. All of it is written for an
 //! [`Integrator`](crate::motion::Integrator), and so goes with every method.
 

@@ -123,7 +123,7 @@ const ROWS_IN_A_BLOCK: usize = 1024;
 ///
 /// On a product of groups a name has the place of its factor behind it: `q_w_1`, …, `velocity_x_1`, …, `velocity_x_2`.
 /// Of the two quaternions of an attitude the one nearer to the row before is written. Other columns are
-/// [quantities](Self::quantity) of one's own. [`Run`](crate::recording::Run) has an example.
+/// the user's [quantities](Self::quantity). [`Run`](crate::recording::Run) has an example.
 ///
 /// Rows that are left when the recorder is dropped are written then, but an error is lost:
 /// [`finish`](Self::finish) reports it. After an error the sink gets nothing more, and no end.
@@ -134,7 +134,7 @@ pub struct Recorder<'a, I: Integrator, S: Sink> {
     attitude: Vec<ScalarIn<I>>,
     inertia: Option<FactoredInertia<I::Group>>,
     quantities: Vec<Quantity<'a, I>>,
-    /// Rows, of which so many numbers are there.
+    /// Rows, and how many of their numbers are there.
     block: Vec<f64>,
     filled: usize,
     rows_in_a_block: usize,
@@ -199,7 +199,7 @@ where
         }
     }
 
-    /// A column of one's own, with its unit; before the first row. Later it ends the table with the rows that there are, and
+    /// A further column, with its unit; before the first row. Later it ends the table with the rows that there are, and
     /// each further row is an error.
     #[must_use]
     pub fn quantity<T: Into<f64>>(
@@ -217,7 +217,7 @@ where
         self
     }
 
-    /// Hands on so many rows at once, where 1024 are the rule: with one, each row is written when it is recorded.
+    /// Hands on `rows` rows at once, by default 1024: with one, each row is written when it is recorded.
     #[must_use]
     pub fn in_blocks_of(mut self, rows: usize) -> Self {
         self.rows_in_a_block = rows.max(1);

@@ -1,4 +1,4 @@
-//! A run that is observed: by functions that are called every so many steps or at given times, and that may stop it.
+//! A run that is observed: by functions that are called every `n` steps or at given times, and that may stop it.
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -81,7 +81,7 @@ struct Observers<'a, I: Integrator> {
     seldom: u64,
 }
 
-/// An observer that is shown every so many steps.
+/// An observer that is shown every `every` steps.
 struct RegularObserver<'a, I: Integrator> {
     every: u64,
     /// The next of its steps.
@@ -97,6 +97,7 @@ struct TimedObserver<'a, I: Integrator> {
     observer: Observer<'a, I>,
 }
 
+/// # Wrap: a run that is observed
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// A run from this state that is observed, recorded or stopped; see [`Run`].
     pub fn observed<'a>(&'a self, state: &'a mut StateOf<S, P>) -> Run<'a, Self> {
@@ -141,7 +142,7 @@ impl<'a, I: Integrator> Run<'a, I> {
         }
     }
 
-    /// Shows the motion after every so many steps, counted from its start, and at step zero. A run that goes on doesn't show
+    /// Shows the motion after every `steps` steps, counted from its start, and at step zero. A run that goes on doesn't show
     /// its first state again: it was the last of the run before.
     ///
     /// Zero is never.
@@ -166,7 +167,7 @@ impl<'a, I: Integrator> Run<'a, I> {
         self
     }
 
-    /// Makes so many steps, unless an observer stops the run.
+    /// Makes `steps` steps, unless an observer stops the run.
     ///
     /// # Errors
     ///

@@ -88,6 +88,7 @@ impl<P: Compensable> Compensable for Substepped<P> {}
 
 impl<P: Steerable> Steerable for Compensated<P> {}
 
+/// # Wrap: compensated sums
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// The same step with compensated sums: what rounding takes from attitude, momentum and advected parameters is kept
     /// and added to the next step's changes.

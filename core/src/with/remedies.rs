@@ -10,11 +10,13 @@ use crate::numbers::{Vectors, real};
 
 /// A plan that takes a step without a solution in equal parts, by [`Stepper::or_substeps`].
 #[derive(Clone, Copy, Debug)]
+#[doc(hidden)]
 pub struct Substepped<P> {
     plan: P,
     at_most: u32,
 }
 
+/// # Wrap: remedies
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// The same steps, and where there is none that step in 2, 4, 8, … equal parts, as few as will do and no more than
     /// these.

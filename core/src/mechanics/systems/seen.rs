@@ -8,10 +8,12 @@ use crate::numbers::{Entries, Real, filled, zero};
 /// What each two neighbours see, as a group `P` of two bodies moves it. Behind it there is one more, which never changes:
 /// stable Rust has no arrays of `N − 1`.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
+#[doc(hidden)]
 pub struct Neighbours<P, W, const N: usize>(pub [W; N], pub(super) PhantomData<P>);
 
 /// What the bodies `A` and `B` see, as a group `P` of two bodies moves it.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
+#[doc(hidden)]
 pub struct SeenBetween<P, W, const A: usize, const B: usize>(pub W, pub(super) PhantomData<P>);
 
 /// The configurations of all bodies in space, of which what each pair sees is formed.

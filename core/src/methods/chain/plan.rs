@@ -46,6 +46,7 @@ pub struct Linked<S: Effect, const N: usize> {
     pub(super) links: [Folded; N],
 }
 
+/// # Make: links on ball joints
 impl<S: Effect> Stepper<S> {
     /// Links on ball joints, the first on a fixed pivot; the scene is what acts on them: potentials of where each is, put
     /// at their [places](crate::mechanics::Each). [`Chain::stepper`](crate::methods::Chain::stepper) has those of gravity, and a listing.

@@ -104,6 +104,7 @@ struct Stage<T> {
     earlier: T,
 }
 
+/// # Make: a composition
 impl<S: Effect> Stepper<S> {
     /// A symmetric composition of the scene's own step; see [`Composed`].
     ///

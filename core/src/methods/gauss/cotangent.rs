@@ -73,6 +73,7 @@ pub struct CotangentGauss<L: Term, const PAIRS: usize, const N: usize> {
 
 /// What rounding has left behind of the sums of attitude and momentum, which the next step adds.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct CotangentCarry<const N: usize, const D: usize> {
     attitude: SMatrix<f64, N, N>,
     momentum: SVector<f64, D>,

@@ -91,6 +91,7 @@ pub struct Gauss<S: Effect, const PAIRS: usize> {
     weights: [[f64; PAIRS]; 2],
 }
 
+/// # Make: collocation
 impl<S: Effect> Stepper<S> {
     /// Gauss collocation with `2 PAIRS` stages, of order `4 PAIRS`; see [`Gauss`].
     ///

@@ -33,6 +33,7 @@ pub struct Jointed<S: Effect, C, const K: usize, const N: usize, const T: usize,
     pub(super) lengths: [f64; N],
 }
 
+/// # Make: bodies in joints
 impl<S: Effect> Stepper<S> {
     /// Bodies that are held together by joints; the scene is that of the bodies without them.
     ///

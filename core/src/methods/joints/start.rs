@@ -129,6 +129,7 @@ fn check_redundance<C: Constraint<K>, const K: usize, const N: usize, const T: u
     }
 }
 
+/// # Start: bodies in joints
 impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Stepper<S, Jointed<S, C, K, N, T, L>>
 where
     S: Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,

@@ -26,6 +26,7 @@ use crate::numbers::{Real, real};
     label = "neither declared with `gradients` nor exact",
     note = "take `SymmetricBody`, `ExactBody`, or a declared body, as `RigidBody` or `PrincipalBody` of `liestep::effects`"
 )]
+#[doc(hidden)]
 pub trait DifferentiableFlow<T: Real>: KineticFlow<T> {
     /// How many scalars its parameters have.
     const PARAMETERS: usize;

@@ -166,6 +166,7 @@ struct Kick<T> {
     mobility: Option<Matrix3<T>>,
 }
 
+/// # Make: a splitting
 impl<S: Effect> Stepper<S> {
     /// A kinetic-potential splitting with this flow of the free body and the coefficients of a scheme; see [`Split`].
     ///

@@ -8,7 +8,7 @@ use core::fmt;
 use serde::de::{Error as _, Unexpected};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::Stored;
+use super::stored::Stored;
 use crate::mechanics::{Effect, SceneVisitor};
 use crate::motion::Plan;
 

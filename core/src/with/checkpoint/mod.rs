@@ -6,6 +6,7 @@
 
 mod error;
 mod fingerprint;
+mod stored;
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -14,6 +15,7 @@ use nalgebra::{SimdComplexField as _, SimdRealField as _};
 use serde::{Deserialize, Serialize};
 
 pub use error::CheckpointError;
+pub use stored::Stored;
 
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar};
@@ -23,24 +25,6 @@ use fingerprint::{Fingerprint, Parameters};
 
 /// What the numbers below mean; another layout has another number.
 const FORMAT: u32 = 3;
-
-/// A scalar that is stored by its bits: `f64` or `f32`.
-pub trait Stored: Real + PartialOrd + Serialize + for<'de> Deserialize<'de> {
-    /// The bits, of `f32` in the lower half.
-    fn bits(self) -> u64;
-}
-
-impl Stored for f64 {
-    fn bits(self) -> u64 {
-        self.to_bits()
-    }
-}
-
-impl Stored for f32 {
-    fn bits(self) -> u64 {
-        u64::from(self.to_bits())
-    }
-}
 
 /// A state in a file, by [`Stepper::checkpoint`]; [`Stepper::resume`] makes a state of it.
 ///
@@ -105,6 +89,7 @@ impl<T: Stored> Checkpoint<T> {
     }
 }
 
+/// # Wrap: checkpoints
 impl<S: Effect<Scalar: Stored>, P: Plan<S>> Stepper<S, P> {
     /// The state for a file, with all that its method keeps.
     #[must_use]

@@ -8,6 +8,7 @@ use nalgebra::SimdBool as _;
 /// Where a run is inside of its processor, by [`Processed`](super::Processed), and by which step; or that it isn't there:
 /// at the start, after a push and after another method's steps.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
+#[doc(hidden)]
 pub struct Inside<T: Real, A>(pub(super) Option<Stepped<T, A>>);
 
 /// Without the number of steps, which is that of the motion that is read.

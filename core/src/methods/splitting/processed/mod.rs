@@ -82,6 +82,7 @@ pub struct Processed<S: Effect, K: KineticFlow<Scalar<S>>> {
     leave: Stages<K::Drift, Scalar<S>>,
 }
 
+/// # Make: a processed splitting
 impl<S: Effect> Stepper<S> {
     /// A processed kinetic-potential splitting with this flow of the free body; see [`Processed`].
     ///

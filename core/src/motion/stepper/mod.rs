@@ -1,0 +1,77 @@
+//! The stepper: a scene, a method, and all that is put around a step.
+
+// In the order of its page.
+mod make;
+
+mod start;
+
+mod step;
+
+mod read;
+
+mod wrap;
+
+pub(crate) use start::check_attitude;
+
+use crate::mechanics::{Effect, Group, Term};
+use crate::motion::declared::Declared;
+use crate::motion::plan::Plan;
+use crate::motion::state::State;
+
+/// The state of a scene `S` that is stepped by the plan `P`, its own step unless another is named.
+pub type StateOf<S, P = Declared<S>> = State<Group<S>, <S as Term>::Advected, <P as Plan<S>>::Kept>;
+
+/// An integrator with a fixed step: a scene, and a method whose constants are folded for it.
+///
+/// ```text
+/// Stepper::new(scene, h)                          its own step, of the order of the declared Lagrangian
+/// Stepper::composed(scene, h, scheme)             symmetric compositions of it, to order 10
+/// Stepper::split(scene, h, flow, scheme)          kinetic flow and kicks in turn, to order 10
+/// Stepper::processed(scene, h, flow, scheme)      the same between the ends of a processor, for fewer flows a step
+/// Stepper::collocated::<PAIRS>(scene, h)          Gauss collocation, to any order
+/// Stepper::for_accuracy(scene, accuracy, …)       the cheapest of its own step and its compositions
+/// ```
+///
+/// Whatever the method `P`, a motion is [started](Self::start), [stepped](Self::step) and read in the same way, and
+/// [compensated](Self::compensated) sums, [substeps](Self::or_substeps), control forces and checkpoints go with it.
+///
+/// # Contract
+///
+/// - A step satisfies its momentum equation to rounding on the branch of the identity, or returns an error and leaves
+///   the state as it was.
+/// - With a scalar of several [lanes](crate::numbers::Real#lanes) all of them move or none does, each as it would alone.
+/// - The same state gives the same next state, bit for bit. In Cayley coordinates no library function is called, so
+///   that holds from machine to machine.
+/// - An inertia that depends on what is advected or given is checked where a motion starts, and nowhere after that: a
+///   scene in which it can become degenerate has to look itself.
+/// - Nothing is allocated, and no loop is unbounded.
+///
+/// # Examples
+///
+/// ```
+/// use liestep::{SO3, Stepper, lagrangian};
+/// use liestep::mechanics::DiagonalNonstandardInertia;
+/// use nalgebra::Vector3;
+///
+/// /// A free rigid body.
+/// #[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
+/// struct Body {
+///     J_d: DiagonalNonstandardInertia,
+/// }
+///
+/// let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5))?;
+/// let stepper = Stepper::new(Body { J_d }, 0.01)?;
+/// let mut state = stepper.start(SO3::identity(), Vector3::new(0.01, 2.0, 0.02))?;
+/// let before = state.spatial_momentum();
+/// for _ in 0..1000 {
+///     stepper.step(&mut state)?;
+/// }
+/// assert!((state.spatial_momentum() - before).norm() < 1e-12);
+/// # use liestep::groups::LieGroup;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, Lanes, InLanes)]
+pub struct Stepper<S: Effect, P = Declared<S>> {
+    pub(crate) scene: S,
+    pub(crate) plan: P,
+}

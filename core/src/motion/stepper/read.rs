@@ -1,0 +1,106 @@
+//! What is read of a motion and of its stepper.
+
+use alloc::string::String;
+
+use super::{StateOf, Stepper};
+use crate::groups::SO3;
+use crate::mechanics::{AxiallyInvariant, Effect, Group, LeftInvariant, Scalar, Vector, energy};
+use crate::motion::plan::Plan;
+use crate::motion::summation::Motion;
+use crate::numbers::{Coordinates as _, real};
+use crate::solving::Solvability;
+
+/// # Read
+///
+/// What a motion is like, and what the stepper is made of.
+impl<S: Effect, P: Plan<S>> Stepper<S, P> {
+    /// The scene.
+    #[must_use]
+    pub fn scene(&self) -> &S {
+        &self.scene
+    }
+
+    /// What was declared of each term of the scene, and everything derived from it, as text.
+    #[must_use]
+    pub fn derivation(&self) -> String {
+        S::derivation()
+    }
+
+    /// The method, folded.
+    #[must_use]
+    pub fn plan(&self) -> &P {
+        &self.plan
+    }
+
+    /// The step `h`, s.
+    #[must_use]
+    pub fn step_size(&self) -> Scalar<S> {
+        self.plan.step_size()
+    }
+
+    /// The time since the start, `n h`, s; never accumulated.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss)] // 2⁵³ steps take longer than a career
+    pub fn time(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S> {
+        self.step_size() * real(motion.steps as f64)
+    }
+
+    /// The body velocity, on SO(3) in rad/s.
+    ///
+    /// Where the continuous limit isn't quadratic in the velocity, a discrete momentum may be one that no velocity has,
+    /// though the next step has a solution: the velocity is NaN then, of several lanes in those alone.
+    /// Where the [scene](Self::scene) is a [`ContinuousLagrangian`](crate::mechanics::ContinuousLagrangian), its `velocity`
+    /// says why, as an error. A [control force](Self::step_forced) and an event that are made of NaN are refused.
+    #[must_use]
+    pub fn velocity(&self, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
+        self.plan.velocity(&self.scene, motion)
+    }
+
+    /// The energy of the continuous system, `½ Ω·JΩ + V(w)` where it is quadratic in the velocity, J; where there is no
+    /// [`velocity`](Self::velocity) it is NaN, too.
+    ///
+    /// Where the scene is a [`DiscreteLagrangian`](crate::mechanics::DiscreteLagrangian) it oscillates about its initial value, at the order of the scheme, and
+    /// doesn't drift.
+    #[must_use]
+    pub fn energy(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S> {
+        if const { P::HAS_OWN_INERTIA } {
+            return self.velocity(motion).dot(&motion.momentum) * real(0.5) + self.scene.potential(&motion.advected);
+        }
+        energy(&self.scene, &motion.momentum, &motion.advected)
+    }
+
+    /// The largest step from this state up to the stepper's own, s, to six digits: that fraction of it whose equations
+    /// all have solutions. It is found by bisection, which takes some dozens of steps.
+    #[must_use]
+    pub fn max_step(&self, state: &StateOf<S, P>) -> Scalar<S> {
+        self.plan.max_step(&self.scene, &state.motion, &state.kept)
+    }
+
+    /// The spatial momentum, `R Π` on SO(3), in a scene that conserves it: nothing is advected, though values may be given.
+    #[must_use]
+    pub fn spatial_momentum(&self, motion: &Motion<Group<S>, S::Advected>) -> Vector<S>
+    where
+        S: LeftInvariant,
+    {
+        motion.spatial_momentum()
+    }
+
+    /// The momentum along the advected vector, `Π·w` (`e₃·R Π` for the vertical), in a scene that conserves it: one
+    /// vector is advected, (3.20).
+    #[must_use]
+    pub fn momentum_along_advected(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S>
+    where
+        S: AxiallyInvariant<Group = SO3<Scalar<S>>>,
+    {
+        motion.momentum.dot(&S::axis(&motion.advected))
+    }
+}
+
+impl<S: Effect> Stepper<S> {
+    /// What is proved about the next step: whether it surely has a solution or surely has none, where bounds are known;
+    /// see [`DiscreteLiePoisson::solvability`](crate::motion::DiscreteLiePoisson::solvability).
+    #[must_use]
+    pub fn solvability(&self, motion: &Motion<Group<S>, S::Advected>) -> Solvability {
+        self.plan.solvability(&self.scene, &motion.momentum, &motion.advected)
+    }
+}

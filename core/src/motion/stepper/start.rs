@@ -1,0 +1,136 @@
+//! How a motion is started.
+
+use super::{StateOf, Stepper};
+use crate::error::SetupError;
+use crate::groups::{Advected, LieGroup};
+use crate::mechanics::{Effect, Group, Scalar, Vector, check_inertia, check_velocity, velocity_of_momentum};
+use crate::motion::kept::Kept;
+use crate::motion::plan::Plan;
+use crate::motion::state::State;
+use crate::motion::summation::Motion;
+use crate::numbers::{Coordinates as _, Real, is_finite, real, reported};
+use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
+
+/// # Start
+///
+/// From an attitude and a velocity or a momentum, or from a motion of another stepper.
+impl<S: Effect, P: Plan<S>> Stepper<S, P> {
+    /// A motion from an attitude (body to space) and a body velocity, on SO(3) in rad/s.
+    ///
+    /// The momentum is that of the continuous Lagrangian, `μ_0 = J Ω_0` for a rigid body: the half kick of the
+    /// potential is inside (2.7).
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError`] where the attitude isn't in the group, something isn't finite, or an inertia that depends on what
+    /// is advected or given is degenerate there; [`SetupError::AmbiguousVelocity`] where the continuous limit isn't
+    /// quadratic in the velocity, and the momentum doesn't lead back to this one.
+    pub fn start(&self, attitude: impl Into<Group<S>>, velocity: Vector<S>) -> Result<StateOf<S, P>, SetupError> {
+        if !velocity.is_finite() {
+            return Err(SetupError::NonFinite { what: "velocity" });
+        }
+        let attitude = attitude.into();
+        check_attitude(&attitude)?;
+        let w = self.scene.advected().seen_from(&attitude);
+        let momentum = self.plan.momentum(&self.scene, &attitude, &velocity, &w);
+        if !S::IS_QUADRATIC {
+            let found = velocity_of_momentum(&self.scene, &momentum, &w);
+            check_velocity::<Scalar<S>, _>(&velocity, &found, &momentum, &self.scene.inertia(&w))?;
+        }
+        self.start_with_momentum(attitude, momentum)
+    }
+
+    /// A motion from an attitude (body to space) and a body momentum, on SO(3) in kg m²/s.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError`] where the attitude isn't in the group, something isn't finite, or an inertia that depends on what
+    /// is advected or given is degenerate there; [`SetupError::NoVelocity`] where no velocity has this momentum.
+    pub fn start_with_momentum(
+        &self,
+        attitude: impl Into<Group<S>>,
+        momentum: Vector<S>,
+    ) -> Result<StateOf<S, P>, SetupError> {
+        let attitude = attitude.into();
+        check_attitude(&attitude)?;
+        if !momentum.is_finite() {
+            return Err(SetupError::NonFinite { what: "momentum" });
+        }
+        if !S::INERTIA_IS_CONSTANT {
+            let w = self.scene.advected().seen_from(&attitude);
+            check_inertia::<Group<S>>(&self.scene.inertia(&w))?;
+        }
+        if !S::IS_QUADRATIC {
+            let w = self.scene.advected().seen_from(&attitude);
+            if !velocity_of_momentum(&self.scene, &momentum, &w).is_finite() {
+                return Err(SetupError::NoVelocity);
+            }
+        }
+        let state = self.begin(attitude, momentum);
+        check_range(&state)?;
+        self.plan.admits(&self.scene, &state.motion)?;
+        Ok(state)
+    }
+
+    /// The state of another scene or of another method on the same group, to go on in this one: its attitude and momentum
+    /// are kept to the bit, and time counts from here.
+    ///
+    /// What both scenes conserve goes on being conserved, as the discrete momentum belongs to a time, not to a step. As
+    /// there is no error to return, an inertia of this scene that depends on what is advected isn't checked;
+    /// [`start_with_momentum`](Self::start_with_momentum) does that.
+    ///
+    /// # Examples
+    ///
+    /// A top is let go: it falls freely from here on.
+    ///
+    /// ```
+    /// use liestep::effects::{Gravity, RigidBody};
+    /// use liestep::{NonstandardInertia, SO3, Stepper};
+    /// use liestep::groups::LieGroup as _;
+    /// use nalgebra::Vector3;
+    ///
+    /// let body = RigidBody { J_d: NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0))? };
+    /// let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::x() };
+    /// let (held, free) = (Stepper::new(body + gravity, 0.01)?, Stepper::new(body, 0.01)?);
+    /// let mut state = held.start(SO3::identity(), Vector3::new(0.0, 0.0, 10.0))?;
+    /// held.step(&mut state)?;
+    /// let mut released = free.adopt(&state);
+    /// assert_eq!(released.momentum(), state.momentum());
+    /// free.step(&mut released)?;
+    /// assert!((free.spatial_momentum(&released) - state.spatial_momentum()).norm() < 1e-13);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn adopt<A>(&self, motion: &Motion<Group<S>, A>) -> StateOf<S, P> {
+        self.begin(motion.attitude, motion.momentum)
+    }
+
+    /// The motion that begins with this attitude and momentum.
+    fn begin(&self, attitude: Group<S>, momentum: Vector<S>) -> StateOf<S, P> {
+        let advected = self.scene.advected().seen_from(&attitude);
+        let motion = Motion { attitude, momentum, advected, steps: 0 };
+        State { motion, kept: self.plan.keep(&self.scene, &motion) }
+    }
+}
+
+/// Whether a motion may start here.
+pub(crate) fn check_attitude<G: LieGroup>(attitude: &G) -> Result<(), SetupError> {
+    // What a unit quaternion or a matrix printed to a dozen digits leaves; NaN fails it too.
+    let allowed = G::Scalar::simd_default_epsilon() * real(1e4);
+    let defect = attitude.defect();
+    if defect.simd_le(allowed).all() { Ok(()) } else { Err(SetupError::NotInGroup { defect: reported(defect) }) }
+}
+
+/// Whether what was made of finite numbers is finite, too: a turned vector may leave the scalar's range, and so may a
+/// velocity.
+fn check_range<T: Real, G: LieGroup<Scalar = T>, A: Advected<G>, K: Kept<T>>(
+    state: &State<G, A, K>,
+) -> Result<(), SetupError> {
+    let mut is_kept = true;
+    state.kept.each(&mut |number| is_kept &= is_finite(number));
+    match (state.motion.advected.is_finite(), is_kept) {
+        (false, _) => Err(SetupError::NonFinite { what: "view of what is advected" }),
+        (true, false) => Err(SetupError::NonFinite { what: "velocity of the momentum" }),
+        (true, true) => Ok(()),
+    }
+}
