@@ -105,7 +105,7 @@ fn discretisations_converge_to_the_continuous_motion() {
     where
         L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>
             + ContinuousLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>
-            + Effect<Kinetic = liestep::mechanics::WithKinetic>,
+            + liestep::mechanics::Regular,
         L::Retraction: liestep::groups::Retraction<SO3>,
     {
         let continuous = RightHandSide::new(make()).unwrap();

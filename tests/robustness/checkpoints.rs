@@ -5,7 +5,7 @@ use checks::random::Random;
 use declarations::{FreeBody, HeavyTop, Motion, SixthOrderTop, Top as _};
 use liestep::mechanics::{Effect, Scalar};
 use liestep::with::{Checkpoint, CheckpointError, Stored};
-use liestep::{SO3, Stepper};
+use liestep::{SO3, StateOf, Stepper};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
@@ -18,7 +18,7 @@ fn round_trips<T: Stored>(checkpoint: &Checkpoint<T>) -> [Checkpoint<T>; 3] {
 }
 
 /// Saved after each of some random numbers of steps, the motion goes on with the same bits.
-fn assert_resumes<L>(stepper: &Stepper<L>, start: liestep::State<SO3<Scalar<L>>, L::Advected>, seed: u64)
+fn assert_resumes<L>(stepper: &Stepper<L>, start: StateOf<L>, seed: u64)
 where
     L: Effect<Scalar: Stored, Group = SO3<Scalar<L>>>,
 {

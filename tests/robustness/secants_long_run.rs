@@ -49,7 +49,7 @@ fn kept<L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>
     let first = mean(&mut state, STEPS / 10);
     mean(&mut state, 8 * (STEPS / 10));
     let last = mean(&mut state, STEPS / 10);
-    let casimir = |state: &liestep::State<SO3, Vector3<f64>>| state.momentum().dot(&state.advected());
+    let casimir = |state: &liestep::motion::Motion<SO3, Vector3<f64>>| state.momentum().dot(&state.advected());
     Kept {
         energy: (last / first - 1.0).abs(),
         casimirs: (state.advected().norm_squared() - 1.0).abs().max((casimir(&state) / casimir(&start) - 1.0).abs()),

@@ -13,8 +13,9 @@ use liestep::mechanics::{
     Term as _,
 };
 use liestep::methods::CompositionScheme;
+use liestep::motion::Motion;
 use liestep::numbers::Bodies;
-use liestep::{SO3, SetupError, State, Stepper};
+use liestep::{SO3, SetupError, Stepper};
 use nalgebra::Vector3;
 
 use super::{End, all, apart, attitudes_of, tenths};
@@ -34,7 +35,7 @@ fn array<R, const N: usize>(values: Vec<R>) -> [R; N] {
     values.try_into().unwrap_or_else(|_| panic!("another number of bodies"))
 }
 
-fn whole<A: liestep::groups::Advected<[SO3; N]>, const N: usize>(state: &State<[SO3; N], A>) -> Vector3<f64> {
+fn whole<A: liestep::groups::Advected<[SO3; N]>, const N: usize>(state: &Motion<[SO3; N], A>) -> Vector3<f64> {
     state.spatial_momentum().0.iter().sum()
 }
 

@@ -2,13 +2,9 @@
 
 // In the order of its page.
 mod make;
-
-mod start;
-
-mod step;
-
 mod read;
-
+mod start;
+mod step;
 mod wrap;
 
 pub(crate) use start::check_attitude;
