@@ -84,9 +84,8 @@ fn scanned<I>(
     // Behind a fold the iteration ends anywhere, and now and then on the other side, too.
     let behind = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10].map(|k| turns(longest * (1.0 + 1e-6 * f64::from(k))).unwrap_err());
     println!("{longest:.4} s, where changes are {:.1e} and then {:.1e}; {}", fine[0], fine[20], behind[9]);
-    let turned = |error: &StepError| matches!(error, StepError::UnsolvedBody { determinant, .. } if *determinant < 0.0);
-    let is_turned = behind.iter().all(turned);
-    println!("{:?}", behind.each_ref().map(turned));
+    let is_turned =
+        behind.iter().all(|error| matches!(error, StepError::UnsolvedBody { determinant, .. } if *determinant < 0.0));
     let end = if is_turned { End::Turned } else { End::Fold };
     assert_eq!(end, *expected, "{behind:?}");
     // At a fold the first change is as large as that twenty behind it. Without one it would be 1/41 of that, as lengths change

@@ -311,6 +311,22 @@ pub(super) fn rods<const N: usize>(last: f64) -> Chain<N> {
     Chain { links, g: 9.81, up: e }
 }
 
+/// Ten links keep their momentum about the vertical: what they feel of each other cancels as far as attitudes are rotations.
+#[test]
+fn momentum_of_ten_links() {
+    let stepper = rods::<10>(1.0).stepper(0.01).unwrap();
+    let tilted: [SO3; 10] =
+        core::array::from_fn(|k| SO3::from_euler_angles(if k % 2 == 0 { 0.4 } else { -0.3 }, 0.5, 0.0));
+    let mut state = stepper.start(tilted, Bodies([Vector3::new(0.1, 0.2, 0.0); 10])).unwrap();
+    let (before, mut moved) = (stepper.vertical_momentum(&state), 0.0_f64);
+    for _ in 0..100 {
+        stepper.run(&mut state, 100).unwrap();
+        moved = moved.max((stepper.vertical_momentum(&state) - before).abs());
+    }
+    println!("momentum {before:.3}, moved by {moved:.1e}");
+    assert!(moved < 5e-13, "{moved:e}");
+}
+
 /// A hundred links are let go horizontally, and the last has up to ten thousand times the mass of the others: the energy
 /// is what it was, to the error of the method.
 #[test]
