@@ -96,7 +96,7 @@ impl<'a> Check<'a> {
         Ok((sureness, if found.is_some() { points } else { Vec::new() }))
     }
 
-    fn sample<T: Number>(&self, element: Element<T>, number: &mut impl FnMut() -> T) -> Sample<'a, T> {
+    pub(super) fn sample<T: Number>(&self, element: Element<T>, number: &mut impl FnMut() -> T) -> Sample<'a, T> {
         Sample::with_numbers(self.declaration, self.lowered, self.identities.derived, element, number)
     }
 
