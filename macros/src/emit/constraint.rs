@@ -5,7 +5,7 @@ use quote::quote_spanned;
 use syn::Ident;
 
 use super::inputs::entry;
-use super::{Code, Header, page, verbatim};
+use super::{Code, Header, docs, page, verbatim};
 use crate::declared::{AdvectedParameter, Declaration, FieldKind, Shape, check};
 use crate::judged::Held;
 use crate::mathematics::derive::{Body, Seen};
@@ -187,6 +187,7 @@ fn documentation(held: &Held) -> String {
     }
     format!(
         "\n# Derived constraint\n\n{heading} of where the bodies above, `R_a` and `x_a`, and below, `R_b` and `x_b`, are, \
-         with the derivatives along `δR = hat(η) R` and `δx = ξ`:\n\n```text\n{lines}```"
+         with the derivatives along `δR = hat(η) R` and `δx = ξ`:\n\n```text\n{lines}```\n\nCertainty: {}.",
+        docs::certified("the derivatives", held.sureness)
     )
 }
