@@ -24,7 +24,7 @@
 //! | 1 | `macros/src/declared` | parses the attribute and the struct, gives each expression a shape, and finds the mistakes of the declaration. Spans end here |
 //! | 2 | `macros/src/mathematics` | sums of products of matrices in a normal form (`symbolic`), the groups (`group.rs`), and the equations of the thesis in its order (`derive`) |
 //! | 3 | `macros/src/program` | matrices to scalars, equal operations once, constants of a step folded, operations counted |
-//! | 4 | `macros/src/judged` | compares what was derived with the declared `l_d` in exact arithmetic, chooses the cheaper of several forms, and finds what is conserved |
+//! | 4 | `macros/src/judged` | proves what was derived to be that of the declared `l_d`, in exact arithmetic, chooses the cheaper of several forms, and finds what is conserved |
 //! | 5 | `macros/src/emit` | the only room that quotes tokens: implementations, documentation, and after a mistake a stand-in, so that no second error follows from the first |
 //!
 //! The rooms depend on each other in one direction, `lib → expand → emit → judged → {declared, program} → mathematics`, and a
@@ -56,6 +56,19 @@
 //! assert!((body.right_momentum(&F(-0.03), &(), h).x - difference).abs() < 1e-9);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # What is proved, and what isn't
+//!
+//! When a declaration is compiled, momentum maps, diamond, momentum equation, Newton Jacobian, discrete energy, each stage of a
+//! step and each derivative of its momenta are proved to be those of the declared expression, as identities on the connected
+//! group that hold whatever the smooth functions in it are, by evaluation at random points of the field of `2⁶¹ − 1` elements:
+//! by the lemma of Schwartz and Zippel a wrong one passes with a probability below the bound that is printed with the
+//! derivation, `2⁻¹⁰⁰` or less, if the generator's numbers are taken for random.
+//! Not proved are that the declaration is what was meant, that a step has a solution, which is found out at run time, what rounding
+//! does to it, and the writing of tokens from the graph that was evaluated; and no bound is claimed, which the derivation says,
+//! where degrees are too high or a generator `E` of a group of one's own has no `E³ = cE`.
+//!
+//! `macros/src/judged/verify/mod.rs` has the argument.
 //!
 //! `cargo run --example derive -- heavy-top` prints a derivation with its counts of operations, `liestep derive gravity` that of an
 //! effect.

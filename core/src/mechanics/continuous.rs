@@ -143,7 +143,7 @@ pub trait ContinuousLagrangian: Term {
             Legendre::Constant | Legendre::Varying => finite(velocity),
             Legendre::Nonlinear => {
                 let (of, hessian) = (|xi: &_| self.momentum(xi, w), |xi: &_| self.velocity_hessian(xi, w));
-                self::velocity(newton_halving(momentum, velocity, of, hessian))
+                self::velocity(&newton_halving(momentum, velocity, of, hessian))
             }
         }
     }
@@ -198,8 +198,8 @@ fn finite<T: Real, V: Coordinates<T>>(value: V) -> Result<V, StepError> {
 }
 
 /// The velocity that Newton's iteration has ended at, if it is one in all lanes.
-fn velocity<T: Real, V: Coordinates<T>>(ended: NewtonEnd<T, V>) -> Result<V, StepError> {
-    let NewtonEnd { solution, is_settled, is_regular, iterations, residual } = ended;
+fn velocity<T: Real, V: Coordinates<T>>(end: &NewtonEnd<T, V>) -> Result<V, StepError> {
+    let NewtonEnd { solution, is_settled, is_regular, iterations, residual } = *end;
     if !is_settled.all() {
         return Err(StepError::NotConverged { iterations, residual: reported(residual) });
     }

@@ -6,7 +6,7 @@ use syn::Ident;
 
 use super::inputs::entry;
 use super::verbatim::{self, BODIES};
-use super::{Code, Header, page};
+use super::{Code, Header, docs, page};
 use crate::declared::{Declaration, FieldKind, Shape, check};
 use crate::judged::Held;
 use crate::mathematics::derive::Body;
@@ -157,6 +157,7 @@ fn documentation(held: &Held) -> String {
     }
     format!(
         "\n# Derived constraint\n\n{heading} of where the bodies above, `R_a` and `x_a`, and below, `R_b` and `x_b`, are, \
-         with the derivatives along `δR = hat(η) R` and `δx = ξ`:\n\n```text\n{lines}```"
+         with the derivatives along `δR = hat(η) R` and `δx = ξ`:\n\n```text\n{lines}```\n\nCertainty: {}.",
+        docs::certified("the derivatives", held.sureness)
     )
 }

@@ -1,7 +1,7 @@
 //! The derived equations as documentation of the generated methods, and as one text.
 
 use crate::declared::{Declaration, Factor};
-use crate::judged::{Chosen, Equations, Findings};
+use crate::judged::{Chosen, Equations, Findings, Sureness};
 use crate::mathematics::derive::{Continuous, Declared, Derived, Inverse, Seen, SelfAdjointness};
 use crate::mathematics::symbolic::{Stage, Variance, covector_text, matrix_text, text};
 use crate::program::{Candidate, Graph, Kernel, NodeId, count};
@@ -160,6 +160,7 @@ pub(super) fn derivation(
     let sections = [
         ("hypotheses used", hypotheses),
         ("self-adjoint", adjoint(findings.self_adjointness)),
+        ("certainty", certified(OF_A_STEP, findings.sureness)),
         ("Newton system", candidates(&chosen.kernel)),
         ("operations", costs(&chosen.kernel)),
     ];
@@ -293,6 +294,30 @@ pub(super) fn candidates(kernel: &Kernel) -> String {
         format!("\n    {verdict}: {}, {} an iteration", candidate.name, candidate.operations)
     };
     kernel.candidates.iter().enumerate().map(line).fold(unknown.to_owned(), |text, line| text + &line)
+}
+
+/// How sure it is that what was derived is that of the declaration.
+pub(super) fn certified(what: &str, sureness: Sureness) -> String {
+    match sureness {
+        Sureness::Certified(exponent) => format!(
+            "{what} are identities; wrong with a probability below 2⁻{}",
+            exponent.to_string().chars().filter_map(superscript).collect::<String>()
+        ),
+        Sureness::TooHigh => {
+            format!("{what} are not certified: degrees are too high for a bound; they agree at random points, exactly")
+        }
+        Sureness::Series => format!(
+            "{what} are not certified: a generator's cube isn't a multiple of it; they agree in power series, exactly"
+        ),
+    }
+}
+
+/// What is compared of a step.
+pub(super) const OF_A_STEP: &str = "the terms and the stages of a step";
+
+fn superscript(digit: char) -> Option<char> {
+    let digits = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    digits.get(usize::try_from(digit.to_digit(10)?).ok()?).copied()
 }
 
 /// Whether the Lagrangian is self-adjoint, how that was found, and what follows.

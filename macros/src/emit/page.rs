@@ -3,7 +3,7 @@
 use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
 use quote::quote_spanned;
 
-use super::docs::{Equation, costs, lets};
+use super::docs::{Equation, OF_A_STEP, certified, costs, lets};
 use crate::declared::{Declaration, Field, Role};
 use crate::judged::{self, Chosen, Equations, Findings};
 use crate::mathematics::derive::SelfAdjointness;
@@ -75,6 +75,7 @@ pub(super) fn page(
         points.push(momenta(declaration));
         points.push(together(declaration, chosen));
     }
+    points.push(format!("Certainty: {}.", certified(OF_A_STEP, findings.sureness)));
     points.push(format!("Cost:\n  * {}", costs(&chosen.kernel).replace("\n    ", "\n  * ")));
     let points = points.into_iter().fold(String::new(), |points, point| points + "* " + &point + "\n");
     let continuous = continuous.map(|equations| super::continuous::text::shown(declaration, equations));

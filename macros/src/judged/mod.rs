@@ -1,7 +1,7 @@
 //! Which of the derivations is taken, and whether it is right.
 //!
 //! `discretise` makes `l_d` of a continuous `l`, `continuous` has the continuous equations, `choose` counts operations,
-//! `verify` evaluates the declared tree on numbers and compares, `hypotheses` finds what the equations rest on,
+//! `verify` evaluates the declared tree on exact numbers and compares, `hypotheses` finds what the equations rest on,
 //! `momenta` finds what several bodies conserve, `constraint` has what holds two of them, `findings` has what comes of both, and `explain` says at the tokens of
 //! the declaration why nothing could be derived.
 //!
@@ -25,3 +25,4 @@ pub(crate) use discretise::discretised;
 pub(crate) use explain::terms;
 pub(crate) use findings::{Findings, findings};
 pub(crate) use momenta::conserved;
+pub(crate) use verify::Sureness;

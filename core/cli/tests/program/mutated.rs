@@ -3,10 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use liestep::motion::Integrator as _;
 use nalgebra::Vector3;
 
-use liestep::motion::Integrator as _;
 use liestep_scene::{Mistake, Scene, SceneEnsemble, Spread, System};
 
 /// Marsaglia's xorshift.

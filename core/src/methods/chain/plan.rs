@@ -184,7 +184,7 @@ where
 
     /// Guesses the next increments by these.
     #[hot]
-    pub(super) fn follow(&self, kept: &mut WarmStart<Components<N>>, work: &[Work; N], is_first: bool) {
+    pub(super) fn follow(kept: &mut WarmStart<Components<N>>, work: &[Work; N], is_first: bool) {
         let half = Bodies(filled!([Vector3::zeros(); N], |k| work[k].half));
         let far = !<CayleyRetraction as Retraction<[SO3; N]>>::is_half_well_near_identity(&half);
         kept.follow(half, far);
@@ -322,7 +322,7 @@ where
         }
         let is_first = motion.now().steps == 0;
         self.proceed(scene, motion, &work, kick)?;
-        self.follow(kept, &work, is_first);
+        Self::follow(kept, &work, is_first);
         Ok(StepReport::of(iterations))
     }
 

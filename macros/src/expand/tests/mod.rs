@@ -1,6 +1,6 @@
 //! Whole expansions.
 
-mod continuous;
+pub(crate) mod continuous;
 mod derivation;
 mod determinism;
 mod discretised_bodies;
@@ -13,7 +13,7 @@ mod right;
 mod rooms;
 mod several_bodies;
 mod sizes;
-mod time;
+pub(crate) mod time;
 mod tour;
 
 use proc_macro2::TokenStream;

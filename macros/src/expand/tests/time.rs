@@ -43,7 +43,7 @@ fn the_sixth_order_top_expands_within_a_second() {
 }
 
 /// Every declaration below a folder of the repository: where it is, the role, arguments and the item.
-fn declarations_in(folder: &Path, found: &mut Vec<(String, Role, TokenStream, TokenStream)>) {
+pub(crate) fn declarations_in(folder: &Path, found: &mut Vec<(String, Role, TokenStream, TokenStream)>) {
     struct Finder<'a>(&'a Path, &'a mut Vec<(String, Role, TokenStream, TokenStream)>);
 
     impl VisitMut for Finder<'_> {

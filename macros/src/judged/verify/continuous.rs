@@ -12,13 +12,14 @@ use super::evaluation::Evaluation;
 use super::inertia::{KineticPart, classified};
 use super::number::Number;
 use super::residue::Residue;
+use super::sample::{advected, exponentials, moved};
 use super::series::PowerSeries;
 use super::value::Value;
-use super::{SAMPLES, block, dot, evaluated, exponential, increments, parameter, stream, translation, velocities};
+use super::{SAMPLES, components_of, dot, evaluated, exponential, increments, parameter, stream, velocities};
 use crate::declared::{Declaration, FieldKind, Name, Tree};
-use crate::mathematics::derive::{Continuous, Derived, Seen};
+use crate::mathematics::derive::{Continuous, Derived};
 use crate::mathematics::group::Group;
-use crate::mathematics::symbolic::{Rational, SymbolId, Variance};
+use crate::mathematics::symbolic::{Rational, SymbolId};
 use crate::program::{Graph, NodeId, along_directions, components, diamond_matrices, square};
 
 /// Independent points.
@@ -109,19 +110,13 @@ impl<'a, T: Number> Point<'a, T> {
 
     /// The same for any matrix.
     fn carried_by_matrix(&self, element: &Value<T>) -> Values<Dual<T>> {
-        let mut values = self.lifted();
-        for index in 0..self.declaration.advected.len() {
-            let (name, variance) = (Name::Advected(index), self.declaration.advected_kind(index).variance());
-            let Some(w) = self.values.get(&name) else { continue };
-            let seen = self.declaration.advected.get(index).map_or(Seen::From(0), |w| w.seen);
-            let mut slope = carried(self.group(), (variance, seen), element, w);
-            // The last coordinate of a point stays one.
-            if let (FieldKind::Point(_), Some(last)) = (self.declaration.advected_kind(index), slope.entries.last_mut())
-            {
-                *last = T::ZERO;
+        let ([forwards, backwards], advected) = (exponentials(element), advected(self.declaration));
+        let mut values = moved(self.group(), &advected, &self.lifted(), [&forwards, &backwards]);
+        // The last coordinate of a point stays one.
+        for index in (0..advected.len()).filter(|&w| matches!(self.declaration.advected_kind(w), FieldKind::Point(_))) {
+            if let Some(last) = values.get_mut(&Name::Advected(index)).and_then(|w| w.entries.last_mut()) {
+                last.slope = T::ZERO;
             }
-            let entries = w.entries.iter().zip(&slope.entries).map(|(&value, &slope)| Dual { value, slope });
-            values.insert(name, Value { rows: w.rows, columns: w.columns, entries: entries.collect() });
         }
         values
     }
@@ -158,57 +153,12 @@ fn velocity<T: Number>(group: &Group, values: &Values<T>) -> Vec<T> {
     (0..group.factors().len()).flat_map(of_factor).copied().collect()
 }
 
-/// `E·w`, of an element with a block for each factor.
-fn carried<T: Number>(group: &Group, (variance, seen): (Variance, Seen), e: &Value<T>, w: &Value<T>) -> Value<T> {
-    let of = |factor: usize| {
-        let own = block(group, e, factor);
-        if group.factor(factor).is_added { translation(&own) } else { own }
-    };
-    let negative = |value: Value<T>| value.map(|x| -x);
-    match seen {
-        Seen::From(factor) => carried_by_one(variance, &of(factor), w),
-        Seen::Relative { of: body, from } if group.factor(body).is_added => of(from).plus(&negative(of(body))),
-        Seen::Configuration(body) if group.factor(body).is_added => negative(of(body)),
-        Seen::Relative { of: body, from } => of(from).times(w).plus(&negative(w.times(&of(body)))),
-        Seen::Configuration(body) => negative(w.times(&of(body))),
-    }
-}
-
-fn carried_by_one<T: Number>(variance: Variance, e: &Value<T>, w: &Value<T>) -> Value<T> {
-    match variance {
-        Variance::Vector => e.times(w),
-        Variance::Covector => e.transpose().times(w).map(|x| -x),
-        Variance::Contravariant => e.times(w).plus(&w.times(&e.transpose())),
-        Variance::Covariant => e.transpose().times(w).plus(&w.times(e)).map(|x| -x),
-        Variance::Mixed => e.times(w).zip(&w.times(e), |x, y| x - y),
-        Variance::Fixed => w.map(|_| T::ZERO),
-    }
-}
-
-/// `⟨ad*_ξ μ, E_k⟩ = ⟨μ, [ξ, E_k]⟩` for all `k`, of a product factor by factor.
+/// `⟨ad*_ξ μ, E_k⟩ = ⟨μ, [ξ, E_k]⟩` for all `k`.
 fn coadjoint<T: Number>(group: &Group, xi: &[T], momentum: &[T]) -> Vec<T> {
-    let factors = group.factors().iter().enumerate();
-    let own = factors.flat_map(|(factor, own)| {
-        let components = |all: &[T]| {
-            let first = group.component_of(factor);
-            all.iter().skip(first).take(own.dimension()).copied().collect::<Vec<_>>()
-        };
-        coadjoint_of_factor(own, &components(xi), &components(momentum))
-    });
-    own.collect()
-}
-
-fn coadjoint_of_factor<T: Number>(group: &Group, xi: &[T], momentum: &[T]) -> Vec<T> {
-    let (dual, xi) = (group.dual(), element(group, xi));
-    let of_generator = |entries: &Vec<Rational>| {
-        let generator = Value::square(group.size, entries);
-        let bracket = xi.times(&generator).zip(&generator.times(&xi), |x, y| x - y);
-        dual.iter().fold(T::ZERO, |sum, &(component, row, column, factor)| {
-            let paired = momentum.get(component).copied().unwrap_or(T::UNDEFINED);
-            sum + paired * T::of(factor) * bracket.at(row, column)
-        })
-    };
-    group.generators.iter().map(of_generator).collect()
+    let xi = element(group, xi);
+    let generators = group.generators.iter().map(|entries| Value::square(group.size, entries));
+    let brackets: Vec<Value<T>> = generators.map(|e| xi.times(&e).zip(&e.times(&xi), |x, y| x - y)).collect();
+    components_of(group, &brackets).iter().map(|components| dot(components, momentum)).collect()
 }
 
 /// The first equation that doesn't hold; `tree` is the declared `l`, where it is one.

@@ -16,6 +16,8 @@ use crate::mathematics::group::Group;
 
 /// Compared without a bound.
 const POINTS: u32 = 3;
+/// With more coincidences than this as many points don't decide about reversal: together they leave a probability of `2⁻⁵⁴`.
+const MOST_COINCIDENCES: u64 = 1 << 40;
 /// So many more are tried, as one may have no value.
 const SPARE: u32 = 5;
 
@@ -84,19 +86,19 @@ pub(super) struct Check<'a> {
 }
 
 impl<'a> Check<'a> {
-    /// How sure the check is, and the points at which all agrees where they are those of the field.
+    /// How sure the check is, and the points at which all agrees where they decide about reversal, too.
     pub(super) fn confirmed(&self, tree: &Rc<Tree>) -> Result<(Sureness, Vec<Sample<'a, Residue>>), Unconfirmed> {
         if Residue::element(&self.declaration.group, &mut Residue::stream(1)).is_none() {
             self.points::<PowerSeries<Residue>>(POINTS)?;
             return Ok((Sureness::Series, Vec::new()));
         }
-        let found = self.sureness(tree);
+        let (found, decides) = self.sureness(tree);
         let points = self.points(found.map_or(POINTS, |found| found.points))?;
         let sureness = found.map_or(Sureness::TooHigh, |found| Sureness::Certified(found.exponent));
-        Ok((sureness, if found.is_some() { points } else { Vec::new() }))
+        Ok((sureness, if found.is_some() || decides { points } else { Vec::new() }))
     }
 
-    fn sample<T: Number>(&self, element: Element<T>, number: &mut impl FnMut() -> T) -> Sample<'a, T> {
+    pub(super) fn sample<T: Number>(&self, element: Element<T>, number: &mut impl FnMut() -> T) -> Sample<'a, T> {
         Sample::with_numbers(self.declaration, self.lowered, self.identities.derived, element, number)
     }
 
@@ -111,7 +113,8 @@ impl<'a> Check<'a> {
         })
     }
 
-    fn sureness(&self, tree: &Rc<Tree>) -> Option<degree::Sureness> {
+    /// That of all, and whether points decide about reversal.
+    fn sureness(&self, tree: &Rc<Tree>) -> (Option<degree::Sureness>, bool) {
         let kinds = (0..self.declaration.advected.len()).map(|index| self.declaration.advected_kind(index));
         let kinds: Vec<FieldKind> = kinds.collect();
         let is_attitude = |kind: &&FieldKind| matches!(kind, FieldKind::Configuration(_));
@@ -124,11 +127,12 @@ impl<'a> Check<'a> {
         }
         let mut largest = Largest::default();
         largest.compared(sample.declared(tree), sample.reversed(tree));
+        let decides = largest.coincidences(degree::functions(tree)) <= MOST_COINCIDENCES;
         let compared = self.identities.hold(&sample, || Degree::VARIABLE, &mut |_, found, expected| {
             largest.compared(found, expected);
             Ok(())
         });
-        compared.ok().and_then(|()| largest.sureness(self.identities.functions()))
+        (compared.ok().and_then(|()| largest.sureness(self.identities.functions())), decides)
     }
 
     /// Whether the momentum and its Jacobian have values where a step begins: in the field nothing but a division by zero

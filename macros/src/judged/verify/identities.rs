@@ -221,16 +221,10 @@ impl<'a> Identities<'a> {
         declared: &Declared<T>,
         same: &mut Same<T>,
     ) -> Result<(), Fault> {
-        let (sample, directions, kernel) = (point.sample, &self.derived.directions, self.kernel);
+        let (sample, kernel) = (point.sample, self.kernel);
         let (dimension, group) = (momentum.len(), &self.derived.group);
-        let mut inputs = sample.inputs();
         let Element { matrix, inverse, coordinates } = &sample.element;
-        let carried = sample.moved([inverse, matrix]);
-        for ((name, ..), &next) in sample.advected.iter().zip(&directions.next) {
-            inputs.extend(carried.get(name).map(|w| (next, w.clone())));
-        }
-        inputs.insert(directions.target, Value::column(&point.target));
-        inputs.insert(directions.along, Value::column(&point.direction));
+        let inputs = self.inputs_of_stages(sample, [&point.target, &point.direction]);
         let parts = [&kernel.kick_before, &kernel.jacobian, &kernel.kick_after, &kernel.moved].map(Vec::as_slice);
         let change = kernel.kick_derivative.as_deref().unwrap_or_default();
         let found = evaluated(&kernel.graph, &[parts.concat().as_slice(), change].concat(), &inputs);
@@ -250,7 +244,7 @@ impl<'a> Identities<'a> {
             same("Newton Jacobian of the step", dot(row, &point.direction), found.slope)?;
         }
         // μ⁺ = Ad*_F a + k₁⁺, and what the gradient gives beside the residual is k₁⁺ before Ad*_F.
-        let turned = components_of(group, &matrix.times(&point.element).times(inverse));
+        let turned = components_of(group, &[matrix.times(&point.element).times(inverse)]).concat();
         let after = dot(after, &point.direction);
         same("transported momentum", dot(&a, &turned) + after, declared.left)?;
         if !moved.is_empty() {
@@ -265,6 +259,21 @@ impl<'a> Identities<'a> {
             }
         }
         Ok(())
+    }
+
+    /// With what is carried along, a covector for that of the solution and a velocity.
+    fn inputs_of_stages<T: Number>(
+        &self,
+        sample: &Sample<T>,
+        [target, along]: [&[T]; 2],
+    ) -> BTreeMap<SymbolId, Value<T>> {
+        let (mut inputs, directions) = (sample.inputs(), &self.derived.directions);
+        let carried = sample.moved([&sample.element.inverse, &sample.element.matrix]);
+        for ((name, ..), &next) in sample.advected.iter().zip(&directions.next) {
+            inputs.extend(carried.get(name).map(|w| (next, w.clone())));
+        }
+        inputs.extend([(directions.target, Value::column(target)), (directions.along, Value::column(along))]);
+        inputs
     }
 
     /// In the coordinates of the Newton system: `y + ε v` or `exp(ε v̂) F`.
@@ -308,5 +317,25 @@ impl<'a> Identities<'a> {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+impl Identities<'_> {
+    /// All that is emitted, at a point.
+    pub(super) fn emitted<T: Number>(&self, sample: &Sample<T>, mut number: impl FnMut() -> T) -> Vec<T> {
+        let mut vector = || self.derived.group.generators.iter().map(|_| number()).collect::<Vec<T>>();
+        let inputs = self.inputs_of_stages(sample, [&vector(), &vector()]);
+        let Terms { graph, momentum, jacobian, right, left, diamond, energy } = &self.terms;
+        let terms = [momentum.as_slice(), jacobian, right, left, diamond, energy.as_slice()].concat();
+        let kernel = self.kernel;
+        let stages = [&kernel.kick_before, &kernel.residual, &kernel.jacobian, &kernel.kick_after, &kernel.moved];
+        let change = kernel.kick_derivative.clone().unwrap_or_default();
+        let stages = stages.into_iter().chain([&change]).flatten().copied().collect::<Vec<_>>();
+        let mut all = [evaluated(graph, &terms, &inputs), evaluated(&kernel.graph, &stages, &inputs)].concat();
+        if let Some(Derivatives { graph, blocks, momenta }) = &self.derivatives {
+            all.extend(evaluated(graph, &[blocks.concat().concat(), momenta.concat()].concat(), &inputs));
+        }
+        all
     }
 }

@@ -168,13 +168,16 @@ fn dot<T: Number>(a: &[T], b: &[T]) -> T {
     a.iter().zip(b).fold(T::ZERO, |sum, (&x, &y)| sum + x * y)
 }
 
-/// The components of an element of the algebra, of a product factor by factor.
-fn components_of<T: Number>(group: &Group, element: &Value<T>) -> Vec<T> {
-    let mut components = vec![T::ZERO; group.dimension()];
+/// The components of elements of the algebra, of a product factor by factor.
+fn components_of<T: Number>(group: &Group, elements: &[Value<T>]) -> Vec<Vec<T>> {
+    let mut components = vec![vec![T::ZERO; group.dimension()]; elements.len()];
     for (factor, own) in group.factors().iter().enumerate() {
-        let (first, entries) = (group.component_of(factor), block(group, element, factor));
-        for (k, row, column, share) in own.dual() {
-            components[first + k] = components[first + k] + T::of(share) * entries.at(row, column);
+        let (first, forms) = (group.component_of(factor), own.dual());
+        for (element, components) in elements.iter().zip(&mut components) {
+            let entries = block(group, element, factor);
+            for &(k, row, column, share) in &forms {
+                components[first + k] = components[first + k] + T::of(share) * entries.at(row, column);
+            }
         }
     }
     components

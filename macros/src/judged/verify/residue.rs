@@ -25,7 +25,9 @@ fn folded(x: u128) -> u64 {
 impl Residue {
     /// Any whole number.
     fn reduced(value: i128) -> Self {
-        Self(u64::try_from(value.rem_euclid(PRIME.into())).ok())
+        let size = value.unsigned_abs();
+        let size = Self(Some(if size >> 121 == 0 { folded(size) } else { folded(size % u128::from(PRIME)) }));
+        if value < 0 { -size } else { size }
     }
 
     /// A stream of numbers that no rational function knows.
@@ -122,9 +124,11 @@ impl Number for Residue {
 
     fn of(value: Rational) -> Self {
         let (numerator, denominator) = value.parts();
-        let numerator = Self::reduced(numerator);
-        // Most are whole, and a reciprocal takes a hundred products.
-        if denominator == 1 { numerator } else { numerator / Self::reduced(denominator) }
+        // Most are of whole numbers and powers of two, and as 2⁶¹ = 1 a division by 2ⁿ is a product with 2⁶¹⁻ⁿ.
+        let halvings = denominator.trailing_zeros() % 61;
+        let halved = Self(Some(folded(1 << (61 - halvings))));
+        let (numerator, odd) = (Self::reduced(numerator) * halved, denominator >> denominator.trailing_zeros());
+        if odd == 1 { numerator } else { numerator / Self::reduced(odd) }
     }
 
     fn power(self, exponent: i32) -> Self {

@@ -39,7 +39,7 @@ impl<T: Number> Element<T> {
     where
         T: PartialEq,
     {
-        let (mut parts, mut coordinates) = (Vec::new(), Vec::new());
+        let (mut matrices, mut inverses, mut coordinates) = (Vec::new(), Vec::new(), Vec::new());
         for own in group.factors() {
             let identity = Value::identity(own.size);
             let components: Vec<T> = own.generators.iter().map(|_| number()).collect();
@@ -62,14 +62,12 @@ impl<T: Number> Element<T> {
                 matrix = matrix.times(&backwards.inverse().times(&forwards));
                 inverse = forwards.inverse().times(&backwards).times(&inverse);
             }
-            parts.push((matrix, inverse));
+            matrices.push(matrix);
+            inverses.push(inverse);
             coordinates.extend(components);
         }
-        let of = |part: &dyn Fn(&(Value<T>, Value<T>)) -> Value<T>| {
-            let blocks: Vec<Value<T>> = parts.iter().map(part).collect();
-            by_blocks(group, |factor| blocks[factor].clone())
-        };
-        Some(Self { matrix: of(&|part| part.0.clone()), inverse: of(&|part| part.1.clone()), coordinates })
+        let [matrix, inverse] = [matrices, inverses].map(|blocks| by_blocks(group, |factor| blocks[factor].clone()));
+        Some(Self { matrix, inverse, coordinates })
     }
 
     /// As constants among dual numbers.
@@ -176,13 +174,10 @@ impl<'a, T: Number> Sample<'a, T> {
         if declaration.role == Role::Force {
             values.extend(displacements(&declaration.group, &mut number));
         }
-        let mut advected = Vec::new();
         for index in 0..declaration.advected.len() {
-            let kind = declaration.advected_kind(index);
-            values.insert(Name::Advected(index), parameter(kind, &mut number));
-            let seen = declaration.advected.get(index).map_or(Seen::From(0), |w| w.seen);
-            advected.push((Name::Advected(index), kind.variance(), seen));
+            values.insert(Name::Advected(index), parameter(declaration.advected_kind(index), &mut number));
         }
+        let advected = advected(declaration);
         let symbols = lowered.names.iter().map(|(name, id)| (*id, *name)).collect();
         Self { derived, element, values, symbols, advected }
     }
@@ -243,33 +238,48 @@ impl<'a, T: Number> Sample<'a, T> {
     }
 
     /// The values with all that is advected moved by a group element, given with its inverse.
-    pub(super) fn moved(&self, [g, inverse]: [&Value<T>; 2]) -> BTreeMap<Name, Value<T>> {
-        let mut values = self.values.clone();
-        let group = &self.derived.group;
-        for (name, variance, seen) in &self.advected {
-            let Some(w) = self.values.get(name) else { continue };
-            let added = |moving: &Value<T>, factor| translation(&block(group, moving, factor));
-            let moved = match *seen {
-                Seen::Relative { of, from } if group.factor(of).is_added => {
-                    added(g, from).plus(w).plus(&added(inverse, of))
-                }
-                Seen::Configuration(of) if group.factor(of).is_added => w.plus(&added(inverse, of)),
-                Seen::Relative { of, from } => block(group, g, from).times(w).times(&block(group, inverse, of)),
-                Seen::Configuration(of) => w.times(&block(group, inverse, of)),
-                Seen::From(factor) => {
-                    let (g, inverse) = (&block(group, g, factor), &block(group, inverse, factor));
-                    match variance {
-                        Variance::Vector => g.times(w),
-                        Variance::Covector => inverse.transpose().times(w),
-                        Variance::Contravariant => g.times(w).times(&g.transpose()),
-                        Variance::Covariant => inverse.transpose().times(w).times(inverse),
-                        Variance::Mixed => g.times(w).times(inverse),
-                        Variance::Fixed => w.clone(),
-                    }
-                }
-            };
-            values.insert(*name, moved);
-        }
-        values
+    pub(super) fn moved(&self, element: [&Value<T>; 2]) -> BTreeMap<Name, Value<T>> {
+        moved(&self.derived.group, &self.advected, &self.values, element)
     }
+}
+
+/// How each advected parameter is moved.
+pub(super) fn advected(declaration: &Declaration) -> Vec<(Name, Variance, Seen)> {
+    let each = declaration.advected.iter().enumerate();
+    each.map(|(index, w)| (Name::Advected(index), declaration.advected_kind(index).variance(), w.seen)).collect()
+}
+
+/// The values with all that is advected moved by a group element, given with its inverse.
+pub(super) fn moved<T: Number>(
+    group: &Group,
+    advected: &[(Name, Variance, Seen)],
+    values: &BTreeMap<Name, Value<T>>,
+    [g, inverse]: [&Value<T>; 2],
+) -> BTreeMap<Name, Value<T>> {
+    let mut values = values.clone();
+    let added = |moving: &Value<T>, factor| translation(&block(group, moving, factor));
+    for &(name, variance, seen) in advected {
+        let Some(w) = values.get(&name) else { continue };
+        let moved = match seen {
+            Seen::Relative { of, from } if group.factor(of).is_added => {
+                added(g, from).plus(w).plus(&added(inverse, of))
+            }
+            Seen::Configuration(of) if group.factor(of).is_added => w.plus(&added(inverse, of)),
+            Seen::Relative { of, from } => block(group, g, from).times(w).times(&block(group, inverse, of)),
+            Seen::Configuration(of) => w.times(&block(group, inverse, of)),
+            Seen::From(factor) => {
+                let (g, inverse) = (&block(group, g, factor), &block(group, inverse, factor));
+                match variance {
+                    Variance::Vector => g.times(w),
+                    Variance::Covector => inverse.transpose().times(w),
+                    Variance::Contravariant => g.times(w).times(&g.transpose()),
+                    Variance::Covariant => inverse.transpose().times(w).times(inverse),
+                    Variance::Mixed => g.times(w).times(inverse),
+                    Variance::Fixed => w.clone(),
+                }
+            }
+        };
+        values.insert(name, moved);
+    }
+    values
 }

@@ -1,5 +1,6 @@
 //! Each check fails on a broken term.
 
+mod mutations;
 mod products;
 
 use std::collections::BTreeMap;

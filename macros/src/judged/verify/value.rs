@@ -80,9 +80,9 @@ impl<T: Number> Value<T> {
 
     /// By Cramer's rule.
     pub(super) fn inverse(&self) -> Self {
-        let determinant = self.determinant();
+        let reciprocal = T::ONE / self.determinant();
         Self::new(self.rows, self.rows, |row, column| {
-            alternating(row + column, self.without(column, row).determinant()) / determinant
+            alternating(row + column, self.without(column, row).determinant()) * reciprocal
         })
     }
 

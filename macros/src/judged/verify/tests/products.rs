@@ -1,7 +1,7 @@
 //! What is derived for several bodies, of random declarations: which bodies turn and which are translated, what each sees,
 //! and all terms.
 
-mod random;
+pub(super) mod random;
 
 use std::collections::BTreeMap;
 

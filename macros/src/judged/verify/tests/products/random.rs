@@ -19,7 +19,7 @@ enum Moves {
 const MOST_ADVECTED: usize = 6;
 
 /// A declaration as it grows: a name is declared once something uses it.
-pub(super) struct Text {
+pub(in super::super) struct Text {
     random: Random,
     moves: Vec<Moves>,
     /// Names with their types.
@@ -30,7 +30,7 @@ pub(super) struct Text {
 
 impl Text {
     /// The arguments and the struct of a seed.
-    pub(super) fn of(seed: u64) -> (String, String) {
+    pub(in super::super) fn of(seed: u64) -> (String, String) {
         let mut random = Random::new(seed);
         let mut moves = vec![Moves::Turns];
         for _ in 0..=random.below(2) {

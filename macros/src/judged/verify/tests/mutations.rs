@@ -1,0 +1,280 @@
+//! What is derived wrongly by as little as one part in `2⁵⁰` is refused, whatever it is and in every declaration.
+
+use std::path::Path;
+use std::rc::Rc;
+
+use proc_macro2::TokenStream;
+
+use super::super::exact::Check;
+use super::super::identities::Identities;
+use super::super::residue::Residue;
+use super::super::sample::{Element, Sample};
+use super::super::{Unconfirmed, Verified, constraint, verify};
+use super::products::random::Text;
+use crate::declared::errors::Errors;
+use crate::declared::{Declaration, Role, Tree, check, lower, parse};
+use crate::expand::tests::continuous::{CART, LINKS, OF_CART, OF_LINKS};
+use crate::expand::tests::time::declarations_in;
+use crate::expand::tests::{HEAVY_TOP, top};
+use crate::judged::{self, Chosen, cheapest, held};
+use crate::mathematics::derive::{Derived, Seen, derive};
+use crate::mathematics::symbolic::{Expression, Rational, SymbolId, degree};
+use crate::program::{Kernel, NodeId, kernel};
+
+/// By how much a coefficient is too large.
+const ERRORS: [(i128, i128); 2] = [(1, 10_000_000), (1, 1 << 50)];
+
+/// What is derived, with each of its own.
+type Term = (&'static str, fn(&mut Derived) -> Option<&mut Expression>);
+
+const TERMS: [Term; 15] = [
+    ("right momentum map", |d| Some(&mut d.right_momentum)),
+    ("left momentum map", |d| Some(&mut d.left_momentum)),
+    ("diamond", |d| Some(&mut d.diamond)),
+    ("momentum equation", |d| Some(&mut d.momentum)),
+    ("Jacobian", |d| Some(&mut d.jacobian)),
+    ("energy", |d| Some(&mut d.energy)),
+    ("kick before", |d| Some(&mut d.kick_before)),
+    ("unknown part", |d| Some(&mut d.unknown)),
+    ("kick after", |d| Some(&mut d.kick_after)),
+    ("kick derivative", |d| d.kick_derivative.as_mut()),
+    ("moved diamond", |d| d.moved.as_mut()),
+    ("cleared residual", |d| d.cleared.as_mut().map(|cleared| &mut cleared.residual)),
+    ("cleared Jacobian", |d| d.cleared.as_mut().map(|cleared| &mut cleared.jacobian)),
+    ("momentum at the start", |d| d.ends.as_mut().map(|ends| &mut ends.momenta[0])),
+    ("momentum at the end", |d| d.ends.as_mut().map(|ends| &mut ends.momenta[1])),
+];
+
+/// The stages of a step, as they are emitted.
+const STAGES: [fn(&mut Kernel) -> &mut [NodeId]; 6] = [
+    |kernel| &mut kernel.kick_before,
+    |kernel| &mut kernel.residual,
+    |kernel| &mut kernel.jacobian,
+    |kernel| &mut kernel.kick_after,
+    |kernel| &mut kernel.moved,
+    |kernel| kernel.kick_derivative.as_deref_mut().unwrap_or_default(),
+];
+
+struct Prepared {
+    declaration: Declaration,
+    tree: Rc<Tree>,
+    chosen: Chosen,
+}
+
+impl Prepared {
+    /// `None` of what has no step.
+    fn new(role: Role, arguments: &TokenStream, item: &TokenStream) -> Option<Self> {
+        let mut errors = Errors::default();
+        let declaration = parse::declaration(role, arguments, item, &mut errors)?;
+        let mut tree = check::check(&declaration, &mut errors)?;
+        let mut equations = None;
+        if declaration.continuous.is_some() {
+            equations = Some(judged::of_declared(&declaration, &tree, &mut errors)?);
+            tree = judged::discretised(&declaration, &tree, declaration.discretisation()?, &mut errors)?;
+        }
+        let mut readings = lower::readings(&declaration, &tree, &mut errors)?;
+        if let Some(equations) = &equations {
+            readings = readings.into_iter().map(|reading| equations.behind(reading)).collect();
+        }
+        let chosen = cheapest(readings, derive, &declaration, &tree, &mut errors)?;
+        Some(Self { declaration, tree, chosen })
+    }
+
+    fn found(&self, derived: &Derived, kernel: &Kernel) -> Result<Verified, Unconfirmed> {
+        verify(&self.declaration, &self.tree, &self.chosen.lowered, (derived, kernel))
+    }
+
+    /// All that is emitted, at a point.
+    fn emitted(&self, derived: &Derived, kernel: &Kernel) -> Vec<Residue> {
+        let (mut number, group) = (Residue::stream(9), &self.declaration.group);
+        let element = Element::by_cayley(group, &mut number).expect("points");
+        let identities = Identities::new(&self.declaration, &self.tree, (derived, kernel));
+        let check = Check { declaration: &self.declaration, lowered: &self.chosen.lowered, identities };
+        let sample: Sample<Residue> = check.sample(element, &mut number);
+        check.identities.emitted(&sample, number)
+    }
+
+    /// Whether a wrong term is refused, where anything of it is emitted.
+    fn assert_refused(&self, what: &str, change: impl Fn(&mut Derived)) {
+        let mut derived = self.chosen.derived.clone();
+        change(&mut derived);
+        let kernel = kernel(&derived);
+        let is_refused = matches!(self.found(&derived, &kernel), Err(Unconfirmed::Disagrees(_)));
+        let reaches = || self.emitted(&derived, &kernel) != self.emitted(&self.chosen.derived, &self.chosen.kernel);
+        assert!(is_refused || !reaches(), "{what} of {}", self.declaration.item.ident);
+    }
+
+    /// Each term as a whole, one of its coefficients, and those of what one body sees of another.
+    fn check_terms(&self, most: usize) {
+        let bodies = self.declaration.advected.iter().zip(&self.chosen.lowered.declared.advected);
+        let seen: Vec<SymbolId> = bodies
+            .filter(|(w, _)| matches!(w.seen, Seen::Relative { .. } | Seen::Configuration(_)))
+            .map(|(_, carried)| carried.symbol)
+            .collect();
+        for (name, of) in TERMS {
+            let size = of(&mut self.chosen.derived.clone()).map_or(0, |term| term.len());
+            for (error, (numerator, denominator)) in ERRORS.into_iter().enumerate() {
+                let error_of = Rational::new(numerator, denominator);
+                let what = format!("{name}, error {error}");
+                let is_seen = |id: &SymbolId, term: &Expression| term.contains(*id);
+                self.assert_refused(&what, |derived| {
+                    if let Some(term) = of(derived) {
+                        *term = larger(term, error_of, |_, _| true);
+                    }
+                });
+                for at in 0..size.min(most) {
+                    self.assert_refused(&format!("{what}, its term {at}"), |derived| {
+                        if let Some(term) = of(derived) {
+                            *term = larger(term, error_of, |place, _| place == at);
+                        }
+                    });
+                }
+                for id in seen.iter().filter(|id| of(&mut self.chosen.derived.clone()).is_some_and(|t| is_seen(id, t)))
+                {
+                    self.assert_refused(&format!("{what}, what is seen"), |derived| {
+                        if let Some(term) = of(derived) {
+                            *term = larger(term, error_of, |_, degree| degree(*id) > 0);
+                        }
+                    });
+                }
+            }
+        }
+    }
+
+    /// Each entry of each stage.
+    fn check_stages(&self) {
+        let Chosen { derived, kernel, .. } = &self.chosen;
+        for (stage, of) in STAGES.into_iter().enumerate() {
+            for at in 0..of(&mut kernel.clone()).len() {
+                let mut wrong = kernel.clone();
+                let node = of(&mut wrong)[at];
+                let error = wrong.graph.constant(Rational::new(1, 1 << 50));
+                of(&mut wrong)[at] = wrong.graph.add(node, error);
+                let found = self.found(derived, &wrong).map(|verified| verified.sureness);
+                assert!(
+                    matches!(found, Err(Unconfirmed::Disagrees(_))),
+                    "entry {at} of stage {stage} of {}: {found:?}",
+                    self.declaration.item.ident
+                );
+            }
+        }
+    }
+}
+
+/// With some of the coefficients larger by a share.
+fn larger(
+    term: &Expression,
+    error: Rational,
+    is_meant: impl Fn(usize, &dyn Fn(SymbolId) -> usize) -> bool,
+) -> Expression {
+    let mut sum = term.clone();
+    for (place, (monomial, coefficient)) in term.terms().enumerate() {
+        if is_meant(place, &|id| degree(monomial, id)) {
+            sum.add_term(monomial.clone(), coefficient * error);
+        }
+    }
+    sum
+}
+
+fn prepared(role: Role, arguments: &str, item: &str) -> Prepared {
+    let [arguments, item] = [arguments, item].map(|text| text.parse().expect("tokens"));
+    Prepared::new(role, &arguments, &item).expect("a step")
+}
+
+#[test]
+fn small_errors_of_terms_and_stages() {
+    let two = "group(F_1 = SO3, F_2 = SO3), advected(w_1 = up.seen_from(F_1), Q = F_2.seen_from(F_1)),
+        l_d = ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
+            + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h)
+            - 0.5 * h * (k * (Q.trace() + (F_1.transpose() * Q * F_2).trace()) + g * w_1.dot(&(rho + F_1 * rho)))";
+    let bodies = "struct Two { J_1: NonstandardInertia, J_2: NonstandardInertia, k: f64, g: f64, rho: Vector3<f64>,
+        up: Vector3<f64> }";
+    let planar = "group = SE2, advected(w = up),
+        l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * g * w.dot(&(r + F * r))";
+    let of_planar = "struct Planar { J: Matrix3<f64>, g: f64, r: Vector3<f64>, up: Vector3<f64> }";
+    let drag = "group = SO3, advected(b = field),
+        work = h * c * b.cross(&(F * b)).dot(&eta) - vee(F).dot(&(D * (eta + eta_next)))";
+    let of_drag = "struct Drag { D: Matrix3<f64>, c: f64, field: Vector3<f64> }";
+    let ([of_top, gradients], log) = (
+        [top("NonstandardInertia"), format!("{HEAVY_TOP}, gradients")],
+        "group = SO3, advected(w = up), l_d = 0.5 * log(F).dot(&(J * log(F))) / h - h * (1.0 + w.norm()).sqrt().exp()",
+    );
+    let of_log = "struct Geodesic { J: Inertia, up: Vector3<f64> }";
+    let midpoint = "discretise = trapezoid(Cayley)";
+    let own = [
+        (Role::Lagrangian, gradients.as_str(), of_top.as_str()),
+        (Role::Lagrangian, planar, of_planar),
+        (Role::Lagrangian, two, bodies),
+        (Role::Lagrangian, log, of_log),
+        (Role::Lagrangian, &format!("{LINKS}, {midpoint}"), OF_LINKS),
+        (Role::Lagrangian, &format!("{CART}, {midpoint}"), OF_CART),
+        (Role::Force, drag, of_drag),
+    ];
+    for (role, arguments, item) in own {
+        let prepared = prepared(role, arguments, item);
+        prepared.check_terms(3);
+        prepared.check_stages();
+    }
+    for seed in 0..4 {
+        let (arguments, item) = Text::of(seed);
+        prepared(Role::Lagrangian, &arguments, &item).check_terms(1);
+    }
+}
+
+/// Each slope of a constraint.
+fn check_slopes(declaration: &Declaration, trees: &[Rc<Tree>]) {
+    let held = || held(declaration, trees.to_vec(), &mut Errors::default()).expect("a constraint");
+    assert!(constraint(declaration, &held()).is_ok());
+    for body in 0..2 {
+        for (by, at) in (0..3 * held().rows()).flat_map(|at| [(0, at), (1, at)]) {
+            for (numerator, denominator) in ERRORS {
+                let mut held = held();
+                let error = held.graph.constant(Rational::new(numerator, denominator));
+                let entry = &mut held.entries[body][by][at];
+                *entry = held.graph.add(*entry, error);
+                let found = constraint(declaration, &held).map(|(sureness, _)| sureness);
+                assert_eq!(found, Err(Unconfirmed::Disagrees("slope")), "{body} {by} {at}");
+            }
+        }
+    }
+}
+
+#[test]
+fn small_errors_of_slopes() {
+    let arguments = "group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+        advected(R_1 = F_1.seen_from(space), Q = F_2.seen_from(F_1), r = d_2.seen_from(d_1)),
+        zero = (R_1.transpose() * r + Q * below, (Q * below).dot(&axis).sin())";
+    let item = "struct Joint { below: Vector3<f64>, axis: Vector3<f64> }";
+    let (declaration, trees) = super::checked_as(Role::Constraint, arguments, item);
+    check_slopes(&declaration, &trees);
+}
+
+/// All of the repository, those that other tests compile among them.
+#[test]
+#[ignore = "some minutes: `cargo test -p liestep-macros small_errors -- --ignored --nocapture`"]
+fn small_errors_everywhere() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut all = Vec::new();
+    for folder in ["core/src", "examples", "tests", "tests/ui/pass"] {
+        declarations_in(&root.join(folder), &mut all);
+    }
+    let mut count = 0;
+    for (name, role, arguments, item) in all {
+        if role == Role::Constraint {
+            let mut errors = Errors::default();
+            let declaration = parse::declaration(role, &arguments, &item, &mut errors).expect("a declaration");
+            check_slopes(&declaration, &check::functions(&declaration, &mut errors).expect("functions"));
+        } else if let Some(prepared) = Prepared::new(role, &arguments, &item) {
+            let found = prepared.found(&prepared.chosen.derived, &prepared.chosen.kernel);
+            println!("{name}: {found:?}");
+            assert!(found.is_ok(), "{name}: {found:?}");
+            if Element::by_cayley(&prepared.declaration.group, &mut Residue::stream(1)).is_some() {
+                prepared.check_terms(1);
+            }
+        } else {
+            continue;
+        }
+        count += 1;
+    }
+    assert!(count > 100, "only {count} declarations");
+}
