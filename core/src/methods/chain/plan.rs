@@ -182,17 +182,6 @@ where
         Ok(())
     }
 
-    /// Guesses the next increments by these.
-    #[hot]
-    pub(super) fn follow(kept: &mut WarmStart<Components<N>>, work: &[Work; N], is_first: bool) {
-        let half = Bodies(filled!([Vector3::zeros(); N], |k| work[k].half));
-        let far = !<CayleyRetraction as Retraction<[SO3; N]>>::is_half_well_near_identity(&half);
-        kept.follow(half, far);
-        if is_first {
-            kept.forget_the_estimate();
-        }
-    }
-
     /// Which link is to blame, by where the iteration has ended, and by how far each would turn at its velocity; where it
     /// has no values, the one that turns farthest.
     #[cold]
@@ -322,7 +311,7 @@ where
         }
         let is_first = motion.now().steps == 0;
         self.proceed(scene, motion, &work, kick)?;
-        Self::follow(kept, &work, is_first);
+        follow(kept, &work, is_first);
         Ok(StepReport::of(iterations))
     }
 
@@ -355,5 +344,16 @@ where
         let links = N as u32;
         let (step, iteration) = (S::OPERATIONS.step + links * OF_A_LINK.step, links * OF_A_LINK.iteration);
         Cost::of_stages(Operations { step, iteration }, 1)
+    }
+}
+
+/// Guesses the next increments by these.
+#[hot]
+pub(super) fn follow<const N: usize>(kept: &mut WarmStart<Components<N>>, work: &[Work; N], is_first: bool) {
+    let half = Bodies(filled!([Vector3::zeros(); N], |k| work[k].half));
+    let far = !<CayleyRetraction as Retraction<[SO3; N]>>::is_half_well_near_identity(&half);
+    kept.follow(half, far);
+    if is_first {
+        kept.forget_the_estimate();
     }
 }

@@ -6,6 +6,7 @@ use std::println;
 use nalgebra::{Matrix3, Vector3};
 
 use super::elimination::{Folded, Work, newton, outwards};
+use super::plan::follow;
 use super::{Chain, Link};
 use crate::groups::SO3;
 use crate::mechanics::NonstandardInertia;
@@ -145,7 +146,7 @@ fn nothing_but_roundings_is_missing() {
             let left = (0..4).map(|_| further()).fold(1.0, f64::max);
             (missing, worst) = (missing.max(first), worst.max(first / left));
             plan.proceed(stepper.scene(), &mut state.motion, &work, kick).unwrap();
-            plan.follow(&mut state.kept, &work, step == 0);
+            follow(&mut state.kept, &work, step == 0);
         }
         println!(
             "{slimness:e} {off} {last:e} {spin} {h}: {missing:.1} roundings, {worst:.1} times what is left; {iterations}"
