@@ -26,10 +26,10 @@ struct Torque {
 }
 
 fn main() {
-    let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap();
+    let inertia = NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap();
     let rotor = Rotor { k: 0.5 };
     assert_eq!(rotor.l(&Vector3::x(), &()), 0.5);
-    let scene = Top { J_d, k: 1.0, up: Vector3::z() } + rotor + Torque { torque: Vector3::x() };
+    let scene = Top { J_d: inertia, k: 1.0, up: Vector3::z() } + rotor + Torque { torque: Vector3::x() };
     let stepper = Stepper::new(scene, 0.01).unwrap();
     let mut state = stepper.start(SO3::identity(), Vector3::new(0.1, 0.0, 5.0)).unwrap();
     stepper.step(&mut state).unwrap();
