@@ -4,7 +4,7 @@
 
 pub use crate::effects::{Gravity, PrincipalBody, RigidBody};
 pub use crate::error::{SetupError, StepError};
-pub use crate::groups::{LieGroup as _, SE2, SE3, SO2, SO3};
+pub use crate::groups::{LieGroup as _, R1, R2, R3, SE2, SE3, SO2, SO3};
 pub use crate::mechanics::{DiagonalNonstandardInertia, Inertia, NonstandardInertia};
 pub use crate::mechanics::{DiscreteLagrangian as _, Effect as _, Term as _};
 pub use crate::motion::{Integrator as _, State, StateOf, Stepper};

@@ -7,8 +7,7 @@ use nalgebra::Vector4;
 /// A fast particle in a uniform field, `l(v, w) = −m c² √(1 − |v|²/c²) + q w₄`, where `w₄` is the value of an affine
 /// function of space at the particle: its momentum `m v/√(1 − |v|²/c²)` is inverted by Newton's iteration.
 ///
-/// No inertia is the same at all velocities, so there is no `discretise`: an ODE solver integrates
-/// [`RightHandSide`](liestep::motion::RightHandSide).
+/// Without `discretise` there is no step: an ODE solver integrates [`RightHandSide`](liestep::motion::RightHandSide).
 #[lagrangian(
     group = R3,
     velocity = v,

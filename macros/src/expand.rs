@@ -22,8 +22,9 @@ pub(crate) fn expand(role: Role, arguments: TokenStream, item: &TokenStream) -> 
 /// The items of a group of one's own, or its mistakes.
 pub(crate) fn matrix_group(tokens: TokenStream) -> TokenStream {
     let mut errors = Errors::default();
+    let name = parse::name_of_own_group(&tokens);
     let group = parse::own_group(tokens, &mut errors);
-    emit::own_group(group.as_ref(), &errors)
+    emit::own_group(group.as_ref(), name.as_ref(), &errors)
 }
 
 /// Every phase adds its mistakes to `errors`, and gives nothing where the next one couldn't go on.
@@ -36,6 +37,7 @@ fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, error
     }
     let tree = check::check(&declaration, errors)?;
     let declared = match declaration.continuous {
+        Some(_) if judged::terms(&declaration, &tree, errors).is_none() => return None,
         Some(_) => Some(judged::of_declared(&declaration, &tree, errors)?),
         None => None,
     };

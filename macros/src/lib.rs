@@ -89,7 +89,8 @@ mod program;
 /// `hat(Omega)`, on SO(3) also in `Omega.dot(&(J * Omega))` and `s.dot(&Omega)`. In a power of the first of these, terms
 /// cancel that are much larger than `l_d`: those of `k (Ω·JΩ)²` are as large as `4 k tr(J_d)²/h³`, and each is rounded, so
 /// that a short step loses digits which `trapezoid(Cayley)` keeps. A logarithm is known on SO(3) and where all generators
-/// are strictly triangular. A declared `l_d` has the continuous equations of its limit.
+/// are strictly triangular. A declared `l_d` has the continuous equations of its limit, which may be of any degree
+/// in the velocity, too.
 ///
 /// Of several bodies `velocity(Omega_1, v)` names the velocities, one for each factor of `group(F_1 = SO3, d = R3)`, in their
 /// order: of what turns in its own axes, of what is translated in those of space. Methods take and give the components of all,
@@ -101,7 +102,7 @@ mod program;
 ///
 /// The fields are `f64`, `Vector3<f64>`, `Point3<f64>`, `Matrix3<f64>` (or of another size), `NonstandardInertia`,
 /// `DiagonalNonstandardInertia` and `Inertia`, or all of them over `f32` or over a type parameter `T: Real` of the
-/// struct. Their types say what may be used: an inertia is symmetric, a diagonal one has six zeros. A point, where the
+/// struct; of more than six rows `SVector<f64, 8>` and `SMatrix<f64, 8, 8>`. Their types say what may be used: an inertia is symmetric, a diagonal one has six zeros. A point, where the
 /// group moves points, stands for its homogeneous coordinates, `(x, y, z, 1)` on SE(3). An advected vector is a
 /// covector, moved by `ρ(f)ᵀ`; a point is moved by `ρ(f)⁻¹`; `ContravariantVector`, `ContravariantTensor`,
 /// `CovariantTensor` and `MixedTensor` are the other kinds.

@@ -12,9 +12,10 @@ use liestep::methods::{CotangentGauss, ExactBody, SplittingScheme};
 use liestep::motion::Moment;
 use liestep::numbers::{Coordinates, Lanes as _, Real};
 use liestep::recording::{Event, RunError};
-use liestep::{SetupError, StepError, Stepper, lagrangian};
+use liestep::{NonstandardInertia, SetupError, StepError, Stepper, lagrangian};
 use nalgebra::{
-    Matrix2, Matrix3, Matrix4, RealField, SMatrix, SVector, SimdValue as _, Vector2, Vector3, Vector4, convert,
+    ComplexField, Matrix2, Matrix3, Matrix4, RealField, SMatrix, SVector, SimdValue as _, Vector2, Vector3, Vector4,
+    convert,
 };
 use num_dual::HyperDual64;
 use simba::simd::WideF64x4;
@@ -146,6 +147,45 @@ where
     stepper.run(&mut there, 50).unwrap();
     back.run(&mut there, 50).unwrap();
     assert!((there.momentum() - expected).norm() < 1e-11 * expected.norm(), "{name}: back");
+}
+
+/// A top that is nearly as fast as light, typed as an `l_d`: the limit is `−√(1 − ξ·Jξ) − k w·r`.
+#[lagrangian(
+    group = SO3,
+    advected(w = covector),
+    l_d = -h * (1.0 - ((F - I) * J_d * (F - I).transpose()).trace() / (h * h)).sqrt()
+        - 0.5 * h * k * w.dot(&(r + F * r)),
+)]
+#[derive(Clone, Debug)]
+struct Relativistic {
+    J_d: NonstandardInertia,
+    k: f64,
+    r: Vector3<f64>,
+    covector: Vector3<f64>,
+}
+
+/// Its momentum is `Jξ/√(1 − ξ·Jξ)`.
+#[test]
+fn of_any_degree_as_typed() {
+    let J_d = NonstandardInertia::from_diagonal(Vector3::new(0.1, 0.12, 0.08)).unwrap();
+    let top = Relativistic { J_d, k: 0.2, r: Vector3::new(0.1, -0.2, 0.9), covector: Vector3::new(0.3, -0.8, 0.5) };
+    let J = *top.J_d.to_inertia().as_matrix();
+    let (xi, w) = (Vector3::new(0.9, -0.7, 0.8), top.covector);
+    let root = (1.0 - xi.dot(&(J * xi))).sqrt();
+    assert!((top.momentum(&xi, &w) - J * xi / root).norm() < 1e-14);
+    assert!((top.l(&xi, &w) + root + top.k * w.dot(&top.r)).abs() < 1e-14);
+    let typed = |f: &Matrix3<HyperDual64>, w: &Vector3<HyperDual64>, h: HyperDual64| {
+        let (small, r) = (f - Matrix3::identity(), top.r.map(HyperDual64::from));
+        let J_d = top.J_d.as_matrix().map(HyperDual64::from);
+        let squared = (small * J_d * small.transpose()).trace() / (h * h);
+        -h * ComplexField::sqrt(HyperDual64::from(1.0) - squared) - h * (0.5 * top.k) * w.dot(&(r + f * r))
+    };
+    assert_terms("SO(3), typed", (&top, 0.6, 0.0), typed, 5);
+    let stepper = Stepper::new(top, 0.01).unwrap();
+    let mut state = stepper.start(SO3::identity(), xi).unwrap();
+    let energy = stepper.energy(&state);
+    stepper.run(&mut state, 500).unwrap();
+    assert!((stepper.energy(&state) - energy).abs() < 1e-2 * energy.abs());
 }
 
 /// The declared `l`, as a function of `ξ̂` and `w`.

@@ -5,7 +5,7 @@ use checks::affine::Affine;
 use checks::random::Random;
 use checks::structure::{System, momenta, stages};
 use liestep::groups::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
-use liestep::groups::{Heisenberg, LieGroup, R2, SE2, SE3, SL2, SO2, SU2};
+use liestep::groups::{Heisenberg, LieGroup, R2, SE2, SE3, SE23, SL2, SO2, SU2};
 use liestep::mechanics::Regular;
 use liestep::motion::DiscreteLiePoisson;
 use liestep::numbers::Coordinates;
@@ -49,6 +49,19 @@ struct Body {
     g: f64,
     r: Vector4<f64>,
     up: Vector4<f64>,
+}
+
+/// An extended pose, in fields of the size that nalgebra has no names for beyond six.
+#[lagrangian(
+    group = SE23,
+    advected(w = covector),
+    l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * k * w.dot(&(r + F * r)),
+)]
+struct ExtendedPose {
+    J: SMatrix<f64, 5, 5>,
+    k: f64,
+    r: SVector<f64, 5>,
+    covector: SVector<f64, 5>,
 }
 
 /// A top in unit quaternions, with a potential that a rotation by 2π would change.
@@ -200,6 +213,11 @@ fn body() -> Body {
     Body { J: tensor(&mut Random::new(1)), g: 9.81, r: Vector4::new(0.2, 0.1, -0.3, 1.0), up: Vector4::z() }
 }
 
+fn extended_pose() -> ExtendedPose {
+    let mut r = Random::new(3);
+    ExtendedPose { J: tensor(&mut r), k: 0.7, r: column(&mut r), covector: column(&mut r) }
+}
+
 fn quaternion() -> Quaternion {
     let mut r = Random::new(2);
     Quaternion { J: tensor(&mut r), k: 0.7, rho: column(&mut r), up: column(&mut r) }
@@ -249,6 +267,7 @@ on_a_group!(
     so2 pendulum,
     se2 planar_body,
     se3 body,
+    se23 extended_pose,
     su2 quaternion,
     sl2 pseudo_rigid,
     heisenberg nilpotent,
@@ -269,6 +288,7 @@ fn self_adjoint_declarations_reverse() {
         there_and_back::<_, 2, 1>(pendulum(), pendulum()),
         there_and_back::<_, 3, 3>(planar_body(), planar_body()),
         there_and_back::<_, 4, 6>(body(), body()),
+        there_and_back::<_, 5, 9>(extended_pose(), extended_pose()),
         there_and_back::<_, 4, 3>(quaternion(), quaternion()),
         there_and_back::<_, 3, 2>(particle(), particle()),
     ];

@@ -22,6 +22,7 @@ laws! {
     so3: liestep::SO3;
     se2: liestep::groups::SE2;
     se3: liestep::groups::SE3;
+    se23: liestep::groups::SE23;
     su2: liestep::groups::SU2;
     sl2: liestep::groups::SL2;
     heisenberg: liestep::groups::Heisenberg;

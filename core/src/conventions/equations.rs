@@ -25,7 +25,7 @@
 //! | (1.14) | `μ = δl/δξ` | [`momentum`], inverse [`velocity`]; [`Stepper::start`], [`Stepper::velocity`] | `tests/systems/limit.rs` `assert_limit`; `tests/random_lagrangians/continuous.rs` `assert_equations`; `tests/derivation/continuous.rs` `an_inertia_that_depends_on_what_is_advected` |
 //! | (1.15) | `H = ⟨𝔽L, ġ⟩ − L` | printed in [the guide][lie-poisson] | `tests/groups/reduction.rs` `legendre_transform` |
 //! | (1.16) | `h(μ) = μ·ξ − l(ξ)`, with `δh/δμ = ξ` | [`hamiltonian`], [`Stepper::energy`] | `tests/systems/limit.rs` `assert_limit`; `tests/groups/reduction.rs` `legendre_transform`; `tests/random_lagrangians/continuous.rs` `assert_equations` |
-//! | lemma 1.3.1 | `𝔽l` carries (1.4) to (1.12) | [`euler_poincare`], [`lie_poisson`] | `tests/groups/reduction.rs` `legendre_transform` |
+//! | lemma 1.3.1 | `𝔽l` carries (1.4) to (1.12) | [`euler_poincare`], [`lie_poisson`] | `tests/groups/reduction.rs` `legendre_transform`; `tests/random_lagrangians/continuous.rs` `assert_equations` |
 //! | example 1 | the free body; `J = tr(J_d) I − J_d` | [`NonstandardInertia::to_inertia`], [`ExactBody`] | `tests/derivation/thesis.rs` `matrix_in_the_trace`; `tests/hard_cases/bodies/inertia.rs` `conversions_agree_with_the_integrals` |
 //! | (1.17) | `ad*_Ω Π = Π × Ω` | [`lie_bracket_transpose`] of [`SO3`] | `tests/groups/so3_laws.rs` `adjoint_actions_and_their_pairings` |
 //! | (1.18) | `l_d` approximates the action of a step | [`l_d`] as declared, or by `discretise = …` | `tests/derivation/exact_lagrangian.rs` `order_of_the_action`; `tests/derivation/continuous.rs` `every_discretisation_is_what_it_says` |

@@ -16,6 +16,7 @@
 //! |---|---|---|
 //! | [`SO2`], [`SO3`] | rotations of the plane and of space | [`SO2Generators`]; SO(3) is written out |
 //! | [`SE2`], [`SE3`] | rigid motions | [`SE2Generators`], [`SE3Generators`] |
+//! | [`SE23`] | extended poses: attitude, velocity and place | [`SE23Generators`] |
 //! | [`SU2`] | unit quaternions | [`SU2Generators`] |
 //! | [`SL2`] | area-preserving linear maps of the plane | [`SL2Generators`] |
 //! | [`Heisenberg`] | unitriangular matrices | [`HeisenbergGenerators`] |
@@ -35,6 +36,7 @@ mod product;
 mod retraction;
 pub(crate) mod rotation_functions;
 mod se2;
+mod se23;
 mod se3;
 mod sl2;
 mod so2;
@@ -60,6 +62,7 @@ pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
 pub(crate) use rotation_functions::rotation_coefficients;
 pub use se2::{SE2, SE2Generators};
 pub use se3::{SE3, SE3Generators};
+pub use se23::{SE23, SE23Generators};
 pub use sl2::{SL2, SL2Generators};
 pub use so2::{SO2, SO2Generators};
 pub use so3::{NotARotation, SO3};

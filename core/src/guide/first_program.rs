@@ -177,7 +177,8 @@
 //!
 //! The momentum, the diamond term, the Euler–Poincaré and Lie–Poisson equations and the Hamiltonian are derived, and
 //! checked in exact arithmetic when your crate is compiled; so is the claim that `l` is the limit of the discretised one.
-//! The kinetic part of `l` needn't be quadratic in the velocity: then Newton's iteration finds the velocity of a momentum.
+//! The kinetic part of `l`, or of an `l_d` as h → 0, needn't be quadratic in the velocity: then Newton's
+//! iteration finds the velocity of a momentum.
 //! The page of [`lagrangian`](macro@crate::lagrangian) lists the ways to discretise. That line may be left out:
 //! [`CotangentGauss`](crate::methods::CotangentGauss) integrates any smooth `l` of one body, on any group. Scenes that are declared by
 //! `l_d` have the continuous equations of their limit. The listings in [`thesis`](super::thesis) begin with `l`.

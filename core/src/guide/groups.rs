@@ -4,10 +4,10 @@
 //!
 //! # The groups there are
 //!
-//! `SO2`, `SO3`, `SE2`, `SE3`, `SU2`, `SL2`, `Heisenberg`, `R1`, `R2`, `R3`: [`groups`](crate::groups) has a page for each, with
-//! the basis `E_k` of its algebra. A declaration names one, and all of this crate that isn't about rotations works for it:
-//! steps, forces, compositions, events, recording, gradients. `F` is the group's matrix, and vectors have the size of its
-//! columns.
+//! `SO2`, `SO3`, `SE2`, `SE3`, `SE23`, `SU2`, `SL2`, `Heisenberg`, `R1`, `R2`, `R3`: [`groups`](crate::groups) has a page for
+//! each, with the basis `E_k` of its algebra. A declaration names one, and all of this crate that isn't about rotations
+//! works for it: steps, forces, compositions, events, recording, gradients. `F` is the group's matrix, and vectors have the
+//! size of its columns.
 //!
 //! On SE(2) and SE(3) these columns are homogeneous coordinates. A free rigid body has the kinetic term of (3.13) with
 //! `J = ∫ X Xᵀ dm` of `X = (x, y, z, 1)`: second moments, first moments, and the mass in the last corner.
@@ -62,7 +62,7 @@
 //!
 //! # A group of one's own
 //!
-//! A matrix group is declared by its generators, written once, and by a relation that tells members from others. The
+//! A matrix group, of matrices with at most eight rows, is declared by its generators, written once, and by a relation that tells members from others. The
 //! affine maps `x ↦ a x + b` of the line:
 //!
 //! ```

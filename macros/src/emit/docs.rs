@@ -62,7 +62,7 @@ pub(super) fn equations(derived: &Derived, declared: &Declared, continuous: Opti
         equation("momentum_bias", "s", covector(&derived.limit.bias), of_limit(continuous)),
         equation("potential", "V", scalar(&derived.limit.potential), of_limit(continuous)),
         equation("kick_before", "k₀", covector(&derived.kick_before), "a = μ + k₀"),
-        equation("kick_after", "k₁⁺", covector(&derived.kick_after), "μ⁺ = Ad*_F a + k₁⁺"),
+        equation("kick_after", "k₁⁺", covector(&derived.shown_kick_after), "μ⁺ = Ad*_F a + k₁⁺"),
     ];
     if let Some([next, before]) = &derived.flow {
         let (next, before) = (covector(next), covector(before));
@@ -124,7 +124,7 @@ pub(super) fn equations_of_force(derived: &Derived, declared: &Declared) -> Vec<
         equation("momentum", "−f⁻", covector(&derived.momentum), "the share in (2.7)"),
         equation("momentum_jacobian", "−∂f⁻_k along exp(tE_j)F", jacobian, "exact, right-trivialised"),
         equation("kick_before", "k₀", covector(&derived.kick_before), "a = μ + k₀"),
-        equation("kick_after", "k₁⁺", covector(&derived.kick_after), "μ⁺ = Ad*_F a + k₁⁺"),
+        equation("kick_after", "k₁⁺", covector(&derived.shown_kick_after), "μ⁺ = Ad*_F a + k₁⁺"),
     ]
 }
 

@@ -6,7 +6,7 @@
 
 use proc_macro2::{Literal, Span, TokenStream};
 use quote::{format_ident, quote, quote_spanned};
-use syn::{Path, Visibility};
+use syn::{Ident, Path, Visibility};
 
 use crate::declared::Role;
 use crate::declared::errors::Errors;
@@ -17,9 +17,12 @@ fn private(root: Option<&Path>) -> TokenStream {
 }
 
 /// The items of `matrix_group!`, or its mistakes.
-pub(crate) fn own_group(group: Option<&OwnGroup>, errors: &Errors) -> TokenStream {
+pub(crate) fn own_group(group: Option<&OwnGroup>, name: Option<&Ident>, errors: &Errors) -> TokenStream {
     let mistakes: TokenStream = errors.iter().map(syn::Error::to_compile_error).collect();
-    let Some(group) = group else { return mistakes };
+    let Some(group) = group else {
+        let stand_in = stand_in(name);
+        return quote!(#mistakes #stand_in);
+    };
     let OwnGroup { root, attributes, visibility, name, generators, size, functions } = group;
     let (span, private) = (Span::mixed_site(), private(root.as_ref()));
     let core = quote_spanned!(span=> #private::core);
@@ -58,6 +61,21 @@ pub(crate) fn own_group(group: Option<&OwnGroup>, errors: &Errors) -> TokenStrea
         #[allow(unused_imports)]
         #reach use #asked as #name;
     }
+}
+
+/// What keeps `group = Name!` from being one more mistake: it leaves the struct as it is.
+fn stand_in(name: Option<&Ident>) -> Option<TokenStream> {
+    let name = name?;
+    let asked = format_ident!("__liestep_{name}");
+    Some(quote! {
+        #[allow(unused_macros)]
+        macro_rules! #asked {
+            ($attribute:tt $arguments:tt $($item:tt)*) => { $($item)* };
+        }
+
+        #[allow(unused_imports)]
+        pub(crate) use #asked as #name;
+    })
 }
 
 /// The declaration again, by way of the group's macro, which adds the generators.

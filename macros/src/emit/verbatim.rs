@@ -30,6 +30,8 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
     // binding the name; the nearer functions can be hidden.
     let imposed = names.iter().filter(|name| *name == "F" || *name == "I");
     let hidden: TokenStream = imposed.map(|name| quote_spanned!(span=> #[allow(dead_code)] fn #name() {})).collect();
+    // As a statement it has parentheses around a block that it begins with.
+    let expression = syn::Stmt::Expr(expression, None);
     let traits = header.parameter.as_ref().map(|_| quote!(use #private::nalgebra::SimdComplexField as _;));
     let declared = quote_spanned! {span=>
         #traits

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use super::choose::Chosen;
+use super::verify::Lagrangian;
 use super::{explain, verify};
 use crate::declared::errors::Errors;
 use crate::declared::lower::Lowered;
@@ -20,11 +21,8 @@ pub(crate) struct Equations {
 }
 
 impl Equations {
-    /// With what was discretised, where it isn't quadratic in the velocity.
+    /// With what was discretised.
     pub(crate) fn behind(&self, reading: Lowered) -> Lowered {
-        if self.derived.inverse != Inverse::Nonlinear {
-            return reading;
-        }
         let symbols = self.names.iter().filter_map(|(name, &from)| Some((from, *reading.names.get(name)?))).collect();
         let discretised = Some(Discretised { continuous: self.derived.clone(), symbols });
         Lowered { declared: derive::Declared { discretised, ..reading.declared }, ..reading }
@@ -51,19 +49,23 @@ pub(crate) fn continuous(
     chosen: &Chosen,
     errors: &mut Errors,
 ) -> Option<Equations> {
-    let Some(equations) = declared else { return of_limit(declaration, chosen, errors) };
-    let disagrees = match equations.derived.inverse {
-        Inverse::Nonlinear => {
-            let [here, there] = [&equations.names, &chosen.lowered.names];
-            !verify::has_limit(declaration, tree, discrete)
-                || verify::rest_disagrees(declaration, (here, &equations.derived), (there, &chosen.derived))
-        }
-        Inverse::Constant | Inverse::Varying => {
-            verify::limit_disagrees(declaration, tree, &chosen.lowered.names, &chosen.derived)
-        }
+    let is_declared = declared.is_some();
+    let equations = match declared {
+        Some(equations) => equations,
+        None => of_limit(declaration, chosen, errors)?,
     };
+    let is_nonlinear = equations.derived.inverse == Inverse::Nonlinear;
+    let (names, own) = (&chosen.lowered.names, (&equations.names, &equations.derived));
+    let l = if is_declared { Lagrangian::Declared(tree) } else { Lagrangian::Derived(own.0, own.1) };
+    let disagrees = (is_declared || is_nonlinear)
+        && (!verify::has_limit(declaration, l, discrete)
+            || if is_nonlinear {
+                verify::rest_disagrees(declaration, own, (names, &chosen.derived))
+            } else {
+                verify::limit_disagrees(declaration, tree, names, &chosen.derived)
+            });
     if disagrees {
-        explain::unconfirmed_term("limit of the discretisation", declaration, errors);
+        explain::unconfirmed_term("continuous limit", declaration, errors);
         return None;
     }
     Some(equations)

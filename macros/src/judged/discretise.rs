@@ -289,6 +289,7 @@ impl Build<'_> {
             self.divided(self.scaled(number(4), difference.clone()), plus(4)),
             rigid(plus(1)),
             rigid(trace.clone()),
+            rigid(plus(-1)),
         ];
         // By Cayley and Hamilton, (F + I)⁻¹ = (1/c) Σ …, by the recursion of Faddeev and LeVerrier.
         if self.group().size <= 4 {

@@ -31,6 +31,10 @@ fn term(mistake: TermMistake) -> String {
         TermMistake::FunctionOfZero => {
             "this is the root or the logarithm of zero whatever the parameters, where it has no derivative".to_owned()
         }
+        TermMistake::FunctionOfStep => {
+            "this is no power of `h` as h → 0: take the `h` out of the root or the logarithm".to_owned()
+        }
+        TermMistake::NoWork => "this work is zero whatever the parameters: leave the force out".to_owned(),
         TermMistake::Potential(order @ 2..) => format!(
             "this vanishes like {} as h → 0: a potential goes like `h`, as in `0.5 * h * …`{}",
             power_of_step(order),
@@ -86,17 +90,15 @@ pub(super) fn refusal(refusal: Refusal, declaration: &Declaration, tree: &Rc<Tre
     let message = match error {
         LimitError::StepInsideFunction => {
             let span = Search::default().enclosed_step(tree, false).unwrap_or(tree.span);
-            errors.push(
-                span,
-                "`h` stands under a function or in a sum that is divided by, where its limit h → 0 isn't found: take it out",
-            );
+            errors.push(span, "`h` stands under a function that has no value as h → 0: take it out");
             return;
         }
         LimitError::TooSingular(power) => too_singular(power),
-        LimitError::TooLarge => "the limit h → 0 has too many terms: the expression is too large".to_owned(),
-        LimitError::NotALagrangian => {
-            "as h → 0 this doesn't become h times a Lagrangian that is quadratic in the velocity".to_owned()
+        LimitError::TooLarge => {
+            "the limit h → 0 has too many terms: declare the terms one by one, and add them, `Body { … } + Pull { … }`"
+                .to_owned()
         }
+        LimitError::NotALagrangian => "as h → 0 this doesn't become h times a Lagrangian of the velocity".to_owned(),
     };
     errors.push_over(declaration.expression.as_ref().map(check::value), message);
 }

@@ -216,7 +216,7 @@ fn unit(k: usize, dimension: usize) -> Vec<Rational> {
 type Sparse<'a> = &'a [(usize, usize, i128, i128)];
 
 /// The names that [`built_in`] knows.
-pub(crate) const NAMES: [&str; 10] = ["SO2", "SE2", "SO3", "SE3", "SU2", "SL2", "Heisenberg", "R1", "R2", "R3"];
+pub(crate) const NAMES: [&str; 11] = ["SO2", "SE2", "SO3", "SE3", "SE23", "SU2", "SL2", "Heisenberg", "R1", "R2", "R3"];
 
 /// The group of that name.
 pub(crate) fn built_in(name: &str) -> Option<Group> {
@@ -225,6 +225,20 @@ pub(crate) fn built_in(name: &str) -> Option<Group> {
         "SE2" => (3, &[&[(0, 1, -1, 1), (1, 0, 1, 1)], &[(0, 2, 1, 1)], &[(1, 2, 1, 1)]]),
         "SO3" => (3, &ROTATIONS),
         "SE3" => (4, &[ROTATIONS[0], ROTATIONS[1], ROTATIONS[2], &[(0, 3, 1, 1)], &[(1, 3, 1, 1)], &[(2, 3, 1, 1)]]),
+        "SE23" => (
+            5,
+            &[
+                ROTATIONS[0],
+                ROTATIONS[1],
+                ROTATIONS[2],
+                &[(0, 3, 1, 1)],
+                &[(1, 3, 1, 1)],
+                &[(2, 3, 1, 1)],
+                &[(0, 4, 1, 1)],
+                &[(1, 4, 1, 1)],
+                &[(2, 4, 1, 1)],
+            ],
+        ),
         // Half the left multiplications by i, j and k, on (1, i, j, k).
         "SU2" => (
             4,

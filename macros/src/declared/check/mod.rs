@@ -296,7 +296,11 @@ impl Checker<'_> {
         for statement in before {
             match statement {
                 Stmt::Local(local) => self.binding(local),
-                other => self.errors.push(other.span(), format!("only `let name = …;` may stand before {the}")),
+                other => {
+                    // It may have been meant to give a name.
+                    self.errors.push(other.span(), format!("only `let name = …;` may stand before {the}"));
+                    return None;
+                }
             }
         }
         match last {

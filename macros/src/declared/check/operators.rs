@@ -219,6 +219,7 @@ impl Checker<'_> {
             let shape = operand.shape.describe();
             let entries = match operand.shape {
                 Shape::Scalar => "leave it away".to_owned(),
+                Shape::Matrix(_, 1) if axes.is_empty() => "write an entry by its index, `v[0]`".to_owned(),
                 Shape::Matrix(_, 1) => format!("there are {}, and `v[0]`", axes.join(", ")),
                 Shape::Matrix(..) => match entry_of(&member) {
                     Some((row, column)) => format!("write `A[({row}, {column})]`"),

@@ -81,6 +81,9 @@ fn known(role: Role) -> Vec<&'static str> {
 
 fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) -> syn::Result<()> {
     let known = known(role);
+    if input.peek(Token![,]) {
+        return Err(input.error("there is one comma too many: remove it"));
+    }
     let Some(key) = key(input, &known) else {
         if !arguments.has_nameless {
             errors.push(input.span(), format!("arguments have names: write `group = SO3`, `{} = …`", role.key()));
@@ -100,6 +103,9 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             once(arguments.root.is_some());
             equals(&key, input)?;
             without_quotes(&key, input)?;
+            let message = "write where liestep is found: `crate = liestep`, `crate = ::renamed`";
+            let path = input.fork().call(Path::parse_mod_style);
+            path.map_err(|_| syn::Error::new(input.span(), message))?;
             arguments.root = Some(input.call(Path::parse_mod_style)?);
         }
         expression if expression == role.key() => {
@@ -206,6 +212,9 @@ fn is_at_end(input: ParseStream) -> bool {
 }
 
 fn comma(input: ParseStream) -> syn::Result<()> {
+    if input.peek(Token![;]) {
+        return Err(input.error("a comma stands between arguments: write `,`"));
+    }
     if !input.is_empty() {
         input.parse::<Token![,]>()?;
     }
@@ -272,7 +281,9 @@ fn key(input: ParseStream, known: &[&str]) -> Option<Ident> {
     let ahead = input.fork();
     let key = ahead.call(Ident::parse_any).ok()?;
     let is_given = ahead.peek(Token![=]) || ahead.peek(syn::token::Paren);
-    (is_given || known.iter().any(|name| key == name)).then(|| input.call(Ident::parse_any).ok())?
+    let is_known = known.iter().any(|name| key == name);
+    let is_slip = is_at_end(&ahead) && !suggestion(&key.to_string(), known.iter().copied()).is_empty();
+    (is_given || is_known || is_slip).then(|| input.call(Ident::parse_any).ok())?
 }
 
 /// `trapezoid`, `trapezoid(Cayley)`, `midpoint(exp)`, `chord`, ….
@@ -295,7 +306,8 @@ fn discretisation(input: ParseStream) -> syn::Result<Discretisation> {
     }
     let content;
     let parentheses = parenthesized!(content in input);
-    let retraction: Ident = content.call(Ident::parse_any)?;
+    let message = format!("write a retraction, `{name}(Cayley)` or `{name}(exp)`");
+    let retraction = content.call(Ident::parse_any).map_err(|_| syn::Error::new(parentheses.span.join(), message))?;
     let rest: TokenStream = content.parse()?;
     if !rest.is_empty() {
         return Err(syn::Error::new_spanned(rest, format!("write one retraction: `{name}({retraction})`")));

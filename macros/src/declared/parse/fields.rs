@@ -38,8 +38,9 @@ pub(super) fn fields(
                 &field.ty,
                 format!(
                     "this type has no meaning in {}: use f64, Vector3<f64>, Point3<f64>, Matrix3<f64>, \
-                     NonstandardInertia, DiagonalNonstandardInertia or Inertia (or the same with the struct's type \
-                     parameter)",
+                     SVector<f64, 7>, SMatrix<f64, 7, 7>, ContravariantVector<f64, 3>, ContravariantTensor<f64, 3>, \
+                     CovariantTensor<f64, 3>, MixedTensor<f64, 3>, NonstandardInertia, DiagonalNonstandardInertia or \
+                     Inertia (or the same with the struct's type parameter)",
                     role.noun()
                 ),
             );
@@ -66,6 +67,8 @@ pub(crate) fn field_kind(ty: &Type, item: &ItemStruct) -> Option<FieldKind> {
         "Vector2" | "Vector3" | "Vector4" | "Vector5" | "Vector6" => FieldKind::Vector(digit(&name)?),
         "Point1" | "Point2" | "Point3" => FieldKind::Point(digit(&name)? + 1),
         "Matrix2" | "Matrix3" | "Matrix4" | "Matrix5" | "Matrix6" => FieldKind::Matrix(digit(&name)?),
+        "SVector" => FieldKind::Vector(length(ty)?),
+        "SMatrix" => FieldKind::Matrix(length(ty)?),
         "ContravariantVector" => FieldKind::Advected(Variance::Vector, length(ty)?),
         "ContravariantTensor" => FieldKind::Advected(Variance::Contravariant, length(ty)?),
         "CovariantTensor" => FieldKind::Advected(Variance::Covariant, length(ty)?),
@@ -75,6 +78,11 @@ pub(crate) fn field_kind(ty: &Type, item: &ItemStruct) -> Option<FieldKind> {
         _ if item.generics.type_params().any(|parameter| parameter.ident == name) => FieldKind::Scalar,
         _ => return None,
     })
+}
+
+/// A vector of that size, as nalgebra calls it.
+pub(super) fn vector_type(size: usize) -> String {
+    if size <= 6 { format!("Vector{size}<f64>") } else { format!("SVector<f64, {size}>") }
 }
 
 /// The number in a type's arguments, `3` in `MixedTensor<f64, 3>`.
@@ -157,7 +165,8 @@ pub(super) fn points(fields: &mut [Field], group: &Group, errors: &mut Errors) {
         }
         let message = if !group.is_affine() {
             format!(
-                "`{name}` is a point, but this group moves vectors only, as it leaves the origin: use Vector{size}<f64>"
+                "`{name}` is a point, but this group moves vectors only, as it leaves the origin: use {}",
+                vector_type(size)
             )
         } else if rows != size {
             let (found, wanted) = (rows - 1, size - 1);

@@ -271,7 +271,7 @@ fn explained(defect: Defect, array: &ExprArray) -> syn::Error {
 }
 
 /// Larger matrices would make the derived code grow without bound.
-const MOST_ROWS: usize = 4;
+const MOST_ROWS: usize = 8;
 
 fn decimal(expression: &Expr) -> syn::Result<Rational> {
     let message = "write the entry of a generator as a decimal number: `-1.0`";

@@ -20,11 +20,11 @@ use crate::declared::{
 use crate::mathematics::derive::Seen;
 use crate::mathematics::group::Group;
 use arguments::{Arguments, Source, arguments_from};
-use fields::{points, scalar};
+use fields::{points, scalar, vector_type};
 use names::{check_names, displacements, velocities};
 
 pub(crate) use fields::{field_kind, scalar_of};
-pub(crate) use own_group::{Asked, OwnGroup, asked, own_group};
+pub(crate) use own_group::{Asked, OwnGroup, asked, name_of_own_group, own_group};
 
 /// The declaration, with its mistakes reported; `None` where nothing of it can be read.
 pub(crate) fn declaration(
@@ -318,7 +318,8 @@ fn advected(
                     }
                     _ => String::new(),
                 };
-                format!("`{wanted}` is {shape}, but the group carries a vector of {size}: use Vector{size}<f64>{point}")
+                let vector = vector_type(size);
+                format!("`{wanted}` is {shape}, but the group carries a vector of {size}: use {vector}{point}")
             };
             errors.push_decisive(found.at, message);
         }

@@ -54,6 +54,16 @@ pub(crate) fn own_group(tokens: TokenStream, errors: &mut Errors) -> Option<OwnG
     syn::parse2(tokens).map_err(|error| errors.extend(error)).ok()
 }
 
+/// The name behind `type`, whatever follows it.
+pub(crate) fn name_of_own_group(tokens: &TokenStream) -> Option<Ident> {
+    let mut tokens = tokens.clone().into_iter();
+    tokens.find(|token| matches!(token, TokenTree::Ident(word) if word == "type"))?;
+    match tokens.next()? {
+        TokenTree::Ident(name) => Some(name),
+        _ => None,
+    }
+}
+
 /// `group = Name!`: the arguments, and what stands behind some keys.
 pub(crate) struct Asked {
     pub(crate) group: Path,

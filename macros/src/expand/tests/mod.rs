@@ -6,6 +6,7 @@ mod determinism;
 mod discretised_bodies;
 mod fuzz;
 mod higher_order;
+mod messages;
 mod mutants;
 mod not_quadratic;
 mod own_group;

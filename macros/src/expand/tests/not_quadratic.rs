@@ -4,6 +4,7 @@ use super::continuous::{equations, read};
 use super::expanded;
 use crate::declared::errors::Errors;
 use crate::declared::lower;
+use crate::judged::verify::Lagrangian::Declared;
 use crate::judged::{self, verify};
 use crate::mathematics::derive;
 use crate::mathematics::symbolic::Rational;
@@ -21,11 +22,11 @@ fn the_limit_of_what_isnt_quadratic() {
         let mut errors = Errors::default();
         let asked = declaration.discretisation().expect("a rule");
         let discrete = judged::discretised(&declaration, &tree, asked, &mut errors).expect("a fit");
-        assert!(verify::has_limit(&declaration, &tree, &discrete), "{rule}");
+        assert!(verify::has_limit(&declaration, Declared(&tree), &discrete), "{rule}");
         let (_, other) = read(&l(kinetic, '+'), fields);
-        assert!(!verify::has_limit(&declaration, &other, &discrete), "{rule}: the potential's sign");
+        assert!(!verify::has_limit(&declaration, Declared(&other), &discrete), "{rule}: the potential's sign");
         let (_, other) = read(&l(&kinetic.replace("+ m", "- m"), '-'), fields);
-        assert!(!verify::has_limit(&declaration, &other, &discrete), "{rule}: the quartic term's sign");
+        assert!(!verify::has_limit(&declaration, Declared(&other), &discrete), "{rule}: the quartic term's sign");
     }
 }
 
@@ -45,7 +46,7 @@ fn the_limit_of_a_root() {
         let mut errors = Errors::default();
         let asked = declaration.discretisation().expect("a rule");
         let discrete = judged::discretised(&declaration, &tree, asked, &mut errors).expect("a fit");
-        verify::has_limit(&declaration, &read(other, fields).1, &discrete)
+        verify::has_limit(&declaration, Declared(&read(other, fields).1), &discrete)
     };
     let [root, turned] = ["1.0 - v.norm_squared() / (c * c)", "1.0 + v.norm_squared() / (c * c)"];
     assert!(limit(&l(root, '+'), &l(root, '+')));

@@ -351,22 +351,41 @@ pub(crate) fn limit_disagrees(
     })
 }
 
+/// A continuous Lagrangian.
+#[derive(Clone, Copy)]
+pub(crate) enum Lagrangian<'a> {
+    Declared(&'a Rc<Tree>),
+    Derived(&'a BTreeMap<Name, SymbolId>, &'a Continuous),
+}
+
 /// Whether the discrete Lagrangian is `h l(ξ, w) + O(h²)` along `F = exp(h ξ̂)`, at all points that tell, and at one at
-/// least.
+/// least. Of lower orders only what depends on the motion counts.
 ///
 /// The field has roots of all numbers, so this says nothing of where `l` has a value.
-pub(crate) fn has_limit(declaration: &Declaration, l: &Rc<Tree>, discrete: &Rc<Tree>) -> bool {
+pub(crate) fn has_limit(declaration: &Declaration, l: Lagrangian, discrete: &Rc<Tree>) -> bool {
+    let rest = |values: &Values<PowerSeries<Residue>>| {
+        let l = match l {
+            Lagrangian::Declared(tree) => Evaluation::new(values).of(tree).first(),
+            Lagrangian::Derived(names, derived) => {
+                let terms = Terms::new(derived);
+                let value = terms.values(&[terms.lagrangian], names, values);
+                value.first().copied().unwrap_or(PowerSeries::UNDEFINED)
+            }
+        };
+        Evaluation::new(values).of(discrete).first() - PowerSeries::STEP * l
+    };
     let mut told = (1..=POINTS).filter_map(|seed| {
         let values = Point::new(declaration, Residue::stream(seed)).moving();
-        let along = Evaluation::new(&values).of(discrete).first();
-        let rest = along - PowerSeries::STEP * Evaluation::new(&values).of(l).first();
-        if !rest.is_defined() {
+        let mut elsewhere = Point::new(declaration, Residue::stream(seed + POINTS)).moving();
+        elsewhere
+            .extend(values.iter().filter(|(name, _)| matches!(name, Name::Field(_))).map(|(n, v)| (*n, v.clone())));
+        let here = rest(&values);
+        let difference = here - rest(&elsewhere);
+        if !difference.is_defined() {
             return None;
         }
-        match rest.order() {
-            Some(order) => Some(order >= 2),
-            None => rest.is_known_below(2).then_some(true),
-        }
+        let is_right = difference.order().is_none_or(|order| order >= 2) && here.at(1) == Residue::ZERO;
+        difference.is_known_below(2).then_some(is_right)
     });
     told.next().is_some_and(|first| first && told.all(|one| one))
 }

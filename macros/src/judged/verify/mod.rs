@@ -64,7 +64,7 @@ pub(super) use constraint::{Row, constraint};
 #[cfg(test)]
 pub(crate) use continuous::energy_is_kept;
 pub(crate) use continuous::{
-    disagreement, has_limit, kinetic_hessian, limit_disagrees, rest_disagrees, right_symmetries,
+    Lagrangian, disagreement, has_limit, kinetic_hessian, limit_disagrees, rest_disagrees, right_symmetries,
 };
 use evaluation::Evaluation;
 use identities::Identities;

@@ -28,6 +28,8 @@ pub(crate) enum TermMistake {
     ZeroDivisor,
     /// A root or a logarithm of what is zero, whatever the parameters.
     FunctionOfZero,
+    /// A root of an odd power of `h`, or a logarithm of any.
+    FunctionOfStep,
     /// A potential goes like that power of `h`, not like the first.
     Potential(i32),
     /// A part with `F` alone goes like that power of `h` along a motion, and vanishes.
@@ -38,13 +40,19 @@ pub(crate) enum TermMistake {
     Constant,
     /// Virtual work goes like that power of `h`, not like the first.
     Work(i32),
+    /// There is no work, whatever the parameters.
+    NoWork,
 }
 
 /// The mistakes of the terms, at their places.
 pub(crate) fn term_mistakes(declaration: &Declaration, tree: &Rc<Tree>) -> Vec<(Rc<Tree>, TermMistake)> {
     let points = Points::new(declaration);
-    if let Some(found) = singular(tree, &points.turned) {
+    if let Some(found) = singular(tree, &points.turned).or_else(|| function_of_step(tree, &points.moving)) {
         return vec![found];
+    }
+    // What is made of an `l` goes as it should; a share of it needn't.
+    if declaration.continuous.is_some() {
+        return Vec::new();
     }
     let mut search = Search {
         role: declaration.role,
@@ -58,6 +66,9 @@ pub(crate) fn term_mistakes(declaration: &Declaration, tree: &Rc<Tree>) -> Vec<(
         found: Vec::new(),
     };
     let whole = search.behaviour(tree);
+    if search.role == Role::Force && whole.along.is_zero() {
+        return vec![(tree.clone(), TermMistake::NoWork)];
+    }
     if search.role == Role::Force && !search.is_linear(tree) {
         return Vec::new();
     }
@@ -264,9 +275,11 @@ impl Search<'_> {
 }
 
 /// What a term is written with.
+#[allow(clippy::struct_excessive_bools)] // four names, of which each is there or isn't
 #[derive(Default)]
 struct Names {
     has_increment: bool,
+    has_step: bool,
     has_advected: bool,
     /// `h.powi(n)` with a positive `n`: its author knows that it is small.
     has_power: bool,
@@ -277,6 +290,7 @@ impl Names {
         let mut names = Self::default();
         visit(tree, &mut |tree| match &tree.kind {
             Kind::Name(Name::Increment(_)) => names.has_increment = true,
+            Kind::Name(Name::Step) => names.has_step = true,
             Kind::Name(Name::Advected(_)) => names.has_advected = true,
             Kind::Power(a, exponent) if *exponent > 1 && is_step(a) => names.has_power = true,
             _ => {}
@@ -320,12 +334,35 @@ fn split_within(tree: &Rc<Tree>, depth: usize) -> Option<[Rc<Tree>; 2]> {
         Kind::Subtract(a, b) => Some([a.clone(), Tree::in_place_of(b, Kind::Negate(b.clone()))]),
         Kind::Negate(a) => Some(each(split_within(a, depth)?, &Kind::Negate)),
         Kind::Divide(a, b) => Some(each(split_within(a, depth)?, &|part| Kind::Divide(part, b.clone()))),
-        Kind::Multiply(a, b) if a.shape == Shape::Scalar && b.shape == Shape::Scalar => match split_within(a, depth) {
-            Some(parts) => Some(each(parts, &|part| Kind::Multiply(part, b.clone()))),
-            None => Some(each(split_within(b, depth)?, &|part| Kind::Multiply(a.clone(), part))),
-        },
+        // What moves on both sides is judged as one, as its square is.
+        Kind::Multiply(a, b) if tree.shape == Shape::Scalar && !(moves(a) && moves(b)) => {
+            match split_within(a, depth) {
+                Some(parts) => Some(each(parts, &|part| Kind::Multiply(part, b.clone()))),
+                None => Some(each(split_within(b, depth)?, &|part| Kind::Multiply(a.clone(), part))),
+            }
+        }
         _ => None,
     }
+}
+
+/// A function of `h` that has no power series.
+fn function_of_step(tree: &Rc<Tree>, values: &Values) -> Option<(Rc<Tree>, TermMistake)> {
+    let (mut evaluation, mut found) = (Evaluation::new(values), None);
+    visit(tree, &mut |tree| {
+        let Kind::Apply(function @ (Function::Sqrt | Function::Ln), inner) = &tree.kind else { return };
+        let order = evaluation.of(inner).first().order().unwrap_or(0);
+        let is_singular = if *function == Function::Ln { order != 0 } else { order % 2 != 0 };
+        if found.is_none() && is_singular && Names::of(inner).has_step {
+            found = Some((tree.clone(), TermMistake::FunctionOfStep));
+        }
+    });
+    found
+}
+
+/// Whether it depends on `F` or on what is advected.
+fn moves(tree: &Rc<Tree>) -> bool {
+    let names = Names::of(tree);
+    names.has_increment || names.has_advected
 }
 
 /// The first place where zero is divided by or is under a root or a logarithm.

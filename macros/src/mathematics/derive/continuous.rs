@@ -221,7 +221,7 @@ fn without_last(column: &Expression, symbols: &Symbols) -> Expression {
     column.clone().minus(unit.times(&row.times(column, symbols), symbols))
 }
 
-/// The limit of a discrete Lagrangian, `l = ½ ξ·Jξ + s(w)·ξ − V(w)`.
+/// The limit of a discrete Lagrangian, `l = ½ ξ·Jξ + s(w)·ξ − V(w)` where it is quadratic in `ξ`.
 pub(crate) fn of_limit(declared: &Declared, derived: &Derived) -> DeclaredContinuous {
     let (group, mut symbols) = (declared.group.clone(), derived.symbols.clone());
     let mut velocities = Vec::new();
@@ -234,13 +234,16 @@ pub(crate) fn of_limit(declared: &Declared, derived: &Derived) -> DeclaredContin
     let factors = directions.factors.iter().zip(&velocities).zip(group.factors());
     let map = factors.flat_map(|((one, velocity), own)| {
         let element = velocity.element(own, &symbols);
-        [one.first, one.second].map(|direction| (direction, element.clone()))
+        [one.first, one.second, one.velocity].map(|direction| (direction, element.clone()))
     });
     let map = map.collect();
     let along = |expression: &Expression| substitute(expression, &map, &symbols);
     let limit = &derived.limit;
-    let kinetic = along(&limit.inertia).scaled(Rational::new(1, 2));
-    let expression = kinetic.plus(along(&limit.bias)).minus(limit.potential.clone());
+    let quadratic = || {
+        let kinetic = along(&limit.inertia).scaled(Rational::new(1, 2));
+        kinetic.plus(along(&limit.bias)).minus(limit.potential.clone())
+    };
+    let expression = limit.lagrangian.as_ref().map_or_else(quadratic, along);
     let advected = declared.advected.clone();
     DeclaredContinuous { group, symbols, expression, velocities, advected }
 }

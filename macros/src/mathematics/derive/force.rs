@@ -56,6 +56,7 @@ pub(super) fn force(declared: &Declared, Displacements(displacements): &Displace
     let cleared = cayley::cleared(&context, &parts.unknown);
     let ends = context.ends(&[], [&momentum, &after]);
     let after = context.substituted(&after, &transport::previous(&context).into_iter().collect());
+    let kick_after = parts.kick_after.plus(after);
     let none = || Expression::zero((1, 1));
     Ok(Derived {
         group: declared.group.clone(),
@@ -69,12 +70,20 @@ pub(super) fn force(declared: &Declared, Displacements(displacements): &Displace
         flow: None,
         closed: Vec::new(),
         previous: transport::previous(&context),
-        limit: Limit { has_kinetic: false, slope: none(), inertia: none(), bias: none(), potential: none() },
+        limit: Limit {
+            has_kinetic: false,
+            slope: none(),
+            inertia: none(),
+            bias: none(),
+            potential: none(),
+            lagrangian: None,
+        },
         kick_before: parts.kick_before,
         kick_derivative: None,
         unknown: transport::in_small_increment(&context, &parts.unknown),
         moved: None,
-        kick_after: parts.kick_after.plus(after),
+        kick_after: transport::with_small_increment(&context, &kick_after),
+        shown_kick_after: kick_after,
         half_step: context.half_step(),
         cleared,
         ends,

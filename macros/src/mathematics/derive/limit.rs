@@ -1,19 +1,19 @@
-//! The continuous Lagrangian that `l_d` discretises, `l_d(exp hξ, w) = h (½ ξ·Jξ + s·ξ − V) + O(h²)`.
+//! The continuous Lagrangian that `l_d` discretises, `l_d(exp hξ, w) = h l(ξ, w) + O(h²)`.
 //!
-//! By powers of `h` with `F` held fixed: `l_d = h⁻¹ K(F) + S(F, w) + h U(F, w) + …`. Then `J` is the second derivative
-//! of `K` at `F = I`, `s` the momentum of `S` there, and `V = −U(I, w)`. A first derivative of `K` at the identity
-//! would let momenta grow without bound as `h → 0`.
+//! By powers of `h` with `F` held fixed: `l_d = h⁻¹ K(F) + S(F, w) + h U(F, w) + …`. Then `l = ½ ξ·Jξ + s·ξ − V`, where
+//! `J` is the second derivative of `K` at `F = I`, `s` the momentum of `S` there, and `V = −U(I, w)`. A first derivative
+//! of `K` at the identity would let momenta grow without bound as `h → 0`. Where `h` is under functions or has lower
+//! powers, a series along a motion has `l`.
 
 use std::collections::BTreeMap;
 
 use super::series::{Expansion, LimitError};
-use super::{Context, Continuous, momentum_equation};
+use super::{Context, Continuous, Inverse, OfFactor, momentum_equation};
 use crate::mathematics::symbolic::{
-    Expression, Monomial, Rational, SymbolId, Variations, degree, substitute, variation,
+    Expression, Monomial, Rational, SymbolId, Variations, monomial_contains, substitute, variation,
 };
 
-/// A continuous Lagrangian that isn't quadratic in the velocity, and which of its symbols stand for which of the
-/// discrete one that is made of it.
+/// A continuous Lagrangian, and which of its symbols stand for which of the discrete one that is made of it.
 #[derive(Clone, Debug)]
 pub(crate) struct Discretised {
     pub(crate) continuous: Continuous,
@@ -31,26 +31,28 @@ pub(crate) struct Limit {
     pub(crate) inertia: Expression,
     pub(crate) bias: Expression,
     pub(crate) potential: Expression,
+    /// `l(ξ, w)` itself where it was typed as an `l_d` and isn't quadratic in `ξ`: the others are its values at rest.
+    pub(crate) lagrangian: Option<Expression>,
 }
 
 pub(super) fn limit(context: &Context, momentum: &Expression) -> Result<Limit, LimitError> {
-    if let Some(discretised) = &context.declared.discretised {
+    let discretised = context.declared.discretised.as_ref();
+    if let Some(discretised) = discretised.filter(|one| one.continuous.inverse == Inverse::Nonlinear) {
         return Ok(at_rest(context, discretised));
     }
-    if !context.declared.lets.is_empty() {
-        return through_lets(context);
-    }
+    let found = by_powers(context, momentum).map_or_else(|| along_motion(context), Ok);
+    found.or_else(|error| discretised.map(|discretised| at_rest(context, discretised)).ok_or(error))
+}
+
+/// Where `h` stands in powers alone, of which −1 is the lowest.
+fn by_powers(context: &Context, momentum: &Expression) -> Option<Limit> {
     let (l_d, h) = (&context.declared.expression, context.declared.step);
-    if l_d.contains_closed(h) {
-        return Err(LimitError::StepInsideFunction);
-    }
-    let moves = |monomial| {
+    let is_too_low = |(monomial, _): (&Monomial, _)| {
         let mut increments = context.declared.increments.iter();
-        increments.any(|&increment| crate::mathematics::symbolic::monomial_contains(monomial, increment))
+        monomial.exponent(h) < -1 && increments.any(|&increment| monomial_contains(monomial, increment))
     };
-    let lowest = l_d.terms().filter(|(m, _)| moves(m));
-    if let Some(power) = lowest.map(|(monomial, _)| monomial.exponent(h)).min().filter(|&power| power < -1) {
-        return Err(LimitError::TooSingular(power));
+    if !context.declared.lets.is_empty() || l_d.contains_closed(h) || l_d.terms().any(is_too_low) {
+        return None;
     }
     let kinetic = of_order(momentum, h, -1);
     let step = context.symbol(h);
@@ -61,16 +63,13 @@ pub(super) fn limit(context: &Context, momentum: &Expression) -> Result<Limit, L
     let potential = context.product(&at_identity(context, &of_order(l_d, h, 1)), &inverse_step);
     let slope = at_identity(context, &kinetic);
     let potential = potential.scaled(-Rational::ONE);
-    Ok(Limit { has_kinetic: !kinetic.is_zero(), slope, inertia, bias, potential })
+    Some(Limit { has_kinetic: !kinetic.is_zero(), slope, inertia, bias, potential, lagrangian: None })
 }
 
-/// As a series in `h` along `F = exp(hξ̂)`, where `let`s hide the powers of `h`.
-fn through_lets(context: &Context) -> Result<Limit, LimitError> {
+/// As a series in `h` along `F = exp(hξ̂)`: the coefficient of `h` is `l(ξ, w)`, whatever its degree in `ξ`.
+fn along_motion(context: &Context) -> Result<Limit, LimitError> {
     let factors = &context.directions.factors;
-    let series = Expansion::new(context, context.directions.scratch)?.of(&context.declared.expression)?;
-    if series.end() < 2 {
-        return Err(LimitError::NotALagrangian);
-    }
+    let series = Expansion::new(context, context.directions.scratch)?.of_lagrangian()?;
     let advected = |value: &Expression| context.declared.advected.iter().any(|w| value.contains(w.symbol));
     let moves = |value: &Expression| factors.iter().any(|one| value.contains(one.velocity));
     if let Some((order, _)) = series.terms().find(|(order, value)| *order < 0 && moves(value)) {
@@ -79,33 +78,29 @@ fn through_lets(context: &Context) -> Result<Limit, LimitError> {
     if series.terms().any(|(order, value)| order < 1 && advected(value)) {
         return Err(LimitError::NotALagrangian);
     }
-    // By powers of the velocity: there must be nothing but none, one or two of them.
-    let by_degree = |order: i32| {
-        let zero = Expression::zero((1, 1));
-        let coefficient = series.terms().find(|&(at, _)| at == order).map_or(zero, |(_, value)| value.clone());
-        let parts = [0, 1, 2].map(|n| {
-            let degree = |monomial: &Monomial| factors.iter().map(|one| degree(monomial, one.velocity)).sum::<usize>();
-            coefficient.filtered(|monomial| degree(monomial) == n)
-        });
-        let all = parts.iter().cloned().fold(Expression::zero((1, 1)), Expression::plus);
-        if factors.iter().any(|one| coefficient.contains_closed(one.velocity)) || all != coefficient {
-            return Err(LimitError::NotALagrangian);
-        }
-        Ok(parts)
-    };
-    let [_, slope, curvature] = by_degree(0)?;
-    let [rest, linear, kinetic] = by_degree(1)?;
-    if !curvature.is_zero() {
-        return Err(LimitError::NotALagrangian);
-    }
     let along = |expression: &Expression, direction: &dyn Fn(usize) -> Expression| {
         let velocities = factors.iter().enumerate().map(|(factor, one)| (one.velocity, direction(factor)));
         variation(expression, &velocities.collect::<Variations>(), context.symbols)
     };
     let (first, second) = (&|factor| context.first(factor), &|factor| context.second(factor));
-    let inertia = along(&along(&kinetic, first), second);
-    let (slope, bias) = (along(&slope, first), along(&linear, first));
-    Ok(Limit { has_kinetic: !kinetic.is_zero(), slope, inertia, bias, potential: rest.scaled(-Rational::ONE) })
+    let slope = along(&series.at(0), first);
+    if moves(&slope) {
+        return Err(LimitError::NotALagrangian);
+    }
+    let lagrangian = series.at(1);
+    let momentum = along(&lagrangian, first);
+    let hessian = along(&momentum, second);
+    let zero = |one: &OfFactor| (one.velocity, Expression::zero(context.symbols.get(one.velocity).shape));
+    let zeros: BTreeMap<SymbolId, Expression> = factors.iter().map(zero).collect();
+    let at_rest = |expression: &Expression| context.substituted(expression, &zeros);
+    Ok(Limit {
+        has_kinetic: !hessian.is_zero(),
+        slope,
+        inertia: at_rest(&hessian),
+        bias: at_rest(&momentum),
+        potential: at_rest(&lagrangian).scaled(-Rational::ONE),
+        lagrangian: moves(&hessian).then_some(lagrangian),
+    })
 }
 
 /// What is left of `l` near rest: its Taylor polynomial of degree two in the velocity.
@@ -127,6 +122,7 @@ fn at_rest(context: &Context, Discretised { continuous, symbols }: &Discretised)
         inertia: here(&continuous.hessian),
         bias: here(&continuous.momentum),
         potential: here(&continuous.lagrangian).scaled(-Rational::ONE),
+        lagrangian: None,
     }
 }
 

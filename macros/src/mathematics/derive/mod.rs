@@ -52,7 +52,7 @@ pub(crate) struct Declared {
     pub(crate) displacements: Option<Displacements>,
     /// Whether the derivatives of a step are asked for.
     pub(crate) has_derivatives: bool,
-    /// The continuous Lagrangian that was discretised, where powers of the velocity don't show it again.
+    /// The continuous Lagrangian that was discretised.
     pub(crate) discretised: Option<Discretised>,
 }
 
@@ -145,8 +145,10 @@ pub(crate) struct Derived {
     pub(crate) unknown: Expression,
     /// The rest of the diamond, in `F` and `w`; of a force, which has more after the step, nothing.
     pub(crate) moved: Option<Expression>,
-    /// `Ad*_F` of the rest of the diamond, in `F` and `w⁺`.
+    /// `Ad*_F` of the rest of the diamond, in `F` and `w⁺`; what goes like `1/h` in `D`.
     pub(crate) kick_after: Expression,
+    /// The same as it is printed, without `D`.
+    pub(crate) shown_kick_after: Expression,
     /// `h/2`, by which the Newton system is multiplied: it has no `1/h` then.
     pub(crate) half_step: Expression,
     /// The momentum equation in Cayley coordinates without denominators, where it is polynomial in `F`.
@@ -190,7 +192,7 @@ impl Derived {
             &self.kick_after,
         ];
         let ends = self.ends.iter().flat_map(|ends| &ends.momenta);
-        let all = all.into_iter().chain(&self.kick_derivative).chain(ends);
+        let all = all.into_iter().chain(&self.kick_derivative).chain(&limit.lagrangian).chain(ends);
         let cleared = self.cleared.iter().flat_map(|cleared| [&cleared.residual, &cleared.jacobian]);
         let closed =
             self.closed.iter().flat_map(|one| [&one.value, &one.pairing, &one.tangent.1, &one.multiplier_tangent.1]);
@@ -245,7 +247,8 @@ fn lagrangian(declared: &Declared) -> Result<Derived, LimitError> {
         kick_derivative,
         unknown,
         moved: Some(parts.moved),
-        kick_after: parts.kick_after,
+        kick_after: transport::with_small_increment(&context, &parts.kick_after),
+        shown_kick_after: parts.kick_after,
         previous: transport::previous(&context),
         half_step: context.half_step(),
         cleared,

@@ -1,5 +1,6 @@
-//! Power series in `h` along `F = exp(h ξ̂)`, truncated: how the limit `h → 0` is found through `let`s.
+//! Power series in `h` along `F = exp(h ξ̂)`, truncated: how the limit `h → 0` is found through `let`s and functions.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use super::Context;
@@ -10,19 +11,23 @@ use crate::mathematics::symbolic::{
 /// Why there is no continuous Lagrangian behind `l_d`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LimitError {
-    /// `h` stands under a function or in a sum that is divided by.
+    /// `h` stands under a function that has no value as `h → 0`.
     StepInsideFunction,
     /// A power of `h` below −1.
     TooSingular(i32),
-    /// The limit isn't `½ ξ·Jξ + s·ξ − V`.
+    /// There is no `l(ξ, w)`.
     NotALagrangian,
     /// The limit has too many terms.
     TooLarge,
 }
 
-/// Terms of this order and above are dropped. The limit needs `l_d` to the first order, and `l_d` may divide by `h`.
+/// Terms of this order and above are dropped, but for the first of a series. The limit needs `l_d` to the first order,
+/// and `l_d` may divide by `h`.
 const CUTOFF: i32 = 3;
-/// A limit that a person would write down has a hundredth of it; that of a Cayley transform has a tenth.
+/// The end of what is known without end.
+const NEVER: i32 = 1_000;
+/// A limit that a person would write down has a hundredth of it; that of a Cayley transform has a tenth. What is larger
+/// ends a series, as the limit may not need it.
 const MOST_FACTORS: usize = 16_000;
 
 /// `Σ c_i hⁱ + O(hᵉ)`.
@@ -38,15 +43,16 @@ impl Series {
     fn constant(value: Expression) -> Self {
         let shape = value.shape();
         let coefficients = if value.is_zero() { BTreeMap::new() } else { BTreeMap::from([(0, value)]) };
-        Self { shape, coefficients, end: CUTOFF }
+        Self { shape, coefficients, end: NEVER }
     }
 
     fn one() -> Self {
         Self::constant(Expression::identity(1))
     }
 
-    pub(super) fn end(&self) -> i32 {
-        self.end
+    /// The coefficient of that order of a scalar.
+    pub(super) fn at(&self, order: i32) -> Expression {
+        self.coefficients.get(&order).cloned().unwrap_or_else(|| Expression::zero((1, 1)))
     }
 
     pub(super) fn terms(&self) -> impl Iterator<Item = (i32, &Expression)> {
@@ -59,10 +65,19 @@ impl Series {
     }
 
     fn cut(mut self, end: i32) -> Self {
-        self.end = self.end.min(end).min(CUTOFF);
-        let end = self.end;
-        self.coefficients.retain(|&order, coefficient| order < end && !coefficient.is_zero());
+        self.coefficients.retain(|_, coefficient| !coefficient.is_zero());
+        self.end = self.end.min(end).min(NEVER);
+        let (lowest, highest) = (self.lowest(), self.coefficients.keys().next_back().copied());
+        if lowest < self.end && !(self.is_exact() && highest < Some(most(lowest))) {
+            self.end = self.end.min(most(lowest));
+        }
+        self.coefficients.retain(|&order, _| order < self.end);
         self
+    }
+
+    /// Whether there is nothing more.
+    fn is_exact(&self) -> bool {
+        self.end > NEVER / 2
     }
 
     fn plus(mut self, other: Self) -> Self {
@@ -79,14 +94,19 @@ impl Series {
 
     fn mapped(self, operation: impl Fn(&Expression) -> Expression, shape: (usize, usize)) -> Self {
         let coefficients = self.coefficients.iter().map(|(&order, value)| (order, operation(value))).collect();
-        Self { shape, coefficients, end: self.end }.cut(CUTOFF)
+        Self { shape, coefficients, end: self.end }.cut(NEVER)
     }
 
     /// Times `hⁿ`.
     fn shifted(self, n: i32) -> Self {
         let coefficients = self.coefficients.into_iter().map(|(order, value)| (order + n, value)).collect();
-        Self { shape: self.shape, coefficients, end: self.end + n }.cut(CUTOFF)
+        Self { shape: self.shape, coefficients, end: self.end + n }.cut(NEVER)
     }
+}
+
+/// Where a series is cut.
+fn most(lowest: i32) -> i32 {
+    CUTOFF.max(lowest + 1)
 }
 
 /// Evaluates expressions to series.
@@ -95,11 +115,13 @@ pub(super) struct Expansion<'a> {
     /// A scalar to differentiate functions by.
     scratch: SymbolId,
     known: BTreeMap<SymbolId, Series>,
+    /// Whether a coefficient was too large.
+    is_too_large: Cell<bool>,
 }
 
 impl<'a> Expansion<'a> {
     pub(super) fn new(context: &'a Context, scratch: SymbolId) -> Result<Self, LimitError> {
-        let mut expansion = Self { context, scratch, known: BTreeMap::new() };
+        let mut expansion = Self { context, scratch, known: BTreeMap::new(), is_too_large: Cell::new(false) };
         for (factor, one) in context.directions.factors.iter().enumerate() {
             if context.is_added(factor) {
                 let velocity = Series::constant(context.symbol(one.velocity)).shifted(1);
@@ -133,7 +155,17 @@ impl<'a> Expansion<'a> {
         series.cut(CUTOFF)
     }
 
-    pub(super) fn of(&self, expression: &Expression) -> Result<Series, LimitError> {
+    /// The series of `l_d`, which tells the coefficient of `h`.
+    pub(super) fn of_lagrangian(&self) -> Result<Series, LimitError> {
+        let found = self.of(&self.context.declared.expression);
+        match found {
+            Ok(series) if series.end >= 2 => Ok(series),
+            _ if self.is_too_large.get() => Err(LimitError::TooLarge),
+            found => found.and(Err(LimitError::NotALagrangian)),
+        }
+    }
+
+    fn of(&self, expression: &Expression) -> Result<Series, LimitError> {
         let mut sum = Series::constant(Expression::zero(expression.shape()));
         for (monomial, coefficient) in expression.terms() {
             let mut product = Series::constant(Expression::rational(coefficient));
@@ -212,12 +244,22 @@ impl<'a> Expansion<'a> {
             ((1, 1), shape) | (shape, (1, 1)) => shape,
             ((rows, _), (_, columns)) => (rows, columns),
         };
+        let lowest = a.lowest() + b.lowest();
+        if lowest < -NEVER {
+            return Err(LimitError::TooSingular(lowest));
+        }
         let end = (a.end + b.lowest()).min(b.end + a.lowest());
+        let mut end = if a.is_exact() && b.is_exact() { end } else { end.min(most(lowest)) };
         let mut coefficients: BTreeMap<i32, Expression> = BTreeMap::new();
         for (i, x) in a.terms() {
-            for (j, y) in b.terms().filter(|(j, _)| i + j < end.min(CUTOFF)) {
+            for (j, y) in b.terms() {
+                if i + j >= end {
+                    break;
+                }
                 if x.size().saturating_mul(y.size()) > MOST_FACTORS {
-                    return Err(LimitError::TooLarge);
+                    self.is_too_large.set(true);
+                    end = i + j;
+                    break;
                 }
                 let product = self.context.product(x, y);
                 let sum = match coefficients.remove(&(i + j)) {
@@ -227,7 +269,7 @@ impl<'a> Expansion<'a> {
                 coefficients.insert(i + j, sum);
             }
         }
-        Ok(Series { shape, coefficients, end }.cut(CUTOFF))
+        Ok(Series { shape, coefficients, end }.cut(NEVER))
     }
 
     fn power(&self, base: Series, exponent: i32) -> Result<Series, LimitError> {
@@ -253,16 +295,21 @@ impl<'a> Expansion<'a> {
         epsilon.coefficients.remove(&0);
         let minus = epsilon.mapped(|value| value.clone().scaled(-Rational::ONE), (1, 1));
         let (mut sum, mut power) = (Series::one(), Series::one());
-        for _ in 0..=CUTOFF {
+        for _ in 0..CUTOFF {
             power = self.times(&power, &minus)?;
             sum = sum.plus(power.clone());
         }
-        self.times(&inverse, &sum)
+        self.times(&inverse, &sum.cut((CUTOFF + 1) * minus.lowest()))
     }
 
-    /// Taylor's series about the value at `h = 0`.
+    /// Taylor's series about the value at `h = 0`; a root is taken of what is left without a power of `h > 0`.
     fn function(&self, function: Function, argument: Series) -> Result<Series, LimitError> {
-        if argument.lowest() < 0 {
+        let lowest = argument.lowest();
+        if function == Function::Sqrt && lowest != 0 && lowest < argument.end && lowest % 2 == 0 {
+            return Ok(self.function(function, argument.shifted(-lowest))?.shifted(lowest / 2));
+        }
+        let is_singular = lowest > 0 && matches!(function, Function::Sqrt | Function::Ln);
+        if lowest < 0 || is_singular {
             return Err(LimitError::StepInsideFunction);
         }
         let symbols = self.context.symbols;
@@ -280,6 +327,6 @@ impl<'a> Expansion<'a> {
                 .times(&power, &change)?
                 .mapped(|value| value.clone().scaled(Rational::new(1, order.into())), (1, 1));
         }
-        Ok(sum)
+        Ok(sum.cut(CUTOFF * change.lowest()))
     }
 }

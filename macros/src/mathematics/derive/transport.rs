@@ -12,7 +12,7 @@
 use std::collections::BTreeMap;
 
 use super::{Context, action};
-use crate::mathematics::symbolic::{Expression, Stage, SymbolId, degree, stage_of_monomial};
+use crate::mathematics::symbolic::{Expression, Monomial, Stage, SymbolId, degree, stage_of_monomial};
 
 pub(super) struct Parts {
     pub(super) kick_before: Expression,
@@ -63,6 +63,15 @@ pub(super) fn increments(context: &Context, momentum: &Expression, left: &Expres
     map.extend(carried.map(|(w, &next)| (w.symbol, context.symbol(next))));
     let after = context.substituted(left, &previous(context).into_iter().collect());
     [context.substituted(momentum, &map), after]
+}
+
+/// With what goes like `1/h` in `D`: it cancels where `F` is `I`, and would leave a rounding of that size.
+pub(super) fn with_small_increment(context: &Context, kick: &Expression) -> Expression {
+    let is_large = |monomial: &Monomial| monomial.exponent(context.declared.step) < 0;
+    if !context.declared.group.rotates() {
+        return kick.clone();
+    }
+    kick.filtered(|monomial| !is_large(monomial)).plus(in_small_increment(context, &kick.filtered(is_large)))
 }
 
 /// With `F = I + D` and `F⁻¹ = I + D⁻`; as it is where that would multiply the terms.
