@@ -3,10 +3,9 @@
 use std::error::Error;
 use std::time::Duration;
 
-use liestep::SO3;
-use liestep::accuracy::{Accuracy, AccurateStepper, Candidates, Effort};
-use liestep::methods::{ExactBody, SymmetricBody};
+use liestep::accuracy::{Accuracy, AccuracyError, AccurateStepper, Effort};
 use liestep::motion::Integrator as _;
+use liestep::{SO3, Stepper, mechanics};
 use nalgebra::Vector3;
 use workbench::table::{aligned, number};
 
@@ -37,9 +36,12 @@ pub fn compare(scenes: &[Scene], effort: impl Fn(f64) -> (Effort, f64)) -> Resul
 pub struct Question {
     /// The end of a run that has the accuracy, with the name of its method, its step and the cost of the trials in
     /// runs.
-    pub ask: Box<dyn Fn(Accuracy) -> Result<Answer, liestep::accuracy::AccuracyError>>,
+    pub ask: Box<Ask>,
     pub fixed: Vec<methods::Method>,
 }
+
+/// Makes a choice.
+pub type Ask = dyn Fn(Accuracy) -> Result<Answer, AccuracyError>;
 
 /// A choice ready to run.
 pub struct Answer {
@@ -70,49 +72,22 @@ impl Question {
     fn of(scene: &Scene) -> Self {
         let (start, velocity) = (SO3::from_matrix_unchecked(scene.attitude), scene.velocity);
         let fixed = methods::ours(scene);
-        match scene.kind {
-            Kind::Sprung => {
-                return Self { ask: asking(Candidates::of_body(scene.sprung(), 2), start, velocity), fixed };
-            }
-            Kind::Satellite => {
-                return Self { ask: asking(Candidates::of_body(scene.satellite(), 2), start, velocity), fixed };
-            }
-            _ => {}
-        }
-        if scene.kind == Kind::Free {
-            let candidates = Candidates::of(scene.free_body(), 2)
-                .and_declared("K4", scene.fourth_order_body(), 4)
-                .and_declared("K6", scene.sixth_order_body(), 6)
-                .and_splittings("exact", scene.free_body(), ExactBody::new(&scene.inertia()))
-                .and_gauss(scene.free_body());
-            return Self { ask: asking(candidates, start, velocity), fixed };
-        }
-        let candidates = Candidates::of(scene.top(), 2).and_declared("L4", scene.fourth_order_top(), 4).and_declared(
-            "L6",
-            scene.sixth_order_top(),
-            6,
-        );
-        let candidates = match SymmetricBody::new(&scene.inertia()) {
-            Ok(body) => candidates.and_splittings("exact", scene.top(), body).and_gauss(scene.top()),
-            Err(_) => candidates
-                .and_splittings("exact", scene.top(), ExactBody::new(&scene.inertia()))
-                .and_gauss(scene.top())
-                .and_splittings("K6", scene.top(), scene.sixth_order_body()),
+        let ask = match scene.kind {
+            Kind::Sprung => asking(scene.sprung(), start, velocity),
+            Kind::Satellite => asking(scene.satellite(), start, velocity),
+            Kind::Free => asking(scene.free_body(), start, velocity),
+            Kind::Top | Kind::SymmetricTop => asking(scene.top(), start, velocity),
         };
-        Self { ask: asking(candidates, start, velocity), fixed }
+        Self { ask, fixed }
     }
 }
 
-/// Asks these candidates.
-pub fn asking<A>(
-    candidates: Candidates<SO3, A>,
-    attitude: SO3,
-    velocity: Vector3<f64>,
-) -> Box<dyn Fn(Accuracy) -> Result<Answer, liestep::accuracy::AccuracyError>>
+/// Asks for an accuracy of this scene.
+pub fn asking<S>(scene: S, attitude: SO3, velocity: Vector3<f64>) -> Box<Ask>
 where
-    A: liestep::groups::Advected<SO3> + 'static,
+    S: mechanics::Scene<Scalar = f64, Group = SO3>,
 {
-    Box::new(move |accuracy| candidates.for_accuracy(accuracy, attitude, velocity).map(Answer::new))
+    Box::new(move |accuracy| Stepper::for_accuracy(scene.clone(), accuracy, attitude, velocity).map(Answer::new))
 }
 
 fn add(rows: &mut Vec<Vec<String>>, question: &Question, scene: &Scene, t: f64, effort: (Effort, f64)) {
@@ -139,7 +114,7 @@ fn add(rows: &mut Vec<Vec<String>>, question: &Question, scene: &Scene, t: f64, 
                 ));
                 row.push(format!("{:.1}", answer.trials));
             }
-            Err(liestep::accuracy::AccuracyError::Unreachable { floor, .. }) => {
+            Err(AccuracyError::Unreachable { floor, .. }) => {
                 row.push(format!("only {floor:.0e} can be reached"));
             }
             Err(refusal) => row.push(refusal.to_string()),

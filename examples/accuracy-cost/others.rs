@@ -6,7 +6,6 @@
 use std::error::Error;
 
 use declarations::motions::End;
-use liestep::accuracy::Candidates;
 use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, Spring};
 use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Regular};
 use liestep::methods::{CompositionScheme, ExactBody, SymmetricBody};
@@ -64,8 +63,7 @@ where
         methods::splittings("exact", Family::Poisson, move |_| scene, move |_| Some(body))
     });
     fixed.extend(methods::gauss(move |_| scene));
-    let candidates = Candidates::of_body(scene, 2);
-    let question = Question { ask: asking(candidates, attitude, velocity), fixed };
+    let question = Question { ask: asking(scene, attitude, velocity), fixed };
     Ok((Scene::bare(name, J_d, *attitude.as_matrix(), velocity, states?), question))
 }
 

@@ -3,15 +3,15 @@
 mod trials;
 mod varying_inertia;
 
-use declarations::{DoublePendulum, FourthOrderTop, HeavyTop, Motion, SlidingTop, Top as _};
-use liestep::accuracy::{Accuracy, AccuracyError, AccurateStepper, Candidates};
+use declarations::{DoublePendulum, FourthOrderTop, Motion, SlidingTop, Top as _};
+use liestep::accuracy::{Accuracy, AccuracyError, AccurateStepper};
 use liestep::effects::{CayleyBody, Dipole, Gravity, GravityGradient, PrincipalBody, RigidBody, Rotor, Spring};
 use liestep::groups::{Advected, LieGroup, SO2};
 use liestep::mechanics::{
     ContinuousLagrangian, DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, Regular, Scene,
 };
-use liestep::methods::{CompositionScheme, SymmetricBody};
-use liestep::motion::RightHandSide;
+use liestep::methods::CompositionScheme;
+use liestep::motion::{Integrator as _, RightHandSide};
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper, lagrangian};
 use nalgebra::{Matrix3, UnitQuaternion, Vector1, Vector2, Vector3, Vector6};
 use workbench::runge_kutta;
@@ -36,13 +36,19 @@ fn end<A: Advected<SO3>>(stepper: &AccurateStepper<SO3, A>) -> End {
     (*state.attitude().as_matrix(), stepper.velocity(&state))
 }
 
-/// All that the scene alone allows.
-fn of_body(motion: &Motion) -> Candidates<SO3, Vector3<f64>> {
-    Candidates::of_body(motion.top.clone(), 2)
+type Answer = Result<AccurateStepper<SO3, Vector3<f64>>, AccuracyError>;
+
+fn ask(motion: &Motion, accuracy: Accuracy) -> Answer {
+    Stepper::for_accuracy(motion.top.clone(), accuracy, motion.attitude, motion.velocity)
+}
+
+/// The same body, which nothing but its own steps is made for: it can't be split.
+fn ask_coupled(motion: &Motion, accuracy: Accuracy) -> Answer {
+    Stepper::for_accuracy(FourthOrderTop::of(&motion.top), accuracy, motion.attitude, motion.velocity)
 }
 
 /// The worst ratio of error to tolerance, over the motions and tolerances that can be reached.
-fn worst_ratio(ask: impl Fn(&Motion, Accuracy) -> Result<AccurateStepper<SO3, Vector3<f64>>, AccuracyError>) -> f64 {
+fn worst_ratio(ask: impl Fn(&Motion, Accuracy) -> Answer) -> f64 {
     let mut worst = 0.0_f64;
     for (name, horizon) in MOTIONS.iter().flat_map(|name| [(name, 10.0), (name, 100.0)]) {
         let motion = Motion::read(name);
@@ -51,7 +57,7 @@ fn worst_ratio(ask: impl Fn(&Motion, Accuracy) -> Result<AccurateStepper<SO3, Ve
             match ask(&motion, Accuracy { tolerance, horizon }) {
                 Ok(stepper) => {
                     let choice = stepper.choice();
-                    assert!(choice.trials <= 30.0, "{name} {horizon} {tolerance}\n{choice}");
+                    assert!(choice.trials <= 60.0, "{name} {horizon} {tolerance}\n{choice}");
                     let error = error(&end(&stepper), &exact, &motion.velocity, horizon);
                     assert!(error <= tolerance, "{name} {horizon} {tolerance}: {error}\n{choice}");
                     worst = worst.max(error / tolerance);
@@ -71,21 +77,18 @@ fn worst_ratio(ask: impl Fn(&Motion, Accuracy) -> Result<AccurateStepper<SO3, Ve
 
 #[test]
 fn the_tolerance_is_reached_by_what_a_scene_allows() {
-    let worst =
-        worst_ratio(|motion, accuracy| of_body(motion).for_accuracy(accuracy, motion.attitude, motion.velocity));
+    let worst = worst_ratio(ask);
     assert!(worst <= 1.0 && worst > 0.5, "{worst}");
 }
 
 #[test]
 fn the_tolerance_is_reached_by_compositions_alone() {
-    let worst = worst_ratio(|motion, accuracy| {
-        Stepper::for_accuracy(motion.top.clone(), accuracy, motion.attitude, motion.velocity)
-    });
+    let worst = worst_ratio(ask_coupled);
     assert!(worst <= 1.0 && worst > 0.5, "{worst}");
 }
 
-/// Of so short a motion runs of one and two steps may agree by chance, on what isn't the motion. Four of these 1200
-/// choices rest on that; where the order promised was believed unseen, there were four times as many.
+/// Of so short a motion runs of one and two steps may agree by chance, on what isn't the motion. Four of these 600
+/// choices rest on that.
 #[test]
 fn the_tolerance_is_seldom_missed_by_a_few_long_steps() {
     let (mut few, mut missed) = (0, Vec::new());
@@ -97,19 +100,17 @@ fn the_tolerance_is_seldom_missed_by_a_few_long_steps() {
             fine.run(&mut state, 5).unwrap();
             let (horizon, exact) = (fine.time(&state), (*state.attitude().as_matrix(), fine.velocity(&state)));
             for tolerance in [0.05, 0.03, 0.01] {
-                for candidates in [Candidates::of(top.clone(), 2), Candidates::of_body(top.clone(), 2)] {
-                    let accuracy = Accuracy { tolerance, horizon };
-                    let stepper = candidates.for_accuracy(accuracy, attitude, velocity).unwrap();
-                    let error = error(&end(&stepper), &exact, &velocity, horizon);
-                    few += u32::from(stepper.choice().steps <= 4);
-                    if error > tolerance {
-                        missed.push(format!("{name} {horizon} {tolerance}: {error} with {}", stepper.choice().steps));
-                    }
+                let accuracy = Accuracy { tolerance, horizon };
+                let stepper = Stepper::for_accuracy(top.clone(), accuracy, attitude, velocity).unwrap();
+                let error = error(&end(&stepper), &exact, &velocity, horizon);
+                few += u32::from(stepper.choice().steps <= 4);
+                if error > tolerance {
+                    missed.push(format!("{name} {horizon} {tolerance}: {error} with {}", stepper.choice().steps));
                 }
             }
         }
     }
-    assert!(few > 500 && missed.len() <= 4, "{few}; missed {missed:#?}");
+    assert!(few > 250 && missed.len() <= 4, "{few}; missed {missed:#?}");
 }
 
 /// A control: with the step taken twice as long the tolerance is missed, by as much as the order says.
@@ -119,7 +120,7 @@ fn a_step_twice_as_long_misses_the_tolerance() {
     let motion = Motion::read("looping A");
     let (tolerance, horizon) = (1e-8, 10.0);
     let accuracy = Accuracy { tolerance, horizon };
-    let stepper = Stepper::for_accuracy(motion.top.clone(), accuracy, motion.attitude, motion.velocity).unwrap();
+    let stepper = ask(&motion, accuracy).unwrap();
     let chosen = stepper.choice().chosen();
     let schemes =
         [CompositionScheme::KAHAN_LI_6, CompositionScheme::KAHAN_LI_8, CompositionScheme::SOFRONIOU_SPALETTA_10];
@@ -222,7 +223,7 @@ fn the_same_question_has_the_same_answer() {
     let motion = Motion::read("chaotic");
     let ask = || {
         let accuracy = Accuracy { tolerance: 1e-7, horizon: 10.0 };
-        of_body(&motion).for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap()
+        ask(&motion, accuracy).unwrap()
     };
     let [one, other] = [ask(), ask()];
     assert_eq!(one.choice(), other.choice());
@@ -241,7 +242,7 @@ fn gauss_collocation_is_chosen_for_the_chaotic_top() {
     let motion = Motion::read("chaotic");
     // Eight stages reach 1e-11 with the longest step that can be solved, so less can't be asked in earnest.
     let accuracy = Accuracy { tolerance: 1e-11, horizon: 10.0 };
-    let stepper = of_body(&motion).for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap();
+    let stepper = ask(&motion, accuracy).unwrap();
     let choice = stepper.choice();
     assert!(choice.chosen().name.starts_with("Gauss, "), "{choice}");
     let reached = error(&end(&stepper), &motion.at(10.0), &motion.velocity, 10.0);
@@ -263,7 +264,7 @@ fn gauss_collocation_is_chosen_for_the_chaotic_top() {
 fn the_report_names_the_choice_and_its_neighbours() {
     let motion = Motion::read("cuspidal A");
     let accuracy = Accuracy { tolerance: 1e-6, horizon: 10.0 };
-    let stepper = of_body(&motion).for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap();
+    let stepper = ask(&motion, accuracy).unwrap();
     let (choice, text) = (stepper.choice(), stepper.choice().to_string());
     assert!((choice.chosen().cost - 1.0).abs() < 1e-12 && choice.error <= 1e-6);
     assert!(choice.nearby[0] < 1.0 && choice.nearby[1] > 1.0, "{:?}", choice.nearby);
@@ -296,7 +297,7 @@ fn a_tolerance_below_rounding_is_refused_with_the_floor() {
     let motion = Motion::read("looping A");
     let ask = |tolerance| {
         let accuracy = Accuracy { tolerance, horizon: 10.0 };
-        of_body(&motion).for_accuracy(accuracy, motion.attitude, motion.velocity)
+        ask(&motion, accuracy)
     };
     let refusal = ask(1e-17).unwrap_err();
     let AccuracyError::Unreachable { floor, .. } = refusal else { panic!("{refusal}") };
@@ -312,15 +313,15 @@ fn the_exact_motion_of_a_free_body_is_one_step() {
     let velocity = Vector3::new(0.3, 2.0, 0.1);
     for (horizon, tolerance) in [(10.0, 1e-3), (10.0, 1e-10), (1000.0, 1e-9)] {
         let accuracy = Accuracy { tolerance, horizon };
-        let stepper = Candidates::of_body(scene, 2).for_accuracy(accuracy, SO3::identity(), velocity).unwrap();
+        let stepper = Stepper::for_accuracy(scene, accuracy, SO3::identity(), velocity).unwrap();
         let choice = stepper.choice();
         assert_eq!((choice.chosen().name.as_str(), choice.steps), ("exact", 1), "{choice}");
-        assert!(choice.trials <= 30.0 && choice.error <= tolerance, "{choice}");
+        assert!(choice.trials <= 60.0 && choice.error <= tolerance, "{choice}");
         assert_eq!(choice.nearby.map(f64::to_bits), [1.0_f64.to_bits(); 2], "{choice}");
     }
     // What rounding leaves over so long is no error of the method.
     let accuracy = Accuracy { tolerance: 1e-17, horizon: 10.0 };
-    let refusal = Candidates::of_body(scene, 2).for_accuracy(accuracy, SO3::identity(), velocity).unwrap_err();
+    let refusal = Stepper::for_accuracy(scene, accuracy, SO3::identity(), velocity).unwrap_err();
     let AccuracyError::Unreachable { floor, .. } = refusal else { panic!("{refusal}") };
     assert!(floor > 1e-16 && floor < 1e-12, "{floor}");
 }
@@ -331,43 +332,8 @@ fn a_scene_that_cannot_be_split_has_its_own_steps() {
     let motion = Motion::read("looping A");
     let accuracy = Accuracy { tolerance: 1e-5, horizon: 1.0 };
     let spun = motion.top.clone() + Rotor { spin: Vector3::x() };
-    let stepper = Candidates::of_body(spun, 2).for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap();
+    let stepper = Stepper::for_accuracy(spun, accuracy, motion.attitude, motion.velocity).unwrap();
     assert!(stepper.choice().offers().iter().all(|offer| !offer.name.starts_with("exact")));
-    let coupled = FourthOrderTop::of(&motion.top);
-    let stepper = Candidates::of_body(coupled, 4).for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap();
+    let stepper = ask_coupled(&motion, accuracy).unwrap();
     assert!(stepper.choice().error <= 1e-5);
-}
-
-#[test]
-fn candidates_of_another_scene_are_refused() {
-    let motion = Motion::read("looping A");
-    let ask = |candidates: Candidates<SO3, Vector3<f64>>| {
-        let accuracy = Accuracy { tolerance: 1e-6, horizon: 1.0 };
-        candidates.for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap_err()
-    };
-    let mut heavier = motion.top.clone();
-    heavier.m *= 1.01;
-    let refusal = ask(of_body(&motion).and_declared("heavier", heavier, 2));
-    assert_eq!(refusal, AccuracyError::Setup(SetupError::PotentialMismatch));
-    let rounder = SymmetricBody::new(&Inertia::from_principal_moments(Vector3::new(3.0, 3.0, 3.9)).unwrap()).unwrap();
-    let refusal = ask(of_body(&motion).and_splittings("rounder", motion.top.clone(), rounder));
-    assert!(matches!(refusal, AccuracyError::Setup(SetupError::InertiaMismatch { .. })), "{refusal}");
-    let leaning = HeavyTop { up: Vector3::new(0.6, 0.0, 0.8), ..motion.top.clone() };
-    let refusal = ask(of_body(&motion).and_declared("leaning", leaning, 2));
-    assert_eq!(refusal, AccuracyError::Setup(SetupError::PotentialMismatch));
-    let spun = |speed: f64| motion.top.clone() + Rotor { spin: Vector3::z() * speed };
-    let candidates = Candidates::of(spun(1.0), 2).and_declared("faster", spun(1.1), 2);
-    let accuracy = Accuracy { tolerance: 1e-6, horizon: 1.0 };
-    let refusal = candidates.for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap_err();
-    assert_eq!(refusal, AccuracyError::Setup(SetupError::BiasMismatch));
-    let mut longer = motion.top.clone();
-    longer.rho *= 1.01;
-    assert_eq!(ask(of_body(&motion).and_gauss(longer)), AccuracyError::Setup(SetupError::PotentialMismatch));
-    let coupled = FourthOrderTop::of(&motion.top);
-    let refusal = ask(of_body(&motion).and_gauss(coupled));
-    assert!(matches!(refusal, AccuracyError::Setup(SetupError::NotSeparable { .. })), "{refusal}");
-    let mut rounder = motion.top.clone();
-    rounder.J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 3.9)).unwrap();
-    let refusal = ask(of_body(&motion).and_gauss(rounder));
-    assert!(matches!(refusal, AccuracyError::Setup(SetupError::InertiaMismatch { .. })), "{refusal}");
 }

@@ -1,6 +1,6 @@
 //! The run-time half works without the macro: the heavy top (3.13) written by hand in Cayley form.
 
-use liestep::accuracy::{Accuracy, Candidates};
+use liestep::accuracy::Accuracy;
 use liestep::groups::CayleyRetraction;
 use liestep::mechanics::{DiscreteLagrangian, Effect, Inertia, Limit, SceneVisitor, Term, WithKinetic};
 use liestep::methods::{SplittingScheme, SymmetricBody};
@@ -159,7 +159,6 @@ fn a_force_gradient_has_to_be_written() {
     assert_eq!(split(SplittingScheme::FORCE_GRADIENT_2), Err(SetupError::NoForceGradient));
     // Nor is it chosen.
     let accuracy = Accuracy { tolerance: 1e-4, horizon: 1.0 };
-    let candidates = Candidates::of(top.clone(), 2).and_splittings("exact", top, body);
-    let stepper = candidates.for_accuracy(accuracy, SO3::identity(), Vector3::new(0.5, 2.0, 12.0)).unwrap();
+    let stepper = Stepper::for_accuracy(top, accuracy, SO3::identity(), Vector3::new(0.5, 2.0, 12.0)).unwrap();
     assert!(!stepper.choice().to_string().contains("force gradient"));
 }

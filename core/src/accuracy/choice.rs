@@ -5,10 +5,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt;
 
-use super::Accuracy;
-use super::candidates::Candidate;
-use super::search::Found;
-use crate::groups::{Advected, LieGroup};
+use super::question::Accuracy;
 
 /// A method for an accuracy.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,35 +57,11 @@ pub struct Choice {
     pub trials: f64,
     /// What the method costs for ten times the tolerance and for a tenth of it.
     pub nearby: [f64; 2],
-    offers: Vec<Offer>,
-    chosen: usize,
+    pub(super) offers: Vec<Offer>,
+    pub(super) chosen: usize,
 }
 
 impl Choice {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number
-    pub(super) fn new<G: LieGroup, A: Advected<G>>(
-        candidates: &[Candidate<'_, G, A>],
-        accuracy: Accuracy,
-        found: &Found,
-    ) -> Self {
-        let offer = |(candidate, (steps, cost, is_bound)): (&Candidate<'_, G, A>, &(f64, f64, bool))| Offer {
-            name: candidate.name.clone(),
-            order: candidate.order,
-            step: accuracy.horizon / steps,
-            cost: cost / found.cost,
-            is_bound: *is_bound,
-        };
-        Self {
-            accuracy,
-            steps: found.steps as u64,
-            error: found.error,
-            trials: found.trials.operations / found.cost,
-            nearby: found.nearby,
-            offers: candidates.iter().zip(&found.offers).map(offer).collect(),
-            chosen: found.index,
-        }
-    }
-
     /// The method chosen.
     #[must_use]
     pub fn chosen(&self) -> &Offer {

@@ -3,7 +3,7 @@
 use alloc::string::String;
 use core::fmt;
 
-use super::trials::Trials;
+use super::question::Trials;
 use crate::error::{SetupError, StepError};
 
 /// Why there is no method and step for an accuracy.
@@ -46,29 +46,6 @@ pub enum AccuracyError {
     Setup(SetupError),
     /// A method doesn't get to the horizon, with however short a step, and no other does for the accuracy.
     Step(StepError),
-}
-
-/// The steps that a method would need, too many to be tried.
-#[derive(Debug)]
-pub(super) struct TooMany {
-    pub(super) steps: f64,
-    /// Whether they are at least so many.
-    pub(super) is_bound: bool,
-    pub(super) method: String,
-}
-
-/// Why no method was found: of all methods that were tried, one failure and one that needs too many steps.
-///
-/// Long steps may fail in any way; that a step can't be had at all has to do with short ones.
-pub(super) fn refusal(failure: Option<AccuracyError>, many: Option<TooMany>, trials: Trials) -> AccuracyError {
-    match (failure, many) {
-        (Some(failure @ AccuracyError::Setup(_)), _) | (Some(failure), None) => failure,
-        (_, Some(TooMany { steps, is_bound, method })) => {
-            AccuracyError::TooManySteps { steps, is_bound, method, trials }
-        }
-        // Without methods.
-        (None, None) => AccuracyError::TooManySteps { steps: 0.0, is_bound: true, method: String::new(), trials },
-    }
 }
 
 impl fmt::Display for AccuracyError {

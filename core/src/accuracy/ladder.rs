@@ -1,11 +1,12 @@
-//! The trials of one method with ever shorter steps, and what they say of the steps that an error takes.
+//! The runs of one method with ever shorter steps, and what they say of the steps that an error takes.
 
 use alloc::vec::Vec;
 
-use super::candidates::Candidate;
 use super::error::AccuracyError;
-use super::trials::{End, Start, Trial, Tried};
+use super::methods::Method;
+use super::question::{End, Start, Trials};
 use crate::groups::{Advected, LieGroup};
+use crate::motion::{Cost, Integrator as _};
 
 // Roots and powers without a standard library.
 #[cfg(not(feature = "std"))]
@@ -13,122 +14,119 @@ use nalgebra::ComplexField as _;
 
 /// Errors that are larger fall by no law of powers.
 pub(super) const LARGEST_ERROR: f64 = 0.05;
-/// Errors may fall by so much more than the order promised, where a potential is small or a low order's share of the
-/// error is; and by no more than differences of doubles show.
+/// Errors may fall by so many powers more than promised, where a potential is small.
 const BEYOND_THE_ORDER: f64 = 4.0;
-const HIGHEST_ORDER: f64 = 12.0;
-/// Differences as small are rounding's.
-pub(super) const SMALLEST_ERROR: f64 = f64::EPSILON;
-/// Errors that stagnate fall with less than this power of the step.
-const STAGNANT: f64 = 0.5;
+
+/// A run to the horizon, near which a method has this many steps.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Run<G: LieGroup> {
+    pub(super) steps: f64,
+    /// Operations of a step.
+    a_step: f64,
+    /// Operations of all.
+    pub(super) cost: f64,
+    /// None where there is no such step, or one had no solution.
+    pub(super) end: Option<End<G>>,
+}
+
+/// The end of a fine run, and the error that it is thought to have.
+pub(super) type Reference<G> = (End<G>, f64);
 
 /// An error at the horizon.
 #[derive(Clone, Copy, Debug)]
 struct Point {
     steps: f64,
+    a_step: f64,
     error: f64,
 }
 
-/// Steps that an error takes, and the operations of one of them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Estimate {
-    pub(super) steps: f64,
-    pub(super) a_step: f64,
-    pub(super) once: f64,
-    /// Whether this is but a bound: the true numbers are larger.
-    pub(super) is_bound: bool,
-    /// Whether a trial has come as far, or nearly.
-    pub(super) is_near: bool,
-    /// Whether all trials have been nearer, so that much longer steps may do.
-    pub(super) is_short: bool,
-}
-
-/// Of an error, one that is so much smaller that nothing is known of the steps that would do.
-const MUCH_NEARER: f64 = 0.1;
-
-impl Estimate {
-    /// Of a method that isn't looked at.
-    pub(super) const NEVER: Self = Self {
-        steps: f64::INFINITY,
-        a_step: f64::INFINITY,
-        once: 0.0,
-        is_bound: true,
-        is_near: false,
-        is_short: false,
-    };
-
-    /// Operations of a run over so many times the horizon.
-    pub(super) fn cost(&self, times: f64) -> f64 {
-        self.once + (self.steps * times).max(1.0) * self.a_step
-    }
-}
-
-/// The trials of a method to one horizon.
-pub(super) struct Ladder<'a, G: LieGroup<Scalar = f64>, A> {
-    pub(super) candidate: &'a Candidate<'a, G, A>,
-    /// With ever more steps.
-    trials: Vec<Trial<G>>,
-    /// Steps of the first.
-    first: f64,
-    /// Why the last trial failed.
+/// The runs of a method to one horizon.
+pub(super) struct Ladder<'a, G: LieGroup, A> {
+    pub(super) method: &'a Method<G, A>,
+    start: Start<G>,
+    cost: Cost,
+    /// By their numbers of steps.
+    pub(super) runs: Vec<Run<G>>,
+    /// Why the last run failed.
     pub(super) failure: Option<AccuracyError>,
 }
 
 impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
-    pub(super) fn new(candidate: &'a Candidate<'a, G, A>) -> Self {
-        Self::from(candidate, 1.0)
+    pub(super) fn new(method: &'a Method<G, A>, cost: Cost, start: Start<G>) -> Self {
+        Self { method, start, cost, runs: Vec::new(), failure: None }
     }
 
-    /// That begins with so many steps.
-    pub(super) fn from(candidate: &'a Candidate<'a, G, A>, first: f64) -> Self {
-        Self { candidate, trials: Vec::new(), first, failure: None }
+    /// Operations of a run with so many steps, at least.
+    pub(super) fn least(&self, steps: f64) -> f64 {
+        self.cost.once + steps * self.cost.least()
     }
 
-    /// All, the roughest first.
-    pub(super) fn trials(&self) -> &[Trial<G>] {
-        &self.trials
+    pub(super) fn order(&self) -> f64 {
+        f64::from(self.method.order)
     }
 
-    /// The trial with the most steps.
-    pub(super) fn finest(&self) -> Option<&Trial<G>> {
-        self.trials.last()
+    pub(super) fn finest(&self) -> Option<&Run<G>> {
+        self.runs.last()
     }
 
-    /// A trial with more steps than the last.
-    pub(super) fn extend(&mut self, horizon: f64, steps: f64, tried: &mut Tried<'a, G, A>) {
-        let (trial, failure) = tried.run(self.candidate, horizon, steps);
-        self.trials.push(trial);
+    pub(super) fn has(&self, steps: f64) -> bool {
+        self.runs.iter().any(|run| run.steps.to_bits() == steps.to_bits())
+    }
+
+    /// A run with so many steps from the start, which is kept.
+    pub(super) fn run(&mut self, steps: f64, trials: &mut Trials) -> Run<G> {
+        let (run, failure) = self.made(&self.start, steps, trials);
+        self.runs.insert(self.runs.partition_point(|other| other.steps < steps), run);
         self.failure = failure;
+        run
     }
 
-    /// Twice the steps of the last trial.
-    pub(super) fn twice_the_steps(&self) -> f64 {
-        self.finest().map_or(self.first, |finest| 2.0 * finest.steps)
+    /// By how far a run ends from one that starts some roundings away.
+    pub(super) fn rounding(&self, run: &Run<G>, trials: &mut Trials) -> f64 {
+        let nearby = self.made(&self.start.nearby(), run.steps, trials).0;
+        nearby.end.zip(run.end).map_or(f64::INFINITY, |(nearby, end)| self.start.difference(&nearby, &end))
     }
 
-    /// What the next trial is thought to cost.
-    pub(super) fn cost_of(&self, steps: f64) -> f64 {
-        let least = self.candidate.a_step();
-        let solved = self.finest().filter(|finest| finest.end.is_some());
-        let a_step = solved.map_or(self.candidate.a_long_step(), |finest| 0.5 * (finest.a_step + least));
-        self.candidate.once() + steps * a_step
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number, far below the largest
+    fn made(&self, start: &Start<G>, steps: f64, trials: &mut Trials) -> (Run<G>, Option<AccuracyError>) {
+        let run = || -> Result<_, AccuracyError> {
+            let stepper = (self.method.make)(start.horizon / steps)?;
+            let mut state = stepper.start(start.attitude, start.velocity)?;
+            let iterations = stepper.attempt(&mut state, steps as u64).map_err(AccuracyError::Step)?;
+            let cost = stepper.cost().of_run(steps as u64, iterations);
+            let end = End { attitude: state.attitude(), velocity: stepper.velocity(&state) };
+            let a_step = (cost - self.cost.once) / steps;
+            Ok(Run { steps, a_step, cost, end: Some(end).filter(End::is_finite) })
+        };
+        let failed =
+            |failure| (Run { steps, a_step: self.cost.least(), cost: self.least(steps), end: None }, Some(failure));
+        let (run, failure) = run().map_or_else(failed, |run| (run, None));
+        trials.runs += 1;
+        trials.most_steps = trials.most_steps.max(steps);
+        trials.operations += run.cost;
+        (run, failure)
+    }
+
+    /// The error of a run against a reference, which is at least that of the reference.
+    pub(super) fn error(&self, run: &Run<G>, (exact, left): &Reference<G>) -> Option<f64> {
+        run.end.map(|end| self.start.difference(&end, exact).max(*left).max(f64::EPSILON))
     }
 
     /// The errors against a reference, from where they are small enough to say something; without one against the
-    /// finest of its own.
-    fn points(&self, start: &Start<G>, reference: Option<&End<G>>) -> Vec<Point> {
-        let own = self.finest().and_then(|finest| finest.end);
+    /// finest run.
+    fn points(&self, reference: Option<&Reference<G>>) -> Vec<Point> {
+        let own = self.finest().and_then(|finest| Some((finest.end?, 0.0)));
         let (Some(exact), measured) = (match reference {
-            Some(_) => (reference.copied(), &self.trials[..]),
-            None => (own, &self.trials[..self.trials.len().saturating_sub(1)]),
+            Some(_) => (reference, &self.runs[..]),
+            None => (own.as_ref(), &self.runs[..self.runs.len().saturating_sub(1)]),
         }) else {
             return Vec::new();
         };
-        let mut points: Vec<Point> = Vec::new();
-        for Trial { steps, end, .. } in measured {
-            match end.map(|end| start.difference(&end, &exact)) {
+        let mut points = Vec::new();
+        for run in measured {
+            match self.error(run, exact) {
                 Some(error) if error < LARGEST_ERROR => {
-                    points.push(Point { steps: *steps, error: error.max(SMALLEST_ERROR) });
+                    points.push(Point { steps: run.steps, a_step: run.a_step, error });
                 }
                 _ => points.clear(),
             }
@@ -136,122 +134,78 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
         points
     }
 
-    fn promised(&self) -> f64 {
-        f64::from(self.candidate.order)
-    }
-
-    /// The order that the last points show, if there are two.
-    fn shown(&self, points: &[Point]) -> Option<f64> {
+    /// The order that the last errors show, if there are two.
+    fn shown(points: &[Point], most: f64) -> Option<f64> {
         let [.., before, last] = points else { return None };
-        Some(shown(before, last).clamp(1.0, self.most()))
+        Some(power(before, last).clamp(1.0, most))
     }
 
-    /// The highest order that may show.
-    fn most(&self) -> f64 {
-        let promised = self.promised();
-        (promised + BEYOND_THE_ORDER).min(HIGHEST_ORDER).max(promised)
+    /// Steps that an error takes, and the operations of one, if any run has an error that says something.
+    pub(super) fn takes(&self, reference: &Reference<G>, error: f64) -> Option<(f64, f64)> {
+        let (points, most) = (self.points(Some(reference)), self.order() + BEYOND_THE_ORDER);
+        let last = points.last()?;
+        let by_power = |point: &Point, order: f64| point.steps * (point.error / error).powf(order.recip());
+        Some(match points.iter().position(|point| point.error <= error) {
+            None => (by_power(last, Self::shown(&points, most).unwrap_or(most)), last.a_step),
+            Some(0) => {
+                let (first, too_long) = (&points[0], self.runs.partition_point(|run| run.steps < points[0].steps));
+                // What isn't more than the reference's error may be far less, and follow no power.
+                let steps = by_power(first, if first.error > reference.1 { self.order() } else { 1.0 });
+                let between = too_long.checked_sub(1).map_or(0.0, |run| (self.runs[run].steps * first.steps).sqrt());
+                (steps.max(between), first.a_step)
+            }
+            Some(place) => (by_power(&points[place - 1], power(&points[place - 1], &points[place])), last.a_step),
+        })
     }
 
-    /// What an error takes, by errors against a reference or against the finest trial.
-    pub(super) fn estimate(&self, start: &Start<G>, reference: Option<&End<G>>, error: f64) -> Estimate {
-        let points = self.points(start, reference);
-        let (once, least) = (self.candidate.once(), self.candidate.a_step());
-        let a_step = self.finest().map_or(least, |trial| trial.a_step);
-        let Some(last) = points.last() else {
-            // At least the next trial; far more, if the last has had a larger error than any that says something.
-            // Before the first nothing is known.
-            let (next, falls) = (self.twice_the_steps(), (LARGEST_ERROR / error).max(1.0).powf(self.most().recip()));
-            let steps = if self.trials.is_empty() { 0.0 } else { next.max(0.5 * next * falls) };
-            return Estimate { steps, a_step: least, once, is_bound: true, is_near: false, is_short: false };
-        };
-        let at = |steps: f64, is_near| Estimate { steps, a_step, once, is_bound: false, is_near, is_short: false };
-        let Some(place) = points.iter().position(|point| point.error <= error) else {
-            let order = self.shown(&points).unwrap_or(self.promised());
-            let steps = last.steps * (last.error / error).powf(order.recip());
-            // Shorter steps take fewer iterations than the trial's, between those and the fewest.
-            let a_step = if steps > 2.0 * last.steps { (a_step * least).sqrt() } else { a_step };
-            let is_near = points.len() >= 2 && steps <= 2.0 * last.steps;
-            return Estimate { a_step, ..at(steps, is_near) };
-        };
-        let fine = &points[place];
-        let Some(coarse) = place.checked_sub(1).map(|before| &points[before]) else {
-            // Longer steps than were tried: by the order that lengthens them least.
-            let is_short = fine.error < MUCH_NEARER * error;
-            return Estimate { is_short, ..at(fine.steps * (fine.error / error).powf(self.most().recip()), true) };
-        };
-        let part = (coarse.error / error).ln() / (coarse.error / fine.error).ln();
-        at(coarse.steps * (fine.steps / coarse.steps).powf(part), true)
+    /// A run with these steps, each of so many operations: a whole number of them, and its cost.
+    pub(super) fn of_run(&self, (steps, a_step): (f64, f64)) -> (f64, f64) {
+        let steps = steps.ceil().max(1.0);
+        (steps, self.cost.once + steps * a_step)
     }
 
     /// The error of a run with so many steps, by those that were made.
-    pub(super) fn error_at(&self, start: &Start<G>, reference: &End<G>, steps: f64) -> Option<f64> {
-        let points = self.points(start, Some(reference));
-        let near = points.iter().min_by(|a, b| {
-            let [a, b] = [a, b].map(|point| (point.steps / steps).ln().abs());
-            a.total_cmp(&b)
-        })?;
-        let order = self.shown(&points).unwrap_or(self.promised());
+    pub(super) fn error_at(&self, reference: &Reference<G>, steps: f64) -> Option<f64> {
+        let points = self.points(Some(reference));
+        let away = |point: &Point| (point.steps / steps).ln().abs();
+        let near = points.iter().min_by(|a, b| away(a).total_cmp(&away(b)))?;
+        let order = Self::shown(&points, self.order() + BEYOND_THE_ORDER).unwrap_or(self.order());
         Some(near.error * (near.steps / steps).powf(order))
     }
 
-    /// The error that the finest trial is left with, by those before it; by the order promised where these show none.
-    pub(super) fn error_of_finest(&self, start: &Start<G>) -> Option<f64> {
-        self.error_left(start, self.promised())
+    /// Of runs whose errors say nothing yet, the steps that one with an error has at least, and those to be tried next.
+    pub(super) fn bound(&self, error: f64) -> (f64, f64) {
+        let finest = self.finest().map_or(0.0, |finest| finest.steps);
+        let falls = (LARGEST_ERROR / error).max(1.0).powf((self.order() + BEYOND_THE_ORDER).recip());
+        (finest * falls.max(1.2), (finest * falls.clamp(1.2, 2.0)).ceil())
     }
 
-    /// The same, by order 1 where none is shown: long steps may not have the one promised.
-    pub(super) fn error_shown_of_finest(&self, start: &Start<G>) -> Option<f64> {
-        self.error_left(start, 1.0)
-    }
-
-    fn error_left(&self, start: &Start<G>, order_unseen: f64) -> Option<f64> {
-        let (points, finest) = (self.points(start, None), self.finest()?);
+    /// The error that the finest run is left with, by those before it, and the order by which it falls: that which is
+    /// shown, up to the one promised, and otherwise this one.
+    pub(super) fn left(&self, unseen: f64) -> Option<(f64, f64)> {
+        let (points, finest) = (self.points(None), self.finest()?);
         let last = points.last()?;
-        let order = self.shown(&points).map_or(order_unseen, |shown| shown.min(self.promised()));
+        let order = Self::shown(&points, self.order()).unwrap_or(unseen);
         let ratio = (last.steps / finest.steps).powf(order);
         // What is measured is the difference of two errors.
-        Some(last.error * ratio / (1.0 - ratio))
+        Some((last.error * ratio / (1.0 - ratio), order))
     }
 
-    /// The steps of the finest trial as a multiple of those of the one before.
-    pub(super) fn last_ratio(&self) -> f64 {
-        match self.trials.as_slice() {
-            [.., before, finest] => finest.steps / before.steps,
-            _ => 1.0,
-        }
+    /// Whether the runs agree as nearly as this, of whatever order their errors are.
+    pub(super) fn is_within(&self, error: f64) -> bool {
+        self.left(1.0).is_some_and(|(left, _)| left <= error)
     }
 
-    /// The last error that was measured against the finest trial.
-    pub(super) fn last_error(&self, start: &Start<G>) -> Option<f64> {
-        self.points(start, None).last().map(|last| last.error)
-    }
-
-    /// How many more steps, by a factor, lessen the error by this one.
-    pub(super) fn factor(&self, start: &Start<G>, less: f64) -> f64 {
-        less.powf(self.order(start).recip())
-    }
-
-    /// The order that can be relied on.
-    pub(super) fn order(&self, start: &Start<G>) -> f64 {
-        let shown = self.shown(&self.points(start, None));
-        shown.map_or(self.promised(), |shown| shown.min(self.promised()))
-    }
-
-    /// Whether errors fall about as the order says.
-    pub(super) fn falls(&self, start: &Start<G>) -> bool {
-        self.order(start) > 0.5 * self.promised()
-    }
-
-    /// The least error, if errors have stopped falling.
-    pub(super) fn floor(&self, start: &Start<G>) -> Option<f64> {
-        let points = self.points(start, None);
+    /// The least difference to the finest run, if differences have stopped falling.
+    pub(super) fn floor(&self) -> Option<f64> {
+        let points = self.points(None);
         let [.., a, b, c] = points.as_slice() else { return None };
         let least = points.iter().map(|point| point.error).fold(f64::INFINITY, f64::min);
-        (shown(a, b) < STAGNANT && shown(b, c) < STAGNANT).then_some(least)
+        (power(a, b) < 0.5 && power(b, c) < 0.5).then_some(least)
     }
 }
 
 /// The power of the step by which an error has fallen.
-fn shown(coarse: &Point, fine: &Point) -> f64 {
+fn power(coarse: &Point, fine: &Point) -> f64 {
     (coarse.error / fine.error).ln() / (fine.steps / coarse.steps).ln()
 }

@@ -2,98 +2,60 @@
 //!
 //! | | |
 //! |---|---|
-//! | the cheapest method and step for an error | [`Stepper::for_accuracy`](crate::motion::Stepper::for_accuracy), [`Candidates`] |
+//! | the cheapest method and step for an error | [`Stepper::for_accuracy`](crate::motion::Stepper::for_accuracy) |
 //! | errors and orders of a method with ever shorter steps | [`convergence`] |
 //! | what an error costs in time | [`work_precision`] |
 //! | the same of anything else that runs | [`Refinement`] |
 //!
 //! # How a choice is made
 //!
-//! All methods are tried over a short part of the very motion, with one step, two, four and so on. Their errors there
-//! rank them by the operations that their steps make, by no clock, so that the same question has the same answer each
-//! time on one platform. The one that looks cheapest is run to the horizon with ever shorter steps, until they show the
-//! error of those before (Richardson); the finest is the reference for all the others that may be cheaper. Growth of
-//! errors along the motion, steps too long to be solved and orders that coarse steps haven't got yet are in these
-//! measurements: the step is taken from a run to the horizon whose error has been measured against a finer one, and of
-//! that one only the own error is extrapolated.
+//! Methods are compared by the operations of their runs, by no clock, so that the same question has the same answer each
+//! time on one platform. One method is run with ever shorter steps until its runs agree (Richardson); the finest is the
+//! reference for all others. Of these the one that may be the cheapest is run next, until none may be cheaper than the
+//! best. This is done over a short part of the motion first, and over parts eight times as long each with the steps that
+//! the part before has shown, up to the horizon: the step is taken from a run to the horizon whose error has been measured
+//! against a finer one.
 //!
 //! A fraction of a turn at a tolerance of some hundredths can be answered by runs of one and two steps that agree by
-//! chance: of 1200 such questions in the tests four are, and their errors are up to thirteen times the tolerance.
-//!
-//! A long step of the cheapest method tells how far the motion goes, each phase has its share, and no trial from the
-//! start is made twice. In the tests, some three hundred questions with answers of one step to thousands, all trials
-//! together cost at most thirty times the run, and half of them at most ten times. Once a run is near enough, another is
-//! made only if all are thought to stay within thirty runs of the cheapest. Before that what a run will cost isn't known,
-//! and the operations alone are bounded: a scene that would take more than some seconds is refused with what was tried.
+//! chance. The operations of all trials are bounded: a scene that would take more than some seconds is refused with what
+//! was tried.
 
-mod candidates;
 mod choice;
 mod error;
 mod ladder;
-mod part;
+mod methods;
+mod question;
 mod refinement;
 mod search;
-mod trials;
 
-pub use candidates::Candidates;
 pub use choice::{Choice, Offer};
 pub use error::AccuracyError;
+pub use methods::{Methods, Steppable};
+pub use question::{Accuracy, End, Trials};
 #[cfg(feature = "std")]
 pub use refinement::{Effort, work_precision};
-pub use refinement::{End, Measurement, Reference, Refinement, RefinementError, convergence};
-pub use trials::Trials;
+pub use refinement::{Measurement, Reference, Refinement, RefinementError, convergence};
 
 use core::ops::Deref;
+
+use question::Start;
 
 use crate::error::StepError;
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scene, Vector};
 use crate::motion::{AnyState, AnyStepper, Integrator as _, Stepper};
 
-/// How near to the true motion, and until when.
-///
-/// The error at the horizon `T` is that of attitude and body velocity together,
-///
-/// ```text
-/// error² = (|g − g*|/|g*|)² + (|Ω − Ω*|/s)²        s = max(|Ω*(T)|, |Ω(0)|, 1/T)
-/// ```
-///
-/// with the exact `g*`, `Ω*`, and for matrices the Frobenius norm: on SO(3) the first part is `√(8/3) sin(θ/2)` for an
-/// attitude wrong by the angle `θ`, about `0.8 θ`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Accuracy {
-    /// The largest error at the horizon, up to 0.05: what is larger isn't an error but another motion.
-    pub tolerance: f64,
-    /// The time `T` from the start, s.
-    pub horizon: f64,
-}
-
-impl Accuracy {
-    fn validate(self) -> Result<(), AccuracyError> {
-        let Self { tolerance, horizon } = self;
-        if !(tolerance > 0.0 && tolerance <= ladder::LARGEST_ERROR) {
-            return Err(AccuracyError::Tolerance { tolerance });
-        }
-        if !(horizon > 0.0 && horizon.is_finite()) {
-            return Err(AccuracyError::Horizon { horizon });
-        }
-        Ok(())
-    }
-
-    /// What an error of the velocity is relative to.
-    fn scale(at_start: f64, at_horizon: f64, horizon: f64) -> f64 {
-        at_start.max(at_horizon).max(horizon.recip())
-    }
-}
-
 impl<S: Effect> Stepper<S> {
-    /// The cheapest way to an accuracy that a scene of order 2 has by itself: its own step, or a symmetric composition
-    /// of order 4, 6, 8 or 10, with the step that is just short enough for the motion from this attitude (body to
-    /// space) and body velocity.
+    /// The cheapest method for an accuracy, with the step that is just short enough for the motion from this attitude
+    /// (body to space) and body velocity.
     ///
-    /// The choice takes trial runs, which cost together some ten times what the run does; [`Choice::trials`] says how
+    /// Every self-adjoint scene has its own step and its symmetric compositions of order 4 to 10. A body on SO(3) whose
+    /// potential can be split off has splittings with the exact motion of the free body, processed ones among them, and
+    /// Gauss collocation; a free body is moved exactly.
+    ///
+    /// The choice takes trial runs, which cost together some twenty times what the run does; [`Choice::trials`] says how
     /// much. The step is then fixed: energy and momenta are kept as by any fixed step, and the same question gives the
-    /// same bits. [`Candidates`] chooses from more methods, where a scene allows them.
+    /// same bits.
     ///
     /// # Errors
     ///
@@ -125,12 +87,24 @@ impl<S: Effect> Stepper<S> {
     ) -> Result<AccurateStepper<Group<S>, S::Advected>, AccuracyError>
     where
         S: Scene<Scalar = f64>,
+        Group<S>: Steppable<S>,
     {
-        Candidates::of(scene, 2).for_accuracy(accuracy, attitude, velocity)
+        let Accuracy { tolerance, horizon } = accuracy;
+        if !(tolerance > 0.0 && tolerance <= ladder::LARGEST_ERROR) {
+            return Err(AccuracyError::Tolerance { tolerance });
+        }
+        if !(horizon > 0.0 && horizon.is_finite()) {
+            return Err(AccuracyError::Horizon { horizon });
+        }
+        let (methods, start) = (Methods::of(&scene), Start { attitude: attitude.into(), velocity, horizon });
+        let choice = search::search(&methods.0, accuracy, start)?;
+        let stepper = (methods.0[choice.chosen].make)(choice.chosen().step)?;
+        let start = stepper.start(start.attitude, start.velocity)?;
+        Ok(AccurateStepper { stepper, start, choice })
     }
 }
 
-/// A stepper chosen for an accuracy by [`Stepper::for_accuracy`] or [`Candidates::for_accuracy`].
+/// A stepper chosen for an accuracy by [`Stepper::for_accuracy`].
 ///
 /// It steps, tells time, velocity and energy as the [`AnyStepper`] that it holds.
 #[derive(Debug)]

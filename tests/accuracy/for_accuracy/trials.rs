@@ -1,20 +1,25 @@
 //! What the trials of a choice cost, and where they end.
 
+use core::ops::Add;
+
 use super::*;
+
+/// With a slow rotor, so that the body can't be split and its own steps are all there is.
+fn spun<B: Add<Rotor>>(body: B) -> B::Output {
+    body + Rotor { spin: Vector3::x() * 1e-3 }
+}
 
 /// Trials are counted in operations, so the bound holds on any machine. Runs are of one step and of thousands.
 #[test]
-fn trials_cost_at_most_thirty_runs_and_half_of_them_ten() {
+fn trials_cost_at_most_sixty_runs_and_half_of_them_twenty() {
     let mut all = Vec::new();
     for (name, horizon) in MOTIONS.iter().flat_map(|name| [0.03, 0.1, 0.3, 1.0, 3.0, 10.0].map(|t| (name, t))) {
         let motion = Motion::read(name);
         for tolerance in [3e-2, 1e-3, 1e-6, 1e-9, 1e-11] {
             let accuracy = Accuracy { tolerance, horizon };
-            let own = Stepper::for_accuracy(motion.top.clone(), accuracy, motion.attitude, motion.velocity);
-            let of_body = of_body(&motion).for_accuracy(accuracy, motion.attitude, motion.velocity);
-            for stepper in [own.unwrap(), of_body.unwrap()] {
+            for stepper in [ask(&motion, accuracy).unwrap(), ask_coupled(&motion, accuracy).unwrap()] {
                 let choice = stepper.choice();
-                assert!(choice.trials <= 30.0, "{name}\n{choice}");
+                assert!(choice.trials <= 60.0, "{name}\n{choice}");
                 all.push((choice.trials, choice.steps));
             }
         }
@@ -27,7 +32,7 @@ fn trials_cost_at_most_thirty_runs_and_half_of_them_ten() {
     for runs in [short, ordinary] {
         assert!(runs.len() > 40, "{}", runs.len());
         let median = median(runs.into_iter().map(|(trials, _)| trials).collect());
-        assert!(median <= 10.0, "{median}");
+        assert!(median <= 20.0, "{median}");
     }
 }
 
@@ -36,20 +41,20 @@ fn trials_cost_at_most_thirty_runs_and_half_of_them_ten() {
 fn steps_too_long_to_be_solved_end_the_search_for_longer_ones() {
     let motion = Motion::read("chaotic");
     let accuracy = Accuracy { tolerance: 0.05, horizon: 30.0 };
-    let stepper = of_body(&motion).for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap();
+    let stepper = ask(&motion, accuracy).unwrap();
     // A search that goes on to a finer reference takes thousands of runs.
-    assert!(stepper.choice().trials <= 30.0, "{}", stepper.choice());
+    assert!(stepper.choice().trials <= 60.0, "{}", stepper.choice());
 }
 
 /// A spin of more than a turn in the shortest step that is tried, each of which has a solution: no two trials agree,
-/// and rounding has no part in that. (No composition is of a method of order 8, so that one method is tried.)
+/// and rounding has no part in that.
 #[test]
 fn steps_too_long_for_the_motion_are_not_taken_for_rounding() {
     let body = CayleyBody { J: Inertia::from_principal_moments(Vector3::new(1.0, 1.0, 1.0)).unwrap() };
     let accuracy = Accuracy { tolerance: 1e-3, horizon: 1000.0 };
-    let refusal = Candidates::of(body, 8).for_accuracy(accuracy, SO3::identity(), Vector3::z() * 1e5).unwrap_err();
-    let AccuracyError::TooManySteps { steps, is_bound: false, method, .. } = &refusal else { panic!("{refusal}") };
-    assert!(*steps > 1e6 && steps.is_finite() && method == "its own step", "{refusal}");
+    let refusal = Stepper::for_accuracy(spun(body), accuracy, SO3::identity(), Vector3::z() * 1e5).unwrap_err();
+    let AccuracyError::TooManySteps { steps, is_bound: false, .. } = &refusal else { panic!("{refusal}") };
+    assert!(*steps > 1e6 && steps.is_finite(), "{refusal}");
     assert!(refusal.to_string().starts_with("about "), "{refusal}");
 }
 
@@ -60,20 +65,21 @@ fn long_steps_without_a_solution_are_not_the_cause() {
     let body = RigidBody { J_d: NonstandardInertia::from_diagonal(Vector3::new(1.0, 1.5, 2.0)).unwrap() };
     let accuracy = Accuracy { tolerance: 1e-3, horizon: 1000.0 };
     let velocity = Vector3::z() * (0.8 * 8.0_f64.powi(20) / accuracy.horizon);
-    let refusal = Candidates::of(body, 8).for_accuracy(accuracy, SO3::identity(), velocity).unwrap_err();
+    let refusal = Stepper::for_accuracy(spun(body), accuracy, SO3::identity(), velocity).unwrap_err();
     let AccuracyError::TooManySteps { steps, is_bound: true, method, .. } = &refusal else { panic!("{refusal}") };
     assert!(*steps > 1e17 && method == "its own step", "{refusal}");
     assert!(refusal.to_string().starts_with("at least 1e18 steps of the method `its own step`"), "{refusal}");
 }
 
-/// In so short a time the steps that the accuracy takes are too short for a double.
+/// In so short a time the steps that order 2 takes are too short for a double; a composition takes longer ones.
 #[test]
-fn a_set_up_that_fails_for_shorter_steps_is_the_error() {
+fn a_set_up_that_fails_for_shorter_steps_is_not_the_end() {
     let body = CayleyBody { J: Inertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5)).unwrap() };
     let (horizon, velocity) = (1e-98, Vector3::new(0.3e98, 0.5e98, 0.8e98));
     let accuracy = Accuracy { tolerance: 1e-12, horizon };
-    let refusal = Candidates::of(body, 8).for_accuracy(accuracy, SO3::identity(), velocity).unwrap_err();
-    assert!(matches!(refusal, AccuracyError::Setup(SetupError::InvalidStep { .. })), "{refusal}");
+    assert!(matches!(Stepper::new(body, horizon / 1e6), Err(SetupError::InvalidStep { .. })));
+    let stepper = Stepper::for_accuracy(spun(body), accuracy, SO3::identity(), velocity).unwrap();
+    assert!(stepper.choice().error <= 1e-12, "{}", stepper.choice());
 }
 
 /// Trials end after so many operations, some seconds, whatever is asked, and an error says how many were made.
@@ -85,20 +91,18 @@ fn hostile_scenes_are_refused_soon() {
         let mut top = motion.top.clone();
         top.g = gravity;
         let accuracy = Accuracy { tolerance: 1e-6, horizon };
-        for candidates in [Candidates::of(top.clone(), 2), Candidates::of_body(top, 2)] {
-            let operations = match candidates.for_accuracy(accuracy, motion.attitude, motion.velocity) {
-                Ok(_) => {
-                    answered += 1;
-                    0.0
-                }
-                Err(AccuracyError::Unreachable { trials, .. } | AccuracyError::TooManySteps { trials, .. }) => {
-                    assert!(trials.runs > 10 && trials.most_steps > 0.0, "{trials:?}");
-                    trials.operations
-                }
-                Err(other) => panic!("{other}"),
-            };
-            assert!(operations < 1.5e9, "{gravity} {horizon}: {operations:e}");
-        }
+        let operations = match Stepper::for_accuracy(top, accuracy, motion.attitude, motion.velocity) {
+            Ok(_) => {
+                answered += 1;
+                0.0
+            }
+            Err(AccuracyError::Unreachable { trials, .. } | AccuracyError::TooManySteps { trials, .. }) => {
+                assert!(trials.runs > 10 && trials.most_steps > 0.0, "{trials:?}");
+                trials.operations
+            }
+            Err(other) => panic!("{other}"),
+        };
+        assert!(operations < 1.5e9, "{gravity} {horizon}: {operations:e}");
     }
     assert_eq!(answered, 0);
 }

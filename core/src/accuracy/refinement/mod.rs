@@ -11,7 +11,7 @@ use alloc::vec::Vec;
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _;
 
-pub use runs::{End, Reference, RefinementError, convergence};
+pub use runs::{Reference, RefinementError, convergence};
 #[cfg(feature = "std")]
 pub use timed::{Effort, work_precision};
 

@@ -4,12 +4,12 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use super::{Measurement, Refinement};
-use crate::accuracy::trials::Start;
+use crate::accuracy::question::Start;
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
 use crate::motion::Integrator;
 
-pub use crate::accuracy::trials::End;
+use crate::accuracy::question::End;
 
 /// What the ends of the runs are compared with.
 #[derive(Clone, Copy, Debug)]

@@ -3,8 +3,9 @@
 use alloc::vec::Vec;
 use std::time::{Duration, Instant};
 
-use super::runs::{End, Ready, Reference, RefinementError, plan};
+use super::runs::{Ready, Reference, RefinementError, plan};
 use super::{Measurement, Refinement};
+use crate::accuracy::question::End;
 use crate::error::SetupError;
 use crate::groups::LieGroup;
 use crate::motion::Integrator;

@@ -1,7 +1,6 @@
 //! Gauss collocation in the quaternion and its momentum: the cheapest Poisson map for high accuracy.
 //!
-//! [`Candidates::and_gauss`](crate::accuracy::Candidates::and_gauss) makes it one of the methods to be chosen by
-//! accuracy, and then finds the step.
+//! [`Stepper::for_accuracy`](crate::Stepper::for_accuracy) has it among its methods, and finds the step.
 
 mod coefficients;
 mod cotangent;

@@ -25,7 +25,7 @@ pub type StateOf<S, P = Declared<S>> = State<Group<S>, <S as Term>::Advected, <P
 /// Stepper::split(scene, h, flow, scheme)          kinetic flow and kicks in turn, to order 10
 /// Stepper::processed(scene, h, flow, scheme)      the same between the ends of a processor, for fewer flows a step
 /// Stepper::collocated::<PAIRS>(scene, h)          Gauss collocation, to any order
-/// Stepper::for_accuracy(scene, accuracy, …)       the cheapest of its own step and its compositions
+/// Stepper::for_accuracy(scene, accuracy, …)       the cheapest of all these
 /// ```
 ///
 /// Whatever the method `P`, a motion is [started](Self::start), [stepped](Self::step) and read in the same way, and

@@ -1,0 +1,94 @@
+//! What is asked, and how far a run is from the motion.
+
+use crate::groups::LieGroup;
+use crate::numbers::{Coordinates as _, Entries};
+
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
+
+/// How near to the true motion, and until when.
+///
+/// The error at the horizon `T` is that of attitude and body velocity together,
+///
+/// ```text
+/// error² = (|g − g*|/|g*|)² + (|Ω − Ω*|/s)²        s = max(|Ω*(T)|, |Ω(0)|, 1/T)
+/// ```
+///
+/// with the exact `g*`, `Ω*`, and for matrices the Frobenius norm: on SO(3) the first part is `√(8/3) sin(θ/2)` for an
+/// attitude wrong by the angle `θ`, about `0.8 θ`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// The largest error at the horizon, up to 0.05: what is larger isn't an error but another motion.
+    pub tolerance: f64,
+    /// The time `T` from the start, s.
+    pub horizon: f64,
+}
+
+/// Where a run ends.
+#[derive(Clone, Copy, Debug)]
+pub struct End<G: LieGroup> {
+    /// The attitude, body to space.
+    pub attitude: G,
+    /// The body velocity, on SO(3) in rad/s.
+    pub velocity: G::Vector,
+}
+
+/// The trial runs that a choice has taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Trials {
+    /// How many.
+    pub runs: u64,
+    /// Steps of the longest.
+    pub most_steps: f64,
+    /// The arithmetic of all, in operations on doubles.
+    pub operations: f64,
+}
+
+/// Where runs start, and how far they go.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Start<G: LieGroup> {
+    pub(super) attitude: G,
+    pub(super) velocity: G::Vector,
+    pub(super) horizon: f64,
+}
+
+/// How far apart two starts are that rounding doesn't tell apart in a run: about what the roundings of its first
+/// hundred stages add up to.
+const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
+
+impl<G: LieGroup<Scalar = f64>> Start<G> {
+    /// The same motion, for another time.
+    pub(super) fn until(&self, horizon: f64) -> Self {
+        Self { horizon, ..*self }
+    }
+
+    /// A start some roundings away, in all directions.
+    pub(super) fn nearby(&self) -> Self {
+        let axes = (0..G::DIMENSION).map(G::Vector::axis);
+        let aside = axes.fold(G::Vector::zero(), |sum, axis| sum * -0.8 + axis) * ROUNDINGS;
+        let attitude = self.attitude.compose(&G::from_increment(&G::hat(&aside)));
+        let velocity = self.velocity + aside * size(&self.velocity).max(self.horizon.recip());
+        Self { attitude, velocity, horizon: self.horizon }
+    }
+
+    /// The error that [`Accuracy`] defines.
+    pub(super) fn difference(&self, end: &End<G>, exact: &End<G>) -> f64 {
+        let apart = |a: &G::Vector, b: &G::Vector| size(&a.zip(b, &mut |a, b| a - b));
+        let attitudes = end.attitude.matrix().zip(&exact.attitude.matrix(), &mut |a, b| a - b);
+        let scale = size(&self.velocity).max(size(&exact.velocity)).max(self.horizon.recip());
+        (size(&attitudes) / size(&exact.attitude.matrix())).hypot(apart(&end.velocity, &exact.velocity) / scale)
+    }
+}
+
+impl<G: LieGroup<Scalar = f64>> End<G> {
+    pub(super) fn is_finite(&self) -> bool {
+        (size(&self.attitude.matrix()) + size(&self.velocity)).is_finite()
+    }
+}
+
+fn size<E: Entries<f64>>(entries: &E) -> f64 {
+    let mut squares = 0.0;
+    entries.each(&mut |entry| squares += entry * entry);
+    squares.sqrt()
+}
