@@ -232,19 +232,21 @@ fn a_command_is_run_by_one_of_its_packages_and_targets() {
 #[test]
 fn commands_of_readme_are_run_or_said_to_be_long() {
     let Some(root) = root() else { return };
-    let readme = fs::read_to_string(root.join("README.md")).unwrap();
+    let [readme, examples] =
+        ["README.md", "examples/README.md"].map(|page| fs::read_to_string(root.join(page)).unwrap());
     let lock = fs::read_to_string(root.join("Cargo.lock")).unwrap();
     // What the script calls `built` is an example of the workspace, which is built and run.
     let script = fs::read_to_string(root.join(".ci/run")).unwrap();
     let script: Vec<String> = script.lines().map(|line| line.replacen("built ", "cargo run --example ", 1)).collect();
     let are_run: Vec<Cargo<'_>> = script.iter().filter_map(|line| Cargo::read(line)).collect();
-    let (_, list) = readme.split_once("`.ci/run` runs these commands, but for").unwrap();
+    let (_, list) = readme.split_once("`.ci/run` runs these commands and those").unwrap();
     let (list, _) = list.split_once("\n\n").unwrap();
     let long: Vec<&str> = quoted(list).collect();
+    let pages = format!("{readme}{examples}");
     let blocks =
-        readme.split("```sh\n").skip(1).filter_map(|rest| rest.split_once("```")).flat_map(|(block, _)| block.lines());
+        pages.split("```sh\n").skip(1).filter_map(|rest| rest.split_once("```")).flat_map(|(block, _)| block.lines());
     let mut found = 0;
-    for text in quoted(&readme).chain(blocks.map(|line| line.split('#').next().unwrap_or(line))) {
+    for text in quoted(&pages).chain(blocks.map(|line| line.split('#').next().unwrap_or(line))) {
         let Some(command) = Cargo::read(text) else { continue };
         if long.iter().any(|long| text.contains(long)) {
             continue;
