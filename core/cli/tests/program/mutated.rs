@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use liestep::motion::Integrator as _;
 use nalgebra::Vector3;
 
 use liestep_scene::{Mistake, Scene, SceneEnsemble, Spread, System};
