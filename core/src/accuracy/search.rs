@@ -84,7 +84,7 @@ pub(super) fn search<G: LieGroup<Scalar = f64>, A: Advected<G>>(
 ) -> Result<Choice, AccuracyError> {
     // What is wrong with the scene or with the start is wrong with any step.
     let cost = |method: &Method<G, A>| -> Result<Cost, AccuracyError> {
-        let stepper = (method.make)(accuracy.horizon / 1024.0)?;
+        let stepper = (method.make)(accuracy.horizon / 1024.0).or_else(|_| (method.make)(accuracy.horizon))?;
         stepper.start(start.attitude, start.velocity)?;
         Ok(stepper.cost())
     };
