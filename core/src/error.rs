@@ -136,8 +136,6 @@ pub enum SetupError {
     NoForceGradient,
     /// A splitting with force gradients can't be linearised: a term has no `kick_gradient`.
     NoSecondDerivatives,
-    /// One of the candidates for an accuracy is another scene than the first.
-    PotentialMismatch,
     /// A stepper or a state can't be in a lane beside the others: lanes share the scheme of a method and the number of
     /// steps made, for example.
     Unlike {
@@ -223,7 +221,6 @@ impl fmt::Display for SetupError {
             | Self::BiasMismatch
             | Self::NoForceGradient
             | Self::NoSecondDerivatives
-            | Self::PotentialMismatch
             | Self::Unlike { .. } => self.fmt_method(f),
         }
     }
@@ -252,9 +249,6 @@ impl SetupError {
             ),
             Self::NoSecondDerivatives => f.write_str(
                 "the derivatives of a term of the scene were written without `kick_gradient`, so those of its force gradient aren't known; choose a scheme without them, or write it",
-            ),
-            Self::PotentialMismatch => f.write_str(
-                "one of the methods to choose from has another potential than the first; build all of them from one scene",
             ),
             Self::Unlike { lane } => write!(
                 f,

@@ -10,8 +10,8 @@ use liestep::groups::{Advected, LieGroup, SO2};
 use liestep::mechanics::{
     ContinuousLagrangian, DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, Regular, Scene,
 };
-use liestep::methods::CompositionScheme;
-use liestep::motion::{Integrator as _, RightHandSide};
+use liestep::methods::{CompositionScheme, ExactBody, ProcessedScheme, SplittingScheme};
+use liestep::motion::{AnyStepper, Integrator as _, RightHandSide};
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper, lagrangian};
 use nalgebra::{Matrix3, UnitQuaternion, Vector1, Vector2, Vector3, Vector6};
 use workbench::runge_kutta;
@@ -47,8 +47,9 @@ fn ask_coupled(motion: &Motion, accuracy: Accuracy) -> Answer {
     Stepper::for_accuracy(FourthOrderTop::of(&motion.top), accuracy, motion.attitude, motion.velocity)
 }
 
-/// The worst ratio of error to tolerance, over the motions and tolerances that can be reached.
-fn worst_ratio(ask: impl Fn(&Motion, Accuracy) -> Answer) -> f64 {
+/// The worst ratio of error to tolerance, over the motions and tolerances that can be reached. To refuse the others takes
+/// at most so many operations.
+fn worst_ratio(ask: impl Fn(&Motion, Accuracy) -> Answer, most_operations: f64) -> f64 {
     let mut worst = 0.0_f64;
     for (name, horizon) in MOTIONS.iter().flat_map(|name| [(name, 10.0), (name, 100.0)]) {
         let motion = Motion::read(name);
@@ -64,7 +65,7 @@ fn worst_ratio(ask: impl Fn(&Motion, Accuracy) -> Answer) -> f64 {
                 }
                 // Errors of this motion have grown by 10⁹ until then.
                 Err(AccuracyError::Unreachable { floor, trials, .. }) => {
-                    assert!(trials.operations < 1e9, "{name} {tolerance}: {trials:?}");
+                    assert!(trials.operations < most_operations, "{name} {tolerance}: {trials:?}");
                     assert!(*name == "chaotic" && horizon > 50.0, "{name} {horizon} {tolerance}");
                     assert!(floor > tolerance && floor < 1e-3, "{tolerance} {floor}");
                 }
@@ -77,13 +78,13 @@ fn worst_ratio(ask: impl Fn(&Motion, Accuracy) -> Answer) -> f64 {
 
 #[test]
 fn the_tolerance_is_reached_by_what_a_scene_allows() {
-    let worst = worst_ratio(ask);
+    let worst = worst_ratio(ask, 1e9);
     assert!(worst <= 1.0 && worst > 0.5, "{worst}");
 }
 
 #[test]
 fn the_tolerance_is_reached_by_compositions_alone() {
-    let worst = worst_ratio(ask_coupled);
+    let worst = worst_ratio(ask_coupled, 1.5e9);
     assert!(worst <= 1.0 && worst > 0.5, "{worst}");
 }
 
@@ -113,6 +114,20 @@ fn the_tolerance_is_seldom_missed_by_a_few_long_steps() {
     assert!(few > 250 && missed.len() <= 4, "{few}; missed {missed:#?}");
 }
 
+/// The method of the name, with this step.
+fn by_name(motion: &Motion, name: &str, h: f64) -> AnyStepper<SO3, Vector3<f64>> {
+    let (top, body) = (motion.top.clone(), ExactBody::new(&motion.top.ordinary_inertia()));
+    if let Some(scheme) = CompositionScheme::ALL.into_iter().find(|scheme| scheme.name() == name) {
+        return Stepper::composed(top, h, scheme).unwrap().into_any();
+    }
+    let name = name.strip_prefix("exact, ").unwrap_or_else(|| panic!("{name}"));
+    if let Some(scheme) = SplittingScheme::ALL.into_iter().find(|scheme| scheme.name() == name) {
+        return Stepper::split(top, h, body, scheme).unwrap().into_any();
+    }
+    let scheme = ProcessedScheme::ALL.into_iter().find(|scheme| scheme.name() == name).unwrap();
+    Stepper::processed(top, h, body, scheme).unwrap().into_any()
+}
+
 /// A control: with the step taken twice as long the tolerance is missed, by as much as the order says.
 #[test]
 #[allow(clippy::cast_precision_loss)] // few steps
@@ -122,18 +137,13 @@ fn a_step_twice_as_long_misses_the_tolerance() {
     let accuracy = Accuracy { tolerance, horizon };
     let stepper = ask(&motion, accuracy).unwrap();
     let chosen = stepper.choice().chosen();
-    let schemes =
-        [CompositionScheme::KAHAN_LI_6, CompositionScheme::KAHAN_LI_8, CompositionScheme::SOFRONIOU_SPALETTA_10];
-    let scheme = schemes.into_iter().find(|scheme| scheme.name() == chosen.name).unwrap();
     let steps = stepper.choice().steps.div_ceil(2);
-    let composed = Stepper::composed(motion.top.clone(), horizon / steps as f64, scheme).unwrap();
-    let mut state = composed.start(motion.attitude, motion.velocity).unwrap();
-    for _ in 0..steps {
-        composed.step(&mut state).unwrap();
-    }
-    let longer = (*state.attitude().as_matrix(), composed.velocity(&state));
-    let missed = error(&longer, &motion.at(horizon), &motion.velocity, horizon) / tolerance;
-    assert!(missed > f64::from(1 << (scheme.order() - 3)), "{missed}");
+    let longer = by_name(&motion, &chosen.name, horizon / steps as f64);
+    let mut state = longer.start(motion.attitude, motion.velocity).unwrap();
+    longer.run(&mut state, steps).unwrap();
+    let end = (*state.attitude().as_matrix(), longer.velocity(&state));
+    let missed = error(&end, &motion.at(horizon), &motion.velocity, horizon) / tolerance;
+    assert!(missed > f64::from(1 << (chosen.order - 3)), "{} {missed}", chosen.name);
 }
 
 fn body(moments: [f64; 3]) -> PrincipalBody {

@@ -111,7 +111,6 @@ impl Failure {
             "setup.second" => SetupError::NoSecondDerivatives.into(),
             "setup.bias" => SetupError::BiasMismatch.into(),
             "setup.gradient" => SetupError::NoForceGradient.into(),
-            "setup.potential" => SetupError::PotentialMismatch.into(),
             "inertia.finite" => InertiaError::NotFinite.into(),
             "inertia.symmetric" => InertiaError::NotSymmetric { defect: number()? }.into(),
             "inertia.diagonal" => InertiaError::NotDiagonal { largest: number()? }.into(),
@@ -184,7 +183,6 @@ fn of_setup(error: &SetupError) -> Parts<'_> {
         SetupError::NoSecondDerivatives => ("setup.second", vec![], vec![]),
         SetupError::BiasMismatch => ("setup.bias", vec![], vec![]),
         SetupError::NoForceGradient => ("setup.gradient", vec![], vec![]),
-        SetupError::PotentialMismatch => ("setup.potential", vec![], vec![]),
         _ => ("", vec![], vec![]),
     }
 }
@@ -242,7 +240,7 @@ mod tests {
 
     #[test]
     fn a_failure_is_read_as_it_was_written() {
-        let failures: [Failure; 39] = [
+        let failures: [Failure; 38] = [
             SetupError::Parameter { field: "rho", cause: "is not finite" }.into(),
             SetupError::BodyParameter { body: 99, field: "m", cause: "is not a mass" }.into(),
             SetupError::Joint { joint: 2, cause: "closes a loop" }.into(),
@@ -264,7 +262,6 @@ mod tests {
             SetupError::NoSecondDerivatives.into(),
             SetupError::BiasMismatch.into(),
             SetupError::NoForceGradient.into(),
-            SetupError::PotentialMismatch.into(),
             InertiaError::NotFinite.into(),
             InertiaError::NotSymmetric { defect: 0.1 }.into(),
             InertiaError::NotDiagonal { largest: 0.1 }.into(),

@@ -68,7 +68,7 @@ impl Choice {
         &self.offers[self.chosen]
     }
 
-    /// All methods, in the order of the candidates.
+    /// All methods that the scene can be stepped by.
     #[must_use]
     pub fn offers(&self) -> &[Offer] {
         &self.offers

@@ -73,6 +73,11 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
         self.runs.iter().any(|run| run.steps.to_bits() == steps.to_bits())
     }
 
+    /// Whether any run has come to its end.
+    pub(super) fn has_end(&self) -> bool {
+        self.runs.iter().any(|run| run.end.is_some())
+    }
+
     /// A run with so many steps from the start, which is kept.
     pub(super) fn run(&mut self, steps: f64, trials: &mut Trials) -> Run<G> {
         let (run, failure) = self.made(&self.start, steps, trials);

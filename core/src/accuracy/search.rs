@@ -84,7 +84,7 @@ pub(super) fn search<G: LieGroup<Scalar = f64>, A: Advected<G>>(
 ) -> Result<Choice, AccuracyError> {
     // What is wrong with the scene or with the start is wrong with any step.
     let cost = |method: &Method<G, A>| -> Result<Cost, AccuracyError> {
-        let stepper = (method.make)(accuracy.horizon / 1024.0)?;
+        let stepper = (method.make)(accuracy.horizon / 1024.0).or_else(|_| (method.make)(accuracy.horizon))?;
         stepper.start(start.attitude, start.velocity)?;
         Ok(stepper.cost())
     };
@@ -132,7 +132,9 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
             let step = self.accuracy.horizon / steps;
             Offer { name: name.clone(), order: *order, step, cost: cost / run.cost, is_bound }
         };
-        let of = |error| cost(index, error).map_or(run.cost, |(_, cost)| cost);
+        // Any tolerance takes one step of the exact motion.
+        let is_exact = ladders[index].method.is_exact;
+        let of = |error| cost(index, error).filter(|_| !is_exact).map_or(run.cost, |(_, cost)| cost);
         Some(Choice {
             accuracy: self.accuracy,
             steps: run.steps as u64,
@@ -242,6 +244,11 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
                 return None;
             }
             let run = ladder.run(steps, &mut self.trials);
+            // Longer steps could be had, so shorter ones can't either.
+            if let (Some(AccuracyError::Setup(_)), true) = (&ladder.failure, ladder.has_end()) {
+                self.refused.failure = self.refused.failure.take().or(ladder.failure.take());
+                return None;
+            }
             let Some((left, order)) = ladder.left(unseen) else {
                 steps *= 2.0;
                 continue;

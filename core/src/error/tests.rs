@@ -55,7 +55,6 @@ fn setup_errors() {
         SetupError::BiasMismatch,
         SetupError::NoForceGradient,
         SetupError::NoSecondDerivatives,
-        SetupError::PotentialMismatch,
         SetupError::Unlike { lane: 3 },
     ];
     for error in errors {
@@ -93,7 +92,6 @@ fn setup_errors() {
             SetupError::BiasMismatch => &["momentum at rest", "rotors"],
             SetupError::NoForceGradient => &["`kick_derivative`", "force gradient"],
             SetupError::NoSecondDerivatives => &["`kick_gradient`", "force gradient"],
-            SetupError::PotentialMismatch => &["another potential"],
             SetupError::Unlike { .. } => &["lane 3", "another method"],
         };
         assert_says(&error.to_string(), parts);

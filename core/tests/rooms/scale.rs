@@ -17,7 +17,7 @@ const BUDGETS: [(&str, usize, usize); 35] = [
     ("core/src/laws", 709, 3), ("core/src/mechanics", 3730, 41), ("core/src/effects", 409, 15),
     ("core/src/solving", 1502, 3), ("core/src/motion", 3290, 28), ("core/src/gradients", 1365, 10),
     ("core/src/methods", 9189, 30), ("core/src/recording", 1878, 14), ("core/src/with", 1138, 7),
-    ("core/src/accuracy", 2775, 16), ("core/src/conventions", 478, 0), ("core/src/guide", 2077, 0),
+    ("core/src/accuracy", 1882, 16), ("core/src/conventions", 478, 0), ("core/src/guide", 2077, 0),
     ("core/tests", 540, 0), ("macros/src/lib", 227, 0), ("macros/src/expand", 2625, 0), ("macros/src/emit", 3527, 0),
     ("macros/src/judged", 5770, 0), ("macros/src/declared", 4866, 0), ("macros/src/program", 2419, 0),
     ("macros/src/mathematics", 4736, 0), ("macros/declarations", 147, 0), ("core/scene", 5145, 0),
@@ -27,12 +27,11 @@ const BUDGETS: [(&str, usize, usize); 35] = [
 
 /// The circles that are still there. Lines may go, and none be added.
 #[rustfmt::skip]
-const CIRCLES: [&str; 13] = [
+const CIRCLES: [&str; 12] = [
     "core/src/numbers/blocks.rs core/src/numbers/coordinates.rs",
     "core/src/groups/rotation_functions/mod.rs core/src/groups/so3.rs",
     "core/src/mechanics/continuous.rs core/src/mechanics/effect.rs core/src/mechanics/lagrangian.rs core/src/mechanics/sum.rs",
     "core/src/solving/careful.rs core/src/solving/problem.rs",
-    "core/src/accuracy/candidates.rs core/src/accuracy/choice.rs core/src/accuracy/error.rs core/src/accuracy/ladder.rs core/src/accuracy/part.rs core/src/accuracy/saved.rs core/src/accuracy/search.rs core/src/accuracy/trials.rs",
     "macros/src/judged/constraint.rs macros/src/judged/discretise.rs macros/src/judged/explain.rs macros/src/judged/verify/constraint.rs",
     "macros/src/program/gradient.rs macros/src/program/tangent.rs",
     "macros/src/program/graph.rs macros/src/program/index.rs",

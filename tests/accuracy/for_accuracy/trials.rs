@@ -28,7 +28,7 @@ fn trials_cost_at_most_sixty_runs_and_half_of_them_twenty() {
         trials.sort_by(f64::total_cmp);
         trials[trials.len() / 2]
     };
-    let (short, ordinary): (Vec<_>, Vec<_>) = all.into_iter().partition(|(_, steps)| *steps <= 60);
+    let (short, ordinary): (Vec<_>, Vec<_>) = all.into_iter().partition(|(_, steps)| *steps <= 30);
     for runs in [short, ordinary] {
         assert!(runs.len() > 40, "{}", runs.len());
         let median = median(runs.into_iter().map(|(trials, _)| trials).collect());
