@@ -133,7 +133,7 @@ fn files_and_tests_exist() {
 fn figures_are_shown() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
     let mut shown = BTreeSet::new();
-    for page in ["README.md", "examples/scenes/README.md", "examples/figures/thesis/README.md"] {
+    for page in ["README.md", "examples/README.md", "examples/scenes/README.md", "examples/figures/thesis/README.md"] {
         let page = root.join(page);
         let text = fs::read_to_string(&page).unwrap();
         for link in text.split("](").skip(1).filter_map(|rest| rest.split_once(')')) {

@@ -148,7 +148,7 @@ fn p7_what_is_no_state_of_the_scene_is_refused() {
     assert_eq!(refused(|value| value["format"] = json!(1)), CheckpointError::AnotherFormat { found: 1, known: 3 });
     assert_eq!(
         refused(|value| value["kept"] = json!([1.0, 2.0])),
-        CheckpointError::WrongSize { what: "kept", found: 2, expected: 28 }
+        CheckpointError::WrongSize { what: "kept", found: 2, expected: 9 }
     );
     // How many increments the guess is made of, a number in the file.
     assert_eq!(refused(|value| value["kept"][6] = json!(2.5)), CheckpointError::Altered);

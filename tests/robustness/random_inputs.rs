@@ -179,6 +179,11 @@ fn check_start_error(attitude: &SO3, momentum: &Vector3<f64>, error: &SetupError
             assert!(!finite(momentum.as_slice()));
             "start: momentum not finite"
         }
+        SetupError::NonFinite { what: "velocity of the momentum" } => {
+            // Products of two of its parts, or of one and of moments, are on the way to a velocity.
+            assert!(finite(momentum.as_slice()) && extremes(momentum.as_slice()).0 > 1e90, "{momentum}");
+            "start: velocity not finite"
+        }
         ref other => panic!("{other:?}"),
     }
 }

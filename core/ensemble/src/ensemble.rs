@@ -307,7 +307,7 @@ impl<M: Integrator> Ensemble<M> {
     /// Keeps columns where members cross a surface.
     ///
     /// Members stay in lanes; each of their steps is looked at, and those that cross are made again alone. As in every run
-    /// with [events](liestep::with::Run::event) a member makes each step by itself. Rows are kept as without, and in each are the
+    /// with [events](liestep::recording::Run::event) a member makes each step by itself. Rows are kept as without, and in each are the
     /// crossings since the one before: how many these are nothing bounds but the motion, and a chunk is made in memory.
     ///
     /// # Panics

@@ -68,6 +68,7 @@ impl<S: Effect> Stepper<S> {
     /// use liestep::effects::RigidBody;
     /// use liestep::{NonstandardInertia, SO3, Stepper};
     /// use liestep::accuracy::Accuracy;
+    /// use liestep::motion::Integrator as _;
     /// use liestep::groups::LieGroup;
     /// use nalgebra::Vector3;
     ///

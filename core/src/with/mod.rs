@@ -11,6 +11,3 @@ mod remedies;
 pub use checkpoint::{Checkpoint, CheckpointError, Stored};
 pub use compensated::{Carried, Compensable, Compensated};
 pub use remedies::Substepped;
-// Until nobody names them here.
-#[doc(hidden)]
-pub use crate::recording::*;

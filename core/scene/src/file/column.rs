@@ -1,6 +1,6 @@
 //! What a table of a run has: the table `output`.
 
-use liestep::with;
+use liestep::recording;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::Spanned;
@@ -32,7 +32,7 @@ use Numbers::{OfBody, OfScene, SinceStart};
 /// | `angular-momentum` | the angular momentum of all about the origin, kg m²/s |
 /// | `gap` | how far the joint that is open farthest is open, m; of pins with the cosines of their axes |
 ///
-/// Those that [`Recorder`](liestep::with::Recorder) has, too, are called as there and have the same numbers. Of several
+/// Those that [`Recorder`](liestep::recording::Recorder) has, too, are called as there and have the same numbers. Of several
 /// bodies the body's name is before those of its numbers: `upper_x`.
 #[derive(Clone, Copy, Debug)]
 pub struct Column {
@@ -141,11 +141,11 @@ impl Column {
     }
 
     /// The columns of a table, each with the number of its body; the name of one body that is alone is empty.
-    pub(crate) fn listed(columns: &[Self], bodies: &[&str]) -> Vec<(with::Column, Option<usize>)> {
+    pub(crate) fn listed(columns: &[Self], bodies: &[&str]) -> Vec<(recording::Column, Option<usize>)> {
         let mut all = Vec::new();
         for column in columns {
             let mut add = |before: &str, body| {
-                let named = |name| with::Column { name: format!("{before}{name}"), unit: column.unit.to_owned() };
+                let named = |name| recording::Column { name: format!("{before}{name}"), unit: column.unit.to_owned() };
                 all.extend(column.names.iter().map(|name| (named(name), body)));
             };
             match column.numbers {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use liestep::with;
+use liestep::recording;
 use serde::Deserialize;
 
 use crate::file::body::Body;
@@ -118,7 +118,7 @@ impl SceneFile {
     }
 
     /// The columns of a table behind the time, one for each number.
-    pub(crate) fn listed(&self) -> Vec<with::Column> {
+    pub(crate) fn listed(&self) -> Vec<recording::Column> {
         Column::listed(&self.columns, &[""]).into_iter().map(|(column, _)| column).collect()
     }
 

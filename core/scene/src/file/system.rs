@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use liestep::NonstandardInertia;
 use liestep::methods::{BallJoint, Joint, PinJoint};
-use liestep::with;
+use liestep::recording;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::Spanned;
@@ -198,12 +198,12 @@ impl System {
 
     /// The columns of a table behind the time. Where there are pins the unit of the gap is `m, 1`.
     #[must_use]
-    pub fn columns(&self) -> Vec<with::Column> {
+    pub fn columns(&self) -> Vec<recording::Column> {
         let listed = Column::listed(&self.columns, &self.names().collect::<Vec<_>>());
-        let unit = |column: with::Column| {
+        let unit = |column: recording::Column| {
             // A length and the cosines of axes.
             let is_mixed = column.name == "gap" && self.has_pins();
-            if is_mixed { with::Column { unit: "m, 1".to_owned(), ..column } } else { column }
+            if is_mixed { recording::Column { unit: "m, 1".to_owned(), ..column } } else { column }
         };
         listed.into_iter().map(|(column, _)| unit(column)).collect()
     }

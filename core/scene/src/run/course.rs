@@ -3,7 +3,7 @@
 use liestep::SO3;
 use liestep::groups::Advected;
 use liestep::motion::{AnyState, AnyStepper, Moment};
-use liestep::with;
+use liestep::recording;
 use nalgebra::Vector3;
 
 use crate::file::event::{Direction, Event, Quantity};
@@ -35,17 +35,17 @@ pub(crate) fn course(file: &SceneFile, steps: u64) -> Course<'_> {
 /// The events that a run looks for.
 pub(crate) fn watches<A: Advected<SO3> + 'static>(
     file: &SceneFile,
-) -> Vec<(with::Event, EventFunction<AnyStepper<SO3, A>>)> {
+) -> Vec<(recording::Event, EventFunction<AnyStepper<SO3, A>>)> {
     let axis = file.picture.axis.0;
     file.event.iter().map(|event| (kind(event), function(event.quantity, axis))).collect()
 }
 
 /// What counts as the event.
-fn kind(event: &Event) -> with::Event {
+fn kind(event: &Event) -> recording::Event {
     let kind = match event.direction {
-        Direction::Rising => with::Event::rising(),
-        Direction::Falling => with::Event::falling(),
-        Direction::Either => with::Event::crossing(),
+        Direction::Rising => recording::Event::rising(),
+        Direction::Falling => recording::Event::falling(),
+        Direction::Either => recording::Event::crossing(),
     };
     if event.stops { kind.terminal() } else { kind }
 }

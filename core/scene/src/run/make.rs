@@ -6,7 +6,7 @@ use std::fmt;
 use liestep::accuracy::{AccuracyError, Choice};
 use liestep::groups::LieGroup;
 use liestep::motion::{Integrator, Moment};
-use liestep::with::{self, Reason, RecordError, Recorder, RunError, Sink};
+use liestep::recording::{self, Reason, RecordError, Recorder, RunError, Sink};
 use liestep::{SetupError, StepError};
 
 use crate::file::column::{Column, picture_stride};
@@ -82,7 +82,7 @@ pub(crate) struct Course<'a> {
     pub(crate) stride: u64,
     pub(crate) columns: &'a [Column],
     /// Those of the table, one for each number.
-    pub(crate) listed: Vec<with::Column>,
+    pub(crate) listed: Vec<recording::Column>,
 }
 
 /// The function that passes zero where an event happens.
@@ -94,14 +94,14 @@ pub(crate) fn make<I: Integrator<Group: LieGroup<Scalar: Into<f64>>>>(
     mut state: I::State,
     course: Course<'_>,
     sample: impl Fn(&Moment<'_, I>) -> Sample,
-    events: Vec<(with::Event, EventFunction<I>)>,
+    events: Vec<(recording::Event, EventFunction<I>)>,
     listeners: Listeners<'_>,
 ) -> Result<Run, Stop> {
     let (mut samples, happenings) = (Vec::new(), RefCell::new(Vec::new()));
     let (numbers, steps, stride) = (RefCell::new(Vec::new()), course.steps, course.stride);
     let mut table = listeners.table.map(|sink| TableRecorder::new(course, &numbers, stepper, sink));
     // The one who writes is asked where nothing is written, too, so that the steps are the same.
-    let mut observed = with::Run::new(stepper, &mut state)
+    let mut observed = recording::Run::new(stepper, &mut state)
         .every(picture_stride(steps), |now| keep(&mut samples, sample(now)))
         .every(stride, |now| table.as_mut().map_or(Ok(()), |table| table.record(now, sample(now))))
         .progress(listeners.progress);
@@ -158,7 +158,7 @@ struct TableRecorder<'a, I: Integrator> {
 impl<'a, I: Integrator<Group: LieGroup<Scalar: Into<f64>>>> TableRecorder<'a, I> {
     fn new(course: Course<'a>, numbers: &'a RefCell<Vec<f64>>, stepper: &I, sink: &'a mut dyn Sink) -> Self {
         let mut recorder = Recorder::bare(stepper, sink);
-        for (place, with::Column { name, unit }) in course.listed.into_iter().enumerate() {
+        for (place, recording::Column { name, unit }) in course.listed.into_iter().enumerate() {
             let number = move |_: &Moment<'_, _>| numbers.borrow().get(place).copied().unwrap_or(f64::NAN);
             recorder = recorder.quantity(name, unit, number);
         }

@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use liestep::motion::{AnyStepper, Moment};
-use liestep::with::{self, Csv, Sink};
+use liestep::recording::{self, Csv, Sink};
 use liestep::{SO3, SetupError, StepError};
 
 use crate::file::column::Column;
@@ -31,7 +31,7 @@ impl SceneFile {
     ///
     /// ```
     /// # fn recorded(scene: &liestep_scene::SceneFile) -> Result<(), Box<dyn std::error::Error>> {
-    /// use liestep::with::Csv;
+    /// use liestep::recording::Csv;
     ///
     /// scene.run_with(&mut |_| (), Some(&mut Csv::create("top.csv")?))?;
     /// # Ok(())
@@ -112,7 +112,7 @@ impl SceneFile {
     /// None: it is written to memory.
     pub fn event_table(&self, run: &Run) -> Result<String, Box<dyn Error + Send + Sync>> {
         let mut rows = Csv::new(Vec::new());
-        let time = with::Column { name: "t".to_owned(), unit: "s".to_owned() };
+        let time = recording::Column { name: "t".to_owned(), unit: "s".to_owned() };
         rows.begin(&std::iter::once(time).chain(self.listed()).collect::<Vec<_>>())?;
         let first = run.samples().first();
         let mut before = first.cloned();

@@ -1,7 +1,7 @@
 //! The run of a system.
 
 use liestep::motion::Moment;
-use liestep::with::Sink;
+use liestep::recording::Sink;
 use liestep::{SetupError, StepError};
 use nalgebra::{Vector3, Vector6};
 

@@ -32,7 +32,7 @@ const MOST_BYTES: u64 = 1 << 30;
 const ARROW: [&[u8]; 2] = [&[0xff; 4], b"ARROW1"];
 
 impl Recording {
-    /// Reads a table that `liestep run --csv` or [`Csv`](liestep::with::Csv) wrote: comma-separated values below names. It
+    /// Reads a table that `liestep run --csv` or [`Csv`](liestep::recording::Csv) wrote: comma-separated values below names. It
     /// needs the time and the quaternion; energy, momentum and velocity are drawn where they are there, with gaps where
     /// they aren't finite.
     ///
