@@ -72,8 +72,8 @@ impl<S: Scene<Scalar = f64, Group = Self>> Steppable<S> for SO3 {
             return;
         }
         match SymmetricBody::new(&inertia) {
-            Ok(symmetric) => methods.add_splittings(scene, symmetric),
-            Err(_) => methods.add_splittings(scene, body),
+            Ok(symmetric) => methods.add_splittings(scene, &symmetric),
+            Err(_) => methods.add_splittings(scene, &body),
         }
         // Six stages don't fill the machine's vectors, and take longer than eight.
         methods.add("Gauss, 4 stages".to_owned(), 8, scene, Stepper::collocated::<2>);
@@ -116,7 +116,7 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Methods<G, A> {
 
 impl<A: Advected<SO3> + 'static> Methods<SO3, A> {
     /// Splittings, processed ones among them, with this flow of the body; of a free body that flow alone.
-    fn add_splittings<S, K>(&mut self, scene: &S, flow: K)
+    fn add_splittings<S, K>(&mut self, scene: &S, flow: &K)
     where
         S: Scene<Scalar = f64, Group = SO3, Advected = A>,
         K: KineticFlow<f64> + 'static,

@@ -80,6 +80,7 @@ impl<S: Effect> Stepper<S> {
     /// assert!((stepper.time(&state) - 20.0).abs() < 1e-12);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
+    #[allow(clippy::needless_pass_by_value)] // as all others that make a stepper take it
     pub fn for_accuracy(
         scene: S,
         accuracy: Accuracy,
