@@ -1,5 +1,9 @@
 //! A system of joined bodies.
 
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
+
 use super::Constraint;
 use super::graph::{Joints, Tree};
 use crate::error::SetupError;
