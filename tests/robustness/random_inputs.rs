@@ -168,7 +168,7 @@ fn check_setup_error(top: &HeavyTop, h: f64, error: &SetupError) -> &'static str
     }
 }
 
-fn check_start_error(attitude: &SO3, momentum: &Vector3<f64>, error: &SetupError) -> &'static str {
+fn check_start_error(attitude: &SO3, [momentum, up]: [&Vector3<f64>; 2], error: &SetupError) -> &'static str {
     match *error {
         SetupError::NotInGroup { defect } => {
             let is_in_group = attitude.defect() < 2e-12;
@@ -183,6 +183,10 @@ fn check_start_error(attitude: &SO3, momentum: &Vector3<f64>, error: &SetupError
             // Products of two of its parts, or of one and of moments, are on the way to a velocity.
             assert!(finite(momentum.as_slice()) && extremes(momentum.as_slice()).0 > 1e90, "{momentum}");
             "start: velocity not finite"
+        }
+        SetupError::NonFinite { what: "view of what is advected" } => {
+            assert!(finite(up.as_slice()) && !finite(attitude.as_matrix().tr_mul(up).as_slice()), "{up}");
+            "start: view not finite"
         }
         ref other => panic!("{other:?}"),
     }
@@ -263,7 +267,7 @@ fn outcome(inputs: &mut Inputs) -> &'static str {
     let momentum = inputs.vector(size);
     let mut state = match stepper.start_with_momentum(attitude, momentum) {
         Ok(state) => state,
-        Err(error) => return check_start_error(&attitude, &momentum, &error),
+        Err(error) => return check_start_error(&attitude, [&momentum, &top.up], &error),
     };
     assert!(attitude.defect() < 1e-11 && finite(momentum.as_slice()));
     for _ in 0..STEPS {
