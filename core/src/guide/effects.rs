@@ -156,21 +156,21 @@
 //!
 //! | gravity | instructions a step | ns a step |
 //! |---|---|---|
-//! | absent | 582 | 56 |
-//! | there, behind a run-time flag that is off | 635 | 60 |
-//! | there, with `m = 0` | 671 | 63 |
-//! | on | 671 | 64 |
-//! | on, in one declaration with the body | 671 | 63 |
-//! | on, behind a run-time flag | 660 | 71 |
+//! | absent | 579 | 56 |
+//! | there, behind a run-time flag that is off | 634 | 60 |
+//! | there, with `m = 0` | 677 | 63 |
+//! | on | 677 | 64 |
+//! | on, in one declaration with the body | 677 | 63 |
+//! | on, behind a run-time flag | 659 | 71 |
 //!
 //! | body and | instructions a step | ns a step |
 //! |---|---|---|
-//! | torque | 599 | 61 |
-//! | thrust | 599 | 61 |
-//! | gravity | 671 | 64 |
+//! | torque | 598 | 61 |
+//! | thrust | 598 | 61 |
+//! | gravity | 677 | 64 |
 //! | dipole | 663 | 66 |
-//! | gravity gradient | 706 | 82 |
-//! | spring | 779 | 110 |
-//! | rotor (in one declaration: 817, 78) | 847 | 70 |
-//! | drag | 756 | 76 |
-//! | magnetic damping | 1792 | 160 |
+//! | gravity gradient | 717 | 82 |
+//! | spring | 777 | 110 |
+//! | rotor (in one declaration: 815, 78) | 850 | 70 |
+//! | drag | 751 | 76 |
+//! | magnetic damping | 1774 | 160 |
