@@ -11,8 +11,9 @@ use crate::groups::{CayleyRetraction, R3, SO3};
 use crate::mechanics::{Effect, Regular};
 use crate::motion::Stepper;
 
-/// What a body is on: turned, and translated in the axes of space.
+/// The group of a body: it turns, and is translated in the axes of space.
 pub(super) type Body = (SO3, R3);
+
 /// A system of rigid bodies held together by joints: the plan of [`Stepper::jointed`].
 ///
 /// # Contract
