@@ -1,18 +1,9 @@
-//! The attribute macro of liestep; use it through the crate `liestep`.
+//! The attribute macros of liestep; use them through the crate `liestep`.
 //!
-//! This half runs when the user's crate is compiled. Its rooms depend on each other in one direction:
-//!
-//! `lib → expand → emit → judged → {declared, program} → mathematics`
-//!
-//! Tokens are quoted in `emit` alone. Syntax is known in `declared`, where it is read, and in `emit`, where it is
-//! written; `mathematics` and `program` know no span either. A test reads this page and holds all sources to it.
+//! This half runs when the user's crate is compiled. The derivation is the crate `liestep-derivation`, an ordinary library.
 
-mod declared;
-mod emit;
-mod expand;
-mod judged;
-mod mathematics;
-mod program;
+use liestep_derivation as derivation;
+use liestep_derivation::Role;
 
 /// Derives an integrator from a reduced Lagrangian, discrete or continuous: `impl Effect`, `impl DiscreteLagrangian`,
 /// `impl ContinuousLagrangian` and `impl Add` for the annotated struct.
@@ -124,7 +115,7 @@ mod program;
 /// Every mistake is reported at the token that it is about. See `DiscreteLagrangian` for what is derived.
 #[proc_macro_attribute]
 pub fn lagrangian(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
-    expand::expand(declared::Role::Lagrangian, arguments.into(), &item.into()).into()
+    derivation::expand(Role::Lagrangian, arguments.into(), &item.into()).into()
 }
 
 /// Derives the stages of a force from its virtual work in a step: `impl Effect` and `impl Add` for the annotated
@@ -158,7 +149,7 @@ pub fn lagrangian(arguments: proc_macro::TokenStream, item: proc_macro::TokenStr
 /// Lagrangians of the same group.
 #[proc_macro_attribute]
 pub fn force(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
-    expand::expand(declared::Role::Force, arguments.into(), &item.into()).into()
+    derivation::expand(Role::Force, arguments.into(), &item.into()).into()
 }
 
 /// Derives the slopes of a holonomic constraint on two bodies: `impl Constraint` for the annotated struct, which
@@ -185,7 +176,7 @@ pub fn force(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) 
 /// `|y| − l`, and of a line two functions across it, not a cross product, one component of which repeats the others.
 #[proc_macro_attribute]
 pub fn constraint(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
-    expand::expand(declared::Role::Constraint, arguments.into(), &item.into()).into()
+    derivation::expand(Role::Constraint, arguments.into(), &item.into()).into()
 }
 
 /// Declares a matrix group of one's own: a type alias for it, and its generators, written once.
@@ -212,7 +203,7 @@ pub fn constraint(arguments: proc_macro::TokenStream, item: proc_macro::TokenStr
 /// of the group.
 #[proc_macro]
 pub fn matrix_group(tokens: proc_macro::TokenStream) -> proc_macro::TokenStream {
-    expand::matrix_group(tokens.into()).into()
+    derivation::matrix_group(tokens.into()).into()
 }
 
 /// Inlined into every caller, but for builds with debug assertions, which are to be built soon: what a step is made of.
@@ -221,7 +212,7 @@ pub fn matrix_group(tokens: proc_macro::TokenStream) -> proc_macro::TokenStream 
 #[doc(hidden)]
 #[proc_macro_attribute]
 pub fn hot(_: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
-    emit::hot(item.into()).into()
+    derivation::hot(item.into()).into()
 }
 
 /// `Lanes` of a struct, field by field: fields marked `#[shared]` are the same in all lanes.
@@ -230,12 +221,12 @@ pub fn hot(_: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_ma
 #[doc(hidden)]
 #[proc_macro_derive(Lanes, attributes(shared))]
 pub fn lanes(item: proc_macro::TokenStream) -> proc_macro::TokenStream {
-    emit::lanes(item.into(), false).into()
+    derivation::lanes(item.into(), false).into()
 }
 
 /// `InLanes` of a struct that has `Lanes`.
 #[doc(hidden)]
 #[proc_macro_derive(InLanes, attributes(shared))]
 pub fn in_lanes(item: proc_macro::TokenStream) -> proc_macro::TokenStream {
-    emit::lanes(item.into(), true).into()
+    derivation::lanes(item.into(), true).into()
 }

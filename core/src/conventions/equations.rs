@@ -101,18 +101,18 @@
 //!
 //! # What the macro derives
 //!
-//! The rules of differentiation are in `macros/src/mathematics/symbolic/variation.rs`.
+//! The rules of differentiation are in `macros/derivation/src/mathematics/symbolic/variation.rs`.
 //!
 //! | equation | what | file |
 //! |---|---|---|
-//! | (1.26), (1.31), (3.18); section 3.2.1, items 1 and 2 | `(R_F)* δl_d/δF`, `(L_F)* δl_d/δF` | `macros/src/mathematics/derive/momentum_maps.rs` |
-//! | (2.1); section 3.2.1, item 3 | `δl_d/δw ⋄ w` | `macros/src/mathematics/derive/diamond.rs`, with the action in `macros/src/mathematics/derive/action.rs` |
-//! | (2.7), (3.17) | the momentum equation and its Newton Jacobian | `macros/src/mathematics/derive/momentum_equation.rs` |
-//! | (2.9) | the kicks of the transport form | `macros/src/mathematics/derive/transport.rs` |
-//! | (3.17) in Cayley coordinates | residual and Jacobian without denominators | `macros/src/mathematics/derive/cayley.rs` |
-//! | (1.4), (1.12), (1.14), (1.16), (2.2) | the continuous equations | `macros/src/mathematics/derive/continuous.rs` |
-//! | (3.13) from (2.3) | the discretisations of a declared `l` | `macros/src/judged/discretise.rs` |
-//! | `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)` | whether a step of `−h` undoes a step of `h` | `macros/src/mathematics/derive/self_adjoint.rs` |
+//! | (1.26), (1.31), (3.18); section 3.2.1, items 1 and 2 | `(R_F)* δl_d/δF`, `(L_F)* δl_d/δF` | `macros/derivation/src/mathematics/derive/momentum_maps.rs` |
+//! | (2.1); section 3.2.1, item 3 | `δl_d/δw ⋄ w` | `macros/derivation/src/mathematics/derive/diamond.rs`, with the action in `macros/derivation/src/mathematics/derive/action.rs` |
+//! | (2.7), (3.17) | the momentum equation and its Newton Jacobian | `macros/derivation/src/mathematics/derive/momentum_equation.rs` |
+//! | (2.9) | the kicks of the transport form | `macros/derivation/src/mathematics/derive/transport.rs` |
+//! | (3.17) in Cayley coordinates | residual and Jacobian without denominators | `macros/derivation/src/mathematics/derive/cayley.rs` |
+//! | (1.4), (1.12), (1.14), (1.16), (2.2) | the continuous equations | `macros/derivation/src/mathematics/derive/continuous.rs` |
+//! | (3.13) from (2.3) | the discretisations of a declared `l` | `macros/derivation/src/judged/discretise.rs` |
+//! | `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)` | whether a step of `−h` undoes a step of `h` | `macros/derivation/src/mathematics/derive/self_adjoint.rs` |
 //!
 //! [lie-poisson]: crate::guide::thesis#the-liepoisson-side
 //! [reduced]: crate::guide::thesis#a-reduced-lagrangian

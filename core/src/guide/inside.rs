@@ -6,7 +6,7 @@
 //!
 //! | package | runs | |
 //! |---|---|---|
-//! | `liestep-macros`, in `macros` | when a user's crate is compiled | derives, judges, and writes code |
+//! | `liestep-derivation`, in `macros/derivation` | when a user's crate is compiled, called by the macros of `liestep-macros` | derives, judges, and writes code |
 //! | `liestep`, in `core` | in the user's program | groups, solving, stepping, methods |
 //!
 //! They meet in a few traits. The macro implements [`Term`](crate::mechanics::Term), which says on which group a term is and
@@ -16,16 +16,16 @@
 //!
 //! # From tokens to code
 //!
-//! `macros/src/expand.rs` shows the whole flow on a screen. Each phase adds its mistakes to a list and gives nothing where
-//! the next can't go on, so that several are reported at once.
+//! `macros/derivation/src/expand.rs` shows the whole flow on a screen. Each phase adds its mistakes to a list and gives
+//! nothing where the next can't go on, so that several are reported at once.
 //!
 //! | | room | |
 //! |---|---|---|
-//! | 1 | `macros/src/declared` | parses the attribute and the struct, gives each expression a shape, and finds the mistakes of the declaration. Spans end here |
-//! | 2 | `macros/src/mathematics` | sums of products of matrices in a normal form (`symbolic`), the groups (`group.rs`), and the equations of the thesis in its order (`derive`) |
-//! | 3 | `macros/src/program` | matrices to scalars, equal operations once, constants of a step folded, operations counted |
-//! | 4 | `macros/src/judged` | proves what was derived to be that of the declared `l_d`, in exact arithmetic, chooses the cheaper of several forms, and finds what is conserved |
-//! | 5 | `macros/src/emit` | the only room that quotes tokens: implementations, documentation, and after a mistake a stand-in, so that no second error follows from the first |
+//! | 1 | `macros/derivation/src/declared` | parses the attribute and the struct, gives each expression a shape, and finds the mistakes of the declaration. Spans end here |
+//! | 2 | `macros/derivation/src/mathematics` | sums of products of matrices in a normal form (`symbolic`), the groups (`group.rs`), and the equations of the thesis in its order (`derive`) |
+//! | 3 | `macros/derivation/src/program` | matrices to scalars, equal operations once, constants of a step folded, operations counted |
+//! | 4 | `macros/derivation/src/judged` | proves what was derived to be that of the declared `l_d`, in exact arithmetic, chooses the cheaper of several forms, and finds what is conserved |
+//! | 5 | `macros/derivation/src/emit` | the only room that quotes tokens: implementations, documentation, and after a mistake a stand-in, so that no second error follows from the first |
 //!
 //! The rooms depend on each other in one direction, `lib → expand → emit → judged → {declared, program} → mathematics`, and a
 //! test holds them to it.
@@ -68,7 +68,7 @@
 //! does to it, and the writing of tokens from the graph that was evaluated; and no bound is claimed, which the derivation says,
 //! where degrees are too high or a generator `E` of a group of one's own has no `E³ = cE`.
 //!
-//! `macros/src/judged/verify/mod.rs` has the argument.
+//! `macros/derivation/src/judged/verify/mod.rs` has the argument.
 //!
 //! `cargo run --example derive -- heavy-top` prints a derivation with its counts of operations, `liestep derive gravity` that of an
 //! effect.

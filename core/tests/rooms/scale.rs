@@ -18,9 +18,9 @@ const BUDGETS: [(&str, usize, usize); 35] = [
     ("core/src/solving", 1348, 3), ("core/src/motion", 3163, 29), ("core/src/gradients", 1366, 10),
     ("core/src/methods", 8023, 30), ("core/src/recording", 1879, 14), ("core/src/with", 1019, 7),
     ("core/src/accuracy", 1901, 16), ("core/src/conventions", 477, 0), ("core/src/guide", 2079, 0),
-    ("core/tests", 539, 0), ("macros/src/lib", 244, 0), ("macros/src/expand", 2845, 0), ("macros/src/emit", 3816, 0),
-    ("macros/src/judged", 6257, 0), ("macros/src/declared", 4937, 0), ("macros/src/program", 2443, 0),
-    ("macros/src/mathematics", 4832, 0), ("macros/declarations", 147, 0), ("core/scene", 5001, 0),
+    ("core/tests", 539, 0), ("macros/src", 235, 0), ("macros/derivation/src/lib", 25, 0), ("macros/derivation/src/expand", 2845, 0), ("macros/derivation/src/emit", 3816, 0),
+    ("macros/derivation/src/judged", 6257, 0), ("macros/derivation/src/declared", 4937, 0), ("macros/derivation/src/program", 2443, 0),
+    ("macros/derivation/src/mathematics", 4832, 0), ("macros/derivation/declarations", 147, 0), ("core/scene", 5001, 0),
     ("core/cli", 2655, 0), ("core/plot", 774, 0), ("core/ensemble", 4670, 0), ("core/arrow", 220, 0),
     ("examples", 12794, 0), ("tests", 27249, 0), ("tests/ui", 5608, 0),
 ];
@@ -28,7 +28,7 @@ const BUDGETS: [(&str, usize, usize); 35] = [
 /// The circles that are still there. Lines may go, and none be added.
 #[rustfmt::skip]
 const CIRCLES: [&str; 1] = [
-    "macros/src/judged/constraint.rs macros/src/judged/discretise.rs macros/src/judged/discretise/substitution.rs macros/src/judged/explain.rs macros/src/judged/verify/constraint.rs",
+    "macros/derivation/src/judged/constraint.rs macros/derivation/src/judged/discretise.rs macros/derivation/src/judged/discretise/substitution.rs macros/derivation/src/judged/explain.rs macros/derivation/src/judged/verify/constraint.rs",
 ];
 
 /// Every source of the repository: its path, and its text.
@@ -95,7 +95,7 @@ fn rooms_stay_within_their_budgets() {
         } else {
             *hidden.entry(room).or_insert(0) += text.matches("\n#[doc(hidden)]\npub ").count();
         }
-        if room.starts_with("core/src") || room.starts_with("macros/src") {
+        if room.starts_with("core/src") || room.starts_with("macros/derivation/src") {
             of_each.push(count);
         }
         judge(&format!("lines of {path}"), count, LENGTHS[0]);

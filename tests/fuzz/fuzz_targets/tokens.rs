@@ -1,27 +1,10 @@
 //! Any text is the declaration of a Lagrangian or of a force: what comes of it is items or an error to show, no panic and
 //! no hang. Run with `cargo fuzz run tokens`.
-//!
-//! Nothing can be linked to a macro crate, so its rooms are built here once more.
 
 #![no_main]
-// What the macro alone calls.
-#![allow(dead_code, unreachable_pub)]
 
-#[path = "../../../macros/src/declared/mod.rs"]
-mod declared;
-#[path = "../../../macros/src/emit/mod.rs"]
-mod emit;
-#[path = "../../../macros/src/expand.rs"]
-mod expand;
-#[path = "../../../macros/src/judged/mod.rs"]
-mod judged;
-#[path = "../../../macros/src/mathematics/mod.rs"]
-mod mathematics;
-#[path = "../../../macros/src/program/mod.rs"]
-mod program;
-
-use declared::Role;
 use libfuzzer_sys::fuzz_target;
+use liestep_derivation::{self as derivation, Role};
 use proc_macro2::TokenStream;
 
 /// Fields of every kind of declaration, so that names in the text mean something.
@@ -34,15 +17,15 @@ fuzz_target!(|bytes: &[u8]| {
     let Ok(written) = text.parse::<TokenStream>() else { return };
     let item: TokenStream = ITEM.parse().expect("tokens");
     let expansion = match kind % 5 {
-        0 => expand::expand(Role::Lagrangian, written, &item),
+        0 => derivation::expand(Role::Lagrangian, written, &item),
         1 => {
             let arguments = format!("group = SO3, advected(w = up), l_d = {text}");
             let Ok(arguments) = arguments.parse() else { return };
-            expand::expand(Role::Lagrangian, arguments, &item)
+            derivation::expand(Role::Lagrangian, arguments, &item)
         }
-        2 => expand::expand(Role::Force, written, &item),
-        3 => expand::expand(Role::Constraint, written, &item),
-        _ => expand::matrix_group(written),
+        2 => derivation::expand(Role::Force, written, &item),
+        3 => derivation::expand(Role::Constraint, written, &item),
+        _ => derivation::matrix_group(written),
     };
     let shown = expansion.to_string();
     assert!(

@@ -11,7 +11,7 @@ use crate::mathematics::symbolic::Variance;
 
 /// What an attribute declares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Role {
+pub enum Role {
     /// `#[lagrangian(… l_d = …)]`.
     Lagrangian,
     /// `#[force(… work = …)]`.

@@ -15,9 +15,10 @@ pub(crate) mod parse;
 mod spelling;
 mod tree;
 
+pub use declaration::Role;
 pub(crate) use declaration::{
     AdvectedParameter, Continuous, Coordinates, Declaration, Discretisation, Factor, Field, FieldKind, Quadrature,
-    Role, Scalar, named_displacements, named_velocities,
+    Scalar, named_displacements, named_velocities,
 };
 pub(crate) use spelling::Spelling;
 pub(crate) use tree::{Frames, Kind, Name, Shape, Tree};

@@ -34,14 +34,16 @@ use header::Header;
 pub(crate) use own_group::{ask, own_group};
 
 /// A function that is inlined but where it is to be built soon.
-pub(crate) fn hot(item: TokenStream) -> TokenStream {
+#[must_use]
+pub fn hot(item: TokenStream) -> TokenStream {
     let mut marked = quote!(#[cfg_attr(not(debug_assertions), inline(always))]);
     marked.extend(item);
     marked
 }
 
 /// What the derive macros `Lanes` and `InLanes` make of a struct of liestep.
-pub(crate) fn lanes(item: TokenStream, is_in_lanes: bool) -> TokenStream {
+#[must_use]
+pub fn lanes(item: TokenStream, is_in_lanes: bool) -> TokenStream {
     let item = syn::parse2(item);
     item.map_or_else(|mistake: syn::Error| mistake.to_compile_error(), |item| lanes::derived(&item, is_in_lanes))
 }

@@ -28,14 +28,14 @@ fn times(count: usize, arguments: &str, item: &str) -> Vec<Duration> {
 }
 
 #[test]
-#[ignore = "a time, for a quiet machine: `cargo test -p liestep-macros time:: -- --ignored --nocapture`"]
+#[ignore = "a time, for a quiet machine: `cargo test -p liestep-derivation time:: -- --ignored --nocapture`"]
 fn the_heavy_top_expands_quickly() {
     let times = times(50, HEAVY_TOP, &top("NonstandardInertia"));
     assert!(times[0] <= Duration::from_millis(50), "{times:?}");
 }
 
 #[test]
-#[ignore = "a time, for a quiet machine: `cargo test -p liestep-macros time:: -- --ignored --nocapture`"]
+#[ignore = "a time, for a quiet machine: `cargo test -p liestep-derivation time:: -- --ignored --nocapture`"]
 fn the_sixth_order_top_expands_within_a_second() {
     let (arguments, item) = sixth();
     let times = times(5, arguments, item);
@@ -83,7 +83,7 @@ pub(crate) fn declarations_in(folder: &Path, found: &mut Vec<(String, Role, Toke
 
 /// Prints the time of each, the slowest last. A declaration within a macro isn't seen.
 #[test]
-#[ignore = "measures all declarations of the repository, a minute: `cargo test -p liestep-macros every_declaration -- --ignored --nocapture`"]
+#[ignore = "measures all declarations of the repository, a minute: `cargo test -p liestep-derivation every_declaration -- --ignored --nocapture`"]
 fn every_declaration_of_the_repository_expands_the_same_twice() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut found = Vec::new();

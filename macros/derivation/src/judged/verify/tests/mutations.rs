@@ -251,7 +251,7 @@ fn small_errors_of_slopes() {
 
 /// All of the repository, those that other tests compile among them.
 #[test]
-#[ignore = "some minutes: `cargo test -p liestep-macros small_errors -- --ignored --nocapture`"]
+#[ignore = "some minutes: `cargo test -p liestep-derivation small_errors -- --ignored --nocapture`"]
 fn small_errors_everywhere() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut all = Vec::new();

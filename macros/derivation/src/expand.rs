@@ -8,7 +8,8 @@ use crate::mathematics::derive;
 use crate::{emit, judged};
 
 /// The item with its integrator, or with all mistakes and a stand-in.
-pub(crate) fn expand(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStream {
+#[must_use]
+pub fn expand(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStream {
     if let Some(asked) = parse::asked(&arguments) {
         return emit::ask(role, &asked, item);
     }
@@ -20,7 +21,8 @@ pub(crate) fn expand(role: Role, arguments: TokenStream, item: &TokenStream) -> 
 }
 
 /// The items of a group of one's own, or its mistakes.
-pub(crate) fn matrix_group(tokens: TokenStream) -> TokenStream {
+#[must_use]
+pub fn matrix_group(tokens: TokenStream) -> TokenStream {
     let mut errors = Errors::default();
     let name = parse::name_of_own_group(&tokens);
     let group = parse::own_group(tokens, &mut errors);
