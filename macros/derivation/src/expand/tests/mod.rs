@@ -5,6 +5,7 @@ mod derivation;
 mod determinism;
 mod discretised_bodies;
 mod fuzz;
+mod generated;
 mod higher_order;
 mod messages;
 mod mutants;
