@@ -94,9 +94,8 @@ pub(crate) fn as_far_as_readable(
         points(&mut fields, &group, errors);
     }
     let scalar = scalar(&item, errors);
-    if role == Role::Constraint && errors.is_empty() {
-        two_bodies::check(&factors, &fields, &scalar, &item, errors);
-    }
+    let is_of_bodies =
+        role != Role::Constraint || !errors.is_empty() || two_bodies::check(&factors, &fields, &scalar, &item, errors);
     let taken = group::Taken {
         fields: fields.iter().map(Field::plain_name).chain(unreadable.iter().cloned()).collect(),
         advected: arguments.advected.iter().map(|(name, ..)| name.unraw().to_string()).collect(),
@@ -114,7 +113,7 @@ pub(crate) fn as_far_as_readable(
         &arguments.advected,
         &fields,
         &unreadable,
-        group_path.as_ref().map(|_| (&group, factors.as_slice())),
+        group_path.as_ref().filter(|_| is_of_bodies).map(|_| (&group, factors.as_slice())),
         errors,
     );
     let displacements = match role {
@@ -257,12 +256,13 @@ fn advected(
     let mut parameters: Vec<AdvectedParameter> = Vec::new();
     for &(ref name, ref source, is_given) in pairs {
         let unraw = name.unraw().to_string();
-        let Some(moved) = seen(source, is_given, group, errors) else {
+        let field_names: Vec<String> = fields.iter().map(Field::plain_name).collect();
+        let names: Vec<String> = field_names.iter().chain(unreadable).cloned().collect();
+        let Some(moved) = seen((name, source), is_given, (&names, group), errors) else {
             // After a mistake, so that the name isn't one more.
             parameters.push(AdvectedParameter { name: name.clone(), field: None, is_given, seen: Seen::From(0) });
             continue;
         };
-        let field_names: Vec<String> = fields.iter().map(Field::plain_name).collect();
         if field_names.contains(&unraw) {
             errors.push_decisive(name.span(), format!("`{unraw}` is a field already: choose another name"));
             continue;
@@ -364,9 +364,9 @@ enum Moved<'a> {
 
 /// Nothing after a mistake.
 fn seen<'a>(
-    source: &'a Source,
+    (name, source): (&Ident, &'a Source),
     is_given: bool,
-    group: Option<(&Group, &[Factor])>,
+    (fields, group): (&[String], Option<(&Group, &[Factor])>),
     errors: &mut Errors,
 ) -> Option<Moved<'a>> {
     let factors = group.map_or(&[][..], |(_, factors)| factors);
@@ -425,6 +425,10 @@ fn seen<'a>(
                     None
                 }
                 (None, Some(factor)) => Some(Moved::Field(what, Seen::From(factor))),
+                (None, None) if !fields.contains(&what.unraw().to_string()) => {
+                    errors.push_decisive(what.span(), no_field(name, source, fields, group));
+                    None
+                }
                 (None, None) => {
                     let message = format!("seen from space `{what}` doesn't change: use the field itself, `{what}`");
                     errors.push_decisive(what.span(), message);
