@@ -308,24 +308,28 @@ fn advected(
             && !found.kind.is_carried_by(size)
             && !matches!(found.kind, FieldKind::Point(_))
         {
-            let shape = found.kind.shape().describe();
-            let message = if found.kind.is_wrapped() {
-                format!("`{wanted}` is {shape}, but the group's matrices have {size} rows: write {size} for its size")
-            } else {
-                let point = match found.kind {
-                    FieldKind::Vector(rows @ 1..=3) if group.is_affine() && rows + 1 == size => {
-                        format!(", or Point{rows}<f64> for a point")
-                    }
-                    _ => String::new(),
-                };
-                let vector = vector_type(size);
-                format!("`{wanted}` is {shape}, but the group carries a vector of {size}: use {vector}{point}")
-            };
+            let message = not_carried(&wanted, found.kind, group, size);
             errors.push_decisive(found.at, message);
         }
         parameters.push(AdvectedParameter { name: name.clone(), field: index, is_given, seen });
     }
     parameters
+}
+
+/// What is wrong with a field of this kind, which a group with matrices of that size doesn't move.
+fn not_carried(wanted: &str, kind: FieldKind, group: &Group, size: usize) -> String {
+    let shape = kind.shape().describe();
+    if kind.is_wrapped() {
+        return format!("`{wanted}` is {shape}, but the group's matrices have {size} rows: write {size} for its size");
+    }
+    let point = match kind {
+        FieldKind::Vector(rows @ 1..=3) if group.is_affine() && rows + 1 == size => {
+            format!(", or Point{rows}<f64> for a point")
+        }
+        _ => String::new(),
+    };
+    let vector = vector_type(size);
+    format!("`{wanted}` is {shape}, but the group carries a vector of {size}: use {vector}{point}")
 }
 
 /// What is wrong with the source of what is advected by this name, which is no field.

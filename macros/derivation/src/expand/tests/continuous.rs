@@ -8,8 +8,9 @@ use super::derivation::{continuous_derivation, derivation, page};
 use super::{HEAVY_TOP, expanded, tokens, top};
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Role, Tree, check, lower, parse};
+use crate::judged::verify::Unconfirmed;
 use crate::judged::{self, Equations, verify};
-use crate::mathematics::derive::{self, Inverse};
+use crate::mathematics::derive::{self, Derived, Inverse};
 use crate::mathematics::symbolic::{Expression, Rational, substitute};
 
 /// Example 3 of the thesis.
@@ -258,7 +259,10 @@ fn a_turned_sign_is_seen() {
         let check = |change: &dyn Fn(&mut derive::Continuous)| {
             let mut changed = derived.clone();
             change(&mut changed);
-            verify::disagreement(&declaration, Some(&tree), &names, &changed)
+            match verify::equations_hold(&declaration, Some(&tree), &names, &changed) {
+                Err(Unconfirmed::Disagrees(term)) => Some(term),
+                found => found.map_or_else(|other| panic!("{other:?}"), |()| None),
+            }
         };
         assert_eq!(check(&|_| ()), None);
         let turned = |expression: &Expression| expression.clone().scaled(-Rational::ONE);
@@ -306,7 +310,11 @@ fn the_limit_is_what_was_discretised() {
         let discrete = judged::discretised(&declaration, &tree, asked, &mut errors).expect("a fit");
         let readings = lower::readings(&declaration, &discrete, &mut errors).expect("small");
         let chosen = judged::cheapest(readings, derive::derive, &declaration, &discrete, &mut errors).expect("derived");
-        let disagrees = |derived| verify::limit_disagrees(&declaration, &tree, &chosen.lowered.names, derived);
+        let own = equations(&arguments, PARAMETERS);
+        let disagrees = |derived: &Derived| {
+            let (here, there) = ((&own.names, &own.derived), (&chosen.lowered.names, derived));
+            verify::rest_holds(&declaration, here, there).is_err()
+        };
         assert!(!disagrees(&chosen.derived), "{rule}");
         let mut changed = chosen.derived.clone();
         changed.limit.potential = changed.limit.potential.scaled(-Rational::ONE);

@@ -1,8 +1,10 @@
 //! Random declarations, half of them right: these are accepted, the others refused by a message, and what is accepted has
-//! the numbers of its text, which is evaluated apart.
+//! the numbers of its text, which is evaluated apart. What some of them expand to is one crate, which rustc has to accept.
 
 use std::collections::BTreeMap;
-use std::env;
+use std::path::Path;
+use std::process::Command;
+use std::{env, fs};
 
 use syn::{BinOp, Expr, ExprLit, Lit, Local, Pat, Stmt};
 
@@ -316,12 +318,33 @@ fn refusal(kind: usize, arguments: &str, item: &str) -> Option<String> {
     is_refused(&expansion).then(|| message().unwrap_or_default())
 }
 
+/// A crate of declarations, with their roles, which has to compile.
+fn compile(declarations: &[String]) {
+    let core = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../core");
+    let folder = env::temp_dir().join(format!("liestep-generated-{}", std::process::id()));
+    fs::create_dir_all(folder.join("src")).expect("a folder");
+    let manifest = format!(
+        "[package]\nname = \"generated\"\nedition = \"2024\"\n[workspace]\n[dependencies]\nliestep = {{ path = {core:?} }}\n\
+         nalgebra = {{ version = \"0.35\", default-features = false, features = [\"std\"] }}\n"
+    );
+    fs::write(folder.join("Cargo.toml"), manifest).expect("a file");
+    fs::copy(core.join("../Cargo.lock"), folder.join("Cargo.lock")).expect("a file");
+    let uses = "use liestep::{NonstandardInertia, force, lagrangian}; use nalgebra::{Matrix3, Vector3};";
+    let module = |(at, text): (usize, &String)| format!("pub mod m{at} {{ {uses} {text} }}\n");
+    let text: String = declarations.iter().enumerate().map(module).collect();
+    fs::write(folder.join("src/lib.rs"), format!("#![allow(non_snake_case, unused)]\n{text}")).expect("a file");
+    let cargo = Command::new(env!("CARGO")).args(["check", "--quiet", "--offline"]).current_dir(&folder).output();
+    let output = cargo.expect("cargo");
+    assert!(output.status.success(), "in {}:\n{}", folder.display(), String::from_utf8_lossy(&output.stderr));
+    fs::remove_dir_all(folder).expect("the folder is ours");
+}
+
 #[test]
 #[ignore = "some minutes; LIESTEP_SEED and LIESTEP_COUNT say which and how many"]
 fn right_and_wrong_declarations() {
     let number = |name: &str, usual: u64| env::var(name).map_or(usual, |text| text.parse().expect("a whole number"));
     let (seed, count) = (number("LIESTEP_SEED", 1), number("LIESTEP_COUNT", 3_000));
-    let (mut refused, mut accepted, mut compared, mut wrong) = (Vec::new(), 0, 0, Vec::new());
+    let (mut refused, mut accepted, mut compared, mut wrong) = (Vec::new(), Vec::new(), 0, Vec::new());
     for number in 0..count {
         let mut random = Random::new(seed.wrapping_mul(1_000_003).wrapping_add(number));
         let kind = random.below(KINDS.len());
@@ -351,7 +374,8 @@ fn right_and_wrong_declarations() {
                 }
             }
             None => {
-                accepted += 1;
+                let role = if kind == FORCE { "force" } else { "lagrangian" };
+                accepted.push(format!("#[{role}({arguments})] pub {item}"));
                 let text = arguments.strip_prefix(head).and_then(|text| text.strip_suffix(tail));
                 let text = text.and_then(|text| syn::parse_str(text).ok());
                 match text.and_then(|text| agrees(&mut random, kind, (&arguments, &item), &text)) {
@@ -362,6 +386,11 @@ fn right_and_wrong_declarations() {
             }
         }
     }
-    println!("seed {seed}: {accepted} of {count} accepted, {compared} compared, right ones refused: {refused:#?}");
+    println!(
+        "seed {seed}: {} of {count} accepted, {compared} compared, right ones refused: {refused:#?}",
+        accepted.len()
+    );
     assert!(wrong.is_empty() && refused.len() <= 3, "{wrong:#?} {refused:#?}");
+    accepted.truncate(100);
+    compile(&accepted);
 }

@@ -8,7 +8,6 @@ mod fuzz;
 mod generated;
 mod higher_order;
 mod messages;
-mod mutants;
 mod not_quadratic;
 mod own_group;
 mod right;

@@ -2,6 +2,7 @@
 //! adds to those before it, at random points of a finite field, where nothing is rounded.
 
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use super::degree::{self, Degree, Largest};
 use super::dual::Dual;
@@ -10,10 +11,31 @@ use super::identities::Same;
 use super::number::Number;
 use super::residue::Residue;
 use super::{DRAWS, Evaluation, Fault, Sureness, Unconfirmed, Value, dot, evaluated, parameter, stream};
-use crate::declared::{Declaration, FieldKind, Name};
-use crate::judged::constraint::Held;
+use crate::declared::lower::LoweredConstraint;
+use crate::declared::{Declaration, FieldKind, Name, Tree};
 use crate::mathematics::derive::Seen;
-use crate::mathematics::symbolic::SymbolId;
+use crate::mathematics::symbolic::{Expression, SymbolId};
+use crate::program::{Graph, NodeId};
+
+/// What is emitted of a constraint.
+pub(crate) struct Held {
+    /// Scalars and vectors one below the other.
+    pub(crate) functions: Vec<Rc<Tree>>,
+    pub(crate) lowered: LoweredConstraint,
+    /// Of either body by its turn and by its shift, linear in the directions.
+    pub(crate) slopes: [[Vec<Expression>; 2]; 2],
+    pub(crate) graph: Graph,
+    /// The same as matrices with a row for each function, row by row.
+    pub(crate) entries: [[Vec<NodeId>; 2]; 2],
+    pub(crate) sureness: Sureness,
+}
+
+impl Held {
+    /// How many functions there are.
+    pub(crate) fn rows(&self) -> usize {
+        self.functions.iter().map(|tree| tree.shape.rows()).sum()
+    }
+}
 
 /// Points that are compared where no bound is small enough.
 const POINTS: u32 = 3;
@@ -53,13 +75,14 @@ pub(crate) fn constraint(declaration: &Declaration, held: &Held) -> Result<(Sure
 }
 
 fn sureness(declaration: &Declaration, held: &Held) -> Option<degree::Sureness> {
-    let mut point = Point::new(declaration, || Degree::VARIABLE);
+    let mut number = Degree::stream();
+    let mut point = Point::new(declaration, &mut number);
     // The attitudes of both bodies are Cayley transforms.
     for [attitude, _] in &mut point.places {
-        *attitude = attitude.map(|_| Degree::of_element(4));
+        attitude.entries.iter_mut().for_each(|entry| *entry = number().of_element(4));
     }
     let mut largest = Largest::default();
-    let compared = point.holds(held, || Degree::VARIABLE, &mut |_, found, expected| {
+    let compared = point.holds(held, number, &mut |_, found, expected| {
         largest.compared(found, expected);
         Ok(())
     });

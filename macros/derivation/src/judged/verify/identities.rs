@@ -15,7 +15,7 @@ use super::value::Value;
 use super::{Fault, components_of, degree, dot, evaluated, increments};
 use crate::declared::{Declaration, Name, Role, Tree};
 use crate::mathematics::derive::Derived;
-use crate::mathematics::symbolic::{Rational, SymbolId};
+use crate::mathematics::symbolic::{Rational, Stage, SymbolId};
 use crate::program::{Given, Graph, Kernel, Linearisation, NodeId, Scalariser, components, square, with_lets};
 
 /// Compares what was found with what is expected, of a term.
@@ -82,6 +82,14 @@ struct Point<'a, T> {
     target: Vec<T>,
 }
 
+impl<T: Number> Point<'_, T> {
+    /// Whether the rows of a matrix, along the direction, are these slopes.
+    fn are_slopes(&self, term: &'static str, matrix: &[T], along: &[Dual<T>], same: &mut Same<T>) -> Result<(), Fault> {
+        let mut rows = matrix.chunks(along.len()).zip(along);
+        rows.try_for_each(|(row, one)| same(term, dot(row, &self.direction), one.slope))
+    }
+}
+
 /// Along the direction of a point, what the declaration says.
 struct Declared<T> {
     momentum: T,
@@ -135,7 +143,7 @@ impl<'a> Identities<'a> {
         let turned = sample.element.turned(&exponentials);
         let point = Point { sample, dual: sample.lifted(), direction, element, exponentials, turned, target };
         let declared = match self.role {
-            Role::Force => self.declared_work(&point),
+            Role::Force => self.declared_work(&point, same)?,
             _ => self.lagrangian_holds(&point, same)?,
         };
         let momentum = self.momentum_holds(&point, &declared, same)?;
@@ -147,21 +155,22 @@ impl<'a> Identities<'a> {
         Evaluation::new(values).of(self.tree).first()
     }
 
-    /// The declared work along the direction, of displacements at either end alone.
-    fn declared_work<T: Number>(&self, point: &Point<T>) -> Declared<T> {
+    /// The declared work along the direction, of displacements at either end alone, which is that of both.
+    fn declared_work<T: Number>(&self, point: &Point<T>, same: &mut Same<T>) -> Result<Declared<T>, Fault> {
         let group = &self.derived.group;
-        let work = |is_before: bool| {
+        let work = |before: T, after: T| {
             let mut values = point.sample.values.clone();
             for (factor, own) in group.factors().iter().enumerate() {
                 let first = group.component_of(factor);
                 let along = Value::column(&point.direction[first..first + own.dimension()]);
-                let still = along.map(|_| T::ZERO);
-                let (before, after) = if is_before { (along, still) } else { (still, along) };
+                let [before, after] = [before, after].map(|share| along.map(|x| share * x));
                 values.extend([(Name::DisplacementBefore(factor), before), (Name::DisplacementAfter(factor), after)]);
             }
             self.at(&values)
         };
-        Declared { momentum: -work(true), left: work(false) }
+        let (before, after) = (work(T::ONE, T::ZERO), work(T::ZERO, T::ONE));
+        same("force of both displacements", work(T::ONE, T::ONE), before + after)?;
+        Ok(Declared { momentum: -before, left: after })
     }
 
     /// Both momentum maps, the diamond and the energy are derivatives of the declared Lagrangian.
@@ -207,9 +216,7 @@ impl<'a> Identities<'a> {
         let name = if self.role == Role::Force { "force" } else { "momentum equation" };
         same(name, dot(&momentum, &point.direction), declared.momentum)?;
         let jacobian = evaluated(graph, &self.terms.jacobian, &point.sample.inputs());
-        for (row, one) in jacobian.chunks(along.len()).zip(&along) {
-            same("Newton Jacobian", dot(row, &point.direction), one.slope)?;
-        }
+        point.are_slopes("Newton Jacobian", &jacobian, &along, same)?;
         Ok(momentum)
     }
 
@@ -222,6 +229,10 @@ impl<'a> Identities<'a> {
         same: &mut Same<T>,
     ) -> Result<(), Fault> {
         let (sample, kernel) = (point.sample, self.kernel);
+        // The solve is for `F` in `U(F) = a` with `a = μ + k₀`, which mustn't have it.
+        if kernel.kick_before.iter().any(|&kick| kernel.graph.stage(kick) > Stage::Step) {
+            return Err(Fault::Disagrees("kick before the solve"));
+        }
         let (dimension, group) = (momentum.len(), &self.derived.group);
         let Element { matrix, inverse, coordinates } = &sample.element;
         let inputs = self.inputs_of_stages(sample, [&point.target, &point.direction]);
@@ -240,9 +251,8 @@ impl<'a> Identities<'a> {
         let residual = evaluated(&kernel.graph, &kernel.residual, &self.displaced(point));
         for (k, found) in residual.iter().enumerate() {
             same("Newton residual", found.value, factor * (a[k] - point.target[k]))?;
-            let row = &jacobian[dimension * k..dimension * (k + 1)];
-            same("Newton Jacobian of the step", dot(row, &point.direction), found.slope)?;
         }
+        point.are_slopes("Newton Jacobian of the step", jacobian, &residual, same)?;
         // μ⁺ = Ad*_F a + k₁⁺, and what the gradient gives beside the residual is k₁⁺ before Ad*_F.
         let turned = components_of(group, &[matrix.times(&point.element).times(inverse)]).concat();
         let after = dot(after, &point.direction);
@@ -311,9 +321,7 @@ impl<'a> Identities<'a> {
                 let values: Vec<T> = along.iter().map(|one| one.value).collect();
                 let expected = if end == 0 { dot(momentum, &point.direction) } else { declared.left };
                 same("momentum to be differentiated", dot(&values, &point.direction), expected)?;
-                for (row, one) in evaluated(graph, block, &plain).chunks(along.len()).zip(&along) {
-                    same("derivative of a step", dot(row, &point.direction), one.slope)?;
-                }
+                point.are_slopes("derivative of a step", &evaluated(graph, block, &plain), &along, same)?;
             }
         }
         Ok(())

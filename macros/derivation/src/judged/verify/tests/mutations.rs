@@ -215,7 +215,7 @@ fn small_errors_of_terms_and_stages() {
         prepared.check_terms(3);
         prepared.check_stages();
     }
-    for seed in 0..4 {
+    for seed in 0..6 {
         let (arguments, item) = Text::of(seed);
         prepared(Role::Lagrangian, &arguments, &item).check_terms(1);
     }
