@@ -8,6 +8,7 @@ use super::degree::{self, Degree, Largest};
 use super::dual::Dual;
 use super::exact::{confirmed, same};
 use super::identities::Same;
+use super::linear::Subspace;
 use super::number::Number;
 use super::residue::Residue;
 use super::{DRAWS, Evaluation, Fault, Sureness, Unconfirmed, Value, dot, evaluated, parameter, stream};
@@ -186,26 +187,19 @@ impl Point<'_, Residue> {
                 self.slopes(held, way / 6, way / 3 % 2, &axis)
             })
             .collect();
-        // Each with the place of its first entry that isn't zero, which is one.
-        let mut before: Vec<(usize, Vec<Residue>)> = Vec::new();
+        let mut before = Subspace::default();
         let mut rows = Vec::new();
         for row in 0..held.rows() {
             let slopes: Vec<Residue> = ways.iter().map(|slopes| slopes[row]).collect();
             if !slopes.iter().all(|slope| slope.is_defined()) {
                 return None;
             }
-            let first = |slopes: &[Residue]| slopes.iter().position(|slope| *slope != Residue::ZERO);
-            let mut rest = slopes.clone();
-            for (at, unit) in &before {
-                let share = rest[*at];
-                rest.iter_mut().zip(unit).for_each(|(entry, &unit)| *entry = *entry - share * unit);
-            }
-            rows.push(match (first(&rest), first(&slopes)) {
-                (Some(_), _) => Row::New,
-                (None, Some(_)) => Row::Follows,
-                (None, None) => Row::Constant,
+            let is_constant = slopes.iter().all(|slope| *slope == Residue::ZERO);
+            rows.push(match before.extend(slopes) {
+                true => Row::New,
+                false if is_constant => Row::Constant,
+                false => Row::Follows,
             });
-            before.extend(first(&rest).map(|at| (at, rest.iter().map(|&entry| entry / rest[at]).collect())));
         }
         Some(rows)
     }

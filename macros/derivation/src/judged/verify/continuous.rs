@@ -11,6 +11,7 @@ use super::dual::Dual;
 use super::evaluation::Evaluation;
 use super::exact::{confirmed, same};
 use super::inertia::{KineticPart, classified};
+use super::linear::Subspace;
 use super::number::Number;
 use super::residue::Residue;
 use super::sample::{advected, exponentials, moved};
@@ -360,47 +361,22 @@ pub(crate) fn right_symmetries(
     derived: &Continuous,
 ) -> Vec<Vec<Rational>> {
     let (terms, dimension) = (Terms::new(derived), declaration.group.dimension());
-    let mut rows: Vec<Vec<Residue>> = Vec::new();
+    let mut rates = Subspace::default();
     for seed in 1..=2 * u64::try_from(dimension).unwrap_or(0) + 2 {
         let point = Point::new(declaration, Residue::stream(seed));
         let at = |outputs: &[NodeId]| terms.values(outputs, names, &point.values);
         let rate = coadjoint(point.group(), &point.velocity(), &at(&terms.momentum));
-        rows.push(rate.iter().zip(at(&terms.diamond)).map(|(&x, y)| x + y).collect());
-    }
-    let null_space = null_space(rows, dimension);
-    null_space.into_iter().filter_map(|vector| vector.into_iter().map(Residue::small).collect()).collect()
-}
-
-/// The vectors that all rows vanish on, by elimination; none where a row has no value.
-fn null_space(mut rows: Vec<Vec<Residue>>, dimension: usize) -> Vec<Vec<Residue>> {
-    if rows.iter().flatten().any(|entry| !entry.is_defined()) {
-        return Vec::new();
-    }
-    let mut pivots: Vec<(usize, usize)> = Vec::new();
-    for column in 0..dimension {
-        let next = pivots.len();
-        let Some(found) = (next..rows.len()).find(|&row| rows[row][column] != Residue::ZERO) else { continue };
-        rows.swap(next, found);
-        let scale = Residue::ONE / rows[next][column];
-        rows[next].iter_mut().for_each(|entry| *entry = *entry * scale);
-        let pivot = rows[next].clone();
-        for (at, row) in rows.iter_mut().enumerate().filter(|(at, _)| *at != next) {
-            let _ = at;
-            let factor = row[column];
-            row.iter_mut().zip(&pivot).for_each(|(entry, &taken)| *entry = *entry - factor * taken);
+        let rate: Vec<Residue> = rate.iter().zip(at(&terms.diamond)).map(|(&x, y)| x + y).collect();
+        if rate.iter().any(|entry| !entry.is_defined()) {
+            return Vec::new();
         }
-        pivots.push((next, column));
+        rates.extend(rate);
     }
-    let free = (0..dimension).filter(|column| pivots.iter().all(|(_, pivot)| pivot != column));
-    let vector = |free: usize| {
-        let mut vector = vec![Residue::ZERO; dimension];
-        vector[free] = Residue::ONE;
-        for &(row, column) in &pivots {
-            vector[column] = -rows[row][free];
-        }
-        vector
-    };
-    free.map(vector).collect()
+    rates
+        .null_space(dimension)
+        .into_iter()
+        .filter_map(|vector| vector.into_iter().map(Residue::small).collect())
+        .collect()
 }
 
 /// What sample values of the parameters show of the second derivative of a continuous Lagrangian, at rest.
@@ -417,5 +393,8 @@ pub(crate) fn kinetic_hessian(
         Value { rows: dimension, columns: dimension, entries }
     });
     let is_used = |name: Name| names.get(&name).is_some_and(|&id| derived.hessian.contains(id));
-    classified(declaration, &is_used, samples.collect())
+    let mut point = Point::new(declaration, Residue::stream(1));
+    point.set_velocity(&vec![Residue::ZERO; dimension]);
+    let exact = terms.values(&terms.hessian, names, &point.values);
+    classified(declaration, &is_used, samples.collect(), &exact)
 }
