@@ -24,9 +24,9 @@ use crate::declared::{Declaration, FieldKind, Role};
 use crate::judged::{Chosen, Equations, Findings};
 use crate::mathematics::derive::Derived;
 use crate::mathematics::symbolic::Expression;
-use crate::program::{Given, Graph, Scalariser, components, square, with_lets};
+use crate::program::{self, Form};
 
-use code::{Code, Form};
+use code::Code;
 pub(crate) use constraint::constraint;
 pub(crate) use continuous::alone as continuous;
 pub(crate) use fallback::mistakes;
@@ -57,11 +57,9 @@ pub(crate) fn implementation(
     findings: &Findings,
 ) -> TokenStream {
     let (header, Chosen { lowered, derived, kernel }) = (Header::new(declaration), chosen);
-    let mut graph = Graph::default();
-    let given = with_lets(&mut graph, derived, Given::new());
     let (names, symbols) = (&lowered.names, &derived.symbols);
     let code = Code { declaration, header: &header, names, symbols, directions: Some(&derived.directions) };
-    let emitter = Emitter { code, lowered, derived, equations, lets: (graph, given) };
+    let emitter = Emitter { code, lowered, derived, equations };
     let (mathematics, effect, texts) = emitter.mathematics();
     let stages = stages::stages(&emitter, kernel, &texts);
     let declared = match declaration.discretisation() {
@@ -166,8 +164,6 @@ struct Emitter<'a> {
     derived: &'a Derived,
     /// Of a Lagrangian, its continuous equations.
     equations: Option<&'a Equations>,
-    /// The closed `let`s, which the methods share.
-    lets: (Graph, Given),
 }
 
 impl<'a> std::ops::Deref for Emitter<'a> {
@@ -203,14 +199,9 @@ impl Emitter<'_> {
     /// The continuous limit, which the other limits of an effect are read from.
     fn limit(&self, equations: &[docs::Equation]) -> TokenStream {
         let (span, d, private) = (Span::mixed_site(), self.derived, &self.header.private);
-        let (mut graph, none) = self.lets.clone();
-        let mut outputs = square(&mut graph, d, &none, &d.limit.inertia);
-        let bias = components(&mut graph, d, &none, &d.limit.bias);
-        let bias_from = outputs.len();
-        outputs.extend(bias);
-        let potential_from = outputs.len();
-        let mut scalariser = Scalariser { graph: &mut graph, symbols: &d.symbols, given: none };
-        outputs.push(scalariser.scalar(&d.limit.potential));
+        let (graph, [inertia, bias, potential]) = program::limit(d);
+        let (bias_from, potential_from) = (inertia.len(), inertia.len() + bias.len());
+        let outputs = [inertia, bias, potential].concat();
         let documentation = docs::of(equations, &["inertia", "momentum_bias", "potential"], &graph, &outputs);
         let (lets, values) = self.values(&graph, &outputs, &|input| self.input_token(input));
         let (at_rest, potential) = values.split_at(potential_from);
@@ -236,14 +227,11 @@ impl Emitter<'_> {
     /// One derived term as a method, with its equation as documentation.
     fn method(&self, name: &str, form: Form, expression: &Expression, equations: &[docs::Equation]) -> TokenStream {
         let (span, d, private) = (Span::mixed_site(), self.derived, &self.header.private);
-        let (mut graph, none) = self.lets.clone();
-        let (outputs, result) = match form {
-            Form::Scalar => {
-                let mut scalariser = Scalariser { graph: &mut graph, symbols: &d.symbols, given: none };
-                (vec![scalariser.scalar(expression)], self.header.scalar.clone())
-            }
-            Form::Vector => (components(&mut graph, d, &none, expression), self.header.vector()),
-            Form::Square => (square(&mut graph, d, &none, expression), self.header.square()),
+        let (graph, outputs) = program::term(d, form, expression);
+        let result = match form {
+            Form::Scalar => self.header.scalar.clone(),
+            Form::Vector => self.header.vector(),
+            Form::Square => self.header.square(),
         };
         let documentation = docs::of(equations, &[name], &graph, &outputs);
         let inverse =
