@@ -60,15 +60,15 @@ pub(crate) fn implementation(
     let (names, symbols) = (&lowered.names, &derived.symbols);
     let code = Code { declaration, header: &header, names, symbols, directions: Some(&derived.directions) };
     let emitter = Emitter { code, lowered, derived, equations };
-    let (mathematics, effect, texts) = emitter.mathematics();
+    let texts = equations_of(declaration, chosen, equations);
+    let (mathematics, effect) = emitter.mathematics(&texts);
     let stages = stages::stages(&emitter, kernel, &texts);
     let declared = match declaration.discretisation() {
         Some(discretisation) => continuous::discretised(&emitter, discretisation),
         None => verbatim::declared(declaration, &header),
     };
     let continuous = equations.map(|equations| continuous::implementation(declaration, &header, equations, true));
-    let section = equations.map(|equations| continuous::text::section(declaration, equations));
-    let derivation = derivation(&header, &docs::derivation(declaration, chosen, &texts, section, findings));
+    let derivation = derivation(&header, &derivation_of(declaration, chosen, &texts, equations, findings));
     let item = page::documented(item, &page::page(declaration, chosen, &texts, equations, findings));
     let describe = emitter.describe();
     let private = &header.private;
@@ -131,6 +131,33 @@ fn kinetic(chosen: &Chosen) -> &'static str {
     }
 }
 
+/// What was declared and everything derived from it, as text.
+pub(crate) fn text(declaration: &Declaration, chosen: &Chosen, equations: Option<&Equations>, findings: &Findings) -> String {
+    let texts = equations_of(declaration, chosen, equations);
+    derivation_of(declaration, chosen, &texts, equations, findings)
+}
+
+fn derivation_of(
+    declaration: &Declaration,
+    chosen: &Chosen,
+    texts: &[docs::Equation],
+    equations: Option<&Equations>,
+    findings: &Findings,
+) -> String {
+    let section = equations.map(|equations| continuous::text::section(declaration, equations));
+    docs::derivation(declaration, chosen, texts, section, findings)
+}
+
+/// The equations of a step.
+fn equations_of(declaration: &Declaration, chosen: &Chosen, equations: Option<&Equations>) -> Vec<docs::Equation> {
+    let Chosen { lowered, derived, .. } = chosen;
+    if declaration.role == Role::Force {
+        docs::equations_of_force(derived, &lowered.declared)
+    } else {
+        docs::equations(derived, &lowered.declared, equations)
+    }
+}
+
 fn derivation(header: &Header, text: &str) -> TokenStream {
     let (span, private) = (Span::mixed_site(), &header.private);
     let documentation = format!("```text\n{text}```");
@@ -175,15 +202,10 @@ impl<'a> std::ops::Deref for Emitter<'a> {
 }
 
 impl Emitter<'_> {
-    /// The derived terms that don't know stages: those of a Lagrangian, those of any effect, and their equations.
-    fn mathematics(&self) -> (TokenStream, TokenStream, Vec<docs::Equation>) {
+    /// The derived terms that don't know stages: those of a Lagrangian, and those of any effect.
+    fn mathematics(&self, equations: &[docs::Equation]) -> (TokenStream, TokenStream) {
         let d = self.derived;
-        let equations = if self.declaration.role == Role::Force {
-            docs::equations_of_force(d, &self.lowered.declared)
-        } else {
-            docs::equations(d, &self.lowered.declared, self.equations)
-        };
-        let method = |(name, form, expression)| self.method(name, form, expression, &equations);
+        let method = |(name, form, expression)| self.method(name, form, expression, equations);
         let of_lagrangian = [
             ("right_momentum", Form::Vector, &d.right_momentum),
             ("left_momentum", Form::Vector, &d.left_momentum),
@@ -192,8 +214,8 @@ impl Emitter<'_> {
             ("discrete_energy", Form::Scalar, &d.energy),
         ];
         let jacobian = method(("momentum_jacobian", Form::Square, &d.jacobian));
-        let limit = self.limit(&equations);
-        (of_lagrangian.map(method).into_iter().collect(), quote!(#jacobian #limit), equations)
+        let limit = self.limit(equations);
+        (of_lagrangian.map(method).into_iter().collect(), quote!(#jacobian #limit))
     }
 
     /// The continuous limit, which the other limits of an effect are read from.
