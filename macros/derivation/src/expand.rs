@@ -4,9 +4,9 @@ use proc_macro2::TokenStream;
 
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Role, check, lower, parse};
+use crate::emit;
 use crate::judged::{self, Chosen, Equations, Findings, Held};
 use crate::mathematics::derive;
-use crate::emit;
 
 /// The item with its integrator, or with all mistakes and a stand-in.
 #[must_use]

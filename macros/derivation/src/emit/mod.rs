@@ -132,7 +132,12 @@ fn kinetic(chosen: &Chosen) -> &'static str {
 }
 
 /// What was declared and everything derived from it, as text.
-pub(crate) fn text(declaration: &Declaration, chosen: &Chosen, equations: Option<&Equations>, findings: &Findings) -> String {
+pub(crate) fn text(
+    declaration: &Declaration,
+    chosen: &Chosen,
+    equations: Option<&Equations>,
+    findings: &Findings,
+) -> String {
     let texts = equations_of(declaration, chosen, equations);
     derivation_of(declaration, chosen, &texts, equations, findings)
 }
