@@ -108,9 +108,13 @@ impl Code {
         let mut last = vec![0; values];
         for (at, &operation) in program.operations.iter().enumerate() {
             let (_, operands) = parts(operation);
-            operands.into_iter().for_each(|operand| last[operand] = at);
+            for operand in operands {
+                last[operand] = at;
+            }
         }
-        program.outputs.iter().for_each(|&output| last[output] = usize::MAX);
+        for &output in &program.outputs {
+            last[output] = usize::MAX;
+        }
         let mut place: Vec<u16> = (0..fixed).map(u16::try_from).collect::<Result<_, _>>().ok()?;
         let (mut free, mut registers) = (Vec::new(), fixed);
         let mut instructions = Vec::with_capacity(program.operations.len());

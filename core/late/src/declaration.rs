@@ -94,6 +94,7 @@ impl std::error::Error for LateError {}
 
 /// A declaration with the code of its stages. Each text is derived once and kept as long as the program runs.
 #[derive(Debug)]
+#[allow(clippy::struct_excessive_bools)] // facts that have nothing to do with each other
 pub struct Declaration {
     /// The name of the struct.
     pub name: &'static str,

@@ -12,6 +12,7 @@ use liestep::mechanics::{
 };
 use liestep::numbers::{Coordinates, Entries, Real, real};
 use liestep_derivation::{MOST_TERMS, ParameterKind, Source};
+use nalgebra::Vector1;
 
 use crate::carried::Slots;
 use crate::code::{Arrays, Code};
@@ -42,7 +43,7 @@ impl<G: LieGroup, W, K> fmt::Debug for Late<G, W, K> {
         for (index, name) in self.declaration.names.iter().enumerate() {
             shown.field(name, &self.of_parameter(index));
         }
-        shown.finish()
+        shown.finish_non_exhaustive()
     }
 }
 
@@ -50,6 +51,11 @@ impl<G: LieGroup, W, K> PartialEq for Late<G, W, K> {
     fn eq(&self, other: &Self) -> bool {
         std::ptr::eq(self.declaration, other.declaration) && self.numbers == other.numbers
     }
+}
+
+/// In all lanes.
+fn is_finite<T: Real>(number: &T) -> bool {
+    Coordinates::is_finite(&Vector1::new(*number))
 }
 
 type Matrix<G> = <G as LieGroup>::Matrix;
@@ -265,7 +271,7 @@ where
     fn validate(&self) -> Result<(), SetupError> {
         for (index, &field) in self.declaration.names.iter().enumerate() {
             let value = self.of_parameter(index);
-            if !value.iter().all(|&number| (number - number) == real::<G::Scalar>(0.0)) {
+            if !value.iter().all(is_finite) {
                 return Err(SetupError::Parameter { field, cause: "is not finite, or wasn't given" });
             }
             let is_inertia = self.declaration.parameters[index].kind == ParameterKind::Inertia;
@@ -277,13 +283,13 @@ where
     }
 
     fn advected(&self) -> W {
-        let of_carried = self.declaration.carried.iter().flat_map(|carried| match carried.field {
-            Some(field) => self.of_parameter(field).to_vec(),
-            None => {
+        let of_carried = self.declaration.carried.iter().flat_map(|carried| {
+            let Some(field) = carried.field else {
+                // A configuration is the identity in space.
                 let rows = carried.shape.0;
-                let entry = |at: usize| if at / rows == at % rows { 1.0 } else { 0.0 };
-                (0..rows * rows).map(|at| real(entry(at))).collect()
-            }
+                return (0..rows * rows).map(|at| real(f64::from(u8::from(at / rows == at % rows)))).collect();
+            };
+            self.of_parameter(field).to_vec()
         });
         let mut numbers = of_carried.collect::<Vec<_>>().into_iter();
         W::from_entries(&mut || numbers.next().unwrap_or_else(|| real(f64::NAN)))
@@ -395,7 +401,7 @@ where
     }
 
     fn are_finite(constants: &Self::Constants) -> bool {
-        constants.numbers.iter().all(|&number| (number - number) == real::<G::Scalar>(0.0))
+        constants.numbers.iter().all(is_finite)
     }
 
     fn kick_before(constants: &Self::Constants, w: &W) -> Vector<G> {
