@@ -24,7 +24,17 @@ macro_rules! quantities {
             const NAME: &'static str = $name;
             const UNITS: &'static [(&'static str, f64)] = &[$(($unit, $size)),+];
         }
-    )+};
+    )+
+
+        /// A quantity of any kind: that of a parameter that a file names itself.
+        #[derive(Clone, Copy)]
+        pub(crate) struct Any;
+
+        impl Quantity for Any {
+            const NAME: &'static str = "a number";
+            const UNITS: &'static [(&'static str, f64)] = &[("", 1.0), $($(($unit, $size)),+),+];
+        }
+    };
 }
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
