@@ -178,7 +178,7 @@ impl Declaration {
         }
         let tokens: TokenStream = text.parse().map_err(|error: LexError| {
             let place = error.span().start();
-            let message = "this is no Rust: a bracket isn't closed, or a sign has no meaning".to_owned();
+            let message = "a bracket isn't closed or opened, or a sign has no meaning here".to_owned();
             LateError::Mistakes(vec![Mistake { message, line: place.line, column: place.column + 1 }])
         })?;
         let found = staged(&tokens).map_err(|mistakes| {

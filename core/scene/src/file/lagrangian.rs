@@ -7,7 +7,7 @@ use liestep::SO3;
 use liestep::mechanics::{Effect as _, Inertia, Term as _, WithExpensiveKinetic, WithKinetic};
 use liestep_late::{Declaration, Late, LateError};
 use nalgebra::{Matrix3, Vector3};
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error, ValueDeserializer};
 
@@ -51,6 +51,11 @@ struct Parameter {
     name: String,
     kind: &'static str,
     numbers: Vec<f64>,
+}
+
+/// By then the table has been taken: the key is there for the message that lists all keys.
+pub(crate) fn taken<'de, D: Deserializer<'de>>(_: D) -> Result<Option<Lagrangian>, D::Error> {
+    Ok(None)
 }
 
 /// Takes the table out of a document, if there is one.
@@ -97,16 +102,14 @@ fn read(table: &DeTable<'_>, place: &Range<usize>) -> Result<Lagrangian, Wrong> 
         "#[lagrangian(group = SO3, {advected}{head} =\n{expression}\n)]\nstruct Lagrangian {{ {} }}",
         fields.join(", ")
     );
-    let wrong = |error: LateError| match error {
-        LateError::Mistakes(mistakes) if mistakes.first().is_some_and(|first| (2..).contains(&first.line)) => {
-            let first = &mistakes[0];
-            let span = placed(&expression, &at, (first.line, first.column)).unwrap_or_else(|| place.clone());
-            (span, first.message.clone())
-        }
-        LateError::Mistakes(mistakes) => {
-            (place.clone(), mistakes.into_iter().map(|mistake| mistake.message).next().unwrap_or_default())
-        }
-        other => (place.clone(), other.to_string()),
+    let wrong = |error: LateError| {
+        let LateError::Mistakes(mistakes) = error else { return (place.clone(), error.to_string()) };
+        let Some(first) = mistakes.into_iter().next() else { return (place.clone(), KEYS.to_owned()) };
+        let of_key = || first.message.split('`').nth(1).and_then(|name| Some(table.get_key_value(name)?.0.span()));
+        let span = placed(&expression, &at, (first.line, first.column)).or_else(of_key);
+        // What stands before the expression is of the table.
+        let elsewhere = if first.line < 2 { place } else { &at };
+        (span.unwrap_or_else(|| elsewhere.clone()), first.message)
     };
     let declaration = Declaration::parse(&declared).map_err(wrong)?;
     let with = |name: &str, error: LateError| {
@@ -138,9 +141,10 @@ fn advected(table: &DeTable<'_>) -> Result<String, Wrong> {
 /// The place in the file of a line and a column of the declared text, the second line of which is the first of the
 /// expression.
 fn placed(expression: &str, at: &Range<usize>, (line, column): (usize, usize)) -> Option<Range<usize>> {
-    let before: usize = expression.split_inclusive('\n').take(line.checked_sub(2)?).map(str::len).sum();
-    let rest = expression.get(before..)?;
-    let within: usize = rest.chars().take(column.checked_sub(1)?).map(char::len_utf8).sum();
+    let lines = || expression.split_inclusive('\n');
+    let own = line.checked_sub(2)?;
+    let (before, within): (usize, &str) = (lines().take(own).map(str::len).sum(), lines().nth(own)?);
+    let within: usize = within.chars().take(column.checked_sub(1)?).map(char::len_utf8).sum();
     // Behind the quotation marks, of which there are as many at the end.
     let marks = at.len().checked_sub(expression.len())?.div_ceil(2);
     let start = at.start + marks + before + within;

@@ -148,6 +148,10 @@ impl<Q: Quantity> Visitor<'_> for NumberOrText<Q> {
         let written = unit.trim().replace("^2", "²").replace("^3", "³");
         match Q::UNITS.iter().find(|(name, _)| *name == written) {
             Some((_, size)) => self.visit_f64(value * size),
+            // Where the quantity is any, they would be all that there are.
+            None if Q::UNITS.len() > 8 => {
+                Err(E::custom(format!("`{unit}` isn't a unit that is known here: take one of SI, or leave it out")))
+            }
             None => Err(E::custom(format!("{} isn't in `{unit}` but in {}", Q::NAME, listed::<Q>()))),
         }
     }

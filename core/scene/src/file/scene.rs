@@ -14,7 +14,7 @@ use crate::file::effects::{
     ThrustTable, TorqueTable,
 };
 use crate::file::event::Event;
-use crate::file::lagrangian::Lagrangian;
+use crate::file::lagrangian::{Lagrangian, taken};
 use crate::file::picture::SpherePicture;
 use crate::file::quantity::short;
 use crate::file::schedule::{Pace, Schedule};
@@ -68,7 +68,7 @@ pub struct SceneFile {
     pub(crate) event: Vec<Event>,
     #[serde(default)]
     pub(crate) output: Output,
-    #[serde(skip)]
+    #[serde(default, deserialize_with = "taken")]
     pub(crate) lagrangian: Option<Lagrangian>,
     #[serde(skip)]
     pub(crate) columns: Vec<Column>,
