@@ -74,8 +74,23 @@ where
     };
     const DERIVATION: &'static str = "a term at places of a system; see its DERIVATION\n";
 
-    fn derivation() -> String {
-        E::derivation()
+    fn derivation(&self) -> String {
+        self.terms.first().map(E::derivation).unwrap_or_default()
+    }
+
+    #[hot]
+    fn has_constant_inertia(&self) -> bool {
+        self.terms.iter().all(E::has_constant_inertia)
+    }
+
+    #[hot]
+    fn is_quadratic(&self) -> bool {
+        self.terms.iter().all(E::is_quadratic)
+    }
+
+    #[hot]
+    fn denominators(constants: &Self::Constants) -> u32 {
+        constants.iter().map(|(constants, _)| E::denominators(constants)).max().unwrap_or(0)
     }
 
     #[allow(clippy::cast_precision_loss)] // far fewer than a float counts
@@ -221,6 +236,10 @@ where
     E::Retraction: Retraction<P::Group>,
 {
     const SELF_ADJOINT: bool = E::SELF_ADJOINT;
+
+    fn is_self_adjoint(&self) -> bool {
+        self.terms.iter().all(E::is_self_adjoint)
+    }
 
     fn l_d(&self, f: &Matrix<Self>, w: &P::Advected, h: Self::Scalar) -> Self::Scalar {
         self.total(w, |term, w, at| term.l_d(&P::matrix(f, at), w, h))
