@@ -85,14 +85,15 @@ fn scalar(random: &mut Random, kind: usize, depth: usize) -> String {
 
 fn right(random: &mut Random, kind: usize) -> String {
     let (_, energy, _, weight, _) = KINDS[kind];
-    let mut sum = energy.to_owned();
+    let mut terms = vec![energy.to_owned()];
     for _ in 0..=random.below(3) {
         let (scalar, one, other) = (scalar(random, kind, 2), vector(random, kind, 1), vector(random, kind, 2));
-        sum += &match kind {
+        terms.push(match kind {
             FORCE => format!(" - h * {scalar} * ({one} + w).dot(&eta)"),
             _ => format!(" - {weight}({scalar} * w.dot(&a) + w.dot(&{other}).sin())"),
-        };
+        });
     }
+    let sum = terms.concat();
     let with_name = [sum.replace("dot(&a)", "dot(&y)"), sum.replace(" + w)", " + y)")];
     match random.below(3) {
         0 => format!("{{ let y = {}; {} }}", vector(random, kind, 1), with_name[usize::from(kind == FORCE)]),

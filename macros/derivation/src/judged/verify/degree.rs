@@ -84,6 +84,7 @@ impl Degree {
 impl Add for Degree {
     type Output = Self;
 
+    #[allow(clippy::suspicious_arithmetic_impl)] // over a common denominator
     fn add(self, other: Self) -> Self {
         let argument = self.argument.max(other.argument);
         if self.is_zero || other.is_zero {

@@ -15,10 +15,14 @@ fn without(row: &mut [Residue], at: usize, unit: &[Residue]) {
 impl Subspace {
     /// Adds a row; false where it is in the space.
     pub(super) fn extend(&mut self, mut row: Vec<Residue>) -> bool {
-        self.0.iter().for_each(|(at, unit)| without(&mut row, *at, unit));
+        for (at, unit) in &self.0 {
+            without(&mut row, *at, unit);
+        }
         let Some(at) = row.iter().position(|entry| *entry != Residue::ZERO) else { return false };
         let scale = Residue::ONE / row[at];
-        row.iter_mut().for_each(|entry| *entry = *entry * scale);
+        for entry in &mut row {
+            *entry = *entry * scale;
+        }
         self.0.iter_mut().for_each(|(_, other)| without(other, at, &row));
         self.0.push((at, row));
         true

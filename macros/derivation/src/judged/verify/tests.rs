@@ -9,7 +9,7 @@ use std::rc::Rc;
 use super::degree::{Degree, Largest};
 use super::evaluation::Evaluation;
 use super::value::Value;
-use super::{KineticPart, Row, Sureness, Unconfirmed, constraint, degree, increments, kinetic_part, verify};
+use super::{KineticPart, Sureness, Unconfirmed, degree, increments, kinetic_part, verify};
 use crate::declared::errors::Errors;
 use crate::declared::lower::{Lowered, readings};
 use crate::declared::{Declaration, Name, Role, Tree, check, parse};
@@ -167,27 +167,6 @@ fn a_wrong_step_is_named() {
             }
         });
         assert_eq!(negative, Err("Newton residual"));
-    }
-}
-
-/// Of each slope of each body.
-#[test]
-fn a_wrong_slope_is_named() {
-    let arguments = "group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
-        advected(R_1 = F_1.seen_from(space), Q = F_2.seen_from(F_1), r = d_2.seen_from(d_1)),
-        zero = (R_1.transpose() * r + Q * below, (Q * below).dot(&axis).sin())";
-    let (declaration, trees) =
-        checked_as(Role::Constraint, arguments, "struct Joint { below: Vector3<f64>, axis: Vector3<f64> }");
-    let held = || held(&declaration, trees.clone(), &mut Errors::default()).expect("a constraint");
-    let found = constraint(&declaration, &held()).expect("right");
-    assert!(matches!(found.0, Sureness::Certified(100..)), "{found:?}");
-    assert_eq!(found.1, vec![Row::New; 4]);
-    for (body, by) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-        let mut held = held();
-        let of = held.entries[body][by].iter().position(|&entry| !held.graph.is_zero(entry)).expect("a slope");
-        held.entries[body][by][of] = held.graph.negate(held.entries[body][by][of]);
-        let found = constraint(&declaration, &held).map(|(_, rows)| rows);
-        assert_eq!(found, Err(Unconfirmed::Disagrees("slope")), "{body} {by}");
     }
 }
 

@@ -9,7 +9,7 @@ use super::super::exact::Check;
 use super::super::identities::Identities;
 use super::super::residue::Residue;
 use super::super::sample::{Element, Sample};
-use super::super::{Sureness, Unconfirmed, Verified, constraint, verify};
+use super::super::{Row, Sureness, Unconfirmed, Verified, constraint, verify};
 use super::products::random::Text;
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Role, Tree, check, lower, parse};
@@ -251,7 +251,8 @@ fn small_errors_of_gradients() {
 /// Each slope of a constraint.
 fn check_slopes(declaration: &Declaration, trees: &[Rc<Tree>]) {
     let held = || held(declaration, trees.to_vec(), &mut Errors::default()).expect("a constraint");
-    assert!(constraint(declaration, &held()).is_ok());
+    let (sureness, rows) = constraint(declaration, &held()).expect("right");
+    assert!(matches!(sureness, Sureness::Certified(100..)) && rows.iter().all(|row| *row == Row::New));
     for body in 0..2 {
         for (by, at) in (0..3 * held().rows()).flat_map(|at| [(0, at), (1, at)]) {
             for (numerator, denominator) in ERRORS {
