@@ -1,69 +1,40 @@
 use liestep::groups::{MixedTensor, SE3};
 use liestep::mechanics::{Effect, Term as _};
 use liestep::{NonstandardInertia, SO3, Stepper, force, lagrangian};
-use nalgebra::{Matrix3, Matrix4, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
-#[lagrangian(
-    group = SO3,
-    advected = up,
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * w.dot(&(rho + F * rho)),
-)]
+#[lagrangian(group = SO3, advected = up, l_d = -h * w.dot(&(rho + F * rho)))]
 struct AdvectedAsAValue {
-    J_d: NonstandardInertia,
     rho: Vector3<f64>,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = upp),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * w.dot(&(rho + F * rho)),
-)]
+#[lagrangian(group = SO3, advected(w = upp), l_d = -h * w.dot(&(rho + F * rho)))]
 struct AdvectedFieldMissing {
-    J_d: NonstandardInertia,
     rho: Vector3<f64>,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * F[(2, 2)] * w[0],
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = -h * F[(2, 2)] * w[0])]
 struct AdvectedFieldNotAVector {
-    J_d: NonstandardInertia,
     up: f64,
 }
 
-#[lagrangian(
-    group = SO3,
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * w.dot(&(rho + F * rho)),
-)]
+#[lagrangian(group = SO3, l_d = -h * w.dot(&(rho + F * rho)))]
 struct AdvectedNameNotDeclared {
-    J_d: NonstandardInertia,
     m: f64,
     rho: Vector3<f64>,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(up = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * up.dot(&(F * rho)),
-)]
+#[lagrangian(group = SO3, advected(up = up), l_d = -h * up.dot(&(F * rho)))]
 struct AdvectedNameOfAField {
-    J_d: NonstandardInertia,
     rho: Vector3<f64>,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(F = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * w.dot(&(F * rho)),
-)]
+#[lagrangian(group = SO3, advected(F = up), l_d = -h * w.dot(&(F * rho)))]
 struct Top {
-    J_d: NonstandardInertia,
     rho: Vector3<f64>,
     up: Vector3<f64>,
 }
@@ -90,23 +61,17 @@ struct AdvectedNameUnused {
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SE3,
-    advected(S = field),
-    l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * S[(0, 0)] * F[(0, 3)],
-)]
+#[lagrangian(group = SE3, advected(S = field), l_d = -h * S[(0, 0)] * F[(0, 3)])]
 struct AdvectedTensorOfAnotherSize {
-    J: Matrix4<f64>,
     field: MixedTensor<f64, 3>,
 }
 
 #[lagrangian(
     group = SO3,
     advected(a = up, b = north, c = east, d = sun, e = moon, f = star, g = magnet),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * (a + b + c + d + e + f + g).dot(&(F * rho)),
+    l_d = -h * (a + b + c + d + e + f + g).dot(&(F * rho)),
 )]
 struct AdvectedTooMany {
-    J_d: NonstandardInertia,
     rho: Vector3<f64>,
     up: Vector3<f64>,
     north: Vector3<f64>,
@@ -117,34 +82,19 @@ struct AdvectedTooMany {
     magnet: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up, w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * w.dot(&(rho + F * rho)),
-)]
+#[lagrangian(group = SO3, advected(w = up, w = up), l_d = -h * w.dot(&(rho + F * rho)))]
 struct AdvectedTwice {
-    J_d: NonstandardInertia,
     rho: Vector3<f64>,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SE3,
-    advected(w = up),
-    l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * w[0] * F[(0, 3)],
-)]
+#[lagrangian(group = SE3, advected(w = up), l_d = -h * w[0] * F[(0, 3)])]
 struct AdvectedVectorOfAnotherSize {
-    J: Matrix4<f64>,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * w.dot(&(rho + F * rho)),
-)]
+#[lagrangian(group = SO3, advected(up), l_d = -h * w.dot(&(rho + F * rho)))]
 struct AdvectedWithoutAName {
-    J_d: NonstandardInertia,
     rho: Vector3<f64>,
     up: Vector3<f64>,
 }
@@ -156,24 +106,14 @@ struct MatrixNotPromisedToBeSymmetric {
     B: Matrix3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * w.dot(F * rho),
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = -h * w.dot(F * rho))]
 struct ReferenceMissing {
-    J_d: NonstandardInertia,
     rho: Vector3<f64>,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * w.dot(&(F * rho)) - h * up.dot(&rho),
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = -h * w.dot(&(F * rho)) - h * up.dot(&rho))]
 struct SpatialFieldUsed {
-    J_d: NonstandardInertia,
     rho: Vector3<f64>,
     up: Vector3<f64>,
 }

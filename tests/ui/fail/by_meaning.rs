@@ -76,8 +76,7 @@ struct ComponentByMeaning {
 
 #[lagrangian(
     group = SO3,
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
-        - h * tan(m)
+    l_d = -h * tan(m)
         - h * atan2(m, m)
         - h * trace(F)
         - h * dot(rho, rho)
@@ -88,7 +87,6 @@ struct ComponentByMeaning {
         - h * inverze(F),
 )]
 struct FunctionByMeaning {
-    J_d: NonstandardInertia,
     m: f64,
     rho: Vector3<f64>,
 }
@@ -124,8 +122,7 @@ const G: f64 = 9.81;
 
 #[lagrangian(
     group = SO3,
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
-        - h * PI * F.trace()
+    l_d = -h * PI * F.trace()
         - h * G * m
         - h * N
         - h * Id.trace()
@@ -136,7 +133,6 @@ const G: f64 = 9.81;
         - h * self,
 )]
 struct Body<const N: usize> {
-    J_d: NonstandardInertia,
     m: f64,
 }
 
@@ -147,7 +143,7 @@ struct Push {
 
 #[lagrangian(
     group = SO3,
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
+    l_d = m * F.trace() / h
         - h * (m as f64)
         - h * m?
         - h * m.await
@@ -162,7 +158,6 @@ struct Push {
         - h * &mut m,
 )]
 struct OperatorUnknown {
-    J_d: NonstandardInertia,
     m: f64,
 }
 

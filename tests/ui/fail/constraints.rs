@@ -34,11 +34,7 @@ struct ConstraintOnOneBody {
     pivot: Vector3<f64>,
 }
 
-#[constraint(
-    group(F_1 = SO3, F_2 = SO3),
-    advected(Q = F_2.seen_from(F_1)),
-    zero = vee(Q),
-)]
+#[constraint(group(F_1 = SO3, F_2 = SO3), advected(Q = F_2.seen_from(F_1)), zero = vee(Q))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Aligned {}
 
@@ -49,21 +45,13 @@ struct Level {
     up: Vector3<f64>,
 }
 
-#[constraint(
-    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
-    advected(r = d_2.seen_from(d_1)),
-    zero = r,
-)]
+#[constraint(group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3), advected(r = d_2.seen_from(d_1)), zero = r)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Single {
     offset: Vector3<f32>,
 }
 
-#[lagrangian(
-    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
-    advected(r = d_2.seen_from(d_1)),
-    zero = r,
-)]
+#[lagrangian(group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3), advected(r = d_2.seen_from(d_1)), zero = r)]
 struct Misplaced {}
 
 #[constraint(
@@ -86,11 +74,7 @@ struct Assignment {
     length: f64,
 }
 
-#[constraint(
-    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
-    advected(r = d_2.seen_from(d_1)),
-    zero = [r.x, r.y],
-)]
+#[constraint(group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3), advected(r = d_2.seen_from(d_1)), zero = [r.x, r.y])]
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Array {}
 

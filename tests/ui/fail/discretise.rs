@@ -31,12 +31,7 @@ struct BodiesDiscretiseNoMatrix {
     s: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = (F * J).trace() / h - h * w.dot(&(F * rho)),
-    discretise = trapezoid,
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = (F * J).trace() / h - h * w.dot(&(F * rho)), discretise = trapezoid)]
 struct DiscretiseADiscreteOne {
     J: Inertia,
     rho: Vector3<f64>,

@@ -1,62 +1,40 @@
 use liestep::groups::{R3, SE3};
 use liestep::mechanics::{Effect, Term as _};
 use liestep::{NonstandardInertia, SO3, Stepper, force, lagrangian};
-use nalgebra::{Matrix3, Translation3, Vector3};
+use nalgebra::{Translation3, Vector3};
 
 #[lagrangian(group = SO3, l_d = (F * J_d).trace() / h)]
 enum Enumeration {
     Body(NonstandardInertia),
 }
 
-#[lagrangian(
-    group = SO3,
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * vee * F.trace(),
-)]
+#[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * vee * F.trace())]
 struct Top0 {
     J_d: NonstandardInertia,
     vee: f64,
 }
 
-#[lagrangian(
-    group = SO3,
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * log * F.trace(),
-)]
+#[lagrangian(group = SO3, l_d = -h * log * F.trace())]
 struct Top1 {
-    J_d: NonstandardInertia,
     log: f64,
 }
 
-#[lagrangian(
-    group = SO3,
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * exp * F.trace(),
-)]
+#[lagrangian(group = SO3, l_d = -h * exp * F.trace())]
 struct Top2 {
-    J_d: NonstandardInertia,
     exp: f64,
 }
 
-#[lagrangian(
-    group = SO3,
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * h * F.trace(),
-)]
+#[lagrangian(group = SO3, l_d = -h * h * F.trace())]
 struct Top3 {
-    J_d: NonstandardInertia,
     h: f64,
 }
 
-#[lagrangian(
-    group = SO3,
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * (F * I).trace(),
-)]
+#[lagrangian(group = SO3, l_d = -h * (F * I).trace())]
 struct Matrix {
-    J_d: NonstandardInertia,
     I: NonstandardInertia,
 }
 
-#[lagrangian(
-    group = SO3,
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h),
-)]
+#[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
 struct Unused {
     J_d: NonstandardInertia,
     F: f64,
@@ -72,13 +50,8 @@ struct Turn {
     vee: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * w.dot(&(rho + F * rho)),
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = -h * w.dot(&(rho + F * rho)))]
 struct FieldTypeUnknown {
-    J_d: NonstandardInertia,
     rho: Translation3<f64>,
     up: Vector3<f64>,
 }
@@ -89,13 +62,8 @@ struct FieldUnused {
     m: f64,
 }
 
-#[lagrangian(
-    group = SE3,
-    advected(w = up),
-    l_d = ((F - I) * A * (F - I).transpose()).trace() / (2.0 * h) - h * w.dot(&(F * rho)),
-)]
+#[lagrangian(group = SE3, advected(w = up), l_d = -h * w.dot(&(F * rho)))]
 struct Body {
-    A: Matrix3<f64>,
     rho: Vector3<f64>,
     up: Vector3<f64>,
 }
@@ -160,11 +128,7 @@ struct ScalarsMixed {
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = upp),
-    l_d = (F * J_d).tracee() / (2 * h) - h * w.dot(&(roh + F * rho)) * m,
-)]
+#[lagrangian(group = SO3, advected(w = upp), l_d = (F * J_d).tracee() / (2 * h) - h * w.dot(&(roh + F * rho)) * m)]
 struct SeveralMistakes {
     J_d: NonstandardInertia,
     m: f32,

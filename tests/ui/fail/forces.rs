@@ -111,9 +111,7 @@ struct WithAValue {
     J_d: NonstandardInertia,
 }
 
-#[lagrangian(
-    group = SO3, gradients, gradients, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
-)]
+#[lagrangian(group = SO3, gradients, gradients, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
 struct Twice {
     J_d: NonstandardInertia,
 }

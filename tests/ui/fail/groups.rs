@@ -1,7 +1,7 @@
 use liestep::groups::SE3;
 use liestep::mechanics::{Effect, Term as _};
 use liestep::{NonstandardInertia, SO3, Stepper, force, lagrangian};
-use nalgebra::{Matrix2, Matrix4, Point2, Point3, Vector3};
+use nalgebra::{Matrix2, Point2, Point3, Vector3};
 
 #[lagrangian(
     group = Line,
@@ -48,20 +48,12 @@ struct Integers {
     A: Matrix2<f64>,
 }
 
-#[lagrangian(
-    group = Own,
-    generators = [[[0.0, -1.0]]],
-    l_d = ((F - I) * A * (F - I).transpose()).trace() / (2.0 * h),
-)]
+#[lagrangian(group = Own, generators = [[[0.0, -1.0]]], l_d = ((F - I) * A * (F - I).transpose()).trace() / (2.0 * h))]
 struct Oblong {
     A: Matrix2<f64>,
 }
 
-#[lagrangian(
-    group = Own,
-    generators = [],
-    l_d = ((F - I) * A * (F - I).transpose()).trace() / (2.0 * h),
-)]
+#[lagrangian(group = Own, generators = [], l_d = ((F - I) * A * (F - I).transpose()).trace() / (2.0 * h))]
 struct Nothing {
     A: Matrix2<f64>,
 }
@@ -75,11 +67,7 @@ struct Sum {
     A: Matrix2<f64>,
 }
 
-#[lagrangian(
-    group = Own,
-    generators = 5.0,
-    l_d = ((F - I) * A * (F - I).transpose()).trace() / (2.0 * h),
-)]
+#[lagrangian(group = Own, generators = 5.0, l_d = ((F - I) * A * (F - I).transpose()).trace() / (2.0 * h))]
 struct Number {
     A: Matrix2<f64>,
 }
@@ -148,22 +136,13 @@ liestep::groups::matrix_group! {
     }
 }
 
-#[lagrangian(
-    group = SE3,
-    l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * (F * p)[0],
-)]
+#[lagrangian(group = SE3, l_d = -h * (F * p)[0])]
 struct PointOfAnotherSize {
-    J: Matrix4<f64>,
     p: Point2<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(c = centre),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * c.dot(&(F * c)),
-)]
+#[lagrangian(group = SO3, advected(c = centre), l_d = -h * c.dot(&(F * c)))]
 struct PointOffTheAffineGroups {
-    J_d: NonstandardInertia,
     centre: Point3<f64>,
 }
 

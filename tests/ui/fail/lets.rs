@@ -12,53 +12,28 @@ struct BlockEndsWithASemicolon {
     advected(w = up),
     l_d = {
         let inverse = |A: nalgebra::Matrix3<f64>| A.transpose();
-        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * w.dot(&(inverse(F) * w))
+        -h * k * w.dot(&(inverse(F) * w))
     },
 )]
 struct Inverse {
-    J: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = {
-        let exp = |x: f64| x * x;
-        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * exp(w.z)
-    },
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = { let exp = |x: f64| x * x; k * F.trace() / h - h * exp(w.z) })]
 struct Exponential {
-    J: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = {
-        let F = w.z;
-        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * F
-    },
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = { let F = w.z; -h * k * F })]
 struct Increment {
-    J: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = {
-        let h = w.z;
-        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * h
-    },
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = { let h = w.z; k * F.trace() / h - h * h })]
 struct Step {
-    J: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
@@ -68,11 +43,10 @@ struct Step {
     advected(w = up),
     l_d = {
         let U = |h: f64, I: f64| h * I;
-        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * U(w.z, w.x)
+        k * F.trace() / h - h * U(w.z, w.x)
     },
 )]
 struct Parameters {
-    J: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }

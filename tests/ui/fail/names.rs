@@ -12,11 +12,7 @@ struct ArgumentTwice {
     J_d: NonstandardInertia,
 }
 
-#[lagrangian(
-    group = SO3,
-    advect(w = up),
-    l_d = (F * J_d).trace() / h - h * w.dot(&(F * rho)),
-)]
+#[lagrangian(group = SO3, advect(w = up), l_d = (F * J_d).trace() / h - h * w.dot(&(F * rho)))]
 struct ArgumentUnknown {
     J_d: NonstandardInertia,
     rho: Vector3<f64>,
@@ -28,9 +24,8 @@ struct CommaMissing {
     J_d: NonstandardInertia,
 }
 
-#[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * (F * rho).w)]
+#[lagrangian(group = SO3, l_d = -h * (F * rho).w)]
 struct ComponentUnknown {
-    J_d: NonstandardInertia,
     rho: Vector3<f64>,
 }
 
@@ -54,9 +49,8 @@ struct Damped {
 #[lagrangian(group = SO3, l_d = F.trace() / h)]
 fn top() {}
 
-#[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * sin(m))]
+#[lagrangian(group = SO3, l_d = -h * sin(m))]
 struct FunctionInsteadOfMethod {
-    J_d: NonstandardInertia,
     m: f64,
 }
 
@@ -106,18 +100,13 @@ struct Path {
     J_d: NonstandardInertia,
 }
 
-#[lagrangian(
-    group = SO3,
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h (m * F.trace()),
-)]
+#[lagrangian(group = SO3, l_d = -h (m * F.trace()))]
 struct ProductWithoutAStar {
-    J_d: NonstandardInertia,
     m: f64,
 }
 
-#[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * atan(m))]
+#[lagrangian(group = SO3, l_d = m * F.trace() / h - h * atan(m))]
 struct UnknownFunction {
-    J_d: NonstandardInertia,
     m: f64,
 }
 
@@ -131,13 +120,8 @@ struct UnknownMethodFarFromAll {
     J_d: NonstandardInertia,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * w.dot(&(roh + F * rho)),
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = -h * w.dot(&(roh + F * rho)))]
 struct UnknownName {
-    J_d: NonstandardInertia,
     rho: Vector3<f64>,
     up: Vector3<f64>,
 }

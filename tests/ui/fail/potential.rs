@@ -26,44 +26,25 @@ struct DivisorZeroLiteral {
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * m * w.dot(&rho) / (F - F).trace(),
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = -h * m * w.dot(&rho) / (F - F).trace())]
 struct DivisorZeroTrace {
-    J_d: NonstandardInertia,
     m: f64,
     rho: Vector3<f64>,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * (F * rho).dot(&rho).powi(2.5),
-)]
+#[lagrangian(group = SO3, l_d = -h * (F * rho).dot(&rho).powi(2.5))]
 struct ExponentNotAWholeNumber {
-    J_d: NonstandardInertia,
     rho: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * (F * rho).dot(&rho).powi(17),
-)]
+#[lagrangian(group = SO3, l_d = -h * (F * rho).dot(&rho).powi(17))]
 struct ExponentTooLarge {
-    J_d: NonstandardInertia,
     rho: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
-        - h * (w.dot(&rho).max(0.0) + w.dot(&(F * rho)).signum()),
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = -h * (w.dot(&rho).max(0.0) + w.dot(&(F * rho)).signum()))]
 struct Maximum {
-    J_d: NonstandardInertia,
     rho: Vector3<f64>,
     up: Vector3<f64>,
 }
@@ -88,46 +69,27 @@ struct NoValueAnywhere {
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * (F * rho).dot(&rho).abs(),
-)]
+#[lagrangian(group = SO3, l_d = -h * (F * rho).dot(&rho).abs())]
 struct NotSmooth {
-    J_d: NonstandardInertia,
     rho: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * m * (F - I).norm() * w.dot(&rho),
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = -h * m * (F - I).norm() * w.dot(&rho))]
 struct PotentialNotSmooth {
-    J_d: NonstandardInertia,
     m: f64,
     rho: Vector3<f64>,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * m * log(F).norm() * w.dot(&rho),
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = -h * m * log(F).norm() * w.dot(&rho))]
 struct PotentialOfALength {
-    J_d: NonstandardInertia,
     m: f64,
     rho: Vector3<f64>,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * m * (w.dot(&(F * rho)) - w.dot(&rho)).sqrt(),
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = -h * m * (w.dot(&(F * rho)) - w.dot(&rho)).sqrt())]
 struct PotentialOfARoot {
-    J_d: NonstandardInertia,
     m: f64,
     rho: Vector3<f64>,
     up: Vector3<f64>,
@@ -145,37 +107,22 @@ struct PotentialOverStep {
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * m * w.dot(&rho) / (3.0 - F.trace()),
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = -h * m * w.dot(&rho) / (3.0 - F.trace()))]
 struct PotentialWithAPole {
-    J_d: NonstandardInertia,
     m: f64,
     rho: Vector3<f64>,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * h * m * w.dot(&(rho + F * rho)),
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = -0.5 * h * h * m * w.dot(&(rho + F * rho)))]
 struct PotentialWithASquareOfTheStep {
-    J_d: NonstandardInertia,
     m: f64,
     rho: Vector3<f64>,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * m * w.dot(&(rho + F * rho)),
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = -0.5 * m * w.dot(&(rho + F * rho)))]
 struct PotentialWithoutStep {
-    J_d: NonstandardInertia,
     m: f64,
     rho: Vector3<f64>,
     up: Vector3<f64>,
