@@ -8,9 +8,9 @@ mod rows;
 use core::fmt::Debug;
 
 use declarations::{Alike, DoublePendulum, FloatingBody, PointSpring, TwoBodies};
-use liestep::groups::{ExponentialRetraction, LieGroup, R1, R2, R3, Retraction as _, SE3};
+use liestep::groups::{ExponentialRetraction, R1, R2, R3, Retraction as _, SE3};
 use liestep::laws::samples::Random;
-use liestep::mechanics::{Along, Between, Coupled, Each, On, Pairs, Placed, Sum};
+use liestep::mechanics::{Along, Between, Coupled, Each, On, Pairs};
 use liestep::methods::CompositionScheme;
 use liestep::motion::{Batch, Batchable, Integrator};
 use liestep::numbers::{Bodies, InLanes, Lanes as _};

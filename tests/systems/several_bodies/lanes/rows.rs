@@ -3,7 +3,7 @@
 use core::fmt::Debug;
 
 use declarations::Alike;
-use liestep::groups::{LieGroup as _, Retraction as _};
+use liestep::groups::LieGroup as _;
 use liestep::laws::samples::Random;
 use liestep::mechanics::{Along, Each, Placed, Sum};
 use liestep::motion::{Batchable, Integrator};
