@@ -4,12 +4,14 @@ use liestep::__private::{log_ratio, stumpff};
 use liestep::numbers::{Real, real};
 use liestep_derivation::{Operation, Program, Source};
 
-/// Straight-line code. Registers hold the inputs, then the literals, then what is computed: of these, one that isn't read
-/// any more is used again.
+/// Straight-line code. Registers hold constants, literals, inputs and what is computed: of these, one that isn't read any
+/// more is used again.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Code {
-    inputs: Vec<Source>,
+    /// What is known before a step, in the first registers: places among the constants, then literals.
+    constants: Vec<usize>,
     literals: Vec<f64>,
+    inputs: Vec<Source>,
     instructions: Vec<Instruction>,
     outputs: Vec<u16>,
     registers: usize,
@@ -43,7 +45,6 @@ enum Arithmetic {
 pub(crate) struct Arrays<'a, T> {
     pub(crate) step: Option<T>,
     pub(crate) parameters: &'a [T],
-    pub(crate) constants: &'a [T],
     pub(crate) terms: &'a [T],
     pub(crate) advected: &'a [T],
     pub(crate) next: &'a [T],
@@ -61,7 +62,6 @@ impl<T> Default for Arrays<'_, T> {
         Self {
             step: None,
             parameters: &[],
-            constants: &[],
             terms: &[],
             advected: &[],
             next: &[],
@@ -83,7 +83,8 @@ impl<T: Real> Arrays<'_, T> {
         let found = match source {
             Source::Step => self.step.as_ref(),
             Source::Parameter(at) => self.parameters.get(at),
-            Source::Constant(at) => self.constants.get(at),
+            // It is in the image.
+            Source::Constant(_) => None,
             Source::Term(at) => self.terms.get(at),
             Source::Advected(at) => self.advected.get(at),
             Source::Next(at) => self.next.get(at),
@@ -115,7 +116,16 @@ impl Code {
         for &output in &program.outputs {
             last[output] = usize::MAX;
         }
-        let mut place: Vec<u16> = (0..fixed).map(u16::try_from).collect::<Result<_, _>>().ok()?;
+        // A register for each input and literal, what is known before a step first.
+        let is_constant = |source: &Source| matches!(source, Source::Constant(_));
+        let inputs = || program.inputs.iter().enumerate();
+        let first = inputs().filter(|(_, source)| is_constant(source)).map(|(value, _)| value);
+        let literals = program.inputs.len()..fixed;
+        let others = inputs().filter(|(_, source)| !is_constant(source)).map(|(value, _)| value);
+        let mut place = vec![0; fixed];
+        for (register, value) in first.chain(literals).chain(others).enumerate() {
+            place[value] = u16::try_from(register).ok()?;
+        }
         let (mut free, mut registers) = (Vec::new(), fixed);
         let mut instructions = Vec::with_capacity(program.operations.len());
         for (at, &operation) in program.operations.iter().enumerate() {
@@ -141,9 +151,14 @@ impl Code {
             instructions.push(Instruction { operation: arithmetic, operands, result });
         }
         let outputs = program.outputs.iter().map(|&output| place[output]).collect();
+        let constants = program.inputs.iter().filter_map(|source| match source {
+            Source::Constant(at) => Some(*at),
+            _ => None,
+        });
         Some(Self {
-            inputs: program.inputs.clone(),
+            constants: constants.collect(),
             literals: program.literals.clone(),
+            inputs: program.inputs.iter().copied().filter(|source| !is_constant(source)).collect(),
             instructions,
             outputs,
             registers,
@@ -160,24 +175,42 @@ impl Code {
         self.inputs.iter().any(same)
     }
 
-    /// Runs it, and writes what comes out.
-    pub(crate) fn run<T: Real>(&self, arrays: &Arrays<T>, results: &mut [T]) {
+    /// The first registers of every run with these constants.
+    pub(crate) fn image<T: Real>(&self, constants: &[T]) -> Box<[T]> {
+        let of = |&at: &usize| constants.get(at).copied().unwrap_or_else(|| real(f64::NAN));
+        self.constants.iter().map(of).chain(self.literals.iter().map(|&literal| real(literal))).collect()
+    }
+
+    /// Runs it, and makes something of what comes out, number by number.
+    pub(crate) fn run<T: Real, R>(
+        &self,
+        image: &[T],
+        arrays: &Arrays<T>,
+        make: impl FnOnce(&dyn Fn(usize) -> T) -> R,
+    ) -> R {
         // Registers beyond those that are used cost time to clear.
         match self.registers {
-            0..=32 => self.run_in(&mut [T::zero(); 32], arrays, results),
-            33..=64 => self.run_in(&mut [T::zero(); 64], arrays, results),
-            65..=256 => self.run_in(&mut [T::zero(); 256], arrays, results),
-            more => self.run_in(&mut vec![T::zero(); more.next_power_of_two()], arrays, results),
+            0..=32 => self.run_in(&mut [T::zero(); 32], image, arrays, make),
+            33..=64 => self.run_in(&mut [T::zero(); 64], image, arrays, make),
+            65..=128 => self.run_in(&mut [T::zero(); 128], image, arrays, make),
+            129..=256 => self.run_in(&mut [T::zero(); 256], image, arrays, make),
+            more => self.run_in(&mut vec![T::zero(); more.next_power_of_two()], image, arrays, make),
         }
     }
 
     /// In registers whose number is a power of two, so that a masked index is always in range.
     #[inline]
-    fn run_in<T: Real>(&self, registers: &mut [T], arrays: &Arrays<T>, results: &mut [T]) {
-        let Some(mask) = registers.len().checked_sub(1) else { return };
-        let literals = self.literals.iter().map(|&literal| real(literal));
-        let leaves = self.inputs.iter().map(|&source| arrays.read(source)).chain(literals);
-        registers.iter_mut().zip(leaves).for_each(|(register, leaf)| *register = leaf);
+    fn run_in<T: Real, R>(
+        &self,
+        registers: &mut [T],
+        image: &[T],
+        arrays: &Arrays<T>,
+        make: impl FnOnce(&dyn Fn(usize) -> T) -> R,
+    ) -> R {
+        let mask = registers.len().wrapping_sub(1);
+        let (known, open) = registers.split_at_mut(image.len().min(registers.len()));
+        known.copy_from_slice(&image[..known.len()]);
+        open.iter_mut().zip(&self.inputs).for_each(|(register, &source)| *register = arrays.read(source));
         for &Instruction { operation, operands: [a, b], result } in &self.instructions {
             let (a, b) = (registers[usize::from(a) & mask], registers[usize::from(b) & mask]);
             registers[usize::from(result) & mask] = match operation {
@@ -189,9 +222,10 @@ impl Code {
                 other => function(other, a),
             };
         }
-        for (result, &output) in results.iter_mut().zip(&self.outputs) {
-            *result = registers[usize::from(output) & mask];
-        }
+        make(&|output| match self.outputs.get(output) {
+            Some(&register) => registers[usize::from(register) & mask],
+            None => real(f64::NAN),
+        })
     }
 }
 
