@@ -148,8 +148,8 @@ fn body_and_gravity_are_the_heavy_top() {
 /// A sum is explained by its terms, in their order.
 #[test]
 fn derivations_add() {
-    fn derivation<E: Effect>(_: &E) -> String {
-        E::derivation()
+    fn derivation<E: Effect>(effect: &E) -> String {
+        effect.derivation()
     }
     let (body, _, _, rotor, gravity, ..) = Everything::random(&mut Random::new(2)).terms();
     let alone = [derivation(&body), derivation(&gravity), derivation(&rotor)];

@@ -171,7 +171,7 @@ pub trait Effect: Term {
     /// [`WithoutKinetic`](crate::mechanics::WithoutKinetic).
     type Kinetic: KineticPart;
     /// What the parameters and `h` determine.
-    type Constants: Copy + Debug + PartialEq;
+    type Constants: Clone + Debug + PartialEq;
     /// What `a` and `w` determine.
     type StepTerms: Copy;
 
@@ -212,11 +212,33 @@ pub trait Effect: Term {
     /// What was declared and everything derived from it, as text.
     const DERIVATION: &'static str;
 
-    /// The [`DERIVATION`](Self::DERIVATION) of an effect, and of a sum those of all its terms, each once it is asked
-    /// for: a constant can't be put together from others.
+    /// The [`DERIVATION`](Self::DERIVATION) of an effect, and of a sum those of all its terms: a constant can't be put
+    /// together from others, and what is declared when a program runs has none.
     #[must_use]
-    fn derivation() -> String {
+    fn derivation(&self) -> String {
         Self::DERIVATION.to_owned()
+    }
+
+    /// [`INERTIA_IS_CONSTANT`](Self::INERTIA_IS_CONSTANT), asked of a value: an effect that is declared when a program
+    /// runs doesn't know it in its type.
+    #[hot]
+    #[must_use]
+    fn has_constant_inertia(&self) -> bool {
+        Self::INERTIA_IS_CONSTANT
+    }
+
+    /// [`IS_QUADRATIC`](Self::IS_QUADRATIC), asked of a value.
+    #[hot]
+    #[must_use]
+    fn is_quadratic(&self) -> bool {
+        Self::IS_QUADRATIC
+    }
+
+    /// [`DENOMINATORS`](Self::DENOMINATORS), asked of a value.
+    #[hot]
+    #[must_use]
+    fn denominators(_: &Self::Constants) -> u32 {
+        Self::DENOMINATORS
     }
 
     /// Shows the derivations and, field by field in the order of the declaration, every scalar of the parameters.
@@ -366,7 +388,7 @@ impl<E: ?Sized> Moves<E> for WithKinetic {}
 
 /// `μ = ∂l/∂ξ`, `Jξ + s(w)` where `l` is quadratic: the momentum of the body velocity `ξ`.
 pub(crate) fn momentum_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advected) -> Vector<E> {
-    if E::IS_QUADRATIC {
+    if effect.is_quadratic() {
         effect.inertia(w) * *velocity + effect.momentum_bias(w)
     } else {
         effect.limit(Some(velocity), w).momentum
@@ -377,7 +399,7 @@ pub(crate) fn momentum_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, 
 /// velocity has this momentum, of several lanes in those alone.
 pub(crate) fn velocity_of_momentum<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
     let near_rest = velocity_near_rest(effect, momentum, w);
-    if E::IS_QUADRATIC {
+    if effect.is_quadratic() {
         return near_rest;
     }
     let (of, hessian) =
@@ -426,7 +448,7 @@ fn velocity_near_rest<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advect
 /// The body velocity of the momentum `μ`, or what is near it: a guess.
 pub(crate) fn estimated_velocity<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
     let velocity = velocity_of_momentum(effect, momentum, w);
-    if E::IS_QUADRATIC || velocity.is_finite() {
+    if effect.is_quadratic() || velocity.is_finite() {
         return velocity;
     }
     // NaN isn't equal to itself.
@@ -461,7 +483,7 @@ pub(crate) fn energy<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advecte
 
 /// The same, of a velocity that is known.
 fn energy_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advected) -> Scalar<E> {
-    if !E::IS_QUADRATIC {
+    if !effect.is_quadratic() {
         let Limit { l, momentum, .. } = effect.limit(Some(velocity), w);
         return velocity.dot(&momentum) - l;
     }
@@ -475,7 +497,7 @@ fn quadratic_energy<E: Effect>(effect: &E, velocity: &Vector<E>, inertia: &Squar
 
 /// The inertia, if it is the same wherever the body is.
 pub(crate) fn constant_inertia<E: Effect>(effect: &E) -> Result<Square<E>, SetupError> {
-    if E::INERTIA_IS_CONSTANT && E::IS_QUADRATIC {
+    if effect.has_constant_inertia() && effect.is_quadratic() {
         Ok(effect.inertia(&effect.advected()))
     } else {
         Err(SetupError::VaryingInertia)

@@ -160,9 +160,25 @@ where
     const DERIVATION: &'static str = "the sum of two effects: their momentum maps, diamonds, unknown parts, kicks, \
                                       Jacobians and energies, each added; see DERIVATION of either\n";
 
-    fn derivation() -> String {
+    fn derivation(&self) -> String {
         // A blank line between terms; those of an inner sum have theirs.
-        format!("{}\n{}", A::derivation(), B::derivation())
+        format!("{}\n{}", self.first.derivation(), self.second.derivation())
+    }
+
+    #[hot]
+    fn has_constant_inertia(&self) -> bool {
+        self.first.has_constant_inertia() && self.second.has_constant_inertia()
+    }
+
+    #[hot]
+    fn is_quadratic(&self) -> bool {
+        self.first.is_quadratic() && self.second.is_quadratic()
+    }
+
+    #[hot]
+    fn denominators(constants: &Self::Constants) -> u32 {
+        let (first, second) = (A::denominators(&constants.0), B::denominators(&constants.1));
+        of_those_with!(unknown: first.max(second), first, second)
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<Self::Scalar>) {
@@ -233,8 +249,9 @@ where
                 let raised = Vector::<Self>::raised;
                 let first = A::newton_system(&constants.0, &terms.0, half);
                 let second = B::newton_system(&constants.1, &terms.1, half);
-                let first = raised(&first.0, &first.1, Self::DENOMINATORS - A::DENOMINATORS, half);
-                let second = raised(&second.0, &second.1, Self::DENOMINATORS - B::DENOMINATORS, half);
+                let both = Self::denominators(constants);
+                let first = raised(&first.0, &first.1, both - A::denominators(&constants.0), half);
+                let second = raised(&second.0, &second.1, both - B::denominators(&constants.1), half);
                 (first.0 + second.0, first.1 + second.1)
             },
             A::newton_system(&constants.0, &terms.0, half),

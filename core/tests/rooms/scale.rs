@@ -11,7 +11,7 @@ const LENGTHS: [usize; 3] = [587, 102, 134];
 
 /// The lines of each room and package, and of each room of the library the names that it makes public.
 #[rustfmt::skip]
-const BUDGETS: [(&str, usize, usize); 35] = [
+const BUDGETS: [(&str, usize, usize); 36] = [
     ("core/src/lib", 139, 11), ("core/src/prelude", 13, 28), ("core/src/private", 233, 61),
     ("core/src/error", 628, 2), ("core/src/numbers", 2442, 14), ("core/src/groups", 4287, 33),
     ("core/src/laws", 709, 3), ("core/src/mechanics", 3598, 42), ("core/src/effects", 409, 15),

@@ -1,1 +1,1 @@
-../../examples/declarations/fourth_order_top.rs
+../../../examples/declarations/fourth_order_top.rs

@@ -1,1 +1,1 @@
-../../examples/declarations/log_top.rs
+../../../examples/declarations/log_top.rs

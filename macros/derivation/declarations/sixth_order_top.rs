@@ -1,1 +1,1 @@
-../../examples/declarations/sixth_order_top.rs
+../../../examples/declarations/sixth_order_top.rs

@@ -3,9 +3,10 @@
 use proc_macro2::TokenStream;
 
 use crate::declared::errors::Errors;
-use crate::declared::{Role, check, lower, parse};
+use crate::declared::{Declaration, Role, check, lower, parse};
+use crate::emit;
+use crate::judged::{self, Chosen, Equations, Findings, Held};
 use crate::mathematics::derive;
-use crate::{emit, judged};
 
 /// The item with its integrator, or with all mistakes and a stand-in.
 #[must_use]
@@ -29,21 +30,47 @@ pub fn matrix_group(tokens: TokenStream) -> TokenStream {
     emit::own_group(group.as_ref(), name.as_ref(), &errors)
 }
 
-/// Every phase adds its mistakes to `errors`, and gives nothing where the next one couldn't go on.
+/// A declaration with all that was found out about it.
+pub(crate) enum Judged {
+    Constraint(Held),
+    /// A continuous Lagrangian that no steps are asked of.
+    Continuous(Equations),
+    Steps(Box<Steps>),
+}
+
+/// What makes steps: a discrete Lagrangian, or a force.
+pub(crate) struct Steps {
+    pub(crate) chosen: Chosen,
+    /// Of a Lagrangian, its continuous equations.
+    pub(crate) equations: Option<Equations>,
+    pub(crate) findings: Findings,
+}
+
 fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, errors: &mut Errors) -> Option<TokenStream> {
     let declaration = parse::declaration(role, arguments, item, errors)?;
-    if role == Role::Constraint {
-        let functions = check::functions(&declaration, errors)?;
-        let held = judged::held(&declaration, functions, errors)?;
-        return Some(emit::constraint(item, &declaration, &held));
+    Some(match judged(&declaration, errors)? {
+        Judged::Constraint(held) => emit::constraint(item, &declaration, &held),
+        Judged::Continuous(equations) => emit::continuous(item, &declaration, &equations),
+        Judged::Steps(steps) => {
+            let Steps { chosen, equations, findings } = *steps;
+            emit::implementation(item, &declaration, &chosen, equations.as_ref(), &findings)
+        }
+    })
+}
+
+/// Every phase adds its mistakes to `errors`, and gives nothing where the next one couldn't go on.
+pub(crate) fn judged(declaration: &Declaration, errors: &mut Errors) -> Option<Judged> {
+    if declaration.role == Role::Constraint {
+        let functions = check::functions(declaration, errors)?;
+        return Some(Judged::Constraint(judged::held(declaration, functions, errors)?));
     }
-    let tree = check::check(&declaration, errors)?;
+    let tree = check::check(declaration, errors)?;
     let declared = match declaration.continuous {
-        Some(_) if judged::terms(&declaration, &tree, errors).is_none() => return None,
-        Some(_) => Some(judged::of_declared(&declaration, &tree, errors)?),
+        Some(_) if judged::terms(declaration, &tree, errors).is_none() => return None,
+        Some(_) => Some(judged::of_declared(declaration, &tree, errors)?),
         None => None,
     };
-    let discrete = match (&declared, declaration.discretisation()) {
+    let (declared, discrete) = match (declared, declaration.discretisation()) {
         (Some(equations), None) => {
             if let Some(key) = declaration.gradients {
                 errors.push(
@@ -52,24 +79,24 @@ fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, error
                 );
                 return None;
             }
-            return Some(emit::continuous(item, &declaration, equations));
+            return Some(Judged::Continuous(equations));
         }
-        (Some(_), Some(asked)) => judged::discretised(&declaration, &tree, asked, errors)?,
-        (None, _) => tree.clone(),
+        (declared @ Some(_), Some(asked)) => (declared, judged::discretised(declaration, &tree, asked, errors)?),
+        (None, _) => (None, tree.clone()),
     };
-    judged::terms(&declaration, &discrete, errors)?;
-    let mut readings = lower::readings(&declaration, &discrete, errors)?;
+    judged::terms(declaration, &discrete, errors)?;
+    let mut readings = lower::readings(declaration, &discrete, errors)?;
     if let Some(equations) = &declared {
         readings = readings.into_iter().map(|reading| equations.behind(reading)).collect();
     }
     // Handed over, as a long reading is derived only if no short one can be.
-    let chosen = judged::cheapest(readings, derive::derive, &declaration, &discrete, errors)?;
-    let findings = judged::findings(&declaration, &discrete, &chosen, errors)?;
-    let equations = match role {
+    let chosen = judged::cheapest(readings, derive::derive, declaration, &discrete, errors)?;
+    let findings = judged::findings(declaration, &discrete, &chosen, errors)?;
+    let equations = match declaration.role {
         Role::Force => None,
-        _ => Some(judged::continuous(declared, &declaration, [&tree, &discrete], &chosen, errors)?),
+        _ => Some(judged::continuous(declared, declaration, [&tree, &discrete], &chosen, errors)?),
     };
-    Some(emit::implementation(item, &declaration, &chosen, equations.as_ref(), &findings))
+    Some(Judged::Steps(Box::new(Steps { chosen, equations, findings })))
 }
 
 #[cfg(test)]

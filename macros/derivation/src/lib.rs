@@ -2,12 +2,13 @@
 //!
 //! Its rooms depend on each other in one direction:
 //!
-//! `lib → expand → emit → judged → {declared, program} → mathematics`
+//! `lib → staged → expand → emit → judged → {declared, program} → mathematics`
 //!
 //! Tokens are quoted in `emit` alone. Syntax is known in `declared`, where it is read, and in `emit`, where it is
 //! written; `mathematics` and `program` know no span either. A test reads this page and holds all sources to it.
 //!
-//! The macros of `liestep-macros` hand their tokens to [`expand`] and its neighbours.
+//! The macros of `liestep-macros` hand their tokens to [`expand`] and its neighbours; [`staged`] is for what derives a
+//! text while it runs.
 
 mod declared;
 mod emit;
@@ -15,7 +16,13 @@ mod expand;
 mod judged;
 mod mathematics;
 mod program;
+mod staged;
 
 pub use declared::Role;
+pub use declared::errors::Mistake;
 pub use emit::{hot, lanes};
 pub use expand::{expand, matrix_group};
+pub use staged::{
+    Action, AtVelocity, Carried, Factor, MOST_TERMS, Operation, Parameter, ParameterKind, Program, Source, Staged,
+    Terms, staged,
+};

@@ -74,8 +74,23 @@ where
     };
     const DERIVATION: &'static str = "a term at places of a system; see its DERIVATION\n";
 
-    fn derivation() -> String {
-        E::derivation()
+    fn derivation(&self) -> String {
+        self.terms.first().map(E::derivation).unwrap_or_default()
+    }
+
+    #[hot]
+    fn has_constant_inertia(&self) -> bool {
+        self.terms.iter().all(E::has_constant_inertia)
+    }
+
+    #[hot]
+    fn is_quadratic(&self) -> bool {
+        self.terms.iter().all(E::is_quadratic)
+    }
+
+    #[hot]
+    fn denominators(constants: &Self::Constants) -> u32 {
+        constants.iter().map(|(constants, _)| E::denominators(constants)).max().unwrap_or(0)
     }
 
     #[allow(clippy::cast_precision_loss)] // far fewer than a float counts

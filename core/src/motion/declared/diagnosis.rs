@@ -83,7 +83,8 @@ impl<S: Effect> Declared<S> {
             let unknown = |f: &Group<S>| {
                 let xi = S::Retraction::local_coordinates(f)?;
                 let half = xi * real(0.5);
-                let factor = (real::<Scalar<S>>(1.0) + half.dot(&half)).simd_powi(S::DENOMINATORS.cast_signed());
+                let factor =
+                    (real::<Scalar<S>>(1.0) + half.dot(&half)).simd_powi(S::denominators(&constants).cast_signed());
                 Some(newton_system::<S>(&constants, &terms, &half).0 * (real::<Scalar<S>>(2.0) / factor))
             };
             turning_limits::<Group<S>>(&unknown, &scene.inertia(advected))

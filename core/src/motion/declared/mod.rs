@@ -53,7 +53,7 @@ impl<S: Effect> Declared<S> {
         if !is_finite(h) || !(h == real(0.0) || is_finite(real::<Scalar<S>>(1.0) / h)) {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
-        if S::INERTIA_IS_CONSTANT {
+        if scene.has_constant_inertia() {
             check_inertia::<Group<S>>(&scene.inertia(&scene.advected()))?;
         }
         let constants = scene.constants(h);
@@ -66,7 +66,7 @@ impl<S: Effect> Declared<S> {
         let at_rest = (0..<Group<S> as LieGroup>::DIMENSION).fold(at_rest, |product, _| product / h);
         // One that depends on where the bodies are may be singular here, and not where they start.
         let is_product = !<Group<S> as LieGroup>::FACTORS.is_whole() || <Group<S> as LieGroup>::BODIES > 1;
-        let is_in_range = if S::INERTIA_IS_CONSTANT && !is_product {
+        let is_in_range = if scene.has_constant_inertia() && !is_product {
             is_finite(at_rest) && !at_rest.simd_eq(real(0.0)).any()
         } else {
             is_finite(trace / h)
@@ -201,7 +201,7 @@ impl<S: Effect> Declared<S> {
             w,
             h: self.h,
             trusted: self.trusted,
-            safe: if S::INERTIA_IS_CONSTANT {
+            safe: if scene.has_constant_inertia() {
                 self.safe
             } else {
                 safe(Vector::<S>::factorise_with(&scene.inertia(w), pattern::<S>()).1)

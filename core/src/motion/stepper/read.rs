@@ -23,7 +23,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// What was declared of each term of the scene, and everything derived from it, as text.
     #[must_use]
     pub fn derivation(&self) -> String {
-        S::derivation()
+        self.scene.derivation()
     }
 
     /// The method, folded.

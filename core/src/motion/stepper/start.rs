@@ -33,7 +33,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         check_attitude(&attitude)?;
         let w = self.scene.advected().seen_from(&attitude);
         let momentum = self.plan.momentum(&self.scene, &attitude, &velocity, &w);
-        if !S::IS_QUADRATIC {
+        if !self.scene.is_quadratic() {
             let found = velocity_of_momentum(&self.scene, &momentum, &w);
             check_velocity::<Scalar<S>, _>(&velocity, &found, &momentum, &self.scene.inertia(&w))?;
         }
@@ -56,11 +56,11 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         if !momentum.is_finite() {
             return Err(SetupError::NonFinite { what: "momentum" });
         }
-        if !S::INERTIA_IS_CONSTANT {
+        if !self.scene.has_constant_inertia() {
             let w = self.scene.advected().seen_from(&attitude);
             check_inertia::<Group<S>>(&self.scene.inertia(&w))?;
         }
-        if !S::IS_QUADRATIC {
+        if !self.scene.is_quadratic() {
             let w = self.scene.advected().seen_from(&attitude);
             if !velocity_of_momentum(&self.scene, &momentum, &w).is_finite() {
                 return Err(SetupError::NoVelocity);

@@ -3,6 +3,15 @@
 use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use quote::ToTokens;
 
+/// A mistake of a declaration, at its place in the text.
+#[derive(Clone, Debug)]
+pub struct Mistake {
+    /// What is wrong, then what to write.
+    pub message: String,
+    /// The first token that it is about.
+    pub span: Span,
+}
+
 /// The mistakes found so far.
 #[derive(Debug, Default)]
 pub(crate) struct Errors {
@@ -45,6 +54,18 @@ impl Errors {
     /// Whether the expression is better left unread.
     pub(crate) fn hides_the_rest(&self) -> bool {
         self.hides_the_rest
+    }
+
+    /// Each with its place; at least one.
+    pub(crate) fn mistakes(&self) -> Vec<Mistake> {
+        let single = self.list.iter().flat_map(|error| error.clone().into_iter().collect::<Vec<_>>());
+        let mut mistakes: Vec<Mistake> =
+            single.map(|error| Mistake { message: error.to_string(), span: error.span() }).collect();
+        if mistakes.is_empty() {
+            let message = "this isn't a declaration that can be read".to_owned();
+            mistakes.push(Mistake { message, span: Span::call_site() });
+        }
+        mistakes
     }
 
     pub(crate) fn iter(&self) -> impl Iterator<Item = &syn::Error> {

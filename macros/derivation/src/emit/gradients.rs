@@ -3,12 +3,11 @@
 use proc_macro2::{Literal, Span, TokenStream};
 use quote::{ToTokens as _, quote_spanned};
 
-use super::code::Form;
 use super::inputs::entry;
 use super::{Emitter, stages};
 use crate::declared::{FieldKind, Name};
 use crate::mathematics::symbolic::SymbolId;
-use crate::program::{Linearisation, Node, NodeId, WeightedGradient};
+use crate::program::{Form, Linearisation, Node, NodeId, WeightedGradient};
 
 /// One scalar of the parameters, by its number, with the entry that stands for it.
 #[derive(Clone, Copy)]

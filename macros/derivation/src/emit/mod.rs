@@ -24,9 +24,9 @@ use crate::declared::{Declaration, FieldKind, Role};
 use crate::judged::{Chosen, Equations, Findings};
 use crate::mathematics::derive::Derived;
 use crate::mathematics::symbolic::Expression;
-use crate::program::{Given, Graph, Scalariser, components, square, with_lets};
+use crate::program::{self, Form};
 
-use code::{Code, Form};
+use code::Code;
 pub(crate) use constraint::constraint;
 pub(crate) use continuous::alone as continuous;
 pub(crate) use fallback::mistakes;
@@ -57,20 +57,18 @@ pub(crate) fn implementation(
     findings: &Findings,
 ) -> TokenStream {
     let (header, Chosen { lowered, derived, kernel }) = (Header::new(declaration), chosen);
-    let mut graph = Graph::default();
-    let given = with_lets(&mut graph, derived, Given::new());
     let (names, symbols) = (&lowered.names, &derived.symbols);
     let code = Code { declaration, header: &header, names, symbols, directions: Some(&derived.directions) };
-    let emitter = Emitter { code, lowered, derived, equations, lets: (graph, given) };
-    let (mathematics, effect, texts) = emitter.mathematics();
+    let emitter = Emitter { code, lowered, derived, equations };
+    let texts = equations_of(declaration, chosen, equations);
+    let (mathematics, effect) = emitter.mathematics(&texts);
     let stages = stages::stages(&emitter, kernel, &texts);
     let declared = match declaration.discretisation() {
         Some(discretisation) => continuous::discretised(&emitter, discretisation),
         None => verbatim::declared(declaration, &header),
     };
     let continuous = equations.map(|equations| continuous::implementation(declaration, &header, equations, true));
-    let section = equations.map(|equations| continuous::text::section(declaration, equations));
-    let derivation = derivation(&header, &docs::derivation(declaration, chosen, &texts, section, findings));
+    let derivation = derivation(&header, &derivation_of(declaration, chosen, &texts, equations, findings));
     let item = page::documented(item, &page::page(declaration, chosen, &texts, equations, findings));
     let describe = emitter.describe();
     let private = &header.private;
@@ -133,6 +131,38 @@ fn kinetic(chosen: &Chosen) -> &'static str {
     }
 }
 
+/// What was declared and everything derived from it, as text.
+pub(crate) fn text(
+    declaration: &Declaration,
+    chosen: &Chosen,
+    equations: Option<&Equations>,
+    findings: &Findings,
+) -> String {
+    let texts = equations_of(declaration, chosen, equations);
+    derivation_of(declaration, chosen, &texts, equations, findings)
+}
+
+fn derivation_of(
+    declaration: &Declaration,
+    chosen: &Chosen,
+    texts: &[docs::Equation],
+    equations: Option<&Equations>,
+    findings: &Findings,
+) -> String {
+    let section = equations.map(|equations| continuous::text::section(declaration, equations));
+    docs::derivation(declaration, chosen, texts, section, findings)
+}
+
+/// The equations of a step.
+fn equations_of(declaration: &Declaration, chosen: &Chosen, equations: Option<&Equations>) -> Vec<docs::Equation> {
+    let Chosen { lowered, derived, .. } = chosen;
+    if declaration.role == Role::Force {
+        docs::equations_of_force(derived, &lowered.declared)
+    } else {
+        docs::equations(derived, &lowered.declared, equations)
+    }
+}
+
 fn derivation(header: &Header, text: &str) -> TokenStream {
     let (span, private) = (Span::mixed_site(), &header.private);
     let documentation = format!("```text\n{text}```");
@@ -166,8 +196,6 @@ struct Emitter<'a> {
     derived: &'a Derived,
     /// Of a Lagrangian, its continuous equations.
     equations: Option<&'a Equations>,
-    /// The closed `let`s, which the methods share.
-    lets: (Graph, Given),
 }
 
 impl<'a> std::ops::Deref for Emitter<'a> {
@@ -179,15 +207,10 @@ impl<'a> std::ops::Deref for Emitter<'a> {
 }
 
 impl Emitter<'_> {
-    /// The derived terms that don't know stages: those of a Lagrangian, those of any effect, and their equations.
-    fn mathematics(&self) -> (TokenStream, TokenStream, Vec<docs::Equation>) {
+    /// The derived terms that don't know stages: those of a Lagrangian, and those of any effect.
+    fn mathematics(&self, equations: &[docs::Equation]) -> (TokenStream, TokenStream) {
         let d = self.derived;
-        let equations = if self.declaration.role == Role::Force {
-            docs::equations_of_force(d, &self.lowered.declared)
-        } else {
-            docs::equations(d, &self.lowered.declared, self.equations)
-        };
-        let method = |(name, form, expression)| self.method(name, form, expression, &equations);
+        let method = |(name, form, expression)| self.method(name, form, expression, equations);
         let of_lagrangian = [
             ("right_momentum", Form::Vector, &d.right_momentum),
             ("left_momentum", Form::Vector, &d.left_momentum),
@@ -196,21 +219,16 @@ impl Emitter<'_> {
             ("discrete_energy", Form::Scalar, &d.energy),
         ];
         let jacobian = method(("momentum_jacobian", Form::Square, &d.jacobian));
-        let limit = self.limit(&equations);
-        (of_lagrangian.map(method).into_iter().collect(), quote!(#jacobian #limit), equations)
+        let limit = self.limit(equations);
+        (of_lagrangian.map(method).into_iter().collect(), quote!(#jacobian #limit))
     }
 
     /// The continuous limit, which the other limits of an effect are read from.
     fn limit(&self, equations: &[docs::Equation]) -> TokenStream {
         let (span, d, private) = (Span::mixed_site(), self.derived, &self.header.private);
-        let (mut graph, none) = self.lets.clone();
-        let mut outputs = square(&mut graph, d, &none, &d.limit.inertia);
-        let bias = components(&mut graph, d, &none, &d.limit.bias);
-        let bias_from = outputs.len();
-        outputs.extend(bias);
-        let potential_from = outputs.len();
-        let mut scalariser = Scalariser { graph: &mut graph, symbols: &d.symbols, given: none };
-        outputs.push(scalariser.scalar(&d.limit.potential));
+        let (graph, [inertia, bias, potential]) = program::limit(d);
+        let (bias_from, potential_from) = (inertia.len(), inertia.len() + bias.len());
+        let outputs = [inertia, bias, potential].concat();
         let documentation = docs::of(equations, &["inertia", "momentum_bias", "potential"], &graph, &outputs);
         let (lets, values) = self.values(&graph, &outputs, &|input| self.input_token(input));
         let (at_rest, potential) = values.split_at(potential_from);
@@ -236,14 +254,11 @@ impl Emitter<'_> {
     /// One derived term as a method, with its equation as documentation.
     fn method(&self, name: &str, form: Form, expression: &Expression, equations: &[docs::Equation]) -> TokenStream {
         let (span, d, private) = (Span::mixed_site(), self.derived, &self.header.private);
-        let (mut graph, none) = self.lets.clone();
-        let (outputs, result) = match form {
-            Form::Scalar => {
-                let mut scalariser = Scalariser { graph: &mut graph, symbols: &d.symbols, given: none };
-                (vec![scalariser.scalar(expression)], self.header.scalar.clone())
-            }
-            Form::Vector => (components(&mut graph, d, &none, expression), self.header.vector()),
-            Form::Square => (square(&mut graph, d, &none, expression), self.header.square()),
+        let (graph, outputs) = program::term(d, form, expression);
+        let result = match form {
+            Form::Scalar => self.header.scalar.clone(),
+            Form::Vector => self.header.vector(),
+            Form::Square => self.header.square(),
         };
         let documentation = docs::of(equations, &[name], &graph, &outputs);
         let inverse =

@@ -1,16 +1,13 @@
 //! The staged step: what is computed once, once a step, and once a Newton iteration.
 
-use std::collections::{BTreeMap, BTreeSet};
-
 use proc_macro2::{Literal, Span, TokenStream};
 use quote::quote_spanned;
 
-use super::code::{Form, needed};
 use super::{Code, Emitter};
 use crate::mathematics::derive::Inverse;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Stage, SymbolId};
-use crate::program::{Graph, Kernel, Node, NodeId};
+use crate::program::{self, Form, Graph, Handed, Kernel, Node, NodeId, needed};
 
 /// The methods of the stages, and the arrays that pass values between them.
 pub(super) struct Stages {
@@ -21,16 +18,14 @@ pub(super) struct Stages {
 
 pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::docs::Equation]) -> Stages {
     let graph = &kernel.graph;
-    let [system, solved, everything] = outputs(kernel);
-    let constants = boundary(graph, &everything, Stage::Construction);
-    let step_terms = boundary(graph, &solved, Stage::Step);
+    let program::Stages { system, constants, terms: step_terms } = kernel.stages();
     let (span, private) = (Span::mixed_site(), &emitter.header.private);
     let (vector, scalar) = (emitter.header.vector(), &emitter.header.scalar);
     let matrix = emitter.header.matrix();
     let from_parameters = |id: NodeId| input(emitter, graph, id);
     let from_constants = |id: NodeId| slot(&constants, id, "constants").or_else(|| input(emitter, graph, id));
     let from_terms = |id: NodeId| slot(&step_terms, id, "terms").or_else(|| from_constants(id));
-    let numbers = |nodes: &BTreeMap<NodeId, usize>, given: super::code::Given| {
+    let numbers = |nodes: &Handed, given: super::code::Given| {
         let nodes: Vec<NodeId> = nodes.keys().copied().collect();
         let (lets, values) = emitter.statements(graph, &nodes, given);
         quote_spanned!(span=> #lets #private::Numbers([#(#values),*]))
@@ -50,7 +45,7 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
     });
     let newton_system = newton_system(emitter, kernel, &system, &from_terms);
     let inverse = inverse(emitter, kernel);
-    let length = |nodes: &BTreeMap<NodeId, usize>| {
+    let length = |nodes: &Handed| {
         let length = Literal::usize_unsuffixed(nodes.len());
         quote_spanned!(span=> #private::Numbers<#scalar, #length>)
     };
@@ -96,17 +91,6 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
         }
     };
     Stages { methods, constants_type: length(&constants), step_terms_type: length(&step_terms) }
-}
-
-/// What the Newton system computes, with it what a solve computes, and what all stages do.
-fn outputs(kernel: &Kernel) -> [Vec<NodeId>; 3] {
-    let system: Vec<NodeId> = [kernel.residual.as_slice(), &kernel.jacobian].concat();
-    // The moved part of the diamond is emitted only with a residual alone.
-    let moved: &[NodeId] = if kernel.jacobian_is_expensive() { &kernel.moved } else { &[] };
-    let solved = [system.as_slice(), moved].concat();
-    let change = kernel.kick_derivative.as_deref().unwrap_or_default();
-    let everything = [kernel.kick_before.as_slice(), &solved, &kernel.kick_after, change].concat();
-    [system, solved, everything]
 }
 
 /// The Newton system, and where that is worth it its residual alone; `given` has what the stages before leave.
@@ -279,26 +263,13 @@ fn input(emitter: &Emitter, graph: &Graph, id: NodeId) -> Option<TokenStream> {
     }
 }
 
-fn slot(slots: &BTreeMap<NodeId, usize>, id: NodeId, numbers: &str) -> Option<TokenStream> {
+fn slot(slots: &Handed, id: NodeId, numbers: &str) -> Option<TokenStream> {
     let (numbers, index) = (syn::Ident::new(numbers, Span::mixed_site()), Literal::usize_unsuffixed(*slots.get(&id)?));
     Some(quote_spanned!(Span::mixed_site()=> #numbers.0[#index]))
 }
 
 /// Whether the outputs need an entry of a symbol.
 pub(super) fn uses(graph: &Graph, outputs: &[NodeId], symbol: SymbolId) -> bool {
-    let mut nodes = needed(graph, outputs, &|_| None).into_iter();
+    let mut nodes = needed(graph, outputs, &|_| false).into_iter();
     nodes.any(|id| matches!(graph.node(id), Node::Input(entry) if entry.symbol == symbol))
-}
-
-/// The nodes of one stage that a later stage uses, in order, with their places in an array.
-fn boundary(graph: &Graph, outputs: &[NodeId], stage: Stage) -> BTreeMap<NodeId, usize> {
-    let is_literal = |id: NodeId| matches!(graph.node(id), Node::Constant(_));
-    let crosses = |id: NodeId| graph.stage(id) == stage && !is_literal(id);
-    let mut found: BTreeSet<NodeId> = outputs.iter().copied().filter(|&id| crosses(id)).collect();
-    for id in needed(graph, outputs, &|_| None) {
-        if graph.stage(id) > stage {
-            found.extend(graph.node(id).operands().into_iter().flatten().filter(|&operand| crosses(operand)));
-        }
-    }
-    found.into_iter().enumerate().map(|(index, id)| (id, index)).collect()
 }

@@ -1,7 +1,8 @@
 //! Programs: matrix expressions as straight-line scalar code, with stages, shared subexpressions and counts.
 //!
 //! `scalarise` takes matrices to their entries, `graph` keeps equal operations once, each a `node`, `expand` multiplies out, `closed`
-//! has the `let`s that stay closed, `kernel` the step, in the coordinates of `retraction`, `tangent` and `gradient` its derivatives, and `count` what it costs.
+//! has the `let`s that stay closed, `kernel` the step, in the coordinates of `retraction`, `stages` what its stages hand on, `terms` the derived
+//! terms that know no stages, `tangent` and `gradient` its derivatives, and `count` what it costs.
 //!
 //! Deliberately not here: tokens, the group of the user's declaration by any name, and the choice between two programs
 //! of different declarations. The room knows `mathematics`.
@@ -16,7 +17,9 @@ mod kernel;
 mod node;
 mod retraction;
 mod scalarise;
+mod stages;
 mod tangent;
+mod terms;
 #[cfg(test)]
 mod tests;
 
@@ -27,4 +30,6 @@ pub(crate) use kernel::{
     Candidate, Kernel, along_directions, along_unit_vectors, components, diamond_matrices, kernel, square,
 };
 pub(crate) use scalarise::Scalariser;
+pub(crate) use stages::{Handed, Stages, needed};
 pub(crate) use tangent::{Linearisation, WeightedGradient};
+pub(crate) use terms::{Form, limit, term};

@@ -9,6 +9,7 @@ mod size;
 mod two_bodies;
 
 use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
+use quote::ToTokens as _;
 use syn::ext::IdentExt as _;
 use syn::parse::{ParseStream, Parser as _};
 use syn::{Expr, Fields, Ident, Item, ItemStruct, Path, braced};
@@ -36,6 +37,24 @@ pub(crate) fn declaration(
     let item = annotated(role, item, errors)?;
     size::check(role.definite(), arguments, errors)?;
     Some(as_far_as_readable(role, arguments.clone(), item, errors))
+}
+
+/// The role, the arguments and the struct of a text that has both, `#[lagrangian(…)] struct Top { … }`.
+pub(crate) fn attribute_and_item(text: &TokenStream, errors: &mut Errors) -> Option<(Role, TokenStream, TokenStream)> {
+    let mut item: ItemStruct = syn::parse2(text.clone()).map_err(|error| errors.extend(error)).ok()?;
+    let role = |attribute: &syn::Attribute| match attribute.path().segments.last()?.ident.to_string().as_str() {
+        "lagrangian" => Some(Role::Lagrangian),
+        "force" => Some(Role::Force),
+        _ => None,
+    };
+    let found = item.attrs.iter().enumerate().find_map(|(at, attribute)| Some((at, role(attribute)?)));
+    let Some((at, role)) = found else {
+        errors.push(item.ident.span(), "a declaration is a struct with `#[lagrangian(…)]` or `#[force(…)]`");
+        return None;
+    };
+    let attribute = item.attrs.remove(at);
+    let arguments = attribute.meta.require_list().map_err(|error| errors.extend(error)).ok()?.tokens.clone();
+    Some((role, arguments, item.to_token_stream()))
 }
 
 /// More would be a tuple that the run-time half knows nothing of.

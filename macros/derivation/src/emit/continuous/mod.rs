@@ -6,13 +6,12 @@ use proc_macro2::{Span, TokenStream};
 use quote::quote_spanned;
 use syn::Ident;
 
-use super::code::Form;
 use super::{Code, Emitter, Header, docs, page, stages, verbatim};
 use crate::declared::{Coordinates, Declaration, Discretisation, Quadrature};
 use crate::judged::Equations;
 use crate::mathematics::derive::Inverse;
 use crate::mathematics::symbolic::Expression;
-use crate::program::{Graph, along_directions, diamond_matrices};
+use crate::program::{Form, Graph, along_directions, diamond_matrices};
 
 /// The item with the continuous equations alone.
 pub(crate) fn alone(item: &TokenStream, declaration: &Declaration, equations: &Equations) -> TokenStream {

@@ -190,7 +190,7 @@ fn accepted_mutants_are_what_they_declare() {
     let accepted = accepted(seed, usize::try_from(count).expect("some"));
     assert!(!accepted.is_empty(), "no mutation is accepted");
 
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let directory = env::temp_dir().join(format!("liestep-mutants-{}", std::process::id()));
     fs::create_dir_all(directory.join("src")).expect("a folder");
     let manifest = format!(

@@ -85,7 +85,7 @@ pub(crate) fn declarations_in(folder: &Path, found: &mut Vec<(String, Role, Toke
 #[test]
 #[ignore = "measures all declarations of the repository, a minute: `cargo test -p liestep-derivation every_declaration -- --ignored --nocapture`"]
 fn every_declaration_of_the_repository_expands_the_same_twice() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut found = Vec::new();
     for folder in ["core/src", "examples", "tests"] {
         declarations_in(&root.join(folder), &mut found);

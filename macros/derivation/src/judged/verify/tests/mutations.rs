@@ -253,7 +253,7 @@ fn small_errors_of_slopes() {
 #[test]
 #[ignore = "some minutes: `cargo test -p liestep-derivation small_errors -- --ignored --nocapture`"]
 fn small_errors_everywhere() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut all = Vec::new();
     for folder in ["core/src", "examples", "tests", "tests/ui/pass"] {
         declarations_in(&root.join(folder), &mut all);

@@ -1,0 +1,97 @@
+//! What is advected, as types say it.
+
+use liestep::groups::{
+    Configuration, ContravariantTensor, ContravariantVector, CovariantTensor, Given, MixedTensor, Relative, SeenFrom,
+};
+use liestep::numbers::Real;
+use liestep_derivation::Action;
+use nalgebra::{Point, SMatrix, SVector};
+
+/// The actions in a type of advected parameters, each with rows and columns of what is stored.
+///
+/// A declaration has a type of its own: `()` where nothing is advected or given, one of these for one, and a tuple for
+/// several, in the order of the declaration.
+pub trait Slots {
+    /// Adds them to the list.
+    fn list(slots: &mut Vec<(Action, (usize, usize))>);
+}
+
+impl Slots for () {
+    fn list(_: &mut Vec<(Action, (usize, usize))>) {}
+}
+
+macro_rules! columns {
+    ($($type:ident $action:ident),+) => {
+        $(impl<T: Real, const N: usize> Slots for $type<T, N> {
+            fn list(slots: &mut Vec<(Action, (usize, usize))>) {
+                slots.push((Action::$action(0), (N, 1)));
+            }
+        })+
+    };
+}
+
+columns!(SVector Covector, ContravariantVector Contravariant, Point Point);
+
+macro_rules! tensors {
+    ($($type:ident $action:ident),+) => {
+        $(impl<T: Real, const N: usize> Slots for $type<T, N> {
+            fn list(slots: &mut Vec<(Action, (usize, usize))>) {
+                slots.push((Action::$action(0), (N, N)));
+            }
+        })+
+    };
+}
+
+tensors!(ContravariantTensor ContravariantTensor, CovariantTensor CovariantTensor, MixedTensor MixedTensor);
+
+impl<T, const R: usize, const C: usize> Slots for Given<T, R, C> {
+    fn list(slots: &mut Vec<(Action, (usize, usize))>) {
+        slots.push((Action::Given, (R, C)));
+    }
+}
+
+impl<const A: usize, W: Slots> Slots for SeenFrom<A, W> {
+    fn list(slots: &mut Vec<(Action, (usize, usize))>) {
+        let from = slots.len();
+        W::list(slots);
+        for (action, _) in slots.iter_mut().skip(from) {
+            *action = match *action {
+                Action::Covector(_) => Action::Covector(A),
+                Action::Contravariant(_) => Action::Contravariant(A),
+                Action::Point(_) => Action::Point(A),
+                Action::ContravariantTensor(_) => Action::ContravariantTensor(A),
+                Action::CovariantTensor(_) => Action::CovariantTensor(A),
+                Action::MixedTensor(_) => Action::MixedTensor(A),
+                other => other,
+            };
+        }
+    }
+}
+
+impl<const A: usize, const B: usize, T, const N: usize> Slots for Relative<A, B, SMatrix<T, N, N>> {
+    fn list(slots: &mut Vec<(Action, (usize, usize))>) {
+        slots.push((Action::Relative { of: B, from: A }, (N, N)));
+    }
+}
+
+impl<const B: usize, T, const N: usize> Slots for Configuration<B, SMatrix<T, N, N>> {
+    fn list(slots: &mut Vec<(Action, (usize, usize))>) {
+        slots.push((Action::Configuration(B), (N, N)));
+    }
+}
+
+macro_rules! tuple {
+    ($($name:ident),+) => {
+        impl<$($name: Slots),+> Slots for ($($name,)+) {
+            fn list(slots: &mut Vec<(Action, (usize, usize))>) {
+                $($name::list(slots);)+
+            }
+        }
+    };
+}
+
+tuple!(A, B);
+tuple!(A, B, C);
+tuple!(A, B, C, D);
+tuple!(A, B, C, D, E);
+tuple!(A, B, C, D, E, F);

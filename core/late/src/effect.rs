@@ -1,0 +1,569 @@
+//! A declaration with numbers, as an effect of a scene.
+
+use std::fmt;
+use std::marker::PhantomData;
+use std::ops::Add;
+use std::sync::Arc;
+
+use liestep::SetupError;
+use liestep::groups::{Advected, CayleyRetraction, LieGroup, Retraction};
+use liestep::mechanics::{
+    DiscreteLagrangian, Effect, KineticPart, Limit, Residual, SceneVisitor, SharedBy, Sum, Term, WithKinetic,
+};
+use liestep::numbers::{Coordinates, Entries, Real, real};
+use liestep_derivation::{MOST_TERMS, ParameterKind, Source};
+use nalgebra::Vector1;
+
+use crate::carried::Slots;
+use crate::code::{Arrays, Code};
+use crate::declaration::{Declaration, LateError};
+
+/// A declaration that was read while the program runs, with numbers for its parameters: an effect on the group `G`, with
+/// what is advected or given in `W`, as the macro would have it, and the kinetic part `K`.
+///
+/// # Source
+///
+/// As of every [`Effect`]: \[RDAE\], section 2.2.
+pub struct Late<G: LieGroup, W = (), K = WithKinetic> {
+    declaration: &'static Declaration,
+    /// Of all parameters, NaN where none was given.
+    numbers: Arc<[G::Scalar]>,
+    types: PhantomData<(W, K)>,
+}
+
+impl<G: LieGroup, W, K> Clone for Late<G, W, K> {
+    fn clone(&self) -> Self {
+        Self { declaration: self.declaration, numbers: Arc::clone(&self.numbers), types: PhantomData }
+    }
+}
+
+impl<G: LieGroup, W, K> fmt::Debug for Late<G, W, K> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut shown = f.debug_struct(self.declaration.name);
+        for (index, name) in self.declaration.names.iter().enumerate() {
+            shown.field(name, &self.of_parameter(index));
+        }
+        shown.finish_non_exhaustive()
+    }
+}
+
+impl<G: LieGroup, W, K> PartialEq for Late<G, W, K> {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self.declaration, other.declaration) && self.numbers == other.numbers
+    }
+}
+
+/// In all lanes.
+fn is_finite<T: Real>(number: &T) -> bool {
+    Coordinates::is_finite(&Vector1::new(*number))
+}
+
+type Matrix<G> = <G as LieGroup>::Matrix;
+type Vector<G> = <G as LieGroup>::Vector;
+type Square<G> = <Vector<G> as Coordinates<<G as LieGroup>::Scalar>>::Square;
+
+impl<G: LieGroup, W: Advected<G> + Slots, K: KineticPart> Late<G, W, K> {
+    /// Derives a struct with `#[lagrangian(…)]` or `#[force(…)]`, and proves what was derived. Its parameters have no
+    /// values yet.
+    ///
+    /// # Errors
+    ///
+    /// The mistakes of the text; or the declaration isn't one on `G`, with `W` and `K`.
+    pub fn parse(text: &str) -> Result<Self, LateError> {
+        Self::of(Declaration::parse(text)?)
+    }
+
+    /// Of a declaration that was derived.
+    ///
+    /// # Errors
+    ///
+    /// Where it isn't one on `G`, with `W` and `K`.
+    pub fn of(declaration: &'static Declaration) -> Result<Self, LateError> {
+        if !has_generators::<G>(declaration) {
+            return Err(LateError::Group { declared: declaration.group() });
+        }
+        let mut slots = Vec::new();
+        W::list(&mut slots);
+        if slots != declaration.slots() {
+            return Err(LateError::Advected { declared: format!("{:?}", declaration.slots()) });
+        }
+        if (K::IS_THERE, K::JACOBIAN_IS_EXPENSIVE) != (declaration.has_kinetic, declaration.is_expensive) {
+            return Err(LateError::Kinetic { declared: declaration.kinetic() });
+        }
+        let numbers = declaration.parameters.iter().map(|parameter| parameter.kind.len()).sum();
+        Ok(Self { declaration, numbers: vec![real(f64::NAN); numbers].into(), types: PhantomData })
+    }
+}
+
+impl<G: LieGroup, W, K> Late<G, W, K> {
+    /// With a value for a parameter, that of a matrix row by row. An inertia may be given by its three moments.
+    ///
+    /// # Errors
+    ///
+    /// Where there is no such parameter, or where it has another number of numbers.
+    pub fn with(mut self, name: &str, value: &[G::Scalar]) -> Result<Self, LateError> {
+        let names = &self.declaration.names;
+        let Some(index) = names.iter().position(|known| *known == name) else {
+            let known = names.join(", ");
+            return Err(LateError::Unknown { name: name.to_owned(), known });
+        };
+        let (start, expected) = self.declaration.place(index);
+        let kind = self.declaration.parameters[index].kind;
+        let mut numbers = self.numbers.to_vec();
+        let place = &mut numbers[start..start + expected];
+        if kind == ParameterKind::Inertia && value.len() == 3 {
+            let on_diagonal =
+                |entry: usize| if entry.is_multiple_of(4) { value[entry / 4] } else { real::<G::Scalar>(0.0) };
+            place.iter_mut().enumerate().for_each(|(entry, number)| *number = on_diagonal(entry));
+        } else if value.len() == expected {
+            place.copy_from_slice(value);
+        } else {
+            return Err(LateError::Size { name: names[index], expected, found: value.len() });
+        }
+        self.numbers = numbers.into();
+        Ok(self)
+    }
+
+    /// What was derived.
+    #[must_use]
+    pub const fn declaration(&self) -> &'static Declaration {
+        self.declaration
+    }
+
+    fn of_parameter(&self, index: usize) -> &[G::Scalar] {
+        let (start, length) = self.declaration.place(index);
+        &self.numbers[start..start + length]
+    }
+}
+
+/// Whether the generators of the declaration are those of the group.
+fn has_generators<G: LieGroup>(declaration: &Declaration) -> bool {
+    let (mut component, mut own) = (0, Vec::new());
+    for factor in &declaration.factors {
+        own.extend(std::iter::repeat_n(own_entries(factor), 1).map(|entries| (component, entries)));
+        component += factor.generators.len();
+    }
+    if component != G::DIMENSION {
+        return false;
+    }
+    (0..G::DIMENSION).all(|k| {
+        let found = entries(&G::hat(&G::Vector::axis(k)));
+        let mut expected = Vec::new();
+        for (factor, (first, size)) in declaration.factors.iter().zip(&own) {
+            let generator = k.checked_sub(*first).and_then(|k| factor.generators.get(k));
+            expected.extend(generator.cloned().unwrap_or_else(|| vec![0.0; *size]));
+        }
+        found.len() == expected.len() && found.iter().zip(expected).all(|(&found, expected)| found == real(expected))
+    })
+}
+
+fn own_entries(factor: &liestep_derivation::Factor) -> usize {
+    factor.generators.first().map_or(0, Vec::len)
+}
+
+fn entries<T: Real>(value: &impl Entries<T>) -> Vec<T> {
+    let mut list = Vec::new();
+    value.each(&mut |entry| list.push(entry));
+    list
+}
+
+/// The entries of small values, on the stack.
+struct List<T> {
+    entries: [T; 48],
+    more: Vec<T>,
+    length: usize,
+}
+
+impl<T: Real> List<T> {
+    fn of(value: &impl Entries<T>) -> Self {
+        let mut list = Self { entries: [T::zero(); 48], more: Vec::new(), length: 0 };
+        value.each(&mut |entry| {
+            match list.entries.get_mut(list.length) {
+                Some(place) => *place = entry,
+                None if list.more.is_empty() => {
+                    list.more = list.entries.to_vec();
+                    list.more.push(entry);
+                }
+                None => list.more.push(entry),
+            }
+            list.length += 1;
+        });
+        list
+    }
+
+    fn get(&self) -> &[T] {
+        if self.more.is_empty() { &self.entries[..self.length] } else { &self.more }
+    }
+}
+
+/// The numbers that come out of a program, one after the other.
+struct Results<T> {
+    entries: [T; 56],
+    more: Vec<T>,
+    next: usize,
+}
+
+impl<T: Real> Results<T> {
+    fn of(code: &Code, arrays: &Arrays<T>) -> Self {
+        let mut results = Self { entries: [T::zero(); 56], more: Vec::new(), next: 0 };
+        if code.outputs() <= results.entries.len() {
+            code.run(arrays, &mut results.entries);
+        } else {
+            results.more = vec![T::zero(); code.outputs()];
+            code.run(arrays, &mut results.more);
+        }
+        results
+    }
+
+    fn number(&mut self) -> T {
+        let number = if self.more.is_empty() { self.entries.get(self.next) } else { self.more.get(self.next) };
+        self.next += 1;
+        number.copied().unwrap_or_else(|| real(f64::NAN))
+    }
+
+    fn vector<V: Entries<T>>(&mut self) -> V {
+        V::from_entries(&mut || self.number())
+    }
+
+    /// A matrix, row by row.
+    fn square<V: Coordinates<T>>(&mut self, dimension: usize) -> V::Square {
+        let rows: Vec<T> = (0..dimension * dimension).map(|_| self.number()).collect();
+        V::square(|column| {
+            let mut row = 0;
+            V::from_entries(&mut || {
+                row += 1;
+                rows[(row - 1) * dimension + column]
+            })
+        })
+    }
+}
+
+/// The constants of a step.
+#[derive(Clone, Debug)]
+pub struct Constants<T> {
+    declaration: &'static Declaration,
+    numbers: Arc<[T]>,
+}
+
+impl<T: PartialEq> PartialEq for Constants<T> {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self.declaration, other.declaration) && self.numbers == other.numbers
+    }
+}
+
+/// What one solve needs: the right side, what is advected, and what they determine.
+#[derive(Clone, Copy, Debug)]
+pub struct StepTerms<T, V, W> {
+    right_side: V,
+    advected: W,
+    numbers: [T; MOST_TERMS],
+}
+
+impl<G, W, K> Term for Late<G, W, K>
+where
+    G: LieGroup,
+    W: Advected<G> + Slots,
+{
+    type Scalar = G::Scalar;
+    type Group = G;
+    type Advected = W;
+
+    fn validate(&self) -> Result<(), SetupError> {
+        for (index, &field) in self.declaration.names.iter().enumerate() {
+            let value = self.of_parameter(index);
+            if !value.iter().all(is_finite) {
+                return Err(SetupError::Parameter { field, cause: "is not finite, or wasn't given" });
+            }
+            let is_inertia = self.declaration.parameters[index].kind == ParameterKind::Inertia;
+            if is_inertia && (0..9).any(|entry| value[entry] != value[entry % 3 * 3 + entry / 3]) {
+                return Err(SetupError::Parameter { field, cause: "is not symmetric" });
+            }
+        }
+        Ok(())
+    }
+
+    fn advected(&self) -> W {
+        let of_carried = self.declaration.carried.iter().flat_map(|carried| {
+            let Some(field) = carried.field else {
+                // A configuration is the identity in space.
+                let rows = carried.shape.0;
+                return (0..rows * rows).map(|at| real(f64::from(u8::from(at / rows == at % rows)))).collect();
+            };
+            self.of_parameter(field).to_vec()
+        });
+        let mut numbers = of_carried.collect::<Vec<_>>().into_iter();
+        W::from_entries(&mut || numbers.next().unwrap_or_else(|| real(f64::NAN)))
+    }
+}
+
+impl<G, W, K, C> Add<C> for Late<G, W, K>
+where
+    G: LieGroup,
+    W: Advected<G> + Slots,
+    C: Term,
+    C::Group: SharedBy<G, Self, C>,
+{
+    type Output = Sum<Self, C>;
+
+    fn add(self, other: C) -> Sum<Self, C> {
+        Sum::new(self, other)
+    }
+}
+
+impl<G, W, K> Late<G, W, K>
+where
+    G: LieGroup,
+    W: Advected<G> + Slots,
+{
+    /// What a term comes to, by `F`, `w` and `h`.
+    fn term(&self, code: &Code, f: &Matrix<G>, w: &W, h: G::Scalar) -> Results<G::Scalar> {
+        let (element, advected) = (List::of(f), List::of(w));
+        let inverse = code.reads(Source::Inverse).then(|| List::of(&G::from_matrix_unchecked(*f).inverse().matrix()));
+        let arrays = Arrays {
+            step: Some(h),
+            parameters: &self.numbers,
+            advected: advected.get(),
+            element: element.get(),
+            inverse: inverse.as_ref().map_or(&[], List::get),
+            ..Arrays::default()
+        };
+        Results::of(code, &arrays)
+    }
+}
+
+impl<G, W, K> Effect for Late<G, W, K>
+where
+    G: LieGroup,
+    W: Advected<G> + Slots,
+    K: KineticPart,
+    CayleyRetraction: Retraction<G>,
+{
+    type Retraction = CayleyRetraction;
+    type Kinetic = K;
+    type Constants = Constants<G::Scalar>;
+    type StepTerms = StepTerms<G::Scalar, Vector<G>, W>;
+
+    // Those of the declaration are asked of a value.
+    const INERTIA_IS_CONSTANT: bool = false;
+    const IS_QUADRATIC: bool = false;
+    const DERIVATION: &'static str = "a declaration that was read while the program runs; see its derivation\n";
+
+    fn derivation(&self) -> String {
+        self.declaration.derivation.to_owned()
+    }
+
+    fn has_constant_inertia(&self) -> bool {
+        self.declaration.has_constant_inertia
+    }
+
+    fn is_quadratic(&self) -> bool {
+        self.declaration.is_quadratic
+    }
+
+    fn denominators(constants: &Self::Constants) -> u32 {
+        constants.declaration.denominators
+    }
+
+    fn describe(&self, visitor: &mut dyn SceneVisitor<G::Scalar>) {
+        visitor.term(self.declaration.derivation);
+        for (index, name) in self.declaration.names.iter().enumerate() {
+            self.of_parameter(index).iter().for_each(|&number| visitor.parameter(name, number));
+        }
+    }
+
+    fn momentum_jacobian(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> Square<G> {
+        self.term(&self.declaration.momentum_jacobian, f, w, h).square::<Vector<G>>(G::DIMENSION)
+    }
+
+    fn limit(&self, velocity: Option<&Vector<G>>, w: &W) -> Limit<Self> {
+        let advected = List::of(w);
+        let arrays = Arrays { parameters: &self.numbers, advected: advected.get(), ..Arrays::default() };
+        if let (Some(velocity), Some([l, momentum, hessian])) = (velocity, &self.declaration.at_velocity) {
+            let velocity = List::of(velocity);
+            let arrays = Arrays { velocity: velocity.get(), ..arrays };
+            return Limit {
+                l: Results::of(l, &arrays).number(),
+                momentum: Results::of(momentum, &arrays).vector(),
+                hessian: Results::of(hessian, &arrays).square::<Vector<G>>(G::DIMENSION),
+            };
+        }
+        let mut results = Results::of(&self.declaration.at_rest, &arrays);
+        let inertia = results.square::<Vector<G>>(G::DIMENSION);
+        let bias = results.vector();
+        Limit::quadratic(velocity, inertia, bias, results.number())
+    }
+
+    fn constants(&self, h: G::Scalar) -> Self::Constants {
+        let code = &self.declaration.constants;
+        let mut numbers = vec![real::<G::Scalar>(0.0); code.outputs()];
+        code.run(&Arrays { step: Some(h), parameters: &self.numbers, ..Arrays::default() }, &mut numbers);
+        Constants { declaration: self.declaration, numbers: numbers.into() }
+    }
+
+    fn are_finite(constants: &Self::Constants) -> bool {
+        constants.numbers.iter().all(is_finite)
+    }
+
+    fn kick_before(constants: &Self::Constants, w: &W) -> Vector<G> {
+        if !constants.declaration.parts.kick_before {
+            return nothing::<G>();
+        }
+        let advected = List::of(w);
+        let arrays = Arrays { constants: &constants.numbers, advected: advected.get(), ..Arrays::default() };
+        Results::of(&constants.declaration.kick_before, &arrays).vector()
+    }
+
+    fn kick_derivative(constants: &Self::Constants, w: &W, velocity: &Vector<G>) -> Option<Vector<G>> {
+        let code = constants.declaration.kick_derivative.as_ref()?;
+        let (advected, velocity) = (List::of(w), List::of(velocity));
+        let arrays = Arrays {
+            constants: &constants.numbers,
+            advected: advected.get(),
+            velocity: velocity.get(),
+            ..Arrays::default()
+        };
+        Some(Results::of(code, &arrays).vector())
+    }
+
+    fn step_terms(constants: &Self::Constants, a: &Vector<G>, w: &W) -> Self::StepTerms {
+        let (target, advected) = (List::of(a), List::of(w));
+        let mut numbers = [real::<G::Scalar>(0.0); MOST_TERMS];
+        let arrays = Arrays {
+            constants: &constants.numbers,
+            target: target.get(),
+            advected: advected.get(),
+            ..Arrays::default()
+        };
+        constants.declaration.terms.run(&arrays, &mut numbers);
+        StepTerms { right_side: *a, advected: *w, numbers }
+    }
+
+    fn newton_system(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> (Vector<G>, Square<G>) {
+        let declaration = constants.declaration;
+        let code = &declaration.newton_system;
+        let mut results = iteration::<G, W>(code, constants, terms, half);
+        let (residual, jacobian) = (results.vector(), results.square::<Vector<G>>(G::DIMENSION));
+        if !declaration.in_increment {
+            return (residual, jacobian);
+        }
+        let tangent = <CayleyRetraction as Retraction<G>>::tangent_of_half(half);
+        (residual, Vector::<G>::square(|k| jacobian * Vector::<G>::column(&tangent, k)))
+    }
+
+    fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> Residual<Vector<G>> {
+        let Some(code) = &constants.declaration.newton_residual else {
+            return Residual { momentum_defect: Self::newton_system(constants, terms, half).0, moving_kick: None };
+        };
+        let mut results = iteration::<G, W>(code, constants, terms, half);
+        Residual { momentum_defect: results.vector(), moving_kick: Some(results.vector()) }
+    }
+
+    fn kick_after(constants: &Self::Constants, increment: &Matrix<G>, next: &W) -> Vector<G> {
+        if !constants.declaration.parts.kick_after {
+            return nothing::<G>();
+        }
+        let code = &constants.declaration.kick_after;
+        let (entries, next) = (List::of(increment), List::of(next));
+        let inverse = code.reads(Source::Inverse).then(|| List::of(&G::from_increment(increment).inverse().matrix()));
+        let arrays = Arrays {
+            constants: &constants.numbers,
+            increment: entries.get(),
+            next: next.get(),
+            inverse: inverse.as_ref().map_or(&[], List::get),
+            ..Arrays::default()
+        };
+        Results::of(code, &arrays).vector()
+    }
+}
+
+/// What changes nothing by being added, not even the sign of a zero.
+fn nothing<G: LieGroup>() -> Vector<G> {
+    -Vector::<G>::zero()
+}
+
+/// What an iteration computes.
+fn iteration<G: LieGroup, W: Advected<G>>(
+    code: &Code,
+    constants: &Constants<G::Scalar>,
+    terms: &StepTerms<G::Scalar, Vector<G>, W>,
+    half: &Vector<G>,
+) -> Results<G::Scalar>
+where
+    CayleyRetraction: Retraction<G>,
+{
+    let coordinates = List::of(half);
+    // Off SO(3) the system is written in the increment.
+    let increment =
+        constants.declaration.in_increment.then(|| <CayleyRetraction as Retraction<G>>::increment_of_half(half));
+    let inverse = increment.filter(|_| code.reads(Source::InverseIncrement)).map(|it| G::inverse_increment(&it));
+    let [increment, inverse] = [increment, inverse].map(|matrix| matrix.map(|matrix| List::of(&matrix)));
+    let is_cut = |kind: fn(usize) -> Source| code.reads(kind);
+    let (target, advected) = (
+        is_cut(Source::Target).then(|| List::of(&terms.right_side)),
+        is_cut(Source::Advected).then(|| List::of(&terms.advected)),
+    );
+    let arrays = Arrays {
+        constants: &constants.numbers,
+        terms: &terms.numbers,
+        half: coordinates.get(),
+        increment: increment.as_ref().map_or(&[], List::get),
+        inverse_increment: inverse.as_ref().map_or(&[], List::get),
+        target: target.as_ref().map_or(&[], List::get),
+        advected: advected.as_ref().map_or(&[], List::get),
+        ..Arrays::default()
+    };
+    Results::of(code, &arrays)
+}
+
+/// Whether a step of `−h` undoes one of `h` isn't known of a type: it is said in the derivation.
+impl<G, W, K> DiscreteLagrangian for Late<G, W, K>
+where
+    G: LieGroup,
+    W: Advected<G> + Slots,
+    K: KineticPart,
+    CayleyRetraction: Retraction<G>,
+{
+    const SELF_ADJOINT: bool = false;
+
+    fn l_d(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> G::Scalar {
+        self.declaration.lagrangian.as_ref().map_or(real(0.0), |terms| self.term(&terms.l_d, f, w, h).number())
+    }
+
+    fn right_momentum(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> Vector<G> {
+        self.covector(|terms| &terms.right_momentum, f, w, h)
+    }
+
+    fn left_momentum(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> Vector<G> {
+        self.covector(|terms| &terms.left_momentum, f, w, h)
+    }
+
+    fn diamond(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> Vector<G> {
+        self.covector(|terms| &terms.diamond, f, w, h)
+    }
+
+    fn legendre_minus(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> Vector<G> {
+        self.covector(|terms| &terms.legendre_minus, f, w, h)
+    }
+
+    fn discrete_energy(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> G::Scalar {
+        let terms = self.declaration.lagrangian.as_ref();
+        terms.map_or(real(0.0), |terms| self.term(&terms.discrete_energy, f, w, h).number())
+    }
+}
+
+impl<G, W, K> Late<G, W, K>
+where
+    G: LieGroup,
+    W: Advected<G> + Slots,
+{
+    fn covector(
+        &self,
+        code: impl Fn(&crate::declaration::Lagrangian) -> &Code,
+        f: &Matrix<G>,
+        w: &W,
+        h: G::Scalar,
+    ) -> Vector<G> {
+        let terms = self.declaration.lagrangian.as_ref();
+        terms.map_or_else(Vector::<G>::zero, |terms| self.term(code(terms), f, w, h).vector())
+    }
+}

@@ -1,0 +1,69 @@
+//! What each stage of a step hands to the next.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::graph::{Graph, Node, NodeId};
+use super::kernel::Kernel;
+use crate::mathematics::symbolic::Stage;
+
+/// Values that one stage computes and a later one uses, with their places in an array.
+pub(crate) type Handed = BTreeMap<NodeId, usize>;
+
+/// The outputs of a step, and what its stages hand on.
+pub(crate) struct Stages {
+    /// The residual, then the Jacobian row by row.
+    pub(crate) system: Vec<NodeId>,
+    /// What is computed once.
+    pub(crate) constants: Handed,
+    /// What is computed once a step.
+    pub(crate) terms: Handed,
+}
+
+impl Kernel {
+    pub(crate) fn stages(&self) -> Stages {
+        let system: Vec<NodeId> = [self.residual.as_slice(), &self.jacobian].concat();
+        // The moved part of the diamond is computed only with a residual alone.
+        let moved: &[NodeId] = if self.jacobian_is_expensive() { &self.moved } else { &[] };
+        let solved = [system.as_slice(), moved].concat();
+        let change = self.kick_derivative.as_deref().unwrap_or_default();
+        let everything = [self.kick_before.as_slice(), &solved, &self.kick_after, change].concat();
+        Stages {
+            constants: handed(&self.graph, &everything, Stage::Construction),
+            terms: handed(&self.graph, &solved, Stage::Step),
+            system,
+        }
+    }
+}
+
+/// The nodes of one stage that a later stage uses, in order.
+fn handed(graph: &Graph, outputs: &[NodeId], stage: Stage) -> Handed {
+    let is_literal = |id: NodeId| matches!(graph.node(id), Node::Constant(_));
+    let crosses = |id: NodeId| graph.stage(id) == stage && !is_literal(id);
+    let mut found: BTreeSet<NodeId> = outputs.iter().copied().filter(|&id| crosses(id)).collect();
+    for id in needed(graph, outputs, &|_| false) {
+        if graph.stage(id) > stage {
+            found.extend(graph.node(id).operands().into_iter().flatten().filter(|&operand| crosses(operand)));
+        }
+    }
+    found.into_iter().enumerate().map(|(index, id)| (id, index)).collect()
+}
+
+/// The nodes to visit, each after its operands and as late as it can be; what is given needs no operands.
+///
+/// In this order the compiler makes a hundredth fewer instructions of a step than in that of the nodes' making.
+pub(crate) fn needed(graph: &Graph, outputs: &[NodeId], is_given: &dyn Fn(NodeId) -> bool) -> Vec<NodeId> {
+    let (mut order, mut met) = (Vec::new(), BTreeSet::new());
+    // Nodes to open, and nodes whose operands are all in order.
+    let mut open: Vec<(NodeId, bool)> = outputs.iter().rev().map(|&id| (id, false)).collect();
+    while let Some((id, is_ready)) = open.pop() {
+        if is_ready {
+            order.push(id);
+        } else if met.insert(id) {
+            open.push((id, true));
+            if !is_given(id) {
+                open.extend(graph.node(id).operands().into_iter().flatten().rev().map(|operand| (operand, false)));
+            }
+        }
+    }
+    order
+}

@@ -1,0 +1,152 @@
+//! The programs of a step, of its kernel and its derived terms.
+
+use std::collections::BTreeMap;
+
+use super::sources::{Sources, carried, parameter_kind};
+use super::{AtVelocity, Factor, MOST_TERMS, Operation, Parameter, Program, Source, Staged, Terms};
+use crate::declared::Declaration;
+use crate::emit;
+use crate::expand::Steps;
+use crate::judged::{Chosen, Equations};
+use crate::mathematics::derive::Inverse;
+use crate::mathematics::symbolic::{Expression, Function};
+use crate::program::{Form, Graph, Handed, Node, NodeId, along_directions, limit, needed, term};
+
+pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> Staged {
+    let Steps { chosen, equations, findings } = steps;
+    let Chosen { lowered, derived, kernel } = chosen;
+    let names = &lowered.names;
+    let sources = Sources { declaration, names, directions: Some(&derived.directions) };
+    let graph = &kernel.graph;
+    let stages = kernel.stages();
+    // Those that come last are computed last, and so are nearest to the iterations.
+    let terms: Handed = stages.terms.iter().map(|(&id, &at)| (id, at)).take(MOST_TERMS).collect();
+    let nothing = Handed::new();
+    let none = [&nothing, &nothing];
+    let constants = [&stages.constants, &nothing];
+    let all = [&stages.constants, &terms];
+    let program = |handed, outputs: &[NodeId]| program(graph, &sources, handed, outputs);
+    let of_handed = |handed: &Handed, from| program(from, &handed.keys().copied().collect::<Vec<_>>());
+    let derived_term = |form, expression| {
+        let (graph, outputs) = term(derived, form, expression);
+        self::program(&graph, &sources, none, &outputs)
+    };
+    let (limit_graph, at_rest) = limit(derived);
+    let is_expensive = kernel.jacobian_is_expensive();
+    let generators = |factor: &crate::mathematics::group::Group| {
+        factor.generators.iter().map(|one| one.iter().map(|entry| entry.to_f64()).collect()).collect()
+    };
+    let factors = declaration.factors.iter().zip(declaration.group.factors());
+    let is_nonlinear = |equations: &&Equations| equations.derived.inverse == Inverse::Nonlinear;
+    Staged {
+        name: declaration.item.ident.to_string(),
+        role: declaration.role,
+        factors: factors.map(|(named, own)| Factor { name: named.group_name(), generators: generators(own) }).collect(),
+        parameters: (declaration.fields.iter())
+            .map(|field| Parameter { name: field.plain_name(), kind: parameter_kind(field.kind) })
+            .collect(),
+        carried: (0..declaration.advected.len()).map(|index| carried(declaration, index)).collect(),
+        derivation: emit::text(declaration, chosen, equations.as_ref(), findings),
+        has_kinetic: derived.limit.has_kinetic,
+        is_expensive,
+        parts: [&derived.unknown, &derived.kick_before, &derived.kick_after].map(|part| !part.is_zero()),
+        denominators: kernel.denominators,
+        has_constant_inertia: !derived.inertia_varies(),
+        is_quadratic: !equations.as_ref().is_some_and(|equations| is_nonlinear(&equations)),
+        is_self_adjoint: findings.self_adjointness.is_found(),
+        in_increment: kernel.in_increment,
+        blocks: kernel.ends(&derived.group).into_iter().map(|end| derived.group.component_of(end)).collect(),
+        constants: of_handed(&stages.constants, none),
+        terms: of_handed(&terms, constants),
+        kick_before: program(constants, &kernel.kick_before),
+        newton_system: program(all, &stages.system),
+        newton_residual: is_expensive.then(|| program(all, &kernel.gradient())),
+        kick_after: program(constants, &kernel.kick_after),
+        kick_derivative: kernel.kick_derivative.as_ref().map(|outputs| program(constants, outputs)),
+        momentum_jacobian: derived_term(Form::Square, &derived.jacobian),
+        at_rest: self::program(&limit_graph, &sources, none, &at_rest.concat()),
+        at_velocity: equations.as_ref().filter(is_nonlinear).map(|equations| at_velocity(declaration, equations)),
+        lagrangian: equations.as_ref().map(|_| Terms {
+            l_d: derived_term(Form::Scalar, &lowered.declared.expression),
+            right_momentum: derived_term(Form::Vector, &derived.right_momentum),
+            left_momentum: derived_term(Form::Vector, &derived.left_momentum),
+            diamond: derived_term(Form::Vector, &derived.diamond),
+            legendre_minus: derived_term(Form::Vector, &derived.momentum),
+            discrete_energy: derived_term(Form::Scalar, &derived.energy),
+        }),
+    }
+}
+
+fn at_velocity(declaration: &Declaration, equations: &Equations) -> AtVelocity {
+    let sources = Sources { declaration, names: &equations.names, directions: None };
+    let derived = &equations.derived;
+    let nothing = Handed::new();
+    let of_rank = |rank, expression: &Expression| {
+        let mut graph = Graph::default();
+        let outputs = along_directions(&mut graph, derived, rank, expression);
+        program(&graph, &sources, [&nothing, &nothing], &outputs)
+    };
+    AtVelocity {
+        l: of_rank(0, &derived.lagrangian),
+        momentum: of_rank(1, &derived.momentum),
+        hessian: of_rank(2, &derived.hessian),
+    }
+}
+
+/// The program of these outputs, which reads what earlier stages have handed on.
+fn program(graph: &Graph, sources: &Sources, [constants, terms]: [&Handed; 2], outputs: &[NodeId]) -> Program {
+    let source = |id: NodeId| {
+        if let Some(&at) = terms.get(&id) {
+            return Some(Source::Term(at));
+        }
+        if let Some(&at) = constants.get(&id) {
+            return Some(Source::Constant(at));
+        }
+        match graph.node(id) {
+            Node::Input(input) => sources.of(input),
+            _ => None,
+        }
+    };
+    let order = needed(graph, outputs, &|id| source(id).is_some());
+    let given: Vec<(NodeId, Source)> = order.iter().filter_map(|&id| Some((id, source(id)?))).collect();
+    let literal = |id: &NodeId| Some((*id, graph.value(*id).filter(|_| source(*id).is_none())?.to_f64()));
+    let literals: Vec<(NodeId, f64)> = order.iter().filter_map(literal).collect();
+    let leaves = given.iter().map(|(id, _)| *id).chain(literals.iter().map(|(id, _)| *id));
+    let mut registers: BTreeMap<NodeId, usize> = leaves.enumerate().map(|(at, id)| (id, at)).collect();
+    let mut operations = Vec::new();
+    for id in order {
+        if registers.contains_key(&id) {
+            continue;
+        }
+        let at = |id: NodeId| registers.get(&id).copied().unwrap_or_default();
+        operations.push(match graph.node(id) {
+            Node::Negate(a) => Operation::Negate(at(a)),
+            Node::Add(a, b) => Operation::Add(at(a), at(b)),
+            Node::Subtract(a, b) => Operation::Subtract(at(a), at(b)),
+            Node::Multiply(a, b) => Operation::Multiply(at(a), at(b)),
+            Node::Divide(a, b) => Operation::Divide(at(a), at(b)),
+            Node::Apply(function, a) => applied(function, at(a)),
+            // They are leaves.
+            Node::Constant(_) | Node::Input(_) => continue,
+        });
+        registers.insert(id, registers.len());
+    }
+    Program {
+        inputs: given.into_iter().map(|(_, source)| source).collect(),
+        literals: literals.into_iter().map(|(_, value)| value).collect(),
+        operations,
+        outputs: outputs.iter().map(|output| registers.get(output).copied().unwrap_or_default()).collect(),
+    }
+}
+
+fn applied(function: Function, a: usize) -> Operation {
+    match function {
+        Function::Sqrt => Operation::Sqrt(a),
+        Function::Ln => Operation::Ln(a),
+        Function::Exp => Operation::Exp(a),
+        Function::Sin => Operation::Sin(a),
+        Function::Cos => Operation::Cos(a),
+        Function::Stumpff(k) => Operation::Stumpff(k, a),
+        Function::LogRatio(k) => Operation::LogRatio(k, a),
+    }
+}
