@@ -136,6 +136,8 @@ pub enum SetupError {
     NoForceGradient,
     /// A splitting with force gradients can't be linearised: a term has no `kick_gradient`.
     NoSecondDerivatives,
+    /// The scene has another step of `−h` than the inverse of its step of `h`.
+    NotSelfAdjoint,
     /// A stepper or a state can't be in a lane beside the others: lanes share the scheme of a method and the number of
     /// steps made, for example.
     Unlike {
@@ -221,6 +223,7 @@ impl fmt::Display for SetupError {
             | Self::BiasMismatch
             | Self::NoForceGradient
             | Self::NoSecondDerivatives
+            | Self::NotSelfAdjoint
             | Self::Unlike { .. } => self.fmt_method(f),
         }
     }
@@ -249,6 +252,9 @@ impl SetupError {
             ),
             Self::NoSecondDerivatives => f.write_str(
                 "the derivatives of a term of the scene were written without `kick_gradient`, so those of its force gradient aren't known; choose a scheme without them, or write it",
+            ),
+            Self::NotSelfAdjoint => f.write_str(
+                "the step of −h doesn't undo that of h, which a composition and an inverse need: l_d(F, w, h) isn't −l_d(F⁻¹, F⁻¹·w, −h); take the mean of both, as the trapezoid does",
             ),
             Self::Unlike { lane } => write!(
                 f,

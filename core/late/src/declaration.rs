@@ -112,6 +112,8 @@ pub struct Declaration {
     pub has_kinetic: bool,
     /// Whether a solve does better without the Jacobian.
     pub is_expensive: bool,
+    /// Whether a step of `−h` undoes one of `h`.
+    pub is_self_adjoint: bool,
     pub(crate) names: Vec<&'static str>,
     pub(crate) parts: Parts,
     pub(crate) denominators: u32,
@@ -176,7 +178,7 @@ impl Declaration {
         }
         let tokens: TokenStream = text.parse().map_err(|error: LexError| {
             let place = error.span().start();
-            let message = "this is no Rust: a bracket isn't closed, or a sign has no meaning".to_owned();
+            let message = "a bracket isn't closed or opened, or a sign has no meaning here".to_owned();
             LateError::Mistakes(vec![Mistake { message, line: place.line, column: place.column + 1 }])
         })?;
         let found = staged(&tokens).map_err(|mistakes| {
@@ -219,6 +221,7 @@ impl Declaration {
             derivation: leaked(staged.derivation),
             has_kinetic: staged.has_kinetic,
             is_expensive: staged.is_expensive,
+            is_self_adjoint: staged.is_self_adjoint,
             parts: Parts { unknown, kick_before, kick_after },
             denominators: staged.denominators,
             has_constant_inertia: staged.has_constant_inertia,

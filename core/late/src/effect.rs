@@ -19,7 +19,8 @@ use crate::code::{Arrays, Code};
 use crate::declaration::{Declaration, LateError};
 
 /// A declaration that was read while the program runs, with numbers for its parameters: an effect on the group `G`, with
-/// what is advected or given in `W`, as the macro would have it, and the kinetic part `K`.
+/// what is advected or given in `W`, as the macro would have it, and the kinetic part `K`. In a longer tuple what the
+/// declaration doesn't name is zero.
 ///
 /// # Source
 ///
@@ -84,7 +85,7 @@ impl<G: LieGroup, W: Advected<G> + Slots, K: KineticPart> Late<G, W, K> {
         }
         let mut slots = Vec::new();
         W::list(&mut slots);
-        if slots != declaration.slots() {
+        if !slots.starts_with(&declaration.slots()) {
             return Err(LateError::Advected { declared: format!("{:?}", declaration.slots()) });
         }
         if (K::IS_THERE, K::JACOBIAN_IS_EXPENSIVE) != (declaration.has_kinetic, declaration.is_expensive) {
@@ -292,7 +293,7 @@ where
             self.of_parameter(field).to_vec()
         });
         let mut numbers = of_carried.collect::<Vec<_>>().into_iter();
-        W::from_entries(&mut || numbers.next().unwrap_or_else(|| real(f64::NAN)))
+        W::from_entries(&mut || numbers.next().unwrap_or_else(|| real(0.0)))
     }
 }
 
@@ -515,7 +516,6 @@ where
     Results::of(code, &arrays)
 }
 
-/// Whether a step of `−h` undoes one of `h` isn't known of a type: it is said in the derivation.
 impl<G, W, K> DiscreteLagrangian for Late<G, W, K>
 where
     G: LieGroup,
@@ -523,7 +523,12 @@ where
     K: KineticPart,
     CayleyRetraction: Retraction<G>,
 {
-    const SELF_ADJOINT: bool = false;
+    // Asked of a value.
+    const SELF_ADJOINT: bool = true;
+
+    fn is_self_adjoint(&self) -> bool {
+        self.declaration.is_self_adjoint
+    }
 
     fn l_d(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> G::Scalar {
         self.declaration.lagrangian.as_ref().map_or(real(0.0), |terms| self.term(&terms.l_d, f, w, h).number())

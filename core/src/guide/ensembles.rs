@@ -1,6 +1,6 @@
 //! Ensembles: many motions at once.
 //!
-//! Before: [gradients](super::gradients). Next: [files](super::files).
+//! Before: [gradients](super::gradients). Next: [a Lagrangian in a file](super::late).
 //!
 //! # Which way
 //!

@@ -1,6 +1,6 @@
 //! Reading the files from Python, Julia and MATLAB.
 //!
-//! Before: [ensembles](super::ensembles). Next: [how it works inside](super::inside).
+//! Before: [a Lagrangian in a file](super::late). Next: [how it works inside](super::inside).
 //!
 //! # Which files there are
 //!

@@ -13,6 +13,7 @@
 //! | [`recording`] | recording, events, the motion between two steps, games |
 //! | [`gradients`] | how a motion depends on its start and on its parameters |
 //! | [`ensembles`] | many motions at once |
+//! | [`late`] | a Lagrangian in a file, without a compiler |
 //! | [`files`] | reading the files from Python, Julia and MATLAB |
 //! | [`inside`] | from a declaration to straight-line code, and the rooms of the sources |
 //!
@@ -29,5 +30,6 @@ pub mod gradients;
 pub mod groups;
 pub mod hard_cases;
 pub mod inside;
+pub mod late;
 pub mod recording;
 pub mod thesis;

@@ -32,6 +32,11 @@ pub trait DiscreteLagrangian: Effect {
     /// would hold if vectors were declared as points; who implements the trait by hand states it.
     const SELF_ADJOINT: bool;
 
+    /// [`SELF_ADJOINT`](Self::SELF_ADJOINT), asked of a value: what is declared when a program runs isn't known in its type.
+    fn is_self_adjoint(&self) -> bool {
+        Self::SELF_ADJOINT
+    }
+
     /// The declared `l_d(F, w)`, in J s.
     fn l_d(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar;
 

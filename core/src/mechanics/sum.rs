@@ -346,6 +346,10 @@ where
 {
     const SELF_ADJOINT: bool = A::SELF_ADJOINT && B::SELF_ADJOINT;
 
+    fn is_self_adjoint(&self) -> bool {
+        self.first.is_self_adjoint() && self.second.is_self_adjoint()
+    }
+
     added! {
         fn l_d(f: &Matrix<Self>, w, h: Self::Scalar) -> Self::Scalar;
         fn right_momentum(f: &Matrix<Self>, w, h: Self::Scalar) -> Vector<Self>;

@@ -5,6 +5,7 @@
 
 mod called;
 mod ensembles;
+mod lagrangian;
 mod mutated;
 mod page;
 mod readme;

@@ -78,7 +78,7 @@ fn mistakes_have_places() {
     .map(|(line, by)| mistake(&folder, line, by));
     expect![[r#"
         error: top.toml:14:1: unknown field `viscosity`, expected `c`
-        error: top.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `magnetic_damping`, `torque`, `thrust`, `start`, `run`, `picture`, `event`, `output`
+        error: top.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `magnetic_damping`, `torque`, `thrust`, `start`, `run`, `picture`, `event`, `lagrangian`, `output`
         error: top.toml:6:1: missing field `g`
         error: top.toml:1:1: missing field `run`
         error: top.toml:14:1: unknown field `rho`, expected `c`

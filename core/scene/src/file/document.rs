@@ -7,6 +7,7 @@ use toml::de::Deserializer;
 
 use crate::file::body::Kinetic;
 use crate::file::column::Column;
+use crate::file::lagrangian;
 use crate::file::method::{Method, Scheme as _};
 use crate::file::mistake::{Mistake, Wrong, place_of};
 use crate::file::scene::{Origin, Places, SceneFile};
@@ -15,16 +16,23 @@ use crate::file::tables::{Document, span};
 
 /// The scene of a document without a sweep and an ensemble.
 pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<SceneFile, Mistake> {
-    let mut file = SceneFile::deserialize(Deserializer::from(document.clone()))
-        .map_err(|error| Mistake::of_toml(path, text, &error))?;
     let located = |(span, message): Wrong| Mistake::at(path, place_of(text, &span), message);
+    let mut rest = document.clone();
+    let lagrangian = lagrangian::take(&mut rest).map_err(located)?;
+    let mut file =
+        SceneFile::deserialize(Deserializer::from(rest)).map_err(|error| Mistake::of_toml(path, text, &error))?;
+    if file.body.is_none() && lagrangian.is_none() {
+        return Err(located((document.span(), "missing field `body`".to_owned())));
+    }
+    file.lagrangian = lagrangian;
     at_odds(document, &file).map_or(Ok(()), Err).map_err(located)?;
     let default = ["velocity", "spatial-momentum", "energy", "axis", "quaternion"];
     file.columns = file.output.columns(&Column::OF_ONE_BODY, &default).map_err(located)?;
     let at = |keys: &[&str]| place_of(text, &span(document, keys));
     let pace = if matches!(file.run.pace, Pace::Accuracy(_)) { "accuracy" } else { "step" };
+    let body = if file.lagrangian.is_some() { "lagrangian" } else { "body" };
     let places =
-        Places { body: at(&["body"]), start: at(&["start"]), pace: at(&["run", pace]), method: at(&["run", "method"]) };
+        Places { body: at(&[body]), start: at(&["start"]), pace: at(&["run", pace]), method: at(&["run", "method"]) };
     file.origin = Origin { path: path.to_owned(), places };
     Ok(file)
 }
@@ -56,7 +64,7 @@ fn at_odds(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
                 "an `accuracy` chooses the method; give a `step` to choose it".to_owned(),
             );
         }
-        if file.body.kinetic != Kinetic::Rigid {
+        if file.kinetic() != Kinetic::Rigid {
             return wrong(
                 &["body", "kinetic"],
                 "an `accuracy` chooses the method for the kinetic term `rigid`".to_owned(),
@@ -64,6 +72,24 @@ fn at_odds(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
         }
     }
     let method = &file.run.method;
+    if let Some(lagrangian) = &file.lagrangian {
+        if let Some(effect) = file.effects().next() {
+            let key = effect.replace(' ', "_");
+            return wrong(&[&key], format!("a `lagrangian` has all its terms in its text: write {effect} there"));
+        }
+        if let Pace::Accuracy(_) = file.run.pace {
+            let message = "an accuracy chooses a method for the library's bodies; give a `step` to a `lagrangian`";
+            return wrong(&["run", "accuracy"], message.to_owned());
+        }
+        if !matches!(method, Method::Step | Method::Composition(_)) {
+            let message = format!("{} moves a body of the library; leave it out", method.name());
+            return wrong(&["run", "method"], message);
+        }
+        if matches!(method, Method::Composition(_)) && !lagrangian.declaration().is_self_adjoint {
+            let message = "only steps that undo those of −h can be composed, and those of this Lagrangian don't";
+            return wrong(&["run", "method"], message.to_owned());
+        }
+    }
     if !matches!(method, Method::Step)
         && let Some(force) = file.force()
     {
@@ -80,7 +106,7 @@ fn at_odds(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
         );
     }
     if let Method::Splitting(_) | Method::Processed(_) | Method::Collocation(_) = method
-        && file.body.kinetic != Kinetic::Rigid
+        && file.kinetic() != Kinetic::Rigid
     {
         let message = format!("{} moves the body exactly; leave `kinetic` out", method.name());
         return wrong(&["body", "kinetic"], message);

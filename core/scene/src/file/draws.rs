@@ -79,8 +79,9 @@ const MOST_MEMBERS: u64 = 1_000_000_000;
 pub(crate) const DRAW: &str = "a value is drawn by `{ from = …, to = … }`, each between as likely, or by \
                     `{ mean = …, deviation = … }`, normally: two numbers, or texts with the same unit";
 const PARTS: &str = "`ensemble` has `members`, may have `seed`, `every` and `chunk`, and says in `draw` what is drawn";
-const DRAWN: [&str; 11] = [
+const DRAWN: [&str; 12] = [
     "body",
+    "lagrangian",
     "gravity",
     "gravity_gradient",
     "dipole",

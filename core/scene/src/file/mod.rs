@@ -9,6 +9,7 @@ pub(crate) mod effects;
 pub(crate) mod ensemble;
 pub(crate) mod event;
 pub(crate) mod key;
+pub(crate) mod lagrangian;
 pub(crate) mod method;
 pub(crate) mod mistake;
 pub(crate) mod picture;

@@ -24,7 +24,17 @@ macro_rules! quantities {
             const NAME: &'static str = $name;
             const UNITS: &'static [(&'static str, f64)] = &[$(($unit, $size)),+];
         }
-    )+};
+    )+
+
+        /// A quantity of any kind: that of a parameter that a file names itself.
+        #[derive(Clone, Copy)]
+        pub(crate) struct Any;
+
+        impl Quantity for Any {
+            const NAME: &'static str = "a number";
+            const UNITS: &'static [(&'static str, f64)] = &[("", 1.0), $($(($unit, $size)),+),+];
+        }
+    };
 }
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
@@ -138,6 +148,10 @@ impl<Q: Quantity> Visitor<'_> for NumberOrText<Q> {
         let written = unit.trim().replace("^2", "²").replace("^3", "³");
         match Q::UNITS.iter().find(|(name, _)| *name == written) {
             Some((_, size)) => self.visit_f64(value * size),
+            // Where the quantity is any, they would be all that there are.
+            None if Q::UNITS.len() > 8 => {
+                Err(E::custom(format!("`{unit}` isn't a unit that is known here: take one of SI, or leave it out")))
+            }
             None => Err(E::custom(format!("{} isn't in `{unit}` but in {}", Q::NAME, listed::<Q>()))),
         }
     }

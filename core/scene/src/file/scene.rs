@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use liestep::recording;
+use nalgebra::Matrix3;
 use serde::Deserialize;
 
-use crate::file::body::Body;
+use crate::file::body::{Body, Kinetic};
 use crate::file::column::{Column, Output};
 use crate::file::draws::SceneEnsemble;
 use crate::file::effects::{
@@ -13,6 +14,7 @@ use crate::file::effects::{
     ThrustTable, TorqueTable,
 };
 use crate::file::event::Event;
+use crate::file::lagrangian::{Lagrangian, taken};
 use crate::file::picture::SpherePicture;
 use crate::file::quantity::short;
 use crate::file::schedule::{Pace, Schedule};
@@ -25,6 +27,7 @@ use crate::file::text::title;
 /// |---|---|
 /// | | `title` |
 /// | `body` | one of `moments`, `J_d`, `J`; `kinetic`: `rigid`, which is (3.13), `cayley`, `geodesic`, `fourth-order`, `sixth-order` |
+/// | `lagrangian` | in place of `body` and all effects: `l_d`, or `l` with `discretise` and the name of its `velocity`; `advected`, as `{ w = "up" }`; and the parameters by their names: numbers, vectors, matrices, inertias as `{ moments = […] }` or `{ tensor = […] }`, nonstandard where the name ends in `_d` |
 /// | `gravity` | `m`, `g`, `rho`, `up` |
 /// | `gravity_gradient` | `GM`, `r`, `direction` |
 /// | `dipole` | `moment`, `field` |
@@ -46,7 +49,8 @@ use crate::file::text::title;
 pub struct SceneFile {
     #[serde(deserialize_with = "title")]
     pub(crate) title: String,
-    pub(crate) body: Body,
+    /// A body of the library, or a Lagrangian in place of it and of the effects.
+    pub(crate) body: Option<Body>,
     pub(crate) gravity: Option<GravityTable>,
     pub(crate) gravity_gradient: Option<GravityGradientTable>,
     pub(crate) dipole: Option<DipoleTable>,
@@ -64,6 +68,8 @@ pub struct SceneFile {
     pub(crate) event: Vec<Event>,
     #[serde(default)]
     pub(crate) output: Output,
+    #[serde(default, deserialize_with = "taken")]
+    pub(crate) lagrangian: Option<Lagrangian>,
     #[serde(skip)]
     pub(crate) columns: Vec<Column>,
     /// Of the whole file: the scenes that a sweep makes have none.
@@ -174,6 +180,9 @@ impl SceneFile {
 
     /// The sum, in words.
     pub(crate) fn sum(&self) -> String {
+        if self.lagrangian.is_some() {
+            return "a Lagrangian of its own".to_owned();
+        }
         self.effects().fold("body".to_owned(), |sum, name| format!("{sum} + {name}"))
     }
 
@@ -183,9 +192,20 @@ impl SceneFile {
         self.effects().find(|name| forces.contains(name))
     }
 
+    /// The kinetic term of the library's body.
+    pub(crate) fn kinetic(&self) -> Kinetic {
+        self.body.map(|body| body.kinetic).unwrap_or_default()
+    }
+
+    /// Where the body is not turned; none of a Lagrangian that no body has.
+    pub(crate) fn inertia(&self) -> Option<Matrix3<f64>> {
+        let of_lagrangian = || self.lagrangian.as_ref().map(Lagrangian::inertia);
+        self.body.map(|body| *body.inertia().as_matrix()).or_else(of_lagrangian)
+    }
+
     /// Of the scene's own step: other effects are kicks of order two.
     pub(crate) fn order(&self) -> u32 {
-        if self.effects().next().is_none() { self.body.kinetic.order() } else { 2 }
+        if self.effects().next().is_none() { self.kinetic().order() } else { 2 }
     }
 }
 

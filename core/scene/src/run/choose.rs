@@ -12,6 +12,7 @@ use liestep::{SO3, SetupError, Stepper};
 
 use crate::file::body::Distribution;
 use crate::file::effects::Table as _;
+use crate::file::lagrangian::Lagrangian;
 use crate::file::method::{Method, Stages};
 use crate::file::scene::SceneFile;
 use crate::file::schedule::Pace;
@@ -25,8 +26,8 @@ use crate::run::switched::Switched;
 /// An effect with an unknown part makes each iteration longer, and that of magnetic damping raises the degree of the
 /// equation. Which effects there are beside is asked at run time: all subsets would be 512 types of each kinetic term.
 macro_rules! sums {
-    ($file:expr, $body:expr) => {{
-        let (file, body, J) = ($file, $body, $file.body.inertia());
+    ($file:expr, $J:expr, $body:expr) => {{
+        let (file, body, J) = ($file, $body, $J);
         macro_rules! switched {
             ($effect:ident) => {
                 Switched(file.$effect.as_ref().map(|table| table.effect(&J)))
@@ -100,17 +101,25 @@ fn stepped(file: &SceneFile, h: f64, purpose: Purpose<'_, '_>) -> Result<(), Sto
             simulate(file, Stepper::new($scene, h).map(Stepper::into_any), purpose)
         };
     }
+    let Some(body) = file.body else {
+        return match &file.lagrangian {
+            Some(Lagrangian::Usual(late)) => step!(late.clone()),
+            Some(Lagrangian::Expensive(late)) => step!(late.clone()),
+            None => Err(nothing()),
+        };
+    };
+    let J = body.inertia();
     macro_rules! with_effects {
         ($body:expr) => {{
-            let (_, with_rotor, _, damped) = sums!(file, $body);
+            let (_, with_rotor, _, damped) = sums!(file, J, $body);
             if file.force().is_some() { step!(only damped) } else { step!(with_rotor) }
         }};
     }
-    match (ChosenBody::of(file.body.kinetic, file.body.inertia()), file.body.mass) {
+    match (ChosenBody::of(body.kinetic, J), body.mass) {
         (Some(body), _) => with_effects!(body),
         // The kinetic term that most files have is there in four sums, not two.
         (None, Distribution::Principal(J_d)) => {
-            let (potentials, with_rotor, driven, damped) = sums!(file, PrincipalBody { J_d });
+            let (potentials, with_rotor, driven, damped) = sums!(file, J, PrincipalBody { J_d });
             if file.magnetic_damping.is_some() {
                 step!(only damped)
             } else if file.force().is_some() {
@@ -127,8 +136,8 @@ fn stepped(file: &SceneFile, h: f64, purpose: Purpose<'_, '_>) -> Result<(), Sto
 
 /// By methods that look at inertia and potential only.
 fn with_exact_body(file: &SceneFile, h: f64, purpose: Purpose<'_, '_>) -> Result<(), Stop> {
-    let J = file.body.inertia();
-    let (_, scene, _, _) = sums!(file, RigidBody { J_d: J.to_nonstandard() });
+    let J = file.body.ok_or_else(nothing)?.inertia();
+    let (_, scene, _, _) = sums!(file, J, RigidBody { J_d: J.to_nonstandard() });
     let stepper = match file.run.method {
         Method::Step | Method::Composition(_) => Stepper::new(scene, h).map(Stepper::into_any),
         Method::Splitting(scheme) => Stepper::split(scene, h, ExactBody::new(&J), scheme.0).map(Stepper::into_any),
@@ -171,13 +180,15 @@ fn ask(file: &SceneFile, tolerance: f64, listeners: Listeners<'_>) -> Result<Run
             Ok(run)
         }};
     }
-    match file.body.mass {
+    let body = file.body.ok_or_else(nothing)?;
+    let J = body.inertia();
+    match body.mass {
         Distribution::Principal(J_d) => {
-            let (potentials, with_rotor, _, _) = sums!(file, PrincipalBody { J_d });
+            let (potentials, with_rotor, _, _) = sums!(file, J, PrincipalBody { J_d });
             if file.rotor.is_some() { ask!(with_rotor) } else { ask!(potentials) }
         }
         Distribution::Full(J_d) => {
-            let (_, with_rotor, _, _) = sums!(file, RigidBody { J_d });
+            let (_, with_rotor, _, _) = sums!(file, J, RigidBody { J_d });
             ask!(with_rotor)
         }
     }

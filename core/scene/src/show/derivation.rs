@@ -49,7 +49,11 @@ impl SceneFile {
     /// What was derived of each term of the scene.
     #[must_use]
     pub fn derivation(&self) -> String {
-        let body = match (self.body.kinetic, self.body.mass) {
+        if let Some(lagrangian) = &self.lagrangian {
+            return lagrangian.declaration().derivation.to_owned();
+        }
+        let Some(body) = self.body else { return String::new() };
+        let body = match (body.kinetic, body.mass) {
             (Kinetic::Rigid, Distribution::Principal(_)) => "principal-body",
             (Kinetic::Rigid, Distribution::Full(_)) => "rigid-body",
             (Kinetic::Cayley, _) => "cayley-body",

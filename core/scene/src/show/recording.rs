@@ -119,7 +119,7 @@ impl Recording {
         Self {
             title: scene.title.clone(),
             about: format!("{}, {} steps of {} s", scene.sum(), run.steps(), short(run.step())),
-            figure: Figure::of(scene.body.inertia().as_matrix(), arm, &axis),
+            figure: Figure::of(&scene.inertia().unwrap_or_else(Matrix3::identity), arm, &axis),
             times: collect(&|sample| sample.time),
             attitudes,
             charts,

@@ -237,6 +237,10 @@ where
 {
     const SELF_ADJOINT: bool = E::SELF_ADJOINT;
 
+    fn is_self_adjoint(&self) -> bool {
+        self.terms.iter().all(E::is_self_adjoint)
+    }
+
     fn l_d(&self, f: &Matrix<Self>, w: &P::Advected, h: Self::Scalar) -> Self::Scalar {
         self.total(w, |term, w, at| term.l_d(&P::matrix(f, at), w, h))
     }

@@ -116,6 +116,9 @@ impl<S: Effect> Stepper<S> {
         const {
             assert!(S::SELF_ADJOINT, "a composition needs a Lagrangian with l_d(F, w, h) = -l_d(F^-1, F^-1 w, -h)");
         }
+        if !scene.is_self_adjoint() {
+            return Err(SetupError::NotSelfAdjoint);
+        }
         let plan = Composed::new(&scene, h, scheme)?;
         Ok(Stepper { scene, plan })
     }

@@ -43,6 +43,9 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         const {
             assert!(S::SELF_ADJOINT, "a step of -h undoes one of h only where l_d(F, w, h) = -l_d(F^-1, F^-1 w, -h)");
         }
+        if !self.scene.is_self_adjoint() {
+            return Err(SetupError::NotSelfAdjoint);
+        }
         let plan = self.plan.refolded(&self.scene, -self.step_size())?;
         Ok(Self { scene: self.scene.clone(), plan })
     }
