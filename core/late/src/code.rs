@@ -1,28 +1,38 @@
 //! A program for few registers, and its interpreter.
 
+use std::collections::BTreeMap;
+
 use liestep::__private::{log_ratio, stumpff};
 use liestep::numbers::{Real, real};
 use liestep_derivation::{Operation, Program, Source};
 
-/// Straight-line code. Registers hold the inputs, then the literals, then what is computed: of these, one that isn't read
-/// any more is used again.
+/// Straight-line code. Registers hold constants, literals, inputs and what is computed: of these, one that isn't read any
+/// more is used again.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Code {
-    inputs: Vec<Source>,
+    /// What is known before a step, in the first registers: places among the constants, then literals.
+    constants: Vec<usize>,
     literals: Vec<f64>,
-    instructions: Vec<Instruction>,
+    inputs: Vec<Source>,
+    runs: Vec<Run>,
     outputs: Vec<u16>,
     registers: usize,
 }
 
+/// Operations of one kind, one after the other.
+#[derive(Clone, Debug, PartialEq)]
+struct Run {
+    operation: Arithmetic,
+    instructions: Vec<Instruction>,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Instruction {
-    operation: Arithmetic,
     operands: [u16; 2],
     result: u16,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Arithmetic {
     Negate,
     Add,
@@ -43,7 +53,6 @@ enum Arithmetic {
 pub(crate) struct Arrays<'a, T> {
     pub(crate) step: Option<T>,
     pub(crate) parameters: &'a [T],
-    pub(crate) constants: &'a [T],
     pub(crate) terms: &'a [T],
     pub(crate) advected: &'a [T],
     pub(crate) next: &'a [T],
@@ -61,7 +70,6 @@ impl<T> Default for Arrays<'_, T> {
         Self {
             step: None,
             parameters: &[],
-            constants: &[],
             terms: &[],
             advected: &[],
             next: &[],
@@ -83,7 +91,8 @@ impl<T: Real> Arrays<'_, T> {
         let found = match source {
             Source::Step => self.step.as_ref(),
             Source::Parameter(at) => self.parameters.get(at),
-            Source::Constant(at) => self.constants.get(at),
+            // It is in the image.
+            Source::Constant(_) => None,
             Source::Term(at) => self.terms.get(at),
             Source::Advected(at) => self.advected.get(at),
             Source::Next(at) => self.next.get(at),
@@ -99,53 +108,103 @@ impl<T: Real> Arrays<'_, T> {
     }
 }
 
+/// The operations in that order, each with a register for its result; `place` has those of inputs and literals, and gets
+/// those of results. With the number of registers.
+fn allocated(program: &Program, order: &[usize], place: &mut [u16]) -> Option<(Vec<Run>, usize)> {
+    let fixed = program.inputs.len() + program.literals.len();
+    // When each value is read last; an output is never done with.
+    let mut last = vec![0; place.len()];
+    for (time, &at) in order.iter().enumerate() {
+        for operand in parts(program.operations[at]).1 {
+            last[operand] = time;
+        }
+    }
+    for &output in &program.outputs {
+        last[output] = usize::MAX;
+    }
+    let (mut free, mut registers) = (Vec::new(), fixed);
+    let mut runs: Vec<Run> = Vec::new();
+    for (time, &at) in order.iter().enumerate() {
+        let (operation, read) = parts(program.operations[at]);
+        if !exists(operation) {
+            return None;
+        }
+        let operands = read.map(|value| place[value]);
+        for (value, operand) in read.into_iter().zip(operands) {
+            if value >= fixed && last[value] == time && !free.contains(&operand) {
+                free.push(operand);
+            }
+        }
+        let result = free.pop().unwrap_or_else(|| {
+            registers += 1;
+            u16::try_from(registers - 1).unwrap_or(u16::MAX)
+        });
+        place[fixed + at] = result;
+        let instruction = Instruction { operands, result };
+        match runs.last_mut() {
+            Some(run) if run.operation == operation => run.instructions.push(instruction),
+            _ => runs.push(Run { operation, instructions: vec![instruction] }),
+        }
+    }
+    u16::try_from(registers).is_ok().then_some((runs, registers))
+}
+
+/// Operations in an order in which like ones stand together: an interpreter then decides once for many what to do.
+fn by_kind(program: &Program) -> Vec<usize> {
+    let fixed = program.inputs.len() + program.literals.len();
+    let count = program.operations.len();
+    let (mut missing, mut readers) = (vec![0_usize; count], vec![Vec::new(); count]);
+    for (at, &operation) in program.operations.iter().enumerate() {
+        for operand in parts(operation).1.into_iter().filter_map(|operand| operand.checked_sub(fixed)) {
+            missing[at] += 1;
+            readers[operand].push(at);
+        }
+    }
+    let kind = |at: usize| parts(program.operations[at]).0;
+    let mut ready: BTreeMap<Arithmetic, Vec<usize>> = BTreeMap::new();
+    (0..count).filter(|&at| missing[at] == 0).for_each(|at| ready.entry(kind(at)).or_default().push(at));
+    let mut order = Vec::with_capacity(count);
+    while let Some(chosen) = ready.iter().max_by_key(|(_, ready)| ready.len()).map(|(&kind, _)| kind) {
+        // As long as there are any, those that become ready meanwhile too.
+        while let Some(at) = ready.get_mut(&chosen).and_then(Vec::pop) {
+            order.push(at);
+            for &reader in &readers[at] {
+                missing[reader] -= 1;
+                if missing[reader] == 0 {
+                    ready.entry(kind(reader)).or_default().push(reader);
+                }
+            }
+        }
+        ready.remove(&chosen);
+    }
+    order
+}
+
 impl Code {
     /// `None` of a program that needs more registers than there are names for, or a function of a higher order.
     pub(crate) fn of(program: &Program) -> Option<Self> {
         let fixed = program.inputs.len() + program.literals.len();
-        let values = fixed + program.operations.len();
-        // When each value is read last; an output is never done with.
-        let mut last = vec![0; values];
-        for (at, &operation) in program.operations.iter().enumerate() {
-            let (_, operands) = parts(operation);
-            for operand in operands {
-                last[operand] = at;
-            }
+        // A register for each input and literal, what is known before a step first.
+        let is_constant = |source: &Source| matches!(source, Source::Constant(_));
+        let inputs = || program.inputs.iter().enumerate();
+        let first = inputs().filter(|(_, source)| is_constant(source)).map(|(value, _)| value);
+        let literals = program.inputs.len()..fixed;
+        let others = inputs().filter(|(_, source)| !is_constant(source)).map(|(value, _)| value);
+        let mut place = vec![0; fixed + program.operations.len()];
+        for (register, value) in first.chain(literals).chain(others).enumerate() {
+            place[value] = u16::try_from(register).ok()?;
         }
-        for &output in &program.outputs {
-            last[output] = usize::MAX;
-        }
-        let mut place: Vec<u16> = (0..fixed).map(u16::try_from).collect::<Result<_, _>>().ok()?;
-        let (mut free, mut registers) = (Vec::new(), fixed);
-        let mut instructions = Vec::with_capacity(program.operations.len());
-        for (at, &operation) in program.operations.iter().enumerate() {
-            let (arithmetic, read) = parts(operation);
-            if !exists(arithmetic) {
-                return None;
-            }
-            let operands = read.map(|value| place[value]);
-            for (value, operand) in read.into_iter().zip(operands) {
-                if value >= fixed && last[value] == at && !free.contains(&operand) {
-                    free.push(operand);
-                }
-            }
-            let result = free.pop().map_or_else(
-                || {
-                    registers += 1;
-                    u16::try_from(registers - 1)
-                },
-                Ok,
-            );
-            let result = result.ok()?;
-            place.push(result);
-            instructions.push(Instruction { operation: arithmetic, operands, result });
-        }
-        let outputs = program.outputs.iter().map(|&output| place[output]).collect();
+        let (runs, registers) = allocated(program, &by_kind(program), &mut place)?;
+        let constants = program.inputs.iter().filter_map(|source| match source {
+            Source::Constant(at) => Some(*at),
+            _ => None,
+        });
         Some(Self {
-            inputs: program.inputs.clone(),
+            constants: constants.collect(),
             literals: program.literals.clone(),
-            instructions,
-            outputs,
+            inputs: program.inputs.iter().copied().filter(|source| !is_constant(source)).collect(),
+            runs,
+            outputs: program.outputs.iter().map(|&output| place[output]).collect(),
             registers,
         })
     }
@@ -160,38 +219,65 @@ impl Code {
         self.inputs.iter().any(same)
     }
 
-    /// Runs it, and writes what comes out.
-    pub(crate) fn run<T: Real>(&self, arrays: &Arrays<T>, results: &mut [T]) {
+    /// The first registers of every run with these constants.
+    pub(crate) fn image<T: Real>(&self, constants: &[T]) -> Box<[T]> {
+        let of = |&at: &usize| constants.get(at).copied().unwrap_or_else(|| real(f64::NAN));
+        self.constants.iter().map(of).chain(self.literals.iter().map(|&literal| real(literal))).collect()
+    }
+
+    /// Runs it, and makes something of what comes out, number by number.
+    pub(crate) fn run<T: Real, R>(
+        &self,
+        image: &[T],
+        arrays: &Arrays<T>,
+        make: impl FnOnce(&dyn Fn(usize) -> T) -> R,
+    ) -> R {
         // Registers beyond those that are used cost time to clear.
         match self.registers {
-            0..=32 => self.run_in(&mut [T::zero(); 32], arrays, results),
-            33..=64 => self.run_in(&mut [T::zero(); 64], arrays, results),
-            65..=256 => self.run_in(&mut [T::zero(); 256], arrays, results),
-            more => self.run_in(&mut vec![T::zero(); more.next_power_of_two()], arrays, results),
+            0..=32 => self.run_in(&mut [T::zero(); 32], image, arrays, make),
+            33..=64 => self.run_in(&mut [T::zero(); 64], image, arrays, make),
+            65..=128 => self.run_in(&mut [T::zero(); 128], image, arrays, make),
+            129..=256 => self.run_in(&mut [T::zero(); 256], image, arrays, make),
+            more => self.run_in(&mut vec![T::zero(); more.next_power_of_two()], image, arrays, make),
         }
     }
 
     /// In registers whose number is a power of two, so that a masked index is always in range.
     #[inline]
-    fn run_in<T: Real>(&self, registers: &mut [T], arrays: &Arrays<T>, results: &mut [T]) {
-        let Some(mask) = registers.len().checked_sub(1) else { return };
-        let literals = self.literals.iter().map(|&literal| real(literal));
-        let leaves = self.inputs.iter().map(|&source| arrays.read(source)).chain(literals);
-        registers.iter_mut().zip(leaves).for_each(|(register, leaf)| *register = leaf);
-        for &Instruction { operation, operands: [a, b], result } in &self.instructions {
-            let (a, b) = (registers[usize::from(a) & mask], registers[usize::from(b) & mask]);
-            registers[usize::from(result) & mask] = match operation {
-                Arithmetic::Negate => -a,
-                Arithmetic::Add => a + b,
-                Arithmetic::Subtract => a - b,
-                Arithmetic::Multiply => a * b,
-                Arithmetic::Divide => a / b,
-                other => function(other, a),
-            };
+    fn run_in<T: Real, R>(
+        &self,
+        registers: &mut [T],
+        image: &[T],
+        arrays: &Arrays<T>,
+        make: impl FnOnce(&dyn Fn(usize) -> T) -> R,
+    ) -> R {
+        let mask = registers.len().wrapping_sub(1);
+        let (known, open) = registers.split_at_mut(image.len().min(registers.len()));
+        known.copy_from_slice(&image[..known.len()]);
+        open.iter_mut().zip(&self.inputs).for_each(|(register, &source)| *register = arrays.read(source));
+        for Run { operation, instructions } in &self.runs {
+            match *operation {
+                Arithmetic::Negate => apply(registers, mask, instructions, |a, _| -a),
+                Arithmetic::Add => apply(registers, mask, instructions, |a, b| a + b),
+                Arithmetic::Subtract => apply(registers, mask, instructions, |a, b| a - b),
+                Arithmetic::Multiply => apply(registers, mask, instructions, |a, b| a * b),
+                Arithmetic::Divide => apply(registers, mask, instructions, |a, b| a / b),
+                other => apply(registers, mask, instructions, |a, _| function(other, a)),
+            }
         }
-        for (result, &output) in results.iter_mut().zip(&self.outputs) {
-            *result = registers[usize::from(output) & mask];
-        }
+        make(&|output| match self.outputs.get(output) {
+            Some(&register) => registers[usize::from(register) & mask],
+            None => real(f64::NAN),
+        })
+    }
+}
+
+/// The mask is one less than the number of registers, a power of two.
+#[inline]
+fn apply<T: Copy>(registers: &mut [T], mask: usize, instructions: &[Instruction], operation: impl Fn(T, T) -> T) {
+    for &Instruction { operands: [a, b], result } in instructions {
+        let value = operation(registers[usize::from(a) & mask], registers[usize::from(b) & mask]);
+        registers[usize::from(result) & mask] = value;
     }
 }
 

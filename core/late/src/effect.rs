@@ -170,14 +170,14 @@ fn entries<T: Real>(value: &impl Entries<T>) -> Vec<T> {
 
 /// The entries of small values, on the stack.
 struct List<T> {
-    entries: [T; 48],
+    entries: [T; 16],
     more: Vec<T>,
     length: usize,
 }
 
 impl<T: Real> List<T> {
     fn of(value: &impl Entries<T>) -> Self {
-        let mut list = Self { entries: [T::zero(); 48], more: Vec::new(), length: 0 };
+        let mut list = Self { entries: [T::zero(); 16], more: Vec::new(), length: 0 };
         value.each(&mut |entry| {
             match list.entries.get_mut(list.length) {
                 Some(place) => *place = entry,
@@ -197,58 +197,48 @@ impl<T: Real> List<T> {
     }
 }
 
-/// The numbers that come out of a program, one after the other.
-struct Results<T> {
-    entries: [T; 56],
-    more: Vec<T>,
-    next: usize,
+/// What comes out of a program from the given place on, as a vector.
+fn vector<T: Real, V: Entries<T>>(outputs: &dyn Fn(usize) -> T, mut from: usize) -> V {
+    V::from_entries(&mut || {
+        from += 1;
+        outputs(from - 1)
+    })
 }
 
-impl<T: Real> Results<T> {
-    fn of(code: &Code, arrays: &Arrays<T>) -> Self {
-        let mut results = Self { entries: [T::zero(); 56], more: Vec::new(), next: 0 };
-        if code.outputs() <= results.entries.len() {
-            code.run(arrays, &mut results.entries);
-        } else {
-            results.more = vec![T::zero(); code.outputs()];
-            code.run(arrays, &mut results.more);
-        }
-        results
-    }
-
-    fn number(&mut self) -> T {
-        let number = if self.more.is_empty() { self.entries.get(self.next) } else { self.more.get(self.next) };
-        self.next += 1;
-        number.copied().unwrap_or_else(|| real(f64::NAN))
-    }
-
-    fn vector<V: Entries<T>>(&mut self) -> V {
-        V::from_entries(&mut || self.number())
-    }
-
-    /// A matrix, row by row.
-    fn square<V: Coordinates<T>>(&mut self, dimension: usize) -> V::Square {
-        let rows: Vec<T> = (0..dimension * dimension).map(|_| self.number()).collect();
-        V::square(|column| {
-            let mut row = 0;
-            V::from_entries(&mut || {
-                row += 1;
-                rows[(row - 1) * dimension + column]
-            })
+/// The same as a square matrix, row by row.
+fn square<G: LieGroup>(outputs: &dyn Fn(usize) -> G::Scalar, from: usize) -> Square<G> {
+    Vector::<G>::square(|column| {
+        let mut entry = from + column;
+        Vector::<G>::from_entries(&mut || {
+            entry += G::DIMENSION;
+            outputs(entry - G::DIMENSION)
         })
-    }
+    })
 }
 
 /// The constants of a step.
 #[derive(Clone, Debug)]
 pub struct Constants<T> {
     declaration: &'static Declaration,
-    numbers: Arc<[T]>,
+    folded: Arc<Folded<T>>,
+}
+
+/// Numbers that don't change from step to step.
+#[derive(Debug, PartialEq)]
+struct Folded<T> {
+    numbers: Vec<T>,
+    /// With them the first registers of each program.
+    terms: Box<[T]>,
+    kick_before: Box<[T]>,
+    newton_system: Box<[T]>,
+    newton_residual: Box<[T]>,
+    kick_after: Box<[T]>,
+    kick_derivative: Box<[T]>,
 }
 
 impl<T: PartialEq> PartialEq for Constants<T> {
     fn eq(&self, other: &Self) -> bool {
-        std::ptr::eq(self.declaration, other.declaration) && self.numbers == other.numbers
+        std::ptr::eq(self.declaration, other.declaration) && self.folded.numbers == other.folded.numbers
     }
 }
 
@@ -317,7 +307,12 @@ where
     W: Advected<G> + Slots,
 {
     /// What a term comes to, by `F`, `w` and `h`.
-    fn term(&self, code: &Code, f: &Matrix<G>, w: &W, h: G::Scalar) -> Results<G::Scalar> {
+    fn term<R>(
+        &self,
+        code: &Code,
+        (f, w, h): (&Matrix<G>, &W, G::Scalar),
+        make: impl FnOnce(&dyn Fn(usize) -> G::Scalar) -> R,
+    ) -> R {
         let (element, advected) = (List::of(f), List::of(w));
         let inverse = code.reads(Source::Inverse).then(|| List::of(&G::from_matrix_unchecked(*f).inverse().matrix()));
         let arrays = Arrays {
@@ -328,7 +323,7 @@ where
             inverse: inverse.as_ref().map_or(&[], List::get),
             ..Arrays::default()
         };
-        Results::of(code, &arrays)
+        code.run(&code.image(&[]), &arrays, make)
     }
 }
 
@@ -373,7 +368,7 @@ where
     }
 
     fn momentum_jacobian(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> Square<G> {
-        self.term(&self.declaration.momentum_jacobian, f, w, h).square::<Vector<G>>(G::DIMENSION)
+        self.term(&self.declaration.momentum_jacobian, (f, w, h), |outputs| square::<G>(outputs, 0))
     }
 
     fn limit(&self, velocity: Option<&Vector<G>>, w: &W) -> Limit<Self> {
@@ -382,27 +377,42 @@ where
         if let (Some(velocity), Some([l, momentum, hessian])) = (velocity, &self.declaration.at_velocity) {
             let velocity = List::of(velocity);
             let arrays = Arrays { velocity: velocity.get(), ..arrays };
+            let number = |code: &Code| code.run(&code.image(&[]), &arrays, |outputs| outputs(0));
             return Limit {
-                l: Results::of(l, &arrays).number(),
-                momentum: Results::of(momentum, &arrays).vector(),
-                hessian: Results::of(hessian, &arrays).square::<Vector<G>>(G::DIMENSION),
+                l: number(l),
+                momentum: momentum.run(&momentum.image(&[]), &arrays, |outputs| vector(outputs, 0)),
+                hessian: hessian.run(&hessian.image(&[]), &arrays, |outputs| square::<G>(outputs, 0)),
             };
         }
-        let mut results = Results::of(&self.declaration.at_rest, &arrays);
-        let inertia = results.square::<Vector<G>>(G::DIMENSION);
-        let bias = results.vector();
-        Limit::quadratic(velocity, inertia, bias, results.number())
+        let code = &self.declaration.at_rest;
+        let entries = G::DIMENSION * G::DIMENSION;
+        code.run(&code.image(&[]), &arrays, |outputs| {
+            let potential = outputs(entries + G::DIMENSION);
+            Limit::quadratic(velocity, square::<G>(outputs, 0), vector(outputs, entries), potential)
+        })
     }
 
     fn constants(&self, h: G::Scalar) -> Self::Constants {
-        let code = &self.declaration.constants;
-        let mut numbers = vec![real::<G::Scalar>(0.0); code.outputs()];
-        code.run(&Arrays { step: Some(h), parameters: &self.numbers, ..Arrays::default() }, &mut numbers);
-        Constants { declaration: self.declaration, numbers: numbers.into() }
+        let Declaration { constants, terms, kick_before, newton_system, kick_after, .. } = self.declaration;
+        let arrays = Arrays { step: Some(h), parameters: &self.numbers, ..Arrays::default() };
+        let numbers: Vec<G::Scalar> =
+            constants.run(&constants.image(&[]), &arrays, |outputs| (0..constants.outputs()).map(outputs).collect());
+        let image = |code: &Code| code.image(&numbers);
+        let optional = |code: &Option<Code>| code.as_ref().map(image).unwrap_or_default();
+        let folded = Folded {
+            terms: image(terms),
+            kick_before: image(kick_before),
+            newton_system: image(newton_system),
+            newton_residual: optional(&self.declaration.newton_residual),
+            kick_after: image(kick_after),
+            kick_derivative: optional(&self.declaration.kick_derivative),
+            numbers,
+        };
+        Constants { declaration: self.declaration, folded: Arc::new(folded) }
     }
 
     fn are_finite(constants: &Self::Constants) -> bool {
-        constants.numbers.iter().all(is_finite)
+        constants.folded.numbers.iter().all(is_finite)
     }
 
     fn kick_before(constants: &Self::Constants, w: &W) -> Vector<G> {
@@ -410,40 +420,36 @@ where
             return nothing::<G>();
         }
         let advected = List::of(w);
-        let arrays = Arrays { constants: &constants.numbers, advected: advected.get(), ..Arrays::default() };
-        Results::of(&constants.declaration.kick_before, &arrays).vector()
+        let arrays = Arrays { advected: advected.get(), ..Arrays::default() };
+        constants.declaration.kick_before.run(&constants.folded.kick_before, &arrays, |outputs| vector(outputs, 0))
     }
 
     fn kick_derivative(constants: &Self::Constants, w: &W, velocity: &Vector<G>) -> Option<Vector<G>> {
         let code = constants.declaration.kick_derivative.as_ref()?;
         let (advected, velocity) = (List::of(w), List::of(velocity));
-        let arrays = Arrays {
-            constants: &constants.numbers,
-            advected: advected.get(),
-            velocity: velocity.get(),
-            ..Arrays::default()
-        };
-        Some(Results::of(code, &arrays).vector())
+        let arrays = Arrays { advected: advected.get(), velocity: velocity.get(), ..Arrays::default() };
+        Some(code.run(&constants.folded.kick_derivative, &arrays, |outputs| vector(outputs, 0)))
     }
 
     fn step_terms(constants: &Self::Constants, a: &Vector<G>, w: &W) -> Self::StepTerms {
         let (target, advected) = (List::of(a), List::of(w));
         let mut numbers = [real::<G::Scalar>(0.0); MOST_TERMS];
-        let arrays = Arrays {
-            constants: &constants.numbers,
-            target: target.get(),
-            advected: advected.get(),
-            ..Arrays::default()
-        };
-        constants.declaration.terms.run(&arrays, &mut numbers);
+        let arrays = Arrays { target: target.get(), advected: advected.get(), ..Arrays::default() };
+        let code = &constants.declaration.terms;
+        code.run(&constants.folded.terms, &arrays, |outputs| {
+            numbers.iter_mut().take(code.outputs()).enumerate().for_each(|(at, number)| *number = outputs(at));
+        });
         StepTerms { right_side: *a, advected: *w, numbers }
     }
 
     fn newton_system(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> (Vector<G>, Square<G>) {
         let declaration = constants.declaration;
         let code = &declaration.newton_system;
-        let mut results = iteration::<G, W>(code, constants, terms, half);
-        let (residual, jacobian) = (results.vector(), results.square::<Vector<G>>(G::DIMENSION));
+        let image = &constants.folded.newton_system;
+        let (residual, jacobian): (Vector<G>, Square<G>) =
+            iteration::<G, W, _>((code, image), constants, terms, half, |outputs| {
+                (vector(outputs, 0), square::<G>(outputs, G::DIMENSION))
+            });
         if !declaration.in_increment {
             return (residual, jacobian);
         }
@@ -455,8 +461,11 @@ where
         let Some(code) = &constants.declaration.newton_residual else {
             return Residual { momentum_defect: Self::newton_system(constants, terms, half).0, moving_kick: None };
         };
-        let mut results = iteration::<G, W>(code, constants, terms, half);
-        Residual { momentum_defect: results.vector(), moving_kick: Some(results.vector()) }
+        let image = &constants.folded.newton_residual;
+        iteration::<G, W, _>((code, image), constants, terms, half, |outputs| Residual {
+            momentum_defect: vector(outputs, 0),
+            moving_kick: Some(vector(outputs, G::DIMENSION)),
+        })
     }
 
     fn kick_after(constants: &Self::Constants, increment: &Matrix<G>, next: &W) -> Vector<G> {
@@ -467,13 +476,12 @@ where
         let (entries, next) = (List::of(increment), List::of(next));
         let inverse = code.reads(Source::Inverse).then(|| List::of(&G::from_increment(increment).inverse().matrix()));
         let arrays = Arrays {
-            constants: &constants.numbers,
             increment: entries.get(),
             next: next.get(),
             inverse: inverse.as_ref().map_or(&[], List::get),
             ..Arrays::default()
         };
-        Results::of(code, &arrays).vector()
+        code.run(&constants.folded.kick_after, &arrays, |outputs| vector(outputs, 0))
     }
 }
 
@@ -483,12 +491,13 @@ fn nothing<G: LieGroup>() -> Vector<G> {
 }
 
 /// What an iteration computes.
-fn iteration<G: LieGroup, W: Advected<G>>(
-    code: &Code,
+fn iteration<G: LieGroup, W: Advected<G>, R>(
+    (code, image): (&Code, &[G::Scalar]),
     constants: &Constants<G::Scalar>,
     terms: &StepTerms<G::Scalar, Vector<G>, W>,
     half: &Vector<G>,
-) -> Results<G::Scalar>
+    make: impl FnOnce(&dyn Fn(usize) -> G::Scalar) -> R,
+) -> R
 where
     CayleyRetraction: Retraction<G>,
 {
@@ -504,7 +513,6 @@ where
         is_cut(Source::Advected).then(|| List::of(&terms.advected)),
     );
     let arrays = Arrays {
-        constants: &constants.numbers,
         terms: &terms.numbers,
         half: coordinates.get(),
         increment: increment.as_ref().map_or(&[], List::get),
@@ -513,7 +521,7 @@ where
         advected: advected.as_ref().map_or(&[], List::get),
         ..Arrays::default()
     };
-    Results::of(code, &arrays)
+    code.run(image, &arrays, make)
 }
 
 impl<G, W, K> DiscreteLagrangian for Late<G, W, K>
@@ -531,7 +539,10 @@ where
     }
 
     fn l_d(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> G::Scalar {
-        self.declaration.lagrangian.as_ref().map_or(real(0.0), |terms| self.term(&terms.l_d, f, w, h).number())
+        self.declaration
+            .lagrangian
+            .as_ref()
+            .map_or(real(0.0), |terms| self.term(&terms.l_d, (f, w, h), |outputs| outputs(0)))
     }
 
     fn right_momentum(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> Vector<G> {
@@ -552,7 +563,7 @@ where
 
     fn discrete_energy(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> G::Scalar {
         let terms = self.declaration.lagrangian.as_ref();
-        terms.map_or(real(0.0), |terms| self.term(&terms.discrete_energy, f, w, h).number())
+        terms.map_or(real(0.0), |terms| self.term(&terms.discrete_energy, (f, w, h), |outputs| outputs(0)))
     }
 }
 
@@ -569,6 +580,6 @@ where
         h: G::Scalar,
     ) -> Vector<G> {
         let terms = self.declaration.lagrangian.as_ref();
-        terms.map_or_else(Vector::<G>::zero, |terms| self.term(code(terms), f, w, h).vector())
+        terms.map_or_else(Vector::<G>::zero, |terms| self.term(code(terms), (f, w, h), |outputs| vector(outputs, 0)))
     }
 }

@@ -40,40 +40,41 @@ impl Generators<3, 3> for SE2Generators {
 
     fn relation<T: RealField + Copy>(m: &SMatrix<T, 3, 3>) -> T {
         let rotation = rotation_defect_squared(m[(0, 0)], m[(0, 1)], m[(1, 0)], m[(1, 1)]);
-        (rotation + last_row_defect_squared(m)).sqrt()
+        (rotation + rows_defect_squared::<2, _, _>(m)).sqrt()
     }
 
     fn inverse<T: RealField + Copy>(m: &SMatrix<T, 3, 3>) -> SMatrix<T, 3, 3> {
-        rigid_inverse(m)
+        rigid_inverse::<2, _, _>(m)
     }
 
     fn is_near_identity<T: RealField + Copy>(algebra: &SMatrix<T, 3, 3>) -> bool {
-        rotates_little(algebra)
+        rotates_little::<2, _, _>(algebra)
     }
 }
 
-/// The square of the distance of the last row from `(0, …, 0, 1)`.
-pub(super) fn last_row_defect_squared<T: RealField + Copy, const N: usize>(m: &SMatrix<T, N, N>) -> T {
-    (m.row(N - 1) - SMatrix::<T, N, N>::identity().row(N - 1)).norm_squared()
+/// The square of the distance of the rows below the rotation, whose size is `K`, from those of the identity.
+pub(super) fn rows_defect_squared<const K: usize, T: RealField + Copy, const N: usize>(m: &SMatrix<T, N, N>) -> T {
+    (m - SMatrix::identity()).rows(K, N - K).norm_squared()
 }
 
-/// `[Rᵀ, −Rᵀx; 0, 1]`.
-pub(super) fn rigid_inverse<T: RealField + Copy, const N: usize>(m: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
-    SMatrix::from_fn(|i, j| match (i + 1 < N, j + 1 < N) {
+/// `[Rᵀ, −Rᵀx; 0, I]`, of a rotation of size `K`.
+pub(super) fn rigid_inverse<const K: usize, T: RealField + Copy, const N: usize>(
+    m: &SMatrix<T, N, N>,
+) -> SMatrix<T, N, N> {
+    SMatrix::from_fn(|i, j| match (i < K, j < K) {
         (true, true) => m[(j, i)],
-        (true, false) => -(0..N - 1).fold(T::zero(), |sum, k| sum + m[(k, i)] * m[(k, N - 1)]),
-        (false, true) => T::zero(),
-        (false, false) => T::one(),
+        (true, false) => -(0..K).fold(T::zero(), |sum, k| sum + m[(k, i)] * m[(k, j)]),
+        _ if i == j => T::one(),
+        _ => T::zero(),
     })
 }
 
-/// Whether the rotation part is below one radian, whatever the translation is.
+/// Whether the rotation part is below one radian, whatever the translations are.
 ///
 /// The momentum of a translation is linear in it, so that it can't lead to another branch.
-pub(super) fn rotates_little<T: RealField + Copy, const N: usize>(algebra: &SMatrix<T, N, N>) -> bool {
+pub(super) fn rotates_little<const K: usize, T: RealField + Copy, const N: usize>(algebra: &SMatrix<T, N, N>) -> bool {
     // In a skew matrix each component stands twice.
-    let twice = algebra.norm_squared() - algebra.column(N - 1).norm_squared();
-    twice < T::one() + T::one()
+    algebra.columns(0, K).norm_squared() < T::one() + T::one()
 }
 
 impl<T: RealField + Copy> SE2<T> {

@@ -1,9 +1,11 @@
 //! The extended poses of inertial navigation.
 
-use nalgebra::{Matrix3, RealField, Rotation3, SMatrix, UnitQuaternion, Vector3};
+use nalgebra::{RealField, Rotation3, SMatrix, UnitQuaternion, Vector3};
 
 use super::generators::{Generators, matrix};
 use super::matrix_group::MatrixGroup;
+use super::se2::{rigid_inverse, rotates_little};
+use super::se3::rigid_defect;
 
 /// The group SE₂(3) of extended poses: an attitude, a velocity and a place.
 ///
@@ -35,6 +37,7 @@ pub type SE23<T = f64> = MatrixGroup<SE23Generators, T, 5, 9>;
 
 /// Declares [`SE23`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct SE23Generators;
 
 impl Generators<5, 9> for SE23Generators {
@@ -51,24 +54,15 @@ impl Generators<5, 9> for SE23Generators {
     ];
 
     fn relation<T: RealField + Copy>(m: &SMatrix<T, 5, 5>) -> T {
-        let rotation = m.fixed_view::<3, 3>(0, 0);
-        let gram = rotation.transpose() * rotation - Matrix3::identity();
-        let determinant = rotation.determinant() - T::one();
-        let rows = (m - SMatrix::identity()).fixed_rows::<2>(3).norm_squared();
-        (gram.norm_squared() + determinant * determinant + rows).sqrt()
+        rigid_defect(m)
     }
 
     fn inverse<T: RealField + Copy>(m: &SMatrix<T, 5, 5>) -> SMatrix<T, 5, 5> {
-        let back = m.fixed_view::<3, 3>(0, 0).transpose();
-        let mut inverse = SMatrix::<T, 5, 5>::identity();
-        inverse.fixed_view_mut::<3, 3>(0, 0).copy_from(&back);
-        inverse.fixed_view_mut::<3, 2>(0, 3).copy_from(&(-back * m.fixed_view::<3, 2>(0, 3)));
-        inverse
+        rigid_inverse::<3, _, _>(m)
     }
 
-    /// As of rigid motions, whatever velocity and place are.
     fn is_near_identity<T: RealField + Copy>(algebra: &SMatrix<T, 5, 5>) -> bool {
-        algebra.fixed_view::<3, 3>(0, 0).norm_squared() < T::one() + T::one()
+        rotates_little::<3, _, _>(algebra)
     }
 }
 

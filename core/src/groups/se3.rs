@@ -4,7 +4,7 @@ use nalgebra::{Isometry3, Matrix3, RealField, Rotation3, SMatrix, UnitQuaternion
 
 use super::generators::{Generators, matrix};
 use super::matrix_group::MatrixGroup;
-use super::se2::{last_row_defect_squared, rigid_inverse, rotates_little};
+use super::se2::{rigid_inverse, rotates_little, rows_defect_squared};
 
 /// The group SE(3) of rigid motions of space.
 ///
@@ -48,19 +48,24 @@ impl Generators<4, 6> for SE3Generators {
     ];
 
     fn relation<T: RealField + Copy>(m: &SMatrix<T, 4, 4>) -> T {
-        let rotation = m.fixed_view::<3, 3>(0, 0);
-        let gram = rotation.transpose() * rotation - Matrix3::identity();
-        let determinant = rotation.determinant() - T::one();
-        (gram.norm_squared() + determinant * determinant + last_row_defect_squared(m)).sqrt()
+        rigid_defect(m)
     }
 
     fn inverse<T: RealField + Copy>(m: &SMatrix<T, 4, 4>) -> SMatrix<T, 4, 4> {
-        rigid_inverse(m)
+        rigid_inverse::<3, _, _>(m)
     }
 
     fn is_near_identity<T: RealField + Copy>(algebra: &SMatrix<T, 4, 4>) -> bool {
-        rotates_little(algebra)
+        rotates_little::<3, _, _>(algebra)
     }
+}
+
+/// How far a matrix is from `[R, X; 0, I]` with a rotation of space.
+pub(super) fn rigid_defect<T: RealField + Copy, const N: usize>(m: &SMatrix<T, N, N>) -> T {
+    let rotation = m.fixed_view::<3, 3>(0, 0);
+    let gram = rotation.transpose() * rotation - Matrix3::identity();
+    let determinant = rotation.determinant() - T::one();
+    (gram.norm_squared() + determinant * determinant + rows_defect_squared::<3, _, _>(m)).sqrt()
 }
 
 impl<T: RealField + Copy> SE3<T> {

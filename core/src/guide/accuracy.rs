@@ -4,24 +4,30 @@
 //!
 //! # Which method
 //!
-//! | you have | take |
-//! |---|---|
-//! | an error in mind, and a time | [`Stepper::for_accuracy`](crate::Stepper::for_accuracy): it tries, and chooses method and step |
-//! | long runs whose invariants matter more than the phase | the scene's own step, [`Stepper::new`](crate::Stepper::new) |
-//! | any scene, and errors below 1e-3 | a [composition](crate::methods::CompositionScheme), [`Stepper::composed`](crate::Stepper::composed) |
-//! | one body on SO(3) under a potential | a splitting with the [exact motion](crate::methods::ExactBody) of the body, [`Stepper::split`](crate::Stepper::split); many steps and few looks: [`Stepper::processed`](crate::Stepper::processed) |
-//! | the same to ten digits and more, or with steps near the limit | [Gauss collocation](crate::methods::Gauss), [`Stepper::collocated`](crate::Stepper::collocated) |
-//! | a body that nothing acts on | the exact motion: a splitting with no kick, over any time in one step |
-//! | a continuous `l(ξ, w)` that no discrete one is declared of | [`CotangentGauss`](crate::methods::CotangentGauss) |
+//! * **If you know the error that you can afford, and the time**, ask:
+//!   [`Stepper::for_accuracy`](crate::Stepper::for_accuracy) tries the methods, and chooses one with its step.
+//! * **If a run is long and its invariants matter more than its phase**, take the scene's own step,
+//!   [`Stepper::new`](crate::Stepper::new).
+//! * **If errors are to be below 1e-3**, take a [composition](crate::methods::CompositionScheme) of that step,
+//!   [`Stepper::composed`](crate::Stepper::composed). It works on every group.
+//! * **If one body turns on SO(3) under a potential**, take a splitting with the
+//!   [exact motion](crate::methods::ExactBody) of the body, [`Stepper::split`](crate::Stepper::split): it solves nothing.
+//!   If its states are looked at seldom, take a processed one, [`Stepper::processed`](crate::Stepper::processed).
+//! * **If ten digits and more are asked for, or steps come near the limit**, take
+//!   [Gauss collocation](crate::methods::Gauss), [`Stepper::collocated`](crate::Stepper::collocated).
+//! * **If nothing acts on the body**, take the exact motion: a splitting with no kick, over any time in one step.
+//! * **If bodies are held by joints**, take [`Stepper::jointed`](crate::Stepper::jointed). If they hang in a row, each on
+//!   the one before, take [`Stepper::linked`](crate::Stepper::linked).
+//! * **If there is a continuous `l(ξ, w)` and no discrete one**, take [`CotangentGauss`](crate::methods::CotangentGauss).
 //!
-//! [`methods`](crate::methods) is the table of what each needs and keeps. What goes with them depends on what they make:
+//! What a method needs may decide:
 //!
-//! | made by | is | goes with |
-//! |---|---|---|
-//! | `new` | a [`Stepper`](crate::Stepper) | recording, events, substeps, checkpoints, a force given at each step, scenes with a declared [`force`](macro@crate::force) |
-//! | `composed`, `split`, `processed`, `collocated` | a `Stepper` | the same, but for scenes with a declared `force`, which they don't take |
-//! | `for_accuracy` | an [`AccurateStepper`](crate::accuracy::AccurateStepper), with its start | recording and events |
-//! | `CotangentGauss` | a map of its own | recording and events |
+//! * If the scene has a declared [`force`](macro@crate::force), take `new`: the others don't take it.
+//! * If there is to be a checkpoint, or a force given at each step, don't take `CotangentGauss` or what `for_accuracy`
+//!   returns: they go with recording and events alone.
+//! * If the inertia depends on what is advected, or a rotor turns within the body, it can't be split: compose.
+//!
+//! [`methods`](crate::methods) is the table of what each needs and keeps.
 //!
 //! # The order is the declaration's
 //!

@@ -46,8 +46,9 @@
 //! at once, each with the bits that it has alone. It may be one body, bodies that are declared together, as a top on a
 //! cart, or a [system](crate::mechanics::Placed) of many with springs between them; bodies in joints and chains go one by
 //! one. [`Batch`](crate::motion::Batch) puts steppers and states into lanes and takes them out; where the step of one has
-//! no solution that one stops with its error, and the others go on. Its page has a listing. Eight tops in `f64` gain 3.6 times with AVX2, without compiling for one machine
-//! (`cargo bench --bench lanes`), scenes of several bodies 1.1 to 1.7 times.
+//! no solution that one stops with its error, and the others go on. Its page has a listing. Eight tops in `f64` gain 3.9
+//! times with AVX2, without compiling for one machine (`cargo bench --bench lanes`), scenes of several bodies 1.2 to 2.0
+//! times.
 //!
 //! # Members, files, clusters
 //!

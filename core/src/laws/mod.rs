@@ -2,9 +2,14 @@
 //!
 //! They are run at the identity, next to it and at random places, with a fixed seed, so that a failure repeats.
 
+// Named by what the macros expand to.
+#[doc(hidden)]
 pub mod advected;
+#[doc(hidden)]
 pub mod group;
+#[doc(hidden)]
 pub mod retraction;
+#[doc(hidden)]
 pub mod samples;
 
 #[doc(inline)]

@@ -88,16 +88,17 @@ impl<T: Real, V: Coordinates<T>> NewtonUpdate<V, V::Square, T> {
     }
 }
 
-/// One of Newton's iterations, by this residual and Jacobian unless neighbours are joined.
+/// One of Newton's iterations, by residual and Jacobian unless neighbours are joined.
+///
+/// It names the function: one that is given would be called, without the machine's vector instructions.
 #[hot]
-pub(crate) fn update_by<E: Effect + ?Sized>(
-    system: impl FnOnce(&E::Constants, &E::StepTerms, &Vector<E>) -> (Vector<E>, Square<E>),
+pub(crate) fn update_of<E: Effect + ?Sized>(
     constants: &E::Constants,
     terms: &E::StepTerms,
     half: &Vector<E>,
 ) -> NewtonUpdate<Vector<E>, Square<E>, Scalar<E>> {
     if const { !E::LINKS_NEIGHBOURS } {
-        let (residual, jacobian) = system(constants, terms, half);
+        let (residual, jacobian) = E::newton_system(constants, terms, half);
         return NewtonUpdate::of(&residual, &jacobian, pattern::<E>());
     }
     let mut links = Vector::<E>::no_links();
@@ -321,14 +322,7 @@ pub trait Effect: Term {
         terms: &Self::StepTerms,
         half: &Vector<Self>,
     ) -> NewtonUpdate<Vector<Self>, Square<Self>, Self::Scalar> {
-        // The function itself would be called through `FnOnce`, without the machine's vector instructions.
-        update_by::<Self>(
-            #[cfg_attr(not(debug_assertions), inline(always))]
-            |constants, terms, half| Self::newton_system(constants, terms, half),
-            constants,
-            terms,
-            half,
-        )
+        update_of::<Self>(constants, terms, half)
     }
 
     /// [`newton_system`](Self::newton_system), with the blocks that join neighbours in a row of bodies added to those that

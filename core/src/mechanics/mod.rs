@@ -29,7 +29,7 @@ pub use effect::{
 };
 pub(crate) use effect::{
     check_inertia, check_velocity, constant_inertia, energy, estimated_velocity, factored_inertia,
-    momentum_of_velocity, pattern, update_by, velocity_and_energy, velocity_of_momentum,
+    momentum_of_velocity, pattern, update_of, velocity_and_energy, velocity_of_momentum,
 };
 pub use force::Force;
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};

@@ -8,7 +8,7 @@ use crate::error::SetupError;
 use crate::groups::LieGroup;
 use crate::mechanics::description::SceneVisitor;
 use crate::mechanics::effect::{
-    Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, update_by,
+    Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, update_of,
 };
 use crate::mechanics::kinetic_part::KineticPart;
 use crate::mechanics::lagrangian::DiscreteLagrangian;
@@ -266,14 +266,7 @@ where
         half: &Vector<Self>,
     ) -> NewtonUpdate<Vector<Self>, Square<Self>, Self::Scalar> {
         of_those_with!(
-            unknown: update_by::<Self>(
-                #[allow(clippy::redundant_closure)] // the function itself wouldn't be inlined
-                #[cfg_attr(not(debug_assertions), inline(always))]
-                |constants, terms, half| Self::newton_system(constants, terms, half),
-                constants,
-                terms,
-                half,
-            ),
+            unknown: update_of::<Self>(constants, terms, half),
             A::newton_update(&constants.0, &terms.0, half),
             B::newton_update(&constants.1, &terms.1, half),
         )

@@ -11,7 +11,7 @@ use super::iteration::{
 use super::problem::{Problem, newton_system, step_terms};
 use crate::error::StepError;
 use crate::groups::{LieGroup, Retraction, SquareOf};
-use crate::mechanics::{Effect, Group, NewtonUpdate, Square, Vector, pattern, update_by};
+use crate::mechanics::{Effect, Group, NewtonUpdate, Square, Vector, pattern, update_of};
 use crate::numbers::{Coordinates as _, Mask, Pattern, nowhere, real, reported};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
 
@@ -78,7 +78,11 @@ impl<L: Effect> System<Group<L>> for CalledEquation<'_, L> {
     }
 
     fn newton_update(&self, half: &Vector<L>) -> Iteration<Group<L>> {
-        update_by::<L>(newton_system::<L>, self.problem.constants, &self.terms, half)
+        if const { L::LINKS_NEIGHBOURS } {
+            return update_of::<L>(self.problem.constants, &self.terms, half);
+        }
+        let (residual, jacobian) = self.newton_system(half);
+        NewtonUpdate::of(&residual, &jacobian, self.pattern())
     }
 
     fn residual(&self, half: &Vector<L>) -> Vector<L> {

@@ -62,7 +62,7 @@ pub(crate) struct Kick<G: LieGroup> {
 
 impl<G: LieGroup> Kick<G> {
     #[hot]
-    fn none() -> Self {
+    pub(super) fn none() -> Self {
         Self { value: G::Vector::zero(), found: nowhere::<G::Scalar>() }
     }
 }

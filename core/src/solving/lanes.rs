@@ -8,7 +8,7 @@
 
 use core::hint::black_box;
 
-use super::iteration::{Lanes, MAX_ITERATIONS, Root, System, settled};
+use super::iteration::{Kick, Lanes, MAX_ITERATIONS, Root, System, settled};
 use super::problem::{InlinedEquation, Problem};
 use super::reused_jacobian::{has_no_derivatives, has_sufficed, may_suffice};
 use crate::mechanics::{Effect, Group, Scalar, Vector};
@@ -31,6 +31,7 @@ impl<L: Effect> Problem<'_, L> {
         if settled.all() {
             return self.usual(&half, made.det, 1, largest);
         }
+        let mut started = None;
         // As in `reuse_jacobian`: with one function for both, lanes were a quarter slower.
         if REUSE
             && has_no_derivatives::<Scalar<L>>()
@@ -40,17 +41,25 @@ impl<L: Effect> Problem<'_, L> {
             if is_near.all() {
                 let second = equation.simplified(factors, made.det, &half);
                 let half = half - second;
-                if has_sufficed(first, second.dot(&second), half.dot(&half)).all() {
+                let settled = has_sufficed(first, second.dot(&second), half.dot(&half));
+                if settled.all() {
                     return self.usual(&half, made.det, 2, largest);
                 }
+                // Through memory: what is made of lanes by masks would otherwise be mixed with the code above, which
+                // takes half as long again.
+                let (half, det, settled) = black_box((half, made.det, settled));
+                started = Some(Lanes { half, det, settled, kick: Kick::none() });
             }
         }
-        // Through memory: what is made of lanes by masks would otherwise be mixed with the code above, which takes half
-        // as long again.
-        let made = black_box(made);
-        let mut lanes = Lanes::starting_at(guess);
-        lanes.advance(&made.update, made.det, &made.update);
-        let again = lanes.reuse_jacobian::<REUSE>(equation, &made, self.safe);
+        let (mut lanes, again) = match started {
+            Some(lanes) => (lanes, false),
+            None => {
+                let (made, mut lanes) = (black_box(made), Lanes::starting_at(guess));
+                lanes.advance(&made.update, made.det, &made.update);
+                let again = lanes.reuse_jacobian::<REUSE>(equation, &made, self.safe);
+                (lanes, again)
+            }
+        };
         let iterations = if lanes.settled.all() {
             1 + u32::from(again)
         } else {

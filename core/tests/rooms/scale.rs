@@ -7,7 +7,7 @@ use std::path::Path;
 use super::{code, root};
 
 /// The lines of the longest file and function, and of the median file in `core` and `macros`.
-const LENGTHS: [usize; 3] = [587, 102, 134];
+const LENGTHS: [usize; 3] = [574, 81, 134];
 
 /// The lines of each room and package, and of each room of the library the names that it makes public.
 #[rustfmt::skip]
@@ -22,7 +22,7 @@ const BUDGETS: [(&str, usize, usize); 36] = [
     ("macros/derivation/src/judged", 6297, 0), ("macros/derivation/src/declared", 4978, 0), ("macros/derivation/src/program", 2538, 0),
     ("macros/derivation/src/mathematics", 4799, 0), ("macros/derivation/declarations", 145, 0), ("core/scene", 5001, 0),
     ("core/cli", 2655, 0), ("core/plot", 774, 0), ("core/ensemble", 4670, 0), ("core/arrow", 220, 0),
-    ("examples", 12794, 0), ("tests", 27249, 0), ("tests/ui", 5608, 0),
+    ("examples", 12557, 0), ("tests", 26903, 0), ("tests/ui", 4184, 0),
 ];
 
 /// The circles that are still there. Lines may go, and none be added.

@@ -8,9 +8,7 @@ use alloc::vec::Vec;
 
 use crate::error::{SetupError, StepError};
 use crate::gradients::{Change, Linearisable, Pass, Stage as Linear};
-use crate::mechanics::{
-    DiscreteLagrangian, Effect, Group, Matrix, Regular, Scalar, SceneVisitor, SecondDerivatives, Vector,
-};
+use crate::mechanics::{DiscreteLagrangian, Effect, Group, Regular, Scalar, SceneVisitor, SecondDerivatives, Vector};
 use crate::motion::{
     Cost, Declared, Motion, Plan, Steerable, StepReport, Stepper, Summation, beyond_solvable, half_coordinates,
 };
@@ -175,16 +173,7 @@ impl<S: Effect> Plan<S> for Composed<S> {
         let (mut next, mut guess) = (*motion, *kept);
         let mut iterations = 0;
         for stage in &self.stages {
-            let (now, declared) = (next.now(), &self.substeps[stage.substep]);
-            let turned = {
-                #[cfg_attr(not(debug_assertions), inline(always))]
-                |increment: &Matrix<S>| next.turned(increment)
-            };
-            let stepped = if const { M::CARRIES } {
-                declared.increment_from::<true>(scene, &now.momentum, &now.advected, &guess.next, &turned)?
-            } else {
-                declared.increment_from::<false>(scene, &now.momentum, &now.advected, &guess.next, &turned)?
-            };
+            let stepped = self.substeps[stage.substep].increment_from(scene, &next, &guess.next)?;
             next.proceed(&stepped.increment, &stepped.change, (stepped.momentum, stepped.advected));
             let half = stepped.half;
             guess = Guess { half, next: stage.half_guess(half, stepped.far, guess.half) };

@@ -1,11 +1,12 @@
 //! The flow on momenta, (2.8).
 
 use crate::error::{SetupError, StepError};
-use crate::groups::Advected as _;
-use crate::mechanics::{Effect, Group, Matrix, Regular, Scalar, Vector};
+use crate::groups::LieGroup as _;
+use crate::mechanics::{Effect, Group, Regular, Scalar, Vector};
 use crate::motion::declared::Declared;
 use crate::motion::increment::Increment;
 use crate::motion::plan::Plan as _;
+use crate::motion::summation::Motion;
 use crate::numbers::real;
 use crate::solving::Solvability;
 
@@ -91,8 +92,9 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         advected: &L::Advected,
         half_guess: &Vector<L>,
     ) -> Result<Increment<L>, StepError> {
-        let turned = |increment: &Matrix<L>| advected.advect(increment);
-        self.declared.increment_from::<false>(&self.scene, momentum, advected, half_guess, &turned)
+        // No attitude goes into a step.
+        let motion = Motion { attitude: Group::<L>::identity(), momentum: *momentum, advected: *advected, steps: 0 };
+        self.declared.increment_from(&self.scene, &motion, half_guess)
     }
 
     /// Whether the step from `(μ, w)` surely has a solution or surely has none, where bounds are known: for the kinetic
