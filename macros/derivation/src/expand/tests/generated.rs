@@ -330,7 +330,7 @@ fn compile(declarations: &[String]) {
     );
     fs::write(folder.join("Cargo.toml"), manifest).expect("a file");
     fs::copy(core.join("../Cargo.lock"), folder.join("Cargo.lock")).expect("a file");
-    let uses = "use liestep::{NonstandardInertia, force, lagrangian}; use nalgebra::{Matrix3, Vector3};";
+    let uses = "use liestep::groups::{R3, SE2, SO3}; use liestep::{NonstandardInertia, force, lagrangian}; use nalgebra::{Matrix3, Vector3};";
     let module = |(at, text): (usize, &String)| format!("pub mod m{at} {{ {uses} {text} }}\n");
     let text: String = declarations.iter().enumerate().map(module).collect();
     fs::write(folder.join("src/lib.rs"), format!("#![allow(non_snake_case, unused)]\n{text}")).expect("a file");
