@@ -8,7 +8,6 @@ use liestep::prelude::*;
 
 use crate::rivals::dop853::Dop853;
 use crate::rivals::embedded::{self, Embedded};
-use crate::rivals::library;
 use crate::rivals::rates::{Rates, rk4_step};
 use crate::rivals::tsitouras::Tsitouras5;
 use crate::rivals::verner::Verner9;
@@ -246,20 +245,10 @@ fn rivals<E: Rates>(equations: impl Fn(&Scene) -> E + Copy + 'static) -> Vec<Met
             Some(equations.end(&y))
         }))
     });
-    let of_a_library = Method::new(
-        "DOP853 of a library",
-        Family::Rival,
-        Control::Tolerance(Dop853::POWER),
-        move |scene, t, tolerance| {
-            let (equations, start) = (equations(scene), scene.start());
-            Some(Box::new(move || Some(equations.end(&library::integrate(&equations, t, tolerance, start)?))))
-        },
-    );
     let mut rivals = vec![classical];
     rivals.extend(embedded::<Tsitouras5, E>(equations));
     rivals.extend(embedded::<Dop853, E>(equations));
     rivals.extend(embedded::<Verner9, E>(equations));
-    rivals.push(of_a_library);
     rivals
 }
 

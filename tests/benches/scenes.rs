@@ -34,10 +34,7 @@ use counting::{Uncounted, built, instructions};
 use stepping::{Begin, Count, Time, Visit};
 
 /// Body and rotor in one piece.
-#[lagrangian(
-    group = SO3,
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + spin.dot(&vee(F)),
-)]
+#[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + spin.dot(&vee(F)))]
 struct Gyrostat {
     J_d: DiagonalNonstandardInertia,
     spin: Vector3<f64>,

@@ -1,46 +1,13 @@
-//! How to declare a group, and a kind of parameter it carries: the affine maps `x ↦ a x + b` of the line, `a > 0`.
+//! A kind of parameter of one's own, and what is computed for a group of one's own, the affine maps `x ↦ a x + b`. How to
+//! declare it, with its laws as tests, is `examples/how-to-add-a-group.rs`.
 
-use liestep::groups::matrix;
-use liestep::groups::{
-    Advected, CayleyRetraction, ExponentialRetraction, Generators, LieGroup as _, MatrixGroup, NotInGroup,
-    Retraction as _,
-};
+use checks::affine::Affine;
+use liestep::groups::{Advected, CayleyRetraction, ExponentialRetraction, LieGroup as _, NotInGroup, Retraction as _};
 use liestep::numbers::Entries;
-use nalgebra::{Matrix2, RealField, SMatrix, Vector2};
+use nalgebra::{Matrix2, Vector2};
 
-/// The group, under an alias: matrices `[a, b; 0, 1]`, of size 2 and dimension 2.
-type Affine<T = f64> = MatrixGroup<AffineGenerators, T, 2, 2>;
-
-/// A marker type names it; the basis of its algebra and the relation of its matrices declare it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct AffineGenerators;
-
-impl Generators<2, 2> for AffineGenerators {
-    const GENERATORS: [[[f64; 2]; 2]; 2] = [matrix(&[(0, 0, 1.0)]), matrix(&[(0, 1, 1.0)])];
-
-    fn relation<T: RealField + Copy>(m: &SMatrix<T, 2, 2>) -> T {
-        m.m21.abs() + (m.m22 - T::one()).abs()
-    }
-}
-
-/// Its laws. The first call is all that a declaration needs; the others are for what is used with it.
-mod laws {
-    use super::{Affine, Density};
-
-    liestep::lie_group_laws!(Affine);
-    liestep::advected_laws!(Affine);
-
-    mod cayley {
-        liestep::retraction_laws!(super::Affine, liestep::groups::CayleyRetraction);
-    }
-
-    mod exponential {
-        liestep::retraction_laws!(super::Affine, liestep::groups::ExponentialRetraction);
-    }
-
-    mod density {
-        liestep::advected_laws!(super::Affine, super::Density);
-    }
+mod density {
+    liestep::advected_laws!(super::Affine, super::Density);
 }
 
 /// A parameter of one's own: a mass per length, which a map that stretches the line by `a` divides by `a`.
@@ -84,27 +51,15 @@ impl Entries<f64> for Density {
     }
 }
 
-/// An element by its two numbers, checked.
-fn affine(a: f64, b: f64) -> Result<Affine, NotInGroup> {
-    Affine::try_from(Matrix2::new(a, b, 0.0, 1.0))
-}
-
-#[test]
-fn an_element_maps_the_line() -> Result<(), NotInGroup> {
-    let (f, g) = (affine(2.0, 1.0)?, affine(3.0, 5.0)?);
-    // 2 (3 x + 5) + 1
-    assert_eq!(f.compose(&g), affine(6.0, 11.0)?);
-    assert_eq!(f.inverse(), affine(0.5, -0.5)?);
-    Ok(())
-}
-
 #[test]
 fn what_is_not_affine_is_refused() {
+    let element = |a: f64, b: f64| Affine::try_from(Matrix2::new(a, b, 0.0, 1.0));
+    assert_eq!(element(2.0, 1.0).unwrap().inverse(), element(0.5, -0.5).unwrap());
     let error = Affine::try_from(Matrix2::new(2.0, 1.0, 0.25, 1.0)).unwrap_err();
     assert_eq!(error, NotInGroup { defect: 0.25 });
     assert!(error.to_string().contains("2.5e-1"));
     // The relation is about the second row only.
-    assert!(affine(f64::NAN, 0.0).is_err() && affine(1.0, f64::INFINITY).is_err());
+    assert!(element(f64::NAN, 0.0).is_err() && element(1.0, f64::INFINITY).is_err());
 }
 
 /// `[E_1, E_2] = E_2`, so that `ad*` moves the second component into the first.

@@ -1,6 +1,6 @@
 //! Whatever is put around a step goes with every method: the table of methods and additions, walked through.
 //!
-//! What makes no sense doesn't compile: `tests/ui/fail/compensated_collocation.rs` and the like.
+//! What makes no sense doesn't compile: `tests/ui/fail/calls.rs`.
 
 use checks::random::Random;
 use declarations::{HeavyTop, Motion};

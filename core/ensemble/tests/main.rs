@@ -2,6 +2,7 @@
 
 mod common;
 mod full_disk;
+mod plans;
 mod sections;
 mod splittings;
 
@@ -11,14 +12,12 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use common::{Folder, Top, axis, contents, top, tops, with_columns};
-use liestep::effects::RigidBody;
 use liestep::mechanics::InertiaError;
-use liestep::methods::CompositionScheme;
 use liestep::motion::{Integrator, Motion, StepReport};
-use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
+use liestep::{SO3, StepError, Stepper};
 use liestep_ensemble::{
-    Engine, Ensemble, Failure, Fault, Histogram, Local, MakeChunk, MemberFailure, Reduction, Report, Shard, Status,
-    Store, StoreError, Summary, Table, share_of,
+    Engine, Ensemble, Failure, Fault, Histogram, Local, MakeChunk, MemberFailure, Report, Shard, Status, Store,
+    StoreError, Summary, Table,
 };
 use nalgebra::Vector3;
 
@@ -464,124 +463,4 @@ fn an_error_stops_the_other_workers() {
     });
     assert!(matches!(made, Err(StoreError::Unwritable { .. })));
     assert!(told.into_inner());
-}
-
-/// Chunks of their own choice: full lanes, or one member.
-#[test]
-fn chunks_hold_a_million_rows_at_most() {
-    for (steps, every, members) in [(1 << 22, 1 << 22, 8), (1 << 23, 1 << 23, 4), (1 << 18, 1, 3), (1 << 30, 1, 1)] {
-        let chunks = Ensemble::new("tops", 24, steps, top).every(every).chunks();
-        assert_eq!(chunks, 24_u64.div_ceil(members), "{steps} steps, every {every}");
-    }
-}
-
-/// One by one there is something to share, however little work it is; and a second's work is shorter.
-#[test]
-fn chunks_of_members_one_by_one_can_be_shared() {
-    for (members, steps, chunks) in
-        [(0, 1, 0), (1, 1, 1), (24, 1, 24), (200, 4800, 50), (6400, 1, 64), (6400, 1 << 20, 1600)]
-    {
-        assert_eq!(Ensemble::one_by_one("tops", members, steps, top).chunks(), chunks, "{members} of {steps} steps");
-    }
-}
-
-/// Names of the moment are columns as others are; what isn't filled is no number.
-#[test]
-fn columns_are_named_when_the_program_runs() {
-    let fixed = tops(20, STEPS).keep(["t", "none"], |run| [run.stepper.time(run.state), f64::NAN]);
-    let named = tops(20, STEPS).keep_named(&["t", "none"], |run, row| row[0] = run.stepper.time(run.state));
-    assert_eq!(fixed.fingerprint(), named.fingerprint());
-    assert!(message(|| tops(1, 1).keep_named(&["a", "a"], |_, _| ())).contains("`a`"));
-}
-
-fn message(of: impl FnOnce() -> Ensemble<Top> + std::panic::UnwindSafe) -> String {
-    let payload = std::panic::catch_unwind(of).map(drop).unwrap_err();
-    let text = payload.downcast_ref::<String>().cloned();
-    text.unwrap_or_else(|| (*payload.downcast_ref::<&str>().unwrap()).to_owned())
-}
-
-#[test]
-fn columns_and_reductions_have_names_of_their_own() {
-    for name in ["member", "step", "status", "x", "energy"] {
-        let said = message(|| tops(1, 1).keep([name], |_| [0.0]));
-        assert!(said.contains(&format!("`{name}`")), "{said}");
-    }
-    assert!(message(|| tops(1, 1).keep(["a", "a"], |_| [0.0; 2])).contains("`a`"));
-    assert!(message(|| tops(1, 1).reduce("z", Reduction::Moments, |_| 0.0)).contains("`z`"));
-    let histogram =
-        |range, bins| message(move || tops(1, 1).reduce("h", Reduction::Histogram { range, bins }, |_| 0.0));
-    assert!(histogram(0.0..1.0, 0).contains("bin"));
-    for range in [1.0..0.0, 0.0..0.0, 0.0..f64::NAN, f64::NEG_INFINITY..0.0, f64::MIN..f64::MAX] {
-        let said = histogram(range.clone(), 4);
-        assert!(said.contains("`h`") && said.contains("range"), "{said}");
-    }
-}
-
-/// Rows of a table are members; one too many has no row, and says so.
-#[test]
-fn members_are_read_from_a_table() {
-    let spins = Table::new([("spin".to_owned(), vec![5.0, 6.0, 7.0])]).unwrap();
-    let ensemble = Ensemble::new("spins", 4, 10, |member| {
-        let body = RigidBody { J_d: NonstandardInertia::from_principal_moments(Vector3::new(2.0, 2.0, 3.0))? };
-        let stepper = Stepper::new(body, 0.01)?;
-        let state = stepper.start(SO3::identity(), Vector3::z() * member.cell("spin")?)?;
-        Ok((stepper, state))
-    });
-    let ensemble = ensemble.over(spins).keep(["spin"], |run| [run.stepper.velocity(run.state).z]);
-    let shard = ensemble.chunk(0, &|| false).unwrap();
-    for (found, expected) in shard.rows.columns[0].iter().zip([5.0_f64, 6.0, 7.0]) {
-        assert!((found - expected).abs() < 1e-13);
-    }
-    let [failed] = shard.failures.as_slice() else { panic!("{:?}", shard.failures) };
-    assert!(failed.member == 3 && failed.failure.to_string().contains("no row 3"), "{failed:?}");
-    let uneven = Table::new([("a".to_owned(), vec![1.0]), ("b".to_owned(), vec![])]);
-    assert!(uneven.is_err_and(|error| error.to_string().contains("`b`")));
-    assert!(Table::read("Cargo.toml").is_err_and(|error| error.to_string().contains("Cargo.toml")));
-}
-
-/// A declaration of `f64` alone, and a composition of members that can't be in one batch.
-#[test]
-#[allow(non_snake_case)] // the letters of the field
-fn other_scenes_and_methods() {
-    #[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
-    #[derive(Clone)]
-    struct Body {
-        J_d: NonstandardInertia,
-    }
-
-    let J_d = NonstandardInertia::from_principal_moments(Vector3::new(2.0, 2.5, 3.0)).unwrap();
-    let alone = Ensemble::one_by_one("bodies", 3, 100, move |member| {
-        let stepper = Stepper::new(Body { J_d }, 0.01)?;
-        let state = stepper.start(SO3::identity(), member.direction("Omega"))?;
-        Ok((stepper, state))
-    });
-    let energy = alone.chunks_of(3).keep(["energy"], |run| [run.stepper.energy(run.state)]).every(50);
-    let energy = energy.chunk(0, &|| false).unwrap();
-    let energy = &energy.rows.columns[0];
-    assert!(energy.chunks(3).all(|run| (run[0] - run[2]).abs() < 1e-14), "{energy:?}");
-    let composed = |alone: bool| {
-        let make = move |member: &liestep_ensemble::Member<'_>| {
-            // By two methods in turn: no two neighbours agree.
-            let schemes = [CompositionScheme::SUZUKI_4, CompositionScheme::KAHAN_LI_6];
-            let scheme = schemes[usize::from(member.number() % 3 == 1)];
-            let stepper = Stepper::composed(RigidBody { J_d }, 0.02, scheme)?;
-            let state = stepper.start(SO3::identity(), member.direction("Omega") * 3.0)?;
-            Ok((stepper, state))
-        };
-        let made = if alone {
-            Ensemble::one_by_one("composed", 20, 50, make)
-        } else {
-            Ensemble::new("composed", 20, 50, make)
-        };
-        made.chunks_of(20).keep(["x", "y", "z"], |run| run.state.momentum().into()).chunk(0, &|| false).unwrap()
-    };
-    assert_eq!(composed(false), composed(true));
-}
-
-#[test]
-fn shares_are_read_from_command_lines() {
-    assert_eq!(share_of("2/8"), Ok((2, 8)));
-    for wrong in ["8/8", "1", "a/b", "-1/2", "1/0", ""] {
-        assert!(share_of(wrong).is_err_and(|message| message.contains("i/n")), "{wrong}");
-    }
 }

@@ -146,7 +146,7 @@ fn allocated(program: &Program, order: &[usize], place: &mut [u16]) -> Option<(V
             _ => runs.push(Run { operation, instructions: vec![instruction] }),
         }
     }
-    (registers <= usize::from(u16::MAX)).then_some((runs, registers))
+    u16::try_from(registers).is_ok().then_some((runs, registers))
 }
 
 /// Operations in an order in which like ones stand together: an interpreter then decides once for many what to do.

@@ -87,8 +87,8 @@ where
             let mut components = start.1.iter().copied();
             <A::Group as LieGroup>::Vector::from_entries(&mut || components.next().expect("one more"))
         };
-        let mut first = one.start(start.0.clone(), velocity()).expect("a start");
-        let mut second = other.start(start.0.clone(), velocity()).expect("a start");
+        let mut first = one.start(start.0, velocity()).expect("a start");
+        let mut second = other.start(start.0, velocity()).expect("a start");
         for step in 0..500 {
             let reports = [one.step(&mut first), other.step(&mut second)].map(|made| made.expect("a step"));
             assert_eq!(reports[0].iterations, reports[1].iterations, "step {step}");
@@ -185,6 +185,9 @@ fn sums_with_compiled_effects() {
     same(&(flyer + drag), &(late + late_drag), (SE3::identity(), &start));
 }
 
+/// What the bodies of the double pendulum see.
+type Seen = (SeenFrom<0, Vector3<f64>>, SeenFrom<1, Vector3<f64>>, Relative<0, 1, Matrix3<f64>>);
+
 #[test]
 fn several_bodies() {
     let J_1 = NonstandardInertia::new(inertia()).expect("an inertia");
@@ -192,7 +195,6 @@ fn several_bodies() {
     let (s_1, s_2) = (Vector3::new(0.1, 0.2, -0.9), Vector3::new(0.0, 0.1, -0.3));
     let pendulum = DoublePendulum { J_1, J_2, rho: Vector3::new(0.0, 0.1, -1.0), s_1, s_2, g: 9.81, up: Vector3::z() };
     let text = text!("DoublePendulum" in "declarations/double_pendulum");
-    type Seen = (SeenFrom<0, Vector3<f64>>, SeenFrom<1, Vector3<f64>>, Relative<0, 1, Matrix3<f64>>);
     let late: Late<(SO3, SO3), Seen> = read(&pendulum, &text);
     same(&pendulum, &late, ((turned(), SO3::identity()), &[0.1, 0.3, -0.2, 0.4, 0.1, 0.2]));
     let top = TopOnCart { J_d: J_1, s: Vector3::new(0.1, 0.0, 0.4), M: 5.0, g: 9.81 };

@@ -7,7 +7,7 @@ use std::path::Path;
 use super::{code, root};
 
 /// The lines of the longest file and function, and of the median file in `core` and `macros`.
-const LENGTHS: [usize; 3] = [587, 102, 134];
+const LENGTHS: [usize; 3] = [574, 81, 134];
 
 /// The lines of each room and package, and of each room of the library the names that it makes public.
 #[rustfmt::skip]
@@ -18,18 +18,16 @@ const BUDGETS: [(&str, usize, usize); 36] = [
     ("core/src/solving", 1348, 3), ("core/src/motion", 3163, 29), ("core/src/gradients", 1366, 10),
     ("core/src/methods", 8023, 30), ("core/src/recording", 1879, 14), ("core/src/with", 1019, 7),
     ("core/src/accuracy", 1901, 16), ("core/src/conventions", 477, 0), ("core/src/guide", 2079, 0),
-    ("core/tests", 539, 0), ("macros/src", 235, 0), ("macros/derivation/src/lib", 25, 0), ("macros/derivation/src/expand", 2845, 0), ("macros/derivation/src/emit", 3816, 0),
-    ("macros/derivation/src/judged", 6257, 0), ("macros/derivation/src/declared", 4937, 0), ("macros/derivation/src/program", 2443, 0),
-    ("macros/derivation/src/mathematics", 4832, 0), ("macros/derivation/declarations", 147, 0), ("core/scene", 5001, 0),
+    ("core/tests", 539, 0), ("macros/src", 235, 0), ("macros/derivation/src/lib", 28, 0), ("macros/derivation/src/expand", 3072, 0), ("macros/derivation/src/emit", 3751, 0),
+    ("macros/derivation/src/judged", 6297, 0), ("macros/derivation/src/declared", 4978, 0), ("macros/derivation/src/program", 2538, 0),
+    ("macros/derivation/src/mathematics", 4799, 0), ("macros/derivation/declarations", 145, 0), ("core/scene", 5001, 0),
     ("core/cli", 2655, 0), ("core/plot", 774, 0), ("core/ensemble", 4670, 0), ("core/arrow", 220, 0),
-    ("examples", 12794, 0), ("tests", 27249, 0), ("tests/ui", 5608, 0),
+    ("examples", 12557, 0), ("tests", 26903, 0), ("tests/ui", 4184, 0),
 ];
 
 /// The circles that are still there. Lines may go, and none be added.
 #[rustfmt::skip]
-const CIRCLES: [&str; 1] = [
-    "macros/derivation/src/judged/constraint.rs macros/derivation/src/judged/discretise.rs macros/derivation/src/judged/discretise/substitution.rs macros/derivation/src/judged/explain.rs macros/derivation/src/judged/verify/constraint.rs",
-];
+const CIRCLES: [&str; 0] = [];
 
 /// Every source of the repository: its path, and its text.
 fn sources(root: &Path) -> BTreeMap<String, String> {

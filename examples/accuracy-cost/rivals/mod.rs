@@ -6,7 +6,6 @@
 
 pub mod dop853;
 pub mod embedded;
-pub mod library;
 pub mod rates;
 pub mod tsitouras;
 pub mod verner;

@@ -1,8 +1,9 @@
 //! B7: a body that flips about its middle axis, and when.
 
 use declarations::SixthOrderBody;
-use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::mechanics::Effect;
 use liestep::methods::{CompositionScheme, ExactBody, SplittingScheme};
+use liestep::motion::Plan;
 use liestep::prelude::*;
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::free_body::engines::{Moments, explicit, implicit, rescaled};
@@ -64,18 +65,18 @@ fn share(method: &Steps<'_>, momentum: &Vector3<f64>, h: f64) -> Result<f64, Fai
     Ok(high.0)
 }
 
-fn composed<'a, L>(lagrangian: L, scheme: CompositionScheme) -> impl Fn(f64) -> Result<Map<'a>, Failure> + 'a
+/// A step of it from the identity.
+fn one<'a, S, P>(stepper: Result<Stepper<S, P>, SetupError>) -> Result<Map<'a>, Failure>
 where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = ()> + Regular + Clone + 'a,
+    S: Effect<Scalar = f64, Group = SO3, Advected = ()> + 'a,
+    P: Plan<S> + 'a,
 {
-    move |h| {
-        let composition = Stepper::composed(lagrangian.clone(), h, scheme)?;
-        Ok(Box::new(move |momentum| {
-            let mut state = composition.start_with_momentum(SO3::identity(), *momentum)?;
-            composition.step(&mut state)?;
-            Ok(state.momentum())
-        }))
-    }
+    let stepper = stepper?;
+    Ok(Box::new(move |momentum| {
+        let mut state = stepper.start_with_momentum(SO3::identity(), *momentum)?;
+        stepper.step(&mut state)?;
+        Ok(state.momentum())
+    }))
 }
 
 pub(crate) fn b7(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
@@ -85,43 +86,22 @@ pub(crate) fn b7(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     let (body, start) = (PrincipalBody { J_d: inertia }, moments.component_mul(&velocity));
     let off = |method: &Steps<'_>, h: f64| period(method, start, h).map(|period| period / exact - 1.0);
 
-    let ours = |h: f64| -> Result<Map<'_>, Failure> {
-        let stepper = Stepper::new(body, h)?;
-        Ok(Box::new(move |momentum| {
-            let mut state = stepper.start_with_momentum(SO3::identity(), *momentum)?;
-            stepper.step(&mut state)?;
-            Ok(state.momentum())
-        }))
-    };
+    let ours = |h: f64| one(Stepper::new(body, h));
     let mut errors = Vec::new();
     for h in four_halvings(0.02) {
         errors.push((h, off(&ours, h)?.abs()));
     }
     let sixth = SixthOrderBody { J: Inertia::from_principal_moments(moments)? };
-    let exact_motion = |h: f64| -> Result<Map<'_>, Failure> {
-        let flow = ExactBody::new(&Inertia::from_principal_moments(moments)?);
-        let body = Stepper::split(body, h, flow, SplittingScheme::STRANG)?;
-        Ok(Box::new(move |momentum| {
-            let mut state = body.start_with_momentum(SO3::identity(), *momentum)?;
-            body.step(&mut state)?;
-            Ok(state.momentum())
-        }))
-    };
+    let flow = ExactBody::new(&Inertia::from_principal_moments(moments)?);
+    let exact_motion = |h: f64| one(Stepper::split(body, h, flow, SplittingScheme::STRANG));
     let mut row =
         Row::new("B7", "flip period of J = (1, 2, 3), Ω = (.01, 2, .02)", "order 2 towards it; high order to 1e-12")
             .near("two flips in closed form, s", exact, 19.001_635_511_000_25, 1e-12)
             .near("order", order(&errors, 1e-11), 2.0, 0.05)
             .shows(format!("(3.13) at h = 0.01 off by {:+.1e}", off(&ours, 0.01)?));
-    let kahan_li = composed(PrincipalBody { J_d: inertia }, CompositionScheme::KAHAN_LI_8);
-    let suzuki = composed(sixth, CompositionScheme::SUZUKI_8);
-    let alone = |h: f64| -> Result<Map<'_>, Failure> {
-        let stepper = Stepper::new(sixth, h)?;
-        Ok(Box::new(move |momentum| {
-            let mut state = stepper.start_with_momentum(SO3::identity(), *momentum)?;
-            stepper.step(&mut state)?;
-            Ok(state.momentum())
-        }))
-    };
+    let kahan_li = |h: f64| one(Stepper::composed(body, h, CompositionScheme::KAHAN_LI_8));
+    let suzuki = |h: f64| one(Stepper::composed(sixth, h, CompositionScheme::SUZUKI_8));
+    let alone = |h: f64| one(Stepper::new(sixth, h));
     let high: [(&str, &Steps<'_>, f64); 5] = [
         ("K6, h = 0.01", &alone, 0.01),
         ("exact motion, h = 0.01", &exact_motion, 0.01),
@@ -134,7 +114,7 @@ pub(crate) fn b7(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     }
     // Near the intermediate axis roundings grow: those of some 30 000 stages to 2e-12, a half of the time to more than
     // 1.4e-12. One step would say little, so it is a mean of neighbouring ones that is right to 1e-12.
-    let sofroniou_spaletta = composed(body, CompositionScheme::SOFRONIOU_SPALETTA_10);
+    let sofroniou_spaletta = |h: f64| one(Stepper::composed(body, h, CompositionScheme::SOFRONIOU_SPALETTA_10));
     let errors: Result<Vec<f64>, Failure> =
         (0..27).map(|k| off(&sofroniou_spaletta, 0.02 * (1.0 - 0.001 * f64::from(k)))).collect();
     let mut errors = errors?;

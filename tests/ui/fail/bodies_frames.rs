@@ -4,13 +4,9 @@ use nalgebra::Vector3;
 #[lagrangian(
     group(F_1 = SO3, F_2 = SO3),
     advected(w = up.seen_from(F_1)),
-    l_d = ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
-        + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h) 
-        - h * k * ((F_1 * F_2).trace() + w.z),
+    l_d = k * (F_1.trace() + F_2.trace()) / h - h * k * ((F_1 * F_2).trace() + w.z),
 )]
 struct Increments {
-    J_1: NonstandardInertia,
-    J_2: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
@@ -18,13 +14,9 @@ struct Increments {
 #[lagrangian(
     group(F_1 = SO3, F_2 = SO3),
     advected(w_1 = up.seen_from(F_1), w_2 = up.seen_from(F_2), Q = F_2.seen_from(F_1)),
-    l_d = ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
-        + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h) 
-        - h * k * (w_1.dot(&w_2) + Q.trace()),
+    l_d = k * (F_1.trace() + F_2.trace()) / h - h * k * (w_1.dot(&w_2) + Q.trace()),
 )]
 struct Vectors {
-    J_1: NonstandardInertia,
-    J_2: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
@@ -32,13 +24,9 @@ struct Vectors {
 #[lagrangian(
     group(F_1 = SO3, F_2 = SO3),
     advected(w_1 = up.seen_from(F_1), w_2 = up.seen_from(F_2)),
-    l_d = ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
-        + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h) 
-        - h * k * (w_1 - w_2).norm_squared(),
+    l_d = k * (F_1.trace() + F_2.trace()) / h - h * k * (w_1 - w_2).norm_squared(),
 )]
 struct Sum {
-    J_1: NonstandardInertia,
-    J_2: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
@@ -46,13 +34,9 @@ struct Sum {
 #[lagrangian(
     group(F_1 = SO3, F_2 = SO3),
     advected(w = up.seen_from(F_1), Q = F_1.seen_from(F_2)),
-    l_d = ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
-        + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h) 
-        - h * k * (F_1.transpose() * Q * F_2).trace() - h * w.z,
+    l_d = k * (F_1.trace() + F_2.trace()) / h - h * k * (F_1.transpose() * Q * F_2).trace() - h * w.z,
 )]
 struct Turned {
-    J_1: NonstandardInertia,
-    J_2: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
@@ -60,13 +44,9 @@ struct Turned {
 #[lagrangian(
     group(F_1 = SO3, F_2 = SO3),
     advected(w = up.seen_from(F_1), v = up.seen_from(F_2)),
-    l_d = ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
-        + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h) 
-        - h * k * (F_1 * (w - v.cross(&w))).z,
+    l_d = k * (F_1.trace() + F_2.trace()) / h - h * k * (F_1 * (w - v.cross(&w))).z,
 )]
 struct Bound {
-    J_1: NonstandardInertia,
-    J_2: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
@@ -90,13 +70,9 @@ struct Taken {
 #[lagrangian(
     group(F_1 = SO3, F_2 = SO3),
     advected(w = up.seen_from(F_1), Q = F_2.seen_from(F_1)),
-    l_d = ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
-        + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h)
-        - h * k * (vee(F_2).dot(&w) + Q.trace()),
+    l_d = k * (F_1.trace() + F_2.trace()) / h - h * k * (vee(F_2).dot(&w) + Q.trace()),
 )]
 struct Turn {
-    J_1: NonstandardInertia,
-    J_2: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }

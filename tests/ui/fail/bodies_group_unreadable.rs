@@ -4,108 +4,61 @@ use nalgebra::Vector3;
 #[lagrangian(
     group(F_1: SO3, F_2: SO3),
     advected(w = up.seen_from(F_1)),
-    l_d = ((F_1 - I) * J * (F_1 - I).transpose()).trace() / (2.0 * h)
-        + ((F_2 - I) * J * (F_2 - I).transpose()).trace() / (2.0 * h)
-        - h * w.z,
+    l_d = (F_1.trace() + F_2.trace()) / h - h * w.z,
 )]
 struct Colons {
-    J: NonstandardInertia,
     up: Vector3<f64>,
 }
 
 #[lagrangian(
     group(F_1 = SO3), group(F_2 = SO3),
     advected(w = up.seen_from(F_1)),
-    l_d = ((F_1 - I) * J * (F_1 - I).transpose()).trace() / (2.0 * h)
-        + ((F_2 - I) * J * (F_2 - I).transpose()).trace() / (2.0 * h)
-        - h * w.z,
+    l_d = (F_1.trace() + F_2.trace()) / h - h * w.z,
 )]
 struct Twice {
-    J: NonstandardInertia,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group(SO3, SO3),
-    advected(w = up.seen_from(F_1)),
-    l_d = ((F_1 - I) * J * (F_1 - I).transpose()).trace() / (2.0 * h)
-        + ((F_2 - I) * J * (F_2 - I).transpose()).trace() / (2.0 * h)
-        - h * w.z,
-)]
+#[lagrangian(group(SO3, SO3), advected(w = up.seen_from(F_1)), l_d = (F_1.trace() + F_2.trace()) / h - h * w.z)]
 struct Nameless {
-    J: NonstandardInertia,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = (SO3, SO3),
-    advected(w = up.seen_from(F_1)),
-    l_d = ((F_1 - I) * J * (F_1 - I).transpose()).trace() / (2.0 * h)
-        + ((F_2 - I) * J * (F_2 - I).transpose()).trace() / (2.0 * h)
-        - h * w.z,
-)]
+#[lagrangian(group = (SO3, SO3), advected(w = up.seen_from(F_1)), l_d = (F_1.trace() + F_2.trace()) / h - h * w.z)]
 struct Tuple {
-    J: NonstandardInertia,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3 * SO3,
-    advected(w = up.seen_from(F_1)),
-    l_d = ((F_1 - I) * J * (F_1 - I).transpose()).trace() / (2.0 * h)
-        + ((F_2 - I) * J * (F_2 - I).transpose()).trace() / (2.0 * h)
-        - h * w.z,
-)]
+#[lagrangian(group = SO3 * SO3, advected(w = up.seen_from(F_1)), l_d = (F_1.trace() + F_2.trace()) / h - h * w.z)]
 struct Product {
-    J: NonstandardInertia,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = [SO3; 2],
-    advected(w = up.seen_from(F_1)),
-    l_d = ((F_1 - I) * J * (F_1 - I).transpose()).trace() / (2.0 * h)
-        + ((F_2 - I) * J * (F_2 - I).transpose()).trace() / (2.0 * h)
-        - h * w.z,
-)]
+#[lagrangian(group = [SO3; 2], advected(w = up.seen_from(F_1)), l_d = (F_1.trace() + F_2.trace()) / h - h * w.z)]
 struct Array {
-    J: NonstandardInertia,
     up: Vector3<f64>,
 }
 
 #[lagrangian(
     group { F_1 = SO3, F_2 = SO3 },
     advected(w = up.seen_from(F_1)),
-    l_d = ((F_1 - I) * J * (F_1 - I).transpose()).trace() / (2.0 * h)
-        + ((F_2 - I) * J * (F_2 - I).transpose()).trace() / (2.0 * h)
-        - h * w.z,
+    l_d = (F_1.trace() + F_2.trace()) / h - h * w.z,
 )]
 struct Braces {
-    J: NonstandardInertia,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group(),
-    advected(w = up.seen_from(F_1)),
-    l_d = ((F_1 - I) * J * (F_1 - I).transpose()).trace() / (2.0 * h)
-        + ((F_2 - I) * J * (F_2 - I).transpose()).trace() / (2.0 * h)
-        - h * w.z,
-)]
+#[lagrangian(group(), advected(w = up.seen_from(F_1)), l_d = (F_1.trace() + F_2.trace()) / h - h * w.z)]
 struct Empty {
-    J: NonstandardInertia,
     up: Vector3<f64>,
 }
 
 #[lagrangian(
     group(SO3 = F_1, SO3 = F_2),
     advected(w = up.seen_from(F_1)),
-    l_d = ((F_1 - I) * J * (F_1 - I).transpose()).trace() / (2.0 * h)
-        + ((F_2 - I) * J * (F_2 - I).transpose()).trace() / (2.0 * h)
-        - h * w.z,
+    l_d = (F_1.trace() + F_2.trace()) / h - h * w.z,
 )]
 struct TheOtherWayRound {
-    J: NonstandardInertia,
     up: Vector3<f64>,
 }
 

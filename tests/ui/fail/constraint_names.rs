@@ -40,18 +40,11 @@ struct Crossed {
     up: Vector3<f64>,
 }
 
-#[constraint(
-    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
-    advected(Q = F_2.seen_from(F_1)),
-)]
+#[constraint(group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3), advected(Q = F_2.seen_from(F_1)))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Nothing {}
 
-#[constraint(
-    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
-    advected(r = d_2.seen_from(d_1)),
-    zero = r,
-)]
+#[constraint(group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3), advected(r = d_2.seen_from(d_1)), zero = r)]
 struct NoCopy {}
 
 fn main() {}

@@ -1,11 +1,7 @@
 use liestep::constraint;
 use nalgebra::Vector3;
 
-#[constraint(
-    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
-    advected(r = d_2.seen_from(d_1)),
-    zero = (r, r.x),
-)]
+#[constraint(group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3), advected(r = d_2.seen_from(d_1)), zero = (r, r.x))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Component {}
 
@@ -23,11 +19,7 @@ struct Combined {
     length: f64,
 }
 
-#[constraint(
-    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
-    advected(r = d_2.seen_from(d_1)),
-    zero = r.cross(&n),
-)]
+#[constraint(group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3), advected(r = d_2.seen_from(d_1)), zero = r.cross(&n))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cross {
     n: Vector3<f64>,
@@ -53,11 +45,7 @@ struct Twice {
     n: Vector3<f64>,
 }
 
-#[constraint(
-    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
-    advected(r = d_2.seen_from(d_1)),
-    zero = (r.x, r),
-)]
+#[constraint(group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3), advected(r = d_2.seen_from(d_1)), zero = (r.x, r))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Whole {}
 

@@ -1,86 +1,38 @@
 use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::Vector3;
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = {
-        let U = |y| y.norm_squared();
-        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * U(w)
-    },
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = { let U = |y| y.norm_squared(); k * F.trace() / h - h * U(w) })]
 struct Untyped {
-    J: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = {
-        let U = |y: Vector3<f64>| y.z;
-        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * U(w, w)
-    },
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = { let U = |y: Vector3<f64>| y.z; k * F.trace() / h - h * U(w, w) })]
 struct Counted {
-    J: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = {
-        let U = |y: Vector3<f64>| y.z;
-        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * U(w.z)
-    },
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = { let U = |y: Vector3<f64>| y.z; k * F.trace() / h - h * U(w.z) })]
 struct Shaped {
-    J: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = {
-        let U = |y: Vector3<f64>| y.z;
-        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * U(&w)
-    },
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = { let U = |y: Vector3<f64>| y.z; k * F.trace() / h - h * U(&w) })]
 struct Referred {
-    J: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = {
-        let U = |y: &Vector3<f64>| y.z;
-        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * U(w)
-    },
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = { let U = |y: &Vector3<f64>| y.z; k * F.trace() / h - h * U(w) })]
 struct ByReference {
-    J: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = {
-        let U = |y: Vector3<f64>| y.z;
-        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * (U + w.z)
-    },
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = { let U = |y: Vector3<f64>| y.z; k * F.trace() / h - h * (U + w.z) })]
 struct Valued {
-    J: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
@@ -90,67 +42,34 @@ struct Valued {
     advected(w = up),
     l_d = {
         let U = |y: Vector3<f64>, x: f64| y.z;
-        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * U(w, 1.0)
+        k * F.trace() / h - h * U(w, 1.0)
     },
 )]
 struct Unused {
-    J: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = {
-        let U = |y: Vector3<f64>| y.z;
-        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * w.z
-    },
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = { let U = |y: Vector3<f64>| y.z; k * F.trace() / h - h * w.z })]
 struct Uncalled {
-    J: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = {
-        let U = || w.z;
-        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * U()
-    },
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = { let U = || w.z; k * F.trace() / h - h * U() })]
 struct Nothing {
-    J: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = {
-        let z = (|y: Vector3<f64>| y.z)(w);
-        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * z
-    },
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = { let z = (|y: Vector3<f64>| y.z)(w); k * F.trace() / h - h * z })]
 struct Nameless {
-    J: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = {
-        let U = |y: Vector3<f64>| U(y);
-        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * U(w)
-    },
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = { let U = |y: Vector3<f64>| U(y); k * F.trace() / h - h * U(w) })]
 struct Recursive {
-    J: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
@@ -169,16 +88,8 @@ struct Odd {
     up: Vector3<f64>,
 }
 
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = {
-        let U = |y: f64, y: f64| y;
-        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * U(w.z, w.z)
-    },
-)]
+#[lagrangian(group = SO3, advected(w = up), l_d = { let U = |y: f64, y: f64| y; k * F.trace() / h - h * U(w.z, w.z) })]
 struct Twice {
-    J: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
@@ -188,11 +99,10 @@ struct Twice {
     advected(w = up),
     l_d = {
         let U = |y: Vector3<f64>| -> f64 { y.z };
-        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * U(w)
+        k * F.trace() / h - h * U(w)
     },
 )]
 struct Returned {
-    J: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
@@ -202,11 +112,10 @@ struct Returned {
     advected(w = up),
     l_d = {
         let U = |A: nalgebra::Matrix3<f64>| (inverse(A) * w).z;
-        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * U(F)
+        -h * k * U(F)
     },
 )]
 struct Inverted {
-    J: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }
@@ -224,11 +133,10 @@ struct Inverted {
         let g = |x: f64| f(x) * f(x);
         let p = |x: f64| g(x) * g(x);
         let q = |x: f64| p(x) * p(x);
-        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * q(w.z)
+        k * F.trace() / h - h * q(w.z)
     },
 )]
 struct Many {
-    J: NonstandardInertia,
     k: f64,
     up: Vector3<f64>,
 }

@@ -45,7 +45,7 @@ macro_rules! potential {
 
 potential!(Pull, seen, -k * seen[2]);
 
-fn main() {
+pub fn main() {
     let z = ::nalgebra::Vector3::z();
     let moments = ::nalgebra::Vector3::new(3.0, 3.0, 4.0);
     let inertia = ::liestep::mechanics::Inertia::from_principal_moments(moments).unwrap();

@@ -52,7 +52,7 @@ macro_rules! top {
     };
 }
 
-fn main() {
+pub fn main() {
     let (plain, generic) = (top!(Plain), top!(Generic));
     let (f, w, h) = (Matrix3::identity(), Vector3::new(1.0, -2.0, 0.5), 0.01);
     assert_eq!(plain.l_d(&f, &w, h), generic.l_d(&f, &w, h));

@@ -22,7 +22,7 @@ struct Body {
     J_d: NonstandardInertia,
 }
 
-fn main() {
+pub fn main() {
     let body = Body { J_d: NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap() };
     assert_eq!(body.inertia(&body.advected()).diagonal(), Vector3::new(3.0, 3.0, 4.0));
     assert_eq!(body.momentum_bias(&()), Vector3::zeros());

@@ -15,7 +15,7 @@ struct Top {
     up: Vector3<f32>,
 }
 
-fn main() {
+pub fn main() {
     let inertia = NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap();
     let top = Top { inertia, m: 9.81, rho: Vector3::z(), up: Vector3::z() };
     let stepper = Stepper::new(top, 0.01_f32).unwrap();

@@ -32,7 +32,7 @@ fn inertia<T: Real + RealField>() -> NonstandardInertia<T> {
     NonstandardInertia::from_diagonal(diagonal).unwrap()
 }
 
-fn main() {
+pub fn main() {
     let stepper = Stepper::new(Top { inertia: inertia(), rho: Vector3::z(), up: Vector3::z() }, 0.01_f64).unwrap();
     let mut state = stepper.start(SO3::identity(), Vector3::new(0.1, 0.0, 5.0)).unwrap();
     stepper.step(&mut state).unwrap();

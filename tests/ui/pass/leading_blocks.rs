@@ -25,7 +25,7 @@ struct Torque {
     torque: Vector3<f64>,
 }
 
-fn main() {
+pub fn main() {
     let inertia = NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap();
     let rotor = Rotor { k: 0.5 };
     assert_eq!(rotor.l(&Vector3::x(), &()), 0.5);

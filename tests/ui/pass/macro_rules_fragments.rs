@@ -226,7 +226,7 @@ macro_rules! step {
     }};
 }
 
-fn main() {
+pub fn main() {
     values();
     let momentum = step!(FromCall);
     assert!((step!(FromBoth) - momentum).norm() < 1e-12);

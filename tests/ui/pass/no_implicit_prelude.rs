@@ -20,7 +20,7 @@ struct Generic<T: ::liestep::numbers::Real> {
     k: T,
 }
 
-fn main() {
+pub fn main() {
     let inertia = ::liestep::NonstandardInertia::from_diagonal(::nalgebra::Vector3::new(2.0, 2.0, 1.0)).unwrap();
     let z = ::nalgebra::Vector3::z();
     let stepper = ::liestep::Stepper::new(Top { inertia, rho: z, up: z, field: z }, 0.01).unwrap();

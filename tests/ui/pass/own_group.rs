@@ -39,7 +39,7 @@ pub struct Scaling<T: Real + nalgebra::RealField> {
 }
 
 mod by_its_path {
-    #[super::lagrangian(crate = ::liestep, group = crate::groups::Affine!, l_d = m * (F - I).norm_squared() / h)]
+    #[super::lagrangian(crate = ::liestep, group = crate::own_group::groups::Affine!, l_d = m * (F - I).norm_squared() / h)]
     pub struct Plain {
         pub m: f64,
     }
@@ -68,7 +68,7 @@ mod of_a_known_name {
     }
 }
 
-fn main() {
+pub fn main() {
     let scaling = Scaling { J: Matrix2::identity(), k: 1.0, r: Vector2::new(1.0, 0.5), covector: Vector2::x() };
     assert!(format!("{scaling:?}").contains("covector") && Scaling::<f64>::DERIVATION.contains("in Affine"));
     let stepper = Stepper::new(scaling.clone(), 0.01).unwrap();

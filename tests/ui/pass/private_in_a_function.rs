@@ -22,7 +22,7 @@ mod inner {
     }
 }
 
-fn main() {
+pub fn main() {
     #[lagrangian(group = SO3, l_d = 2.0 * k * (3.0 - F.trace()) / h)]
     struct Ball {
         k: f64,

@@ -19,7 +19,7 @@ struct Top {
     r#move: Vector3<f64>,
 }
 
-fn main() {
+pub fn main() {
     let inertia = NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap();
     let top = Top { r#type: inertia, r#in: Vector3::z(), r#move: Vector3::z() };
     assert_eq!(top.advected(), Vector3::z());

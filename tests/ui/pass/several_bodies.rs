@@ -266,7 +266,7 @@ fn kept<const N: usize>(J: NonstandardInertia) -> f64 {
     (whole(state.spatial_momentum()) - before).norm()
 }
 
-fn main() {
+pub fn main() {
     let [J_1, J_2] = [[2.0, 2.0, 1.0], [1.0, 2.0, 1.5]].map(|J| Inertia::from_diagonal(J.into()).unwrap());
     let k = 3.0;
     let (A, B) = (*J_1.as_matrix(), *J_2.as_matrix());

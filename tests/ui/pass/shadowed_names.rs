@@ -49,7 +49,7 @@ struct Efficiency {
     up: ::nalgebra::Vector3<::core::primitive::f64>,
 }
 
-fn main() {
+pub fn main() {
     use ::nalgebra::Vector3;
     let inertia = liestep::NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap();
     let stepper = Stepper::new(Top { inertia, rho: Vector3::z(), up: Vector3::z() }, 0.01).unwrap();

@@ -54,6 +54,7 @@ struct Parameter {
 }
 
 /// By then the table has been taken: the key is there for the message that lists all keys.
+#[allow(clippy::unnecessary_wraps)] // serde asks for it
 pub(crate) fn taken<'de, D: Deserializer<'de>>(_: D) -> Result<Option<Lagrangian>, D::Error> {
     Ok(None)
 }

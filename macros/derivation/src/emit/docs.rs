@@ -11,12 +11,12 @@ pub(super) struct Equation {
     pub(super) method: &'static str,
     left: String,
     right: String,
-    source: &'static str,
+    source: String,
 }
 
 impl Equation {
-    pub(super) fn new(method: &'static str, left: &str, right: String, source: &'static str) -> Self {
-        Self { method, left: left.to_owned(), right, source }
+    pub(super) fn new(method: &'static str, left: &str, right: String, source: &str) -> Self {
+        Self { method, left: left.to_owned(), right, source: source.to_owned() }
     }
 
     /// `left = right    [source]`.
@@ -64,6 +64,12 @@ pub(super) fn equations(derived: &Derived, declared: &Declared, continuous: Opti
         equation("kick_before", "k₀", covector(&derived.kick_before), "a = μ + k₀"),
         equation("kick_after", "k₁⁺", covector(&derived.shown_kick_after), "μ⁺ = Ad*_F a + k₁⁺"),
     ];
+    let shares = declared.advected.iter().zip(&derived.shares).map(|(w, share)| {
+        let name = &symbols.get(w.symbol).name;
+        equation("diamond", &format!("δl_d/δ{name} ⋄ {name}"), covector(share), &format!("of {name} alone"))
+    });
+    let behind = equations.iter().position(|one| one.method == "diamond").map_or(0, |at| at + 1);
+    equations.splice(behind..behind, shares);
     if let Some([next, before]) = &derived.flow {
         let (next, before) = (covector(next), covector(before));
         if next.len() + before.len() <= LONGEST {
@@ -152,7 +158,12 @@ pub(super) fn derivation(
     continuous: Option<String>,
     findings: &Findings,
 ) -> String {
-    let line = |equation: &Equation| format!("{}\n    {}\n", equation.method, equation.line());
+    // The equations of one method have one head.
+    let line = |(at, equation): (usize, &Equation)| {
+        let is_next = at > 0 && equations[at - 1].method == equation.method;
+        let head = if is_next { String::new() } else { format!("{}\n", equation.method) };
+        format!("{head}    {}\n", equation.line())
+    };
     let hypotheses = match findings.hypotheses.as_slice() {
         [] => "none".to_owned(),
         used => used.join(", "),
@@ -166,7 +177,7 @@ pub(super) fn derivation(
     ];
     let sections = sections.map(|(title, text)| format!("{title}\n    {text}\n"));
     let beginning = [setting(declaration, true), lets(&chosen.derived)];
-    beginning.into_iter().chain(equations.iter().map(line)).chain(continuous).chain(sections).collect()
+    beginning.into_iter().chain(equations.iter().enumerate().map(line)).chain(continuous).chain(sections).collect()
 }
 
 /// The operations of each stage, one a line.

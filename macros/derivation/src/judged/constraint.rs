@@ -3,46 +3,13 @@
 use std::rc::Rc;
 
 use super::explain;
-use super::verify::{self, Row, Sureness};
+use super::verify::{self, Held, Row, Sureness};
 use crate::declared::errors::Errors;
-use crate::declared::lower::{self, LoweredConstraint};
+use crate::declared::lower;
 use crate::declared::{Declaration, Tree};
 use crate::mathematics::derive::Refusal;
 use crate::mathematics::symbolic::Expression;
-use crate::program::{Graph, NodeId, along_unit_vectors};
-
-/// What is emitted of a constraint.
-pub(crate) struct Held {
-    /// Scalars and vectors one below the other.
-    pub(crate) functions: Vec<Rc<Tree>>,
-    pub(crate) lowered: LoweredConstraint,
-    /// Of either body by its turn and by its shift, linear in the directions.
-    pub(crate) slopes: [[Vec<Expression>; 2]; 2],
-    pub(crate) graph: Graph,
-    /// The same as matrices with a row for each function, row by row.
-    pub(crate) entries: [[Vec<NodeId>; 2]; 2],
-    pub(crate) sureness: Sureness,
-}
-
-impl Held {
-    /// How many functions there are.
-    pub(crate) fn rows(&self) -> usize {
-        self.functions.iter().map(|tree| tree.shape.rows()).sum()
-    }
-
-    /// Reports the scalars and vectors in which something adds nothing.
-    fn report(&self, mut rows: &[Row], errors: &mut Errors) {
-        for part in &self.functions {
-            let (own, behind) = rows.split_at(part.shape.rows().min(rows.len()));
-            if own.iter().all(|row| *row == Row::Constant) {
-                explain::constant(part, errors);
-            } else if own.iter().any(|row| *row != Row::New) {
-                explain::follows(part, own, errors);
-            }
-            rows = behind;
-        }
-    }
-}
+use crate::program::{Graph, along_unit_vectors};
 
 /// `None` where something is wrong with it, which has been reported.
 pub(crate) fn held(declaration: &Declaration, functions: Vec<Rc<Tree>>, errors: &mut Errors) -> Option<Held> {
@@ -70,8 +37,21 @@ pub(crate) fn held(declaration: &Declaration, functions: Vec<Rc<Tree>>, errors: 
     let held = Held { functions, lowered, slopes, graph, entries, sureness: Sureness::TooHigh };
     match verify::constraint(declaration, &held) {
         Ok((sureness, rows)) if rows.iter().all(|row| *row == Row::New) => return Some(Held { sureness, ..held }),
-        Ok((_, rows)) => held.report(&rows, errors),
+        Ok((_, rows)) => report(&held, &rows, errors),
         Err(unconfirmed) => explain::unconfirmed(unconfirmed, declaration, &held.functions[0], errors),
     }
     None
+}
+
+/// Reports the scalars and vectors in which something adds nothing.
+fn report(held: &Held, mut rows: &[Row], errors: &mut Errors) {
+    for part in &held.functions {
+        let (own, behind) = rows.split_at(part.shape.rows().min(rows.len()));
+        if own.iter().all(|row| *row == Row::Constant) {
+            explain::constant(part, errors);
+        } else if own.iter().any(|row| *row != Row::New) {
+            explain::follows(part, own, errors);
+        }
+        rows = behind;
+    }
 }

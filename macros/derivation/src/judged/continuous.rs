@@ -38,7 +38,7 @@ pub(crate) fn of_declared(declaration: &Declaration, tree: &Rc<Tree>, errors: &m
         let found = verify::kinetic_hessian(declaration, &lowered.names, &derived);
         explain::continuous_kinetic_part(&found, declaration, errors)?;
     }
-    checked(declaration, Some(tree), lowered.names, derived, errors)
+    checked(declaration, (Some(tree), tree), lowered.names, derived, errors)
 }
 
 /// Those of a discrete Lagrangian: of the `l` that it was made of, which its limit has to be, or of the limit.
@@ -52,26 +52,21 @@ pub(crate) fn continuous(
     let is_declared = declared.is_some();
     let equations = match declared {
         Some(equations) => equations,
-        None => of_limit(declaration, chosen, errors)?,
+        None => of_limit(declaration, discrete, chosen, errors)?,
     };
-    let is_nonlinear = equations.derived.inverse == Inverse::Nonlinear;
     let (names, own) = (&chosen.lowered.names, (&equations.names, &equations.derived));
     let l = if is_declared { Lagrangian::Declared(tree) } else { Lagrangian::Derived(own.0, own.1) };
-    let disagrees = (is_declared || is_nonlinear)
-        && (!verify::has_limit(declaration, l, discrete)
-            || if is_nonlinear {
-                verify::rest_disagrees(declaration, own, (names, &chosen.derived))
-            } else {
-                verify::limit_disagrees(declaration, tree, names, &chosen.derived)
-            });
-    if disagrees {
+    // What isn't declared and quadratic may have a limit that the field doesn't tell.
+    let has_limit = verify::has_limit(declaration, l, discrete)
+        .unwrap_or(!is_declared && equations.derived.inverse != Inverse::Nonlinear);
+    if !has_limit || verify::rest_holds(declaration, own, (names, &chosen.derived)).is_err() {
         explain::unconfirmed_term("continuous limit", declaration, errors);
         return None;
     }
     Some(equations)
 }
 
-fn of_limit(declaration: &Declaration, chosen: &Chosen, errors: &mut Errors) -> Option<Equations> {
+fn of_limit(declaration: &Declaration, discrete: &Rc<Tree>, chosen: &Chosen, errors: &mut Errors) -> Option<Equations> {
     let declared = derive::of_limit(&chosen.lowered.declared, &chosen.derived);
     let mut names = chosen.lowered.names.clone();
     let velocities = declared.velocities.iter().enumerate();
@@ -80,18 +75,18 @@ fn of_limit(declaration: &Declaration, chosen: &Chosen, errors: &mut Errors) -> 
         explain::unconfirmed_term("continuous limit", declaration, errors);
         return None;
     };
-    checked(declaration, None, names, derived, errors)
+    checked(declaration, (None, discrete), names, derived, errors)
 }
 
 fn checked(
     declaration: &Declaration,
-    tree: Option<&Rc<Tree>>,
+    (tree, place): (Option<&Rc<Tree>>, &Rc<Tree>),
     names: BTreeMap<Name, SymbolId>,
     derived: Continuous,
     errors: &mut Errors,
 ) -> Option<Equations> {
-    if let Some(term) = verify::disagreement(declaration, tree, &names, &derived) {
-        explain::unconfirmed_term(term, declaration, errors);
+    if let Err(unconfirmed) = verify::equations_hold(declaration, tree, &names, &derived) {
+        explain::unconfirmed(unconfirmed, declaration, place, errors);
         return None;
     }
     let right_symmetries = verify::right_symmetries(declaration, &names, &derived);

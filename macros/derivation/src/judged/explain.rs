@@ -5,7 +5,6 @@ use std::rc::Rc;
 
 use proc_macro2::Span;
 
-use super::discretise::Misfit;
 use super::verify::{self, KineticPart, Row, TermMistake, Unconfirmed};
 use crate::declared::check;
 use crate::declared::errors::Errors;
@@ -181,6 +180,17 @@ fn without_energy(idle: &[usize], declaration: &Declaration) -> String {
     };
     let names: Vec<String> = idle.iter().map(|&k| name(k)).collect();
     format!(": there is no kinetic energy along {}", names.join(", "))
+}
+
+/// Why a declared `l` can't be discretised as was asked.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Misfit {
+    /// The group's logarithm isn't known in closed form.
+    NoLogarithm,
+    /// The group's matrices are too large for a Cayley transform in closed form.
+    NoCayley,
+    /// The velocity of this factor stands where a matrix that isn't in the algebra can't.
+    NotInMatrix(usize),
 }
 
 /// Reports a discretisation that doesn't fit the group or the Lagrangian.

@@ -2,8 +2,8 @@
 //!
 //! `discretise` makes `l_d` of a continuous `l`, `continuous` has the continuous equations, `choose` counts operations,
 //! `verify` evaluates the declared tree on exact numbers and compares, `hypotheses` finds what the equations rest on,
-//! `momenta` finds what several bodies conserve, `constraint` has what holds two of them, `findings` has what comes of both, and `explain` says at the tokens of
-//! the declaration why nothing could be derived.
+//! `momenta` finds what several bodies conserve, `constraint` has what holds two of them, `findings` has what comes of
+//! both, and `explain` says at the tokens of the declaration why nothing could be derived.
 //!
 //! Deliberately not here: any derivation, which is mathematics, and any text of the generated documentation, which is
 //! emitted. The room knows `declared`, `program` and `mathematics`.
@@ -19,10 +19,10 @@ mod momenta;
 pub(crate) mod verify;
 
 pub(crate) use choose::{Chosen, cheapest};
-pub(crate) use constraint::{Held, held};
+pub(crate) use constraint::held;
 pub(crate) use continuous::{Equations, continuous, of_declared};
 pub(crate) use discretise::discretised;
 pub(crate) use explain::terms;
 pub(crate) use findings::{Findings, findings};
 pub(crate) use momenta::conserved;
-pub(crate) use verify::Sureness;
+pub(crate) use verify::{Held, Sureness};

@@ -14,11 +14,15 @@ use std::rc::Rc;
 use syn::{Expr, ExprReference};
 
 use super::Checker;
-use crate::declared::{AdvectedParameter, Declaration, Frames, Name, Tree};
+use crate::declared::{AdvectedParameter, Declaration, Frames, Kind, Name, Role, Shape, Tree};
 use crate::mathematics::derive::Seen;
+
+/// Space, which is a body of a constraint; elsewhere the attitude of a body may be given relative to another.
+const SPACE: usize = usize::MAX;
 
 /// From where what a name stands for is seen.
 pub(super) fn of(declaration: &Declaration, name: Name) -> Frames {
+    let space = (declaration.role == Role::Constraint).then_some(SPACE);
     let turns = |factor: usize| declaration.group.is_product() && !declaration.group.factor(factor).is_added;
     match name {
         Name::Increment(factor) if turns(factor) => [Some(factor); 2],
@@ -33,7 +37,8 @@ pub(super) fn of(declaration: &Declaration, name: Name) -> Frames {
                 [Some(factor), is_tensor.then_some(factor)]
             }
             Some(Seen::Relative { of, from }) if turns(of) => [Some(from), Some(of)],
-            Some(Seen::Configuration(of)) if turns(of) => [None, Some(of)],
+            Some(Seen::Configuration(of)) if turns(of) => [space, Some(of)],
+            Some(Seen::Configuration(_) | Seen::Relative { .. }) => [space, None],
             _ => [None; 2],
         },
         _ => [None; 2],
@@ -48,6 +53,19 @@ pub(super) fn is_turn(declaration: &Declaration, name: Name) -> bool {
             declaration.advected.get(index).is_some_and(|w| matches!(w.seen, Seen::Relative { .. }) && !w.is_given)
         }
         _ => false,
+    }
+}
+
+/// Whether a displacement or a velocity, but for a factor, is a turn or a shift; nothing of anything else.
+fn is_of_turn(declaration: &Declaration, tree: &Tree) -> Option<bool> {
+    match &tree.kind {
+        Kind::Name(Name::Velocity(factor) | Name::DisplacementBefore(factor) | Name::DisplacementAfter(factor)) => {
+            declaration.group.is_product().then(|| !declaration.group.factor(*factor).is_added)
+        }
+        Kind::Negate(a) | Kind::Bound(_, a) | Kind::Divide(a, _) => is_of_turn(declaration, a),
+        Kind::Multiply(a, b) if a.shape == Shape::Scalar => is_of_turn(declaration, b),
+        Kind::Multiply(a, b) if b.shape == Shape::Scalar => is_of_turn(declaration, a),
+        _ => None,
     }
 }
 
@@ -108,6 +126,13 @@ impl Checker<'_> {
         // Matrices that each stay with their body may be meant for a trace of both.
         let stays =
             |tree: &Tree| !tree.shape.is_vector() && tree.frames[0].is_some() && tree.frames[0] == tree.frames[1];
+        if let [Some(first), Some(second)] = [a, b].map(|tree| is_of_turn(self.declaration, tree))
+            && first != second
+        {
+            let message = "a turn can't be added to a shift: take each with its own, as in `a.dot(&e) + b.dot(&s)`";
+            self.errors.push_over(whole, message);
+            return false;
+        }
         if (a.is_of_turns && b.is_of_turns) || (matches!(how, How::Sum(_)) && stays(a) && stays(b)) {
             return true;
         }
@@ -123,11 +148,10 @@ impl Checker<'_> {
                 How::Sum(operator) => format!("{a} * {relative} {operator} {b}"),
                 How::Method(name) => format!("{a}.{name}(&({relative} * {b}))"),
             };
-            let body = |factor: usize| self.declaration.factors[factor].name.clone();
             let message = format!(
                 "`{a}` is seen from `{}`, `{b}` from `{}`: bring one over, `{brought}`{declared}",
-                body(first),
-                body(second)
+                self.seer(first),
+                self.seer(second)
             );
             self.errors.push_over(whole, message);
             return false;
@@ -139,7 +163,8 @@ impl Checker<'_> {
     fn relative(&self, from: usize, of: usize) -> (String, String) {
         let declared = |of: usize, from: usize| {
             let mut advected = self.declaration.advected.iter();
-            advected.find(|w| w.seen == Seen::Relative { of, from }).map(AdvectedParameter::plain_name)
+            let seen = if from == SPACE { Seen::Configuration(of) } else { Seen::Relative { of, from } };
+            advected.find(|w| w.seen == seen).map(AdvectedParameter::plain_name)
         };
         if let Some(name) = declared(of, from) {
             return (name, String::new());
@@ -147,15 +172,23 @@ impl Checker<'_> {
         if let Some(name) = declared(from, of) {
             return (format!("{name}.transpose()"), String::new());
         }
-        let body = |factor: usize| &self.declaration.factors[factor].name;
-        let free = self.free_name("Q");
-        let declare = format!(" (declare `{free} = {}.seen_from({})`)", body(of), body(from));
+        if of == SPACE {
+            let (attitude, declared) = self.relative(of, from);
+            return (format!("{attitude}.transpose()"), declared);
+        }
+        let free = self.free_name(if from == SPACE { "R" } else { "Q" });
+        let declare = format!(" (declare `{free} = {}.seen_from({})`)", self.seer(of), self.seer(from));
         (free, declare)
+    }
+
+    /// What a body is called, or space.
+    fn seer(&self, factor: usize) -> String {
+        self.declaration.factors.get(factor).map_or_else(|| "space".to_owned(), |factor| factor.name.clone())
     }
 
     /// A plain name as it is written, else where it is seen from.
     fn named(&self, expression: &Expr, factor: usize) -> String {
-        let body = &self.declaration.factors[factor].name;
+        let body = self.seer(factor);
         match spelled(expression).as_str() {
             "…" => format!("what is seen from `{body}`"),
             name => format!("`{name}`"),

@@ -216,7 +216,8 @@ fn comma(input: ParseStream) -> syn::Result<()> {
         return Err(input.error("a comma stands between arguments: write `,`"));
     }
     if !input.is_empty() {
-        input.parse::<Token![,]>()?;
+        let missing = "a comma is missing before this, or within an expression an operator, as in `a * b`";
+        input.parse::<Token![,]>().map_err(|_| input.error(missing))?;
     }
     Ok(())
 }

@@ -113,9 +113,8 @@ pub(crate) fn as_far_as_readable(
         points(&mut fields, &group, errors);
     }
     let scalar = scalar(&item, errors);
-    if role == Role::Constraint && errors.is_empty() {
-        two_bodies::check(&factors, &fields, &scalar, &item, errors);
-    }
+    let is_of_bodies =
+        role != Role::Constraint || !errors.is_empty() || two_bodies::check(&factors, &fields, &scalar, &item, errors);
     let taken = group::Taken {
         fields: fields.iter().map(Field::plain_name).chain(unreadable.iter().cloned()).collect(),
         advected: arguments.advected.iter().map(|(name, ..)| name.unraw().to_string()).collect(),
@@ -133,7 +132,7 @@ pub(crate) fn as_far_as_readable(
         &arguments.advected,
         &fields,
         &unreadable,
-        group_path.as_ref().map(|_| (&group, factors.as_slice())),
+        group_path.as_ref().filter(|_| is_of_bodies).map(|_| (&group, factors.as_slice())),
         errors,
     );
     let displacements = match role {
@@ -276,12 +275,13 @@ fn advected(
     let mut parameters: Vec<AdvectedParameter> = Vec::new();
     for &(ref name, ref source, is_given) in pairs {
         let unraw = name.unraw().to_string();
-        let Some(moved) = seen(source, is_given, group, errors) else {
+        let field_names: Vec<String> = fields.iter().map(Field::plain_name).collect();
+        let names: Vec<String> = field_names.iter().chain(unreadable).cloned().collect();
+        let Some(moved) = seen((name, source), is_given, (&names, group), errors) else {
             // After a mistake, so that the name isn't one more.
             parameters.push(AdvectedParameter { name: name.clone(), field: None, is_given, seen: Seen::From(0) });
             continue;
         };
-        let field_names: Vec<String> = fields.iter().map(Field::plain_name).collect();
         if field_names.contains(&unraw) {
             errors.push_decisive(name.span(), format!("`{unraw}` is a field already: choose another name"));
             continue;
@@ -327,24 +327,28 @@ fn advected(
             && !found.kind.is_carried_by(size)
             && !matches!(found.kind, FieldKind::Point(_))
         {
-            let shape = found.kind.shape().describe();
-            let message = if found.kind.is_wrapped() {
-                format!("`{wanted}` is {shape}, but the group's matrices have {size} rows: write {size} for its size")
-            } else {
-                let point = match found.kind {
-                    FieldKind::Vector(rows @ 1..=3) if group.is_affine() && rows + 1 == size => {
-                        format!(", or Point{rows}<f64> for a point")
-                    }
-                    _ => String::new(),
-                };
-                let vector = vector_type(size);
-                format!("`{wanted}` is {shape}, but the group carries a vector of {size}: use {vector}{point}")
-            };
+            let message = not_carried(&wanted, found.kind, group, size);
             errors.push_decisive(found.at, message);
         }
         parameters.push(AdvectedParameter { name: name.clone(), field: index, is_given, seen });
     }
     parameters
+}
+
+/// What is wrong with a field of this kind, which a group with matrices of that size doesn't move.
+fn not_carried(wanted: &str, kind: FieldKind, group: &Group, size: usize) -> String {
+    let shape = kind.shape().describe();
+    if kind.is_wrapped() {
+        return format!("`{wanted}` is {shape}, but the group's matrices have {size} rows: write {size} for its size");
+    }
+    let point = match kind {
+        FieldKind::Vector(rows @ 1..=3) if group.is_affine() && rows + 1 == size => {
+            format!(", or Point{rows}<f64> for a point")
+        }
+        _ => String::new(),
+    };
+    let vector = vector_type(size);
+    format!("`{wanted}` is {shape}, but the group carries a vector of {size}: use {vector}{point}")
 }
 
 /// What is wrong with the source of what is advected by this name, which is no field.
@@ -383,9 +387,9 @@ enum Moved<'a> {
 
 /// Nothing after a mistake.
 fn seen<'a>(
-    source: &'a Source,
+    (name, source): (&Ident, &'a Source),
     is_given: bool,
-    group: Option<(&Group, &[Factor])>,
+    (fields, group): (&[String], Option<(&Group, &[Factor])>),
     errors: &mut Errors,
 ) -> Option<Moved<'a>> {
     let factors = group.map_or(&[][..], |(_, factors)| factors);
@@ -444,6 +448,10 @@ fn seen<'a>(
                     None
                 }
                 (None, Some(factor)) => Some(Moved::Field(what, Seen::From(factor))),
+                (None, None) if !fields.contains(&what.unraw().to_string()) => {
+                    errors.push_decisive(what.span(), no_field(name, source, fields, group));
+                    None
+                }
                 (None, None) => {
                     let message = format!("seen from space `{what}` doesn't change: use the field itself, `{what}`");
                     errors.push_decisive(what.span(), message);

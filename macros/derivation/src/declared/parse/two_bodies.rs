@@ -8,8 +8,14 @@ use crate::declared::{Factor, Field, Scalar};
 /// The groups of the body above, and of that below.
 const GROUPS: [&str; 4] = ["SO3", "R3", "SO3", "R3"];
 
-/// Mistakes where it is on something else.
-pub(super) fn check(factors: &[Factor], fields: &[Field], scalar: &Scalar, item: &ItemStruct, errors: &mut Errors) {
+/// Mistakes where it is on something else; whether the bodies are right.
+pub(super) fn check(
+    factors: &[Factor],
+    fields: &[Field],
+    scalar: &Scalar,
+    item: &ItemStruct,
+    errors: &mut Errors,
+) -> bool {
     let names: Vec<String> = factors.iter().map(Factor::group_name).collect();
     if names != GROUPS {
         let wrong = names.iter().zip(GROUPS).position(|(found, wanted)| found != wanted);
@@ -27,4 +33,5 @@ pub(super) fn check(factors: &[Factor], fields: &[Field], scalar: &Scalar, item:
         let place = fields.first().map_or(item.ident.span(), |field| field.at);
         errors.push_decisive(place, "joints are over `f64`: make that the scalar of the fields");
     }
+    names == GROUPS
 }

@@ -176,8 +176,12 @@ fn advected_rates(declaration: &Declaration, derived: &Continuous) -> Vec<Equati
             Seen::Configuration(body) => ("", Some(format!("{name} hat({})", of(body)))),
         };
         let hat = format!("hat({xi})");
+        let equation = |right| {
+            let source = format!("(2.2): −ξ·{name}");
+            Some(Equation::new("advected_rate", &format!("d{name}/dt"), right, &source))
+        };
         if let Some(right) = right {
-            return Some(Equation::new("advected_rate", &format!("d{name}/dt"), right, "(2.2): −ξ·w"));
+            return equation(right);
         }
         let right = match w.variance {
             Variance::Covector if derived.group.rotates() => format!("{name} × {xi}"),
@@ -188,7 +192,7 @@ fn advected_rates(declaration: &Declaration, derived: &Continuous) -> Vec<Equati
             Variance::Mixed => format!("{name} {hat} − {hat} {name}"),
             Variance::Fixed => return None,
         };
-        Some(Equation::new("advected_rate", &format!("d{name}/dt"), right, "(2.2): −ξ·w"))
+        equation(right)
     };
     names(declaration).into_iter().enumerate().filter_map(|(index, name)| rate(index, name)).collect()
 }

@@ -89,7 +89,7 @@ fn on_the_struct() {
 
         * Order: even, as `l_d` is self-adjoint: a step of −h undoes a step of h.
         * Limit of a step: the part of `μ` with `F` is a polynomial in `F`, so it is bounded. Where the body turns too fast for the step, there is no solution, and the error names the largest step that has one.
-        * Certainty: the terms and the stages of a step are identities; wrong with a probability below 2⁻¹⁰⁴.
+        * Certainty: the terms and the stages of a step are identities; wrong with a probability below 2⁻¹¹⁰.
         * Cost:
           * construction: 9 operations
           * step, before the solve: 18 operations
@@ -126,7 +126,7 @@ fn on_the_struct() {
         ```
 
         * Order: 1 in general, as `l_d` isn't self-adjoint: a step of −h doesn't undo a step of h.
-        * Certainty: the terms and the stages of a step are identities; wrong with a probability below 2⁻¹⁰⁴.
+        * Certainty: the terms and the stages of a step are identities; wrong with a probability below 2⁻¹¹⁰.
         * Cost:
           * construction: 5 operations
           * step, before the solve: 6 operations, 3 sign flips
@@ -204,7 +204,7 @@ fn of_the_heavy_top() {
         self-adjoint
             l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)    [by the normal forms: even order; a step of −h undoes a step of h]
         certainty
-            the terms and the stages of a step are identities; wrong with a probability below 2⁻¹⁰⁴
+            the terms and the stages of a step are identities; wrong with a probability below 2⁻¹¹⁰
         Newton system
             U(F, w) = a in the Cayley vector y of F, tan(θ/2) along the axis
             taken: Cayley, denominators cleared, 97 operations an iteration

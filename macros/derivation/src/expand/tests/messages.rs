@@ -41,8 +41,36 @@ fn of_mistakes() {
         (l_d(", crate = 3"), "write where liestep is found"),
         (l_d("- h.ln() * h * F.trace()"), "take the `h` out of the root or the logarithm"),
         (work("h * tau.dot(&eta) * h.ln()"), "take the `h` out of the root or the logarithm"),
+        (l_d("- h F.trace()"), "a comma is missing before this, or within an expression an operator"),
         (work("0.5 * h * tau.dot(&(eta - eta))"), "this work is zero whatever the parameters"),
         (work("0.0 * h * tau.dot(&eta)"), "this work is zero whatever the parameters"),
+    ] {
+        let found = messages(role, &arguments, item);
+        if found.len() != 1 || !found[0].contains(expected) {
+            wrong.push((arguments, found));
+        }
+    }
+    let of_bodies = |advected: &str, zero: &str| {
+        let bodies = "group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3)";
+        let arguments = format!("{bodies}, advected({advected}), zero = {zero}");
+        (Role::Constraint, arguments, "struct Joint { a: Vector3<f64>, b: Vector3<f64> }")
+    };
+    let attitudes = "R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space)";
+    let place = "R_1 = F_1.seen_from(space), r = d_2.seen_from(d_1), Q = F_2.seen_from(F_1)";
+    let sum = "group(F = SO3, d = R3), displacement(e, s), work = h * tau.dot(&(e + 2.0 * s))".to_owned();
+    for ((role, arguments, item), expected) in [
+        ((Role::Force, sum, torque), "a turn can't be added to a shift"),
+        (of_bodies(attitudes, "(R_1 * R_2 * a).dot(&b)"), "write `R_1.transpose()`"),
+        (of_bodies(place, "R_1 * r - Q * a"), "`R_1` brings vectors the other way: write `R_1.transpose()`"),
+        (of_bodies(place, "R_1.transpose() * (r - Q * a) - b"), "bring one over, `r - R_1 * …`"),
+        (
+            of_bodies("R_1 = F_1.seen_from(space), y = d_3.seen_from(space)", "(R_1 * a).dot(&y)"),
+            "`d_3` is neither a field",
+        ),
+        (
+            (Role::Constraint, "group = SO3, advected(y = d_2.seen_from(d_1)), zero = y.z".to_owned(), torque),
+            "a constraint is on two bodies",
+        ),
     ] {
         let found = messages(role, &arguments, item);
         if found.len() != 1 || !found[0].contains(expected) {

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::{Build, Misfit};
+use super::build::Build;
 use crate::declared::{Kind, Name, Shape, Tree};
+use crate::judged::explain::Misfit;
 use crate::mathematics::symbolic::Rational;
 
 /// `l` with other values for the velocity and for what is advected.

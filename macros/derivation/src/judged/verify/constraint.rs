@@ -2,18 +2,41 @@
 //! adds to those before it, at random points of a finite field, where nothing is rounded.
 
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use super::degree::{self, Degree, Largest};
 use super::dual::Dual;
 use super::exact::{confirmed, same};
 use super::identities::Same;
+use super::linear::Subspace;
 use super::number::Number;
 use super::residue::Residue;
 use super::{DRAWS, Evaluation, Fault, Sureness, Unconfirmed, Value, dot, evaluated, parameter, stream};
-use crate::declared::{Declaration, FieldKind, Name};
-use crate::judged::constraint::Held;
+use crate::declared::lower::LoweredConstraint;
+use crate::declared::{Declaration, FieldKind, Name, Tree};
 use crate::mathematics::derive::Seen;
-use crate::mathematics::symbolic::SymbolId;
+use crate::mathematics::symbolic::{Expression, SymbolId};
+use crate::program::{Graph, NodeId};
+
+/// What is emitted of a constraint.
+pub(crate) struct Held {
+    /// Scalars and vectors one below the other.
+    pub(crate) functions: Vec<Rc<Tree>>,
+    pub(crate) lowered: LoweredConstraint,
+    /// Of either body by its turn and by its shift, linear in the directions.
+    pub(crate) slopes: [[Vec<Expression>; 2]; 2],
+    pub(crate) graph: Graph,
+    /// The same as matrices with a row for each function, row by row.
+    pub(crate) entries: [[Vec<NodeId>; 2]; 2],
+    pub(crate) sureness: Sureness,
+}
+
+impl Held {
+    /// How many functions there are.
+    pub(crate) fn rows(&self) -> usize {
+        self.functions.iter().map(|tree| tree.shape.rows()).sum()
+    }
+}
 
 /// Points that are compared where no bound is small enough.
 const POINTS: u32 = 3;
@@ -53,13 +76,14 @@ pub(crate) fn constraint(declaration: &Declaration, held: &Held) -> Result<(Sure
 }
 
 fn sureness(declaration: &Declaration, held: &Held) -> Option<degree::Sureness> {
-    let mut point = Point::new(declaration, || Degree::VARIABLE);
+    let mut number = Degree::stream();
+    let mut point = Point::new(declaration, &mut number);
     // The attitudes of both bodies are Cayley transforms.
     for [attitude, _] in &mut point.places {
-        *attitude = attitude.map(|_| Degree::of_element(4));
+        attitude.entries.iter_mut().for_each(|entry| *entry = number().of_element(4));
     }
     let mut largest = Largest::default();
-    let compared = point.holds(held, || Degree::VARIABLE, &mut |_, found, expected| {
+    let compared = point.holds(held, number, &mut |_, found, expected| {
         largest.compared(found, expected);
         Ok(())
     });
@@ -163,26 +187,19 @@ impl Point<'_, Residue> {
                 self.slopes(held, way / 6, way / 3 % 2, &axis)
             })
             .collect();
-        // Each with the place of its first entry that isn't zero, which is one.
-        let mut before: Vec<(usize, Vec<Residue>)> = Vec::new();
+        let mut before = Subspace::default();
         let mut rows = Vec::new();
         for row in 0..held.rows() {
             let slopes: Vec<Residue> = ways.iter().map(|slopes| slopes[row]).collect();
             if !slopes.iter().all(|slope| slope.is_defined()) {
                 return None;
             }
-            let first = |slopes: &[Residue]| slopes.iter().position(|slope| *slope != Residue::ZERO);
-            let mut rest = slopes.clone();
-            for (at, unit) in &before {
-                let share = rest[*at];
-                rest.iter_mut().zip(unit).for_each(|(entry, &unit)| *entry = *entry - share * unit);
-            }
-            rows.push(match (first(&rest), first(&slopes)) {
-                (Some(_), _) => Row::New,
-                (None, Some(_)) => Row::Follows,
-                (None, None) => Row::Constant,
+            let is_constant = slopes.iter().all(|slope| *slope == Residue::ZERO);
+            rows.push(match before.extend(slopes) {
+                true => Row::New,
+                false if is_constant => Row::Constant,
+                false => Row::Follows,
             });
-            before.extend(first(&rest).map(|at| (at, rest.iter().map(|&entry| entry / rest[at]).collect())));
         }
         Some(rows)
     }

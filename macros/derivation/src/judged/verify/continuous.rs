@@ -9,13 +9,17 @@ use std::rc::Rc;
 
 use super::dual::Dual;
 use super::evaluation::Evaluation;
+use super::exact::{confirmed, same};
 use super::inertia::{KineticPart, classified};
+use super::linear::Subspace;
 use super::number::Number;
 use super::residue::Residue;
 use super::sample::{advected, exponentials, moved};
 use super::series::PowerSeries;
 use super::value::Value;
-use super::{SAMPLES, components_of, dot, evaluated, exponential, increments, parameter, stream, velocities};
+use super::{
+    Fault, SAMPLES, Unconfirmed, components_of, dot, evaluated, exponential, increments, parameter, stream, velocities,
+};
 use crate::declared::{Declaration, FieldKind, Name, Tree};
 use crate::mathematics::derive::{Continuous, Derived};
 use crate::mathematics::group::Group;
@@ -23,7 +27,7 @@ use crate::mathematics::symbolic::{Rational, SymbolId};
 use crate::program::{Graph, NodeId, along_directions, components, diamond_matrices, square};
 
 /// Independent points.
-const POINTS: u64 = 3;
+const POINTS: u32 = 3;
 
 type Values<T> = BTreeMap<Name, Value<T>>;
 
@@ -161,26 +165,23 @@ fn coadjoint<T: Number>(group: &Group, xi: &[T], momentum: &[T]) -> Vec<T> {
     components_of(group, &brackets).iter().map(|components| dot(components, momentum)).collect()
 }
 
-/// The first equation that doesn't hold; `tree` is the declared `l`, where it is one.
-pub(crate) fn disagreement(
+/// Whether all equations hold, at points at which they have values; `tree` is the declared `l`, where it is one.
+pub(crate) fn equations_hold(
     declaration: &Declaration,
     tree: Option<&Rc<Tree>>,
     names: &BTreeMap<Name, SymbolId>,
     derived: &Continuous,
-) -> Option<&'static str> {
+) -> Result<(), Unconfirmed> {
     let terms = Terms::new(derived);
-    (1..=POINTS).find_map(|seed| {
-        let point = Point::new(declaration, Residue::stream(seed));
-        disagreement_at(&point, tree, names, &terms)
-    })
+    confirmed(POINTS, |seed| hold_at(&Point::new(declaration, Residue::stream(seed)), tree, names, &terms)).map(drop)
 }
 
-fn disagreement_at(
+fn hold_at(
     point: &Point<Residue>,
     tree: Option<&Rc<Tree>>,
     names: &BTreeMap<Name, SymbolId>,
     terms: &Terms,
-) -> Option<&'static str> {
+) -> Result<(), Fault> {
     let slope = |values: &Values<Dual<Residue>>| {
         let value = match tree {
             Some(tree) => Evaluation::new(values).of(tree).first(),
@@ -197,66 +198,48 @@ fn disagreement_at(
         let momenta = terms.values(&terms.momentum, names, &varied);
         let change = dot(&momenta, &velocity(point.group(), &varied)).slope - slope(&varied);
         let column: Vec<Residue> = hessian.iter().skip(j).step_by(dimension).copied().collect();
-        if differs(change, dot(&xi, &column)) {
-            return Some("velocity ∂h/∂μ");
-        }
+        same("velocity ∂h/∂μ", dot(&xi, &column), change)?;
     }
     for (k, &found) in diamond.iter().enumerate() {
         let unit: Vec<Residue> = (0..dimension).map(|j| if j == k { Residue::ONE } else { Residue::ZERO }).collect();
-        if differs(found, -slope(&point.carried_by(&unit))) {
-            return Some("diamond term ∂l/∂w ⋄ w");
-        }
+        same("diamond term ∂l/∂w ⋄ w", found, -slope(&point.carried_by(&unit)))?;
     }
-    if let Some(term) = diamond_matrix_disagrees(point, &diamond, &at, terms, &slope) {
-        return Some(term);
-    }
+    diamond_matrix_holds(point, &diamond, &at, terms, &slope)?;
     let carried = point.carried_by(&xi);
-    if differs(energy_rate(point, &momentum, &diamond, slope(&carried)), Residue::ZERO) {
-        return Some("rate of the energy");
-    }
+    same("rate of the energy", energy_rate(point, &momentum, &diamond, slope(&carried)), Residue::ZERO)?;
     let varied = terms.values(&terms.momentum, names, &carried);
-    let is_wrong = advection.iter().zip(&varied).any(|(&found, varied)| differs(found, varied.slope));
-    is_wrong.then_some("change of the momentum with w")
+    let mut pairs = advection.iter().zip(&varied);
+    pairs.try_for_each(|(&found, varied)| same("change of the momentum with w", found, varied.slope))
 }
 
 /// The diamond as a matrix, paired with the generators, and where it is meant along all matrices.
 ///
 /// Of an attitude that is seen `RᵀR = I` may have been used. So it is compared on the group, where that holds.
-fn diamond_matrix_disagrees(
+fn diamond_matrix_holds(
     point: &Point<Residue>,
     diamond: &[Residue],
     at: &dyn Fn(&[NodeId]) -> Vec<Residue>,
     terms: &Terms,
     slope: &dyn Fn(&Values<Dual<Residue>>) -> Residue,
-) -> Option<&'static str> {
-    let group = point.group();
+) -> Result<(), Fault> {
+    let (group, term) = (point.group(), "diamond along all matrices");
     let kinds = (0..point.declaration.advected.len()).map(|index| point.declaration.advected_kind(index));
     let is_general = kinds.into_iter().all(|kind| !matches!(kind, FieldKind::Configuration(_)));
     for (factor, entries) in terms.diamond_matrices.iter().enumerate() {
         let (own, found) = (group.factor(factor), at(entries));
-        let first = group.component_of(factor);
-        for (k, generator) in own.generators.iter().enumerate() {
-            let paired = dot(&found, &Value::square(own.size, generator).entries);
-            if diamond.get(first + k).is_none_or(|&expected| differs(paired, expected)) {
-                return Some("diamond along all matrices");
-            }
+        let components = &diamond[group.component_of(factor)..];
+        for (generator, &expected) in own.generators.iter().zip(components) {
+            same(term, dot(&found, &Value::square(own.size, generator).entries), expected)?;
         }
         let row = group.row_of(factor);
         for (place, &found) in found.iter().enumerate().filter(|_| is_general) {
             let is_one = |i, j| (i, j) == (row + place / own.size, row + place % own.size);
             let unit =
                 Value::new(group.size, group.size, |i, j| if is_one(i, j) { Residue::ONE } else { Residue::ZERO });
-            if differs(found, -slope(&point.carried_by_matrix(&unit))) {
-                return Some("diamond along all matrices");
-            }
+            same(term, found, -slope(&point.carried_by_matrix(&unit)))?;
         }
     }
-    None
-}
-
-/// What has no value here, or no derivative, isn't told.
-fn differs(a: Residue, b: Residue) -> bool {
-    a.is_defined() && b.is_defined() && a != b
+    Ok(())
 }
 
 /// `⟨∂h/∂μ, μ̇⟩ + ⟨∂h/∂w, ẇ⟩` with `∂h/∂μ = ξ`, `∂h/∂w = −∂l/∂w` and `ẇ = −ξ·w`; `carried` is `⟨∂l/∂w, ξ·w⟩`.
@@ -276,7 +259,7 @@ pub(crate) fn energy_is_kept(
     derived: &Continuous,
 ) -> bool {
     let terms = Terms::new(derived);
-    (1..=POINTS).all(|seed| {
+    (1..=u64::from(POINTS)).all(|seed| {
         let point = Point::new(declaration, Residue::stream(seed));
         let at = |outputs: &[NodeId]| terms.values(outputs, names, &point.values);
         let carried = Evaluation::new(&point.carried_by(&point.velocity())).of(tree).first().slope;
@@ -312,43 +295,24 @@ impl LimitTerms {
     }
 }
 
-/// Whether `J`, `s` and `V`, which a stepper has of an `l` that isn't quadratic in the velocity, aren't what its derivatives
-/// are at rest.
-pub(crate) fn rest_disagrees(
+/// Whether `J`, `s` and `V` of the limit are what the derivatives of `l` are at rest.
+pub(crate) fn rest_holds(
     declaration: &Declaration,
     (names, continuous): (&BTreeMap<Name, SymbolId>, &Continuous),
     (symbols, derived): (&BTreeMap<Name, SymbolId>, &Derived),
-) -> bool {
+) -> Result<(), Unconfirmed> {
     let (terms, limit) = (Terms::new(continuous), LimitTerms::new(derived));
-    (1..=POINTS).any(|seed| {
+    let point = |seed| {
         let mut point = Point::new(declaration, Residue::stream(seed));
         point.set_velocity(&vec![Residue::ZERO; declaration.group.dimension()]);
         let at = |outputs: &[NodeId]| terms.values(outputs, names, &point.values);
         let (inertia, bias, potential) = limit.at(symbols, &point);
         let pairs =
             [(at(&terms.hessian), inertia), (at(&terms.momentum), bias), (at(&[terms.lagrangian]), vec![-potential])];
-        pairs.iter().any(|(here, there)| here.iter().zip(there).any(|(&a, b)| differs(a, *b)))
-    })
-}
-
-/// Whether the limit of a discretisation is the Lagrangian that was discretised.
-pub(crate) fn limit_disagrees(
-    declaration: &Declaration,
-    tree: &Rc<Tree>,
-    names: &BTreeMap<Name, SymbolId>,
-    derived: &Derived,
-) -> bool {
-    let terms = LimitTerms::new(derived);
-    (1..=POINTS).any(|seed| {
-        let point = Point::new(declaration, Residue::stream(seed));
-        let (xi, dimension) = (point.velocity(), point.group().dimension());
-        let (inertia, bias, potential) = terms.at(names, &point);
-        let image: Vec<Residue> = inertia.chunks(dimension).map(|row| dot(row, &xi)).collect();
-        let half = Residue::of(Rational::new(1, 2));
-        let limit = half * dot(&xi, &image) + dot(&bias, &xi) - potential;
-        let declared = Evaluation::new(&point.values).of(tree).first();
-        limit.is_defined() && declared.is_defined() && limit != declared
-    })
+        let mut pairs = pairs.iter().flat_map(|(here, there)| here.iter().zip(there));
+        pairs.try_for_each(|(&here, &there)| same("continuous limit", there, here))
+    };
+    confirmed(POINTS, point).map(drop)
 }
 
 /// A continuous Lagrangian.
@@ -358,11 +322,11 @@ pub(crate) enum Lagrangian<'a> {
     Derived(&'a BTreeMap<Name, SymbolId>, &'a Continuous),
 }
 
-/// Whether the discrete Lagrangian is `h l(ξ, w) + O(h²)` along `F = exp(h ξ̂)`, at all points that tell, and at one at
-/// least. Of lower orders only what depends on the motion counts.
+/// Whether the discrete Lagrangian is `h l(ξ, w) + O(h²)` along `F = exp(h ξ̂)`, at all points that tell; nothing where
+/// none does. Of lower orders only what depends on the motion counts.
 ///
 /// The field has roots of all numbers, so this says nothing of where `l` has a value.
-pub(crate) fn has_limit(declaration: &Declaration, l: Lagrangian, discrete: &Rc<Tree>) -> bool {
+pub(crate) fn has_limit(declaration: &Declaration, l: Lagrangian, discrete: &Rc<Tree>) -> Option<bool> {
     let rest = |values: &Values<PowerSeries<Residue>>| {
         let l = match l {
             Lagrangian::Declared(tree) => Evaluation::new(values).of(tree).first(),
@@ -374,9 +338,9 @@ pub(crate) fn has_limit(declaration: &Declaration, l: Lagrangian, discrete: &Rc<
         };
         Evaluation::new(values).of(discrete).first() - PowerSeries::STEP * l
     };
-    let mut told = (1..=POINTS).filter_map(|seed| {
+    let told = (1..=u64::from(POINTS)).filter_map(|seed| {
         let values = Point::new(declaration, Residue::stream(seed)).moving();
-        let mut elsewhere = Point::new(declaration, Residue::stream(seed + POINTS)).moving();
+        let mut elsewhere = Point::new(declaration, Residue::stream(seed + u64::from(POINTS))).moving();
         elsewhere
             .extend(values.iter().filter(|(name, _)| matches!(name, Name::Field(_))).map(|(n, v)| (*n, v.clone())));
         let here = rest(&values);
@@ -387,7 +351,7 @@ pub(crate) fn has_limit(declaration: &Declaration, l: Lagrangian, discrete: &Rc<
         let is_right = difference.order().is_none_or(|order| order >= 2) && here.at(1) == Residue::ZERO;
         difference.is_known_below(2).then_some(is_right)
     });
-    told.next().is_some_and(|first| first && told.all(|one| one))
+    told.reduce(|all, one| all && one)
 }
 
 /// A basis of the directions `ζ` with `⟨μ̇, ζ⟩ = 0` for all values of the parameters: `⟨μ, ζ⟩` is conserved.
@@ -397,47 +361,22 @@ pub(crate) fn right_symmetries(
     derived: &Continuous,
 ) -> Vec<Vec<Rational>> {
     let (terms, dimension) = (Terms::new(derived), declaration.group.dimension());
-    let mut rows: Vec<Vec<Residue>> = Vec::new();
+    let mut rates = Subspace::default();
     for seed in 1..=2 * u64::try_from(dimension).unwrap_or(0) + 2 {
         let point = Point::new(declaration, Residue::stream(seed));
         let at = |outputs: &[NodeId]| terms.values(outputs, names, &point.values);
         let rate = coadjoint(point.group(), &point.velocity(), &at(&terms.momentum));
-        rows.push(rate.iter().zip(at(&terms.diamond)).map(|(&x, y)| x + y).collect());
-    }
-    let null_space = null_space(rows, dimension);
-    null_space.into_iter().filter_map(|vector| vector.into_iter().map(Residue::small).collect()).collect()
-}
-
-/// The vectors that all rows vanish on, by elimination; none where a row has no value.
-fn null_space(mut rows: Vec<Vec<Residue>>, dimension: usize) -> Vec<Vec<Residue>> {
-    if rows.iter().flatten().any(|entry| !entry.is_defined()) {
-        return Vec::new();
-    }
-    let mut pivots: Vec<(usize, usize)> = Vec::new();
-    for column in 0..dimension {
-        let next = pivots.len();
-        let Some(found) = (next..rows.len()).find(|&row| rows[row][column] != Residue::ZERO) else { continue };
-        rows.swap(next, found);
-        let scale = Residue::ONE / rows[next][column];
-        rows[next].iter_mut().for_each(|entry| *entry = *entry * scale);
-        let pivot = rows[next].clone();
-        for (at, row) in rows.iter_mut().enumerate().filter(|(at, _)| *at != next) {
-            let _ = at;
-            let factor = row[column];
-            row.iter_mut().zip(&pivot).for_each(|(entry, &taken)| *entry = *entry - factor * taken);
+        let rate: Vec<Residue> = rate.iter().zip(at(&terms.diamond)).map(|(&x, y)| x + y).collect();
+        if rate.iter().any(|entry| !entry.is_defined()) {
+            return Vec::new();
         }
-        pivots.push((next, column));
+        rates.extend(rate);
     }
-    let free = (0..dimension).filter(|column| pivots.iter().all(|(_, pivot)| pivot != column));
-    let vector = |free: usize| {
-        let mut vector = vec![Residue::ZERO; dimension];
-        vector[free] = Residue::ONE;
-        for &(row, column) in &pivots {
-            vector[column] = -rows[row][free];
-        }
-        vector
-    };
-    free.map(vector).collect()
+    rates
+        .null_space(dimension)
+        .into_iter()
+        .filter_map(|vector| vector.into_iter().map(Residue::small).collect())
+        .collect()
 }
 
 /// What sample values of the parameters show of the second derivative of a continuous Lagrangian, at rest.
@@ -454,5 +393,8 @@ pub(crate) fn kinetic_hessian(
         Value { rows: dimension, columns: dimension, entries }
     });
     let is_used = |name: Name| names.get(&name).is_some_and(|&id| derived.hessian.contains(id));
-    classified(declaration, &is_used, samples.collect())
+    let mut point = Point::new(declaration, Residue::stream(1));
+    point.set_velocity(&vec![Residue::ZERO; dimension]);
+    let exact = terms.values(&terms.hessian, names, &point.values);
+    classified(declaration, &is_used, samples.collect(), &exact)
 }

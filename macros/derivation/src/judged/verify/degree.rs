@@ -9,6 +9,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::rc::Rc;
 
 use super::number::{self, Number};
+use super::residue::mixed;
 use super::sample::Element;
 use super::value::Value;
 use crate::declared::{Kind, Tree};
@@ -19,40 +20,63 @@ use crate::program::{Graph, Node};
 /// A wrong identity passes with a probability below `2⁻ⁿ` for this `n`.
 const ENOUGH: u32 = 100;
 /// With more points than these it takes too long.
-const MOST_POINTS: u32 = 12;
+const MOST_POINTS: u32 = 16;
 
-/// Of a numerator, and of a denominator `Δⁿ r` with the denominator `Δ` that the entries of group elements share.
+/// Of a numerator, and of a denominator `Δᵐ Dⁿ r` with the denominator `Δ` that the entries of group elements share, and
+/// one divisor `D`, as sums of quotients by one number have one denominator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Degree {
     is_zero: bool,
     numerator: u64,
-    /// Of `Δⁿ`.
+    /// Of `Δᵐ`.
     common: u64,
+    /// Of `Dⁿ`, and which number `D` is.
+    divisor: (u64, u64),
     rest: u64,
     /// The largest of the differences of arguments of functions.
     argument: u64,
+    /// Of the operations that it comes from: of two numbers with one name one is the other.
+    name: u64,
 }
 
 impl Degree {
-    /// A random number.
-    pub(super) const VARIABLE: Self = Self { numerator: 1, ..Self::ONE };
-
-    /// An entry of a group element.
-    pub(super) fn of_element(degree: u64) -> Self {
-        Self { numerator: degree, common: degree, ..Self::ONE }
+    /// Random numbers.
+    pub(super) fn stream() -> impl FnMut() -> Self {
+        let mut number = 0;
+        move || {
+            number += 1;
+            Self { numerator: 1, name: mixed(number), ..Self::ONE }
+        }
     }
 
-    fn over(self, common: u64, rest: u64) -> u64 {
-        self.numerator.saturating_add(common - self.common).saturating_add(rest)
+    /// The same, as an entry of a group element.
+    pub(super) fn of_element(self, degree: u64) -> Self {
+        Self { numerator: degree, common: degree, ..self }
+    }
+
+    fn named(self, operation: u64, [a, b]: [u64; 2]) -> Self {
+        Self { name: mixed(mixed(operation ^ a).rotate_left(7) ^ b), ..self }
+    }
+
+    /// Both with the divisor of the higher degree alone; the other becomes a part of the rest.
+    fn with_one_divisor(self, other: Self) -> [Self; 2] {
+        let (_, kept) = self.divisor.max(other.divisor);
+        [self, other].map(|one| match one.divisor {
+            (degree, of) if of != kept => Self { divisor: (0, kept), rest: one.rest.saturating_add(degree), ..one },
+            _ => one,
+        })
     }
 
     fn of_product(self, other: Self) -> Self {
+        let [a, b] = self.with_one_divisor(other);
         Self {
-            is_zero: self.is_zero || other.is_zero,
-            numerator: self.numerator.saturating_add(other.numerator),
-            common: self.common.saturating_add(other.common),
-            rest: self.rest.saturating_add(other.rest),
-            argument: self.argument.max(other.argument),
+            is_zero: a.is_zero || b.is_zero,
+            numerator: a.numerator.saturating_add(b.numerator),
+            common: a.common.saturating_add(b.common),
+            divisor: (a.divisor.0.saturating_add(b.divisor.0), a.divisor.1),
+            rest: a.rest.saturating_add(b.rest),
+            argument: a.argument.max(b.argument),
+            ..Self::ONE
         }
     }
 }
@@ -60,15 +84,22 @@ impl Degree {
 impl Add for Degree {
     type Output = Self;
 
+    #[allow(clippy::suspicious_arithmetic_impl)] // over a common denominator
     fn add(self, other: Self) -> Self {
         let argument = self.argument.max(other.argument);
         if self.is_zero || other.is_zero {
             let sum = if self.is_zero { other } else { self };
             return Self { argument, ..sum };
         }
-        let common = self.common.max(other.common);
-        let numerator = self.over(common, other.rest).max(other.over(common, self.rest));
-        Self { is_zero: false, numerator, common, rest: self.rest.saturating_add(other.rest), argument }
+        let names = [self.name.min(other.name), self.name.max(other.name)];
+        let [a, b] = self.with_one_divisor(other);
+        let (common, divisor) = (a.common.max(b.common), a.divisor.max(b.divisor));
+        let over = |one: Self, rest: u64| {
+            let factors = [common - one.common, divisor.0 - one.divisor.0, rest];
+            factors.into_iter().fold(one.numerator, u64::saturating_add)
+        };
+        let (numerator, rest) = (over(a, b.rest).max(over(b, a.rest)), a.rest.saturating_add(b.rest));
+        Self { numerator, common, divisor, rest, argument, ..Self::ONE }.named(1, names)
     }
 }
 
@@ -77,7 +108,7 @@ impl Sub for Degree {
 
     #[allow(clippy::suspicious_arithmetic_impl)] // the degrees of a sum
     fn sub(self, other: Self) -> Self {
-        self + other
+        self + Self { name: !other.name, ..other }
     }
 }
 
@@ -85,7 +116,8 @@ impl Mul for Degree {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
-        self.of_product(other)
+        let names = [self.name.min(other.name), self.name.max(other.name)];
+        self.of_product(other).named(2, names)
     }
 }
 
@@ -93,12 +125,13 @@ impl Div for Degree {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
-        let numerator = other.rest.saturating_add(other.common);
-        let reciprocal = Self { numerator, common: 0, rest: other.numerator, ..other };
-        let Some(left) = self.common.checked_sub(other.common) else { return self.of_product(reciprocal) };
         // Powers of the shared denominator cancel.
-        let rest = Self { common: left, ..self };
-        rest.of_product(Self { numerator: other.rest, ..reciprocal })
+        let left = self.common.saturating_sub(other.common);
+        let above = other.common.saturating_sub(self.common);
+        let numerator = [other.divisor.0, above].into_iter().fold(other.rest, u64::saturating_add);
+        let divisor = (other.numerator, if other.numerator == 0 { 0 } else { other.name });
+        let reciprocal = Self { numerator, common: 0, divisor, rest: 0, ..other };
+        Self { common: left, ..self }.of_product(reciprocal).named(3, [self.name, other.name])
     }
 }
 
@@ -106,38 +139,46 @@ impl Neg for Degree {
     type Output = Self;
 
     fn neg(self) -> Self {
-        self
+        Self { name: !self.name, ..self }
     }
 }
 
 impl Number for Degree {
     const ZERO: Self = Self { is_zero: true, ..Self::ONE };
-    const ONE: Self = Self { is_zero: false, numerator: 0, common: 0, rest: 0, argument: 0 };
+    const ONE: Self = Self { is_zero: false, numerator: 0, common: 0, divisor: (0, 0), rest: 0, argument: 0, name: 0 };
     const UNDEFINED: Self = Self { numerator: u64::MAX, ..Self::ONE };
 
     fn of(value: Rational) -> Self {
-        if value.is_zero() { Self::ZERO } else { Self::ONE }
+        let (numerator, denominator) = value.parts();
+        let name = |whole: i128| whole.to_le_bytes().into_iter().fold(0, |name, byte| mixed(name ^ u64::from(byte)));
+        let one = if value.is_zero() { Self::ZERO } else { Self::ONE };
+        one.named(4, [numerator, denominator].map(name))
     }
 
     fn power(self, exponent: i32) -> Self {
         let times = |degree: u64| degree.saturating_mul(exponent.unsigned_abs().into());
         let [numerator, common, rest] = [self.numerator, self.common, self.rest].map(times);
-        let power = Self { numerator, common, rest, ..self };
+        let divisor = (times(self.divisor.0), self.divisor.1);
+        let power = Self { numerator, common, divisor, rest, ..self };
+        let power = power.named(5, [self.name, exponent.unsigned_abs().into()]);
         if exponent < 0 { Self::ONE / power } else { power }
     }
 
-    /// A number that is as good as random, or its reciprocal, or what follows from these.
+    /// A number that is as good as random, of an exponential maybe its reciprocal, or what follows from these.
     fn apply(self, function: Function) -> Self {
-        let whole = self.numerator.saturating_add(self.common).saturating_add(self.rest);
+        let parts = [self.common, self.divisor.0, self.rest];
+        let whole = parts.into_iter().fold(self.numerator, u64::saturating_add);
         let argument = self.argument.max(whole.saturating_mul(2));
-        let value = number::of_those_below(function, self).unwrap_or(Self { numerator: 1, rest: 1, ..Self::ONE });
-        Self { argument, ..value }
+        let variable = Self { rest: u64::from(function == Function::Exp), numerator: 1, ..Self::ONE };
+        let value = number::of_those_below(function, self).unwrap_or(variable);
+        let number = u64::try_from(function.number()).unwrap_or(u64::MAX);
+        Self { argument, ..value }.named(6, [self.name, number])
     }
 }
 
 /// The degrees of an element by Cayley transforms and of its coordinates; `Δ` is the product of all of their denominators
 /// and of those of as many attitudes that are seen.
-pub(super) fn element(group: &Group, attitudes: usize) -> (Element<Degree>, Degree) {
+pub(super) fn element(group: &Group, attitudes: usize, number: &mut impl FnMut() -> Degree) -> (Element<Degree>, u64) {
     let of_factor = |own: &Group| match own {
         _ if own.is_added => 0,
         _ if own.is_so3 => 1,
@@ -145,18 +186,24 @@ pub(super) fn element(group: &Group, attitudes: usize) -> (Element<Degree>, Degr
     };
     let transforms = attitudes + group.factors().iter().map(of_factor).sum::<usize>();
     // cay(tE) is a quotient of polynomials of degree 2, or less, as the numerator and denominator of cay(2y) are.
-    let entry = Degree::of_element(2 * u64::try_from(transforms).unwrap_or(u64::MAX / 2));
-    let matrix = super::by_blocks(group, |factor| {
-        let own = group.factor(factor);
-        Value::new(own.size, own.size, |row, column| match (row == column, column + 1 == own.size) {
-            _ if !own.is_added => entry,
-            (true, _) => Degree::ONE,
-            (false, true) => Degree::VARIABLE,
-            (false, false) => Degree::ZERO,
+    let degree = 2 * u64::try_from(transforms).unwrap_or(u64::MAX / 2);
+    let [matrix, inverse] = [(); 2].map(|()| {
+        let entries: Vec<Degree> = (0..group.size * group.size).map(|_| number()).collect();
+        super::by_blocks(group, |factor| {
+            let (own, start) = (group.factor(factor), group.row_of(factor));
+            Value::new(own.size, own.size, |row, column| {
+                let entry = entries[(start + row) * group.size + start + column];
+                match (row == column, column + 1 == own.size) {
+                    _ if !own.is_added => entry.of_element(degree),
+                    (true, _) => Degree::ONE,
+                    (false, true) => entry,
+                    (false, false) => Degree::ZERO,
+                }
+            })
         })
     });
-    let coordinates = vec![Degree::VARIABLE; group.dimension()];
-    (Element { inverse: matrix.clone(), matrix, coordinates }, entry)
+    let coordinates = group.generators.iter().map(|_| number()).collect();
+    (Element { matrix, inverse, coordinates }, degree)
 }
 
 /// How many functions a tree calls.

@@ -119,16 +119,18 @@ impl<'a> Check<'a> {
         let kinds: Vec<FieldKind> = kinds.collect();
         let is_attitude = |kind: &&FieldKind| matches!(kind, FieldKind::Configuration(_));
         let attitudes = kinds.iter().filter(is_attitude).count();
-        let (element, entry) = degree::element(&self.declaration.group, attitudes);
-        let mut sample = self.sample(element, &mut || Degree::VARIABLE);
+        let mut number = Degree::stream();
+        let (element, degree) = degree::element(&self.declaration.group, attitudes, &mut number);
+        let mut sample = self.sample(element, &mut number);
         for (index, kind) in kinds.iter().enumerate().filter(|(_, kind)| is_attitude(kind)) {
             let rows = kind.shape().rows();
-            sample.values.insert(Name::Advected(index), Value::new(rows, rows, |_, _| entry));
+            let entries = (0..rows * rows).map(|_| number().of_element(degree)).collect();
+            sample.values.insert(Name::Advected(index), Value { rows, columns: rows, entries });
         }
         let mut largest = Largest::default();
         largest.compared(sample.declared(tree), sample.reversed(tree));
         let decides = largest.coincidences(degree::functions(tree)) <= MOST_COINCIDENCES;
-        let compared = self.identities.hold(&sample, || Degree::VARIABLE, &mut |_, found, expected| {
+        let compared = self.identities.hold(&sample, number, &mut |_, found, expected| {
             largest.compared(found, expected);
             Ok(())
         });

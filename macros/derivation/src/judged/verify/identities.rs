@@ -14,9 +14,11 @@ use super::sample::{Element, Sample, exponentials};
 use super::value::Value;
 use super::{Fault, components_of, degree, dot, evaluated, increments};
 use crate::declared::{Declaration, Name, Role, Tree};
-use crate::mathematics::derive::Derived;
-use crate::mathematics::symbolic::{Rational, SymbolId};
-use crate::program::{Given, Graph, Kernel, Linearisation, NodeId, Scalariser, components, square, with_lets};
+use crate::mathematics::derive::{Derived, Ends};
+use crate::mathematics::symbolic::{Rational, Stage, SymbolId};
+use crate::program::{
+    Given, Graph, Input, Kernel, Linearisation, Node, NodeId, Scalariser, components, square, with_lets,
+};
 
 /// Compares what was found with what is expected, of a term.
 pub(super) type Same<'a, T> = dyn FnMut(&'static str, T, T) -> Result<(), Fault> + 'a;
@@ -52,11 +54,41 @@ impl Terms {
 }
 
 /// The derivatives of the momenta at both ends of a step, where they are asked for.
-struct Derivatives {
-    graph: Graph,
+pub(super) struct Derivatives {
+    pub(super) graph: Graph,
     /// Along turns of the increment, then along displacements of the body: those of `μ` and of `μ⁺`, row by row.
     blocks: [[Vec<NodeId>; 2]; 2],
     momenta: [Vec<NodeId>; 2],
+    /// By each scalar that the momenta have beside the increment: those of both, and of `⟨p, μ⁺⟩ − ⟨u, μ⟩`.
+    pub(super) scalars: Vec<(Input, Vec<NodeId>, NodeId)>,
+    /// Of `⟨p, μ⁺⟩` along turns of the increment, and of `⟨p, μ⁺⟩ − ⟨u, μ⟩` along displacements of the body.
+    pub(super) adjoint: [Vec<NodeId>; 2],
+}
+
+impl Derivatives {
+    fn new(derived: &Derived, ends: &Ends) -> Self {
+        let mut linearisation = Linearisation::new(derived, ends);
+        let (blocks, momenta) = (linearisation.blocks(), linearisation.momenta());
+        let [_, by_turn] = linearisation.adjoint_system();
+        let gradient = linearisation.adjoint_gradient();
+        let adjoint = [by_turn, linearisation.by_place(&gradient)];
+        let factors = &derived.directions.factors;
+        let is_increment = |id: SymbolId| factors.iter().any(|one| [one.small, one.small_inverse].contains(&id));
+        let inputs = linearisation.graph.reachable(&momenta.concat()).into_iter();
+        let inputs: Vec<Input> = inputs
+            .filter_map(|id| match linearisation.graph.node(id) {
+                Node::Input(input) if !is_increment(input.symbol) => Some(input),
+                _ => None,
+            })
+            .collect();
+        let by = |input: Input| {
+            let Input { symbol, row, column } = input;
+            let forwards = linearisation.by_entry(symbol, row, column);
+            (input, forwards, linearisation.gradient_by_entry(&gradient, symbol, row, column))
+        };
+        let scalars = inputs.into_iter().map(by).collect();
+        Self { blocks, momenta, scalars, adjoint, graph: linearisation.graph }
+    }
 }
 
 /// A declaration with all that was derived of it.
@@ -66,7 +98,7 @@ pub(super) struct Identities<'a> {
     pub(super) derived: &'a Derived,
     kernel: &'a Kernel,
     terms: Terms,
-    derivatives: Option<Derivatives>,
+    pub(super) derivatives: Option<Derivatives>,
 }
 
 /// One point with one direction.
@@ -80,6 +112,16 @@ struct Point<'a, T> {
     turned: Element<Dual<T>>,
     /// Another covector than that of the solution.
     target: Vec<T>,
+    /// Weights of the momenta at both ends, `u` and `p`.
+    weights: [Vec<T>; 2],
+}
+
+impl<T: Number> Point<'_, T> {
+    /// Whether the rows of a matrix, along the direction, are these slopes.
+    fn are_slopes(&self, term: &'static str, matrix: &[T], along: &[Dual<T>], same: &mut Same<T>) -> Result<(), Fault> {
+        let mut rows = matrix.chunks(along.len()).zip(along);
+        rows.try_for_each(|(row, one)| same(term, dot(row, &self.direction), one.slope))
+    }
 }
 
 /// Along the direction of a point, what the declaration says.
@@ -95,11 +137,7 @@ impl<'a> Identities<'a> {
         tree: &'a Rc<Tree>,
         (derived, kernel): (&'a Derived, &'a Kernel),
     ) -> Self {
-        let derivatives = derived.ends.as_ref().map(|ends| {
-            let mut linearisation = Linearisation::new(derived, ends);
-            let (blocks, momenta) = (linearisation.blocks(), linearisation.momenta());
-            Derivatives { graph: linearisation.graph, blocks, momenta }
-        });
+        let derivatives = derived.ends.as_ref().map(|ends| Derivatives::new(derived, ends));
         let (role, terms) = (declaration.role, Terms::new(derived, declaration.role));
         Self { role, tree, derived, kernel, terms, derivatives }
     }
@@ -129,39 +167,41 @@ impl<'a> Identities<'a> {
     ) -> Result<(), Fault> {
         let group = &self.derived.group;
         let mut vector = || group.generators.iter().map(|_| number()).collect::<Vec<T>>();
-        let (direction, target) = (vector(), vector());
+        let (direction, target, weights) = (vector(), vector(), [vector(), vector()]);
         let element = Value::combination(group.size, &group.generators, &direction);
         let exponentials = exponentials(&element);
         let turned = sample.element.turned(&exponentials);
-        let point = Point { sample, dual: sample.lifted(), direction, element, exponentials, turned, target };
+        let point = Point { sample, dual: sample.lifted(), direction, element, exponentials, turned, target, weights };
         let declared = match self.role {
-            Role::Force => self.declared_work(&point),
+            Role::Force => self.declared_work(&point, same)?,
             _ => self.lagrangian_holds(&point, same)?,
         };
         let momentum = self.momentum_holds(&point, &declared, same)?;
         self.step_holds(&point, &momentum, &declared, same)?;
-        self.derivatives_hold(&point, &momentum, &declared, same)
+        self.derivatives_hold(&point, &momentum, &declared, same)?;
+        self.gradients_hold(&point, &mut number, same)
     }
 
     fn at<T: Number>(&self, values: &BTreeMap<Name, Value<T>>) -> T {
         Evaluation::new(values).of(self.tree).first()
     }
 
-    /// The declared work along the direction, of displacements at either end alone.
-    fn declared_work<T: Number>(&self, point: &Point<T>) -> Declared<T> {
+    /// The declared work along the direction, of displacements at either end alone, which is that of both.
+    fn declared_work<T: Number>(&self, point: &Point<T>, same: &mut Same<T>) -> Result<Declared<T>, Fault> {
         let group = &self.derived.group;
-        let work = |is_before: bool| {
+        let work = |before: T, after: T| {
             let mut values = point.sample.values.clone();
             for (factor, own) in group.factors().iter().enumerate() {
                 let first = group.component_of(factor);
                 let along = Value::column(&point.direction[first..first + own.dimension()]);
-                let still = along.map(|_| T::ZERO);
-                let (before, after) = if is_before { (along, still) } else { (still, along) };
+                let [before, after] = [before, after].map(|share| along.map(|x| share * x));
                 values.extend([(Name::DisplacementBefore(factor), before), (Name::DisplacementAfter(factor), after)]);
             }
             self.at(&values)
         };
-        Declared { momentum: -work(true), left: work(false) }
+        let (before, after) = (work(T::ONE, T::ZERO), work(T::ZERO, T::ONE));
+        same("force of both displacements", work(T::ONE, T::ONE), before + after)?;
+        Ok(Declared { momentum: -before, left: after })
     }
 
     /// Both momentum maps, the diamond and the energy are derivatives of the declared Lagrangian.
@@ -207,9 +247,7 @@ impl<'a> Identities<'a> {
         let name = if self.role == Role::Force { "force" } else { "momentum equation" };
         same(name, dot(&momentum, &point.direction), declared.momentum)?;
         let jacobian = evaluated(graph, &self.terms.jacobian, &point.sample.inputs());
-        for (row, one) in jacobian.chunks(along.len()).zip(&along) {
-            same("Newton Jacobian", dot(row, &point.direction), one.slope)?;
-        }
+        point.are_slopes("Newton Jacobian", &jacobian, &along, same)?;
         Ok(momentum)
     }
 
@@ -222,6 +260,10 @@ impl<'a> Identities<'a> {
         same: &mut Same<T>,
     ) -> Result<(), Fault> {
         let (sample, kernel) = (point.sample, self.kernel);
+        // The solve is for `F` in `U(F) = a` with `a = μ + k₀`, which mustn't have it.
+        if kernel.kick_before.iter().any(|&kick| kernel.graph.stage(kick) > Stage::Step) {
+            return Err(Fault::Disagrees("kick before the solve"));
+        }
         let (dimension, group) = (momentum.len(), &self.derived.group);
         let Element { matrix, inverse, coordinates } = &sample.element;
         let inputs = self.inputs_of_stages(sample, [&point.target, &point.direction]);
@@ -240,9 +282,8 @@ impl<'a> Identities<'a> {
         let residual = evaluated(&kernel.graph, &kernel.residual, &self.displaced(point));
         for (k, found) in residual.iter().enumerate() {
             same("Newton residual", found.value, factor * (a[k] - point.target[k]))?;
-            let row = &jacobian[dimension * k..dimension * (k + 1)];
-            same("Newton Jacobian of the step", dot(row, &point.direction), found.slope)?;
         }
+        point.are_slopes("Newton Jacobian of the step", jacobian, &residual, same)?;
         // μ⁺ = Ad*_F a + k₁⁺, and what the gradient gives beside the residual is k₁⁺ before Ad*_F.
         let turned = components_of(group, &[matrix.times(&point.element).times(inverse)]).concat();
         let after = dot(after, &point.direction);
@@ -300,21 +341,60 @@ impl<'a> Identities<'a> {
         declared: &Declared<T>,
         same: &mut Same<T>,
     ) -> Result<(), Fault> {
-        let Some(Derivatives { graph, blocks, momenta }) = &self.derivatives else { return Ok(()) };
+        let Some(Derivatives { graph, blocks, momenta, adjoint, .. }) = &self.derivatives else { return Ok(()) };
         let (dual, [forwards, backwards]) = (&point.dual, &point.exponentials);
         let seen = dual.inputs_at(&dual.element, &dual.moved([backwards, forwards]));
         let turned = dual.inputs_at(&point.turned, &dual.values);
-        let plain = point.sample.inputs();
-        for (inputs, blocks) in [turned, seen].iter().zip(blocks) {
+        let [u, p] = &point.weights;
+        let plain = self.inputs_of_stages(point.sample, [u, p]);
+        for ((inputs, blocks), (adjoint, u)) in
+            [turned, seen].iter().zip(blocks).zip(adjoint.iter().zip([None, Some(u)]))
+        {
+            let [start, end] = momenta.each_ref().map(|outputs| slopes(&evaluated(graph, outputs, inputs)));
+            let expected = dot(p, &end) - u.map_or(T::ZERO, |u| dot(u, &start));
+            same("adjoint of a step", dot(&evaluated(graph, adjoint, &plain), &point.direction), expected)?;
             for (end, (outputs, block)) in momenta.iter().zip(blocks).enumerate() {
                 let along = evaluated(graph, outputs, inputs);
                 let values: Vec<T> = along.iter().map(|one| one.value).collect();
                 let expected = if end == 0 { dot(momentum, &point.direction) } else { declared.left };
                 same("momentum to be differentiated", dot(&values, &point.direction), expected)?;
-                for (row, one) in evaluated(graph, block, &plain).chunks(along.len()).zip(&along) {
-                    same("derivative of a step", dot(row, &point.direction), one.slope)?;
-                }
+                point.are_slopes("derivative of a step", &evaluated(graph, block, &plain), &along, same)?;
             }
+        }
+        Ok(())
+    }
+}
+
+fn slopes<T: Number>(along: &[Dual<T>]) -> Vec<T> {
+    along.iter().map(|one| one.slope).collect()
+}
+
+impl Identities<'_> {
+    /// The derivatives of both momenta by all parameters, with what is advected and `h`, along random changes of these.
+    fn gradients_hold<T: Number>(
+        &self,
+        point: &Point<T>,
+        number: &mut impl FnMut() -> T,
+        same: &mut Same<T>,
+    ) -> Result<(), Fault> {
+        let Some(Derivatives { graph, momenta, scalars, .. }) = &self.derivatives else { return Ok(()) };
+        let mut varied = point.dual.inputs();
+        let changes: Vec<T> = scalars.iter().map(|_| number()).collect();
+        for (&change, (Input { symbol, row, column }, ..)) in changes.iter().zip(scalars) {
+            if let Some(value) = varied.get_mut(symbol) {
+                value.entries[row * value.columns + column].slope = change;
+            }
+        }
+        let [u, p] = &point.weights;
+        let plain = self.inputs_of_stages(point.sample, [u, p]);
+        let along = slopes(&evaluated(graph, &momenta.concat(), &varied));
+        let (start, end) = along.split_at(u.len());
+        let gradient: Vec<NodeId> = scalars.iter().map(|(_, _, by)| *by).collect();
+        let found = dot(&evaluated(graph, &gradient, &plain), &changes);
+        same("gradient of a step", found, dot(p, end) - dot(u, start))?;
+        for (k, &expected) in along.iter().enumerate() {
+            let row: Vec<NodeId> = scalars.iter().map(|(_, by, _)| by[k]).collect();
+            same("derivative by the parameters", dot(&evaluated(graph, &row, &plain), &changes), expected)?;
         }
         Ok(())
     }
@@ -333,7 +413,7 @@ impl Identities<'_> {
         let change = kernel.kick_derivative.clone().unwrap_or_default();
         let stages = stages.into_iter().chain([&change]).flatten().copied().collect::<Vec<_>>();
         let mut all = [evaluated(graph, &terms, &inputs), evaluated(&kernel.graph, &stages, &inputs)].concat();
-        if let Some(Derivatives { graph, blocks, momenta }) = &self.derivatives {
+        if let Some(Derivatives { graph, blocks, momenta, .. }) = &self.derivatives {
             all.extend(evaluated(graph, &[blocks.concat().concat(), momenta.concat()].concat(), &inputs));
         }
         all

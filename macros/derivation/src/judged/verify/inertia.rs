@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
+use super::residue::Residue;
 use super::{Element, SAMPLES, Sample, Value, evaluated, linear};
 use crate::declared::lower::Lowered;
 use crate::declared::{Declaration, FieldKind, Name, Tree};
@@ -62,24 +63,27 @@ pub(crate) fn kinetic_part(
     let inertias = samples.iter().map(|sample| at_identity(sample, &graph, &inertia));
     let inertias = inertias.map(|entries| Value { rows: dimension, columns: dimension, entries });
     let is_used = |name: Name| lowered.names.get(&name).is_some_and(|&id| derived.limit.inertia.contains(id));
-    classified(declaration, &is_used, inertias.collect())
+    let at = Element::identity(&declaration.group);
+    let sample = Sample::with_numbers(declaration, lowered, derived, at, Residue::stream(1));
+    let exact = evaluated(&graph, &inertia, &sample.inputs());
+    classified(declaration, &is_used, inertias.collect(), &exact)
 }
 
-/// What second derivatives at sample values show; `is_used` says which names they depend on.
+/// What second derivatives at sample values show, with those in the field; `is_used` says which names they depend on.
 pub(super) fn classified(
     declaration: &Declaration,
     is_used: &dyn Fn(Name) -> bool,
     inertias: Vec<Value>,
+    exact: &[Residue],
 ) -> KineticPart {
     let dimension = declaration.group.dimension();
     let finite = inertias.into_iter().filter(|inertia| inertia.entries.iter().all(|entry| entry.is_finite()));
     let inertias: Vec<Value> = finite.collect();
-    let identity = Value::identity(dimension);
     if inertias.is_empty() {
         KineticPart::NotSmooth
     } else if has_a_sign(declaration, is_used) && inertias.iter().all(|j| is_positive(&j.map(|x| -x))) {
         KineticPart::Negative
-    } else if inertias.iter().any(|inertia| linear::solve(inertia, &identity).is_some()) {
+    } else if linear::is_regular(exact, dimension) {
         KineticPart::Regular
     } else {
         let is_idle = |k: usize, inertia: &Value| {

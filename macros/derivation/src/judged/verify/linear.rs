@@ -1,42 +1,50 @@
-//! Linear equations of a few unknowns.
+//! Linear equations in the field, where a pivot is zero or isn't.
 
-use super::Value;
+use super::number::Number as _;
+use super::residue::Residue;
 
-/// A pivot this small, relative to the largest entry, is rounding.
-const SMALLEST_PIVOT: f64 = 1e-10;
+/// Rows with the places of their first entries, which are one, and zero in the others.
+#[derive(Default)]
+pub(super) struct Subspace(Vec<(usize, Vec<Residue>)>);
 
-/// Gauss' elimination with complete pivoting: `A⁻¹ b`, none for a singular `A`.
-pub(super) fn solve(a: &Value, b: &Value) -> Option<Value> {
-    let size = a.rows;
-    let mut rows: Vec<Vec<f64>> = (0..size)
-        .map(|row| {
-            (0..size).map(|column| a.at(row, column)).chain((0..b.columns).map(|column| b.at(row, column))).collect()
-        })
-        .collect();
-    let largest = a.entries.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
-    // Where each unknown's equation has gone.
-    let mut solved: Vec<(usize, usize)> = Vec::new();
-    for _ in 0..size {
-        let open = |at: &(usize, usize)| solved.iter().all(|done| done.0 != at.0 && done.1 != at.1);
-        let places = (0..size).flat_map(|row| (0..size).map(move |column| (row, column))).filter(open);
-        let (row, column) = places.max_by(|x, y| rows[x.0][x.1].abs().total_cmp(&rows[y.0][y.1].abs()))?;
-        let pivot = rows[row].clone();
-        // Not finite isn't regular either.
-        if pivot[column].abs().partial_cmp(&(SMALLEST_PIVOT * largest)) != Some(std::cmp::Ordering::Greater) {
-            return None;
+fn without(row: &mut [Residue], at: usize, unit: &[Residue]) {
+    let share = row[at];
+    row.iter_mut().zip(unit).for_each(|(entry, &unit)| *entry = *entry - share * unit);
+}
+
+impl Subspace {
+    /// Adds a row; false where it is in the space.
+    pub(super) fn extend(&mut self, mut row: Vec<Residue>) -> bool {
+        for (at, unit) in &self.0 {
+            without(&mut row, *at, unit);
         }
-        for (at, other) in rows.iter_mut().enumerate().filter(|(at, _)| *at != row) {
-            let _ = at;
-            let factor = other[column] / pivot[column];
-            for (entry, taken) in other.iter_mut().zip(&pivot) {
-                *entry -= factor * taken;
-            }
+        let Some(at) = row.iter().position(|entry| *entry != Residue::ZERO) else { return false };
+        let scale = Residue::ONE / row[at];
+        for entry in &mut row {
+            *entry = *entry * scale;
         }
-        solved.push((row, column));
+        self.0.iter_mut().for_each(|(_, other)| without(other, at, &row));
+        self.0.push((at, row));
+        true
     }
-    solved.sort_by_key(|&(_, column)| column);
-    Some(Value::new(size, b.columns, |unknown, column| {
-        let (row, _) = solved[unknown];
-        rows[row][size + column] / rows[row][unknown]
-    }))
+
+    /// A basis of the vectors that all rows vanish on.
+    pub(super) fn null_space(&self, dimension: usize) -> Vec<Vec<Residue>> {
+        let free = (0..dimension).filter(|column| self.0.iter().all(|(at, _)| at != column));
+        let vector = |free: usize| {
+            let entry = |column: usize| match self.0.iter().find(|(at, _)| *at == column) {
+                Some((_, row)) => -row[free],
+                None if column == free => Residue::ONE,
+                None => Residue::ZERO,
+            };
+            (0..dimension).map(entry).collect()
+        };
+        free.map(vector).collect()
+    }
+}
+
+/// Whether a square matrix, row by row, has an inverse.
+pub(super) fn is_regular(entries: &[Residue], size: usize) -> bool {
+    let mut rows = Subspace::default();
+    entries.iter().all(|entry| entry.is_defined()) && entries.chunks(size).all(|row| rows.extend(row.to_vec()))
 }

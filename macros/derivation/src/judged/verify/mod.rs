@@ -8,26 +8,38 @@
 //!
 //! 1. *Points.* `F`, and each attitude that is seen, is a product of Cayley transforms with random numbers for coordinates
 //!    ([`Element::by_cayley`]), a symmetric matrix is `Z Zᵀ`, and all else is random. So each relation that may be used,
-//!    `FᵀF = I`, `det F = 1`, `Jᵀ = J`, a last coordinate of one, holds at the point. Such elements fill a neighbourhood of
-//!    the identity, so what holds for them as rational functions of the coordinates holds on the connected group.
+//!    `FᵀF = I`, `det F = 1`, `Jᵀ = J`, a last coordinate of one, holds at the point. Where `E³ = c E` the transform of `tE`
+//!    is in the one-parameter group of `E`, and `(t_1, …, t_n) ↦ cay(t_1 E_1) ⋯ cay(t_n E_n)` has the derivative `2 E_k` at
+//!    zero. So the points fill a neighbourhood of the identity, and are dense in the closure, in Zariski's sense, of the
+//!    connected group: a rational function that vanishes at all of them vanishes on it.
 //! 2. *Directions.* `(I + ε v̂) F` with `ε² = 0` is an element of the group to the order that counts. Dual numbers are exact,
 //!    so a slope is the derivative along the group.
 //! 3. *Functions.* Let each call `f(u)` stand for a new variable, one for each `f` and each value of `u`, with the relations of
 //!    [`residue`](residue::Residue) and no others. The true functions obey these, and so do the derivatives that dual numbers
-//!    take: so what is an identity in the variables is one of the true functions. In the field the variables are
-//!    pseudorandom numbers. An identity that needs more, as `√u² = u` or `sin² + cos² = 1`, fails: that refuses too much,
-//!    never too little. No derivation needs one.
+//!    take: so what is an identity in the variables is one of the true functions, on each of their branches. In the field the
+//!    variables are pseudorandom numbers, others at each point: also those of functions of constants, which would be the same
+//!    at all points and count once. An identity that needs more, as `√u² = u` or `sin² + cos² = 1`, fails: that refuses too
+//!    much, never too little. No derivation needs one.
 //! 4. *Sureness.* A difference that isn't zero is a quotient of polynomials with rational coefficients in random numbers. At
 //!    a random point it vanishes with a probability of at most the numerator's degree over `p`, and two arguments of functions
-//!    that differ have one value with a probability of their degree over `p` ([`degree`]). Points are independent: as many
-//!    are compared as bring the probability for a wrong identity, whichever it is, below `2⁻¹⁰⁰`. That takes the numbers
-//!    of the stream and the stand-ins for random ones, and it takes numerators that aren't multiples of `p`.
+//!    that differ have one value with a probability of their degree over `p` ([`degree`]). A point at which a denominator
+//!    vanishes is drawn again, which at most doubles these. Points are independent: as many are compared as bring the
+//!    probability for a wrong identity, whichever it is, below `2⁻¹⁰⁰`. That takes the numbers of the stream and the stand-ins
+//!    for random ones, and it takes numerators that aren't multiples of `p`.
 //! 5. *What runs.* The graph of the [`Kernel`] is compared, stage by stage as a stepper calls it, with the derivatives of the
-//!    terms that were compared before. Tokens are written from that graph.
+//!    terms that were compared before. A step needs `U(F) = μ + k₀` and `μ⁺ = Ad*_F (μ + k₀) + k₁⁺`: any `k₀` will do that
+//!    doesn't depend on `F`, and that it doesn't is asked of the graph. Tokens are written from that graph.
+//!
+//! # What is taken for right
+//!
+//! That the tree is what the tokens mean, which a test asks of random declarations whose text it evaluates apart; how a
+//! group moves what is advected, which is written here a second time; the library's own Cayley map, transport and solves;
+//! and the writing of tokens.
 //!
 //! A group whose generators' multiples have no Cayley transforms in it has points that are power series instead,
 //! `exp(t v̂_1) ⋯ exp(t v̂_n)`. There all is compared to the order to which series are known, without rounding, and without a
-//! bound. What only real numbers have stays with them: whether there is a value at all, and the sign of the inertia.
+//! bound; so are the continuous equations and the limit, at a few points. What only real numbers have stays with them:
+//! whether there is a value at all, and the sign of the inertia.
 
 mod cayley;
 mod constraint;
@@ -60,12 +72,11 @@ use crate::mathematics::symbolic::{Rational, SymbolId};
 use crate::program::{Graph, Input, Kernel, Node, NodeId};
 
 pub(super) use cayley::{is_cayley_coordinates, nilpotency};
+pub(crate) use constraint::Held;
 pub(super) use constraint::{Row, constraint};
 #[cfg(test)]
 pub(crate) use continuous::energy_is_kept;
-pub(crate) use continuous::{
-    Lagrangian, disagreement, has_limit, kinetic_hessian, limit_disagrees, rest_disagrees, right_symmetries,
-};
+pub(crate) use continuous::{Lagrangian, equations_hold, has_limit, kinetic_hessian, rest_holds, right_symmetries};
 use evaluation::Evaluation;
 use identities::Identities;
 pub(super) use inertia::{KineticPart, kinetic_part};
@@ -80,7 +91,7 @@ const DRAWS: u64 = 60;
 
 /// What is wrong with a derivation, or with the expression that it is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Unconfirmed {
+pub(crate) enum Unconfirmed {
     /// A derived term disagrees with the declaration.
     Disagrees(&'static str),
     /// The declaration has no value at any point that was tried.

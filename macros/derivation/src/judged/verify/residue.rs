@@ -1,12 +1,19 @@
 //! Whole numbers modulo the prime `2⁶¹ − 1`: arithmetic without rounding, in which rational functions that differ have
 //! different values at nearly all points.
 
+use std::cell::Cell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::number::{self, Number};
 use crate::mathematics::symbolic::{Function, Rational};
 
 const PRIME: u64 = (1 << 61) - 1;
+
+thread_local! {
+    /// Which stand-ins functions have: others with each stream, so that functions of numbers that are the same at all
+    /// points, as `2.0.sqrt()`, have another value at each of them.
+    static STAND_INS: Cell<u64> = const { Cell::new(0) };
+}
 
 /// Numerators and denominators of what is recognised as a fraction.
 const LARGEST: i128 = 64;
@@ -30,9 +37,10 @@ impl Residue {
         if value < 0 { -size } else { size }
     }
 
-    /// A stream of numbers that no rational function knows.
+    /// A stream of numbers that no rational function knows, with functions that none knows.
     pub(super) fn stream(seed: u64) -> impl FnMut() -> Self {
         let mut state = mixed(seed);
+        STAND_INS.set(state);
         move || {
             state = mixed(state);
             Self(Some(state % PRIME))
@@ -154,7 +162,7 @@ impl Number for Residue {
             return value;
         }
         let number = u64::try_from(function.number()).unwrap_or(u64::MAX);
-        let value = Self(Some(mixed(mixed(argument.min(other)) ^ number) % PRIME));
+        let value = Self(Some(mixed(mixed(argument.min(other) ^ STAND_INS.get()) ^ number) % PRIME));
         match function {
             Function::Ln if argument == other => Self::ZERO,
             _ if argument <= other => value,
@@ -166,7 +174,7 @@ impl Number for Residue {
 }
 
 /// A step of `SplitMix64` (Steele, Lea and Flood 2014).
-fn mixed(state: u64) -> u64 {
+pub(super) fn mixed(state: u64) -> u64 {
     let z = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -224,6 +232,20 @@ mod tests {
         assert_eq!(Residue::ONE.apply(Function::Ln), Residue::ZERO);
         assert!(!Residue::ZERO.apply(Function::Ln).is_defined());
     }
+
+    /// Else a wrong share of `√2` would be right at all points, or wrong at all.
+    #[test]
+    fn functions_differ_from_point_to_point() {
+        let two = Residue::ONE + Residue::ONE;
+        for function in [Function::Sqrt, Function::Sin, Function::Exp, Function::Ln, Function::Stumpff(1)] {
+            let values = [5, 6, 5].map(|seed| {
+                let _ = Residue::stream(seed);
+                two.apply(function)
+            });
+            assert!(values[0] != values[1] && values[0] == values[2], "{function:?}");
+        }
+    }
+
     /// `c_k = 1/k! − q c_{k+2}`, and what the derivatives of `θ/sin θ` follow from, as far as either is asked for.
     #[test]
     fn families_keep_their_recurrences() {

@@ -6,12 +6,23 @@
 //!
 //! For `w` in `V*`, `E·w = −Eᵀ w`, this is (2.1): `⟨w, E δl_d/δw⟩`.
 
-use super::Context;
+use super::{Carried, Context};
 use crate::mathematics::symbolic::{Expression, Rational, Variations, variation};
 
 pub(super) fn diamond(context: &Context) -> Expression {
-    let carried = context.declared.advected.iter();
+    of(context, &context.declared.advected)
+}
+
+/// The share of each parameter, where there are several.
+pub(super) fn shares(context: &Context) -> Vec<Expression> {
+    match context.declared.advected.as_slice() {
+        [_] => Vec::new(),
+        several => several.chunks(1).map(|one| of(context, one)).collect(),
+    }
+}
+
+fn of(context: &Context, advected: &[Carried]) -> Expression {
     let variations: Variations =
-        carried.map(|&w| (w.symbol, context.along(w, &|factor| context.first(factor)))).collect();
+        advected.iter().map(|&w| (w.symbol, context.along(w, &|factor| context.first(factor)))).collect();
     variation(context.lagrangian, &variations, context.symbols).scaled(-Rational::ONE)
 }

@@ -63,6 +63,7 @@ pub(super) fn force(declared: &Declared, Displacements(displacements): &Displace
         right_momentum: none(),
         left_momentum: none(),
         diamond: before,
+        shares: Vec::new(),
         momentum,
         jacobian,
         energy: none(),

@@ -122,6 +122,8 @@ pub(crate) struct Derived {
     pub(crate) left_momentum: Expression,
     /// `δl_d/δw ⋄ w`.
     pub(crate) diamond: Expression,
+    /// The share of each advected parameter, where there are several.
+    pub(crate) shares: Vec<Expression>,
     /// `μ` of (2.7).
     pub(crate) momentum: Expression,
     /// `∂μ_k` along `F ↦ exp(t E_j) F`.
@@ -237,6 +239,7 @@ fn lagrangian(declared: &Declared) -> Result<Derived, LimitError> {
         right_momentum,
         left_momentum,
         diamond,
+        shares: diamond::shares(&context),
         momentum,
         jacobian,
         energy,

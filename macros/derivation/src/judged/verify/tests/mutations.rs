@@ -9,7 +9,7 @@ use super::super::exact::Check;
 use super::super::identities::Identities;
 use super::super::residue::Residue;
 use super::super::sample::{Element, Sample};
-use super::super::{Unconfirmed, Verified, constraint, verify};
+use super::super::{Row, Sureness, Unconfirmed, Verified, constraint, verify};
 use super::products::random::Text;
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Role, Tree, check, lower, parse};
@@ -215,16 +215,44 @@ fn small_errors_of_terms_and_stages() {
         prepared.check_terms(3);
         prepared.check_stages();
     }
-    for seed in 0..4 {
+    for seed in 0..6 {
         let (arguments, item) = Text::of(seed);
         prepared(Role::Lagrangian, &arguments, &item).check_terms(1);
     }
 }
 
+/// Of the derivatives by parameters, of what is advected and of the adjoint.
+#[test]
+fn small_errors_of_gradients() {
+    let prepared = prepared(Role::Lagrangian, &format!("{HEAVY_TOP}, gradients"), &top("NonstandardInertia"));
+    let Prepared { declaration, tree, chosen: Chosen { lowered, derived, kernel } } = &prepared;
+    let found = |wrong: usize| {
+        let mut identities = Identities::new(declaration, tree, (derived, kernel));
+        let derivatives = identities.derivatives.as_mut().expect("asked for");
+        let error = derivatives.graph.constant(Rational::new(1, 1 << 50));
+        let place = match wrong {
+            0..2 => Some(&mut derivatives.adjoint[wrong][1]),
+            2..4 => Some(&mut derivatives.scalars[3].1[5 * (wrong - 2)]),
+            4 => Some(&mut derivatives.scalars[4].2),
+            _ => None,
+        };
+        if let Some(node) = place {
+            *node = derivatives.graph.add(*node, error);
+        }
+        Check { declaration, lowered, identities }.confirmed(tree).map(|(sureness, _)| sureness)
+    };
+    let terms = ["adjoint of a step", "derivative by the parameters", "gradient of a step"];
+    for (wrong, term) in [0, 0, 1, 1, 2].into_iter().enumerate() {
+        assert_eq!(found(wrong), Err(Unconfirmed::Disagrees(terms[term])), "{wrong}");
+    }
+    assert!(matches!(found(5), Ok(Sureness::Certified(100..))), "{:?}", found(5));
+}
+
 /// Each slope of a constraint.
 fn check_slopes(declaration: &Declaration, trees: &[Rc<Tree>]) {
     let held = || held(declaration, trees.to_vec(), &mut Errors::default()).expect("a constraint");
-    assert!(constraint(declaration, &held()).is_ok());
+    let (sureness, rows) = constraint(declaration, &held()).expect("right");
+    assert!(matches!(sureness, Sureness::Certified(100..)) && rows.iter().all(|row| *row == Row::New));
     for body in 0..2 {
         for (by, at) in (0..3 * held().rows()).flat_map(|at| [(0, at), (1, at)]) {
             for (numerator, denominator) in ERRORS {

@@ -5,9 +5,7 @@ pub(super) mod random;
 
 use std::collections::BTreeMap;
 
-use super::{Declared, Sureness, with_one_sign_changed};
-use crate::mathematics::derive::Derived;
-use crate::mathematics::symbolic::Expression;
+use super::{Declared, Sureness};
 use random::Text;
 
 /// Every kind of term is in some of them: the text that shows it.
@@ -37,34 +35,4 @@ fn random_declarations_on_products() {
         assert!(matches!(Declared::new(&arguments, &item).sureness(), Sureness::Certified(100..)), "{seed}");
     }
     assert!(missing.is_empty(), "in no declaration: {:?}", missing.keys());
-}
-
-/// One wrong sign among the terms of each equation is seen.
-#[test]
-fn a_wrong_sign_is_seen() {
-    type Equation = (&'static str, fn(&mut Derived) -> &mut Expression);
-    let equations: [Equation; 9] = [
-        ("right momentum", |d| &mut d.right_momentum),
-        ("left momentum", |d| &mut d.left_momentum),
-        ("diamond", |d| &mut d.diamond),
-        ("momentum", |d| &mut d.momentum),
-        ("Jacobian", |d| &mut d.jacobian),
-        ("energy", |d| &mut d.energy),
-        ("kick before", |d| &mut d.kick_before),
-        ("kick after", |d| &mut d.kick_after),
-        ("unknown", |d| &mut d.unknown),
-    ];
-    for seed in 0..6 {
-        let (arguments, item) = Text::of(seed);
-        let declared = Declared::new(&arguments, &item);
-        for (name, of) in equations {
-            if !of(&mut declared.derived.clone()).is_zero() {
-                let found = declared.after(|derived| {
-                    let term = of(derived);
-                    *term = with_one_sign_changed(term);
-                });
-                assert!(found.is_err(), "{name} in {arguments}");
-            }
-        }
-    }
 }

@@ -1,9 +1,0 @@
-use liestep::{SO3, force};
-use nalgebra::Vector3;
-
-#[force(group = SO3, work = h * (tau + eta))]
-struct Push {
-    tau: Vector3<f64>,
-}
-
-fn main() {}

@@ -1,9 +1,0 @@
-use liestep::{NonstandardInertia, SO3, lagrangian};
-
-#[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * m[0])]
-struct Top {
-    J_d: NonstandardInertia,
-    m: f64,
-}
-
-fn main() {}

@@ -1,8 +1,0 @@
-use liestep::{NonstandardInertia, SO3, lagrangian};
-
-#[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0_f64 * h))]
-struct Top {
-    J_d: NonstandardInertia,
-}
-
-fn main() {}

@@ -1,8 +1,0 @@
-use liestep::{NonstandardInertia, SO3, lagrangian};
-
-#[lagrangian(group = SO3, l_d = (F * J_d).determinant() / h)]
-struct Top {
-    J_d: NonstandardInertia,
-}
-
-fn main() {}
