@@ -51,14 +51,13 @@ impl<L: Effect> Problem<'_, L> {
                 started = Some(Lanes { half, det, settled, kick: Kick::none() });
             }
         }
-        let (mut lanes, again) = match started {
-            Some(lanes) => (lanes, false),
-            None => {
-                let (made, mut lanes) = (black_box(made), Lanes::starting_at(guess));
-                lanes.advance(&made.update, made.det, &made.update);
-                let again = lanes.reuse_jacobian::<REUSE>(equation, &made, self.safe);
-                (lanes, again)
-            }
+        let (mut lanes, again) = if let Some(lanes) = started {
+            (lanes, false)
+        } else {
+            let (made, mut lanes) = (black_box(made), Lanes::starting_at(guess));
+            lanes.advance(&made.update, made.det, &made.update);
+            let again = lanes.reuse_jacobian::<REUSE>(equation, &made, self.safe);
+            (lanes, again)
         };
         let iterations = if lanes.settled.all() {
             1 + u32::from(again)
