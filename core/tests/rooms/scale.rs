@@ -11,18 +11,21 @@ const LENGTHS: [usize; 3] = [574, 81, 134];
 
 /// The lines of each room and package, and of each room of the library the names that it makes public.
 #[rustfmt::skip]
-const BUDGETS: [(&str, usize, usize); 36] = [
-    ("core/src/lib", 139, 11), ("core/src/prelude", 13, 28), ("core/src/private", 233, 61),
-    ("core/src/error", 628, 2), ("core/src/numbers", 2442, 14), ("core/src/groups", 4287, 33),
-    ("core/src/laws", 709, 3), ("core/src/mechanics", 3598, 42), ("core/src/effects", 409, 15),
-    ("core/src/solving", 1348, 3), ("core/src/motion", 3163, 29), ("core/src/gradients", 1366, 10),
-    ("core/src/methods", 8023, 30), ("core/src/recording", 1879, 14), ("core/src/with", 1019, 7),
-    ("core/src/accuracy", 1901, 16), ("core/src/conventions", 477, 0), ("core/src/guide", 2079, 0),
-    ("core/tests", 539, 0), ("macros/src", 235, 0), ("macros/derivation/src/lib", 28, 0), ("macros/derivation/src/expand", 3072, 0), ("macros/derivation/src/emit", 3751, 0),
-    ("macros/derivation/src/judged", 6297, 0), ("macros/derivation/src/declared", 4978, 0), ("macros/derivation/src/program", 2538, 0),
-    ("macros/derivation/src/mathematics", 4799, 0), ("macros/derivation/declarations", 145, 0), ("core/scene", 5001, 0),
-    ("core/cli", 2655, 0), ("core/plot", 774, 0), ("core/ensemble", 4670, 0), ("core/arrow", 220, 0),
-    ("examples", 12557, 0), ("tests", 26903, 0), ("tests/ui", 4184, 0),
+const BUDGETS: [(&str, usize, usize); 38] = [
+    ("core/src/lib", 142, 11), ("core/src/prelude", 17, 28), ("core/src/private", 235, 61),
+    ("core/src/error", 635, 2), ("core/src/numbers", 2441, 14), ("core/src/groups", 4286, 33),
+    ("core/src/laws", 713, 3), ("core/src/mechanics", 3652, 42), ("core/src/effects", 409, 15),
+    ("core/src/solving", 1359, 3), ("core/src/motion", 3144, 29), ("core/src/gradients", 1365, 10),
+    ("core/src/methods", 8019, 30), ("core/src/recording", 1878, 14), ("core/src/with", 1015, 7),
+    ("core/src/accuracy", 1902, 16), ("core/src/conventions", 477, 0), ("core/src/guide", 2129, 0),
+    ("core/tests", 525, 0), ("macros/src", 237, 0), ("macros/derivation/src/lib", 33, 0),
+    ("macros/derivation/src/expand", 3103, 0), ("macros/derivation/src/staged", 630, 0),
+    ("macros/derivation/src/emit", 3788, 0), ("macros/derivation/src/judged", 6359, 0),
+    ("macros/derivation/src/declared", 5027, 0), ("macros/derivation/src/program", 2563, 0),
+    ("macros/derivation/src/mathematics", 4846, 0), ("macros/derivation/declarations", 150, 0),
+    ("core/late", 1546, 0), ("core/scene", 5288, 0), ("core/cli", 2795, 0), ("core/plot", 773, 0),
+    ("core/ensemble", 4678, 0), ("core/arrow", 222, 0), ("examples", 12682, 0), ("tests", 27274, 0),
+    ("tests/ui", 4225, 0),
 ];
 
 /// The circles that are still there. Lines may go, and none be added.
