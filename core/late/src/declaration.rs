@@ -124,7 +124,7 @@ pub struct Declaration {
     pub(crate) terms: Code,
     pub(crate) kick_before: Code,
     pub(crate) newton_system: Code,
-    pub(crate) newton_residual: Option<Code>,
+    pub(crate) newton_residual: Code,
     pub(crate) kick_after: Code,
     pub(crate) kick_derivative: Option<Code>,
     pub(crate) momentum_jacobian: Code,
@@ -199,10 +199,6 @@ impl Declaration {
     fn of(staged: Staged) -> Option<Self> {
         let [unknown, kick_before, kick_after] = staged.parts;
         let code = |program: &Program| Code::of(program);
-        let optional = |program: &Option<Program>| match program {
-            Some(program) => Some(Some(code(program)?)),
-            None => Some(None),
-        };
         let at_velocity = match &staged.at_velocity {
             Some(AtVelocity { l, momentum, hessian }) => Some([code(l)?, code(momentum)?, code(hessian)?]),
             None => None,
@@ -231,9 +227,12 @@ impl Declaration {
             terms: code(&staged.terms)?,
             kick_before: code(&staged.kick_before)?,
             newton_system: code(&staged.newton_system)?,
-            newton_residual: optional(&staged.newton_residual)?,
+            newton_residual: code(&staged.newton_residual)?,
             kick_after: code(&staged.kick_after)?,
-            kick_derivative: optional(&staged.kick_derivative)?,
+            kick_derivative: match &staged.kick_derivative {
+                Some(program) => Some(code(program)?),
+                None => None,
+            },
             momentum_jacobian: code(&staged.momentum_jacobian)?,
             at_rest: code(&staged.at_rest)?,
             at_velocity,

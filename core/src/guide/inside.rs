@@ -112,7 +112,7 @@
 //! | `core/src/conventions`, `core/src/guide` | documentation only |
 //!
 //! `core/tests/rooms.rs` holds them to it. Around the core are packages that use nothing but what is public: `core/scene` and
-//! `core/cli` (scene files and the program), `core/plot` (pictures), `core/ensemble`, `core/arrow`.
+//! `core/cli` (scene files and the program), `core/late` (declarations as text), `core/plot` (pictures), `core/ensemble`, `core/arrow`.
 //!
 //! A [`Plan`](crate::motion::Plan) is a method with its constants folded, and everything else (start, forces, substeps, compensated
 //! sums, checkpoints, recording, events) is written for any plan. `examples/how-to-add-a-method.rs` adds one.

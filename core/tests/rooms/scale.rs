@@ -7,7 +7,7 @@ use std::path::Path;
 use super::{code, root};
 
 /// The lines of the longest file and function, and of the median file in `core` and `macros`.
-const LENGTHS: [usize; 3] = [574, 81, 134];
+const LENGTHS: [usize; 3] = [522, 81, 134];
 
 /// The lines of each room and package, and of each room of the library the names that it makes public.
 #[rustfmt::skip]
@@ -23,7 +23,7 @@ const BUDGETS: [(&str, usize, usize); 38] = [
     ("macros/derivation/src/emit", 3788, 0), ("macros/derivation/src/judged", 6359, 0),
     ("macros/derivation/src/declared", 5027, 0), ("macros/derivation/src/program", 2563, 0),
     ("macros/derivation/src/mathematics", 4846, 0), ("macros/derivation/declarations", 150, 0),
-    ("core/late", 1546, 0), ("core/scene", 5288, 0), ("core/cli", 2795, 0), ("core/plot", 773, 0),
+    ("core/late", 1652, 0), ("core/scene", 5288, 0), ("core/cli", 2795, 0), ("core/plot", 773, 0),
     ("core/ensemble", 4678, 0), ("core/arrow", 222, 0), ("examples", 12682, 0), ("tests", 27274, 0),
     ("tests/ui", 4225, 0),
 ];

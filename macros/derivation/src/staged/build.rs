@@ -60,7 +60,7 @@ pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> Staged {
         terms: of_handed(&terms, constants),
         kick_before: program(constants, &kernel.kick_before),
         newton_system: program(all, &stages.system),
-        newton_residual: is_expensive.then(|| program(all, &kernel.gradient())),
+        newton_residual: program(all, &if is_expensive { kernel.gradient() } else { kernel.residual.clone() }),
         kick_after: program(constants, &kernel.kick_after),
         kick_derivative: kernel.kick_derivative.as_ref().map(|outputs| program(constants, outputs)),
         momentum_jacobian: derived_term(Form::Square, &derived.jacobian),

@@ -234,8 +234,8 @@ pub struct Staged {
     pub kick_before: Program,
     /// Residual, then Jacobian.
     pub newton_system: Program,
-    /// Residual, then the moving kick, where the solve does better without the Jacobian.
-    pub newton_residual: Option<Program>,
+    /// The residual; behind it the moving kick, where the solve does better without the Jacobian.
+    pub newton_residual: Program,
     /// `Ad*_F` of the diamond with `F`.
     pub kick_after: Program,
     /// The derivative of the kick before along a velocity.

@@ -41,6 +41,7 @@ pub(crate) fn declaration(
 
 /// The role, the arguments and the struct of a text that has both, `#[lagrangian(…)] struct Top { … }`.
 pub(crate) fn attribute_and_item(text: &TokenStream, errors: &mut Errors) -> Option<(Role, TokenStream, TokenStream)> {
+    size::check("the declaration", text, errors)?;
     let mut item: ItemStruct = syn::parse2(text.clone()).map_err(|error| errors.extend(error)).ok()?;
     let role = |attribute: &syn::Attribute| match attribute.path().segments.last()?.ident.to_string().as_str() {
         "lagrangian" => Some(Role::Lagrangian),

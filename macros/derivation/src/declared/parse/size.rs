@@ -38,7 +38,7 @@ impl Open {
             }
             TokenTree::Punct(operator) => {
                 self.operators += 1;
-                self.nesting += usize::from(['=', '|', '<', '@', '#', '\''].contains(&operator.as_char()));
+                self.nesting += usize::from(['=', '|', '<', '@', '\''].contains(&operator.as_char()));
             }
             TokenTree::Ident(word) => {
                 self.operators = 0;

@@ -1,0 +1,112 @@
+//! Texts that nobody trusts, and numbers that don't fit.
+
+use std::time::{Duration, Instant};
+
+use liestep::groups::SE3;
+use liestep::mechanics::{Term as _, WithExpensiveKinetic, WithoutKinetic};
+use liestep::{SO3, SetupError, Stepper};
+use liestep_late::{Declaration, Late, LateError};
+use nalgebra::Vector3;
+
+const KINETIC: &str = "((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)";
+
+fn body(more: &str) -> String {
+    format!("#[lagrangian(group = SO3, l_d = {KINETIC}{more})] struct Body {{ J_d: NonstandardInertia, k: f64 }}")
+}
+
+/// The mistakes of a text that has some.
+fn mistakes(text: &str) -> Vec<liestep_late::Mistake> {
+    match Declaration::parse(text) {
+        Err(LateError::Mistakes(mistakes)) => mistakes,
+        other => panic!("{other:?}: {text}"),
+    }
+}
+
+/// An expression is read as mathematics: paths, macros, closures that escape, blocks and items mean nothing in it.
+#[test]
+fn a_text_names_nothing_outside_itself() {
+    let outside = [
+        "std::process::exit(1)",
+        "std::fs::read(\"/etc/passwd\").unwrap().len() as f64",
+        "include_str!(\"/etc/passwd\").len()",
+        "panic!()",
+        "unsafe { *(0 as *const f64) }",
+        "{ fn f() -> f64 { loop {} } f() }",
+        "loop {}",
+        "(|| k)()",
+        "k.exit(1)",
+        "crate::secret",
+        "env!(\"HOME\").len() as f64",
+    ];
+    for expression in outside {
+        let found = mistakes(&body(&format!(" + h * {expression}")));
+        assert!(found.iter().all(|mistake| !mistake.message.contains("please report")), "{expression}: {found:?}");
+    }
+    for text in
+        ["", "fn main() {}", "struct Body { k: f64 }", "#[lagrangian] struct Body { k: f64 }", "#[", "}", "\u{0}"]
+    {
+        assert!(!mistakes(text).is_empty(), "{text:?}");
+    }
+}
+
+/// What is too large is refused, and soon.
+#[test]
+fn large_and_deep_texts_are_refused() {
+    let clock = Instant::now();
+    let long = body(&" + h * k".repeat(20_000));
+    assert!(matches!(Declaration::parse(&long), Err(LateError::TooLong(_))), "{}", long.len());
+    let deep = body(&format!(" + h * {}k{}", "(".repeat(3_000), ")".repeat(3_000)));
+    assert!(Declaration::parse(&deep).is_err());
+    let powers = body(&format!(" + h * k{}", ".powi(9)".repeat(200)));
+    assert!(Declaration::parse(&powers).is_err());
+    assert!(clock.elapsed() < Duration::from_secs(60), "{:?}", clock.elapsed());
+}
+
+#[test]
+fn mistakes_have_places() {
+    let text = "#[lagrangian(\n    group = SO3,\n    l_d = w.dot(&rho) * h,\n)]\nstruct Body { rho: Vector3<f64> }";
+    let found = mistakes(text);
+    assert_eq!((found[0].line, found[0].column), (3, 11), "{found:?}");
+    assert!(found[0].message.contains("`w`"), "{found:?}");
+    assert!(LateError::Mistakes(found).to_string().starts_with("3:11: "));
+    assert_eq!(mistakes("#[lagrangian(group = SO3, l_d = (F)] struct Body {}")[0].line, 1);
+}
+
+/// A text is derived and kept once, whoever declares it.
+#[test]
+fn threads_declare_at_once() {
+    let text = body(" - h * k * F.trace()");
+    let found: Vec<usize> = std::thread::scope(|scope| {
+        let threads: Vec<_> =
+            (0..4).map(|_| scope.spawn(|| std::ptr::from_ref(Declaration::parse(&text).unwrap()) as usize)).collect();
+        threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+    });
+    assert!(found.iter().all(|&place| place == found[0]) && liestep_late::kept() >= 1);
+}
+
+#[test]
+fn what_does_not_fit_is_told() {
+    let says = |error: LateError, parts: &[&str]| {
+        let message = error.to_string();
+        assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+    };
+    let text = body(" - h * k * F.trace()");
+    says(Late::<SE3>::parse(&text).unwrap_err(), &["SO3"]);
+    says(Late::<SO3, (), WithoutKinetic>::parse(&text).unwrap_err(), &["`WithKinetic`"]);
+    says(Late::<SO3, (), WithExpensiveKinetic>::parse(&text).unwrap_err(), &["`WithKinetic`"]);
+    let carried =
+        "#[lagrangian(group = SO3, advected(w = up), l_d = -h * w.dot(&up))] struct Pull { up: Vector3<f64> }";
+    let _ = mistakes(carried);
+    let carried = "#[lagrangian(group = SO3, advected(w = up), l_d = -h * w.dot(&a))] struct Pull { a: Vector3<f64>, up: Vector3<f64> }";
+    says(Late::<SO3, (), WithoutKinetic>::parse(carried).unwrap_err(), &["Covector"]);
+    let pull = Late::<SO3, (Vector3<f64>, Vector3<f64>), WithoutKinetic>::parse(carried).unwrap();
+    let pull = pull.with("a", &[1.0, 0.0, 0.0]).unwrap().with("up", &[0.0, 0.0, 1.0]).unwrap();
+    assert_eq!(pull.advected(), (Vector3::z(), Vector3::zeros()), "the second is not named");
+    let late = Late::<SO3>::parse(&text).unwrap();
+    says(late.clone().with("q", &[1.0]).unwrap_err(), &["`q`", "J_d, k"]);
+    says(late.clone().with("k", &[1.0, 2.0]).unwrap_err(), &["`k`", "1 numbers", "2 were"]);
+    let missing = Stepper::new(late.clone().with("J_d", &[2.0, 2.0, 1.0]).unwrap(), 0.01).unwrap_err();
+    assert!(matches!(missing, SetupError::Parameter { field: "k", .. }), "{missing}");
+    let skew = late.with("k", &[1.0]).unwrap().with("J_d", &[2.0, 1.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 1.0]).unwrap();
+    assert!(matches!(Stepper::new(skew, 0.01).unwrap_err(), SetupError::Parameter { field: "J_d", .. }));
+}
