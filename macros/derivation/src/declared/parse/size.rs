@@ -24,11 +24,13 @@ struct Open {
     operators: usize,
     /// How many tokens since the last `;` or `,` may each nest what follows.
     nesting: usize,
+    /// Whether a group was last. An attribute that follows one doesn't nest.
+    follows_group: bool,
 }
 
 impl Open {
     fn new(tokens: TokenStream, depth: usize) -> Self {
-        Self { tokens: tokens.into_iter(), depth, operators: 0, nesting: 0 }
+        Self { tokens: tokens.into_iter(), depth, operators: 0, nesting: 0, follows_group: false }
     }
 
     fn count(&mut self, token: &TokenTree) {
@@ -39,6 +41,7 @@ impl Open {
             TokenTree::Punct(operator) => {
                 self.operators += 1;
                 self.nesting += usize::from(['=', '|', '<', '@', '\''].contains(&operator.as_char()));
+                self.nesting += usize::from(operator.as_char() == '#' && !self.follows_group);
             }
             TokenTree::Ident(word) => {
                 self.operators = 0;
@@ -46,6 +49,7 @@ impl Open {
             }
             TokenTree::Group(_) | TokenTree::Literal(_) => self.operators = 0,
         }
+        self.follows_group = matches!(token, TokenTree::Group(_));
     }
 
     fn is_too_deep(&self) -> bool {
