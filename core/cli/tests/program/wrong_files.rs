@@ -203,14 +203,14 @@ fn files_of_another_kind() {
         assert!(!output.status.success() && output.stdout.is_empty(), "{name}");
         String::from_utf8(output.stderr).unwrap()
     });
-    expect![[r#"
+    expect![[r"
         error: empty.toml:1:1: missing field `title`
         error: mark.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `magnetic_damping`, `torque`, `thrust`, `start`, `run`, `picture`, `event`, `output`, `lagrangian`
         error: bytes.toml:1:12: isn't a text in UTF-8
         error: nested.toml:1:89: cannot recurse further; max recursion depth met
         error: large.toml: has more than 1048576 bytes, so it is no scene
         error: table.toml:1:1: missing field `name`
-    "#]].assert_eq(&messages.concat());
+    "]].assert_eq(&messages.concat());
 }
 
 /// A file of a hundred megabytes isn't read to its end.
