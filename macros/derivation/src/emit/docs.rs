@@ -3,7 +3,7 @@
 use crate::declared::{Declaration, Factor};
 use crate::judged::{Chosen, Equations, Findings, Sureness};
 use crate::mathematics::derive::{Continuous, Declared, Derived, Inverse, Seen, SelfAdjointness};
-use crate::mathematics::symbolic::{Stage, Variance, covector_text, matrix_text, text};
+use crate::mathematics::symbolic::{Stage, Variance, covector_text, matrix_text, text, vector_text};
 use crate::program::{Candidate, Graph, Kernel, NodeId, count};
 
 /// A method with its equation.
@@ -87,7 +87,9 @@ fn covectors(derived: &Derived, expression: &crate::mathematics::symbolic::Expre
     let (symbols, factors) = (&derived.symbols, &derived.directions.factors);
     let of_factor = |first| {
         let own = expression.filtered(|monomial| crate::mathematics::symbolic::monomial_contains(monomial, first));
-        covector_text(&own, first, symbols)
+        // Of what is translated the direction is a vector.
+        let vector = if symbols.get(first).shape.1 == 1 { vector_text(&own, first, symbols) } else { None };
+        vector.unwrap_or_else(|| covector_text(&own, first, symbols))
     };
     match factors.as_slice() {
         [one] => covector_text(expression, one.first, symbols),

@@ -294,9 +294,10 @@ impl<'a> Identities<'a> {
         let change = kernel.kick_derivative.as_ref().map_or_else(Vec::new, |change| called.kick(change));
         let jacobian = called.iteration(&self.stages.system[dimension..]);
         // Emitted with the residual alone, where there is one.
-        let moved = match kernel.jacobian_is_expensive() {
-            true => called.iteration(&kernel.moved),
-            false => evaluated(&kernel.graph, &kernel.moved, &inputs),
+        let moved = if kernel.jacobian_is_expensive() {
+            called.iteration(&kernel.moved)
+        } else {
+            evaluated(&kernel.graph, &kernel.moved, &inputs)
         };
         let a: Vec<T> = momentum.iter().zip(before).map(|(&momentum, kick)| momentum + kick).collect();
         // (h/2) (1 + |y|²)ⁿ (U − a), whose factor is positive.

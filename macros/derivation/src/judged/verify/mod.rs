@@ -79,7 +79,7 @@ use evaluation::Evaluation;
 use identities::Identities;
 pub(super) use inertia::{KineticPart, kinetic_part};
 use number::Number;
-pub(super) use orders::{TermMistake, not_smooth_at_identity, term_mistakes};
+pub(super) use orders::{TermMistake, not_smooth_at_identity, term_mistakes, without_value};
 use sample::{Element, Sample};
 use value::Value;
 

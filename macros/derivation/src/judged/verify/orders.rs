@@ -11,7 +11,7 @@ use super::residue::Residue;
 use super::sample::Element;
 use super::series::Series;
 use super::value::Value;
-use super::{displacements, exponential, increments, parameters, velocities};
+use super::{DRAWS, displacements, exponential, increments, parameters, stream, velocities};
 use crate::declared::{Declaration, Kind, Name, Role, Shape, Tree};
 use crate::mathematics::symbolic::Function;
 
@@ -83,6 +83,30 @@ pub(crate) fn term_mistakes(declaration: &Declaration, tree: &Rc<Tree>) -> Vec<(
 /// Where a value at `F = I` isn't smooth: what is divided by, or under a function, is zero there.
 pub(crate) fn not_smooth_at_identity(declaration: &Declaration, tree: &Rc<Tree>) -> Option<(Rc<Tree>, TermMistake)> {
     singular(tree, &Points::new(declaration).at_rest)
+}
+
+/// The first part that has no value for any of some parameters, if there is one.
+pub(crate) fn without_value(declaration: &Declaration, tree: &Rc<Tree>) -> Option<Rc<Tree>> {
+    let group = &declaration.group;
+    let points = (1..=DRAWS).map(|seed| {
+        let mut number = stream(seed);
+        let mut values = parameters(declaration, &mut number);
+        let element = Element::by_exponentials(group, || 0.6 * number() - 0.3);
+        values.insert(Name::Step, Value::scalar(0.1));
+        values.extend(increments(group, &element.matrix));
+        values.extend(displacements(group, &mut number));
+        values
+    });
+    let points: Vec<super::Values<f64>> = points.collect();
+    let mut at_points: Vec<Evaluation> = points.iter().map(Evaluation::new).collect();
+    let mut found = None;
+    visit(tree, &mut |part| {
+        let mut has_value = at_points.iter_mut().map(|at| at.of(part).entries.iter().all(|entry| entry.is_defined()));
+        if found.is_none() && !has_value.any(|has_value| has_value) {
+            found = Some(part.clone());
+        }
+    });
+    found
 }
 
 type Values = super::Values<Series>;

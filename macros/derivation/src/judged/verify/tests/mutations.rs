@@ -142,11 +142,13 @@ impl Prepared {
     /// Each term with each error that is meant.
     fn check_terms(&self, most: usize, table: &mut Table, is_meant: impl Fn(usize, usize) -> bool) {
         for (at, (name, of)) in TERMS.into_iter().enumerate() {
-            let Some(term) = of(&mut self.chosen.derived.clone()).filter(|term| !term.is_zero()).cloned() else { continue };
+            let Some(term) = of(&mut self.chosen.derived.clone()).filter(|term| !term.is_zero()).cloned() else {
+                continue;
+            };
             let mut met = BTreeSet::new();
             for (error, (numerator, denominator)) in ERRORS.into_iter().enumerate().filter(|(e, _)| is_meant(at, *e)) {
                 for (row, is_place) in self.places(&term, most) {
-                    let wrong = larger(&term, Rational::new(numerator, denominator), is_place);
+                    let wrong = larger(&term, Rational::new(numerator, denominator), &is_place);
                     let found =
                         self.is_refused(|derived| of(derived).into_iter().for_each(|term| term.clone_from(&wrong)));
                     let Some(is_refused) = found else { continue };
@@ -184,7 +186,7 @@ impl Prepared {
 }
 
 /// With some of the coefficients larger by a share.
-fn larger(term: &Expression, error: Rational, is_meant: Place) -> Expression {
+fn larger(term: &Expression, error: Rational, is_meant: &Place) -> Expression {
     let mut sum = term.clone();
     for (place, (monomial, coefficient)) in term.terms().enumerate() {
         if is_meant(place, &|id| degree(monomial, id)) {
