@@ -27,7 +27,8 @@
 //! | 4 | `macros/derivation/src/judged` | proves what was derived to be that of the declared `l_d`, in exact arithmetic, chooses the cheaper of several forms, and finds what is conserved |
 //! | 5 | `macros/derivation/src/emit` | the only room that quotes tokens: implementations, documentation, and after a mistake a stand-in, so that no second error follows from the first |
 //!
-//! The rooms depend on each other in one direction, `lib → expand → emit → judged → {declared, program} → mathematics`, and a
+//! `staged` has the same as programs for the interpreter of [late declarations](super::late), in place of tokens. The rooms
+//! depend on each other in one direction, `lib → staged → expand → emit → judged → {declared, program} → mathematics`, and a
 //! test holds them to it.
 //!
 //! What comes out of phase 2 is text as well. It is the constant that a program can print, and the documentation of the
@@ -60,13 +61,15 @@
 //! # What is proved, and what isn't
 //!
 //! When a declaration is compiled, momentum maps, diamond, momentum equation, Newton Jacobian, discrete energy, each stage of a
-//! step and each derivative of its momenta are proved to be those of the declared expression, as identities on the connected
-//! group that hold whatever the smooth functions in it are, by evaluation at random points of the field of `2⁶¹ − 1` elements:
-//! by the lemma of Schwartz and Zippel a wrong one passes with a probability below the bound that is printed with the
-//! derivation, `2⁻¹⁰⁰` or less, if the generator's numbers are taken for random.
+//! step as a stepper calls it, each derivative of its momenta and the continuous equations are proved to be those of the
+//! declared expression, as identities on the connected group that hold whatever the smooth functions in it are, by evaluation
+//! at random points of the field of `2⁶¹ − 1` elements: by the lemma of Schwartz and Zippel a wrong one passes with a
+//! probability below the bound that is printed with the derivation, `2⁻¹⁰⁰` or less, if the generator's numbers are taken for
+//! random.
 //! Not proved are that the declaration is what was meant, that a step has a solution, which is found out at run time, what rounding
 //! does to it, and the writing of tokens from the graph that was evaluated; and no bound is claimed, which the derivation says,
-//! where degrees are too high or a generator `E` of a group of one's own has no `E³ = cE`.
+//! for the limit `h → 0`, for a self-adjointness that rests on `exp(½ log F)`, and for all of it where degrees are too high or a
+//! generator `E` of a group of one's own has no `E³ = cE`.
 //!
 //! `macros/derivation/src/judged/verify/mod.rs` has the argument.
 //!

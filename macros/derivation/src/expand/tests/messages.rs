@@ -27,6 +27,7 @@ fn of_mistakes() {
     let work = |work: &str| (Role::Force, format!("group = SO3, work = {work}"), torque);
     let given = "struct Top { J_d: NonstandardInertia, up: Tensor<f64> }";
     let pull = format!("group = SO3, advected(w = up), l_d = {kinetic} - h * w.z");
+    let line = "struct Top { J_d: NonstandardInertia, v: SVector<f64, 1> }";
     let mut wrong = Vec::new();
     for ((role, arguments, item), expected) in [
         ((Role::Lagrangian, pull, given), "this type has no meaning"),
@@ -42,6 +43,10 @@ fn of_mistakes() {
         (l_d("- h.ln() * h * F.trace()"), "take the `h` out of the root or the logarithm"),
         (work("h * tau.dot(&eta) * h.ln()"), "take the `h` out of the root or the logarithm"),
         (l_d("- h F.trace()"), "a comma is missing before this, or within an expression an operator"),
+        (
+            (Role::Lagrangian, format!("group = SO3, l_d = {kinetic} - h * v.x * F.trace()"), line),
+            "write an entry by its index, `v[0]`",
+        ),
         (work("0.5 * h * tau.dot(&(eta - eta))"), "this work is zero whatever the parameters"),
         (work("0.0 * h * tau.dot(&eta)"), "this work is zero whatever the parameters"),
     ] {
@@ -67,6 +72,7 @@ fn of_mistakes() {
             of_bodies("R_1 = F_1.seen_from(space), y = d_3.seen_from(space)", "(R_1 * a).dot(&y)"),
             "`d_3` is neither a field",
         ),
+        (of_bodies("y = d_2.seen_from(space)", "y.z - 2.0"), "is on space as the body above"),
         (
             (Role::Constraint, "group = SO3, advected(y = d_2.seen_from(d_1)), zero = y.z".to_owned(), torque),
             "a constraint is on two bodies",
