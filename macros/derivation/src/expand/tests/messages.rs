@@ -72,7 +72,7 @@ fn of_mistakes() {
             of_bodies("R_1 = F_1.seen_from(space), y = d_3.seen_from(space)", "(R_1 * a).dot(&y)"),
             "`d_3` is neither a field",
         ),
-        (of_bodies("y = d_2.seen_from(space)", "y.z - 2.0"), "is on space as the body above"),
+        (of_bodies("y = d_2.seen_from(space)", "y.z - a.dot(&b)"), "is on space as the body above"),
         (
             (Role::Constraint, "group = SO3, advected(y = d_2.seen_from(d_1)), zero = y.z".to_owned(), torque),
             "a constraint is on two bodies",
