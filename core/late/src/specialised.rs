@@ -1,6 +1,6 @@
 //! Programs with all numbers known: constants written in, what they make foreseeable folded, zeros dropped.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use liestep_derivation::{Array, Operation, Program, Source, Stages};
 
@@ -179,60 +179,42 @@ fn operands(made: Made) -> [Value; 2] {
 
 /// The program of these outputs, with nothing that they don't need.
 fn written(operations: &[Made], outputs: &[Value]) -> Program {
-    let mut needed = vec![false; operations.len()];
-    let need = |value: &Value, needed: &mut [bool]| {
-        if let Value::Result(at) = *value {
-            needed[at] = true;
-        }
-    };
-    outputs.iter().for_each(|output| need(output, &mut needed));
-    for at in (0..operations.len()).rev() {
-        if needed[at] {
-            operands(operations[at]).iter().for_each(|operand| need(operand, &mut needed));
+    let mut needed: BTreeSet<Value> = outputs.iter().copied().collect();
+    for (at, &made) in operations.iter().enumerate().rev() {
+        if needed.contains(&Value::Result(at)) {
+            needed.extend(operands(made));
         }
     }
-    let used = operations.iter().zip(&needed).filter(|(_, needed)| **needed).flat_map(|(&made, _)| operands(made));
-    let mut registers = BTreeMap::new();
-    let leaves: Vec<Value> = used.chain(outputs.iter().copied()).collect();
-    let is_input = |value: &&Value| matches!(value, Value::Input(_));
-    let is_number = |value: &&Value| matches!(value, Value::Number(_));
-    for leaf in leaves.iter().filter(is_input) {
-        let next = registers.len();
-        registers.entry(*leaf).or_insert(next);
-    }
-    let inputs = registers.len();
-    for leaf in leaves.iter().filter(is_number) {
-        let next = registers.len();
-        registers.entry(*leaf).or_insert(next);
-    }
-    let mut fixed: Vec<(usize, Value)> = registers.iter().map(|(&value, &at)| (at, value)).collect();
-    fixed.sort_unstable();
-    let source = |&(_, value): &(usize, Value)| match value {
-        Value::Input(source) => Some(source),
+    // Numbers, inputs and results, in this order; of a program inputs come first.
+    let of = |kind: fn(&Value) -> bool| needed.iter().copied().filter(move |value| kind(value));
+    let inputs = || of(|value| matches!(value, Value::Input(_)));
+    let all = inputs()
+        .chain(of(|value| matches!(value, Value::Number(_))))
+        .chain(of(|value| matches!(value, Value::Result(_))));
+    let registers: BTreeMap<Value, u32> = all.zip(0..).collect();
+    let made = of(|value| matches!(value, Value::Result(_))).filter_map(|value| match value {
+        Value::Result(at) => operations.get(at),
         _ => None,
-    };
-    let mut program = Program {
-        inputs: fixed[..inputs].iter().filter_map(source).collect(),
-        literals: fixed[inputs..].iter().filter_map(|(_, value)| value.number()).collect(),
-        operations: Vec::new(),
-        outputs: Vec::new(),
-    };
-    let register = |value: &Value, registers: &BTreeMap<Value, usize>| {
-        u32::try_from(registers.get(value).copied().unwrap_or(0)).unwrap_or(u32::MAX)
-    };
-    for (at, &made) in operations.iter().enumerate().filter(|(at, _)| needed[*at]) {
-        let [a, b] = operands(made).map(|value| register(&value, &registers));
-        program.operations.push(match made {
+    });
+    let operation = |&made: &Made| {
+        let [a, b] = operands(made).map(|value| registers[&value]);
+        match made {
             Made::Negate(_) => Operation::Negate(a),
             Made::Add(..) => Operation::Add(a, b),
             Made::Subtract(..) => Operation::Subtract(a, b),
             Made::Multiply(..) => Operation::Multiply(a, b),
             Made::Divide(..) => Operation::Divide(a, b),
             Made::Apply(function, _) => Operation::Apply(function, a),
-        });
-        let next = registers.len();
-        registers.insert(Value::Result(at), next);
+        }
+    };
+    let source = |value| match value {
+        Value::Input(source) => Some(source),
+        _ => None,
+    };
+    Program {
+        inputs: inputs().filter_map(source).collect(),
+        literals: of(|value| matches!(value, Value::Number(_))).filter_map(Value::number).collect(),
+        operations: made.map(operation).collect(),
+        outputs: outputs.iter().map(|output| registers[output]).collect(),
     }
-    program.outputs = outputs.iter().map(|output| register(output, &registers)).collect();
-    program
 }

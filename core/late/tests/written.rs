@@ -86,7 +86,7 @@ fn a_step_in_c_has_the_bits_of_the_library() {
     }
     let folder = folder("c");
     let top = top();
-    let stepper = Stepper::new(top, STEP).expect("a stepper");
+    let stepper = Stepper::new(top.clone(), STEP).expect("a stepper");
     let attitude = SO3::exp(Vector3::new(0.3, -0.5, 0.2));
     let mut state = stepper.start(attitude, Vector3::new(0.7, -1.1, 4.0)).expect("a start");
     let mut parameters = Parameters(Vec::new());
@@ -156,8 +156,8 @@ fn equations_are_latex() {
         let made = latex(parsed(text));
         assert!(made.lines().count() > 8, "{made}");
         for line in made.lines() {
-            let count = |character| line.matches(character).count();
-            assert_eq!(count('{'), count('}'), "{line}");
+            let count = |part: &str| line.matches(part).count();
+            assert_eq!(count("{"), count("}"), "{line}");
             assert_eq!(count("\\left("), count("\\right)"), "{line}");
             let unknown = line.chars().find(|character| !character.is_ascii() && !"–’‖≤≥∈".contains(*character));
             assert_eq!(unknown, None, "{line}");

@@ -14,7 +14,7 @@ fn bits<E: Entries<f64>>(value: &E) -> Vec<u64> {
 }
 
 /// From a random start both make the same steps to the bit, forwards and backwards. One that fails, fails in both.
-pub fn assert_same<A, B>(compiled: &A, late: &B, seed: u64)
+pub(crate) fn assert_same<A, B>(compiled: &A, late: &B, seed: u64)
 where
     A: Regular<Scalar = f64, Retraction = CayleyRetraction> + Clone,
     B: Regular<Scalar = f64, Retraction = CayleyRetraction, Group = A::Group, Advected = A::Advected> + Clone,
@@ -48,7 +48,7 @@ where
 }
 
 /// The declaration, read anew and interpreted, makes the steps of the compiled effect.
-pub fn assert_as_compiled<E>(compiled: &E, seed: u64)
+pub(crate) fn assert_as_compiled<E>(compiled: &E, seed: u64)
 where
     E: Regular<Scalar = f64, Retraction = CayleyRetraction> + Clone,
     E::Advected: Advected<E::Group> + Slots,
