@@ -98,6 +98,7 @@ fn of_the_heavy_top() {
             Omega = 𝕀⁻¹ μ    [(1.14) inverted, 𝕀⁻¹ once for all]
             h(μ, w) = ½ ⟨μ, 𝕀⁻¹ μ⟩ + m g ⟨rho, w⟩    [(1.16)]
             kept = h(μ, w); |w|²; ⟨μ, w⟩, the spatial momentum along it    [left and right symmetries]
+            certainty: the equations are identities; wrong with a probability below 2⁻¹¹²
     "#]].assert_eq(&continuous_derivation(TOP, PARAMETERS));
     expect![[r#"
         group
@@ -105,7 +106,7 @@ fn of_the_heavy_top() {
             w = g⁻¹·a₀ in V*
         continuous
             Ω = g⁻¹ dg/dt
-            l_d(exp(h Ω), w, h) = h l(Ω, w) + O(h²)
+            l_d(exp(h Ω), w, h) = h l(Ω, w) + O(h²)    [at random points, exactly, without a bound]
             pairing: μ_k = ⟨μ, E_k⟩, so that μ is the body momentum; the thesis' matrix, paired by tr(AᵀB), is half of hat(μ)
             l(Ω, w) = −m g ⟨rho, w⟩ + (1/2) tr(J_d) ⟨Ω, Ω⟩ − (1/2) ⟨Ω, J_d Ω⟩    [the limit of l_d/h]
             μ = tr(J_d) Ω − J_d Ω    [∂l/∂ξ, (1.14)]
@@ -116,6 +117,7 @@ fn of_the_heavy_top() {
             Ω = 𝕀⁻¹ μ    [(1.14) inverted, 𝕀⁻¹ once for all]
             h(μ, w) = ½ ⟨μ, 𝕀⁻¹ μ⟩ + m g ⟨rho, w⟩    [(1.16)]
             kept = h(μ, w); |w|²; ⟨μ, w⟩, the spatial momentum along it    [left and right symmetries]
+            certainty: the equations are identities; wrong with a probability below 2⁻¹¹²
     "#]].assert_eq(&continuous_derivation(HEAVY_TOP, &top("NonstandardInertia")));
     expect![[r#"
 
@@ -157,6 +159,7 @@ fn of_others() {
             Omega = 𝕀(w)⁻¹ (μ − k s)    [(1.14) inverted]
             h(μ, w) = ½ ⟨μ − k s, 𝕀(w)⁻¹ (μ − k s)⟩    [(1.16)]
             kept = h(μ, w); |w|²; ⟨μ, w⟩, the spatial momentum along it    [left and right symmetries]
+            certainty: the equations are identities; wrong with a probability below 2⁻¹¹²
     "#]].assert_eq(&continuous_derivation(varying, item));
     let relativistic = "group = R1, velocity = v, l = -m * c * c * (1.0 - v.norm_squared() / (c * c)).sqrt()";
     expect![[r#"
@@ -172,6 +175,7 @@ fn of_others() {
             v = the solution of ∂l/∂ξ = μ    [(1.14) inverted by Newton's iteration]
             h(μ) = ⟨μ, v⟩ − l at v = ∂h/∂μ    [(1.16)]
             kept = h(μ); Ad*_{g⁻¹} μ; μ_1    [left and right symmetries]
+            certainty: the equations are identities; wrong with a probability below 2⁻¹⁴⁷
     "#]]
     .assert_eq(&continuous_derivation(relativistic, "struct Particle { m: f64, c: f64 }"));
     let planar = "group = SE2, velocity = xi, advected(a = anchor),
@@ -193,6 +197,7 @@ fn of_others() {
             xi = 𝕀⁻¹ μ    [(1.14) inverted, 𝕀⁻¹ once for all]
             h(μ, a) = ½ ⟨μ, 𝕀⁻¹ μ⟩ + (k/2) ⟨p, p⟩ − k ⟨p, a⟩ + (k/2) ⟨a, a⟩    [(1.16)]
             kept = h(μ, a); ⟨Ad*_{g⁻¹} μ, η⟩ for η·a₀ = 0    [left and right symmetries]
+            certainty: the equations are identities; wrong with a probability below 2⁻¹¹²
     "#]]
     .assert_eq(&continuous_derivation(planar, item));
 }
@@ -261,13 +266,13 @@ fn a_turned_sign_is_seen() {
             change(&mut changed);
             match verify::equations_hold(&declaration, Some(&tree), &names, &changed) {
                 Err(Unconfirmed::Disagrees(term)) => Some(term),
-                found => found.map_or_else(|other| panic!("{other:?}"), |()| None),
+                found => found.map_or_else(|other| panic!("{other:?}"), |_| None),
             }
         };
         assert_eq!(check(&|_| ()), None);
         let turned = |expression: &Expression| expression.clone().scaled(-Rational::ONE);
-        assert_eq!(check(&|derived| derived.momentum = turned(&derived.momentum)), Some("velocity ∂h/∂μ"));
-        assert_eq!(check(&|derived| derived.hessian = turned(&derived.hessian)), Some("velocity ∂h/∂μ"));
+        assert_eq!(check(&|derived| derived.momentum = turned(&derived.momentum)), Some("momentum ∂l/∂ξ"));
+        assert_eq!(check(&|derived| derived.hessian = turned(&derived.hessian)), Some("inertia ∂²l/∂ξ²"));
         assert_eq!(check(&|derived| derived.diamond = turned(&derived.diamond)), Some("diamond term ∂l/∂w ⋄ w"));
         let halved = |derived: &mut derive::Continuous| {
             derived.diamond = derived.diamond.clone().scaled(Rational::new(1, 2));
@@ -279,22 +284,6 @@ fn a_turned_sign_is_seen() {
             let turn = |derived: &mut derive::Continuous| derived.advection = turned(&derived.advection);
             assert_eq!(check(&turn), Some("change of the momentum with w"));
         }
-    }
-}
-
-/// The rate of the energy vanishes with the right signs of `⋄` and of `ẇ` together, and not with one of them turned.
-#[test]
-fn the_rate_of_the_energy() {
-    for (arguments, item) in [(TOP, PARAMETERS), (EVERYTHING, FIELDS), (LINKS, OF_LINKS), (CART, OF_CART)] {
-        let (declaration, tree) = read(arguments, item);
-        let Equations { names, derived, .. } = equations(arguments, item);
-        let rate = |diamond: &Expression| {
-            let changed = derive::Continuous { diamond: diamond.clone(), ..derived.clone() };
-            verify::energy_is_kept(&declaration, &tree, &names, &changed)
-        };
-        assert!(rate(&derived.diamond));
-        assert!(!rate(&derived.diamond.clone().scaled(-Rational::ONE)));
-        assert!(!rate(&Expression::zero((1, 1))));
     }
 }
 
@@ -429,6 +418,7 @@ fn of_several_bodies() {
             ξ = 𝕀(w)⁻¹ μ    [(1.14) inverted]
             h(μ, w_1, w_2, Q) = ½ ⟨μ, 𝕀(w)⁻¹ μ⟩ + g ⟨s_1, w_1⟩ + g ⟨s_2, w_2⟩    [(1.16)]
             kept = h(μ, w_1, w_2, Q); ⟨Ad*_{g⁻¹} μ, η⟩ for η·a₀ = 0    [left and right symmetries]
+            certainty: the equations are identities; wrong with a probability below 2⁻¹¹²
     "#]].assert_eq(&continuous_derivation(LINKS, OF_LINKS));
     expect![[r#"
         group
@@ -454,6 +444,7 @@ fn of_several_bodies() {
             ξ = 𝕀(w)⁻¹ (μ − s(w))    [(1.14) inverted]
             h(μ, R, x, r, w) = ½ ⟨μ − s(w), 𝕀(w)⁻¹ (μ − s(w))⟩ + m sqrt(1 + ⟨r, r⟩) + x ⟨r, R w⟩    [(1.16)]
             kept = h(μ, R, x, r, w); ⟨Ad*_{g⁻¹} μ, η⟩ for η·a₀ = 0    [left and right symmetries]
+            certainty: the equations are identities; wrong with a probability below 2⁻¹⁰⁰
     "#]].assert_eq(&continuous_derivation(CART, OF_CART));
     // A wheel, and a body that nothing moves.
     let wheel = "group(F = SO3, t = R1, d = R2), velocity(Omega, u, v),

@@ -188,7 +188,7 @@ fn of_the_heavy_top() {
             ∂k₀ along exp(−tE_j)·w = (h m g/2) (E_j w rhoᵀ + rho wᵀ E_j)^∨    [the force gradient's]
         continuous
             Ω = g⁻¹ dg/dt
-            l_d(exp(h Ω), w, h) = h l(Ω, w) + O(h²)
+            l_d(exp(h Ω), w, h) = h l(Ω, w) + O(h²)    [at random points, exactly, without a bound]
             pairing: μ_k = ⟨μ, E_k⟩, so that μ is the body momentum; the thesis' matrix, paired by tr(AᵀB), is half of hat(μ)
             l(Ω, w) = −m g ⟨rho, w⟩ + (1/2) tr(J_d) ⟨Ω, Ω⟩ − (1/2) ⟨Ω, J_d Ω⟩    [the limit of l_d/h]
             μ = tr(J_d) Ω − J_d Ω    [∂l/∂ξ, (1.14)]
@@ -199,6 +199,7 @@ fn of_the_heavy_top() {
             Ω = 𝕀⁻¹ μ    [(1.14) inverted, 𝕀⁻¹ once for all]
             h(μ, w) = ½ ⟨μ, 𝕀⁻¹ μ⟩ + m g ⟨rho, w⟩    [(1.16)]
             kept = h(μ, w); |w|²; ⟨μ, w⟩, the spatial momentum along it    [left and right symmetries]
+            certainty: the equations are identities; wrong with a probability below 2⁻¹¹²
         hypotheses used
             FᵀF = I, J_dᵀ = J_d
         self-adjoint
