@@ -11,7 +11,7 @@
 //! | | what | where | checked by |
 //! |---|---|---|---|
 //! | `TG/G ≃ 𝔤` | the body velocity `ξ = g⁻¹ġ` | [`Stepper::velocity`], [`Stepper::start`] | `core/src/laws/group.rs` `variations` |
-//! | (1.1) | `l(ξ) = L(e, ξ)` | [`l`], declared as `l = …` or the limit of `l_d` | `tests/random_lagrangians/continuous.rs` `assert_equations`; no attitude is in scope, `tests/ui/fail/advected.rs` |
+//! | (1.1) | `l(ξ) = L(e, ξ)` | [`l`], declared as `l = …` or the limit of `l_d` | `tests/random_lagrangians/continuous.rs` `assert_equations`; no attitude is in scope, `macros/derivation/mistakes/advected.txt` |
 //! | theorem 1.1.1 | four equivalent statements | | `tests/groups/reduction.rs` `euler_poincare_reduction` |
 //! | (1.2) | `δ∫l dt = 0` | in [the guide][reduced] | `tests/groups/reduction.rs` `euler_poincare_reduction` |
 //! | (1.3), (1.6) | `δξ = η' + ad_ξ η` | [`lie_bracket`] | `core/src/laws/group.rs` `variations` |

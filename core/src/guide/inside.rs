@@ -128,7 +128,7 @@
 //! | methods of high order | the same maps in 32 digits, written anew | `tests/accuracy/many_digits` |
 //! | conservation, the Poisson structure | their definitions | `tests/systems`, `tests/hard_cases` |
 //! | steps | their bits, on record | `tests/derivation/golden_steps.rs` |
-//! | messages | the text, for every mistake | `tests/ui` |
+//! | messages | the text and the place, for every mistake | `macros/derivation/mistakes`, `tests/ui` |
 //! | zero cost | instructions counted | `cargo bench --bench scenes -- zero-cost` |
 //!
 //! `CONTRIBUTING.md` says what to run, and what a new effect, group or method takes.
