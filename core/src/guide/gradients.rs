@@ -103,4 +103,4 @@
 //! # Other ways
 //!
 //! A scene that is generic over its scalar may be given dual numbers, [`numbers::Real`](crate::numbers::Real). That goes
-//! through everything, remedies too, and costs more: `cargo bench -p liestep-tests --bench dual-numbers`.
+//! through everything, remedies too.

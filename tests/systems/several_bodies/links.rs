@@ -28,7 +28,7 @@ fn link(central: &Matrix3<f64>, m: f64, c: Vector3<f64>, rho: Vector3<f64>) -> L
 }
 
 /// Of the reference.
-fn chain3() -> Chain<3> {
+pub(super) fn chain3() -> Chain<3> {
     let data = &read("several bodies")["chain3"]["parameters"];
     let plain = |value: &serde_json::Value| Vector3::from_fn(|k, _| value[k].as_f64().unwrap());
     let links = all(&data["bodies"], |body| {
