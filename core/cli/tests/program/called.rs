@@ -57,13 +57,10 @@ pub(crate) fn mistakes(file: &str, text: &str, message: impl Fn(&str) -> String)
     let mistakes = fs::read_to_string(&path).unwrap();
     let found = mistakes.split("\n\n").map(|mistake| {
         let changed: Vec<&str> = mistake.lines().filter(|line| line.starts_with(['-', '+'])).collect();
-        let [right, wrong] = ["- ", "+ "].map(|sign| {
-            changed
-                .iter()
-                .filter_map(|line| line.strip_prefix(sign))
-                .map(|line| format!("{line}\n"))
-                .collect::<String>()
-        });
+        let side = |sign| -> Vec<String> {
+            changed.iter().filter_map(|line| line.strip_prefix(sign)).map(|line| format!("{line}\n")).collect()
+        };
+        let [right, wrong] = ["- ", "+ "].map(|sign| side(sign).concat());
         assert!(!right.is_empty() && text.contains(&right), "{mistake}");
         format!("{}\n{}", changed.join("\n"), message(&text.replacen(&right, &wrong, 1)))
     });
