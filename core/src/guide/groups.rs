@@ -42,8 +42,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! `tests/derivation/other_groups.rs` declares Lagrangians on all of them, and `examples/declarations/underwater_body.rs` is
-//! Kirchhoff's body in a fluid. On SO(3) the steps are tuned for speed; on other groups the derived terms are as exact, and
+//! `tests/random_lagrangians` and `tests/derivation/other_groups.rs` declare Lagrangians on all of them, and
+//! `examples/declarations/underwater_body.rs` is Kirchhoff's body in a fluid. On SO(3) the steps are tuned for speed; on other groups the derived terms are as exact, and
 //! the step isn't.
 //!
 //! # What the group carries
