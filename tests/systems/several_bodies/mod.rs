@@ -21,7 +21,7 @@ use liestep::laws::samples::{Random, derivative};
 use liestep::mechanics::{ContinuousLagrangian, DiscreteLagrangian, Regular, Term};
 use liestep::motion::RightHandSide;
 use liestep::{SO3, Stepper};
-use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix3, SVector, Vector3};
 use serde_json::Value;
 use workbench::runge_kutta;
 
