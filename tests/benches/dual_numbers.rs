@@ -204,7 +204,6 @@ fn compare<L: Top<f64>>(name: &str, top: &L, by_vectors: &impl Rival<Vectors>, b
     l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
         - 0.5 * h * m * g * w.dot(&(rho + F * rho)),
 )]
-#[allow(non_snake_case)] // the letters of the field
 struct HeavyTop<T: Real> {
     J_d: DiagonalNonstandardInertia<T>,
     m: T,
@@ -234,7 +233,6 @@ fn heavy_top<T: Real + RealField>() -> HeavyTop<T> {
             - (h.powi(3) / 24.0) * f.dot(&(inverse(J) * f))
     },
 )]
-#[allow(non_snake_case)] // the letters of the field
 struct FourthOrderTop<T: Real> {
     J: Inertia<T>,
     weight: T,

@@ -11,9 +11,6 @@
 //! and with them what else there is: `up`, and of the exact flow the turns of its axes. All take turns within one run, and
 //! the fastest batch of each counts.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 mod counting;
 
 use core::hint::black_box;

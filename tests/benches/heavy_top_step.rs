@@ -44,7 +44,6 @@ const ROUNDS: usize = 300;
     l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
         - 0.5 * h * m * g * w.dot(&(rho + F * rho)),
 )]
-#[allow(non_snake_case)] // the letters of the field
 struct HeavyTop {
     J_d: DiagonalNonstandardInertia,
     m: f64,

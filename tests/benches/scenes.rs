@@ -11,9 +11,6 @@
 //! A scene with gravity is there four times:
 //! without it, behind a run-time flag, with the coefficient zero, and with it.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 mod counting;
 mod files;
 mod stepping;

@@ -1,8 +1,5 @@
 //! Four bodies in a row, neighbours coupled by `κ (3 − tr Q)`: each step solves every body for itself.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use declarations::motions::{matrix, number, read, vector};
 use liestep::groups::{CayleyRetraction, LieGroup, Relative};
 use liestep::mechanics::{Effect, Limit, Parts, SceneVisitor, Term, WithKinetic};

@@ -1,8 +1,5 @@
 //! Kinetic terms of one type: which of them a body has is asked at run time, so that its sums are of few types.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use std::ops::Add;
 
 use liestep::effects::{CayleyBody, FourthOrderBody, GeodesicBody, SixthOrderBody};
