@@ -161,7 +161,7 @@ fn table(fits: &[Fitted]) -> Result<String, Failure> {
     Ok(text)
 }
 
-/// What the Jacobian of all readings costs; the fastest of many, by turns.
+/// What the Jacobian of all readings costs: the fastest of many, both ways in alternation.
 fn cost() -> Result<String, Failure> {
     let (reference, changes) = (truth(), Numbers::zeros());
     // Differences of as many numbers as are fitted.

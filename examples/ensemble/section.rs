@@ -26,7 +26,7 @@ pub const LARGEST: f64 = 12.5;
 
 type Top = Stepper<Sum<PrincipalBody, Gravity>>;
 
-/// So many motions of so many steps.
+/// The ensemble of `members` motions, each of `steps` steps.
 #[must_use]
 pub fn ensemble(members: u64, steps: u64) -> Ensemble<Top> {
     let section = Section::new(Event::rising(), sections::plane(Vector3::y(), Vector3::z())).keep(

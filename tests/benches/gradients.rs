@@ -45,7 +45,7 @@ const NAMES: [&str; 6] = ["step", "transition", "columns", "adjoint", "checkpoin
 const BATCH: u64 = 1_000;
 const ROUNDS: usize = 100;
 
-/// Runs so many steps, and the derivatives that a name stands for.
+/// Runs this number of steps, and the derivatives that a name stands for.
 type Run = Box<dyn Fn(&str, u64) -> Result<(), Uncounted>>;
 
 /// A method with its start, ready to be run.

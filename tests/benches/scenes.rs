@@ -85,7 +85,7 @@ fn double_pendulum() -> DoublePendulum {
 }
 
 const COUNTED: u32 = 10_000;
-/// A run of a file samples its motion for a picture, as often in so many steps as in twice as many.
+/// A run of a file samples its motion for a picture, as often in a run as in one twice as long.
 const COUNTED_OF_FILES: u32 = 40_000;
 
 /// Counts the instructions of every scene, each in a process of its own.

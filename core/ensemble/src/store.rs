@@ -6,8 +6,8 @@ use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-use crate::digest::Digest;
 use crate::shard::Shard;
+use liestep::numbers::Digest;
 
 /// A folder that shards are written to and read from, `00000/00000012-0123456789abcdef.arrow`: a thousand to a folder,
 /// named by the number of the chunk and by a digest of the whole file.

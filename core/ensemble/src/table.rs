@@ -13,7 +13,7 @@ use arrow_schema::{ArrowError, DataType};
 use thiserror::Error;
 
 use crate::Failure;
-use crate::digest::Digest;
+use liestep::numbers::Digest;
 
 /// Columns of numbers by their names, a row for each member.
 #[derive(Clone, Debug, PartialEq)]

@@ -44,7 +44,7 @@ pub enum AccuracyError {
     TooManySteps {
         /// About how many the one that looks cheapest would make.
         steps: f64,
-        /// Whether it would make at least so many: even steps as short haven't shown the motion.
+        /// Whether `steps` is a lower bound: even steps as short haven't shown the motion.
         is_bound: bool,
         /// What it is called.
         method: String,

@@ -1,4 +1,5 @@
 #![doc = include_str!("README.md")]
+#![allow(clippy::doc_markdown)] // names of authors and of libraries are not code
 
 pub mod equations {
     #![doc = include_str!("equations.md")]

@@ -62,7 +62,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         Self { effect, kind: Kind::Kick(time), attitude, advected, increment: zero(), gradient, first: 0 }
     }
 
-    /// With the effect's parameters behind so many others.
+    /// With the effect's parameters after this number of others.
     pub(crate) fn behind(self, first: usize) -> Self {
         Self { first, ..self }
     }
@@ -166,7 +166,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         };
         let along = *paired * share;
         let u = *inverse_inertia * E::kick_before(torque, &self.advected);
-        // That it is known was asked before.
+        // The derivative is known: the plan refuses scenes without it.
         let change = E::kick_derivative(torque, &self.advected, &along).unwrap_or_else(Vector::<E>::zero);
         let r = *inverse_inertia * change;
         let Some((by_place, by_seen)) = self.effect.kick_gradient(&self.advected, &along, [&u, &r], &mut *add) else {
@@ -241,7 +241,7 @@ pub struct Cotangent<V> {
 }
 
 impl<V> Cotangent<V> {
-    /// Of a number that doesn't depend on this state.
+    /// The gradient of a number that doesn't depend on this state.
     #[must_use]
     pub fn zero<T: Real>() -> Self
     where

@@ -1,4 +1,5 @@
 #![doc = include_str!("README.md")]
+#![allow(clippy::doc_markdown)] // names of authors and of libraries are not code
 
 /// The chapters, each of the Markdown file of its name.
 macro_rules! chapters {

@@ -12,6 +12,7 @@ mod stepper;
 mod any;
 mod batch;
 mod declared;
+mod delegated;
 mod flows;
 mod increment;
 mod integrator;

@@ -260,7 +260,7 @@ const OF_A_STAGE: f64 = 150.0;
 const OF_AN_ITERATION: f64 = 90.0;
 
 impl Cost {
-    /// Of a step with `stages` stages, each a solve or a flow with these operations.
+    /// The cost of a step with `stages` stages, each a solve or a flow with these operations.
     #[must_use]
     pub fn of_stages(operations: Operations, stages: u32) -> Self {
         Self {
@@ -278,7 +278,7 @@ impl Cost {
         self.step + f64::from(self.fewest) * self.iteration
     }
 
-    /// Of `steps` steps with `iterations` iterations in all.
+    /// The operations of `steps` steps with `iterations` iterations in all.
     #[must_use]
     #[allow(clippy::cast_precision_loss)] // an estimate
     pub fn of_run(&self, steps: u64, iterations: u64) -> f64 {

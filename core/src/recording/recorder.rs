@@ -122,7 +122,7 @@ pub struct Recorder<'a, I: Integrator, S: Sink> {
     block: Vec<f64>,
     filled: usize,
     rows_in_a_block: usize,
-    /// As many numbers are handed on.
+    /// The numbers of a full block.
     full: usize,
     stage: Stage,
     /// Gone when the table has ended.

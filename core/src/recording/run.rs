@@ -123,7 +123,7 @@ where
 }
 
 impl<'a, I: Integrator> Run<'a, I> {
-    /// Of anything that steps, where its type isn't known; else by its `observed`.
+    /// A run of any integrator; one whose type is known has `observed`.
     pub fn new(integrator: &'a I, state: &'a mut I::State) -> Self {
         Self {
             integrator,

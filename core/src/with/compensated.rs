@@ -5,12 +5,13 @@
 //! are wrong by some `ε` of a change only. With the losses kept, what is left is the walk of the changes, smaller by
 //! the angle of a step: at `h = 10⁻⁴` nothing is seen of it in 10⁷ steps, near a radian a step nothing is gained.
 
+use crate::delegate_plan;
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
 use crate::methods::{Composed, Jointed, KineticFlow, Linked, Processed, Split};
-use crate::motion::{Cost, Declared, Kept, Motion, Plan, Steerable, StepReport, Stepper, Summation, restored};
-use crate::numbers::{Entries, Vectors, carried_sum, zero};
+use crate::motion::{Declared, Kept, Motion, Plan, Steerable, StepReport, Stepper, Summation, restored};
+use crate::numbers::{Entries, carried_sum, zero};
 use crate::with::remedies::Substepped;
 use nalgebra::SimdValue as _;
 
@@ -115,13 +116,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
 impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
     type Kept = Carried<P::Kept, Group<S>, S::Advected>;
 
-    const VECTORS: Vectors = P::VECTORS;
-    const EXPLAINS: bool = P::EXPLAINS;
-    const HAS_OWN_INERTIA: bool = P::HAS_OWN_INERTIA;
-
-    fn step_size(&self) -> Scalar<S> {
-        self.0.step_size()
-    }
+    delegate_plan!(0, |kept| &kept.kept; constants step_size admits momentum velocity is_in_step explained max_step cost);
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
         self.0.refolded(scene, h).map(Self)
@@ -129,22 +124,6 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
 
     fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
         Carried { kept: self.0.keep(scene, motion), carry: Carry::nothing() }
-    }
-
-    fn admits(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Result<(), SetupError> {
-        self.0.admits(scene, motion)
-    }
-
-    fn momentum(&self, scene: &S, attitude: &Group<S>, velocity: &Vector<S>, w: &S::Advected) -> Vector<S> {
-        self.0.momentum(scene, attitude, velocity, w)
-    }
-
-    fn velocity(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
-        self.0.velocity(scene, motion)
-    }
-
-    fn is_in_step(&self, kept: &Self::Kept) -> bool {
-        self.0.is_in_step(&kept.kept)
     }
 
     #[hot]
@@ -195,27 +174,9 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
         kept.carry.advected = zero();
     }
 
-    fn explained(
-        &self,
-        error: StepError,
-        scene: &S,
-        motion: &Motion<Group<S>, S::Advected>,
-        kept: &Self::Kept,
-    ) -> StepError {
-        self.0.explained(error, scene, motion, &kept.kept)
-    }
-
-    fn max_step(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, kept: &Self::Kept) -> Scalar<S> {
-        self.0.max_step(scene, motion, &kept.kept)
-    }
-
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
         visitor.term("compensated");
         self.0.describe(visitor);
-    }
-
-    fn cost(&self) -> Cost {
-        self.0.cost()
     }
 }
 

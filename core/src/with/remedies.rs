@@ -3,10 +3,11 @@
 //! A [`Stepper`] refuses such a step and leaves the state alone. Substeps go on in its place, and the report says so.
 //! They give up a constant step; a motion that needs them often wants a smaller one.
 
+use crate::delegate_plan;
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
-use crate::motion::{Cost, Motion, Plan, Remedy, Steerable, StepReport, Stepper, Summation};
-use crate::numbers::{Vectors, real};
+use crate::motion::{Motion, Plan, Remedy, Steerable, StepReport, Stepper, Summation};
+use crate::numbers::real;
 
 /// A plan that takes a step without a solution in equal parts, by [`Stepper::or_substeps`].
 #[derive(Clone, Copy, Debug)]
@@ -58,36 +59,11 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
 impl<S: Effect, P: Plan<S>> Plan<S> for Substepped<P> {
     type Kept = P::Kept;
 
-    const VECTORS: Vectors = P::VECTORS;
-    const EXPLAINS: bool = P::EXPLAINS;
-    const HAS_OWN_INERTIA: bool = P::HAS_OWN_INERTIA;
-
-    fn step_size(&self) -> Scalar<S> {
-        self.plan.step_size()
-    }
+    // The largest step is that of the plan itself: a step that only its parts make is none of its own.
+    delegate_plan!(plan, |kept| kept; constants step_size keep admits momentum velocity is_in_step explained max_step cost);
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
         Ok(Self { plan: self.plan.refolded(scene, h)?, at_most: self.at_most })
-    }
-
-    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
-        self.plan.keep(scene, motion)
-    }
-
-    fn admits(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Result<(), SetupError> {
-        self.plan.admits(scene, motion)
-    }
-
-    fn momentum(&self, scene: &S, attitude: &Group<S>, velocity: &Vector<S>, w: &S::Advected) -> Vector<S> {
-        self.plan.momentum(scene, attitude, velocity, w)
-    }
-
-    fn velocity(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
-        self.plan.velocity(scene, motion)
-    }
-
-    fn is_in_step(&self, kept: &Self::Kept) -> bool {
-        self.plan.is_in_step(kept)
     }
 
     #[hot]
@@ -117,29 +93,10 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Substepped<P> {
         self.plan.see(motion, kept, advected);
     }
 
-    fn explained(
-        &self,
-        error: StepError,
-        scene: &S,
-        motion: &Motion<Group<S>, S::Advected>,
-        kept: &Self::Kept,
-    ) -> StepError {
-        self.plan.explained(error, scene, motion, kept)
-    }
-
-    /// Of the plan itself: a step that only its parts make is none of its own.
-    fn max_step(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, kept: &Self::Kept) -> Scalar<S> {
-        self.plan.max_step(scene, motion, kept)
-    }
-
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
         visitor.term("or substeps");
         visitor.parameter("at most", real(f64::from(self.at_most)));
         self.plan.describe(visitor);
-    }
-
-    fn cost(&self) -> Cost {
-        self.plan.cost()
     }
 }
 

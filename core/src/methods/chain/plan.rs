@@ -234,8 +234,8 @@ where
     motion.show(Motion { attitude, advected, ..*motion.now() });
 }
 
-/// At most so many of Newton's iterations, and what is made with their Jacobians: how many both are, and whether it has
-/// settled near the identity with all determinants positive.
+/// Makes at most `most` of Newton's iterations and the updates with their Jacobians. Returns the number of both, and whether
+/// the iteration has settled near the identity with all determinants positive.
 ///
 /// The determinants are those before the last updates. Near a fold that needs no guard: two updates suffice where
 /// `2C²|u₁|³ ≤ ε|y|/16`, and the first is longer than `√ε|y|/8`, so `C|u₁| < 1e-4`. The Jacobian changes by twice that of

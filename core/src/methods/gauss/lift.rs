@@ -37,7 +37,7 @@ pub(super) struct Lift<L: Effect> {
 }
 
 impl<L: RigidScene<Scalar = f64>> Lift<L> {
-    /// Of a Lagrangian that can be split, with the constants of its torque.
+    /// The lift of a Lagrangian that can be split, with the constants of its torque.
     pub(super) fn new(lagrangian: &L, torque: L::Constants) -> Self {
         let spatial = lagrangian.advected();
         let inverse = inverse_inertia(lagrangian);

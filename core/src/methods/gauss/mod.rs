@@ -119,7 +119,7 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Gauss<S, PAIRS> {
     pub(crate) const COST: Cost = {
         #[allow(clippy::cast_precision_loss)] // at most eight
         let pairs = PAIRS as f64;
-        // Of the operations of both kicks, fitted as below.
+        // The operations of both kicks, fitted as below.
         let torque = if S::PARTS.kick_before { OF_PARAMETERS + 0.125 * (S::OPERATIONS.step as f64) } else { 0.0 };
         let iteration = 2.0 * pairs * (OF_RATES + torque + OF_A_SUM * pairs);
         Cost { step: OF_AN_UPDATE + OF_A_GUESS * pairs * pairs, iteration, fewest: 3, once: 0.0 }
@@ -150,7 +150,7 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Gauss<S, PAIRS> {
         Ok(iterations)
     }
 
-    /// The motion after so many steps more.
+    /// The motion after this number of further steps.
     #[inline(always)]
     fn read_off<M: Summation<SO3, S::Advected>>(&self, motion: &mut M, kept: &Collocated<PAIRS>, steps: u64) {
         let (attitude, momentum) = (kept.attitude(), kept.momentum());
@@ -237,7 +237,7 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS
 const OF_RATES: f64 = 36.0;
 const OF_PARAMETERS: f64 = 16.0;
 const OF_A_SUM: f64 = 5.0;
-/// Besides its iterations, a step takes so many, and so many for each pair of pairs in its guess.
+/// Operations of a step besides its iterations, and those for each pair of pairs in its guess.
 const OF_AN_UPDATE: f64 = 33.0;
 const OF_A_GUESS: f64 = 21.0;
 

@@ -112,7 +112,7 @@ where
         Updated { update, size, largest, rounded: (opposed.dot(&weights) + self.extent) * (ROUNDED * ROUNDED) }
     }
 
-    /// Of the two [`squares`].
+    /// The weights of the two [`squares`].
     fn weights(&self) -> Vector2<f64> {
         Vector2::new(1.0, self.weight)
     }

@@ -31,7 +31,7 @@ pub enum CheckpointError {
         field: &'static str,
         /// A scalar of it in the checkpoint.
         stored: f64,
-        /// The same scalar here.
+        /// That scalar in the stepper.
         own: f64,
     },
     /// The step had another size.
@@ -69,7 +69,7 @@ pub enum CheckpointError {
     /// A number is NaN or infinite.
     #[error("the checkpoint's {what} has a number that is not finite; take another file, this one is damaged")]
     NonFinite {
-        /// Of which list.
+        /// The list that has it.
         what: &'static str,
     },
     /// The attitude isn't in the group.

@@ -20,8 +20,8 @@ pub use stored::Stored;
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar};
 use crate::motion::{Kept, Motion, Plan, State, StateOf, Stepper};
-use crate::numbers::{Entries, Real, real, reported};
-use fingerprint::{Fingerprint, Parameters};
+use crate::numbers::{Digest, Entries, Real, real, reported};
+use fingerprint::Parameters;
 
 /// What the numbers below mean; another layout has another number.
 const FORMAT: u32 = 3;
@@ -37,12 +37,12 @@ const FORMAT: u32 = 3;
 #[serde(deny_unknown_fields)]
 pub struct Checkpoint<T> {
     format: u32,
-    /// Of the terms' derivations and the scalar.
-    scene: Fingerprint,
+    /// The fingerprint of the terms' derivations and the scalar.
+    scene: Digest,
     parameters: Vec<T>,
     /// The method's name, and all its constants.
     method: String,
-    coefficients: Fingerprint,
+    coefficients: Digest,
     step_size: T,
     steps: u64,
     attitude: Vec<T>,
@@ -50,8 +50,8 @@ pub struct Checkpoint<T> {
     advected: Vec<T>,
     /// What the method keeps from step to step.
     kept: Vec<T>,
-    /// Of everything above.
-    digest: Fingerprint,
+    /// The digest of everything above.
+    digest: Digest,
 }
 
 impl<T: Stored> Checkpoint<T> {
@@ -61,8 +61,8 @@ impl<T: Stored> Checkpoint<T> {
         self.steps
     }
 
-    fn digested(&self) -> Fingerprint {
-        let mut digest = Fingerprint::default();
+    fn digested(&self) -> Digest {
+        let mut digest = Digest::default();
         digest.number(u64::from(self.format));
         digest.number(self.scene.value());
         digest.text(&self.method);
@@ -110,7 +110,7 @@ impl<S: Effect<Scalar: Stored>, P: Plan<S>> Stepper<S, P> {
             momentum: list(&motion.momentum),
             advected: list(&motion.advected),
             kept: numbers,
-            digest: Fingerprint::default(),
+            digest: Digest::default(),
         };
         checkpoint.digest = checkpoint.digested();
         checkpoint

@@ -64,7 +64,7 @@ impl<T: Number> Form<T> {
     pub(super) fn doubled(&self, u: [T; 3], invariants: &Invariants<T>) -> Turned<T> {
         let (one, half, quarter) = (T::one(), T::number(0.5), T::number(0.25));
         let (size, [a, b, c]) = (invariants.size(), u);
-        // Of half the drift, and the square of that; lanes that are short enough wait.
+        // The half of the drift, and its square; lanes that are short enough wait.
         let (mut root, mut part, mut doublings) = (half, quarter, 1);
         while doublings < MOST_DOUBLINGS && (size * part).simd_gt(T::number(LONG)).any() {
             let is_far = (size * part).simd_gt(T::number(LONG));

@@ -208,7 +208,7 @@ impl<T: Real> ExactDrift<T> {
 }
 
 impl<T: Number> Form<T> {
-    /// Of the moments about the three axes, the last the middle one, and the time, s.
+    /// The form for the moments about the three axes, the last the middle one, and the time, s.
     fn of([of_a, of_b, of_c]: [T; 3], h: T) -> Self {
         // Without cancellation.
         let (a, b) = ((of_c - of_a) / of_a, (of_c - of_b) / of_b);
@@ -278,7 +278,7 @@ impl<T: Number> Form<T> {
         Turned::by(about, [real_part, along_a, along_b])
     }
 
-    /// What is known of half a drift that is so many times twice as long as the polynomials are for.
+    /// Half a drift that is `2^DOUBLINGS` times as long as the polynomials are for.
     ///
     /// By the points of the curve `μ² = 4 n (n − K_a)(n − K_b)`, whose doubling is rational. The turn about the momentum is
     /// twice that of half the time and once more, by the tangent to the curve at the point; see [`doubling`].

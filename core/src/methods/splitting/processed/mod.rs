@@ -119,7 +119,7 @@ impl Part {
         self.gradient.iter().any(|gradient| gradient.abs() > 0.0)
     }
 
-    /// In a step, and a processor of this length; so many times.
+    /// The lengths of a step and a processor, `times` times.
     fn length<T: Real>(&self, [step, processor]: [T; 2], times: f64) -> Length<T> {
         let time = step * real(times * self.time[0]) + processor * real(times * self.time[1]);
         let cubes = [step, processor].map(|h| h * h * h);
