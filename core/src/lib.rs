@@ -102,6 +102,7 @@ compile_error!(
 extern crate self as liestep;
 
 // First, so that the page of `Stepper` begins with `new`, `start` and `step`.
+#[macro_use]
 pub mod motion;
 
 mod error;

@@ -5,7 +5,6 @@
 //! are wrong by some `ε` of a change only. With the losses kept, what is left is the walk of the changes, smaller by
 //! the angle of a step: at `h = 10⁻⁴` nothing is seen of it in 10⁷ steps, near a radian a step nothing is gained.
 
-use crate::delegate_plan;
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};

@@ -3,7 +3,6 @@
 //! A [`Stepper`] refuses such a step and leaves the state alone. Substeps go on in its place, and the report says so.
 //! They give up a constant step; a motion that needs them often wants a smaller one.
 
-use crate::delegate_plan;
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
 use crate::motion::{Motion, Plan, Remedy, Steerable, StepReport, Stepper, Summation};
