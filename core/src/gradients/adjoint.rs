@@ -7,7 +7,7 @@ use core::ops::Range;
 
 use crate::error::{SetupError, StepError};
 use crate::gradients::recording::Change;
-use crate::gradients::stage::{Cotangent, Flown, Pass, Stage};
+use crate::gradients::stage::{Cotangent, FlowDerivatives, Pass, Stage};
 use crate::gradients::{Linearisable, Linearised};
 use crate::groups::LieGroup;
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Scalar, SecondDerivatives, Vector};
@@ -49,7 +49,7 @@ impl<G: LieGroup> Pass<G> for Back<'_, G> {
     }
 
     #[hot]
-    fn flown(&mut self, flown: &Flown<'_, G>) {
+    fn flown(&mut self, flown: &FlowDerivatives<'_, G>) {
         self.cotangent = flown.pull(&self.cotangent, self.gradient);
     }
 }

@@ -96,7 +96,7 @@ mod tangent;
 pub use adjoint::{Backwards, Gradient, Tape};
 pub use recording::Change;
 pub(crate) use stage::ForceGradient;
-pub use stage::{Cotangent, Flown, Pass, Stage};
+pub use stage::{Cotangent, FlowDerivatives, Pass, Stage};
 pub use tangent::{Tangent, TangentOf};
 
 use alloc::vec::Vec;

@@ -260,7 +260,7 @@ impl<V> Cotangent<V> {
 /// As a [`Stage`], it is made by the library's own plans and read by its derivatives.
 #[derive(Clone, Copy, Debug)]
 #[doc(hidden)]
-pub struct Flown<'a, G: LieGroup> {
+pub struct FlowDerivatives<'a, G: LieGroup> {
     /// `∂ε/∂μ`
     pub(crate) turn_by_momentum: SquareOf<G>,
     /// `Ad_{F⁻¹}`
@@ -273,7 +273,7 @@ pub struct Flown<'a, G: LieGroup> {
     pub(crate) by_parameters: &'a [(usize, G::Vector)],
 }
 
-impl<G: LieGroup> Flown<'_, G> {
+impl<G: LieGroup> FlowDerivatives<'_, G> {
     /// Takes the gradient at the end to the beginning, and adds the parameters' shares.
     #[hot]
     pub(super) fn pull(&self, end: &Cotangent<G::Vector>, gradient: &mut [G::Scalar]) -> Cotangent<G::Vector> {
@@ -302,7 +302,7 @@ pub trait Pass<G: LieGroup> {
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>);
 
     /// Takes notice of an exact flow.
-    fn flown(&mut self, flown: &Flown<'_, G>);
+    fn flown(&mut self, flown: &FlowDerivatives<'_, G>);
 }
 
 /// One of the scalars.

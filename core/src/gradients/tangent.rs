@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use core::cell::RefCell;
 
 use crate::gradients::recording::Change;
-use crate::gradients::stage::{Flown, Kind, Pass, Stage};
+use crate::gradients::stage::{FlowDerivatives, Kind, Pass, Stage};
 use crate::groups::LieGroup;
 use crate::mechanics::pattern;
 use crate::mechanics::{Group, SecondDerivatives, Term, Vector};
@@ -233,7 +233,7 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
     }
 
     #[hot]
-    fn flown(&mut self, flown: &Flown<'_, G>) {
+    fn flown(&mut self, flown: &FlowDerivatives<'_, G>) {
         if !self.shares.is_empty() {
             let zero = G::Vector::zero();
             self.shares.fill((zero, zero));

@@ -21,7 +21,7 @@ mod tests;
 
 pub use chain::{Chain, ChainStepper, Link, Linked, Weights};
 pub use composition::{Composed, CompositionScheme};
-pub use gauss::{Collocated, CotangentCarry, CotangentGauss, Gauss};
+pub use gauss::{CollocationMemory, CotangentCarry, CotangentGauss, Gauss};
 pub use joints::{BallJoint, Constraint, Joined, Joint, Jointed, Joints, PinJoint, Place, Slope};
 pub(crate) use splitting::has_force_gradient;
 pub use splitting::{

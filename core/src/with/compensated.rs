@@ -11,7 +11,7 @@ use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
 use crate::methods::{Composed, Jointed, KineticFlow, Linked, Processed, Split};
 use crate::motion::{Declared, Kept, Motion, Plan, Steerable, StepReport, Stepper, Summation, restored};
 use crate::numbers::{Entries, carried_sum, zero};
-use crate::with::remedies::Substepped;
+use crate::with::remedies::Substeps;
 use nalgebra::SimdValue as _;
 
 /// A plan whose sums are compensated, by [`Stepper::compensated`].
@@ -46,7 +46,7 @@ pub struct Compensated<P>(P);
 
 /// What a plan keeps, and what the rounding of its sums has left behind.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
-pub struct Carried<K, G: LieGroup, A> {
+pub struct MemoryWithCarry<K, G: LieGroup, A> {
     kept: K,
     carry: Carry<G, A>,
 }
@@ -84,7 +84,7 @@ impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Compe
 impl<S: Effect, const N: usize> Compensable for Linked<S, N> {}
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Split<S, K> {}
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Processed<S, K> {}
-impl<P: Compensable> Compensable for Substepped<P> {}
+impl<P: Compensable> Compensable for Substeps<P> {}
 
 impl<P: Steerable> Steerable for Compensated<P> {}
 
@@ -113,7 +113,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
 }
 
 impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
-    type Kept = Carried<P::Kept, Group<S>, S::Advected>;
+    type Kept = MemoryWithCarry<P::Kept, Group<S>, S::Advected>;
 
     delegate_plan!(0, |kept| &kept.kept; constants step_size admits momentum velocity is_in_step explained max_step cost);
 
@@ -122,7 +122,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
     }
 
     fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
-        Carried { kept: self.0.keep(scene, motion), carry: Carry::nothing() }
+        MemoryWithCarry { kept: self.0.keep(scene, motion), carry: Carry::nothing() }
     }
 
     #[hot]
@@ -179,7 +179,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
     }
 }
 
-impl<K: Kept<G::Scalar>, G: LieGroup, A: Advected<G>> Kept<G::Scalar> for Carried<K, G, A> {
+impl<K: Kept<G::Scalar>, G: LieGroup, A: Advected<G>> Kept<G::Scalar> for MemoryWithCarry<K, G, A> {
     fn each(&self, mut visit: &mut dyn FnMut(G::Scalar)) {
         self.kept.each(visit);
         self.carry.attitude.each(&mut visit);

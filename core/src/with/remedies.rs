@@ -11,7 +11,7 @@ use crate::numbers::real;
 /// A plan that takes a step without a solution in equal parts, by [`Stepper::or_substeps`].
 #[derive(Clone, Copy, Debug)]
 #[doc(hidden)]
-pub struct Substepped<P> {
+pub struct Substeps<P> {
     plan: P,
     at_most: u32,
 }
@@ -50,12 +50,12 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
-    pub fn or_substeps(self, at_most: u32) -> Stepper<S, Substepped<P>> {
-        Stepper { scene: self.scene, plan: Substepped { plan: self.plan, at_most } }
+    pub fn or_substeps(self, at_most: u32) -> Stepper<S, Substeps<P>> {
+        Stepper { scene: self.scene, plan: Substeps { plan: self.plan, at_most } }
     }
 }
 
-impl<S: Effect, P: Plan<S>> Plan<S> for Substepped<P> {
+impl<S: Effect, P: Plan<S>> Plan<S> for Substeps<P> {
     type Kept = P::Kept;
 
     // The largest step is that of the plan itself: a step that only its parts make is none of its own.
@@ -99,7 +99,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Substepped<P> {
     }
 }
 
-impl<P: Steerable> Steerable for Substepped<P> {}
+impl<P: Steerable> Steerable for Substeps<P> {}
 
 /// Makes the step in equal parts, or leaves everything as it was and returns the error.
 #[cold]

@@ -7,7 +7,7 @@ use crate::mechanics::{Effect, RigidScene, velocity_of_momentum};
 use crate::methods::splitting::inverse_inertia;
 
 /// The quaternion `q`, scalar part first, and its momentum `p`.
-pub(super) type Lifted = [f64; 8];
+pub(super) type PhasePoint = [f64; 8];
 
 /// A value for each component; no loop, which would be taken for the one to make lanes of.
 #[inline(always)]
@@ -55,7 +55,7 @@ impl<L: RigidScene<Scalar = f64>> Lift<L> {
 
     /// The rates of change, times a weight.
     #[inline(always)]
-    pub(super) fn weighted_rate(&self, place: &Lifted, weight: f64) -> Lifted {
+    pub(super) fn weighted_rate(&self, place: &PhasePoint, weight: f64) -> PhasePoint {
         let [q @ .., e, f, g, h] = *place;
         let (j, m) = (&self.half_velocity, twice_momentum(place));
         // Written out: nalgebra's product, a column at a time, makes a step a twentieth longer.
@@ -94,14 +94,14 @@ pub(super) fn rotation(&[a, b, c, d]: &[f64; 4], scale: f64) -> Matrix3<f64> {
 }
 
 /// `q` and the momentum `2 q Π` of a unit quaternion and a body momentum.
-pub(super) fn lifted(&[a, b, c, d]: &[f64; 4], momentum: &Vector3<f64>) -> Lifted {
+pub(super) fn lifted(&[a, b, c, d]: &[f64; 4], momentum: &Vector3<f64>) -> PhasePoint {
     let [e, f, g, h] = times(&[a, b, c, d], &(momentum * 2.0));
     [a, b, c, d, e, f, g, h]
 }
 
 /// `2 Π = Im(q̄ p)`.
 #[inline(always)]
-pub(super) fn twice_momentum(&[a, b, c, d, e, f, g, h]: &Lifted) -> Vector3<f64> {
+pub(super) fn twice_momentum(&[a, b, c, d, e, f, g, h]: &PhasePoint) -> Vector3<f64> {
     Vector3::new(a * f - e * b - (c * h - d * g), a * g - e * c - (d * f - b * h), a * h - e * d - (b * g - c * f))
 }
 
@@ -118,6 +118,6 @@ pub(super) fn times(&[a, b, c, d]: &[f64; 4], v: &Vector3<f64>) -> [f64; 4] {
 
 /// `|q|²`.
 #[inline(always)]
-pub(super) fn length_squared(&[a, b, c, d, ..]: &Lifted) -> f64 {
+pub(super) fn length_squared(&[a, b, c, d, ..]: &PhasePoint) -> f64 {
     (a * a + b * b) + (c * c + d * d)
 }

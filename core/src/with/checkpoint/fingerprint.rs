@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 use serde::de::{Error as _, Unexpected};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::stored::Stored;
+use super::stored::Storable;
 use crate::mechanics::{Effect, SceneVisitor};
 use crate::motion::Plan;
 use crate::numbers::Digest;
@@ -37,7 +37,7 @@ pub(super) struct Parameters<T> {
     names: Vec<&'static str>,
 }
 
-impl<T: Stored> Parameters<T> {
+impl<T: Storable> Parameters<T> {
     fn nothing() -> Self {
         Self { fingerprint: Digest::default(), values: Vec::new(), names: Vec::new() }
     }
