@@ -177,8 +177,13 @@ where
     type Advected = A;
     type State = AnyState<G, A>;
 
-    fn run_shown(&self, state: &mut Self::State, steps: u64, next: &mut NextSteps<'_, G, A>) -> Result<u64, StepError> {
-        self.change(state, |own| self.0.run_shown(own, steps, next))
+    fn run_stretches(
+        &self,
+        state: &mut Self::State,
+        steps: u64,
+        next: &mut NextSteps<'_, G, A>,
+    ) -> Result<u64, StepError> {
+        self.change(state, |own| self.0.run_stretches(own, steps, next))
     }
 
     fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, A>, StepError> {
@@ -231,8 +236,13 @@ impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
     type Advected = A;
     type State = AnyState<G, A>;
 
-    fn run_shown(&self, state: &mut Self::State, steps: u64, next: &mut NextSteps<'_, G, A>) -> Result<u64, StepError> {
-        self.stepper.run_shown(state, steps, next)
+    fn run_stretches(
+        &self,
+        state: &mut Self::State,
+        steps: u64,
+        next: &mut NextSteps<'_, G, A>,
+    ) -> Result<u64, StepError> {
+        self.stepper.run_stretches(state, steps, next)
     }
 
     fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, A>, StepError> {
@@ -285,13 +295,13 @@ impl<G: LieGroup, A: Advected<G>> Integrator for WithoutAdvected<G, A> {
     type Advected = ();
     type State = State<G, (), HiddenState<A>>;
 
-    fn run_shown(
+    fn run_stretches(
         &self,
         state: &mut Self::State,
         steps: u64,
         next: &mut NextSteps<'_, G, ()>,
     ) -> Result<u64, StepError> {
-        self.change(state, |own| self.0.run_shown(own, steps, &mut |shown| next(&seeing(shown, ()))))
+        self.change(state, |own| self.0.run_stretches(own, steps, &mut |shown| next(&seeing(shown, ()))))
     }
 
     fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, ()>, StepError> {

@@ -216,10 +216,10 @@ impl<S: Effect, P: Plan<S>> Kernel for Run<'_, '_, S, P> {
     }
 }
 
-/// [`Plan::run`] with the vector instructions of the machine, and as [`Integrator::run_shown`] goes on; called, so that
+/// [`Plan::run`] with the vector instructions of the machine, and as [`Integrator::run_stretches`] goes on; called, so that
 /// there is one copy of a method's steps for all that runs them.
 ///
-/// [`Integrator::run_shown`]: crate::motion::Integrator::run_shown
+/// [`Integrator::run_stretches`]: crate::motion::Integrator::run_stretches
 #[inline(never)]
 pub(crate) fn run_plan<S: Effect, P: Plan<S>>(
     plan: &P,
