@@ -3,7 +3,6 @@
 mod scheme;
 
 pub use scheme::CompositionScheme;
-pub(crate) use scheme::schemes;
 
 use alloc::vec::Vec;
 

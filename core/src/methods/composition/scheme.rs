@@ -1,20 +1,8 @@
 //! The published coefficients of symmetric compositions.
 
-// The digits are those of the papers, whatever a double keeps of them.
-#![allow(clippy::excessive_precision, clippy::unreadable_literal)]
+#![allow(clippy::excessive_precision, clippy::unreadable_literal)] // the digits are those of the papers
 
 use alloc::vec::Vec;
-
-/// Constants of a type, and the list of all of them.
-macro_rules! schemes {
-    ($($(#[$doc:meta])* $name:ident = $scheme:expr;)+) => {
-        $($(#[$doc])* pub const $name: Self = $scheme;)+
-
-        /// All of these.
-        pub const ALL: [Self; [$(stringify!($name)),+].len()] = [$(Self::$name),+];
-    };
-}
-pub(crate) use schemes;
 
 /// The coefficients `γ_1, …, γ_s` of a symmetric composition, `γ_{s+1−i} = γ_i` and `Σ γ_i = 1`.
 ///

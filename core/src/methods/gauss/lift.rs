@@ -9,12 +9,6 @@ use crate::methods::splitting::inverse_inertia;
 /// The quaternion `q`, scalar part first, and its momentum `p`.
 pub(super) type PhasePoint = [f64; 8];
 
-/// A value for each component; no loop, which would be taken for the one to make lanes of.
-#[inline(always)]
-pub(super) fn each<T>(value: impl Fn(usize) -> T) -> [T; 8] {
-    [value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7)]
-}
-
 /// `H(q, p) = ½ (Π − s)·J⁻¹(Π − s) + V(R(q)ᵀ·a_0)` with `Π = ½ Im(q̄ p)` and the rotation `R` of `q/|q|`.
 ///
 /// `Π` is the momentum map of the right multiplication by unit quaternions, and `w = R(q)ᵀ·a_0` what that

@@ -3,7 +3,7 @@
 //! Numbers of one component at all stages lie side by side, so that the compiler puts stages into SIMD lanes.
 
 use super::coefficients::{Coefficients, Columns, OfStages};
-use super::lift::{PhasePoint, each};
+use super::lift::PhasePoint;
 use super::settling::{Changes, MOST_ITERATIONS, Next};
 use crate::error::StepError;
 #[cfg(not(feature = "std"))]
@@ -11,6 +11,12 @@ use nalgebra::ComplexField as _; // roots and powers
 
 /// A number for each component and each stage.
 pub(super) type Numbers<const PAIRS: usize> = [OfStages<PAIRS>; 8];
+
+/// A value for each component; no loop, which would be taken for the one to make lanes of.
+#[inline(always)]
+fn each<T>(value: impl Fn(usize) -> T) -> [T; 8] {
+    [value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7)]
+}
 
 /// The `L_j = h b_j f(Y_j)` of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 // The digits are those of the papers, whatever a double keeps of them.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
 
-use crate::methods::composition::{CompositionScheme, schemes};
+use crate::methods::composition::CompositionScheme;
 
 /// What a splitting begins and, being symmetric, ends with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

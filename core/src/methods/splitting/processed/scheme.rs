@@ -8,7 +8,6 @@
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
 
 use super::super::scheme::{Flow, SplittingScheme};
-use crate::methods::composition::schemes;
 
 /// The coefficients of a processed splitting: a kernel that is stepped, and a processor that is made at both ends of a
 /// run only.
