@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-/// What each room may import besides itself, as `src/lib.rs` draws it. Documentation may name everything.
+/// What each room may import besides itself, as `src/lib.md` draws it. Documentation may name everything.
 const MAY_IMPORT: [(&str, &[&str]); 16] = [
     ("error", &[]),
     ("numbers", &[]),
