@@ -8,9 +8,6 @@
 //! | P6, and R under every summation | [`structure`] |
 //! | P1, P2, P7 | P1 and P2 of every declaration in `tests/systems` and `tests/random_lagrangians`, of every method in `tests/accuracy`; P7 in `tests/robustness/checkpoints.rs` |
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 mod bodies;
 mod rows;
 mod solvability;

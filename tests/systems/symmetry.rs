@@ -1,9 +1,6 @@
 //! What every declared system conserves: the momenta along the symmetries of what is advected, the parameters' orbit,
 //! and, where the body has a symmetry too, the momentum along that.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use checks::structure::System;
 use checks::structure::symmetry::{drift, symmetries};
 use liestep::motion::DiscreteLiePoisson;

@@ -5,9 +5,6 @@
 //! x_a = (F_a − I) ρ_a,  y_b = (F_b − I) s_b
 //! ```
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use checks::solvers::Badly;
 use declarations::motions::{matrix, number, read, vector};
 use liestep::groups::LieGroup as _;

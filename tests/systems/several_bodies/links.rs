@@ -1,9 +1,6 @@
 //! Chains of links on ball joints, solved link by link: against steps of 30 digits, against the same chain with a full
 //! Newton matrix, and against derivatives of the action in terms of where all masses are.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use declarations::DoublePendulum;
 use declarations::motions::{matrix, number, read, vector};
 use liestep::effects::Spring;
