@@ -132,6 +132,7 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
     type Matrix = SMatrix<T, N, N>;
 
     const DIMENSION: usize = D;
+    const COORDINATES: &'static [&'static str] = K::COORDINATES;
 
     fn identity() -> Self {
         Self::from_matrix_unchecked(SMatrix::identity())

@@ -99,7 +99,7 @@ const ROWS_IN_A_BLOCK: usize = 1024;
 /// | columns | | unit on SO(3) and products of it |
 /// |---|---|---|
 /// | `t` | the time since the start | s |
-/// | `q_w`, `q_x`, `q_y`, `q_z` | the attitude, body to space; on other groups the matrix, `g_11`, `g_12`, … | 1 |
+/// | `q_w`, `q_x`, `q_y`, `q_z` | the attitude, body to space; of translations `x`, `y`, `z` in m; on other groups the matrix, `g_11`, `g_12`, … | 1 |
 /// | `velocity_x`, … | the body velocity; on other groups `velocity_1`, … | rad/s |
 /// | `momentum_x`, … | the body momentum | kg m²/s |
 /// | `energy` | the energy | J |
