@@ -4,11 +4,11 @@ use crate::declaration::Declaration;
 
 /// Signs of the equations in print, each with what LaTeX calls it.
 #[rustfmt::skip]
-const SIGNS: [(char, &str); 34] = [
+const SIGNS: [(char, &str); 35] = [
     ('−', "-"), ('·', r"\cdot "), ('×', r"\times "), ('⋄', r"\diamond "), ('∂', r"\partial "), ('∨', r"\vee"),
     ('⟨', r"\langle "), ('⟩', r"\rangle "), ('δ', r"\delta "), ('η', r"\eta "), ('λ', r"\lambda "), ('μ', r"\mu "),
     ('ξ', r"\xi "), ('ζ', r"\zeta "), ('Ω', r"\Omega "), ('τ', r"\tau "), ('θ', r"\theta "), ('½', r"\tfrac{1}{2}"),
-    ('√', r"\surd "), ('↦', r"\mapsto "), ('→', r"\to "), ('≠', r"\neq "), ('\u{302}', r"\hat{}"), ('ᵀ', r"^{\top}"),
+    ('𝕀', r"\mathbb{I}"), ('√', r"\surd "), ('↦', r"\mapsto "), ('→', r"\to "), ('≠', r"\neq "), ('\u{302}', r"\hat{}"), ('ᵀ', r"^{\top}"),
     ('⁺', "^{+}"), ('⁻', "^{-}"), ('¹', "^{1}"), ('²', "^{2}"), ('³', "^{3}"), ('⁴', "^{4}"), ('₀', "_{0}"),
     ('₁', "_{1}"), ('₂', "_{2}"), ('∞', r"\infty "),
 ];
@@ -69,7 +69,9 @@ fn math(expression: &str) -> String {
         rest = behind;
     }
     // An exponent after another is one.
-    made.replace("^{-}^{", "^{-").replace("^{+}^{\\top}", "^{+\\top}").replace("^{\\top}^{+}", "^{\\top+}")
+    let joined = [("  ", " "), (" ^", "^"), (" _", "_"), (" }", "}"), ("^{-}^{", "^{-"), ("^{+}^{\\top}", "^{+\\top}")];
+    let made = joined.iter().fold(made, |made, (from, to)| made.replace(from, to));
+    made.replace(r"^{\top}^{+}", r"^{\top+}").trim_end().to_owned()
 }
 
 /// Where the bracket that begins a text is closed.

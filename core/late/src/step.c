@@ -40,7 +40,7 @@ static double adjugate(const double *m, double *a) {
     a[2] = m[1] * m[5] - m[2] * m[4];
     a[5] = m[2] * m[3] - m[0] * m[5];
     a[8] = m[0] * m[4] - m[1] * m[3];
-    return m[0] * a[0] + m[3] * a[3] + m[6] * a[6];
+    return m[0] * a[0] + m[3] * a[1] + m[6] * a[2];
 }
 
 static void solved(const double *a, double det, const double *right, double *solution) {

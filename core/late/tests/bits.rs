@@ -1,9 +1,6 @@
 //! A declaration that is read makes the steps of the one that is compiled, to the bit: all of `examples/declarations` and
 //! all effects of the library, each by the text that the macro leaves.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 #[path = "common/same.rs"]
 mod same;
 

@@ -1,8 +1,5 @@
 //! Texts that nobody trusts, and numbers that don't fit.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use std::time::{Duration, Instant};
 
 use liestep::effects::RigidBody;

@@ -1,8 +1,5 @@
 //! Steps as text in other languages: C that is compiled makes the library's steps, and Rust is as rustfmt has it.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -151,7 +148,7 @@ fn rust_is_formatted() {
 #[test]
 fn equations_are_latex() {
     let made = latex(parsed(FullTop::DECLARATION));
-    assert!(made.contains(r"\mu  &= \frac{1}{h} \left(F J_{d} - J_{d} F^{\top}\right)^\vee"), "{made}");
+    assert!(made.contains(r"\mu &= \frac{1}{h} \left(F J_{d} - J_{d} F^{\top}\right)^\vee"), "{made}");
     for text in [FullTop::DECLARATION, SixthOrderTop::DECLARATION, declarations::ElasticFlow::DECLARATION] {
         let made = latex(parsed(text));
         assert!(made.lines().count() > 8, "{made}");
