@@ -2,7 +2,7 @@
 
 use crate::gradients::recording::Change;
 use crate::groups::{Advected as _, LieGroup, SquareOf, seen_of_unit};
-use crate::mechanics::pattern;
+use crate::mechanics::pattern_of_type;
 use crate::mechanics::{Effect, Group, Matrix, Scalar, SecondDerivatives, Square, StepDerivatives, Vector};
 use crate::numbers::{Coordinates, Entries, Real, real, zero};
 
@@ -62,7 +62,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         Self { effect, kind: Kind::Kick(time), attitude, advected, increment: zero(), gradient, first: 0 }
     }
 
-    /// With the effect's parameters behind so many others.
+    /// With the effect's parameters after this number of others.
     pub(crate) fn behind(self, first: usize) -> Self {
         Self { first, ..self }
     }
@@ -166,7 +166,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         };
         let along = *paired * share;
         let u = *inverse_inertia * E::kick_before(torque, &self.advected);
-        // That it is known was asked before.
+        // The derivative is known: the plan refuses scenes without it.
         let change = E::kick_derivative(torque, &self.advected, &along).unwrap_or_else(Vector::<E>::zero);
         let r = *inverse_inertia * change;
         let Some((by_place, by_seen)) = self.effect.kick_gradient(&self.advected, &along, [&u, &r], &mut *add) else {
@@ -204,8 +204,9 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
                 let (matrix, share) = self.effect.adjoint_system(&self.increment, &self.advected, h, &end.momentum);
                 let inverse = Group::<E>::from_increment(&self.increment).inverse();
                 let attitude = inverse.adjoint_transpose(&end.attitude);
-                let (factors, det) = Vector::<E>::factorise_with(&Vector::<E>::transpose(&matrix), pattern::<E>());
-                let start = Vector::<E>::solve_again_with(&factors, det, pattern::<E>(), &(attitude + share));
+                let (factors, det) =
+                    Vector::<E>::factorise_with(&Vector::<E>::transpose(&matrix), pattern_of_type::<E>());
+                let start = Vector::<E>::solve_again_with(&factors, det, pattern_of_type::<E>(), &(attitude + share));
                 let by_place = self.fixed_increment([&start, &end.momentum], add);
                 Cotangent { attitude: attitude + by_place, momentum: start }
             }
@@ -241,7 +242,7 @@ pub struct Cotangent<V> {
 }
 
 impl<V> Cotangent<V> {
-    /// Of a number that doesn't depend on this state.
+    /// The gradient of a number that doesn't depend on this state.
     #[must_use]
     pub fn zero<T: Real>() -> Self
     where
@@ -260,7 +261,7 @@ impl<V> Cotangent<V> {
 /// As a [`Stage`], it is made by the library's own plans and read by its derivatives.
 #[derive(Clone, Copy, Debug)]
 #[doc(hidden)]
-pub struct Flown<'a, G: LieGroup> {
+pub struct FlowDerivatives<'a, G: LieGroup> {
     /// `∂ε/∂μ`
     pub(crate) turn_by_momentum: SquareOf<G>,
     /// `Ad_{F⁻¹}`
@@ -273,7 +274,7 @@ pub struct Flown<'a, G: LieGroup> {
     pub(crate) by_parameters: &'a [(usize, G::Vector)],
 }
 
-impl<G: LieGroup> Flown<'_, G> {
+impl<G: LieGroup> FlowDerivatives<'_, G> {
     /// Takes the gradient at the end to the beginning, and adds the parameters' shares.
     #[hot]
     pub(super) fn pull(&self, end: &Cotangent<G::Vector>, gradient: &mut [G::Scalar]) -> Cotangent<G::Vector> {
@@ -302,7 +303,7 @@ pub trait Pass<G: LieGroup> {
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>);
 
     /// Takes notice of an exact flow.
-    fn flown(&mut self, flown: &Flown<'_, G>);
+    fn flown(&mut self, flown: &FlowDerivatives<'_, G>);
 }
 
 /// One of the scalars.

@@ -5,9 +5,9 @@ use alloc::vec::Vec;
 use core::cell::RefCell;
 
 use crate::gradients::recording::Change;
-use crate::gradients::stage::{Flown, Kind, Pass, Stage};
+use crate::gradients::stage::{FlowDerivatives, Kind, Pass, Stage};
 use crate::groups::LieGroup;
-use crate::mechanics::pattern;
+use crate::mechanics::pattern_of_type;
 use crate::mechanics::{Group, SecondDerivatives, Term, Vector};
 use crate::numbers::{Coordinates, Entries as _, is_finite, real};
 use nalgebra::SimdComplexField as _;
@@ -21,7 +21,7 @@ use nalgebra::SimdComplexField as _;
 pub struct Tangent<G: LieGroup, A> {
     /// Four by four; what is left over of the last four is zero.
     columns: Vec<FourColumns<Four<G>>>,
-    /// As they were before a step.
+    /// The columns before a step.
     kept: Vec<FourColumns<Four<G>>>,
     /// The parameters that the columns behind those of the start are the derivatives by, by their numbers.
     numbers: Vec<usize>,
@@ -41,7 +41,7 @@ struct FourColumns<F> {
 }
 
 impl<G: LieGroup, A> Tangent<G, A> {
-    /// The identity, with a column for each of these of so many parameters.
+    /// The identity, with a column for each parameter that is numbered; `parameters` is how many there are.
     pub(super) fn new(parameters: usize, numbers: &[usize]) -> Self {
         let zero = G::Vector::zero();
         let shares = if numbers.is_empty() { Vec::new() } else { vec![(zero, zero); parameters] };
@@ -199,8 +199,8 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
             // `∂μ/∂ε ε = δμ − ∂μ/∂ζ ζ`, `ζ⁺ = Ad_{F⁻¹}(ζ + ε)`, `δμ⁺ = ∂μ⁺/∂ε ε + ∂μ⁺/∂ζ ζ`.
             Kind::Step(h) => {
                 let blocks = stage.blocks(h);
-                let (factors, determinant) = Vector::<E>::factorise_with(&blocks.start_by_turn, pattern::<E>());
-                let solution = Vector::<E>::inverse_with(&factors, determinant, pattern::<E>());
+                let (factors, determinant) = Vector::<E>::factorise_with(&blocks.start_by_turn, pattern_of_type::<E>());
+                let solution = Vector::<E>::inverse_with(&factors, determinant, pattern_of_type::<E>());
                 let turned = stage.turned_back();
                 for k in 0..self.columns.len() {
                     let shares = self.shares_of(k);
@@ -233,7 +233,7 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
     }
 
     #[hot]
-    fn flown(&mut self, flown: &Flown<'_, G>) {
+    fn flown(&mut self, flown: &FlowDerivatives<'_, G>) {
         if !self.shares.is_empty() {
             let zero = G::Vector::zero();
             self.shares.fill((zero, zero));

@@ -34,6 +34,7 @@ mod heisenberg;
 mod matrix_group;
 mod product;
 mod retraction;
+mod rigid;
 pub(crate) mod rotation_functions;
 mod se2;
 mod se23;
@@ -83,7 +84,7 @@ use crate::numbers::{Blocks, Coordinates, Entries, Mask, Real, sum};
 /// Linear maps of a group's components.
 pub(crate) type SquareOf<G> = <<G as LieGroup>::Vector as Coordinates<<G as LieGroup>::Scalar>>::Square;
 
-/// Of an array the body that a component belongs to, of a product the factor, from zero; none where there is but one.
+/// The body of an array that a component belongs to, or the factor of a product, from zero; none where there is but one.
 pub(crate) fn body_of<G: LieGroup>(component: usize) -> Option<usize> {
     if G::BODIES > 1 {
         return Some(component / (G::DIMENSION / G::BODIES));
@@ -211,7 +212,7 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
         let mut entries = 0;
         Self::identity().matrix().each(&mut |_| entries += 1);
         let rows = (1..=entries).find(|rows| rows * rows >= entries).unwrap_or(1);
-        // Of two numbers that run together 1 and 11 would be 11 and 1.
+        // Without a separator, 1 and 11 would read as 11 and 1.
         let between = if rows > 9 { "_" } else { "" };
         (0..entries).map(|entry| (format!("g_{}{between}{}", entry / rows + 1, entry % rows + 1), "")).collect()
     }

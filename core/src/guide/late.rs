@@ -20,7 +20,8 @@
 //! ```
 //!
 //! `liestep run` makes its steps, `liestep sweep` and `liestep ensemble` vary its parameters, and `liestep derive FILE` prints
-//! what was derived. `examples/scenes/own-lagrangian.toml` is the whole file.
+//! what was derived: with `--latex` for a paper, with `--rust` as the straight-line code of a step, and with `--c` as a step in C99 that needs
+//! nothing else, for a flight computer. `examples/scenes/own-lagrangian.toml` is the whole file.
 //!
 //! | key | |
 //! |---|---|
@@ -38,4 +39,6 @@
 //! The step is interpreted, and costs several times what the compiled one does. In a file the group is SO(3), and what is
 //! given, joints, forces, splittings and the choice of a method for an accuracy are not there: those a program has, where
 //! `Late<G, W, K>` is an [`Effect`](crate::mechanics::Effect) as any other, on each group of the library and on their
-//! products. There is no machine code of a text yet.
+//! products. `liestep-machine` runs it there as machine code, `Late<G, W, K, Machine>`, with the same bits; of one whose numbers are
+//! all known, [`specialised`](https://docs.rs/liestep-late) is faster, and may differ by rounding. In lanes many with one text move
+//! together, as [ensembles](super::ensembles) do.

@@ -4,14 +4,12 @@ use alloc::borrow::ToOwned as _;
 use alloc::string::String;
 use core::fmt::Debug;
 
-use crate::error::SetupError;
-use crate::groups::{LieGroup, Retraction, SquareOf, body_of};
+use crate::groups::{LieGroup, Retraction};
 use crate::mechanics::description::SceneVisitor;
 use crate::mechanics::kinetic_part::{KineticPart, WithKinetic};
 use crate::mechanics::operations::Operations;
 use crate::mechanics::term::Term;
-use crate::numbers::{Blocks, Coordinates, Pattern, Real, newton_halving, real, reported};
-use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField};
+use crate::numbers::{Blocks, Coordinates, Pattern, Real, real};
 
 /// The scalar of an effect.
 pub type Scalar<E> = <E as Term>::Scalar;
@@ -79,7 +77,7 @@ pub struct NewtonUpdate<V, S, T> {
 }
 
 impl<T: Real, V: Coordinates<T>> NewtonUpdate<V, V::Square, T> {
-    /// Of a residual and its Jacobian.
+    /// The update by a residual and its Jacobian.
     #[hot]
     #[must_use]
     pub fn of(residual: &V, jacobian: &V::Square, pattern: Pattern) -> Self {
@@ -99,17 +97,23 @@ pub(crate) fn update_of<E: Effect + ?Sized>(
 ) -> NewtonUpdate<Vector<E>, Square<E>, Scalar<E>> {
     if const { !E::LINKS_NEIGHBOURS } {
         let (residual, jacobian) = E::newton_system(constants, terms, half);
-        return NewtonUpdate::of(&residual, &jacobian, pattern::<E>());
+        return NewtonUpdate::of(&residual, &jacobian, pattern::<E>(constants));
     }
     let mut links = Vector::<E>::no_links();
     let (mut update, mut jacobian) = E::newton_linked(constants, terms, half, &mut links);
-    let det = Vector::<E>::solve_linked(&mut jacobian, &links, pattern::<E>(), &mut update);
+    let det = Vector::<E>::solve_linked(&mut jacobian, &links, pattern::<E>(constants), &mut update);
     NewtonUpdate { update, factors: None, det }
 }
 
 /// What is known of the Newton matrix of an effect.
 #[hot]
-pub(crate) const fn pattern<E: Effect + ?Sized>() -> Pattern {
+pub(crate) fn pattern<E: Effect + ?Sized>(constants: &E::Constants) -> Pattern {
+    Pattern { apart: E::apart(constants), ..pattern_of_type::<E>() }
+}
+
+/// The same, as far as the type knows it.
+#[hot]
+pub(crate) const fn pattern_of_type<E: Effect + ?Sized>() -> Pattern {
     Pattern { factors: <Group<E> as LieGroup>::FACTORS, apart: E::APART }
 }
 
@@ -182,7 +186,7 @@ pub trait Effect: Term {
     /// The power of the Cayley denominator in the factor of [`newton_system`](Self::newton_system).
     const DENOMINATORS: u32 = 0;
 
-    /// Whether the Jacobian of [`newton_system`](Self::newton_system) costs more than several residuals.
+    /// Whether the Jacobian of [`newton_system`](Self::newton_system) may cost more than several residuals.
     ///
     /// Then a solve starts with the [residual](Self::newton_residual) alone and the Jacobian of the free body with the
     /// same [`inertia`](Self::inertia), [`Retraction::free_momentum_tangent`], with which
@@ -213,6 +217,9 @@ pub trait Effect: Term {
     /// What was declared and everything derived from it, as text.
     const DERIVATION: &'static str;
 
+    /// The text of a declaration, which `liestep-late` derives anew; empty of a sum, and of what is written by hand.
+    const DECLARATION: &'static str = "";
+
     /// The [`DERIVATION`](Self::DERIVATION) of an effect, and of a sum those of all its terms: a constant can't be put
     /// together from others, and what is declared when a program runs has none.
     #[must_use]
@@ -240,6 +247,27 @@ pub trait Effect: Term {
     #[must_use]
     fn denominators(_: &Self::Constants) -> u32 {
         Self::DENOMINATORS
+    }
+
+    /// [`PARTS`](Self::PARTS), asked of a value: of those that the type has, it may lack some.
+    #[hot]
+    #[must_use]
+    fn parts(_: &Self::Constants) -> Parts {
+        Self::PARTS
+    }
+
+    /// [`APART`](Self::APART), asked of a value: it may have more blocks than the type.
+    #[hot]
+    #[must_use]
+    fn apart(_: &Self::Constants) -> Blocks {
+        Self::APART
+    }
+
+    /// [`JACOBIAN_IS_EXPENSIVE`](Self::JACOBIAN_IS_EXPENSIVE), asked of a value where the type has it.
+    #[hot]
+    #[must_use]
+    fn jacobian_is_expensive(_: &Self::Constants) -> bool {
+        Self::JACOBIAN_IS_EXPENSIVE
     }
 
     /// Shows the derivations and, field by field in the order of the declaration, every scalar of the parameters.
@@ -379,138 +407,3 @@ impl<E: Effect> Regular for E where <E::Kinetic as KineticPart>::ByNewton: Moves
 pub trait Moves<E: ?Sized> {}
 
 impl<E: ?Sized> Moves<E> for WithKinetic {}
-
-/// `μ = ∂l/∂ξ`, `Jξ + s(w)` where `l` is quadratic: the momentum of the body velocity `ξ`.
-pub(crate) fn momentum_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advected) -> Vector<E> {
-    if effect.is_quadratic() {
-        effect.inertia(w) * *velocity + effect.momentum_bias(w)
-    } else {
-        effect.limit(Some(velocity), w).momentum
-    }
-}
-
-/// `ξ = J⁻¹(μ − s(w))`: the body velocity of the momentum `μ`. Where `l` isn't quadratic, it is solved for; NaN where no
-/// velocity has this momentum, of several lanes in those alone.
-pub(crate) fn velocity_of_momentum<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
-    let near_rest = velocity_near_rest(effect, momentum, w);
-    if effect.is_quadratic() {
-        return near_rest;
-    }
-    let (of, hessian) =
-        (|xi: &Vector<E>| effect.limit(Some(xi), w).momentum, |xi: &Vector<E>| effect.limit(Some(xi), w).hessian);
-    let found = newton_halving(momentum, near_rest, of, hessian);
-    found.solution.select(found.is_settled & found.is_regular, Vector::<E>::zero() * real(f64::NAN))
-}
-
-/// An inertia that is the same wherever a body is, with the factors by which the velocities of many momenta are solved
-/// for.
-#[derive(Clone, Copy, Debug)]
-pub struct FactoredInertia<G: LieGroup> {
-    matrix: <G::Vector as Coordinates<G::Scalar>>::Square,
-    factors: <G::Vector as Coordinates<G::Scalar>>::Square,
-    det: G::Scalar,
-}
-
-/// The inertia in factors, if it is known once for all.
-pub(crate) fn factored_inertia<E: Effect>(effect: &E) -> Option<FactoredInertia<Group<E>>> {
-    let matrix = constant_inertia(effect).ok()?;
-    let (factors, det) = Vector::<E>::factorise(&matrix);
-    Some(FactoredInertia { matrix, factors, det })
-}
-
-/// The body velocity of the momentum `μ` and the energy, by the inertia in factors if there is one: the same, to the bit.
-#[hot]
-pub(crate) fn velocity_and_energy<E: Effect>(
-    effect: &E,
-    inertia: Option<&FactoredInertia<Group<E>>>,
-    momentum: &Vector<E>,
-    w: &E::Advected,
-) -> (Vector<E>, Scalar<E>) {
-    if let Some(known) = inertia {
-        let velocity = Vector::<E>::solve_again(&known.factors, known.det, &(*momentum - effect.momentum_bias(w)));
-        return (velocity, quadratic_energy(effect, &velocity, &known.matrix, w));
-    }
-    let velocity = velocity_of_momentum(effect, momentum, w);
-    (velocity, energy_of_velocity(effect, &velocity, w))
-}
-
-/// The same by the inertia at rest: right where `l` is quadratic, elsewhere an estimate.
-fn velocity_near_rest<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
-    Vector::<E>::solve(&effect.inertia(w), &(*momentum - effect.momentum_bias(w))).0
-}
-
-/// The body velocity of the momentum `μ`, or what is near it: a guess.
-pub(crate) fn estimated_velocity<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
-    let velocity = velocity_of_momentum(effect, momentum, w);
-    if effect.is_quadratic() || velocity.is_finite() {
-        return velocity;
-    }
-    // NaN isn't equal to itself.
-    let size = velocity.dot(&velocity);
-    velocity.select(size.simd_eq(size), velocity_near_rest(effect, momentum, w))
-}
-
-/// Whether the velocity that was given is the one found of its momentum `μ`, to what rounding leaves of it where `l` is
-/// regular; `inertia` is that at rest, which makes the components of both commensurable.
-pub(crate) fn check_velocity<T: Real, V: Coordinates<T>>(
-    given: &V,
-    found: &V,
-    momentum: &V,
-    inertia: &V::Square,
-) -> Result<(), SetupError> {
-    let (image, difference) = (*inertia * *given, *inertia * (*found - *given));
-    let epsilon = T::simd_default_epsilon();
-    // At a fold of the momentum half of the digits of a velocity are lost. What cancels in the momentum is lost anyway.
-    let of_fold = image.dot(&image) * epsilon * real(256.0);
-    let of_sum = momentum.dot(momentum) * epsilon * epsilon * real(1e8);
-    let missed = difference.dot(&difference);
-    if missed.simd_le(of_fold + of_sum).all() {
-        return Ok(());
-    }
-    Err(SetupError::AmbiguousVelocity { difference: reported((missed / image.dot(&image)).simd_sqrt()) })
-}
-
-/// `ξ·∂l/∂ξ − l`, the energy of the continuous limit: `½ ξ·Jξ + V(w)` where it is quadratic.
-pub(crate) fn energy<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Scalar<E> {
-    energy_of_velocity(effect, &velocity_of_momentum(effect, momentum, w), w)
-}
-
-/// The same, of a velocity that is known.
-fn energy_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advected) -> Scalar<E> {
-    if !effect.is_quadratic() {
-        let Limit { l, momentum, .. } = effect.limit(Some(velocity), w);
-        return velocity.dot(&momentum) - l;
-    }
-    quadratic_energy(effect, velocity, &effect.inertia(w), w)
-}
-
-#[hot]
-fn quadratic_energy<E: Effect>(effect: &E, velocity: &Vector<E>, inertia: &Square<E>, w: &E::Advected) -> Scalar<E> {
-    velocity.dot(&(*inertia * *velocity)) * real(0.5) + effect.potential(w)
-}
-
-/// The inertia, if it is the same wherever the body is.
-pub(crate) fn constant_inertia<E: Effect>(effect: &E) -> Result<Square<E>, SetupError> {
-    if effect.has_constant_inertia() && effect.is_quadratic() {
-        Ok(effect.inertia(&effect.advected()))
-    } else {
-        Err(SetupError::VaryingInertia)
-    }
-}
-
-/// Whether a momentum determines a velocity, and the kinetic energy is positive along every direction.
-pub(crate) fn check_inertia<G: LieGroup>(inertia: &SquareOf<G>) -> Result<(), SetupError> {
-    let (unit, determinant) = G::Vector::solve(inertia, &G::Vector::zero());
-    let (pivot, component) = G::Vector::least_pivot(inertia);
-    // Less than this is what rounding leaves of a zero.
-    if pivot.simd_lt(real::<G::Scalar>(-1e6) * <G::Scalar as SimdRealField>::simd_default_epsilon()).any() {
-        return Err(SetupError::NegativeKinetic { pivot: reported(pivot), body: body_of::<G>(component) });
-    }
-    let is_positive = pivot.simd_gt(real(0.0));
-    if !unit.is_finite() || !(determinant.simd_gt(real(0.0)) & is_positive).all() {
-        // Where each pivot is positive, and their product is out of range, it is nobody's.
-        let body = if is_positive.all() { None } else { body_of::<G>(component) };
-        return Err(SetupError::SingularKinetic { determinant: reported(determinant), body });
-    }
-    Ok(())
-}

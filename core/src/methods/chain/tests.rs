@@ -5,7 +5,7 @@ use std::println;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::elimination::{Folded, Work, newton, outwards};
+use super::elimination::{LinkConstants, Work, newton, outwards};
 use super::plan::follow;
 use super::{Chain, Link};
 use crate::groups::SO3;
@@ -13,7 +13,7 @@ use crate::mechanics::NonstandardInertia;
 use crate::numbers::Bodies;
 
 /// What is done in the place of a solution.
-type Solve<'a> = &'a dyn Fn(&[Folded], &mut [Work]);
+type Solve<'a> = &'a dyn Fn(&[LinkConstants], &mut [Work]);
 
 fn link(central: Matrix3<f64>, m: f64, c: [f64; 3], rho: [f64; 3]) -> Link {
     let [c, rho] = [c, rho].map(Vector3::from);
@@ -57,13 +57,13 @@ fn reference() -> Started {
 /// the first case; so what rounding may move is relative to the largest.
 #[test]
 fn momentum_of_badly_solved_steps() {
-    let unsolved = |links: &[Folded], work: &mut [Work]| {
+    let unsolved = |links: &[LinkConstants], work: &mut [Work]| {
         for work in &mut *work {
             work.half *= 0.999;
         }
         outwards(links, work);
     };
-    let once = |links: &[Folded], work: &mut [Work]| {
+    let once = |links: &[LinkConstants], work: &mut [Work]| {
         newton(links, work, f64::INFINITY);
     };
     let badly: [(f64, u32, Solve<'_>, f64); 3] =
@@ -82,7 +82,7 @@ fn momentum_of_badly_solved_steps() {
             solve(&plan.links, &mut work);
             // How far one of Newton's iterations would move them, which isn't made.
             let update = newton(&plan.links, &mut work.clone(), f64::INFINITY);
-            least = least.min((update.update / update.size).sqrt());
+            least = least.min((update.length / update.size).sqrt());
             plan.proceed(stepper.scene(), &mut state.motion, &work, kick).unwrap();
             largest = state.momentum().0.iter().map(Vector3::norm).fold(largest, f64::max);
         }
@@ -140,7 +140,7 @@ fn nothing_but_roundings_is_missing() {
             // In roundings of all unknowns.
             let mut further = || {
                 let updated = newton(&plan.links, &mut more, f64::INFINITY);
-                (updated.update / updated.size).sqrt() / f64::EPSILON
+                (updated.length / updated.size).sqrt() / f64::EPSILON
             };
             let first = further();
             let left = (0..4).map(|_| further()).fold(1.0, f64::max);
@@ -159,7 +159,7 @@ fn nothing_but_roundings_is_missing() {
 #[test]
 fn a_shortened_update_is_a_part_of_the_whole() {
     let (chain, ..) = oblique();
-    let links = [Folded::from(&chain.links[2])];
+    let links = [LinkConstants::from(&chain.links[2])];
     for size in [1e2, 1e10, 1e17, 1e30] {
         for start in [0.0, 0.3] {
             let mut work = [Work::default()];
@@ -168,7 +168,7 @@ fn a_shortened_update_is_a_part_of_the_whole() {
             let before = work[0].half;
             let updated = newton(&links, &mut work, 0.25);
             let moved = work[0].half - before;
-            assert!(!updated.is_whole && updated.update.sqrt() > 0.01 * size, "{size:e} {start}");
+            assert!(!updated.is_whole && updated.length.sqrt() > 0.01 * size, "{size:e} {start}");
             assert!((moved.norm() - 0.25).abs() < 1e-15, "{size:e} {start}: {moved}");
             let off = moved.normalize() + work[0].update.normalize();
             assert!(off.norm() < 1e-14, "{size:e} {start}: {off}");
