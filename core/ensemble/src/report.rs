@@ -1,6 +1,7 @@
 //! Running an ensemble, and what has become of it.
 
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::SystemTime;
 
 use liestep::motion::Integrator;
 
@@ -66,7 +67,7 @@ impl<M: Integrator> Ensemble<M> {
         store: &Store,
         tell: &(dyn Fn(Progress) + Sync),
     ) -> Result<Report, StoreError> {
-        let (plan, chunks) = (self.fingerprint(), self.chunks());
+        let (plan, chunks, begun) = (self.fingerprint(), self.chunks(), SystemTime::now());
         let look = || {
             let (found, damaged) = store.survey(plan, drop)?;
             Store::set_aside(&damaged)?;
@@ -108,7 +109,7 @@ impl<M: Integrator> Ensemble<M> {
             report.faults.extend(damaged);
             report.missing = chunks - found.len() as u64;
             if report.missing == 0 {
-                store.sweep()?;
+                store.sweep(begun)?;
             }
         }
         Ok(report)

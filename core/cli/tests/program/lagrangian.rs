@@ -126,7 +126,7 @@ fn mistakes_have_places() {
         error: top.toml:11:1: `unused` isn't used in the Lagrangian: remove the field, or use it
         error: top.toml:10:5: invalid type: boolean `true`, expected a number
         error: top.toml:12:6: a vector has three numbers, found 2
-        error: top.toml:8:19: no body has this inertia: J_d has the negative eigenvalue -1.7e1, so the largest principal moment exceeds the sum of the others; check which of the two inertias is given
+        error: top.toml:8:19: no body has this inertia: 40 > 3 + 3, and a principal moment is at most the sum of the others
         error: top.toml:8:9: unknown field `diagonal`, expected `moments` or `tensor`
         error: top.toml:3:2: the struct has no field `down`
         error: top.toml:4:9: a file's Lagrangian is on `SO3`; on other groups it is declared in a program

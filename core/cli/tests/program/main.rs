@@ -7,6 +7,7 @@ mod called;
 mod ensembles;
 mod lagrangian;
 mod mutated;
+mod orbits;
 mod page;
 mod readme;
 mod runs;

@@ -322,7 +322,7 @@ fn mistakes_have_places() {
         held.toml:7:1: a body has one of `moments` (of inertia, principal), `J_d` (nonstandard, principal), `J` (of inertia, 3 by 3)
         held.toml:11:19: a length isn't in `kg` but in `m`, `cm`, `mm`, `km`
         held.toml:21:14: a speed isn't in `m` but in `m/s`, `km/h`, `km/s`
-        held.toml:14:7: unknown field `velocities`, expected one of `euler`, `quaternion`, `velocity`, `euler_rates`
+        held.toml:14:7: unknown field `velocities`, expected one of `euler`, `quaternion`, `velocity`, `euler_rates`; did you mean `velocity`?
         held.toml:33:20: there is no body `lowest`; there are `upper`, `lower`, and `space`
         held.toml:33:10: two different ones are joined, of which one may be `space`
         held.toml:33:10: invalid length 1, expected an array of length 2

@@ -1,7 +1,7 @@
 //! Scene files and command lines that are wrong: each mistake with its place; and what is printed.
 
 use std::fs;
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 use expect_test::expect;
 
@@ -80,7 +80,7 @@ fn mistakes_have_places() {
     let messages = MISTAKES.map(|(line, by)| mistake(&folder, line, by));
     expect![[r#"
         error: top.toml:14:1: unknown field `viscosity`, expected `c`
-        error: top.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `magnetic_damping`, `torque`, `thrust`, `start`, `run`, `picture`, `event`, `output`, `lagrangian`
+        error: top.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `start`, `run`, `picture`, `event`, `output`, `lagrangian`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `torque`, `thrust`, `magnetic_damping`; did you mean `drag`?
         error: top.toml:6:1: missing field `g`
         error: top.toml:1:1: missing field `run`
         error: top.toml:14:1: unknown field `rho`, expected `c`
@@ -93,7 +93,7 @@ fn mistakes_have_places() {
         error: top.toml:9:18: a length isn't in `kg` but in `m`, `cm`, `mm`, `km`
         error: top.toml:9:7: invalid type: floating point `1.0`, expected a sequence
         error: top.toml:10:6: a direction can't be zero
-        error: top.toml:4:11: no body has this inertia: J_d has the negative eigenvalue -1e0, so the largest principal moment exceeds the sum of the others; check which of the two inertias is given
+        error: top.toml:4:11: no body has this inertia: 4 > 1 + 1, and a principal moment is at most the sum of the others
         error: top.toml:4:11: a body has one of `moments` (of inertia, principal), `J_d` (nonstandard, principal), `J` (of inertia, 3 by 3)
         error: top.toml:16:14: `quaternion` has the four components w, x, y, z, found 3
         error: top.toml:16:14: `quaternion` can't be zero
@@ -158,13 +158,13 @@ fn mistakes_in_choices_have_places() {
         ("[run]", "[sweep]\ngravity.m = { from = 1, to = 2, count = 200 }\ngravity.g = { from = 1, to = 2, count = 200 }\n[run]"),
     ]
     .map(|(line, by)| mistake(&folder, line, by));
-    expect![[r"
+    expect![[r#"
         error: top.toml:4:5: `J` has three rows of three components, found 2 rows
         error: top.toml:4:5: the inertia is not symmetric: two entries differ by 1e0, more than rounding; give it symmetric
         error: top.toml:5:11: unknown variant `quartic`, expected one of `rigid`, `cayley`, `geodesic`, `fourth-order`, `sixth-order`
         error: top.toml:22:10: a composition needs a conservative scene; drag does work
         error: top.toml:22:10: no such scheme; there are `Suzuki 4`, `Kahan-Li 6`, `Kahan-Li 8`, `Sofroniou-Spaletta 10`, `Suzuki 6`, `Suzuki 8`
-        error: top.toml:22:10: unknown variant `euler`, expected one of `step`, `composition`, `splitting`, `processed`, `collocation`
+        error: top.toml:22:10: `euler` is no method of a scene: `method` is "step", or a table as `{ composition = "Suzuki 4" }`, `{ splitting = "Nyström 6-4" }`, `{ processed = "processed 3-6 a" }` or `{ collocation = 8 }`; a Runge–Kutta method wouldn't keep what the motion conserves
         error: top.toml:22:10: a collocation has 4 or 8 stages
         error: top.toml:13:9: must be a whole number of steps, above zero
         error: top.toml:13:20: unknown variant `phase`, expected one of `quaternion`, `axis`, `velocity`, `momentum`, `spatial-momentum`, `energy`, `energy-error`, `vertical-momentum-error`, `momentum-error`
@@ -181,7 +181,7 @@ fn mistakes_in_choices_have_places() {
         error: top.toml:21:8: an angle isn't in `J` but in `rad`, `deg`, `°`
         error: top.toml:19:1: `sweep` has no key to vary
         error: top.toml:19:1: `sweep` makes more than 10000 scenes
-    "]].assert_eq(&messages.concat());
+    "#]].assert_eq(&messages.concat());
 }
 
 /// What is no scene at all, with its place if there is text.
@@ -205,7 +205,7 @@ fn files_of_another_kind() {
     });
     expect![[r"
         error: empty.toml:1:1: missing field `title`
-        error: mark.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `magnetic_damping`, `torque`, `thrust`, `start`, `run`, `picture`, `event`, `output`, `lagrangian`
+        error: mark.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `start`, `run`, `picture`, `event`, `output`, `lagrangian`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `torque`, `thrust`, `magnetic_damping`; did you mean `drag`?
         error: bytes.toml:1:12: isn't a text in UTF-8
         error: nested.toml:1:89: cannot recurse further; max recursion depth met
         error: large.toml: has more than 1048576 bytes, so it is no scene
@@ -292,7 +292,7 @@ fn command_lines() {
 fn a_full_disk() {
     let folder = folder("full");
     fs::write(folder.join("top.toml"), TOP).unwrap();
-    let table = folder.join("top.csv");
+    let table = folder.join("top.csv.part");
     // What was there may be a file.
     let _ = fs::remove_file(&table);
     std::os::unix::fs::symlink("/dev/full", &table).unwrap();
@@ -306,6 +306,56 @@ fn a_full_disk() {
     let text = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(4), "{text}");
     assert!(text.starts_with("error: cannot print: No space left on device"), "{text}");
+}
+
+/// In the numbers and the words of a file.
+#[test]
+fn messages_say_what_to_write() {
+    let folder = folder("messages_say_what_to_write");
+    for (line, by, told) in [
+        ("moments = [3, 3, 4]", "moments = [12, 30, 9]", "30 > 12 + 9, and a principal moment is at most the sum"),
+        ("moments = [3, 3, 4]", "J = [[12, 0, 0], [0, 30, 0], [0, 0, 9]]", "30 > 12 + 9, and a principal moment is"),
+        ("moments = [3, 3, 4]", "moments = [3, -15, 4]", "the principal moment -15 is negative"),
+        ("c = 1e-3", "c = None", "what isn't there is left out"),
+        ("[drag]", "[darg]", "; did you mean `drag`?"),
+        ("duration = 2", "duration = 2\nmethod = \"RK4\"", "`RK4` is no method of a scene: `method` is \"step\", or"),
+        ("60 rpm", "2000 rpm", "rad is the most from here; take a `step` of at most"),
+        ("\"60 rpm\"", "200", "numbers alone are in rad/s: were degrees meant, write \"200 deg/s\""),
+    ] {
+        let message = mistake(&folder, line, by);
+        assert!(message.contains(told), "{message}");
+        assert!(!message.contains("or_substeps") && !message.contains("CayleyBody"), "{message}");
+    }
+    let output = Command::new(PROGRAM).args(["derive", "gravty"]).output().unwrap();
+    assert!(String::from_utf8(output.stderr).unwrap().contains("did you mean `gravity`?"));
+}
+
+/// Who has read enough isn't told that there was more.
+#[test]
+fn a_reader_that_goes_away() {
+    let mut program =
+        Command::new(PROGRAM).args(["derive", "gravity"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    drop(program.as_mut().unwrap().stdout.take());
+    let output = program.unwrap().wait_with_output().unwrap();
+    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
+}
+
+/// A table that is killed on its way is called another name than one that is whole.
+#[test]
+fn a_killed_table_has_no_name() {
+    let folder = folder("a_killed_table_has_no_name");
+    let _ = fs::remove_file(folder.join("top.csv"));
+    fs::write(folder.join("top.toml"), TOP.replace("duration = 2", "duration = 1e6")).unwrap();
+    let mut program = Command::new(PROGRAM);
+    let mut program = program.current_dir(&folder).args(["run", "top.toml", "--csv", "--out", "."]).spawn().unwrap();
+    let part = folder.join("top.csv.part");
+    while !fs::metadata(&part).is_ok_and(|file| file.len() > 0) {
+        assert!(program.try_wait().unwrap().is_none());
+        std::thread::yield_now();
+    }
+    program.kill().unwrap();
+    program.wait().unwrap();
+    assert!(!folder.join("top.csv").exists() && part.exists());
 }
 
 #[test]

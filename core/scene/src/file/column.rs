@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::file::mistake::Wrong;
+use crate::file::mistake::{Wrong, advised};
 use crate::file::sample::{BodySample, Sample};
 
 use Numbers::{OfBody, OfScene, SinceStart};
@@ -208,7 +208,7 @@ impl Output {
             find(key.get_ref()).ok_or_else(|| {
                 let known: Vec<_> = known.iter().map(|column| format!("`{}`", column.key)).collect();
                 let message = format!("unknown variant `{}`, expected one of {}", key.get_ref(), known.join(", "));
-                (key.span(), message)
+                (key.span(), advised(&message))
             })
         };
         let columns = keys.get_ref().iter().map(column).collect::<Result<Vec<_>, _>>()?;

@@ -37,27 +37,59 @@ pub(crate) fn watches<A: Advected<SO3> + 'static>(
     file: &SceneFile,
 ) -> Vec<(recording::Event, EventFunction<AnyStepper<SO3, A>>)> {
     let axis = file.picture.axis.0;
-    file.event.iter().map(|event| (kind(event), function(event.quantity, axis))).collect()
+    let watch = |event: &Event| -> (_, EventFunction<_>) {
+        let kind = kind(event.direction);
+        (if event.stops { kind.terminal() } else { kind }, Box::new(function(event.quantity, axis)))
+    };
+    file.event.iter().map(watch).collect()
+}
+
+/// An event of a scene, for the members of its ensemble.
+#[non_exhaustive]
+pub struct MemberEvent {
+    /// What it is called.
+    pub name: String,
+    /// What counts.
+    pub event: recording::Event,
+    /// The function that passes zero there.
+    pub function: Box<dyn Fn(&Moment<'_, AnyStepper<SO3, ()>>) -> f64 + Send + Sync>,
+    /// Whether the motion ends with it.
+    pub stops: bool,
+}
+
+impl SceneFile {
+    /// The events that members are watched for.
+    pub fn member_events(&self) -> impl Iterator<Item = MemberEvent> {
+        let axis = self.picture.axis.0;
+        self.event.iter().map(move |event| MemberEvent {
+            name: event.name.clone(),
+            event: kind(event.direction),
+            function: Box::new(function(event.quantity, axis)),
+            stops: event.stops,
+        })
+    }
 }
 
 /// What counts as the event.
-fn kind(event: &Event) -> recording::Event {
-    let kind = match event.direction {
+fn kind(direction: Direction) -> recording::Event {
+    match direction {
         Direction::Rising => recording::Event::rising(),
         Direction::Falling => recording::Event::falling(),
         Direction::Either => recording::Event::crossing(),
-    };
-    if event.stops { kind.terminal() } else { kind }
+    }
 }
 
 /// The function that rises through zero as the quantity rises through its value; a tilt is that of this body axis.
-fn function<A: Advected<SO3> + 'static>(quantity: Quantity, axis: Vector3<f64>) -> EventFunction<AnyStepper<SO3, A>> {
-    Box::new(move |now| match quantity {
+fn function<A: Advected<SO3> + 'static>(
+    quantity: Quantity,
+    axis: Vector3<f64>,
+) -> impl Fn(&Moment<'_, AnyStepper<SO3, A>>) -> f64 + Send + Sync + 'static {
+    move |now| match quantity {
         // By the cosine, which is smooth at the vertical.
         Quantity::Tilt(angle) => angle.cos() - (now.attitude().as_matrix() * axis).z,
         Quantity::Speed(speed) => now.velocity().norm_squared() - speed * speed,
         Quantity::Energy(energy) => now.energy() - energy,
         Quantity::Velocity(component, rate) => now.velocity()[component] - rate,
         Quantity::Axis(component, part) => (now.attitude().as_matrix() * axis)[component] - part,
-    })
+    }
 }

@@ -1,48 +1,40 @@
 //! The derived equations of the effects, as text.
 
-use liestep::effects::{
-    CayleyBody, Dipole, Drag, FourthOrderBody, GeodesicBody, Gravity, GravityGradient, MagneticDamping, PrincipalBody,
-    RigidBody, Rotor, SixthOrderBody, Spring, Thrust, Torque,
-};
+use liestep::effects::{CayleyBody, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::mechanics::Effect;
 
 use crate::file::arrangement::BODIES;
 use crate::file::body::{Distribution, Kinetic};
+use crate::file::effects::EFFECTS;
 use crate::file::scene::SceneFile;
 use crate::file::system::System;
 use crate::run::bodies::Heavy;
 use crate::run::springs::Springs;
 
-/// An effect of the library: its name in files, and what is derived of it.
-type Derivation = (&'static str, &'static str);
-
-const DERIVED: [Derivation; 15] = [
+/// The kinetic terms: their names in commands, and what is derived of them.
+const BODIES_DERIVED: [(&str, &str); 6] = [
     ("principal-body", <PrincipalBody as Effect>::DERIVATION),
     ("rigid-body", <RigidBody as Effect>::DERIVATION),
     ("cayley-body", <CayleyBody as Effect>::DERIVATION),
     ("geodesic-body", <GeodesicBody as Effect>::DERIVATION),
     ("fourth-order-body", <FourthOrderBody as Effect>::DERIVATION),
     ("sixth-order-body", <SixthOrderBody as Effect>::DERIVATION),
-    ("gravity", <Gravity as Effect>::DERIVATION),
-    ("gravity-gradient", <GravityGradient as Effect>::DERIVATION),
-    ("dipole", <Dipole as Effect>::DERIVATION),
-    ("spring", <Spring as Effect>::DERIVATION),
-    ("rotor", <Rotor as Effect>::DERIVATION),
-    ("drag", <Drag as Effect>::DERIVATION),
-    ("magnetic-damping", <MagneticDamping as Effect>::DERIVATION),
-    ("torque", <Torque as Effect>::DERIVATION),
-    ("thrust", <Thrust as Effect>::DERIVATION),
 ];
 
+fn all() -> impl Iterator<Item = (String, &'static str)> {
+    let bodies = BODIES_DERIVED.iter().map(|(name, text)| ((*name).to_owned(), *text));
+    bodies.chain(EFFECTS.iter().map(|effect| (effect.name("-"), effect.derivation)))
+}
+
 /// The names that [`derivation`] knows: the kinetic terms and the effects.
-pub fn derived() -> impl Iterator<Item = &'static str> {
-    DERIVED.iter().map(|(name, _)| *name)
+pub fn derived() -> impl Iterator<Item = String> {
+    all().map(|(name, _)| name)
 }
 
 /// What the library derived of an effect, from its declaration to the constants of a step.
 #[must_use]
 pub fn derivation(name: &str) -> Option<&'static str> {
-    DERIVED.iter().find(|(other, _)| *other == name).map(|(_, text)| *text)
+    all().find(|(other, _)| other == name).map(|(_, text)| text)
 }
 
 impl SceneFile {
@@ -61,7 +53,7 @@ impl SceneFile {
             (Kinetic::FourthOrder, _) => "fourth-order-body",
             (Kinetic::SixthOrder, _) => "sixth-order-body",
         };
-        let names = std::iter::once(body.to_owned()).chain(self.effects().map(|name| name.replace(' ', "-")));
+        let names = std::iter::once(body.to_owned()).chain(self.effects().map(|effect| effect.name("-")));
         let terms = names.filter_map(|name| derivation(&name).map(|text| format!("{name}\n\n{text}")));
         terms.collect::<Vec<_>>().join("\n")
     }
