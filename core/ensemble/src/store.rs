@@ -302,14 +302,8 @@ fn part_of(name: &str) -> String {
 
 /// Whether it is a shard's that hasn't got its name yet.
 fn is_part(path: &Path) -> bool {
-    let Some((shard, writer)) = path.to_str().and_then(|path| path.strip_suffix(".part")?.rsplit_once('.')) else {
-        return false;
-    };
-    let mut parts = writer.rsplitn(3, '-');
-    let numbers = [parts.next(), parts.next()].map(|part| part.is_some_and(|part| part.parse::<u64>().is_ok()));
-    let host =
-        parts.next().is_some_and(|host| host.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '-'));
-    numbers == [true; 2] && host && name_of(Path::new(shard)).is_some()
+    let shard = || path.to_str()?.strip_suffix(".part")?.rsplit_once('.');
+    shard().is_some_and(|(shard, _)| name_of(Path::new(shard)).is_some())
 }
 
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, StoreError> {

@@ -68,44 +68,18 @@ impl<S: Effect, P: Plan<S>, V> Plan<S> for Driven<P, V, Scalar<S>>
 where
     V: Fn(Scalar<S>) -> S::Advected + Clone,
 {
-    type Kept = P::Kept;
+    as_its_plan!();
 
-    const VECTORS: Vectors = P::VECTORS;
     const RUNS_BY_STEPS: bool = true;
-    const HAS_OWN_INERTIA: bool = P::HAS_OWN_INERTIA;
     const COUNTS_TIME: bool = true;
-
-    fn step_size(&self) -> Scalar<S> {
-        self.plan.step_size()
-    }
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
         let (plan, values) = (self.plan.refolded(scene, h)?, self.values.clone());
         Ok(Self { plan, values, whole: self.whole })
     }
 
-    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
-        self.plan.keep(scene, motion)
-    }
-
-    fn admits(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Result<(), SetupError> {
-        self.plan.admits(scene, motion)
-    }
-
     fn advected(&self, _: &S, steps: u64) -> S::Advected {
         (self.values)(self.whole * counted(steps))
-    }
-
-    fn momentum(&self, scene: &S, attitude: &Group<S>, velocity: &Vector<S>, w: &S::Advected) -> Vector<S> {
-        self.plan.momentum(scene, attitude, velocity, w)
-    }
-
-    fn velocity(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
-        self.plan.velocity(scene, motion)
-    }
-
-    fn is_in_step(&self, kept: &Self::Kept) -> bool {
-        self.plan.is_in_step(kept)
     }
 
     fn step<M: Summation<Group<S>, S::Advected>>(
@@ -131,23 +105,9 @@ where
         Ok(report)
     }
 
-    fn push<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-        impulse: &Vector<S>,
-    ) -> Result<(), StepError> {
-        self.plan.push(scene, motion, kept, impulse)
-    }
-
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
         visitor.term("driven");
         self.plan.describe(visitor);
-    }
-
-    fn cost(&self) -> Cost {
-        self.plan.cost()
     }
 }
 

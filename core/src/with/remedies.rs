@@ -58,38 +58,12 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
 }
 
 impl<S: Effect, P: Plan<S>> Plan<S> for Substepped<P> {
-    type Kept = P::Kept;
+    as_its_plan!();
 
-    const VECTORS: Vectors = P::VECTORS;
     const EXPLAINS: bool = P::EXPLAINS;
-    const HAS_OWN_INERTIA: bool = P::HAS_OWN_INERTIA;
-
-    fn step_size(&self) -> Scalar<S> {
-        self.plan.step_size()
-    }
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
         Ok(Self { plan: self.plan.refolded(scene, h)?, at_most: self.at_most })
-    }
-
-    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
-        self.plan.keep(scene, motion)
-    }
-
-    fn admits(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Result<(), SetupError> {
-        self.plan.admits(scene, motion)
-    }
-
-    fn momentum(&self, scene: &S, attitude: &Group<S>, velocity: &Vector<S>, w: &S::Advected) -> Vector<S> {
-        self.plan.momentum(scene, attitude, velocity, w)
-    }
-
-    fn velocity(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
-        self.plan.velocity(scene, motion)
-    }
-
-    fn is_in_step(&self, kept: &Self::Kept) -> bool {
-        self.plan.is_in_step(kept)
     }
 
     #[hot]
@@ -103,16 +77,6 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Substepped<P> {
             Ok(report) => Ok(report),
             Err(error) => in_parts(&self.plan, scene, (motion, kept), (self.at_most, error)),
         }
-    }
-
-    fn push<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-        impulse: &Vector<S>,
-    ) -> Result<(), StepError> {
-        self.plan.push(scene, motion, kept, impulse)
     }
 
     fn see(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut Self::Kept, advected: S::Advected) {
@@ -138,10 +102,6 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Substepped<P> {
         visitor.term("or substeps");
         visitor.parameter("at most", real(f64::from(self.at_most)));
         self.plan.describe(visitor);
-    }
-
-    fn cost(&self) -> Cost {
-        self.plan.cost()
     }
 }
 

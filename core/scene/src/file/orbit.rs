@@ -82,7 +82,7 @@ fn eccentric_anomaly(mean: f64, e: f64) -> f64 {
     loop {
         let next = anomaly - (anomaly - e * anomaly.sin() - wanted) / (1.0 - e * anomaly.cos());
         // It rises by roundings only; without a slope there is nothing to divide by.
-        if !(next < anomaly) {
+        if next >= anomaly || next.is_nan() {
             return anomaly.copysign(mean);
         }
         anomaly = next;

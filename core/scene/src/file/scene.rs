@@ -21,12 +21,14 @@ use crate::file::text::title;
 /// The type, with a field and a row of its page for each effect.
 macro_rules! scene_file {
     (
-        { $(#[$above:meta])+ --- $(#[$below:meta])+ { $($fields:tt)+ } }
+        { $($fields:tt)+ }
         $($kind:ident { $($name:ident: $table:ident { $($key:ident: $type:ty),+ } => |$($of:tt),+| -> $effect:ty $value:block)+ })+
     ) => {
-        $(#[$above])+
+        #[doc = include_str!("scene.md")]
+        ///
+        /// | effect | parameters |
+        /// |---|---|
         $($(#[doc = concat!("| `", stringify!($name), "` |", $(" `", stringify!($key), "`"),+, " |")])+)+
-        $(#[$below])+
         #[derive(Clone, Deserialize)]
         #[serde(deny_unknown_fields)]
         pub struct SceneFile {
@@ -51,61 +53,30 @@ macro_rules! scene_file {
 }
 
 effects! { scene_file
-    /// What a scene file says. An effect is in the scene if its table is in the file.
-    ///
-    /// | table | keys |
-    /// |---|---|
-    /// | | `title` |
-    /// | `body` | one of `moments`, `J_d`, `J`; `kinetic`: `rigid`, which is (3.13), `cayley`, `geodesic`, `fourth-order`, `sixth-order` |
-    /// | `lagrangian` | in place of `body` and all effects: `l_d`, or `l` with `discretise` and the name of its `velocity`; `advected`, as `{ w = "up" }`; and the parameters by their names: numbers, vectors, matrices, inertias as `{ moments = […] }` or `{ tensor = […] }`, nonstandard where the name ends in `_d` |
-    ---
-    /// | where a `direction` or a `field` may turn | three numbers, or `{ orbit = { period, normal, eccentricity, phase, periapsis } }`, for a field with its vector above the dipole's `equator`, a semi-major axis away: see below |
-    /// | `start` | `euler` or `quaternion`; `velocity` or `euler_rates` |
-    /// | `run` | `duration`; `step`, of which that is a whole number, or `accuracy`; `method`: `"step"`, `{ composition = "Suzuki 4" }`, `{ splitting = "Nyström 6-4" }`, `{ processed = "processed 3-6 a" }`, `{ collocation = 8 }` |
-    /// | `picture` | `path`: `axis`, `momentum`, `velocity`; `axis`; `panels`: `rates`, `tilt`, `energy`, `energy-error`, `momentum`, `vertical-momentum-error`, `momentum-error` |
-    /// | `[[event]]` | `name`; one of `tilt`, `speed`, `energy`, `velocity_1` to `_3`, `axis_1` to `_3`: the value that is passed; `direction`: `rising`, `falling`, `either`; `stop` |
-    /// | `output` | `columns` of a table behind the time, see [`Column`]; `every`: the number of steps from row to row |
-    /// | `sweep` | any of the keys above: a list of values, or `{ from, to, count }` |
-    /// | `ensemble` | `members`; `seed`; `every`: the number of steps from row to row, and if it isn't given the ends only; `chunk`: the number of members in a file, if it isn't given a 64th of them at most; `draw`: any of the keys of body, effects and start, each drawn from `{ from, to }` or `{ mean, deviation }`, and of lists each component by itself |
-    ///
-    /// # Orbits
-    ///
-    /// A satellite goes round its planet by Kepler's laws: `period`; `normal`, about which it goes right-handed;
-    /// `eccentricity`, 0 if it isn't given; `phase`, the mean anomaly at the start; `periapsis`, the direction from the planet
-    /// to where the orbit is nearest, if it isn't given the first axis of space, brought into the plane. Each step sees what
-    /// turns as it is in the step's middle, so that the scheme is of second order; the energy is that with the direction of
-    /// the moment, and isn't conserved.
-    ///
-    /// - `gravity_gradient.direction` is that of the planet. `GM` and `r` are left out: the torque is `3 n² (a/r)³ n̂ × J n̂`
-    ///   with the mean motion `n = 2π / period`, whatever the planet.
-    /// - `field`, of a `dipole` or of `magnetic_damping`, is that of a magnetic dipole in the planet, which is fixed in space:
-    ///   `(a/r)³ (B − 3 (B·r̂) r̂)` with `B = equator`.
-    {
-        #[serde(deserialize_with = "title")]
-        pub(crate) title: String,
-        /// A body of the library, or a Lagrangian in place of it and of the effects.
-        pub(crate) body: Option<Body>,
-        pub(crate) start: Start,
-        pub(crate) run: Schedule,
-        #[serde(default)]
-        pub(crate) picture: SpherePicture,
-        #[serde(default)]
-        pub(crate) event: Vec<Event>,
-        #[serde(default)]
-        pub(crate) output: Output,
-        #[serde(default, deserialize_with = "taken")]
-        pub(crate) lagrangian: Option<Lagrangian>,
-        #[serde(skip)]
-        pub(crate) columns: Vec<Column>,
-        /// Of the whole file: the scenes that a sweep makes have none.
-        #[serde(skip)]
-        pub(crate) sweep: Option<Sweep>,
-        /// Of the whole file: the scenes that an ensemble draws have none.
-        #[serde(skip)]
-        pub(crate) ensemble: Option<SceneEnsemble>,
-        #[serde(skip)]
-        pub(crate) origin: Origin,
-    }
+    #[serde(deserialize_with = "title")]
+    pub(crate) title: String,
+    /// A body of the library, or a Lagrangian in place of it and of the effects.
+    pub(crate) body: Option<Body>,
+    pub(crate) start: Start,
+    pub(crate) run: Schedule,
+    #[serde(default)]
+    pub(crate) picture: SpherePicture,
+    #[serde(default)]
+    pub(crate) event: Vec<Event>,
+    #[serde(default)]
+    pub(crate) output: Output,
+    #[serde(default, deserialize_with = "taken")]
+    pub(crate) lagrangian: Option<Lagrangian>,
+    #[serde(skip)]
+    pub(crate) columns: Vec<Column>,
+    /// Of the whole file: the scenes that a sweep makes have none.
+    #[serde(skip)]
+    pub(crate) sweep: Option<Sweep>,
+    /// Of the whole file: the scenes that an ensemble draws have none.
+    #[serde(skip)]
+    pub(crate) ensemble: Option<SceneEnsemble>,
+    #[serde(skip)]
+    pub(crate) origin: Origin,
 }
 
 /// Where a scene is from, for messages about its run.

@@ -44,29 +44,19 @@ pub(crate) fn watches<A: Advected<SO3> + 'static>(
     file.event.iter().map(watch).collect()
 }
 
-/// An event of a scene, for the members of its ensemble.
-#[non_exhaustive]
-pub struct MemberEvent {
-    /// What it is called.
-    pub name: String,
-    /// What counts.
-    pub event: recording::Event,
-    /// The function that passes zero there.
-    pub function: Box<dyn Fn(&Moment<'_, AnyStepper<SO3, ()>>) -> f64 + Send + Sync>,
-    /// Whether the motion ends with it.
-    pub stops: bool,
-}
+/// An event of a scene for the members of its ensemble: its name, what counts, the function that passes zero there, and
+/// whether the motion ends with it.
+pub type MemberEvent =
+    (String, recording::Event, Box<dyn Fn(&Moment<'_, AnyStepper<SO3, ()>>) -> f64 + Send + Sync>, bool);
 
 impl SceneFile {
     /// The events that members are watched for.
     pub fn member_events(&self) -> impl Iterator<Item = MemberEvent> {
         let axis = self.picture.axis.0;
-        self.event.iter().map(move |event| MemberEvent {
-            name: event.name.clone(),
-            event: kind(event.direction),
-            function: Box::new(function(event.quantity, axis)),
-            stops: event.stops,
-        })
+        let of = move |Event { name, quantity, direction, stops }: &Event| -> MemberEvent {
+            (name.clone(), kind(*direction), Box::new(function(*quantity, axis)), *stops)
+        };
+        self.event.iter().map(of)
     }
 }
 

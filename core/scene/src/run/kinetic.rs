@@ -55,6 +55,15 @@ macro_rules! whichever {
     };
 }
 
+/// What it has of a step.
+macro_rules! of_a_step {
+    ($($name:ident: $type:ty),+) => {$(
+        fn $name(&self, f: &Matrix<Self>, (): &(), h: f64) -> $type {
+            whichever!(self, body => body.$name(f, &(), h))
+        }
+    )+};
+}
+
 /// A function of the type of whichever body these constants belong to.
 macro_rules! of_its_type {
     ($constants:expr, $function:ident($($argument:expr),*)) => {
@@ -176,9 +185,7 @@ impl Effect for ChosenBody {
         whichever!(self, body => body.describe(visitor));
     }
 
-    fn momentum_jacobian(&self, f: &Matrix<Self>, (): &(), h: f64) -> Matrix3<f64> {
-        whichever!(self, body => body.momentum_jacobian(f, &(), h))
-    }
+    of_a_step!(momentum_jacobian: Matrix3<f64>);
 
     fn limit(&self, velocity: Option<&Vector3<f64>>, (): &()) -> Limit<Self> {
         whichever!(self, body => {
@@ -244,23 +251,5 @@ impl DiscreteLagrangian for ChosenBody {
         && FourthOrderBody::<f64>::SELF_ADJOINT
         && SixthOrderBody::<f64>::SELF_ADJOINT;
 
-    fn l_d(&self, f: &Matrix3<f64>, (): &(), h: f64) -> f64 {
-        whichever!(self, body => body.l_d(f, &(), h))
-    }
-
-    fn right_momentum(&self, f: &Matrix3<f64>, (): &(), h: f64) -> Vector3<f64> {
-        whichever!(self, body => body.right_momentum(f, &(), h))
-    }
-
-    fn left_momentum(&self, f: &Matrix3<f64>, (): &(), h: f64) -> Vector3<f64> {
-        whichever!(self, body => body.left_momentum(f, &(), h))
-    }
-
-    fn diamond(&self, f: &Matrix3<f64>, (): &(), h: f64) -> Vector3<f64> {
-        whichever!(self, body => body.diamond(f, &(), h))
-    }
-
-    fn discrete_energy(&self, f: &Matrix3<f64>, (): &(), h: f64) -> f64 {
-        whichever!(self, body => body.discrete_energy(f, &(), h))
-    }
+    of_a_step!(l_d: f64, right_momentum: Vector3<f64>, left_momentum: Vector3<f64>, diamond: Vector3<f64>, discrete_energy: f64);
 }

@@ -12,6 +12,15 @@ use nalgebra::{Matrix3, Vector3};
 #[derive(Clone, Copy, Debug)]
 pub struct Switched<E>(pub Option<E>);
 
+/// What the effect has of a step, or zero.
+macro_rules! or_nothing {
+    ($($name:ident: $type:ty),+) => {$(
+        fn $name(&self, f: &Matrix<E>, w: &E::Advected, h: f64) -> $type {
+            self.0.as_ref().map_or_else(nalgebra::zero, |effect| effect.$name(f, w, h))
+        }
+    )+};
+}
+
 impl<E: Effect<Scalar = f64, Group = SO3>> Term for Switched<E> {
     type Scalar = f64;
     type Group = SO3;
@@ -46,9 +55,7 @@ impl<E: Effect<Scalar = f64, Group = SO3>> Effect for Switched<E> {
         }
     }
 
-    fn momentum_jacobian(&self, f: &Matrix<E>, w: &E::Advected, h: f64) -> Matrix3<f64> {
-        self.0.as_ref().map_or_else(Matrix3::zeros, |effect| effect.momentum_jacobian(f, w, h))
-    }
+    or_nothing!(momentum_jacobian: Matrix3<f64>);
 
     fn limit(&self, velocity: Option<&Vector3<f64>>, w: &E::Advected) -> Limit<Self> {
         let zero = (0.0, Vector3::zeros(), Matrix3::zeros());
@@ -100,23 +107,5 @@ impl<E: Effect<Scalar = f64, Group = SO3>> Effect for Switched<E> {
 impl<E: DiscreteLagrangian<Scalar = f64, Group = SO3>> DiscreteLagrangian for Switched<E> {
     const SELF_ADJOINT: bool = E::SELF_ADJOINT;
 
-    fn l_d(&self, f: &Matrix<E>, w: &E::Advected, h: f64) -> f64 {
-        self.0.as_ref().map_or(0.0, |effect| effect.l_d(f, w, h))
-    }
-
-    fn right_momentum(&self, f: &Matrix<E>, w: &E::Advected, h: f64) -> Vector3<f64> {
-        self.0.as_ref().map_or_else(Vector3::zeros, |effect| effect.right_momentum(f, w, h))
-    }
-
-    fn left_momentum(&self, f: &Matrix<E>, w: &E::Advected, h: f64) -> Vector3<f64> {
-        self.0.as_ref().map_or_else(Vector3::zeros, |effect| effect.left_momentum(f, w, h))
-    }
-
-    fn diamond(&self, f: &Matrix<E>, w: &E::Advected, h: f64) -> Vector3<f64> {
-        self.0.as_ref().map_or_else(Vector3::zeros, |effect| effect.diamond(f, w, h))
-    }
-
-    fn discrete_energy(&self, f: &Matrix<E>, w: &E::Advected, h: f64) -> f64 {
-        self.0.as_ref().map_or(0.0, |effect| effect.discrete_energy(f, w, h))
-    }
+    or_nothing!(l_d: f64, right_momentum: Vector3<f64>, left_momentum: Vector3<f64>, diamond: Vector3<f64>, discrete_energy: f64);
 }

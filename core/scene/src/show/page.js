@@ -230,16 +230,19 @@ const charts = motion.charts.map(chart => {
         if (!Number.isFinite(line.values[k])) { if (curve.length) curves.push([]); continue; }
         if (!Number.isFinite(y)) continue;
         const column = curve[curve.length - 1];
-        if (column && column.x === x) { column.least = Math.min(column.least, y); column.most = Math.max(column.most, y); column.exit = y; column.count++; }
-        else curve.push({ x, enter: y, least: y, most: y, exit: y, count: 1 });
+        // How often it turns round, by more than a few hundredths of the chart.
+        if (!column) Object.assign(curve, { turns: 0, peak: y, rises: true });
+        if (curve.rises ? y >= curve.peak : y <= curve.peak) curve.peak = y;
+        else if (Math.abs(y - curve.peak) > 0.03 * (high - low)) Object.assign(curve, { turns: curve.turns + 1, peak: y, rises: !curve.rises });
+        if (column && column.x === x) { column.least = Math.min(column.least, y); column.most = Math.max(column.most, y); column.exit = y; }
+        else curve.push({ x, enter: y, least: y, most: y, exit: y });
       }
       pen.strokeStyle = pen.fillStyle = COLOURS[number % 3]; pen.lineWidth = 1.3 * large;
       for (const curve of curves) {
         // Where a curve goes to and fro within a few pixels, its strokes would make a pattern that isn't there: a band is drawn.
-        const swings = curve.filter(({ enter, exit, least, most }) => most - least > 2 * Math.abs(exit - enter) + 0.02 * (high - low)).length;
         pen.beginPath();
-        if (swings > 0.3 * curve.length) {
-          const near = k => curve.slice(Math.max(0, k - 3), k + 4);
+        if (curve.turns > 0.2 * curve.length) {
+          const near = k => curve.slice(Math.max(0, k - 5), k + 6);
           const most = curve.map((_, k) => Math.max(...near(k).map(column => column.most)));
           const least = curve.map((_, k) => Math.min(...near(k).map(column => column.least)));
           curve.forEach(({ x }, k) => pen.lineTo(x, up(most[k])));
