@@ -3,8 +3,8 @@
 use crate::error::{SetupError, StepError};
 use crate::groups::Advected as _;
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
-use crate::motion::{Cost, Motion, Plan, Steerable, StepReport, Stepper, Summation};
-use crate::numbers::{Real, Vectors, real};
+use crate::motion::{Plan, Steerable, StepReport, Stepper, Summation};
+use crate::numbers::{Real, real};
 
 /// A plan whose steps are given the values of their middles, by [`Stepper::driven`].
 #[derive(Clone, Copy, Debug)]
@@ -68,7 +68,9 @@ impl<S: Effect, P: Plan<S>, V> Plan<S> for Driven<P, V, Scalar<S>>
 where
     V: Fn(Scalar<S>) -> S::Advected + Clone,
 {
-    as_its_plan!();
+    type Kept = P::Kept;
+
+    delegate_plan!(plan, |kept| kept; constants step_size keep admits momentum velocity is_in_step cost);
 
     const RUNS_BY_STEPS: bool = true;
     const COUNTS_TIME: bool = true;
@@ -103,6 +105,16 @@ where
         motion.replace(now);
         *kept = next;
         Ok(report)
+    }
+
+    fn push<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+        impulse: &Vector<S>,
+    ) -> Result<(), StepError> {
+        self.plan.push(scene, motion, kept, impulse)
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {

@@ -5,13 +5,13 @@
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
-use crate::motion::{Cost, Motion, Plan, Remedy, Steerable, StepReport, Stepper, Summation};
-use crate::numbers::{Vectors, real};
+use crate::motion::{Motion, Plan, Remedy, Steerable, StepReport, Stepper, Summation};
+use crate::numbers::real;
 
 /// A plan that takes a step without a solution in equal parts, by [`Stepper::or_substeps`].
 #[derive(Clone, Copy, Debug)]
 #[doc(hidden)]
-pub struct Substepped<P> {
+pub struct Substeps<P> {
     plan: P,
     at_most: u32,
 }
@@ -50,17 +50,18 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
-    pub fn or_substeps(self, at_most: u32) -> Stepper<S, Substepped<P>> {
+    pub fn or_substeps(self, at_most: u32) -> Stepper<S, Substeps<P>> {
         // The parts of a step are counted for themselves.
         const { assert!(!P::COUNTS_TIME, "ask for substeps before the values: `.or_substeps(…).driven(…)`") }
-        Stepper { scene: self.scene, plan: Substepped { plan: self.plan, at_most } }
+        Stepper { scene: self.scene, plan: Substeps { plan: self.plan, at_most } }
     }
 }
 
-impl<S: Effect, P: Plan<S>> Plan<S> for Substepped<P> {
-    as_its_plan!();
+impl<S: Effect, P: Plan<S>> Plan<S> for Substeps<P> {
+    type Kept = P::Kept;
 
-    const EXPLAINS: bool = P::EXPLAINS;
+    // The largest step is that of the plan itself: a step that only its parts make is none of its own.
+    delegate_plan!(plan, |kept| kept; constants step_size keep admits momentum velocity is_in_step explained max_step cost);
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
         Ok(Self { plan: self.plan.refolded(scene, h)?, at_most: self.at_most })
@@ -79,23 +80,18 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Substepped<P> {
         }
     }
 
+    fn push<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+        impulse: &Vector<S>,
+    ) -> Result<(), StepError> {
+        self.plan.push(scene, motion, kept, impulse)
+    }
+
     fn see(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut Self::Kept, advected: S::Advected) {
         self.plan.see(motion, kept, advected);
-    }
-
-    fn explained(
-        &self,
-        error: StepError,
-        scene: &S,
-        motion: &Motion<Group<S>, S::Advected>,
-        kept: &Self::Kept,
-    ) -> StepError {
-        self.plan.explained(error, scene, motion, kept)
-    }
-
-    /// Of the plan itself: a step that only its parts make is none of its own.
-    fn max_step(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, kept: &Self::Kept) -> Scalar<S> {
-        self.plan.max_step(scene, motion, kept)
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
@@ -105,7 +101,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Substepped<P> {
     }
 }
 
-impl<P: Steerable> Steerable for Substepped<P> {}
+impl<P: Steerable> Steerable for Substeps<P> {}
 
 /// Makes the step in equal parts, or leaves everything as it was and returns the error.
 #[cold]

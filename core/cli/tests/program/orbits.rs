@@ -5,7 +5,7 @@ use std::process::Command;
 
 use nalgebra::{Matrix3, Quaternion, SVector, UnitQuaternion, Vector3};
 
-use crate::called::{PROGRAM, folder, printed, rows, table};
+use crate::called::{PROGRAM, folder, mistakes, printed, refused, rows, table};
 
 /// s.
 const PERIOD: f64 = 6000.0;
@@ -215,26 +215,5 @@ fn all_commands_have_orbits() {
 fn mistakes_in_orbits_have_places() {
     let folder = folder("mistakes_in_orbits_have_places");
     let start = "euler = [0.9, 0, 0]\nvelocity = [0, 0, 1e-3]";
-    let right = satellite(GRADIENT, [0.0, 0.0, 1.0], 0.1, start, 780);
-    for (from, to, place, message) in [
-        ("eccentricity = 0.1", "eccentricity = 1", "13:9", "`eccentricity` is from 0, a circle, to below 1"),
-        ("phase = \"40 deg\"", "periapsis = [0, 0, 2]", "13:9", "across its `normal`"),
-        ("normal = [0.0, 0.0, 1.0], ", "", "13:9", "missing field `normal`"),
-        ("orbit = {", "orbits = {", "13:1", "unknown field `orbits`"),
-        (GRADIENT, "[gravity_gradient]\nGM = 1\n[gravity_gradient.direction]\n", "13:6", "leave `GM` and `r` out"),
-        ("step = 10.0", "step = 10.0\nmethod = { composition = \"Suzuki 4\" }", "10:10", "gravity gradient turns"),
-        ("step = 10.0", "accuracy = 1e-3", "9:12", "gravity gradient does, so give a `step`"),
-        (
-            GRADIENT,
-            "[gravity_gradient]\ndirection = [1, 0, 0]\n[magnetic_damping]\nk = 1\n[magnetic_damping.field]\nequator = [0, 0, 1]\n",
-            "12:1",
-            "beside a direction that is fixed",
-        ),
-    ] {
-        assert_eq!(right.matches(from).count(), 1, "{from}");
-        fs::write(folder.join("scene.toml"), right.replace(from, to)).unwrap();
-        let output = Command::new(PROGRAM).current_dir(&folder).args(["check", "scene.toml"]).output().unwrap();
-        let told = String::from_utf8(output.stderr).unwrap();
-        assert!(told.contains(&format!("scene.toml:{place}:")) && told.contains(message), "{to}: {told}");
-    }
+    mistakes("orbits", &satellite(GRADIENT, [0.0, 0.0, 1.0], 0.1, start, 780), |text| refused(&folder, text));
 }

@@ -1,8 +1,5 @@
 //! The list of the effects, with their tables in a file: what is made of all effects is made of this list.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use liestep::effects::{Dipole, Drag, Gravity, GravityGradient, MagneticDamping, Rotor, Spring, Thrust, Torque};
 use liestep::mechanics::{Effect, Inertia};
 use serde::Deserialize;
