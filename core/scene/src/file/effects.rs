@@ -95,7 +95,8 @@ pub(crate) struct Listed {
     /// Its table in a file.
     pub(crate) key: &'static str,
     pub(crate) share: Share,
-    pub(crate) derivation: &'static str,
+    /// What is derived of it, and its own text.
+    pub(crate) derived: (&'static str, &'static str),
 }
 
 impl Listed {
@@ -135,7 +136,7 @@ macro_rules! tables {
         pub(crate) const EFFECTS: &[Listed] = &[$($(Listed {
             key: stringify!($name),
             share: tables!(share $share),
-            derivation: <$effect as Effect>::DERIVATION,
+            derived: (<$effect as Effect>::DERIVATION, <$effect as Effect>::DECLARATION),
         }),+),+];
     };
     (share potentials) => { Share::Potential };

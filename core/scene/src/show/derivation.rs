@@ -2,6 +2,7 @@
 
 use liestep::effects::{CayleyBody, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::mechanics::Effect;
+use liestep_late::{Declaration, LateError};
 
 use crate::file::arrangement::BODIES;
 use crate::file::body::{Distribution, Kinetic};
@@ -11,19 +12,26 @@ use crate::file::system::System;
 use crate::run::bodies::Heavy;
 use crate::run::springs::Springs;
 
-/// The kinetic terms: their names in commands, and what is derived of them.
-const BODIES_DERIVED: [(&str, &str); 6] = [
-    ("principal-body", <PrincipalBody as Effect>::DERIVATION),
-    ("rigid-body", <RigidBody as Effect>::DERIVATION),
-    ("cayley-body", <CayleyBody as Effect>::DERIVATION),
-    ("geodesic-body", <GeodesicBody as Effect>::DERIVATION),
-    ("fourth-order-body", <FourthOrderBody as Effect>::DERIVATION),
-    ("sixth-order-body", <SixthOrderBody as Effect>::DERIVATION),
+/// A term of the library: what is derived of it, and its own text.
+type Derivation = (&'static str, &'static str);
+
+const fn derived_of<E: Effect>() -> Derivation {
+    (E::DERIVATION, E::DECLARATION)
+}
+
+/// The kinetic terms.
+const KINETIC: [(&str, Derivation); 6] = [
+    ("principal-body", derived_of::<PrincipalBody>()),
+    ("rigid-body", derived_of::<RigidBody>()),
+    ("cayley-body", derived_of::<CayleyBody>()),
+    ("geodesic-body", derived_of::<GeodesicBody>()),
+    ("fourth-order-body", derived_of::<FourthOrderBody>()),
+    ("sixth-order-body", derived_of::<SixthOrderBody>()),
 ];
 
-fn all() -> impl Iterator<Item = (String, &'static str)> {
-    let bodies = BODIES_DERIVED.iter().map(|(name, text)| ((*name).to_owned(), *text));
-    bodies.chain(EFFECTS.iter().map(|effect| (effect.name("-"), effect.derivation)))
+fn all() -> impl Iterator<Item = (String, Derivation)> {
+    let kinetic = KINETIC.iter().map(|(name, derived)| ((*name).to_owned(), *derived));
+    kinetic.chain(EFFECTS.iter().map(|effect| (effect.name("-"), effect.derived)))
 }
 
 /// The names that [`derivation`] knows: the kinetic terms and the effects.
@@ -34,7 +42,35 @@ pub fn derived() -> impl Iterator<Item = String> {
 /// What the library derived of an effect, from its declaration to the constants of a step.
 #[must_use]
 pub fn derivation(name: &str) -> Option<&'static str> {
-    all().find(|(other, _)| other == name).map(|(_, text)| text)
+    all().find(|(other, _)| other == name).map(|(_, (text, _))| text)
+}
+
+/// How a derivation is written, but for plain text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// The equations as LaTeX.
+    Latex,
+    /// The straight-line code of a step in Rust.
+    Rust,
+    /// A step in C99.
+    C,
+}
+
+impl Form {
+    fn of(self, declaration: &Declaration) -> Result<String, LateError> {
+        match self {
+            Self::Latex => Ok(liestep_late::latex(declaration)),
+            Self::Rust => liestep_late::rust(declaration),
+            Self::C => liestep_late::c(declaration),
+        }
+    }
+}
+
+/// What the library derived of an effect, written in this form.
+#[must_use]
+pub fn written(name: &str, form: Form) -> Option<Result<String, LateError>> {
+    let (_, (_, text)) = all().find(|(other, _)| other == name)?;
+    Some(Declaration::parse(text).and_then(|declaration| form.of(declaration)))
 }
 
 impl SceneFile {
@@ -42,20 +78,41 @@ impl SceneFile {
     #[must_use]
     pub fn derivation(&self) -> String {
         if let Some(lagrangian) = &self.lagrangian {
-            return lagrangian.declaration().derivation.to_owned();
+            return lagrangian.declaration().derivation.clone();
         }
-        let Some(body) = self.body else { return String::new() };
-        let body = match (body.kinetic, body.mass) {
+        let terms = self.terms().filter_map(|name| derivation(&name).map(|text| format!("{name}\n\n{text}")));
+        terms.collect::<Vec<_>>().join("\n")
+    }
+
+    /// The derivations of all terms, written otherwise.
+    ///
+    /// # Errors
+    ///
+    /// Where that can't be: see [`LateError::C`].
+    pub fn written(&self, form: Form) -> Result<String, LateError> {
+        if let Some(lagrangian) = &self.lagrangian {
+            return form.of(lagrangian.declaration());
+        }
+        let terms: Vec<String> = self.terms().collect();
+        if form == Form::C && terms.len() > 1 {
+            return Err(LateError::C("a step is written in C of one declaration: put all terms into a `lagrangian`"));
+        }
+        let texts = terms.iter().filter_map(|name| written(name, form)).collect::<Result<Vec<_>, _>>();
+        texts.map(|texts| texts.join("\n"))
+    }
+
+    /// The names of the body and the effects.
+    fn terms(&self) -> impl Iterator<Item = String> {
+        let body = self.body.map(|body| match (body.kinetic, body.mass) {
             (Kinetic::Rigid, Distribution::Principal(_)) => "principal-body",
             (Kinetic::Rigid, Distribution::Full(_)) => "rigid-body",
             (Kinetic::Cayley, _) => "cayley-body",
             (Kinetic::Geodesic, _) => "geodesic-body",
             (Kinetic::FourthOrder, _) => "fourth-order-body",
             (Kinetic::SixthOrder, _) => "sixth-order-body",
-        };
-        let names = std::iter::once(body.to_owned()).chain(self.effects().map(|effect| effect.name("-")));
-        let terms = names.filter_map(|name| derivation(&name).map(|text| format!("{name}\n\n{text}")));
-        terms.collect::<Vec<_>>().join("\n")
+        });
+        let effects = body.is_some().then(|| self.effects().map(|effect| effect.name("-")));
+        body.map(str::to_owned).into_iter().chain(effects.into_iter().flatten())
     }
 }
 
