@@ -383,6 +383,9 @@ impl fmt::Display for StepError {
             Self::AngleWithoutDigits { turn } => {
                 write!(f, "the body would turn by {turn:.2e} rad, of which no digit is left; take a smaller step")
             }
+            Self::NotConverged { residual, .. } if !residual.is_finite() => {
+                f.write_str("the iteration runs out of all bounds; try a smaller step")
+            }
             Self::NotConverged { iterations, residual } => write!(
                 f,
                 "the iteration did not settle in {iterations} iterations (last relative update {residual:e}); try a smaller step"

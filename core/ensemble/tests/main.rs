@@ -170,7 +170,7 @@ fn sums_are_those_of_the_files() {
 struct Told(Mutex<Vec<usize>>);
 
 impl Engine for Told {
-    fn distribute(&self, missing: &[u64], _: &MakeChunk<'_>) -> Result<(), StoreError> {
+    fn distribute(&self, missing: &[u64], _: &MakeChunk<'_>, _: &(dyn Fn() + Sync)) -> Result<(), StoreError> {
         self.0.lock().unwrap().push(missing.len());
         Ok(())
     }
@@ -195,11 +195,14 @@ fn damaged_files_are_named_and_made_anew() {
         std::fs::write(&turned, bytes).unwrap();
         assert_eq!(Store::read(&turned), Err(Fault::Altered(turned.clone())), "byte {place}");
     }
+    // Names are trusted, but by a store that verifies.
+    assert_eq!(run(&ensemble, &Local::threads(2), &folder).made, 0);
+    let store = store.verified();
     let named: Vec<Fault> = store.shards(ensemble.fingerprint()).unwrap().filter_map(Result::err).collect();
     let faults = vec![Fault::Truncated(cut.clone()), Fault::Altered(turned.clone())];
     assert_eq!(named, faults);
     assert!(named[0].to_string().contains("truncated") && named[1].to_string().contains("digest"));
-    let report = run(&ensemble, &Local::threads(2), &folder);
+    let report = ensemble.run(&Local::threads(2), &store).unwrap();
     assert_eq!((report.made, report.missing, &report.faults), (2, 0, &faults));
     // What was damaged is there under another name.
     let aside = |path: &Path| PathBuf::from(format!("{}.damaged", path.display()));

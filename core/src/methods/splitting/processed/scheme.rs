@@ -43,6 +43,10 @@ pub struct ProcessedScheme {
 
 impl ProcessedScheme {
     /// Order 6 with three drifts and one force gradient a step.
+    ///
+    /// Its error is a sum of two terms of opposite signs. Where these are of one size, halving the step gains 17 to 56 times
+    /// and not 64: the order that is measured between two steps is 4.1 to 5.8 then, up to where roundings are as large. The
+    /// error is less than one term alone would be; it is its size at a step that counts, and not its slope.
     pub const SIX_A: Self = Self::new(
         "processed 3-6 a",
         6,
