@@ -108,9 +108,7 @@ impl<M: Integrator> Ensemble<M> {
             group.error(place).is_none() && course.ended.is_none()
         };
         let mut steps = 0;
-        while steps < self.steps
-            && (courses.iter().enumerate()).any(|(place, course)| going(&*group, place, course))
-        {
+        while steps < self.steps && (courses.iter().enumerate()).any(|(place, course)| going(&*group, place, course)) {
             if self.every.is_some_and(|every| steps.is_multiple_of(every)) {
                 for (place, course) in courses.iter_mut().enumerate() {
                     if going(&*group, place, course) {
@@ -135,7 +133,8 @@ impl<M: Integrator> Ensemble<M> {
                     if going(&*group, place, course) {
                         let (before, now) = (|| group.before(place), || group.state(place));
                         let value = |section: usize| values[section].map(|values| values[place]);
-                        self.look_at_sections(&starts[place].0, (&value, &before, &now), course, false);
+                        let at = |section: usize| Place { value: value(section), before: &before, now: &now };
+                        self.look_at_sections(&starts[place].0, &at, course, false);
                     }
                 }
             }
@@ -145,7 +144,7 @@ impl<M: Integrator> Ensemble<M> {
             if course.ended.is_none() {
                 // All steps have been looked at.
                 let now = || group.state(place);
-                self.look_at_sections(stepper, (&|_| None, &now, &now), course, true);
+                self.look_at_sections(stepper, &|_| Place { value: None, before: &now, now: &now }, course, true);
             }
             let error = group.error(place).map(Failure::from);
             let has_left = course.ended.as_ref().is_some_and(|(_, why)| why.is_none());
@@ -183,16 +182,16 @@ impl<M: Integrator> Ensemble<M> {
     }
 
     /// Keeps the crossings up to here, which belong to the next row; of a member that leaves none later than that.
-    fn look_at_sections(
+    fn look_at_sections<'a>(
         &self,
         stepper: &M,
-        (value, before, now): (&dyn Fn(usize) -> Option<f64>, &dyn Fn() -> M::State, &dyn Fn() -> M::State),
+        at: &dyn Fn(usize) -> Place<'a, M::State>,
         course: &mut Course<M>,
         is_last: bool,
     ) {
         let (mut found, mut left) = (Vec::new(), f64::INFINITY);
         for (number, (section, watch)) in self.sections.iter().zip(&mut course.watches).enumerate() {
-            match section.look(watch, stepper, &Place { value: value(number), before, now }, is_last) {
+            match section.look(watch, stepper, &at(number), is_last) {
                 Ok(crossings) => {
                     if section.ends {
                         left = crossings.first().map_or(left, |crossing| left.min(crossing.time.abs()));
@@ -200,7 +199,7 @@ impl<M: Integrator> Ensemble<M> {
                     found.push(crossings);
                 }
                 Err(failure) => {
-                    course.ended = Some((now(), Some(failure)));
+                    course.ended = Some(((at(number).now)(), Some(failure)));
                     break;
                 }
             }
@@ -214,7 +213,7 @@ impl<M: Integrator> Ensemble<M> {
             first += section.reductions.len();
         }
         if left.is_finite() && course.ended.is_none() {
-            course.ended = Some((now(), None));
+            course.ended = Some(((at(0).now)(), None));
         }
     }
 

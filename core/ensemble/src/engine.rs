@@ -25,12 +25,7 @@ pub trait Engine {
     /// # Errors
     ///
     /// The first error of `make`; what is under way then is given up.
-    fn distribute(
-        &self,
-        missing: &[u64],
-        make: &MakeChunk<'_>,
-        tell: &(dyn Fn() + Sync),
-    ) -> Result<(), StoreError>;
+    fn distribute(&self, missing: &[u64], make: &MakeChunk<'_>, tell: &(dyn Fn() + Sync)) -> Result<(), StoreError>;
 }
 
 /// Makes a chunk of a number and writes it, unless it is told to stop on the way, which it asks between members and

@@ -332,22 +332,26 @@ mod tests {
         let [first, second, third] = &parts;
         let merged = [[first, second, third], [third, first, second]].map(|parts| {
             let mut all = Reduction::Quantiles.begin();
-            parts.iter().for_each(|part| all.merge(part));
+            for part in parts {
+                all.merge(part);
+            }
             all
         });
         assert_eq!(merged[0].to_line(), merged[1].to_line());
         assert_eq!(Summary::of_line(&merged[0].to_line()).as_ref(), Some(&merged[0]));
         let Summary::Quantiles(quantiles) = &merged[0] else { panic!("they are quantiles") };
         values.sort_by(f64::total_cmp);
-        for place in [0, 1, 100, 499, 500, 700, 998] {
-            let (found, expected) = (quantiles.at(f64::from(place) / 998.0 + 1e-12), values[place as usize]);
+        for place in [0_u16, 1, 100, 499, 500, 700, 998] {
+            let (found, expected) = (quantiles.at(f64::from(place) / 998.0 + 1e-12), values[usize::from(place)]);
             assert!((found - expected).abs() <= expected.abs() / 256.0, "{place}: {found} {expected}");
         }
         assert_eq!(quantiles.not_a_number, 1);
         let mut few = Reduction::Quantiles.begin();
-        [f64::NEG_INFINITY, 0.0, f64::INFINITY].map(|value| few.add(value));
+        for value in [f64::NEG_INFINITY, 0.0, f64::INFINITY] {
+            few.add(value);
+        }
         let Summary::Quantiles(few) = few else { panic!("they are quantiles") };
-        assert_eq!([0.0, 1.0].map(|share| few.at(share)), [f64::NEG_INFINITY, f64::INFINITY]);
+        assert!(few.at(0.0) < f64::MIN && few.at(1.0) > f64::MAX);
         assert!(few.at(0.5).abs() < 1e-300);
     }
 

@@ -1,5 +1,6 @@
 //! Running an ensemble, and what has become of it.
 
+use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
@@ -89,19 +90,20 @@ impl<M: Integrator> Ensemble<M> {
             }
         };
         let (made, all, before) = (AtomicU64::new(0), AtomicU64::new(0), chunks - missing.len() as u64);
-        let start = Instant::now();
+        let (leads, start) = (engine.leads(), Instant::now());
+        let others: BTreeSet<u64> = missing.iter().copied().filter(|chunk| !is_own(*chunk)).collect();
         let told = || {
             let all = all.fetch_add(1, Ordering::Relaxed) + 1;
             let (done, spent) = (before + all, start.elapsed().as_secs_f64());
             #[allow(clippy::cast_precision_loss)] // an estimate
             let remaining = spent * chunks.saturating_sub(done) as f64 / all as f64;
-            if engine.leads() {
+            if leads {
                 tell(Progress { done, chunks, remaining: Duration::try_from_secs_f64(remaining).unwrap_or_default() });
             }
         };
         let make = |chunk: u64, is_stopped: &dyn Fn() -> bool| {
             // Of others some are there by now.
-            if !is_own(chunk) && store.has(chunk) {
+            if others.contains(&chunk) && store.has(chunk) {
                 return Ok(());
             }
             let Some(shard) = self.shard(plan, chunk, is_stopped) else { return Ok(()) };
@@ -121,7 +123,7 @@ impl<M: Integrator> Ensemble<M> {
             faults,
             reductions: self.all_reductions().map(|(name, reduction)| (name.clone(), reduction.begin())).collect(),
         };
-        if engine.leads() {
+        if leads {
             let is_whole = store.look(plan, &|_| false)?.0.len() as u64 == chunks;
             // In the order of their numbers, as sums are.
             let (found, damaged) = store.survey(plan, &|chunk| is_whole || is_own(chunk), |shard| {

@@ -365,7 +365,8 @@ mod tests {
         let mut rows = Rows::of_columns(0, vec![crossings]);
         rows.push(3, 10, Status::Going, core::iter::empty());
         rows.push(3, 20, Status::Finished, core::iter::empty());
-        let shard = Shard { plan: 1, chunk: 2, names: vec![], rows, finished: 1, left: 0, failures: vec![], reduced: vec![] };
+        let shard =
+            Shard { plan: 1, chunk: 2, names: vec![], rows, finished: 1, left: 0, failures: vec![], reduced: vec![] };
         assert_eq!(Shard::of_bytes(&shard.to_bytes().unwrap()), Ok(Some(shard)));
     }
 

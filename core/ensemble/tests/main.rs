@@ -452,7 +452,7 @@ fn an_error_stops_the_other_workers() {
         }
         done()
     };
-    let made = Local::threads(2).distribute(&[0, 1, 2], &|chunk, is_stopped| match chunk {
+    let make: &MakeChunk<'_> = &|chunk, is_stopped| match chunk {
         0 => {
             wait(&|| is_there.load(Ordering::Relaxed));
             Err(StoreError::Unwritable { reason: "full".to_owned() })
@@ -463,7 +463,8 @@ fn an_error_stops_the_other_workers() {
             Ok(())
         }
         _ => panic!("it was given up before"),
-    });
+    };
+    let made = Local::threads(2).distribute(&[0, 1, 2], make, &|| ());
     assert!(matches!(made, Err(StoreError::Unwritable { .. })));
     assert!(told.into_inner());
 }

@@ -9,7 +9,9 @@ use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
 use crate::methods::{Composed, Jointed, KineticFlow, Linked, Processed, Split};
-use crate::motion::{Cost, Declared, Kept, Motion, Plan, Steerable, StepReport, Stepper, Summation, TOLERATED, restored};
+use crate::motion::{
+    Cost, Declared, Kept, Motion, Plan, Steerable, StepReport, Stepper, Summation, TOLERATED, restored,
+};
 use crate::numbers::{Entries, Vectors, carried_sum, zero};
 use crate::with::remedies::Substepped;
 use nalgebra::SimdValue as _;
