@@ -253,7 +253,7 @@ impl<M: Integrator> Ensemble<M> {
     fn usual_chunk(&self) -> u64 {
         // What a core makes in a second of the steps of (3.13), in lanes and one by one; and what one of these costs.
         const STEPS: [f64; 2] = [33_554_432.0, 4_194_304.0];
-        const OF_A_STEP: f64 = 750.0;
+        const OF_A_STEP: f64 = 448.0;
         const ROWS: u64 = 1 << 20;
         const CHUNKS: u64 = 64;
         let cost = self.looked_at().into_iter().find_map(|member| {

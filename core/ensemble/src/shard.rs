@@ -220,7 +220,8 @@ impl Shard {
     /// As [`of_bytes`](Self::of_bytes), without its rows and from the first part of the file alone, where a stream of Arrow
     /// begins.
     pub(crate) fn head(mut file: impl Read) -> Result<Option<Self>, String> {
-        let mut magic = [0; 8];
+        // What the writer begins with, up to its alignment.
+        let mut magic = [0; 64];
         file.read_exact(&mut magic).map_err(|error| error.to_string())?;
         let reader = StreamReader::try_new(file, None).map_err(|error| error.to_string())?;
         Self::of_schema(&reader.schema())
