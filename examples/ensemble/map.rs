@@ -41,7 +41,6 @@ impl Grid {
 
     /// Two members for each point.
     #[must_use]
-    #[allow(non_snake_case)] // the letters of the field
     pub fn ensemble(self) -> Ensemble<Top> {
         let make = move |member: &Member<'_>| {
             let (tilt, spin) = self.point(member.number() / 2);
@@ -76,7 +75,7 @@ impl Grid {
                 match rows.status[row] {
                     Status::Going => first[member] = values,
                     Status::Finished => last[member] = values,
-                    Status::Stopped | Status::Impossible => {}
+                    Status::Stopped | Status::Impossible | Status::Left => {}
                 }
             }
         }

@@ -98,7 +98,7 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         self.stepper.set_lane(lane, stepper) && self.state.set_lane(lane, state) && self.stepper.is_in_step(&self.state)
     }
 
-    /// Makes `steps` steps of every body that hasn't stopped, as by [`run_shown`](Integrator::run_shown) of its own.
+    /// Makes `steps` steps of every body that hasn't stopped, as by [`run_stretches`](Integrator::run_stretches) of its own.
     pub fn run(&mut self, steps: u64) {
         if self.running().next().is_none() {
             return;
@@ -107,7 +107,7 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         while self.stepper.attempt(&mut self.state, steps).is_err() {
             self.state = before;
             if !self.stop_one(steps) {
-                return self.run_each(steps);
+                return self.run_alone(steps);
             }
             if self.running().next().is_none() {
                 return;
@@ -128,20 +128,20 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         });
         let Some(lane) = fails.flatten() else { return false };
         let mut alone = self.state.lane(lane);
-        let Err(error) = self.stepper.lane(lane).run_shown(&mut alone, steps, &mut |_| 0) else { return false };
+        let Err(error) = self.stepper.lane(lane).run_stretches(&mut alone, steps, &mut |_| 0) else { return false };
         self.seats[lane] = Seat::Stopped(alone, error);
         let other = self.running().next();
         other.is_none_or(|other| self.set(lane, &self.stepper.lane(other), &self.state.lane(other)))
     }
 
-    /// One after another; then those that have moved are together again.
+    /// Each body alone, one after another; then those that have moved are together again.
     #[cold]
-    fn run_each(&mut self, steps: u64) {
+    fn run_alone(&mut self, steps: u64) {
         let running: Vec<usize> = self.running().collect();
         let mut moved: Vec<(usize, M, M::State)> = Vec::with_capacity(running.len());
         for lane in running {
             let (stepper, mut state) = (self.stepper.lane(lane), self.state.lane(lane));
-            match stepper.run_shown(&mut state, steps, &mut |_| 0) {
+            match stepper.run_stretches(&mut state, steps, &mut |_| 0) {
                 Ok(_) => moved.push((lane, stepper, state)),
                 Err(error) => self.seats[lane] = Seat::Stopped(state, error),
             }
