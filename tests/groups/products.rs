@@ -253,7 +253,8 @@ fn numbers_of_translations() {
     let mut numbers = [0.0; 9];
     assert_eq!((SO3::identity(), line, space).write_numbers(&mut numbers).len(), 1);
     assert_eq!(numbers, [1.0, 0.0, 0.0, 0.0, 5.0, 6.0, 7.0, 8.0, 0.0]);
-    assert_eq!(line.value().to_bits(), 5.0_f64.to_bits());
+    let read: f64 = line.value();
+    assert_eq!(read.to_bits(), 5.0_f64.to_bits());
 }
 
 /// In a table, one factor after the other.

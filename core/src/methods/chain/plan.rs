@@ -248,7 +248,7 @@ fn iterate(links: &[LinkConstants], work: &mut [Work], most: u32, longest: f64) 
     let (mut made, mut before) = (0, None);
     for _ in 0..most {
         made += 1;
-        let Update { update, size, is_whole } = newton(links, work, longest);
+        let Update { length: update, size, is_whole } = newton(links, work, longest);
         if !size.is_finite() {
             break;
         }
@@ -260,7 +260,7 @@ fn iterate(links: &[LinkConstants], work: &mut [Work], most: u32, longest: f64) 
         if is_whole && curvature.may_suffice(update, size) {
             let second = simplified(links, work);
             made += 1;
-            if curvature.has_sufficed(update, second.update, second.size) {
+            if curvature.has_sufficed(update, second.length, second.size) {
                 return (made, work.iter().all(Work::is_wanted));
             }
             before = None;
@@ -289,7 +289,7 @@ where
     }
 
     fn keep(&self, _: &S, motion: &Motion<[SO3; N], S::Advected>) -> Self::Kept {
-        WarmStart::of(self.velocities(motion) * (0.5 * self.h))
+        WarmStart::of(self.velocities(motion) * (0.5 * self.h), false)
     }
 
     #[hot]
