@@ -128,8 +128,10 @@ fn number(member: &liestep_ensemble::Member<'_>, name: &str, spread: Spread) -> 
 }
 
 /// Where an event happens: its times, and the scene's columns then.
-fn section(scene: &SceneFile, (name, event, function, _): MemberEvent) -> Section<Member> {
-    let section = Section::new(event, function).keep([&format!("{name}_t")], |now| [now.time()]);
+fn section(scene: &SceneFile, (name, event, function, stops): MemberEvent) -> Section<Member> {
+    let section = Section::new(event, function);
+    let section = if stops { section.until() } else { section };
+    let section = section.keep([&format!("{name}_t")], |now| [now.time()]);
     columns(scene).fold(section, |section, (column, place, own)| {
         section.keep([&format!("{name}_{own}")], move |now| {
             [SceneFile::numbers(&[column], now).get(place).copied().unwrap_or(f64::NAN)]

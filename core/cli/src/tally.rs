@@ -11,6 +11,8 @@ const SHOWN: usize = 10;
 /// Members by what has become of them, and by what has happened to them.
 pub(crate) struct Tally {
     finished: u64,
+    /// Ended by an event.
+    left: u64,
     /// Made, but not to their ends.
     stopped: u64,
     /// That couldn't be made, such as bodies with moments of inertia that no body has.
@@ -31,7 +33,7 @@ pub(crate) struct Happened {
 impl Tally {
     pub(crate) fn of(events: usize) -> Self {
         let nothing = Happened { first: (0.0, f64::INFINITY, f64::NEG_INFINITY), ..Happened::default() };
-        Self { finished: 0, stopped: 0, impossible: 0, failures: Vec::new(), events: vec![nothing; events] }
+        Self { finished: 0, left: 0, stopped: 0, impossible: 0, failures: Vec::new(), events: vec![nothing; events] }
     }
 
     pub(crate) fn add(&mut self, shard: Shard) {
@@ -41,10 +43,11 @@ impl Tally {
             match status {
                 Status::Going => continue,
                 Status::Finished => self.finished += 1,
+                Status::Left => self.left += 1,
                 Status::Stopped => self.stopped += 1,
                 Status::Impossible => self.impossible += 1,
             }
-            if matches!(status, Status::Finished) {
+            if matches!(status, Status::Finished | Status::Left) {
                 ended.insert(*member);
             }
         }
@@ -70,7 +73,7 @@ impl Tally {
     /// How likely an event is, in a line.
     #[allow(clippy::cast_precision_loss)] // counts
     pub(crate) fn of_event(&self, name: &str, event: &Happened) -> String {
-        let all = self.finished;
+        let all = self.finished + self.left;
         if all == 0 {
             return String::new();
         }
@@ -91,8 +94,9 @@ impl Tally {
 
 impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { finished, stopped, impossible, .. } = self;
-        write!(f, "{finished} finished, {stopped} broke down, {impossible} can't exist")
+        let Self { finished, left, stopped, impossible, .. } = self;
+        let ended = if *left > 0 { format!("{left} ended by an event, ") } else { String::new() };
+        write!(f, "{finished} finished, {ended}{stopped} broke down, {impossible} can't exist")
     }
 }
 

@@ -189,6 +189,10 @@ where
         self.0.part(&self.own(state), fraction)
     }
 
+    fn cost(&self) -> Option<Cost> {
+        self.0.cost()
+    }
+
     fn adopt(&self, motion: &Motion<G, A>) -> Self::State {
         erased(self.0.adopt(motion))
     }
@@ -252,6 +256,10 @@ impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
         self.stepper.part(state, fraction)
     }
 
+    fn cost(&self) -> Option<Cost> {
+        Some(self.cost)
+    }
+
     fn adopt(&self, motion: &Motion<G, A>) -> Self::State {
         self.stepper.adopt(motion)
     }
@@ -305,6 +313,10 @@ impl<G: LieGroup, A: Advected<G>> Integrator for WithoutAdvected<G, A> {
         let HiddenState { advected, kept } = state.kept.clone();
         let part = self.0.part(&State { motion: seeing(&state.motion, advected), kept }, fraction)?;
         Ok(seeing(&part, ()))
+    }
+
+    fn cost(&self) -> Option<Cost> {
+        Some(self.0.cost)
     }
 
     fn adopt(&self, motion: &Motion<G, ()>) -> Self::State {

@@ -6,7 +6,7 @@ use core::ops::{ControlFlow, Deref};
 use crate::error::StepError;
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::FactoredInertia;
-use crate::motion::plan::NextSteps;
+use crate::motion::plan::{Cost, NextSteps};
 use crate::motion::report::StepReport;
 use crate::motion::summation::Motion;
 use crate::numbers::{Entries as _, real};
@@ -102,6 +102,11 @@ pub trait Integrator {
         let mut seen = *self.adopt(&seeing(motion, Self::Advected::from_entries(&mut || real(0.0))));
         seen.steps = motion.steps;
         seen
+    }
+
+    /// How much arithmetic a step is, about; nothing where it isn't known.
+    fn cost(&self) -> Option<Cost> {
+        None
     }
 
     /// The step `h`, s.
