@@ -217,8 +217,8 @@ fn a_product_is_near_where_all_its_factors_are() {
 fn what_is_far_is_restored_by_itself() {
     let good = SO3::from(nalgebra::UnitQuaternion::from_scaled_axis(Vector3::new(0.3, -0.4, 0.9)));
     let bad = SO3::from_matrix_unchecked(good.matrix() * (1.0 + 1e-9));
-    assert!((good, good).restored().is_none());
-    let (restored, _) = (good, bad).restored().unwrap();
+    assert!((good, good).restored(2048.0).is_none());
+    let (restored, _) = (good, bad).restored(2048.0).unwrap();
     assert_eq!(restored.0, good);
     assert!(restored.1.defect() < 1e-15 && (good, bad).defect() > 1e-9);
 }

@@ -212,7 +212,7 @@ where
     S: Effect<Group = [Body; N]>,
     M: Summation<[Body; N], S::Advected>,
 {
-    if !is_due(motion.now().steps) {
+    if !is_due::<[Body; N]>(motion.now().steps) {
         return false;
     }
     let given = *motion.now();
