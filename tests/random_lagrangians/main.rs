@@ -70,7 +70,6 @@ macro_rules! on_every_group {
                     let random = &mut Random::new(seed);
                     same::assert_as_compiled(&family::$group::Vectors::random(random), seed);
                     same::assert_as_compiled(&family::$group::Tensors::random(random), seed);
-                    same::assert_as_compiled(&family::$group::Continuous::<f64>::random(seed), seed);
                 }
             }
 
