@@ -152,7 +152,7 @@ fn columns(scene: &SceneFile) -> impl Iterator<Item = (Column, usize, &'static s
 
 fn told_of(scene: &SceneFile, drawn: &SceneEnsemble, (report, tally): (&Report, &Tally), folder: &str) -> String {
     let mut text =
-        format!("{}\n  {} members drawn by the seed {}: {tally}\n", scene.title(), drawn.members, drawn.seed,);
+        format!("{}\n  {} members drawn by the seed {}: {tally}\n", scene.title(), drawn.members, drawn.seed);
     if report.missing == 0 && report.finished > 0 {
         let _ =
             writeln!(text, "  {:<20}{:>16}{:>16}{:>16}{:>16}", "at the end", "mean", "deviation", "least", "largest");

@@ -61,7 +61,9 @@ impl<'a, T> Arrays<'a, T> {
     #[inline]
     pub fn of<const N: usize>(given: [(Array, &'a [T]); N]) -> Self {
         let mut arrays: [&[T]; Array::COUNT] = [&[]; Array::COUNT];
-        given.into_iter().for_each(|(array, numbers)| arrays[array as usize] = numbers);
+        for (array, numbers) in given {
+            arrays[array as usize] = numbers;
+        }
         Self(arrays)
     }
 

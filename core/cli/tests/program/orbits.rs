@@ -77,13 +77,16 @@ fn a_planar_satellite_follows_beletskys_equation() {
     }
 }
 
+/// A torque by the place of the satellite, its angular velocity and what turns space into the body.
+type Torque<'a> = &'a dyn Fn(Vector3<f64>, &Vector3<f64>, &Matrix3<f64>) -> Vector3<f64>;
+
 /// Satellite and planet by Newton's law, the body by Euler's equations: quaternion and velocity after 7800 s.
 fn integrated(
     e: f64,
     normal: Vector3<f64>,
     attitude: UnitQuaternion<f64>,
     velocity: Vector3<f64>,
-    torque: &dyn Fn(Vector3<f64>, &Vector3<f64>, &Matrix3<f64>) -> Vector3<f64>,
+    torque: Torque<'_>,
 ) -> (Vector3<f64>, UnitQuaternion<f64>) {
     let J = Matrix3::from_diagonal(&Vector3::new(100.0, 250.0, 300.0));
     let periapsis = (Vector3::x() - normal * normal.x).normalize();
@@ -132,7 +135,6 @@ fn in_space_it_is_as_newtons_and_eulers_equations_have_it() {
         let field = place * (3.0 * along / r.powi(5)) - m / r.powi(3);
         field.cross(turning).cross(&field) * -1e7
     };
-    type Torque<'a> = &'a dyn Fn(Vector3<f64>, &Vector3<f64>, &Matrix3<f64>) -> Vector3<f64>;
     for (effect, torque) in [(GRADIENT, &gradient as Torque<'_>), (DAMPING, &damping)] {
         for e in [0.0, 0.1] {
             let (expected, turned) = integrated(e, normal, attitude, velocity, torque);
