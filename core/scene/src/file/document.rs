@@ -57,6 +57,12 @@ fn has(document: &Document<'_>, table: &str, key: &str) -> bool {
 
 /// Keys that don't go together, though each could stand there.
 fn at_odds(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
+    let of = [of_pace, of_orbit, of_method];
+    of.iter().find_map(|odds| odds(document, file))
+}
+
+/// Beside a step or an accuracy.
+fn of_pace(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
     let wrong = |keys: &[&str], message: String| Some((span(document, keys), message));
     if has(document, "run", "step") && has(document, "run", "accuracy") {
         return wrong(&["run", "accuracy"], "a run has either a `step` or an `accuracy`".to_owned());
@@ -85,7 +91,12 @@ fn at_odds(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
             );
         }
     }
-    let method = &file.run.method;
+    None
+}
+
+/// Beside what turns with an orbit.
+fn of_orbit(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
+    let wrong = |keys: &[&str], message: String| Some((span(document, keys), message));
     if let Some(gradient) = &file.gravity_gradient {
         let is_given = [gradient.GM.is_some(), gradient.r.is_some()];
         if !gradient.turns() && is_given != [true; 2] {
@@ -106,11 +117,18 @@ fn at_odds(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
             );
             return wrong(&["run", "accuracy"], message);
         }
-        if !matches!(method, Method::Step) {
+        if !matches!(file.run.method, Method::Step) {
             let message = format!("{name} turns, with which every method is of second order; leave `method` out");
             return wrong(&["run", "method"], message);
         }
     }
+    None
+}
+
+/// Beside a method, that of a Lagrangian first.
+fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
+    let wrong = |keys: &[&str], message: String| Some((span(document, keys), message));
+    let method = &file.run.method;
     if let Some(lagrangian) = &file.lagrangian {
         if let Some(effect) = file.effects().next() {
             let message = format!("a `lagrangian` has all its terms in its text: write {} there", effect.name(" "));
