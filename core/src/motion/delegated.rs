@@ -44,6 +44,17 @@ macro_rules! delegate_plan {
             self.$plan.velocity(scene, motion)
         }
     };
+    (@push $plan:tt, $($kept:tt)*) => {
+        fn push<M: $crate::motion::Summation<$crate::mechanics::Group<S>, S::Advected>>(
+            &self,
+            scene: &S,
+            motion: &mut M,
+            kept: &mut Self::Kept,
+            impulse: &$crate::mechanics::Vector<S>,
+        ) -> Result<(), $crate::StepError> {
+            self.$plan.push(scene, motion, kept, impulse)
+        }
+    };
     (@is_in_step $plan:tt, $kept:ident, $inner:expr) => {
         fn is_in_step(&self, $kept: &Self::Kept) -> bool {
             self.$plan.is_in_step($inner)

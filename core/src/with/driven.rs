@@ -2,7 +2,7 @@
 
 use crate::error::{SetupError, StepError};
 use crate::groups::Advected as _;
-use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
+use crate::mechanics::{Effect, Group, Scalar, SceneVisitor};
 use crate::motion::{Plan, Steerable, StepReport, Stepper, Summation};
 use crate::numbers::{Real, real};
 
@@ -70,7 +70,7 @@ where
 {
     type Kept = P::Kept;
 
-    delegate_plan!(plan, |kept| kept; constants step_size keep admits momentum velocity is_in_step cost);
+    delegate_plan!(plan, |kept| kept; constants step_size keep admits momentum velocity is_in_step cost push);
 
     const RUNS_BY_STEPS: bool = true;
     const COUNTS_TIME: bool = true;
@@ -105,16 +105,6 @@ where
         motion.replace(now);
         *kept = next;
         Ok(report)
-    }
-
-    fn push<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-        impulse: &Vector<S>,
-    ) -> Result<(), StepError> {
-        self.plan.push(scene, motion, kept, impulse)
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {

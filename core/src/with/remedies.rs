@@ -4,7 +4,7 @@
 //! They give up a constant step; a motion that needs them often wants a smaller one.
 
 use crate::error::{SetupError, StepError};
-use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
+use crate::mechanics::{Effect, Group, Scalar, SceneVisitor};
 use crate::motion::{Motion, Plan, Remedy, Steerable, StepReport, Stepper, Summation};
 use crate::numbers::real;
 
@@ -61,7 +61,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Substeps<P> {
     type Kept = P::Kept;
 
     // The largest step is that of the plan itself: a step that only its parts make is none of its own.
-    delegate_plan!(plan, |kept| kept; constants step_size keep admits momentum velocity is_in_step explained max_step cost);
+    delegate_plan!(plan, |kept| kept; constants step_size keep admits momentum velocity is_in_step explained max_step cost push);
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
         Ok(Self { plan: self.plan.refolded(scene, h)?, at_most: self.at_most })
@@ -78,16 +78,6 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Substeps<P> {
             Ok(report) => Ok(report),
             Err(error) => in_parts(&self.plan, scene, (motion, kept), (self.at_most, error)),
         }
-    }
-
-    fn push<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-        impulse: &Vector<S>,
-    ) -> Result<(), StepError> {
-        self.plan.push(scene, motion, kept, impulse)
     }
 
     fn see(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut Self::Kept, advected: S::Advected) {

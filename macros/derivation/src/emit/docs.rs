@@ -324,7 +324,7 @@ pub(super) fn certified(what: &str, sureness: Sureness) -> String {
 
 fn wrong(exponent: u32) -> String {
     let exponent: String = exponent.to_string().chars().filter_map(superscript).collect();
-    format!("wrong with a probability below 2⁻{exponent}")
+    format!("a wrong one would pass with a probability below 2⁻{exponent}")
 }
 
 /// What is compared of a step.

@@ -126,7 +126,7 @@ fn program(graph: &Graph, sources: &Sources, [constants, terms]: [&Handed; 2], o
             Node::Subtract(a, b) => Operation::Subtract(at(a), at(b)),
             Node::Multiply(a, b) => Operation::Multiply(at(a), at(b)),
             Node::Divide(a, b) => Operation::Divide(at(a), at(b)),
-            Node::Apply(function, a) => Operation::Apply(applied(function), at(a)),
+            Node::Apply(function, a) => Operation::Apply(function, at(a)),
             // They are leaves.
             Node::Constant(_) | Node::Input(_) => continue,
         });
@@ -137,17 +137,5 @@ fn program(graph: &Graph, sources: &Sources, [constants, terms]: [&Handed; 2], o
         literals: literals.into_iter().map(|(_, value)| value).collect(),
         operations,
         outputs: outputs.iter().map(|output| registers.get(output).copied().unwrap_or_default()).collect(),
-    }
-}
-
-fn applied(function: Function) -> to::Function {
-    match function {
-        Function::Sqrt => to::Function::Sqrt,
-        Function::Ln => to::Function::Ln,
-        Function::Exp => to::Function::Exp,
-        Function::Sin => to::Function::Sin,
-        Function::Cos => to::Function::Cos,
-        Function::Stumpff(k) => to::Function::Stumpff(k),
-        Function::LogRatio(k) => to::Function::LogRatio(k),
     }
 }

@@ -14,6 +14,7 @@ use proc_macro2::TokenStream;
 use crate::declared::errors::{Errors, Mistake};
 use crate::declared::{Role, parse};
 use crate::expand::{self, Judged};
+pub use crate::mathematics::symbolic::Function;
 use crate::mathematics::symbolic::work;
 
 /// Straight-line code on numbers. Registers hold the inputs, then the literals, then the result of each operation.
@@ -93,21 +94,6 @@ pub enum Operation {
     Divide(u32, u32),
     /// A function of one number.
     Apply(Function, u32),
-}
-
-/// A function of one number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[allow(missing_docs)] // their names say it
-pub enum Function {
-    Sqrt,
-    Ln,
-    Exp,
-    Sin,
-    Cos,
-    /// `c_k`, with `cos √q = 1 − q c_2(q)` and so on.
-    Stumpff(u8),
-    /// The derivative of this order of `θ/sin θ` by `sin²(θ/2)`.
-    LogRatio(u8),
 }
 
 impl Operation {
@@ -259,18 +245,18 @@ impl<P> Stages<P> {
             kick_derivative: self.kick_derivative.as_ref().map(&mut make).transpose()?,
             momentum_jacobian: make(&self.momentum_jacobian)?,
             at_rest: make(&self.at_rest)?,
-            at_velocity: self.at_velocity.as_ref().map(|list| all(list, &mut make)).transpose()?,
-            lagrangian: self.lagrangian.as_ref().map(|list| all(list, &mut make)).transpose()?,
+            at_velocity: match &self.at_velocity {
+                Some([l, momentum, hessian]) => Some([make(l)?, make(momentum)?, make(hessian)?]),
+                None => None,
+            },
+            lagrangian: match &self.lagrangian {
+                Some([l_d, right, left, diamond, minus, energy]) => {
+                    Some([make(l_d)?, make(right)?, make(left)?, make(diamond)?, make(minus)?, make(energy)?])
+                }
+                None => None,
+            },
         })
     }
-}
-
-fn all<'a, P, Q, E, const N: usize>(
-    list: &'a [P; N],
-    make: &mut impl FnMut(&'a P) -> Result<Q, E>,
-) -> Result<[Q; N], E> {
-    let made = list.iter().map(make).collect::<Result<Vec<Q>, E>>()?;
-    made.try_into().map_err(|_| unreachable!("as many as there were"))
 }
 
 /// A declaration with the programs of its step.

@@ -4,7 +4,8 @@ use super::rational::Rational;
 
 /// A function that a Lagrangian may apply to a scalar, or that `exp` and `log` are made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(crate) enum Function {
+#[allow(missing_docs)] // their names say it
+pub enum Function {
     Sqrt,
     Ln,
     Exp,

@@ -20,7 +20,7 @@ pub(crate) mod work;
 
 pub(crate) use display::{covector_text, matrix_text, text, vector_text};
 pub(crate) use expression::{Atom, Expression, Monomial, degree, monomial_contains, stage_of, stage_of_monomial};
-pub(crate) use functions::Function;
+pub use functions::Function;
 pub(crate) use rational::Rational;
 pub(crate) use substitution::substitute;
 pub(crate) use symbols::{Stage, Structure, SymbolId, Symbols};
