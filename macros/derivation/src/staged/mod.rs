@@ -12,7 +12,7 @@ mod sources;
 use proc_macro2::TokenStream;
 
 use crate::declared::errors::{Errors, Mistake};
-use crate::declared::{Role, parse};
+use crate::declared::{Declaration, Role, parse};
 use crate::expand::{self, Judged};
 
 /// Straight-line code on numbers. Registers hold the inputs, then the literals, then the result of each operation.
@@ -270,6 +270,7 @@ pub fn staged(text: &TokenStream) -> Result<Staged, Vec<Mistake>> {
 fn of_text(text: &TokenStream, errors: &mut Errors) -> Option<Staged> {
     let (role, arguments, item) = parse::attribute_and_item(text, errors)?;
     let declaration = parse::declaration(role, &arguments, &item, errors)?;
+    let declaration = Declaration { is_text: true, ..declaration };
     match expand::judged(&declaration, errors)? {
         Judged::Steps(steps) => Some(build::staged(&declaration, &steps)),
         Judged::Continuous(_) | Judged::Constraint(_) => {

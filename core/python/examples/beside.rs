@@ -1,0 +1,89 @@
+//! What Python is compared with: `cargo run --release --example beside -- bits`, `steps` or `members FOLDER`.
+//!
+//! `bits` prints the momentum of the compiled top (3.13) after a thousand steps; `steps` the seconds of a million steps of the
+//! declaration as text, a row each thousand; `members` those of 100,000 members with a hundred steps each.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+use std::time::Instant;
+
+use liestep::groups::LieGroup as _;
+use liestep::motion::Integrator as _;
+use liestep::recording::Recorder;
+use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep_ensemble::{Ensemble, Local, Store};
+use liestep_late::Late;
+use nalgebra::Vector3;
+
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * m * g * w.dot(&(rho + F * rho)),
+)]
+#[derive(Clone, Debug)]
+struct HeavyTop {
+    J_d: NonstandardInertia,
+    m: f64,
+    g: f64,
+    rho: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
+type Error = Box<dyn std::error::Error>;
+
+fn as_text() -> Result<Late<SO3, Vector3<f64>>, Error> {
+    let late = Late::parse(
+        "#[lagrangian(group = SO3, advected(w = up), l_d =
+            ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * m * g * w.dot(&(rho + F * rho)))]
+        struct Top { J_d: NonstandardInertia, m: f64, g: f64, rho: Vector3<f64>, up: Vector3<f64> }",
+    )?;
+    let late = late.with("J_d", &[2.0, 2.0, 1.0])?.with("m", &[1.0])?.with("g", &[9.81])?;
+    Ok(late.with("rho", &[0.0, 0.0, 1.0])?.with("up", &[0.0, 0.0, 1.0])?)
+}
+
+fn main() -> Result<(), Error> {
+    let (identity, velocity) = (SO3::identity(), Vector3::new(0.5, 2.0, 12.0));
+    let given: Vec<String> = std::env::args().skip(1).collect();
+    match given.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["bits"] => {
+            let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0))?;
+            let top = HeavyTop { J_d, m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+            let stepper = Stepper::new(top, 0.01)?;
+            let mut state = stepper.start(identity, velocity)?;
+            stepper.run(&mut state, 1000)?;
+            state.momentum().iter().for_each(|number| println!("{:#018x}", number.to_bits()));
+        }
+        ["steps"] => {
+            let begun = Instant::now();
+            let stepper = Stepper::new(as_text()?, 0.01)?.into_any();
+            let mut state = stepper.start(identity, velocity)?;
+            let mut recorder = Recorder::new(&stepper, liestep::recording::Csv::new(Vec::new()));
+            stepper.observed(&mut state).every(1000, |now| recorder.record(now)).steps(1_000_000)?;
+            println!("{:.4}", begun.elapsed().as_secs_f64());
+        }
+        ["members", folder] => {
+            let top = as_text()?;
+            let make = move |member: &liestep_ensemble::Member<'_>| {
+                let stepper = Stepper::new(top.clone(), 0.01)?.into_any();
+                let velocity = [0.0, 0.0, 12.0].iter().enumerate();
+                let velocity = velocity.map(|(k, mean)| member.normal(&format!("velocity.{}", k + 1), *mean, 0.1));
+                let state = stepper.start(identity, Vector3::from_iterator(velocity))?;
+                Ok((stepper, state))
+            };
+            let begun = Instant::now();
+            let ensemble = Ensemble::one_by_one("tops", 100_000, 100, make).seed(7).keep(
+                ["energy", "velocity_x", "velocity_y", "velocity_z", "momentum_x", "momentum_y", "momentum_z"],
+                |run| {
+                    let (velocity, momentum) = (run.stepper.velocity(run.state), run.state.momentum());
+                    let energy = run.stepper.energy(run.state);
+                    [energy, velocity.x, velocity.y, velocity.z, momentum.x, momentum.y, momentum.z]
+                },
+            );
+            ensemble.run(&Local::threads(1), &Store::folder(folder)?)?;
+            println!("{:.4}", begun.elapsed().as_secs_f64());
+        }
+        _ => return Err("beside bits | steps | members FOLDER".into()),
+    }
+    Ok(())
+}

@@ -1,0 +1,57 @@
+"""What Python adds to Rust: python measure.py BESIDE, where that is the example `beside` of this package, built.
+
+Prints the seconds of a million steps and of 100,000 members from Python, and in Rust, in turns, and their ratios; and what
+an import takes.
+"""
+
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy as np
+
+import liestep as ls
+
+L_D = "((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * m * g * w.dot(&(rho + F * rho))"
+TOP = ls.lagrangian("SO3", advected={"w": "up"}, l_d=L_D, J_d=[2, 2, 1], m=1, g=9.81, rho=[0, 0, 1], up=[0, 0, 1])
+
+
+def in_rust(*arguments: str) -> float:
+    return float(subprocess.run([sys.argv[1], *arguments], check=True, capture_output=True, text=True).stdout)
+
+
+def steps() -> float:
+    begun = time.perf_counter()
+    TOP.stepper(0.01).run(velocity=[0.5, 2, 12], until=10_000, every=1000)
+    return time.perf_counter() - begun
+
+
+def members() -> float:
+    with tempfile.TemporaryDirectory() as folder:
+        begun = time.perf_counter()
+        TOP.ensemble(100_000, step=0.01, velocity=ls.normal([0, 0, 12], 0.1), seed=7).run(
+            folder, until=1, threads=1, progress=False)
+        return time.perf_counter() - begun
+
+
+def members_in_rust() -> float:
+    with tempfile.TemporaryDirectory() as folder:
+        return in_rust("members", folder)
+
+
+def imported() -> float:
+    """Seconds of an import, less those of Python itself."""
+    def run(code: str) -> float:
+        begun = time.perf_counter()
+        subprocess.run([sys.executable, "-c", code], check=True)
+        return time.perf_counter() - begun
+
+    return min(run("import liestep") for _ in range(7)) - min(run("pass") for _ in range(7))
+
+
+for name, python, rust in (("a million steps", steps, lambda: in_rust("steps")), ("100,000 members", members, members_in_rust)):
+    pairs = np.array([(python(), rust()) for _ in range(5)])
+    best = pairs.min(axis=0)
+    print(f"{name}: {best[0]:.2f} s from Python, {best[1]:.2f} s in Rust, ratio {best[0] / best[1]:.3f}")
+print(f"an import: {1000 * imported():.0f} ms")

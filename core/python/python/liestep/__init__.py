@@ -1,0 +1,28 @@
+"""liestep: integrators that keep what the motion keeps, from a declared Lagrangian.
+
+>>> import liestep as ls
+>>> top = ls.lagrangian("SO3", advected={"w": "up"},
+...     l_d="((F - I) * J_d * (F - I).transpose()).trace() / (2 * h) - h * m * g * w.dot(rho + F * rho) / 2",
+...     J_d=[2, 2, 1], m=1, g=9.81, rho=[0, 0, 1], up=[0, 0, 1])
+>>> run = top.stepper(0.01).run(velocity=[0.5, 2, 12], until=100)
+>>> bool(abs(run.spatial_momentum[:, 2] - 48).max() < 1e-11)
+True
+"""
+
+from . import errors
+from ._declared import Term, force, lagrangian
+from ._ensemble import Ensemble, Many, Spread, normal, rotation, uniform
+from ._library import (
+    body, dipole, drag, gravity, gravity_gradient, magnetic_damping, nonstandard, rotor, spring, thrust, torque,
+)
+from ._run import Columns, Happenings, Run, Scene, SceneRun, scene
+from ._stepper import Stepper, euler, schemes, translation
+from .errors import DeclarationError, Error, SceneError, SetupError, StepError, StoreError
+
+__version__ = "0.1.0"
+__all__ = [
+    "Columns", "DeclarationError", "Ensemble", "Error", "Happenings", "Many", "Run", "Scene", "SceneError", "SceneRun",
+    "SetupError", "Spread", "StepError", "Stepper", "StoreError", "Term", "body", "dipole", "drag", "errors", "euler",
+    "force", "gravity", "gravity_gradient", "lagrangian", "magnetic_damping", "nonstandard", "normal", "rotation",
+    "rotor", "scene", "schemes", "spring", "thrust", "torque", "translation", "uniform",
+]

@@ -1,0 +1,239 @@
+"""Many motions of one declaration, drawn at random."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from . import _native
+from ._declared import Term
+from ._run import Columns
+from ._stepper import Stepper, _numbers, _Start, _start
+from .errors import SetupError
+
+
+@dataclass(frozen=True)
+class Spread:
+    """What numbers are drawn from: made by `normal`, `uniform` and `rotation`."""
+
+    kind: str
+    first: tuple[float, ...] = ()
+    second: tuple[float, ...] = ()
+
+
+def _spread(kind: str, first: Any, second: Any) -> Spread:
+    import numpy as np
+
+    one, two = np.broadcast_arrays(np.asarray(first, dtype=float), np.asarray(second, dtype=float))
+    if not (np.isfinite(one).all() and np.isfinite(two).all()):
+        raise SetupError("what is drawn is drawn from finite numbers")
+    return Spread(kind, tuple(one.ravel().tolist()), tuple(two.ravel().tolist()))
+
+
+def normal(mean: Any, deviation: Any) -> Spread:
+    """Numbers of the normal distribution, each component by itself.
+
+    Examples
+    --------
+    >>> import liestep as ls
+    >>> ls.normal([0, 0, 12], 0.1).second
+    (0.1, 0.1, 0.1)
+    """
+    spread = _spread("normal", mean, deviation)
+    if min(spread.second) < 0:
+        raise SetupError("a standard deviation isn't below zero")
+    return spread
+
+
+def uniform(least: Any, end: Any) -> Spread:
+    """Numbers from the first to below the second, each as likely."""
+    spread = _spread("uniform", least, end)
+    if any(one >= two for one, two in zip(spread.first, spread.second, strict=True)):
+        raise SetupError("a range goes from a number to a larger one")
+    return spread
+
+
+def rotation() -> Spread:
+    """An attitude of SO(3), each as likely."""
+    return Spread("rotation")
+
+
+@dataclass
+class _Draw:
+    of: str
+    place: int
+    kind: str
+    first: float
+    second: float
+
+
+@dataclass
+class _Members:
+    name: str
+    members: int
+    seed: int
+    until: float
+    every: int | None
+    chunk: int | None
+    folder: str
+    threads: int
+    share: tuple[int, int]
+    turns: bool
+    progress: Callable[[int, int], None] | None
+
+
+class Many(Columns):
+    """What is there of an ensemble: a row for each member and kept time.
+
+    Attributes
+    ----------
+    finished, failed : int
+        How many members came to their ends, and how many didn't.
+    missing, chunks : int
+        The chunks that are left to other shares, or to the next run; and all.
+    failures : list of (int, int, str)
+        Members that didn't: their number, the steps that they made, and why there are no more.
+    """
+
+    def __init__(self, made: dict[str, Any]) -> None:
+        super().__init__(made["table"])
+        self.finished: int = made["finished"]
+        self.failed: int = made["failed"]
+        self.missing: int = made["missing"]
+        self.chunks: int = made["chunks"]
+        self.failures: list[tuple[int, int, str]] = made["failures"]
+        self.faults: list[str] = made["faults"]
+
+
+class Ensemble:
+    """Many motions of one declaration; made by `Term.ensemble`.
+
+    Parameters
+    ----------
+    term : Term
+        What moves.
+    members : int
+        How many.
+    step, **method
+        As of `liestep.Stepper`.
+    velocity, attitude
+        A start, or what it is drawn from: `normal`, `uniform`, `rotation`.
+    seed : int
+        The same seed draws the same members, on every machine.
+    **drawn
+        Parameters of the declaration by their names, and what they are drawn from.
+
+    Examples
+    --------
+    >>> import liestep as ls, tempfile
+    >>> top = ls.body([3, 3, 4]) + ls.gravity(m=1, rho=[0, 0, 1])
+    >>> many = top.ensemble(100, velocity=ls.normal([0, 0, 12], 0.1), seed=7, m=ls.uniform(0.9, 1.1))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     ends = many.run(folder, until=1, progress=False)
+    >>> ends.finished, len(ends)
+    (100, 100)
+    """
+
+    def __init__(
+        self,
+        term: Term,
+        members: int,
+        *,
+        step: float = 0.01,
+        velocity: Any,
+        attitude: Any = None,
+        seed: int = 0,
+        method: dict[str, Any] | None = None,
+        **drawn: Spread,
+    ) -> None:
+        if isinstance(members, bool) or not isinstance(members, int) or not 0 < members <= 10**9:
+            raise SetupError(f"an ensemble has from one to a billion members, not {members!r:.80}")
+        if not isinstance(seed, int) or not 0 <= seed < 2**63:
+            raise SetupError(f"a seed is a whole number from zero, not {seed!r:.80}")
+        self.stepper = Stepper(term, step, **(method or {}))
+        self.members, self.seed = members, seed
+        self._draws: list[_Draw] = []
+        self._turns = isinstance(attitude, Spread) and attitude.kind == "rotation"
+        start = {"velocity": velocity, "attitude": attitude}
+        for name, spread in {**start, **drawn}.items():
+            if isinstance(spread, Spread) and spread.kind != "rotation":
+                pairs = enumerate(zip(spread.first, spread.second, strict=True))
+                self._draws += [_Draw(name, place, spread.kind, *pair) for place, pair in pairs]
+                start[name] = list(spread.first)
+            elif name in drawn:
+                raise SetupError(f"`{name}` is drawn from `ls.normal(…)` or `ls.uniform(…)`, not from {spread!r:.80}")
+        for name, spread in drawn.items():
+            known = term.numbers.get(name)
+            if known is None:
+                raise SetupError(f"there is no parameter `{name}` to be drawn: there are {', '.join(term.numbers)}")
+            if len(known[1]) != len(spread.first):
+                raise SetupError(f"`{name}` has {len(known[1])} numbers, and {len(spread.first)} are drawn")
+        self._start: _Start = _start(None if self._turns else start["attitude"], start["velocity"])
+
+    def run(
+        self,
+        folder: str | Path,
+        *,
+        until: float,
+        every: int | None = None,
+        threads: int = 0,
+        share: str = "0/1",
+        chunk: int | None = None,
+        progress: bool | Callable[[int, int], None] = True,
+    ) -> Many:
+        """Makes what is missing in a folder, and reads what is there then.
+
+        Parameters
+        ----------
+        folder : path
+            Where the files are, one for each chunk of members; a run that was ended goes on there.
+        until : float
+            The time that each member comes to, s.
+        every : int, optional
+            Steps from row to row of a member; the ends only, if it isn't given.
+        threads : int
+            How many; zero means all cores.
+        share : str
+            ``"1/4"``: only this one of four shares, the rest being left to others.
+        chunk : int, optional
+            The members of a file.
+        progress : bool or callable
+            Whether to print how far it is, or what to tell it: the chunks that are there, and all.
+
+        Returns
+        -------
+        Many
+        """
+        _numbers("until", until, ((),))
+        shown = _bar if progress is True else None if progress is False else progress
+        term, (kind, scheme, *rest) = self.stepper.term, self.stepper.method
+        # One plan is told from another by all that it is made of.
+        name = repr((term.declaration, term.numbers, term.forces, kind, scheme, rest, self.stepper.step, self._draws,
+                     self._start, self._turns))
+        plan = _Members(name, self.members, self.seed, float(until), every, chunk, str(folder), threads,
+                        _native.share(share), self._turns, shown)
+        made = self.stepper._native.members(self.stepper.step, self.stepper.method, self._start, self._draws, plan)
+        return Many(made)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _again, (self.__dict__,)
+
+    def __repr__(self) -> str:
+        return f"<Ensemble of {self.members} × {self.stepper.term.name}, seed {self.seed}>"
+
+
+def _again(state: dict[str, Any]) -> Ensemble:
+    ensemble = Ensemble.__new__(Ensemble)
+    ensemble.__dict__.update(state)
+    return ensemble
+
+
+def _bar(done: int, chunks: int) -> None:
+    """A line that fills."""
+    filled = 30 * done // max(chunks, 1)
+    end = "\n" if done == chunks else ""
+    sys.stderr.write(f"\r[{'#' * filled}{'.' * (30 - filled)}] {done} of {chunks} chunks{end}")
+    sys.stderr.flush()

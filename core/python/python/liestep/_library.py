@@ -1,0 +1,116 @@
+"""The library's bodies and effects on SO(3), by their names."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from . import _native
+from ._declared import Term, _value
+from .errors import DeclarationError
+
+_FORM = re.compile(
+    r"#\[(?P<role>\w+)\(\s*group = SO3,\s*(?:gradients,\s*)?(?:advected\((?P<seen>\w+) = (?P<field>\w+)\),\s*)?"
+    r"(?P<head>l_d|work) = (?P<text>.*?),?\s*\)\]\s*#\[derive",
+    re.DOTALL,
+)
+
+
+def _term(name: str, **parameters: Any) -> Term:
+    source = _native.library(name)
+    found = _FORM.match(source or "")
+    if source is None or found is None:
+        raise DeclarationError(f"the library has no `{name}`")
+    fields = re.findall(r"pub (\w+): ", source)
+    if missing := [field for field in fields if field not in parameters]:
+        raise DeclarationError(f"`{name}` has parameters {', '.join(fields)}: give {', '.join(missing)}")
+    numbers = {field: _value(field, parameters[field]) for field in fields}
+    advected = {found["seen"]: found["field"]} if found["seen"] else {}
+    return Term("group = SO3", found["role"], found["head"], found["text"], advected, numbers, name=name)
+
+
+def nonstandard(J: Any) -> Any:
+    """The nonstandard inertia ``tr(J)/2 I − J`` of an inertia, kg m², by its matrix or its three moments.
+
+    Examples
+    --------
+    >>> import liestep as ls
+    >>> ls.nonstandard([3, 3, 4]).diagonal().tolist()
+    [2.0, 2.0, 1.0]
+    """
+    import numpy as np
+
+    matrix = np.asarray(J, dtype=float)
+    if matrix.shape == (3,):
+        matrix = np.diag(matrix)
+    if matrix.shape != (3, 3):
+        raise DeclarationError(f"an inertia has three moments or a matrix of three rows, not the shape {matrix.shape}")
+    return np.trace(matrix) / 2 * np.eye(3) - matrix
+
+
+def body(J: Any, *, kinetic: str = "rigid") -> Term:
+    """A rigid body about its fixed point or its centre of mass.
+
+    Parameters
+    ----------
+    J : array_like
+        Inertia, kg m²: three principal moments, or a matrix.
+    kinetic : {"rigid", "cayley", "geodesic"}
+        How its energy is discretised: (3.13) of the thesis, or one of those that have a solution for any spin.
+
+    Examples
+    --------
+    >>> import liestep as ls
+    >>> ls.body([3, 3, 4]).name
+    'rigid_body'
+    """
+    if kinetic == "rigid":
+        return _term("rigid_body", J_d=nonstandard(J))
+    if kinetic not in ("cayley", "geodesic"):
+        raise DeclarationError(f'`kinetic` is "rigid", "cayley" or "geodesic", not {kinetic!r}')
+    return _term(f"{kinetic}_body", J=J)
+
+
+def gravity(*, m: float, rho: Any, g: float = 9.81, up: Any = (0, 0, 1)) -> Term:
+    """The weight of a body that turns about a fixed point: mass, kg, and centre of mass, m, in the body."""
+    return _term("gravity", m=m, g=g, rho=rho, up=up)
+
+
+def gravity_gradient(*, GM: float, r: float, J: Any, direction: Any) -> Term:
+    """The torque of a far mass ``GM``, m³/s², at the distance `r`, m, in a direction of space, on a body of inertia `J`."""
+    return _term("gravity_gradient", GM=GM, r=r, J=J, direction=direction)
+
+
+def dipole(*, moment: Any, field: Any) -> Term:
+    """A magnetic moment of the body, A m², in a field of space, T."""
+    return _term("dipole", moment=moment, field=field)
+
+
+def spring(*, k: float, length: float, at: Any, anchor: Any) -> Term:
+    """A spring of stiffness `k`, N/m, from a point of the body to one of space, m."""
+    return _term("spring", k=k, length=length, at=at, anchor=anchor)
+
+
+def rotor(*, spin: Any) -> Term:
+    """A rotor whose momentum about its axis stays the same in the body, kg m²/s."""
+    return _term("rotor", spin=spin)
+
+
+def drag(*, c: float, J: Any) -> Term:
+    """A torque against the velocity: coefficient, N m s, and the inertia of the body, kg m²."""
+    return _term("drag", c=c, J=J)
+
+
+def magnetic_damping(*, k: float, field: Any, J: Any) -> Term:
+    """Damping across a magnetic field of space, T, with the gain `k`, A m² s/T."""
+    return _term("magnetic_damping", k=k, field=field, J=J)
+
+
+def torque(torque: Any) -> Term:
+    """A torque that stays the same in the body, N m."""
+    return _term("torque", torque=torque)
+
+
+def thrust(*, at: Any, thrust: Any) -> Term:
+    """An engine at a point of the body, m, with its force, N."""
+    return _term("thrust", at=at, thrust=thrust)

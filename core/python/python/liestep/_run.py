@@ -1,0 +1,314 @@
+"""Runs: columns of numbers, in the memory where Rust wrote them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import _native
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+
+class Columns:
+    """Columns by their names, which nobody can change; NumPy and Arrow look at them where they are."""
+
+    def __init__(self, table: _native.Table) -> None:
+        self._table = table
+        self._names = [name for name, _ in table.columns]
+
+    @property
+    def names(self) -> list[str]:
+        """The names of the columns."""
+        return list(self._names)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """The unit of each column, and nothing where none is known."""
+        return dict(self._table.columns)
+
+    def __len__(self) -> int:
+        return len(self._table)
+
+    def __getitem__(self, name: str) -> Array:
+        import numpy as np
+
+        if name not in self._names:
+            raise KeyError(f"there is no column {name!r}: there are {', '.join(self._names)}")
+        return np.asarray(self._table.view(self._names.index(name), None))
+
+    def group(self, start: str) -> Array:
+        """The columns side by side that begin with this, a row for each row; none of them is copied."""
+        import numpy as np
+
+        places = [place for place, name in enumerate(self._names) if name.startswith(start)]
+        if not places:
+            raise KeyError(f"no column begins with {start!r}: there are {', '.join(self._names)}")
+        return np.asarray(self._table.view(places[0], len(places)))
+
+    def __arrow_c_stream__(self, requested_schema: Any = None) -> Any:
+        return self._table.__arrow_c_stream__(requested_schema)
+
+    @property
+    def table(self) -> Any:
+        """The columns as a table of pyarrow, without a copy."""
+        import pyarrow
+
+        return pyarrow.table(self)
+
+    def to_pandas(self) -> Any:
+        """The columns as a frame of pandas."""
+        import pandas
+
+        return pandas.DataFrame({name: self[name] for name in self._names})
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return self.names
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {len(self)} rows of {', '.join(self._names)}>"
+
+
+class Happenings(Columns):
+    """When an event happened, and the motion then."""
+
+    def __init__(self, table: _native.Table, rising: list[bool]) -> None:
+        super().__init__(table)
+        self._rising = rising
+
+    @property
+    def times(self) -> Array:
+        """When, s."""
+        return self["t"]
+
+    @property
+    def rising(self) -> NDArray[np.bool_]:
+        """Whether the quantity rose."""
+        import numpy as np
+
+        return np.array(self._rising, dtype=bool)
+
+
+class Run(Columns):
+    """What was recorded of a run.
+
+    Attributes
+    ----------
+    steps, iterations : int
+        How many steps were made, and the iterations of all their equations.
+    step : float
+        The length of a step, s.
+    events : dict of Happenings
+        By the names of the events.
+    ended_by : str or None
+        The event that stopped it.
+    choice, error : str and float, or None
+        Where an accuracy was asked for: the table of all methods, and the error that was measured.
+    """
+
+    def __init__(self, title: str, about: str, step: float, made: dict[str, Any], names: list[str]) -> None:
+        super().__init__(made["table"])
+        self.title = title
+        self.about = about
+        self.step = step
+        self.steps: int = made["steps"]
+        self.iterations: int = made["iterations"]
+        pairs = zip(names, made["events"], strict=True)
+        self.events = {name: Happenings(table, rising) for name, (table, rising) in pairs}
+        ending = made["ending"]
+        self.ended_by: str | None = None if ending is None else names[ending]
+        self.choice: str | None = made.get("choice")
+        self.error: float | None = made.get("error")
+
+    @property
+    def time(self) -> Array:
+        """The times of the rows, s."""
+        return self["t"]
+
+    @property
+    def energy(self) -> Array:
+        """The energy, J."""
+        return self["energy"]
+
+    @property
+    def velocity(self) -> Array:
+        """The body velocity, a row for each row."""
+        return self.group("velocity_")
+
+    @property
+    def momentum(self) -> Array:
+        """The body momentum, a row for each row."""
+        return self.group("momentum_")
+
+    @property
+    def quaternion(self) -> Array:
+        """The attitude on SO(3), body to space, as unit quaternions ``w, x, y, z``."""
+        return self.group("q_")
+
+    @property
+    def attitude(self) -> Any:
+        """The attitude: SciPy's ``Rotation`` on SO(3) where there is SciPy, else matrices, body to space."""
+        if "q_w" not in self._names:
+            return self.group("g_")
+        try:
+            from scipy.spatial.transform import Rotation
+        except ImportError:
+            return self.matrix
+        return Rotation.from_quat(self.quaternion[:, [1, 2, 3, 0]])
+
+    @property
+    def matrix(self) -> Array:
+        """The attitudes on SO(3) as matrices, body to space."""
+        import numpy as np
+
+        w, x, y, z = self.quaternion.T
+        rows = [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+        return np.moveaxis(np.array(rows), 2, 0)
+
+    @property
+    def axis(self) -> Array:
+        """The third axis of the body, in space."""
+        return self.matrix[:, :, 2]
+
+    @property
+    def tilt(self) -> Array:
+        """The angle of that axis from the third of space, rad."""
+        import numpy as np
+
+        return np.arccos(np.clip(self.axis[:, 2], -1, 1))
+
+    @property
+    def spatial_momentum(self) -> Array:
+        """The angular momentum on SO(3) in space, kg m²/s."""
+        import numpy as np
+
+        return np.asarray(np.einsum("nij,nj->ni", self.matrix, self.momentum))
+
+    def plot(self, axes: Any = None) -> Any:
+        """Velocity and energy over time, by matplotlib; returns the axes."""
+        import matplotlib.pyplot as plt
+
+        if axes is None:
+            _, axes = plt.subplots(2, 1, sharex=True, constrained_layout=True)
+        axes[0].plot(self.time, self.velocity, label=[name for name in self._names if name.startswith("velocity_")])
+        axes[0].set(ylabel="velocity", title=self.title)
+        axes[0].legend(loc="upper right")
+        axes[1].semilogy(self.time, abs(self.energy - self.energy[0]) + 1e-17)
+        axes[1].set(xlabel="time, s", ylabel="energy from its start")
+        return axes
+
+    def html(self, path: str | Path | None = None) -> str:
+        """The page that plays a motion on SO(3) in a browser; written to a file, if one is given."""
+        page = _native.page(self._table, self.title, self.about)
+        if path is not None:
+            Path(path).write_text(page, encoding="utf-8")
+        return page
+
+    def svg(self) -> str:
+        """The picture, as a notebook shows it."""
+        return _native.picture(self._table, self.title, self.about)
+
+    def _repr_svg_(self) -> str:
+        return self.svg()
+
+    def __repr__(self) -> str:
+        ended = f", ended by {self.ended_by}" if self.ended_by else ""
+        return f"<Run of {self.title}: {self.steps} {self.about}, {len(self)} rows{ended}>"
+
+
+@dataclass(frozen=True)
+class Happening:
+    """An event of a scene's file."""
+
+    name: str
+    time: float
+    rising: bool
+
+
+class SceneRun(Columns):
+    """The run of a scene's file, with the columns of its table."""
+
+    def __init__(self, run: _native.FileRun) -> None:
+        super().__init__(run.table)
+        self._run = run
+        self.steps = run.steps
+        self.events = [Happening(*one) for one in run.events]
+
+    @property
+    def summary(self) -> str:
+        """Lines about its beginning and its end."""
+        return self._run.summary
+
+    def svg(self) -> str:
+        """The picture that the file asks for."""
+        return self._run.picture()
+
+    def html(self, path: str | Path | None = None) -> str | None:
+        """The page that plays it; none of several bodies."""
+        page = self._run.page()
+        if path is not None and page is not None:
+            Path(path).write_text(page, encoding="utf-8")
+        return page
+
+    def _repr_svg_(self) -> str:
+        return self.svg()
+
+    def __repr__(self) -> str:
+        return self.summary.rstrip()
+
+
+class Scene:
+    """A scene's file; see `liestep.scene`."""
+
+    def __init__(self, path: str | Path, text: str | None = None) -> None:
+        self._path, self._text = str(path), text
+        self._file = _native.File(self._path, text)
+
+    @property
+    def title(self) -> str:
+        """What it is called."""
+        return self._file.title
+
+    def run(self) -> SceneRun:
+        """Makes the run that the file says."""
+        return SceneRun(self._file.run())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Scene, (self._path, self._text)
+
+    def __repr__(self) -> str:
+        return f"<Scene {self.title}: {self._file.about}>"
+
+
+def scene(path: str | Path, text: str | None = None) -> Scene:
+    """A scene from a file of TOML, or from its text: one body, or several with joints and springs.
+
+    Every key is on the page of `liestep_scene::SceneFile`.
+
+    Examples
+    --------
+    >>> import liestep as ls
+    >>> text = '''
+    ... title = "A wing nut"
+    ... [body]
+    ... moments = [1.0, 2.0, 2.5]
+    ... [start]
+    ... euler = [0, 0, 0]
+    ... velocity = [0.001, "2 rad/s", 0.001]
+    ... [run]
+    ... step = "20 ms"
+    ... duration = 20
+    ... '''
+    >>> len(ls.scene("wing-nut.toml", text).run())
+    1001
+    """
+    return Scene(path, text)

@@ -1,0 +1,217 @@
+//! Many motions of one scene, drawn at random, in files that survive a kill.
+
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use liestep::groups::{Advected, LieGroup};
+use liestep::motion::{AnyStepper, Integrator as _};
+use liestep::recording::Column;
+use liestep_ensemble::{Ensemble, Local, Member, MemberFailure, Progress, Report, Store};
+use pyo3::prelude::*;
+
+use crate::failure::Failure;
+use crate::run::{Start, listed, steps_to};
+use crate::table::Columns;
+
+/// What is drawn: of which parameter, `velocity` or `attitude` among them, which number, and from what.
+#[derive(Clone, FromPyObject)]
+pub(crate) struct Draw {
+    of: String,
+    place: usize,
+    /// `normal` with mean and deviation, `uniform` from the first to below the second.
+    kind: String,
+    first: f64,
+    second: f64,
+}
+
+pub(crate) type Draws = Vec<Draw>;
+
+impl Draw {
+    /// As the ensembles of files name it: `velocity.3`.
+    fn number(&self, member: &Member<'_>) -> f64 {
+        let name = format!("{}.{}", self.of, self.place + 1);
+        match self.kind.as_str() {
+            "uniform" => member.uniform(&name, self.first..self.second),
+            _ => member.normal(&name, self.first, self.second),
+        }
+    }
+}
+
+/// How many members there are, and who makes which.
+#[derive(FromPyObject)]
+pub(crate) struct Members {
+    /// By which one plan is told from another.
+    name: String,
+    members: u64,
+    seed: u64,
+    until: f64,
+    every: Option<u64>,
+    chunk: Option<u64>,
+    folder: std::path::PathBuf,
+    threads: usize,
+    share: (u64, u64),
+    /// Whether the attitude is drawn, each rotation as likely.
+    turns: bool,
+    /// Called with the number of chunks that are there and of all.
+    progress: Option<Py<PyAny>>,
+}
+
+/// What is there after a run.
+pub(crate) struct Outcome {
+    pub(crate) report: Report,
+    pub(crate) table: Columns,
+    pub(crate) failures: Vec<MemberFailure>,
+}
+
+/// Runs the members in threads of their own, while this one listens to Ctrl-C and tells of progress.
+pub(crate) fn run_members<G, W>(
+    plan: Members,
+    start: &Start,
+    draws: Draws,
+    make: impl Fn(&mut dyn FnMut(&str, &mut [f64])) -> Result<AnyStepper<G, W>, Failure> + Send + Sync + 'static,
+    h: f64,
+) -> Result<Outcome, Failure>
+where
+    G: LieGroup<Scalar = f64>,
+    W: Advected<G> + 'static,
+{
+    let (start, turns) = (start.clone(), plan.turns);
+    let made = move |member: &Member<'_>| {
+        let draw_of = |name: &str, numbers: &mut [f64]| {
+            for draw in draws.iter().filter(|draw| draw.of == name) {
+                if let Some(place) = numbers.get_mut(draw.place) {
+                    *place = draw.number(member);
+                }
+            }
+        };
+        let stepper = make(&mut |name, numbers| draw_of(name, numbers)).map_err(other)?;
+        let mut own = start.clone();
+        draw_of("velocity", &mut own.velocity);
+        draw_of("attitude", &mut own.attitude);
+        if turns {
+            let drawn = member.rotation("attitude");
+            (own.attitude, own.is_quaternion) = (vec![drawn.w, drawn.i, drawn.j, drawn.k], true);
+        }
+        let state = crate::scene::started(&stepper, &own).map_err(other)?;
+        Ok((stepper, state))
+    };
+    let steps = steps_to(plan.until, h)?;
+    let mut ensemble = Ensemble::<AnyStepper<G, W>>::one_by_one(&plan.name, plan.members, steps, made).seed(plan.seed);
+    if let Some(every) = plan.every {
+        ensemble = ensemble.every(every.max(1));
+    }
+    if let Some(chunk) = plan.chunk {
+        ensemble = ensemble.chunks_of(chunk.max(1));
+    }
+    let columns = kept::<G>();
+    let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
+    ensemble = ensemble.keep_named(&names, |run, row| {
+        let (stepper, state) = (run.stepper, run.state);
+        let mut attitude = vec![0.0; G::named_numbers().len()];
+        state.attitude().write_numbers(&mut attitude);
+        let (velocity, energy) = stepper.velocity_and_energy(state, None);
+        let numbers = std::iter::once(stepper.time(state)).chain(attitude).chain(listed(&velocity));
+        let numbers = numbers.chain(listed(&state.momentum())).chain([energy]);
+        row.iter_mut().zip(numbers).for_each(|(place, number)| *place = number);
+    });
+    let store = Store::folder(&plan.folder).map_err(|error| store_error(&error))?;
+    let report = in_threads(&ensemble, &store, &plan)?;
+    collected(&ensemble, &store, columns, report)
+}
+
+fn other(failure: Failure) -> liestep_ensemble::Failure {
+    let message = match failure {
+        Failure::Of(_, message) => message,
+        other => PyErr::from(other).to_string(),
+    };
+    liestep_ensemble::Failure::Other(message)
+}
+
+fn store_error(error: &impl std::fmt::Display) -> Failure {
+    Failure::Of("StoreError", error.to_string())
+}
+
+/// The columns of a member, as a run has them.
+fn kept<G: LieGroup<Scalar = f64>>() -> Vec<Column> {
+    let components = G::named_components();
+    let named = |quantity: &'static str, which: usize| {
+        components.iter().map(move |(name, units)| (format!("{quantity}_{name}"), units[which]))
+    };
+    let time = std::iter::once(("t".to_owned(), "s"));
+    let columns = time.chain(G::named_numbers()).chain(named("velocity", 0)).chain(named("momentum", 1));
+    let columns = columns.chain([("energy".to_owned(), "")]);
+    columns.map(|(name, unit)| Column { name, unit: unit.to_owned() }).collect()
+}
+
+/// How often this thread looks for signals.
+const LOOK: Duration = Duration::from_millis(50);
+
+fn in_threads<M>(ensemble: &Ensemble<M>, store: &Store, plan: &Members) -> Result<Report, Failure>
+where
+    M: liestep::motion::Integrator + 'static,
+{
+    let (stop, now) = (AtomicBool::new(false), Mutex::new(None::<Progress>));
+    let (share, shares) = plan.share;
+    if share >= shares {
+        return Err(Failure::Of("SetupError", format!("there is no share {share} of {shares}: they count from zero")));
+    }
+    std::thread::scope(|scope| {
+        let work = scope.spawn(|| {
+            let local = Local::threads(plan.threads).share(share, shares).stopped_by(&stop);
+            ensemble.run_telling(&local, store, &|progress| {
+                if let Ok(mut now) = now.lock() {
+                    *now = Some(progress);
+                }
+            })
+        });
+        let mut raised = None;
+        while !work.is_finished() {
+            std::thread::park_timeout(LOOK);
+            let told = now.lock().ok().and_then(|mut now| now.take());
+            let asked = Python::attach(|py| {
+                py.check_signals()?;
+                match (&plan.progress, told) {
+                    (Some(progress), Some(told)) => progress.call1(py, (told.done, told.chunks)).map(|_| ()),
+                    _ => Ok(()),
+                }
+            });
+            if let Err(error) = asked {
+                stop.store(true, Ordering::Relaxed);
+                raised.get_or_insert(error);
+            }
+        }
+        let report = work.join().map_err(|_| Failure::Of("StoreError", "a thread has come to no end".to_owned()))?;
+        raised.map_or_else(|| report.map_err(|error| store_error(&error)), |error| Err(Failure::Raised(error)))
+    })
+}
+
+/// The rows of all chunks that are there, in the order of the members.
+fn collected<M: liestep::motion::Integrator>(
+    ensemble: &Ensemble<M>,
+    store: &Store,
+    columns: Vec<Column>,
+    report: Report,
+) -> Result<Outcome, Failure> {
+    let (mut chunks, mut failures) = (BTreeMap::new(), Vec::new());
+    for shard in store.shards(ensemble.fingerprint()).map_err(|error| store_error(&error))? {
+        let shard = shard.map_err(|fault| store_error(&fault))?;
+        failures.extend(shard.failures);
+        chunks.insert(shard.chunk, shard.rows);
+    }
+    #[allow(clippy::cast_precision_loss)] // a billion members of as many steps at most
+    let whole = |number: &u64| *number as f64;
+    let plain = |name: &str| Column { name: name.to_owned(), unit: String::new() };
+    let mut all = vec![
+        (plain("member"), chunks.values().flat_map(|rows| &rows.member).map(whole).collect::<Vec<_>>()),
+        (plain("step"), chunks.values().flat_map(|rows| &rows.step).map(whole).collect()),
+        (plain("status"), chunks.values().flat_map(|rows| &rows.status).map(|one| f64::from(*one as u8)).collect()),
+    ];
+    for (place, column) in columns.into_iter().enumerate() {
+        let numbers = chunks.values().filter_map(|rows| rows.columns.get(place)).flatten().copied();
+        all.push((column, numbers.collect()));
+    }
+    failures.sort_by_key(|failure| failure.member);
+    Ok(Outcome { report, table: Columns::of(all), failures })
+}

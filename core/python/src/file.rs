@@ -1,0 +1,130 @@
+//! Scenes from files.
+
+use std::path::PathBuf;
+
+use liestep::recording::{Column, Sink, SinkError};
+use liestep_scene::{Run, Scene};
+use pyo3::prelude::*;
+
+use crate::failure::Failure;
+use crate::run::Signals;
+use crate::table::{Columns, Table};
+
+/// A scene's file, read.
+#[pyclass(frozen, module = "liestep._native")]
+pub(crate) struct File(Scene);
+
+/// Its run.
+#[pyclass(frozen, module = "liestep._native")]
+pub(crate) struct FileRun {
+    scene: Scene,
+    run: Run,
+    #[pyo3(get)]
+    table: Py<Table>,
+}
+
+/// Columns that listen to Ctrl-C.
+struct Listening<'a>(&'a mut Columns, &'a Signals);
+
+impl Sink for Listening<'_> {
+    fn begin(&mut self, columns: &[Column]) -> Result<(), SinkError> {
+        self.0.begin(columns)
+    }
+
+    fn write(&mut self, rows: &[f64]) -> Result<(), SinkError> {
+        self.0.write(rows)?;
+        Ok(self.1.look()?)
+    }
+
+    fn end(&mut self) -> Result<(), SinkError> {
+        self.0.end()
+    }
+}
+
+#[pymethods]
+impl File {
+    /// Reads a file, or the text of one where it is given.
+    #[new]
+    #[pyo3(signature = (path, text = None))]
+    #[allow(clippy::needless_pass_by_value)] // as Python gives it
+    fn new(path: PathBuf, text: Option<&str>) -> PyResult<Self> {
+        let scene = text.map_or_else(|| Scene::read(&path), |text| Scene::parse(&path, text));
+        Ok(Self(scene.map_err(Failure::from)?))
+    }
+
+    /// The sum, and how it is stepped, in words.
+    #[getter]
+    fn about(&self) -> String {
+        match &self.0 {
+            Scene::Body(scene) => scene.about(),
+            Scene::System(system) => system.about(),
+        }
+    }
+
+    #[getter]
+    fn title(&self) -> &str {
+        match &self.0 {
+            Scene::Body(scene) => scene.title(),
+            Scene::System(system) => system.title(),
+        }
+    }
+
+    fn run(&self, py: Python<'_>) -> PyResult<FileRun> {
+        let mut columns = Columns::new(0);
+        let made = py.detach(|| {
+            let signals = Signals::new();
+            let mut table = Listening(&mut columns, &signals);
+            let made = match &self.0 {
+                Scene::Body(scene) => scene.run_with(&mut |_| (), Some(&mut table)),
+                Scene::System(system) => system.run_with(&mut |_| (), Some(&mut table)),
+            };
+            made.map_err(|mistake| signals.into_failure().unwrap_or_else(|| mistake.into()))
+        });
+        let run = made?;
+        Ok(FileRun { scene: self.0.clone(), run, table: Py::new(py, columns.into_table())? })
+    }
+}
+
+#[pymethods]
+impl FileRun {
+    /// Lines about its beginning and its end.
+    #[getter]
+    fn summary(&self) -> String {
+        match &self.scene {
+            Scene::Body(scene) => scene.summary(&self.run),
+            Scene::System(system) => system.summary(&self.run),
+        }
+    }
+
+    #[getter]
+    fn steps(&self) -> u64 {
+        self.run.steps()
+    }
+
+    /// The events that happened: a name, a time, and whether the quantity rose.
+    #[getter]
+    fn events(&self) -> Vec<(String, f64, bool)> {
+        let Scene::Body(scene) = &self.scene else { return Vec::new() };
+        let names: Vec<&str> = scene.events().collect();
+        let happened = self.run.happenings().iter();
+        happened
+            .map(|one| (names.get(one.event).map_or("", |name| name).to_owned(), one.sample.time, one.rising))
+            .collect()
+    }
+
+    fn picture(&self) -> PyResult<String> {
+        let drawn = match &self.scene {
+            Scene::Body(scene) => scene.picture(&self.run),
+            Scene::System(system) => system.picture(&self.run),
+        };
+        Ok(drawn.map_err(|error| Failure::Of("Error", error.to_string()))?)
+    }
+
+    /// The page that plays it; none of several bodies.
+    fn page(&self) -> Option<String> {
+        match &self.scene {
+            Scene::Body(scene) => Some(scene.page(&self.run)),
+            Scene::System(_) => None,
+        }
+    }
+}

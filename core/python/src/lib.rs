@@ -1,0 +1,185 @@
+//! liestep in Python: the part that is written in Rust, and that the package `liestep` is made of.
+//!
+//! `lib → {scene, file, picture, library} → ensemble → {run, method} → {table, failure}`: a text is derived by `liestep-late`; what it
+//! declares is stepped by any method, recorded into columns that NumPy and Arrow look at where they are, or drawn at random.
+//! Whatever takes long leaves the interpreter to others, and asks it now and then whether it is to stop.
+#![forbid(unsafe_code)]
+
+mod ensemble;
+mod failure;
+mod file;
+mod library;
+mod method;
+mod picture;
+mod run;
+mod scene;
+mod table;
+
+use std::sync::Arc;
+
+use liestep_ensemble::share_of;
+use liestep_late::Declaration;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::ensemble::{Draws, Members};
+use crate::failure::Failure;
+use crate::method::Method;
+use crate::run::{Course, Recorded, Start};
+use crate::scene::Numbers;
+use crate::table::{Table, View};
+
+/// What a text declares.
+#[pyclass(frozen, module = "liestep._native")]
+struct Derived(&'static Declaration);
+
+#[pymethods]
+impl Derived {
+    #[new]
+    fn new(py: Python<'_>, text: &str) -> PyResult<Self> {
+        Ok(Self(py.detach(|| Declaration::parse(text)).map_err(Failure::from)?))
+    }
+
+    /// What was derived, as text.
+    #[getter]
+    fn derivation(&self) -> &'static str {
+        self.0.derivation
+    }
+
+    #[getter]
+    fn group(&self) -> String {
+        self.0.group()
+    }
+
+    #[getter]
+    fn has_kinetic(&self) -> bool {
+        self.0.has_kinetic
+    }
+
+    #[getter]
+    fn is_self_adjoint(&self) -> bool {
+        self.0.is_self_adjoint
+    }
+}
+
+/// A Lagrangian with numbers, and the sum of forces.
+#[pyclass(frozen, module = "liestep._native")]
+struct Scene(Arc<dyn scene::Scene>);
+
+/// How a scene is stepped: the kind of the method, its scheme, whether sums are compensated, and the most substeps.
+type How = (String, String, bool, u32);
+
+fn method((kind, scheme, is_compensated, substeps): &How) -> Result<Method, Failure> {
+    Method::new(kind, scheme, *is_compensated, *substeps)
+}
+
+#[pymethods]
+impl Scene {
+    #[new]
+    #[pyo3(signature = (lagrangian, numbers, force = None, of_force = None))]
+    #[allow(clippy::needless_pass_by_value)] // as Python gives them
+    fn new(
+        lagrangian: &Derived,
+        numbers: Numbers,
+        force: Option<&Derived>,
+        of_force: Option<Numbers>,
+    ) -> PyResult<Self> {
+        let of_force = of_force.unwrap_or_default();
+        let force = force.map(|force| (force.0, &of_force));
+        Ok(Self(scene::scene((lagrangian.0, &numbers), force)?))
+    }
+
+    #[allow(clippy::needless_pass_by_value)]
+    fn check(&self, h: f64, how: How) -> PyResult<()> {
+        Ok(self.0.check((method(&how)?, h))?)
+    }
+
+    #[allow(clippy::needless_pass_by_value)]
+    fn run<'py>(
+        &self,
+        py: Python<'py>,
+        h: f64,
+        how: How,
+        start: Start,
+        course: Course,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let method = method(&how)?;
+        let recorded = py.detach(|| self.0.run((method, h), &start, &course))?;
+        shown(py, recorded)
+    }
+
+    #[allow(clippy::needless_pass_by_value)]
+    fn ask<'py>(&self, py: Python<'py>, tolerance: f64, start: Start, course: Course) -> PyResult<Bound<'py, PyDict>> {
+        let (recorded, choice) = py.detach(|| self.0.ask(tolerance, &start, &course))?;
+        let dictionary = shown(py, recorded)?;
+        dictionary.set_item("choice", choice.to_string())?;
+        dictionary.set_item("method", &choice.chosen().name)?;
+        dictionary.set_item("step", choice.chosen().step)?;
+        dictionary.set_item("error", choice.error)?;
+        Ok(dictionary)
+    }
+
+    #[allow(clippy::needless_pass_by_value)]
+    fn members<'py>(
+        &self,
+        py: Python<'py>,
+        h: f64,
+        how: How,
+        start: Start,
+        draws: Draws,
+        plan: Members,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let method = method(&how)?;
+        let outcome = py.detach(|| self.0.members((method, h), &start, draws, plan))?;
+        let (dictionary, report) = (PyDict::new(py), outcome.report);
+        dictionary.set_item("table", Py::new(py, outcome.table.into_table())?)?;
+        dictionary.set_item("chunks", report.chunks)?;
+        dictionary.set_item("made", report.made)?;
+        dictionary.set_item("missing", report.missing)?;
+        dictionary.set_item("finished", report.finished)?;
+        dictionary.set_item("failed", report.failed)?;
+        let failures = outcome.failures.iter().map(|one| (one.member, one.steps, one.failure.to_string()));
+        dictionary.set_item("failures", failures.collect::<Vec<_>>())?;
+        let faults = report.faults.iter().map(ToString::to_string);
+        dictionary.set_item("faults", faults.collect::<Vec<_>>())?;
+        Ok(dictionary)
+    }
+}
+
+/// A run as Python sees it. What stopped it is raised there, with what was recorded.
+fn shown(py: Python<'_>, recorded: Recorded) -> PyResult<Bound<'_, PyDict>> {
+    let dictionary = PyDict::new(py);
+    dictionary.set_item("table", Py::new(py, recorded.columns.into_table())?)?;
+    let events = recorded.events.into_iter();
+    let events = events.map(|(columns, rising)| Ok((Py::new(py, columns.into_table())?, rising)));
+    dictionary.set_item("events", events.collect::<PyResult<Vec<_>>>()?)?;
+    dictionary.set_item("steps", recorded.steps)?;
+    dictionary.set_item("iterations", recorded.iterations)?;
+    dictionary.set_item("ending", recorded.ending)?;
+    dictionary.set_item("failure", recorded.failure.map(PyErr::from))?;
+    Ok(dictionary)
+}
+
+/// The names of all schemes, by the kind of the method.
+#[pyfunction]
+fn schemes() -> Vec<(&'static str, Vec<&'static str>)> {
+    method::schemes().into()
+}
+
+/// `1/4` as the share 1 of 4.
+#[pyfunction]
+fn share(text: &str) -> PyResult<(u64, u64)> {
+    Ok(share_of(text).map_err(|message| Failure::Of("SetupError", message))?)
+}
+
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use super::{Derived, Scene, Table, View, schemes, share};
+    #[pymodule_export]
+    use crate::file::{File, FileRun};
+    #[pymodule_export]
+    use crate::library::library;
+    #[pymodule_export]
+    use crate::picture::{page, picture};
+}

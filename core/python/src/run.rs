@@ -1,0 +1,226 @@
+//! A run that is recorded into columns, with its events, and stopped where Python asks for it.
+
+use std::cell::{Cell, RefCell};
+use std::time::{Duration, Instant};
+
+use liestep::groups::LieGroup;
+use liestep::motion::{Integrator, Moment};
+use liestep::recording::{Event, Reason, RecordError, Recorder, Run, RunError};
+use pyo3::prelude::*;
+
+use crate::failure::Failure;
+use crate::table::Columns;
+
+/// What is looked for: that a quantity passes a value.
+#[derive(Clone, FromPyObject)]
+pub(crate) struct Watch {
+    quantity: String,
+    value: f64,
+    /// 1 where it rises, −1 where it falls, 0 where it does either.
+    direction: i8,
+    stops: bool,
+}
+
+/// How a motion starts: the attitude as a quaternion, as the entries of a matrix row by row, or none at all; and a velocity.
+#[derive(Clone, FromPyObject)]
+pub(crate) struct Start {
+    pub(crate) attitude: Vec<f64>,
+    pub(crate) is_quaternion: bool,
+    pub(crate) velocity: Vec<f64>,
+}
+
+/// How long a run is and what is recorded of it.
+#[derive(FromPyObject)]
+pub(crate) struct Course {
+    pub(crate) until: f64,
+    /// In steps from row to row; zero where `times` are given.
+    pub(crate) every: u64,
+    pub(crate) times: Option<Vec<f64>>,
+    pub(crate) events: Vec<Watch>,
+}
+
+/// What has become of a run.
+pub(crate) struct Recorded {
+    pub(crate) columns: Columns,
+    /// One table for each event, with a row for each time it happened.
+    pub(crate) events: Vec<(Columns, Vec<bool>)>,
+    pub(crate) steps: u64,
+    pub(crate) iterations: u64,
+    pub(crate) ending: Option<usize>,
+    /// Where it couldn't be made to its end; what was recorded up to then is there.
+    pub(crate) failure: Option<Failure>,
+}
+
+/// Asks Python whether somebody has pressed Ctrl-C, at most some fifty times a second.
+pub(crate) struct Signals {
+    asked: Cell<Instant>,
+    raised: RefCell<Option<PyErr>>,
+}
+
+impl Signals {
+    pub(crate) fn new() -> Self {
+        Self { asked: Cell::new(Instant::now()), raised: RefCell::new(None) }
+    }
+
+    /// An error where the run is to stop.
+    pub(crate) fn look(&self) -> Result<(), &'static str> {
+        if self.asked.get().elapsed() < Duration::from_millis(20) {
+            return Ok(());
+        }
+        self.asked.set(Instant::now());
+        let Err(error) = Python::attach(|py| py.check_signals()) else { return Ok(()) };
+        self.raised.replace(Some(error));
+        Err("Python asked for it")
+    }
+
+    pub(crate) fn into_failure(self) -> Option<Failure> {
+        self.raised.into_inner().map(Failure::Raised)
+    }
+}
+
+/// Looks at least this often, in steps.
+const LOOK: u64 = 4096;
+
+/// How many steps there are to a time, as [`Run::until`] counts them.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // checked
+pub(crate) fn steps_to(time: f64, h: f64) -> Result<u64, Failure> {
+    let steps = time / h;
+    if !(steps.abs() < 9e15) {
+        return Err(Failure::setup(&RunError::End { asked: time }));
+    }
+    Ok((steps * (1.0 - 4.0 * f64::EPSILON)).ceil().max(0.0) as u64)
+}
+
+/// Makes the steps, and rows of all columns that [`Recorder`] has.
+pub(crate) fn record<I>(stepper: &I, mut state: I::State, course: &Course) -> Result<Recorded, Failure>
+where
+    I: Integrator<Group: LieGroup<Scalar = f64>>,
+{
+    let steps = steps_to(course.until, stepper.step_size())?.saturating_sub(state.steps());
+    let rows = match &course.times {
+        Some(times) => times.len(),
+        None => usize::try_from(steps / course.every.max(1)).unwrap_or(usize::MAX).saturating_add(2),
+    };
+    let (signals, mut columns) = (Signals::new(), Columns::new(rows));
+    let recorder = RefCell::new(Recorder::new(stepper, &mut columns));
+    let last = Cell::new(f64::NAN);
+    let row = |now: &Moment<'_, I>| {
+        last.set(now.time());
+        recorder.borrow_mut().record(now)
+    };
+    let tables = course.events.iter().map(|_| RefCell::new((Recorder::new(stepper, Columns::new(0)), Vec::new())));
+    let tables: Vec<_> = tables.collect();
+    let look = course.every.max(1) * LOOK.div_ceil(course.every.max(1));
+    let mut observed = Run::new(stepper, &mut state).every(course.every, row).every(look, |_| signals.look());
+    if let Some(times) = &course.times {
+        observed = observed.at(times.iter().copied(), row);
+    }
+    for (watch, table) in course.events.iter().zip(&tables) {
+        observed = observed.event(watch.kind(), watch.function()?, |now| {
+            let (recorder, rising) = &mut *table.borrow_mut();
+            rising.push(now.rising().unwrap_or_default());
+            recorder.record(now)
+        });
+    }
+    let made = observed.steps(steps);
+    let end = Moment::of_step(stepper, &state);
+    let (steps, time) = (end.steps(), end.time());
+    // The last state is a row, but where only some times are asked for.
+    let written = if course.every > 0 && !(last.get() >= time) { row(&end) } else { Ok(()) };
+    let written = written.and_then(|()| recorder.into_inner().finish().map(|_| ()));
+    let finish = |table: RefCell<(Recorder<'_, I, Columns>, Vec<bool>)>| {
+        let (recorder, rising) = table.into_inner();
+        recorder.finish().map(|columns| (columns, rising))
+    };
+    let events = tables.into_iter().map(finish).collect::<Result<Vec<_>, RecordError>>();
+    let memory = |error: RecordError| Failure::Of("MemoryError", error.to_string());
+    let (mut iterations, mut ending, mut failure) = (0, None, None);
+    match made {
+        Ok(report) => {
+            iterations = report.iterations;
+            if let Reason::Event { event, .. } = report.reason {
+                ending = Some(event);
+            }
+        }
+        Err(error) => {
+            failure = Some(signals.into_failure().unwrap_or_else(|| match error {
+                RunError::Observer { cause, .. } => Failure::Of("MemoryError", cause.to_string()),
+                other => Failure::step(&other),
+            }));
+        }
+    }
+    failure = failure.or_else(|| written.err().map(memory));
+    Ok(Recorded { columns, events: events.map_err(memory)?, steps, iterations, ending, failure })
+}
+
+impl Watch {
+    fn kind(&self) -> Event {
+        let kind = match self.direction {
+            1 => Event::rising(),
+            -1 => Event::falling(),
+            _ => Event::crossing(),
+        };
+        if self.stops { kind.terminal() } else { kind }
+    }
+
+    /// The function that rises through zero as the quantity rises through its value.
+    fn function<I>(&self) -> Result<impl Fn(&Moment<'_, I>) -> f64 + use<I>, Failure>
+    where
+        I: Integrator<Group: LieGroup<Scalar = f64>>,
+    {
+        let (value, quantity) = (self.value, self.quantity.as_str());
+        let components = I::Group::named_components();
+        let place = |kind: &str| components.iter().position(|(name, _)| quantity.strip_prefix(kind) == Some(name));
+        let is_rotation = I::Group::named_numbers().first().is_some_and(|(name, _)| name == "q_w");
+        let axis = ["axis_x", "axis_y", "axis_z"].iter().position(|name| *name == quantity).filter(|_| is_rotation);
+        let entries = I::Group::named_numbers();
+        let entry = entries.iter().position(|(name, _)| name == quantity).filter(|_| !is_rotation);
+        let what = match (place("velocity_"), place("momentum_"), axis, entry) {
+            (Some(place), ..) => Quantity::Velocity(place),
+            (_, Some(place), ..) => Quantity::Momentum(place),
+            // The third axis of the body is the last column.
+            (.., Some(axis), _) => Quantity::Entry(3 * axis + 2),
+            (.., Some(entry)) => Quantity::Entry(entry),
+            _ if quantity == "energy" => Quantity::Energy,
+            _ if quantity == "speed" => Quantity::Speed,
+            _ if quantity == "tilt" && is_rotation => Quantity::Tilt,
+            _ => {
+                let own = components.iter().map(|(name, _)| format!("velocity_{name}, momentum_{name}, "));
+                let rest = if is_rotation { "axis_x, axis_y, axis_z, tilt, " } else { "the entries g_12 …, " };
+                let known = own.collect::<String>();
+                let message = format!("no event is about `{quantity}`: there are {known}{rest}energy, speed");
+                return Err(Failure::Of("SetupError", message));
+            }
+        };
+        Ok(move |now: &Moment<'_, I>| match what {
+            // By the cosine, which is smooth at the vertical.
+            Quantity::Tilt => value.cos() - entry_of(&now.attitude(), 8),
+            Quantity::Entry(place) => entry_of(&now.attitude(), place) - value,
+            Quantity::Energy => now.energy() - value,
+            Quantity::Speed => listed(&now.velocity()).iter().map(|part| part * part).sum::<f64>() - value * value,
+            Quantity::Velocity(place) => listed(&now.velocity())[place] - value,
+            Quantity::Momentum(place) => listed(&now.momentum())[place] - value,
+        })
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Quantity {
+    Tilt,
+    Entry(usize),
+    Energy,
+    Speed,
+    Velocity(usize),
+    Momentum(usize),
+}
+
+fn entry_of<G: LieGroup<Scalar = f64>>(attitude: &G, place: usize) -> f64 {
+    listed(&attitude.matrix()).get(place).copied().unwrap_or(f64::NAN)
+}
+
+/// The numbers of a vector or a matrix.
+pub(crate) fn listed(value: &impl liestep::numbers::Entries<f64>) -> Vec<f64> {
+    let mut list = Vec::new();
+    value.each(&mut |entry| list.push(entry));
+    list
+}

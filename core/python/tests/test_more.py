@@ -1,0 +1,141 @@
+"""Files, ensembles, pictures, and what is there where other packages are."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import heavy_top
+
+import liestep as ls
+
+SCENES = Path(__file__).resolve().parents[3] / "examples" / "scenes"
+
+
+def many(top, members=200):
+    return top.ensemble(members, step=0.02, velocity=ls.normal([0, 0, 12], 0.1), seed=7, m=ls.uniform(0.9, 1.1))
+
+
+def test_a_scene_of_one_body():
+    run = ls.scene(SCENES / "falling-top.toml").run()
+    assert len(run) > 100 and "energy" in run.names
+    assert run.svg().startswith("<svg") and "<html" in (run.html() or "")
+
+
+def test_a_scene_of_several_bodies():
+    paths = [path for path in sorted(SCENES.glob("*.toml")) if "[[joint]]" in path.read_text()]
+    run = ls.scene(paths[0]).run()
+    assert len(run) > 10 and run.html() is None and run.svg().startswith("<svg")
+
+
+def test_a_mistake_of_a_file_has_its_place():
+    with pytest.raises(ls.SceneError) as found:
+        ls.scene("top.toml", 'title = "x"\n[body]\nmomnts = [1, 2, 3]\n')
+    assert found.value.line == 3
+
+
+def test_members_are_those_of_their_seed_whoever_makes_them(top, tmp_path):
+    told = []
+    whole = many(top).run(tmp_path / "whole", until=1, threads=2, progress=lambda done, all: told.append((done, all)))
+    assert (whole.finished, whole.failed, whole.missing) == (200, 0, 0) and told
+    # Two shares, the second by an ensemble that was pickled.
+    first = many(top).run(tmp_path / "shares", until=1, share="0/2", progress=False)
+    assert first.missing > 0
+    again = pickle.loads(pickle.dumps(many(top)))
+    both = again.run(tmp_path / "shares", until=1, share="1/2", progress=False)
+    assert both.missing == 0
+    for name in whole.names:
+        assert (whole[name] == both[name]).all(), name
+    names = [sorted(path.name for path in (tmp_path / folder).rglob("*.arrow")) for folder in ("whole", "shares")]
+    assert names[0] == names[1]
+
+
+def test_a_member_is_the_run_of_its_numbers(top, tmp_path):
+    fixed = top.ensemble(3, step=0.02, velocity=ls.uniform([0, 0, 12], [1e-300, 1e-300, np.nextafter(12, 13)]), seed=1)
+    ends = fixed.run(tmp_path, until=1, progress=False)
+    run = top.stepper(0.02).run(velocity=[0, 0, 12], until=1)
+    assert (ends["momentum_z"] == run.momentum[-1, 2]).all()
+
+
+def test_draws_are_those_of_their_distribution(top, tmp_path):
+    ends = top.ensemble(2000, step=0.02, velocity=ls.normal([0, 0, 12], [0, 0, 0.1]), seed=3).run(tmp_path, until=0, progress=False)
+    assert abs(ends["velocity_z"].mean() - 12) < 0.01 and abs(ends["velocity_z"].std() - 0.1) < 0.01
+    turned = top.ensemble(2000, velocity=[0, 0, 1], attitude=ls.rotation(), seed=3)
+    quaternions = turned.run(tmp_path / "turned", until=0, progress=False).group("q_")
+    assert abs((quaternions**2).mean(axis=0) - 0.25).max() < 0.02
+
+
+def test_a_folder_of_another_plan_is_refused(top, tmp_path):
+    many(top).run(tmp_path, until=1, progress=False)
+    with pytest.raises(ls.StoreError):
+        many(top).run(tmp_path, until=2, progress=False)
+
+
+def test_members_that_fail_are_told(tmp_path):
+    fast = ls.body([1, 2, 2.5]).ensemble(20, step=0.1, velocity=ls.uniform([0, 20, 0], [1, 30, 1]), seed=1)
+    ends = fast.run(tmp_path, until=1, progress=False)
+    assert ends.failed == 20 and ends.failures[0][0] == 0 and "step" in ends.failures[0][2]
+
+
+@pytest.mark.parametrize("wrong", [
+    {"members": 0}, {"members": 2.5}, {"seed": -1}, {"m": 3}, {"x": ls.normal(0, 1)}, {"m": ls.normal([1, 2], 1)},
+])
+def test_hostile_ensembles(top, wrong):
+    with pytest.raises(ls.Error):
+        top.ensemble(**{"members": 10, "velocity": [0, 0, 1], **wrong})
+    with pytest.raises(ls.Error):
+        ls.uniform(1, 0)
+    with pytest.raises(ls.Error):
+        ls.normal(0, -1)
+
+
+def test_what_a_notebook_shows(top):
+    assert "h·" in top._repr_markdown_() or "Newton" in top._repr_markdown_()
+    run = top.stepper(0.01).run(velocity=[0.5, 2, 12], until=5)
+    assert run._repr_svg_().startswith("<svg") and "Path of the body" in run.svg()
+    assert "<html" in run.html() and "500 steps of 0.01 s" in repr(run)
+    assert repr(top).startswith("<lagrangian Lagrangian on SO3: J_d=")
+
+
+def test_matplotlib_scipy_and_pandas_where_they_are(top):
+    run = top.stepper(0.01).run(velocity=[0.5, 2, 12], until=5, attitude=ls.euler(0.1, 0.4))
+    scipy = pytest.importorskip("scipy.spatial.transform", reason="SciPy isn't there")
+    assert abs(run.attitude.as_matrix() - run.matrix).max() < 1e-14
+    again = top.stepper(0.01).run(velocity=[0.5, 2, 12], until=5, attitude=scipy.Rotation.from_quat(ls.euler(0.1, 0.4), scalar_first=True))
+    assert (again.momentum == run.momentum).all()
+    pandas = pytest.importorskip("pandas", reason="pandas isn't there")
+    assert isinstance(run.to_pandas(), pandas.DataFrame)
+    matplotlib = pytest.importorskip("matplotlib", reason="matplotlib isn't there")
+    matplotlib.use("Agg")
+    assert len(run.plot()) == 2
+
+
+def _share(arguments):
+    ensemble, folder, share = arguments
+    return ensemble.run(folder, until=1, share=share, threads=1, progress=False).missing
+
+
+def test_dask_takes_shares(top, tmp_path):
+    distributed = pytest.importorskip("dask.distributed", reason="Dask isn't there")
+    whole = many(top).run(tmp_path / "whole", until=1, progress=False)
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True) as cluster:
+        with distributed.Client(cluster) as client:
+            work = [(many(top), str(tmp_path / "dask"), f"{share}/4") for share in range(4)]
+            client.gather(client.map(_share, work, pure=False))
+    both = many(top).run(tmp_path / "dask", until=1, progress=False)
+    assert both.missing == 0 and (both["momentum_x"] == whole["momentum_x"]).all()
+
+
+def test_ray_takes_shares(top, tmp_path):
+    ray = pytest.importorskip("ray", reason="Ray isn't there")
+    whole = many(top).run(tmp_path / "whole", until=1, progress=False)
+    ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False)
+    try:
+        task = ray.remote(_share)
+        ray.get([task.remote((many(top), str(tmp_path / "ray"), f"{share}/4")) for share in range(4)])
+    finally:
+        ray.shutdown()
+    both = many(top).run(tmp_path / "ray", until=1, progress=False)
+    assert both.missing == 0 and (both["momentum_x"] == whole["momentum_x"]).all()

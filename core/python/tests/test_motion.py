@@ -1,0 +1,148 @@
+"""The numbers of (3.13): what is kept, references of many digits, orders, bits."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from conftest import heavy_top, numbers, read
+
+import liestep as ls
+
+START = {"attitude": ls.euler(0.0, 0.8), "velocity": [0.5, 2.0, 12.0]}
+
+
+def test_the_top_of_the_readme_keeps_what_it_should(top):
+    run = top.stepper(0.01).run(**START, until=100)
+    assert run.steps == 10_000
+    assert abs(run.spatial_momentum[:, 2] - run.spatial_momentum[0, 2]).max() < 1e-11
+    assert abs(run.energy - run.energy[0]).max() < 1e-2
+    assert run["defect"].max() < 1e-12
+
+
+@pytest.mark.parametrize("entry", [e for e in read("golden_steps")["steps"] if e["l_d"] == "dmv_trapezoid_(3.13)"],
+                         ids=lambda entry: f"{entry['case']}-{entry['h']}")
+def test_golden_steps(entry):
+    J_d, seen, before = (numbers(entry[key]) for key in ("J_d", "w0", "Pi0"))
+    J = J_d.sum() - J_d
+    # An attitude that sees the vertical so: its third row.
+    first = np.cross(seen, [0.3, 1.0, 0.2])
+    first /= np.linalg.norm(first)
+    attitude = np.array([first, np.cross(seen, first), seen])
+    top = heavy_top(J_d=J_d, g=float(entry["mg"]), rho=numbers(entry["rho"]))
+    h = float(entry["h"])
+    run = top.stepper(h).run(attitude=attitude, velocity=before / J, until=10 * h)
+    for row, name in ((1, "1"), (10, "10")):
+        expected = numbers(entry[f"Pi{name}"])
+        assert np.linalg.norm(run.momentum[row] - expected) < 2e-13 * np.linalg.norm(expected)
+        assert np.linalg.norm(run.matrix[row].T[:, 2] - numbers(entry[f"w{name}"])) < 2e-13
+    step = run.matrix[0].T @ run.matrix[1]
+    assert abs(step - numbers(entry["F0"])).max() < 2e-14
+
+
+METHODS = [
+    ({}, 2), ({"composition": "Suzuki 4"}, 4), ({"splitting": "Strang"}, 2), ({"collocation": 4}, 8),
+]
+
+
+@pytest.mark.parametrize(("method", "order"), METHODS, ids=lambda value: str(value))
+def test_orders_against_a_reference_of_30_digits(method, order):
+    data = read("thesis_looping_A_Jd221")
+    state = data["states"][0]
+    start = {"attitude": numbers(data["initial"]["R"]), "velocity": numbers(data["initial"]["Omega"])}
+    until, momentum = float(state["t"]), numbers(state["Pi"])
+    steps = {2: (100, 200), 4: (40, 80), 8: (8, 16)}[order]
+    errors = [
+        np.linalg.norm(heavy_top().stepper(until / n, **method).run(**start, until=until).momentum[-1] - momentum)
+        for n in steps
+    ]
+    assert np.log2(errors[0] / errors[1]) > order - 0.35, errors
+
+
+def test_an_accuracy_is_reached():
+    data = read("thesis_looping_A_Jd221")
+    state = data["states"][0]
+    start = {"attitude": numbers(data["initial"]["R"]), "velocity": numbers(data["initial"]["Omega"])}
+    run = heavy_top().for_accuracy(1e-9, **start, until=float(state["t"]))
+    assert np.linalg.norm(run.momentum[-1] - numbers(state["Pi"])) < 1e-7
+    assert run.error < 1e-9 and "method" in run.choice
+
+
+def test_a_sum_of_the_library_is_the_declaration(top):
+    summed = ls.body([3, 3, 4]) + ls.gravity(m=1, rho=[0, 0, 1])
+    one, other = (term.stepper(0.01).run(**START, until=5) for term in (top, summed))
+    assert abs(one.momentum - other.momentum).max() < 1e-11
+
+
+def test_liberties_of_notation_change_no_bit(top):
+    free = ls.lagrangian(
+        "SO3", advected={"w": "up"},
+        l_d="((F - I) * J_d * (F - I).transpose()).trace() / (2 * h) - 1/2 * h * m * g * w.dot(rho + F * rho)",
+        J_d=[2, 2, 1], m=1, g=9.81, rho=[0, 0, 1], up=[0, 0, 1],
+    )
+    one, other = (term.stepper(0.01).run(**START, until=5) for term in (top, free))
+    assert (one.momentum == other.momentum).all() and (one.quaternion == other.quaternion).all()
+
+
+# `cargo run --release --example beside -- bits` prints these: the compiled declaration, a thousand steps.
+BITS = None
+
+
+def test_steps_have_the_bits_of_the_compiled_declaration(top):
+    if BITS is None:
+        pytest.skip("no bits were recorded")
+    run = top.stepper(0.01).run(velocity=[0.5, 2.0, 12.0], until=10, every=1000)
+    assert [float.hex(number) for number in run.momentum[-1]] == BITS
+
+
+def test_a_force_takes_energy_and_a_sum_of_forces_more():
+    J = [1, 2, 2.5]
+    once, twice = ls.body(J) + ls.drag(c=0.1, J=J), ls.body(J) + ls.drag(c=0.1, J=J) + ls.drag(c=0.1, J=J)
+    ends = [term.stepper(0.01).run(velocity=[0.1, 1, 0.1], until=5).energy for term in (once, twice)]
+    assert ends[0][0] > ends[0][-1] > ends[1][-1]
+    # A drag of c turns momentum by exp(−c tr(J⁻¹)/2 … t) or so; it is written by hand for a spin about one axis.
+    axis = ls.body(J) + ls.drag(c=0.1, J=J)
+    run = axis.stepper(0.001).run(velocity=[0, 0, 1], until=5)
+    assert abs(run.momentum[-1, 2] - 2.5 * np.exp(-0.1 * 5 / 2.5)) < 1e-6
+
+
+def test_events_are_found_between_steps(top):
+    run = top.stepper(0.01).run(**START, until=20, events={"low": "tilt > 50 deg", "turn": "velocity_x = 0"})
+    assert len(run.events["low"]) > 3 and len(run.events["turn"]) > 10
+    assert abs(np.degrees(np.arccos(ls_axis(run.events["low"]))) - 50).max() < 1e-9
+    assert abs(run.events["turn"]["velocity_x"]).max() < 1e-9
+    stopped = top.stepper(0.01).run(**START, until=20, events={"low": "tilt > 50 deg, stop"})
+    assert stopped.ended_by == "low" and stopped.time[-1] < 20
+
+
+def ls_axis(columns):
+    """The cosine of the tilt, of the quaternions."""
+    w, x, y, z = columns.group("q_").T
+    return 1 - 2 * (x * x + y * y)
+
+
+def test_dense_output_is_the_path_between(top):
+    times = [0.0, 0.003, 0.01, 1.2345]
+    run = top.stepper(0.01).run(**START, until=2, times=times)
+    assert run.time.tolist() == times
+    every = top.stepper(0.01).run(**START, until=2)
+    assert (run.momentum[2] == every.momentum[1]).all()
+    assert abs(run.momentum[1] - every.momentum[0]).max() < 0.2
+
+
+def test_compensated_sums_lose_less():
+    body = ls.body([1, 2, 2.5])
+    runs = [body.stepper(1e-3, compensated=c).run(velocity=[0.1, 2, 0.2], until=100, every=1000) for c in (False, True)]
+    plain, careful = (abs(run.spatial_momentum - run.spatial_momentum[0]).max() for run in runs)
+    assert careful < 1e-14 and 3 * careful < plain < 1e-11
+
+
+def test_other_groups():
+    free = ls.lagrangian("SE3", l_d="((F - I) * K * (F - I).transpose()).trace() / (2 * h) - h * w.dot(d)",
+                         advected={"w": "up"}, K=np.diag([2, 2, 1, 1.0]), up=[0, 0, 0, 0], d=[0, 0, 1, 0])
+    run = free.stepper(0.01).run(velocity=[0.1, 0.2, 3, 1, 0, 0], until=1)
+    assert abs(run.energy - run.energy[0]).max() < 1e-3 and len(run.velocity[0]) == 6
+    point = ls.lagrangian("R1", advected={"x": "place"}, place=[0.0],
+                          l="v.dot(v) / 2 - x.dot(x) / 2", velocity="v", discretise="trapezoid")
+    swing = point.stepper(0.01).run(velocity=[1.0], until=10)
+    # What the body sees of a point at the origin is minus where it is.
+    assert abs(swing.group("g_")[-1, 1] - np.sin(10)) < 1e-3
