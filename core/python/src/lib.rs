@@ -43,7 +43,13 @@ impl Derived {
     /// What was derived, as text.
     #[getter]
     fn derivation(&self) -> &'static str {
-        self.0.derivation
+        &self.0.derivation
+    }
+
+    /// The equations as LaTeX.
+    #[getter]
+    fn latex(&self) -> String {
+        liestep_late::latex(self.0)
     }
 
     #[getter]

@@ -8,11 +8,11 @@ use liestep::groups::{
     Advected, CayleyRetraction, Configuration, Heisenberg, LieGroup, R1, R2, R3, Retraction, SE2, SE3, SL2, SO2, SU2,
     SeenFrom,
 };
-use liestep::mechanics::{KineticPart, Scene as Stepped, Sum, WithExpensiveKinetic, WithKinetic, WithoutKinetic};
+use liestep::mechanics::{KineticPart, Scene as Stepped, Sum, WithEitherKinetic, WithoutKinetic};
 use liestep::motion::{AnyState, AnyStepper};
 use liestep::numbers::Entries;
 use liestep::{SetupError, Stepper};
-use liestep_late::{Declaration, Late, LateError, Slots};
+use liestep_late::{Declaration, LateError, Slots};
 use nalgebra::{Matrix4, Point1, Point2, Point3, Quaternion, UnitQuaternion};
 
 use crate::ensemble::{Draws, Members, Outcome, run_members};
@@ -22,6 +22,16 @@ use crate::run::{Course, Recorded, Start, record};
 
 /// Values of parameters, by their names.
 pub(crate) type Numbers = Vec<(String, Vec<f64>)>;
+
+/// Programs are machine code where the feature asks for it, and else interpreted: the bits are the same.
+#[cfg(feature = "machine")]
+type Backend = liestep_machine::Machine;
+#[cfg(not(feature = "machine"))]
+type Backend = liestep_late::Interpreted;
+
+type Late<G, W, K> = liestep_late::Late<G, W, K, Backend>;
+type Lagrangian<G, W> = Late<G, W, WithEitherKinetic>;
+type Force<G, W> = Late<G, W, WithoutKinetic>;
 
 /// What a program that is running has declared.
 pub(crate) trait Scene: Send + Sync {
@@ -37,14 +47,14 @@ pub(crate) trait Scene: Send + Sync {
 }
 
 /// A Lagrangian, and the sum of forces if there is one.
-struct Declared<G: LieGroup, W, K> {
-    lagrangian: Late<G, W, K>,
+struct Declared<G: LieGroup<Scalar = f64>, W> {
+    lagrangian: Lagrangian<G, W>,
     /// Of the Lagrangian, as they were given.
     numbers: Numbers,
-    force: Option<Late<G, W, WithoutKinetic>>,
+    force: Option<Force<G, W>>,
 }
 
-impl<G: LieGroup, W, K> Clone for Declared<G, W, K> {
+impl<G: LieGroup<Scalar = f64>, W> Clone for Declared<G, W> {
     fn clone(&self) -> Self {
         Self { lagrangian: self.lagrangian.clone(), numbers: self.numbers.clone(), force: self.force.clone() }
     }
@@ -66,15 +76,14 @@ macro_rules! with_stepper {
     };
 }
 
-impl<G, W, K> Scene for Declared<G, W, K>
+impl<G, W> Scene for Declared<G, W>
 where
-    G: LieGroup<Scalar = f64> + Methods<Late<G, W, K>> + liestep::accuracy::Steppable<Late<G, W, K>>,
+    G: LieGroup<Scalar = f64> + Methods<Lagrangian<G, W>> + liestep::accuracy::Steppable<Lagrangian<G, W>>,
     W: Advected<G> + Slots + Send + Sync + 'static,
-    K: KineticPart + Send + Sync + 'static,
     CayleyRetraction: Retraction<G>,
-    Late<G, W, K>: Stepped<Scalar = f64, Group = G, Advected = W> + Send + Sync,
-    Sum<Late<G, W, K>, Late<G, W, WithoutKinetic>>: Stepped<Scalar = f64, Group = G, Advected = (W, W)>,
-    Late<G, W, WithoutKinetic>: Send + Sync,
+    Lagrangian<G, W>: Stepped<Scalar = f64, Group = G, Advected = W> + Send + Sync,
+    Sum<Lagrangian<G, W>, Force<G, W>>: Stepped<Scalar = f64, Group = G, Advected = (W, W)>,
+    Force<G, W>: Send + Sync,
 {
     fn check(&self, method: (Method, f64)) -> Result<(), Failure> {
         with_stepper!(self, (method.0, method.1), |stepper| {
@@ -200,15 +209,14 @@ where
 }
 
 impl Fits<'_> {
-    fn to<G, W, K>(&self) -> Result<Arc<dyn Scene>, LateError>
+    fn to<G, W>(&self) -> Result<Arc<dyn Scene>, LateError>
     where
         G: LieGroup<Scalar = f64>,
         W: Advected<G> + Slots + 'static,
-        K: KineticPart,
-        Declared<G, W, K>: Scene + 'static,
+        Declared<G, W>: Scene + 'static,
     {
         let force = self.force.map(numbered).transpose()?;
-        Ok(Arc::new(Declared::<G, W, K> {
+        Ok(Arc::new(Declared::<G, W> {
             lagrangian: numbered(self.lagrangian)?,
             numbers: self.lagrangian.1.clone(),
             force,
@@ -230,12 +238,7 @@ pub(crate) fn scene(
     }
     macro_rules! first_that_fits {
         ($($group:ty: $($carried:ty),+;)+) => {$($(
-            let found = if lagrangian.0.is_expensive {
-                fits.to::<$group, $carried, WithExpensiveKinetic>()
-            } else {
-                fits.to::<$group, $carried, WithKinetic>()
-            };
-            match found {
+            match fits.to::<$group, $carried>() {
                 Err(LateError::Group { .. } | LateError::Advected { .. }) => {}
                 other => return other.map_err(Failure::from),
             }
@@ -249,14 +252,14 @@ pub(crate) fn scene(
         SE3: V<4>, Point3<f64>;
         SU2: ();
         SL2: V<2>;
-        R1: Point1<f64>;
-        R2: Point2<f64>;
-        R3: Point3<f64>;
+        R1: V<2>, Point1<f64>;
+        R2: V<3>, Point2<f64>;
+        R3: V<4>, Point3<f64>;
         Heisenberg: ();
         (SO3, SO3): Two<V<3>>;
         (SO3, R3): Configuration<1, Matrix4<f64>>, (SeenFrom<0, V<3>>, Configuration<1, Matrix4<f64>>);
     }
-    let known = "on SO3 up to four vectors in space are advected, on SO2, SL2, SE2 and SE3 one vector or point, on \
+    let known = "on SO3 up to four vectors in space are advected, on SO2, SL2, SE2, SE3, R1, R2 and R3 one vector or point, on \
                  (SO3, SO3) one vector seen from each, on (SO3, R3) one vector seen from the body and where the other is";
     let (declared, carried) = (lagrangian.0.group(), lagrangian.0.carried.len());
     let message = format!("{declared} with these {carried} advected parameters isn't in this build: {known}");

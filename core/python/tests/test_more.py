@@ -92,7 +92,8 @@ def test_hostile_ensembles(top, wrong):
 
 
 def test_what_a_notebook_shows(top):
-    assert "h·" in top._repr_markdown_() or "Newton" in top._repr_markdown_()
+    assert "align*" in top._repr_latex_() and top.derivation.strip() in top._repr_markdown_()
+    assert "operations" in top.derivation and "conserved" in top.derivation
     run = top.stepper(0.01).run(velocity=[0.5, 2, 12], until=5)
     assert run._repr_svg_().startswith("<svg") and "Path of the body" in run.svg()
     assert "<html" in run.html() and "500 steps of 0.01 s" in repr(run)

@@ -136,13 +136,23 @@ def test_compensated_sums_lose_less():
     assert careful < 1e-14 and 3 * careful < plain < 1e-11
 
 
-def test_other_groups():
-    free = ls.lagrangian("SE3", l_d="((F - I) * K * (F - I).transpose()).trace() / (2 * h) - h * w.dot(d)",
-                         advected={"w": "up"}, K=np.diag([2, 2, 1, 1.0]), up=[0, 0, 0, 0], d=[0, 0, 1, 0])
-    run = free.stepper(0.01).run(velocity=[0.1, 0.2, 3, 1, 0, 0], until=1)
-    assert abs(run.energy - run.energy[0]).max() < 1e-3 and len(run.velocity[0]) == 6
-    point = ls.lagrangian("R1", advected={"x": "place"}, place=[0.0],
-                          l="v.dot(v) / 2 - x.dot(x) / 2", velocity="v", discretise="trapezoid")
-    swing = point.stepper(0.01).run(velocity=[1.0], until=10)
-    # What the body sees of a point at the origin is minus where it is.
-    assert abs(swing.group("g_")[-1, 1] - np.sin(10)) < 1e-3
+def test_a_particle_falls_on_a_parabola():
+    particle = ls.lagrangian(
+        "R2", advected={"w": "up"}, m=1.5, g=9.81, origin=[0, 0, 1], up=[0, 1, 0],
+        l_d="m * (F - I).norm_squared() / (2 * h) - h/2 * m * g * w.dot(origin + F * origin)",
+    )
+    run = particle.stepper(0.1).run(velocity=[3, 4], until=1)
+    assert run.names[1:7] == ["g_11", "g_12", "g_13", "g_21", "g_22", "g_23"]
+    assert abs(run["g_13"][-1] - 3) < 1e-13 and abs(run["g_23"][-1] - (4 - 9.81 / 2)) < 1e-13
+
+
+def test_a_body_with_its_place():
+    body = ls.lagrangian(
+        "SE3", advected={"w": "up"}, J=np.diag([2, 2, 1, 1.0]), g=9.81, r=[0, 0, 0, 1], up=[0, 0, 1, 0],
+        l_d="((F - I) * J * (F - I).transpose()).trace() / (2 * h) - h/2 * g * w.dot(r + F * r)",
+    )
+    run = body.stepper(0.01).run(velocity=[0.1, 0.2, 3, 1, 0, 0], until=1)
+    assert run.velocity.shape == (101, 6)
+    assert abs(run.energy - run.energy[0]).max() < 1e-2
+    place = run.group("g_").reshape(-1, 4, 4)[-1, :3, 3]
+    assert abs(place - [1, 0, -9.81 / 2]).max() < 0.2

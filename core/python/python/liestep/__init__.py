@@ -10,7 +10,7 @@ True
 """
 
 from . import errors
-from ._declared import Term, force, lagrangian
+from ._declared import Term, force, lagrangian, point
 from ._ensemble import Ensemble, Many, Spread, normal, rotation, uniform
 from ._library import (
     body, dipole, drag, gravity, gravity_gradient, magnetic_damping, nonstandard, rotor, spring, thrust, torque,
@@ -23,6 +23,6 @@ __version__ = "0.1.0"
 __all__ = [
     "Columns", "DeclarationError", "Ensemble", "Error", "Happenings", "Many", "Run", "Scene", "SceneError", "SceneRun",
     "SetupError", "Spread", "StepError", "Stepper", "StoreError", "Term", "body", "dipole", "drag", "errors", "euler",
-    "force", "gravity", "gravity_gradient", "lagrangian", "magnetic_damping", "nonstandard", "normal", "rotation",
+    "force", "gravity", "gravity_gradient", "lagrangian", "magnetic_damping", "nonstandard", "normal", "point", "rotation",
     "rotor", "scene", "schemes", "spring", "thrust", "torque", "translation", "uniform",
 ]

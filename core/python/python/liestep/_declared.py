@@ -19,9 +19,35 @@ Value = tuple[str, tuple[float, ...]]
 Group = str | Mapping[str, str]
 
 
+@dataclass(frozen=True)
+class Point:
+    """A point fixed in space, made by `point`."""
+
+    coordinates: tuple[float, ...]
+
+
+def point(coordinates: Any) -> Point:
+    """A point fixed in space, on a group of affine maps: where `advected` a vector would be a direction.
+
+    Examples
+    --------
+    >>> import liestep as ls
+    >>> ls.point([1, 2, 3]).coordinates
+    (1.0, 2.0, 3.0)
+    """
+    import numpy as np
+
+    array = np.asarray(coordinates, dtype=float)
+    if array.ndim != 1 or not 0 < array.size < 4:
+        raise DeclarationError(f"a point has one to three coordinates, not the shape {array.shape}")
+    return Point(tuple(array.tolist()))
+
+
 def _value(name: str, value: Any) -> Value:
     import numpy as np
 
+    if isinstance(value, Point):
+        return f"Point{len(value.coordinates)}<f64>", value.coordinates
     try:
         array = np.asarray(value, dtype=float)
     except (TypeError, ValueError, OverflowError) as error:
@@ -36,10 +62,10 @@ def _value(name: str, value: Any) -> Value:
     match array.shape:
         case ():
             return "f64", numbers
-        case (rows,) if 0 < rows < 7:
-            return (f"SVector<f64, {rows}>" if rows > 6 else f"Vector{rows}<f64>"), numbers
-        case (rows, columns) if rows == columns and 0 < rows < 7:
-            return f"Matrix{rows}<f64>", numbers
+        case (rows,) if rows > 0:
+            return f"SVector<f64, {rows}>", numbers
+        case (rows, columns) if rows == columns > 0:
+            return f"SMatrix<f64, {rows}, {rows}>", numbers
     raise DeclarationError(f"`{name}` has the shape {array.shape}: give a number, a vector or a square matrix")
 
 
@@ -112,6 +138,12 @@ class Term:
         """What was derived, as text: the momentum, the equation of a step, its Jacobian, and how it was proved."""
         own = self._derived().derivation
         return "\n".join([own, *(force.derivation for force in self.forces)])
+
+    @property
+    def latex(self) -> str:
+        """The equations as LaTeX, an ``align*`` for each term."""
+        own = self._derived().latex
+        return "\n".join([own, *(force.latex for force in self.forces)])
 
     @property
     def parameters(self) -> dict[str, Any]:
@@ -189,8 +221,13 @@ class Term:
         numbers = ", ".join(f"{name}={value}" for name, value in self.parameters.items())
         return f"<{self.role} {self.name} on {self.group.removeprefix('group = ')}: {numbers}>".replace("\n", "")
 
+    def _repr_latex_(self) -> str:
+        return self.latex
+
     def _repr_markdown_(self) -> str:
-        return f"**{self.name}**\n\n```text\n{self.derivation.strip()}\n```"
+        # Counts, what is conserved and how it was proved stand below the equations.
+        text = self.derivation.strip()
+        return f"**{self.name}**\n\n{self.latex}\n\n<details><summary>as text</summary>\n\n```text\n{text}\n```\n</details>"
 
 
 def _summed(terms: tuple[Term, ...]) -> Term:
@@ -214,7 +251,7 @@ def _summed(terms: tuple[Term, ...]) -> Term:
         advected = {names.get(name, name): _renamed(source, names) for name, source in other.advected.items()}
         first = replace(
             first,
-            text=f"{first.text}\n + ({_renamed(other.text, names)})",
+            text=f"({first.text})\n + ({_renamed(other.text, names)})",
             numbers={**first.numbers, **numbers},
             advected={**first.advected, **advected},
             name=f"{first.name} + {other.name}",
@@ -247,7 +284,7 @@ def lagrangian(
     velocity : str
         What the velocity is called in `l`; of several bodies names with commas.
     **parameters
-        Numbers, vectors and square matrices by their names. Names that begin with ``J`` are inertias, kg m², given by a
+        Numbers, vectors, square matrices and points (`liestep.point`) by their names. Names that begin with ``J`` are inertias, kg m², given by a
         matrix or by three moments; those that end in ``_d`` nonstandard ones.
 
     Returns

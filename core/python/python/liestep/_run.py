@@ -107,8 +107,9 @@ class Run(Columns):
         By the names of the events.
     ended_by : str or None
         The event that stopped it.
-    choice, error : str and float, or None
-        Where an accuracy was asked for: the table of all methods, and the error that was measured.
+    choice, error, method : str, float and dict, or None
+        Where an accuracy was asked for: the table of all methods, the error that was measured, and the arguments of
+        `liestep.Stepper` that make the same steps.
     """
 
     def __init__(self, title: str, about: str, step: float, made: dict[str, Any], names: list[str]) -> None:
@@ -124,6 +125,7 @@ class Run(Columns):
         self.ended_by: str | None = None if ending is None else names[ending]
         self.choice: str | None = made.get("choice")
         self.error: float | None = made.get("error")
+        self.method: dict[str, Any] | None = None
 
     @property
     def time(self) -> Array:

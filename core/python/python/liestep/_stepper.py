@@ -292,7 +292,20 @@ def accurate(
     course = _course(until, every, times, events)
     made = term._scene().ask(float(tolerance), _start(attitude, velocity), course)
     about = f"steps of {made['step']:.4g} s by {made['method']}"
-    return _finished(term, made["step"], made, list(events or {}), about)
+    run = _finished(term, made["step"], made, list(events or {}), about)
+    run.method = _method(made["method"])
+    return run
+
+
+def _method(name: str) -> dict[str, Any]:
+    """The arguments of `Stepper` for what the search calls a method."""
+    if name in ("its own step", "exact"):
+        # Nothing is kicked: any splitting is the exact motion.
+        return {} if name == "its own step" else {"splitting": "Strang"}
+    if stages := re.search(r"(\d+) stages", name):
+        return {"collocation": int(stages[1])}
+    scheme = name.removeprefix("exact, ")
+    return {kind: scheme for kind, known in schemes().items() if scheme in known}
 
 
 def schemes() -> dict[str, list[str]]:
