@@ -7,9 +7,6 @@
 //! cargo run --release --example elastic-rod -- count middle 100 50   steps of one of them, to count instructions
 //! ```
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use core::array::from_fn;
 use std::error::Error;
 use std::time::Instant;

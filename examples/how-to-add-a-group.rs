@@ -5,9 +5,6 @@
 //! cargo test --example how-to-add-a-group         runs the laws, too
 //! ```
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use std::error::Error;
 
 use liestep::groups::LieGroup as _;

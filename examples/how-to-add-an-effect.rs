@@ -4,9 +4,6 @@
 //! cargo run --example how-to-add-an-effect
 //! ```
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use std::error::Error;
 
 use liestep::effects::{Gravity, RigidBody};

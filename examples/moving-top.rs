@@ -195,7 +195,7 @@ impl Timing {
     }
 }
 
-/// The picture of these axes and marks at equal times, of a motion that takes so many seconds.
+/// The picture of these axes and marks at equal times, of a motion that takes this number of seconds.
 fn drawn(motion: &[[Vector3<f64>; 2]], duration: f64) -> String {
     let (sine, cosine) = ELEVATION.sin_cos();
     let view = View([Vector3::y(), Vector3::new(-sine, 0.0, cosine), Vector3::new(cosine, 0.0, sine)]);

@@ -7,9 +7,6 @@
 //! cargo run --release --example ring-of-links -- count 100 50   steps of a chain of a hundred, to count instructions
 //! ```
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use core::array::from_fn;
 use std::error::Error;
 use std::f64::consts::{FRAC_PI_2, TAU};

@@ -113,104 +113,50 @@ pub fn validate_scalar<T: Real>(value: T, field: &'static str) -> Result<(), Set
     if crate::numbers::is_finite(value) { Ok(()) } else { Err(SetupError::Parameter { field, cause: "is not finite" }) }
 }
 
-/// The value of a vector or a matrix is itself, that of an inertia its matrix.
-impl<T: Real, const R: usize, const C: usize> Parameter for SMatrix<T, R, C> {
-    type Value = Self;
-    type Scalar = T;
-
-    #[hot]
-    fn value(&self) -> Self {
-        *self
-    }
-
-    fn describe(&self, field: &'static str, visitor: &mut dyn SceneVisitor<T>) {
-        self.each(&mut |entry| visitor.parameter(field, entry));
-    }
-
-    fn is_finite(&self) -> bool {
-        self.iter().all(|&entry| crate::numbers::is_finite(entry))
-    }
-}
-
-macro_rules! inertia_parameter {
-    ($type:ty, $get:expr) => {
-        impl<T: Real> Parameter for $type {
-            type Value = Matrix3<T>;
+/// Parameters with entries: the value that an expression computes with, and the entries that are shown and looked at where
+/// they aren't those of the value.
+macro_rules! parameters {
+    ($($type:ty $(where $(const $n:ident),+)?: $value:ty = |$of:ident| $get:expr $(, $entries:expr)?;)+) => {$(
+        impl<T: Real $($(, const $n: usize)+)?> Parameter for $type {
+            type Value = $value;
             type Scalar = T;
 
             #[hot]
-            fn value(&self) -> Matrix3<T> {
-                $get(self)
+            fn value(&self) -> $value {
+                let $of = self;
+                $get
             }
 
             fn describe(&self, field: &'static str, visitor: &mut dyn SceneVisitor<T>) {
-                self.value().each(&mut |entry| visitor.parameter(field, entry));
+                parameters!(@entries self $of $(, $entries)?).each(&mut |entry| visitor.parameter(field, entry));
             }
 
             fn is_finite(&self) -> bool {
-                Parameter::value(self).is_finite()
+                let mut is_finite = true;
+                let look = &mut |entry| is_finite &= crate::numbers::is_finite(entry);
+                parameters!(@entries self $of $(, $entries)?).each(look);
+                is_finite
             }
         }
-    };
+    )+};
+    (@entries $self:ident $of:ident) => { Parameter::value($self) };
+    (@entries $self:ident $of:ident, $entries:expr) => {{ let $of = $self; $entries }};
 }
 
-inertia_parameter!(NonstandardInertia<T>, |inertia: &Self| *inertia.as_matrix());
-inertia_parameter!(Inertia<T>, |inertia: &Self| *inertia.as_matrix());
-inertia_parameter!(DiagonalNonstandardInertia<T>, Self::to_matrix);
-
-macro_rules! advected_parameter {
-    ($($name:ident $value:ident<$($argument:ident),+>),+) => {
-        $(impl<T: Real, const N: usize> Parameter for $name<T, N> {
-            type Value = $value<$($argument),+>;
-            type Scalar = T;
-
-            #[hot]
-            fn value(&self) -> Self::Value {
-                self.0
-            }
-
-            fn describe(&self, field: &'static str, visitor: &mut dyn SceneVisitor<T>) {
-                self.0.each(&mut |entry| visitor.parameter(field, entry));
-            }
-
-            fn is_finite(&self) -> bool {
-                Parameter::is_finite(&self.0)
-            }
-        })+
-    };
+parameters! {
+    SMatrix<T, R, C> where const R, const C: Self = |matrix| *matrix;
+    NonstandardInertia<T>: Matrix3<T> = |inertia| *inertia.as_matrix();
+    Inertia<T>: Matrix3<T> = |inertia| *inertia.as_matrix();
+    DiagonalNonstandardInertia<T>: Matrix3<T> = |inertia| inertia.to_matrix();
+    ContravariantVector<T, N> where const N: SVector<T, N> = |vector| vector.0;
+    ContravariantTensor<T, N> where const N: SMatrix<T, N, N> = |tensor| tensor.0;
+    CovariantTensor<T, N> where const N: SMatrix<T, N, N> = |tensor| tensor.0;
+    MixedTensor<T, N> where const N: SMatrix<T, N, N> = |tensor| tensor.0;
+    // The expression computes with homogeneous coordinates.
+    Point<T, 1>: SVector<T, 2> = |point| homogeneous(point), point.coords;
+    Point<T, 2>: SVector<T, 3> = |point| homogeneous(point), point.coords;
+    Point<T, 3>: SVector<T, 4> = |point| homogeneous(point), point.coords;
 }
-
-advected_parameter!(
-    ContravariantVector SVector<T, N>,
-    ContravariantTensor SMatrix<T, N, N>,
-    CovariantTensor SMatrix<T, N, N>,
-    MixedTensor SMatrix<T, N, N>
-);
-
-macro_rules! point_parameter {
-    ($($dimension:literal in $size:literal),+) => {
-        $(impl<T: Real> Parameter for Point<T, $dimension> {
-            type Value = SVector<T, $size>;
-            type Scalar = T;
-
-            #[hot]
-            fn value(&self) -> SVector<T, $size> {
-                homogeneous(self)
-            }
-
-            fn describe(&self, field: &'static str, visitor: &mut dyn SceneVisitor<T>) {
-                self.each(&mut |entry| visitor.parameter(field, entry));
-            }
-
-            fn is_finite(&self) -> bool {
-                Parameter::is_finite(&self.coords)
-            }
-        })+
-    };
-}
-
-// The expression computes with homogeneous coordinates.
-point_parameter!(1 in 2, 2 in 3, 3 in 4);
 
 impl<K: Generators<N, D>, T, const N: usize, const D: usize> MatrixGroup<K, T, N, D> {
     /// Whether an expansion has the generators of this group, by rows.

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-/// What each room may import besides itself, as `src/lib.rs` draws it. Documentation may name everything.
+/// What each room may import besides itself, as `src/lib.md` draws it. Documentation may name everything.
 const MAY_IMPORT: [(&str, &[&str]); 16] = [
     ("error", &[]),
     ("numbers", &[]),
@@ -115,6 +115,7 @@ fn chapters() -> Vec<(String, String)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/guide");
     let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     files
+        .filter(|path| path.extension().is_some_and(|extension| extension == "md"))
         .map(|path| (path.file_stem().unwrap().to_str().unwrap().to_owned(), fs::read_to_string(path).unwrap()))
         .collect()
 }
@@ -140,14 +141,14 @@ fn the_guide_and_readme_name_files_that_there_are() {
 #[test]
 fn every_chapter_is_listed_and_leads_on() {
     let chapters = chapters();
-    let (_, list) = chapters.iter().find(|(name, _)| name == "mod").unwrap();
-    for (name, text) in chapters.iter().filter(|(name, _)| name != "mod") {
+    let (_, list) = chapters.iter().find(|(name, _)| name == "README").unwrap();
+    for (name, text) in chapters.iter().filter(|(name, _)| name != "README") {
         assert!(list.contains(&format!("| [`{name}`] |")), "the list has no {name}");
         assert!(text.lines().count() <= 400, "{name} is too long to be read at once");
     }
     // From the first to the last, each once; who comes from the thesis has read another way before.
     let mut left: BTreeSet<&str> = chapters.iter().map(|(name, _)| name.as_str()).collect();
-    left.remove("mod");
+    left.remove("README");
     left.remove("thesis");
     let mut now = "first_program";
     loop {

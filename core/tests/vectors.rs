@@ -3,8 +3,6 @@
 //! Only builds without debug assertions ask for these: `cargo test --release -p liestep --lib --test vectors`.
 
 #![cfg(not(debug_assertions))]
-// The letters of the field.
-#![allow(non_snake_case)]
 
 use liestep::effects::{Gravity, PrincipalBody};
 use liestep::mechanics::Sum;

@@ -5,10 +5,11 @@ use liestep::mechanics::{DiscreteLagrangian, Regular};
 use liestep::methods::{CompositionScheme, ExactBody, KineticFlow, ProcessedScheme, SplittingScheme, SymmetricBody};
 use liestep::motion::Plan;
 use liestep::prelude::*;
+use workbench::top_equations::rk4_step;
 
 use crate::rivals::dop853::Dop853;
 use crate::rivals::embedded::{self, Embedded};
-use crate::rivals::rates::{Rates, rk4_step};
+use crate::rivals::rates::Rates;
 use crate::rivals::tsitouras::Tsitouras5;
 use crate::rivals::verner::Verner9;
 use crate::scenes::{Kind, Scene};
@@ -240,7 +241,7 @@ fn rivals<E: Rates>(equations: impl Fn(&Scene) -> E + Copy + 'static) -> Vec<Met
         Some(Box::new(move || {
             let mut y = start;
             for _ in 0..steps {
-                y = rk4_step(&equations, h, &y);
+                y = rk4_step(|y| equations.rate(y), h, &y);
             }
             Some(equations.end(&y))
         }))

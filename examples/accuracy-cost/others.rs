@@ -1,8 +1,5 @@
 //! Three scenes more, with other potentials; their references are runs of high order with much shorter steps.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use std::error::Error;
 
 use declarations::motions::End;

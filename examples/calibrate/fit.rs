@@ -146,7 +146,7 @@ pub(crate) fn fit(readings: &[Vector3<f64>]) -> Result<Fitted, Failure> {
     Ok(Fitted { found: reference, rms, deviations })
 }
 
-/// Standard deviations of what a record of so many readings gives.
+/// Standard deviations of what a record of this number of readings gives.
 pub(crate) fn deviations(reference: &Reference, count: usize) -> Result<SVector<f64, FREE>, Failure> {
     let rows = reference.jacobian(&Numbers::zeros(), count)?;
     let jacobian = along(&rows, &directions(reference));

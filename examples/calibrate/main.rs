@@ -16,7 +16,7 @@
 //! assert that all are below three, which isn't so: of a hundred normal numbers that far off there are 0.27 on average.
 //! The seeds are fixed, so the test isn't one of luck.
 
-#![allow(non_snake_case, clippy::cast_precision_loss)] // the letters of the field; a thousand readings
+#![allow(clippy::cast_precision_loss)] // a thousand readings
 
 mod body;
 mod fit;
@@ -161,7 +161,7 @@ fn table(fits: &[Fitted]) -> Result<String, Failure> {
     Ok(text)
 }
 
-/// What the Jacobian of all readings costs; the fastest of many, by turns.
+/// What the Jacobian of all readings costs: the fastest of many, both ways in alternation.
 fn cost() -> Result<String, Failure> {
     let (reference, changes) = (truth(), Numbers::zeros());
     // Differences of as many numbers as are fitted.

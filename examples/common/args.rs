@@ -179,7 +179,7 @@ pub struct Schedule {
 pub struct Stretch {
     /// Where it ends, in steps from the start.
     pub end: u64,
-    /// A sample is kept every so many steps.
+    /// The number of steps between two samples.
     pub stride: u64,
 }
 
@@ -251,7 +251,7 @@ impl Common {
 }
 
 impl Schedule {
-    /// The time after so many steps, s.
+    /// The time after this number of steps, s.
     #[allow(clippy::cast_precision_loss)] // MOST_STEPS is below 2⁵³
     pub fn time_after(&self, steps: u64) -> f64 {
         self.step * steps as f64

@@ -14,13 +14,13 @@ pub struct Progress {
 const PAUSE: Duration = Duration::from_millis(200);
 
 impl Progress {
-    /// Of so many parts.
+    /// The number of parts.
     pub fn new(total: u64) -> Self {
         let next = io::stderr().is_terminal().then(|| Instant::now() + PAUSE);
         Self { total, done: 0, next }
     }
 
-    /// Names what is done now, after so many parts more.
+    /// Names what is done now, after this number of further parts.
     pub fn add(&mut self, parts: u64, now: &str) {
         self.done += parts;
         if let Some(next) = self.next.filter(|next| Instant::now() >= *next) {

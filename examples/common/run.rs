@@ -23,7 +23,7 @@ pub struct Sample {
 
 /// Something that steps.
 pub trait Method: Clone {
-    /// Makes so many steps, and returns how many Newton iterations that took; none for an explicit method.
+    /// Makes this number of steps, and returns the number of Newton iterations; none for an explicit method.
     fn advance(&mut self, steps: u64) -> Result<u64, Stopped>;
 
     /// The state as every method can give it.

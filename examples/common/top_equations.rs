@@ -59,16 +59,22 @@ impl Equations {
         ]
     }
 
-    /// A step of the classical method, with the quaternion brought back to unit length.
+    /// A step of the classical method, by [`rk4_step`].
     #[inline]
     pub fn rk4_step(&self, h: f64, y: &State) -> State {
-        let plus = |h: f64, k: &State| -> State { core::array::from_fn(|i| y[i] + h * k[i]) };
-        let k1 = self.rate(y);
-        let k2 = self.rate(&plus(0.5 * h, &k1));
-        let k3 = self.rate(&plus(0.5 * h, &k2));
-        let k4 = self.rate(&plus(h, &k3));
-        normalised(core::array::from_fn(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i])))
+        rk4_step(|y| self.rate(y), h, y)
     }
+}
+
+/// A step of the classical Runge–Kutta method, with the quaternion brought back to unit length.
+#[inline(always)]
+pub fn rk4_step(rate: impl Fn(&State) -> State, h: f64, y: &State) -> State {
+    let plus = |h: f64, k: &State| -> State { core::array::from_fn(|i| y[i] + h * k[i]) };
+    let k1 = rate(y);
+    let k2 = rate(&plus(0.5 * h, &k1));
+    let k3 = rate(&plus(0.5 * h, &k2));
+    let k4 = rate(&plus(h, &k3));
+    normalised(core::array::from_fn(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i])))
 }
 
 /// The quaternion brought back to unit length.

@@ -11,9 +11,6 @@
 //! 3. Coils of a satellite, switched by the B-dot law: each is on in the direction against the change of the field that
 //!    it sees. The satellite stops tumbling, down to a turn with the field.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use std::process::ExitCode;
 
 use declarations::{FluidDrag, Flyer, Thruster, Torquer};

@@ -1,7 +1,5 @@
 //! Declared systems, one to a file: what the derivation is shown on, and what the tests integrate.
 
-// The letters of the field.
-#![allow(non_snake_case)]
 // A library of this repository alone.
 #![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc)]
 #![allow(clippy::must_use_candidate, clippy::return_self_not_must_use)]

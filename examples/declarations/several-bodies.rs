@@ -11,9 +11,6 @@
 //!
 //! A chain of twenty rods is drawn by `hanging-chain`.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use std::process::ExitCode;
 
 use declarations::{DoublePendulum, SuspendedLoad, TwoBodies};

@@ -41,7 +41,6 @@ impl Grid {
 
     /// Two members for each point.
     #[must_use]
-    #[allow(non_snake_case)] // the letters of the field
     pub fn ensemble(self) -> Ensemble<Top> {
         let make = move |member: &Member<'_>| {
             let (tilt, spin) = self.point(member.number() / 2);

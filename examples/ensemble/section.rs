@@ -26,7 +26,7 @@ pub const LARGEST: f64 = 12.5;
 
 type Top = Stepper<Sum<PrincipalBody, Gravity>>;
 
-/// So many motions of so many steps.
+/// The ensemble of `members` motions, each of `steps` steps.
 #[must_use]
 pub fn ensemble(members: u64, steps: u64) -> Ensemble<Top> {
     let section = Section::new(Event::rising(), sections::plane(Vector3::y(), Vector3::z())).keep(
@@ -43,7 +43,6 @@ pub fn ensemble(members: u64, steps: u64) -> Ensemble<Top> {
 }
 
 /// On the section, somewhere.
-#[allow(non_snake_case)] // the letters of the field
 fn top(member: &Member<'_>) -> Result<(Top, <Top as liestep::motion::Integrator>::State), Failure> {
     let J_d = DiagonalNonstandardInertia::from_principal_moments(MOMENTS)?;
     let gravity = Gravity { m: 1.0, g: WEIGHT, rho: CENTRE, up: Vector3::z() };

@@ -51,7 +51,7 @@ impl Spin {
         Vector3::new(d.y + d.z, d.z + d.x, d.x + d.y)
     }
 
-    /// The derived integrator first, then the engines' updates and Runge–Kutta; so many steps, each `stride`th kept.
+    /// The derived integrator first, then the engines' updates and Runge–Kutta, with each `stride`th step kept.
     pub(crate) fn traces(&self, steps: u64, stride: u64) -> Result<Vec<Trace>, Failure> {
         let (attitude, rates, h) = (UnitQuaternion::identity(), self.velocity, self.h);
         let stepper = Stepper::new(self.body(), h)?;

@@ -73,7 +73,7 @@ pub(crate) struct Walk {
 const SAMPLE: u64 = 100;
 
 impl Walk {
-    /// A run of so many steps.
+    /// A run of this number of steps.
     pub(crate) fn from(momentum: &Vector3<f64>, w: &Vector3<f64>, steps: u64) -> Self {
         let start = (momentum.dot(w), momentum.z);
         let stride = (steps / LOOKS).next_multiple_of(SAMPLE);

@@ -5,7 +5,7 @@ use checks::structure::poisson::{TOLERANCE, defect_of};
 use declarations::{FourthOrderTop, FreeBody, FullTop, HeavyTop, LogTop, Motion, Top as _};
 use liestep::effects;
 use liestep::mechanics::{DiagonalNonstandardInertia, RigidScene};
-use liestep::methods::{Collocated, Gauss};
+use liestep::methods::{CollocationMemory, Gauss};
 use liestep::prelude::*;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use workbench::measure::relative;
@@ -17,9 +17,9 @@ use crate::many_digits::collocation::{self, Tableau};
 /// `L` of `PAIRS` pairs of stages after so many steps.
 fn run<L, const PAIRS: usize>(
     gauss: &Stepper<L, Gauss<L, PAIRS>>,
-    mut state: State<SO3, L::Advected, Collocated<PAIRS>>,
+    mut state: State<SO3, L::Advected, CollocationMemory<PAIRS>>,
     steps: u32,
-) -> State<SO3, L::Advected, Collocated<PAIRS>>
+) -> State<SO3, L::Advected, CollocationMemory<PAIRS>>
 where
     L: RigidScene<Scalar = f64>,
 {

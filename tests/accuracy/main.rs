@@ -3,9 +3,6 @@
 //!
 //! One crate, so that the declarations are expanded once, and a fast one.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 mod compensated;
 mod composition;
 mod conditions;

@@ -6,7 +6,7 @@ use std::process::Command;
 /// Why nothing was counted.
 pub(crate) type Uncounted = Box<dyn std::error::Error>;
 
-/// Instructions a step of a program whose last argument is a number of steps, from so many and twice as many.
+/// Instructions a step of a program whose last argument is a number of steps, from a run and one twice as long.
 #[allow(clippy::cast_precision_loss)] // far below 2⁵³
 pub(crate) fn instructions(program: &Path, arguments: &[&str], steps: u32) -> Result<f64, Uncounted> {
     let [once, twice] = [steps, 2 * steps].map(|steps| count(program, arguments, steps));

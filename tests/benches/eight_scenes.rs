@@ -1,8 +1,5 @@
 //! Scenes of several bodies. Each stands eight times, from eight different starts.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use core::array::from_fn;
 use core::fmt::Debug;
 

@@ -16,7 +16,6 @@ pub(crate) const TOPS: usize = 8;
         - 0.5 * h * weight * w.dot(&(rho + F * rho)),
 )]
 #[derive(Clone)]
-#[allow(non_snake_case)] // the letters of the field
 pub(crate) struct Top<T: Real> {
     pub(crate) J_d: DiagonalNonstandardInertia<T>,
     weight: T,

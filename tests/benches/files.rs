@@ -17,7 +17,7 @@ pub(crate) const FILES: [(&str, &str); 11] = [
     ("Cayley body", "[body]\nmoments = [2, 3, 4.5]\nkinetic = \"cayley\""),
 ];
 
-/// Makes so many steps of a file's scene, and keeps no state between.
+/// Makes steps of a file's scene, and keeps no state between.
 pub(crate) fn run(tables: &str, steps: u32) -> Result<(), Mistake> {
     let body = if tables.contains("[body]") { "" } else { "[body]\nmoments = [2, 3, 4.5]\n" };
     let text = format!(

@@ -6,9 +6,6 @@
 //! cargo bench --bench scenes -- zero-cost              compares the counts
 //! ```
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 mod stepping;
 
 use liestep::effects::PrincipalBody;

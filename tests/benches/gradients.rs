@@ -11,9 +11,6 @@
 //! and with them what else there is: `up`, and of the exact flow the turns of its axes. All take turns within one run, and
 //! the fastest batch of each counts.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 mod counting;
 
 use core::hint::black_box;
@@ -48,7 +45,7 @@ const NAMES: [&str; 6] = ["step", "transition", "columns", "adjoint", "checkpoin
 const BATCH: u64 = 1_000;
 const ROUNDS: usize = 100;
 
-/// Runs so many steps, and the derivatives that a name stands for.
+/// Runs this number of steps, and the derivatives that a name stands for.
 type Run = Box<dyn Fn(&str, u64) -> Result<(), Uncounted>>;
 
 /// A method with its start, ready to be run.

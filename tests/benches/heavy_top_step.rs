@@ -25,7 +25,7 @@ use std::time::Instant;
 use liestep::motion::Declared;
 use liestep::motion::WarmStart;
 use liestep::prelude::*;
-use liestep::with::{Carried, Compensated as Plan};
+use liestep::with::{Compensated as Plan, MemoryWithCarry};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::top_equations::Equations;
 
@@ -44,7 +44,6 @@ const ROUNDS: usize = 300;
     l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
         - 0.5 * h * m * g * w.dot(&(rho + F * rho)),
 )]
-#[allow(non_snake_case)] // the letters of the field
 struct HeavyTop {
     J_d: DiagonalNonstandardInertia,
     m: f64,
@@ -56,7 +55,7 @@ struct HeavyTop {
 type Derived = Stepper<HeavyTop>;
 type DerivedState = State<SO3, Vector3<f64>>;
 type Compensated = Stepper<HeavyTop, Plan<Declared<HeavyTop>>>;
-type CompensatedMotion = State<SO3, Vector3<f64>, Carried<WarmStart<Vector3<f64>>, SO3, Vector3<f64>>>;
+type CompensatedMotion = State<SO3, Vector3<f64>, MemoryWithCarry<WarmStart<Vector3<f64>>, SO3, Vector3<f64>>>;
 
 fn derived() -> (Derived, DerivedState) {
     let inertia = DiagonalNonstandardInertia::from_principal_moments(MOMENTS.into()).expect("a body");

@@ -8,8 +8,6 @@
 //! All tops are the same body with a full inertia tensor. They take turns within one run, and the fastest batch of each
 //! counts. Instructions a step are a difference of two counts, as in `heavy_top_step.rs`.
 
-// The letters of the field.
-#![allow(non_snake_case)]
 use core::hint::black_box;
 use std::time::Instant;
 

@@ -2,9 +2,6 @@
 //!
 //! Times of a step in turns within one run, the fastest of all batches; and how long it takes from a text to the first step.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use std::hint::black_box;
 use std::time::Instant;
 

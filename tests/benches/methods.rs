@@ -29,7 +29,7 @@ const ROUNDS: u32 = 40;
 /// Enough to count, and of the most expensive method no more than takes a second.
 const COUNTED: u32 = 500;
 
-/// A run of so many steps.
+/// A run of this number of steps.
 fn prepared(method: &Method, scene: &Scene, steps: u32) -> Result<Prepared, Box<dyn Error>> {
     let prepared = (method.prepare)(scene, f64::from(steps) * STEP, STEP);
     prepared.ok_or_else(|| format!("{} can't be set up", method.name).into())

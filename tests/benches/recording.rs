@@ -3,7 +3,7 @@
 //! ```text
 //! cargo bench --bench recording                       times a step of a run that is recorded at every tenth
 //! cargo bench --bench recording -- instructions       counts instructions instead, by valgrind
-//! cargo bench --bench recording -- memory 100000000   makes so many steps, recorded as a file, and prints the most memory
+//! cargo bench --bench recording -- memory 100000000   makes 100000000 steps, recorded as a file, and prints the most memory
 //! ```
 //!
 //! `columns` hands rows to a sink that does nothing, and is what the run itself pays; a sink in a thread of its own adds
@@ -45,7 +45,7 @@ impl Sink for Nowhere {
     }
 }
 
-/// A top, run for so many steps.
+/// A top, run for this number of steps.
 fn run(way: &str, steps: u32) -> Result<(), Box<dyn Error>> {
     let body = RigidBody { J_d: NonstandardInertia::from_diagonal(Vector3::new(2.0, 1.5, 1.0))? };
     let top = body + Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };

@@ -11,9 +11,6 @@
 //! A scene with gravity is there four times:
 //! without it, behind a run-time flag, with the coefficient zero, and with it.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 mod counting;
 mod files;
 mod stepping;
@@ -88,7 +85,7 @@ fn double_pendulum() -> DoublePendulum {
 }
 
 const COUNTED: u32 = 10_000;
-/// A run of a file samples its motion for a picture, as often in so many steps as in twice as many.
+/// A run of a file samples its motion for a picture, as often in a run as in one twice as long.
 const COUNTED_OF_FILES: u32 = 40_000;
 
 /// Counts the instructions of every scene, each in a process of its own.

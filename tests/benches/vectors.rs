@@ -23,9 +23,10 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
+use liestep::delegate_plan;
 use liestep::mechanics::{DiscreteLagrangian, Effect, Group, Scalar, SceneVisitor};
 use liestep::methods::{CompositionScheme, ExactBody, ProcessedScheme, SplittingScheme};
-use liestep::motion::{Cost, Motion, Plan, StepReport, Summation};
+use liestep::motion::{Motion, Plan, StepReport, Summation};
 use liestep::numbers::{Real, Vectors};
 use liestep::prelude::*;
 use nalgebra::Vector3;
@@ -45,16 +46,10 @@ impl<S: Effect, P: Plan<S>, const LEVEL: usize> Plan<S> for With<P, LEVEL> {
 
     const VECTORS: Vectors = [Vectors::AsCompiled, Vectors::Four, Vectors::Eight][LEVEL];
 
-    fn step_size(&self) -> Scalar<S> {
-        self.0.step_size()
-    }
+    delegate_plan!(0, |kept| kept; step_size keep cost);
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
         self.0.refolded(scene, h).map(Self)
-    }
-
-    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
-        self.0.keep(scene, motion)
     }
 
     #[inline(always)]
@@ -80,10 +75,6 @@ impl<S: Effect, P: Plan<S>, const LEVEL: usize> Plan<S> for With<P, LEVEL> {
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
         self.0.describe(visitor);
-    }
-
-    fn cost(&self) -> Cost {
-        self.0.cost()
     }
 }
 

@@ -1,7 +1,5 @@
 //! What the tests share: declared Lagrangians, reference data, random states, order estimates.
 
-// The letters of the field.
-#![allow(non_snake_case)]
 // A library of this repository alone.
 #![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc)]
 #![allow(clippy::must_use_candidate, clippy::return_self_not_must_use)]

@@ -3,40 +3,22 @@
 use core::cell::Cell;
 use core::fmt::Debug;
 
+use liestep::delegate_term;
 use liestep::groups::Retraction as _;
 use liestep::mechanics::{
-    DiscreteLagrangian, Effect, Group, Limit, Matrix, Parts, Residual, Scalar, SceneVisitor, Square, Term, Vector,
-    WithExpensiveKinetic, WithKinetic,
+    DiscreteLagrangian, Effect, Group, Matrix, Parts, Residual, Scalar, Square, Term, Vector, WithExpensiveKinetic,
+    WithKinetic,
 };
 use liestep::numbers::Real;
 use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 
-/// The terms that don't know stages.
-macro_rules! declared_as {
-    ($inner:ty) => {
-        const SELF_ADJOINT: bool = <$inner>::SELF_ADJOINT;
-
-        fn l_d(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar {
-            self.0.l_d(f, w, h)
-        }
-
-        fn right_momentum(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self> {
-            self.0.right_momentum(f, w, h)
-        }
-
-        fn left_momentum(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self> {
-            self.0.left_momentum(f, w, h)
-        }
-
-        fn diamond(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self> {
-            self.0.diamond(f, w, h)
-        }
-
-        fn discrete_energy(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar {
-            self.0.discrete_energy(f, w, h)
-        }
-    };
+/// An expression in the Lagrangian that is wrapped.
+macro_rules! within {
+    ($self:ident, $term:ident => $value:expr) => {{
+        let $term = &$self.0;
+        $value
+    }};
 }
 
 /// Its own parameters.
@@ -46,13 +28,16 @@ macro_rules! term_as {
         type Group = Group<$inner>;
         type Advected = <$inner as Term>::Advected;
 
-        fn validate(&self) -> Result<(), SetupError> {
-            self.0.validate()
-        }
+        delegate_term!(within: validate advected);
+    };
+}
 
-        fn advected(&self) -> Self::Advected {
-            self.0.advected()
-        }
+/// The terms that don't know stages.
+macro_rules! declared_as {
+    ($inner:ty) => {
+        const SELF_ADJOINT: bool = <$inner>::SELF_ADJOINT;
+
+        delegate_term!(within: l_d right_momentum left_momentum diamond discrete_energy);
     };
 }
 
@@ -66,18 +51,7 @@ macro_rules! staged_as {
         const IS_QUADRATIC: bool = <$inner>::IS_QUADRATIC;
         const DERIVATION: &'static str = <$inner>::DERIVATION;
 
-        fn describe(&self, visitor: &mut dyn SceneVisitor<Self::Scalar>) {
-            self.0.describe(visitor);
-        }
-
-        fn momentum_jacobian(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Square<Self> {
-            self.0.momentum_jacobian(f, w, h)
-        }
-
-        fn limit(&self, velocity: Option<&Vector<Self>>, w: &Self::Advected) -> Limit<Self> {
-            let Limit { l, momentum, hessian } = self.0.limit(velocity, w);
-            Limit { l, momentum, hessian }
-        }
+        delegate_term!(within: describe momentum_jacobian limit);
     };
 }
 
@@ -103,6 +77,10 @@ macro_rules! solved_as {
 
         fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &Self::Advected) -> Self::StepTerms {
             $L::step_terms(constants, a, w)
+        }
+
+        fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self> {
+            $L::kick_after(constants, increment, next)
         }
     };
 }
@@ -137,10 +115,6 @@ impl<L: Effect> Effect for WithJacobian<L> {
         half: &Vector<Self>,
     ) -> Residual<Vector<Self>> {
         Residual { moving_kick: None, ..L::newton_residual(constants, terms, half) }
-    }
-
-    fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self> {
-        L::kick_after(constants, increment, next)
     }
 }
 
@@ -274,9 +248,5 @@ impl<L: Effect> Effect for Badly<L> {
         half: &Vector<Self>,
     ) -> Residual<Vector<Self>> {
         Residual { momentum_defect: Self::newton_system(constants, terms, half).0, moving_kick: None }
-    }
-
-    fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self> {
-        L::kick_after(constants, increment, next)
     }
 }

@@ -4,13 +4,13 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-const PAGE: &str = include_str!("../../core/src/conventions/equations.rs");
+const PAGE: &str = include_str!("../../core/src/conventions/equations.md");
 
 /// How many numbered equations each chapter has.
 const NUMBERED: [(u32, u32); 3] = [(1, 32), (2, 10), (3, 20)];
 
 fn rows() -> impl Iterator<Item = Vec<&'static str>> {
-    let lines = PAGE.lines().filter_map(|line| line.strip_prefix("//! |")?.strip_suffix('|'));
+    let lines = PAGE.lines().filter_map(|line| line.strip_prefix('|')?.strip_suffix('|'));
     lines.map(|row| row.split('|').map(str::trim).collect())
 }
 
@@ -71,15 +71,15 @@ fn anchor(heading: &str) -> String {
 /// printed.
 #[test]
 fn links_lead_to_equations() {
-    let guide = include_str!("../../core/src/guide/thesis.rs");
-    let definition = |label: &str| PAGE.lines().find_map(|line| line.strip_prefix(&format!("//! [{label}]: ")));
+    let guide = include_str!("../../core/src/guide/thesis.md");
+    let definition = |label: &str| PAGE.lines().find_map(|line| line.strip_prefix(&format!("[{label}]: ")));
     let mut printed = 0;
     for row in rows().filter(|row| row.len() == 4 && !numbers(row[0]).is_empty()) {
         for label in links(row[2]) {
             let target = definition(label).unwrap_or_else(|| panic!("{label} is nowhere"));
             let Some((page, heading)) = target.split_once('#') else { continue };
             assert_eq!(page, "crate::guide::thesis", "{label}");
-            let mut lines = guide.lines().filter_map(|line| line.strip_prefix("//!")).map(str::trim);
+            let mut lines = guide.lines().map(str::trim);
             assert!(lines.any(|line| line.starts_with('#') && anchor(line) == heading), "{heading} isn't a heading");
             let section: Vec<&str> =
                 lines.take_while(|line| !line.starts_with("# ") && !line.starts_with("## ")).collect();

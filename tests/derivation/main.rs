@@ -1,8 +1,5 @@
 //! What the macro derives, against what shares no code with it: duals, finite differences, formulas by hand, data.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 mod by_hand;
 mod continuous;
 mod continuous_bodies;

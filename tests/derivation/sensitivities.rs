@@ -23,7 +23,6 @@ enum Scaled {
 type Running<T> = (Stepper<Top<T>>, State<SO3<T>, Vector3<T>>);
 
 /// The asymmetric top with a parameter scaled, at its start.
-#[allow(non_snake_case)] // the letter of the field
 fn start<T: Real + RealField>(scaled: Scaled, s: T) -> Running<T> {
     let vector = |x: f64, y: f64, z: f64| Vector3::new(x, y, z).map(nalgebra::convert::<f64, T>);
     let mut moments = vector(2.0, 3.0, 4.5);

@@ -1,8 +1,5 @@
 //! The laws of the groups, of their retractions and of what they move; the groups of the crate and a user's own.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 mod built_in_groups;
 mod laws;
 mod laws_can_fail;

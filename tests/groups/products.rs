@@ -12,7 +12,7 @@ use liestep::laws::samples::{MatrixLieGroup, Random, derivative};
 use liestep::mechanics::{Along, Between, Pairs, Places};
 use liestep::numbers::{Blocks, Bodies, Entries, Mask};
 use liestep::prelude::*;
-use nalgebra::{DVector, Matrix3, Matrix6, SMatrix, SVector, Vector3, Vector6};
+use nalgebra::{DVector, Matrix3, Matrix6, SMatrix, SVector, Vector1, Vector3, Vector6};
 
 type Product = (SO3, SE2);
 
@@ -241,6 +241,19 @@ fn components_are_in_the_order_of_the_factors() {
     let f = <CayleyRetraction as Retraction<Four>>::retract(&(xi * 0.05));
     let back = <CayleyRetraction as Retraction<Four>>::local_coordinates(&f).unwrap();
     assert!((back - xi * 0.05).norm() < 1e-14);
+}
+
+/// Of translations a table has what they add.
+#[test]
+fn numbers_of_translations() {
+    let names: Vec<_> =
+        <(SO3, R1, R3)>::named_numbers().into_iter().map(|(name, unit)| format!("{name} {unit}")).collect();
+    assert_eq!(names.join(","), "q_w_1 1,q_x_1 1,q_y_1 1,q_z_1 1,x_2 m,x_3 m,y_3 m,z_3 m");
+    let (line, space) = (R1::from(Vector1::new(5.0)), R3::from(Vector3::new(6.0, 7.0, 8.0)));
+    let mut numbers = [0.0; 9];
+    assert_eq!((SO3::identity(), line, space).write_numbers(&mut numbers).len(), 1);
+    assert_eq!(numbers, [1.0, 0.0, 0.0, 0.0, 5.0, 6.0, 7.0, 8.0, 0.0]);
+    assert_eq!(line.value().to_bits(), 5.0_f64.to_bits());
 }
 
 /// In a table, one factor after the other.

@@ -5,10 +5,8 @@
 //! | the rows themselves | [`rows`], by `examples/hard-cases` |
 //! | S1 to S5 for random momenta, near roots and poles | [`solvability`]; S1 and S2 as bounds and policies in `tests/robustness` |
 //! | B5 to B8 for other bodies, T10 equation by equation | [`bodies`] |
-//! | P1, P2, P6, and R under every summation | [`structure`]; P1 and P2 of every declaration in `tests/systems` and `tests/random_lagrangians`, of every method in `tests/accuracy`; P7 in `tests/robustness/checkpoints.rs` |
-
-// The letters of the field.
-#![allow(non_snake_case)]
+//! | P6, and R under every summation | [`structure`] |
+//! | P1, P2, P7 | P1 and P2 of every declaration in `tests/systems` and `tests/random_lagrangians`, of every method in `tests/accuracy`; P7 in `tests/robustness/checkpoints.rs` |
 
 mod bodies;
 mod rows;

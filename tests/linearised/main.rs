@@ -1,7 +1,5 @@
 //! Tangent maps, adjoints and what is made of them.
 
-#![allow(non_snake_case)] // the letters of the field
-
 mod declared;
 mod dual;
 mod exponents;

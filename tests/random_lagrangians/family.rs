@@ -1,7 +1,7 @@
 //! A family of Lagrangians on each group with vectors, and one with tensors.
 
-// The letters of the field; all of it is seen by this crate alone.
-#![allow(non_snake_case, unreachable_pub)]
+// All of it is seen by this crate alone.
+#![allow(unreachable_pub)]
 
 use checks::affine::Affine;
 use liestep::groups::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};

@@ -4,13 +4,13 @@
 use checks::random::Random;
 use declarations::{FreeBody, HeavyTop, Motion, SixthOrderTop, Top as _};
 use liestep::mechanics::{Effect, Scalar};
-use liestep::with::{Checkpoint, CheckpointError, Stored};
+use liestep::with::{Checkpoint, CheckpointError, Storable};
 use liestep::{SO3, StateOf, Stepper};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
 /// As it comes back from each of the formats.
-fn round_trips<T: Stored>(checkpoint: &Checkpoint<T>) -> [Checkpoint<T>; 3] {
+fn round_trips<T: Storable>(checkpoint: &Checkpoint<T>) -> [Checkpoint<T>; 3] {
     let json = serde_json::to_string_pretty(checkpoint).unwrap();
     let toml = toml::to_string(checkpoint).unwrap();
     let binary = postcard::to_stdvec(checkpoint).unwrap();
@@ -20,7 +20,7 @@ fn round_trips<T: Stored>(checkpoint: &Checkpoint<T>) -> [Checkpoint<T>; 3] {
 /// Saved after each of some random numbers of steps, the motion goes on with the same bits.
 fn assert_resumes<L>(stepper: &Stepper<L>, start: StateOf<L>, seed: u64)
 where
-    L: Effect<Scalar: Stored, Group = SO3<Scalar<L>>>,
+    L: Effect<Scalar: Storable, Group = SO3<Scalar<L>>>,
 {
     let mut random = Random::new(seed);
     let mut state = start;

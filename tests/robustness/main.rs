@@ -1,8 +1,5 @@
 //! Any input gets an answer or a typed error: solving, limits of a step, policies, checkpoints, random inputs.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 mod any_method;
 mod checkpoints;
 mod command_lines;

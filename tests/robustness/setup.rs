@@ -1,7 +1,5 @@
 //! Scenes that no stepper is built for, each with the words that say why.
 
-#![allow(non_snake_case)]
-
 use liestep::effects::{Gravity, RigidBody};
 use liestep::groups::{R2, SE2};
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper, lagrangian};

@@ -36,11 +36,18 @@ fn assert_bounded<L: System<N, D> + Clone, const N: usize, const D: usize>(syste
     assert!(late < 1.5 * early, "{early:e} in the first half and {late:e} in the second");
 }
 
-#[test]
-fn heavy_tops() {
-    assert_bounded(&samples::heavy_top(), samples::on_so3());
-    assert_bounded(&samples::full_top(), samples::on_so3());
-    assert_bounded(&samples::cayley_top(), samples::on_so3());
+macro_rules! bounded {
+    ($($system:ident $start:ident)+) => {$(
+        #[test]
+        fn $system() {
+            assert_bounded(&samples::$system(), samples::$start());
+        }
+    )+};
+}
+
+bounded! {
+    heavy_top on_so3 full_top on_so3 cayley_top on_so3 satellite on_so3 orbiting_body in_orbit spring on_so3
+    sliding_top on_so3 magnet on_so3 tethered_plate on_se2 elastic_flow on_sl2
 }
 
 /// That of (3.13) without gravity is exact.
@@ -50,45 +57,10 @@ fn free_body() {
     assert!(largest < 1e-12, "{largest:e}");
 }
 
-#[test]
-fn satellite() {
-    assert_bounded(&samples::satellite(), samples::on_so3());
-}
-
-#[test]
-fn orbiting_body() {
-    assert_bounded(&samples::orbiting_body(), samples::in_orbit());
-}
-
-#[test]
-fn spring() {
-    assert_bounded(&samples::spring(), samples::on_so3());
-}
-
-#[test]
-fn sliding_top() {
-    assert_bounded(&samples::sliding_top(), samples::on_so3());
-}
-
-#[test]
-fn magnet() {
-    assert_bounded(&samples::magnet(), samples::on_so3());
-}
-
 /// Floating in balance, as a heavier body sinks faster and faster, up to where the step has no solution.
 #[test]
 fn underwater_body() {
     let mut body = samples::underwater_body();
     body.weight[3] = 0.0;
     assert_bounded(&body, samples::on_se3());
-}
-
-#[test]
-fn tethered_plate() {
-    assert_bounded(&samples::tethered_plate(), samples::on_se2());
-}
-
-#[test]
-fn elastic_flow() {
-    assert_bounded(&samples::elastic_flow(), samples::on_sl2());
 }

@@ -1,9 +1,6 @@
 //! The continuous limit of every declared system, from its `l_d` alone: `l(ξ, w) = lim l_d(exp hξ, w)/h`, its momentum
 //! (1.14), and its energy (1.16), whose derivative is the velocity.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use checks::structure::{System, axis};
 use liestep::Stepper;
 use liestep::effects::{RigidBody, Rotor};

@@ -1,4 +1,5 @@
-//! P2 for every declared system: its momenta, its step in stages, and the step.
+//! P2 for every declared system: the momenta of a declared `l_d` are its derivatives, hang together as the theory says, and
+//! the step in stages says the same.
 
 use checks::structure::{System, momenta, stages};
 use liestep::numbers::Coordinates;
@@ -17,3 +18,8 @@ where
 }
 
 every_system!(p2);
+
+#[test]
+fn of_the_thesis() {
+    p2(&declarations::HeavyTop::thesis(), "the thesis' top");
+}

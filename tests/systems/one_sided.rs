@@ -1,9 +1,6 @@
 //! Controls: kinetic terms that aren't self-adjoint, where the ones of the declarations are. The scheme is of first
 //! order and a step of `−h` doesn't undo one of `h`.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use checks::structure::reversal;
 use liestep::groups::{CovariantTensor, LieGroup as _, SE3, SL2};
 use liestep::lagrangian;

@@ -1,8 +1,5 @@
 //! The flow of every self-adjoint declaration converges to the continuous system at second order in the step.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use checks::structure::System;
 use declarations::{OrbitingBody, TetheredPlate, UnderwaterBody};
 use liestep::Stepper;

@@ -1,6 +1,11 @@
-//! P1 for every declared system.
+//! P1 for every declared system. With `z = (μ, w)` the tensor of a top is `B = [[μ̂, ŵ], [ŵ, 0]]`, and `B = μ̂` where nothing
+//! is advected.
 
+use checks::random::Random;
+use checks::structure::poisson::tensor;
 use checks::structure::{System, poisson};
+use declarations::{FreeBody, HeavyTop};
+use nalgebra::DMatrix;
 
 use crate::samples::every_system;
 
@@ -10,3 +15,21 @@ fn p1<L: System<N, D> + Clone, const N: usize, const D: usize>(system: &L, name:
 }
 
 every_system!(p1);
+
+#[test]
+fn of_the_thesis() {
+    p1(&HeavyTop::thesis(), "the thesis' top");
+}
+
+/// The tensor that the claims are made with is that of the thesis.
+#[test]
+fn tensor_of_so3() {
+    let mut random = Random::new(16);
+    let (momentum, w) = (random.vector(), random.vector());
+    let mut expected = DMatrix::zeros(6, 6);
+    expected.view_mut((0, 0), (3, 3)).copy_from(&momentum.cross_matrix());
+    expected.view_mut((0, 3), (3, 3)).copy_from(&w.cross_matrix());
+    expected.view_mut((3, 0), (3, 3)).copy_from(&w.cross_matrix());
+    assert!((tensor::<HeavyTop, 3, 3>(&momentum, &w) - expected).amax() < 1e-12);
+    assert!((tensor::<FreeBody, 3, 3>(&momentum, &()) - momentum.cross_matrix()).amax() < 1e-12);
+}

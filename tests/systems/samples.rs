@@ -1,7 +1,6 @@
 //! One body for each declaration, without any symmetry that the declaration doesn't have.
 
-// The letters of the field.
-#![allow(non_snake_case, unreachable_pub)]
+#![allow(unreachable_pub)]
 
 use declarations::{
     CayleyTop, ElasticFlow, FourthOrderBody, FourthOrderTop, FreeBody, FullTop, HeavyTop, LogTop, LogTraceTop, Magnet,

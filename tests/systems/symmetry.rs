@@ -1,9 +1,6 @@
 //! What every declared system conserves: the momenta along the symmetries of what is advected, the parameters' orbit,
 //! and, where the body has a symmetry too, the momentum along that.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use checks::structure::System;
 use checks::structure::symmetry::{drift, symmetries};
 use liestep::motion::DiscreteLiePoisson;
@@ -32,30 +29,24 @@ fn assert_conserved<L: System<N, D> + Clone, const N: usize, const D: usize>(
     assert!(parameters < ROUNDING, "parameters: {parameters:e}");
 }
 
-/// The turns about one vector.
-#[test]
-fn heavy_tops() {
-    assert_conserved(&samples::heavy_top(), samples::on_so3(), 1);
-    assert_conserved(&samples::full_top(), samples::on_so3(), 1);
-    assert_conserved(&samples::log_trace_top(), samples::on_so3(), 1);
-    assert_conserved(&samples::cayley_top(), samples::on_so3(), 1);
-    assert_conserved(&samples::log_top(), samples::on_so3(), 1);
-    assert_conserved(&samples::fourth_order_top(), samples::on_so3(), 1);
-    assert_conserved(&samples::sixth_order_top(), samples::on_so3(), 1);
+macro_rules! conserved {
+    ($($symmetry:literal: $($system:ident $start:ident)+ = $count:literal;)+) => {$($(
+        #[doc = $symmetry]
+        #[test]
+        fn $system() {
+            assert_conserved(&samples::$system(), samples::$start(), $count);
+        }
+    )+)+};
 }
 
-/// All turns.
-#[test]
-fn free_body() {
-    assert_conserved(&samples::free_body(), samples::on_so3(), 3);
-    assert_conserved(&samples::fourth_order_body(), samples::on_so3(), 3);
-}
-
-/// The turns about the direction of the centre, and of the anchor.
-#[test]
-fn satellite_and_spring() {
-    assert_conserved(&samples::satellite(), samples::on_so3(), 1);
-    assert_conserved(&samples::spring(), samples::on_so3(), 1);
+conserved! {
+    "The turns about one vector.": heavy_top on_so3 full_top on_so3 log_trace_top on_so3 cayley_top on_so3 log_top on_so3
+        fourth_order_top on_so3 sixth_order_top on_so3 satellite on_so3 spring on_so3 sliding_top on_so3 = 1;
+    "All turns.": free_body on_so3 fourth_order_body on_so3 = 3;
+    "The turns about the centre: the angular momentum of orbit and spin together.": orbiting_body in_orbit = 3;
+    "Horizontal translations and the turns about a vertical.": underwater_body on_se3 = 3;
+    "The turns about the anchor.": tethered_plate on_se2 = 1;
+    "The rotations of space, which keep its metric.": elastic_flow on_sl2 = 1;
 }
 
 /// None in general, the turns about the field where its gradient has them too.
@@ -66,36 +57,6 @@ fn magnet() {
     magnet.field = Vector3::z();
     magnet.gradient.0 = Matrix3::from_diagonal(&Vector3::new(0.8, 0.8, -1.6));
     assert_conserved(&magnet, samples::on_so3(), 1);
-}
-
-/// The turns about the vertical.
-#[test]
-fn sliding_top() {
-    assert_conserved(&samples::sliding_top(), samples::on_so3(), 1);
-}
-
-/// The turns about the centre: the angular momentum of orbit and spin together.
-#[test]
-fn orbiting_body() {
-    assert_conserved(&samples::orbiting_body(), samples::in_orbit(), 3);
-}
-
-/// Horizontal translations and the turns about a vertical.
-#[test]
-fn underwater_body() {
-    assert_conserved(&samples::underwater_body(), samples::on_se3(), 3);
-}
-
-/// The turns about the anchor.
-#[test]
-fn tethered_plate() {
-    assert_conserved(&samples::tethered_plate(), samples::on_se2(), 1);
-}
-
-/// The rotations of space, which keep its metric.
-#[test]
-fn elastic_flow() {
-    assert_conserved(&samples::elastic_flow(), samples::on_sl2(), 1);
 }
 
 /// Where the body looks the same from all sides of an axis, the component of its momentum along that is constant.

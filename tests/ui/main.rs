@@ -1,4 +1,4 @@
-//! Every mistake with its message. The unusual settings in which a declaration still has to compile and run are tests of
+//! Mistakes as the compiler shows them. The unusual settings in which a declaration still has to compile and run are tests of
 //! their own: trybuild compiles all mistakes at once only if nothing that must run is among them.
 
 use std::process::Command;

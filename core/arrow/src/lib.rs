@@ -21,8 +21,6 @@
 //!
 //! The unit of a column is in the metadata of its field, under `unit`.
 
-#![cfg_attr(test, allow(non_snake_case))]
-
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};

@@ -6,8 +6,8 @@ use core::ops::Range;
 use liestep::laws::samples;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use crate::digest::Digest;
 use crate::{Failure, Table};
+use liestep::numbers::Digest;
 
 /// One member of an ensemble: what its scene and its start are made of.
 ///

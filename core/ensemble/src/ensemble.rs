@@ -5,12 +5,12 @@ use core::fmt;
 use liestep::motion::{Batchable, Integrator, Moment};
 use simba::simd::AutoF64x8;
 
-use crate::digest::Digest;
 use crate::draw::Member;
 use crate::group::{Grouping, LANES, Start, in_lanes, one_by_one};
 use crate::reduce::{Reduction, Summary};
 use crate::section::Section;
 use crate::{Failure, Table};
+use liestep::numbers::Digest;
 
 /// A member at one time: what is kept is computed from it.
 #[derive(Debug)]

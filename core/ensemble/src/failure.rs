@@ -1,23 +1,27 @@
 //! Why a member has no end, as a value and as a line of a file.
 
-use core::fmt;
 use std::collections::BTreeSet;
 use std::sync::Mutex;
 
 use liestep::mechanics::InertiaError;
 use liestep::{SetupError, StepError};
+use thiserror::Error;
 
 /// Why a member couldn't be made, or couldn't be stepped to its end.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Failure {
     /// Its scene or its start is impossible.
-    Setup(SetupError),
+    #[error(transparent)]
+    Setup(#[from] SetupError),
     /// It has the inertia of no body.
-    Inertia(InertiaError),
+    #[error(transparent)]
+    Inertia(#[from] InertiaError),
     /// A step of it has no solution.
-    Step(StepError),
+    #[error(transparent)]
+    Step(#[from] StepError),
     /// Another reason, in words.
+    #[error("{0}")]
     Other(String),
 }
 
@@ -30,37 +34,6 @@ pub struct MemberFailure {
     pub steps: u64,
     /// Why there are no more.
     pub failure: Failure,
-}
-
-impl fmt::Display for Failure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Setup(error) => error.fmt(f),
-            Self::Inertia(error) => error.fmt(f),
-            Self::Step(error) => error.fmt(f),
-            Self::Other(reason) => reason.fmt(f),
-        }
-    }
-}
-
-impl core::error::Error for Failure {}
-
-impl From<SetupError> for Failure {
-    fn from(error: SetupError) -> Self {
-        Self::Setup(error)
-    }
-}
-
-impl From<InertiaError> for Failure {
-    fn from(error: InertiaError) -> Self {
-        Self::Inertia(error)
-    }
-}
-
-impl From<StepError> for Failure {
-    fn from(error: StepError) -> Self {
-        Self::Step(error)
-    }
 }
 
 impl Failure {

@@ -66,7 +66,7 @@ impl<M: Integrator> Group<M> for SingleMember<M> {
         if self.error.is_some() {
             return;
         }
-        self.error = self.stepper.run_shown(&mut self.state, steps, &mut |_| 0).err();
+        self.error = self.stepper.run_stretches(&mut self.state, steps, &mut |_| 0).err();
     }
 
     fn state(&self, _: usize) -> M::State {

@@ -54,7 +54,6 @@
 //! | use several machines | [`engines`] |
 
 mod chunk;
-mod digest;
 mod draw;
 mod engine;
 pub mod engines;

@@ -6,8 +6,8 @@ use liestep::motion::{Integrator, Moment, ScalarIn};
 use liestep::recording::{Event, Run, RunError};
 
 use crate::Failure;
-use crate::digest::Digest;
 use crate::reduce::Reduction;
+use liestep::numbers::Digest;
 
 type Value<M> = dyn Fn(&Moment<'_, M>) -> f64 + Send + Sync;
 type Values<M> = dyn Fn(&Moment<'_, M>, &mut Vec<f64>) + Send + Sync;

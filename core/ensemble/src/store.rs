@@ -1,13 +1,13 @@
 //! A folder of shards, each of which is there whole or not at all.
 
-use core::fmt;
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
+use thiserror::Error;
 
-use crate::digest::Digest;
 use crate::shard::Shard;
+use liestep::numbers::Digest;
 
 /// A folder that shards are written to and read from, `00000/00000012-0123456789abcdef.arrow`: a thousand to a folder,
 /// named by the number of the chunk and by a digest of the whole file.
@@ -26,26 +26,32 @@ pub struct Store {
 }
 
 /// A file that isn't what it should be, with its path.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum Fault {
     /// Its end is missing.
+    #[error("{0} is truncated")]
     Truncated(PathBuf),
     /// It has changed since it was written.
+    #[error("{0} has been altered: its digest is another")]
     Altered(PathBuf),
     /// It is whole, but of another plan, or of another version of this format.
+    #[error("{0} is of another plan")]
     Foreign(PathBuf),
     /// It can't be read as a shard.
+    #[error("{0} isn't a shard: {1}")]
     Unreadable(PathBuf, String),
     /// The file system doesn't give it.
+    #[error("{0} can't be read: {1}")]
     Io(PathBuf, String),
 }
 
 /// Why shards can't be read or written.
-#[derive(Debug)]
+#[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum StoreError {
     /// The file system says no: a full disk, a folder that mustn't be written to, …
+    #[error("{path}: {error}")]
     Io {
         /// Where.
         path: PathBuf,
@@ -53,54 +59,28 @@ pub enum StoreError {
         error: std::io::Error,
     },
     /// The folder has shards of another plan, or of another version of this format, which are left alone.
+    #[error(
+        "{path} is of another plan (other members, steps, columns, or a changed program or library); take another folder, or delete that file"
+    )]
     Foreign {
         /// One of them.
         path: PathBuf,
     },
     /// A chunk has two whole files, which differ: members aren't the same each time that they are made.
+    #[error(
+        "{path} is a second file of its chunk with other contents: members have to be the same each time and on every machine; delete one of the two"
+    )]
     Twice {
         /// The second.
         path: PathBuf,
     },
     /// A shard can't be put into its format.
+    #[error("a shard can't be written: {reason}")]
     Unwritable {
         /// Why.
         reason: String,
     },
 }
-
-impl fmt::Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Truncated(path) => write!(f, "{} is truncated", path.display()),
-            Self::Altered(path) => write!(f, "{} has been altered: its digest is another", path.display()),
-            Self::Foreign(path) => write!(f, "{} is of another plan", path.display()),
-            Self::Unreadable(path, reason) => write!(f, "{} isn't a shard: {reason}", path.display()),
-            Self::Io(path, reason) => write!(f, "{} can't be read: {reason}", path.display()),
-        }
-    }
-}
-
-impl fmt::Display for StoreError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Io { path, error } => write!(f, "{}: {error}", path.display()),
-            Self::Foreign { path } => write!(
-                f,
-                "{} is of another plan (other members, steps, columns, or a changed program or library); take another folder, or delete that file",
-                path.display()
-            ),
-            Self::Twice { path } => write!(
-                f,
-                "{} is a second file of its chunk with other contents: members have to be the same each time and on every machine; delete one of the two",
-                path.display()
-            ),
-            Self::Unwritable { reason } => write!(f, "a shard can't be written: {reason}"),
-        }
-    }
-}
-
-impl core::error::Error for StoreError {}
 
 /// What Arrow IPC files end with.
 const END: &[u8] = b"ARROW1";

@@ -1,6 +1,5 @@
 //! Tables that members are read from.
 
-use core::fmt;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -11,9 +10,10 @@ use arrow_array::types::{
 use arrow_array::{Array as _, ArrayRef};
 use arrow_ipc::reader::FileReader;
 use arrow_schema::{ArrowError, DataType};
+use thiserror::Error;
 
 use crate::Failure;
-use crate::digest::Digest;
+use liestep::numbers::Digest;
 
 /// Columns of numbers by their names, a row for each member.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,10 +23,11 @@ pub struct Table {
 }
 
 /// Why a file isn't a table of numbers.
-#[derive(Debug)]
+#[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum TableError {
     /// It can't be read, or isn't Arrow IPC.
+    #[error("{path} isn't an Arrow IPC file: {reason}")]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -34,6 +35,7 @@ pub enum TableError {
         reason: String,
     },
     /// A cell of a column of numbers is empty.
+    #[error("the column `{column}` has no number in row {row}; fill it, or leave the row out")]
     Empty {
         /// The column.
         column: String,
@@ -41,6 +43,9 @@ pub enum TableError {
         row: usize,
     },
     /// A whole number of more than 53 bits, which isn't a double.
+    #[error(
+        "the whole number in row {row} of the column `{column}` is beyond 2⁵³, so that a double hasn't all of its digits; write the column as text or in two"
+    )]
     TooLarge {
         /// The column.
         column: String,
@@ -48,29 +53,12 @@ pub enum TableError {
         row: usize,
     },
     /// Two columns differ in length.
+    #[error("the column `{column}` has another length than those before it")]
     Uneven {
         /// The one that differs from those before.
         column: String,
     },
 }
-
-impl fmt::Display for TableError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Unreadable { path, reason } => write!(f, "{} isn't an Arrow IPC file: {reason}", path.display()),
-            Self::Empty { column, row } => {
-                write!(f, "the column `{column}` has no number in row {row}; fill it, or leave the row out")
-            }
-            Self::TooLarge { column, row } => write!(
-                f,
-                "the whole number in row {row} of the column `{column}` is beyond 2⁵³, so that a double hasn't all of its digits; write the column as text or in two"
-            ),
-            Self::Uneven { column } => write!(f, "the column `{column}` has another length than those before it"),
-        }
-    }
-}
-
-impl core::error::Error for TableError {}
 
 impl Table {
     /// Of columns of one length.

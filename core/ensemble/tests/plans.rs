@@ -84,7 +84,6 @@ fn members_are_read_from_a_table() {
 
 /// A declaration of `f64` alone, and a composition of members that can't be in one batch.
 #[test]
-#[allow(non_snake_case)] // the letters of the field
 fn other_scenes_and_methods() {
     #[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
     #[derive(Clone)]

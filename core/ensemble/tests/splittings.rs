@@ -1,7 +1,5 @@
 //! Splittings in lanes are those of each member alone, to the bit.
 
-#![allow(non_snake_case)] // the letters of the field
-
 use liestep::effects::{Gravity, PrincipalBody, RigidBody};
 use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, InertiaError, RigidScene, Sum, Term};
 use liestep::methods::{ExactBody, ProcessedScheme, SplittingScheme, SymmetricBody};

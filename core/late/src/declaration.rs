@@ -1,12 +1,12 @@
 //! What a text declares, derived once.
 
 use std::collections::BTreeMap;
-use std::fmt;
 use std::sync::{LazyLock, Mutex, PoisonError};
 
 use liestep::mechanics::Parts;
 use liestep_derivation::{Action, AtVelocity, Carried, Factor, Parameter, Program, Role, Staged, Terms, staged};
 use proc_macro2::{LexError, TokenStream};
+use thiserror::Error;
 
 use crate::code::Code;
 
@@ -22,33 +22,41 @@ pub struct Mistake {
 }
 
 /// Why a text or its numbers can't be used.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum LateError {
     /// The text has mistakes.
+    #[error("{}", listed(.0))]
     Mistakes(Vec<Mistake>),
     /// The text is longer than the given number of bytes.
+    #[error("the text is longer than {0} bytes")]
     TooLong(usize),
     /// As many declarations are kept as may be, see [`kept`].
+    #[error("{0} declarations are kept already: declare each text once")]
     TooMany(usize),
     /// The step has more operations or numbers than an interpreter has names for.
+    #[error("the step of this declaration is too large to be interpreted")]
     TooLarge,
     /// The declaration is on another group.
+    #[error("the declaration is on {declared}: take that group")]
     Group {
         /// The group of the declaration.
         declared: String,
     },
     /// Another type carries what is advected or given.
+    #[error("the declaration has {declared}: take a type that carries these")]
     Advected {
         /// What is declared.
         declared: String,
     },
     /// The declaration has no kinetic part, or one of another kind.
+    #[error("the declaration is `{declared}`: take this kinetic part")]
     Kinetic {
         /// The kind of the declaration.
         declared: &'static str,
     },
     /// There is no parameter of this name.
+    #[error("there is no parameter `{name}`; there are {known}")]
     Unknown {
         /// The name.
         name: String,
@@ -56,6 +64,7 @@ pub enum LateError {
         known: String,
     },
     /// A parameter has another number of numbers.
+    #[error("`{name}` has {expected} numbers, and {found} were given")]
     Size {
         /// The name.
         name: &'static str,
@@ -66,31 +75,11 @@ pub enum LateError {
     },
 }
 
-impl fmt::Display for LateError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Mistakes(mistakes) => {
-                for (at, Mistake { message, line, column }) in mistakes.iter().enumerate() {
-                    let separator = if at == 0 { "" } else { "\n" };
-                    write!(f, "{separator}{line}:{column}: {message}")?;
-                }
-                Ok(())
-            }
-            Self::TooLong(most) => write!(f, "the text is longer than {most} bytes"),
-            Self::TooMany(most) => write!(f, "{most} declarations are kept already: declare each text once"),
-            Self::TooLarge => f.write_str("the step of this declaration is too large to be interpreted"),
-            Self::Group { declared } => write!(f, "the declaration is on {declared}: take that group"),
-            Self::Advected { declared } => write!(f, "the declaration has {declared}: take a type that carries these"),
-            Self::Kinetic { declared } => write!(f, "the declaration is `{declared}`: take this kinetic part"),
-            Self::Unknown { name, known } => write!(f, "there is no parameter `{name}`; there are {known}"),
-            Self::Size { name, expected, found } => {
-                write!(f, "`{name}` has {expected} numbers, and {found} were given")
-            }
-        }
-    }
+/// The mistakes, one a line.
+fn listed(mistakes: &[Mistake]) -> String {
+    let lines = mistakes.iter().map(|Mistake { message, line, column }| format!("{line}:{column}: {message}"));
+    lines.collect::<Vec<_>>().join("\n")
 }
-
-impl std::error::Error for LateError {}
 
 /// A declaration with the code of its stages. Each text is derived once and kept as long as the program runs.
 #[derive(Debug)]

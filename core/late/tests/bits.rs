@@ -1,8 +1,5 @@
 //! A declaration that is read makes the steps of the one that is compiled, to the bit.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use declarations::{
     CayleyTop, ContinuousTop, DoublePendulum, ElasticFlow, FluidDrag, Flyer, FourthOrderTop, FullTop, HeavyTop, LogTop,
     SixthOrderTop, TopOnCart, UnderwaterBody,

@@ -36,9 +36,6 @@
 //! A torque that is given anew each step isn't an effect but data of the step:
 //! [`Stepper::step_forced`](crate::motion::Stepper::step_forced).
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 mod cayley_body;
 mod dipole;
 mod drag;

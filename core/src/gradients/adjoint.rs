@@ -7,7 +7,7 @@ use core::ops::Range;
 
 use crate::error::{SetupError, StepError};
 use crate::gradients::recording::Change;
-use crate::gradients::stage::{Cotangent, Flown, Pass, Stage};
+use crate::gradients::stage::{Cotangent, FlowDerivatives, Pass, Stage};
 use crate::gradients::{Linearisable, Linearised};
 use crate::groups::LieGroup;
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Scalar, SecondDerivatives, Vector};
@@ -49,7 +49,7 @@ impl<G: LieGroup> Pass<G> for Back<'_, G> {
     }
 
     #[hot]
-    fn flown(&mut self, flown: &Flown<'_, G>) {
+    fn flown(&mut self, flown: &FlowDerivatives<'_, G>) {
         self.cotangent = flown.pull(&self.cotangent, self.gradient);
     }
 }
@@ -85,7 +85,7 @@ where
     #[hot]
     fn run(self) {
         let Stepper { scene, plan } = self.stepper;
-        // As many of each step: all steps of a plan have the same stages.
+        // All steps of a plan have the same stages, so each has this number of events.
         for (n, step) in self.steps.rev().zip(self.events.chunks(plan.stages()).rev()) {
             for (index, event) in step.iter().enumerate().rev() {
                 plan.visit(scene, index, event, self.back);
@@ -195,7 +195,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         vec![real(0.0); self.stepper.plan.parameters()]
     }
 
-    /// The same, going back by steps of `−h`: nothing is kept of the way forwards.
+    /// The gradient by a way back of steps of `−h`: no state of the way forwards is kept.
     ///
     /// Such a step undoes one of `h` exactly but for rounding, which the motion magnifies like any other deviation.
     ///

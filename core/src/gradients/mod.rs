@@ -96,7 +96,7 @@ mod tangent;
 pub use adjoint::{Backwards, Gradient, Tape};
 pub use recording::Change;
 pub(crate) use stage::ForceGradient;
-pub use stage::{Cotangent, Flown, Pass, Stage};
+pub use stage::{Cotangent, FlowDerivatives, Pass, Stage};
 pub use tangent::{Tangent, TangentOf};
 
 use alloc::vec::Vec;
@@ -158,7 +158,7 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> {
     /// Shows the stage that has made the change of this number to a pass.
     fn visit(&self, scene: &S, index: usize, event: &Change<Group<S>, S::Advected>, pass: &mut impl Pass<Group<S>>);
 
-    /// The same of the stage that a change of this number, by a step of `−h`, has undone.
+    /// The change of the stage that the change of this number, in a step of `−h`, has undone.
     ///
     /// The lengths of most plans are odd in `h`: stage `i` of a step of `−h` has minus the length of stage `i` of one of
     /// `h`, and that is what it undoes. A plan whose lengths aren't says so here, as a processed splitting does.
@@ -330,7 +330,7 @@ struct Carry<'a, S: Effect, P> {
 impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Carry<'_, S, P> {
     type Output = bool;
 
-    /// As many as there are columns side by side.
+    /// The columns fill registers of four.
     const VECTORS: Vectors = Vectors::Four;
 
     #[hot]

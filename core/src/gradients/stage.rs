@@ -62,7 +62,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         Self { effect, kind: Kind::Kick(time), attitude, advected, increment: zero(), gradient, first: 0 }
     }
 
-    /// With the effect's parameters behind so many others.
+    /// With the effect's parameters after this number of others.
     pub(crate) fn behind(self, first: usize) -> Self {
         Self { first, ..self }
     }
@@ -166,7 +166,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         };
         let along = *paired * share;
         let u = *inverse_inertia * E::kick_before(torque, &self.advected);
-        // That it is known was asked before.
+        // The derivative is known: the plan refuses scenes without it.
         let change = E::kick_derivative(torque, &self.advected, &along).unwrap_or_else(Vector::<E>::zero);
         let r = *inverse_inertia * change;
         let Some((by_place, by_seen)) = self.effect.kick_gradient(&self.advected, &along, [&u, &r], &mut *add) else {
@@ -241,7 +241,7 @@ pub struct Cotangent<V> {
 }
 
 impl<V> Cotangent<V> {
-    /// Of a number that doesn't depend on this state.
+    /// The gradient of a number that doesn't depend on this state.
     #[must_use]
     pub fn zero<T: Real>() -> Self
     where
@@ -260,7 +260,7 @@ impl<V> Cotangent<V> {
 /// As a [`Stage`], it is made by the library's own plans and read by its derivatives.
 #[derive(Clone, Copy, Debug)]
 #[doc(hidden)]
-pub struct Flown<'a, G: LieGroup> {
+pub struct FlowDerivatives<'a, G: LieGroup> {
     /// `∂ε/∂μ`
     pub(crate) turn_by_momentum: SquareOf<G>,
     /// `Ad_{F⁻¹}`
@@ -273,7 +273,7 @@ pub struct Flown<'a, G: LieGroup> {
     pub(crate) by_parameters: &'a [(usize, G::Vector)],
 }
 
-impl<G: LieGroup> Flown<'_, G> {
+impl<G: LieGroup> FlowDerivatives<'_, G> {
     /// Takes the gradient at the end to the beginning, and adds the parameters' shares.
     #[hot]
     pub(super) fn pull(&self, end: &Cotangent<G::Vector>, gradient: &mut [G::Scalar]) -> Cotangent<G::Vector> {
@@ -302,7 +302,7 @@ pub trait Pass<G: LieGroup> {
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>);
 
     /// Takes notice of an exact flow.
-    fn flown(&mut self, flown: &Flown<'_, G>);
+    fn flown(&mut self, flown: &FlowDerivatives<'_, G>);
 }
 
 /// One of the scalars.

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use core::cell::RefCell;
 
 use crate::gradients::recording::Change;
-use crate::gradients::stage::{Flown, Kind, Pass, Stage};
+use crate::gradients::stage::{FlowDerivatives, Kind, Pass, Stage};
 use crate::groups::LieGroup;
 use crate::mechanics::pattern;
 use crate::mechanics::{Group, SecondDerivatives, Term, Vector};
@@ -21,7 +21,7 @@ use nalgebra::SimdComplexField as _;
 pub struct Tangent<G: LieGroup, A> {
     /// Four by four; what is left over of the last four is zero.
     columns: Vec<FourColumns<Four<G>>>,
-    /// As they were before a step.
+    /// The columns before a step.
     kept: Vec<FourColumns<Four<G>>>,
     /// The parameters that the columns behind those of the start are the derivatives by, by their numbers.
     numbers: Vec<usize>,
@@ -41,7 +41,7 @@ struct FourColumns<F> {
 }
 
 impl<G: LieGroup, A> Tangent<G, A> {
-    /// The identity, with a column for each of these of so many parameters.
+    /// The identity, with a column for each parameter that is numbered; `parameters` is how many there are.
     pub(super) fn new(parameters: usize, numbers: &[usize]) -> Self {
         let zero = G::Vector::zero();
         let shares = if numbers.is_empty() { Vec::new() } else { vec![(zero, zero); parameters] };
@@ -233,7 +233,7 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
     }
 
     #[hot]
-    fn flown(&mut self, flown: &Flown<'_, G>) {
+    fn flown(&mut self, flown: &FlowDerivatives<'_, G>) {
         if !self.shares.is_empty() {
             let zero = G::Vector::zero();
             self.shares.fill((zero, zero));

@@ -63,6 +63,10 @@ pub trait Generators<const N: usize, const D: usize>: Copy + Debug + PartialEq +
     /// The basis `E_k`, each matrix by rows; [`matrix`] writes one by its entries.
     const GENERATORS: [[[f64; N]; N]; D];
 
+    /// Of translations the names of what the last column has; else nothing.
+    #[doc(hidden)]
+    const COORDINATES: &'static [&'static str] = &[];
+
     /// How far a matrix is from the relation of the group; zero on it, and not elsewhere.
     fn relation<T: RealField + Copy>(matrix: &SMatrix<T, N, N>) -> T;
 

@@ -5,6 +5,7 @@ use core::fmt;
 use core::marker::PhantomData;
 
 use nalgebra::{RealField, SMatrix, SVector, Vector1};
+use thiserror::Error;
 
 use super::LieGroup;
 use super::generators::{
@@ -25,23 +26,12 @@ use crate::numbers::{Lanes, Real, real, reported};
 pub struct MatrixGroup<K, T, const N: usize, const D: usize>(SMatrix<T, N, N>, #[shared] PhantomData<K>);
 
 /// A matrix that isn't in the group was given as an element.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error("the matrix is not in the group: it misses the group's relation by {defect:e}; project it first")]
 pub struct NotInGroup {
     /// How far the matrix is from the relation of the group, or NaN.
     pub defect: f64,
 }
-
-impl fmt::Display for NotInGroup {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "the matrix is not in the group: it misses the group's relation by {:e}; project it first",
-            self.defect
-        )
-    }
-}
-
-impl core::error::Error for NotInGroup {}
 
 impl<K: fmt::Debug, T: Real, const N: usize, const D: usize> fmt::Debug for MatrixGroup<K, T, N, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -142,6 +132,7 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
     type Matrix = SMatrix<T, N, N>;
 
     const DIMENSION: usize = D;
+    const COORDINATES: &'static [&'static str] = K::COORDINATES;
 
     fn identity() -> Self {
         Self::from_matrix_unchecked(SMatrix::identity())

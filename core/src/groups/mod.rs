@@ -34,6 +34,7 @@ mod heisenberg;
 mod matrix_group;
 mod product;
 mod retraction;
+mod rigid;
 pub(crate) mod rotation_functions;
 mod se2;
 mod se23;
@@ -83,7 +84,7 @@ use crate::numbers::{Blocks, Coordinates, Entries, Mask, Real, sum};
 /// Linear maps of a group's components.
 pub(crate) type SquareOf<G> = <<G as LieGroup>::Vector as Coordinates<<G as LieGroup>::Scalar>>::Square;
 
-/// Of an array the body that a component belongs to, of a product the factor, from zero; none where there is but one.
+/// The body of an array that a component belongs to, or the factor of a product, from zero; none where there is but one.
 pub(crate) fn body_of<G: LieGroup>(component: usize) -> Option<usize> {
     if G::BODIES > 1 {
         return Some(component / (G::DIMENSION / G::BODIES));
@@ -195,14 +196,23 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
         None
     }
 
-    /// The numbers by which a table shows an element, a name and a unit each: on SO(3) its unit quaternion, on a product
-    /// those of its factors, elsewhere the entries of the matrix, row by row: `g_12`, and `g_1_12` of ten rows or more. Where nothing is known of a unit it is empty.
+    /// Of translations the names of what the last column has; else nothing.
+    #[doc(hidden)]
+    const COORDINATES: &'static [&'static str] = &[];
+
+    /// The numbers by which a table shows an element, a name and a unit each: on SO(3) its unit quaternion, of translations
+    /// `x`, `y` and `z`, on a product those of its factors, elsewhere the entries of the matrix, row by row: `g_12`, and
+    /// `g_1_12` of ten rows or more. Where nothing is known of a unit it is empty.
     #[must_use]
     fn named_numbers() -> Vec<(String, &'static str)> {
+        let translations = Self::COORDINATES;
+        if !translations.is_empty() {
+            return translations.iter().map(|name| ((*name).into(), "m")).collect();
+        }
         let mut entries = 0;
         Self::identity().matrix().each(&mut |_| entries += 1);
         let rows = (1..=entries).find(|rows| rows * rows >= entries).unwrap_or(1);
-        // Of two numbers that run together 1 and 11 would be 11 and 1.
+        // Without a separator, 1 and 11 would read as 11 and 1.
         let between = if rows > 9 { "_" } else { "" };
         (0..entries).map(|entry| (format!("g_{}{between}{}", entry / rows + 1, entry % rows + 1), "")).collect()
     }
@@ -210,10 +220,13 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
     /// Writes these numbers over those of the element before, or over zeros, and returns the places behind them. Of two
     /// quaternions it is the nearer one.
     fn write_numbers<'a>(&self, numbers: &'a mut [Self::Scalar]) -> &'a mut [Self::Scalar] {
-        let mut places = numbers.iter_mut();
-        self.matrix().each(&mut |entry| {
-            if let Some(place) = places.next() {
-                *place = entry;
+        let (mut places, mut entry, rows) = (numbers.iter_mut(), 0, Self::COORDINATES.len() + 1);
+        self.matrix().each(&mut |value| {
+            // Of translations the last column.
+            let is_shown = rows == 1 || entry % rows == rows - 1 && entry / rows < rows - 1;
+            entry += 1;
+            if let Some(place) = is_shown.then(|| places.next()).flatten() {
+                *place = value;
             }
         });
         places.into_slice()

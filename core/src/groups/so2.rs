@@ -44,7 +44,7 @@ impl Generators<2, 1> for SO2Generators {
 }
 
 /// The square of the distance of `[a, b; c, d]` from the relation of SO(2).
-pub(super) fn rotation_defect_squared<T: RealField + Copy>(a: T, b: T, c: T, d: T) -> T {
+fn rotation_defect_squared<T: RealField + Copy>(a: T, b: T, c: T, d: T) -> T {
     let determinant = a * d - b * c - T::one();
     (a - d) * (a - d) + (b + c) * (b + c) + determinant * determinant
 }

@@ -4,9 +4,9 @@ use alloc::borrow::ToOwned as _;
 use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
-use core::fmt;
 
 use nalgebra::{Matrix3, RealField, Rotation3, SimdBool as _, UnitQuaternion, Vector3};
+use thiserror::Error;
 
 use super::LieGroup;
 use super::rotation_functions::{quaternion, rotation_exp, rotation_log, skew_components};
@@ -34,25 +34,16 @@ use crate::numbers::{Mask, Real, real};
 pub struct SO3<T = f64>(Matrix3<T>);
 
 /// A matrix that isn't a rotation was given as one.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error(
+    "the matrix is not a rotation: ‖RᵀR − I‖ = {defect:e}, det R = {determinant}; pass a UnitQuaternion or an orthogonal matrix"
+)]
 pub struct NotARotation {
     /// `‖RᵀR − I‖` in the Frobenius norm, or NaN.
     pub defect: f64,
     /// The determinant, 1 for a rotation.
     pub determinant: f64,
 }
-
-impl fmt::Display for NotARotation {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "the matrix is not a rotation: ‖RᵀR − I‖ = {:e}, det R = {}; pass a UnitQuaternion or an orthogonal matrix",
-            self.defect, self.determinant
-        )
-    }
-}
-
-impl core::error::Error for NotARotation {}
 
 impl<T: Real> SO3<T> {
     /// Takes the matrix as it is; what depends on `RᵀR = I` is then only as right as the matrix.

@@ -45,6 +45,8 @@ macro_rules! translations {
         impl Generators<$size, $dimension> for TranslationGenerators {
             const GENERATORS: [[[f64; $size]; $size]; $dimension] = [$(matrix(&[($row, $dimension, 1.0)])),+];
 
+            const COORDINATES: &'static [&'static str] = &[$(["x", "y", "z"][$row]),+];
+
             fn relation<T: RealField + Copy>(m: &SMatrix<T, $size, $size>) -> T {
                 let x = m.fixed_view::<$dimension, 1>(0, $dimension).into_owned();
                 (m - translation(&x)).norm()
@@ -74,6 +76,14 @@ macro_rules! translations {
             }
         }
     };
+}
+
+impl<T: Real> R1<T> {
+    /// The translation as a number.
+    #[must_use]
+    pub fn value(&self) -> T {
+        self.as_matrix()[(0, 1)]
+    }
 }
 
 translations!(2, 1, [0]);

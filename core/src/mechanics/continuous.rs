@@ -24,7 +24,7 @@ pub enum Legendre {
 }
 
 impl Legendre {
-    /// Of a sum of two Lagrangians.
+    /// The transform of a sum of two Lagrangians.
     #[must_use]
     pub const fn or(self, other: Self) -> Self {
         match (self, other) {

@@ -128,7 +128,7 @@ fn unit<T: RealField + Copy + Real>(what: &'static str, vector: &Vector3<T>) -> 
     Ok(vector / length)
 }
 
-/// That takes one unit vector to another; of opposite ones it is half a turn about any axis across.
+/// The shortest turn that takes one unit vector to another; between opposite ones it is half a turn about any axis across.
 fn shortest_turn<T: RealField + Copy>(from: &Vector3<T>, to: &Vector3<T>) -> UnitQuaternion<T> {
     let cosine = from.dot(to);
     if cosine >= T::zero() {

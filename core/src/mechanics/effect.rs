@@ -4,14 +4,12 @@ use alloc::borrow::ToOwned as _;
 use alloc::string::String;
 use core::fmt::Debug;
 
-use crate::error::SetupError;
-use crate::groups::{LieGroup, Retraction, SquareOf, body_of};
+use crate::groups::{LieGroup, Retraction};
 use crate::mechanics::description::SceneVisitor;
 use crate::mechanics::kinetic_part::{KineticPart, WithKinetic};
 use crate::mechanics::operations::Operations;
 use crate::mechanics::term::Term;
-use crate::numbers::{Blocks, Coordinates, Pattern, Real, newton_halving, real, reported};
-use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField};
+use crate::numbers::{Blocks, Coordinates, Pattern, Real, real};
 
 /// The scalar of an effect.
 pub type Scalar<E> = <E as Term>::Scalar;
@@ -79,7 +77,7 @@ pub struct NewtonUpdate<V, S, T> {
 }
 
 impl<T: Real, V: Coordinates<T>> NewtonUpdate<V, V::Square, T> {
-    /// Of a residual and its Jacobian.
+    /// The update by a residual and its Jacobian.
     #[hot]
     #[must_use]
     pub fn of(residual: &V, jacobian: &V::Square, pattern: Pattern) -> Self {
@@ -379,138 +377,3 @@ impl<E: Effect> Regular for E where <E::Kinetic as KineticPart>::ByNewton: Moves
 pub trait Moves<E: ?Sized> {}
 
 impl<E: ?Sized> Moves<E> for WithKinetic {}
-
-/// `μ = ∂l/∂ξ`, `Jξ + s(w)` where `l` is quadratic: the momentum of the body velocity `ξ`.
-pub(crate) fn momentum_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advected) -> Vector<E> {
-    if effect.is_quadratic() {
-        effect.inertia(w) * *velocity + effect.momentum_bias(w)
-    } else {
-        effect.limit(Some(velocity), w).momentum
-    }
-}
-
-/// `ξ = J⁻¹(μ − s(w))`: the body velocity of the momentum `μ`. Where `l` isn't quadratic, it is solved for; NaN where no
-/// velocity has this momentum, of several lanes in those alone.
-pub(crate) fn velocity_of_momentum<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
-    let near_rest = velocity_near_rest(effect, momentum, w);
-    if effect.is_quadratic() {
-        return near_rest;
-    }
-    let (of, hessian) =
-        (|xi: &Vector<E>| effect.limit(Some(xi), w).momentum, |xi: &Vector<E>| effect.limit(Some(xi), w).hessian);
-    let found = newton_halving(momentum, near_rest, of, hessian);
-    found.solution.select(found.is_settled & found.is_regular, Vector::<E>::zero() * real(f64::NAN))
-}
-
-/// An inertia that is the same wherever a body is, with the factors by which the velocities of many momenta are solved
-/// for.
-#[derive(Clone, Copy, Debug)]
-pub struct FactoredInertia<G: LieGroup> {
-    matrix: <G::Vector as Coordinates<G::Scalar>>::Square,
-    factors: <G::Vector as Coordinates<G::Scalar>>::Square,
-    det: G::Scalar,
-}
-
-/// The inertia in factors, if it is known once for all.
-pub(crate) fn factored_inertia<E: Effect>(effect: &E) -> Option<FactoredInertia<Group<E>>> {
-    let matrix = constant_inertia(effect).ok()?;
-    let (factors, det) = Vector::<E>::factorise(&matrix);
-    Some(FactoredInertia { matrix, factors, det })
-}
-
-/// The body velocity of the momentum `μ` and the energy, by the inertia in factors if there is one: the same, to the bit.
-#[hot]
-pub(crate) fn velocity_and_energy<E: Effect>(
-    effect: &E,
-    inertia: Option<&FactoredInertia<Group<E>>>,
-    momentum: &Vector<E>,
-    w: &E::Advected,
-) -> (Vector<E>, Scalar<E>) {
-    if let Some(known) = inertia {
-        let velocity = Vector::<E>::solve_again(&known.factors, known.det, &(*momentum - effect.momentum_bias(w)));
-        return (velocity, quadratic_energy(effect, &velocity, &known.matrix, w));
-    }
-    let velocity = velocity_of_momentum(effect, momentum, w);
-    (velocity, energy_of_velocity(effect, &velocity, w))
-}
-
-/// The same by the inertia at rest: right where `l` is quadratic, elsewhere an estimate.
-fn velocity_near_rest<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
-    Vector::<E>::solve(&effect.inertia(w), &(*momentum - effect.momentum_bias(w))).0
-}
-
-/// The body velocity of the momentum `μ`, or what is near it: a guess.
-pub(crate) fn estimated_velocity<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
-    let velocity = velocity_of_momentum(effect, momentum, w);
-    if effect.is_quadratic() || velocity.is_finite() {
-        return velocity;
-    }
-    // NaN isn't equal to itself.
-    let size = velocity.dot(&velocity);
-    velocity.select(size.simd_eq(size), velocity_near_rest(effect, momentum, w))
-}
-
-/// Whether the velocity that was given is the one found of its momentum `μ`, to what rounding leaves of it where `l` is
-/// regular; `inertia` is that at rest, which makes the components of both commensurable.
-pub(crate) fn check_velocity<T: Real, V: Coordinates<T>>(
-    given: &V,
-    found: &V,
-    momentum: &V,
-    inertia: &V::Square,
-) -> Result<(), SetupError> {
-    let (image, difference) = (*inertia * *given, *inertia * (*found - *given));
-    let epsilon = T::simd_default_epsilon();
-    // At a fold of the momentum half of the digits of a velocity are lost. What cancels in the momentum is lost anyway.
-    let of_fold = image.dot(&image) * epsilon * real(256.0);
-    let of_sum = momentum.dot(momentum) * epsilon * epsilon * real(1e8);
-    let missed = difference.dot(&difference);
-    if missed.simd_le(of_fold + of_sum).all() {
-        return Ok(());
-    }
-    Err(SetupError::AmbiguousVelocity { difference: reported((missed / image.dot(&image)).simd_sqrt()) })
-}
-
-/// `ξ·∂l/∂ξ − l`, the energy of the continuous limit: `½ ξ·Jξ + V(w)` where it is quadratic.
-pub(crate) fn energy<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Scalar<E> {
-    energy_of_velocity(effect, &velocity_of_momentum(effect, momentum, w), w)
-}
-
-/// The same, of a velocity that is known.
-fn energy_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advected) -> Scalar<E> {
-    if !effect.is_quadratic() {
-        let Limit { l, momentum, .. } = effect.limit(Some(velocity), w);
-        return velocity.dot(&momentum) - l;
-    }
-    quadratic_energy(effect, velocity, &effect.inertia(w), w)
-}
-
-#[hot]
-fn quadratic_energy<E: Effect>(effect: &E, velocity: &Vector<E>, inertia: &Square<E>, w: &E::Advected) -> Scalar<E> {
-    velocity.dot(&(*inertia * *velocity)) * real(0.5) + effect.potential(w)
-}
-
-/// The inertia, if it is the same wherever the body is.
-pub(crate) fn constant_inertia<E: Effect>(effect: &E) -> Result<Square<E>, SetupError> {
-    if effect.has_constant_inertia() && effect.is_quadratic() {
-        Ok(effect.inertia(&effect.advected()))
-    } else {
-        Err(SetupError::VaryingInertia)
-    }
-}
-
-/// Whether a momentum determines a velocity, and the kinetic energy is positive along every direction.
-pub(crate) fn check_inertia<G: LieGroup>(inertia: &SquareOf<G>) -> Result<(), SetupError> {
-    let (unit, determinant) = G::Vector::solve(inertia, &G::Vector::zero());
-    let (pivot, component) = G::Vector::least_pivot(inertia);
-    // Less than this is what rounding leaves of a zero.
-    if pivot.simd_lt(real::<G::Scalar>(-1e6) * <G::Scalar as SimdRealField>::simd_default_epsilon()).any() {
-        return Err(SetupError::NegativeKinetic { pivot: reported(pivot), body: body_of::<G>(component) });
-    }
-    let is_positive = pivot.simd_gt(real(0.0));
-    if !unit.is_finite() || !(determinant.simd_gt(real(0.0)) & is_positive).all() {
-        // Where each pivot is positive, and their product is out of range, it is nobody's.
-        let body = if is_positive.all() { None } else { body_of::<G>(component) };
-        return Err(SetupError::SingularKinetic { determinant: reported(determinant), body });
-    }
-    Ok(())
-}

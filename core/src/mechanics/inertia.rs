@@ -11,19 +11,20 @@
 //! A real body has a positive semidefinite `J_d` (equivalently, its moments satisfy the triangle inequality) and a
 //! positive definite `J`. The solvability of a step rests on both, so the constructors insist on them.
 
-use core::fmt;
-
 use nalgebra::{Matrix3, RealField, Vector3};
+use thiserror::Error;
 
 use crate::numbers::{Real, real, reported};
 
 /// Why a matrix isn't the inertia of a body.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum InertiaError {
     /// An entry is NaN or infinite.
+    #[error("the inertia has an entry that is not finite; give finite numbers")]
     NotFinite,
     /// A mass or a length that an inertia is made of isn't positive.
+    #[error("the {what} of the inertia is {value:e}, not above zero; give a positive one")]
     NotPositive {
         /// Which.
         what: &'static str,
@@ -31,68 +32,42 @@ pub enum InertiaError {
         value: f64,
     },
     /// The matrix differs from its transpose by more than rounding.
+    #[error("the inertia is not symmetric: two entries differ by {defect:e}, more than rounding; give it symmetric")]
     NotSymmetric {
         /// The largest `|A_ij − A_ji|`, kg m².
         defect: f64,
     },
     /// An entry off the diagonal is larger than rounding, where a diagonal matrix is asked for.
+    #[error(
+        "the inertia is not diagonal: an entry off the diagonal is {largest:e}; take `NonstandardInertia`, or the principal axes as the body's"
+    )]
     NotDiagonal {
         /// The largest of them, kg m².
         largest: f64,
     },
     /// `J_d` has a negative eigenvalue, so the principal moments violate the triangle inequality.
+    #[error(
+        "no body has this inertia: J_d has the negative eigenvalue {smallest:e}, so the largest principal moment exceeds the sum of the others; check which of the two inertias is given"
+    )]
     TriangleInequality {
         /// The smallest eigenvalue of `J_d`, kg m².
         smallest: f64,
     },
     /// `J` isn't positive definite: a rod, a point mass, or nothing at all.
+    #[error(
+        "the inertia is singular: its smallest principal moment is {smallest:e}; give a rod or a point a small thickness"
+    )]
     Singular {
         /// The smallest eigenvalue of `J`, kg m².
         smallest: f64,
     },
     /// So large or small that products of three entries leave the range of the scalar.
+    #[error("the inertia has the trace {trace:e}, out of range; choose units in which it is nearer to one")]
     OutOfRange {
         /// The trace, kg m².
         trace: f64,
     },
 }
-
-impl fmt::Display for InertiaError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotFinite => write!(f, "the inertia has an entry that is not finite; give finite numbers"),
-            Self::NotPositive { what, value } => {
-                write!(f, "the {what} of the inertia is {value:e}, not above zero; give a positive one")
-            }
-            Self::NotSymmetric { defect } => {
-                write!(
-                    f,
-                    "the inertia is not symmetric: two entries differ by {defect:e}, more than rounding; give it symmetric"
-                )
-            }
-            Self::NotDiagonal { largest } => write!(
-                f,
-                "the inertia is not diagonal: an entry off the diagonal is {largest:e}; take `NonstandardInertia`, or the principal axes as the body's"
-            ),
-            Self::TriangleInequality { smallest } => write!(
-                f,
-                "no body has this inertia: J_d has the negative eigenvalue {smallest:e}, so the largest principal moment exceeds the sum of the others; check which of the two inertias is given"
-            ),
-            Self::Singular { smallest } => write!(
-                f,
-                "the inertia is singular: its smallest principal moment is {smallest:e}; give a rod or a point a small thickness"
-            ),
-            Self::OutOfRange { trace } => {
-                write!(
-                    f,
-                    "the inertia has the trace {trace:e}, out of range; choose units in which it is nearer to one"
-                )
-            }
-        }
-    }
-}
-
-impl core::error::Error for InertiaError {}
 
 /// The nonstandard moment of inertia `J_d = ∫ X Xᵀ dm` of a body about its pivot.
 ///

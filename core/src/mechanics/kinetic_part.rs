@@ -15,7 +15,7 @@ pub trait KineticPart {
     /// than the solve pays for.
     type History<T: Real, V: Coordinates<T>>: History<T, V>;
 
-    /// Of a sum: with, if one of the two is.
+    /// The kinetic part of a sum: there is one if one of the two terms has it.
     type Or<Other: KineticPart>: KineticPart;
 
     /// The part where the solve takes the Jacobian, whatever that costs.

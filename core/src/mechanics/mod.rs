@@ -6,6 +6,7 @@
 //! with the continuous equations. Nothing here solves an equation but that of the inverse Legendre transform.
 
 mod continuous;
+mod delegated;
 mod description;
 mod direction;
 mod effect;
@@ -20,17 +21,12 @@ mod sum;
 mod symmetry;
 mod systems;
 mod term;
+mod velocity;
 
 pub use continuous::{ContinuousLagrangian, Legendre};
 pub use description::SceneVisitor;
-pub use effect::{
-    Effect, FactoredInertia, Group, Limit, Matrix, Moves, NewtonUpdate, Parts, Regular, Residual, Scalar, Square,
-    Vector,
-};
-pub(crate) use effect::{
-    check_inertia, check_velocity, constant_inertia, energy, estimated_velocity, factored_inertia,
-    momentum_of_velocity, pattern, update_of, velocity_and_energy, velocity_of_momentum,
-};
+pub use effect::{Effect, Group, Limit, Matrix, Moves, NewtonUpdate, Parts, Regular, Residual, Scalar, Square, Vector};
+pub(crate) use effect::{pattern, update_of};
 pub use force::Force;
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
 pub use kinetic_part::{KineticPart, WithExpensiveKinetic, WithKinetic, WithoutKinetic};
@@ -42,3 +38,8 @@ pub use sum::{SharedBy, Sum};
 pub use symmetry::{AxiallyInvariant, LeftInvariant, OneVector};
 pub use systems::{Along, At, Between, Coupled, Each, Neighbours, On, Pairs, Placed, Places, SeenBetween, WhereAllAre};
 pub use term::Term;
+pub use velocity::FactoredInertia;
+pub(crate) use velocity::{
+    check_inertia, check_velocity, constant_inertia, energy, estimated_velocity, factored_inertia,
+    momentum_of_velocity, velocity_and_energy, velocity_of_momentum,
+};

@@ -7,9 +7,9 @@
 /// (advancing the attitude, solving a small linear system) isn't in them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Operations {
-    /// Of a step, without the solve: both kicks, and what is computed once before a solve.
+    /// Those of a step without the solve: both kicks, and what is computed once before a solve.
     pub step: u32,
-    /// Of one iteration, as [`StepReport`](crate::motion::StepReport) counts them.
+    /// Those of one iteration, as [`StepReport`](crate::motion::StepReport) counts them.
     pub iteration: u32,
 }
 

@@ -11,6 +11,9 @@
 //! | [`Linked`], by [`Stepper::linked`](crate::Stepper::linked) | 2 | links on ball joints, potentials, `f64` | Poisson structure, momentum maps |
 //! | [`Jointed`], by [`Stepper::jointed`](crate::Stepper::jointed) | the declaration's, mostly 2 | bodies `(SO3, R3)` and joints, `f64` | Poisson structure, momentum maps |
 
+#[macro_use]
+mod schemes;
+
 mod chain;
 mod composition;
 mod gauss;
@@ -21,7 +24,7 @@ mod tests;
 
 pub use chain::{Chain, ChainStepper, Link, Linked, Weights};
 pub use composition::{Composed, CompositionScheme};
-pub use gauss::{Collocated, CotangentCarry, CotangentGauss, Gauss};
+pub use gauss::{CollocationMemory, CotangentCarry, CotangentGauss, Gauss};
 pub use joints::{BallJoint, Constraint, Joined, Joint, Jointed, Joints, PinJoint, Place, Slope};
 pub(crate) use splitting::has_force_gradient;
 pub use splitting::{

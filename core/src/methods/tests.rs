@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 type Top = Sum<PrincipalBody, Gravity>;
 type Running<P> = State<SO3, ((), Vector3<f64>), <P as Plan<Top>>::Kept>;
 
-/// A step with registers of so many numbers.
+/// A step with registers of this length.
 struct Step<'a, P: Plan<Top>, const WIDE: usize>(&'a Stepper<Top, P>, &'a mut Running<P>);
 
 impl<P: Plan<Top>, const WIDE: usize> Kernel for Step<'_, P, WIDE> {

@@ -44,25 +44,25 @@ pub type AnyState<G, A> = State<G, A, AnyKept>;
 
 /// What a method keeps, whichever it is.
 #[doc(hidden)]
-pub struct AnyKept(Box<dyn ErasedKept>);
+pub struct AnyKept(Box<dyn AnyMemory>);
 
-trait ErasedKept: Any + Debug {
-    fn copied(&self) -> Box<dyn ErasedKept>;
-    fn equals(&self, other: &dyn ErasedKept) -> bool;
+trait AnyMemory: Any + Debug {
+    fn copied(&self) -> Box<dyn AnyMemory>;
+    fn equals(&self, other: &dyn AnyMemory) -> bool;
 }
 
-impl<K: Any + Clone + Debug + PartialEq> ErasedKept for K {
-    fn copied(&self) -> Box<dyn ErasedKept> {
+impl<K: Any + Clone + Debug + PartialEq> AnyMemory for K {
+    fn copied(&self) -> Box<dyn AnyMemory> {
         Box::new(self.clone())
     }
 
-    fn equals(&self, other: &dyn ErasedKept) -> bool {
+    fn equals(&self, other: &dyn AnyMemory) -> bool {
         (other as &dyn Any).downcast_ref::<K>() == Some(self)
     }
 }
 
 impl AnyKept {
-    fn of(kept: impl ErasedKept) -> Self {
+    fn of(kept: impl AnyMemory) -> Self {
         Self(Box::new(kept))
     }
 }
@@ -128,14 +128,14 @@ macro_rules! wraps {
 }
 
 /// An integrator that leaves out the type of its state.
-struct Erased<I>(I);
+struct Erasure<I>(I);
 
-impl<I, G, A, K> Erased<I>
+impl<I, G, A, K> Erasure<I>
 where
     I: Integrator<Group = G, Advected = A, State = State<G, A, K>>,
     G: LieGroup,
     A: Advected<G>,
-    K: ErasedKept + Clone,
+    K: AnyMemory + Clone,
 {
     /// The state that the integrator needs: what another has kept is of no use, and it begins anew.
     fn own(&self, state: &AnyState<G, A>) -> I::State {
@@ -162,23 +162,28 @@ where
     }
 }
 
-fn erased<G: LieGroup, A, K: ErasedKept>(state: State<G, A, K>) -> AnyState<G, A> {
+fn erased<G: LieGroup, A, K: AnyMemory>(state: State<G, A, K>) -> AnyState<G, A> {
     State { motion: state.motion, kept: AnyKept::of(state.kept) }
 }
 
-impl<I, G, A, K> Integrator for Erased<I>
+impl<I, G, A, K> Integrator for Erasure<I>
 where
     I: Integrator<Group = G, Advected = A, State = State<G, A, K>>,
     G: LieGroup,
     A: Advected<G>,
-    K: ErasedKept + Clone,
+    K: AnyMemory + Clone,
 {
     type Group = G;
     type Advected = A;
     type State = AnyState<G, A>;
 
-    fn run_shown(&self, state: &mut Self::State, steps: u64, next: &mut NextSteps<'_, G, A>) -> Result<u64, StepError> {
-        self.change(state, |own| self.0.run_shown(own, steps, next))
+    fn run_stretches(
+        &self,
+        state: &mut Self::State,
+        steps: u64,
+        next: &mut NextSteps<'_, G, A>,
+    ) -> Result<u64, StepError> {
+        self.change(state, |own| self.0.run_stretches(own, steps, next))
     }
 
     fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, A>, StepError> {
@@ -197,7 +202,7 @@ impl<S: Effect + 'static, P: Plan<S, Kept: 'static> + 'static> Stepper<S, P> {
     /// This stepper without its scene and method in the type.
     #[must_use]
     pub fn into_any(self) -> AnyStepper<Group<S>, S::Advected> {
-        let (cost, stepper) = (self.plan.cost(), Rc::new(Erased(self)));
+        let (cost, stepper) = (self.plan.cost(), Rc::new(Erasure(self)));
         let start = Rc::clone(&stepper);
         let start = Rc::new(move |attitude, velocity| start.0.start(attitude, velocity).map(erased));
         AnyStepper { stepper, start, cost }
@@ -231,8 +236,13 @@ impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
     type Advected = A;
     type State = AnyState<G, A>;
 
-    fn run_shown(&self, state: &mut Self::State, steps: u64, next: &mut NextSteps<'_, G, A>) -> Result<u64, StepError> {
-        self.stepper.run_shown(state, steps, next)
+    fn run_stretches(
+        &self,
+        state: &mut Self::State,
+        steps: u64,
+        next: &mut NextSteps<'_, G, A>,
+    ) -> Result<u64, StepError> {
+        self.stepper.run_stretches(state, steps, next)
     }
 
     fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, A>, StepError> {
@@ -247,7 +257,7 @@ impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
 }
 
 /// A stepper that hides what is advected: it is kept with what the method keeps.
-struct Hiding<G: LieGroup, A>(AnyStepper<G, A>);
+struct WithoutAdvected<G: LieGroup, A>(AnyStepper<G, A>);
 
 #[derive(Clone, Debug, PartialEq)]
 struct HiddenState<A> {
@@ -255,7 +265,7 @@ struct HiddenState<A> {
     kept: AnyKept,
 }
 
-impl<G: LieGroup, A: Advected<G>> Hiding<G, A> {
+impl<G: LieGroup, A: Advected<G>> WithoutAdvected<G, A> {
     /// Which values it is told to see makes no difference: it sees its own.
     fn seen(&self, motion: &Motion<G, ()>) -> AnyState<G, A> {
         self.0.adopt(&seeing(motion, A::from_entries(&mut || real(0.0))))
@@ -280,18 +290,18 @@ fn hidden<G: LieGroup, A: Copy>(State { motion, kept }: AnyState<G, A>) -> State
     State { motion: seeing(&motion, ()), kept: HiddenState { advected: motion.advected, kept } }
 }
 
-impl<G: LieGroup, A: Advected<G>> Integrator for Hiding<G, A> {
+impl<G: LieGroup, A: Advected<G>> Integrator for WithoutAdvected<G, A> {
     type Group = G;
     type Advected = ();
     type State = State<G, (), HiddenState<A>>;
 
-    fn run_shown(
+    fn run_stretches(
         &self,
         state: &mut Self::State,
         steps: u64,
         next: &mut NextSteps<'_, G, ()>,
     ) -> Result<u64, StepError> {
-        self.change(state, |own| self.0.run_shown(own, steps, &mut |shown| next(&seeing(shown, ()))))
+        self.change(state, |own| self.0.run_stretches(own, steps, &mut |shown| next(&seeing(shown, ()))))
     }
 
     fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, ()>, StepError> {
@@ -316,7 +326,7 @@ impl<G: LieGroup, A: Advected<G> + 'static> AnyStepper<G, A> {
     pub fn hiding_advected(self) -> AnyStepper<G, ()> {
         let (start, cost) = (Rc::clone(&self.start), self.cost);
         let start = Rc::new(move |attitude, velocity| start(attitude, velocity).map(hidden).map(erased));
-        AnyStepper { stepper: Rc::new(Erased(Hiding(self))), start, cost }
+        AnyStepper { stepper: Rc::new(Erasure(WithoutAdvected(self))), start, cost }
     }
 }
 

@@ -98,7 +98,7 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         self.stepper.set_lane(lane, stepper) && self.state.set_lane(lane, state) && self.stepper.is_in_step(&self.state)
     }
 
-    /// Makes `steps` steps of every body that hasn't stopped, as by [`run_shown`](Integrator::run_shown) of its own.
+    /// Makes `steps` steps of every body that hasn't stopped, as by [`run_stretches`](Integrator::run_stretches) of its own.
     pub fn run(&mut self, steps: u64) {
         if self.running().next().is_none() {
             return;
@@ -106,18 +106,18 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         let before = self.state.clone();
         if self.stepper.attempt(&mut self.state, steps).is_err() {
             self.state = before;
-            self.run_each(steps);
+            self.run_alone(steps);
         }
     }
 
-    /// One after another; then those that have moved are together again.
+    /// Each body alone, one after another; then those that have moved are together again.
     #[cold]
-    fn run_each(&mut self, steps: u64) {
+    fn run_alone(&mut self, steps: u64) {
         let running: Vec<usize> = self.running().collect();
         let mut moved: Vec<(usize, M, M::State)> = Vec::with_capacity(running.len());
         for lane in running {
             let (stepper, mut state) = (self.stepper.lane(lane), self.state.lane(lane));
-            match stepper.run_shown(&mut state, steps, &mut |_| 0) {
+            match stepper.run_stretches(&mut state, steps, &mut |_| 0) {
                 Ok(_) => moved.push((lane, stepper, state)),
                 Err(error) => self.seats[lane] = Seat::Stopped(state, error),
             }

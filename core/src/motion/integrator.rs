@@ -52,8 +52,8 @@ pub trait Integrator {
         self.run(state, steps)
     }
 
-    /// As [`run`](Self::run), and then as many steps as `next` returns for the motion reached, until it returns 0;
-    /// returns all iterations. Where `steps` is 0, nothing is made and `next` isn't asked.
+    /// A run in stretches: `steps` steps first, then each time as many as `next` returns for the motion reached, until it
+    /// returns 0. Returns all iterations. Where `steps` is 0, no step is made and `next` isn't called.
     ///
     /// Where there are fewer steps it makes those: on an error the state is that of the last. Where a run has an error
     /// and none of its single steps has, which digits of a splitting may do, it is made of these.
@@ -61,13 +61,13 @@ pub trait Integrator {
     /// # Errors
     ///
     /// Of the step that has no solution, as [`Stepper::step`](crate::Stepper::step).
-    fn run_shown(
+    fn run_stretches(
         &self,
         state: &mut Self::State,
         steps: u64,
         next: &mut NextSteps<'_, Self::Group, Self::Advected>,
     ) -> Result<u64, StepError> {
-        run_by_run(self, state, steps, next)
+        run_or_step(self, state, steps, next)
     }
 
     /// Whether the lanes of a state go on in one way, as they have to in a [`Batch`](crate::motion::Batch); one of a body
@@ -185,8 +185,8 @@ pub trait Integrator {
     }
 }
 
-/// [`Integrator::run_shown`] by means of the other functions.
-pub(super) fn run_by_run<I: Integrator + ?Sized>(
+/// [`Integrator::run_stretches`] by runs, or by single steps where a run has an error.
+pub(super) fn run_or_step<I: Integrator + ?Sized>(
     integrator: &I,
     state: &mut I::State,
     mut steps: u64,

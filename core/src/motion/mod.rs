@@ -12,6 +12,8 @@ mod stepper;
 mod any;
 mod batch;
 mod declared;
+#[macro_use]
+mod delegated;
 mod flows;
 mod increment;
 mod integrator;

@@ -216,10 +216,10 @@ impl<S: Effect, P: Plan<S>> Kernel for Run<'_, '_, S, P> {
     }
 }
 
-/// [`Plan::run`] with the vector instructions of the machine, and as [`Integrator::run_shown`] goes on; called, so that
+/// [`Plan::run`] with the vector instructions of the machine, and as [`Integrator::run_stretches`] goes on; called, so that
 /// there is one copy of a method's steps for all that runs them.
 ///
-/// [`Integrator::run_shown`]: crate::motion::Integrator::run_shown
+/// [`Integrator::run_stretches`]: crate::motion::Integrator::run_stretches
 #[inline(never)]
 pub(crate) fn run_plan<S: Effect, P: Plan<S>>(
     plan: &P,
@@ -260,7 +260,7 @@ const OF_A_STAGE: f64 = 150.0;
 const OF_AN_ITERATION: f64 = 90.0;
 
 impl Cost {
-    /// Of a step with `stages` stages, each a solve or a flow with these operations.
+    /// The cost of a step with `stages` stages, each a solve or a flow with these operations.
     #[must_use]
     pub fn of_stages(operations: Operations, stages: u32) -> Self {
         Self {
@@ -278,7 +278,7 @@ impl Cost {
         self.step + f64::from(self.fewest) * self.iteration
     }
 
-    /// Of `steps` steps with `iterations` iterations in all.
+    /// The operations of `steps` steps with `iterations` iterations in all.
     #[must_use]
     #[allow(clippy::cast_precision_loss)] // an estimate
     pub fn of_run(&self, steps: u64, iterations: u64) -> f64 {

@@ -15,14 +15,14 @@ pub struct StepReport {
 }
 
 impl StepReport {
-    /// Of a step that was made as it was asked for.
+    /// The report of a step without a remedy.
     #[hot]
     #[must_use]
     pub const fn of(iterations: u32) -> Self {
         Self { iterations, remedy: None }
     }
 
-    /// Of a step that was made as a run of one.
+    /// The report of a step that was made as a run of one.
     #[hot]
     pub(crate) fn of_run(iterations: u64) -> Self {
         Self::of(u32::try_from(iterations).unwrap_or(u32::MAX))

@@ -6,7 +6,7 @@
 pub struct Blocks(u64);
 
 impl Blocks {
-    /// As many unknowns as may be in several blocks. A product of groups with more doesn't compile.
+    /// The most unknowns that several blocks may have. A product of groups with more doesn't compile.
     pub const MOST: usize = 64;
 
     /// One block.

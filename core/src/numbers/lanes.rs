@@ -33,7 +33,7 @@ pub trait Lanes: Sized {
     /// What is in one of the lanes.
     type Lane;
 
-    /// The same in all lanes.
+    /// One value in all lanes.
     fn splat(lane: &Self::Lane) -> Self;
 
     /// What is in lane `k`.
@@ -166,7 +166,7 @@ impl<V: Lanes, const N: usize> Lanes for [V; N] {
     }
 }
 
-/// As many for each lane.
+/// A list of one length in all lanes.
 impl<V: Lanes> Lanes for Vec<V> {
     type Lane = Vec<V::Lane>;
 

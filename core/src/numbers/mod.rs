@@ -6,6 +6,7 @@ mod blocks;
 mod bodies;
 mod columns;
 mod coordinates;
+mod digest;
 mod dual;
 mod elimination;
 mod entries;
@@ -22,6 +23,8 @@ pub use bodies::{BlockDiagonal, Bodies};
 pub(crate) use bodies::{filled, least, most};
 pub use columns::FourVectors;
 pub use coordinates::Coordinates;
+#[doc(hidden)]
+pub use digest::Digest;
 pub(crate) use dual::{Dual, Number};
 pub(crate) use elimination::adjugate_3;
 pub use entries::Entries;

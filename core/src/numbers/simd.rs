@@ -37,9 +37,9 @@ pub(crate) trait Kernel {
 pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
     use pulp::{Arch, Simd, WithSimd};
 
-    struct Dispatched<K>(K);
+    struct Dispatch<K>(K);
 
-    impl<K: Kernel> WithSimd for Dispatched<K> {
+    impl<K: Kernel> WithSimd for Dispatch<K> {
         type Output = K::Output;
 
         #[hot]
@@ -55,11 +55,11 @@ pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
     #[cfg(target_arch = "x86_64")]
     if const { matches!(K::VECTORS, Vectors::Four) } {
         return match pulp::x86::V3::try_new() {
-            Some(four) => Simd::vectorize(four, Dispatched(kernel)),
+            Some(four) => Simd::vectorize(four, Dispatch(kernel)),
             None => kernel.run(),
         };
     }
-    Arch::new().dispatch(Dispatched(kernel))
+    Arch::new().dispatch(Dispatch(kernel))
 }
 
 /// Does it with the instructions that it was compiled for.

@@ -16,7 +16,7 @@ pub(super) struct Looks {
     pub(super) rounding: f64,
 }
 
-/// Of an interval so short two zeros aren't told apart.
+/// The shortest interval in which two zeros are told apart, in parts of the step.
 const SHORTEST: f64 = 1.0 / 16_777_216.0;
 /// More looks than any sensible bound takes.
 const MOST_LOOKS: u32 = 10_000;

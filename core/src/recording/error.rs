@@ -1,31 +1,38 @@
 //! How a run ends.
 
 use alloc::boxed::Box;
-use core::fmt;
+use thiserror::Error;
 
 use crate::error::StepError;
 
 /// Why a run couldn't go on to its end.
 ///
 /// The state is that of the last step that was made.
-#[derive(Debug)]
+#[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RunError {
     /// There is no next step.
+    #[error("the run stops at t = {time} s: {cause}")]
     Step {
         /// The time from which it would have been made, s.
         time: f64,
         /// Why.
+        #[source]
         cause: StepError,
     },
     /// An observer has failed.
+    #[error("the run stops at t = {time} s, as an observer failed: {cause}")]
     Observer {
         /// The time that it was shown, s.
         time: f64,
         /// Its error.
+        #[source]
         cause: Box<dyn core::error::Error + Send + Sync>,
     },
     /// A time to be shown lies before the state, or before the time that was to be shown before it, or isn't finite.
+    #[error(
+        "the time {asked} s can't be shown, as the motion is at t = {now} s already; give finite times in their order"
+    )]
     Time {
         /// The time, s.
         asked: f64,
@@ -33,6 +40,7 @@ pub enum RunError {
         now: f64,
     },
     /// The function of an event has no value.
+    #[error("the function of event {event} has no value at t = {time} s")]
     NotANumber {
         /// Which event, counted from zero as they were given.
         event: usize,
@@ -41,6 +49,9 @@ pub enum RunError {
     },
     /// Whether an event happens in a step can't be told with ten thousand looks: the bound of its second derivative is far
     /// too large, or the function is zero for a while.
+    #[error(
+        "event {event} can't be told apart in the step from t = {time} s: give a smaller bound of its second derivative, or a function that isn't zero for a while"
+    )]
     TooManyLooks {
         /// Which event, counted from zero as they were given.
         event: usize,
@@ -48,45 +59,11 @@ pub enum RunError {
         time: f64,
     },
     /// The end of the run isn't finite, or farther away than steps can be counted.
+    #[error("a run can't end at t = {asked} s: give a finite time, and a step that isn't zero")]
     End {
         /// The time, s.
         asked: f64,
     },
-}
-
-impl fmt::Display for RunError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Step { time, cause } => write!(f, "the run stops at t = {time} s: {cause}"),
-            Self::Observer { time, cause } => {
-                write!(f, "the run stops at t = {time} s, as an observer failed: {cause}")
-            }
-            Self::Time { asked, now } => write!(
-                f,
-                "the time {asked} s can't be shown, as the motion is at t = {now} s already; give finite times in their order"
-            ),
-            Self::NotANumber { event, time } => {
-                write!(f, "the function of event {event} has no value at t = {time} s")
-            }
-            Self::TooManyLooks { event, time } => write!(
-                f,
-                "event {event} can't be told apart in the step from t = {time} s: give a smaller bound of its second derivative, or a function that isn't zero for a while"
-            ),
-            Self::End { asked } => {
-                write!(f, "a run can't end at t = {asked} s: give a finite time, and a step that isn't zero")
-            }
-        }
-    }
-}
-
-impl core::error::Error for RunError {
-    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
-        match self {
-            Self::Step { cause, .. } => Some(cause),
-            Self::Observer { cause, .. } => Some(cause.as_ref()),
-            _ => None,
-        }
-    }
 }
 
 /// What a run has done.

@@ -135,7 +135,7 @@ pub(super) fn crossings<I: Integrator>(
         let (value, above) = (core::mem::replace(&mut watched.value, next), watched.above);
         watched.above = side(next).or(above);
         let bound = watched.event.curvature.map(|bound| bound.abs() * h * h);
-        // Of all steps but few there is nothing more to do.
+        // Most steps have no crossing.
         if bound.is_none() && (above.is_none() || watched.above == above) {
             continue;
         }

@@ -7,6 +7,7 @@ use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
 use core::fmt;
+use thiserror::Error;
 
 use crate::groups::LieGroup;
 use crate::mechanics::FactoredInertia;
@@ -64,45 +65,28 @@ impl<S: Sink + ?Sized> Sink for &mut S {
 }
 
 /// Why a table couldn't be written.
-#[derive(Debug)]
+#[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RecordError {
     /// Two columns have one name.
+    #[error("two columns are called `{name}`; give one of them another name")]
     SameName {
         /// The name.
         name: String,
     },
     /// A column was added behind the first row. The rows before it are in the table, which has ended with them.
+    #[error("the column `{name}` was added behind the first row; add all columns before that")]
     Late {
         /// Its name.
         name: String,
     },
     /// What the rows are written to has failed.
+    #[error("the table can't be written: {cause}")]
     Sink {
         /// Its error.
+        #[source]
         cause: SinkError,
     },
-}
-
-impl fmt::Display for RecordError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::SameName { name } => write!(f, "two columns are called `{name}`; give one of them another name"),
-            Self::Late { name } => {
-                write!(f, "the column `{name}` was added behind the first row; add all columns before that")
-            }
-            Self::Sink { cause } => write!(f, "the table can't be written: {cause}"),
-        }
-    }
-}
-
-impl core::error::Error for RecordError {
-    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
-        match self {
-            Self::SameName { .. } | Self::Late { .. } => None,
-            Self::Sink { cause } => Some(cause.as_ref()),
-        }
-    }
 }
 
 type Quantity<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> f64 + 'a>;
@@ -115,7 +99,7 @@ const ROWS_IN_A_BLOCK: usize = 1024;
 /// | columns | | unit on SO(3) and products of it |
 /// |---|---|---|
 /// | `t` | the time since the start | s |
-/// | `q_w`, `q_x`, `q_y`, `q_z` | the attitude, body to space; on other groups the matrix, `g_11`, `g_12`, … | 1 |
+/// | `q_w`, `q_x`, `q_y`, `q_z` | the attitude, body to space; of translations `x`, `y`, `z` in m; on other groups the matrix, `g_11`, `g_12`, … | 1 |
 /// | `velocity_x`, … | the body velocity; on other groups `velocity_1`, … | rad/s |
 /// | `momentum_x`, … | the body momentum | kg m²/s |
 /// | `energy` | the energy | J |
@@ -138,7 +122,7 @@ pub struct Recorder<'a, I: Integrator, S: Sink> {
     block: Vec<f64>,
     filled: usize,
     rows_in_a_block: usize,
-    /// As many numbers are handed on.
+    /// The numbers of a full block.
     full: usize,
     stage: Stage,
     /// Gone when the table has ended.

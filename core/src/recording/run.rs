@@ -123,7 +123,7 @@ where
 }
 
 impl<'a, I: Integrator> Run<'a, I> {
-    /// Of anything that steps, where its type isn't known; else by its `observed`.
+    /// A run of any integrator; one whose type is known has `observed`.
     pub fn new(integrator: &'a I, state: &'a mut I::State) -> Self {
         Self {
             integrator,
@@ -186,7 +186,7 @@ impl<'a, I: Integrator> Run<'a, I> {
         }
         if self.timed.is_empty() && self.watches.is_empty() {
             let mut shown = Ok(());
-            let made = integrator.run_shown(self.state, next, &mut |motion| {
+            let made = integrator.run_stretches(self.state, next, &mut |motion| {
                 let next = self.observers.show(&Moment::of_step(integrator, motion), &mut ended);
                 next.unwrap_or_else(|error| {
                     shown = Err(error);
@@ -199,7 +199,7 @@ impl<'a, I: Integrator> Run<'a, I> {
             while next > 0 {
                 let before = self.state.clone();
                 ended.iterations +=
-                    integrator.run_shown(self.state, 1, &mut |_| 0).map_err(|cause| self.stuck(cause))?;
+                    integrator.run_stretches(self.state, 1, &mut |_| 0).map_err(|cause| self.stuck(cause))?;
                 next = if self.show_between(&before, &mut ended)? {
                     0
                 } else {

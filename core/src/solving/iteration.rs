@@ -82,7 +82,7 @@ impl<G: LieGroup> Root<G> {
 /// The iterates of all lanes.
 pub(super) struct Lanes<G: LieGroup> {
     pub(super) half: G::Vector,
-    /// Of the last Jacobian: at the iterate before `half`, or before two [short updates](super::reused_jacobian).
+    /// The determinant of the last Jacobian: at the iterate before `half`, or before two [short updates](super::reused_jacobian).
     pub(super) det: G::Scalar,
     pub(super) settled: Mask<G::Scalar>,
     pub(super) kick: Kick<G>,

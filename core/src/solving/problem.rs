@@ -1,19 +1,12 @@
 //! Newton's iteration for the momentum equation (2.7), with a check of the branch.
 //!
-//! The equation has several solutions (four for a free asymmetric body at small `h`); the wanted one continues
-//! `F = I` as the right side grows from zero. On the way the determinant of the Jacobian never vanishes, so its sign
-//! at a solution tells. For (3.13) with a physical body more is known: `det = tr(P) tr(Fᵀ adj J_d)/h² − det J_d/h³`
-//! with `P = F J_d/h` and `det J_d ≥ 0` keeps `tr P` from zero while `det > 0`, so determinant and trace together
-//! single out the component of the identity. Below 90° there is at most one solution, and the determinant alone
-//! decides.
+//! The equation has several solutions; the wanted one continues `F = I` as the right side grows from zero. On the way the
+//! determinant of the Jacobian never vanishes, so its sign at a solution tells. For (3.13) with a physical body
+//! `det = tr(P) tr(Fᵀ adj J_d)/h² − det J_d/h³` with `P = F J_d/h` and `det J_d ≥ 0` keeps `tr P` from zero while
+//! `det > 0`, so both together single out the component of the identity; below 90° the determinant alone does.
 //!
-//! Where one iteration has come near enough, the next is made with the [same Jacobian](super::reused_jacobian). What
-//! this can't solve at once is solved [with care](super::careful).
-//!
-//! SIMD lanes iterate [together](super::lanes) until all have settled. One that has settled earlier stays as it is, so that no lane's
-//! digits depend on its neighbours: each is, bit for bit, what a scalar of its own would have given. Only a logarithm
-//! or an exponential in the Lagrangian takes the series that the lane farthest from the identity needs, and rounds by
-//! it.
+//! What this can't solve at once is solved [with care](super::careful). SIMD lanes iterate [together](super::lanes), each
+//! with the bits of a scalar, but for the series of logarithms and exponentials, which all share.
 
 use super::iteration::{Iteration, Lanes, MAX_ITERATIONS, Root, System, far, is_positive};
 use crate::groups::Retraction;
@@ -63,9 +56,7 @@ impl<L: Effect> Problem<'_, L> {
     /// What it returns is what [`solve`](Self::solve) returns. A right side whose square is above `largest` is
     /// doubtful: the Jacobian is lost in its rounding, and an update may vanish far from any solution.
     ///
-    /// `REUSE` says whether a Jacobian may be [reused](super::reused_jacobian).
-    ///
-    /// Nothing here is lent to a function that isn't inlined; that is a sixth of the time of a step.
+    /// `REUSE` says whether a Jacobian may be [reused](super::reused_jacobian). Nothing here is lent to a function that isn't inlined; that is a sixth of the time of a step.
     #[hot]
     pub(crate) fn solve_directly<const REUSE: bool>(
         &self,

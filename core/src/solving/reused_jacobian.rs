@@ -30,7 +30,7 @@ use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue};
 const REST: f64 = 1.0 / 16.0;
 /// Its square, of `f64`, as lengths are given by their squares.
 const REST_OF_SIZE: f64 = (REST * f64::EPSILON) * (REST * f64::EPSILON);
-/// Of the determinant at rest.
+/// The part of the determinant at rest above which a determinant is safe.
 const SAFE: f64 = 1.0 / 16.0;
 /// The `C` that a first update is judged by: that of the heavy tops of the thesis at common steps. A top with a larger
 /// one wastes a residual in a narrow range of updates.
@@ -182,7 +182,7 @@ mod tests {
         assert!(!enough(1.0, f64::NAN) && !has_sufficed(0.0, f64::NAN, size));
     }
 
-    /// Of `y' = C y²`, whose solution is zero, the iterates are what is missing, and the next is below a sixteenth of a
+    /// The iterates of `y' = C y²`, whose solution is zero, are their own errors, and the next is below a sixteenth of a
     /// rounding of `y = 1e-4` where, and only where, the curvature that two of them tell says so.
     #[test]
     fn a_curvature_of_two_updates_tells_what_is_missing() {

@@ -9,9 +9,9 @@ use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
 use crate::methods::{Composed, Jointed, KineticFlow, Linked, Processed, Split};
-use crate::motion::{Cost, Declared, Kept, Motion, Plan, Steerable, StepReport, Stepper, Summation, restored};
-use crate::numbers::{Entries, Vectors, carried_sum, zero};
-use crate::with::remedies::Substepped;
+use crate::motion::{Declared, Kept, Motion, Plan, Steerable, StepReport, Stepper, Summation, restored};
+use crate::numbers::{Entries, carried_sum, zero};
+use crate::with::remedies::Substeps;
 use nalgebra::SimdValue as _;
 
 /// A plan whose sums are compensated, by [`Stepper::compensated`].
@@ -46,7 +46,7 @@ pub struct Compensated<P>(P);
 
 /// What a plan keeps, and what the rounding of its sums has left behind.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
-pub struct Carried<K, G: LieGroup, A> {
+pub struct MemoryWithCarry<K, G: LieGroup, A> {
     kept: K,
     carry: Carry<G, A>,
 }
@@ -84,7 +84,7 @@ impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Compe
 impl<S: Effect, const N: usize> Compensable for Linked<S, N> {}
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Split<S, K> {}
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Processed<S, K> {}
-impl<P: Compensable> Compensable for Substepped<P> {}
+impl<P: Compensable> Compensable for Substeps<P> {}
 
 impl<P: Steerable> Steerable for Compensated<P> {}
 
@@ -113,38 +113,16 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
 }
 
 impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
-    type Kept = Carried<P::Kept, Group<S>, S::Advected>;
+    type Kept = MemoryWithCarry<P::Kept, Group<S>, S::Advected>;
 
-    const VECTORS: Vectors = P::VECTORS;
-    const EXPLAINS: bool = P::EXPLAINS;
-    const HAS_OWN_INERTIA: bool = P::HAS_OWN_INERTIA;
-
-    fn step_size(&self) -> Scalar<S> {
-        self.0.step_size()
-    }
+    delegate_plan!(0, |kept| &kept.kept; constants step_size admits momentum velocity is_in_step explained max_step cost);
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
         self.0.refolded(scene, h).map(Self)
     }
 
     fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
-        Carried { kept: self.0.keep(scene, motion), carry: Carry::nothing() }
-    }
-
-    fn admits(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Result<(), SetupError> {
-        self.0.admits(scene, motion)
-    }
-
-    fn momentum(&self, scene: &S, attitude: &Group<S>, velocity: &Vector<S>, w: &S::Advected) -> Vector<S> {
-        self.0.momentum(scene, attitude, velocity, w)
-    }
-
-    fn velocity(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
-        self.0.velocity(scene, motion)
-    }
-
-    fn is_in_step(&self, kept: &Self::Kept) -> bool {
-        self.0.is_in_step(&kept.kept)
+        MemoryWithCarry { kept: self.0.keep(scene, motion), carry: Carry::nothing() }
     }
 
     #[hot]
@@ -195,31 +173,13 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
         kept.carry.advected = zero();
     }
 
-    fn explained(
-        &self,
-        error: StepError,
-        scene: &S,
-        motion: &Motion<Group<S>, S::Advected>,
-        kept: &Self::Kept,
-    ) -> StepError {
-        self.0.explained(error, scene, motion, &kept.kept)
-    }
-
-    fn max_step(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, kept: &Self::Kept) -> Scalar<S> {
-        self.0.max_step(scene, motion, &kept.kept)
-    }
-
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
         visitor.term("compensated");
         self.0.describe(visitor);
     }
-
-    fn cost(&self) -> Cost {
-        self.0.cost()
-    }
 }
 
-impl<K: Kept<G::Scalar>, G: LieGroup, A: Advected<G>> Kept<G::Scalar> for Carried<K, G, A> {
+impl<K: Kept<G::Scalar>, G: LieGroup, A: Advected<G>> Kept<G::Scalar> for MemoryWithCarry<K, G, A> {
     fn each(&self, mut visit: &mut dyn FnMut(G::Scalar)) {
         self.kept.each(visit);
         self.carry.attitude.each(&mut visit);

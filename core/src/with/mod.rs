@@ -8,6 +8,6 @@ mod compensated;
 mod remedies;
 
 #[cfg(feature = "serde")]
-pub use checkpoint::{Checkpoint, CheckpointError, Stored};
-pub use compensated::{Carried, Compensable, Compensated};
-pub use remedies::Substepped;
+pub use checkpoint::{Checkpoint, CheckpointError, Storable};
+pub use compensated::{Compensable, Compensated, MemoryWithCarry};
+pub use remedies::Substeps;

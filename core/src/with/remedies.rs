@@ -5,13 +5,13 @@
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
-use crate::motion::{Cost, Motion, Plan, Remedy, Steerable, StepReport, Stepper, Summation};
-use crate::numbers::{Vectors, real};
+use crate::motion::{Motion, Plan, Remedy, Steerable, StepReport, Stepper, Summation};
+use crate::numbers::real;
 
 /// A plan that takes a step without a solution in equal parts, by [`Stepper::or_substeps`].
 #[derive(Clone, Copy, Debug)]
 #[doc(hidden)]
-pub struct Substepped<P> {
+pub struct Substeps<P> {
     plan: P,
     at_most: u32,
 }
@@ -50,44 +50,19 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
-    pub fn or_substeps(self, at_most: u32) -> Stepper<S, Substepped<P>> {
-        Stepper { scene: self.scene, plan: Substepped { plan: self.plan, at_most } }
+    pub fn or_substeps(self, at_most: u32) -> Stepper<S, Substeps<P>> {
+        Stepper { scene: self.scene, plan: Substeps { plan: self.plan, at_most } }
     }
 }
 
-impl<S: Effect, P: Plan<S>> Plan<S> for Substepped<P> {
+impl<S: Effect, P: Plan<S>> Plan<S> for Substeps<P> {
     type Kept = P::Kept;
 
-    const VECTORS: Vectors = P::VECTORS;
-    const EXPLAINS: bool = P::EXPLAINS;
-    const HAS_OWN_INERTIA: bool = P::HAS_OWN_INERTIA;
-
-    fn step_size(&self) -> Scalar<S> {
-        self.plan.step_size()
-    }
+    // The largest step is that of the plan itself: a step that only its parts make is none of its own.
+    delegate_plan!(plan, |kept| kept; constants step_size keep admits momentum velocity is_in_step explained max_step cost);
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
         Ok(Self { plan: self.plan.refolded(scene, h)?, at_most: self.at_most })
-    }
-
-    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
-        self.plan.keep(scene, motion)
-    }
-
-    fn admits(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Result<(), SetupError> {
-        self.plan.admits(scene, motion)
-    }
-
-    fn momentum(&self, scene: &S, attitude: &Group<S>, velocity: &Vector<S>, w: &S::Advected) -> Vector<S> {
-        self.plan.momentum(scene, attitude, velocity, w)
-    }
-
-    fn velocity(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
-        self.plan.velocity(scene, motion)
-    }
-
-    fn is_in_step(&self, kept: &Self::Kept) -> bool {
-        self.plan.is_in_step(kept)
     }
 
     #[hot]
@@ -117,33 +92,14 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Substepped<P> {
         self.plan.see(motion, kept, advected);
     }
 
-    fn explained(
-        &self,
-        error: StepError,
-        scene: &S,
-        motion: &Motion<Group<S>, S::Advected>,
-        kept: &Self::Kept,
-    ) -> StepError {
-        self.plan.explained(error, scene, motion, kept)
-    }
-
-    /// Of the plan itself: a step that only its parts make is none of its own.
-    fn max_step(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, kept: &Self::Kept) -> Scalar<S> {
-        self.plan.max_step(scene, motion, kept)
-    }
-
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
         visitor.term("or substeps");
         visitor.parameter("at most", real(f64::from(self.at_most)));
         self.plan.describe(visitor);
     }
-
-    fn cost(&self) -> Cost {
-        self.plan.cost()
-    }
 }
 
-impl<P: Steerable> Steerable for Substepped<P> {}
+impl<P: Steerable> Steerable for Substeps<P> {}
 
 /// Makes the step in equal parts, or leaves everything as it was and returns the error.
 #[cold]

@@ -90,17 +90,3 @@ impl Rates for Orbiting {
         Equations::new(self.moments, [0.0; 3]).end(state)
     }
 }
-
-/// A step of the classical Runge–Kutta method, with the quaternion brought back to unit length.
-#[inline]
-pub fn rk4_step(equations: &impl Rates, h: f64, y: &State) -> State {
-    let plus = |h: f64, k: &State| -> State { core::array::from_fn(|i| y[i] + h * k[i]) };
-    let k1 = equations.rate(y);
-    let k2 = equations.rate(&plus(0.5 * h, &k1));
-    let k3 = equations.rate(&plus(0.5 * h, &k2));
-    let k4 = equations.rate(&plus(h, &k3));
-    let next: State = core::array::from_fn(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]));
-    let [a, b, c, d, p1, p2, p3] = next;
-    let scale = 1.0 / (a * a + b * b + c * c + d * d).sqrt();
-    [a * scale, b * scale, c * scale, d * scale, p1, p2, p3]
-}

@@ -1,8 +1,5 @@
 //! The declaration that the integrator is made from, and some bodies.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use liestep::prelude::*;
 use nalgebra::Vector3;
 

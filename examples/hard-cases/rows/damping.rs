@@ -1,8 +1,5 @@
 //! P6: damping far stronger than the inertia.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use liestep::effects::{Drag, MagneticDamping, PrincipalBody};
 use liestep::mechanics::{DiagonalNonstandardInertia, Effect, Regular};
 use liestep::{NonstandardInertia, SO3, Stepper, force};

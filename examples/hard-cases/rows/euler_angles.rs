@@ -15,7 +15,7 @@ use crate::rows::passage;
 
 /// s; the angles stay away from the poles in all of the thesis' motions.
 const TIME: f64 = 2.0;
-/// What the angles leave in so many steps that their own error doesn't count.
+/// A step so short that its own error doesn't count beside what the angles leave, s.
 const FINE: f64 = 1.0 / 4096.0;
 
 /// Attitude and momentum by the angles.

@@ -2,8 +2,6 @@
 //!
 //! The thresholds are those of `f64` in units of epsilon: what is 10⁻¹⁴ there is 45 ε, 10⁻¹³ is 450 ε.
 
-#![allow(non_snake_case)] // the letter of the field
-
 use declarations::Motion;
 use liestep::mechanics::{DiscreteLagrangian, InertiaError, Regular, Sum};
 use liestep::prelude::*;

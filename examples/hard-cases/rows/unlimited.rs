@@ -13,7 +13,6 @@ pub(crate) fn s6(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     let (h, velocity) = (0.1, Vector3::new(0.5, 1.0, 24.6));
     let (weight, rho, up) = (9.81, Vector3::z(), Vector3::z());
     let tilted = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
-    #[allow(non_snake_case)] // the letter of the field
     let J = Inertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0))?;
     let cayley = Stepper::new(CayleyTop { J, weight, rho, up }, h)?;
     let mut state = cayley.start(tilted, velocity)?;

@@ -1,4 +1,2 @@
 mod damping;
-mod momentum_laws;
-mod poisson;
 mod steady_turns;

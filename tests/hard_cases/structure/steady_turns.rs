@@ -7,6 +7,7 @@
 
 use declarations::HeavyTop;
 use liestep::methods::{CompositionScheme, SplittingScheme, SymmetricBody};
+use liestep::motion::Integrator;
 use liestep::prelude::*;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -42,58 +43,48 @@ fn assert_kept(name: &str, start: &TopMotion, end: &TopMotion) {
     assert!((end.advected() - seen).norm() <= 2e-12, "{name}");
 }
 
+/// Each body makes these steps.
+fn turn<I>(method: &str, steps: u32, stepper: impl Fn(HeavyTop, [f64; 3]) -> (I, I::State))
+where
+    I: Integrator<Group = SO3, Advected = Vector3<f64>>,
+{
+    for moments in BODIES {
+        let (stepper, mut state) = stepper(weightless(moments), moments);
+        let start = *state;
+        stepper.run(&mut state, u64::from(steps)).unwrap();
+        assert_kept(&format!("{method} {moments:?}"), &start, &state);
+    }
+}
+
+/// With the state that it starts with.
+macro_rules! started {
+    ($stepper:expr) => {{
+        let stepper = $stepper.unwrap();
+        let (attitude, velocity) = start();
+        let state = stepper.start(attitude, velocity).unwrap();
+        (stepper, state)
+    }};
+}
+
 #[test]
 fn t3_steady_turns_stay_on_the_group() {
-    let (attitude, velocity) = start();
-    for moments in BODIES {
-        let stepper = Stepper::new(weightless(moments), 0.01).unwrap();
-        let start = stepper.start(attitude, velocity).unwrap();
-        let mut state = start;
-        for _ in 0..STEPS {
-            stepper.step(&mut state).unwrap();
-        }
-        assert_kept(&format!("{moments:?}"), &start, &state);
-    }
+    turn("plain", STEPS, |top, _| started!(Stepper::new(top, 0.01)));
 }
 
 #[test]
 fn t3_compensated_steady_turns_stay_on_the_group() {
-    let (attitude, velocity) = start();
-    for moments in BODIES {
-        let stepper = Stepper::new(weightless(moments), 0.01).unwrap().compensated();
-        let start = stepper.start(attitude, velocity).unwrap();
-        let mut state = start;
-        for _ in 0..STEPS {
-            stepper.step(&mut state).unwrap();
-        }
-        assert_kept(&format!("compensated {moments:?}"), &start, &state);
-    }
+    turn("compensated", STEPS, |top, _| started!(Stepper::new(top, 0.01).map(Stepper::compensated)));
 }
 
 #[test]
 fn t3_composed_steady_turns_stay_on_the_group() {
-    let (attitude, velocity) = start();
-    for moments in BODIES {
-        let composed = Stepper::composed(weightless(moments), 0.05, CompositionScheme::SUZUKI_4).unwrap();
-        let start = composed.start(attitude, velocity).unwrap();
-        let mut state = start;
-        for _ in 0..STEPS / 5 {
-            composed.step(&mut state).unwrap();
-        }
-        assert_kept(&format!("composed {moments:?}"), &start, &state);
-    }
+    turn("composed", STEPS / 5, |top, _| started!(Stepper::composed(top, 0.05, CompositionScheme::SUZUKI_4)));
 }
 
 #[test]
 fn t3_split_steady_turns_stay_on_the_group() {
-    let (attitude, velocity) = start();
-    for moments in BODIES {
-        let inertia = Inertia::from_principal_moments(moments.into()).unwrap();
-        let body = SymmetricBody::new(&inertia).unwrap();
-        let splitting = Stepper::split(weightless(moments), 0.01, body, SplittingScheme::NYSTROM_6).unwrap();
-        let start = splitting.start(attitude, velocity).unwrap();
-        let mut state = start;
-        splitting.run(&mut state, u64::from(STEPS / 6)).unwrap();
-        assert_kept(&format!("split {moments:?}"), &start, &state);
-    }
+    turn("split", STEPS / 6, |top, moments| {
+        let body = SymmetricBody::new(&Inertia::from_principal_moments(moments.into()).unwrap()).unwrap();
+        started!(Stepper::split(top, 0.01, body, SplittingScheme::NYSTROM_6))
+    });
 }

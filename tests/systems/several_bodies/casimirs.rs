@@ -4,9 +4,6 @@
 //! on its orbit of the group. Of the momentum, what is along the `η` with `η·w = 0` moves as on the subgroup of these, so
 //! that the subgroup's own Casimirs of it are kept. That is all: as many functions as `B(z)` lacks of its full rank.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use checks::solvers::Badly;
 use declarations::{DoublePendulum, TwoBodies};
 use liestep::groups::{Advected, LieGroup, R3, SE2};

@@ -1,8 +1,5 @@
 //! The double pendulum as it is declared.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use checks::solvers::Badly;
 use declarations::DoublePendulum;
 use declarations::motions::{number, read, vector};

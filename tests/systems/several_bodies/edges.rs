@@ -1,9 +1,6 @@
 //! Several bodies at the edges of what a step can do: steps up to the longest that has a solution, and bodies that nearly
 //! touch.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use core::f64::consts::{FRAC_PI_2, PI};
 use core::fmt::Debug;
 

@@ -1,8 +1,5 @@
 //! Forces on several bodies: what is derived of their virtual work, and what a motor does to a wheel.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use liestep::groups::{Advected, Given, LieGroup as _, R1, R3};
 use liestep::laws::samples::{Random, derivative};
 use liestep::mechanics::{Effect, Force, Term};

@@ -1,9 +1,6 @@
 //! Chains of links on ball joints, solved link by link: against steps of 30 digits, against the same chain with a full
 //! Newton matrix, and against derivatives of the action in terms of where all masses are.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use declarations::DoublePendulum;
 use declarations::motions::{matrix, number, read, vector};
 use liestep::effects::Spring;
@@ -28,7 +25,7 @@ fn link(central: &Matrix3<f64>, m: f64, c: Vector3<f64>, rho: Vector3<f64>) -> L
 }
 
 /// Of the reference.
-fn chain3() -> Chain<3> {
+pub(super) fn chain3() -> Chain<3> {
     let data = &read("several bodies")["chain3"]["parameters"];
     let plain = |value: &serde_json::Value| Vector3::from_fn(|k, _| value[k].as_f64().unwrap());
     let links = all(&data["bodies"], |body| {

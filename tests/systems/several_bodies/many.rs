@@ -1,8 +1,5 @@
 //! Systems of many bodies: terms on one body and on two, put at places.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use declarations::Alike;
 use declarations::motions::{matrix, number, read, vector};
 use liestep::effects::{CayleyBody, Gravity, PrincipalBody, Spring};

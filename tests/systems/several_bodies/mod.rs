@@ -1,8 +1,7 @@
-//! Several bodies on a product of groups: by hand a chain of links, all of which feel each other's velocities, and bodies
-//! that feel each other's attitudes alone; a double pendulum, these bodies, and others that are translated too, as declared;
-//! systems of many, chains of many links, and bodies held together by joints.
+//! Several bodies on a product of groups, as they are declared: links that feel each other's velocities, bodies that feel
+//! each other's attitudes alone, and bodies that are translated too; systems of many, chains of many links, and bodies held
+//! together by joints.
 
-mod attitudes;
 mod casimirs;
 mod chain;
 mod declared;
@@ -22,7 +21,7 @@ use liestep::laws::samples::{Random, derivative};
 use liestep::mechanics::{ContinuousLagrangian, DiscreteLagrangian, Regular, Term};
 use liestep::motion::RightHandSide;
 use liestep::{SO3, Stepper};
-use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix3, SVector, Vector3};
 use serde_json::Value;
 use workbench::runge_kutta;
 
@@ -30,11 +29,6 @@ use declarations::motions::{matrix, number, read, vector};
 
 /// Attitude and body velocity of one body.
 type End = (Matrix3<f64>, Vector3<f64>);
-
-/// `(M − Mᵀ)^∨`, twice the components of the skew part.
-fn twice_vee(m: &Matrix3<f64>) -> Vector3<f64> {
-    Vector3::new(m.m32 - m.m23, m.m13 - m.m31, m.m21 - m.m12)
-}
 
 /// The components of all bodies, one after the other.
 fn stacked<const D: usize>(parts: &[Vector3<f64>]) -> SVector<f64, D> {
@@ -44,16 +38,6 @@ fn stacked<const D: usize>(parts: &[Vector3<f64>]) -> SVector<f64, D> {
 /// Those of one body.
 fn part<const D: usize>(of: &SVector<f64, D>, body: usize) -> Vector3<f64> {
     of.fixed_rows::<3>(3 * body).into_owned()
-}
-
-fn put<const D: usize>(square: &mut SMatrix<f64, D, D>, (row, column): (usize, usize), block: &Matrix3<f64>) {
-    let mut place = square.fixed_view_mut::<3, 3>(3 * row, 3 * column);
-    place += block;
-}
-
-/// `F − I` without a rounding of `I`, and `F`.
-fn increments<const N: usize>(f: [&Matrix3<f64>; N]) -> [(Matrix3<f64>, Matrix3<f64>); N] {
-    f.map(|f| (f - Matrix3::identity(), *f))
 }
 
 /// What a file has of all bodies.

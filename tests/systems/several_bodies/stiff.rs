@@ -1,8 +1,5 @@
 //! Elastic rods whose stiffness is taken in the middle of a step: the bodies of a row are solved together.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use core::array::from_fn;
 
 use declarations::{FloatingBody, PointSpring, RodElement};

@@ -1,8 +1,5 @@
 //! Bodies that are translated too: a top on a cart, two bodies that attract each other, a spacecraft with wheels.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use checks::solvers::Badly;
 use declarations::motions::{number, read, vector};
 use declarations::{FloatingBody, Gyrostat, PointSpring, TopOnCart, TwoBodies};

@@ -1,4 +1,4 @@
-use liestep::{NonstandardInertia, SO3, lagrangian};
+use liestep::{SO3, lagrangian};
 use nalgebra::Vector3;
 
 #[lagrangian(group = SO3, l_d = -h * rho.dot(&(F * rho)))]
@@ -9,16 +9,6 @@ struct Bare {
 #[lagrangian(group = SO3, l_d = -h * rho.dot(&(F * rho)))]
 struct Empty {
     rho: Vector3<>,
-}
-
-#[lagrangian(group = SO3, l_d = -h * rho.dot(&(F * rho)))]
-struct Whole {
-    rho: Vector3<u32>,
-}
-
-#[lagrangian(group = SO3, l_d = -h * rho.dot(&(F * rho)))]
-struct Nested {
-    rho: Vector3<NonstandardInertia>,
 }
 
 fn main() {}

@@ -4,6 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use expect_test::expect_file;
+
 pub(crate) const TOP: &str = r#"title = "A heavy top with drag"
 
 [body]
@@ -41,13 +43,28 @@ pub(crate) fn simulate(folder: &Path, files: &[&str]) -> Output {
     Command::new(PROGRAM).current_dir(folder).args(["run", "--csv", "--out", "."]).args(files).output().unwrap()
 }
 
-/// The message for the top with one line replaced.
-pub(crate) fn mistake(folder: &Path, line: &str, by: &str) -> String {
-    assert_eq!(TOP.matches(line).count(), 1, "{line}");
-    fs::write(folder.join("top.toml"), TOP.replace(line, by)).unwrap();
+/// What the program says of a text that it refuses.
+pub(crate) fn refused(folder: &Path, text: &str) -> String {
+    fs::write(folder.join("top.toml"), text).unwrap();
     let output = simulate(folder, &["top.toml"]);
-    assert!(!output.status.success() && output.stdout.is_empty(), "{by}");
+    assert!(!output.status.success() && output.stdout.is_empty(), "{text}");
     String::from_utf8(output.stderr).unwrap()
+}
+
+/// The mistakes of `mistakes/{file}.txt`: lines of a right text, those that stand there instead, and the message.
+pub(crate) fn mistakes(file: &str, text: &str, message: impl Fn(&str) -> String) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/program/mistakes/{file}.txt"));
+    let mistakes = fs::read_to_string(&path).unwrap();
+    let found = mistakes.split("\n\n").map(|mistake| {
+        let changed: Vec<&str> = mistake.lines().filter(|line| line.starts_with(['-', '+'])).collect();
+        let side = |sign| -> Vec<String> {
+            changed.iter().filter_map(|line| line.strip_prefix(sign)).map(|line| format!("{line}\n")).collect()
+        };
+        let [right, wrong] = ["- ", "+ "].map(|sign| side(sign).concat());
+        assert!(!right.is_empty() && text.contains(&right), "{mistake}");
+        format!("{}\n{}", changed.join("\n"), message(&text.replacen(&right, &wrong, 1)))
+    });
+    expect_file![path].assert_eq(&found.collect::<Vec<_>>().join("\n"));
 }
 
 /// The rows of a scene's table, after a run of a text.

@@ -2,9 +2,7 @@
 
 use std::fs;
 
-use expect_test::expect;
-
-use crate::called::{folder, printed, rows, simulate};
+use crate::called::{folder, mistakes, printed, refused, rows};
 
 const RUN: &str = r#"
 [start]
@@ -90,48 +88,5 @@ J = { tensor = [[2, 0.1, 0], [0.1, 3, 0], [0, 0, 4]] }
 #[test]
 fn mistakes_have_places() {
     let folder = folder("lagrangian-mistakes");
-    let messages = [
-        ("w.dot(&(rho", "w.dot(&(roh"),
-        ("- 0.5 * h", "- 0.5"),
-        (".trace() / (2.0 * h)", " / (2.0 * h)"),
-        ("((F - I)", "((F - I"),
-        ("m = \"1000 g\"", "m = \"1000 stone\""),
-        ("m = \"1000 g\"\n", ""),
-        ("g = 9.81", "g = 9.81\nunused = 1"),
-        ("g = 9.81", "g = true"),
-        ("up = [0, 0, 1]", "up = [0, 1]"),
-        ("moments = [3, 3, 4]", "moments = [3, 3, 40]"),
-        ("moments = [3, 3, 4]", "diagonal = [3, 3, 4]"),
-        ("w = \"up\"", "w = \"down\""),
-        ("advected =", "group = \"SE3\"\nadvected ="),
-        ("l_d = \"\"\"", "l = \"\"\""),
-        ("up = [0, 0, 1]", "up = [0, 0, 1]\n[body]\nmoments = [1, 1, 1]"),
-        ("up = [0, 0, 1]", "up = [0, 0, 1]\n[drag]\nc = 1"),
-    ]
-    .map(|(line, by)| {
-        assert_eq!(TOP.matches(line).count(), 1, "{line}");
-        fs::write(folder.join("top.toml"), format!("{}{RUN}", TOP.replace(line, by))).unwrap();
-        let output = simulate(&folder, &["top.toml"]);
-        assert!(!output.status.success() && output.stdout.is_empty(), "{by}");
-        String::from_utf8(output.stderr).unwrap()
-    });
-    expect![[r#"
-        error: top.toml:7:33: `roh` isn't known here; did you mean `rho`?
-        error: top.toml:7:7: this goes like 1 as h → 0: a potential goes like `h`, as in `0.5 * h * …`
-        error: top.toml:7:5: a scalar can't be subtracted from a 3 × 3 matrix: write `a * I` for a scalar `a`, or take the `.trace()` of the matrix
-        error: top.toml:5:7: a bracket isn't closed or opened, or a sign has no meaning here
-        error: top.toml:9:5: `stone` isn't a unit that is known here: take one of SI, or leave it out
-        error: top.toml:7:17: `m` isn't known here: make it a field of the struct, or write its value
-        known: F, I, h, w, J_d, g, rho, up
-        error: top.toml:11:1: `unused` isn't used in the Lagrangian: remove the field, or use it
-        error: top.toml:10:5: invalid type: boolean `true`, expected a number
-        error: top.toml:12:6: a vector has three numbers, found 2
-        error: top.toml:8:19: no body has this inertia: J_d has the negative eigenvalue -1.7e1, so the largest principal moment exceeds the sum of the others; check which of the two inertias is given
-        error: top.toml:8:9: unknown field `diagonal`, expected `moments` or `tensor`
-        error: top.toml:3:2: the struct has no field `down`
-        error: top.toml:4:9: a file's Lagrangian is on `SO3`; on other groups it is declared in a program
-        error: top.toml:3:2: a Lagrangian has `l_d`, or `l` with `discretise`; it may have `advected`, as in `advected = { w = "up" }`, and has a key for each parameter
-        error: top.toml:13:2: a `lagrangian` has its kinetic energy itself: leave `body` out
-        error: top.toml:13:1: a `lagrangian` has all its terms in its text: write drag there
-    "#]].assert_eq(&messages.concat());
+    mistakes("lagrangians", &format!("{TOP}{RUN}"), |text| refused(&folder, text));
 }

@@ -1,8 +1,5 @@
 //! The program `liestep`, and through it the library of scenes.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 mod called;
 mod ensembles;
 mod lagrangian;

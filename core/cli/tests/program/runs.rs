@@ -14,7 +14,7 @@ use liestep::prelude::*;
 use liestep::recording::{Csv, Recorder};
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::called::{PROGRAM, TOP, folder, mistake, printed, rows, simulate, table};
+use crate::called::{PROGRAM, TOP, folder, printed, refused, rows, simulate, table};
 
 /// A step that is too large is found out while running: with the file, the time and the largest step.
 #[test]
@@ -191,7 +191,7 @@ fn a_file_may_have_every_effect() {
 fn no_effect_is_without_a_table() {
     let folder = folder("effects");
     let listed = |line, by| -> Vec<String> {
-        let message = mistake(&folder, line, by);
+        let message = refused(&folder, &TOP.replace(line, by));
         let (_, names) = message.split_once(", expected one of ").unwrap();
         names.trim().split(", ").map(|name| name.trim_matches('`').to_owned()).collect()
     };

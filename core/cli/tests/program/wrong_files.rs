@@ -5,7 +5,7 @@ use std::process::Command;
 
 use expect_test::expect;
 
-use crate::called::{PROGRAM, TOP, folder, mistake, printed, rows, simulate};
+use crate::called::{PROGRAM, TOP, folder, mistakes, printed, refused, rows, simulate};
 
 /// A terminal isn't told to do anything, and the picture stays XML.
 #[test]
@@ -23,165 +23,12 @@ fn control_characters_are_written_out() {
     }
 }
 
-/// A line of the file, and the mistake that stands there instead.
-const MISTAKES: [(&str, &str); 47] = [
-    ("c = 1e-3", "c = 1e-3\nviscosity = 2"),
-    ("[drag]", "[darg]"),
-    ("g = 9.81\n", ""),
-    ("[run]\nstep = \"10 ms\"\nduration = 2\n", ""),
-    ("c = 1e-3", "c = 1e-3\nrho = [0, 0, 1]"),
-    ("m = \"1 kg\"", "m = \"1 m\""),
-    ("m = \"1 kg\"", "m = \"heavy\""),
-    ("m = \"1 kg\"", "m = -1"),
-    ("m = \"1 kg\"", "m = true"),
-    ("c = 1e-3", "c = inf"),
-    ("rho = [0, 0, 1.0]", "rho = [0, 1.0]"),
-    ("rho = [0, 0, 1.0]", "rho = [0, \"1 m\", \"1 kg\"]"),
-    ("rho = [0, 0, 1.0]", "rho = 1.0"),
-    ("up = [0, 0, 1]", "up = [0, 0, 0]"),
-    ("moments = [3, 3, 4]", "moments = [1, 1, 4]"),
-    ("moments = [3, 3, 4]", "moments = [3, 3, 4]\nJ_d = [2, 2, 1]"),
-    ("euler = [0, \"45 deg\", 0]", "quaternion = [1, 0, 0]"),
-    ("euler = [0, \"45 deg\", 0]", "quaternion = [0, 0, 0, 0]"),
-    ("euler = [0, \"45 deg\", 0]", "euler = [0, 0, 0]\nquaternion = [1, 0, 0, 0]"),
-    ("velocity", "euler_rates = [0, 0, 1]\nvelocity"),
-    ("step = \"10 ms\"", "step = \"10 min\""),
-    ("step = \"10 ms\"", "step = 1e-9"),
-    ("step = \"10 ms\"", "step = 1e308"),
-    ("step = \"10 ms\"", "step = \"10 ms\"\naccuracy = 1e-6"),
-    ("step = \"10 ms\"\n", ""),
-    ("step = \"10 ms\"", "accuracy = 1e-6"),
-    ("step = \"10 ms\"", "accuracy = 0"),
-    ("[run]", "[picture]\npanels = [\"rates\", \"phase\"]\n[run]"),
-    ("[run]", "[run"),
-    ("[drag]", "[gravity]"),
-    ("m = \"1 kg\"", "m = { \"größe\" = 1, 2 }"),
-    ("velocity = [0, 0, \"60 rpm\"]", "velocity = [0, 0, 1]\neuler_rates = [0, 0, 1]"),
-    ("euler = [0, \"45 deg\", 0]\nvelocity", "quaternion = [1, 0, 0, 0]\neuler_rates"),
-    ("euler = [0, \"45 deg\", 0]\nvelocity", "euler_rates = [0, 0, 1]\nquaternion = [1, 0, 0, 0]\n#"),
-    ("euler = [0, \"45 deg\", 0]\n", ""),
-    ("moments = [3, 3, 4]\n", ""),
-    ("moments = [3, 3, 4]", "mass = 3"),
-    ("moments = [3, 3, 4]", "moments = [3, 4]"),
-    ("c = 1e-3", "c = nan"),
-    ("c = 1e-3", "c = 1e400"),
-    ("c = 1e-3", "c = 1e-400"),
-    ("c = 1e-3", "c = \"1e400 N m s\""),
-    ("c = 1e-3", "c = 99999999999999999999"),
-    ("rho = [0, 0, 1.0]", "rho = [0, \"1e306 km\", 0]"),
-    ("moments = [3, 3, 4]", "moments = [3e-160, 3e-160, 4e-160]"),
-    ("moments = [3, 3, 4]", "moments = [3e200, 3e200, 4e200]"),
-    ("step = \"10 ms\"", "step = -0.0"),
-];
-
 #[test]
 fn mistakes_have_places() {
     let folder = folder("mistakes");
-    let messages = MISTAKES.map(|(line, by)| mistake(&folder, line, by));
-    expect![[r#"
-        error: top.toml:14:1: unknown field `viscosity`, expected `c`
-        error: top.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `magnetic_damping`, `torque`, `thrust`, `start`, `run`, `picture`, `event`, `output`, `lagrangian`
-        error: top.toml:6:1: missing field `g`
-        error: top.toml:1:1: missing field `run`
-        error: top.toml:14:1: unknown field `rho`, expected `c`
-        error: top.toml:7:5: a mass isn't in `m` but in `kg`, `g`, `t`
-        error: top.toml:7:5: `heavy` doesn't begin with a number; a quantity is written as in "30 deg"
-        error: top.toml:7:5: must be above zero
-        error: top.toml:7:5: invalid type: boolean `true`, expected a mass in kg, or a text with a unit
-        error: top.toml:13:5: must be finite
-        error: top.toml:9:7: expected three components, found 2
-        error: top.toml:9:18: a length isn't in `kg` but in `m`, `cm`, `mm`, `km`
-        error: top.toml:9:7: invalid type: floating point `1.0`, expected a sequence
-        error: top.toml:10:6: a direction can't be zero
-        error: top.toml:4:11: no body has this inertia: J_d has the negative eigenvalue -1e0, so the largest principal moment exceeds the sum of the others; check which of the two inertias is given
-        error: top.toml:4:11: a body has one of `moments` (of inertia, principal), `J_d` (nonstandard, principal), `J` (of inertia, 3 by 3)
-        error: top.toml:16:14: `quaternion` has the four components w, x, y, z, found 3
-        error: top.toml:16:14: `quaternion` can't be zero
-        error: top.toml:17:14: an attitude is given by either `euler` or `quaternion`
-        error: top.toml:18:12: a velocity is given by either `velocity` or `euler_rates`
-        error: top.toml:19:1: `duration` is 2 s, shorter than one `step` of 600 s
-        error: top.toml:19:1: `duration` makes 2.0e9 steps, more than 1e8; take a larger `step`
-        error: top.toml:19:1: `duration` is 2 s, shorter than one `step` of 1e308 s
-        error: top.toml:21:12: a run has either a `step` or an `accuracy`
-        error: top.toml:19:1: a run has either a `step` or an `accuracy`
-        error: top.toml:20:12: an accuracy can be asked for in conservative scenes; drag does work, so give a `step`
-        error: top.toml:20:12: must be above zero
-        error: top.toml:20:20: unknown variant `phase`, expected one of `rates`, `tilt`, `energy`, `energy-error`, `momentum`, `vertical-momentum-error`, `momentum-error`
-        error: top.toml:19:5: unclosed table, expected `]`
-        error: top.toml:12:2: duplicate key
-        error: top.toml:7:22: invalid literal string, expected `'`
-        error: top.toml:17:12: a velocity is given by either `velocity` or `euler_rates`
-        error: top.toml:16:14: `euler_rates` need the attitude by `euler`
-        error: top.toml:17:14: `euler_rates` need the attitude by `euler`
-        error: top.toml:15:1: an attitude is given by either `euler` or `quaternion`
-        error: top.toml:3:1: a body has one of `moments` (of inertia, principal), `J_d` (nonstandard, principal), `J` (of inertia, 3 by 3)
-        error: top.toml:4:1: unknown field `mass`, expected one of `moments`, `J_d`, `J`, `kinetic`
-        error: top.toml:4:11: expected three components, found 2
-        error: top.toml:13:5: must be finite
-        error: top.toml:13:5: floating-point number overflowed
-        error: top.toml:13:5: must be above zero
-        error: top.toml:13:5: must be finite
-        error: top.toml:13:5: invalid type: integer `99999999999999999999` as i128, expected a damping coefficient in N m s, or a text with a unit
-        error: top.toml:9:11: must be finite
-        error: top.toml:4:11: the inertia has the trace 5e-160, out of range; choose units in which it is nearer to one
-        error: top.toml:4:11: the inertia has the trace 4.999999999999999e200, out of range; choose units in which it is nearer to one
-        error: top.toml:20:8: must be above zero
-    "#]].assert_eq(&messages.concat());
-}
-
-/// Mistakes in kinetic terms, methods, outputs and sweeps have places, too.
-#[test]
-fn mistakes_in_choices_have_places() {
-    let folder = folder("choices");
-    let messages = [
-        ("moments = [3, 3, 4]", "J = [[3, 0, 0], [0, 3, 0]]"),
-        ("moments = [3, 3, 4]", "J = [[3, 1, 0], [0, 3, 0], [0, 0, 4]]"),
-        ("moments = [3, 3, 4]", "moments = [3, 3, 4]\nkinetic = \"quartic\""),
-        ("duration = 2", "duration = 2\nmethod = { composition = \"Suzuki 4\" }"),
-        ("duration = 2", "duration = 2\nmethod = { composition = \"Suzuki 5\" }"),
-        ("duration = 2", "duration = 2\nmethod = \"euler\""),
-        ("duration = 2", "duration = 2\nmethod = { collocation = 5 }"),
-        ("[drag]\nc = 1e-3", "[output]\nevery = 0"),
-        ("[drag]\nc = 1e-3", "[output]\ncolumns = [\"axis\", \"phase\"]"),
-        ("[drag]\nc = 1e-3", "[output]\ncolumns = [\"axis\", \"energy\", \"axis\"]"),
-        ("[run]", "[sweep]\ngravity.m = [1, 2, \"3 m\"]\n[run]"),
-        ("[run]", "[sweep]\ngravity.n = [1, 2]\n[run]"),
-        ("[run]", "[sweep]\ngravity.m = 1\n[run]"),
-        ("[run]", "[sweep]\ngravity.m = []\n[run]"),
-        ("[run]", "[sweep]\ngravity.m = { from = 1, to = \"2 g\", count = 3 }\n[run]"),
-        ("[run]", "[sweep]\ngravity.m = { from = -1, to = 2, count = 3 }\n[run]"),
-        ("[run]", "[sweep]\ngravity.m.x = [1]\n[run]"),
-        ("[run]", "[[event]]\nname = \"a\"\n[run]"),
-        ("[run]", "[[event]]\nname = \"a, b\"\ntilt = 1\n[run]"),
-        ("[run]", "[[event]]\nname = \"a\"\ntilt = \"1 J\"\n[run]"),
-        ("[run]", "[sweep]\n[run]"),
-        ("[run]", "[sweep]\ngravity.m = { from = 1, to = 2, count = 200 }\ngravity.g = { from = 1, to = 2, count = 200 }\n[run]"),
-    ]
-    .map(|(line, by)| mistake(&folder, line, by));
-    expect![[r"
-        error: top.toml:4:5: `J` has three rows of three components, found 2 rows
-        error: top.toml:4:5: the inertia is not symmetric: two entries differ by 1e0, more than rounding; give it symmetric
-        error: top.toml:5:11: unknown variant `quartic`, expected one of `rigid`, `cayley`, `geodesic`, `fourth-order`, `sixth-order`
-        error: top.toml:22:10: a composition needs a conservative scene; drag does work
-        error: top.toml:22:10: no such scheme; there are `Suzuki 4`, `Kahan-Li 6`, `Kahan-Li 8`, `Sofroniou-Spaletta 10`, `Suzuki 6`, `Suzuki 8`
-        error: top.toml:22:10: unknown variant `euler`, expected one of `step`, `composition`, `splitting`, `processed`, `collocation`
-        error: top.toml:22:10: a collocation has 4 or 8 stages
-        error: top.toml:13:9: must be a whole number of steps, above zero
-        error: top.toml:13:20: unknown variant `phase`, expected one of `quaternion`, `axis`, `velocity`, `momentum`, `spatial-momentum`, `energy`, `energy-error`, `vertical-momentum-error`, `momentum-error`
-        error: top.toml:13:11: a table has each of its columns once
-        error: top.toml:20:20: a mass isn't in `m` but in `kg`, `g`, `t`
-        error: top.toml:20:9: unknown field `n`, expected one of `m`, `g`, `rho`, `up`
-        error: top.toml:20:13: a sweep is a list of values, or `{ from = …, to = …, count = … }`
-        error: top.toml:20:13: a sweep has a value at least
-        error: top.toml:20:13: a range is `{ from = …, to = …, count = … }`: two numbers, or texts with the same unit, and how many
-        error: top.toml:20:13: must be above zero
-        error: top.toml:20:9: `m` isn't a table
-        error: top.toml:19:1: an event has one of `tilt`, `speed`, `energy`, `velocity_1`, `velocity_2`, `velocity_3`, `axis_1`, `axis_2`, `axis_3`
-        error: top.toml:19:1: the `name` of an event has letters, digits, - and _ only
-        error: top.toml:21:8: an angle isn't in `J` but in `rad`, `deg`, `°`
-        error: top.toml:19:1: `sweep` has no key to vary
-        error: top.toml:19:1: `sweep` makes more than 10000 scenes
-    "]].assert_eq(&messages.concat());
+    for file in ["scenes", "choices"] {
+        mistakes(file, TOP, |text| refused(&folder, text));
+    }
 }
 
 /// What is no scene at all, with its place if there is text.

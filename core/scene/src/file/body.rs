@@ -1,8 +1,5 @@
 //! The table of a body.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use std::fmt;
 
 use liestep::NonstandardInertia;

@@ -1,8 +1,5 @@
 //! The tables of the effects, with their parameters.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use liestep::effects::{Dipole, Drag, Gravity, GravityGradient, MagneticDamping, Rotor, Spring, Thrust, Torque};
 use liestep::mechanics::Inertia;
 use serde::Deserialize;

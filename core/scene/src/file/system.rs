@@ -1,8 +1,5 @@
 //! What the file of a system says.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 

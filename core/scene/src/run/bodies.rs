@@ -1,9 +1,6 @@
 //! The bodies of a file in a system of one of a few sizes: the bodies behind them rest, and joints that aren't there hold
 //! nothing.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use std::array::from_fn;
 
 use liestep::groups::{LieGroup as _, R3};

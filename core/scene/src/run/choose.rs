@@ -1,8 +1,5 @@
 //! The choice of a scene's type and method, once a run.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use liestep::accuracy::Accuracy;
 use liestep::effects::{PrincipalBody, RigidBody};
 use liestep::groups::Advected;

@@ -1,16 +1,11 @@
 //! Kinetic terms of one type: which of them a body has is asked at run time, so that its sums are of few types.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 use std::ops::Add;
 
 use liestep::effects::{CayleyBody, FourthOrderBody, GeodesicBody, SixthOrderBody};
-use liestep::mechanics::{
-    DiscreteLagrangian, Effect, Inertia, Limit, Matrix, Operations, Parts, SceneVisitor, Sum, Term, WithKinetic,
-};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Inertia, Operations, Parts, Sum, Term, WithKinetic};
 use liestep::numbers::Coordinates as _;
-use liestep::{SO3, SetupError};
+use liestep::{SO3, delegate_term};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::file::body::Kinetic;
@@ -141,11 +136,7 @@ impl Term for ChosenBody {
     type Group = SO3;
     type Advected = ();
 
-    fn validate(&self) -> Result<(), SetupError> {
-        whichever!(self, body => body.validate())
-    }
-
-    fn advected(&self) {}
+    delegate_term!(whichever: validate advected);
 }
 
 impl<E: Term<Scalar = f64, Group = SO3>> Add<E> for ChosenBody {
@@ -172,20 +163,7 @@ impl Effect for ChosenBody {
     const DERIVATION: &'static str = "one of four kinetic terms, which is asked at run time: `liestep derive cayley-body`, \
                                       `geodesic-body`, `fourth-order-body` and `sixth-order-body` show them\n";
 
-    fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
-        whichever!(self, body => body.describe(visitor));
-    }
-
-    fn momentum_jacobian(&self, f: &Matrix<Self>, (): &(), h: f64) -> Matrix3<f64> {
-        whichever!(self, body => body.momentum_jacobian(f, &(), h))
-    }
-
-    fn limit(&self, velocity: Option<&Vector3<f64>>, (): &()) -> Limit<Self> {
-        whichever!(self, body => {
-            let Limit { l, momentum, hessian } = body.limit(velocity, &());
-            Limit { l, momentum, hessian }
-        })
-    }
+    delegate_term!(whichever: describe momentum_jacobian limit);
 
     fn constants(&self, h: f64) -> Constants {
         match self {
@@ -244,23 +222,5 @@ impl DiscreteLagrangian for ChosenBody {
         && FourthOrderBody::<f64>::SELF_ADJOINT
         && SixthOrderBody::<f64>::SELF_ADJOINT;
 
-    fn l_d(&self, f: &Matrix3<f64>, (): &(), h: f64) -> f64 {
-        whichever!(self, body => body.l_d(f, &(), h))
-    }
-
-    fn right_momentum(&self, f: &Matrix3<f64>, (): &(), h: f64) -> Vector3<f64> {
-        whichever!(self, body => body.right_momentum(f, &(), h))
-    }
-
-    fn left_momentum(&self, f: &Matrix3<f64>, (): &(), h: f64) -> Vector3<f64> {
-        whichever!(self, body => body.left_momentum(f, &(), h))
-    }
-
-    fn diamond(&self, f: &Matrix3<f64>, (): &(), h: f64) -> Vector3<f64> {
-        whichever!(self, body => body.diamond(f, &(), h))
-    }
-
-    fn discrete_energy(&self, f: &Matrix3<f64>, (): &(), h: f64) -> f64 {
-        whichever!(self, body => body.discrete_energy(f, &(), h))
-    }
+    delegate_term!(whichever: l_d right_momentum left_momentum diamond discrete_energy);
 }

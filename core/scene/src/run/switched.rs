@@ -1,8 +1,8 @@
 //! An effect that a scene has or hasn't: asked in each step, so that all scenes are of few types.
 
-use liestep::mechanics::{DiscreteLagrangian, Effect, Limit, Matrix, Operations, Parts, SceneVisitor, Term};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Matrix, Operations, Parts, Term};
 use liestep::numbers::Entries as _;
-use liestep::{SO3, SetupError};
+use liestep::{SO3, SetupError, delegate_term};
 use nalgebra::{Matrix3, Vector3};
 
 /// An effect on a body that is there or not, which is asked at run time; of nothing all shares are zero.
@@ -11,6 +11,13 @@ use nalgebra::{Matrix3, Vector3};
 /// `cargo bench --bench scenes -- instructions` counts both.
 #[derive(Clone, Copy, Debug)]
 pub struct Switched<E>(pub Option<E>);
+
+/// An expression in the effect, or zero where there is none.
+macro_rules! if_there {
+    ($self:ident, $effect:ident => $value:expr) => {
+        $self.0.as_ref().map_or_else(Default::default, |$effect| $value)
+    };
+}
 
 impl<E: Effect<Scalar = f64, Group = SO3>> Term for Switched<E> {
     type Scalar = f64;
@@ -40,24 +47,7 @@ impl<E: Effect<Scalar = f64, Group = SO3>> Effect for Switched<E> {
     const OPERATIONS: Operations = E::OPERATIONS;
     const DERIVATION: &'static str = E::DERIVATION;
 
-    fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
-        if let Some(effect) = &self.0 {
-            effect.describe(visitor);
-        }
-    }
-
-    fn momentum_jacobian(&self, f: &Matrix<E>, w: &E::Advected, h: f64) -> Matrix3<f64> {
-        self.0.as_ref().map_or_else(Matrix3::zeros, |effect| effect.momentum_jacobian(f, w, h))
-    }
-
-    fn limit(&self, velocity: Option<&Vector3<f64>>, w: &E::Advected) -> Limit<Self> {
-        let zero = (0.0, Vector3::zeros(), Matrix3::zeros());
-        let (l, momentum, hessian) = self.0.as_ref().map_or(zero, |effect| {
-            let Limit { l, momentum, hessian } = effect.limit(velocity, w);
-            (l, momentum, hessian)
-        });
-        Limit { l, momentum, hessian }
-    }
+    delegate_term!(if_there: describe momentum_jacobian limit);
 
     fn constants(&self, h: f64) -> Self::Constants {
         self.0.as_ref().map(|effect| effect.constants(h))
@@ -100,23 +90,5 @@ impl<E: Effect<Scalar = f64, Group = SO3>> Effect for Switched<E> {
 impl<E: DiscreteLagrangian<Scalar = f64, Group = SO3>> DiscreteLagrangian for Switched<E> {
     const SELF_ADJOINT: bool = E::SELF_ADJOINT;
 
-    fn l_d(&self, f: &Matrix<E>, w: &E::Advected, h: f64) -> f64 {
-        self.0.as_ref().map_or(0.0, |effect| effect.l_d(f, w, h))
-    }
-
-    fn right_momentum(&self, f: &Matrix<E>, w: &E::Advected, h: f64) -> Vector3<f64> {
-        self.0.as_ref().map_or_else(Vector3::zeros, |effect| effect.right_momentum(f, w, h))
-    }
-
-    fn left_momentum(&self, f: &Matrix<E>, w: &E::Advected, h: f64) -> Vector3<f64> {
-        self.0.as_ref().map_or_else(Vector3::zeros, |effect| effect.left_momentum(f, w, h))
-    }
-
-    fn diamond(&self, f: &Matrix<E>, w: &E::Advected, h: f64) -> Vector3<f64> {
-        self.0.as_ref().map_or_else(Vector3::zeros, |effect| effect.diamond(f, w, h))
-    }
-
-    fn discrete_energy(&self, f: &Matrix<E>, w: &E::Advected, h: f64) -> f64 {
-        self.0.as_ref().map_or(0.0, |effect| effect.discrete_energy(f, w, h))
-    }
+    delegate_term!(if_there: l_d right_momentum left_momentum diamond discrete_energy);
 }

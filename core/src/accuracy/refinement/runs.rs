@@ -1,7 +1,7 @@
 //! Runs of an integrator with ever shorter steps, and their errors.
 
 use alloc::vec::Vec;
-use core::fmt;
+use thiserror::Error;
 
 use super::{Measurement, Refinement};
 use crate::accuracy::question::Start;
@@ -23,24 +23,31 @@ pub enum Reference<G: LieGroup> {
 }
 
 /// Why there are no runs to compare.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RefinementError {
     /// The end isn't a finite time other than zero.
+    #[error("a run can't end at {time:e} s; choose a finite time other than zero")]
     Time {
         /// What was asked for, s.
         time: f64,
     },
     /// There is no number of steps, or only that of the reference; or one is zero.
+    #[error("there are no runs to compare; give numbers of steps above zero, with `Reference::Finest` two or more")]
     NoSteps,
     /// A stepper couldn't be built, or its motion not be started.
+    #[error("with steps of {step:e} s: {cause}")]
     Setup {
         /// Its step, s.
         step: f64,
         /// Why.
+        #[source]
         cause: SetupError,
     },
     /// A stepper has another step than it was asked to have.
+    #[error(
+        "a stepper for {asked:e} s was asked for and makes steps of {found:e} s; build it with the step that the closure is given"
+    )]
     OtherStep {
         /// What was asked for, s.
         asked: f64,
@@ -48,56 +55,26 @@ pub enum RefinementError {
         found: f64,
     },
     /// A step had no solution.
+    #[error("{cause}")]
     Step {
         /// The step, s.
         step: f64,
         /// Why.
+        #[source]
         cause: StepError,
     },
     /// Runs came to their ends, but none near the reference: all errors are 0.5 and more.
+    #[error("no run ends near the reference, the least error is {least:.1e}; make more steps")]
     OtherMotion {
         /// The least error.
         least: f64,
     },
     /// An end, or the reference, isn't made of finite numbers.
+    #[error("the run with steps of {step:e} s, or its reference, doesn't end in finite numbers")]
     NonFinite {
         /// The step of the run, s.
         step: f64,
     },
-}
-
-impl fmt::Display for RefinementError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Time { time } => write!(f, "a run can't end at {time:e} s; choose a finite time other than zero"),
-            Self::NoSteps => write!(
-                f,
-                "there are no runs to compare; give numbers of steps above zero, with `Reference::Finest` two or more"
-            ),
-            Self::Setup { step, cause } => write!(f, "with steps of {step:e} s: {cause}"),
-            Self::OtherStep { asked, found } => write!(
-                f,
-                "a stepper for {asked:e} s was asked for and makes steps of {found:e} s; build it with the step that the closure is given"
-            ),
-            Self::Step { cause, .. } => cause.fmt(f),
-            Self::OtherMotion { least } => {
-                write!(f, "no run ends near the reference, the least error is {least:.1e}; make more steps")
-            }
-            Self::NonFinite { step } => {
-                write!(f, "the run with steps of {step:e} s, or its reference, doesn't end in finite numbers")
-            }
-        }
-    }
-}
-
-impl core::error::Error for RefinementError {
-    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
-        match self {
-            Self::Setup { cause, .. } => Some(cause),
-            Self::Step { cause, .. } => Some(cause),
-            _ => None,
-        }
-    }
 }
 
 /// A run made ready.

@@ -217,7 +217,7 @@ pub fn work_precision<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
     Ok(Refinement { rows })
 }
 
-/// A run of so many steps, with its time, s.
+/// A run of this number of steps, with its time, s.
 fn measured<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
     family: &mut impl FnMut(f64) -> Result<(I, I::State), SetupError>,
     (time, steps): (f64, u64),

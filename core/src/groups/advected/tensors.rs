@@ -28,7 +28,7 @@ pub struct CovariantTensor<T, const N: usize>(pub SMatrix<T, N, N>);
 pub struct MixedTensor<T, const N: usize>(pub SMatrix<T, N, N>);
 
 macro_rules! kind {
-    ($type:ident, $seen:expr, $pulled:expr, $change:expr, $rate:expr, $through:expr) => {
+    ($type:ident, $pulled:expr, $change:expr, $rate:expr, $through:expr) => {
         impl<T: Real, const N: usize> Entries<T> for $type<T, N> {
             fn from_entries(next: &mut impl FnMut() -> T) -> Self {
                 Self(Entries::from_entries(next))
@@ -48,7 +48,7 @@ macro_rules! kind {
             G: LieGroup<Scalar = T, Matrix = SMatrix<T, N, N>>,
         {
             fn seen_from(&self, attitude: &G) -> Self {
-                Self($seen(&self.0, attitude))
+                Advected::<G>::seen_through(self, &attitude.matrix(), &attitude.inverse().matrix())
             }
 
             fn pulled_back(&self, attitude: &G) -> Self {
@@ -76,7 +76,6 @@ macro_rules! kind {
 
 kind!(
     ContravariantVector,
-    |v: &SVector<T, N>, g: &G| g.inverse().matrix() * v,
     |by: &SVector<T, N>, g: &G| g.inverse().matrix().transpose() * by,
     |v: &SVector<T, N>, d| G::inverse_increment(d) * v,
     |v: &SVector<T, N>, x: &SMatrix<T, N, N>| -(x * v),
@@ -85,10 +84,6 @@ kind!(
 
 kind!(
     ContravariantTensor,
-    |s: &SMatrix<T, N, N>, g: &G| {
-        let inverse = g.inverse().matrix();
-        inverse * s * inverse.transpose()
-    },
     |by: &SMatrix<T, N, N>, g: &G| {
         let inverse = g.inverse().matrix();
         inverse.transpose() * by * inverse
@@ -104,7 +99,6 @@ kind!(
 
 kind!(
     CovariantTensor,
-    |s: &SMatrix<T, N, N>, g: &G| g.matrix().transpose() * s * g.matrix(),
     |by: &SMatrix<T, N, N>, g: &G| g.matrix() * by * g.matrix().transpose(),
     |s: &SMatrix<T, N, N>, d: &SMatrix<T, N, N>| {
         let change = d.transpose() * s;
@@ -116,7 +110,6 @@ kind!(
 
 kind!(
     MixedTensor,
-    |s: &SMatrix<T, N, N>, g: &G| g.inverse().matrix() * s * g.matrix(),
     |by: &SMatrix<T, N, N>, g: &G| g.inverse().matrix().transpose() * by * g.matrix().transpose(),
     |s: &SMatrix<T, N, N>, d: &SMatrix<T, N, N>| {
         let change = G::inverse_increment(d) * s;

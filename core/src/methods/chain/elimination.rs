@@ -34,7 +34,7 @@ use crate::groups::{CayleyRetraction, Retraction, SO3};
 
 /// What a link is, as a step takes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Folded {
+pub(super) struct LinkConstants {
     /// `J`, `m`, `m c` and `ρ` of the [`Link`].
     pub(super) nonstandard: Matrix3<f64>,
     pub(super) m: f64,
@@ -42,7 +42,7 @@ pub(super) struct Folded {
     pub(super) rho: Vector3<f64>,
 }
 
-impl From<&Link> for Folded {
+impl From<&Link> for LinkConstants {
     fn from(link: &Link) -> Self {
         Self { nonstandard: *link.J_d.as_matrix(), m: link.m, mc: link.c * link.m, rho: link.rho }
     }
@@ -84,13 +84,13 @@ impl Work {
 
     /// The link's momentum times `h`, `m (u + D c)`, kg m.
     #[hot]
-    pub(super) fn momentum(&self, link: &Folded) -> Vector3<f64> {
+    pub(super) fn momentum(&self, link: &LinkConstants) -> Vector3<f64> {
         self.u * link.m + self.of_mc
     }
 
     /// Turns it, where the way of its upper joint is `u`; returns that of the lower one, as the next link sees it.
     #[hot]
-    fn turn(&mut self, link: &Folded, u: Vector3<f64>) -> Vector3<f64> {
+    fn turn(&mut self, link: &LinkConstants, u: Vector3<f64>) -> Vector3<f64> {
         self.increment = <CayleyRetraction as Retraction<SO3>>::increment_of_half(&self.half);
         self.of_rho = self.increment * link.rho;
         self.of_mc = self.increment * link.mc;
@@ -100,7 +100,7 @@ impl Work {
 
     /// `(D J − J Dᵀ)^∨ + m c × u + ρ × P − h a` with `D J`, and `P` beyond.
     #[hot]
-    fn residual(&self, link: &Folded, dj: &Matrix3<f64>, beyond: &Vector3<f64>) -> Vector3<f64> {
+    fn residual(&self, link: &LinkConstants, dj: &Matrix3<f64>, beyond: &Vector3<f64>) -> Vector3<f64> {
         Vector3::new(dj.m32 - dj.m23, dj.m13 - dj.m31, dj.m21 - dj.m12)
             + link.mc.cross(&self.u)
             + link.rho.cross(beyond)
@@ -110,7 +110,7 @@ impl Work {
 
 /// The squares of the lengths of an update, before it was shortened, and of the unknowns after it; whether it is whole.
 #[derive(Clone, Copy)]
-pub(super) struct Updated {
+pub(super) struct Update {
     pub(super) update: f64,
     pub(super) size: f64,
     pub(super) is_whole: bool,
@@ -118,7 +118,7 @@ pub(super) struct Updated {
 
 /// Where the joints go.
 #[hot]
-pub(super) fn outwards(links: &[Folded], work: &mut [Work]) {
+pub(super) fn outwards(links: &[LinkConstants], work: &mut [Work]) {
     let mut u = Vector3::zeros();
     for (link, work) in links.iter().zip(work) {
         u = work.turn(link, u);
@@ -128,7 +128,7 @@ pub(super) fn outwards(links: &[Folded], work: &mut [Work]) {
 /// One of Newton's iterations, from where the joints go to where they go by it; where a link's update is longer than
 /// `longest`, all are shortened.
 #[hot]
-pub(super) fn newton(links: &[Folded], work: &mut [Work], longest: f64) -> Updated {
+pub(super) fn newton(links: &[LinkConstants], work: &mut [Work], longest: f64) -> Update {
     let (mut beyond, mut mass, mut q) = (Vector3::zeros(), Matrix3::zeros(), Vector3::zeros());
     for (link, work) in links.iter().zip(&mut *work).rev() {
         // From the axes of the next link; at the end all are zero.
@@ -160,7 +160,7 @@ pub(super) fn newton(links: &[Folded], work: &mut [Work], longest: f64) -> Updat
 
 /// Another with the matrix of the last.
 #[hot]
-pub(super) fn simplified(links: &[Folded], work: &mut [Work]) -> Updated {
+pub(super) fn simplified(links: &[LinkConstants], work: &mut [Work]) -> Update {
     let (mut beyond, mut q) = (Vector3::zeros(), Vector3::zeros());
     for (link, work) in links.iter().zip(&mut *work).rev() {
         beyond = work.next * beyond;
@@ -175,7 +175,7 @@ pub(super) fn simplified(links: &[Folded], work: &mut [Work]) -> Updated {
 
 /// Outwards the update, and where the joints go by it.
 #[hot]
-fn solved(links: &[Folded], work: &mut [Work], longest: f64) -> Updated {
+fn solved(links: &[LinkConstants], work: &mut [Work], longest: f64) -> Update {
     // What has taken a whole update doesn't tell what it was: of that a rounding of the update is lost, which has no bound.
     if longest.is_finite() {
         for work in work.iter_mut() {
@@ -205,11 +205,11 @@ fn solved(links: &[Folded], work: &mut [Work], longest: f64) -> Updated {
         update += work.update.norm_squared();
         size += work.half.norm_squared();
     }
-    Updated { update, size, is_whole: largest <= longest * longest }
+    Update { update, size, is_whole: largest <= longest * longest }
 }
 
 /// The momenta `target` of the velocities `half`.
-pub(super) fn momenta_of_velocities(links: &[Folded], work: &mut [Work]) {
+pub(super) fn momenta_of_velocities(links: &[LinkConstants], work: &mut [Work]) {
     let (mut u, mut beyond) = (Vector3::zeros(), Vector3::zeros());
     for (link, work) in links.iter().zip(&mut *work) {
         (work.of_rho, work.of_mc, work.u) = (work.half.cross(&link.rho), work.half.cross(&link.mc), u);

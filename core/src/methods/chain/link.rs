@@ -6,8 +6,6 @@ use crate::error::SetupError;
 use crate::mechanics::NonstandardInertia;
 
 /// A link of a [`Chain`](super::Chain), in its own axes, with the joint it hangs on as the origin.
-// The letters of the field.
-#[allow(non_snake_case)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Link {
     /// Nonstandard inertia about the joint, kg m².

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _;
 
-use super::elimination::{Folded, Updated, Work, momenta_of_velocities, newton, outwards, simplified};
+use super::elimination::{LinkConstants, Update, Work, momenta_of_velocities, newton, outwards, simplified};
 use super::link::Link;
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, CayleyRetraction, Retraction, SO3};
@@ -43,7 +43,7 @@ type Components<const N: usize> = Bodies<Vector3<f64>, N>;
 pub struct Linked<S: Effect, const N: usize> {
     h: f64,
     constants: S::Constants,
-    pub(super) links: [Folded; N],
+    pub(super) links: [LinkConstants; N],
 }
 
 /// # Make: links on ball joints
@@ -64,7 +64,7 @@ impl<S: Effect> Stepper<S> {
         for (body, link) in links.iter().enumerate() {
             link.validate(body)?;
         }
-        let plan = Linked::new(&scene, links.each_ref().map(Folded::from), h)?;
+        let plan = Linked::new(&scene, links.each_ref().map(LinkConstants::from), h)?;
         Ok(Stepper { scene, plan })
     }
 }
@@ -85,7 +85,7 @@ impl<S, const N: usize> Linked<S, N>
 where
     S: Effect<Scalar = f64, Group = [SO3; N]>,
 {
-    fn new(scene: &S, links: [Folded; N], h: f64) -> Result<Self, SetupError> {
+    fn new(scene: &S, links: [LinkConstants; N], h: f64) -> Result<Self, SetupError> {
         const {
             assert!(N > 0, "a chain has a link");
             assert!(
@@ -234,21 +234,21 @@ where
     motion.show(Motion { attitude, advected, ..*motion.now() });
 }
 
-/// At most so many of Newton's iterations, and what is made with their Jacobians: how many both are, and whether it has
-/// settled near the identity with all determinants positive.
+/// Makes at most `most` of Newton's iterations and the updates with their Jacobians. Returns the number of both, and whether
+/// the iteration has settled near the identity with all determinants positive.
 ///
 /// The determinants are those before the last updates. Near a fold that needs no guard: two updates suffice where
 /// `2C²|u₁|³ ≤ ε|y|/16`, and the first is longer than `√ε|y|/8`, so `C|u₁| < 1e-4`. The Jacobian changes by twice that of
 /// itself, and for another sign it would have to change by all.
 #[hot]
-fn iterate(links: &[Folded], work: &mut [Work], most: u32, longest: f64) -> (u32, bool) {
+fn iterate(links: &[LinkConstants], work: &mut [Work], most: u32, longest: f64) -> (u32, bool) {
     outwards(links, work);
     // The last update, if Newton's next is of its second order: of one that was shortened too much is left, and after one
     // with a Jacobian used again what is left is that Jacobian's.
     let (mut made, mut before) = (0, None);
     for _ in 0..most {
         made += 1;
-        let Updated { update, size, is_whole } = newton(links, work, longest);
+        let Update { update, size, is_whole } = newton(links, work, longest);
         if !size.is_finite() {
             break;
         }

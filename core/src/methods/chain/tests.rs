@@ -5,7 +5,7 @@ use std::println;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::elimination::{Folded, Work, newton, outwards};
+use super::elimination::{LinkConstants, Work, newton, outwards};
 use super::plan::follow;
 use super::{Chain, Link};
 use crate::groups::SO3;
@@ -13,7 +13,7 @@ use crate::mechanics::NonstandardInertia;
 use crate::numbers::Bodies;
 
 /// What is done in the place of a solution.
-type Solve<'a> = &'a dyn Fn(&[Folded], &mut [Work]);
+type Solve<'a> = &'a dyn Fn(&[LinkConstants], &mut [Work]);
 
 fn link(central: Matrix3<f64>, m: f64, c: [f64; 3], rho: [f64; 3]) -> Link {
     let [c, rho] = [c, rho].map(Vector3::from);
@@ -57,13 +57,13 @@ fn reference() -> Started {
 /// the first case; so what rounding may move is relative to the largest.
 #[test]
 fn momentum_of_badly_solved_steps() {
-    let unsolved = |links: &[Folded], work: &mut [Work]| {
+    let unsolved = |links: &[LinkConstants], work: &mut [Work]| {
         for work in &mut *work {
             work.half *= 0.999;
         }
         outwards(links, work);
     };
-    let once = |links: &[Folded], work: &mut [Work]| {
+    let once = |links: &[LinkConstants], work: &mut [Work]| {
         newton(links, work, f64::INFINITY);
     };
     let badly: [(f64, u32, Solve<'_>, f64); 3] =
@@ -159,7 +159,7 @@ fn nothing_but_roundings_is_missing() {
 #[test]
 fn a_shortened_update_is_a_part_of_the_whole() {
     let (chain, ..) = oblique();
-    let links = [Folded::from(&chain.links[2])];
+    let links = [LinkConstants::from(&chain.links[2])];
     for size in [1e2, 1e10, 1e17, 1e30] {
         for start in [0.0, 0.3] {
             let mut work = [Work::default()];

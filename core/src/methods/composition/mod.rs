@@ -94,11 +94,11 @@ pub struct Composed<S: Effect> {
 struct Stage<T> {
     #[shared]
     substep: usize,
-    /// Of the coordinates of this stage, when only these are to be trusted.
+    /// The factor of this stage's coordinates, when only these are to be trusted.
     scale: T,
-    /// Of the coordinates of this stage.
+    /// The factor of this stage's coordinates.
     last: T,
-    /// Of the coordinates of the stage before.
+    /// The factor of the coordinates of the stage before.
     earlier: T,
 }
 

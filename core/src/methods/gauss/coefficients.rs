@@ -71,7 +71,7 @@ impl<const PAIRS: usize> Coefficients<PAIRS> {
     }
 }
 
-/// Of the entry in a row and a column, each given by the side of the step that its stage is on and the number there.
+/// The columns of a matrix, by its entry in a row and a column, each given by the side of the step that its stage is on and the number there.
 fn columns<const PAIRS: usize>(entry: impl Fn((f64, usize), (f64, usize)) -> f64) -> Columns<PAIRS> {
     let stages = |of: &dyn Fn((f64, usize)) -> f64| [1.0, -1.0].map(|side| core::array::from_fn(|k| of((side, k))));
     [1.0, -1.0].map(|side| core::array::from_fn(|k| stages(&|row| entry(row, (side, k)))))

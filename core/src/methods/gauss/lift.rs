@@ -7,13 +7,7 @@ use crate::mechanics::{Effect, RigidScene, velocity_of_momentum};
 use crate::methods::splitting::inverse_inertia;
 
 /// The quaternion `q`, scalar part first, and its momentum `p`.
-pub(super) type Lifted = [f64; 8];
-
-/// A value for each component; no loop, which would be taken for the one to make lanes of.
-#[inline(always)]
-pub(super) fn each<T>(value: impl Fn(usize) -> T) -> [T; 8] {
-    [value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7)]
-}
+pub(super) type PhasePoint = [f64; 8];
 
 /// `H(q, p) = ½ (Π − s)·J⁻¹(Π − s) + V(R(q)ᵀ·a_0)` with `Π = ½ Im(q̄ p)` and the rotation `R` of `q/|q|`.
 ///
@@ -37,7 +31,7 @@ pub(super) struct Lift<L: Effect> {
 }
 
 impl<L: RigidScene<Scalar = f64>> Lift<L> {
-    /// Of a Lagrangian that can be split, with the constants of its torque.
+    /// The lift of a Lagrangian that can be split, with the constants of its torque.
     pub(super) fn new(lagrangian: &L, torque: L::Constants) -> Self {
         let spatial = lagrangian.advected();
         let inverse = inverse_inertia(lagrangian);
@@ -55,7 +49,7 @@ impl<L: RigidScene<Scalar = f64>> Lift<L> {
 
     /// The rates of change, times a weight.
     #[inline(always)]
-    pub(super) fn weighted_rate(&self, place: &Lifted, weight: f64) -> Lifted {
+    pub(super) fn weighted_rate(&self, place: &PhasePoint, weight: f64) -> PhasePoint {
         let [q @ .., e, f, g, h] = *place;
         let (j, m) = (&self.half_velocity, twice_momentum(place));
         // Written out: nalgebra's product, a column at a time, makes a step a twentieth longer.
@@ -94,14 +88,14 @@ pub(super) fn rotation(&[a, b, c, d]: &[f64; 4], scale: f64) -> Matrix3<f64> {
 }
 
 /// `q` and the momentum `2 q Π` of a unit quaternion and a body momentum.
-pub(super) fn lifted(&[a, b, c, d]: &[f64; 4], momentum: &Vector3<f64>) -> Lifted {
+pub(super) fn lifted(&[a, b, c, d]: &[f64; 4], momentum: &Vector3<f64>) -> PhasePoint {
     let [e, f, g, h] = times(&[a, b, c, d], &(momentum * 2.0));
     [a, b, c, d, e, f, g, h]
 }
 
 /// `2 Π = Im(q̄ p)`.
 #[inline(always)]
-pub(super) fn twice_momentum(&[a, b, c, d, e, f, g, h]: &Lifted) -> Vector3<f64> {
+pub(super) fn twice_momentum(&[a, b, c, d, e, f, g, h]: &PhasePoint) -> Vector3<f64> {
     Vector3::new(a * f - e * b - (c * h - d * g), a * g - e * c - (d * f - b * h), a * h - e * d - (b * g - c * f))
 }
 
@@ -118,6 +112,6 @@ pub(super) fn times(&[a, b, c, d]: &[f64; 4], v: &Vector3<f64>) -> [f64; 4] {
 
 /// `|q|²`.
 #[inline(always)]
-pub(super) fn length_squared(&[a, b, c, d, ..]: &Lifted) -> f64 {
+pub(super) fn length_squared(&[a, b, c, d, ..]: &PhasePoint) -> f64 {
     (a * a + b * b) + (c * c + d * d)
 }

@@ -10,10 +10,10 @@ mod stages;
 mod state;
 
 pub use cotangent::{CotangentCarry, CotangentGauss};
-pub use state::Collocated;
+pub use state::CollocationMemory;
 
 use coefficients::Coefficients;
-use lift::{Lift, Lifted, length_squared};
+use lift::{Lift, PhasePoint, length_squared};
 use settling::Changes;
 use stages::{Stages, WeightedRates};
 
@@ -119,7 +119,7 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Gauss<S, PAIRS> {
     pub(crate) const COST: Cost = {
         #[allow(clippy::cast_precision_loss)] // at most eight
         let pairs = PAIRS as f64;
-        // Of the operations of both kicks, fitted as below.
+        // The operations of both kicks, fitted as below.
         let torque = if S::PARTS.kick_before { OF_PARAMETERS + 0.125 * (S::OPERATIONS.step as f64) } else { 0.0 };
         let iteration = 2.0 * pairs * (OF_RATES + torque + OF_A_SUM * pairs);
         Cost { step: OF_AN_UPDATE + OF_A_GUESS * pairs * pairs, iteration, fewest: 3, once: 0.0 }
@@ -135,8 +135,8 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Gauss<S, PAIRS> {
 
     /// A step of quaternion and momentum; returns its iterations.
     #[inline(always)]
-    fn advance(&self, kept: &mut Collocated<PAIRS>) -> Result<u32, StepError> {
-        let Collocated { lifted: y, carry, stages } = &*kept;
+    fn advance(&self, kept: &mut CollocationMemory<PAIRS>) -> Result<u32, StepError> {
+        let CollocationMemory { lifted: y, carry, stages } = &*kept;
         let (mut stages, changes) = match stages {
             Some(stages) => (stages.continued(&self.coefficients), Changes::of_guesses()),
             None => (Stages::constant(y, self), Changes::of_constants()),
@@ -146,13 +146,13 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Gauss<S, PAIRS> {
         if !next.iter().all(|component| component.is_finite()) {
             return Err(StepError::NonFinite { what: "momentum after the step" });
         }
-        *kept = Collocated { lifted: next, carry: left, stages: Some(stages) };
+        *kept = CollocationMemory { lifted: next, carry: left, stages: Some(stages) };
         Ok(iterations)
     }
 
-    /// The motion after so many steps more.
+    /// The motion after this number of further steps.
     #[inline(always)]
-    fn read_off<M: Summation<SO3, S::Advected>>(&self, motion: &mut M, kept: &Collocated<PAIRS>, steps: u64) {
+    fn read_off<M: Summation<SO3, S::Advected>>(&self, motion: &mut M, kept: &CollocationMemory<PAIRS>, steps: u64) {
         let (attitude, momentum) = (kept.attitude(), kept.momentum());
         let advected = self.lift.seen_from(&attitude);
         motion.replace(Motion { attitude, momentum, advected, steps: motion.now().steps + steps });
@@ -160,7 +160,7 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Gauss<S, PAIRS> {
 }
 
 impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS> {
-    type Kept = Collocated<PAIRS>;
+    type Kept = CollocationMemory<PAIRS>;
 
     // Four stages fill four lanes; in eight they would be moved about.
     const VECTORS: Vectors = if PAIRS > 2 { Vectors::Eight } else { Vectors::Four };
@@ -174,7 +174,7 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS
     }
 
     fn keep(&self, _: &S, motion: &Motion<SO3, S::Advected>) -> Self::Kept {
-        Collocated::of(motion.attitude, &motion.momentum)
+        CollocationMemory::of(motion.attitude, &motion.momentum)
     }
 
     /// [`StepError::NotConverged`] where the step is too long for the iteration.
@@ -237,13 +237,13 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS
 const OF_RATES: f64 = 36.0;
 const OF_PARAMETERS: f64 = 16.0;
 const OF_A_SUM: f64 = 5.0;
-/// Besides its iterations, a step takes so many, and so many for each pair of pairs in its guess.
+/// Operations of a step besides its iterations, and those for each pair of pairs in its guess.
 const OF_AN_UPDATE: f64 = 33.0;
 const OF_A_GUESS: f64 = 21.0;
 
 impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> WeightedRates for Gauss<S, PAIRS> {
     #[inline(always)]
-    fn weighted_rate(&self, stage: usize, place: &Lifted) -> Lifted {
+    fn weighted_rate(&self, stage: usize, place: &PhasePoint) -> PhasePoint {
         self.lift.weighted_rate(place, self.weights.as_flattened()[stage])
     }
 }
@@ -255,7 +255,7 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> WeightedRates for Gauss<S,
 /// length of the quaternion is known, so both are brought back to it, by as little as rounding. With exact stages that
 /// is no change.
 #[inline(always)]
-fn compensated(y: &Lifted, change: &Lifted, carry: &Lifted) -> (Lifted, Lifted) {
+fn compensated(y: &PhasePoint, change: &PhasePoint, carry: &PhasePoint) -> (PhasePoint, PhasePoint) {
     let (mut next, mut left) = (*y, *carry);
     let shorten = 0.5 * (1.0 - length_squared(y)) - (0..4).map(|k| y[k] * carry[k]).sum::<f64>();
     for component in 0..8 {

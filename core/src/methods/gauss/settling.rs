@@ -25,13 +25,13 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 pub(super) const MOST_ITERATIONS: u32 = 60;
 
 impl Changes {
-    /// Of unknowns that are guessed with errors of one size.
+    /// For unknowns whose guesses have errors of one size.
     pub(super) const fn of_guesses() -> Self {
         Self { before: f64::NAN, earlier: f64::INFINITY }
     }
 
-    /// Of unknowns of which some may be known much better than others. Near an equilibrium attitude and momentum then
-    /// change by turns, so that it takes three changes to see how they fall.
+    /// For unknowns of which some may be known much better than others. Near an equilibrium attitude and momentum then
+    /// change in alternation, so that it takes three changes to see how they fall.
     pub(super) const fn of_constants() -> Self {
         Self { before: f64::NAN, earlier: f64::NAN }
     }

@@ -3,7 +3,7 @@
 //! Numbers of one component at all stages lie side by side, so that the compiler puts stages into SIMD lanes.
 
 use super::coefficients::{Coefficients, Columns, OfStages};
-use super::lift::{Lifted, each};
+use super::lift::PhasePoint;
 use super::settling::{Changes, MOST_ITERATIONS, Next};
 use crate::error::StepError;
 #[cfg(not(feature = "std"))]
@@ -11,6 +11,12 @@ use nalgebra::ComplexField as _; // roots and powers
 
 /// A number for each component and each stage.
 pub(super) type Numbers<const PAIRS: usize> = [OfStages<PAIRS>; 8];
+
+/// A value for each component; no loop, which would be taken for the one to make lanes of.
+#[inline(always)]
+fn each<T>(value: impl Fn(usize) -> T) -> [T; 8] {
+    [value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7)]
+}
 
 /// The `L_j = h b_j f(Y_j)` of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,12 +27,12 @@ pub(super) struct Stages<const PAIRS: usize>(pub(super) Numbers<PAIRS>);
 /// A trait and not a closure, which wouldn't always be inlined, and then has no lanes.
 pub(super) trait WeightedRates {
     /// `h b_j f(Y_j)` of the stage `j` at the place `Y_j`; marked `#[inline(always)]`.
-    fn weighted_rate(&self, stage: usize, place: &Lifted) -> Lifted;
+    fn weighted_rate(&self, stage: usize, place: &PhasePoint) -> PhasePoint;
 }
 
 impl<const PAIRS: usize> Stages<PAIRS> {
     /// Stages at one place.
-    pub(super) fn constant(place: &Lifted, equations: &impl WeightedRates) -> Self {
+    pub(super) fn constant(place: &PhasePoint, equations: &impl WeightedRates) -> Self {
         let mut stages = [[[0.0; PAIRS]; 2]; 8];
         for stage in 0..2 * PAIRS {
             put(&mut stages, stage, &equations.weighted_rate(stage, place));
@@ -46,7 +52,7 @@ impl<const PAIRS: usize> Stages<PAIRS> {
 
     /// `Σ L`, component by component.
     #[inline(always)]
-    pub(super) fn change(&self) -> Lifted {
+    pub(super) fn change(&self) -> PhasePoint {
         each(|component| total(&self.0[component]))
     }
 
@@ -60,7 +66,7 @@ impl<const PAIRS: usize> Stages<PAIRS> {
         &mut self,
         mut changes: Changes,
         coefficients: &Coefficients<PAIRS>,
-        (y, carry): (&Lifted, &Lifted),
+        (y, carry): (&PhasePoint, &PhasePoint),
         equations: &impl WeightedRates,
     ) -> Result<u32, StepError> {
         // A body at rest has no momentum before the step. One so small that it has no inverse isn't looked at.
@@ -98,7 +104,7 @@ impl<const PAIRS: usize> Stages<PAIRS> {
     fn iterated(
         &self,
         coefficients: &Coefficients<PAIRS>,
-        (y, carry): (&Lifted, &Lifted),
+        (y, carry): (&PhasePoint, &PhasePoint),
         over_size: f64,
         equations: &impl WeightedRates,
     ) -> (Self, f64) {
@@ -125,7 +131,7 @@ impl<const PAIRS: usize> Stages<PAIRS> {
 
 /// Puts all components of a stage into their places.
 #[inline(always)]
-fn put<const PAIRS: usize>(numbers: &mut Numbers<PAIRS>, stage: usize, values: &Lifted) {
+fn put<const PAIRS: usize>(numbers: &mut Numbers<PAIRS>, stage: usize, values: &PhasePoint) {
     numbers[0].as_flattened_mut()[stage] = values[0];
     numbers[1].as_flattened_mut()[stage] = values[1];
     numbers[2].as_flattened_mut()[stage] = values[2];

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::lift::{Lifted, length_squared, lifted, rotation, times, twice_momentum};
+use super::lift::{PhasePoint, length_squared, lifted, rotation, times, twice_momentum};
 use super::stages::Stages;
 use crate::groups::SO3;
 use crate::motion::Kept;
@@ -15,13 +15,13 @@ use nalgebra::ComplexField as _;
 /// The motion as [`Gauss`](super::Gauss) integrates it: the unit quaternion and its momentum, what rounding has left
 /// behind of their sums, and the stages of the last step, from which the next ones are guessed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Collocated<const PAIRS: usize> {
-    pub(super) lifted: Lifted,
-    pub(super) carry: Lifted,
+pub struct CollocationMemory<const PAIRS: usize> {
+    pub(super) lifted: PhasePoint,
+    pub(super) carry: PhasePoint,
     pub(super) stages: Option<Stages<PAIRS>>,
 }
 
-impl<const PAIRS: usize> Collocated<PAIRS> {
+impl<const PAIRS: usize> CollocationMemory<PAIRS> {
     pub(super) fn of(attitude: SO3, momentum: &Vector3<f64>) -> Self {
         let q = attitude.to_quaternion();
         Self { lifted: lifted(&[q.w, q.i, q.j, q.k], momentum), carry: [0.0; 8], stages: None }
@@ -48,7 +48,7 @@ impl<const PAIRS: usize> Collocated<PAIRS> {
     }
 }
 
-impl<const PAIRS: usize> Kept<f64> for Collocated<PAIRS> {
+impl<const PAIRS: usize> Kept<f64> for CollocationMemory<PAIRS> {
     fn each(&self, visit: &mut dyn FnMut(f64)) {
         self.lifted.iter().chain(&self.carry).for_each(|&number| visit(number));
         visit(count(usize::from(self.stages.is_some())));

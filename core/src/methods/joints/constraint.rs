@@ -16,7 +16,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// Of space.
+    /// The place of the frame of space.
     pub const SPACE: Self = Self {
         attitude: Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0),
         position: Vector3::new(0.0, 0.0, 0.0),

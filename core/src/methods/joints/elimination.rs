@@ -116,7 +116,7 @@ impl<const K: usize, const N: usize, const L: usize> Closing<K, N, L> {
 #[derive(Clone, Copy)]
 pub(super) struct Unknowns<const K: usize, const N: usize, const L: usize> {
     pub(super) bodies: [Vector6<f64>; N],
-    /// Of the joint of each body towards the root.
+    /// The forces in the joint of each body towards the root.
     pub(super) joints: [SVector<f64, K>; N],
     pub(super) loops: [SVector<f64, K>; L],
 }

@@ -21,7 +21,7 @@ pub(super) struct Widest {
     pub(super) joint: usize,
     /// By how much, in the units of its functions.
     pub(super) by: f64,
-    /// Of the function that is it most, relative to the size of its terms.
+    /// The largest value of a function, relative to the size of its terms.
     pub(super) relative: f64,
 }
 
@@ -61,7 +61,7 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         for (k, (body, member)) in self.bodies.iter_mut().zip(&self.tree.members).enumerate() {
             let Some(joined) = member.joint.and_then(|joint| self.joints.tree.get(joint)) else { continue };
             let [below, above] = places.slope(joined);
-            // That of the body itself comes first.
+            // The end at the body itself comes first.
             let [own, other] = if member.is_below { [below, above] } else { [above, below] };
             let [of_own, of_other] = &mut body.slopes.0;
             of(of_own, k, &own);
@@ -169,7 +169,7 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         )
     }
 
-    /// Of these values of the functions, each compared with the sizes of its own terms.
+    /// The widest opening by these values of the functions, each compared with the sizes of its own terms.
     fn widest(
         &self,
         turn: f64,

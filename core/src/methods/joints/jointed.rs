@@ -34,7 +34,7 @@ pub struct Jointed<S: Effect, C, const K: usize, const N: usize, const T: usize,
     pub(super) constants: S::Constants,
     pub(super) joints: Joints<C, T, L>,
     pub(super) tree: Tree<N>,
-    /// Of each body its radius of gyration, m: what a turn of it by 1 rad is compared with.
+    /// The radius of gyration of each body, m: a turn by 1 rad is compared with a shift by it.
     pub(super) lengths: [f64; N],
 }
 

@@ -45,7 +45,7 @@ impl<const K: usize> Ends<K> {
     }
 }
 
-/// Of both ends: of a tree's joint that of the body and that of its parent, of one that closes a loop that of the body
+/// The slopes at both ends: of a tree's joint that of the body and that of its parent, of one that closes a loop that of the body
 /// below and that of the body above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Slopes<const K: usize>(pub(super) [Ends<K>; 2]);
@@ -100,7 +100,7 @@ pub(super) fn after<const K: usize>(slope: &Slope<K>, turn: &Matrix3<f64>) -> SM
     after
 }
 
-/// The turning part of a body's components, and the other.
+/// The turn and the shift in the components of a body.
 #[hot]
 pub(super) fn parts(components: &nalgebra::Vector6<f64>) -> (Vector3<f64>, Vector3<f64>) {
     (components.fixed_rows::<3>(0).into_owned(), components.fixed_rows::<3>(3).into_owned())

@@ -51,7 +51,7 @@ struct Problem<'a, 'b, S: Effect, C, const K: usize, const N: usize, const T: us
 
 /// The squares of the lengths of an update and of the unknowns after it, that of the largest turn in it, and that of
 /// what rounding leaves of it. All are in rad, with shifts over the shortest of the bodies' lengths.
-struct Updated {
+struct Update {
     update: f64,
     size: f64,
     largest: f64,
@@ -74,7 +74,7 @@ where
     }
 
     /// One of Newton's iterations.
-    fn newton(&mut self, longest: f64) -> Updated {
+    fn newton(&mut self, longest: f64) -> Update {
         let (residuals, matrices) = &newton_system::<S>(&self.plan.constants, &self.terms, &self.half);
         let next = self.next();
         // With half of each gap, as with half the coordinates a shift is twice its unknown.
@@ -89,14 +89,14 @@ where
     }
 
     /// Another with the matrix of the last.
-    fn simplified(&mut self) -> Updated {
+    fn simplified(&mut self) -> Update {
         let residuals = S::newton_residual(&self.plan.constants, &self.terms, &self.half).momentum_defect;
         let next = self.next();
         self.update(&residuals, &next, f64::INFINITY)
     }
 
     /// Where a body would turn by more than `longest`, all updates are shortened.
-    fn update(&mut self, residuals: &Components<N>, next: &Places<N>, longest: f64) -> Updated {
+    fn update(&mut self, residuals: &Components<N>, next: &Places<N>, longest: f64) -> Update {
         let opposed = self.equations.solve(&residuals.0, |joined| next.gap(joined) * 0.5);
         let (mut update, mut largest, mut size) = (0.0, 0.0_f64, 0.0);
         let weights = self.weights();
@@ -109,10 +109,10 @@ where
             *half += update * part;
             size += squares(half).dot(&weights);
         }
-        Updated { update, size, largest, rounded: (opposed.dot(&weights) + self.extent) * (ROUNDED * ROUNDED) }
+        Update { update, size, largest, rounded: (opposed.dot(&weights) + self.extent) * (ROUNDED * ROUNDED) }
     }
 
-    /// Of the two [`squares`].
+    /// The weights of the two [`squares`].
     fn weights(&self) -> Vector2<f64> {
         Vector2::new(1.0, self.weight)
     }
@@ -122,7 +122,7 @@ where
         let mut made = 0;
         for _ in 0..most {
             made += 1;
-            let Updated { update, size, largest, rounded } = self.newton(longest);
+            let Update { update, size, largest, rounded } = self.newton(longest);
             if !size.is_finite() {
                 return (made, false);
             }

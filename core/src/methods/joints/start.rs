@@ -43,7 +43,7 @@ where
         Equations::new(&self.joints, &self.tree)
     }
 
-    /// Of velocities at these places.
+    /// The equations of velocities at these places.
     fn of_velocities(&self, scene: &S, places: &Places<N>, advected: &S::Advected) -> Equations<'_, C, K, N, T, L> {
         let mut equations = self.equations();
         equations.set_velocities(places, &scene.inertia(advected).0);

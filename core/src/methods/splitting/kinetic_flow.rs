@@ -61,7 +61,7 @@ pub trait KineticFlow<T: Real>: Clone {
     /// [`StepError`] where an equation has no solution.
     fn advance(drift: &Self::Drift, momentum: &Vector3<T>) -> Result<Turn<T>, StepError>;
 
-    /// The same without its [`spin`](Self::spin), so that `exp(−s p_3 E_3)` after it makes the whole. A flow with
+    /// The flow without its [`spin`](Self::spin), so that `exp(−s p_3 E_3)` after it makes the whole. A flow with
     /// [operations of a spin](Self::OPERATIONS_OF_SPIN) has to write it, or else doesn't compile.
     ///
     /// # Errors
@@ -216,7 +216,7 @@ where
 {
     type Drift = DeclaredDrift<L>;
 
-    // And a guess, 49, and the difference of the momenta.
+    // The guess takes 49 more, and the difference of the momenta 3.
     const OPERATIONS: Operations =
         Operations { step: L::OPERATIONS.step.saturating_add(52), iteration: L::OPERATIONS.iteration };
 

@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::kinetic_flow::SymmetricBody;
 use super::{Flow, KineticFlow, Length, Split, StagesOf};
 use crate::error::{SetupError, StepError};
-use crate::gradients::{Change, Flown, ForceGradient, Linearisable, Pass, Stage};
+use crate::gradients::{Change, FlowDerivatives, ForceGradient, Linearisable, Pass, Stage};
 use crate::groups::SO3;
 use crate::groups::rotation_functions::stumpff;
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor, SecondDerivatives};
@@ -95,10 +95,10 @@ pub(super) fn flown<'a, T: Real>(
     increment: &Matrix3<T>,
     momentum: &Vector3<T>,
     by_parameters: &'a [(usize, Vector3<T>)],
-) -> Flown<'a, SO3<T>> {
+) -> FlowDerivatives<'a, SO3<T>> {
     let turned_back = (increment + Matrix3::identity()).transpose();
     let end_by_turn = turned_back * momentum.cross_matrix();
-    Flown { turn_by_momentum, turned_back, carried: turned_back, end_by_turn, by_parameters }
+    FlowDerivatives { turn_by_momentum, turned_back, carried: turned_back, end_by_turn, by_parameters }
 }
 
 impl<S, K> Linearisable<S> for Split<S, K>

@@ -1,4 +1,4 @@
-//! Kinetic-potential splittings: the free body's motion and the potential's kicks by turns.
+//! Kinetic-potential splittings: the free body's motion and the potential's kicks in alternation.
 
 mod axes;
 mod bias;
@@ -37,7 +37,7 @@ use nalgebra::{
 /// The plan of [`Stepper::split`](crate::Stepper::split), for a body on SO(3) under a potential: `l_d = K(F) − (h/2) (V(w) + V(F⁻¹·w))` with its step in shares.
 ///
 /// The shares `a_i` and `b_i` of a [`SplittingScheme`] go to the kinetic flow over `a_i h` and to kicks
-/// `p ← p + b_i h τ(w)` by turns. The kinetic part of the declared Lagrangian is replaced by a [`KineticFlow`], exact
+/// `p ← p + b_i h τ(w)` in alternation. The kinetic part of the declared Lagrangian is replaced by a [`KineticFlow`], exact
 /// for a symmetric body or declared with a higher order; that part makes nearly all of the error of (3.13). Every stage
 /// is a Poisson map that keeps the momentum maps, so the step is. Schemes with force gradients add to a kick a share of
 /// `−½ τ·J⁻¹τ`, the potential's commutator with the kinetic energy, whose torque is derived as `τ` is; with them two to
@@ -100,7 +100,7 @@ pub struct Split<S: Effect, K: KineticFlow<Scalar<S>>> {
     first: Stages<K::Drift, Scalar<S>>,
     /// A step without its first share, to the end of the next one's, which is made together with the last.
     step: Stages<K::Drift, Scalar<S>>,
-    /// The same to the end of a run.
+    /// The stages from there to the end of a run.
     last: Stages<K::Drift, Scalar<S>>,
     /// The [spins](KineticFlow::spin) of all the drifts of a step, where they can be made at once.
     spin: Option<Spin<Scalar<S>>>,
@@ -119,7 +119,7 @@ enum Share<D, T> {
     Kick(Kick<T>),
 }
 
-/// Shares by turns, in pairs: a kick is a straight line with the drift before it, so that the motion needn't be put away
+/// Alternating shares, in pairs: a kick is a straight line with the drift before it, so that the motion needn't be put away
 /// between the two.
 #[derive(Clone, Debug, Lanes)]
 struct Stages<D, T> {
@@ -150,7 +150,7 @@ impl<D, T> Stages<D, T> {
             Share::Drift(drift) => self.stages.push(Stage { drift, kick: None }),
             Share::Kick(kick) => {
                 let place = self.stages.last_mut().map_or(&mut self.lead, |stage| &mut stage.kick);
-                debug_assert!(place.is_none(), "shares are drifts and kicks by turns");
+                debug_assert!(place.is_none(), "drifts and kicks alternate");
                 *place = Some(kick);
             }
         }
@@ -160,7 +160,7 @@ impl<D, T> Stages<D, T> {
 
 #[derive(Clone, Copy, Debug, Lanes)]
 struct Kick<T> {
-    /// That the torque acts, s.
+    /// The time for which the torque acts, s.
     time: T,
     /// The inverse inertia times the share of the force gradient, s³/(kg m²).
     mobility: Option<Matrix3<T>>,
@@ -204,7 +204,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         Ok(splitting)
     }
 
-    /// All shares apart.
+    /// The splitting as its scheme lists it, with no share joined to its neighbour.
     fn folded(scene: &S, h: Scalar<S>, kinetic: K, scheme: SplittingScheme) -> Result<Self, SetupError> {
         let inertia = constant_inertia(scene)?;
         let differences = (inertia - K::inertia(&kinetic)).map(nalgebra::SimdComplexField::simd_abs);
@@ -264,7 +264,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         StepError::NonFinite { what: "momentum after the step" }
     }
 
-    /// Of shares that are made for themselves, besides their iterations.
+    /// The operations of shares that no other joins, besides their iterations.
     fn operations(shares: &StagesOf<S, K>) -> f64 {
         let kick = 0.5 * f64::from(S::OPERATIONS.step);
         let kicks = shares.stages.iter().map(|stage| &stage.kick).chain([&shares.lead]).flatten();
@@ -354,7 +354,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         let advected = motion.now().advected;
         let torque: Vector3<Scalar<S>> = S::kick_before(&self.torque, &advected);
         let of_torque = torque * kick.time;
-        // That there is a gradient was asked when the step was set up.
+        // There is a gradient: the step is refused without one when it is set up.
         let change = match &kick.mobility {
             Some(mobility) => {
                 let gradient = kick::force_gradient::<S>(&self.torque, mobility, &advected);
@@ -374,7 +374,7 @@ struct Length<T> {
     flow: Flow,
     /// s
     time: T,
-    /// Of a kick with a force gradient, s³.
+    /// The share of the force gradient in a kick that has one, s³.
     gradient: Option<T>,
 }
 

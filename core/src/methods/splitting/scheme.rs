@@ -14,7 +14,7 @@ pub enum Flow {
     Kick,
 }
 
-/// The coefficients of a symmetric splitting: shares of the step for kinetic flow and kicks by turns.
+/// The coefficients of a symmetric splitting: the shares of the step that the alternating drifts and kicks have.
 ///
 /// The Nyström schemes use that the kinetic energy is quadratic in the momentum, so that kicks change their own effect
 /// on it only linearly. The near-integrable ones are for a potential that is small beside the kinetic energy: of
@@ -44,183 +44,73 @@ pub struct SplittingScheme {
 }
 
 impl SplittingScheme {
-    /// Order 2: half a kick, the kinetic flow, half a kick. With the kinetic term of (3.13) that is (3.13).
-    pub const STRANG: Self = Self::new("Strang", 2, Flow::Kick, &[0.5, 1.0]);
+    schemes! {
+        /// Order 2: half a kick, the kinetic flow, half a kick. With the kinetic term of (3.13) that is (3.13).
+        STRANG = Self::new("Strang", 2, Flow::Kick, &[0.5, 1.0]);
 
-    /// Order 4 in six stages. \[BM02\], `SRKN6b`
-    pub const NYSTROM_6: Self = Self::new(
-        "Nyström 6-4",
-        4,
-        Flow::Kick,
-        &[
-            0.0829844064174052,
-            0.245298957184271,
-            0.396309801498368,
-            0.604872665711080,
-            -0.0390563049223486,
-            -0.350171622895351,
-            0.1195241940131508,
-        ],
-    );
+        /// `(4, 2)` in two stages, for a small potential. \[ML95\]
+        NEAR_INTEGRABLE_4_2 = Self::new("near-integrable (4, 2)", 2, Flow::Drift,
+            &[0.2113248654051871177454256097490212721762, 0.5, 0.5773502691896257645091487805019574556476]);
 
-    /// Order 6 in eleven stages. \[BM02\], `SRKN11b`
-    pub const NYSTROM_11: Self = Self::new(
-        "Nyström 11-6",
-        6,
-        Flow::Kick,
-        &[
-            0.0414649985182624,
-            0.123229775946271,
-            0.198128671918067,
-            0.290553797799558,
-            -0.0400061921041533,
-            -0.127049212625417,
-            0.0752539843015807,
-            -0.246331761062075,
-            -0.0115113874206879,
-            0.357208872795928,
-            0.2366699247869311,
-            0.20477705429147,
-        ],
-    );
+        /// `(8, 6, 4)` in seven stages, for a small potential. \[BCF13\]
+        NEAR_INTEGRABLE_8_6_4 = Self::new("near-integrable (8, 6, 4)", 4, Flow::Drift,
+            &[0.0711334264982231177779387300061549964174, 0.183083687472197221961703757166430291072,
+            0.241153427956640098736487795326289649618, 0.310782859898574869507522291054262796375,
+            0.521411761772814789212136078067994229991, -0.0265646185119588006972121379164987592663,
+            -0.333698616227678005726562603400438876027, 0.0653961422823734184559721793911134363710]);
 
-    /// Order 6 in fourteen stages. \[BM02\], `SRKN14a`
-    pub const NYSTROM_14: Self = Self::new(
-        "Nyström 14-6",
-        6,
-        Flow::Drift,
-        &[
-            0.0378593198406116,
-            0.09171915262446165,
-            0.102635633102435,
-            0.183983170005006,
-            -0.0258678882665587,
-            -0.05653436583288827,
-            0.314241403071447,
-            0.004914688774712854,
-            -0.130144459517415,
-            0.143761127168358,
-            0.106417700369543,
-            0.328567693746804,
-            -0.00879424312851058,
-            -0.196411466486454234,
-            0.20730506905689536,
-        ],
-    );
+        /// `(10, 6, 4)` in eight stages, for a small potential. \[BCF13\]
+        NEAR_INTEGRABLE_10_6_4 = Self::new("near-integrable (10, 6, 4)", 4, Flow::Drift,
+            &[0.03809449742241219545697532230863756534060, 0.09585888083707521061077150377145884776921,
+            0.1452987161169137492940200726606637497442, 0.2044461531429987806805077839164344779763,
+            0.2076276957255412507162056113249882065158, 0.2170703479789911017143385924306336714532,
+            0.4359097036515261592231548624010651844006, -0.01737538195906509300561788011852699719871,
+            -0.6538612258327867093807117373907094120024]);
 
-    /// Order 8 in seventeen stages: Strang's splitting composed. \[KL97\]
-    pub const KAHAN_LI_8: Self =
-        Self::new("Kahan-Li 8", 8, Flow::Kick, &composed_strang::<18>(CompositionScheme::KAHAN_LI_8.half()));
+        /// Order 4 in six stages. \[BM02\], `SRKN6b`
+        NYSTROM_6 = Self::new("Nyström 6-4", 4, Flow::Kick, &[0.0829844064174052, 0.245298957184271,
+            0.396309801498368, 0.604872665711080, -0.0390563049223486, -0.350171622895351, 0.1195241940131508]);
 
-    /// Order 10 in thirty-five stages: Strang's splitting composed. \[SS05\]
-    pub const SOFRONIOU_SPALETTA_10: Self = Self::new(
-        "Sofroniou-Spaletta 10",
-        10,
-        Flow::Kick,
-        &composed_strang::<36>(CompositionScheme::SOFRONIOU_SPALETTA_10.half()),
-    );
+        /// Order 6 in eleven stages. \[BM02\], `SRKN11b`
+        NYSTROM_11 = Self::new("Nyström 11-6", 6, Flow::Kick, &[0.0414649985182624, 0.123229775946271,
+            0.198128671918067, 0.290553797799558, -0.0400061921041533, -0.127049212625417, 0.0752539843015807,
+            -0.246331761062075, -0.0115113874206879, 0.357208872795928, 0.2366699247869311, 0.20477705429147]);
 
-    /// `(4, 2)` in two stages, for a small potential. \[ML95\]
-    pub const NEAR_INTEGRABLE_4_2: Self = Self::new(
-        "near-integrable (4, 2)",
-        2,
-        Flow::Drift,
-        &[0.2113248654051871177454256097490212721762, 0.5, 0.5773502691896257645091487805019574556476],
-    );
+        /// Order 6 in fourteen stages. \[BM02\], `SRKN14a`
+        NYSTROM_14 = Self::new("Nyström 14-6", 6, Flow::Drift, &[0.0378593198406116, 0.09171915262446165,
+            0.102635633102435, 0.183983170005006, -0.0258678882665587, -0.05653436583288827, 0.314241403071447,
+            0.004914688774712854, -0.130144459517415, 0.143761127168358, 0.106417700369543, 0.328567693746804,
+            -0.00879424312851058, -0.196411466486454234, 0.20730506905689536]);
 
-    /// `(8, 6, 4)` in seven stages, for a small potential. \[BCF13\]
-    pub const NEAR_INTEGRABLE_8_6_4: Self = Self::new(
-        "near-integrable (8, 6, 4)",
-        4,
-        Flow::Drift,
-        &[
-            0.0711334264982231177779387300061549964174,
-            0.183083687472197221961703757166430291072,
-            0.241153427956640098736487795326289649618,
-            0.310782859898574869507522291054262796375,
-            0.521411761772814789212136078067994229991,
-            -0.0265646185119588006972121379164987592663,
-            -0.333698616227678005726562603400438876027,
-            0.0653961422823734184559721793911134363710,
-        ],
-    );
+        /// Order 8 in seventeen stages: Strang's splitting composed. \[KL97\]
+        KAHAN_LI_8 = Self::new("Kahan-Li 8", 8, Flow::Kick,
+            &composed_strang::<18>(CompositionScheme::KAHAN_LI_8.half()));
 
-    /// `(10, 6, 4)` in eight stages, for a small potential. \[BCF13\]
-    pub const NEAR_INTEGRABLE_10_6_4: Self = Self::new(
-        "near-integrable (10, 6, 4)",
-        4,
-        Flow::Drift,
-        &[
-            0.03809449742241219545697532230863756534060,
-            0.09585888083707521061077150377145884776921,
-            0.1452987161169137492940200726606637497442,
-            0.2044461531429987806805077839164344779763,
-            0.2076276957255412507162056113249882065158,
-            0.2170703479789911017143385924306336714532,
-            0.4359097036515261592231548624010651844006,
-            -0.01737538195906509300561788011852699719871,
-            -0.6538612258327867093807117373907094120024,
-        ],
-    );
+        /// Order 10 in thirty-five stages: Strang's splitting composed. \[SS05\]
+        SOFRONIOU_SPALETTA_10 = Self::new("Sofroniou-Spaletta 10", 10, Flow::Kick,
+            &composed_strang::<36>(CompositionScheme::SOFRONIOU_SPALETTA_10.half()));
 
-    /// Order 4 in two stages, with force gradients: Gauss's nodes and weights. \[Ch97\], algorithm B
-    pub const FORCE_GRADIENT_2: Self = Self::new(
-        "force gradient 2-4",
-        4,
-        Flow::Drift,
-        &[0.2113248654051871177454256097490212721762, 0.5, 0.5773502691896257645091487805019574556476],
-    )
-    .with_gradients(&[0.0, 0.0111645496846301127696897357705886513774]);
+        /// Order 4 in two stages, with force gradients: Gauss's nodes and weights. \[Ch97\], algorithm B
+        FORCE_GRADIENT_2 = Self::new("force gradient 2-4", 4, Flow::Drift,
+            &[0.2113248654051871177454256097490212721762, 0.5,
+            0.5773502691896257645091487805019574556476]).with_gradients(&[0.0,
+            0.0111645496846301127696897357705886513774]);
 
-    /// Order 4 in four stages, `(8, 4)` for a small potential: Gauss's nodes and weights, \[LR01\], with force
-    /// gradients in the inner two kicks, as many as their commutator asks for.
-    pub const FORCE_GRADIENT_4: Self = Self::new(
-        "force gradient 4-4",
-        4,
-        Flow::Drift,
-        &[
-            0.0694318442029737123880267555535952474521,
-            0.1739274225687269286865319746109997036177,
-            0.2605776340045981552106403648947824089476,
-            0.3260725774312730713134680253890002963823,
-            0.3399810435848562648026657591032446872006,
-        ],
-    )
-    .with_gradients(&[0.0, 0.0, 0.0, 0.0033967750482086013315321577834921437970]);
+        /// Order 4 in four stages, `(8, 4)` for a small potential: Gauss's nodes and weights, \[LR01\], with force
+        /// gradients in the inner two kicks, as many as their commutator asks for.
+        FORCE_GRADIENT_4 = Self::new("force gradient 4-4", 4, Flow::Drift,
+            &[0.0694318442029737123880267555535952474521, 0.1739274225687269286865319746109997036177,
+            0.2605776340045981552106403648947824089476, 0.3260725774312730713134680253890002963823,
+            0.3399810435848562648026657591032446872006]).with_gradients(&[0.0, 0.0, 0.0,
+            0.0033967750482086013315321577834921437970]);
 
-    /// Order 6 in five stages, with force gradients. \[OMF02\]
-    pub const FORCE_GRADIENT_5: Self = Self::new(
-        "force gradient 5-6",
-        6,
-        Flow::Drift,
-        &[
-            0.1097059723948682,
-            0.2693315848935301,
-            0.4140632267310831,
-            1.1319803486515564,
-            -0.0237691991259513,
-            -1.8026238670901730,
-        ],
-    )
-    .with_gradients(&[0.0, 0.0017284322679412332, 0.0, 0.0, 0.0, -0.02649277286832104]);
+        /// Order 6 in five stages, with force gradients. \[OMF02\]
+        FORCE_GRADIENT_5 = Self::new("force gradient 5-6", 6, Flow::Drift, &[0.1097059723948682, 0.2693315848935301,
+            0.4140632267310831, 1.1319803486515564, -0.0237691991259513, -1.8026238670901730]).with_gradients(&[0.0,
+            0.0017284322679412332, 0.0, 0.0, 0.0, -0.02649277286832104]);
+    }
 
-    /// All of these.
-    pub const ALL: [Self; 12] = [
-        Self::STRANG,
-        Self::NEAR_INTEGRABLE_4_2,
-        Self::NEAR_INTEGRABLE_8_6_4,
-        Self::NEAR_INTEGRABLE_10_6_4,
-        Self::NYSTROM_6,
-        Self::NYSTROM_11,
-        Self::NYSTROM_14,
-        Self::KAHAN_LI_8,
-        Self::SOFRONIOU_SPALETTA_10,
-        Self::FORCE_GRADIENT_2,
-        Self::FORCE_GRADIENT_4,
-        Self::FORCE_GRADIENT_5,
-    ];
-
-    /// Other coefficients: drifts and kicks by turns, from the first to the middle one.
+    /// Other coefficients: those of alternating drifts and kicks, from the first to the middle one.
     ///
     /// # Panics
     ///

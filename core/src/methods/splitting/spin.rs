@@ -47,7 +47,7 @@ fn sine_and_versine<T: Real>(angle: T) -> (T, T) {
     (angle * sinc, -(angle * angle * versine))
 }
 
-/// Makes good what so many turns by one angle have added to lengths across the axis, or taken from them.
+/// Corrects the lengths across the axis for what `turns` turns by one angle have added to them, or taken from them.
 #[cold]
 #[inline(never)]
 pub(super) fn make_good<T: Real, A: Advected<SO3<T>>>(angle: T, turns: u32, motion: &mut impl Summation<SO3<T>, A>) {

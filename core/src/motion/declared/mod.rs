@@ -253,7 +253,7 @@ impl<S: Effect> Plan<S> for Declared<S> {
         let guess = kept.guess(<Group<S> as LieGroup>::DIMENSION);
         match self.increment_directly(scene, motion, &guess) {
             Some(made) => Ok(taken(scene, motion, kept, &made)),
-            None => self.step_carefully(scene, motion, kept),
+            None => self.step_rare(scene, motion, kept),
         }
     }
 
@@ -271,11 +271,11 @@ impl<S: Effect> Plan<S> for Declared<S> {
 }
 
 impl<S: Effect> Declared<S> {
-    /// What is rare, to its end: if it came back to the common way, that would have to keep in memory what it has in
+    /// A rare step, to its end: if it came back to the common way, that would have to keep in memory what it has in
     /// registers.
     #[cold]
     #[inline(never)]
-    fn step_carefully<M: Summation<Group<S>, S::Advected>>(
+    fn step_rare<M: Summation<Group<S>, S::Advected>>(
         &self,
         scene: &S,
         motion: &mut M,

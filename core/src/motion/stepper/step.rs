@@ -4,7 +4,7 @@ use super::{StateOf, Stepper};
 use crate::error::StepError;
 use crate::groups::Advected as _;
 use crate::mechanics::{Effect, FactoredInertia, Group, Scalar, Vector, factored_inertia, velocity_and_energy};
-use crate::motion::integrator::{Integrator, run_by_run};
+use crate::motion::integrator::{Integrator, run_or_step};
 use crate::motion::plan::{Next, NextSteps, Plan, Steerable, run_plan};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
@@ -47,14 +47,14 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// As [`step`](Self::step).
     pub fn run(&self, state: &mut StateOf<S, P>, steps: u64) -> Result<u64, StepError> {
         let mut next = *state;
-        let iterations = self.run_in_place(&mut next, steps, None)?;
+        let iterations = self.run_without_copy(&mut next, steps, None)?;
         *state = next;
         Ok(iterations)
     }
 
-    /// As [`run`](Self::run), but after an error the state may be anywhere; it goes on as
-    /// [`Integrator::run_shown`] does.
-    fn run_in_place(
+    /// [`run`](Self::run) without a copy to go back to: after an error the state may be anywhere. It goes on as
+    /// [`Integrator::run_stretches`] does.
+    fn run_without_copy(
         &self,
         state: &mut StateOf<S, P>,
         steps: u64,
@@ -193,7 +193,7 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
     #[inline(never)]
     fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
         if const { P::STEPS_BY_RUNS || P::RUNS_BY_STEPS } {
-            self.run_in_place(state, 1, None).map(StepReport::of_run)
+            self.run_without_copy(state, 1, None).map(StepReport::of_run)
         } else {
             Stepper::step(self, state)
         }
@@ -208,7 +208,7 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
         run_plan(&self.plan, &self.scene, &mut state.motion, &mut state.kept, (steps, None))
     }
 
-    fn run_shown(
+    fn run_stretches(
         &self,
         state: &mut Self::State,
         steps: u64,
@@ -216,9 +216,9 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
     ) -> Result<u64, StepError> {
         if const { P::RUNS_BY_STEPS } {
             // It stops where they do, and nothing need be copied.
-            self.run_in_place(state, steps, Some(next))
+            self.run_without_copy(state, steps, Some(next))
         } else {
-            run_by_run(self, state, steps, next)
+            run_or_step(self, state, steps, next)
         }
     }
 

@@ -8,7 +8,7 @@ use crate::motion::plan::Plan;
 
 /// # Wrap
 ///
-/// The same scene backwards, or on momenta alone; and below what is put around a step.
+/// The scene backwards, or on momenta alone; and below what is put around a step.
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// The stepper of `−h`, which undoes the steps of this one exactly.
     ///

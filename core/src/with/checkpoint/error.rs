@@ -1,13 +1,16 @@
 //! Why a checkpoint isn't taken.
 
 use alloc::string::String;
-use core::fmt;
+use thiserror::Error;
 
 /// Why a checkpoint can't be resumed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CheckpointError {
     /// The file was written by another version of this crate, in another layout.
+    #[error(
+        "the checkpoint has the format {found}, this version reads {known}; resume it with the version that wrote it"
+    )]
     AnotherFormat {
         /// The number in the file.
         found: u32,
@@ -15,17 +18,26 @@ pub enum CheckpointError {
         known: u32,
     },
     /// The checkpoint is of another scene: another Lagrangian, other fields, or another scalar.
+    #[error(
+        "the checkpoint is of another scene (another Lagrangian or scalar); resume it with the stepper that it was made by"
+    )]
     AnotherScene,
     /// A parameter had another value.
+    #[error(
+        "parameter `{field}` is {stored:e} in the checkpoint and {own:e} here; build the stepper with the checkpoint's parameters, or start a new motion from its attitude and momentum"
+    )]
     AnotherParameter {
         /// The field of the Lagrangian.
         field: &'static str,
         /// A scalar of it in the checkpoint.
         stored: f64,
-        /// The same scalar here.
+        /// That scalar in the stepper.
         own: f64,
     },
     /// The step had another size.
+    #[error(
+        "the step is {stored:e} s in the checkpoint and {own:e} s here; build the stepper with the checkpoint's step"
+    )]
     AnotherStep {
         /// In the checkpoint, s.
         stored: f64,
@@ -33,6 +45,9 @@ pub enum CheckpointError {
         own: f64,
     },
     /// The checkpoint was made by another method, or one with other coefficients.
+    #[error(
+        "the checkpoint was made by the method \"{stored}\", this stepper's is \"{own}\"; resume it with the checkpoint's method and let the stepper `adopt` the state"
+    )]
     AnotherMethod {
         /// The name of the checkpoint's.
         stored: String,
@@ -40,6 +55,9 @@ pub enum CheckpointError {
         own: String,
     },
     /// A list doesn't have the length that it has in this scene.
+    #[error(
+        "the checkpoint's {what} has {found} numbers instead of {expected}; take another file, this one is damaged"
+    )]
     WrongSize {
         /// Which one.
         what: &'static str,
@@ -49,81 +67,35 @@ pub enum CheckpointError {
         expected: usize,
     },
     /// A number is NaN or infinite.
+    #[error("the checkpoint's {what} has a number that is not finite; take another file, this one is damaged")]
     NonFinite {
-        /// Of which list.
+        /// The list that has it.
         what: &'static str,
     },
     /// The attitude isn't in the group.
+    #[error(
+        "the checkpoint's attitude is not in the group (defect {defect:e}); take another file, this one is damaged"
+    )]
     NotInGroup {
         /// How far the matrix is from the relation of the group.
         defect: f64,
     },
     /// The advected parameters aren't those that the attitude sees.
+    #[error(
+        "the checkpoint's advected parameters differ by {distance:e} from what its attitude sees; take another file, this one is damaged"
+    )]
     NotAdvected {
         /// How far they are.
         distance: f64,
     },
     /// What the method keeps from step to step can't be this.
+    #[error(
+        "the checkpoint's numbers that the method keeps from step to step can't be such; take another file, this one is damaged"
+    )]
     NotKept,
     /// The digest doesn't fit the numbers.
+    #[error(
+        "the checkpoint's numbers don't fit its digest: the file is damaged, or was read by a parser that rounds; take another, or a parser that keeps every bit (serde_json with its feature `float_roundtrip`)"
+    )]
     Altered,
 }
-
-impl fmt::Display for CheckpointError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::AnotherFormat { found, known } => write!(
-                f,
-                "the checkpoint has the format {found}, this version reads {known}; resume it with the version that wrote it"
-            ),
-            Self::AnotherScene => write!(
-                f,
-                "the checkpoint is of another scene (another Lagrangian or scalar); resume it with the stepper that it was made by"
-            ),
-            Self::AnotherParameter { field, stored, own } => write!(
-                f,
-                "parameter `{field}` is {stored:e} in the checkpoint and {own:e} here; build the stepper with the checkpoint's parameters, or start a new motion from its attitude and momentum"
-            ),
-            Self::AnotherStep { stored, own } => write!(
-                f,
-                "the step is {stored:e} s in the checkpoint and {own:e} s here; build the stepper with the checkpoint's step"
-            ),
-            Self::AnotherMethod { stored, own } => write!(
-                f,
-                "the checkpoint was made by the method \"{stored}\", this stepper's is \"{own}\"; resume it with the checkpoint's method and let the stepper `adopt` the state"
-            ),
-            Self::WrongSize { what, found, expected } => {
-                write!(
-                    f,
-                    "the checkpoint's {what} has {found} numbers instead of {expected}; take another file, this one is damaged"
-                )
-            }
-            Self::NonFinite { what } => {
-                write!(
-                    f,
-                    "the checkpoint's {what} has a number that is not finite; take another file, this one is damaged"
-                )
-            }
-            Self::NotInGroup { defect } => {
-                write!(
-                    f,
-                    "the checkpoint's attitude is not in the group (defect {defect:e}); take another file, this one is damaged"
-                )
-            }
-            Self::NotAdvected { distance } => write!(
-                f,
-                "the checkpoint's advected parameters differ by {distance:e} from what its attitude sees; take another file, this one is damaged"
-            ),
-            Self::NotKept => write!(
-                f,
-                "the checkpoint's numbers that the method keeps from step to step can't be such; take another file, this one is damaged"
-            ),
-            Self::Altered => write!(
-                f,
-                "the checkpoint's numbers don't fit its digest: the file is damaged, or was read by a parser that rounds; take another, or a parser that keeps every bit (serde_json with its feature `float_roundtrip`)"
-            ),
-        }
-    }
-}
-
-impl core::error::Error for CheckpointError {}

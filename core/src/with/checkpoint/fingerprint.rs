@@ -3,66 +3,26 @@
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
-use core::fmt;
 
 use serde::de::{Error as _, Unexpected};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::stored::Stored;
+use super::stored::Storable;
 use crate::mechanics::{Effect, SceneVisitor};
 use crate::motion::Plan;
+use crate::numbers::Digest;
 
-/// A hash by FNV-1a, 64 bits, of Fowler, Noll and Vo: it tells what has changed by accident, not what was forged.
-///
-/// In files it is text, as not every format has numbers of 64 bits.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) struct Fingerprint(u64);
-
-impl Default for Fingerprint {
-    /// The offset basis.
-    fn default() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
-    }
-}
-
-impl Fingerprint {
-    pub(super) fn value(self) -> u64 {
-        self.0
-    }
-
-    pub(super) fn number(&mut self, number: u64) {
-        self.bytes(&number.to_le_bytes());
-    }
-
-    /// The length goes first, so that two texts don't run into each other.
-    pub(super) fn text(&mut self, text: &str) {
-        self.number(text.len() as u64);
-        self.bytes(text.as_bytes());
-    }
-
-    fn bytes(&mut self, bytes: &[u8]) {
-        for &byte in bytes {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
-    }
-}
-
-impl fmt::Debug for Fingerprint {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:016x}", self.0)
-    }
-}
-
-impl Serialize for Fingerprint {
+// In files it is text, as not every format has numbers of 64 bits.
+impl Serialize for Digest {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(&format_args!("{self:?}"))
     }
 }
 
-impl<'de> Deserialize<'de> for Fingerprint {
+impl<'de> Deserialize<'de> for Digest {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let text = String::deserialize(deserializer)?;
-        let value = u64::from_str_radix(&text, 16).ok().map(Self);
+        let value = u64::from_str_radix(&text, 16).ok().map(Self::from);
         value
             .filter(|value| format!("{value:?}") == text)
             .ok_or_else(|| D::Error::invalid_value(Unexpected::Str(&text), &"sixteen hexadecimal digits in lower case"))
@@ -71,15 +31,15 @@ impl<'de> Deserialize<'de> for Fingerprint {
 
 /// A scene or a method by its terms and its parameters.
 pub(super) struct Parameters<T> {
-    /// Of the terms and the names of the parameters.
-    pub(super) fingerprint: Fingerprint,
+    /// The fingerprint of the terms and the names of the parameters.
+    pub(super) fingerprint: Digest,
     pub(super) values: Vec<(&'static str, T)>,
     names: Vec<&'static str>,
 }
 
-impl<T: Stored> Parameters<T> {
+impl<T: Storable> Parameters<T> {
     fn nothing() -> Self {
-        Self { fingerprint: Fingerprint::default(), values: Vec::new(), names: Vec::new() }
+        Self { fingerprint: Digest::default(), values: Vec::new(), names: Vec::new() }
     }
 
     pub(super) fn of_scene<S: Effect<Scalar = T>>(scene: &S) -> Self {
@@ -101,8 +61,8 @@ impl<T: Stored> Parameters<T> {
         names.join(", ")
     }
 
-    /// Of the values, too.
-    pub(super) fn of_all(&self) -> Fingerprint {
+    /// The fingerprint of the values, too.
+    pub(super) fn of_all(&self) -> Digest {
         let mut fingerprint = self.fingerprint;
         self.values.iter().for_each(|(_, value)| fingerprint.number(value.bits()));
         fingerprint

@@ -15,13 +15,13 @@ use nalgebra::{SimdComplexField as _, SimdRealField as _};
 use serde::{Deserialize, Serialize};
 
 pub use error::CheckpointError;
-pub use stored::Stored;
+pub use stored::Storable;
 
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar};
 use crate::motion::{Kept, Motion, Plan, State, StateOf, Stepper};
-use crate::numbers::{Entries, Real, real, reported};
-use fingerprint::{Fingerprint, Parameters};
+use crate::numbers::{Digest, Entries, Real, real, reported};
+use fingerprint::Parameters;
 
 /// What the numbers below mean; another layout has another number.
 const FORMAT: u32 = 3;
@@ -37,12 +37,12 @@ const FORMAT: u32 = 3;
 #[serde(deny_unknown_fields)]
 pub struct Checkpoint<T> {
     format: u32,
-    /// Of the terms' derivations and the scalar.
-    scene: Fingerprint,
+    /// The fingerprint of the terms' derivations and the scalar.
+    scene: Digest,
     parameters: Vec<T>,
     /// The method's name, and all its constants.
     method: String,
-    coefficients: Fingerprint,
+    coefficients: Digest,
     step_size: T,
     steps: u64,
     attitude: Vec<T>,
@@ -50,19 +50,19 @@ pub struct Checkpoint<T> {
     advected: Vec<T>,
     /// What the method keeps from step to step.
     kept: Vec<T>,
-    /// Of everything above.
-    digest: Fingerprint,
+    /// The digest of everything above.
+    digest: Digest,
 }
 
-impl<T: Stored> Checkpoint<T> {
+impl<T: Storable> Checkpoint<T> {
     /// The number of steps made.
     #[must_use]
     pub fn steps(&self) -> u64 {
         self.steps
     }
 
-    fn digested(&self) -> Fingerprint {
-        let mut digest = Fingerprint::default();
+    fn digested(&self) -> Digest {
+        let mut digest = Digest::default();
         digest.number(u64::from(self.format));
         digest.number(self.scene.value());
         digest.text(&self.method);
@@ -90,7 +90,7 @@ impl<T: Stored> Checkpoint<T> {
 }
 
 /// # Wrap: checkpoints
-impl<S: Effect<Scalar: Stored>, P: Plan<S>> Stepper<S, P> {
+impl<S: Effect<Scalar: Storable>, P: Plan<S>> Stepper<S, P> {
     /// The state for a file, with all that its method keeps.
     #[must_use]
     pub fn checkpoint(&self, state: &StateOf<S, P>) -> Checkpoint<Scalar<S>> {
@@ -110,7 +110,7 @@ impl<S: Effect<Scalar: Stored>, P: Plan<S>> Stepper<S, P> {
             momentum: list(&motion.momentum),
             advected: list(&motion.advected),
             kept: numbers,
-            digest: Fingerprint::default(),
+            digest: Digest::default(),
         };
         checkpoint.digest = checkpoint.digested();
         checkpoint
@@ -185,7 +185,7 @@ impl<S: Effect<Scalar: Stored>, P: Plan<S>> Stepper<S, P> {
 }
 
 /// What a method keeps, if these numbers can be that.
-fn remembered<T: Stored, K: Kept<T>>(list: &[T]) -> Result<Option<K>, CheckpointError> {
+fn remembered<T: Storable, K: Kept<T>>(list: &[T]) -> Result<Option<K>, CheckpointError> {
     let mut expected = 0;
     let _ = K::from_numbers(&mut || {
         expected += 1;
@@ -202,7 +202,7 @@ fn list<T: Real>(entries: &impl Entries<T>) -> Vec<T> {
     list
 }
 
-fn unlisted<T: Stored, E: Entries<T>>(what: &'static str, list: &[T]) -> Result<E, CheckpointError> {
+fn unlisted<T: Storable, E: Entries<T>>(what: &'static str, list: &[T]) -> Result<E, CheckpointError> {
     let mut expected = 0;
     E::from_entries(&mut || {
         expected += 1;
@@ -213,7 +213,7 @@ fn unlisted<T: Stored, E: Entries<T>>(what: &'static str, list: &[T]) -> Result<
     Ok(E::from_entries(&mut || numbers.next().copied().unwrap_or_else(T::zero)))
 }
 
-fn readable<T: Stored>(what: &'static str, list: &[T], expected: usize) -> Result<(), CheckpointError> {
+fn readable<T: Storable>(what: &'static str, list: &[T], expected: usize) -> Result<(), CheckpointError> {
     if list.len() != expected {
         return Err(CheckpointError::WrongSize { what, found: list.len(), expected });
     }

@@ -3,7 +3,7 @@
 use crate::declared::{Declaration, Factor};
 use crate::judged::{Chosen, Equations, Findings, Sureness};
 use crate::mathematics::derive::{Continuous, Declared, Derived, Inverse, Seen, SelfAdjointness};
-use crate::mathematics::symbolic::{Stage, Variance, covector_text, matrix_text, text};
+use crate::mathematics::symbolic::{Stage, Variance, covector_text, matrix_text, text, vector_text};
 use crate::program::{Candidate, Graph, Kernel, NodeId, count};
 
 /// A method with its equation.
@@ -87,7 +87,9 @@ fn covectors(derived: &Derived, expression: &crate::mathematics::symbolic::Expre
     let (symbols, factors) = (&derived.symbols, &derived.directions.factors);
     let of_factor = |first| {
         let own = expression.filtered(|monomial| crate::mathematics::symbolic::monomial_contains(monomial, first));
-        covector_text(&own, first, symbols)
+        // Of what is translated the direction is a vector.
+        let vector = if symbols.get(first).shape.1 == 1 { vector_text(&own, first, symbols) } else { None };
+        vector.unwrap_or_else(|| covector_text(&own, first, symbols))
     };
     match factors.as_slice() {
         [one] => covector_text(expression, one.first, symbols),
@@ -170,7 +172,7 @@ pub(super) fn derivation(
     };
     let sections = [
         ("hypotheses used", hypotheses),
-        ("self-adjoint", adjoint(findings.self_adjointness)),
+        ("self-adjoint", adjoint(findings)),
         ("certainty", certified(OF_A_STEP, findings.sureness)),
         ("Newton system", candidates(&chosen.kernel)),
         ("operations", costs(&chosen.kernel)),
@@ -310,10 +312,7 @@ pub(super) fn candidates(kernel: &Kernel) -> String {
 /// How sure it is that what was derived is that of the declaration.
 pub(super) fn certified(what: &str, sureness: Sureness) -> String {
     match sureness {
-        Sureness::Certified(exponent) => format!(
-            "{what} are identities; wrong with a probability below 2⁻{}",
-            exponent.to_string().chars().filter_map(superscript).collect::<String>()
-        ),
+        Sureness::Certified(exponent) => format!("{what} are identities; {}", wrong(exponent)),
         Sureness::TooHigh => {
             format!("{what} are not certified: degrees are too high for a bound; they agree at random points, exactly")
         }
@@ -321,6 +320,11 @@ pub(super) fn certified(what: &str, sureness: Sureness) -> String {
             "{what} are not certified: a generator's cube isn't a multiple of it; they agree in power series, exactly"
         ),
     }
+}
+
+fn wrong(exponent: u32) -> String {
+    let exponent: String = exponent.to_string().chars().filter_map(superscript).collect();
+    format!("wrong with a probability below 2⁻{exponent}")
 }
 
 /// What is compared of a step.
@@ -332,21 +336,22 @@ fn superscript(digit: char) -> Option<char> {
 }
 
 /// Whether the Lagrangian is self-adjoint, how that was found, and what follows.
-fn adjoint(found: SelfAdjointness) -> String {
+fn adjoint(findings: &Findings) -> String {
     let even = "even order; a step of −h undoes a step of h";
-    let (sign, how, consequence) = match found {
+    let how_sure = match (findings.sureness, findings.self_adjointness) {
+        (Sureness::Certified(exponent), SelfAdjointness::Exact) => wrong(exponent),
+        _ => "exactly, without a bound".to_owned(),
+    };
+    let at_points = format!("at random points, {how_sure}");
+    let (sign, how, consequence) = match findings.self_adjointness {
         SelfAdjointness::Symbolic => ("=", "by the normal forms", even),
-        SelfAdjointness::Exact => {
-            ("=", "at random points of the field of 2⁶¹ − 1 elements, wrong with a probability below 2⁻⁵⁰", even)
-        }
-        SelfAdjointness::Numeric => ("=", "at random points, to rounding", even),
+        SelfAdjointness::Exact | SelfAdjointness::WithoutBound => ("=", at_points.as_str(), even),
         SelfAdjointness::ForPoints => (
             "≠",
             "equal, at random points, if all vectors have 1 for their last coordinate, as the types of points promise",
             "with such vectors even order, and a step of −h undoes a step of h",
         ),
         SelfAdjointness::No => ("≠", "at random points", "order 1 in general; a step of −h doesn't undo a step of h"),
-        SelfAdjointness::Unknown => ("≟", "no value at the random points", "not known to be its own adjoint"),
     };
     format!("l_d(F, w, h) {sign} −l_d(F⁻¹, F⁻¹·w, −h)    [{how}: {consequence}]")
 }

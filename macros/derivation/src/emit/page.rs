@@ -134,14 +134,13 @@ fn together(declaration: &Declaration, chosen: &Chosen) -> String {
 /// What self-adjointness says of the order.
 fn order(found: SelfAdjointness) -> &'static str {
     match found {
-        SelfAdjointness::Symbolic | SelfAdjointness::Exact | SelfAdjointness::Numeric => {
+        SelfAdjointness::Symbolic | SelfAdjointness::Exact | SelfAdjointness::WithoutBound => {
             "even, as `l_d` is self-adjoint: a step of −h undoes a step of h."
         }
         SelfAdjointness::ForPoints => {
             "even for points, whose last coordinate is 1, as `l_d` is self-adjoint then: a step of −h undoes a step of h."
         }
         SelfAdjointness::No => "1 in general, as `l_d` isn't self-adjoint: a step of −h doesn't undo a step of h.",
-        SelfAdjointness::Unknown => "not known, as `l_d` has no value at the points where self-adjointness was tried.",
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use super::choose::Chosen;
-use super::verify::Lagrangian;
+use super::verify::{Lagrangian, Sureness};
 use super::{explain, verify};
 use crate::declared::errors::Errors;
 use crate::declared::lower::Lowered;
@@ -18,6 +18,7 @@ pub(crate) struct Equations {
     pub(crate) derived: Continuous,
     /// A basis of the directions along which the body momentum is conserved for all values of the parameters.
     pub(crate) right_symmetries: Vec<Vec<Rational>>,
+    pub(crate) sureness: Sureness,
 }
 
 impl Equations {
@@ -50,7 +51,7 @@ pub(crate) fn continuous(
     errors: &mut Errors,
 ) -> Option<Equations> {
     let is_declared = declared.is_some();
-    let equations = match declared {
+    let mut equations = match declared {
         Some(equations) => equations,
         None => of_limit(declaration, discrete, chosen, errors)?,
     };
@@ -59,10 +60,11 @@ pub(crate) fn continuous(
     // What isn't declared and quadratic may have a limit that the field doesn't tell.
     let has_limit = verify::has_limit(declaration, l, discrete)
         .unwrap_or(!is_declared && equations.derived.inverse != Inverse::Nonlinear);
-    if !has_limit || verify::rest_holds(declaration, own, (names, &chosen.derived)).is_err() {
+    let Some(Ok(at_rest)) = has_limit.then(|| verify::rest_holds(declaration, own, (names, &chosen.derived))) else {
         explain::unconfirmed_term("continuous limit", declaration, errors);
         return None;
-    }
+    };
+    equations.sureness = equations.sureness.and(at_rest);
     Some(equations)
 }
 
@@ -85,10 +87,9 @@ fn checked(
     derived: Continuous,
     errors: &mut Errors,
 ) -> Option<Equations> {
-    if let Err(unconfirmed) = verify::equations_hold(declaration, tree, &names, &derived) {
-        explain::unconfirmed(unconfirmed, declaration, place, errors);
-        return None;
-    }
+    let sureness = verify::equations_hold(declaration, tree, &names, &derived);
+    let sureness =
+        sureness.map_err(|unconfirmed| explain::unconfirmed(unconfirmed, declaration, place, errors)).ok()?;
     let right_symmetries = verify::right_symmetries(declaration, &names, &derived);
-    Some(Equations { names, derived, right_symmetries })
+    Some(Equations { names, derived, right_symmetries, sureness })
 }

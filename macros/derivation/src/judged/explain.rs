@@ -245,11 +245,8 @@ pub(super) fn not_self_adjoint(asked: Discretisation, errors: &mut Errors) {
 
 /// Reports a term of the continuous equations that the exact check doesn't confirm.
 pub(super) fn unconfirmed_term(term: &str, declaration: &Declaration, errors: &mut Errors) {
-    errors.push_over(declaration.expression.as_ref().map(check::value), disagreement(term));
-}
-
-fn disagreement(term: &str) -> String {
-    format!("the derived {term} disagrees with what is declared: please report this declaration")
+    let message = format!("the derived {term} disagrees with what is declared: please report this declaration");
+    errors.push_over(declaration.expression.as_ref().map(check::value), message);
 }
 
 /// Reports a constraint that leaves the body above free, or that below.
@@ -293,18 +290,21 @@ pub(super) fn follows(part: &Tree, rows: &[Row], errors: &mut Errors) {
 
 /// Reports what the self-check doesn't confirm.
 pub(super) fn unconfirmed(unconfirmed: Unconfirmed, declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) {
-    let message = match unconfirmed {
-        Unconfirmed::Disagrees(term) => disagreement(term),
-        Unconfirmed::NoValue => "this has no value at the points where it was tried: what is under a root or a \
-                                 logarithm has to be positive for parameters of some size and sign"
-            .to_owned(),
-        Unconfirmed::NotSmooth => {
-            let place = verify::not_smooth_at_identity(declaration, tree);
-            let (message, ends) = not_smooth(place, tree);
-            return errors.push_between(ends, message);
+    match unconfirmed {
+        Unconfirmed::Disagrees(term) => unconfirmed_term(term, declaration, errors),
+        Unconfirmed::NoValue => {
+            let message = "this has no value at the points where it was tried: what is under a root or a logarithm has to be \
+                           positive for parameters of some size and sign";
+            match verify::without_value(declaration, tree) {
+                Some(part) => errors.push_between([part.span, part.end], message),
+                None => errors.push_over(declaration.expression.as_ref().map(check::value), message),
+            }
         }
-    };
-    errors.push_over(declaration.expression.as_ref().map(check::value), message);
+        Unconfirmed::NotSmooth => {
+            let (message, ends) = not_smooth(verify::not_smooth_at_identity(declaration, tree), tree);
+            errors.push_between(ends, message);
+        }
+    }
 }
 
 /// What has no derivative where a step begins, and where that stands.

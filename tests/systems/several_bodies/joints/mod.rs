@@ -2,9 +2,6 @@
 //! equations, a pendulum on a pin against its recursion, and all of them against the principle that joints do no work;
 //! what is conserved, and what can go wrong.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 mod chains;
 mod driven;
 mod kinds;

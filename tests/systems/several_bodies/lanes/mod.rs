@@ -1,8 +1,5 @@
 //! Bodies that are declared together, and systems of bodies, in SIMD lanes: each lane is, bit for bit, a scene of its own.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
 mod rows;
 
 use core::fmt::Debug;

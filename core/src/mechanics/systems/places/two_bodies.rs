@@ -178,7 +178,7 @@ impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Pairs<N> {
         WhereAllAre::default()
     }
 
-    /// Formed where it is needed: so many wouldn't be kept.
+    /// Formed where it is needed: registers don't hold all pairs.
     #[hot]
     fn seen(all: &Self::Advected, spatial: &E::Advected, at: At) -> E::Advected {
         let [first, second] = at.bodies.map(|body| Body::<E>::from_matrix_unchecked(all.0[body]));

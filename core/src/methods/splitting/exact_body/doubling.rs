@@ -20,7 +20,7 @@ use nalgebra::SimdBool as _;
 
 use super::super::quaternion::product;
 use super::series::{Functions, Invariants, LONG, long};
-use super::{Form, Turned, rotor};
+use super::{BodyTurn, Form, rotor};
 use crate::numbers::Number;
 
 /// Enough for any angle of a double that has a digit of its direction left.
@@ -61,10 +61,10 @@ struct Curve<T: Number> {
 
 impl<T: Number> Form<T> {
     /// By the functions over a part of the drift that is short enough, doubled as often as it takes.
-    pub(super) fn doubled(&self, u: [T; 3], invariants: &Invariants<T>) -> Turned<T> {
+    pub(super) fn doubled(&self, u: [T; 3], invariants: &Invariants<T>) -> BodyTurn<T> {
         let (one, half, quarter) = (T::one(), T::number(0.5), T::number(0.25));
         let (size, [a, b, c]) = (invariants.size(), u);
-        // Of half the drift, and the square of that; lanes that are short enough wait.
+        // The half of the drift, and its square; lanes that are short enough wait.
         let (mut root, mut part, mut doublings) = (half, quarter, 1);
         while doublings < MOST_DOUBLINGS && (size * part).simd_gt(T::number(LONG)).any() {
             let is_far = (size * part).simd_gt(T::number(LONG));
@@ -103,7 +103,7 @@ impl<T: Number> Form<T> {
         let across = [real_part, s * self.a * (a + a_end), s * self.b * (b + b_end)];
         let more = curve.bend * part * integral;
         let turn = rotor([a + a * more, b + b * more, c + c * more]);
-        Turned::by(product(turn, [about.w, about.f * a, about.f * b, about.f * c]), across)
+        BodyTurn::by(product(turn, [about.w, about.f * a, about.f * b, about.f * c]), across)
     }
 
     fn curve(&self, u: [T; 3], invariants: &Invariants<T>) -> Curve<T> {

@@ -68,7 +68,7 @@ impl<T: Real> Frame<T> {
     }
 }
 
-/// Of one kind in all lanes.
+/// All lanes have frames of one kind.
 impl<T: Real> Lanes for Frame<T> {
     type Lane = Frame<T::Element>;
 

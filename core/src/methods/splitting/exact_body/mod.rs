@@ -208,7 +208,7 @@ impl<T: Real> ExactDrift<T> {
 }
 
 impl<T: Number> Form<T> {
-    /// Of the moments about the three axes, the last the middle one, and the time, s.
+    /// The form for the moments about the three axes, the last the middle one, and the time, s.
     fn of([of_a, of_b, of_c]: [T; 3], h: T) -> Self {
         // Without cancellation.
         let (a, b) = ((of_c - of_a) / of_a, (of_c - of_b) / of_b);
@@ -233,7 +233,7 @@ impl<T: Number> Form<T> {
 
     /// The drift, for the momentum in units of half of it.
     #[hot]
-    fn turned(&self, u: [T; 3]) -> Turned<T> {
+    fn turned(&self, u: [T; 3]) -> BodyTurn<T> {
         let invariants = self.invariants(u);
         let size = invariants.size();
         let (is_short, is_long) = (size.simd_le(T::number(SHORT)), size.simd_le(T::number(LONG)));
@@ -259,7 +259,7 @@ impl<T: Number> Form<T> {
     /// What takes the time is the chain from the momentum to the increment, so nothing is divided before the end of it,
     /// and sums are ordered by what is there first.
     #[hot]
-    fn whole(&self, [a, b, c]: [T; 3], invariants: &Invariants<T>, half: &Half<T>) -> Turned<T> {
+    fn whole(&self, [a, b, c]: [T; 3], invariants: &Invariants<T>, half: &Half<T>) -> BodyTurn<T> {
         let Invariants { kb, ka, .. } = *invariants;
         let Half { n, mu, about } = *half;
         let (nn, kk) = (n * n, kb * ka);
@@ -275,10 +275,10 @@ impl<T: Number> Form<T> {
         let real_part = ((mu * n) * den + mu_cc * (of_a * of_b)) + of_all;
         let along_a = (self.a * base) * (a * den + a_end);
         let along_b = (self.b * base) * (b * den + b_end);
-        Turned::by(about, [real_part, along_a, along_b])
+        BodyTurn::by(about, [real_part, along_a, along_b])
     }
 
-    /// What is known of half a drift that is so many times twice as long as the polynomials are for.
+    /// Half a drift that is `2^DOUBLINGS` times as long as the polynomials are for.
     ///
     /// By the points of the curve `μ² = 4 n (n − K_a)(n − K_b)`, whose doubling is rational. The turn about the momentum is
     /// twice that of half the time and once more, by the tangent to the curve at the point; see [`doubling`].
@@ -319,7 +319,7 @@ impl<T: Number> Form<T> {
     }
 
     #[inline(never)]
-    fn beyond(&self, u: [T; 3], invariants: &Invariants<T>) -> Turned<T> {
+    fn beyond(&self, u: [T; 3], invariants: &Invariants<T>) -> BodyTurn<T> {
         dispatch(Beyond { form: self, u, invariants })
     }
 }
@@ -333,11 +333,11 @@ struct Beyond<'a, T> {
 }
 
 impl<T: Number> Kernel for Beyond<'_, T> {
-    type Output = Turned<T>;
+    type Output = BodyTurn<T>;
     const VECTORS: Vectors = Vectors::Four;
 
     #[hot]
-    fn run(self) -> Turned<T> {
+    fn run(self) -> BodyTurn<T> {
         let Self { form, u, invariants } = self;
         let size = invariants.size();
         let [is_short, is_long, is_far, is_farther] =
@@ -399,13 +399,13 @@ fn rotor<T: Number>([x, y, z]: [T; 3]) -> Quaternion<T> {
 
 /// A rotation by a quaternion of any length.
 #[derive(Clone, Copy, Debug)]
-struct Turned<T> {
+struct BodyTurn<T> {
     quaternion: Quaternion<T>,
     /// One over the square of its length.
     inverse_square: T,
 }
 
-impl<T: Number> Turned<T> {
+impl<T: Number> BodyTurn<T> {
     /// A rotation about the momentum after one across the middle axis, both of any length.
     #[hot]
     fn by(about: Quaternion<T>, across: [T; 3]) -> Self {

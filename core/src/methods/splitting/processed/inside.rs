@@ -9,11 +9,11 @@ use nalgebra::SimdBool as _;
 /// at the start, after a push and after another method's steps.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 #[doc(hidden)]
-pub struct Inside<T: Real, A>(pub(super) Option<Stepped<T, A>>);
+pub struct Inside<T: Real, A>(pub(super) Option<InsideMotion<T, A>>);
 
 /// Without the number of steps, which is that of the motion that is read.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
-pub(super) struct Stepped<T: Real, A> {
+pub(super) struct InsideMotion<T: Real, A> {
     attitude: SO3<T>,
     momentum: nalgebra::Vector3<T>,
     advected: A,
@@ -21,7 +21,7 @@ pub(super) struct Stepped<T: Real, A> {
     pub(super) h: T,
 }
 
-impl<T: Real, A: Advected<SO3<T>>> Stepped<T, A> {
+impl<T: Real, A: Advected<SO3<T>>> InsideMotion<T, A> {
     pub(super) fn of(motion: &Motion<SO3<T>, A>, h: T) -> Self {
         Self { attitude: motion.attitude, momentum: motion.momentum, advected: motion.advected, h }
     }
@@ -35,13 +35,13 @@ impl<T: Real, A: Advected<SO3<T>>> Stepped<T, A> {
 impl<T: Real, A: Advected<SO3<T>>> Kept<T> for Inside<T, A> {
     fn each(&self, mut visit: &mut dyn FnMut(T)) {
         visit(count(usize::from(self.0.is_some())));
-        let nothing = || Stepped {
+        let nothing = || InsideMotion {
             attitude: SO3::from_matrix_unchecked(zero()),
             momentum: zero::<T, nalgebra::Vector3<T>>(),
             advected: zero::<T, A>(),
             h: T::zero(),
         };
-        let Stepped { attitude, momentum, advected, h } = self.0.unwrap_or_else(nothing);
+        let InsideMotion { attitude, momentum, advected, h } = self.0.unwrap_or_else(nothing);
         Entries::each(attitude.as_matrix(), &mut visit);
         Entries::each(&momentum, &mut visit);
         advected.each(&mut visit);
@@ -61,7 +61,7 @@ impl<T: Real, A: Advected<SO3<T>>> Kept<T> for Inside<T, A> {
             return Some(Self(None));
         }
         let is_rotation = attitude.defect().simd_le(T::simd_default_epsilon() * real(1e4)).all();
-        is_rotation.then_some(Self(Some(Stepped { attitude, momentum, advected, h })))
+        is_rotation.then_some(Self(Some(InsideMotion { attitude, momentum, advected, h })))
     }
 }
 

@@ -87,7 +87,7 @@ impl<S: RigidScene, K: DifferentiableFlow<Scalar<S>>> Processed<S, K> {
         self.scheme.kernel().shares().count() - 1
     }
 
-    /// Of a change of a step with a processor of this length.
+    /// The length of a change in a step with a processor of this length.
     fn length(&self, index: usize, processor: Scalar<S>) -> Option<Length<Scalar<S>>> {
         let (parts, h, kernel) = (&self.parts, self.kernel.h, self.scheme.kernel());
         if let Some(part) = parts.iter().rev().nth(index) {

@@ -9,7 +9,7 @@ pub use scheme::ProcessedScheme;
 
 use alloc::vec::Vec;
 
-use inside::Stepped;
+use inside::InsideMotion;
 
 use super::scheme::Flow;
 use super::{KineticFlow, Length, Split, Stages, has_force_gradient, share_of};
@@ -119,7 +119,7 @@ impl Part {
         self.gradient.iter().any(|gradient| gradient.abs() > 0.0)
     }
 
-    /// In a step, and a processor of this length; so many times.
+    /// The lengths of a step and a processor, `times` times.
     fn length<T: Real>(&self, [step, processor]: [T; 2], times: f64) -> Length<T> {
         let time = step * real(times * self.time[0]) + processor * real(times * self.time[1]);
         let cubes = [step, processor].map(|h| h * h * h);
@@ -179,7 +179,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Processed<S, K> {
 
     /// What a step goes on from, if that was left there by steps of its own length.
     #[hot]
-    fn inside(&self, kept: &Inside<Scalar<S>, S::Advected>) -> Option<Stepped<Scalar<S>, S::Advected>> {
+    fn inside(&self, kept: &Inside<Scalar<S>, S::Advected>) -> Option<InsideMotion<Scalar<S>, S::Advected>> {
         kept.0.filter(|inside| inside.h.simd_eq(self.kernel.h).all())
     }
 }
@@ -251,7 +251,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
             return Err(self.kernel.why_not_finite(&motion.now().momentum));
         }
         next.show(read);
-        (*motion, kept.0) = (next, Some(Stepped::of(&inside, self.kernel.h)));
+        (*motion, kept.0) = (next, Some(InsideMotion::of(&inside, self.kernel.h)));
         Ok(all + u64::from(iterations))
     }
 

@@ -35,94 +35,55 @@ pub struct ProcessedScheme {
     name: &'static str,
     order: u32,
     kernel: SplittingScheme,
-    /// Drift, kick and force gradient by turns.
+    /// Drift, kick and force gradient of each stage.
     processor: &'static [[f64; 3]],
     /// The last drift.
     last: f64,
 }
 
 impl ProcessedScheme {
-    /// Order 6 with three drifts and one force gradient a step.
-    pub const SIX_A: Self = Self::new(
-        "processed 3-6 a",
-        6,
-        THREE_DRIFTS,
-        &[
+    schemes! {
+        /// Order 6 with three drifts and one force gradient a step.
+        SIX_A = Self::new("processed 3-6 a", 6, THREE_DRIFTS, &[
             [-0.0703026373535961342390651631159, 0.20665604926098297350745841313, 0.0286456827611767065874012365132],
             [-0.111704528879860710158274407152, -0.034640489261471661869693869713, -0.0118430410009511916400804816644],
             [0.554008729214240650588112644763, 0.190187950956113773204912119634, 0.0185118699025337784886053945875],
-            [
-                -0.456202211436371128197410636322,
-                0.000116279800890681322342555109914,
-                0.00520723290185722637308192844025,
-            ],
+            [-0.456202211436371128197410636322, 0.000116279800890681322342555109914, 0.00520723290185722637308192844025],
             [0.321382297940377449531439929904, 0.092738754781874447784048152174, -0.0328529951970588503886503665355],
-        ],
-        0.217876896053600086424265002259,
-    );
+        ], 0.217876896053600086424265002259);
 
-    /// The same steps with another processor.
-    pub const SIX_B: Self = Self::new(
-        "processed 3-6 b",
-        6,
-        THREE_DRIFTS,
-        &[
+        /// The same steps with another processor.
+        SIX_B = Self::new("processed 3-6 b", 6, THREE_DRIFTS, &[
             [0.0, -0.0753837272678498780127182547603, -0.024616012733644205316884684561],
             [-0.480437027036673811053472743691, -0.280916135925670772797257748164, 0.137598234836117268532228451324],
             [-0.0141783879163624734235258095302, 0.248576404673639870927110522567, -0.127792499363947432350360452806],
             [0.34237870613551988388933899794, 0.188911554438579190948875386659, 0.0421709043461003411446997962927],
-            [
-                -0.0964081844136876834211755873155,
-                -0.00309426120493107782719806408365,
-                -0.0267192366951326938516235246487,
-            ],
-        ],
-        0.326738727944971417247646984815,
-    );
+            [-0.0964081844136876834211755873155, -0.00309426120493107782719806408365, -0.0267192366951326938516235246487],
+        ], 0.326738727944971417247646984815);
 
-    /// Order 4 with two drifts and two force gradients a step, for few digits.
-    pub const FOUR_A: Self = Self::new(
-        "processed 2-4 a",
-        4,
-        TWO_DRIFTS,
-        &[
+        /// Order 4 with two drifts and two force gradients a step, for few digits.
+        FOUR_A = Self::new("processed 2-4 a", 4, TWO_DRIFTS, &[
             [0.0, 0.1037567817473591791555719186, -0.00119642846777136052003310969941],
             [-0.277154059845793467558282630705, 0.00202243534277590415038351679294, 0.00539013931637204767996689030059],
             [0.32760645783074108212932442421, -0.210221055067421363064861438076, -0.00482158382246573022003310969941],
-        ],
-        -0.154894235962233894329947796187,
-    );
+        ], -0.154894235962233894329947796187);
 
-    /// The same with another kernel.
-    pub const FOUR_B: Self = Self::new(
-        "processed 2-4 b",
-        4,
-        OTHER_TWO_DRIFTS,
-        &[
+        /// The same with another kernel.
+        FOUR_B = Self::new("processed 2-4 b", 4, OTHER_TWO_DRIFTS, &[
             [0.108747341864335639838158465321, -0.212769547452841184020360402899, 0.00271191666087527843437997569787],
             [0.160853475914733953407698986988, 0.14153890479160099979925851758, 0.0182482077750180722343799756979],
             [-0.264705925479093689235625081075, 0.357012349828013705227340805194, 0.000139103223083609794379975697874],
-        ],
-        0.280886814866797616996006548641,
-    );
+        ], 0.280886814866797616996006548641);
 
-    /// Order 4 with the shortest processor, for the fewest digits: each kick has the twelfth of the force gradient that is
-    /// all that order 4 asks of a kernel of one drift and one kick, of which this is two.
-    pub const FOUR_C: Self = Self::new(
-        "processed 2-4 c",
-        4,
-        TWICE_ONE_DRIFT,
-        &[
+        /// Order 4 with the shortest processor, for the fewest digits: each kick has the twelfth of the force gradient that is
+        /// all that order 4 asks of a kernel of one drift and one kick, of which this is two.
+        FOUR_C = Self::new("processed 2-4 c", 4, TWICE_ONE_DRIFT, &[
             [0.054864149511049415639146885511, 0.094931451225437736688605888439, -0.000053717973010598082549787894],
             [-0.109728299022098367694014751199, -0.094931451225439340968587073141, -0.000935151310587703304089004259],
-        ],
-        0.054864149511047347774886680987,
-    );
+        ], 0.054864149511047347774886680987);
+    }
 
-    /// All of these.
-    pub const ALL: [Self; 5] = [Self::SIX_A, Self::SIX_B, Self::FOUR_A, Self::FOUR_B, Self::FOUR_C];
-
-    /// Other coefficients: of the processor `χ`, by which a run ends, drift, kick and force gradient by turns, and the
+    /// Other coefficients: of the processor `χ`, by which a run ends, drift, kick and force gradient of each stage, and the
     /// last drift. The order is that of the whole.
     #[must_use]
     pub const fn new(
@@ -183,7 +144,7 @@ const TWO_DRIFTS: SplittingScheme = SplittingScheme::new(
 )
 .with_gradients(&[0.0107620534858024267078342724616, 0.0, -0.00040683737877315244433145508716]);
 
-/// Likewise.
+/// Another kernel for the condition of [`TWO_DRIFTS`].
 const OTHER_TWO_DRIFTS: SplittingScheme = SplittingScheme::new(
     "kernel 2-4",
     2,

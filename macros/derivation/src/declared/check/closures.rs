@@ -6,7 +6,6 @@ use std::rc::Rc;
 use proc_macro2::Span;
 use quote::ToTokens as _;
 use syn::ext::IdentExt as _;
-use syn::spanned::Spanned as _;
 use syn::{Expr, ExprCall, ExprClosure, Ident, Pat, ReturnType, Type};
 
 use super::{Binding, Checker};
@@ -56,7 +55,7 @@ impl Checker<'_> {
         }
         let parameters: Vec<_> = closure.inputs.iter().map(|parameter| self.parameter(parameter)).collect();
         if let ReturnType::Type(_, ty) = &closure.output {
-            self.errors.push(ty.span(), "leave the type away: it follows from the expression");
+            self.errors.push_over(ty, "leave the type away: it follows from the expression");
         }
         if parameters.is_empty() {
             let message = "a function of nothing is a value: write `let U = …;`";

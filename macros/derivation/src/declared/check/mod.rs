@@ -301,7 +301,7 @@ impl Checker<'_> {
                 Stmt::Local(local) => self.binding(local),
                 other => {
                     // It may have been meant to give a name.
-                    self.errors.push(other.span(), format!("only `let name = …;` may stand before {the}"));
+                    self.errors.push_over(other, format!("only `let name = …;` may stand before {the}"));
                     return None;
                 }
             }
@@ -335,14 +335,14 @@ impl Checker<'_> {
             }
         };
         if let Some(ty) = ty {
-            self.errors.push(ty.span(), "leave the type away: it follows from the expression");
+            self.errors.push_over(ty, "leave the type away: it follows from the expression");
         }
         if !self.is_free(name) {
             self.bind_nothing(pattern);
             return;
         }
         let Some(init) = local.init.as_ref().filter(|init| init.diverge.is_none()) else {
-            self.errors.push(local.span(), "a binding needs a value: `let name = …;`");
+            self.errors.push_over(local, "a binding needs a value: `let name = …;`");
             self.bind_nothing(pattern);
             return;
         };

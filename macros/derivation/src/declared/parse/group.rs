@@ -279,9 +279,9 @@ fn decimal(expression: &Expr) -> syn::Result<Rational> {
         Expr::Unary(unary) if matches!(unary.op, syn::UnOp::Neg(_)) => -decimal(&unary.expr)?,
         Expr::Lit(literal) => match &literal.lit {
             syn::Lit::Float(float) => Rational::from_decimal(float.base10_digits()),
-            _ => return Err(syn::Error::new(expression.span(), message)),
+            _ => return Err(syn::Error::new_spanned(expression, message)),
         },
-        _ => return Err(syn::Error::new(expression.span(), message)),
+        _ => return Err(syn::Error::new_spanned(expression, message)),
     };
-    if value.is_overflow() { Err(syn::Error::new(expression.span(), message)) } else { Ok(value) }
+    if value.is_overflow() { Err(syn::Error::new_spanned(expression, message)) } else { Ok(value) }
 }

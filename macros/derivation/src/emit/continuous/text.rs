@@ -1,7 +1,7 @@
 //! The continuous equations in print.
 
 use crate::declared::{Declaration, FieldKind};
-use crate::emit::docs::{Equation, inertia_matrix, setting};
+use crate::emit::docs::{Equation, certified, inertia_matrix, setting};
 use crate::judged::Equations;
 use crate::mathematics::derive::{Carried, Continuous, Element, Inverse, Seen};
 use crate::mathematics::group::Group;
@@ -312,9 +312,10 @@ pub(in crate::emit) fn section(declaration: &Declaration, equations: &Equations)
     let limit = if declaration.continuous.is_some() && declaration.discretisation().is_none() {
         String::new()
     } else {
-        format!("    l_d(exp(h {xi}), w, h) = h l({xi}, w) + O(h²)\n")
+        format!("    l_d(exp(h {xi}), w, h) = h l({xi}, w) + O(h²)    [at random points, exactly, without a bound]\n")
     };
-    format!("continuous\n    {named} = g⁻¹ dg/dt\n{limit}    pairing: {pairing}\n{lines}")
+    let certainty = certified("the equations", equations.sureness);
+    format!("continuous\n    {named} = g⁻¹ dg/dt\n{limit}    pairing: {pairing}\n{lines}    certainty: {certainty}\n")
 }
 
 /// What the struct's own documentation says of the continuous equations.

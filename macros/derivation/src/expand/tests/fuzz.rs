@@ -9,118 +9,18 @@ use super::{HEAVY_TOP, expand, is_refused, tokens, top};
 /// Far more than any accepted declaration needs without optimisation.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-const DICTIONARY: &[&str] = &[
-    "F",
-    "I",
-    "h",
-    "w",
-    "up",
-    "rho",
-    "J_d",
-    "m",
-    "g",
-    "k",
-    "A",
-    "group",
-    "generators",
-    "SO3",
-    "<",
-    ">",
-    "f64",
-    "\"SO3\"",
-    "advected",
-    "l_d",
-    "crate",
-    "=",
-    ",",
-    "+",
-    "-",
-    "*",
-    "/",
-    "!",
-    "&",
-    ".",
-    "..",
-    ";",
-    ":",
-    "::",
-    "?",
-    "|",
-    "#",
-    "'a",
-    "let",
-    "if",
-    "else",
-    "match",
-    "move",
-    "unsafe",
-    "async",
-    "mut",
-    "ref",
-    "as",
-    "return",
-    "break",
-    "loop",
-    "true",
-    "_",
-    "r#type",
-    "self",
-    "super",
-    "0",
-    "1",
-    "2",
-    "3",
-    "0.5",
-    "2.0",
-    "1e300",
-    "1e-9",
-    "3f32",
-    "2.0f64",
-    "'c'",
-    "\"s\"",
-    "b\"s\"",
-    "0x1F",
-    "trace",
-    "transpose",
-    "dot",
-    "cross",
-    "cross_matrix",
-    "component_mul",
-    "norm",
-    "norm_squared",
-    "powi",
-    "sqrt",
-    "ln",
-    "exp",
-    "sin",
-    "cos",
-    "clone",
-    "vee",
-    "x",
-    "y",
-    "z",
-    "()",
-    "( F )",
-    "( & w )",
-    "( 2 )",
-    "( - 3 )",
-    "[ 0 ]",
-    "[ ( 1 , 2 ) ]",
-    "[ 9 ]",
-    "{ }",
-    "{ 1.0 }",
-    "{ let a = F ; a }",
-    ". trace ( )",
-    ". transpose ( )",
-    ". dot ( & w )",
-    ". powi ( 3 )",
-    ". sqrt ( )",
-    ". x",
-    ". 0",
-    "( F * J_d )",
-    "1.0 / h",
-    "w . dot ( & ( F * rho ) )",
-];
+/// What random texts are made of: tokens, and phrases with a tilde between them.
+const WORDS: &str = r#"
+    F I h w up rho J_d m g k A group generators SO3 < > f64 "SO3" advected l_d crate = , + - * / ! & . .. ; : :: ? |
+    # 'a let if else match move unsafe async mut ref as return break loop true _ r#type self super 0 1 2 3 0.5 2.0
+    1e300 1e-9 3f32 2.0f64 'c' "s" b"s" 0x1F trace transpose dot cross cross_matrix component_mul norm norm_squared
+    powi sqrt ln exp sin cos clone vee x y z ()"#;
+const PHRASES: &str = "( F ) ~ ( & w ) ~ ( 2 ) ~ ( - 3 ) ~ [ 0 ] ~ [ ( 1 , 2 ) ] ~ [ 9 ] ~ { } ~ { 1.0 } ~ { let a = F ; a } ~ . trace ( ) ~ . transpose ( ) ~ . dot ( & w ) ~ . powi ( 3 ) ~ . sqrt ( ) ~ . x ~ . 0 ~ ( F * J_d ) ~ 1.0 / h ~ w . dot ( & ( F * rho ) )";
+
+fn word() -> impl Strategy<Value = &'static str> {
+    let words = WORDS.split_whitespace().chain(PHRASES.split(" ~ "));
+    proptest::sample::select(words.collect::<Vec<_>>())
+}
 
 /// The tokens of a declaration with brackets apart, so that mutations can't unbalance them beyond repair.
 pub(super) fn pieces(text: &str) -> Vec<String> {
@@ -164,7 +64,6 @@ pub(super) enum Mutation {
 }
 
 pub(super) fn mutation() -> impl Strategy<Value = Mutation> {
-    let word = || proptest::sample::select(DICTIONARY);
     prop_oneof![
         any::<usize>().prop_map(Mutation::Delete),
         any::<usize>().prop_map(Mutation::Duplicate),
@@ -216,12 +115,12 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 3_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn token_soup(soup in proptest::collection::vec(proptest::sample::select(DICTIONARY), 0..40)) {
+    fn token_soup(soup in proptest::collection::vec(word(), 0..40)) {
         survives(&soup.join(" "), &top("NonstandardInertia"));
     }
 
     #[test]
-    fn soup_as_a_lagrangian(soup in proptest::collection::vec(proptest::sample::select(DICTIONARY), 0..25)) {
+    fn soup_as_a_lagrangian(soup in proptest::collection::vec(word(), 0..25)) {
         survives(&format!("group = SO3, advected(w = up), l_d = {}", soup.join(" ")), &top("NonstandardInertia"));
     }
 

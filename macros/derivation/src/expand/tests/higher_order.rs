@@ -4,9 +4,9 @@ use super::derived;
 use crate::mathematics::symbolic::Stage;
 use crate::program::{Given, Graph, NodeId, count, kernel, with_values};
 
-const GEODESIC: &str = include_str!("../../../declarations/log_top.rs");
-const FOURTH: &str = include_str!("../../../declarations/fourth_order_top.rs");
-const SIXTH: &str = include_str!("../../../declarations/sixth_order_top.rs");
+const GEODESIC: &str = include_str!("../../../../../examples/declarations/log_top.rs");
+const FOURTH: &str = include_str!("../../../../../examples/declarations/fourth_order_top.rs");
+const SIXTH: &str = include_str!("../../../../../examples/declarations/sixth_order_top.rs");
 
 /// The arguments of the attribute and the struct of a declaration's file.
 fn parts(file: &str) -> (&str, &str) {

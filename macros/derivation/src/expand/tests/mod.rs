@@ -7,7 +7,7 @@ mod discretised_bodies;
 mod fuzz;
 mod generated;
 mod higher_order;
-mod messages;
+mod mistakes;
 mod not_quadratic;
 mod own_group;
 mod right;

@@ -52,3 +52,10 @@ fn a_declaration_asks_it() {
     // Without the mark, an unknown name is a mistake.
     assert!(is_refused(&expanded("group = Affine, l_d = m * F.trace()", item)));
 }
+
+/// A group whose generators are a mistake is said to be one once.
+#[test]
+fn a_mistake_of_the_group_is_its_own() {
+    let group = matrix_group(tokens("pub type Large = [[[1.0], [2.0]]];")).to_string();
+    assert!(group.contains("macro_rules ! __liestep_Large") && group.contains("compile_error"), "{group}");
+}

@@ -31,32 +31,9 @@ fn with_term(term: &str) -> String {
 #[test]
 fn nested_tokens() {
     let brackets = [["(", ")"], ["{", "}"], ["vee(", ")"], ["[", "]"], ["rho[", "]"], ["-(", ")"]];
-    let prefixes = [
-        "-",
-        "!",
-        "&",
-        "*",
-        "..",
-        "&mut ",
-        "k = ",
-        "|k| ",
-        "return ",
-        "break ",
-        "if k {} else ",
-        "- #[a] ",
-        "k::<",
-        "k as fn() -> ",
-        "async move ",
-        "k < ",
-        "k.k::<",
-        "let k = ",
-        "k as &'a ",
-        "k += ",
-        "match k ",
-        "unsafe ",
-    ];
+    let prefixes = "-~!~&~*~..~&mut ~k = ~|k| ~return ~break ~if k {} else ~- #[a] ~k::<~k as fn() -> ~async move ~k < ~k.k::<~let k = ~k as &'a ~k += ~match k ~unsafe ";
     let closed = brackets.iter().map(|[open, close]| (*open, *close));
-    for (open, close) in closed.chain(prefixes.iter().map(|open| (*open, ""))) {
+    for (open, close) in closed.chain(prefixes.split('~').map(|open| (open, ""))) {
         for count in [20, 60, 400, 2_000, 100_000] {
             // The lexer of a real compilation has its own limit for brackets; here it would recurse.
             if !close.is_empty() && count > 400 {

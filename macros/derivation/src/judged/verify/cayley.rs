@@ -17,13 +17,9 @@ const POINTS: u64 = 3;
 pub(crate) fn is_cayley_coordinates(group: &Group, increment: Name, tree: &Rc<Tree>) -> bool {
     (1..=POINTS).all(|seed| {
         let mut number = Residue::stream(seed);
-        let identity = Value::identity(group.size);
-        let xi: Vec<Residue> = (0..group.dimension()).map(|_| number()).collect();
-        let zero = Value::diagonal(group.size, |_| Residue::ZERO);
-        let half = group.generators.iter().zip(&xi).fold(zero, |sum, (entries, &component)| {
-            let half = component / (Residue::ONE + Residue::ONE);
-            sum.plus(&Value::square(group.size, entries).map(|entry: Residue| entry * half))
-        });
+        let (identity, two) = (Value::identity(group.size), Residue::ONE + Residue::ONE);
+        let xi: Vec<Residue> = group.generators.iter().map(|_| number()).collect();
+        let half = Value::combination(group.size, &group.generators, &xi).map(|entry| entry / two);
         let (minus, plus) = (identity.zip(&half, |x, y| x - y), identity.plus(&half));
         let values = BTreeMap::from([(increment, minus.inverse().times(&plus))]);
         let found = Evaluation::new(&values).of(tree);
@@ -34,11 +30,8 @@ pub(crate) fn is_cayley_coordinates(group: &Group, increment: Name, tree: &Rc<Tr
 /// The least `n` with `Nⁿ = 0` for all elements `N` of the algebra, where they are strictly triangular.
 pub(crate) fn nilpotency(group: &Group) -> usize {
     let mut number = Residue::stream(1);
-    let zero = Value::diagonal(group.size, |_| Residue::ZERO);
-    let any = group.generators.iter().fold(zero, |sum, entries| {
-        let component = number();
-        sum.plus(&Value::square(group.size, entries).map(|entry: Residue| entry * component))
-    });
+    let components: Vec<Residue> = group.generators.iter().map(|_| number()).collect();
+    let any = Value::combination(group.size, &group.generators, &components);
     let mut power = any.clone();
     (1..=group.size)
         .find(|_| {

@@ -4,14 +4,14 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::degree::{self, Degree, Largest};
+use super::degree::{self, Degree};
 use super::dual::Dual;
-use super::exact::{confirmed, same};
+use super::exact::{certified, same};
 use super::identities::Same;
 use super::linear::Subspace;
 use super::number::Number;
 use super::residue::Residue;
-use super::{DRAWS, Evaluation, Fault, Sureness, Unconfirmed, Value, dot, evaluated, parameter, stream};
+use super::{DRAWS, Evaluation, Fault, Sureness, Unconfirmed, Value, Values, dot, evaluated, parameter, stream};
 use crate::declared::lower::LoweredConstraint;
 use crate::declared::{Declaration, FieldKind, Name, Tree};
 use crate::mathematics::derive::Seen;
@@ -38,9 +38,6 @@ impl Held {
     }
 }
 
-/// Points that are compared where no bound is small enough.
-const POINTS: u32 = 3;
-
 /// Attitude and position of a body.
 type Place<T> = [Value<T>; 2];
 
@@ -60,42 +57,34 @@ pub(crate) fn constraint(declaration: &Declaration, held: &Held) -> Result<(Sure
     let has_value = |seed| {
         let point = Point::new(declaration, stream(seed));
         let value = point.value(held, &point.places.each_ref().map(lifted));
-        value.iter().all(|entry| entry.value.is_finite())
+        value.iter().all(|entry| entry.value.is_defined())
     };
     if !(1..=DRAWS).any(has_value) {
         return Err(Unconfirmed::NoValue);
     }
-    let found = sureness(declaration, held);
-    confirmed(found.map_or(POINTS, |found| found.points), |seed| {
+    let functions = held.functions.iter().map(degree::functions).sum::<u64>() + degree::calls(&held.graph);
+    let degrees = |same: &mut Same<Degree>| {
+        let mut number = Degree::stream();
+        let mut point = Point::new(declaration, &mut number);
+        // The attitudes of both bodies are Cayley transforms.
+        for [attitude, _] in &mut point.places {
+            attitude.entries.iter_mut().for_each(|entry| *entry = number().of_element(4));
+        }
+        point.holds(held, number, same)
+    };
+    let sureness = certified(functions, degrees, |seed| {
         let mut number = Residue::stream(seed);
         Point::new(declaration, &mut number).holds(held, number, &mut same)
     })?;
     let rows = Point::new(declaration, Residue::stream(1)).rows(held);
-    let sureness = found.map_or(Sureness::TooHigh, |found| Sureness::Certified(found.exponent));
     Ok((sureness, rows.unwrap_or_else(|| vec![Row::New; held.rows()])))
-}
-
-fn sureness(declaration: &Declaration, held: &Held) -> Option<degree::Sureness> {
-    let mut number = Degree::stream();
-    let mut point = Point::new(declaration, &mut number);
-    // The attitudes of both bodies are Cayley transforms.
-    for [attitude, _] in &mut point.places {
-        attitude.entries.iter_mut().for_each(|entry| *entry = number().of_element(4));
-    }
-    let mut largest = Largest::default();
-    let compared = point.holds(held, number, &mut |_, found, expected| {
-        largest.compared(found, expected);
-        Ok(())
-    });
-    let functions = held.functions.iter().map(degree::functions).sum::<u64>() + degree::calls(&held.graph);
-    compared.ok().and_then(|()| largest.sureness(functions))
 }
 
 /// Where two bodies are, and the values of the fields.
 struct Point<'a, T> {
     declaration: &'a Declaration,
     places: [Place<T>; 2],
-    fields: BTreeMap<Name, Value<T>>,
+    fields: Values<T>,
 }
 
 fn lifted<T: Number>(place: &Place<T>) -> Place<Dual<T>> {
@@ -117,8 +106,7 @@ impl<'a, T: Number> Point<'a, T> {
 
     /// The declared functions of bodies at these places.
     fn value(&self, held: &Held, places: &[Place<Dual<T>>; 2]) -> Vec<Dual<T>> {
-        let mut values: BTreeMap<Name, Value<Dual<T>>> =
-            self.fields.iter().map(|(name, value)| (*name, constant(value))).collect();
+        let mut values: Values<Dual<T>> = self.fields.iter().map(|(name, value)| (*name, constant(value))).collect();
         let place = |factor: usize| &places[factor / 2 % 2][factor % 2];
         for (index, w) in self.declaration.advected.iter().enumerate() {
             let field = w.field.and_then(|field| self.fields.get(&Name::Field(field))).map(constant);

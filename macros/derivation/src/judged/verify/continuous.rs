@@ -1,35 +1,32 @@
 //! The continuous equations at random points of a finite field, where nothing is rounded.
 //!
-//! Derivatives of the Lagrangian are those of dual numbers, so that the symbolic rules are compared with others. With
-//! `h(μ, w) = ⟨μ, ξ⟩ − l(ξ, w)`, two identities hold whatever the Lagrangian is: `∂h/∂μ = ξ`, and the energy doesn't
-//! change, `⟨∂h/∂μ, μ̇⟩ + ⟨∂h/∂w, ẇ⟩ = 0`.
+//! Derivatives of the Lagrangian are those of dual numbers, so that the symbolic rules are compared with others: along a
+//! change of the velocity, and along a random `η` by which all that is advected is carried.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
+use super::degree::{self, Degree};
 use super::dual::Dual;
 use super::evaluation::Evaluation;
-use super::exact::{confirmed, same};
+use super::exact::{POINTS, certified, same};
+use super::identities::Same;
 use super::inertia::{KineticPart, classified};
 use super::linear::Subspace;
 use super::number::Number;
 use super::residue::Residue;
 use super::sample::{advected, exponentials, moved};
-use super::series::PowerSeries;
+use super::series::Series;
 use super::value::Value;
 use super::{
-    Fault, SAMPLES, Unconfirmed, components_of, dot, evaluated, exponential, increments, parameter, stream, velocities,
+    Fault, SAMPLES, Sureness, Unconfirmed, Values, block, by_blocks, components_of, dot, evaluated, exponential,
+    increments, parameter, parameters, stream, velocities,
 };
 use crate::declared::{Declaration, FieldKind, Name, Tree};
 use crate::mathematics::derive::{Continuous, Derived};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId};
 use crate::program::{Graph, NodeId, along_directions, components, diamond_matrices, square};
-
-/// Independent points.
-const POINTS: u32 = 3;
-
-type Values<T> = BTreeMap<Name, Value<T>>;
 
 /// The derived terms as operations.
 struct Terms {
@@ -73,15 +70,8 @@ struct Point<'a, T> {
 
 impl<'a, T: Number> Point<'a, T> {
     fn new(declaration: &'a Declaration, mut number: impl FnMut() -> T) -> Self {
-        let mut values = Values::new();
-        for (index, field) in declaration.fields.iter().enumerate() {
-            values.insert(Name::Field(index), parameter(field.kind, &mut number));
-        }
-        for index in 0..declaration.advected.len() {
-            values.insert(Name::Advected(index), parameter(declaration.advected_kind(index), &mut number));
-        }
+        let mut point = Self { declaration, values: parameters(declaration, &mut number) };
         let velocity = parameter(FieldKind::Vector(declaration.group.dimension()), &mut number);
-        let mut point = Self { declaration, values };
         point.set_velocity(&velocity.entries);
         point
     }
@@ -98,22 +88,17 @@ impl<'a, T: Number> Point<'a, T> {
         velocity(self.group(), &self.values)
     }
 
-    /// As dual numbers, whose velocity changes along component `j`.
-    fn along_velocity(&self, j: usize) -> Values<Dual<T>> {
+    /// As dual numbers, whose velocity changes along `η`.
+    fn along_velocity(&self, eta: &[T]) -> Values<Dual<T>> {
         let mut values = self.lifted();
-        let components = self.velocity().into_iter().enumerate();
-        let varied = components.map(|(at, value)| Dual { value, slope: if at == j { T::ONE } else { T::ZERO } });
-        values.extend(velocities(self.group(), &varied.collect::<Vec<_>>()));
+        let components = self.velocity().into_iter().zip(eta);
+        let varied: Vec<Dual<T>> = components.map(|(value, &slope)| Dual { value, slope }).collect();
+        values.extend(velocities(self.group(), &varied));
         values
     }
 
-    /// As dual numbers, whose advected parameters change by `ξ·w`.
-    fn carried_by(&self, xi: &[T]) -> Values<Dual<T>> {
-        self.carried_by_matrix(&element(self.group(), xi))
-    }
-
-    /// The same for any matrix.
-    fn carried_by_matrix(&self, element: &Value<T>) -> Values<Dual<T>> {
+    /// As dual numbers, whose advected parameters change as a matrix carries them.
+    fn carried_by(&self, element: &Value<T>) -> Values<Dual<T>> {
         let ([forwards, backwards], advected) = (exponentials(element), advected(self.declaration));
         let mut values = moved(self.group(), &advected, &self.lifted(), [&forwards, &backwards]);
         // The last coordinate of a point stays one.
@@ -135,13 +120,24 @@ impl<'a, T: Number> Point<'a, T> {
     }
 }
 
+impl<'a> Point<'a, Degree> {
+    /// Attitudes are Cayley transforms.
+    fn of_degrees(declaration: &'a Declaration) -> Self {
+        let mut number = Degree::stream();
+        let mut point = Self::new(declaration, &mut number);
+        let transforms = u64::try_from(degree::attitudes(declaration).count()).unwrap_or(u64::MAX / 2);
+        degree::set_attitudes(declaration, &mut point.values, 2 * transforms, &mut number);
+        point
+    }
+}
+
 impl Point<'_, Residue> {
     /// As power series in `h`, along `F = exp(h ξ̂)`.
-    fn moving(&self) -> Values<PowerSeries<Residue>> {
-        let mut values = self.in_numbers(PowerSeries::constant);
-        let step = element(self.group(), &velocity(self.group(), &values)).map(|entry| entry * PowerSeries::STEP);
+    fn moving(&self) -> Values<Series> {
+        let mut values = self.in_numbers(Series::constant);
+        let step = element(self.group(), &velocity(self.group(), &values)).map(|entry| entry * Series::STEP);
         values.extend(increments(self.group(), &exponential(self.group(), &step)));
-        values.insert(Name::Step, Value::scalar(PowerSeries::STEP));
+        values.insert(Name::Step, Value::scalar(Series::STEP));
         values
     }
 }
@@ -165,106 +161,65 @@ fn coadjoint<T: Number>(group: &Group, xi: &[T], momentum: &[T]) -> Vec<T> {
     components_of(group, &brackets).iter().map(|components| dot(components, momentum)).collect()
 }
 
-/// Whether all equations hold, at points at which they have values; `tree` is the declared `l`, where it is one.
+/// How sure it is that all equations hold; `tree` is the declared `l`, where it is one.
 pub(crate) fn equations_hold(
     declaration: &Declaration,
     tree: Option<&Rc<Tree>>,
     names: &BTreeMap<Name, SymbolId>,
     derived: &Continuous,
-) -> Result<(), Unconfirmed> {
+) -> Result<Sureness, Unconfirmed> {
     let terms = Terms::new(derived);
-    confirmed(POINTS, |seed| hold_at(&Point::new(declaration, Residue::stream(seed)), tree, names, &terms)).map(drop)
+    let of = (tree, names, &terms);
+    let functions = tree.map_or(0, degree::functions) + degree::calls(&terms.graph);
+    certified(
+        functions,
+        |same| hold_at(&Point::of_degrees(declaration), Degree::stream(), of, same),
+        |seed| {
+            let mut number = Residue::stream(seed);
+            hold_at(&Point::new(declaration, &mut number), number, of, &mut same)
+        },
+    )
 }
 
-fn hold_at(
-    point: &Point<Residue>,
-    tree: Option<&Rc<Tree>>,
-    names: &BTreeMap<Name, SymbolId>,
-    terms: &Terms,
+/// Along a direction of these numbers.
+fn hold_at<T: Number>(
+    point: &Point<T>,
+    mut number: impl FnMut() -> T,
+    (tree, names, terms): (Option<&Rc<Tree>>, &BTreeMap<Name, SymbolId>, &Terms),
+    same: &mut Same<T>,
 ) -> Result<(), Fault> {
-    let slope = |values: &Values<Dual<Residue>>| {
-        let value = match tree {
-            Some(tree) => Evaluation::new(values).of(tree).first(),
-            None => terms.values(&[terms.lagrangian], names, values).first().copied().unwrap_or(Dual::UNDEFINED),
-        };
-        value.slope
+    let slope = |values: &Values<Dual<T>>| match tree {
+        Some(tree) => Evaluation::new(values).of(tree).first().slope,
+        None => terms.values(&[terms.lagrangian], names, values).first().map_or(T::UNDEFINED, |l| l.slope),
     };
-    let (dimension, xi) = (point.group().dimension(), point.velocity());
+    let group = point.group();
+    let eta: Vec<T> = group.generators.iter().map(|_| number()).collect();
     let at = |outputs: &[NodeId]| terms.values(outputs, names, &point.values);
-    let (momentum, hessian, diamond, advection) =
-        (at(&terms.momentum), at(&terms.hessian), at(&terms.diamond), at(&terms.advection));
-    for j in 0..dimension {
-        let varied = point.along_velocity(j);
-        let momenta = terms.values(&terms.momentum, names, &varied);
-        let change = dot(&momenta, &velocity(point.group(), &varied)).slope - slope(&varied);
-        let column: Vec<Residue> = hessian.iter().skip(j).step_by(dimension).copied().collect();
-        same("velocity ∂h/∂μ", dot(&xi, &column), change)?;
+    let varied = point.along_velocity(&eta);
+    same("momentum ∂l/∂ξ", dot(&at(&terms.momentum), &eta), slope(&varied))?;
+    let change = terms.values(&terms.momentum, names, &varied);
+    for (row, momentum) in at(&terms.hessian).chunks(eta.len()).zip(change) {
+        same("inertia ∂²l/∂ξ²", dot(row, &eta), momentum.slope)?;
     }
-    for (k, &found) in diamond.iter().enumerate() {
-        let unit: Vec<Residue> = (0..dimension).map(|j| if j == k { Residue::ONE } else { Residue::ZERO }).collect();
-        same("diamond term ∂l/∂w ⋄ w", found, -slope(&point.carried_by(&unit)))?;
+    let carried = point.carried_by(&element(group, &eta));
+    same("diamond term ∂l/∂w ⋄ w", dot(&at(&terms.diamond), &eta), -slope(&carried))?;
+    // The diamond as a matrix, on the group; and where it is meant along all matrices: not of an attitude that is seen, of
+    // which `RᵀR = I` may have been used.
+    let is_general = degree::attitudes(point.declaration).next().is_none();
+    let any = by_blocks(group, |factor| parameter(FieldKind::Matrix(group.factor(factor).size), &mut number));
+    let along = |along: &Value<T>| {
+        let of_factor =
+            |(factor, entries): (usize, &Vec<NodeId>)| dot(&at(entries), &block(group, along, factor).entries);
+        terms.diamond_matrices.iter().enumerate().map(of_factor).fold(T::ZERO, |sum, one| sum + one)
+    };
+    same("diamond along all matrices", along(&element(group, &eta)), -slope(&carried))?;
+    if is_general {
+        same("diamond along all matrices", along(&any), -slope(&point.carried_by(&any)))?;
     }
-    diamond_matrix_holds(point, &diamond, &at, terms, &slope)?;
-    let carried = point.carried_by(&xi);
-    same("rate of the energy", energy_rate(point, &momentum, &diamond, slope(&carried)), Residue::ZERO)?;
+    let carried = point.carried_by(&element(group, &point.velocity()));
     let varied = terms.values(&terms.momentum, names, &carried);
-    let mut pairs = advection.iter().zip(&varied);
-    pairs.try_for_each(|(&found, varied)| same("change of the momentum with w", found, varied.slope))
-}
-
-/// The diamond as a matrix, paired with the generators, and where it is meant along all matrices.
-///
-/// Of an attitude that is seen `RᵀR = I` may have been used. So it is compared on the group, where that holds.
-fn diamond_matrix_holds(
-    point: &Point<Residue>,
-    diamond: &[Residue],
-    at: &dyn Fn(&[NodeId]) -> Vec<Residue>,
-    terms: &Terms,
-    slope: &dyn Fn(&Values<Dual<Residue>>) -> Residue,
-) -> Result<(), Fault> {
-    let (group, term) = (point.group(), "diamond along all matrices");
-    let kinds = (0..point.declaration.advected.len()).map(|index| point.declaration.advected_kind(index));
-    let is_general = kinds.into_iter().all(|kind| !matches!(kind, FieldKind::Configuration(_)));
-    for (factor, entries) in terms.diamond_matrices.iter().enumerate() {
-        let (own, found) = (group.factor(factor), at(entries));
-        let components = &diamond[group.component_of(factor)..];
-        for (generator, &expected) in own.generators.iter().zip(components) {
-            same(term, dot(&found, &Value::square(own.size, generator).entries), expected)?;
-        }
-        let row = group.row_of(factor);
-        for (place, &found) in found.iter().enumerate().filter(|_| is_general) {
-            let is_one = |i, j| (i, j) == (row + place / own.size, row + place % own.size);
-            let unit =
-                Value::new(group.size, group.size, |i, j| if is_one(i, j) { Residue::ONE } else { Residue::ZERO });
-            same(term, found, -slope(&point.carried_by_matrix(&unit)))?;
-        }
-    }
-    Ok(())
-}
-
-/// `⟨∂h/∂μ, μ̇⟩ + ⟨∂h/∂w, ẇ⟩` with `∂h/∂μ = ξ`, `∂h/∂w = −∂l/∂w` and `ẇ = −ξ·w`; `carried` is `⟨∂l/∂w, ξ·w⟩`.
-fn energy_rate(point: &Point<Residue>, momentum: &[Residue], diamond: &[Residue], carried: Residue) -> Residue {
-    let xi = point.velocity();
-    let rate = coadjoint(point.group(), &xi, momentum);
-    let rate: Vec<Residue> = rate.iter().zip(diamond).map(|(&x, &y)| x + y).collect();
-    dot(&xi, &rate) + carried
-}
-
-/// Whether the rate of the energy vanishes, by itself.
-#[cfg(test)]
-pub(crate) fn energy_is_kept(
-    declaration: &Declaration,
-    tree: &Rc<Tree>,
-    names: &BTreeMap<Name, SymbolId>,
-    derived: &Continuous,
-) -> bool {
-    let terms = Terms::new(derived);
-    (1..=u64::from(POINTS)).all(|seed| {
-        let point = Point::new(declaration, Residue::stream(seed));
-        let at = |outputs: &[NodeId]| terms.values(outputs, names, &point.values);
-        let carried = Evaluation::new(&point.carried_by(&point.velocity())).of(tree).first().slope;
-        energy_rate(&point, &at(&terms.momentum), &at(&terms.diamond), carried) == Residue::ZERO
-    })
+    let mut pairs = at(&terms.advection).into_iter().zip(varied);
+    pairs.try_for_each(|(found, varied)| same("change of the momentum with w", found, varied.slope))
 }
 
 /// `J`, `s` and `V` of the limit of a discrete Lagrangian, as operations.
@@ -286,33 +241,40 @@ impl LimitTerms {
     }
 
     /// `J` by rows, `s` and `V`.
-    fn at(&self, names: &BTreeMap<Name, SymbolId>, point: &Point<Residue>) -> (Vec<Residue>, Vec<Residue>, Residue) {
+    fn at<T: Number>(&self, names: &BTreeMap<Name, SymbolId>, point: &Point<T>) -> Vec<T> {
         let inputs = names.iter().filter_map(|(name, symbol)| Some((*symbol, point.values.get(name)?.clone())));
-        let inputs = inputs.collect();
-        let at = |outputs: &[NodeId]| evaluated(&self.graph, outputs, &inputs);
-        let potential = at(&[self.potential]).first().copied().unwrap_or(Residue::UNDEFINED);
-        (at(&self.inertia), at(&self.bias), potential)
+        let outputs = [self.inertia.as_slice(), &self.bias, &[self.potential]].concat();
+        evaluated(&self.graph, &outputs, &inputs.collect())
     }
 }
 
-/// Whether `J`, `s` and `V` of the limit are what the derivatives of `l` are at rest.
+/// How sure it is that `J`, `s` and `V` of the limit are what the derivatives of `l` are at rest.
 pub(crate) fn rest_holds(
     declaration: &Declaration,
     (names, continuous): (&BTreeMap<Name, SymbolId>, &Continuous),
     (symbols, derived): (&BTreeMap<Name, SymbolId>, &Derived),
-) -> Result<(), Unconfirmed> {
-    let (terms, limit) = (Terms::new(continuous), LimitTerms::new(derived));
-    let point = |seed| {
-        let mut point = Point::new(declaration, Residue::stream(seed));
-        point.set_velocity(&vec![Residue::ZERO; declaration.group.dimension()]);
-        let at = |outputs: &[NodeId]| terms.values(outputs, names, &point.values);
-        let (inertia, bias, potential) = limit.at(symbols, &point);
-        let pairs =
-            [(at(&terms.hessian), inertia), (at(&terms.momentum), bias), (at(&[terms.lagrangian]), vec![-potential])];
-        let mut pairs = pairs.iter().flat_map(|(here, there)| here.iter().zip(there));
-        pairs.try_for_each(|(&here, &there)| same("continuous limit", there, here))
-    };
-    confirmed(POINTS, point).map(drop)
+) -> Result<Sureness, Unconfirmed> {
+    let of = ((names, &Terms::new(continuous)), (symbols, &LimitTerms::new(derived)));
+    let functions = degree::calls(&of.0.1.graph) + degree::calls(&of.1.1.graph);
+    let degrees = |same: &mut Same<Degree>| hold_at_rest(Point::of_degrees(declaration), of, same);
+    let point = |seed| hold_at_rest(Point::new(declaration, Residue::stream(seed)), of, &mut same);
+    certified(functions, degrees, point)
+}
+
+/// Terms with the symbols of their names.
+type Named<'a, T> = (&'a BTreeMap<Name, SymbolId>, &'a T);
+
+fn hold_at_rest<T: Number>(
+    mut point: Point<T>,
+    ((names, terms), (symbols, limit)): (Named<Terms>, Named<LimitTerms>),
+    same: &mut Same<T>,
+) -> Result<(), Fault> {
+    point.set_velocity(&vec![T::ZERO; point.group().dimension()]);
+    let outputs = [terms.hessian.as_slice(), &terms.momentum, &[terms.lagrangian]].concat();
+    let mut here = terms.values(&outputs, names, &point.values);
+    here.last_mut().into_iter().for_each(|l| *l = -*l);
+    let mut pairs = here.into_iter().zip(limit.at(symbols, &point));
+    pairs.try_for_each(|(here, there)| same("continuous limit", there, here))
 }
 
 /// A continuous Lagrangian.
@@ -327,16 +289,16 @@ pub(crate) enum Lagrangian<'a> {
 ///
 /// The field has roots of all numbers, so this says nothing of where `l` has a value.
 pub(crate) fn has_limit(declaration: &Declaration, l: Lagrangian, discrete: &Rc<Tree>) -> Option<bool> {
-    let rest = |values: &Values<PowerSeries<Residue>>| {
+    let rest = |values: &Values<Series>| {
         let l = match l {
             Lagrangian::Declared(tree) => Evaluation::new(values).of(tree).first(),
             Lagrangian::Derived(names, derived) => {
                 let terms = Terms::new(derived);
                 let value = terms.values(&[terms.lagrangian], names, values);
-                value.first().copied().unwrap_or(PowerSeries::UNDEFINED)
+                value.first().copied().unwrap_or(Series::UNDEFINED)
             }
         };
-        Evaluation::new(values).of(discrete).first() - PowerSeries::STEP * l
+        Evaluation::new(values).of(discrete).first() - Series::STEP * l
     };
     let told = (1..=u64::from(POINTS)).filter_map(|seed| {
         let values = Point::new(declaration, Residue::stream(seed)).moving();
@@ -385,16 +347,16 @@ pub(crate) fn kinetic_hessian(
     names: &BTreeMap<Name, SymbolId>,
     derived: &Continuous,
 ) -> KineticPart {
-    let (terms, dimension) = (Terms::new(derived), declaration.group.dimension());
-    let samples = (1..=u64::try_from(SAMPLES).unwrap_or(1)).map(|seed| {
-        let mut point = Point::new(declaration, stream(seed));
-        point.set_velocity(&vec![0.0; dimension]);
-        let entries = terms.values(&terms.hessian, names, &point.values);
-        Value { rows: dimension, columns: dimension, entries }
-    });
+    let terms = Terms::new(derived);
+    let exact = hessian_at_rest(Point::new(declaration, Residue::stream(1)), names, &terms);
+    let samples = (1..=u64::try_from(SAMPLES).unwrap_or(1))
+        .map(|seed| hessian_at_rest(Point::new(declaration, stream(seed)), names, &terms));
     let is_used = |name: Name| names.get(&name).is_some_and(|&id| derived.hessian.contains(id));
-    let mut point = Point::new(declaration, Residue::stream(1));
-    point.set_velocity(&vec![Residue::ZERO; dimension]);
-    let exact = terms.values(&terms.hessian, names, &point.values);
     classified(declaration, &is_used, samples.collect(), &exact)
+}
+
+fn hessian_at_rest<T: Number>(mut point: Point<T>, names: &BTreeMap<Name, SymbolId>, terms: &Terms) -> Value<T> {
+    let dimension = point.group().dimension();
+    point.set_velocity(&vec![T::ZERO; dimension]);
+    Value { rows: dimension, columns: dimension, entries: terms.values(&terms.hessian, names, &point.values) }
 }

@@ -8,11 +8,12 @@ use std::collections::BTreeSet;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::rc::Rc;
 
+use super::Values;
 use super::number::{self, Number};
 use super::residue::mixed;
 use super::sample::Element;
 use super::value::Value;
-use crate::declared::{Kind, Tree};
+use crate::declared::{Declaration, FieldKind, Kind, Name, Tree};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Function, Rational};
 use crate::program::{Graph, Node};
@@ -174,6 +175,14 @@ impl Number for Degree {
         let number = u64::try_from(function.number()).unwrap_or(u64::MAX);
         Self { argument, ..value }.named(6, [self.name, number])
     }
+
+    fn is_defined(self) -> bool {
+        self.numerator < u64::MAX
+    }
+
+    fn is_zero(self) -> bool {
+        self.is_zero
+    }
 }
 
 /// The degrees of an element by Cayley transforms and of its coordinates; `Δ` is the product of all of their denominators
@@ -204,6 +213,26 @@ pub(super) fn element(group: &Group, attitudes: usize, number: &mut impl FnMut()
     });
     let coordinates = group.generators.iter().map(|_| number()).collect();
     (Element { matrix, inverse, coordinates }, degree)
+}
+
+/// The attitudes that are seen, as entries of Cayley transforms.
+pub(super) fn set_attitudes(
+    declaration: &Declaration,
+    values: &mut Values<Degree>,
+    degree: u64,
+    number: &mut impl FnMut() -> Degree,
+) {
+    for index in attitudes(declaration) {
+        let rows = declaration.advected_kind(index).shape().rows();
+        let entries = (0..rows * rows).map(|_| number().of_element(degree)).collect();
+        values.insert(Name::Advected(index), Value { rows, columns: rows, entries });
+    }
+}
+
+/// Which of what is advected are attitudes.
+pub(super) fn attitudes(declaration: &Declaration) -> impl Iterator<Item = usize> {
+    let all = 0..declaration.advected.len();
+    all.filter(|&index| matches!(declaration.advected_kind(index), FieldKind::Configuration(_)))
 }
 
 /// How many functions a tree calls.
@@ -244,26 +273,13 @@ impl Largest {
         self.numerator.saturating_add(pairs.saturating_mul(self.argument))
     }
 
-    pub(super) fn sureness(self, functions: u64) -> Option<Sureness> {
-        Sureness::of(self.coincidences(functions))
-    }
-}
-
-/// How many points are compared, and how sure that is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Sureness {
-    pub(super) points: u32,
-    /// What is wrong passes with a probability below `2⁻ⁿ`.
-    pub(super) exponent: u32,
-}
-
-impl Sureness {
-    /// `None` where no few points are enough.
-    fn of(coincidences: u64) -> Option<Self> {
+    /// How many points are compared, and the `n` of how sure that is; `None` where no few points are enough.
+    pub(super) fn points(self, functions: u64) -> Option<(u32, u32)> {
+        let coincidences = self.coincidences(functions);
         // Of the field's 2⁶¹ − 1 elements none is drawn more than 9/8 times as often as another, and at least half of the
         // points have values: 9/8 · 2/(2⁶¹ − 1) < 2⁻⁵⁹.
         let of_point = 59_u32.checked_sub(u64::BITS - coincidences.leading_zeros()).filter(|&bits| bits > 0)?;
         let points = ENOUGH.div_ceil(of_point);
-        (points <= MOST_POINTS).then_some(Self { points, exponent: points * of_point })
+        (points <= MOST_POINTS).then_some((points, points * of_point))
     }
 }

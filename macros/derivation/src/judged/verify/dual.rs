@@ -97,6 +97,14 @@ impl<T: Number> Number for Dual<T> {
         };
         Self { value, slope: derivative * self.slope }
     }
+
+    fn is_defined(self) -> bool {
+        self.value.is_defined() && self.slope.is_defined()
+    }
+
+    fn is_zero(self) -> bool {
+        self.value.is_zero() && self.slope.is_zero()
+    }
 }
 
 #[cfg(test)]

@@ -6,7 +6,6 @@ use std::rc::Rc;
 use super::number::Number;
 use super::value::Value;
 use crate::declared::{Kind, Name, Shape, Tree};
-use crate::mathematics::symbolic::Rational;
 
 /// The values of names, and of what a `let` has bound.
 pub(super) struct Evaluation<'a, T = f64> {
@@ -54,23 +53,14 @@ impl<'a, T: Number> Evaluation<'a, T> {
                 self.of(a).map(|x| x / divisor)
             }
             Kind::Transpose(a) => self.of(a).transpose(),
-            Kind::Trace(a) => {
-                let a = self.of(a);
-                Value::scalar((0..a.rows).map(|i| a.at(i, i)).fold(T::ZERO, |sum, entry| sum + entry))
-            }
+            Kind::Trace(a) => Value::scalar(self.of(a).trace()),
             Kind::Dot(a, b) => self.of(a).transpose().times(&self.of(b)),
             Kind::Cross(a, b) => Value::hat(&self.of(a)).times(&self.of(b)),
             Kind::CrossMatrix(a) => Value::hat(&self.of(a)),
             Kind::ComponentMultiply(a, b) => self.of(a).zip(&self.of(b), |x, y| x * y),
             Kind::Power(a, exponent) => Value::scalar(self.of(a).first().power(*exponent)),
             Kind::Apply(function, a) => Value::scalar(self.of(a).first().apply(*function)),
-            Kind::Vee(a) => {
-                let (a, half) = (self.of(a), T::of(Rational::new(1, 2)));
-                Value::new(3, 1, |row, _| {
-                    let (i, j) = ((row + 2) % 3, (row + 1) % 3);
-                    half * (a.at(i, j) - a.at(j, i))
-                })
-            }
+            Kind::Vee(a) => self.of(a).vee(),
             Kind::Hat(a, generators) => Value::combination(tree.shape.rows(), generators, &self.of(a).entries),
             Kind::Components(a, forms) => {
                 let element = self.of(a);

@@ -12,13 +12,16 @@ use super::evaluation::Evaluation;
 use super::number::Number;
 use super::sample::{Element, Sample, exponentials};
 use super::value::Value;
-use super::{Fault, components_of, degree, dot, evaluated, increments};
+use super::{Fault, Values, components_of, degree, dot, evaluated, evaluated_from, increments};
 use crate::declared::{Declaration, Name, Role, Tree};
 use crate::mathematics::derive::{Derived, Ends};
 use crate::mathematics::symbolic::{Rational, Stage, SymbolId};
 use crate::program::{
-    Given, Graph, Input, Kernel, Linearisation, Node, NodeId, Scalariser, components, square, with_lets,
+    Given, Graph, Handed, Input, Kernel, Linearisation, Node, NodeId, Scalariser, Stages, components, square, with_lets,
 };
+
+/// Values of symbols.
+type Inputs<T> = BTreeMap<SymbolId, Value<T>>;
 
 /// Compares what was found with what is expected, of a term.
 pub(super) type Same<'a, T> = dyn FnMut(&'static str, T, T) -> Result<(), Fault> + 'a;
@@ -97,6 +100,7 @@ pub(super) struct Identities<'a> {
     tree: &'a Rc<Tree>,
     pub(super) derived: &'a Derived,
     kernel: &'a Kernel,
+    pub(super) stages: Stages,
     terms: Terms,
     pub(super) derivatives: Option<Derivatives>,
 }
@@ -124,6 +128,24 @@ impl<T: Number> Point<'_, T> {
     }
 }
 
+/// What a step has been handed, and the arguments of a kick and of an iteration.
+struct Called<'a, T> {
+    graph: &'a Graph,
+    constants: BTreeMap<NodeId, T>,
+    terms: BTreeMap<NodeId, T>,
+    inputs: [Inputs<T>; 2],
+}
+
+impl<T: Number> Called<'_, T> {
+    fn kick(&self, outputs: &[NodeId]) -> Vec<T> {
+        evaluated_from(self.graph, outputs, &self.inputs[0], &self.constants)
+    }
+
+    fn iteration(&self, outputs: &[NodeId]) -> Vec<T> {
+        evaluated_from(self.graph, outputs, &self.inputs[1], &self.terms)
+    }
+}
+
 /// Along the direction of a point, what the declaration says.
 struct Declared<T> {
     momentum: T,
@@ -139,7 +161,7 @@ impl<'a> Identities<'a> {
     ) -> Self {
         let derivatives = derived.ends.as_ref().map(|ends| Derivatives::new(derived, ends));
         let (role, terms) = (declaration.role, Terms::new(derived, declaration.role));
-        Self { role, tree, derived, kernel, terms, derivatives }
+        Self { role, tree, derived, kernel, stages: kernel.stages(), terms, derivatives }
     }
 
     /// How many functions are called, in the declaration and in what was derived.
@@ -152,10 +174,10 @@ impl<'a> Identities<'a> {
     }
 
     /// Whether the momentum and its Jacobian have values where a step begins.
-    pub(super) fn are_smooth_at_identity<T: Number>(&self, sample: &Sample<T>, is_defined: fn(T) -> bool) -> bool {
+    pub(super) fn are_smooth_at_identity<T: Number>(&self, sample: &Sample<T>) -> bool {
         let inputs = sample.inputs_at(&Element::identity(&self.derived.group), &sample.values);
         let outputs = [self.terms.momentum.as_slice(), &self.terms.jacobian].concat();
-        evaluated(&self.terms.graph, &outputs, &inputs).into_iter().all(is_defined)
+        evaluated(&self.terms.graph, &outputs, &inputs).into_iter().all(T::is_defined)
     }
 
     /// Compares everything at one point, along a direction of these numbers.
@@ -182,7 +204,7 @@ impl<'a> Identities<'a> {
         self.gradients_hold(&point, &mut number, same)
     }
 
-    fn at<T: Number>(&self, values: &BTreeMap<Name, Value<T>>) -> T {
+    fn at<T: Number>(&self, values: &Values<T>) -> T {
         Evaluation::new(values).of(self.tree).first()
     }
 
@@ -267,29 +289,32 @@ impl<'a> Identities<'a> {
         let (dimension, group) = (momentum.len(), &self.derived.group);
         let Element { matrix, inverse, coordinates } = &sample.element;
         let inputs = self.inputs_of_stages(sample, [&point.target, &point.direction]);
-        let parts = [&kernel.kick_before, &kernel.jacobian, &kernel.kick_after, &kernel.moved].map(Vec::as_slice);
-        let change = kernel.kick_derivative.as_deref().unwrap_or_default();
-        let found = evaluated(&kernel.graph, &[parts.concat().as_slice(), change].concat(), &inputs);
-        let (before, found) = found.split_at(dimension);
-        let (jacobian, found) = found.split_at(dimension * dimension);
-        let (after, found) = found.split_at(dimension);
-        let (moved, change) = found.split_at(kernel.moved.len());
-        let a: Vec<T> = momentum.iter().zip(before).map(|(&momentum, &kick)| momentum + kick).collect();
+        let called = self.called(&inputs);
+        let (before, after) = (called.kick(&kernel.kick_before), called.kick(&kernel.kick_after));
+        let change = kernel.kick_derivative.as_ref().map_or_else(Vec::new, |change| called.kick(change));
+        let jacobian = called.iteration(&self.stages.system[dimension..]);
+        // Emitted with the residual alone, where there is one.
+        let moved = if kernel.jacobian_is_expensive() {
+            called.iteration(&kernel.moved)
+        } else {
+            evaluated(&kernel.graph, &kernel.moved, &inputs)
+        };
+        let a: Vec<T> = momentum.iter().zip(before).map(|(&momentum, kick)| momentum + kick).collect();
         // (h/2) (1 + |y|²)ⁿ (U − a), whose factor is positive.
         let square = dot(coordinates, coordinates);
         let half = sample.values.get(&Name::Step).map_or(T::UNDEFINED, Value::first) * T::of(Rational::new(1, 2));
         let factor = (0..kernel.denominators).fold(half, |factor, _| factor * (T::ONE + square));
-        let residual = evaluated(&kernel.graph, &kernel.residual, &self.displaced(point));
+        let residual = self.called(&self.displaced(point)).iteration(&self.stages.system[..dimension]);
         for (k, found) in residual.iter().enumerate() {
             same("Newton residual", found.value, factor * (a[k] - point.target[k]))?;
         }
-        point.are_slopes("Newton Jacobian of the step", jacobian, &residual, same)?;
+        point.are_slopes("Newton Jacobian of the step", &jacobian, &residual, same)?;
         // μ⁺ = Ad*_F a + k₁⁺, and what the gradient gives beside the residual is k₁⁺ before Ad*_F.
         let turned = components_of(group, &[matrix.times(&point.element).times(inverse)]).concat();
-        let after = dot(after, &point.direction);
+        let after = dot(&after, &point.direction);
         same("transported momentum", dot(&a, &turned) + after, declared.left)?;
         if !moved.is_empty() {
-            same("transported momentum", dot(moved, &turned), after)?;
+            same("transported momentum", dot(&moved, &turned), after)?;
         }
         if !change.is_empty() {
             let [forwards, backwards] = &point.exponentials;
@@ -302,12 +327,27 @@ impl<'a> Identities<'a> {
         Ok(())
     }
 
+    /// The stages as a stepper calls them: each has its own arguments, and of all else what those before it hand on.
+    fn called<T: Number>(&self, inputs: &Inputs<T>) -> Called<'_, T> {
+        let (graph, Stages { constants, terms, .. }) = (&self.kernel.graph, &self.stages);
+        let of = |is_meant: fn(Stage) -> bool| -> Inputs<T> {
+            let own = inputs.iter().filter(|(id, _)| is_meant(self.derived.symbols.get(**id).stage));
+            own.map(|(id, value)| (*id, value.clone())).collect()
+        };
+        let numbers = |handed: &Handed, inputs: Inputs<T>, given: &BTreeMap<NodeId, T>| -> BTreeMap<NodeId, T> {
+            let nodes: Vec<NodeId> = handed.keys().copied().collect();
+            let numbers = evaluated_from(graph, &nodes, &inputs, given);
+            handed.iter().map(|(&id, &place)| (id, numbers[place])).collect()
+        };
+        let constants = numbers(constants, of(|stage| stage == Stage::Construction), &BTreeMap::new());
+        let mut terms = numbers(terms, of(|stage| stage == Stage::Step), &constants);
+        terms.extend(&constants);
+        let inputs = [of(|stage| stage > Stage::Construction), of(|stage| stage == Stage::Iteration)];
+        Called { graph, constants, terms, inputs }
+    }
+
     /// With what is carried along, a covector for that of the solution and a velocity.
-    fn inputs_of_stages<T: Number>(
-        &self,
-        sample: &Sample<T>,
-        [target, along]: [&[T]; 2],
-    ) -> BTreeMap<SymbolId, Value<T>> {
+    fn inputs_of_stages<T: Number>(&self, sample: &Sample<T>, [target, along]: [&[T]; 2]) -> Inputs<T> {
         let (mut inputs, directions) = (sample.inputs(), &self.derived.directions);
         let carried = sample.moved([&sample.element.inverse, &sample.element.matrix]);
         for ((name, ..), &next) in sample.advected.iter().zip(&directions.next) {
@@ -318,7 +358,7 @@ impl<'a> Identities<'a> {
     }
 
     /// In the coordinates of the Newton system: `y + ε v` or `exp(ε v̂) F`.
-    fn displaced<T: Number>(&self, point: &Point<T>) -> BTreeMap<SymbolId, Value<Dual<T>>> {
+    fn displaced<T: Number>(&self, point: &Point<T>) -> Inputs<Dual<T>> {
         let (dual, directions) = (&point.dual, &self.derived.directions);
         let mut inputs = if self.kernel.in_increment {
             dual.inputs_at(&point.turned, &dual.values)

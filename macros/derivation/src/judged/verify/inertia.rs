@@ -1,17 +1,17 @@
-//! The kinetic part at the identity, at sample values of the parameters: stationary, smooth, and not singular.
+//! The kinetic part at the identity: stationary, smooth and not singular, in the finite field, and its sign at sample values
+//! of the parameters.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
+use super::number::Number;
 use super::residue::Residue;
 use super::{Element, SAMPLES, Sample, Value, evaluated, linear};
 use crate::declared::lower::Lowered;
 use crate::declared::{Declaration, FieldKind, Name, Tree};
 use crate::mathematics::derive::Derived;
+use crate::mathematics::symbolic::Rational;
 use crate::program::{Graph, NodeId, components, square};
-
-/// What rounding leaves of a zero, relative to the entries of `J`.
-const ZERO: f64 = 1e-12;
 
 /// What sample values of the parameters show of `K(F)` in `l_d = K(F)/h + …`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -43,54 +43,45 @@ pub(crate) fn kinetic_part(
     let (mut graph, none) = (Graph::default(), BTreeMap::new());
     let slope = components(&mut graph, derived, &none, &derived.limit.slope);
     let inertia = square(&mut graph, derived, &none, &derived.limit.inertia);
-    let is_stationary = |samples: &[Sample]| {
-        samples.iter().all(|sample| {
-            let size = largest(&at_identity(sample, &graph, &inertia));
-            at_identity(sample, &graph, &slope).iter().all(|slope| slope.abs() <= ZERO * size || !slope.is_finite())
-        })
+    let at = Element::identity(&declaration.group);
+    let sample = Sample::with_numbers(declaration, lowered, derived, at, Residue::stream(1));
+    let is_stationary = |sample: &Sample<Residue>| {
+        at_identity(sample, &graph, &slope).into_iter().all(|slope| slope.is_zero() || !slope.is_defined())
     };
-    if !is_stationary(&samples) {
+    if !is_stationary(&sample) {
         let fields = (0..declaration.fields.len()).filter(|&at| is_square(declaration, at)).collect::<Vec<_>>();
-        let with_symmetric = |fields: &[usize]| {
-            let symmetric = samples.iter().map(|sample| sample.with_symmetric(fields));
-            is_stationary(&symmetric.collect::<Vec<_>>())
-        };
+        let with_symmetric = |fields: &[usize]| is_stationary(&sample.with_symmetric(fields));
         let without = |at: usize| fields.iter().copied().filter(|&other| other != at).collect::<Vec<_>>();
         let needed = fields.iter().copied().filter(|&at| with_symmetric(&fields) && !with_symmetric(&without(at)));
         return KineticPart::NotStationary(needed.collect());
     }
     let dimension = derived.group.dimension();
+    let exact = Value { rows: dimension, columns: dimension, entries: at_identity(&sample, &graph, &inertia) };
     let inertias = samples.iter().map(|sample| at_identity(sample, &graph, &inertia));
     let inertias = inertias.map(|entries| Value { rows: dimension, columns: dimension, entries });
     let is_used = |name: Name| lowered.names.get(&name).is_some_and(|&id| derived.limit.inertia.contains(id));
-    let at = Element::identity(&declaration.group);
-    let sample = Sample::with_numbers(declaration, lowered, derived, at, Residue::stream(1));
-    let exact = evaluated(&graph, &inertia, &sample.inputs());
     classified(declaration, &is_used, inertias.collect(), &exact)
 }
 
-/// What second derivatives at sample values show, with those in the field; `is_used` says which names they depend on.
+/// What the second derivative in the field shows, and what its sign is at sample values; `is_used` says which names it
+/// depends on.
 pub(super) fn classified(
     declaration: &Declaration,
     is_used: &dyn Fn(Name) -> bool,
-    inertias: Vec<Value>,
-    exact: &[Residue],
+    samples: Vec<Value>,
+    exact: &Value<Residue>,
 ) -> KineticPart {
-    let dimension = declaration.group.dimension();
-    let finite = inertias.into_iter().filter(|inertia| inertia.entries.iter().all(|entry| entry.is_finite()));
-    let inertias: Vec<Value> = finite.collect();
-    if inertias.is_empty() {
+    let is_finite = |inertia: &Value| inertia.entries.iter().all(|entry| entry.is_finite());
+    let samples: Vec<Value> = samples.into_iter().filter(is_finite).collect();
+    if samples.is_empty() || exact.entries.iter().any(|entry| !entry.is_defined()) {
         KineticPart::NotSmooth
-    } else if has_a_sign(declaration, is_used) && inertias.iter().all(|j| is_positive(&j.map(|x| -x))) {
+    } else if has_a_sign(declaration, is_used) && samples.iter().all(|j| is_positive(&j.map(|x| -x))) {
         KineticPart::Negative
-    } else if linear::is_regular(exact, dimension) {
+    } else if linear::is_regular(&exact.entries, exact.rows) {
         KineticPart::Regular
     } else {
-        let is_idle = |k: usize, inertia: &Value| {
-            let zero = ZERO * largest(&inertia.entries);
-            (0..dimension).all(|j| inertia.at(k, j).abs() <= zero && inertia.at(j, k).abs() <= zero)
-        };
-        KineticPart::Singular((0..dimension).filter(|&k| inertias.iter().all(|inertia| is_idle(k, inertia))).collect())
+        let is_idle = |&k: &usize| (0..exact.rows).all(|j| exact.at(k, j).is_zero() && exact.at(j, k).is_zero());
+        KineticPart::Singular((0..exact.rows).filter(is_idle).collect())
     }
 }
 
@@ -119,11 +110,7 @@ fn is_positive(matrix: &Value) -> bool {
     })
 }
 
-fn largest(entries: &[f64]) -> f64 {
-    entries.iter().fold(0.0, |largest, entry| entry.abs().max(largest))
-}
-
-fn at_identity(sample: &Sample, graph: &Graph, outputs: &[NodeId]) -> Vec<f64> {
+fn at_identity<T: Number>(sample: &Sample<T>, graph: &Graph, outputs: &[NodeId]) -> Vec<T> {
     evaluated(graph, outputs, &sample.inputs_at(&Element::identity(&sample.derived.group), &sample.values))
 }
 
@@ -132,13 +119,13 @@ fn is_square(declaration: &Declaration, field: usize) -> bool {
     matches!(declaration.fields.get(field), Some(field) if matches!(field.kind, FieldKind::Matrix(_)))
 }
 
-impl Sample<'_> {
+impl Sample<'_, Residue> {
     /// The same with some fields replaced by their symmetric parts.
     fn with_symmetric(&self, fields: &[usize]) -> Self {
-        let mut sample = self.clone();
+        let (mut sample, half) = (self.clone(), Residue::of(Rational::new(1, 2)));
         for &field in fields {
             if let Some(value) = sample.values.get_mut(&Name::Field(field)) {
-                *value = value.zip(&value.transpose(), |x, y| 0.5 * (x + y));
+                *value = value.zip(&value.transpose(), |x, y| half * (x + y));
             }
         }
         sample

@@ -38,8 +38,8 @@
 //!
 //! A group whose generators' multiples have no Cayley transforms in it has points that are power series instead,
 //! `exp(t v̂_1) ⋯ exp(t v̂_n)`. There all is compared to the order to which series are known, without rounding, and without a
-//! bound; so are the continuous equations and the limit, at a few points. What only real numbers have stays with them:
-//! whether there is a value at all, and the sign of the inertia.
+//! bound; so is that a discrete Lagrangian has its continuous one for a limit, at a few points. What only real numbers have
+//! stays with them: whether there is a value at all, and the sign of the inertia.
 
 mod cayley;
 mod constraint;
@@ -74,20 +74,20 @@ use crate::program::{Graph, Input, Kernel, Node, NodeId};
 pub(super) use cayley::{is_cayley_coordinates, nilpotency};
 pub(crate) use constraint::Held;
 pub(super) use constraint::{Row, constraint};
-#[cfg(test)]
-pub(crate) use continuous::energy_is_kept;
 pub(crate) use continuous::{Lagrangian, equations_hold, has_limit, kinetic_hessian, rest_holds, right_symmetries};
 use evaluation::Evaluation;
 use identities::Identities;
 pub(super) use inertia::{KineticPart, kinetic_part};
 use number::Number;
-pub(super) use orders::{TermMistake, not_smooth_at_identity, term_mistakes};
+pub(super) use orders::{TermMistake, not_smooth_at_identity, term_mistakes, without_value};
 use sample::{Element, Sample};
 use value::Value;
 
-/// So many points are compared, of so many that are tried.
+/// With real numbers so many points are looked at, of so many that are tried.
 const SAMPLES: usize = 3;
 const DRAWS: u64 = 60;
+
+type Values<T> = BTreeMap<Name, Value<T>>;
 
 /// What is wrong with a derivation, or with the expression that it is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,6 +129,16 @@ pub(crate) enum Sureness {
     Series,
 }
 
+impl Sureness {
+    /// Of both, the lesser.
+    pub(super) fn and(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Certified(one), Self::Certified(other)) => Self::Certified(one.min(other)),
+            (Self::Certified(_), lesser) | (lesser, _) => lesser,
+        }
+    }
+}
+
 /// Checks all that was derived. The error is the first term that disagrees.
 pub(super) fn verify(
     declaration: &Declaration,
@@ -136,25 +146,35 @@ pub(super) fn verify(
     lowered: &Lowered,
     (derived, kernel): (&Derived, &Kernel),
 ) -> Result<Verified, Unconfirmed> {
-    let draws: Vec<Sample> = Sample::draws(declaration, lowered, derived, tree).take(SAMPLES).collect();
-    if draws.is_empty() {
+    // Whether it has a value is asked of real numbers: the field has roots of all.
+    if Sample::draws(declaration, lowered, derived, tree).next().is_none() {
         return Err(Unconfirmed::NoValue);
     }
-    let check =
-        exact::Check { declaration, lowered, identities: Identities::new(declaration, tree, (derived, kernel)) };
-    let (sureness, points) = check.confirmed(tree)?;
+    let identities = Identities::new(declaration, tree, (derived, kernel));
+    let check = exact::Check { declaration, lowered, tree, identities };
+    let (sureness, reversed) = check.confirmed()?;
     if !check.is_smooth() {
         return Err(Unconfirmed::NotSmooth);
     }
     let self_adjointness = match declaration.role {
-        Role::Force => Ok(SelfAdjointness::No),
-        _ => reversal::self_adjointness(&draws, &points, tree, derived.adjoint_defect.is_zero()),
+        Role::Force => SelfAdjointness::No,
+        _ => reversal::self_adjointness(reversed, derived.adjoint_defect.is_zero()).map_err(Unconfirmed::Disagrees)?,
     };
-    Ok(Verified { self_adjointness: self_adjointness.map_err(Unconfirmed::Disagrees)?, sureness })
+    Ok(Verified { self_adjointness, sureness })
 }
 
 /// The values of operations.
 fn evaluated<T: Number>(graph: &Graph, outputs: &[NodeId], inputs: &BTreeMap<SymbolId, Value<T>>) -> Vec<T> {
+    evaluated_from(graph, outputs, inputs, &BTreeMap::new())
+}
+
+/// The same where some are known.
+fn evaluated_from<T: Number>(
+    graph: &Graph,
+    outputs: &[NodeId],
+    inputs: &BTreeMap<SymbolId, Value<T>>,
+    given: &BTreeMap<NodeId, T>,
+) -> Vec<T> {
     let order = graph.reachable(outputs);
     let mut known = vec![T::UNDEFINED; order.last().map_or(0, |last| last.0 + 1)];
     let input =
@@ -162,6 +182,7 @@ fn evaluated<T: Number>(graph: &Graph, outputs: &[NodeId], inputs: &BTreeMap<Sym
     for id in order {
         let at = |operand: NodeId| known[operand.0];
         known[id.0] = match graph.node(id) {
+            _ if given.contains_key(&id) => given[&id],
             Node::Constant(value) => T::of(value),
             Node::Input(entry) => input(entry),
             Node::Negate(a) => -at(a),
@@ -205,12 +226,6 @@ fn stream(seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// `exp(s E_k)`, where `s` is small.
-fn turn(group: &Group, k: usize, s: f64) -> Value {
-    let entries = group.generators.get(k).map_or(&[][..], Vec::as_slice);
-    exponential(group, &Value::square(group.size, entries).map(|entry: f64| s * entry))
-}
-
 /// The exponential, by its series, of an element of the algebra that is small or a power of `h`.
 fn exponential<T: Number>(group: &Group, exponent: &Value<T>) -> Value<T> {
     by_blocks(group, |factor| {
@@ -220,13 +235,17 @@ fn exponential<T: Number>(group: &Group, exponent: &Value<T>) -> Value<T> {
         for order in 1..20 {
             let factor = T::of(Rational::new(1, order));
             power = power.times(exponent).map(|x| x * factor);
-            if power.entries.iter().all(|entry| entry.is_lost()) {
-                break;
-            }
             sum = sum.plus(&power);
         }
         sum
     })
+}
+
+/// `cay(±x) = (I ∓ x)⁻¹ (I ± x) = I + 2 (x² ± x)/(1 − c)` of `x³ = c x`.
+fn cayley<T: Number>(x: &Value<T>, c: T) -> [Value<T>; 2] {
+    let (square, share) = (x.times(x), (T::ONE + T::ONE) / (T::ONE - c));
+    let of = |x: &Value<T>| Value::identity(x.rows).plus(&square.plus(x).map(|entry| entry * share));
+    [of(x), of(&x.map(|entry| -entry))]
 }
 
 /// The block of a matrix that belongs to a factor of the group; of a group that isn't a product all of it.
@@ -242,6 +261,14 @@ fn increments<T: Number>(group: &Group, all: &Value<T>) -> Vec<(Name, Value<T>)>
         if group.factor(factor).is_added { translation(&own) } else { own }
     };
     (0..group.factors().len()).map(|factor| (Name::Increment(factor), value(factor))).collect()
+}
+
+/// All fields, and what is advected.
+fn parameters<T: Number>(declaration: &Declaration, number: &mut impl FnMut() -> T) -> Values<T> {
+    let fields = declaration.fields.iter().enumerate().map(|(index, field)| (Name::Field(index), field.kind));
+    let advected =
+        (0..declaration.advected.len()).map(|index| (Name::Advected(index), declaration.advected_kind(index)));
+    fields.chain(advected).map(|(name, kind)| (name, parameter(kind, number))).collect()
 }
 
 /// Displacements of all factors, at the beginning of a step and at its end.
@@ -269,7 +296,7 @@ fn translation<T: Number>(matrix: &Value<T>) -> Value<T> {
 }
 
 /// A matrix of blocks, one for each factor.
-fn by_blocks<T: Number>(group: &Group, of_factor: impl Fn(usize) -> Value<T>) -> Value<T> {
+fn by_blocks<T: Number>(group: &Group, mut of_factor: impl FnMut(usize) -> Value<T>) -> Value<T> {
     let blocks: Vec<(usize, Value<T>)> =
         (0..group.factors().len()).map(|factor| (group.row_of(factor), of_factor(factor))).collect();
     Value::new(group.size, group.size, |row, column| {
@@ -291,11 +318,11 @@ fn parameter<T: Number>(kind: FieldKind, number: &mut impl FnMut() -> T) -> Valu
         FieldKind::Point(_) => Value::new(rows, 1, |row, _| if row + 1 < rows { any.at(row, 0) } else { T::ONE }),
         FieldKind::SymmetricInertia => any.times(&any.transpose()),
         FieldKind::DiagonalInertia => Value::diagonal(rows, |row| T::ONE + any.at(row, row)),
-        // A Cayley transform is a rotation, whatever the skew matrix.
+        // The Cayley transform of a skew matrix of three rows is a rotation.
         FieldKind::Configuration(_) => {
             let skew = any.zip(&any.transpose(), |x, y| x - y);
-            let identity = Value::identity(rows);
-            identity.zip(&skew, |x, y| x - y).inverse().times(&identity.plus(&skew))
+            let [rotation, _] = cayley(&skew, skew.times(&skew).trace() * T::of(Rational::new(1, 2)));
+            rotation
         }
         _ => any,
     }

@@ -1,4 +1,4 @@
-//! What a declared expression can be evaluated in: floating-point numbers, and a finite field.
+//! What a declared expression can be evaluated in: floating-point numbers, a finite field, and what is made of these.
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -20,10 +20,10 @@ pub(super) trait Number:
 
     fn apply(self, function: Function) -> Self;
 
-    /// Whether nothing is seen of it beside a one.
-    fn is_lost(self) -> bool {
-        false
-    }
+    fn is_defined(self) -> bool;
+
+    /// Whether it is zero, or all that is known of it is.
+    fn is_zero(self) -> bool;
 }
 
 impl Number for f64 {
@@ -43,8 +43,12 @@ impl Number for f64 {
         function.apply(self)
     }
 
-    fn is_lost(self) -> bool {
-        self.abs() < 1e-18
+    fn is_defined(self) -> bool {
+        self.is_finite()
+    }
+
+    fn is_zero(self) -> bool {
+        self == 0.0
     }
 }
 

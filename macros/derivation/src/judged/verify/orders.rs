@@ -3,17 +3,17 @@
 //! Of a Lagrangian only differences count: what is the same for all `F` and `w` changes no equation. A potential is what
 //! depends on `w` where `F = I`, and goes like `h`, as does the work of a force.
 
-use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use super::evaluation::Evaluation;
 use super::number::Number as _;
+use super::residue::Residue;
+use super::sample::Element;
 use super::series::Series;
 use super::value::Value;
-use super::{displacements, exponential, increments, parameter, stream, velocities};
+use super::{DRAWS, displacements, exponential, increments, parameters, stream, velocities};
 use crate::declared::{Declaration, Kind, Name, Role, Shape, Tree};
-use crate::mathematics::group::Group;
-use crate::mathematics::symbolic::{Function, Rational};
+use crate::mathematics::symbolic::Function;
 
 /// A sum may be taken apart as often; what is shared by `let`s is written down more often than a person would.
 const MOST_SPLITS: usize = 200;
@@ -85,7 +85,31 @@ pub(crate) fn not_smooth_at_identity(declaration: &Declaration, tree: &Rc<Tree>)
     singular(tree, &Points::new(declaration).at_rest)
 }
 
-type Values = BTreeMap<Name, Value<Series>>;
+/// The first part that has no value for any of some parameters, if there is one.
+pub(crate) fn without_value(declaration: &Declaration, tree: &Rc<Tree>) -> Option<Rc<Tree>> {
+    let group = &declaration.group;
+    let points = (1..=DRAWS).map(|seed| {
+        let mut number = stream(seed);
+        let mut values = parameters(declaration, &mut number);
+        let element = Element::by_exponentials(group, || 0.6 * number() - 0.3);
+        values.insert(Name::Step, Value::scalar(0.1));
+        values.extend(increments(group, &element.matrix));
+        values.extend(displacements(group, &mut number));
+        values
+    });
+    let points: Vec<super::Values<f64>> = points.collect();
+    let mut at_points: Vec<Evaluation> = points.iter().map(Evaluation::new).collect();
+    let mut found = None;
+    visit(tree, &mut |part| {
+        let mut has_value = at_points.iter_mut().map(|at| at.of(part).entries.iter().all(|entry| entry.is_defined()));
+        if found.is_none() && !has_value.any(|has_value| has_value) {
+            found = Some(part.clone());
+        }
+    });
+    found
+}
+
+type Values = super::Values<Series>;
 
 /// Numbers for all names, with `h` as it is.
 struct Points {
@@ -101,57 +125,38 @@ struct Points {
 
 impl Points {
     fn new(declaration: &Declaration) -> Self {
-        let group = &declaration.group;
-        let numbers = |seed: u64| {
-            let mut number = stream(seed);
-            move || Series::constant(number())
-        };
-        let mut number = numbers(1);
+        let (group, mut number) = (&declaration.group, Residue::stream(1));
+        let turned = [(); 2].map(|()| {
+            let element = Element::by_cayley(group, &mut number);
+            // Of a group without such points any matrix will do.
+            element.unwrap_or_else(|| Element::by_exponentials(group, &mut number)).matrix.over(Series::constant)
+        });
+        let mut number = || Series::constant(number());
+        let speeds: Vec<Series> = group.generators.iter().map(|_| number()).collect();
+        let velocity = Value::combination(group.size, &group.generators, &speeds);
         let mut at_rest = Values::from([(Name::Step, Value::scalar(Series::STEP))]);
         at_rest.extend(increments(group, &Value::identity(group.size)));
-        for (index, field) in declaration.fields.iter().enumerate() {
-            at_rest.insert(Name::Field(index), parameter(field.kind, &mut number));
-        }
-        let speeds: Vec<Series> = group.generators.iter().map(|_| number() + Series::constant(0.5)).collect();
-        let velocity = Value::combination(group.size, &group.generators, &speeds);
         at_rest.extend(velocities(group, &speeds));
         at_rest.extend(displacements(group, &mut number));
-        let with_advected = |values: &Values, seed: u64| {
-            let (mut values, mut number) = (values.clone(), numbers(seed));
-            for index in 0..declaration.advected.len() {
-                values.insert(Name::Advected(index), parameter(declaration.advected_kind(index), &mut number));
-            }
-            values
-        };
-        let at_rest = with_advected(&at_rest, 2);
-        let is_force = declaration.role == Role::Force;
-        let mut elsewhere = if is_force { at_rest.clone() } else { with_advected(&at_rest, 3) };
+        at_rest.extend(parameters(declaration, &mut number));
+        let mut elsewhere = at_rest.clone();
+        let others = parameters(declaration, &mut number).into_iter();
+        let is_moved = |name: Name| declaration.role != Role::Force && matches!(name, Name::Advected(_));
+        elsewhere.extend(others.filter(|(name, _)| is_moved(*name)));
         for (name, value) in &mut elsewhere {
             if matches!(name, Name::DisplacementBefore(_) | Name::DisplacementAfter(_)) {
                 *value = value.plus(value);
             }
         }
-        let with_increment = |increment: Value<Series>| {
+        let with_increment = |increment: &Value<Series>| {
             let mut values = at_rest.clone();
-            values.extend(increments(group, &increment));
+            values.extend(increments(group, increment));
             values
         };
-        // At h = 0.3 and at h = 0.2.
-        let turn = |h: f64| exponential(group, &velocity.map(|entry| entry * Series::constant(h)));
-        Self {
-            turned: with_increment(turn(0.3)),
-            turned_further: with_increment(turn(0.2)),
-            moving: with_increment(motion(group, &velocity, Rational::ONE)),
-            elsewhere,
-            at_rest: at_rest.clone(),
-        }
+        let moving = exponential(group, &velocity.map(|entry| entry * Series::STEP));
+        let [turned, turned_further] = turned.each_ref().map(with_increment);
+        Self { turned, turned_further, moving: with_increment(&moving), elsewhere, at_rest }
     }
-}
-
-/// `exp(± h ξ̂)`.
-fn motion(group: &Group, velocity: &Value<Series>, sign: Rational) -> Value<Series> {
-    let step = Series::STEP * Series::of(sign);
-    exponential(group, &velocity.map(|entry| entry * step))
 }
 
 /// How a term goes.
@@ -201,7 +206,7 @@ impl Search<'_> {
     /// What keeps the limit `h → 0` from existing, if anything does. A first derivative of the kinetic part isn't meant.
     fn too_large(&mut self, tree: &Rc<Tree>) -> Option<TermMistake> {
         let Behaviour { along, at_rest, fixed, .. } = self.behaviour(tree);
-        if ![along, at_rest, fixed].iter().all(Series::is_defined) {
+        if ![along, at_rest, fixed].iter().all(|series| series.is_defined()) {
             return None;
         }
         let is_low = |series: Series| series.order().filter(|&order| order < 1);
@@ -241,7 +246,7 @@ impl Search<'_> {
             return;
         }
         let Behaviour { along, at_rest, value, fixed } = self.behaviour(tree);
-        if ![along, at_rest, value].iter().all(Series::is_defined) {
+        if ![along, at_rest, value].iter().all(|series| series.is_defined()) {
             return;
         }
         let names = Names::of(tree);

@@ -1,7 +1,8 @@
 //! Whole numbers modulo the prime `2⁶¹ − 1`: arithmetic without rounding, in which rational functions that differ have
 //! different values at nearly all points.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::number::{self, Number};
@@ -13,6 +14,8 @@ thread_local! {
     /// Which stand-ins functions have: others with each stream, so that functions of numbers that are the same at all
     /// points, as `2.0.sqrt()`, have another value at each of them.
     static STAND_INS: Cell<u64> = const { Cell::new(0) };
+    /// Arguments of which `c_0` and `c_1` are known.
+    static KNOWN: RefCell<BTreeMap<u64, [Residue; 2]>> = const { RefCell::new(BTreeMap::new()) };
 }
 
 /// Numerators and denominators of what is recognised as a fraction.
@@ -41,14 +44,16 @@ impl Residue {
     pub(super) fn stream(seed: u64) -> impl FnMut() -> Self {
         let mut state = mixed(seed);
         STAND_INS.set(state);
+        KNOWN.with_borrow_mut(BTreeMap::clear);
         move || {
             state = mixed(state);
             Self(Some(state % PRIME))
         }
     }
 
-    pub(super) fn is_defined(self) -> bool {
-        self.0.is_some()
+    /// With these for `c_0` and `c_1`, until the next stream.
+    pub(super) fn remember(self, values: [Self; 2]) {
+        KNOWN.with_borrow_mut(|known| self.0.map(|argument| known.insert(argument, values)));
     }
 
     /// The fraction of small whole numbers that it is, if it is one.
@@ -158,6 +163,11 @@ impl Number for Residue {
         {
             return Self::of(value);
         }
+        if let Function::Stumpff(k @ ..2) = function
+            && let Some(known) = KNOWN.with_borrow(|known| known.get(&argument).copied())
+        {
+            return known[usize::from(k)];
+        }
         if let Some(value) = number::of_those_below(function, self) {
             return value;
         }
@@ -170,6 +180,14 @@ impl Number for Residue {
             Function::Exp => value.reciprocal(),
             _ => value,
         }
+    }
+
+    fn is_defined(self) -> bool {
+        self.0.is_some()
+    }
+
+    fn is_zero(self) -> bool {
+        self == Self::ZERO
     }
 }
 

@@ -2,65 +2,61 @@
 
 use std::rc::Rc;
 
-use super::degree;
-use super::exact::Exact;
 use super::number::Number;
 use super::residue::Residue;
 use super::sample::Sample;
+use super::{block, dot, increments};
 use crate::declared::{Name, Tree};
 use crate::mathematics::derive::SelfAdjointness;
-use crate::mathematics::symbolic::Variance;
+use crate::mathematics::symbolic::{Function, Rational, Variance};
 
-/// What rounding leaves of `l_d(F, w, h) + l_d(F⁻¹, F⁻¹·w, −h)`, relative to the size of its terms.
-const TOLERANCE: f64 = 1e-11;
-
-/// Whether the Lagrangian is self-adjoint for all values of its parameters; an error if the symbolic form, which may have
-/// found it, is wrong. `points` are those of the field, where they decide.
-pub(super) fn self_adjointness(
-    draws: &[Sample],
-    points: &[Sample<Residue>],
-    tree: &Rc<Tree>,
-    is_symbolic: bool,
-) -> Result<SelfAdjointness, &'static str> {
-    // A root may have no value at the negative step.
-    let Some(is_close) = are_all(draws, tree, f64::is_finite, is_close) else { return Ok(SelfAdjointness::Unknown) };
-    let exact = are_all(points, tree, Exact::is_defined, Exact::is);
-    // A function may have relations that a random one hasn't.
-    let exact = exact.filter(|&is_equal| is_equal || degree::functions(tree) == 0);
-    match (exact.unwrap_or(is_close), is_symbolic) {
-        (true, true) => Ok(SelfAdjointness::Symbolic),
-        (true, false) if exact.is_some() => Ok(SelfAdjointness::Exact),
-        (true, false) => Ok(SelfAdjointness::Numeric),
-        (false, true) => Err("adjoint"),
-        (false, false) => {
-            let is_found = match exact {
-                Some(_) => are_all(&with_points(points), tree, Exact::is_defined, Exact::is),
-                None => are_all(&with_points(draws), tree, f64::is_finite, self::is_close),
-            };
-            let is_found = is_found == Some(true);
-            Ok(if is_found { SelfAdjointness::ForPoints } else { SelfAdjointness::No })
-        }
+/// What all points say, as [`at`] and [`in_the_field`] have it; an error if the symbolic form, which may have found the
+/// opposite, is wrong.
+pub(super) fn self_adjointness(found: [bool; 3], is_symbolic: bool) -> Result<SelfAdjointness, &'static str> {
+    match (found, is_symbolic) {
+        ([true, ..], true) => Ok(SelfAdjointness::Symbolic),
+        ([true, ..], false) => Ok(SelfAdjointness::Exact),
+        (_, true) => Err("adjoint"),
+        ([_, _, true], _) => Ok(SelfAdjointness::WithoutBound),
+        ([_, true, _], _) => Ok(SelfAdjointness::ForPoints),
+        _ => Ok(SelfAdjointness::No),
     }
 }
 
-/// Whether both values are equal at all points that have them; none if there is no such point.
-fn are_all<T: Number>(
-    points: &[Sample<T>],
-    tree: &Rc<Tree>,
-    is_defined: fn(T) -> bool,
-    are_equal: fn(T, T) -> bool,
-) -> Option<bool> {
-    let values = points.iter().map(|point| (point.declared(tree), point.reversed(tree)));
-    let defined: Vec<(T, T)> = values.filter(|(l, reversed)| is_defined(*l) && is_defined(*reversed)).collect();
-    (!defined.is_empty()).then(|| defined.iter().all(|&(l, reversed)| are_equal(l, reversed)))
+fn is_reversed<T: Number>(point: &Sample<T>, tree: &Rc<Tree>) -> bool {
+    (point.declared(tree) - point.reversed(tree)).is_zero()
 }
 
-fn with_points<'a, T: Number>(samples: &[Sample<'a, T>]) -> Vec<Sample<'a, T>> {
-    samples.iter().filter_map(Sample::with_points).collect()
+/// Whether `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)` at a point, whether it is on a group of affine maps with one for the
+/// last coordinate of all vectors, and what is left to say of points of the field.
+pub(super) fn at<T: Number>(point: &Sample<T>, tree: &Rc<Tree>) -> [bool; 3] {
+    let is_here = is_reversed(point, tree);
+    [is_here, is_here || point.with_points().is_some_and(|point| is_reversed(&point, tree)), is_here]
 }
 
-fn is_close(l: f64, reversed: f64) -> bool {
-    (l - reversed).abs() <= TOLERANCE * (1.0 + l.abs() + reversed.abs())
+/// The same, and whether it is with the square of `F` for the increment, where `exp(½ log F²) = F` is known.
+pub(super) fn in_the_field(point: &Sample<Residue>, tree: &Rc<Tree>) -> [bool; 3] {
+    let [is_here, of_points, _] = at(point, tree);
+    [is_here, of_points, is_here || is_reversed(&point.squared(), tree)]
+}
+
+impl Sample<'_, Residue> {
+    /// `exp(½ log F²)` is `I + c_1(q) û + c_2(q) û²` with `u = ½ G vee(F²)` and `q = |u|²`.
+    fn squared(&self) -> Self {
+        let (mut squared, group, of) = (self.clone(), &self.derived.group, |n, m| Residue::of(Rational::new(n, m)));
+        for matrix in [&mut squared.element.matrix, &mut squared.element.inverse] {
+            *matrix = matrix.times(matrix);
+        }
+        squared.values.extend(increments(group, &squared.element.matrix));
+        for (factor, _) in group.factors().iter().enumerate().filter(|(_, own)| own.is_so3) {
+            let [root, f] = [&self.element, &squared.element].map(|element| block(group, &element.matrix, factor));
+            let ratio = (of(3, 4) - of(1, 4) * f.trace()).apply(Function::LogRatio(0));
+            let u = f.vee().map(|entry| of(1, 2) * ratio * entry);
+            let q = dot(&u.entries, &u.entries);
+            q.remember([of(1, 2) * (root.trace() - Residue::ONE), dot(&root.vee().entries, &u.entries) / q]);
+        }
+        squared
+    }
 }
 
 impl<T: Number> Sample<'_, T> {

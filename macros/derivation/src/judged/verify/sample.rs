@@ -7,7 +7,9 @@ use super::dual::Dual;
 use super::evaluation::Evaluation;
 use super::number::Number;
 use super::value::Value;
-use super::{DRAWS, block, by_blocks, displacements, increments, parameter, stream, translation, turn};
+use super::{
+    DRAWS, Values, block, by_blocks, cayley, displacements, exponential, increments, parameters, stream, translation,
+};
 use crate::declared::lower::Lowered;
 use crate::declared::{Declaration, FieldKind, Name, Role, Tree};
 use crate::mathematics::derive::{Derived, Seen};
@@ -35,10 +37,7 @@ impl<T: Number> Element<T> {
     ///
     /// Where `E³ = c E`, `cay(tE)` is an element of the one-parameter group of `E`, rational in `t`: for all of the built-in
     /// groups' generators. The products for all generators have elements near the identity for all that the group has there.
-    pub(super) fn by_cayley(group: &Group, number: &mut impl FnMut() -> T) -> Option<Self>
-    where
-        T: PartialEq,
-    {
+    pub(super) fn by_cayley(group: &Group, number: &mut impl FnMut() -> T) -> Option<Self> {
         let (mut matrices, mut inverses, mut coordinates) = (Vec::new(), Vec::new(), Vec::new());
         for own in group.factors() {
             let identity = Value::identity(own.size);
@@ -47,20 +46,16 @@ impl<T: Number> Element<T> {
                 let each = own.generators.iter().zip(&components);
                 each.map(|(entries, &t)| Value::square(own.size, entries).map(|entry: T| t * entry))
             };
-            let is_of_group = |x: &Value<T>| is_multiple(&x.times(x).times(x), x);
             let elements: Vec<Value<T>> = if own.is_so3 {
                 vec![Value::combination(own.size, &own.generators, &components)]
             } else {
                 one_by_one().collect()
             };
-            let (mut matrix, mut inverse) = (identity.clone(), identity.clone());
+            let (mut matrix, mut inverse) = (identity.clone(), identity);
             for x in elements {
-                if !own.is_so3 && !is_of_group(&x) {
-                    return None;
-                }
-                let (forwards, backwards) = (identity.plus(&x), identity.zip(&x, |one, x| one - x));
-                matrix = matrix.times(&backwards.inverse().times(&forwards));
-                inverse = forwards.inverse().times(&backwards).times(&inverse);
+                let [forwards, backwards] = cayley(&x, cube(&x)?);
+                matrix = matrix.times(&forwards);
+                inverse = backwards.times(&inverse);
             }
             matrices.push(matrix);
             inverses.push(inverse);
@@ -68,6 +63,18 @@ impl<T: Number> Element<T> {
         }
         let [matrix, inverse] = [matrices, inverses].map(|blocks| by_blocks(group, |factor| blocks[factor].clone()));
         Some(Self { matrix, inverse, coordinates })
+    }
+
+    /// A product of exponentials of multiples of all generators, which are small or powers of `h`.
+    pub(super) fn by_exponentials(group: &Group, mut number: impl FnMut() -> T) -> Self {
+        let mut element = Self::identity(group);
+        for entries in &group.generators {
+            let t = number();
+            let x = Value::square(group.size, entries).map(|entry: T| t * entry);
+            element.matrix = element.matrix.times(&exponential(group, &x));
+            element.inverse = exponential(group, &x.map(|entry| -entry)).times(&element.inverse);
+        }
+        element
     }
 
     /// As constants among dual numbers.
@@ -97,12 +104,12 @@ pub(super) fn exponentials<T: Number>(x: &Value<T>) -> [Value<Dual<T>>; 2] {
     [along(x.clone()), along(x.map(|entry| -entry))]
 }
 
-/// Whether `A = c B` for a number `c`.
-fn is_multiple<T: Number + PartialEq>(a: &Value<T>, b: &Value<T>) -> bool {
-    let Some((&first, &scale)) = a.entries.iter().zip(&b.entries).find(|(_, b)| **b != T::ZERO) else {
-        return false;
-    };
-    a.entries.iter().zip(&b.entries).all(|(&a, &b)| a * scale == b * first)
+/// The `c` with `x³ = c x`; nothing where there is none.
+fn cube<T: Number>(x: &Value<T>) -> Option<T> {
+    let cube = x.times(x).times(x);
+    let (&first, &scale) = cube.entries.iter().zip(&x.entries).find(|(_, entry)| !entry.is_zero())?;
+    let c = first / scale;
+    cube.entries.iter().zip(&x.entries).all(|(&a, &b)| (a - c * b).is_zero()).then_some(c)
 }
 
 /// Numbers for all names.
@@ -110,7 +117,7 @@ fn is_multiple<T: Number + PartialEq>(a: &Value<T>, b: &Value<T>) -> bool {
 pub(super) struct Sample<'a, T = f64> {
     pub(super) derived: &'a Derived,
     pub(super) element: Element<T>,
-    pub(super) values: BTreeMap<Name, Value<T>>,
+    pub(super) values: Values<T>,
     symbols: BTreeMap<SymbolId, Name>,
     pub(super) advected: Vec<(Name, Variance, Seen)>,
 }
@@ -124,18 +131,12 @@ impl<'a> Sample<'a> {
         tree: &'a Rc<Tree>,
     ) -> impl Iterator<Item = Self> {
         let samples = (1..=DRAWS).map(|seed| Self::new(declaration, lowered, derived, seed));
-        samples.filter(|sample| sample.declared(tree).is_finite())
+        samples.filter(|sample| sample.declared(tree).is_defined())
     }
 
     fn new(declaration: &Declaration, lowered: &Lowered, derived: &'a Derived, seed: u64) -> Self {
         let mut number = stream(seed);
-        let group = &declaration.group;
-        let mut element = Element::identity(group);
-        for k in 0..group.dimension() {
-            let angle = 0.6 * number() - 0.3;
-            element.matrix = element.matrix.times(&turn(group, k, angle));
-            element.inverse = turn(group, k, -angle).times(&element.inverse);
-        }
+        let element = Element::by_exponentials(&declaration.group, || 0.6 * number() - 0.3);
         let mut sample = Self::with_numbers(declaration, lowered, derived, element, &mut number);
         // From one draw in five on, another scale for each parameter, and another sign for scalars.
         let reach = f64::from(u32::try_from(seed / (DRAWS / 5)).unwrap_or(0));
@@ -168,15 +169,10 @@ impl<'a, T: Number> Sample<'a, T> {
         let mut values = BTreeMap::from_iter(increments(&declaration.group, &element.matrix));
         let tenth = T::of(Rational::new(1, 10));
         values.insert(Name::Step, Value::scalar(tenth + tenth * number()));
-        for (index, field) in declaration.fields.iter().enumerate() {
-            values.insert(Name::Field(index), parameter(field.kind, &mut number));
-        }
         if declaration.role == Role::Force {
             values.extend(displacements(&declaration.group, &mut number));
         }
-        for index in 0..declaration.advected.len() {
-            values.insert(Name::Advected(index), parameter(declaration.advected_kind(index), &mut number));
-        }
+        values.extend(parameters(declaration, &mut number));
         let advected = advected(declaration);
         let symbols = lowered.names.iter().map(|(name, id)| (*id, *name)).collect();
         Self { derived, element, values, symbols, advected }
@@ -214,11 +210,7 @@ impl<'a, T: Number> Sample<'a, T> {
     }
 
     /// The same at another increment, and at other values.
-    pub(super) fn inputs_at(
-        &self,
-        element: &Element<T>,
-        values: &BTreeMap<Name, Value<T>>,
-    ) -> BTreeMap<SymbolId, Value<T>> {
+    pub(super) fn inputs_at(&self, element: &Element<T>, values: &Values<T>) -> BTreeMap<SymbolId, Value<T>> {
         let (group, directions) = (&self.derived.group, &self.derived.directions);
         let named = self.symbols.iter().filter_map(|(symbol, name)| Some((*symbol, values.get(name)?.clone())));
         let mut inputs: BTreeMap<SymbolId, Value<T>> = named.collect();
@@ -238,7 +230,7 @@ impl<'a, T: Number> Sample<'a, T> {
     }
 
     /// The values with all that is advected moved by a group element, given with its inverse.
-    pub(super) fn moved(&self, element: [&Value<T>; 2]) -> BTreeMap<Name, Value<T>> {
+    pub(super) fn moved(&self, element: [&Value<T>; 2]) -> Values<T> {
         moved(&self.derived.group, &self.advected, &self.values, element)
     }
 }
@@ -253,9 +245,9 @@ pub(super) fn advected(declaration: &Declaration) -> Vec<(Name, Variance, Seen)>
 pub(super) fn moved<T: Number>(
     group: &Group,
     advected: &[(Name, Variance, Seen)],
-    values: &BTreeMap<Name, Value<T>>,
+    values: &Values<T>,
     [g, inverse]: [&Value<T>; 2],
-) -> BTreeMap<Name, Value<T>> {
+) -> Values<T> {
     let mut values = values.clone();
     let added = |moving: &Value<T>, factor| translation(&block(group, moving, factor));
     for &(name, variance, seen) in advected {

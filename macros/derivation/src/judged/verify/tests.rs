@@ -345,23 +345,23 @@ fn groups_without_points() {
     assert_eq!(declared.after(|d| negate(&mut d.right_momentum)), Err("right momentum map"));
     let nearly = Rational::new(10_000_001, 10_000_000);
     assert_eq!(declared.after(|d| d.energy = d.energy.clone().scaled(nearly)), Err("discrete energy"));
-    assert_eq!(declared.after(|d| negate(&mut d.kick_after)), Ok(SelfAdjointness::Numeric));
+    assert_eq!(declared.after(|d| negate(&mut d.kick_after)), Ok(SelfAdjointness::Exact));
     assert_eq!(declared.after(|d| negate(&mut d.jacobian)), Err("Newton Jacobian"));
+    let other =
+        Declared::new(&format!("{squeezes}, l_d = k * (F[(0, 0)] + 1.0 / F[(1, 1)]) / h"), "struct Body { k: f64 }");
+    assert_eq!(other.verified(), Ok(SelfAdjointness::No));
 }
 
-/// Where the field doesn't say, rounded values do.
+/// `ln x² = 2 ln x` isn't a relation of just any function.
 #[test]
-fn adjoints_to_rounding() {
-    let squeezes = "group = Mine, generators = [[[1.0, 0.0], [0.0, -2.0]]]";
-    let squeezed = |l_d: &str| Declared::new(&format!("{squeezes}, l_d = {l_d}"), "struct Body { k: f64 }").verified();
-    // The one-parameter group of diag(1, −2) isn't that of a Cayley transform.
-    assert_eq!(squeezed("k * (F[(0, 0)] + 1.0 / F[(0, 0)]) / h"), Ok(SelfAdjointness::Numeric));
-    assert_eq!(squeezed("k * (F[(0, 0)] + 1.0 / F[(1, 1)]) / h"), Ok(SelfAdjointness::No));
-    // ln x² = 2 ln x isn't a relation of just any function.
-    let l_d =
-        "((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) + h * F[(0, 3)] * (k.powi(2).ln() - 2.0 * k.ln())";
-    let declared = Declared::new(&format!("group = SE3, l_d = {l_d}"), "struct Body { J: Matrix4<f64>, k: f64 }");
-    assert_eq!(declared.verified(), Ok(SelfAdjointness::Numeric));
+fn adjoints_with_functions() {
+    let body = |kick: &str| {
+        let l_d = format!("((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) + h * F[(0, 3)] * ({kick})");
+        Declared::new(&format!("group = SE3, l_d = {l_d}"), "struct Body { J: Matrix4<f64>, k: f64 }").verified()
+    };
+    assert_eq!(body("k.ln() + (1.0 / k).ln()"), Ok(SelfAdjointness::Exact));
+    assert_eq!(body("k.powi(2).ln() - 2.0 * k.ln()"), Ok(SelfAdjointness::No));
+    assert_eq!(body("(2.0 * k - k).sin() + (-k).sin()"), Ok(SelfAdjointness::Exact));
 }
 
 /// A struct with those of the fields that a Lagrangian uses.

@@ -86,12 +86,23 @@ impl<T: Number> Value<T> {
         })
     }
 
+    pub(super) fn trace(&self) -> T {
+        (0..self.rows).fold(T::ZERO, |sum, i| sum + self.at(i, i))
+    }
+
+    /// By Laplace, of each set of columns with as many of the first rows.
     fn determinant(&self) -> T {
-        if self.rows == 0 {
-            return T::ONE;
+        let mut minors = vec![T::ONE];
+        for set in 1_usize..1 << self.rows {
+            let row = set.count_ones() as usize - 1;
+            let columns = (0..self.rows).filter(|column| set >> column & 1 == 1);
+            let terms = columns.map(|column| {
+                let behind = (set >> column).count_ones() as usize - 1;
+                alternating(behind, self.at(row, column) * minors[set ^ 1 << column])
+            });
+            minors.push(terms.fold(T::ZERO, |sum, term| sum + term));
         }
-        let terms = (0..self.rows).map(|row| alternating(row, self.at(row, 0) * self.without(row, 0).determinant()));
-        terms.fold(T::ZERO, |sum, term| sum + term)
+        minors.last().copied().unwrap_or(T::ONE)
     }
 
     fn without(&self, row: usize, column: usize) -> Self {
@@ -103,6 +114,15 @@ impl<T: Number> Value<T> {
         let [x, y, z] = [v.at(0, 0), v.at(1, 0), v.at(2, 0)];
         let entries = vec![T::ZERO, -z, y, z, T::ZERO, -x, -y, x, T::ZERO];
         Self { rows: 3, columns: 3, entries }
+    }
+
+    /// Of the skew part.
+    pub(super) fn vee(&self) -> Self {
+        let half = T::of(Rational::new(1, 2));
+        Self::new(3, 1, |row, _| {
+            let (i, j) = ((row + 2) % 3, (row + 1) % 3);
+            half * (self.at(i, j) - self.at(j, i))
+        })
     }
 
     pub(super) fn identity(size: usize) -> Self {

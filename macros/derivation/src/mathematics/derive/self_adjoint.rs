@@ -11,22 +11,20 @@ use crate::mathematics::symbolic::{Expression, Rational};
 pub(crate) enum SelfAdjointness {
     /// The normal forms are equal.
     Symbolic,
-    /// The values are equal at random points of a finite field, where nothing is rounded.
+    /// The values are equal at random points, where nothing is rounded.
     Exact,
-    /// The values are equal at all sample points, to rounding, and the field doesn't say.
-    Numeric,
+    /// They are with what is known of `exp` and `log` together, at squares of `F`.
+    WithoutBound,
     /// The values differ, but not where all vectors have one for their last coordinate, which the types of points
     /// promise and theirs don't.
     ForPoints,
     /// The values differ.
     No,
-    /// There is no sample point at which the Lagrangian has a value.
-    Unknown,
 }
 
 impl SelfAdjointness {
     pub(crate) fn is_found(self) -> bool {
-        matches!(self, Self::Symbolic | Self::Exact | Self::Numeric)
+        matches!(self, Self::Symbolic | Self::Exact | Self::WithoutBound)
     }
 }
 

@@ -81,8 +81,11 @@ fn opened(word: &[Factor], direction: SymbolId, symbols: &Symbols) -> Option<Vec
     let after = rest.get(1..)?;
     let others = [after, before].concat();
     let once = !others.iter().any(|factor| factor.contains(direction));
-    (once && !others.is_empty() && symbols.get(direction).name == "E_k" && symbols.get(direction).is_rotation())
-        .then_some(others)
+    (once
+        && !others.is_empty()
+        && symbols.get(direction).name.starts_with("E_k")
+        && symbols.get(direction).is_rotation())
+    .then_some(others)
 }
 
 /// Terms with their signs.

@@ -1,0 +1,79 @@
+//! Plans around another plan: what they hand on to it.
+
+/// Writes functions of a plan that wraps another, as `delegate_plan!(plan, |kept| kept; keep cost)`: the field of the other
+/// plan, and how its memory is found in that of this one.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! delegate_plan {
+    ($plan:tt, |$kept:ident| $inner:expr; $($name:ident)+) => {
+        $($crate::delegate_plan!(@$name $plan, $kept, $inner);)+
+    };
+    (@constants $($of:tt)*) => {
+        const VECTORS: $crate::numbers::Vectors = P::VECTORS;
+        const EXPLAINS: bool = P::EXPLAINS;
+        const HAS_OWN_INERTIA: bool = P::HAS_OWN_INERTIA;
+    };
+    (@step_size $plan:tt, $($kept:tt)*) => {
+        fn step_size(&self) -> $crate::mechanics::Scalar<S> {
+            self.$plan.step_size()
+        }
+    };
+    (@keep $plan:tt, $($kept:tt)*) => {
+        fn keep(&self, scene: &S, motion: &$crate::delegate_plan!(@motion)) -> Self::Kept {
+            self.$plan.keep(scene, motion)
+        }
+    };
+    (@admits $plan:tt, $($kept:tt)*) => {
+        fn admits(&self, scene: &S, motion: &$crate::delegate_plan!(@motion)) -> Result<(), $crate::SetupError> {
+            self.$plan.admits(scene, motion)
+        }
+    };
+    (@momentum $plan:tt, $($kept:tt)*) => {
+        fn momentum(
+            &self,
+            scene: &S,
+            attitude: &$crate::mechanics::Group<S>,
+            velocity: &$crate::mechanics::Vector<S>,
+            w: &S::Advected,
+        ) -> $crate::mechanics::Vector<S> {
+            self.$plan.momentum(scene, attitude, velocity, w)
+        }
+    };
+    (@velocity $plan:tt, $($kept:tt)*) => {
+        fn velocity(&self, scene: &S, motion: &$crate::delegate_plan!(@motion)) -> $crate::mechanics::Vector<S> {
+            self.$plan.velocity(scene, motion)
+        }
+    };
+    (@is_in_step $plan:tt, $kept:ident, $inner:expr) => {
+        fn is_in_step(&self, $kept: &Self::Kept) -> bool {
+            self.$plan.is_in_step($inner)
+        }
+    };
+    (@explained $plan:tt, $kept:ident, $inner:expr) => {
+        fn explained(
+            &self,
+            error: $crate::StepError,
+            scene: &S,
+            motion: &$crate::delegate_plan!(@motion),
+            $kept: &Self::Kept,
+        ) -> $crate::StepError {
+            self.$plan.explained(error, scene, motion, $inner)
+        }
+    };
+    (@max_step $plan:tt, $kept:ident, $inner:expr) => {
+        fn max_step(
+            &self,
+            scene: &S,
+            motion: &$crate::delegate_plan!(@motion),
+            $kept: &Self::Kept,
+        ) -> $crate::mechanics::Scalar<S> {
+            self.$plan.max_step(scene, motion, $inner)
+        }
+    };
+    (@cost $plan:tt, $($kept:tt)*) => {
+        fn cost(&self) -> $crate::motion::Cost {
+            self.$plan.cost()
+        }
+    };
+    (@motion) => { $crate::motion::Motion<$crate::mechanics::Group<S>, S::Advected> };
+}

@@ -1,1 +1,0 @@
-../../../examples/declarations/fourth_order_top.rs

@@ -1,1 +1,0 @@
-../../../examples/declarations/log_top.rs

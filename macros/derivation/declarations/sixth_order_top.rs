@@ -1,1 +1,0 @@
-../../../examples/declarations/sixth_order_top.rs
