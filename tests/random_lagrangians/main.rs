@@ -5,6 +5,8 @@
 
 mod continuous;
 mod family;
+#[path = "../../core/late/tests/common/same.rs"]
+mod same;
 
 use checks::structure::{System, momenta, poisson, stages, symmetry, two_flows};
 use liestep::Stepper;
@@ -58,6 +60,17 @@ macro_rules! on_every_group {
                         },
                         seed,
                     );
+                }
+            }
+
+            /// Read and interpreted they make the same steps, to the bit.
+            #[test]
+            fn late() {
+                for seed in 0..10 {
+                    let random = &mut Random::new(seed);
+                    same::assert_as_compiled(&family::$group::Vectors::random(random), seed);
+                    same::assert_as_compiled(&family::$group::Tensors::random(random), seed);
+                    same::assert_as_compiled(&family::$group::Continuous::<f64>::random(seed), seed);
                 }
             }
 

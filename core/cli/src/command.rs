@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::builder::{PathBufValueParser, TypedValueParser as _};
-use clap::{Arg, ArgAction, ArgMatches, Command, ValueHint, value_parser};
+use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, ValueHint, value_parser};
 use clap_complete::Shell;
 use liestep_ensemble::share_of;
 
@@ -66,7 +66,11 @@ pub(crate) fn command() -> Command {
         .subcommand(
             Command::new("derive")
                 .about("Prints what is derived of an effect, or of a scene")
-                .arg(Arg::new("NAME").help("An effect or a scene file; all effects are listed if it is left away")),
+                .arg(Arg::new("NAME").help("An effect or a scene file; all effects are listed if it is left away"))
+                .arg(flag("latex", "The equations as LaTeX"))
+                .arg(flag("rust", "The straight-line code of a step in Rust"))
+                .arg(flag("c", "A step on SO(3) as C99 without dependencies"))
+                .group(ArgGroup::new("form").args(["latex", "rust", "c"]).requires("NAME")),
         )
         .subcommand(
             Command::new("replay")

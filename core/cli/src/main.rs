@@ -21,7 +21,7 @@ use clap::ArgMatches;
 use liestep::recording::{Column, Csv, Sink, SinkError};
 use liestep_arrow::ArrowStream;
 use liestep_plot::output::Output;
-use liestep_scene::{Mistake, Run, Scene, SceneFile, System, visible};
+use liestep_scene::{Form, Mistake, Run, Scene, SceneFile, System, visible};
 
 use failure::Failure;
 use files::{different_files, files, folder, name};
@@ -192,13 +192,27 @@ fn derive(given: &ArgMatches) -> Result<(), Failure> {
         let names: Vec<_> = liestep_scene::derived().collect();
         return print(&(names.join("\n") + "\n"));
     };
+    let forms = [("latex", Form::Latex), ("rust", Form::Rust), ("c", Form::C)];
+    let form = forms.into_iter().find(|(flag, _)| given.get_flag(flag)).map(|(_, form)| form);
+    if let Some(form) = form
+        && let Some(written) = liestep_scene::written(name, form)
+    {
+        return print(&written.map_err(|cause| Failure::Command(cause.to_string()))?);
+    }
     if let Some(text) = liestep_scene::derivation(name) {
         return print(&format!("{name}\n\n{text}"));
     }
     if Path::new(name).extension().is_some_and(|ending| ending == "toml") {
-        return print(&match Scene::read(name)? {
-            Scene::Body(scene) => scene.derivation(),
-            Scene::System(system) => system.derivation(),
+        return print(&match (Scene::read(name)?, form) {
+            (Scene::Body(scene), None) => scene.derivation(),
+            (Scene::Body(scene), Some(form)) => {
+                scene.written(form).map_err(|cause| Failure::Command(cause.to_string()))?
+            }
+            (Scene::System(system), None) => system.derivation(),
+            (Scene::System(_), Some(_)) => {
+                let message = "of several bodies there is the derivation as text: leave the form out";
+                return Err(Failure::Command(message.to_owned()));
+            }
         });
     }
     let names: Vec<_> = liestep_scene::derived().collect();

@@ -1,15 +1,89 @@
 //! A program for few registers, and its interpreter.
 
 use std::collections::BTreeMap;
+use std::fmt::Debug;
 
 use liestep::__private::{log_ratio, stumpff};
 use liestep::numbers::{Real, real};
-use liestep_derivation::{Operation, Program, Source};
+use liestep_derivation::{Array, Function, Operation, Program, Source};
+
+use crate::error::LateError;
+
+/// What runs programs: the same for all of a declaration, so that a step calls it directly.
+pub trait Backend<T: Real>: Copy + Debug + 'static {
+    /// What it makes of a program.
+    type Code: Debug + Send + Sync + 'static;
+    /// What it makes of the constants of a stepper.
+    type Image: Debug + Send + Sync;
+
+    /// The programs of a declaration, each made ready.
+    ///
+    /// # Errors
+    ///
+    /// Where it can't run one.
+    fn codes(programs: &[&Program]) -> Result<Vec<Self::Code>, LateError>;
+
+    /// The constants, as a program needs them.
+    fn image(code: &Self::Code, constants: &[T]) -> Self::Image;
+
+    /// Runs a program, for as many outputs as it has. Arrays are as long as what it reads of them.
+    fn run(code: &Self::Code, image: &Self::Image, arrays: &Arrays<T>, outputs: &mut [T]);
+}
+
+/// Programs are read operation by operation: safe, on every machine, and in lanes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Interpreted;
+
+impl<T: Real> Backend<T> for Interpreted {
+    type Code = Code;
+    type Image = Box<[T]>;
+
+    fn codes(programs: &[&Program]) -> Result<Vec<Code>, LateError> {
+        programs.iter().map(|program| Code::of(program)).collect()
+    }
+
+    fn image(code: &Code, constants: &[T]) -> Box<[T]> {
+        code.image(constants)
+    }
+
+    fn run(code: &Code, image: &Box<[T]>, arrays: &Arrays<T>, outputs: &mut [T]) {
+        code.run(image, arrays, outputs);
+    }
+}
+
+/// The arrays that inputs are read from; what a stage doesn't have is empty.
+#[derive(Clone, Copy, Debug)]
+pub struct Arrays<'a, T>([&'a [T]; Array::COUNT]);
+
+impl<'a, T> Arrays<'a, T> {
+    /// These, and no others.
+    #[must_use]
+    #[inline]
+    pub fn of<const N: usize>(given: [(Array, &'a [T]); N]) -> Self {
+        let mut arrays: [&[T]; Array::COUNT] = [&[]; Array::COUNT];
+        given.into_iter().for_each(|(array, numbers)| arrays[array as usize] = numbers);
+        Self(arrays)
+    }
+
+    /// All, in the order of [`Array`].
+    #[must_use]
+    #[inline]
+    pub const fn all(&self) -> [&'a [T]; Array::COUNT] {
+        self.0
+    }
+
+    /// The numbers of an array.
+    #[must_use]
+    #[inline]
+    pub const fn get(&self, array: Array) -> &'a [T] {
+        self.0[array as usize]
+    }
+}
 
 /// Straight-line code. Registers hold constants, literals, inputs and what is computed: of these, one that isn't read any
 /// more is used again.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Code {
+pub struct Code {
     /// What is known before a step, in the first registers: places among the constants, then literals.
     constants: Vec<usize>,
     literals: Vec<f64>,
@@ -39,73 +113,7 @@ enum Arithmetic {
     Subtract,
     Multiply,
     Divide,
-    Sqrt,
-    Ln,
-    Exp,
-    Sin,
-    Cos,
-    Stumpff(u8),
-    LogRatio(u8),
-}
-
-/// The arrays that inputs are read from; what a stage doesn't have is empty, and no program of it reads it.
-#[derive(Clone, Copy)]
-pub(crate) struct Arrays<'a, T> {
-    pub(crate) step: Option<T>,
-    pub(crate) parameters: &'a [T],
-    pub(crate) terms: &'a [T],
-    pub(crate) advected: &'a [T],
-    pub(crate) next: &'a [T],
-    pub(crate) element: &'a [T],
-    pub(crate) increment: &'a [T],
-    pub(crate) inverse: &'a [T],
-    pub(crate) inverse_increment: &'a [T],
-    pub(crate) half: &'a [T],
-    pub(crate) velocity: &'a [T],
-    pub(crate) target: &'a [T],
-}
-
-impl<T> Default for Arrays<'_, T> {
-    fn default() -> Self {
-        Self {
-            step: None,
-            parameters: &[],
-            terms: &[],
-            advected: &[],
-            next: &[],
-            element: &[],
-            increment: &[],
-            inverse: &[],
-            inverse_increment: &[],
-            half: &[],
-            velocity: &[],
-            target: &[],
-        }
-    }
-}
-
-impl<T: Real> Arrays<'_, T> {
-    /// NaN where there is none, which no step takes for a number.
-    #[inline]
-    fn read(&self, source: Source) -> T {
-        let found = match source {
-            Source::Step => self.step.as_ref(),
-            Source::Parameter(at) => self.parameters.get(at),
-            // It is in the image.
-            Source::Constant(_) => None,
-            Source::Term(at) => self.terms.get(at),
-            Source::Advected(at) => self.advected.get(at),
-            Source::Next(at) => self.next.get(at),
-            Source::Element(at) => self.element.get(at),
-            Source::Increment(at) => self.increment.get(at),
-            Source::Inverse(at) => self.inverse.get(at),
-            Source::InverseIncrement(at) => self.inverse_increment.get(at),
-            Source::Half(at) => self.half.get(at),
-            Source::Velocity(at) => self.velocity.get(at),
-            Source::Target(at) => self.target.get(at),
-        };
-        found.copied().unwrap_or_else(|| real(f64::NAN))
-    }
+    Apply(Function),
 }
 
 /// The operations in that order, each with a register for its result; `place` has those of inputs and literals, and gets
@@ -115,20 +123,17 @@ fn allocated(program: &Program, order: &[usize], place: &mut [u16]) -> Option<(V
     // When each value is read last; an output is never done with.
     let mut last = vec![0; place.len()];
     for (time, &at) in order.iter().enumerate() {
-        for operand in parts(program.operations[at]).1 {
+        for operand in program.operations[at].operands() {
             last[operand] = time;
         }
     }
     for &output in &program.outputs {
-        last[output] = usize::MAX;
+        last[output as usize] = usize::MAX;
     }
     let (mut free, mut registers) = (Vec::new(), fixed);
     let mut runs: Vec<Run> = Vec::new();
     for (time, &at) in order.iter().enumerate() {
-        let (operation, read) = parts(program.operations[at]);
-        if !exists(operation) {
-            return None;
-        }
+        let (operation, read) = (kind(program.operations[at]), program.operations[at].operands());
         let operands = read.map(|value| place[value]);
         for (value, operand) in read.into_iter().zip(operands) {
             if value >= fixed && last[value] == time && !free.contains(&operand) {
@@ -155,12 +160,12 @@ fn by_kind(program: &Program) -> Vec<usize> {
     let count = program.operations.len();
     let (mut missing, mut readers) = (vec![0_usize; count], vec![Vec::new(); count]);
     for (at, &operation) in program.operations.iter().enumerate() {
-        for operand in parts(operation).1.into_iter().filter_map(|operand| operand.checked_sub(fixed)) {
+        for operand in operation.operands().into_iter().filter_map(|operand| operand.checked_sub(fixed)) {
             missing[at] += 1;
             readers[operand].push(at);
         }
     }
-    let kind = |at: usize| parts(program.operations[at]).0;
+    let kind = |at: usize| kind(program.operations[at]);
     let mut ready: BTreeMap<Arithmetic, Vec<usize>> = BTreeMap::new();
     (0..count).filter(|&at| missing[at] == 0).for_each(|at| ready.entry(kind(at)).or_default().push(at));
     let mut order = Vec::with_capacity(count);
@@ -181,11 +186,18 @@ fn by_kind(program: &Program) -> Vec<usize> {
 }
 
 impl Code {
-    /// `None` of a program that needs more registers than there are names for, or a function of a higher order.
-    pub(crate) fn of(program: &Program) -> Option<Self> {
+    fn of(program: &Program) -> Result<Self, LateError> {
+        if let Some(missing) = functions(program).find(|&&function| !exists(function)) {
+            return Err(LateError::Function(format!("{missing:?}")));
+        }
+        Self::allocated(program).ok_or(LateError::TooLarge)
+    }
+
+    /// `None` of a program that needs more registers than there are names for.
+    fn allocated(program: &Program) -> Option<Self> {
         let fixed = program.inputs.len() + program.literals.len();
         // A register for each input and literal, what is known before a step first.
-        let is_constant = |source: &Source| matches!(source, Source::Constant(_));
+        let is_constant = |source: &Source| source.array == Array::Constants;
         let inputs = || program.inputs.iter().enumerate();
         let first = inputs().filter(|(_, source)| is_constant(source)).map(|(value, _)| value);
         let literals = program.inputs.len()..fixed;
@@ -195,66 +207,43 @@ impl Code {
             place[value] = u16::try_from(register).ok()?;
         }
         let (runs, registers) = allocated(program, &by_kind(program), &mut place)?;
-        let constants = program.inputs.iter().filter_map(|source| match source {
-            Source::Constant(at) => Some(*at),
-            _ => None,
-        });
         Some(Self {
-            constants: constants.collect(),
+            constants: program.inputs.iter().filter(|source| is_constant(source)).map(|source| source.at).collect(),
             literals: program.literals.clone(),
             inputs: program.inputs.iter().copied().filter(|source| !is_constant(source)).collect(),
             runs,
-            outputs: program.outputs.iter().map(|&output| place[output]).collect(),
+            outputs: program.outputs.iter().map(|&output| place[output as usize]).collect(),
             registers,
         })
     }
 
-    pub(crate) fn outputs(&self) -> usize {
-        self.outputs.len()
-    }
-
-    /// Whether one of the inputs is of this kind.
-    pub(crate) fn reads(&self, kind: fn(usize) -> Source) -> bool {
-        let same = |source: &Source| std::mem::discriminant(source) == std::mem::discriminant(&kind(0));
-        self.inputs.iter().any(same)
-    }
-
     /// The first registers of every run with these constants.
-    pub(crate) fn image<T: Real>(&self, constants: &[T]) -> Box<[T]> {
+    fn image<T: Real>(&self, constants: &[T]) -> Box<[T]> {
         let of = |&at: &usize| constants.get(at).copied().unwrap_or_else(|| real(f64::NAN));
         self.constants.iter().map(of).chain(self.literals.iter().map(|&literal| real(literal))).collect()
     }
 
-    /// Runs it, and makes something of what comes out, number by number.
-    pub(crate) fn run<T: Real, R>(
-        &self,
-        image: &[T],
-        arrays: &Arrays<T>,
-        make: impl FnOnce(&dyn Fn(usize) -> T) -> R,
-    ) -> R {
+    fn run<T: Real>(&self, image: &[T], arrays: &Arrays<T>, outputs: &mut [T]) {
         // Registers beyond those that are used cost time to clear.
         match self.registers {
-            0..=32 => self.run_in(&mut [T::zero(); 32], image, arrays, make),
-            33..=64 => self.run_in(&mut [T::zero(); 64], image, arrays, make),
-            65..=128 => self.run_in(&mut [T::zero(); 128], image, arrays, make),
-            129..=256 => self.run_in(&mut [T::zero(); 256], image, arrays, make),
-            more => self.run_in(&mut vec![T::zero(); more.next_power_of_two()], image, arrays, make),
+            0..=32 => self.run_in(&mut [T::zero(); 32], image, arrays, outputs),
+            33..=64 => self.run_in(&mut [T::zero(); 64], image, arrays, outputs),
+            65..=128 => self.run_in(&mut [T::zero(); 128], image, arrays, outputs),
+            129..=256 => self.run_in(&mut [T::zero(); 256], image, arrays, outputs),
+            more => self.run_in(&mut vec![T::zero(); more.next_power_of_two()], image, arrays, outputs),
         }
     }
 
     /// In registers whose number is a power of two, so that a masked index is always in range.
     #[inline]
-    fn run_in<T: Real, R>(
-        &self,
-        registers: &mut [T],
-        image: &[T],
-        arrays: &Arrays<T>,
-        make: impl FnOnce(&dyn Fn(usize) -> T) -> R,
-    ) -> R {
+    fn run_in<T: Real>(&self, registers: &mut [T], image: &[T], arrays: &Arrays<T>, outputs: &mut [T]) {
         let mask = registers.len().wrapping_sub(1);
         let (known, open) = registers.split_at_mut(image.len().min(registers.len()));
         known.copy_from_slice(&image[..known.len()]);
-        open.iter_mut().zip(&self.inputs).for_each(|(register, &source)| *register = arrays.read(source));
+        for (register, source) in open.iter_mut().zip(&self.inputs) {
+            // No step takes NaN for a number.
+            *register = arrays.get(source.array).get(source.at).copied().unwrap_or_else(|| real(f64::NAN));
+        }
         for Run { operation, instructions } in &self.runs {
             match *operation {
                 Arithmetic::Negate => apply(registers, mask, instructions, |a, _| -a),
@@ -262,13 +251,12 @@ impl Code {
                 Arithmetic::Subtract => apply(registers, mask, instructions, |a, b| a - b),
                 Arithmetic::Multiply => apply(registers, mask, instructions, |a, b| a * b),
                 Arithmetic::Divide => apply(registers, mask, instructions, |a, b| a / b),
-                other => apply(registers, mask, instructions, |a, _| function(other, a)),
+                Arithmetic::Apply(function) => apply(registers, mask, instructions, |a, _| applied(function, a)),
             }
         }
-        make(&|output| match self.outputs.get(output) {
-            Some(&register) => registers[usize::from(register) & mask],
-            None => real(f64::NAN),
-        })
+        for (output, &register) in outputs.iter_mut().zip(&self.outputs) {
+            *output = registers[usize::from(register) & mask];
+        }
     }
 }
 
@@ -281,18 +269,17 @@ fn apply<T: Copy>(registers: &mut [T], mask: usize, instructions: &[Instruction]
     }
 }
 
-/// Those of the compiled step, so that the bits are the same.
+/// A function of a number: that of the compiled step, so that the bits are the same. NaN where there is none of this order.
 #[cold]
-fn function<T: Real>(operation: Arithmetic, a: T) -> T {
-    match operation {
-        Arithmetic::Sqrt => a.simd_sqrt(),
-        Arithmetic::Ln => a.simd_ln(),
-        Arithmetic::Exp => a.simd_exp(),
-        Arithmetic::Sin => a.simd_sin(),
-        Arithmetic::Cos => a.simd_cos(),
-        Arithmetic::Stumpff(order) => stumpff_of(order, a),
-        Arithmetic::LogRatio(order) => log_ratio_of(order, a),
-        _ => real(f64::NAN),
+pub fn applied<T: Real>(function: Function, a: T) -> T {
+    match function {
+        Function::Sqrt => a.simd_sqrt(),
+        Function::Ln => a.simd_ln(),
+        Function::Exp => a.simd_exp(),
+        Function::Sin => a.simd_sin(),
+        Function::Cos => a.simd_cos(),
+        Function::Stumpff(order) => stumpff_of(order, a),
+        Function::LogRatio(order) => log_ratio_of(order, a),
     }
 }
 
@@ -312,28 +299,28 @@ of_order!(stumpff_of of stumpff: 1 2 3 4 5 6 7 8 9 10);
 of_order!(log_ratio_of of log_ratio: 0 1 2 3 4 5 6);
 
 /// Whether there is such a function.
-const fn exists(operation: Arithmetic) -> bool {
-    match operation {
-        Arithmetic::Stumpff(order) => 0 < order && order <= 10,
-        Arithmetic::LogRatio(order) => order <= 6,
+const fn exists(function: Function) -> bool {
+    match function {
+        Function::Stumpff(order) => 0 < order && order <= 10,
+        Function::LogRatio(order) => order <= 6,
         _ => true,
     }
 }
 
-/// What it does, and the values that it reads.
-fn parts(operation: Operation) -> (Arithmetic, [usize; 2]) {
+fn functions(program: &Program) -> impl Iterator<Item = &Function> {
+    program.operations.iter().filter_map(|operation| match operation {
+        Operation::Apply(function, _) => Some(function),
+        _ => None,
+    })
+}
+
+const fn kind(operation: Operation) -> Arithmetic {
     match operation {
-        Operation::Negate(a) => (Arithmetic::Negate, [a, a]),
-        Operation::Add(a, b) => (Arithmetic::Add, [a, b]),
-        Operation::Subtract(a, b) => (Arithmetic::Subtract, [a, b]),
-        Operation::Multiply(a, b) => (Arithmetic::Multiply, [a, b]),
-        Operation::Divide(a, b) => (Arithmetic::Divide, [a, b]),
-        Operation::Sqrt(a) => (Arithmetic::Sqrt, [a, a]),
-        Operation::Ln(a) => (Arithmetic::Ln, [a, a]),
-        Operation::Exp(a) => (Arithmetic::Exp, [a, a]),
-        Operation::Sin(a) => (Arithmetic::Sin, [a, a]),
-        Operation::Cos(a) => (Arithmetic::Cos, [a, a]),
-        Operation::Stumpff(k, a) => (Arithmetic::Stumpff(k), [a, a]),
-        Operation::LogRatio(k, a) => (Arithmetic::LogRatio(k), [a, a]),
+        Operation::Negate(_) => Arithmetic::Negate,
+        Operation::Add(..) => Arithmetic::Add,
+        Operation::Subtract(..) => Arithmetic::Subtract,
+        Operation::Multiply(..) => Arithmetic::Multiply,
+        Operation::Divide(..) => Arithmetic::Divide,
+        Operation::Apply(function, _) => Arithmetic::Apply(function),
     }
 }

@@ -1,15 +1,15 @@
-//! The stages of a step, interpreted.
+//! The stages of a step, by a back end.
 
 use std::sync::Arc;
 
 use liestep::groups::{Advected, CayleyRetraction, LieGroup, Retraction};
-use liestep::mechanics::{DiscreteLagrangian, Effect, KineticPart, Limit, Residual, SceneVisitor};
-use liestep::numbers::{Coordinates, Entries, Real, real};
-use liestep_derivation::{MOST_TERMS, Source};
+use liestep::mechanics::{DiscreteLagrangian, Effect, KineticPart, Limit, Parts, Residual, SceneVisitor};
+use liestep::numbers::{Blocks, Coordinates, Entries, Real, real};
+use liestep_derivation::{Array, MOST_TERMS, Stages};
 
 use crate::carried::Slots;
-use crate::code::{Arrays, Code};
-use crate::declaration::Declaration;
+use crate::code::{Arrays, Backend, Interpreted};
+use crate::declaration::{All, Declaration, Ready, ready};
 use crate::term::{Late, is_finite};
 
 type Matrix<G> = <G as LieGroup>::Matrix;
@@ -45,48 +45,104 @@ impl<T: Real> List<T> {
     }
 }
 
-/// What comes out of a program from the given place on, as a vector.
-fn vector<T: Real, V: Entries<T>>(outputs: &dyn Fn(usize) -> T, mut from: usize) -> V {
-    V::from_entries(&mut || {
-        from += 1;
-        outputs(from - 1)
-    })
+/// Runs a program, and makes something of what comes out.
+fn run<T: Real, B: Backend<T>, R>(
+    program: &Ready<B::Code>,
+    image: &B::Image,
+    arrays: &Arrays<T>,
+    make: impl FnOnce(&[T]) -> R,
+) -> R {
+    let in_place = |outputs: &mut [T]| {
+        B::run(&program.code, image, arrays, outputs);
+        make(outputs)
+    };
+    // What isn't used costs time to clear.
+    match program.outputs {
+        count @ 0..=12 => in_place(&mut [T::zero(); 12][..count]),
+        count @ 13..=48 => in_place(&mut [T::zero(); 48][..count]),
+        count => in_place(&mut vec![T::zero(); count]),
+    }
+}
+
+/// The same of a program that knows no constants.
+fn run_alone<T: Real, B: Backend<T>, R>(
+    program: &Ready<B::Code>,
+    arrays: &Arrays<T>,
+    make: impl FnOnce(&[T]) -> R,
+) -> R {
+    run::<T, B, R>(program, &B::image(&program.code, &[]), arrays, make)
+}
+
+/// The first of these numbers as a vector.
+fn vector<T: Real, V: Entries<T>>(outputs: &[T]) -> V {
+    let mut outputs = outputs.iter().copied();
+    V::from_entries(&mut || outputs.next().unwrap_or_else(|| real(f64::NAN)))
 }
 
 /// The same as a square matrix, row by row.
-fn square<G: LieGroup>(outputs: &dyn Fn(usize) -> G::Scalar, from: usize) -> Square<G> {
+fn square<G: LieGroup>(outputs: &[G::Scalar]) -> Square<G> {
     Vector::<G>::square(|column| {
-        let mut entry = from + column;
-        Vector::<G>::from_entries(&mut || {
-            entry += G::DIMENSION;
-            outputs(entry - G::DIMENSION)
-        })
+        let mut entries = outputs.iter().skip(column).step_by(G::DIMENSION).copied();
+        Vector::<G>::from_entries(&mut || entries.next().unwrap_or_else(|| real(f64::NAN)))
     })
 }
 
 /// The constants of a step.
-#[derive(Clone, Debug)]
-pub struct Constants<T> {
-    declaration: &'static Declaration,
-    folded: Arc<Folded<T>>,
+#[derive(Debug)]
+pub struct Constants<T: Real, B: Backend<T> = Interpreted>(pub(crate) Arc<Folded<T, B>>);
+
+/// Numbers that don't change from step to step, and what runs with them.
+#[derive(Debug)]
+pub(crate) struct Folded<T: Real, B: Backend<T>> {
+    pub(crate) declaration: &'static Declaration,
+    pub(crate) stages: All<B::Code>,
+    pub(crate) is_specialised: bool,
+    pub(crate) numbers: Vec<T>,
+    /// With them the images of programs.
+    terms: B::Image,
+    kick_before: B::Image,
+    newton_system: B::Image,
+    newton_residual: B::Image,
+    kick_after: B::Image,
+    kick_derivative: Option<B::Image>,
 }
 
-/// Numbers that don't change from step to step.
-#[derive(Debug, PartialEq)]
-struct Folded<T> {
-    numbers: Vec<T>,
-    /// With them the first registers of each program.
-    terms: Box<[T]>,
-    kick_before: Box<[T]>,
-    newton_system: Box<[T]>,
-    newton_residual: Box<[T]>,
-    kick_after: Box<[T]>,
-    kick_derivative: Box<[T]>,
+impl<T: Real, B: Backend<T>> Constants<T, B> {
+    pub(crate) fn of(
+        declaration: &'static Declaration,
+        stages: All<B::Code>,
+        is_specialised: bool,
+        numbers: Vec<T>,
+    ) -> Self {
+        let image = |program: &Ready<B::Code>| B::image(&program.code, &numbers);
+        let Stages { terms, kick_before, newton_system, newton_residual, kick_after, kick_derivative, .. } = &*stages;
+        let folded = Folded {
+            terms: image(terms),
+            kick_before: image(kick_before),
+            newton_system: image(newton_system),
+            newton_residual: image(newton_residual),
+            kick_after: image(kick_after),
+            kick_derivative: kick_derivative.as_ref().map(image),
+            declaration,
+            is_specialised,
+            numbers,
+            stages: Arc::clone(&stages),
+        };
+        Self(Arc::new(folded))
+    }
 }
 
-impl<T: PartialEq> PartialEq for Constants<T> {
+impl<T: Real, B: Backend<T>> Clone for Constants<T, B> {
+    fn clone(&self) -> Self {
+        Self(Arc::clone(&self.0))
+    }
+}
+
+impl<T: Real, B: Backend<T>> PartialEq for Constants<T, B> {
     fn eq(&self, other: &Self) -> bool {
-        std::ptr::eq(self.declaration, other.declaration) && self.folded.numbers == other.folded.numbers
+        let (one, other) = (&*self.0, &*other.0);
+        let is_same = std::ptr::eq(one.declaration, other.declaration) && one.is_specialised == other.is_specialised;
+        is_same && one.numbers == other.numbers
     }
 }
 
@@ -98,42 +154,56 @@ pub struct StepTerms<T, V, W> {
     numbers: [T; MOST_TERMS],
 }
 
-impl<G, W, K> Late<G, W, K>
+impl<G, W, K, B> Late<G, W, K, B>
 where
     G: LieGroup,
     W: Advected<G> + Slots,
+    B: Backend<G::Scalar>,
 {
     /// What a term comes to, by `F`, `w` and `h`.
     fn term<R>(
         &self,
-        code: &Code,
+        program: &Ready<B::Code>,
         (f, w, h): (&Matrix<G>, &W, G::Scalar),
-        make: impl FnOnce(&dyn Fn(usize) -> G::Scalar) -> R,
+        make: impl FnOnce(&[G::Scalar]) -> R,
     ) -> R {
         let (element, advected) = (List::of(f), List::of(w));
-        let inverse = code.reads(Source::Inverse).then(|| List::of(&G::from_matrix_unchecked(*f).inverse().matrix()));
-        let arrays = Arrays {
-            step: Some(h),
-            parameters: &self.numbers,
-            advected: advected.get(),
-            element: element.get(),
-            inverse: inverse.as_ref().map_or(&[], List::get),
-            ..Arrays::default()
-        };
-        code.run(&code.image(&[]), &arrays, make)
+        let inverse = program.reads(Array::Inverse).then(|| List::of(&G::from_matrix_unchecked(*f).inverse().matrix()));
+        let arrays = Arrays::of([
+            (Array::Step, std::slice::from_ref(&h)),
+            (Array::Parameters, &self.numbers),
+            (Array::Advected, advected.get()),
+            (Array::Element, element.get()),
+            (Array::Inverse, inverse.as_ref().map_or(&[], List::get)),
+        ]);
+        run_alone::<_, B, _>(program, &arrays, make)
+    }
+
+    /// A term of a Lagrangian, of which a force has none.
+    fn of_lagrangian<R>(
+        &self,
+        index: usize,
+        at: (&Matrix<G>, &W, G::Scalar),
+        make: impl FnOnce(&[G::Scalar]) -> R,
+    ) -> R {
+        match &self.stages.lagrangian {
+            Some(terms) => self.term(&terms[index], at, make),
+            None => make(&vec![real(0.0); G::DIMENSION]),
+        }
     }
 }
 
-impl<G, W, K> Effect for Late<G, W, K>
+impl<G, W, K, B> Effect for Late<G, W, K, B>
 where
     G: LieGroup,
     W: Advected<G> + Slots,
     K: KineticPart,
+    B: Backend<G::Scalar>,
     CayleyRetraction: Retraction<G>,
 {
     type Retraction = CayleyRetraction;
     type Kinetic = K;
-    type Constants = Constants<G::Scalar>;
+    type Constants = Constants<G::Scalar, B>;
     type StepTerms = StepTerms<G::Scalar, Vector<G>, W>;
 
     // Those of the declaration are asked of a value.
@@ -142,7 +212,7 @@ where
     const DERIVATION: &'static str = "a declaration that was read while the program runs; see its derivation\n";
 
     fn derivation(&self) -> String {
-        self.declaration.derivation.to_owned()
+        self.declaration.derivation.clone()
     }
 
     fn has_constant_inertia(&self) -> bool {
@@ -154,100 +224,105 @@ where
     }
 
     fn denominators(constants: &Self::Constants) -> u32 {
-        constants.declaration.denominators
+        constants.0.declaration.denominators
+    }
+
+    fn parts(constants: &Self::Constants) -> Parts {
+        constants.0.declaration.parts
+    }
+
+    fn apart(constants: &Self::Constants) -> Blocks {
+        constants.0.declaration.apart
+    }
+
+    fn jacobian_is_expensive(constants: &Self::Constants) -> bool {
+        constants.0.declaration.is_expensive
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<G::Scalar>) {
-        visitor.term(self.declaration.derivation);
-        for (index, name) in self.declaration.names.iter().enumerate() {
-            self.of_parameter(index).iter().for_each(|&number| visitor.parameter(name, number));
+        visitor.term(&self.declaration.derivation);
+        for (index, parameter) in self.declaration.parameters.iter().enumerate() {
+            self.of_parameter(index).iter().for_each(|&number| visitor.parameter(&parameter.name, number));
         }
     }
 
     fn momentum_jacobian(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> Square<G> {
-        self.term(&self.declaration.momentum_jacobian, (f, w, h), |outputs| square::<G>(outputs, 0))
+        self.term(&self.stages.momentum_jacobian, (f, w, h), square::<G>)
     }
 
     fn limit(&self, velocity: Option<&Vector<G>>, w: &W) -> Limit<Self> {
-        let advected = List::of(w);
-        let arrays = Arrays { parameters: &self.numbers, advected: advected.get(), ..Arrays::default() };
-        if let (Some(velocity), Some([l, momentum, hessian])) = (velocity, &self.declaration.at_velocity) {
-            let velocity = List::of(velocity);
-            let arrays = Arrays { velocity: velocity.get(), ..arrays };
-            let number = |code: &Code| code.run(&code.image(&[]), &arrays, |outputs| outputs(0));
+        let (advected, given) = (List::of(w), velocity.map(List::of));
+        let arrays = Arrays::of([
+            (Array::Parameters, &*self.numbers),
+            (Array::Advected, advected.get()),
+            (Array::Velocity, given.as_ref().map_or(&[], List::get)),
+        ]);
+        if let (Some(_), Some([l, momentum, hessian])) = (velocity, &self.stages.at_velocity) {
             return Limit {
-                l: number(l),
-                momentum: momentum.run(&momentum.image(&[]), &arrays, |outputs| vector(outputs, 0)),
-                hessian: hessian.run(&hessian.image(&[]), &arrays, |outputs| square::<G>(outputs, 0)),
+                l: run_alone::<_, B, _>(l, &arrays, |outputs| outputs[0]),
+                momentum: run_alone::<_, B, _>(momentum, &arrays, vector),
+                hessian: run_alone::<_, B, _>(hessian, &arrays, square::<G>),
             };
         }
-        let code = &self.declaration.at_rest;
         let entries = G::DIMENSION * G::DIMENSION;
-        code.run(&code.image(&[]), &arrays, |outputs| {
-            let potential = outputs(entries + G::DIMENSION);
-            Limit::quadratic(velocity, square::<G>(outputs, 0), vector(outputs, entries), potential)
+        run_alone::<_, B, _>(&self.stages.at_rest, &arrays, |outputs| {
+            let (inertia, bias) = (square::<G>(outputs), vector(&outputs[entries..]));
+            Limit::quadratic(velocity, inertia, bias, outputs[entries + G::DIMENSION])
         })
     }
 
     fn constants(&self, h: G::Scalar) -> Self::Constants {
-        let Declaration { constants, terms, kick_before, newton_system, newton_residual, kick_after, .. } =
-            self.declaration;
-        let arrays = Arrays { step: Some(h), parameters: &self.numbers, ..Arrays::default() };
-        let numbers: Vec<G::Scalar> =
-            constants.run(&constants.image(&[]), &arrays, |outputs| (0..constants.outputs()).map(outputs).collect());
-        let image = |code: &Code| code.image(&numbers);
-        let folded = Folded {
-            terms: image(terms),
-            kick_before: image(kick_before),
-            newton_system: image(newton_system),
-            newton_residual: image(newton_residual),
-            kick_after: image(kick_after),
-            kick_derivative: self.declaration.kick_derivative.as_ref().map(image).unwrap_or_default(),
-            numbers,
-        };
-        Constants { declaration: self.declaration, folded: Arc::new(folded) }
+        let arrays = Arrays::of([(Array::Step, std::slice::from_ref(&h)), (Array::Parameters, &*self.numbers)]);
+        let numbers = run_alone::<_, B, _>(&self.stages.constants, &arrays, <[G::Scalar]>::to_vec);
+        let programs = self.specialise.map(|specialise| specialise(&self.declaration.programs, &numbers));
+        // What is too large now was too large before, and isn't here.
+        let own = programs.and_then(|programs| ready::<G::Scalar, B>(&programs).ok());
+        let is_specialised = own.is_some();
+        Constants::of(self.declaration, own.unwrap_or_else(|| Arc::clone(&self.stages)), is_specialised, numbers)
     }
 
     fn are_finite(constants: &Self::Constants) -> bool {
-        constants.folded.numbers.iter().all(is_finite)
+        constants.0.numbers.iter().all(is_finite)
     }
 
     fn kick_before(constants: &Self::Constants, w: &W) -> Vector<G> {
-        if !constants.declaration.parts.kick_before {
-            return nothing::<G>();
-        }
         let advected = List::of(w);
-        let arrays = Arrays { advected: advected.get(), ..Arrays::default() };
-        constants.declaration.kick_before.run(&constants.folded.kick_before, &arrays, |outputs| vector(outputs, 0))
+        let arrays = Arrays::of([(Array::Constants, &*constants.0.numbers), (Array::Advected, advected.get())]);
+        run::<_, B, _>(&constants.0.stages.kick_before, &constants.0.kick_before, &arrays, vector)
     }
 
     fn kick_derivative(constants: &Self::Constants, w: &W, velocity: &Vector<G>) -> Option<Vector<G>> {
-        let code = constants.declaration.kick_derivative.as_ref()?;
+        let folded = &*constants.0;
+        let (program, image) = (folded.stages.kick_derivative.as_ref()?, folded.kick_derivative.as_ref()?);
         let (advected, velocity) = (List::of(w), List::of(velocity));
-        let arrays = Arrays { advected: advected.get(), velocity: velocity.get(), ..Arrays::default() };
-        Some(code.run(&constants.folded.kick_derivative, &arrays, |outputs| vector(outputs, 0)))
+        let arrays = Arrays::of([
+            (Array::Constants, &*folded.numbers),
+            (Array::Advected, advected.get()),
+            (Array::Velocity, velocity.get()),
+        ]);
+        Some(run::<_, B, _>(program, image, &arrays, vector))
     }
 
     fn step_terms(constants: &Self::Constants, a: &Vector<G>, w: &W) -> Self::StepTerms {
-        let (target, advected) = (List::of(a), List::of(w));
+        let (folded, target, advected) = (&*constants.0, List::of(a), List::of(w));
+        let arrays = Arrays::of([
+            (Array::Constants, &*folded.numbers),
+            (Array::Target, target.get()),
+            (Array::Advected, advected.get()),
+        ]);
         let mut numbers = [real::<G::Scalar>(0.0); MOST_TERMS];
-        let arrays = Arrays { target: target.get(), advected: advected.get(), ..Arrays::default() };
-        let code = &constants.declaration.terms;
-        code.run(&constants.folded.terms, &arrays, |outputs| {
-            numbers.iter_mut().take(code.outputs()).enumerate().for_each(|(at, number)| *number = outputs(at));
-        });
+        B::run(&folded.stages.terms.code, &folded.terms, &arrays, &mut numbers[..folded.stages.terms.outputs]);
         StepTerms { right_side: *a, advected: *w, numbers }
     }
 
     fn newton_system(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> (Vector<G>, Square<G>) {
-        let declaration = constants.declaration;
-        let code = &declaration.newton_system;
-        let image = &constants.folded.newton_system;
+        let folded = &*constants.0;
+        let program = (&folded.stages.newton_system, &folded.newton_system);
         let (residual, jacobian): (Vector<G>, Square<G>) =
-            iteration::<G, W, _>((code, image), constants, terms, half, |outputs| {
-                (vector(outputs, 0), square::<G>(outputs, G::DIMENSION))
+            iteration::<G, W, B, _>(program, folded, terms, half, |outputs| {
+                (vector(outputs), square::<G>(&outputs[G::DIMENSION..]))
             });
-        if !declaration.in_increment {
+        if !folded.declaration.in_increment {
             return (residual, jacobian);
         }
         let tangent = <CayleyRetraction as Retraction<G>>::tangent_of_half(half);
@@ -255,43 +330,36 @@ where
     }
 
     fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> Residual<Vector<G>> {
-        let declaration = constants.declaration;
-        let program = (&declaration.newton_residual, &*constants.folded.newton_residual);
-        iteration::<G, W, _>(program, constants, terms, half, |outputs| Residual {
-            momentum_defect: vector(outputs, 0),
-            moving_kick: declaration.is_expensive.then(|| vector(outputs, G::DIMENSION)),
+        let folded = &*constants.0;
+        let program = (&folded.stages.newton_residual, &folded.newton_residual);
+        iteration::<G, W, B, _>(program, folded, terms, half, |outputs| Residual {
+            momentum_defect: vector(outputs),
+            moving_kick: folded.declaration.is_expensive.then(|| vector(&outputs[G::DIMENSION..])),
         })
     }
 
     fn kick_after(constants: &Self::Constants, increment: &Matrix<G>, next: &W) -> Vector<G> {
-        if !constants.declaration.parts.kick_after {
-            return nothing::<G>();
-        }
-        let code = &constants.declaration.kick_after;
+        let folded = &*constants.0;
+        let program = &folded.stages.kick_after;
         let (entries, next) = (List::of(increment), List::of(next));
-        let inverse = code.reads(Source::Inverse).then(|| List::of(&G::from_increment(increment).inverse().matrix()));
-        let arrays = Arrays {
-            increment: entries.get(),
-            next: next.get(),
-            inverse: inverse.as_ref().map_or(&[], List::get),
-            ..Arrays::default()
-        };
-        code.run(&constants.folded.kick_after, &arrays, |outputs| vector(outputs, 0))
+        let inverse = program.reads(Array::Inverse).then(|| List::of(&G::from_increment(increment).inverse().matrix()));
+        let arrays = Arrays::of([
+            (Array::Constants, &*folded.numbers),
+            (Array::Increment, entries.get()),
+            (Array::Next, next.get()),
+            (Array::Inverse, inverse.as_ref().map_or(&[], List::get)),
+        ]);
+        run::<_, B, _>(program, &folded.kick_after, &arrays, vector)
     }
 }
 
-/// What changes nothing by being added, not even the sign of a zero.
-fn nothing<G: LieGroup>() -> Vector<G> {
-    -Vector::<G>::zero()
-}
-
 /// What an iteration computes.
-fn iteration<G: LieGroup, W: Advected<G>, R>(
-    (code, image): (&Code, &[G::Scalar]),
-    constants: &Constants<G::Scalar>,
+fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>, R>(
+    (program, image): (&Ready<B::Code>, &B::Image),
+    folded: &Folded<G::Scalar, B>,
     terms: &StepTerms<G::Scalar, Vector<G>, W>,
     half: &Vector<G>,
-    make: impl FnOnce(&dyn Fn(usize) -> G::Scalar) -> R,
+    make: impl FnOnce(&[G::Scalar]) -> R,
 ) -> R
 where
     CayleyRetraction: Retraction<G>,
@@ -299,31 +367,30 @@ where
     let coordinates = List::of(half);
     // Off SO(3) the system is written in the increment.
     let increment =
-        constants.declaration.in_increment.then(|| <CayleyRetraction as Retraction<G>>::increment_of_half(half));
-    let inverse = increment.filter(|_| code.reads(Source::InverseIncrement)).map(|it| G::inverse_increment(&it));
+        folded.declaration.in_increment.then(|| <CayleyRetraction as Retraction<G>>::increment_of_half(half));
+    let inverse = increment.filter(|_| program.reads(Array::InverseIncrement)).map(|it| G::inverse_increment(&it));
     let [increment, inverse] = [increment, inverse].map(|matrix| matrix.map(|matrix| List::of(&matrix)));
-    let is_cut = |kind: fn(usize) -> Source| code.reads(kind);
-    let (target, advected) = (
-        is_cut(Source::Target).then(|| List::of(&terms.right_side)),
-        is_cut(Source::Advected).then(|| List::of(&terms.advected)),
-    );
-    let arrays = Arrays {
-        terms: &terms.numbers,
-        half: coordinates.get(),
-        increment: increment.as_ref().map_or(&[], List::get),
-        inverse_increment: inverse.as_ref().map_or(&[], List::get),
-        target: target.as_ref().map_or(&[], List::get),
-        advected: advected.as_ref().map_or(&[], List::get),
-        ..Arrays::default()
-    };
-    code.run(image, &arrays, make)
+    // Of many terms some are computed anew.
+    let target = program.reads(Array::Target).then(|| List::of(&terms.right_side));
+    let advected = program.reads(Array::Advected).then(|| List::of(&terms.advected));
+    let arrays = Arrays::of([
+        (Array::Constants, &*folded.numbers),
+        (Array::Terms, &terms.numbers),
+        (Array::Half, coordinates.get()),
+        (Array::Increment, increment.as_ref().map_or(&[], List::get)),
+        (Array::InverseIncrement, inverse.as_ref().map_or(&[], List::get)),
+        (Array::Target, target.as_ref().map_or(&[], List::get)),
+        (Array::Advected, advected.as_ref().map_or(&[], List::get)),
+    ]);
+    run::<_, B, _>(program, image, &arrays, make)
 }
 
-impl<G, W, K> DiscreteLagrangian for Late<G, W, K>
+impl<G, W, K, B> DiscreteLagrangian for Late<G, W, K, B>
 where
     G: LieGroup,
     W: Advected<G> + Slots,
     K: KineticPart,
+    B: Backend<G::Scalar>,
     CayleyRetraction: Retraction<G>,
 {
     // Asked of a value.
@@ -334,47 +401,26 @@ where
     }
 
     fn l_d(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> G::Scalar {
-        self.declaration
-            .lagrangian
-            .as_ref()
-            .map_or(real(0.0), |terms| self.term(&terms.l_d, (f, w, h), |outputs| outputs(0)))
+        self.of_lagrangian(0, (f, w, h), |outputs| outputs[0])
     }
 
     fn right_momentum(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> Vector<G> {
-        self.covector(|terms| &terms.right_momentum, f, w, h)
+        self.of_lagrangian(1, (f, w, h), vector)
     }
 
     fn left_momentum(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> Vector<G> {
-        self.covector(|terms| &terms.left_momentum, f, w, h)
+        self.of_lagrangian(2, (f, w, h), vector)
     }
 
     fn diamond(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> Vector<G> {
-        self.covector(|terms| &terms.diamond, f, w, h)
+        self.of_lagrangian(3, (f, w, h), vector)
     }
 
     fn legendre_minus(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> Vector<G> {
-        self.covector(|terms| &terms.legendre_minus, f, w, h)
+        self.of_lagrangian(4, (f, w, h), vector)
     }
 
     fn discrete_energy(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> G::Scalar {
-        let terms = self.declaration.lagrangian.as_ref();
-        terms.map_or(real(0.0), |terms| self.term(&terms.discrete_energy, (f, w, h), |outputs| outputs(0)))
-    }
-}
-
-impl<G, W, K> Late<G, W, K>
-where
-    G: LieGroup,
-    W: Advected<G> + Slots,
-{
-    fn covector(
-        &self,
-        code: impl Fn(&crate::declaration::Lagrangian) -> &Code,
-        f: &Matrix<G>,
-        w: &W,
-        h: G::Scalar,
-    ) -> Vector<G> {
-        let terms = self.declaration.lagrangian.as_ref();
-        terms.map_or_else(Vector::<G>::zero, |terms| self.term(code(terms), (f, w, h), |outputs| vector(outputs, 0)))
+        self.of_lagrangian(5, (f, w, h), |outputs| outputs[0])
     }
 }

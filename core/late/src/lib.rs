@@ -2,18 +2,31 @@
 //!
 //! # Inside
 //!
-//! `effect → term → declaration → code`: a [`Declaration`] is what was derived of a text, with its stages as straight-line code for
-//! an interpreter; a [`Late`] is one with numbers, and an [`Effect`](liestep::mechanics::Effect) as any other. `carried` compares
-//! what is advected with the type that carries it.
+//! `lanes → effect → term → {declaration, specialised} → code → error`, and `{latex, written} → declaration`: a [`Declaration`] is what was derived of a text, with its
+//! stages as straight-line programs; a [`Late`] is one with numbers, and an [`Effect`](liestep::mechanics::Effect) as any
+//! other. A [`Backend`] runs the programs: [`Interpreted`] here, machine code in `liestep-machine`. `carried` compares what
+//! is advected with the type that carries it.
 #![forbid(unsafe_code)]
 
 mod carried;
 mod code;
 mod declaration;
 mod effect;
+mod error;
+mod lanes;
+mod latex;
+mod specialised;
 mod term;
+mod written;
 
 pub use carried::Slots;
-pub use declaration::{Declaration, LateError, Mistake, kept};
+pub use code::{Arrays, Backend, Code, Interpreted, applied};
+pub use declaration::{Declaration, kept};
 pub use effect::{Constants, StepTerms};
+pub use error::{LateError, Mistake};
+pub use lanes::Wider;
+pub use latex::latex;
+pub use liestep_derivation::{Array, Function, Operation, Program, Source, Stages};
+pub use specialised::specialised;
 pub use term::Late;
+pub use written::{c, rust};

@@ -7,47 +7,58 @@ use std::sync::Arc;
 
 use liestep::SetupError;
 use liestep::groups::{Advected, LieGroup};
-use liestep::mechanics::{KineticPart, SharedBy, Sum, Term, WithKinetic};
+use liestep::mechanics::{Effect, KineticPart, SceneVisitor, SharedBy, Sum, Term, WithKinetic};
 use liestep::numbers::{Coordinates, Entries, Real, real};
-use liestep_derivation::ParameterKind;
+use liestep_derivation::{ParameterKind, Program, Stages};
 use nalgebra::Vector1;
 
 use crate::carried::Slots;
-use crate::declaration::{Declaration, LateError};
+use crate::code::{Backend, Interpreted};
+use crate::declaration::{All, Declaration};
+use crate::error::LateError;
+use crate::specialised::specialised;
+
+/// Programs with the constants of a stepper written into them.
+pub(crate) type Specialise<T> = fn(&Stages<Program>, &[T]) -> Stages<Program>;
 
 /// A declaration that was read while the program runs, with numbers for its parameters: an effect on the group `G`, with
-/// what is advected or given in `W`, as the macro would have it, and the kinetic part `K`. In a longer tuple what the
-/// declaration doesn't name is zero.
+/// what is advected or given in `W`, as the macro would have it, and the kinetic part `K`, which may be
+/// [`WithEitherKinetic`](liestep::mechanics::WithEitherKinetic) where that isn't known. In a longer tuple than the
+/// declaration's what it doesn't name is zero. `B` runs its programs.
 ///
 /// # Source
 ///
 /// As of every [`Effect`]: \[RDAE\], section 2.2.
-pub struct Late<G: LieGroup, W = (), K = WithKinetic> {
+pub struct Late<G: LieGroup, W = (), K = WithKinetic, B: Backend<G::Scalar> = Interpreted> {
     pub(crate) declaration: &'static Declaration,
+    pub(crate) stages: All<B::Code>,
     /// Of all parameters, NaN where none was given.
     pub(crate) numbers: Arc<[G::Scalar]>,
-    types: PhantomData<(W, K)>,
+    pub(crate) specialise: Option<Specialise<G::Scalar>>,
+    pub(crate) types: PhantomData<(W, K)>,
 }
 
-impl<G: LieGroup, W, K> Clone for Late<G, W, K> {
+impl<G: LieGroup, W, K, B: Backend<G::Scalar>> Clone for Late<G, W, K, B> {
     fn clone(&self) -> Self {
-        Self { declaration: self.declaration, numbers: Arc::clone(&self.numbers), types: PhantomData }
+        let (stages, numbers) = (Arc::clone(&self.stages), Arc::clone(&self.numbers));
+        Self { declaration: self.declaration, stages, numbers, specialise: self.specialise, types: PhantomData }
     }
 }
 
-impl<G: LieGroup, W, K> fmt::Debug for Late<G, W, K> {
+impl<G: LieGroup, W, K, B: Backend<G::Scalar>> fmt::Debug for Late<G, W, K, B> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut shown = f.debug_struct(self.declaration.name);
-        for (index, name) in self.declaration.names.iter().enumerate() {
-            shown.field(name, &self.of_parameter(index));
+        let mut shown = f.debug_struct(&self.declaration.name);
+        for (index, parameter) in self.declaration.parameters.iter().enumerate() {
+            shown.field(&parameter.name, &self.of_parameter(index));
         }
         shown.finish_non_exhaustive()
     }
 }
 
-impl<G: LieGroup, W, K> PartialEq for Late<G, W, K> {
+impl<G: LieGroup, W, K, B: Backend<G::Scalar>> PartialEq for Late<G, W, K, B> {
     fn eq(&self, other: &Self) -> bool {
-        std::ptr::eq(self.declaration, other.declaration) && self.numbers == other.numbers
+        let is_same = std::ptr::eq(self.declaration, other.declaration);
+        is_same && self.numbers == other.numbers && self.specialise.is_some() == other.specialise.is_some()
     }
 }
 
@@ -56,7 +67,7 @@ pub(crate) fn is_finite<T: Real>(number: &T) -> bool {
     Coordinates::is_finite(&Vector1::new(*number))
 }
 
-impl<G: LieGroup, W: Advected<G> + Slots, K: KineticPart> Late<G, W, K> {
+impl<G: LieGroup, W: Advected<G> + Slots, K: KineticPart, B: Backend<G::Scalar>> Late<G, W, K, B> {
     /// Derives a struct with `#[lagrangian(…)]` or `#[force(…)]`, and proves what was derived. Its parameters have no
     /// values yet.
     ///
@@ -81,38 +92,83 @@ impl<G: LieGroup, W: Advected<G> + Slots, K: KineticPart> Late<G, W, K> {
         if !slots.starts_with(&declaration.slots()) {
             return Err(LateError::Advected { declared: format!("{:?}", declaration.slots()) });
         }
-        if (K::IS_THERE, K::JACOBIAN_IS_EXPENSIVE) != (declaration.has_kinetic, declaration.is_expensive) {
+        let is_expensive = declaration.is_expensive || K::IS_EITHER;
+        if (K::IS_THERE, K::JACOBIAN_IS_EXPENSIVE) != (declaration.has_kinetic, is_expensive) {
             return Err(LateError::Kinetic { declared: declaration.kinetic() });
         }
         let numbers = declaration.parameters.iter().map(|parameter| parameter.kind.len()).sum();
-        Ok(Self { declaration, numbers: vec![real(f64::NAN); numbers].into(), types: PhantomData })
+        Ok(Self {
+            declaration,
+            stages: declaration.ready::<G::Scalar, B>()?,
+            numbers: vec![real(f64::NAN); numbers].into(),
+            specialise: None,
+            types: PhantomData,
+        })
+    }
+
+    /// The declaration of a compiled effect, derived anew, with its numbers.
+    ///
+    /// # Errors
+    ///
+    /// Where the effect wasn't declared, as a sum isn't; or as [`parse`](Self::parse).
+    pub fn like<E: Effect<Scalar = G::Scalar, Group = G, Advected = W>>(effect: &E) -> Result<Self, LateError> {
+        let mut named = Named(Vec::new());
+        effect.describe(&mut named);
+        named.0.iter().try_fold(Self::parse(E::DECLARATION)?, |late, (name, values)| late.with(name, values))
     }
 }
 
-impl<G: LieGroup, W, K> Late<G, W, K> {
-    /// With a value for a parameter, that of a matrix row by row. An inertia may be given by its three moments.
+/// The parameters of an effect, by their names.
+struct Named<T>(Vec<(&'static str, Vec<T>)>);
+
+impl<T> SceneVisitor<T> for Named<T> {
+    fn term(&mut self, _: &'static str) {}
+
+    fn parameter(&mut self, field: &'static str, value: T) {
+        match self.0.last_mut() {
+            Some((last, values)) if *last == field => values.push(value),
+            _ => self.0.push((field, vec![value])),
+        }
+    }
+}
+
+impl<G: LieGroup<Scalar = f64>, W, K, B: Backend<f64>> Late<G, W, K, B> {
+    /// With programs that have all numbers of a stepper written into them: it is faster, and its bits may differ by
+    /// rounding from those of the compiled step. Making one takes as long as many steps.
+    #[must_use]
+    pub fn specialised(mut self) -> Self {
+        self.specialise = Some(specialised);
+        self
+    }
+}
+
+impl<G: LieGroup, W, K, B: Backend<G::Scalar>> Late<G, W, K, B> {
+    /// With a value for a parameter, that of a matrix row by row. An inertia may be given by its three moments, and a
+    /// diagonal one by its tensor.
     ///
     /// # Errors
     ///
     /// Where there is no such parameter, or where it has another number of numbers.
     pub fn with(mut self, name: &str, value: &[G::Scalar]) -> Result<Self, LateError> {
-        let names = &self.declaration.names;
-        let Some(index) = names.iter().position(|known| *known == name) else {
-            let known = names.join(", ");
-            return Err(LateError::Unknown { name: name.to_owned(), known });
+        let parameters = &self.declaration.parameters;
+        let Some(index) = parameters.iter().position(|known| known.name == name) else {
+            let known: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
+            return Err(LateError::Unknown { name: name.to_owned(), known: known.join(", ") });
         };
         let (start, expected) = self.declaration.place(index);
-        let kind = self.declaration.parameters[index].kind;
         let mut numbers = self.numbers.to_vec();
         let place = &mut numbers[start..start + expected];
-        if kind == ParameterKind::Inertia && value.len() == 3 {
-            let on_diagonal =
-                |entry: usize| if entry.is_multiple_of(4) { value[entry / 4] } else { real::<G::Scalar>(0.0) };
-            place.iter_mut().enumerate().for_each(|(entry, number)| *number = on_diagonal(entry));
-        } else if value.len() == expected {
-            place.copy_from_slice(value);
-        } else {
-            return Err(LateError::Size { name: names[index], expected, found: value.len() });
+        let on_diagonal = |entry: usize| entry.is_multiple_of(4);
+        match (parameters[index].kind, value.len()) {
+            (_, found) if found == expected => place.copy_from_slice(value),
+            (ParameterKind::Inertia, 3) => {
+                let entry = |at| if on_diagonal(at) { value[at / 4] } else { real::<G::Scalar>(0.0) };
+                place.iter_mut().enumerate().for_each(|(at, number)| *number = entry(at));
+            }
+            (ParameterKind::DiagonalInertia, 9) if (0..9).all(|at| on_diagonal(at) || value[at] == real(0.0)) => {
+                place.iter_mut().zip(value.iter().step_by(4)).for_each(|(number, &value)| *number = value);
+            }
+            (_, found) => return Err(LateError::Size { name: name.to_owned(), expected, found }),
         }
         self.numbers = numbers.into();
         Ok(self)
@@ -161,22 +217,23 @@ fn entries<T: Real>(value: &impl Entries<T>) -> Vec<T> {
     list
 }
 
-impl<G, W, K> Term for Late<G, W, K>
+impl<G, W, K, B> Term for Late<G, W, K, B>
 where
     G: LieGroup,
     W: Advected<G> + Slots,
+    B: Backend<G::Scalar>,
 {
     type Scalar = G::Scalar;
     type Group = G;
     type Advected = W;
 
     fn validate(&self) -> Result<(), SetupError> {
-        for (index, &field) in self.declaration.names.iter().enumerate() {
-            let value = self.of_parameter(index);
+        for (index, parameter) in self.declaration.parameters.iter().enumerate() {
+            let (field, value) = (parameter.name.as_str(), self.of_parameter(index));
             if !value.iter().all(is_finite) {
                 return Err(SetupError::Parameter { field, cause: "is not finite, or wasn't given" });
             }
-            let is_inertia = self.declaration.parameters[index].kind == ParameterKind::Inertia;
+            let is_inertia = parameter.kind == ParameterKind::Inertia;
             if is_inertia && (0..9).any(|entry| value[entry] != value[entry % 3 * 3 + entry / 3]) {
                 return Err(SetupError::Parameter { field, cause: "is not symmetric" });
             }
@@ -198,10 +255,11 @@ where
     }
 }
 
-impl<G, W, K, C> Add<C> for Late<G, W, K>
+impl<G, W, K, B, C> Add<C> for Late<G, W, K, B>
 where
     G: LieGroup,
     W: Advected<G> + Slots,
+    B: Backend<G::Scalar>,
     C: Term,
     C::Group: SharedBy<G, Self, C>,
 {

@@ -1,201 +1,269 @@
-//! A declaration that is read makes the steps of the one that is compiled, to the bit.
+//! A declaration that is read makes the steps of the one that is compiled, to the bit: all of `examples/declarations` and
+//! all effects of the library, each by the text that the macro leaves.
+
+#[path = "common/same.rs"]
+mod same;
 
 use declarations::{
-    CayleyTop, ContinuousTop, DoublePendulum, ElasticFlow, FluidDrag, Flyer, FourthOrderTop, FullTop, HeavyTop, LogTop,
-    SixthOrderTop, TopOnCart, UnderwaterBody,
+    Alike, CayleyTop, ContinuousTop, DoublePendulum, ElasticFlow, FallingBody, FloatingBody, FluidDrag, Flyer,
+    FourthOrderTop, FreeBody, FullTop, Gyrostat, HeavyTop, LogTop, LogTraceTop, Magnet, OrbitingBody, PointSpring,
+    RodElement, Satellite, SixthOrderTop, SlidingTop, SuspendedLoad, TetheredPlate, Thruster, TopOnCart, Torquer,
+    TwoBodies, UnderwaterBody,
 };
-use liestep::groups::{Advected, Configuration, CovariantTensor, LieGroup, R2, Relative, SE3, SL2, SeenFrom};
-use liestep::mechanics::{
-    Effect, Inertia, KineticPart, SceneVisitor, WithExpensiveKinetic, WithKinetic, WithoutKinetic,
+use liestep::effects::{
+    CayleyBody, Dipole, Drag, FourthOrderBody, GeodesicBody, Gravity, GravityGradient, MagneticDamping, PrincipalBody,
+    RigidBody, Rotor, SixthOrderBody, Spring, Thrust, Torque,
 };
-use liestep::numbers::Entries;
+use liestep::groups::{CovariantTensor, SE23};
+use liestep::lagrangian;
+use liestep::laws::samples::Random;
+use liestep::mechanics::{DiagonalNonstandardInertia, Effect, Inertia, WithEitherKinetic, WithoutKinetic};
+use liestep::motion::Batch;
 use liestep::{NonstandardInertia, SO3, Stepper};
-use liestep_late::{Late, Slots};
-use nalgebra::{Matrix2, Matrix3, Matrix4, Point3, Vector3, Vector4};
+use liestep_late::{Array, Arrays, Backend, Interpreted, Late, specialised};
+use nalgebra::{Matrix3, Matrix5, Point, SMatrix, SVector, Vector3, Vector5};
+use simba::simd::AutoF64x4;
 
-/// The struct of that name with its attributes, as a file has it; of a file that is generic in its scalar, over `f64`.
-fn declared(file: &str, name: &str) -> String {
-    let end_of_name = |rest: &str| rest.starts_with([' ', '<']);
-    let position = |text: &str| {
-        let mut found = text.match_indices("pub struct ").map(|(at, marker)| at + marker.len());
-        found.find(|&at| text[at..].strip_prefix(name).is_some_and(end_of_name)).expect(name)
-    };
-    let at = position(file);
-    let attribute =
-        ["\n#[lagrangian", "\n#[force"].iter().filter_map(|begin| file[..at].rfind(begin)).max().expect(name);
-    let end = at + file[at..].find("\n}").expect("an end") + 2;
-    file[attribute..end].replace("<T = f64>", "").replace("<T>", "<f64>").replace(": T,", ": f64,")
+use same::{assert_as_compiled, assert_same};
+
+/// Numbers that a declaration makes sense with.
+trait Sample {
+    fn sample(random: &mut Random) -> Self;
 }
 
-macro_rules! text {
-    ($name:literal in $file:literal) => {
-        declared(include_str!(concat!("../../../examples/", $file, ".rs")), $name)
-    };
-}
-
-/// The parameters of an effect, by their names.
-struct Named(Vec<(&'static str, Vec<f64>)>);
-
-impl SceneVisitor<f64> for Named {
-    fn term(&mut self, _: &'static str) {}
-
-    fn parameter(&mut self, field: &'static str, value: f64) {
-        match self.0.last_mut() {
-            Some((last, values)) if *last == field => values.push(value),
-            _ => self.0.push((field, vec![value])),
-        }
+impl Sample for f64 {
+    fn sample(random: &mut Random) -> Self {
+        1.0 + 0.5 * random.signed()
     }
 }
 
-/// The declaration of a text with the numbers of a compiled effect.
-fn read<E, K>(effect: &E, text: &str) -> Late<E::Group, E::Advected, K>
-where
-    E: Effect<Scalar = f64>,
-    E::Advected: Slots,
-    K: KineticPart,
-{
-    let mut named = Named(Vec::new());
-    effect.describe(&mut named);
-    let late = Late::parse(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    named.0.iter().fold(late, |late, (name, values)| {
-        let diagonal = || [values[0], values[4], values[8]];
-        late.clone().with(name, values).or_else(|_| late.with(name, &diagonal())).expect(name)
-    })
+macro_rules! sampled {
+    ($([$($parameter:tt)*] $type:ty, $random:ident: $value:expr;)+) => {
+        $(impl<$($parameter)*> Sample for $type {
+            fn sample($random: &mut Random) -> Self {
+                $value
+            }
+        })+
+    };
 }
 
-fn entries<E: Entries<f64>>(value: &E) -> Vec<u64> {
-    let mut list = Vec::new();
-    value.each(&mut |entry| list.push(entry.to_bits()));
-    list
+/// Symmetric and positive.
+fn metric<const N: usize>(random: &mut Random) -> SMatrix<f64, N, N> {
+    let root: SMatrix<f64, N, N> = random.sample();
+    SMatrix::identity() + root * root.transpose() * 0.3
 }
 
-/// Both make the same 500 steps, forwards and backwards.
-fn same<A, B>(compiled: &A, late: &B, start: (A::Group, &[f64]))
-where
-    A: Effect<Scalar = f64> + Clone + liestep::mechanics::Regular,
-    B: Effect<Scalar = f64, Group = A::Group, Advected = A::Advected> + Clone + liestep::mechanics::Regular,
-    A::Group: Clone,
-    A::Advected: Advected<A::Group>,
-{
-    for h in [0.01, -0.02] {
-        let one = Stepper::new(compiled.clone(), h).expect("a stepper");
-        let other = Stepper::new(late.clone(), h).expect("a stepper");
-        let velocity = || {
-            let mut components = start.1.iter().copied();
-            <A::Group as LieGroup>::Vector::from_entries(&mut || components.next().expect("one more"))
-        };
-        let mut first = one.start(start.0, velocity()).expect("a start");
-        let mut second = other.start(start.0, velocity()).expect("a start");
-        for step in 0..500 {
-            let reports = [one.step(&mut first), other.step(&mut second)].map(|made| made.expect("a step"));
-            assert_eq!(reports[0].iterations, reports[1].iterations, "step {step}");
-            assert_eq!(entries(&first.momentum()), entries(&second.momentum()), "momentum after step {step}");
-            let attitudes = (entries(&first.attitude().matrix()), entries(&second.attitude().matrix()));
-            assert_eq!(attitudes.0, attitudes.1, "attitude after step {step}");
-            assert_eq!(entries(&first.advected()), entries(&second.advected()), "advected after step {step}");
-        }
-        let [one, other] = [one.energy(&first), other.energy(&second)];
-        assert!((one - other).abs() <= 1e-12 * one.abs().max(1.0), "{one} and {other}");
+sampled! {
+    [] Vector3<f64>, random: random.sample();
+    [] nalgebra::Vector4<f64>, random: random.sample();
+    [] Vector5<f64>, random: random.sample();
+    [const N: usize] Point<f64, N>, random: Point { coords: random.sample::<SVector<f64, N>>() };
+    [] nalgebra::Matrix2<f64>, random: metric(random);
+    [] Matrix3<f64>, random: metric(random);
+    [] nalgebra::Matrix4<f64>, random: metric(random);
+    [] Matrix5<f64>, random: metric(random);
+    [const N: usize] CovariantTensor<f64, N>, random: CovariantTensor(metric(random));
+    [] NonstandardInertia, random: NonstandardInertia::new(metric(random)).expect("an inertia");
+    [] Inertia, random: NonstandardInertia::sample(random).to_inertia();
+    [] DiagonalNonstandardInertia, random: {
+        let moments = Vector3::repeat(3.0) + random.sample::<Vector3<f64>>() * 0.5;
+        DiagonalNonstandardInertia::from_principal_moments(moments).expect("an inertia")
+    };
+}
+
+macro_rules! random {
+    ($seed:expr, $name:ident { $($field:ident)* }) => {{
+        let random = &mut Random::new($seed);
+        $name { $($field: Sample::sample(random)),* }
+    }};
+}
+
+/// Alone.
+macro_rules! as_compiled {
+    ($($name:ident { $($field:ident)* })+) => {
+        $(for seed in 1..3 {
+            println!("{}", stringify!($name));
+            let compiled = random!(seed, $name { $($field)* });
+            assert_as_compiled(&compiled, seed);
+        })+
+    };
+}
+
+/// Without a kinetic part of its own, beside a compiled body.
+macro_rules! as_compiled_beside {
+    ($body:ident { $($of_body:ident)* }: $($name:ident { $($field:ident)* })+) => {
+        let body = || random!(0, $body { $($of_body)* });
+        $(for seed in 1..3 {
+            println!("{}", stringify!($name));
+            let compiled = random!(seed, $name { $($field)* });
+            let late: Late<_, _, WithoutKinetic> = Late::like(&compiled).expect("a declaration");
+            assert_same(&(body() + compiled), &(body() + late), seed);
+        })+
+    };
+}
+
+#[test]
+fn tops() {
+    as_compiled! {
+        HeavyTop { J_d m g rho up }
+        FullTop { J_d m g rho up }
+        CayleyTop { J weight rho up }
+        LogTop { J weight rho up }
+        LogTraceTop { I1 weight rho up }
+        ContinuousTop { J_d m g rho up }
+        SlidingTop { J_d m g rho up }
+        FreeBody { J_d }
+        Magnet { J_d m Q field gradient }
+        Satellite { J_d m tip GM centre }
+    }
+    type Spring = declarations::Spring;
+    as_compiled! { Spring { J_d k length rho anchor } }
+}
+
+/// Of these solves do without the Jacobian.
+#[test]
+fn of_higher_orders() {
+    as_compiled! {
+        FourthOrderTop { J weight rho up }
+        SixthOrderTop { J weight rho up }
+        FourthOrderBody { J }
+        SixthOrderBody { J }
     }
 }
 
-fn turned() -> SO3 {
-    SO3::exp(Vector3::new(0.3, -0.5, 0.2))
-}
-
-const SPIN: [f64; 3] = [0.7, -1.1, 4.0];
-
-fn inertia() -> Matrix3<f64> {
-    Matrix3::new(2.0, 0.1, -0.2, 0.1, 2.5, 0.3, -0.2, 0.3, 3.0)
-}
-
 #[test]
-fn the_heavy_top() {
-    let top = HeavyTop::asymmetric();
-    let late: Late<SO3, Vector3<f64>, WithKinetic> = read(&top, &text!("HeavyTop" in "common/heavy_top/declaration"));
-    same(&top, &late, (turned(), &SPIN));
-    let J_d = NonstandardInertia::new(inertia()).expect("an inertia");
-    let top = FullTop { J_d, m: 1.5, g: 9.81, rho: Vector3::new(0.1, -0.2, 0.4), up: Vector3::z() };
-    let late: Late<SO3, Vector3<f64>, WithKinetic> = read(&top, &text!("FullTop" in "declarations/full_top"));
-    same(&top, &late, (turned(), &SPIN));
+fn effects_of_the_library() {
+    as_compiled! {
+        RigidBody { J_d }
+        PrincipalBody { J_d }
+        CayleyBody { J }
+        GeodesicBody { J }
+    }
+    as_compiled_beside! {
+        RigidBody { J_d }:
+        Gravity { m g rho up }
+        GravityGradient { GM r J direction }
+        Dipole { moment field }
+        Spring { k length at anchor }
+        Rotor { spin }
+        Drag { c J }
+        MagneticDamping { k field J }
+        Thrust { at thrust }
+        Torque { torque }
+        Torquer { moment field }
+    }
 }
 
-/// Of these the denominators are cleared by another power, or not at all, and solves do without the Jacobian.
-#[test]
-fn tops_of_other_kinetic_terms() {
-    let J = Inertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.0)).expect("an inertia");
-    let (weight, rho, up) = (9.81, Vector3::new(0.1, 0.0, 0.3), Vector3::z());
-    let cayley = CayleyTop { J, weight, rho, up };
-    same(
-        &cayley,
-        &read::<_, WithKinetic>(&cayley, &text!("CayleyTop" in "declarations/cayley_top")),
-        (turned(), &SPIN),
-    );
-    let log = LogTop { J, weight, rho, up };
-    same(&log, &read::<_, WithKinetic>(&log, &text!("LogTop" in "declarations/log_top")), (turned(), &SPIN));
-    let fourth = FourthOrderTop { J, weight, rho, up };
-    let text = text!("FourthOrderTop" in "declarations/fourth_order_top");
-    same(&fourth, &read::<_, WithExpensiveKinetic>(&fourth, &text), (turned(), &SPIN));
-    let sixth = SixthOrderTop { J, weight, rho, up };
-    let text = text!("SixthOrderTop" in "declarations/sixth_order_top");
-    same(&sixth, &read::<_, WithExpensiveKinetic>(&sixth, &text), (turned(), &SPIN));
-    let top = HeavyTop::asymmetric();
-    let continuous = ContinuousTop { J_d: top.J_d, m: top.m, g: top.g, rho: top.rho, up: top.up };
-    let text = text!("ContinuousTop" in "declarations/continuous_top");
-    same(&continuous, &read::<_, WithKinetic>(&continuous, &text), (turned(), &SPIN));
+/// On SE(2,3), with what moves there.
+#[lagrangian(
+    group = SE23,
+    advected(w = up),
+    l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * k * w.dot(&(r + F * r)),
+)]
+#[derive(Clone, Copy, Debug)]
+struct Vehicle {
+    J: Matrix5<f64>,
+    k: f64,
+    r: Vector5<f64>,
+    up: Vector5<f64>,
 }
 
 #[test]
 fn other_groups() {
-    let flow = ElasticFlow {
-        M: Matrix2::new(2.0, 0.3, 0.3, 1.5),
-        k: 3.0,
-        metric: CovariantTensor(Matrix2::new(1.0, 0.0, 0.0, 1.0)),
-    };
-    let text = text!("ElasticFlow" in "declarations/elastic_flow");
-    same::<_, Late<SL2, CovariantTensor<f64, 2>>>(&flow, &read(&flow, &text), (SL2::identity(), &[0.1, 0.2, -0.1]));
-    let mut J = Matrix4::zeros();
-    J.fixed_view_mut::<3, 3>(0, 0).copy_from(&(inertia() * 0.1));
-    let M = Matrix4::from_diagonal(&Vector4::new(3.0, 4.0, 5.0, 0.0));
-    let body = UnderwaterBody {
-        J,
-        M,
-        origin: Point3::origin(),
-        weight: Vector4::new(0.0, 0.1, -0.2, 0.3),
-        height: Vector4::new(0.0, 0.0, 1.0, 0.0),
-    };
-    let text = text!("UnderwaterBody" in "declarations/underwater_body");
-    let start = [0.3, -0.2, 0.5, 0.1, 0.2, -0.1];
-    same::<_, Late<SE3, Vector4<f64>>>(&body, &read(&body, &text), (SE3::identity(), &start));
+    as_compiled! {
+        ElasticFlow { M k metric }
+        TetheredPlate { J k length p anchor }
+        Flyer { J }
+        OrbitingBody { J m1 p1 m2 p2 GM centre }
+        UnderwaterBody { J M origin weight height }
+        Vehicle { J k r up }
+    }
+    as_compiled_beside! { Flyer { J }: FluidDrag { C } Thruster { at thrust } }
 }
-
-/// Terms of a sum, one of them read, one compiled.
-#[test]
-fn sums_with_compiled_effects() {
-    let mut J = Matrix4::identity();
-    J.fixed_view_mut::<3, 3>(0, 0).copy_from(&inertia());
-    let (flyer, drag) = (Flyer { J }, FluidDrag { C: J * 0.05 });
-    let late: Late<SE3> = read(&flyer, &text!("Flyer" in "declarations/flyer"));
-    let late_drag: Late<SE3, (), WithoutKinetic> = read(&drag, &text!("FluidDrag" in "declarations/flyer"));
-    let start = [0.3, -0.2, 0.5, 0.1, 0.2, -0.1];
-    same(&(flyer + drag), &(late.clone() + drag), (SE3::identity(), &start));
-    same(&(flyer + drag), &(late + late_drag), (SE3::identity(), &start));
-}
-
-/// What the bodies of the double pendulum see.
-type Seen = (SeenFrom<0, Vector3<f64>>, SeenFrom<1, Vector3<f64>>, Relative<0, 1, Matrix3<f64>>);
 
 #[test]
 fn several_bodies() {
-    let J_1 = NonstandardInertia::new(inertia()).expect("an inertia");
-    let J_2 = NonstandardInertia::new(inertia() * 0.4).expect("an inertia");
-    let (s_1, s_2) = (Vector3::new(0.1, 0.2, -0.9), Vector3::new(0.0, 0.1, -0.3));
-    let pendulum = DoublePendulum { J_1, J_2, rho: Vector3::new(0.0, 0.1, -1.0), s_1, s_2, g: 9.81, up: Vector3::z() };
-    let text = text!("DoublePendulum" in "declarations/double_pendulum");
-    let late: Late<(SO3, SO3), Seen> = read(&pendulum, &text);
-    same(&pendulum, &late, ((turned(), SO3::identity()), &[0.1, 0.3, -0.2, 0.4, 0.1, 0.2]));
-    let top = TopOnCart { J_d: J_1, s: Vector3::new(0.1, 0.0, 0.4), M: 5.0, g: 9.81 };
-    let late: Late<(SO3, R2), Configuration<0, Matrix3<f64>>> =
-        read(&top, &text!("TopOnCart" in "declarations/top_on_cart"));
-    same(&top, &late, ((turned(), R2::identity()), &[0.1, 0.3, 2.0, 0.1, -0.2]));
+    as_compiled! {
+        DoublePendulum { J_1 J_2 rho s_1 s_2 g up }
+        TopOnCart { J_d s M g }
+        FloatingBody { m J_d }
+        FallingBody { m J_d g up }
+        SuspendedLoad { J_d m K m_load cable g up }
+        Gyrostat { J_d J_w a_1 a_2 a_3 }
+    }
+    as_compiled_beside! { DoublePendulum { J_1 J_2 rho s_1 s_2 g up }: Alike { kappa } }
+    as_compiled! { TwoBodies { m_1 m_2 K_1 K_2 J_1 J_2 G } }
+    as_compiled_beside! {
+        TwoBodies { m_1 m_2 K_1 K_2 J_1 J_2 G }:
+        PointSpring { k a b }
+        RodElement { k c a b }
+    }
+}
+
+/// Body and effect both read: which of them has an unknown part is asked of the values.
+#[test]
+fn sums_of_what_is_read() {
+    let (body, drag) = (random!(1, RigidBody { J_d }), random!(2, Drag { c J }));
+    let gravity = random!(3, Gravity { m g rho up });
+    let late: Late<_, (), WithEitherKinetic> = Late::like(&body).expect("a declaration");
+    let late_drag: Late<_, (), WithoutKinetic> = Late::like(&drag).expect("a declaration");
+    let late_gravity: Late<_, Vector3<f64>, WithoutKinetic> = Late::like(&gravity).expect("a declaration");
+    assert_same(&(body + drag + gravity), &(late + late_drag + late_gravity), 4);
+    let body = random!(1, FourthOrderBody { J });
+    let late: Late<_, (), WithEitherKinetic> = Late::like(&body).expect("a declaration");
+    let late_gravity: Late<_, Vector3<f64>, WithoutKinetic> = Late::like(&gravity).expect("a declaration");
+    assert_same(&(body + gravity), &(late + late_gravity), 5);
+}
+
+/// With all numbers written in, a step is a shorter program, which is the same but for roundings.
+#[test]
+fn specialised_programs_are_shorter() {
+    let (J_d, rho, up) = ([2.0, 0.0, 0.0, 0.0, 2.5, 0.0, 0.0, 0.0, 3.0], [0.0, 0.0, 0.4], [0.0, 0.0, 1.0]);
+    let numbers: [(&str, &[f64]); 5] = [("J_d", &J_d), ("m", &[1.5]), ("g", &[9.81]), ("rho", &rho), ("up", &up)];
+    let late = Late::<SO3, Vector3<f64>>::parse(FullTop::DECLARATION).expect("a declaration");
+    let late = numbers.iter().try_fold(late, |late, (name, value)| late.with(name, value)).expect("numbers");
+    let after = |late: Late<_, _>| {
+        let stepper = Stepper::new(late, 0.01).expect("a stepper");
+        let mut state = stepper.start(SO3::identity(), Vector3::new(0.3, 1.0, 5.0)).expect("a start");
+        stepper.run(&mut state, 100).expect("steps");
+        state.momentum()
+    };
+    let programs = &late.declaration().programs;
+    let parameters: Vec<f64> = numbers.iter().flat_map(|(_, value)| value.iter().copied()).collect();
+    let code = <Interpreted as Backend<f64>>::codes(&[&programs.constants]).expect("a program").remove(0);
+    let mut constants = vec![0.0; programs.constants.outputs.len()];
+    let arrays = Arrays::of([(Array::Step, &[0.01]), (Array::Parameters, &parameters)]);
+    let image = <Interpreted as Backend<f64>>::image(&code, &[]);
+    Interpreted::run(&code, &image, &arrays, &mut constants);
+    let lengths = [programs, &specialised(programs, &constants)].map(|all| all.newton_system.operations.len());
+    println!("{} operations an iteration, specialised {}", lengths[0], lengths[1]);
+    assert!(lengths[0] >= 90 && lengths[1] <= 50, "{lengths:?}");
+    let (general, specialised) = (after(late.clone()), after(late.specialised()));
+    assert!((general - specialised).norm() < 1e-13 * general.norm(), "{general} {specialised}");
+}
+
+/// Texts of one form with numbers of their own, side by side.
+#[test]
+fn lanes_have_the_bits_of_single_steps() {
+    let top = random!(1, FullTop { J_d m g rho up });
+    let full: Late<SO3, Vector3<f64>, WithEitherKinetic> = Late::like(&top).expect("a declaration");
+    let top = random!(2, FourthOrderTop { J weight rho up });
+    let fourth: Late<SO3, Vector3<f64>, WithEitherKinetic> = Late::like(&top).expect("a declaration");
+    for (late, name) in [(full, "m"), (fourth, "weight")] {
+        let bodies = [1.0, 1.5, 2.0, 2.5].map(|number| {
+            let stepper = Stepper::new(late.clone().with(name, &[number]).expect("a number"), 0.01).expect("a stepper");
+            let state = stepper.start(SO3::exp(Vector3::x() * number), Vector3::new(0.3, 1.0, 5.0)).expect("a start");
+            (stepper, state)
+        });
+        let mut batch = Batch::<AutoF64x4, _>::new(&bodies).expect("they share a text");
+        batch.run(1_000);
+        for (k, (stepper, mut alone)) in bodies.into_iter().enumerate() {
+            stepper.run(&mut alone, 1_000).expect("steps");
+            assert_eq!(batch.state(k), alone, "lane {k}");
+        }
+    }
+    let [one, other] = [Late::like(&random!(1, FreeBody { J_d })), Late::like(&random!(1, RigidBody { J_d }))]
+        .map(|late: Result<Late<SO3>, _>| Stepper::new(late.expect("a declaration"), 0.01).expect("a stepper"));
+    let state = one.start(SO3::identity(), Vector3::z()).expect("a start");
+    assert!(Batch::<AutoF64x4, _>::new(&[(one, state), (other, state)]).is_err(), "two texts share no lanes");
 }

@@ -2,11 +2,12 @@
 
 use std::time::{Duration, Instant};
 
+use liestep::effects::RigidBody;
 use liestep::groups::SE3;
-use liestep::mechanics::{Term as _, WithExpensiveKinetic, WithoutKinetic};
+use liestep::mechanics::{Inertia, Term as _, WithExpensiveKinetic, WithoutKinetic};
 use liestep::{SO3, SetupError, Stepper};
-use liestep_late::{Declaration, Late, LateError};
-use nalgebra::Vector3;
+use liestep_late::{Backend, Declaration, Function, Interpreted, Late, LateError, Operation, Program};
+use nalgebra::{Matrix3, Vector3};
 
 const KINETIC: &str = "((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)";
 
@@ -130,4 +131,67 @@ fn what_does_not_fit_is_told() {
     assert!(matches!(missing, SetupError::Parameter { field: "k", .. }), "{missing}");
     let skew = late.with("k", &[1.0]).unwrap().with("J_d", &[2.0, 1.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 1.0]).unwrap();
     assert!(matches!(Stepper::new(skew, 0.01).unwrap_err(), SetupError::Parameter { field: "J_d", .. }));
+}
+
+/// Products of sums whose expansion a person wouldn't wait for are given up, by a count of work.
+#[test]
+fn what_takes_too_long_is_given_up() {
+    let sum = (0..30).map(|k| format!("(F * a).dot(&(A * (F * (F * a)) * {k}.5))")).collect::<Vec<_>>().join(" + ");
+    let text = format!(
+        "#[lagrangian(group = SO3, advected(w = up), l_d = {KINETIC} - h * ({sum}) * ({sum}) * ({sum}) * w.dot(&a))]
+        struct Body {{ J_d: NonstandardInertia, A: Matrix3<f64>, a: Vector3<f64>, up: Vector3<f64> }}"
+    );
+    let clock = Instant::now();
+    let refused = Declaration::parse(&text);
+    assert!(clock.elapsed() < Duration::from_secs(60), "{:?}", clock.elapsed());
+    if let Err(error) = refused {
+        assert!(!error.to_string().is_empty());
+    }
+}
+
+/// A function of a higher order than the library has is called by its name.
+#[test]
+fn missing_functions_are_told() {
+    for function in [Function::Stumpff(11), Function::Stumpff(0), Function::LogRatio(7)] {
+        let operations = vec![Operation::Apply(function, 0)];
+        let program = Program { inputs: Vec::new(), literals: vec![1.0], operations, outputs: vec![1] };
+        let refused = <Interpreted as Backend<f64>>::codes(&[&program]).unwrap_err();
+        assert!(matches!(&refused, LateError::Function(name) if *name == format!("{function:?}")), "{refused}");
+    }
+}
+
+/// In half the digits, too, with the bits of the compiled step.
+#[test]
+fn single_precision() {
+    let J = Inertia::<f32>::new(Matrix3::new(2.0, 0.1, 0.0, 0.1, 2.5, 0.2, 0.0, 0.2, 3.0)).unwrap();
+    let body = RigidBody { J_d: J.to_nonstandard() };
+    let late = Late::<SO3<f32>>::like(&body).unwrap();
+    let (one, other) = (Stepper::new(body, 0.01_f32).unwrap(), Stepper::new(late, 0.01_f32).unwrap());
+    let start = (SO3::<f32>::identity(), Vector3::new(0.3_f32, 1.0, 5.0));
+    let (mut first, mut second) = (one.start(start.0, start.1).unwrap(), other.start(start.0, start.1).unwrap());
+    for step in 0..1_000 {
+        one.step(&mut first).unwrap();
+        other.step(&mut second).unwrap();
+        assert_eq!(first.momentum(), second.momentum(), "after step {step}");
+    }
+}
+
+/// What a thousand declarations keep; `-- --ignored` measures it.
+#[test]
+#[ignore = "takes minutes without optimisation"]
+fn a_thousand_declarations_are_kept_in_bounded_memory() {
+    let resident = || {
+        let pages = std::fs::read_to_string("/proc/self/statm").ok()?;
+        pages.split(' ').nth(1)?.parse::<usize>().ok().map(|pages| pages * 4)
+    };
+    let Some(before) = resident() else {
+        println!("skipped: this system doesn't tell the memory of a process");
+        return;
+    };
+    for number in 0..1_000 {
+        Late::<SO3>::parse(&body(&format!(" - {number}.5 * h * k * F.trace()"))).unwrap();
+    }
+    let kept = resident().unwrap_or(before) - before;
+    println!("a thousand declarations of a body: {kept} kB");
+    assert!(kept < 200_000, "{kept} kB");
 }

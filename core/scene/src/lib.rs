@@ -38,5 +38,5 @@ pub use file::system::System;
 pub use run::course::MemberStart;
 pub use run::make::{Happening, Run};
 pub use run::switched::Switched;
-pub use show::derivation::{derivation, derived};
+pub use show::derivation::{Form, derivation, derived, written};
 pub use show::recording::Recording;

@@ -126,7 +126,7 @@ impl<A: Advected<SO3> + 'static> Methods<SO3, A> {
             move |scene, h| Stepper::split(scene, h, flow.clone(), scheme)
         };
         // Nothing is kicked: any splitting is the flow, which this one makes once a step.
-        if !S::PARTS.kick_before {
+        if !S::parts(&scene.constants(1.0)).kick_before {
             self.add("exact".to_owned(), SplittingScheme::STRANG.order(), scene, split(SplittingScheme::STRANG));
             if let Some(method) = self.0.last_mut() {
                 method.is_exact = true;

@@ -2,7 +2,7 @@
 
 use crate::gradients::recording::Change;
 use crate::groups::{Advected as _, LieGroup, SquareOf, seen_of_unit};
-use crate::mechanics::pattern;
+use crate::mechanics::pattern_of_type;
 use crate::mechanics::{Effect, Group, Matrix, Scalar, SecondDerivatives, Square, StepDerivatives, Vector};
 use crate::numbers::{Coordinates, Entries, Real, real, zero};
 
@@ -204,8 +204,9 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
                 let (matrix, share) = self.effect.adjoint_system(&self.increment, &self.advected, h, &end.momentum);
                 let inverse = Group::<E>::from_increment(&self.increment).inverse();
                 let attitude = inverse.adjoint_transpose(&end.attitude);
-                let (factors, det) = Vector::<E>::factorise_with(&Vector::<E>::transpose(&matrix), pattern::<E>());
-                let start = Vector::<E>::solve_again_with(&factors, det, pattern::<E>(), &(attitude + share));
+                let (factors, det) =
+                    Vector::<E>::factorise_with(&Vector::<E>::transpose(&matrix), pattern_of_type::<E>());
+                let start = Vector::<E>::solve_again_with(&factors, det, pattern_of_type::<E>(), &(attitude + share));
                 let by_place = self.fixed_increment([&start, &end.momentum], add);
                 Cotangent { attitude: attitude + by_place, momentum: start }
             }

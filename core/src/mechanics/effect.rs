@@ -97,17 +97,23 @@ pub(crate) fn update_of<E: Effect + ?Sized>(
 ) -> NewtonUpdate<Vector<E>, Square<E>, Scalar<E>> {
     if const { !E::LINKS_NEIGHBOURS } {
         let (residual, jacobian) = E::newton_system(constants, terms, half);
-        return NewtonUpdate::of(&residual, &jacobian, pattern::<E>());
+        return NewtonUpdate::of(&residual, &jacobian, pattern::<E>(constants));
     }
     let mut links = Vector::<E>::no_links();
     let (mut update, mut jacobian) = E::newton_linked(constants, terms, half, &mut links);
-    let det = Vector::<E>::solve_linked(&mut jacobian, &links, pattern::<E>(), &mut update);
+    let det = Vector::<E>::solve_linked(&mut jacobian, &links, pattern::<E>(constants), &mut update);
     NewtonUpdate { update, factors: None, det }
 }
 
 /// What is known of the Newton matrix of an effect.
 #[hot]
-pub(crate) const fn pattern<E: Effect + ?Sized>() -> Pattern {
+pub(crate) fn pattern<E: Effect + ?Sized>(constants: &E::Constants) -> Pattern {
+    Pattern { apart: E::apart(constants), ..pattern_of_type::<E>() }
+}
+
+/// The same, as far as the type knows it.
+#[hot]
+pub(crate) const fn pattern_of_type<E: Effect + ?Sized>() -> Pattern {
     Pattern { factors: <Group<E> as LieGroup>::FACTORS, apart: E::APART }
 }
 
@@ -180,7 +186,7 @@ pub trait Effect: Term {
     /// The power of the Cayley denominator in the factor of [`newton_system`](Self::newton_system).
     const DENOMINATORS: u32 = 0;
 
-    /// Whether the Jacobian of [`newton_system`](Self::newton_system) costs more than several residuals.
+    /// Whether the Jacobian of [`newton_system`](Self::newton_system) may cost more than several residuals.
     ///
     /// Then a solve starts with the [residual](Self::newton_residual) alone and the Jacobian of the free body with the
     /// same [`inertia`](Self::inertia), [`Retraction::free_momentum_tangent`], with which
@@ -211,6 +217,9 @@ pub trait Effect: Term {
     /// What was declared and everything derived from it, as text.
     const DERIVATION: &'static str;
 
+    /// The text of a declaration, which `liestep-late` derives anew; empty of a sum, and of what is written by hand.
+    const DECLARATION: &'static str = "";
+
     /// The [`DERIVATION`](Self::DERIVATION) of an effect, and of a sum those of all its terms: a constant can't be put
     /// together from others, and what is declared when a program runs has none.
     #[must_use]
@@ -238,6 +247,27 @@ pub trait Effect: Term {
     #[must_use]
     fn denominators(_: &Self::Constants) -> u32 {
         Self::DENOMINATORS
+    }
+
+    /// [`PARTS`](Self::PARTS), asked of a value: of those that the type has, it may lack some.
+    #[hot]
+    #[must_use]
+    fn parts(_: &Self::Constants) -> Parts {
+        Self::PARTS
+    }
+
+    /// [`APART`](Self::APART), asked of a value: it may have more blocks than the type.
+    #[hot]
+    #[must_use]
+    fn apart(_: &Self::Constants) -> Blocks {
+        Self::APART
+    }
+
+    /// [`JACOBIAN_IS_EXPENSIVE`](Self::JACOBIAN_IS_EXPENSIVE), asked of a value where the type has it.
+    #[hot]
+    #[must_use]
+    fn jacobian_is_expensive(_: &Self::Constants) -> bool {
+        Self::JACOBIAN_IS_EXPENSIVE
     }
 
     /// Shows the derivations and, field by field in the order of the declaration, every scalar of the parameters.

@@ -1,8 +1,8 @@
 //! Whether a scene has a kinetic part, as types: without one a momentum determines no velocity, and nothing moves.
 
-use crate::numbers::{Coordinates, History, Parabola, Polynomial, Real};
+use crate::numbers::{Coordinates, Either, History, Parabola, Polynomial, Real};
 
-/// [`WithKinetic`], [`WithExpensiveKinetic`] or [`WithoutKinetic`].
+/// [`WithKinetic`], [`WithExpensiveKinetic`], [`WithEitherKinetic`] or [`WithoutKinetic`].
 #[doc(hidden)]
 pub trait KineticPart {
     /// Whether there is one.
@@ -10,6 +10,9 @@ pub trait KineticPart {
 
     /// See [`Effect::JACOBIAN_IS_EXPENSIVE`](crate::mechanics::Effect::JACOBIAN_IS_EXPENSIVE).
     const JACOBIAN_IS_EXPENSIVE: bool;
+
+    /// Whether an effect of this kind may be expensive or not.
+    const IS_EITHER: bool = false;
 
     /// What a state keeps of the last increments to guess the next one. It is copied with each state, so it is no longer
     /// than the solve pays for.
@@ -30,6 +33,11 @@ pub struct WithKinetic;
 #[derive(Clone, Copy, Debug)]
 pub struct WithExpensiveKinetic;
 
+/// There is a term in `1/h`, and the effect says as a value whether its Jacobian is expensive: see
+/// [`jacobian_is_expensive`](crate::mechanics::Effect::jacobian_is_expensive).
+#[derive(Clone, Copy, Debug)]
+pub struct WithEitherKinetic;
+
 /// There is none, as in a potential.
 #[derive(Clone, Copy, Debug)]
 pub struct WithoutKinetic;
@@ -48,6 +56,16 @@ impl KineticPart for WithExpensiveKinetic {
     const JACOBIAN_IS_EXPENSIVE: bool = true;
 
     type History<T: Real, V: Coordinates<T>> = Polynomial<V>;
+    type Or<Other: KineticPart> = Self;
+    type ByNewton = WithKinetic;
+}
+
+impl KineticPart for WithEitherKinetic {
+    const IS_THERE: bool = true;
+    const JACOBIAN_IS_EXPENSIVE: bool = true;
+    const IS_EITHER: bool = true;
+
+    type History<T: Real, V: Coordinates<T>> = Either<V>;
     type Or<Other: KineticPart> = Self;
     type ByNewton = WithKinetic;
 }

@@ -117,6 +117,20 @@ macro_rules! of_those_with {
             (false, _) => $second,
         }
     };
+    // Of what the types have, the values may lack some. Without it in both types, that code isn't there.
+    ($constants:ident, $part:ident: $both:expr, $first:expr, $second:expr $(,)?) => {
+        if const { A::PARTS.$part && B::PARTS.$part } {
+            match (A::parts(&$constants.0).$part, B::parts(&$constants.1).$part) {
+                (true, true) => $both,
+                (true, false) => $first,
+                (false, _) => $second,
+            }
+        } else if const { A::PARTS.$part } {
+            $first
+        } else {
+            $second
+        }
+    };
 }
 
 impl<A, B> Effect for Sum<A, B>
@@ -144,9 +158,12 @@ where
         );
         links
     };
-    // The one unknown part's own kernel is run; two are added with their Jacobians.
-    const JACOBIAN_IS_EXPENSIVE: bool =
-        of_those_with!(unknown: false, A::JACOBIAN_IS_EXPENSIVE, B::JACOBIAN_IS_EXPENSIVE);
+    // The one unknown part's own kernel is run; two are added with their Jacobians, which the value says.
+    const JACOBIAN_IS_EXPENSIVE: bool = of_those_with!(
+        unknown: A::JACOBIAN_IS_EXPENSIVE || B::JACOBIAN_IS_EXPENSIVE,
+        A::JACOBIAN_IS_EXPENSIVE,
+        B::JACOBIAN_IS_EXPENSIVE,
+    );
     const INERTIA_IS_CONSTANT: bool = A::INERTIA_IS_CONSTANT && B::INERTIA_IS_CONSTANT;
     const IS_QUADRATIC: bool = A::IS_QUADRATIC && B::IS_QUADRATIC;
     const OPERATIONS: Operations = Operations {
@@ -178,7 +195,24 @@ where
     #[hot]
     fn denominators(constants: &Self::Constants) -> u32 {
         let (first, second) = (A::denominators(&constants.0), B::denominators(&constants.1));
-        of_those_with!(unknown: first.max(second), first, second)
+        of_those_with!(constants, unknown: first.max(second), first, second)
+    }
+
+    #[hot]
+    fn parts(constants: &Self::Constants) -> Parts {
+        A::parts(&constants.0).or(B::parts(&constants.1))
+    }
+
+    #[hot]
+    fn apart(constants: &Self::Constants) -> Blocks {
+        let (first, second) = (A::apart(&constants.0), B::apart(&constants.1));
+        of_those_with!(constants, unknown: first.or(second), first, second)
+    }
+
+    #[hot]
+    fn jacobian_is_expensive(constants: &Self::Constants) -> bool {
+        let (first, second) = (A::jacobian_is_expensive(&constants.0), B::jacobian_is_expensive(&constants.1));
+        of_those_with!(constants, unknown: false, first, second)
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<Self::Scalar>) {
@@ -211,7 +245,7 @@ where
     #[hot]
     fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> Vector<Self> {
         of_those_with!(
-            kick_before: A::kick_before(&constants.0, &w.0) + B::kick_before(&constants.1, &w.1),
+            constants, kick_before: A::kick_before(&constants.0, &w.0) + B::kick_before(&constants.1, &w.1),
             A::kick_before(&constants.0, &w.0),
             B::kick_before(&constants.1, &w.1),
         )
@@ -225,7 +259,7 @@ where
     ) -> Option<Vector<Self>> {
         let first = || A::kick_derivative(&constants.0, &w.0, velocity);
         let second = || B::kick_derivative(&constants.1, &w.1, velocity);
-        of_those_with!(kick_before: Some(first()? + second()?), first(), second())
+        of_those_with!(constants, kick_before: Some(first()? + second()?), first(), second())
     }
 
     /// The right side `a` belongs to one unknown part, zero to the other.
@@ -233,8 +267,9 @@ where
     fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &Self::Advected) -> Self::StepTerms {
         let zero = Vector::<Self>::zero();
         // What only joins bodies would take it twice.
-        let only_joins = A::LINKS_NEIGHBOURS && !A::Kinetic::IS_THERE && B::PARTS.unknown;
-        let (first, second) = if A::PARTS.unknown && !only_joins { (a, &zero) } else { (&zero, a) };
+        let unknown = (A::parts(&constants.0).unknown, B::parts(&constants.1).unknown);
+        let only_joins = A::LINKS_NEIGHBOURS && !A::Kinetic::IS_THERE && unknown.1;
+        let (first, second) = if unknown.0 && !only_joins { (a, &zero) } else { (&zero, a) };
         (A::step_terms(&constants.0, first, &w.0), B::step_terms(&constants.1, second, &w.1))
     }
 
@@ -245,7 +280,7 @@ where
         half: &Vector<Self>,
     ) -> (Vector<Self>, Square<Self>) {
         of_those_with!(
-            unknown: {
+            constants, unknown: {
                 let raised = Vector::<Self>::raised;
                 let first = A::newton_system(&constants.0, &terms.0, half);
                 let second = B::newton_system(&constants.1, &terms.1, half);
@@ -266,7 +301,7 @@ where
         half: &Vector<Self>,
     ) -> NewtonUpdate<Vector<Self>, Square<Self>, Self::Scalar> {
         of_those_with!(
-            unknown: update_of::<Self>(constants, terms, half),
+            constants, unknown: update_of::<Self>(constants, terms, half),
             A::newton_update(&constants.0, &terms.0, half),
             B::newton_update(&constants.1, &terms.1, half),
         )
@@ -280,7 +315,7 @@ where
         links: &mut Links<Self>,
     ) -> (Vector<Self>, Square<Self>) {
         of_those_with!(
-            unknown: {
+            constants, unknown: {
                 let first = A::newton_linked(&constants.0, &terms.0, half, links);
                 let second = B::newton_linked(&constants.1, &terms.1, half, links);
                 (first.0 + second.0, first.1 + second.1)
@@ -297,7 +332,7 @@ where
         half: &Vector<Self>,
     ) -> Residual<Vector<Self>> {
         of_those_with!(
-            unknown: Residual { momentum_defect: Self::newton_system(constants, terms, half).0, moving_kick: None },
+            constants, unknown: Residual { momentum_defect: Self::newton_system(constants, terms, half).0, moving_kick: None },
             A::newton_residual(&constants.0, &terms.0, half),
             B::newton_residual(&constants.1, &terms.1, half),
         )
@@ -309,12 +344,12 @@ where
         increment: &Matrix<Self>,
         next: &Self::Advected,
     ) -> Option<Vector<Self>> {
-        let (beside, other) = if A::PARTS.unknown {
+        let (beside, other) = if A::parts(&constants.0).unknown {
             let other = || B::kick_after(&constants.1, increment, &next.1);
-            (A::kick_beside(&constants.0, increment, &next.0), B::PARTS.kick_after.then(other))
+            (A::kick_beside(&constants.0, increment, &next.0), B::parts(&constants.1).kick_after.then(other))
         } else {
             let other = || A::kick_after(&constants.0, increment, &next.0);
-            (B::kick_beside(&constants.1, increment, &next.1), A::PARTS.kick_after.then(other))
+            (B::kick_beside(&constants.1, increment, &next.1), A::parts(&constants.0).kick_after.then(other))
         };
         match (beside, other) {
             (Some(beside), Some(other)) => Some(beside + other),
@@ -325,7 +360,7 @@ where
     #[hot]
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self> {
         of_those_with!(
-            kick_after: A::kick_after(&constants.0, increment, &next.0) + B::kick_after(&constants.1, increment, &next.1),
+            constants, kick_after: A::kick_after(&constants.0, increment, &next.0) + B::kick_after(&constants.1, increment, &next.1),
             A::kick_after(&constants.0, increment, &next.0),
             B::kick_after(&constants.1, increment, &next.1),
         )

@@ -6,8 +6,8 @@ use crate::numbers::{Coordinates, Real, count, counted};
 
 /// What is remembered of values at equal times to guess the next one.
 pub trait History<T: Real, V: Coordinates<T>>: Copy + Debug + PartialEq {
-    /// Before the first value.
-    fn none() -> Self;
+    /// Before the first value; a history of either length is the long one where a guess is dear.
+    fn none(is_expensive: bool) -> Self;
 
     /// Takes notice of the value `y` after `last`, and returns where the next one is expected.
     fn next(&mut self, last: V, y: V) -> V;
@@ -36,7 +36,7 @@ pub struct Parabola<V> {
 }
 
 impl<T: Real, V: Coordinates<T>> History<T, V> for Parabola<V> {
-    fn none() -> Self {
+    fn none(_: bool) -> Self {
         Self { difference: V::zero() }
     }
 
@@ -50,7 +50,7 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Parabola<V> {
 
     /// The parabola would go through it.
     fn forget_the_estimate(&mut self) {
-        *self = Self::none();
+        *self = Self { difference: V::zero() };
     }
 
     fn each(&self, mut visit: &mut dyn FnMut(T)) {
@@ -77,7 +77,7 @@ pub struct Polynomial<V> {
 }
 
 impl<T: Real, V: Coordinates<T>> History<T, V> for Polynomial<V> {
-    fn none() -> Self {
+    fn none(_: bool) -> Self {
         Self { differences: [V::zero(); DIFFERENCES], values: 0 }
     }
 
@@ -108,6 +108,43 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Polynomial<V> {
     }
 }
 
+/// One of both, as the program knows only when it runs.
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
+pub struct Either<V> {
+    #[shared]
+    is_long: bool,
+    parabola: Parabola<V>,
+    polynomial: Polynomial<V>,
+}
+
+impl<T: Real, V: Coordinates<T>> History<T, V> for Either<V> {
+    fn none(is_expensive: bool) -> Self {
+        let (parabola, polynomial) = (Parabola::none(is_expensive), Polynomial::none(is_expensive));
+        Self { is_long: is_expensive, parabola, polynomial }
+    }
+
+    #[hot]
+    fn next(&mut self, last: V, y: V) -> V {
+        if self.is_long { self.polynomial.next(last, y) } else { self.parabola.next(last, y) }
+    }
+
+    fn forget_the_estimate(&mut self) {
+        // A long history doesn't.
+        self.parabola = Parabola::none(self.is_long);
+    }
+
+    fn each(&self, visit: &mut dyn FnMut(T)) {
+        visit(count(usize::from(self.is_long)));
+        self.parabola.each(visit);
+        self.polynomial.each(visit);
+    }
+
+    fn from_numbers(next: &mut dyn FnMut() -> T) -> Option<Self> {
+        let is_long = counted(next()).filter(|&is_long| is_long <= 1)? == 1;
+        Some(Self { is_long, parabola: Parabola::from_numbers(next)?, polynomial: Polynomial::from_numbers(next)? })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::{DIFFERENCES, History as _, Parabola, Polynomial};
@@ -119,7 +156,7 @@ mod tests {
     fn a_polynomial_is_continued() {
         let errors = [DIFFERENCES, DIFFERENCES + 1].map(|degree| {
             let value = |i: i32| Vector1::new((0.1 * f64::from(i)).powi(i32::try_from(degree).unwrap()));
-            let mut history = Polynomial::none();
+            let mut history = Polynomial::none(true);
             let (mut last, mut guess) = (value(0), value(0));
             for i in 0..20 {
                 guess = history.next(last, value(i));
@@ -138,7 +175,7 @@ mod tests {
                 let i = f64::from(i);
                 Vector1::new(3.0 - 2.0 * i + 5.0 * i * i + cubic * i * i * i)
             };
-            let mut history = Parabola::none();
+            let mut history = Parabola::none(false);
             let guesses: Vec<_> = (1..6).map(|i| history.next(value(i - 1), value(i))).collect();
             for (i, guess) in (2..).zip(&guesses).skip(1) {
                 assert_eq!(value(i) - guess, Vector1::new(missing), "increment {i}");
@@ -149,7 +186,7 @@ mod tests {
     /// At the beginning there is one point, then a line, a parabola and so on.
     #[test]
     fn it_starts_with_what_there_is() {
-        let mut history = Polynomial::none();
+        let mut history = Polynomial::none(true);
         let nothing = Vector1::new(100.0);
         assert_eq!(history.next(nothing, Vector1::new(1.0)), Vector1::new(1.0));
         assert_eq!(history.next(Vector1::new(1.0), Vector1::new(4.0)), Vector1::new(7.0));

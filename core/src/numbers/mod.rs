@@ -30,7 +30,7 @@ pub(crate) use elimination::adjugate_3;
 pub use entries::Entries;
 pub(crate) use entries::{sum, zero};
 pub(crate) use exact::{carried_sum, two_square, two_sum};
-pub(crate) use history::{History, Parabola, Polynomial};
+pub(crate) use history::{Either, History, Parabola, Polynomial};
 pub use join::{Join, Twice};
 pub use lanes::{InLanes, Lanes, Numbers};
 pub(crate) use newton::{NewtonEnd, newton_halving};

@@ -29,7 +29,7 @@ impl<L: Effect> Problem<'_, L> {
     /// Starts all lanes at the guess, but keeps those that [`solve_directly`](Self::solve_directly) has solved without the
     /// Jacobian while another lane has failed.
     fn start(&self, terms: &L::StepTerms, guess: &Vector<L>) -> (Lanes<Group<L>>, u32) {
-        if const { !L::JACOBIAN_IS_EXPENSIVE } || !Self::goes_by_secants() {
+        if const { !L::JACOBIAN_IS_EXPENSIVE } || !self.goes_by_secants() {
             return (Lanes::starting_at(guess), 0);
         }
         let (lanes, iterations) = self.iterate_by_secants(terms, guess);
@@ -74,7 +74,7 @@ impl<'a, L: Effect> CalledEquation<'a, L> {
 
 impl<L: Effect> System<Group<L>> for CalledEquation<'_, L> {
     fn pattern(&self) -> Pattern {
-        pattern::<L>()
+        pattern::<L>(self.problem.constants)
     }
 
     fn newton_update(&self, half: &Vector<L>) -> Iteration<Group<L>> {

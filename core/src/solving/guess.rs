@@ -36,13 +36,13 @@ pub struct WarmStart<V, H = Parabola<V>> {
 }
 
 impl<V: Copy, H> WarmStart<V, H> {
-    /// Before the first step, of an estimate of half its coordinates.
-    pub(crate) fn of<T: Real>(half: V) -> Self
+    /// Before the first step, of an estimate of half its coordinates, for a solve that is expensive or isn't.
+    pub(crate) fn of<T: Real>(half: V, is_expensive: bool) -> Self
     where
         V: Coordinates<T>,
         H: History<T, V>,
     {
-        Self { guess: Guess::of(half), history: H::none() }
+        Self { guess: Guess::of(half), history: H::none(is_expensive) }
     }
 
     /// Guesses the next increment by continuing the last ones, the latest of which has half these coordinates.

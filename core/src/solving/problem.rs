@@ -36,7 +36,7 @@ pub(super) struct InlinedEquation<'a, L: Effect> {
 impl<L: Effect> System<Group<L>> for InlinedEquation<'_, L> {
     #[hot]
     fn pattern(&self) -> Pattern {
-        pattern::<L>()
+        pattern::<L>(self.constants)
     }
 
     #[hot]
@@ -64,7 +64,7 @@ impl<L: Effect> Problem<'_, L> {
         largest: Scalar<L>,
     ) -> Option<Root<Group<L>>> {
         let terms = L::step_terms(self.constants, &self.a, self.w);
-        if const { L::JACOBIAN_IS_EXPENSIVE } && Self::goes_by_secants() {
+        if const { L::JACOBIAN_IS_EXPENSIVE } && self.goes_by_secants() {
             let (lanes, iterations) = self.iterate_by_secants(&terms, guess);
             return lanes.settled.all().then(|| lanes.root::<L::Retraction>(iterations));
         }

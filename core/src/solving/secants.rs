@@ -130,8 +130,8 @@ impl<L: Effect> Updates<L> {
 impl<L: Effect> Problem<'_, L> {
     /// Whether the solve starts without the Jacobian.
     #[hot]
-    pub(super) fn goes_by_secants() -> bool {
-        L::JACOBIAN_IS_EXPENSIVE && has_no_derivatives::<Scalar<L>>()
+    pub(super) fn goes_by_secants(&self) -> bool {
+        L::jacobian_is_expensive(self.constants) && has_no_derivatives::<Scalar<L>>()
     }
 
     /// From the guess until no lane goes on; `settled` are those whose solution is beyond doubt. With the number of

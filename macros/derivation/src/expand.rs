@@ -53,7 +53,7 @@ fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, error
         Judged::Continuous(equations) => emit::continuous(item, &declaration, &equations),
         Judged::Steps(steps) => {
             let Steps { chosen, equations, findings } = *steps;
-            emit::implementation(item, &declaration, &chosen, equations.as_ref(), &findings)
+            emit::implementation([arguments, item], &declaration, &chosen, equations.as_ref(), &findings)
         }
     })
 }

@@ -5,6 +5,7 @@ use liestep::effects::{
     RigidBody, Rotor, SixthOrderBody, Spring, Thrust, Torque,
 };
 use liestep::mechanics::Effect;
+use liestep_late::{Declaration, LateError};
 
 use crate::file::arrangement::BODIES;
 use crate::file::body::{Distribution, Kinetic};
@@ -13,36 +14,64 @@ use crate::file::system::System;
 use crate::run::bodies::Heavy;
 use crate::run::springs::Springs;
 
-/// An effect of the library: its name in files, and what is derived of it.
-type Derivation = (&'static str, &'static str);
+/// An effect of the library: its name in files, what is derived of it, and its own text.
+type Derivation = (&'static str, &'static str, &'static str);
 
 const DERIVED: [Derivation; 15] = [
-    ("principal-body", <PrincipalBody as Effect>::DERIVATION),
-    ("rigid-body", <RigidBody as Effect>::DERIVATION),
-    ("cayley-body", <CayleyBody as Effect>::DERIVATION),
-    ("geodesic-body", <GeodesicBody as Effect>::DERIVATION),
-    ("fourth-order-body", <FourthOrderBody as Effect>::DERIVATION),
-    ("sixth-order-body", <SixthOrderBody as Effect>::DERIVATION),
-    ("gravity", <Gravity as Effect>::DERIVATION),
-    ("gravity-gradient", <GravityGradient as Effect>::DERIVATION),
-    ("dipole", <Dipole as Effect>::DERIVATION),
-    ("spring", <Spring as Effect>::DERIVATION),
-    ("rotor", <Rotor as Effect>::DERIVATION),
-    ("drag", <Drag as Effect>::DERIVATION),
-    ("magnetic-damping", <MagneticDamping as Effect>::DERIVATION),
-    ("torque", <Torque as Effect>::DERIVATION),
-    ("thrust", <Thrust as Effect>::DERIVATION),
+    ("principal-body", <PrincipalBody as Effect>::DERIVATION, <PrincipalBody as Effect>::DECLARATION),
+    ("rigid-body", <RigidBody as Effect>::DERIVATION, <RigidBody as Effect>::DECLARATION),
+    ("cayley-body", <CayleyBody as Effect>::DERIVATION, <CayleyBody as Effect>::DECLARATION),
+    ("geodesic-body", <GeodesicBody as Effect>::DERIVATION, <GeodesicBody as Effect>::DECLARATION),
+    ("fourth-order-body", <FourthOrderBody as Effect>::DERIVATION, <FourthOrderBody as Effect>::DECLARATION),
+    ("sixth-order-body", <SixthOrderBody as Effect>::DERIVATION, <SixthOrderBody as Effect>::DECLARATION),
+    ("gravity", <Gravity as Effect>::DERIVATION, <Gravity as Effect>::DECLARATION),
+    ("gravity-gradient", <GravityGradient as Effect>::DERIVATION, <GravityGradient as Effect>::DECLARATION),
+    ("dipole", <Dipole as Effect>::DERIVATION, <Dipole as Effect>::DECLARATION),
+    ("spring", <Spring as Effect>::DERIVATION, <Spring as Effect>::DECLARATION),
+    ("rotor", <Rotor as Effect>::DERIVATION, <Rotor as Effect>::DECLARATION),
+    ("drag", <Drag as Effect>::DERIVATION, <Drag as Effect>::DECLARATION),
+    ("magnetic-damping", <MagneticDamping as Effect>::DERIVATION, <MagneticDamping as Effect>::DECLARATION),
+    ("torque", <Torque as Effect>::DERIVATION, <Torque as Effect>::DECLARATION),
+    ("thrust", <Thrust as Effect>::DERIVATION, <Thrust as Effect>::DECLARATION),
 ];
 
 /// The names that [`derivation`] knows: the kinetic terms and the effects.
 pub fn derived() -> impl Iterator<Item = &'static str> {
-    DERIVED.iter().map(|(name, _)| *name)
+    DERIVED.iter().map(|(name, ..)| *name)
 }
 
 /// What the library derived of an effect, from its declaration to the constants of a step.
 #[must_use]
 pub fn derivation(name: &str) -> Option<&'static str> {
-    DERIVED.iter().find(|(other, _)| *other == name).map(|(_, text)| *text)
+    DERIVED.iter().find(|(other, ..)| *other == name).map(|(_, text, _)| *text)
+}
+
+/// How a derivation is written, but for plain text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// The equations as LaTeX.
+    Latex,
+    /// The straight-line code of a step in Rust.
+    Rust,
+    /// A step in C99.
+    C,
+}
+
+impl Form {
+    fn of(self, declaration: &Declaration) -> Result<String, LateError> {
+        match self {
+            Self::Latex => Ok(liestep_late::latex(declaration)),
+            Self::Rust => liestep_late::rust(declaration),
+            Self::C => liestep_late::c(declaration),
+        }
+    }
+}
+
+/// What the library derived of an effect, written in this form.
+#[must_use]
+pub fn written(name: &str, form: Form) -> Option<Result<String, LateError>> {
+    let (.., text) = DERIVED.iter().find(|(other, ..)| *other == name)?;
+    Some(Declaration::parse(text).and_then(|declaration| form.of(declaration)))
 }
 
 impl SceneFile {
@@ -50,20 +79,41 @@ impl SceneFile {
     #[must_use]
     pub fn derivation(&self) -> String {
         if let Some(lagrangian) = &self.lagrangian {
-            return lagrangian.declaration().derivation.to_owned();
+            return lagrangian.declaration().derivation.clone();
         }
-        let Some(body) = self.body else { return String::new() };
-        let body = match (body.kinetic, body.mass) {
+        let terms = self.terms().filter_map(|name| derivation(&name).map(|text| format!("{name}\n\n{text}")));
+        terms.collect::<Vec<_>>().join("\n")
+    }
+
+    /// The derivations of all terms, written otherwise.
+    ///
+    /// # Errors
+    ///
+    /// Where that can't be: see [`LateError::C`].
+    pub fn written(&self, form: Form) -> Result<String, LateError> {
+        if let Some(lagrangian) = &self.lagrangian {
+            return form.of(lagrangian.declaration());
+        }
+        let terms: Vec<String> = self.terms().collect();
+        if form == Form::C && terms.len() > 1 {
+            return Err(LateError::C("a step is written in C of one declaration: put all terms into a `lagrangian`"));
+        }
+        let texts = terms.iter().filter_map(|name| written(name, form)).collect::<Result<Vec<_>, _>>();
+        texts.map(|texts| texts.join("\n"))
+    }
+
+    /// The names of the body and the effects.
+    fn terms(&self) -> impl Iterator<Item = String> {
+        let body = self.body.map(|body| match (body.kinetic, body.mass) {
             (Kinetic::Rigid, Distribution::Principal(_)) => "principal-body",
             (Kinetic::Rigid, Distribution::Full(_)) => "rigid-body",
             (Kinetic::Cayley, _) => "cayley-body",
             (Kinetic::Geodesic, _) => "geodesic-body",
             (Kinetic::FourthOrder, _) => "fourth-order-body",
             (Kinetic::SixthOrder, _) => "sixth-order-body",
-        };
-        let names = std::iter::once(body.to_owned()).chain(self.effects().map(|name| name.replace(' ', "-")));
-        let terms = names.filter_map(|name| derivation(&name).map(|text| format!("{name}\n\n{text}")));
-        terms.collect::<Vec<_>>().join("\n")
+        });
+        let effects = body.is_some().then(|| self.effects().map(|name| name.replace(' ', "-")));
+        body.map(str::to_owned).into_iter().chain(effects.into_iter().flatten())
     }
 }
 

@@ -93,6 +93,17 @@ where
         constants.iter().map(|(constants, _)| E::denominators(constants)).max().unwrap_or(0)
     }
 
+    // Of several values it is what the type says.
+    #[hot]
+    fn parts(constants: &Self::Constants) -> Parts {
+        if M == 1 { E::parts(&constants[0].0) } else { Self::PARTS }
+    }
+
+    #[hot]
+    fn apart(constants: &Self::Constants) -> Blocks {
+        if M == 1 && !P::LINKS_NEIGHBOURS { E::apart(&constants[0].0) } else { Self::APART }
+    }
+
     #[allow(clippy::cast_precision_loss)] // far fewer than a float counts
     fn describe(&self, visitor: &mut dyn SceneVisitor<Self::Scalar>) {
         visitor.term(P::NAME.0);
@@ -192,7 +203,7 @@ where
         terms: &Self::StepTerms,
         half: &Vector<Self>,
     ) -> NewtonUpdate<Vector<Self>, Square<Self>, Self::Scalar> {
-        P::newton_update(pattern::<Self>(), Self::systems(constants, terms, half))
+        P::newton_update(pattern::<Self>(constants), Self::systems(constants, terms, half))
     }
 
     #[hot]

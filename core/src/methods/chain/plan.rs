@@ -289,7 +289,7 @@ where
     }
 
     fn keep(&self, _: &S, motion: &Motion<[SO3; N], S::Advected>) -> Self::Kept {
-        WarmStart::of(self.velocities(motion) * (0.5 * self.h))
+        WarmStart::of(self.velocities(motion) * (0.5 * self.h), false)
     }
 
     #[hot]

@@ -246,7 +246,7 @@ where
     }
 
     fn keep(&self, scene: &S, motion: &Motion<[Body; N], S::Advected>) -> Self::Kept {
-        WarmStart::of(half_coordinates(scene, motion, self.h))
+        WarmStart::of(half_coordinates(scene, motion, self.h), false)
     }
 
     fn admits(&self, scene: &S, motion: &Motion<[Body; N], S::Advected>) -> Result<(), SetupError> {

@@ -77,7 +77,7 @@ impl<S: Effect> Declared<S> {
         // Without a step there is nothing to solve, which the careful solve sees to.
         let largest = trace / h * real(2.0 * RATIO) / Scalar::<S>::simd_default_epsilon();
         let largest_target = if h == real(0.0) { h } else { largest * largest };
-        let is_expensive = const { S::JACOBIAN_IS_EXPENSIVE } && h != real(0.0);
+        let is_expensive = const { S::JACOBIAN_IS_EXPENSIVE } && S::jacobian_is_expensive(&constants) && h != real(0.0);
         let trusted = if is_expensive { trusted_radius(scene, &constants) } else { real(0.0) };
         Ok(Self { h, constants, largest_target, trusted, safe })
     }
@@ -165,19 +165,19 @@ impl<S: Effect> Declared<S> {
         if const { M::CARRIES } {
             // In `a` the kick is rounded to the digits of the momentum, which is what a carry is to make good.
             let mut kicks = None;
-            if const { S::PARTS.kick_before } {
+            if const { S::PARTS.kick_before } && S::parts(&self.constants).kick_before {
                 kicks = Some(S::kick_before(&self.constants, advected));
             }
-            if const { S::PARTS.kick_after } {
+            if const { S::PARTS.kick_after } && S::parts(&self.constants).kick_after {
                 let after = self.kick_after(&increment, &next, kick);
                 kicks = Some(kicks.map_or(after, |before| before + after));
             }
             change = kicks.map_or(change, |kicks| change + kicks);
         } else {
-            if const { S::PARTS.kick_before } {
+            if const { S::PARTS.kick_before } && S::parts(&self.constants).kick_before {
                 change = change + (*a - *momentum);
             }
-            if const { S::PARTS.kick_after } {
+            if const { S::PARTS.kick_after } && S::parts(&self.constants).kick_after {
                 change = change + self.kick_after(&increment, &next, kick);
             }
         }
@@ -211,7 +211,7 @@ impl<S: Effect> Declared<S> {
             safe: if scene.has_constant_inertia() {
                 self.safe
             } else {
-                safe(Vector::<S>::factorise_with(&scene.inertia(w), pattern::<S>()).1)
+                safe(Vector::<S>::factorise_with(&scene.inertia(w), pattern::<S>(&self.constants)).1)
             },
         }
     }
@@ -240,7 +240,7 @@ impl<S: Effect> Plan<S> for Declared<S> {
     }
 
     fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
-        WarmStart::of(half_coordinates(scene, motion, self.h))
+        WarmStart::of(half_coordinates(scene, motion, self.h), S::jacobian_is_expensive(&self.constants))
     }
 
     #[hot]
@@ -325,7 +325,11 @@ pub(crate) fn half_coordinates<S: Effect>(
 /// `a = μ + kick_before(w)`.
 #[hot]
 fn kicked<S: Effect>(constants: &S::Constants, momentum: &Vector<S>, w: &S::Advected) -> Vector<S> {
-    if const { S::PARTS.kick_before } { *momentum + S::kick_before(constants, w) } else { *momentum }
+    if const { S::PARTS.kick_before } && S::parts(constants).kick_before {
+        *momentum + S::kick_before(constants, w)
+    } else {
+        *momentum
+    }
 }
 
 /// The Newton Jacobian is that at rest and, from the right side, a matrix of rank one. Up to this part of `1/ε` times
@@ -337,5 +341,5 @@ fn jacobian_at_rest<S: Effect>(scene: &S, constants: &S::Constants) -> (Scalar<S
     let zero = Vector::<S>::zero();
     let terms = step_terms::<S>(constants, &zero, &scene.advected());
     let (_, jacobian) = newton_system::<S>(constants, &terms, &zero);
-    (Vector::<S>::factorise_with(&jacobian, pattern::<S>()).1, Vector::<S>::trace(&jacobian))
+    (Vector::<S>::factorise_with(&jacobian, pattern::<S>(constants)).1, Vector::<S>::trace(&jacobian))
 }

@@ -16,7 +16,7 @@ mod page;
 mod stages;
 mod verbatim;
 
-use proc_macro2::{Span, TokenStream};
+use proc_macro2::{Ident, Span, TokenStream};
 use quote::{quote, quote_spanned};
 
 use crate::declared::lower::Lowered;
@@ -50,7 +50,7 @@ pub fn lanes(item: TokenStream, is_in_lanes: bool) -> TokenStream {
 
 /// The item with the whole implementation.
 pub(crate) fn implementation(
-    item: &TokenStream,
+    [arguments, item]: [&TokenStream; 2],
     declaration: &Declaration,
     chosen: &Chosen,
     equations: Option<&Equations>,
@@ -69,6 +69,7 @@ pub(crate) fn implementation(
     };
     let continuous = equations.map(|equations| continuous::implementation(declaration, &header, equations, true));
     let derivation = derivation(&header, &derivation_of(declaration, chosen, &texts, equations, findings));
+    let declared_text = declared_text(&header, declaration, arguments);
     let item = page::documented(item, &page::page(declaration, chosen, &texts, equations, findings));
     let describe = emitter.describe();
     let private = &header.private;
@@ -107,6 +108,7 @@ pub(crate) fn implementation(
             #parts
 
             #derivation
+            #declared_text
             #describe
             #effect
             #body
@@ -174,6 +176,16 @@ fn derivation(header: &Header, text: &str) -> TokenStream {
             TEXT
         };
     }
+}
+
+/// The text of the declaration, of which a program derives it anew.
+fn declared_text(header: &Header, declaration: &Declaration, arguments: &TokenStream) -> TokenStream {
+    let private = &header.private;
+    let attribute = Ident::new(declaration.role.attribute(), Span::call_site());
+    let syn::ItemStruct { ident, generics, fields, .. } = &declaration.item;
+    let fields = fields.iter().map(|syn::Field { ident, ty, .. }| quote!(#ident: #ty));
+    let text = quote!(#[#attribute(#arguments)] struct #ident #generics { #(#fields),* }).to_string();
+    quote_spanned!(Span::mixed_site()=> const DECLARATION: &'static #private::core::primitive::str = #text;)
 }
 
 /// What advects nothing is invariant under the whole group.

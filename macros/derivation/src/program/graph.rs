@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use super::index::Index;
 pub(crate) use super::node::{Input, Node, NodeId};
-use crate::mathematics::symbolic::{Function, Rational, Stage, SymbolId};
+use crate::mathematics::symbolic::{Function, Rational, Stage, SymbolId, work};
 
 /// Hash-consed operations; the constructors fold constants and move signs outward.
 #[derive(Clone, Debug, Default)]
@@ -48,6 +48,9 @@ impl Graph {
     }
 
     fn operation(&mut self, node: Node) -> NodeId {
+        if !work::spend(1) {
+            return self.zero();
+        }
         let stage = node.operands().into_iter().flatten().map(|id| self.stage(id)).max();
         self.insert(node, stage.unwrap_or(Stage::Construction))
     }

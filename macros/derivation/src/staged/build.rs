@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::sources::{Sources, carried, parameter_kind};
-use super::{AtVelocity, Factor, MOST_TERMS, Operation, Parameter, Program, Source, Staged, Terms};
+use super::{self as to, Array, Factor, MOST_TERMS, Operation, Parameter, Program, Source, Staged, Stages};
 use crate::declared::Declaration;
 use crate::emit;
 use crate::expand::Steps;
@@ -56,28 +56,32 @@ pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> Staged {
         is_self_adjoint: findings.self_adjointness.is_found(),
         in_increment: kernel.in_increment,
         blocks: kernel.ends(&derived.group).into_iter().map(|end| derived.group.component_of(end)).collect(),
-        constants: of_handed(&stages.constants, none),
-        terms: of_handed(&terms, constants),
-        kick_before: program(constants, &kernel.kick_before),
-        newton_system: program(all, &stages.system),
-        newton_residual: program(all, &if is_expensive { kernel.gradient() } else { kernel.residual.clone() }),
-        kick_after: program(constants, &kernel.kick_after),
-        kick_derivative: kernel.kick_derivative.as_ref().map(|outputs| program(constants, outputs)),
-        momentum_jacobian: derived_term(Form::Square, &derived.jacobian),
-        at_rest: self::program(&limit_graph, &sources, none, &at_rest.concat()),
-        at_velocity: equations.as_ref().filter(is_nonlinear).map(|equations| at_velocity(declaration, equations)),
-        lagrangian: equations.as_ref().map(|_| Terms {
-            l_d: derived_term(Form::Scalar, &lowered.declared.expression),
-            right_momentum: derived_term(Form::Vector, &derived.right_momentum),
-            left_momentum: derived_term(Form::Vector, &derived.left_momentum),
-            diamond: derived_term(Form::Vector, &derived.diamond),
-            legendre_minus: derived_term(Form::Vector, &derived.momentum),
-            discrete_energy: derived_term(Form::Scalar, &derived.energy),
-        }),
+        programs: Stages {
+            constants: of_handed(&stages.constants, none),
+            terms: of_handed(&terms, constants),
+            kick_before: program(constants, &kernel.kick_before),
+            newton_system: program(all, &stages.system),
+            newton_residual: program(all, &if is_expensive { kernel.gradient() } else { kernel.residual.clone() }),
+            kick_after: program(constants, &kernel.kick_after),
+            kick_derivative: kernel.kick_derivative.as_ref().map(|outputs| program(constants, outputs)),
+            momentum_jacobian: derived_term(Form::Square, &derived.jacobian),
+            at_rest: self::program(&limit_graph, &sources, none, &at_rest.concat()),
+            at_velocity: equations.as_ref().filter(is_nonlinear).map(|equations| at_velocity(declaration, equations)),
+            lagrangian: equations.as_ref().map(|_| {
+                [
+                    derived_term(Form::Scalar, &lowered.declared.expression),
+                    derived_term(Form::Vector, &derived.right_momentum),
+                    derived_term(Form::Vector, &derived.left_momentum),
+                    derived_term(Form::Vector, &derived.diamond),
+                    derived_term(Form::Vector, &derived.momentum),
+                    derived_term(Form::Scalar, &derived.energy),
+                ]
+            }),
+        },
     }
 }
 
-fn at_velocity(declaration: &Declaration, equations: &Equations) -> AtVelocity {
+fn at_velocity(declaration: &Declaration, equations: &Equations) -> [Program; 3] {
     let sources = Sources { declaration, names: &equations.names, directions: None };
     let derived = &equations.derived;
     let nothing = Handed::new();
@@ -86,21 +90,17 @@ fn at_velocity(declaration: &Declaration, equations: &Equations) -> AtVelocity {
         let outputs = along_directions(&mut graph, derived, rank, expression);
         program(&graph, &sources, [&nothing, &nothing], &outputs)
     };
-    AtVelocity {
-        l: of_rank(0, &derived.lagrangian),
-        momentum: of_rank(1, &derived.momentum),
-        hessian: of_rank(2, &derived.hessian),
-    }
+    [of_rank(0, &derived.lagrangian), of_rank(1, &derived.momentum), of_rank(2, &derived.hessian)]
 }
 
 /// The program of these outputs, which reads what earlier stages have handed on.
 fn program(graph: &Graph, sources: &Sources, [constants, terms]: [&Handed; 2], outputs: &[NodeId]) -> Program {
     let source = |id: NodeId| {
         if let Some(&at) = terms.get(&id) {
-            return Some(Source::Term(at));
+            return Some(Source::new(Array::Terms, at));
         }
         if let Some(&at) = constants.get(&id) {
-            return Some(Source::Constant(at));
+            return Some(Source::new(Array::Constants, at));
         }
         match graph.node(id) {
             Node::Input(input) => sources.of(input),
@@ -112,7 +112,8 @@ fn program(graph: &Graph, sources: &Sources, [constants, terms]: [&Handed; 2], o
     let literal = |id: &NodeId| Some((*id, graph.value(*id).filter(|_| source(*id).is_none())?.to_f64()));
     let literals: Vec<(NodeId, f64)> = order.iter().filter_map(literal).collect();
     let leaves = given.iter().map(|(id, _)| *id).chain(literals.iter().map(|(id, _)| *id));
-    let mut registers: BTreeMap<NodeId, usize> = leaves.enumerate().map(|(at, id)| (id, at)).collect();
+    let number = |at: usize| u32::try_from(at).unwrap_or(u32::MAX);
+    let mut registers: BTreeMap<NodeId, u32> = leaves.enumerate().map(|(at, id)| (id, number(at))).collect();
     let mut operations = Vec::new();
     for id in order {
         if registers.contains_key(&id) {
@@ -125,11 +126,11 @@ fn program(graph: &Graph, sources: &Sources, [constants, terms]: [&Handed; 2], o
             Node::Subtract(a, b) => Operation::Subtract(at(a), at(b)),
             Node::Multiply(a, b) => Operation::Multiply(at(a), at(b)),
             Node::Divide(a, b) => Operation::Divide(at(a), at(b)),
-            Node::Apply(function, a) => applied(function, at(a)),
+            Node::Apply(function, a) => Operation::Apply(applied(function), at(a)),
             // They are leaves.
             Node::Constant(_) | Node::Input(_) => continue,
         });
-        registers.insert(id, registers.len());
+        registers.insert(id, number(registers.len()));
     }
     Program {
         inputs: given.into_iter().map(|(_, source)| source).collect(),
@@ -139,14 +140,14 @@ fn program(graph: &Graph, sources: &Sources, [constants, terms]: [&Handed; 2], o
     }
 }
 
-fn applied(function: Function, a: usize) -> Operation {
+fn applied(function: Function) -> to::Function {
     match function {
-        Function::Sqrt => Operation::Sqrt(a),
-        Function::Ln => Operation::Ln(a),
-        Function::Exp => Operation::Exp(a),
-        Function::Sin => Operation::Sin(a),
-        Function::Cos => Operation::Cos(a),
-        Function::Stumpff(k) => Operation::Stumpff(k, a),
-        Function::LogRatio(k) => Operation::LogRatio(k, a),
+        Function::Sqrt => to::Function::Sqrt,
+        Function::Ln => to::Function::Ln,
+        Function::Exp => to::Function::Exp,
+        Function::Sin => to::Function::Sin,
+        Function::Cos => to::Function::Cos,
+        Function::Stumpff(k) => to::Function::Stumpff(k),
+        Function::LogRatio(k) => to::Function::LogRatio(k),
     }
 }

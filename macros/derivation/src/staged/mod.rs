@@ -14,6 +14,7 @@ use proc_macro2::TokenStream;
 use crate::declared::errors::{Errors, Mistake};
 use crate::declared::{Declaration, Role, parse};
 use crate::expand::{self, Judged};
+use crate::mathematics::symbolic::work;
 
 /// Straight-line code on numbers. Registers hold the inputs, then the literals, then the result of each operation.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,58 +26,101 @@ pub struct Program {
     /// In the order in which they are made.
     pub operations: Vec<Operation>,
     /// The registers of the results.
-    pub outputs: Vec<usize>,
+    pub outputs: Vec<u32>,
 }
 
-/// An array, and the place in it, that an input is read from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Source {
+/// An array of numbers that inputs are read from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Array {
     /// The step `h`.
     Step,
-    /// A number of the parameters.
-    Parameter(usize),
+    /// The numbers of the parameters.
+    Parameters,
     /// What the constants' program has computed.
-    Constant(usize),
+    Constants,
     /// What the program of the step's terms has computed.
-    Term(usize),
+    Terms,
     /// What is advected or given, `w`.
-    Advected(usize),
+    Advected,
     /// The same after the step, `w⁺`.
-    Next(usize),
+    Next,
     /// The increment `F`.
-    Element(usize),
+    Element,
     /// `F − I`.
-    Increment(usize),
+    Increment,
     /// `F⁻¹`.
-    Inverse(usize),
+    Inverse,
     /// `F⁻¹ − I`.
-    InverseIncrement(usize),
+    InverseIncrement,
     /// Half the coordinates of `F`.
-    Half(usize),
+    Half,
     /// The velocity.
-    Velocity(usize),
+    Velocity,
     /// The right side `a` of the momentum equation.
-    Target(usize),
+    Target,
+}
+
+impl Array {
+    /// How many there are.
+    pub const COUNT: usize = 13;
+}
+
+/// The place of a number in an array.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Source {
+    /// The array.
+    pub array: Array,
+    /// From zero.
+    pub at: usize,
+}
+
+impl Source {
+    /// The place `at` of an array.
+    #[must_use]
+    pub const fn new(array: Array, at: usize) -> Self {
+        Self { array, at }
+    }
 }
 
 /// One operation on registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // their names say it
 pub enum Operation {
-    Negate(usize),
-    Add(usize, usize),
-    Subtract(usize, usize),
-    Multiply(usize, usize),
-    Divide(usize, usize),
-    Sqrt(usize),
-    Ln(usize),
-    Exp(usize),
-    Sin(usize),
-    Cos(usize),
+    Negate(u32),
+    Add(u32, u32),
+    Subtract(u32, u32),
+    Multiply(u32, u32),
+    Divide(u32, u32),
+    /// A function of one number.
+    Apply(Function, u32),
+}
+
+/// A function of one number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[allow(missing_docs)] // their names say it
+pub enum Function {
+    Sqrt,
+    Ln,
+    Exp,
+    Sin,
+    Cos,
     /// `c_k`, with `cos √q = 1 − q c_2(q)` and so on.
-    Stumpff(u8, usize),
+    Stumpff(u8),
     /// The derivative of this order of `θ/sin θ` by `sin²(θ/2)`.
-    LogRatio(u8, usize),
+    LogRatio(u8),
+}
+
+impl Operation {
+    /// The registers that it reads; the only one twice.
+    #[must_use]
+    pub const fn operands(self) -> [usize; 2] {
+        match self {
+            Self::Negate(a) | Self::Apply(_, a) => [a as usize, a as usize],
+            Self::Add(a, b) | Self::Subtract(a, b) | Self::Multiply(a, b) | Self::Divide(a, b) => {
+                [a as usize, b as usize]
+            }
+        }
+    }
 }
 
 /// A field of the struct.
@@ -171,25 +215,62 @@ pub struct Factor {
     pub generators: Vec<Vec<f64>>,
 }
 
-/// The derived terms of a discrete Lagrangian, by `F`, `w` and `h`.
+/// The programs of a declaration, or what is made of each.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)] // as the methods of `DiscreteLagrangian`
-pub struct Terms {
-    pub l_d: Program,
-    pub right_momentum: Program,
-    pub left_momentum: Program,
-    pub diamond: Program,
-    pub legendre_minus: Program,
-    pub discrete_energy: Program,
+pub struct Stages<P> {
+    /// What the parameters and `h` determine.
+    pub constants: P,
+    /// What `a` and `w` determine: at most [`MOST_TERMS`]; iterations compute the others anew.
+    pub terms: P,
+    /// As the methods of `Effect`.
+    pub kick_before: P,
+    /// Residual, then Jacobian.
+    pub newton_system: P,
+    /// The residual; behind it the moving kick, where the solve does better without the Jacobian.
+    pub newton_residual: P,
+    /// `Ad*_F` of the diamond with `F`.
+    pub kick_after: P,
+    /// The derivative of the kick before along a velocity.
+    pub kick_derivative: Option<P>,
+    /// Along `exp(t E_j) F`.
+    pub momentum_jacobian: P,
+    /// Inertia, bias and potential.
+    pub at_rest: P,
+    /// The continuous limit at a velocity, where it isn't quadratic: `l`, momentum and Hessian.
+    pub at_velocity: Option<[P; 3]>,
+    /// Of a Lagrangian, by `F`, `w` and `h`: `l_d`, right and left momentum, diamond, `legendre_minus` and discrete energy.
+    pub lagrangian: Option<[P; 6]>,
 }
 
-/// The continuous limit at a velocity, where it isn't quadratic.
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)] // as the fields of `Limit`
-pub struct AtVelocity {
-    pub l: Program,
-    pub momentum: Program,
-    pub hessian: Program,
+impl<P> Stages<P> {
+    /// What is made of each.
+    ///
+    /// # Errors
+    ///
+    /// The first.
+    pub fn try_map<'a, Q, E>(&'a self, mut make: impl FnMut(&'a P) -> Result<Q, E>) -> Result<Stages<Q>, E> {
+        Ok(Stages {
+            constants: make(&self.constants)?,
+            terms: make(&self.terms)?,
+            kick_before: make(&self.kick_before)?,
+            newton_system: make(&self.newton_system)?,
+            newton_residual: make(&self.newton_residual)?,
+            kick_after: make(&self.kick_after)?,
+            kick_derivative: self.kick_derivative.as_ref().map(&mut make).transpose()?,
+            momentum_jacobian: make(&self.momentum_jacobian)?,
+            at_rest: make(&self.at_rest)?,
+            at_velocity: self.at_velocity.as_ref().map(|list| all(list, &mut make)).transpose()?,
+            lagrangian: self.lagrangian.as_ref().map(|list| all(list, &mut make)).transpose()?,
+        })
+    }
+}
+
+fn all<'a, P, Q, E, const N: usize>(
+    list: &'a [P; N],
+    make: &mut impl FnMut(&'a P) -> Result<Q, E>,
+) -> Result<[Q; N], E> {
+    let made = list.iter().map(make).collect::<Result<Vec<Q>, E>>()?;
+    made.try_into().map_err(|_| unreachable!("as many as there were"))
 }
 
 /// A declaration with the programs of its step.
@@ -226,44 +307,34 @@ pub struct Staged {
     pub in_increment: bool,
     /// The components at which the Jacobian falls into blocks.
     pub blocks: Vec<usize>,
-    /// What the parameters and `h` determine.
-    pub constants: Program,
-    /// What `a` and `w` determine: at most [`MOST_TERMS`]; iterations compute the others anew.
-    pub terms: Program,
-    /// The stages, as methods of `Effect`.
-    pub kick_before: Program,
-    /// Residual, then Jacobian.
-    pub newton_system: Program,
-    /// The residual; behind it the moving kick, where the solve does better without the Jacobian.
-    pub newton_residual: Program,
-    /// `Ad*_F` of the diamond with `F`.
-    pub kick_after: Program,
-    /// The derivative of the kick before along a velocity.
-    pub kick_derivative: Option<Program>,
-    /// Along `exp(t E_j) F`.
-    pub momentum_jacobian: Program,
-    /// Inertia, bias and potential.
-    pub at_rest: Program,
-    /// Where the limit isn't quadratic.
-    pub at_velocity: Option<AtVelocity>,
-    /// Of a Lagrangian.
-    pub lagrangian: Option<Terms>,
+    /// The programs.
+    pub programs: Stages<Program>,
 }
 
 /// What is handed to the iterations of a step.
 pub const MOST_TERMS: usize = 64;
 
-/// Derives a struct with `#[lagrangian(…)]` or `#[force(…)]` and proves what was derived, as the macro does.
+/// Why nothing was derived.
+#[derive(Clone, Debug)]
+pub enum Refusal {
+    /// All mistakes of the declaration.
+    Mistakes(Vec<Mistake>),
+    /// It would take more work than it may.
+    TooMuchWork,
+}
+
+/// Derives a struct with `#[lagrangian(…)]` or `#[force(…)]` and proves what was derived, as the macro does, but with no
+/// more than this work: products of terms, and operations of programs. Beside it stands how much it took.
 ///
 /// # Errors
 ///
-/// All mistakes of the declaration.
-pub fn staged(text: &TokenStream) -> Result<Staged, Vec<Mistake>> {
+/// Its mistakes; or it takes more.
+pub fn staged(text: &TokenStream, most: u64) -> Result<(Staged, u64), Refusal> {
     let mut errors = Errors::default();
-    let found = of_text(text, &mut errors);
+    let (found, work) = work::within(most, || of_text(text, &mut errors)).ok_or(Refusal::TooMuchWork)?;
     match found {
-        Some(staged) if errors.is_empty() => Ok(staged),
-        _ => Err(errors.mistakes()),
+        Some(staged) if errors.is_empty() => Ok((staged, work)),
+        _ => Err(Refusal::Mistakes(errors.mistakes())),
     }
 }
 

@@ -2,14 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use super::{Action, Carried, ParameterKind, Source};
+use super::{Action, Array, Carried, ParameterKind, Source};
 use crate::declared::{Declaration, FieldKind, Name};
 use crate::mathematics::derive::{Directions, Seen};
 use crate::mathematics::symbolic::{SymbolId, Variance};
 use crate::program::Input;
 
 /// A symbol with the array that it is found in.
-type InArray = (SymbolId, fn(usize) -> Source);
+type InArray = (SymbolId, Array);
 
 /// The symbols of a derivation.
 pub(super) struct Sources<'a> {
@@ -25,11 +25,11 @@ impl Sources<'_> {
         let group = &self.declaration.group;
         let found = self.names.iter().find(|(_, id)| **id == input.symbol).map(|(name, _)| *name);
         Some(match found {
-            Some(Name::Step) => Source::Step,
-            Some(Name::Velocity(factor)) => Source::Velocity(group.component_of(factor) + input.row),
-            Some(Name::Increment(factor)) => Source::Element(self.entry_of_factor(factor, input)),
-            Some(Name::Advected(index)) => Source::Advected(self.entry_of_carried(index, input)),
-            Some(Name::Field(index)) => Source::Parameter(self.entry_of_field(index, input)),
+            Some(Name::Step) => Source::new(Array::Step, 0),
+            Some(Name::Velocity(factor)) => Source::new(Array::Velocity, group.component_of(factor) + input.row),
+            Some(Name::Increment(factor)) => Source::new(Array::Element, self.entry_of_factor(factor, input)),
+            Some(Name::Advected(index)) => Source::new(Array::Advected, self.entry_of_carried(index, input)),
+            Some(Name::Field(index)) => Source::new(Array::Parameters, self.entry_of_field(index, input)),
             Some(Name::DisplacementBefore(_) | Name::DisplacementAfter(_)) | None => return self.derived(input),
         })
     }
@@ -37,25 +37,25 @@ impl Sources<'_> {
     fn derived(&self, input: Input) -> Option<Source> {
         let directions = self.directions?;
         if let Some(index) = directions.next.iter().position(|&next| next == input.symbol) {
-            return Some(Source::Next(self.entry_of_carried(index, input)));
+            return Some(Source::new(Array::Next, self.entry_of_carried(index, input)));
         }
         for (factor, one) in directions.factors.iter().enumerate() {
             let kinds: [InArray; 3] = [
-                (one.small, Source::Increment),
-                (one.small_inverse, Source::InverseIncrement),
-                (one.inverse, Source::Inverse),
+                (one.small, Array::Increment),
+                (one.small_inverse, Array::InverseIncrement),
+                (one.inverse, Array::Inverse),
             ];
-            if let Some((_, kind)) = kinds.iter().find(|(symbol, _)| *symbol == input.symbol) {
-                return Some(kind(self.entry_of_factor(factor, input)));
+            if let Some((_, array)) = kinds.iter().find(|(symbol, _)| *symbol == input.symbol) {
+                return Some(Source::new(*array, self.entry_of_factor(factor, input)));
             }
         }
         let columns: [InArray; 3] = [
-            (directions.coordinates, Source::Half),
-            (directions.along, Source::Velocity),
-            (directions.target, Source::Target),
+            (directions.coordinates, Array::Half),
+            (directions.along, Array::Velocity),
+            (directions.target, Array::Target),
         ];
         let column = columns.iter().find(|(symbol, _)| *symbol == input.symbol);
-        column.map(|(_, kind)| kind(input.row))
+        column.map(|(_, array)| Source::new(*array, input.row))
     }
 
     /// Among the matrices of all factors. Of translations it is in the last column.

@@ -6,6 +6,7 @@ use super::functions::Function;
 use super::rational::Rational;
 use super::symbols::{Stage, SymbolId, Symbols};
 use super::word::{self, Factor};
+use super::work;
 
 /// Larger ones are on their way to where exponents saturate.
 const LARGEST_EXPONENT: u32 = 1 << 16;
@@ -238,6 +239,9 @@ impl Expression {
             ((rows, _), (_, columns)) => (rows, columns),
         };
         let mut product = Self::zero(shape);
+        if !work::spend(self.len().saturating_mul(other.len())) {
+            return product;
+        }
         for (left, a) in self.terms() {
             for (right, b) in other.terms() {
                 let word = [left.word.as_slice(), right.word.as_slice()].concat();

@@ -16,6 +16,7 @@ pub(crate) mod tests;
 mod variance;
 mod variation;
 mod word;
+pub(crate) mod work;
 
 pub(crate) use display::{covector_text, matrix_text, text, vector_text};
 pub(crate) use expression::{Atom, Expression, Monomial, degree, monomial_contains, stage_of, stage_of_monomial};

@@ -1,0 +1,114 @@
+//! Derived equations as LaTeX.
+
+use crate::declaration::Declaration;
+
+/// Signs of the equations in print, each with what LaTeX calls it.
+#[rustfmt::skip]
+const SIGNS: [(char, &str); 35] = [
+    ('−', "-"), ('·', r"\cdot "), ('×', r"\times "), ('⋄', r"\diamond "), ('∂', r"\partial "), ('∨', r"\vee"),
+    ('⟨', r"\langle "), ('⟩', r"\rangle "), ('δ', r"\delta "), ('η', r"\eta "), ('λ', r"\lambda "), ('μ', r"\mu "),
+    ('ξ', r"\xi "), ('ζ', r"\zeta "), ('Ω', r"\Omega "), ('τ', r"\tau "), ('θ', r"\theta "), ('½', r"\tfrac{1}{2}"),
+    ('𝕀', r"\mathbb{I}"), ('√', r"\surd "), ('↦', r"\mapsto "), ('→', r"\to "), ('≠', r"\neq "), ('\u{302}', r"\hat{}"), ('ᵀ', r"^{\top}"),
+    ('⁺', "^{+}"), ('⁻', "^{-}"), ('¹', "^{1}"), ('²', "^{2}"), ('³', "^{3}"), ('⁴', "^{4}"), ('₀', "_{0}"),
+    ('₁', "_{1}"), ('₂', "_{2}"), ('∞', r"\infty "),
+];
+
+/// Names that are letters to LaTeX.
+#[rustfmt::skip]
+const LETTERS: [&str; 34] = [
+    "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu", "nu", "xi",
+    "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega", "Gamma", "Delta", "Theta", "Lambda", "Xi", "Pi",
+    "Sigma", "Phi", "Psi", "Omega", "Upsilon",
+];
+const FUNCTIONS: [&str; 6] = ["exp", "log", "sin", "cos", "ln", "det"];
+
+/// The equations that were derived, each a line of an `align*`.
+#[must_use]
+pub fn latex(declaration: &Declaration) -> String {
+    let equations = declaration.derivation.lines().filter_map(|line| {
+        // Only an equation has its source in brackets behind it.
+        let (equation, source) = line.rsplit_once("    [")?;
+        let (left, right) = equation.split_once(" = ")?;
+        let source = source.trim_end_matches(']');
+        Some(format!("  {} &= {} && \\text{{{}}} \\\\\n", math(left), math(right), text(source)))
+    });
+    format!("\\begin{{align*}}\n{}\\end{{align*}}\n", equations.collect::<String>())
+}
+
+/// Words beside an equation, with their signs as mathematics.
+fn text(source: &str) -> String {
+    let sign = |character: char| match SIGNS.iter().find(|(sign, _)| *sign == character) {
+        Some((_, sign)) => format!("$ {sign} $"),
+        None if "_^&%#$".contains(character) => format!("\\{character}"),
+        None => character.to_string(),
+    };
+    source.chars().map(sign).collect()
+}
+
+fn math(expression: &str) -> String {
+    let mut made = String::new();
+    let mut rest = expression.trim();
+    while let Some(first) = rest.chars().next() {
+        let is_word = |character: char| character.is_ascii_alphanumeric() || character == '_';
+        let length = if first.is_ascii_alphabetic() {
+            rest.find(|character| !is_word(character)).unwrap_or(rest.len())
+        } else if first == '(' {
+            closed(rest).unwrap_or(1)
+        } else {
+            first.len_utf8()
+        };
+        let (token, behind) = rest.split_at(length);
+        match first {
+            'a'..='z' | 'A'..='Z' => made += &word(token),
+            '(' if length > 1 => made += &group(&token[1..length - 1]),
+            '^' => made += "^",
+            '*' => made += "^{*}",
+            ';' => made += ";\\quad ",
+            _ => made += SIGNS.iter().find(|(sign, _)| *sign == first).map_or(token, |(_, sign)| sign),
+        }
+        rest = behind;
+    }
+    // An exponent after another is one.
+    let joined = [("  ", " "), (" ^", "^"), (" _", "_"), (" }", "}"), ("^{-}^{", "^{-"), ("^{+}^{\\top}", "^{+\\top}")];
+    let made = joined.iter().fold(made, |made, (from, to)| made.replace(from, to));
+    made.replace(r"^{\top}^{+}", r"^{\top+}").trim_end().to_owned()
+}
+
+/// Where the bracket that begins a text is closed.
+fn closed(text: &str) -> Option<usize> {
+    let mut depth = 0;
+    for (at, character) in text.char_indices() {
+        match character {
+            '(' => depth += 1,
+            ')' => depth -= 1,
+            _ => {}
+        }
+        if depth == 0 {
+            return Some(at + 1);
+        }
+    }
+    None
+}
+
+/// What stands in brackets; a quotient without sums is a fraction.
+fn group(content: &str) -> String {
+    if let Some((above, below)) = content.split_once('/')
+        && ![above, below].iter().any(|part| part.contains(['/', '(', '+', '−']))
+    {
+        return format!("\\frac{{{}}}{{{}}} ", math(above), math(below));
+    }
+    format!("\\left({}\\right)", math(content))
+}
+
+/// A name, with what is behind its first underscore below it.
+fn word(name: &str) -> String {
+    let (head, below) = name.split_once('_').map_or((name, None), |(head, below)| (head, Some(below)));
+    let head = match head {
+        _ if LETTERS.contains(&head) || FUNCTIONS.contains(&head) => format!("\\{head} "),
+        "tr" => "\\operatorname{tr}".to_owned(),
+        _ if head.chars().count() == 1 => head.to_owned(),
+        _ => format!("\\mathrm{{{head}}}"),
+    };
+    let below = below.map(|below| format!("_{{{}}}", below.replace('_', "\\_")));
+    head.trim_end().to_owned() + &below.unwrap_or_else(|| " ".to_owned())
+}

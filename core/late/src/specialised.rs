@@ -1,0 +1,220 @@
+//! Programs with all numbers known: constants written in, what they make foreseeable folded, zeros dropped.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use liestep_derivation::{Array, Operation, Program, Source, Stages};
+
+use crate::code::applied;
+
+/// The programs of a step with these constants, those of the parameters and `h`, as literals: products with zero and
+/// one, sums with zero and equal operations are gone, and divisions by a number are products. The bits may differ from
+/// those of the general programs by rounding.
+#[must_use]
+pub fn specialised(programs: &Stages<Program>, constants: &[f64]) -> Stages<Program> {
+    let Ok(folded) = programs.try_map(|program| Ok::<_, std::convert::Infallible>(fold(program, constants)));
+    folded
+}
+
+/// What a register holds.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+enum Value {
+    /// A number, by its bits.
+    Number(u64),
+    /// An input of the new program.
+    Input(Source),
+    /// The result of an operation of the new program.
+    Result(usize),
+}
+
+impl Value {
+    fn of(number: f64) -> Self {
+        // Zeros are one.
+        Self::Number((number + 0.0).to_bits())
+    }
+
+    fn number(self) -> Option<f64> {
+        match self {
+            Self::Number(bits) => Some(f64::from_bits(bits)),
+            _ => None,
+        }
+    }
+}
+
+/// An operation of the new program.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Made {
+    Negate(Value),
+    Add(Value, Value),
+    Subtract(Value, Value),
+    Multiply(Value, Value),
+    Divide(Value, Value),
+    Apply(liestep_derivation::Function, Value),
+}
+
+#[derive(Default)]
+struct Fold {
+    operations: Vec<Made>,
+    known: HashMap<Made, Value>,
+}
+
+impl Fold {
+    fn push(&mut self, made: Made) -> Value {
+        let operations = &mut self.operations;
+        *self.known.entry(made).or_insert_with(|| {
+            operations.push(made);
+            Value::Result(operations.len() - 1)
+        })
+    }
+
+    /// What is negated to make this, if that is known.
+    fn negated(&self, value: Value) -> Option<Value> {
+        match value {
+            Value::Number(bits) => Some(Value::of(-f64::from_bits(bits))),
+            Value::Result(at) => match self.operations[at] {
+                Made::Negate(a) => Some(a),
+                _ => None,
+            },
+            Value::Input(_) => None,
+        }
+    }
+
+    fn negate(&mut self, a: Value) -> Value {
+        self.negated(a).unwrap_or_else(|| self.push(Made::Negate(a)))
+    }
+
+    fn add(&mut self, a: Value, b: Value) -> Value {
+        match (a.number(), b.number()) {
+            (Some(a), Some(b)) => Value::of(a + b),
+            (Some(0.0), _) => b,
+            (_, Some(0.0)) => a,
+            _ => {
+                if let (Value::Result(_), Some(b)) = (b, self.negated(b)) {
+                    return self.subtract(a, b);
+                }
+                if let (Value::Result(_), Some(a)) = (a, self.negated(a)) {
+                    return self.subtract(b, a);
+                }
+                self.push(Made::Add(a.min(b), a.max(b)))
+            }
+        }
+    }
+
+    fn subtract(&mut self, a: Value, b: Value) -> Value {
+        match (a.number(), b.number()) {
+            (Some(a), Some(b)) => Value::of(a - b),
+            (Some(0.0), _) => self.negate(b),
+            (_, Some(0.0)) => a,
+            _ => match (b, self.negated(b)) {
+                (Value::Result(_), Some(b)) => self.add(a, b),
+                _ => self.push(Made::Subtract(a, b)),
+            },
+        }
+    }
+
+    fn multiply(&mut self, a: Value, b: Value) -> Value {
+        let (a, b) = (a.min(b), a.max(b));
+        match (a.number(), b.number()) {
+            (Some(a), Some(b)) => Value::of(a * b),
+            (Some(0.0), _) => a,
+            (Some(1.0), _) => b,
+            (Some(-1.0), _) => self.negate(b),
+            (Some(number), _) => match b {
+                // Numbers are gathered.
+                Value::Result(at) => match self.operations[at] {
+                    Made::Multiply(inner, c) if inner.number().is_some() => {
+                        let product = number * inner.number().unwrap_or(1.0);
+                        self.multiply(Value::of(product), c)
+                    }
+                    Made::Negate(c) => self.multiply(Value::of(-number), c),
+                    _ => self.push(Made::Multiply(a, b)),
+                },
+                _ => self.push(Made::Multiply(a, b)),
+            },
+            _ => self.push(Made::Multiply(a, b)),
+        }
+    }
+
+    fn divide(&mut self, a: Value, b: Value) -> Value {
+        match (a.number(), b.number()) {
+            (Some(a), Some(b)) => Value::of(a / b),
+            (Some(0.0), _) => a,
+            (_, Some(b)) if (1.0 / b).is_normal() => self.multiply(a, Value::of(1.0 / b)),
+            _ => self.push(Made::Divide(a, b)),
+        }
+    }
+}
+
+fn fold(program: &Program, constants: &[f64]) -> Program {
+    let mut fold = Fold::default();
+    let of_input = |source: &Source| match constants.get(source.at) {
+        Some(&number) if source.array == Array::Constants => Value::of(number),
+        _ => Value::Input(*source),
+    };
+    let literals = program.literals.iter().map(|&literal| Value::of(literal));
+    let mut values: Vec<Value> = program.inputs.iter().map(of_input).chain(literals).collect();
+    for operation in &program.operations {
+        let [a, b] = operation.operands().map(|at| values[at]);
+        values.push(match *operation {
+            Operation::Negate(_) => fold.negate(a),
+            Operation::Add(..) => fold.add(a, b),
+            Operation::Subtract(..) => fold.subtract(a, b),
+            Operation::Multiply(..) => fold.multiply(a, b),
+            Operation::Divide(..) => fold.divide(a, b),
+            Operation::Apply(function, _) => match a.number() {
+                Some(a) => Value::of(applied(function, a)),
+                None => fold.push(Made::Apply(function, a)),
+            },
+        });
+    }
+    let outputs: Vec<Value> = program.outputs.iter().map(|&at| values[at as usize]).collect();
+    written(&fold.operations, &outputs)
+}
+
+fn operands(made: Made) -> [Value; 2] {
+    match made {
+        Made::Negate(a) | Made::Apply(_, a) => [a, a],
+        Made::Add(a, b) | Made::Subtract(a, b) | Made::Multiply(a, b) | Made::Divide(a, b) => [a, b],
+    }
+}
+
+/// The program of these outputs, with nothing that they don't need.
+fn written(operations: &[Made], outputs: &[Value]) -> Program {
+    let mut needed: BTreeSet<Value> = outputs.iter().copied().collect();
+    for (at, &made) in operations.iter().enumerate().rev() {
+        if needed.contains(&Value::Result(at)) {
+            needed.extend(operands(made));
+        }
+    }
+    // Numbers, inputs and results, in this order; of a program inputs come first.
+    let of = |kind: fn(&Value) -> bool| needed.iter().copied().filter(move |value| kind(value));
+    let inputs = || of(|value| matches!(value, Value::Input(_)));
+    let all = inputs()
+        .chain(of(|value| matches!(value, Value::Number(_))))
+        .chain(of(|value| matches!(value, Value::Result(_))));
+    let registers: BTreeMap<Value, u32> = all.zip(0..).collect();
+    let made = of(|value| matches!(value, Value::Result(_))).filter_map(|value| match value {
+        Value::Result(at) => operations.get(at),
+        _ => None,
+    });
+    let operation = |&made: &Made| {
+        let [a, b] = operands(made).map(|value| registers[&value]);
+        match made {
+            Made::Negate(_) => Operation::Negate(a),
+            Made::Add(..) => Operation::Add(a, b),
+            Made::Subtract(..) => Operation::Subtract(a, b),
+            Made::Multiply(..) => Operation::Multiply(a, b),
+            Made::Divide(..) => Operation::Divide(a, b),
+            Made::Apply(function, _) => Operation::Apply(function, a),
+        }
+    };
+    let source = |value| match value {
+        Value::Input(source) => Some(source),
+        _ => None,
+    };
+    Program {
+        inputs: inputs().filter_map(source).collect(),
+        literals: of(|value| matches!(value, Value::Number(_))).filter_map(Value::number).collect(),
+        operations: made.map(operation).collect(),
+        outputs: outputs.iter().map(|output| registers[output]).collect(),
+    }
+}

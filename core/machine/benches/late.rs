@@ -1,0 +1,153 @@
+//! A declaration that is read while a program runs, beside the one that is compiled: in `core/machine`, `cargo bench`.
+//!
+//! Times of a step in turns within one run, the fastest of all batches, in those of the compiled step; how long it takes from a
+//! text to the first step, and from each text of the repository to its machine code.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use declarations::{
+    Alike, CayleyTop, ContinuousTop, DoublePendulum, ElasticFlow, FallingBody, Flyer, FourthOrderTop, FullTop,
+    Gyrostat, LogTop, Magnet, OrbitingBody, RodElement, Satellite, SixthOrderTop, SuspendedLoad, TetheredPlate,
+    TopOnCart, TwoBodies, UnderwaterBody,
+};
+use liestep::mechanics::{Effect, Inertia, KineticPart, Regular, WithExpensiveKinetic, WithKinetic};
+use liestep::motion::{Batch, Batchable, Integrator};
+use liestep::{SO3, StateOf, Stepper};
+use liestep_late::{Backend, Declaration, Interpreted, Late, LateError, Program};
+use liestep_machine::Machine;
+use nalgebra::Vector3;
+use simba::simd::AutoF64x8;
+
+const STEPS: u32 = 1_000;
+const ROUNDS: usize = 200;
+const STEP: f64 = 0.01;
+const LANES: u32 = 8;
+
+type LateTop<K, B> = Late<SO3, Vector3<f64>, K, B>;
+
+fn main() {
+    first_steps();
+    let (rho, up) = (Vector3::new(0.1, -0.2, 0.4), Vector3::z());
+    let inertia = Inertia::from_principal_moments(Vector3::new(2.0, 2.5, 3.0)).expect("an inertia");
+    let full = FullTop { J_d: inertia.to_nonstandard(), m: 1.5, g: 9.81, rho, up };
+    compare::<_, WithKinetic>("(3.13), any inertia", full);
+    let fourth = FourthOrderTop { J: inertia, weight: 1.5 * 9.81, rho, up };
+    compare::<_, WithExpensiveKinetic>("of the fourth order", fourth);
+    texts();
+}
+
+fn started<S>(scene: S) -> (Stepper<S>, StateOf<S>)
+where
+    S: Regular<Scalar = f64, Group = SO3>,
+{
+    let stepper = Stepper::new(scene, STEP).expect("a stepper");
+    let state = stepper.start(SO3::exp(Vector3::new(0.8, 0.0, 0.0)), Vector3::new(0.5, 2.0, 6.0)).expect("a start");
+    (stepper, state)
+}
+
+/// ns a step of one of several scenes.
+fn ns(clock: Instant, scenes: u32) -> f64 {
+    clock.elapsed().as_secs_f64() * 1e9 / f64::from(STEPS) / f64::from(scenes)
+}
+
+fn alone<'a, S: Regular<Scalar = f64, Group = SO3> + 'a>(scene: S) -> Box<dyn FnMut() -> f64 + 'a>
+where
+    StateOf<S>: 'a,
+{
+    let (stepper, mut state) = started(scene);
+    Box::new(move || {
+        let clock = Instant::now();
+        for _ in 0..STEPS {
+            stepper.step(&mut state).expect("a step");
+        }
+        black_box(&state);
+        ns(clock, 1)
+    })
+}
+
+fn in_lanes<'a, S>(scene: &S) -> Box<dyn FnMut() -> f64 + 'a>
+where
+    S: Regular<Scalar = f64, Group = SO3> + Clone,
+    Stepper<S>: Batchable<AutoF64x8> + Integrator<State = StateOf<S>> + 'a,
+{
+    let bodies: Vec<_> = (0..LANES).map(|_| started(scene.clone())).collect();
+    let mut batch = Batch::<AutoF64x8, _>::new(&bodies).expect("they share a text");
+    Box::new(move || {
+        let clock = Instant::now();
+        batch.run(u64::from(STEPS));
+        ns(clock, LANES)
+    })
+}
+
+fn compare<S, K>(name: &str, scene: S)
+where
+    S: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Copy,
+    K: KineticPart,
+    LateTop<K, Machine>: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
+    LateTop<K, Interpreted>: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
+    Stepper<LateTop<K, Interpreted>>: Batchable<AutoF64x8> + Integrator<State = StateOf<LateTop<K, Interpreted>>>,
+{
+    let machine: LateTop<K, Machine> = Late::like(&scene).expect("a declaration");
+    let interpreted: LateTop<K, Interpreted> = Late::like(&scene).expect("a declaration");
+    let names = ["compiled", "machine code", "specialised", "interpreted", "in lanes of eight"];
+    let lanes = in_lanes(&interpreted);
+    let specialised = machine.clone().specialised();
+    let mut kinds = [alone(scene), alone(machine), alone(specialised), alone(interpreted), lanes];
+    let mut least = [f64::INFINITY; 5];
+    for _ in 0..ROUNDS {
+        for (least, kind) in least.iter_mut().zip(&mut kinds) {
+            *least = least.min(kind());
+        }
+    }
+    for (kind, ns) in names.iter().zip(least) {
+        println!("{name:22} {kind:18}{ns:8.0} ns a step, {:.2} times", ns / least[0]);
+    }
+}
+
+/// From texts that are new, if they differ in their names alone.
+fn first_steps() {
+    let times = (0..20).map(|number| {
+        let text = FullTop::DECLARATION.replace("FullTop", &format!("Top{number}"));
+        let clock = Instant::now();
+        let late: LateTop<WithKinetic, Machine> = Late::parse(&text).expect("a declaration");
+        let inertia = [2.0, 0.0, 0.0, 0.0, 2.5, 0.0, 0.0, 0.0, 3.0];
+        let numbers: [(&str, &[f64]); 5] =
+            [("J_d", &inertia), ("m", &[1.5]), ("g", &[9.81]), ("rho", &[0.1, 0.0, 0.4]), ("up", &[0.0, 0.0, 1.0])];
+        let late = numbers.iter().try_fold(late, |late, (name, value)| late.with(name, value)).expect("numbers");
+        let (stepper, mut state) = started(late);
+        stepper.step(&mut state).expect("a step");
+        clock.elapsed().as_secs_f64() * 1e3
+    });
+    let times: Vec<f64> = times.collect();
+    let least = times.iter().copied().fold(f64::INFINITY, f64::min);
+    println!("from the text of (3.13) to the first step: {:.1} ms the first time, {least:.1} ms at best", times[0]);
+}
+
+macro_rules! texts {
+    ($($name:ident)+) => { [$((stringify!($name), <$name as Effect>::DECLARATION)),+] };
+}
+
+fn texts() {
+    let all = texts! {
+        Alike CayleyTop ContinuousTop DoublePendulum ElasticFlow FallingBody Flyer Gyrostat LogTop Magnet OrbitingBody
+        RodElement Satellite SixthOrderTop SuspendedLoad TetheredPlate TopOnCart TwoBodies UnderwaterBody
+    };
+    for (name, text) in all {
+        let text = text.replace(name, "Anew");
+        let clock = Instant::now();
+        let declaration = Declaration::parse(&text).expect("a declaration");
+        let derived = clock.elapsed().as_secs_f64() * 1e3;
+        let mut programs: Vec<&Program> = Vec::new();
+        let all = declaration.programs.try_map(|program| {
+            programs.push(program);
+            Ok::<_, LateError>(())
+        });
+        drop(all);
+        let clock = Instant::now();
+        black_box(<Machine as Backend<f64>>::codes(&programs).expect("machine code"));
+        let made = clock.elapsed().as_secs_f64() * 1e3;
+        let operations: usize = programs.iter().map(|program| program.operations.len()).sum();
+        println!("{name:18} derived in {derived:6.1} ms, machine code of {operations:6} operations in {made:6.1} ms");
+    }
+}

@@ -1,0 +1,134 @@
+//! Programs as code of Cranelift, operation by operation.
+
+use std::collections::BTreeMap;
+
+use cranelift_codegen::ir::{AbiParam, FuncRef, InstBuilder as _, MemFlagsData, Value, types};
+use cranelift_codegen::settings::{self, Configurable as _};
+use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
+use cranelift_jit::{JITBuilder, JITModule};
+use cranelift_module::{FuncId, Linkage, Module as _, default_libcall_names};
+use liestep_late::{Array, Function, Operation, Program, applied};
+
+/// The code of these programs, each a function of the arrays of its inputs and the place of its outputs.
+pub(crate) fn module(programs: &[&Program]) -> Result<(JITModule, Vec<FuncId>), String> {
+    let mut flags = settings::builder();
+    flags.set("opt_level", "speed").map_err(|error| error.to_string())?;
+    let isa = cranelift_native::builder()?.finish(settings::Flags::new(flags)).map_err(|error| error.to_string())?;
+    let mut builder = JITBuilder::with_isa(isa, default_libcall_names());
+    builder.symbol(FUNCTION, function as *const u8);
+    let mut module = JITModule::new(builder);
+    let pointer = module.target_config().pointer_type();
+    let mut signature = module.make_signature();
+    signature.params.extend([AbiParam::new(types::I32), AbiParam::new(types::F64)]);
+    signature.returns.push(AbiParam::new(types::F64));
+    let shared = module.declare_function(FUNCTION, Linkage::Import, &signature).map_err(|error| error.to_string())?;
+    let (mut context, mut ids) = (FunctionBuilderContext::new(), Vec::new());
+    for (at, program) in programs.iter().enumerate() {
+        let mut own = module.make_context();
+        own.func.signature.params.extend([AbiParam::new(pointer); 2]);
+        let signature = &own.func.signature;
+        let id = module.declare_function(&format!("program_{at}"), Linkage::Local, signature);
+        let id = id.map_err(|error| error.to_string())?;
+        let called = module.declare_func_in_func(shared, &mut own.func);
+        let mut builder = FunctionBuilder::new(&mut own.func, &mut context);
+        write(&mut builder, program, called, pointer)?;
+        builder.finalize(module.target_config());
+        module.define_function(id, &mut own).map_err(|error| error.to_string())?;
+        module.clear_context(&mut own);
+        ids.push(id);
+    }
+    module.finalize_definitions().map_err(|error| error.to_string())?;
+    Ok((module, ids))
+}
+
+/// The place of a number in bytes.
+fn offset(at: usize) -> Result<i32, String> {
+    i32::try_from(8 * at).map_err(|_| "an array is too long".to_owned())
+}
+
+fn write(
+    builder: &mut FunctionBuilder,
+    program: &Program,
+    called: FuncRef,
+    pointer: types::Type,
+) -> Result<(), String> {
+    let block = builder.create_block();
+    builder.append_block_params_for_function_params(block);
+    builder.switch_to_block(block);
+    builder.seal_block(block);
+    let [arrays, outputs] = [0, 1].map(|at| builder.block_params(block)[at]);
+    // The caller has looked whether they are long enough.
+    let trusted = MemFlagsData::trusted();
+    let mut begins: BTreeMap<Array, Value> = BTreeMap::new();
+    for (array, _) in least(program) {
+        begins.insert(array, builder.ins().load(pointer, trusted, arrays, offset(array as usize)?));
+    }
+    let mut values = Vec::new();
+    for source in &program.inputs {
+        values.push(builder.ins().load(types::F64, trusted, begins[&source.array], offset(source.at)?));
+    }
+    values.extend(program.literals.iter().map(|&literal| builder.ins().f64const(literal)));
+    for &operation in &program.operations {
+        let [a, b] = operation.operands().map(|at| values[at]);
+        values.push(match operation {
+            Operation::Negate(_) => builder.ins().fneg(a),
+            Operation::Add(..) => builder.ins().fadd(a, b),
+            Operation::Subtract(..) => builder.ins().fsub(a, b),
+            Operation::Multiply(..) => builder.ins().fmul(a, b),
+            Operation::Divide(..) => builder.ins().fdiv(a, b),
+            Operation::Apply(Function::Sqrt, _) => builder.ins().sqrt(a),
+            Operation::Apply(function, _) => {
+                let code = builder.ins().iconst(types::I32, i64::from(code(function)));
+                let call = builder.ins().call(called, &[code, a]);
+                builder.inst_results(call)[0]
+            }
+        });
+    }
+    for (at, &output) in program.outputs.iter().enumerate() {
+        builder.ins().store(trusted, values[output as usize], outputs, offset(at)?);
+    }
+    builder.ins().return_(&[]);
+    Ok(())
+}
+
+/// How many numbers a program reads at least of each array that it reads.
+pub(crate) fn least(program: &Program) -> Vec<(Array, usize)> {
+    let mut least = BTreeMap::new();
+    for source in &program.inputs {
+        let count = least.entry(source.array).or_insert(0);
+        *count = source.at.saturating_add(1).max(*count);
+    }
+    least.into_iter().collect()
+}
+
+/// The symbol of what applies a function.
+const FUNCTION: &str = "liestep_function";
+
+/// A function as a number, for [`function`].
+const fn code(function: Function) -> u32 {
+    match function {
+        Function::Sqrt => 0,
+        Function::Ln => 1,
+        Function::Exp => 2,
+        Function::Sin => 3,
+        Function::Cos => 4,
+        Function::Stumpff(order) => 0x100 + order as u32,
+        Function::LogRatio(order) => 0x200 + order as u32,
+    }
+}
+
+/// A function of a number: the interpreter's.
+extern "C" fn function(code: u32, a: f64) -> f64 {
+    #[allow(clippy::cast_possible_truncation)] // the order is the last byte
+    let order = code as u8;
+    let function = match (code >> 8, order) {
+        (0, 0) => Function::Sqrt,
+        (0, 1) => Function::Ln,
+        (0, 2) => Function::Exp,
+        (0, 3) => Function::Sin,
+        (0, _) => Function::Cos,
+        (1, order) => Function::Stumpff(order),
+        (_, order) => Function::LogRatio(order),
+    };
+    applied(function, a)
+}

@@ -1,0 +1,265 @@
+//! Machine code computes what the interpreter computes, to the bit: each program of each declaration of the repository and of
+//! random ones, with random inputs; and whole steps.
+
+use declarations::{
+    Alike, CayleyTop, ContinuousTop, DoublePendulum, ElasticFlow, FallingBody, FloatingBody, FluidDrag, Flyer,
+    FourthOrderTop, FreeBody, FullTop, Gyrostat, HeavyTop, LogTop, LogTraceTop, Magnet, OrbitingBody, PointSpring,
+    RodElement, Satellite, SixthOrderTop, SlidingTop, SuspendedLoad, TetheredPlate, Thruster, TopOnCart, Torquer,
+    TwoBodies, UnderwaterBody,
+};
+use liestep::effects::{
+    CayleyBody, Dipole, Drag, GeodesicBody, Gravity, GravityGradient, MagneticDamping, PrincipalBody, RigidBody, Rotor,
+    Spring, Thrust, Torque,
+};
+use liestep::groups::{CayleyRetraction, LieGroup, Retraction, SE3};
+use liestep::laws::samples::Random;
+use liestep::mechanics::{Effect, WithEitherKinetic};
+use liestep::{SO3, Stepper};
+use liestep_late::{Array, Arrays, Backend, Declaration, Interpreted, Late, LateError, Operation, Program, Source};
+use liestep_machine::Machine;
+use nalgebra::{Vector3, Vector4};
+
+macro_rules! texts {
+    ($($name:ty)+) => { [$(<$name as Effect>::DECLARATION),+] };
+}
+
+/// All declarations of the repository that make steps.
+fn texts() -> Vec<&'static str> {
+    texts! {
+        HeavyTop FullTop CayleyTop LogTop LogTraceTop ContinuousTop SlidingTop FreeBody Magnet Satellite
+        declarations::Spring FourthOrderTop SixthOrderTop ElasticFlow TetheredPlate Flyer FluidDrag Thruster Torquer
+        OrbitingBody UnderwaterBody DoublePendulum Alike TopOnCart FloatingBody FallingBody SuspendedLoad Gyrostat
+        TwoBodies PointSpring RodElement RigidBody PrincipalBody CayleyBody GeodesicBody Gravity GravityGradient
+        Dipole Spring Rotor Drag MagneticDamping Thrust Torque
+    }
+    .to_vec()
+}
+
+/// The programs of a declaration.
+fn programs(declaration: &Declaration) -> Vec<&Program> {
+    let mut list = Vec::new();
+    let all = declaration.programs.try_map(|program| {
+        list.push(program);
+        Ok::<_, LateError>(())
+    });
+    all.map(|_| list).expect("no program fails")
+}
+
+/// What it computes of these arrays.
+fn outputs<B: Backend<f64>>(program: &Program, arrays: &[Vec<f64>]) -> Vec<u64> {
+    let code = B::codes(&[program]).expect("a program").remove(0);
+    outputs_of::<B>(&code, program, arrays)
+}
+
+fn outputs_of<B: Backend<f64>>(code: &B::Code, program: &Program, arrays: &[Vec<f64>]) -> Vec<u64> {
+    let [constants, terms, advected, next, element, increment, inverse, inverse_increment, half, velocity, target] =
+        std::array::from_fn(|at| arrays[at + 2].as_slice());
+    let arrays = Arrays::of([
+        (Array::Step, &arrays[0]),
+        (Array::Parameters, &arrays[1]),
+        (Array::Constants, constants),
+        (Array::Terms, terms),
+        (Array::Advected, advected),
+        (Array::Next, next),
+        (Array::Element, element),
+        (Array::Increment, increment),
+        (Array::Inverse, inverse),
+        (Array::InverseIncrement, inverse_increment),
+        (Array::Half, half),
+        (Array::Velocity, velocity),
+        (Array::Target, target),
+    ]);
+    let mut numbers = vec![0.0; program.outputs.len()];
+    B::run(code, &B::image(code, constants), &arrays, &mut numbers);
+    // Which NaN one is depends on the order of operands, which is the compiler's.
+    numbers.into_iter().map(|number| if number.is_nan() { u64::MAX } else { number.to_bits() }).collect()
+}
+
+/// As long as the program reads, and random.
+fn inputs(program: &Program, random: &mut Random) -> Vec<Vec<f64>> {
+    let mut arrays = vec![Vec::new(); Array::COUNT];
+    for source in &program.inputs {
+        let array = &mut arrays[source.array as usize];
+        let length = array.len().max(source.at + 1);
+        array.resize_with(length, || random.signed());
+    }
+    arrays
+}
+
+/// How many of the outputs are numbers.
+fn assert_same(programs: &[&Program], seed: u64) -> usize {
+    let machine = <Machine as Backend<f64>>::codes(programs).expect("machine code");
+    let interpreted = <Interpreted as Backend<f64>>::codes(programs).expect("programs");
+    let (mut random, mut numbers) = (Random::new(seed), 0);
+    for ((program, machine), interpreted) in programs.iter().zip(&machine).zip(&interpreted) {
+        for _ in 0..20 {
+            let arrays = inputs(program, &mut random);
+            let expected = outputs_of::<Interpreted>(interpreted, program, &arrays);
+            assert_eq!(outputs_of::<Machine>(machine, program, &arrays), expected, "{program:?}");
+            numbers += expected.iter().filter(|&&bits| bits != u64::MAX).count();
+        }
+    }
+    numbers
+}
+
+#[test]
+fn all_declarations_of_the_repository() {
+    let mut numbers = 0;
+    for (seed, text) in (0..).zip(texts()) {
+        let declaration = Declaration::parse(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        numbers += assert_same(&programs(declaration), seed);
+    }
+    println!("{numbers} numbers are the same");
+    assert!(numbers > 100_000, "{numbers}");
+}
+
+/// A vector, or a number, of some depth.
+fn expression(random: &mut Random, is_vector: bool, depth: u32) -> String {
+    let chosen = (random.signed() + 1.0) * if depth == 0 { 1.5 } else { 3.0 };
+    let mut deeper = |is_vector| expression(random, is_vector, depth.saturating_sub(1));
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // of few
+    match (is_vector, chosen as u32) {
+        (true, 0) => "w".to_owned(),
+        (true, 1) => "r".to_owned(),
+        (true, 2) => "(F * r)".to_owned(),
+        (true, 3) => format!("({} + {})", deeper(true), deeper(true)),
+        (true, 4) => format!("(A * {})", deeper(true)),
+        (true, _) => format!("({} * {})", deeper(false), deeper(true)),
+        (false, 0) => "k".to_owned(),
+        (false, 1 | 2) => format!("{}.dot(&{})", deeper(true), deeper(true)),
+        (false, 3) => format!("({} - {})", deeper(false), deeper(false)),
+        (false, 4) => format!("(0.3 * {}).sin()", deeper(false)),
+        (false, _) => format!("(1.0 + {}.powi(2)).sqrt()", deeper(false)),
+    }
+}
+
+/// Of a potential that nobody has thought of, on each group.
+#[test]
+fn random_declarations() {
+    let groups =
+        [("SO2", 2), ("SO3", 3), ("SE2", 3), ("SE3", 4), ("SE23", 5), ("SU2", 4), ("SL2", 2), ("Heisenberg", 3)];
+    let groups = groups.into_iter().chain([("R1", 2), ("R2", 3), ("R3", 4)]);
+    let (mut accepted, mut numbers) = (0, 0);
+    for seed in 0..30 {
+        for (group, size) in groups.clone() {
+            let random = &mut Random::new(seed);
+            let text = format!(
+                "#[lagrangian(group = {group}, advected(w = up), l_d = ((F - I) * A * A.transpose() * (F - I).transpose())\
+                 .trace() / (2.0 * h) - 0.5 * h * ({} + {}))] struct Random {{ A: SMatrix<f64, {size}, {size}>, \
+                 r: SVector<f64, {size}>, up: SVector<f64, {size}>, k: f64 }}",
+                expression(random, false, 3),
+                expression(random, false, 2),
+            );
+            let Ok(declaration) = Declaration::parse(&text) else { continue };
+            accepted += 1;
+            numbers += assert_same(&programs(declaration), seed);
+        }
+    }
+    println!("{accepted} of 330 random declarations are accepted, and {numbers} numbers of theirs are the same");
+    assert!(accepted >= 300, "{accepted}");
+}
+
+fn assert_same_steps<G, W>(text: &str, numbers: &[(&str, &[f64])])
+where
+    G: LieGroup<Scalar = f64>,
+    W: liestep::groups::Advected<G> + liestep_late::Slots,
+    CayleyRetraction: Retraction<G>,
+{
+    fn numbered<G, W, B>(text: &str, numbers: &[(&str, &[f64])]) -> Late<G, W, WithEitherKinetic, B>
+    where
+        G: LieGroup<Scalar = f64>,
+        W: liestep::groups::Advected<G> + liestep_late::Slots,
+        B: Backend<f64>,
+    {
+        let late = Late::parse(text).expect("a declaration");
+        numbers.iter().fold(late, |late, (name, value)| late.with(name, value).expect("a parameter"))
+    }
+    let one = Stepper::new(numbered::<G, W, Machine>(text, numbers), 0.01).expect("a stepper");
+    let other = Stepper::new(numbered::<G, W, Interpreted>(text, numbers), 0.01).expect("a stepper");
+    let velocity: G::Vector = Random::new(1).sample();
+    let start = || CayleyRetraction::retract(&(velocity * 0.3));
+    let mut first = one.start(start(), velocity).expect("a start");
+    let mut second = other.start(start(), velocity).expect("a start");
+    for step in 0..1_000 {
+        one.step(&mut first).expect("a step");
+        other.step(&mut second).expect("a step");
+        assert_eq!(first.momentum(), second.momentum(), "momentum after step {step}");
+        assert_eq!(first.attitude().matrix(), second.attitude().matrix(), "attitude after step {step}");
+    }
+}
+
+#[test]
+fn steps_are_the_same() {
+    let inertia: &[f64] = &[2.0, 0.1, -0.2, 0.1, 2.5, 0.3, -0.2, 0.3, 3.0];
+    let (rho, up): (&[f64], &[f64]) = (&[0.1, -0.2, 0.4], &[0.0, 0.0, 1.0]);
+    let full = FullTop::DECLARATION;
+    assert_same_steps::<SO3, Vector3<f64>>(
+        full,
+        &[("J_d", inertia), ("m", &[1.5]), ("g", &[9.81]), ("rho", rho), ("up", up)],
+    );
+    for text in [FourthOrderTop::DECLARATION, LogTop::DECLARATION] {
+        assert_same_steps::<SO3, Vector3<f64>>(text, &[("J", inertia), ("weight", &[1.5]), ("rho", rho), ("up", up)]);
+    }
+    let all = [3.0, 0.1, 0.0, 0.0, 0.1, 4.0, 0.2, 0.0, 0.0, 0.2, 5.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let of_water: &[(&str, &[f64])] = &[
+        ("J", &all),
+        ("M", &all),
+        ("origin", &[0.0; 3]),
+        ("weight", &[0.0, 0.1, -0.2, 0.3]),
+        ("height", &[0.0, 0.0, 1.0, 0.0]),
+    ];
+    assert_same_steps::<SE3, Vector4<f64>>(UnderwaterBody::DECLARATION, of_water);
+}
+
+/// A swapped operand, an input of another stage and another register are seen by these comparisons.
+#[test]
+fn what_is_wrong_is_seen() {
+    let declaration = Declaration::parse(FullTop::DECLARATION).expect("a declaration");
+    let right = &declaration.programs.newton_system;
+    let arrays = inputs(right, &mut Random::new(5));
+    let expected = outputs::<Interpreted>(right, &arrays);
+    assert_eq!(outputs::<Machine>(right, &arrays), expected);
+    let is_seen = |what: &str, wrong: Program| {
+        // The arrays are at least as long as the wrong program needs them.
+        let mut arrays = arrays.clone();
+        arrays.iter_mut().for_each(|array| array.resize(array.len().max(64), 0.5));
+        let expected = outputs::<Interpreted>(right, &arrays);
+        let found = outputs::<Machine>(&wrong, &arrays);
+        let differing = found.iter().zip(&expected).filter(|(found, expected)| found != expected).count();
+        println!("{what}: {differing} of {} outputs differ", expected.len());
+        assert!(differing > 0, "{what}");
+    };
+    let mut swapped = right.clone();
+    let difference = |operation: &mut Operation| match operation {
+        Operation::Subtract(a, b) => {
+            std::mem::swap(a, b);
+            true
+        }
+        _ => false,
+    };
+    assert!(swapped.operations.iter_mut().any(difference), "a difference");
+    is_seen("a swapped operand", swapped);
+    let mut stage = right.clone();
+    let term = stage.inputs.iter_mut().find(|source| source.array == Array::Terms).expect("a term");
+    *term = Source::new(Array::Constants, term.at);
+    is_seen("an input of another stage", stage);
+    let mut register = right.clone();
+    let product = register.operations.iter_mut().find_map(|operation| match operation {
+        Operation::Multiply(a, _) => Some(a),
+        _ => None,
+    });
+    let operand = product.expect("a product");
+    *operand = if *operand == 0 { 1 } else { *operand - 1 };
+    is_seen("another register", register);
+}
+
+/// What a program reads is there, or nothing is called.
+#[test]
+#[should_panic(expected = "an input is missing")]
+fn short_arrays_are_refused() {
+    let declaration = Declaration::parse(FullTop::DECLARATION).expect("a declaration");
+    let program = &declaration.programs.newton_system;
+    let mut arrays = inputs(program, &mut Random::new(5));
+    arrays[Array::Half as usize].pop();
+    let _ = outputs::<Machine>(program, &arrays);
+}
