@@ -263,9 +263,7 @@ pub enum StepError {
         turn: f64,
     },
     /// The iteration didn't settle: Newton's, or the fixed-point iteration of [`Gauss`](crate::methods::Gauss).
-    #[error(
-        "the iteration did not settle in {iterations} iterations (last relative update {residual:e}); try a smaller step"
-    )]
+    #[error("the iteration {}; try a smaller step", unsettled(*iterations, *residual))]
     NotConverged {
         /// How many iterations were made.
         iterations: u32,
@@ -309,6 +307,15 @@ pub enum StepError {
         /// ended; NaN where that is nowhere.
         determinant: f64,
     },
+}
+
+/// What became of an iteration.
+fn unsettled(iterations: u32, residual: f64) -> String {
+    if residual.is_finite() {
+        format!("did not settle in {iterations} iterations (last relative update {residual:e})")
+    } else {
+        "runs out of all bounds".to_owned()
+    }
 }
 
 /// How far a body would turn, and the way out.

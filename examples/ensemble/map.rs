@@ -75,7 +75,7 @@ impl Grid {
                 match rows.status[row] {
                     Status::Going => first[member] = values,
                     Status::Finished => last[member] = values,
-                    Status::Stopped | Status::Impossible => {}
+                    Status::Stopped | Status::Impossible | Status::Left => {}
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! Each effect of the library against the physics that it stands for.
 
 use checks::random::Random;
-use liestep::effects::{Dipole, GravityGradient, Rotor, Spring};
+use liestep::effects::{Dipole, Drag, GravityGradient, Rotor, Spring, Torque};
 use liestep::mechanics::{AxiallyInvariant, Effect, Regular};
 use liestep::prelude::*;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -98,6 +98,29 @@ fn librations_in_the_gravity_gradient() {
         }
         // The continuous frequency is another, so the test tells them apart.
         assert!((discrete - omega) * h * 1000.0 > 0.01);
+    }
+}
+
+/// Under a constant torque drag lets the body turn at `τ/c`, and the velocity that is read off its momentum is
+/// `(τ/c)(1 + ½ x y²/(1 + y²))`, as its page has it.
+#[test]
+fn what_drag_shows_of_a_velocity() {
+    let (h, tau) = (0.1, 0.01);
+    for (x, times) in [(0.01, 1.000_001), (1.0, 1.346), (10.0, 5.978), (100.0, 50.998)] {
+        let J = Inertia::from_principal_moments(Vector3::repeat(2.0)).unwrap();
+        let (c, y) = (x * 2.0 / h, 1.5 * x);
+        let scene = body([2.0; 3]) + Drag { c, J } + Torque { torque: Vector3::z() * (tau * c) };
+        let stepper = Stepper::new(scene, h).unwrap();
+        let mut state = stepper.start(SO3::identity(), Vector3::z() * tau).unwrap();
+        stepper.run(&mut state, 20_000).unwrap();
+        let before = state.attitude();
+        stepper.step(&mut state).unwrap();
+        let turned = (before.inverse().compose(&state.attitude())).log().z.sin() / h;
+        let read = stepper.velocity(&state).z;
+        println!("{x}: turns at {turned}, read {read}");
+        assert!((turned / tau - 1.0).abs() < 1e-10, "{x}: {turned}");
+        assert!((read / tau / (1.0 + 0.5 * x * y * y / (1.0 + y * y)) - 1.0).abs() < 1e-10, "{x}: {read}");
+        assert!((read / tau / times - 1.0).abs() < 1e-3, "{x}: {read}");
     }
 }
 

@@ -217,8 +217,8 @@ fn a_product_is_near_where_all_its_factors_are() {
 fn what_is_far_is_restored_by_itself() {
     let good = SO3::from(nalgebra::UnitQuaternion::from_scaled_axis(Vector3::new(0.3, -0.4, 0.9)));
     let bad = SO3::from_matrix_unchecked(good.matrix() * (1.0 + 1e-9));
-    assert!((good, good).restored().is_none());
-    let (restored, _) = (good, bad).restored().unwrap();
+    assert!((good, good).restored(2048.0).is_none());
+    let (restored, _) = (good, bad).restored(2048.0).unwrap();
     assert_eq!(restored.0, good);
     assert!(restored.1.defect() < 1e-15 && (good, bad).defect() > 1e-9);
 }
@@ -253,7 +253,8 @@ fn numbers_of_translations() {
     let mut numbers = [0.0; 9];
     assert_eq!((SO3::identity(), line, space).write_numbers(&mut numbers).len(), 1);
     assert_eq!(numbers, [1.0, 0.0, 0.0, 0.0, 5.0, 6.0, 7.0, 8.0, 0.0]);
-    assert_eq!(line.value().to_bits(), 5.0_f64.to_bits());
+    let read: f64 = line.value();
+    assert_eq!(read.to_bits(), 5.0_f64.to_bits());
 }
 
 /// In a table, one factor after the other.

@@ -4,6 +4,7 @@
 //! cargo bench -p liestep-ensemble --bench steps                     with and without files, on one and two threads, in turns
 //! cargo bench -p liestep-ensemble --bench steps -- plain 4096       that many tops and no files: to count instructions
 //! cargo bench -p liestep-ensemble --bench steps -- failing 4096     one of a hundred falls too fast at some time
+//! cargo bench -p liestep-ensemble --bench steps -- section 4096     their axis passes a plane; `section-in-lanes`, asked in lanes
 //! cargo bench -p liestep-ensemble --bench steps -- many 10000000    that many of ten steps into files, and the memory for it
 //! cargo bench -p liestep-ensemble --bench steps -- splittings       symmetric tops, beside heyoka where Python has it
 //! ```
@@ -16,8 +17,9 @@ use std::time::Instant;
 
 use liestep::effects::{Gravity, PrincipalBody, Torque};
 use liestep::mechanics::{DiagonalNonstandardInertia, Sum};
+use liestep::recording::{Event, sections};
 use liestep::{SO3, Stepper};
-use liestep_ensemble::{Ensemble, Failure, Local, Member, Reduction, Store};
+use liestep_ensemble::{Ensemble, Failure, Local, Member, Reduction, Section, Store};
 use nalgebra::Vector3;
 
 type Top = Stepper<Sum<Sum<PrincipalBody, Gravity>, Torque>>;
@@ -90,6 +92,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         match what.as_str() {
             "plain" => println!("steps and failures {:?}", compute(&tops(members, STEPS, None), members)),
             "failing" => println!("steps and failures {:?}", compute(&tops(members, STEPS, Some(100)), members)),
+            "section" | "section-in-lanes" => {
+                let plane = Section::new(Event::rising(), sections::plane(Vector3::z(), Vector3::x()));
+                let plane = plane.keep(["t"], |now| [now.time()]);
+                let plane =
+                    if what == "section" { plane } else { plane.in_lanes(sections::plane(Vector3::z(), Vector3::x())) };
+                println!("steps and failures {:?}", compute(&tops(members, STEPS, None).section(plane), members));
+            }
             "many" => {
                 let folder = folder("many");
                 let report =
@@ -97,7 +106,11 @@ fn main() -> Result<(), Box<dyn Error>> {
                 std::fs::remove_dir_all(folder)?;
                 println!("{} finished; the most memory was {:?} MB", report.finished, most_memory());
             }
-            _ => return Err("splittings; or plain, failing or many, and a number of members".into()),
+            _ => {
+                return Err(
+                    "splittings; or plain, failing, section, section-in-lanes or many, and a number of members".into(),
+                );
+            }
         }
         return Ok(());
     }

@@ -8,7 +8,7 @@ use crate::ensemble::{Ensemble, Run};
 use crate::failure::{Failure, MemberFailure};
 use crate::group::{Group, Start};
 use crate::reduce::Summary;
-use crate::section::{Crossing, Watch};
+use crate::section::{Crossing, Place, Watch};
 use crate::shard::{Crossings, Rows, Shard, Status};
 
 impl<M: Integrator> Ensemble<M> {
@@ -28,7 +28,7 @@ impl<M: Integrator> Ensemble<M> {
     pub(crate) fn shard(&self, plan: u64, chunk: u64, is_stopped: &dyn Fn() -> bool) -> Option<Shard> {
         let members = self.range(chunk);
         let mut made =
-            Tally { rows: self.no_rows(), finished: 0, failures: Vec::new(), reduced: self.nothing_reduced() };
+            Tally { rows: self.no_rows(), finished: 0, left: 0, failures: Vec::new(), reduced: self.nothing_reduced() };
         // Those that can't be made are taken out first, so that they leave no lane empty.
         let mut waiting: Vec<(u64, Option<MemberFailure>)> = Vec::new();
         let mut starts: Vec<Start<M>> = Vec::new();
@@ -44,8 +44,8 @@ impl<M: Integrator> Ensemble<M> {
             }
         }
         self.move_on(&mut waiting, &mut starts, &mut made, is_stopped)?;
-        let Tally { rows, finished, failures, reduced } = made;
-        Some(Shard { plan, chunk, names: self.names.clone(), rows, finished, failures, reduced })
+        let Tally { rows, finished, left, failures, reduced } = made;
+        Some(Shard { plan, chunk, names: self.names.clone(), rows, finished, left, failures, reduced })
     }
 
     /// Runs those that are waiting to their ends, in lanes, and writes down what is kept of them in their order. `None` if
@@ -80,7 +80,8 @@ impl<M: Integrator> Ensemble<M> {
                 made.reduced[number].add(value);
             }
             match end {
-                Ok(values) => {
+                Ok(None) => made.left += 1,
+                Ok(Some(values)) => {
                     made.finished += 1;
                     made.reduced.iter_mut().zip(values).for_each(|(reduced, value)| reduced.add(value));
                 }
@@ -103,18 +104,18 @@ impl<M: Integrator> Ensemble<M> {
         // With sections each step is looked at.
         let longest = if self.sections.is_empty() { Self::PIECE } else { 1 };
         // Those that are still under way, and where they are.
-        let look = |group: &dyn Group<M>, courses: &mut [Course<M>], then: &dyn Fn(&Run<'_, M>, &mut Course<M>)| {
-            for (place, course) in courses.iter_mut().enumerate() {
-                if group.error(place).is_none() && course.lost.is_none() {
-                    let (member, stepper, state) = (members[place], &starts[place].0, &group.state(place));
-                    then(&Run { member, stepper, state }, course);
-                }
-            }
+        let going = |group: &dyn Group<M>, place: usize, course: &Course<M>| {
+            group.error(place).is_none() && course.ended.is_none()
         };
         let mut steps = 0;
-        while steps < self.steps {
+        while steps < self.steps && (courses.iter().enumerate()).any(|(place, course)| going(&*group, place, course)) {
             if self.every.is_some_and(|every| steps.is_multiple_of(every)) {
-                look(group, courses, &|run, course| self.keep_row(run, steps, Status::Going, &mut course.rows));
+                for (place, course) in courses.iter_mut().enumerate() {
+                    if going(&*group, place, course) {
+                        let (member, stepper, state) = (members[place], &starts[place].0, &group.state(place));
+                        self.keep_row(&Run { member, stepper, state }, steps, Status::Going, &mut course.rows);
+                    }
+                }
             }
             let due = self.every.map_or(self.steps, |every| ((steps / every + 1) * every).min(self.steps));
             while steps < due {
@@ -124,26 +125,41 @@ impl<M: Integrator> Ensemble<M> {
                 let piece = longest.min(due - steps);
                 group.run(piece);
                 steps += piece;
-                if !self.sections.is_empty() {
-                    look(group, courses, &|run, course| self.look_at_sections(run, course, false));
+                if self.sections.is_empty() {
+                    continue;
+                }
+                let values: Vec<_> = self.sections.iter().map(|section| group.values(section)).collect();
+                for (place, course) in courses.iter_mut().enumerate() {
+                    if going(&*group, place, course) {
+                        let (before, now) = (|| group.before(place), || group.state(place));
+                        let value = |section: usize| values[section].map(|values| values[place]);
+                        let at = |section: usize| Place { value: value(section), before: &before, now: &now };
+                        self.look_at_sections(&starts[place].0, &at, course, false);
+                    }
                 }
             }
         }
         for (place, course) in courses.iter_mut().enumerate() {
             let (member, (stepper, start)) = (members[place], &starts[place]);
-            let (mut state, mut failure) = (group.state(place), group.error(place).map(Failure::from));
-            if course.lost.is_none() {
-                self.look_at_sections(&Run { member, stepper, state: &state }, course, true);
+            if course.ended.is_none() {
+                // All steps have been looked at.
+                let now = || group.state(place);
+                self.look_at_sections(stepper, &|_| Place { value: None, before: &now, now: &now }, course, true);
             }
-            if let Some((lost, why)) = course.lost.take() {
-                (state, failure) = (lost, Some(why));
-            }
+            let error = group.error(place).map(Failure::from);
+            let has_left = course.ended.as_ref().is_some_and(|(_, why)| why.is_none());
+            let (state, failure) = course.ended.take().unwrap_or_else(|| (group.state(place), error));
             let run = Run { member, stepper, state: &state };
             let made = state.steps() - start.steps();
-            let status = if failure.is_some() { Status::Stopped } else { Status::Finished };
+            let status = match failure {
+                Some(_) => Status::Stopped,
+                None if has_left => Status::Left,
+                None => Status::Finished,
+            };
             self.keep_row(&run, made, status, &mut course.rows);
+            let values = || self.reductions.iter().map(|(_, _, value)| value(&run)).collect();
             course.end = match failure {
-                None => Ok(self.reductions.iter().map(|(_, _, value)| value(&run)).collect()),
+                None => Ok((!has_left).then(values)),
                 Some(failure) => Err(MemberFailure { member, steps: made, failure }),
             };
         }
@@ -158,31 +174,46 @@ impl<M: Integrator> Ensemble<M> {
     /// At its start.
     fn course(&self, (stepper, start): &Start<M>) -> Course<M> {
         let watches: Result<_, _> = self.sections.iter().map(|section| section.watch(stepper, start)).collect();
-        let (watches, lost) = match watches {
+        let (watches, ended) = match watches {
             Ok(watches) => (watches, None),
-            Err(failure) => (Vec::new(), Some((start.clone(), failure))),
+            Err(failure) => (Vec::new(), Some((start.clone(), Some(failure)))),
         };
-        Course { rows: self.no_rows(), watches, reduced: Vec::new(), lost, end: Ok(Vec::new()) }
+        Course { rows: self.no_rows(), watches, reduced: Vec::new(), ended, end: Ok(None) }
     }
 
-    /// Keeps the crossings up to this state, which belong to the next row.
-    fn look_at_sections(&self, run: &Run<'_, M>, course: &mut Course<M>, is_last: bool) {
-        let mut first = self.reductions.len();
-        let sections = self.sections.iter().zip(&mut course.watches).zip(&mut course.rows.crossings);
-        for ((section, watch), crossings) in sections {
-            match section.look(watch, run.stepper, run.state, is_last) {
-                Ok(found) => {
-                    for Crossing { columns, reduced } in found {
-                        crossings.push(course.rows.member.len(), &columns);
-                        course.reduced.extend((first..).zip(reduced));
+    /// Keeps the crossings up to here, which belong to the next row; of a member that leaves none later than that.
+    fn look_at_sections<'a>(
+        &self,
+        stepper: &M,
+        at: &dyn Fn(usize) -> Place<'a, M::State>,
+        course: &mut Course<M>,
+        is_last: bool,
+    ) {
+        let (mut found, mut left) = (Vec::new(), f64::INFINITY);
+        for (number, (section, watch)) in self.sections.iter().zip(&mut course.watches).enumerate() {
+            match section.look(watch, stepper, &at(number), is_last) {
+                Ok(crossings) => {
+                    if section.ends {
+                        left = crossings.first().map_or(left, |crossing| left.min(crossing.time.abs()));
                     }
+                    found.push(crossings);
                 }
                 Err(failure) => {
-                    course.lost = Some((run.state.clone(), failure));
-                    return;
+                    course.ended = Some(((at(number).now)(), Some(failure)));
+                    break;
                 }
             }
+        }
+        let mut first = self.reductions.len();
+        for ((section, crossings), kept) in self.sections.iter().zip(found).zip(&mut course.rows.crossings) {
+            for Crossing { columns, reduced, .. } in crossings.into_iter().filter(|it| it.time.abs() <= left) {
+                kept.push(course.rows.member.len(), &columns);
+                course.reduced.extend((first..).zip(reduced));
+            }
             first += section.reductions.len();
+        }
+        if left.is_finite() && course.ended.is_none() {
+            course.ended = Some(((at(0).now)(), None));
         }
     }
 
@@ -206,6 +237,7 @@ impl<M: Integrator> Ensemble<M> {
 struct Tally {
     rows: Rows,
     finished: u64,
+    left: u64,
     failures: Vec<MemberFailure>,
     reduced: Vec<Summary>,
 }
@@ -217,8 +249,8 @@ struct Course<M: Integrator> {
     watches: Vec<Watch<M::State>>,
     /// What sections reduce, with the number of the reduction.
     reduced: Vec<(usize, f64)>,
-    /// Where it could be followed no further, as the function of a section had no value.
-    lost: Option<(M::State, Failure)>,
-    /// What is reduced of its end.
-    end: Result<Vec<f64>, MemberFailure>,
+    /// Where it left, or could be followed no further, as the function of a section had no value.
+    ended: Option<(M::State, Option<Failure>)>,
+    /// What is reduced of its end; nothing where it left.
+    end: Result<Option<Vec<f64>>, MemberFailure>,
 }

@@ -14,12 +14,18 @@ pub trait Engine {
         true
     }
 
-    /// Has every missing chunk made by `make`, once and somewhere; only the one that [leads](Self::leads) knows them.
+    /// Whether a chunk is one of this engine's, where several have a part each.
+    fn has(&self, _chunk: u64) -> bool {
+        true
+    }
+
+    /// Has every missing chunk made by `make`, once and somewhere; only the one that [leads](Self::leads) knows them, and
+    /// calls `tell` for each that another process has made.
     ///
     /// # Errors
     ///
     /// The first error of `make`; what is under way then is given up.
-    fn distribute(&self, missing: &[u64], make: &MakeChunk<'_>) -> Result<(), StoreError>;
+    fn distribute(&self, missing: &[u64], make: &MakeChunk<'_>, tell: &(dyn Fn() + Sync)) -> Result<(), StoreError>;
 }
 
 /// Makes a chunk of a number and writes it, unless it is told to stop on the way, which it asks between members and
@@ -36,6 +42,7 @@ pub struct Local<'a> {
     threads: usize,
     share: u64,
     shares: u64,
+    helps: bool,
     stop: Option<&'a AtomicBool>,
 }
 
@@ -43,7 +50,7 @@ impl<'a> Local<'a> {
     /// So many threads; zero means as many as there are cores.
     #[must_use]
     pub fn threads(threads: usize) -> Self {
-        Self { threads, share: 0, shares: 1, stop: None }
+        Self { threads, share: 0, shares: 1, helps: false, stop: None }
     }
 
     /// Only this one of the shares.
@@ -58,6 +65,14 @@ impl<'a> Local<'a> {
         self
     }
 
+    /// After its share also chunks of others that are missing still, from behind, so that a slow one isn't waited for. Two
+    /// may make the same chunk then, and write the same file.
+    #[must_use]
+    pub fn helping(mut self) -> Self {
+        self.helps = true;
+        self
+    }
+
     /// Stops within a [piece](crate::Ensemble::PIECE) of steps once this is set, from a handler of signals for example. Chunks that are done are kept.
     #[must_use]
     pub fn stopped_by(mut self, stop: &'a AtomicBool) -> Self {
@@ -67,8 +82,18 @@ impl<'a> Local<'a> {
 }
 
 impl Engine for Local<'_> {
-    fn distribute(&self, missing: &[u64], make: &MakeChunk<'_>) -> Result<(), StoreError> {
-        let own: Vec<u64> = missing.iter().copied().filter(|chunk| chunk % self.shares == self.share).collect();
+    fn has(&self, chunk: u64) -> bool {
+        chunk % self.shares == self.share
+    }
+
+    fn distribute(&self, missing: &[u64], make: &MakeChunk<'_>, _: &(dyn Fn() + Sync)) -> Result<(), StoreError> {
+        let (mut own, mut others): (Vec<u64>, Vec<u64>) = missing.iter().partition(|chunk| self.has(**chunk));
+        if self.helps {
+            // Those who help begin at different places.
+            others.reverse();
+            others.sort_by_key(|chunk| (chunk % self.shares + self.shares - self.share) % self.shares);
+            own.append(&mut others);
+        }
         let has_failed = AtomicBool::new(false);
         let is_stopped =
             || has_failed.load(Ordering::Relaxed) || self.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));

@@ -14,7 +14,13 @@
 //! MPI, and of a job one process of which was killed: they are the same.
 //!
 //! MPI hands out chunks as they are asked for, so that slow ones don't hold up the rest; shares are fixed beforehand, and
-//! cost nothing: no dependency and no server. Both need a folder that all processes see.
+//! cost nothing: no dependency and no server. With [`Local::helping`](crate::Local::helping) those that are done make chunks of
+//! others, from behind. Both need a folder that all processes see.
+//!
+//! A process that begins lists the names that are there, and reads the beginning of one file. At its end it reads the
+//! beginnings of its own files, of some 1.5 kB each, for their sums; once all chunks are there, of all: of 10⁹ members in 4,097
+//! files of 10 MB one part in 6,000. That nothing has been damaged since it was written is asked by
+//! [`Store::verified`](crate::Store::verified), which reads every byte.
 //!
 //! # Shares
 //!
@@ -61,5 +67,6 @@
 //!
 //! # Size of chunks
 //!
-//! A chunk is what is lost by a kill, and what two writes to the disk are paid for: a second's work is a good size, and
-//! what is taken if nothing is said. Of members that take minutes one is a chunk.
+//! A chunk is what is lost by a kill, and what two writes to the disk are paid for: a second's work is a good size. If nothing
+//! is said it is that, by what a step of the method costs, or less, so that 64 threads have some. Of members that take
+//! minutes one is a chunk.

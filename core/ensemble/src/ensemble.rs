@@ -1,6 +1,7 @@
 //! What is to be computed: members, steps, and what is kept of them.
 
 use core::fmt;
+use std::sync::OnceLock;
 
 use liestep::motion::{Batchable, Integrator, Moment};
 use simba::simd::AutoF64x8;
@@ -48,6 +49,8 @@ pub struct Ensemble<M: Integrator> {
     pub(crate) columns: Vec<Box<Values<M>>>,
     pub(crate) reductions: Vec<(String, Reduction, Box<Value<M>>)>,
     pub(crate) sections: Vec<Section<M>>,
+    fingerprint: OnceLock<u64>,
+    size: OnceLock<u64>,
 }
 
 impl<M: Integrator> Ensemble<M> {
@@ -107,21 +110,28 @@ impl<M: Integrator> Ensemble<M> {
             columns: Vec::new(),
             reductions: Vec::new(),
             sections: Vec::new(),
+            fingerprint: OnceLock::new(),
+            size: OnceLock::new(),
         }
+    }
+
+    /// Another plan than before.
+    fn changed(self) -> Self {
+        Self { fingerprint: OnceLock::new(), size: OnceLock::new(), ..self }
     }
 
     /// What members draw their numbers with; zero if nothing is said.
     #[must_use]
     pub fn seed(mut self, seed: u64) -> Self {
         self.seed = seed;
-        self
+        self.changed()
     }
 
     /// The table of which member `k` reads row `k`, by [`Member::cell`].
     #[must_use]
     pub fn over(mut self, table: Table) -> Self {
         self.table = Some(table);
-        self
+        self.changed()
     }
 
     /// Keeps the columns at the start, after each multiple of a number of steps, and at the end; without it at the end only.
@@ -135,13 +145,14 @@ impl<M: Integrator> Ensemble<M> {
     pub fn every(mut self, steps: u64) -> Self {
         assert!(steps > 0, "columns are kept after a number of steps above zero");
         self.every = Some(steps);
-        self
+        self.changed()
     }
 
     /// So many members to a chunk, which is what one worker makes at a time and one file holds.
     ///
-    /// If nothing is said it is about a second's work of one core, and a million rows at most where one member hasn't more.
-    /// Of members that go one by one it is a 64th of them at most, so that all cores and all shares have some.
+    /// If nothing is said it is about a second's work of one core by what a step of the method [costs](Integrator::cost), or a
+    /// 64th of the members, so that all cores and all shares have some, and a million rows at most where one member hasn't
+    /// more. It is the same on every machine, as the plan is.
     ///
     /// # Panics
     ///
@@ -150,7 +161,7 @@ impl<M: Integrator> Ensemble<M> {
     pub fn chunks_of(mut self, members: u64) -> Self {
         assert!(members > 0, "a chunk has members");
         self.chunk = Some(members);
-        self
+        self.changed()
     }
 
     /// Keeps columns of these names.
@@ -169,7 +180,7 @@ impl<M: Integrator> Ensemble<M> {
             self.names.push(name.to_owned());
         }
         self.columns.push(Box::new(move |run, row| row.extend(values(run))));
-        self
+        self.changed()
     }
 
     /// As [`keep`](Self::keep), of names that are known when the program runs: the slice has a place for each, NaN until
@@ -194,7 +205,7 @@ impl<M: Integrator> Ensemble<M> {
             row.resize(start + count, f64::NAN);
             values(run, &mut row[start..]);
         }));
-        self
+        self.changed()
     }
 
     /// Reduces a value of every member that has come to its end.
@@ -211,7 +222,7 @@ impl<M: Integrator> Ensemble<M> {
     ) -> Self {
         self.assert_new_reduction(name, &reduction);
         self.reductions.push((name.to_owned(), reduction, Box::new(value)));
-        self
+        self.changed()
     }
 
     pub(crate) fn assert_new_column(&self, name: &str) {
@@ -235,19 +246,32 @@ impl<M: Integrator> Ensemble<M> {
     }
 
     pub(crate) fn members_of_chunk(&self) -> u64 {
-        // What a core makes in a second of the steps of (3.13) in lanes, and of any one by one.
-        const STEPS: [u64; 2] = [1 << 25, 1 << 22];
+        self.chunk.unwrap_or_else(|| *self.size.get_or_init(|| self.usual_chunk()))
+    }
+
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // an estimate
+    fn usual_chunk(&self) -> u64 {
+        // What a core makes in a second of the steps of (3.13), in lanes and one by one; and what one of these costs.
+        const STEPS: [f64; 2] = [33_554_432.0, 4_194_304.0];
+        const OF_A_STEP: f64 = 448.0;
         const ROWS: u64 = 1 << 20;
-        // Of members that are made one by one, where there are that many members.
         const CHUNKS: u64 = 64;
-        self.chunk.unwrap_or_else(|| {
-            let rows = self.every.map_or(1, |every| self.steps / every + 2);
-            let most = if self.takes_turns { self.members.div_ceil(CHUNKS) } else { 1 << 16 };
-            let steps = STEPS[usize::from(self.takes_turns)];
-            let members = (steps / self.steps.max(1)).min(ROWS / rows.min(ROWS)).min(most).clamp(1, 1 << 16);
-            // Full lanes, if there are members for one.
-            if self.takes_turns || members < LANES as u64 { members } else { members - members % LANES as u64 }
-        })
+        let cost = self.looked_at().into_iter().find_map(|member| {
+            let (stepper, _) = (self.make)(&self.member(member)).ok()?;
+            Some(stepper.cost().map_or(OF_A_STEP, |cost| cost.least()))
+        });
+        let ratio = OF_A_STEP / cost.unwrap_or(OF_A_STEP).max(1.0);
+        let second = (STEPS[usize::from(self.takes_turns)] * ratio / self.steps.max(1) as f64) as u64;
+        // As many as give 64 workers something to do; in lanes all of these, and a 32nd of a second, beside which a file is
+        // cheap.
+        let least = if self.takes_turns { 1 } else { (second / 32).max(LANES as u64) };
+        let shared = self.members.div_ceil(CHUNKS).max(least).min(second);
+        // Of very many, a few thousand files.
+        let most = (self.members >> 12).clamp(1 << 16, ROWS);
+        let rows = self.every.map_or(1, |every| self.steps / every + 2);
+        let members = shared.max(self.members >> 12).min(ROWS / rows.min(ROWS)).clamp(1, most);
+        // Full lanes, if there are members for one.
+        if self.takes_turns || members < LANES as u64 { members } else { members - members % LANES as u64 }
     }
 
     pub(crate) fn member(&self, number: u64) -> Member<'_> {
@@ -258,6 +282,17 @@ impl<M: Integrator> Ensemble<M> {
     /// and its last member at the start and after a piece, as a function can't be compared.
     #[must_use]
     pub fn fingerprint(&self) -> u64 {
+        *self.fingerprint.get_or_init(|| self.print())
+    }
+
+    /// Its first, its middle and its last member.
+    fn looked_at(&self) -> Vec<u64> {
+        let mut looked_at = vec![0, self.members / 2, self.members.saturating_sub(1)];
+        looked_at.dedup();
+        looked_at
+    }
+
+    fn print(&self) -> u64 {
         let mut digest = Digest::default();
         digest.text(&self.name);
         let table = self.table.as_ref().map_or(0, Table::digest);
@@ -271,9 +306,7 @@ impl<M: Integrator> Ensemble<M> {
             digest.text(&reduction.begin().to_line());
         }
         self.sections.iter().for_each(|section| section.describe(&mut digest));
-        let mut looked_at = vec![0, self.members / 2, self.members.saturating_sub(1)];
-        looked_at.dedup();
-        for member in looked_at {
+        for member in self.looked_at() {
             self.look_at(member, &mut digest);
         }
         digest.value()
@@ -326,7 +359,7 @@ impl<M: Integrator> Ensemble<M> {
         }
         self.sections.push(section);
         assert!(self.sections.len() < 256, "an ensemble has less than 256 sections");
-        self
+        self.changed()
     }
 
     /// All reductions and their names: of ends, then of sections.

@@ -36,159 +36,125 @@ pub struct MemberFailure {
     pub failure: Failure,
 }
 
+/// What the variants of the library's errors are made of.
+trait Part: Sized {
+    fn write(&self) -> String;
+    fn read(text: &str) -> Option<Self>;
+}
+
+/// Parts that are written as they are shown for programmers: floats to their last bit.
+macro_rules! plain_parts {
+    ($($number:ty),+) => {$(
+        impl Part for $number {
+            fn write(&self) -> String {
+                format!("{self:?}")
+            }
+
+            fn read(text: &str) -> Option<Self> {
+                text.parse().ok()
+            }
+        }
+    )+};
+}
+
+plain_parts!(f64, usize, u32);
+
+impl Part for Option<usize> {
+    fn write(&self) -> String {
+        self.map_or_else(|| "none".to_owned(), |body| body.to_string())
+    }
+
+    fn read(text: &str) -> Option<Self> {
+        if text == "none" { Some(None) } else { text.parse().ok().map(Some) }
+    }
+}
+
+impl Part for &'static str {
+    fn write(&self) -> String {
+        (*self).to_owned()
+    }
+
+    fn read(text: &str) -> Option<Self> {
+        Some(interned(text))
+    }
+}
+
+/// Writes and reads these variants with these fields: `StepError.AngleWithoutDigits|2.0`.
+macro_rules! lines {
+    ($($failure:ident $error:ident { $($variant:ident { $($field:ident),* })+ })+) => {
+        impl Failure {
+            /// `None` of another, also of what a later version of the library may say.
+            fn parts(&self) -> Option<Vec<String>> {
+                match self {
+                    $($(Self::$failure($error::$variant { $($field),* }) => Some(vec![
+                        concat!(stringify!($error), ".", stringify!($variant)).to_owned(),
+                        $($field.write()),*
+                    ]),)+)+
+                    _ => None,
+                }
+            }
+
+            pub(crate) fn of_line(line: &str) -> Option<Self> {
+                let mut parts = line.split('|');
+                match parts.next()? {
+                    $($(concat!(stringify!($error), ".", stringify!($variant)) => {
+                        Some($error::$variant { $($field: Part::read(parts.next()?)?),* }.into())
+                    })+)+
+                    "other" => Some(Self::Other(parts.next()?.to_owned())),
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+lines! {
+    Setup SetupError {
+        Parameter { field, cause }
+        BodyParameter { body, field, cause }
+        Joint { joint, cause }
+        JointParameter { joint, field, cause }
+        OffConstraint { joint, by }
+        OffVelocity { joint, by }
+        RedundantJoint { joint, pivot }
+        InvalidStep { step }
+        SingularKinetic { determinant, body }
+        NegativeKinetic { pivot, body }
+        NonFiniteConstant {}
+        NonFinite { what }
+        NotInGroup { defect }
+        NotSeparable { defect }
+        InertiaMismatch { difference }
+        VaryingInertia {}
+        NoSecondDerivatives {}
+        BiasMismatch {}
+        NoForceGradient {}
+    }
+    Inertia InertiaError {
+        NotFinite {}
+        NotSymmetric { defect }
+        NotDiagonal { largest }
+        TriangleInequality { smallest }
+        Singular { smallest }
+        OutOfRange { trace }
+    }
+    Step StepError {
+        NonFinite { what }
+        BeyondSolvable { step, largest, turn, body }
+        AngleWithoutDigits { turn }
+        NotConverged { iterations, residual }
+        WrongBranch { determinant }
+        Singular {}
+        SingularJoint { joint, pivot }
+        UnsolvedBody { body, turn, determinant }
+    }
+}
+
 impl Failure {
-    /// A name, numbers and texts: `step.solvable 0.01 0.005 1.5`, `setup.parameter|rho|is not finite`.
+    /// A name and what belongs to it.
     pub(crate) fn to_line(&self) -> String {
-        let (name, numbers, texts): (&str, Vec<f64>, Vec<&str>) = match self {
-            Self::Setup(error) => of_setup(error),
-            Self::Inertia(error) => of_inertia(error),
-            Self::Step(error) => of_step(error),
-            Self::Other(_) => ("", vec![], vec![]),
-        };
-        if name.is_empty() {
-            // Also what a later version of the library may say.
-            return format!("other|{}", self.to_string().replace(['\n', '|'], " "));
-        }
-        let numbers = numbers.iter().map(|number| format!(" {number:?}"));
-        let texts = texts.iter().map(|text| format!("|{text}"));
-        core::iter::once(name.to_owned()).chain(numbers).chain(texts).collect()
-    }
-
-    pub(crate) fn of_line(line: &str) -> Option<Self> {
-        let mut texts = line.split('|');
-        let mut words = texts.next()?.split(' ');
-        let name = words.next()?;
-        let mut number = || words.next()?.parse::<f64>().ok();
-        let mut text = || texts.next().map(interned);
-        Some(match name {
-            "setup.parameter" => SetupError::Parameter { field: text()?, cause: text()? }.into(),
-            "setup.body" => SetupError::BodyParameter { body: whole(number()?), field: text()?, cause: text()? }.into(),
-            "setup.joint" => SetupError::Joint { joint: whole(number()?), cause: text()? }.into(),
-            "setup.joint-field" => {
-                SetupError::JointParameter { joint: whole(number()?), field: text()?, cause: text()? }.into()
-            }
-            "setup.open" => SetupError::OffConstraint { joint: whole(number()?), by: number()? }.into(),
-            "setup.opening" => SetupError::OffVelocity { joint: whole(number()?), by: number()? }.into(),
-            "setup.redundant" => SetupError::RedundantJoint { joint: whole(number()?), pivot: number()? }.into(),
-            "setup.step" => SetupError::InvalidStep { step: number()? }.into(),
-            "setup.singular" => {
-                SetupError::SingularKinetic { determinant: number()?, body: number().map(whole) }.into()
-            }
-            "setup.negative" => SetupError::NegativeKinetic { pivot: number()?, body: number().map(whole) }.into(),
-            "setup.constant" => SetupError::NonFiniteConstant.into(),
-            "setup.finite" => SetupError::NonFinite { what: text()? }.into(),
-            "setup.group" => SetupError::NotInGroup { defect: number()? }.into(),
-            "setup.separable" => SetupError::NotSeparable { defect: number()? }.into(),
-            "setup.inertia" => SetupError::InertiaMismatch { difference: number()? }.into(),
-            "setup.varying" => SetupError::VaryingInertia.into(),
-            "setup.second" => SetupError::NoSecondDerivatives.into(),
-            "setup.bias" => SetupError::BiasMismatch.into(),
-            "setup.gradient" => SetupError::NoForceGradient.into(),
-            "inertia.finite" => InertiaError::NotFinite.into(),
-            "inertia.symmetric" => InertiaError::NotSymmetric { defect: number()? }.into(),
-            "inertia.diagonal" => InertiaError::NotDiagonal { largest: number()? }.into(),
-            "inertia.triangle" => InertiaError::TriangleInequality { smallest: number()? }.into(),
-            "inertia.singular" => InertiaError::Singular { smallest: number()? }.into(),
-            "inertia.range" => InertiaError::OutOfRange { trace: number()? }.into(),
-            "step.finite" => StepError::NonFinite { what: text()? }.into(),
-            "step.solvable" => {
-                let (step, largest, turn) = (number()?, number()?, number()?);
-                StepError::BeyondSolvable { step, largest, turn, body: number().map(whole) }.into()
-            }
-            "step.angle" => StepError::AngleWithoutDigits { turn: number()? }.into(),
-            "step.body" => {
-                StepError::UnsolvedBody { body: whole(number()?), turn: number()?, determinant: number()? }.into()
-            }
-            "step.joint" => StepError::SingularJoint { joint: whole(number()?), pivot: number()? }.into(),
-            "step.converged" => {
-                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // it was a `u32`
-                let iterations = number()? as u32;
-                StepError::NotConverged { iterations, residual: number()? }.into()
-            }
-            "step.branch" => StepError::WrongBranch { determinant: number()? }.into(),
-            "step.singular" => StepError::Singular.into(),
-            "other" => Self::Other(texts.next()?.to_owned()),
-            _ => return None,
-        })
-    }
-}
-
-/// The number of a body or a joint.
-#[allow(clippy::cast_precision_loss)] // far fewer than a float counts
-fn count(body: usize) -> f64 {
-    body as f64
-}
-
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // it was a `usize`
-fn whole(number: f64) -> usize {
-    number as usize
-}
-
-/// Numbers, and that of a body if there is one.
-fn and_body(numbers: &[f64], body: Option<usize>) -> Vec<f64> {
-    numbers.iter().copied().chain(body.map(count)).collect()
-}
-
-type Parts<'a> = (&'a str, Vec<f64>, Vec<&'a str>);
-
-fn of_setup(error: &SetupError) -> Parts<'_> {
-    match error {
-        SetupError::Parameter { field, cause } => ("setup.parameter", vec![], vec![field, cause]),
-        SetupError::BodyParameter { body, field, cause } => ("setup.body", vec![count(*body)], vec![field, cause]),
-        SetupError::Joint { joint, cause } => ("setup.joint", vec![count(*joint)], vec![cause]),
-        SetupError::JointParameter { joint, field, cause } => {
-            ("setup.joint-field", vec![count(*joint)], vec![field, cause])
-        }
-        SetupError::OffConstraint { joint, by } => ("setup.open", vec![count(*joint), *by], vec![]),
-        SetupError::OffVelocity { joint, by } => ("setup.opening", vec![count(*joint), *by], vec![]),
-        SetupError::RedundantJoint { joint, pivot } => ("setup.redundant", vec![count(*joint), *pivot], vec![]),
-        SetupError::InvalidStep { step } => ("setup.step", vec![*step], vec![]),
-        SetupError::SingularKinetic { determinant, body } => {
-            ("setup.singular", and_body(&[*determinant], *body), vec![])
-        }
-        SetupError::NegativeKinetic { pivot, body } => ("setup.negative", and_body(&[*pivot], *body), vec![]),
-        SetupError::NonFiniteConstant => ("setup.constant", vec![], vec![]),
-        SetupError::NonFinite { what } => ("setup.finite", vec![], vec![what]),
-        SetupError::NotInGroup { defect } => ("setup.group", vec![*defect], vec![]),
-        SetupError::NotSeparable { defect } => ("setup.separable", vec![*defect], vec![]),
-        SetupError::InertiaMismatch { difference } => ("setup.inertia", vec![*difference], vec![]),
-        SetupError::VaryingInertia => ("setup.varying", vec![], vec![]),
-        SetupError::NoSecondDerivatives => ("setup.second", vec![], vec![]),
-        SetupError::BiasMismatch => ("setup.bias", vec![], vec![]),
-        SetupError::NoForceGradient => ("setup.gradient", vec![], vec![]),
-        _ => ("", vec![], vec![]),
-    }
-}
-
-fn of_inertia(error: &InertiaError) -> Parts<'_> {
-    match error {
-        InertiaError::NotFinite => ("inertia.finite", vec![], vec![]),
-        InertiaError::NotSymmetric { defect } => ("inertia.symmetric", vec![*defect], vec![]),
-        InertiaError::NotDiagonal { largest } => ("inertia.diagonal", vec![*largest], vec![]),
-        InertiaError::TriangleInequality { smallest } => ("inertia.triangle", vec![*smallest], vec![]),
-        InertiaError::Singular { smallest } => ("inertia.singular", vec![*smallest], vec![]),
-        InertiaError::OutOfRange { trace } => ("inertia.range", vec![*trace], vec![]),
-        _ => ("", vec![], vec![]),
-    }
-}
-
-fn of_step(error: &StepError) -> Parts<'_> {
-    match error {
-        StepError::NonFinite { what } => ("step.finite", vec![], vec![what]),
-        StepError::BeyondSolvable { step, largest, turn, body } => {
-            ("step.solvable", and_body(&[*step, *largest, *turn], *body), vec![])
-        }
-        StepError::AngleWithoutDigits { turn } => ("step.angle", vec![*turn], vec![]),
-        StepError::NotConverged { iterations, residual } => {
-            ("step.converged", vec![f64::from(*iterations), *residual], vec![])
-        }
-        StepError::WrongBranch { determinant } => ("step.branch", vec![*determinant], vec![]),
-        StepError::Singular => ("step.singular", vec![], vec![]),
-        StepError::SingularJoint { joint, pivot } => ("step.joint", vec![count(*joint), *pivot], vec![]),
-        StepError::UnsolvedBody { body, turn, determinant } => {
-            ("step.body", vec![count(*body), *turn, *determinant], vec![])
-        }
-        _ => ("", vec![], vec![]),
+        let other = || vec!["other".to_owned(), self.to_string().replace(['\n', '|'], " ")];
+        self.parts().unwrap_or_else(other).join("|")
     }
 }
 
@@ -256,7 +222,7 @@ mod tests {
         for failure in failures {
             assert_eq!(Failure::of_line(&failure.to_line()), Some(failure.clone()), "{failure:?}");
         }
-        assert_eq!(Failure::of_line("step.angle"), None);
-        assert_eq!(Failure::of_line("step.tomorrow 1.0"), None);
+        assert_eq!(Failure::of_line("StepError.AngleWithoutDigits"), None);
+        assert_eq!(Failure::of_line("StepError.Tomorrow|1.0"), None);
     }
 }

@@ -1,8 +1,11 @@
 //! Some members that are stepped side by side: in lanes, or one by one.
 
 use liestep::motion::{Batch, Batchable, Integrator};
+use liestep::numbers::{InLanes, Lanes as _};
 use liestep::{SetupError, StepError};
 use simba::simd::AutoF64x8;
+
+use crate::section::Section;
 
 /// The lanes of `AutoF64x8`.
 pub(crate) const LANES: usize = 8;
@@ -11,6 +14,10 @@ pub(crate) const LANES: usize = 8;
 pub(crate) trait Group<M: Integrator> {
     fn run(&mut self, steps: u64);
     fn state(&self, member: usize) -> M::State;
+    /// Before the last run, if that was of one step.
+    fn before(&self, member: usize) -> M::State;
+    /// The values of a section's function, where it has them in lanes.
+    fn values(&self, section: &Section<M>) -> Option<[f64; LANES]>;
     fn error(&self, member: usize) -> Option<StepError>;
 }
 
@@ -20,17 +27,34 @@ pub(crate) type Grouping<M> = fn(&[Start<M>]) -> Vec<(Box<dyn Group<M>>, usize)>
 /// A member's stepper and where it starts.
 pub(crate) type Start<M> = (M, <M as Integrator>::State);
 
-impl<M: Batchable<AutoF64x8>> Group<M> for Batch<AutoF64x8, M> {
+/// Members in lanes.
+struct Together<M: Batchable<AutoF64x8>> {
+    batch: Batch<AutoF64x8, M>,
+    before: <<M as InLanes<AutoF64x8>>::Together as Integrator>::State,
+}
+
+impl<M: Batchable<AutoF64x8> + 'static> Group<M> for Together<M> {
     fn run(&mut self, steps: u64) {
-        self.run(steps);
+        if steps == 1 {
+            self.before = self.batch.states().clone();
+        }
+        self.batch.run(steps);
     }
 
     fn state(&self, member: usize) -> M::State {
-        self.state(member)
+        self.batch.state(member)
+    }
+
+    fn before(&self, member: usize) -> M::State {
+        self.before.lane(member)
+    }
+
+    fn values(&self, section: &Section<M>) -> Option<[f64; LANES]> {
+        section.lanes(&self.batch.together())
     }
 
     fn error(&self, member: usize) -> Option<StepError> {
-        self.error(member).cloned()
+        self.batch.error(member).cloned()
     }
 }
 
@@ -47,7 +71,8 @@ pub(crate) fn in_lanes<M: Batchable<AutoF64x8> + 'static>(members: &[Start<M>]) 
                 Err(error) => unreachable!("one body is like itself: {error}"),
             }
         };
-        groups.push((Box::new(batch), count));
+        let before = batch.states().clone();
+        groups.push((Box::new(Together { batch, before }), count));
         left = &left[count..];
     }
     groups
@@ -57,6 +82,7 @@ pub(crate) fn in_lanes<M: Batchable<AutoF64x8> + 'static>(members: &[Start<M>]) 
 struct SingleMember<M: Integrator> {
     stepper: M,
     state: M::State,
+    before: M::State,
     error: Option<StepError>,
 }
 
@@ -66,11 +92,22 @@ impl<M: Integrator> Group<M> for SingleMember<M> {
         if self.error.is_some() {
             return;
         }
+        if steps == 1 {
+            self.before = self.state.clone();
+        }
         self.error = self.stepper.run_stretches(&mut self.state, steps, &mut |_| 0).err();
     }
 
     fn state(&self, _: usize) -> M::State {
         self.state.clone()
+    }
+
+    fn before(&self, _: usize) -> M::State {
+        self.before.clone()
+    }
+
+    fn values(&self, _: &Section<M>) -> Option<[f64; LANES]> {
+        None
     }
 
     fn error(&self, _: usize) -> Option<StepError> {
@@ -81,7 +118,8 @@ impl<M: Integrator> Group<M> for SingleMember<M> {
 /// Each by itself.
 pub(crate) fn one_by_one<M: Integrator + Clone + 'static>(members: &[Start<M>]) -> Vec<(Box<dyn Group<M>>, usize)> {
     let alone = |(stepper, state): &Start<M>| -> (Box<dyn Group<M>>, usize) {
-        (Box::new(SingleMember { stepper: stepper.clone(), state: state.clone(), error: None }), 1)
+        let (stepper, state, before) = (stepper.clone(), state.clone(), state.clone());
+        (Box::new(SingleMember { stepper, state, before, error: None }), 1)
     };
     members.iter().map(alone).collect()
 }

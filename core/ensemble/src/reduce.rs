@@ -5,6 +5,7 @@
 
 use core::ops::Range;
 use core::str::FromStr;
+use std::collections::BTreeMap;
 
 /// How values are reduced.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +19,8 @@ pub enum Reduction {
         /// In how many parts.
         bins: usize,
     },
+    /// Counts by size, of any range, from which medians and other [quantiles](Quantiles::at) are read.
+    Quantiles,
 }
 
 /// Values reduced.
@@ -27,6 +30,58 @@ pub enum Summary {
     Moments(Moments),
     /// By [`Reduction::Histogram`].
     Histogram(Histogram),
+    /// By [`Reduction::Quantiles`].
+    Quantiles(Quantiles),
+}
+
+/// Counts of values by sign, power of two, and the 128 equal parts between two powers: whole numbers, which have the same
+/// sums in whatever order they are added.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Quantiles {
+    /// By the leading bits of the values, in their order.
+    counts: BTreeMap<i64, u64>,
+    /// Of what isn't a number.
+    pub not_a_number: u64,
+}
+
+impl Quantiles {
+    /// Bits of a value that its size to one part in 128 leaves out.
+    const LEFT_OUT: u32 = 45;
+
+    fn add(&mut self, value: f64) {
+        if value.is_nan() {
+            self.not_a_number += 1;
+            return;
+        }
+        #[allow(clippy::cast_possible_wrap)] // without its sign
+        let size = (value.abs().to_bits() >> Self::LEFT_OUT) as i64;
+        *self.counts.entry(if value < 0.0 { -1 - size } else { size }).or_insert(0) += 1;
+    }
+
+    fn merge(&mut self, other: &Self) {
+        self.not_a_number += other.not_a_number;
+        for (size, count) in &other.counts {
+            *self.counts.entry(*size).or_insert(0) += count;
+        }
+    }
+
+    /// The value that this share of all, from 0 to 1, is below, with an error of at most a 256th of it; NaN of none.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a share of members
+    pub fn at(&self, share: f64) -> f64 {
+        let all: u64 = self.counts.values().sum();
+        let mut left = (share * all.saturating_sub(1) as f64) as u64;
+        for (size, count) in &self.counts {
+            if left < *count {
+                let bits = (if *size < 0 { -1 - size } else { *size }) as u64;
+                let [low, high] = [bits, bits + 1].map(|bits| f64::from_bits(bits << Self::LEFT_OUT));
+                let middle = if high.is_finite() { 0.5 * (low + high) } else { low };
+                return if *size < 0 { -middle } else { middle };
+            }
+            left -= count;
+        }
+        f64::NAN
+    }
 }
 
 /// Count, mean, variance and range of values; those that aren't finite are counted apart.
@@ -151,6 +206,7 @@ impl Reduction {
                 above: 0,
                 not_a_number: 0,
             }),
+            Self::Quantiles => Summary::Quantiles(Quantiles::default()),
         }
     }
 }
@@ -160,6 +216,7 @@ impl Summary {
         match self {
             Self::Moments(moments) => moments.add(value),
             Self::Histogram(histogram) => histogram.add(value),
+            Self::Quantiles(quantiles) => quantiles.add(value),
         }
     }
 
@@ -168,6 +225,7 @@ impl Summary {
         match (self, other) {
             (Self::Moments(own), Self::Moments(other)) => own.merge(other),
             (Self::Histogram(own), Self::Histogram(other)) => own.merge(other),
+            (Self::Quantiles(own), Self::Quantiles(other)) => own.merge(other),
             _ => {}
         }
     }
@@ -181,6 +239,10 @@ impl Summary {
             Self::Histogram(Histogram { range, counts, below, above, not_a_number }) => {
                 let line = format!("histogram {:?} {:?} {below} {above} {not_a_number}", range.start, range.end);
                 core::iter::once(line).chain(counts.iter().map(|count| format!(" {count}"))).collect()
+            }
+            Self::Quantiles(Quantiles { counts, not_a_number }) => {
+                let counts = counts.iter().map(|(size, count)| format!(" {size} {count}"));
+                core::iter::once(format!("quantiles {not_a_number}")).chain(counts).collect()
             }
         }
     }
@@ -203,6 +265,13 @@ impl Summary {
                 not_a_number: next(&mut words)?,
                 counts: words.map(|word| word.parse().ok()).collect::<Option<_>>()?,
             }),
+            "quantiles" => {
+                let mut quantiles = Quantiles { not_a_number: next(&mut words)?, ..Quantiles::default() };
+                while let Some(size) = words.next() {
+                    quantiles.counts.insert(size.parse().ok()?, next(&mut words)?);
+                }
+                Self::Quantiles(quantiles)
+            }
             _ => return None,
         })
     }
@@ -227,7 +296,11 @@ mod tests {
             more.add(value);
         }
         all.merge(&Reduction::Moments.begin());
+        let mut turned = more.clone();
+        turned.merge(&all);
         all.merge(&more);
+        let Summary::Moments(turned) = &turned else { panic!("they are moments") };
+        assert_eq!((turned.count, turned.least, turned.largest), (5, -1.0, 7.0));
         let Summary::Moments(moments) = &all else { panic!("they are moments") };
         assert_eq!((moments.count, moments.not_finite, moments.least, moments.largest), (5, 1, -1.0, 7.0));
         // Of 1, 2, 6, −1 and 7: the mean 3, and 4 + 1 + 9 + 16 + 16 about it.
@@ -247,6 +320,39 @@ mod tests {
         let mut merged = Reduction::Moments.begin();
         merged.merge(&all);
         assert_eq!(merged, all);
+    }
+
+    /// Against the sorted values; parts merged in another order are the same to the bit.
+    #[test]
+    fn quantiles_are_those_of_the_sorted_values() {
+        let mut values: Vec<f64> = (0..999).map(|k| (f64::from(k) * 0.7).sin() * f64::from(k % 50).exp()).collect();
+        let mut parts = [(); 3].map(|()| Reduction::Quantiles.begin());
+        values.iter().enumerate().for_each(|(k, value)| parts[k % 3].add(*value));
+        parts[1].add(f64::NAN);
+        let [first, second, third] = &parts;
+        let merged = [[first, second, third], [third, first, second]].map(|parts| {
+            let mut all = Reduction::Quantiles.begin();
+            for part in parts {
+                all.merge(part);
+            }
+            all
+        });
+        assert_eq!(merged[0].to_line(), merged[1].to_line());
+        assert_eq!(Summary::of_line(&merged[0].to_line()).as_ref(), Some(&merged[0]));
+        let Summary::Quantiles(quantiles) = &merged[0] else { panic!("they are quantiles") };
+        values.sort_by(f64::total_cmp);
+        for place in [0_u16, 1, 100, 499, 500, 700, 998] {
+            let (found, expected) = (quantiles.at(f64::from(place) / 998.0 + 1e-12), values[usize::from(place)]);
+            assert!((found - expected).abs() <= expected.abs() / 256.0, "{place}: {found} {expected}");
+        }
+        assert_eq!(quantiles.not_a_number, 1);
+        let mut few = Reduction::Quantiles.begin();
+        for value in [f64::NEG_INFINITY, 0.0, f64::INFINITY] {
+            few.add(value);
+        }
+        let Summary::Quantiles(few) = few else { panic!("they are quantiles") };
+        assert!(few.at(0.0) < f64::MIN && few.at(1.0) > f64::MAX);
+        assert!(few.at(0.5).abs() < 1e-300);
     }
 
     #[test]

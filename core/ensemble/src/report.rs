@@ -1,6 +1,8 @@
 //! Running an ensemble, and what has become of it.
 
+use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 
 use liestep::motion::Integrator;
 
@@ -9,7 +11,7 @@ use crate::ensemble::Ensemble;
 use crate::reduce::Summary;
 use crate::store::{Fault, Store, StoreError};
 
-/// What is there of an ensemble after a run.
+/// What is there of an ensemble after a run; while chunks of other shares are missing, of this one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
     /// How many chunks the ensemble has.
@@ -20,10 +22,12 @@ pub struct Report {
     pub missing: u64,
     /// How many members came to their ends.
     pub finished: u64,
-    /// How many didn't; [`Store::shards`] has them with their errors.
+    /// How many [left](crate::Section::until) before.
+    pub left: u64,
+    /// How many did neither; [`Store::shards`] has them with their errors.
     pub failed: u64,
-    /// The files that were damaged. They are now called `….damaged`, and their chunks were made anew; but for those that
-    /// have only been damaged since this run began, which are left to the next.
+    /// The files that were found to be damaged. They are now called `….damaged`, and their chunks were made anew; but for those
+    /// that were found at the end, which are left to the next run. Rows are read by a [verified](Store::verified) store only.
     pub faults: Vec<Fault>,
     reductions: Vec<(String, Summary)>,
 }
@@ -43,6 +47,8 @@ pub struct Progress {
     pub done: u64,
     /// All chunks.
     pub chunks: u64,
+    /// How long the others will take, as long as those of this run did.
+    pub remaining: Duration,
 }
 
 impl<M: Integrator> Ensemble<M> {
@@ -55,7 +61,8 @@ impl<M: Integrator> Ensemble<M> {
         self.run_telling(engine, store, &|_| {})
     }
 
-    /// As [`run`](Self::run), and tells after each chunk of this process how far it has come.
+    /// As [`run`](Self::run), and tells after each chunk how far it has come; of several processes the one that
+    /// [leads](Engine::leads) does.
     ///
     /// # Errors
     ///
@@ -67,46 +74,67 @@ impl<M: Integrator> Ensemble<M> {
         tell: &(dyn Fn(Progress) + Sync),
     ) -> Result<Report, StoreError> {
         let (plan, chunks) = (self.fingerprint(), self.chunks());
+        let is_own = |chunk: u64| engine.has(chunk);
         let look = || {
-            let (found, damaged) = store.survey(plan, drop)?;
+            let (found, damaged) = store.look(plan, &is_own)?;
             Store::set_aside(&damaged)?;
-            Ok(((0..chunks).filter(|chunk| !found.contains_key(chunk)).collect(), damaged))
+            Ok(((0..chunks).filter(|chunk| !found.contains(chunk)).collect(), damaged))
         };
         let looked = if engine.leads() { look() } else { Ok((Vec::new(), Vec::new())) };
         let (missing, faults): (Vec<u64>, Vec<Fault>) = match looked {
             Ok(found) => found,
             Err(error) => {
                 // The other processes wait for numbers: there are none.
-                engine.distribute(&[], &|_, _| Ok(()))?;
+                engine.distribute(&[], &|_, _| Ok(()), &|| ())?;
                 return Err(error);
             }
         };
-        let (made, before) = (AtomicU64::new(0), chunks - missing.len() as u64);
-        engine.distribute(&missing, &|chunk, is_stopped| {
+        let (made, all, before) = (AtomicU64::new(0), AtomicU64::new(0), chunks - missing.len() as u64);
+        let (leads, start) = (engine.leads(), Instant::now());
+        let others: BTreeSet<u64> = missing.iter().copied().filter(|chunk| !is_own(*chunk)).collect();
+        let told = || {
+            let all = all.fetch_add(1, Ordering::Relaxed) + 1;
+            let (done, spent) = (before + all, start.elapsed().as_secs_f64());
+            #[allow(clippy::cast_precision_loss)] // an estimate
+            let remaining = spent * chunks.saturating_sub(done) as f64 / all as f64;
+            if leads {
+                tell(Progress { done, chunks, remaining: Duration::try_from_secs_f64(remaining).unwrap_or_default() });
+            }
+        };
+        let make = |chunk: u64, is_stopped: &dyn Fn() -> bool| {
+            // Of others some are there by now.
+            if others.contains(&chunk) && store.has(chunk) {
+                return Ok(());
+            }
             let Some(shard) = self.shard(plan, chunk, is_stopped) else { return Ok(()) };
             store.write(&shard)?;
-            let made = made.fetch_add(1, Ordering::Relaxed) + 1;
-            tell(Progress { done: before + made, chunks });
+            made.fetch_add(1, Ordering::Relaxed);
+            told();
             Ok(())
-        })?;
+        };
+        engine.distribute(&missing, &make, &told)?;
         let mut report = Report {
             chunks,
-            made: made.into_inner(),
+            made: made.load(Ordering::Relaxed),
             missing: chunks,
             finished: 0,
+            left: 0,
             failed: 0,
             faults,
             reductions: self.all_reductions().map(|(name, reduction)| (name.clone(), reduction.begin())).collect(),
         };
-        if engine.leads() {
+        if leads {
+            let is_whole = store.look(plan, &|_| false)?.0.len() as u64 == chunks;
             // In the order of their numbers, as sums are.
-            let (found, damaged) = store.survey(plan, |shard| {
+            let (found, damaged) = store.survey(plan, &|chunk| is_whole || is_own(chunk), |shard| {
                 report.finished += shard.finished;
+                report.left += shard.left;
                 report.failed += shard.failures.len() as u64;
                 report.reductions.iter_mut().zip(&shard.reduced).for_each(|((_, all), part)| all.merge(part));
             })?;
+            Store::set_aside(&damaged)?;
             report.faults.extend(damaged);
-            report.missing = chunks - found.len() as u64;
+            report.missing = chunks - found;
             if report.missing == 0 {
                 store.sweep()?;
             }

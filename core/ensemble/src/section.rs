@@ -1,16 +1,21 @@
 //! Columns at the crossings of a surface: Poincaré sections.
 
+use core::any::Any;
 use core::fmt;
 
-use liestep::motion::{Integrator, Moment, ScalarIn};
+use liestep::motion::{Batchable, Integrator, Moment, ScalarIn};
+use liestep::numbers::InLanes;
 use liestep::recording::{Event, Run, RunError};
+use simba::simd::{AutoF64x8, SimdValue as _};
 
 use crate::Failure;
+use crate::group::LANES;
 use crate::reduce::Reduction;
 use liestep::numbers::Digest;
 
 type Value<M> = dyn Fn(&Moment<'_, M>) -> f64 + Send + Sync;
 type Values<M> = dyn Fn(&Moment<'_, M>, &mut Vec<f64>) + Send + Sync;
+type Time<M> = fn(&Moment<'_, M>) -> f64;
 type Find<M> = fn(&Section<M>, &M, &<M as Integrator>::State, u64) -> Result<Vec<Crossing>, RunError>;
 
 /// A surface, and what is kept where members cross it: [`Ensemble::section`](crate::Ensemble::section) takes it.
@@ -49,24 +54,45 @@ type Find<M> = fn(&Section<M>, &M, &<M as Integrator>::State, u64) -> Result<Vec
 pub struct Section<M: Integrator> {
     event: Event,
     function: Box<Value<M>>,
+    /// In lanes, a [`Together`].
+    together: Option<Box<dyn Any + Send + Sync>>,
+    only_first: bool,
+    pub(crate) ends: bool,
+    time: Time<M>,
     find: Find<M>,
     pub(crate) names: Vec<String>,
     columns: Vec<Box<Values<M>>>,
     pub(crate) reductions: Vec<(String, Reduction, Box<Value<M>>)>,
 }
 
+/// A function of members in lanes.
+type Together<M> = Box<dyn Fn(&Moment<'_, <M as InLanes<AutoF64x8>>::Together>) -> AutoF64x8 + Send + Sync>;
+
 /// What is kept of one crossing: for the columns, and for the reductions.
 pub(crate) struct Crossing {
+    /// s
+    pub(crate) time: f64,
     pub(crate) columns: Vec<f64>,
     pub(crate) reduced: Vec<f64>,
 }
 
 /// How far one member has been looked at.
 pub(crate) struct Watch<S> {
-    /// At the last step, or at the last but those at whose ends the function was zero.
-    before: S,
-    /// Whether it was above zero then; nothing where it was zero.
+    /// At the last step but those at whose ends the function was zero, where it was.
+    before: Option<S>,
+    /// Whether it was above zero at the last step that has been looked at; nothing where it was zero.
     above: Option<bool>,
+    /// Whether the only crossing that is kept has been.
+    is_done: bool,
+}
+
+/// Where a member is, which is taken out of its lane where it is asked for.
+pub(crate) struct Place<'a, S> {
+    /// The function's value, where it was found in lanes.
+    pub(crate) value: Option<f64>,
+    /// A step ago, or here where that has been looked at.
+    pub(crate) before: &'a dyn Fn() -> S,
+    pub(crate) now: &'a dyn Fn() -> S,
 }
 
 impl<M: Integrator> Section<M> {
@@ -76,20 +102,54 @@ impl<M: Integrator> Section<M> {
     ///
     /// # Panics
     ///
-    /// Where the event is [terminal](Event::terminal): members of an ensemble make the steps that it says.
+    /// Where the event is [terminal](Event::terminal): a member ends by [`until`](Self::until).
     pub fn new<Y: Into<f64>>(event: Event, function: impl Fn(&Moment<'_, M>) -> Y + Send + Sync + 'static) -> Self
     where
         ScalarIn<M>: Into<f64>,
     {
-        assert!(!event.is_terminal(), "a section doesn't end its members: leave `terminal` out");
+        assert!(!event.is_terminal(), "members are ended by `until`: leave `terminal` out");
         Self {
             event,
             function: Box::new(move |now| function(now).into()),
+            together: None,
+            only_first: false,
+            ends: false,
+            time: |now| now.time().into(),
             find: find::<M>,
             names: Vec::new(),
             columns: Vec::new(),
             reductions: Vec::new(),
         }
+    }
+
+    /// The same function of members in lanes, so that only those that cross are taken out of them: `sections::plane` once
+    /// more, or what is generic over its scalar. Members one by one don't ask it.
+    #[must_use]
+    pub fn in_lanes(
+        mut self,
+        function: impl Fn(&Moment<'_, <M as InLanes<AutoF64x8>>::Together>) -> AutoF64x8 + Send + Sync + 'static,
+    ) -> Self
+    where
+        M: Batchable<AutoF64x8> + 'static,
+    {
+        let function: Together<M> = Box::new(function);
+        self.together = Some(Box::new(function));
+        self
+    }
+
+    /// Only the first crossing of each member: its first passage.
+    #[must_use]
+    pub fn first(mut self) -> Self {
+        self.only_first = true;
+        self
+    }
+
+    /// Only the first crossing, and the member ends with the step in which it is, with the status
+    /// [`Left`](crate::Status::Left). What is reduced of ends is so of members that come to theirs.
+    #[must_use]
+    pub fn until(mut self) -> Self {
+        (self.only_first, self.ends) = (true, true);
+        self
     }
 
     /// Keeps columns of these names, a list of numbers for each row of a member: those of the crossings since its row
@@ -120,14 +180,25 @@ impl<M: Integrator> Section<M> {
     fn at(&self, now: &Moment<'_, M>) -> Crossing {
         let mut columns = Vec::with_capacity(self.names.len());
         self.columns.iter().for_each(|values| values(now, &mut columns));
-        Crossing { columns, reduced: self.reductions.iter().map(|(_, _, value)| value(now)).collect() }
+        let reduced = self.reductions.iter().map(|(_, _, value)| value(now)).collect();
+        Crossing { time: (self.time)(now), columns, reduced }
     }
 
     /// From here on.
     pub(crate) fn watch(&self, stepper: &M, start: &M::State) -> Result<Watch<M::State>, Failure> {
         // It has no value, or it has.
         (self.find)(self, stepper, start, 0).map_err(failure)?;
-        Ok(Watch { before: start.clone(), above: side((self.function)(&Moment::of_step(stepper, start))) })
+        let above = side((self.function)(&Moment::of_step(stepper, start)));
+        Ok(Watch { before: None, above, is_done: false })
+    }
+
+    /// Its values in lanes, where it has them.
+    pub(crate) fn lanes(&self, all: &Moment<'_, <M as InLanes<AutoF64x8>>::Together>) -> Option<[f64; LANES]>
+    where
+        M: Batchable<AutoF64x8> + 'static,
+    {
+        let values = self.together.as_ref()?.downcast_ref::<Together<M>>()?(all);
+        Some(core::array::from_fn(|lane| values.extract(lane)))
     }
 
     /// The crossings up to here that haven't been found yet; `is_last` where there is no further look.
@@ -137,28 +208,37 @@ impl<M: Integrator> Section<M> {
         &self,
         watch: &mut Watch<M::State>,
         stepper: &M,
-        now: &M::State,
+        at: &Place<'_, M::State>,
         is_last: bool,
     ) -> Result<Vec<Crossing>, Failure> {
-        let value = (self.function)(&Moment::of_step(stepper, now));
+        if watch.is_done {
+            return Ok(Vec::new());
+        }
+        let value = at.value.unwrap_or_else(|| (self.function)(&Moment::of_step(stepper, &(at.now)())));
         let (above, is_lost) = (side(value), value.is_nan());
         // Whether it crosses at a zero the next sign tells; without a value there is none to wait for.
         if above.is_none() && !is_lost && !is_last {
+            watch.before.get_or_insert_with(at.before);
             return Ok(Vec::new());
         }
         let crosses = above.is_some() && watch.above.is_some() && above != watch.above;
-        let found = if crosses || is_lost || self.event.bound().is_some() {
-            (self.find)(self, stepper, &watch.before, now.steps() - watch.before.steps()).map_err(failure)?
-        } else {
-            Vec::new()
-        };
-        *watch = Watch { before: now.clone(), above };
+        let waited = watch.before.take();
+        watch.above = above;
+        if !crosses && !is_lost && self.event.bound().is_none() {
+            return Ok(Vec::new());
+        }
+        let before = waited.unwrap_or_else(at.before);
+        let mut found = (self.find)(self, stepper, &before, (at.now)().steps() - before.steps()).map_err(failure)?;
+        if self.only_first {
+            found.truncate(1);
+            watch.is_done = !found.is_empty();
+        }
         Ok(found)
     }
 
     /// What tells it from another, but for its functions.
     pub(crate) fn describe(&self, digest: &mut Digest) {
-        digest.text(&format!("{:?}", self.event));
+        digest.text(&format!("{:?} {} {}", self.event, self.only_first, self.ends));
         self.names.iter().for_each(|name| digest.text(name));
         for (name, reduction, _) in &self.reductions {
             digest.text(name);
@@ -168,7 +248,7 @@ impl<M: Integrator> Section<M> {
 
     /// Its functions' values somewhere.
     pub(crate) fn values(&self, now: &Moment<'_, M>) -> Vec<f64> {
-        let Crossing { columns, reduced } = self.at(now);
+        let Crossing { columns, reduced, .. } = self.at(now);
         [vec![(self.function)(now)], columns, reduced].concat()
     }
 }

@@ -1,14 +1,14 @@
 //! What is kept of a chunk, and how it is written: a file of Arrow IPC.
 
 use std::collections::HashMap;
-use std::io::Cursor;
+use std::io::{Cursor, Read};
 use std::sync::Arc;
 
 use arrow_array::builder::{Float64Builder, ListBuilder};
 use arrow_array::cast::AsArray as _;
 use arrow_array::types::{Float64Type, UInt8Type, UInt64Type};
 use arrow_array::{ArrayRef, Float64Array, RecordBatch, UInt8Array, UInt64Array};
-use arrow_ipc::reader::FileReader;
+use arrow_ipc::reader::{FileReader, StreamReader};
 use arrow_ipc::writer::FileWriter;
 use arrow_schema::{ArrowError, DataType, Field, Schema};
 
@@ -26,10 +26,12 @@ pub enum Status {
     Stopped,
     /// 3: it couldn't be made; its columns are NaN.
     Impossible,
+    /// 4: it had [left](crate::Section::until), and this is the step in which it did.
+    Left,
 }
 
 impl Status {
-    const ALL: [Self; 4] = [Self::Going, Self::Finished, Self::Stopped, Self::Impossible];
+    const ALL: [Self; 5] = [Self::Going, Self::Finished, Self::Stopped, Self::Impossible, Self::Left];
 }
 
 /// Rows, column by column.
@@ -167,7 +169,9 @@ pub struct Shard {
     pub rows: Rows,
     /// How many members came to their ends.
     pub finished: u64,
-    /// Those that didn't.
+    /// How many [left](crate::Section::until) before.
+    pub left: u64,
+    /// Those that did neither.
     pub failures: Vec<MemberFailure>,
     /// What the ends were reduced to, in the order of the plan.
     pub reduced: Vec<Summary>,
@@ -176,7 +180,7 @@ pub struct Shard {
 /// The key of the schema's metadata that holds what isn't in rows. One only: the order of several isn't fixed.
 const KEY: &str = "liestep-ensemble";
 /// Another layout has another number.
-const FORMAT: &str = "format 1";
+const FORMAT: &str = "format 2";
 
 impl Shard {
     /// The file's bytes, the same each time.
@@ -213,11 +217,31 @@ impl Shard {
         Ok(bytes)
     }
 
+    /// As [`of_bytes`](Self::of_bytes), without its rows and from the first part of the file alone, where a stream of Arrow
+    /// begins.
+    pub(crate) fn head(mut file: impl Read) -> Result<Option<Self>, String> {
+        // What the writer begins with, up to its alignment.
+        let mut magic = [0; 64];
+        file.read_exact(&mut magic).map_err(|error| error.to_string())?;
+        let reader = StreamReader::try_new(file, None).map_err(|error| error.to_string())?;
+        Self::of_schema(&reader.schema())
+    }
+
     /// What a file holds that was written by [`to_bytes`](Self::to_bytes), or why it wasn't; `None` where another version
     /// of the format has written it.
     pub(crate) fn of_bytes(bytes: &[u8]) -> Result<Option<Self>, String> {
         let reader = FileReader::try_new(Cursor::new(bytes), None).map_err(|error| error.to_string())?;
-        let schema = reader.schema();
+        let Some(mut shard) = Self::of_schema(&reader.schema())? else { return Ok(None) };
+        for batch in reader {
+            shard
+                .append(&batch.map_err(|error| error.to_string())?)
+                .ok_or("its columns are of other types or lengths")?;
+        }
+        Ok(Some(shard))
+    }
+
+    /// Without rows.
+    fn of_schema(schema: &Schema) -> Result<Option<Self>, String> {
         let summary = schema.metadata().get(KEY).ok_or("it has no summary of a chunk")?;
         if summary.lines().next() != Some(FORMAT) {
             return Ok(None);
@@ -234,11 +258,6 @@ impl Shard {
             let crossings = crossings.ok_or_else(|| format!("the column `{name}` is of no section"))?;
             crossings.names.push(name);
             crossings.columns.push(vec![]);
-        }
-        for batch in reader {
-            shard
-                .append(&batch.map_err(|error| error.to_string())?)
-                .ok_or("its columns are of other types or lengths")?;
         }
         Ok(Some(shard))
     }
@@ -272,6 +291,7 @@ impl Shard {
             format!("chunk {}", self.chunk),
             format!("sections {}", self.rows.crossings.len()),
             format!("finished {}", self.finished),
+            format!("left {}", self.left),
         ];
         lines.extend(self.reduced.iter().map(|reduced| format!("reduced {}", reduced.to_line())));
         lines.extend(
@@ -292,6 +312,7 @@ impl Shard {
             // A plan has less than 256 sections; a file may say anything, and so much memory isn't taken for it.
             rows: Rows::of_columns(0, vec![Crossings::default(); usize::from(value("sections")?.parse::<u8>().ok()?)]),
             finished: value("finished")?.parse().ok()?,
+            left: value("left")?.parse().ok()?,
             names: Vec::new(),
             failures: Vec::new(),
             reduced: Vec::new(),
@@ -345,7 +366,8 @@ mod tests {
         let mut rows = Rows::of_columns(0, vec![crossings]);
         rows.push(3, 10, Status::Going, core::iter::empty());
         rows.push(3, 20, Status::Finished, core::iter::empty());
-        let shard = Shard { plan: 1, chunk: 2, names: vec![], rows, finished: 1, failures: vec![], reduced: vec![] };
+        let shard =
+            Shard { plan: 1, chunk: 2, names: vec![], rows, finished: 1, left: 0, failures: vec![], reduced: vec![] };
         assert_eq!(Shard::of_bytes(&shard.to_bytes().unwrap()), Ok(Some(shard)));
     }
 
@@ -358,6 +380,7 @@ mod tests {
             names: vec!["x".to_owned()],
             rows: Rows::of_columns(1, vec![]),
             finished: 0,
+            left: 0,
             failures: vec![],
             reduced: vec![],
         };

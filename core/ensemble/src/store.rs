@@ -1,8 +1,8 @@
 //! A folder of shards, each of which is there whole or not at all.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use std::fs::{self, File};
-use std::io::{ErrorKind, Write as _};
+use std::io::{ErrorKind, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -23,6 +23,7 @@ use liestep::numbers::Digest;
 #[derive(Clone, Debug)]
 pub struct Store {
     folder: PathBuf,
+    verifies: bool,
 }
 
 /// A file that isn't what it should be, with its path.
@@ -95,7 +96,15 @@ impl Store {
     pub fn folder(path: impl Into<PathBuf>) -> Result<Self, StoreError> {
         let folder = path.into();
         fs::create_dir_all(&folder).map_err(|error| StoreError::Io { path: folder.clone(), error })?;
-        Ok(Self { folder })
+        Ok(Self { folder, verifies: false })
+    }
+
+    /// A run that begins reads its chunks that are there, and makes anew what is damaged. Without, it trusts their names, which
+    /// files get when they are whole, and reads no rows.
+    #[must_use]
+    pub fn verified(mut self) -> Self {
+        self.verifies = true;
+        self
     }
 
     /// The files of shards by the numbers of their chunks, in the order of the numbers. Of the contents nothing is known.
@@ -127,7 +136,11 @@ impl Store {
         let unreadable = |reason: &str| Fault::Unreadable(path.to_owned(), reason.to_owned());
         let (chunk, digest) =
             name_of(path).ok_or_else(|| unreadable("its name, or that of its folder, isn't a shard's"))?;
-        if Digest::of(bytes) != digest {
+        if Digest::of_file(bytes) != digest {
+            // As files of format 1 have it.
+            if Digest::of(bytes) == digest {
+                return Err(Fault::Foreign(path.to_owned()));
+            }
             let is_whole = bytes.ends_with(END);
             return Err(if is_whole { Fault::Altered(path.to_owned()) } else { Fault::Truncated(path.to_owned()) });
         }
@@ -157,7 +170,7 @@ impl Store {
     pub fn write(&self, shard: &Shard) -> Result<(), StoreError> {
         let bytes = shard.to_bytes().map_err(|error| StoreError::Unwritable { reason: error.to_string() })?;
         let folder = self.folder.join(folder_of(shard.chunk));
-        let name = file_of(shard.chunk, Digest::of(&bytes));
+        let name = file_of(shard.chunk, Digest::of_file(&bytes));
         let beside = folder.join(format!("{name}.{}.part", std::process::id()));
         let io = |path: &Path| {
             let path = path.to_owned();
@@ -193,29 +206,82 @@ impl Store {
         Ok(())
     }
 
-    /// Goes through all files: what `look` makes of each shard by its chunk, and what is wrong with the others.
-    pub(crate) fn survey<T>(
+    /// Whether a chunk is there by now, by its name.
+    pub(crate) fn has(&self, chunk: u64) -> bool {
+        let folder = entries(&self.folder.join(folder_of(chunk)));
+        folder.is_ok_and(|paths| paths.iter().any(|path| name_of(path).is_some_and(|(own, _)| own == chunk)))
+    }
+
+    /// The chunks that are there, by their names, and what is wrong with other files. Read are the files of chunks that have
+    /// two, of one's own chunks the beginning of one file, whether it is of this plan, and [all](Self::verified) if asked for.
+    pub(crate) fn look(
         &self,
         plan: u64,
-        mut look: impl FnMut(Shard) -> T,
-    ) -> Result<(BTreeMap<u64, T>, Vec<Fault>), StoreError> {
-        let (mut found, mut faults) = (BTreeMap::new(), Vec::new());
-        for (_, path) in self.files()? {
-            let bytes = match fs::read(&path) {
-                Ok(bytes) => bytes,
-                // Another process has just set it aside.
-                Err(error) if error.kind() == ErrorKind::NotFound => continue,
-                Err(error) => return Err(StoreError::Io { path, error }),
-            };
-            match Self::shard_of(&path, &bytes) {
-                Ok(shard) if shard.plan != plan => return Err(StoreError::Foreign { path }),
-                Ok(shard) if found.contains_key(&shard.chunk) => return Err(StoreError::Twice { path }),
-                Ok(shard) => drop(found.insert(shard.chunk, look(shard))),
-                Err(Fault::Foreign(path)) => return Err(StoreError::Foreign { path }),
-                Err(fault) => faults.push(fault),
+        is_own: &dyn Fn(u64) -> bool,
+    ) -> Result<(BTreeSet<u64>, Vec<Fault>), StoreError> {
+        let (mut found, mut faults, mut has_read) = (BTreeSet::new(), Vec::new(), false);
+        for files in self.files()?.chunk_by(|(first, _), (second, _)| first == second) {
+            for (chunk, path) in files {
+                let is_whole = files.len() > 1 || self.verifies && is_own(*chunk);
+                if !is_whole && (has_read || !is_own(*chunk)) {
+                    found.insert(*chunk);
+                    continue;
+                }
+                has_read = true;
+                match Self::shard(path, plan, is_whole)? {
+                    Some(Ok(_)) if found.contains(chunk) => return Err(StoreError::Twice { path: path.clone() }),
+                    Some(Ok(_)) => drop(found.insert(*chunk)),
+                    Some(Err(fault)) => faults.push(fault),
+                    None => {}
+                }
             }
         }
         Ok((found, faults))
+    }
+
+    /// Shows these of the chunks that are there, without rows and in the order of their numbers; returns how many chunks there
+    /// are in all, and what is wrong with other files.
+    pub(crate) fn survey(
+        &self,
+        plan: u64,
+        is_own: &dyn Fn(u64) -> bool,
+        mut show: impl FnMut(Shard),
+    ) -> Result<(u64, Vec<Fault>), StoreError> {
+        let (mut count, mut last, mut faults) = (0, None, Vec::new());
+        for (chunk, path) in self.files()? {
+            let shard = if is_own(chunk) { Self::shard(&path, plan, false)? } else { None };
+            match shard {
+                Some(Err(fault)) => {
+                    faults.push(fault);
+                    continue;
+                }
+                Some(Ok(_)) if last == Some(chunk) => return Err(StoreError::Twice { path }),
+                Some(Ok(shard)) => show(shard),
+                None => {}
+            }
+            count += u64::from(last.replace(chunk) != Some(chunk));
+        }
+        Ok((count, faults))
+    }
+
+    /// A file's shard, whole or its beginning; nothing where another process has just set it aside.
+    fn shard(path: &Path, plan: u64, is_whole: bool) -> Result<Option<Result<Shard, Fault>>, StoreError> {
+        let opened = File::open(path).and_then(|mut file| {
+            if !is_whole {
+                let shard = Shard::head(file).map_err(|reason| Fault::Unreadable(path.to_owned(), reason));
+                return Ok(shard.and_then(|shard| shard.ok_or_else(|| Fault::Foreign(path.to_owned()))));
+            }
+            let mut bytes = Vec::new();
+            file.read_to_end(&mut bytes)?;
+            Ok(Self::shard_of(path, &bytes))
+        });
+        match opened {
+            Ok(Ok(shard)) if shard.plan != plan => Err(StoreError::Foreign { path: path.to_owned() }),
+            Ok(Err(Fault::Foreign(path))) => Err(StoreError::Foreign { path }),
+            Ok(shard) => Ok(Some(shard)),
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(StoreError::Io { path: path.to_owned(), error }),
+        }
     }
 
     /// Gives the damaged files that are named in faults another name, `….arrow.damaged`: their chunks are made anew.

@@ -170,7 +170,7 @@ fn sums_are_those_of_the_files() {
 struct Told(Mutex<Vec<usize>>);
 
 impl Engine for Told {
-    fn distribute(&self, missing: &[u64], _: &MakeChunk<'_>) -> Result<(), StoreError> {
+    fn distribute(&self, missing: &[u64], _: &MakeChunk<'_>, _: &(dyn Fn() + Sync)) -> Result<(), StoreError> {
         self.0.lock().unwrap().push(missing.len());
         Ok(())
     }
@@ -195,11 +195,14 @@ fn damaged_files_are_named_and_made_anew() {
         std::fs::write(&turned, bytes).unwrap();
         assert_eq!(Store::read(&turned), Err(Fault::Altered(turned.clone())), "byte {place}");
     }
+    // Names are trusted, but by a store that verifies.
+    assert_eq!(run(&ensemble, &Local::threads(2), &folder).made, 0);
+    let store = store.verified();
     let named: Vec<Fault> = store.shards(ensemble.fingerprint()).unwrap().filter_map(Result::err).collect();
     let faults = vec![Fault::Truncated(cut.clone()), Fault::Altered(turned.clone())];
     assert_eq!(named, faults);
     assert!(named[0].to_string().contains("truncated") && named[1].to_string().contains("digest"));
-    let report = run(&ensemble, &Local::threads(2), &folder);
+    let report = ensemble.run(&Local::threads(2), &store).unwrap();
     assert_eq!((report.made, report.missing, &report.faults), (2, 0, &faults));
     // What was damaged is there under another name.
     let aside = |path: &Path| PathBuf::from(format!("{}.damaged", path.display()));
@@ -226,7 +229,7 @@ fn damaged_files_are_named_and_made_anew() {
     assert_eq!(named, [Fault::Foreign(to.clone())]);
     std::fs::remove_file(&to).unwrap();
     // The right name, and no shard.
-    let empty = folder.0.join("00000").join("00000002-cbf29ce484222325.arrow");
+    let empty = folder.0.join("00000").join("00000002-860389c57a9c1205.arrow");
     std::fs::write(&empty, b"").unwrap();
     assert!(matches!(Store::read(&empty), Err(Fault::Unreadable(..))));
     assert_eq!(run(&ensemble, &Local::threads(2), &folder).made, 0);
@@ -449,7 +452,7 @@ fn an_error_stops_the_other_workers() {
         }
         done()
     };
-    let made = Local::threads(2).distribute(&[0, 1, 2], &|chunk, is_stopped| match chunk {
+    let make: &MakeChunk<'_> = &|chunk, is_stopped| match chunk {
         0 => {
             wait(&|| is_there.load(Ordering::Relaxed));
             Err(StoreError::Unwritable { reason: "full".to_owned() })
@@ -460,7 +463,8 @@ fn an_error_stops_the_other_workers() {
             Ok(())
         }
         _ => panic!("it was given up before"),
-    });
+    };
+    let made = Local::threads(2).distribute(&[0, 1, 2], make, &|| ());
     assert!(matches!(made, Err(StoreError::Unwritable { .. })));
     assert!(told.into_inner());
 }

@@ -3,11 +3,11 @@
 use liestep::effects::RigidBody;
 use liestep::methods::CompositionScheme;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
-use liestep_ensemble::{Ensemble, Reduction, Table, share_of};
+use liestep_ensemble::{Ensemble, Fault, Local, Reduction, Store, Table, share_of};
 use nalgebra::Vector3;
 
-use super::STEPS;
-use super::common::{Top, top, tops};
+use super::common::{Folder, Top, contents, top, tops};
+use super::{MEMBERS, STEPS, run};
 
 /// Chunks of their own choice: full lanes, or one member.
 #[test]
@@ -16,6 +16,22 @@ fn chunks_hold_a_million_rows_at_most() {
         let chunks = Ensemble::new("tops", 24, steps, top).every(every).chunks();
         assert_eq!(chunks, 24_u64.div_ceil(members), "{steps} steps, every {every}");
     }
+}
+
+/// Twenty thousand members of a thousand steps are something for twenty workers; a dearer method has smaller chunks; of very
+/// many members there are a few thousand files.
+#[test]
+fn chunks_know_workers_and_what_a_step_costs() {
+    let chunks = |members, steps| Ensemble::new("tops", members, steps, top).chunks();
+    assert_eq!([chunks(20_000, 1_000), chunks(1_000_000_000, 1_000), chunks(64_000, 1 << 20)], [20, 4_097, 2_000]);
+    let composed = Ensemble::new("tops", 4_000_000, 1_000, |member| {
+        let (stepper, state) = top(member)?;
+        let stepper = Stepper::composed(*stepper.scene(), 0.02, CompositionScheme::KAHAN_LI_8)?;
+        let state = stepper.start(state.attitude(), Vector3::zeros())?;
+        Ok((stepper, state))
+    });
+    // Of seventeen stages.
+    assert!((14..=20).contains(&(composed.chunks() / chunks(4_000_000, 1_000))), "{}", composed.chunks());
 }
 
 /// One by one there is something to share, however little work it is; and a second's work is shorter.
@@ -118,6 +134,42 @@ fn other_scenes_and_methods() {
         made.chunks_of(20).keep(["x", "y", "z"], |run| run.state.momentum().into()).chunk(0, &|| false).unwrap()
     };
     assert_eq!(composed(false), composed(true));
+}
+
+/// Whose chunk it is a file says twice.
+#[test]
+fn a_shard_of_another_number_is_damaged() {
+    let (ensemble, folder) = (tops(MEMBERS, STEPS), Folder::new("renamed"));
+    let engine = Local::threads(2);
+    run(&ensemble, &engine, &folder);
+    let store = Store::folder(&folder.0).unwrap().verified();
+    let (_, path) = store.files().unwrap().remove(2);
+    let name = path.file_name().unwrap().to_str().unwrap().replace("00000002-", "00000005-");
+    let renamed = path.with_file_name(name);
+    std::fs::copy(&path, &renamed).unwrap();
+    assert_eq!(Store::read(&renamed), Err(Fault::Altered(renamed.clone())));
+    assert_eq!(ensemble.run(&engine, &store).unwrap().faults, [Fault::Altered(renamed.clone())]);
+    assert!(!renamed.exists());
+}
+
+/// Who helps makes what others have left, and nobody makes what is there.
+#[test]
+fn who_is_done_helps_others() {
+    let (ensemble, folder, whole) = (tops(MEMBERS, STEPS), Folder::new("helped"), Folder::new("whole"));
+    let expected = run(&ensemble, &Local::threads(2), &whole);
+    assert_eq!(run(&ensemble, &Local::threads(1).share(1, 3), &folder).made, 2);
+    let helped = run(&ensemble, &Local::threads(2).share(2, 3).helping(), &folder);
+    assert_eq!((helped.made, helped.missing, helped.finished), (5, 0, expected.finished));
+    assert!(contents(&folder.0) == contents(&whole.0));
+}
+
+/// A share of many reads its own chunks, and of these no rows.
+#[test]
+fn a_share_sums_its_own_chunks_until_all_are_there() {
+    let (ensemble, folder) = (tops(MEMBERS, STEPS), Folder::new("sums-of-shares"));
+    let of_share = |share| run(&ensemble, &Local::threads(1).share(share, 3), &folder);
+    let counted = [1, 2, 0].map(|share| (of_share(share).missing, of_share(share).finished + of_share(share).failed));
+    assert_eq!(counted, [(5, 40), (3, 40), (0, MEMBERS)]);
 }
 
 #[test]

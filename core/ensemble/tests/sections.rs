@@ -195,6 +195,70 @@ fn a_function_without_a_value_stops_its_member() {
     assert_eq!((shard.finished, shard.failures.len(), shard.failures[0].steps), (0, 2, 0));
 }
 
+/// First passages of each member alone, in any direction and without a bound: what a section keeps of them, and where
+/// members end that leave with them. In lanes they are the same to the bit.
+#[test]
+fn first_passages_are_those_of_each_member_alone() {
+    let (mut expected, mut fell) = (Vec::new(), 0);
+    let starts = Arc::new(Mutex::new(Vec::new()));
+    let kept_starts = Arc::clone(&starts);
+    let collected = Ensemble::new("tops", MEMBERS, 0, move |member| {
+        let made = top(member);
+        kept_starts.lock().unwrap().push((member.number(), made.clone()));
+        made
+    });
+    let _ = collected.seed(7).chunks_of(MEMBERS).chunk(0, &|| false);
+    for (member, made) in starts.lock().unwrap().drain(..).skip(3) {
+        let Ok((stepper, mut state)) = made else { continue };
+        let mut all = Vec::new();
+        let run = stepper.observed(&mut state);
+        let _ = run
+            .event(Event::crossing(), sections::plane(Vector3::x(), Vector3::z()), |now| {
+                all.push((member, now.time().to_bits(), now.rising() == Some(false)));
+            })
+            .steps(STEPS);
+        if let Some((member, time, falls)) = all.first() {
+            fell += usize::from(*falls);
+            expected.push((*member, *time));
+        }
+    }
+    assert!(expected.len() > 20 && fell > 20, "{} and {fell}", expected.len());
+    let section = |in_lanes: bool| {
+        let plane = Section::new(Event::crossing(), sections::plane(Vector3::x(), Vector3::z()));
+        let plane = plane.keep(["t"], |now: &Moment<'_, Top>| [now.time()]);
+        let plane = plane.reduce("passage", Reduction::Quantiles, |now| now.time());
+        if in_lanes { plane.in_lanes(sections::plane(Vector3::x(), Vector3::z())) } else { plane }
+    };
+    let found = |shards: &[Shard]| -> Vec<(u64, u64)> {
+        let of_shard = |shard: &Shard| {
+            let crossings = &shard.rows.crossings[0];
+            let rows = crossings.row.iter().map(|row| shard.rows.member[*row]);
+            rows.zip(crossings.columns[0].iter().map(|time| time.to_bits())).collect::<Vec<_>>()
+        };
+        shards.iter().flat_map(of_shard).collect()
+    };
+    for in_lanes in [false, true] {
+        let shards = chunks(&tops(MEMBERS, STEPS).section(section(in_lanes).first()));
+        assert_eq!(found(&shards), expected);
+        assert!(shards.iter().all(|shard| shard.left == 0));
+        let shards = chunks(&tops(MEMBERS, STEPS).section(section(in_lanes).until()));
+        assert_eq!(found(&shards), expected);
+        assert_eq!(shards.iter().map(|shard| shard.left).sum::<u64>(), expected.len() as u64);
+        for Shard { rows, finished, left, failures, .. } in &shards {
+            assert_eq!(finished + left + failures.len() as u64, rows.member.len() as u64);
+            let last = rows.member.iter().zip(&rows.step).zip(&rows.status);
+            for ((member, step), status) in last.filter(|(_, status)| **status == Status::Left) {
+                let (_, time) = expected.iter().find(|(passed, _)| passed == member).unwrap();
+                let steps = f64::from_bits(*time) / 0.02;
+                assert!(*step as f64 >= steps && (*step as f64) < steps + 1.0, "{member}: {step} {steps} {status:?}");
+            }
+        }
+        // All crossings, and not only the first, are the same in lanes.
+        let all = [false, true].map(|lanes| found(&chunks(&tops(MEMBERS, STEPS).section(section(lanes)))));
+        assert!(all[0] == all[1] && all[0].len() > expected.len());
+    }
+}
+
 #[test]
 fn another_section_is_another_plan() {
     let section = |event, zero: f64| Section::new(event, move |now: &Moment<'_, Top>| now.momentum().z - zero);
@@ -203,6 +267,8 @@ fn another_section_is_another_plan() {
         tops(20, 100).section(section(Event::rising(), 0.0)),
         tops(20, 100).section(section(Event::falling(), 0.0)),
         tops(20, 100).section(section(Event::rising(), 1.0)),
+        tops(20, 100).section(section(Event::rising(), 0.0).first()),
+        tops(20, 100).section(section(Event::rising(), 0.0).until()),
         tops(20, 100).section(section(Event::rising(), 0.0).keep(["t"], |now| [now.time()])),
         tops(20, 100).section(section(Event::rising(), 0.0).reduce("t", Reduction::Moments, |now| 2.0 * now.time())),
     ];

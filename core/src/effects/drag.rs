@@ -9,8 +9,10 @@ use liestep_macros::force;
 /// At any `c h` no spin changes its sign, and the energy of a free body with the kinetic term of (3.13) never rises in
 /// a step; with another kinetic term it may, as that term's own oscillation does. The scheme is of second order. Under
 /// a constant torque `τ` about a principal axis the body ends up turning by `θ` a step with `sin θ = hτ/c`, at the rate
-/// `τ/c` where that is small; the momentum of the state then is the one at a node, with half an impulse in it, so that
-/// the velocity read off it is larger where `c h` isn't small against `J`. The torque of a step is shared between its
+/// `τ/c` where that is small. The momentum of the state then is the one at a node, with half an impulse in it, and the
+/// velocity read off it is `(τ/c)(1 + ½ x y²/(1 + y²))` with the `x` and `y` below: of a body with three equal moments 1.3
+/// times `τ/c` at `x = 1`, 6 times at `x = 10`, 51 times at `x = 100`. Where `c h` isn't small against `J`, read the velocity
+/// off two attitudes, as `θ/h`. The torque of a step is shared between its
 /// ends: halves where `c h` is small against the moments of inertia, all of it at the beginning where it is large.
 /// About a principal axis a step divides the momentum by `1 + x/(1 − b)`, with `x = c h/J_i` and `b ≤ ½` for what the
 /// end takes away (`y ≥ x/2` below); halves at any strength, `b = x/2`, would turn a spin over once `x > 2`.

@@ -24,6 +24,7 @@ impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
     const DIMENSION: usize = N * G::DIMENSION;
     const FACTORS: Blocks = G::FACTORS;
     const BODIES: usize = N * G::BODIES;
+    const ATTITUDES: usize = N * G::ATTITUDES;
 
     fn identity() -> Self {
         [G::identity(); N]
@@ -125,10 +126,10 @@ impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
         self.iter().fold(nalgebra::zero(), |sum, body| sum + body.defect())
     }
 
-    fn restored(&self) -> Option<(Self, Mask<G::Scalar>)> {
+    fn restored(&self, beyond: f64) -> Option<(Self, Mask<G::Scalar>)> {
         let (mut elements, mut far) = (*self, nowhere::<G::Scalar>());
         for element in &mut elements {
-            if let Some((restored, lanes)) = element.restored() {
+            if let Some((restored, lanes)) = element.restored(beyond) {
                 *element = restored;
                 far = far | lanes;
             }

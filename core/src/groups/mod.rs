@@ -112,6 +112,9 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
     /// How many equal bodies are in an array; otherwise one.
     const BODIES: usize = 1;
 
+    /// How many rotations of bodies are in an element.
+    const ATTITUDES: usize = 0;
+
     /// The identity `e`.
     fn identity() -> Self;
 
@@ -250,13 +253,13 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
     /// How far the matrix is from satisfying the relation of the group; zero on it.
     fn defect(&self) -> Self::Scalar;
 
-    /// The nearest element of the group, if roundings have taken the matrix far from it, and the lanes in which they
-    /// have; nothing where they haven't, or where no way back is known, which is the default.
+    /// The nearest element of the group, if roundings have taken the matrix farther from it than `beyond` units of rounding,
+    /// and the lanes in which they have; nothing where they haven't, or where no way back is known, which is the default.
     ///
     /// Roundings at random take an attitude about `ε √N` away in `N` steps, and that isn't far. A body that turns
     /// steadily makes the same increment, with the same rounding, step by step, and that grows like `N`.
     #[must_use]
-    fn restored(&self) -> Option<(Self, Mask<Self::Scalar>)> {
+    fn restored(&self, _beyond: f64) -> Option<(Self, Mask<Self::Scalar>)> {
         None
     }
 }

@@ -69,6 +69,7 @@ macro_rules! product {
             type Matrix = ($($group::Matrix,)+);
 
             const DIMENSION: usize = $dimension;
+            const ATTITUDES: usize = 0 $(+ $group::ATTITUDES)+;
             const FACTORS: Blocks = {
                 assert!(Self::DIMENSION <= Blocks::MOST, "a product of groups has at most 64 dimensions");
                 $factors
@@ -190,9 +191,9 @@ macro_rules! product {
                 $scalar::zero() $(+ self.$place.defect())+
             }
 
-            fn restored(&self) -> Option<(Self, Mask<$scalar>)> {
+            fn restored(&self, beyond: f64) -> Option<(Self, Mask<$scalar>)> {
                 let (mut element, mut far) = (*self, nowhere::<$scalar>());
-                $(if let Some((restored, lanes)) = self.$place.restored() {
+                $(if let Some((restored, lanes)) = self.$place.restored(beyond) {
                     element.$place = restored;
                     far = far | lanes;
                 })+

@@ -5,7 +5,7 @@ use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use nalgebra::{Matrix3, RealField, Rotation3, SimdBool as _, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Quaternion, RealField, Rotation3, SimdBool as _, UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use super::LieGroup;
@@ -117,10 +117,11 @@ impl<T: RealField + Copy> SO3<T> {
         [r.m13.atan2(-r.m23), nutation, r.m31.atan2(r.m32)]
     }
 
-    /// The rotation as a unit quaternion.
+    /// The rotation as a unit quaternion: up to its sign what a table has.
     #[must_use]
     pub fn to_quaternion(&self) -> UnitQuaternion<T> {
-        UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(self.0))
+        let [w, x, y, z] = quaternion(&self.0);
+        UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z))
     }
 
     /// The rotation vector `ξ` of the smallest angle with `exp ξ̂ = F`.
@@ -186,6 +187,7 @@ impl<T: Real> LieGroup for SO3<T> {
     type Matrix = Matrix3<T>;
 
     const DIMENSION: usize = 3;
+    const ATTITUDES: usize = 1;
 
     fn identity() -> Self {
         Self(Matrix3::identity())
@@ -318,12 +320,11 @@ impl<T: Real> LieGroup for SO3<T> {
         self.departure() + (T::one() - determinant).select(determinant.simd_lt(T::zero()), T::zero())
     }
 
-    /// From 2¹¹ ε on, which a random walk reaches in some ten million steps: one Newton step of the polar
-    /// decomposition, `½ R (3 I − RᵀR)`, which squares the defect.
+    /// By one Newton step of the polar decomposition, `½ R (3 I − RᵀR)`, which squares the defect.
     // Inlined, as the optimiser otherwise decides by the rest of the program.
     #[hot]
-    fn restored(&self) -> Option<(Self, Mask<T>)> {
-        let far = self.departure().simd_gt(T::simd_default_epsilon() * real(2048.0));
+    fn restored(&self, beyond: f64) -> Option<(Self, Mask<T>)> {
+        let far = self.departure().simd_gt(T::simd_default_epsilon() * real(beyond));
         far.any().then(|| (self.nearer(far), far))
     }
 }
@@ -344,8 +345,9 @@ impl<T: Real> SO3<T> {
     #[cold]
     #[inline(never)]
     fn nearer(&self, far: Mask<T>) -> Self {
-        let gram = self.0.transpose() * self.0;
-        let nearest = self.0 * (Matrix3::from_diagonal_element(real(3.0)) - gram) * real::<T>(0.5);
+        // The change is small, and so is its rounding.
+        let off = Matrix3::identity() - self.0.transpose() * self.0;
+        let nearest = self.0 + self.0 * off * real::<T>(0.5);
         Self(nearest.zip_map(&self.0, |nearest, entry| nearest.select(far, entry)))
     }
 }

@@ -25,19 +25,8 @@ mod velocity;
 
 pub use continuous::{ContinuousLagrangian, Legendre};
 pub use description::SceneVisitor;
-<<<<<<< HEAD
-pub use effect::{
-    Effect, FactoredInertia, Group, Limit, Matrix, Moves, NewtonUpdate, Parts, Regular, Residual, Scalar, Square,
-    Vector,
-};
-pub(crate) use effect::{
-    check_inertia, check_velocity, constant_inertia, energy, estimated_velocity, factored_inertia,
-    momentum_of_velocity, pattern, pattern_of_type, update_of, velocity_and_energy, velocity_of_momentum,
-};
-=======
 pub use effect::{Effect, Group, Limit, Matrix, Moves, NewtonUpdate, Parts, Regular, Residual, Scalar, Square, Vector};
-pub(crate) use effect::{pattern, update_of};
->>>>>>> main
+pub(crate) use effect::{pattern, pattern_of_type, update_of};
 pub use force::Force;
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
 pub use kinetic_part::{KineticPart, WithEitherKinetic, WithExpensiveKinetic, WithKinetic, WithoutKinetic};

@@ -190,6 +190,10 @@ where
         self.0.part(&self.own(state), fraction)
     }
 
+    fn cost(&self) -> Option<Cost> {
+        self.0.cost()
+    }
+
     fn adopt(&self, motion: &Motion<G, A>) -> Self::State {
         erased(self.0.adopt(motion))
     }
@@ -247,6 +251,10 @@ impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
 
     fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, A>, StepError> {
         self.stepper.part(state, fraction)
+    }
+
+    fn cost(&self) -> Option<Cost> {
+        Some(self.cost)
     }
 
     fn adopt(&self, motion: &Motion<G, A>) -> Self::State {
@@ -308,6 +316,10 @@ impl<G: LieGroup, A: Advected<G>> Integrator for WithoutAdvected<G, A> {
         let HiddenState { advected, kept } = state.kept.clone();
         let part = self.0.part(&State { motion: seeing(&state.motion, advected), kept }, fraction)?;
         Ok(seeing(&part, ()))
+    }
+
+    fn cost(&self) -> Option<Cost> {
+        Some(self.0.cost)
     }
 
     fn adopt(&self, motion: &Motion<G, ()>) -> Self::State {

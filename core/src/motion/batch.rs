@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use crate::error::{SetupError, StepError};
-use crate::motion::integrator::Integrator;
+use crate::motion::integrator::{Integrator, Moment};
 use crate::numbers::{InLanes, Lanes};
 
 /// A stepper that can be one of several in [lanes](crate::numbers::Real#lanes) of the scalar `W`: every one whose scene and
@@ -103,11 +103,35 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         if self.running().next().is_none() {
             return;
         }
-        let before = self.state.clone();
-        if self.stepper.attempt(&mut self.state, steps).is_err() {
+        let mut before = self.state.clone();
+        while self.stepper.attempt(&mut self.state, steps).is_err() {
             self.state = before;
-            self.run_alone(steps);
+            if !self.stop_one(steps) {
+                return self.run_alone(steps);
+            }
+            if self.running().next().is_none() {
+                return;
+            }
+            before = self.state.clone();
         }
+    }
+
+    /// Stops the body whose step fails first within these, and has another in its lane; whether there is such a one. The
+    /// others can be moved together then.
+    #[cold]
+    fn stop_one(&mut self, steps: u64) -> bool {
+        let mut state = self.state.clone();
+        let fails = (0..steps).find_map(|_| {
+            let before = state.clone();
+            let fails = |lane: &usize| self.stepper.lane(*lane).attempt(&mut before.lane(*lane), 1).is_err();
+            self.stepper.attempt(&mut state, 1).is_err().then(|| self.running().find(fails))
+        });
+        let Some(lane) = fails.flatten() else { return false };
+        let mut alone = self.state.lane(lane);
+        let Err(error) = self.stepper.lane(lane).run_stretches(&mut alone, steps, &mut |_| 0) else { return false };
+        self.seats[lane] = Seat::Stopped(alone, error);
+        let other = self.running().next();
+        other.is_none_or(|other| self.set(lane, &self.stepper.lane(other), &self.state.lane(other)))
     }
 
     /// Each body alone, one after another; then those that have moved are together again.
@@ -128,6 +152,18 @@ impl<W, M: Batchable<W>> Batch<W, M> {
             assert!(self.set(*lane, stepper, state), "what lanes share doesn't depend on where a body is");
         }
         // The first is in all lanes, so in its own, too.
+    }
+
+    /// The states in all lanes; the lane of a body that has stopped has another's.
+    #[must_use]
+    pub fn states(&self) -> &<M::Together as Integrator>::State {
+        &self.state
+    }
+
+    /// All lanes at the end of their last step. The lane of a body that has stopped shows another.
+    #[must_use]
+    pub fn together(&self) -> Moment<'_, M::Together> {
+        Moment::of_step(&self.stepper, &self.state)
     }
 
     /// The bodies that haven't stopped, by their numbers.

@@ -6,7 +6,7 @@ use core::ops::{ControlFlow, Deref};
 use crate::error::StepError;
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::FactoredInertia;
-use crate::motion::plan::NextSteps;
+use crate::motion::plan::{Cost, NextSteps};
 use crate::motion::report::StepReport;
 use crate::motion::summation::Motion;
 use crate::numbers::real;
@@ -96,6 +96,11 @@ pub trait Integrator {
 
     /// The state of another motion, to go on from its attitude and momentum; see [`Stepper::adopt`](crate::Stepper::adopt).
     fn adopt(&self, motion: &Motion<Self::Group, Self::Advected>) -> Self::State;
+
+    /// How much arithmetic a step is, about; nothing where it isn't known.
+    fn cost(&self) -> Option<Cost> {
+        None
+    }
 
     /// The step `h`, s.
     fn step_size(&self) -> ScalarIn<Self>;

@@ -7,9 +7,21 @@ use crate::numbers::Real;
 
 /// How many steps go by between two looks at what roundings have done to the attitude.
 ///
-/// The worst of them, the same in every step, make no more in a thousand steps than
-/// [`restored`](LieGroup::restored) tolerates.
+/// The worst of them, the same in every step, make no more in a thousand steps than [`TOLERATED`].
 pub(crate) const STEPS_BETWEEN_CHECKS: u32 = 1024;
+
+/// How many go by with several bodies. What these do to each other cancels in the whole as far as their attitudes are
+/// rotations, and what they see is what is between these: else the whole momentum drifts in proportion to the steps.
+const STEPS_BETWEEN_SEVERAL: u32 = 64;
+
+/// How far from its group an attitude may be, in units of rounding. A random walk gets there in some ten million steps.
+pub(crate) const TOLERATED: f64 = 2048.0;
+
+/// Whether several bodies turn.
+#[hot]
+const fn has_several<G: LieGroup>() -> bool {
+    G::ATTITUDES > 1
+}
 
 /// Attitude, momentum and advected parameters at one time, and the number of steps up to it.
 ///
@@ -132,7 +144,7 @@ pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
     #[hot]
     fn finish(&mut self, spatial: impl FnOnce() -> A) {
         self.count();
-        if is_due(self.now().steps) {
+        if is_due::<G>(self.now().steps) {
             by_copy(self, |near| near.restore(&spatial()));
         }
     }
@@ -152,8 +164,8 @@ fn by_copy<M: Copy>(motion: &mut M, change: impl FnOnce(&mut M)) {
 
 /// Whether it is time to look how far roundings have gone.
 #[hot]
-pub(crate) fn is_due(steps: u64) -> bool {
-    steps.is_multiple_of(u64::from(STEPS_BETWEEN_CHECKS))
+pub(crate) fn is_due<G: LieGroup>(steps: u64) -> bool {
+    steps.is_multiple_of(u64::from(if has_several::<G>() { STEPS_BETWEEN_SEVERAL } else { STEPS_BETWEEN_CHECKS }))
 }
 
 impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Motion<G, A> {
@@ -193,7 +205,7 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Motion<G, A> {
 
     #[cold]
     fn restore(&mut self, spatial: &A) {
-        let _ = restored(self, spatial);
+        let _ = restored(self, spatial, if has_several::<G>() { 0.0 } else { TOLERATED });
     }
 
     fn replace(&mut self, motion: Motion<G, A>) {
@@ -206,13 +218,14 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Motion<G, A> {
     }
 }
 
-/// Restores the motion; returns the lanes in which that was necessary, if there is one.
+/// Restores the motion from so many units of rounding on; returns the lanes in which that was necessary, if there is one.
 pub(crate) fn restored<G: LieGroup, A: Advected<G>>(
     motion: &mut Motion<G, A>,
     spatial: &A,
+    beyond: f64,
 ) -> Option<crate::numbers::Mask<G::Scalar>> {
     use nalgebra::SimdValue as _;
-    let (attitude, far) = motion.attitude.restored()?;
+    let (attitude, far) = motion.attitude.restored(beyond)?;
     motion.attitude = attitude;
     motion.advected = spatial.seen_from(&attitude).zip(&motion.advected, &mut |seen, w| seen.select(far, w));
     Some(far)

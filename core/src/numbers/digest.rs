@@ -29,6 +29,21 @@ impl Digest {
         digest.0
     }
 
+    /// Of a whole file, eight bytes at a time, so that it costs less than to read it. Each step is one to one here, too, and
+    /// its high bits reach the low ones.
+    #[must_use]
+    pub fn of_file(bytes: &[u8]) -> u64 {
+        let (words, rest) = bytes.as_chunks::<8>();
+        let mut last = [0; 8];
+        last[..rest.len()].copy_from_slice(rest);
+        let step = |hash: u64, word: u64| {
+            let mixed = (hash ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            mixed ^ mixed >> 32
+        };
+        let words = words.iter().chain([&last]).map(|word| u64::from_le_bytes(*word));
+        words.chain([bytes.len() as u64]).fold(Self::default().0, step)
+    }
+
     /// The hash.
     #[must_use]
     pub fn value(self) -> u64 {

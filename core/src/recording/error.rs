@@ -29,6 +29,18 @@ pub enum RunError {
         #[source]
         cause: Box<dyn core::error::Error + Send + Sync>,
     },
+    /// A step has changed the energy by more than the [bound](super::Run::energy_within); the state is that after it.
+    #[error(
+        "the run stops at t = {time} s: a step has taken the energy from {before:e} J to {after:e} J, so it is too long for what has happened within it; take smaller steps"
+    )]
+    Energy {
+        /// The time after the step, s.
+        time: f64,
+        /// The energy before it, J.
+        before: f64,
+        /// The energy after it, J.
+        after: f64,
+    },
     /// A time to be shown lies before the state, or before the time that was to be shown before it, or isn't finite.
     #[error(
         "the time {asked} s can't be shown, as the motion is at t = {now} s already; give finite times in their order"

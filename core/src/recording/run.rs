@@ -18,7 +18,7 @@ use crate::numbers::{real, reported};
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _;
 
-type Condition<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> bool + 'a>;
+type Condition<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> Result<bool, RunError> + 'a>;
 
 /// A run that is to be observed, by [`Stepper::observed`]; generic code makes it by [`Run::new`].
 ///
@@ -156,8 +156,25 @@ impl<'a, I: Integrator> Run<'a, I> {
 
     /// Stops the run at its start, or after the first step, where this is so. A run that goes on from there makes no step
     /// while it is.
-    pub fn stop_when(mut self, condition: impl FnMut(&Moment<'_, I>) -> bool + 'a) -> Self {
-        self.observers.conditions.push(Box::new(condition));
+    pub fn stop_when(mut self, mut condition: impl FnMut(&Moment<'_, I>) -> bool + 'a) -> Self {
+        self.observers.conditions.push(Box::new(move |now| Ok(condition(now))));
+        self
+    }
+
+    /// Ends the run by [`RunError::Energy`] after a step that has changed the energy by more than this bound, J, or to no
+    /// number.
+    ///
+    /// Two bodies that pass each other closely within one step aren't seen to have met: the step has a solution, and another
+    /// motion follows it. Its energy tells. What a step changes otherwise is of the order of its error, and of the work of
+    /// forces.
+    pub fn energy_within(mut self, bound: f64) -> Self {
+        let mut last = None;
+        self.observers.conditions.push(Box::new(move |now| {
+            let after = reported(now.energy());
+            let before = last.replace(after).unwrap_or(after);
+            let is_within = (after - before).abs() <= bound;
+            if is_within { Ok(false) } else { Err(RunError::Energy { time: reported(now.time()), before, after }) }
+        }));
         self
     }
 
@@ -287,7 +304,7 @@ impl<I: Integrator> Observers<'_, I> {
             return Ok(0);
         }
         if made == self.seldom {
-            return Ok(self.look_seldom(now, ended));
+            return self.look_seldom(now, ended);
         }
         Ok(next - made)
     }
@@ -295,11 +312,13 @@ impl<I: Integrator> Observers<'_, I> {
     /// Conditions, progress and the end; returns as [`show`](Self::show).
     #[cold]
     #[allow(clippy::cast_precision_loss)] // a share
-    fn look_seldom(&mut self, now: &Moment<'_, I>, ended: &mut RunReport) -> u64 {
+    fn look_seldom(&mut self, now: &Moment<'_, I>, ended: &mut RunReport) -> Result<u64, RunError> {
         let made = now.steps();
-        if self.conditions.iter_mut().any(|condition| condition(now)) {
-            ended.reason = Reason::Stopped { time: reported(now.time()) };
-            return 0;
+        for condition in &mut self.conditions {
+            if condition(now)? {
+                ended.reason = Reason::Stopped { time: reported(now.time()) };
+                return Ok(0);
+            }
         }
         if let Some(progress) = &mut self.progress
             && made > self.start
@@ -318,7 +337,7 @@ impl<I: Integrator> Observers<'_, I> {
         } else {
             self.end
         };
-        self.regular.iter().fold(self.seldom, |next, regular| next.min(regular.due)) - made
+        Ok(self.regular.iter().fold(self.seldom, |next, regular| next.min(regular.due)) - made)
     }
 }
 

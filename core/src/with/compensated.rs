@@ -9,7 +9,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
 use crate::methods::{Composed, Jointed, KineticFlow, Linked, Processed, Split};
-use crate::motion::{Declared, Kept, Motion, Plan, Steerable, StepReport, Stepper, Summation, restored};
+use crate::motion::{Declared, Kept, Motion, Plan, Steerable, StepReport, Stepper, Summation, TOLERATED, restored};
 use crate::numbers::{Entries, carried_sum, zero};
 use crate::with::remedies::Substeps;
 use nalgebra::SimdValue as _;
@@ -244,7 +244,7 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Sums<G, A> {
     /// What is carried belongs to the attitude before.
     #[cold]
     fn restore(&mut self, spatial: &A) {
-        let Some(far) = restored(&mut self.motion, spatial) else { return };
+        let Some(far) = restored(&mut self.motion, spatial, TOLERATED) else { return };
         let mut kept = |carry: G::Scalar, nothing: G::Scalar| nothing.select(far, carry);
         self.carry.attitude = self.carry.attitude.zip(&zero(), &mut kept);
         self.carry.advected = self.carry.advected.zip(&zero(), &mut kept);

@@ -9,6 +9,7 @@ use liestep::mechanics::{DiscreteLagrangian, Each, Effect, Inertia, Pairs};
 use liestep::methods::CompositionScheme;
 use liestep::motion::Integrator;
 use liestep::numbers::{Bodies, Entries};
+use liestep::recording::RunError;
 use liestep::{NonstandardInertia, SO3, SetupError, State, Stepper};
 use nalgebra::{Matrix3, SVector, Vector1, Vector2, Vector3};
 use serde_json::Value;
@@ -329,6 +330,46 @@ fn momenta_of_two_bodies() {
     let (momentum, turning) = ((whole(&state).0 - momentum).amax(), (whole(&state).1 - turning).amax());
     println!("momentum {momentum:.1e}, angular {turning:.1e}, energy {most:.3e}, means apart {apart:.1e}");
     assert!(momentum < 1e-12 && turning < 1e-10 && most < 1e-2 && apart < 1e-2);
+}
+
+/// A step that goes over a close pass has a solution, and its energy tells.
+#[test]
+fn a_close_pass_that_is_stepped_over_is_an_error() {
+    let [J, K] = [Vector3::new(0.01, 0.012, 0.015); 2];
+    let system = TwoBodies {
+        m_1: 1.0,
+        m_2: 1.0,
+        K_1: NonstandardInertia::from_principal_moments(J).unwrap(),
+        K_2: NonstandardInertia::from_principal_moments(K).unwrap(),
+        J_1: Inertia::from_principal_moments(J).unwrap(),
+        J_2: Inertia::from_principal_moments(K).unwrap(),
+        G: 1.0,
+    };
+    let stepper = Stepper::new(system, 1e-3).unwrap();
+    // Towards each other from afar, with an energy near −¼; by how far they would miss each other.
+    let passed = |aside: f64| {
+        let place = |x: f64, y: f64| R3::from(Vector3::new(x, y, 0.0));
+        let start = (SO3::identity(), place(-1.0, 0.0), SO3::identity(), place(1.0, aside));
+        let mut velocity = SVector::<f64, 12>::zeros();
+        (velocity[3], velocity[9]) = (0.5, -0.5);
+        let mut state = stepper.start(start, velocity).unwrap();
+        let energy = stepper.energy(&state);
+        assert!((energy + 0.25).abs() < 0.06, "{energy}");
+        let ended = stepper.observed(&mut state).energy_within(0.01).steps(2_500);
+        (ended, energy, stepper.energy(&state), stepper.time(&state))
+    };
+    for aside in [0.1, 1e-3, 1e-8] {
+        match passed(aside) {
+            (Err(RunError::Energy { time, before, after }), start, now, at) => {
+                println!("{aside:e}: t = {time}, from {before} to {after}");
+                assert!((before - start).abs() < 0.1 && (after - before).abs() > 0.01, "{start} {before} {after}");
+                assert_eq!((time, after), (at, now));
+            }
+            (other, ..) => panic!("{aside:e}: {other:?}"),
+        }
+    }
+    let (ended, energy, now, _) = passed(1.0);
+    assert!(ended.is_ok_and(|ended| ended.steps == 2_500) && (now - energy).abs() < 1e-4, "{energy} {now}");
 }
 
 type WithWheels = (SO3, R1, R1, R1);

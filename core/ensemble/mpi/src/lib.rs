@@ -18,9 +18,10 @@
 //! shard: 16 bytes each way a chunk, and no rows. The report of the others knows what they made, and no more.
 //!
 //! A process that dies takes the job with it, as MPI has it; the shards that are there stay, and the next run makes the
-//! others. An error in one process ends all of them with a code that isn't zero.
+//! others. An error in one process, or a panic in a member's function, ends all of them with a code that isn't zero.
 
 use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use liestep_ensemble::{Engine, MakeChunk, StoreError};
 use mpi::environment::Universe;
@@ -52,16 +53,21 @@ impl Mpi {
         self.world.rank() == FIRST
     }
 
-    /// An error of one is the end of all: the others would wait for it.
-    fn or_abort<T>(&self, result: Result<T, StoreError>) -> T {
-        result.unwrap_or_else(|error| {
-            eprintln!("error in process {}: {error}", self.world.rank());
-            self.world.abort(1)
-        })
+    /// An error or a panic of one is the end of all: the others would wait for it, and MPI for them.
+    fn or_abort(&self, make: impl FnOnce() -> Result<(), StoreError>) {
+        match catch_unwind(AssertUnwindSafe(make)) {
+            Ok(Ok(())) => {}
+            Ok(Err(error)) => {
+                eprintln!("error in process {}: {error}", self.world.rank());
+                self.world.abort(1)
+            }
+            // Its message is there already.
+            Err(_) => self.world.abort(101),
+        }
     }
 
     /// Hands out the numbers, and makes a chunk where nobody asks.
-    fn lead(&self, missing: &[u64], make: &MakeChunk<'_>) {
+    fn lead(&self, missing: &[u64], make: &MakeChunk<'_>, tell: &(dyn Fn() + Sync)) {
         let (left, workers) = (Cell::new(missing), Cell::new(self.world.size() - 1));
         let next = || {
             let (next, others) = left.get().split_first()?;
@@ -70,7 +76,9 @@ impl Mpi {
         };
         let answer = |rank: i32| {
             let worker = self.world.process_at_rank(rank);
-            let _ = worker.receive::<u64>();
+            if worker.receive::<u64>().0 > 0 {
+                tell();
+            }
             let number = next().unwrap_or_else(|| {
                 workers.set(workers.get() - 1);
                 NONE
@@ -85,7 +93,7 @@ impl Mpi {
         };
         while let Some(chunk) = next() {
             // It answers within its own chunk, each time that it asks whether to stop.
-            self.or_abort(make(chunk, &answer_all));
+            self.or_abort(|| make(chunk, &answer_all));
         }
         while workers.get() > 0 {
             answer(self.world.any_process().probe().source_rank());
@@ -95,13 +103,16 @@ impl Mpi {
     /// Makes what it is told.
     fn follow(&self, make: &MakeChunk<'_>) {
         let first = self.world.process_at_rank(FIRST);
+        // How many it has made since it asked last.
+        let mut made = 0_u64;
         loop {
-            first.send(&0_u64);
+            first.send(&made);
             let (chunk, _) = first.receive::<u64>();
             if chunk == NONE {
                 return;
             }
-            self.or_abort(make(chunk, &|| false));
+            self.or_abort(|| make(chunk, &|| false));
+            made = 1;
         }
     }
 }
@@ -111,9 +122,14 @@ impl Engine for Mpi {
         self.is_first()
     }
 
-    fn distribute(&self, missing: &[u64], make: &MakeChunk<'_>) -> Result<(), StoreError> {
+    fn distribute(
+        &self,
+        missing: &[u64],
+        make: &MakeChunk<'_>,
+        tell: &(dyn Fn() + Sync),
+    ) -> Result<(), StoreError> {
         if self.is_first() {
-            self.lead(missing, make);
+            self.lead(missing, make, tell);
         } else {
             self.follow(make);
         }

@@ -66,6 +66,8 @@ mod tests {
             let sign = if numbers.iter().zip(expected).map(|(a, b)| a * b).sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
             let error = numbers.iter().zip(expected).map(|(a, b)| (a - sign * b).abs()).fold(0.0, f64::max);
             assert!(error < 1e-15, "{error}");
+            let own = SO3::from(quaternion).to_quaternion();
+            assert_eq!([own.w, own.i, own.j, own.k].map(|q| q.abs().to_bits()), numbers.map(|q| q.abs().to_bits()));
             let moved = before.map_or(0.0, |before| (0..4).map(|k| (numbers[k] - before[k]).abs()).fold(0.0, f64::max));
             assert!(moved < 0.1, "it jumps");
             before = Some(numbers);

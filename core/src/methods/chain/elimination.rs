@@ -111,7 +111,7 @@ impl Work {
 /// The squares of the lengths of an update, before it was shortened, and of the unknowns after it; whether it is whole.
 #[derive(Clone, Copy)]
 pub(super) struct Update {
-    pub(super) update: f64,
+    pub(super) length: f64,
     pub(super) size: f64,
     pub(super) is_whole: bool,
 }
@@ -205,7 +205,7 @@ fn solved(links: &[LinkConstants], work: &mut [Work], longest: f64) -> Update {
         update += work.update.norm_squared();
         size += work.half.norm_squared();
     }
-    Update { update, size, is_whole: largest <= longest * longest }
+    Update { length: update, size, is_whole: largest <= longest * longest }
 }
 
 /// The momenta `target` of the velocities `half`.

@@ -9,15 +9,11 @@ use nalgebra::ComplexField as _;
 use super::elimination::{LinkConstants, Update, Work, momenta_of_velocities, newton, outwards, simplified};
 use super::link::Link;
 use crate::error::{SetupError, StepError};
-use crate::groups::{Advected as _, CayleyRetraction, Retraction, SO3};
+use crate::groups::{CayleyRetraction, Retraction, SO3};
 use crate::mechanics::{Effect, Operations, SceneVisitor};
 use crate::motion::{Cost, Motion, Plan, Steerable, StepReport, Stepper, Summation};
 use crate::numbers::{Bodies, Coordinates as _, filled};
 use crate::solving::{Curvature, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, WarmStart};
-
-/// How many steps go by until attitudes are put back among the rotations. What links feel of each other cancels as far as
-/// they are such: in a thousand steps the momentum of a chain would drift by some `1e-12` of itself.
-const STEPS_BETWEEN: u64 = 64;
 
 /// Operations of a link beside those of its potentials, in a step and in an iteration: of its products with matrices.
 const OF_A_LINK: Operations = Operations { step: 150, iteration: 600 };
@@ -175,10 +171,7 @@ where
             return Err(StepError::NonFinite { what: "momentum after the step" });
         }
         motion.proceed(&increment, &change, (momentum, advected));
-        motion.count();
-        if motion.now().steps.is_multiple_of(STEPS_BETWEEN) {
-            put_back(scene, motion);
-        }
+        motion.finish(|| scene.advected());
         Ok(())
     }
 
@@ -215,25 +208,6 @@ where
     }
 }
 
-/// Puts the attitudes where the rotations next to them are, `R (3 I − RᵀR)/2`, and what is advected to what they see. With
-/// compensated sums they are among the rotations, and what is carried belongs to where they are.
-#[cold]
-fn put_back<S, M, const N: usize>(scene: &S, motion: &mut M)
-where
-    S: Effect<Scalar = f64, Group = [SO3; N]>,
-    M: Summation<[SO3; N], S::Advected>,
-{
-    if M::CARRIES {
-        return motion.restore(&scene.advected());
-    }
-    let attitude = motion.now().attitude.map(|attitude| {
-        let r = attitude.as_matrix();
-        SO3::from_matrix_unchecked(r + r * (Matrix3::identity() - r.tr_mul(r)) * 0.5)
-    });
-    let advected = scene.advected().seen_from(&attitude);
-    motion.show(Motion { attitude, advected, ..*motion.now() });
-}
-
 /// Makes at most `most` of Newton's iterations and the updates with their Jacobians. Returns the number of both, and whether
 /// the iteration has settled near the identity with all determinants positive.
 ///
@@ -248,7 +222,7 @@ fn iterate(links: &[LinkConstants], work: &mut [Work], most: u32, longest: f64) 
     let (mut made, mut before) = (0, None);
     for _ in 0..most {
         made += 1;
-        let Update { update, size, is_whole } = newton(links, work, longest);
+        let Update { length: update, size, is_whole } = newton(links, work, longest);
         if !size.is_finite() {
             break;
         }
@@ -260,7 +234,7 @@ fn iterate(links: &[LinkConstants], work: &mut [Work], most: u32, longest: f64) 
         if is_whole && curvature.may_suffice(update, size) {
             let second = simplified(links, work);
             made += 1;
-            if curvature.has_sufficed(update, second.update, second.size) {
+            if curvature.has_sufficed(update, second.length, second.size) {
                 return (made, work.iter().all(Work::is_wanted));
             }
             before = None;

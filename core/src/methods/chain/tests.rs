@@ -82,7 +82,7 @@ fn momentum_of_badly_solved_steps() {
             solve(&plan.links, &mut work);
             // How far one of Newton's iterations would move them, which isn't made.
             let update = newton(&plan.links, &mut work.clone(), f64::INFINITY);
-            least = least.min((update.update / update.size).sqrt());
+            least = least.min((update.length / update.size).sqrt());
             plan.proceed(stepper.scene(), &mut state.motion, &work, kick).unwrap();
             largest = state.momentum().0.iter().map(Vector3::norm).fold(largest, f64::max);
         }
@@ -140,7 +140,7 @@ fn nothing_but_roundings_is_missing() {
             // In roundings of all unknowns.
             let mut further = || {
                 let updated = newton(&plan.links, &mut more, f64::INFINITY);
-                (updated.update / updated.size).sqrt() / f64::EPSILON
+                (updated.length / updated.size).sqrt() / f64::EPSILON
             };
             let first = further();
             let left = (0..4).map(|_| further()).fold(1.0, f64::max);
@@ -168,7 +168,7 @@ fn a_shortened_update_is_a_part_of_the_whole() {
             let before = work[0].half;
             let updated = newton(&links, &mut work, 0.25);
             let moved = work[0].half - before;
-            assert!(!updated.is_whole && updated.update.sqrt() > 0.01 * size, "{size:e} {start}");
+            assert!(!updated.is_whole && updated.length.sqrt() > 0.01 * size, "{size:e} {start}");
             assert!((moved.norm() - 0.25).abs() < 1e-15, "{size:e} {start}: {moved}");
             let off = moved.normalize() + work[0].update.normalize();
             assert!(off.norm() < 1e-14, "{size:e} {start}: {off}");

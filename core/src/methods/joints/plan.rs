@@ -52,7 +52,7 @@ struct Problem<'a, 'b, S: Effect, C, const K: usize, const N: usize, const T: us
 /// The squares of the lengths of an update and of the unknowns after it, that of the largest turn in it, and that of
 /// what rounding leaves of it. All are in rad, with shifts over the shortest of the bodies' lengths.
 struct Update {
-    update: f64,
+    length: f64,
     size: f64,
     largest: f64,
     rounded: f64,
@@ -109,7 +109,7 @@ where
             *half += update * part;
             size += squares(half).dot(&weights);
         }
-        Update { update, size, largest, rounded: (opposed.dot(&weights) + self.extent) * (ROUNDED * ROUNDED) }
+        Update { length: update, size, largest, rounded: (opposed.dot(&weights) + self.extent) * (ROUNDED * ROUNDED) }
     }
 
     /// The weights of the two [`squares`].
@@ -122,7 +122,7 @@ where
         let mut made = 0;
         for _ in 0..most {
             made += 1;
-            let Update { update, size, largest, rounded } = self.newton(longest);
+            let Update { length: update, size, largest, rounded } = self.newton(longest);
             if !size.is_finite() {
                 return (made, false);
             }
@@ -132,7 +132,7 @@ where
             if largest <= longest * longest && may_suffice(update, size) {
                 let second = self.simplified();
                 made += 1;
-                if second.update <= second.rounded || has_sufficed(update, second.update, second.size) {
+                if second.length <= second.rounded || has_sufficed(update, second.length, second.size) {
                     return (made, self.is_wanted());
                 }
             }
@@ -212,7 +212,7 @@ where
     S: Effect<Group = [Body; N]>,
     M: Summation<[Body; N], S::Advected>,
 {
-    if !is_due(motion.now().steps) {
+    if !is_due::<[Body; N]>(motion.now().steps) {
         return false;
     }
     let given = *motion.now();

@@ -325,7 +325,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
             }
             if let Some(Spin { angle }) = self.spin.filter(|_| !WITH_SPIN) {
                 spin::turn(angle * motion.now().momentum.z, motion);
-                if is_due(motion.now().steps + 1) {
+                if is_due::<SO3<Scalar<S>>>(motion.now().steps + 1) {
                     spin::make_good(angle * motion.now().momentum.z, STEPS_BETWEEN_CHECKS, motion);
                 }
             }

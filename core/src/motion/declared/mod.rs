@@ -296,7 +296,7 @@ fn taken<S: Effect, M: Summation<Group<S>, S::Advected>>(
 ) -> StepReport {
     motion.proceed(&made.increment, &made.change, (made.momentum, made.advected));
     kept.follow(made.half, made.far);
-    if is_due(motion.now().steps) {
+    if is_due::<Group<S>>(motion.now().steps) {
         look(scene, motion, kept);
     }
     motion.count();

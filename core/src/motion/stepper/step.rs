@@ -5,7 +5,7 @@ use crate::error::StepError;
 use crate::groups::Advected as _;
 use crate::mechanics::{Effect, FactoredInertia, Group, Scalar, Vector, factored_inertia, velocity_and_energy};
 use crate::motion::integrator::{Integrator, run_or_step};
-use crate::motion::plan::{Next, NextSteps, Plan, Steerable, run_plan};
+use crate::motion::plan::{Cost, Next, NextSteps, Plan, Steerable, run_plan};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
 use crate::motion::summation::Motion;
@@ -241,6 +241,10 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
             .map_err(|error| part.explained(error, scene, &state.motion, &kept))?;
         next.steps = state.steps;
         Ok(next)
+    }
+
+    fn cost(&self) -> Option<Cost> {
+        Some(self.plan.cost())
     }
 
     fn adopt(&self, motion: &Motion<Group<S>, S::Advected>) -> Self::State {
