@@ -65,6 +65,6 @@ fn axis(table: &Table) -> Option<Vec<Vector3<f64>>> {
 /// The page that plays a run on SO(3) in a browser.
 #[pyfunction]
 pub(crate) fn page(table: &Table, title: &str, about: &str) -> PyResult<String> {
-    let columns = table.all().map(|(name, numbers)| (name.to_owned(), numbers.to_vec())).collect();
-    Ok(Recording::of_columns(title, about, columns).map_err(Failure::from)?.page())
+    let columns: Vec<_> = table.all().map(|(name, numbers)| (name.to_owned(), numbers.to_vec())).collect();
+    Ok(Recording::of_columns(title, about, &columns).map_err(Failure::from)?.page())
 }

@@ -62,7 +62,8 @@ impl Recording {
         }
         let title = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let about = path.display().to_string();
-        Self::of_table(&title, &about, names.into_iter().zip(columns).collect(), &|row, message| {
+        let columns: Vec<_> = names.into_iter().zip(columns).collect();
+        Self::of_table(&title, &about, &columns, &|row, message| {
             Mistake::at(path, (row.map_or(1, |row| lines[row]), 1), message)
         })
     }
@@ -73,7 +74,7 @@ impl Recording {
     /// # Errors
     ///
     /// A [`Mistake`] where these are missing, or are no motion.
-    pub fn of_columns(title: &str, about: &str, columns: Vec<(String, Vec<f64>)>) -> Result<Self, Mistake> {
+    pub fn of_columns(title: &str, about: &str, columns: &[(String, Vec<f64>)]) -> Result<Self, Mistake> {
         Self::of_table(title, about, columns, &|row, message| {
             let place = row.map_or_else(String::new, |row| format!("row {row} "));
             Mistake::of_table(Path::new(title), format!("{place}{message}"))
@@ -83,7 +84,7 @@ impl Recording {
     fn of_table(
         title: &str,
         about: &str,
-        columns: Vec<(String, Vec<f64>)>,
+        columns: &[(String, Vec<f64>)],
         wrong: &dyn Fn(Option<usize>, String) -> Mistake,
     ) -> Result<Self, Mistake> {
         let get = |name: &str| columns.iter().find(|(other, _)| other == name).map(|(_, numbers)| numbers.clone());
