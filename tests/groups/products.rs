@@ -252,7 +252,7 @@ fn numbers_of_translations() {
     let (line, space) = (R1::from(Vector1::new(5.0)), R3::from(Vector3::new(6.0, 7.0, 8.0)));
     let mut numbers = [0.0; 9];
     assert_eq!((SO3::identity(), line, space).write_numbers(&mut numbers).len(), 1);
-    assert_eq!(numbers, [1.0, 0.0, 0.0, 0.0, 5.0, 6.0, 7.0, 8.0, 0.0]);
+    assert_eq!(numbers.map(f64::to_bits), [1.0, 0.0, 0.0, 0.0, 5.0, 6.0, 7.0, 8.0, 0.0].map(f64::to_bits));
     let read: f64 = line.value();
     assert_eq!(read.to_bits(), 5.0_f64.to_bits());
 }

@@ -61,7 +61,9 @@ impl<'a, T> Arrays<'a, T> {
     #[inline]
     pub fn of<const N: usize>(given: [(Array, &'a [T]); N]) -> Self {
         let mut arrays: [&[T]; Array::COUNT] = [&[]; Array::COUNT];
-        given.into_iter().for_each(|(array, numbers)| arrays[array as usize] = numbers);
+        for (array, numbers) in given {
+            arrays[array as usize] = numbers;
+        }
         Self(arrays)
     }
 
@@ -271,6 +273,7 @@ fn apply<T: Copy>(registers: &mut [T], mask: usize, instructions: &[Instruction]
 
 /// A function of a number: that of the compiled step, so that the bits are the same. NaN where there is none of this order.
 #[cold]
+#[must_use]
 pub fn applied<T: Real>(function: Function, a: T) -> T {
     match function {
         Function::Sqrt => a.simd_sqrt(),

@@ -110,12 +110,12 @@ pub(crate) struct Folded<T: Real, B: Backend<T>> {
 impl<T: Real, B: Backend<T>> Constants<T, B> {
     pub(crate) fn of(
         declaration: &'static Declaration,
-        stages: All<B::Code>,
+        stages: &All<B::Code>,
         is_specialised: bool,
         numbers: Vec<T>,
     ) -> Self {
         let image = |program: &Ready<B::Code>| B::image(&program.code, &numbers);
-        let Stages { terms, kick_before, newton_system, newton_residual, kick_after, kick_derivative, .. } = &*stages;
+        let Stages { terms, kick_before, newton_system, newton_residual, kick_after, kick_derivative, .. } = &**stages;
         let folded = Folded {
             terms: image(terms),
             kick_before: image(kick_before),
@@ -126,7 +126,7 @@ impl<T: Real, B: Backend<T>> Constants<T, B> {
             declaration,
             is_specialised,
             numbers,
-            stages: Arc::clone(&stages),
+            stages: Arc::clone(stages),
         };
         Self(Arc::new(folded))
     }
@@ -278,7 +278,7 @@ where
         // What is too large now was too large before, and isn't here.
         let own = programs.and_then(|programs| ready::<G::Scalar, B>(&programs).ok());
         let is_specialised = own.is_some();
-        Constants::of(self.declaration, own.unwrap_or_else(|| Arc::clone(&self.stages)), is_specialised, numbers)
+        Constants::of(self.declaration, own.as_ref().unwrap_or(&self.stages), is_specialised, numbers)
     }
 
     fn are_finite(constants: &Self::Constants) -> bool {

@@ -133,17 +133,17 @@ where
 
     fn splat(lane: &Self::Lane) -> Self {
         let numbers = lane.0.numbers.iter().map(|&number| T::splat(number)).collect();
-        Self::of(lane.0.declaration, Arc::clone(&lane.0.stages), lane.0.is_specialised, numbers)
+        Self::of(lane.0.declaration, &lane.0.stages, lane.0.is_specialised, numbers)
     }
 
     fn lane(&self, k: usize) -> Self::Lane {
         let numbers = self.0.numbers.iter().map(|number| number.extract(k)).collect();
-        Constants::of(self.0.declaration, Arc::clone(&self.0.stages), self.0.is_specialised, numbers)
+        Constants::of(self.0.declaration, &self.0.stages, self.0.is_specialised, numbers)
     }
 
     fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
         let numbers = replaced(&self.0.numbers, k, &lane.0.numbers);
-        *self = Self::of(self.0.declaration, Arc::clone(&self.0.stages), self.0.is_specialised, numbers);
+        *self = Self::of(self.0.declaration, &self.0.stages.clone(), self.0.is_specialised, numbers);
         // The programs of one that is specialised are its own.
         std::ptr::eq(self.0.declaration, lane.0.declaration) && Arc::ptr_eq(&self.0.stages, &lane.0.stages)
     }

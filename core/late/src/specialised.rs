@@ -186,7 +186,7 @@ fn written(operations: &[Made], outputs: &[Value]) -> Program {
         }
     }
     // Numbers, inputs and results, in this order; of a program inputs come first.
-    let of = |kind: fn(&Value) -> bool| needed.iter().copied().filter(move |value| kind(value));
+    let of = |kind: fn(&Value) -> bool| needed.iter().filter(move |value| kind(value)).copied();
     let inputs = || of(|value| matches!(value, Value::Input(_)));
     let all = inputs()
         .chain(of(|value| matches!(value, Value::Number(_))))

@@ -178,7 +178,7 @@ pub fn c(declaration: &Declaration) -> Result<String, LateError> {
             return Err(LateError::C("a step is written in C where it needs no inverse of the increment"));
         }
         let list: Vec<String> = of_stage.iter().map(parameter).collect();
-        let unused = of_stage.iter().map(|&array| format!("    (void){};\n", name(array))).collect::<String>();
+        let unused = of_stage.iter().fold(String::new(), |text, &array| text + "    (void)" + name(array) + ";\n");
         let body = Language::C.body(program)?;
         let _ = writeln!(text, "static void {stage}({}, double *outputs) {{\n{unused}{body}}}\n", list.join(", "));
     }

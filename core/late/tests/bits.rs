@@ -116,6 +116,11 @@ fn tops() {
         Magnet { J_d m Q field gradient }
         Satellite { J_d m tip GM centre }
     }
+}
+
+/// Its name is that of an effect of the library.
+#[test]
+fn a_spring() {
     type Spring = declarations::Spring;
     as_compiled! { Spring { J_d k length rho anchor } }
 }

@@ -7,25 +7,24 @@ use std::path::Path;
 use super::{code, root};
 
 /// The lines of the longest file and function, and of the median file in `core` and `macros`.
-const LENGTHS: [usize; 3] = [522, 81, 134];
+const LENGTHS: [usize; 3] = [500, 80, 126];
 
 /// The lines of each room and package, and of each room of the library the names that it makes public.
 #[rustfmt::skip]
 const BUDGETS: [(&str, usize, usize); 38] = [
-    ("core/src/lib", 142, 11), ("core/src/prelude", 17, 28), ("core/src/private", 235, 61),
-    ("core/src/error", 635, 2), ("core/src/numbers", 2441, 14), ("core/src/groups", 4286, 33),
-    ("core/src/laws", 713, 3), ("core/src/mechanics", 3652, 42), ("core/src/effects", 409, 15),
-    ("core/src/solving", 1359, 3), ("core/src/motion", 3144, 29), ("core/src/gradients", 1365, 10),
-    ("core/src/methods", 8019, 30), ("core/src/recording", 1878, 14), ("core/src/with", 1015, 7),
-    ("core/src/accuracy", 1902, 16), ("core/src/conventions", 477, 0), ("core/src/guide", 2129, 0),
-    ("core/tests", 525, 0), ("macros/src", 237, 0), ("macros/derivation/src/lib", 33, 0),
-    ("macros/derivation/src/expand", 3103, 0), ("macros/derivation/src/staged", 630, 0),
-    ("macros/derivation/src/emit", 3788, 0), ("macros/derivation/src/judged", 6359, 0),
-    ("macros/derivation/src/declared", 5027, 0), ("macros/derivation/src/program", 2563, 0),
-    ("macros/derivation/src/mathematics", 4846, 0), ("macros/derivation/declarations", 150, 0),
-    ("core/late", 1652, 0), ("core/scene", 5288, 0), ("core/cli", 2795, 0), ("core/plot", 773, 0),
-    ("core/ensemble", 4678, 0), ("core/arrow", 222, 0), ("examples", 12682, 0), ("tests", 27274, 0),
-    ("tests/ui", 4225, 0),
+    ("core/src/lib", 52, 11), ("core/src/prelude", 12, 28), ("core/src/private", 176, 61), ("core/src/error", 565, 2),
+    ("core/src/numbers", 2532, 14), ("core/src/groups", 4201, 35), ("core/src/laws", 706, 3),
+    ("core/src/mechanics", 3743, 43), ("core/src/effects", 403, 15), ("core/src/solving", 1337, 3),
+    ("core/src/motion", 3299, 29), ("core/src/gradients", 1353, 10), ("core/src/methods", 7735, 28),
+    ("core/src/recording", 1852, 14), ("core/src/with", 988, 6), ("core/src/accuracy", 1829, 16),
+    ("core/src/conventions", 12, 0), ("core/src/guide", 19, 0), ("core/tests", 523, 0), ("macros/src", 232, 0),
+    ("macros/derivation/src/lib", 28, 0), ("macros/derivation/src/expand", 2944, 0),
+    ("macros/derivation/src/staged", 706, 0), ("macros/derivation/src/emit", 3768, 0),
+    ("macros/derivation/src/judged", 6278, 0), ("macros/derivation/src/declared", 4983, 0),
+    ("macros/derivation/src/program", 2541, 0), ("macros/derivation/src/mathematics", 4833, 0),
+    ("core/late", 2779, 0), ("core/machine", 706, 0), ("core/scene", 5602, 0), ("core/cli", 3000, 0),
+    ("core/plot", 790, 0), ("core/ensemble", 5134, 0), ("core/arrow", 215, 0), ("examples", 12526, 0),
+    ("tests", 26017, 0), ("tests/ui", 1694, 0),
 ];
 
 /// The circles that are still there. Lines may go, and none be added.
