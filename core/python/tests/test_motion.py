@@ -36,7 +36,7 @@ def test_golden_steps(entry):
         assert np.linalg.norm(run.momentum[row] - expected) < 2e-13 * np.linalg.norm(expected)
         assert np.linalg.norm(run.matrix[row].T[:, 2] - numbers(entry[f"w{name}"])) < 2e-13
     step = run.matrix[0].T @ run.matrix[1]
-    assert abs(step - numbers(entry["F0"])).max() < 2e-14
+    assert abs(step - numbers(entry["F0"]).reshape(3, 3)).max() < 2e-14
 
 
 METHODS = [
@@ -106,11 +106,11 @@ def test_a_force_takes_energy_and_a_sum_of_forces_more():
 
 
 def test_events_are_found_between_steps(top):
-    run = top.stepper(0.01).run(**START, until=20, events={"low": "tilt > 50 deg", "turn": "velocity_x = 0"})
+    run = top.stepper(0.01).run(**START, until=20, events={"low": "tilt > 40 deg", "turn": "velocity_x = 0"})
     assert len(run.events["low"]) > 3 and len(run.events["turn"]) > 10
-    assert abs(np.degrees(np.arccos(ls_axis(run.events["low"]))) - 50).max() < 1e-9
+    assert abs(np.degrees(np.arccos(ls_axis(run.events["low"]))) - 40).max() < 1e-9
     assert abs(run.events["turn"]["velocity_x"]).max() < 1e-9
-    stopped = top.stepper(0.01).run(**START, until=20, events={"low": "tilt > 50 deg, stop"})
+    stopped = top.stepper(0.01).run(**START, until=20, events={"low": "tilt > 40 deg, stop"})
     assert stopped.ended_by == "low" and stopped.time[-1] < 20
 
 
@@ -142,8 +142,7 @@ def test_a_particle_falls_on_a_parabola():
         l_d="m * (F - I).norm_squared() / (2 * h) - h/2 * m * g * w.dot(origin + F * origin)",
     )
     run = particle.stepper(0.1).run(velocity=[3, 4], until=1)
-    assert run.names[1:7] == ["g_11", "g_12", "g_13", "g_21", "g_22", "g_23"]
-    assert abs(run["g_13"][-1] - 3) < 1e-13 and abs(run["g_23"][-1] - (4 - 9.81 / 2)) < 1e-13
+    assert abs(run["x"][-1] - 3) < 1e-13 and abs(run["y"][-1] - (4 - 9.81 / 2)) < 1e-13
 
 
 def test_a_body_with_its_place():

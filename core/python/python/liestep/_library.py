@@ -10,8 +10,9 @@ from ._declared import Term, _value
 from .errors import DeclarationError
 
 _FORM = re.compile(
-    r"#\[(?P<role>\w+)\(\s*group = SO3,\s*(?:gradients,\s*)?(?:advected\((?P<seen>\w+) = (?P<field>\w+)\),\s*)?"
-    r"(?P<head>l_d|work) = (?P<text>.*?),?\s*\)\]\s*#\[derive",
+    r"#\s*\[\s*(?P<role>\w+)\s*\(\s*group\s*=\s*SO3\s*,\s*(?:gradients\s*,\s*)?"
+    r"(?:advected\s*\(\s*(?P<seen>\w+)\s*=\s*(?P<field>\w+)\s*\)\s*,\s*)?"
+    r"(?P<head>l_d|work)\s*=\s*(?P<text>.*?),?\s*\)\s*\]\s*struct\b[^{]*\{(?P<fields>[^}]*)\}",
     re.DOTALL,
 )
 
@@ -21,7 +22,7 @@ def _term(name: str, **parameters: Any) -> Term:
     found = _FORM.match(source or "")
     if source is None or found is None:
         raise DeclarationError(f"the library has no `{name}`")
-    fields = re.findall(r"pub (\w+): ", source)
+    fields = re.findall(r"(\w+)\s*:", found["fields"])
     if missing := [field for field in fields if field not in parameters]:
         raise DeclarationError(f"`{name}` has parameters {', '.join(fields)}: give {', '.join(missing)}")
     numbers = {field: _value(field, parameters[field]) for field in fields}
@@ -55,8 +56,8 @@ def body(J: Any, *, kinetic: str = "rigid") -> Term:
     ----------
     J : array_like
         Inertia, kg m²: three principal moments, or a matrix.
-    kinetic : {"rigid", "cayley", "geodesic"}
-        How its energy is discretised: (3.13) of the thesis, or one of those that have a solution for any spin.
+    kinetic : {"rigid", "cayley", "geodesic", "fourth_order", "sixth_order"}
+        How its energy is discretised: (3.13) of the thesis, or as the library's body of that name.
 
     Examples
     --------
@@ -66,8 +67,9 @@ def body(J: Any, *, kinetic: str = "rigid") -> Term:
     """
     if kinetic == "rigid":
         return _term("rigid_body", J_d=nonstandard(J))
-    if kinetic not in ("cayley", "geodesic"):
-        raise DeclarationError(f'`kinetic` is "rigid", "cayley" or "geodesic", not {kinetic!r}')
+    if not _native.library(f"{kinetic}_body"):
+        known = '"rigid", "cayley", "geodesic", "fourth_order", "sixth_order"'
+        raise DeclarationError(f"`kinetic` is one of {known}, not {kinetic!r}")
     return _term(f"{kinetic}_body", J=J)
 
 
