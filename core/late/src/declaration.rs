@@ -138,6 +138,11 @@ impl Declaration {
         Ok(all)
     }
 
+    /// Whether a solve does better without the Jacobian: of what moves by itself.
+    pub(crate) const fn is_expensive(&self) -> bool {
+        self.staged.has_kinetic && self.staged.is_expensive
+    }
+
     /// The kinetic part, as its type is called.
     #[must_use]
     pub const fn kinetic(&self) -> &'static str {

@@ -236,7 +236,7 @@ where
     }
 
     fn jacobian_is_expensive(constants: &Self::Constants) -> bool {
-        constants.0.declaration.is_expensive
+        constants.0.declaration.is_expensive()
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<G::Scalar>) {

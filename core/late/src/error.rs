@@ -26,7 +26,7 @@ pub enum LateError {
     /// To derive it takes too long: it was given up.
     #[error("this takes too long to be derived: declare parts as terms of their own, and add them")]
     TooMuchWork,
-    /// As many declarations are kept as may be, see [`kept`].
+    /// As many declarations are kept as may be, see [`kept`](crate::kept).
     #[error("{0} declarations are kept already: declare each text once")]
     TooMany(usize),
     /// The step has more operations or numbers than an interpreter has names for.

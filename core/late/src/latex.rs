@@ -4,13 +4,14 @@ use crate::declaration::Declaration;
 
 /// Signs of the equations in print, each with what LaTeX calls it.
 #[rustfmt::skip]
-const SIGNS: [(char, &str); 35] = [
+const SIGNS: [(char, &str); 41] = [
     ('−', "-"), ('·', r"\cdot "), ('×', r"\times "), ('⋄', r"\diamond "), ('∂', r"\partial "), ('∨', r"\vee"),
-    ('⟨', r"\langle "), ('⟩', r"\rangle "), ('δ', r"\delta "), ('η', r"\eta "), ('λ', r"\lambda "), ('μ', r"\mu "),
-    ('ξ', r"\xi "), ('ζ', r"\zeta "), ('Ω', r"\Omega "), ('τ', r"\tau "), ('θ', r"\theta "), ('½', r"\tfrac{1}{2}"),
-    ('𝕀', r"\mathbb{I}"), ('√', r"\surd "), ('↦', r"\mapsto "), ('→', r"\to "), ('≠', r"\neq "), ('\u{302}', r"\hat{}"), ('ᵀ', r"^{\top}"),
-    ('⁺', "^{+}"), ('⁻', "^{-}"), ('¹', "^{1}"), ('²', "^{2}"), ('³', "^{3}"), ('⁴', "^{4}"), ('₀', "_{0}"),
-    ('₁', "_{1}"), ('₂', "_{2}"), ('∞', r"\infty "),
+    ('⟨', r"\langle "), ('⟩', r"\rangle "), ('δ', r"\delta "), ('η', r"\eta "), ('λ', r"\lambda "),
+    ('μ', r"\mu "), ('ξ', r"\xi "), ('ζ', r"\zeta "), ('Ω', r"\Omega "), ('τ', r"\tau "), ('θ', r"\theta "),
+    ('½', r"\tfrac{1}{2}"), ('𝕀', r"\mathbb{I}"), ('√', r"\surd "), ('↦', r"\mapsto "), ('→', r"\to "),
+    ('≠', r"\neq "), ('\u{302}', r"\hat{}"), ('ᵀ', r"^{\top}"), ('⁺', "^{+}"), ('⁻', "^{-}"), ('¹', "^{1}"),
+    ('²', "^{2}"), ('³', "^{3}"), ('⁴', "^{4}"), ('⁰', "^{0}"), ('⁵', "^{5}"), ('⁶', "^{6}"), ('⁷', "^{7}"),
+    ('⁸', "^{8}"), ('⁹', "^{9}"), ('₀', "_{0}"), ('₁', "_{1}"), ('₂', "_{2}"), ('∞', r"\infty "),
 ];
 
 /// Names that are letters to LaTeX.

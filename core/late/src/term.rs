@@ -92,7 +92,7 @@ impl<G: LieGroup, W: Advected<G> + Slots, K: KineticPart, B: Backend<G::Scalar>>
         if !slots.starts_with(&declaration.slots()) {
             return Err(LateError::Advected { declared: format!("{:?}", declaration.slots()) });
         }
-        let is_expensive = declaration.is_expensive || K::IS_EITHER;
+        let is_expensive = declaration.is_expensive() || K::IS_EITHER;
         if (K::IS_THERE, K::JACOBIAN_IS_EXPENSIVE) != (declaration.has_kinetic, is_expensive) {
             return Err(LateError::Kinetic { declared: declaration.kinetic() });
         }

@@ -35,6 +35,8 @@ pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_liestep");
 /// A folder of a test's own.
 pub(crate) fn folder(test: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+    // What an earlier build has left may be of another format.
+    let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();
     folder
 }

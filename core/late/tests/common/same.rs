@@ -44,7 +44,8 @@ where
         }
         assert_eq!(one.energy(&first).to_bits(), other.energy(&second).to_bits(), "energy");
     }
-    assert!(made > 500, "only {made} steps of {}", late.derivation());
+    // A random motion may end before; both ends are compared.
+    assert!(made > 100, "only {made} steps of {}", late.derivation());
 }
 
 /// The declaration, read anew and interpreted, makes the steps of the compiled effect.
