@@ -69,7 +69,8 @@ macro_rules! with_stepper {
                 $body
             }
             Some(force) => {
-                let $stepper = $method.of_forced(Sum::new($own.lagrangian.clone(), force), $h)?;
+                // Without what is advected in its type: one code for all forces on a group.
+                let $stepper = $method.of_forced(Sum::new($own.lagrangian.clone(), force), $h)?.hiding_advected();
                 $body
             }
         }
@@ -125,10 +126,13 @@ where
             Ok::<_, Failure>(lagrangian)
         };
         let Some(force) = self.force.clone() else {
-            return run_members(plan, start, draws, move |draw| method.of(drawn(&own, draw)?, h), h);
+            let make = move |draw: &mut dyn FnMut(&str, &mut [f64])| {
+                method.of(drawn(&own, draw)?, h).map(AnyStepper::hiding_advected)
+            };
+            return run_members(plan, start, draws, make, h);
         };
         let make = move |draw: &mut dyn FnMut(&str, &mut [f64])| {
-            method.of_forced(Sum::new(drawn(&own, draw)?, force.clone()), h)
+            method.of_forced(Sum::new(drawn(&own, draw)?, force.clone()), h).map(AnyStepper::hiding_advected)
         };
         run_members(plan, start, draws, make, h)
     }
