@@ -66,6 +66,24 @@ fn large_and_deep_texts_are_refused() {
     assert!(clock.elapsed() < Duration::from_secs(60), "{:?}", clock.elapsed());
 }
 
+/// Without the `&` and the points that a compiler asks for it is the same declaration, and whole numbers stay what they are.
+#[test]
+fn liberties_of_notation() {
+    let written = |l_d: &str| {
+        let text = format!(
+            "#[lagrangian(group = SO3, advected(w = up), l_d = {l_d})]
+            struct Body {{ J_d: NonstandardInertia, rho: Vector3<f64>, up: Vector3<f64> }}"
+        );
+        Declaration::parse(&text).expect("a declaration").derivation
+    };
+    let strict =
+        "((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - 1.0 / 2.0 * h * w.dot(&(rho + F * rho)).powi(2)";
+    let free = "((F - I) * J_d * (F - I).transpose()).trace() / (2 * h) - 1/2 * h * w.dot(rho + F * rho).powi(2)";
+    assert_eq!(written(strict), written(free));
+    let found = mistakes(&body(" + h * k.powi(2.0)"));
+    assert!(found[0].message.contains("powi"), "{found:?}");
+}
+
 #[test]
 fn mistakes_have_places() {
     let text = "#[lagrangian(\n    group = SO3,\n    l_d = w.dot(&rho) * h,\n)]\nstruct Body { rho: Vector3<f64> }";

@@ -8,7 +8,6 @@
 
 use std::time::Instant;
 
-use liestep::groups::LieGroup as _;
 use liestep::motion::Integrator as _;
 use liestep::recording::Recorder;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};

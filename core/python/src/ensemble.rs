@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use liestep::groups::{Advected, LieGroup};
+use liestep::groups::LieGroup;
 use liestep::motion::{AnyStepper, Integrator as _};
 use liestep::recording::Column;
 use liestep_ensemble::{Ensemble, Local, Member, MemberFailure, Progress, Report, Store};
@@ -66,16 +66,15 @@ pub(crate) struct Outcome {
 }
 
 /// Runs the members in threads of their own, while this one listens to Ctrl-C and tells of progress.
-pub(crate) fn run_members<G, W>(
+pub(crate) fn run_members<G>(
     plan: Members,
     start: &Start,
     draws: Draws,
-    make: impl Fn(&mut dyn FnMut(&str, &mut [f64])) -> Result<AnyStepper<G, W>, Failure> + Send + Sync + 'static,
+    make: impl Fn(&mut dyn FnMut(&str, &mut [f64])) -> Result<AnyStepper<G, ()>, Failure> + Send + Sync + 'static,
     h: f64,
 ) -> Result<Outcome, Failure>
 where
     G: LieGroup<Scalar = f64>,
-    W: Advected<G> + 'static,
 {
     let (start, turns) = (start.clone(), plan.turns);
     let made = move |member: &Member<'_>| {
@@ -98,7 +97,7 @@ where
         Ok((stepper, state))
     };
     let steps = steps_to(plan.until, h)?;
-    let mut ensemble = Ensemble::<AnyStepper<G, W>>::one_by_one(&plan.name, plan.members, steps, made).seed(plan.seed);
+    let mut ensemble = Ensemble::<AnyStepper<G, ()>>::one_by_one(&plan.name, plan.members, steps, made).seed(plan.seed);
     if let Some(every) = plan.every {
         ensemble = ensemble.every(every.max(1));
     }

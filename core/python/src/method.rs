@@ -73,20 +73,24 @@ impl Method {
 
     /// Of a scene with a force, which has its own step only.
     pub(crate) fn of_forced<S: Scene<Scalar = f64>>(self, scene: S, h: f64) -> Made<S> {
-        let Kind::Step = self.kind else {
-            return refused("a scene with a force is made by its own step: leave the method out");
-        };
-        self.compensated(Stepper::new(scene, h).map_err(|error| Failure::setup(&error))?)
+        match self {
+            Self { kind: Kind::Step, is_compensated: false, substeps: 1 } => {
+                Ok(Stepper::new(scene, h).map_err(|error| Failure::setup(&error))?.into_any())
+            }
+            _ => refused("a scene with a force is made by its own step alone: leave the method out"),
+        }
     }
 
+    /// What each group has; each type of stepper is some 200 kB of the wheel.
     pub(crate) fn of<S: Scene<Scalar = f64, Group: Methods<S>>>(self, scene: S, h: f64) -> Made<S> {
         let setup = |error: SetupError| Failure::setup(&error);
-        match self.kind {
-            Kind::Step if self.substeps > 1 && !self.is_compensated => {
-                Ok(Stepper::new(scene, h).map_err(setup)?.or_substeps(self.substeps).into_any())
+        match self {
+            Self { kind: Kind::Step, is_compensated: false, substeps: 1 } => {
+                Ok(Stepper::new(scene, h).map_err(setup)?.into_any())
             }
-            Kind::Step => self.compensated(Stepper::new(scene, h).map_err(setup)?),
-            Kind::Composition(scheme) => self.compensated(Stepper::composed(scene, h, scheme).map_err(setup)?),
+            Self { kind: Kind::Composition(scheme), is_compensated: false, substeps: 1 } => {
+                Ok(Stepper::composed(scene, h, scheme).map_err(setup)?.into_any())
+            }
             _ => S::Group::further(scene, h, self),
         }
     }
@@ -113,7 +117,7 @@ type Made<S> =
 /// A group with the methods that are its own.
 pub(crate) trait Methods<S: Scene<Scalar = f64, Group = Self>>: LieGroup<Scalar = f64> {
     fn further(_: S, _: f64, _: Method) -> Made<S> {
-        refused("splittings and collocation are on SO3: take a composition here")
+        refused("splittings, collocation, substeps and compensated sums are on SO3: take a composition here")
     }
 }
 
@@ -123,6 +127,11 @@ impl<S: Scene<Scalar = f64, Group = Self>> Methods<S> for SO3 {
         let flow = || Inertia::new(scene.inertia(&scene.advected())).map(|inertia| ExactBody::new(&inertia));
         let flow = flow().map_err(|error| Failure::setup(&error));
         match method.kind {
+            Kind::Step if method.substeps > 1 && !method.is_compensated => {
+                Ok(Stepper::new(scene, h).map_err(setup)?.or_substeps(method.substeps).into_any())
+            }
+            Kind::Step => method.compensated(Stepper::new(scene, h).map_err(setup)?),
+            Kind::Composition(scheme) => method.compensated(Stepper::composed(scene, h, scheme).map_err(setup)?),
             Kind::Splitting(scheme) => method.compensated(Stepper::split(scene, h, flow?, scheme).map_err(setup)?),
             Kind::Processed(scheme) => method.compensated(Stepper::processed(scene, h, flow?, scheme).map_err(setup)?),
             _ if method.substeps > 1 => refused("`substeps` go with the declared step, and not with a collocation"),

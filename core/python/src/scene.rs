@@ -13,7 +13,7 @@ use liestep::motion::{AnyState, AnyStepper};
 use liestep::numbers::Entries;
 use liestep::{SetupError, Stepper};
 use liestep_late::{Declaration, LateError, Slots};
-use nalgebra::{Matrix4, Point1, Point2, Point3, Quaternion, UnitQuaternion};
+use nalgebra::{Matrix4, Point2, Point3, Quaternion, UnitQuaternion};
 
 use crate::ensemble::{Draws, Members, Outcome, run_members};
 use crate::failure::Failure;
@@ -69,7 +69,8 @@ macro_rules! with_stepper {
                 $body
             }
             Some(force) => {
-                let $stepper = $method.of_forced(Sum::new($own.lagrangian.clone(), force), $h)?;
+                // Without what is advected in its type: one code for all forces on a group.
+                let $stepper = $method.of_forced(Sum::new($own.lagrangian.clone(), force), $h)?.hiding_advected();
                 $body
             }
         }
@@ -125,10 +126,13 @@ where
             Ok::<_, Failure>(lagrangian)
         };
         let Some(force) = self.force.clone() else {
-            return run_members(plan, start, draws, move |draw| method.of(drawn(&own, draw)?, h), h);
+            let make = move |draw: &mut dyn FnMut(&str, &mut [f64])| {
+                method.of(drawn(&own, draw)?, h).map(AnyStepper::hiding_advected)
+            };
+            return run_members(plan, start, draws, make, h);
         };
         let make = move |draw: &mut dyn FnMut(&str, &mut [f64])| {
-            method.of_forced(Sum::new(drawn(&own, draw)?, force.clone()), h)
+            method.of_forced(Sum::new(drawn(&own, draw)?, force.clone()), h).map(AnyStepper::hiding_advected)
         };
         run_members(plan, start, draws, make, h)
     }
@@ -252,14 +256,14 @@ pub(crate) fn scene(
         SE3: V<4>, Point3<f64>;
         SU2: ();
         SL2: V<2>;
-        R1: V<2>, Point1<f64>;
-        R2: V<3>, Point2<f64>;
-        R3: V<4>, Point3<f64>;
+        R1: V<2>;
+        R2: V<3>;
+        R3: V<4>;
         Heisenberg: ();
         (SO3, SO3): Two<V<3>>;
         (SO3, R3): Configuration<1, Matrix4<f64>>, (SeenFrom<0, V<3>>, Configuration<1, Matrix4<f64>>);
     }
-    let known = "on SO3 up to four vectors in space are advected, on SO2, SL2, SE2, SE3, R1, R2 and R3 one vector or point, on \
+    let known = "on SO3 up to four vectors in space are advected, on SO2, SL2, R1, R2 and R3 one vector, on SE2 and SE3 one vector or point, on \
                  (SO3, SO3) one vector seen from each, on (SO3, R3) one vector seen from the body and where the other is";
     let (declared, carried) = (lagrangian.0.group(), lagrangian.0.carried.len());
     let message = format!("{declared} with these {carried} advected parameters isn't in this build: {known}");

@@ -60,6 +60,7 @@ def test_courses(top, course):
 
 @pytest.mark.parametrize("method", [
     {"composition": "none"}, {"collocation": 3}, {"splitting": "Strang", "composition": "Suzuki 4"}, {"substeps": 0},
+    {"substeps": 2, "composition": "Suzuki 4"}, {"collocation": 4, "substeps": 2},
 ])
 def test_methods(top, method):
     with pytest.raises(ls.Error):

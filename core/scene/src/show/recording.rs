@@ -57,18 +57,45 @@ impl Recording {
         let text = String::from_utf8(bytes).map_err(|error| Mistake::not_text(path, &error))?;
         let Table { names, columns, below, lines } =
             numbers(&text).map_err(|(line, column, message)| wrong(line, column, message))?;
-        let get = |name: &str| names.iter().position(|other| other == name).map(|place| columns[place].clone());
+        if names.iter().any(|name| name == "t") && columns.first().is_some_and(Vec::is_empty) {
+            return Err(wrong(below, 1, "has no row".to_owned()));
+        }
+        let title = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let about = path.display().to_string();
+        let columns: Vec<_> = names.into_iter().zip(columns).collect();
+        Self::of_table(&title, &about, &columns, &|row, message| {
+            Mistake::at(path, (row.map_or(1, |row| lines[row]), 1), message)
+        })
+    }
+
+    /// Of columns of one length, called as those of a table; it needs the time and the quaternion, as [`read`](Self::read)
+    /// does.
+    ///
+    /// # Errors
+    ///
+    /// A [`Mistake`] where these are missing, or are no motion.
+    pub fn of_columns(title: &str, about: &str, columns: &[(String, Vec<f64>)]) -> Result<Self, Mistake> {
+        Self::of_table(title, about, columns, &|row, message| {
+            let place = row.map_or_else(String::new, |row| format!("row {row} "));
+            Mistake::of_table(Path::new(title), format!("{place}{message}"))
+        })
+    }
+
+    fn of_table(
+        title: &str,
+        about: &str,
+        columns: &[(String, Vec<f64>)],
+        wrong: &dyn Fn(Option<usize>, String) -> Mistake,
+    ) -> Result<Self, Mistake> {
+        let get = |name: &str| columns.iter().find(|(other, _)| other == name).map(|(_, numbers)| numbers.clone());
         let all = |column: Column| column.names().iter().map(|name| get(name)).collect::<Option<Vec<_>>>();
         let missing = |names: &[&str]| {
             let names = names.join(", ");
-            wrong(1, 1, format!("has no columns {names}; a recording needs them, as `liestep run --csv` writes them"))
+            wrong(None, format!("has no columns {names}; a recording needs them, as `liestep run --csv` writes them"))
         };
         let times = get("t").ok_or_else(|| missing(&["t"]))?;
-        if times.is_empty() {
-            return Err(wrong(below, 1, "has no row".to_owned()));
-        }
         if let Some(row) = times.windows(2).position(|pair| pair[1] <= pair[0]) {
-            return Err(wrong(lines[row + 1], 1, "is not later than the row before".to_owned()));
+            return Err(wrong(Some(row + 1), "is not later than the row before".to_owned()));
         }
         let [w, x, y, z] = &all(Column::QUATERNION).ok_or_else(|| missing(Column::QUATERNION.names()))?[..] else {
             return Err(missing(Column::QUATERNION.names()));
@@ -78,7 +105,7 @@ impl Recording {
             UnitQuaternion::try_new(quaternion, 0.5).filter(|unit| (quaternion.norm() - unit.norm()).abs() < 0.01)
         };
         let attitudes = (0..times.len())
-            .map(|row| attitude(row).ok_or_else(|| wrong(lines[row], 1, "the quaternion isn't a unit one".to_owned())))
+            .map(|row| attitude(row).ok_or_else(|| wrong(Some(row), "the quaternion isn't a unit one".to_owned())))
             .collect::<Result<Vec<_>, _>>()?;
         let mut charts = vec![tilt(&attitudes, &Vector3::z())];
         if let Some(energy) = get("energy") {
@@ -91,9 +118,8 @@ impl Recording {
         if let Some([x, y, z]) = all(Column::VELOCITY).as_deref() {
             charts.push(rates([x.clone(), y.clone(), z.clone()]));
         }
-        let title = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let figure = Figure::of(&Matrix3::identity(), None, &Vector3::z());
-        let about = path.display().to_string();
+        let (title, about) = (title.to_owned(), about.to_owned());
         Ok(Self { title, about, figure, times, attitudes, charts, events: Vec::new() })
     }
 

@@ -91,6 +91,8 @@ pub(crate) struct Declaration {
     /// The fields whose type has no meaning.
     pub(crate) unreadable: Vec<String>,
     pub(crate) scalar: Scalar,
+    /// Whether it is read while a program runs: no compiler will ask for the `&` of an argument or the point of a number.
+    pub(crate) is_text: bool,
 }
 
 /// An increment: `F`, or one of those that `group(F_1 = SO3, …)` names.

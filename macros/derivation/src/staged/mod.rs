@@ -12,7 +12,7 @@ mod sources;
 use proc_macro2::TokenStream;
 
 use crate::declared::errors::{Errors, Mistake};
-use crate::declared::{Role, parse};
+use crate::declared::{Declaration, Role, parse};
 use crate::expand::{self, Judged};
 pub use crate::mathematics::symbolic::Function;
 use crate::mathematics::symbolic::work;
@@ -327,6 +327,7 @@ pub fn staged(text: &TokenStream, most: u64) -> Result<(Staged, u64), Refusal> {
 fn of_text(text: &TokenStream, errors: &mut Errors) -> Option<Staged> {
     let (role, arguments, item) = parse::attribute_and_item(text, errors)?;
     let declaration = parse::declaration(role, &arguments, &item, errors)?;
+    let declaration = Declaration { is_text: true, ..declaration };
     match expand::judged(&declaration, errors)? {
         Judged::Steps(steps) => Some(build::staged(&declaration, &steps)),
         Judged::Continuous(_) | Judged::Constraint(_) => {

@@ -248,6 +248,9 @@ impl Checker<'_> {
     /// Whether the compiler takes it as the argument of that method, a reference, or of that function, a value; if not,
     /// says what to write. A reference to a reference is taken, too.
     fn is_passed_right(&mut self, function: &str, argument: &Expr, by_reference: bool) -> bool {
+        if self.declaration.is_text {
+            return true;
+        }
         let Some(found) = self.references(argument) else { return true };
         let advice = match (by_reference, found) {
             (true, 1..) | (false, 0) => return true,
@@ -431,7 +434,7 @@ impl Checker<'_> {
             }
             other => return self.unknown(other),
         };
-        if is_integer {
+        if is_integer && !self.declaration.is_text {
             self.errors.push(literal.span(), format!("write `{digits}.0`: scalars are real numbers"));
             return None;
         }

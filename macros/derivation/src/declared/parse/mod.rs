@@ -162,6 +162,7 @@ pub(crate) fn as_far_as_readable(
         fields,
         unreadable,
         scalar,
+        is_text: false,
         item,
     }
 }
