@@ -226,7 +226,7 @@ fn first_passages_are_those_of_each_member_alone() {
     let section = |in_lanes: bool| {
         let plane = Section::new(Event::crossing(), sections::plane(Vector3::x(), Vector3::z()));
         let plane = plane.keep(["t"], |now: &Moment<'_, Top>| [now.time()]);
-        let plane = plane.reduce("passage", Reduction::Quantiles, |now| now.time());
+        let plane = plane.reduce("spins at passage", Reduction::Quantiles, |now| now.velocity().z);
         if in_lanes { plane.in_lanes(sections::plane(Vector3::x(), Vector3::z())) } else { plane }
     };
     let found = |shards: &[Shard]| -> Vec<(u64, u64)> {
