@@ -22,14 +22,17 @@ const FAMILIES: [(Family, &str, RGBColor); 3] = [
     (Family::Poisson, "Poisson", BLUE),
 ];
 
-/// What is drawn as one line.
+const ABOUT: &str = "error of attitude and rate against time of one processor; grey lies to the right: each stage solves an \
+                     equation, and errs in the whole motion, not in the potential's share alone";
+
+/// What is drawn as one line, by the names of [`liestep::Stepper`]'s functions.
 const KINDS: [(Kind, &str, RGBColor); 6] = [
     (Kind::Rival, "Runge–Kutta", ORANGE),
-    (Kind::Steps, "own steps, compositions", GREY),
-    (Kind::OtherFlows, "splittings, other flows", GREEN),
-    (Kind::Exact, "splittings, exact flow", BLUE),
+    (Kind::Steps, "Stepper::new, composed", GREY),
+    (Kind::OtherFlows, "split, another flow", GREEN),
+    (Kind::Exact, "split, ExactBody", BLUE),
     (Kind::Processed, "processed", BLACK),
-    (Kind::Collocation, "Gauss", PURPLE),
+    (Kind::Collocation, "collocated", PURPLE),
 ];
 
 #[derive(Clone, Copy, PartialEq)]
@@ -61,7 +64,7 @@ pub fn figure(panels: &[Panel<'_>]) -> PlotResult<String> {
     let rows = panels.len().div_ceil(COLUMNS);
     let height = 70 + 300 * u32::try_from(rows)?;
     render((1000, height), |area| {
-        heading(area, "What accuracy costs in time", "error of attitude and rate against time of one processor")?;
+        heading(area, "What accuracy costs in time", ABOUT)?;
         legend(area, (16, 60), &KINDS.map(|(_, name, colour)| (name, colour)))?;
         let (_, below) = area.split_vertically(px(76));
         for (panel, place) in panels.iter().zip(below.split_evenly((rows, COLUMNS))) {

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use workbench::args::Failure;
 use workbench::plot::{
-    BLUE, GREEN, INK, Line, ORANGE, PURPLE, Panel, PlotResult, Vertical, heading, legend, px, render,
+    BLUE, GREEN, Line, ORANGE, PURPLE, Panel, PlotResult, SKY, Vertical, YELLOW, heading, legend, px, render,
 };
 
 use crate::READINGS;
@@ -22,8 +22,9 @@ pub(crate) fn picture(fits: &[Fitted]) -> Result<String, Failure> {
     };
     let mut lines: Vec<Line> = Vec::new();
     for component in 0..2 {
-        lines.push(Line { colour: [BLUE, GREEN][component], width: 2, points: rates(&read, component) });
-        lines.push(Line { colour: INK, width: 1, points: rates(&fitted, component) });
+        // The readings are pale and wide, so that both are seen.
+        lines.push(Line { colour: [SKY, YELLOW][component], width: 9, points: rates(&read, component) });
+        lines.push(Line { colour: [BLUE, GREEN][component], width: 2, points: rates(&fitted, component) });
     }
     let records: Vec<usize> = (1..=20).map(|part| part * READINGS / 20).collect();
     let mut spread = vec![Vec::new(); 4];
@@ -39,7 +40,13 @@ pub(crate) fn picture(fits: &[Fitted]) -> Result<String, Failure> {
         heading(area, "The inertia of a top from a gyroscope", "readings of seed 1, and what a record can tell")?;
         let (_, body) = area.split_vertically(px(56));
         let (left, right) = body.split_horizontally(px(500));
-        Panel::over_time("Ω1 (blue) and Ω2 (green), and the fit", "rad/s", Vertical::Linear, lines).draw(&left)?;
+        Panel::over_time(
+            "Ω1 and Ω2: readings (sky, yellow), and the fit (blue, green)",
+            "rad/s",
+            Vertical::Linear,
+            lines,
+        )
+        .draw(&left)?;
         let names = "Standard deviation of what is fitted";
         let panel = Panel { across: "record, s", ..Panel::over_time(names, "", Vertical::Logarithmic, spread) };
         panel.draw(&right)?;

@@ -66,11 +66,10 @@ macro_rules! on_every_group {
             /// Read and interpreted they make the same steps, to the bit.
             #[test]
             fn late() {
-                for seed in 0..10 {
+                for seed in 0..15 {
                     let random = &mut Random::new(seed);
                     same::assert_as_compiled(&family::$group::Vectors::random(random), seed);
                     same::assert_as_compiled(&family::$group::Tensors::random(random), seed);
-                    same::assert_as_compiled(&family::$group::Continuous::<f64>::random(seed), seed);
                 }
             }
 

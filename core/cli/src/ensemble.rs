@@ -7,16 +7,14 @@ use std::sync::Mutex;
 use clap::ArgMatches;
 use liestep::SO3;
 use liestep::motion::{AnyStepper, Integrator as _, Moment};
-use liestep_ensemble::{Failure, Local, MemberFailure, Reduction, Report, Store, Summary};
+use liestep_ensemble::{Failure, Local, MemberFailure, Reduction, Report, Section, Store, Summary};
 use liestep_plot::output::Output;
-use liestep_scene::{Column, Mistake, SceneEnsemble, SceneFile, Spread};
+use liestep_scene::{Column, MemberEvent, Mistake, SceneEnsemble, SceneFile, Spread};
 
 use crate::failure::Failure as ProgramFailure;
 use crate::files::{different_files, folder, name, scenes};
 use crate::output::{Progress, print};
-
-/// The most failures that are printed; all are in the files.
-const SHOWN: usize = 10;
+use crate::tally::Tally;
 
 pub(crate) fn ensemble(given: &ArgMatches) -> Result<(), ProgramFailure> {
     let paths = different_files(given)?;
@@ -51,9 +49,6 @@ fn made(
     output: &Output,
 ) -> Result<Report, ProgramFailure> {
     let cannot = |error: &dyn std::fmt::Display| ProgramFailure::Output(format!("{}: {error}", path.display()));
-    if scene.events().next().is_some() {
-        eprintln!("note: {}: events aren't looked for in an ensemble", path.display());
-    }
     let plan = plan(scene, drawn);
     let folder = output.inner(&name(path, "ensemble"));
     let store = Store::folder(&folder).map_err(|error| cannot(&error))?;
@@ -69,20 +64,14 @@ fn made(
     for fault in &report.faults {
         eprintln!("note: {fault}; it was made anew");
     }
-    let mut failures: Vec<MemberFailure> = Vec::new();
-    if report.failed > 0 {
-        for shard in store.shards(plan.fingerprint()).map_err(|error| cannot(&error))? {
-            let shard = shard.map_err(|fault| cannot(&fault))?;
-            failures.extend(shard.failures.into_iter().take(SHOWN - failures.len()));
-            if failures.len() == SHOWN {
-                break;
-            }
-        }
+    let mut tally = Tally::of(scene.events().count());
+    for shard in store.shards(plan.fingerprint()).map_err(|error| cannot(&error))? {
+        tally.add(shard.map_err(|fault| cannot(&fault))?);
     }
-    for MemberFailure { member, steps, failure } in &failures {
+    for MemberFailure { member, steps, failure } in &tally.failures {
         eprintln!("note: member {member} failed after {steps} steps: {failure}");
     }
-    print(&told_of(scene, drawn, &report, &folder.display().to_string()))?;
+    print(&told_of(scene, drawn, (&report, &tally), &folder.display().to_string()))?;
     Ok(report)
 }
 
@@ -92,10 +81,7 @@ type Member = AnyStepper<SO3, ()>;
 fn plan(scene: &SceneFile, drawn: &SceneEnsemble) -> liestep_ensemble::Ensemble<Member> {
     let own = drawn.clone();
     let make = move |member: &liestep_ensemble::Member<'_>| {
-        let mut draw = |name: &str, spread: Spread| match spread {
-            Spread::Uniform { from, to } => member.uniform(name, from..to),
-            Spread::Normal { mean, deviation } => member.normal(name, mean, deviation),
-        };
+        let mut draw = |name: &str, spread: Spread| number(member, name, spread);
         let started = own.member(&mut draw).and_then(|scene| scene.stepper());
         started.map_err(|mistake| Failure::Other(mistake.to_string()))
     };
@@ -113,13 +99,44 @@ fn plan(scene: &SceneFile, drawn: &SceneEnsemble) -> liestep_ensemble::Ensemble<
         let numbers = SceneFile::numbers(&all, &Moment::of_step(run.stepper, run.state));
         row.iter_mut().zip(numbers).for_each(|(place, number)| *place = number);
     });
+    let draws: Vec<(String, Spread)> = drawn.draws().map(|(name, spread)| (name.to_owned(), spread)).collect();
+    let (names, seed) = (draws.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), drawn.seed);
+    plan = plan.keep_named(&names, {
+        let draws = draws.clone();
+        move |run, row| {
+            let member = liestep_ensemble::Member::of(run.member, seed);
+            row.iter_mut().zip(&draws).for_each(|(place, (name, spread))| *place = number(&member, name, *spread));
+        }
+    });
     for (column, place, name) in columns(scene).filter(|(column, ..)| has_moments(*column)) {
         plan = plan.reduce(name, Reduction::Moments, move |run| {
             let numbers = SceneFile::numbers(&[column], &Moment::of_step(run.stepper, run.state));
             numbers.get(place).copied().unwrap_or(f64::NAN)
         });
     }
-    plan.keep(["t"], |run| [run.stepper.time(run.state)])
+    scene
+        .member_events()
+        .fold(plan.keep(["t"], |run| [run.stepper.time(run.state)]), |plan, event| plan.section(section(scene, event)))
+}
+
+/// A number that a member draws.
+fn number(member: &liestep_ensemble::Member<'_>, name: &str, spread: Spread) -> f64 {
+    match spread {
+        Spread::Uniform { from, to } => member.uniform(name, from..to),
+        Spread::Normal { mean, deviation } => member.normal(name, mean, deviation),
+    }
+}
+
+/// Where an event happens: its times, and the scene's columns then.
+fn section(scene: &SceneFile, (name, event, function, stops): MemberEvent) -> Section<Member> {
+    let section = Section::new(event, function);
+    let section = if stops { section.until() } else { section };
+    let section = section.keep([&format!("{name}_t")], |now| [now.time()]);
+    columns(scene).fold(section, |section, (column, place, own)| {
+        section.keep([&format!("{name}_{own}")], move |now| {
+            [SceneFile::numbers(&[column], now).get(place).copied().unwrap_or(f64::NAN)]
+        })
+    })
 }
 
 /// A quaternion and its opposite are one attitude, and which of them a member ends with means nothing.
@@ -133,15 +150,9 @@ fn columns(scene: &SceneFile) -> impl Iterator<Item = (Column, usize, &'static s
     scene.columns().iter().copied().flat_map(numbers)
 }
 
-fn told_of(scene: &SceneFile, drawn: &SceneEnsemble, report: &Report, folder: &str) -> String {
-    let mut text = format!(
-        "{}\n  {} members drawn by the seed {}: {} finished, {} failed\n",
-        scene.title(),
-        drawn.members,
-        drawn.seed,
-        report.finished,
-        report.failed
-    );
+fn told_of(scene: &SceneFile, drawn: &SceneEnsemble, (report, tally): (&Report, &Tally), folder: &str) -> String {
+    let mut text =
+        format!("{}\n  {} members drawn by the seed {}: {tally}\n", scene.title(), drawn.members, drawn.seed,);
     if report.missing == 0 && report.finished > 0 {
         let _ =
             writeln!(text, "  {:<20}{:>16}{:>16}{:>16}{:>16}", "at the end", "mean", "deviation", "least", "largest");
@@ -152,6 +163,9 @@ fn told_of(scene: &SceneFile, drawn: &SceneEnsemble, report: &Report, folder: &s
                 let _ = writeln!(text, "  {name:<20}{mean:>16.6e}{spread:>16.6e}{least:>16.6e}{largest:>16.6e}");
             }
         }
+    }
+    if report.missing == 0 {
+        text.extend(scene.events().zip(&tally.events).map(|(name, event)| tally.of_event(name, event)));
     }
     let _ =
         writeln!(text, "Written to {folder}: {} chunks, {} of them now", report.chunks - report.missing, report.made);

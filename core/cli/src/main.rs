@@ -13,6 +13,7 @@ mod failure;
 mod files;
 mod output;
 mod sweep;
+mod tally;
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -20,6 +21,7 @@ use std::process::ExitCode;
 use clap::ArgMatches;
 use liestep::recording::{Column, Csv, Sink, SinkError};
 use liestep_arrow::ArrowStream;
+use liestep_derivation::suggestion;
 use liestep_plot::output::Output;
 use liestep_scene::{Form, Mistake, Run, Scene, SceneFile, System, visible};
 
@@ -216,7 +218,8 @@ fn derive(given: &ArgMatches) -> Result<(), Failure> {
         });
     }
     let names: Vec<_> = liestep_scene::derived().collect();
-    let message = format!("'{name}' is neither a scene file (*.toml) nor one of {}", names.join(", "));
+    let nearest = suggestion(name, names.iter().map(String::as_str));
+    let message = format!("'{name}' is neither a scene file (*.toml) nor one of {}{nearest}", names.join(", "));
     Err(Failure::Command(message))
 }
 

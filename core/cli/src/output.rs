@@ -39,7 +39,12 @@ impl Drop for Progress {
     }
 }
 
-/// Prints a report with its control characters written out. A reader that has gone away is an error and not a panic.
+/// Prints a report with its control characters written out. A reader that has gone away, as `head` does, has read enough.
 pub(crate) fn print(report: &str) -> Result<(), Failure> {
-    output::print(&visible(report)).map_err(|cause| Failure::Output(format!("cannot print: {cause}")))
+    match output::print(&visible(report)) {
+        Err(cause) if cause.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Failure::Output(format!("cannot print: {cause}")))
+        }
+        _ => Ok(()),
+    }
 }

@@ -49,6 +49,7 @@ pub(crate) fn sweep(given: &ArgMatches) -> Result<(), Failure> {
             row.push('\n');
             Ok(file.add(&row)?)
         })?;
+        drop(file);
         output.grown(&name)?;
     }
     print(&output.to_string())?;

@@ -22,6 +22,12 @@ pub struct Member<'a> {
 }
 
 impl Member<'_> {
+    /// The member of this number in an ensemble of this seed, without a table.
+    #[must_use]
+    pub fn of(number: u64, seed: u64) -> Self {
+        Self { number, seed, table: None }
+    }
+
     /// The number of this member, from zero.
     #[must_use]
     pub fn number(&self) -> u64 {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 use liestep::motion::Integrator;
 
@@ -73,7 +73,7 @@ impl<M: Integrator> Ensemble<M> {
         store: &Store,
         tell: &(dyn Fn(Progress) + Sync),
     ) -> Result<Report, StoreError> {
-        let (plan, chunks) = (self.fingerprint(), self.chunks());
+        let (plan, chunks, begun) = (self.fingerprint(), self.chunks(), SystemTime::now());
         let is_own = |chunk: u64| engine.has(chunk);
         let look = || {
             let (found, damaged) = store.look(plan, &is_own)?;
@@ -136,7 +136,7 @@ impl<M: Integrator> Ensemble<M> {
             report.faults.extend(damaged);
             report.missing = chunks - found;
             if report.missing == 0 {
-                store.sweep()?;
+                store.sweep(begun)?;
             }
         }
         Ok(report)

@@ -4,6 +4,9 @@ use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{ErrorKind, Read as _, Write as _};
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::SystemTime;
 use thiserror::Error;
 
 use crate::shard::Shard;
@@ -171,7 +174,6 @@ impl Store {
         let bytes = shard.to_bytes().map_err(|error| StoreError::Unwritable { reason: error.to_string() })?;
         let folder = self.folder.join(folder_of(shard.chunk));
         let name = file_of(shard.chunk, Digest::of_file(&bytes));
-        let beside = folder.join(format!("{name}.{}.part", std::process::id()));
         let io = |path: &Path| {
             let path = path.to_owned();
             move |error| StoreError::Io { path, error }
@@ -180,25 +182,36 @@ impl Store {
             fs::create_dir_all(&folder).map_err(io(&folder))?;
             bring_to_disk(&self.folder).map_err(io(&self.folder))?;
         }
-        let write = || -> std::io::Result<()> {
-            let mut file = File::create(&beside)?;
-            file.write_all(&bytes)?;
-            file.sync_all()?;
-            fs::rename(&beside, folder.join(&name))
-        };
-        if let Err(error) = write() {
-            // On a full disk it is in the way.
-            let _ = fs::remove_file(&beside);
-            return Err(StoreError::Io { path: beside, error });
+        let mut tries = 0;
+        loop {
+            let beside = folder.join(part_of(&name));
+            let write = || -> std::io::Result<()> {
+                let mut file = File::create(&beside)?;
+                file.write_all(&bytes)?;
+                file.sync_all()?;
+                fs::rename(&beside, folder.join(&name))
+            };
+            tries += 1;
+            match write() {
+                Ok(()) => break,
+                // A process whose clock is ahead took it for one of a killed run.
+                Err(error) if error.kind() == ErrorKind::NotFound && tries < MOST_TRIES => {}
+                Err(error) => {
+                    // On a full disk it is in the way.
+                    let _ = fs::remove_file(&beside);
+                    return Err(StoreError::Io { path: beside, error });
+                }
+            }
         }
         bring_to_disk(&folder).map_err(io(&folder))
     }
 
-    /// Removes what killed runs have left half-written; only where nobody writes any more.
-    pub(crate) fn sweep(&self) -> Result<(), StoreError> {
+    /// Removes what killed runs have left half-written before this time; what is newer another process may be writing.
+    pub(crate) fn sweep(&self, before: SystemTime) -> Result<(), StoreError> {
+        let is_older = |path: &Path| path.metadata().and_then(|file| file.modified()).is_ok_and(|time| time < before);
         for folder in entries(&self.folder)?.into_iter().filter(|path| path.is_dir()) {
             for path in entries(&folder)? {
-                if is_part(&path) {
+                if is_part(&path) && is_older(&path) {
                     let _ = fs::remove_file(path);
                 }
             }
@@ -317,10 +330,26 @@ fn name_of(path: &Path) -> Option<(u64, u64)> {
     (name == file_of(chunk, digest) && folder == folder_of(chunk)).then_some((chunk, digest))
 }
 
+/// How often a file that somebody takes away is written again.
+const MOST_TRIES: u32 = 8;
+
+/// What a shard of this name is called while it is written: by the machine, the process and a number, so that no two are
+/// alike, of several machines and threads.
+fn part_of(name: &str) -> String {
+    static COUNT: AtomicU64 = AtomicU64::new(0);
+    static HOST: OnceLock<String> = OnceLock::new();
+    let host = HOST.get_or_init(|| {
+        let name = fs::read_to_string("/proc/sys/kernel/hostname").or_else(|_| std::env::var("COMPUTERNAME"));
+        let name = name.unwrap_or_default().trim().replace(|letter: char| !letter.is_ascii_alphanumeric(), "-");
+        if name.is_empty() { "host".to_owned() } else { name }
+    });
+    format!("{name}.{host}-{}-{}.part", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed))
+}
+
 /// Whether it is a shard's that hasn't got its name yet.
 fn is_part(path: &Path) -> bool {
-    let stem = || path.to_str()?.strip_suffix(".part")?.rsplit_once('.');
-    stem().is_some_and(|(shard, process)| process.parse::<u32>().is_ok() && name_of(Path::new(shard)).is_some())
+    let shard = || path.to_str()?.strip_suffix(".part")?.rsplit_once('.');
+    shard().is_some_and(|(shard, _)| name_of(Path::new(shard)).is_some())
 }
 
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, StoreError> {

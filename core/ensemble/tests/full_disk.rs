@@ -25,11 +25,16 @@ fn a_full_disk_is_an_error_that_loses_no_finished_shard() {
     let files = Store::folder(&expected.0).unwrap().files().unwrap();
     let name = files[7].1.file_name().unwrap().to_str().unwrap();
     std::fs::create_dir(folder.0.join("00000")).unwrap();
-    let part = folder.0.join("00000").join(format!("{name}.{}.part", std::process::id()));
-    std::os::unix::fs::symlink("/dev/full", part).unwrap();
+    // Of the machine, the process, and one of the numbers that are next.
+    let host = std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap();
+    let host = host.trim().replace(|letter: char| !letter.is_ascii_alphanumeric(), "-");
+    let part = |count| folder.0.join("00000").join(format!("{name}.{host}-{}-{count}.part", std::process::id()));
+    (0..2000).for_each(|count| std::os::unix::fs::symlink("/dev/full", part(count)).unwrap());
     let error = ensemble.run(&Local::threads(1), &store).unwrap_err();
     assert!(is_full(&error) && error.to_string().contains(name), "{error}");
     // Those before it, whole; of itself nothing is left in the way.
+    let removed = (0..2000).filter(|count| std::fs::remove_file(part(*count)).is_ok()).count();
+    assert_eq!(removed, 1999);
     assert_eq!(contents(&folder.0).len(), 7);
     assert!(store.shards(ensemble.fingerprint()).unwrap().all(|shard| shard.is_ok()));
     let report = ensemble.run(&Local::threads(2), &store).unwrap();

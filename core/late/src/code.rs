@@ -271,6 +271,7 @@ fn apply<T: Copy>(registers: &mut [T], mask: usize, instructions: &[Instruction]
 
 /// A function of a number: that of the compiled step, so that the bits are the same. NaN where there is none of this order.
 #[cold]
+#[must_use]
 pub fn applied<T: Real>(function: Function, a: T) -> T {
     match function {
         Function::Sqrt => a.simd_sqrt(),

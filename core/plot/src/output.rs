@@ -58,10 +58,12 @@ impl Output {
         Ok(())
     }
 
-    /// A file for what is written bit by bit, which is made with the first.
+    /// A file for what is written bit by bit, which is made with the first. It is called `NAME.part` until that ends, so
+    /// that what was killed on its way can be told from what is whole.
     #[must_use]
     pub fn grows(&self, name: &str) -> GrowingFile {
-        GrowingFile { path: self.folder.join(name), file: None }
+        let part = self.folder.join(format!("{name}.part"));
+        GrowingFile { path: self.folder.join(name), part, file: None, is_cut: false }
     }
 
     /// A folder within it.
@@ -80,9 +82,22 @@ impl Output {
 }
 
 /// A file that is there from the first write on, so that what can't begin leaves the file that was there.
+///
+/// It gets its name when this is gone, with its last piece; not if a piece couldn't be written.
 pub struct GrowingFile {
     path: PathBuf,
+    part: PathBuf,
     file: Option<File>,
+    is_cut: bool,
+}
+
+impl Drop for GrowingFile {
+    fn drop(&mut self) {
+        if self.file.take().is_some() && !self.is_cut {
+            // Who lists the file finds out.
+            let _ = fs::rename(&self.part, &self.path);
+        }
+    }
 }
 
 impl GrowingFile {
@@ -96,9 +111,9 @@ impl Write for GrowingFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let file = match &mut self.file {
             Some(file) => file,
-            None => self.file.insert(File::create(&self.path)?),
+            None => self.file.insert(File::create(&self.part)?),
         };
-        file.write(bytes)
+        file.write(bytes).inspect_err(|_| self.is_cut = true)
     }
 
     fn flush(&mut self) -> io::Result<()> {

@@ -44,6 +44,11 @@ pub struct Panel<'a> {
     pub lines: Vec<Line>,
 }
 
+/// The name of time.
+const SECONDS: &str = "time, s";
+/// From here on seconds have five digits, and hours are told.
+const HOURS_FROM: f64 = 1e4;
+
 /// Below a double's rounding at one.
 const FLOOR: f64 = 1e-17;
 
@@ -51,7 +56,7 @@ impl<'a> Panel<'a> {
     /// Functions of time.
     #[must_use]
     pub fn over_time(title: &'a str, up: &'a str, vertical: Vertical, lines: Vec<Line>) -> Self {
-        Self { title, across: "time, s", up, vertical, function: true, lines }
+        Self { title, across: SECONDS, up, vertical, function: true, lines }
     }
 }
 
@@ -61,15 +66,19 @@ impl Panel<'_> {
         let (width, height) = area.dim_in_pixel();
         // Two pixels each: a line has about that width.
         let columns = width / px(2);
-        let lines: Vec<Line> = self.lines.iter().map(|line| self.prepared(line, columns)).collect();
+        let seconds = range(self.lines.iter().flat_map(|line| &line.points).map(|p| p.0), 0.0);
+        let (unit, across) =
+            if self.across == SECONDS && seconds.end >= HOURS_FROM { (3600.0, "time, h") } else { (1.0, self.across) };
+        let mut lines: Vec<Line> = self.lines.iter().map(|line| self.prepared(line, columns)).collect();
+        lines.iter_mut().flat_map(|line| &mut line.points).for_each(|point| point.0 /= unit);
         let all = || lines.iter().flat_map(|line| &line.points);
-        let x_range = range(self.lines.iter().flat_map(|line| &line.points).map(|p| p.0), 0.0);
+        let x_range = seconds.start / unit..seconds.end / unit;
         let y_range = match self.vertical {
             Vertical::Linear => range(all().map(|p| p.1), 0.06),
             Vertical::Logarithmic => decades(all().map(|p| p.1)),
         };
         // The axes take a part of the area, so that this is on the fine side.
-        let (across, up) = (f64::from(width) / length(&x_range), f64::from(height) / length(&y_range));
+        let (wide, up) = (f64::from(width) / length(&x_range), f64::from(height) / length(&y_range));
         let (x_step, y_step) = (tick_step(&x_range), tick_step(&y_range));
         area.draw_text(self.title, &letters(13, INK), (at(16), at(6)))?;
         let mut chart = ChartBuilder::on(area)
@@ -77,7 +86,7 @@ impl Panel<'_> {
             .margin_right(px(20))
             .margin_left(px(8))
             .margin_bottom(px(6))
-            .x_label_area_size(px(if self.across.is_empty() { 22 } else { 38 }))
+            .x_label_area_size(px(if across.is_empty() { 22 } else { 38 }))
             .y_label_area_size(px(66))
             .build_cartesian_2d(x_range, y_range)?;
         let tick = |y: &f64| match self.vertical {
@@ -91,7 +100,7 @@ impl Panel<'_> {
             .axis_style(INK.stroke_width(px(1)))
             .label_style(letters(11, INK))
             .axis_desc_style(letters(12, INK))
-            .x_desc(self.across)
+            .x_desc(across)
             .y_desc(self.up)
             .x_labels(9)
             .y_labels(if area.dim_in_pixel().1 > px(260) { 7 } else { 5 })
@@ -99,7 +108,7 @@ impl Panel<'_> {
             .y_label_formatter(&tick)
             .draw()?;
         for line in lines {
-            let points = thinned(&line.points, |(x, y)| (x * across, y * up));
+            let points = thinned(&line.points, |(x, y)| (x * wide, y * up));
             chart.draw_series(LineSeries::new(points, line.colour.stroke_width(line.width)))?;
         }
         Ok(())

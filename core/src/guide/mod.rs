@@ -1,15 +1,19 @@
 #![doc = include_str!("README.md")]
 #![allow(clippy::doc_markdown)] // names of authors and of libraries are not code
 
-/// The chapters, each of the Markdown file of its name.
+/// The chapters, each of the Markdown file of its name, some with a picture at their ends.
 macro_rules! chapters {
-    ($($chapter:ident)*) => {$(
+    ($($chapter:ident $($figure:literal)?)*) => {$(
         pub mod $chapter {
             #![doc = include_str!(concat!(stringify!($chapter), ".md"))]
+            $(
+                #![doc = "<style>.docblock svg { max-width: 100%; height: auto; }</style>\n"]
+                #![doc = include_str!(concat!("../figures/", $figure, ".svg"))]
+            )?
         }
     )*};
 }
 
 chapters! {
-    accuracy bodies conserved effects ensembles files first_program gradients groups hard_cases inside late recording thesis
+    accuracy bodies "hanging-chain" conserved "3-8" effects "satellite" ensembles files first_program "moving-top" gradients groups hard_cases inside late recording thesis
 }

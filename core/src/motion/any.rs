@@ -9,13 +9,12 @@ use core::mem;
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, FactoredInertia, Group};
-use crate::motion::integrator::Integrator;
+use crate::motion::integrator::{Integrator, seeing};
 use crate::motion::plan::{Cost, NextSteps, Plan};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
 use crate::motion::stepper::Stepper;
 use crate::motion::summation::Motion;
-use crate::numbers::real;
 
 /// A [`Stepper`] of any scene and any method on the group `G`, by [`Stepper::into_any`]: for programs that find out when
 /// they run what they step.
@@ -143,7 +142,7 @@ where
             return State { motion: state.motion, kept: kept.clone() };
         }
         let mut own = self.0.adopt(&state.motion);
-        own.motion.steps = state.steps;
+        own.motion = self.0.seen(&seeing(&state.motion, ()));
         own
     }
 
@@ -196,6 +195,10 @@ where
 
     fn adopt(&self, motion: &Motion<G, A>) -> Self::State {
         erased(self.0.adopt(motion))
+    }
+
+    fn seen(&self, motion: &Motion<G, ()>) -> Motion<G, A> {
+        self.0.seen(motion)
     }
 
     wraps!(self, self.0, motion: &Motion<G, A>, motion);
@@ -261,6 +264,10 @@ impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
         self.stepper.adopt(motion)
     }
 
+    fn seen(&self, motion: &Motion<G, ()>) -> Motion<G, A> {
+        self.stepper.seen(motion)
+    }
+
     wraps!(self, self.stepper, motion: &Motion<G, A>, motion);
 }
 
@@ -274,11 +281,6 @@ struct HiddenState<A> {
 }
 
 impl<G: LieGroup, A: Advected<G>> WithoutAdvected<G, A> {
-    /// Which values it is told to see makes no difference: it sees its own.
-    fn seen(&self, motion: &Motion<G, ()>) -> AnyState<G, A> {
-        self.0.adopt(&seeing(motion, A::from_entries(&mut || real(0.0))))
-    }
-
     #[allow(clippy::unused_self)] // by the form that `wraps` asks for
     fn change<R>(&self, state: &mut State<G, (), HiddenState<A>>, steps: impl FnOnce(&mut AnyState<G, A>) -> R) -> R {
         let kept = mem::replace(&mut state.kept.kept, AnyKept::of(()));
@@ -287,11 +289,6 @@ impl<G: LieGroup, A: Advected<G>> WithoutAdvected<G, A> {
         *state = hidden(own);
         made
     }
-}
-
-/// The same motion with these advected values.
-fn seeing<G: LieGroup, A, B>(motion: &Motion<G, A>, advected: B) -> Motion<G, B> {
-    Motion { attitude: motion.attitude, momentum: motion.momentum, advected, steps: motion.steps }
 }
 
 fn hidden<G: LieGroup, A: Copy>(State { motion, kept }: AnyState<G, A>) -> State<G, (), HiddenState<A>> {
@@ -323,10 +320,10 @@ impl<G: LieGroup, A: Advected<G>> Integrator for WithoutAdvected<G, A> {
     }
 
     fn adopt(&self, motion: &Motion<G, ()>) -> Self::State {
-        hidden(self.seen(motion))
+        hidden(self.0.adopt(&self.0.seen(motion)))
     }
 
-    wraps!(self, self.0, motion: &Motion<G, ()>, &self.seen(motion));
+    wraps!(self, self.0, motion: &Motion<G, ()>, &self.0.seen(motion));
 }
 
 impl<G: LieGroup, A: Advected<G> + 'static> AnyStepper<G, A> {

@@ -9,7 +9,7 @@ use crate::mechanics::FactoredInertia;
 use crate::motion::plan::{Cost, NextSteps};
 use crate::motion::report::StepReport;
 use crate::motion::summation::Motion;
-use crate::numbers::real;
+use crate::numbers::{Entries as _, real};
 
 // Roots and powers without a standard library.
 #[cfg(not(feature = "std"))]
@@ -96,6 +96,13 @@ pub trait Integrator {
 
     /// The state of another motion, to go on from its attitude and momentum; see [`Stepper::adopt`](crate::Stepper::adopt).
     fn adopt(&self, motion: &Motion<Self::Group, Self::Advected>) -> Self::State;
+
+    /// A motion whose advected values aren't known, with those that are seen from its attitude after its steps.
+    fn seen(&self, motion: &Motion<Self::Group, ()>) -> Motion<Self::Group, Self::Advected> {
+        let mut seen = *self.adopt(&seeing(motion, Self::Advected::from_entries(&mut || real(0.0))));
+        seen.steps = motion.steps;
+        seen
+    }
 
     /// How much arithmetic a step is, about; nothing where it isn't known.
     fn cost(&self) -> Option<Cost> {
@@ -188,6 +195,11 @@ pub trait Integrator {
         }
         self.part(&state, real(steps - whole))
     }
+}
+
+/// The same motion with these advected values.
+pub(super) fn seeing<G: LieGroup, A, B>(motion: &Motion<G, A>, advected: B) -> Motion<G, B> {
+    Motion { attitude: motion.attitude, momentum: motion.momentum, advected, steps: motion.steps }
 }
 
 /// [`Integrator::run_stretches`] by runs, or by single steps where a run has an error.

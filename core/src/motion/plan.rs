@@ -59,6 +59,14 @@ pub trait Plan<S: Effect> {
         Ok(())
     }
 
+    /// Whether the steps depend on how many there were before.
+    const COUNTS_TIME: bool = false;
+
+    /// What is advected, as it is in space after this many steps; the scene's own, unless each step is given its values.
+    fn advected(&self, scene: &S, _steps: u64) -> S::Advected {
+        scene.advected()
+    }
+
     /// Whether the plan has the inertia, and not the scene: that of bodies whose coordinates couple their velocities. The
     /// scene is of potentials alone then.
     const HAS_OWN_INERTIA: bool = false;

@@ -51,6 +51,8 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// ```
     #[must_use]
     pub fn or_substeps(self, at_most: u32) -> Stepper<S, Substeps<P>> {
+        // The parts of a step are counted for themselves.
+        const { assert!(!P::COUNTS_TIME, "ask for substeps before the values: `.or_substeps(…).driven(…)`") }
         Stepper { scene: self.scene, plan: Substeps { plan: self.plan, at_most } }
     }
 }

@@ -19,7 +19,7 @@ mod program;
 mod staged;
 
 pub use declared::Role;
-pub use declared::errors::Mistake;
+pub use declared::errors::{Mistake, suggestion};
 pub use emit::{hot, lanes};
 pub use expand::{expand, matrix_group};
 pub use staged::{

@@ -36,7 +36,7 @@ fn a_member_is_the_file_with_its_values() {
     );
     fs::write(folder.join("top.toml"), text).unwrap();
     let told = printed(&folder, &["ensemble", "top.toml", "--out", "."]);
-    assert!(told.contains("40 finished, 0 failed"), "{told}");
+    assert!(told.contains("40 finished, 0 broke down, 0 can't exist"), "{told}");
     let shards = shards(&folder.join("top.ensemble"));
     assert_eq!(shards.iter().map(|shard| shard.finished).sum::<u64>(), 40);
     for shard in &shards {
@@ -45,7 +45,9 @@ fn a_member_is_the_file_with_its_values() {
         for (row, _) in shard.rows.status.iter().enumerate().filter(|(_, status)| **status == Status::Finished) {
             let (time, columns) = expected.split_first().unwrap();
             let kept: Vec<f64> = shard.rows.columns.iter().map(|column| column[row]).collect();
-            let (own_time, own) = kept.split_last().unwrap();
+            let [own @ .., spin, g, own_time] = kept.as_slice() else { panic!("{kept:?}") };
+            // What was drawn, in the unit of the file.
+            assert_eq!((*spin, *g), (72.0, 5.0));
             assert!((own_time - time).abs() < 1e-12);
             let distance = |sign: f64| own.iter().zip(columns).map(move |(a, b)| (a - sign * b).abs());
             // Of the two quaternions, which come last, it may be the other.
@@ -124,6 +126,56 @@ fn members_fail_by_themselves() {
         .iter()
         .fold((0, 0), |(finished, failed), shard| (finished + shard.finished, failed + shard.failures.len()));
     assert!(finished > 20 && failed > 0 && finished + failed as u64 == 40, "{finished} {failed}");
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(told.contains(&format!("{finished} finished, 0 broke down, {failed} can't exist")), "{told}");
+}
+
+/// Of a top that is let go at a tilt between 10° and 90°, and falls: whether it passes 60°, and first when. The interval is
+/// that of Wilson's formula as it is in textbooks, solved for by bisection: `(p − k/n)² = z² p (1 − p)/n`.
+#[test]
+fn an_event_has_a_probability() {
+    let folder = folder("an_event_has_a_probability");
+    let _ = fs::remove_dir_all(folder.join("top.ensemble"));
+    let text = drawn("draw.start.euler = [0, { from = \"10 deg\", to = \"90 deg\" }, 0]\n").replace("60 rpm", "0 rpm")
+        + "[[event]]\nname = \"fallen\"\ntilt = \"60 deg\"\ndirection = \"rising\"\n";
+    let text = text.replace("members = 40", "members = 40\nchunk = 7").replace("duration = 2", "duration = 1");
+    fs::write(folder.join("top.toml"), text).unwrap();
+    let told = printed(&folder, &["ensemble", "top.toml", "--out", "."]);
+    let (mut some, mut all, mut sum) = (0_u32, 0_u32, 0.0);
+    for shard in shards(&folder.join("top.ensemble")) {
+        let crossings = &shard.rows.crossings[0];
+        assert_eq!(crossings.names[..2], ["fallen_t", "fallen_velocity_x"]);
+        let tilt = shard.names.iter().position(|name| name == "start.euler.2").unwrap();
+        for row in 0..shard.rows.member.len() {
+            let first = crossings.row.iter().position(|other| *other == row);
+            let start = shard.rows.columns[tilt][row];
+            assert!(first.is_none() || start < 60.0, "{start}");
+            all += 1;
+            if let Some(first) = first {
+                some += 1;
+                sum += crossings.columns[0][first];
+            }
+        }
+    }
+    let (n, k) = (f64::from(all), f64::from(some));
+    let end = |sign: f64| {
+        let (mut inner, mut outer) = (k / n, if sign < 0.0 { 0.0 } else { 1.0 });
+        for _ in 0..100 {
+            let p = 0.5 * (inner + outer);
+            let is_outside = (p - k / n).powi(2) > 1.959_964_f64.powi(2) * p * (1.0 - p) / n;
+            if is_outside { outer = p } else { inner = p }
+        }
+        inner
+    };
+    assert!(some > 5 && some < all);
+    let line = format!(
+        "fallen: {some} times in {some} of {all} members; probability {:.4}, with 95 % from {:.4} to {:.4}; first at {:.6e} s",
+        k / n,
+        end(-1.0),
+        end(1.0),
+        sum / k
+    );
+    assert!(told.contains(&line), "{line}: {told}");
 }
 
 #[test]

@@ -83,6 +83,13 @@ J = { tensor = [[2, 0.1, 0], [0.1, 3, 0], [0, 0, 4]] }
     fs::write(folder.join("drawn.toml"), format!("{TOP}{RUN}{drawn}")).unwrap();
     assert!(printed(&folder, &["ensemble", "drawn.toml", "--out", "."]).contains('4'));
     assert!(printed(&folder, &["derive", "drawn.toml"]).contains("(R_F)* δl_d/δF = (1/h) (F J_d − J_d Fᵀ)^∨"));
+    let written = |form: &str, part: &str| {
+        let (text, of_effect) = (printed(&folder, &["derive", "drawn.toml", form]), ["derive", "principal-body", form]);
+        assert!(text.contains(part) && printed(&folder, &of_effect).contains(part), "{form}: {text}");
+    };
+    written("--latex", r"\begin{align*}");
+    written("--rust", "pub fn newton_system(constants: &[f64]");
+    written("--c", "int liestep_step(const Stepper *stepper, State *state) {");
 }
 
 #[test]

@@ -4,6 +4,7 @@ mod called;
 mod ensembles;
 mod lagrangian;
 mod mutated;
+mod orbits;
 mod page;
 mod readme;
 mod runs;

@@ -126,16 +126,21 @@ fn a_browser_shows_it() {
         root.dataset.zoomed = [changes(view, WheelEvent, ["wheel", about]), changes(chart, WheelEvent, ["wheel", about]), changes(chart, MouseEvent, ["dblclick", about])];
         root.dataset.turned = changes(view, PointerEvent, ["pointermove", { buttons: 1, movementX: 40, movementY: 9 }]);
         root.dataset.clicked = changes(chart, MouseEvent, ["click", about]);
-        document.dispatchEvent(new KeyboardEvent("keydown", { key: "Home" }));
+        for (const key of ["l", "Home"]) document.dispatchEvent(new KeyboardEvent("keydown", { key }));
+        root.dataset.letters = getComputedStyle(document.body).fontSize;
         button.click();
         setTimeout(() => { root.dataset.played = clock.textContent; }, 1000);
     }</script></body>"#;
     fs::write(folder.join("played.html"), page.replace("</body>", script)).unwrap();
     let document = shown("played.html", &["--dump-dom"]);
     let root = document.lines().find(|line| line.contains("<html")).unwrap();
-    for word in
-        ["data-slid=\"0.50 s\"", "data-zoomed=\"true,true,true\"", "data-turned=\"true\"", "data-clicked=\"true\""]
-    {
+    for word in [
+        "data-slid=\"0.50 s\"",
+        "data-zoomed=\"true,true,true\"",
+        "data-turned=\"true\"",
+        "data-clicked=\"true\"",
+        "data-letters=\"23.8px\"",
+    ] {
         assert!(root.contains(word), "{root}");
     }
     let played = root.split_once("data-played=\"").unwrap().1.split_once(' ').unwrap().0;

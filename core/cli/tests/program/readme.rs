@@ -23,6 +23,13 @@ fn its_scenes_run() {
     varied.first(100).unwrap();
 }
 
+/// A first screen is short: words are what stands between spaces, those of tables and listings, too.
+#[test]
+fn it_is_short() {
+    let words = file("README.md").split_whitespace().count();
+    assert!(words <= 1500, "{words} words");
+}
+
 /// What README says of the program is run by continuous integration.
 #[test]
 fn its_commands_are_run() {

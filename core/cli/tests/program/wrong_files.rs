@@ -1,7 +1,7 @@
 //! Scene files and command lines that are wrong: each mistake with its place; and what is printed.
 
 use std::fs;
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 use expect_test::expect;
 
@@ -52,7 +52,7 @@ fn files_of_another_kind() {
     });
     expect![[r"
         error: empty.toml:1:1: missing field `title`
-        error: mark.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `magnetic_damping`, `torque`, `thrust`, `start`, `run`, `picture`, `event`, `output`, `lagrangian`
+        error: mark.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `start`, `run`, `picture`, `event`, `output`, `lagrangian`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `torque`, `thrust`, `magnetic_damping`; did you mean `drag`?
         error: bytes.toml:1:12: isn't a text in UTF-8
         error: nested.toml:1:89: cannot recurse further; max recursion depth met
         error: large.toml: has more than 1048576 bytes, so it is no scene
@@ -139,7 +139,7 @@ fn command_lines() {
 fn a_full_disk() {
     let folder = folder("full");
     fs::write(folder.join("top.toml"), TOP).unwrap();
-    let table = folder.join("top.csv");
+    let table = folder.join("top.csv.part");
     // What was there may be a file.
     let _ = fs::remove_file(&table);
     std::os::unix::fs::symlink("/dev/full", &table).unwrap();
@@ -153,6 +153,34 @@ fn a_full_disk() {
     let text = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(4), "{text}");
     assert!(text.starts_with("error: cannot print: No space left on device"), "{text}");
+}
+
+/// Who has read enough isn't told that there was more.
+#[test]
+fn a_reader_that_goes_away() {
+    let mut program =
+        Command::new(PROGRAM).args(["derive", "gravity"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    drop(program.as_mut().unwrap().stdout.take());
+    let output = program.unwrap().wait_with_output().unwrap();
+    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
+}
+
+/// A table that is killed on its way is called another name than one that is whole.
+#[test]
+fn a_killed_table_has_no_name() {
+    let folder = folder("a_killed_table_has_no_name");
+    let _ = fs::remove_file(folder.join("top.csv"));
+    fs::write(folder.join("top.toml"), TOP.replace("duration = 2", "duration = 1e6")).unwrap();
+    let mut program = Command::new(PROGRAM);
+    let mut program = program.current_dir(&folder).args(["run", "top.toml", "--csv", "--out", "."]).spawn().unwrap();
+    let part = folder.join("top.csv.part");
+    while !fs::metadata(&part).is_ok_and(|file| file.len() > 0) {
+        assert!(program.try_wait().unwrap().is_none());
+        std::thread::yield_now();
+    }
+    program.kill().unwrap();
+    program.wait().unwrap();
+    assert!(!folder.join("top.csv").exists() && part.exists());
 }
 
 #[test]

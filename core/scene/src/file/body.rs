@@ -10,7 +10,7 @@ use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 
 use crate::file::key::refuse;
 use crate::file::quantity;
-use crate::file::quantity::Triple;
+use crate::file::quantity::{Triple, short};
 
 /// A body by one of its inertias, and how its kinetic energy is discretised.
 #[derive(Clone, Copy)]
@@ -107,16 +107,31 @@ impl<'de> Visitor<'de> for BodyTable {
     }
 }
 
+/// Why no body has these principal moments, in their own numbers.
+fn impossible(moments: &Vector3<f64>) -> Option<String> {
+    let mut sorted: [f64; 3] = (*moments).into();
+    sorted.sort_by(f64::total_cmp);
+    let [least, middle, largest] = sorted;
+    if least < 0.0 {
+        return Some(format!("no body has this inertia: the principal moment {} is negative", short(least)));
+    }
+    let [l, m, s] = [largest, middle, least].map(short);
+    (largest > middle + least).then(|| {
+        format!("no body has this inertia: {l} > {m} + {s}, and a principal moment is at most the sum of the others")
+    })
+}
+
 /// Moments of inertia that a body can have.
 #[derive(Deserialize)]
 #[serde(try_from = "Triple<quantity::Inertia>")]
 pub(crate) struct Moments(pub(crate) DiagonalNonstandardInertia);
 
 impl TryFrom<Triple<quantity::Inertia>> for Moments {
-    type Error = InertiaError;
+    type Error = String;
 
-    fn try_from(moments: Triple<quantity::Inertia>) -> Result<Self, InertiaError> {
-        DiagonalNonstandardInertia::from_principal_moments(moments.value).map(Self)
+    fn try_from(moments: Triple<quantity::Inertia>) -> Result<Self, String> {
+        let made = DiagonalNonstandardInertia::from_principal_moments(moments.value);
+        made.map(Self).map_err(|error| impossible(&moments.value).unwrap_or_else(|| error.to_string()))
     }
 }
 
@@ -148,7 +163,9 @@ impl TryFrom<Vec<Triple<quantity::Inertia>>> for Full {
             .collect::<Vec<_>>()
             .try_into()
             .map_err(|_| format!("`J` has three rows of three components, found {} rows", rows.len()))?;
-        let J = Inertia::new(Matrix3::from_columns(&[x, y, z]).transpose()).map_err(|error| error.to_string())?;
+        let matrix = Matrix3::from_rows(&[x, y, z].map(|row| row.transpose()));
+        let principal = || (matrix == matrix.transpose()).then(|| impossible(&matrix.symmetric_eigenvalues()));
+        let J = Inertia::new(matrix).map_err(|error| principal().flatten().unwrap_or_else(|| error.to_string()))?;
         Ok(Self(J.to_nonstandard()))
     }
 }

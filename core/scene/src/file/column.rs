@@ -5,35 +5,12 @@ use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::file::mistake::Wrong;
+use crate::file::mistake::{Wrong, advised};
 use crate::file::sample::{BodySample, Sample};
 
 use Numbers::{OfBody, OfScene, SinceStart};
 
-/// A key of `columns`: numbers of a state, each a column of the table.
-///
-/// | of one body | |
-/// |---|---|
-/// | `quaternion` | the attitude, body to space, as the unit quaternion `w, x, y, z`: of the two the one nearer to the row before |
-/// | `axis` | the third axis of the body, in space |
-/// | `velocity` | the angular velocity, body frame, rad/s |
-/// | `momentum`, `spatial-momentum` | the angular momentum, body frame and in space, kg m²/s |
-/// | `energy` | that of the continuous limit, J |
-/// | `energy-error` | what has been added to the energy since the start, J |
-/// | `vertical-momentum-error` | what has been added to the angular momentum along the third axis of space, kg m²/s |
-/// | `momentum-error` | the length of what has been added to the angular momentum in space, kg m²/s |
-///
-/// | of several bodies | |
-/// |---|---|
-/// | `position`, `moving` | of each body the centre of mass in space, m, and its velocity, m/s |
-/// | `quaternion`, `velocity` | of each body, as above |
-/// | `energy` | the energy of all, J |
-/// | `momentum` | the momentum of all, kg m/s |
-/// | `angular-momentum` | the angular momentum of all about the origin, kg m²/s |
-/// | `gap` | how far the joint that is open farthest is open, m; of pins with the cosines of their axes |
-///
-/// Those that [`Recorder`](liestep::recording::Recorder) has, too, are called as there and have the same numbers. Of several
-/// bodies the body's name is before those of its numbers: `upper_x`.
+#[doc = include_str!("column.md")]
 #[derive(Clone, Copy, Debug)]
 pub struct Column {
     key: &'static str,
@@ -208,7 +185,7 @@ impl Output {
             find(key.get_ref()).ok_or_else(|| {
                 let known: Vec<_> = known.iter().map(|column| format!("`{}`", column.key)).collect();
                 let message = format!("unknown variant `{}`, expected one of {}", key.get_ref(), known.join(", "));
-                (key.span(), message)
+                (key.span(), advised(&message))
             })
         };
         let columns = keys.get_ref().iter().map(column).collect::<Result<Vec<_>, _>>()?;

@@ -7,6 +7,7 @@ use toml::de::Deserializer;
 
 use crate::file::body::Kinetic;
 use crate::file::column::Column;
+use crate::file::effects::Table as _;
 use crate::file::lagrangian;
 use crate::file::method::{Method, Scheme as _};
 use crate::file::mistake::{Mistake, Wrong, place_of};
@@ -19,6 +20,9 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     let located = |(span, message): Wrong| Mistake::at(path, place_of(text, &span), message);
     let mut rest = document.clone();
     let lagrangian = lagrangian::take(&mut rest).map_err(located)?;
+    if let Some(name) = named_method(&rest) {
+        return Err(located((span(document, &["run", "method"]), format!("`{name}` {METHODS}"))));
+    }
     let mut file =
         SceneFile::deserialize(Deserializer::from(rest)).map_err(|error| Mistake::of_toml(path, text, &error))?;
     if file.body.is_none() && lagrangian.is_none() {
@@ -35,6 +39,16 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
         Places { body: at(&[body]), start: at(&["start"]), pace: at(&["run", pace]), method: at(&["run", "method"]) };
     file.origin = Origin { path: path.to_owned(), places };
     Ok(file)
+}
+
+const METHODS: &str = "is no method of a scene: `method` is \"step\", or a table as `{ composition = \"Suzuki 4\" }`, \
+                       `{ splitting = \"Nyström 6-4\" }`, `{ processed = \"processed 3-6 a\" }` or `{ collocation = 8 }`; \
+                       a Runge–Kutta method wouldn't keep what the motion conserves";
+
+/// A method by a name alone, but for the one that there is.
+fn named_method(document: &Document<'_>) -> Option<String> {
+    let name = document.get_ref().get("run")?.get_ref().get("method")?.get_ref().as_str()?;
+    (name != "step").then(|| name.to_owned())
 }
 
 fn has(document: &Document<'_>, table: &str, key: &str) -> bool {
@@ -72,10 +86,35 @@ fn at_odds(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
         }
     }
     let method = &file.run.method;
+    if let Some(gradient) = &file.gravity_gradient {
+        let is_given = [gradient.GM.is_some(), gradient.r.is_some()];
+        if !gradient.turns() && is_given != [true; 2] {
+            return wrong(&["gravity_gradient"], "beside a direction that is fixed stand `GM` and `r`".to_owned());
+        }
+        if gradient.turns() && is_given != [false; 2] {
+            let key = if is_given[0] { "GM" } else { "r" };
+            let message =
+                "the orbit's period says how strong the gradient is, by Kepler's third law: leave `GM` and `r` out";
+            return wrong(&["gravity_gradient", key], message.to_owned());
+        }
+    }
+    if let Some(effect) = file.turning().next() {
+        let name = effect.name(" ");
+        if let Pace::Accuracy(_) = file.run.pace {
+            let message = format!(
+                "an accuracy chooses a method for what doesn't change with time; {name} does, so give a `step`"
+            );
+            return wrong(&["run", "accuracy"], message);
+        }
+        if !matches!(method, Method::Step) {
+            let message = format!("{name} turns, with which every method is of second order; leave `method` out");
+            return wrong(&["run", "method"], message);
+        }
+    }
     if let Some(lagrangian) = &file.lagrangian {
         if let Some(effect) = file.effects().next() {
-            let key = effect.replace(' ', "_");
-            return wrong(&[&key], format!("a `lagrangian` has all its terms in its text: write {effect} there"));
+            let message = format!("a `lagrangian` has all its terms in its text: write {} there", effect.name(" "));
+            return wrong(&[effect.key], message);
         }
         if let Pace::Accuracy(_) = file.run.pace {
             let message = "an accuracy chooses a method for the library's bodies; give a `step` to a `lagrangian`";

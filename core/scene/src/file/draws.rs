@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use crate::file::effects::EFFECTS;
 use crate::file::mistake::Wrong;
 use crate::file::tables::{Keys, dotted, ends};
 
@@ -79,20 +80,21 @@ const MOST_MEMBERS: u64 = 1_000_000_000;
 pub(crate) const DRAW: &str = "a value is drawn by `{ from = …, to = … }`, each between as likely, or by \
                     `{ mean = …, deviation = … }`, normally: two numbers, or texts with the same unit";
 const PARTS: &str = "`ensemble` has `members`, may have `seed`, `every` and `chunk`, and says in `draw` what is drawn";
-const DRAWN: [&str; 12] = [
-    "body",
-    "lagrangian",
-    "gravity",
-    "gravity_gradient",
-    "dipole",
-    "spring",
-    "rotor",
-    "drag",
-    "magnetic_damping",
-    "torque",
-    "thrust",
-    "start",
-];
+/// The tables of which something may be drawn.
+fn drawable() -> impl Iterator<Item = &'static str> {
+    ["body", "lagrangian"].into_iter().chain(EFFECTS.iter().map(|effect| effect.key)).chain(["start"])
+}
+
+impl SceneEnsemble {
+    /// What is drawn, by its names, and from what.
+    pub fn draws(&self) -> impl Iterator<Item = (&str, Spread)> {
+        let components = self.axes.iter().flat_map(|axis| &axis.components);
+        components.filter_map(|component| match component {
+            Component::Draw(draw) => Some((draw.name.as_str(), draw.spread)),
+            Component::Fixed(_) => None,
+        })
+    }
+}
 
 impl Component {
     pub(crate) fn text(&self, file: &str, draw: &mut dyn FnMut(&str, Spread) -> f64) -> String {
@@ -162,9 +164,9 @@ pub(crate) fn parts(table: &Spanned<DeValue<'_>>) -> Result<SceneEnsemble, Wrong
 
 /// A key with what of its value is drawn.
 fn axis((keys, value): (Keys, &Spanned<DeValue<'_>>)) -> Result<Axis, Wrong> {
-    if let Some(key) = keys.first().filter(|key| !DRAWN.contains(&key.get_ref().as_str())) {
-        let drawn = DRAWN.map(|name| format!("`{name}`")).join(", ");
-        return Err((key.span(), format!("an ensemble draws what is in {drawn}")));
+    if let Some(key) = keys.first().filter(|key| !drawable().any(|name| name == key.get_ref())) {
+        let drawn: Vec<_> = drawable().map(|name| format!("`{name}`")).collect();
+        return Err((key.span(), format!("an ensemble draws what is in {}", drawn.join(", "))));
     }
     let name = dotted(&keys);
     let (components, is_list) = match value.get_ref() {

@@ -7,6 +7,7 @@ use toml::de::{DeArray, DeTable, DeValue};
 
 use crate::file::document::scene;
 use crate::file::draws::{Axis, DRAW, SceneEnsemble, Spread, parts};
+use crate::file::event::{Event, Quantity};
 use crate::file::mistake::{Mistake, Wrong, place_of};
 use crate::file::scene::SceneFile;
 use crate::file::tables::{Document, set, span};
@@ -76,6 +77,14 @@ pub(crate) fn read(
             &["output", "columns"],
             format!("an ensemble keeps states, and `{names}` is measured from the start of a run; leave it out"),
         );
+    }
+    let names_energy = |event: &Event| matches!(event.quantity, Quantity::Energy(_));
+    let keeps_energy = file.columns().iter().any(|column| column.key() == "energy");
+    if file.turning().next().is_some()
+        && (file.event.iter().any(names_energy) || keeps_energy && !file.event.is_empty())
+    {
+        let message = "beside an orbit the energy of a member isn't known between its steps, where events are: leave `energy` out of `columns` and events";
+        return wrong(&["output", "columns"], message.to_owned());
     }
     let written = table.get_ref().as_table().and_then(|table| table.get("every"));
     if let (Some(every), Some(steps), Some(value)) = (ensemble.every, file.steps(), written)

@@ -12,7 +12,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error, ValueDeserializer};
 
 use crate::file::body::{Full, Moments};
-use crate::file::mistake::Wrong;
+use crate::file::mistake::{Wrong, advised};
 use crate::file::quantity::{Any, Scalar};
 use crate::file::tables::Document;
 
@@ -186,7 +186,7 @@ fn parameter(name: &str, value: &Spanned<DeValue<'_>>) -> Result<Parameter, Wron
 }
 
 fn in_value(value: &Spanned<DeValue<'_>>, error: &Error) -> Wrong {
-    (error.span().unwrap_or_else(|| value.span()), error.message().to_owned())
+    (error.span().unwrap_or_else(|| value.span()), advised(error.message()))
 }
 
 /// An inertia by its principal moments, or by its tensor.

@@ -6,6 +6,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::string::FromUtf8Error;
 
+use liestep_derivation::suggestion;
+
 /// What is wrong with a scene file or with its run, and where.
 ///
 /// It is shown as `file:line:column: message`, with control characters [written out](visible).
@@ -51,7 +53,7 @@ impl Mistake {
 
     pub(crate) fn of_toml(path: &Path, text: &str, error: &toml::de::Error) -> Self {
         let start = error.span().map_or(0, |span| span.start);
-        Self::at(path, place(text, start), error.message().to_owned())
+        Self::at(path, place(text, start), advised(error.message()))
     }
 
     pub(crate) fn at(path: &Path, place: (usize, usize), message: String) -> Self {
@@ -82,6 +84,20 @@ impl Mistake {
     #[must_use]
     pub fn kind(&self) -> Kind {
         self.kind
+    }
+}
+
+/// A message of the reader's with what could have been meant.
+pub(crate) fn advised(message: &str) -> String {
+    // `unknown field `x`, expected one of `y`, `z``
+    let mut names = message.split('`').skip(1).step_by(2);
+    match names.next() {
+        Some(unknown) if message.starts_with("unknown ") => format!("{message}{}", suggestion(unknown, names)),
+        _ if message.contains("expected `nan`") => {
+            "isn't a value: a number, a text in quotation marks, a list in brackets; what isn't there is left out"
+                .to_owned()
+        }
+        _ => message.to_owned(),
     }
 }
 

@@ -12,6 +12,7 @@ pub(crate) mod key;
 pub(crate) mod lagrangian;
 pub(crate) mod method;
 pub(crate) mod mistake;
+pub(crate) mod orbit;
 pub(crate) mod picture;
 pub(crate) mod quantity;
 pub(crate) mod read;

@@ -9,10 +9,7 @@ use serde::Deserialize;
 use crate::file::body::{Body, Kinetic};
 use crate::file::column::{Column, Output};
 use crate::file::draws::SceneEnsemble;
-use crate::file::effects::{
-    DipoleTable, DragTable, GravityGradientTable, GravityTable, MagneticDampingTable, RotorTable, SpringTable,
-    ThrustTable, TorqueTable,
-};
+use crate::file::effects::{self, EFFECTS, Listed, Share, Table, effects};
 use crate::file::event::Event;
 use crate::file::lagrangian::{Lagrangian, taken};
 use crate::file::picture::SpherePicture;
@@ -21,45 +18,45 @@ use crate::file::schedule::{Pace, Schedule};
 use crate::file::start::Start;
 use crate::file::text::title;
 
-/// What a scene file says. An effect is in the scene if its table is in the file.
-///
-/// | table | keys |
-/// |---|---|
-/// | | `title` |
-/// | `body` | one of `moments`, `J_d`, `J`; `kinetic`: `rigid`, which is (3.13), `cayley`, `geodesic`, `fourth-order`, `sixth-order` |
-/// | `lagrangian` | in place of `body` and all effects: `l_d`, or `l` with `discretise` and the name of its `velocity`; `advected`, as `{ w = "up" }`; and the parameters by their names: numbers, vectors, matrices, inertias as `{ moments = […] }` or `{ tensor = […] }`, nonstandard where the name ends in `_d` |
-/// | `gravity` | `m`, `g`, `rho`, `up` |
-/// | `gravity_gradient` | `GM`, `r`, `direction` |
-/// | `dipole` | `moment`, `field` |
-/// | `spring` | `k`, `length`, `at`, `anchor` |
-/// | `rotor` | `spin` |
-/// | `drag` | `c` |
-/// | `magnetic_damping` | `k`, `field` |
-/// | `torque` | `torque` |
-/// | `thrust` | `at`, `thrust` |
-/// | `start` | `euler` or `quaternion`; `velocity` or `euler_rates` |
-/// | `run` | `duration`; `step`, of which that is a whole number, or `accuracy`; `method`: `"step"`, `{ composition = "Suzuki 4" }`, `{ splitting = "Nyström 6-4" }`, `{ processed = "processed 3-6 a" }`, `{ collocation = 8 }` |
-/// | `picture` | `path`: `axis`, `momentum`, `velocity`; `axis`; `panels`: `rates`, `tilt`, `energy`, `energy-error`, `momentum`, `vertical-momentum-error`, `momentum-error` |
-/// | `[[event]]` | `name`; one of `tilt`, `speed`, `energy`, `velocity_1` to `_3`, `axis_1` to `_3`: the value that is passed; `direction`: `rising`, `falling`, `either`; `stop` |
-/// | `output` | `columns` of a table behind the time, see [`Column`]; `every`: the number of steps from row to row |
-/// | `sweep` | any of the keys above: a list of values, or `{ from, to, count }` |
-/// | `ensemble` | `members`; `seed`; `every`: the number of steps from row to row, and if it isn't given the ends only; `chunk`: the number of members in a file, if it isn't given a 64th of them at most; `draw`: any of the keys of body, effects and start, each drawn from `{ from, to }` or `{ mean, deviation }`, and of lists each component by itself |
-#[derive(Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SceneFile {
+/// The type, with a field and a row of its page for each effect.
+macro_rules! scene_file {
+    (
+        { $($fields:tt)+ }
+        $($kind:ident { $($name:ident: $table:ident { $($key:ident: $type:ty),+ } => |$($of:tt),+| -> $effect:ty $value:block)+ })+
+    ) => {
+        #[doc = include_str!("scene.md")]
+        ///
+        /// | effect | parameters |
+        /// |---|---|
+        $($(#[doc = concat!("| `", stringify!($name), "` |", $(" `", stringify!($key), "`"),+, " |")])+)+
+        #[derive(Clone, Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub struct SceneFile {
+            $($fields)+
+            $($(pub(crate) $name: Option<effects::$table>,)+)+
+        }
+
+        impl SceneFile {
+            /// The effects of the scene.
+            pub(crate) fn effects(&self) -> impl Iterator<Item = &'static Listed> {
+                let are_there = [$($(self.$name.is_some()),+),+];
+                EFFECTS.iter().zip(are_there).filter_map(|(effect, is_there)| is_there.then_some(effect))
+            }
+
+            /// The effects that are others at each time.
+            pub(crate) fn turning(&self) -> impl Iterator<Item = &'static Listed> {
+                let turn = [$($(self.$name.as_ref().is_some_and(Table::turns)),+),+];
+                EFFECTS.iter().zip(turn).filter_map(|(effect, turns)| turns.then_some(effect))
+            }
+        }
+    };
+}
+
+effects! { scene_file
     #[serde(deserialize_with = "title")]
     pub(crate) title: String,
     /// A body of the library, or a Lagrangian in place of it and of the effects.
     pub(crate) body: Option<Body>,
-    pub(crate) gravity: Option<GravityTable>,
-    pub(crate) gravity_gradient: Option<GravityGradientTable>,
-    pub(crate) dipole: Option<DipoleTable>,
-    pub(crate) spring: Option<SpringTable>,
-    pub(crate) rotor: Option<RotorTable>,
-    pub(crate) drag: Option<DragTable>,
-    pub(crate) magnetic_damping: Option<MagneticDampingTable>,
-    pub(crate) torque: Option<TorqueTable>,
-    pub(crate) thrust: Option<ThrustTable>,
     pub(crate) start: Start,
     pub(crate) run: Schedule,
     #[serde(default)]
@@ -161,35 +158,22 @@ impl SceneFile {
         format!("{}, {pace}{}{}", self.sum(), sweep.unwrap_or_default(), ensemble.unwrap_or_default())
     }
 
-    /// The effects by their names in the file.
-    pub(crate) fn effects(&self) -> impl Iterator<Item = &'static str> {
-        [
-            ("gravity", self.gravity.is_some()),
-            ("gravity gradient", self.gravity_gradient.is_some()),
-            ("dipole", self.dipole.is_some()),
-            ("spring", self.spring.is_some()),
-            ("rotor", self.rotor.is_some()),
-            ("drag", self.drag.is_some()),
-            ("magnetic damping", self.magnetic_damping.is_some()),
-            ("torque", self.torque.is_some()),
-            ("thrust", self.thrust.is_some()),
-        ]
-        .into_iter()
-        .filter_map(|(name, is_there)| is_there.then_some(name))
-    }
-
     /// The sum, in words.
     pub(crate) fn sum(&self) -> String {
         if self.lagrangian.is_some() {
             return "a Lagrangian of its own".to_owned();
         }
-        self.effects().fold("body".to_owned(), |sum, name| format!("{sum} + {name}"))
+        self.effects().fold("body".to_owned(), |sum, effect| format!("{sum} + {}", effect.name(" ")))
     }
 
     /// The first force, by its name.
-    pub(crate) fn force(&self) -> Option<&'static str> {
-        let forces = ["drag", "magnetic damping", "torque", "thrust"];
-        self.effects().find(|name| forces.contains(name))
+    pub(crate) fn force(&self) -> Option<String> {
+        self.effects().find(|effect| effect.share >= Share::Force).map(|effect| effect.name(" "))
+    }
+
+    /// The last sum that an effect of the scene is of.
+    pub(crate) fn last_share(&self) -> Share {
+        self.effects().map(|effect| effect.share).max().unwrap_or(Share::Potential)
     }
 
     /// The kinetic term of the library's body.

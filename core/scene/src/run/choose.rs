@@ -1,14 +1,17 @@
 //! The choice of a scene's type and method, once a run.
 
+use std::rc::Rc;
+
 use liestep::accuracy::Accuracy;
 use liestep::effects::{PrincipalBody, RigidBody};
 use liestep::groups::Advected;
+use liestep::mechanics::Term as _;
 use liestep::methods::ExactBody;
 use liestep::motion::AnyStepper;
 use liestep::{SO3, SetupError, Stepper};
 
 use crate::file::body::Distribution;
-use crate::file::effects::Table as _;
+use crate::file::effects::{Share, Table as _, effects};
 use crate::file::lagrangian::Lagrangian;
 use crate::file::method::{Method, Stages};
 use crate::file::scene::SceneFile;
@@ -23,19 +26,26 @@ use crate::run::switched::Switched;
 /// An effect with an unknown part makes each iteration longer, and that of magnetic damping raises the degree of the
 /// equation. Which effects there are beside is asked at run time: all subsets would be 512 types of each kinetic term.
 macro_rules! sums {
-    ($file:expr, $J:expr, $body:expr) => {{
-        let (file, body, J) = ($file, $body, $J);
-        macro_rules! switched {
-            ($effect:ident) => {
-                Switched(file.$effect.as_ref().map(|table| table.effect(&J)))
-            };
-        }
-        let potentials =
-            body + switched!(gravity) + switched!(gravity_gradient) + switched!(dipole) + switched!(spring);
-        let with_rotor = potentials + switched!(rotor);
-        let dragged = with_rotor + switched!(drag);
-        let driven = dragged + switched!(torque) + switched!(thrust);
-        let damped = dragged + switched!(magnetic_damping) + switched!(torque) + switched!(thrust);
+    ($file:expr, $J:expr, $body:expr) => { sums!($file, $J, $body, at 0.0) };
+    ($file:expr, $J:expr, $body:expr, at $time:expr) => {{
+        let (file, body, J, time) = ($file, $body, $J, $time);
+        effects!(sums_of file J body time)
+    }};
+}
+
+/// Those of the list.
+macro_rules! sums_of {
+    (
+        { $file:ident $J:ident $body:ident $time:ident }
+        potentials { $($potential:ident: $potential_table:ident $potential_keys:tt => |$($a:tt),+| -> $A:ty $b:block)+ }
+        shifts { $($shift:ident: $shift_table:ident $shift_keys:tt => |$($c:tt),+| -> $C:ty $d:block)+ }
+        forces { $($force:ident: $force_table:ident $force_keys:tt => |$($e:tt),+| -> $E:ty $f:block)+ }
+        steep_forces { $($steep:ident: $steep_table:ident $steep_keys:tt => |$($g:tt),+| -> $G:ty $h:block)+ }
+    ) => {{
+        let potentials = $body $(+ Switched($file.$potential.as_ref().map(|table| table.effect(&$J, $time))))+;
+        let with_rotor = potentials $(+ Switched($file.$shift.as_ref().map(|table| table.effect(&$J, $time))))+;
+        let driven = with_rotor $(+ Switched($file.$force.as_ref().map(|table| table.effect(&$J, $time))))+;
+        let damped = driven $(+ Switched($file.$steep.as_ref().map(|table| table.effect(&$J, $time))))+;
         (potentials, with_rotor, driven, damped)
     }};
 }
@@ -108,26 +118,37 @@ fn stepped(file: &SceneFile, h: f64, purpose: Purpose<'_, '_>) -> Result<(), Sto
     let J = body.inertia();
     macro_rules! with_effects {
         ($body:expr) => {{
+            if file.turning().next().is_some() {
+                let (body, seen) = ($body, Rc::new(file.clone()));
+                let scene = sums!(file, J, body).3;
+                let values = move |time| sums!(&*seen, J, body, at time).3.advected();
+                let stepper = Stepper::new(scene, h).map(|stepper| stepper.driven(values).into_any());
+                return simulate(file, stepper, purpose);
+            }
             let (_, with_rotor, _, damped) = sums!(file, J, $body);
-            if file.force().is_some() { step!(only damped) } else { step!(with_rotor) }
+            if file.last_share() < Share::Force { step!(with_rotor) } else { step!(only damped) }
         }};
     }
     match (ChosenBody::of(body.kinetic, J), body.mass) {
         (Some(body), _) => with_effects!(body),
         // The kinetic term that most files have is there in four sums, not two.
-        (None, Distribution::Principal(J_d)) => {
+        (None, Distribution::Principal(J_d)) if file.turning().next().is_none() => {
             let (potentials, with_rotor, driven, damped) = sums!(file, J, PrincipalBody { J_d });
-            if file.magnetic_damping.is_some() {
-                step!(only damped)
-            } else if file.force().is_some() {
-                step!(only driven)
-            } else if file.rotor.is_some() {
-                step!(with_rotor)
-            } else {
-                step!(potentials)
+            match file.last_share() {
+                Share::Potential => step!(potentials),
+                Share::Shift => step!(with_rotor),
+                Share::Force => step!(only driven),
+                Share::SteepForce => step!(only damped),
             }
         }
-        (None, Distribution::Full(J_d)) => with_effects!(RigidBody { J_d }),
+        // What turns is given to the steps of one sum, the longest.
+        (None, mass) => {
+            let J_d = match mass {
+                Distribution::Principal(J_d) => J_d.into(),
+                Distribution::Full(J_d) => J_d,
+            };
+            with_effects!(RigidBody { J_d })
+        }
     }
 }
 
@@ -182,7 +203,7 @@ fn ask(file: &SceneFile, tolerance: f64, listeners: Listeners<'_>) -> Result<Run
     match body.mass {
         Distribution::Principal(J_d) => {
             let (potentials, with_rotor, _, _) = sums!(file, J, PrincipalBody { J_d });
-            if file.rotor.is_some() { ask!(with_rotor) } else { ask!(potentials) }
+            if file.last_share() < Share::Shift { ask!(potentials) } else { ask!(with_rotor) }
         }
         Distribution::Full(J_d) => {
             let (_, with_rotor, _, _) = sums!(file, J, RigidBody { J_d });

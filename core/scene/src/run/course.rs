@@ -37,27 +37,49 @@ pub(crate) fn watches<A: Advected<SO3> + 'static>(
     file: &SceneFile,
 ) -> Vec<(recording::Event, EventFunction<AnyStepper<SO3, A>>)> {
     let axis = file.picture.axis.0;
-    file.event.iter().map(|event| (kind(event), function(event.quantity, axis))).collect()
+    let watch = |event: &Event| -> (_, EventFunction<_>) {
+        let kind = kind(event.direction);
+        (if event.stops { kind.terminal() } else { kind }, Box::new(function(event.quantity, axis)))
+    };
+    file.event.iter().map(watch).collect()
+}
+
+/// An event of a scene for the members of its ensemble: its name, what counts, the function that passes zero there, and
+/// whether the motion ends with it.
+pub type MemberEvent =
+    (String, recording::Event, Box<dyn Fn(&Moment<'_, AnyStepper<SO3, ()>>) -> f64 + Send + Sync>, bool);
+
+impl SceneFile {
+    /// The events that members are watched for.
+    pub fn member_events(&self) -> impl Iterator<Item = MemberEvent> {
+        let axis = self.picture.axis.0;
+        let of = move |Event { name, quantity, direction, stops }: &Event| -> MemberEvent {
+            (name.clone(), kind(*direction), Box::new(function(*quantity, axis)), *stops)
+        };
+        self.event.iter().map(of)
+    }
 }
 
 /// What counts as the event.
-fn kind(event: &Event) -> recording::Event {
-    let kind = match event.direction {
+fn kind(direction: Direction) -> recording::Event {
+    match direction {
         Direction::Rising => recording::Event::rising(),
         Direction::Falling => recording::Event::falling(),
         Direction::Either => recording::Event::crossing(),
-    };
-    if event.stops { kind.terminal() } else { kind }
+    }
 }
 
 /// The function that rises through zero as the quantity rises through its value; a tilt is that of this body axis.
-fn function<A: Advected<SO3> + 'static>(quantity: Quantity, axis: Vector3<f64>) -> EventFunction<AnyStepper<SO3, A>> {
-    Box::new(move |now| match quantity {
+fn function<A: Advected<SO3> + 'static>(
+    quantity: Quantity,
+    axis: Vector3<f64>,
+) -> impl Fn(&Moment<'_, AnyStepper<SO3, A>>) -> f64 + Send + Sync + 'static {
+    move |now| match quantity {
         // By the cosine, which is smooth at the vertical.
         Quantity::Tilt(angle) => angle.cos() - (now.attitude().as_matrix() * axis).z,
         Quantity::Speed(speed) => now.velocity().norm_squared() - speed * speed,
         Quantity::Energy(energy) => now.energy() - energy,
         Quantity::Velocity(component, rate) => now.velocity()[component] - rate,
         Quantity::Axis(component, part) => (now.attitude().as_matrix() * axis)[component] - part,
-    })
+    }
 }

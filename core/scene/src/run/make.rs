@@ -62,8 +62,20 @@ impl fmt::Display for Stop {
             Self::Setup(cause) | Self::Start(cause) => cause.fmt(f),
             Self::Accuracy(cause) => cause.fmt(f),
             Self::Table(cause) | Self::Other(cause) => f.write_str(cause),
-            Self::Step { time, cause } => write!(f, "stopped at t = {time} s: {cause}"),
+            Self::Step { time, cause } => write!(f, "stopped at t = {time} s: {}", told(cause)),
         }
+    }
+}
+
+/// Why a step can't be made, in the words of files.
+pub(crate) fn told(cause: &StepError) -> String {
+    match *cause {
+        StepError::BeyondSolvable { step, largest, turn, .. } if largest > 0.0 => format!(
+            "a step of {step:e} s has no solution: a body would turn by about {turn:.2} rad, and {:.2} rad is the most from \
+             here; take a `step` of at most {largest:e} s",
+            turn * (largest / step)
+        ),
+        ref cause => cause.to_string(),
     }
 }
 

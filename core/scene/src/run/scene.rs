@@ -9,6 +9,7 @@ use liestep::{SO3, SetupError, StepError};
 use crate::file::column::Column;
 use crate::file::event::Event;
 use crate::file::mistake::Mistake;
+use crate::file::quantity::short;
 use crate::file::scene::{Origin, SceneFile};
 use crate::file::schedule::Pace;
 use crate::run::choose;
@@ -85,7 +86,15 @@ impl SceneFile {
         let place = match stop {
             Stop::Table(message) => return Mistake::of_table(path, message),
             Stop::Step { cause: StepError::BeyondSolvable { .. }, .. } => {
-                message.push_str(", and is `kinetic = \"cayley\"` of the body here");
+                if self.body.is_some() {
+                    message.push_str(", or `kinetic = \"cayley\"` of the body, which has no such limit");
+                }
+                let fastest = short(self.start.velocity.amax());
+                // As a person writes degrees.
+                if self.start.velocity.amax() >= 20.0 && fastest.len() < 5 {
+                    let hint = format!("; numbers alone are in rad/s: were degrees meant, write \"{fastest} deg/s\"");
+                    message.push_str(&hint);
+                }
                 places.pace
             }
             Stop::Setup(SetupError::InvalidStep { .. }) | Stop::Accuracy(_) | Stop::Step { .. } | Stop::Other(_) => {

@@ -10,7 +10,7 @@ use crate::file::mistake::Mistake;
 use crate::file::sample::{BodySample, Sample};
 use crate::file::system::System;
 use crate::run::bodies::SystemStepper;
-use crate::run::make::{Course, Listeners, Run, Stop, make};
+use crate::run::make::{Course, Listeners, Run, Stop, make, told};
 
 /// The systems that there are, the smallest first. With loops there is the largest only: each is code of its own.
 const SIZES: [Size; 4] = [Size::of::<2, 0>(), Size::of::<4, 0>(), Size::of::<BODIES, 0>(), Size::of::<BODIES, LOOPS>()];
@@ -211,7 +211,7 @@ impl System {
                 );
                 (self.places.bodies[body], why)
             }
-            _ => (self.places.pace, cause.to_string()),
+            _ => (self.places.pace, told(cause)),
         }
     }
 }

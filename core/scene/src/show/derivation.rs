@@ -1,49 +1,48 @@
 //! The derived equations of the effects, as text.
 
-use liestep::effects::{
-    CayleyBody, Dipole, Drag, FourthOrderBody, GeodesicBody, Gravity, GravityGradient, MagneticDamping, PrincipalBody,
-    RigidBody, Rotor, SixthOrderBody, Spring, Thrust, Torque,
-};
+use liestep::effects::{CayleyBody, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::mechanics::Effect;
 use liestep_late::{Declaration, LateError};
 
 use crate::file::arrangement::BODIES;
 use crate::file::body::{Distribution, Kinetic};
+use crate::file::effects::EFFECTS;
 use crate::file::scene::SceneFile;
 use crate::file::system::System;
 use crate::run::bodies::Heavy;
 use crate::run::springs::Springs;
 
-/// An effect of the library: its name in files, what is derived of it, and its own text.
-type Derivation = (&'static str, &'static str, &'static str);
+/// A term of the library: what is derived of it, and its own text.
+type Derivation = (&'static str, &'static str);
 
-const DERIVED: [Derivation; 15] = [
-    ("principal-body", <PrincipalBody as Effect>::DERIVATION, <PrincipalBody as Effect>::DECLARATION),
-    ("rigid-body", <RigidBody as Effect>::DERIVATION, <RigidBody as Effect>::DECLARATION),
-    ("cayley-body", <CayleyBody as Effect>::DERIVATION, <CayleyBody as Effect>::DECLARATION),
-    ("geodesic-body", <GeodesicBody as Effect>::DERIVATION, <GeodesicBody as Effect>::DECLARATION),
-    ("fourth-order-body", <FourthOrderBody as Effect>::DERIVATION, <FourthOrderBody as Effect>::DECLARATION),
-    ("sixth-order-body", <SixthOrderBody as Effect>::DERIVATION, <SixthOrderBody as Effect>::DECLARATION),
-    ("gravity", <Gravity as Effect>::DERIVATION, <Gravity as Effect>::DECLARATION),
-    ("gravity-gradient", <GravityGradient as Effect>::DERIVATION, <GravityGradient as Effect>::DECLARATION),
-    ("dipole", <Dipole as Effect>::DERIVATION, <Dipole as Effect>::DECLARATION),
-    ("spring", <Spring as Effect>::DERIVATION, <Spring as Effect>::DECLARATION),
-    ("rotor", <Rotor as Effect>::DERIVATION, <Rotor as Effect>::DECLARATION),
-    ("drag", <Drag as Effect>::DERIVATION, <Drag as Effect>::DECLARATION),
-    ("magnetic-damping", <MagneticDamping as Effect>::DERIVATION, <MagneticDamping as Effect>::DECLARATION),
-    ("torque", <Torque as Effect>::DERIVATION, <Torque as Effect>::DECLARATION),
-    ("thrust", <Thrust as Effect>::DERIVATION, <Thrust as Effect>::DECLARATION),
+const fn derived_of<E: Effect>() -> Derivation {
+    (E::DERIVATION, E::DECLARATION)
+}
+
+/// The kinetic terms.
+const KINETIC: [(&str, Derivation); 6] = [
+    ("principal-body", derived_of::<PrincipalBody>()),
+    ("rigid-body", derived_of::<RigidBody>()),
+    ("cayley-body", derived_of::<CayleyBody>()),
+    ("geodesic-body", derived_of::<GeodesicBody>()),
+    ("fourth-order-body", derived_of::<FourthOrderBody>()),
+    ("sixth-order-body", derived_of::<SixthOrderBody>()),
 ];
 
+fn all() -> impl Iterator<Item = (String, Derivation)> {
+    let kinetic = KINETIC.iter().map(|(name, derived)| ((*name).to_owned(), *derived));
+    kinetic.chain(EFFECTS.iter().map(|effect| (effect.name("-"), effect.derived)))
+}
+
 /// The names that [`derivation`] knows: the kinetic terms and the effects.
-pub fn derived() -> impl Iterator<Item = &'static str> {
-    DERIVED.iter().map(|(name, ..)| *name)
+pub fn derived() -> impl Iterator<Item = String> {
+    all().map(|(name, _)| name)
 }
 
 /// What the library derived of an effect, from its declaration to the constants of a step.
 #[must_use]
 pub fn derivation(name: &str) -> Option<&'static str> {
-    DERIVED.iter().find(|(other, ..)| *other == name).map(|(_, text, _)| *text)
+    all().find(|(other, _)| other == name).map(|(_, (text, _))| text)
 }
 
 /// How a derivation is written, but for plain text.
@@ -70,7 +69,7 @@ impl Form {
 /// What the library derived of an effect, written in this form.
 #[must_use]
 pub fn written(name: &str, form: Form) -> Option<Result<String, LateError>> {
-    let (.., text) = DERIVED.iter().find(|(other, ..)| *other == name)?;
+    let (_, (_, text)) = all().find(|(other, _)| other == name)?;
     Some(Declaration::parse(text).and_then(|declaration| form.of(declaration)))
 }
 
@@ -112,7 +111,7 @@ impl SceneFile {
             (Kinetic::FourthOrder, _) => "fourth-order-body",
             (Kinetic::SixthOrder, _) => "sixth-order-body",
         });
-        let effects = body.is_some().then(|| self.effects().map(|name| name.replace(' ', "-")));
+        let effects = body.is_some().then(|| self.effects().map(|effect| effect.name("-")));
         body.map(str::to_owned).into_iter().chain(effects.into_iter().flatten())
     }
 }

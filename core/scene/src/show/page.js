@@ -7,6 +7,12 @@ const times = decode(motion.times), attitudes = decode(motion.attitudes), frames
 const start = times[0], end = times[frames - 1];
 for (const chart of motion.charts) for (const line of chart.lines) line.values = decode(line.values);
 
+// Letters and lines are larger for a lecture hall: L, or `#large`.
+let large = new URLSearchParams(location.hash.slice(1)).has("large") ? 1.7 : 1;
+const letters = size => `${Math.round(size * large)}px system-ui, sans-serif`;
+// Where seconds would have five digits, time is told in hours.
+const [UNIT, UNIT_NAME] = end - start >= 1e4 ? [3600, "h"] : [1, "s"];
+
 const COLOURS = ["#0072b2", "#e69f00", "#009e73"], PATH = "#cc79a7", INK = "#2d2d2d", FAINT = "#d8dce2";
 // Of a drum or a box, so that a turn is seen.
 const SHADES = [[86, 146, 190], [226, 232, 238]];
@@ -87,11 +93,11 @@ const view = canvasIn(document.getElementById("view"), (pen, width, height) => {
   const line = (points, colour, thickness) => {
     pen.beginPath();
     points.forEach((p, k) => { const [x, y] = place(p); if (k) pen.lineTo(x, y); else pen.moveTo(x, y); });
-    pen.strokeStyle = colour; pen.lineWidth = thickness; pen.stroke();
+    pen.strokeStyle = colour; pen.lineWidth = thickness * large; pen.stroke();
   };
   const name = (text, p, colour) => {
     const [x, y] = place(p);
-    pen.fillStyle = colour; pen.font = "12px system-ui, sans-serif"; pen.fillText(text, x + 4, y - 4);
+    pen.fillStyle = colour; pen.font = letters(12); pen.fillText(text, x + 4, y - 4);
   };
   // Space: its axes, and the sphere on which the path is.
   pen.beginPath(); pen.arc(centre[0], centre[1], size, 0, 7); pen.strokeStyle = FAINT; pen.lineWidth = 1; pen.stroke();
@@ -160,7 +166,9 @@ view.canvas.addEventListener("dblclick", () => { Object.assign(camera, { azimuth
 
 // Charts share one stretch of time.
 const stretch = { from: start, to: end > start ? end : start + 1 };
-const LEFT = 64, RIGHT = 14, TOP = 26, BOTTOM = 24;
+const RIGHT = 14, left = () => 64 * large;
+// More events in sight are ticks on the edge: lines would hide the curves.
+const MOST_LINES = 40;
 
 function ticks(from, to, about) {
   const raw = (to - from) / about, power = 10 ** Math.floor(Math.log10(raw));
@@ -185,11 +193,21 @@ const charts = motion.charts.map(chart => {
     }
     if (!(high >= low)) { low = chart.logarithmic ? -17 : 0; high = low + 1; }
     const margin = chart.logarithmic ? 0.15 : 0.06 * (high - low) || 0.5 * Math.abs(high) || 1; low -= margin; high += margin;
-    const wide = width - LEFT - RIGHT, deep = tall - TOP - BOTTOM;
+    const LEFT = left(), wide = width - LEFT - RIGHT;
+    // The values now stand beside the title, or below it where there is no room.
+    const frame = frameAt(now), title = `${chart.title}, ${chart.unit}`;
+    const shownNow = chart.lines.map((line, number) => {
+      const value = line.values[frame], size = Math.abs(value);
+      const shown = chart.logarithmic || (size > 0 && size < 1e-2) || size >= 1e5 ? value.toExponential(1) : Number(value.toPrecision(3));
+      return [(chart.lines.length > 1 ? line.name + " " : "") + String(shown).replace(/-/g, "−"), COLOURS[number % 3]];
+    });
+    pen.font = letters(12);
+    const needed = shownNow.reduce((sum, [text]) => sum + pen.measureText(text).width + 12, pen.measureText(title).width + 12);
+    const row = 16 * large, below = needed > wide ? row : 0, TOP = 10 + row + below, BOTTOM = 24 * large, deep = tall - TOP - BOTTOM;
     const across = time => LEFT + wide * (time - stretch.from) / (stretch.to - stretch.from);
     const up = y => TOP + deep * (1 - (y - low) / (high - low));
-    pen.font = "11px system-ui, sans-serif"; pen.textBaseline = "middle"; pen.lineWidth = 1;
-    const levels = ticks(low, high, Math.max(2, deep / 28));
+    pen.font = letters(11); pen.textBaseline = "middle"; pen.lineWidth = 1;
+    const levels = ticks(low, high, Math.max(2, deep / (28 * large)));
     pen.textAlign = "right";
     for (const y of levels.list) {
       if (chart.logarithmic && Math.abs(y - Math.round(y)) > 1e-6) continue;
@@ -197,55 +215,62 @@ const charts = motion.charts.map(chart => {
       pen.fillStyle = INK; pen.fillText(chart.logarithmic ? "1e" + String(Math.round(y)).replace("-", "−") : decimal(y, levels.digits), LEFT - 6, up(y));
     }
     pen.textAlign = "center";
-    const marks = ticks(stretch.from, stretch.to, Math.max(2, wide / 80));
-    for (const t of marks.list) {
+    const marks = ticks(stretch.from / UNIT, stretch.to / UNIT, Math.max(2, wide / (80 * large)));
+    for (const mark of marks.list) {
+      const t = mark * UNIT;
       pen.strokeStyle = "#e2e2e2"; pen.beginPath(); pen.moveTo(across(t), TOP); pen.lineTo(across(t), TOP + deep); pen.stroke();
-      pen.fillStyle = INK; pen.fillText(decimal(t, marks.digits), across(t), TOP + deep + 12);
+      pen.fillStyle = INK; pen.fillText(decimal(mark, marks.digits) + (mark === marks.list[marks.list.length - 1] ? " " + UNIT_NAME : ""), across(t), TOP + deep + 12 * large);
     }
     pen.save(); pen.beginPath(); pen.rect(LEFT, TOP, wide, deep); pen.clip();
     chart.lines.forEach((line, number) => {
-      pen.strokeStyle = COLOURS[number % 3]; pen.lineWidth = 1.3; pen.beginPath();
-      let column = null, gap = true, least = 0, most = 0, exit = 0;
-      const flush = x => { pen.lineTo(x, up(least)); pen.lineTo(x, up(most)); pen.lineTo(x, up(exit)); };
+      // In each pixel the first value, the least, the largest and the last; a gap parts one curve from the next.
+      const curves = [[]];
       for (let k = first; k <= last; k++) {
-        if (!Number.isFinite(line.values[k])) {
-          if (column !== null) flush(column);
-          column = null; gap = true;
-          continue;
-        }
-        const x = Math.round(across(times[k])), y = height(line.values[k]);
+        const y = height(line.values[k]), x = Math.round(across(times[k])), curve = curves[curves.length - 1];
+        if (!Number.isFinite(line.values[k])) { if (curve.length) curves.push([]); continue; }
         if (!Number.isFinite(y)) continue;
-        if (x !== column) {
-          if (column !== null) flush(column);
-          column = x; least = most = y;
-          if (gap) pen.moveTo(x, up(y)); else pen.lineTo(x, up(y));
-          gap = false;
-        }
-        least = Math.min(least, y); most = Math.max(most, y); exit = y;
+        const column = curve[curve.length - 1];
+        // How often it turns round, by more than a few hundredths of the chart.
+        if (!column) Object.assign(curve, { turns: 0, peak: y, rises: true });
+        if (curve.rises ? y >= curve.peak : y <= curve.peak) curve.peak = y;
+        else if (Math.abs(y - curve.peak) > 0.03 * (high - low)) Object.assign(curve, { turns: curve.turns + 1, peak: y, rises: !curve.rises });
+        if (column && column.x === x) { column.least = Math.min(column.least, y); column.most = Math.max(column.most, y); column.exit = y; }
+        else curve.push({ x, enter: y, least: y, most: y, exit: y });
       }
-      if (column !== null) flush(column);
-      pen.stroke();
+      pen.strokeStyle = pen.fillStyle = COLOURS[number % 3]; pen.lineWidth = 1.3 * large;
+      for (const curve of curves) {
+        // Where a curve goes to and fro within a few pixels, its strokes would make a pattern that isn't there: a band is drawn.
+        pen.beginPath();
+        if (curve.turns > 0.2 * curve.length) {
+          const near = k => curve.slice(Math.max(0, k - 5), k + 6);
+          const most = curve.map((_, k) => Math.max(...near(k).map(column => column.most)));
+          const least = curve.map((_, k) => Math.min(...near(k).map(column => column.least)));
+          curve.forEach(({ x }, k) => pen.lineTo(x, up(most[k])));
+          for (let k = curve.length - 1; k >= 0; k--) pen.lineTo(curve[k].x, up(least[k]));
+          pen.closePath(); pen.globalAlpha = 0.3; pen.fill(); pen.globalAlpha = 1;
+        } else {
+          for (const { x, enter, least, most, exit } of curve) for (const y of [enter, least, most, exit]) pen.lineTo(x, up(y));
+        }
+        pen.stroke();
+      }
     });
-    for (const [time, name] of motion.events) {
-      pen.strokeStyle = "#999"; pen.lineWidth = 0.7; pen.beginPath(); pen.moveTo(across(time), TOP); pen.lineTo(across(time), TOP + deep); pen.stroke();
-      if (motion.events.length < 9) { pen.textAlign = "left"; pen.fillStyle = "#777"; pen.fillText(name, across(time) + 3, TOP + 8); }
+    const inSight = motion.events.filter(([time]) => time >= stretch.from && time <= stretch.to), areFew = inSight.length <= MOST_LINES;
+    for (const [time, name] of inSight) {
+      pen.strokeStyle = "#999"; pen.lineWidth = 0.7 * large; pen.beginPath(); pen.moveTo(across(time), TOP); pen.lineTo(across(time), TOP + (areFew ? deep : 6 * large)); pen.stroke();
+      if (inSight.length < 9) { pen.textAlign = "left"; pen.fillStyle = "#777"; pen.fillText(name, across(time) + 3, TOP + 8 * large); }
     }
     pen.strokeStyle = PATH; pen.lineWidth = 1.5; pen.beginPath(); pen.moveTo(across(now), TOP); pen.lineTo(across(now), TOP + deep); pen.stroke();
     pen.restore();
-    pen.textAlign = "left"; pen.fillStyle = INK; pen.font = "12px system-ui, sans-serif";
-    pen.fillText(`${chart.title}, ${chart.unit}`, LEFT, 12);
+    pen.textAlign = "left"; pen.fillStyle = INK; pen.font = letters(12);
+    pen.fillText(title, LEFT, 12 * large);
     let x = LEFT + wide; pen.textAlign = "right";
-    const frame = frameAt(now);
-    chart.lines.map((line, number) => [line, COLOURS[number % 3]]).reverse().forEach(([line, colour]) => {
-      const value = line.values[frame], size = Math.abs(value);
-      const shown = chart.logarithmic || (size > 0 && size < 1e-2) || size >= 1e5 ? value.toExponential(1) : Number(value.toPrecision(3));
-      const text = (chart.lines.length > 1 ? line.name + " " : "") + String(shown).replace(/-/g, "−");
-      pen.fillStyle = colour; pen.fillText(text, x, 12); x -= pen.measureText(text).width + 12;
-    });
+    for (const [text, colour] of shownNow.reverse()) {
+      pen.fillStyle = colour; pen.fillText(text, x, 12 * large + below); x -= pen.measureText(text).width + 12;
+    }
   });
   const timeAt = event => {
     const box = surface.canvas.getBoundingClientRect();
-    return stretch.from + (stretch.to - stretch.from) * (event.clientX - box.left - LEFT) / (box.width - LEFT - RIGHT);
+    return stretch.from + (stretch.to - stretch.from) * (event.clientX - box.left - left()) / (box.width - left() - RIGHT);
   };
   surface.canvas.addEventListener("wheel", event => {
     event.preventDefault();
@@ -254,7 +279,7 @@ const charts = motion.charts.map(chart => {
   }, { passive: false });
   dragged(surface.canvas, (x, _, event) => {
     if (!event.shiftKey) return seek(timeAt(event));
-    const shift = -x * (stretch.to - stretch.from) / Math.max(1, surface.width - LEFT - RIGHT);
+    const shift = -x * (stretch.to - stretch.from) / Math.max(1, surface.width - left() - RIGHT);
     zoom(stretch.from + shift, stretch.to + shift);
   });
   surface.canvas.addEventListener("click", event => { if (!event.shiftKey) seek(timeAt(event)); });
@@ -271,7 +296,7 @@ function zoom(from, to) {
 // Time.
 const controls = document.getElementById("controls");
 const element = (kind, properties) => controls.appendChild(Object.assign(document.createElement(kind), properties));
-const play = element("button", { textContent: "Play", title: "Space" });
+const play = element("button", { textContent: "Play", title: "Space: play. L: large letters. V: a film of it all, which is saved." });
 const slider = element("input", { type: "range", min: 0, max: 1, step: "any", value: 0, ariaLabel: "Time" });
 const clock = element("output", {});
 const speed = element("select", { ariaLabel: "Speed" });
@@ -282,14 +307,46 @@ let playing = false, before = 0;
 function seek(time) {
   now = Math.max(start, Math.min(end, time));
   slider.value = end > start ? (now - start) / (end - start) : 0;
-  clock.textContent = `${now.toFixed(end - start > 1000 ? 0 : 2)} s`;
+  clock.textContent = `${(now / UNIT).toFixed(end - start > 1000 && UNIT === 1 ? 0 : 2)} ${UNIT_NAME}`;
   view.draw(); charts.forEach(chart => chart.draw());
+  if (film) film.shoot();
+}
+function resize() {
+  document.documentElement.style.setProperty("--large", large);
+  seek(now);
+}
+
+// A film of what is on the screen, from the beginning to the end: V. The browser saves it.
+let film = null;
+function record() {
+  if (film) return film.recorder.stop();
+  const sheet = document.createElement("canvas"), pen = sheet.getContext("2d"), box = document.querySelector("main").getBoundingClientRect();
+  const scale = window.devicePixelRatio || 1, kind = ["video/mp4", "video/webm"].find(kind => window.MediaRecorder && MediaRecorder.isTypeSupported(kind));
+  if (!kind) { clock.textContent = "no film here"; return; }
+  // Codecs ask for even numbers.
+  sheet.width = 2 * Math.round(box.width * scale / 2); sheet.height = 2 * Math.round(box.height * scale / 2);
+  const shoot = () => {
+    pen.fillStyle = "#fff"; pen.fillRect(0, 0, sheet.width, sheet.height);
+    for (const { canvas } of [view, ...charts]) { const at = canvas.getBoundingClientRect(); pen.drawImage(canvas, (at.left - box.left) * scale, (at.top - box.top) * scale); }
+  };
+  const pieces = [], recorder = new MediaRecorder(sheet.captureStream(30), { mimeType: kind, videoBitsPerSecond: 8e6 });
+  recorder.addEventListener("dataavailable", event => pieces.push(event.data));
+  recorder.addEventListener("stop", () => {
+    if (playing) toggle();
+    film = null;
+    const blob = new Blob(pieces, { type: kind });
+    document.documentElement.dataset.film = blob.size;
+    Object.assign(document.createElement("a"), { href: URL.createObjectURL(blob), download: `${document.title}.${kind.slice(6)}` }).click();
+  });
+  film = { recorder, shoot };
+  seek(start); recorder.start();
+  if (!playing) toggle();
 }
 function tick(moment) {
   if (!playing) return;
   const passed = Math.min(0.25, (moment - before) / 1000); before = moment;
   seek(now + passed * Number(speed.value));
-  if (now >= end) return toggle();
+  if (now >= end) { if (film) film.recorder.stop(); else toggle(); return; }
   requestAnimationFrame(tick);
 }
 function toggle() {
@@ -302,10 +359,11 @@ play.addEventListener("click", toggle);
 slider.addEventListener("input", () => seek(start + (end - start) * slider.value));
 document.addEventListener("keydown", event => {
   const step = (end - start) / 200;
-  const action = { " ": toggle, ArrowLeft: () => seek(now - step), ArrowRight: () => seek(now + step), Home: () => seek(start), End: () => seek(end) }[event.key];
+  const action = { " ": toggle, ArrowLeft: () => seek(now - step), ArrowRight: () => seek(now + step), Home: () => seek(start), End: () => seek(end), l: () => { large = large > 1 ? 1 : 1.7; resize(); }, v: record }[event.key];
   if (action && event.target.tagName !== "SELECT") { event.preventDefault(); action(); }
 });
 new ResizeObserver(() => seek(now)).observe(document.body);
+resize();
 // `#t=12.5` opens the page at that time.
 seek(start + (Number(new URLSearchParams(location.hash.slice(1)).get("t")) || 0));
 Object.assign(document.documentElement.dataset, { frames, charts: charts.length });

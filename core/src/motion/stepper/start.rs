@@ -31,7 +31,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         }
         let attitude = attitude.into();
         check_attitude(&attitude)?;
-        let w = self.scene.advected().seen_from(&attitude);
+        let w = self.plan.advected(&self.scene, 0).seen_from(&attitude);
         let momentum = self.plan.momentum(&self.scene, &attitude, &velocity, &w);
         if !self.scene.is_quadratic() {
             let found = velocity_of_momentum(&self.scene, &momentum, &w);
@@ -57,11 +57,11 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
             return Err(SetupError::NonFinite { what: "momentum" });
         }
         if !self.scene.has_constant_inertia() {
-            let w = self.scene.advected().seen_from(&attitude);
+            let w = self.plan.advected(&self.scene, 0).seen_from(&attitude);
             check_inertia::<Group<S>>(&self.scene.inertia(&w))?;
         }
         if !self.scene.is_quadratic() {
-            let w = self.scene.advected().seen_from(&attitude);
+            let w = self.plan.advected(&self.scene, 0).seen_from(&attitude);
             if !velocity_of_momentum(&self.scene, &momentum, &w).is_finite() {
                 return Err(SetupError::NoVelocity);
             }
@@ -107,7 +107,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
 
     /// The motion that begins with this attitude and momentum.
     fn begin(&self, attitude: Group<S>, momentum: Vector<S>) -> StateOf<S, P> {
-        let advected = self.scene.advected().seen_from(&attitude);
+        let advected = self.plan.advected(&self.scene, 0).seen_from(&attitude);
         let motion = Motion { attitude, momentum, advected, steps: 0 };
         State { motion, kept: self.plan.keep(&self.scene, &motion) }
     }

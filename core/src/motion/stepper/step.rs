@@ -4,7 +4,7 @@ use super::{StateOf, Stepper};
 use crate::error::StepError;
 use crate::groups::Advected as _;
 use crate::mechanics::{Effect, FactoredInertia, Group, Scalar, Vector, factored_inertia, velocity_and_energy};
-use crate::motion::integrator::{Integrator, run_or_step};
+use crate::motion::integrator::{Integrator, run_or_step, seeing};
 use crate::motion::plan::{Cost, Next, NextSteps, Plan, Steerable, run_plan};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
@@ -249,6 +249,10 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
 
     fn adopt(&self, motion: &Motion<Group<S>, S::Advected>) -> Self::State {
         Stepper::adopt(self, motion)
+    }
+
+    fn seen(&self, motion: &Motion<Group<S>, ()>) -> Motion<Group<S>, S::Advected> {
+        seeing(motion, self.plan.advected(&self.scene, motion.steps).seen_from(&motion.attitude))
     }
 
     fn step_size(&self) -> Scalar<S> {

@@ -77,7 +77,8 @@ impl Errors {
 ///
 /// A slip changes one letter of three, and no digit, as `rho1` isn't `rho2`; but a zero is taken for the letter, as `S03` is
 /// `SO3`.
-pub(crate) fn suggestion<'a>(unknown: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+#[must_use]
+pub fn suggestion<'a>(unknown: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let length = unknown.chars().count();
     let digits = |name: &str| name.chars().filter(char::is_ascii_digit).collect::<String>();
     let letters = unknown.replace('0', "O");

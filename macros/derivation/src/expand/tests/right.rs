@@ -187,6 +187,15 @@ fn squares_as_products() {
     }
 }
 
+/// Of a vector of one the entry has an index and no letter.
+#[test]
+fn a_vector_of_one() {
+    let item = "struct Top { J_d: NonstandardInertia, v: SVector<f64, 1> }";
+    let message = |entry: &str| message(&format!("group = SO3, l_d = {KINETIC} - h * {entry} * F.trace()"), item);
+    assert_eq!(message("v[0]"), None);
+    assert!(message("v.x").is_some_and(|text| text.contains("write an entry by its index, `v[0]`")));
+}
+
 /// The thesis' trace in each discretisation of each group: accepted, or refused with advice that is accepted.
 #[test]
 fn no_circle_of_advice() {

@@ -53,6 +53,23 @@ fn the_page_names_the_bodies() {
     assert!(alone.contains("`up·R Π` over the body of `F_down`; `R Π` over the body of `F_w`."));
 }
 
+/// Each share of a diamond is that of one parameter, and a covector is in the names of the declaration.
+#[test]
+fn shares_of_the_diamond() {
+    let arguments = "group(F = SO3, s = R1), advected(w = up.seen_from(F), y = s.seen_from(space)),
+        l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) + 0.5 * m * s * s / h - h * y * w.dot(&a)";
+    let item = "struct Bead { J: NonstandardInertia, m: f64, a: Vector3<f64>, up: Vector3<f64> }";
+    let text = expanded(arguments, item).to_string();
+    for line in [
+        "δl_d/δw ⋄ w = h y (a wᵀ − w aᵀ)^∨;  −h ⟨a, w⟩    [(2.1)]",
+        "δl_d/δw ⋄ w = h y (a wᵀ − w aᵀ)^∨;  0    [of w alone]",
+        "δl_d/δy ⋄ y = 0;  −h ⟨a, w⟩    [of y alone]",
+        "(R_F)* δl_d/δF = (1/h) (F J − J Fᵀ)^∨;  (s m/h)    [",
+    ] {
+        assert!(text.contains(line), "{line} isn't in {text}");
+    }
+}
+
 /// Attitudes couple bodies at the ends of a step, and velocities in the middle of it.
 #[test]
 fn what_couples_is_solved_together() {

@@ -2,7 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use super::{expanded, is_refused};
+use super::{derived, expanded, is_refused};
+use crate::program::kernel;
 
 /// What threads get by default.
 const STACK: usize = 2 << 20;
@@ -117,6 +118,33 @@ fn many_factors() {
             let result = refused(&with_term(&format!("{KINETIC} + h * {product}")));
             assert!(!result || count > 2, "{count} {unit}");
         }
+    }
+}
+
+/// A turn of the first two rows and all shifts: what is emitted grows like the fourth power of the rows.
+#[test]
+fn groups_of_many_rows() {
+    let operations = |rows: usize| {
+        let generator = |entries: &[(usize, usize, &str)]| {
+            let entry = |i, j| entries.iter().find(|one| (one.0, one.1) == (i, j)).map_or("0.0", |one| one.2);
+            let row = |i| format!("[{}]", (0..rows).map(|j| entry(i, j)).collect::<Vec<_>>().join(", "));
+            format!("[{}]", (0..rows).map(row).collect::<Vec<_>>().join(", "))
+        };
+        let shifts = (0..rows - 1).map(|i| generator(&[(i, rows - 1, "1.0")]));
+        let generators: Vec<String> = shifts.chain([generator(&[(0, 1, "-1.0"), (1, 0, "1.0")])]).collect();
+        let l_d = "((F - I) * J * J.transpose() * (F - I).transpose()).trace() / (2.0 * h) - h * w.dot(&(F * r))";
+        let group = format!("group = Mine, generators = [{}]", generators.join(", "));
+        let arguments = format!("{group}, advected(w = up), l_d = {l_d}");
+        let vector = format!("SVector<f64, {rows}>");
+        let item = format!("struct Body {{ J: SMatrix<f64, {rows}, {rows}>, r: {vector}, up: {vector} }}");
+        let expansion = expanded(&arguments, &item);
+        assert!(!is_refused(&expansion), "{rows}: {expansion}");
+        kernel(&derived(&arguments, &item)).cost()
+    };
+    let least = operations(4);
+    for rows in 5..=8 {
+        let found = operations(rows);
+        assert!(found * 4_usize.pow(4) <= least * rows.pow(4), "{found} of {rows} rows, {least} of four");
     }
 }
 

@@ -8,10 +8,10 @@ use std::rc::Rc;
 use super::evaluation::Evaluation;
 use super::number::Number as _;
 use super::residue::Residue;
-use super::sample::Element;
+use super::sample::{Element, draws};
 use super::series::Series;
 use super::value::Value;
-use super::{DRAWS, displacements, exponential, increments, parameters, stream, velocities};
+use super::{displacements, exponential, increments, parameters, velocities};
 use crate::declared::{Declaration, Kind, Name, Role, Shape, Tree};
 use crate::mathematics::symbolic::Function;
 
@@ -87,17 +87,7 @@ pub(crate) fn not_smooth_at_identity(declaration: &Declaration, tree: &Rc<Tree>)
 
 /// The first part that has no value for any of some parameters, if there is one.
 pub(crate) fn without_value(declaration: &Declaration, tree: &Rc<Tree>) -> Option<Rc<Tree>> {
-    let group = &declaration.group;
-    let points = (1..=DRAWS).map(|seed| {
-        let mut number = stream(seed);
-        let mut values = parameters(declaration, &mut number);
-        let element = Element::by_exponentials(group, || 0.6 * number() - 0.3);
-        values.insert(Name::Step, Value::scalar(0.1));
-        values.extend(increments(group, &element.matrix));
-        values.extend(displacements(group, &mut number));
-        values
-    });
-    let points: Vec<super::Values<f64>> = points.collect();
+    let points: Vec<super::Values<f64>> = draws(declaration).map(|(_, values)| values).collect();
     let mut at_points: Vec<Evaluation> = points.iter().map(Evaluation::new).collect();
     let mut found = None;
     visit(tree, &mut |part| {
@@ -186,10 +176,10 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// As [`split`], while there aren't too many.
+    /// As [`split_within`], while there aren't too many.
     fn split(&mut self, tree: &Rc<Tree>) -> Option<[Rc<Tree>; 2]> {
         self.splits = self.splits.checked_sub(1)?;
-        split(tree)
+        split_within(tree, MOST_FACTORS)
     }
 
     fn behaviour(&mut self, tree: &Rc<Tree>) -> Behaviour {
@@ -324,10 +314,6 @@ fn visit(tree: &Rc<Tree>, at: &mut dyn FnMut(&Rc<Tree>)) {
 }
 
 /// The two terms of a sum, with the scalars that the sum is multiplied or divided by; each has the place of its own.
-fn split(tree: &Rc<Tree>) -> Option<[Rc<Tree>; 2]> {
-    split_within(tree, MOST_FACTORS)
-}
-
 fn split_within(tree: &Rc<Tree>, depth: usize) -> Option<[Rc<Tree>; 2]> {
     let depth = depth.checked_sub(1)?;
     let each = |parts: [Rc<Tree>; 2], kind: &dyn Fn(Rc<Tree>) -> Kind| {

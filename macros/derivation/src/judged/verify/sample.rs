@@ -9,6 +9,7 @@ use super::number::Number;
 use super::value::Value;
 use super::{
     DRAWS, Values, block, by_blocks, cayley, displacements, exponential, increments, parameters, stream, translation,
+    velocities,
 };
 use crate::declared::lower::Lowered;
 use crate::declared::{Declaration, FieldKind, Name, Role, Tree};
@@ -122,25 +123,15 @@ pub(super) struct Sample<'a, T = f64> {
     pub(super) advected: Vec<(Name, Variance, Seen)>,
 }
 
-impl<'a> Sample<'a> {
-    /// The points at which the declaration has a value. The later ones are farther away, and may be anywhere.
-    pub(super) fn draws(
-        declaration: &'a Declaration,
-        lowered: &'a Lowered,
-        derived: &'a Derived,
-        tree: &'a Rc<Tree>,
-    ) -> impl Iterator<Item = Self> {
-        let samples = (1..=DRAWS).map(|seed| Self::new(declaration, lowered, derived, seed));
-        samples.filter(|sample| sample.declared(tree).is_defined())
-    }
-
-    fn new(declaration: &Declaration, lowered: &Lowered, derived: &'a Derived, seed: u64) -> Self {
+/// Real numbers for all names. The later ones are farther away, and may be anywhere.
+pub(super) fn draws(declaration: &Declaration) -> impl Iterator<Item = (Element, Values<f64>)> {
+    (1..=DRAWS).map(|seed| {
         let mut number = stream(seed);
         let element = Element::by_exponentials(&declaration.group, || 0.6 * number() - 0.3);
-        let mut sample = Self::with_numbers(declaration, lowered, derived, element, &mut number);
+        let mut values = numbers(declaration, &element, &mut number);
         // From one draw in five on, another scale for each parameter, and another sign for scalars.
         let reach = f64::from(u32::try_from(seed / (DRAWS / 5)).unwrap_or(0));
-        for (name, value) in sample.values.iter_mut().filter(|_| reach > 0.0) {
+        for (name, value) in values.iter_mut().filter(|_| reach > 0.0) {
             let (scale, sign) = ((8.0 * number() - 2.0).exp2().powf(reach / 4.0), number() < 0.5);
             let kind = match name {
                 Name::Field(index) => declaration.fields.get(*index).map(|field| field.kind),
@@ -153,7 +144,37 @@ impl<'a> Sample<'a> {
                 Some(_) => value.map(|x| scale * x),
             };
         }
-        sample
+        (element, values)
+    })
+}
+
+/// At an element, of numbers that are taken to lie between zero and one.
+fn numbers<T: Number>(declaration: &Declaration, element: &Element<T>, number: &mut impl FnMut() -> T) -> Values<T> {
+    let mut values = BTreeMap::from_iter(increments(&declaration.group, &element.matrix));
+    let tenth = T::of(Rational::new(1, 10));
+    values.insert(Name::Step, Value::scalar(tenth + tenth * number()));
+    if declaration.role == Role::Force {
+        values.extend(displacements(&declaration.group, number));
+    }
+    if declaration.continuous.is_some() {
+        let components: Vec<T> = declaration.group.generators.iter().map(|_| number()).collect();
+        values.extend(velocities(&declaration.group, &components));
+    }
+    values.extend(parameters(declaration, number));
+    values
+}
+
+impl<'a> Sample<'a> {
+    /// The points at which the declaration has a value.
+    pub(super) fn draws(
+        declaration: &'a Declaration,
+        lowered: &'a Lowered,
+        derived: &'a Derived,
+        tree: &'a Rc<Tree>,
+    ) -> impl Iterator<Item = Self> {
+        let samples =
+            draws(declaration).map(|(element, values)| Self::new(declaration, lowered, derived, element, values));
+        samples.filter(|sample| sample.declared(tree).is_defined())
     }
 }
 
@@ -166,13 +187,17 @@ impl<'a, T: Number> Sample<'a, T> {
         element: Element<T>,
         mut number: impl FnMut() -> T,
     ) -> Self {
-        let mut values = BTreeMap::from_iter(increments(&declaration.group, &element.matrix));
-        let tenth = T::of(Rational::new(1, 10));
-        values.insert(Name::Step, Value::scalar(tenth + tenth * number()));
-        if declaration.role == Role::Force {
-            values.extend(displacements(&declaration.group, &mut number));
-        }
-        values.extend(parameters(declaration, &mut number));
+        let values = numbers(declaration, &element, &mut number);
+        Self::new(declaration, lowered, derived, element, values)
+    }
+
+    fn new(
+        declaration: &Declaration,
+        lowered: &Lowered,
+        derived: &'a Derived,
+        element: Element<T>,
+        values: Values<T>,
+    ) -> Self {
         let advected = advected(declaration);
         let symbols = lowered.names.iter().map(|(name, id)| (*id, *name)).collect();
         Self { derived, element, values, symbols, advected }

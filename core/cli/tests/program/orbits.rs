@@ -1,0 +1,219 @@
+//! Satellites on orbits, against integrations that know Newton's law and no Kepler.
+
+use std::fs;
+use std::process::Command;
+
+use nalgebra::{Matrix3, Quaternion, SVector, UnitQuaternion, Vector3};
+
+use crate::called::{PROGRAM, folder, mistakes, printed, refused, rows, table};
+
+/// s.
+const PERIOD: f64 = 6000.0;
+/// The mean motion, rad/s.
+const RATE: f64 = std::f64::consts::TAU / PERIOD;
+
+fn satellite(effect: &str, normal: [f64; 3], e: f64, start: &str, steps: u32) -> String {
+    format!(
+        "title = \"A satellite\"\n[body]\nmoments = [100, 250, 300]\n[start]\n{start}\n[run]\nduration = 7800\n\
+         step = {:?}\n[output]\ncolumns = [\"quaternion\", \"velocity\", \"energy\", \"spatial-momentum\"]\n\
+         {effect}orbit = {{ period = \"100 min\", normal = {normal:?}, eccentricity = {e}, phase = \"40 deg\" }}\n",
+        7800.0 / f64::from(steps)
+    )
+}
+
+const GRADIENT: &str = "[gravity_gradient.direction]\n";
+const DAMPING: &str =
+    "[magnetic_damping]\nk = 1e7\n[magnetic_damping.field]\nequator = [\"2 µT\", \"5 µT\", \"25 µT\"]\n";
+
+/// One step of the classical Runge–Kutta method.
+fn rk4<const N: usize>(y: &mut SVector<f64, N>, h: f64, f: &dyn Fn(&SVector<f64, N>) -> SVector<f64, N>) {
+    let a = f(y);
+    let b = f(&(*y + a * (0.5 * h)));
+    let c = f(&(*y + b * (0.5 * h)));
+    let d = f(&(*y + c * h));
+    *y += (a + (b + c) * 2.0 + d) * (h / 6.0);
+}
+
+/// Beletsky's equation, with the true anomaly as the variable, to the time 7800 s: the angle in space and its rate.
+///
+/// V. V. Beletsky, Motion of an artificial satellite about its center of mass, 1966.
+fn beletsky(e: f64, ratio: f64, angle: f64, rate: f64) -> (f64, f64) {
+    // The mean anomaly at the start is 40°: from there back to the periapsis and no equation of Kepler's.
+    let of_anomaly = |nu: f64| RATE * (1.0 + e * nu.cos()).powi(2) / (1.0 - e * e).powf(1.5);
+    let f = |y: &SVector<f64, 4>| {
+        let [delta, slope, nu, _] = [y[0], y[1], y[2], y[3]];
+        let rest = 2.0 * e * nu.sin() * (1.0 + slope) - 3.0 * ratio * delta.sin() * delta.cos();
+        SVector::from([slope, rest / (1.0 + e * nu.cos()), 1.0, 1.0 / of_anomaly(nu)])
+    };
+    let until = |y: &mut SVector<f64, 4>, time: f64| {
+        while time - y[3] > 1e-10 {
+            let h = ((time - y[3]) * of_anomaly(y[2])).min(1e-3);
+            rk4(y, h, &f);
+        }
+    };
+    let mut y = SVector::from([0.0, 0.0, 0.0, 0.0]);
+    until(&mut y, PERIOD / 9.0);
+    (y[0], y[1], y[3]) = (angle - y[2], rate / of_anomaly(y[2]) - 1.0, 0.0);
+    until(&mut y, 7800.0);
+    (y[0] + y[2], (y[1] + 1.0) * of_anomaly(y[2]))
+}
+
+#[test]
+fn a_planar_satellite_follows_beletskys_equation() {
+    let folder = folder("a_planar_satellite_follows_beletskys_equation");
+    for e in [0.0, 0.1] {
+        let (angle, rate) = beletsky(e, 0.5, 0.9, 1.3 * RATE);
+        let error = |steps| {
+            let start = format!("euler = [0.9, 0, 0]\nvelocity = [0, 0, {:?}]", 1.3 * RATE);
+            let rows = rows(&folder, &satellite(GRADIENT, [0.0, 0.0, 1.0], e, &start, steps));
+            let end = &rows[rows.len() - 1];
+            let turned = 2.0 * end[4].atan2(end[1]);
+            ((0.5 * (turned - angle)).sin().abs() * 2.0, (end[7] - rate).abs() / RATE)
+        };
+        let [coarse, fine] = [error(780), error(1560)];
+        assert!(fine.0 < 1e-4 && fine.1 < 1e-4, "{e}: {coarse:?} {fine:?}");
+        // Of second order.
+        assert!((3.8..4.2).contains(&(coarse.0 / fine.0)), "{e}: {coarse:?} {fine:?}");
+    }
+}
+
+/// Satellite and planet by Newton's law, the body by Euler's equations: quaternion and velocity after 7800 s.
+fn integrated(
+    e: f64,
+    normal: Vector3<f64>,
+    attitude: UnitQuaternion<f64>,
+    velocity: Vector3<f64>,
+    torque: &dyn Fn(Vector3<f64>, &Vector3<f64>, &Matrix3<f64>) -> Vector3<f64>,
+) -> (Vector3<f64>, UnitQuaternion<f64>) {
+    let J = Matrix3::from_diagonal(&Vector3::new(100.0, 250.0, 300.0));
+    let periapsis = (Vector3::x() - normal * normal.x).normalize();
+    let f = |y: &SVector<f64, 13>| {
+        let part = |place: usize| Vector3::new(y[place], y[place + 1], y[place + 2]);
+        let (place, moving, turning) = (part(0), part(3), part(6));
+        // In semi-major axes.
+        let fall = place * (-RATE * RATE / place.norm().powi(3));
+        let q = Quaternion::new(y[9], y[10], y[11], y[12]);
+        let R = UnitQuaternion::new_normalize(q).to_rotation_matrix();
+        // What is in space as the body sees it.
+        let seen = R.transpose() * place;
+        let sum = torque(seen, &turning, &R.transpose().into_inner());
+        let spin = J.try_inverse().unwrap() * (sum - turning.cross(&(J * turning)));
+        let q = q * Quaternion::from_imag(turning) * 0.5;
+        SVector::from_iterator(moving.iter().chain(fall.iter()).chain(spin.iter()).copied().chain([q.w, q.i, q.j, q.k]))
+    };
+    let (place, fast) = (periapsis * (1.0 - e), normal.cross(&periapsis) * (RATE * ((1.0 + e) / (1.0 - e)).sqrt()));
+    let q = attitude.quaternion();
+    let mut y =
+        SVector::from_iterator(place.iter().chain(fast.iter()).copied().chain([0.0; 3]).chain([q.w, q.i, q.j, q.k]));
+    let till = |y: &mut SVector<f64, 13>, time: f64| (0..20_000).for_each(|_| rk4(y, time / 20_000.0, &f));
+    till(&mut y, PERIOD / 9.0);
+    for (place, number) in velocity.iter().chain([q.w, q.i, q.j, q.k].iter()).enumerate() {
+        y[6 + place] = *number;
+    }
+    till(&mut y, 7800.0);
+    (Vector3::new(y[6], y[7], y[8]), UnitQuaternion::new_normalize(Quaternion::new(y[9], y[10], y[11], y[12])))
+}
+
+#[test]
+fn in_space_it_is_as_newtons_and_eulers_equations_have_it() {
+    let folder = folder("in_space_it_is_as_newtons_and_eulers_equations_have_it");
+    let normal = Vector3::new(0.6, -0.48, 0.64);
+    let (attitude, velocity) =
+        (UnitQuaternion::new_normalize(Quaternion::new(0.8, 0.1, -0.5, 0.3)), Vector3::new(1e-3, -6e-4, 1.1e-3));
+    let start = format!("quaternion = [0.8, 0.1, -0.5, 0.3]\nvelocity = {:?}", velocity.as_slice());
+    let J = Matrix3::from_diagonal(&Vector3::new(100.0, 250.0, 300.0));
+    let gradient = |place: Vector3<f64>, _: &Vector3<f64>, _: &Matrix3<f64>| {
+        place.cross(&(J * place)) * (3.0 * RATE * RATE / place.norm().powi(5))
+    };
+    // The gradient of the potential m·r/r³ of a dipole m whose field at its equator is −m.
+    let damping = |place: Vector3<f64>, turning: &Vector3<f64>, to_body: &Matrix3<f64>| {
+        let m = to_body * Vector3::new(-2e-6, -5e-6, -25e-6);
+        let (r, along) = (place.norm(), m.dot(&place));
+        let field = place * (3.0 * along / r.powi(5)) - m / r.powi(3);
+        field.cross(turning).cross(&field) * -1e7
+    };
+    type Torque<'a> = &'a dyn Fn(Vector3<f64>, &Vector3<f64>, &Matrix3<f64>) -> Vector3<f64>;
+    for (effect, torque) in [(GRADIENT, &gradient as Torque<'_>), (DAMPING, &damping)] {
+        for e in [0.0, 0.1] {
+            let (expected, turned) = integrated(e, normal, attitude, velocity, torque);
+            let error = |steps| {
+                let text = satellite(effect, normal.into(), e, &start, steps);
+                let rows = rows(&folder, &text);
+                let end = &rows[rows.len() - 1];
+                let q = UnitQuaternion::new_normalize(Quaternion::new(end[1], end[2], end[3], end[4]));
+                (q.angle_to(&turned), (Vector3::new(end[5], end[6], end[7]) - expected).norm() / RATE)
+            };
+            let [coarse, fine] = [error(1560), error(3120)];
+            assert!(fine.0 < 1e-4 && fine.1 < 1e-4, "{effect}{e}: {coarse:?} {fine:?}");
+            assert!((3.5..4.5).contains(&(coarse.0 / fine.0)), "{effect}{e}: {coarse:?} {fine:?}");
+        }
+    }
+}
+
+/// On a circle `E − n L·ẑ` is kept: it is the energy in the frame that turns with the orbit, of the direction of each moment.
+#[test]
+fn the_energy_is_that_of_the_moment() {
+    let folder = folder("the_energy_is_that_of_the_moment");
+    let start = "quaternion = [0.8, 0.1, -0.5, 0.3]\nvelocity = [1e-3, -6e-4, 1.1e-3]";
+    let rows = rows(&folder, &satellite(GRADIENT, [0.0, 0.0, 1.0], 0.0, start, 7800));
+    let integral = |row: &Vec<f64>| row[8] - RATE * row[11];
+    let (first, energies) = (integral(&rows[0]), rows.iter().map(|row| row[8]));
+    let swing = energies.clone().fold(0.0, f64::max) - energies.fold(f64::MAX, f64::min);
+    let off = rows.iter().map(|row| (integral(row) - first).abs()).fold(0.0, f64::max);
+    assert!(off < 1e-4 * swing, "{off} {swing}");
+}
+
+/// Events between steps, a sweep, an ensemble and a page go with an orbit as with what rests.
+#[test]
+fn all_commands_have_orbits() {
+    let folder = folder("all_commands_have_orbits");
+    let _ = fs::remove_dir_all(folder.join("scene.ensemble"));
+    let start = "euler = [0.9, 0, 0]\nvelocity = [0, 0, 1e-3]";
+    let orbit = "gravity_gradient.direction.orbit";
+    let text = satellite(GRADIENT, [0.0, 0.0, 1.0], 0.1, start, 780)
+        + &format!(
+            "[picture]\naxis = [1, 0, 0]\npanels = [\"tilt\", \"energy\"]\n[sweep]\n{orbit}.eccentricity = [0.0, 0.05]\n\
+             [ensemble]\nmembers = 3\nevery = 390\ndraw.{orbit}.phase = {{ from = \"40 deg\", to = \"40.0001 deg\" }}\n"
+        );
+    let event = "[[event]]\nname = \"sideways\"\naxis_1 = 0\n";
+    fs::write(folder.join("events.toml"), text.replace("\"energy\", \"spatial", "\"spatial") + event).unwrap();
+    printed(&folder, &["run", "events.toml", "--csv", "--out", "."]);
+    let events = fs::read_to_string(folder.join("events.events.csv")).unwrap();
+    // The first axis passes the plane of the second and third axes of space where the angle is a right one.
+    for row in events.lines().skip(1) {
+        let numbers: Vec<f64> = row.split(',').skip(2).map(|cell| cell.parse().unwrap()).collect();
+        let turned = 2.0 * numbers[4].atan2(numbers[1]);
+        assert!(turned.cos().abs() < 1e-12, "{row}");
+    }
+    assert!(events.lines().count() > 1);
+    let both = text.clone() + event;
+    fs::write(folder.join("scene.toml"), both).unwrap();
+    let output = Command::new(PROGRAM).current_dir(&folder).args(["check", "scene.toml"]).output().unwrap();
+    assert!(String::from_utf8(output.stderr).unwrap().contains("isn't known between its steps"));
+    fs::write(folder.join("scene.toml"), &text).unwrap();
+    printed(&folder, &["run", "scene.toml", "--csv", "--html", "--out", "."]);
+    printed(&folder, &["sweep", "scene.toml", "--out", "."]);
+    let swept = table(&fs::read_to_string(folder.join("scene.sweep.csv")).unwrap());
+    assert!(swept.len() == 2 && (swept[0][2] - swept[1][2]).abs() > 1e-4, "{swept:?}");
+    // A member is the scene, and its energy in the middle, too.
+    let run = table(&fs::read_to_string(folder.join("scene.csv")).unwrap());
+    printed(&folder, &["ensemble", "scene.toml", "--out", "."]);
+    let store = liestep_ensemble::Store::folder(folder.join("scene.ensemble")).unwrap();
+    let (_, path) = store.files().unwrap().remove(0);
+    let rows = liestep_ensemble::Store::read(&path).unwrap().rows;
+    for (row, step) in [(1, 390), (2, 780)] {
+        assert_eq!(rows.step[row], step);
+        for (place, column) in rows.columns.iter().take(8).enumerate() {
+            let (own, of_run) = (column[row], run[usize::try_from(step).unwrap()][place + 1]);
+            let allowed = if place == 7 { 1e-8 } else { 1e-5 };
+            assert!((own.abs() - of_run.abs()).abs() < allowed, "{place}: {own} {of_run}");
+        }
+    }
+}
+
+#[test]
+fn mistakes_in_orbits_have_places() {
+    let folder = folder("mistakes_in_orbits_have_places");
+    let start = "euler = [0.9, 0, 0]\nvelocity = [0, 0, 1e-3]";
+    mistakes("orbits", &satellite(GRADIENT, [0.0, 0.0, 1.0], 0.1, start, 780), |text| refused(&folder, text));
+}

@@ -1,0 +1,189 @@
+//! Orbits, and what turns with them: values that are fixed in space, or a function of time.
+
+use std::f64::consts::{PI, TAU};
+use std::fmt;
+use std::marker::PhantomData;
+
+use nalgebra::Vector3;
+use serde::Deserialize;
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
+
+use crate::file::quantity::{Angle, Direction, Duration, FluxDensity, Number, Positive, Scalar, Triple};
+
+/// A closed orbit about a far mass, by Kepler's laws.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(try_from = "OrbitTable")]
+pub(crate) struct Orbit {
+    /// s.
+    period: f64,
+    eccentricity: f64,
+    /// The mean anomaly at the start, rad.
+    phase: f64,
+    /// In space, of length one: to where the orbit is nearest to the mass, and a quarter turn on.
+    axes: [Vector3<f64>; 2],
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct OrbitTable {
+    period: Positive<Duration>,
+    /// The motion is right-handed about it.
+    normal: Direction,
+    eccentricity: Option<Scalar<Number>>,
+    phase: Option<Scalar<Angle>>,
+    /// Its part across the normal counts.
+    periapsis: Option<Direction>,
+}
+
+impl TryFrom<OrbitTable> for Orbit {
+    type Error = &'static str;
+
+    fn try_from(table: OrbitTable) -> Result<Self, &'static str> {
+        let eccentricity = table.eccentricity.map_or(0.0, |number| number.value);
+        if !(0.0..1.0).contains(&eccentricity) {
+            return Err("an orbit's `eccentricity` is from 0, a circle, to below 1");
+        }
+        let normal = table.normal.0;
+        let across = |direction: Vector3<f64>| (direction - normal * normal.dot(&direction)).try_normalize(1e-6);
+        let periapsis = match table.periapsis {
+            Some(direction) => across(direction.0),
+            None => across(Vector3::x()).or_else(|| across(Vector3::y())),
+        };
+        let periapsis = periapsis.ok_or("`periapsis` is a direction in the plane of the orbit, across its `normal`")?;
+        let phase = table.phase.map_or(0.0, |angle| angle.value);
+        Ok(Self { period: table.period.value, eccentricity, phase, axes: [periapsis, normal.cross(&periapsis)] })
+    }
+}
+
+impl Orbit {
+    /// The mean motion `2π/T`, rad/s.
+    pub(crate) fn rate(&self) -> f64 {
+        TAU / self.period
+    }
+
+    /// Where the body is at a time, s, as seen from the mass: in space, in semi-major axes.
+    pub(crate) fn place(&self, time: f64) -> Vector3<f64> {
+        let e = self.eccentricity;
+        // Whole turns first, which would take digits from the angle.
+        let anomaly = eccentric_anomaly(self.phase + TAU * ((time % self.period) / self.period), e);
+        let (sin, cos) = anomaly.sin_cos();
+        self.axes[0] * (cos - e) + self.axes[1] * ((1.0 - e) * (1.0 + e)).sqrt() * sin
+    }
+}
+
+/// Solves Kepler's equation `E − e sin E = M` to rounding.
+///
+/// From `M` to half a turn the left side is convex, so that Newton's iteration comes down to its root from any point above.
+fn eccentric_anomaly(mean: f64, e: f64) -> f64 {
+    let mean = mean - TAU * (mean / TAU).round();
+    let wanted = mean.abs();
+    let mut anomaly = (wanted + e).min(PI);
+    loop {
+        let next = anomaly - (anomaly - e * anomaly.sin() - wanted) / (1.0 - e * anomaly.cos());
+        // It rises by roundings only; without a slope there is nothing to divide by.
+        if next >= anomaly || next.is_nan() {
+            return anomaly.copysign(mean);
+        }
+        anomaly = next;
+    }
+}
+
+/// Three numbers that are the same at all times, or a table of what makes them another vector each time.
+#[derive(Clone, Copy)]
+pub(crate) enum Turning<F, T> {
+    Fixed(F),
+    Turns(T),
+}
+
+/// The direction of the mass.
+pub(crate) type TurningDirection = Turning<Direction, OnOrbit>;
+/// A magnetic flux density.
+pub(crate) type TurningField = Turning<Triple<FluxDensity>, DipoleField>;
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct OnOrbit {
+    pub(crate) orbit: Orbit,
+}
+
+/// The field of a magnetic dipole in the middle of the mass, fixed in space, along the orbit.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct DipoleField {
+    orbit: Orbit,
+    /// Above the dipole's equator, a semi-major axis away.
+    equator: Triple<FluxDensity>,
+}
+
+impl Turning<Direction, OnOrbit> {
+    /// The direction of the mass at a time, s, of the length `(a/r)^{3/2}`, with which a gravity gradient that is quadratic
+    /// in it falls with the third power of the distance.
+    pub(crate) fn at(&self, time: f64) -> Vector3<f64> {
+        match self {
+            Self::Fixed(direction) => direction.0,
+            Self::Turns(OnOrbit { orbit }) => {
+                let place = orbit.place(time);
+                let distance = place.norm();
+                -place / (distance * distance * distance.sqrt())
+            }
+        }
+    }
+}
+
+impl Turning<Triple<FluxDensity>, DipoleField> {
+    /// The flux density at a time, s, in space, T: `(a/r)³ (B − 3 (B·r̂) r̂)` of that at the equator, `B`.
+    pub(crate) fn at(&self, time: f64) -> Vector3<f64> {
+        match self {
+            Self::Fixed(field) => field.value,
+            Self::Turns(DipoleField { orbit, equator }) => {
+                let place = orbit.place(time);
+                let (square, field) = (place.norm_squared(), equator.value);
+                (field - place * (3.0 * field.dot(&place) / square)) / (square * square.sqrt())
+            }
+        }
+    }
+}
+
+/// A parameter of an effect, of which it is asked whether it is another at each time.
+pub(crate) trait Parameter {
+    fn turns(&self) -> bool {
+        false
+    }
+}
+
+impl<Q> Parameter for Scalar<Q> {}
+impl<Q> Parameter for Positive<Q> {}
+impl<Q> Parameter for Triple<Q> {}
+impl<Q> Parameter for Option<Q> {}
+impl Parameter for Direction {}
+
+impl<F, T> Parameter for Turning<F, T> {
+    fn turns(&self) -> bool {
+        matches!(self, Self::Turns(_))
+    }
+}
+
+impl<'de, F: Deserialize<'de>, T: Deserialize<'de>> Deserialize<'de> for Turning<F, T> {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        source.deserialize_any(ListOrTable(PhantomData))
+    }
+}
+
+struct ListOrTable<F, T>(PhantomData<(F, T)>);
+
+impl<'de, F: Deserialize<'de>, T: Deserialize<'de>> Visitor<'de> for ListOrTable<F, T> {
+    type Value = Turning<F, T>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("three numbers, or a table with an `orbit`")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Self::Value, A::Error> {
+        F::deserialize(SeqAccessDeserializer::new(list)).map(Turning::Fixed)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, table: A) -> Result<Self::Value, A::Error> {
+        T::deserialize(MapAccessDeserializer::new(table)).map(Turning::Turns)
+    }
+}
