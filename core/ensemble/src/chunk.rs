@@ -39,7 +39,7 @@ impl<M: Integrator> Ensemble<M> {
             let start = (self.make)(&self.member(member));
             let impossible = start.map(|start| starts.push(start)).err();
             waiting.push((member, impossible.map(|failure| MemberFailure { member, steps: 0, failure })));
-            if starts.len() == crate::group::LANES {
+            if starts.len() == crate::section::LANES {
                 self.move_on(&mut waiting, &mut starts, &mut made, is_stopped)?;
             }
         }

@@ -7,9 +7,9 @@ use liestep::motion::{Batchable, Integrator, Moment};
 use simba::simd::AutoF64x8;
 
 use crate::draw::Member;
-use crate::group::{Grouping, LANES, Start, in_lanes, one_by_one};
+use crate::group::{Grouping, Start, in_lanes, one_by_one};
 use crate::reduce::{Reduction, Summary};
-use crate::section::Section;
+use crate::section::{LANES, Section};
 use crate::{Failure, Table};
 use liestep::numbers::Digest;
 

@@ -5,10 +5,7 @@ use liestep::numbers::{InLanes, Lanes as _};
 use liestep::{SetupError, StepError};
 use simba::simd::AutoF64x8;
 
-use crate::section::Section;
-
-/// The lanes of `AutoF64x8`.
-pub(crate) const LANES: usize = 8;
+use crate::section::{LANES, Section};
 
 /// Members under way, numbered from zero.
 pub(crate) trait Group<M: Integrator> {

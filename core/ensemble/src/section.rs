@@ -9,9 +9,11 @@ use liestep::recording::{Event, Run, RunError};
 use simba::simd::{AutoF64x8, SimdValue as _};
 
 use crate::Failure;
-use crate::group::LANES;
 use crate::reduce::Reduction;
 use liestep::numbers::Digest;
+
+/// The lanes of `AutoF64x8`.
+pub(crate) const LANES: usize = 8;
 
 type Value<M> = dyn Fn(&Moment<'_, M>) -> f64 + Send + Sync;
 type Values<M> = dyn Fn(&Moment<'_, M>, &mut Vec<f64>) + Send + Sync;

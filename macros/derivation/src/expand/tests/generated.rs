@@ -104,7 +104,7 @@ fn environment(random: &mut Random, declaration: &Declaration, size: f64) -> Env
                 random.matrix(declaration.group.factor(of).dimension(), 1)
             }
             Seen::Configuration(_) | Seen::Relative { .. } => exponential(&random.matrix(3, 1)),
-            Seen::From(_) => random.matrix(3, 1),
+            Seen::From(_) => random.matrix(3, 1).scaled(1.5 + random.signed()),
         };
         env.insert(w.plain_name(), value);
     }

@@ -185,7 +185,10 @@ pub(super) fn right(random: &mut Random, kind: &Kind) -> String {
     let with_name =
         [sum.replace(&format!("{moving}.dot(&a)"), &format!("{moving}.dot(&q)")), sum.replace(" + w)", " + q)")];
     match random.below(3) {
-        0 => format!("{{ let q = {}; {} }}", vector(random, kind, 1), with_name[usize::from(kind.role == Role::Force)]),
+        // A statement that begins with a block ends with it.
+        0 => {
+            format!("{{ let q = {}; ({}) }}", vector(random, kind, 1), with_name[usize::from(kind.role == Role::Force)])
+        }
         _ => sum,
     }
 }
