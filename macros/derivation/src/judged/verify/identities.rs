@@ -56,41 +56,58 @@ impl Terms {
     }
 }
 
+/// Of both momenta of a step, along some directions.
+pub(super) struct Variation {
+    /// The derivatives of `μ`, then of `μ⁺`, each along all directions.
+    pub(super) rows: Vec<Vec<NodeId>>,
+    /// Those of `⟨p, μ⁺⟩ − ⟨u, μ⟩`, of turns of `⟨p, μ⁺⟩`.
+    pub(super) adjoint: Vec<NodeId>,
+    /// What each of the two is called.
+    names: [&'static str; 2],
+}
+
 /// The derivatives of the momenta at both ends of a step, where they are asked for.
 pub(super) struct Derivatives {
     pub(super) graph: Graph,
-    /// Along turns of the increment, then along displacements of the body: those of `μ` and of `μ⁺`, row by row.
-    blocks: [[Vec<NodeId>; 2]; 2],
-    momenta: [Vec<NodeId>; 2],
-    /// By each scalar that the momenta have beside the increment: those of both, and of `⟨p, μ⁺⟩ − ⟨u, μ⟩`.
-    pub(super) scalars: Vec<(Input, Vec<NodeId>, NodeId)>,
-    /// Of `⟨p, μ⁺⟩` along turns of the increment, and of `⟨p, μ⁺⟩ − ⟨u, μ⟩` along displacements of the body.
-    pub(super) adjoint: [Vec<NodeId>; 2],
+    momenta: Vec<NodeId>,
+    /// The scalars that the momenta have beside the increment.
+    scalars: Vec<Input>,
+    /// Along turns of the increment, along displacements of the body, and by each scalar.
+    pub(super) variations: [Variation; 3],
 }
 
 impl Derivatives {
     fn new(derived: &Derived, ends: &Ends) -> Self {
         let mut linearisation = Linearisation::new(derived, ends);
-        let (blocks, momenta) = (linearisation.blocks(), linearisation.momenta());
+        let momenta = linearisation.momenta().concat();
         let [_, by_turn] = linearisation.adjoint_system();
         let gradient = linearisation.adjoint_gradient();
         let adjoint = [by_turn, linearisation.by_place(&gradient)];
         let factors = &derived.directions.factors;
         let is_increment = |id: SymbolId| factors.iter().any(|one| [one.small, one.small_inverse].contains(&id));
-        let inputs = linearisation.graph.reachable(&momenta.concat()).into_iter();
-        let inputs: Vec<Input> = inputs
+        let inputs = linearisation.graph.reachable(&momenta).into_iter();
+        let scalars: Vec<Input> = inputs
             .filter_map(|id| match linearisation.graph.node(id) {
                 Node::Input(input) if !is_increment(input.symbol) => Some(input),
                 _ => None,
             })
             .collect();
-        let by = |input: Input| {
-            let Input { symbol, row, column } = input;
-            let forwards = linearisation.by_entry(symbol, row, column);
-            (input, forwards, linearisation.gradient_by_entry(&gradient, symbol, row, column))
+        let (mut columns, mut by_scalars) = (Vec::new(), Vec::new());
+        for &Input { symbol, row, column } in &scalars {
+            columns.push(linearisation.by_entry(symbol, row, column));
+            by_scalars.push(linearisation.gradient_by_entry(&gradient, symbol, row, column));
+        }
+        let of = |rows: Vec<Vec<NodeId>>, adjoint, names| Variation { rows, adjoint, names };
+        let rows = |[start, end]: &[Vec<NodeId>; 2]| {
+            start.chunks(adjoint[0].len()).chain(end.chunks(adjoint[0].len())).map(<[NodeId]>::to_vec).collect()
         };
-        let scalars = inputs.into_iter().map(by).collect();
-        Self { blocks, momenta, scalars, adjoint, graph: linearisation.graph }
+        let [turn, place] = linearisation.blocks().each_ref().map(rows);
+        let by_scalar = (0..momenta.len()).map(|k| columns.iter().map(|by| by[k]).collect()).collect();
+        let [of_turn, of_place] = adjoint;
+        let names = ["derivative of a step", "adjoint of a step"];
+        let by_scalar = of(by_scalar, by_scalars, ["derivative by the parameters", "gradient of a step"]);
+        let variations = [of(turn, of_turn, names), of(place, of_place, names), by_scalar];
+        Self { graph: linearisation.graph, momenta, scalars, variations }
     }
 }
 
@@ -200,8 +217,7 @@ impl<'a> Identities<'a> {
         };
         let momentum = self.momentum_holds(&point, &declared, same)?;
         self.step_holds(&point, &momentum, &declared, same)?;
-        self.derivatives_hold(&point, &momentum, &declared, same)?;
-        self.gradients_hold(&point, &mut number, same)
+        self.derivatives_hold(&point, &momentum, &declared, &mut number, same)
     }
 
     fn at<T: Number>(&self, values: &Values<T>) -> T {
@@ -373,68 +389,43 @@ impl<'a> Identities<'a> {
         inputs
     }
 
-    /// The momenta at both ends with their derivatives, along a turn of the increment and along `δw = −v̂·w`.
+    /// The momenta at both ends with their derivatives, along a turn of the increment, along `δw = −v̂·w`, and along a random
+    /// change of all parameters, with what is advected and `h`.
     fn derivatives_hold<T: Number>(
         &self,
         point: &Point<T>,
         momentum: &[T],
         declared: &Declared<T>,
-        same: &mut Same<T>,
-    ) -> Result<(), Fault> {
-        let Some(Derivatives { graph, blocks, momenta, adjoint, .. }) = &self.derivatives else { return Ok(()) };
-        let (dual, [forwards, backwards]) = (&point.dual, &point.exponentials);
-        let seen = dual.inputs_at(&dual.element, &dual.moved([backwards, forwards]));
-        let turned = dual.inputs_at(&point.turned, &dual.values);
-        let [u, p] = &point.weights;
-        let plain = self.inputs_of_stages(point.sample, [u, p]);
-        for ((inputs, blocks), (adjoint, u)) in
-            [turned, seen].iter().zip(blocks).zip(adjoint.iter().zip([None, Some(u)]))
-        {
-            let [start, end] = momenta.each_ref().map(|outputs| slopes(&evaluated(graph, outputs, inputs)));
-            let expected = dot(p, &end) - u.map_or(T::ZERO, |u| dot(u, &start));
-            same("adjoint of a step", dot(&evaluated(graph, adjoint, &plain), &point.direction), expected)?;
-            for (end, (outputs, block)) in momenta.iter().zip(blocks).enumerate() {
-                let along = evaluated(graph, outputs, inputs);
-                let values: Vec<T> = along.iter().map(|one| one.value).collect();
-                let expected = if end == 0 { dot(momentum, &point.direction) } else { declared.left };
-                same("momentum to be differentiated", dot(&values, &point.direction), expected)?;
-                point.are_slopes("derivative of a step", &evaluated(graph, block, &plain), &along, same)?;
-            }
-        }
-        Ok(())
-    }
-}
-
-fn slopes<T: Number>(along: &[Dual<T>]) -> Vec<T> {
-    along.iter().map(|one| one.slope).collect()
-}
-
-impl Identities<'_> {
-    /// The derivatives of both momenta by all parameters, with what is advected and `h`, along random changes of these.
-    fn gradients_hold<T: Number>(
-        &self,
-        point: &Point<T>,
         number: &mut impl FnMut() -> T,
         same: &mut Same<T>,
     ) -> Result<(), Fault> {
-        let Some(Derivatives { graph, momenta, scalars, .. }) = &self.derivatives else { return Ok(()) };
-        let mut varied = point.dual.inputs();
-        let changes: Vec<T> = scalars.iter().map(|_| number()).collect();
-        for (&change, (Input { symbol, row, column }, ..)) in changes.iter().zip(scalars) {
+        let Some(Derivatives { graph, momenta, scalars, variations }) = &self.derivatives else { return Ok(()) };
+        let (dual, [forwards, backwards]) = (&point.dual, &point.exponentials);
+        let seen = dual.inputs_at(&dual.element, &dual.moved([backwards, forwards]));
+        let turned = dual.inputs_at(&point.turned, &dual.values);
+        let (mut varied, changes) = (dual.inputs(), scalars.iter().map(|_| number()).collect::<Vec<T>>());
+        for (&change, Input { symbol, row, column }) in changes.iter().zip(scalars) {
             if let Some(value) = varied.get_mut(symbol) {
                 value.entries[row * value.columns + column].slope = change;
             }
         }
         let [u, p] = &point.weights;
         let plain = self.inputs_of_stages(point.sample, [u, p]);
-        let along = slopes(&evaluated(graph, &momenta.concat(), &varied));
-        let (start, end) = along.split_at(u.len());
-        let gradient: Vec<NodeId> = scalars.iter().map(|(_, _, by)| *by).collect();
-        let found = dot(&evaluated(graph, &gradient, &plain), &changes);
-        same("gradient of a step", found, dot(p, end) - dot(u, start))?;
-        for (k, &expected) in along.iter().enumerate() {
-            let row: Vec<NodeId> = scalars.iter().map(|(_, by, _)| by[k]).collect();
-            same("derivative by the parameters", dot(&evaluated(graph, &row, &plain), &changes), expected)?;
+        let values = evaluated(graph, momenta, &plain);
+        let (start, end) = values.split_at(u.len());
+        let name = "momentum to be differentiated";
+        same(name, dot(start, &point.direction), dot(momentum, &point.direction))?;
+        same(name, dot(end, &point.direction), declared.left)?;
+        let along = [(turned, &point.direction), (seen, &point.direction), (varied, &changes)];
+        for (at, (Variation { rows, adjoint, names }, (inputs, along))) in variations.iter().zip(along).enumerate() {
+            let slopes: Vec<T> = evaluated(graph, momenta, &inputs).iter().map(|one| one.slope).collect();
+            let (start, end) = slopes.split_at(u.len());
+            let of_start = if at == 0 { T::ZERO } else { dot(u, start) };
+            same(names[1], dot(&evaluated(graph, adjoint, &plain), along), dot(p, end) - of_start)?;
+            let found = evaluated(graph, &rows.concat(), &plain);
+            for (row, &slope) in found.chunks(along.len().max(1)).zip(&slopes) {
+                same(names[0], dot(row, along), slope)?;
+            }
         }
         Ok(())
     }
@@ -453,8 +444,9 @@ impl Identities<'_> {
         let change = kernel.kick_derivative.clone().unwrap_or_default();
         let stages = stages.into_iter().chain([&change]).flatten().copied().collect::<Vec<_>>();
         let mut all = [evaluated(graph, &terms, &inputs), evaluated(&kernel.graph, &stages, &inputs)].concat();
-        if let Some(Derivatives { graph, blocks, momenta, .. }) = &self.derivatives {
-            all.extend(evaluated(graph, &[blocks.concat().concat(), momenta.concat()].concat(), &inputs));
+        if let Some(Derivatives { graph, variations, momenta, .. }) = &self.derivatives {
+            let rows = variations[..2].iter().flat_map(|one| one.rows.concat());
+            all.extend(evaluated(graph, &rows.chain(momenta.iter().copied()).collect::<Vec<_>>(), &inputs));
         }
         all
     }

@@ -253,9 +253,9 @@ fn small_errors_of_gradients() {
         let derivatives = identities.derivatives.as_mut().expect("asked for");
         let error = derivatives.graph.constant(Rational::new(1, 1 << 50));
         let place = match wrong {
-            0..2 => Some(&mut derivatives.adjoint[wrong][1]),
-            2..4 => Some(&mut derivatives.scalars[3].1[5 * (wrong - 2)]),
-            4 => Some(&mut derivatives.scalars[4].2),
+            0..2 => Some(&mut derivatives.variations[wrong].adjoint[1]),
+            2..4 => Some(&mut derivatives.variations[2].rows[5 * (wrong - 2)][3]),
+            4 => Some(&mut derivatives.variations[2].adjoint[4]),
             _ => None,
         };
         if let Some(node) = place {
