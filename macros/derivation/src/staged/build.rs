@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 
 use super::sources::{Sources, carried, parameter_kind};
-use super::{self as to, Array, Factor, MOST_TERMS, Operation, Parameter, Program, Source, Staged, Stages};
+use super::{Array, Factor, MOST_TERMS, Operation, Parameter, Program, Source, Staged, Stages};
 use crate::declared::Declaration;
 use crate::emit;
 use crate::expand::Steps;
 use crate::judged::{Chosen, Equations};
 use crate::mathematics::derive::Inverse;
-use crate::mathematics::symbolic::{Expression, Function};
+use crate::mathematics::symbolic::Expression;
 use crate::program::{Form, Graph, Handed, Node, NodeId, along_directions, limit, needed, term};
 
 pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> Staged {
