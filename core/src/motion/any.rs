@@ -139,10 +139,11 @@ where
     /// The state that the integrator needs: what another has kept is of no use, and it begins anew.
     fn own(&self, state: &AnyState<G, A>) -> I::State {
         if let Some(kept) = (state.kept.0.as_ref() as &dyn Any).downcast_ref::<K>() {
-            return State { motion: state.motion, kept: kept.clone() };
+            return State { motion: state.motion, kept: kept.clone(), elapsed: state.elapsed };
         }
         let mut own = self.0.adopt(&state.motion);
         own.motion = self.0.seen(&seeing(&state.motion, ()));
+        own.elapsed = state.elapsed;
         own
     }
 
@@ -151,7 +152,7 @@ where
         let mut own = self.own(state);
         let made = steps(&mut own);
         if own.steps != state.steps {
-            state.motion = own.motion;
+            (state.motion, state.elapsed) = (own.motion, own.elapsed);
             match (state.kept.0.as_mut() as &mut dyn Any).downcast_mut::<K>() {
                 Some(place) => *place = own.kept,
                 None => state.kept = AnyKept::of(own.kept),
@@ -162,7 +163,7 @@ where
 }
 
 fn erased<G: LieGroup, A, K: AnyMemory>(state: State<G, A, K>) -> AnyState<G, A> {
-    State { motion: state.motion, kept: AnyKept::of(state.kept) }
+    State { motion: state.motion, kept: AnyKept::of(state.kept), elapsed: state.elapsed }
 }
 
 impl<I, G, A, K> Integrator for Erasure<I>
@@ -187,6 +188,14 @@ where
 
     fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, A>, StepError> {
         self.0.part(&self.own(state), fraction)
+    }
+
+    fn time(&self, state: &Self::State) -> G::Scalar {
+        self.0.time(&self.own(state))
+    }
+
+    fn length(&self, state: &Self::State) -> Option<G::Scalar> {
+        self.0.length(&self.own(state))
     }
 
     fn cost(&self) -> Option<Cost> {
@@ -256,6 +265,14 @@ impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
         self.stepper.part(state, fraction)
     }
 
+    fn time(&self, state: &Self::State) -> G::Scalar {
+        self.stepper.time(state)
+    }
+
+    fn length(&self, state: &Self::State) -> Option<G::Scalar> {
+        self.stepper.length(state)
+    }
+
     fn cost(&self) -> Option<Cost> {
         Some(self.cost)
     }
@@ -284,15 +301,20 @@ impl<G: LieGroup, A: Advected<G>> WithoutAdvected<G, A> {
     #[allow(clippy::unused_self)] // by the form that `wraps` asks for
     fn change<R>(&self, state: &mut State<G, (), HiddenState<A>>, steps: impl FnOnce(&mut AnyState<G, A>) -> R) -> R {
         let kept = mem::replace(&mut state.kept.kept, AnyKept::of(()));
-        let mut own = State { motion: seeing(&state.motion, state.kept.advected), kept };
+        let mut own = State { motion: seeing(&state.motion, state.kept.advected), kept, elapsed: state.elapsed };
         let made = steps(&mut own);
         *state = hidden(own);
         made
     }
 }
 
-fn hidden<G: LieGroup, A: Copy>(State { motion, kept }: AnyState<G, A>) -> State<G, (), HiddenState<A>> {
-    State { motion: seeing(&motion, ()), kept: HiddenState { advected: motion.advected, kept } }
+fn hidden<G: LieGroup, A: Copy>(State { motion, kept, elapsed }: AnyState<G, A>) -> State<G, (), HiddenState<A>> {
+    State { motion: seeing(&motion, ()), kept: HiddenState { advected: motion.advected, kept }, elapsed }
+}
+
+fn shown<G: LieGroup, A: Copy>(state: &State<G, (), HiddenState<A>>) -> AnyState<G, A> {
+    let HiddenState { advected, kept } = state.kept.clone();
+    State { motion: seeing(&state.motion, advected), kept, elapsed: state.elapsed }
 }
 
 impl<G: LieGroup, A: Advected<G>> Integrator for WithoutAdvected<G, A> {
@@ -306,13 +328,19 @@ impl<G: LieGroup, A: Advected<G>> Integrator for WithoutAdvected<G, A> {
         steps: u64,
         next: &mut NextSteps<'_, G, ()>,
     ) -> Result<u64, StepError> {
-        self.change(state, |own| self.0.run_stretches(own, steps, &mut |shown| next(&seeing(shown, ()))))
+        self.change(state, |own| self.0.run_stretches(own, steps, &mut |shown, time| next(&seeing(shown, ()), time)))
     }
 
     fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, ()>, StepError> {
-        let HiddenState { advected, kept } = state.kept.clone();
-        let part = self.0.part(&State { motion: seeing(&state.motion, advected), kept }, fraction)?;
-        Ok(seeing(&part, ()))
+        Ok(seeing(&self.0.part(&shown(state), fraction)?, ()))
+    }
+
+    fn time(&self, state: &Self::State) -> G::Scalar {
+        self.0.time(&shown(state))
+    }
+
+    fn length(&self, state: &Self::State) -> Option<G::Scalar> {
+        self.0.length(&shown(state))
     }
 
     fn cost(&self) -> Option<Cost> {
