@@ -229,25 +229,13 @@ fn momenta_of_varied_steps_are_kept() {
     assert!(plain < 1e-12 && compensated < 1e-13);
 }
 
-/// Eccentric anomaly at a mean one.
+/// Eccentric anomaly at a mean one, by bisection.
 fn kepler(mean: f64, e: f64) -> f64 {
-    let (round, mean) = ((mean / TAU).floor() * TAU, mean.rem_euclid(TAU));
-    let (mut low, mut high, mut anomaly) = (0.0, TAU, mean);
-    for _ in 0..100 {
-        let off = anomaly - e * anomaly.sin() - mean;
-        if off > 0.0 {
-            high = anomaly
-        } else {
-            low = anomaly
-        }
-        let next = anomaly - off / (1.0 - e * anomaly.cos());
-        let next = if (low..=high).contains(&next) { next } else { 0.5 * (low + high) };
-        if (next - anomaly).abs() < 1e-15 {
-            break;
-        }
-        anomaly = next;
-    }
-    round + anomaly
+    let halved = |(low, high): (f64, f64), _| {
+        let middle = 0.5 * (low + high);
+        if middle - e * middle.sin() > mean { (low, middle) } else { (middle, high) }
+    };
+    (0..60).fold((mean - 1.0, mean + 1.0), halved).0
 }
 
 /// Distance and true anomaly at an eccentric one.

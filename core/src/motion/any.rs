@@ -87,7 +87,7 @@ impl Debug for AnyKept {
 
 /// How a wrapper steps, as its `change` lets what it wraps, and is read: as this, of the motion that it sees.
 macro_rules! wraps {
-    ($self:ident, $inner:expr, $motion:ident: $type:ty, $seen:expr) => {
+    ($self:ident, $inner:expr, $state:ident => $own:expr, $motion:ident: $type:ty, $seen:expr) => {
         fn step(&$self, state: &mut Self::State) -> Result<StepReport, StepError> {
             $self.change(state, |own| $inner.step(own))
         }
@@ -98,6 +98,14 @@ macro_rules! wraps {
 
         fn attempt(&$self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
             $self.change(state, |own| $inner.attempt(own, steps))
+        }
+
+        fn time(&$self, $state: &Self::State) -> G::Scalar {
+            $inner.time($own)
+        }
+
+        fn length(&$self, $state: &Self::State) -> Option<G::Scalar> {
+            $inner.length($own)
         }
 
         fn step_size(&$self) -> G::Scalar {
@@ -190,14 +198,6 @@ where
         self.0.part(&self.own(state), fraction)
     }
 
-    fn time(&self, state: &Self::State) -> G::Scalar {
-        self.0.time(&self.own(state))
-    }
-
-    fn length(&self, state: &Self::State) -> Option<G::Scalar> {
-        self.0.length(&self.own(state))
-    }
-
     fn cost(&self) -> Option<Cost> {
         self.0.cost()
     }
@@ -210,7 +210,7 @@ where
         self.0.seen(motion)
     }
 
-    wraps!(self, self.0, motion: &Motion<G, A>, motion);
+    wraps!(self, self.0, state => &self.own(state), motion: &Motion<G, A>, motion);
 }
 
 /// # Wrap: a stepper of any type
@@ -265,14 +265,6 @@ impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
         self.stepper.part(state, fraction)
     }
 
-    fn time(&self, state: &Self::State) -> G::Scalar {
-        self.stepper.time(state)
-    }
-
-    fn length(&self, state: &Self::State) -> Option<G::Scalar> {
-        self.stepper.length(state)
-    }
-
     fn cost(&self) -> Option<Cost> {
         Some(self.cost)
     }
@@ -285,7 +277,7 @@ impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
         self.stepper.seen(motion)
     }
 
-    wraps!(self, self.stepper, motion: &Motion<G, A>, motion);
+    wraps!(self, self.stepper, state => state, motion: &Motion<G, A>, motion);
 }
 
 /// A stepper that hides what is advected: it is kept with what the method keeps.
@@ -335,14 +327,6 @@ impl<G: LieGroup, A: Advected<G>> Integrator for WithoutAdvected<G, A> {
         Ok(seeing(&self.0.part(&shown(state), fraction)?, ()))
     }
 
-    fn time(&self, state: &Self::State) -> G::Scalar {
-        self.0.time(&shown(state))
-    }
-
-    fn length(&self, state: &Self::State) -> Option<G::Scalar> {
-        self.0.length(&shown(state))
-    }
-
     fn cost(&self) -> Option<Cost> {
         Some(self.0.cost)
     }
@@ -351,7 +335,7 @@ impl<G: LieGroup, A: Advected<G>> Integrator for WithoutAdvected<G, A> {
         hidden(self.0.adopt(&self.0.seen(motion)))
     }
 
-    wraps!(self, self.0, motion: &Motion<G, ()>, &self.0.seen(motion));
+    wraps!(self, self.0, state => &shown(state), motion: &Motion<G, ()>, &self.0.seen(motion));
 }
 
 impl<G: LieGroup, A: Advected<G> + 'static> AnyStepper<G, A> {

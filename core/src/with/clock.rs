@@ -3,10 +3,10 @@
 use alloc::vec::Vec;
 use core::f64::consts::TAU;
 
-use super::varied::{Lengths, Place, Varied};
+use super::varied::{Lengths, Varied};
 use crate::error::SetupError;
-use crate::mechanics::{Effect, SceneVisitor};
-use crate::motion::{Elapsed, Plan, Steerable, Stepper, Variable};
+use crate::mechanics::{Effect, Group, SceneVisitor, Vector};
+use crate::motion::{Elapsed, Motion, Plan, Steerable, Stepper, Variable};
 
 // Roots and powers without a standard library.
 #[cfg(not(feature = "std"))]
@@ -62,21 +62,6 @@ impl Clock {
     ///
     /// [`SetupError::Parameter`] where the eccentricity isn't from 0 to 1, 1 itself not among them, the period isn't positive
     /// and finite, or there is no step.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use liestep::with::Clock;
-    /// use liestep::effects::RigidBody;
-    /// use liestep::prelude::*;
-    ///
-    /// let body = RigidBody { J_d: NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5))? };
-    /// let stepper = Stepper::new(body, 1.0)?.with_clock(Clock::orbit(0.7, 6000.0, 400)?);
-    /// let mut state = stepper.start(SO3::identity(), Vector3::new(0.001, 0.0, 0.002))?;
-    /// stepper.run(&mut state, 400)?;
-    /// assert!((stepper.time(&state) - 6000.0).abs() < 1e-11);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn orbit(eccentricity: f64, period: f64, steps: u32) -> Result<Self, SetupError> {
         let refused = |field, cause| Err(SetupError::Parameter { field, cause });
         if !(0.0..1.0).contains(&eccentricity) {
@@ -184,16 +169,24 @@ impl<S: Effect<Scalar = f64>> Lengths<S> for Clock {
 
     fn begin(&self) {}
 
-    fn length(&self, place: &Place<'_, S>, (): &(), is_ahead: bool) -> f64 {
+    fn length(
+        &self,
+        unit: f64,
+        motion: &Motion<Group<S>, S::Advected>,
+        _velocity: impl FnOnce() -> Vector<S>,
+        ((), is_ahead): (&(), bool),
+    ) -> f64 {
         let round = self.lengths.len() as u64;
-        let step = match (is_ahead, place.motion.steps) {
+        let step = match (is_ahead, motion.steps) {
             (true, step) => Some(step),
             (false, 0) => self.is_repeated.then_some(round - 1),
             (false, step) => Some(step - 1),
         };
         let length = step.and_then(|step| self.lengths.get(self.place(step).1));
-        length.map_or(f64::NAN, |length| place.unit * length)
+        length.map_or(f64::NAN, |length| unit * length)
     }
+
+    fn after(&self, _: [f64; 2], _: &Motion<Group<S>, S::Advected>, _: impl FnOnce() -> Vector<S>, (): &()) {}
 
     #[allow(clippy::cast_precision_loss)] // a number of rounds
     fn time(&self, steps: u64, unit: f64, (): &()) -> f64 {

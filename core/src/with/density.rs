@@ -1,13 +1,11 @@
 //! Lengths of steps that follow the motion, and come back where the motion does.
 
-use core::fmt;
-
-use super::varied::{Lengths, Place, Varied};
+use super::varied::{Lengths, Varied};
 use crate::mechanics::{Effect, Group, SceneVisitor, Vector};
 use crate::motion::{Elapsed, Kept, Motion, Plan, Stepper, Variable};
 
 /// The rate of a density of steps.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Density<D>(D);
 
 /// The density `ρ` at a motion, which is one at its start, and the time.
@@ -29,25 +27,6 @@ impl<S: Effect<Scalar = f64>, P: Plan<S> + Variable> Stepper<S, P> {
     ///
     /// Recordings, events and checkpoints go with it; two different rates aren't told apart by a checkpoint. Not with it
     /// go lanes, derivatives, values that are given, control forces, and a time before a state's: these are refused.
-    ///
-    /// # Examples
-    ///
-    /// A tilted top that falls past its pivot: the faster it turns, the shorter its steps.
-    ///
-    /// ```
-    /// use liestep::prelude::*;
-    /// use liestep::with::densities;
-    ///
-    /// let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 1.2, 1.5))?;
-    /// let top = RigidBody { J_d } + Gravity { m: 1.0, g: 9.81, rho: Vector3::new(0.0, 0.1, 1.0), up: Vector3::z() };
-    /// let stepper = Stepper::new(top, 0.01)?.with_density(densities::turn(top, 1.0)?);
-    /// let start = stepper.start(SO3::from_euler_angles(0.1, 0.2, 0.0), Vector3::new(0.5, 0.0, 1.0))?;
-    /// let mut state = start;
-    /// stepper.run(&mut state, 1000)?;
-    /// stepper.inverse()?.run(&mut state, 1000)?;
-    /// assert!((state.momentum() - start.momentum()).norm() < 1e-10 && stepper.time(&state).abs() < 1e-12);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     ///
     /// # Source
     ///
@@ -73,18 +52,30 @@ where
         DensityMemory { density: 1.0, time: Elapsed::nothing() }
     }
 
-    fn length(&self, place: &Place<'_, S>, memory: &DensityMemory, is_ahead: bool) -> f64 {
-        let half = 0.5 * place.unit * (self.0)(place.motion, &(place.velocity)());
-        place.unit / (memory.density + if is_ahead { half } else { -half })
+    fn length(
+        &self,
+        unit: f64,
+        motion: &Motion<Group<S>, S::Advected>,
+        velocity: impl FnOnce() -> Vector<S>,
+        (memory, is_ahead): (&DensityMemory, bool),
+    ) -> f64 {
+        let half = 0.5 * unit * (self.0)(motion, &velocity());
+        unit / (memory.density + if is_ahead { half } else { -half })
     }
 
-    fn follow(&self, place: &Place<'_, S>, memory: &mut DensityMemory, length: f64) {
+    fn after(
+        &self,
+        [unit, length]: [f64; 2],
+        motion: &Motion<Group<S>, S::Advected>,
+        velocity: impl FnOnce() -> Vector<S>,
+        before: &DensityMemory,
+    ) -> DensityMemory {
         if length == 0.0 {
-            return;
+            return *before;
         }
-        let half = 0.5 * place.unit * (self.0)(place.motion, &(place.velocity)());
-        memory.density = place.unit / length + half;
-        memory.time.add(length);
+        let mut time = before.time;
+        time.add(length);
+        DensityMemory { density: unit / length + 0.5 * unit * (self.0)(motion, &velocity()), time }
     }
 
     fn time(&self, _: u64, _: f64, memory: &DensityMemory) -> f64 {
@@ -104,11 +95,5 @@ impl Kept<f64> for DensityMemory {
 
     fn from_numbers(next: &mut dyn FnMut() -> f64) -> Option<Self> {
         Some(Self { density: next(), time: Elapsed::from_numbers(next) })
-    }
-}
-
-impl<D> fmt::Debug for Density<D> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Density").finish_non_exhaustive()
     }
 }

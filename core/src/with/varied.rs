@@ -12,16 +12,6 @@ pub struct Varied<P, L> {
     lengths: L,
 }
 
-/// Where a length is asked for.
-pub struct Place<'a, S: Effect> {
-    /// The unit of the lengths, s.
-    pub unit: f64,
-    /// The motion.
-    pub motion: &'a Motion<Group<S>, S::Advected>,
-    /// Its body velocity.
-    pub velocity: &'a dyn Fn() -> Vector<S>,
-}
-
 /// What gives each step its length.
 pub trait Lengths<S: Effect>: Clone {
     /// What it keeps from step to step.
@@ -32,11 +22,23 @@ pub trait Lengths<S: Effect>: Clone {
     /// At the beginning of a motion.
     fn begin(&self) -> Self::Memory;
 
-    /// The length ahead of this place, or behind it, s.
-    fn length(&self, place: &Place<'_, S>, memory: &Self::Memory, is_ahead: bool) -> f64;
+    /// The length ahead of this motion, or behind it, s, in steps of this unit.
+    fn length(
+        &self,
+        unit: f64,
+        motion: &Motion<Group<S>, S::Advected>,
+        velocity: impl FnOnce() -> Vector<S>,
+        way: (&Self::Memory, bool),
+    ) -> f64;
 
-    /// Takes notice of a step of this length, s, that has led to this place.
-    fn follow(&self, _place: &Place<'_, S>, _memory: &mut Self::Memory, _length: f64) {}
+    /// What is kept after a step of this unit and length, s, that has led to this motion.
+    fn after(
+        &self,
+        lengths: [f64; 2],
+        motion: &Motion<Group<S>, S::Advected>,
+        velocity: impl FnOnce() -> Vector<S>,
+        before: &Self::Memory,
+    ) -> Self::Memory;
 
     /// The time, s, after this number of steps of this unit.
     fn time(&self, steps: u64, unit: f64, memory: &Self::Memory) -> f64;
@@ -53,15 +55,6 @@ impl<S: Effect<Scalar = f64>, P: Plan<S> + Variable> Stepper<S, P> {
 }
 
 impl<P, L> Varied<P, L> {
-    fn at<S, R>(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, then: impl FnOnce(&Place<'_, S>) -> R) -> R
-    where
-        S: Effect<Scalar = f64>,
-        P: Plan<S>,
-    {
-        let velocity = || self.plan.velocity(scene, motion);
-        then(&Place { unit: self.plan.step_size(), motion, velocity: &velocity })
-    }
-
     /// The length of a step, if it is one: of the sign of the unit, and long enough that time goes on.
     fn checked<S>(
         &self,
@@ -110,7 +103,8 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for Varied<P, L
     }
 
     fn length(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, kept: &Self::Kept, is_ahead: bool) -> f64 {
-        self.at(scene, motion, |place| self.lengths.length(place, &kept.1, is_ahead))
+        let velocity = || self.plan.velocity(scene, motion);
+        self.lengths.length(self.plan.step_size(), motion, velocity, (&kept.1, is_ahead))
     }
 
     #[hot]
@@ -123,7 +117,8 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for Varied<P, L
         let length = self.checked(scene, motion.now(), kept, true)?;
         let report = self.plan.step_of(scene, motion, &mut kept.0, length)?;
         motion.count();
-        self.at(scene, motion.now(), |place| self.lengths.follow(place, &mut kept.1, length));
+        let velocity = || self.plan.velocity(scene, motion.now());
+        kept.1 = self.lengths.after([self.plan.step_size(), length], motion.now(), velocity, &kept.1);
         Ok(report)
     }
 
