@@ -290,7 +290,7 @@ pub enum StepError {
     },
     /// A time before the state was asked for, where steps vary and aren't retraced.
     #[error(
-        "the time {time} s is before the state's, {now} s, and steps that vary aren't retraced; keep an earlier state"
+        "the time {time} s is before the state's, {now} s, and steps that vary aren't retraced; give a later time, or an earlier state"
     )]
     Past {
         /// The time, s.

@@ -112,10 +112,10 @@ where
 fn any_method_varies() {
     let (scene, attitude, velocity) = top();
     let flow = ExactBody::new(&disc().to_inertia());
-    let own = |h: f64| Stepper::new(scene.clone(), h).unwrap();
-    let composed = |h: f64| Stepper::composed(scene.clone(), h, CompositionScheme::SUZUKI_4).unwrap();
-    let split = |h: f64| Stepper::split(scene.clone(), h, flow, SplittingScheme::STRANG).unwrap();
-    let gauss = |h: f64| Stepper::collocated::<2>(scene.clone(), h).unwrap();
+    let own = |h: f64| Stepper::new(scene, h).unwrap();
+    let composed = |h: f64| Stepper::composed(scene, h, CompositionScheme::SUZUKI_4).unwrap();
+    let split = |h: f64| Stepper::split(scene, h, flow, SplittingScheme::STRANG).unwrap();
+    let gauss = |h: f64| Stepper::collocated::<2>(scene, h).unwrap();
     assert_varies("own", own, own(0.01).start(attitude, velocity).unwrap());
     let carried = |h: f64| own(h).or_substeps(4).compensated();
     assert_varies("compensated", carried, carried(0.01).start(attitude, velocity).unwrap());
@@ -140,7 +140,7 @@ fn any_method_varies() {
 #[test]
 fn time_is_that_of_the_lengths() {
     let (scene, attitude, velocity) = top();
-    let stepper = Stepper::new(scene.clone(), 0.01).unwrap();
+    let stepper = Stepper::new(scene, 0.01).unwrap();
     let mut state = stepper.start(attitude, velocity).unwrap();
     stepper.step_of(&mut state, 0.0037).unwrap();
     #[cfg(feature = "serde")]
@@ -386,7 +386,7 @@ fn a_close_pass_with_a_density() {
         .observed(&mut other)
         .every(1, |now| {
             if far_off(now) {
-                off = off.max((now.energy() - before).abs())
+                off = off.max((now.energy() - before).abs());
             }
         })
         .until(50.0)

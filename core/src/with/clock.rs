@@ -1,16 +1,13 @@
 //! Lengths of steps that are known beforehand.
 
 use alloc::vec::Vec;
-use core::f64::consts::TAU;
 
-use super::varied::{Lengths, Varied};
+use super::lengths::Lengths;
+use super::orbit::orbit;
+use super::varied::Varied;
 use crate::error::SetupError;
 use crate::mechanics::{Effect, Group, SceneVisitor, Vector};
 use crate::motion::{Elapsed, Motion, Plan, Steerable, Stepper, Variable};
-
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
 
 /// Lengths of steps that are known beforehand, `h_k = h c_k`: the `c_k`, one after the other or in rounds.
 ///
@@ -73,33 +70,7 @@ impl Clock {
         if steps == 0 {
             return refused("steps", "is zero");
         }
-        // With the eccentric anomaly `E`, `r = 1 − e cos E` and `dt = r dE`: steps are equal in `s`, `ds = r^{-1/2} dE`.
-        let rate = |anomaly: f64| (1.0 - eccentricity * anomaly.cos()).sqrt();
-        let width = TAU / f64::from(RECTANGLES);
-        let all: f64 = (0..RECTANGLES).map(|k| width / rate(width * f64::from(k))).sum();
-        let part = all / (f64::from(steps) * f64::from(PARTS));
-        let (mut anomaly, mut times) = (0.0_f64, [0.0].to_vec());
-        for _ in 0..steps / 2 {
-            for _ in 0..PARTS {
-                let first = rate(anomaly);
-                let second = rate(anomaly + 0.5 * part * first);
-                let third = rate(anomaly + 0.5 * part * second);
-                let fourth = rate(anomaly + part * third);
-                anomaly += part / 6.0 * (first + 2.0 * (second + third) + fourth);
-            }
-            times.push(period / TAU * (anomaly - eccentricity * anomaly.sin()));
-        }
-        let is_even = steps.is_multiple_of(2);
-        if let Some(apocentre) = times.last_mut().filter(|_| is_even) {
-            *apocentre = 0.5 * period;
-        }
-        let mut lengths: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        let back: Vec<f64> = lengths.iter().rev().copied().collect();
-        if let Some(&last) = times.last().filter(|_| !is_even) {
-            lengths.push(period - 2.0 * last);
-        }
-        lengths.extend(back);
-        Self::of_lengths(lengths).map(Self::repeated)
+        Self::of_lengths(orbit(eccentricity, period, steps)).map(Self::repeated)
     }
 
     /// The lengths back from this step to the first, which retrace a motion: of a stepper with `−h`, from a state that it has
@@ -124,13 +95,8 @@ impl Clock {
     }
 }
 
-/// Of an integral over a round, which converges as fast as a power with their number.
-const RECTANGLES: u32 = 65_536;
-/// Of a step of the clock, by the classical Runge–Kutta method.
-const PARTS: u32 = 8;
-
 /// # Wrap: lengths known beforehand
-impl<S: Effect<Scalar = f64>, P: Plan<S> + Variable> Stepper<S, P> {
+impl<S: Effect<Scalar = f64>, P: Plan<S>> Stepper<S, P> {
     /// The same method with the lengths of a clock, in units of its `h`.
     ///
     /// A clock that follows what is known of the motion, as `dt ∝ r^{3/2}` along an orbit, is worth many steps; [the
@@ -151,12 +117,15 @@ impl<S: Effect<Scalar = f64>, P: Plan<S> + Variable> Stepper<S, P> {
     /// use liestep::with::Clock;
     ///
     /// let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5)).unwrap();
-    /// let flow = ExactBody::new(J_d.into()).unwrap();
-    /// let stepper = Stepper::processed(RigidBody { J_d }, 1.0, flow, ProcessedScheme::BLANES_CASAS_ROS_4).unwrap();
+    /// let flow = ExactBody::new(&J_d.to_inertia());
+    /// let stepper = Stepper::processed(RigidBody { J_d }, 1.0, flow, ProcessedScheme::FOUR_A).unwrap();
     /// let _ = stepper.with_clock(Clock::orbit(0.7, 6000.0, 400).unwrap());
     /// ```
     #[must_use]
-    pub fn with_clock(self, clock: Clock) -> Stepper<S, Varied<P, Clock>> {
+    pub fn with_clock(self, clock: Clock) -> Stepper<S, Varied<P, Clock>>
+    where
+        P: Variable,
+    {
         self.varied(clock)
     }
 }

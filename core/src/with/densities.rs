@@ -10,6 +10,7 @@ use crate::numbers::Bodies;
 
 /// Steps proportional to the power `p` of the distance between two of several bodies, counted from zero:
 /// `G = −p r·ṙ/|r|²`, 1/s. Of two bodies that attract each other by gravity 3/2 is Kepler's own.
+#[allow(clippy::type_complexity)] // what `with_density` asks for
 pub fn distance<const N: usize, A>(
     bodies: [usize; 2],
     power: f64,
@@ -29,6 +30,7 @@ pub fn distance<const N: usize, A>(
 /// # Errors
 ///
 /// As [`RightHandSide::new`].
+#[allow(clippy::type_complexity)] // as above
 pub fn turn<L: ContinuousLagrangian<Scalar = f64, Group = SO3> + Clone>(
     scene: L,
     floor: f64,

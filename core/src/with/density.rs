@@ -1,6 +1,7 @@
 //! Lengths of steps that follow the motion, and come back where the motion does.
 
-use super::varied::{Lengths, Varied};
+use super::lengths::Lengths;
+use super::varied::Varied;
 use crate::mechanics::{Effect, Group, SceneVisitor, Vector};
 use crate::motion::{Elapsed, Kept, Motion, Plan, Stepper, Variable};
 
@@ -16,7 +17,7 @@ pub struct DensityMemory {
 }
 
 /// # Wrap: lengths that follow the motion
-impl<S: Effect<Scalar = f64>, P: Plan<S> + Variable> Stepper<S, P> {
+impl<S: Effect<Scalar = f64>, P: Plan<S>> Stepper<S, P> {
     /// The same method with steps of `h/ρ`, the first about `h`: `rate` is `G = d/dt ln ρ` of the density of steps that is
     /// wanted, 1/s, as a function of motion and body velocity. [`densities`](super::densities) has some that are ready made.
     ///
@@ -35,6 +36,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S> + Variable> Stepper<S, P> {
     #[must_use]
     pub fn with_density<D>(self, rate: D) -> Stepper<S, Varied<P, Density<D>>>
     where
+        P: Variable,
         D: Fn(&Motion<Group<S>, S::Advected>, &Vector<S>) -> f64 + Clone,
     {
         self.varied(Density(rate))

@@ -10,6 +10,8 @@ mod compensated;
 pub mod densities;
 mod density;
 mod driven;
+mod lengths;
+mod orbit;
 mod remedies;
 mod varied;
 
@@ -20,6 +22,8 @@ pub use compensated::{Compensable, Compensated, MemoryWithCarry};
 #[doc(hidden)]
 pub use density::Density;
 pub use driven::Driven;
+#[doc(hidden)]
+pub use lengths::Lengths;
 pub use remedies::Substeps;
 #[doc(hidden)]
-pub use varied::{Lengths, Varied};
+pub use varied::Varied;

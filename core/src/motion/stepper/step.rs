@@ -156,7 +156,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// let before = state.spatial_momentum();
     /// stepper.run(&mut state, 31)?;
     /// stepper.step_of(&mut state, 0.0415)?;
-    /// assert!((stepper.time(&state) - 3.1415).abs() < 1e-15);
+    /// assert!((stepper.time(&state) - 3.1415_f64).abs() < 1e-15);
     /// assert!((state.spatial_momentum() - before).norm() < 1e-14);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
