@@ -34,6 +34,6 @@ pub trait Lengths<S: Effect>: Clone {
     /// The time, s, after this number of steps of this unit.
     fn time(&self, steps: u64, unit: f64, memory: &Self::Memory) -> f64;
 
-    /// As [`Plan::describe`].
+    /// As [`Plan::describe`](crate::motion::Plan::describe).
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>);
 }
