@@ -316,6 +316,9 @@ pub(super) fn certified(what: &str, sureness: Sureness) -> String {
         Sureness::TooHigh => {
             format!("{what} are not certified: degrees are too high for a bound; they agree at random points, exactly")
         }
+        Sureness::Multiple => format!(
+            "{what} are not certified: a constant is a multiple of 2⁶¹ − 1, modulo which they agree at random points"
+        ),
         Sureness::Series => format!(
             "{what} are not certified: a generator's cube isn't a multiple of it; they agree in power series, exactly"
         ),

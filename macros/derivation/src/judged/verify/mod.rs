@@ -64,12 +64,13 @@ mod value;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
+use super::places::variables;
 use crate::declared::lower::Lowered;
 use crate::declared::{Declaration, FieldKind, Name, Role, Shape, Tree};
 use crate::mathematics::derive::{Derived, SelfAdjointness};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId};
-use crate::program::{Graph, Input, Kernel, Node, NodeId};
+use crate::program::{Derivatives, Graph, Input, Kernel, Node, NodeId};
 
 pub(super) use cayley::{is_cayley_coordinates, nilpotency};
 pub(crate) use constraint::Held;
@@ -112,10 +113,11 @@ enum Fault {
 }
 
 /// What the self-check has found of a declaration that it confirms.
-#[derive(Clone, Copy, Debug)]
 pub(crate) struct Verified {
     pub(crate) self_adjointness: SelfAdjointness,
     pub(crate) sureness: Sureness,
+    /// What was compared, to be emitted.
+    pub(crate) derivatives: Option<Derivatives>,
 }
 
 /// How sure it is that what was derived is right.
@@ -125,6 +127,8 @@ pub(crate) enum Sureness {
     Certified(u32),
     /// No bound is small enough, as degrees are too high.
     TooHigh,
+    /// A constant is a multiple of `2⁶¹ − 1`, or has one for its denominator.
+    Multiple,
     /// The group has no Cayley transforms: compared in power series.
     Series,
 }
@@ -150,7 +154,7 @@ pub(super) fn verify(
     if Sample::draws(declaration, lowered, derived, tree).next().is_none() {
         return Err(Unconfirmed::NoValue);
     }
-    let identities = Identities::new(declaration, tree, (derived, kernel));
+    let identities = Identities::new(declaration, tree, lowered, (derived, kernel));
     let check = exact::Check { declaration, lowered, tree, identities };
     let (sureness, reversed) = check.confirmed()?;
     if !check.is_smooth() {
@@ -160,7 +164,7 @@ pub(super) fn verify(
         Role::Force => SelfAdjointness::No,
         _ => reversal::self_adjointness(reversed, derived.adjoint_defect.is_zero()).map_err(Unconfirmed::Disagrees)?,
     };
-    Ok(Verified { self_adjointness, sureness })
+    Ok(Verified { self_adjointness, sureness, derivatives: check.identities.derivatives })
 }
 
 /// The values of operations.
@@ -265,10 +269,7 @@ fn increments<T: Number>(group: &Group, all: &Value<T>) -> Vec<(Name, Value<T>)>
 
 /// All fields, and what is advected.
 fn parameters<T: Number>(declaration: &Declaration, number: &mut impl FnMut() -> T) -> Values<T> {
-    let fields = declaration.fields.iter().enumerate().map(|(index, field)| (Name::Field(index), field.kind));
-    let advected =
-        (0..declaration.advected.len()).map(|index| (Name::Advected(index), declaration.advected_kind(index)));
-    fields.chain(advected).map(|(name, kind)| (name, parameter(kind, number))).collect()
+    variables(declaration).concat().into_iter().map(|(name, kind)| (name, parameter(kind, number))).collect()
 }
 
 /// Displacements of all factors, at the beginning of a step and at its end.

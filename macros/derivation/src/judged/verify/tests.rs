@@ -6,7 +6,7 @@ mod products;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::degree::{Degree, Largest};
+use super::degree::{Content, Degree, Largest};
 use super::evaluation::Evaluation;
 use super::value::Value;
 use super::{KineticPart, Sureness, Unconfirmed, degree, increments, kinetic_part, verify};
@@ -315,7 +315,7 @@ fn degrees() {
         values.extend([(Name::Step, variable()), (Name::Field(0), variable())]);
         let (value, mut largest) = (Evaluation::new(&values).of(&tree).first(), Largest::default());
         largest.compared(value, value);
-        largest.coincidences(degree::functions(&tree))
+        largest.coincidences(Content::of_tree(&tree).functions)
     };
     // k F²/h is 5/(Δ² h), and so is a difference of two such fractions, with equal powers of Δ and of h.
     assert_eq!(of("k * F[(0, 1)].powi(2) / h"), 5);
