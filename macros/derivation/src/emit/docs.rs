@@ -343,6 +343,7 @@ fn adjoint(findings: &Findings) -> String {
     let even = "even order; a step of −h undoes a step of h";
     let how_sure = match (findings.sureness, findings.self_adjointness) {
         (Sureness::Certified(exponent), SelfAdjointness::Exact) => wrong(exponent),
+        (Sureness::Multiple, _) => "modulo 2⁶¹ − 1, without a bound".to_owned(),
         _ => "exactly, without a bound".to_owned(),
     };
     let at_points = format!("at random points, {how_sure}");

@@ -149,8 +149,8 @@ impl Number for Residue {
         if exponent < 0 { power.reciprocal() } else { power }
     }
 
-    /// The field has no sines or logarithms. A pseudorandom function of the same symmetry, even or odd, stands in for
-    /// them. If two expressions agree with the stand-in, they agree whatever the function is.
+    /// The field has no sines or logarithms. Pseudorandom functions with the same symmetries and recurrences stand in for
+    /// them. What agrees with these agrees for all functions with these relations, wherever both sides have values.
     fn apply(self, function: Function) -> Self {
         let partner = match function {
             Function::Sin | Function::Cos | Function::Exp => -self,

@@ -1,7 +1,6 @@
 //! Each check fails on a broken term.
 
 mod mutations;
-mod products;
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -333,6 +332,23 @@ fn degrees() {
     assert!(of(&format!("{{ let x0 = k * F[(0, 1)]; {tower} x12 }}")) > 1 << 48);
     let declared = Declared::new("group = R1, l_d = k * F[(0, 1)].powi(2) / h", "struct Body { k: f64 }");
     assert!(matches!(declared.sureness(), Sureness::Certified(100..)));
+}
+
+/// What is wrong by a multiple of `2⁶¹ − 1` passes, and then nothing is claimed.
+#[test]
+fn constants_that_are_zero_in_the_field() {
+    let l_d = |mass: &str| format!("group = R1, l_d = k * F[(0, 1)].powi(2) / h + {mass} * F[(0, 1)].powi(2) / h");
+    let item = "struct Body { k: f64 }";
+    for mass in ["2305843009213693951.0", "4611686018427387902.0", "(2305843009213693950.0 + 1.0)"] {
+        let declared = Declared::new(&l_d(mass), item);
+        assert_eq!(declared.sureness(), Sureness::Multiple, "{mass}");
+        assert!(declared.after(|d| d.energy = with_one_sign_changed(&d.energy)).is_ok(), "{mass}");
+        let expansion = crate::expand::tests::expanded(&l_d(mass), item).to_string();
+        assert_eq!(expansion.matches("of a step are not certified: a constant is a multiple of 2⁶¹ − 1").count(), 3);
+    }
+    let other = Declared::new(&l_d("2305843009213693950.0"), item);
+    assert!(matches!(other.sureness(), Sureness::Certified(100..)));
+    assert_eq!(other.after(|d| d.energy = with_one_sign_changed(&d.energy)), Err("discrete energy"));
 }
 
 /// Groups of other generators have no Cayley transforms; there series are compared, and see what is wrong.

@@ -11,10 +11,10 @@ use super::super::identities::Identities;
 use super::super::residue::Residue;
 use super::super::sample::{Element, Sample};
 use super::super::{Row, Sureness, Unconfirmed, Verified, constraint, verify};
-use super::products::random::Text;
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Role, Tree, check, lower, parse};
 use crate::expand::tests::continuous::{CART, LINKS, OF_CART, OF_LINKS};
+use crate::expand::tests::generated::texts::on_a_product;
 use crate::expand::tests::time::declarations_in;
 use crate::expand::tests::{HEAVY_TOP, top};
 use crate::judged::{self, Chosen, cheapest, held};
@@ -204,9 +204,12 @@ fn prepared(role: Role, arguments: &str, item: &str) -> Prepared {
 #[test]
 fn small_errors_of_terms_and_stages() {
     let two = "group(F_1 = SO3, F_2 = SO3), advected(w_1 = up.seen_from(F_1), Q = F_2.seen_from(F_1)),
-        l_d = ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
-            + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h)
-            - 0.5 * h * (k * (Q.trace() + (F_1.transpose() * Q * F_2).trace()) + g * w_1.dot(&(rho + F_1 * rho)))";
+        l_d = {
+            let U = |y: Vector3<f64>| { let z = y.dot(&rho); z * (1.0 + y.norm_squared()).sqrt() };
+            ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
+                + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h)
+                - 0.5 * h * (k * (Q.trace() + (F_1.transpose() * Q * F_2).trace()) + g * (U(w_1) + U(F_1 * w_1)))
+        }";
     let bodies = "struct Two { J_1: NonstandardInertia, J_2: NonstandardInertia, k: f64, g: f64, rho: Vector3<f64>,
         up: Vector3<f64> }";
     let planar = "group = SE2, advected(w = up),
@@ -237,7 +240,7 @@ fn small_errors_of_terms_and_stages() {
         prepared.check_stages();
     }
     for seed in 0..6 {
-        let (arguments, item) = Text::of(seed);
+        let (arguments, item) = on_a_product(seed);
         prepared(Role::Lagrangian, &arguments, &item).check_terms(1, &mut table, |_, _| true);
     }
     assert_all_refused(&table);
