@@ -74,18 +74,7 @@ impl Residue {
 
     /// By Fermat, `a^(p − 2)`.
     fn reciprocal(self) -> Self {
-        if self == Self::ZERO { Self::UNDEFINED } else { self.raised(PRIME - 2) }
-    }
-
-    fn raised(self, exponent: u64) -> Self {
-        let (mut power, mut square) = (Self::ONE, self);
-        for bit in 0..u64::BITS - exponent.leading_zeros() {
-            if exponent >> bit & 1 == 1 {
-                power = power * square;
-            }
-            square = square * square;
-        }
-        power
+        if self == Self::ZERO { Self::UNDEFINED } else { number::raised(self, PRIME - 2) }
     }
 }
 
@@ -145,7 +134,7 @@ impl Number for Residue {
     }
 
     fn power(self, exponent: i32) -> Self {
-        let power = self.raised(exponent.unsigned_abs().into());
+        let power = number::raised(self, exponent.unsigned_abs().into());
         if exponent < 0 { power.reciprocal() } else { power }
     }
 
