@@ -1,59 +1,80 @@
 //! Tangent maps and adjoints against dual numbers through the steps themselves, or differences of them.
 
-use liestep::gradients::{Cotangent, Linearisable, TangentOf, Tape};
+use liestep::gradients::{Cotangent, Input, InputOf, Linearisable, TangentOf, Tape};
 use liestep::groups::LieGroup;
 use liestep::laws::samples::{MatrixLieGroup, Random, along};
 use liestep::mechanics::{Effect, SecondDerivatives};
-use liestep::motion::{Plan, Stepper};
-use liestep::numbers::Coordinates;
+use liestep::motion::{Plan, Steerable, Stepper};
+use liestep::numbers::{Coordinates, Entries};
 use nalgebra::{SMatrix, SVector};
 use num_dual::Dual64;
+
+use super::inputs::{assert_given, some_inputs};
 
 pub(crate) const STEPS: u64 = 12;
 pub(crate) const STEP: f64 = 0.02;
 /// Of the largest entry, and of the largest of each column. Small columns are what is left of larger terms.
-const BOUNDS: (f64, f64) = (1e-13, 1e-11);
+pub(crate) const BOUNDS: (f64, f64) = (1e-13, 1e-11);
 /// What may be found where nothing is expected, of the largest entry.
 const ROUNDING: f64 = 1e-17;
 
 /// How attitude and momentum change, for each number that is varied.
 pub(crate) type Columns<const D: usize> = Vec<(SVector<f64, D>, SVector<f64, D>)>;
 
-/// The derivatives of the last state by dual numbers: along displacements at the start, by its momentum, by parameters.
-fn by_dual_numbers<M, P, const N: usize, const D: usize>(
+/// The derivatives of the last state by dual numbers: along displacements at the start, by its momentum, by parameters, and
+/// by the scalars of what each step is given.
+fn by_dual_numbers<M, P, A: Entries<f64>, const N: usize, const D: usize>(
     stepper: impl Fn(Option<usize>) -> Stepper<M, P>,
     parameters: usize,
     start: (SMatrix<f64, N, N>, SVector<f64, D>),
+    inputs: &[Input<SVector<f64, D>, A>],
 ) -> Columns<D>
 where
     M: Effect<Scalar = Dual64>,
     M::Group: LieGroup<Scalar = Dual64, Matrix = SMatrix<Dual64, N, N>, Vector = SVector<Dual64, D>>,
-    P: Plan<M>,
+    P: Plan<M> + Steerable,
 {
     let lift = |value: f64, change: f64| Dual64::new(value, change);
-    let outcome = |number: Option<usize>, displaced: SMatrix<f64, N, N>, pushed: SVector<f64, D>| {
+    let given = |n: usize, varied: Option<(usize, usize)>| -> InputOf<M> {
+        let Some(input) = inputs.get(n) else { return Input::Free };
+        let mut scalars = input.scalars().into_iter().enumerate();
+        let next = &mut || {
+            let (place, scalar) = scalars.next().expect("as many scalars");
+            lift(scalar, if varied == Some((n, place)) { 1.0 } else { 0.0 })
+        };
+        match input {
+            Input::Free => Input::Free,
+            Input::Force(_) => Input::Force(Entries::from_entries(next)),
+            Input::Values(_) => Input::Values(Entries::from_entries(next)),
+        }
+    };
+    let run = |number, displaced: SMatrix<f64, N, N>, pushed: SVector<f64, D>, varied| {
         let stepper = stepper(number);
         let attitude = start.0.zip_map(&(start.0 * displaced), lift);
         let momentum = start.1.zip_map(&pushed, lift);
         let attitude = M::Group::from_matrix_unchecked(attitude);
         let mut state = stepper.start_with_momentum(attitude, momentum).expect("a start");
-        for _ in 0..STEPS {
-            stepper.step(&mut state).expect("a step");
+        for n in 0..usize::try_from(STEPS).expect("a few") {
+            stepper.step_given(&mut state, &given(n, varied)).expect("a step");
         }
         let (matrix, momentum) = (state.attitude().matrix(), state.momentum());
         let inverse = matrix.map(|entry| entry.re).try_inverse().expect("an element of a group");
         let displaced = (inverse * matrix.map(|entry| entry.eps)).map(Dual64::from);
         (M::Group::vee(&displaced).map(|entry| entry.re), momentum.map(|entry| entry.eps))
     };
+    let outcome = |number, displaced, pushed| run(number, displaced, pushed, None);
     let axis = |k: usize| SVector::<f64, D>::from_fn(|row, _| if row == k { 1.0 } else { 0.0 });
     let hat = |k: usize| M::Group::hat(&axis(k).map(Dual64::from)).map(|entry| entry.re);
     let of_attitude = (0..D).map(|k| outcome(None, hat(k), SVector::zeros()));
     let of_momentum = (0..D).map(|k| outcome(None, SMatrix::zeros(), axis(k)));
     let of_parameters = (0..parameters).map(|number| outcome(Some(number), SMatrix::zeros(), SVector::zeros()));
-    of_attitude.chain(of_momentum).chain(of_parameters).collect()
+    let scalars =
+        inputs.iter().enumerate().flat_map(|(n, input)| (0..input.scalars().len()).map(move |place| (n, place)));
+    let of_inputs = scalars.map(|varied| run(None, SMatrix::zeros(), SVector::zeros(), Some(varied)));
+    of_attitude.chain(of_momentum).chain(of_parameters).chain(of_inputs).collect()
 }
 
-/// Tangent map and adjoints at a random start.
+/// Tangent map and adjoints at a random start, without inputs and with some.
 pub(crate) fn assert_linearised<L, M, P, Q, const N: usize, const D: usize>(
     stepper: &Stepper<L, P>,
     dual: impl Fn(Option<usize>) -> Stepper<M, Q>,
@@ -64,14 +85,18 @@ pub(crate) fn assert_linearised<L, M, P, Q, const N: usize, const D: usize>(
     P: Linearisable<L>,
     M: Effect<Scalar = Dual64>,
     M::Group: LieGroup<Scalar = Dual64, Matrix = SMatrix<Dual64, N, N>, Vector = SVector<Dual64, D>>,
-    Q: Plan<M>,
+    Q: Plan<M> + Steerable,
     SVector<f64, D>: Coordinates<f64, Square = SMatrix<f64, D, D>>,
 {
     let mut random = Random::new(seed);
     let (attitude, momentum) = (along::<L::Group, N, D>(&random.sample(), 1.0), random.sample());
     let parameters = stepper.linearised().expect("derivatives").parameters().len();
-    let expected = by_dual_numbers(dual, parameters, (attitude.matrix(), momentum));
+    let start = (attitude.matrix(), momentum);
+    let expected = by_dual_numbers(&dual, parameters, start, &[] as &[InputOf<L>]);
     assert_columns(stepper, (attitude, momentum), &expected, BOUNDS, seed);
+    let inputs = some_inputs(stepper, seed, usize::MAX);
+    let expected = by_dual_numbers(&dual, parameters, start, &inputs);
+    assert_given(stepper, (attitude, momentum), &inputs, &expected, seed);
 }
 
 /// Tangent map, adjoints with either tape, and their duality.

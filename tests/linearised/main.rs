@@ -5,6 +5,7 @@ mod dual;
 mod exponents;
 mod force_gradients;
 mod free_body;
+mod inputs;
 mod products;
 mod random;
 mod refused;

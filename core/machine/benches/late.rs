@@ -82,7 +82,7 @@ where
 
 fn compare<S, K>(name: &str, scene: S)
 where
-    S: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Copy,
+    S: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
     K: KineticPart,
     LateTop<K, Machine>: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
     LateTop<K, Interpreted>: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,

@@ -225,7 +225,9 @@ fn what_is_wrong_is_seen() {
     let is_seen = |what: &str, wrong: Program| {
         // The arrays are at least as long as the wrong program needs them.
         let mut arrays = arrays.clone();
-        arrays.iter_mut().for_each(|array| array.resize(array.len().max(64), 0.5));
+        for array in &mut arrays {
+            array.resize(array.len().max(64), 0.5);
+        }
         let expected = outputs::<Interpreted>(right, &arrays);
         let found = outputs::<Machine>(&wrong, &arrays);
         let differing = found.iter().zip(&expected).filter(|(found, expected)| found != expected).count();

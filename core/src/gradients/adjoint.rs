@@ -6,13 +6,14 @@ use core::cell::RefCell;
 use core::ops::Range;
 
 use crate::error::{SetupError, StepError};
+use crate::gradients::input::{Input, InputOf};
 use crate::gradients::recording::Change;
 use crate::gradients::stage::{Cotangent, FlowDerivatives, Pass, Stage};
 use crate::gradients::{Linearisable, Linearised};
 use crate::groups::LieGroup;
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Scalar, SecondDerivatives, Vector};
 use crate::motion::{Motion, StateOf, Stepper};
-use crate::numbers::{Coordinates as _, Kernel, Vectors, dispatch, is_finite, real};
+use crate::numbers::{Coordinates as _, Entries as _, Kernel, Vectors, dispatch, is_finite, real};
 
 /// What an adjoint keeps of the way forwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,12 +41,14 @@ struct Back<'a, G: LieGroup> {
     cotangent: Cotangent<G::Vector>,
     /// By the parameters, so far.
     gradient: &'a mut [G::Scalar],
+    /// By the values that the step is given, so far; none where it isn't given any.
+    values: Vec<G::Scalar>,
 }
 
 impl<G: LieGroup> Pass<G> for Back<'_, G> {
     #[hot]
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>) {
-        self.cotangent = stage.pull(&self.cotangent, self.gradient);
+        self.cotangent = stage.pull(&self.cotangent, self.gradient, &mut self.values);
     }
 
     #[hot]
@@ -62,11 +65,27 @@ impl<G: LieGroup> Back<'_, G> {
     }
 }
 
+/// What the steps of a run are given, and the motions before them, of which a step's changes don't tell under an input.
+/// Both are empty where no step is given anything.
+struct Given<'i, S: Effect> {
+    inputs: &'i [InputOf<S>],
+    motions: Vec<Motion<Group<S>, S::Advected>>,
+}
+
+impl<S: Effect> Given<'_, S> {
+    fn input(&self, n: u64) -> &InputOf<S> {
+        usize::try_from(n).ok().and_then(|n| self.inputs.get(n)).unwrap_or(&Input::Free)
+    }
+}
+
 /// Several steps, from the last to the first.
 struct Stretch<'a, 'b, S: Effect, P, C> {
     stepper: &'a Stepper<S, P>,
     steps: Range<u64>,
     events: &'a [Change<Group<S>, S::Advected>],
+    given: &'a Given<'a, S>,
+    /// The derivatives by the inputs, from the last to the first.
+    by_inputs: &'a mut Vec<InputOf<S>>,
     back: &'a mut Back<'b, Group<S>>,
     cost: &'a mut C,
 }
@@ -86,12 +105,29 @@ where
     fn run(self) {
         let Stepper { scene, plan } = self.stepper;
         // All steps of a plan have the same stages, so each has this number of events.
+        let half = self.stepper.step_size() * real(0.5);
+        let mut motions = self.given.motions.iter().rev();
         for (n, step) in self.steps.rev().zip(self.events.chunks(plan.stages()).rev()) {
+            let (input, at_end) = (self.given.input(n), self.back.cotangent.momentum);
+            self.back.values.clear();
+            if let Input::Values(values) = input {
+                values.each(&mut |_| self.back.values.push(real(0.0)));
+            }
             for (index, event) in step.iter().enumerate().rev() {
                 plan.visit(scene, index, event, self.back);
             }
-            if let Some(event) = step.first() {
-                self.back.add(&(self.cost)(n, &event.before));
+            let mut shares = self.back.values.iter();
+            match input {
+                Input::Free if self.given.inputs.is_empty() => {}
+                Input::Free => self.by_inputs.push(Input::Free),
+                // Half of the impulse comes before the step, half behind it.
+                Input::Force(_) => self.by_inputs.push(Input::Force((self.back.cotangent.momentum + at_end) * half)),
+                Input::Values(_) => {
+                    self.by_inputs.push(input.of_scalars(&mut || shares.next().copied().unwrap_or(real(0.0))));
+                }
+            }
+            if let Some(before) = motions.next().or(step.first().map(|event| &event.before)) {
+                self.back.add(&(self.cost)(n, before));
             }
         }
     }
@@ -139,8 +175,63 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         state: &mut StateOf<S, P>,
         steps: u64,
         tape: Tape,
-        mut cost: impl FnMut(u64, &Motion<Group<S>, S::Advected>) -> Cotangent<Vector<S>>,
+        cost: impl FnMut(u64, &Motion<Group<S>, S::Advected>) -> Cotangent<Vector<S>>,
     ) -> Result<GradientOf<S>, StepError> {
+        self.adjoint_of(state, (steps, &[]), tape, cost).map(|(gradient, _)| gradient)
+    }
+
+    /// As [`adjoint`](Self::adjoint), of a run that makes a step with each of these inputs: the gradient by the start and the
+    /// parameters, and behind it the derivatives by the inputs, each of the kind of its input.
+    ///
+    /// The derivative by a control force is `h/2 (u + p)`, where `u` pairs with the momentum before the step and `p` with that
+    /// behind it. That by values is the derivative by what the body sees of them, taken back to space and added over the
+    /// stages; the parameters that are advected have no share in a step with other values.
+    ///
+    /// # Errors
+    ///
+    /// As [`Stepper::step_given`], and [`StepError::NonFinite`] where the gradient overflows.
+    ///
+    /// # Examples
+    ///
+    /// How the last momentum of a body depends on the torques of all steps.
+    ///
+    /// ```
+    /// use liestep::effects::RigidBody;
+    /// use liestep::gradients::{Cotangent, Input, Tape};
+    /// use liestep::groups::LieGroup as _;
+    /// use liestep::{NonstandardInertia, SO3, Stepper};
+    /// use nalgebra::Vector3;
+    ///
+    /// let J_d = NonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.0))?;
+    /// let stepper = Stepper::new(RigidBody { J_d }, 0.1)?;
+    /// let mut state = stepper.start(SO3::identity(), Vector3::zeros())?;
+    /// let torques = [Input::Force(Vector3::new(0.1, 0.0, 0.2)); 10];
+    /// let last = Cotangent { momentum: Vector3::z(), ..Cotangent::zero() };
+    /// let cost = |n, _: &_| if n == 10 { last } else { Cotangent::zero() };
+    /// let (_, by_torques) = stepper.linearised()?.adjoint_given(&mut state, &torques, Tape::All, cost)?;
+    /// let Input::Force(by_last) = by_torques[9] else { unreachable!() };
+    /// assert!((by_last.z - 0.1).abs() < 1e-3); // h
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn adjoint_given(
+        &self,
+        state: &mut StateOf<S, P>,
+        inputs: &[InputOf<S>],
+        tape: Tape,
+        cost: impl FnMut(u64, &Motion<Group<S>, S::Advected>) -> Cotangent<Vector<S>>,
+    ) -> Result<(GradientOf<S>, Vec<InputOf<S>>), StepError> {
+        self.adjoint_of(state, (inputs.len() as u64, inputs), tape, cost)
+    }
+
+    fn adjoint_of(
+        &self,
+        state: &mut StateOf<S, P>,
+        (steps, inputs): (u64, &[InputOf<S>]),
+        tape: Tape,
+        mut cost: impl FnMut(u64, &Motion<Group<S>, S::Advected>) -> Cotangent<Vector<S>>,
+    ) -> Result<(GradientOf<S>, Vec<InputOf<S>>), StepError> {
+        let mut given = Given { inputs, motions: Vec::new() };
+        let mut by_inputs = Vec::with_capacity(inputs.len());
         let length = match tape {
             Tape::All => steps,
             Tape::SquareRoot => steps.isqrt(),
@@ -157,29 +248,27 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         while steps - made > length {
             starts.push((made, end));
             for _ in 0..length {
-                self.stepper.step(&mut end)?;
+                self.stepper.step_given(&mut end, given.input(made))?;
+                made += 1;
             }
-            made += length;
         }
         starts.push((made, end));
-        for _ in made..steps {
-            self.recorded(&mut end, &events)?;
-        }
+        self.record_stretch(&mut end, made..steps, &mut given, &events)?;
         let mut gradient = self.no_gradient();
-        let mut back = Back { cotangent: cost(steps, &end.motion), gradient: &mut gradient };
+        let mut back = Back { cotangent: cost(steps, &end.motion), gradient: &mut gradient, values: Vec::new() };
         let mut last = steps;
         while let Some((first, mut start)) = starts.pop() {
             if last < steps {
                 events.borrow_mut().clear();
-                for _ in first..last {
-                    self.recorded(&mut start, &events)?;
-                }
+                self.record_stretch(&mut start, first..last, &mut given, &events)?;
             }
             let events = events.borrow();
             dispatch(Stretch {
                 stepper: self.stepper,
                 steps: first..last,
                 events: &events,
+                given: &given,
+                by_inputs: &mut by_inputs,
                 back: &mut back,
                 cost: &mut cost,
             });
@@ -187,8 +276,30 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         }
         let start = back.cotangent;
         let gradient = finite::<S>(start, gradient)?;
+        by_inputs.reverse();
+        if by_inputs.iter().flat_map(Input::scalars).any(|share| !is_finite(share)) {
+            return Err(StepError::NonFinite { what: "gradient" });
+        }
         *state = end;
-        Ok(gradient)
+        Ok((gradient, by_inputs))
+    }
+
+    /// Makes these steps, and writes down their changes and, of a run with inputs, the motions before them.
+    fn record_stretch(
+        &self,
+        state: &mut StateOf<S, P>,
+        steps: Range<u64>,
+        given: &mut Given<'_, S>,
+        events: &RefCell<Vec<Change<Group<S>, S::Advected>>>,
+    ) -> Result<(), StepError> {
+        given.motions.clear();
+        for n in steps {
+            if !given.inputs.is_empty() {
+                given.motions.push(state.motion);
+            }
+            self.recorded_given(state, given.input(n), events)?;
+        }
+        Ok(())
     }
 
     fn no_gradient(&self) -> Vec<Scalar<S>> {
@@ -253,7 +364,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Backwards<'_, S, P> {
         let mut now = self.inverse.adopt(&end);
         let events = RefCell::new(Vec::new());
         let mut gradient = forwards.no_gradient();
-        let mut back = Back { cotangent: cost(steps, &end.motion), gradient: &mut gradient };
+        let mut back = Back { cotangent: cost(steps, &end.motion), gradient: &mut gradient, values: Vec::new() };
         for n in (0..steps).rev() {
             inverse.recorded(&mut now, &events)?;
             let mut made = events.borrow_mut();

@@ -4,7 +4,9 @@
 //! |---|---|
 //! | how the end of a motion changes with its start and with some parameters | [`Linearised::step`] with a [`Tangent`] |
 //! | the state transition matrix | [`Tangent::transition`] |
+//! | how the end of a step changes with its beginning and with a control force, or with values that it is given | [`Linearised::transition`] |
 //! | how one number changes with the start and with all parameters | [`Linearised::adjoint`], [`Linearised::backwards`] |
+//! | the same with what each step is given, and how the number changes with that | [`Linearised::adjoint_given`] |
 //! | Lyapunov exponents | [`Linearised::lyapunov_exponents`] |
 //!
 //! They are asked for by the word `gradients` in a declaration; the effects of the library have it, except for the bodies
@@ -89,11 +91,13 @@
 
 mod adjoint;
 mod exponents;
+mod input;
 mod recording;
 mod stage;
 mod tangent;
 
 pub use adjoint::{Backwards, Gradient, Tape};
+pub use input::{Input, InputOf, Transition};
 pub use recording::Change;
 pub(crate) use stage::ForceGradient;
 pub use stage::{Cotangent, FlowDerivatives, Pass, Stage};
@@ -105,7 +109,7 @@ use core::ops::Range;
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, SecondDerivatives};
-use crate::motion::{Declared, Plan, StateOf, StepReport, Stepper, Summation};
+use crate::motion::{Declared, Plan, StateOf, Steerable, StepReport, Stepper, Summation};
 use crate::numbers::{Kernel, Vectors, dispatch};
 use recording::Recording;
 
@@ -117,7 +121,7 @@ use recording::Recording;
     label = "not with this method",
     note = "known are those of a scene's own step, of compositions, and of splittings, processed ones too, whose flow is exact or declared with `gradients`"
 )]
-pub trait Linearisable<S: SecondDerivatives>: Plan<S> {
+pub trait Linearisable<S: SecondDerivatives>: Plan<S> + Steerable {
     /// How many scalars the parameters have: those of the scene, and behind them those of what else the plan moves by.
     fn parameters(&self) -> usize {
         S::PARAMETERS
@@ -267,7 +271,7 @@ impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearised<'a, S, P> {
     pub fn tangent(&self, parameters: &[usize]) -> TangentOf<S> {
         let count = self.stepper.plan.parameters();
         assert!(parameters.iter().all(|&number| number < count), "there are {count} parameters, numbered from 0");
-        Tangent::new(count, parameters)
+        Tangent::new([count, 0], parameters)
     }
 
     /// One step, and the derivatives carried over it. On an error both are unchanged.
@@ -280,23 +284,24 @@ impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearised<'a, S, P> {
     ///
     /// Where the tangent has columns for the parameters of another plan, which has more of them or fewer.
     pub fn step(&self, state: &mut StateOf<S, P>, tangent: &mut TangentOf<S>) -> Result<StepReport, StepError> {
+        self.step_given(state, &Input::Free, tangent)
+    }
+
+    /// Carries a tangent over the stages that it has written down; on an error it is unchanged.
+    fn carry(&self, tangent: &mut TangentOf<S>) -> Result<(), StepError> {
         let Stepper { scene, plan } = self.stepper;
         if let Some(count) = tangent.parameters() {
             let own = plan.parameters();
             assert_eq!(count, own, "the tangent is that of a plan with {count} parameters, and this one has {own}");
         }
-        let before = *state;
-        tangent.events.get_mut().clear();
-        let report = self.recorded(state, &tangent.events)?;
         let events = tangent.events.take();
         let is_finite = dispatch(Carry { plan, scene, events: &events, tangent: &mut *tangent });
         tangent.events.replace(events);
-        if !is_finite {
-            tangent.go_back();
-            *state = before;
-            return Err(StepError::NonFinite { what: "derivative after the step" });
+        if is_finite {
+            return Ok(());
         }
-        Ok(report)
+        tangent.go_back();
+        Err(StepError::NonFinite { what: "derivative after the step" })
     }
 
     /// One step, whose stages are written down.

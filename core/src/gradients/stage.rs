@@ -1,5 +1,7 @@
 //! The tangent map of one stage and its transpose.
 
+use alloc::vec;
+
 use crate::gradients::recording::Change;
 use crate::groups::{Advected as _, LieGroup, SquareOf, seen_of_unit};
 use crate::mechanics::pattern_of_type;
@@ -93,7 +95,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         if self.gradient.is_none() {
             return slope;
         }
-        let rows = Vector::<E>::square(|k| self.of_gradient(&Vector::<E>::axis(k), &mut |_, _| {}));
+        let rows = Vector::<E>::square(|k| self.of_gradient(&Vector::<E>::axis(k), &mut |_, _| {}, &mut []));
         slope + Vector::<E>::transpose(&rows)
     }
 
@@ -121,36 +123,69 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         }
     }
 
-    /// The derivatives of `μ` and `μ⁺` by all parameters; those of one that is visited again are added.
-    pub(super) fn forwards(&self, visit: &mut impl FnMut(usize, Vector<E>, Vector<E>)) {
+    /// The derivatives of `μ` and `μ⁺` by all parameters, and by as many values as are asked for, numbered from the first of
+    /// these on; parameters that are advected have none in a step that is given values. Those of a number that is visited
+    /// again are added.
+    pub(super) fn forwards(
+        &self,
+        (first_value, values, is_given_values): (usize, usize, bool),
+        visit: &mut impl FnMut(usize, Vector<E>, Vector<E>),
+    ) {
         if self.gradient.is_some() {
             for axis in (0..Group::<E>::DIMENSION).map(Vector::<E>::axis) {
-                self.of_gradient(&axis, &mut |number, share| {
-                    visit(self.first + number, Vector::<E>::zero(), axis * share);
-                });
+                let mut by_values =
+                    vec![real::<Scalar<E>>(0.0); if is_given_values { Self::count_values(&self.advected) } else { 0 }];
+                let add = &mut |number, share| visit(self.first + number, Vector::<E>::zero(), axis * share);
+                self.of_gradient(&axis, add, &mut by_values);
+                for (place, share) in by_values.into_iter().enumerate().take(values) {
+                    visit(first_value + place, Vector::<E>::zero(), axis * share);
+                }
             }
         }
         let scale = self.scale();
         let visit = &mut |number, start, end| visit(number, start * scale, end * scale);
         self.by_parameters(visit);
-        E::carried_parameters(&mut |place, parameter| {
-            let seen: E::Advected = seen_of_unit(place, &self.attitude);
-            let (mut start, mut end) = (Vector::<E>::zero(), Vector::<E>::zero());
-            self.by_advected(&mut |number, by_start, by_end| {
-                let change = entry(&seen, number);
-                (start, end) = (start + by_start * change, end + by_end * change);
+        if !is_given_values {
+            E::carried_parameters(&mut |place, parameter| {
+                let (start, end) = self.by_value(place);
+                visit(self.first + parameter, start, end);
             });
-            visit(self.first + parameter, start, end);
+        }
+        for place in 0..values {
+            let (start, end) = self.by_value(place);
+            visit(first_value + place, start, end);
+        }
+    }
+
+    fn count_values(values: &E::Advected) -> usize {
+        let mut count = 0;
+        values.each(&mut |_| count += 1);
+        count
+    }
+
+    /// The derivatives of `μ` and `μ⁺` by the scalar in this place of what is advected, as it is in space.
+    fn by_value(&self, place: usize) -> (Vector<E>, Vector<E>) {
+        let seen: E::Advected = seen_of_unit(place, &self.attitude);
+        let (mut start, mut end) = (Vector::<E>::zero(), Vector::<E>::zero());
+        self.by_advected(&mut |number, by_start, by_end| {
+            let change = entry(&seen, number);
+            (start, end) = (start + by_start * change, end + by_end * change);
         });
+        (start, end)
     }
 
     /// Adds the gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` by the parameters at a fixed increment, for `[u, p]`, and returns that along
-    /// displacements.
+    /// displacements; to `values` it adds that by what is advected, as it is in space.
     #[hot]
-    fn fixed_increment(&self, ends: [&Vector<E>; 2], add: &mut impl FnMut(usize, Scalar<E>)) -> Vector<E> {
+    fn fixed_increment(
+        &self,
+        ends: [&Vector<E>; 2],
+        add: &mut impl FnMut(usize, Scalar<E>),
+        values: &mut [Scalar<E>],
+    ) -> Vector<E> {
         let (by_place, by_seen) =
             self.effect.adjoint_gradient(&self.increment, &self.advected, self.length(), ends, &mut *add);
-        self.add_carried(&by_seen, add);
+        self.add_carried(&by_seen, add, values);
         by_place
     }
 
@@ -160,7 +195,12 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     /// `⟨p, f⟩ = ⟨u, D_v τ⟩` with `J u = τ` and, `s` being the share, `v = s p`. How `u` changes is in the gradient of
     /// `⟨u, D_v τ⟩ + ⟨r, τ − J u⟩` at fixed `u` and `r` where `J r = D_v τ`.
     #[hot]
-    fn of_gradient(&self, paired: &Vector<E>, add: &mut impl FnMut(usize, Scalar<E>)) -> Vector<E> {
+    fn of_gradient(
+        &self,
+        paired: &Vector<E>,
+        add: &mut impl FnMut(usize, Scalar<E>),
+        values: &mut [Scalar<E>],
+    ) -> Vector<E> {
         let Some(ForceGradient { share, torque, inverse_inertia }) = self.gradient else {
             return Vector::<E>::zero();
         };
@@ -172,13 +212,23 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         let Some((by_place, by_seen)) = self.effect.kick_gradient(&self.advected, &along, [&u, &r], &mut *add) else {
             return Vector::<E>::zero();
         };
-        self.add_carried(&by_seen, add);
+        self.add_carried(&by_seen, add, values);
         by_place
     }
 
-    /// Adds what the parameters that are carried have in the gradient by what the body sees.
+    /// Adds what the parameters that are carried have in the gradient by what the body sees; of a step that is given values,
+    /// to `values` what these have in it.
     #[hot]
-    fn add_carried(&self, by_seen: &E::Advected, add: &mut impl FnMut(usize, Scalar<E>)) {
+    fn add_carried(&self, by_seen: &E::Advected, add: &mut impl FnMut(usize, Scalar<E>), values: &mut [Scalar<E>]) {
+        if !values.is_empty() {
+            let mut sums = values.iter_mut();
+            by_seen.pulled_back(&self.attitude).each(&mut |share| {
+                if let Some(sum) = sums.next() {
+                    *sum += share;
+                }
+            });
+            return;
+        }
         let mut by_carried = None;
         E::carried_parameters(&mut |place, parameter| {
             let by_carried = by_carried.get_or_insert_with(|| by_seen.pulled_back(&self.attitude));
@@ -186,9 +236,15 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         });
     }
 
-    /// Takes the gradient at the end of the stage to its beginning, and adds the parameters' shares.
+    /// Takes the gradient at the end of the stage to its beginning, and adds the parameters' shares, and those of the values
+    /// that the step is given where they are asked for.
     #[hot]
-    pub(super) fn pull(&self, end: &Cotangent<Vector<E>>, gradient: &mut [Scalar<E>]) -> Cotangent<Vector<E>> {
+    pub(super) fn pull(
+        &self,
+        end: &Cotangent<Vector<E>>,
+        gradient: &mut [Scalar<E>],
+        values: &mut [Scalar<E>],
+    ) -> Cotangent<Vector<E>> {
         // One check of the range, not one for each scalar.
         let own = gradient.get_mut(self.first..self.first + E::PARAMETERS).unwrap_or_default();
         debug_assert_eq!(own.len(), E::PARAMETERS, "a plan counts the parameters of its stages");
@@ -207,14 +263,14 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
                 let (factors, det) =
                     Vector::<E>::factorise_with(&Vector::<E>::transpose(&matrix), pattern_of_type::<E>());
                 let start = Vector::<E>::solve_again_with(&factors, det, pattern_of_type::<E>(), &(attitude + share));
-                let by_place = self.fixed_increment([&start, &end.momentum], add);
+                let by_place = self.fixed_increment([&start, &end.momentum], add, values);
                 Cotangent { attitude: attitude + by_place, momentum: start }
             }
             Kind::Kick(time) => {
                 let paired = end.momentum * time;
-                let mut attitude = end.attitude + self.fixed_increment([&paired; 2], add);
+                let mut attitude = end.attitude + self.fixed_increment([&paired; 2], add, values);
                 if self.gradient.is_some() {
-                    attitude = attitude + self.of_gradient(&end.momentum, add);
+                    attitude = attitude + self.of_gradient(&end.momentum, add, values);
                 }
                 Cotangent { attitude, momentum: end.momentum }
             }

@@ -9,7 +9,7 @@ use crate::gradients::stage::{FlowDerivatives, Kind, Pass, Stage};
 use crate::groups::LieGroup;
 use crate::mechanics::pattern_of_type;
 use crate::mechanics::{Group, SecondDerivatives, Term, Vector};
-use crate::numbers::{Coordinates, Entries as _, is_finite, real};
+use crate::numbers::{Coordinates, Entries as _, Real, is_finite, real};
 use nalgebra::SimdComplexField as _;
 
 /// How a state changes with its start, and with parameters: columns `(ζ, δμ)` that
@@ -25,8 +25,12 @@ pub struct Tangent<G: LieGroup, A> {
     kept: Vec<FourColumns<Four<G>>>,
     /// The parameters that the columns behind those of the start are the derivatives by, by their numbers.
     numbers: Vec<usize>,
-    /// The parameters' shares in a stage, by their numbers.
+    /// The parameters' shares in a stage, by their numbers; behind them those of the values that a step is given.
     shares: Vec<(G::Vector, G::Vector)>,
+    /// How many of the shares are those of values.
+    values: usize,
+    /// Whether the step is given values, so that parameters which are advected have no share.
+    pub(super) is_given_values: bool,
     /// The stages of the last step; the memory is used again.
     pub(super) events: RefCell<Vec<Change<G, A>>>,
 }
@@ -41,12 +45,21 @@ struct FourColumns<F> {
 }
 
 impl<G: LieGroup, A> Tangent<G, A> {
-    /// The identity, with a column for each parameter that is numbered; `parameters` is how many there are.
-    pub(super) fn new(parameters: usize, numbers: &[usize]) -> Self {
+    /// The identity, with a column for each parameter that is numbered, or value behind these; first is how many there are
+    /// of each.
+    pub(super) fn new([parameters, values]: [usize; 2], numbers: &[usize]) -> Self {
         let zero = G::Vector::zero();
-        let shares = if numbers.is_empty() { Vec::new() } else { vec![(zero, zero); parameters] };
+        let shares = if numbers.is_empty() { Vec::new() } else { vec![(zero, zero); parameters + values] };
         let (kept, events) = (Vec::new(), RefCell::default());
-        let mut tangent = Self { columns: Vec::new(), kept, numbers: numbers.to_vec(), shares, events };
+        let mut tangent = Self {
+            columns: Vec::new(),
+            kept,
+            numbers: numbers.to_vec(),
+            shares,
+            values,
+            is_given_values: false,
+            events,
+        };
         tangent.set_columns(&Self::identity());
         tangent
     }
@@ -75,7 +88,7 @@ impl<G: LieGroup, A> Tangent<G, A> {
     /// How many parameters its plan has; `None` without columns for them, where any plan of the scene will do.
     #[hot]
     pub(super) fn parameters(&self) -> Option<usize> {
-        (!self.shares.is_empty()).then_some(self.shares.len())
+        (!self.shares.is_empty()).then_some(self.shares.len() - self.values)
     }
 
     /// The columns: how the attitude moves, `g ← g exp ζ̂`, and the change `δμ` of the momentum, for each.
@@ -93,15 +106,8 @@ impl<G: LieGroup, A> Tangent<G, A> {
 
     /// The state transition matrix `∂(ζ, μ)/∂(ζ_0, μ_0)`, by its four blocks: `[[∂ζ/∂ζ_0, ∂ζ/∂μ_0], [∂μ/∂ζ_0, ∂μ/∂μ_0]]`.
     #[must_use]
-    pub fn transition(&self) -> [[<G::Vector as Coordinates<G::Scalar>>::Square; 2]; 2] {
-        let columns: Vec<_> = self.columns().collect();
-        let block = |first: usize, is_attitude: bool| {
-            G::Vector::square(|k| {
-                let (attitude, momentum) = columns[first + k];
-                if is_attitude { attitude } else { momentum }
-            })
-        };
-        [true, false].map(|is_attitude| [block(0, is_attitude), block(G::DIMENSION, is_attitude)])
+    pub fn transition(&self) -> [[SquareOfVector<G::Vector, G::Scalar>; 2]; 2] {
+        blocks_of(&self.columns().collect::<Vec<_>>())
     }
 
     /// Makes the columns of the start orthonormal, from the first to the last, and shows how long each was: the diagonal of
@@ -186,8 +192,9 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
         if !self.shares.is_empty() {
             let zero = G::Vector::zero();
             self.shares.fill((zero, zero));
-            let shares = &mut self.shares;
-            stage.forwards(&mut |number, start, end| {
+            let first = self.shares.len() - self.values;
+            let (shares, is_given) = (&mut self.shares, self.is_given_values);
+            stage.forwards((first, self.values, is_given), &mut |number, start, end| {
                 if let Some(share) = shares.get_mut(number) {
                     *share = (share.0 + start, share.1 + end);
                 }
@@ -259,3 +266,13 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
 
 /// The type of a scene's tangents.
 pub type TangentOf<S> = Tangent<Group<S>, <S as Term>::Advected>;
+
+pub(super) type SquareOfVector<V, T> = <V as Coordinates<T>>::Square;
+
+/// The four blocks of the columns by a start: first those along displacements, then as many by the momentum.
+pub(super) fn blocks_of<V: Coordinates<T>, T: Real>(columns: &[(V, V)]) -> [[SquareOfVector<V, T>; 2]; 2] {
+    let (along, by_momentum) = columns.split_at(columns.len() / 2);
+    let block =
+        |columns: &[(V, V)], is_attitude: bool| V::square(|k| if is_attitude { columns[k].0 } else { columns[k].1 });
+    [true, false].map(|is_attitude| [block(along, is_attitude), block(by_momentum, is_attitude)])
+}

@@ -15,16 +15,16 @@ const BUDGETS: [(&str, usize, usize); 39] = [
     ("core/src/lib", 52, 11), ("core/src/prelude", 12, 28), ("core/src/private", 176, 61), ("core/src/error", 565, 2),
     ("core/src/numbers", 2532, 14), ("core/src/groups", 4201, 35), ("core/src/laws", 706, 3),
     ("core/src/mechanics", 3743, 43), ("core/src/effects", 403, 15), ("core/src/solving", 1337, 3),
-    ("core/src/motion", 3299, 29), ("core/src/gradients", 1353, 10), ("core/src/methods", 7735, 28),
+    ("core/src/motion", 3310, 29), ("core/src/gradients", 1777, 13), ("core/src/methods", 7735, 28),
     ("core/src/recording", 1852, 14), ("core/src/with", 988, 6), ("core/src/accuracy", 1829, 16),
     ("core/src/conventions", 12, 0), ("core/src/guide", 19, 0), ("core/tests", 523, 0), ("macros/src", 232, 0),
     ("macros/derivation/src/lib", 28, 0), ("macros/derivation/src/expand", 2944, 0),
     ("macros/derivation/src/staged", 706, 0), ("macros/derivation/src/emit", 3768, 0),
-    ("macros/derivation/src/judged", 6278, 0), ("macros/derivation/src/declared", 4983, 0),
-    ("macros/derivation/src/program", 2541, 0), ("macros/derivation/src/mathematics", 4833, 0),
-    ("core/late", 2785, 0), ("core/machine", 706, 0), ("core/python", 1621, 0), ("core/scene", 5602, 0), ("core/cli", 3002, 0),
+    ("macros/derivation/src/judged", 6278, 0), ("macros/derivation/src/declared", 4989, 0),
+    ("macros/derivation/src/program", 2541, 0), ("macros/derivation/src/mathematics", 4834, 0),
+    ("core/late", 2803, 0), ("core/machine", 708, 0), ("core/python", 1632, 0), ("core/scene", 5628, 0), ("core/cli", 3002, 0),
     ("core/plot", 790, 0), ("core/ensemble", 5134, 0), ("core/arrow", 215, 0), ("examples", 12526, 0),
-    ("tests", 26018, 0), ("tests/ui", 1694, 0),
+    ("tests", 26233, 0), ("tests/ui", 1694, 0),
 ];
 
 /// The circles that are still there. Lines may go, and none be added.
