@@ -217,7 +217,9 @@ impl<'a> Linearisation<'a> {
             }
             if is_half {
                 let half = self.graph.constant(Rational::new(1, 2));
-                derivatives.iter_mut().for_each(|node| *node = self.graph.multiply(half, *node));
+                for node in &mut derivatives {
+                    *node = self.graph.multiply(half, *node);
+                }
             }
             found.push((number, derivatives));
         }

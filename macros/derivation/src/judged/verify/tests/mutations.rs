@@ -309,6 +309,17 @@ fn small_errors_of_gradients() {
     assert!(matches!(right, Ok(Sureness::Certified(100..))), "{right:?}");
 }
 
+/// Each rule of the derivatives of a step, by what goes forwards and by what goes back.
+#[test]
+fn derivatives_of_all_functions() {
+    let l_d = "0.5 * log(F).dot(&(J * log(F))) / h - h * (1.0 + w.norm_squared()).sqrt() * (m / (2.0 + w.z)).ln()
+        - h * (w.x * k).sin() * (m * w.y).cos() / (1.0 + (k - w.z).exp()) - h * exp(k * w).trace() * m.powi(3)";
+    let item = "struct Body { J: Inertia, k: f64, m: f64, up: Vector3<f64> }";
+    let prepared = prepared(Role::Lagrangian, &format!("group = SO3, advected(w = up), l_d = {l_d}, gradients"), item);
+    let found = prepared.found(&prepared.chosen.derived, &prepared.chosen.kernel).map(|found| found.sureness);
+    assert!(matches!(found, Ok(Sureness::Certified(100..))), "{found:?}");
+}
+
 /// Each slope of a constraint with each error; returns how many.
 fn check_slopes(declaration: &Declaration, trees: &[Rc<Tree>]) -> usize {
     let held = || held(declaration, trees.to_vec(), &mut Errors::default()).expect("a constraint");
