@@ -89,9 +89,6 @@ pub(super) fn value(expression: &Expr, env: &Env) -> Option<Matrix> {
                 "norm" => Matrix::scalar(receiver.transpose().times(&receiver).trace().sqrt()),
                 "dot" => Matrix::scalar(receiver.transpose().times(&other?).trace()),
                 "cross" => receiver.hat().times(&other?),
-                "component_mul" => {
-                    other.map(|other| Matrix::new(3, 1, |row, _| receiver.at(row, 0) * other.at(row, 0)))?
-                }
                 "powi" => match first? {
                     Expr::Lit(ExprLit { lit: Lit::Int(n), .. }) => Matrix::scalar(x?.powi(n.base10_parse().ok()?)),
                     _ => return None,

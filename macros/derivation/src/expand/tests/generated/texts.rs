@@ -61,7 +61,7 @@ pub(super) const KINDS: [Kind; 12] = [
             "(F * a)",
             "(R.transpose() * (x + d_1))",
             "(R.transpose() * r)",
-            "(R.transpose() * (r + d_2 - d_1).component_mul(&b))",
+            "(R.transpose() * (r + d_2 - d_1))",
             "(F.transpose() * w)",
         ],
         scalars: &["k", "(R * F * A).trace()", "(inverse(F) * A).trace()", "r.norm_squared()"],
