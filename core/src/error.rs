@@ -279,6 +279,25 @@ pub enum StepError {
         /// trace's does. Of joined bodies it is that of the whole system, relative to its diagonal.
         determinant: f64,
     },
+    /// A clock or a density gives the next step no length: the clock has no more, a density isn't positive or has no value,
+    /// or time wouldn't go on.
+    #[error(
+        "the next step has no length ({length:e} s): a clock is at its end, or a density isn't positive; give a longer clock, or a density with a smaller unit of the steps"
+    )]
+    NoLength {
+        /// What was found, s; NaN at the end of a clock.
+        length: f64,
+    },
+    /// A time before the state was asked for, where steps vary and aren't retraced.
+    #[error(
+        "the time {time} s is before the state's, {now} s, and steps that vary aren't retraced; give a later time, or an earlier state"
+    )]
+    Past {
+        /// The time, s.
+        time: f64,
+        /// That of the state, s.
+        now: f64,
+    },
     /// The Jacobian is singular at an iterate.
     #[error("the Newton Jacobian is singular; try a smaller step")]
     Singular,

@@ -145,10 +145,10 @@ fn p7_what_is_no_state_of_the_scene_is_refused() {
         refused(|value| value["attitude"] = json!(vec![0.5; 1000])),
         CheckpointError::WrongSize { what: "attitude", found: 1000, expected: 9 }
     );
-    assert_eq!(refused(|value| value["format"] = json!(1)), CheckpointError::AnotherFormat { found: 1, known: 3 });
+    assert_eq!(refused(|value| value["format"] = json!(1)), CheckpointError::AnotherFormat { found: 1, known: 4 });
     assert_eq!(
         refused(|value| value["kept"] = json!([1.0, 2.0])),
-        CheckpointError::WrongSize { what: "kept", found: 2, expected: 9 }
+        CheckpointError::WrongSize { what: "kept", found: 2, expected: 11 }
     );
     // How many increments the guess is made of, a number in the file.
     assert_eq!(refused(|value| value["kept"][6] = json!(2.5)), CheckpointError::Altered);

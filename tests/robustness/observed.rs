@@ -242,7 +242,7 @@ type Shown<M> = (M, Result<u64, StepError>, Vec<u64>);
 fn shown<I: Integrator>(integrator: &I, start: &I::State, plan: &[u64]) -> Shown<Motion<I::Group, I::Advected>> {
     let (mut state, mut calls) = (start.clone(), Vec::new());
     let (first, mut rest) = (plan[0], plan[1..].iter().copied());
-    let made = integrator.run_stretches(&mut state, first, &mut |motion| {
+    let made = integrator.run_stretches(&mut state, first, &mut |motion, _| {
         calls.push(motion.steps());
         rest.next().unwrap_or(0)
     });

@@ -92,7 +92,7 @@ impl<M: Integrator> Group<M> for SingleMember<M> {
         if steps == 1 {
             self.before = self.state.clone();
         }
-        self.error = self.stepper.run_stretches(&mut self.state, steps, &mut |_| 0).err();
+        self.error = self.stepper.run_stretches(&mut self.state, steps, &mut |_, _| 0).err();
     }
 
     fn state(&self, _: usize) -> M::State {

@@ -87,7 +87,7 @@ impl Debug for AnyKept {
 
 /// How a wrapper steps, as its `change` lets what it wraps, and is read: as this, of the motion that it sees.
 macro_rules! wraps {
-    ($self:ident, $inner:expr, $motion:ident: $type:ty, $seen:expr) => {
+    ($self:ident, $inner:expr, $state:ident => $own:expr, $motion:ident: $type:ty, $seen:expr) => {
         fn step(&$self, state: &mut Self::State) -> Result<StepReport, StepError> {
             $self.change(state, |own| $inner.step(own))
         }
@@ -98,6 +98,14 @@ macro_rules! wraps {
 
         fn attempt(&$self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
             $self.change(state, |own| $inner.attempt(own, steps))
+        }
+
+        fn time(&$self, $state: &Self::State) -> G::Scalar {
+            $inner.time($own)
+        }
+
+        fn length(&$self, $state: &Self::State) -> Option<G::Scalar> {
+            $inner.length($own)
         }
 
         fn step_size(&$self) -> G::Scalar {
@@ -139,10 +147,11 @@ where
     /// The state that the integrator needs: what another has kept is of no use, and it begins anew.
     fn own(&self, state: &AnyState<G, A>) -> I::State {
         if let Some(kept) = (state.kept.0.as_ref() as &dyn Any).downcast_ref::<K>() {
-            return State { motion: state.motion, kept: kept.clone() };
+            return State { motion: state.motion, kept: kept.clone(), elapsed: state.elapsed };
         }
         let mut own = self.0.adopt(&state.motion);
         own.motion = self.0.seen(&seeing(&state.motion, ()));
+        own.elapsed = state.elapsed;
         own
     }
 
@@ -151,7 +160,7 @@ where
         let mut own = self.own(state);
         let made = steps(&mut own);
         if own.steps != state.steps {
-            state.motion = own.motion;
+            (state.motion, state.elapsed) = (own.motion, own.elapsed);
             match (state.kept.0.as_mut() as &mut dyn Any).downcast_mut::<K>() {
                 Some(place) => *place = own.kept,
                 None => state.kept = AnyKept::of(own.kept),
@@ -162,7 +171,7 @@ where
 }
 
 fn erased<G: LieGroup, A, K: AnyMemory>(state: State<G, A, K>) -> AnyState<G, A> {
-    State { motion: state.motion, kept: AnyKept::of(state.kept) }
+    State { motion: state.motion, kept: AnyKept::of(state.kept), elapsed: state.elapsed }
 }
 
 impl<I, G, A, K> Integrator for Erasure<I>
@@ -201,7 +210,7 @@ where
         self.0.seen(motion)
     }
 
-    wraps!(self, self.0, motion: &Motion<G, A>, motion);
+    wraps!(self, self.0, state => &self.own(state), motion: &Motion<G, A>, motion);
 }
 
 /// # Wrap: a stepper of any type
@@ -268,7 +277,7 @@ impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
         self.stepper.seen(motion)
     }
 
-    wraps!(self, self.stepper, motion: &Motion<G, A>, motion);
+    wraps!(self, self.stepper, state => state, motion: &Motion<G, A>, motion);
 }
 
 /// A stepper that hides what is advected: it is kept with what the method keeps.
@@ -284,15 +293,20 @@ impl<G: LieGroup, A: Advected<G>> WithoutAdvected<G, A> {
     #[allow(clippy::unused_self)] // by the form that `wraps` asks for
     fn change<R>(&self, state: &mut State<G, (), HiddenState<A>>, steps: impl FnOnce(&mut AnyState<G, A>) -> R) -> R {
         let kept = mem::replace(&mut state.kept.kept, AnyKept::of(()));
-        let mut own = State { motion: seeing(&state.motion, state.kept.advected), kept };
+        let mut own = State { motion: seeing(&state.motion, state.kept.advected), kept, elapsed: state.elapsed };
         let made = steps(&mut own);
         *state = hidden(own);
         made
     }
 }
 
-fn hidden<G: LieGroup, A: Copy>(State { motion, kept }: AnyState<G, A>) -> State<G, (), HiddenState<A>> {
-    State { motion: seeing(&motion, ()), kept: HiddenState { advected: motion.advected, kept } }
+fn hidden<G: LieGroup, A: Copy>(State { motion, kept, elapsed }: AnyState<G, A>) -> State<G, (), HiddenState<A>> {
+    State { motion: seeing(&motion, ()), kept: HiddenState { advected: motion.advected, kept }, elapsed }
+}
+
+fn shown<G: LieGroup, A: Copy>(state: &State<G, (), HiddenState<A>>) -> AnyState<G, A> {
+    let HiddenState { advected, kept } = state.kept.clone();
+    State { motion: seeing(&state.motion, advected), kept, elapsed: state.elapsed }
 }
 
 impl<G: LieGroup, A: Advected<G>> Integrator for WithoutAdvected<G, A> {
@@ -306,13 +320,11 @@ impl<G: LieGroup, A: Advected<G>> Integrator for WithoutAdvected<G, A> {
         steps: u64,
         next: &mut NextSteps<'_, G, ()>,
     ) -> Result<u64, StepError> {
-        self.change(state, |own| self.0.run_stretches(own, steps, &mut |shown| next(&seeing(shown, ()))))
+        self.change(state, |own| self.0.run_stretches(own, steps, &mut |shown, time| next(&seeing(shown, ()), time)))
     }
 
     fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, ()>, StepError> {
-        let HiddenState { advected, kept } = state.kept.clone();
-        let part = self.0.part(&State { motion: seeing(&state.motion, advected), kept }, fraction)?;
-        Ok(seeing(&part, ()))
+        Ok(seeing(&self.0.part(&shown(state), fraction)?, ()))
     }
 
     fn cost(&self) -> Option<Cost> {
@@ -323,7 +335,7 @@ impl<G: LieGroup, A: Advected<G>> Integrator for WithoutAdvected<G, A> {
         hidden(self.0.adopt(&self.0.seen(motion)))
     }
 
-    wraps!(self, self.0, motion: &Motion<G, ()>, &self.0.seen(motion));
+    wraps!(self, self.0, state => &shown(state), motion: &Motion<G, ()>, &self.0.seen(motion));
 }
 
 impl<G: LieGroup, A: Advected<G> + 'static> AnyStepper<G, A> {

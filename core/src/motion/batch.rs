@@ -128,7 +128,7 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         });
         let Some(lane) = fails.flatten() else { return false };
         let mut alone = self.state.lane(lane);
-        let Err(error) = self.stepper.lane(lane).run_stretches(&mut alone, steps, &mut |_| 0) else { return false };
+        let Err(error) = self.stepper.lane(lane).run_stretches(&mut alone, steps, &mut |_, _| 0) else { return false };
         self.seats[lane] = Seat::Stopped(alone, error);
         let other = self.running().next();
         other.is_none_or(|other| self.set(lane, &self.stepper.lane(other), &self.state.lane(other)))
@@ -141,7 +141,7 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         let mut moved: Vec<(usize, M, M::State)> = Vec::with_capacity(running.len());
         for lane in running {
             let (stepper, mut state) = (self.stepper.lane(lane), self.state.lane(lane));
-            match stepper.run_stretches(&mut state, steps, &mut |_| 0) {
+            match stepper.run_stretches(&mut state, steps, &mut |_, _| 0) {
                 Ok(_) => moved.push((lane, stepper, state)),
                 Err(error) => self.seats[lane] = Seat::Stopped(state, error),
             }

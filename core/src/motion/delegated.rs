@@ -12,6 +12,7 @@ macro_rules! delegate_plan {
         const VECTORS: $crate::numbers::Vectors = P::VECTORS;
         const EXPLAINS: bool = P::EXPLAINS;
         const HAS_OWN_INERTIA: bool = P::HAS_OWN_INERTIA;
+        const VARIES: bool = P::VARIES;
     };
     (@step_size $plan:tt, $($kept:tt)*) => {
         fn step_size(&self) -> $crate::mechanics::Scalar<S> {

@@ -15,7 +15,7 @@ use crate::numbers::{Entries as _, real};
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _;
 
-/// Something that steps a motion by a fixed step: a [`Stepper`](crate::Stepper) with any plan, an [`AnyStepper`](crate::motion::AnyStepper), a
+/// Something that steps a motion: a [`Stepper`](crate::Stepper) with any plan, an [`AnyStepper`](crate::motion::AnyStepper), a
 /// [`CotangentGauss`](crate::methods::CotangentGauss).
 ///
 /// Recording, events and frames are written for this trait, and so go with every method. Its methods are those of
@@ -109,7 +109,7 @@ pub trait Integrator {
         None
     }
 
-    /// The step `h`, s.
+    /// The step `h`, s; where steps vary, their unit.
     fn step_size(&self) -> ScalarIn<Self>;
 
     /// The body velocity, on SO(3) in rad/s; NaN where a momentum has none, see [`Stepper::velocity`](crate::Stepper::velocity).
@@ -139,10 +139,16 @@ pub trait Integrator {
         (self.velocity(motion), self.energy(motion))
     }
 
-    /// The time since the start, `n h`, s.
-    #[allow(clippy::cast_precision_loss)] // as `Stepper::time`
-    fn time(&self, motion: &Motion<Self::Group, Self::Advected>) -> ScalarIn<Self> {
-        self.step_size() * real(motion.steps as f64)
+    /// The time since the start, s; `n h` where all steps are of `h`.
+    #[allow(clippy::cast_precision_loss)] // 2⁵³ steps take longer than a career
+    fn time(&self, state: &Self::State) -> ScalarIn<Self> {
+        self.step_size() * real(state.steps as f64)
+    }
+
+    /// The length of the next step, s, not finite where there is none; nothing where all steps are of
+    /// [`step_size`](Self::step_size).
+    fn length(&self, _state: &Self::State) -> Option<ScalarIn<Self>> {
+        None
     }
 
     /// The motion at any time, s, from a state that stays where it is: whole steps, of `h` or back of `−h`, and a
@@ -150,8 +156,8 @@ pub trait Integrator {
     ///
     /// # Errors
     ///
-    /// [`StepError::NonFinite`] for a time that isn't finite, or so far away that its steps can't be counted; otherwise as
-    /// [`Stepper::step`](crate::Stepper::step).
+    /// [`StepError::NonFinite`] for a time that isn't finite, or so far away that its steps can't be counted; where steps
+    /// vary, [`StepError::Past`] for one before the state; otherwise as [`Stepper::step`](crate::Stepper::step).
     ///
     /// # Examples
     ///
@@ -179,7 +185,12 @@ pub trait Integrator {
         if h == 0.0 && time.is_finite() {
             return Ok(**state);
         }
-        let steps = time / h - state.steps as f64;
+        if self.length(state).is_some() {
+            return ahead(self, state.clone(), time);
+        }
+        let now: f64 = self.time(state).into();
+        let elapsed = now - h * state.steps as f64;
+        let steps = (time - elapsed) / h - state.steps as f64;
         let can_be_counted = steps.abs() < MOST;
         if !can_be_counted {
             return Err(StepError::NonFinite { what: "time" });
@@ -219,9 +230,32 @@ pub(super) fn run_or_step<I: Integrator + ?Sized>(
                 }
             }
         }
-        steps = next(state);
+        steps = next(state, integrator.time(state));
     }
     Ok(iterations)
+}
+
+/// [`Integrator::state_at`] where steps vary.
+fn ahead<I>(integrator: &I, mut state: I::State, time: f64) -> Result<Motion<I::Group, I::Advected>, StepError>
+where
+    I: Integrator<Group: LieGroup<Scalar: Into<f64>>> + ?Sized,
+{
+    if !time.is_finite() {
+        return Err(StepError::NonFinite { what: "time" });
+    }
+    let h: f64 = integrator.step_size().into();
+    loop {
+        let now: f64 = integrator.time(&state).into();
+        let length: f64 = integrator.length(&state).unwrap_or(integrator.step_size()).into();
+        let left = time - now;
+        if left * h.signum() < 0.0 {
+            return Err(StepError::Past { time, now });
+        }
+        if left.abs() < length.abs() {
+            return integrator.part(&state, real(left / length));
+        }
+        integrator.step(&mut state)?;
+    }
 }
 
 /// The scalar of an integrator.
@@ -241,8 +275,8 @@ pub struct Moment<'a, I: Integrator + ?Sized> {
 impl<'a, I: Integrator + ?Sized> Moment<'a, I> {
     /// At the end of a step.
     #[must_use]
-    pub fn of_step(integrator: &'a I, motion: &'a Motion<I::Group, I::Advected>) -> Self {
-        Self { integrator, motion, time: integrator.time(motion), rising: None }
+    pub fn of_step(integrator: &'a I, state: &'a I::State) -> Self {
+        Self { integrator, motion: state, time: integrator.time(state), rising: None }
     }
 
     /// At any time, s.

@@ -13,6 +13,12 @@ pub trait Kept<T: Real>: Copy + Debug + PartialEq {
     /// Made of the next numbers of a stream, in the order in which [`each`](Self::each) visits them; `None` if they can't
     /// be those of such a memory.
     fn from_numbers(next: &mut dyn FnMut() -> T) -> Option<Self>;
+
+    /// As kept for a next step that is longer by this ratio: increments are proportional to its length.
+    #[must_use]
+    fn scaled(&self, _ratio: T) -> Self {
+        *self
+    }
 }
 
 impl<T: Real> Kept<T> for () {
@@ -20,6 +26,22 @@ impl<T: Real> Kept<T> for () {
 
     fn from_numbers(_: &mut dyn FnMut() -> T) -> Option<Self> {
         Some(())
+    }
+}
+
+/// Of a plan around another: what that keeps, and what it keeps besides.
+impl<T: Real, A: Kept<T>, B: Kept<T>> Kept<T> for (A, B) {
+    fn each(&self, visit: &mut dyn FnMut(T)) {
+        self.0.each(visit);
+        self.1.each(visit);
+    }
+
+    fn from_numbers(next: &mut dyn FnMut() -> T) -> Option<Self> {
+        Some((A::from_numbers(next)?, B::from_numbers(next)?))
+    }
+
+    fn scaled(&self, ratio: T) -> Self {
+        (self.0.scaled(ratio), self.1.scaled(ratio))
     }
 }
 
@@ -32,6 +54,10 @@ impl<T: Real, V: Coordinates<T>> Kept<T> for Guess<V> {
     fn from_numbers(mut next: &mut dyn FnMut() -> T) -> Option<Self> {
         Some(Self { half: V::from_entries(&mut next), next: V::from_entries(&mut next) })
     }
+
+    fn scaled(&self, ratio: T) -> Self {
+        Self { half: self.half * ratio, next: self.next * ratio }
+    }
 }
 
 impl<T: Real, V: Coordinates<T>, H: History<T, V>> Kept<T> for WarmStart<V, H> {
@@ -42,6 +68,10 @@ impl<T: Real, V: Coordinates<T>, H: History<T, V>> Kept<T> for WarmStart<V, H> {
 
     fn from_numbers(next: &mut dyn FnMut() -> T) -> Option<Self> {
         Some(Self { guess: Guess::from_numbers(next)?, history: H::from_numbers(next)? })
+    }
+
+    fn scaled(&self, ratio: T) -> Self {
+        Self { guess: self.guess.scaled(ratio), history: self.history.scaled(ratio) }
     }
 }
 

@@ -32,9 +32,11 @@ pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, reconstruct};
 pub use increment::Increment;
 pub use integrator::{Answer, Integrator, Moment, ScalarIn};
 pub use kept::Kept;
-pub use plan::{Cost, NextSteps, Plan, Steerable};
+pub use plan::{Cost, NextSteps, Plan, Steerable, Variable};
 pub use report::{Remedy, StepReport};
 pub use right_hand_side::RightHandSide;
+#[doc(hidden)]
+pub use state::Elapsed;
 pub use state::State;
 pub(crate) use stepper::check_attitude;
 pub use stepper::{StateOf, Stepper};

@@ -8,9 +8,9 @@ use crate::mechanics::{
 use crate::motion::kept::Kept;
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, Summation};
-use crate::numbers::{Kernel, Vectors, dispatch, real};
+use crate::numbers::{Kernel, Vectors, dispatch, is_finite, real};
 use crate::solving::largest_fraction;
-use nalgebra::SimdValue;
+use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue};
 
 /// A method with its constants folded for a scene and a step: what a [`Stepper`](crate::Stepper) steps by.
 ///
@@ -62,6 +62,32 @@ pub trait Plan<S: Effect> {
     /// Whether the steps depend on how many there were before.
     const COUNTS_TIME: bool = false;
 
+    /// Whether the steps have different lengths, of which [`step_size`](Self::step_size) is the unit.
+    const VARIES: bool = false;
+
+    /// The time after this many steps, `n h`, s; where nothing else is to be known for it.
+    #[allow(clippy::cast_precision_loss)] // 2⁵³ steps take longer than a career
+    fn counted(&self, steps: u64) -> Scalar<S> {
+        self.step_size() * real(steps as f64)
+    }
+
+    /// The time of a motion since its start, s.
+    fn time(&self, motion: &Motion<Group<S>, S::Advected>, _kept: &Self::Kept) -> Scalar<S> {
+        self.counted(motion.steps)
+    }
+
+    /// The length of the step ahead of a motion, or of that behind it, s; not finite where there is none. A step back is a
+    /// step of its negative.
+    fn length(
+        &self,
+        _scene: &S,
+        _motion: &Motion<Group<S>, S::Advected>,
+        _kept: &Self::Kept,
+        _is_ahead: bool,
+    ) -> Scalar<S> {
+        self.step_size()
+    }
+
     /// What is advected, as it is in space after this many steps; the scene's own, unless each step is given its values.
     fn advected(&self, scene: &S, _steps: u64) -> S::Advected {
         scene.advected()
@@ -99,6 +125,68 @@ pub trait Plan<S: Effect> {
         motion: &mut M,
         kept: &mut Self::Kept,
     ) -> Result<StepReport, StepError>;
+
+    /// One step of another length, s, which isn't counted.
+    ///
+    /// # Errors
+    ///
+    /// As [`step`](Self::step), and [`StepError::NonFinite`] where the constants of such a step aren't finite.
+    fn step_of<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+        length: Scalar<S>,
+    ) -> Result<StepReport, StepError>
+    where
+        Self: Sized,
+    {
+        if length.simd_eq(real(0.0)).all() {
+            return Ok(StepReport::of(0));
+        }
+        let part = self.refolded(scene, length);
+        let part = part.map_err(|_| StepError::NonFinite { what: "constants of a step of this length" })?;
+        let (ratio, back) = (length / self.step_size(), self.step_size() / length);
+        let has_ratio = is_finite(ratio) && is_finite(back);
+        let (mut next, steps) = (*motion, motion.now().steps);
+        let mut guess = if has_ratio { kept.scaled(ratio) } else { part.keep(scene, next.now()) };
+        let made = part.step(scene, &mut next, &mut guess);
+        let report = made.map_err(|error| part.explained(error, scene, motion.now(), &guess))?;
+        next.recount(steps);
+        *kept = if has_ratio { guess.scaled(back) } else { self.keep(scene, next.now()) };
+        *motion = next;
+        Ok(report)
+    }
+
+    /// The motion a fraction of the step after this one; a negative one is back.
+    ///
+    /// # Errors
+    ///
+    /// As [`step`](Self::step).
+    fn part(
+        &self,
+        scene: &S,
+        motion: &Motion<Group<S>, S::Advected>,
+        _kept: &Self::Kept,
+        fraction: Scalar<S>,
+    ) -> Result<Motion<Group<S>, S::Advected>, StepError>
+    where
+        Self: Sized,
+    {
+        // Nothing of a change so small would be seen, and of a step so small constants may leave the scalar's range.
+        let least = Scalar::<S>::simd_default_epsilon() * Scalar::<S>::simd_default_epsilon();
+        if fraction.simd_abs().simd_lt(least).all() {
+            return Ok(*motion);
+        }
+        let part = self.refolded(scene, self.step_size() * fraction);
+        let part = part.map_err(|_| StepError::NonFinite { what: "part of the step" })?;
+        let mut next = *motion;
+        let mut kept = part.keep(scene, &next);
+        run_plan(&part, scene, &mut next, &mut kept, (1, None))
+            .map_err(|error| part.explained(error, scene, motion, &kept))?;
+        next.steps = motion.steps;
+        Ok(next)
+    }
 
     /// Makes `steps` steps without showing the states between; returns the sum of their iterations. After an error motion and
     /// memory may be anywhere.
@@ -193,8 +281,8 @@ pub trait Plan<S: Effect> {
     fn cost(&self) -> Cost;
 }
 
-/// Returns how many more steps to make, from the motion reached so far; 0 ends the run.
-pub type NextSteps<'a, G, A> = dyn FnMut(&Motion<G, A>) -> u64 + 'a;
+/// Returns how many more steps to make, from the motion reached so far and its time, s; 0 ends the run.
+pub type NextSteps<'a, G, A> = dyn FnMut(&Motion<G, A>, <G as LieGroup>::Scalar) -> u64 + 'a;
 
 pub(crate) type Next<'a, G, A> = Option<&'a mut NextSteps<'a, G, A>>;
 
@@ -218,7 +306,7 @@ impl<S: Effect, P: Plan<S>> Kernel for Run<'_, '_, S, P> {
         let mut iterations = 0;
         while steps > 0 {
             iterations += plan.run(scene, motion, kept, steps)?;
-            steps = next.as_mut().map_or(0, |next| next(motion));
+            steps = next.as_mut().map_or(0, |next| next(motion, plan.time(motion, kept)));
         }
         Ok(iterations)
     }
@@ -247,6 +335,18 @@ pub(crate) fn run_plan<S: Effect, P: Plan<S>>(
     note = "the stages of Gauss collocation see what is advected from the scene; give values to another method's steps"
 )]
 pub trait Steerable {}
+
+/// A plan that makes steps of any length one after the other, each with constants of its own.
+///
+/// Not one is a plan that counts its steps, as one that is given the values of their middles, nor a processed splitting:
+/// its processor belongs to one length, and what is inside of it can't go on with another.
+#[diagnostic::on_unimplemented(
+    message = "the steps of `{Self}` can't have different lengths",
+    label = "not with this method",
+    note = "a processor belongs to one length: take the splitting without it",
+    note = "values are to be given afterwards: `.with_clock(…).driven(…)`"
+)]
+pub trait Variable {}
 
 /// How many operations a step makes, about: what methods are ranked by, the same on every machine.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,6 +4,7 @@ use core::ops::Deref;
 
 use crate::groups::LieGroup;
 use crate::motion::summation::Motion;
+use crate::numbers::{Real, real, two_sum};
 use crate::solving::WarmStart;
 
 /// A [`Motion`], that is attitude, momentum and advected parameters at one time, and what the method keeps for its next
@@ -17,6 +18,35 @@ use crate::solving::WarmStart;
 pub struct State<G: LieGroup, A, K = WarmStart<<G as LieGroup>::Vector>> {
     pub(crate) motion: Motion<G, A>,
     pub(crate) kept: K,
+    /// What steps of another length have added to the time of those that are counted.
+    pub(crate) elapsed: Elapsed<G::Scalar>,
+}
+
+/// A time that is summed, and what rounding has left behind of the sum.
+#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
+#[doc(hidden)]
+pub struct Elapsed<T> {
+    pub(crate) sum: T,
+    pub(crate) carry: T,
+}
+
+impl<T: Real> Elapsed<T> {
+    pub(crate) fn nothing() -> Self {
+        Self { sum: real(0.0), carry: real(0.0) }
+    }
+
+    pub(crate) fn add(&mut self, length: T) {
+        (self.sum, self.carry) = two_sum(self.sum, length + self.carry);
+    }
+
+    pub(crate) fn each(&self, visit: &mut dyn FnMut(T)) {
+        visit(self.sum);
+        visit(self.carry);
+    }
+
+    pub(crate) fn from_numbers(next: &mut dyn FnMut() -> T) -> Self {
+        Self { sum: next(), carry: next() }
+    }
 }
 
 impl<G: LieGroup, A, K> Deref for State<G, A, K> {

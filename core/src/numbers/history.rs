@@ -21,6 +21,9 @@ pub trait History<T: Real, V: Coordinates<T>>: Copy + Debug + PartialEq {
     /// Made of the next numbers of a stream, in the order in which [`each`](Self::each) visits them; `None` if they can't
     /// be those of a history.
     fn from_numbers(next: &mut dyn FnMut() -> T) -> Option<Self>;
+
+    /// The history of the values times this.
+    fn scaled(&self, ratio: T) -> Self;
 }
 
 /// The parabola through three values `y`, kept as `∇ y`.
@@ -59,6 +62,10 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Parabola<V> {
 
     fn from_numbers(mut next: &mut dyn FnMut() -> T) -> Option<Self> {
         Some(Self { difference: V::from_entries(&mut next) })
+    }
+
+    fn scaled(&self, ratio: T) -> Self {
+        Self { difference: self.difference * ratio }
     }
 }
 
@@ -106,6 +113,10 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Polynomial<V> {
         let values = counted(next()).filter(|&values| values <= DIFFERENCES + 1)?;
         Some(Self { differences: core::array::from_fn(|_| V::from_entries(&mut next)), values })
     }
+
+    fn scaled(&self, ratio: T) -> Self {
+        Self { differences: self.differences.map(|difference| difference * ratio), ..*self }
+    }
 }
 
 /// One of both, as the program knows only when it runs.
@@ -142,6 +153,10 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Either<V> {
     fn from_numbers(next: &mut dyn FnMut() -> T) -> Option<Self> {
         let is_long = counted(next()).filter(|&is_long| is_long <= 1)? == 1;
         Some(Self { is_long, parabola: Parabola::from_numbers(next)?, polynomial: Polynomial::from_numbers(next)? })
+    }
+
+    fn scaled(&self, ratio: T) -> Self {
+        Self { parabola: self.parabola.scaled(ratio), polynomial: self.polynomial.scaled(ratio), ..*self }
     }
 }
 

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use super::crossing::{Looks, side, zeros};
 use super::error::{Reason, RunError, RunReport};
 use super::observer::{Observer, show};
-use crate::motion::{Integrator, Moment, Motion};
+use crate::motion::{Integrator, Moment, Motion, ScalarIn};
 use crate::numbers::{real, reported};
 
 /// What counts as an event: in which direction a function of the motion crosses zero, whether that ends the run, and how
@@ -121,6 +121,11 @@ pub(super) fn look_first<I: Integrator>(watches: &mut [Watch<'_, I>], now: &Mome
     Ok(())
 }
 
+/// The length of the step from this state.
+pub(super) fn next_length<I: Integrator>(integrator: &I, state: &I::State) -> ScalarIn<I> {
+    integrator.length(state).unwrap_or_else(|| integrator.step_size())
+}
+
 /// All zeros in the step from this state, in their order.
 pub(super) fn crossings<I: Integrator>(
     watches: &mut [Watch<'_, I>],
@@ -128,7 +133,7 @@ pub(super) fn crossings<I: Integrator>(
     now: &Moment<'_, I>,
 ) -> Result<Vec<Crossing<I>>, RunError> {
     let integrator = now.integrator();
-    let (begun, h) = (reported(integrator.time(before)), reported(integrator.step_size()));
+    let (begun, h) = (reported(integrator.time(before)), reported(next_length(integrator, before)));
     let mut found = Vec::new();
     for (event, watched) in watches.iter_mut().enumerate() {
         let next = watched.look(now, event)?;
@@ -145,8 +150,7 @@ pub(super) fn crossings<I: Integrator>(
             let motion = motion.map_err(|cause| RunError::Step { time: time(fraction), cause })?;
             watched.look(&Moment::at(integrator, &motion, real(time(fraction)), None), event)
         };
-        #[allow(clippy::cast_precision_loss)] // a rounding of time
-        let rounding = 0.25 * f64::EPSILON * (before.steps() as f64 + 1.0);
+        let rounding = 0.25 * f64::EPSILON * ((begun / h).abs() + 1.0);
         let looks = Looks { ends: [value, next], above, bound, rounding };
         let Some(zeros) = zeros(looks, &mut look)? else {
             return Err(RunError::TooManyLooks { event, time: begun });

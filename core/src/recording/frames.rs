@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use super::event::next_length;
 use crate::error::StepError;
 use crate::motion::{Integrator, Motion, ScalarIn};
 use crate::numbers::real;
@@ -80,6 +81,9 @@ where
     /// [`StepError`] where there is no step. The state is then the last that there is, and the time of the frame is lost.
     #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)] // bounded
     pub fn advance(&mut self, elapsed: f64) -> Result<Motion<I::Group, I::Advected>, StepError> {
+        if self.integrator.length(&self.state).is_some() {
+            return self.advance_by_lengths(elapsed.max(0.0));
+        }
         let h: f64 = self.integrator.step_size().into();
         let due = self.left + elapsed.max(0.0) / h.abs();
         // A time without end makes the most there are, and so does any time where steps are zero: they change nothing.
@@ -93,9 +97,26 @@ where
         self.integrator.part(&self.state, real(self.left))
     }
 
+    /// [`advance`](Self::advance) where steps vary.
+    fn advance_by_lengths(&mut self, mut elapsed: f64) -> Result<Motion<I::Group, I::Advected>, StepError> {
+        let (mut left, mut made) = (core::mem::replace(&mut self.left, 0.0), 0);
+        loop {
+            let h = next_length(&self.integrator, &self.state).into().abs();
+            let due = left + elapsed / h;
+            let is_short = due < 1.0;
+            if is_short || made == self.most_steps {
+                self.left = if is_short { due } else { 0.0 };
+                return self.integrator.part(&self.state, real(self.left));
+            }
+            elapsed -= (1.0 - left) * h;
+            (left, made) = (0.0, made + 1);
+            self.integrator.step(&mut self.state)?;
+        }
+    }
+
     /// The time that is shown, s.
     pub fn time(&self) -> f64 {
-        self.integrator.time(&self.state).into() + self.left * self.integrator.step_size().into()
+        self.integrator.time(&self.state).into() + self.left * next_length(&self.integrator, &self.state).into()
     }
 
     /// The last step that was made.

@@ -1,11 +1,13 @@
 //! A run that is observed: by functions that are called every `n` steps or at given times, and that may stop it.
 
 use alloc::boxed::Box;
+use alloc::rc::Rc;
 use alloc::vec::Vec;
+use core::cell::Cell;
 use core::iter::Peekable;
 
 use super::error::{Reason, RunError, RunReport};
-use super::event::{Event, Watch, crossings, happen, look_first};
+use super::event::{Event, Watch, crossings, happen, look_first, next_length};
 use super::observer::{Observer, show, stopped, unless_it_goes_on};
 use crate::error::StepError;
 use crate::groups::{Advected, LieGroup};
@@ -203,8 +205,8 @@ impl<'a, I: Integrator> Run<'a, I> {
         }
         if self.timed.is_empty() && self.watches.is_empty() {
             let mut shown = Ok(());
-            let made = integrator.run_stretches(self.state, next, &mut |motion| {
-                let next = self.observers.show(&Moment::of_step(integrator, motion), &mut ended);
+            let made = integrator.run_stretches(self.state, next, &mut |motion, time| {
+                let next = self.observers.show(&Moment::at(integrator, motion, time, None), &mut ended);
                 next.unwrap_or_else(|error| {
                     shown = Err(error);
                     0
@@ -216,7 +218,7 @@ impl<'a, I: Integrator> Run<'a, I> {
             while next > 0 {
                 let before = self.state.clone();
                 ended.iterations +=
-                    integrator.run_stretches(self.state, 1, &mut |_| 0).map_err(|cause| self.stuck(cause))?;
+                    integrator.run_stretches(self.state, 1, &mut |_, _| 0).map_err(|cause| self.stuck(cause))?;
                 next = if self.show_between(&before, &mut ended)? {
                     0
                 } else {
@@ -248,8 +250,9 @@ impl<'a, I: Integrator> Run<'a, I> {
     /// Shows the times from the state before up to this time.
     fn show_timed(&mut self, before: Option<&I::State>, up_to: f64, ended: &mut RunReport) -> Result<bool, RunError> {
         let time = self.integrator.time(self.state);
-        let (now, h) = (reported(time), reported(self.integrator.step_size()));
+        let now = reported(time);
         let begun = before.map_or(now, |before| reported(self.integrator.time(before)));
+        let h = reported(before.map_or(self.integrator.step_size(), |before| next_length(self.integrator, before)));
         let mut stops = false;
         for TimedObserver { times, shown, observer } in &mut self.timed {
             // Backwards where the step is negative.
@@ -407,13 +410,14 @@ where
     /// Makes steps up to the first that ends at this time or after it, s, unless an observer stops the run; none where the
     /// motion is there already.
     ///
-    /// A time that is a whole number of steps but for rounding is the end of the last of these.
+    /// A time that is a whole number of steps but for rounding is the end of the last of these. Where steps vary, nobody
+    /// knows how many there will be, and no progress is told.
     ///
     /// # Errors
     ///
     /// [`RunError`].
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // checked
-    pub fn until(self, time: f64) -> Result<RunReport, RunError> {
+    pub fn until(mut self, time: f64) -> Result<RunReport, RunError> {
         /// More are no number of steps that a run can make.
         const MOST: f64 = 9e15;
         let h: f64 = self.integrator.step_size().into();
@@ -423,7 +427,23 @@ where
             return Err(RunError::End { asked: time });
         }
         // What rounding makes of a whole number when times are multiples of the step.
-        let end = (steps * (1.0 - 4.0 * f64::EPSILON)).ceil();
+        let rounded = 1.0 - 4.0 * f64::EPSILON;
+        if self.integrator.length(self.state).is_some() {
+            let is_there = Rc::new(Cell::new(false));
+            let (seen, end) = (Rc::clone(&is_there), steps * rounded);
+            // After those of others, which are told of first.
+            self.observers.conditions.push(Box::new(move |now| {
+                seen.set(reported(now.time()) / h >= end);
+                Ok(seen.get())
+            }));
+            let mut ended = self.steps(u64::MAX)?;
+            if is_there.get() {
+                ended.reason = Reason::Done;
+            }
+            return Ok(ended);
+        }
+        let elapsed = reported(self.integrator.time(self.state)) / h - self.state.steps() as f64;
+        let end = ((steps - elapsed) * rounded).ceil();
         let made = self.state.steps();
         self.steps(if end > 0.0 { (end as u64).saturating_sub(made) } else { 0 })
     }

@@ -9,7 +9,9 @@ use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
 use crate::methods::{Composed, Jointed, KineticFlow, Linked, Processed, Split};
-use crate::motion::{Declared, Kept, Motion, Plan, Steerable, StepReport, Stepper, Summation, TOLERATED, restored};
+use crate::motion::{
+    Declared, Kept, Motion, Plan, Steerable, StepReport, Stepper, Summation, TOLERATED, Variable, restored,
+};
 use crate::numbers::{Entries, carried_sum, zero};
 use crate::with::remedies::Substeps;
 use nalgebra::SimdValue as _;
@@ -87,6 +89,7 @@ impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Processed<S, K> {}
 impl<P: Compensable> Compensable for Substeps<P> {}
 
 impl<P: Steerable> Steerable for Compensated<P> {}
+impl<P: Variable> Variable for Compensated<P> {}
 
 /// # Wrap: compensated sums
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
@@ -191,6 +194,10 @@ impl<K: Kept<G::Scalar>, G: LieGroup, A: Advected<G>> Kept<G::Scalar> for Memory
         let kept = K::from_numbers(next)?;
         let (attitude, momentum) = (Entries::from_entries(&mut next), Entries::from_entries(&mut next));
         Some(Self { kept, carry: Carry { attitude, momentum, advected: Entries::from_entries(&mut next) } })
+    }
+
+    fn scaled(&self, ratio: G::Scalar) -> Self {
+        Self { kept: self.kept.scaled(ratio), ..*self }
     }
 }
 

@@ -3,17 +3,16 @@
 use crate::error::{SetupError, StepError};
 use crate::groups::Advected as _;
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor};
-use crate::motion::{Plan, Steerable, StepReport, Stepper, Summation};
-use crate::numbers::{Real, real};
+use crate::motion::{Motion, Plan, Steerable, StepReport, Stepper, Summation};
+use crate::numbers::real;
+use nalgebra::{SimdPartialOrd as _, SimdValue as _};
 
 /// A plan whose steps are given the values of their middles, by [`Stepper::driven`].
 #[derive(Clone, Copy, Debug)]
 #[doc(hidden)]
-pub struct Driven<P, V, T> {
+pub struct Driven<P, V> {
     plan: P,
     values: V,
-    /// The step that time is counted by, s; that of the plan is a part of it where a motion is read between two steps.
-    whole: T,
 }
 
 /// # Wrap: given values
@@ -55,16 +54,15 @@ impl<S: Effect, P: Plan<S> + Steerable> Stepper<S, P> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
-    pub fn driven<V>(self, values: V) -> Stepper<S, Driven<P, V, Scalar<S>>>
+    pub fn driven<V>(self, values: V) -> Stepper<S, Driven<P, V>>
     where
         V: Fn(Scalar<S>) -> S::Advected + Clone,
     {
-        let whole = self.step_size();
-        Stepper { scene: self.scene, plan: Driven { plan: self.plan, values, whole } }
+        Stepper { scene: self.scene, plan: Driven { plan: self.plan, values } }
     }
 }
 
-impl<S: Effect, P: Plan<S>, V> Plan<S> for Driven<P, V, Scalar<S>>
+impl<S: Effect, P: Plan<S>, V> Plan<S> for Driven<P, V>
 where
     V: Fn(Scalar<S>) -> S::Advected + Clone,
 {
@@ -76,12 +74,19 @@ where
     const COUNTS_TIME: bool = true;
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
-        let (plan, values) = (self.plan.refolded(scene, h)?, self.values.clone());
-        Ok(Self { plan, values, whole: self.whole })
+        Ok(Self { plan: self.plan.refolded(scene, h)?, values: self.values.clone() })
     }
 
     fn advected(&self, _: &S, steps: u64) -> S::Advected {
-        (self.values)(self.whole * counted(steps))
+        (self.values)(self.plan.counted(steps))
+    }
+
+    fn counted(&self, steps: u64) -> Scalar<S> {
+        self.plan.counted(steps)
+    }
+
+    fn length(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, kept: &P::Kept, is_ahead: bool) -> Scalar<S> {
+        self.plan.length(scene, motion, kept, is_ahead)
     }
 
     fn step<M: Summation<Group<S>, S::Advected>>(
@@ -91,13 +96,8 @@ where
         kept: &mut Self::Kept,
     ) -> Result<StepReport, StepError> {
         let (mut now, mut next) = (*motion.now(), *kept);
-        let start = self.whole * counted(now.steps);
-        let [middle, end] = [self.whole * real(0.5), self.plan.step_size()].map(|part| (self.values)(start + part));
-        if !(middle.is_finite() && end.is_finite()) {
-            return Err(StepError::NonFinite { what: "value given to the step" });
-        }
-        let seen = middle.seen_from(&now.attitude);
-        self.plan.see(&mut now, &mut next, seen);
+        let length = self.plan.length(scene, &now, &next, true);
+        let end = self.see_middle((&mut now, &mut next), [length * real(0.5), length])?;
         let made = self.plan.step(scene, &mut now, &mut next);
         let report = made.map_err(|error| self.plan.explained(error, scene, &now, &next))?;
         let seen = end.seen_from(&now.attitude);
@@ -107,14 +107,47 @@ where
         Ok(report)
     }
 
+    /// With the values of the middle of the whole step, so that all parts join it to the next.
+    fn part(
+        &self,
+        scene: &S,
+        motion: &Motion<Group<S>, S::Advected>,
+        kept: &P::Kept,
+        fraction: Scalar<S>,
+    ) -> Result<Motion<Group<S>, S::Advected>, StepError> {
+        let (mut now, mut kept) = (*motion, *kept);
+        let [ahead, back] = [true, false].map(|is_ahead| self.plan.length(scene, &now, &kept, is_ahead));
+        let is_ahead = fraction.simd_ge(real(0.0));
+        let middle = ahead.select(is_ahead, -back) * real(0.5);
+        let end = self.see_middle((&mut now, &mut kept), [middle, ahead.select(is_ahead, back) * fraction])?;
+        let mut part = self.plan.part(scene, &now, &kept, fraction)?;
+        part.advected = end.seen_from(&part.attitude);
+        Ok(part)
+    }
+
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
         visitor.term("driven");
         self.plan.describe(visitor);
     }
 }
 
-/// A number of steps.
-#[allow(clippy::cast_precision_loss)] // as `Stepper::time`
-fn counted<T: Real>(steps: u64) -> T {
-    real(steps as f64)
+impl<P, V> Driven<P, V> {
+    /// Shows a plan the values after this time, and returns those after that one.
+    fn see_middle<S: Effect>(
+        &self,
+        (motion, kept): (&mut Motion<Group<S>, S::Advected>, &mut P::Kept),
+        [middle, end]: [Scalar<S>; 2],
+    ) -> Result<S::Advected, StepError>
+    where
+        P: Plan<S>,
+        V: Fn(Scalar<S>) -> S::Advected + Clone,
+    {
+        let start = self.plan.time(motion, kept);
+        let [middle, end] = [middle, end].map(|part| (self.values)(start + part));
+        if !(middle.is_finite() && end.is_finite()) {
+            return Err(StepError::NonFinite { what: "value given to the step" });
+        }
+        self.plan.see(motion, kept, middle.seen_from(&motion.attitude));
+        Ok(end)
+    }
 }

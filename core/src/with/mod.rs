@@ -1,16 +1,29 @@
-//! What is put around a method: compensated sums, values given to each step, remedies for steps
+//! What is put around a method: compensated sums, values given to each step, lengths of its own for each, remedies for steps
 //! without a solution, checkpoints.
 //!
 //! Each goes with every method for which it makes sense, and with each other.
 
 #[cfg(feature = "serde")]
 mod checkpoint;
+mod clock;
 mod compensated;
+pub mod densities;
+mod density;
 mod driven;
+mod lengths;
+mod orbit;
 mod remedies;
+mod varied;
 
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, CheckpointError, Storable};
+pub use clock::Clock;
 pub use compensated::{Compensable, Compensated, MemoryWithCarry};
+#[doc(hidden)]
+pub use density::Density;
 pub use driven::Driven;
+#[doc(hidden)]
+pub use lengths::Lengths;
 pub use remedies::Substeps;
+#[doc(hidden)]
+pub use varied::Varied;

@@ -5,7 +5,7 @@
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor};
-use crate::motion::{Motion, Plan, Remedy, Steerable, StepReport, Stepper, Summation};
+use crate::motion::{Motion, Plan, Remedy, Steerable, StepReport, Stepper, Summation, Variable};
 use crate::numbers::real;
 
 /// A plan that takes a step without a solution in equal parts, by [`Stepper::or_substeps`].
@@ -52,7 +52,10 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     #[must_use]
     pub fn or_substeps(self, at_most: u32) -> Stepper<S, Substeps<P>> {
         // The parts of a step are counted for themselves.
-        const { assert!(!P::COUNTS_TIME, "ask for substeps before the values: `.or_substeps(…).driven(…)`") }
+        const {
+            assert!(!P::COUNTS_TIME, "ask for substeps before the values: `.or_substeps(…).driven(…)`");
+            assert!(!P::VARIES, "ask for substeps before the lengths: `.or_substeps(…).with_clock(…)`");
+        }
         Stepper { scene: self.scene, plan: Substeps { plan: self.plan, at_most } }
     }
 }
@@ -92,6 +95,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Substeps<P> {
 }
 
 impl<P: Steerable> Steerable for Substeps<P> {}
+impl<P: Variable> Variable for Substeps<P> {}
 
 /// Makes the step in equal parts, or leaves everything as it was and returns the error.
 #[cold]

@@ -12,12 +12,12 @@ const LENGTHS: [usize; 3] = [500, 80, 126];
 /// The lines of each room and package, and of each room of the library the names that it makes public.
 #[rustfmt::skip]
 const BUDGETS: [(&str, usize, usize); 39] = [
-    ("core/src/lib", 52, 11), ("core/src/prelude", 12, 28), ("core/src/private", 176, 61), ("core/src/error", 565, 2),
-    ("core/src/numbers", 2532, 14), ("core/src/groups", 4201, 35), ("core/src/laws", 706, 3),
+    ("core/src/lib", 52, 11), ("core/src/prelude", 12, 28), ("core/src/private", 176, 61), ("core/src/error", 588, 2),
+    ("core/src/numbers", 2547, 14), ("core/src/groups", 4201, 35), ("core/src/laws", 706, 3),
     ("core/src/mechanics", 3743, 43), ("core/src/effects", 403, 15), ("core/src/solving", 1337, 3),
-    ("core/src/motion", 3310, 29), ("core/src/gradients", 1777, 13), ("core/src/methods", 7735, 28),
-    ("core/src/recording", 1852, 14), ("core/src/with", 988, 6), ("core/src/accuracy", 1829, 16),
-    ("core/src/conventions", 12, 0), ("core/src/guide", 19, 0), ("core/tests", 523, 0), ("macros/src", 232, 0),
+    ("core/src/motion", 3561, 30), ("core/src/gradients", 1777, 13), ("core/src/methods", 7755, 28),
+    ("core/src/recording", 1897, 14), ("core/src/with", 1580, 7), ("core/src/accuracy", 1829, 16),
+    ("core/src/conventions", 12, 0), ("core/src/guide", 19, 0), ("core/tests", 918, 0), ("macros/src", 232, 0),
     ("macros/derivation/src/lib", 28, 0), ("macros/derivation/src/expand", 2979, 0),
     ("macros/derivation/src/staged", 706, 0), ("macros/derivation/src/emit", 3671, 0),
     ("macros/derivation/src/judged", 6104, 0), ("macros/derivation/src/declared", 4989, 0),

@@ -11,7 +11,7 @@ use super::link::Link;
 use crate::error::{SetupError, StepError};
 use crate::groups::{CayleyRetraction, Retraction, SO3};
 use crate::mechanics::{Effect, Operations, SceneVisitor};
-use crate::motion::{Cost, Motion, Plan, Steerable, StepReport, Stepper, Summation};
+use crate::motion::{Cost, Motion, Plan, Steerable, StepReport, Stepper, Summation, Variable};
 use crate::numbers::{Bodies, Coordinates as _, filled};
 use crate::solving::{Curvature, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, WarmStart};
 
@@ -244,6 +244,7 @@ fn iterate(links: &[LinkConstants], work: &mut [Work], most: u32, longest: f64) 
 }
 
 impl<S: Effect, const N: usize> Steerable for Linked<S, N> {}
+impl<S: Effect, const N: usize> Variable for Linked<S, N> {}
 
 impl<S, const N: usize> Plan<S> for Linked<S, N>
 where

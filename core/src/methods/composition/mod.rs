@@ -10,7 +10,8 @@ use crate::error::{SetupError, StepError};
 use crate::gradients::{Change, Linearisable, Pass, Stage as Linear};
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Regular, Scalar, SceneVisitor, SecondDerivatives, Vector};
 use crate::motion::{
-    Cost, Declared, Motion, Plan, Steerable, StepReport, Stepper, Summation, beyond_solvable, half_coordinates,
+    Cost, Declared, Motion, Plan, Steerable, StepReport, Stepper, Summation, Variable, beyond_solvable,
+    half_coordinates,
 };
 use crate::numbers::{Coordinates, Mask, Real, real};
 use crate::solving::Guess;
@@ -146,6 +147,7 @@ impl<S: Effect> Composed<S> {
 }
 
 impl<S: Effect> Steerable for Composed<S> {}
+impl<S: Effect> Variable for Composed<S> {}
 
 impl<S: Effect> Plan<S> for Composed<S> {
     type Kept = Guess<Vector<S>>;

@@ -7,7 +7,7 @@ use super::settling::{Changes, MOST_ITERATIONS, Next};
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{ContinuousLagrangian, Legendre, Matrix, Term, Vector, check_inertia, check_velocity};
-use crate::motion::{Integrator, Motion, State, StepReport};
+use crate::motion::{Elapsed, Integrator, Motion, State, StepReport};
 use crate::numbers::{Coordinates, carried_sum};
 
 // Roots and powers without a standard library.
@@ -238,7 +238,8 @@ where
         if !Coordinates::is_finite(&momentum) {
             return Err(SetupError::NonFinite { what: "momentum" });
         }
-        Ok(State { motion: Motion { attitude, momentum, advected, steps: 0 }, kept: CotangentCarry::nothing() })
+        let motion = Motion { attitude, momentum, advected, steps: 0 };
+        Ok(State { motion, kept: CotangentCarry::nothing(), elapsed: Elapsed::nothing() })
     }
 
     /// What a step of any length changes.
@@ -320,7 +321,7 @@ where
         let change = self.change(self.h, &state.attitude, &state.momentum)?;
         let ((attitude, momentum), kept) = change.added(&state.attitude, &state.momentum, &state.kept)?;
         let motion = Motion { attitude, momentum, advected: self.advected(&attitude), steps: state.steps + 1 };
-        *state = State { motion, kept };
+        *state = State { motion, kept, elapsed: state.elapsed };
         Ok(StepReport::of(change.iterations))
     }
 
@@ -343,6 +344,7 @@ where
         State {
             motion: Motion { advected: self.advected(&motion.attitude), steps: 0, ..*motion },
             kept: CotangentCarry::nothing(),
+            elapsed: Elapsed::nothing(),
         }
     }
 

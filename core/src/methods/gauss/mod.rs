@@ -21,7 +21,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::SO3;
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, SceneVisitor, constant_inertia};
 use crate::methods::splitting::torque;
-use crate::motion::{Cost, Declared, Motion, Plan, StepReport, Stepper, Summation};
+use crate::motion::{Cost, Declared, Motion, Plan, StepReport, Stepper, Summation, Variable};
 use crate::numbers::{Vectors, two_sum};
 use nalgebra::Vector3;
 
@@ -158,6 +158,8 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Gauss<S, PAIRS> {
         motion.replace(Motion { attitude, momentum, advected, steps: motion.now().steps + steps });
     }
 }
+
+impl<S: Effect, const PAIRS: usize> Variable for Gauss<S, PAIRS> {}
 
 impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS> {
     type Kept = CollocationMemory<PAIRS>;

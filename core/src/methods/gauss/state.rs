@@ -70,4 +70,12 @@ impl<const PAIRS: usize> Kept<f64> for CollocationMemory<PAIRS> {
         let is_unit = (length_squared(&lifted) - 1.0).abs() < f64::EPSILON.sqrt();
         is_unit.then_some(Self { lifted, carry, stages: has_stages.then_some(Stages(stages)) })
     }
+
+    fn scaled(&self, ratio: f64) -> Self {
+        let scaled = |Stages(mut stages): Stages<PAIRS>| {
+            stages.as_flattened_mut().as_flattened_mut().iter_mut().for_each(|number| *number *= ratio);
+            Stages(stages)
+        };
+        Self { stages: self.stages.map(scaled), ..*self }
+    }
 }

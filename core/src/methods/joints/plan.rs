@@ -15,7 +15,7 @@ use super::{Constraint, Place};
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, CayleyRetraction, LieGroup, Retraction, SO3};
 use crate::mechanics::{Effect, Operations, SceneVisitor};
-use crate::motion::{Cost, Motion, Plan, Steerable, StepReport, Summation, half_coordinates, is_due};
+use crate::motion::{Cost, Motion, Plan, Steerable, StepReport, Summation, Variable, half_coordinates, is_due};
 use crate::numbers::{Bodies, Coordinates as _, Polynomial, Vectors, filled};
 use crate::solving::{
     LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, SETTLED, WarmStart, has_sufficed, may_suffice,
@@ -222,6 +222,10 @@ where
 }
 
 impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Steerable for Jointed<S, C, K, N, T, L> where
+    S: Effect
+{
+}
+impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Variable for Jointed<S, C, K, N, T, L> where
     S: Effect
 {
 }

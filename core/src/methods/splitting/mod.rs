@@ -27,7 +27,7 @@ use crate::mechanics::{
     DiscreteLagrangian, Effect, Operations, Regular, RigidScene, Scalar, SceneVisitor, Term, constant_inertia,
 };
 use crate::motion::{
-    Cost, Declared, Motion, Plan, STEPS_BETWEEN_CHECKS, Steerable, StepReport, Stepper, Summation, is_due,
+    Cost, Declared, Motion, Plan, STEPS_BETWEEN_CHECKS, Steerable, StepReport, Stepper, Summation, Variable, is_due,
 };
 use crate::numbers::{Coordinates, Real, Vectors, count, largest_lane, real, reported};
 use nalgebra::{
@@ -367,6 +367,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
 }
 
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Steerable for Split<S, K> {}
+impl<S: Effect, K: KineticFlow<Scalar<S>>> Variable for Split<S, K> {}
 
 /// How long a share is.
 #[derive(Clone, Copy, Debug)]

@@ -11,7 +11,7 @@ use crate::mechanics::{
     pattern,
 };
 use crate::motion::increment::Increment;
-use crate::motion::plan::{Cost, Plan, Steerable};
+use crate::motion::plan::{Cost, Plan, Steerable, Variable};
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, Summation, is_due};
 use crate::numbers::{Coordinates as _, is_finite, real, reported};
@@ -225,6 +225,7 @@ impl<S: Effect> Declared<S> {
 }
 
 impl<S: Effect> Steerable for Declared<S> {}
+impl<S: Effect> Variable for Declared<S> {}
 
 impl<S: Effect> Plan<S> for Declared<S> {
     type Kept = Memory<S>;

@@ -32,17 +32,17 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         &self.plan
     }
 
-    /// The step `h`, s.
+    /// The step `h`, s; where steps vary, their unit.
     #[must_use]
     pub fn step_size(&self) -> Scalar<S> {
         self.plan.step_size()
     }
 
-    /// The time since the start, `n h`, s; never accumulated.
+    /// The time since the start, s: `n h`, never accumulated, where all steps are of `h`. What
+    /// [`step_of`](Self::step_of) has added is added to it.
     #[must_use]
-    #[allow(clippy::cast_precision_loss)] // 2⁵³ steps take longer than a career
-    pub fn time(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S> {
-        self.step_size() * real(motion.steps as f64)
+    pub fn time(&self, state: &StateOf<S, P>) -> Scalar<S> {
+        self.plan.time(&state.motion, &state.kept) + state.elapsed.sum
     }
 
     /// The body velocity, on SO(3) in rad/s.

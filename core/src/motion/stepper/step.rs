@@ -5,12 +5,11 @@ use crate::error::StepError;
 use crate::groups::Advected as _;
 use crate::mechanics::{Effect, FactoredInertia, Group, Scalar, Vector, factored_inertia, velocity_and_energy};
 use crate::motion::integrator::{Integrator, run_or_step, seeing};
-use crate::motion::plan::{Cost, Next, NextSteps, Plan, Steerable, run_plan};
+use crate::motion::plan::{Cost, Next, NextSteps, Plan, Steerable, Variable, run_plan};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
 use crate::motion::summation::Motion;
-use crate::numbers::{Coordinates as _, Kernel, Vectors, dispatch, real};
-use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _};
+use crate::numbers::{Coordinates as _, Kernel, Vectors, dispatch, is_finite, real};
 
 /// # Step
 ///
@@ -113,11 +112,12 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// \[MW01\], section 3.2.
     pub fn step_forced(&self, state: &mut StateOf<S, P>, force: &Vector<S>) -> Result<StepReport, StepError> {
+        const { assert!(!P::VARIES || P::COUNTS_TIME, "a force changes the length that a density gives its step") }
         if !force.is_finite() {
             return Err(StepError::NonFinite { what: "control force" });
         }
-        let half = *force * (self.step_size() * real(0.5));
         let mut next = *state;
+        let half = *force * (self.plan.length(&self.scene, &next.motion, &next.kept, true) * real(0.5));
         self.plan.push(&self.scene, &mut next.motion, &mut next.kept, &half)?;
         let report = Integrator::step(self, &mut next)?;
         self.plan.push(&self.scene, &mut next.motion, &mut next.kept, &half)?;
@@ -125,6 +125,50 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
             return Err(StepError::NonFinite { what: "momentum after the step" });
         }
         *state = next;
+        Ok(report)
+    }
+
+    /// One step of the length `h`, s, by the same method; on an error the state is unchanged.
+    ///
+    /// It is for what doesn't fall on the end of a step: an impulse at an event, a time at which a motion is to end. It keeps
+    /// what a step keeps, and counts for none: the [time](Self::time) is that of the steps counted and these lengths, as
+    /// recordings, events and checkpoints have it. Steps whose lengths follow the state at random lose the long-time
+    /// behaviour; [`with_clock`](Self::with_clock) and [`with_density`](Self::with_density) keep it.
+    ///
+    /// Constants are folded for the length, which takes longer than a step.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError::NonFinite`] for a length that isn't finite, or one whose constants aren't; otherwise as
+    /// [`step`](Self::step).
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use liestep::effects::RigidBody;
+    /// use liestep::{NonstandardInertia, SO3, Stepper};
+    /// use liestep::groups::LieGroup as _;
+    /// use nalgebra::Vector3;
+    ///
+    /// let body = RigidBody { J_d: NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5))? };
+    /// let stepper = Stepper::new(body, 0.1)?;
+    /// let mut state = stepper.start(SO3::identity(), Vector3::new(0.1, 2.0, 0.2))?;
+    /// let before = state.spatial_momentum();
+    /// stepper.run(&mut state, 31)?;
+    /// stepper.step_of(&mut state, 0.0415)?;
+    /// assert!((stepper.time(&state) - 3.1415_f64).abs() < 1e-15);
+    /// assert!((state.spatial_momentum() - before).norm() < 1e-14);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn step_of(&self, state: &mut StateOf<S, P>, h: Scalar<S>) -> Result<StepReport, StepError>
+    where
+        P: Variable,
+    {
+        if !is_finite(h) {
+            return Err(StepError::NonFinite { what: "length of the step" });
+        }
+        let report = self.plan.step_of(&self.scene, &mut state.motion, &mut state.kept, h)?;
+        state.elapsed.add(h);
         Ok(report)
     }
 
@@ -174,10 +218,10 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
             return Err(StepError::NonFinite { what: "value given to the step" });
         }
         let mut next = *state;
-        let State { motion, kept } = &mut next;
+        let State { motion, kept, .. } = &mut next;
         self.plan.see(motion, kept, values.seen_from(&motion.attitude));
         let report = Integrator::step(self, &mut next)?;
-        let State { motion, kept } = &mut next;
+        let State { motion, kept, .. } = &mut next;
         self.plan.see(motion, kept, self.scene.advected().seen_from(&motion.attitude));
         *state = next;
         Ok(report)
@@ -216,7 +260,8 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
     ) -> Result<u64, StepError> {
         if const { P::RUNS_BY_STEPS } {
             // It stops where they do, and nothing need be copied.
-            self.run_without_copy(state, steps, Some(next))
+            let elapsed = state.elapsed.sum;
+            self.run_without_copy(state, steps, Some(&mut |motion, time| next(motion, time + elapsed)))
         } else {
             run_or_step(self, state, steps, next)
         }
@@ -227,20 +272,15 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
     }
 
     fn part(&self, state: &Self::State, fraction: Scalar<S>) -> Result<Motion<Group<S>, S::Advected>, StepError> {
-        // Nothing of a change so small would be seen, and of a step so small constants may leave the scalar's range.
-        let least = Scalar::<S>::simd_default_epsilon() * Scalar::<S>::simd_default_epsilon();
-        if fraction.simd_abs().simd_lt(least).all() {
-            return Ok(state.motion);
-        }
-        let scene = &self.scene;
-        let part = self.plan.refolded(scene, self.step_size() * fraction);
-        let part = part.map_err(|_| StepError::NonFinite { what: "part of the step" })?;
-        let mut next = state.motion;
-        let mut kept = part.keep(scene, &next);
-        run_plan(&part, scene, &mut next, &mut kept, (1, None))
-            .map_err(|error| part.explained(error, scene, &state.motion, &kept))?;
-        next.steps = state.steps;
-        Ok(next)
+        self.plan.part(&self.scene, &state.motion, &state.kept, fraction)
+    }
+
+    fn time(&self, state: &Self::State) -> Scalar<S> {
+        Stepper::time(self, state)
+    }
+
+    fn length(&self, state: &Self::State) -> Option<Scalar<S>> {
+        P::VARIES.then(|| self.plan.length(&self.scene, &state.motion, &state.kept, true))
     }
 
     fn cost(&self) -> Option<Cost> {

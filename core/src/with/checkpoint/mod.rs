@@ -19,12 +19,12 @@ pub use stored::Storable;
 
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar};
-use crate::motion::{Kept, Motion, Plan, State, StateOf, Stepper};
+use crate::motion::{Elapsed, Kept, Motion, Plan, State, StateOf, Stepper};
 use crate::numbers::{Digest, Entries, Real, real, reported};
 use fingerprint::Parameters;
 
 /// What the numbers below mean; another layout has another number.
-const FORMAT: u32 = 3;
+const FORMAT: u32 = 4;
 
 /// A state in a file, by [`Stepper::checkpoint`]; [`Stepper::resume`] makes a state of it.
 ///
@@ -48,7 +48,7 @@ pub struct Checkpoint<T> {
     attitude: Vec<T>,
     momentum: Vec<T>,
     advected: Vec<T>,
-    /// What the method keeps from step to step.
+    /// What the method keeps from step to step, and the time of steps of another length.
     kept: Vec<T>,
     /// The digest of everything above.
     digest: Digest,
@@ -94,10 +94,11 @@ impl<S: Effect<Scalar: Storable>, P: Plan<S>> Stepper<S, P> {
     /// The state for a file, with all that its method keeps.
     #[must_use]
     pub fn checkpoint(&self, state: &StateOf<S, P>) -> Checkpoint<Scalar<S>> {
-        let State { motion, kept } = state;
+        let State { motion, kept, elapsed } = state;
         let (own, method) = (Parameters::of_scene(&self.scene), Parameters::of_plan(&self.plan));
         let mut numbers = Vec::new();
         kept.each(&mut |number| numbers.push(number));
+        elapsed.each(&mut |number| numbers.push(number));
         let mut checkpoint = Checkpoint {
             format: FORMAT,
             scene: own.fingerprint,
@@ -154,7 +155,8 @@ impl<S: Effect<Scalar: Storable>, P: Plan<S>> Stepper<S, P> {
         if checkpoint.digest != checkpoint.digested() {
             return Err(CheckpointError::Altered);
         }
-        Ok(State { motion, kept: kept.ok_or(CheckpointError::NotKept)? })
+        let (kept, elapsed) = kept.ok_or(CheckpointError::NotKept)?;
+        Ok(State { motion, kept, elapsed })
     }
 
     /// The checkpoint is of this scene, with these parameters, this method and this step.
@@ -185,15 +187,16 @@ impl<S: Effect<Scalar: Storable>, P: Plan<S>> Stepper<S, P> {
 }
 
 /// What a method keeps, if these numbers can be that.
-fn remembered<T: Storable, K: Kept<T>>(list: &[T]) -> Result<Option<K>, CheckpointError> {
+fn remembered<T: Storable, K: Kept<T>>(list: &[T]) -> Result<Option<(K, Elapsed<T>)>, CheckpointError> {
     let mut expected = 0;
     let _ = K::from_numbers(&mut || {
         expected += 1;
         T::zero()
     });
-    readable("kept", list, expected)?;
+    readable("kept", list, expected + 2)?;
     let mut numbers = list.iter();
-    Ok(K::from_numbers(&mut || numbers.next().copied().unwrap_or_else(T::zero)))
+    let mut next = || numbers.next().copied().unwrap_or_else(T::zero);
+    Ok(K::from_numbers(&mut next).map(|kept| (kept, Elapsed::from_numbers(&mut next))))
 }
 
 fn list<T: Real>(entries: &impl Entries<T>) -> Vec<T> {

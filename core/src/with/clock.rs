@@ -1,0 +1,171 @@
+//! Lengths of steps that are known beforehand.
+
+use alloc::vec::Vec;
+
+use super::lengths::Lengths;
+use super::orbit::orbit;
+use super::varied::Varied;
+use crate::error::SetupError;
+use crate::mechanics::{Effect, Group, SceneVisitor, Vector};
+use crate::motion::{Elapsed, Motion, Plan, Steerable, Stepper, Variable};
+
+/// Lengths of steps that are known beforehand, `h_k = h c_k`: the `c_k`, one after the other or in rounds.
+///
+/// Each step is variational with its own length, so that momentum maps are kept, and the Poisson structure. The time of a
+/// step is known from its number.
+///
+/// # Source
+///
+/// E. Hairer, C. Lubich and G. Wanner, *Geometric Numerical Integration*, 2nd edition, VIII.1 and VIII.2.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clock {
+    lengths: Vec<f64>,
+    /// The sums of the lengths, from zero to that of all.
+    times: Vec<f64>,
+    is_repeated: bool,
+}
+
+impl Clock {
+    /// The lengths of steps in units of the stepper's `h`, and no more steps after the last.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError::Parameter`] where there is none, or one isn't positive and finite.
+    pub fn of_lengths(lengths: impl IntoIterator<Item = f64>) -> Result<Self, SetupError> {
+        let lengths: Vec<f64> = lengths.into_iter().collect();
+        let (mut sum, mut times) = (Elapsed::nothing(), [0.0].to_vec());
+        times.extend(lengths.iter().map(|&length| {
+            sum.add(length);
+            sum.sum
+        }));
+        let is_usable = !lengths.is_empty() && lengths.iter().all(|&length| length > 0.0) && sum.sum.is_finite();
+        if !is_usable {
+            let cause = "has no length, or one that isn't positive and finite";
+            return Err(SetupError::Parameter { field: "clock", cause });
+        }
+        Ok(Self { lengths, times, is_repeated: false })
+    }
+
+    /// The same lengths over and over again.
+    #[must_use]
+    pub fn repeated(self) -> Self {
+        Self { is_repeated: true, ..self }
+    }
+
+    /// The steps along a Kepler orbit, `dt ∝ r^{3/2}`, from pericentre on and round after round: of a stepper with
+    /// `h = 1`, in the unit of the period. They are symmetric about both apsides.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError::Parameter`] where the eccentricity isn't from 0 to 1, 1 itself not among them, the period isn't positive
+    /// and finite, or there is no step.
+    pub fn orbit(eccentricity: f64, period: f64, steps: u32) -> Result<Self, SetupError> {
+        let refused = |field, cause| Err(SetupError::Parameter { field, cause });
+        if !(0.0..1.0).contains(&eccentricity) {
+            return refused("eccentricity", "isn't that of an ellipse");
+        }
+        if !(period > 0.0 && period.is_finite()) {
+            return refused("period", "isn't positive and finite");
+        }
+        if steps == 0 {
+            return refused("steps", "is zero");
+        }
+        Self::of_lengths(orbit(eccentricity, period, steps)).map(Self::repeated)
+    }
+
+    /// The lengths back from this step to the first, which retrace a motion: of a stepper with `−h`, from a state that it has
+    /// adopted. `None` where the clock doesn't go so far.
+    #[must_use]
+    pub fn reversed(&self, step: u64) -> Option<Self> {
+        let round = self.lengths.len() as u64;
+        if !self.is_repeated {
+            let steps = usize::try_from(step).ok().filter(|&steps| steps <= self.lengths.len())?;
+            return Self::of_lengths(self.lengths[..steps].iter().rev().copied()).ok();
+        }
+        let mut lengths: Vec<f64> = self.lengths.iter().rev().copied().collect();
+        lengths.rotate_left(usize::try_from((round - step % round) % round).ok()?);
+        Self::of_lengths(lengths).map(Self::repeated).ok()
+    }
+
+    /// The number of a round, and the place in it.
+    fn place(&self, step: u64) -> (u64, usize) {
+        let round = self.lengths.len() as u64;
+        let rounds = if self.is_repeated { step / round } else { 0 };
+        (rounds, usize::try_from(step - rounds * round).unwrap_or(usize::MAX))
+    }
+}
+
+/// # Wrap: lengths known beforehand
+impl<S: Effect<Scalar = f64>, P: Plan<S>> Stepper<S, P> {
+    /// The same method with the lengths of a clock, in units of its `h`.
+    ///
+    /// A clock that follows what is known of the motion, as `dt ∝ r^{3/2}` along an orbit, is worth many steps; [the
+    /// chapter](crate::guide::varying) says how many, and where it is worth nothing. The energy isn't nearly conserved where a
+    /// clock resonates with the motion. After the last length of a clock that isn't repeated a step is
+    /// [`StepError::NoLength`](crate::StepError::NoLength).
+    ///
+    /// Recordings, events, checkpoints and [given values](Self::driven) go with it. A body in lanes and derivatives of a motion
+    /// have equal steps, and are refused; so is [`inverse`](Self::inverse), in whose place a [reversed](Clock::reversed) clock
+    /// stands, and a time before a state's.
+    ///
+    /// A processed splitting is refused, too:
+    ///
+    /// ```compile_fail,E0277
+    /// use liestep::effects::RigidBody;
+    /// use liestep::methods::{ExactBody, ProcessedScheme};
+    /// use liestep::prelude::*;
+    /// use liestep::with::Clock;
+    ///
+    /// let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5)).unwrap();
+    /// let flow = ExactBody::new(&J_d.to_inertia());
+    /// let stepper = Stepper::processed(RigidBody { J_d }, 1.0, flow, ProcessedScheme::FOUR_A).unwrap();
+    /// let _ = stepper.with_clock(Clock::orbit(0.7, 6000.0, 400).unwrap());
+    /// ```
+    #[must_use]
+    pub fn with_clock(self, clock: Clock) -> Stepper<S, Varied<P, Clock>>
+    where
+        P: Variable,
+    {
+        self.varied(clock)
+    }
+}
+
+impl<P: Steerable> Steerable for Varied<P, Clock> {}
+
+impl<S: Effect<Scalar = f64>> Lengths<S> for Clock {
+    type Memory = ();
+    const COUNTED: bool = true;
+
+    fn begin(&self) {}
+
+    fn length(
+        &self,
+        unit: f64,
+        motion: &Motion<Group<S>, S::Advected>,
+        _velocity: impl FnOnce() -> Vector<S>,
+        ((), is_ahead): (&(), bool),
+    ) -> f64 {
+        let round = self.lengths.len() as u64;
+        let step = match (is_ahead, motion.steps) {
+            (true, step) => Some(step),
+            (false, 0) => self.is_repeated.then_some(round - 1),
+            (false, step) => Some(step - 1),
+        };
+        let length = step.and_then(|step| self.lengths.get(self.place(step).1));
+        length.map_or(f64::NAN, |length| unit * length)
+    }
+
+    fn after(&self, _: [f64; 2], _: &Motion<Group<S>, S::Advected>, _: impl FnOnce() -> Vector<S>, (): &()) {}
+
+    #[allow(clippy::cast_precision_loss)] // a number of rounds
+    fn time(&self, steps: u64, unit: f64, (): &()) -> f64 {
+        let (rounds, place) = self.place(steps);
+        let [within, round] = [self.times.get(place), self.times.last()].map(|time| time.copied().unwrap_or(f64::NAN));
+        unit * (round * rounds as f64 + within)
+    }
+
+    fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
+        visitor.term(if self.is_repeated { "with a clock of rounds" } else { "with a clock" });
+        self.lengths.iter().for_each(|&length| visitor.parameter("length", length));
+    }
+}

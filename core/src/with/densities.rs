@@ -1,0 +1,47 @@
+//! Rates of densities of steps, ready made: [`Stepper::with_density`](crate::Stepper::with_density) takes them.
+
+use nalgebra::{Vector3, Vector6};
+
+use crate::error::SetupError;
+use crate::groups::{R3, SO3};
+use crate::mechanics::ContinuousLagrangian;
+use crate::motion::{Motion, RightHandSide};
+use crate::numbers::Bodies;
+
+/// Steps proportional to the power `p` of the distance between two of several bodies, counted from zero:
+/// `G = −p r·ṙ/|r|²`, 1/s. Of two bodies that attract each other by gravity 3/2 is Kepler's own.
+#[allow(clippy::type_complexity)] // what `with_density` asks for
+pub fn distance<const N: usize, A>(
+    bodies: [usize; 2],
+    power: f64,
+) -> impl Fn(&Motion<[(SO3, R3); N], A>, &Bodies<Vector6<f64>, N>) -> f64 + Clone {
+    move |motion, velocity| {
+        let [from, to] = bodies.map(|body| (motion.attitude.get(body), velocity.0.get(body)));
+        let ((Some((_, from)), Some(back)), (Some((_, to)), Some(ahead))) = (from, to) else { return f64::NAN };
+        let apart = to.translation() - from.translation();
+        let rate = ahead.fixed_rows::<3>(3) - back.fixed_rows::<3>(3);
+        -power * apart.dot(&rate) / apart.norm_squared()
+    }
+}
+
+/// Steps in which a body turns by about as much, `h ∝ (|Ω|² + ω²)^{-1/2}` with `ω` in rad/s, below which they don't get
+/// longer: `G = Ω·Ω̇/(|Ω|² + ω²)`, 1/s. The rate `Ω̇` is that of the scene's equations of motion, without forces.
+///
+/// # Errors
+///
+/// As [`RightHandSide::new`].
+#[allow(clippy::type_complexity)] // as above
+pub fn turn<L: ContinuousLagrangian<Scalar = f64, Group = SO3> + Clone>(
+    scene: L,
+    floor: f64,
+) -> Result<impl Fn(&Motion<SO3, L::Advected>, &Vector3<f64>) -> f64 + Clone, SetupError> {
+    let scene = RightHandSide::new(scene)?;
+    Ok(move |motion: &Motion<SO3, L::Advected>, velocity: &Vector3<f64>| {
+        let rate = scene.rates(&motion.attitude, &motion.momentum).and_then(|(_, momentum)| {
+            // Velocities are linear in momenta, but for those at which the body is at rest.
+            let [moving, rest] = [momentum, Vector3::zeros()].map(|of| scene.velocity(&of, &motion.advected));
+            Ok(moving? - rest?)
+        });
+        rate.map_or(f64::NAN, |rate| velocity.dot(&rate) / (velocity.norm_squared() + floor * floor))
+    })
+}

@@ -1,0 +1,101 @@
+//! Lengths of steps that follow the motion, and come back where the motion does.
+
+use super::lengths::Lengths;
+use super::varied::Varied;
+use crate::mechanics::{Effect, Group, SceneVisitor, Vector};
+use crate::motion::{Elapsed, Kept, Motion, Plan, Stepper, Variable};
+
+/// The rate of a density of steps.
+#[derive(Clone, Copy, Debug)]
+pub struct Density<D>(D);
+
+/// The density `ρ` at a motion, which is one at its start, and the time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DensityMemory {
+    density: f64,
+    time: Elapsed<f64>,
+}
+
+/// # Wrap: lengths that follow the motion
+impl<S: Effect<Scalar = f64>, P: Plan<S>> Stepper<S, P> {
+    /// The same method with steps of `h/ρ`, the first about `h`: `rate` is `G = d/dt ln ρ` of the density of steps that is
+    /// wanted, 1/s, as a function of motion and body velocity. [`densities`](super::densities) has some that are ready made.
+    ///
+    /// `ρ_{k+1/2} = ρ_k + ½ h G(state_k)`, a step of `h/ρ_{k+1/2}`, `ρ_{k+1} = ρ_{k+1/2} + ½ h G(state_{k+1})`. The density
+    /// isn't that of the state alone but a number beside it. So [`inverse`](Self::inverse) retraces all steps, and the method is
+    /// reversible where the motion is: its actions don't drift. It isn't symplectic. Momentum maps are kept. Where `G` depends
+    /// on the velocity it has to be odd in it, as the rate of a function of the attitude is.
+    ///
+    /// Recordings, events and checkpoints go with it; two different rates aren't told apart by a checkpoint. Not with it
+    /// go lanes, derivatives, values that are given, control forces, and a time before a state's: these are refused.
+    ///
+    /// # Source
+    ///
+    /// E. Hairer and G. Söderlind, *Explicit, time reversible, adaptive step size control*, SIAM J. Sci. Comput. 26 (2005),
+    /// (3.5), with the density kept at the states and not between them.
+    #[must_use]
+    pub fn with_density<D>(self, rate: D) -> Stepper<S, Varied<P, Density<D>>>
+    where
+        P: Variable,
+        D: Fn(&Motion<Group<S>, S::Advected>, &Vector<S>) -> f64 + Clone,
+    {
+        self.varied(Density(rate))
+    }
+}
+
+impl<S: Effect<Scalar = f64>, D> Lengths<S> for Density<D>
+where
+    D: Fn(&Motion<Group<S>, S::Advected>, &Vector<S>) -> f64 + Clone,
+{
+    type Memory = DensityMemory;
+    const COUNTED: bool = false;
+
+    fn begin(&self) -> DensityMemory {
+        DensityMemory { density: 1.0, time: Elapsed::nothing() }
+    }
+
+    fn length(
+        &self,
+        unit: f64,
+        motion: &Motion<Group<S>, S::Advected>,
+        velocity: impl FnOnce() -> Vector<S>,
+        (memory, is_ahead): (&DensityMemory, bool),
+    ) -> f64 {
+        let half = 0.5 * unit * (self.0)(motion, &velocity());
+        unit / (memory.density + if is_ahead { half } else { -half })
+    }
+
+    fn after(
+        &self,
+        [unit, length]: [f64; 2],
+        motion: &Motion<Group<S>, S::Advected>,
+        velocity: impl FnOnce() -> Vector<S>,
+        before: &DensityMemory,
+    ) -> DensityMemory {
+        if length == 0.0 {
+            return *before;
+        }
+        let mut time = before.time;
+        time.add(length);
+        DensityMemory { density: unit / length + 0.5 * unit * (self.0)(motion, &velocity()), time }
+    }
+
+    fn time(&self, _: u64, _: f64, memory: &DensityMemory) -> f64 {
+        memory.time.sum
+    }
+
+    fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
+        visitor.term("with a density");
+    }
+}
+
+impl Kept<f64> for DensityMemory {
+    fn each(&self, visit: &mut dyn FnMut(f64)) {
+        visit(self.density);
+        self.time.each(visit);
+    }
+
+    fn from_numbers(next: &mut dyn FnMut() -> f64) -> Option<Self> {
+        Some(Self { density: next(), time: Elapsed::from_numbers(next) })
+    }
+}

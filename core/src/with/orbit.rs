@@ -1,0 +1,44 @@
+//! Steps along a Kepler orbit.
+
+use alloc::vec::Vec;
+use core::f64::consts::TAU;
+
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
+
+/// Of an integral over a round, which converges as fast as a power with their number.
+const RECTANGLES: u32 = 65_536;
+/// Of a step of the clock, by the classical Runge–Kutta method.
+const PARTS: u32 = 8;
+
+/// The lengths of a round from pericentre, `dt ∝ r^{3/2}`, symmetric about both apsides.
+pub(super) fn orbit(eccentricity: f64, period: f64, steps: u32) -> Vec<f64> {
+    // With the eccentric anomaly `E`, `r = 1 − e cos E` and `dt = r dE`: steps are equal in `s`, `ds = r^{-1/2} dE`.
+    let rate = |anomaly: f64| (1.0 - eccentricity * anomaly.cos()).sqrt();
+    let width = TAU / f64::from(RECTANGLES);
+    let all: f64 = (0..RECTANGLES).map(|k| width / rate(width * f64::from(k))).sum();
+    let part = all / (f64::from(steps) * f64::from(PARTS));
+    let (mut anomaly, mut times) = (0.0_f64, [0.0].to_vec());
+    for _ in 0..steps / 2 {
+        for _ in 0..PARTS {
+            let first = rate(anomaly);
+            let second = rate(anomaly + 0.5 * part * first);
+            let third = rate(anomaly + 0.5 * part * second);
+            let fourth = rate(anomaly + part * third);
+            anomaly += part / 6.0 * (first + 2.0 * (second + third) + fourth);
+        }
+        times.push(period / TAU * (anomaly - eccentricity * anomaly.sin()));
+    }
+    let is_even = steps.is_multiple_of(2);
+    if let Some(apocentre) = times.last_mut().filter(|_| is_even) {
+        *apocentre = 0.5 * period;
+    }
+    let mut lengths: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let back: Vec<f64> = lengths.iter().rev().copied().collect();
+    if let Some(&last) = times.last().filter(|_| !is_even) {
+        lengths.push(period - 2.0 * last);
+    }
+    lengths.extend(back);
+    lengths
+}

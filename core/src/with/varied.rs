@@ -1,0 +1,143 @@
+//! Steps of different lengths, one after the other by the same method.
+
+use super::lengths::Lengths;
+use crate::error::{SetupError, StepError};
+use crate::mechanics::{Effect, Group, SceneVisitor, Vector};
+use crate::motion::{Motion, Plan, StepReport, Stepper, Summation, Variable};
+use crate::numbers::Vectors;
+
+/// A plan each of whose steps has a length of its own, by [`Stepper::with_clock`] and [`Stepper::with_density`].
+#[derive(Clone, Debug)]
+pub struct Varied<P, L> {
+    plan: P,
+    lengths: L,
+}
+
+impl<S: Effect<Scalar = f64>, P: Plan<S> + Variable> Stepper<S, P> {
+    pub(super) fn varied<L: Lengths<S>>(self, lengths: L) -> Stepper<S, Varied<P, L>> {
+        const { assert!(!P::VARIES, "a step has one length: choose a clock or a density") }
+        Stepper { scene: self.scene, plan: Varied { plan: self.plan, lengths } }
+    }
+}
+
+impl<P, L> Varied<P, L> {
+    /// The length of a step, if it is one: of the sign of the unit, and long enough that time goes on.
+    fn checked<S>(
+        &self,
+        scene: &S,
+        motion: &Motion<Group<S>, S::Advected>,
+        kept: &(P::Kept, L::Memory),
+        is_ahead: bool,
+    ) -> Result<f64, StepError>
+    where
+        S: Effect<Scalar = f64>,
+        P: Plan<S>,
+        L: Lengths<S>,
+    {
+        let (length, unit) = (self.length(scene, motion, kept, is_ahead), self.plan.step_size());
+        let now = self.time(motion, kept);
+        let goes_on = length.is_finite() && length * unit.signum() > 0.0 && (now + length).to_bits() != now.to_bits();
+        if goes_on || (unit == 0.0 && length == 0.0) { Ok(length) } else { Err(StepError::NoLength { length }) }
+    }
+}
+
+impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for Varied<P, L> {
+    type Kept = (P::Kept, L::Memory);
+
+    const VECTORS: Vectors = P::VECTORS;
+    const HAS_OWN_INERTIA: bool = P::HAS_OWN_INERTIA;
+    const RUNS_BY_STEPS: bool = true;
+    const COUNTS_TIME: bool = L::COUNTED;
+    const VARIES: bool = true;
+
+    delegate_plan!(plan, |kept| &kept.0; step_size admits momentum velocity is_in_step cost);
+
+    fn refolded(&self, scene: &S, h: f64) -> Result<Self, SetupError> {
+        Ok(Self { plan: self.plan.refolded(scene, h)?, lengths: self.lengths.clone() })
+    }
+
+    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
+        (self.plan.keep(scene, motion), self.lengths.begin())
+    }
+
+    fn counted(&self, steps: u64) -> f64 {
+        self.lengths.time(steps, self.plan.step_size(), &self.lengths.begin())
+    }
+
+    fn time(&self, motion: &Motion<Group<S>, S::Advected>, kept: &Self::Kept) -> f64 {
+        self.lengths.time(motion.steps, self.plan.step_size(), &kept.1)
+    }
+
+    fn length(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, kept: &Self::Kept, is_ahead: bool) -> f64 {
+        let velocity = || self.plan.velocity(scene, motion);
+        self.lengths.length(self.plan.step_size(), motion, velocity, (&kept.1, is_ahead))
+    }
+
+    #[hot]
+    fn step<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
+        let length = self.checked(scene, motion.now(), kept, true)?;
+        let report = self.plan.step_of(scene, motion, &mut kept.0, length)?;
+        motion.count();
+        let velocity = || self.plan.velocity(scene, motion.now());
+        kept.1 = self.lengths.after([self.plan.step_size(), length], motion.now(), velocity, &kept.1);
+        Ok(report)
+    }
+
+    /// Beside the steps that are counted.
+    fn step_of<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+        length: f64,
+    ) -> Result<StepReport, StepError> {
+        self.plan.step_of(scene, motion, &mut kept.0, length)
+    }
+
+    fn part(
+        &self,
+        scene: &S,
+        motion: &Motion<Group<S>, S::Advected>,
+        kept: &Self::Kept,
+        fraction: f64,
+    ) -> Result<Motion<Group<S>, S::Advected>, StepError> {
+        if fraction == 0.0 || self.plan.step_size() == 0.0 {
+            return Ok(*motion);
+        }
+        let length = self.checked(scene, motion, kept, fraction > 0.0)?;
+        self.plan.part(scene, motion, &kept.0, fraction * (length / self.plan.step_size()))
+    }
+
+    fn push<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+        impulse: &Vector<S>,
+    ) -> Result<(), StepError> {
+        self.plan.push(scene, motion, &mut kept.0, impulse)
+    }
+
+    fn see(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut Self::Kept, advected: S::Advected) {
+        self.plan.see(motion, &mut kept.0, advected);
+    }
+
+    /// That of the next length.
+    fn max_step(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, kept: &Self::Kept) -> f64 {
+        let whole = self.checked(scene, motion, kept, true);
+        let whole = whole.ok().and_then(|length| self.plan.refolded(scene, length).ok());
+        whole.map_or(0.0, |whole| whole.max_step(scene, motion, &whole.keep(scene, motion)))
+    }
+
+    fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
+        self.lengths.describe(visitor);
+        self.plan.describe(visitor);
+    }
+}
+
+impl<P: Variable, L> Variable for Varied<P, L> {}

@@ -1,0 +1,396 @@
+//! Steps of different lengths: one beside the others, those of a clock, and those of a density.
+
+use core::f64::consts::TAU;
+
+use liestep::effects::GravityGradient;
+use liestep::groups::{Advected, LieGroup, R3};
+use liestep::mechanics::{Each, Effect, LeftInvariant, Pairs, Sum};
+use liestep::methods::{BallJoint, Chain, CompositionScheme, ExactBody, Flow, Joined, Joints, Link, SplittingScheme};
+use liestep::motion::{Integrator as _, Motion as At, Plan, Variable};
+use liestep::numbers::{Bodies, Entries as _};
+use liestep::prelude::*;
+use liestep::recording::{Event, Frames, Reason};
+use liestep::with::{Clock, densities};
+use nalgebra::Vector6;
+
+fn disc() -> NonstandardInertia {
+    NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap()
+}
+
+/// A top that makes loops.
+fn top() -> (Top, SO3, Vector3<f64>) {
+    let top = RigidBody { J_d: disc() } + Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+    (top, SO3::from_euler_angles(0.8, 0.1, 0.0), Vector3::new(0.5, 2.0, 12.0))
+}
+
+type Top = Sum<RigidBody, Gravity>;
+
+/// A body of several.
+#[lagrangian(
+    group(F = SO3, d = R3),
+    advected(x = d.seen_from(space)),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h)
+        - 0.5 * h * m * g * (x + x + d).dot(&up),
+)]
+#[derive(Clone, Copy, Debug)]
+struct FallingBody {
+    m: f64,
+    J_d: NonstandardInertia,
+    g: f64,
+    up: Vector3<f64>,
+}
+
+/// What points of two do to each other, as two unit masses there.
+#[lagrangian(
+    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+    advected(R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space), r = d_2.seen_from(d_1)),
+    l_d = 0.5 * h * (1.0 / (r + R_2 * b - R_1 * a).norm() + 1.0 / (r + d_2 - d_1 + R_2 * F_2 * b - R_1 * F_1 * a).norm()),
+)]
+#[derive(Clone, Copy, Debug)]
+struct Attraction {
+    a: Vector3<f64>,
+    b: Vector3<f64>,
+}
+
+/// How far apart two motions are.
+fn apart<G: LieGroup<Scalar = f64>, A: Advected<G>>(a: &At<G, A>, b: &At<G, A>) -> f64 {
+    let [a, b] = [a, b].map(|motion| {
+        let mut all = Vec::new();
+        motion.attitude().matrix().each(&mut |number| all.push(number));
+        motion.momentum().each(&mut |number| all.push(number));
+        all
+    });
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+/// A step of the length `h` is the step, one of another length that of another stepper, a clock makes the steps of its
+/// lengths, and a reversed clock comes back, as `−h` does.
+fn assert_varies<S, P>(name: &str, make: impl Fn(f64) -> Stepper<S, P>, start: liestep::StateOf<S, P>)
+where
+    S: Effect<Scalar = f64>,
+    P: Plan<S> + Variable + Clone,
+{
+    let (h, stepper) = (0.01, make(0.01));
+    let (mut one, mut other) = (start, start);
+    stepper.run(&mut one, 3).unwrap();
+    other = stepper.steps(other).take(3).last().unwrap().unwrap();
+    stepper.step(&mut one).unwrap();
+    stepper.step_of(&mut other, h).unwrap();
+    assert!(apart(&one, &other) < 1e-12, "{name}: {:e}", apart(&one, &other));
+    assert_eq!((other.steps(), stepper.time(&other)), (3, 3.0 * h + h));
+    let (before, short) = (other, make(0.3 * h));
+    let mut expected = short.adopt(&other);
+    short.step(&mut expected).unwrap();
+    stepper.step_of(&mut other, 0.3 * h).unwrap();
+    assert!(apart(&other, &expected) < 1e-12, "{name}: {:e}", apart(&other, &expected));
+    stepper.step_of(&mut other, -0.3 * h).unwrap();
+    assert!(apart(&other, &before) < 1e-11, "{name}: {:e}", apart(&other, &before));
+    let refused = stepper.step_of(&mut other, f64::NAN).unwrap_err();
+    assert_eq!(refused, StepError::NonFinite { what: "length of the step" });
+    assert!(stepper.step_of(&mut other, 1e300).is_err());
+
+    let clock = Clock::orbit(0.6, 40.0, 40).unwrap();
+    let timed = make(h).with_clock(clock.clone());
+    let (mut state, mut by_hand) = (timed.adopt(&start), start);
+    timed.run(&mut state, 60).unwrap();
+    let mut last = 0.0;
+    for k in 1..=60 {
+        let now = timed.plan().counted(k);
+        stepper.step_of(&mut by_hand, now - last).unwrap();
+        last = now;
+    }
+    assert!((timed.time(&state) - last).abs() < 1e-15 && last > 0.4);
+    assert!(apart(&state, &by_hand) < 1e-10, "{name}: {:e}", apart(&state, &by_hand));
+    let back = make(-h).with_clock(clock.reversed(60).unwrap());
+    let mut returned = back.adopt(&state);
+    back.run(&mut returned, 60).unwrap();
+    assert!(apart(&returned, &start) < 1e-10, "{name}: {:e}", apart(&returned, &start));
+    assert!((back.time(&returned) + last).abs() < 1e-14);
+}
+
+#[test]
+fn any_method_varies() {
+    let (scene, attitude, velocity) = top();
+    let flow = ExactBody::new(&disc().to_inertia());
+    let own = |h: f64| Stepper::new(scene, h).unwrap();
+    let composed = |h: f64| Stepper::composed(scene, h, CompositionScheme::SUZUKI_4).unwrap();
+    let split = |h: f64| Stepper::split(scene, h, flow, SplittingScheme::STRANG).unwrap();
+    let gauss = |h: f64| Stepper::collocated::<2>(scene, h).unwrap();
+    assert_varies("own", own, own(0.01).start(attitude, velocity).unwrap());
+    let carried = |h: f64| own(h).or_substeps(4).compensated();
+    assert_varies("compensated", carried, carried(0.01).start(attitude, velocity).unwrap());
+    assert_varies("composed", composed, composed(0.01).start(attitude, velocity).unwrap());
+    assert_varies("split", split, split(0.01).start(attitude, velocity).unwrap());
+    assert_varies("Gauss", gauss, gauss(0.01).start(attitude, velocity).unwrap());
+
+    let J_d = NonstandardInertia::from_diagonal(Vector3::new(0.1, 0.2, 0.3)).unwrap();
+    let (c, up) = (-Vector3::z() * 0.5, Vector3::z());
+    let chain = Chain { links: [Link { J_d, m: 1.0, c, rho: c * 2.0 }; 3], g: 9.81, up };
+    let start = chain.stepper(0.01).unwrap().start([SO3::from_euler_angles(0.2, 1.0, 0.0); 3], Bodies([up * 0.2; 3]));
+    assert_varies("chain", |h| chain.stepper(h).unwrap(), start.unwrap());
+    let joint = BallJoint { above: Vector3::zeros(), below: Vector3::z() };
+    let body = Each::<1>::of([FallingBody { m: 1.0, J_d, g: 9.81, up }]);
+    let jointed = |h: f64| Stepper::jointed(body, Joints::tree([Joined::to_space(joint, 0)]), h).unwrap();
+    let place = [(SO3::identity(), R3::from(-Vector3::z()))];
+    let start = jointed(0.01).start(place, Bodies([Vector6::new(0.0, 1.0, 0.5, -1.0, 0.0, 0.0)])).unwrap();
+    assert_varies("joints", jointed, start);
+}
+
+/// Steps beside the counted ones and those of a clock, as they are recorded, read between steps, and kept.
+#[test]
+fn time_is_that_of_the_lengths() {
+    let (scene, attitude, velocity) = top();
+    let stepper = Stepper::new(scene, 0.01).unwrap();
+    let mut state = stepper.start(attitude, velocity).unwrap();
+    stepper.step_of(&mut state, 0.0037).unwrap();
+    #[cfg(feature = "serde")]
+    assert_eq!(stepper.resume(&stepper.checkpoint(&state)).unwrap(), state);
+    let mut times = Vec::new();
+    let ended = stepper.observed(&mut state).every(1, |now| times.push(now.time())).until(0.0537).unwrap();
+    assert_eq!(ended.steps, 5);
+    assert!(times.iter().zip(0..).all(|(t, k)| (t - 0.0037 - 0.01 * f64::from(k)).abs() < 1e-16), "{times:?}");
+    assert!(apart(&stepper.state_at(&state, 0.0537).unwrap(), &state) < 1e-13);
+    let hidden = stepper.clone().into_any().hiding_advected();
+    let erased = hidden.start(attitude, velocity).unwrap();
+    assert_eq!((hidden.time(&erased), hidden.length(&erased)), (0.0, None));
+
+    let timed = Stepper::new(scene, 0.01).unwrap().with_clock(Clock::orbit(0.5, 30.0, 31).unwrap());
+    let start = timed.start(attitude, velocity).unwrap();
+    let (mut state, mut seen, mut asked) = (start, Vec::new(), Vec::new());
+    let ended = timed
+        .observed(&mut state)
+        .event(Event::crossing(), |now| now.momentum().x, |now| seen.push((now.time(), **now)))
+        .at([0.123, 0.456], |now| asked.push((now.time(), **now)))
+        .until(2.0)
+        .unwrap();
+    assert!(ended.reason == Reason::Done && timed.time(&state) >= 2.0 && seen.len() > 1);
+    for (time, motion) in seen.iter().chain(&asked) {
+        assert!(apart(&timed.state_at(&start, *time).unwrap(), motion) < 1e-12);
+    }
+    assert!(seen.iter().all(|(_, motion)| motion.momentum().x.abs() < 1e-13));
+    assert!(timed.length(&start).unwrap() < 0.01);
+    // An end of a step is a part of length one, and the one before is a step back.
+    let next = timed.steps(state).next().unwrap().unwrap();
+    assert!(apart(&timed.part(&state, 1.0).unwrap(), &next) < 1e-12);
+    assert!(apart(&timed.part(&next, -1.0).unwrap(), &state) < 1e-12);
+    assert!(matches!(timed.state_at(&state, 0.1), Err(StepError::Past { .. })));
+    #[cfg(feature = "serde")]
+    assert_eq!(timed.resume(&timed.checkpoint(&state)).unwrap(), state);
+    let mut frames = Frames::new(timed, start);
+    for _ in 0..70 {
+        frames.advance(0.016).unwrap();
+    }
+    assert!((frames.time() - 1.12).abs() < 1e-13);
+}
+
+#[test]
+fn a_clock_has_an_end() {
+    let (scene, attitude, velocity) = top();
+    for wrong in [vec![], vec![1.0, 0.0], vec![1.0, f64::INFINITY]] {
+        assert!(Clock::of_lengths(wrong).is_err());
+    }
+    assert!(
+        Clock::orbit(1.0, 1.0, 10).is_err()
+            && Clock::orbit(0.5, 0.0, 10).is_err()
+            && Clock::orbit(0.5, 1.0, 0).is_err()
+    );
+    let clock = Clock::of_lengths([1.0, 2.0, 3.0]).unwrap();
+    assert_eq!((clock.reversed(2), clock.reversed(4)), (Clock::of_lengths([2.0, 1.0]).ok(), None));
+    let timed = Stepper::new(scene, 0.01).unwrap().with_clock(clock);
+    let mut state = timed.start(attitude, velocity).unwrap();
+    assert!(matches!(timed.part(&state, -0.5), Err(StepError::NoLength { .. })));
+    timed.run(&mut state, 3).unwrap();
+    assert!((timed.time(&state) - 0.06).abs() < 1e-17);
+    let before = state;
+    assert!(matches!(timed.step(&mut state), Err(StepError::NoLength { length }) if length.is_nan()));
+    assert_eq!(state, before);
+    for steps in [1, 2, 3, 400, 401] {
+        let clock = Clock::orbit(0.9, 7.0, steps).unwrap();
+        assert_eq!(clock.reversed(u64::from(steps)).unwrap(), clock);
+    }
+}
+
+/// The momentum in space, over many steps of very different lengths.
+#[test]
+fn momenta_of_varied_steps_are_kept() {
+    fn kept<S: Effect<Scalar = f64, Group = SO3> + LeftInvariant, P: Plan<S> + Variable>(
+        stepper: Stepper<S, P>,
+    ) -> f64 {
+        let timed = stepper.with_clock(Clock::orbit(0.9, 10.0, 100).unwrap());
+        let mut state = timed.start(SO3::identity(), Vector3::new(0.3, 1.0, 0.2)).unwrap();
+        let before = timed.spatial_momentum(&state);
+        timed.run(&mut state, 200_000).unwrap();
+        (timed.spatial_momentum(&state) - before).norm()
+    }
+    let body = RigidBody { J_d: NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5)).unwrap() };
+    let compensated = kept(Stepper::new(body, 0.1).unwrap().compensated());
+    let plain = kept(Stepper::new(body, 0.1).unwrap());
+    println!("momentum {plain:.1e}, with compensated sums {compensated:.1e}");
+    assert!(plain < 1e-12 && compensated < 1e-13);
+}
+
+/// Eccentric anomaly at a mean one, by bisection.
+fn kepler(mean: f64, e: f64) -> f64 {
+    let halved = |(low, high): (f64, f64), _| {
+        let middle = 0.5 * (low + high);
+        if middle - e * middle.sin() > mean { (low, middle) } else { (middle, high) }
+    };
+    (0..60).fold((mean - 1.0, mean + 1.0), halved).0
+}
+
+/// Distance and true anomaly at an eccentric one.
+fn place(anomaly: f64, e: f64) -> (f64, f64) {
+    let half = 0.5 * anomaly;
+    let turned = ((1.0 + e).sqrt() * half.sin()).atan2((1.0 - e).sqrt() * half.cos());
+    (1.0 - e * anomaly.cos(), 2.0 * turned)
+}
+
+/// A kick in the middle of the step, where the planet is known.
+const LEAPFROG: SplittingScheme = SplittingScheme::new("leapfrog", 2, Flow::Drift, &[0.5, 1.0]);
+
+/// Pitch and its rate after some orbits by steps of a splitting, this many an orbit: those of a clock, and equal ones. The
+/// satellite begins with 0.3 rad and 1 rad/s at pericentre.
+fn satellite([e, K]: [f64; 2], orbits: u32, steps: u32) -> [[f64; 2]; 2] {
+    let J = Inertia::from_principal_moments(Vector3::new(0.8 - 0.5 * K, 0.8 + 0.5 * K, 1.0)).unwrap();
+    // The direction of the planet times r^{-3/2}, so that all of its strength is in it.
+    let planet = move |t: f64| {
+        let (r, nu) = place(kepler(t, e), e);
+        Vector3::new(nu.cos(), nu.sin(), 0.0) * r.powf(-1.5)
+    };
+    let scene = RigidBody { J_d: J.to_nonstandard() } + GravityGradient { GM: 1.0, r: 1.0, J, direction: planet(0.0) };
+    let equal = Clock::of_lengths([TAU / f64::from(steps)]).unwrap().repeated();
+    [Clock::orbit(e, TAU, steps).unwrap(), equal].map(|clock| {
+        let stepper = Stepper::split(scene, 1.0, ExactBody::new(&J), LEAPFROG).unwrap();
+        let stepper = stepper.with_clock(clock).driven(move |t| ((), planet(t)));
+        let mut state = stepper.start(SO3::exp(Vector3::z() * 0.3), Vector3::z()).unwrap();
+        stepper.run(&mut state, u64::from(orbits * steps)).unwrap();
+        let turned = state.attitude().as_matrix().column(0).into_owned();
+        [turned.y.atan2(turned.x), state.momentum().z]
+    })
+}
+
+/// Beletsky's equation by Runge and Kutta, in the eccentric anomaly: pitch and its rate.
+fn beletsky([e, K]: [f64; 2], orbits: u32) -> [f64; 2] {
+    let rate = |y: [f64; 2], anomaly: f64| {
+        let (r, nu) = place(anomaly, e);
+        [y[1] * r, -1.5 * K * (2.0 * (y[0] - nu)).sin() / (r * r)]
+    };
+    let plus = |y: [f64; 2], rate: [f64; 2], h: f64| [y[0] + h * rate[0], y[1] + h * rate[1]];
+    let (steps, h) = (orbits * 20_000, TAU / 20_000.0);
+    (0..steps).fold([0.3, 1.0], |y, k| {
+        let now = f64::from(k) * h;
+        let first = rate(y, now);
+        let second = rate(plus(y, first, 0.5 * h), now + 0.5 * h);
+        let third = rate(plus(y, second, 0.5 * h), now + 0.5 * h);
+        let fourth = rate(plus(y, third, h), now + h);
+        let sides = plus(plus(y, first, h / 6.0), fourth, h / 6.0);
+        plus(plus(sides, second, h / 3.0), third, h / 3.0)
+    })
+}
+
+/// The table of the guide's chapter: `cargo test -p liestep --test varying -- clock_is_worth --nocapture`.
+#[test]
+fn what_a_clock_is_worth() {
+    let errors = |orbit: [f64; 2], orbits: u32, steps: u32| {
+        let expected = beletsky(orbit, orbits);
+        satellite(orbit, orbits, steps).map(|found| {
+            let turn = (found[0] - expected[0]).rem_euclid(TAU);
+            turn.min(TAU - turn).max((found[1] - expected[1]).abs())
+        })
+    };
+    let worth = |orbit: [f64; 2], orbits: u32| {
+        let ratios =
+            [200, 400, 800, 1600].map(|steps| errors(orbit, orbits, steps)).map(|[clock, equal]| equal / clock);
+        println!("e = {}, K = {}, {orbits} orbits: {ratios:.3?}", orbit[0], orbit[1]);
+        ratios
+    };
+    worth([0.97, 0.05], 2);
+    worth([0.9, 0.6], 5);
+    assert!(worth([0.7, 0.05], 2)[1..].iter().all(|&ratio| ratio > 150.0));
+    assert!(worth([0.9, 0.05], 2)[1..].iter().all(|&ratio| ratio > 300.0));
+    // Where the orbit is nearly round, and in chaos, it is worth little or less than nothing.
+    assert!(worth([0.3, 0.05], 2).iter().all(|&ratio| ratio < 3.0));
+    assert!(worth([0.3, 0.6], 5).iter().all(|&ratio| ratio < 1.0));
+    assert!(worth([0.7, 0.6], 5).iter().all(|&ratio| ratio < 10.0));
+    let order = [400, 800, 1600].map(|steps| errors([0.7, 0.05], 2, steps)[0]);
+    for pair in order.windows(2) {
+        assert!(((pair[0] / pair[1]).log2() - 2.0).abs() < 0.005, "{order:?}");
+    }
+}
+
+/// A symmetric top whose axis swings through the vertical, by steps in which it turns by about as much.
+#[test]
+fn a_density_comes_back() {
+    let (top, ..) = top();
+    let stepper = Stepper::new(top, 0.02).unwrap().with_density(densities::turn(top, 1.0).unwrap());
+    let start = stepper.start(SO3::identity(), Vector3::new(0.5, 0.0, 1.0)).unwrap();
+    let (mut state, mut passes, mut shortest, mut means) = (start, 0, f64::INFINITY, [0.0; 2]);
+    let (before, mut last) = (stepper.energy(&start), start);
+    for step in 0..10_000 {
+        stepper.step(&mut state).unwrap();
+        let [now, then] = [&state, &last].map(|state| state.attitude().as_matrix().m33);
+        passes += u32::from(now > 0.99 && then <= 0.99);
+        shortest = f64::min(shortest, stepper.time(&state) - stepper.time(&last));
+        means[usize::from(step >= 5_000)] += (stepper.energy(&state) - before) / 5_000.0;
+        last = state;
+    }
+    #[cfg(feature = "serde")]
+    assert_eq!(stepper.resume(&stepper.checkpoint(&state)).unwrap(), state);
+    println!("{passes} passes in {} s, steps from {shortest}, mean energies {means:?}", stepper.time(&state));
+    assert!(passes > 20 && shortest < 0.01 && (means[1] - means[0]).abs() < 1e-4 * before.abs());
+    stepper.inverse().unwrap().run(&mut state, 10_000).unwrap();
+    println!("back to {:.1e}, at {:.1e} s", apart(&state, &start), stepper.time(&state));
+    assert!(apart(&state, &start) < 1e-10 && stepper.time(&state).abs() < 1e-10);
+    // A density that falls below zero has no step.
+    let falling = Stepper::new(top, 0.02).unwrap().with_density(|_, _| -1e3);
+    let mut state = falling.start(SO3::identity(), Vector3::x()).unwrap();
+    assert!(matches!(falling.step(&mut state), Err(StepError::NoLength { .. })) && state.steps() == 0);
+}
+
+/// Two bodies that pass each other at a thousandth of their distance, a hundred times.
+#[test]
+fn a_close_pass_with_a_density() {
+    let body = FallingBody { m: 1.0, J_d: disc(), g: 0.0, up: Vector3::z() };
+    let scene = Each::<2>::of([body; 2]) + Pairs::<2>::of([Attraction { a: Vector3::zeros(), b: Vector3::zeros() }]);
+    // At the far end of an orbit with pericentre 0.001.
+    let far = |x: f64| (SO3::identity(), R3::from(Vector3::x() * x));
+    let mut velocity = [Vector6::zeros(); 2];
+    velocity[1][4] = 0.5 * (2.0 * 0.001 / 1.999_f64).sqrt();
+    velocity[0][4] = -velocity[1][4];
+    let start = ([far(-0.9995), far(0.9995)], Bodies(velocity));
+    let varied = Stepper::new(scene, 0.05).unwrap().with_density(densities::distance([0, 1], 1.5));
+    let distance = |[one, other]: [(SO3, R3); 2]| (other.1.translation() - one.1.translation()).norm();
+    let mut state = varied.start(start.0, start.1).unwrap();
+    let before = varied.energy(&state);
+    let (mut passes, mut most, mut steps, mut nearest, mut was_near) = (0, [0.0_f64; 2], 0, f64::INFINITY, false);
+    while passes < 100 {
+        varied.step(&mut state).unwrap();
+        let r = distance(state.attitude());
+        (steps, nearest) = (steps + 1, nearest.min(r));
+        passes += u32::from(was_near && r > 1.0);
+        was_near = r < 1.0;
+        if r > 1.0 {
+            let half = usize::from(passes >= 50);
+            most[half] = most[half].max((varied.energy(&state) - before).abs());
+        }
+    }
+    println!(
+        "{steps} steps, nearest {nearest:.1e}, energy off by {most:?} in either half of {} s",
+        varied.time(&state)
+    );
+    let fixed = Stepper::new(scene, varied.time(&state) / f64::from(10 * steps)).unwrap();
+    let mut other = fixed.start(start.0, start.1).unwrap();
+    let mut off = 0.0_f64;
+    let far_off = |now: &liestep::motion::Moment<'_, _>| distance(now.attitude()) > 1.0;
+    fixed
+        .observed(&mut other)
+        .every(1, |now| {
+            if far_off(now) {
+                off = off.max((now.energy() - before).abs());
+            }
+        })
+        .until(50.0)
+        .unwrap();
+    println!("ten times as many equal steps: {off}");
+    assert!(nearest < 1.2e-3 && most[1] < 2.0 * most[0] && most[0] < 1e-2 && off > most[0]);
+}
