@@ -316,6 +316,9 @@ pub(super) fn certified(what: &str, sureness: Sureness) -> String {
         Sureness::TooHigh => {
             format!("{what} are not certified: degrees are too high for a bound; they agree at random points, exactly")
         }
+        Sureness::Multiple => format!(
+            "{what} are not certified: a constant is a multiple of 2⁶¹ − 1, modulo which they agree at random points"
+        ),
         Sureness::Series => format!(
             "{what} are not certified: a generator's cube isn't a multiple of it; they agree in power series, exactly"
         ),
@@ -340,6 +343,7 @@ fn adjoint(findings: &Findings) -> String {
     let even = "even order; a step of −h undoes a step of h";
     let how_sure = match (findings.sureness, findings.self_adjointness) {
         (Sureness::Certified(exponent), SelfAdjointness::Exact) => wrong(exponent),
+        (Sureness::Multiple, _) => "modulo 2⁶¹ − 1, without a bound".to_owned(),
         _ => "exactly, without a bound".to_owned(),
     };
     let at_points = format!("at random points, {how_sure}");

@@ -6,30 +6,19 @@ use quote::{ToTokens as _, quote_spanned};
 use super::inputs::entry;
 use super::{Emitter, stages};
 use crate::declared::{FieldKind, Name};
+use crate::judged::{count, variables};
 use crate::mathematics::symbolic::SymbolId;
-use crate::program::{Form, Linearisation, Node, NodeId, WeightedGradient};
-
-/// One scalar of the parameters, by its number, with the entry that stands for it.
-#[derive(Clone, Copy)]
-struct Place {
-    number: usize,
-    row: usize,
-    column: usize,
-    /// An entry beside the diagonal of a symmetric matrix is there twice.
-    is_half: bool,
-}
+use crate::program::{Derivatives, Form, Node, NodeId, WeightedGradient};
 
 /// The implementation; nothing where it isn't asked for.
-pub(super) fn implementation(emitter: &Emitter) -> Option<TokenStream> {
-    let ends = emitter.derived.ends.as_ref()?;
-    let mut linearisation = Linearisation::new(emitter.derived, ends);
+pub(super) fn implementation(emitter: &Emitter, derivatives: Option<&Derivatives>) -> Option<TokenStream> {
+    let derivatives = derivatives?;
     let (span, private) = (Span::mixed_site(), &emitter.header.private);
-    let blocks = step_derivatives(emitter, &mut linearisation);
-    let parameters = by_parameters(emitter, &mut linearisation);
-    let advected = by_advected(emitter, &mut linearisation);
-    let system = adjoint_system(emitter, &mut linearisation);
-    let gradient = adjoint_gradient(emitter, &mut linearisation);
-    let of_kick = kick_gradient(emitter, &mut linearisation);
+    let blocks = step_derivatives(emitter, derivatives);
+    let [parameters, advected] = derivatives.by_numbers.each_ref().map(|by| visits(emitter, derivatives, by));
+    let system = adjoint_system(emitter, derivatives);
+    let gradient = adjoint_gradient(emitter, derivatives);
+    let of_kick = kick_gradient(emitter, derivatives);
     let (usize, count) = (quote_spanned!(span=> #private::core::primitive::usize), parameter_count(emitter));
     let carried = carried_parameters(emitter);
     let (scalar, matrix, vector) = (&emitter.header.scalar, emitter.header.matrix(), emitter.header.vector());
@@ -83,28 +72,28 @@ pub(super) fn implementation(emitter: &Emitter) -> Option<TokenStream> {
 }
 
 /// `∂μ/∂ε`, and `(∂μ⁺/∂ε)ᵀ p`.
-fn adjoint_system(emitter: &Emitter, linearisation: &mut Linearisation) -> TokenStream {
-    let [matrix, right_side] = linearisation.adjoint_system();
-    let weights = [(linearisation.weights_of_end(), "at_end")];
-    let (lets, values) = statements(emitter, linearisation, &[matrix.as_slice(), &right_side].concat(), &weights);
+fn adjoint_system(emitter: &Emitter, derivatives: &Derivatives) -> TokenStream {
+    let Derivatives { blocks: [[matrix, _], _], by_turn, .. } = derivatives;
+    let weights = [(emitter.derived.directions.along, "at_end")];
+    let (lets, values) = statements(emitter, derivatives, &[matrix.as_slice(), by_turn].concat(), &weights);
     let (matrix, right_side) = values.split_at(matrix.len());
     let (matrix, right_side) = (emitter.assembled(Form::Square, matrix), emitter.assembled(Form::Vector, right_side));
     quote_spanned!(Span::mixed_site()=> #lets (#matrix, #right_side))
 }
 
 /// The gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment.
-fn adjoint_gradient(emitter: &Emitter, linearisation: &mut Linearisation) -> TokenStream {
-    let gradient = linearisation.adjoint_gradient();
-    let weights = [(linearisation.weights_of_start(), "at_start"), (linearisation.weights_of_end(), "at_end")];
-    let (lets, found) = gradient_of(emitter, linearisation, &gradient, &weights);
+fn adjoint_gradient(emitter: &Emitter, derivatives: &Derivatives) -> TokenStream {
+    let directions = &emitter.derived.directions;
+    let weights = [(directions.target, "at_start"), (directions.along, "at_end")];
+    let (lets, found) = gradient_of(emitter, derivatives, &derivatives.gradient, &weights);
     quote_spanned!(Span::mixed_site()=> #lets #found)
 }
 
 /// That of `⟨u, D_v k⟩ + ⟨r, k − J u⟩`, where `k` is the torque: the kick of a step of two seconds.
-fn kick_gradient(emitter: &Emitter, linearisation: &mut Linearisation) -> Option<TokenStream> {
-    let gradient = linearisation.kick_gradient()?;
-    let [u, r] = linearisation.weights_of_kick();
-    let (lets, found) = gradient_of(emitter, linearisation, &gradient, &[(u, "acceleration"), (r, "multiplier")]);
+fn kick_gradient(emitter: &Emitter, derivatives: &Derivatives) -> Option<TokenStream> {
+    let directions = &emitter.derived.directions;
+    let weights = [(directions.target, "acceleration"), (directions.coordinates, "multiplier")];
+    let (lets, found) = gradient_of(emitter, derivatives, derivatives.of_kick.as_ref()?, &weights);
     let (span, private, scalar) = (Span::mixed_site(), &emitter.header.private, &emitter.header.scalar);
     let (core, vector) = (quote_spanned!(span=> #private::core), emitter.header.vector());
     Some(quote_spanned! {span=>
@@ -123,34 +112,25 @@ fn kick_gradient(emitter: &Emitter, linearisation: &mut Linearisation) -> Option
 /// Statements that visit a gradient by the parameters, and that by the place and by what is advected.
 fn gradient_of(
     emitter: &Emitter,
-    linearisation: &mut Linearisation,
-    gradient: &WeightedGradient,
+    derivatives: &Derivatives,
+    WeightedGradient { by_place, by_numbers }: &WeightedGradient,
     weights: &[(SymbolId, &str)],
 ) -> (TokenStream, TokenStream) {
-    let by_place = linearisation.by_place(gradient);
-    let scalars = advected_scalars(emitter);
-    let count = (0..emitter.declaration.advected.len()).map(|index| numbers(emitter.declaration.advected_kind(index)));
-    let mut by_advected = vec![linearisation.graph.zero(); count.sum()];
-    for (symbol, place) in scalars {
-        by_advected[place.number] = linearisation.gradient_by_entry(gradient, symbol, place.row, place.column);
-    }
-    let (mut by_parameters, mut numbers) = (Vec::new(), Vec::new());
-    for (symbol, place) in parameter_scalars(emitter) {
-        let mut derivative = linearisation.gradient_by_entry(gradient, symbol, place.row, place.column);
-        if place.is_half {
-            derivative = linearisation.halved(derivative);
-        }
-        if !linearisation.graph.is_zero(derivative) {
-            by_parameters.push(derivative);
-            numbers.push(Literal::usize_unsuffixed(place.number));
-        }
-    }
-    let outputs = [by_place.as_slice(), &by_advected, &by_parameters].concat();
-    let (lets, values) = statements(emitter, linearisation, &outputs, weights);
-    let (by_place, values) = values.split_at(by_place.len());
-    let (by_advected, by_parameters) = values.split_at(by_advected.len());
-    let by_place = emitter.assembled(Form::Vector, by_place);
     let (private, scalar, span) = (&emitter.header.private, &emitter.header.scalar, Span::mixed_site());
+    let [parameters, advected] = by_numbers;
+    let nodes = |by: &[(usize, Vec<NodeId>)]| by.iter().flat_map(|(_, nodes)| nodes.clone()).collect::<Vec<_>>();
+    let outputs = [by_place.as_slice(), &nodes(advected), &nodes(parameters)].concat();
+    let (lets, values) = statements(emitter, derivatives, &outputs, weights);
+    let (by_place, values) = values.split_at(by_place.len());
+    let (of_advected, by_parameters) = values.split_at(advected.len());
+    let [_, all] = variables(emitter.declaration);
+    let all = all.into_iter().map(|(_, kind)| count(kind)).sum();
+    let mut by_advected = vec![quote_spanned!(span=> #private::real(0.0)); all];
+    for ((number, _), value) in advected.iter().zip(of_advected) {
+        by_advected[*number] = value.clone();
+    }
+    let numbers = parameters.iter().map(|(number, _)| Literal::usize_unsuffixed(*number));
+    let by_place = emitter.assembled(Form::Vector, by_place);
     let count = Literal::usize_unsuffixed(by_advected.len());
     let lets = quote_spanned! {span=>
         #lets
@@ -164,10 +144,9 @@ fn gradient_of(
     (lets, quote_spanned!(span=> (#by_place, by_advected)))
 }
 
-fn step_derivatives(emitter: &Emitter, linearisation: &mut Linearisation) -> TokenStream {
-    let [[start_by_turn, end_by_turn], [start_by_place, end_by_place]] = linearisation.blocks();
-    let all = [start_by_turn, end_by_turn, start_by_place, end_by_place];
-    let (lets, values) = statements(emitter, linearisation, &all.concat(), &[]);
+fn step_derivatives(emitter: &Emitter, derivatives: &Derivatives) -> TokenStream {
+    let all = derivatives.blocks.as_flattened();
+    let (lets, values) = statements(emitter, derivatives, &all.concat(), &[]);
     let (span, private) = (Span::mixed_site(), &emitter.header.private);
     let size = all.first().map_or(1, Vec::len).max(1);
     let blocks = values.chunks(size).map(|entries| emitter.assembled(Form::Square, entries));
@@ -182,11 +161,11 @@ fn step_derivatives(emitter: &Emitter, linearisation: &mut Linearisation) -> Tok
 /// The `let`s of these outputs, and what they are made of; some symbols stand for weights of these names.
 fn statements(
     emitter: &Emitter,
-    linearisation: &Linearisation,
+    Derivatives { graph, .. }: &Derivatives,
     outputs: &[NodeId],
     weights: &[(SymbolId, &str)],
 ) -> (TokenStream, Vec<TokenStream>) {
-    let (span, private, graph) = (Span::mixed_site(), &emitter.header.private, &linearisation.graph);
+    let (span, private) = (Span::mixed_site(), &emitter.header.private);
     let given = |id: NodeId| {
         let Node::Input(input) = graph.node(id) else { return None };
         let weight = weights.iter().find(|(symbol, _)| *symbol == input.symbol);
@@ -202,9 +181,9 @@ fn statements(
 }
 
 /// Visits of what isn't zero.
-fn visits(emitter: &Emitter, linearisation: &Linearisation, found: &[(usize, Vec<NodeId>)]) -> TokenStream {
+fn visits(emitter: &Emitter, derivatives: &Derivatives, found: &[(usize, Vec<NodeId>)]) -> TokenStream {
     let outputs: Vec<NodeId> = found.iter().flat_map(|(_, nodes)| nodes.iter().copied()).collect();
-    let (lets, values) = statements(emitter, linearisation, &outputs, &[]);
+    let (lets, values) = statements(emitter, derivatives, &outputs, &[]);
     let dimension = emitter.declaration.group.dimension();
     let visits = found.iter().zip(values.chunks(2 * dimension)).map(|((number, _), values)| {
         let number = Literal::usize_unsuffixed(*number);
@@ -215,101 +194,21 @@ fn visits(emitter: &Emitter, linearisation: &Linearisation, found: &[(usize, Vec
     quote_spanned!(Span::mixed_site()=> #lets #(#visits)*)
 }
 
-fn by_parameters(emitter: &Emitter, linearisation: &mut Linearisation) -> TokenStream {
-    let mut found = Vec::new();
-    for (symbol, place) in parameter_scalars(emitter) {
-        let mut derivative = linearisation.by_entry(symbol, place.row, place.column);
-        if !linearisation.is_nothing(&derivative) {
-            if place.is_half {
-                derivative = derivative.into_iter().map(|node| linearisation.halved(node)).collect();
-            }
-            found.push((place.number, derivative));
-        }
-    }
-    visits(emitter, linearisation, &found)
-}
-
-fn by_advected(emitter: &Emitter, linearisation: &mut Linearisation) -> TokenStream {
-    let mut found = Vec::new();
-    for (symbol, place) in advected_scalars(emitter) {
-        let derivative = linearisation.by_entry(symbol, place.row, place.column);
-        if !linearisation.is_nothing(&derivative) {
-            found.push((place.number, derivative));
-        }
-    }
-    visits(emitter, linearisation, &found)
-}
-
-/// The scalars of the parameters that can change.
-fn parameter_scalars(emitter: &Emitter) -> Vec<(SymbolId, Place)> {
-    let fields = emitter.declaration.fields.iter().enumerate();
-    scalars(emitter, fields.map(|(index, field)| (Name::Field(index), field.kind)))
-}
-
-/// The same of what is advected.
-fn advected_scalars(emitter: &Emitter) -> Vec<(SymbolId, Place)> {
-    let indices = 0..emitter.declaration.advected.len();
-    scalars(emitter, indices.map(|index| (Name::Advected(index), emitter.declaration.advected_kind(index))))
-}
-
-/// The scalars of several things, numbered one after the other.
-fn scalars(emitter: &Emitter, each: impl Iterator<Item = (Name, FieldKind)>) -> Vec<(SymbolId, Place)> {
-    let (mut found, mut first) = (Vec::new(), 0);
-    for (name, kind) in each {
-        let of_one = places(kind).map(|place| Place { number: first + place.number, ..place });
-        found.extend(
-            emitter.names.get(&name).into_iter().flat_map(|&symbol| of_one.clone().map(move |place| (symbol, place))),
-        );
-        first += numbers(kind);
-    }
-    found
-}
-
 /// The numbers of the scalars of what is advected, with those that they have among the parameters.
 fn carried_parameters(emitter: &Emitter) -> TokenStream {
-    let declaration = emitter.declaration;
-    let visits = declaration.advected.iter().enumerate().filter_map(|(index, w)| {
-        let field = declaration.fields.get(w.field?)?;
-        let place: usize = (0..index).map(|index| numbers(declaration.advected_kind(index))).sum();
-        let parameter: usize = declaration.fields.iter().take(w.field?).map(|field| numbers(field.kind)).sum();
-        let pairs = (0..numbers(field.kind)).map(move |k| [place + k, parameter + k].map(Literal::usize_unsuffixed));
+    let [fields, advected] = variables(emitter.declaration);
+    let before =
+        |all: &[(Name, FieldKind)], index: usize| all[..index].iter().map(|(_, kind)| count(*kind)).sum::<usize>();
+    let visits = emitter.declaration.advected.iter().enumerate().filter_map(|(index, w)| {
+        let (_, kind) = *fields.get(w.field?)?;
+        let (place, parameter) = (before(&advected, index), before(&fields, w.field?));
+        let pairs = (0..count(kind)).map(move |k| [place + k, parameter + k].map(Literal::usize_unsuffixed));
         Some(pairs.map(|[place, parameter]| quote_spanned!(Span::mixed_site()=> visit(#place, #parameter);)))
     });
     visits.flatten().collect()
 }
 
 fn parameter_count(emitter: &Emitter) -> Literal {
-    Literal::usize_unsuffixed(emitter.declaration.fields.iter().map(|field| numbers(field.kind)).sum())
-}
-
-/// How many scalars `describe` shows of a field.
-fn numbers(kind: FieldKind) -> usize {
-    let (rows, columns) = shape(kind);
-    rows * columns
-}
-
-/// The shape of what is shown, row by row.
-fn shape(kind: FieldKind) -> (usize, usize) {
-    let (rows, columns) = match kind.shape() {
-        crate::declared::Shape::Scalar => (1, 1),
-        crate::declared::Shape::Matrix(rows, columns) => (rows, columns),
-    };
-    match kind {
-        // The last homogeneous coordinate is a constant.
-        FieldKind::Point(_) => (rows - 1, 1),
-        _ => (rows, columns),
-    }
-}
-
-/// Of the scalars of a field those that can change.
-fn places(kind: FieldKind) -> impl Iterator<Item = Place> + Clone {
-    let (rows, columns) = shape(kind);
-    let all = (0..rows).flat_map(move |row| (0..columns).map(move |column| (row, column)));
-    all.filter(move |(row, column)| kind != FieldKind::DiagonalInertia || row == column).map(move |(row, column)| {
-        let number = row * columns + column;
-        if kind == FieldKind::SymmetricInertia {
-            return Place { number, row: row.min(column), column: row.max(column), is_half: row != column };
-        }
-        Place { number, row, column, is_half: false }
-    })
+    let [fields, _] = variables(emitter.declaration);
+    Literal::usize_unsuffixed(fields.into_iter().map(|(_, kind)| count(kind)).sum())
 }

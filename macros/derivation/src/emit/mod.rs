@@ -84,7 +84,7 @@ pub(crate) fn implementation(
     let invariance = invariance(declaration, &header);
     let addition = header.addition();
     let lanes = lanes::lanes(&header, Some(&declaration.fields));
-    let gradients = gradients::implementation(&emitter);
+    let gradients = gradients::implementation(&emitter, findings.derivatives.as_ref());
     let body = &stages.methods;
     let self_adjoint = (!is_force).then(|| {
         let is_self_adjoint = findings.self_adjointness.is_found();

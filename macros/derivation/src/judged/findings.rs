@@ -8,11 +8,14 @@ use super::{explain, hypotheses};
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Role, Tree};
 use crate::mathematics::derive::SelfAdjointness;
+use crate::program::Derivatives;
 
 /// What its documentation says beside the equations.
 pub(crate) struct Findings {
     pub(crate) self_adjointness: SelfAdjointness,
     pub(crate) sureness: Sureness,
+    /// Of a step, where they are asked for.
+    pub(crate) derivatives: Option<Derivatives>,
     pub(crate) hypotheses: Vec<String>,
 }
 
@@ -31,14 +34,14 @@ pub(crate) fn findings(
     }
     let is_force = declaration.role == Role::Force;
     match verify::verify(declaration, tree, lowered, (derived, kernel)) {
-        Ok(Verified { self_adjointness, sureness }) => {
+        Ok(Verified { self_adjointness, sureness, derivatives }) => {
             let asked = declaration.discretisation().filter(|_| self_adjointness == SelfAdjointness::No);
             if let Some(asked) = asked {
                 explain::not_self_adjoint(asked, errors);
                 return None;
             }
             let hypotheses = if is_force { Vec::new() } else { hypotheses::hypotheses(declaration, tree, lowered) };
-            Some(Findings { self_adjointness, sureness, hypotheses })
+            Some(Findings { self_adjointness, sureness, derivatives, hypotheses })
         }
         Err(unconfirmed) => {
             explain::unconfirmed(unconfirmed, declaration, tree, errors);

@@ -2,8 +2,9 @@
 //!
 //! `discretise` makes `l_d` of a continuous `l`, `continuous` has the continuous equations, `choose` counts operations,
 //! `verify` evaluates the declared tree on exact numbers and compares, `hypotheses` finds what the equations rest on,
-//! `momenta` finds what several bodies conserve, `constraint` has what holds two of them, `findings` has what comes of
-//! both, and `explain` says at the tokens of the declaration why nothing could be derived.
+//! `momenta` finds what several bodies conserve, `places` has the numbers that a step is differentiated by, `constraint`
+//! has what holds two of them, `findings` has what comes of both, and `explain` says at the tokens of the declaration why
+//! nothing could be derived.
 //!
 //! Deliberately not here: any derivation, which is mathematics, and any text of the generated documentation, which is
 //! emitted. The room knows `declared`, `program` and `mathematics`.
@@ -16,6 +17,7 @@ mod explain;
 mod findings;
 mod hypotheses;
 mod momenta;
+mod places;
 pub(crate) mod verify;
 
 pub(crate) use choose::{Chosen, cheapest};
@@ -25,4 +27,5 @@ pub(crate) use discretise::discretised;
 pub(crate) use explain::terms;
 pub(crate) use findings::{Findings, findings};
 pub(crate) use momenta::conserved;
+pub(crate) use places::{count, variables};
 pub(crate) use verify::{Held, Sureness};

@@ -31,5 +31,5 @@ pub(crate) use kernel::{
 };
 pub(crate) use scalarise::Scalariser;
 pub(crate) use stages::{Handed, Stages, needed};
-pub(crate) use tangent::{Linearisation, WeightedGradient};
+pub(crate) use tangent::{ByNumbers, Derivatives, Place, WeightedGradient};
 pub(crate) use terms::{Form, limit, term};

@@ -22,11 +22,69 @@ use super::scalarise::Entries;
 use crate::mathematics::derive::{Derived, Ends};
 use crate::mathematics::symbolic::{Rational, Stage, SymbolId};
 
+/// A number of the parameters, or of what is advected, with the entry that stands for it.
+#[derive(Clone, Copy)]
+pub(crate) struct Place {
+    pub(crate) number: usize,
+    pub(crate) symbol: SymbolId,
+    pub(crate) row: usize,
+    pub(crate) column: usize,
+    /// An entry beside the diagonal of a symmetric matrix is there twice.
+    pub(crate) is_half: bool,
+}
+
+/// The derivatives of some outputs by those numbers of the parameters that they depend on, then by those of what is
+/// advected.
+pub(crate) type ByNumbers = [Vec<(usize, Vec<NodeId>)>; 2];
+
+/// The gradient of a weighted sum.
+pub(crate) struct WeightedGradient {
+    /// Along each displacement `ζ = E_j`.
+    pub(crate) by_place: Vec<NodeId>,
+    /// Each with one output.
+    pub(crate) by_numbers: ByNumbers,
+}
+
+/// The derivatives of a step where they are asked for, as they are emitted.
+///
+/// Weights are symbols that what is differentiated is free of: `u` is the target of a step, `p` its velocity, and `r` the
+/// coordinates of its increment.
+pub(crate) struct Derivatives {
+    pub(crate) graph: Graph,
+    /// The components of `μ`, then those of `μ⁺`.
+    pub(crate) momenta: Vec<NodeId>,
+    /// Of `μ` and of `μ⁺` along each `ε = E_j`, then along each `ζ = E_j`; matrices row by row.
+    pub(crate) blocks: [[Vec<NodeId>; 2]; 2],
+    /// Of the components of both.
+    pub(crate) by_numbers: ByNumbers,
+    /// `(∂μ⁺/∂ε)ᵀ p`, which the adjoint of a step begins with.
+    pub(crate) by_turn: Vec<NodeId>,
+    /// Of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment, which it ends with.
+    pub(crate) gradient: WeightedGradient,
+    /// Of `⟨u, D_v k⟩ + ⟨r, k − J u⟩` for the kick `k`, its derivative `D_v k` and the inertia `J`: what the derivatives
+    /// of a force gradient are made of. `None` where `D_v k` isn't derived.
+    pub(crate) of_kick: Option<WeightedGradient>,
+}
+
+impl Derivatives {
+    pub(crate) fn new(derived: &Derived, ends: &Ends, numbers: &[Vec<Place>; 2]) -> Self {
+        let mut linearisation = Linearisation::new(derived, ends);
+        let blocks = linearisation.blocks();
+        let by_numbers = numbers.each_ref().map(|places| linearisation.by_numbers(places));
+        let by_turn = linearisation.by_turn();
+        let weighted = linearisation.momenta_of_adjoint();
+        let gradient = linearisation.gradient(&weighted, numbers);
+        let of_kick = linearisation.kick().map(|weighted| linearisation.gradient(&weighted, numbers));
+        let Linearisation { graph, momenta, .. } = linearisation;
+        Self { graph, momenta, blocks, by_numbers, by_turn, gradient, of_kick }
+    }
+}
+
 /// The momenta at both ends of a step, to be differentiated.
-pub(crate) struct Linearisation<'a> {
+struct Linearisation<'a> {
     derived: &'a Derived,
     ends: &'a Ends,
-    pub(crate) graph: Graph,
+    graph: Graph,
     /// The components of `μ`, then those of `μ⁺`.
     momenta: Vec<NodeId>,
     /// `F` and `F⁻¹` by their entries.
@@ -36,33 +94,26 @@ pub(crate) struct Linearisation<'a> {
 /// The change of each input that changes.
 pub(super) type Changes = BTreeMap<NodeId, NodeId>;
 
-/// The gradient of a weighted sum: of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment, what a step's adjoint ends with, or of a
-/// kick.
-pub(crate) struct WeightedGradient(Gradient);
+/// Outputs with their weights.
+type Weighted = Vec<(NodeId, NodeId)>;
 
 impl<'a> Linearisation<'a> {
-    pub(crate) fn new(derived: &'a Derived, ends: &'a Ends) -> Self {
+    fn new(derived: &'a Derived, ends: &'a Ends) -> Self {
         let mut graph = Graph::default();
         let given = by_increment(&mut graph, derived, |graph, one, row, column| {
             graph.input(Input { symbol: one.small, row, column }, Stage::Iteration)
         });
         let increments = with_inverse(&mut graph, derived, given);
         let given = with_lets(&mut graph, derived, increments.clone());
-        let [start, end] = &ends.momenta;
-        let momenta = [start, end].map(|momentum| components(&mut graph, derived, &given, momentum)).concat();
+        let momenta =
+            ends.momenta.each_ref().map(|momentum| components(&mut graph, derived, &given, momentum)).concat();
         let linearisation = Self { derived, ends, graph, momenta, increments };
-        let weights = [linearisation.weights_of_start(), linearisation.weights_of_end()];
+        let weights = [derived.directions.target, derived.directions.along];
         debug_assert!(
             linearisation.are_free(weights, &linearisation.momenta),
             "the weights are symbols of the momenta"
         );
         linearisation
-    }
-
-    /// The components of `μ` and of `μ⁺`.
-    pub(crate) fn momenta(&self) -> [Vec<NodeId>; 2] {
-        let (start, end) = self.momenta.split_at(self.derived.group.dimension());
-        [start.to_vec(), end.to_vec()]
     }
 
     /// Whether none of these depends on the symbols that stand for weights.
@@ -72,7 +123,7 @@ impl<'a> Linearisation<'a> {
     }
 
     /// The derivatives of `μ` and of `μ⁺` along each `ε = E_j`, then those along each `ζ = E_j`; matrices row by row.
-    pub(crate) fn blocks(&mut self) -> [[Vec<NodeId>; 2]; 2] {
+    fn blocks(&mut self) -> [[Vec<NodeId>; 2]; 2] {
         let dimension = self.derived.group.dimension();
         [false, true].map(|is_displaced| {
             let columns: Vec<Vec<NodeId>> = (0..dimension)
@@ -89,42 +140,33 @@ impl<'a> Linearisation<'a> {
         })
     }
 
-    /// What the adjoint of a step begins with: `∂μ/∂ε`, row by row, and `(∂μ⁺/∂ε)ᵀ p` for the weights `p` of `μ⁺`.
-    pub(crate) fn adjoint_system(&mut self) -> [Vec<NodeId>; 2] {
-        let dimension = self.derived.group.dimension();
-        let end = self.weighted(1, self.weights_of_end());
+    fn by_turn(&mut self) -> Vec<NodeId> {
+        let (end, dimension) = (self.weighted(1, self.derived.directions.along), self.derived.group.dimension());
         let by = gradient(&mut self.graph, &end);
-        let (mut columns, mut by_turn) = (Vec::new(), Vec::new());
-        for j in 0..dimension {
+        let turned = |j| {
             let changes = self.turned(j);
-            let start = self.momenta.iter().take(dimension).copied().collect::<Vec<_>>();
-            columns.push(tangent(&mut self.graph, &start, &changes));
-            by_turn.push(along(&mut self.graph, &by, &changes));
-        }
-        let row = |k: usize| columns.iter().filter_map(move |column| column.get(k).copied());
-        [(0..dimension).flat_map(row).collect(), by_turn]
+            along(&mut self.graph, &by, &changes)
+        };
+        (0..dimension).map(turned).collect()
     }
 
-    /// What it ends with: the gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment.
-    pub(crate) fn adjoint_gradient(&mut self) -> WeightedGradient {
-        let mut weighted = self.weighted(0, self.weights_of_start());
+    fn momenta_of_adjoint(&mut self) -> Weighted {
+        let mut weighted = self.weighted(0, self.derived.directions.target);
         for (_, weight) in &mut weighted {
             *weight = self.graph.negate(*weight);
         }
-        weighted.extend(self.weighted(1, self.weights_of_end()));
-        WeightedGradient(gradient(&mut self.graph, &weighted))
+        weighted.extend(self.weighted(1, self.derived.directions.along));
+        weighted
     }
 
-    /// The gradient of `⟨u, D_v k⟩ + ⟨r, k − J u⟩` for the kick `k`, its derivative `D_v k` and the inertia `J`: what the
-    /// derivatives of a force gradient are made of. `None` where `D_v k` isn't derived.
-    pub(crate) fn kick_gradient(&mut self) -> Option<WeightedGradient> {
+    fn kick(&mut self) -> Option<Weighted> {
         let change = self.derived.kick_derivative.as_ref()?;
         let velocity = velocity(&mut self.graph, self.derived);
         let second = self.derived.directions.factors.first().map(|one| (one.second, velocity));
         let change = components(&mut self.graph, self.derived, &second.into_iter().collect(), change);
         let kick = components(&mut self.graph, self.derived, &Given::new(), &self.derived.kick_before);
         let inertia = square(&mut self.graph, self.derived, &Given::new(), &self.derived.limit.inertia);
-        let weights = self.weights_of_kick();
+        let weights = [self.derived.directions.target, self.derived.directions.coordinates];
         let outputs = [change.as_slice(), &kick, &inertia].concat();
         debug_assert!(self.are_free(weights, &outputs), "the weights are symbols of the kick");
         let dimension = self.derived.group.dimension();
@@ -136,49 +178,56 @@ impl<'a> Linearisation<'a> {
                 self.graph.negate(product)
             })
             .collect();
-        let weighted = outputs.into_iter().zip([u, r, of_inertia].concat()).collect::<Vec<_>>();
-        Some(WeightedGradient(gradient(&mut self.graph, &weighted)))
+        Some(outputs.into_iter().zip([u, r, of_inertia].concat()).collect())
     }
 
-    /// The weights `u` and `r` of [`kick_gradient`](Self::kick_gradient): symbols that are free there.
-    pub(crate) fn weights_of_kick(&self) -> [SymbolId; 2] {
-        [self.derived.directions.target, self.derived.directions.coordinates]
-    }
-
-    /// Along displacements `ζ = E_j`.
-    pub(crate) fn by_place(&mut self, gradient: &WeightedGradient) -> Vec<NodeId> {
-        let dimension = self.derived.group.dimension();
+    fn gradient(&mut self, weighted: &[(NodeId, NodeId)], numbers: &[Vec<Place>; 2]) -> WeightedGradient {
+        let (by, dimension) = (gradient(&mut self.graph, weighted), self.derived.group.dimension());
         let displaced = |j| {
             let changes = self.displaced(j);
-            along(&mut self.graph, &gradient.0, &changes)
+            along(&mut self.graph, &by, &changes)
         };
-        (0..dimension).map(displaced).collect()
+        let by_place = (0..dimension).map(displaced).collect();
+        let by_numbers = numbers.each_ref().map(|places| {
+            let of_place = |one: &mut Self, entry| vec![by.get(&entry).copied().unwrap_or_else(|| one.graph.zero())];
+            self.of_places(places, of_place)
+        });
+        WeightedGradient { by_place, by_numbers }
     }
 
-    /// By an entry of a symbol.
-    pub(crate) fn gradient_by_entry(
+    fn by_numbers(&mut self, places: &[Place]) -> Vec<(usize, Vec<NodeId>)> {
+        self.of_places(places, |one, entry| {
+            let unit = one.graph.one();
+            tangent(&mut one.graph, &one.momenta, &Changes::from([(entry, unit)]))
+        })
+    }
+
+    /// The derivatives by each number, of those by its entry; none where nothing depends on it.
+    fn of_places(
         &mut self,
-        gradient: &WeightedGradient,
-        symbol: SymbolId,
-        row: usize,
-        column: usize,
-    ) -> NodeId {
-        let entry = self.entry(symbol, row, column);
-        gradient.0.get(&entry).copied().unwrap_or_else(|| self.graph.zero())
-    }
-
-    /// The weights `u` of `μ`. The momenta don't depend on this symbol, which is asserted where they are made.
-    pub(crate) fn weights_of_start(&self) -> SymbolId {
-        self.derived.directions.target
-    }
-
-    /// The weights `p` of `μ⁺`, an element of the algebra; as those of `μ`, a symbol that is free here.
-    pub(crate) fn weights_of_end(&self) -> SymbolId {
-        self.derived.directions.along
+        places: &[Place],
+        mut by_entry: impl FnMut(&mut Self, NodeId) -> Vec<NodeId>,
+    ) -> Vec<(usize, Vec<NodeId>)> {
+        let mut found = Vec::new();
+        for &Place { number, symbol, row, column, is_half } in places {
+            let entry = self.entry(symbol, row, column);
+            let mut derivatives = by_entry(self, entry);
+            if derivatives.iter().all(|&node| self.graph.is_zero(node)) {
+                continue;
+            }
+            if is_half {
+                let half = self.graph.constant(Rational::new(1, 2));
+                for node in &mut derivatives {
+                    *node = self.graph.multiply(half, *node);
+                }
+            }
+            found.push((number, derivatives));
+        }
+        found
     }
 
     /// The components of one of the momenta with their weights.
-    fn weighted(&mut self, momentum: usize, weights: SymbolId) -> Vec<(NodeId, NodeId)> {
+    fn weighted(&mut self, momentum: usize, weights: SymbolId) -> Weighted {
         let dimension = self.derived.group.dimension();
         let components = self.momenta.iter().skip(momentum * dimension).take(dimension).copied().collect::<Vec<_>>();
         let weight = |(row, component)| (component, self.entry(weights, row, 0));
@@ -188,23 +237,6 @@ impl<'a> Linearisation<'a> {
     fn entry(&mut self, symbol: SymbolId, row: usize, column: usize) -> NodeId {
         let stage = self.derived.symbols.get(symbol).stage;
         self.graph.input(Input { symbol, row, column }, stage)
-    }
-
-    /// The derivatives of `μ` and of `μ⁺` by an entry of a symbol.
-    pub(crate) fn by_entry(&mut self, symbol: SymbolId, row: usize, column: usize) -> Vec<NodeId> {
-        let (entry, one) = (self.entry(symbol, row, column), self.graph.one());
-        tangent(&mut self.graph, &self.momenta, &Changes::from([(entry, one)]))
-    }
-
-    /// Half of a derivative.
-    pub(crate) fn halved(&mut self, derivative: NodeId) -> NodeId {
-        let half = self.graph.constant(Rational::new(1, 2));
-        self.graph.multiply(half, derivative)
-    }
-
-    /// Whether nothing of both momenta changes.
-    pub(crate) fn is_nothing(&self, derivative: &[NodeId]) -> bool {
-        derivative.iter().all(|&node| self.graph.is_zero(node))
     }
 
     fn turned(&mut self, j: usize) -> Changes {

@@ -5,7 +5,7 @@ mod derivation;
 mod determinism;
 mod discretised_bodies;
 mod fuzz;
-mod generated;
+pub(crate) mod generated;
 mod higher_order;
 mod mistakes;
 mod not_quadratic;
@@ -43,7 +43,7 @@ fn expand(arguments: TokenStream, item: &TokenStream) -> TokenStream {
     super::expand(Role::Lagrangian, arguments, item)
 }
 
-fn expanded(arguments: &str, item: &str) -> TokenStream {
+pub(crate) fn expanded(arguments: &str, item: &str) -> TokenStream {
     expand(tokens(arguments), &tokens(item))
 }
 

@@ -2,9 +2,10 @@
 //! adds to those before it, at random points of a finite field, where nothing is rounded.
 
 use std::collections::BTreeMap;
+use std::ops::Add as _;
 use std::rc::Rc;
 
-use super::degree::{self, Degree};
+use super::degree::{Content, Degree};
 use super::dual::Dual;
 use super::exact::{certified, same};
 use super::identities::Same;
@@ -62,7 +63,7 @@ pub(crate) fn constraint(declaration: &Declaration, held: &Held) -> Result<(Sure
     if !(1..=DRAWS).any(has_value) {
         return Err(Unconfirmed::NoValue);
     }
-    let functions = held.functions.iter().map(degree::functions).sum::<u64>() + degree::calls(&held.graph);
+    let content = held.functions.iter().map(Content::of_tree).fold(Content::of_graph(&held.graph), Content::add);
     let degrees = |same: &mut Same<Degree>| {
         let mut number = Degree::stream();
         let mut point = Point::new(declaration, &mut number);
@@ -72,7 +73,7 @@ pub(crate) fn constraint(declaration: &Declaration, held: &Held) -> Result<(Sure
         }
         point.holds(held, number, same)
     };
-    let sureness = certified(functions, degrees, |seed| {
+    let sureness = certified(content, degrees, |seed| {
         let mut number = Residue::stream(seed);
         Point::new(declaration, &mut number).holds(held, number, &mut same)
     })?;

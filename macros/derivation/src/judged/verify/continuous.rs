@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::degree::{self, Degree};
+use super::degree::{self, Content, Degree};
 use super::dual::Dual;
 use super::evaluation::Evaluation;
 use super::exact::{POINTS, certified, same};
@@ -26,7 +26,7 @@ use crate::declared::{Declaration, FieldKind, Name, Tree};
 use crate::mathematics::derive::{Continuous, Derived};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId};
-use crate::program::{Graph, NodeId, along_directions, components, diamond_matrices, square};
+use crate::program::{Graph, NodeId, along_directions, diamond_matrices, limit};
 
 /// The derived terms as operations.
 struct Terms {
@@ -57,9 +57,13 @@ impl Terms {
     }
 
     fn values<T: Number>(&self, outputs: &[NodeId], names: &BTreeMap<Name, SymbolId>, at: &Values<T>) -> Vec<T> {
-        let inputs = names.iter().filter_map(|(name, symbol)| Some((*symbol, at.get(name)?.clone())));
-        evaluated(&self.graph, outputs, &inputs.collect())
+        evaluated(&self.graph, outputs, &inputs(names, at))
     }
+}
+
+/// The values of symbols.
+fn inputs<T: Number>(names: &BTreeMap<Name, SymbolId>, at: &Values<T>) -> BTreeMap<SymbolId, Value<T>> {
+    names.iter().filter_map(|(name, symbol)| Some((*symbol, at.get(name)?.clone()))).collect()
 }
 
 /// A point with its kinds of parameters.
@@ -170,9 +174,8 @@ pub(crate) fn equations_hold(
 ) -> Result<Sureness, Unconfirmed> {
     let terms = Terms::new(derived);
     let of = (tree, names, &terms);
-    let functions = tree.map_or(0, degree::functions) + degree::calls(&terms.graph);
     certified(
-        functions,
+        tree.map_or_else(Content::default, Content::of_tree) + Content::of_graph(&terms.graph),
         |same| hold_at(&Point::of_degrees(declaration), Degree::stream(), of, same),
         |seed| {
             let mut number = Residue::stream(seed);
@@ -222,43 +225,18 @@ fn hold_at<T: Number>(
     pairs.try_for_each(|(found, varied)| same("change of the momentum with w", found, varied.slope))
 }
 
-/// `J`, `s` and `V` of the limit of a discrete Lagrangian, as operations.
-struct LimitTerms {
-    graph: Graph,
-    inertia: Vec<NodeId>,
-    bias: Vec<NodeId>,
-    potential: NodeId,
-}
-
-impl LimitTerms {
-    fn new(derived: &Derived) -> Self {
-        let (mut graph, none) = (Graph::default(), BTreeMap::new());
-        let inertia = square(&mut graph, derived, &none, &derived.limit.inertia);
-        let bias = components(&mut graph, derived, &none, &derived.limit.bias);
-        let mut scalariser = crate::program::Scalariser { graph: &mut graph, symbols: &derived.symbols, given: none };
-        let potential = scalariser.scalar(&derived.limit.potential);
-        Self { graph, inertia, bias, potential }
-    }
-
-    /// `J` by rows, `s` and `V`.
-    fn at<T: Number>(&self, names: &BTreeMap<Name, SymbolId>, point: &Point<T>) -> Vec<T> {
-        let inputs = names.iter().filter_map(|(name, symbol)| Some((*symbol, point.values.get(name)?.clone())));
-        let outputs = [self.inertia.as_slice(), &self.bias, &[self.potential]].concat();
-        evaluated(&self.graph, &outputs, &inputs.collect())
-    }
-}
-
 /// How sure it is that `J`, `s` and `V` of the limit are what the derivatives of `l` are at rest.
 pub(crate) fn rest_holds(
     declaration: &Declaration,
     (names, continuous): (&BTreeMap<Name, SymbolId>, &Continuous),
     (symbols, derived): (&BTreeMap<Name, SymbolId>, &Derived),
 ) -> Result<Sureness, Unconfirmed> {
-    let of = ((names, &Terms::new(continuous)), (symbols, &LimitTerms::new(derived)));
-    let functions = degree::calls(&of.0.1.graph) + degree::calls(&of.1.1.graph);
+    let (graph, limit) = limit(derived);
+    let of = ((names, &Terms::new(continuous)), (symbols, &(&graph, limit.concat())));
+    let content = Content::of_graph(&of.0.1.graph) + Content::of_graph(&graph);
     let degrees = |same: &mut Same<Degree>| hold_at_rest(Point::of_degrees(declaration), of, same);
     let point = |seed| hold_at_rest(Point::new(declaration, Residue::stream(seed)), of, &mut same);
-    certified(functions, degrees, point)
+    certified(content, degrees, point)
 }
 
 /// Terms with the symbols of their names.
@@ -266,14 +244,14 @@ type Named<'a, T> = (&'a BTreeMap<Name, SymbolId>, &'a T);
 
 fn hold_at_rest<T: Number>(
     mut point: Point<T>,
-    ((names, terms), (symbols, limit)): (Named<Terms>, Named<LimitTerms>),
+    ((names, terms), (symbols, (graph, limit))): (Named<Terms>, Named<(&Graph, Vec<NodeId>)>),
     same: &mut Same<T>,
 ) -> Result<(), Fault> {
     point.set_velocity(&vec![T::ZERO; point.group().dimension()]);
     let outputs = [terms.hessian.as_slice(), &terms.momentum, &[terms.lagrangian]].concat();
     let mut here = terms.values(&outputs, names, &point.values);
     here.last_mut().into_iter().for_each(|l| *l = -*l);
-    let mut pairs = here.into_iter().zip(limit.at(symbols, &point));
+    let mut pairs = here.into_iter().zip(evaluated(graph, limit, &inputs(symbols, &point.values)));
     pairs.try_for_each(|(here, there)| same("continuous limit", there, here))
 }
 

@@ -10,7 +10,7 @@ use std::rc::Rc;
 
 use super::Values;
 use super::number::{self, Number};
-use super::residue::mixed;
+use super::residue::{Residue, mixed};
 use super::sample::Element;
 use super::value::Value;
 use crate::declared::{Declaration, FieldKind, Kind, Name, Tree};
@@ -22,6 +22,8 @@ use crate::program::{Graph, Node};
 const ENOUGH: u32 = 100;
 /// With more points than these it takes too long.
 const MOST_POINTS: u32 = 16;
+/// So many more may be tried, as one may have no value.
+pub(super) const SPARE: u32 = 5;
 
 /// Of a numerator, and of a denominator `Δᵐ Dⁿ r` with the denominator `Δ` that the entries of group elements share, and
 /// one divisor `D`, as sums of quotients by one number have one denominator.
@@ -157,6 +159,9 @@ impl Number for Degree {
     }
 
     fn power(self, exponent: i32) -> Self {
+        if exponent == 0 {
+            return Self { argument: self.argument, ..Self::ONE };
+        }
         let times = |degree: u64| degree.saturating_mul(exponent.unsigned_abs().into());
         let [numerator, common, rest] = [self.numerator, self.common, self.rest].map(times);
         let divisor = (times(self.divisor.0), self.divisor.1);
@@ -235,21 +240,54 @@ pub(super) fn attitudes(declaration: &Declaration) -> impl Iterator<Item = usize
     all.filter(|&index| matches!(declaration.advected_kind(index), FieldKind::Configuration(_)))
 }
 
-/// How many functions a tree calls.
-pub(super) fn functions(tree: &Rc<Tree>) -> u64 {
-    let (mut seen, mut open, mut count) = (BTreeSet::new(), vec![tree], 0);
-    while let Some(tree) = open.pop() {
-        if seen.insert(Rc::as_ptr(tree)) {
-            count += u64::from(matches!(tree.kind, Kind::Apply(..)));
-            open.extend(tree.kind.operands().into_iter().flatten());
-        }
-    }
-    count
+/// What is counted of a tree, or of a graph, beside its degrees.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Content {
+    /// How many functions are called.
+    pub(super) functions: u64,
+    /// Whether a constant that isn't zero is zero in the field, or has no value there.
+    pub(super) has_multiple: bool,
 }
 
-/// How many functions a graph calls.
-pub(super) fn calls(graph: &Graph) -> u64 {
-    u64::try_from(graph.nodes().filter(|node| matches!(node, Node::Apply(..))).count()).unwrap_or(u64::MAX)
+impl Content {
+    fn of_constant(value: Rational) -> Self {
+        let residue = Residue::of(value);
+        Self { functions: 0, has_multiple: !value.is_zero() && (residue.is_zero() || !residue.is_defined()) }
+    }
+
+    pub(super) fn of_tree(tree: &Rc<Tree>) -> Self {
+        let (mut seen, mut open, mut content) = (BTreeSet::new(), vec![tree], Self::default());
+        while let Some(tree) = open.pop() {
+            if seen.insert(Rc::as_ptr(tree)) {
+                content = match tree.kind {
+                    Kind::Apply(..) => content + Self { functions: 1, ..Self::default() },
+                    Kind::Number(value) => content + Self::of_constant(value),
+                    _ => content,
+                };
+                open.extend(tree.kind.operands().into_iter().flatten());
+            }
+        }
+        content
+    }
+
+    pub(super) fn of_graph(graph: &Graph) -> Self {
+        graph.nodes().fold(Self::default(), |content, node| match node {
+            Node::Apply(..) => content + Self { functions: 1, ..Self::default() },
+            Node::Constant(value) => content + Self::of_constant(*value),
+            _ => content,
+        })
+    }
+}
+
+impl Add for Content {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            functions: self.functions.saturating_add(other.functions),
+            has_multiple: self.has_multiple || other.has_multiple,
+        }
+    }
 }
 
 /// The largest degrees of all that is compared.
@@ -274,12 +312,17 @@ impl Largest {
     }
 
     /// How many points are compared, and the `n` of how sure that is; `None` where no few points are enough.
+    ///
+    /// What is wrong passes if at some `n` of the `n + SPARE` points that may be tried it has a value, and that coincides.
+    /// For given ones this has the `n`-th power of the probability for one: of the field's `2⁶¹ − 1` elements none is drawn
+    /// more than 9/8 times as often as another, and `9/8 · 1/(2⁶¹ − 1) < 2⁻⁶⁰`. Of such choices there are `ways`.
     pub(super) fn points(self, functions: u64) -> Option<(u32, u32)> {
-        let coincidences = self.coincidences(functions);
-        // Of the field's 2⁶¹ − 1 elements none is drawn more than 9/8 times as often as another, and at least half of the
-        // points have values: 9/8 · 2/(2⁶¹ − 1) < 2⁻⁵⁹.
-        let of_point = 59_u32.checked_sub(u64::BITS - coincidences.leading_zeros()).filter(|&bits| bits > 0)?;
-        let points = ENOUGH.div_ceil(of_point);
-        (points <= MOST_POINTS).then_some((points, points * of_point))
+        let of_point = 60_u32.saturating_sub(u64::BITS - self.coincidences(functions).leading_zeros());
+        let mut ways = 1_u64;
+        (1..=MOST_POINTS).find_map(|points| {
+            ways = ways * u64::from(points + SPARE) / u64::from(points);
+            let exponent = (points * of_point).saturating_sub(u64::BITS - ways.leading_zeros());
+            (exponent >= ENOUGH).then_some((points, exponent))
+        })
     }
 }

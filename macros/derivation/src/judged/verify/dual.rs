@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::number::Number;
+use super::number::{self, Number};
 use crate::mathematics::symbolic::{Function, Rational};
 
 /// A value and its derivative.
@@ -81,20 +81,8 @@ impl<T: Number> Number for Dual<T> {
     }
 
     fn apply(self, function: Function) -> Self {
-        let (x, of) = (self.value, |numerator, denominator| T::of(Rational::new(numerator, denominator)));
-        let value = x.apply(function);
-        let derivative = match function {
-            Function::Sqrt => of(1, 2) / value,
-            Function::Ln => T::ONE / x,
-            Function::Exp => value,
-            Function::Sin => x.apply(Function::Cos),
-            Function::Cos => -x.apply(Function::Sin),
-            Function::Stumpff(k) => {
-                let [first, second] = [k + 1, k + 2].map(|k| x.apply(Function::Stumpff(k)));
-                of(1, 2) * (of(k.into(), 1) * second - first)
-            }
-            Function::LogRatio(k) => x.apply(Function::LogRatio(k + 1)),
-        };
+        let value = self.value.apply(function);
+        let derivative = number::derivative(function, self.value, || value);
         Self { value, slope: derivative * self.slope }
     }
 

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use super::degree::{self, Degree, Largest};
+use super::degree::{self, Content, Degree, Largest, SPARE};
 use super::identities::{Identities, Same};
 use super::number::Number;
 use super::residue::Residue;
@@ -14,8 +14,6 @@ use crate::declared::{Declaration, Role, Tree};
 
 /// Compared without a bound.
 pub(super) const POINTS: u32 = 3;
-/// So many more are tried, as one may have no value.
-const SPARE: u32 = 5;
 
 /// Of a declaration.
 pub(super) struct Check<'a> {
@@ -42,7 +40,7 @@ impl Check<'_> {
             return Ok((Sureness::Series, reversed));
         }
         let sureness = certified(
-            self.identities.functions(),
+            self.identities.content(),
             |same| self.degrees(same),
             |seed| {
                 let (element, number) = of_field(seed).ok_or(Fault::Untold)?;
@@ -101,10 +99,9 @@ pub(super) fn same<T: Number>(term: &'static str, found: T, expected: T) -> Resu
     }
 }
 
-/// Compares at as many points as the degrees of what is compared ask for, and says how sure that is; `functions` is how
-/// many are called.
+/// Compares at as many points as the degrees of what is compared ask for, and says how sure that is.
 pub(super) fn certified(
-    functions: u64,
+    content: Content,
     degrees: impl FnOnce(&mut Same<Degree>) -> Result<(), Fault>,
     point: impl FnMut(u64) -> Result<(), Fault>,
 ) -> Result<Sureness, Unconfirmed> {
@@ -113,9 +110,13 @@ pub(super) fn certified(
         largest.compared(found, expected);
         Ok(())
     });
-    let found = compared.ok().and_then(|()| largest.points(functions));
+    let found = compared.ok().and_then(|()| largest.points(content.functions));
     confirmed(found.map_or(POINTS, |(points, _)| points), point)?;
-    Ok(found.map_or(Sureness::TooHigh, |(_, exponent)| Sureness::Certified(exponent)))
+    Ok(match found {
+        _ if content.has_multiple => Sureness::Multiple,
+        Some((_, exponent)) => Sureness::Certified(exponent),
+        None => Sureness::TooHigh,
+    })
 }
 
 /// Whether what was derived agrees with the declaration at that many points. A point without values is no agreement.

@@ -5,19 +5,24 @@
 //! `(I + ε v̂) F` is an element of the group to the order that counts; second ones are those of what has been compared before.
 
 use std::collections::BTreeMap;
+use std::ops::Add as _;
 use std::rc::Rc;
 
+use super::degree::Content;
 use super::dual::Dual;
 use super::evaluation::Evaluation;
 use super::number::Number;
 use super::sample::{Element, Sample, exponentials};
 use super::value::Value;
-use super::{Fault, Values, components_of, degree, dot, evaluated, evaluated_from, increments};
-use crate::declared::{Declaration, Name, Role, Tree};
-use crate::mathematics::derive::{Derived, Ends};
+use super::{Fault, Values, components_of, dot, evaluated, evaluated_from, increments};
+use crate::declared::lower::Lowered;
+use crate::declared::{Declaration, FieldKind, Name, Role, Tree};
+use crate::judged::places::{places, shape, variables};
+use crate::mathematics::derive::Derived;
 use crate::mathematics::symbolic::{Rational, Stage, SymbolId};
 use crate::program::{
-    Given, Graph, Handed, Input, Kernel, Linearisation, Node, NodeId, Scalariser, Stages, components, square, with_lets,
+    ByNumbers, Derivatives, Given, Graph, Handed, Kernel, NodeId, Scalariser, Stages, WeightedGradient, components,
+    limit, square, with_lets,
 };
 
 /// Values of symbols.
@@ -56,70 +61,17 @@ impl Terms {
     }
 }
 
-/// Of both momenta of a step, along some directions.
-pub(super) struct Variation {
-    /// The derivatives of `μ`, then of `μ⁺`, each along all directions.
-    pub(super) rows: Vec<Vec<NodeId>>,
-    /// Those of `⟨p, μ⁺⟩ − ⟨u, μ⟩`, of turns of `⟨p, μ⁺⟩`.
-    pub(super) adjoint: Vec<NodeId>,
-    /// What each of the two is called.
-    names: [&'static str; 2],
-}
-
-/// The derivatives of the momenta at both ends of a step, where they are asked for.
-pub(super) struct Derivatives {
-    pub(super) graph: Graph,
-    momenta: Vec<NodeId>,
-    /// The scalars that the momenta have beside the increment.
-    scalars: Vec<Input>,
-    /// Along turns of the increment, along displacements of the body, and by each scalar.
-    pub(super) variations: [Variation; 3],
-}
-
-impl Derivatives {
-    fn new(derived: &Derived, ends: &Ends) -> Self {
-        let mut linearisation = Linearisation::new(derived, ends);
-        let momenta = linearisation.momenta().concat();
-        let [_, by_turn] = linearisation.adjoint_system();
-        let gradient = linearisation.adjoint_gradient();
-        let adjoint = [by_turn, linearisation.by_place(&gradient)];
-        let factors = &derived.directions.factors;
-        let is_increment = |id: SymbolId| factors.iter().any(|one| [one.small, one.small_inverse].contains(&id));
-        let inputs = linearisation.graph.reachable(&momenta).into_iter();
-        let scalars: Vec<Input> = inputs
-            .filter_map(|id| match linearisation.graph.node(id) {
-                Node::Input(input) if !is_increment(input.symbol) => Some(input),
-                _ => None,
-            })
-            .collect();
-        let (mut columns, mut by_scalars) = (Vec::new(), Vec::new());
-        for &Input { symbol, row, column } in &scalars {
-            columns.push(linearisation.by_entry(symbol, row, column));
-            by_scalars.push(linearisation.gradient_by_entry(&gradient, symbol, row, column));
-        }
-        let of = |rows: Vec<Vec<NodeId>>, adjoint, names| Variation { rows, adjoint, names };
-        let rows = |[start, end]: &[Vec<NodeId>; 2]| {
-            start.chunks(adjoint[0].len()).chain(end.chunks(adjoint[0].len())).map(<[NodeId]>::to_vec).collect()
-        };
-        let [turn, place] = linearisation.blocks().each_ref().map(rows);
-        let by_scalar = (0..momenta.len()).map(|k| columns.iter().map(|by| by[k]).collect()).collect();
-        let [of_turn, of_place] = adjoint;
-        let names = ["derivative of a step", "adjoint of a step"];
-        let by_scalar = of(by_scalar, by_scalars, ["derivative by the parameters", "gradient of a step"]);
-        let variations = [of(turn, of_turn, names), of(place, of_place, names), by_scalar];
-        Self { graph: linearisation.graph, momenta, scalars, variations }
-    }
-}
-
 /// A declaration with all that was derived of it.
 pub(super) struct Identities<'a> {
-    role: Role,
+    declaration: &'a Declaration,
     tree: &'a Rc<Tree>,
     pub(super) derived: &'a Derived,
     kernel: &'a Kernel,
     pub(super) stages: Stages,
     terms: Terms,
     pub(super) derivatives: Option<Derivatives>,
+    /// `J`, `s` and `V` of the limit, where they have derivatives.
+    limit: Option<(Graph, [Vec<NodeId>; 3])>,
 }
 
 /// One point with one direction.
@@ -172,22 +124,27 @@ struct Declared<T> {
 
 impl<'a> Identities<'a> {
     pub(super) fn new(
-        declaration: &Declaration,
+        declaration: &'a Declaration,
         tree: &'a Rc<Tree>,
+        lowered: &Lowered,
         (derived, kernel): (&'a Derived, &'a Kernel),
     ) -> Self {
-        let derivatives = derived.ends.as_ref().map(|ends| Derivatives::new(derived, ends));
-        let (role, terms) = (declaration.role, Terms::new(derived, declaration.role));
-        Self { role, tree, derived, kernel, stages: kernel.stages(), terms, derivatives }
+        let derivatives = derived.ends.as_ref().map(|ends| {
+            let numbers = places(declaration, &lowered.names);
+            Derivatives::new(derived, ends, &numbers)
+        });
+        let has_gradient = derivatives.as_ref().is_some_and(|all| all.of_kick.is_some());
+        let (stages, terms) = (kernel.stages(), Terms::new(derived, declaration.role));
+        let limit = has_gradient.then(|| limit(derived));
+        Self { declaration, tree, derived, kernel, stages, terms, derivatives, limit }
     }
 
-    /// How many functions are called, in the declaration and in what was derived.
-    pub(super) fn functions(&self) -> u64 {
-        let derivatives = self.derivatives.as_ref().map_or(0, |derivatives| degree::calls(&derivatives.graph));
-        degree::functions(self.tree)
-            + degree::calls(&self.terms.graph)
-            + degree::calls(&self.kernel.graph)
-            + derivatives
+    /// Of the declaration and of what was derived.
+    pub(super) fn content(&self) -> Content {
+        let derivatives = self.derivatives.iter().map(|all| &all.graph);
+        let limit = self.limit.iter().map(|(graph, _)| graph);
+        let graphs = [&self.terms.graph, &self.kernel.graph].into_iter().chain(derivatives).chain(limit);
+        graphs.map(Content::of_graph).fold(Content::of_tree(self.tree), Content::add)
     }
 
     /// Whether the momentum and its Jacobian have values where a step begins.
@@ -211,7 +168,7 @@ impl<'a> Identities<'a> {
         let exponentials = exponentials(&element);
         let turned = sample.element.turned(&exponentials);
         let point = Point { sample, dual: sample.lifted(), direction, element, exponentials, turned, target, weights };
-        let declared = match self.role {
+        let declared = match self.declaration.role {
             Role::Force => self.declared_work(&point, same)?,
             _ => self.lagrangian_holds(&point, same)?,
         };
@@ -282,7 +239,7 @@ impl<'a> Identities<'a> {
         let (graph, dual) = (&self.terms.graph, &point.dual);
         let along = evaluated(graph, &self.terms.momentum, &dual.inputs_at(&point.turned, &dual.values));
         let momentum: Vec<T> = along.iter().map(|one| one.value).collect();
-        let name = if self.role == Role::Force { "force" } else { "momentum equation" };
+        let name = if self.declaration.role == Role::Force { "force" } else { "momentum equation" };
         same(name, dot(&momentum, &point.direction), declared.momentum)?;
         let jacobian = evaluated(graph, &self.terms.jacobian, &point.sample.inputs());
         point.are_slopes("Newton Jacobian", &jacobian, &along, same)?;
@@ -390,7 +347,7 @@ impl<'a> Identities<'a> {
     }
 
     /// The momenta at both ends with their derivatives, along a turn of the increment, along `δw = −v̂·w`, and along a random
-    /// change of all parameters, with what is advected and `h`.
+    /// change of all numbers; and the gradient of a kick, along the last two.
     fn derivatives_hold<T: Number>(
         &self,
         point: &Point<T>,
@@ -399,35 +356,100 @@ impl<'a> Identities<'a> {
         number: &mut impl FnMut() -> T,
         same: &mut Same<T>,
     ) -> Result<(), Fault> {
-        let Some(Derivatives { graph, momenta, scalars, variations }) = &self.derivatives else { return Ok(()) };
-        let (dual, [forwards, backwards]) = (&point.dual, &point.exponentials);
-        let seen = dual.inputs_at(&dual.element, &dual.moved([backwards, forwards]));
-        let turned = dual.inputs_at(&point.turned, &dual.values);
-        let (mut varied, changes) = (dual.inputs(), scalars.iter().map(|_| number()).collect::<Vec<T>>());
-        for (&change, Input { symbol, row, column }) in changes.iter().zip(scalars) {
-            if let Some(value) = varied.get_mut(symbol) {
-                value.entries[row * value.columns + column].slope = change;
-            }
-        }
-        let [u, p] = &point.weights;
+        let Some(all) = &self.derivatives else { return Ok(()) };
+        let (dual, direction, [u, p], [forwards, backwards]) =
+            (&point.dual, &point.direction, &point.weights, &point.exponentials);
         let plain = self.inputs_of_stages(point.sample, [u, p]);
-        let values = evaluated(graph, momenta, &plain);
-        let (start, end) = values.split_at(u.len());
-        let name = "momentum to be differentiated";
-        same(name, dot(start, &point.direction), dot(momentum, &point.direction))?;
-        same(name, dot(end, &point.direction), declared.left)?;
-        let along = [(turned, &point.direction), (seen, &point.direction), (varied, &changes)];
-        for (at, (Variation { rows, adjoint, names }, (inputs, along))) in variations.iter().zip(along).enumerate() {
-            let slopes: Vec<T> = evaluated(graph, momenta, &inputs).iter().map(|one| one.slope).collect();
-            let (start, end) = slopes.split_at(u.len());
-            let of_start = if at == 0 { T::ZERO } else { dot(u, start) };
-            same(names[1], dot(&evaluated(graph, adjoint, &plain), along), dot(p, end) - of_start)?;
-            let found = evaluated(graph, &rows.concat(), &plain);
-            for (row, &slope) in found.chunks(along.len().max(1)).zip(&slopes) {
-                same(names[0], dot(row, along), slope)?;
+        let values = |outputs: &[NodeId]| evaluated(&all.graph, outputs, &plain);
+        let momenta = values(&all.momenta);
+        let (start, end) = momenta.split_at(u.len());
+        same("momentum to be differentiated", dot(start, direction), dot(momentum, direction))?;
+        same("momentum to be differentiated", dot(end, direction), declared.left)?;
+
+        let (varied, changes) = self.varied(dual, number);
+        let seen = dual.moved([backwards, forwards]);
+        let [seen, varied] = [seen, varied].map(|values| dual.inputs_at(&dual.element, &values));
+        let [turned, seen_slopes, varied_slopes] = [&dual.inputs_at(&point.turned, &dual.values), &seen, &varied]
+            .map(|inputs| slopes(evaluated(&all.graph, &all.momenta, inputs)));
+        for (blocks, slopes) in all.blocks.iter().zip([&turned, &seen_slopes]) {
+            for (row, &slope) in values(&blocks.concat()).chunks(u.len()).zip(slopes) {
+                same("derivative of a step", dot(row, direction), slope)?;
             }
         }
-        Ok(())
+        let found = changes.along(&all.by_numbers, momenta.len(), values);
+        found
+            .into_iter()
+            .zip(&varied_slopes)
+            .try_for_each(|(found, &slope)| same("derivative by the parameters", found, slope))?;
+        same("adjoint of a step", dot(&values(&all.by_turn), direction), dot(p, &turned[u.len()..]))?;
+        let mut gradient_holds =
+            |name, gradient: &WeightedGradient, inputs: &Inputs<T>, [by_place, by_numbers]: [T; 2]| {
+                let values = |outputs: &[NodeId]| evaluated(&all.graph, outputs, inputs);
+                same(name, dot(&values(&gradient.by_place), direction), by_place)?;
+                same(name, changes.along(&gradient.by_numbers, 1, values)[0], by_numbers)
+            };
+        let adjoint =
+            [seen_slopes, varied_slopes].map(|slopes| dot(p, &slopes[u.len()..]) - dot(u, &slopes[..u.len()]));
+        gradient_holds("gradient of a step", &all.gradient, &plain, adjoint)?;
+        let (Some(of_kick), Some(limit)) = (&all.of_kick, &self.limit) else { return Ok(()) };
+        // ⟨u, D_v k⟩ + ⟨r, k − J u⟩, of what was compared before.
+        let (r, directions) = (&point.target, &self.derived.directions);
+        let mut inputs = plain.clone();
+        inputs.insert(directions.coordinates, Value::column(r));
+        let kick = [seen, varied].map(|mut inputs| {
+            inputs.insert(directions.along, Value::column(p).over(Dual::constant));
+            let of = |graph: &Graph, outputs: &[NodeId]| slopes(evaluated(graph, outputs, &inputs));
+            let (graph, change) = (&self.kernel.graph, self.kernel.kick_derivative.as_deref().unwrap_or_default());
+            let inertia = of(&limit.0, &limit.1[0]);
+            let inertia: Vec<T> = inertia.chunks(u.len()).map(|row| dot(row, u)).collect();
+            dot(u, &of(graph, change)) + dot(r, &of(graph, &self.kernel.kick_before)) - dot(r, &inertia)
+        });
+        gradient_holds("gradient of a kick", of_kick, &inputs, kick)
+    }
+
+    /// With a random change of all numbers that a step is differentiated by, as far as their kinds let them change.
+    fn varied<T: Number>(
+        &self,
+        dual: &Sample<Dual<T>>,
+        number: &mut impl FnMut() -> T,
+    ) -> (Values<Dual<T>>, Changes<T>) {
+        let mut varied = dual.values.clone();
+        let changes = variables(self.declaration).map(|each| {
+            let change = |(name, kind)| {
+                let (rows, columns) = shape(kind);
+                let any = Value { rows, columns, entries: (0..rows * columns).map(|_| number()).collect() };
+                let change = match kind {
+                    FieldKind::SymmetricInertia => any.plus(&any.transpose()),
+                    FieldKind::DiagonalInertia => Value::diagonal(rows, |k| any.at(k, k)),
+                    _ => any,
+                };
+                let entries = varied.get_mut(&name).into_iter().flat_map(|value| &mut value.entries);
+                entries.zip(&change.entries).for_each(|(entry, &change)| entry.slope = change);
+                change.entries
+            };
+            each.into_iter().flat_map(change).collect()
+        });
+        (varied, Changes(changes))
+    }
+}
+
+fn slopes<T>(values: Vec<Dual<T>>) -> Vec<T> {
+    values.into_iter().map(|one| one.slope).collect()
+}
+
+/// Those of the numbers of the parameters, and of what is advected.
+struct Changes<T>([Vec<T>; 2]);
+
+impl<T: Number> Changes<T> {
+    /// How as many outputs change, by their derivatives.
+    fn along(&self, by: &ByNumbers, outputs: usize, values: impl Fn(&[NodeId]) -> Vec<T>) -> Vec<T> {
+        let nodes: Vec<NodeId> = by.iter().flatten().flat_map(|(_, nodes)| nodes).copied().collect();
+        let changes = by.iter().zip(&self.0).flat_map(|(by, all)| by.iter().map(|(number, _)| all[*number]));
+        let (values, mut sums) = (values(&nodes), vec![T::ZERO; outputs]);
+        for (change, derivatives) in changes.zip(values.chunks(outputs)) {
+            sums.iter_mut().zip(derivatives).for_each(|(sum, &one)| *sum = *sum + change * one);
+        }
+        sums
     }
 }
 
@@ -444,9 +466,8 @@ impl Identities<'_> {
         let change = kernel.kick_derivative.clone().unwrap_or_default();
         let stages = stages.into_iter().chain([&change]).flatten().copied().collect::<Vec<_>>();
         let mut all = [evaluated(graph, &terms, &inputs), evaluated(&kernel.graph, &stages, &inputs)].concat();
-        if let Some(Derivatives { graph, variations, momenta, .. }) = &self.derivatives {
-            let rows = variations[..2].iter().flat_map(|one| one.rows.concat());
-            all.extend(evaluated(graph, &rows.chain(momenta.iter().copied()).collect::<Vec<_>>(), &inputs));
+        if let Some(Derivatives { graph, blocks, momenta, .. }) = &self.derivatives {
+            all.extend(evaluated(graph, &[blocks.as_flattened().concat(), momenta.clone()].concat(), &inputs));
         }
         all
     }

@@ -16,19 +16,23 @@
 //!    so a slope is the derivative along the group.
 //! 3. *Functions.* Let each call `f(u)` stand for a new variable, one for each `f` and each value of `u`, with the relations of
 //!    [`residue`](residue::Residue) and no others. The true functions obey these, and so do the derivatives that dual numbers
-//!    take: so what is an identity in the variables is one of the true functions, on each of their branches. In the field the
-//!    variables are pseudorandom numbers, others at each point: also those of functions of constants, which would be the same
-//!    at all points and count once. An identity that needs more, as `√u² = u` or `sin² + cos² = 1`, fails: that refuses too
-//!    much, never too little. No derivation needs one.
-//! 4. *Sureness.* A difference that isn't zero is a quotient of polynomials with rational coefficients in random numbers. At
-//!    a random point it vanishes with a probability of at most the numerator's degree over `p`, and two arguments of functions
-//!    that differ have one value with a probability of their degree over `p` ([`degree`]). A point at which a denominator
-//!    vanishes is drawn again, which at most doubles these. Points are independent: as many are compared as bring the
-//!    probability for a wrong identity, whichever it is, below `2⁻¹⁰⁰`. That takes the numbers of the stream and the stand-ins
-//!    for random ones, and it takes numerators that aren't multiples of `p`.
+//!    take: so what is an identity in the variables is one of the true functions, on each of their branches, wherever both
+//!    sides have values. In the field the variables are pseudorandom numbers, others at each point: also those of functions of
+//!    constants, which would be the same at all points and count once. An identity that needs more, as `√u² = u` or
+//!    `sin² + cos² = 1`, fails: that refuses too much, never too little. No derivation needs one.
+//! 4. *Sureness.* A difference that isn't zero is a quotient of polynomials with rational coefficients in random numbers. That
+//!    at a random point it has a value, and zero for it, has a probability of at most the numerator's degree over `p`, and two
+//!    arguments of functions that differ have one value with a probability of their degree over `p` ([`degree`]). Points are
+//!    independent, and those without a value are drawn again, a few times at most: what is wrong, whichever it is, passes if it
+//!    is zero at some choice of the points that may be drawn. As many are compared as bring the sum over all choices below
+//!    `2⁻¹⁰⁰`. That takes the numbers of the stream and the stand-ins for random ones, and it takes numerators that aren't
+//!    multiples of `p`; where a constant of the declaration or of a graph is one, nothing is claimed.
 //! 5. *What runs.* The graph of the [`Kernel`] is compared, stage by stage as a stepper calls it, with the derivatives of the
 //!    terms that were compared before. A step needs `U(F) = μ + k₀` and `μ⁺ = Ad*_F (μ + k₀) + k₁⁺`: any `k₀` will do that
-//!    doesn't depend on `F`, and that it doesn't is asked of the graph. Tokens are written from that graph.
+//!    doesn't depend on `F`, and that it doesn't is asked of the graph. The derivatives of a step are compared as the graph that
+//!    is emitted; by the entries of an attitude that is seen, with those of its momenta and not of the declaration, as
+//!    `RᵀR = I` may have been used. Tokens are written from these graphs, and those of single terms from graphs that the code
+//!    of these builds again.
 //!
 //! # What is taken for right
 //!
@@ -38,7 +42,7 @@
 //!
 //! A group whose generators' multiples have no Cayley transforms in it has points that are power series instead,
 //! `exp(t v̂_1) ⋯ exp(t v̂_n)`. There all is compared to the order to which series are known, without rounding, and without a
-//! bound; so is that a discrete Lagrangian has its continuous one for a limit, at a few points. What only real numbers have
+//! bound; so is, at a few points, that a discrete Lagrangian has its continuous one for a limit. What only real numbers have
 //! stays with them: whether there is a value at all, and the sign of the inertia.
 
 mod cayley;
@@ -64,12 +68,13 @@ mod value;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
+use super::places::variables;
 use crate::declared::lower::Lowered;
 use crate::declared::{Declaration, FieldKind, Name, Role, Shape, Tree};
 use crate::mathematics::derive::{Derived, SelfAdjointness};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId};
-use crate::program::{Graph, Input, Kernel, Node, NodeId};
+use crate::program::{Derivatives, Graph, Input, Kernel, Node, NodeId};
 
 pub(super) use cayley::{is_cayley_coordinates, nilpotency};
 pub(crate) use constraint::Held;
@@ -112,10 +117,11 @@ enum Fault {
 }
 
 /// What the self-check has found of a declaration that it confirms.
-#[derive(Clone, Copy, Debug)]
 pub(crate) struct Verified {
     pub(crate) self_adjointness: SelfAdjointness,
     pub(crate) sureness: Sureness,
+    /// What was compared, to be emitted.
+    pub(crate) derivatives: Option<Derivatives>,
 }
 
 /// How sure it is that what was derived is right.
@@ -125,6 +131,8 @@ pub(crate) enum Sureness {
     Certified(u32),
     /// No bound is small enough, as degrees are too high.
     TooHigh,
+    /// A constant is a multiple of `2⁶¹ − 1`, or has one for its denominator.
+    Multiple,
     /// The group has no Cayley transforms: compared in power series.
     Series,
 }
@@ -150,7 +158,7 @@ pub(super) fn verify(
     if Sample::draws(declaration, lowered, derived, tree).next().is_none() {
         return Err(Unconfirmed::NoValue);
     }
-    let identities = Identities::new(declaration, tree, (derived, kernel));
+    let identities = Identities::new(declaration, tree, lowered, (derived, kernel));
     let check = exact::Check { declaration, lowered, tree, identities };
     let (sureness, reversed) = check.confirmed()?;
     if !check.is_smooth() {
@@ -160,7 +168,7 @@ pub(super) fn verify(
         Role::Force => SelfAdjointness::No,
         _ => reversal::self_adjointness(reversed, derived.adjoint_defect.is_zero()).map_err(Unconfirmed::Disagrees)?,
     };
-    Ok(Verified { self_adjointness, sureness })
+    Ok(Verified { self_adjointness, sureness, derivatives: check.identities.derivatives })
 }
 
 /// The values of operations.
@@ -265,10 +273,7 @@ fn increments<T: Number>(group: &Group, all: &Value<T>) -> Vec<(Name, Value<T>)>
 
 /// All fields, and what is advected.
 fn parameters<T: Number>(declaration: &Declaration, number: &mut impl FnMut() -> T) -> Values<T> {
-    let fields = declaration.fields.iter().enumerate().map(|(index, field)| (Name::Field(index), field.kind));
-    let advected =
-        (0..declaration.advected.len()).map(|index| (Name::Advected(index), declaration.advected_kind(index)));
-    fields.chain(advected).map(|(name, kind)| (name, parameter(kind, number))).collect()
+    variables(declaration).concat().into_iter().map(|(name, kind)| (name, parameter(kind, number))).collect()
 }
 
 /// Displacements of all factors, at the beginning of a step and at its end.

@@ -52,6 +52,35 @@ impl Number for f64 {
     }
 }
 
+/// By squaring.
+pub(super) fn raised<T: Number>(x: T, exponent: u64) -> T {
+    let (mut power, mut square) = (T::ONE, x);
+    for bit in 0..u64::BITS - exponent.leading_zeros() {
+        if exponent >> bit & 1 == 1 {
+            power = power * square;
+        }
+        square = square * square;
+    }
+    power
+}
+
+/// `f′(x)`, with the value of `f` there.
+pub(super) fn derivative<T: Number>(function: Function, x: T, value: impl FnOnce() -> T) -> T {
+    let of = |numerator, denominator| T::of(Rational::new(numerator, denominator));
+    match function {
+        Function::Sqrt => of(1, 2) / value(),
+        Function::Ln => T::ONE / x,
+        Function::Exp => value(),
+        Function::Sin => x.apply(Function::Cos),
+        Function::Cos => -x.apply(Function::Sin),
+        Function::Stumpff(k) => {
+            let [first, second] = [k + 1, k + 2].map(|k| x.apply(Function::Stumpff(k)));
+            of(1, 2) * (of(k.into(), 1) * second - first)
+        }
+        Function::LogRatio(k) => x.apply(Function::LogRatio(k + 1)),
+    }
+}
+
 /// The members of a family that follow from its first ones, from these.
 ///
 /// ```text

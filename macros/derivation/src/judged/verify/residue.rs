@@ -74,18 +74,7 @@ impl Residue {
 
     /// By Fermat, `a^(p − 2)`.
     fn reciprocal(self) -> Self {
-        if self == Self::ZERO { Self::UNDEFINED } else { self.raised(PRIME - 2) }
-    }
-
-    fn raised(self, exponent: u64) -> Self {
-        let (mut power, mut square) = (Self::ONE, self);
-        for bit in 0..u64::BITS - exponent.leading_zeros() {
-            if exponent >> bit & 1 == 1 {
-                power = power * square;
-            }
-            square = square * square;
-        }
-        power
+        if self == Self::ZERO { Self::UNDEFINED } else { number::raised(self, PRIME - 2) }
     }
 }
 
@@ -145,12 +134,12 @@ impl Number for Residue {
     }
 
     fn power(self, exponent: i32) -> Self {
-        let power = self.raised(exponent.unsigned_abs().into());
+        let power = number::raised(self, exponent.unsigned_abs().into());
         if exponent < 0 { power.reciprocal() } else { power }
     }
 
-    /// The field has no sines or logarithms. A pseudorandom function of the same symmetry, even or odd, stands in for
-    /// them. If two expressions agree with the stand-in, they agree whatever the function is.
+    /// The field has no sines or logarithms. Pseudorandom functions with the same symmetries and recurrences stand in for
+    /// them. What agrees with these agrees for all functions with these relations, wherever both sides have values.
     fn apply(self, function: Function) -> Self {
         let partner = match function {
             Function::Sin | Function::Cos | Function::Exp => -self,

@@ -123,14 +123,16 @@ pub(super) struct Sample<'a, T = f64> {
     pub(super) advected: Vec<(Name, Variance, Seen)>,
 }
 
-/// Real numbers for all names. The later ones are farther away, and may be anywhere.
+/// Real numbers for all names. The later ones are farther away, and may be anywhere, with smaller increments.
 pub(super) fn draws(declaration: &Declaration) -> impl Iterator<Item = (Element, Values<f64>)> {
     (1..=DRAWS).map(|seed| {
         let mut number = stream(seed);
-        let element = Element::by_exponentials(&declaration.group, || 0.6 * number() - 0.3);
-        let mut values = numbers(declaration, &element, &mut number);
         // From one draw in five on, another scale for each parameter, and another sign for scalars.
         let reach = f64::from(u32::try_from(seed / (DRAWS / 5)).unwrap_or(0));
+        // A relativistic root has values below the speed of light alone.
+        let size = (-2.0 * reach).exp2();
+        let element = Element::by_exponentials(&declaration.group, || size * (0.6 * number() - 0.3));
+        let mut values = numbers(declaration, &element, &mut number);
         for (name, value) in values.iter_mut().filter(|_| reach > 0.0) {
             let (scale, sign) = ((8.0 * number() - 2.0).exp2().powf(reach / 4.0), number() < 0.5);
             let kind = match name {

@@ -3,7 +3,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::number::Number;
+use super::number::{self, Number};
 use super::residue::Residue;
 use crate::mathematics::symbolic::{Function, Rational};
 
@@ -80,10 +80,36 @@ impl Series {
         Self::new(-self.first, length - self.first, coefficients)
     }
 
-    /// `f(a + x)` with `x` the rest without the constant `a`, from the coefficients of Taylor's series about `a`.
-    fn composed(self, taylor: impl FnOnce() -> Coefficients) -> Self {
-        let rest = self - Self::constant(self.at(0));
-        taylor().iter().rev().fold(Self::ZERO, |sum, coefficient| sum * rest + Self::constant(*coefficient))
+    /// The same, known to a lower power.
+    fn until(self, end: i32) -> Self {
+        Self::new(self.first, self.end.min(end), self.coefficients)
+    }
+
+    /// The derivative by `h`.
+    fn slope(self) -> Self {
+        let factors = (self.first..).map(|power| Residue::of(Rational::integer(power.into())));
+        let mut coefficients = self.coefficients;
+        coefficients.iter_mut().zip(factors).for_each(|(one, factor)| *one = *one * factor);
+        Self::new(self.first - 1, self.end - 1, coefficients)
+    }
+
+    /// `f(x) = f(x(0)) + ∫ f′(x) x′ dh`, where `f′(x)` is needed to one power less.
+    fn integrated(self, function: Function) -> Self {
+        let (end, mut coefficients) = (self.end.min(LENGTH_I32), NONE);
+        coefficients[0] = self.at(0).apply(function);
+        if end > 1 {
+            let x = self.until(end - 1);
+            let derivative = match function {
+                // So that `y²/x` stays as it is, although the square of a stand-in isn't its argument.
+                Function::Sqrt => Self::of(Rational::new(1, 2)) * x.apply(function) / x,
+                _ => number::derivative(function, x, || x.apply(function)),
+            };
+            let slope = derivative * self.slope();
+            for (power, coefficient) in (1..end).zip(&mut coefficients[1..]) {
+                *coefficient = slope.at(power - 1) / Residue::of(Rational::integer(power.into()));
+            }
+        }
+        Self::new(0, end, coefficients)
     }
 
     /// Of an even power of `h` times a number.
@@ -98,67 +124,9 @@ impl Series {
         }
         let middle = self.first / 2;
         let unit = Self { first: 0, end: self.end - self.first, ..self };
-        let first = unit.at(0).apply(Function::Sqrt);
-        let (mut taylor, half_of_one) = ([first; LENGTH], half());
-        for n in 1..LENGTH {
-            taylor[n] = taylor[n - 1] * (half_of_one - small(n - 1)) / (small(n) * unit.at(0));
-        }
-        let root = unit.composed(|| taylor);
+        let root = unit.integrated(Function::Sqrt);
         Self { first: root.first + middle, end: root.end + middle, ..root }
     }
-}
-
-fn half() -> Residue {
-    Residue::of(Rational::new(1, 2))
-}
-
-/// Below a hundred.
-fn small(n: usize) -> Residue {
-    Residue::of(Rational::integer(i128::try_from(n).unwrap_or(0)))
-}
-
-/// `f⁽ⁿ⁾(a)/n!`.
-fn taylor(function: Function, a: Residue) -> Coefficients {
-    let mut factorial = Residue::ONE;
-    let [sine, cosine] = [Function::Sin, Function::Cos];
-    let derivatives = if let Function::Stumpff(k) = function { of_stumpff(k, a) } else { NONE };
-    std::array::from_fn(|n| {
-        factorial = factorial * small(n.max(1));
-        let above = |k: u8| k.saturating_add(u8::try_from(n).unwrap_or(u8::MAX));
-        match function {
-            Function::Exp => a.apply(function) / factorial,
-            Function::Sin | Function::Cos => {
-                let turned = n + usize::from(function == cosine);
-                let value = a.apply(if turned.is_multiple_of(2) { sine } else { cosine });
-                (if turned % 4 < 2 { value } else { -value }) / factorial
-            }
-            Function::Ln if n == 0 => a.apply(function),
-            Function::Ln => -(-Residue::ONE / a).power(i32::try_from(n).unwrap_or(0)) / small(n),
-            // Not asked for.
-            Function::Sqrt => Residue::UNDEFINED,
-            Function::LogRatio(k) => a.apply(Function::LogRatio(above(k))) / factorial,
-            Function::Stumpff(_) => derivatives[n] / factorial,
-        }
-    })
-}
-
-/// The derivatives of `c_k`, by `c_k′ = (k c_{k+2} − c_{k+1})/2`.
-fn of_stumpff(k: u8, a: Residue) -> Coefficients {
-    const MEMBERS: usize = 2 * LENGTH - 1;
-    let orders = || (k..=u8::MAX).take(MEMBERS);
-    let values: Vec<Residue> = orders().map(|k| a.apply(Function::Stumpff(k))).collect();
-    let mut shares = [Residue::ZERO; MEMBERS];
-    shares[0] = Residue::ONE;
-    std::array::from_fn(|_| {
-        let derivative = values.iter().zip(&shares).fold(Residue::ZERO, |sum, (&value, &share)| sum + value * share);
-        let mut next = [Residue::ZERO; MEMBERS];
-        for (at, order) in orders().enumerate().take(MEMBERS - 2) {
-            next[at + 1] = next[at + 1] - half() * shares[at];
-            next[at + 2] = next[at + 2] + half() * small(order.into()) * shares[at];
-        }
-        shares = next;
-        derivative
-    })
 }
 
 impl Add for Series {
@@ -233,17 +201,7 @@ impl Number for Series {
 
     fn power(self, exponent: i32) -> Self {
         let factor = if exponent < 0 { self.reciprocal() } else { self };
-        let (mut product, mut square, mut rest) = (Self::ONE, factor, exponent.unsigned_abs());
-        while rest > 0 {
-            if rest % 2 == 1 {
-                product = product * square;
-            }
-            rest /= 2;
-            if rest > 0 {
-                square = square * square;
-            }
-        }
-        product
+        number::raised(factor, exponent.unsigned_abs().into())
     }
 
     fn apply(self, function: Function) -> Self {
@@ -252,11 +210,11 @@ impl Number for Series {
             Function::Sqrt => self.root(),
             _ if self.first < 0 => Self::UNDEFINED,
             // A constant.
-            _ if self.coefficients[1..].iter().all(|c| c.is_zero()) && self.first == 0 => {
+            _ if self.first == NEVER || self.first == 0 && self.coefficients[1..].iter().all(|c| c.is_zero()) => {
                 let constant = Self::from_one_coefficient(0, self.at(0).apply(function));
                 Self::new(0, self.end, constant.coefficients)
             }
-            _ => self.composed(|| taylor(function, self.at(0))),
+            _ => self.integrated(function),
         }
     }
 
@@ -271,7 +229,7 @@ impl Number for Series {
 
 #[cfg(test)]
 mod tests {
-    use super::{LENGTH_I32, Series, half, small};
+    use super::{LENGTH_I32, Series};
     use crate::judged::verify::number::Number as _;
     use crate::judged::verify::residue::Residue;
     use crate::mathematics::symbolic::{Function, Rational};
@@ -341,8 +299,8 @@ mod tests {
             assert_slope(x.apply(Function::Cos), -x.apply(Function::Sin) * slope(x));
             for k in 0..3 {
                 let [value, second, third] = [k, k + 1, k + 2].map(|k| x.apply(Function::Stumpff(k)));
-                let order = Series::constant(small(k.into()));
-                assert_slope(value, Series::constant(half()) * (order * third - second) * slope(x));
+                let half = |n: u8| Series::of(Rational::new(n.into(), 2));
+                assert_slope(value, (half(k) * third - half(1) * second) * slope(x));
                 assert_slope(x.apply(Function::LogRatio(k)), x.apply(Function::LogRatio(k + 1)) * slope(x));
             }
             assert_eq!(x.apply(Function::Ln).at(0), x.at(0).apply(Function::Ln));
@@ -355,6 +313,7 @@ mod tests {
     /// `Σ (−x)ⁱ/(2i + k)!` about zero.
     #[test]
     fn stumpff_in_the_field() {
+        let small = |n: usize| Residue::of(Rational::integer(n.try_into().expect("small")));
         for k in 0..4_u8 {
             let series = Series::STEP.apply(Function::Stumpff(k));
             let mut expected = (1..=k).fold(Residue::ONE, |product, n| product / small(n.into()));

@@ -1,12 +1,11 @@
 //! Each check fails on a broken term.
 
 mod mutations;
-mod products;
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::degree::{Degree, Largest};
+use super::degree::{Content, Degree, Largest};
 use super::evaluation::Evaluation;
 use super::value::Value;
 use super::{KineticPart, Sureness, Unconfirmed, degree, increments, kinetic_part, verify};
@@ -315,7 +314,7 @@ fn degrees() {
         values.extend([(Name::Step, variable()), (Name::Field(0), variable())]);
         let (value, mut largest) = (Evaluation::new(&values).of(&tree).first(), Largest::default());
         largest.compared(value, value);
-        largest.coincidences(degree::functions(&tree))
+        largest.coincidences(Content::of_tree(&tree).functions)
     };
     // k F²/h is 5/(Δ² h), and so is a difference of two such fractions, with equal powers of Δ and of h.
     assert_eq!(of("k * F[(0, 1)].powi(2) / h"), 5);
@@ -333,6 +332,23 @@ fn degrees() {
     assert!(of(&format!("{{ let x0 = k * F[(0, 1)]; {tower} x12 }}")) > 1 << 48);
     let declared = Declared::new("group = R1, l_d = k * F[(0, 1)].powi(2) / h", "struct Body { k: f64 }");
     assert!(matches!(declared.sureness(), Sureness::Certified(100..)));
+}
+
+/// What is wrong by a multiple of `2⁶¹ − 1` passes, and then nothing is claimed.
+#[test]
+fn constants_that_are_zero_in_the_field() {
+    let l_d = |mass: &str| format!("group = R1, l_d = k * F[(0, 1)].powi(2) / h + {mass} * F[(0, 1)].powi(2) / h");
+    let item = "struct Body { k: f64 }";
+    for mass in ["2305843009213693951.0", "4611686018427387902.0", "(2305843009213693950.0 + 1.0)"] {
+        let declared = Declared::new(&l_d(mass), item);
+        assert_eq!(declared.sureness(), Sureness::Multiple, "{mass}");
+        assert!(declared.after(|d| d.energy = with_one_sign_changed(&d.energy)).is_ok(), "{mass}");
+        let expansion = crate::expand::tests::expanded(&l_d(mass), item).to_string();
+        assert_eq!(expansion.matches("of a step are not certified: a constant is a multiple of 2⁶¹ − 1").count(), 3);
+    }
+    let other = Declared::new(&l_d("2305843009213693950.0"), item);
+    assert!(matches!(other.sureness(), Sureness::Certified(100..)));
+    assert_eq!(other.after(|d| d.energy = with_one_sign_changed(&d.energy)), Err("discrete energy"));
 }
 
 /// Groups of other generators have no Cayley transforms; there series are compared, and see what is wrong.

@@ -6,8 +6,6 @@ use crate::mathematics::symbolic::tests::numeric::value_and_scale;
 use crate::mathematics::symbolic::tests::random::{Random, World, both};
 use crate::mathematics::symbolic::{Function, Rational, Stage, SymbolId};
 use crate::program::expand::expanded;
-use crate::program::gradient::gradient;
-use crate::program::tangent::{Changes, tangent};
 use crate::program::{Graph, Input, Node, NodeId, Scalariser};
 
 #[test]
@@ -176,50 +174,4 @@ fn entries_by_structure() {
     assert_ne!(entry(world.a, 0, 2), entry(world.a, 2, 0));
     let (off, on) = (entry(world.diagonal, 0, 2), entry(world.diagonal, 1, 1));
     assert!(graph.is_zero(off) && !graph.is_zero(on));
-}
-
-/// Each rule of the chain rule from outputs back, with two weights of one output, and all outputs together: what it gives
-/// by each input is what goes forwards with that input gives, and what a difference gives.
-#[test]
-fn gradients_are_what_tangents_are() {
-    const VALUES: [f64; 4] = [0.3, 1.3, 0.4, -1.1];
-    let mut graph = Graph::default();
-    let g = &mut graph;
-    let [x, y, u, v] = [0, 1, 2, 3].map(|index| variable(g, index, Stage::Iteration));
-    let (square, product, sum, quotient) = (g.multiply(x, x), g.multiply(x, y), g.add(x, y), g.divide(x, y));
-    let (difference, of_both) = (g.subtract(product, y), g.divide(sum, product));
-    let minus = g.negate(square);
-    let mut outputs = vec![square, product, sum, quotient, difference, of_both, minus];
-    let functions = [Function::Sqrt, Function::Ln, Function::Exp, Function::Sin, Function::Cos, Function::Stumpff(1)];
-    for function in functions.into_iter().chain([Function::Stumpff(2), Function::LogRatio(1)]) {
-        let applied = g.apply(function, product);
-        outputs.push(g.multiply(applied, of_both));
-    }
-    let together = outputs.iter().zip([u, v].into_iter().cycle()).map(|(&output, weight)| (output, weight)).collect();
-    for weighted in outputs.iter().map(|&output| vec![(output, u), (output, v)]).chain([together]) {
-        let sum_of = |graph: &mut Graph, values: &[NodeId]| {
-            let shares: Vec<NodeId> =
-                values.iter().zip(&weighted).map(|(&value, (_, weight))| graph.multiply(*weight, value)).collect();
-            graph.sum(&shares)
-        };
-        let outputs: Vec<NodeId> = weighted.iter().map(|(output, _)| *output).collect();
-        let (whole, found) = (sum_of(&mut graph, &outputs), gradient(&mut graph, &weighted));
-        for (index, input) in [x, y].into_iter().enumerate() {
-            let one = graph.one();
-            let forwards = tangent(&mut graph, &outputs, &Changes::from([(input, one)]));
-            let forwards = sum_of(&mut graph, &forwards);
-            let backwards = found.get(&input).copied().unwrap_or_else(|| graph.zero());
-            let at = |node: NodeId, moved: f64| {
-                let value = |input: Input| VALUES[input.symbol.0] + if input.symbol.0 == index { moved } else { 0.0 };
-                graph.evaluate(&[node], &value)[0]
-            };
-            let (expected, given) = (at(forwards, 0.0), at(backwards, 0.0));
-            assert!((given - expected).abs() <= 1e-13 * (1.0 + expected.abs()), "{weighted:?}: {given} for {expected}");
-            let difference = (at(whole, 1e-5) - at(whole, -1e-5)) / 2e-5;
-            assert!(
-                (given - difference).abs() < 1e-6 * (1.0 + difference.abs()),
-                "{weighted:?}: {given} for {difference}"
-            );
-        }
-    }
 }

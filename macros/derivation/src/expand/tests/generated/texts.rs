@@ -51,29 +51,39 @@ pub(super) const KINDS: [Kind; 12] = [
         ..PLAIN
     },
     Kind {
-        head: "group(F = SO3, d = R3), advected(w = up.seen_from(F), R = F.seen_from(space), x = d.seen_from(space)), l_d = ",
+        head: "group(F = SO3, d_1 = R3, d_2 = R3), advected(w = up.seen_from(F), R = F.seen_from(space), x = d_1.seen_from(space), r = d_2.seen_from(d_1)), l_d = ",
         beginnings: &[
-            "((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) + k * d.norm_squared() / h - h * x.dot(&(R * w))",
+            "((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) + k * d_1.norm_squared() / h + m * d_2.norm_squared() / (2.0 * h) - 0.1 * d_1.dot(&(R * ((F - I) * b))) / h - h * (x.dot(&(R * w)) + m * r.norm_squared())",
+            "((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) + d_1.dot(&(A * A.transpose() * d_1)) / h + k * d_2.norm_squared() / h + 0.1 * w.dot(&((F - I) * a)).powi(2) / h - h * (x.dot(&(R * w)) + m * r.norm_squared())",
         ],
-        vectors: &["w", "(F * a)", "(R.transpose() * (x + d))", "(F.transpose() * w)"],
+        vectors: &[
+            "w",
+            "(F * a)",
+            "(R.transpose() * (x + d_1))",
+            "(R.transpose() * r)",
+            "(R.transpose() * (r + d_2 - d_1))",
+            "(F.transpose() * w)",
+        ],
+        scalars: &["k", "(R * F * A).trace()", "(inverse(F) * A).trace()", "r.norm_squared()"],
         ..PLAIN
     },
     Kind {
         head: "group(F = SO3, s = R1), advected(w = up.seen_from(F), y = s.seen_from(space)), l_d = ",
         beginnings: &[
-            "((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) + 0.5 * k * s * s / h - 0.5 * h * m * (y * y + (y + s) * (y + s))",
+            "((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) + 0.5 * k * s * s / h + 0.1 * s * a.dot(&vee(F)) / h - 0.5 * h * m * (y * y + (y + s) * (y + s))",
             "{ let z = y + s; 0.5 * k * s * s / h - h * m * z * z } + ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h)",
         ],
         scalars: &["y", "(y + s)", "y * y", "(y + s) * (y + s)"],
         ..PLAIN
     },
     Kind {
-        head: "group(F_1 = SO3, F_2 = SO3), advected(w = up.seen_from(F_1), Q = F_2.seen_from(F_1)), l_d = ",
+        head: "group(F_1 = SO3, d = R3, F_2 = SO3), advected(w = up.seen_from(F_1), Q = F_2.seen_from(F_1), R = F_1.seen_from(space)), l_d = ",
         beginnings: &[
-            "((F_1 - I) * J * (F_1 - I).transpose()).trace() / (2.0 * h) + ((F_2 - I) * J * (F_2 - I).transpose()).trace() / h + 0.1 * vee(F_1).dot(&(Q * vee(F_2))) / h",
+            "((F_1 - I) * J * (F_1 - I).transpose()).trace() / (2.0 * h) + ((F_2 - I) * J * (F_2 - I).transpose()).trace() / h + k * d.norm_squared() / h + 0.1 * vee(F_1).dot(&(Q * vee(F_2 - F_2.transpose()))) / h - 0.1 * d.dot(&(R * ((F_1 - I) * b))) / h",
+            "((F_1 - I) * J * (F_1 - I).transpose()).trace() / (2.0 * h) + ((F_2 - I) * J * (F_2 - I).transpose()).trace() / h + k * d.norm_squared() / h + 0.1 * ((F_1 - I) * a).dot(&(Q * ((F_2 - I) * b))) / h - 0.1 * d.dot(&(R * ((F_1 - I) * b))) / h",
         ],
-        vectors: &["w", "log(Q)", "(Q * (F_2 * a))", "(F_1.transpose() * (Q * b))", "(F_1 * a)"],
-        scalars: &["k", "log(Q).norm_squared()", "(F_1.transpose() * Q * F_2).trace()"],
+        vectors: &["w", "log(Q)", "(Q * (F_2 * a))", "(F_1.transpose() * (Q * b))", "(F_1 * a)", "(R.transpose() * d)"],
+        scalars: &["k", "log(Q).norm_squared()", "(F_1.transpose() * Q * F_2).trace()", "(Q * A).trace()"],
         ..PLAIN
     },
     Kind {
@@ -191,6 +201,15 @@ pub(super) fn right(random: &mut Random, kind: &Kind) -> String {
         }
         _ => sum,
     }
+}
+
+/// A discrete Lagrangian on a product.
+pub(crate) fn on_a_product(seed: u64) -> (String, String) {
+    let (mut random, mut kinds) = (Random::new(seed), KINDS.iter());
+    let products = kinds.by_ref().filter(|kind| kind.head.starts_with("group(") && kind.head.ends_with("l_d = "));
+    let products: Vec<&Kind> = products.collect();
+    let kind = products[random.below(products.len())];
+    declaration(kind, &right(&mut random, kind))
 }
 
 /// With the fields that stand in it.

@@ -11,16 +11,16 @@ use super::super::identities::Identities;
 use super::super::residue::Residue;
 use super::super::sample::{Element, Sample};
 use super::super::{Row, Sureness, Unconfirmed, Verified, constraint, verify};
-use super::products::random::Text;
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Role, Tree, check, lower, parse};
 use crate::expand::tests::continuous::{CART, LINKS, OF_CART, OF_LINKS};
+use crate::expand::tests::generated::texts::on_a_product;
 use crate::expand::tests::time::declarations_in;
 use crate::expand::tests::{HEAVY_TOP, top};
 use crate::judged::{self, Chosen, cheapest, held};
 use crate::mathematics::derive::{Derived, Seen, derive};
 use crate::mathematics::symbolic::{Expression, Rational, SymbolId, degree};
-use crate::program::{Kernel, NodeId, kernel};
+use crate::program::{ByNumbers, Derivatives, Kernel, NodeId, WeightedGradient, kernel};
 
 /// By how much a coefficient is too large.
 const ERRORS: [(i128, i128); 2] = [(1, 10_000_000), (1, 1 << 50)];
@@ -106,8 +106,8 @@ impl Prepared {
     fn emitted(&self, derived: &Derived, kernel: &Kernel) -> Vec<Residue> {
         let (mut number, group) = (Residue::stream(9), &self.declaration.group);
         let element = Element::by_cayley(group, &mut number).expect("points");
-        let identities = Identities::new(&self.declaration, &self.tree, (derived, kernel));
         let Self { declaration, tree, chosen: Chosen { lowered, .. } } = self;
+        let identities = Identities::new(declaration, tree, lowered, (derived, kernel));
         let check = Check { declaration, lowered, tree, identities };
         let sample: Sample<Residue> = check.sample(element, &mut number);
         check.identities.emitted(&sample, number)
@@ -204,9 +204,12 @@ fn prepared(role: Role, arguments: &str, item: &str) -> Prepared {
 #[test]
 fn small_errors_of_terms_and_stages() {
     let two = "group(F_1 = SO3, F_2 = SO3), advected(w_1 = up.seen_from(F_1), Q = F_2.seen_from(F_1)),
-        l_d = ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
-            + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h)
-            - 0.5 * h * (k * (Q.trace() + (F_1.transpose() * Q * F_2).trace()) + g * w_1.dot(&(rho + F_1 * rho)))";
+        l_d = {
+            let U = |y: Vector3<f64>| { let z = y.dot(&rho); z * (1.0 + y.norm_squared()).sqrt() };
+            ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
+                + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h)
+                - 0.5 * h * (k * (Q.trace() + (F_1.transpose() * Q * F_2).trace()) + g * (U(w_1) + U(F_1 * w_1)))
+        }";
     let bodies = "struct Two { J_1: NonstandardInertia, J_2: NonstandardInertia, k: f64, g: f64, rho: Vector3<f64>,
         up: Vector3<f64> }";
     let planar = "group = SE2, advected(w = up),
@@ -237,37 +240,84 @@ fn small_errors_of_terms_and_stages() {
         prepared.check_stages();
     }
     for seed in 0..6 {
-        let (arguments, item) = Text::of(seed);
+        let (arguments, item) = on_a_product(seed);
         prepared(Role::Lagrangian, &arguments, &item).check_terms(1, &mut table, |_, _| true);
     }
     assert_all_refused(&table);
 }
 
-/// Of the derivatives by parameters, of what is advected and of the adjoint.
+/// A derivative of a step, and the term that is wrong with it.
+type Derivative = (&'static str, fn(&mut Derivatives) -> &mut NodeId);
+
+const DERIVATIVES: [Derivative; 12] = [
+    ("derivative of a step", |all| &mut all.blocks[0][0][5]),
+    ("derivative of a step", |all| &mut all.blocks[0][1][3]),
+    ("derivative of a step", |all| &mut all.blocks[1][0][1]),
+    ("derivative of a step", |all| &mut all.blocks[1][1][7]),
+    ("derivative by the parameters", |all| &mut all.by_numbers[0][1].1[0]),
+    ("derivative by the parameters", |all| &mut all.by_numbers[1][2].1[5]),
+    ("adjoint of a step", |all| &mut all.by_turn[1]),
+    ("gradient of a step", |all| &mut all.gradient.by_place[1]),
+    ("gradient of a step", |all| &mut all.gradient.by_numbers[0][1].1[0]),
+    ("gradient of a step", |all| &mut all.gradient.by_numbers[1][2].1[0]),
+    ("gradient of a kick", |all| &mut of_kick(all).by_place[0]),
+    ("gradient of a kick", |all| &mut of_kick(all).by_numbers[1][1].1[0]),
+];
+
+fn of_kick(all: &mut Derivatives) -> &mut WeightedGradient {
+    all.of_kick.as_mut().expect("a potential has one")
+}
+
+/// Of each derivative of a step that is emitted, and of both numbers of an entry beside the diagonal, which is one symbol.
 #[test]
 fn small_errors_of_gradients() {
     let prepared = prepared(Role::Lagrangian, &format!("{HEAVY_TOP}, gradients"), &top("NonstandardInertia"));
     let Prepared { declaration, tree, chosen: Chosen { lowered, derived, kernel } } = &prepared;
-    let found = |wrong: usize| {
-        let mut identities = Identities::new(declaration, tree, (derived, kernel));
-        let derivatives = identities.derivatives.as_mut().expect("asked for");
-        let error = derivatives.graph.constant(Rational::new(1, 1 << 50));
-        let place = match wrong {
-            0..2 => Some(&mut derivatives.variations[wrong].adjoint[1]),
-            2..4 => Some(&mut derivatives.variations[2].rows[5 * (wrong - 2)][3]),
-            4 => Some(&mut derivatives.variations[2].adjoint[4]),
-            _ => None,
-        };
-        if let Some(node) = place {
-            *node = derivatives.graph.add(*node, error);
-        }
+    let found = |change: &dyn Fn(&mut Derivatives)| {
+        let mut identities = Identities::new(declaration, tree, lowered, (derived, kernel));
+        change(identities.derivatives.as_mut().expect("asked for"));
         Check { declaration, lowered, tree, identities }.confirmed().map(|(sureness, _)| sureness)
     };
-    let terms = ["adjoint of a step", "derivative by the parameters", "gradient of a step"];
-    for (wrong, term) in [0, 0, 1, 1, 2].into_iter().enumerate() {
-        assert_eq!(found(wrong), Err(Unconfirmed::Disagrees(terms[term])), "{wrong}");
+    let by = |error: Rational, place: fn(&mut Derivatives) -> &mut NodeId| {
+        found(&|all| {
+            let (node, share) = (*place(all), all.graph.constant(error));
+            let share = all.graph.multiply(node, share);
+            *place(all) = all.graph.add(node, share);
+        })
+    };
+    for (at, (term, place)) in DERIVATIVES.into_iter().enumerate() {
+        assert_eq!(by(Rational::new(1, 1 << 50), place), Err(Unconfirmed::Disagrees(term)), "{at}");
     }
-    assert!(matches!(found(5), Ok(Sureness::Certified(100..))), "{:?}", found(5));
+    // Twice as much for either number of an entry beside the diagonal, and the inertia of a kick with the other sign.
+    let at =
+        |by: &ByNumbers, number| by[0].iter().position(|(own, _)| *own == number).expect("an entry of the inertia");
+    let doubled = found(&|all| {
+        for number in [1, 3] {
+            let at = at(&all.by_numbers, number);
+            let twice = |node: &NodeId| all.graph.add(*node, *node);
+            all.by_numbers[0][at].1 = all.by_numbers[0][at].1.iter().map(twice).collect();
+        }
+    });
+    assert_eq!(doubled, Err(Unconfirmed::Disagrees("derivative by the parameters")));
+    let turned = found(&|all| {
+        let at = at(&of_kick(all).by_numbers, 4);
+        let node = of_kick(all).by_numbers[0][at].1[0];
+        of_kick(all).by_numbers[0][at].1[0] = all.graph.negate(node);
+    });
+    assert_eq!(turned, Err(Unconfirmed::Disagrees("gradient of a kick")));
+    let right = found(&|_| ());
+    assert!(matches!(right, Ok(Sureness::Certified(100..))), "{right:?}");
+}
+
+/// Each rule of the derivatives of a step, by what goes forwards and by what goes back.
+#[test]
+fn derivatives_of_all_functions() {
+    let l_d = "0.5 * log(F).dot(&(J * log(F))) / h - h * (1.0 + w.norm_squared()).sqrt() * (m / (2.0 + w.z)).ln()
+        - h * (w.x * k).sin() * (m * w.y).cos() / (1.0 + (k - w.z).exp()) - h * exp(k * w).trace() * m.powi(3)";
+    let item = "struct Body { J: Inertia, k: f64, m: f64, up: Vector3<f64> }";
+    let prepared = prepared(Role::Lagrangian, &format!("group = SO3, advected(w = up), l_d = {l_d}, gradients"), item);
+    let found = prepared.found(&prepared.chosen.derived, &prepared.chosen.kernel).map(|found| found.sureness);
+    assert!(matches!(found, Ok(Sureness::Certified(100..))), "{found:?}");
 }
 
 /// Each slope of a constraint with each error; returns how many.
@@ -317,7 +367,7 @@ fn check_everywhere(share: usize, most: usize) -> usize {
             *row = [row[0] + 1, row[1] + tried, row[2] + tried];
         } else if let Some(prepared) = Prepared::new(role, &arguments, &item) {
             let found = prepared.found(&prepared.chosen.derived, &prepared.chosen.kernel);
-            assert!(found.is_ok(), "{name}: {found:?}");
+            assert!(found.is_ok(), "{name}: {:?}", found.err());
             if Element::by_cayley(&prepared.declaration.group, &mut Residue::stream(1)).is_some() {
                 prepared.check_terms(most, &mut table, |term, error| (2 * term + error + count).is_multiple_of(share));
             }

@@ -1,0 +1,56 @@
+//! The numbers that a step is differentiated by: as `describe` shows them, each with the entry that stands for it.
+
+use std::collections::BTreeMap;
+
+use crate::declared::{Declaration, FieldKind, Name, Shape};
+use crate::mathematics::symbolic::SymbolId;
+use crate::program::Place;
+
+/// The names of the parameters and of what is advected, with their kinds.
+pub(crate) fn variables(declaration: &Declaration) -> [Vec<(Name, FieldKind)>; 2] {
+    let fields = declaration.fields.iter().enumerate().map(|(index, field)| (Name::Field(index), field.kind));
+    let advected =
+        (0..declaration.advected.len()).map(|index| (Name::Advected(index), declaration.advected_kind(index)));
+    [fields.collect(), advected.collect()]
+}
+
+/// Those of the parameters that can change, and of what is advected; either are numbered one after the other.
+pub(crate) fn places(declaration: &Declaration, names: &BTreeMap<Name, SymbolId>) -> [Vec<Place>; 2] {
+    variables(declaration).map(|each| {
+        let (mut found, mut first) = (Vec::new(), 0);
+        for (name, kind) in each {
+            found.extend(names.get(&name).into_iter().flat_map(|&symbol| of_kind(kind, symbol, first)));
+            first += count(kind);
+        }
+        found
+    })
+}
+
+/// How many numbers `describe` shows of a field.
+pub(crate) fn count(kind: FieldKind) -> usize {
+    let (rows, columns) = shape(kind);
+    rows * columns
+}
+
+/// The shape of what is shown, row by row.
+pub(crate) fn shape(kind: FieldKind) -> (usize, usize) {
+    match (kind.shape(), kind) {
+        (Shape::Scalar, _) => (1, 1),
+        // The last homogeneous coordinate is a constant.
+        (Shape::Matrix(rows, _), FieldKind::Point(_)) => (rows - 1, 1),
+        (Shape::Matrix(rows, columns), _) => (rows, columns),
+    }
+}
+
+/// Those of a field that can change.
+fn of_kind(kind: FieldKind, symbol: SymbolId, first: usize) -> impl Iterator<Item = Place> {
+    let (rows, columns) = shape(kind);
+    let all = (0..rows).flat_map(move |row| (0..columns).map(move |column| (row, column)));
+    all.filter(move |(row, column)| kind != FieldKind::DiagonalInertia || row == column).map(move |(row, column)| {
+        let place = Place { number: first + row * columns + column, symbol, row, column, is_half: false };
+        if kind == FieldKind::SymmetricInertia {
+            return Place { row: row.min(column), column: row.max(column), is_half: row != column, ..place };
+        }
+        place
+    })
+}
