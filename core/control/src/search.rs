@@ -54,6 +54,39 @@ pub(crate) struct Search<'c, 'a, S: SecondDerivatives<Scalar = f64>, P: Method<S
     pub(crate) is_nearest: bool,
 }
 
+impl<S, P> Control<'_, S, P>
+where
+    S: SecondDerivatives<Scalar = f64> + Clone,
+    P: Linearisable<S> + Clone,
+    ExponentialRetraction: Retraction<Group<S>>,
+{
+    /// Searches an optimum. Whether there is one, the [verdict](Plan::verdict) says.
+    ///
+    /// # Errors
+    ///
+    /// [`ControlError`] where the search can't be begun.
+    pub fn solve(&self) -> Result<Plan<S, P>, ControlError> {
+        self.stepper.linearised()?;
+        let scalars = self.like.scalars::<f64>().len();
+        let is_input = !self.places.is_empty() && self.places.iter().all(|place| *place < scalars);
+        let all = || (0..self.steps).flat_map(|step| (0..self.places.len()).map(move |input| (step, input)));
+        let is_ordered = |(lower, upper)| lower <= upper && lower < f64::INFINITY && upper > f64::NEG_INFINITY;
+        let Cost { time, effort } = self.cost;
+        let is_cost = time >= 0.0 && effort >= 0.0 && time + effort > 0.0 && (time + effort).is_finite();
+        let checks = [
+            ("input", is_input && self.steps > 0),
+            ("bounds", all().all(|(step, input)| is_ordered((self.bounds)(step, input)))),
+            ("first guess", all().all(|(step, input)| (self.guess)(step, input).is_finite())),
+            ("cost", is_cost),
+            ("target", self.target.momentum.is_none_or(|momentum| momentum.is_finite())),
+        ];
+        match checks.iter().find(|(_, is_right)| !is_right) {
+            Some((what, _)) => Err(ControlError::Unusable(what)),
+            None => Search::begin(self)?.run(),
+        }
+    }
+}
+
 impl<'c, 'a, S, P> Search<'c, 'a, S, P>
 where
     S: SecondDerivatives<Scalar = f64> + Clone,
