@@ -88,7 +88,9 @@ pub(crate) fn assert_given<L, P, const D: usize>(
         let transition = linear.transition(&mut blocks, input).expect("blocks");
         assert_eq!(plain, state, "the step is what it is without derivatives");
         assert_eq!(plain, blocks, "the step is what it is without derivatives");
-        of_inputs.iter_mut().for_each(|column| *column = carried(&transition, column));
+        for column in &mut of_inputs {
+            *column = carried(&transition, column);
+        }
         of_inputs.extend(&transition.by_input);
         add(&mut of_start, paired(&tangent.columns().collect::<Vec<_>>(), cotangent));
         add(&mut of_given, paired(&of_inputs, cotangent));

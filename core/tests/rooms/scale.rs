@@ -11,7 +11,7 @@ const LENGTHS: [usize; 3] = [500, 80, 126];
 
 /// The lines of each room and package, and of each room of the library the names that it makes public.
 #[rustfmt::skip]
-const BUDGETS: [(&str, usize, usize); 39] = [
+const BUDGETS: [(&str, usize, usize); 40] = [
     ("core/src/lib", 52, 11), ("core/src/prelude", 12, 28), ("core/src/private", 176, 61), ("core/src/error", 588, 2),
     ("core/src/numbers", 2547, 14), ("core/src/groups", 4201, 35), ("core/src/laws", 706, 3),
     ("core/src/mechanics", 3743, 43), ("core/src/effects", 403, 15), ("core/src/solving", 1337, 3),
@@ -23,8 +23,8 @@ const BUDGETS: [(&str, usize, usize); 39] = [
     ("macros/derivation/src/judged", 6104, 0), ("macros/derivation/src/declared", 4989, 0),
     ("macros/derivation/src/program", 2525, 0), ("macros/derivation/src/mathematics", 4746, 0),
     ("core/late", 2803, 0), ("core/machine", 708, 0), ("core/python", 1632, 0), ("core/scene", 5628, 0), ("core/cli", 3002, 0),
-    ("core/plot", 790, 0), ("core/ensemble", 5134, 0), ("core/arrow", 215, 0), ("examples", 12526, 0),
-    ("tests", 26233, 0), ("tests/ui", 1694, 0),
+    ("core/plot", 790, 0), ("core/ensemble", 5134, 0), ("core/arrow", 215, 0), ("core/control", 1412, 0), ("examples", 12526, 0),
+    ("tests", 26235, 0), ("tests/ui", 1694, 0),
 ];
 
 /// The circles that are still there. Lines may go, and none be added.

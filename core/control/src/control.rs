@@ -1,0 +1,133 @@
+//! The task: from where, to where, with what, for how much.
+
+use liestep::gradients::{Input, InputOf, Linearisable};
+use liestep::groups::{ExponentialRetraction, LieGroup, Retraction};
+use liestep::mechanics::{Group, SecondDerivatives, Vector};
+use liestep::motion::{Plan as Method, StateOf, Stepper};
+use liestep::numbers::Coordinates as _;
+use nalgebra::DVector;
+
+use crate::verdict::Residual;
+
+/// Where a motion is to end: at an attitude, with a momentum in the body's axes (kg m²/s), or both.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Target<G, V> {
+    /// At this attitude; at any without.
+    pub attitude: Option<G>,
+    /// With this momentum; with any without.
+    pub momentum: Option<V>,
+}
+
+impl<G: LieGroup> Target<G, G::Vector> {
+    /// At this attitude, without momentum.
+    pub fn rest(attitude: impl Into<G>) -> Self {
+        Self { attitude: Some(attitude.into()), momentum: Some(G::Vector::zero()) }
+    }
+}
+
+/// What is minimised: `time · T + effort · ½∫|u|² dt`; the duration is free where it costs something.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cost {
+    /// Per second.
+    pub time: f64,
+    /// Of half the integral of the squares; exact, as inputs are held over each step.
+    pub effort: f64,
+}
+
+/// What is shown each iteration, and says whether to go on.
+type Watch<'a> = dyn Fn(usize, &Residual) -> bool + 'a;
+
+#[doc = include_str!("control.md")]
+pub struct Control<'a, S: SecondDerivatives<Scalar = f64>, P: Method<S>> {
+    pub(crate) stepper: &'a Stepper<S, P>,
+    pub(crate) start: StateOf<S, P>,
+    pub(crate) steps: usize,
+    pub(crate) target: Target<Group<S>, Vector<S>>,
+    pub(crate) cost: Cost,
+    pub(crate) like: InputOf<S>,
+    pub(crate) places: Vec<usize>,
+    pub(crate) bounds: Box<dyn Fn(usize, usize) -> (f64, f64) + 'a>,
+    pub(crate) guess: Box<dyn Fn(usize, usize) -> f64 + 'a>,
+    pub(crate) progress: Box<Watch<'a>>,
+    pub(crate) tolerance: f64,
+    pub(crate) most: usize,
+}
+
+impl<'a, S, P> Control<'a, S, P>
+where
+    S: SecondDerivatives<Scalar = f64> + Clone,
+    P: Linearisable<S> + Clone,
+    ExponentialRetraction: Retraction<Group<S>>,
+{
+    /// A motion of so many steps from this state to there by the least effort, with a control force without bounds: on SO(3)
+    /// a torque about each axis of the body, N m.
+    #[must_use]
+    pub fn new(
+        stepper: &'a Stepper<S, P>,
+        start: StateOf<S, P>,
+        steps: usize,
+        target: Target<Group<S>, Vector<S>>,
+    ) -> Self {
+        Self {
+            stepper,
+            start,
+            steps,
+            target,
+            cost: Cost { time: 0.0, effort: 1.0 },
+            like: Input::Force(Vector::<S>::zero()),
+            places: (0..Group::<S>::DIMENSION).collect(),
+            bounds: Box::new(|_, _| (f64::NEG_INFINITY, f64::INFINITY)),
+            guess: Box::new(|_, _| 0.0),
+            progress: Box::new(|_, _| true),
+            tolerance: 1e-10,
+            most: 200,
+        }
+    }
+
+    /// What is chosen in each step: the scalars in these places of an input like this one, in the order of
+    /// [`Input::scalars`]; the others stay as they are.
+    #[must_use]
+    pub fn input(self, like: InputOf<S>, places: impl IntoIterator<Item = usize>) -> Self {
+        Self { like, places: places.into_iter().collect(), ..self }
+    }
+
+    /// The least and the largest value, by the numbers of step and chosen scalar; where they are equal it is that value.
+    #[must_use]
+    pub fn bounds(self, bounds: impl Fn(usize, usize) -> (f64, f64) + 'a) -> Self {
+        Self { bounds: Box::new(bounds), ..self }
+    }
+
+    /// What is to be least.
+    #[must_use]
+    pub fn minimise(self, cost: Cost) -> Self {
+        Self { cost, ..self }
+    }
+
+    /// The first guess, by the numbers of step and chosen scalar; its duration is that of the stepper's steps.
+    #[must_use]
+    pub fn guess(self, guess: impl Fn(usize, usize) -> f64 + 'a) -> Self {
+        Self { guess: Box::new(guess), ..self }
+    }
+
+    /// Shows each iteration, by its number and residual; the search is cancelled where `false` comes back.
+    #[must_use]
+    pub fn progress(self, progress: impl Fn(usize, &Residual) -> bool + 'a) -> Self {
+        Self { progress: Box::new(progress), ..self }
+    }
+
+    /// The largest residual of a plan that has converged, and the most iterations: `1e-10` and 200 unless said otherwise.
+    #[must_use]
+    pub fn until(self, tolerance: f64, most: usize) -> Self {
+        Self { tolerance, most, ..self }
+    }
+
+    /// The first guess, moved within the bounds: a barrier has to have room.
+    pub(crate) fn first_inputs(&self) -> Vec<DVector<f64>> {
+        let inside = |step, input| {
+            let ((lower, upper), guess) = ((self.bounds)(step, input), (self.guess)(step, input));
+            let room = 0.05 * (upper - lower).min(1.0 + guess.abs());
+            if upper > lower { guess.max(lower + room).min(upper - room) } else { lower }
+        };
+        (0..self.steps).map(|step| DVector::from_fn(self.places.len(), |input, _| inside(step, input))).collect()
+    }
+}

@@ -1,0 +1,14 @@
+//! Optimal control of what [liestep](liestep) steps, on the discrete equations themselves.
+//!
+//! A [`Control`] says from where to where, by which inputs, within which bounds, and for what; its [`Plan`] is a motion of
+//! the stepper, with the inputs of its steps and the [`Verdict`] of the search.
+
+mod control;
+mod improve;
+mod model;
+mod riccati;
+mod search;
+mod verdict;
+
+pub use control::{Control, Cost, Target};
+pub use verdict::{ControlError, Plan, Residual, Verdict};
