@@ -1,4 +1,4 @@
-//! Optimal control of what [liestep](liestep) steps, on the discrete equations themselves.
+//! Optimal control of what [liestep] steps, on the discrete equations themselves.
 //!
 //! A [`Control`] says from where to where, by which inputs, within which bounds, and for what; its [`Plan`] is a motion of
 //! the stepper, with the inputs of its steps and the [`Verdict`] of the search.
