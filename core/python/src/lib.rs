@@ -1,7 +1,7 @@
 //! liestep in Python: the part that is written in Rust, and that the package `liestep` is made of.
 //!
 //! `lib → {scene, file, picture, library} → ensemble → {run, method} → {table, failure}`: a text is derived by `liestep-late`; what it
-//! declares is stepped by any method, recorded into columns that NumPy and Arrow look at where they are, or drawn at random.
+//! declares is stepped by any method, recorded into columns that `NumPy` and Arrow look at where they are, or drawn at random.
 //! Whatever takes long leaves the interpreter to others, and asks it now and then whether it is to stop.
 #![forbid(unsafe_code)]
 

@@ -136,7 +136,7 @@ impl<S: Scene<Scalar = f64, Group = Self>> Methods<S> for SO3 {
             Kind::Processed(scheme) => method.compensated(Stepper::processed(scene, h, flow?, scheme).map_err(setup)?),
             _ if method.substeps > 1 => refused("`substeps` go with the declared step, and not with a collocation"),
             Kind::Collocation(4) => Ok(Stepper::collocated::<2>(scene, h).map_err(setup)?.into_any()),
-            _ => Ok(Stepper::collocated::<4>(scene, h).map_err(setup)?.into_any()),
+            Kind::Collocation(_) => Ok(Stepper::collocated::<4>(scene, h).map_err(setup)?.into_any()),
         }
     }
 }

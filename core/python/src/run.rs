@@ -68,6 +68,7 @@ impl Signals {
             return Ok(());
         }
         self.asked.set(Instant::now());
+        #[allow(clippy::redundant_closure_for_method_calls)] // the method is of one lifetime
         let Err(error) = Python::attach(|py| py.check_signals()) else { return Ok(()) };
         self.raised.replace(Some(error));
         Err("Python asked for it")
@@ -85,7 +86,8 @@ const LOOK: u64 = 4096;
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // checked
 pub(crate) fn steps_to(time: f64, h: f64) -> Result<u64, Failure> {
     let steps = time / h;
-    if !(steps.abs() < 9e15) {
+    let can_be_counted = steps.abs() < 9e15;
+    if !can_be_counted {
         return Err(Failure::setup(&RunError::End { asked: time }));
     }
     Ok((steps * (1.0 - 4.0 * f64::EPSILON)).ceil().max(0.0) as u64)
@@ -126,7 +128,8 @@ where
     let end = Moment::of_step(stepper, &state);
     let (steps, time) = (end.steps(), end.time());
     // The last state is a row, but where only some times are asked for.
-    let written = if course.every > 0 && !(last.get() >= time) { row(&end) } else { Ok(()) };
+    let is_a_row = last.get() >= time;
+    let written = if course.every > 0 && !is_a_row { row(&end) } else { Ok(()) };
     let written = written.and_then(|()| recorder.into_inner().finish().map(|_| ()));
     let finish = |table: RefCell<(Recorder<'_, I, Columns>, Vec<bool>)>| {
         let (recorder, rising) = table.into_inner();

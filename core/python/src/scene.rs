@@ -235,6 +235,7 @@ pub(crate) fn scene(
     lagrangian: (&'static Declaration, &Numbers),
     force: Option<(&'static Declaration, &Numbers)>,
 ) -> Result<Arc<dyn Scene>, Failure> {
+    type V<const N: usize> = nalgebra::SVector<f64, N>;
     let fits = Fits { lagrangian, force };
     if !lagrangian.0.has_kinetic {
         let message = "nothing moves by a potential alone: add a kinetic energy, as in `ls.body(J) + potential`";
@@ -248,7 +249,6 @@ pub(crate) fn scene(
             }
         )+)+};
     }
-    type V<const N: usize> = nalgebra::SVector<f64, N>;
     first_that_fits! {
         SO3: V<3>, (V<3>, V<3>, V<3>, V<3>);
         SO2: V<2>;

@@ -1,4 +1,4 @@
-//! Columns of numbers that Rust, NumPy and Arrow read in one place of memory.
+//! Columns of numbers that Rust, `NumPy` and Arrow read in one place of memory.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -86,7 +86,7 @@ impl Sink for Columns {
     }
 }
 
-/// Columns of doubles, which never change: NumPy and Arrow look at them where they are.
+/// Columns of doubles, which never change: `NumPy` and Arrow look at them where they are.
 #[pyclass(frozen, module = "liestep._native")]
 pub(crate) struct Table {
     columns: Vec<Column>,
@@ -131,7 +131,7 @@ impl Table {
         self.rows
     }
 
-    /// What NumPy makes an array of, which looks at these columns: one of them, or several side by side.
+    /// What `NumPy` makes an array of, which looks at these columns: one of them, or several side by side.
     fn view(slf: &Bound<'_, Self>, first: usize, count: Option<usize>) -> PyResult<View> {
         let own = slf.get();
         if first.checked_add(count.unwrap_or(1)).is_none_or(|end| end > own.columns.len()) {
@@ -156,7 +156,7 @@ impl Table {
     }
 }
 
-/// Some columns of a table, as NumPy asks for their place.
+/// Some columns of a table, as `NumPy` asks for their place.
 #[pyclass(frozen, module = "liestep._native")]
 pub(crate) struct View {
     table: Py<Table>,

@@ -210,7 +210,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
     /// let cost = |n, _: &_| if n == 10 { last } else { Cotangent::zero() };
     /// let (_, by_torques) = stepper.linearised()?.adjoint_given(&mut state, &torques, Tape::All, cost)?;
     /// let Input::Force(by_last) = by_torques[9] else { unreachable!() };
-    /// assert!((by_last.z - 0.1).abs() < 1e-3); // h
+    /// assert!((by_last.z - 0.1_f64).abs() < 1e-3); // h
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn adjoint_given(
