@@ -3,7 +3,7 @@
 use liestep::gradients::{Input, InputOf, Linearisable};
 use liestep::groups::{ExponentialRetraction, LieGroup, Retraction};
 use liestep::mechanics::{Group, SecondDerivatives, Vector};
-use liestep::motion::{Plan as Method, StateOf, Stepper};
+use liestep::motion::{Plan, StateOf, Stepper};
 use liestep::numbers::Coordinates as _;
 use nalgebra::DVector;
 
@@ -38,7 +38,7 @@ pub struct Cost {
 type Watch<'a> = dyn Fn(usize, &Residual) -> bool + 'a;
 
 #[doc = include_str!("control.md")]
-pub struct Control<'a, S: SecondDerivatives<Scalar = f64>, P: Method<S>> {
+pub struct Control<'a, S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
     pub(crate) stepper: &'a Stepper<S, P>,
     pub(crate) start: StateOf<S, P>,
     pub(crate) steps: usize,
@@ -59,8 +59,8 @@ where
     P: Linearisable<S> + Clone,
     ExponentialRetraction: Retraction<Group<S>>,
 {
-    /// A motion of so many steps from this state to there by the least effort, with a control force without bounds: on SO(3)
-    /// a torque about each axis of the body, N m.
+    /// A motion of this number of steps from this state to the target by the least effort, with a control force without
+    /// bounds: on SO(3) a torque about each axis of the body, N m.
     #[must_use]
     pub fn new(
         stepper: &'a Stepper<S, P>,
@@ -85,7 +85,7 @@ where
     }
 
     /// What is chosen in each step: the scalars in these places of an input like this one, in the order of
-    /// [`Input::scalars`]; the others stay as they are.
+    /// [`Input::scalars`], each once; the others stay as they are.
     #[must_use]
     pub fn input(self, like: InputOf<S>, places: impl IntoIterator<Item = usize>) -> Self {
         Self { like, places: places.into_iter().collect(), ..self }

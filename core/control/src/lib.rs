@@ -1,6 +1,6 @@
 //! Optimal control of what [liestep] steps, on the discrete equations themselves.
 //!
-//! A [`Control`] says from where to where, by which inputs, within which bounds, and for what; its [`Plan`] is a motion of
+//! A [`Control`] says from where to where, by which inputs, within which bounds, and for what; its [`ControlPlan`] is a motion of
 //! the stepper, with the inputs of its steps and the [`Verdict`] of the search.
 
 mod control;
@@ -11,4 +11,4 @@ mod search;
 mod verdict;
 
 pub use control::{Control, Cost, Target};
-pub use verdict::{ControlError, Plan, Residual, Verdict};
+pub use verdict::{ControlError, ControlPlan, Residual, Verdict};

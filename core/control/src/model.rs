@@ -5,7 +5,7 @@ use liestep::StepError;
 use liestep::gradients::{Cotangent, Input, InputOf, Linearisable, Tape};
 use liestep::groups::{ExponentialRetraction, LieGroup, Retraction};
 use liestep::mechanics::{Group, SecondDerivatives, Vector};
-use liestep::motion::{Plan as Method, StateOf, Stepper};
+use liestep::motion::{Plan, StateOf, Stepper};
 use liestep::numbers::Entries;
 use nalgebra::{DMatrix, DVector};
 
@@ -48,7 +48,7 @@ where
     /// `None` where the scene can't be stepped in this time.
     pub(crate) fn new(control: &Control<'_, S, P>, duration: f64) -> Option<Self>
     where
-        P: Method<S>,
+        P: Plan<S>,
     {
         let (stepper, is_free) = (control.stepper, control.cost.time > 0.0);
         #[allow(clippy::cast_precision_loss)] // exact up to 2⁵³

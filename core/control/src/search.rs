@@ -4,17 +4,17 @@ use liestep::StepError;
 use liestep::gradients::Linearisable;
 use liestep::groups::{ExponentialRetraction, LieGroup as _, Retraction};
 use liestep::mechanics::{Group, SecondDerivatives, Vector};
-use liestep::motion::{Plan as Method, StateOf};
+use liestep::motion::{Plan, StateOf};
 use liestep::numbers::Coordinates;
 use nalgebra::{DMatrix, DVector};
 
 use crate::control::{Control, Cost};
 use crate::model::{Model, flat};
 use crate::riccati::{End, Stage};
-use crate::verdict::{ControlError, Plan, Residual, Verdict};
+use crate::verdict::{ControlError, ControlPlan, Residual, Verdict};
 
 /// A motion, and what is left from it to the target.
-pub(crate) struct Course<S: SecondDerivatives<Scalar = f64>, P: Method<S>> {
+pub(crate) struct Course<S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
     pub(crate) model: Model<S, P>,
     pub(crate) inputs: Vec<DVector<f64>>,
     pub(crate) states: Vec<StateOf<S, P>>,
@@ -38,7 +38,7 @@ impl Side {
 }
 
 /// The state of a search.
-pub(crate) struct Search<'c, 'a, S: SecondDerivatives<Scalar = f64>, P: Method<S>> {
+pub(crate) struct Search<'c, 'a, S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
     pub(crate) control: &'c Control<'a, S, P>,
     pub(crate) course: Course<S, P>,
     /// Of the conditions at the end.
@@ -60,15 +60,16 @@ where
     P: Linearisable<S> + Clone,
     ExponentialRetraction: Retraction<Group<S>>,
 {
-    /// Searches an optimum. Whether there is one, the [verdict](Plan::verdict) says.
+    /// Searches an optimum. Whether there is one, the [verdict](ControlPlan::verdict) says.
     ///
     /// # Errors
     ///
     /// [`ControlError`] where the search can't be begun.
-    pub fn solve(&self) -> Result<Plan<S, P>, ControlError> {
+    pub fn solve(&self) -> Result<ControlPlan<S, P>, ControlError> {
         self.stepper.linearised()?;
         let scalars = self.like.scalars::<f64>().len();
-        let is_input = !self.places.is_empty() && self.places.iter().all(|place| *place < scalars);
+        let is_new = |(k, place): (usize, &usize)| *place < scalars && !self.places[..k].contains(place);
+        let is_input = !self.places.is_empty() && self.places.iter().enumerate().all(is_new);
         let all = || (0..self.steps).flat_map(|step| (0..self.places.len()).map(move |input| (step, input)));
         let is_ordered = |(lower, upper)| lower <= upper && lower < f64::INFINITY && upper > f64::NEG_INFINITY;
         let Cost { time, effort } = self.cost;
@@ -139,7 +140,7 @@ where
         }
     }
 
-    pub(crate) fn run(mut self) -> Result<Plan<S, P>, ControlError> {
+    pub(crate) fn run(mut self) -> Result<ControlPlan<S, P>, ControlError> {
         let (tolerance, mut iterations) = (self.control.tolerance, 0);
         let verdict = loop {
             let Ok(stages) = self.stages() else { break Verdict::Stalled(None) };
@@ -178,7 +179,7 @@ where
         let inputs = inputs.iter().map(|chosen| model.input(chosen.as_slice())).collect();
         let multipliers = self.multipliers.as_slice().to_vec();
         let (duration, stepper) = (model.duration, model.stepper);
-        Ok(Plan { stepper, states, inputs, duration, cost, multipliers, residual, iterations, verdict })
+        Ok(ControlPlan { stepper, states, inputs, duration, cost, multipliers, residual, iterations, verdict })
     }
 
     /// The blocks of the steps, with the gradients and second derivatives of the cost.
@@ -298,7 +299,7 @@ where
 pub(crate) fn miss<S, P>(control: &Control<'_, S, P>, states: &[StateOf<S, P>]) -> Option<DVector<f64>>
 where
     S: SecondDerivatives<Scalar = f64>,
-    P: Method<S>,
+    P: Plan<S>,
     ExponentialRetraction: Retraction<Group<S>>,
 {
     let (last, mut left) = (states.last()?, Vec::new());

@@ -2,12 +2,12 @@
 
 use liestep::gradients::InputOf;
 use liestep::mechanics::SecondDerivatives;
-use liestep::motion::{Plan as Method, StateOf, Stepper};
+use liestep::motion::{Plan, StateOf, Stepper};
 use liestep::{SetupError, StepError};
 
 /// A motion to the target, and the inputs that make it.
 #[derive(Clone, Debug)]
-pub struct Plan<S: SecondDerivatives, P: Method<S>> {
+pub struct ControlPlan<S: SecondDerivatives, P: Plan<S>> {
     /// The stepper, with the step of the plan's duration.
     pub stepper: Stepper<S, P>,
     /// The states, one more than there are steps.

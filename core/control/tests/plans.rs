@@ -10,7 +10,7 @@ use liestep::groups::LieGroup as _;
 use liestep::laws::samples::Random;
 use liestep::mechanics::{Sum, Term as _};
 use liestep::{NonstandardInertia, SO3, StepError, Stepper, force};
-use liestep_control::{Control, ControlError, Cost, Plan, Target, Verdict};
+use liestep_control::{Control, ControlError, ControlPlan, Cost, Target, Verdict};
 use nalgebra::{UnitQuaternion, Vector3};
 
 type Body = Stepper<RigidBody>;
@@ -38,7 +38,7 @@ fn slew(
     Control::new(stepper, start, steps, Target::rest(turned(angles)))
 }
 
-fn torques<P: liestep::motion::Plan<RigidBody>>(plan: &Plan<RigidBody, P>) -> Vec<Vector3<f64>> {
+fn torques<P: liestep::motion::Plan<RigidBody>>(plan: &ControlPlan<RigidBody, P>) -> Vec<Vector3<f64>> {
     let torque = |input: &Input<Vector3<f64>, ()>| match input {
         Input::Force(torque) => *torque,
         _ => panic!("a force was chosen, not {input:?}"),
@@ -256,6 +256,7 @@ fn tasks_that_are_none() {
     assert_eq!(error(task().bounds(|_, _| (f64::NAN, 1.0))), unusable("bounds"));
     assert_eq!(error(task().input(force, [3])), unusable("input"));
     assert_eq!(error(task().input(force, [])), unusable("input"));
+    assert_eq!(error(task().input(force, [1, 1])), unusable("input"));
     assert_eq!(error(slew(&stepper, 0, [0.1; 3])), unusable("input"));
     assert_eq!(error(task().minimise(Cost { time: 1.0, effort: -1.0 })), unusable("cost"));
     assert_eq!(error(task().guess(|_, _| f64::NAN)), unusable("first guess"));
