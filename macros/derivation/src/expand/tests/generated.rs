@@ -315,7 +315,9 @@ fn right_and_wrong_declarations() {
                 }
             }
             None => {
-                accepted.push(format!("#[{}({arguments})] pub {item}", role.attribute()));
+                // What a constraint has to be beside.
+                let derives = if role == Role::Constraint { "#[derive(Clone, Copy, Debug, PartialEq)]" } else { "" };
+                accepted.push(format!("#[{}({arguments})] {derives} pub {item}", role.attribute()));
                 let text = arguments.strip_prefix(head).and_then(|text| text.strip_suffix(tail));
                 let text = text.and_then(|text| syn::parse_str(text).ok());
                 match text.and_then(|text| agrees(&mut random, role, (&arguments, &item), &text)) {

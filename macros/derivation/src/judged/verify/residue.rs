@@ -3,9 +3,8 @@
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
-use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::number::{self, Number};
+use super::number::{self, Number, operator};
 use crate::mathematics::symbolic::{Function, Rational};
 
 const PRIME: u64 = (1 << 61) - 1;
@@ -78,46 +77,11 @@ impl Residue {
     }
 }
 
-impl Add for Residue {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        self.with(other, |a, b| (a + b).into())
-    }
-}
-
-impl Sub for Residue {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        self.with(other, |a, b| (a + PRIME - b).into())
-    }
-}
-
-impl Mul for Residue {
-    type Output = Self;
-
-    fn mul(self, other: Self) -> Self {
-        self.with(other, |a, b| u128::from(a) * u128::from(b))
-    }
-}
-
-impl Div for Residue {
-    type Output = Self;
-
-    #[allow(clippy::suspicious_arithmetic_impl)] // a quotient is a product with a reciprocal
-    fn div(self, other: Self) -> Self {
-        self * other.reciprocal()
-    }
-}
-
-impl Neg for Residue {
-    type Output = Self;
-
-    fn neg(self) -> Self {
-        Self::ZERO - self
-    }
-}
+operator!(impl Add::add for Residue, |a, b| a.with(b, |a, b| (a + b).into()));
+operator!(impl Sub::sub for Residue, |a, b| a.with(b, |a, b| (a + PRIME - b).into()));
+operator!(impl Mul::mul for Residue, |a, b| a.with(b, |a, b| u128::from(a) * u128::from(b)));
+operator!(impl Div::div for Residue, |a, b| a * b.reciprocal());
+operator!(impl Neg::neg for Residue, |a| Self::ZERO - a);
 
 impl Number for Residue {
     const ZERO: Self = Self(Some(0));
