@@ -4,7 +4,6 @@
 //! probability of at most its degree over `p`. Degrees are computed as numbers are, so the bound is that of the very
 //! operations that are compared.
 
-use std::collections::BTreeSet;
 use std::ops::Add;
 use std::rc::Rc;
 
@@ -13,7 +12,7 @@ use super::number::{self, Number, operator};
 use super::residue::{Residue, mixed};
 use super::sample::Element;
 use super::value::Value;
-use crate::declared::{Declaration, FieldKind, Kind, Name, Tree};
+use crate::declared::{Declaration, FieldKind, Kind, Name, Tree, parts};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Function, Rational};
 use crate::program::{Graph, Node};
@@ -169,23 +168,18 @@ pub(super) fn element(group: &Group, attitudes: usize, number: &mut impl FnMut()
     let transforms = attitudes + group.factors().iter().map(of_factor).sum::<usize>();
     // cay(tE) is a quotient of polynomials of degree 2, or less, as the numerator and denominator of cay(2y) are.
     let degree = 2 * u64::try_from(transforms).unwrap_or(u64::MAX / 2);
-    let [matrix, inverse] = [(); 2].map(|()| {
-        let entries: Vec<Degree> = (0..group.size * group.size).map(|_| number()).collect();
-        super::by_blocks(group, |factor| {
-            let (own, start) = (group.factor(factor), group.row_of(factor));
-            Value::new(own.size, own.size, |row, column| {
-                let entry = entries[(start + row) * group.size + start + column];
-                match (row == column, column + 1 == own.size) {
-                    _ if !own.is_added => entry.of_element(degree),
-                    (true, _) => Degree::ONE,
-                    (false, true) => entry,
-                    (false, false) => Degree::ZERO,
-                }
-            })
-        })
+    let mut entry = |own: &Group, row: usize, column: usize| match (row == column, column + 1 == own.size) {
+        _ if !own.is_added => number().of_element(degree),
+        (true, _) => Degree::ONE,
+        (false, true) => number(),
+        (false, false) => Degree::ZERO,
+    };
+    let [matrices, inverses] = [(); 2].map(|()| {
+        let of_factor = |own: &Group| Value::new(own.size, own.size, |row, column| entry(own, row, column));
+        group.factors().iter().map(of_factor).collect()
     });
     let coordinates = group.generators.iter().map(|_| number()).collect();
-    (Element { matrix, inverse, coordinates }, degree)
+    (Element { matrices, inverses, coordinates }, degree)
 }
 
 /// The attitudes that are seen, as entries of Cayley transforms.
@@ -224,18 +218,11 @@ impl Content {
     }
 
     pub(super) fn of_tree(tree: &Rc<Tree>) -> Self {
-        let (mut seen, mut open, mut content) = (BTreeSet::new(), vec![tree], Self::default());
-        while let Some(tree) = open.pop() {
-            if seen.insert(Rc::as_ptr(tree)) {
-                content = match tree.kind {
-                    Kind::Apply(..) => content + Self { functions: 1, ..Self::default() },
-                    Kind::Number(value) => content + Self::of_constant(value),
-                    _ => content,
-                };
-                open.extend(tree.kind.operands().into_iter().flatten());
-            }
-        }
-        content
+        parts(tree).into_iter().fold(Self::default(), |content, part| match part.kind {
+            Kind::Apply(..) => content + Self { functions: 1, ..Self::default() },
+            Kind::Number(value) => content + Self::of_constant(value),
+            _ => content,
+        })
     }
 
     pub(super) fn of_graph(graph: &Graph) -> Self {

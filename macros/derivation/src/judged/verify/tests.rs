@@ -2,13 +2,12 @@
 
 mod mutations;
 
-use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use super::degree::{Content, Degree, Largest};
 use super::evaluation::Evaluation;
 use super::value::Value;
-use super::{KineticPart, Sureness, Unconfirmed, degree, increments, kinetic_part, verify};
+use super::{KineticPart, Subject, Sureness, Unconfirmed, degree, increments, kinetic_part, verify};
 use crate::declared::errors::Errors;
 use crate::declared::lower::{Lowered, readings};
 use crate::declared::{Declaration, Name, Role, Tree, check, parse};
@@ -51,8 +50,13 @@ impl Declared {
         Self { declaration, tree, lowered, derived }
     }
 
+    fn subject(&self) -> Subject<'_> {
+        let Self { declaration, tree, lowered, derived } = self;
+        Subject { declaration, tree, lowered, derived }
+    }
+
     fn found(&self, derived: &Derived, kernel: &Kernel) -> Result<SelfAdjointness, &'static str> {
-        let found = verify(&self.declaration, &self.tree, &self.lowered, (derived, kernel));
+        let found = verify(Subject { derived, ..self.subject() }, kernel);
         found.map(|verified| verified.self_adjointness).map_err(|unconfirmed| match unconfirmed {
             Unconfirmed::Disagrees(term) => term,
             other => panic!("{other:?}"),
@@ -64,9 +68,7 @@ impl Declared {
     }
 
     fn sureness(&self) -> Sureness {
-        let kernel = kernel(&self.derived);
-        let found = verify(&self.declaration, &self.tree, &self.lowered, (&self.derived, &kernel));
-        found.expect("right").sureness
+        verify(self.subject(), &kernel(&self.derived)).expect("right").sureness
     }
 
     /// What is found after a change of the derived terms.
@@ -84,7 +86,7 @@ impl Declared {
     }
 
     fn kinetic_part(&self) -> KineticPart {
-        kinetic_part(&self.declaration, &self.tree, &self.lowered, &self.derived)
+        kinetic_part(self.subject())
     }
 }
 
@@ -309,7 +311,7 @@ fn degrees() {
         let (declaration, tree) = checked(&format!("group = R1, l_d = {l_d}"), "struct Body { k: f64 }");
         let mut number = Degree::stream();
         let (element, _) = degree::element(&declaration.group, 0, &mut number);
-        let mut values = BTreeMap::from_iter(increments(&declaration.group, &element.matrix));
+        let mut values = increments(&declaration.group, &element.matrices);
         let mut variable = || Value::scalar(number());
         values.extend([(Name::Step, variable()), (Name::Field(0), variable())]);
         let (value, mut largest) = (Evaluation::new(&values).of(&tree).first(), Largest::default());
