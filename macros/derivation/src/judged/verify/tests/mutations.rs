@@ -145,6 +145,8 @@ impl Prepared {
             let Some(term) = of(&mut self.chosen.derived.clone()).filter(|term| !term.is_zero()).cloned() else {
                 continue;
             };
+            let is_force = self.declaration.role == Role::Force;
+            let (name, most) = if is_force { ("a term of a force", term.len()) } else { (name, most) };
             let mut met = BTreeSet::new();
             for (error, (numerator, denominator)) in ERRORS.into_iter().enumerate().filter(|(e, _)| is_meant(at, *e)) {
                 for (row, is_place) in self.places(&term, most) {
