@@ -183,7 +183,7 @@ fn evaluated_from<T: Number>(
     inputs: &BTreeMap<SymbolId, Value<T>>,
     given: &BTreeMap<NodeId, T>,
 ) -> Vec<T> {
-    let order = graph.reachable(outputs);
+    let order = graph.reachable_from(outputs, &|id| given.contains_key(&id));
     let mut known = vec![T::UNDEFINED; order.last().map_or(0, |last| last.0 + 1)];
     let input =
         |input: Input| inputs.get(&input.symbol).map_or(T::UNDEFINED, |value| value.at(input.row, input.column));
