@@ -315,7 +315,6 @@ fn right_and_wrong_declarations() {
                 }
             }
             None => {
-                // What a constraint has to be beside.
                 let derives = if role == Role::Constraint { "#[derive(Clone, Copy, Debug, PartialEq)]" } else { "" };
                 accepted.push(format!("#[{}({arguments})] {derives} pub {item}", role.attribute()));
                 let text = arguments.strip_prefix(head).and_then(|text| text.strip_suffix(tail));
