@@ -12,7 +12,7 @@ use super::identities::Same;
 use super::linear::Subspace;
 use super::number::Number;
 use super::residue::Residue;
-use super::{DRAWS, Evaluation, Fault, Sureness, Unconfirmed, Value, Values, dot, evaluated, over, parameter, stream};
+use super::{DRAWS, Evaluation, Sureness, Unconfirmed, Value, Values, dot, evaluated, over, parameter, stream};
 use crate::declared::lower::LoweredConstraint;
 use crate::declared::{Declaration, FieldKind, Name, Tree};
 use crate::mathematics::derive::Seen;
@@ -145,7 +145,7 @@ impl<'a, T: Number> Point<'a, T> {
     }
 
     /// Along a direction of these numbers.
-    fn holds(&self, held: &Held, mut number: impl FnMut() -> T, same: &mut Same<T>) -> Result<(), Fault> {
+    fn holds(&self, held: &Held, mut number: impl FnMut() -> T, same: &mut Same<T>) -> Result<(), Unconfirmed> {
         let (inputs, axis) = (self.inputs(held), [(); 3].map(|()| number()));
         for (body, slopes) in held.entries.iter().enumerate() {
             for (by, entries) in slopes.iter().enumerate() {

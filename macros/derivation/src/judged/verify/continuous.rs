@@ -19,7 +19,7 @@ use super::sample::{along_motion, exponentials, moved};
 use super::series::Series;
 use super::value::Value;
 use super::{
-    Fault, SAMPLES, Sureness, Unconfirmed, Values, algebra, components_of, dot, evaluated, increments, over, parameter,
+    SAMPLES, Sureness, Unconfirmed, Values, algebra, components_of, dot, evaluated, increments, over, parameter,
     parameters, shares, stream, velocities,
 };
 use crate::declared::{Declaration, FieldKind, Name, Tree};
@@ -173,7 +173,7 @@ impl<'a> Motion<'a> {
         point: &Values<T>,
         mut number: impl FnMut() -> T,
         same: &mut Same<T>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), Unconfirmed> {
         let group = self.group();
         let eta: Vec<T> = group.generators.iter().map(|_| number()).collect();
         let at = |outputs: &[NodeId]| self.values(outputs, point);
@@ -227,7 +227,7 @@ impl<'a> Motion<'a> {
         point: &Values<T>,
         (names, graph, limit): (&BTreeMap<Name, SymbolId>, &Graph, &[NodeId]),
         same: &mut Same<T>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), Unconfirmed> {
         let mut here = self.values(&[self.hessian.as_slice(), &self.momentum, &self.lagrangian].concat(), point);
         here.last_mut().into_iter().for_each(|l| *l = -*l);
         let mut pairs = here.into_iter().zip(evaluated(graph, limit, &inputs(names, point)));

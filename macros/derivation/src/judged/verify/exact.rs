@@ -6,7 +6,7 @@ use super::number::Number;
 use super::residue::Residue;
 use super::sample::{Element, Sample};
 use super::series::Series;
-use super::{Fault, Sureness, Unconfirmed, reversal};
+use super::{Sureness, Unconfirmed, reversal};
 use crate::declared::Role;
 
 /// Compared without a bound.
@@ -32,7 +32,7 @@ impl Identities<'_> {
             self.content(),
             |same| self.degrees(same),
             |seed| {
-                let (element, number) = of_field(seed).ok_or(Fault::Untold)?;
+                let (element, number) = of_field(seed).ok_or(Unconfirmed::NoValue)?;
                 self.holds_at(element, number, reversal::in_the_field, &mut reversed)
             },
         )?;
@@ -46,7 +46,7 @@ impl Identities<'_> {
         mut number: impl FnMut() -> T,
         reversal: fn(&Sample<T>) -> [bool; 3],
         reversed: &mut [bool; 3],
-    ) -> Result<(), Fault> {
+    ) -> Result<(), Unconfirmed> {
         let sample = Sample::at(self.of, element, &mut number);
         self.hold(&sample, number, &mut same)?;
         if self.of.declaration.role != Role::Force {
@@ -55,7 +55,7 @@ impl Identities<'_> {
         Ok(())
     }
 
-    fn degrees(&self, same: &mut Same<Degree>) -> Result<(), Fault> {
+    fn degrees(&self, same: &mut Same<Degree>) -> Result<(), Unconfirmed> {
         let (declaration, mut number) = (self.of.declaration, Degree::stream());
         let attitudes = degree::attitudes(declaration).count();
         let (element, degree) = degree::element(&declaration.group, attitudes, &mut number);
@@ -67,20 +67,20 @@ impl Identities<'_> {
 }
 
 /// Whether both are one number.
-pub(super) fn same<T: Number>(term: &'static str, found: T, expected: T) -> Result<(), Fault> {
+pub(super) fn same<T: Number>(term: &'static str, found: T, expected: T) -> Result<(), Unconfirmed> {
     match (found.is_defined(), expected.is_defined()) {
-        (_, false) => Err(Fault::Untold),
-        (false, true) => Err(Fault::NoValue(term)),
+        (_, false) => Err(Unconfirmed::NoValue),
+        (false, true) => Err(Unconfirmed::Undefined(term)),
         _ if (found - expected).is_zero() => Ok(()),
-        _ => Err(Fault::Disagrees(term)),
+        _ => Err(Unconfirmed::Disagrees(term)),
     }
 }
 
 /// Compares at as many points as the degrees of what is compared ask for, and says how sure that is.
 pub(super) fn certified(
     content: Content,
-    degrees: impl FnOnce(&mut Same<Degree>) -> Result<(), Fault>,
-    point: impl FnMut(u64) -> Result<(), Fault>,
+    degrees: impl FnOnce(&mut Same<Degree>) -> Result<(), Unconfirmed>,
+    point: impl FnMut(u64) -> Result<(), Unconfirmed>,
 ) -> Result<Sureness, Unconfirmed> {
     let mut largest = Largest::default();
     let compared = degrees(&mut |_, found, expected| {
@@ -102,15 +102,15 @@ pub(super) fn certified(
 fn confirmed(
     count: u32,
     may_be_none: bool,
-    mut point: impl FnMut(u64) -> Result<(), Fault>,
+    mut point: impl FnMut(u64) -> Result<(), Unconfirmed>,
 ) -> Result<(), Unconfirmed> {
     let (mut left, mut nothing) = (count, Unconfirmed::NoValue);
     for seed in 1..=u64::from(count + SPARE) {
         match point(seed) {
             Ok(()) => left -= 1,
-            Err(Fault::Untold) => {}
-            Err(Fault::NoValue(term)) => nothing = Unconfirmed::Disagrees(term),
-            Err(Fault::Disagrees(term)) => return Err(Unconfirmed::Disagrees(term)),
+            Err(Unconfirmed::NoValue) => {}
+            Err(unconfirmed @ Unconfirmed::Undefined(_)) => nothing = unconfirmed,
+            Err(unconfirmed) => return Err(unconfirmed),
         }
         if left == 0 {
             return Ok(());

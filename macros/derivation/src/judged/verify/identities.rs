@@ -14,7 +14,7 @@ use super::number::Number;
 use super::residue::Residue;
 use super::sample::{Element, Sample, Subject, exponentials, products};
 use super::value::Value;
-use super::{Fault, Values, algebra, components_of, dot, evaluated, evaluated_from, increments, shares};
+use super::{Unconfirmed, Values, algebra, components_of, dot, evaluated, evaluated_from, increments, shares};
 use crate::declared::{FieldKind, Name, Role};
 use crate::judged::places::{places, shape, variables};
 use crate::mathematics::derive::Derived;
@@ -28,7 +28,7 @@ use crate::program::{
 type Inputs<T> = BTreeMap<SymbolId, Value<T>>;
 
 /// Compares what was found with what is expected, of a term.
-pub(super) type Same<'a, T> = dyn FnMut(&'static str, T, T) -> Result<(), Fault> + 'a;
+pub(super) type Same<'a, T> = dyn FnMut(&'static str, T, T) -> Result<(), Unconfirmed> + 'a;
 
 /// The derived terms as operations.
 struct Terms {
@@ -88,7 +88,13 @@ struct Point<'a, T> {
 
 impl<T: Number> Point<'_, T> {
     /// Whether the rows of a matrix, along the direction, are these slopes.
-    fn are_slopes(&self, term: &'static str, matrix: &[T], along: &[Dual<T>], same: &mut Same<T>) -> Result<(), Fault> {
+    fn are_slopes(
+        &self,
+        term: &'static str,
+        matrix: &[T],
+        along: &[Dual<T>],
+        same: &mut Same<T>,
+    ) -> Result<(), Unconfirmed> {
         let mut rows = matrix.chunks(along.len()).zip(along);
         rows.try_for_each(|(row, one)| same(term, dot(row, &self.direction), one.slope))
     }
@@ -134,7 +140,7 @@ impl<'a> Identities<'a> {
         sample: &Sample<T>,
         mut number: impl FnMut() -> T,
         same: &mut Same<T>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), Unconfirmed> {
         let group = &self.of.derived.group;
         let mut vector = || group.generators.iter().map(|_| number()).collect::<Vec<T>>();
         let (direction, target, weights) = (vector(), vector(), [vector(), vector()]);
@@ -156,7 +162,7 @@ impl<'a> Identities<'a> {
     }
 
     /// The declared work along the direction, of displacements at either end alone, which is that of both.
-    fn declared_work<T: Number>(&self, point: &Point<T>, same: &mut Same<T>) -> Result<Declared<T>, Fault> {
+    fn declared_work<T: Number>(&self, point: &Point<T>, same: &mut Same<T>) -> Result<Declared<T>, Unconfirmed> {
         let group = &self.of.derived.group;
         let work = |before: T, after: T| {
             let mut values = point.sample.values.clone();
@@ -173,7 +179,7 @@ impl<'a> Identities<'a> {
     }
 
     /// Both momentum maps, the diamond and the energy are derivatives of the declared Lagrangian.
-    fn lagrangian_holds<T: Number>(&self, point: &Point<T>, same: &mut Same<T>) -> Result<Declared<T>, Fault> {
+    fn lagrangian_holds<T: Number>(&self, point: &Point<T>, same: &mut Same<T>) -> Result<Declared<T>, Unconfirmed> {
         let (group, dual) = (&self.of.derived.group, &point.dual);
         let [forwards, backwards] = &point.exponentials;
         let at_increment = |f: &[Value<Dual<T>>]| {
@@ -208,7 +214,7 @@ impl<'a> Identities<'a> {
         point: &Point<T>,
         declared: &Declared<T>,
         same: &mut Same<T>,
-    ) -> Result<Vec<T>, Fault> {
+    ) -> Result<Vec<T>, Unconfirmed> {
         let (graph, dual) = (&self.terms.graph, &point.dual);
         let along = evaluated(graph, &self.terms.momentum, &dual.inputs_at(&point.turned, &dual.values));
         let momentum: Vec<T> = along.iter().map(|one| one.value).collect();
@@ -226,11 +232,11 @@ impl<'a> Identities<'a> {
         momentum: &[T],
         declared: &Declared<T>,
         same: &mut Same<T>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), Unconfirmed> {
         let (sample, kernel) = (point.sample, self.kernel);
         // The solve is for `F` in `U(F) = a` with `a = μ + k₀`, which mustn't have it.
         if kernel.kick_before.iter().any(|&kick| kernel.graph.stage(kick) > Stage::Step) {
-            return Err(Fault::Disagrees("kick before the solve"));
+            return Err(Unconfirmed::Disagrees("kick before the solve"));
         }
         let (dimension, group) = (momentum.len(), &self.of.derived.group);
         let Element { matrices, inverses, coordinates } = &sample.element;
@@ -329,7 +335,7 @@ impl<'a> Identities<'a> {
         declared: &Declared<T>,
         number: &mut impl FnMut() -> T,
         same: &mut Same<T>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), Unconfirmed> {
         let Some(all) = &self.derivatives else { return Ok(()) };
         let (dual, direction, [u, p], [forwards, backwards]) =
             (&point.dual, &point.direction, &point.weights, &point.exponentials);

@@ -26,7 +26,8 @@
 //!    independent, and those without a value are drawn again, a few times at most: what is wrong, whichever it is, passes if it
 //!    is zero at some choice of the points that may be drawn. As many are compared as bring the sum over all choices below
 //!    `2⁻¹⁰⁰`. That takes the numbers of the stream and the stand-ins for random ones, and it takes numerators that aren't
-//!    multiples of `p`; where a constant of the declaration or of a graph is one, nothing is claimed.
+//!    multiples of `p`; where a constant of the declaration or of a graph is one, nothing is claimed, and nothing is refused for
+//!    having no value.
 //! 5. *What runs.* The graph of the [`Kernel`] is compared, stage by stage as a stepper calls it, with the derivatives of the
 //!    terms that were compared before. A step needs `U(F) = μ + k₀` and `μ⁺ = Ad*_F (μ + k₀) + k₁⁺`: any `k₀` will do that
 //!    doesn't depend on `F`, and that it doesn't is asked of the graph. The derivatives of a step are compared as the graph that
@@ -103,21 +104,12 @@ fn over<T: Number, U>(values: &Values<T>, of: impl Fn(T) -> U) -> Values<U> {
 pub(crate) enum Unconfirmed {
     /// A derived term disagrees with the declaration.
     Disagrees(&'static str),
-    /// The declaration has no value at any point that was tried.
+    /// The declaration has no value at a point, or at any that was tried.
     NoValue,
+    /// A derived term has none where the declaration has one.
+    Undefined(&'static str),
     /// It isn't smooth where `F = I`.
     NotSmooth,
-}
-
-/// What is found at one point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Fault {
-    /// The declaration has no value there.
-    Untold,
-    /// A derived term has none.
-    NoValue(&'static str),
-    /// A derived term disagrees with the declaration.
-    Disagrees(&'static str),
 }
 
 /// What the self-check has found of a declaration that it confirms.
