@@ -67,7 +67,7 @@ impl<'a> Motion<'a> {
         ]
         .map(|(rank, expression)| along_directions(&mut graph, derived, rank, expression));
         let diamond_matrices = diamond_matrices(&mut graph, derived);
-        let terms = Self {
+        Self {
             declaration,
             tree,
             names,
@@ -79,8 +79,7 @@ impl<'a> Motion<'a> {
             diamond,
             diamond_matrices,
             advection,
-        };
-        terms
+        }
     }
 
     fn values<T: Number>(&self, outputs: &[NodeId], at: &Values<T>) -> Vec<T> {

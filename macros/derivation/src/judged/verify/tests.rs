@@ -98,10 +98,12 @@ fn both() -> [Declared; 2] {
     [top, planar]
 }
 
+type Of = fn(&mut Derived) -> &mut Expression;
+
 /// Whatever is wrong with any entry of these, the tables of small errors have.
 #[test]
 fn what_is_wrong_is_named() {
-    let terms: [(&str, fn(&mut Derived) -> &mut Expression); 8] = [
+    let terms: [(&str, Of); 8] = [
         ("right momentum map", |d| &mut d.right_momentum),
         ("left momentum map", |d| &mut d.left_momentum),
         ("diamond term", |d| &mut d.diamond),
