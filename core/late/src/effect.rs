@@ -271,6 +271,15 @@ where
         })
     }
 
+    fn with_energy(&self, w: &W, energy: G::Scalar) -> Option<W> {
+        let before = &self.declaration.carried[..self.declaration.energy?];
+        let (place, mut at) = (before.iter().map(|one| one.shape.0 * one.shape.1).sum::<usize>(), 0);
+        Some(w.zip(w, &mut |entry, _| {
+            at += 1;
+            if at == place + 1 { energy } else { entry }
+        }))
+    }
+
     fn constants(&self, h: G::Scalar) -> Self::Constants {
         let arrays = Arrays::of([(Array::Step, std::slice::from_ref(&h)), (Array::Parameters, &*self.numbers)]);
         let numbers = run_alone::<_, B, _>(&self.stages.constants, &arrays, <[G::Scalar]>::to_vec);

@@ -27,6 +27,8 @@ pub(super) struct Arguments {
     pub(super) velocity: Option<(Ident, Vec<Ident>)>,
     /// With its key.
     pub(super) discretisation: Option<(Ident, Discretisation)>,
+    /// With its key.
+    pub(super) pace: Option<(Ident, Expr)>,
     pub(super) root: Option<Path>,
     /// With its key.
     pub(super) generators: Option<(Ident, ExprArray)>,
@@ -72,7 +74,7 @@ fn known(role: Role) -> Vec<&'static str> {
         _ => vec!["group", "advected", "given", role.key(), "generators", "gradients", "crate"],
     };
     match role {
-        Role::Lagrangian => known.extend(["l", "velocity", "discretise"]),
+        Role::Lagrangian => known.extend(["l", "velocity", "discretise", "pace"]),
         Role::Force => known.push("displacement"),
         Role::Constraint => {}
     }
@@ -117,6 +119,11 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             once(arguments.continuous.is_some());
             equals(&key, input)?;
             arguments.continuous = Some((key, input.parse()?));
+        }
+        "pace" if role == Role::Lagrangian => {
+            once(arguments.pace.is_some());
+            equals(&key, input)?;
+            arguments.pace = Some((key, input.parse()?));
         }
         "velocity" if role == Role::Lagrangian => {
             once(arguments.velocity.is_some());
