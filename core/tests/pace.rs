@@ -1,6 +1,12 @@
-//! A pace: steps of a transformed time.
-use liestep::prelude::*;
+//! A pace that is declared: steps of a transformed time.
 
+use liestep::groups::Given;
+use liestep::mechanics::DiscreteLagrangian as _;
+use liestep::prelude::*;
+use liestep::recording::Event;
+use nalgebra::{Matrix3, SMatrix, SVector};
+
+/// A body whose axis is attracted by a direction; the first of `VARYING`'s examples.
 #[lagrangian(
     group = SO3,
     advected(w = a),
@@ -10,10 +16,8 @@ use liestep::prelude::*;
         2.0 * u.sqrt() * u.sqrt().sqrt()
     },
     l_d = {
-        let U = |w: Vector3<f64>| w.norm_squared() - 2.0 * w.dot(&rho) + rho.norm_squared() + delta * delta;
-        let now = U(w);
-        let next = U(F.transpose() * w);
-        ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + 0.5 * h * (1.0 / now.sqrt() + 1.0 / next.sqrt())
+        let U = |w: Vector3<f64>| (w.norm_squared() - 2.0 * w.dot(&rho) + rho.norm_squared() + delta * delta).sqrt();
+        ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + 0.5 * h * (1.0 / U(w) + 1.0 / U(F.transpose() * w))
     },
 )]
 #[derive(Clone, Copy, Debug)]
@@ -25,40 +29,198 @@ struct Needle {
     energy: f64,
 }
 
-/// The rewriting as it is in the documents, written by hand.
+impl Needle {
+    fn new(delta: f64) -> Self {
+        let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 1.4, 2.0)).unwrap();
+        Self { J_d, a: Vector3::new(0.0, 0.6, 0.8), rho: Vector3::z(), delta, energy: 0.0 }
+    }
+
+    /// In plain Rust.
+    fn gap(&self, w: &Vector3<f64>) -> f64 {
+        ((w - self.rho).norm_squared() + self.delta * self.delta).sqrt()
+    }
+
+    fn pace(&self, w: &Vector3<f64>) -> f64 {
+        2.0 * self.gap(w).powf(1.5)
+    }
+
+    /// `l_d(F, w, h s̄) + h s̄ E_0`.
+    fn rewritten(&self, F: &Matrix3<f64>, (w, E_0): (&Vector3<f64>, f64), h: f64) -> f64 {
+        let next = F.transpose() * w;
+        let step = h * 0.5 * (self.pace(w) + self.pace(&next));
+        let change = F - Matrix3::identity();
+        let kinetic = (change * self.J_d.as_matrix() * change.transpose()).trace() / (2.0 * step);
+        kinetic + 0.5 * step * (1.0 / self.gap(w) + 1.0 / self.gap(&next)) + step * E_0
+    }
+}
+
+/// The derivative at zero of what is smooth on the scale of one.
+fn derivative<const N: usize>(f: impl Fn(f64) -> SVector<f64, N>) -> SVector<f64, N> {
+    let weights = [5.0 / 6.0, -5.0 / 21.0, 5.0 / 84.0, -5.0 / 504.0, 1.0 / 1260.0];
+    let odd = |k: f64| f(0.02 * k) - f(-0.02 * k);
+    weights.iter().zip([1.0, 2.0, 3.0, 4.0, 5.0]).map(|(weight, k)| odd(k) * (weight / 0.02)).sum()
+}
+
+/// The derived terms are those of the rewriting, and the momentum equation is its variation.
+#[test]
+fn the_rewriting() {
+    let (body, w, h, E_0) = (Needle::new(0.8), Vector3::new(0.3, -0.2, 0.9), 0.3, -1.3);
+    let F = *SO3::exp(Vector3::new(0.2, -0.3, 0.4)).as_matrix();
+    let seen = (w, Given::scalar(E_0));
+    assert!((body.l_d(&F, &seen, h) - body.rewritten(&F, (&w, E_0), h)).abs() < 1e-14);
+    let turned = |k: usize, t: f64| SO3::exp(Vector3::ith(k, t));
+    for k in 0..3 {
+        // Both ends of the step: `(R_F)* ∂/∂F + ∂/∂w ⋄ w`, and `(L_F)* ∂/∂F`.
+        let before = derivative(|t| {
+            let turn = *turned(k, t).as_matrix();
+            SVector::<f64, 1>::new(body.rewritten(&(turn * F), (&(turn * w), E_0), h))
+        });
+        let after = derivative(|t| {
+            SVector::<f64, 1>::new(body.rewritten(&(F * turned(k, t).as_matrix()), (&w, E_0), h))
+        });
+        assert!((before.x - body.legendre_minus(&F, &seen, h)[k]).abs() < 1e-12, "{k}");
+        assert!((after.x - body.left_momentum(&F, &seen, h)[k]).abs() < 1e-12, "{k}");
+    }
+    let energy = derivative(|t| SVector::<f64, 1>::new(-body.rewritten(&F, (&w, E_0), h + t)));
+    assert!((energy.x - body.discrete_energy(&F, &seen, h)).abs() < 1e-12);
+}
+
+/// `DΦ B DΦᵀ = B` on momentum, `w`, time and `E_0`, in which `{t, −E_0} = 1`.
+#[test]
+fn the_extended_map_is_poisson() {
+    let (body, h) = (Needle::new(0.8), 0.2);
+    let map = |z: &SVector<f64, 8>| {
+        let (momentum, w) = (z.fixed_rows::<3>(0).into_owned(), z.fixed_rows::<3>(3).into_owned());
+        let stepper = Stepper::new(Needle { a: w, energy: z[7], ..body }, h).unwrap();
+        let mut state = stepper.start_with_momentum(SO3::identity(), momentum).unwrap();
+        stepper.step(&mut state).unwrap();
+        let (next, Given(energy)) = state.advected();
+        let time = z[6] + 0.5 * h * (body.pace(&w) + body.pace(&next));
+        let numbers = state.momentum().iter().chain(next.iter()).chain([&time, &energy.x]).copied().collect::<Vec<_>>();
+        SVector::<f64, 8>::from_vec(numbers)
+    };
+    let tensor = |z: &SVector<f64, 8>| {
+        let mut tensor = SMatrix::<f64, 8, 8>::zeros();
+        let [momentum, w] = [0, 3].map(|at| z.fixed_rows::<3>(at).into_owned().cross_matrix());
+        tensor.fixed_view_mut::<3, 3>(0, 0).copy_from(&momentum);
+        tensor.fixed_view_mut::<3, 3>(0, 3).copy_from(&w);
+        tensor.fixed_view_mut::<3, 3>(3, 0).copy_from(&w);
+        (tensor[(6, 7)], tensor[(7, 6)]) = (-1.0, 1.0);
+        tensor
+    };
+    let z = SVector::<f64, 8>::from_vec(vec![0.9, 0.15, 0.3, 0.1, 0.6, 0.8, 0.0, -0.9]);
+    let columns: [_; 8] = core::array::from_fn(|k| derivative(|t| map(&(z + SVector::<f64, 8>::ith(k, t)))));
+    let tangent = SMatrix::<f64, 8, 8>::from_columns(&columns);
+    let defect = (tangent * tensor(&z) * tangent.transpose() - tensor(&map(&z))).amax();
+    println!("Poisson {defect:.1e}");
+    assert!(defect < 1e-12, "{defect:e}");
+}
+
+/// What is read is of the time `t`, and a step of `τ` back undoes one.
+#[test]
+fn what_is_read_is_of_the_time() {
+    let (body, h) = (Needle::new(0.05), 0.012);
+    let paced = Stepper::new(body, h).unwrap().paced().unwrap();
+    let velocity = Vector3::new(0.9, 0.1, 0.15);
+    let start = paced.start(SO3::identity(), velocity).unwrap();
+    let momentum = Vector3::new(0.9, 0.14, 0.3);
+    assert!((start.momentum() - momentum).norm() < 1e-15 && (paced.velocity(&start) - velocity).norm() < 1e-15);
+    let energy = 0.5 * momentum.dot(&velocity) - 1.0 / body.gap(&body.a);
+    assert!((paced.energy(&start) - energy).abs() < 1e-15 && (start.advected().1.0.x - energy).abs() < 1e-15);
+    let own = Stepper::new(Needle { energy, ..body }, h).unwrap();
+    let (mut state, mut other) = (start, own.start_with_momentum(SO3::identity(), momentum).unwrap());
+    let mut time = 0.0;
+    for _ in 0..300 {
+        let before = body.pace(&state.advected().0);
+        paced.step(&mut state).unwrap();
+        own.step(&mut other).unwrap();
+        time += 0.5 * h * (before + body.pace(&state.advected().0));
+    }
+    assert!((state.momentum() - other.momentum()).norm() < 1e-12 && (paced.time(&state) - time).abs() < 1e-13);
+    // Between steps, at events, and in a state that was kept.
+    let (mut seen, mut last) = (Vec::new(), start);
+    let report = paced
+        .observed(&mut last)
+        .event(Event::crossing(), |now| now.momentum().x - 0.7, |now| seen.push((now.time(), **now)))
+        .until(time - 1e-9)
+        .unwrap();
+    assert!(report.steps == 300 && !seen.is_empty(), "{report:?}");
+    for (time, motion) in &seen {
+        let again = paced.state_at(&start, *time).unwrap();
+        assert!((motion.momentum().x - 0.7).abs() < 1e-12 && (again.momentum() - motion.momentum()).norm() < 1e-11);
+    }
+    #[cfg(feature = "serde")]
+    assert_eq!(paced.resume(&paced.checkpoint(&state)).unwrap(), state);
+    paced.inverse().unwrap().run(&mut state, 300).unwrap();
+    assert!((state.momentum() - momentum).norm() < 1e-10 && paced.time(&state).abs() < 1e-10);
+    // With compensated sums, of the start's energy again, and refused where there is no pace, or not of all.
+    let compensated = Stepper::new(body, h).unwrap().compensated().paced().unwrap();
+    assert_eq!(compensated.adopt(&start).advected(), start.advected());
+    let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+    assert!(Stepper::new(body + gravity, h).unwrap().paced().is_err());
+    assert!(Stepper::new(RigidBody { J_d: body.J_d }, h).unwrap().paced().is_err());
+}
+
+/// The same body, by steps of the time itself.
 #[lagrangian(
     group = SO3,
     advected(w = a),
-    given(E_0 = energy),
     l_d = {
-        let U = |w: Vector3<f64>| w.norm_squared() - 2.0 * w.dot(&rho) + rho.norm_squared() + delta * delta;
-        let now = U(w);
-        let next = U(F.transpose() * w);
-        let k = h * (now.sqrt() * now.sqrt().sqrt() + next.sqrt() * next.sqrt().sqrt());
-        ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * k)
-            + 0.5 * k * (1.0 / now.sqrt() + 1.0 / next.sqrt()) + k * E_0
+        let U = |w: Vector3<f64>| (w.norm_squared() - 2.0 * w.dot(&rho) + rho.norm_squared() + delta * delta).sqrt();
+        ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + 0.5 * h * (1.0 / U(w) + 1.0 / U(F.transpose() * w))
     },
 )]
 #[derive(Clone, Copy, Debug)]
-struct ByHand {
+struct Plain {
     J_d: NonstandardInertia,
     a: Vector3<f64>,
     rho: Vector3<f64>,
     delta: f64,
-    energy: f64,
 }
 
-fn needle() -> Needle {
-    let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 1.4, 2.0)).unwrap();
-    Needle { J_d, a: Vector3::new(0.0, 0.6, 0.8), rho: Vector3::z(), delta: 0.05, energy: 0.0 }
+/// The largest error of the energy in so many steps, and the time that they take.
+fn energies(n: u32, step: impl FnMut() -> (f64, f64)) -> (f64, f64) {
+    let before = core::cell::Cell::new(None);
+    core::iter::repeat_with(step).take(n as usize + 1).fold((0.0, 0.0), |(most, _), (time, energy)| {
+        let first = before.get().unwrap_or(energy);
+        before.set(Some(first));
+        (f64::max(most, (energy - first).abs()), time)
+    })
 }
 
+/// The table of the guide's chapter: `cargo test -p liestep --test pace -- a_pace_is_worth --nocapture`.
 #[test]
-fn by_hand() {
-    let body = needle();
-    println!("{}", liestep::mechanics::Effect::derivation(&body));
-    let stepper = Stepper::new(body, 0.012).unwrap().paced().unwrap();
-    let mut state = stepper.start_with_momentum(SO3::identity(), Vector3::new(0.9, 0.15, 0.3)).unwrap();
-    println!("{}", stepper.energy(&state));
-    for _ in 0..10 { println!("{:?} {} {}", stepper.step(&mut state), stepper.time(&state), stepper.energy(&state)); }
+fn what_a_pace_is_worth() {
+    let Needle { J_d, a, rho, delta, .. } = Needle::new(0.05);
+    let momentum = Vector3::new(0.9, 0.15, 0.3);
+    let fixed = |n: u32| {
+        let stepper = Stepper::new(Plain { J_d, a, rho, delta }, 12.0 / f64::from(n)).unwrap().or_substeps(64);
+        let mut states = stepper.start_with_momentum(SO3::identity(), momentum).map(|start| (start, stepper.steps(start))).unwrap();
+        let mut first = Some(states.0);
+        energies(n, || {
+            let state = first.take().unwrap_or_else(|| states.1.next().unwrap().unwrap());
+            (stepper.time(&state), stepper.energy(&state))
+        }).0
+    };
+    let paced = |n: u32, h: f64| {
+        let stepper = Stepper::new(Needle::new(0.05), h).unwrap().paced().unwrap();
+        let start = stepper.start_with_momentum(SO3::identity(), momentum).unwrap();
+        let (mut first, mut states) = (Some(start), stepper.steps(start));
+        energies(n, || {
+            let state = first.take().unwrap_or_else(|| states.next().unwrap().unwrap());
+            (stepper.time(&state), stepper.energy(&state))
+        })
+    };
+    // So that the steps end at 12 s.
+    let tau = (0..6).fold(12.0, |tau, _| tau * 12.0 / paced(2000, tau / 2000.0).1);
+    let rows = [500, 1000, 2000, 4000].map(|n| (fixed(n), paced(n, tau / f64::from(n)).0));
+    for (n, (fixed, paced)) in [500, 1000, 2000, 4000].iter().zip(&rows) {
+        println!("{n} steps: equal {fixed:.2e}, paced {paced:.2e}, {:.0} times less", fixed / paced);
+    }
+    assert!(rows[2].0 > 100.0 * rows[2].1);
+    for pair in rows[1..].windows(2) {
+        let order = (pair[0].1 / pair[1].1).log2();
+        println!("order {order:.3}");
+        assert!((order - 2.0).abs() < 0.02, "{order}");
+    }
 }
