@@ -75,13 +75,13 @@ fn the_rewriting() {
             let turn = *turned(k, t).as_matrix();
             SVector::<f64, 1>::new(body.rewritten(&(turn * F), (&(turn * w), E_0), h))
         });
-        let after = derivative(|t| {
-            SVector::<f64, 1>::new(body.rewritten(&(F * turned(k, t).as_matrix()), (&w, E_0), h))
-        });
+        let after =
+            derivative(|t| SVector::<f64, 1>::new(body.rewritten(&(F * turned(k, t).as_matrix()), (&w, E_0), h)));
         assert!((before.x - body.legendre_minus(&F, &seen, h)[k]).abs() < 1e-12, "{k}");
         assert!((after.x - body.left_momentum(&F, &seen, h)[k]).abs() < 1e-12, "{k}");
     }
-    let energy = derivative(|t| SVector::<f64, 1>::new(-body.rewritten(&F, (&w, E_0), h * (1.0 + 0.2 * t)) / (0.2 * h)));
+    let energy =
+        derivative(|t| SVector::<f64, 1>::new(-body.rewritten(&F, (&w, E_0), h * (1.0 + 0.2 * t)) / (0.2 * h)));
     assert!((energy.x - body.discrete_energy(&F, &seen, h)).abs() < 1e-12);
 }
 
@@ -195,12 +195,14 @@ fn what_a_pace_is_worth() {
     let momentum = Vector3::new(0.9, 0.15, 0.3);
     let fixed = |n: u32| {
         let stepper = Stepper::new(Plain { J_d, a, rho, delta }, 12.0 / f64::from(n)).unwrap().or_substeps(64);
-        let mut states = stepper.start_with_momentum(SO3::identity(), momentum).map(|start| (start, stepper.steps(start))).unwrap();
+        let mut states =
+            stepper.start_with_momentum(SO3::identity(), momentum).map(|start| (start, stepper.steps(start))).unwrap();
         let mut first = Some(states.0);
         energies(n, || {
             let state = first.take().unwrap_or_else(|| states.1.next().unwrap().unwrap());
             (stepper.time(&state), stepper.energy(&state))
-        }).0
+        })
+        .0
     };
     let paced = |n: u32, h: f64| {
         let stepper = Stepper::new(Needle::new(0.05), h).unwrap().paced().unwrap();
@@ -225,9 +227,9 @@ fn what_a_pace_is_worth() {
     }
 }
 
-/// Two bodies that attract each other, as points do.
+/// Two points that attract each other.
 #[lagrangian(
-    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+    group(d_1 = R3, d_2 = R3),
     advected(r = d_2.seen_from(d_1)),
     given(E_0 = energy),
     pace = {
@@ -235,14 +237,12 @@ fn what_a_pace_is_worth() {
         u * u.sqrt()
     },
     l_d = {
-        let next = r + d_2 - d_1;
-        let turns = ((F_1 - I) * J_d * (F_1 - I).transpose() + (F_2 - I) * J_d * (F_2 - I).transpose()).trace();
-        (turns + d_1.norm_squared() + d_2.norm_squared()) / (2.0 * h) + 0.5 * h * (1.0 / (r.norm_squared() + delta * delta).sqrt() + 1.0 / (next.norm_squared() + delta * delta).sqrt())
+        let V = |r: Vector3<f64>| -1.0 / (r.norm_squared() + delta * delta).sqrt();
+        (d_1.norm_squared() + d_2.norm_squared()) / (2.0 * h) - 0.5 * h * (V(r) + V(r + d_2 - d_1))
     },
 )]
 #[derive(Clone, Copy, Debug)]
 struct Pair {
-    J_d: NonstandardInertia,
     /// With which there is a step where both are in one place.
     delta: f64,
     energy: f64,
@@ -251,20 +251,16 @@ struct Pair {
 /// Two asteroids that pass each other at a thousandth of their distance, a hundred times.
 #[test]
 fn close_passes_with_a_pace() {
-    let scene = Pair { J_d: NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap(), delta: 1e-5, energy: 0.0 };
-    let far = |x: f64| (SO3::from_euler_angles(0.3, 0.2, 0.1), R3::from(Vector3::x() * x));
-    let (v, spin) = (0.5 * (2.0 * 0.001 / 1.999_f64).sqrt(), Vector3::new(0.1, 0.3, 0.2));
-    let body = |v: f64| Vector6::new(spin.x, spin.y, spin.z, 0.0, v, 0.0);
-    let [one, other] = [body(-v), body(v)];
-    let velocity = SVector::<f64, 12>::from_iterator(one.iter().chain(&other).copied());
-    let stepper = Stepper::new(scene, 0.04).unwrap().paced().unwrap();
-    let (a, b) = (far(-0.9995), far(0.9995));
-    let mut state = stepper.start((a.0, a.1, b.0, b.1), velocity).unwrap();
+    let far = |x: f64| R3::from(Vector3::x() * x);
+    let v = 0.5 * (2.0 * 0.001 / 1.999_f64).sqrt();
+    let stepper = Stepper::new(Pair { delta: 1e-5, energy: 0.0 }, 0.04).unwrap().paced().unwrap();
+    let velocity = Vector6::new(0.0, -v, 0.0, 0.0, v, 0.0);
+    let mut state = stepper.start((far(-0.9995), far(0.9995)), velocity).unwrap();
     let before = stepper.energy(&state);
     let (mut passes, mut most, mut steps, mut nearest, mut was_near) = (0, [0.0_f64; 2], 0, f64::INFINITY, false);
     while passes < 100 {
         stepper.step(&mut state).unwrap();
-        let (_, one, _, other) = state.attitude();
+        let (one, other) = state.attitude();
         let r = (other.translation() - one.translation()).norm();
         (steps, nearest) = (steps + 1, nearest.min(r));
         passes += u32::from(was_near && r > 1.0);
@@ -275,5 +271,5 @@ fn close_passes_with_a_pace() {
         }
     }
     println!("{steps} steps, nearest {nearest:.1e}, energy {before} off by {most:?}, {} s", stepper.time(&state));
-    assert!(nearest < 1.2e-3 && most[1] < 2.0 * most[0] && most[0] < 1e-2);
+    assert!(nearest < 1.2e-3 && most[1] < 1.01 * most[0] && most[0] < 1e-3);
 }

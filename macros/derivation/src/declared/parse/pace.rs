@@ -12,8 +12,8 @@
 
 use proc_macro2::{Group, Span, TokenStream, TokenTree};
 use quote::{ToTokens as _, quote_spanned};
-use syn::spanned::Spanned as _;
 use syn::Ident;
+use syn::spanned::Spanned as _;
 
 use super::arguments::Arguments;
 use crate::declared::errors::Errors;
@@ -38,7 +38,10 @@ pub(super) fn rewritten(
     let velocities = || arguments.velocity.iter().flat_map(|(_, names)| names);
     let of_step: Vec<String> = of_step.map(str::to_owned).chain(velocities().map(ToString::to_string)).collect();
     if let Some(found) = mention(&pace, &|name| of_step.iter().any(|known| name == known)) {
-        return refused(found.span(), "the pace is a function of where the body is: neither a step nor a velocity is in it");
+        return refused(
+            found.span(),
+            "the pace is a function of where the body is: neither a step nor a velocity is in it",
+        );
     }
     let is_scalar = |w: &AdvectedParameter| w.field.is_some_and(|at| fields[at].kind == FieldKind::Scalar);
     let energy = advected.iter().position(|w| w.is_given && w.plain_name() == "E_0" && is_scalar(w));
@@ -52,14 +55,18 @@ pub(super) fn rewritten(
     for w in advected.iter().filter(|w| !w.is_given) {
         let Some(name) = mention(&pace, &|name| *name == w.name) else { continue };
         let Some(moved) = moved(w, &name, (group, factors), fields) else {
-            return refused(name.span(), "the pace depends on vectors, on bodies as another sees them, and on what is given");
+            return refused(
+                name.span(),
+                "the pace depends on vectors, on bodies as another sees them, and on what is given",
+            );
         };
         next.extend(quote_spanned!(name.span()=> let #name = #moved;));
     }
     // Names that nothing else has.
     let all = [arguments.expression.as_ref(), arguments.continuous.as_ref()].into_iter().flatten();
     let all: String = all.map(|(_, of)| of.to_token_stream().to_string()).collect::<String>() + &pace.to_string();
-    let free = |name: &str| (0..).map(|more| name.to_owned() + &"_".repeat(more)).find(|name| !all.contains(name.as_str()));
+    let free =
+        |name: &str| (0..).map(|more| name.to_owned() + &"_".repeat(more)).find(|name| !all.contains(name.as_str()));
     let [s, step] = ["pace", "h_paced"].map(|name| Ident::new(&free(name).unwrap_or_default(), key.span()));
     let span = pace.span();
     let energy_name = &advected[energy].name;
@@ -74,10 +81,15 @@ pub(super) fn rewritten(
     }
     if let Some((_, l)) = &mut arguments.continuous {
         if arguments.discretisation.as_ref().is_none_or(|(_, asked)| asked.quadrature != Quadrature::Trapezoid) {
-            return refused(key.span(), "a pace is that of steps, and of both their ends: write `discretise = trapezoid`");
+            return refused(
+                key.span(),
+                "a pace is that of steps, and of both their ends: write `discretise = trapezoid`",
+            );
         }
         let names: Vec<&Ident> = velocities().collect();
-        let in_time = renamed(l.to_token_stream(), &|name| names.contains(&name).then(|| quote_spanned!(name.span()=> (#name / #s))));
+        let in_time = renamed(l.to_token_stream(), &|name| {
+            names.contains(&name).then(|| quote_spanned!(name.span()=> (#name / #s)))
+        });
         *l = syn::parse2(quote_spanned! {span=> {
             let #s = #pace;
             #s * ((#in_time) + #energy_name)
@@ -98,7 +110,13 @@ fn moved(
     let increment = |factor: usize| Ident::new(&factors[factor].name, span);
     let turned = |factor: usize| {
         let (own, increment) = (group.factor(factor), increment(factor));
-        (!own.is_added).then(|| if own.is_so3 { quote_spanned!(span=> #increment.transpose()) } else { quote_spanned!(span=> inverse(#increment)) })
+        (!own.is_added).then(|| {
+            if own.is_so3 {
+                quote_spanned!(span=> #increment.transpose())
+            } else {
+                quote_spanned!(span=> inverse(#increment))
+            }
+        })
     };
     Some(match w.seen {
         Seen::From(factor) if matches!(fields.get(w.field?)?.kind, FieldKind::Vector(_)) => {
