@@ -271,13 +271,15 @@ where
         })
     }
 
-    fn with_energy(&self, w: &W, energy: G::Scalar) -> Option<W> {
+    fn with_energy(&self, w: &W, energy: G::Scalar) -> Option<(W, G::Scalar)> {
         let before = &self.declaration.carried[..self.declaration.energy?];
-        let (place, mut at) = (before.iter().map(|one| one.shape.0 * one.shape.1).sum::<usize>(), 0);
-        Some(w.zip(w, &mut |entry, _| {
+        let place = before.iter().map(|one| one.shape.0 * one.shape.1).sum::<usize>();
+        let (mut at, mut before) = (0, energy);
+        let w = w.zip(w, &mut |entry, _| {
             at += 1;
-            if at == place + 1 { energy } else { entry }
-        }))
+            if at == place + 1 { std::mem::replace(&mut before, entry) } else { entry }
+        });
+        Some((w, before))
     }
 
     fn constants(&self, h: G::Scalar) -> Self::Constants {

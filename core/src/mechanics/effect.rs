@@ -304,11 +304,11 @@ pub trait Effect: Term {
         -self.limit(None, w).l
     }
 
-    /// What is advected or given, with this energy `E_0`, J, in it; `None` where no `pace` was declared.
+    /// What is advected or given with another energy `E_0`, J, and that before it; `None` where no `pace` was declared.
     ///
     /// The [potential](Self::potential) is `s (V − E_0)` then, of which [`paced`](crate::Stepper::paced) has the pace `s`.
     #[must_use]
-    fn with_energy(&self, _: &Self::Advected, _energy: Self::Scalar) -> Option<Self::Advected> {
+    fn with_energy(&self, _: &Self::Advected, _energy: Self::Scalar) -> Option<(Self::Advected, Self::Scalar)> {
         None
     }
 

@@ -227,7 +227,6 @@ pub(crate) fn restored<G: LieGroup, A: Advected<G>>(
     use nalgebra::SimdValue as _;
     let (attitude, far) = motion.attitude.restored(beyond)?;
     motion.attitude = attitude;
-    let seen = motion.advected.restored(spatial, &attitude);
-    motion.advected = seen.zip(&motion.advected, &mut |seen, w| seen.select(far, w));
+    motion.advected = spatial.seen_from(&attitude).zip(&motion.advected, &mut |seen, w| seen.select(far, w));
     Some(far)
 }

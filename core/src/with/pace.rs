@@ -57,7 +57,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S> + Pacable> Stepper<S, P> {
 /// The pace `s(w)`, as the potential is `s (V − E_0)`.
 #[hot]
 fn pace<S: Effect<Scalar = f64>>(scene: &S, w: &S::Advected) -> f64 {
-    scene.with_energy(w, VAST).map_or(f64::NAN, |w| -scene.potential(&w) / VAST)
+    scene.with_energy(w, VAST).map_or(f64::NAN, |(w, _)| -scene.potential(&w) / VAST)
 }
 
 impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for Paced<P> {
@@ -78,7 +78,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for Paced<P> {
 
     fn begun(&self, scene: &S, motion: Motion<Group<S>, S::Advected>) -> Motion<Group<S>, S::Advected> {
         let advected = scene.with_energy(&motion.advected, self.energy(scene, &motion));
-        Motion { advected: advected.unwrap_or(motion.advected), ..motion }
+        Motion { advected: advected.map_or(motion.advected, |(w, _)| w), ..motion }
     }
 
     fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
@@ -96,7 +96,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for Paced<P> {
 
     /// That of `s (H − E_0)` with zero for `E_0`, over `s`.
     fn energy(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> f64 {
-        let w = scene.with_energy(&motion.advected, 0.0).unwrap_or(motion.advected);
+        let w = scene.with_energy(&motion.advected, 0.0).map_or(motion.advected, |(w, _)| w);
         energy(scene, &motion.momentum, &w) / pace(scene, &w)
     }
 
@@ -117,7 +117,13 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for Paced<P> {
         motion: &mut M,
         kept: &mut Self::Kept,
     ) -> Result<StepReport, StepError> {
+        let energy = scene.with_energy(&motion.now().advected, 0.0);
         let report = self.0.step(scene, motion, &mut kept.0)?;
+        // Now and then what is advected is seen anew, and given as in the scene.
+        let own = energy.and_then(|(_, energy)| scene.with_energy(&motion.now().advected, energy));
+        if let Some((advected, _)) = own {
+            motion.show(Motion { advected, ..*motion.now() });
+        }
         let before = core::mem::replace(&mut kept.1.density, pace(scene, &motion.now().advected));
         kept.1.time.add(self.step_size() * 0.5 * (before + kept.1.density));
         Ok(report)

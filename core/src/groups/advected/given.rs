@@ -49,10 +49,6 @@ impl<T: Real, G: LieGroup<Scalar = T>, const R: usize, const C: usize> Advected<
         *self
     }
 
-    fn restored(&self, _: &Self, _: &G) -> Self {
-        *self
-    }
-
     #[hot]
     fn change(&self, _: &G::Matrix) -> Self {
         Self(SMatrix::zeros())

@@ -83,12 +83,6 @@ pub trait Advected<G: LieGroup>: Entries<G::Scalar> + Debug + PartialEq {
         })
     }
 
-    /// What the body sees of the spatial value, in the place of what roundings have led to; what is given stays.
-    #[must_use]
-    fn restored(&self, spatial: &Self, attitude: &G) -> Self {
-        spatial.seen_from(attitude)
-    }
-
     /// Whether all components are finite.
     fn is_finite(&self) -> bool;
 }
@@ -198,10 +192,6 @@ macro_rules! tuple {
             #[hot]
             fn pulled_back(&self, attitude: &G) -> Self {
                 ($(self.$index.pulled_back(attitude),)+)
-            }
-
-            fn restored(&self, spatial: &Self, attitude: &G) -> Self {
-                ($(self.$index.restored(&spatial.$index, attitude),)+)
             }
 
             #[hot]

@@ -189,26 +189,22 @@ pub(super) fn parts(emitter: &Emitter, kernel: &Kernel) -> TokenStream {
     }
 }
 
-/// The number `E_0` of what has a pace.
+/// Puts an energy in the place of `E_0`, where there is a pace.
 fn with_energy(emitter: &Emitter) -> Option<TokenStream> {
     let (span, header) = (Span::mixed_site(), emitter.header);
-    let place = match (emitter.declaration.energy?, emitter.declaration.advected.len()) {
-        (_, 1) => quote_spanned!(span=> w),
-        (at, _) => {
-            let at = Literal::usize_unsuffixed(at);
-            quote_spanned!(span=> w.#at)
-        }
-    };
+    let at = Literal::usize_unsuffixed(emitter.declaration.energy?);
+    let is_alone = emitter.declaration.advected.len() == 1;
+    let place = if is_alone { quote_spanned!(span=> w) } else { quote_spanned!(span=> w.#at) };
     let (private, scalar) = (&header.private, &header.scalar);
     Some(quote_spanned! {span=>
         fn with_energy(
             &self,
             w: &<Self as #private::Term>::Advected,
             energy: #scalar,
-        ) -> #private::core::option::Option<<Self as #private::Term>::Advected> {
+        ) -> #private::core::option::Option<(<Self as #private::Term>::Advected, #scalar)> {
             let mut w = *w;
-            #place = #private::Given::scalar(energy);
-            #private::core::option::Option::Some(w)
+            let before = #private::core::mem::replace(&mut #place, #private::Given::scalar(energy));
+            #private::core::option::Option::Some((w, before.0.x))
         }
     })
 }

@@ -115,15 +115,11 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             equals(&key, input)?;
             arguments.expression = Some((key, input.parse()?));
         }
-        "l" if role == Role::Lagrangian => {
-            once(arguments.continuous.is_some());
+        name @ ("l" | "pace") if role == Role::Lagrangian => {
+            let place = if name == "l" { &mut arguments.continuous } else { &mut arguments.pace };
+            once(place.is_some());
             equals(&key, input)?;
-            arguments.continuous = Some((key, input.parse()?));
-        }
-        "pace" if role == Role::Lagrangian => {
-            once(arguments.pace.is_some());
-            equals(&key, input)?;
-            arguments.pace = Some((key, input.parse()?));
+            *place = Some((key, input.parse()?));
         }
         "velocity" if role == Role::Lagrangian => {
             once(arguments.velocity.is_some());

@@ -10,14 +10,14 @@
 //! The second is Poincaré's `s (H − E_0)` as a Lagrangian, of which `discretise = trapezoid` makes steps. On the level zero of
 //! its energy the curves are those of `l`. What comes out is a declaration like any other.
 
-use proc_macro2::{Group, Span, TokenStream, TokenTree};
+use proc_macro2::{Group, TokenStream, TokenTree};
 use quote::{ToTokens as _, quote_spanned};
 use syn::Ident;
 use syn::spanned::Spanned as _;
 
 use super::arguments::Arguments;
 use crate::declared::errors::Errors;
-use crate::declared::{AdvectedParameter, Factor, Field, FieldKind, Quadrature};
+use crate::declared::{AdvectedParameter, Discretisation, Factor, Field, FieldKind, Quadrature};
 use crate::mathematics::derive::Seen;
 use crate::mathematics::group;
 
@@ -29,77 +29,68 @@ pub(super) fn rewritten(
     errors: &mut Errors,
 ) -> Option<usize> {
     let (key, pace) = arguments.pace.take()?;
-    let mut refused = |place: Span, message: &str| {
-        errors.push_decisive(place, message);
+    let mut refused = |place: &Ident, message: &str| {
+        errors.push_decisive(place.span(), message);
         None
     };
     let pace = pace.into_token_stream();
-    let of_step = factors.iter().map(|factor| factor.name.as_str()).chain(["h"]);
-    let velocities = || arguments.velocity.iter().flat_map(|(_, names)| names);
-    let of_step: Vec<String> = of_step.map(str::to_owned).chain(velocities().map(ToString::to_string)).collect();
-    if let Some(found) = mention(&pace, &|name| of_step.iter().any(|known| name == known)) {
-        return refused(
-            found.span(),
-            "the pace is a function of where the body is: neither a step nor a velocity is in it",
-        );
+    let velocities: Vec<Ident> = arguments.velocity.iter().flat_map(|(_, names)| names.clone()).collect();
+    let is_of_step =
+        |name: &Ident| name == "h" || velocities.contains(name) || factors.iter().any(|factor| *name == factor.name);
+    if let Some(found) = mention(&pace, &is_of_step) {
+        return refused(&found, "the pace is a function of where the body is: neither a step nor a velocity is in it");
     }
     let is_scalar = |w: &AdvectedParameter| w.field.is_some_and(|at| fields[at].kind == FieldKind::Scalar);
     let energy = advected.iter().position(|w| w.is_given && w.plain_name() == "E_0" && is_scalar(w));
     let Some(energy) = energy else {
-        return refused(
-            key.span(),
-            "with a pace the energy of a motion is a number of its state: write `given(E_0 = energy)`, with a field `energy: f64`",
-        );
+        let message = "with a pace the energy of a motion is a number of its state: write `given(E_0 = energy)`, with a \
+                       field `energy: f64`";
+        return refused(&key, message);
     };
+    let is_trapezoid = |asked: &Discretisation| asked.quadrature == Quadrature::Trapezoid;
+    let has_both_ends = arguments.discretisation.as_ref().is_some_and(|(_, asked)| is_trapezoid(asked));
+    if arguments.continuous.is_some() && !has_both_ends {
+        return refused(&key, "a pace is that of steps, and of both their ends: write `discretise = trapezoid`");
+    }
     let mut next = TokenStream::new();
     for w in advected.iter().filter(|w| !w.is_given) {
         let Some(name) = mention(&pace, &|name| *name == w.name) else { continue };
         let Some(moved) = moved(w, &name, (group, factors), fields) else {
-            return refused(
-                name.span(),
-                "the pace depends on vectors, on bodies as another sees them, and on what is given",
-            );
+            return refused(&name, "the pace depends on vectors, on bodies as another sees them, and on what is given");
         };
         next.extend(quote_spanned!(name.span()=> let #name = #moved;));
     }
-    // Names that nothing else has.
-    let all = [arguments.expression.as_ref(), arguments.continuous.as_ref()].into_iter().flatten();
-    let all: String = all.map(|(_, of)| of.to_token_stream().to_string()).collect::<String>() + &pace.to_string();
-    let free =
-        |name: &str| (0..).map(|more| name.to_owned() + &"_".repeat(more)).find(|name| !all.contains(name.as_str()));
-    let [s, step] = ["pace", "h_paced"].map(|name| Ident::new(&free(name).unwrap_or_default(), key.span()));
-    let span = pace.span();
-    let energy_name = &advected[energy].name;
-    if let Some((_, l_d)) = &mut arguments.expression {
-        let in_time = renamed(l_d.to_token_stream(), &|name| (name == "h").then(|| step.to_token_stream()));
-        *l_d = syn::parse2(quote_spanned! {span=> {
-            let #s = 0.5 * ((#pace) + { #next #pace });
-            let #step = h * #s;
-            (#in_time) + #step * #energy_name
-        }})
-        .ok()?;
-    }
-    if let Some((_, l)) = &mut arguments.continuous {
-        if arguments.discretisation.as_ref().is_none_or(|(_, asked)| asked.quadrature != Quadrature::Trapezoid) {
-            return refused(
-                key.span(),
-                "a pace is that of steps, and of both their ends: write `discretise = trapezoid`",
-            );
+    let expressions = [&mut arguments.expression, &mut arguments.continuous].map(Option::as_mut);
+    for (_, expression) in expressions.into_iter().flatten() {
+        let declared = expression.to_token_stream();
+        let is_taken = |name: &Ident| name == "pace" || name == "h_paced";
+        if let Some(found) = mention(&pace, &is_taken).or_else(|| mention(&declared, &is_taken)) {
+            return refused(&found, "beside a pace `pace` and `h_paced` have a meaning: choose another name");
         }
-        let names: Vec<&Ident> = velocities().collect();
-        let in_time = renamed(l.to_token_stream(), &|name| {
-            names.contains(&name).then(|| quote_spanned!(name.span()=> (#name / #s)))
+        let (span, energy) = (pace.span(), &advected[energy].name);
+        let [s, step] = ["pace", "h_paced"].map(|name| Ident::new(name, key.span()));
+        let in_time = renamed(declared, &|name| {
+            let slower = quote_spanned!(name.span()=> (#name / #s));
+            if name == "h" { Some(step.to_token_stream()) } else { velocities.contains(name).then_some(slower) }
         });
-        *l = syn::parse2(quote_spanned! {span=> {
-            let #s = #pace;
-            #s * ((#in_time) + #energy_name)
-        }})
-        .ok()?;
+        let rewritten = if has_both_ends {
+            quote_spanned!(span=> { let #s = #pace; #s * ((#in_time) + #energy) })
+        } else {
+            quote_spanned! {span=> {
+                let #s = 0.5 * ((#pace) + { #next #pace });
+                let #step = h * #s;
+                (#in_time) + #step * #energy
+            }}
+        };
+        match syn::parse2(rewritten) {
+            Ok(rewritten) => *expression = rewritten,
+            Err(error) => return refused(&key, &error.to_string()),
+        }
     }
     Some(energy)
 }
 
-/// `F⁻¹·w`, where that is written shortly.
+/// `F⁻¹·w` of what isn't a tensor or a point. Among several bodies what turns does so by rotations.
 fn moved(
     w: &AdvectedParameter,
     name: &Ident,
@@ -108,37 +99,23 @@ fn moved(
 ) -> Option<TokenStream> {
     let span = name.span();
     let increment = |factor: usize| Ident::new(&factors[factor].name, span);
-    let turned = |factor: usize| {
-        let (own, increment) = (group.factor(factor), increment(factor));
-        (!own.is_added).then(|| {
-            if own.is_so3 {
-                quote_spanned!(span=> #increment.transpose())
-            } else {
-                quote_spanned!(span=> inverse(#increment))
-            }
-        })
-    };
     Some(match w.seen {
-        Seen::From(factor) if matches!(fields.get(w.field?)?.kind, FieldKind::Vector(_)) => {
-            let (_, increment) = (turned(factor)?, increment(factor));
-            quote_spanned!(span=> #increment.transpose() * #name)
+        Seen::From(factor) => {
+            let (own, field) = (increment(factor), fields.get(w.field?)?);
+            matches!(field.kind, FieldKind::Vector(_)).then(|| quote_spanned!(span=> #own.transpose() * #name))?
         }
-        Seen::From(_) => return None,
-        Seen::Configuration(of) | Seen::Relative { of, .. } => {
-            let (is_added, of) = (group.factor(of).is_added, increment(of));
-            let from = if let Seen::Relative { from, .. } = w.seen { Some(from) } else { None };
-            match from {
-                None if is_added => quote_spanned!(span=> #name + #of),
-                None => quote_spanned!(span=> #name * #of),
-                Some(from) if is_added => {
-                    let from = increment(from);
-                    quote_spanned!(span=> #name + #of - #from)
-                }
-                Some(from) => {
-                    let from = turned(from)?;
-                    quote_spanned!(span=> #from * #name * #of)
-                }
-            }
+        Seen::Configuration(of) if group.factor(of).is_added => {
+            let of = increment(of);
+            quote_spanned!(span=> #name + #of)
+        }
+        Seen::Configuration(of) => {
+            let of = increment(of);
+            quote_spanned!(span=> #name * #of)
+        }
+        Seen::Relative { of, from } => {
+            let (is_added, of, from) = (group.factor(of).is_added, increment(of), increment(from));
+            let turned = quote_spanned!(span=> #from.transpose() * #name * #of);
+            if is_added { quote_spanned!(span=> #name + #of - #from) } else { turned }
         }
     })
 }
