@@ -227,17 +227,6 @@ struct PacedTop {
 #[test]
 fn a_pace() {
     as_compiled! { PacedTop { J weight rho up energy } }
-    let top = random!(3, PacedTop { J weight rho up energy });
-    let late = Late::<_, _, WithEitherKinetic>::like(&top).expect("a declaration");
-    macro_rules! end {
-        ($top:expr) => {{
-            let stepper = Stepper::new($top, 0.01).and_then(Stepper::paced).expect("a pace");
-            let mut state = stepper.start(SO3::identity(), Vector3::new(0.3, 1.0, 5.0)).expect("a start");
-            stepper.run(&mut state, 1_000).expect("steps");
-            (stepper.time(&state).to_bits(), stepper.energy(&state).to_bits())
-        }};
-    }
-    assert_eq!(end!(top), end!(late));
 }
 
 /// Body and effect both read: which of them has an unknown part is asked of the values.

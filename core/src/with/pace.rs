@@ -15,7 +15,6 @@ pub struct Paced<P>(P);
 /// A plan whose step is one of `l_d`, which has the pace in it.
 #[diagnostic::on_unimplemented(
     message = "the steps of `{Self}` have no pace",
-    label = "not with this method",
     note = "a pace is in the declaration's own step: `Stepper::new(…)?.paced()`, with sums compensated before"
 )]
 pub trait Pacable {}
@@ -30,13 +29,10 @@ const VAST: f64 = f64::from_bits((1023 + 500) << 52);
 impl<S: Effect<Scalar = f64>, P: Plan<S> + Pacable> Stepper<S, P> {
     /// Steps of `dt = s dτ` with the `pace = s(w)` that was declared: what is read and given is that of the time `t`.
     ///
-    /// The stepper's `h` is one of `τ`. The energy of a start becomes the number `E_0` that the declaration has in its state.
-    /// A step takes `h (s(w) + s(w⁺))/2`, s, which is known when it is made, and the [time](Self::time) is their compensated
-    /// sum. The map of attitude, momentum, `t` and `−E_0` is symplectic, and momentum maps are kept;
-    /// [the chapter](crate::guide::varying) says what it is worth.
-    ///
-    /// Recordings, events, checkpoints, dense output and [`inverse`](Self::inverse) go with it. Other methods, lanes, values
-    /// that are given, control forces and steps of other lengths don't, and are refused.
+    /// The stepper's `h` is one of `τ`. The energy of a start becomes the number `E_0` of its state. A step takes
+    /// `h (s(w) + s(w⁺))/2`, s, which is known when it is made; the [time](Self::time) is their compensated sum. The map of
+    /// attitude, momentum, `t` and `−E_0` is symplectic, and momentum maps are kept. [The chapter](crate::guide::varying) says
+    /// what it is worth, and what goes with it.
     ///
     /// # Errors
     ///

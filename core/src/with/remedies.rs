@@ -5,7 +5,7 @@
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor};
-use crate::motion::{Motion, Plan, Remedy, Steerable, StepReport, Stepper, Summation, Variable};
+use crate::motion::{Plan, Remedy, Steerable, StepReport, Stepper, Summation, Variable};
 use crate::numbers::real;
 
 /// A plan that takes a step without a solution in equal parts, by [`Stepper::or_substeps`].

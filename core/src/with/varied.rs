@@ -2,7 +2,7 @@
 
 use super::lengths::Lengths;
 use crate::error::{SetupError, StepError};
-use crate::mechanics::{Effect, Group, SceneVisitor, Vector};
+use crate::mechanics::{Effect, Group, SceneVisitor};
 use crate::motion::{Motion, Plan, StepReport, Stepper, Summation, Variable};
 use crate::numbers::Vectors;
 

@@ -123,8 +123,7 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
         }
         "velocity" if role == Role::Lagrangian => {
             once(arguments.velocity.is_some());
-            let names = velocities(&key, input)?;
-            arguments.velocity = Some((key, names));
+            arguments.velocity = Some((key.clone(), velocities(&key, input)?));
         }
         "displacement" if role == Role::Force => {
             once(arguments.displacement.is_some());
