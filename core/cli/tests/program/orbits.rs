@@ -223,12 +223,11 @@ fn steps_follow_an_orbit() {
         let rows = rows(&folder, &text.replace("step = 7800.0", steps));
         let end = &rows[rows.len() - 1];
         assert!((end[0] - 12_000.0).abs() < 1e-8, "{}", end[0]);
-        (2.0 * end[4].atan2(end[1]), rows.len())
+        2.0 * end[4].atan2(end[1])
     };
     let [fine, clock, equal] = ["step = 0.25", "steps_per_orbit = 400", "step = 15"].map(end);
-    let [clock_off, equal_off] = [clock, equal].map(|(angle, _)| (0.5 * (angle - fine.0)).sin().abs());
-    println!("off by {clock_off:.1e} with a clock, {equal_off:.1e} by equal steps");
-    assert!(clock.1 == 801 && equal.1 == 801 && clock_off < 0.2 * equal_off, "{clock_off:e} {equal_off:e}");
+    let [clock_off, equal_off] = [clock, equal].map(|angle| (0.5 * (angle - fine)).sin().abs());
+    assert!(clock_off < 0.2 * equal_off, "{clock_off:e} {equal_off:e}");
 }
 
 #[test]
