@@ -1,13 +1,15 @@
-//! What the macro derives, against three truths that share none of its code: dual numbers of the declared `l_d`,
-//! central differences of it, and the thesis' formulas typed by hand.
+//! What the macro derives, against truths that share none of its code: dual numbers of the declared `l_d`, differences of the
+//! staged step, and the thesis' formulas typed by hand.
 
 use checks::random::Random;
-use liestep::groups::Retraction as _;
+use checks::structure::{System, stages::assert_stages};
 use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Effect as _, Inertia};
-use liestep::numbers::Real;
+use liestep::numbers::{Entries, Real};
 use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::{Matrix3, RealField, Vector3, convert};
-use num_dual::{Dual64, HyperDual64};
+use num_dual::HyperDual64;
+
+use crate::dual_numbers::assert_terms;
 
 /// (3.13) with any inertia tensor.
 #[lagrangian(
@@ -84,9 +86,6 @@ struct Smooth<T: Real> {
     up: Vector3<T>,
 }
 
-/// The trace of any rotation is above this.
-const ANY: f64 = -2.0;
-
 fn real<T: RealField>(value: f64) -> T {
     convert(value)
 }
@@ -128,169 +127,35 @@ fn smooth<T: RealField + Copy>(seed: u64) -> Smooth<T> {
     Smooth { k: real(1.7), rho: vector(&mut r), up: vector(&mut r) }
 }
 
-/// Advected parameters from a list of vectors.
-trait Vectors<T> {
-    fn of(vectors: &[Vector3<T>]) -> Self;
-}
-
-impl<T> Vectors<T> for () {
-    fn of(_: &[Vector3<T>]) {}
-}
-
-impl<T: Copy + nalgebra::Scalar> Vectors<T> for Vector3<T> {
-    fn of(vectors: &[Vector3<T>]) -> Self {
-        vectors[0]
-    }
-}
-
-impl<T: Copy + nalgebra::Scalar> Vectors<T> for (Vector3<T>, Vector3<T>) {
-    fn of(vectors: &[Vector3<T>]) -> Self {
-        (vectors[0], vectors[1])
-    }
-}
-
 /// The increments to compare at: the identity, 1e-8 away, anywhere, near a half turn.
 fn rotations() -> Vec<Matrix3<f64>> {
     Random::new(11).hard_rotations().iter().map(|f| *f.as_matrix()).collect()
 }
 
-fn generator(k: usize) -> Matrix3<f64> {
-    Vector3::ith(k, 1.0).cross_matrix()
-}
-
-fn lift<T: RealField + Copy>(matrix: Matrix3<f64>) -> Matrix3<T> {
-    matrix.map(convert)
-}
-
-/// `I + ε E_k`, exact to first order in a dual `ε`.
-fn turned<T: RealField + Copy>(k: usize, epsilon: T) -> Matrix3<T> {
-    Matrix3::identity() + lift::<T>(generator(k)) * epsilon
-}
-
-fn close(what: &str, found: f64, expected: f64, scale: f64, tolerance: f64) {
-    assert!((found - expected).abs() <= tolerance * scale, "{what}: {found} instead of {expected}, scale {scale}");
-}
-
-/// Compares all derived terms of one Lagrangian at many increments, those of a trace of at least −1 or more.
-fn compare<L, D, H>(build: fn(u64) -> L, dual: fn(u64) -> D, hyper: fn(u64) -> H, least_trace: f64)
+/// All derived terms and the stages; traces that cancel in `l_d` are `cancelling` over `h`.
+fn compare<L, H>(name: &str, build: fn(u64) -> L, hyper: fn(u64) -> H, cancelling: fn(&L) -> f64)
 where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected: Vectors<f64>>,
-    D: DiscreteLagrangian<Scalar = Dual64, Group = SO3<Dual64>, Advected: Vectors<Dual64>>,
-    H: DiscreteLagrangian<Scalar = HyperDual64, Group = SO3<HyperDual64>, Advected: Vectors<HyperDual64>>,
+    L: System<3, 3>,
+    H: DiscreteLagrangian<Scalar = HyperDual64, Group = SO3<HyperDual64>, Advected: Entries<HyperDual64>>,
 {
-    for (index, f) in rotations().into_iter().enumerate().filter(|(_, f)| f.trace() >= least_trace) {
-        let seed = index as u64;
-        let (system, first, second) = (build(seed), dual(seed), hyper(seed));
-        let mut r = Random::new(1000 + seed);
-        let h = 0.01 + 0.1 * r.signed().abs();
-        let ws = [r.vector(), r.vector()];
-        let w = L::Advected::of(&ws);
-        let duals = |turn: &Matrix3<Dual64>| D::Advected::of(&ws.map(|w| turn * w.map(Dual64::from)));
-        let hypers = |turn: &Matrix3<HyperDual64>| H::Advected::of(&ws.map(|w| turn * w.map(HyperDual64::from)));
-        let still = Matrix3::identity();
-        let (right, left) = (system.right_momentum(&f, &w, h), system.left_momentum(&f, &w, h));
-        let (diamond, momentum) = (system.diamond(&f, &w, h), system.legendre_minus(&f, &w, h));
-        let jacobian = system.momentum_jacobian(&f, &w, h);
-        let scale = right.norm() + left.norm() + diamond.norm() + jacobian.norm();
-        let epsilon = Dual64::new(0.0, 1.0);
-        let at = |f: &Matrix3<Dual64>, w: &D::Advected| first.l_d(f, w, Dual64::from(h)).eps;
-        for k in 0..3 {
-            let turn = turned(k, epsilon);
-            let (fd, ws) = (lift(f), duals(&still));
-            close("right momentum", right[k], at(&(turn * fd), &ws), scale, 1e-12);
-            close("left momentum", left[k], at(&(fd * turn), &ws), scale, 1e-12);
-            // E·w = −Eᵀ w = E w for skew E.
-            close("diamond", diamond[k], -at(&fd, &duals(&turn)), scale, 1e-12);
-            close("momentum", momentum[k], at(&(turn * fd), &duals(&turn)), scale, 1e-12);
-            let s = 1e-6;
-            let difference = |delta: &dyn Fn(f64) -> f64| (delta(s) - delta(-s)) / (2.0 * s);
-            let moved = |s: f64| SO3::from(nalgebra::UnitQuaternion::from_scaled_axis(Vector3::ith(k, s)));
-            let value = difference(&|s| system.l_d(&(moved(s).as_matrix() * f), &w, h));
-            close("right momentum by differences", right[k], value, scale, 1e-7);
-            let value = difference(&|s| system.l_d(&(f * moved(s).as_matrix()), &w, h));
-            close("left momentum by differences", left[k], value, scale, 1e-7);
-            for j in 0..3 {
-                let turn = turned(k, HyperDual64::new(0.0, 1.0, 0.0, 0.0));
-                let inner = turned(j, HyperDual64::new(0.0, 0.0, 1.0, 0.0));
-                let value = second.l_d(&(turn * inner * lift(f)), &hypers(&turn), HyperDual64::from(h));
-                close("Jacobian", jacobian[(k, j)], value.eps1eps2, scale, 1e-12);
-                let moved = |s: f64| SO3::from(nalgebra::UnitQuaternion::from_scaled_axis(Vector3::ith(j, s)));
-                let value = difference(&|s| system.legendre_minus(&(moved(s).as_matrix() * f), &w, h)[k]);
-                close("Jacobian by differences", jacobian[(k, j)], value, scale, 1e-7);
-            }
-        }
-        let energy = -first.l_d(&lift(f), &duals(&still), Dual64::new(h, 1.0)).eps;
-        close("energy", system.discrete_energy(&f, &w, h), energy, energy.abs() + scale, 1e-12);
-        stages(&system, &f, &w, h);
+    for (seed, h) in [(0, 0.01), (1, 0.05), (2, 0.1), (3, 0.02)] {
+        let (system, long) = (build(seed), hyper(seed));
+        assert_terms(name, (&system, h, cancelling(&system) / h), |f, w, h| long.l_d(f, w, h), seed);
+        assert_stages(&system, seed);
     }
 }
 
-/// The staged step says the same as the unstaged terms.
-fn stages<L>(system: &L, f: &Matrix3<f64>, w: &L::Advected, h: f64)
-where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3>,
-{
-    use liestep::groups::{Advected as _, LieGroup as _};
-    let element = SO3::from_matrix_unchecked(*f);
-    let Some(xi) = L::Retraction::local_coordinates(&element) else { return };
-    if xi.norm() > 1e3 {
-        return; // a half turn is out of Cayley's reach, and near it the coordinates have no digits
-    }
-    let constants = system.constants(h);
-    let before = L::kick_before(&constants, w);
-    let momentum = system.legendre_minus(f, w, h);
-    let a = momentum + before;
-    let scale = a.norm() + before.norm() + system.momentum_jacobian(f, w, h).norm();
-    // At the solution the residual vanishes, up to a factor whose size the Jacobian shows.
-    let terms = L::step_terms(&constants, &a, w);
-    let half = xi * 0.5;
-    let (residual, jacobian) = L::newton_system(&constants, &terms, &half);
-    let size = jacobian.norm() * (1.0 + half.norm()) + residual.norm();
-    assert!(residual.norm() <= 1e-12 * size, "residual {residual} of {size}");
-    // Away from it, the residual is that multiple of U − a.
-    let offset = Vector3::new(0.3, -0.2, 0.5) * scale;
-    let terms = L::step_terms(&constants, &(a + offset), w);
-    let (residual, jacobian) = L::newton_system(&constants, &terms, &half);
-    let factor = 0.5 * h * (1.0 + half.norm_squared()).powi(L::DENOMINATORS.cast_signed());
-    assert!((residual + offset * factor).norm() <= 1e-11 * size.max(residual.norm()));
-    for j in 0..3 {
-        let s = 1e-6 * (1.0 + half.norm());
-        let at = |s: f64| L::newton_system(&constants, &terms, &(half + Vector3::ith(j, s))).0;
-        let column = (at(s) - at(-s)) / (2.0 * s);
-        assert!((jacobian.column(j) - column).norm() <= 1e-6 * jacobian.norm(), "column {j} of {jacobian}: {column}");
-    }
-    // μ⁺ = Ad*_F a + k₁⁺ is (L_F)* δl_d/δF.
-    let increment = element.increment();
-    let next = w.advect(&increment);
-    let after = element.adjoint_transpose(&a) + L::kick_after(&constants, &increment, &next);
-    let expected = system.legendre_plus(f, w, h);
-    assert!((after - expected).norm() <= 1e-12 * (scale + after.norm()), "{after} instead of {expected}");
+#[test]
+fn heavy_tops_and_free_bodies() {
+    compare("a full tensor", top, top, |_| 0.0);
+    compare("principal axes", diagonal_top, diagonal_top, |_| 0.0);
+    compare("no advected parameter", free_body, free_body, |body| body.J_d.as_matrix().trace());
 }
 
 #[test]
-fn heavy_top_with_a_full_tensor() {
-    compare(top, top, top, ANY);
-}
-
-#[test]
-fn heavy_top_in_principal_axes() {
-    compare(diagonal_top, diagonal_top, diagonal_top, ANY);
-}
-
-#[test]
-fn free_body_without_advected_parameters() {
-    compare(free_body, free_body, free_body, ANY);
-}
-
-#[test]
-fn two_advected_vectors_and_every_operation() {
-    compare(everything, everything, everything, ANY);
-}
-
-#[test]
-fn smooth_functions() {
-    // At a half turn ln((1 + tr F)/4) is singular, and central differences reach across.
-    compare(smooth, smooth, smooth, -0.9);
+fn every_operation_and_smooth_functions() {
+    compare("every operation", everything, everything, |body| body.J.to_nonstandard().as_matrix().trace());
+    compare("smooth functions", smooth, smooth, |body| 2.0 * body.k);
 }
 
 /// (3.17), (3.18) and the diamond of section 3.2.1, typed by hand, with `p = 2 vee(Π^)` (errata E1, E5).
