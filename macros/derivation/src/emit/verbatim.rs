@@ -23,7 +23,8 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
     let span = Span::mixed_site();
     let private = &header.private;
     let Some(mut expression) = declaration.expression.clone() else { return TokenStream::new() };
-    let mut rewrite = Rewrite { header, mentioned: Vec::new(), scopes: Vec::new() };
+    let mut rewrite =
+        Rewrite { header, is_product: declaration.group.is_product(), mentioned: Vec::new(), scopes: Vec::new() };
     rewrite.visit_expr_mut(&mut expression);
     let Bound { names, values, .. } = bound(declaration, header, rewrite.mentioned);
     // In the user's scope `F` and `I` may be constants or unit structs, which a pattern would compare with instead of
@@ -252,6 +253,7 @@ fn translation(header: &Header, matrix: &TokenStream, coordinates: usize) -> Tok
 /// Resolves the names of the expression at the macro's site, and notes which there are.
 struct Rewrite<'a> {
     header: &'a Header,
+    is_product: bool,
     mentioned: Vec<String>,
     /// The names that the `let`s of the blocks around have bound so far.
     scopes: Vec<Vec<Spelling>>,
@@ -330,7 +332,8 @@ impl VisitMut for Rewrite<'_> {
         // A path, as one closure can't be for matrices of several sizes.
         if matches!(&*call.func, Expr::Path(path) if path.path.is_ident("inverse")) {
             let private = &self.header.private;
-            *call.func = if call.args.first().is_some_and(is_increment) {
+            // Of one body among several `F` isn't the group's.
+            *call.func = if !self.is_product && call.args.first().is_some_and(is_increment) {
                 syn::parse_quote_spanned!(Span::mixed_site()=> #private::inverse_of::<<Self as #private::Term>::Group>)
             } else {
                 syn::parse_quote_spanned!(Span::mixed_site()=> #private::inverse)
