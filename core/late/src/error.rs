@@ -41,6 +41,9 @@ pub enum LateError {
     /// A step of it isn't written in C, and why.
     #[error("{0}")]
     C(&'static str),
+    /// It is a sum of no declarations.
+    #[error("a sum has a declaration at least")]
+    Nothing,
     /// The declaration is on another group.
     #[error("the declaration is on {declared}: take that group")]
     Group {

@@ -174,6 +174,20 @@ impl<G: LieGroup, W, K, B: Backend<G::Scalar>> Late<G, W, K, B> {
         Ok(self)
     }
 
+    /// With values for all parameters, in their order: the numbers that an effect describes.
+    ///
+    /// # Errors
+    ///
+    /// Where there are more or fewer.
+    pub fn with_all(mut self, numbers: &[G::Scalar]) -> Result<Self, LateError> {
+        let (expected, found) = (self.numbers.len(), numbers.len());
+        if expected != found {
+            return Err(LateError::Size { name: self.declaration.name.clone(), expected, found });
+        }
+        self.numbers = numbers.into();
+        Ok(self)
+    }
+
     /// What was derived.
     #[must_use]
     pub const fn declaration(&self) -> &'static Declaration {

@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
+use liestep_derivation::Role;
 use serde::Deserialize as _;
 use toml::de::Deserializer;
 
 use crate::file::body::Kinetic;
 use crate::file::column::Column;
 use crate::file::effects::Table as _;
-use crate::file::lagrangian;
+use crate::file::lagrangian::take;
 use crate::file::method::{Method, Scheme as _};
 use crate::file::mistake::{Mistake, Wrong, place_of};
 use crate::file::scene::{Origin, Places, SceneFile};
@@ -19,7 +20,8 @@ use crate::file::tables::{Document, span};
 pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<SceneFile, Mistake> {
     let located = |(span, message): Wrong| Mistake::at(path, place_of(text, &span), message);
     let mut rest = document.clone();
-    let lagrangian = lagrangian::take(&mut rest).map_err(located)?;
+    let lagrangian = take(&mut rest, Role::Lagrangian).map_err(located)?;
+    let force = take(&mut rest, Role::Force).map_err(located)?;
     if let Some(name) = named_method(&rest) {
         return Err(located((span(document, &["run", "method"]), format!("`{name}` {METHODS}"))));
     }
@@ -28,7 +30,7 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     if file.body.is_none() && lagrangian.is_none() {
         return Err(located((document.span(), "missing field `body`".to_owned())));
     }
-    file.lagrangian = lagrangian;
+    (file.lagrangian, file.force) = (lagrangian, force);
     at_odds(document, &file).map_or(Ok(()), Err).map_err(located)?;
     let default = ["velocity", "spatial-momentum", "energy", "axis", "quaternion"];
     file.columns = file.output.columns(&Column::OF_ONE_BODY, &default).map_err(located)?;
@@ -73,7 +75,7 @@ fn of_pace(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
         return wrong(&["run", "duration"], message);
     }
     if let Pace::Accuracy(_) = file.run.pace {
-        if let Some(force) = file.force() {
+        if let Some(force) = file.first_force() {
             let message =
                 format!("an accuracy can be asked for in conservative scenes; {force} does work, so give a `step`");
             return wrong(&["run", "accuracy"], message);
@@ -130,7 +132,7 @@ fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
     let wrong = |keys: &[&str], message: String| Some((span(document, keys), message));
     let method = &file.run.method;
     if let Some(lagrangian) = &file.lagrangian {
-        if let Some(effect) = file.effects().next() {
+        if let Some((effect, _)) = file.effects().next() {
             let message = format!("a `lagrangian` has all its terms in its text: write {} there", effect.name(" "));
             return wrong(&[effect.key], message);
         }
@@ -142,13 +144,13 @@ fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
             let message = format!("{} moves a body of the library; leave it out", method.name());
             return wrong(&["run", "method"], message);
         }
-        if matches!(method, Method::Composition(_)) && !lagrangian.declaration().is_self_adjoint {
+        if matches!(method, Method::Composition(_)) && !lagrangian.declaration.is_self_adjoint {
             let message = "only steps that undo those of −h can be composed, and those of this Lagrangian don't";
             return wrong(&["run", "method"], message.to_owned());
         }
     }
     if !matches!(method, Method::Step)
-        && let Some(force) = file.force()
+        && let Some(force) = file.first_force()
     {
         let name = method.name();
         return wrong(&["run", "method"], format!("{name} needs a conservative scene; {force} does work"));

@@ -1,10 +1,11 @@
-//! The table of a Lagrangian of one's own: its text, derived, with the numbers of its parameters.
+//! The table of a Lagrangian or a force of one's own: its text, derived, with the numbers of its parameters.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 use liestep::SO3;
-use liestep::mechanics::{Effect as _, Inertia, Term as _, WithExpensiveKinetic, WithKinetic};
+use liestep::mechanics::{Effect as _, Inertia, KineticPart, Term as _, WithEitherKinetic, WithoutKinetic};
+use liestep_derivation::Role;
 use liestep_late::{Declaration, Late, LateError};
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Deserializer};
@@ -16,35 +17,32 @@ use crate::file::mistake::{Wrong, advised};
 use crate::file::quantity::{Any, Scalar};
 use crate::file::tables::Document;
 
-/// What is advected; where it is less, the others are zero.
+/// What a Lagrangian advects; where it is less, the others are zero.
 type Seen = (Vector3<f64>, Vector3<f64>, Vector3<f64>, Vector3<f64>);
 
-/// A Lagrangian on SO(3), by the kind of its kinetic part.
+/// A Lagrangian or a force on SO(3), with the numbers of its parameters.
 #[derive(Clone)]
-pub(crate) enum Lagrangian {
-    Usual(Late<SO3, Seen, WithKinetic>),
-    Expensive(Late<SO3, Seen, WithExpensiveKinetic>),
+pub(crate) struct Declared {
+    pub(crate) declaration: &'static Declaration,
+    pub(crate) numbers: Vec<f64>,
 }
 
-impl Lagrangian {
-    pub(crate) fn declaration(&self) -> &'static Declaration {
-        match self {
-            Self::Usual(late) => late.declaration(),
-            Self::Expensive(late) => late.declaration(),
-        }
+impl Declared {
+    /// As an effect with this kinetic part.
+    pub(crate) fn late<K: KineticPart>(&self) -> Result<Late<SO3, Seen, K>, LateError> {
+        Late::of(self.declaration)?.with_all(&self.numbers)
     }
 
     /// The inertia of the limit where the body is not turned.
-    pub(crate) fn inertia(&self) -> Matrix3<f64> {
-        match self {
-            Self::Usual(late) => late.inertia(&late.advected()),
-            Self::Expensive(late) => late.inertia(&late.advected()),
-        }
+    pub(crate) fn inertia(&self) -> Option<Matrix3<f64>> {
+        self.late::<WithEitherKinetic>().ok().map(|late| late.inertia(&late.advected()))
     }
 }
 
 const KEYS: &str = "a Lagrangian has `l_d`, or `l` with `discretise`; it may have `advected`, as in \
                     `advected = { w = \"up\" }`, and has a key for each parameter";
+const KEYS_OF_FORCES: &str = "a force has `work`; it may have `advected`, as in `advected = { w = \"up\" }`, and has a \
+                              key for each parameter";
 
 /// A parameter: its type in the declaration, and its numbers.
 struct Parameter {
@@ -55,23 +53,27 @@ struct Parameter {
 
 /// By then the table has been taken: the key is there for the message that lists all keys.
 #[allow(clippy::unnecessary_wraps)] // serde asks for it
-pub(crate) fn taken<'de, D: Deserializer<'de>>(_: D) -> Result<Option<Lagrangian>, D::Error> {
+pub(crate) fn taken<'de, D: Deserializer<'de>>(_: D) -> Result<Option<Declared>, D::Error> {
     Ok(None)
 }
 
-/// Takes the table out of a document, if there is one.
-pub(crate) fn take(document: &mut Document<'_>) -> Result<Option<Lagrangian>, Wrong> {
-    let Some((key, table)) = document.get_mut().remove_entry("lagrangian") else { return Ok(None) };
+/// Takes the table of a Lagrangian or a force out of a document, if there is one.
+pub(crate) fn take(document: &mut Document<'_>, role: Role) -> Result<Option<Declared>, Wrong> {
+    let name = if role == Role::Force { "force" } else { "lagrangian" };
+    let Some((key, table)) = document.get_mut().remove_entry(name) else { return Ok(None) };
     let DeValue::Table(table) = table.get_ref() else {
-        return Err((key.span(), "`lagrangian` is a table".to_owned()));
+        return Err((key.span(), format!("`{name}` is a table")));
     };
-    if let Some((other, _)) = document.get_ref().get_key_value("body") {
+    if let Some((other, _)) = document.get_ref().get_key_value("body").filter(|_| role == Role::Lagrangian) {
         return Err((other.span(), "a `lagrangian` has its kinetic energy itself: leave `body` out".to_owned()));
     }
-    read(table, &key.span()).map(Some)
+    read(table, &key.span(), role).map(Some)
 }
 
-fn read(table: &DeTable<'_>, place: &Range<usize>) -> Result<Lagrangian, Wrong> {
+/// What stands before the expression, the expression, and its place.
+type Expression = (String, (String, Range<usize>));
+
+fn expression(table: &DeTable<'_>, place: &Range<usize>, role: Role) -> Result<Expression, Wrong> {
     let text = |key: &str| match table.get(key) {
         Some(value) => match value.get_ref() {
             DeValue::String(text) => Ok(Some((text.to_string(), value.span()))),
@@ -79,28 +81,39 @@ fn read(table: &DeTable<'_>, place: &Range<usize>) -> Result<Lagrangian, Wrong> 
         },
         None => Ok(None),
     };
-    let [group, l_d, l] = ["group", "l_d", "l"].map(text);
-    let [velocity, discretise] = ["velocity", "discretise"].map(text);
-    if let Some((group, span)) = group?
+    if let Some((group, span)) = text("group")?
         && group != "SO3"
     {
         return Err((span, "a file's Lagrangian is on `SO3`; on other groups it is declared in a program".to_owned()));
     }
-    let (head, (expression, at)) = match (l_d?, l?, discretise?) {
-        (Some(l_d), None, None) => ("l_d".to_owned(), l_d),
+    if role == Role::Force {
+        let work = text("work")?.ok_or_else(|| (place.clone(), KEYS_OF_FORCES.to_owned()))?;
+        return Ok(("work".to_owned(), work));
+    }
+    let [l_d, l, velocity, discretise] = ["l_d", "l", "velocity", "discretise"].map(text);
+    match (l_d?, l?, discretise?) {
+        (Some(l_d), None, None) => Ok(("l_d".to_owned(), l_d)),
         (None, Some(l), Some((discretise, _))) => {
             let velocity = velocity?.map_or_else(|| "Omega".to_owned(), |(name, _)| name);
-            (format!("velocity = {velocity}, discretise = {discretise}, l"), l)
+            Ok((format!("velocity = {velocity}, discretise = {discretise}, l"), l))
         }
-        _ => return Err((place.clone(), KEYS.to_owned())),
-    };
+        _ => Err((place.clone(), KEYS.to_owned())),
+    }
+}
+
+fn read(table: &DeTable<'_>, place: &Range<usize>, role: Role) -> Result<Declared, Wrong> {
+    let (head, (expression, at)) = expression(table, place, role)?;
     let advected = advected(table)?;
-    let known = ["group", "l_d", "l", "velocity", "discretise", "advected"];
+    let known: &[&str] = match role {
+        Role::Force => &["group", "work", "advected"],
+        _ => &["group", "l_d", "l", "velocity", "discretise", "advected"],
+    };
     let parameters = table.iter().filter(|(key, _)| !known.contains(&key.get_ref().as_ref()));
     let parameters = parameters.map(|(key, value)| parameter(key.get_ref(), value)).collect::<Result<Vec<_>, _>>()?;
     let fields: Vec<String> = parameters.iter().map(|one| format!("{}: {}", one.name, one.kind)).collect();
+    let (attribute, name) = if role == Role::Force { ("force", "Force") } else { ("lagrangian", "Lagrangian") };
     let declared = format!(
-        "#[lagrangian(group = SO3, {advected}{head} =\n{expression}\n)]\nstruct Lagrangian {{ {} }}",
+        "#[{attribute}(group = SO3, {advected}{head} =\n{expression}\n)]\nstruct {name} {{ {} }}",
         fields.join(", ")
     );
     let wrong = |error: LateError| {
@@ -113,21 +126,13 @@ fn read(table: &DeTable<'_>, place: &Range<usize>) -> Result<Lagrangian, Wrong> 
         (span.unwrap_or_else(|| elsewhere.clone()), first.message)
     };
     let declaration = Declaration::parse(&declared).map_err(wrong)?;
-    let with = |name: &str, error: LateError| {
-        (table.get(name).map_or_else(|| place.clone(), Spanned::span), error.to_string())
+    let numbers = parameters.into_iter().flat_map(|one| one.numbers).collect();
+    let declared = Declared { declaration, numbers };
+    let fits = match role {
+        Role::Force => declared.late::<WithoutKinetic>().map(|_| ()),
+        _ => declared.late::<WithEitherKinetic>().map(|_| ()),
     };
-    macro_rules! numbered {
-        ($late:expr) => {
-            parameters.iter().try_fold($late.map_err(wrong)?, |late, one| {
-                late.with(&one.name, &one.numbers).map_err(|error| with(&one.name, error))
-            })?
-        };
-    }
-    Ok(if declaration.is_expensive {
-        Lagrangian::Expensive(numbered!(Late::of(declaration)))
-    } else {
-        Lagrangian::Usual(numbered!(Late::of(declaration)))
-    })
+    fits.map_err(wrong).map(|()| declared)
 }
 
 /// `advected(w = up), `, if something is.

@@ -3,57 +3,81 @@
 use std::rc::Rc;
 
 use liestep::accuracy::Accuracy;
-use liestep::effects::{PrincipalBody, RigidBody};
+use liestep::effects::{CayleyBody, Dipole, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::groups::Advected;
-use liestep::mechanics::Term as _;
+use liestep::mechanics::{Effect as _, Inertia, SceneVisitor, Term as _, WithEitherKinetic, WithoutKinetic};
 use liestep::methods::ExactBody;
 use liestep::motion::AnyStepper;
+use liestep::numbers::Entries as _;
 use liestep::{SO3, SetupError, Stepper};
+use liestep_late::{Declaration, Late, LateError};
+use nalgebra::Vector3;
 
-use crate::file::body::Distribution;
-use crate::file::effects::{Share, Table as _, effects};
-use crate::file::lagrangian::Lagrangian;
+use crate::file::body::{Distribution, Kinetic};
+use crate::file::lagrangian::Declared;
 use crate::file::method::{Method, Stages};
 use crate::file::scene::SceneFile;
 use crate::file::schedule::Pace;
 use crate::run::course::{MemberStart, course, sample, watches};
-use crate::run::kinetic::ChosenBody;
 use crate::run::make::{Listeners, Run, Stop, make};
-use crate::run::switched::Switched;
 
-/// The sums of a body and what is switched, each of one type; a file's scene is the shortest that has all that it names.
-///
-/// An effect with an unknown part makes each iteration longer, and that of magnetic damping raises the degree of the
-/// equation. Which effects there are beside is asked at run time: all subsets would be 512 types of each kinetic term.
-macro_rules! sums {
-    ($file:expr, $J:expr, $body:expr) => { sums!($file, $J, $body, at 0.0) };
-    ($file:expr, $J:expr, $body:expr, at $time:expr) => {{
-        let (file, body, J, time) = ($file, $body, $J, $time);
-        effects!(sums_of file J body time)
-    }};
+/// What acts on a body: of all vectors that its terms advect, one after the other, with zeros behind them.
+type Seen = (V, V, V, V, V, V);
+type V = Vector3<f64>;
+/// The effects of a file and its force, in one program.
+type Rest = Late<SO3, Seen, WithoutKinetic>;
+
+/// The numbers of effects.
+struct Numbers(Vec<f64>);
+
+impl SceneVisitor<f64> for Numbers {
+    fn term(&mut self, _: &str) {}
+
+    fn parameter(&mut self, _: &str, value: f64) {
+        self.0.push(value);
+    }
 }
 
-/// Those of the list.
-macro_rules! sums_of {
-    (
-        { $file:ident $J:ident $body:ident $time:ident }
-        potentials { $($potential:ident: $potential_table:ident $potential_keys:tt => |$($a:tt),+| -> $A:ty $b:block)+ }
-        shifts { $($shift:ident: $shift_table:ident $shift_keys:tt => |$($c:tt),+| -> $C:ty $d:block)+ }
-        forces { $($force:ident: $force_table:ident $force_keys:tt => |$($e:tt),+| -> $E:ty $f:block)+ }
-        steep_forces { $($steep:ident: $steep_table:ident $steep_keys:tt => |$($g:tt),+| -> $G:ty $h:block)+ }
-    ) => {{
-        let potentials = $body $(+ Switched($file.$potential.as_ref().map(|table| table.effect(&$J, $time))))+;
-        let with_rotor = potentials $(+ Switched($file.$shift.as_ref().map(|table| table.effect(&$J, $time))))+;
-        let driven = with_rotor $(+ Switched($file.$force.as_ref().map(|table| table.effect(&$J, $time))))+;
-        let damped = driven $(+ Switched($file.$steep.as_ref().map(|table| table.effect(&$J, $time))))+;
-        (potentials, with_rotor, driven, damped)
-    }};
+/// The texts of what the file names beside the body are derived once a program; here they get their numbers.
+fn rest(file: &SceneFile, J: Option<&Inertia>) -> Result<Option<Rest>, Stop> {
+    let other = |error: LateError| match error {
+        LateError::Advected { .. } => Stop::Other("the effects of a scene advect six vectors at most".to_owned()),
+        other => Stop::Other(other.to_string()),
+    };
+    let (mut terms, mut numbers) = (Vec::new(), Numbers(Vec::new()));
+    for (J, (effect, table)) in J.into_iter().flat_map(|J| file.effects().map(move |effect| (J, effect))) {
+        terms.push(Declaration::parse(effect.derived.1).map_err(other)?);
+        table.describe(J, 0.0, &mut numbers);
+    }
+    if let Some(Declared { declaration, numbers: own }) = &file.force {
+        terms.push(declaration);
+        numbers.0.extend(own);
+    }
+    if terms.is_empty() {
+        return Ok(None);
+    }
+    let late = Declaration::sum(&terms).and_then(Late::of).and_then(|late: Rest| late.with_all(&numbers.0));
+    late.map(Some).map_err(other)
 }
 
-/// Simulates the sum of the body and those effects that the file has.
+/// What the effects advect at a time, in place of the first vectors of those.
+fn seen_at(file: &SceneFile, J: &Inertia, time: f64, fixed: &Seen) -> Seen {
+    let mut numbers = Vec::with_capacity(18);
+    file.effects().for_each(|(_, table)| table.advected(J, time, &mut |number| numbers.push(number)));
+    let (turning, mut all) = (numbers.len(), 0);
+    fixed.each(&mut |number| {
+        if all >= turning {
+            numbers.push(number);
+        }
+        all += 1;
+    });
+    let mut numbers = numbers.into_iter();
+    Seen::from_entries(&mut || numbers.next().unwrap_or(0.0))
+}
+
+/// Simulates the sum of the body, which is compiled, and what acts on it, a program.
 ///
-/// Every run by (3.13) has the bits of the sum of just those. By other kinetic terms it is the same to rounding: beside an
-/// unknown part that is switched off, their equation is solved with its Jacobian from the first iteration on.
+/// With one effect it has the bits of their compiled sum; several are added before they are added to the body.
 pub(crate) fn run(file: &SceneFile, listeners: Listeners<'_>) -> Result<Run, Stop> {
     let mut run = None;
     match file.run.pace {
@@ -108,54 +132,54 @@ fn stepped(file: &SceneFile, h: f64, purpose: Purpose<'_, '_>) -> Result<(), Sto
             simulate(file, Stepper::new($scene, h).map(Stepper::into_any), purpose)
         };
     }
+    macro_rules! with_rest {
+        ($body:expr, $J:expr) => {{
+            let (body, J) = ($body, $J);
+            match rest(file, Some(&J))? {
+                None => step!(body),
+                Some(rest) if file.turning().next().is_some() => {
+                    let (fixed, seen) = (rest.advected(), Rc::new(file.clone()));
+                    let values = move |time| (Default::default(), seen_at(&seen, &J, time, &fixed));
+                    let stepper = Stepper::new(body + rest, h).map(|stepper| stepper.driven(values).into_any());
+                    simulate(file, stepper, purpose)
+                }
+                Some(rest) => step!(body + rest),
+            }
+        }};
+    }
     let Some(body) = file.body else {
-        return match &file.lagrangian {
-            Some(Lagrangian::Usual(late)) => step!(late.clone()),
-            Some(Lagrangian::Expensive(late)) => step!(late.clone()),
-            None => Err(nothing()),
+        let late = file.lagrangian.as_ref().ok_or_else(nothing)?.late::<WithEitherKinetic>();
+        let late = late.map_err(|error| Stop::Other(error.to_string()))?;
+        // Effects have their inertia of the body.
+        return match rest(file, None)? {
+            None => step!(late),
+            Some(rest) => step!(late + rest),
         };
     };
     let J = body.inertia();
-    macro_rules! with_effects {
-        ($body:expr) => {{
-            if file.turning().next().is_some() {
-                let (body, seen) = ($body, Rc::new(file.clone()));
-                let scene = sums!(file, J, body).3;
-                let values = move |time| sums!(&*seen, J, body, at time).3.advected();
-                let stepper = Stepper::new(scene, h).map(|stepper| stepper.driven(values).into_any());
-                return simulate(file, stepper, purpose);
-            }
-            let (_, with_rotor, _, damped) = sums!(file, J, $body);
-            if file.last_share() < Share::Force { step!(with_rotor) } else { step!(only damped) }
-        }};
+    match (body.kinetic, body.mass) {
+        (Kinetic::Rigid, Distribution::Principal(J_d)) => with_rest!(PrincipalBody { J_d }, J),
+        (Kinetic::Rigid, Distribution::Full(J_d)) => with_rest!(RigidBody { J_d }, J),
+        (Kinetic::Cayley, _) => with_rest!(CayleyBody { J }, J),
+        (Kinetic::Geodesic, _) => with_rest!(GeodesicBody { J }, J),
+        (Kinetic::FourthOrder, _) => with_rest!(FourthOrderBody { J }, J),
+        (Kinetic::SixthOrder, _) => with_rest!(SixthOrderBody { J }, J),
     }
-    match (ChosenBody::of(body.kinetic, J), body.mass) {
-        (Some(body), _) => with_effects!(body),
-        // The kinetic term that most files have is there in four sums, not two.
-        (None, Distribution::Principal(J_d)) if file.turning().next().is_none() => {
-            let (potentials, with_rotor, driven, damped) = sums!(file, J, PrincipalBody { J_d });
-            match file.last_share() {
-                Share::Potential => step!(potentials),
-                Share::Shift => step!(with_rotor),
-                Share::Force => step!(only driven),
-                Share::SteepForce => step!(only damped),
-            }
-        }
-        // What turns is given to the steps of one sum, the longest.
-        (None, mass) => {
-            let J_d = match mass {
-                Distribution::Principal(J_d) => J_d.into(),
-                Distribution::Full(J_d) => J_d,
-            };
-            with_effects!(RigidBody { J_d })
-        }
+}
+
+/// What acts on a body, or what is like nothing: one type for methods that look for a potential.
+fn potential(file: &SceneFile, J: &Inertia) -> Result<Rest, Stop> {
+    if let Some(rest) = rest(file, Some(J))? {
+        return Ok(rest);
     }
+    let nothing = Late::parse(Dipole::<f64>::DECLARATION).and_then(|late: Rest| late.with_all(&[0.0; 6]));
+    nothing.map_err(|error| Stop::Other(error.to_string()))
 }
 
 /// By methods that look at inertia and potential only.
 fn with_exact_body(file: &SceneFile, h: f64, purpose: Purpose<'_, '_>) -> Result<(), Stop> {
     let J = file.body.ok_or_else(nothing)?.inertia();
-    let (_, scene, _, _) = sums!(file, J, RigidBody { J_d: J.to_nonstandard() });
+    let scene = RigidBody { J_d: J.to_nonstandard() } + potential(file, &J)?;
     let stepper = match file.run.method {
         Method::Step | Method::Composition(_) => Stepper::new(scene, h).map(Stepper::into_any),
         Method::Splitting(scheme) => Stepper::split(scene, h, ExactBody::new(&J), scheme.0).map(Stepper::into_any),
@@ -200,14 +224,9 @@ fn ask(file: &SceneFile, tolerance: f64, listeners: Listeners<'_>) -> Result<Run
     }
     let body = file.body.ok_or_else(nothing)?;
     let J = body.inertia();
+    let potential = potential(file, &J)?;
     match body.mass {
-        Distribution::Principal(J_d) => {
-            let (potentials, with_rotor, _, _) = sums!(file, J, PrincipalBody { J_d });
-            if file.last_share() < Share::Shift { ask!(potentials) } else { ask!(with_rotor) }
-        }
-        Distribution::Full(J_d) => {
-            let (_, with_rotor, _, _) = sums!(file, J, RigidBody { J_d });
-            ask!(with_rotor)
-        }
+        Distribution::Principal(J_d) => ask!(PrincipalBody { J_d } + potential),
+        Distribution::Full(J_d) => ask!(RigidBody { J_d } + potential),
     }
 }
