@@ -29,5 +29,5 @@ pub use lanes::Wider;
 pub use latex::latex;
 pub use liestep_derivation::{Array, Function, Operation, Program, Source, Stages};
 pub use specialised::specialised;
-pub use term::Late;
+pub use term::{Late, numbers};
 pub use written::{c, rust};

@@ -17,13 +17,11 @@ use liestep::effects::{
 use liestep::groups::{CayleyRetraction, CovariantTensor, LieGroup as _, Retraction, SE23};
 use liestep::lagrangian;
 use liestep::laws::samples::Random;
-use liestep::mechanics::{
-    DiagonalNonstandardInertia, Effect, Inertia, Regular, SceneVisitor, Vector, WithEitherKinetic, WithoutKinetic,
-};
+use liestep::mechanics::{DiagonalNonstandardInertia, Effect, Inertia, Vector, WithEitherKinetic, WithoutKinetic};
 use liestep::motion::Batch;
 use liestep::numbers::Coordinates as _;
 use liestep::{NonstandardInertia, SO3, Stepper};
-use liestep_late::{Array, Arrays, Backend, Declaration, Interpreted, Late, LateError, specialised};
+use liestep_late::{Array, Arrays, Backend, Declaration, Interpreted, Late, LateError, numbers, specialised};
 use nalgebra::{Matrix3, Matrix5, Point, SMatrix, SVector, Vector3, Vector5};
 use simba::simd::AutoF64x4;
 
@@ -223,19 +221,8 @@ fn sums_of_what_is_read() {
     assert_same(&(body + gravity), &(late + late_gravity), 5);
 }
 
-/// All numbers of an effect.
-struct Numbers(Vec<f64>);
-
-impl SceneVisitor<f64> for Numbers {
-    fn term(&mut self, _: &str) {}
-
-    fn parameter(&mut self, _: &str, value: f64) {
-        self.0.push(value);
-    }
-}
-
 /// At a velocity, and by the increment of a step with it.
-fn assert_same_terms<A, B>(one: &A, other: &B, velocity: &Vector<A>)
+fn assert_same_terms<A, B>(one: &A, other: &B, seed: u64)
 where
     A: Effect<Scalar = f64, Retraction = CayleyRetraction>,
     B: Effect<Scalar = f64, Group = A::Group, Advected = A::Advected>,
@@ -245,31 +232,13 @@ where
         let difference = a - b;
         assert!(difference.dot(&difference).sqrt() < 1e-11 * (1.0 + a.dot(&a).sqrt()), "{a:?} {b:?}");
     };
-    let (h, w) = (0.01, one.advected());
-    let (a, b) = (one.limit(Some(velocity), &w), other.limit(Some(velocity), &w));
+    let (h, w, velocity): (_, _, Vector<A>) = (0.01, one.advected(), Random::new(seed).sample());
+    let (a, b) = (one.limit(Some(&velocity), &w), other.limit(Some(&velocity), &w));
     assert!((a.l - b.l).abs() < 1e-11 * (1.0 + a.l.abs()));
     near(a.momentum, b.momentum);
-    near(a.hessian * *velocity, b.hessian * *velocity);
-    let f = <CayleyRetraction as Retraction<A::Group>>::retract(&(*velocity * h)).matrix();
-    near(one.momentum_jacobian(&f, &w, h) * *velocity, other.momentum_jacobian(&f, &w, h) * *velocity);
-}
-
-/// They make the same steps but for roundings.
-fn assert_near<A, B>(one: &A, other: &B, seed: u64)
-where
-    A: Regular<Scalar = f64, Retraction = CayleyRetraction> + Clone,
-    B: Regular<Scalar = f64, Retraction = CayleyRetraction, Group = A::Group, Advected = A::Advected> + Clone,
-    CayleyRetraction: Retraction<A::Group>,
-{
-    let velocity = Random::new(seed).sample();
-    let one = Stepper::new(one.clone(), 0.01).expect("a stepper");
-    let other = Stepper::new(other.clone(), 0.01).expect("a stepper");
-    let mut first = one.start(A::Group::identity(), velocity).expect("a start");
-    let mut second = other.start(A::Group::identity(), velocity).expect("a start");
-    one.run(&mut first, 100).expect("steps");
-    other.run(&mut second, 100).expect("steps");
-    let (momentum, difference) = (first.momentum(), first.momentum() - second.momentum());
-    assert!(difference.dot(&difference) < 1e-26 * momentum.dot(&momentum), "{momentum:?} {difference:?}");
+    near(a.hessian * velocity, b.hessian * velocity);
+    let f = <CayleyRetraction as Retraction<A::Group>>::retract(&(velocity * h)).matrix();
+    near(one.momentum_jacobian(&f, &w, h) * velocity, other.momentum_jacobian(&f, &w, h) * velocity);
 }
 
 fn declared<E: Effect>(_: &E) -> &'static Declaration {
@@ -284,13 +253,11 @@ macro_rules! as_summed {
             declared(&random!(0, $first { $($of_first)* })) $(, declared(&random!(0, $name { $($field)* })))+
         ];
         let declaration = Declaration::sum(&terms).expect("a sum");
-        let mut numbers = Numbers(Vec::new());
-        sum.describe(&mut numbers);
-        let late = Late::<_, _, WithEitherKinetic>::of(declaration).and_then(|late| late.with_all(&numbers.0));
+        let late = Late::<_, _, WithEitherKinetic>::of(declaration).and_then(|late| late.with_all(&numbers(&sum)));
         let late = late.expect("numbers");
         println!("{}", declaration.name);
         $assert(&sum, &late, $seed);
-        assert_same_terms(&sum, &late, &Random::new($seed).sample());
+        assert_same_terms(&sum, &late, $seed);
         assert!(Late::<_, _, WithEitherKinetic>::of(declaration).and_then(|late| late.with_all(&[1.0])) != Ok(late));
         declaration
     }};
@@ -307,8 +274,8 @@ fn sums_in_one_program() {
     as_summed! { assert_same 3: CayleyBody { J } Rotor { spin } Thrust { at thrust } };
     as_summed! { assert_same 4: Gravity { m g rho up } RigidBody { J_d } Rotor { spin } Rotor { spin } };
     as_summed! { assert_same 5: LogTop { J weight rho up } Gravity { m g rho up } Drag { c J } };
-    // The retraction's tangent comes behind the sum of the Jacobians, and not before it.
-    as_summed! { assert_near 6: Flyer { J } FluidDrag { C } Thruster { at thrust } };
+    // Its retraction's tangent comes behind the sum of the Jacobians, and not before it.
+    as_summed! { assert_same_terms 6: Flyer { J } FluidDrag { C } Thruster { at thrust } };
     let of = |text| Declaration::parse(text).expect("a declaration");
     let [gravity, flyer] = [Gravity::<f64>::DECLARATION, Flyer::DECLARATION].map(of);
     assert!(matches!(Declaration::sum(&[gravity, flyer]), Err(LateError::Group { .. })));

@@ -1,8 +1,8 @@
 //! The list of the effects, with their tables in a file: what is made of all effects is made of this list.
 
 use liestep::effects::{Dipole, Drag, Gravity, GravityGradient, MagneticDamping, Rotor, Spring, Thrust, Torque};
-use liestep::mechanics::{Effect, Inertia, SceneVisitor, Term as _};
-use liestep::numbers::Entries as _;
+use liestep::mechanics::{Effect, Inertia};
+use liestep_late::numbers;
 use serde::Deserialize;
 
 use crate::file::orbit::{OnOrbit, Parameter as _, Turning, TurningDirection, TurningField};
@@ -14,11 +14,8 @@ use crate::file::quantity::{
 
 /// An effect by its parameters in a file.
 pub(crate) trait Table {
-    /// Shows the numbers of the effect on the body with this inertia, with what it is at a time, s.
-    fn describe(&self, J: &Inertia, time: f64, visitor: &mut dyn SceneVisitor<f64>);
-
-    /// Shows the numbers that are advected.
-    fn advected(&self, J: &Inertia, time: f64, each: &mut dyn FnMut(f64));
+    /// The numbers of the effect on the body with this inertia, with what it is at a time, s.
+    fn numbers(&self, J: &Inertia, time: f64) -> Vec<f64>;
 
     /// Whether it is another at each time.
     fn turns(&self) -> bool;
@@ -102,20 +99,11 @@ macro_rules! tables {
                 $(pub(crate) $field: $type),+
             }
 
-            impl $table {
-                fn effect(&self, $J: &Inertia, $t: f64) -> $effect {
-                    let $parameters = self;
-                    $value
-                }
-            }
-
             impl Table for $table {
-                fn describe(&self, J: &Inertia, time: f64, visitor: &mut dyn SceneVisitor<f64>) {
-                    self.effect(J, time).describe(visitor);
-                }
-
-                fn advected(&self, J: &Inertia, time: f64, mut each: &mut dyn FnMut(f64)) {
-                    self.effect(J, time).advected().each(&mut each);
+                fn numbers(&self, $J: &Inertia, $t: f64) -> Vec<f64> {
+                    let $parameters = self;
+                    let effect: $effect = $value;
+                    numbers(&effect)
                 }
 
                 fn turns(&self) -> bool {
