@@ -119,9 +119,13 @@ fn system(solved: &[&Part<'_>], outputs: usize) -> Program {
         let both = own.max(power);
         let one = part.system(&mut fold);
         let one = raised(&mut fold, one, size, both - own);
-        // What is added up so far is multiplied as one.
-        let before = raised(&mut fold, sum, size, both - power);
-        sum = if part.has_target { one } else { added(&mut fold, &before, &one) };
+        sum = if part.has_target {
+            one
+        } else {
+            // What is added up so far is multiplied as one.
+            let before = raised(&mut fold, sum, size, both - power);
+            added(&mut fold, &before, &one)
+        };
         power = both;
     }
     sum.truncate(outputs);

@@ -176,17 +176,24 @@ impl<G: LieGroup, W, K, B: Backend<G::Scalar>> Late<G, W, K, B> {
         Ok(self)
     }
 
-    /// With values for all parameters, in their order: see [`numbers`].
+    /// With values for all parameters, in their order, a diagonal inertia by its tensor: see [`numbers`].
     ///
     /// # Errors
     ///
     /// Where there are more or fewer.
     pub fn with_all(mut self, numbers: &[G::Scalar]) -> Result<Self, LateError> {
-        let (expected, found) = (self.numbers.len(), numbers.len());
+        // An effect describes a diagonal inertia by its tensor.
+        let described = self.declaration.parameters.iter().flat_map(|parameter| match parameter.kind {
+            ParameterKind::DiagonalInertia => [true, false, false, false].repeat(3)[..9].to_vec(),
+            kind => vec![true; kind.len()],
+        });
+        let described: Vec<bool> = described.collect();
+        let (expected, found) = (described.len(), numbers.len());
         if expected != found {
             return Err(LateError::Size { name: self.declaration.name.clone(), expected, found });
         }
-        self.numbers = numbers.into();
+        self.numbers =
+            numbers.iter().zip(described).filter_map(|(&number, is_kept)| is_kept.then_some(number)).collect();
         Ok(self)
     }
 

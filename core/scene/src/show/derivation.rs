@@ -67,11 +67,16 @@ impl Form {
     }
 }
 
+/// The text of one of them, as it is declared.
+#[must_use]
+pub fn declaration(name: &str) -> Option<&'static str> {
+    all().find(|(other, _)| other == name).map(|(_, (_, text))| text)
+}
+
 /// What the library derived of an effect, written in this form.
 #[must_use]
 pub fn written(name: &str, form: Form) -> Option<Result<String, LateError>> {
-    let (_, (_, text)) = all().find(|(other, _)| other == name)?;
-    Some(Declaration::parse(text).and_then(|declaration| form.of(declaration)))
+    Some(Declaration::parse(declaration(name)?).and_then(|declaration| form.of(declaration)))
 }
 
 impl SceneFile {
@@ -89,9 +94,7 @@ impl SceneFile {
     ///
     /// Where that can't be: see [`LateError::C`].
     pub fn written(&self, form: Form) -> Result<String, LateError> {
-        let names: Vec<String> = self.terms().collect();
-        let listed = names.iter().filter_map(|name| all().find(|(other, _)| other == name));
-        let listed = listed.map(|(_, (_, text))| Declaration::parse(text));
+        let listed = self.terms().filter_map(|name| declaration(&name)).map(Declaration::parse);
         let own = self.own().map(|one| Ok(one.declaration));
         form.of(Declaration::sum(&listed.chain(own).collect::<Result<Vec<_>, _>>()?)?)
     }
