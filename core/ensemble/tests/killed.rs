@@ -1,11 +1,11 @@
-//! A run that is killed ten times, with no warning, ends with the files of one that wasn't.
+//! A run that is killed ten times, with no warning, ends with the files of one that wasn't. So do two runs at once.
 //!
 //! Called with a folder this program is the run that is killed; otherwise it is the test.
 
 mod common;
 
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
 use common::{Folder, contents, tops};
@@ -18,6 +18,10 @@ fn run(folder: &Path) -> u64 {
     let report = tops(MEMBERS, STEPS).run(&Local::threads(2), &Store::folder(folder).unwrap()).unwrap();
     assert_eq!((report.missing, report.faults.len()), (0, 0));
     report.made
+}
+
+fn start(folder: &Path) -> Child {
+    Command::new(std::env::current_exe().unwrap()).arg(folder).stdout(Stdio::null()).spawn().unwrap()
 }
 
 fn whole(folder: &Path) -> usize {
@@ -35,8 +39,7 @@ fn main() {
     let mut moments = 0_u64;
     while kills < 10 {
         let before = whole(&killed.0);
-        let program = std::env::current_exe().unwrap();
-        let mut child = Command::new(program).arg(&killed.0).stdout(Stdio::null()).spawn().unwrap();
+        let mut child = start(&killed.0);
         // When one to five more are there, and then some part of the time that the next takes.
         moments = moments.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         while whole(&killed.0) <= before + (moments >> 61) as usize % 5 && child.try_wait().unwrap().is_none() {
@@ -55,5 +58,10 @@ fn main() {
     let made = run(&killed.0);
     assert!((1..60).contains(&made), "{made} of 60 were left");
     assert!(contents(&killed.0) == contents(&undisturbed.0));
+    let shared = Folder::new("shared");
+    for mut run in [start(&shared.0), start(&shared.0)] {
+        assert!(run.wait().unwrap().success(), "one of two runs took away what the other was writing");
+    }
+    assert!(contents(&shared.0) == contents(&undisturbed.0));
     println!("killed {kills} times; {made} of 60 chunks were left to the last run; all files are the same");
 }

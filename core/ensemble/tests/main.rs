@@ -238,7 +238,7 @@ fn damaged_files_are_named_and_made_anew() {
     assert!(matches!(Store::read(&folder.0.join("00000")), Err(Fault::Io(..))));
 }
 
-/// Whatever else lies in the folder stays where it is, whatever it is called.
+/// Whatever else lies in the folder stays where it is, whatever it is called; what a killed run has left half-written goes.
 #[test]
 fn files_of_others_survive() {
     let ensemble = tops(MEMBERS, STEPS);
@@ -261,6 +261,7 @@ fn files_of_others_survive() {
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
         std::fs::write(path, name).unwrap();
     }
+    std::fs::write(folder.0.join("00000/00000001-cbf29ce484222325.arrow.host-1-0.part"), "half").unwrap();
     let report = run(&ensemble, &Local::threads(2), &folder);
     assert_eq!((report.made, report.missing, &report.faults), (0, 0, &vec![]));
     let mut found = contents(&folder.0);

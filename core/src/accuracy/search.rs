@@ -16,20 +16,20 @@ use crate::motion::Cost;
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _;
 
-/// A part of the motion is so many times shorter than the next one.
+/// The ratio of the lengths of two successive parts of the motion.
 const SHORTER: f64 = 8.0;
-/// And so often it is shortened at most, until as many steps show it.
+/// The largest number of such shortenings before the first part.
 const MOST_SHORTENINGS: i32 = 20;
-/// What of the tolerance the reference may be wrong by: with what a run may differ from it by that is the tolerance.
+/// The share of the tolerance that is left to the reference's own error; the rest is left to the run.
 const OF_THE_REFERENCE: f64 = 0.1;
 const ACCEPTED: f64 = 1.0 - OF_THE_REFERENCE;
 /// What is aimed at.
 const AIM: f64 = ACCEPTED - 0.5 * OF_THE_REFERENCE;
-/// Without a shorter part the first run of a method costs about the best one's over this.
+/// The ratio of the best run's cost to that of a method's first run, where no shorter part has shown more.
 const FIRST: f64 = 16.0;
-/// A run to the horizon is worth its trial if it costs less than so much of the best.
+/// A run to the horizon is worth its trial if it costs less than this share of the best one.
 const WORTH: f64 = 0.98;
-/// All trials together are to cost at most so many runs of the method chosen.
+/// The most that all trials together may cost, in runs of the chosen method.
 const MOST_RUNS: f64 = 55.0;
 /// What other runs say of a method's next one may be wrong by so much.
 const UNSURE: f64 = 1.15;
@@ -146,7 +146,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
         })
     }
 
-    /// How often the part is in the horizon that few steps of the cheapest method show.
+    /// The ratio of the horizon to the longest part that a few steps of the cheapest method resolve.
     fn shown(&mut self) -> Option<(f64, Ladder<'a, G, A>)> {
         let cheapest = (0..self.methods.len()).min_by(|&a, &b| {
             let place = |k: usize| (!self.methods[k].is_exact, self.costs[k].least());
@@ -228,7 +228,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
     ) -> Option<(Reference<G>, Best<G>)> {
         let next = |ladder: &Ladder<'a, G, A>| ladder.finest().map_or(1.0, |run| 2.0 * run.steps);
         let (mut steps, mut is_looked_at) = (first.unwrap_or_else(|| next(ladder)), false);
-        // Of a first few long steps the order isn't believed unseen.
+        // A few long steps may not show the method's order yet, so it is assumed only after it has been observed.
         let unseen = first.map_or(1.0, |_| ladder.order());
         if let (Some((left, _)), Some(run)) = (ladder.left(1.0), ladder.finest().copied())
             && left <= OF_THE_REFERENCE * tolerance

@@ -20,7 +20,7 @@ use crate::numbers::{Coordinates as _, Entries as _, Kernel, Vectors, dispatch, 
 pub enum Tape {
     /// Every stage: on SO(3) 200 bytes each.
     All,
-    /// A state at every `√N`th of `N` steps, and the stages between two of them. All steps but those behind the last of
+    /// A state at every `√N`th of `N` steps, and the stages between two of them. All steps but those after the last of
     /// these states are made twice. The gradient is the same to the bit.
     SquareRoot,
 }
@@ -65,8 +65,8 @@ impl<G: LieGroup> Back<'_, G> {
     }
 }
 
-/// What the steps of a run are given, and the motions before them, of which a step's changes don't tell under an input.
-/// Both are empty where no step is given anything.
+/// The inputs of the steps, and the motion before each step, which can't be found again from the changes of a step with an
+/// input. Both are empty where the steps have no input.
 struct Given<'i, S: Effect> {
     inputs: &'i [InputOf<S>],
     motions: Vec<Motion<Group<S>, S::Advected>>,
@@ -239,7 +239,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         let length = length.max(1);
         let (mut end, mut starts) = (*state, Vec::new());
         let mut events = Vec::new();
-        // Where there is no memory for them, that is found out when they are made.
+        // A reservation that fails isn't an error yet: the stages that are stored below are, if there is no memory for them.
         let _ = events
             .try_reserve(usize::try_from(length).unwrap_or(usize::MAX).saturating_mul(self.stepper.plan.stages()));
         let events = RefCell::new(events);

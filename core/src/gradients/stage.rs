@@ -21,7 +21,7 @@ pub struct Stage<'a, E: Effect> {
     increment: Matrix<E>,
     /// What a kick has of the force gradient.
     gradient: Option<ForceGradient<'a, Scalar<E>, E::Constants, Square<E>>>,
-    /// Among the parameters of the plan, the number of the effect's first.
+    /// The index of the effect's first parameter among the parameters of the plan.
     first: usize,
 }
 
@@ -30,7 +30,7 @@ pub struct Stage<'a, E: Effect> {
 pub(crate) struct ForceGradient<'a, T, C, M> {
     /// s³.
     pub(crate) share: T,
-    /// With which [`Effect::kick_before`] is the torque `τ`.
+    /// The constants for which [`Effect::kick_before`] returns the torque `τ`.
     pub(crate) torque: &'a C,
     /// `J⁻¹`.
     pub(crate) inverse_inertia: &'a M,
@@ -114,7 +114,8 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         self.effect.by_advected(&self.increment, &self.advected, self.length(), visit);
     }
 
-    /// The `h` of the derivatives; of a kick, which is proportional to it, one second.
+    /// The step at which the derivatives are evaluated. A kick is proportional to its duration, so its derivatives are those
+    /// of one second.
     #[hot]
     fn length(&self) -> Scalar<E> {
         match self.kind {

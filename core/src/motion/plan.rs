@@ -237,7 +237,7 @@ pub trait Plan<S: Effect> {
         Ok(())
     }
 
-    /// Puts other advected values in the place of those that the body sees, and forgets what is kept of them.
+    /// Replaces the advected values that the body sees, and forgets what the memory has derived from the old ones.
     #[hot]
     fn see(&self, motion: &mut Motion<Group<S>, S::Advected>, _kept: &mut Self::Kept, advected: S::Advected) {
         motion.advected = advected;
@@ -338,8 +338,8 @@ pub trait Steerable {}
 
 /// A plan that makes steps of any length one after the other, each with constants of its own.
 ///
-/// Not one is a plan that counts its steps, as one that is given the values of their middles, nor a processed splitting:
-/// its processor belongs to one length, and what is inside of it can't go on with another.
+/// A plan whose inputs are indexed by the step isn't one, nor is a processed splitting: its processor belongs to one length
+/// of the steps.
 #[diagnostic::on_unimplemented(
     message = "the steps of `{Self}` can't have different lengths",
     label = "not with this method",
@@ -357,7 +357,7 @@ pub struct Cost {
     pub iteration: f64,
     /// The fewest iterations that a step can take, but where nothing changes from step to step.
     pub fewest: u32,
-    /// Besides its steps, a run, whatever their number: a processor.
+    /// Of a run besides its steps, whatever their number: the processor's.
     pub once: f64,
 }
 

@@ -6,13 +6,13 @@ use crate::numbers::{Coordinates, Real, count, counted};
 
 /// What is remembered of values at equal times to guess the next one.
 pub trait History<T: Real, V: Coordinates<T>>: Copy + Debug + PartialEq {
-    /// Before the first value; a history of either length is the long one where a guess is dear.
+    /// Before the first value. [`Either`] is the polynomial if an iteration is expensive, and the parabola otherwise.
     fn none(is_expensive: bool) -> Self;
 
     /// Takes notice of the value `y` after `last`, and returns where the next one is expected.
     fn next(&mut self, last: V, y: V) -> V;
 
-    /// After the first value: what stood before it was an estimate.
+    /// Called after the first value. The value before it was an estimate, so the difference of the two is forgotten.
     fn forget_the_estimate(&mut self);
 
     /// Visits all numbers, in a fixed order.
@@ -51,7 +51,7 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Parabola<V> {
         y + (difference + (difference - before))
     }
 
-    /// The parabola would go through it.
+    /// Otherwise the parabola would go through the estimate.
     fn forget_the_estimate(&mut self) {
         *self = Self { difference: V::zero() };
     }
@@ -78,7 +78,7 @@ const DIFFERENCES: usize = 7;
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Polynomial<V> {
     differences: [V; DIFFERENCES],
-    /// How many values have been taken notice of; more than there are differences count as one more.
+    /// The number of values that were seen, at most one more than there are differences.
     #[shared]
     values: usize,
 }
@@ -140,7 +140,7 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Either<V> {
     }
 
     fn forget_the_estimate(&mut self) {
-        // A long history doesn't.
+        // The polynomial has never used the estimate.
         self.parabola = Parabola::none(self.is_long);
     }
 

@@ -79,7 +79,7 @@ struct Observers<'a, I: Integrator> {
     end: u64,
     /// The next step after which progress is told.
     told: u64,
-    /// The next step after which there is more to do than to show it.
+    /// The next step after which conditions, the progress or the end of the run are looked at.
     seldom: u64,
 }
 
@@ -166,8 +166,8 @@ impl<'a, I: Integrator> Run<'a, I> {
     /// Ends the run by [`RunError::Energy`] after a step that has changed the energy by more than this bound, J, or to no
     /// number.
     ///
-    /// Two bodies that pass each other closely within one step aren't seen to have met: the step has a solution, and another
-    /// motion follows it. Its energy tells. What a step changes otherwise is of the order of its error, and of the work of
+    /// Two bodies that pass each other closely within one step aren't seen to have met: the step has a solution, but it
+    /// continues another motion. Only the jump of the energy shows it. What a step changes otherwise is of the order of its error, and of the work of
     /// forces.
     pub fn energy_within(mut self, bound: f64) -> Self {
         let mut last = None;

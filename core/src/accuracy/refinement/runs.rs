@@ -86,14 +86,14 @@ pub(super) struct Ready<I: Integrator> {
 }
 
 impl<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>> Ready<I> {
-    /// So many steps to this time.
+    /// A run of this number of equal steps up to a time.
     #[allow(clippy::cast_precision_loss)] // no run has 2⁵³ steps
     pub(super) fn new(
         family: &mut impl FnMut(f64) -> Result<(I, I::State), SetupError>,
         time: f64,
         steps: u64,
     ) -> Result<Self, RefinementError> {
-        /// What dividing and multiplying again may change, and more.
+        /// A bound of the relative rounding of `(time / steps) * steps`, with a margin.
         const ROUNDING: f64 = 1e-12;
         let step = time / steps as f64;
         let (integrator, start) = family(step).map_err(|cause| RefinementError::Setup { step, cause })?;

@@ -1,4 +1,4 @@
-//! The same with times. This is the only file of the library that asks a clock.
+//! Work and precision: the runs of a refinement, timed. This is the only file of the library that asks a clock.
 
 use alloc::vec::Vec;
 use std::time::{Duration, Instant};
@@ -51,19 +51,19 @@ impl Effort {
     }
 }
 
-/// Errors that are larger are of another motion, and such runs are left out.
+/// A run with a larger error follows another motion and is left out.
 const LARGEST_ERROR: f64 = 0.5;
 
-/// Whether an error is a number and that of the same motion.
+/// Whether an error is a number, and small enough for the run to follow the motion.
 fn is_near(error: f64) -> bool {
     error < LARGEST_ERROR
 }
 
-/// Below this a double has nothing left.
+/// Smaller errors are those of rounding.
 const SMALLEST_ERROR: f64 = 1e-14;
 /// Errors that are larger may rise and fall; smaller ones that rise are rounding's.
 const NEAR_ROUNDING: f64 = 1e-10;
-/// So many runs in a row that are no better than the best are the plateau of rounding.
+/// After this number of runs in a row that don't improve, the errors are taken for those of rounding.
 const NO_BETTER: u32 = 3;
 
 /// Whether shorter steps have nothing to say any more.
@@ -136,8 +136,8 @@ impl Refinement {
     }
 }
 
-/// What accuracy costs in time: as [`convergence`](super::convergence), and each run is timed. What the family does
-/// isn't.
+/// What accuracy costs in time: as [`convergence`](super::convergence), and each run is timed. The making
+/// of the stepper isn't.
 ///
 /// Runs whose stepper can't be built, whose step has no solution or whose end isn't made of finite numbers are left out,
 /// and so are those with errors of 0.5 and more. The last run is the first that takes longer than the effort allows, or one

@@ -64,7 +64,7 @@ use crate::numbers::{BlockDiagonal, Bodies, Coordinates as _};
 pub struct Coupled<const N: usize>;
 
 impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Coupled<N> {
-    /// Behind them there is one more, which isn't used.
+    /// There are `N − 1` pairs; the last of the `N` entries isn't used.
     type Of<T: Copy> = [T; N];
 
     const LINKS_NEIGHBOURS: bool = true;
