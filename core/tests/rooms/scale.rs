@@ -24,7 +24,7 @@ const BUDGETS: [(&str, usize, usize); 40] = [
     ("macros/derivation/src/program", 2525, 0), ("macros/derivation/src/mathematics", 4746, 0),
     ("core/late", 3176, 0), ("core/machine", 708, 0), ("core/python", 1607, 0), ("core/scene", 5259, 0), ("core/cli", 3025, 0),
     ("core/plot", 790, 0), ("core/ensemble", 5134, 0), ("core/arrow", 215, 0), ("core/control", 1414, 0), ("examples", 12526, 0),
-    ("tests", 26237, 0), ("tests/ui", 1694, 0),
+    ("tests", 26255, 0), ("tests/ui", 1694, 0),
 ];
 
 /// The circles that are still there. Lines may go, and none be added.
