@@ -20,6 +20,8 @@ use liestep_derivation::Role;
 ///     velocity = Omega, l = …,        the continuous one, in the velocity's components by that name; of several bodies
 ///                                     `velocity(Omega_1, Omega_2)`
 ///     discretise = trapezoid(Cayley), how `l_d` is made of `l`; left out, there are the continuous equations alone
+///     pace = …,                       s(w) of a time `τ` in which steps are equal, `dt = s dτ`, with `given(E_0 = energy)`;
+///                                     for `Stepper::paced`; may be left out
 ///     gradients,                      also the derivatives of a step, for `Stepper::linearised`; may be left out
 ///     crate = path,                   where liestep is found, if not at `::liestep`
 /// )]

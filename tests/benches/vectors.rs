@@ -46,7 +46,7 @@ impl<S: Effect, P: Plan<S>, const LEVEL: usize> Plan<S> for With<P, LEVEL> {
 
     const VECTORS: Vectors = [Vectors::AsCompiled, Vectors::Four, Vectors::Eight][LEVEL];
 
-    delegate_plan!(0, |kept| kept; step_size keep cost);
+    delegate_plan!(0, |kept| *kept; step_size keep cost);
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
         self.0.refolded(scene, h).map(Self)

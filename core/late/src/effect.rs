@@ -271,6 +271,17 @@ where
         })
     }
 
+    fn with_energy(&self, w: &W, energy: G::Scalar) -> Option<(W, G::Scalar)> {
+        let before = &self.declaration.carried[..self.declaration.energy?];
+        let place = before.iter().map(|one| one.shape.0 * one.shape.1).sum::<usize>();
+        let (mut at, mut before) = (0, energy);
+        let w = w.zip(w, &mut |entry, _| {
+            at += 1;
+            if at == place + 1 { std::mem::replace(&mut before, entry) } else { entry }
+        });
+        Some((w, before))
+    }
+
     fn constants(&self, h: G::Scalar) -> Self::Constants {
         let arrays = Arrays::of([(Array::Step, std::slice::from_ref(&h)), (Array::Parameters, &*self.numbers)]);
         let numbers = run_alone::<_, B, _>(&self.stages.constants, &arrays, <[G::Scalar]>::to_vec);

@@ -206,6 +206,30 @@ fn several_bodies() {
     }
 }
 
+/// In a time of its own: its energy is one more number of the state.
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    given(E_0 = energy),
+    pace = 1.0 / (1.0 + w.dot(&rho).powi(2)),
+    velocity = Omega,
+    l = 0.5 * Omega.dot(&(J * Omega)) - weight * w.dot(&rho),
+    discretise = trapezoid(Cayley),
+)]
+#[derive(Clone, Copy, Debug)]
+struct PacedTop {
+    J: Inertia,
+    weight: f64,
+    rho: Vector3<f64>,
+    up: Vector3<f64>,
+    energy: f64,
+}
+
+#[test]
+fn a_pace() {
+    as_compiled! { PacedTop { J weight rho up energy } }
+}
+
 /// Body and effect both read: which of them has an unknown part is asked of the values.
 #[test]
 fn sums_of_what_is_read() {

@@ -304,6 +304,14 @@ pub trait Effect: Term {
         -self.limit(None, w).l
     }
 
+    /// What is advected or given with another energy `E_0`, J, and that before it; `None` where no `pace` was declared.
+    ///
+    /// The [potential](Self::potential) is `s (V − E_0)` then, of which [`paced`](crate::Stepper::paced) has the pace `s`.
+    #[must_use]
+    fn with_energy(&self, _: &Self::Advected, _energy: Self::Scalar) -> Option<(Self::Advected, Self::Scalar)> {
+        None
+    }
+
     /// Folds the parameters and the step into the constants of the stages below.
     fn constants(&self, h: Self::Scalar) -> Self::Constants;
 

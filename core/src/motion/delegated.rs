@@ -1,7 +1,7 @@
 //! Plans around another plan: what they hand on to it.
 
-/// Writes functions of a plan that wraps another, as `delegate_plan!(plan, |kept| kept; keep cost)`: the field of the other
-/// plan, and how its memory is found in that of this one.
+/// Writes functions of a plan that wraps another, as `delegate_plan!(plan, |kept| *kept; keep cost)`: the field of the other
+/// plan, and the place of its memory in that of this one.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! delegate_plan {
@@ -45,20 +45,36 @@ macro_rules! delegate_plan {
             self.$plan.velocity(scene, motion)
         }
     };
-    (@push $plan:tt, $($kept:tt)*) => {
+    (@push $plan:tt, $kept:ident, $inner:expr) => {
         fn push<M: $crate::motion::Summation<$crate::mechanics::Group<S>, S::Advected>>(
             &self,
             scene: &S,
             motion: &mut M,
-            kept: &mut Self::Kept,
+            $kept: &mut Self::Kept,
             impulse: &$crate::mechanics::Vector<S>,
         ) -> Result<(), $crate::StepError> {
-            self.$plan.push(scene, motion, kept, impulse)
+            self.$plan.push(scene, motion, &mut $inner, impulse)
+        }
+    };
+    (@see $plan:tt, $kept:ident, $inner:expr) => {
+        fn see(&self, motion: &mut $crate::delegate_plan!(@motion), $kept: &mut Self::Kept, advected: S::Advected) {
+            self.$plan.see(motion, &mut $inner, advected);
+        }
+    };
+    (@step_of $plan:tt, $kept:ident, $inner:expr) => {
+        fn step_of<M: $crate::motion::Summation<$crate::mechanics::Group<S>, S::Advected>>(
+            &self,
+            scene: &S,
+            motion: &mut M,
+            $kept: &mut Self::Kept,
+            length: $crate::mechanics::Scalar<S>,
+        ) -> Result<$crate::motion::StepReport, $crate::StepError> {
+            self.$plan.step_of(scene, motion, &mut $inner, length)
         }
     };
     (@is_in_step $plan:tt, $kept:ident, $inner:expr) => {
         fn is_in_step(&self, $kept: &Self::Kept) -> bool {
-            self.$plan.is_in_step($inner)
+            self.$plan.is_in_step(&$inner)
         }
     };
     (@explained $plan:tt, $kept:ident, $inner:expr) => {
@@ -69,7 +85,7 @@ macro_rules! delegate_plan {
             motion: &$crate::delegate_plan!(@motion),
             $kept: &Self::Kept,
         ) -> $crate::StepError {
-            self.$plan.explained(error, scene, motion, $inner)
+            self.$plan.explained(error, scene, motion, &$inner)
         }
     };
     (@max_step $plan:tt, $kept:ident, $inner:expr) => {
@@ -79,7 +95,7 @@ macro_rules! delegate_plan {
             motion: &$crate::delegate_plan!(@motion),
             $kept: &Self::Kept,
         ) -> $crate::mechanics::Scalar<S> {
-            self.$plan.max_step(scene, motion, $inner)
+            self.$plan.max_step(scene, motion, &$inner)
         }
     };
     (@cost $plan:tt, $($kept:tt)*) => {

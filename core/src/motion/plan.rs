@@ -8,7 +8,7 @@ use crate::mechanics::{
 use crate::motion::kept::Kept;
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, Summation};
-use crate::numbers::{Kernel, Vectors, dispatch, is_finite, real};
+use crate::numbers::{Coordinates as _, Kernel, Vectors, dispatch, is_finite, real};
 use crate::solving::largest_fraction;
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue};
 
@@ -46,6 +46,11 @@ pub trait Plan<S: Effect> {
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError>
     where
         Self: Sized;
+
+    /// A motion as it begins: what is advected or given may have to do with the rest.
+    fn begun(&self, _scene: &S, motion: Motion<Group<S>, S::Advected>) -> Motion<Group<S>, S::Advected> {
+        motion
+    }
 
     /// What is kept at the beginning of a motion.
     fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept;
@@ -105,6 +110,11 @@ pub trait Plan<S: Effect> {
     /// The body velocity, as [`Stepper::velocity`](crate::Stepper::velocity) says it.
     fn velocity(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
         velocity_of_momentum(scene, &motion.momentum, &motion.advected)
+    }
+
+    /// The energy, J, where the plan has the inertia.
+    fn energy(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S> {
+        self.velocity(scene, motion).dot(&motion.momentum) * real(0.5) + scene.potential(&motion.advected)
     }
 
     /// Whether the lanes of what is kept go on in one way. A body alone has no other beside it.

@@ -411,7 +411,7 @@ where
     /// motion is there already.
     ///
     /// A time that is a whole number of steps but for rounding is the end of the last of these. Where steps vary, nobody
-    /// knows how many there will be, and no progress is told.
+    /// knows how many there will be, and progress is that of the time.
     ///
     /// # Errors
     ///
@@ -431,9 +431,21 @@ where
         if self.integrator.length(self.state).is_some() {
             let is_there = Rc::new(Cell::new(false));
             let (seen, end) = (Rc::clone(&is_there), steps * rounded);
+            let (begun, mut progress) =
+                (reported(self.integrator.time(self.state)) / h, self.observers.progress.take());
+            let mut told = 0.0;
             // After those of others, which are told of first.
             self.observers.conditions.push(Box::new(move |now| {
-                seen.set(reported(now.time()) / h >= end);
+                let now = reported(now.time()) / h;
+                seen.set(now >= end);
+                let share = ((now - begun) / (steps - begun)).min(1.0);
+                // At most a hundred times.
+                if let Some(progress) = &mut progress
+                    && (now > begun && share >= told || seen.get())
+                {
+                    progress(if seen.get() { 1.0 } else { share });
+                    told = (share * 100.0).floor() / 100.0 + 0.01;
+                }
                 Ok(seen.get())
             }));
             let mut ended = self.steps(u64::MAX)?;

@@ -1,6 +1,7 @@
 //! Lengths of steps that are known beforehand.
 
 use alloc::vec::Vec;
+use core::f64::consts::TAU;
 
 use super::lengths::Lengths;
 use super::orbit::orbit;
@@ -60,7 +61,19 @@ impl Clock {
     /// [`SetupError::Parameter`] where the eccentricity isn't from 0 to 1, 1 itself not among them, the period isn't positive
     /// and finite, or there is no step.
     pub fn orbit(eccentricity: f64, period: f64, steps: u32) -> Result<Self, SetupError> {
+        Self::orbit_from(0.0, eccentricity, period, steps)
+    }
+
+    /// As [`orbit`](Self::orbit), from a place with this mean anomaly, rad, on.
+    ///
+    /// # Errors
+    ///
+    /// As [`orbit`](Self::orbit), and where the anomaly isn't finite.
+    pub fn orbit_from(anomaly: f64, eccentricity: f64, period: f64, steps: u32) -> Result<Self, SetupError> {
         let refused = |field, cause| Err(SetupError::Parameter { field, cause });
+        if !anomaly.is_finite() {
+            return refused("anomaly", "isn't finite");
+        }
         if !(0.0..1.0).contains(&eccentricity) {
             return refused("eccentricity", "isn't that of an ellipse");
         }
@@ -70,7 +83,7 @@ impl Clock {
         if steps == 0 {
             return refused("steps", "is zero");
         }
-        Self::of_lengths(orbit(eccentricity, period, steps)).map(Self::repeated)
+        Self::of_lengths(orbit(anomaly % TAU, eccentricity, period, steps)).map(Self::repeated)
     }
 
     /// The lengths back from this step to the first, which retrace a motion: of a stepper with `−h`, from a state that it has

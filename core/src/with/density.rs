@@ -12,8 +12,8 @@ pub struct Density<D>(D);
 /// The density `ρ` at a motion, which is one at its start, and the time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DensityMemory {
-    density: f64,
-    time: Elapsed<f64>,
+    pub(super) density: f64,
+    pub(super) time: Elapsed<f64>,
 }
 
 /// # Wrap: lengths that follow the motion

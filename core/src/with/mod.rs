@@ -12,6 +12,7 @@ mod density;
 mod driven;
 mod lengths;
 mod orbit;
+mod pace;
 mod remedies;
 mod varied;
 
@@ -24,6 +25,9 @@ pub use density::Density;
 pub use driven::Driven;
 #[doc(hidden)]
 pub use lengths::Lengths;
+pub use pace::Pacable;
+#[doc(hidden)]
+pub use pace::Paced;
 pub use remedies::Substeps;
 #[doc(hidden)]
 pub use varied::Varied;

@@ -12,15 +12,22 @@ const RECTANGLES: u32 = 65_536;
 /// Of a step of the clock, by the classical Runge–Kutta method.
 const PARTS: u32 = 8;
 
-/// The lengths of a round from pericentre, `dt ∝ r^{3/2}`, symmetric about both apsides.
-pub(super) fn orbit(eccentricity: f64, period: f64, steps: u32) -> Vec<f64> {
+/// The lengths of a round from this mean anomaly, rad, `dt ∝ r^{3/2}`; from pericentre symmetric about both apsides.
+pub(super) fn orbit(start: f64, eccentricity: f64, period: f64, steps: u32) -> Vec<f64> {
     // With the eccentric anomaly `E`, `r = 1 − e cos E` and `dt = r dE`: steps are equal in `s`, `ds = r^{-1/2} dE`.
     let rate = |anomaly: f64| (1.0 - eccentricity * anomaly.cos()).sqrt();
     let width = TAU / f64::from(RECTANGLES);
     let all: f64 = (0..RECTANGLES).map(|k| width / rate(width * f64::from(k))).sum();
     let part = all / (f64::from(steps) * f64::from(PARTS));
-    let (mut anomaly, mut times) = (0.0_f64, [0.0].to_vec());
-    for _ in 0..steps / 2 {
+    // By halves of where the eccentric anomaly is: a step's beginning, which no digit of a length depends on.
+    let halved = |(low, high): (f64, f64), _| {
+        let middle = 0.5 * (low + high);
+        if middle - eccentricity * middle.sin() > start { (low, middle) } else { (middle, high) }
+    };
+    let is_from_pericentre = start == 0.0;
+    let first = if is_from_pericentre { 0.0 } else { (0..60).fold((start - 1.0, start + 1.0), halved).0 };
+    let (mut anomaly, mut times) = (first, [0.0].to_vec());
+    for _ in 0..if is_from_pericentre { steps / 2 } else { steps - 1 } {
         for _ in 0..PARTS {
             let first = rate(anomaly);
             let second = rate(anomaly + 0.5 * part * first);
@@ -28,7 +35,11 @@ pub(super) fn orbit(eccentricity: f64, period: f64, steps: u32) -> Vec<f64> {
             let fourth = rate(anomaly + part * third);
             anomaly += part / 6.0 * (first + 2.0 * (second + third) + fourth);
         }
-        times.push(period / TAU * (anomaly - eccentricity * anomaly.sin()));
+        times.push(period / TAU * (anomaly - first - eccentricity * (anomaly.sin() - first.sin())));
+    }
+    if !is_from_pericentre {
+        times.push(period);
+        return times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     }
     let is_even = steps.is_multiple_of(2);
     if let Some(apocentre) = times.last_mut().filter(|_| is_even) {

@@ -5,7 +5,7 @@
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor};
-use crate::motion::{Motion, Plan, Remedy, Steerable, StepReport, Stepper, Summation, Variable};
+use crate::motion::{Plan, Remedy, Steerable, StepReport, Stepper, Summation, Variable};
 use crate::numbers::real;
 
 /// A plan that takes a step without a solution in equal parts, by [`Stepper::or_substeps`].
@@ -64,7 +64,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Substeps<P> {
     type Kept = P::Kept;
 
     // The largest step is that of the plan itself: a step that only its parts make is none of its own.
-    delegate_plan!(plan, |kept| kept; constants step_size keep admits momentum velocity is_in_step explained max_step cost push);
+    delegate_plan!(plan, |kept| *kept; constants step_size keep admits momentum velocity is_in_step explained max_step cost push see);
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
         Ok(Self { plan: self.plan.refolded(scene, h)?, at_most: self.at_most })
@@ -81,10 +81,6 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Substeps<P> {
             Ok(report) => Ok(report),
             Err(error) => in_parts(&self.plan, scene, (motion, kept), (self.at_most, error)),
         }
-    }
-
-    fn see(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut Self::Kept, advected: S::Advected) {
-        self.plan.see(motion, kept, advected);
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {

@@ -2,7 +2,7 @@
 
 use super::lengths::Lengths;
 use crate::error::{SetupError, StepError};
-use crate::mechanics::{Effect, Group, SceneVisitor, Vector};
+use crate::mechanics::{Effect, Group, SceneVisitor};
 use crate::motion::{Motion, Plan, StepReport, Stepper, Summation, Variable};
 use crate::numbers::Vectors;
 
@@ -50,7 +50,8 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for Varied<P, L
     const COUNTS_TIME: bool = L::COUNTED;
     const VARIES: bool = true;
 
-    delegate_plan!(plan, |kept| &kept.0; step_size admits momentum velocity is_in_step cost);
+    // A step of another length is beside those that are counted.
+    delegate_plan!(plan, |kept| kept.0; step_size admits momentum velocity is_in_step cost push see step_of);
 
     fn refolded(&self, scene: &S, h: f64) -> Result<Self, SetupError> {
         Ok(Self { plan: self.plan.refolded(scene, h)?, lengths: self.lengths.clone() })
@@ -88,17 +89,6 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for Varied<P, L
         Ok(report)
     }
 
-    /// Beside the steps that are counted.
-    fn step_of<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-        length: f64,
-    ) -> Result<StepReport, StepError> {
-        self.plan.step_of(scene, motion, &mut kept.0, length)
-    }
-
     fn part(
         &self,
         scene: &S,
@@ -111,20 +101,6 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for Varied<P, L
         }
         let length = self.checked(scene, motion, kept, fraction > 0.0)?;
         self.plan.part(scene, motion, &kept.0, fraction * (length / self.plan.step_size()))
-    }
-
-    fn push<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-        impulse: &Vector<S>,
-    ) -> Result<(), StepError> {
-        self.plan.push(scene, motion, &mut kept.0, impulse)
-    }
-
-    fn see(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut Self::Kept, advected: S::Advected) {
-        self.plan.see(motion, &mut kept.0, advected);
     }
 
     /// That of the next length.

@@ -7,7 +7,6 @@ use crate::groups::SO3;
 use crate::mechanics::{AxiallyInvariant, Effect, Group, LeftInvariant, Scalar, Vector, energy};
 use crate::motion::plan::Plan;
 use crate::motion::summation::Motion;
-use crate::numbers::{Coordinates as _, real};
 use crate::solving::Solvability;
 
 /// # Read
@@ -64,7 +63,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     #[must_use]
     pub fn energy(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S> {
         if const { P::HAS_OWN_INERTIA } {
-            return self.velocity(motion).dot(&motion.momentum) * real(0.5) + self.scene.potential(&motion.advected);
+            return self.plan.energy(&self.scene, motion);
         }
         energy(&self.scene, &motion.momentum, &motion.advected)
     }

@@ -34,7 +34,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         let w = self.plan.advected(&self.scene, 0).seen_from(&attitude);
         let momentum = self.plan.momentum(&self.scene, &attitude, &velocity, &w);
         if !self.scene.is_quadratic() {
-            let found = velocity_of_momentum(&self.scene, &momentum, &w);
+            let found = self.plan.velocity(&self.scene, &Motion { attitude, momentum, advected: w, steps: 0 });
             check_velocity::<Scalar<S>, _>(&velocity, &found, &momentum, &self.scene.inertia(&w))?;
         }
         self.start_with_momentum(attitude, momentum)
@@ -108,7 +108,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// The motion that begins with this attitude and momentum.
     fn begin(&self, attitude: Group<S>, momentum: Vector<S>) -> StateOf<S, P> {
         let advected = self.plan.advected(&self.scene, 0).seen_from(&attitude);
-        let motion = Motion { attitude, momentum, advected, steps: 0 };
+        let motion = self.plan.begun(&self.scene, Motion { attitude, momentum, advected, steps: 0 });
         State { motion, kept: self.plan.keep(&self.scene, &motion), elapsed: Elapsed::nothing() }
     }
 }

@@ -141,9 +141,11 @@ impl<S: Effect<Scalar: Storable>, P: Plan<S>> Stepper<S, P> {
         if !is_in_group {
             return Err(CheckpointError::NotInGroup { defect: reported(defect) });
         }
-        let expected = self.scene.advected().seen_from(&attitude);
+        // The energy of a start is the motion's own.
+        let without = |w: S::Advected| self.scene.with_energy(&w, real(0.0)).map_or(w, |(w, _)| w);
+        let [found, expected] = [motion.advected, self.scene.advected().seen_from(&attitude)].map(without);
         let (mut squared, mut size) = (real::<Scalar<S>>(0.0), real::<Scalar<S>>(0.0));
-        for (stored, expected) in list(&motion.advected).into_iter().zip(list(&expected)) {
+        for (stored, expected) in list(&found).into_iter().zip(list(&expected)) {
             squared += (stored - expected) * (stored - expected);
             size += expected * expected;
         }

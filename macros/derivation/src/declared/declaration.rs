@@ -83,6 +83,8 @@ pub(crate) struct Declaration {
     pub(crate) expression: Option<Expr>,
     /// Of a continuous Lagrangian `l`, what it is written and discretised with.
     pub(crate) continuous: Option<Continuous>,
+    /// Where there is a pace, which the expression has been rewritten by, the place of `E_0` in what is advected or given.
+    pub(crate) energy: Option<usize>,
     /// Of a force on several bodies the names of the displacements, one for each factor of the group.
     pub(crate) displacements: Vec<Ident>,
     /// Where the derivatives of a step are asked for.

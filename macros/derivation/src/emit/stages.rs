@@ -177,6 +177,7 @@ pub(super) fn parts(emitter: &Emitter, kernel: &Kernel) -> TokenStream {
     });
     let is_quadratic = !emitter.equations.is_some_and(|equations| equations.derived.inverse == Inverse::Nonlinear);
     let [step, iteration] = kernel.operations().map(Literal::u32_unsuffixed);
+    let energy = with_energy(emitter);
     quote_spanned! {span=>
         const PARTS: #private::Parts = #private::Parts { unknown: #unknown, kick_before: #before, kick_after: #after };
         const DENOMINATORS: #u32 = #denominators;
@@ -184,7 +185,28 @@ pub(super) fn parts(emitter: &Emitter, kernel: &Kernel) -> TokenStream {
         const IS_QUADRATIC: #bool = #is_quadratic;
         #apart
         const OPERATIONS: #private::Operations = #private::Operations { step: #step, iteration: #iteration };
+        #energy
     }
+}
+
+/// Puts an energy in the place of `E_0`, where there is a pace.
+fn with_energy(emitter: &Emitter) -> Option<TokenStream> {
+    let (span, header) = (Span::mixed_site(), emitter.header);
+    let at = Literal::usize_unsuffixed(emitter.declaration.energy?);
+    let is_alone = emitter.declaration.advected.len() == 1;
+    let place = if is_alone { quote_spanned!(span=> w) } else { quote_spanned!(span=> w.#at) };
+    let (private, scalar) = (&header.private, &header.scalar);
+    Some(quote_spanned! {span=>
+        fn with_energy(
+            &self,
+            w: &<Self as #private::Term>::Advected,
+            energy: #scalar,
+        ) -> #private::core::option::Option<(<Self as #private::Term>::Advected, #scalar)> {
+            let mut w = *w;
+            let before = #private::core::mem::replace(&mut #place, #private::Given::scalar(energy));
+            #private::core::option::Option::Some((w, before.0.x))
+        }
+    })
 }
 
 /// How a kick changes as the body turns.

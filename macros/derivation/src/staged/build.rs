@@ -46,6 +46,7 @@ pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> Staged {
             .map(|field| Parameter { name: field.plain_name(), kind: parameter_kind(field.kind) })
             .collect(),
         carried: (0..declaration.advected.len()).map(|index| carried(declaration, index)).collect(),
+        energy: declaration.energy,
         derivation: emit::text(declaration, chosen, equations.as_ref(), findings),
         has_kinetic: derived.limit.has_kinetic,
         is_expensive,

@@ -273,6 +273,8 @@ pub struct Staged {
     pub parameters: Vec<Parameter>,
     /// What is advected or given.
     pub carried: Vec<Carried>,
+    /// Where there is a pace, which of these is the energy `E_0`.
+    pub energy: Option<usize>,
     /// What was derived, as text.
     pub derivation: String,
     /// Whether there is a kinetic part.

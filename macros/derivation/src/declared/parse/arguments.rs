@@ -27,6 +27,8 @@ pub(super) struct Arguments {
     pub(super) velocity: Option<(Ident, Vec<Ident>)>,
     /// With its key.
     pub(super) discretisation: Option<(Ident, Discretisation)>,
+    /// With its key.
+    pub(super) pace: Option<(Ident, Expr)>,
     pub(super) root: Option<Path>,
     /// With its key.
     pub(super) generators: Option<(Ident, ExprArray)>,
@@ -72,7 +74,7 @@ fn known(role: Role) -> Vec<&'static str> {
         _ => vec!["group", "advected", "given", role.key(), "generators", "gradients", "crate"],
     };
     match role {
-        Role::Lagrangian => known.extend(["l", "velocity", "discretise"]),
+        Role::Lagrangian => known.extend(["l", "velocity", "discretise", "pace"]),
         Role::Force => known.push("displacement"),
         Role::Constraint => {}
     }
@@ -113,15 +115,15 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             equals(&key, input)?;
             arguments.expression = Some((key, input.parse()?));
         }
-        "l" if role == Role::Lagrangian => {
-            once(arguments.continuous.is_some());
+        name @ ("l" | "pace") if role == Role::Lagrangian => {
+            let place = if name == "l" { &mut arguments.continuous } else { &mut arguments.pace };
+            once(place.is_some());
             equals(&key, input)?;
-            arguments.continuous = Some((key, input.parse()?));
+            *place = Some((key, input.parse()?));
         }
         "velocity" if role == Role::Lagrangian => {
             once(arguments.velocity.is_some());
-            let names = velocities(&key, input)?;
-            arguments.velocity = Some((key, names));
+            arguments.velocity = Some((key.clone(), velocities(&key, input)?));
         }
         "displacement" if role == Role::Force => {
             once(arguments.displacement.is_some());

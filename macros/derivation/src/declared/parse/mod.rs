@@ -5,6 +5,7 @@ mod fields;
 mod group;
 mod names;
 mod own_group;
+mod pace;
 mod size;
 mod two_bodies;
 
@@ -146,6 +147,7 @@ pub(crate) fn as_far_as_readable(
     let ends = displacements.iter().enumerate().filter(is_first).map(next);
     let both: Vec<Ident> = displacements.iter().cloned().chain(ends).collect();
     check_names((role, group.is_product()), &both, "a displacement", (&fields, &advected), errors);
+    let energy = pace::rewritten(&mut arguments, (&group, &factors), (&fields, &advected), errors);
     let (expression, continuous) = kind(role, &mut arguments, (&fields, &advected, &factors), errors);
     let has_names = matches!(item.fields, Fields::Named(_));
     let has_meaning = is_readable && has_names && group_path.is_some() && !errors.hides_the_rest();
@@ -157,6 +159,7 @@ pub(crate) fn as_far_as_readable(
         advected,
         expression: expression.filter(|_| has_meaning),
         continuous,
+        energy,
         displacements,
         gradients: arguments.gradients.map(|key| key.span()),
         fields,

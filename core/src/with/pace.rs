@@ -1,0 +1,158 @@
+//! Steps of a transformed time, whose pace is declared.
+
+use super::compensated::Compensated;
+use super::density::DensityMemory;
+use crate::error::{SetupError, StepError};
+use crate::mechanics::{Effect, Group, SceneVisitor, Vector, energy};
+use crate::motion::{Declared, Elapsed, Motion, Plan, StepReport, Stepper, Summation};
+use crate::numbers::Vectors;
+
+/// A plan whose steps are equal in `τ`, `dt = s dτ`, by [`Stepper::paced`].
+#[derive(Clone, Debug)]
+#[doc(hidden)]
+pub struct Paced<P>(P);
+
+/// A plan whose step is one of `l_d`, which has the pace in it.
+#[diagnostic::on_unimplemented(
+    message = "the steps of `{Self}` have no pace",
+    note = "a pace is in the declaration's own step: `Stepper::new(…)?.paced()`, with sums compensated before"
+)]
+pub trait Pacable {}
+
+impl<S: Effect> Pacable for Declared<S> {}
+impl<P: Pacable> Pacable for Compensated<P> {}
+
+/// Beside this energy, J, all others vanish. It is a power of two, so that digits stay.
+const VAST: f64 = f64::from_bits((1023 + 500) << 52);
+
+/// # Wrap: steps of a transformed time
+impl<S: Effect<Scalar = f64>, P: Plan<S> + Pacable> Stepper<S, P> {
+    /// Steps of `dt = s dτ` with the `pace = s(w)` that was declared: what is read and given is that of the time `t`.
+    ///
+    /// The stepper's `h` is one of `τ`. The energy of a start becomes the number `E_0` of its state. A step takes
+    /// `h (s(w) + s(w⁺))/2`, s, which is known when it is made; the [time](Self::time) is their compensated sum. The map of
+    /// attitude, momentum, `t` and `−E_0` is symplectic, and momentum maps are kept. [The chapter](crate::guide::varying) says
+    /// what it is worth, and what goes with it.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError::Parameter`] where the scene has no pace: none was declared, or it is a sum, whose terms have one time.
+    ///
+    /// # Source
+    ///
+    /// E. Hairer, *Variable time step integration with symplectic methods*, Appl. Numer. Math. 25 (1997), and S. Reich,
+    /// *Backward error analysis for numerical integrators*, SIAM J. Numer. Anal. 36 (1999).
+    pub fn paced(self) -> Result<Stepper<S, Paced<P>>, SetupError> {
+        if self.scene.with_energy(&self.scene.advected(), 0.0).is_none() {
+            return Err(SetupError::Parameter { field: "pace", cause: "isn't declared, or not of the whole scene" });
+        }
+        Ok(Stepper { scene: self.scene, plan: Paced(self.plan) })
+    }
+}
+
+/// The pace `s(w)`, as the potential is `s (V − E_0)`.
+#[hot]
+fn pace<S: Effect<Scalar = f64>>(scene: &S, w: &S::Advected) -> f64 {
+    scene.with_energy(w, VAST).map_or(f64::NAN, |(w, _)| -scene.potential(&w) / VAST)
+}
+
+impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for Paced<P> {
+    /// The pace is kept in the place of a density.
+    type Kept = (P::Kept, DensityMemory);
+
+    const VECTORS: Vectors = P::VECTORS;
+    const EXPLAINS: bool = P::EXPLAINS;
+    const HAS_OWN_INERTIA: bool = true;
+    const RUNS_BY_STEPS: bool = true;
+    const VARIES: bool = true;
+
+    delegate_plan!(0, |kept| kept.0; step_size admits is_in_step explained cost);
+
+    fn refolded(&self, scene: &S, h: f64) -> Result<Self, SetupError> {
+        self.0.refolded(scene, h).map(Self)
+    }
+
+    fn begun(&self, scene: &S, motion: Motion<Group<S>, S::Advected>) -> Motion<Group<S>, S::Advected> {
+        let advected = scene.with_energy(&motion.advected, self.energy(scene, &motion));
+        Motion { advected: advected.map_or(motion.advected, |(w, _)| w), ..motion }
+    }
+
+    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
+        let memory = DensityMemory { density: pace(scene, &motion.advected), time: Elapsed::nothing() };
+        (self.0.keep(scene, motion), memory)
+    }
+
+    fn momentum(&self, scene: &S, attitude: &Group<S>, velocity: &Vector<S>, w: &S::Advected) -> Vector<S> {
+        self.0.momentum(scene, attitude, &(*velocity * pace(scene, w)), w)
+    }
+
+    fn velocity(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
+        self.0.velocity(scene, motion) * pace(scene, &motion.advected).recip()
+    }
+
+    /// That of `s (H − E_0)` with zero for `E_0`, over `s`.
+    fn energy(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> f64 {
+        let w = scene.with_energy(&motion.advected, 0.0).map_or(motion.advected, |(w, _)| w);
+        energy(scene, &motion.momentum, &w) / pace(scene, &w)
+    }
+
+    fn time(&self, _: &Motion<Group<S>, S::Advected>, kept: &Self::Kept) -> f64 {
+        kept.1.time.sum
+    }
+
+    /// By making the step.
+    fn length(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, kept: &Self::Kept, is_ahead: bool) -> f64 {
+        let part = self.0.part(scene, motion, &kept.0, if is_ahead { 1.0 } else { -1.0 });
+        part.map_or(f64::NAN, |part| self.step_size() * 0.5 * (kept.1.density + pace(scene, &part.advected)))
+    }
+
+    #[hot]
+    fn step<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
+        let energy = scene.with_energy(&motion.now().advected, 0.0);
+        let report = self.0.step(scene, motion, &mut kept.0)?;
+        // Now and then what is advected is seen anew, and given as in the scene.
+        let own = energy.and_then(|(_, energy)| scene.with_energy(&motion.now().advected, energy));
+        if let Some((advected, _)) = own {
+            motion.show(Motion { advected, ..*motion.now() });
+        }
+        let before = core::mem::replace(&mut kept.1.density, pace(scene, &motion.now().advected));
+        kept.1.time.add(self.step_size() * 0.5 * (before + kept.1.density));
+        Ok(report)
+    }
+
+    /// The part of `τ` whose time is that of `t`, by Newton's iterations with `dt/dτ = s`.
+    fn part(
+        &self,
+        scene: &S,
+        motion: &Motion<Group<S>, S::Advected>,
+        kept: &Self::Kept,
+        fraction: f64,
+    ) -> Result<Motion<Group<S>, S::Advected>, StepError> {
+        let h = self.step_size();
+        let time = fraction * self.length(scene, motion, kept, fraction > 0.0);
+        let mut share = fraction;
+        for _ in 0..MOST_ITERATIONS {
+            let part = self.0.part(scene, motion, &kept.0, share)?;
+            let pace = pace(scene, &part.advected);
+            let missing = time - share * h * 0.5 * (kept.1.density + pace);
+            if missing.abs() <= 4.0 * f64::EPSILON * time.abs() {
+                return Ok(part);
+            }
+            share += missing / (h * pace);
+        }
+        self.0.part(scene, motion, &kept.0, share)
+    }
+
+    fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
+        visitor.term("paced");
+        self.0.describe(visitor);
+    }
+}
+
+/// Of a part of a step, which take a few.
+const MOST_ITERATIONS: u32 = 30;

@@ -1,0 +1,248 @@
+//! A pace that is declared: steps of a transformed time.
+
+use liestep::groups::{Given, R3};
+use liestep::mechanics::{DiscreteLagrangian as _, Effect};
+use liestep::motion::Plan;
+use liestep::prelude::*;
+use liestep::recording::Event;
+use nalgebra::{Matrix3, SMatrix, SVector, Vector6};
+
+/// A body whose axis is attracted by a direction.
+macro_rules! needle {
+    ($name:ident { $($energy:ident)? } $($pace:tt)*) => {
+        #[lagrangian(
+            group = SO3,
+            advected(w = a),
+            $($pace)*
+            l_d = {
+                let U = |w: Vector3<f64>| ((w - rho).norm_squared() + delta * delta).sqrt();
+                ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
+                    + 0.5 * h * (1.0 / U(w) + 1.0 / U(F.transpose() * w))
+            },
+        )]
+        #[derive(Clone, Copy, Debug)]
+        struct $name {
+            J_d: NonstandardInertia,
+            a: Vector3<f64>,
+            rho: Vector3<f64>,
+            delta: f64,
+            $($energy: f64,)?
+        }
+    };
+}
+
+needle! { Plain {} }
+needle! { Needle { energy }
+    given(E_0 = energy),
+    pace = {
+        let u = ((w - rho).norm_squared() + delta * delta).sqrt();
+        2.0 * u * u.sqrt()
+    },
+}
+
+impl Needle {
+    fn new(delta: f64) -> Self {
+        let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 1.4, 2.0)).unwrap();
+        Self { J_d, a: Vector3::new(0.0, 0.6, 0.8), rho: Vector3::z(), delta, energy: 0.0 }
+    }
+
+    /// In plain Rust.
+    fn gap(&self, w: &Vector3<f64>) -> f64 {
+        ((w - self.rho).norm_squared() + self.delta * self.delta).sqrt()
+    }
+
+    fn pace(&self, w: &Vector3<f64>) -> f64 {
+        2.0 * self.gap(w).powf(1.5)
+    }
+
+    /// `l_d(F, w, h s̄) + h s̄ E_0`.
+    fn rewritten(&self, F: &Matrix3<f64>, w: &Vector3<f64>, h: f64) -> f64 {
+        let next = F.transpose() * w;
+        let step = h * 0.5 * (self.pace(w) + self.pace(&next));
+        let change = F - Matrix3::identity();
+        let kinetic = (change * self.J_d.as_matrix() * change.transpose()).trace() / (2.0 * step);
+        kinetic + 0.5 * step * (1.0 / self.gap(w) + 1.0 / self.gap(&next)) + step * self.energy
+    }
+}
+
+/// The derivative at zero of what is smooth on the scale of one.
+fn derivative<const N: usize>(f: impl Fn(f64) -> SVector<f64, N>) -> SVector<f64, N> {
+    let weights = [5.0 / 6.0, -5.0 / 21.0, 5.0 / 84.0, -5.0 / 504.0, 1.0 / 1260.0];
+    let odd = |k: f64| f(0.02 * k) - f(-0.02 * k);
+    weights.iter().zip([1.0, 2.0, 3.0, 4.0, 5.0]).map(|(weight, k)| odd(k) * (weight / 0.02)).sum()
+}
+
+/// The derived terms are the derivatives of the rewriting.
+#[test]
+fn the_rewriting() {
+    let body = Needle { energy: -1.3, ..Needle::new(0.8) };
+    let (w, h) = (Vector3::new(0.3, -0.2, 0.9), 0.3);
+    let F = *SO3::exp(Vector3::new(0.2, -0.3, 0.4)).as_matrix();
+    let seen = (w, Given::scalar(body.energy));
+    let slope = |f: &dyn Fn(f64) -> f64| derivative(|t| SVector::<f64, 1>::new(f(t))).x;
+    assert!((body.l_d(&F, &seen, h) - body.rewritten(&F, &w, h)).abs() < 1e-14);
+    for k in 0..3 {
+        let turn = |t: f64| *SO3::exp(Vector3::ith(k, t)).as_matrix();
+        // At both ends of the step: `(R_F)* ∂/∂F + ∂/∂w ⋄ w`, and `(L_F)* ∂/∂F`.
+        let before = slope(&|t| body.rewritten(&(turn(t) * F), &(turn(t) * w), h));
+        let after = slope(&|t| body.rewritten(&(F * turn(t)), &w, h));
+        assert!((before - body.legendre_minus(&F, &seen, h)[k]).abs() < 1e-12, "{k}");
+        assert!((after - body.left_momentum(&F, &seen, h)[k]).abs() < 1e-12, "{k}");
+    }
+    let energy = -slope(&|t| body.rewritten(&F, &w, h * (1.0 + 0.2 * t)) / (0.2 * h));
+    assert!((energy - body.discrete_energy(&F, &seen, h)).abs() < 1e-11);
+}
+
+/// `DΦ B DΦᵀ = B` on momentum, `w`, time and `E_0`, in which `{t, −E_0} = 1`.
+#[test]
+fn the_extended_map_is_poisson() {
+    let (body, h) = (Needle::new(0.8), 0.2);
+    let map = |z: &SVector<f64, 8>| {
+        let [momentum, w] = [0, 3].map(|at| z.fixed_rows::<3>(at).into_owned());
+        let stepper = Stepper::new(Needle { a: w, energy: z[7], ..body }, h).unwrap();
+        let mut state = stepper.start_with_momentum(SO3::identity(), momentum).unwrap();
+        stepper.step(&mut state).unwrap();
+        let (next, Given(energy)) = state.advected();
+        let time = z[6] + 0.5 * h * (body.pace(&w) + body.pace(&next));
+        let momentum = state.momentum();
+        let numbers = momentum.iter().chain(next.iter()).chain([&time, &energy.x]).copied();
+        SVector::<f64, 8>::from_iterator(numbers.collect::<Vec<_>>())
+    };
+    let tensor = |z: &SVector<f64, 8>| {
+        let mut tensor = SMatrix::<f64, 8, 8>::zeros();
+        for (row, column, of) in [(0, 0, 0), (0, 3, 3), (3, 0, 3)] {
+            tensor.fixed_view_mut::<3, 3>(row, column).copy_from(&z.fixed_rows::<3>(of).into_owned().cross_matrix());
+        }
+        (tensor[(6, 7)], tensor[(7, 6)]) = (-1.0, 1.0);
+        tensor
+    };
+    let z = SVector::<f64, 8>::from_column_slice(&[0.9, 0.15, 0.3, 0.1, 0.6, 0.8, 0.0, -0.9]);
+    let columns: [_; 8] = core::array::from_fn(|k| derivative(|t| map(&(z + SVector::<f64, 8>::ith(k, t)))));
+    let tangent = SMatrix::<f64, 8, 8>::from_columns(&columns);
+    let defect = (tangent * tensor(&z) * tangent.transpose() - tensor(&map(&z))).amax();
+    println!("Poisson {defect:.1e}");
+    assert!(defect < 1e-12, "{defect:e}");
+}
+
+/// What is read is of the time `t`, and steps back undo steps.
+#[test]
+fn what_is_read_is_of_the_time() {
+    let (body, h, velocity) = (Needle::new(0.05), 0.012, Vector3::new(0.9, 0.1, 0.15));
+    let paced = Stepper::new(body, h).unwrap().paced().unwrap();
+    let start = paced.start(SO3::identity(), velocity).unwrap();
+    let momentum = Vector3::new(0.9, 0.14, 0.3);
+    assert!((start.momentum() - momentum).norm() < 1e-15 && (paced.velocity(&start) - velocity).norm() < 1e-15);
+    let energy = 0.5 * momentum.dot(&velocity) - 1.0 / body.gap(&body.a);
+    assert!((paced.energy(&start) - energy).abs() < 1e-15 && (start.advected().1.0.x - energy).abs() < 1e-15);
+    // The steps of `τ` with that energy, and their times.
+    let own = Stepper::new(Needle { energy, ..body }, h).unwrap();
+    let (mut state, mut other) = (start, own.start_with_momentum(SO3::identity(), momentum).unwrap());
+    let mut time = 0.0;
+    for _ in 0..300 {
+        let before = body.pace(&state.advected().0);
+        paced.step(&mut state).unwrap();
+        own.step(&mut other).unwrap();
+        time += 0.5 * h * (before + body.pace(&state.advected().0));
+    }
+    assert!((state.momentum() - other.momentum()).norm() < 1e-12 && (paced.time(&state) - time).abs() < 1e-13);
+    let (mut seen, mut last, mut told) = (Vec::new(), start, Vec::new());
+    let report = paced
+        .observed(&mut last)
+        .event(Event::crossing(), |now| now.momentum().x - 0.7, |now| seen.push((now.time(), **now)))
+        .progress(|share| told.push(share))
+        .until(time - 1e-9);
+    assert!(report.unwrap().steps == 300 && !seen.is_empty());
+    assert!(told.is_sorted() && told.len() > 50 && told.len() <= 101 && told.last() == Some(&1.0), "{told:?}");
+    for (time, motion) in &seen {
+        let again = paced.state_at(&start, *time).unwrap();
+        assert!((motion.momentum().x - 0.7).abs() < 1e-12 && (again.momentum() - motion.momentum()).norm() < 1e-11);
+    }
+    #[cfg(feature = "serde")]
+    assert_eq!(paced.resume(&paced.checkpoint(&state)).unwrap(), state);
+    paced.inverse().unwrap().run(&mut state, 300).unwrap();
+    assert!((state.momentum() - momentum).norm() < 1e-10 && paced.time(&state).abs() < 1e-10);
+    let compensated = Stepper::new(body, h).unwrap().compensated().paced().unwrap();
+    assert_eq!(compensated.adopt(&start).advected(), start.advected());
+    // Where there is none, or it isn't of the whole scene.
+    let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+    assert!(Stepper::new(body + gravity, h).unwrap().paced().is_err());
+    assert!(Stepper::new(RigidBody { J_d: body.J_d }, h).unwrap().paced().is_err());
+}
+
+/// The largest error of the energy in so many steps, and the time that they take.
+fn worst<S, P>(stepper: &Stepper<S, P>, steps: u32) -> (f64, f64)
+where
+    S: Effect<Scalar = f64, Group = SO3>,
+    P: Plan<S>,
+{
+    let start = stepper.start_with_momentum(SO3::identity(), Vector3::new(0.9, 0.15, 0.3)).unwrap();
+    let before = stepper.energy(&start);
+    let states = stepper.steps(start).take(steps as usize).map(Result::unwrap);
+    states
+        .fold((0.0, 0.0), |(most, _), now| (f64::max(most, (stepper.energy(&now) - before).abs()), stepper.time(&now)))
+}
+
+/// The table of the guide's chapter: `cargo test -p liestep --test pace -- a_pace_is_worth --nocapture`.
+#[test]
+fn what_a_pace_is_worth() {
+    let needle @ Needle { J_d, a, rho, delta, .. } = Needle::new(0.05);
+    let paced = |n: u32, h: f64| worst(&Stepper::new(needle, h).unwrap().paced().unwrap(), n);
+    // So that the steps end at 12 s.
+    let tau = (0..6).fold(12.0, |tau, _| tau * 12.0 / paced(2000, tau / 2000.0).1);
+    let rows = [500, 1000, 2000, 4000].map(|n| {
+        let equal = Stepper::new(Plain { J_d, a, rho, delta }, 12.0 / f64::from(n)).unwrap().or_substeps(64);
+        let errors = (worst(&equal, n).0, paced(n, tau / f64::from(n)).0);
+        println!("{n} steps: equal {:.2e}, paced {:.2e}, {:.0} times less", errors.0, errors.1, errors.0 / errors.1);
+        errors
+    });
+    assert!(rows[2].0 > 100.0 * rows[2].1);
+    for pair in rows[1..].windows(2) {
+        let order = (pair[0].1 / pair[1].1).log2();
+        assert!((order - 2.0).abs() < 0.005, "{order}");
+    }
+}
+
+/// Two points that attract each other.
+#[lagrangian(
+    group(d_1 = R3, d_2 = R3),
+    advected(r = d_2.seen_from(d_1)),
+    given(E_0 = energy),
+    pace = {
+        let u = (r.norm_squared() + delta * delta).sqrt();
+        u * u.sqrt()
+    },
+    l_d = {
+        let V = |r: Vector3<f64>| -1.0 / (r.norm_squared() + delta * delta).sqrt();
+        (d_1.norm_squared() + d_2.norm_squared()) / (2.0 * h) - 0.5 * h * (V(r) + V(r + d_2 - d_1))
+    },
+)]
+#[derive(Clone, Copy, Debug)]
+struct Pair {
+    /// With which there is a step where both are in one place.
+    delta: f64,
+    energy: f64,
+}
+
+/// Two asteroids that pass each other at a thousandth of their distance, a hundred times.
+#[test]
+fn close_passes_with_a_pace() {
+    let far = |x: f64| R3::from(Vector3::x() * x);
+    let v = 0.5 * (2.0 * 0.001 / 1.999_f64).sqrt();
+    let stepper = Stepper::new(Pair { delta: 1e-5, energy: 0.0 }, 0.04).unwrap().paced().unwrap();
+    let mut state = stepper.start((far(-0.9995), far(0.9995)), Vector6::new(0.0, -v, 0.0, 0.0, v, 0.0)).unwrap();
+    let before = stepper.energy(&state);
+    let (mut passes, mut most, mut nearest, mut was_near) = (0, [0.0_f64; 2], f64::INFINITY, false);
+    while passes < 100 {
+        stepper.step(&mut state).unwrap();
+        let (one, other) = state.attitude();
+        let r = (other.translation() - one.translation()).norm();
+        nearest = nearest.min(r);
+        passes += usize::from(was_near && r > 1.0);
+        was_near = r < 1.0;
+        if r > 1.0 {
+            most[passes / 51] = most[passes / 51].max((stepper.energy(&state) - before).abs());
+        }
+    }
+    println!("{} steps, nearest {nearest:.1e}, energy {before} off by {most:.1?}", state.steps());
+    assert!(nearest < 1.2e-3 && most[1] < 1.01 * most[0] && most[0] < 1e-3);
+}
