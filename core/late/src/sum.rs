@@ -181,6 +181,9 @@ pub(crate) fn summed(terms: &[&Staged]) -> Result<Staged, LateError> {
         let names: Vec<&str> = other.factors.iter().map(|factor| factor.name.as_str()).collect();
         return Err(LateError::Group { declared: names.join(", ") });
     }
+    if terms.iter().any(|staged| staged.energy.is_some()) {
+        return Err(LateError::Pace);
+    }
     let with_target = terms.iter().position(|staged| staged.parts[0]).unwrap_or(0);
     let (mut parts, mut parameters, mut carried) = (Vec::<Part<'_>>::new(), Vec::new(), Vec::<Carried>::new());
     for (at, &staged) in terms.iter().enumerate() {
@@ -217,6 +220,7 @@ pub(crate) fn summed(terms: &[&Staged]) -> Result<Staged, LateError> {
         is_quadratic: terms.iter().all(|staged| staged.is_quadratic),
         is_self_adjoint: terms.iter().all(|staged| staged.is_self_adjoint),
         in_increment: first.in_increment,
+        energy: None,
         blocks: solved().next().map_or_else(Vec::new, |one| one.blocks.iter().copied().filter(in_all).collect()),
         programs: programs(&parts),
         parameters,
