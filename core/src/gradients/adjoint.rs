@@ -47,6 +47,11 @@ struct Back<'a, G: LieGroup> {
 
 impl<G: LieGroup> Pass<G> for Back<'_, G> {
     #[hot]
+    fn asks_for_parameters(&self) -> bool {
+        true
+    }
+
+    #[hot]
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>) {
         self.cotangent = stage.pull(&self.cotangent, self.gradient, &mut self.values);
     }
@@ -79,8 +84,8 @@ impl<S: Effect> Given<'_, S> {
 }
 
 /// Several steps, from the last to the first.
-struct Stretch<'a, 'b, S: Effect, P, C> {
-    stepper: &'a Stepper<S, P>,
+struct Stretch<'a, 'b, S: SecondDerivatives, P: Linearisable<S>, C> {
+    linearised: &'a Linearised<'a, S, P>,
     steps: Range<u64>,
     events: &'a [Change<Group<S>, S::Advected>],
     given: &'a Given<'a, S>,
@@ -103,9 +108,10 @@ where
 
     #[hot]
     fn run(self) {
-        let Stepper { scene, plan } = self.stepper;
+        let Linearised { stepper, table } = self.linearised;
+        let Stepper { scene, plan } = stepper;
         // All steps of a plan have the same stages, so each has this number of events.
-        let half = self.stepper.step_size() * real(0.5);
+        let half = stepper.step_size() * real(0.5);
         let mut motions = self.given.motions.iter().rev();
         for (n, step) in self.steps.rev().zip(self.events.chunks(plan.stages()).rev()) {
             let (input, at_end) = (self.given.input(n), self.back.cotangent.momentum);
@@ -114,7 +120,7 @@ where
                 values.each(&mut |_| self.back.values.push(real(0.0)));
             }
             for (index, event) in step.iter().enumerate().rev() {
-                plan.visit(scene, index, event, self.back);
+                plan.visit((scene, table), index, event, self.back);
             }
             let mut shares = self.back.values.iter();
             match input {
@@ -264,7 +270,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
             }
             let events = events.borrow();
             dispatch(Stretch {
-                stepper: self.stepper,
+                linearised: self,
                 steps: first..last,
                 events: &events,
                 given: &given,
@@ -333,15 +339,18 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
     where
         S: DiscreteLagrangian + Clone,
     {
-        Ok(Backwards { linearised: self, inverse: self.stepper.inverse()? })
+        let Self { stepper, .. } = self;
+        Ok(Backwards { linearised: self, inverse: stepper.inverse()?, undone: stepper.plan.table_undone() })
     }
 }
 
 /// Adjoints without a tape, by [`Linearised::backwards`].
 #[derive(Clone, Debug)]
-pub struct Backwards<'a, S: Effect, P> {
+pub struct Backwards<'a, S: SecondDerivatives, P: Linearisable<S>> {
     linearised: &'a Linearised<'a, S, P>,
     inverse: Stepper<S, P>,
+    /// Of the stages forwards, as steps back undo them.
+    undone: P::Table,
 }
 
 impl<S: SecondDerivatives, P: Linearisable<S>> Backwards<'_, S, P> {
@@ -356,7 +365,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Backwards<'_, S, P> {
         steps: u64,
         mut cost: impl FnMut(u64, &Motion<Group<S>, S::Advected>) -> Cotangent<Vector<S>>,
     ) -> Result<GradientOf<S>, StepError> {
-        let (forwards, inverse) = (self.linearised, Linearised { stepper: &self.inverse });
+        let forwards = self.linearised;
         let mut end = *state;
         for _ in 0..steps {
             forwards.stepper.step(&mut end)?;
@@ -366,14 +375,14 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Backwards<'_, S, P> {
         let mut gradient = forwards.no_gradient();
         let mut back = Back { cotangent: cost(steps, &end.motion), gradient: &mut gradient, values: Vec::new() };
         for n in (0..steps).rev() {
-            inverse.recorded(&mut now, &events)?;
+            self.inverse.recorded(&mut now, &events)?;
             let mut made = events.borrow_mut();
             // A step back undoes the stages from the last to the first.
             let after = made.iter().skip(1).map(|event| event.before).chain([now.motion]).collect::<Vec<_>>();
             for (index, (event, after)) in made.drain(..).zip(after).enumerate() {
                 let increment = Group::<S>::from_increment(&event.increment).inverse().increment();
                 let undone = Change { before: after, increment };
-                forwards.stepper.plan.visit_undone(&forwards.stepper.scene, index, &undone, &mut back);
+                forwards.stepper.plan.visit((&forwards.stepper.scene, &self.undone), index, &undone, &mut back);
             }
             back.add(&cost(n, &now.motion));
         }

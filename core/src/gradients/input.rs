@@ -205,14 +205,14 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
     ) -> Result<StepReport, StepError> {
         let Stepper { scene, plan } = self.stepper;
         match input {
-            Input::Free => self.recorded(state, events),
+            Input::Free => self.stepper.recorded(state, events),
             Input::Force(force) => {
                 if !force.is_finite() {
                     return Err(StepError::NonFinite { what: "control force" });
                 }
                 let half = *force * self.half_step();
                 plan.push(scene, &mut state.motion, &mut state.kept, &half)?;
-                let report = self.recorded(state, events)?;
+                let report = self.stepper.recorded(state, events)?;
                 plan.push(scene, &mut state.motion, &mut state.kept, &half)?;
                 if !state.motion.momentum.is_finite() {
                     return Err(StepError::NonFinite { what: "momentum after the step" });
@@ -225,7 +225,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
                 }
                 let seen = values.seen_from(&state.motion.attitude);
                 plan.see(&mut state.motion, &mut state.kept, seen);
-                let report = self.recorded(state, events)?;
+                let report = self.stepper.recorded(state, events)?;
                 let own = scene.advected().seen_from(&state.motion.attitude);
                 plan.see(&mut state.motion, &mut state.kept, own);
                 Ok(report)

@@ -122,6 +122,21 @@ use recording::Recording;
     note = "known are those of a scene's own step, of compositions, and of splittings, processed ones too, whose flow is exact or declared with `gradients`"
 )]
 pub trait Linearisable<S: SecondDerivatives>: Plan<S> + Steerable {
+    /// What is known of the stages before any step is made, once for each [`Linearised`]: the lengths of a splitting's, and
+    /// what the derivatives of an exact motion have in common.
+    type Table: Clone + core::fmt::Debug;
+
+    /// Makes it.
+    fn table(&self) -> Self::Table;
+
+    /// That of the stages that a step of `−h` undoes, by the same numbers.
+    ///
+    /// The lengths of most plans are odd in `h`: stage `i` of a step of `−h` has minus the length of stage `i` of one of
+    /// `h`, and that is what it undoes. A plan whose lengths aren't says so here, as a processed splitting does.
+    fn table_undone(&self) -> Self::Table {
+        self.table()
+    }
+
     /// How many scalars the parameters have: those of the scene, and behind them those of what else the plan moves by.
     fn parameters(&self) -> usize {
         S::PARAMETERS
@@ -160,39 +175,41 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> + Steerable {
     }
 
     /// Shows the stage that has made the change of this number to a pass.
-    fn visit(&self, scene: &S, index: usize, event: &Change<Group<S>, S::Advected>, pass: &mut impl Pass<Group<S>>);
-
-    /// The change of the stage that the change of this number, in a step of `−h`, has undone.
-    ///
-    /// The lengths of most plans are odd in `h`: stage `i` of a step of `−h` has minus the length of stage `i` of one of
-    /// `h`, and that is what it undoes. A plan whose lengths aren't says so here, as a processed splitting does.
-    #[hot]
-    fn visit_undone(
+    fn visit(
         &self,
-        scene: &S,
+        stages: (&S, &Self::Table),
         index: usize,
         event: &Change<Group<S>, S::Advected>,
         pass: &mut impl Pass<Group<S>>,
-    ) {
-        self.visit(scene, index, event, pass);
-    }
+    );
 }
 
 impl<S: SecondDerivatives> Linearisable<S> for Declared<S> {
+    type Table = ();
+
+    fn table(&self) {}
+
     fn stages(&self) -> usize {
         1
     }
 
     #[hot]
-    fn visit(&self, scene: &S, _: usize, event: &Change<Group<S>, S::Advected>, pass: &mut impl Pass<Group<S>>) {
+    fn visit(
+        &self,
+        (scene, ()): (&S, &()),
+        _: usize,
+        event: &Change<Group<S>, S::Advected>,
+        pass: &mut impl Pass<Group<S>>,
+    ) {
         pass.stage(&Stage::step(scene, self.step_size(), event, event.before.advected));
     }
 }
 
 /// A stepper with the derivatives of its steps, by [`Stepper::linearised`].
-#[derive(Clone, Copy, Debug)]
-pub struct Linearised<'a, S: Effect, P> {
+#[derive(Clone, Debug)]
+pub struct Linearised<'a, S: SecondDerivatives, P: Linearisable<S>> {
     stepper: &'a Stepper<S, P>,
+    table: P::Table,
 }
 
 /// One scalar of the parameters.
@@ -222,7 +239,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         P: Linearisable<S>,
     {
         self.plan.check_stages(&self.scene)?;
-        Ok(Linearised { stepper: self })
+        Ok(Linearised { stepper: self, table: self.plan.table() })
     }
 }
 
@@ -295,7 +312,7 @@ impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearised<'a, S, P> {
             assert_eq!(count, own, "the tangent is that of a plan with {count} parameters, and this one has {own}");
         }
         let events = tangent.events.take();
-        let is_finite = dispatch(Carry { plan, scene, events: &events, tangent: &mut *tangent });
+        let is_finite = dispatch(Carry { plan, stages: (scene, &self.table), events: &events, tangent: &mut *tangent });
         tangent.events.replace(events);
         if is_finite {
             return Ok(());
@@ -303,7 +320,9 @@ impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearised<'a, S, P> {
         tangent.go_back();
         Err(StepError::NonFinite { what: "derivative after the step" })
     }
+}
 
+impl<S: SecondDerivatives, P: Linearisable<S>> Stepper<S, P> {
     /// One step, whose stages are written down.
     #[hot]
     fn recorded(
@@ -311,7 +330,7 @@ impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearised<'a, S, P> {
         state: &mut StateOf<S, P>,
         events: &RefCell<Vec<Change<Group<S>, S::Advected>>>,
     ) -> Result<StepReport, StepError> {
-        let Stepper { scene, plan } = self.stepper;
+        let Self { scene, plan } = self;
         let mut recorded = Recording { motion: state.motion, events };
         match plan.record(scene, &mut recorded, &mut state.kept) {
             Ok(report) => {
@@ -325,9 +344,9 @@ impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearised<'a, S, P> {
 }
 
 /// Carries a tangent over the stages of a step, and says whether all of it is numbers.
-struct Carry<'a, S: Effect, P> {
+struct Carry<'a, S: SecondDerivatives, P: Linearisable<S>> {
     plan: &'a P,
-    scene: &'a S,
+    stages: (&'a S, &'a P::Table),
     events: &'a [Change<Group<S>, S::Advected>],
     tangent: &'a mut TangentOf<S>,
 }
@@ -342,7 +361,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Carry<'_, S, P> {
     fn run(self) -> bool {
         self.tangent.keep();
         for (index, event) in self.events.iter().enumerate() {
-            self.plan.visit(self.scene, index, event, self.tangent);
+            self.plan.visit(self.stages, index, event, self.tangent);
         }
         self.tangent.is_finite()
     }

@@ -356,6 +356,9 @@ fn pulled<G: LieGroup>(matrix: &SquareOf<G>, a: &G::Vector) -> G::Vector {
 /// What is done with the stages of a step, one after the other: by the derivatives of the library's own plans.
 #[doc(hidden)]
 pub trait Pass<G: LieGroup> {
+    /// Whether it asks for derivatives by parameters; those of an exact flow may then be left out.
+    fn asks_for_parameters(&self) -> bool;
+
     /// Takes notice of a stage.
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>);
 

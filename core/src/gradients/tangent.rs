@@ -188,6 +188,11 @@ impl<G: LieGroup, A> Tangent<G, A> {
 
 impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
     #[hot]
+    fn asks_for_parameters(&self) -> bool {
+        !self.shares.is_empty()
+    }
+
+    #[hot]
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>) {
         if !self.shares.is_empty() {
             let zero = G::Vector::zero();

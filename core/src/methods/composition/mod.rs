@@ -213,12 +213,22 @@ impl<S: Effect> Plan<S> for Composed<S> {
 }
 
 impl<S: SecondDerivatives> Linearisable<S> for Composed<S> {
+    type Table = ();
+
+    fn table(&self) {}
+
     fn stages(&self) -> usize {
         self.stages.len()
     }
 
     #[hot]
-    fn visit(&self, scene: &S, index: usize, event: &Change<Group<S>, S::Advected>, pass: &mut impl Pass<Group<S>>) {
+    fn visit(
+        &self,
+        (scene, ()): (&S, &()),
+        index: usize,
+        event: &Change<Group<S>, S::Advected>,
+        pass: &mut impl Pass<Group<S>>,
+    ) {
         if let Some(substep) = self.stages.get(index).and_then(|stage| self.substeps.get(stage.substep)) {
             pass.stage(&Linear::step(scene, substep.step_size(), event, event.before.advected));
         }

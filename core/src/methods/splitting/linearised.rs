@@ -2,6 +2,9 @@
 //!
 //! The kick of a force gradient has the scene's `J⁻¹` in it, so the scene's inertia is a parameter of that, too.
 
+use alloc::vec::Vec;
+use core::fmt::Debug;
+
 use nalgebra::{Matrix3, Vector3};
 
 use super::kinetic_flow::SymmetricBody;
@@ -34,9 +37,21 @@ pub trait DifferentiableFlow<T: Real>: KineticFlow<T> {
     /// Shows them.
     fn describe_parameters(flow: &Self, visitor: &mut dyn SceneVisitor<T>);
 
+    /// What the derivatives of all motions of one length have in common.
+    type Slopes: Clone + Debug;
+
+    /// Those of this length, s.
+    fn slopes(flow: &Self, time: T) -> Self::Slopes;
+
     /// Shows a pass what the flow did in this time, s. Its parameters are numbered from `first_parameter` on, among those
     /// of the splitting.
-    fn visit<A>(flow: &Self, time: T, event: &Change<SO3<T>, A>, first_parameter: usize, pass: &mut impl Pass<SO3<T>>);
+    fn visit<A>(
+        flow: &Self,
+        drift: (T, &Self::Slopes),
+        event: &Change<SO3<T>, A>,
+        first_parameter: usize,
+        pass: &mut impl Pass<SO3<T>>,
+    );
 }
 
 impl<T: Real, L> DifferentiableFlow<T> for L
@@ -45,12 +60,22 @@ where
 {
     const PARAMETERS: usize = <L as SecondDerivatives>::PARAMETERS;
 
+    type Slopes = ();
+
+    fn slopes(_: &Self, _: T) {}
+
     fn describe_parameters(flow: &Self, visitor: &mut dyn SceneVisitor<T>) {
         Effect::describe(flow, visitor);
     }
 
     #[hot]
-    fn visit<A>(flow: &Self, time: T, event: &Change<SO3<T>, A>, first_parameter: usize, pass: &mut impl Pass<SO3<T>>) {
+    fn visit<A>(
+        flow: &Self,
+        (time, ()): (T, &()),
+        event: &Change<SO3<T>, A>,
+        first_parameter: usize,
+        pass: &mut impl Pass<SO3<T>>,
+    ) {
         pass.stage(&Stage::step(flow, time, event, ()).behind(first_parameter));
     }
 }
@@ -63,12 +88,22 @@ where
 impl<T: Real> DifferentiableFlow<T> for SymmetricBody<T> {
     const PARAMETERS: usize = 2;
 
+    type Slopes = ();
+
+    fn slopes(_: &Self, _: T) {}
+
     fn describe_parameters(flow: &Self, visitor: &mut dyn SceneVisitor<T>) {
         Self::describe(flow, visitor);
     }
 
     #[hot]
-    fn visit<A>(flow: &Self, time: T, event: &Change<SO3<T>, A>, first_parameter: usize, pass: &mut impl Pass<SO3<T>>) {
+    fn visit<A>(
+        flow: &Self,
+        (time, ()): (T, &()),
+        event: &Change<SO3<T>, A>,
+        first_parameter: usize,
+        pass: &mut impl Pass<SO3<T>>,
+    ) {
         let (transverse, axial) = Self::moments(flow);
         let (momentum, increment) = (event.before.momentum, event.increment);
         let t = time / transverse;
@@ -106,6 +141,13 @@ where
     S: RigidScene + SecondDerivatives,
     K: DifferentiableFlow<Scalar<S>>,
 {
+    type Table = Table<Scalar<S>, K::Slopes>;
+
+    fn table(&self) -> Self::Table {
+        let shares = self.scheme.shares().zip(self.scheme.gradients());
+        self.table_of(shares.map(|share| Length::of(self.h, 1.0, share)))
+    }
+
     fn parameters(&self) -> usize {
         S::PARAMETERS + K::PARAMETERS
     }
@@ -141,15 +183,18 @@ where
     #[hot]
     fn visit(
         &self,
-        scene: &S,
+        (scene, table): (&S, &Self::Table),
         index: usize,
         event: &Change<SO3<Scalar<S>>, S::Advected>,
         pass: &mut impl Pass<SO3<Scalar<S>>>,
     ) {
-        let mut lengths = self.scheme.shares().zip(self.scheme.gradients());
-        if let Some(share) = lengths.nth(index) {
-            self.show(scene, Length::of(self.h, 1.0, share), event, pass);
+        let Some((length, slopes)) = table.0.get(index) else { return };
+        if let Some(slopes) = slopes {
+            return K::visit(&self.kinetic, (length.time, slopes), event, S::PARAMETERS, pass);
         }
+        let (torque, inverse_inertia) = (&self.torque, &self.inverse_inertia);
+        let gradient = length.gradient.map(|share| ForceGradient { share, torque, inverse_inertia });
+        pass.stage(&Stage::kick(scene, length.time, gradient, event));
     }
 }
 
@@ -184,22 +229,13 @@ where
         known.map(|_| ()).ok_or(SetupError::NoSecondDerivatives)
     }
 
-    /// Shows a pass what a share of this length did.
-    #[hot]
-    pub(super) fn show(
-        &self,
-        scene: &S,
-        length: Length<Scalar<S>>,
-        event: &Change<SO3<Scalar<S>>, S::Advected>,
-        pass: &mut impl Pass<SO3<Scalar<S>>>,
-    ) {
-        match length.flow {
-            Flow::Kick => {
-                let (torque, inverse_inertia) = (&self.torque, &self.inverse_inertia);
-                let gradient = length.gradient.map(|share| ForceGradient { share, torque, inverse_inertia });
-                pass.stage(&Stage::kick(scene, length.time, gradient, event));
-            }
-            Flow::Drift => K::visit(&self.kinetic, length.time, event, S::PARAMETERS, pass),
-        }
+    /// The table of these shares.
+    pub(super) fn table_of(&self, lengths: impl Iterator<Item = Length<Scalar<S>>>) -> Table<Scalar<S>, K::Slopes> {
+        let slopes = |time| K::slopes(&self.kinetic, time);
+        Table(lengths.map(|length| (length, (length.flow == Flow::Drift).then(|| slopes(length.time)))).collect())
     }
 }
+
+/// The lengths of all shares of a step, those of drifts with what their derivatives have in common.
+#[derive(Clone, Debug)]
+pub struct Table<T, D>(Vec<(Length<T>, Option<D>)>);

@@ -17,9 +17,21 @@ use crate::groups::SO3;
 use crate::mechanics::SceneVisitor;
 use crate::numbers::{Dual, Real};
 
+/// The closed form of a motion of one length: at fixed moments, and along each of them.
+#[derive(Clone, Debug)]
+pub struct Forms<T>([Form<Dual<T>>; 2]);
+
 /// The parameters are those of the docs of [`ExactBody`], under "Derivatives".
 impl<T: Real> DifferentiableFlow<T> for ExactBody<T> {
     const PARAMETERS: usize = 6;
+
+    type Slopes = Forms<T>;
+
+    fn slopes(flow: &Self, time: T) -> Self::Slopes {
+        let moments = flow.moments.0;
+        let both = [moments.map(Dual::constant), core::array::from_fn(|k| Dual::along(moments[k], k))];
+        Forms(both.map(|moments| Form::of(moments, Dual::constant(time))))
+    }
 
     fn describe_parameters(flow: &Self, visitor: &mut dyn SceneVisitor<T>) {
         let mut moments = flow.moments.0;
@@ -33,17 +45,23 @@ impl<T: Real> DifferentiableFlow<T> for ExactBody<T> {
     }
 
     #[hot]
-    fn visit<A>(flow: &Self, time: T, event: &Change<SO3<T>, A>, first_parameter: usize, pass: &mut impl Pass<SO3<T>>) {
+    fn visit<A>(
+        flow: &Self,
+        (_, Forms([fixed, varied])): (T, &Forms<T>),
+        event: &Change<SO3<T>, A>,
+        first_parameter: usize,
+        pass: &mut impl Pass<SO3<T>>,
+    ) {
         let (momentum, increment) = (event.before.momentum, event.increment);
         let along = flow.frame.within(&momentum);
-        let (time, constant) = (Dual::constant(time), Dual::constant);
-        let fixed = Form::of(flow.moments.0.map(constant), time);
-        let turns = flow.turns(&fixed, |k| fixed.scale * Dual::along(along[k], k));
+        let turns = flow.turns(fixed, |k| fixed.scale * Dual::along(along[k], k));
         let inward = |k: usize| flow.frame.within(&Matrix3::identity().column(k).into_owned());
         let turn_by_momentum =
             Matrix3::from_columns(&turns) * Matrix3::from_columns(&[0, 1, 2].map(|k| Vector3::from(inward(k))));
-        let varied = Form::of(core::array::from_fn(|k| Dual::along(flow.moments.0[k], k)), time);
-        let by_moments = flow.turns(&varied, |k| varied.scale * constant(along[k]));
+        if !pass.asks_for_parameters() {
+            return pass.flown(&flown(turn_by_momentum, &increment, &momentum, &[]));
+        }
+        let by_moments = flow.turns(varied, |k| varied.scale * Dual::constant(along[k]));
         // F(R J Rᵀ, p) = R F(J, Rᵀ p) Rᵀ.
         let by_axes = turn_by_momentum * momentum.cross_matrix() - increment;
         let places = flow.frame.places();

@@ -4,7 +4,7 @@
 //! is where the run has it, the way to there is made from what is read, and parts from it by a rounding.
 
 use super::super::Length;
-use super::super::linearised::DifferentiableFlow;
+use super::super::linearised::{DifferentiableFlow, Table};
 use super::{Part, Processed};
 use crate::error::{SetupError, StepError};
 use crate::gradients::{Change, Linearisable, Pass};
@@ -18,6 +18,17 @@ where
     S: RigidScene + SecondDerivatives,
     K: DifferentiableFlow<Scalar<S>>,
 {
+    type Table = Table<Scalar<S>, K::Slopes>;
+
+    fn table(&self) -> Self::Table {
+        self.kernel.table_of(self.lengths(self.kernel.h.simd_abs()))
+    }
+
+    /// The processor is that of `|h|` in a step of `−h` too, and so isn't undone by itself.
+    fn table_undone(&self) -> Self::Table {
+        self.kernel.table_of(self.lengths(-self.kernel.h.simd_abs()))
+    }
+
     fn parameters(&self) -> usize {
         Linearisable::<S>::parameters(&self.kernel)
     }
@@ -56,28 +67,12 @@ where
     #[hot]
     fn visit(
         &self,
-        scene: &S,
+        stages: (&S, &Self::Table),
         index: usize,
         event: &Change<SO3<Scalar<S>>, S::Advected>,
         pass: &mut impl Pass<SO3<Scalar<S>>>,
     ) {
-        if let Some(length) = self.length(index, self.kernel.h.simd_abs()) {
-            self.kernel.show(scene, length, event, pass);
-        }
-    }
-
-    /// The processor is that of `|h|` in a step of `−h` too, and so isn't undone by itself.
-    #[hot]
-    fn visit_undone(
-        &self,
-        scene: &S,
-        index: usize,
-        event: &Change<SO3<Scalar<S>>, S::Advected>,
-        pass: &mut impl Pass<SO3<Scalar<S>>>,
-    ) {
-        if let Some(length) = self.length(index, -self.kernel.h.simd_abs()) {
-            self.kernel.show(scene, length, event, pass);
-        }
+        self.kernel.visit(stages, index, event, pass);
     }
 }
 
@@ -87,17 +82,12 @@ impl<S: RigidScene, K: DifferentiableFlow<Scalar<S>>> Processed<S, K> {
         self.scheme.kernel().shares().count() - 1
     }
 
-    /// The length of a change in a step with a processor of this length.
-    fn length(&self, index: usize, processor: Scalar<S>) -> Option<Length<Scalar<S>>> {
-        let (parts, h, kernel) = (&self.parts, self.kernel.h, self.scheme.kernel());
-        if let Some(part) = parts.iter().rev().nth(index) {
-            return Some(part.length([h, processor], -1.0));
-        }
-        let (index, joint) = (index - parts.len(), self.changes_of_kernel() - 1);
-        if let Some(part) = index.checked_sub(joint + 1) {
-            return parts.get(part).map(|part| part.length([h, processor], 1.0));
-        }
-        let share = kernel.shares().zip(kernel.gradients()).nth(index + 1)?;
-        Some(Length::of(h, if index == joint { 2.0 } else { 1.0 }, share))
+    /// The lengths of all changes in a step with a processor of this length.
+    fn lengths(&self, processor: Scalar<S>) -> impl Iterator<Item = Length<Scalar<S>>> {
+        let (h, kernel, joint) = (self.kernel.h, self.scheme.kernel(), self.changes_of_kernel());
+        let part = move |times| move |part: &Part| part.length([h, processor], times);
+        let shares = kernel.shares().zip(kernel.gradients()).enumerate().skip(1);
+        let inner = shares.map(move |(k, share)| Length::of(h, if k == joint { 2.0 } else { 1.0 }, share));
+        self.parts.iter().rev().map(part(-1.0)).chain(inner).chain(self.parts.iter().map(part(1.0)))
     }
 }

@@ -256,17 +256,6 @@ fn inverses() {
     }
 }
 
-/// What rounding hides, the finite field sees.
-#[test]
-fn small_terms_count() {
-    let body = |more: &str| {
-        let l_d = format!("((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) + 1e-14 * h * k * {more}");
-        Declared::new(&format!("group = SE3, l_d = {l_d}"), "struct Body { J: Matrix4<f64>, k: f64 }").verified()
-    };
-    assert_eq!(body("F.trace()"), Ok(SelfAdjointness::Exact));
-    assert_eq!(body("F[(0, 3)]"), Ok(SelfAdjointness::No));
-}
-
 /// By hand: a field and `h` count as 1, `F` on a group of dimension one as 2/Δ with a denominator of degree 2.
 #[test]
 fn degrees() {
