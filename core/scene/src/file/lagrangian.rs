@@ -17,6 +17,12 @@ use crate::file::mistake::{Wrong, advised};
 use crate::file::quantity::{Any, Scalar};
 use crate::file::tables::Document;
 
+/// Programs are machine code where the feature asks for it, and else interpreted: the bits are the same.
+#[cfg(feature = "machine")]
+pub(crate) type Backend = liestep_machine::Machine;
+#[cfg(not(feature = "machine"))]
+pub(crate) type Backend = liestep_late::Interpreted;
+
 /// What a Lagrangian advects; where it is less, the others are zero.
 type Seen = (Vector3<f64>, Vector3<f64>, Vector3<f64>, Vector3<f64>);
 
@@ -29,7 +35,7 @@ pub(crate) struct Declared {
 
 impl Declared {
     /// As an effect with this kinetic part.
-    pub(crate) fn late<K: KineticPart>(&self) -> Result<Late<SO3, Seen, K>, LateError> {
+    pub(crate) fn late<K: KineticPart>(&self) -> Result<Late<SO3, Seen, K, Backend>, LateError> {
         Late::of(self.declaration)?.with_all(&self.numbers)
     }
 

@@ -13,6 +13,7 @@ use liestep_late::{Declaration, Late, LateError};
 use nalgebra::Vector3;
 
 use crate::file::body::{Distribution, Kinetic};
+use crate::file::lagrangian::Backend;
 use crate::file::method::{Method, Stages};
 use crate::file::scene::SceneFile;
 use crate::file::schedule::Pace;
@@ -23,7 +24,7 @@ use crate::run::make::{Listeners, Run, Stop, make};
 type Seen = (V, V, V, V, V, V);
 type V = Vector3<f64>;
 /// The effects of a file and its force, in one program.
-type Rest = Late<SO3, Seen, WithoutKinetic>;
+type Rest = Late<SO3, Seen, WithoutKinetic, Backend>;
 
 /// The declarations of what a file names beside the body, derived once a program.
 fn rest(file: &SceneFile, J: &Inertia) -> Result<Option<Rest>, Stop> {
