@@ -8,6 +8,7 @@ use toml::de::{DeArray, DeTable, DeValue};
 use crate::file::document::scene;
 use crate::file::draws::{Axis, DRAW, SceneEnsemble, Spread, parts};
 use crate::file::event::{Event, Quantity};
+use crate::file::lagrangian::Lagrangian;
 use crate::file::mistake::{Mistake, Wrong, place_of};
 use crate::file::scene::SceneFile;
 use crate::file::tables::{Document, set, span};
@@ -70,6 +71,11 @@ pub(crate) fn read(
     let wrong = |keys: &[&str], message: String| Err(located((span(document, keys), message)));
     if file.asks_for_accuracy() {
         return wrong(&["run", "accuracy"], "the members of an ensemble make the same steps: give a `step`".to_owned());
+    }
+    if file.lagrangian.as_ref().is_some_and(Lagrangian::has_a_pace) {
+        let message =
+            "members make the same number of steps, and those of a `pace` end at different times: leave it out";
+        return wrong(&["lagrangian", "pace"], message.to_owned());
     }
     if let Some(column) = file.columns().iter().find(|column| column.is_since_the_start()) {
         let names = column.names().join(", ");

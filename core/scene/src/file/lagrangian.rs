@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use liestep::SO3;
-use liestep::mechanics::{Effect as _, Inertia, Term as _, WithExpensiveKinetic, WithKinetic};
+use liestep::groups::Given;
+use liestep::mechanics::{Effect as _, Inertia, Term as _, WithEitherKinetic, WithExpensiveKinetic, WithKinetic};
 use liestep_late::{Declaration, Late, LateError};
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Deserializer};
@@ -24,6 +25,8 @@ type Seen = (Vector3<f64>, Vector3<f64>, Vector3<f64>, Vector3<f64>);
 pub(crate) enum Lagrangian {
     Usual(Late<SO3, Seen, WithKinetic>),
     Expensive(Late<SO3, Seen, WithExpensiveKinetic>),
+    /// With the energy of its motion.
+    Paced(Late<SO3, (Given<f64>, Vector3<f64>, Vector3<f64>, Vector3<f64>), WithEitherKinetic>),
 }
 
 impl Lagrangian {
@@ -31,7 +34,12 @@ impl Lagrangian {
         match self {
             Self::Usual(late) => late.declaration(),
             Self::Expensive(late) => late.declaration(),
+            Self::Paced(late) => late.declaration(),
         }
+    }
+
+    pub(crate) fn has_a_pace(&self) -> bool {
+        matches!(self, Self::Paced(_))
     }
 
     /// The inertia of the limit where the body is not turned.
@@ -39,11 +47,12 @@ impl Lagrangian {
         match self {
             Self::Usual(late) => late.inertia(&late.advected()),
             Self::Expensive(late) => late.inertia(&late.advected()),
+            Self::Paced(late) => late.inertia(&late.advected()),
         }
     }
 }
 
-const KEYS: &str = "a Lagrangian has `l_d`, or `l` with `discretise`; it may have `advected`, as in \
+const KEYS: &str = "a Lagrangian has `l_d`, or `l` with `discretise`; it may have a `pace`, `advected`, as in \
                     `advected = { w = \"up\" }`, and has a key for each parameter";
 
 /// A parameter: its type in the declaration, and its numbers.
@@ -80,7 +89,7 @@ fn read(table: &DeTable<'_>, place: &Range<usize>) -> Result<Lagrangian, Wrong> 
         None => Ok(None),
     };
     let [group, l_d, l] = ["group", "l_d", "l"].map(text);
-    let [velocity, discretise] = ["velocity", "discretise"].map(text);
+    let [velocity, discretise, pace] = ["velocity", "discretise", "pace"].map(text);
     if let Some((group, span)) = group?
         && group != "SO3"
     {
@@ -95,12 +104,17 @@ fn read(table: &DeTable<'_>, place: &Range<usize>) -> Result<Lagrangian, Wrong> 
         _ => return Err((place.clone(), KEYS.to_owned())),
     };
     let advected = advected(table)?;
-    let known = ["group", "l_d", "l", "velocity", "discretise", "advected"];
+    // First, so that the vectors behind it may be as many as there are.
+    let (paced, energy) = pace?.map_or_else(Default::default, |(pace, _)| {
+        (format!("given(E_0 = E_0_of_the_start), pace = {{ {pace} }}, "), Some("E_0_of_the_start: f64".to_owned()))
+    });
+    let known = ["group", "l_d", "l", "velocity", "discretise", "pace", "advected"];
     let parameters = table.iter().filter(|(key, _)| !known.contains(&key.get_ref().as_ref()));
     let parameters = parameters.map(|(key, value)| parameter(key.get_ref(), value)).collect::<Result<Vec<_>, _>>()?;
-    let fields: Vec<String> = parameters.iter().map(|one| format!("{}: {}", one.name, one.kind)).collect();
+    let fields = parameters.iter().map(|one| format!("{}: {}", one.name, one.kind));
+    let fields: Vec<String> = fields.chain(energy.clone()).collect();
     let declared = format!(
-        "#[lagrangian(group = SO3, {advected}{head} =\n{expression}\n)]\nstruct Lagrangian {{ {} }}",
+        "#[lagrangian(group = SO3, {paced}{advected}{head} =\n{expression}\n)]\nstruct Lagrangian {{ {} }}",
         fields.join(", ")
     );
     let wrong = |error: LateError| {
@@ -123,7 +137,10 @@ fn read(table: &DeTable<'_>, place: &Range<usize>) -> Result<Lagrangian, Wrong> 
             })?
         };
     }
-    Ok(if declaration.is_expensive {
+    Ok(if energy.is_some() {
+        let late = numbered!(Late::of(declaration));
+        Lagrangian::Paced(late.with("E_0_of_the_start", &[0.0]).map_err(wrong)?)
+    } else if declaration.is_expensive {
         Lagrangian::Expensive(numbered!(Late::of(declaration)))
     } else {
         Lagrangian::Usual(numbered!(Late::of(declaration)))

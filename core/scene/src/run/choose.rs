@@ -112,6 +112,10 @@ fn stepped(file: &SceneFile, h: f64, purpose: Purpose<'_, '_>) -> Result<(), Sto
         return match &file.lagrangian {
             Some(Lagrangian::Usual(late)) => step!(late.clone()),
             Some(Lagrangian::Expensive(late)) => step!(late.clone()),
+            Some(Lagrangian::Paced(late)) => {
+                let stepper = Stepper::new(late.clone(), h).and_then(Stepper::paced);
+                simulate(file, stepper.map(Stepper::into_any), purpose)
+            }
             None => Err(nothing()),
         };
     };
@@ -122,7 +126,12 @@ fn stepped(file: &SceneFile, h: f64, purpose: Purpose<'_, '_>) -> Result<(), Sto
                 let (body, seen) = ($body, Rc::new(file.clone()));
                 let scene = sums!(file, J, body).3;
                 let values = move |time| sums!(&*seen, J, body, at time).3.advected();
-                let stepper = Stepper::new(scene, h).map(|stepper| stepper.driven(values).into_any());
+                let stepper = match file.run.steps_per_orbit.and_then(|steps| file.orbit()?.clock(steps).ok()) {
+                    None => Stepper::new(scene, h).map(|stepper| stepper.driven(values).into_any()),
+                    Some((clock, _)) => {
+                        Stepper::new(scene, 1.0).map(|stepper| stepper.with_clock(clock).driven(values).into_any())
+                    }
+                };
                 return simulate(file, stepper, purpose);
             }
             let (_, with_rotor, _, damped) = sums!(file, J, $body);
