@@ -131,7 +131,8 @@ pub(crate) fn make<I: Integrator<Group: LieGroup<Scalar: Into<f64>>>>(
             Ok(())
         });
     }
-    let end = until.map_or_else(|| observed.steps(steps), |end| observed.until(end)).map_err(|error| match error {
+    let end = if let Some(end) = until { observed.until(end) } else { observed.steps(steps) };
+    let end = end.map_err(|error| match error {
         RunError::Step { time, cause } => Stop::Step { time, cause },
         RunError::Observer { cause, .. } if cause.is::<RecordError>() => Stop::Table(cause.to_string()),
         other => Stop::Other(other.to_string()),
