@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use crate::declared::errors::Errors;
-use crate::declared::{Declaration, FieldKind, Kind, Name, Role, Shape, Tree};
+use crate::declared::{Declaration, FieldKind, Kind, Name, Role, Shape, Tree, parts};
 use crate::mathematics::derive::{
     Body, Carried, Declared, DeclaredConstraint, DeclaredContinuous, Displacements, Element, Let, Seen, hat,
     linear_forms, unit,
@@ -222,19 +222,8 @@ fn is_orthogonal(group: &Group, seen: Seen) -> bool {
 
 /// Whether a `let` names anything but a name.
 fn has_let(tree: &Rc<Tree>) -> bool {
-    // A shared part is visited once.
-    let mut seen = std::collections::BTreeSet::new();
-    let mut open = vec![tree];
-    while let Some(tree) = open.pop() {
-        if !seen.insert(Rc::as_ptr(tree)) {
-            continue;
-        }
-        match &tree.kind {
-            Kind::Bound(_, inner) if !matches!(inner.kind, Kind::Name(_) | Kind::Number(_)) => return true,
-            kind => open.extend(kind.operands().into_iter().flatten()),
-        }
-    }
-    false
+    let is_let = |part: &&Rc<Tree>| matches!(&part.kind, Kind::Bound(_, inner) if !matches!(inner.kind, Kind::Name(_) | Kind::Number(_)));
+    parts(tree).iter().any(is_let)
 }
 
 /// Why an expression can't be lowered.

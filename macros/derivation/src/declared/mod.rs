@@ -21,4 +21,4 @@ pub(crate) use declaration::{
     Scalar, named_displacements, named_velocities,
 };
 pub(crate) use spelling::Spelling;
-pub(crate) use tree::{Frames, Kind, Name, Shape, Tree};
+pub(crate) use tree::{Frames, Kind, Name, Shape, Tree, parts};

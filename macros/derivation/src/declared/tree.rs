@@ -1,5 +1,6 @@
 //! The declared expression as a tree with shapes, read as mathematics.
 
+use std::collections::BTreeSet;
 use std::rc::Rc;
 
 use proc_macro2::Span;
@@ -83,6 +84,19 @@ impl Tree {
         }
         tree
     }
+}
+
+/// Every part of a tree once, the inner ones first.
+pub(crate) fn parts(tree: &Rc<Tree>) -> Vec<&Rc<Tree>> {
+    fn inside<'a>(tree: &'a Rc<Tree>, seen: &mut BTreeSet<*const Tree>, parts: &mut Vec<&'a Rc<Tree>>) {
+        if seen.insert(Rc::as_ptr(tree)) {
+            tree.kind.operands().into_iter().flatten().for_each(|operand| inside(operand, seen, parts));
+            parts.push(tree);
+        }
+    }
+    let mut parts = Vec::new();
+    inside(tree, &mut BTreeSet::new(), &mut parts);
+    parts
 }
 
 /// A name in scope.

@@ -317,7 +317,7 @@ pub(super) fn certified(what: &str, sureness: Sureness) -> String {
             format!("{what} are not certified: degrees are too high for a bound; they agree at random points, exactly")
         }
         Sureness::Multiple => format!(
-            "{what} are not certified: a constant is a multiple of 2⁶¹ − 1, modulo which they agree at random points"
+            "{what} are not certified: a constant is a multiple of 2⁶¹ − 1, modulo which they agree wherever both have values"
         ),
         Sureness::Series => format!(
             "{what} are not certified: a generator's cube isn't a multiple of it; they agree in power series, exactly"

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use super::choose::Chosen;
-use super::verify::{Lagrangian, Sureness};
-use super::{explain, verify};
+use super::explain;
+use super::verify::{Motion, Sureness};
 use crate::declared::errors::Errors;
 use crate::declared::lower::Lowered;
 use crate::declared::{Declaration, Name, Tree, lower};
@@ -35,10 +35,6 @@ pub(crate) fn of_declared(declaration: &Declaration, tree: &Rc<Tree>, errors: &m
     let lowered = lower::continuous(declaration, tree, errors)?;
     let derived = derive::continuous(lowered.declared);
     let derived = derived.map_err(|refusal| explain::refusal(refusal, declaration, tree, errors)).ok()?;
-    if derived.has_kinetic() {
-        let found = verify::kinetic_hessian(declaration, &lowered.names, &derived);
-        explain::continuous_kinetic_part(&found, declaration, errors)?;
-    }
     checked(declaration, (Some(tree), tree), lowered.names, derived, errors)
 }
 
@@ -55,12 +51,11 @@ pub(crate) fn continuous(
         Some(equations) => equations,
         None => of_limit(declaration, discrete, chosen, errors)?,
     };
-    let (names, own) = (&chosen.lowered.names, (&equations.names, &equations.derived));
-    let l = if is_declared { Lagrangian::Declared(tree) } else { Lagrangian::Derived(own.0, own.1) };
+    let motion = Motion::new(declaration, is_declared.then_some(tree), &equations.names, &equations.derived);
     // What isn't declared and quadratic may have a limit that the field doesn't tell.
-    let has_limit = verify::has_limit(declaration, l, discrete)
-        .unwrap_or(!is_declared && equations.derived.inverse != Inverse::Nonlinear);
-    let Some(Ok(at_rest)) = has_limit.then(|| verify::rest_holds(declaration, own, (names, &chosen.derived))) else {
+    let has_limit = motion.has_limit(discrete);
+    let has_limit = has_limit.unwrap_or(!is_declared && equations.derived.inverse != Inverse::Nonlinear);
+    let Some(Ok(at_rest)) = has_limit.then(|| motion.rest_holds((&chosen.lowered.names, &chosen.derived))) else {
         explain::unconfirmed_term("continuous limit", declaration, errors);
         return None;
     };
@@ -87,9 +82,13 @@ fn checked(
     derived: Continuous,
     errors: &mut Errors,
 ) -> Option<Equations> {
-    let sureness = verify::equations_hold(declaration, tree, &names, &derived);
+    let motion = Motion::new(declaration, tree, &names, &derived);
+    if tree.is_some() && derived.has_kinetic() {
+        explain::continuous_kinetic_part(&motion.kinetic_part(), declaration, errors)?;
+    }
+    let sureness = motion.holds();
     let sureness =
         sureness.map_err(|unconfirmed| explain::unconfirmed(unconfirmed, declaration, place, errors)).ok()?;
-    let right_symmetries = verify::right_symmetries(declaration, &names, &derived);
+    let right_symmetries = motion.right_symmetries();
     Some(Equations { names, derived, right_symmetries, sureness })
 }

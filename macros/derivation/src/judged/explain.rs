@@ -291,7 +291,7 @@ pub(super) fn follows(part: &Tree, rows: &[Row], errors: &mut Errors) {
 /// Reports what the self-check doesn't confirm.
 pub(super) fn unconfirmed(unconfirmed: Unconfirmed, declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) {
     match unconfirmed {
-        Unconfirmed::Disagrees(term) => unconfirmed_term(term, declaration, errors),
+        Unconfirmed::Disagrees(term) | Unconfirmed::Undefined(term) => unconfirmed_term(term, declaration, errors),
         Unconfirmed::NoValue => {
             let message = "this has no value at the points where it was tried: what is under a root or a logarithm has to be \
                            positive for parameters of some size and sign";

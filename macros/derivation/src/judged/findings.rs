@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::choose::Chosen;
-use super::verify::{self, Sureness, Verified};
+use super::verify::{self, Subject, Sureness, Verified};
 use super::{explain, hypotheses};
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Role, Tree};
@@ -28,12 +28,13 @@ pub(crate) fn findings(
     errors: &mut Errors,
 ) -> Option<Findings> {
     let Chosen { lowered, derived, kernel } = chosen;
+    let of = Subject { declaration, tree, lowered, derived };
     // What has no kinetic part at all is a term of a scene.
     if derived.limit.has_kinetic {
-        explain::kinetic_part(&verify::kinetic_part(declaration, tree, lowered, derived), declaration, errors)?;
+        explain::kinetic_part(&verify::kinetic_part(of), declaration, errors)?;
     }
     let is_force = declaration.role == Role::Force;
-    match verify::verify(declaration, tree, lowered, (derived, kernel)) {
+    match verify::verify(of, kernel) {
         Ok(Verified { self_adjointness, sureness, derivatives }) => {
             let asked = declaration.discretisation().filter(|_| self_adjointness == SelfAdjointness::No);
             if let Some(asked) = asked {

@@ -312,18 +312,24 @@ impl Graph {
 
     /// The nodes that the outputs need, operands first.
     pub(crate) fn reachable(&self, outputs: &[NodeId]) -> Vec<NodeId> {
-        let mut needed = vec![false; self.nodes.len()];
+        self.reachable_from(outputs, &|_| false)
+    }
+
+    /// The same, where what is given needs no operands.
+    pub(crate) fn reachable_from(&self, outputs: &[NodeId], is_given: &dyn Fn(NodeId) -> bool) -> Vec<NodeId> {
+        let end = outputs.iter().map(|output| output.0 + 1).max().unwrap_or(0);
+        let mut needed = vec![false; end];
         for output in outputs {
             needed[output.0] = true;
         }
-        for id in (0..self.nodes.len()).rev() {
-            if needed[id] {
+        for id in (0..end).rev() {
+            if needed[id] && !is_given(NodeId(id)) {
                 for operand in self.nodes[id].0.operands().into_iter().flatten() {
                     needed[operand.0] = true;
                 }
             }
         }
-        (0..self.nodes.len()).filter(|&id| needed[id]).map(NodeId).collect()
+        (0..end).filter(|&id| needed[id]).map(NodeId).collect()
     }
 
     pub(crate) fn nodes(&self) -> impl Iterator<Item = &Node> {

@@ -8,8 +8,8 @@ use super::derivation::{continuous_derivation, derivation, page};
 use super::{HEAVY_TOP, expanded, tokens, top};
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Role, Tree, check, lower, parse};
-use crate::judged::verify::Unconfirmed;
-use crate::judged::{self, Equations, verify};
+use crate::judged::verify::{Motion, Unconfirmed};
+use crate::judged::{self, Equations};
 use crate::mathematics::derive::{self, Derived, Inverse};
 use crate::mathematics::symbolic::{Expression, Rational, substitute};
 
@@ -165,7 +165,7 @@ fn a_turned_sign_is_seen() {
         let check = |change: &dyn Fn(&mut derive::Continuous)| {
             let mut changed = derived.clone();
             change(&mut changed);
-            match verify::equations_hold(&declaration, Some(&tree), &names, &changed) {
+            match Motion::new(&declaration, Some(&tree), &names, &changed).holds() {
                 Err(Unconfirmed::Disagrees(term)) => Some(term),
                 found => found.map_or_else(|other| panic!("{other:?}"), |_| None),
             }
@@ -202,8 +202,8 @@ fn the_limit_is_what_was_discretised() {
         let chosen = judged::cheapest(readings, derive::derive, &declaration, &discrete, &mut errors).expect("derived");
         let own = equations(&arguments, PARAMETERS);
         let disagrees = |derived: &Derived| {
-            let (here, there) = ((&own.names, &own.derived), (&chosen.lowered.names, derived));
-            verify::rest_holds(&declaration, here, there).is_err()
+            let motion = Motion::new(&declaration, None, &own.names, &own.derived);
+            motion.rest_holds((&chosen.lowered.names, derived)).is_err()
         };
         assert!(!disagrees(&chosen.derived), "{rule}");
         let mut changed = chosen.derived.clone();

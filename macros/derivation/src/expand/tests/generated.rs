@@ -267,7 +267,7 @@ fn compile(declarations: &[String]) {
 /// Each kind in turn, and the declarations on products that small errors are made of.
 #[test]
 fn right_declarations_are_certified() {
-    for number in 0..48 {
+    for number in 0..96 {
         let (mut random, kind) = (Random::new(number), &KINDS[usize::try_from(number).expect("small") % KINDS.len()]);
         let (arguments, item) = declaration(kind, &right(&mut random, kind));
         let expansion = crate::expand::expand(kind.role, tokens(&arguments), &tokens(&item));
@@ -315,7 +315,8 @@ fn right_and_wrong_declarations() {
                 }
             }
             None => {
-                accepted.push(format!("#[{}({arguments})] pub {item}", role.attribute()));
+                let derives = if role == Role::Constraint { "#[derive(Clone, Copy, Debug, PartialEq)]" } else { "" };
+                accepted.push(format!("#[{}({arguments})] {derives} pub {item}", role.attribute()));
                 let text = arguments.strip_prefix(head).and_then(|text| text.strip_suffix(tail));
                 let text = text.and_then(|text| syn::parse_str(text).ok());
                 match text.and_then(|text| agrees(&mut random, role, (&arguments, &item), &text)) {

@@ -1,11 +1,13 @@
 //! Lagrangians that aren't quadratic in the velocity, and the limits of what is made of them.
 
+use std::rc::Rc;
+
 use super::continuous::{equations, read};
 use super::expanded;
 use crate::declared::errors::Errors;
-use crate::declared::lower;
-use crate::judged::verify::Lagrangian::Declared;
-use crate::judged::{self, verify};
+use crate::declared::{Tree, lower};
+use crate::judged;
+use crate::judged::verify::Motion;
 use crate::mathematics::derive;
 use crate::mathematics::symbolic::Rational;
 
@@ -22,19 +24,13 @@ fn the_limit_of_what_isnt_quadratic() {
         let mut errors = Errors::default();
         let asked = declaration.discretisation().expect("a rule");
         let discrete = judged::discretised(&declaration, &tree, asked, &mut errors).expect("a fit");
-        assert_eq!(verify::has_limit(&declaration, Declared(&tree), &discrete), Some(true), "{rule}");
-        let (_, other) = read(&l(kinetic, '+'), fields);
-        assert_eq!(
-            verify::has_limit(&declaration, Declared(&other), &discrete),
-            Some(false),
-            "{rule}: the potential's sign"
-        );
-        let (_, other) = read(&l(&kinetic.replace("+ m", "- m"), '-'), fields);
-        assert_eq!(
-            verify::has_limit(&declaration, Declared(&other), &discrete),
-            Some(false),
-            "{rule}: the quartic term's sign"
-        );
+        let own = equations(&l(kinetic, '-'), fields);
+        let has_limit =
+            |tree: &Rc<Tree>| Motion::new(&declaration, Some(tree), &own.names, &own.derived).has_limit(&discrete);
+        assert_eq!(has_limit(&tree), Some(true), "{rule}");
+        for other in [l(kinetic, '+'), l(&kinetic.replace("+ m", "- m"), '-')] {
+            assert_eq!(has_limit(&read(&other, fields).1), Some(false), "{rule}: a sign of {other}");
+        }
     }
 }
 
@@ -54,7 +50,9 @@ fn the_limit_of_a_root() {
         let mut errors = Errors::default();
         let asked = declaration.discretisation().expect("a rule");
         let discrete = judged::discretised(&declaration, &tree, asked, &mut errors).expect("a fit");
-        verify::has_limit(&declaration, Declared(&read(other, fields).1), &discrete)
+        // Of the declared `l`, whatever the equations.
+        let any = equations(&l("1.0 - v.norm_squared() / (c * c)", '+'), fields);
+        Motion::new(&declaration, Some(&read(other, fields).1), &any.names, &any.derived).has_limit(&discrete)
     };
     let [root, turned] = ["1.0 - v.norm_squared() / (c * c)", "1.0 + v.norm_squared() / (c * c)"];
     assert_eq!(limit(&l(root, '+'), &l(root, '+')), Some(true));
@@ -91,8 +89,8 @@ fn what_isnt_quadratic_at_rest() {
     let readings = readings.into_iter().map(|reading| equations.behind(reading)).collect();
     let chosen = judged::cheapest(readings, derive::derive, &declaration, &discrete, &mut errors).expect("derived");
     let disagrees = |derived: &derive::Derived| {
-        let (here, there) = (&equations.names, &chosen.lowered.names);
-        verify::rest_holds(&declaration, (here, &equations.derived), (there, derived)).is_err()
+        let motion = Motion::new(&declaration, None, &equations.names, &equations.derived);
+        motion.rest_holds((&chosen.lowered.names, derived)).is_err()
     };
     assert!(!disagrees(&chosen.derived));
     for change in [0, 1, 2] {

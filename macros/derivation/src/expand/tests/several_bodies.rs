@@ -4,7 +4,7 @@ use proc_macro2::TokenStream;
 
 use super::{expanded, is_refused, tokens};
 use crate::declared::errors::Errors;
-use crate::declared::{Kind, Role, check, parse};
+use crate::declared::{Kind, Role, check, parse, parts};
 use crate::judged::conserved;
 
 const BODIES: &str = "struct Bodies { J_1: NonstandardInertia, J_2: NonstandardInertia, k: f64, up: Vector3<f64>, \
@@ -147,12 +147,11 @@ fn a_name_is_one_value_in_the_derivation() {
     let declaration = parse::declaration(Role::Lagrangian, &tokens(arguments), &tokens(item), &mut errors);
     let tree = check::check(&declaration.expect("a declaration"), &mut errors).expect("a Lagrangian");
     assert!(errors.is_empty());
-    let (mut open, mut names) = (vec![&tree], std::collections::BTreeMap::new());
-    while let Some(tree) = open.pop() {
-        if let Kind::Bound(name, _) = &tree.kind {
-            names.insert(std::rc::Rc::as_ptr(tree), name.clone());
+    let mut names = std::collections::BTreeMap::new();
+    for part in parts(&tree) {
+        if let Kind::Bound(name, _) = &part.kind {
+            names.insert(std::rc::Rc::as_ptr(part), name.clone());
         }
-        open.extend(tree.kind.operands().into_iter().flatten());
     }
     let different: std::collections::BTreeSet<_> = names.values().cloned().collect();
     assert_eq!(different.len(), names.len(), "{names:?}");

@@ -12,7 +12,7 @@ use super::identities::Same;
 use super::linear::Subspace;
 use super::number::Number;
 use super::residue::Residue;
-use super::{DRAWS, Evaluation, Fault, Sureness, Unconfirmed, Value, Values, dot, evaluated, parameter, stream};
+use super::{DRAWS, Evaluation, Sureness, Unconfirmed, Value, Values, dot, evaluated, over, parameter, stream};
 use crate::declared::lower::LoweredConstraint;
 use crate::declared::{Declaration, FieldKind, Name, Tree};
 use crate::mathematics::derive::Seen;
@@ -77,7 +77,7 @@ pub(crate) fn constraint(declaration: &Declaration, held: &Held) -> Result<(Sure
         let mut number = Residue::stream(seed);
         Point::new(declaration, &mut number).holds(held, number, &mut same)
     })?;
-    let rows = Point::new(declaration, Residue::stream(1)).rows(held);
+    let rows = if content.has_multiple { None } else { Point::new(declaration, Residue::stream(1)).rows(held) };
     Ok((sureness, rows.unwrap_or_else(|| vec![Row::New; held.rows()])))
 }
 
@@ -107,7 +107,7 @@ impl<'a, T: Number> Point<'a, T> {
 
     /// The declared functions of bodies at these places.
     fn value(&self, held: &Held, places: &[Place<Dual<T>>; 2]) -> Vec<Dual<T>> {
-        let mut values: Values<Dual<T>> = self.fields.iter().map(|(name, value)| (*name, constant(value))).collect();
+        let mut values = over(&self.fields, Dual::constant);
         let place = |factor: usize| &places[factor / 2 % 2][factor % 2];
         for (index, w) in self.declaration.advected.iter().enumerate() {
             let field = w.field.and_then(|field| self.fields.get(&Name::Field(field))).map(constant);
@@ -145,7 +145,7 @@ impl<'a, T: Number> Point<'a, T> {
     }
 
     /// Along a direction of these numbers.
-    fn holds(&self, held: &Held, mut number: impl FnMut() -> T, same: &mut Same<T>) -> Result<(), Fault> {
+    fn holds(&self, held: &Held, mut number: impl FnMut() -> T, same: &mut Same<T>) -> Result<(), Unconfirmed> {
         let (inputs, axis) = (self.inputs(held), [(); 3].map(|()| number()));
         for (body, slopes) in held.entries.iter().enumerate() {
             for (by, entries) in slopes.iter().enumerate() {

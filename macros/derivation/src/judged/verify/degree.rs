@@ -4,16 +4,15 @@
 //! probability of at most its degree over `p`. Degrees are computed as numbers are, so the bound is that of the very
 //! operations that are compared.
 
-use std::collections::BTreeSet;
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::Add;
 use std::rc::Rc;
 
 use super::Values;
-use super::number::{self, Number};
+use super::number::{self, Number, operator};
 use super::residue::{Residue, mixed};
 use super::sample::Element;
 use super::value::Value;
-use crate::declared::{Declaration, FieldKind, Kind, Name, Tree};
+use crate::declared::{Declaration, FieldKind, Kind, Name, Tree, parts};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Function, Rational};
 use crate::program::{Graph, Node};
@@ -84,67 +83,35 @@ impl Degree {
     }
 }
 
-impl Add for Degree {
-    type Output = Self;
-
-    #[allow(clippy::suspicious_arithmetic_impl)] // over a common denominator
-    fn add(self, other: Self) -> Self {
-        let argument = self.argument.max(other.argument);
-        if self.is_zero || other.is_zero {
-            let sum = if self.is_zero { other } else { self };
-            return Self { argument, ..sum };
-        }
-        let names = [self.name.min(other.name), self.name.max(other.name)];
-        let [a, b] = self.with_one_divisor(other);
-        let (common, divisor) = (a.common.max(b.common), a.divisor.max(b.divisor));
-        let over = |one: Self, rest: u64| {
-            let factors = [common - one.common, divisor.0 - one.divisor.0, rest];
-            factors.into_iter().fold(one.numerator, u64::saturating_add)
-        };
-        let (numerator, rest) = (over(a, b.rest).max(over(b, a.rest)), a.rest.saturating_add(b.rest));
-        Self { numerator, common, divisor, rest, argument, ..Self::ONE }.named(1, names)
+operator!(impl Add::add for Degree, |a, b| {
+    let argument = a.argument.max(b.argument);
+    if a.is_zero || b.is_zero {
+        let sum = if a.is_zero { b } else { a };
+        return Self { argument, ..sum };
     }
-}
-
-impl Sub for Degree {
-    type Output = Self;
-
-    #[allow(clippy::suspicious_arithmetic_impl)] // the degrees of a sum
-    fn sub(self, other: Self) -> Self {
-        self + Self { name: !other.name, ..other }
-    }
-}
-
-impl Mul for Degree {
-    type Output = Self;
-
-    fn mul(self, other: Self) -> Self {
-        let names = [self.name.min(other.name), self.name.max(other.name)];
-        self.of_product(other).named(2, names)
-    }
-}
-
-impl Div for Degree {
-    type Output = Self;
-
-    fn div(self, other: Self) -> Self {
-        // Powers of the shared denominator cancel.
-        let left = self.common.saturating_sub(other.common);
-        let above = other.common.saturating_sub(self.common);
-        let numerator = [other.divisor.0, above].into_iter().fold(other.rest, u64::saturating_add);
-        let divisor = (other.numerator, if other.numerator == 0 { 0 } else { other.name });
-        let reciprocal = Self { numerator, common: 0, divisor, rest: 0, ..other };
-        Self { common: left, ..self }.of_product(reciprocal).named(3, [self.name, other.name])
-    }
-}
-
-impl Neg for Degree {
-    type Output = Self;
-
-    fn neg(self) -> Self {
-        Self { name: !self.name, ..self }
-    }
-}
+    let names = [a.name.min(b.name), a.name.max(b.name)];
+    // Over a common denominator.
+    let [a, b] = a.with_one_divisor(b);
+    let (common, divisor) = (a.common.max(b.common), a.divisor.max(b.divisor));
+    let over = |one: Self, rest: u64| {
+        let factors = [common - one.common, divisor.0 - one.divisor.0, rest];
+        factors.into_iter().fold(one.numerator, u64::saturating_add)
+    };
+    let (numerator, rest) = (over(a, b.rest).max(over(b, a.rest)), a.rest.saturating_add(b.rest));
+    Self { numerator, common, divisor, rest, argument, ..Self::ONE }.named(1, names)
+});
+operator!(impl Sub::sub for Degree, |a, b| a + -b);
+operator!(impl Mul::mul for Degree, |a, b| a.of_product(b).named(2, [a.name.min(b.name), a.name.max(b.name)]));
+operator!(impl Div::div for Degree, |a, b| {
+    // Powers of the shared denominator cancel.
+    let left = a.common.saturating_sub(b.common);
+    let above = b.common.saturating_sub(a.common);
+    let numerator = [b.divisor.0, above].into_iter().fold(b.rest, u64::saturating_add);
+    let divisor = (b.numerator, if b.numerator == 0 { 0 } else { b.name });
+    let reciprocal = Self { numerator, common: 0, divisor, rest: 0, ..b };
+    Self { common: left, ..a }.of_product(reciprocal).named(3, [a.name, b.name])
+});
+operator!(impl Neg::neg for Degree, |a| Self { name: !a.name, ..a });
 
 impl Number for Degree {
     const ZERO: Self = Self { is_zero: true, ..Self::ONE };
@@ -201,23 +168,18 @@ pub(super) fn element(group: &Group, attitudes: usize, number: &mut impl FnMut()
     let transforms = attitudes + group.factors().iter().map(of_factor).sum::<usize>();
     // cay(tE) is a quotient of polynomials of degree 2, or less, as the numerator and denominator of cay(2y) are.
     let degree = 2 * u64::try_from(transforms).unwrap_or(u64::MAX / 2);
-    let [matrix, inverse] = [(); 2].map(|()| {
-        let entries: Vec<Degree> = (0..group.size * group.size).map(|_| number()).collect();
-        super::by_blocks(group, |factor| {
-            let (own, start) = (group.factor(factor), group.row_of(factor));
-            Value::new(own.size, own.size, |row, column| {
-                let entry = entries[(start + row) * group.size + start + column];
-                match (row == column, column + 1 == own.size) {
-                    _ if !own.is_added => entry.of_element(degree),
-                    (true, _) => Degree::ONE,
-                    (false, true) => entry,
-                    (false, false) => Degree::ZERO,
-                }
-            })
-        })
+    let mut entry = |own: &Group, row: usize, column: usize| match (row == column, column + 1 == own.size) {
+        _ if !own.is_added => number().of_element(degree),
+        (true, _) => Degree::ONE,
+        (false, true) => number(),
+        (false, false) => Degree::ZERO,
+    };
+    let [matrices, inverses] = [(); 2].map(|()| {
+        let of_factor = |own: &Group| Value::new(own.size, own.size, |row, column| entry(own, row, column));
+        group.factors().iter().map(of_factor).collect()
     });
     let coordinates = group.generators.iter().map(|_| number()).collect();
-    (Element { matrix, inverse, coordinates }, degree)
+    (Element { matrices, inverses, coordinates }, degree)
 }
 
 /// The attitudes that are seen, as entries of Cayley transforms.
@@ -256,18 +218,11 @@ impl Content {
     }
 
     pub(super) fn of_tree(tree: &Rc<Tree>) -> Self {
-        let (mut seen, mut open, mut content) = (BTreeSet::new(), vec![tree], Self::default());
-        while let Some(tree) = open.pop() {
-            if seen.insert(Rc::as_ptr(tree)) {
-                content = match tree.kind {
-                    Kind::Apply(..) => content + Self { functions: 1, ..Self::default() },
-                    Kind::Number(value) => content + Self::of_constant(value),
-                    _ => content,
-                };
-                open.extend(tree.kind.operands().into_iter().flatten());
-            }
-        }
-        content
+        parts(tree).into_iter().fold(Self::default(), |content, part| match part.kind {
+            Kind::Apply(..) => content + Self { functions: 1, ..Self::default() },
+            Kind::Number(value) => content + Self::of_constant(value),
+            _ => content,
+        })
     }
 
     pub(super) fn of_graph(graph: &Graph) -> Self {

@@ -1,8 +1,6 @@
 //! Dual numbers `x + ε x'` over any numbers: exact derivatives of the declared tree, by none of the symbolic rules.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
-
-use super::number::{self, Number};
+use super::number::{self, Number, operator};
 use crate::mathematics::symbolic::{Function, Rational};
 
 /// A value and its derivative.
@@ -18,49 +16,19 @@ impl<T: Number> Dual<T> {
     }
 }
 
-impl<T: Number> Add for Dual<T> {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        Self { value: self.value + other.value, slope: self.slope + other.slope }
-    }
-}
-
-impl<T: Number> Sub for Dual<T> {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        Self { value: self.value - other.value, slope: self.slope - other.slope }
-    }
-}
-
-impl<T: Number> Mul for Dual<T> {
-    type Output = Self;
-
-    fn mul(self, other: Self) -> Self {
-        Self { value: self.value * other.value, slope: self.slope * other.value + self.value * other.slope }
-    }
-}
-
-impl<T: Number> Div for Dual<T> {
-    type Output = Self;
-
-    #[allow(clippy::suspicious_arithmetic_impl)] // by the reciprocal
-    fn div(self, other: Self) -> Self {
-        // Once, as in a finite field it is a hundred products.
-        let reciprocal = T::ONE / other.value;
-        let value = self.value * reciprocal;
-        Self { value, slope: (self.slope - value * other.slope) * reciprocal }
-    }
-}
-
-impl<T: Number> Neg for Dual<T> {
-    type Output = Self;
-
-    fn neg(self) -> Self {
-        Self { value: -self.value, slope: -self.slope }
-    }
-}
+operator!(impl<T: Number> Add::add for Dual<T>, |a, b| Self { value: a.value + b.value, slope: a.slope + b.slope });
+operator!(impl<T: Number> Sub::sub for Dual<T>, |a, b| Self { value: a.value - b.value, slope: a.slope - b.slope });
+operator!(impl<T: Number> Mul::mul for Dual<T>, |a, b| Self {
+    value: a.value * b.value,
+    slope: a.slope * b.value + a.value * b.slope
+});
+operator!(impl<T: Number> Div::div for Dual<T>, |a, b| {
+    // Once, as in a finite field it is a hundred products.
+    let reciprocal = T::ONE / b.value;
+    let value = a.value * reciprocal;
+    Self { value, slope: (a.slope - value * b.slope) * reciprocal }
+});
+operator!(impl<T: Number> Neg::neg for Dual<T>, |a| Self { value: -a.value, slope: -a.slope });
 
 impl<T: Number> Number for Dual<T> {
     const ZERO: Self = Self { value: T::ZERO, slope: T::ZERO };

@@ -10,7 +10,8 @@ use crate::declared::{Kind, Name, Shape, Tree};
 /// The values of names, and of what a `let` has bound.
 pub(super) struct Evaluation<'a, T = f64> {
     values: &'a BTreeMap<Name, Value<T>>,
-    known: BTreeMap<*const Tree, Value<T>>,
+    /// By where they are, which they keep as long as this does.
+    known: BTreeMap<*const Tree, (Rc<Tree>, Value<T>)>,
 }
 
 impl<'a, T: Number> Evaluation<'a, T> {
@@ -19,12 +20,12 @@ impl<'a, T: Number> Evaluation<'a, T> {
     }
 
     pub(super) fn of(&mut self, tree: &Rc<Tree>) -> Value<T> {
-        if let Some(known) = self.known.get(&Rc::as_ptr(tree)) {
+        if let Some((_, known)) = self.known.get(&Rc::as_ptr(tree)) {
             return known.clone();
         }
         let value = self.operation(tree);
         if Rc::strong_count(tree) > 1 {
-            self.known.insert(Rc::as_ptr(tree), value.clone());
+            self.known.insert(Rc::as_ptr(tree), (tree.clone(), value.clone()));
         }
         value
     }

@@ -6,17 +6,16 @@
 
 use std::collections::BTreeMap;
 use std::ops::Add as _;
-use std::rc::Rc;
 
 use super::degree::Content;
 use super::dual::Dual;
 use super::evaluation::Evaluation;
 use super::number::Number;
-use super::sample::{Element, Sample, exponentials};
+use super::residue::Residue;
+use super::sample::{Element, Sample, Subject, exponentials, products};
 use super::value::Value;
-use super::{Fault, Values, components_of, dot, evaluated, evaluated_from, increments};
-use crate::declared::lower::Lowered;
-use crate::declared::{Declaration, FieldKind, Name, Role, Tree};
+use super::{Unconfirmed, Values, algebra, components_of, dot, evaluated, evaluated_from, increments, shares};
+use crate::declared::{FieldKind, Name, Role};
 use crate::judged::places::{places, shape, variables};
 use crate::mathematics::derive::Derived;
 use crate::mathematics::symbolic::{Rational, Stage, SymbolId};
@@ -29,7 +28,7 @@ use crate::program::{
 type Inputs<T> = BTreeMap<SymbolId, Value<T>>;
 
 /// Compares what was found with what is expected, of a term.
-pub(super) type Same<'a, T> = dyn FnMut(&'static str, T, T) -> Result<(), Fault> + 'a;
+pub(super) type Same<'a, T> = dyn FnMut(&'static str, T, T) -> Result<(), Unconfirmed> + 'a;
 
 /// The derived terms as operations.
 struct Terms {
@@ -63,9 +62,7 @@ impl Terms {
 
 /// A declaration with all that was derived of it.
 pub(super) struct Identities<'a> {
-    declaration: &'a Declaration,
-    tree: &'a Rc<Tree>,
-    pub(super) derived: &'a Derived,
+    pub(super) of: Subject<'a>,
     kernel: &'a Kernel,
     pub(super) stages: Stages,
     terms: Terms,
@@ -80,8 +77,8 @@ struct Point<'a, T> {
     dual: Sample<'a, Dual<T>>,
     /// `v`, `v̂` and `exp(±ε v̂)`.
     direction: Vec<T>,
-    element: Value<T>,
-    exponentials: [Value<Dual<T>>; 2],
+    element: Vec<Value<T>>,
+    exponentials: [Vec<Value<Dual<T>>>; 2],
     turned: Element<Dual<T>>,
     /// Another covector than that of the solution.
     target: Vec<T>,
@@ -91,27 +88,15 @@ struct Point<'a, T> {
 
 impl<T: Number> Point<'_, T> {
     /// Whether the rows of a matrix, along the direction, are these slopes.
-    fn are_slopes(&self, term: &'static str, matrix: &[T], along: &[Dual<T>], same: &mut Same<T>) -> Result<(), Fault> {
+    fn are_slopes(
+        &self,
+        term: &'static str,
+        matrix: &[T],
+        along: &[Dual<T>],
+        same: &mut Same<T>,
+    ) -> Result<(), Unconfirmed> {
         let mut rows = matrix.chunks(along.len()).zip(along);
         rows.try_for_each(|(row, one)| same(term, dot(row, &self.direction), one.slope))
-    }
-}
-
-/// What a step has been handed, and the arguments of a kick and of an iteration.
-struct Called<'a, T> {
-    graph: &'a Graph,
-    constants: BTreeMap<NodeId, T>,
-    terms: BTreeMap<NodeId, T>,
-    inputs: [Inputs<T>; 2],
-}
-
-impl<T: Number> Called<'_, T> {
-    fn kick(&self, outputs: &[NodeId]) -> Vec<T> {
-        evaluated_from(self.graph, outputs, &self.inputs[0], &self.constants)
-    }
-
-    fn iteration(&self, outputs: &[NodeId]) -> Vec<T> {
-        evaluated_from(self.graph, outputs, &self.inputs[1], &self.terms)
     }
 }
 
@@ -123,20 +108,13 @@ struct Declared<T> {
 }
 
 impl<'a> Identities<'a> {
-    pub(super) fn new(
-        declaration: &'a Declaration,
-        tree: &'a Rc<Tree>,
-        lowered: &Lowered,
-        (derived, kernel): (&'a Derived, &'a Kernel),
-    ) -> Self {
-        let derivatives = derived.ends.as_ref().map(|ends| {
-            let numbers = places(declaration, &lowered.names);
-            Derivatives::new(derived, ends, &numbers)
-        });
+    pub(super) fn new(of: Subject<'a>, kernel: &'a Kernel) -> Self {
+        let Subject { declaration, lowered, derived, .. } = of;
+        let derivatives =
+            derived.ends.as_ref().map(|ends| Derivatives::new(derived, ends, &places(declaration, &lowered.names)));
         let has_gradient = derivatives.as_ref().is_some_and(|all| all.of_kick.is_some());
         let (stages, terms) = (kernel.stages(), Terms::new(derived, declaration.role));
-        let limit = has_gradient.then(|| limit(derived));
-        Self { declaration, tree, derived, kernel, stages, terms, derivatives, limit }
+        Self { of, kernel, stages, terms, derivatives, limit: has_gradient.then(|| limit(derived)) }
     }
 
     /// Of the declaration and of what was derived.
@@ -144,14 +122,16 @@ impl<'a> Identities<'a> {
         let derivatives = self.derivatives.iter().map(|all| &all.graph);
         let limit = self.limit.iter().map(|(graph, _)| graph);
         let graphs = [&self.terms.graph, &self.kernel.graph].into_iter().chain(derivatives).chain(limit);
-        graphs.map(Content::of_graph).fold(Content::of_tree(self.tree), Content::add)
+        graphs.map(Content::of_graph).fold(Content::of_tree(self.of.tree), Content::add)
     }
 
-    /// Whether the momentum and its Jacobian have values where a step begins.
-    pub(super) fn are_smooth_at_identity<T: Number>(&self, sample: &Sample<T>) -> bool {
-        let inputs = sample.inputs_at(&Element::identity(&self.derived.group), &sample.values);
+    /// Whether the momentum and its Jacobian have values where a step begins: in the field nothing but a division by zero
+    /// and a root or a logarithm of zero hasn't.
+    pub(super) fn are_smooth(&self) -> bool {
+        let identity = Element::identity(&self.of.declaration.group);
+        let sample: Sample<Residue> = Sample::at(self.of, identity, &mut Residue::stream(1));
         let outputs = [self.terms.momentum.as_slice(), &self.terms.jacobian].concat();
-        evaluated(&self.terms.graph, &outputs, &inputs).into_iter().all(T::is_defined)
+        evaluated(&self.terms.graph, &outputs, &sample.inputs()).into_iter().all(Number::is_defined)
     }
 
     /// Compares everything at one point, along a direction of these numbers.
@@ -160,15 +140,15 @@ impl<'a> Identities<'a> {
         sample: &Sample<T>,
         mut number: impl FnMut() -> T,
         same: &mut Same<T>,
-    ) -> Result<(), Fault> {
-        let group = &self.derived.group;
+    ) -> Result<(), Unconfirmed> {
+        let group = &self.of.derived.group;
         let mut vector = || group.generators.iter().map(|_| number()).collect::<Vec<T>>();
         let (direction, target, weights) = (vector(), vector(), [vector(), vector()]);
-        let element = Value::combination(group.size, &group.generators, &direction);
+        let element = algebra(group, &direction);
         let exponentials = exponentials(&element);
         let turned = sample.element.turned(&exponentials);
         let point = Point { sample, dual: sample.lifted(), direction, element, exponentials, turned, target, weights };
-        let declared = match self.declaration.role {
+        let declared = match self.of.declaration.role {
             Role::Force => self.declared_work(&point, same)?,
             _ => self.lagrangian_holds(&point, same)?,
         };
@@ -178,17 +158,16 @@ impl<'a> Identities<'a> {
     }
 
     fn at<T: Number>(&self, values: &Values<T>) -> T {
-        Evaluation::new(values).of(self.tree).first()
+        Evaluation::new(values).of(self.of.tree).first()
     }
 
     /// The declared work along the direction, of displacements at either end alone, which is that of both.
-    fn declared_work<T: Number>(&self, point: &Point<T>, same: &mut Same<T>) -> Result<Declared<T>, Fault> {
-        let group = &self.derived.group;
+    fn declared_work<T: Number>(&self, point: &Point<T>, same: &mut Same<T>) -> Result<Declared<T>, Unconfirmed> {
+        let group = &self.of.derived.group;
         let work = |before: T, after: T| {
             let mut values = point.sample.values.clone();
-            for (factor, own) in group.factors().iter().enumerate() {
-                let first = group.component_of(factor);
-                let along = Value::column(&point.direction[first..first + own.dimension()]);
+            for (factor, (_, share)) in shares(group, &point.direction).enumerate() {
+                let along = Value::column(share);
                 let [before, after] = [before, after].map(|share| along.map(|x| share * x));
                 values.extend([(Name::DisplacementBefore(factor), before), (Name::DisplacementAfter(factor), after)]);
             }
@@ -200,16 +179,16 @@ impl<'a> Identities<'a> {
     }
 
     /// Both momentum maps, the diamond and the energy are derivatives of the declared Lagrangian.
-    fn lagrangian_holds<T: Number>(&self, point: &Point<T>, same: &mut Same<T>) -> Result<Declared<T>, Fault> {
-        let (group, dual) = (&self.derived.group, &point.dual);
+    fn lagrangian_holds<T: Number>(&self, point: &Point<T>, same: &mut Same<T>) -> Result<Declared<T>, Unconfirmed> {
+        let (group, dual) = (&self.of.derived.group, &point.dual);
         let [forwards, backwards] = &point.exponentials;
-        let at_increment = |f: &Value<Dual<T>>| {
+        let at_increment = |f: &[Value<Dual<T>>]| {
             let mut values = dual.values.clone();
             values.extend(increments(group, f));
             self.at(&values).slope
         };
-        let right = at_increment(&point.turned.matrix);
-        let left = at_increment(&dual.element.matrix.times(forwards));
+        let right = at_increment(&point.turned.matrices);
+        let left = at_increment(&products(&dual.element.matrices, forwards));
         let carried = self.at(&dual.moved([forwards, backwards])).slope;
         let mut at_step = dual.values.clone();
         if let Some(h) = at_step.get_mut(&Name::Step) {
@@ -235,11 +214,11 @@ impl<'a> Identities<'a> {
         point: &Point<T>,
         declared: &Declared<T>,
         same: &mut Same<T>,
-    ) -> Result<Vec<T>, Fault> {
+    ) -> Result<Vec<T>, Unconfirmed> {
         let (graph, dual) = (&self.terms.graph, &point.dual);
         let along = evaluated(graph, &self.terms.momentum, &dual.inputs_at(&point.turned, &dual.values));
         let momentum: Vec<T> = along.iter().map(|one| one.value).collect();
-        let name = if self.declaration.role == Role::Force { "force" } else { "momentum equation" };
+        let name = if self.of.declaration.role == Role::Force { "force" } else { "momentum equation" };
         same(name, dot(&momentum, &point.direction), declared.momentum)?;
         let jacobian = evaluated(graph, &self.terms.jacobian, &point.sample.inputs());
         point.are_slopes("Newton Jacobian", &jacobian, &along, same)?;
@@ -253,22 +232,22 @@ impl<'a> Identities<'a> {
         momentum: &[T],
         declared: &Declared<T>,
         same: &mut Same<T>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), Unconfirmed> {
         let (sample, kernel) = (point.sample, self.kernel);
         // The solve is for `F` in `U(F) = a` with `a = μ + k₀`, which mustn't have it.
         if kernel.kick_before.iter().any(|&kick| kernel.graph.stage(kick) > Stage::Step) {
-            return Err(Fault::Disagrees("kick before the solve"));
+            return Err(Unconfirmed::Disagrees("kick before the solve"));
         }
-        let (dimension, group) = (momentum.len(), &self.derived.group);
-        let Element { matrix, inverse, coordinates } = &sample.element;
+        let (dimension, group) = (momentum.len(), &self.of.derived.group);
+        let Element { matrices, inverses, coordinates } = &sample.element;
         let inputs = self.inputs_of_stages(sample, [&point.target, &point.direction]);
-        let called = self.called(&inputs);
-        let (before, after) = (called.kick(&kernel.kick_before), called.kick(&kernel.kick_after));
-        let change = kernel.kick_derivative.as_ref().map_or_else(Vec::new, |change| called.kick(change));
-        let jacobian = called.iteration(&self.stages.system[dimension..]);
+        let [kick, iteration] = self.called(&inputs);
+        let (before, after) = (kick(&kernel.kick_before), kick(&kernel.kick_after));
+        let change = kernel.kick_derivative.as_ref().map_or_else(Vec::new, |change| kick(change));
+        let jacobian = iteration(&self.stages.system[dimension..]);
         // Emitted with the residual alone, where there is one.
         let moved = if kernel.jacobian_is_expensive() {
-            called.iteration(&kernel.moved)
+            iteration(&kernel.moved)
         } else {
             evaluated(&kernel.graph, &kernel.moved, &inputs)
         };
@@ -277,13 +256,13 @@ impl<'a> Identities<'a> {
         let square = dot(coordinates, coordinates);
         let half = sample.values.get(&Name::Step).map_or(T::UNDEFINED, Value::first) * T::of(Rational::new(1, 2));
         let factor = (0..kernel.denominators).fold(half, |factor, _| factor * (T::ONE + square));
-        let residual = self.called(&self.displaced(point)).iteration(&self.stages.system[..dimension]);
+        let residual = self.called(&self.displaced(point))[1](&self.stages.system[..dimension]);
         for (k, found) in residual.iter().enumerate() {
             same("Newton residual", found.value, factor * (a[k] - point.target[k]))?;
         }
         point.are_slopes("Newton Jacobian of the step", &jacobian, &residual, same)?;
         // μ⁺ = Ad*_F a + k₁⁺, and what the gradient gives beside the residual is k₁⁺ before Ad*_F.
-        let turned = components_of(group, &[matrix.times(&point.element).times(inverse)]).concat();
+        let turned = components_of(group, &products(&products(matrices, &point.element), inverses));
         let after = dot(&after, &point.direction);
         same("transported momentum", dot(&a, &turned) + after, declared.left)?;
         if !moved.is_empty() {
@@ -300,11 +279,12 @@ impl<'a> Identities<'a> {
         Ok(())
     }
 
-    /// The stages as a stepper calls them: each has its own arguments, and of all else what those before it hand on.
-    fn called<T: Number>(&self, inputs: &Inputs<T>) -> Called<'_, T> {
+    /// A kick and an iteration as a stepper calls them: with their own arguments, and of all else what the stages before them
+    /// hand on.
+    fn called<T: Number>(&self, inputs: &Inputs<T>) -> [impl Fn(&[NodeId]) -> Vec<T>; 2] {
         let (graph, Stages { constants, terms, .. }) = (&self.kernel.graph, &self.stages);
         let of = |is_meant: fn(Stage) -> bool| -> Inputs<T> {
-            let own = inputs.iter().filter(|(id, _)| is_meant(self.derived.symbols.get(**id).stage));
+            let own = inputs.iter().filter(|(id, _)| is_meant(self.of.derived.symbols.get(**id).stage));
             own.map(|(id, value)| (*id, value.clone())).collect()
         };
         let numbers = |handed: &Handed, inputs: Inputs<T>, given: &BTreeMap<NodeId, T>| -> BTreeMap<NodeId, T> {
@@ -315,16 +295,16 @@ impl<'a> Identities<'a> {
         let constants = numbers(constants, of(|stage| stage == Stage::Construction), &BTreeMap::new());
         let mut terms = numbers(terms, of(|stage| stage == Stage::Step), &constants);
         terms.extend(&constants);
-        let inputs = [of(|stage| stage > Stage::Construction), of(|stage| stage == Stage::Iteration)];
-        Called { graph, constants, terms, inputs }
+        [(of(|stage| stage > Stage::Construction), constants), (of(|stage| stage == Stage::Iteration), terms)]
+            .map(|(inputs, given)| move |outputs: &[NodeId]| evaluated_from(graph, outputs, &inputs, &given))
     }
 
     /// With what is carried along, a covector for that of the solution and a velocity.
     fn inputs_of_stages<T: Number>(&self, sample: &Sample<T>, [target, along]: [&[T]; 2]) -> Inputs<T> {
-        let (mut inputs, directions) = (sample.inputs(), &self.derived.directions);
-        let carried = sample.moved([&sample.element.inverse, &sample.element.matrix]);
-        for ((name, ..), &next) in sample.advected.iter().zip(&directions.next) {
-            inputs.extend(carried.get(name).map(|w| (next, w.clone())));
+        let (mut inputs, directions) = (sample.inputs(), &self.of.derived.directions);
+        let carried = sample.moved([&sample.element.inverses, &sample.element.matrices]);
+        for (index, &next) in directions.next.iter().enumerate() {
+            inputs.extend(carried.get(&Name::Advected(index)).map(|w| (next, w.clone())));
         }
         inputs.extend([(directions.target, Value::column(target)), (directions.along, Value::column(along))]);
         inputs
@@ -332,7 +312,7 @@ impl<'a> Identities<'a> {
 
     /// In the coordinates of the Newton system: `y + ε v` or `exp(ε v̂) F`.
     fn displaced<T: Number>(&self, point: &Point<T>) -> Inputs<Dual<T>> {
-        let (dual, directions) = (&point.dual, &self.derived.directions);
+        let (dual, directions) = (&point.dual, &self.of.derived.directions);
         let mut inputs = if self.kernel.in_increment {
             dual.inputs_at(&point.turned, &dual.values)
         } else {
@@ -355,7 +335,7 @@ impl<'a> Identities<'a> {
         declared: &Declared<T>,
         number: &mut impl FnMut() -> T,
         same: &mut Same<T>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), Unconfirmed> {
         let Some(all) = &self.derivatives else { return Ok(()) };
         let (dual, direction, [u, p], [forwards, backwards]) =
             (&point.dual, &point.direction, &point.weights, &point.exponentials);
@@ -393,7 +373,7 @@ impl<'a> Identities<'a> {
         gradient_holds("gradient of a step", &all.gradient, &plain, adjoint)?;
         let (Some(of_kick), Some(limit)) = (&all.of_kick, &self.limit) else { return Ok(()) };
         // ⟨u, D_v k⟩ + ⟨r, k − J u⟩, of what was compared before.
-        let (r, directions) = (&point.target, &self.derived.directions);
+        let (r, directions) = (&point.target, &self.of.derived.directions);
         let mut inputs = plain.clone();
         inputs.insert(directions.coordinates, Value::column(r));
         let kick = [seen, varied].map(|mut inputs| {
@@ -414,7 +394,7 @@ impl<'a> Identities<'a> {
         number: &mut impl FnMut() -> T,
     ) -> (Values<Dual<T>>, Changes<T>) {
         let mut varied = dual.values.clone();
-        let changes = variables(self.declaration).map(|each| {
+        let changes = variables(self.of.declaration).map(|each| {
             let change = |(name, kind)| {
                 let (rows, columns) = shape(kind);
                 let any = Value { rows, columns, entries: (0..rows * columns).map(|_| number()).collect() };
@@ -457,7 +437,7 @@ impl<T: Number> Changes<T> {
 impl Identities<'_> {
     /// All that is emitted, at a point.
     pub(super) fn emitted<T: Number>(&self, sample: &Sample<T>, mut number: impl FnMut() -> T) -> Vec<T> {
-        let mut vector = || self.derived.group.generators.iter().map(|_| number()).collect::<Vec<T>>();
+        let mut vector = || self.of.derived.group.generators.iter().map(|_| number()).collect::<Vec<T>>();
         let inputs = self.inputs_of_stages(sample, [&vector(), &vector()]);
         let Terms { graph, momentum, jacobian, right, left, diamond, energy } = &self.terms;
         let terms = [momentum.as_slice(), jacobian, right, left, diamond, energy.as_slice()].concat();

@@ -2,14 +2,12 @@
 //! of the parameters.
 
 use std::collections::BTreeMap;
-use std::rc::Rc;
 
+use super::degree::Content;
 use super::number::Number;
 use super::residue::Residue;
-use super::{Element, SAMPLES, Sample, Value, evaluated, linear};
-use crate::declared::lower::Lowered;
-use crate::declared::{Declaration, FieldKind, Name, Tree};
-use crate::mathematics::derive::Derived;
+use super::{Element, SAMPLES, Sample, Subject, Value, evaluated, linear};
+use crate::declared::{Declaration, FieldKind, Name};
 use crate::mathematics::symbolic::Rational;
 use crate::program::{Graph, NodeId, components, square};
 
@@ -29,22 +27,17 @@ pub(crate) enum KineticPart {
 }
 
 /// Looks at the first and the second derivative at several values of the parameters.
-pub(crate) fn kinetic_part(
-    declaration: &Declaration,
-    tree: &Rc<Tree>,
-    lowered: &Lowered,
-    derived: &Derived,
-) -> KineticPart {
-    let samples: Vec<Sample> = Sample::draws(declaration, lowered, derived, tree).take(SAMPLES).collect();
-    // What has no value is said when the terms are checked.
-    if samples.is_empty() {
-        return KineticPart::Regular;
-    }
+pub(crate) fn kinetic_part(of: Subject) -> KineticPart {
+    let Subject { declaration, lowered, derived, .. } = of;
+    let samples: Vec<Sample> = Sample::draws(of).take(SAMPLES).collect();
     let (mut graph, none) = (Graph::default(), BTreeMap::new());
     let slope = components(&mut graph, derived, &none, &derived.limit.slope);
     let inertia = square(&mut graph, derived, &none, &derived.limit.inertia);
-    let at = Element::identity(&declaration.group);
-    let sample = Sample::with_numbers(declaration, lowered, derived, at, Residue::stream(1));
+    // What has no value is said when the terms are checked, and of a multiple of the prime the field says nothing.
+    if samples.is_empty() || Content::of_graph(&graph).has_multiple {
+        return KineticPart::Regular;
+    }
+    let sample = Sample::at(of, Element::identity(&declaration.group), &mut Residue::stream(1));
     let is_stationary = |sample: &Sample<Residue>| {
         at_identity(sample, &graph, &slope).into_iter().all(|slope| slope.is_zero() || !slope.is_defined())
     };
@@ -111,7 +104,7 @@ fn is_positive(matrix: &Value) -> bool {
 }
 
 fn at_identity<T: Number>(sample: &Sample<T>, graph: &Graph, outputs: &[NodeId]) -> Vec<T> {
-    evaluated(graph, outputs, &sample.inputs_at(&Element::identity(&sample.derived.group), &sample.values))
+    evaluated(graph, outputs, &sample.inputs_at(&Element::identity(&sample.of.derived.group), &sample.values))
 }
 
 /// Whether a field is a matrix of which nothing is known.

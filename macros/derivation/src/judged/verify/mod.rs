@@ -26,7 +26,8 @@
 //!    independent, and those without a value are drawn again, a few times at most: what is wrong, whichever it is, passes if it
 //!    is zero at some choice of the points that may be drawn. As many are compared as bring the sum over all choices below
 //!    `2⁻¹⁰⁰`. That takes the numbers of the stream and the stand-ins for random ones, and it takes numerators that aren't
-//!    multiples of `p`; where a constant of the declaration or of a graph is one, nothing is claimed.
+//!    multiples of `p`; where a constant of the declaration or of a graph is one, nothing is claimed, and nothing is refused for
+//!    having no value.
 //! 5. *What runs.* The graph of the [`Kernel`] is compared, stage by stage as a stepper calls it, with the derivatives of the
 //!    terms that were compared before. A step needs `U(F) = μ + k₀` and `μ⁺ = Ad*_F (μ + k₀) + k₁⁺`: any `k₀` will do that
 //!    doesn't depend on `F`, and that it doesn't is asked of the graph. The derivatives of a step are compared as the graph that
@@ -66,12 +67,10 @@ mod tests;
 mod value;
 
 use std::collections::BTreeMap;
-use std::rc::Rc;
 
 use super::places::variables;
-use crate::declared::lower::Lowered;
-use crate::declared::{Declaration, FieldKind, Name, Role, Shape, Tree};
-use crate::mathematics::derive::{Derived, SelfAdjointness};
+use crate::declared::{Declaration, FieldKind, Name, Role, Shape};
+use crate::mathematics::derive::SelfAdjointness;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId};
 use crate::program::{Derivatives, Graph, Input, Kernel, Node, NodeId};
@@ -79,12 +78,13 @@ use crate::program::{Derivatives, Graph, Input, Kernel, Node, NodeId};
 pub(super) use cayley::{is_cayley_coordinates, nilpotency};
 pub(crate) use constraint::Held;
 pub(super) use constraint::{Row, constraint};
-pub(crate) use continuous::{Lagrangian, equations_hold, has_limit, kinetic_hessian, rest_holds, right_symmetries};
+pub(crate) use continuous::Motion;
 use evaluation::Evaluation;
 use identities::Identities;
 pub(super) use inertia::{KineticPart, kinetic_part};
 use number::Number;
 pub(super) use orders::{TermMistake, not_smooth_at_identity, term_mistakes, without_value};
+pub(crate) use sample::Subject;
 use sample::{Element, Sample};
 use value::Value;
 
@@ -94,26 +94,22 @@ const DRAWS: u64 = 60;
 
 type Values<T> = BTreeMap<Name, Value<T>>;
 
+/// The same in other numbers.
+fn over<T: Number, U>(values: &Values<T>, of: impl Fn(T) -> U) -> Values<U> {
+    values.iter().map(|(name, value)| (*name, value.over(&of))).collect()
+}
+
 /// What is wrong with a derivation, or with the expression that it is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Unconfirmed {
     /// A derived term disagrees with the declaration.
     Disagrees(&'static str),
-    /// The declaration has no value at any point that was tried.
+    /// The declaration has no value at a point, or at any that was tried.
     NoValue,
+    /// A derived term has none where the declaration has one.
+    Undefined(&'static str),
     /// It isn't smooth where `F = I`.
     NotSmooth,
-}
-
-/// What is found at one point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Fault {
-    /// The declaration has no value there.
-    Untold,
-    /// A derived term has none.
-    NoValue(&'static str),
-    /// A derived term disagrees with the declaration.
-    Disagrees(&'static str),
 }
 
 /// What the self-check has found of a declaration that it confirms.
@@ -148,27 +144,23 @@ impl Sureness {
 }
 
 /// Checks all that was derived. The error is the first term that disagrees.
-pub(super) fn verify(
-    declaration: &Declaration,
-    tree: &Rc<Tree>,
-    lowered: &Lowered,
-    (derived, kernel): (&Derived, &Kernel),
-) -> Result<Verified, Unconfirmed> {
+pub(super) fn verify(of: Subject, kernel: &Kernel) -> Result<Verified, Unconfirmed> {
     // Whether it has a value is asked of real numbers: the field has roots of all.
-    if Sample::draws(declaration, lowered, derived, tree).next().is_none() {
+    if Sample::draws(of).next().is_none() {
         return Err(Unconfirmed::NoValue);
     }
-    let identities = Identities::new(declaration, tree, lowered, (derived, kernel));
-    let check = exact::Check { declaration, lowered, tree, identities };
-    let (sureness, reversed) = check.confirmed()?;
-    if !check.is_smooth() {
+    let identities = Identities::new(of, kernel);
+    let (sureness, reversed) = identities.confirmed()?;
+    if sureness != Sureness::Multiple && !identities.are_smooth() {
         return Err(Unconfirmed::NotSmooth);
     }
-    let self_adjointness = match declaration.role {
+    let self_adjointness = match of.declaration.role {
         Role::Force => SelfAdjointness::No,
-        _ => reversal::self_adjointness(reversed, derived.adjoint_defect.is_zero()).map_err(Unconfirmed::Disagrees)?,
+        _ => {
+            reversal::self_adjointness(reversed, of.derived.adjoint_defect.is_zero()).map_err(Unconfirmed::Disagrees)?
+        }
     };
-    Ok(Verified { self_adjointness, sureness, derivatives: check.identities.derivatives })
+    Ok(Verified { self_adjointness, sureness, derivatives: identities.derivatives })
 }
 
 /// The values of operations.
@@ -183,7 +175,7 @@ fn evaluated_from<T: Number>(
     inputs: &BTreeMap<SymbolId, Value<T>>,
     given: &BTreeMap<NodeId, T>,
 ) -> Vec<T> {
-    let order = graph.reachable(outputs);
+    let order = graph.reachable_from(outputs, &|id| given.contains_key(&id));
     let mut known = vec![T::UNDEFINED; order.last().map_or(0, |last| last.0 + 1)];
     let input =
         |input: Input| inputs.get(&input.symbol).map_or(T::UNDEFINED, |value| value.at(input.row, input.column));
@@ -208,19 +200,30 @@ fn dot<T: Number>(a: &[T], b: &[T]) -> T {
     a.iter().zip(b).fold(T::ZERO, |sum, (&x, &y)| sum + x * y)
 }
 
-/// The components of elements of the algebra, of a product factor by factor.
-fn components_of<T: Number>(group: &Group, elements: &[Value<T>]) -> Vec<Vec<T>> {
-    let mut components = vec![vec![T::ZERO; group.dimension()]; elements.len()];
-    for (factor, own) in group.factors().iter().enumerate() {
-        let (first, forms) = (group.component_of(factor), own.dual());
-        for (element, components) in elements.iter().zip(&mut components) {
-            let entries = block(group, element, factor);
-            for &(k, row, column, share) in &forms {
-                components[first + k] = components[first + k] + T::of(share) * entries.at(row, column);
-            }
+/// Of each factor its share of the components.
+fn shares<'a, T>(group: &'a Group, mut components: &'a [T]) -> impl Iterator<Item = (&'a Group, &'a [T])> {
+    group.factors().iter().map(move |own| {
+        let (share, rest) = components.split_at(own.dimension());
+        components = rest;
+        (own, share)
+    })
+}
+
+/// The elements of the factors' algebras with these components.
+fn algebra<T: Number>(group: &Group, components: &[T]) -> Vec<Value<T>> {
+    shares(group, components).map(|(own, share)| Value::combination(own.size, &own.generators, share)).collect()
+}
+
+/// The components of elements of the factors' algebras.
+fn components_of<T: Number>(group: &Group, elements: &[Value<T>]) -> Vec<T> {
+    let of_factor = |(own, element): (&Group, &Value<T>)| {
+        let mut components = vec![T::ZERO; own.dimension()];
+        for (k, row, column, share) in own.dual() {
+            components[k] = components[k] + T::of(share) * element.at(row, column);
         }
-    }
-    components
+        components
+    };
+    group.factors().iter().zip(elements).flat_map(of_factor).collect()
 }
 
 /// Numbers between zero and one.
@@ -235,18 +238,15 @@ fn stream(seed: u64) -> impl FnMut() -> f64 {
 }
 
 /// The exponential, by its series, of an element of the algebra that is small or a power of `h`.
-fn exponential<T: Number>(group: &Group, exponent: &Value<T>) -> Value<T> {
-    by_blocks(group, |factor| {
-        let exponent = &block(group, exponent, factor);
-        let mut power = Value::identity(exponent.rows);
-        let mut sum = power.clone();
-        for order in 1..20 {
-            let factor = T::of(Rational::new(1, order));
-            power = power.times(exponent).map(|x| x * factor);
-            sum = sum.plus(&power);
-        }
-        sum
-    })
+fn exponential<T: Number>(x: &Value<T>) -> Value<T> {
+    let one = Value::identity(x.rows);
+    let next = |(power, sum): (Value<T>, Value<T>), order| {
+        let factor = T::of(Rational::new(1, order));
+        let power = power.times(x).map(|entry| entry * factor);
+        let sum = sum.plus(&power);
+        (power, sum)
+    };
+    (1..20).fold((one.clone(), one), next).1
 }
 
 /// `cay(±x) = (I ∓ x)⁻¹ (I ± x) = I + 2 (x² ± x)/(1 − c)` of `x³ = c x`.
@@ -256,19 +256,11 @@ fn cayley<T: Number>(x: &Value<T>, c: T) -> [Value<T>; 2] {
     [of(x), of(&x.map(|entry| -entry))]
 }
 
-/// The block of a matrix that belongs to a factor of the group; of a group that isn't a product all of it.
-fn block<T: Number>(group: &Group, all: &Value<T>, factor: usize) -> Value<T> {
-    let (start, size) = (group.row_of(factor), group.factors().get(factor).map_or(0, |factor| factor.size));
-    Value::new(size, size, |row, column| all.at(start + row, start + column))
-}
-
-/// The increments of all factors.
-fn increments<T: Number>(group: &Group, all: &Value<T>) -> Vec<(Name, Value<T>)> {
-    let value = |factor: usize| {
-        let own = block(group, all, factor);
-        if group.factor(factor).is_added { translation(&own) } else { own }
-    };
-    (0..group.factors().len()).map(|factor| (Name::Increment(factor), value(factor))).collect()
+/// The increments of all factors, of their matrices.
+fn increments<T: Number>(group: &Group, matrices: &[Value<T>]) -> Values<T> {
+    let value = |(own, matrix): (&Group, &Value<T>)| if own.is_added { translation(matrix) } else { matrix.clone() };
+    let values = group.factors().iter().zip(matrices).map(value);
+    values.enumerate().map(|(factor, value)| (Name::Increment(factor), value)).collect()
 }
 
 /// All fields, and what is advected.
@@ -277,7 +269,7 @@ fn parameters<T: Number>(declaration: &Declaration, number: &mut impl FnMut() ->
 }
 
 /// Displacements of all factors, at the beginning of a step and at its end.
-fn displacements<T: Number>(group: &Group, number: &mut impl FnMut() -> T) -> Vec<(Name, Value<T>)> {
+fn displacements<T: Number>(group: &Group, number: &mut impl FnMut() -> T) -> Values<T> {
     let factors = group.factors().iter().enumerate();
     let of_factor = factors.flat_map(|(factor, own)| {
         let names = [Name::DisplacementBefore(factor), Name::DisplacementAfter(factor)];
@@ -287,28 +279,14 @@ fn displacements<T: Number>(group: &Group, number: &mut impl FnMut() -> T) -> Ve
 }
 
 /// The velocities of all factors, of the components of all.
-fn velocities<T: Number>(group: &Group, components: &[T]) -> Vec<(Name, Value<T>)> {
-    let value = |(factor, own): (usize, &Group)| {
-        let entries = components.iter().skip(group.component_of(factor)).take(own.dimension()).copied().collect();
-        (Name::Velocity(factor), Value { rows: own.dimension(), columns: 1, entries })
-    };
-    group.factors().iter().enumerate().map(value).collect()
+fn velocities<T: Number>(group: &Group, components: &[T]) -> Values<T> {
+    let each = shares(group, components).enumerate();
+    each.map(|(factor, (_, own))| (Name::Velocity(factor), Value::column(own))).collect()
 }
 
 /// `d` of the matrix `[I, d; 0, 1]`.
 fn translation<T: Number>(matrix: &Value<T>) -> Value<T> {
     Value::new(matrix.rows - 1, 1, |row, _| matrix.at(row, matrix.rows - 1))
-}
-
-/// A matrix of blocks, one for each factor.
-fn by_blocks<T: Number>(group: &Group, mut of_factor: impl FnMut(usize) -> Value<T>) -> Value<T> {
-    let blocks: Vec<(usize, Value<T>)> =
-        (0..group.factors().len()).map(|factor| (group.row_of(factor), of_factor(factor))).collect();
-    Value::new(group.size, group.size, |row, column| {
-        let own = blocks.iter().rev().find(|(start, _)| *start <= row);
-        let entry = own.and_then(|(start, own)| own.checked_at(row - start, column.checked_sub(*start)?));
-        entry.unwrap_or(T::ZERO)
-    })
 }
 
 /// A value that has what a field's type promises.
@@ -317,8 +295,7 @@ fn parameter<T: Number>(kind: FieldKind, number: &mut impl FnMut() -> T) -> Valu
         return Value::scalar(T::of(Rational::new(1, 2)) + number());
     };
     let two = T::ONE + T::ONE;
-    let entries: Vec<T> = (0..rows * columns).map(|_| two * number() - T::ONE).collect();
-    let any = Value { rows, columns, entries };
+    let any = Value::new(rows, columns, |_, _| two * number() - T::ONE);
     match kind {
         FieldKind::Point(_) => Value::new(rows, 1, |row, _| if row + 1 < rows { any.at(row, 0) } else { T::ONE }),
         FieldKind::SymmetricInertia => any.times(&any.transpose()),

@@ -26,6 +26,22 @@ pub(super) trait Number:
     fn is_zero(self) -> bool;
 }
 
+/// An operator of numbers.
+macro_rules! operator {
+    (impl$(<$t:ident: Number>)? $operator:ident::$method:ident for $number:ty, |$a:ident $(, $b:ident)?| $value:expr) => {
+        #[allow(clippy::suspicious_arithmetic_impl)] // a quotient is a product with a reciprocal
+        impl$(<$t: Number>)? std::ops::$operator for $number {
+            type Output = Self;
+
+            fn $method(self $(, $b: Self)?) -> Self {
+                let $a = self;
+                $value
+            }
+        }
+    };
+}
+pub(super) use operator;
+
 impl Number for f64 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;

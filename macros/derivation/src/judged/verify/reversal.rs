@@ -1,12 +1,10 @@
 //! Self-adjointness by values: the normal form doesn't know every relation of a group.
 
-use std::rc::Rc;
-
 use super::number::Number;
 use super::residue::Residue;
-use super::sample::Sample;
-use super::{block, dot, increments};
-use crate::declared::{Name, Tree};
+use super::sample::{Sample, products};
+use super::{dot, increments};
+use crate::declared::Name;
 use crate::mathematics::derive::SelfAdjointness;
 use crate::mathematics::symbolic::{Function, Rational, Variance};
 
@@ -23,33 +21,33 @@ pub(super) fn self_adjointness(found: [bool; 3], is_symbolic: bool) -> Result<Se
     }
 }
 
-fn is_reversed<T: Number>(point: &Sample<T>, tree: &Rc<Tree>) -> bool {
-    (point.declared(tree) - point.reversed(tree)).is_zero()
+fn is_reversed<T: Number>(point: &Sample<T>) -> bool {
+    (point.declared() - point.reversed()).is_zero()
 }
 
 /// Whether `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)` at a point, whether it is on a group of affine maps with one for the
 /// last coordinate of all vectors, and what is left to say of points of the field.
-pub(super) fn at<T: Number>(point: &Sample<T>, tree: &Rc<Tree>) -> [bool; 3] {
-    let is_here = is_reversed(point, tree);
-    [is_here, is_here || point.with_points().is_some_and(|point| is_reversed(&point, tree)), is_here]
+pub(super) fn at<T: Number>(point: &Sample<T>) -> [bool; 3] {
+    let is_here = is_reversed(point);
+    [is_here, is_here || point.with_points().is_some_and(|point| is_reversed(&point)), is_here]
 }
 
 /// The same, and whether it is with the square of `F` for the increment, where `exp(½ log F²) = F` is known.
-pub(super) fn in_the_field(point: &Sample<Residue>, tree: &Rc<Tree>) -> [bool; 3] {
-    let [is_here, of_points, _] = at(point, tree);
-    [is_here, of_points, is_here || is_reversed(&point.squared(), tree)]
+pub(super) fn in_the_field(point: &Sample<Residue>) -> [bool; 3] {
+    let [is_here, of_points, _] = at(point);
+    [is_here, of_points, is_here || is_reversed(&point.squared())]
 }
 
 impl Sample<'_, Residue> {
     /// `exp(½ log F²)` is `I + c_1(q) û + c_2(q) û²` with `u = ½ G vee(F²)` and `q = |u|²`.
     fn squared(&self) -> Self {
-        let (mut squared, group, of) = (self.clone(), &self.derived.group, |n, m| Residue::of(Rational::new(n, m)));
-        for matrix in [&mut squared.element.matrix, &mut squared.element.inverse] {
-            *matrix = matrix.times(matrix);
+        let (mut squared, group, of) = (self.clone(), &self.of.derived.group, |n, m| Residue::of(Rational::new(n, m)));
+        for matrices in [&mut squared.element.matrices, &mut squared.element.inverses] {
+            *matrices = products(matrices, matrices);
         }
-        squared.values.extend(increments(group, &squared.element.matrix));
+        squared.values.extend(increments(group, &squared.element.matrices));
         for (factor, _) in group.factors().iter().enumerate().filter(|(_, own)| own.is_so3) {
-            let [root, f] = [&self.element, &squared.element].map(|element| block(group, &element.matrix, factor));
+            let [root, f] = [&self.element, &squared.element].map(|element| &element.matrices[factor]);
             let ratio = (of(3, 4) - of(1, 4) * f.trace()).apply(Function::LogRatio(0));
             let u = f.vee().map(|entry| of(1, 2) * ratio * entry);
             let q = dot(&u.entries, &u.entries);
@@ -62,7 +60,7 @@ impl Sample<'_, Residue> {
 impl<T: Number> Sample<'_, T> {
     /// On a group of affine maps, the same with one for the last coordinate of all vectors.
     fn with_points(&self) -> Option<Self> {
-        let group = &self.derived.group;
+        let group = &self.of.derived.group;
         if !group.is_affine() {
             return None;
         }
@@ -70,12 +68,8 @@ impl<T: Number> Sample<'_, T> {
         for (name, value) in &mut sample.values {
             let is_vector = match name {
                 Name::Field(_) => true,
-                Name::Advected(_) => self.advected.iter().any(|w| (w.0, w.1) == (*name, Variance::Vector)),
-                Name::Increment(_)
-                | Name::Step
-                | Name::Velocity(_)
-                | Name::DisplacementBefore(_)
-                | Name::DisplacementAfter(_) => false,
+                Name::Advected(index) => self.of.declaration.advected_kind(*index).variance() == Variance::Vector,
+                _ => false,
             };
             if is_vector && (value.rows, value.columns) == (group.size, 1) {
                 value.entries.pop();

@@ -6,10 +6,11 @@ use std::rc::Rc;
 use super::dual::Dual;
 use super::evaluation::Evaluation;
 use super::number::Number;
+use super::series::Series;
 use super::value::Value;
 use super::{
-    DRAWS, Values, block, by_blocks, cayley, displacements, exponential, increments, parameters, stream, translation,
-    velocities,
+    DRAWS, Values, algebra, cayley, displacements, exponential, increments, over, parameters, shares, stream,
+    translation, velocities,
 };
 use crate::declared::lower::Lowered;
 use crate::declared::{Declaration, FieldKind, Name, Role, Tree};
@@ -17,20 +18,25 @@ use crate::mathematics::derive::{Derived, Seen};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId, Variance};
 
-/// An element of the group.
+/// An element of the group, of a product that of each factor.
 #[derive(Clone, Debug)]
 pub(super) struct Element<T = f64> {
-    /// Of a product all increments, in blocks.
-    pub(super) matrix: Value<T>,
-    pub(super) inverse: Value<T>,
+    pub(super) matrices: Vec<Value<T>>,
+    pub(super) inverses: Vec<Value<T>>,
     /// `y` with `F = cay(2y)`, or `d = 2y` of what is translated, for groups of nothing else.
     pub(super) coordinates: Vec<T>,
 }
 
 impl<T: Number> Element<T> {
     pub(super) fn identity(group: &Group) -> Self {
-        let identity = Value::identity(group.size);
-        Self { matrix: identity.clone(), inverse: identity, coordinates: vec![T::ZERO; group.dimension()] }
+        let matrices: Vec<Value<T>> = group.factors().iter().map(|own| Value::identity(own.size)).collect();
+        Self { inverses: matrices.clone(), matrices, coordinates: vec![T::ZERO; group.dimension()] }
+    }
+
+    /// Times an element of a factor, which is given with its inverse.
+    fn times(&mut self, factor: usize, [forwards, backwards]: [Value<T>; 2]) {
+        self.matrices[factor] = self.matrices[factor].times(&forwards);
+        self.inverses[factor] = backwards.times(&self.inverses[factor]);
     }
 
     /// A product of Cayley transforms `cay(x) = (I − x)⁻¹(I + x)`: of a rotation of space the one of a random element, else
@@ -39,70 +45,67 @@ impl<T: Number> Element<T> {
     /// Where `E³ = c E`, `cay(tE)` is an element of the one-parameter group of `E`, rational in `t`: for all of the built-in
     /// groups' generators. The products for all generators have elements near the identity for all that the group has there.
     pub(super) fn by_cayley(group: &Group, number: &mut impl FnMut() -> T) -> Option<Self> {
-        let (mut matrices, mut inverses, mut coordinates) = (Vec::new(), Vec::new(), Vec::new());
-        for own in group.factors() {
-            let identity = Value::identity(own.size);
-            let components: Vec<T> = own.generators.iter().map(|_| number()).collect();
-            let one_by_one = || {
-                let each = own.generators.iter().zip(&components);
-                each.map(|(entries, &t)| Value::square(own.size, entries).map(|entry: T| t * entry))
-            };
-            let elements: Vec<Value<T>> = if own.is_so3 {
-                vec![Value::combination(own.size, &own.generators, &components)]
-            } else {
-                one_by_one().collect()
-            };
-            let (mut matrix, mut inverse) = (identity.clone(), identity);
-            for x in elements {
-                let [forwards, backwards] = cayley(&x, cube(&x)?);
-                matrix = matrix.times(&forwards);
-                inverse = backwards.times(&inverse);
+        let mut element = Self::identity(group);
+        element.coordinates.fill_with(number);
+        let coordinates = element.coordinates.clone();
+        for (factor, (own, share)) in shares(group, &coordinates).enumerate() {
+            let all = || vec![Value::combination(own.size, &own.generators, share)];
+            for x in if own.is_so3 { all() } else { multiples(own, share).collect() } {
+                element.times(factor, cayley(&x, cube(&x)?));
             }
-            matrices.push(matrix);
-            inverses.push(inverse);
-            coordinates.extend(components);
         }
-        let [matrix, inverse] = [matrices, inverses].map(|blocks| by_blocks(group, |factor| blocks[factor].clone()));
-        Some(Self { matrix, inverse, coordinates })
+        Some(element)
     }
 
     /// A product of exponentials of multiples of all generators, which are small or powers of `h`.
     pub(super) fn by_exponentials(group: &Group, mut number: impl FnMut() -> T) -> Self {
         let mut element = Self::identity(group);
-        for entries in &group.generators {
-            let t = number();
-            let x = Value::square(group.size, entries).map(|entry: T| t * entry);
-            element.matrix = element.matrix.times(&exponential(group, &x));
-            element.inverse = exponential(group, &x.map(|entry| -entry)).times(&element.inverse);
+        let components: Vec<T> = group.generators.iter().map(|_| number()).collect();
+        for (factor, (own, share)) in shares(group, &components).enumerate() {
+            for x in multiples(own, share) {
+                element.times(factor, [exponential(&x), exponential(&x.map(|entry| -entry))]);
+            }
         }
         element
     }
 
     /// As constants among dual numbers.
     fn lifted(&self) -> Element<Dual<T>> {
-        Element {
-            matrix: self.matrix.over(Dual::constant),
-            inverse: self.inverse.over(Dual::constant),
-            coordinates: self.coordinates.iter().map(|&y| Dual::constant(y)).collect(),
-        }
+        let [matrices, inverses] = [&self.matrices, &self.inverses]
+            .map(|matrices| matrices.iter().map(|matrix| matrix.over(Dual::constant)).collect());
+        Element { matrices, inverses, coordinates: self.coordinates.iter().map(|&y| Dual::constant(y)).collect() }
     }
 
     /// `exp(ε v̂) F`; its coordinates aren't turned.
-    pub(super) fn turned(&self, [forwards, backwards]: &[Value<Dual<T>>; 2]) -> Element<Dual<T>> {
+    pub(super) fn turned(&self, [forwards, backwards]: &[Vec<Value<Dual<T>>>; 2]) -> Element<Dual<T>> {
         let still = self.lifted();
-        Element { matrix: forwards.times(&still.matrix), inverse: still.inverse.times(backwards), ..still }
+        let [matrices, inverses] = [products(forwards, &still.matrices), products(&still.inverses, backwards)];
+        Element { matrices, inverses, ..still }
     }
 }
 
+/// Of each generator that multiple.
+fn multiples<T: Number>(group: &Group, shares: &[T]) -> impl Iterator<Item = Value<T>> {
+    let each = group.generators.iter().zip(shares);
+    each.map(|(entries, &t)| Value::square(group.size, entries).map(|entry: T| t * entry))
+}
+
+/// Of each factor.
+pub(super) fn products<T: Number>(a: &[Value<T>], b: &[Value<T>]) -> Vec<Value<T>> {
+    a.iter().zip(b).map(|(a, b)| a.times(b)).collect()
+}
+
 /// `exp(±ε x) = I ± ε x`.
-pub(super) fn exponentials<T: Number>(x: &Value<T>) -> [Value<Dual<T>>; 2] {
-    let identity = Value::identity(x.rows);
-    let along = |x: Value<T>| Value {
-        rows: x.rows,
-        columns: x.columns,
-        entries: identity.entries.iter().zip(&x.entries).map(|(&value, &slope)| Dual { value, slope }).collect(),
-    };
-    [along(x.clone()), along(x.map(|entry| -entry))]
+pub(super) fn exponentials<T: Number>(elements: &[Value<T>]) -> [Vec<Value<Dual<T>>>; 2] {
+    [T::ONE, -T::ONE].map(|sign| {
+        let one = |x: &Value<T>| Value::identity(x.rows).plus(&x.over(|x| Dual { value: T::ZERO, slope: sign * x }));
+        elements.iter().map(one).collect()
+    })
+}
+
+/// `exp(h ξ̂)`.
+pub(super) fn along_motion(group: &Group, velocity: &[Series]) -> Vec<Value<Series>> {
+    algebra(group, velocity).iter().map(|x| exponential(&x.map(|entry| entry * Series::STEP))).collect()
 }
 
 /// The `c` with `x³ = c x`; nothing where there is none.
@@ -113,14 +116,21 @@ fn cube<T: Number>(x: &Value<T>) -> Option<T> {
     cube.entries.iter().zip(&x.entries).all(|(&a, &b)| (a - c * b).is_zero()).then_some(c)
 }
 
+/// A declaration, and what was derived of it.
+#[derive(Clone, Copy)]
+pub(crate) struct Subject<'a> {
+    pub(crate) declaration: &'a Declaration,
+    pub(crate) tree: &'a Rc<Tree>,
+    pub(crate) lowered: &'a Lowered,
+    pub(crate) derived: &'a Derived,
+}
+
 /// Numbers for all names.
 #[derive(Clone)]
 pub(super) struct Sample<'a, T = f64> {
-    pub(super) derived: &'a Derived,
+    pub(super) of: Subject<'a>,
     pub(super) element: Element<T>,
     pub(super) values: Values<T>,
-    symbols: BTreeMap<SymbolId, Name>,
-    pub(super) advected: Vec<(Name, Variance, Seen)>,
 }
 
 /// Real numbers for all names. The later ones are farther away, and may be anywhere, with smaller increments.
@@ -152,7 +162,7 @@ pub(super) fn draws(declaration: &Declaration) -> impl Iterator<Item = (Element,
 
 /// At an element, of numbers that are taken to lie between zero and one.
 fn numbers<T: Number>(declaration: &Declaration, element: &Element<T>, number: &mut impl FnMut() -> T) -> Values<T> {
-    let mut values = BTreeMap::from_iter(increments(&declaration.group, &element.matrix));
+    let mut values = increments(&declaration.group, &element.matrices);
     let tenth = T::of(Rational::new(1, 10));
     values.insert(Name::Step, Value::scalar(tenth + tenth * number()));
     if declaration.role == Role::Force {
@@ -168,67 +178,34 @@ fn numbers<T: Number>(declaration: &Declaration, element: &Element<T>, number: &
 
 impl<'a> Sample<'a> {
     /// The points at which the declaration has a value.
-    pub(super) fn draws(
-        declaration: &'a Declaration,
-        lowered: &'a Lowered,
-        derived: &'a Derived,
-        tree: &'a Rc<Tree>,
-    ) -> impl Iterator<Item = Self> {
-        let samples =
-            draws(declaration).map(|(element, values)| Self::new(declaration, lowered, derived, element, values));
-        samples.filter(|sample| sample.declared(tree).is_defined())
+    pub(super) fn draws(of: Subject<'a>) -> impl Iterator<Item = Self> {
+        let samples = draws(of.declaration).map(move |(element, values)| Self { of, element, values });
+        samples.filter(|sample| sample.declared().is_defined())
     }
 }
 
 impl<'a, T: Number> Sample<'a, T> {
     /// At a group element, with numbers that are taken to lie between zero and one.
-    pub(super) fn with_numbers(
-        declaration: &Declaration,
-        lowered: &Lowered,
-        derived: &'a Derived,
-        element: Element<T>,
-        mut number: impl FnMut() -> T,
-    ) -> Self {
-        let values = numbers(declaration, &element, &mut number);
-        Self::new(declaration, lowered, derived, element, values)
-    }
-
-    fn new(
-        declaration: &Declaration,
-        lowered: &Lowered,
-        derived: &'a Derived,
-        element: Element<T>,
-        values: Values<T>,
-    ) -> Self {
-        let advected = advected(declaration);
-        let symbols = lowered.names.iter().map(|(name, id)| (*id, *name)).collect();
-        Self { derived, element, values, symbols, advected }
+    pub(super) fn at(of: Subject<'a>, element: Element<T>, number: &mut impl FnMut() -> T) -> Self {
+        Self { of, values: numbers(of.declaration, &element, number), element }
     }
 
     pub(super) fn lifted(&self) -> Sample<'a, Dual<T>> {
-        Sample {
-            derived: self.derived,
-            element: self.element.lifted(),
-            values: self.values.iter().map(|(name, value)| (*name, value.over(Dual::constant))).collect(),
-            symbols: self.symbols.clone(),
-            advected: self.advected.clone(),
-        }
+        Sample { of: self.of, element: self.element.lifted(), values: over(&self.values, Dual::constant) }
     }
 
     /// `l_d` at this point.
-    pub(super) fn declared(&self, tree: &Rc<Tree>) -> T {
-        Evaluation::new(&self.values).of(tree).first()
+    pub(super) fn declared(&self) -> T {
+        Evaluation::new(&self.values).of(self.of.tree).first()
     }
 
     /// `−l_d` turned back: at `F⁻¹`, `F⁻¹·w` and `−h`.
-    pub(super) fn reversed(&self, tree: &Rc<Tree>) -> T {
-        let Element { matrix, inverse, .. } = &self.element;
-        let mut values = self.moved([inverse, matrix]);
-        values.extend(increments(&self.derived.group, inverse));
-        if let Some(h) = self.values.get(&Name::Step) {
-            values.insert(Name::Step, h.map(|h| -h));
-        }
-        -Evaluation::new(&values).of(tree).first()
+    pub(super) fn reversed(&self) -> T {
+        let Element { matrices, inverses, .. } = &self.element;
+        let mut values = self.moved([inverses, matrices]);
+        values.extend(increments(&self.of.declaration.group, inverses));
+        values.entry(Name::Step).and_modify(|h| *h = h.map(|h| -h));
+        -Evaluation::new(&values).of(self.of.tree).first()
     }
 
     /// The values of all symbols: of the names, and of what the derivation adds.
@@ -238,57 +215,51 @@ impl<'a, T: Number> Sample<'a, T> {
 
     /// The same at another increment, and at other values.
     pub(super) fn inputs_at(&self, element: &Element<T>, values: &Values<T>) -> BTreeMap<SymbolId, Value<T>> {
-        let (group, directions) = (&self.derived.group, &self.derived.directions);
-        let named = self.symbols.iter().filter_map(|(symbol, name)| Some((*symbol, values.get(name)?.clone())));
+        let (group, directions) = (&self.of.derived.group, &self.of.derived.directions);
+        let names = self.of.lowered.names.iter();
+        let named = names.filter_map(|(name, symbol)| Some((*symbol, values.get(name)?.clone())));
         let mut inputs: BTreeMap<SymbolId, Value<T>> = named.collect();
         for (factor, one) in directions.factors.iter().enumerate() {
-            let [f, inverse] = [&element.matrix, &element.inverse].map(|matrix| block(group, matrix, factor));
+            let (f, inverse) = (&element.matrices[factor], &element.inverses[factor]);
             if group.factor(factor).is_added {
-                let d = translation(&f);
+                let d = translation(f);
                 inputs.extend([(one.small, d.clone()), (one.increment, d)]);
                 continue;
             }
             let small = |f: &Value<T>| f.zip(&Value::identity(f.rows), |x, y| x - y);
-            inputs.extend([(one.small, small(&f)), (one.small_inverse, small(&inverse))]);
-            inputs.extend([(one.increment, f), (one.inverse, inverse)]);
+            inputs.extend([(one.small, small(f)), (one.small_inverse, small(inverse))]);
+            inputs.extend([(one.increment, f.clone()), (one.inverse, inverse.clone())]);
         }
         inputs.insert(directions.coordinates, Value::column(&element.coordinates));
         inputs
     }
 
     /// The values with all that is advected moved by a group element, given with its inverse.
-    pub(super) fn moved(&self, element: [&Value<T>; 2]) -> Values<T> {
-        moved(&self.derived.group, &self.advected, &self.values, element)
+    pub(super) fn moved(&self, element: [&[Value<T>]; 2]) -> Values<T> {
+        moved(self.of.declaration, &self.values, element)
     }
-}
-
-/// How each advected parameter is moved.
-pub(super) fn advected(declaration: &Declaration) -> Vec<(Name, Variance, Seen)> {
-    let each = declaration.advected.iter().enumerate();
-    each.map(|(index, w)| (Name::Advected(index), declaration.advected_kind(index).variance(), w.seen)).collect()
 }
 
 /// The values with all that is advected moved by a group element, given with its inverse.
 pub(super) fn moved<T: Number>(
-    group: &Group,
-    advected: &[(Name, Variance, Seen)],
+    declaration: &Declaration,
     values: &Values<T>,
-    [g, inverse]: [&Value<T>; 2],
+    [g, inverse]: [&[Value<T>]; 2],
 ) -> Values<T> {
-    let mut values = values.clone();
-    let added = |moving: &Value<T>, factor| translation(&block(group, moving, factor));
-    for &(name, variance, seen) in advected {
-        let Some(w) = values.get(&name) else { continue };
-        let moved = match seen {
+    let (mut values, group) = (values.clone(), &declaration.group);
+    let added = |moving: &[Value<T>], factor: usize| translation(&moving[factor]);
+    for (index, advected) in declaration.advected.iter().enumerate() {
+        let Some(w) = values.get_mut(&Name::Advected(index)) else { continue };
+        *w = match advected.seen {
             Seen::Relative { of, from } if group.factor(of).is_added => {
                 added(g, from).plus(w).plus(&added(inverse, of))
             }
             Seen::Configuration(of) if group.factor(of).is_added => w.plus(&added(inverse, of)),
-            Seen::Relative { of, from } => block(group, g, from).times(w).times(&block(group, inverse, of)),
-            Seen::Configuration(of) => w.times(&block(group, inverse, of)),
+            Seen::Relative { of, from } => g[from].times(w).times(&inverse[of]),
+            Seen::Configuration(of) => w.times(&inverse[of]),
             Seen::From(factor) => {
-                let (g, inverse) = (&block(group, g, factor), &block(group, inverse, factor));
-                match variance {
+                let (g, inverse) = (&g[factor], &inverse[factor]);
+                match declaration.advected_kind(index).variance() {
                     Variance::Vector => g.times(w),
                     Variance::Covector => inverse.transpose().times(w),
                     Variance::Contravariant => g.times(w).times(&g.transpose()),
@@ -298,7 +269,6 @@ pub(super) fn moved<T: Number>(
                 }
             }
         };
-        values.insert(name, moved);
     }
     values
 }

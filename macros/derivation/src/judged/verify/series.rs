@@ -1,9 +1,7 @@
 //! Power series in `h` with coefficients in the finite field, where nothing is rounded: how a declared expression goes as
 //! `h → 0`.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
-
-use super::number::{self, Number};
+use super::number::{self, Number, operator};
 use super::residue::Residue;
 use crate::mathematics::symbolic::{Function, Rational};
 
@@ -129,66 +127,35 @@ impl Series {
     }
 }
 
-impl Add for Series {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        if !self.is_defined() || !other.is_defined() {
-            return Self::UNDEFINED;
+operator!(impl Add::add for Series, |a, b| {
+    if !a.is_defined() || !b.is_defined() {
+        return Self::UNDEFINED;
+    }
+    let (first, end) = (a.first.min(b.first), a.end.min(b.end));
+    let mut coefficients = NONE;
+    for (power, sum) in (first..end).zip(&mut coefficients) {
+        *sum = a.at(power) + b.at(power);
+    }
+    Self::new(first, end, coefficients)
+});
+operator!(impl Neg::neg for Series, |a| Self { coefficients: a.coefficients.map(|c| -c), ..a });
+operator!(impl Sub::sub for Series, |a, b| a + -b);
+operator!(impl Mul::mul for Series, |a, b| {
+    if !a.is_defined() || !b.is_defined() {
+        return Self::UNDEFINED;
+    }
+    let first = a.first.saturating_add(b.first).min(NEVER);
+    let end = a.end.saturating_add(b.first).min(b.end.saturating_add(a.first)).min(NEVER);
+    let mut coefficients = NONE;
+    // Most numbers have one coefficient.
+    for (i, &x) in a.coefficients.iter().enumerate().filter(|(_, x)| !x.is_zero()) {
+        for (&y, sum) in b.coefficients.iter().zip(&mut coefficients[i..]).filter(|(y, _)| !y.is_zero()) {
+            *sum = *sum + x * y;
         }
-        let (first, end) = (self.first.min(other.first), self.end.min(other.end));
-        let mut coefficients = NONE;
-        for (power, sum) in (first..end).zip(&mut coefficients) {
-            *sum = self.at(power) + other.at(power);
-        }
-        Self::new(first, end, coefficients)
     }
-}
-
-impl Neg for Series {
-    type Output = Self;
-
-    fn neg(self) -> Self {
-        Self { coefficients: self.coefficients.map(|c| -c), ..self }
-    }
-}
-
-impl Sub for Series {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        self + -other
-    }
-}
-
-impl Mul for Series {
-    type Output = Self;
-
-    fn mul(self, other: Self) -> Self {
-        if !self.is_defined() || !other.is_defined() {
-            return Self::UNDEFINED;
-        }
-        let first = self.first.saturating_add(other.first).min(NEVER);
-        let end = self.end.saturating_add(other.first).min(other.end.saturating_add(self.first)).min(NEVER);
-        let mut coefficients = NONE;
-        // Most numbers have one coefficient.
-        for (i, &a) in self.coefficients.iter().enumerate().filter(|(_, a)| !a.is_zero()) {
-            for (&b, sum) in other.coefficients.iter().zip(&mut coefficients[i..]).filter(|(b, _)| !b.is_zero()) {
-                *sum = *sum + a * b;
-            }
-        }
-        Self::new(first, end, coefficients)
-    }
-}
-
-impl Div for Series {
-    type Output = Self;
-
-    #[allow(clippy::suspicious_arithmetic_impl)] // by the reciprocal
-    fn div(self, other: Self) -> Self {
-        self * other.reciprocal()
-    }
-}
+    Self::new(first, end, coefficients)
+});
+operator!(impl Div::div for Series, |a, b| a * b.reciprocal());
 
 impl Number for Series {
     const ZERO: Self = Self { first: NEVER, end: NEVER, coefficients: NONE };

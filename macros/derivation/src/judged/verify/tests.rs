@@ -2,13 +2,12 @@
 
 mod mutations;
 
-use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use super::degree::{Content, Degree, Largest};
 use super::evaluation::Evaluation;
 use super::value::Value;
-use super::{KineticPart, Sureness, Unconfirmed, degree, increments, kinetic_part, verify};
+use super::{KineticPart, Subject, Sureness, Unconfirmed, degree, increments, kinetic_part, verify};
 use crate::declared::errors::Errors;
 use crate::declared::lower::{Lowered, readings};
 use crate::declared::{Declaration, Name, Role, Tree, check, parse};
@@ -51,8 +50,13 @@ impl Declared {
         Self { declaration, tree, lowered, derived }
     }
 
+    fn subject(&self) -> Subject<'_> {
+        let Self { declaration, tree, lowered, derived } = self;
+        Subject { declaration, tree, lowered, derived }
+    }
+
     fn found(&self, derived: &Derived, kernel: &Kernel) -> Result<SelfAdjointness, &'static str> {
-        let found = verify(&self.declaration, &self.tree, &self.lowered, (derived, kernel));
+        let found = verify(Subject { derived, ..self.subject() }, kernel);
         found.map(|verified| verified.self_adjointness).map_err(|unconfirmed| match unconfirmed {
             Unconfirmed::Disagrees(term) => term,
             other => panic!("{other:?}"),
@@ -64,9 +68,7 @@ impl Declared {
     }
 
     fn sureness(&self) -> Sureness {
-        let kernel = kernel(&self.derived);
-        let found = verify(&self.declaration, &self.tree, &self.lowered, (&self.derived, &kernel));
-        found.expect("right").sureness
+        verify(self.subject(), &kernel(&self.derived)).expect("right").sureness
     }
 
     /// What is found after a change of the derived terms.
@@ -76,15 +78,8 @@ impl Declared {
         self.found(&derived, &kernel(&derived))
     }
 
-    /// What is found after a change of the staged step.
-    fn after_in_kernel(&self, change: impl Fn(&mut Kernel)) -> Result<SelfAdjointness, &'static str> {
-        let mut kernel = kernel(&self.derived);
-        change(&mut kernel);
-        self.found(&self.derived, &kernel)
-    }
-
     fn kinetic_part(&self) -> KineticPart {
-        kinetic_part(&self.declaration, &self.tree, &self.lowered, &self.derived)
+        kinetic_part(self.subject())
     }
 }
 
@@ -103,19 +98,32 @@ fn both() -> [Declared; 2] {
     [top, planar]
 }
 
+type Of = fn(&mut Derived) -> &mut Expression;
+
+/// Whatever is wrong with any entry of these, the tables of small errors have.
 #[test]
-fn a_wrong_term_is_named() {
+fn what_is_wrong_is_named() {
+    let terms: [(&str, Of); 8] = [
+        ("right momentum map", |d| &mut d.right_momentum),
+        ("left momentum map", |d| &mut d.left_momentum),
+        ("diamond term", |d| &mut d.diamond),
+        ("momentum equation", |d| &mut d.momentum),
+        ("discrete energy", |d| &mut d.energy),
+        ("Newton Jacobian", |d| &mut d.jacobian),
+        ("transported momentum", |d| &mut d.kick_after),
+        ("Newton residual", |d| &mut d.kick_before),
+    ];
     for declared in both() {
         assert!(declared.verified().is_ok());
-        assert_eq!(declared.after(|d| negate(&mut d.right_momentum)), Err("right momentum map"));
-        assert_eq!(declared.after(|d| negate(&mut d.left_momentum)), Err("left momentum map"));
-        assert_eq!(declared.after(|d| negate(&mut d.diamond)), Err("diamond term"));
-        assert_eq!(declared.after(|d| negate(&mut d.momentum)), Err("momentum equation"));
-        assert_eq!(declared.after(|d| negate(&mut d.energy)), Err("discrete energy"));
-        let jacobian = "Newton Jacobian";
-        assert_eq!(declared.after(|d| negate(&mut d.jacobian)), Err(jacobian));
-        // One wrong sign among several.
-        assert_eq!(declared.after(|d| d.energy = with_one_sign_changed(&d.energy)), Err("discrete energy"));
+        for (name, term) in terms {
+            assert_eq!(declared.after(|derived| negate(term(derived))), Err(name));
+        }
+        // A negative multiple of the system has the same solution, but not the same branch.
+        let mut kernel = kernel(&declared.derived);
+        for output in kernel.residual.iter_mut().chain(&mut kernel.jacobian) {
+            *output = kernel.graph.negate(*output);
+        }
+        assert_eq!(declared.found(&declared.derived, &kernel), Err("Newton residual"));
     }
 }
 
@@ -124,49 +132,6 @@ fn with_one_sign_changed(expression: &Expression) -> Expression {
     let mut twice = Expression::zero(expression.shape());
     twice.add_term(first.clone(), coefficient + coefficient);
     expression.clone().minus(twice)
-}
-
-#[test]
-fn a_wrong_step_is_named() {
-    for declared in both() {
-        assert_eq!(declared.after(|d| negate(&mut d.kick_after)), Err("transported momentum"));
-        assert_eq!(declared.after(|d| negate(&mut d.kick_before)), Err("Newton residual"));
-        let change = |d: &mut Derived| {
-            d.kick_derivative.as_mut().is_some_and(|change| {
-                negate(change);
-                !change.is_zero()
-            })
-        };
-        if change(&mut declared.derived.clone()) {
-            assert_eq!(declared.after(|d| _ = change(d)), Err("derivative of the kick"));
-        }
-        let flipped = |at: usize, jacobian: bool| {
-            declared.after_in_kernel(|kernel| {
-                let outputs = if jacobian { &mut kernel.jacobian } else { &mut kernel.residual };
-                let negative = kernel.graph.negate(outputs[at]);
-                outputs[at] = negative;
-            })
-        };
-        for at in 0..3 {
-            assert_eq!(flipped(at, false), Err("Newton residual"));
-            assert_eq!(flipped(at, true), Err("Newton Jacobian of the step"));
-        }
-        // Off SO(3) there is none.
-        for at in 0..kernel(&declared.derived).moved.len() {
-            let moved = declared.after_in_kernel(|kernel| {
-                let negative = kernel.graph.negate(kernel.moved[at]);
-                kernel.moved[at] = negative;
-            });
-            assert_eq!(moved, Err("transported momentum"));
-        }
-        // A negative multiple of the system has the same solution, but not the same branch.
-        let negative = declared.after_in_kernel(|kernel| {
-            for output in kernel.residual.iter_mut().chain(&mut kernel.jacobian) {
-                *output = kernel.graph.negate(*output);
-            }
-        });
-        assert_eq!(negative, Err("Newton residual"));
-    }
 }
 
 /// Whatever the sizes of what is new beside what isn't.
@@ -309,7 +274,7 @@ fn degrees() {
         let (declaration, tree) = checked(&format!("group = R1, l_d = {l_d}"), "struct Body { k: f64 }");
         let mut number = Degree::stream();
         let (element, _) = degree::element(&declaration.group, 0, &mut number);
-        let mut values = BTreeMap::from_iter(increments(&declaration.group, &element.matrix));
+        let mut values = increments(&declaration.group, &element.matrices);
         let mut variable = || Value::scalar(number());
         values.extend([(Name::Step, variable()), (Name::Field(0), variable())]);
         let (value, mut largest) = (Evaluation::new(&values).of(&tree).first(), Largest::default());
@@ -349,6 +314,37 @@ fn constants_that_are_zero_in_the_field() {
     let other = Declared::new(&l_d("2305843009213693950.0"), item);
     assert!(matches!(other.sureness(), Sureness::Certified(100..)));
     assert_eq!(other.after(|d| d.energy = with_one_sign_changed(&d.energy)), Err("discrete energy"));
+}
+
+/// As a divisor, and as all that a potential, a kinetic part, a force or a constraint is multiplied by.
+#[test]
+fn constants_that_are_zero_in_the_field_refuse_nothing() {
+    let l_d = "group = SO3, advected(w = u), l_d = ";
+    let l = "group = SO3, velocity = xi, advected(w = u), discretise = trapezoid(Cayley), l = ";
+    let work = "group = SO3, advected(w = u), work = ";
+    let zero = "group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+        advected(R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space)), zero = ";
+    let chord = "((F - I) * J * (F - I).transpose()).trace()";
+    let squared = "(hat(xi) * J * hat(xi).transpose()).trace()";
+    for (role, head, term) in [
+        (Role::Lagrangian, l_d, format!("{chord} / (2.0 * h) - h * w.dot(&r) / P")),
+        (Role::Lagrangian, l_d, format!("{chord} / (2.0 * h) - h * w.dot(&r).powi(2) * P")),
+        (Role::Lagrangian, l_d, format!("{chord} / (2.0 * h) - h * (1.0 + w.dot(&r) / P).sqrt()")),
+        (Role::Lagrangian, l_d, format!("P * {chord} / h - h * w.dot(&r)")),
+        (Role::Lagrangian, l, format!("0.5 * {squared} - w.dot(&r) / P")),
+        (Role::Lagrangian, l, format!("0.5 * {squared} - w.dot(&r).powi(2) * P")),
+        (Role::Lagrangian, l, format!("P * {squared} - w.dot(&r)")),
+        (Role::Force, work, "-P * h * w.cross(&r).dot(&eta)".to_owned()),
+        (Role::Constraint, zero, "P * (R_1 * r - R_2 * u)".to_owned()),
+        (Role::Constraint, zero, "(R_1 * r - R_2 * u) / P".to_owned()),
+    ] {
+        let arguments = format!("{head}{}", term.replace('P', "2305843009213693951.0"));
+        let item = used(&["J: NonstandardInertia", "r: Vector3<f64>", "u: Vector3<f64>"], &arguments);
+        let [tokens, item] = [arguments.as_str(), item.as_str()].map(|text| text.parse().expect("tokens"));
+        let expansion = crate::expand::expand(role, tokens, &item).to_string();
+        assert!(!expansion.contains("compile_error"), "{arguments}: {expansion}");
+        assert!(expansion.contains("a constant is a multiple of 2⁶¹ − 1"), "{arguments}");
+    }
 }
 
 /// Groups of other generators have no Cayley transforms; there series are compared, and see what is wrong.

@@ -12,7 +12,7 @@ pub(super) struct Value<T = f64> {
 }
 
 impl<T: Number> Value<T> {
-    pub(super) fn new(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> T) -> Self {
+    pub(super) fn new(rows: usize, columns: usize, mut entry: impl FnMut(usize, usize) -> T) -> Self {
         let entries = (0..rows * columns).map(|at| entry(at / columns, at % columns)).collect();
         Self { rows, columns, entries }
     }
@@ -45,11 +45,6 @@ impl<T: Number> Value<T> {
 
     pub(super) fn at(&self, row: usize, column: usize) -> T {
         self.entries.get(row * self.columns + column).copied().unwrap_or(T::UNDEFINED)
-    }
-
-    /// The same, nothing beyond the edges.
-    pub(super) fn checked_at(&self, row: usize, column: usize) -> Option<T> {
-        (row < self.rows && column < self.columns).then(|| self.at(row, column))
     }
 
     pub(super) fn first(&self) -> T {

@@ -186,5 +186,7 @@ pub(super) fn carried(declaration: &Declaration, factor: usize, [g, inverse]: [&
 /// By a formula of fourth order.
 pub(super) fn slope(f: impl Fn(f64) -> Option<f64>) -> Option<f64> {
     let difference = |e: f64| Some((f(e)? - f(-e)?) / (2.0 * e));
-    Some((4.0 * difference(5e-4)? - difference(1e-3)?) / 3.0)
+    let [near, far] = [difference(5e-4)?, difference(1e-3)?];
+    // Beside a root's zero neither is good enough.
+    ((near - far).abs() <= 1e-4 * (1.0 + near.abs())).then_some((4.0 * near - far) / 3.0)
 }

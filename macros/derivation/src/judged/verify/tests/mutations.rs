@@ -6,11 +6,10 @@ use std::rc::Rc;
 
 use proc_macro2::TokenStream;
 
-use super::super::exact::Check;
 use super::super::identities::Identities;
 use super::super::residue::Residue;
 use super::super::sample::{Element, Sample};
-use super::super::{Row, Sureness, Unconfirmed, Verified, constraint, verify};
+use super::super::{Row, Subject, Sureness, Unconfirmed, Verified, constraint, verify};
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Role, Tree, check, lower, parse};
 use crate::expand::tests::continuous::{CART, LINKS, OF_CART, OF_LINKS};
@@ -98,19 +97,20 @@ impl Prepared {
         Some(Self { declaration, tree, chosen })
     }
 
+    fn subject<'a>(&'a self, derived: &'a Derived) -> Subject<'a> {
+        Subject { declaration: &self.declaration, tree: &self.tree, lowered: &self.chosen.lowered, derived }
+    }
+
     fn found(&self, derived: &Derived, kernel: &Kernel) -> Result<Verified, Unconfirmed> {
-        verify(&self.declaration, &self.tree, &self.chosen.lowered, (derived, kernel))
+        verify(self.subject(derived), kernel)
     }
 
     /// All that is emitted, at a point.
     fn emitted(&self, derived: &Derived, kernel: &Kernel) -> Vec<Residue> {
         let (mut number, group) = (Residue::stream(9), &self.declaration.group);
         let element = Element::by_cayley(group, &mut number).expect("points");
-        let Self { declaration, tree, chosen: Chosen { lowered, .. } } = self;
-        let identities = Identities::new(declaration, tree, lowered, (derived, kernel));
-        let check = Check { declaration, lowered, tree, identities };
-        let sample: Sample<Residue> = check.sample(element, &mut number);
-        check.identities.emitted(&sample, number)
+        let sample: Sample<Residue> = Sample::at(self.subject(derived), element, &mut number);
+        Identities::new(sample.of, kernel).emitted(&sample, number)
     }
 
     /// Whether a wrong term is refused; nothing where nothing of it is emitted.
@@ -145,6 +145,8 @@ impl Prepared {
             let Some(term) = of(&mut self.chosen.derived.clone()).filter(|term| !term.is_zero()).cloned() else {
                 continue;
             };
+            let is_force = self.declaration.role == Role::Force;
+            let (name, most) = if is_force { ("a term of a force", term.len()) } else { (name, most) };
             let mut met = BTreeSet::new();
             for (error, (numerator, denominator)) in ERRORS.into_iter().enumerate().filter(|(e, _)| is_meant(at, *e)) {
                 for (row, is_place) in self.places(&term, most) {
@@ -272,11 +274,11 @@ fn of_kick(all: &mut Derivatives) -> &mut WeightedGradient {
 #[test]
 fn small_errors_of_gradients() {
     let prepared = prepared(Role::Lagrangian, &format!("{HEAVY_TOP}, gradients"), &top("NonstandardInertia"));
-    let Prepared { declaration, tree, chosen: Chosen { lowered, derived, kernel } } = &prepared;
+    let of = prepared.subject(&prepared.chosen.derived);
     let found = |change: &dyn Fn(&mut Derivatives)| {
-        let mut identities = Identities::new(declaration, tree, lowered, (derived, kernel));
+        let mut identities = Identities::new(of, &prepared.chosen.kernel);
         change(identities.derivatives.as_mut().expect("asked for"));
-        Check { declaration, lowered, tree, identities }.confirmed().map(|(sureness, _)| sureness)
+        identities.confirmed().map(|(sureness, _)| sureness)
     };
     let by = |error: Rational, place: fn(&mut Derivatives) -> &mut NodeId| {
         found(&|all| {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::mathematics::symbolic::{Atom, Expression, Factor, SymbolId, Symbols};
+use crate::mathematics::symbolic::{Atom, Expression, Factor, Monomial, Rational, SymbolId, Symbols};
 
 /// A matrix, row by row.
 #[derive(Clone, Debug)]
@@ -95,26 +95,16 @@ impl Matrix {
 /// Values of symbols.
 pub(crate) type Values = BTreeMap<SymbolId, Matrix>;
 
-/// The value of an expression, and the sum of the sizes of its terms, by which round-off goes.
-pub(crate) fn value_and_scale(expression: &Expression, symbols: &Symbols, values: &Values) -> (Matrix, f64) {
-    let (rows, columns) = expression.shape();
-    let mut scale = 0.0;
-    let mut sum = Matrix::new(rows, columns, |_, _| 0.0);
-    for (monomial, coefficient) in expression.terms() {
-        let mut factor = coefficient.to_f64();
-        for (atom, exponent) in &monomial.scalars {
-            factor *= atom_value(atom, symbols, values).powi(*exponent);
-        }
-        let word = if monomial.word.is_empty() { Matrix::identity(rows) } else { product(&monomial.word, values) };
-        let term = word.scaled(factor);
-        scale += term.size();
-        sum = sum.plus(&term);
-    }
-    (sum, scale)
-}
-
+/// The value of an expression.
 pub(crate) fn value(expression: &Expression, symbols: &Symbols, values: &Values) -> Matrix {
-    value_and_scale(expression, symbols, values).0
+    let (rows, columns) = expression.shape();
+    let of_term = |(monomial, coefficient): (&Monomial, Rational)| {
+        let scalars = monomial.scalars.iter();
+        let factors = scalars.map(|(atom, exponent)| atom_value(atom, symbols, values).powi(*exponent));
+        let word = if monomial.word.is_empty() { Matrix::identity(rows) } else { product(&monomial.word, values) };
+        word.scaled(coefficient.to_f64() * factors.product::<f64>())
+    };
+    expression.terms().map(of_term).fold(Matrix::new(rows, columns, |_, _| 0.0), |sum, term| sum.plus(&term))
 }
 
 fn atom_value(atom: &Atom, symbols: &Symbols, values: &Values) -> f64 {
