@@ -20,13 +20,16 @@ use crate::file::tables::Document;
 /// What is advected; where it is less, the others are zero.
 type Seen = (Vector3<f64>, Vector3<f64>, Vector3<f64>, Vector3<f64>);
 
+/// The energy of a motion with a pace, and three of them.
+type SeenWithEnergy = (Given<f64>, Vector3<f64>, Vector3<f64>, Vector3<f64>);
+
 /// A Lagrangian on SO(3), by the kind of its kinetic part.
 #[derive(Clone)]
 pub(crate) enum Lagrangian {
     Usual(Late<SO3, Seen, WithKinetic>),
     Expensive(Late<SO3, Seen, WithExpensiveKinetic>),
     /// With the energy of its motion.
-    Paced(Late<SO3, (Given<f64>, Vector3<f64>, Vector3<f64>, Vector3<f64>), WithEitherKinetic>),
+    Paced(Late<SO3, SeenWithEnergy, WithEitherKinetic>),
 }
 
 impl Lagrangian {
