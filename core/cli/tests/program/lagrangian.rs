@@ -115,6 +115,21 @@ fn a_force_of_its_own() {
     assert!(refused(&folder, &accuracy).contains("`force` does work, so give a `step`"));
 }
 
+/// Steps of a transformed time: rows have the time itself, and the energy stays.
+#[test]
+fn it_has_a_pace() {
+    let folder = folder("lagrangian-pace");
+    let paced = TOP.replace("advected =", "pace = \"1.0 / (1.0 + w.dot(&rho).powi(2))\"\nadvected =");
+    let rows = rows(&folder, &(paced.clone() + RUN));
+    let end = &rows[rows.len() - 1];
+    let lengths = rows.windows(2).map(|pair| pair[1][0] - pair[0][0]);
+    let [least, most] = lengths.fold([1.0, 0.0], |[least, most], h| [f64::min(least, h), f64::max(most, h)]);
+    assert!(end[0] >= 2.0 && end[0] < 2.0 + most && most > 1.01 * least && most < 0.01, "{least} {most} {}", end[0]);
+    assert!((end[7] - rows[0][7]).abs() < 1e-3 * rows[0][7].abs(), "{end:?}");
+    let composed = paced + &RUN.replace("step =", "method = { composition = \"Suzuki 4\" }\nstep =");
+    assert!(refused(&folder, &composed).contains("a pace is that of the Lagrangian's own step"));
+}
+
 #[test]
 fn mistakes_have_places() {
     let folder = folder("lagrangian-mistakes");

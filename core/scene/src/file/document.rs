@@ -13,7 +13,7 @@ use crate::file::lagrangian::take;
 use crate::file::method::{Method, Scheme as _};
 use crate::file::mistake::{Mistake, Wrong, place_of};
 use crate::file::scene::{Origin, Places, SceneFile};
-use crate::file::schedule::{Pace, fraction};
+use crate::file::schedule::{Pace, equal_steps, fraction};
 use crate::file::tables::{Document, span};
 
 /// The scene of a document without a sweep and an ensemble.
@@ -31,11 +31,21 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
         return Err(located((document.span(), "missing field `body`".to_owned())));
     }
     (file.lagrangian, file.force) = (lagrangian, force);
+    if let Some(steps) = file.run.steps_per_orbit {
+        let wrong = |message: String| located((span(document, &["run", "steps_per_orbit"]), message));
+        if has(document, "run", "step") || has(document, "run", "accuracy") {
+            return Err(wrong("`steps_per_orbit` stands in the place of a `step` or an `accuracy`".to_owned()));
+        }
+        let orbit = file.orbit().ok_or_else(|| wrong("no effect of the file follows an `orbit`".to_owned()))?;
+        let (_, step) = orbit.clock(steps).map_err(|error| wrong(error.to_string()))?;
+        file.run.pace = Pace::Step { step, steps: equal_steps(step, file.run.duration).map_err(wrong)? };
+    }
     at_odds(document, &file).map_or(Ok(()), Err).map_err(located)?;
     let default = ["velocity", "spatial-momentum", "energy", "axis", "quaternion"];
     file.columns = file.output.columns(&Column::OF_ONE_BODY, &default).map_err(located)?;
     let at = |keys: &[&str]| place_of(text, &span(document, keys));
-    let pace = if matches!(file.run.pace, Pace::Accuracy(_)) { "accuracy" } else { "step" };
+    let keys = ["accuracy", "steps_per_orbit"];
+    let pace = keys.into_iter().find(|key| has(document, "run", key)).unwrap_or("step");
     let body = if file.lagrangian.is_some() { "lagrangian" } else { "body" };
     let places =
         Places { body: at(&[body]), start: at(&["start"]), pace: at(&["run", pace]), method: at(&["run", "method"]) };
@@ -70,6 +80,7 @@ fn of_pace(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
         return wrong(&["run", "accuracy"], "a run has either a `step` or an `accuracy`".to_owned());
     }
     if let Pace::Step { step, .. } = file.run.pace
+        && !file.has_steps_of_its_own()
         && let Some(message) = fraction(step, file.run.duration)
     {
         return wrong(&["run", "duration"], message);
@@ -139,6 +150,14 @@ fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
         if let Pace::Accuracy(_) = file.run.pace {
             let message = "an accuracy chooses a method for the library's bodies; give a `step` to a `lagrangian`";
             return wrong(&["run", "accuracy"], message.to_owned());
+        }
+        if lagrangian.has_a_pace && file.force.is_some() {
+            let message = "a pace is that of the whole motion, and a force has another time: leave one of both out";
+            return wrong(&["force"], message.to_owned());
+        }
+        if lagrangian.has_a_pace && !matches!(method, Method::Step) {
+            let message = "a pace is that of the Lagrangian's own step: leave `method` out";
+            return wrong(&["run", "method"], message.to_owned());
         }
         if !matches!(method, Method::Step | Method::Composition(_)) {
             let message = format!("{} moves a body of the library; leave it out", method.name());

@@ -5,7 +5,7 @@ use liestep::mechanics::{Effect, Inertia};
 use liestep_late::numbers;
 use serde::Deserialize;
 
-use crate::file::orbit::{OnOrbit, Parameter as _, Turning, TurningDirection, TurningField};
+use crate::file::orbit::{OnOrbit, Orbit, Parameter as _, Turning, TurningDirection, TurningField};
 use crate::file::quantity;
 use crate::file::quantity::{
     Acceleration, Damping, Direction, Force, GravitationalParameter, Length, MagneticGain, MagneticMoment, Mass,
@@ -17,8 +17,13 @@ pub(crate) trait Table {
     /// The numbers of the effect on the body with this inertia, with what it is at a time, s.
     fn numbers(&self, J: &Inertia, time: f64) -> Vec<f64>;
 
+    /// Along which orbit it is another at each time.
+    fn orbit(&self) -> Option<&Orbit>;
+
     /// Whether it is another at each time.
-    fn turns(&self) -> bool;
+    fn turns(&self) -> bool {
+        self.orbit().is_some()
+    }
 }
 
 /// Shows the list to a macro, behind what that is given: of each effect the table in a file, its keys, and how these make
@@ -106,8 +111,8 @@ macro_rules! tables {
                     numbers(&effect)
                 }
 
-                fn turns(&self) -> bool {
-                    $(self.$field.turns())||+
+                fn orbit(&self) -> Option<&Orbit> {
+                    [$(self.$field.orbit()),+].into_iter().flatten().next()
                 }
             }
         )+

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use liestep::SO3;
+use liestep::groups::Given;
 use liestep::mechanics::{Effect as _, Inertia, KineticPart, Term as _, WithEitherKinetic, WithoutKinetic};
 use liestep_derivation::Role;
 use liestep_late::{Declaration, Late, LateError};
@@ -26,11 +27,15 @@ pub(crate) type Backend = liestep_late::Interpreted;
 /// What a Lagrangian advects; where it is less, the others are zero.
 type Seen = (Vector3<f64>, Vector3<f64>, Vector3<f64>, Vector3<f64>);
 
+/// The energy of a motion with a pace, and three of them.
+type SeenWithEnergy = (Given<f64>, Vector3<f64>, Vector3<f64>, Vector3<f64>);
+
 /// A Lagrangian or a force on SO(3), with the numbers of its parameters.
 #[derive(Clone)]
 pub(crate) struct Declared {
     pub(crate) declaration: &'static Declaration,
     pub(crate) numbers: Vec<f64>,
+    pub(crate) has_a_pace: bool,
 }
 
 impl Declared {
@@ -39,16 +44,27 @@ impl Declared {
         Late::of(self.declaration)?.with_all(&self.numbers)
     }
 
+    /// With the energy of its motion.
+    pub(crate) fn paced(&self) -> Result<Late<SO3, SeenWithEnergy, WithEitherKinetic, Backend>, LateError> {
+        Late::of(self.declaration)?.with_all(&self.numbers)
+    }
+
     /// The inertia of the limit where the body is not turned.
     pub(crate) fn inertia(&self) -> Option<Matrix3<f64>> {
+        if self.has_a_pace {
+            return self.paced().ok().map(|late| late.inertia(&late.advected()));
+        }
         self.late::<WithEitherKinetic>().ok().map(|late| late.inertia(&late.advected()))
     }
 }
 
-const KEYS: &str = "a Lagrangian has `l_d`, or `l` with `discretise`; it may have `advected`, as in \
+const KEYS: &str = "a Lagrangian has `l_d`, or `l` with `discretise`; it may have a `pace`, `advected`, as in \
                     `advected = { w = \"up\" }`, and has a key for each parameter";
 const KEYS_OF_FORCES: &str = "a force has `work`; it may have `advected`, as in `advected = { w = \"up\" }`, and has a \
                               key for each parameter";
+
+/// The field of the energy of a motion with a pace.
+const ENERGY: &str = "E_0_of_the_start";
 
 /// A parameter: its type in the declaration, and its numbers.
 struct Parameter {
@@ -76,8 +92,8 @@ pub(crate) fn take(document: &mut Document<'_>, role: Role) -> Result<Option<Dec
     read(table, &key.span(), role).map(Some)
 }
 
-/// What stands before the expression, the expression, and its place.
-type Expression = (String, (String, Range<usize>));
+/// What stands before the expression and before what is advected, the expression, and its place.
+type Expression = ([String; 2], (String, Range<usize>));
 
 fn expression(table: &DeTable<'_>, place: &Range<usize>, role: Role) -> Result<Expression, Wrong> {
     let text = |key: &str| match table.get(key) {
@@ -94,32 +110,39 @@ fn expression(table: &DeTable<'_>, place: &Range<usize>, role: Role) -> Result<E
     }
     if role == Role::Force {
         let work = text("work")?.ok_or_else(|| (place.clone(), KEYS_OF_FORCES.to_owned()))?;
-        return Ok(("work".to_owned(), work));
+        return Ok((["work".to_owned(), String::new()], work));
     }
-    let [l_d, l, velocity, discretise] = ["l_d", "l", "velocity", "discretise"].map(text);
+    let [l_d, l, velocity, discretise, pace] = ["l_d", "l", "velocity", "discretise", "pace"].map(text);
+    // The energy is first, so that the vectors behind it may be as many as there are.
+    let pace = pace?.map(|(pace, _)| format!("given(E_0 = {ENERGY}), pace = {{ {pace} }}, ")).unwrap_or_default();
     match (l_d?, l?, discretise?) {
-        (Some(l_d), None, None) => Ok(("l_d".to_owned(), l_d)),
+        (Some(l_d), None, None) => Ok((["l_d".to_owned(), pace], l_d)),
         (None, Some(l), Some((discretise, _))) => {
             let velocity = velocity?.map_or_else(|| "Omega".to_owned(), |(name, _)| name);
-            Ok((format!("velocity = {velocity}, discretise = {discretise}, l"), l))
+            Ok(([format!("velocity = {velocity}, discretise = {discretise}, l"), pace], l))
         }
         _ => Err((place.clone(), KEYS.to_owned())),
     }
 }
 
 fn read(table: &DeTable<'_>, place: &Range<usize>, role: Role) -> Result<Declared, Wrong> {
-    let (head, (expression, at)) = expression(table, place, role)?;
+    let ([head, pace], (expression, at)) = expression(table, place, role)?;
     let advected = advected(table)?;
     let known: &[&str] = match role {
         Role::Force => &["group", "work", "advected"],
-        _ => &["group", "l_d", "l", "velocity", "discretise", "advected"],
+        _ => &["group", "l_d", "l", "velocity", "discretise", "pace", "advected"],
     };
     let parameters = table.iter().filter(|(key, _)| !known.contains(&key.get_ref().as_ref()));
-    let parameters = parameters.map(|(key, value)| parameter(key.get_ref(), value)).collect::<Result<Vec<_>, _>>()?;
+    let mut parameters =
+        parameters.map(|(key, value)| parameter(key.get_ref(), value)).collect::<Result<Vec<_>, _>>()?;
+    let has_a_pace = !pace.is_empty();
+    if has_a_pace {
+        parameters.push(Parameter { name: ENERGY.to_owned(), kind: "f64", numbers: vec![0.0] });
+    }
     let fields: Vec<String> = parameters.iter().map(|one| format!("{}: {}", one.name, one.kind)).collect();
     let (attribute, name) = if role == Role::Force { ("force", "Force") } else { ("lagrangian", "Lagrangian") };
     let declared = format!(
-        "#[{attribute}(group = SO3, {advected}{head} =\n{expression}\n)]\nstruct {name} {{ {} }}",
+        "#[{attribute}(group = SO3, {pace}{advected}{head} =\n{expression}\n)]\nstruct {name} {{ {} }}",
         fields.join(", ")
     );
     let wrong = |error: LateError| {
@@ -133,9 +156,10 @@ fn read(table: &DeTable<'_>, place: &Range<usize>, role: Role) -> Result<Declare
     };
     let declaration = Declaration::parse(&declared).map_err(wrong)?;
     let numbers = parameters.into_iter().flat_map(|one| one.numbers).collect();
-    let declared = Declared { declaration, numbers };
+    let declared = Declared { declaration, numbers, has_a_pace };
     let fits = match role {
         Role::Force => declared.late::<WithoutKinetic>().map(|_| ()),
+        _ if has_a_pace => declared.paced().map(|_| ()),
         _ => declared.late::<WithEitherKinetic>().map(|_| ()),
     };
     fits.map_err(wrong).map(|()| declared)

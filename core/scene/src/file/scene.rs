@@ -12,6 +12,7 @@ use crate::file::draws::SceneEnsemble;
 use crate::file::effects::{self, EFFECTS, Listed, Table, effects};
 use crate::file::event::Event;
 use crate::file::lagrangian::{Declared, taken};
+use crate::file::orbit::Orbit;
 use crate::file::picture::SpherePicture;
 use crate::file::quantity::short;
 use crate::file::schedule::{Pace, Schedule};
@@ -41,6 +42,11 @@ macro_rules! scene_file {
             pub(crate) fn effects(&self) -> impl Iterator<Item = (&'static Listed, &dyn Table)> {
                 let tables = [$(self.$name.as_ref().map(|table| table as &dyn Table)),+];
                 EFFECTS.iter().zip(tables).filter_map(|(effect, table)| Some((effect, table?)))
+            }
+
+            /// The orbit that they follow.
+            pub(crate) fn orbit(&self) -> Option<&Orbit> {
+                [$(self.$name.as_ref().and_then(Table::orbit)),+].into_iter().flatten().next()
             }
         }
     };
@@ -133,6 +139,11 @@ impl SceneFile {
         matches!(self.run.pace, Pace::Accuracy(_))
     }
 
+    /// Whether the steps have different lengths.
+    pub(crate) fn has_steps_of_its_own(&self) -> bool {
+        self.run.steps_per_orbit.is_some() || self.lagrangian.as_ref().is_some_and(|own| own.has_a_pace)
+    }
+
     /// How many steps the scene asks for; none where they are chosen for an accuracy.
     #[must_use]
     pub fn steps(&self) -> Option<u64> {
@@ -146,6 +157,9 @@ impl SceneFile {
     #[must_use]
     pub fn about(&self) -> String {
         let pace = match self.run.pace {
+            Pace::Step { step, .. } if self.has_steps_of_its_own() => {
+                format!("{} s by steps of {} s on the average", short(self.run.duration), short(step))
+            }
             Pace::Step { step, steps } => format!("{steps} steps of {} s", short(step)),
             Pace::Accuracy(tolerance) => format!("{} s to {tolerance:e}", short(self.run.duration)),
         };

@@ -118,7 +118,12 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
                         let now = rest.clone().with_all(&numbers(&seen, &J, time));
                         (Default::default(), now.as_ref().unwrap_or(&rest).advected())
                     };
-                    any!(Stepper::new(scene, h).map(|stepper| stepper.driven(values)))
+                    match file.run.steps_per_orbit.and_then(|steps| file.orbit()?.clock(steps).ok()) {
+                        None => any!(Stepper::new(scene, h).map(|stepper| stepper.driven(values))),
+                        Some((clock, _)) => {
+                            any!(Stepper::new(scene, 1.0).map(|stepper| stepper.with_clock(clock).driven(values)))
+                        }
+                    }
                 }
                 Some(rest) => step!(body + rest),
             }
@@ -126,6 +131,10 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
     }
     let Some(body) = file.body else {
         let Some(lagrangian) = &file.lagrangian else { return Err(Stop::Other("there is no body".to_owned())) };
+        if lagrangian.has_a_pace {
+            let late = lagrangian.paced().map_err(late_error)?;
+            return any!(Stepper::new(late, h).and_then(Stepper::paced));
+        }
         let late = lagrangian.late::<WithEitherKinetic>().map_err(late_error)?;
         // No effect that asks for an inertia is beside it.
         let J = Inertia::from_principal_moments(V::repeat(1.0)).map_err(|error| Stop::Other(error.to_string()))?;
