@@ -1,4 +1,4 @@
-//! The same scenes from files, which ask at run time what there is.
+//! The same scenes from files: a compiled body, and beside it a program that is interpreted.
 
 use liestep_scene::Mistake;
 

@@ -8,14 +8,11 @@
 //! cargo bench --bench scenes -- count NAME 1000    runs 1000 steps of one scene and nothing else
 //! ```
 //!
-//! A scene with gravity is there four times:
-//! without it, behind a run-time flag, with the coefficient zero, and with it.
+//! A scene with gravity is there three times: without it, with the coefficient zero, and with it.
 
 mod counting;
 mod files;
 mod stepping;
-
-use core::hint::black_box;
 
 use declarations::{DoublePendulum, HeavyTop};
 use liestep::effects::{
@@ -24,7 +21,6 @@ use liestep::effects::{
 };
 use liestep::mechanics::Regular;
 use liestep::prelude::*;
-use liestep_scene::Switched;
 use nalgebra::Vector3;
 
 use counting::{Uncounted, built, instructions};
@@ -47,8 +43,6 @@ fn visit_all(visit: &mut impl Visit) {
     visit.visit("body + gravity", body + gravity);
     visit.visit("heavy top in one piece", HeavyTop { J_d, m, g, rho, up });
     visit.visit("body + gravity with m = 0", body + Gravity { m: 0.0, ..gravity });
-    visit.visit("body + gravity, flag off", body + black_box(Switched(None::<Gravity>)));
-    visit.visit("body + gravity, flag on", body + black_box(Switched(Some(gravity))));
     visit.visit("body + gravity gradient", body + GravityGradient { GM: 1.0, r: 1.0, J, direction: up });
     visit.visit("body + dipole", body + Dipole { moment: rho, field: up });
     visit.visit("body + spring", body + Spring { k: 1.0, length: 0.5, at: rho, anchor: up });

@@ -3,22 +3,20 @@
 use core::cell::Cell;
 use core::fmt::Debug;
 
-use liestep::delegate_term;
 use liestep::groups::Retraction as _;
 use liestep::mechanics::{
-    DiscreteLagrangian, Effect, Group, Matrix, Parts, Residual, Scalar, Square, Term, Vector, WithExpensiveKinetic,
-    WithKinetic,
+    DiscreteLagrangian, Effect, Group, Limit, Matrix, Parts, Residual, Scalar, SceneVisitor, Square, Term, Vector,
+    WithExpensiveKinetic, WithKinetic,
 };
 use liestep::numbers::Real;
 use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 
-/// An expression in the Lagrangian that is wrapped.
-macro_rules! within {
-    ($self:ident, $term:ident => $value:expr) => {{
-        let $term = &$self.0;
-        $value
-    }};
+/// Functions of the Lagrangian that is wrapped.
+macro_rules! of_inner {
+    ($(fn $name:ident($($argument:ident: $type:ty),*) $(-> $result:ty)?;)*) => {
+        $(fn $name(&self, $($argument: $type),*) $(-> $result)? { self.0.$name($($argument),*) })*
+    };
 }
 
 /// Its own parameters.
@@ -28,7 +26,10 @@ macro_rules! term_as {
         type Group = Group<$inner>;
         type Advected = <$inner as Term>::Advected;
 
-        delegate_term!(within: validate advected);
+        of_inner! {
+            fn validate() -> Result<(), liestep::SetupError>;
+            fn advected() -> Self::Advected;
+        }
     };
 }
 
@@ -37,7 +38,13 @@ macro_rules! declared_as {
     ($inner:ty) => {
         const SELF_ADJOINT: bool = <$inner>::SELF_ADJOINT;
 
-        delegate_term!(within: l_d right_momentum left_momentum diamond discrete_energy);
+        of_inner! {
+            fn l_d(f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar;
+            fn right_momentum(f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self>;
+            fn left_momentum(f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self>;
+            fn diamond(f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self>;
+            fn discrete_energy(f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar;
+        }
     };
 }
 
@@ -51,7 +58,15 @@ macro_rules! staged_as {
         const IS_QUADRATIC: bool = <$inner>::IS_QUADRATIC;
         const DERIVATION: &'static str = <$inner>::DERIVATION;
 
-        delegate_term!(within: describe momentum_jacobian limit);
+        of_inner! {
+            fn describe(visitor: &mut dyn SceneVisitor<Self::Scalar>);
+            fn momentum_jacobian(f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Square<Self>;
+        }
+
+        fn limit(&self, velocity: Option<&Vector<Self>>, w: &Self::Advected) -> Limit<Self> {
+            let Limit { l, momentum, hessian } = self.0.limit(velocity, w);
+            Limit { l, momentum, hessian }
+        }
     };
 }
 

@@ -1,9 +1,11 @@
 //! What can't be differentiated: force gradients of a term whose derivatives were written without those of its kick.
 
 use liestep::groups::CayleyRetraction;
-use liestep::mechanics::{DiscreteLagrangian, Effect, Inertia, SecondDerivatives, StepDerivatives, Term, WithKinetic};
+use liestep::mechanics::{
+    DiscreteLagrangian, Effect, Inertia, Limit, SceneVisitor, SecondDerivatives, StepDerivatives, Term, WithKinetic,
+};
 use liestep::methods::{ExactBody, ProcessedScheme, SplittingScheme};
-use liestep::{SO3, SetupError, Stepper, delegate_term};
+use liestep::{SO3, SetupError, Stepper};
 use nalgebra::{Matrix3, Vector3};
 
 use super::scenes::{Top, top};
@@ -15,13 +17,6 @@ struct ByHand(Top<f64>);
 type W = <Top<f64> as Term>::Advected;
 type V = Vector3<f64>;
 type M = Matrix3<f64>;
-
-macro_rules! within {
-    ($self:ident, $term:ident => $value:expr) => {{
-        let $term = &$self.0;
-        $value
-    }};
-}
 
 macro_rules! as_the_librarys {
     ($(fn $name:ident($($argument:ident: $type:ty),*) $(-> $result:ty)?;)*) => {
@@ -37,13 +32,22 @@ impl Term for ByHand {
     type Group = SO3;
     type Advected = W;
 
-    delegate_term!(within: validate advected);
+    as_the_librarys! {
+        fn validate() -> Result<(), SetupError>;
+        fn advected() -> W;
+    }
 }
 
 impl DiscreteLagrangian for ByHand {
     const SELF_ADJOINT: bool = true;
 
-    delegate_term!(within: l_d right_momentum left_momentum diamond discrete_energy);
+    as_the_librarys! {
+        fn l_d(f: &M, w: &W, h: f64) -> f64;
+        fn right_momentum(f: &M, w: &W, h: f64) -> V;
+        fn left_momentum(f: &M, w: &W, h: f64) -> V;
+        fn diamond(f: &M, w: &W, h: f64) -> V;
+        fn discrete_energy(f: &M, w: &W, h: f64) -> f64;
+    }
 }
 
 impl Effect for ByHand {
@@ -57,9 +61,14 @@ impl Effect for ByHand {
     const IS_QUADRATIC: bool = true;
     const DERIVATION: &'static str = "a heavy top, by hand";
 
-    delegate_term!(within: describe momentum_jacobian limit);
+    fn limit(&self, velocity: Option<&V>, w: &W) -> Limit<Self> {
+        let Limit { l, momentum, hessian } = self.0.limit(velocity, w);
+        Limit { l, momentum, hessian }
+    }
 
     as_the_librarys! {
+        fn describe(visitor: &mut dyn SceneVisitor<f64>);
+        fn momentum_jacobian(f: &M, w: &W, h: f64) -> M;
         fn constants(h: f64) -> Self::Constants;
     }
 

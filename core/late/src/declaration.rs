@@ -12,6 +12,7 @@ use proc_macro2::{LexError, TokenStream};
 
 use crate::code::Backend;
 use crate::error::{LateError, Mistake};
+use crate::sum::summed;
 
 /// A declaration with the programs of its stages. Each text is derived once and kept as long as the program runs.
 #[derive(Debug)]
@@ -92,13 +93,40 @@ impl Declaration {
         if text.len() > LONGEST {
             return Err(LateError::TooLong(LONGEST));
         }
+        Self::kept(text, || Self::derived(text))
+    }
+
+    /// The sum of declarations on one group, in one: programs that add what theirs compute. On SO(3) it has the bits of the
+    /// same sum of compiled effects; where the retraction's tangent is taken behind the sum, it differs by roundings. The parameter `m` of a term `Gravity` is called `Gravity.m`; numbers and what is carried stand
+    /// in the order of the terms. A Jacobian is taken in every solve, unless there is one term only.
+    ///
+    /// # Errors
+    ///
+    /// Where they are on several groups, or there are none.
+    pub fn sum(terms: &[&'static Self]) -> Result<&'static Self, LateError> {
+        if let [only] = terms {
+            return Ok(only);
+        }
+        // Declarations stay where they are.
+        let places: Vec<*const Self> = terms.iter().map(|&term| &raw const *term).collect();
+        Self::kept(&format!("{places:?}"), || summed(&terms.iter().map(|term| &term.staged).collect::<Vec<_>>()))
+    }
+
+    /// What is kept by this name, or is made and kept.
+    fn kept(name: &str, make: impl FnOnce() -> Result<Staged, LateError>) -> Result<&'static Self, LateError> {
         let known = || KEPT.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(declaration) = known().get(text) {
+        if let Some(declaration) = known().get(name) {
             return Ok(declaration);
         }
         if known().len() >= MOST {
             return Err(LateError::TooMany(MOST));
         }
+        let declaration = Self::of(make()?);
+        // Where two threads have derived it, the second drops its own.
+        Ok(known().entry(name.to_owned()).or_insert_with(|| Box::leak(Box::new(declaration))))
+    }
+
+    fn derived(text: &str) -> Result<Staged, LateError> {
         let tokens: TokenStream = text.parse().map_err(|error: LexError| {
             let place = error.span().start();
             let message = "a bracket isn't closed or opened, or a sign has no meaning here".to_owned();
@@ -115,9 +143,7 @@ impl Declaration {
         drop(tokens);
         // What the tokens' places are found by would be kept, too.
         proc_macro2::extra::invalidate_current_thread_spans();
-        let declaration = Self::of(found?.0);
-        // Where two threads have derived it, the second drops its own.
-        Ok(known().entry(text.to_owned()).or_insert_with(|| Box::leak(Box::new(declaration))))
+        found.map(|(staged, _)| staged)
     }
 
     fn of(staged: Staged) -> Self {

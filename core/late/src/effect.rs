@@ -18,14 +18,14 @@ type Square<G> = <Vector<G> as Coordinates<<G as LieGroup>::Scalar>>::Square;
 
 /// The entries of small values, on the stack.
 struct List<T> {
-    entries: [T; 16],
+    entries: [T; 18],
     more: Vec<T>,
     length: usize,
 }
 
 impl<T: Real> List<T> {
     fn of(value: &impl Entries<T>) -> Self {
-        let mut list = Self { entries: [T::zero(); 16], more: Vec::new(), length: 0 };
+        let mut list = Self { entries: [T::zero(); 18], more: Vec::new(), length: 0 };
         value.each(&mut |entry| {
             match list.entries.get_mut(list.length) {
                 Some(place) => *place = entry,
@@ -315,13 +315,18 @@ where
     }
 
     fn step_terms(constants: &Self::Constants, a: &Vector<G>, w: &W) -> Self::StepTerms {
-        let (folded, target, advected) = (&*constants.0, List::of(a), List::of(w));
+        let folded = &*constants.0;
+        let mut numbers = [real::<G::Scalar>(0.0); MOST_TERMS];
+        // Where there is nothing to solve, nobody reads them.
+        if !folded.declaration.parts.unknown {
+            return StepTerms { right_side: *a, advected: *w, numbers };
+        }
+        let (target, advected) = (List::of(a), List::of(w));
         let arrays = Arrays::of([
             (Array::Constants, &*folded.numbers),
             (Array::Target, target.get()),
             (Array::Advected, advected.get()),
         ]);
-        let mut numbers = [real::<G::Scalar>(0.0); MOST_TERMS];
         B::run(&folded.stages.terms.code, &folded.terms, &arrays, &mut numbers[..folded.stages.terms.outputs]);
         StepTerms { right_side: *a, advected: *w, numbers }
     }

@@ -41,6 +41,12 @@ pub enum LateError {
     /// A step of it isn't written in C, and why.
     #[error("{0}")]
     C(&'static str),
+    /// It is a sum of no declarations.
+    #[error("a sum has a declaration at least")]
+    Nothing,
+    /// It is a sum of a declaration with a pace, whose energy is that of all terms.
+    #[error("a Lagrangian with a pace has all its terms in its text")]
+    Pace,
     /// The declaration is on another group.
     #[error("the declaration is on {declared}: take that group")]
     Group {

@@ -2,8 +2,8 @@
 //!
 //! # Inside
 //!
-//! `lanes → effect → term → {declaration, specialised} → code → error`, and `{latex, written} → declaration`: a [`Declaration`] is what was derived of a text, with its
-//! stages as straight-line programs; a [`Late`] is one with numbers, and an [`Effect`](liestep::mechanics::Effect) as any
+//! `lanes → effect → term → declaration → sum → specialised → code → error`, and `{latex, written} → declaration`: a [`Declaration`] is what was derived of a text, with its
+//! stages as straight-line programs, or the `sum` of several; a [`Late`] is one with numbers, and an [`Effect`](liestep::mechanics::Effect) as any
 //! other. A [`Backend`] runs the programs: [`Interpreted`] here, machine code in `liestep-machine`. `carried` compares what
 //! is advected with the type that carries it.
 #![forbid(unsafe_code)]
@@ -16,6 +16,7 @@ mod error;
 mod lanes;
 mod latex;
 mod specialised;
+mod sum;
 mod term;
 mod written;
 
@@ -28,5 +29,5 @@ pub use lanes::Wider;
 pub use latex::latex;
 pub use liestep_derivation::{Array, Function, Operation, Program, Source, Stages};
 pub use specialised::specialised;
-pub use term::Late;
+pub use term::{Late, numbers};
 pub use written::{c, rust};

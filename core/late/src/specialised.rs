@@ -1,4 +1,5 @@
-//! Programs with all numbers known: constants written in, what they make foreseeable folded, zeros dropped.
+//! Programs made of others: with all numbers known, constants written in and what they make foreseeable folded; or several
+//! in one.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -17,7 +18,7 @@ pub fn specialised(programs: &Stages<Program>, constants: &[f64]) -> Stages<Prog
 
 /// What a register holds.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-enum Value {
+pub(crate) enum Value {
     /// A number, by its bits.
     Number(u64),
     /// An input of the new program.
@@ -27,7 +28,7 @@ enum Value {
 }
 
 impl Value {
-    fn of(number: f64) -> Self {
+    pub(crate) fn of(number: f64) -> Self {
         // Zeros are one.
         Self::Number((number + 0.0).to_bits())
     }
@@ -51,8 +52,9 @@ enum Made {
     Apply(liestep_derivation::Function, Value),
 }
 
+/// A program that is made.
 #[derive(Default)]
-struct Fold {
+pub(crate) struct Fold {
     operations: Vec<Made>,
     known: HashMap<Made, Value>,
 }
@@ -82,7 +84,7 @@ impl Fold {
         self.negated(a).unwrap_or_else(|| self.push(Made::Negate(a)))
     }
 
-    fn add(&mut self, a: Value, b: Value) -> Value {
+    pub(crate) fn add(&mut self, a: Value, b: Value) -> Value {
         match (a.number(), b.number()) {
             (Some(a), Some(b)) => Value::of(a + b),
             (Some(0.0), _) => b,
@@ -99,7 +101,7 @@ impl Fold {
         }
     }
 
-    fn subtract(&mut self, a: Value, b: Value) -> Value {
+    pub(crate) fn subtract(&mut self, a: Value, b: Value) -> Value {
         match (a.number(), b.number()) {
             (Some(a), Some(b)) => Value::of(a - b),
             (Some(0.0), _) => self.negate(b),
@@ -111,7 +113,7 @@ impl Fold {
         }
     }
 
-    fn multiply(&mut self, a: Value, b: Value) -> Value {
+    pub(crate) fn multiply(&mut self, a: Value, b: Value) -> Value {
         let (a, b) = (a.min(b), a.max(b));
         match (a.number(), b.number()) {
             (Some(a), Some(b)) => Value::of(a * b),
@@ -145,29 +147,66 @@ impl Fold {
 }
 
 fn fold(program: &Program, constants: &[f64]) -> Program {
-    let mut fold = Fold::default();
-    let of_input = |source: &Source| match constants.get(source.at) {
+    let of_input = |source: Source| match constants.get(source.at) {
         Some(&number) if source.array == Array::Constants => Value::of(number),
-        _ => Value::Input(*source),
+        _ => Value::Input(source),
     };
-    let literals = program.literals.iter().map(|&literal| Value::of(literal));
-    let mut values: Vec<Value> = program.inputs.iter().map(of_input).chain(literals).collect();
-    for operation in &program.operations {
-        let [a, b] = operation.operands().map(|at| values[at]);
-        values.push(match *operation {
-            Operation::Negate(_) => fold.negate(a),
-            Operation::Add(..) => fold.add(a, b),
-            Operation::Subtract(..) => fold.subtract(a, b),
-            Operation::Multiply(..) => fold.multiply(a, b),
-            Operation::Divide(..) => fold.divide(a, b),
+    let mut fold = Fold::default();
+    let outputs = fold.append(program, of_input, Fold::folded);
+    fold.program(&outputs)
+}
+
+impl Fold {
+    /// Adds what a program computes of these inputs, each operation by `make`.
+    pub(crate) fn append(
+        &mut self,
+        program: &Program,
+        input: impl Fn(Source) -> Value,
+        make: fn(&mut Self, Operation, [Value; 2]) -> Value,
+    ) -> Vec<Value> {
+        let literals = program.literals.iter().map(|&literal| Value::of(literal));
+        let mut values: Vec<Value> = program.inputs.iter().map(|&source| input(source)).chain(literals).collect();
+        for &operation in &program.operations {
+            let value = make(self, operation, operation.operands().map(|at| values[at]));
+            values.push(value);
+        }
+        program.outputs.iter().map(|&at| values[at as usize]).collect()
+    }
+
+    fn folded(&mut self, operation: Operation, [a, b]: [Value; 2]) -> Value {
+        match operation {
+            Operation::Negate(_) => self.negate(a),
+            Operation::Add(..) => self.add(a, b),
+            Operation::Subtract(..) => self.subtract(a, b),
+            Operation::Multiply(..) => self.multiply(a, b),
+            Operation::Divide(..) => self.divide(a, b),
             Operation::Apply(function, _) => match a.number() {
                 Some(a) => Value::of(applied(function, a)),
-                None => fold.push(Made::Apply(function, a)),
+                None => self.push(Made::Apply(function, a)),
             },
-        });
+        }
     }
-    let outputs: Vec<Value> = program.outputs.iter().map(|&at| values[at as usize]).collect();
-    written(&fold.operations, &outputs)
+
+    /// The operation itself, so that the bits are those of the program; but zeros are dropped.
+    pub(crate) fn kept(&mut self, operation: Operation, [a, b]: [Value; 2]) -> Value {
+        let zero = Value::of(0.0);
+        match operation {
+            Operation::Add(..) if a == zero => b,
+            Operation::Add(..) | Operation::Subtract(..) if b == zero => a,
+            Operation::Multiply(..) if a == zero || b == zero => zero,
+            Operation::Negate(_) => self.push(Made::Negate(a)),
+            Operation::Add(..) => self.push(Made::Add(a, b)),
+            Operation::Subtract(..) => self.push(Made::Subtract(a, b)),
+            Operation::Multiply(..) => self.push(Made::Multiply(a, b)),
+            Operation::Divide(..) => self.push(Made::Divide(a, b)),
+            Operation::Apply(function, _) => self.push(Made::Apply(function, a)),
+        }
+    }
+
+    /// The program of these outputs, with nothing that they don't need.
+    pub(crate) fn program(&self, outputs: &[Value]) -> Program {
+        written(&self.operations, outputs)
+    }
 }
 
 fn operands(made: Made) -> [Value; 2] {
@@ -177,7 +216,6 @@ fn operands(made: Made) -> [Value; 2] {
     }
 }
 
-/// The program of these outputs, with nothing that they don't need.
 fn written(operations: &[Made], outputs: &[Value]) -> Program {
     let mut needed: BTreeSet<Value> = outputs.iter().copied().collect();
     for (at, &made) in operations.iter().enumerate().rev() {

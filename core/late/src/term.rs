@@ -112,23 +112,25 @@ impl<G: LieGroup, W: Advected<G> + Slots, K: KineticPart, B: Backend<G::Scalar>>
     ///
     /// Where the effect wasn't declared, as a sum isn't; or as [`parse`](Self::parse).
     pub fn like<E: Effect<Scalar = G::Scalar, Group = G, Advected = W>>(effect: &E) -> Result<Self, LateError> {
-        let mut named = Named(Vec::new());
-        effect.describe(&mut named);
-        named.0.iter().try_fold(Self::parse(E::DECLARATION)?, |late, (name, values)| late.with(name, values))
+        Self::parse(E::DECLARATION)?.with_all(&numbers(effect))
     }
 }
 
-/// The parameters of an effect, by their names.
-struct Named<T>(Vec<(&'static str, Vec<T>)>);
+/// The numbers of an effect, as it describes them: those of all parameters of its declaration, in their order.
+#[must_use]
+pub fn numbers<E: Effect>(effect: &E) -> Vec<E::Scalar> {
+    let mut numbers = Numbers(Vec::new());
+    effect.describe(&mut numbers);
+    numbers.0
+}
 
-impl<T> SceneVisitor<T> for Named<T> {
-    fn term(&mut self, _: &'static str) {}
+struct Numbers<T>(Vec<T>);
 
-    fn parameter(&mut self, field: &'static str, value: T) {
-        match self.0.last_mut() {
-            Some((last, values)) if *last == field => values.push(value),
-            _ => self.0.push((field, vec![value])),
-        }
+impl<T> SceneVisitor<T> for Numbers<T> {
+    fn term(&mut self, _: &str) {}
+
+    fn parameter(&mut self, _: &str, value: T) {
+        self.0.push(value);
     }
 }
 
@@ -171,6 +173,27 @@ impl<G: LieGroup, W, K, B: Backend<G::Scalar>> Late<G, W, K, B> {
             (_, found) => return Err(LateError::Size { name: name.to_owned(), expected, found }),
         }
         self.numbers = numbers.into();
+        Ok(self)
+    }
+
+    /// With values for all parameters, in their order, a diagonal inertia by its tensor: see [`numbers`].
+    ///
+    /// # Errors
+    ///
+    /// Where there are more or fewer.
+    pub fn with_all(mut self, numbers: &[G::Scalar]) -> Result<Self, LateError> {
+        // An effect describes a diagonal inertia by its tensor.
+        let described = self.declaration.parameters.iter().flat_map(|parameter| match parameter.kind {
+            ParameterKind::DiagonalInertia => [true, false, false, false].repeat(3)[..9].to_vec(),
+            kind => vec![true; kind.len()],
+        });
+        let described: Vec<bool> = described.collect();
+        let (expected, found) = (described.len(), numbers.len());
+        if expected != found {
+            return Err(LateError::Size { name: self.declaration.name.clone(), expected, found });
+        }
+        self.numbers =
+            numbers.iter().zip(described).filter_map(|(&number, is_kept)| is_kept.then_some(number)).collect();
         Ok(self)
     }
 
@@ -242,15 +265,13 @@ where
     }
 
     fn advected(&self) -> W {
-        let of_carried = self.declaration.carried.iter().flat_map(|carried| {
-            let Some(field) = carried.field else {
-                // A configuration is the identity in space.
-                let rows = carried.shape.0;
-                return (0..rows * rows).map(|at| real(f64::from(u8::from(at / rows == at % rows)))).collect();
-            };
-            self.of_parameter(field).to_vec()
+        let mut numbers = self.declaration.carried.iter().flat_map(|carried| {
+            let (rows, columns) = carried.shape;
+            let given = carried.field.map(|field| self.of_parameter(field));
+            // A configuration is the identity in space.
+            let one = move |at| real(f64::from(u8::from(at / rows == at % rows)));
+            (0..rows * columns).map(move |at| given.map_or_else(|| one(at), |given| given[at]))
         });
-        let mut numbers = of_carried.collect::<Vec<_>>().into_iter();
         W::from_entries(&mut || numbers.next().unwrap_or_else(|| real(0.0)))
     }
 }

@@ -14,13 +14,14 @@ use liestep::effects::{
     CayleyBody, Dipole, Drag, FourthOrderBody, GeodesicBody, Gravity, GravityGradient, MagneticDamping, PrincipalBody,
     RigidBody, Rotor, SixthOrderBody, Spring, Thrust, Torque,
 };
-use liestep::groups::{CovariantTensor, SE23};
+use liestep::groups::{CayleyRetraction, CovariantTensor, LieGroup as _, Retraction, SE23};
 use liestep::lagrangian;
 use liestep::laws::samples::Random;
-use liestep::mechanics::{DiagonalNonstandardInertia, Effect, Inertia, WithEitherKinetic, WithoutKinetic};
+use liestep::mechanics::{DiagonalNonstandardInertia, Effect, Inertia, Vector, WithEitherKinetic, WithoutKinetic};
 use liestep::motion::Batch;
+use liestep::numbers::Coordinates as _;
 use liestep::{NonstandardInertia, SO3, Stepper};
-use liestep_late::{Array, Arrays, Backend, Interpreted, Late, specialised};
+use liestep_late::{Array, Arrays, Backend, Declaration, Interpreted, Late, LateError, numbers, specialised};
 use nalgebra::{Matrix3, Matrix5, Point, SMatrix, SVector, Vector3, Vector5};
 use simba::simd::AutoF64x4;
 
@@ -242,6 +243,71 @@ fn sums_of_what_is_read() {
     let late: Late<_, (), WithEitherKinetic> = Late::like(&body).expect("a declaration");
     let late_gravity: Late<_, Vector3<f64>, WithoutKinetic> = Late::like(&gravity).expect("a declaration");
     assert_same(&(body + gravity), &(late + late_gravity), 5);
+}
+
+/// At a velocity, and by the increment of a step with it.
+fn assert_same_terms<A, B>(one: &A, other: &B, seed: u64)
+where
+    A: Effect<Scalar = f64, Retraction = CayleyRetraction>,
+    B: Effect<Scalar = f64, Group = A::Group, Advected = A::Advected>,
+    CayleyRetraction: Retraction<A::Group>,
+{
+    let near = |a: Vector<A>, b: Vector<A>| {
+        let difference = a - b;
+        assert!(difference.dot(&difference).sqrt() < 1e-11 * (1.0 + a.dot(&a).sqrt()), "{a:?} {b:?}");
+    };
+    let (h, w, velocity): (_, _, Vector<A>) = (0.01, one.advected(), Random::new(seed).sample());
+    let (a, b) = (one.limit(Some(&velocity), &w), other.limit(Some(&velocity), &w));
+    assert!((a.l - b.l).abs() < 1e-11 * (1.0 + a.l.abs()));
+    near(a.momentum, b.momentum);
+    near(a.hessian * velocity, b.hessian * velocity);
+    let f = <CayleyRetraction as Retraction<A::Group>>::retract(&(velocity * h)).matrix();
+    near(one.momentum_jacobian(&f, &w, h) * velocity, other.momentum_jacobian(&f, &w, h) * velocity);
+}
+
+fn declared<E: Effect>(_: &E) -> &'static Declaration {
+    Declaration::parse(E::DECLARATION).expect("a declaration")
+}
+
+/// Terms in one program make the steps of their sum.
+macro_rules! as_summed {
+    ($assert:ident $seed:literal: $first:ident { $($of_first:ident)* } $($name:ident { $($field:ident)* })+) => {{
+        let sum = random!($seed, $first { $($of_first)* }) $(+ random!($seed + 1, $name { $($field)* }))+;
+        let terms = [
+            declared(&random!(0, $first { $($of_first)* })) $(, declared(&random!(0, $name { $($field)* })))+
+        ];
+        let declaration = Declaration::sum(&terms).expect("a sum");
+        let late = Late::<_, _, WithEitherKinetic>::of(declaration).and_then(|late| late.with_all(&numbers(&sum)));
+        let late = late.expect("numbers");
+        println!("{}", declaration.name);
+        $assert(&sum, &late, $seed);
+        assert_same_terms(&sum, &late, $seed);
+        assert!(Late::<_, _, WithEitherKinetic>::of(declaration).and_then(|late| late.with_all(&[1.0])) != Ok(late));
+        declaration
+    }};
+}
+
+#[test]
+fn sums_in_one_program() {
+    as_summed! { assert_same 1: RigidBody { J_d } Gravity { m g rho up } };
+    let all = as_summed! {
+        assert_same 2: RigidBody { J_d } Gravity { m g rho up } GravityGradient { GM r J direction } Dipole { moment field }
+        Spring { k length at anchor } Rotor { spin } Drag { c J } Torque { torque } MagneticDamping { k field J }
+    };
+    assert!(all.programs.terms.outputs.len() > 40, "{}", all.programs.terms.outputs.len());
+    as_summed! { assert_same 3: CayleyBody { J } Rotor { spin } Thrust { at thrust } };
+    as_summed! { assert_same 4: Gravity { m g rho up } RigidBody { J_d } Rotor { spin } Rotor { spin } };
+    as_summed! { assert_same 5: LogTop { J weight rho up } Gravity { m g rho up } Drag { c J } };
+    // Its retraction's tangent comes behind the sum of the Jacobians, and not before it.
+    as_summed! { assert_same_terms 6: Flyer { J } FluidDrag { C } Thruster { at thrust } };
+    let of = |text| Declaration::parse(text).expect("a declaration");
+    let [gravity, flyer] = [Gravity::<f64>::DECLARATION, Flyer::DECLARATION].map(of);
+    assert!(matches!(Declaration::sum(&[gravity, flyer]), Err(LateError::Group { .. })));
+    assert!(matches!(Declaration::sum(&[]), Err(LateError::Nothing)));
+    let two = Declaration::sum(&[gravity, gravity]).expect("a sum");
+    assert!(
+        two.parameters[4].name == "Gravity2.m" && std::ptr::eq(two, Declaration::sum(&[gravity; 2]).expect("kept"))
+    );
 }
 
 /// With all numbers written in, a step is a shorter program, which is the same but for roundings.

@@ -6,7 +6,7 @@ use std::process::Command;
 use std::{env, fs};
 
 use declarations::{CayleyTop, FullTop, LogTop, SixthOrderTop};
-use liestep::mechanics::{Effect, SceneVisitor};
+use liestep::mechanics::Effect;
 use liestep::{NonstandardInertia, SO3, Stepper};
 use liestep_late::{Declaration, LateError, c, latex, rust};
 use nalgebra::{Matrix3, Vector3};
@@ -37,16 +37,6 @@ fn top() -> FullTop {
     let J_d = Matrix3::new(2.0, 0.1, -0.2, 0.1, 2.5, 0.3, -0.2, 0.3, 3.0);
     let J_d = NonstandardInertia::new(J_d).expect("an inertia");
     FullTop { J_d, m: 1.5, g: 9.81, rho: Vector3::new(0.1, -0.2, 0.4), up: Vector3::z() }
-}
-
-struct Parameters(Vec<f64>);
-
-impl SceneVisitor<f64> for Parameters {
-    fn term(&mut self, _: &'static str) {}
-
-    fn parameter(&mut self, _: &'static str, value: f64) {
-        self.0.push(value);
-    }
 }
 
 fn list(numbers: impl IntoIterator<Item = f64>) -> String {
@@ -85,10 +75,8 @@ fn a_step_in_c_has_the_bits_of_the_library() {
     let stepper = Stepper::new(top.clone(), STEP).expect("a stepper");
     let attitude = SO3::exp(Vector3::new(0.3, -0.5, 0.2));
     let mut state = stepper.start(attitude, Vector3::new(0.7, -1.1, 4.0)).expect("a start");
-    let mut parameters = Parameters(Vec::new());
-    top.describe(&mut parameters);
     let given = [
-        list(parameters.0),
+        list(liestep_late::numbers(&top)),
         list(attitude.as_matrix().transpose().iter().copied()),
         list(state.momentum().iter().copied()),
         list(stepper.velocity(&state).iter().copied()),

@@ -1,4 +1,5 @@
-//! A declaration that is read while a program runs, beside the one that is compiled: `cargo bench -p liestep-machine` in `core/python`.
+//! A declaration that is read while a program runs, beside the one that is compiled: `cargo bench -p liestep-machine
+//! --features cranelift`.
 //!
 //! Times of a step in turns within one run, the fastest of all batches, in those of the compiled step; how long it takes from a
 //! text to the first step, and from each text of the repository to its machine code.

@@ -10,6 +10,8 @@
 //!
 //! `lib → called → translated`: `translated` makes the code, and all that is unsafe is in `called`.
 
+#![cfg(feature = "cranelift")]
+
 mod called;
 mod translated;
 

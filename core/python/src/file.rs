@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use liestep::recording::{Column, Sink, SinkError};
-use liestep_scene::{Run, Scene};
+use liestep_scene::{Run, Scene, declaration};
 use pyo3::prelude::*;
 
 use crate::failure::Failure;
@@ -21,6 +21,12 @@ pub(crate) struct FileRun {
     run: Run,
     #[pyo3(get)]
     table: Py<Table>,
+}
+
+/// The text of a body or an effect of the library: what `liestep._library` reads.
+#[pyfunction]
+pub(crate) fn library(name: &str) -> Option<&'static str> {
+    declaration(&name.replace('_', "-"))
 }
 
 /// Columns that listen to Ctrl-C.

@@ -1,6 +1,6 @@
 //! liestep in Python: the part that is written in Rust, and that the package `liestep` is made of.
 //!
-//! `lib → {scene, file, picture, library} → ensemble → {run, method} → {table, failure}`: a text is derived by `liestep-late`; what it
+//! `lib → {scene, file, picture} → ensemble → {run, method} → {table, failure}`: a text is derived by `liestep-late`; what it
 //! declares is stepped by any method, recorded into columns that `NumPy` and Arrow look at where they are, or drawn at random.
 //! Whatever takes long leaves the interpreter to others, and asks it now and then whether it is to stop.
 #![forbid(unsafe_code)]
@@ -8,7 +8,6 @@
 mod ensemble;
 mod failure;
 mod file;
-mod library;
 mod method;
 mod picture;
 mod run;
@@ -183,9 +182,7 @@ mod _native {
     #[pymodule_export]
     use super::{Derived, Scene, Table, View, schemes, share};
     #[pymodule_export]
-    use crate::file::{File, FileRun};
-    #[pymodule_export]
-    use crate::library::library;
+    use crate::file::{File, FileRun, library};
     #[pymodule_export]
     use crate::picture::{page, picture};
 }

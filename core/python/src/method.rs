@@ -85,6 +85,7 @@ impl Method {
     pub(crate) fn of<S: Scene<Scalar = f64, Group: Methods<S>>>(self, scene: S, h: f64) -> Made<S> {
         let setup = |error: SetupError| Failure::setup(&error);
         match self {
+            _ if has_a_pace(&scene) => S::Group::further(scene, h, self),
             Self { kind: Kind::Step, is_compensated: false, substeps: 1 } => {
                 Ok(Stepper::new(scene, h).map_err(setup)?.into_any())
             }
@@ -107,6 +108,10 @@ impl Method {
     }
 }
 
+fn has_a_pace<S: Scene<Scalar = f64>>(scene: &S) -> bool {
+    scene.with_energy(&scene.advected(), 0.0).is_some()
+}
+
 fn refused<T>(message: &str) -> Result<T, Failure> {
     Err(Failure::Of("SetupError", message.to_owned()))
 }
@@ -124,6 +129,14 @@ pub(crate) trait Methods<S: Scene<Scalar = f64, Group = Self>>: LieGroup<Scalar 
 impl<S: Scene<Scalar = f64, Group = Self>> Methods<S> for SO3 {
     fn further(scene: S, h: f64, method: Method) -> Made<S> {
         let setup = |error: SetupError| Failure::setup(&error);
+        if has_a_pace(&scene) {
+            return match method {
+                Method { kind: Kind::Step, is_compensated: false, substeps: 1 } => {
+                    Ok(Stepper::new(scene, h).and_then(Stepper::paced).map_err(setup)?.into_any())
+                }
+                _ => refused("a pace is that of the declared step alone: leave the method out"),
+            };
+        }
         let flow = || Inertia::new(scene.inertia(&scene.advected())).map(|inertia| ExactBody::new(&inertia));
         let flow = flow().map_err(|error| Failure::setup(&error));
         match method.kind {

@@ -112,6 +112,7 @@ where
     };
     let tables = course.events.iter().map(|_| RefCell::new((Recorder::new(stepper, Columns::new(0)), Vec::new())));
     let tables: Vec<_> = tables.collect();
+    let is_varied = stepper.length(&state).is_some();
     let look = course.every.max(1) * LOOK.div_ceil(course.every.max(1));
     let mut observed = Run::new(stepper, &mut state).every(course.every, row).every(look, |_| signals.look());
     if let Some(times) = &course.times {
@@ -124,7 +125,7 @@ where
             recorder.record(now)
         });
     }
-    let made = observed.steps(steps);
+    let made = if is_varied { observed.until(course.until) } else { observed.steps(steps) };
     let end = Moment::of_step(stepper, &state);
     let (steps, time) = (end.steps(), end.time());
     // The last state is a row, but where only some times are asked for.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use liestep::SO3;
 use liestep::accuracy::{Accuracy, Choice};
 use liestep::groups::{
-    Advected, CayleyRetraction, Configuration, Heisenberg, LieGroup, R1, R2, R3, Retraction, SE2, SE3, SL2, SO2, SU2,
+    Advected, CayleyRetraction, Configuration, Given, Heisenberg, LieGroup, R1, R2, R3, Retraction, SE2, SE3, SL2, SO2, SU2,
     SeenFrom,
 };
 use liestep::mechanics::{KineticPart, Scene as Stepped, Sum, WithEitherKinetic, WithoutKinetic};
@@ -112,6 +112,10 @@ where
 
     fn members(&self, method: (Method, f64), start: &Start, draws: Draws, plan: Members) -> Result<Outcome, Failure> {
         let (own, (method, h)) = (self.clone(), method);
+        if own.lagrangian.declaration().energy.is_some() {
+            let message = "members make the same number of steps, and those of a pace end at different times";
+            return Err(Failure::Of("SetupError", message.to_owned()));
+        }
         // The first member says what is wrong with all of them.
         self.run((method, h), start, &Course { until: 0.0, every: 1, times: None, events: Vec::new() })?;
         let drawn = move |own: &Self, draws: &mut dyn FnMut(&str, &mut [f64])| {
@@ -241,6 +245,10 @@ pub(crate) fn scene(
         let message = "nothing moves by a potential alone: add a kinetic energy, as in `ls.body(J) + potential`";
         return Err(Failure::Of("DeclarationError", message.to_owned()));
     }
+    if lagrangian.0.energy.is_some() && force.is_some() {
+        let message = "a pace is that of a Lagrangian alone, and a force has none: leave one of them out";
+        return Err(Failure::Of("SetupError", message.to_owned()));
+    }
     macro_rules! first_that_fits {
         ($($group:ty: $($carried:ty),+;)+) => {$($(
             match fits.to::<$group, $carried>() {
@@ -250,7 +258,7 @@ pub(crate) fn scene(
         )+)+};
     }
     first_that_fits! {
-        SO3: V<3>, (V<3>, V<3>, V<3>, V<3>);
+        SO3: V<3>, (V<3>, V<3>, V<3>, V<3>), (Given<f64>, V<3>, V<3>, V<3>);
         SO2: V<2>;
         SE2: V<3>, Point2<f64>;
         SE3: V<4>, Point3<f64>;

@@ -153,3 +153,21 @@ def test_a_body_with_its_place():
     assert abs(run.energy - run.energy[0]).max() < 1e-2
     place = run.group("g_").reshape(-1, 4, 4)[-1, :3, 3]
     assert abs(place - [1, 0, -9.81 / 2]).max() < 0.2
+
+
+def test_a_pace():
+    gap = "(2.0 + d - 2.0 * {}.dot(rho)).sqrt()"
+    kinetic = "((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)"
+    numbers = {"J_d": [0.6, 1.0, 0.2], "a": [0, 0.6, 0.8], "rho": [0, 0, 1], "d": 0.0025}
+    needle = ls.lagrangian(
+        "SO3", advected={"w": "a"}, pace=gap.format("w"), **numbers,
+        l_d=f"{kinetic} + 0.5 * h * (1.0 / {gap.format('w')} + 1.0 / {gap.format('(F.transpose() * w)')})",
+    )
+    run = needle.stepper(0.01).run(velocity=[0.9, 0.1, 0.15], until=12)
+    steps = np.diff(run["t"])
+    assert 12 <= run["t"][-1] < 12 + steps.max() and steps.max() > 2 * steps.min()
+    assert abs(run["energy"] - run["energy"][0]).max() < 0.02
+    with pytest.raises(ls.SetupError):
+        needle.stepper(0.01, composition="Suzuki 4")
+    with pytest.raises(ls.SetupError):
+        (needle + ls.force("SO3", work="-c * vee(F).dot(eta)", c=0.1)).stepper(0.01)

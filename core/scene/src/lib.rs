@@ -37,6 +37,5 @@ pub use file::scene::{SceneFile, Sweep};
 pub use file::system::System;
 pub use run::course::{MemberEvent, MemberStart};
 pub use run::make::{Happening, Run};
-pub use run::switched::Switched;
-pub use show::derivation::{Form, derivation, derived, written};
+pub use show::derivation::{Form, declaration, derivation, derived, written};
 pub use show::recording::Recording;

@@ -6,7 +6,6 @@
 //! with the continuous equations. Nothing here solves an equation but that of the inverse Legendre transform.
 
 mod continuous;
-mod delegated;
 mod description;
 mod direction;
 mod effect;

@@ -92,6 +92,44 @@ J = { tensor = [[2, 0.1, 0], [0.1, 3, 0], [0, 0, 4]] }
     written("--c", "int liestep_step(const Stepper *stepper, State *state) {");
 }
 
+/// Beside a body and beside a Lagrangian it does the work of the library's; an ensemble draws its parameters.
+#[test]
+fn a_force_of_its_own() {
+    let folder = folder("force");
+    let force = "[force]\nwork = \"h * tau.dot(eta + eta_next) / 2\"\ntau = [0.1, 0.2, \"300 mN m\"]\n";
+    let torque = rows(&folder, &format!("{BY_EFFECTS}[torque]\ntorque = [0.1, 0.2, 0.3]\n{RUN}"));
+    for own in [BY_EFFECTS, TOP] {
+        let rows = rows(&folder, &format!("{own}{force}{RUN}"));
+        let error = |(a, b): (&f64, &f64)| (a - b).abs();
+        let worst = rows.iter().flatten().zip(torque.iter().flatten()).map(error).fold(0.0, f64::max);
+        assert!(rows.len() == 201 && worst < 1e-11, "{worst:e}");
+    }
+    let drawn = "[ensemble]\nmembers = 4\ndraw.force.tau = [0, 0, { from = 0, to = 1 }]\n";
+    fs::write(folder.join("drawn.toml"), format!("{BY_EFFECTS}{force}{RUN}{drawn}")).unwrap();
+    assert!(printed(&folder, &["ensemble", "drawn.toml", "--out", "."]).contains('4'));
+    // A step of all terms is one text.
+    let c = printed(&folder, &["derive", "drawn.toml", "--c"]);
+    assert!(c.starts_with("/* A step of PrincipalBody + Gravity + Force on SO(3)."), "{c}");
+    assert!(printed(&folder, &["derive", "drawn.toml"]).contains("gravity\n"));
+    let accuracy = format!("{BY_EFFECTS}{force}{RUN}").replace("step = \"10 ms\"", "accuracy = 1e-6");
+    assert!(refused(&folder, &accuracy).contains("`force` does work, so give a `step`"));
+}
+
+/// Steps of a transformed time: rows have the time itself, and the energy stays.
+#[test]
+fn it_has_a_pace() {
+    let folder = folder("lagrangian-pace");
+    let paced = TOP.replace("advected =", "pace = \"1.0 / (1.0 + w.dot(&rho).powi(2))\"\nadvected =");
+    let rows = rows(&folder, &(paced.clone() + RUN));
+    let end = &rows[rows.len() - 1];
+    let lengths = rows.windows(2).map(|pair| pair[1][0] - pair[0][0]);
+    let [least, most] = lengths.fold([1.0, 0.0], |[least, most], h| [f64::min(least, h), f64::max(most, h)]);
+    assert!(end[0] >= 2.0 && end[0] < 2.0 + most && most > 1.01 * least && most < 0.01, "{least} {most} {}", end[0]);
+    assert!((end[7] - rows[0][7]).abs() < 1e-3 * rows[0][7].abs(), "{end:?}");
+    let composed = paced + &RUN.replace("step =", "method = { composition = \"Suzuki 4\" }\nstep =");
+    assert!(refused(&folder, &composed).contains("a pace is that of the Lagrangian's own step"));
+}
+
 #[test]
 fn mistakes_have_places() {
     let folder = folder("lagrangian-mistakes");

@@ -213,6 +213,25 @@ fn all_commands_have_orbits() {
     }
 }
 
+/// Steps with `dt ∝ r^{3/2}` end with the second round, and are of second order in their number.
+#[test]
+fn steps_follow_an_orbit() {
+    let folder = folder("steps_follow_an_orbit");
+    let start = "euler = [0.9, 0, 0]\nvelocity = [0, 0, 1e-3]";
+    let text = satellite(GRADIENT, [0.0, 0.0, 1.0], 0.7, start, 1).replace("250, 300", "105, 110");
+    let text = text.replace("duration = 7800", "duration = 12000");
+    let end = |steps: &str| {
+        let rows = rows(&folder, &text.replace("step = 7800.0", steps));
+        let end = &rows[rows.len() - 1];
+        assert!((end[0] - 12_000.0).abs() < 1e-8, "{}", end[0]);
+        2.0 * end[4].atan2(end[1])
+    };
+    let fine = end("step = 0.5");
+    let [coarse, short] =
+        ["steps_per_orbit = 400", "steps_per_orbit = 800"].map(|steps| (0.5 * (end(steps) - fine)).sin().abs());
+    assert!(short < 1e-3 && (3.8..4.2).contains(&(coarse / short)), "{coarse:e} {short:e}");
+}
+
 #[test]
 fn mistakes_in_orbits_have_places() {
     let folder = folder("mistakes_in_orbits_have_places");

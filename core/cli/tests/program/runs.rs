@@ -168,17 +168,17 @@ fn a_file_may_have_every_effect() {
 
     let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
     let J = NonstandardInertia::from(J_d).to_inertia();
-    let scene = PrincipalBody { J_d }
-        + Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() }
+    // Effects are added in the order of the list, and then to the body.
+    let effects = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() }
         + GravityGradient { GM: 2.0, r: 3.0, J, direction: Vector3::x() }
         + Dipole { moment: Vector3::new(0.0, 0.1, 1.0), field: Vector3::new(0.2, 0.0, 1.0) }
         + Spring { k: 3.0, length: 0.5, at: Vector3::z(), anchor: Vector3::new(1.0, 0.3, 0.5) }
         + Rotor { spin: Vector3::new(0.0, 0.4, 1.0) }
         + Drag { c: 1e-3, J }
-        + MagneticDamping { k: 0.1, field: Vector3::new(0.0, 0.5, 1.0), J }
         + Torque { torque: Vector3::new(0.1, 0.2, -0.1) }
-        + Thrust { at: Vector3::new(0.3, 0.0, 1.0), thrust: Vector3::new(0.0, 0.2, 0.1) };
-    let stepper = Stepper::new(scene, 10.0 * 1e-3).unwrap();
+        + Thrust { at: Vector3::new(0.3, 0.0, 1.0), thrust: Vector3::new(0.0, 0.2, 0.1) }
+        + MagneticDamping { k: 0.1, field: Vector3::new(0.0, 0.5, 1.0), J };
+    let stepper = Stepper::new(PrincipalBody { J_d } + effects, 10.0 * 1e-3).unwrap();
     let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 45.0 * (PI / 180.0));
     let mut state = stepper.start(tilt, Vector3::new(0.0, 0.0, 60.0 * (6.0 * (PI / 180.0)))).unwrap();
     for _ in 0..200 {

@@ -107,6 +107,8 @@ class Term:
         """The declaration as Rust has it."""
         advected = "".join(f"{name} = {source}, " for name, source in self.advected.items())
         carried = f"advected({advected.rstrip(', ')}), " if advected else ""
+        if self.head.startswith("pace = "):
+            carried = "given(E_0 = E_0_of_the_start), " + carried
         fields = ", ".join(f"{name}: {kind}" for name, (kind, _) in self.numbers.items())
         return f"#[{self.role}({self.group}, {carried}{self.head} =\n{self.text}\n)]\nstruct Declared {{ {fields} }}"
 
@@ -267,6 +269,7 @@ def lagrangian(
     l: str | None = None,  # noqa: E741
     discretise: str | None = None,
     velocity: str = "Omega",
+    pace: str | None = None,
     **parameters: Any,
 ) -> Term:
     """A Lagrangian from its text: derived, and proved, in milliseconds.
@@ -283,6 +286,9 @@ def lagrangian(
         the continuous Lagrangian, and how it is discretised: ``"trapezoid(Cayley)"``.
     velocity : str
         What the velocity is called in `l`; of several bodies names with commas.
+    pace : str, optional
+        On SO(3) the pace ``s`` of a transformed time, ``dt = s dτ``, a function of what is advected, three vectors at most:
+        the step is one of ``τ``, and runs are in seconds.
     **parameters
         Numbers, vectors, square matrices and points (`liestep.point`) by their names. Names that begin with ``J`` are inertias, kg m², given by a
         matrix or by three moments; those that end in ``_d`` nonstandard ones.
@@ -315,6 +321,9 @@ def lagrangian(
         names = [name.strip() for name in velocity.split(",")]
         named = f"velocity = {names[0]}" if len(names) == 1 else f"velocity({', '.join(names)})"
         head, text = f"{named}, discretise = {discretise}, l", l
+    if pace is not None:
+        head = f"pace = {{ {pace} }}, {head}"
+        numbers["E_0_of_the_start"] = ("f64", (0.0,))
     term = Term(_group(group), "lagrangian", head, text, dict(advected or {}), numbers)
     term._derived()
     return term

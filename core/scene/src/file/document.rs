@@ -2,24 +2,26 @@
 
 use std::path::Path;
 
+use liestep_derivation::Role;
 use serde::Deserialize as _;
 use toml::de::Deserializer;
 
 use crate::file::body::Kinetic;
 use crate::file::column::Column;
 use crate::file::effects::Table as _;
-use crate::file::lagrangian;
+use crate::file::lagrangian::take;
 use crate::file::method::{Method, Scheme as _};
 use crate::file::mistake::{Mistake, Wrong, place_of};
 use crate::file::scene::{Origin, Places, SceneFile};
-use crate::file::schedule::{Pace, fraction};
+use crate::file::schedule::{Pace, equal_steps, fraction};
 use crate::file::tables::{Document, span};
 
 /// The scene of a document without a sweep and an ensemble.
 pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<SceneFile, Mistake> {
     let located = |(span, message): Wrong| Mistake::at(path, place_of(text, &span), message);
     let mut rest = document.clone();
-    let lagrangian = lagrangian::take(&mut rest).map_err(located)?;
+    let lagrangian = take(&mut rest, Role::Lagrangian).map_err(located)?;
+    let force = take(&mut rest, Role::Force).map_err(located)?;
     if let Some(name) = named_method(&rest) {
         return Err(located((span(document, &["run", "method"]), format!("`{name}` {METHODS}"))));
     }
@@ -28,12 +30,22 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     if file.body.is_none() && lagrangian.is_none() {
         return Err(located((document.span(), "missing field `body`".to_owned())));
     }
-    file.lagrangian = lagrangian;
+    (file.lagrangian, file.force) = (lagrangian, force);
+    if let Some(steps) = file.run.steps_per_orbit {
+        let wrong = |message: String| located((span(document, &["run", "steps_per_orbit"]), message));
+        if has(document, "run", "step") || has(document, "run", "accuracy") {
+            return Err(wrong("`steps_per_orbit` stands in the place of a `step` or an `accuracy`".to_owned()));
+        }
+        let orbit = file.orbit().ok_or_else(|| wrong("no effect of the file follows an `orbit`".to_owned()))?;
+        let (_, step) = orbit.clock(steps).map_err(|error| wrong(error.to_string()))?;
+        file.run.pace = Pace::Step { step, steps: equal_steps(step, file.run.duration).map_err(wrong)? };
+    }
     at_odds(document, &file).map_or(Ok(()), Err).map_err(located)?;
     let default = ["velocity", "spatial-momentum", "energy", "axis", "quaternion"];
     file.columns = file.output.columns(&Column::OF_ONE_BODY, &default).map_err(located)?;
     let at = |keys: &[&str]| place_of(text, &span(document, keys));
-    let pace = if matches!(file.run.pace, Pace::Accuracy(_)) { "accuracy" } else { "step" };
+    let keys = ["accuracy", "steps_per_orbit"];
+    let pace = keys.into_iter().find(|key| has(document, "run", key)).unwrap_or("step");
     let body = if file.lagrangian.is_some() { "lagrangian" } else { "body" };
     let places =
         Places { body: at(&[body]), start: at(&["start"]), pace: at(&["run", pace]), method: at(&["run", "method"]) };
@@ -68,12 +80,13 @@ fn of_pace(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
         return wrong(&["run", "accuracy"], "a run has either a `step` or an `accuracy`".to_owned());
     }
     if let Pace::Step { step, .. } = file.run.pace
+        && !file.has_steps_of_its_own()
         && let Some(message) = fraction(step, file.run.duration)
     {
         return wrong(&["run", "duration"], message);
     }
     if let Pace::Accuracy(_) = file.run.pace {
-        if let Some(force) = file.force() {
+        if let Some(force) = file.first_force() {
             let message =
                 format!("an accuracy can be asked for in conservative scenes; {force} does work, so give a `step`");
             return wrong(&["run", "accuracy"], message);
@@ -130,7 +143,7 @@ fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
     let wrong = |keys: &[&str], message: String| Some((span(document, keys), message));
     let method = &file.run.method;
     if let Some(lagrangian) = &file.lagrangian {
-        if let Some(effect) = file.effects().next() {
+        if let Some((effect, _)) = file.effects().next() {
             let message = format!("a `lagrangian` has all its terms in its text: write {} there", effect.name(" "));
             return wrong(&[effect.key], message);
         }
@@ -138,17 +151,25 @@ fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
             let message = "an accuracy chooses a method for the library's bodies; give a `step` to a `lagrangian`";
             return wrong(&["run", "accuracy"], message.to_owned());
         }
+        if lagrangian.has_a_pace && file.force.is_some() {
+            let message = "a pace is that of the whole motion, and a force has another time: leave one of both out";
+            return wrong(&["force"], message.to_owned());
+        }
+        if lagrangian.has_a_pace && !matches!(method, Method::Step) {
+            let message = "a pace is that of the Lagrangian's own step: leave `method` out";
+            return wrong(&["run", "method"], message.to_owned());
+        }
         if !matches!(method, Method::Step | Method::Composition(_)) {
             let message = format!("{} moves a body of the library; leave it out", method.name());
             return wrong(&["run", "method"], message);
         }
-        if matches!(method, Method::Composition(_)) && !lagrangian.declaration().is_self_adjoint {
+        if matches!(method, Method::Composition(_)) && !lagrangian.declaration.is_self_adjoint {
             let message = "only steps that undo those of −h can be composed, and those of this Lagrangian don't";
             return wrong(&["run", "method"], message.to_owned());
         }
     }
     if !matches!(method, Method::Step)
-        && let Some(force) = file.force()
+        && let Some(force) = file.first_force()
     {
         let name = method.name();
         return wrong(&["run", "method"], format!("{name} needs a conservative scene; {force} does work"));

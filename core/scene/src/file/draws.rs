@@ -82,7 +82,7 @@ pub(crate) const DRAW: &str = "a value is drawn by `{ from = …, to = … }`, e
 const PARTS: &str = "`ensemble` has `members`, may have `seed`, `every` and `chunk`, and says in `draw` what is drawn";
 /// The tables of which something may be drawn.
 fn drawable() -> impl Iterator<Item = &'static str> {
-    ["body", "lagrangian"].into_iter().chain(EFFECTS.iter().map(|effect| effect.key)).chain(["start"])
+    ["body", "lagrangian", "force"].into_iter().chain(EFFECTS.iter().map(|effect| effect.key)).chain(["start"])
 }
 
 impl SceneEnsemble {

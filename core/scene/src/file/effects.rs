@@ -2,9 +2,10 @@
 
 use liestep::effects::{Dipole, Drag, Gravity, GravityGradient, MagneticDamping, Rotor, Spring, Thrust, Torque};
 use liestep::mechanics::{Effect, Inertia};
+use liestep_late::numbers;
 use serde::Deserialize;
 
-use crate::file::orbit::{OnOrbit, Parameter as _, Turning, TurningDirection, TurningField};
+use crate::file::orbit::{OnOrbit, Orbit, Parameter as _, Turning, TurningDirection, TurningField};
 use crate::file::quantity;
 use crate::file::quantity::{
     Acceleration, Damping, Direction, Force, GravitationalParameter, Length, MagneticGain, MagneticMoment, Mass,
@@ -13,88 +14,68 @@ use crate::file::quantity::{
 
 /// An effect by its parameters in a file.
 pub(crate) trait Table {
-    type Effect;
+    /// The numbers of the effect on the body with this inertia, with what it is at a time, s.
+    fn numbers(&self, J: &Inertia, time: f64) -> Vec<f64>;
 
-    /// The effect on the body with this inertia, with what it is at a time, s.
-    fn effect(&self, J: &Inertia, time: f64) -> Self::Effect;
+    /// Along which orbit it is another at each time.
+    fn orbit(&self) -> Option<&Orbit>;
 
     /// Whether it is another at each time.
-    fn turns(&self) -> bool;
+    fn turns(&self) -> bool {
+        self.orbit().is_some()
+    }
 }
 
 /// Shows the list to a macro, behind what that is given: of each effect the table in a file, its keys, and how these make
 /// the effect.
-///
-/// Potentials, shifts of the momentum and forces stand apart, as the sums of a scene do. A force on the last line makes
-/// the equation of a step one of a higher degree.
 macro_rules! effects {
     ($then:ident $($given:tt)*) => {
         $then! {
             { $($given)* }
-            potentials {
-                gravity: GravityTable { m: Positive<Mass>, g: Scalar<Acceleration>, rho: Triple<Length>, up: Direction }
-                    => |_, _, p| -> Gravity {
-                        Gravity { m: p.m.value, g: p.g.value, rho: p.rho.value, up: p.up.0 }
-                    }
-                gravity_gradient: GravityGradientTable {
-                    GM: Option<Positive<GravitationalParameter>>, r: Option<Positive<Length>>, direction: TurningDirection
+            gravity: GravityTable { m: Positive<Mass>, g: Scalar<Acceleration>, rho: Triple<Length>, up: Direction }
+                => |_, _, p| -> Gravity {
+                    Gravity { m: p.m.value, g: p.g.value, rho: p.rho.value, up: p.up.0 }
                 }
-                    => |J, t, p| -> GravityGradient {
-                        let (GM, r) = match (p.direction, p.GM, p.r) {
-                            (Turning::Fixed(_), Some(GM), Some(r)) => (GM.value, r.value),
-                            // Kepler's third law.
-                            (Turning::Turns(OnOrbit { orbit }), ..) => (orbit.rate() * orbit.rate(), 1.0),
-                            // A file without them is refused.
-                            _ => (f64::NAN, f64::NAN),
-                        };
-                        GravityGradient { GM, r, J: *J, direction: p.direction.at(t) }
-                    }
-                dipole: DipoleTable { moment: Triple<MagneticMoment>, field: TurningField }
-                    => |_, t, p| -> Dipole { Dipole { moment: p.moment.value, field: p.field.at(t) } }
-                spring: SpringTable {
-                    k: Positive<Stiffness>, length: Scalar<Length>, at: Triple<Length>, anchor: Triple<Length>
+            gravity_gradient: GravityGradientTable {
+                GM: Option<Positive<GravitationalParameter>>, r: Option<Positive<Length>>, direction: TurningDirection
+            }
+                => |J, t, p| -> GravityGradient {
+                    let (GM, r) = match (p.direction, p.GM, p.r) {
+                        (Turning::Fixed(_), Some(GM), Some(r)) => (GM.value, r.value),
+                        // Kepler's third law.
+                        (Turning::Turns(OnOrbit { orbit }), ..) => (orbit.rate() * orbit.rate(), 1.0),
+                        // A file without them is refused.
+                        _ => (f64::NAN, f64::NAN),
+                    };
+                    GravityGradient { GM, r, J: *J, direction: p.direction.at(t) }
                 }
-                    => |_, _, p| -> Spring {
-                        Spring { k: p.k.value, length: p.length.value, at: p.at.value, anchor: p.anchor.value }
-                    }
+            dipole: DipoleTable { moment: Triple<MagneticMoment>, field: TurningField }
+                => |_, t, p| -> Dipole { Dipole { moment: p.moment.value, field: p.field.at(t) } }
+            spring: SpringTable {
+                k: Positive<Stiffness>, length: Scalar<Length>, at: Triple<Length>, anchor: Triple<Length>
             }
-            shifts {
-                rotor: RotorTable { spin: Triple<Momentum> } => |_, _, p| -> Rotor { Rotor { spin: p.spin.value } }
-            }
-            forces {
-                drag: DragTable { c: Positive<Damping> } => |J, _, p| -> Drag { Drag { c: p.c.value, J: *J } }
-                torque: TorqueTable { torque: Triple<quantity::Torque> }
-                    => |_, _, p| -> Torque { Torque { torque: p.torque.value } }
-                thrust: ThrustTable { at: Triple<Length>, thrust: Triple<Force> }
-                    => |_, _, p| -> Thrust { Thrust { at: p.at.value, thrust: p.thrust.value } }
-            }
-            steep_forces {
-                magnetic_damping: MagneticDampingTable { k: Positive<MagneticGain>, field: TurningField }
-                    => |J, t, p| -> MagneticDamping {
-                        MagneticDamping { k: p.k.value, field: p.field.at(t), J: *J }
-                    }
-            }
+                => |_, _, p| -> Spring {
+                    Spring { k: p.k.value, length: p.length.value, at: p.at.value, anchor: p.anchor.value }
+                }
+            rotor: RotorTable { spin: Triple<Momentum> } => |_, _, p| -> Rotor { Rotor { spin: p.spin.value } }
+            drag: DragTable { c: Positive<Damping> } => |J, _, p| -> Drag { Drag { c: p.c.value, J: *J } }
+            torque: TorqueTable { torque: Triple<quantity::Torque> }
+                => |_, _, p| -> Torque { Torque { torque: p.torque.value } }
+            thrust: ThrustTable { at: Triple<Length>, thrust: Triple<Force> }
+                => |_, _, p| -> Thrust { Thrust { at: p.at.value, thrust: p.thrust.value } }
+            magnetic_damping: MagneticDampingTable { k: Positive<MagneticGain>, field: TurningField }
+                => |J, t, p| -> MagneticDamping {
+                    MagneticDamping { k: p.k.value, field: p.field.at(t), J: *J }
+                }
         }
     };
 }
 pub(crate) use effects;
 
-/// What an effect adds to a scene, in the order of the sums.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Share {
-    Potential,
-    Shift,
-    /// It does work.
-    Force,
-    /// It does work, and raises the degree of the equation.
-    SteepForce,
-}
-
 /// What is known of an effect without a file.
 pub(crate) struct Listed {
     /// Its table in a file.
     pub(crate) key: &'static str,
-    pub(crate) share: Share,
     /// What is derived of it, and its own text.
     pub(crate) derived: (&'static str, &'static str),
 }
@@ -104,14 +85,19 @@ impl Listed {
     pub(crate) fn name(&self, between: &str) -> String {
         self.key.replace('_', between)
     }
+
+    /// Whether it is a force, and no Lagrangian.
+    pub(crate) fn does_work(&self) -> bool {
+        self.derived.1.starts_with("#[force")
+    }
 }
 
 macro_rules! tables {
-    ({} $($share:ident { $(
+    ({} $(
         $name:ident: $table:ident { $($field:ident: $type:ty),+ }
             => |$J:pat_param, $t:pat_param, $parameters:ident| -> $effect:ty $value:block
-    )+ })+) => {
-        $($(
+    )+) => {
+        $(
             #[derive(Clone, Copy, Deserialize)]
             #[serde(deny_unknown_fields)]
             pub(crate) struct $table {
@@ -119,30 +105,24 @@ macro_rules! tables {
             }
 
             impl Table for $table {
-                type Effect = $effect;
-
-                fn effect(&self, $J: &Inertia, $t: f64) -> $effect {
+                fn numbers(&self, $J: &Inertia, $t: f64) -> Vec<f64> {
                     let $parameters = self;
-                    $value
+                    let effect: $effect = $value;
+                    numbers(&effect)
                 }
 
-                fn turns(&self) -> bool {
-                    $(self.$field.turns())||+
+                fn orbit(&self) -> Option<&Orbit> {
+                    [$(self.$field.orbit()),+].into_iter().flatten().next()
                 }
             }
-        )+)+
+        )+
 
         /// All of them, in the order of the list.
-        pub(crate) const EFFECTS: &[Listed] = &[$($(Listed {
+        pub(crate) const EFFECTS: &[Listed] = &[$(Listed {
             key: stringify!($name),
-            share: tables!(share $share),
             derived: (<$effect as Effect>::DERIVATION, <$effect as Effect>::DECLARATION),
-        }),+),+];
+        }),+];
     };
-    (share potentials) => { Share::Potential };
-    (share shifts) => { Share::Shift };
-    (share forces) => { Share::Force };
-    (share steep_forces) => { Share::SteepForce };
 }
 
 effects!(tables);

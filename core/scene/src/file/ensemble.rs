@@ -71,6 +71,11 @@ pub(crate) fn read(
     if file.asks_for_accuracy() {
         return wrong(&["run", "accuracy"], "the members of an ensemble make the same steps: give a `step`".to_owned());
     }
+    if file.lagrangian.as_ref().is_some_and(|own| own.has_a_pace) {
+        let message =
+            "members make the same number of steps, and those of a `pace` end at different times: leave it out";
+        return wrong(&["lagrangian", "pace"], message.to_owned());
+    }
     if let Some(column) = file.columns().iter().find(|column| column.is_since_the_start()) {
         let names = column.names().join(", ");
         return wrong(

@@ -1,10 +1,12 @@
-//! The table of a Lagrangian of one's own: its text, derived, with the numbers of its parameters.
+//! The table of a Lagrangian or a force of one's own: its text, derived, with the numbers of its parameters.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 use liestep::SO3;
-use liestep::mechanics::{Effect as _, Inertia, Term as _, WithExpensiveKinetic, WithKinetic};
+use liestep::groups::Given;
+use liestep::mechanics::{Effect as _, Inertia, KineticPart, Term as _, WithEitherKinetic, WithoutKinetic};
+use liestep_derivation::Role;
 use liestep_late::{Declaration, Late, LateError};
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Deserializer};
@@ -16,35 +18,53 @@ use crate::file::mistake::{Wrong, advised};
 use crate::file::quantity::{Any, Scalar};
 use crate::file::tables::Document;
 
-/// What is advected; where it is less, the others are zero.
+/// Programs are machine code where the feature asks for it, and else interpreted: the bits are the same.
+#[cfg(feature = "machine")]
+pub(crate) type Backend = liestep_machine::Machine;
+#[cfg(not(feature = "machine"))]
+pub(crate) type Backend = liestep_late::Interpreted;
+
+/// What a Lagrangian advects; where it is less, the others are zero.
 type Seen = (Vector3<f64>, Vector3<f64>, Vector3<f64>, Vector3<f64>);
 
-/// A Lagrangian on SO(3), by the kind of its kinetic part.
+/// The energy of a motion with a pace, and three of them.
+type SeenWithEnergy = (Given<f64>, Vector3<f64>, Vector3<f64>, Vector3<f64>);
+
+/// A Lagrangian or a force on SO(3), with the numbers of its parameters.
 #[derive(Clone)]
-pub(crate) enum Lagrangian {
-    Usual(Late<SO3, Seen, WithKinetic>),
-    Expensive(Late<SO3, Seen, WithExpensiveKinetic>),
+pub(crate) struct Declared {
+    pub(crate) declaration: &'static Declaration,
+    pub(crate) numbers: Vec<f64>,
+    pub(crate) has_a_pace: bool,
 }
 
-impl Lagrangian {
-    pub(crate) fn declaration(&self) -> &'static Declaration {
-        match self {
-            Self::Usual(late) => late.declaration(),
-            Self::Expensive(late) => late.declaration(),
-        }
+impl Declared {
+    /// As an effect with this kinetic part.
+    pub(crate) fn late<K: KineticPart>(&self) -> Result<Late<SO3, Seen, K, Backend>, LateError> {
+        Late::of(self.declaration)?.with_all(&self.numbers)
+    }
+
+    /// With the energy of its motion.
+    pub(crate) fn paced(&self) -> Result<Late<SO3, SeenWithEnergy, WithEitherKinetic, Backend>, LateError> {
+        Late::of(self.declaration)?.with_all(&self.numbers)
     }
 
     /// The inertia of the limit where the body is not turned.
-    pub(crate) fn inertia(&self) -> Matrix3<f64> {
-        match self {
-            Self::Usual(late) => late.inertia(&late.advected()),
-            Self::Expensive(late) => late.inertia(&late.advected()),
+    pub(crate) fn inertia(&self) -> Option<Matrix3<f64>> {
+        if self.has_a_pace {
+            return self.paced().ok().map(|late| late.inertia(&late.advected()));
         }
+        self.late::<WithEitherKinetic>().ok().map(|late| late.inertia(&late.advected()))
     }
 }
 
-const KEYS: &str = "a Lagrangian has `l_d`, or `l` with `discretise`; it may have `advected`, as in \
+const KEYS: &str = "a Lagrangian has `l_d`, or `l` with `discretise`; it may have a `pace`, `advected`, as in \
                     `advected = { w = \"up\" }`, and has a key for each parameter";
+const KEYS_OF_FORCES: &str = "a force has `work`; it may have `advected`, as in `advected = { w = \"up\" }`, and has a \
+                              key for each parameter";
+
+/// The field of the energy of a motion with a pace.
+const ENERGY: &str = "E_0_of_the_start";
 
 /// A parameter: its type in the declaration, and its numbers.
 struct Parameter {
@@ -55,23 +75,27 @@ struct Parameter {
 
 /// By then the table has been taken: the key is there for the message that lists all keys.
 #[allow(clippy::unnecessary_wraps)] // serde asks for it
-pub(crate) fn taken<'de, D: Deserializer<'de>>(_: D) -> Result<Option<Lagrangian>, D::Error> {
+pub(crate) fn taken<'de, D: Deserializer<'de>>(_: D) -> Result<Option<Declared>, D::Error> {
     Ok(None)
 }
 
-/// Takes the table out of a document, if there is one.
-pub(crate) fn take(document: &mut Document<'_>) -> Result<Option<Lagrangian>, Wrong> {
-    let Some((key, table)) = document.get_mut().remove_entry("lagrangian") else { return Ok(None) };
+/// Takes the table of a Lagrangian or a force out of a document, if there is one.
+pub(crate) fn take(document: &mut Document<'_>, role: Role) -> Result<Option<Declared>, Wrong> {
+    let name = if role == Role::Force { "force" } else { "lagrangian" };
+    let Some((key, table)) = document.get_mut().remove_entry(name) else { return Ok(None) };
     let DeValue::Table(table) = table.get_ref() else {
-        return Err((key.span(), "`lagrangian` is a table".to_owned()));
+        return Err((key.span(), format!("`{name}` is a table")));
     };
-    if let Some((other, _)) = document.get_ref().get_key_value("body") {
+    if let Some((other, _)) = document.get_ref().get_key_value("body").filter(|_| role == Role::Lagrangian) {
         return Err((other.span(), "a `lagrangian` has its kinetic energy itself: leave `body` out".to_owned()));
     }
-    read(table, &key.span()).map(Some)
+    read(table, &key.span(), role).map(Some)
 }
 
-fn read(table: &DeTable<'_>, place: &Range<usize>) -> Result<Lagrangian, Wrong> {
+/// What stands before the expression and before what is advected, the expression, and its place.
+type Expression = ([String; 2], (String, Range<usize>));
+
+fn expression(table: &DeTable<'_>, place: &Range<usize>, role: Role) -> Result<Expression, Wrong> {
     let text = |key: &str| match table.get(key) {
         Some(value) => match value.get_ref() {
             DeValue::String(text) => Ok(Some((text.to_string(), value.span()))),
@@ -79,28 +103,46 @@ fn read(table: &DeTable<'_>, place: &Range<usize>) -> Result<Lagrangian, Wrong> 
         },
         None => Ok(None),
     };
-    let [group, l_d, l] = ["group", "l_d", "l"].map(text);
-    let [velocity, discretise] = ["velocity", "discretise"].map(text);
-    if let Some((group, span)) = group?
+    if let Some((group, span)) = text("group")?
         && group != "SO3"
     {
         return Err((span, "a file's Lagrangian is on `SO3`; on other groups it is declared in a program".to_owned()));
     }
-    let (head, (expression, at)) = match (l_d?, l?, discretise?) {
-        (Some(l_d), None, None) => ("l_d".to_owned(), l_d),
+    if role == Role::Force {
+        let work = text("work")?.ok_or_else(|| (place.clone(), KEYS_OF_FORCES.to_owned()))?;
+        return Ok((["work".to_owned(), String::new()], work));
+    }
+    let [l_d, l, velocity, discretise, pace] = ["l_d", "l", "velocity", "discretise", "pace"].map(text);
+    // The energy is first, so that the vectors behind it may be as many as there are.
+    let pace = pace?.map(|(pace, _)| format!("given(E_0 = {ENERGY}), pace = {{ {pace} }}, ")).unwrap_or_default();
+    match (l_d?, l?, discretise?) {
+        (Some(l_d), None, None) => Ok((["l_d".to_owned(), pace], l_d)),
         (None, Some(l), Some((discretise, _))) => {
             let velocity = velocity?.map_or_else(|| "Omega".to_owned(), |(name, _)| name);
-            (format!("velocity = {velocity}, discretise = {discretise}, l"), l)
+            Ok(([format!("velocity = {velocity}, discretise = {discretise}, l"), pace], l))
         }
-        _ => return Err((place.clone(), KEYS.to_owned())),
-    };
+        _ => Err((place.clone(), KEYS.to_owned())),
+    }
+}
+
+fn read(table: &DeTable<'_>, place: &Range<usize>, role: Role) -> Result<Declared, Wrong> {
+    let ([head, pace], (expression, at)) = expression(table, place, role)?;
     let advected = advected(table)?;
-    let known = ["group", "l_d", "l", "velocity", "discretise", "advected"];
+    let known: &[&str] = match role {
+        Role::Force => &["group", "work", "advected"],
+        _ => &["group", "l_d", "l", "velocity", "discretise", "pace", "advected"],
+    };
     let parameters = table.iter().filter(|(key, _)| !known.contains(&key.get_ref().as_ref()));
-    let parameters = parameters.map(|(key, value)| parameter(key.get_ref(), value)).collect::<Result<Vec<_>, _>>()?;
+    let mut parameters =
+        parameters.map(|(key, value)| parameter(key.get_ref(), value)).collect::<Result<Vec<_>, _>>()?;
+    let has_a_pace = !pace.is_empty();
+    if has_a_pace {
+        parameters.push(Parameter { name: ENERGY.to_owned(), kind: "f64", numbers: vec![0.0] });
+    }
     let fields: Vec<String> = parameters.iter().map(|one| format!("{}: {}", one.name, one.kind)).collect();
+    let (attribute, name) = if role == Role::Force { ("force", "Force") } else { ("lagrangian", "Lagrangian") };
     let declared = format!(
-        "#[lagrangian(group = SO3, {advected}{head} =\n{expression}\n)]\nstruct Lagrangian {{ {} }}",
+        "#[{attribute}(group = SO3, {pace}{advected}{head} =\n{expression}\n)]\nstruct {name} {{ {} }}",
         fields.join(", ")
     );
     let wrong = |error: LateError| {
@@ -113,21 +155,14 @@ fn read(table: &DeTable<'_>, place: &Range<usize>) -> Result<Lagrangian, Wrong> 
         (span.unwrap_or_else(|| elsewhere.clone()), first.message)
     };
     let declaration = Declaration::parse(&declared).map_err(wrong)?;
-    let with = |name: &str, error: LateError| {
-        (table.get(name).map_or_else(|| place.clone(), Spanned::span), error.to_string())
+    let numbers = parameters.into_iter().flat_map(|one| one.numbers).collect();
+    let declared = Declared { declaration, numbers, has_a_pace };
+    let fits = match role {
+        Role::Force => declared.late::<WithoutKinetic>().map(|_| ()),
+        _ if has_a_pace => declared.paced().map(|_| ()),
+        _ => declared.late::<WithEitherKinetic>().map(|_| ()),
     };
-    macro_rules! numbered {
-        ($late:expr) => {
-            parameters.iter().try_fold($late.map_err(wrong)?, |late, one| {
-                late.with(&one.name, &one.numbers).map_err(|error| with(&one.name, error))
-            })?
-        };
-    }
-    Ok(if declaration.is_expensive {
-        Lagrangian::Expensive(numbered!(Late::of(declaration)))
-    } else {
-        Lagrangian::Usual(numbered!(Late::of(declaration)))
-    })
+    fits.map_err(wrong).map(|()| declared)
 }
 
 /// `advected(w = up), `, if something is.

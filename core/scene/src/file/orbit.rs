@@ -3,7 +3,10 @@
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 use std::marker::PhantomData;
+use std::num::NonZeroU32;
 
+use liestep::SetupError;
+use liestep::with::Clock;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
@@ -57,6 +60,12 @@ impl TryFrom<OrbitTable> for Orbit {
 }
 
 impl Orbit {
+    /// The steps along it, so many a round, and their mean, s.
+    pub(crate) fn clock(&self, steps: NonZeroU32) -> Result<(Clock, f64), SetupError> {
+        let clock = Clock::orbit_from(self.phase, self.eccentricity, self.period, steps.get())?;
+        Ok((clock, self.period / f64::from(steps.get())))
+    }
+
     /// The mean motion `2π/T`, rad/s.
     pub(crate) fn rate(&self) -> f64 {
         TAU / self.period
@@ -145,10 +154,10 @@ impl Turning<Triple<FluxDensity>, DipoleField> {
     }
 }
 
-/// A parameter of an effect, of which it is asked whether it is another at each time.
+/// A parameter of an effect, of which it is asked along which orbit it is another at each time.
 pub(crate) trait Parameter {
-    fn turns(&self) -> bool {
-        false
+    fn orbit(&self) -> Option<&Orbit> {
+        None
     }
 }
 
@@ -158,9 +167,15 @@ impl<Q> Parameter for Triple<Q> {}
 impl<Q> Parameter for Option<Q> {}
 impl Parameter for Direction {}
 
-impl<F, T> Parameter for Turning<F, T> {
-    fn turns(&self) -> bool {
-        matches!(self, Self::Turns(_))
+impl Parameter for TurningDirection {
+    fn orbit(&self) -> Option<&Orbit> {
+        if let Self::Turns(OnOrbit { orbit }) = self { Some(orbit) } else { None }
+    }
+}
+
+impl Parameter for TurningField {
+    fn orbit(&self) -> Option<&Orbit> {
+        if let Self::Turns(DipoleField { orbit, .. }) = self { Some(orbit) } else { None }
     }
 }
 

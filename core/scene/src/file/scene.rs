@@ -9,9 +9,10 @@ use serde::Deserialize;
 use crate::file::body::{Body, Kinetic};
 use crate::file::column::{Column, Output};
 use crate::file::draws::SceneEnsemble;
-use crate::file::effects::{self, EFFECTS, Listed, Share, Table, effects};
+use crate::file::effects::{self, EFFECTS, Listed, Table, effects};
 use crate::file::event::Event;
-use crate::file::lagrangian::{Lagrangian, taken};
+use crate::file::lagrangian::{Declared, taken};
+use crate::file::orbit::Orbit;
 use crate::file::picture::SpherePicture;
 use crate::file::quantity::short;
 use crate::file::schedule::{Pace, Schedule};
@@ -22,31 +23,30 @@ use crate::file::text::title;
 macro_rules! scene_file {
     (
         { $($fields:tt)+ }
-        $($kind:ident { $($name:ident: $table:ident { $($key:ident: $type:ty),+ } => |$($of:tt),+| -> $effect:ty $value:block)+ })+
+        $($name:ident: $table:ident { $($key:ident: $type:ty),+ } => |$($of:tt),+| -> $effect:ty $value:block)+
     ) => {
         #[doc = include_str!("scene.md")]
         ///
         /// | effect | parameters |
         /// |---|---|
-        $($(#[doc = concat!("| `", stringify!($name), "` |", $(" `", stringify!($key), "`"),+, " |")])+)+
+        $(#[doc = concat!("| `", stringify!($name), "` |", $(" `", stringify!($key), "`"),+, " |")])+
         #[derive(Clone, Deserialize)]
         #[serde(deny_unknown_fields)]
         pub struct SceneFile {
             $($fields)+
-            $($(pub(crate) $name: Option<effects::$table>,)+)+
+            $(pub(crate) $name: Option<effects::$table>,)+
         }
 
         impl SceneFile {
             /// The effects of the scene.
-            pub(crate) fn effects(&self) -> impl Iterator<Item = &'static Listed> {
-                let are_there = [$($(self.$name.is_some()),+),+];
-                EFFECTS.iter().zip(are_there).filter_map(|(effect, is_there)| is_there.then_some(effect))
+            pub(crate) fn effects(&self) -> impl Iterator<Item = (&'static Listed, &dyn Table)> {
+                let tables = [$(self.$name.as_ref().map(|table| table as &dyn Table)),+];
+                EFFECTS.iter().zip(tables).filter_map(|(effect, table)| Some((effect, table?)))
             }
 
-            /// The effects that are others at each time.
-            pub(crate) fn turning(&self) -> impl Iterator<Item = &'static Listed> {
-                let turn = [$($(self.$name.as_ref().is_some_and(Table::turns)),+),+];
-                EFFECTS.iter().zip(turn).filter_map(|(effect, turns)| turns.then_some(effect))
+            /// The orbit that they follow.
+            pub(crate) fn orbit(&self) -> Option<&Orbit> {
+                [$(self.$name.as_ref().and_then(Table::orbit)),+].into_iter().flatten().next()
             }
         }
     };
@@ -66,7 +66,9 @@ effects! { scene_file
     #[serde(default)]
     pub(crate) output: Output,
     #[serde(default, deserialize_with = "taken")]
-    pub(crate) lagrangian: Option<Lagrangian>,
+    pub(crate) lagrangian: Option<Declared>,
+    #[serde(default, deserialize_with = "taken")]
+    pub(crate) force: Option<Declared>,
     #[serde(skip)]
     pub(crate) columns: Vec<Column>,
     /// Of the whole file: the scenes that a sweep makes have none.
@@ -137,6 +139,11 @@ impl SceneFile {
         matches!(self.run.pace, Pace::Accuracy(_))
     }
 
+    /// Whether the steps have different lengths.
+    pub(crate) fn has_steps_of_its_own(&self) -> bool {
+        self.run.steps_per_orbit.is_some() || self.lagrangian.as_ref().is_some_and(|own| own.has_a_pace)
+    }
+
     /// How many steps the scene asks for; none where they are chosen for an accuracy.
     #[must_use]
     pub fn steps(&self) -> Option<u64> {
@@ -150,6 +157,9 @@ impl SceneFile {
     #[must_use]
     pub fn about(&self) -> String {
         let pace = match self.run.pace {
+            Pace::Step { step, .. } if self.has_steps_of_its_own() => {
+                format!("{} s by steps of {} s on the average", short(self.run.duration), short(step))
+            }
             Pace::Step { step, steps } => format!("{steps} steps of {} s", short(step)),
             Pace::Accuracy(tolerance) => format!("{} s to {tolerance:e}", short(self.run.duration)),
         };
@@ -160,20 +170,21 @@ impl SceneFile {
 
     /// The sum, in words.
     pub(crate) fn sum(&self) -> String {
-        if self.lagrangian.is_some() {
-            return "a Lagrangian of its own".to_owned();
-        }
-        self.effects().fold("body".to_owned(), |sum, effect| format!("{sum} + {}", effect.name(" ")))
+        let first = if self.lagrangian.is_some() { "a Lagrangian of its own" } else { "body" };
+        let effects = self.effects().map(|(effect, _)| effect.name(" "));
+        let force = self.force.as_ref().map(|_| "a force of its own".to_owned());
+        effects.chain(force).fold(first.to_owned(), |sum, effect| format!("{sum} + {effect}"))
     }
 
     /// The first force, by its name.
-    pub(crate) fn force(&self) -> Option<String> {
-        self.effects().find(|effect| effect.share >= Share::Force).map(|effect| effect.name(" "))
+    pub(crate) fn first_force(&self) -> Option<String> {
+        let listed = self.effects().find(|(effect, _)| effect.does_work()).map(|(effect, _)| effect.name(" "));
+        listed.or_else(|| self.force.as_ref().map(|_| "`force`".to_owned()))
     }
 
-    /// The last sum that an effect of the scene is of.
-    pub(crate) fn last_share(&self) -> Share {
-        self.effects().map(|effect| effect.share).max().unwrap_or(Share::Potential)
+    /// The effects that are others at each time.
+    pub(crate) fn turning(&self) -> impl Iterator<Item = &'static Listed> {
+        self.effects().filter(|(_, table)| table.turns()).map(|(effect, _)| effect)
     }
 
     /// The kinetic term of the library's body.
@@ -183,13 +194,13 @@ impl SceneFile {
 
     /// Where the body is not turned; none of a Lagrangian that no body has.
     pub(crate) fn inertia(&self) -> Option<Matrix3<f64>> {
-        let of_lagrangian = || self.lagrangian.as_ref().map(Lagrangian::inertia);
+        let of_lagrangian = || self.lagrangian.as_ref().and_then(Declared::inertia);
         self.body.map(|body| *body.inertia().as_matrix()).or_else(of_lagrangian)
     }
 
     /// Of the scene's own step: other effects are kicks of order two.
     pub(crate) fn order(&self) -> u32 {
-        if self.effects().next().is_none() { self.kinetic().order() } else { 2 }
+        if self.effects().next().is_none() && self.force.is_none() { self.kinetic().order() } else { 2 }
     }
 }
 

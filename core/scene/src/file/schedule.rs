@@ -1,5 +1,7 @@
 //! How long a run is, and by which steps: the table `run`.
 
+use std::num::NonZeroU32;
+
 use serde::Deserialize;
 
 use crate::file::method::Method;
@@ -13,6 +15,8 @@ pub(crate) struct Schedule {
     pub(crate) duration: f64,
     pub(crate) pace: Pace,
     pub(crate) method: Method,
+    /// Along an orbit, in the place of equal ones.
+    pub(crate) steps_per_orbit: Option<NonZeroU32>,
 }
 
 /// What sets the step.
@@ -29,6 +33,7 @@ pub(crate) enum Pace {
 struct ScheduleTable {
     step: Option<Positive<Duration>>,
     accuracy: Option<Positive<Number>>,
+    steps_per_orbit: Option<NonZeroU32>,
     duration: Positive<Duration>,
     #[serde(default)]
     method: Method,
@@ -43,11 +48,13 @@ impl TryFrom<ScheduleTable> for Schedule {
     fn try_from(table: ScheduleTable) -> Result<Self, String> {
         let duration = table.duration.value;
         let pace = match (table.step, table.accuracy) {
+            // Set when the orbit is known.
+            _ if table.steps_per_orbit.is_some() => Pace::Step { step: duration, steps: 1 },
             (Some(step), _) => Pace::Step { step: step.value, steps: equal_steps(step.value, duration)? },
             (None, Some(accuracy)) => Pace::Accuracy(accuracy.value),
-            (None, None) => return Err("a run has either a `step` or an `accuracy`".to_owned()),
+            (None, None) => return Err("a run has a `step`, `steps_per_orbit` or an `accuracy`".to_owned()),
         };
-        Ok(Self { duration, pace, method: table.method })
+        Ok(Self { duration, pace, method: table.method, steps_per_orbit: table.steps_per_orbit })
     }
 }
 

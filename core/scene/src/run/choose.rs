@@ -3,185 +3,174 @@
 use std::rc::Rc;
 
 use liestep::accuracy::Accuracy;
-use liestep::effects::{PrincipalBody, RigidBody};
+use liestep::effects::{CayleyBody, Dipole, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::groups::Advected;
-use liestep::mechanics::Term as _;
+use liestep::mechanics::{Effect as _, Inertia, Term as _, WithEitherKinetic, WithoutKinetic};
 use liestep::methods::ExactBody;
 use liestep::motion::AnyStepper;
-use liestep::{SO3, SetupError, Stepper};
+use liestep::{SO3, Stepper};
+use liestep_late::{Declaration, Late, LateError};
+use nalgebra::Vector3;
 
-use crate::file::body::Distribution;
-use crate::file::effects::{Share, Table as _, effects};
-use crate::file::lagrangian::Lagrangian;
+use crate::file::body::{Distribution, Kinetic};
+use crate::file::lagrangian::Backend;
 use crate::file::method::{Method, Stages};
 use crate::file::scene::SceneFile;
 use crate::file::schedule::Pace;
 use crate::run::course::{MemberStart, course, sample, watches};
-use crate::run::kinetic::ChosenBody;
 use crate::run::make::{Listeners, Run, Stop, make};
-use crate::run::switched::Switched;
 
-/// The sums of a body and what is switched, each of one type; a file's scene is the shortest that has all that it names.
-///
-/// An effect with an unknown part makes each iteration longer, and that of magnetic damping raises the degree of the
-/// equation. Which effects there are beside is asked at run time: all subsets would be 512 types of each kinetic term.
-macro_rules! sums {
-    ($file:expr, $J:expr, $body:expr) => { sums!($file, $J, $body, at 0.0) };
-    ($file:expr, $J:expr, $body:expr, at $time:expr) => {{
-        let (file, body, J, time) = ($file, $body, $J, $time);
-        effects!(sums_of file J body time)
-    }};
-}
+/// What acts on a body: of all vectors that its terms advect, one after the other, with zeros behind them.
+type Seen = (V, V, V, V, V, V);
+type V = Vector3<f64>;
+/// The effects of a file and its force, in one program.
+type Rest = Late<SO3, Seen, WithoutKinetic, Backend>;
 
-/// Those of the list.
-macro_rules! sums_of {
-    (
-        { $file:ident $J:ident $body:ident $time:ident }
-        potentials { $($potential:ident: $potential_table:ident $potential_keys:tt => |$($a:tt),+| -> $A:ty $b:block)+ }
-        shifts { $($shift:ident: $shift_table:ident $shift_keys:tt => |$($c:tt),+| -> $C:ty $d:block)+ }
-        forces { $($force:ident: $force_table:ident $force_keys:tt => |$($e:tt),+| -> $E:ty $f:block)+ }
-        steep_forces { $($steep:ident: $steep_table:ident $steep_keys:tt => |$($g:tt),+| -> $G:ty $h:block)+ }
-    ) => {{
-        let potentials = $body $(+ Switched($file.$potential.as_ref().map(|table| table.effect(&$J, $time))))+;
-        let with_rotor = potentials $(+ Switched($file.$shift.as_ref().map(|table| table.effect(&$J, $time))))+;
-        let driven = with_rotor $(+ Switched($file.$force.as_ref().map(|table| table.effect(&$J, $time))))+;
-        let damped = driven $(+ Switched($file.$steep.as_ref().map(|table| table.effect(&$J, $time))))+;
-        (potentials, with_rotor, driven, damped)
-    }};
-}
-
-/// Simulates the sum of the body and those effects that the file has.
-///
-/// Every run by (3.13) has the bits of the sum of just those. By other kinetic terms it is the same to rounding: beside an
-/// unknown part that is switched off, their equation is solved with its Jacobian from the first iteration on.
-pub(crate) fn run(file: &SceneFile, listeners: Listeners<'_>) -> Result<Run, Stop> {
-    let mut run = None;
-    match file.run.pace {
-        Pace::Accuracy(tolerance) => return ask(file, tolerance, listeners),
-        Pace::Step { step, steps } => by_steps(file, step, Purpose::Run { steps, listeners, run: &mut run })?,
+/// The declarations of what a file names beside the body, derived once a program.
+fn rest(file: &SceneFile, J: &Inertia) -> Result<Option<Rest>, Stop> {
+    let listed = file.effects().map(|(effect, _)| Declaration::parse(effect.derived.1));
+    let own = file.force.iter().map(|own| Ok(own.declaration));
+    let terms = listed.chain(own).collect::<Result<Vec<_>, _>>().map_err(late_error)?;
+    if terms.is_empty() {
+        return Ok(None);
     }
-    run.ok_or_else(nothing)
+    let sum = Declaration::sum(&terms).and_then(Late::of);
+    sum.and_then(|late: Rest| late.with_all(&numbers(file, J, 0.0))).map(Some).map_err(late_error)
+}
+
+/// All their numbers, at a time.
+fn numbers(file: &SceneFile, J: &Inertia, time: f64) -> Vec<f64> {
+    let own = file.force.iter().flat_map(|own| own.numbers.iter().copied());
+    file.effects().flat_map(|(_, table)| table.numbers(J, time)).chain(own).collect()
+}
+
+fn late_error(error: LateError) -> Stop {
+    match error {
+        LateError::Advected { .. } => Stop::Other("the effects of a scene advect six vectors at most".to_owned()),
+        other => Stop::Other(other.to_string()),
+    }
+}
+
+/// A stepper of a scene, whatever is advected there.
+trait SceneStepper {
+    /// Makes the steps.
+    fn run(&self, file: &SceneFile, steps: u32, listeners: Listeners<'_>) -> Result<Run, Stop>;
+
+    /// One of the same type for all scenes.
+    fn hiding_advected(&self) -> AnyStepper<SO3, ()>;
+}
+
+impl<A: Advected<SO3> + 'static> SceneStepper for AnyStepper<SO3, A> {
+    fn run(&self, file: &SceneFile, steps: u32, listeners: Listeners<'_>) -> Result<Run, Stop> {
+        let state = self.start(file.start.attitude, file.start.velocity).map_err(Stop::Start)?;
+        make(self, state, course(file, u64::from(steps)), sample, watches(file), listeners)
+    }
+
+    fn hiding_advected(&self) -> AnyStepper<SO3, ()> {
+        self.clone().hiding_advected()
+    }
+}
+
+/// Simulates the sum of the body, which is compiled, and what acts on it, a program.
+///
+/// With one effect it has the bits of their compiled sum; several are added before they are added to the body.
+pub(crate) fn run(file: &SceneFile, listeners: Listeners<'_>) -> Result<Run, Stop> {
+    match file.run.pace {
+        Pace::Accuracy(tolerance) => ask(file, tolerance, listeners),
+        Pace::Step { step, steps } => by_steps(file, step)?.run(file, steps, listeners),
+    }
 }
 
 /// What steps the scene by its `step`, and its start.
 pub(crate) fn stepper(file: &SceneFile) -> Result<MemberStart, Stop> {
-    let mut stepper = None;
-    match file.run.pace {
-        Pace::Accuracy(_) => return Err(Stop::Other("the step is chosen for an accuracy by trial runs".to_owned())),
-        Pace::Step { step, .. } => by_steps(file, step, Purpose::Stepper(&mut stepper))?,
-    }
-    let stepper = stepper.ok_or_else(nothing)?;
+    let Pace::Step { step, .. } = file.run.pace else {
+        return Err(Stop::Other("the step is chosen for an accuracy by trial runs".to_owned()));
+    };
+    let stepper = by_steps(file, step)?.hiding_advected();
     let state = stepper.start(file.start.attitude, file.start.velocity).map_err(Stop::Start)?;
     Ok((stepper, state))
 }
 
-/// What is done with the stepper of a scene: asked for in its type, each would be compiled for every scene's.
-enum Purpose<'a, 'b> {
-    Run { steps: u32, listeners: Listeners<'b>, run: &'a mut Option<Run> },
-    Stepper(&'a mut Option<AnyStepper<SO3, ()>>),
+macro_rules! any {
+    ($stepper:expr) => {
+        $stepper.map(|stepper| Box::new(stepper.into_any()) as Box<dyn SceneStepper>).map_err(Stop::Setup)
+    };
 }
 
-/// A stepper that is made is used.
-fn nothing() -> Stop {
-    Stop::Other("there is no such scene".to_owned())
-}
-
-fn by_steps(file: &SceneFile, h: f64, purpose: Purpose<'_, '_>) -> Result<(), Stop> {
-    match file.run.method {
-        Method::Step | Method::Composition(_) => stepped(file, h, purpose),
-        _ => with_exact_body(file, h, purpose),
-    }
-}
-
-/// By the declared steps of one of the kinetic terms, or a composition of them.
-fn stepped(file: &SceneFile, h: f64, purpose: Purpose<'_, '_>) -> Result<(), Stop> {
+/// By the declared steps of the body or the Lagrangian, a composition of them, or a method with an exact motion in it.
+fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
     macro_rules! step {
         ($scene:expr) => {
             match file.run.method {
-                Method::Composition(scheme) => {
-                    simulate(file, Stepper::composed($scene, h, scheme.0).map(Stepper::into_any), purpose)
-                }
-                _ => step!(only $scene),
+                Method::Composition(scheme) => any!(Stepper::composed($scene, h, scheme.0)),
+                _ => any!(Stepper::new($scene, h)),
             }
         };
-        (only $scene:expr) => {
-            simulate(file, Stepper::new($scene, h).map(Stepper::into_any), purpose)
-        };
+    }
+    macro_rules! with_rest {
+        ($body:expr, $J:expr) => {{
+            let (body, J) = ($body, $J);
+            match rest(file, &J)? {
+                None => step!(body),
+                Some(rest) if file.turning().next().is_some() => {
+                    let (scene, seen) = (body + rest.clone(), Rc::new(file.clone()));
+                    let values = move |time| {
+                        let now = rest.clone().with_all(&numbers(&seen, &J, time));
+                        (Default::default(), now.as_ref().unwrap_or(&rest).advected())
+                    };
+                    match file.run.steps_per_orbit.and_then(|steps| file.orbit()?.clock(steps).ok()) {
+                        None => any!(Stepper::new(scene, h).map(|stepper| stepper.driven(values))),
+                        Some((clock, _)) => {
+                            any!(Stepper::new(scene, 1.0).map(|stepper| stepper.with_clock(clock).driven(values)))
+                        }
+                    }
+                }
+                Some(rest) => step!(body + rest),
+            }
+        }};
     }
     let Some(body) = file.body else {
-        return match &file.lagrangian {
-            Some(Lagrangian::Usual(late)) => step!(late.clone()),
-            Some(Lagrangian::Expensive(late)) => step!(late.clone()),
-            None => Err(nothing()),
+        let Some(lagrangian) = &file.lagrangian else { return Err(Stop::Other("there is no body".to_owned())) };
+        if lagrangian.has_a_pace {
+            let late = lagrangian.paced().map_err(late_error)?;
+            return any!(Stepper::new(late, h).and_then(Stepper::paced));
+        }
+        let late = lagrangian.late::<WithEitherKinetic>().map_err(late_error)?;
+        // No effect that asks for an inertia is beside it.
+        let J = Inertia::from_principal_moments(V::repeat(1.0)).map_err(|error| Stop::Other(error.to_string()))?;
+        return match rest(file, &J)? {
+            None => step!(late),
+            Some(rest) => step!(late + rest),
         };
     };
     let J = body.inertia();
-    macro_rules! with_effects {
-        ($body:expr) => {{
-            if file.turning().next().is_some() {
-                let (body, seen) = ($body, Rc::new(file.clone()));
-                let scene = sums!(file, J, body).3;
-                let values = move |time| sums!(&*seen, J, body, at time).3.advected();
-                let stepper = Stepper::new(scene, h).map(|stepper| stepper.driven(values).into_any());
-                return simulate(file, stepper, purpose);
-            }
-            let (_, with_rotor, _, damped) = sums!(file, J, $body);
-            if file.last_share() < Share::Force { step!(with_rotor) } else { step!(only damped) }
-        }};
-    }
-    match (ChosenBody::of(body.kinetic, J), body.mass) {
-        (Some(body), _) => with_effects!(body),
-        // The kinetic term that most files have is there in four sums, not two.
-        (None, Distribution::Principal(J_d)) if file.turning().next().is_none() => {
-            let (potentials, with_rotor, driven, damped) = sums!(file, J, PrincipalBody { J_d });
-            match file.last_share() {
-                Share::Potential => step!(potentials),
-                Share::Shift => step!(with_rotor),
-                Share::Force => step!(only driven),
-                Share::SteepForce => step!(only damped),
-            }
-        }
-        // What turns is given to the steps of one sum, the longest.
-        (None, mass) => {
-            let J_d = match mass {
-                Distribution::Principal(J_d) => J_d.into(),
-                Distribution::Full(J_d) => J_d,
-            };
-            with_effects!(RigidBody { J_d })
-        }
+    match (file.run.method, body.kinetic, body.mass) {
+        (Method::Splitting(_) | Method::Processed(_) | Method::Collocation(_), ..) => with_exact_body(file, &J, h),
+        (_, Kinetic::Rigid, Distribution::Principal(J_d)) => with_rest!(PrincipalBody { J_d }, J),
+        (_, Kinetic::Rigid, Distribution::Full(J_d)) => with_rest!(RigidBody { J_d }, J),
+        (_, Kinetic::Cayley, _) => with_rest!(CayleyBody { J }, J),
+        (_, Kinetic::Geodesic, _) => with_rest!(GeodesicBody { J }, J),
+        (_, Kinetic::FourthOrder, _) => with_rest!(FourthOrderBody { J }, J),
+        (_, Kinetic::SixthOrder, _) => with_rest!(SixthOrderBody { J }, J),
     }
 }
 
 /// By methods that look at inertia and potential only.
-fn with_exact_body(file: &SceneFile, h: f64, purpose: Purpose<'_, '_>) -> Result<(), Stop> {
-    let J = file.body.ok_or_else(nothing)?.inertia();
-    let (_, scene, _, _) = sums!(file, J, RigidBody { J_d: J.to_nonstandard() });
-    let stepper = match file.run.method {
-        Method::Step | Method::Composition(_) => Stepper::new(scene, h).map(Stepper::into_any),
-        Method::Splitting(scheme) => Stepper::split(scene, h, ExactBody::new(&J), scheme.0).map(Stepper::into_any),
-        Method::Processed(scheme) => Stepper::processed(scene, h, ExactBody::new(&J), scheme.0).map(Stepper::into_any),
-        Method::Collocation(Stages::Four) => Stepper::collocated::<2>(scene, h).map(Stepper::into_any),
-        Method::Collocation(Stages::Eight) => Stepper::collocated::<4>(scene, h).map(Stepper::into_any),
-    };
-    simulate(file, stepper, purpose)
+fn with_exact_body(file: &SceneFile, J: &Inertia, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
+    let scene = RigidBody { J_d: J.to_nonstandard() } + potential(file, J)?;
+    match file.run.method {
+        Method::Step | Method::Composition(_) => any!(Stepper::new(scene, h)),
+        Method::Splitting(scheme) => any!(Stepper::split(scene, h, ExactBody::new(J), scheme.0)),
+        Method::Processed(scheme) => any!(Stepper::processed(scene, h, ExactBody::new(J), scheme.0)),
+        Method::Collocation(Stages::Four) => any!(Stepper::collocated::<2>(scene, h)),
+        Method::Collocation(Stages::Eight) => any!(Stepper::collocated::<4>(scene, h)),
+    }
 }
 
-/// Makes the steps of a scene, or hands over what makes them.
-fn simulate<A: Advected<SO3> + 'static>(
-    file: &SceneFile,
-    stepper: Result<AnyStepper<SO3, A>, SetupError>,
-    purpose: Purpose<'_, '_>,
-) -> Result<(), Stop> {
-    let stepper = stepper.map_err(Stop::Setup)?;
-    match purpose {
-        Purpose::Run { steps, listeners, run } => {
-            let state = stepper.start(file.start.attitude, file.start.velocity).map_err(Stop::Start)?;
-            let course = course(file, u64::from(steps));
-            *run = Some(make(&stepper, state, course, sample, watches(file), listeners)?);
-        }
-        Purpose::Stepper(place) => *place = Some(stepper.hiding_advected()),
-    }
-    Ok(())
+/// What acts on a body, or what is like nothing: one type for methods that look for a potential.
+fn potential(file: &SceneFile, J: &Inertia) -> Result<Rest, Stop> {
+    let nothing = || Late::parse(Dipole::<f64>::DECLARATION).and_then(|late: Rest| late.with_all(&[0.0; 6]));
+    rest(file, J)?.map_or_else(nothing, Ok).map_err(late_error)
 }
 
 /// Makes the steps that an accuracy takes.
@@ -198,16 +187,11 @@ fn ask(file: &SceneFile, tolerance: f64, listeners: Listeners<'_>) -> Result<Run
             Ok(run)
         }};
     }
+    let nothing = || Stop::Other("an accuracy is asked of a body".to_owned());
     let body = file.body.ok_or_else(nothing)?;
-    let J = body.inertia();
+    let potential = potential(file, &body.inertia())?;
     match body.mass {
-        Distribution::Principal(J_d) => {
-            let (potentials, with_rotor, _, _) = sums!(file, J, PrincipalBody { J_d });
-            if file.last_share() < Share::Shift { ask!(potentials) } else { ask!(with_rotor) }
-        }
-        Distribution::Full(J_d) => {
-            let (_, with_rotor, _, _) = sums!(file, J, RigidBody { J_d });
-            ask!(with_rotor)
-        }
+        Distribution::Principal(J_d) => ask!(PrincipalBody { J_d } + potential),
+        Distribution::Full(J_d) => ask!(RigidBody { J_d } + potential),
     }
 }

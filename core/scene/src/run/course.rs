@@ -29,7 +29,13 @@ pub(crate) fn sample<A: Advected<SO3>>(now: &Moment<'_, AnyStepper<SO3, A>>) -> 
 
 /// The length and the table of a run of this many steps.
 pub(crate) fn course(file: &SceneFile, steps: u64) -> Course<'_> {
-    Course { steps, stride: file.output.stride(steps), columns: file.columns(), listed: file.listed() }
+    Course {
+        steps,
+        end: file.run.duration,
+        stride: file.output.stride(steps),
+        columns: file.columns(),
+        listed: file.listed(),
+    }
 }
 
 /// The events that a run looks for.

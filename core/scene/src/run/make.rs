@@ -90,6 +90,8 @@ pub(crate) struct Listeners<'a> {
 /// What of a run a file says: its length and its table.
 pub(crate) struct Course<'a> {
     pub(crate) steps: u64,
+    /// s; where steps vary, it is their end.
+    pub(crate) end: f64,
     /// In steps from row to row.
     pub(crate) stride: u64,
     pub(crate) columns: &'a [Column],
@@ -111,6 +113,7 @@ pub(crate) fn make<I: Integrator<Group: LieGroup<Scalar: Into<f64>>>>(
 ) -> Result<Run, Stop> {
     let (mut samples, happenings) = (Vec::new(), RefCell::new(Vec::new()));
     let (numbers, steps, stride) = (RefCell::new(Vec::new()), course.steps, course.stride);
+    let until = stepper.length(&state).map(|_| course.end);
     let mut table = listeners.table.map(|sink| TableRecorder::new(course, &numbers, stepper, sink));
     // The one who writes is asked where nothing is written, too, so that the steps are the same.
     let mut observed = recording::Run::new(stepper, &mut state)
@@ -128,7 +131,8 @@ pub(crate) fn make<I: Integrator<Group: LieGroup<Scalar: Into<f64>>>>(
             Ok(())
         });
     }
-    let end = observed.steps(steps).map_err(|error| match error {
+    let end = if let Some(end) = until { observed.until(end) } else { observed.steps(steps) };
+    let end = end.map_err(|error| match error {
         RunError::Step { time, cause } => Stop::Step { time, cause },
         RunError::Observer { cause, .. } if cause.is::<RecordError>() => Stop::Table(cause.to_string()),
         other => Stop::Other(other.to_string()),

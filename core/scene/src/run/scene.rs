@@ -57,8 +57,9 @@ impl SceneFile {
     /// As [`run`](Self::run).
     pub fn first(&self, most: u32) -> Result<Run, Mistake> {
         let mut first = self.clone();
-        if let Pace::Step { steps, .. } = &mut first.run.pace {
+        if let Pace::Step { step, steps } = &mut first.run.pace {
             *steps = most.min(*steps);
+            first.run.duration = first.run.duration.min(*step * f64::from(*steps));
         }
         first.run()
     }

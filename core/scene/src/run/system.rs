@@ -108,7 +108,7 @@ impl System {
             if self.nearest { stepper.start_nearest(bodies, velocities) } else { stepper.start(bodies, velocities) };
         let state = started.map_err(Stop::Start)?;
         let (stride, columns) = (self.output.stride(steps), self.columns.as_slice());
-        let course = Course { steps, stride, columns, listed: self.columns() };
+        let course = Course { steps, end: f64::INFINITY, stride, columns, listed: self.columns() };
         let sample = |now: &Moment<'_, _>| sample(&stepper, self.bodies.len(), now);
         make(&stepper, state, course, sample, Vec::new(), listeners)
     }

@@ -7,6 +7,7 @@ use liestep_late::{Declaration, LateError};
 use crate::file::arrangement::BODIES;
 use crate::file::body::{Distribution, Kinetic};
 use crate::file::effects::EFFECTS;
+use crate::file::lagrangian::Declared;
 use crate::file::scene::SceneFile;
 use crate::file::system::System;
 use crate::run::bodies::Heavy;
@@ -66,39 +67,40 @@ impl Form {
     }
 }
 
+/// The text of one of them, as it is declared.
+#[must_use]
+pub fn declaration(name: &str) -> Option<&'static str> {
+    all().find(|(other, _)| other == name).map(|(_, (_, text))| text)
+}
+
 /// What the library derived of an effect, written in this form.
 #[must_use]
 pub fn written(name: &str, form: Form) -> Option<Result<String, LateError>> {
-    let (_, (_, text)) = all().find(|(other, _)| other == name)?;
-    Some(Declaration::parse(text).and_then(|declaration| form.of(declaration)))
+    Some(Declaration::parse(declaration(name)?).and_then(|declaration| form.of(declaration)))
 }
 
 impl SceneFile {
     /// What was derived of each term of the scene.
     #[must_use]
     pub fn derivation(&self) -> String {
-        if let Some(lagrangian) = &self.lagrangian {
-            return lagrangian.declaration().derivation.clone();
-        }
-        let terms = self.terms().filter_map(|name| derivation(&name).map(|text| format!("{name}\n\n{text}")));
-        terms.collect::<Vec<_>>().join("\n")
+        let listed = self.terms().filter_map(|name| derivation(&name).map(|text| format!("{name}\n\n{text}")));
+        let own = self.own().map(|one| one.declaration.derivation.clone());
+        listed.chain(own).collect::<Vec<_>>().join("\n")
     }
 
-    /// The derivations of all terms, written otherwise.
+    /// The derivation of all terms in one, written otherwise.
     ///
     /// # Errors
     ///
     /// Where that can't be: see [`LateError::C`].
     pub fn written(&self, form: Form) -> Result<String, LateError> {
-        if let Some(lagrangian) = &self.lagrangian {
-            return form.of(lagrangian.declaration());
-        }
-        let terms: Vec<String> = self.terms().collect();
-        if form == Form::C && terms.len() > 1 {
-            return Err(LateError::C("a step is written in C of one declaration: put all terms into a `lagrangian`"));
-        }
-        let texts = terms.iter().filter_map(|name| written(name, form)).collect::<Result<Vec<_>, _>>();
-        texts.map(|texts| texts.join("\n"))
+        let listed = self.terms().filter_map(|name| declaration(&name)).map(Declaration::parse);
+        let own = self.own().map(|one| Ok(one.declaration));
+        form.of(Declaration::sum(&listed.chain(own).collect::<Result<Vec<_>, _>>()?)?)
+    }
+
+    fn own(&self) -> impl Iterator<Item = &Declared> {
+        self.lagrangian.iter().chain(&self.force)
     }
 
     /// The names of the body and the effects.
@@ -111,8 +113,7 @@ impl SceneFile {
             (Kinetic::FourthOrder, _) => "fourth-order-body",
             (Kinetic::SixthOrder, _) => "sixth-order-body",
         });
-        let effects = body.is_some().then(|| self.effects().map(|effect| effect.name("-")));
-        body.map(str::to_owned).into_iter().chain(effects.into_iter().flatten())
+        body.map(str::to_owned).into_iter().chain(self.effects().map(|(effect, _)| effect.name("-")))
     }
 }
 
