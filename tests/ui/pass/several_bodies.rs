@@ -30,11 +30,11 @@ struct Plain {
 
 #[rustfmt::skip]
 #[lagrangian(
-    group(F_1 = SO3, F_2 = SO3),
-    advected(Q = F_2.seen_from(F_1)),
-    l_d = (((((F_1) - (I)) * (J_1) * ((F_1 - I).transpose())).trace()) / ((2.0) * (h)))
+    group(F = SO3, F_2 = SO3),
+    advected(Q = F_2.seen_from(F)),
+    l_d = (((((F) - (I)) * (J_1) * ((F - I).transpose())).trace()) / ((2.0) * (h)))
         + { { (((F_2 - I) * J_2 * (F_2 - I).transpose()).trace()) / (2.0 * h) } }
-        - - (0.5 * ((h) * (k)) * -(-(Q.trace()) - { (F_1.transpose() * (Q * (F_2))).trace() })),
+        - - (0.5 * ((h) * (k)) * -(-(Q.trace()) - { (inverse(F) * (Q * (F_2))).trace() })),
 )]
 struct Parenthesised {
     J_1: NonstandardInertia,
