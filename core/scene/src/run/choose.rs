@@ -5,7 +5,7 @@ use std::rc::Rc;
 use liestep::accuracy::Accuracy;
 use liestep::effects::{CayleyBody, Dipole, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::groups::Advected;
-use liestep::mechanics::{Effect as _, Inertia, Term as _, WithEitherKinetic, WithoutKinetic};
+use liestep::mechanics::{Effect as _, Inertia, KineticPart, Term as _, WithEitherKinetic, WithoutKinetic};
 use liestep::methods::ExactBody;
 use liestep::motion::AnyStepper;
 use liestep::{SO3, Stepper};
@@ -20,28 +20,59 @@ use crate::file::schedule::Pace;
 use crate::run::course::{MemberStart, course, sample, watches};
 use crate::run::make::{Listeners, Run, Stop, make};
 
-/// What acts on a body: of all vectors that its terms advect, one after the other, with zeros behind them.
+/// What the terms of a scene advect: all vectors, one after the other, with zeros behind them.
 type Seen = (V, V, V, V, V, V);
 type V = Vector3<f64>;
-/// The effects of a file and its force, in one program.
-type Rest = Late<SO3, Seen, WithoutKinetic, Backend>;
+/// Terms of a scene in one program.
+type Program<K> = Late<SO3, Seen, K, Backend>;
+/// The effects of a file and its force.
+type Rest = Program<WithoutKinetic>;
+/// A declaration with the numbers of its parameters.
+type Numbered = (&'static Declaration, Vec<f64>);
 
-/// The declarations of what a file names beside the body, derived once a program.
-fn rest(file: &SceneFile, J: &Inertia) -> Result<Option<Rest>, Stop> {
+/// What has a kinetic term and isn't compiled with the scenes: a Lagrangian of the file's own, or a body of the library.
+fn text_of_body(file: &SceneFile, J: Inertia) -> Result<Option<Numbered>, LateError> {
+    let (text, numbers) = match (&file.lagrangian, file.body.map(|body| body.kinetic)) {
+        (Some(own), _) => return Ok(Some((own.declaration, own.numbers.clone()))),
+        (None, Some(Kinetic::Cayley)) => (CayleyBody::<f64>::DECLARATION, liestep_late::numbers(&CayleyBody { J })),
+        (None, Some(Kinetic::Geodesic)) => {
+            (GeodesicBody::<f64>::DECLARATION, liestep_late::numbers(&GeodesicBody { J }))
+        }
+        (None, Some(Kinetic::FourthOrder)) => {
+            (FourthOrderBody::<f64>::DECLARATION, liestep_late::numbers(&FourthOrderBody { J }))
+        }
+        (None, Some(Kinetic::SixthOrder)) => {
+            (SixthOrderBody::<f64>::DECLARATION, liestep_late::numbers(&SixthOrderBody { J }))
+        }
+        (None, Some(Kinetic::Rigid) | None) => return Ok(None),
+    };
+    Ok(Some((Declaration::parse(text)?, numbers)))
+}
+
+/// The declarations of this body, if it is one, and of what a file names beside it, derived once a program.
+fn program<K: KineticPart>(
+    file: &SceneFile,
+    J: &Inertia,
+    body: Option<&Numbered>,
+) -> Result<Option<Program<K>>, LateError> {
     let listed = file.effects().map(|(effect, _)| Declaration::parse(effect.derived.1));
-    let own = file.force.iter().map(|own| Ok(own.declaration));
-    let terms = listed.chain(own).collect::<Result<Vec<_>, _>>().map_err(late_error)?;
+    let (body_itself, own) = (body.map(|body| Ok(body.0)), file.force.iter().map(|own| Ok(own.declaration)));
+    let terms = body_itself.into_iter().chain(listed).chain(own).collect::<Result<Vec<_>, _>>()?;
     if terms.is_empty() {
         return Ok(None);
     }
-    let sum = Declaration::sum(&terms).and_then(Late::of);
-    sum.and_then(|late: Rest| late.with_all(&numbers(file, J, 0.0))).map(Some).map_err(late_error)
+    Late::of(Declaration::sum(&terms)?)?.with_all(&numbers(file, J, body, 0.0)).map(Some)
 }
 
 /// All their numbers, at a time.
-fn numbers(file: &SceneFile, J: &Inertia, time: f64) -> Vec<f64> {
+fn numbers(file: &SceneFile, J: &Inertia, body: Option<&Numbered>, time: f64) -> Vec<f64> {
     let own = file.force.iter().flat_map(|own| own.numbers.iter().copied());
-    file.effects().flat_map(|(_, table)| table.numbers(J, time)).chain(own).collect()
+    let body = body.iter().flat_map(|body| body.1.iter().copied());
+    body.chain(file.effects().flat_map(|(_, table)| table.numbers(J, time))).chain(own).collect()
+}
+
+fn rest(file: &SceneFile, J: &Inertia) -> Result<Option<Rest>, Stop> {
+    program(file, J, None).map_err(late_error)
 }
 
 fn late_error(error: LateError) -> Stop {
@@ -107,52 +138,66 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
             }
         };
     }
+    macro_rules! turning {
+        ($scene:expr, $values:expr) => {
+            match file.run.steps_per_orbit.and_then(|steps| file.orbit()?.clock(steps).ok()) {
+                None => any!(Stepper::new($scene, h).map(|stepper| stepper.driven($values))),
+                Some((clock, _)) => {
+                    any!(Stepper::new($scene, 1.0).map(|stepper| stepper.with_clock(clock).driven($values)))
+                }
+            }
+        };
+    }
+    // No effect that asks for an inertia is beside a Lagrangian.
+    let J = match file.body {
+        Some(body) => body.inertia(),
+        None => Inertia::from_principal_moments(V::repeat(1.0)).map_err(|error| Stop::Other(error.to_string()))?,
+    };
+    if matches!(file.run.method, Method::Splitting(_) | Method::Processed(_) | Method::Collocation(_)) {
+        return with_exact_body(file, &J, h);
+    }
+    if let Some(paced) = file.lagrangian.as_ref().filter(|own| own.has_a_pace) {
+        return any!(Stepper::new(paced.paced().map_err(late_error)?, h).and_then(Stepper::paced));
+    }
+    let (turns, seen) = (file.turning().next().is_some(), Rc::new(file.clone()));
+    if let Some(body) = text_of_body(file, J).map_err(late_error)? {
+        let whole: Option<Program<WithEitherKinetic>> = program(file, &J, Some(&body)).map_err(late_error)?;
+        let Some(whole) = whole else { return Err(nothing()) };
+        if !turns {
+            return step!(whole);
+        }
+        let scene = whole.clone();
+        let values = move |time| {
+            let now = whole.clone().with_all(&numbers(&seen, &J, Some(&body), time));
+            now.as_ref().unwrap_or(&whole).advected()
+        };
+        return turning!(scene, values);
+    }
     macro_rules! with_rest {
-        ($body:expr, $J:expr) => {{
-            let (body, J) = ($body, $J);
+        ($body:expr) => {
             match rest(file, &J)? {
-                None => step!(body),
-                Some(rest) if file.turning().next().is_some() => {
-                    let (scene, seen) = (body + rest.clone(), Rc::new(file.clone()));
+                None => step!($body),
+                Some(rest) if turns => {
+                    let scene = $body + rest.clone();
                     let values = move |time| {
-                        let now = rest.clone().with_all(&numbers(&seen, &J, time));
+                        let now = rest.clone().with_all(&numbers(&seen, &J, None, time));
                         (Default::default(), now.as_ref().unwrap_or(&rest).advected())
                     };
-                    match file.run.steps_per_orbit.and_then(|steps| file.orbit()?.clock(steps).ok()) {
-                        None => any!(Stepper::new(scene, h).map(|stepper| stepper.driven(values))),
-                        Some((clock, _)) => {
-                            any!(Stepper::new(scene, 1.0).map(|stepper| stepper.with_clock(clock).driven(values)))
-                        }
-                    }
+                    turning!(scene, values)
                 }
-                Some(rest) => step!(body + rest),
+                Some(rest) => step!($body + rest),
             }
-        }};
-    }
-    let Some(body) = file.body else {
-        let Some(lagrangian) = &file.lagrangian else { return Err(Stop::Other("there is no body".to_owned())) };
-        if lagrangian.has_a_pace {
-            let late = lagrangian.paced().map_err(late_error)?;
-            return any!(Stepper::new(late, h).and_then(Stepper::paced));
-        }
-        let late = lagrangian.late::<WithEitherKinetic>().map_err(late_error)?;
-        // No effect that asks for an inertia is beside it.
-        let J = Inertia::from_principal_moments(V::repeat(1.0)).map_err(|error| Stop::Other(error.to_string()))?;
-        return match rest(file, &J)? {
-            None => step!(late),
-            Some(rest) => step!(late + rest),
         };
-    };
-    let J = body.inertia();
-    match (file.run.method, body.kinetic, body.mass) {
-        (Method::Splitting(_) | Method::Processed(_) | Method::Collocation(_), ..) => with_exact_body(file, &J, h),
-        (_, Kinetic::Rigid, Distribution::Principal(J_d)) => with_rest!(PrincipalBody { J_d }, J),
-        (_, Kinetic::Rigid, Distribution::Full(J_d)) => with_rest!(RigidBody { J_d }, J),
-        (_, Kinetic::Cayley, _) => with_rest!(CayleyBody { J }, J),
-        (_, Kinetic::Geodesic, _) => with_rest!(GeodesicBody { J }, J),
-        (_, Kinetic::FourthOrder, _) => with_rest!(FourthOrderBody { J }, J),
-        (_, Kinetic::SixthOrder, _) => with_rest!(SixthOrderBody { J }, J),
     }
+    match file.body.ok_or_else(nothing)?.mass {
+        Distribution::Principal(J_d) => with_rest!(PrincipalBody { J_d }),
+        Distribution::Full(J_d) => with_rest!(RigidBody { J_d }),
+    }
+}
+
+/// A file that was read has a body.
+fn nothing() -> Stop {
+    Stop::Other("there is no body".to_owned())
 }
 
 /// By methods that look at inertia and potential only.
