@@ -177,17 +177,18 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
         ($body:expr) => {
             match rest(file, &J)? {
                 None => step!($body),
-                Some(rest) if turns => {
-                    let scene = $body + rest.clone();
-                    let values = move |time| {
-                        let now = rest.clone().with_all(&numbers(&seen, &J, None, time));
-                        (Default::default(), now.as_ref().unwrap_or(&rest).advected())
-                    };
-                    turning!(scene, values)
-                }
                 Some(rest) => step!($body + rest),
             }
         };
+    }
+    // One type of what turns.
+    if let Some(rest) = rest(file, &J)?.filter(|_| turns) {
+        let scene = RigidBody { J_d: J.to_nonstandard() } + rest.clone();
+        let values = move |time| {
+            let now = rest.clone().with_all(&numbers(&seen, &J, None, time));
+            (Default::default(), now.as_ref().unwrap_or(&rest).advected())
+        };
+        return turning!(scene, values);
     }
     match file.body.ok_or_else(nothing)?.mass {
         Distribution::Principal(J_d) => with_rest!(PrincipalBody { J_d }),
@@ -221,22 +222,13 @@ fn potential(file: &SceneFile, J: &Inertia) -> Result<Rest, Stop> {
 /// Makes the steps that an accuracy takes.
 fn ask(file: &SceneFile, tolerance: f64, listeners: Listeners<'_>) -> Result<Run, Stop> {
     let accuracy = Accuracy { tolerance, horizon: file.run.duration };
-    macro_rules! ask {
-        ($scene:expr) => {{
-            let stepper = Stepper::for_accuracy($scene, accuracy, file.start.attitude, file.start.velocity)
-                .map_err(Stop::Accuracy)?;
-            let choice = stepper.choice().clone();
-            let course = course(file, choice.steps);
-            let mut run = make(&*stepper, stepper.start(), course, sample, watches(file), listeners)?;
-            run.choice = Some(choice);
-            Ok(run)
-        }};
-    }
-    let nothing = || Stop::Other("an accuracy is asked of a body".to_owned());
-    let body = file.body.ok_or_else(nothing)?;
-    let potential = potential(file, &body.inertia())?;
-    match body.mass {
-        Distribution::Principal(J_d) => ask!(PrincipalBody { J_d } + potential),
-        Distribution::Full(J_d) => ask!(RigidBody { J_d } + potential),
-    }
+    let J = file.body.ok_or_else(nothing)?.inertia();
+    let scene = RigidBody { J_d: J.to_nonstandard() } + potential(file, &J)?;
+    let stepper = Stepper::for_accuracy(scene, accuracy, file.start.attitude, file.start.velocity);
+    let stepper = stepper.map_err(Stop::Accuracy)?;
+    let choice = stepper.choice().clone();
+    let course = course(file, choice.steps);
+    let mut run = make(&*stepper, stepper.start(), course, sample, watches(file), listeners)?;
+    run.choice = Some(choice);
+    Ok(run)
 }
