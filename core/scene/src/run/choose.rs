@@ -173,14 +173,6 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
         };
         return turning!(scene, values);
     }
-    macro_rules! with_rest {
-        ($body:expr) => {
-            match rest(file, &J)? {
-                None => step!($body),
-                Some(rest) => step!($body + rest),
-            }
-        };
-    }
     // One type of what turns.
     if let Some(rest) = rest(file, &J)?.filter(|_| turns) {
         let scene = RigidBody { J_d: J.to_nonstandard() } + rest.clone();
@@ -190,9 +182,15 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
         };
         return turning!(scene, values);
     }
-    match file.body.ok_or_else(nothing)?.mass {
-        Distribution::Principal(J_d) => with_rest!(PrincipalBody { J_d }),
-        Distribution::Full(J_d) => with_rest!(RigidBody { J_d }),
+    match (file.run.method, file.body.ok_or_else(nothing)?.mass) {
+        (Method::Step, Distribution::Principal(J_d)) => match rest(file, &J)? {
+            None => any!(Stepper::new(PrincipalBody { J_d }, h)),
+            Some(rest) => any!(Stepper::new(PrincipalBody { J_d } + rest, h)),
+        },
+        _ => match rest(file, &J)? {
+            None => step!(RigidBody { J_d: J.to_nonstandard() }),
+            Some(rest) => step!(RigidBody { J_d: J.to_nonstandard() } + rest),
+        },
     }
 }
 
