@@ -97,7 +97,9 @@ impl Declaration {
     }
 
     /// The sum of declarations on one group, in one: programs that add what theirs compute. On SO(3) it has the bits of the
-    /// same sum of compiled effects; where the retraction's tangent is taken behind the sum, it differs by roundings. The parameter `m` of a term `Gravity` is called `Gravity.m`; numbers and what is carried stand
+    /// same sum of compiled effects; where the retraction's tangent is taken behind the sum, it differs by roundings.
+    ///
+    /// The parameter `m` of a term `Gravity` is called `Gravity.m`; numbers and what is carried stand
     /// in the order of the terms. A Jacobian is taken in every solve, unless there is one term only.
     ///
     /// # Errors

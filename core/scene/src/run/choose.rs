@@ -102,9 +102,10 @@ impl<A: Advected<SO3> + 'static> SceneStepper for AnyStepper<SO3, A> {
     }
 }
 
-/// Simulates the sum of the body, which is compiled, and what acts on it, a program.
+/// Simulates the sum of a body and what acts on it. By (3.13) the body is compiled, and the rest is one program; by other
+/// kinetic terms, and of a Lagrangian of the file, all is one program.
 ///
-/// With one effect it has the bits of their compiled sum; several are added before they are added to the body.
+/// Several effects are added before they are added to a compiled body.
 pub(crate) fn run(file: &SceneFile, listeners: Listeners<'_>) -> Result<Run, Stop> {
     match file.run.pace {
         Pace::Accuracy(tolerance) => ask(file, tolerance, listeners),
