@@ -4,6 +4,7 @@
 //! the stepper, with the inputs of its steps and the [`Verdict`] of the search.
 
 mod control;
+mod estimate;
 mod improve;
 mod model;
 mod riccati;
@@ -11,4 +12,5 @@ mod search;
 mod verdict;
 
 pub use control::{Control, Cost, Target};
+pub use estimate::{Estimate, Fit};
 pub use verdict::{ControlError, ControlPlan, Residual, Verdict};

@@ -13,6 +13,9 @@ use liestep::{NonstandardInertia, SO3, StepError, Stepper, force};
 use liestep_control::{Control, ControlError, ControlPlan, Cost, Target, Verdict};
 use nalgebra::{UnitQuaternion, Vector3};
 
+mod estimates;
+mod kept;
+
 type Body = Stepper<RigidBody>;
 /// The shortest.
 const TIME: Cost = Cost { time: 1.0, effort: 0.0 };
