@@ -1,0 +1,107 @@
+//! A flyer with a load on a cable.
+
+use liestep::gradients::Input;
+use liestep::groups::R3;
+use liestep::mechanics::{Sum, Term as _};
+use liestep::numbers::Entries as _;
+use liestep::{NonstandardInertia, SO3, Stepper, force, lagrangian};
+use liestep_control::{Control, Target};
+use nalgebra::{SVector, Vector3};
+use workbench::plot::{BLUE, Line, ORANGE, PURPLE, Panel, PlotResult, Vertical, heading, legend, px, render};
+
+use crate::{Drawn, found, over_time};
+
+/// A flyer of mass `m`, and a load of mass `m_load` on a cable that is always taut, which turns with it.
+#[lagrangian(
+    group(F = SO3, d = R3, C = SO3),
+    advected(x = d.seen_from(space), R = C.seen_from(space)),
+    gradients,
+    l_d = {
+        let way = d + R * ((C - I) * cable);
+        let place = x + R * cable;
+        ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h)
+            + ((C - I) * K * (C - I).transpose()).trace() / (2.0 * h) + m_load * way.norm_squared() / (2.0 * h)
+            - 0.5 * h * g * (m * (x + x + d) + m_load * (place + place + way)).z
+    },
+)]
+#[derive(Clone, Debug)]
+pub(crate) struct Suspended {
+    J_d: NonstandardInertia,
+    m: f64,
+    K: NonstandardInertia,
+    m_load: f64,
+    cable: Vector3<f64>,
+    g: f64,
+}
+
+/// Rotors: a thrust along the flyer's third axis, N, and a torque in its axes, N m, both held over a step.
+#[force(
+    group(F = SO3, d = R3, C = SO3),
+    advected(S = F.seen_from(space)),
+    displacement(eta, s, c),
+    given(u = thrust, tau = torque),
+    gradients,
+    work = 0.5 * h * (tau.dot(&(eta + eta_next)) + u * ((S * axis).dot(&s) + (S * (F * axis)).dot(&s_next))),
+)]
+#[derive(Clone, Debug)]
+pub(crate) struct Rotors {
+    thrust: f64,
+    torque: Vector3<f64>,
+    axis: Vector3<f64>,
+}
+
+/// A load is brought two metres to the side and one up, from rest to rest.
+pub(crate) fn load() -> Drawn {
+    let (steps, seconds) = (100, 2.0);
+    let body = |moments: [f64; 3]| NonstandardInertia::from_principal_moments(Vector3::from(moments));
+    let (J_d, K, cable) = (body([0.02, 0.02, 0.035])?, body([0.002, 0.002, 0.001])?, Vector3::z() * -0.8);
+    let rotors = Rotors { thrust: 1.4 * 9.81, torque: Vector3::zeros(), axis: Vector3::z() };
+    let scene: Sum<Suspended, Rotors> = Suspended { J_d, m: 1.0, K, m_load: 0.4, cable, g: 9.81 } + rotors;
+    let stepper = Stepper::new(scene, seconds / f64::from(steps))?;
+    let at = |place: Vector3<f64>| (SO3::identity(), R3::from(place), SO3::identity());
+    let start = stepper.start(at(Vector3::zeros()), SVector::<f64, 9>::zeros())?;
+    let like = Input::Values(stepper.scene().advected());
+    let mut scalars = 0;
+    stepper.scene().advected().each(&mut |_: f64| scalars += 1);
+    let plan = Control::new(&stepper, start, 100, Target::rest(at(Vector3::new(2.0, 0.0, 1.0))))
+        .input(like, scalars - 4..scalars)
+        .bounds(|_, input| if input == 0 { (4.0, 24.0) } else { (-0.4, 0.4) })
+        .guess(|_, input| if input == 0 { 1.4 * 9.81 } else { 0.0 })
+        .solve()?;
+    let report = format!("{}; effort {:.1}", found(&plan)?, plan.cost);
+    let places = |of_load: bool| -> Vec<(f64, f64)> {
+        let place = |attitude: (SO3, R3, SO3)| {
+            let place = attitude.1.translation();
+            if of_load { place + attitude.2.as_matrix() * cable } else { place }
+        };
+        plan.states.iter().map(|state| place(state.attitude())).map(|place| (place.x, place.z)).collect()
+    };
+    let mut lines = vec![
+        Line { colour: BLUE, width: 4, points: places(false) },
+        Line { colour: ORANGE, width: 4, points: places(true) },
+    ];
+    // The cable, ten times.
+    for (flyer, load) in places(false).into_iter().zip(places(true)).step_by(10) {
+        lines.push(Line { colour: PURPLE, width: 1, points: vec![flyer, load] });
+    }
+    let torques = |input: &Input<_, _>| {
+        let scalars: Vec<f64> = input.scalars();
+        [scalars[scalars.len() - 4] / 20.0, scalars[scalars.len() - 2]]
+    };
+    let given: Vec<[f64; 2]> = plan.inputs.iter().map(torques).collect();
+    let drawn: PlotResult<String> = render((900, 420), |area| {
+        let below = "a flyer of 1 kg with 0.4 kg on a cable, from rest to rest by thrust and torque within bounds";
+        heading(area, "A load on a cable is brought two metres aside and one up in two seconds", below)?;
+        let (_, body) = area.split_vertically(px(56));
+        let (left, right) = body.split_horizontally(px(450));
+        let (across, up, vertical) = ("aside, m", "up, m", Vertical::Linear);
+        Panel { title: "The ways of flyer, load and cable", across, up, vertical, function: false, lines }
+            .draw(&left)?;
+        legend(&left, (70, 34), &[("flyer", BLUE), ("load", ORANGE)])?;
+        let lines = over_time(plan.stepper.step_size(), &given);
+        Panel::over_time("Thrust/20, and torque about the second axis", "N, N m", Vertical::Linear, lines)
+            .draw(&right)?;
+        legend(&right, (70, 34), &[("thrust/20", BLUE), ("torque", ORANGE)])
+    });
+    Ok((report, drawn?))
+}
