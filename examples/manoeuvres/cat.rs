@@ -52,12 +52,13 @@ fn turn(angle: f64) -> Result<(Turn, f64), Failure> {
     let turned: SO3 = UnitQuaternion::from_scaled_axis(Vector3::z() * angle).into();
     let end: Attitude = (turned, R1::identity(), R1::identity());
     let shares = [0, 1].map(|k| WHEEL / (MOMENTS[k] + WHEEL));
-    // About a circle of that area: without an area the gradient vanishes by symmetry.
-    let radius = (angle / (shares[0] * shares[1] * TAU / 2.0)).sqrt();
-    let size = radius * WHEEL * (TAU / seconds).powi(2);
+    // Once round that area, from rest to rest: without one the gradient vanishes by symmetry. With the phase φ,
+    // t_1 = r (1 − cos φ)/2 and t_2 = r (½ sin 2φ − sin φ) go round π r²/2.
+    let radius = (angle / (shares[0] * shares[1] * TAU / 4.0)).sqrt();
     let guess = |step: usize, wheel: usize| {
         let phase = TAU * step as f64 / f64::from(steps);
-        size * if wheel == 0 { phase.cos() } else { phase.sin() }
+        let bend = if wheel == 0 { 0.5 * phase.cos() } else { phase.sin() - 2.0 * (2.0 * phase).sin() };
+        radius * WHEEL * (1.0 - shares[wheel]) * (TAU / seconds).powi(2) * bend
     };
     let plan = Control::new(&stepper, start, 200, Target::rest(end))
         .input(Input::Force(SVector::<f64, 5>::zeros()), [3, 4])
@@ -104,7 +105,8 @@ pub(crate) fn cat() -> Drawn {
 mod tests {
     use super::*;
 
-    /// What the area says is right in sign, and in size to second order in the wheels' turns.
+    /// What the area says is right in sign, and in size to second order in the wheels' turns, which is first in the angle.
+    /// For smaller ones the loop may lie in any direction at nearly the same effort, and the search is slow.
     #[test]
     fn the_turn_is_that_of_the_area() {
         let off = |angle: f64| {
@@ -112,7 +114,7 @@ mod tests {
             found(&plan).expect("a plan");
             foretold / angle - 1.0
         };
-        let [large, small] = [0.2, 0.05].map(off);
-        assert!(large.abs() < 0.1 && (large / small - 4.0).abs() < 0.3, "{large}, {small}");
+        let [large, small] = [0.8, 0.2].map(off);
+        assert!(small.abs() < 0.04 && (large / small - 4.0).abs() < 0.3, "{large}, {small}");
     }
 }

@@ -24,10 +24,12 @@ const GYROSCOPE: f64 = 0.01;
 const VECTOR: f64 = 0.02;
 const TORQUE: f64 = 0.02;
 /// Of the start: rad, kg m²/s, rad/s.
-const START: [f64; 3] = [1.0, 1.0, 0.1];
+const START: [f64; 3] = [0.5, 1.0, 0.1];
 const MOMENTS: [f64; 3] = [2.0, 3.0, 4.0];
 
 type State = StateOf<RigidBody>;
+/// The states of a motion, the bias and the readings.
+type Motions = (Vec<State>, Vector3<f64>, Vec<Reading>);
 type Nine = SVector<f64, 9>;
 type Square = SMatrix<f64, 9, 9>;
 
@@ -53,13 +55,16 @@ fn inverse_inertia() -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector3::from(MOMENTS).map(f64::recip))
 }
 
-/// What is read without noise.
-fn read(motion: &Motion<SO3, ()>, bias: &Vector3<f64>) -> Reading {
-    Reading([inverse_inertia() * motion.momentum() + bias, motion.attitude().as_matrix().transpose() * Vector3::x()])
+/// What is read without noise. The vector goes round as the Earth's field does along an orbit, if faster: of one that is
+/// fixed, a free body never shows a turn about it.
+fn read(motion: &Motion<SO3, ()>, bias: &Vector3<f64>, step: usize) -> Reading {
+    let (sin, cos) = (0.1 * STEP * step as f64).sin_cos();
+    let seen = motion.attitude().as_matrix().transpose() * Vector3::new(cos, 0.0, sin);
+    Reading([inverse_inertia() * motion.momentum() + bias, seen])
 }
 
-/// The start of a motion, and what is read along it: the states, the bias and the readings.
-fn motion(seed: u64) -> Result<(Vec<State>, Vector3<f64>, Vec<Reading>), Failure> {
+/// A motion and what is read along it.
+fn motion(seed: u64) -> Result<Motions, Failure> {
     let (stepper, mut random) = (stepper()?, Random::new(seed));
     let mut normal = |size: f64| Vector3::from_fn(|_, _| size * random.normal());
     let start = UnitQuaternion::from_scaled_axis(normal(START[0]));
@@ -67,7 +72,7 @@ fn motion(seed: u64) -> Result<(Vec<State>, Vector3<f64>, Vec<Reading>), Failure
     let bias = normal(START[2]);
     let mut readings = Vec::new();
     for k in 0..=STEPS {
-        let Reading([rate, vector]) = read(&states[k], &bias);
+        let Reading([rate, vector]) = read(&states[k], &bias, k);
         readings.push(Reading([rate + normal(GYROSCOPE), vector + normal(VECTOR)]));
         let mut next = states[k];
         stepper.step_forced(&mut next, &normal(TORQUE))?;
@@ -104,9 +109,9 @@ impl Belief {
     }
 
     /// With a reading, which is linear about this motion and bias.
-    fn updated(&self, reading: &Reading, about: &Self) -> Result<Self, Failure> {
+    fn updated(&self, (step, reading): (usize, &Reading), about: &Self) -> Result<Self, Failure> {
         let off = self.off_from(about);
-        let Reading([rate, vector]) = read(&about.state, &about.bias);
+        let Reading([rate, vector]) = read(&about.state, &about.bias, step);
         let mut slope = SMatrix::<f64, 6, 9>::zeros();
         slope.fixed_view_mut::<3, 3>(0, 3).copy_from(&inverse_inertia());
         slope.fixed_view_mut::<3, 3>(0, 6).fill_with_identity();
@@ -153,7 +158,7 @@ impl Belief {
 /// The multiplicative extended Kalman filter: each reading and each step are linear about what is thought then.
 fn filtered(readings: &[Reading]) -> Result<Vec<Belief>, Failure> {
     let (mut belief, mut all) = (Belief::first()?, Vec::new());
-    for reading in readings {
+    for reading in readings.iter().enumerate() {
         let now = belief.updated(reading, &belief)?;
         all.push(now);
         belief = now.stepped(&now, &Vector3::zeros())?;
@@ -167,7 +172,7 @@ fn of_horizon(readings: &[Reading]) -> Result<Vec<Belief>, Failure> {
     for last in 1..readings.len() {
         let information = known.covariance.try_inverse().ok_or("no information")?;
         let off = |step: usize, motion: &Motion<SO3, ()>, bias: &[f64]| {
-            let Reading([rate, vector]) = read(motion, &Vector3::from_column_slice(bias));
+            let Reading([rate, vector]) = read(motion, &Vector3::from_column_slice(bias), first + step);
             let Reading(was) = readings[first + step];
             let off = [(rate - was[0]) / GYROSCOPE, (vector - was[1]) / VECTOR];
             off.iter().flatten().copied().collect()
@@ -176,10 +181,10 @@ fn of_horizon(readings: &[Reading]) -> Result<Vec<Belief>, Failure> {
             .unknowns(known.bias.as_slice().to_vec(), vec![0.1; 3])
             .inputs(Input::Force(Vector3::zeros()), vec![0, 1, 2], vec![TORQUE; 3])
             .known(DMatrix::from_column_slice(9, 9, information.as_slice()))
-            .until(1e-4, 50)
+            .until(1e-2, 50)
             .solve()?;
         if fit.verdict != Verdict::Converged {
-            return Err(format!("step {last}: {:?}", fit.verdict).into());
+            return Err(format!("step {last}: {:?} {:e} {}", fit.verdict, fit.step, fit.squares).into());
         }
         let bias = Vector3::from_column_slice(&fit.constants);
         let then = |state: State| Belief { state, bias, ..known };
@@ -190,7 +195,7 @@ fn of_horizon(readings: &[Reading]) -> Result<Vec<Belief>, Failure> {
         if last - first == HORIZON {
             let about = then(fit.states[0]);
             let Input::Force(torque) = fit.inputs[0] else { return Err("no torque".into()) };
-            known = known.updated(&readings[first], &about)?.stepped(&about, &torque)?;
+            known = known.updated((first, &readings[first]), &about)?.stepped(&about, &torque)?;
             first += 1;
         }
     }
@@ -250,14 +255,12 @@ pub(crate) fn horizon() -> Drawn {
 mod tests {
     use super::*;
 
-    /// While much is unknown the horizon is nearer, and as near afterwards.
+    /// Where readings tell much at once the filter is linear about a wrong state, and the horizon is nearer from then on.
     #[test]
     fn the_horizon_is_nearer() {
         let errors = compared(6).expect("estimates");
-        let [filter, horizon] = errors[10];
-        assert!(horizon[0] < 0.9 * filter[0], "{:?}", errors[10]);
-        let [filter, horizon] = errors[STEPS];
-        assert!(horizon[0] < 1.1 * filter[0] && horizon[1] < 1.1 * filter[1], "{:?}", errors[STEPS]);
-        assert!(horizon[0] < 0.05, "{horizon:?}");
+        for [filter, horizon] in [errors[50], errors[STEPS]] {
+            assert!(horizon[0] < 0.7 * filter[0] && horizon[1] < 0.7 * filter[1], "{filter:?}, {horizon:?}");
+        }
     }
 }

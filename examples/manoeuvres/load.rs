@@ -34,19 +34,21 @@ pub(crate) struct Suspended {
     g: f64,
 }
 
-/// Rotors: a thrust along the flyer's third axis, N, and a torque in its axes, N m, both held over a step.
+/// Rotors, held over a step: a thrust along the flyer's third axis, N, and a torque in its axes by the angular acceleration,
+/// rad/s², that it gives to `inertia`: so both have numbers of one size, and a share in the effort.
 #[force(
     group(F = SO3, d = R3, C = SO3),
     advected(S = F.seen_from(space)),
     displacement(eta, s, c),
-    given(u = thrust, tau = torque),
+    given(u = thrust, a = acceleration),
     gradients,
-    work = 0.5 * h * (tau.dot(&(eta + eta_next)) + u * ((S * axis).dot(&s) + (S * (F * axis)).dot(&s_next))),
+    work = 0.5 * h * (inertia * a.dot(&(eta + eta_next)) + u * ((S * axis).dot(&s) + (S * (F * axis)).dot(&s_next))),
 )]
 #[derive(Clone, Debug)]
 pub(crate) struct Rotors {
     thrust: f64,
-    torque: Vector3<f64>,
+    acceleration: Vector3<f64>,
+    inertia: f64,
     axis: Vector3<f64>,
 }
 
@@ -55,7 +57,7 @@ pub(crate) fn load() -> Drawn {
     let (steps, seconds) = (100, 2.0);
     let body = |moments: [f64; 3]| NonstandardInertia::from_principal_moments(Vector3::from(moments));
     let (J_d, K, cable) = (body([0.02, 0.02, 0.035])?, body([0.002, 0.002, 0.001])?, Vector3::z() * -0.8);
-    let rotors = Rotors { thrust: 1.4 * 9.81, torque: Vector3::zeros(), axis: Vector3::z() };
+    let rotors = Rotors { thrust: 1.4 * 9.81, acceleration: Vector3::zeros(), inertia: 0.02, axis: Vector3::z() };
     let scene: Sum<Suspended, Rotors> = Suspended { J_d, m: 1.0, K, m_load: 0.4, cable, g: 9.81 } + rotors;
     let stepper = Stepper::new(scene, seconds / f64::from(steps))?;
     let at = |place: Vector3<f64>| (SO3::identity(), R3::from(place), SO3::identity());
@@ -65,7 +67,7 @@ pub(crate) fn load() -> Drawn {
     stepper.scene().advected().each(&mut |_: f64| scalars += 1);
     let plan = Control::new(&stepper, start, 100, Target::rest(at(Vector3::new(2.0, 0.0, 1.0))))
         .input(like, scalars - 4..scalars)
-        .bounds(|_, input| if input == 0 { (4.0, 24.0) } else { (-0.4, 0.4) })
+        .bounds(|_, input| if input == 0 { (4.0, 24.0) } else { (-30.0, 30.0) })
         .guess(|_, input| if input == 0 { 1.4 * 9.81 } else { 0.0 })
         .solve()?;
     let report = format!("{}; effort {:.1}", found(&plan)?, plan.cost);
@@ -86,7 +88,7 @@ pub(crate) fn load() -> Drawn {
     }
     let torques = |input: &Input<_, _>| {
         let scalars: Vec<f64> = input.scalars();
-        [scalars[scalars.len() - 4] / 20.0, scalars[scalars.len() - 2]]
+        [scalars[scalars.len() - 4], scalars[scalars.len() - 2]]
     };
     let given: Vec<[f64; 2]> = plan.inputs.iter().map(torques).collect();
     let drawn: PlotResult<String> = render((900, 420), |area| {
@@ -99,9 +101,14 @@ pub(crate) fn load() -> Drawn {
             .draw(&left)?;
         legend(&left, (70, 34), &[("flyer", BLUE), ("load", ORANGE)])?;
         let lines = over_time(plan.stepper.step_size(), &given);
-        Panel::over_time("Thrust/20, and torque about the second axis", "N, N m", Vertical::Linear, lines)
-            .draw(&right)?;
-        legend(&right, (70, 34), &[("thrust/20", BLUE), ("torque", ORANGE)])
+        Panel::over_time(
+            "Thrust, and angular acceleration about the second axis",
+            "N, rad/s²",
+            Vertical::Linear,
+            lines,
+        )
+        .draw(&right)?;
+        legend(&right, (70, 34), &[("thrust", BLUE), ("acceleration", ORANGE)])
     });
     Ok((report, drawn?))
 }

@@ -123,7 +123,7 @@ pub(crate) fn sun() -> Drawn {
     let free = task().solve()?;
     let plan =
         task().keep(move |_, motion| angle.cos() - sun.dot(&(motion.attitude().as_matrix() * Vector3::x()))).solve()?;
-    let report = format!("{}; effort {:.4} J s, {:.4} through the sun", found(&plan)?, plan.cost, free.cost);
+    let report = format!("{}; effort {:.4} (N m)² s, {:.4} through the sun", found(&plan)?, plan.cost, free.cost);
     let path = pointed(&plan, Vector3::x());
     let texts = [
         "A turn round the sun",
@@ -143,7 +143,7 @@ pub(crate) fn top() -> Drawn {
         .bounds(|_, _| (-3.0, 3.0))
         .guess(|step, axis| if axis == 0 { (0.03 * step as f64).sin() } else { 0.0 })
         .solve()?;
-    let report = format!("{}; effort {:.3} J s, at most 3 N m of the weight's 4.9", found(&plan)?, plan.cost);
+    let report = format!("{}; effort {:.3} (N m)² s, at most 3 N m of the weight's 4.9", found(&plan)?, plan.cost);
     let path = pointed(&plan, Vector3::z());
     let texts =
         ["A top is swung up in 4 s", "by at most 3 N m, where its weight has 4.9 N m on the horizontal", "Its axis"];
