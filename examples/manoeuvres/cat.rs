@@ -9,9 +9,9 @@ use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use liestep_control::{Control, ControlPlan, Target};
 use nalgebra::{SVector, UnitQuaternion, Vector3};
 use workbench::args::Failure;
-use workbench::plot::{BLUE, Line, ORANGE, Panel, PlotResult, Vertical, heading, legend, px, render};
+use workbench::plot::{BLUE, Line, ORANGE, Panel, Vertical};
 
-use crate::{Drawn, found, over_time};
+use crate::{Drawn, Part, found, given, picture};
 
 /// A body with two wheels, whose turns about the body's first and second axis are `t_1` and `t_2`.
 #[lagrangian(
@@ -86,19 +86,15 @@ pub(crate) fn cat() -> Drawn {
         [scalars[3], scalars[4]]
     };
     let torques: Vec<[f64; 2]> = plan.inputs.iter().map(torques).collect();
-    let drawn: PlotResult<String> = render((900, 420), |area| {
-        let below = "no angular momentum at any time; both wheels end where they began, and at rest";
-        heading(area, "A turn of 0.5 rad by two wheels alone", below)?;
-        let (_, body) = area.split_vertically(px(56));
-        let (left, right) = body.split_horizontally(px(400));
-        let lines = vec![Line { colour: BLUE, width: 4, points: wheels(&plan) }];
-        let (across, up, vertical) = ("first wheel, rad", "second wheel, rad", Vertical::Linear);
-        Panel { title: "The wheels' turns", across, up, vertical, function: false, lines }.draw(&left)?;
-        let lines = over_time(plan.stepper.step_size(), &torques);
-        Panel::over_time("Torque on the wheels", "N m", Vertical::Linear, lines).draw(&right)?;
-        legend(&right, (70, 34), &[("first", BLUE), ("second", ORANGE)])
-    });
-    Ok((report, drawn?))
+    let lines = vec![Line { colour: BLUE, width: 4, points: wheels(&plan) }];
+    let (across, up, vertical) = ("first wheel, rad", "second wheel, rad", Vertical::Linear);
+    let names = [("first", BLUE), ("second", ORANGE)];
+    let parts = [
+        Part::Lines(Panel { title: "The wheels' turns", across, up, vertical, function: false, lines }, &[]),
+        given(("Torque on the wheels", "N m", &names), plan.stepper.step_size(), &torques),
+    ];
+    let below = "no angular momentum at any time; both wheels end where they began, and at rest";
+    Ok((report, picture("A turn of 0.5 rad by two wheels alone", below, &parts)?))
 }
 
 #[cfg(test)]

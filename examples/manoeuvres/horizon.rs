@@ -10,9 +10,9 @@ use liestep::{NonstandardInertia, SO3, StateOf, Stepper};
 use liestep_control::{Estimate, Verdict};
 use nalgebra::{DMatrix, Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
 use workbench::args::Failure;
-use workbench::plot::{BLUE, Line, Panel, PlotResult, VERMILION, Vertical, heading, legend, px, render};
+use workbench::plot::{BLUE, Line, Panel, VERMILION, Vertical};
 
-use crate::Drawn;
+use crate::{Drawn, Part, picture};
 
 /// Between two readings, s.
 const STEP: f64 = 0.1;
@@ -238,17 +238,15 @@ pub(crate) fn horizon() -> Drawn {
         };
         vec![of(0, VERMILION), of(1, BLUE)]
     };
-    let drawn: PlotResult<String> = render((900, 420), |area| {
-        let below = "a gyroscope with a bias and one vector, ten times a second; root of the mean square over 20 seeds";
-        heading(area, "Attitude and bias of a body by the last two seconds, and by a Kalman filter", below)?;
-        let (_, body) = area.split_vertically(px(56));
-        let (left, right) = body.split_horizontally(px(450));
-        Panel::over_time("Error of the attitude", "degrees", Vertical::Logarithmic, lines(0, 1.0_f64.to_degrees()))
-            .draw(&left)?;
-        Panel::over_time("Error of the bias", "rad/s", Vertical::Logarithmic, lines(1, 1.0)).draw(&right)?;
-        legend(&left, (200, 40), &[("filter", VERMILION), ("horizon", BLUE)])
-    });
-    Ok((report, drawn?))
+    let names = [("filter", VERMILION), ("horizon", BLUE)];
+    let (degrees, bias) = (lines(0, 1.0_f64.to_degrees()), lines(1, 1.0));
+    let parts = [
+        Part::Lines(Panel::over_time("Error of the attitude", "degrees", Vertical::Logarithmic, degrees), &names),
+        Part::Lines(Panel::over_time("Error of the bias", "rad/s", Vertical::Logarithmic, bias), &names),
+    ];
+    let below = "a gyroscope with a bias and one vector, ten times a second; root of the mean square over 20 seeds";
+    let title = "Attitude and bias of a body by the last two seconds, and by a Kalman filter";
+    Ok((report, picture(title, below, &parts)?))
 }
 
 #[cfg(test)]

@@ -7,9 +7,9 @@ use liestep::numbers::Entries as _;
 use liestep::{NonstandardInertia, SO3, Stepper, force, lagrangian};
 use liestep_control::{Control, Target};
 use nalgebra::{SVector, Vector3};
-use workbench::plot::{BLUE, Line, ORANGE, PURPLE, Panel, PlotResult, Vertical, heading, legend, px, render};
+use workbench::plot::{BLUE, Line, ORANGE, PURPLE, Panel, Vertical};
 
-use crate::{Drawn, found, over_time};
+use crate::{Drawn, Part, found, given, picture};
 
 /// A flyer of mass `m`, and a load of mass `m_load` on a cable that is always taut, which turns with it.
 #[lagrangian(
@@ -86,29 +86,21 @@ pub(crate) fn load() -> Drawn {
     for (flyer, load) in places(false).into_iter().zip(places(true)).step_by(10) {
         lines.push(Line { colour: PURPLE, width: 1, points: vec![flyer, load] });
     }
-    let torques = |input: &Input<_, _>| {
+    let numbers = |input: &Input<_, _>| {
         let scalars: Vec<f64> = input.scalars();
         [scalars[scalars.len() - 4], scalars[scalars.len() - 2]]
     };
-    let given: Vec<[f64; 2]> = plan.inputs.iter().map(torques).collect();
-    let drawn: PlotResult<String> = render((900, 420), |area| {
-        let below = "a flyer of 1 kg with 0.4 kg on a cable, from rest to rest by thrust and torque within bounds";
-        heading(area, "A load on a cable is brought two metres aside and one up in two seconds", below)?;
-        let (_, body) = area.split_vertically(px(56));
-        let (left, right) = body.split_horizontally(px(450));
-        let (across, up, vertical) = ("aside, m", "up, m", Vertical::Linear);
-        Panel { title: "The ways of flyer, load and cable", across, up, vertical, function: false, lines }
-            .draw(&left)?;
-        legend(&left, (70, 34), &[("flyer", BLUE), ("load", ORANGE)])?;
-        let lines = over_time(plan.stepper.step_size(), &given);
-        Panel::over_time(
-            "Thrust, and angular acceleration about the second axis",
-            "N, rad/s²",
-            Vertical::Linear,
-            lines,
-        )
-        .draw(&right)?;
-        legend(&right, (70, 34), &[("thrust", BLUE), ("acceleration", ORANGE)])
-    });
-    Ok((report, drawn?))
+    let numbers: Vec<[f64; 2]> = plan.inputs.iter().map(numbers).collect();
+    let (across, up, vertical) = ("aside, m", "up, m", Vertical::Linear);
+    let names = [("thrust, N", BLUE), ("angular acceleration about the second axis, rad/s²", ORANGE)];
+    let parts = [
+        Part::Lines(
+            Panel { title: "The ways of flyer, load and cable", across, up, vertical, function: false, lines },
+            &[("flyer", BLUE), ("load", ORANGE)],
+        ),
+        given(("Rotors", "", &names), plan.stepper.step_size(), &numbers),
+    ];
+    let below = "a flyer of 1 kg with 0.4 kg on a cable, from rest to rest by thrust and torque within bounds";
+    let title = "A load on a cable is brought two metres aside and one up in two seconds";
+    Ok((report, picture(title, below, &parts)?))
 }

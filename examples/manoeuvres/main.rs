@@ -28,7 +28,7 @@ use std::process::ExitCode;
 use liestep_control::{ControlPlan, Verdict};
 use workbench::args::{Failure, Word, example};
 use workbench::output::{Output, print};
-use workbench::plot::{BLUE, GREEN, Line, ORANGE};
+use workbench::plot::{Colour, Line, Panel, Path, PlotResult, Vertical, heading, legend, px, render, sphere};
 
 const HELP: &str = "Plans motions, and finds one again from its readings
 
@@ -93,14 +93,42 @@ where
     }
 }
 
-/// Values over time, one line for each component; the value of a step is held over it.
-fn over_time<const N: usize>(step: f64, values: &[[f64; N]]) -> Vec<Line> {
+/// A part of a picture: a way on the sphere, or lines with their names.
+enum Part<'a> {
+    Way(Path<'a>),
+    Lines(Panel<'a>, &'a [(&'a str, Colour)]),
+}
+
+/// Parts side by side.
+fn picture(title: &str, below: &str, parts: &[Part<'_>]) -> Result<String, Failure> {
+    let drawn: PlotResult<String> = render((900, 420), |area| {
+        heading(area, title, below)?;
+        let (_, body) = area.split_vertically(px(56));
+        for (area, part) in body.split_evenly((1, parts.len())).iter().zip(parts) {
+            match part {
+                Part::Way(path) => sphere(area, path)?,
+                Part::Lines(panel, names) => {
+                    panel.draw(area)?;
+                    legend(area, (70, 34), names)?;
+                }
+            }
+        }
+        Ok(())
+    });
+    drawn
+}
+
+/// What is given over time, one line for each component: the value of a step is held over it.
+fn given<'a, const N: usize>(
+    (title, up, names): (&'a str, &'a str, &'a [(&'a str, Colour)]),
+    step: f64,
+    values: &[[f64; N]],
+) -> Part<'a> {
     let line = |component: usize| {
-        let points =
-            values.iter().enumerate().flat_map(|(n, value)| [n, n + 1].map(|n| (n as f64 * step, value[component])));
-        Line { colour: [BLUE, ORANGE, GREEN][component % 3], width: 3, points: points.collect() }
+        let held = |(n, value): (usize, &[f64; N])| [n, n + 1].map(|n| (n as f64 * step, value[component]));
+        Line { colour: names[component].1, width: 3, points: values.iter().enumerate().flat_map(held).collect() }
     };
-    (0..N).map(line).collect()
+    Part::Lines(Panel::over_time(title, up, Vertical::Linear, (0..N).map(line).collect()), names)
 }
 
 #[cfg(test)]

@@ -9,12 +9,9 @@ use liestep::motion::Plan;
 use liestep::{NonstandardInertia, SO3, Stepper};
 use liestep_control::{Control, ControlPlan, Cost, Target};
 use nalgebra::{UnitQuaternion, Vector3};
-use workbench::args::Failure;
-use workbench::plot::{
-    BLUE, GREEN, Line, ORANGE, Panel, Path, PlotResult, VERMILION, Vertical, heading, legend, px, render, sphere,
-};
+use workbench::plot::{BLUE, GREEN, Line, ORANGE, Panel, Path, VERMILION, Vertical};
 
-use crate::{Drawn, found, over_time};
+use crate::{Drawn, Part, found, given, picture};
 
 fn turned(angles: [f64; 3]) -> SO3 {
     UnitQuaternion::from_scaled_axis(Vector3::from(angles)).into()
@@ -42,24 +39,9 @@ where
     plan.states.iter().map(|state| state.attitude().as_matrix() * vector).collect()
 }
 
-/// A way on the sphere, and the torques of a plan.
-fn picture(
-    texts: [&str; 3],
-    path: &[Vector3<f64>],
-    axis: (Vector3<f64>, &str),
-    (step, torques): (f64, &[[f64; 3]]),
-) -> Result<String, Failure> {
-    let drawn: PlotResult<String> = render((900, 420), |area| {
-        heading(area, texts[0], texts[1])?;
-        let (_, body) = area.split_vertically(px(56));
-        let (left, right) = body.split_horizontally(px(380));
-        sphere(&left, &Path { title: texts[2], colour: BLUE, width: 4, points: path, axis })?;
-        let torques =
-            Panel::over_time("Torque about the body's axes", "N m", Vertical::Linear, over_time(step, torques));
-        torques.draw(&right)?;
-        legend(&right, (70, 34), &[("1", BLUE), ("2", ORANGE), ("3", GREEN)])
-    });
-    drawn
+/// The torques of a plan over time.
+fn panel(step: f64, torques: &[[f64; 3]]) -> Part<'static> {
+    given(("Torque about the body's axes", "N m", &[("1", BLUE), ("2", ORANGE), ("3", GREEN)]), step, torques)
 }
 
 /// The shortest half turn, beside that about its axis.
@@ -83,34 +65,24 @@ pub(crate) fn half_turn() -> Drawn {
     let report = format!("{}; {:.5} s, about the axis {about_the_axis:.5} s (2√π)", found(&plan)?, plan.duration);
     let polhode: Vec<(f64, f64)> = plan.states.iter().map(|state| (state.momentum().x, state.momentum().z)).collect();
     let most = about_the_axis / 2.0;
-    let drawn: PlotResult<String> = render((900, 420), |area| {
-        let title = format!("Half a turn in {:.4} s, about the axis in {about_the_axis:.4} s", plan.duration);
-        heading(area, &title, "a sphere of 1 kg m², at most 1 N m about each axis, from rest to rest")?;
-        let (_, body) = area.split_vertically(px(56));
-        let (left, rest) = body.split_horizontally(px(290));
-        let (middle, right) = rest.split_horizontally(px(240));
-        let tip = pointed(&plan, Vector3::x());
-        let axis = (Vector3::z(), "axis");
-        sphere(&left, &Path { title: "The body's first axis in space", colour: BLUE, width: 4, points: &tip, axis })?;
-        let lines = vec![
-            Line { colour: VERMILION, width: 4, points: vec![(0.0, 0.0), (0.0, most)] },
-            Line { colour: BLUE, width: 4, points: polhode },
-        ];
-        Panel {
-            title: "Polhode: Ω3 over Ω1",
-            across: "Ω1, rad/s",
-            up: "Ω3, rad/s",
-            vertical: Vertical::Linear,
-            function: false,
-            lines,
-        }
-        .draw(&middle)?;
-        legend(&middle, (66, 34), &[("shortest", BLUE), ("axis", VERMILION)])?;
-        let lines = over_time(plan.stepper.step_size(), &torques(&plan));
-        Panel::over_time("Torque", "N m", Vertical::Linear, lines).draw(&right)?;
-        legend(&right, (70, 34), &[("1", BLUE), ("2", ORANGE), ("3", GREEN)])
-    });
-    Ok((report, drawn?))
+    let tip = pointed(&plan, Vector3::x());
+    let (title, axis) = ("The body's first axis in space", (Vector3::z(), "axis"));
+    let lines = vec![
+        Line { colour: VERMILION, width: 4, points: vec![(0.0, 0.0), (0.0, most)] },
+        Line { colour: BLUE, width: 4, points: polhode },
+    ];
+    let (across, up, vertical) = ("Ω1, rad/s", "Ω3, rad/s", Vertical::Linear);
+    let parts = [
+        Part::Way(Path { title, colour: BLUE, width: 4, points: &tip, axis }),
+        Part::Lines(
+            Panel { title: "Polhode", across, up, vertical, function: false, lines },
+            &[("shortest", BLUE), ("about the axis", VERMILION)],
+        ),
+        panel(plan.stepper.step_size(), &torques(&plan)),
+    ];
+    let title = format!("Half a turn in {:.4} s, about the axis in {about_the_axis:.4} s", plan.duration);
+    let below = "a sphere of 1 kg m², at most 1 N m about each axis, from rest to rest";
+    Ok((report, picture(&title, below, &parts)?))
 }
 
 /// A turn past the sun.
@@ -124,13 +96,10 @@ pub(crate) fn sun() -> Drawn {
     let plan =
         task().keep(move |_, motion| angle.cos() - sun.dot(&(motion.attitude().as_matrix() * Vector3::x()))).solve()?;
     let report = format!("{}; effort {:.4} (N m)² s, {:.4} through the sun", found(&plan)?, plan.cost, free.cost);
-    let path = pointed(&plan, Vector3::x());
-    let texts = [
-        "A turn round the sun",
-        "the least effort with which an instrument along the first axis keeps 0.3 rad away",
-        "Where the instrument looks",
-    ];
-    Ok((report, picture(texts, &path, (sun, "sun"), (0.02, &torques(&plan)))?))
+    let (title, points, axis) = ("Where the instrument looks", &pointed(&plan, Vector3::x()), (sun, "sun"));
+    let way = Part::Way(Path { title, colour: BLUE, width: 4, points, axis });
+    let below = "the least effort with which an instrument along the first axis keeps 0.3 rad away";
+    Ok((report, picture("A turn round the sun", below, &[way, panel(0.02, &torques(&plan))])?))
 }
 
 /// A top is swung up.
@@ -144,8 +113,8 @@ pub(crate) fn top() -> Drawn {
         .guess(|step, axis| if axis == 0 { (0.03 * step as f64).sin() } else { 0.0 })
         .solve()?;
     let report = format!("{}; effort {:.3} (N m)² s, at most 3 N m of the weight's 4.9", found(&plan)?, plan.cost);
-    let path = pointed(&plan, Vector3::z());
-    let texts =
-        ["A top is swung up in 4 s", "by at most 3 N m, where its weight has 4.9 N m on the horizontal", "Its axis"];
-    Ok((report, picture(texts, &path, (Vector3::z(), "up"), (0.02, &torques(&plan)))?))
+    let (title, points, axis) = ("Its axis", &pointed(&plan, Vector3::z()), (Vector3::z(), "up"));
+    let way = Part::Way(Path { title, colour: BLUE, width: 4, points, axis });
+    let below = "by at most 3 N m, where its weight has 4.9 N m on the horizontal";
+    Ok((report, picture("A top is swung up in 4 s", below, &[way, panel(0.02, &torques(&plan))])?))
 }
