@@ -120,6 +120,7 @@ impl Reference {
     }
 
     /// The same by forward differences.
+    #[cfg(test)]
     pub(crate) fn differences(&self, changes: &Numbers, count: usize, free: &[usize]) -> Result<Vec<Row>, Failure> {
         const SMALL: f64 = 1e-7;
         let readings = self.changed(changes).readings(count, false)?;

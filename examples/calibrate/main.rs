@@ -3,7 +3,6 @@
 //! ```text
 //! cargo run --release --example calibrate
 //! cargo run --release --example calibrate -- --quick         three sets of readings in place of twenty
-//! cargo run --release --example calibrate -- --cost          times the Jacobian beside forward differences
 //! ```
 //!
 //! A gyroscope is read a hundred times a second for ten seconds. Twelve numbers determine what it reads: three moments,
@@ -24,9 +23,8 @@ mod picture;
 
 use std::fmt::Write as _;
 use std::process::ExitCode;
-use std::time::Instant;
 
-use body::{NAMES, NOISE, Numbers, Reference, STEP, measured, truth};
+use body::{NAMES, NOISE, Numbers, Reference, measured, truth};
 use fit::{FREE, Fitted, along, fit};
 use nalgebra::DMatrix;
 use workbench::args::{Failure, example};
@@ -38,24 +36,19 @@ const HELP: &str = "Fits the inertia of a top to the readings of a gyroscope
 
 Options:
       --quick           Three sets of readings in place of twenty
-      --cost            Time the Jacobian beside forward differences, and nothing else
       --out <DIR>       The folder for the figure [default: out/calibrate]
   -h, --help            Print this
 ";
 
 fn main() -> ExitCode {
     example(HELP, |words| {
-        let (mut seeds, mut is_cost, mut folder) = (20, false, "out/calibrate".into());
+        let (mut seeds, mut folder) = (20, "out/calibrate".into());
         while let Some(option) = words.option()? {
             match option.as_str() {
                 "quick" => seeds = 3,
-                "cost" => is_cost = true,
                 "out" => folder = words.folder()?,
                 _ => return Err(words.unknown()),
             }
-        }
-        if is_cost {
-            return Ok(print(&cost()?)?);
         }
         let mut output = Output::new(folder)?;
         let mut report = what_is_seen(&truth())?;
@@ -159,41 +152,6 @@ fn table(fits: &[Fitted]) -> Result<String, Failure> {
         "in standard deviations: root of the mean square {spread:.2}, furthest off {worst:.2}, {above} of {count} above 3"
     )?;
     Ok(text)
-}
-
-/// What the Jacobian of all readings costs: the fastest of many, both ways in alternation.
-fn cost() -> Result<String, Failure> {
-    let (reference, changes) = (truth(), Numbers::zeros());
-    // Differences of as many numbers as are fitted.
-    let free: Vec<usize> = (0..FREE).collect();
-    let mut best = [f64::INFINITY; 3];
-    for _ in 0..100 {
-        let mut time = |place: usize, run: &dyn Fn() -> Result<(), Failure>| -> Result<(), Failure> {
-            let start = Instant::now();
-            run()?;
-            best[place] = best[place].min(start.elapsed().as_secs_f64() * 1e3);
-            Ok(())
-        };
-        time(0, &|| reference.readings(READINGS, false).map(drop))?;
-        time(1, &|| reference.jacobian(&changes, READINGS).map(drop))?;
-        time(2, &|| reference.differences(&changes, READINGS, &free).map(drop))?;
-    }
-    let [exact, differences] =
-        [reference.jacobian(&changes, READINGS)?, reference.differences(&changes, READINGS, &free)?];
-    let (mut error, mut size) = (0.0_f64, 0.0_f64);
-    for (exact, found) in exact.iter().zip(&differences) {
-        for &number in &free {
-            error = error.max((exact.column(number) - found.column(number)).amax());
-            size = size.max(exact.column(number).amax());
-        }
-    }
-    let [readings, tangent, forward] = best;
-    Ok(format!(
-        "{READINGS} readings of {} s: {readings:.3} ms\ntheir Jacobian by the tangent map, 12 numbers: {tangent:.3} ms\nby \
-         forward differences, {FREE} numbers: {forward:.3} ms, {:.1} times as long, off by {error:.0e} of {size:.0}\n",
-        READINGS as f64 * STEP,
-        forward / tangent,
-    ))
 }
 
 #[cfg(test)]
