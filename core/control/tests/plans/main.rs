@@ -13,6 +13,9 @@ use liestep::{NonstandardInertia, SO3, StepError, Stepper, force};
 use liestep_control::{Control, ControlError, ControlPlan, Cost, Target, Verdict};
 use nalgebra::{UnitQuaternion, Vector3};
 
+mod estimates;
+mod kept;
+
 type Body = Stepper<RigidBody>;
 /// The shortest.
 const TIME: Cost = Cost { time: 1.0, effort: 0.0 };
@@ -172,6 +175,37 @@ fn random_slews_converge() {
         most = most.max(plan.iterations);
     }
     assert!(most > 2, "the tasks are too easy");
+}
+
+/// Near a plan each iteration doubles the digits, as second derivatives that are right make it: those of steps from turning
+/// to turning, by a torque and by a duration that is free, and those of what is kept.
+#[test]
+fn near_a_plan_the_digits_double() {
+    let residuals = |task: Control<'_, RigidBody, liestep::motion::Declared<RigidBody>>| {
+        let shown = std::cell::RefCell::new(Vec::new());
+        let note = |_: usize, residual: &liestep_control::Residual| {
+            shown.borrow_mut().push(residual.largest());
+            true
+        };
+        let plan = task.progress(note).solve().expect("a task");
+        assert_eq!(plan.verdict, Verdict::Converged, "{:?}", plan.residual);
+        shown.into_inner()
+    };
+    let stepper = body([1.0, 2.0, 2.5], 0.1);
+    let start = stepper.start(turned([0.3, -0.2, 0.5]), Vector3::new(1.0, -0.8, 0.6)).expect("a start");
+    let target = At { attitude: Some(turned([-0.9, 1.1, 0.4])), momentum: Some(Vector3::new(-0.5, 0.9, 1.2)) };
+    let task = || Control::new(&stepper, start, 20, target);
+    let free = task().minimise(Cost { time: 5.0, effort: 1.0 });
+    for (name, task) in [("torque", task()), ("duration", free)] {
+        let residuals = residuals(task);
+        let near = residuals.windows(2).filter(|pair| pair[0] < 1e-2 && pair[0] > 1e-5);
+        let mut count = 0;
+        for pair in near {
+            count += 1;
+            assert!(pair[1] < 1e-10 + 30.0 * pair[0] * pair[0], "{name}: {residuals:?}");
+        }
+        assert!(count > 0, "{name}: {residuals:?}");
+    }
 }
 
 /// A half turn has two ways that cost as much: each is found from its side.
