@@ -2,12 +2,26 @@
 //!
 //! They differ in body, tilt and spin about the looping case of \[RDAE, figure 3.8\].
 
-pub(crate) use checks::any_scalar::Top;
 use liestep::numbers::{Lanes, Real};
 use liestep::prelude::*;
 use nalgebra::{RealField, UnitQuaternion, Vector3};
 
 pub(crate) const TOPS: usize = 8;
+
+/// (3.13) in principal axes.
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
+        - 0.5 * h * weight * w.dot(&(rho + F * rho)),
+)]
+#[derive(Clone)]
+pub(crate) struct Top<T: Real> {
+    pub(crate) J_d: DiagonalNonstandardInertia<T>,
+    weight: T,
+    rho: Vector3<T>,
+    up: Vector3<T>,
+}
 
 /// The top with the given number, and its attitude and velocity.
 #[allow(clippy::cast_precision_loss)] // a top's number, below eight
