@@ -92,7 +92,7 @@ pub(crate) fn load() -> Drawn {
     };
     let numbers: Vec<[f64; 2]> = plan.inputs.iter().map(numbers).collect();
     let (across, up, vertical) = ("aside, m", "up, m", Vertical::Linear);
-    let names = [("thrust, N", BLUE), ("angular acceleration about the second axis, rad/s²", ORANGE)];
+    let names = [("thrust, N", BLUE), ("turning, rad/s²", ORANGE)];
     let parts = [
         Part::Lines(
             Panel { title: "The ways of flyer, load and cable", across, up, vertical, function: false, lines },

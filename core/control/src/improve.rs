@@ -42,7 +42,7 @@ where
         covectors: &[DVector<f64>],
     ) -> Result<(), Option<(usize, StepError)>> {
         self.add_barrier(&mut stages, &mut end);
-        let solution = self.direction(&stages, &end, covectors).ok_or(None)?;
+        let solution = self.direction(stages, &end, covectors).ok_or(None)?;
         let longer = solution.states[0].sum();
         let mut longest = (DURATION * self.course.model.duration / longer.abs()).min(1.0);
         // Cost is in proportion to the duration.
@@ -133,40 +133,46 @@ where
     ///
     /// A cost of time alone has its optimum in a corner, where second derivatives say nothing; on the way there they are those
     /// of a saddle. They are asked for when all corners are known.
-    fn direction(&self, stages: &[Stage], end: &End, covectors: &[DVector<f64>]) -> Option<Solution> {
+    fn direction(&self, mut stages: Vec<Stage>, end: &End, covectors: &[DVector<f64>]) -> Option<Solution> {
         let is_far_from_its_corner = self.control.cost.effort == 0.0 && self.residual.largest() > NEAR;
-        let plain = || solve(stages, end, self.course.model.states() - 2 * Self::DIMENSION);
         let is_nearest = self.is_nearest && self.course.model.constants == 0;
+        let constants = self.course.model.constants;
         if !is_nearest && (self.multipliers.amax() == 0.0 || is_far_from_its_corner) {
-            return plain();
+            return solve(&stages, end, constants);
         }
+        // All else of the stages is there once: memory is what a long plan waits for.
+        let plain: Vec<_> = stages.iter().map(|stage| stage.hessian.clone()).collect();
+        let bent = self.bend(&mut stages, end.clone(), covectors);
+        bent.and_then(|end| self.convex(&mut stages, &end)).or_else(|| {
+            stages.iter_mut().zip(plain).for_each(|(stage, plain)| stage.hessian = plain);
+            solve(&stages, end, constants)
+        })
+    }
+
+    /// Adds the second derivatives of the steps and of what is kept. `None` where a step beside one can't be made.
+    fn bend(&self, stages: &mut [Stage], mut end: End, covectors: &[DVector<f64>]) -> Option<End> {
         let Course { model, states, inputs, .. } = &self.course;
-        let bent = stages.iter().enumerate().map(|(step, stage)| {
-            let bending = model.bending(&states[step], &inputs[step], stage, &covectors[step + 1])?;
-            Some(Stage { hessian: &stage.hessian + bending, ..stage.clone() })
+        for (step, stage) in stages.iter_mut().enumerate() {
+            stage.hessian += model.bending(&states[step], &inputs[step], stage, &covectors[step + 1])?;
+        }
+        let of_sides = self.sides.iter().filter_map(|side| match side.limit {
+            Limit::Kept(place) => Some((place, -side.multiplier)),
+            Limit::Input(..) => None,
         });
-        let bent = bent.collect::<Option<Vec<_>>>().and_then(|mut bent| {
-            let mut end = end.clone();
-            let of_sides = self.sides.iter().filter_map(|side| match side.limit {
-                Limit::Kept(place) => Some((place, -side.multiplier)),
-                Limit::Input(..) => None,
-            });
-            let broken = self.course.broken().filter(|_| self.is_nearest);
-            for (place, weight) in of_sides.chain(broken) {
-                let (step, number) = (1 + place / self.control.kept.len(), place % self.control.kept.len());
-                let value = |state: &StateOf<S, P>| self.control.kept[number](step, state);
-                let curvature = model.curvature(&states[step], &stages[step - 1], value)?;
-                let mut hessian = of_state(&mut bent, &mut end, step).0.view_mut((0, 0), curvature.shape());
-                hessian += curvature * weight;
-            }
-            self.convex(bent, &end)
-        });
-        bent.or_else(plain)
+        let broken = self.course.broken().filter(|_| self.is_nearest);
+        for (place, weight) in of_sides.chain(broken) {
+            let (step, number) = (1 + place / self.control.kept.len(), place % self.control.kept.len());
+            let value = |state: &StateOf<S, P>| self.control.kept[number](step, state);
+            let curvature = model.curvature(&states[step], &stages[step - 1], value)?;
+            let mut hessian = of_state(stages, &mut end, step).0.view_mut((0, 0), curvature.shape());
+            hessian += curvature * weight;
+        }
+        Some(end)
     }
 
     /// The solution of a programme, made convex where it isn't: by a square of the condition, which changes its solution in
     /// nothing, and by a damping of the inputs.
-    fn convex(&self, mut stages: Vec<Stage>, end: &End) -> Option<Solution> {
+    fn convex(&self, stages: &mut [Stage], end: &End) -> Option<Solution> {
         let (states, size, mut damped) = (self.course.model.states(), self.multipliers.norm(), 0.0);
         let of_inputs =
             stages.iter().flat_map(|stage| stage.hessian.diagonal().iter().skip(states).copied().collect::<Vec<_>>());
@@ -177,7 +183,7 @@ where
             of_inputs.fold(f64::INFINITY, |least, entry| least.min(entry.abs())).max(f64::MIN_POSITIVE)
         };
         CONVEX.into_iter().find_map(|(weight, damping)| {
-            for stage in &mut stages {
+            for stage in &mut *stages {
                 for k in states..stage.hessian.nrows() {
                     stage.hessian[(k, k)] += (damping - damped) * least;
                 }
@@ -185,7 +191,7 @@ where
             damped = damping;
             let hessian = &end.hessian + end.by_state.tr_mul(&end.by_state) * (weight * size);
             let gradient = &end.gradient + end.by_state.tr_mul(&end.miss) * (weight * size);
-            solve(&stages, &End { hessian, gradient, ..end.clone() }, states - 2 * Self::DIMENSION)
+            solve(stages, &End { hessian, gradient, ..end.clone() }, self.course.model.constants)
         })
     }
 

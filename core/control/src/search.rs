@@ -228,7 +228,7 @@ where
                 break Verdict::Cancelled;
             }
             let Residual { stationarity, complementarity, .. } = self.residual;
-            if self.is_nearest && stationarity.max(complementarity) <= tolerance.max(1e-9) {
+            if self.is_nearest && stationarity.max(complementarity) <= 1e-9 {
                 break self.nearest(&stages, &covectors);
             }
             if !self.is_nearest && self.residual.largest() <= tolerance {

@@ -1,7 +1,7 @@
 //! Motions from readings.
 
+use liestep::effects::Gravity;
 use liestep::groups::R1;
-use liestep::lagrangian;
 use liestep::motion::Motion;
 use liestep_control::Estimate;
 use nalgebra::{DMatrix, DVector, Vector1};

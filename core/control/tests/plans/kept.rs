@@ -106,3 +106,30 @@ fn what_cannot_be_kept_has_a_certificate() {
         assert!((direction.iter().map(|entry| entry * entry).sum::<f64>() - 1.0).abs() < 1e-12);
     }
 }
+
+/// Bodies of all kinds, turned past a sun that is in the middle of the way: most are found, to what can be asked for here, and
+/// the others are said not to be.
+#[test]
+fn random_turns_past_a_sun() {
+    let mut random = Random::new(11);
+    let (mut tried, mut found) = (0, 0);
+    while tried < 20 {
+        let sides: Vector3<f64> = random.sample::<Vector3<f64>>().map(|side| 1.0 + 0.8 * side);
+        let squares = sides.component_mul(&sides);
+        let moments = [squares.y + squares.z, squares.z + squares.x, squares.x + squares.y];
+        let (angles, sun) = (random.sample::<Vector3<f64>>() * 1.7, random.sample::<Vector3<f64>>().normalize());
+        let near = |share: f64| sun.dot(&(turned((angles * share).into()).matrix() * Vector3::x())).acos();
+        if near(0.0) < 0.35 || near(1.0) < 0.35 || near(0.5) > 0.3 {
+            continue;
+        }
+        tried += 1;
+        let (stepper, bound) = (body(moments, 0.05), 12.0 * moments.into_iter().fold(0.0, f64::max));
+        let task = slew(&stepper, 40, angles.into()).bounds(move |_, _| (-bound, bound)).keep(away_from(sun, 0.3));
+        let plan = task.until(1e-6, 100).solve().expect("a task");
+        let is_found = plan.verdict == Verdict::Converged;
+        assert!(is_found == (plan.residual.largest() <= 1e-6), "{:?}, {:?}", plan.verdict, plan.residual);
+        found += usize::from(is_found);
+    }
+    println!("{found} of {tried}");
+    assert!(found >= 17, "{found} of {tried}");
+}
