@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use quote::ToTokens as _;
 use syn::{BinOp, Expr, ExprLit, Lit, Local, Pat, Stmt};
 
 use crate::declared::Declaration;
@@ -89,10 +90,10 @@ pub(super) fn value(expression: &Expr, env: &Env) -> Option<Matrix> {
                 "norm" => Matrix::scalar(receiver.transpose().times(&receiver).trace().sqrt()),
                 "dot" => Matrix::scalar(receiver.transpose().times(&other?).trace()),
                 "cross" => receiver.hat().times(&other?),
-                "powi" => match first? {
-                    Expr::Lit(ExprLit { lit: Lit::Int(n), .. }) => Matrix::scalar(x?.powi(n.base10_parse().ok()?)),
-                    _ => return None,
-                },
+                "powi" => {
+                    let exponent = first?.to_token_stream().to_string().replace(' ', "");
+                    Matrix::scalar(x?.powi(exponent.parse().ok()?))
+                }
                 "sqrt" => Matrix::scalar(x?.sqrt()),
                 "sin" => Matrix::scalar(x?.sin()),
                 "cos" => Matrix::scalar(x?.cos()),
