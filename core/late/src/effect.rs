@@ -8,83 +8,97 @@ use liestep::numbers::{Blocks, Coordinates, Entries, Real, real};
 use liestep_derivation::{Array, MOST_TERMS, Stages};
 
 use crate::carried::Slots;
-use crate::code::{Arrays, Backend, Interpreted};
+use crate::code::{Backend, Given, Interpreted};
 use crate::declaration::{All, Declaration, Ready, ready};
-use crate::term::{Late, is_finite};
+use crate::term::{Late, entries, is_finite};
 
 type Matrix<G> = <G as LieGroup>::Matrix;
 type Vector<G> = <G as LieGroup>::Vector;
 type Square<G> = <Vector<G> as Coordinates<<G as LieGroup>::Scalar>>::Square;
 
-/// The entries of small values, on the stack.
-struct List<T> {
-    entries: [T; 18],
-    more: Vec<T>,
-    length: usize,
+/// Does something with the entries of a value, which stand where its size says that there is room.
+#[inline]
+fn listed<T: Real, V: Entries<T>, R>(value: &V, then: impl FnOnce(&[T]) -> R) -> R {
+    // What isn't used costs time to clear.
+    if const { size_of::<V>() <= 3 * size_of::<T>() } {
+        then(filled(value, &mut [T::zero(); 3]))
+    } else if const { size_of::<V>() <= 9 * size_of::<T>() } {
+        then(filled(value, &mut [T::zero(); 9]))
+    } else if const { size_of::<V>() <= 18 * size_of::<T>() } {
+        then(filled(value, &mut [T::zero(); 18]))
+    } else {
+        then(filled(value, &mut vec![T::zero(); size_of::<V>() / size_of::<T>()]))
+    }
 }
 
-impl<T: Real> List<T> {
-    fn of(value: &impl Entries<T>) -> Self {
-        let mut list = Self { entries: [T::zero(); 18], more: Vec::new(), length: 0 };
-        value.each(&mut |entry| {
-            match list.entries.get_mut(list.length) {
-                Some(place) => *place = entry,
-                None if list.more.is_empty() => {
-                    list.more = list.entries.to_vec();
-                    list.more.push(entry);
-                }
-                None => list.more.push(entry),
-            }
-            list.length += 1;
-        });
-        list
-    }
-
-    fn get(&self) -> &[T] {
-        if self.more.is_empty() { &self.entries[..self.length] } else { &self.more }
-    }
+#[inline]
+fn filled<'a, T: Real>(value: &impl Entries<T>, room: &'a mut [T]) -> &'a [T] {
+    let mut length = 0;
+    value.each(&mut |entry| {
+        if let Some(place) = room.get_mut(length) {
+            *place = entry;
+        }
+        length += 1;
+    });
+    room.get(..length).unwrap_or(room)
 }
 
 /// Runs a program, and makes something of what comes out.
-fn run<T: Real, B: Backend<T>, R>(
+#[inline]
+fn run<T: Real, B: Backend<T>, R, const N: usize>(
     program: &Ready<B::Code>,
     image: &B::Image,
-    arrays: &Arrays<T>,
+    given: Given<'_, T, N>,
     make: impl FnOnce(&[T]) -> R,
 ) -> R {
     let in_place = |outputs: &mut [T]| {
-        B::run(&program.code, image, arrays, outputs);
+        B::run(&program.code, image, given, outputs);
         make(outputs)
     };
     // What isn't used costs time to clear.
     match program.outputs {
-        count @ 0..=12 => in_place(&mut [T::zero(); 12][..count]),
-        count @ 13..=48 => in_place(&mut [T::zero(); 48][..count]),
+        0..=3 if const { size_of::<R>() <= 3 * size_of::<T>() } => in_place(&mut [T::zero(); 3]),
+        0..=12 => in_place(&mut [T::zero(); 12]),
+        13..=48 => in_place(&mut [T::zero(); 48]),
         count => in_place(&mut vec![T::zero(); count]),
     }
 }
 
 /// The same of a program that knows no constants.
-fn run_alone<T: Real, B: Backend<T>, R>(
+fn run_alone<T: Real, B: Backend<T>, R, const N: usize>(
     program: &Ready<B::Code>,
-    arrays: &Arrays<T>,
+    given: Given<'_, T, N>,
     make: impl FnOnce(&[T]) -> R,
 ) -> R {
-    run::<T, B, R>(program, &B::image(&program.code, &[]), arrays, make)
+    run::<T, B, R, N>(program, &B::image(&program.code, &[]), given, make)
 }
 
 /// The first of these numbers as a vector.
+#[inline]
 fn vector<T: Real, V: Entries<T>>(outputs: &[T]) -> V {
-    let mut outputs = outputs.iter().copied();
-    V::from_entries(&mut || outputs.next().unwrap_or_else(|| real(f64::NAN)))
+    let mut at = 0;
+    V::from_entries(&mut || {
+        at += 1;
+        number(outputs, at - 1)
+    })
 }
 
 /// The same as a square matrix, row by row.
+#[inline]
 fn square<G: LieGroup>(outputs: &[G::Scalar]) -> Square<G> {
     Vector::<G>::square(|column| {
-        let mut entries = outputs.iter().skip(column).step_by(G::DIMENSION).copied();
-        Vector::<G>::from_entries(&mut || entries.next().unwrap_or_else(|| real(f64::NAN)))
+        let mut at = column;
+        Vector::<G>::from_entries(&mut || {
+            at += G::DIMENSION;
+            number(outputs, at - G::DIMENSION)
+        })
     })
+}
+
+/// No step takes NaN for a number.
+#[inline]
+fn number<T: Real>(outputs: &[T], at: usize) -> T {
+    outputs.get(at).copied().unwrap_or_else(|| real(f64::NAN))
 }
 
 /// The constants of a step.
@@ -167,16 +181,16 @@ where
         (f, w, h): (&Matrix<G>, &W, G::Scalar),
         make: impl FnOnce(&[G::Scalar]) -> R,
     ) -> R {
-        let (element, advected) = (List::of(f), List::of(w));
-        let inverse = program.reads(Array::Inverse).then(|| List::of(&G::from_matrix_unchecked(*f).inverse().matrix()));
-        let arrays = Arrays::of([
+        let inverse = program.reads(Array::Inverse).then(|| G::from_matrix_unchecked(*f).inverse().matrix());
+        let (element, advected, inverse) = (entries(f), entries(w), inverse.map_or_else(Vec::new, |it| entries(&it)));
+        let given = [
             (Array::Step, std::slice::from_ref(&h)),
             (Array::Parameters, &self.numbers),
-            (Array::Advected, advected.get()),
-            (Array::Element, element.get()),
-            (Array::Inverse, inverse.as_ref().map_or(&[], List::get)),
-        ]);
-        run_alone::<_, B, _>(program, &arrays, make)
+            (Array::Advected, &advected),
+            (Array::Element, &element),
+            (Array::Inverse, &inverse),
+        ];
+        run_alone::<_, B, _, _>(program, given, make)
     }
 
     /// A term of a Lagrangian, of which a force has none.
@@ -251,24 +265,22 @@ where
     }
 
     fn limit(&self, velocity: Option<&Vector<G>>, w: &W) -> Limit<Self> {
-        let (advected, given) = (List::of(w), velocity.map(List::of));
-        let arrays = Arrays::of([
-            (Array::Parameters, &*self.numbers),
-            (Array::Advected, advected.get()),
-            (Array::Velocity, given.as_ref().map_or(&[], List::get)),
-        ]);
-        if let (Some(_), Some([l, momentum, hessian])) = (velocity, &self.stages.at_velocity) {
-            return Limit {
-                l: run_alone::<_, B, _>(l, &arrays, |outputs| outputs[0]),
-                momentum: run_alone::<_, B, _>(momentum, &arrays, vector),
-                hessian: run_alone::<_, B, _>(hessian, &arrays, square::<G>),
-            };
-        }
-        let entries = G::DIMENSION * G::DIMENSION;
-        run_alone::<_, B, _>(&self.stages.at_rest, &arrays, |outputs| {
-            let (inertia, bias) = (square::<G>(outputs), vector(&outputs[entries..]));
-            Limit::quadratic(velocity, inertia, bias, outputs[entries + G::DIMENSION])
-        })
+        let of = |advected: &[G::Scalar], given: &[G::Scalar]| {
+            let arrays = [(Array::Parameters, &*self.numbers), (Array::Advected, advected), (Array::Velocity, given)];
+            if let (Some(_), Some([l, momentum, hessian])) = (velocity, &self.stages.at_velocity) {
+                return Limit {
+                    l: run_alone::<_, B, _, _>(l, arrays, |outputs| outputs[0]),
+                    momentum: run_alone::<_, B, _, _>(momentum, arrays, vector),
+                    hessian: run_alone::<_, B, _, _>(hessian, arrays, square::<G>),
+                };
+            }
+            let entries = G::DIMENSION * G::DIMENSION;
+            run_alone::<_, B, _, _>(&self.stages.at_rest, arrays, |outputs| {
+                let (inertia, bias) = (square::<G>(outputs), vector(&outputs[entries..]));
+                Limit::quadratic(velocity, inertia, bias, outputs[entries + G::DIMENSION])
+            })
+        };
+        listed(w, |advected| listed(velocity.unwrap_or(&Vector::<G>::zero()), |velocity| of(advected, velocity)))
     }
 
     fn with_energy(&self, w: &W, energy: G::Scalar) -> Option<(W, G::Scalar)> {
@@ -283,8 +295,9 @@ where
     }
 
     fn constants(&self, h: G::Scalar) -> Self::Constants {
-        let arrays = Arrays::of([(Array::Step, std::slice::from_ref(&h)), (Array::Parameters, &*self.numbers)]);
-        let numbers = run_alone::<_, B, _>(&self.stages.constants, &arrays, <[G::Scalar]>::to_vec);
+        let given = [(Array::Step, std::slice::from_ref(&h)), (Array::Parameters, &*self.numbers)];
+        let constants = &self.stages.constants;
+        let numbers = run_alone::<_, B, _, _>(constants, given, |outputs| outputs[..constants.outputs].to_vec());
         let programs = self.specialise.map(|specialise| specialise(&self.declaration.programs, &numbers));
         // What is too large now was too large before, and isn't here.
         let own = programs.and_then(|programs| ready::<G::Scalar, B>(&programs).ok());
@@ -296,41 +309,45 @@ where
         constants.0.numbers.iter().all(is_finite)
     }
 
+    #[inline]
     fn kick_before(constants: &Self::Constants, w: &W) -> Vector<G> {
-        let advected = List::of(w);
-        let arrays = Arrays::of([(Array::Constants, &*constants.0.numbers), (Array::Advected, advected.get())]);
-        run::<_, B, _>(&constants.0.stages.kick_before, &constants.0.kick_before, &arrays, vector)
+        let folded = &*constants.0;
+        listed(w, |advected| {
+            let given = [(Array::Constants, &*folded.numbers), (Array::Advected, advected)];
+            run::<_, B, _, _>(&folded.stages.kick_before, &folded.kick_before, given, vector)
+        })
     }
 
     fn kick_derivative(constants: &Self::Constants, w: &W, velocity: &Vector<G>) -> Option<Vector<G>> {
         let folded = &*constants.0;
         let (program, image) = (folded.stages.kick_derivative.as_ref()?, folded.kick_derivative.as_ref()?);
-        let (advected, velocity) = (List::of(w), List::of(velocity));
-        let arrays = Arrays::of([
-            (Array::Constants, &*folded.numbers),
-            (Array::Advected, advected.get()),
-            (Array::Velocity, velocity.get()),
-        ]);
-        Some(run::<_, B, _>(program, image, &arrays, vector))
+        let known = (Array::Constants, &*folded.numbers);
+        Some(listed(w, |advected| {
+            listed(velocity, |velocity| {
+                let given = [known, (Array::Advected, advected), (Array::Velocity, velocity)];
+                run::<_, B, _, _>(program, image, given, vector)
+            })
+        }))
     }
 
+    #[inline]
     fn step_terms(constants: &Self::Constants, a: &Vector<G>, w: &W) -> Self::StepTerms {
         let folded = &*constants.0;
-        let mut numbers = [real::<G::Scalar>(0.0); MOST_TERMS];
+        let mut terms = StepTerms { right_side: *a, advected: *w, numbers: [real(0.0); MOST_TERMS] };
         // Where there is nothing to solve, nobody reads them.
-        if !folded.declaration.parts.unknown {
-            return StepTerms { right_side: *a, advected: *w, numbers };
+        if folded.declaration.parts.unknown {
+            listed(a, |target| {
+                listed(w, |advected| {
+                    let given =
+                        [(Array::Constants, &*folded.numbers), (Array::Target, target), (Array::Advected, advected)];
+                    B::run(&folded.stages.terms.code, &folded.terms, given, &mut terms.numbers);
+                });
+            });
         }
-        let (target, advected) = (List::of(a), List::of(w));
-        let arrays = Arrays::of([
-            (Array::Constants, &*folded.numbers),
-            (Array::Target, target.get()),
-            (Array::Advected, advected.get()),
-        ]);
-        B::run(&folded.stages.terms.code, &folded.terms, &arrays, &mut numbers[..folded.stages.terms.outputs]);
-        StepTerms { right_side: *a, advected: *w, numbers }
+        terms
     }
 
+    #[inline]
     fn newton_system(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> (Vector<G>, Square<G>) {
         let folded = &*constants.0;
         let program = (&folded.stages.newton_system, &folded.newton_system);
@@ -345,6 +362,7 @@ where
         (residual, Vector::<G>::square(|k| jacobian * Vector::<G>::column(&tangent, k)))
     }
 
+    #[inline]
     fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> Residual<Vector<G>> {
         let folded = &*constants.0;
         let program = (&folded.stages.newton_residual, &folded.newton_residual);
@@ -354,22 +372,28 @@ where
         })
     }
 
+    #[inline]
     fn kick_after(constants: &Self::Constants, increment: &Matrix<G>, next: &W) -> Vector<G> {
         let folded = &*constants.0;
-        let program = &folded.stages.kick_after;
-        let (entries, next) = (List::of(increment), List::of(next));
-        let inverse = program.reads(Array::Inverse).then(|| List::of(&G::from_increment(increment).inverse().matrix()));
-        let arrays = Arrays::of([
-            (Array::Constants, &*folded.numbers),
-            (Array::Increment, entries.get()),
-            (Array::Next, next.get()),
-            (Array::Inverse, inverse.as_ref().map_or(&[], List::get)),
-        ]);
-        run::<_, B, _>(program, &folded.kick_after, &arrays, vector)
+        let (program, image) = (&folded.stages.kick_after, &folded.kick_after);
+        listed(next, |next| {
+            listed(increment, |entries| {
+                let (known, next) = ((Array::Constants, &*folded.numbers), (Array::Next, next));
+                let increment_of = (Array::Increment, entries);
+                if !program.reads(Array::Inverse) {
+                    return run::<_, B, _, _>(program, image, [known, increment_of, next], vector);
+                }
+                listed(&G::from_increment(increment).inverse().matrix(), |inverse| {
+                    let given = [known, increment_of, next, (Array::Inverse, inverse)];
+                    run::<_, B, _, _>(program, image, given, vector)
+                })
+            })
+        })
     }
 }
 
 /// What an iteration computes.
+#[inline]
 fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>, R>(
     (program, image): (&Ready<B::Code>, &B::Image),
     folded: &Folded<G::Scalar, B>,
@@ -380,25 +404,34 @@ fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>, R>(
 where
     CayleyRetraction: Retraction<G>,
 {
-    let coordinates = List::of(half);
-    // Off SO(3) the system is written in the increment.
-    let increment =
-        folded.declaration.in_increment.then(|| <CayleyRetraction as Retraction<G>>::increment_of_half(half));
-    let inverse = increment.filter(|_| program.reads(Array::InverseIncrement)).map(|it| G::inverse_increment(&it));
-    let [increment, inverse] = [increment, inverse].map(|matrix| matrix.map(|matrix| List::of(&matrix)));
-    // Of many terms some are computed anew.
-    let target = program.reads(Array::Target).then(|| List::of(&terms.right_side));
-    let advected = program.reads(Array::Advected).then(|| List::of(&terms.advected));
-    let arrays = Arrays::of([
-        (Array::Constants, &*folded.numbers),
-        (Array::Terms, &terms.numbers),
-        (Array::Half, coordinates.get()),
-        (Array::Increment, increment.as_ref().map_or(&[], List::get)),
-        (Array::InverseIncrement, inverse.as_ref().map_or(&[], List::get)),
-        (Array::Target, target.as_ref().map_or(&[], List::get)),
-        (Array::Advected, advected.as_ref().map_or(&[], List::get)),
-    ]);
-    run::<_, B, _>(program, image, &arrays, make)
+    listed(half, |coordinates| {
+        let (constants, numbers) = ((Array::Constants, &*folded.numbers), (Array::Terms, &terms.numbers[..]));
+        let coordinates = (Array::Half, coordinates);
+        // Of many terms some are computed anew, and off SO(3) the system is written in the increment.
+        let more = [Array::Target, Array::Advected, Array::Increment, Array::InverseIncrement];
+        if !more.into_iter().any(|array| program.reads(array)) {
+            return run::<_, B, _, _>(program, image, [constants, numbers, coordinates], make);
+        }
+        let increment = <CayleyRetraction as Retraction<G>>::increment_of_half(half);
+        let is_read = program.reads(Array::InverseIncrement);
+        let inverse = if is_read { G::inverse_increment(&increment) } else { increment };
+        listed(&(increment, inverse), |both| {
+            listed(&(terms.right_side, terms.advected), |read| {
+                let (increment, inverse) = both.split_at(both.len() / 2);
+                let (target, advected) = read.split_at(G::DIMENSION.min(read.len()));
+                let given = [
+                    constants,
+                    numbers,
+                    coordinates,
+                    (Array::Increment, increment),
+                    (Array::InverseIncrement, inverse),
+                    (Array::Target, target),
+                    (Array::Advected, advected),
+                ];
+                run::<_, B, _, _>(program, image, given, make)
+            })
+        })
+    })
 }
 
 impl<G, W, K, B> DiscreteLagrangian for Late<G, W, K, B>

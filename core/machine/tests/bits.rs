@@ -15,7 +15,7 @@ use liestep::groups::{CayleyRetraction, LieGroup, Retraction, SE3};
 use liestep::laws::samples::Random;
 use liestep::mechanics::{Effect, WithEitherKinetic};
 use liestep::{SO3, Stepper};
-use liestep_late::{Array, Arrays, Backend, Declaration, Interpreted, Late, LateError, Operation, Program, Source};
+use liestep_late::{Array, Backend, Declaration, Interpreted, Late, LateError, Operation, Program, Source};
 use liestep_machine::Machine;
 use nalgebra::{Vector3, Vector4};
 
@@ -54,9 +54,9 @@ fn outputs<B: Backend<f64>>(program: &Program, arrays: &[Vec<f64>]) -> Vec<u64> 
 fn outputs_of<B: Backend<f64>>(code: &B::Code, program: &Program, arrays: &[Vec<f64>]) -> Vec<u64> {
     let [constants, terms, advected, next, element, increment, inverse, inverse_increment, half, velocity, target] =
         std::array::from_fn(|at| arrays[at + 2].as_slice());
-    let arrays = Arrays::of([
-        (Array::Step, &arrays[0]),
-        (Array::Parameters, &arrays[1]),
+    let given = [
+        (Array::Step, &*arrays[0]),
+        (Array::Parameters, &*arrays[1]),
         (Array::Constants, constants),
         (Array::Terms, terms),
         (Array::Advected, advected),
@@ -68,9 +68,9 @@ fn outputs_of<B: Backend<f64>>(code: &B::Code, program: &Program, arrays: &[Vec<
         (Array::Half, half),
         (Array::Velocity, velocity),
         (Array::Target, target),
-    ]);
+    ];
     let mut numbers = vec![0.0; program.outputs.len()];
-    B::run(code, &B::image(code, constants), &arrays, &mut numbers);
+    B::run(code, &B::image(code, constants), given, &mut numbers);
     // Which NaN one is depends on the order of operands, which is the compiler's.
     numbers.into_iter().map(|number| if number.is_nan() { u64::MAX } else { number.to_bits() }).collect()
 }
