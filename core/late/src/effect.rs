@@ -17,7 +17,7 @@ type Vector<G> = <G as LieGroup>::Vector;
 type Square<G> = <Vector<G> as Coordinates<<G as LieGroup>::Scalar>>::Square;
 
 /// Does something with the entries of a value, which stand where its size says that there is room.
-#[inline]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn listed<T: Real, V: Entries<T>, R>(value: &V, then: impl FnOnce(&[T]) -> R) -> R {
     // What isn't used costs time to clear.
     if const { size_of::<V>() <= 3 * size_of::<T>() } {
@@ -31,7 +31,7 @@ fn listed<T: Real, V: Entries<T>, R>(value: &V, then: impl FnOnce(&[T]) -> R) ->
     }
 }
 
-#[inline]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn filled<'a, T: Real>(value: &impl Entries<T>, room: &'a mut [T]) -> &'a [T] {
     let mut length = 0;
     value.each(&mut |entry| {
@@ -44,24 +44,36 @@ fn filled<'a, T: Real>(value: &impl Entries<T>, room: &'a mut [T]) -> &'a [T] {
 }
 
 /// Runs a program, and makes something of what comes out.
-#[inline]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn run<T: Real, B: Backend<T>, R, const N: usize>(
     program: &Ready<B::Code>,
     image: &B::Image,
     given: Given<'_, T, N>,
     make: impl FnOnce(&[T]) -> R,
 ) -> R {
-    let in_place = |outputs: &mut [T]| {
-        B::run(&program.code, image, given, outputs);
-        make(outputs)
-    };
     // What isn't used costs time to clear.
-    match program.outputs {
-        0..=3 if const { size_of::<R>() <= 3 * size_of::<T>() } => in_place(&mut [T::zero(); 3]),
-        0..=12 => in_place(&mut [T::zero(); 12]),
-        13..=48 => in_place(&mut [T::zero(); 48]),
-        count => in_place(&mut vec![T::zero(); count]),
+    if const { size_of::<R>() <= 3 * size_of::<T>() } && program.outputs <= 3 {
+        into::<T, B, R, N>(program, image, given, &mut [T::zero(); 3], make)
+    } else if program.outputs <= 12 {
+        into::<T, B, R, N>(program, image, given, &mut [T::zero(); 12], make)
+    } else if const { size_of::<R>() > 12 * size_of::<T>() } && program.outputs <= 48 {
+        into::<T, B, R, N>(program, image, given, &mut [T::zero(); 48], make)
+    } else {
+        into::<T, B, R, N>(program, image, given, &mut vec![T::zero(); program.outputs], make)
     }
+}
+
+/// By this room for the outputs.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn into<T: Real, B: Backend<T>, R, const N: usize>(
+    program: &Ready<B::Code>,
+    image: &B::Image,
+    given: Given<'_, T, N>,
+    outputs: &mut [T],
+    make: impl FnOnce(&[T]) -> R,
+) -> R {
+    B::run(&program.code, image, given, outputs);
+    make(outputs)
 }
 
 /// The same of a program that knows no constants.
@@ -74,7 +86,7 @@ fn run_alone<T: Real, B: Backend<T>, R, const N: usize>(
 }
 
 /// The first of these numbers as a vector.
-#[inline]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn vector<T: Real, V: Entries<T>>(outputs: &[T]) -> V {
     let mut at = 0;
     V::from_entries(&mut || {
@@ -84,19 +96,22 @@ fn vector<T: Real, V: Entries<T>>(outputs: &[T]) -> V {
 }
 
 /// The same as a square matrix, row by row.
-#[inline]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn square<G: LieGroup>(outputs: &[G::Scalar]) -> Square<G> {
-    Vector::<G>::square(|column| {
-        let mut at = column;
-        Vector::<G>::from_entries(&mut || {
-            at += G::DIMENSION;
-            number(outputs, at - G::DIMENSION)
-        })
-    })
+    Vector::<G>::square(
+        #[cfg_attr(not(debug_assertions), inline(always))]
+        |column| {
+            let mut at = column;
+            Vector::<G>::from_entries(&mut || {
+                at += G::DIMENSION;
+                number(outputs, at - G::DIMENSION)
+            })
+        },
+    )
 }
 
 /// No step takes NaN for a number.
-#[inline]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn number<T: Real>(outputs: &[T], at: usize) -> T {
     outputs.get(at).copied().unwrap_or_else(|| real(f64::NAN))
 }
@@ -280,7 +295,11 @@ where
                 Limit::quadratic(velocity, inertia, bias, outputs[entries + G::DIMENSION])
             })
         };
-        listed(w, |advected| listed(velocity.unwrap_or(&Vector::<G>::zero()), |velocity| of(advected, velocity)))
+        listed(
+            w,
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            |advected| listed(velocity.unwrap_or(&Vector::<G>::zero()), |velocity| of(advected, velocity)),
+        )
     }
 
     fn with_energy(&self, w: &W, energy: G::Scalar) -> Option<(W, G::Scalar)> {
@@ -309,52 +328,79 @@ where
         constants.0.numbers.iter().all(is_finite)
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn kick_before(constants: &Self::Constants, w: &W) -> Vector<G> {
         let folded = &*constants.0;
-        listed(w, |advected| {
-            let given = [(Array::Constants, &*folded.numbers), (Array::Advected, advected)];
-            run::<_, B, _, _>(&folded.stages.kick_before, &folded.kick_before, given, vector)
-        })
+        listed(
+            w,
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            |advected| {
+                let given = [(Array::Constants, &*folded.numbers), (Array::Advected, advected)];
+                run::<_, B, _, _>(&folded.stages.kick_before, &folded.kick_before, given, vector)
+            },
+        )
     }
 
     fn kick_derivative(constants: &Self::Constants, w: &W, velocity: &Vector<G>) -> Option<Vector<G>> {
         let folded = &*constants.0;
         let (program, image) = (folded.stages.kick_derivative.as_ref()?, folded.kick_derivative.as_ref()?);
         let known = (Array::Constants, &*folded.numbers);
-        Some(listed(w, |advected| {
-            listed(velocity, |velocity| {
-                let given = [known, (Array::Advected, advected), (Array::Velocity, velocity)];
-                run::<_, B, _, _>(program, image, given, vector)
-            })
-        }))
+        Some(listed(
+            w,
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            |advected| {
+                listed(
+                    velocity,
+                    #[cfg_attr(not(debug_assertions), inline(always))]
+                    |velocity| {
+                        let given = [known, (Array::Advected, advected), (Array::Velocity, velocity)];
+                        run::<_, B, _, _>(program, image, given, vector)
+                    },
+                )
+            },
+        ))
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn step_terms(constants: &Self::Constants, a: &Vector<G>, w: &W) -> Self::StepTerms {
         let folded = &*constants.0;
         let mut terms = StepTerms { right_side: *a, advected: *w, numbers: [real(0.0); MOST_TERMS] };
         // Where there is nothing to solve, nobody reads them.
         if folded.declaration.parts.unknown {
-            listed(a, |target| {
-                listed(w, |advected| {
-                    let given =
-                        [(Array::Constants, &*folded.numbers), (Array::Target, target), (Array::Advected, advected)];
-                    B::run(&folded.stages.terms.code, &folded.terms, given, &mut terms.numbers);
-                });
-            });
+            listed(
+                a,
+                #[cfg_attr(not(debug_assertions), inline(always))]
+                |target| {
+                    listed(
+                        w,
+                        #[cfg_attr(not(debug_assertions), inline(always))]
+                        |advected| {
+                            let given = [
+                                (Array::Constants, &*folded.numbers),
+                                (Array::Target, target),
+                                (Array::Advected, advected),
+                            ];
+                            B::run(&folded.stages.terms.code, &folded.terms, given, &mut terms.numbers);
+                        },
+                    );
+                },
+            );
         }
         terms
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn newton_system(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> (Vector<G>, Square<G>) {
         let folded = &*constants.0;
         let program = (&folded.stages.newton_system, &folded.newton_system);
-        let (residual, jacobian): (Vector<G>, Square<G>) =
-            iteration::<G, W, B, _>(program, folded, terms, half, |outputs| {
-                (vector(outputs), square::<G>(&outputs[G::DIMENSION..]))
-            });
+        let (residual, jacobian): (Vector<G>, Square<G>) = iteration::<G, W, B, _>(
+            program,
+            folded,
+            terms,
+            half,
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            |outputs| (vector(outputs), square::<G>(&outputs[G::DIMENSION..])),
+        );
         if !folded.declaration.in_increment {
             return (residual, jacobian);
         }
@@ -362,38 +408,53 @@ where
         (residual, Vector::<G>::square(|k| jacobian * Vector::<G>::column(&tangent, k)))
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> Residual<Vector<G>> {
         let folded = &*constants.0;
         let program = (&folded.stages.newton_residual, &folded.newton_residual);
-        iteration::<G, W, B, _>(program, folded, terms, half, |outputs| Residual {
-            momentum_defect: vector(outputs),
-            moving_kick: folded.declaration.is_expensive.then(|| vector(&outputs[G::DIMENSION..])),
-        })
+        iteration::<G, W, B, _>(
+            program,
+            folded,
+            terms,
+            half,
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            |outputs| Residual {
+                momentum_defect: vector(outputs),
+                moving_kick: folded.declaration.is_expensive.then(|| vector(&outputs[G::DIMENSION..])),
+            },
+        )
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn kick_after(constants: &Self::Constants, increment: &Matrix<G>, next: &W) -> Vector<G> {
         let folded = &*constants.0;
         let (program, image) = (&folded.stages.kick_after, &folded.kick_after);
-        listed(next, |next| {
-            listed(increment, |entries| {
-                let (known, next) = ((Array::Constants, &*folded.numbers), (Array::Next, next));
-                let increment_of = (Array::Increment, entries);
-                if !program.reads(Array::Inverse) {
-                    return run::<_, B, _, _>(program, image, [known, increment_of, next], vector);
-                }
-                listed(&G::from_increment(increment).inverse().matrix(), |inverse| {
-                    let given = [known, increment_of, next, (Array::Inverse, inverse)];
-                    run::<_, B, _, _>(program, image, given, vector)
-                })
-            })
-        })
+        listed(
+            next,
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            |next| {
+                listed(
+                    increment,
+                    #[cfg_attr(not(debug_assertions), inline(always))]
+                    |entries| {
+                        let (known, next) = ((Array::Constants, &*folded.numbers), (Array::Next, next));
+                        let increment_of = (Array::Increment, entries);
+                        if !program.reads(Array::Inverse) {
+                            return run::<_, B, _, _>(program, image, [known, increment_of, next], vector);
+                        }
+                        listed(&G::from_increment(increment).inverse().matrix(), |inverse| {
+                            let given = [known, increment_of, next, (Array::Inverse, inverse)];
+                            run::<_, B, _, _>(program, image, given, vector)
+                        })
+                    },
+                )
+            },
+        )
     }
 }
 
 /// What an iteration computes.
-#[inline]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>, R>(
     (program, image): (&Ready<B::Code>, &B::Image),
     folded: &Folded<G::Scalar, B>,
@@ -404,34 +465,38 @@ fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>, R>(
 where
     CayleyRetraction: Retraction<G>,
 {
-    listed(half, |coordinates| {
-        let (constants, numbers) = ((Array::Constants, &*folded.numbers), (Array::Terms, &terms.numbers[..]));
-        let coordinates = (Array::Half, coordinates);
-        // Of many terms some are computed anew, and off SO(3) the system is written in the increment.
-        let more = [Array::Target, Array::Advected, Array::Increment, Array::InverseIncrement];
-        if !more.into_iter().any(|array| program.reads(array)) {
-            return run::<_, B, _, _>(program, image, [constants, numbers, coordinates], make);
-        }
-        let increment = <CayleyRetraction as Retraction<G>>::increment_of_half(half);
-        let is_read = program.reads(Array::InverseIncrement);
-        let inverse = if is_read { G::inverse_increment(&increment) } else { increment };
-        listed(&(increment, inverse), |both| {
-            listed(&(terms.right_side, terms.advected), |read| {
-                let (increment, inverse) = both.split_at(both.len() / 2);
-                let (target, advected) = read.split_at(G::DIMENSION.min(read.len()));
-                let given = [
-                    constants,
-                    numbers,
-                    coordinates,
-                    (Array::Increment, increment),
-                    (Array::InverseIncrement, inverse),
-                    (Array::Target, target),
-                    (Array::Advected, advected),
-                ];
-                run::<_, B, _, _>(program, image, given, make)
+    listed(
+        half,
+        #[cfg_attr(not(debug_assertions), inline(always))]
+        |coordinates| {
+            let (constants, numbers) = ((Array::Constants, &*folded.numbers), (Array::Terms, &terms.numbers[..]));
+            let coordinates = (Array::Half, coordinates);
+            // Of many terms some are computed anew, and off SO(3) the system is written in the increment.
+            let more = [Array::Target, Array::Advected, Array::Increment, Array::InverseIncrement];
+            if !more.into_iter().any(|array| program.reads(array)) {
+                return run::<_, B, _, _>(program, image, [constants, numbers, coordinates], make);
+            }
+            let increment = <CayleyRetraction as Retraction<G>>::increment_of_half(half);
+            let is_read = program.reads(Array::InverseIncrement);
+            let inverse = if is_read { G::inverse_increment(&increment) } else { increment };
+            listed(&(increment, inverse), |both| {
+                listed(&(terms.right_side, terms.advected), |read| {
+                    let (increment, inverse) = both.split_at(both.len() / 2);
+                    let (target, advected) = read.split_at(G::DIMENSION.min(read.len()));
+                    let given = [
+                        constants,
+                        numbers,
+                        coordinates,
+                        (Array::Increment, increment),
+                        (Array::InverseIncrement, inverse),
+                        (Array::Target, target),
+                        (Array::Advected, advected),
+                    ];
+                    run::<_, B, _, _>(program, image, given, make)
+                })
             })
-        })
-    })
+        },
+    )
 }
 
 impl<G, W, K, B> DiscreteLagrangian for Late<G, W, K, B>

@@ -64,7 +64,7 @@ impl<T: Real> Backend<T> for Machine {
         }
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<const N: usize>(code: &Both, image: &Box<[T]>, given: Given<'_, T, N>, outputs: &mut [T]) {
         let in_lanes = || code.in_lanes.get().and_then(Option::as_ref);
         match lanes_of::<T>() {

@@ -84,7 +84,7 @@ fn write(
             Operation::Apply(Function::Sqrt, _) => builder.ins().sqrt(a),
             Operation::Apply(function, _) => {
                 let code = builder.ins().iconst(types::I32, i64::from(code(function)));
-                let mut apply = |builder: &mut FunctionBuilder, a| {
+                let apply = |builder: &mut FunctionBuilder, a| {
                     let call = builder.ins().call(called, &[code, a]);
                     builder.inst_results(call)[0]
                 };
