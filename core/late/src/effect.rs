@@ -16,19 +16,29 @@ type Matrix<G> = <G as LieGroup>::Matrix;
 type Vector<G> = <G as LieGroup>::Vector;
 type Square<G> = <Vector<G> as Coordinates<<G as LieGroup>::Scalar>>::Square;
 
-/// Does something with the entries of a value, which stand where its size says that there is room.
-#[cfg_attr(not(debug_assertions), inline(always))]
-fn listed<T: Real, V: Entries<T>, R>(value: &V, then: impl FnOnce(&[T]) -> R) -> R {
-    // What isn't used costs time to clear.
-    if const { size_of::<V>() <= 3 * size_of::<T>() } {
-        then(filled(value, &mut [T::zero(); 3]))
-    } else if const { size_of::<V>() <= 9 * size_of::<T>() } {
-        then(filled(value, &mut [T::zero(); 9]))
-    } else if const { size_of::<V>() <= 18 * size_of::<T>() } {
-        then(filled(value, &mut [T::zero(); 18]))
-    } else {
-        then(filled(value, &mut vec![T::zero(); size_of::<V>() / size_of::<T>()]))
-    }
+/// The entries of a value, which stand where its size says that there is room: what isn't used costs time to clear.
+macro_rules! listed {
+    ($name:ident = $value:expr) => {
+        let (mut small, mut middle, mut large, mut more);
+        let $name: &[G::Scalar] = match (size_of_val($value).div_ceil(size_of::<G::Scalar>()), $value) {
+            (0..=3, value) => {
+                small = [real::<G::Scalar>(0.0); 3];
+                filled(value, &mut small)
+            }
+            (4..=9, value) => {
+                middle = [real::<G::Scalar>(0.0); 9];
+                filled(value, &mut middle)
+            }
+            (10..=18, value) => {
+                large = [real::<G::Scalar>(0.0); 18];
+                filled(value, &mut large)
+            }
+            (size, value) => {
+                more = vec![real::<G::Scalar>(0.0); size];
+                filled(value, &mut more)
+            }
+        };
+    };
 }
 
 #[cfg_attr(not(debug_assertions), inline(always))]
@@ -88,32 +98,18 @@ fn run_alone<T: Real, B: Backend<T>, R, const N: usize>(
 /// The first of these numbers as a vector.
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn vector<T: Real, V: Entries<T>>(outputs: &[T]) -> V {
-    let mut at = 0;
-    V::from_entries(&mut || {
-        at += 1;
-        number(outputs, at - 1)
-    })
+    let mut outputs = outputs.iter().copied();
+    V::from_entries(&mut || outputs.next().unwrap_or_else(|| real(f64::NAN)))
 }
 
 /// The same as a square matrix, row by row.
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn square<G: LieGroup>(outputs: &[G::Scalar]) -> Square<G> {
-    Vector::<G>::square(
-        #[cfg_attr(not(debug_assertions), inline(always))]
-        |column| {
-            let mut at = column;
-            Vector::<G>::from_entries(&mut || {
-                at += G::DIMENSION;
-                number(outputs, at - G::DIMENSION)
-            })
-        },
-    )
-}
-
-/// No step takes NaN for a number.
-#[cfg_attr(not(debug_assertions), inline(always))]
-fn number<T: Real>(outputs: &[T], at: usize) -> T {
-    outputs.get(at).copied().unwrap_or_else(|| real(f64::NAN))
+    Vector::<G>::square(|column| {
+        let mut places = (0..).map(|row| column + row * G::DIMENSION);
+        let mut next = || places.next().and_then(|place| outputs.get(place).copied());
+        Vector::<G>::from_entries(&mut || next().unwrap_or_else(|| real(f64::NAN)))
+    })
 }
 
 /// The constants of a step.
@@ -280,26 +276,21 @@ where
     }
 
     fn limit(&self, velocity: Option<&Vector<G>>, w: &W) -> Limit<Self> {
-        let of = |advected: &[G::Scalar], given: &[G::Scalar]| {
-            let arrays = [(Array::Parameters, &*self.numbers), (Array::Advected, advected), (Array::Velocity, given)];
-            if let (Some(_), Some([l, momentum, hessian])) = (velocity, &self.stages.at_velocity) {
-                return Limit {
-                    l: run_alone::<_, B, _, _>(l, arrays, |outputs| outputs[0]),
-                    momentum: run_alone::<_, B, _, _>(momentum, arrays, vector),
-                    hessian: run_alone::<_, B, _, _>(hessian, arrays, square::<G>),
-                };
-            }
-            let entries = G::DIMENSION * G::DIMENSION;
-            run_alone::<_, B, _, _>(&self.stages.at_rest, arrays, |outputs| {
-                let (inertia, bias) = (square::<G>(outputs), vector(&outputs[entries..]));
-                Limit::quadratic(velocity, inertia, bias, outputs[entries + G::DIMENSION])
-            })
-        };
-        listed(
-            w,
-            #[cfg_attr(not(debug_assertions), inline(always))]
-            |advected| listed(velocity.unwrap_or(&Vector::<G>::zero()), |velocity| of(advected, velocity)),
-        )
+        listed!(advected = w);
+        listed!(given = velocity.unwrap_or(&Vector::<G>::zero()));
+        let arrays = [(Array::Parameters, &*self.numbers), (Array::Advected, advected), (Array::Velocity, given)];
+        if let (Some(_), Some([l, momentum, hessian])) = (velocity, &self.stages.at_velocity) {
+            return Limit {
+                l: run_alone::<_, B, _, _>(l, arrays, |outputs| outputs[0]),
+                momentum: run_alone::<_, B, _, _>(momentum, arrays, vector),
+                hessian: run_alone::<_, B, _, _>(hessian, arrays, square::<G>),
+            };
+        }
+        let entries = G::DIMENSION * G::DIMENSION;
+        run_alone::<_, B, _, _>(&self.stages.at_rest, arrays, |outputs| {
+            let (inertia, bias) = (square::<G>(outputs), vector(&outputs[entries..]));
+            Limit::quadratic(velocity, inertia, bias, outputs[entries + G::DIMENSION])
+        })
     }
 
     fn with_energy(&self, w: &W, energy: G::Scalar) -> Option<(W, G::Scalar)> {
@@ -331,34 +322,18 @@ where
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn kick_before(constants: &Self::Constants, w: &W) -> Vector<G> {
         let folded = &*constants.0;
-        listed(
-            w,
-            #[cfg_attr(not(debug_assertions), inline(always))]
-            |advected| {
-                let given = [(Array::Constants, &*folded.numbers), (Array::Advected, advected)];
-                run::<_, B, _, _>(&folded.stages.kick_before, &folded.kick_before, given, vector)
-            },
-        )
+        listed!(advected = w);
+        let given = [(Array::Constants, &*folded.numbers), (Array::Advected, advected)];
+        run::<_, B, _, _>(&folded.stages.kick_before, &folded.kick_before, given, vector)
     }
 
     fn kick_derivative(constants: &Self::Constants, w: &W, velocity: &Vector<G>) -> Option<Vector<G>> {
         let folded = &*constants.0;
         let (program, image) = (folded.stages.kick_derivative.as_ref()?, folded.kick_derivative.as_ref()?);
-        let known = (Array::Constants, &*folded.numbers);
-        Some(listed(
-            w,
-            #[cfg_attr(not(debug_assertions), inline(always))]
-            |advected| {
-                listed(
-                    velocity,
-                    #[cfg_attr(not(debug_assertions), inline(always))]
-                    |velocity| {
-                        let given = [known, (Array::Advected, advected), (Array::Velocity, velocity)];
-                        run::<_, B, _, _>(program, image, given, vector)
-                    },
-                )
-            },
-        ))
+        listed!(advected = w);
+        listed!(velocity = velocity);
+        let given = [(Array::Constants, &*folded.numbers), (Array::Advected, advected), (Array::Velocity, velocity)];
+        Some(run::<_, B, _, _>(program, image, given, vector))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
@@ -367,24 +342,10 @@ where
         let mut terms = StepTerms { right_side: *a, advected: *w, numbers: [real(0.0); MOST_TERMS] };
         // Where there is nothing to solve, nobody reads them.
         if folded.declaration.parts.unknown {
-            listed(
-                a,
-                #[cfg_attr(not(debug_assertions), inline(always))]
-                |target| {
-                    listed(
-                        w,
-                        #[cfg_attr(not(debug_assertions), inline(always))]
-                        |advected| {
-                            let given = [
-                                (Array::Constants, &*folded.numbers),
-                                (Array::Target, target),
-                                (Array::Advected, advected),
-                            ];
-                            B::run(&folded.stages.terms.code, &folded.terms, given, &mut terms.numbers);
-                        },
-                    );
-                },
-            );
+            listed!(target = a);
+            listed!(advected = w);
+            let given = [(Array::Constants, &*folded.numbers), (Array::Target, target), (Array::Advected, advected)];
+            B::run(&folded.stages.terms.code, &folded.terms, given, &mut terms.numbers);
         }
         terms
     }
@@ -429,27 +390,15 @@ where
     fn kick_after(constants: &Self::Constants, increment: &Matrix<G>, next: &W) -> Vector<G> {
         let folded = &*constants.0;
         let (program, image) = (&folded.stages.kick_after, &folded.kick_after);
-        listed(
-            next,
-            #[cfg_attr(not(debug_assertions), inline(always))]
-            |next| {
-                listed(
-                    increment,
-                    #[cfg_attr(not(debug_assertions), inline(always))]
-                    |entries| {
-                        let (known, next) = ((Array::Constants, &*folded.numbers), (Array::Next, next));
-                        let increment_of = (Array::Increment, entries);
-                        if !program.reads(Array::Inverse) {
-                            return run::<_, B, _, _>(program, image, [known, increment_of, next], vector);
-                        }
-                        listed(&G::from_increment(increment).inverse().matrix(), |inverse| {
-                            let given = [known, increment_of, next, (Array::Inverse, inverse)];
-                            run::<_, B, _, _>(program, image, given, vector)
-                        })
-                    },
-                )
-            },
-        )
+        listed!(entries = increment);
+        listed!(next = next);
+        let given = [(Array::Constants, &*folded.numbers), (Array::Increment, entries), (Array::Next, next)];
+        if !program.reads(Array::Inverse) {
+            return run::<_, B, _, _>(program, image, given, vector);
+        }
+        listed!(inverse = &G::from_increment(increment).inverse().matrix());
+        let [constants, increment, next] = given;
+        run::<_, B, _, _>(program, image, [constants, increment, next, (Array::Inverse, inverse)], vector)
     }
 }
 
@@ -465,38 +414,25 @@ fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>, R>(
 where
     CayleyRetraction: Retraction<G>,
 {
-    listed(
-        half,
-        #[cfg_attr(not(debug_assertions), inline(always))]
-        |coordinates| {
-            let (constants, numbers) = ((Array::Constants, &*folded.numbers), (Array::Terms, &terms.numbers[..]));
-            let coordinates = (Array::Half, coordinates);
-            // Of many terms some are computed anew, and off SO(3) the system is written in the increment.
-            let more = [Array::Target, Array::Advected, Array::Increment, Array::InverseIncrement];
-            if !more.into_iter().any(|array| program.reads(array)) {
-                return run::<_, B, _, _>(program, image, [constants, numbers, coordinates], make);
-            }
-            let increment = <CayleyRetraction as Retraction<G>>::increment_of_half(half);
-            let is_read = program.reads(Array::InverseIncrement);
-            let inverse = if is_read { G::inverse_increment(&increment) } else { increment };
-            listed(&(increment, inverse), |both| {
-                listed(&(terms.right_side, terms.advected), |read| {
-                    let (increment, inverse) = both.split_at(both.len() / 2);
-                    let (target, advected) = read.split_at(G::DIMENSION.min(read.len()));
-                    let given = [
-                        constants,
-                        numbers,
-                        coordinates,
-                        (Array::Increment, increment),
-                        (Array::InverseIncrement, inverse),
-                        (Array::Target, target),
-                        (Array::Advected, advected),
-                    ];
-                    run::<_, B, _, _>(program, image, given, make)
-                })
-            })
-        },
-    )
+    let (constants, numbers) = ((Array::Constants, &*folded.numbers), (Array::Terms, &terms.numbers[..]));
+    listed!(coordinates = half);
+    let coordinates = (Array::Half, coordinates);
+    // Of many terms some are computed anew, and off SO(3) the system is written in the increment.
+    let more = [Array::Target, Array::Advected, Array::Increment, Array::InverseIncrement];
+    if !more.into_iter().any(|array| program.reads(array)) {
+        return run::<_, B, _, _>(program, image, [constants, numbers, coordinates], make);
+    }
+    let increment = <CayleyRetraction as Retraction<G>>::increment_of_half(half);
+    let is_read = program.reads(Array::InverseIncrement);
+    let inverse = if is_read { G::inverse_increment(&increment) } else { increment };
+    listed!(increment = &increment);
+    listed!(inverse = &inverse);
+    listed!(target = &terms.right_side);
+    listed!(advected = &terms.advected);
+    let increments = [(Array::Increment, increment), (Array::InverseIncrement, inverse)];
+    let [target, advected] = [(Array::Target, target), (Array::Advected, advected)];
+    let given = [constants, numbers, coordinates, increments[0], increments[1], target, advected];
+    run::<_, B, _, _>(program, image, given, make)
 }
 
 impl<G, W, K, B> DiscreteLagrangian for Late<G, W, K, B>
