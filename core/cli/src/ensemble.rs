@@ -58,7 +58,12 @@ fn made(
         let make = move |member: &Member<'_>| {
             drawn_of(&of_lanes, member).and_then(|scene| scene.in_lanes(&whole)).map_err(failed)
         };
-        return finished(path, scene, drawn, Ensemble::new(&drawn.text, drawn.members, steps, make), local, output);
+        // Whole lanes: a 64th of all, but a second's work and a million rows at most.
+        let rows = drawn.every.map_or(1, |every| steps / every + 2);
+        let most = ((1 << 20) / rows).min((1 << 24) / steps.max(1)).next_multiple_of(8);
+        let chunk = drawn.members.div_ceil(64).next_multiple_of(8).min(most.max(8));
+        let members = Ensemble::new(&drawn.text, drawn.members, steps, make).chunks_of(chunk);
+        return finished(path, scene, drawn, members, local, output);
     }
     let make = move |member: &Member<'_>| drawn_of(&own, member).and_then(|scene| scene.stepper()).map_err(failed);
     finished(path, scene, drawn, Ensemble::one_by_one(&drawn.text, drawn.members, steps, make), local, output)

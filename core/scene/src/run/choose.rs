@@ -40,11 +40,11 @@ struct Moving {
 
 impl Moving {
     fn of(file: &SceneFile, J: Inertia) -> Result<Self, Stop> {
-        if let Some(own) = &file.lagrangian {
-            return Ok(Self { own: Some(own.declaration), text: "", numbers: own.numbers.clone() });
-        }
         fn body<E: Effect<Scalar = f64>>(body: &E) -> Moving {
             Moving { own: None, text: E::DECLARATION, numbers: liestep_late::numbers(body) }
+        }
+        if let Some(own) = &file.lagrangian {
+            return Ok(Self { own: Some(own.declaration), text: "", numbers: own.numbers.clone() });
         }
         let given = file.body.ok_or_else(nothing)?;
         Ok(match (given.kinetic, given.mass) {
