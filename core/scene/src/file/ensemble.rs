@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use toml::Spanned;
-use toml::de::{DeArray, DeTable, DeValue, ValueDeserializer};
+use toml::de::{DeArray, DeTable, DeValue, Error, ValueDeserializer};
 
 use crate::file::document::scene;
 use crate::file::draws::{Axis, DRAW, SceneEnsemble, Spread, parts};
@@ -109,18 +109,8 @@ pub(crate) fn read(
         }
     }
     (ensemble.path, ensemble.text) = (path.to_owned(), text.to_owned());
-    // No member reads the text: it is kept as long as the program runs.
-    let kept: &'static str = Box::leak(text.into());
-    let tables = DeTable::parse(kept).map_err(|error| Mistake::of_toml(path, text, &error))?.into_inner();
-    let is_drawn = |name: &str| {
-        let mut keys = ensemble.axes.iter().filter_map(|axis| axis.keys.first());
-        keys.any(|key| key.get_ref() == name)
-    };
-    // Of these more than their own table is read anew.
-    let all = is_drawn("lagrangian") || is_drawn("force") || file.run.steps_per_orbit.is_some();
-    let is_read = |name: &str| is_drawn(name) || all && !["sweep", "ensemble"].contains(&name);
-    ensemble.tables = tables.into_iter().filter(|(name, _)| is_read(name.get_ref())).collect();
-    ensemble.scene = (!all).then(|| Box::new(SceneFile { sweep: None, ..file.clone() }));
+    let read = read_once(&mut ensemble, file);
+    read.map_err(|error| Mistake::of_toml(path, text, &error))?;
     // What is wrong with a unit or a key is wrong with every member.
     for end in [true, false] {
         ensemble.member(&mut |_, spread| match spread {
@@ -135,4 +125,20 @@ pub(crate) fn read(
         })?;
     }
     Ok(ensemble)
+}
+
+/// What no member reads again: the tables of a text, which is kept as long as the program runs.
+fn read_once(ensemble: &mut SceneEnsemble, file: &SceneFile) -> Result<(), Error> {
+    let kept: &'static str = Box::leak(ensemble.text.as_str().into());
+    let tables = DeTable::parse(kept)?.into_inner();
+    let is_drawn = |name: &str| {
+        let mut keys = ensemble.axes.iter().filter_map(|axis| axis.keys.first());
+        keys.any(|key| key.get_ref() == name)
+    };
+    // Of these more than their own table is read anew.
+    let all = is_drawn("lagrangian") || is_drawn("force") || file.run.steps_per_orbit.is_some();
+    let is_read = |name: &str| is_drawn(name) || all && !["sweep", "ensemble"].contains(&name);
+    ensemble.tables = tables.into_iter().filter(|(name, _)| is_read(name.get_ref())).collect();
+    ensemble.scene = (!all).then(|| Box::new(SceneFile { sweep: None, ..file.clone() }));
+    Ok(())
 }

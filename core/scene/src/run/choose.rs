@@ -8,7 +8,7 @@ use liestep::groups::Advected;
 use liestep::mechanics::{Effect, Inertia, KineticPart, Term as _, WithEitherKinetic, WithoutKinetic};
 use liestep::methods::ExactBody;
 use liestep::motion::AnyStepper;
-use liestep::{SO3, Stepper};
+use liestep::{SO3, StateOf, Stepper};
 use liestep_late::{Declaration, Late, LateError};
 use nalgebra::Vector3;
 
@@ -17,7 +17,7 @@ use crate::file::lagrangian::Backend;
 use crate::file::method::{Method, Stages};
 use crate::file::scene::SceneFile;
 use crate::file::schedule::Pace;
-use crate::run::course::{MemberInLanes, MemberStart, course, sample, watches};
+use crate::run::course::{MemberStart, course, sample, watches};
 use crate::run::make::{Listeners, Run, Stop, make};
 
 /// What the terms of a scene advect: all vectors, one after the other, with zeros behind them.
@@ -29,6 +29,9 @@ type Program<K> = Late<SO3, Seen, K, Backend>;
 type Rest = Program<WithoutKinetic>;
 /// All of a scene in one program.
 pub type Whole = Program<WithEitherKinetic>;
+
+/// What steps it, and the state that it starts from.
+pub type MemberInLanes = (Stepper<Whole>, StateOf<Whole>);
 
 /// What has a kinetic term: a Lagrangian of the file's own, or a body of the library by its text. With its numbers.
 #[derive(Clone)]

@@ -2,20 +2,16 @@
 
 use liestep::groups::Advected;
 use liestep::motion::{AnyState, AnyStepper, Integrator, Moment};
-use liestep::{SO3, StateOf, Stepper, recording};
+use liestep::{SO3, recording};
 use nalgebra::Vector3;
 
 use crate::file::event::{Direction, Event, Quantity};
 use crate::file::sample::{BodySample, Sample};
 use crate::file::scene::SceneFile;
-use crate::run::choose::Whole;
 use crate::run::make::{Course, EventFunction};
 
 /// What steps a scene, and the state that it starts from.
 pub type MemberStart = (AnyStepper<SO3, ()>, AnyState<SO3, ()>);
-
-/// The same of a scene as one program, which goes in lanes.
-pub type MemberInLanes = (Stepper<Whole>, StateOf<Whole>);
 
 /// The motion of one body now.
 pub(crate) fn sample<I: Integrator<Group = SO3>>(now: &Moment<'_, I>) -> Sample {

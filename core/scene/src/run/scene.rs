@@ -12,8 +12,8 @@ use crate::file::mistake::Mistake;
 use crate::file::quantity::short;
 use crate::file::scene::{Origin, SceneFile};
 use crate::file::schedule::Pace;
-use crate::run::choose::{self, Whole};
-use crate::run::course::{MemberInLanes, MemberStart, sample};
+use crate::run::choose::{self, MemberInLanes, Whole};
+use crate::run::course::{MemberStart, sample};
 use crate::run::make::{Listeners, Run, Stop};
 
 impl SceneFile {
