@@ -2,9 +2,8 @@
 //! its potential at both ends.
 //!
 //! ```text
-//! cargo run --release --example elastic-rod                        what either keeps of the energy, by the length of the step
-//! cargo run --release --example elastic-rod -- times               µs a step, and ns a body, of rows of 10 to 100 bodies
-//! cargo run --release --example elastic-rod -- count middle 100 50   steps of one of them, to count instructions
+//! cargo run --release --example elastic-rod            what either keeps of the energy, by the length of the step
+//! cargo run --release --example elastic-rod -- times   µs a step, and ns a body, of rows of 10 to 100 bodies
 //! ```
 
 use core::array::from_fn;
@@ -161,16 +160,6 @@ fn times<const N: usize>() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Makes steps and nothing else.
-fn count<const N: usize>(rod: impl Rod<N>, h: f64, steps: &str) -> Result<(), Failure> {
-    let stepper = Stepper::new(rod, h)?;
-    let (places, velocities) = coil::<N>();
-    let mut state = stepper.start(places, velocities)?;
-    let iterations = stepper.run(&mut state, steps.parse()?)?;
-    println!("{iterations} {}", state.attitude()[N - 1].1.translation());
-    Ok(())
-}
-
 fn main() -> Result<(), Failure> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
@@ -182,10 +171,6 @@ fn main() -> Result<(), Failure> {
             times::<50>()?;
             times::<100>()
         }
-        ["count", "middle", "10", steps] => count(middle::<10>()?, 10.0 * bound(), steps),
-        ["count", "middle", "100", steps] => count(middle::<100>()?, 10.0 * bound(), steps),
-        ["count", "ends", "10", steps] => count(ends::<10>()?, 0.5 * bound(), steps),
-        ["count", "ends", "100", steps] => count(ends::<100>()?, 0.5 * bound(), steps),
-        _ => Err("nothing, `times`, or `count` with `middle` or `ends`, 10 or 100, and a number of steps".into()),
+        _ => Err("nothing, or `times`".into()),
     }
 }

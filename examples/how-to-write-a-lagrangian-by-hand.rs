@@ -3,8 +3,6 @@
 //! ```text
 //! cargo run --example how-to-write-a-lagrangian-by-hand
 //! ```
-//!
-//! `tests/derivation/by_hand.rs` has a heavy top, with a potential and an advected vector.
 
 use std::error::Error;
 

@@ -1,50 +1,36 @@
 //! What the asked choice takes, beside the best of all fixed ones.
 
-use std::error::Error;
 use std::time::Duration;
 
 use liestep::accuracy::{Accuracy, AccuracyError, AccurateStepper, Effort};
 use liestep::motion::Integrator as _;
 use liestep::{SO3, Stepper, mechanics};
-use nalgebra::Vector3;
 use workbench::table::{aligned, number};
 
 use crate::measure::ladder;
 use crate::methods::{self, Family, Prepared};
-use crate::others;
 use crate::scenes::{Kind, Scene, error};
 
 /// The tolerances asked for.
 const TOLERANCES: [f64; 3] = [1e-3, 1e-6, 1e-9];
 
 /// The table, and whether all choices are within their tolerance and twice the best time.
-pub fn compare(scenes: &[Scene], effort: impl Fn(f64) -> (Effort, f64)) -> Result<String, Box<dyn Error>> {
+pub fn compare(scenes: &[Scene], effort: impl Fn(f64) -> (Effort, f64)) -> String {
     let heading = ["scene", "t, s", "asked", "chosen", "step, s", "error", "µs", "best fixed", "µs", "ratio", "trials"];
     let mut rows = vec![heading.map(str::to_owned).to_vec()];
     for t in [10.0, 100.0] {
         for scene in scenes {
-            add(&mut rows, &Question::of(scene), scene, t, effort(t));
-        }
-        for (scene, question) in others::all()? {
-            add(&mut rows, &question, &scene, t, effort(t));
+            add(&mut rows, scene, t, effort(t));
         }
     }
-    Ok(aligned(&rows))
-}
-
-/// A scene to be asked for, and the methods that the answer is compared with.
-pub struct Question {
-    /// The end of a run that has the accuracy, with the name of its method, its step and the cost of the trials in
-    /// runs.
-    pub ask: Box<Ask>,
-    pub fixed: Vec<methods::Method>,
+    aligned(&rows)
 }
 
 /// Makes a choice.
-pub type Ask = dyn Fn(Accuracy) -> Result<Answer, AccuracyError>;
+type Ask = dyn Fn(Accuracy) -> Result<Answer, AccuracyError>;
 
 /// A choice ready to run.
-pub struct Answer {
+struct Answer {
     name: String,
     step: f64,
     trials: f64,
@@ -52,7 +38,7 @@ pub struct Answer {
 }
 
 impl Answer {
-    pub fn new<A>(stepper: AccurateStepper<SO3, A>) -> Self
+    fn new<A>(stepper: AccurateStepper<SO3, A>) -> Self
     where
         A: liestep::groups::Advected<SO3> + 'static,
     {
@@ -67,35 +53,32 @@ impl Answer {
     }
 }
 
-impl Question {
-    /// Of one of the five.
-    fn of(scene: &Scene) -> Self {
-        let (start, velocity) = (SO3::from_matrix_unchecked(scene.attitude), scene.velocity);
-        let fixed = methods::ours(scene);
-        let ask = match scene.kind {
-            Kind::Sprung => asking(scene.sprung(), start, velocity),
-            Kind::Satellite => asking(scene.satellite(), start, velocity),
-            Kind::Free => asking(scene.free_body(), start, velocity),
-            Kind::Top | Kind::SymmetricTop => asking(scene.top(), start, velocity),
-        };
-        Self { ask, fixed }
+/// How a scene is asked for.
+fn question(scene: &Scene) -> Box<Ask> {
+    match scene.kind {
+        Kind::Sprung => asking(scene, scene.sprung()),
+        Kind::Satellite => asking(scene, scene.satellite()),
+        Kind::Free => asking(scene, scene.free_body()),
+        Kind::Top | Kind::SymmetricTop => asking(scene, scene.top()),
     }
 }
 
-/// Asks for an accuracy of this scene.
-pub fn asking<S>(scene: S, attitude: SO3, velocity: Vector3<f64>) -> Box<Ask>
+fn asking<S>(scene: &Scene, body: S) -> Box<Ask>
 where
     S: mechanics::Scene<Scalar = f64, Group = SO3>,
 {
-    Box::new(move |accuracy| Stepper::for_accuracy(scene.clone(), accuracy, attitude, velocity).map(Answer::new))
+    let (attitude, velocity) = (SO3::from_matrix_unchecked(scene.attitude), scene.velocity);
+    Box::new(move |accuracy| Stepper::for_accuracy(body.clone(), accuracy, attitude, velocity).map(Answer::new))
 }
 
-fn add(rows: &mut Vec<Vec<String>>, question: &Question, scene: &Scene, t: f64, effort: (Effort, f64)) {
+fn add(rows: &mut Vec<Vec<String>>, scene: &Scene, t: f64, effort: (Effort, f64)) {
     let Some(exact) = scene.reference(t) else { return };
-    let runs: Vec<_> = question.fixed.iter().map(|method| (method, ladder(method, scene, t, effort))).collect();
+    let fixed = methods::ours(scene);
+    let runs: Vec<_> = fixed.iter().map(|method| (method, ladder(method, scene, t, effort))).collect();
+    let question = question(scene);
     for tolerance in TOLERANCES {
         let mut row = vec![scene.name.to_owned(), t.to_string(), format!("{tolerance:.0e}")];
-        match (question.ask)(Accuracy { tolerance, horizon: t }) {
+        match question(Accuracy { tolerance, horizon: t }) {
             Ok(answer) => {
                 let best = runs
                     .iter()

@@ -3,7 +3,6 @@
 use plotters::prelude::*;
 use workbench::plot::{Area, BLUE, GREEN, ORANGE, PURPLE, PlotResult, heading, legend, px, render};
 
-use crate::invariants::{Kept, Lost};
 use crate::methods::Family;
 use crate::report::Measured;
 
@@ -15,12 +14,6 @@ pub struct Panel<'a> {
 
 /// What has no colour of its own.
 const GREY: RGBColor = RGBColor(150, 150, 150);
-
-const FAMILIES: [(Family, &str, RGBColor); 3] = [
-    (Family::Rival, "explicit Runge–Kutta", ORANGE),
-    (Family::NearlyPoisson, "Poisson to the order", GREEN),
-    (Family::Poisson, "Poisson", BLUE),
-];
 
 const ABOUT: &str = "error of attitude and rate against time of one processor; grey lies to the right: each stage solves an \
                      equation, and errs in the whole motion, not in the potential's share alone";
@@ -72,54 +65,6 @@ pub fn figure(panels: &[Panel<'_>]) -> PlotResult<String> {
         }
         Ok(())
     })
-}
-
-/// Deviations of the invariants against the number of steps, a scene a row.
-pub fn invariants_figure(scenes: &[(&str, Vec<Kept>)]) -> PlotResult<String> {
-    let height = 70 + 260 * u32::try_from(scenes.len())?;
-    render((1000, height), |area| {
-        heading(
-            area,
-            "What many steps lose",
-            "energy, vertical momentum and orthogonality against the number of steps",
-        )?;
-        legend(area, (16, 60), &FAMILIES.map(|(_, name, colour)| (name, colour)))?;
-        let (_, below) = area.split_vertically(px(76));
-        for ((scene, methods), row) in scenes.iter().zip(below.split_evenly((scenes.len(), 1))) {
-            let columns = row.split_evenly((1, 3));
-            losses(&columns[0], &format!("{scene}: energy"), methods, |lost| lost.energy)?;
-            losses(&columns[1], "vertical momentum", methods, |lost| lost.vertical)?;
-            losses(&columns[2], "‖RᵀR − I‖", methods, |lost| lost.orthogonality)?;
-        }
-        Ok(())
-    })
-}
-
-fn losses(area: &Area<'_>, title: &str, methods: &[Kept], of: impl Fn(&Lost) -> f64) -> PlotResult {
-    let most = methods.iter().flat_map(|kept| &kept.lost).map(|lost| lost.steps).fold(10.0, f64::max);
-    let mut chart = ChartBuilder::on(area)
-        .caption(title, ("sans-serif", px(13)))
-        .margin(px(8))
-        .x_label_area_size(px(34))
-        .y_label_area_size(px(56))
-        .build_cartesian_2d((10.0..most).log_scale(), (1e-17..1.0).log_scale())?;
-    chart
-        .configure_mesh()
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(RGBColor(226, 226, 226).stroke_width(px(1)))
-        .x_desc("steps")
-        .label_style(("sans-serif", px(11)))
-        .x_label_formatter(&|x| format!("{x:.0e}"))
-        .y_label_formatter(&|y| format!("{y:.0e}"))
-        .draw()?;
-    for (family, _, colour) in FAMILIES {
-        for kept in methods.iter().filter(|kept| kept.family == family) {
-            // What is zero is drawn at the bottom.
-            let line = kept.lost.iter().map(|lost| (lost.steps, of(lost).max(1e-17)));
-            chart.draw_series(LineSeries::new(line, colour.stroke_width(px(2))))?;
-        }
-    }
-    Ok(())
 }
 
 impl Panel<'_> {

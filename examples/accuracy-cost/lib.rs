@@ -6,11 +6,8 @@
 
 pub mod asked;
 pub mod figure;
-pub mod invariants;
 pub mod measure;
 pub mod methods;
-pub mod newton;
-pub mod others;
 pub mod report;
 pub mod rivals;
 pub mod scenes;

@@ -10,9 +10,8 @@
 //! Each method integrates each scene for 10 s and for 100 s with shorter and shorter steps. The error is that of the
 //! attitude and the body velocity at the end, against references to 25 digits and more; the cost is the time of one
 //! processor for the run, constants folded and nothing printed. The tables say which of our methods is the cheapest for
-//! an error, how its time compares with that of the fastest rival, what a million steps leave of the invariants, and
-//! what of them is lost where Newton's iteration stops early. The rivals integrate unit quaternion and momentum.
-//! All runs are written as CSV and as JSON. `with_heyoka.py` runs a Taylor integrator on the same scenes.
+//! an error, and how its time compares with that of the fastest rival. The rivals integrate unit quaternion and momentum.
+//! All runs are written as CSV. `with_heyoka.py` runs a Taylor integrator on the same scenes.
 //!
 //! With `--asked` an accuracy is asked for, and the time of the method that is chosen compared with that of the fastest
 //! fixed choice; the column `trials` says how many such runs the choice itself took.
@@ -22,11 +21,11 @@ use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 use std::time::Duration;
 
-use accuracy_cost::figure::{Panel, figure, invariants_figure};
+use accuracy_cost::figure::{Panel, figure};
 use accuracy_cost::measure::ladder;
 use accuracy_cost::report::Measured;
-use accuracy_cost::scenes::{Kind, Scene};
-use accuracy_cost::{invariants, methods, newton, report};
+use accuracy_cost::scenes::Scene;
+use accuracy_cost::{methods, report};
 use liestep::accuracy::Effort;
 use workbench::args::{Failure, example};
 use workbench::output::{Output, print};
@@ -95,9 +94,6 @@ fn with_heyoka(arguments: &Arguments) -> String {
 /// How long each scene is integrated, s.
 const TIMES: [f64; 2] = [10.0, 100.0];
 
-/// The scene that the table of Newton's tolerance is made with.
-const TOLERANCE_SCENE: &str = "looping";
-
 fn compare(arguments: &Arguments) -> Result<(), Failure> {
     // The effort, and by what each step is shorter than the one before.
     let effort = |t: f64| {
@@ -115,14 +111,13 @@ fn compare(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     if arguments.asked {
-        print(&format!("{}\n", accuracy_cost::asked::compare(&scenes, effort)?))?;
+        print(&format!("{}\n", accuracy_cost::asked::compare(&scenes, effort)))?;
         return Ok(());
     }
     let mut output = Output::new(arguments.out.clone())?;
     let (mut text, mut data, mut results) = (String::new(), report::Data::default(), Vec::new());
     let count: usize = scenes.iter().map(|scene| TIMES.len() * methods::all(scene).len()).sum();
     let mut progress = Progress::new(count.try_into()?);
-    let mut kept = Vec::new();
     for scene in &scenes {
         let methods = methods::all(scene);
         for t in TIMES {
@@ -136,20 +131,6 @@ fn compare(arguments: &Arguments) -> Result<(), Failure> {
             // Writing to a string can't fail.
             let _ = write!(text, "{title}\n\n{}\n\n{}\n\n", report::costs(&measured), report::best(&measured));
             data.add(scene.short, t, &measured);
-            // The energies of the others aren't those of a top.
-            if t == TIMES[0] && !matches!(scene.kind, Kind::Sprung | Kind::Satellite) {
-                progress.add(0, &format!("{}, invariants", scene.name));
-                let most = if arguments.quick { 50_000 } else { 1_000_000 };
-                let methods = invariants::kept(scene, &methods, &measured, most);
-                let _ = write!(text, "{}\n\n", invariants::table(&methods));
-                kept.push((scene.name, methods));
-                if scene.short == TOLERANCE_SCENE {
-                    let steps = u64::from(most);
-                    let lines = newton::measure(scene, steps)?;
-                    let _ = write!(text, "{}\n\n", newton::table(scene, steps, &lines));
-                    output.write("newton-tolerance.csv", &newton::csv(&lines))?;
-                }
-            }
             results.push((title, measured));
         }
     }
@@ -161,9 +142,7 @@ fn compare(arguments: &Arguments) -> Result<(), Failure> {
         report::put_into_readme(&readme, &picture)?;
     }
     output.write("accuracy-cost.svg", &picture)?;
-    output.write("invariants.svg", &invariants_figure(&kept)?)?;
     output.write("accuracy-cost.csv", &data.to_csv())?;
-    output.write("accuracy-cost.json", &data.to_json())?;
     if arguments.heyoka {
         let _ = write!(text, "{}\n\n", with_heyoka(arguments));
     }

@@ -146,7 +146,7 @@ where
 }
 
 /// Gauss collocation with several numbers of stages.
-pub fn gauss<L>(lagrangian: impl Fn(&Scene) -> L + Copy + 'static) -> [Method; 4]
+fn gauss<L>(lagrangian: impl Fn(&Scene) -> L + Copy + 'static) -> [Method; 4]
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + 'static,
 {
@@ -175,7 +175,7 @@ fn exact_alone() -> Method {
 }
 
 /// Splittings with a kinetic flow.
-pub fn splittings<L, K>(
+fn splittings<L, K>(
     name: &'static str,
     family: Family,
     lagrangian: impl Fn(&Scene) -> L + Copy + 'static,
@@ -199,7 +199,7 @@ where
 }
 
 /// The step of a declared Lagrangian of this order, and its compositions.
-pub fn declared<L>(name: &'static str, lagrangian: impl Fn(&Scene) -> L + Copy + 'static, order: u32) -> Vec<Method>
+fn declared<L>(name: &'static str, lagrangian: impl Fn(&Scene) -> L + Copy + 'static, order: u32) -> Vec<Method>
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + 'static,
 {

@@ -108,35 +108,23 @@ pub fn put_into_readme(table: &str, figure: &str) -> Result<(), std::io::Error> 
 
 /// All runs of all methods, for programs to read.
 #[derive(Default)]
-pub struct Data {
-    csv: String,
-    json: Vec<String>,
-}
+pub struct Data(String);
 
 impl Data {
     /// Of a scene over a time, s.
     pub fn add(&mut self, scene: &str, t: f64, methods: &[Measured]) {
-        for Measured { name, family, runs } in methods {
+        for Measured { name, runs, .. } in methods {
             let name = name.replace(',', " +");
             for line in runs.to_csv().lines().skip(1) {
                 // Writing to a string can't fail.
-                let _ = writeln!(self.csv, "{scene},{t},{name},{line}");
+                let _ = writeln!(self.0, "{scene},{t},{name},{line}");
             }
-            self.json.push(format!(
-                "{{\"scene\":\"{scene}\",\"time\":{t:?},\"method\":\"{name}\",\"family\":\"{family:?}\",\"runs\":{}}}",
-                runs.to_json()
-            ));
         }
     }
 
     /// A line for each run.
     pub fn to_csv(&self) -> String {
         let columns = Refinement::default().to_csv();
-        format!("scene,time,method,{columns}{}", self.csv)
-    }
-
-    /// An array with an object for each method, scene and time.
-    pub fn to_json(&self) -> String {
-        format!("[{}]\n", self.json.join(",\n"))
+        format!("scene,time,method,{columns}{}", self.0)
     }
 }

@@ -80,19 +80,6 @@ impl Scene {
         })
     }
 
-    /// A body that something else than gravity acts on, with its states at the times of the runs.
-    pub fn bare(
-        name: &'static str,
-        nonstandard: DiagonalNonstandardInertia,
-        attitude: Matrix3<f64>,
-        velocity: Vector3<f64>,
-        states: Vec<(f64, End)>,
-    ) -> Self {
-        let (weight, rho, d) = (0.0, Vector3::zeros(), nonstandard.diagonal());
-        let moments = Vector3::new(d.y + d.z, d.z + d.x, d.x + d.y);
-        Self { name, short: name, kind: Kind::Top, moments, nonstandard, weight, rho, attitude, velocity, states }
-    }
-
     /// The exact state at a time of the reference, s.
     pub fn reference(&self, t: f64) -> Option<&End> {
         self.states.iter().find(|(time, _)| (time - t).abs() < 1e-9).map(|(_, end)| end)
@@ -160,11 +147,6 @@ impl Scene {
     /// The body by the Lagrangian of order 6.
     pub fn sixth_order_body(&self) -> SixthOrderBody {
         SixthOrderBody { J: self.inertia() }
-    }
-
-    /// The nonstandard inertia.
-    pub fn nonstandard(&self) -> DiagonalNonstandardInertia {
-        self.nonstandard
     }
 
     /// The ordinary inertia.

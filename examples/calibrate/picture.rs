@@ -6,18 +6,16 @@ use workbench::plot::{
     BLUE, GREEN, Line, ORANGE, PURPLE, Panel, PlotResult, SKY, Vertical, YELLOW, heading, legend, px, render,
 };
 
-use crate::READINGS;
-use crate::body::{STEP, measured, truth};
-use crate::fit::{Fitted, deviations};
+use crate::{Fitted, READINGS, Reference, STEP, deviations, measured, truth};
 
 /// So much of the record, s: more would cover itself.
 const SHOWN: f64 = 4.0;
 
-pub(crate) fn picture(fits: &[Fitted]) -> Result<String, Failure> {
+pub(crate) fn picture(fits: &[(Reference, Fitted)]) -> Result<String, Failure> {
     let first = fits.first().ok_or("no fit to draw")?;
-    let (read, fitted) = (measured(READINGS, 1)?, first.found.readings(READINGS, false)?);
+    let (read, fitted) = (measured(READINGS, 1)?, first.0.readings(READINGS)?);
     let rates = |values: &[Vector3<f64>], component: usize| -> Vec<(f64, f64)> {
-        let timed = values.iter().enumerate().map(|(n, value)| ((n + 1) as f64 * STEP, value[component]));
+        let timed = values.iter().enumerate().map(|(n, value)| (n as f64 * STEP, value[component]));
         timed.take_while(|(time, _)| *time <= SHOWN).collect()
     };
     let mut lines: Vec<Line> = Vec::new();
@@ -29,7 +27,7 @@ pub(crate) fn picture(fits: &[Fitted]) -> Result<String, Failure> {
     let records: Vec<usize> = (1..=20).map(|part| part * READINGS / 20).collect();
     let mut spread = vec![Vec::new(); 4];
     for count in records {
-        let deviations = deviations(&truth(), count)?;
+        let deviations = deviations(&truth().fit(&truth().readings(count)?, 2)?);
         for (line, number) in spread.iter_mut().zip([0, 1, 2, 3]) {
             line.push((count as f64 * STEP, deviations[number]));
         }

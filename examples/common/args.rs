@@ -212,7 +212,7 @@ const MOST_STEPS: f64 = 1e10;
 /// More samples than a figure has room for, few enough for any memory.
 const MOST_SAMPLES: u64 = 20_000;
 
-/// The beginning that is kept in detail, s: two flips of the free body.
+/// The beginning that is kept in detail, s.
 const BEGINNING: f64 = 20.0;
 
 /// The end that is kept in detail, s: from 100 s to 200 s in the thesis.

@@ -10,7 +10,6 @@
 pub mod args;
 pub mod csv;
 pub mod double_double;
-pub mod free_body;
 pub mod heavy_top;
 pub mod measure;
 pub mod newton_tolerance;

@@ -6,6 +6,7 @@
 
 mod closed;
 pub mod curves;
+mod engines;
 pub mod figure;
 mod poisson;
 pub mod report;

@@ -4,12 +4,12 @@ use declarations::{FreeBody, HeavyTop, Motion};
 use liestep::prelude::*;
 use nalgebra::{UnitQuaternion, Vector3};
 use plotters::style::RGBColor;
-use workbench::free_body::engines::{Engine, Moments, explicit, implicit, rescaled};
 use workbench::heavy_top::rk4::{Body, OnMatrix, OnQuaternion};
 use workbench::plot::{BLUE, GREEN, ORANGE, PURPLE};
 use workbench::run::{Method, Sample, Stopped};
 use workbench::variational::Variational;
 
+use crate::engines::{Engine, Moments, explicit, implicit, rescaled};
 use crate::row::Failure;
 
 pub(crate) const GREY: RGBColor = RGBColor(120, 120, 120);

@@ -1,8 +1,6 @@
 //! Symmetric compositions of declared Lagrangians.
 
-use checks::random::Random;
-use checks::structure::poisson::{TOLERANCE, defect_of};
-use declarations::{FourthOrderTop, FreeBody, HeavyTop, Motion, SixthOrderTop, Top as _};
+use declarations::{FourthOrderTop, FreeBody, Motion, SixthOrderTop, Top as _};
 use liestep::mechanics::{DiscreteLagrangian, Regular};
 use liestep::methods::CompositionScheme;
 use liestep::prelude::*;
@@ -30,31 +28,6 @@ where
         composed.step(&mut state).unwrap();
     }
     (state.attitude(), composed.velocity(&state))
-}
-
-/// On as many of the tops as there are coarsest steps, for ten seconds.
-fn assert_order_on_tops(scheme: CompositionScheme, ratio: f64, coarsest: &[u32]) {
-    for (name, coarsest) in TOPS.iter().zip(coarsest) {
-        let counts = counts(*coarsest, ratio, 5);
-        assert_order((scheme.name(), scheme.order()), (name, 10.0), &counts, |motion, h, steps| {
-            end(motion.top.clone(), scheme, motion, h, steps)
-        });
-    }
-}
-
-#[test]
-fn suzuki_4_is_of_order_4() {
-    assert_order_on_tops(CompositionScheme::SUZUKI_4, 2.0, &[1000, 1000, 1000, 160]);
-}
-
-#[test]
-fn kahan_li_6_is_of_order_6() {
-    assert_order_on_tops(CompositionScheme::KAHAN_LI_6, 1.5, &[800, 800, 800, 160]);
-}
-
-#[test]
-fn kahan_li_8_is_of_order_8() {
-    assert_order_on_tops(CompositionScheme::KAHAN_LI_8, 1.3, &[600, 600, 600, 140]);
 }
 
 /// In a double the errors fall faster than their order until rounding shows.
@@ -96,47 +69,6 @@ fn suzuki_8_of_the_sixth_order_top_is_of_order_8() {
     });
 }
 
-/// A parameter off the orbit of the declared one is that of another top, whose vertical it is.
-#[test]
-fn p1_compositions_are_poisson_maps() {
-    let mut random = Random::new(21);
-    for scheme in SCHEMES {
-        for h in [0.1, 0.3] {
-            let (momentum, w) = (random.vector() * 5.0, random.vector());
-            let step = |momentum: &Vector3<f64>, w: &Vector3<f64>| {
-                let top = HeavyTop { up: *w, ..HeavyTop::asymmetric() };
-                let composed = Stepper::composed(top, h, scheme).unwrap();
-                let mut state = composed.start_with_momentum(SO3::identity(), *momentum).unwrap();
-                composed.step(&mut state).unwrap();
-                (state.momentum(), state.advected())
-            };
-            let (defect, _) = defect_of::<HeavyTop, 3, 3>(step, &momentum, &w);
-            println!("{}, h = {h}: {defect:.1e}", scheme.name());
-            assert!(defect < TOLERANCE, "{}, h = {h}: {defect:e}", scheme.name());
-        }
-    }
-}
-
-#[test]
-fn s5_negative_composed_step_is_the_inverse_map() {
-    let mut random = Random::new(22);
-    for scheme in SCHEMES {
-        for h in [0.1, 0.01, 1e-6] {
-            let [there, back] = [h, -h].map(|h| Stepper::composed(HeavyTop::asymmetric(), h, scheme).unwrap());
-            for _ in 0..10 {
-                let mut state = there.start(random.rotation(), random.vector()).unwrap();
-                let before = state;
-                there.step(&mut state).unwrap();
-                back.step(&mut state).unwrap();
-                // Some roundings a stage.
-                assert!(relative(&state.attitude().matrix(), &before.attitude().matrix()) < 2e-14);
-                assert!(relative(&state.momentum(), &before.momentum()) < 2e-14);
-                assert!(relative(&state.advected(), &before.advected()) < 2e-14);
-            }
-        }
-    }
-}
-
 #[test]
 fn a_composed_step_of_zero_is_the_identity() {
     let motion = Motion::looping();
@@ -149,24 +81,6 @@ fn a_composed_step_of_zero_is_the_identity() {
             (before.attitude(), before.momentum(), before.advected(), 1),
             (state.attitude(), state.momentum(), state.advected(), state.steps())
         );
-    }
-}
-
-/// 10⁴ steps of up to 35 stages each.
-#[test]
-fn compositions_keep_the_vertical_momentum() {
-    let motion = Motion::looping();
-    for scheme in SCHEMES {
-        let composed = Stepper::composed(motion.top.clone(), 0.02, scheme).unwrap();
-        let mut state = composed.start(motion.attitude, motion.velocity).unwrap();
-        let (vertical, spin) = (state.momentum_along(&Vector3::z()), state.momentum().z);
-        for _ in 0..10_000 {
-            composed.step(&mut state).unwrap();
-        }
-        let drift = (state.momentum_along(&Vector3::z()) - vertical).abs() / vertical.abs();
-        let defect = state.orthogonality_defect();
-        println!("{}: vertical momentum {drift:.1e}, orthogonality {defect:.1e}", scheme.name());
-        assert!(drift < 1e-12 && defect < 2e-12 && (state.momentum().z - spin).abs() < 1e-12 * spin.abs());
     }
 }
 

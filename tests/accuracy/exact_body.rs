@@ -1,7 +1,6 @@
 //! The exact flow of a free body, against a solution that knows no elliptic functions, to 32 digits.
 
 use checks::random::Random;
-use checks::structure::poisson::TOLERANCE;
 use declarations::{FreeBody, HeavyTop, Motion};
 use liestep::methods::{ExactBody, KineticFlow, SplittingScheme, SymmetricBody, Turn};
 use liestep::numbers::{Lanes, Real};
@@ -10,9 +9,8 @@ use nalgebra::{Matrix3, RealField, Rotation3, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
 use workbench::measure::relative;
 
-use crate::convergence::{End, TOPS, assert_order, counts};
+use crate::convergence::End;
 use crate::many_digits::{DoubleDouble, Matrix, Vector, free_body, long};
-use crate::poisson::poisson_defect;
 
 fn body(moments: [f64; 3]) -> Inertia {
     Inertia::from_principal_moments(moments.into()).unwrap()
@@ -255,21 +253,6 @@ fn end(scheme: SplittingScheme, motion: &Motion, h: f64, steps: u32) -> End {
     (state.attitude(), splitting.velocity(&state))
 }
 
-#[test]
-fn splittings_of_an_asymmetric_top_have_their_orders() {
-    for (scheme, coarsest) in [
-        (SplittingScheme::FORCE_GRADIENT_2, 100),
-        (SplittingScheme::NYSTROM_11, 60),
-        (SplittingScheme::FORCE_GRADIENT_5, 60),
-        (SplittingScheme::KAHAN_LI_8, 80),
-    ] {
-        let chaotic = (TOPS[3], 10.0);
-        assert_order((scheme.name(), scheme.order()), chaotic, &counts(coarsest, 1.3, 5), |motion, h, steps| {
-            end(scheme, motion, h, steps)
-        });
-    }
-}
-
 /// The reference motions of free bodies, in one step.
 #[test]
 fn free_bodies_move_exactly_in_one_step() {
@@ -280,22 +263,6 @@ fn free_bodies_move_exactly_in_one_step() {
             let error = relative(found.0.as_matrix(), attitude).max(relative(&found.1, velocity));
             println!("{name}, {t} s: {error:.1e}");
             assert!(error < 1e-14 * (10.0 + t), "{name}, {t} s: {error:e}");
-        }
-    }
-}
-
-#[test]
-fn p1_splittings_with_it_are_poisson_maps() {
-    let mut random = Random::new(66);
-    for (name, moments) in
-        SHAPES.into_iter().filter(|(_, moments)| moments.iter().all(|moment| (0.1..10.0).contains(moment)))
-    {
-        let J_d = liestep::mechanics::DiagonalNonstandardInertia::from_principal_moments(moments.into()).unwrap();
-        let top = HeavyTop { J_d, ..HeavyTop::asymmetric() };
-        for h in [0.1, 0.5] {
-            let (momentum, w) = (random.vector(), random.vector());
-            let defect = poisson_defect(&top, || exact(moments), (SplittingScheme::STRANG, h), (&momentum, &w));
-            assert!(defect < TOLERANCE, "{name}, h = {h}: {defect:e}");
         }
     }
 }

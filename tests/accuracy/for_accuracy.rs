@@ -10,11 +10,13 @@ use liestep::groups::{Advected, LieGroup, SO2};
 use liestep::mechanics::{
     ContinuousLagrangian, DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, Regular, Scene,
 };
-use liestep::methods::{CompositionScheme, ExactBody, ProcessedScheme, SplittingScheme};
-use liestep::motion::{AnyStepper, Integrator as _, RightHandSide};
+use liestep::methods::CompositionScheme;
+use liestep::motion::{Integrator as _, RightHandSide};
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper, lagrangian};
 use nalgebra::{Matrix3, UnitQuaternion, Vector1, Vector2, Vector3, Vector6};
 use workbench::runge_kutta;
+
+use crate::every_method;
 
 /// The five scenes of the example accuracy-cost.
 const MOTIONS: [&str; 5] = ["looping A", "cuspidal A", "third A", "chaotic", "free"];
@@ -114,20 +116,6 @@ fn the_tolerance_is_seldom_missed_by_a_few_long_steps() {
     assert!(few > 250 && missed.len() <= 4, "{few}; missed {missed:#?}");
 }
 
-/// The method of the name, with this step.
-fn by_name(motion: &Motion, name: &str, h: f64) -> AnyStepper<SO3, Vector3<f64>> {
-    let (top, body) = (motion.top.clone(), ExactBody::new(&motion.top.ordinary_inertia()));
-    if let Some(scheme) = CompositionScheme::ALL.into_iter().find(|scheme| scheme.name() == name) {
-        return Stepper::composed(top, h, scheme).unwrap().into_any();
-    }
-    let name = name.strip_prefix("exact, ").unwrap_or_else(|| panic!("{name}"));
-    if let Some(scheme) = SplittingScheme::ALL.into_iter().find(|scheme| scheme.name() == name) {
-        return Stepper::split(top, h, body, scheme).unwrap().into_any();
-    }
-    let scheme = ProcessedScheme::ALL.into_iter().find(|scheme| scheme.name() == name).unwrap();
-    Stepper::processed(top, h, body, scheme).unwrap().into_any()
-}
-
 /// A control: with the step taken twice as long the tolerance is missed, by as much as the order says.
 #[test]
 #[allow(clippy::cast_precision_loss)] // few steps
@@ -138,7 +126,8 @@ fn a_step_twice_as_long_misses_the_tolerance() {
     let stepper = ask(&motion, accuracy).unwrap();
     let chosen = stepper.choice().chosen();
     let steps = stepper.choice().steps.div_ceil(2);
-    let longer = by_name(&motion, &chosen.name, horizon / steps as f64);
+    let mut all = every_method::all(&motion.top, horizon / steps as f64).into_iter();
+    let (_, longer) = all.find(|(name, _)| *name == chosen.name).unwrap();
     let mut state = longer.start(motion.attitude, motion.velocity).unwrap();
     longer.run(&mut state, steps).unwrap();
     let end = (*state.attitude().as_matrix(), longer.velocity(&state));

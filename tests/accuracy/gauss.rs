@@ -10,7 +10,7 @@ use liestep::prelude::*;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use workbench::measure::relative;
 
-use crate::convergence::{End, TOPS, assert_order, counts};
+use crate::convergence::{End, TOPS, counts};
 use crate::many_digits;
 use crate::many_digits::collocation::{self, Tableau};
 
@@ -33,20 +33,6 @@ fn end<const PAIRS: usize>(motion: &Motion, h: f64, steps: u32) -> End {
     let gauss = Stepper::collocated::<PAIRS>(motion.top.clone(), h).unwrap();
     let state = run(&gauss, gauss.start(motion.attitude, motion.velocity).unwrap(), steps);
     (state.attitude(), gauss.velocity(&state))
-}
-
-#[test]
-fn two_stages_are_of_order_4() {
-    for (motion, coarsest) in TOPS.into_iter().zip([1500, 800, 1500, 160]) {
-        assert_order(("2 stages", 4), (motion, 10.0), &counts(coarsest, 1.5, 5), end::<1>);
-    }
-}
-
-#[test]
-fn four_stages_are_of_order_8() {
-    for (motion, coarsest) in TOPS.into_iter().zip([240, 120, 260, 70]) {
-        assert_order(("4 stages", 8), (motion, 10.0), &counts(coarsest, 1.25, 5), end::<2>);
-    }
 }
 
 /// In long numbers: in a double orders as high as these go from the first step that can be solved to rounding before
@@ -96,24 +82,6 @@ fn poisson_defect<const PAIRS: usize>(top: &HeavyTop, h: f64, momentum: &Vector3
         (state.momentum(), state.advected())
     };
     defect_of::<HeavyTop, 3, 3>(step, momentum, w).0
-}
-
-#[test]
-fn p1_collocation_is_a_poisson_map() {
-    let mut random = Random::new(51);
-    for top in [HeavyTop::thesis(), HeavyTop::asymmetric()] {
-        for h in [0.1, 0.3] {
-            let (momentum, w) = (random.vector() * 3.0, random.vector());
-            let defects = [
-                poisson_defect::<1>(&top, h, &momentum, &w),
-                poisson_defect::<2>(&top, h, &momentum, &w),
-                poisson_defect::<3>(&top, h, &momentum, &w),
-                poisson_defect::<4>(&top, h, &momentum, &w),
-            ];
-            println!("h = {h}: {defects:?}");
-            assert!(defects.iter().all(|defect| *defect < TOLERANCE), "h = {h}: {defects:?}");
-        }
-    }
 }
 
 /// The same collocation of `Π' = Π × Ω + τ`, `w' = w × Ω` itself has the same order and isn't Poisson: the test above
@@ -207,21 +175,6 @@ fn the_energy_is_kept_at_shorter_steps() {
         let [first, second] = energy_errors::<4>(&Motion::read(name), h, 20_000);
         println!("{name}: energy {first:.1e}, then {second:.1e}");
         assert!(first < 1e-13 && second < 2e-13, "{name}: {first:e}, {second:e}");
-    }
-}
-
-#[test]
-fn s5_negative_collocation_step_is_the_inverse_map() {
-    let mut random = Random::new(52);
-    for top in [HeavyTop::thesis(), HeavyTop::asymmetric()] {
-        let [there, back] = [0.1, -0.1].map(|h| Stepper::collocated::<4>(top.clone(), h).unwrap());
-        for _ in 0..10 {
-            let before = there.start(random.rotation(), random.vector() * 3.0).unwrap();
-            let after = run(&back, run(&there, before, 1), 1);
-            let turned = (after.attitude().as_matrix() - before.attitude().as_matrix()).norm();
-            assert!(turned < 2e-15, "{turned:e}");
-            assert!(relative(&after.momentum(), &before.momentum()) < 2e-15);
-        }
     }
 }
 

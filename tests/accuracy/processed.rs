@@ -1,15 +1,9 @@
 //! Processed splittings: orders, what they keep, and that looking at a motion doesn't disturb it.
 
-use checks::random::Random;
-use checks::structure::poisson::{TOLERANCE, defect_of};
 use declarations::{FreeBody, HeavyTop, Motion};
-use liestep::effects::{Gravity, PrincipalBody};
-use liestep::mechanics::{DiagonalNonstandardInertia, Sum};
 use liestep::methods::{ExactBody, KineticFlow, ProcessedScheme, SplittingScheme};
-use liestep::numbers::Lanes;
 use liestep::prelude::*;
 use nalgebra::Vector3;
-use simba::simd::WideF64x4;
 use workbench::measure::{order, relative};
 
 use crate::convergence::{End, TOPS, counts};
@@ -76,48 +70,10 @@ fn looking_does_not_disturb() {
     }
 }
 
-#[test]
-fn s5_a_step_of_the_negative_length_is_the_inverse_map() {
-    let mut random = Random::new(71);
-    for scheme in ProcessedScheme::ALL {
-        let top = HeavyTop::asymmetric();
-        let there = Stepper::processed(top.clone(), 0.2, exact(&top), scheme).unwrap();
-        let back = there.inverse().unwrap();
-        for _ in 0..10 {
-            let before = there.start(random.rotation(), random.vector() * 3.0).unwrap();
-            let mut state = before;
-            there.run(&mut state, 3).unwrap();
-            let mut state = back.adopt(&state);
-            back.run(&mut state, 3).unwrap();
-            let error = relative(&state.attitude().matrix(), &before.attitude().matrix());
-            assert!(error.max(relative(&state.momentum(), &before.momentum())) < 1e-13, "{}", scheme.name());
-        }
-    }
-}
-
-#[test]
-fn p1_processed_splittings_are_poisson_maps() {
-    let mut random = Random::new(72);
-    for scheme in ProcessedScheme::ALL {
-        for h in [0.1, 0.4] {
-            let top = HeavyTop::asymmetric();
-            let step = |momentum: &Vector3<f64>, w: &Vector3<f64>| {
-                let processed = Stepper::processed(HeavyTop { up: *w, ..top.clone() }, h, exact(&top), scheme).unwrap();
-                let mut state = processed.start_with_momentum(SO3::identity(), *momentum).unwrap();
-                processed.step(&mut state).unwrap();
-                (state.momentum(), state.advected())
-            };
-            let defect = defect_of::<HeavyTop, 3, 3>(step, &(random.vector() * 3.0), &random.vector()).0;
-            println!("{}, h = {h}: {defect:.1e}", scheme.name());
-            assert!(defect < TOLERANCE, "{}, h = {h}: {defect:e}", scheme.name());
-        }
-    }
-}
-
 /// A million steps of the chaotic top: the momentum about the vertical, lengths, and rotations that stay rotations. The
 /// energy stays within the bound that it has at first.
 #[test]
-fn momenta_are_kept() {
+fn processed_splittings_keep_the_momenta() {
     let motion = Motion::chaotic();
     for scheme in ProcessedScheme::ALL {
         let processed = Stepper::processed(motion.top.clone(), 0.1, exact(&motion.top), scheme).unwrap();
@@ -138,34 +94,6 @@ fn momenta_are_kept() {
         println!("{}: {drift:.1e}, {length:.1e}, {defect:.1e}, {first:.1e} to {last:.1e}", scheme.name());
         assert!(drift.max(length).max(defect) < 2e-12, "{}: {drift:e}, {length:e}, {defect:e}", scheme.name());
         assert!(last < 2.0 * first, "{}: {windows:?}", scheme.name());
-    }
-}
-
-/// Each lane of a run is, bit for bit, a run of its own.
-#[test]
-fn each_lane_moves_as_alone() {
-    let moments = [1.6, 2.6, 3.0];
-    let J_d = DiagonalNonstandardInertia::from_principal_moments(moments.into()).unwrap();
-    let inertia = Inertia::from_principal_moments(moments.into()).unwrap();
-    let rho = Vector3::new(0.1, 0.2, 0.3);
-    let alone = PrincipalBody { J_d } + Gravity { m: 1.0, g: 9.81, rho, up: Vector3::z() };
-    let together: Sum<PrincipalBody<WideF64x4>, Gravity<WideF64x4>> = Lanes::splat(&alone);
-    let mut random = Random::new(73);
-    let starts: [(SO3, Vector3<f64>); 4] = core::array::from_fn(|_| (random.rotation(), random.vector() * 3.0));
-    for scheme in [ProcessedScheme::SIX_A, ProcessedScheme::FOUR_A] {
-        let flow = ExactBody::<WideF64x4>::new(&Lanes::splat(&inertia));
-        let stepper = Stepper::processed(together, nalgebra::convert(0.1), flow, scheme).unwrap();
-        let attitude = SO3::gathered(&starts.map(|(attitude, _)| attitude)).unwrap();
-        let velocity = Vector3::gathered(&starts.map(|(_, velocity)| velocity)).unwrap();
-        let mut state = stepper.start(attitude, velocity).unwrap();
-        stepper.run(&mut state, 20).unwrap();
-        let single = Stepper::processed(alone, 0.1, ExactBody::new(&inertia), scheme).unwrap();
-        for (k, (attitude, velocity)) in starts.into_iter().enumerate() {
-            let mut of_lane = single.start(attitude, velocity).unwrap();
-            single.run(&mut of_lane, 20).unwrap();
-            let momentum: Vector3<WideF64x4> = state.momentum();
-            assert_eq!(momentum.lane(k), of_lane.momentum(), "{}, lane {k}", scheme.name());
-        }
     }
 }
 

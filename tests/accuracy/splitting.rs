@@ -1,7 +1,8 @@
 //! Kinetic-potential splittings.
 
-use checks::random::Random;
+use checks::solvers::WithJacobian;
 use declarations::{FourthOrderBody, FourthOrderTop, FreeBody, HeavyTop, LogTop, Motion, SixthOrderBody, Top as _};
+use liestep::accuracy::Accuracy;
 use liestep::effects::{GravityGradient, Rotor, Spring};
 use liestep::mechanics::{Effect, Term as _};
 use liestep::methods::{CompositionScheme, Flow, KineticFlow, SplittingScheme, SymmetricBody};
@@ -22,40 +23,6 @@ fn end<K: KineticFlow<f64>>(kinetic: K, scheme: SplittingScheme, motion: &Motion
     let mut state = splitting.start(motion.attitude, motion.velocity).unwrap();
     splitting.run(&mut state, steps.into()).unwrap();
     (state.attitude(), splitting.velocity(&state))
-}
-
-/// On the symmetric tops, whose kinetic flow is exact.
-fn assert_order_of_exact(scheme: SplittingScheme, coarsest: [u32; 3], ratio: f64) {
-    for (name, coarsest) in TOPS.iter().zip(coarsest) {
-        assert_order((scheme.name(), scheme.order()), (name, 10.0), &counts(coarsest, ratio, 5), |motion, h, steps| {
-            end(symmetric(&motion.top), scheme, motion, h, steps)
-        });
-    }
-}
-
-#[test]
-fn strang_is_of_order_2() {
-    assert_order_of_exact(SplittingScheme::STRANG, [200; 3], 2.0);
-}
-
-#[test]
-fn nystrom_6_is_of_order_4() {
-    assert_order_of_exact(SplittingScheme::NYSTROM_6, [500; 3], 1.4);
-}
-
-#[test]
-fn nystrom_11_is_of_order_6() {
-    assert_order_of_exact(SplittingScheme::NYSTROM_11, [100; 3], 1.4);
-}
-
-#[test]
-fn nystrom_14_is_of_order_6() {
-    assert_order_of_exact(SplittingScheme::NYSTROM_14, [80; 3], 1.4);
-}
-
-#[test]
-fn kahan_li_8_of_strang_is_of_order_8() {
-    assert_order_of_exact(SplittingScheme::KAHAN_LI_8, [160, 80, 110], 1.2);
 }
 
 /// In a double an exact kinetic flow leaves nothing but rounding while the steps are long.
@@ -100,26 +67,6 @@ fn composed_splittings_are_strang_composed() {
         }
         assert_eq!((shares.next(), shares.next()), (Some((Flow::Kick, 0.5 * left)), None));
     }
-}
-
-#[test]
-fn force_gradients_in_two_stages_are_of_order_4() {
-    assert_order_of_exact(SplittingScheme::FORCE_GRADIENT_2, [200; 3], 1.5);
-}
-
-#[test]
-fn force_gradients_in_four_stages_are_of_order_4() {
-    assert_order_of_exact(SplittingScheme::FORCE_GRADIENT_4, [200; 3], 1.5);
-}
-
-#[test]
-fn force_gradients_in_five_stages_are_of_order_6() {
-    assert_order_of_exact(SplittingScheme::FORCE_GRADIENT_5, [100; 3], 1.3);
-}
-
-#[test]
-fn near_integrable_4_2_is_of_order_2() {
-    assert_order_of_exact(SplittingScheme::NEAR_INTEGRABLE_4_2, [200; 3], 2.0);
 }
 
 /// On a top whose potential isn't small: on the others what is seen at common steps is an order between 8 and 4.
@@ -213,58 +160,6 @@ fn strang_with_the_flow_of_3_13_is_3_13() {
 }
 
 #[test]
-fn many_steps_are_single_steps() {
-    let motion = Motion::looping();
-    for scheme in SplittingScheme::ALL {
-        let splitting = Stepper::split(motion.top.clone(), 0.05, symmetric(&motion.top), scheme).unwrap();
-        let mut many = splitting.start(motion.attitude, motion.velocity).unwrap();
-        let mut single = many;
-        splitting.run(&mut many, 100).unwrap();
-        for _ in 0..100 {
-            splitting.step(&mut single).unwrap();
-        }
-        assert_eq!(many.steps(), single.steps());
-        assert!(relative(&many.momentum(), &single.momentum()) < 2e-13, "{}", scheme.name());
-        assert!(relative(&many.attitude().matrix(), &single.attitude().matrix()) < 2e-13, "{}", scheme.name());
-    }
-}
-
-#[test]
-fn s5_negative_split_step_is_the_inverse_map() {
-    let mut random = Random::new(32);
-    for scheme in SplittingScheme::ALL {
-        let top = HeavyTop::thesis();
-        let [there, back] = [0.1, -0.1].map(|h| Stepper::split(top.clone(), h, symmetric(&top), scheme).unwrap());
-        for _ in 0..10 {
-            let mut state = there.start(random.rotation(), random.vector() * 5.0).unwrap();
-            let before = state;
-            there.step(&mut state).unwrap();
-            back.step(&mut state).unwrap();
-            assert!(relative(&state.attitude().matrix(), &before.attitude().matrix()) < 2e-14, "{}", scheme.name());
-            assert!(relative(&state.momentum(), &before.momentum()) < 2e-14, "{}", scheme.name());
-        }
-    }
-}
-
-/// A million steps: the momentum about the vertical, the length of what is carried, the spin, and rotations that stay
-/// rotations.
-#[test]
-fn splittings_keep_the_momenta() {
-    let motion = Motion::looping();
-    for scheme in SplittingScheme::ALL {
-        let splitting = Stepper::split(motion.top.clone(), 0.05, symmetric(&motion.top), scheme).unwrap();
-        let mut state = splitting.start(motion.attitude, motion.velocity).unwrap();
-        let (vertical, spin) = (state.momentum_along(&Vector3::z()), state.momentum().z);
-        splitting.run(&mut state, 1_000_000).unwrap();
-        let drift = ((state.momentum_along(&Vector3::z()) - vertical) / vertical).abs();
-        let (length, defect) = ((state.advected().norm() - 1.0).abs(), state.orthogonality_defect());
-        println!("{}: vertical momentum {drift:.1e}, length {length:.1e}, orthogonality {defect:.1e}", scheme.name());
-        assert!(drift.max(length).max(defect) < 1e-11, "{}: {drift:e}, {length:e}, {defect:e}", scheme.name());
-        assert_eq!(state.momentum().z.to_bits(), spin.to_bits());
-    }
-}
-
-#[test]
 fn another_body_is_refused() {
     let top = HeavyTop::thesis();
     let other = SymmetricBody::new(&Inertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.5)).unwrap()).unwrap();
@@ -287,6 +182,19 @@ fn a_lagrangian_that_cannot_be_split_is_refused() {
     let coupled = FourthOrderTop::of(&top);
     let error = Stepper::split(coupled, 0.01, symmetric(&top), SplittingScheme::STRANG).unwrap_err();
     assert!(matches!(error, SetupError::NotSeparable { defect } if defect > 1e-3), "{error:?}");
+}
+
+/// What a kick's derivative isn't written for can be split, but not with force gradients.
+#[test]
+fn a_force_gradient_has_to_be_written() {
+    let top = WithJacobian(HeavyTop::thesis());
+    let split = |scheme| Stepper::split(top.clone(), 0.01, symmetric(&top.0), scheme).map(|_| ());
+    assert_eq!(split(SplittingScheme::NYSTROM_6), Ok(()));
+    assert_eq!(split(SplittingScheme::FORCE_GRADIENT_2), Err(SetupError::NoForceGradient));
+    // Nor is it chosen.
+    let accuracy = Accuracy { tolerance: 1e-4, horizon: 1.0 };
+    let stepper = Stepper::for_accuracy(top, accuracy, SO3::identity(), Vector3::new(0.5, 2.0, 12.0)).unwrap();
+    assert!(!stepper.choice().to_string().contains("force gradient"));
 }
 
 /// `p_3` is constant, but its square isn't rounded in the same way at each step: that would change `|w|²` by 9e-14

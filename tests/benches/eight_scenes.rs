@@ -3,26 +3,15 @@
 use core::array::from_fn;
 use core::fmt::Debug;
 
-use declarations::{DoublePendulum, TopOnCart, TwoBodies};
+use declarations::{Alike, DoublePendulum, TopOnCart, TwoBodies};
 use liestep::effects::PrincipalBody;
 use liestep::groups::{R2, R3};
 use liestep::mechanics::{Along, DiagonalNonstandardInertia, Each};
 use liestep::motion::{Batchable, Integrator};
 use liestep::numbers::Bodies;
-use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::{NonstandardInertia, SO3, Stepper};
 use nalgebra::{SVector, Vector2, Vector3};
 use simba::simd::AutoF64x8;
-
-/// Two bodies would like to stand alike.
-#[lagrangian(
-    group(F_1 = SO3, F_2 = SO3),
-    advected(Q = F_2.seen_from(F_1)),
-    l_d = 0.5 * h * kappa * (Q.trace() + (F_1.transpose() * Q * F_2).trace()),
-)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Alike<T> {
-    kappa: T,
-}
 
 /// What is done with each scene.
 pub(crate) trait Visit {

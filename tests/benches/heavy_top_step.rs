@@ -22,8 +22,8 @@ mod by_hand;
 use core::hint::black_box;
 use std::time::Instant;
 
-use liestep::motion::Declared;
-use liestep::motion::WarmStart;
+use declarations::HeavyTop;
+use liestep::motion::{Declared, WarmStart};
 use liestep::prelude::*;
 use liestep::with::{Compensated as Plan, MemoryWithCarry};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -36,21 +36,6 @@ const RHO: [f64; 3] = [0.0, 0.0, 1.0];
 /// Long enough to hide the clock, short enough that a disturbance spoils few batches.
 const BATCH: u32 = 20_000;
 const ROUNDS: usize = 300;
-
-/// (3.13) in principal axes.
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
-        - 0.5 * h * m * g * w.dot(&(rho + F * rho)),
-)]
-struct HeavyTop {
-    J_d: DiagonalNonstandardInertia,
-    m: f64,
-    g: f64,
-    rho: Vector3<f64>,
-    up: Vector3<f64>,
-}
 
 type Derived = Stepper<HeavyTop>;
 type DerivedState = State<SO3, Vector3<f64>>;

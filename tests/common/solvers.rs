@@ -5,8 +5,8 @@ use core::fmt::Debug;
 
 use liestep::groups::Retraction as _;
 use liestep::mechanics::{
-    DiscreteLagrangian, Effect, Group, Limit, Matrix, Parts, Residual, Scalar, SceneVisitor, Square, Term, Vector,
-    WithExpensiveKinetic, WithKinetic,
+    DiscreteLagrangian, Effect, Group, Limit, Matrix, Parts, Residual, Scalar, SceneVisitor, SecondDerivatives, Square,
+    StepDerivatives, Term, Vector, WithExpensiveKinetic, WithKinetic,
 };
 use liestep::numbers::Real;
 use liestep::prelude::*;
@@ -263,5 +263,62 @@ impl<L: Effect> Effect for Badly<L> {
         half: &Vector<Self>,
     ) -> Residual<Vector<Self>> {
         Residual { momentum_defect: Self::newton_system(constants, terms, half).0, moving_kick: None }
+    }
+}
+
+/// Newton's iteration, with the derivatives of steps but for those of the kick.
+#[derive(Clone, Debug)]
+pub struct WithoutKickGradient<L>(pub L);
+
+impl<L: DiscreteLagrangian> DiscreteLagrangian for WithoutKickGradient<L> {
+    declared_as!(L);
+}
+
+impl<L: Term> Term for WithoutKickGradient<L> {
+    term_as!(L);
+}
+
+impl<L: Effect> Effect for WithoutKickGradient<L> {
+    solved_as!(L);
+
+    fn kick_derivative(
+        constants: &Self::Constants,
+        w: &Self::Advected,
+        velocity: &Vector<Self>,
+    ) -> Option<Vector<Self>> {
+        L::kick_derivative(constants, w, velocity)
+    }
+
+    fn newton_system(
+        constants: &Self::Constants,
+        terms: &Self::StepTerms,
+        half: &Vector<Self>,
+    ) -> (Vector<Self>, Square<Self>) {
+        L::newton_system(constants, terms, half)
+    }
+}
+
+impl<L: SecondDerivatives> SecondDerivatives for WithoutKickGradient<L> {
+    const PARAMETERS: usize = L::PARAMETERS;
+
+    of_inner! {
+        fn step_derivatives(f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> StepDerivatives<Square<Self>>;
+        fn by_parameters(
+            f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar, visit: &mut impl FnMut(usize, Vector<Self>, Vector<Self>)
+        );
+        fn by_advected(
+            f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar, visit: &mut impl FnMut(usize, Vector<Self>, Vector<Self>)
+        );
+        fn adjoint_system(
+            f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar, at_end: &Vector<Self>
+        ) -> (Square<Self>, Vector<Self>);
+        fn adjoint_gradient(
+            f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar, ends: [&Vector<Self>; 2],
+            visit: &mut impl FnMut(usize, Self::Scalar)
+        ) -> (Vector<Self>, Self::Advected);
+    }
+
+    fn carried_parameters(visit: &mut impl FnMut(usize, usize)) {
+        L::carried_parameters(visit);
     }
 }

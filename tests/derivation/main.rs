@@ -1,6 +1,5 @@
 //! What the macro derives, against what shares no code with it: duals, finite differences, formulas by hand, data.
 
-mod by_hand;
 mod continuous;
 mod continuous_bodies;
 mod discretised;
@@ -8,7 +7,6 @@ mod dual_numbers;
 mod equations;
 mod exact_lagrangian;
 mod golden_steps;
-mod kinetic_terms;
 mod lanes;
 mod other_groups;
 mod self_adjoint;

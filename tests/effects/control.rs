@@ -1,6 +1,6 @@
 //! Torques that are given anew each step.
 
-use liestep::effects::{Drag, Gravity, RigidBody, Thrust, Torque};
+use liestep::effects::{Gravity, RigidBody, Thrust, Torque};
 use liestep::mechanics::Regular;
 use liestep::{NonstandardInertia, SO3, StateOf, StepError, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -19,18 +19,6 @@ fn started<L: Regular<Scalar = f64, Group = SO3>>(scene: L, h: f64) -> (Stepper<
     let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.3, -0.2));
     let state = stepper.start(attitude, Vector3::new(0.5, 1.0, 3.0)).unwrap();
     (stepper, state)
-}
-
-#[test]
-fn no_torque_changes_no_bit() {
-    let (stepper, mut free) = started(body() + gravity() + Drag { c: 0.1, J: body().J_d.to_inertia() }, 0.01);
-    let mut controlled = free;
-    for _ in 0..1000 {
-        stepper.step(&mut free).unwrap();
-        stepper.step_forced(&mut controlled, &Vector3::zeros()).unwrap();
-        assert_eq!(controlled, free);
-        assert_eq!(controlled.momentum().map(f64::to_bits), free.momentum().map(f64::to_bits));
-    }
 }
 
 /// The same torque in each step is the effect; so is a thrust with that torque.

@@ -4,7 +4,6 @@ mod changing_scenes;
 mod control;
 mod driven;
 mod forces;
-mod forces_by_hand;
 mod kinetic_terms;
 mod library;
 mod sums;

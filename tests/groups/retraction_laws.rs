@@ -6,7 +6,6 @@ use core::f64::consts::{FRAC_PI_2, PI};
 use checks::random::Random;
 use liestep::SO3;
 use liestep::groups::{CayleyRetraction, ExponentialRetraction, LieGroup as _, Retraction};
-use liestep::laws::samples::derivative;
 use nalgebra::{Matrix3, Vector3};
 
 /// On both sides of the places where a formula changes: `θ² = 0.01` and `0.04`, the latter also by way of `θ/2`.
@@ -29,30 +28,6 @@ fn series(xi: &Vector3<f64>, offset: u32) -> Matrix3<f64> {
         term = term * hat / f64::from(k + 1 + offset);
     }
     sum
-}
-
-fn assert_laws<R: Retraction<SO3>>() {
-    assert_eq!(R::increment(&Vector3::zeros()), Matrix3::zeros());
-    assert_eq!(R::tangent(&Vector3::zeros()), Matrix3::identity());
-    for (angle, xi) in samples(61) {
-        let f = R::retract(&xi);
-        assert!(f.defect() < ROUNDING, "{angle}: {:e}", f.defect());
-        assert!(f.matrix().determinant() > 0.0);
-        assert!(R::retract(&-xi).compose(&f).log().norm() < ROUNDING, "τ(−ξ) is the inverse");
-
-        // To first order in `ξ` every retraction is `I + ξ̂`; its second order is `ξ̂²/2`.
-        let remainder = R::increment(&xi) - SO3::hat(&xi) - SO3::hat(&xi) * SO3::hat(&xi) * 0.5;
-        let allowed = angle.powi(3) + 4.0 * f64::EPSILON * angle;
-        assert!(remainder.norm() <= allowed, "{angle}: {:e}", remainder.norm());
-
-        let tangent = R::tangent(&xi);
-        for k in 0..3 {
-            // The six-point difference leaves 10⁻¹³ by the derivatives, which grow with the coordinates.
-            let rate = derivative(|t| R::retract(&(xi + Vector3::ith(k, t))).matrix()) * f.inverse().matrix();
-            let (error, column) = (SO3::vee(&rate) - tangent.column(k), tangent.column(k));
-            assert!(error.norm() < 1e-11, "{angle}: {rate} against {column}");
-        }
-    }
 }
 
 fn assert_round_trips<R: Retraction<SO3>>() {
@@ -90,14 +65,12 @@ fn assert_knows_a_quarter_turn<R: Retraction<SO3>>() {
 
 #[test]
 fn cayley() {
-    assert_laws::<CayleyRetraction>();
     assert_round_trips::<CayleyRetraction>();
     assert_knows_a_quarter_turn::<CayleyRetraction>();
 }
 
 #[test]
 fn exponential() {
-    assert_laws::<ExponentialRetraction>();
     assert_round_trips::<ExponentialRetraction>();
     assert_knows_a_quarter_turn::<ExponentialRetraction>();
 }

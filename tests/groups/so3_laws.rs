@@ -4,8 +4,6 @@
 use checks::random::Random;
 use liestep::SO3;
 use liestep::groups::{ExponentialRetraction, LieGroup as _, Retraction as _};
-use liestep::laws::samples::derivative;
-use liestep::motion::reconstruct;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use num_dual::Dual64;
 use workbench::measure::relative;
@@ -28,33 +26,6 @@ fn exponential(xi: &Vector3<f64>) -> SO3 {
 }
 
 #[test]
-fn hat_and_vee_are_inverse_in_the_declared_basis() {
-    let mut random = Random::new(51);
-    for _ in 0..50 {
-        let v = random.vector();
-        let hat = SO3::hat(&v);
-        assert_eq!(hat, basis(0) * v.x + basis(1) * v.y + basis(2) * v.z);
-        assert_eq!(SO3::vee(&hat), v);
-        // Two products and a difference, rounded in two orders.
-        assert!((hat * v).norm() < 1e-15);
-    }
-}
-
-#[test]
-fn group_axioms() {
-    let mut random = Random::new(52);
-    for f in random.hard_rotations() {
-        let (g, h) = (random.rotation(), random.rotation());
-        assert!(f.defect() < ROUNDING && f.compose(&g).defect() < ROUNDING);
-        assert!(relative(&f.compose(&f.inverse()).matrix(), &Matrix3::identity()) < ROUNDING);
-        assert!(relative(&f.inverse().compose(&f).matrix(), &Matrix3::identity()) < ROUNDING);
-        assert_eq!(f.compose(&SO3::identity()), f);
-        let (left, right) = (f.compose(&g).compose(&h), f.compose(&g.compose(&h)));
-        assert!(relative(&left.matrix(), &right.matrix()) < ROUNDING);
-    }
-}
-
-#[test]
 fn adjoint_actions_and_their_pairings() {
     let mut random = Random::new(53);
     for f in random.hard_rotations() {
@@ -74,20 +45,6 @@ fn adjoint_actions_and_their_pairings() {
     }
 }
 
-/// `ad` is the derivative of `Ad` at the identity, and `ad*` that of `Ad*`.
-#[test]
-fn brackets_are_derivatives_of_the_adjoint_actions() {
-    let mut random = Random::new(54);
-    for _ in 0..20 {
-        let (xi, eta) = (random.vector(), random.vector());
-        let along = |t: f64| exponential(&(xi * t));
-        // The six-point difference leaves 10⁻¹³.
-        assert!((derivative(|t| along(t).adjoint(&eta)) - SO3::lie_bracket(&xi, &eta)).norm() < 1e-12);
-        let transposed = SO3::lie_bracket_transpose(&xi, &eta);
-        assert!((derivative(|t| along(t).adjoint_transpose(&eta)) - transposed).norm() < 1e-12);
-    }
-}
-
 #[test]
 fn logarithm_inverts_the_exponential() {
     let mut random = Random::new(55);
@@ -104,20 +61,6 @@ fn logarithm_inverts_the_exponential() {
         }
     }
     assert_eq!(SO3::<f64>::identity().log(), Vector3::zeros());
-}
-
-/// `g F = g + g D` and `Ad*_F μ − μ`, formed from the increment `D = F − I`.
-#[test]
-fn increments_stand_for_elements() {
-    let mut random = Random::new(56);
-    for f in random.hard_rotations() {
-        let (g, momentum, d) = (random.rotation(), random.vector(), f.increment());
-        assert!(relative(&SO3::from_increment(&d).matrix(), &f.matrix()) < ROUNDING);
-        assert!(relative(&g.advance(&d).matrix(), &g.compose(&f).matrix()) < ROUNDING);
-        assert!(relative(&reconstruct(&g, &f).matrix(), &g.compose(&f).matrix()) < ROUNDING);
-        let change = SO3::adjoint_transpose_increment(&d, &momentum);
-        assert!((change - (f.adjoint_transpose(&momentum) - momentum)).norm() < ROUNDING);
-    }
 }
 
 #[test]

@@ -3,8 +3,8 @@
 //! | | where |
 //! |---|---|
 //! | the rows themselves | [`rows`], by `examples/hard-cases` |
-//! | S1 to S5 for random momenta, near roots and poles | [`solvability`]; S1 and S2 as bounds and policies in `tests/robustness` |
-//! | B5 to B8 for other bodies, T10 equation by equation | [`bodies`] |
+//! | S1 for random momenta, S4 where something turns | [`solvability`]; S1 and S2 as bounds and policies in `tests/robustness` |
+//! | B6 in full, T10 equation by equation | [`bodies`] |
 //! | P6, and R under every summation | [`structure`] |
 //! | P1, P2, P7 | P1 and P2 of every declaration in `tests/systems` and `tests/random_lagrangians`, of every method in `tests/accuracy`; P7 in `tests/robustness/checkpoints.rs` |
 

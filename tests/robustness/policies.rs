@@ -1,10 +1,9 @@
 //! What a stepper with a policy does where there is no step, and that it says so.
 
 use declarations::{HeavyTop, Motion};
-use liestep::motion::{Remedy, StepReport};
+use liestep::motion::Remedy;
 use liestep::{SO3, State, StepError, Stepper};
 use nalgebra::Vector3;
-use workbench::measure::relative;
 
 type TopState = State<SO3, Vector3<f64>>;
 
@@ -48,38 +47,6 @@ fn s2_substeps_in_the_place_of_the_published_step() {
     }
     assert_eq!(state.steps(), 101);
     assert_kept(&state, &start);
-}
-
-/// Where the step has a solution it is that one, to the bit, and the report is the stepper's own.
-#[test]
-fn s2_a_policy_does_nothing_where_there_is_a_step() {
-    let Motion { top, attitude, velocity, .. } = Motion::looping();
-    let stepper = Stepper::new(top, 0.01).unwrap();
-    let substeps = stepper.clone().or_substeps(16);
-    let start = stepper.start(attitude, velocity).unwrap();
-    let (mut plain, mut other) = (start, start);
-    for _ in 0..1000 {
-        let report = stepper.step(&mut plain).unwrap();
-        assert_eq!(report, StepReport { iterations: report.iterations, remedy: None });
-        assert_eq!(substeps.step(&mut other).unwrap(), report);
-    }
-    assert_eq!(other, plain);
-}
-
-/// The spin alone makes every step impossible here, so the motion is that of half the step, but for the guesses.
-#[test]
-fn s2_substeps_move_by_the_whole_step() {
-    let (stepper, mut state) = published();
-    let remedied = stepper.or_substeps(16);
-    let half = Stepper::new(HeavyTop::thesis(), 0.05).unwrap();
-    let mut expected = half.start(Motion::looping().attitude, Motion::looping().velocity).unwrap();
-    for _ in 0..10 {
-        assert_eq!(remedied.step(&mut state).unwrap().remedy, Some(Remedy::Substeps(2)));
-        half.step(&mut expected).unwrap();
-        half.step(&mut expected).unwrap();
-    }
-    assert!(relative(&state.advected(), &expected.advected()) < 1e-13);
-    assert!((remedied.time(&state) - half.time(&expected)).abs() < 1e-15);
 }
 
 /// Nothing helps: the first error, and the state to the bit.

@@ -74,21 +74,3 @@ fn the_sixth_order_top_keeps_what_it_kept() {
     assert_no_worse(&kept(sixth(), 0.01), &kept(WithJacobian(sixth()), 0.01));
     assert_no_worse(&kept(sixth(), 0.05), &kept(WithJacobian(sixth()), 0.05));
 }
-
-/// A thousand steps and as many back.
-#[test]
-fn there_and_back() {
-    let (forward, back) = (Stepper::new(sixth(), 0.02).unwrap(), Stepper::new(sixth(), -0.02).unwrap());
-    let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
-    let start = forward.start(attitude, Vector3::new(0.5, 2.15, 12.09)).unwrap();
-    let mut state = start;
-    for _ in 0..1000 {
-        forward.step(&mut state).unwrap();
-    }
-    let mut state = back.start_with_momentum(state.attitude(), state.momentum()).unwrap();
-    for _ in 0..1000 {
-        back.step(&mut state).unwrap();
-    }
-    assert!((state.attitude().matrix() - start.attitude().matrix()).norm() < 1e-11);
-    assert!((state.momentum() - start.momentum()).norm() < 1e-11 * start.momentum().norm());
-}

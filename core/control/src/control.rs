@@ -2,8 +2,8 @@
 
 use liestep::gradients::{Input, InputOf, Linearisable};
 use liestep::groups::{ExponentialRetraction, LieGroup, Retraction};
-use liestep::mechanics::{Group, SecondDerivatives, Vector};
-use liestep::motion::{Plan, StateOf, Stepper};
+use liestep::mechanics::{Group, SecondDerivatives, Term, Vector};
+use liestep::motion::{Motion, Plan, StateOf, Stepper};
 use liestep::numbers::Coordinates as _;
 use nalgebra::DVector;
 
@@ -34,6 +34,9 @@ pub struct Cost {
     pub effort: f64,
 }
 
+/// A value of the state after this number of steps.
+pub(crate) type Value<'a, S> = dyn Fn(usize, &Motion<Group<S>, <S as Term>::Advected>) -> f64 + 'a;
+
 /// What is shown each iteration, and says whether to go on.
 type Watch<'a> = dyn Fn(usize, &Residual) -> bool + 'a;
 
@@ -48,6 +51,7 @@ pub struct Control<'a, S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
     pub(crate) places: Vec<usize>,
     pub(crate) bounds: Box<dyn Fn(usize, usize) -> (f64, f64) + 'a>,
     pub(crate) guess: Box<dyn Fn(usize, usize) -> f64 + 'a>,
+    pub(crate) kept: Vec<Box<Value<'a, S>>>,
     pub(crate) progress: Box<Watch<'a>>,
     pub(crate) tolerance: f64,
     pub(crate) most: usize,
@@ -78,6 +82,7 @@ where
             places: (0..Group::<S>::DIMENSION).collect(),
             bounds: Box::new(|_, _| (f64::NEG_INFINITY, f64::INFINITY)),
             guess: Box::new(|_, _| 0.0),
+            kept: Vec::new(),
             progress: Box::new(|_, _| true),
             tolerance: 1e-10,
             most: 200,
@@ -95,6 +100,16 @@ where
     #[must_use]
     pub fn bounds(self, bounds: impl Fn(usize, usize) -> (f64, f64) + 'a) -> Self {
         Self { bounds: Box::new(bounds), ..self }
+    }
+
+    /// A value of the states that is to be at least zero, by the number of steps before them and the motion there; one more
+    /// for each call. The start has to be within, the motion of the first guess needn't.
+    ///
+    /// Its derivatives are differences of fourth order, so it is to be smooth: the cosine of an angle rather than the angle.
+    #[must_use]
+    pub fn keep(mut self, value: impl Fn(usize, &Motion<Group<S>, S::Advected>) -> f64 + 'a) -> Self {
+        self.kept.push(Box::new(value));
+        self
     }
 
     /// What is to be least.

@@ -4,11 +4,12 @@ use liestep::StepError;
 use liestep::gradients::Linearisable;
 use liestep::groups::{ExponentialRetraction, Retraction};
 use liestep::mechanics::{Group, SecondDerivatives};
+use liestep::motion::StateOf;
 use nalgebra::DVector;
 
 use crate::model::Model;
-use crate::riccati::{End, Solution, Stage, solve};
-use crate::search::{Course, Search, miss};
+use crate::riccati::{End, Solution, Stage, add_square, of_state, solve};
+use crate::search::{Course, FOUND, Limit, Search, course};
 use crate::verdict::Verdict;
 
 /// How near to its bound a step may bring an input, as a share of the room.
@@ -37,53 +38,58 @@ where
     pub(crate) fn improve(
         &mut self,
         mut stages: Vec<Stage>,
-        end: &End,
+        mut end: End,
         covectors: &[DVector<f64>],
     ) -> Result<(), Option<(usize, StepError)>> {
-        let (states, inputs) = (self.course.model.states(), &self.course.inputs);
-        // `z/s` in the second derivatives, `∓β/s` in the gradient.
+        self.add_barrier(&mut stages, &mut end);
+        let solution = self.direction(stages, &end, covectors).ok_or(None)?;
+        let longer = solution.states[0].sum();
+        let mut longest = (DURATION * self.course.model.duration / longer.abs()).min(1.0);
+        // Cost is in proportion to the duration.
+        let mut slope = longer * self.cost(&self.course) / self.course.model.duration;
+        let effort = self.control.cost.effort * self.course.model.stepper.step_size();
+        let by_inputs = self.course.inputs.iter().zip(&solution.inputs).map(|(now, change)| now.dot(change));
+        slope += effort * by_inputs.sum::<f64>();
+        // How distances and multipliers change, `δs` and `β/s − z − z/s δs`, and how far both may go.
+        let mut changes = Vec::with_capacity(self.sides.len());
+        let (mut of_multipliers, mut squares) = (1.0_f64, solution.multipliers.norm_squared());
         for side in &self.sides {
-            let (stage, distance) = (&mut stages[side.step], side.distance(inputs));
-            stage.hessian[(states + side.input, states + side.input)] += side.multiplier / distance;
-            stage.input_gradient[side.input] -= side.sign * self.barrier / distance;
-        }
-        let solution = self.direction(&stages, end, covectors).ok_or(None)?;
-        let longer = solution.start.sum();
-        let (mut slope, mut longest) = (0.0, (DURATION * self.course.model.duration / longer.abs()).min(1.0));
-        for (stage, change) in stages.iter().zip(&solution.inputs) {
-            slope += stage.input_gradient.dot(change);
-            slope += longer * stage.state_gradient.iter().skip(2 * Self::DIMENSION).sum::<f64>();
-        }
-        let distance = self.course.miss.norm();
-        if self.is_nearest {
-            // Its square is the cost, and any decrease will do.
-            (slope, self.penalty) = (0.0, 0.0);
-        } else if distance > 0.0 {
-            self.penalty = self.penalty.max(1.1 * slope / (0.9 * distance)).max(1.1 * solution.multipliers.norm());
-            slope -= self.penalty * distance;
-        }
-        // How the multipliers change, `β/s − z − z/s δs`, and how far both may go.
-        let (mut of_multipliers, mut changes) = (1.0_f64, Vec::with_capacity(self.sides.len()));
-        for side in &self.sides {
-            let (now, room) = (side.multiplier, side.distance(inputs));
-            let nearer = -side.sign * solution.inputs[side.step][side.input];
-            let change = (self.barrier + now * nearer) / room - now;
-            if nearer > 0.0 {
-                longest = longest.min(ROOM * room / nearer);
+            let (now, distance) = (side.multiplier, side.distance(&self.course));
+            let further = match side.limit {
+                Limit::Input(input, sign, _) => sign * solution.inputs[side.step][input],
+                Limit::Kept(place) => {
+                    self.course.slopes[place].dot(&solution.states[side.step]) + side.gap(&self.course)
+                }
+            };
+            let change = (self.barrier - now * further) / distance - now;
+            if further < 0.0 {
+                longest = longest.min(ROOM * distance / -further);
             }
             if change < -ROOM * now {
                 of_multipliers = of_multipliers.min(ROOM * now / -change);
             }
-            changes.push(change);
+            if let Limit::Kept(_) = side.limit {
+                squares += (now + change).powi(2);
+            }
+            slope -= self.barrier * further / distance;
+            changes.push((further, change));
+        }
+        let distance = self.distance(&self.course);
+        if self.is_nearest {
+            // Its square is the cost, and any decrease will do.
+            (slope, self.penalty) = (0.0, 0.0);
+        } else if distance > 0.0 {
+            self.penalty = self.penalty.max(1.1 * slope / (0.9 * distance)).max(1.1 * squares.sqrt());
+            slope -= self.penalty * distance;
         }
         let merit = self.merit(&self.course);
         // Where no digit of the merit is left to be better, the step is taken as it is.
         let rounding = 1e-13 * (1.0 + merit.abs());
         let (mut share, mut in_the_way) = (longest, None);
         while share > SHORTEST {
-            match self.course_after(&solution, share) {
+            match self.course_after(&solution, &changes, share) {
                 Ok(Some(course)) if self.merit(&course) <= merit + ARMIJO * share * slope.min(0.0) + rounding => {
-                    for (side, change) in self.sides.iter_mut().zip(changes) {
+                    for (side, (_, change)) in self.sides.iter_mut().zip(changes) {
                         side.multiplier += of_multipliers * change;
                     }
                     if !self.is_nearest {
@@ -100,33 +106,84 @@ where
         Err(in_the_way)
     }
 
+    /// `z/s` in the second derivatives, and `β/s` in the gradient, but for what the distance is behind.
+    fn add_barrier(&self, stages: &mut [Stage], end: &mut End) {
+        let states = self.course.model.states();
+        for side in &self.sides {
+            let (distance, multiplier) = (side.distance(&self.course), side.multiplier);
+            let (weight, push) =
+                (multiplier / distance, (self.barrier - multiplier * side.gap(&self.course)) / distance);
+            match side.limit {
+                Limit::Input(input, sign, _) => {
+                    let stage = &mut stages[side.step];
+                    stage.hessian[(states + input, states + input)] += weight;
+                    stage.input_gradient[input] -= sign * push;
+                }
+                Limit::Kept(place) => {
+                    let slope = &self.course.slopes[place];
+                    let (hessian, gradient) = of_state(stages, end, side.step);
+                    add_square(hessian, slope, weight);
+                    gradient.axpy(-push, slope, 1.0);
+                }
+            }
+        }
+    }
+
     /// The programme's solution: with the second derivatives of the steps where they help, else without.
     ///
     /// A cost of time alone has its optimum in a corner, where second derivatives say nothing; on the way there they are those
     /// of a saddle. They are asked for when all corners are known.
-    fn direction(&self, stages: &[Stage], end: &End, covectors: &[DVector<f64>]) -> Option<Solution> {
+    fn direction(&self, mut stages: Vec<Stage>, end: &End, covectors: &[DVector<f64>]) -> Option<Solution> {
         let is_far_from_its_corner = self.control.cost.effort == 0.0 && self.residual.largest() > NEAR;
-        let plain = || solve(stages, end, self.course.model.states() - 2 * Self::DIMENSION);
-        if self.multipliers.amax() == 0.0 || self.is_nearest || is_far_from_its_corner {
-            return plain();
+        let is_nearest = self.is_nearest && self.course.model.constants == 0;
+        let constants = self.course.model.constants;
+        if !is_nearest && (self.multipliers.amax() == 0.0 || is_far_from_its_corner) {
+            return solve(&stages, end, constants);
         }
-        let bent = stages.iter().enumerate().map(|(step, stage)| {
-            let Course { model, states, inputs, .. } = &self.course;
-            let bending = model.bending(&states[step], &inputs[step], stage, &covectors[step + 1])?;
-            Some(Stage { hessian: &stage.hessian + bending, ..stage.clone() })
+        // All else of the stages is there once: memory is what a long plan waits for.
+        let plain: Vec<_> = stages.iter().map(|stage| stage.hessian.clone()).collect();
+        let bent = self.bend(&mut stages, end.clone(), covectors);
+        bent.and_then(|end| self.convex(&mut stages, &end)).or_else(|| {
+            stages.iter_mut().zip(plain).for_each(|(stage, plain)| stage.hessian = plain);
+            solve(&stages, end, constants)
+        })
+    }
+
+    /// Adds the second derivatives of the steps and of what is kept. `None` where a step beside one can't be made.
+    fn bend(&self, stages: &mut [Stage], mut end: End, covectors: &[DVector<f64>]) -> Option<End> {
+        let Course { model, states, inputs, .. } = &self.course;
+        for (step, stage) in stages.iter_mut().enumerate() {
+            stage.hessian += model.bending(&states[step], &inputs[step], stage, &covectors[step + 1])?;
+        }
+        let of_sides = self.sides.iter().filter_map(|side| match side.limit {
+            Limit::Kept(place) => Some((place, -side.multiplier)),
+            Limit::Input(..) => None,
         });
-        bent.collect::<Option<Vec<_>>>().and_then(|bent| self.convex(bent, end)).or_else(plain)
+        let broken = self.course.broken().filter(|_| self.is_nearest);
+        for (place, weight) in of_sides.chain(broken) {
+            let (step, number) = (1 + place / self.control.kept.len(), place % self.control.kept.len());
+            let value = |state: &StateOf<S, P>| self.control.kept[number](step, state);
+            let curvature = model.curvature(&states[step], &stages[step - 1], value)?;
+            let mut hessian = of_state(stages, &mut end, step).0.view_mut((0, 0), curvature.shape());
+            hessian += curvature * weight;
+        }
+        Some(end)
     }
 
     /// The solution of a programme, made convex where it isn't: by a square of the condition, which changes its solution in
     /// nothing, and by a damping of the inputs.
-    fn convex(&self, mut stages: Vec<Stage>, end: &End) -> Option<Solution> {
+    fn convex(&self, stages: &mut [Stage], end: &End) -> Option<Solution> {
         let (states, size, mut damped) = (self.course.model.states(), self.multipliers.norm(), 0.0);
         let of_inputs =
             stages.iter().flat_map(|stage| stage.hessian.diagonal().iter().skip(states).copied().collect::<Vec<_>>());
-        let least = of_inputs.fold(f64::INFINITY, |least, entry| least.min(entry.abs())).max(f64::MIN_POSITIVE);
+        let of_miss = stages.iter().map(|stage| 1e-4 * stage.by_input.norm_squared()).fold(0.0, f64::max);
+        let least = if self.is_nearest {
+            of_miss
+        } else {
+            of_inputs.fold(f64::INFINITY, |least, entry| least.min(entry.abs())).max(f64::MIN_POSITIVE)
+        };
         CONVEX.into_iter().find_map(|(weight, damping)| {
-            for stage in &mut stages {
+            for stage in &mut *stages {
                 for k in states..stage.hessian.nrows() {
                     stage.hessian[(k, k)] += (damping - damped) * least;
                 }
@@ -134,39 +191,61 @@ where
             damped = damping;
             let hessian = &end.hessian + end.by_state.tr_mul(&end.by_state) * (weight * size);
             let gradient = &end.gradient + end.by_state.tr_mul(&end.miss) * (weight * size);
-            solve(&stages, &End { hessian, gradient, ..end.clone() }, states - 2 * Self::DIMENSION)
+            solve(stages, &End { hessian, gradient, ..end.clone() }, self.course.model.constants)
         })
     }
 
     /// `None` where the target can't be seen from the end, or no stepper has such a duration.
-    fn course_after(&self, solution: &Solution, share: f64) -> Result<Option<Course<S, P>>, (usize, StepError)> {
+    fn course_after(
+        &self,
+        solution: &Solution,
+        changes: &[(f64, f64)],
+        share: f64,
+    ) -> Result<Option<Course<S, P>>, (usize, StepError)> {
         let change = |(now, change): (&DVector<f64>, &DVector<f64>)| now + change * share;
         let inputs: Vec<DVector<f64>> = self.course.inputs.iter().zip(&solution.inputs).map(change).collect();
-        let duration = self.course.model.duration + solution.start.sum() * share;
+        let duration = self.course.model.duration + solution.states[0].sum() * share;
         let Some(model) = Model::new(self.control, duration) else { return Ok(None) };
-        let states = model.run(&self.control.start, &inputs)?;
-        Ok(miss(self.control, &states).map(|miss| Course { model, inputs, states, miss }))
+        let mut course = course(self.control, model, inputs)?;
+        for (side, (further, _)) in self.sides.iter().zip(changes) {
+            if let (Limit::Kept(place), Some(course)) = (side.limit, &mut course) {
+                // A value that is further than its distance takes it along.
+                let distance = &mut course.distances[place];
+                *distance = distance.max(self.course.distances[place] + share * further);
+            }
+        }
+        Ok(course)
+    }
+
+    /// How far a course is from the target and from what is to be kept.
+    pub(crate) fn distance(&self, course: &Course<S, P>) -> f64 {
+        let squares: f64 = if self.is_nearest {
+            course.broken().map(|(_, value)| value * value).sum()
+        } else {
+            self.sides.iter().map(|side| side.gap(course).powi(2)).sum()
+        };
+        (course.miss.norm_squared() + squares).sqrt()
     }
 
     fn merit(&self, course: &Course<S, P>) -> f64 {
-        let logarithms: f64 = self.sides.iter().map(|side| side.distance(&course.inputs).ln()).sum();
-        let merit = if self.is_nearest {
-            0.5 * course.miss.norm_squared()
-        } else {
-            self.cost(course) + self.penalty * course.miss.norm()
-        };
+        let logarithms: f64 = self.sides.iter().map(|side| side.distance(course).ln()).sum();
+        let distance = self.distance(course);
+        let merit =
+            if self.is_nearest { 0.5 * distance * distance } else { self.cost(course) + self.penalty * distance };
         if self.sides.is_empty() { merit } else { merit - self.barrier * logarithms }
     }
 
     /// The verdict where the miss is least: what the bounds let the inputs take off it, to first order.
     pub(crate) fn nearest(&self, stages: &[Stage], covectors: &[DVector<f64>]) -> Verdict {
-        let distance = self.course.miss.norm();
+        let distance = self.distance(&self.course);
         let mut best = 0.0;
         for side in &self.sides {
-            let slope = stages[side.step].by_input.column(side.input).dot(&covectors[side.step + 1]) / distance;
-            best += (side.sign * slope).max(0.0) * side.distance(&self.course.inputs);
+            let Limit::Input(input, sign, _) = side.limit else { continue };
+            let slope = stages[side.step].by_input.column(input).dot(&covectors[side.step + 1]) / distance;
+            best += (sign * slope).max(0.0) * side.distance(&self.course);
         }
-        let (gap, direction) = (distance - best, (&self.course.miss / distance).as_slice().to_vec());
-        if gap > self.control.tolerance { Verdict::Infeasible { direction, gap } } else { Verdict::Stalled(None) }
+        let (gap, kept) = (distance - best, self.course.kept.iter().map(|value| value.min(0.0)));
+        let direction = self.course.miss.iter().copied().chain(kept).map(|entry| entry / distance).collect();
+        if gap > FOUND { Verdict::Infeasible { direction, gap } } else { Verdict::Stalled(None) }
     }
 }

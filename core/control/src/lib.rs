@@ -1,9 +1,11 @@
-//! Optimal control of what [liestep] steps, on the discrete equations themselves.
+//! Optimal control of what [liestep] steps, and estimates of it, on the discrete equations themselves.
 //!
 //! A [`Control`] says from where to where, by which inputs, within which bounds, and for what; its [`ControlPlan`] is a motion of
-//! the stepper, with the inputs of its steps and the [`Verdict`] of the search.
+//! the stepper, with the inputs of its steps and the [`Verdict`] of the search. An [`Estimate`] has readings of a motion in the
+//! place of a target; its [`Fit`] is the motion that suits them best.
 
 mod control;
+mod estimate;
 mod improve;
 mod model;
 mod riccati;
@@ -11,4 +13,5 @@ mod search;
 mod verdict;
 
 pub use control::{Control, Cost, Target};
+pub use estimate::{Estimate, Fit};
 pub use verdict::{ControlError, ControlPlan, Residual, Verdict};

@@ -6,23 +6,29 @@ use liestep::gradients::{Cotangent, Input, InputOf, Linearisable, Tape};
 use liestep::groups::{ExponentialRetraction, LieGroup, Retraction};
 use liestep::mechanics::{Group, SecondDerivatives, Vector};
 use liestep::motion::{Plan, StateOf, Stepper};
-use liestep::numbers::Entries;
+use liestep::numbers::{Coordinates, Entries};
 use nalgebra::{DMatrix, DVector};
 
 use crate::control::Control;
 use crate::riccati::Stage;
 
 /// Of differences by the duration, and of those of derivatives: about a third of the digits, and a quarter.
-const SMALL: f64 = 1e-5;
+pub(crate) const SMALL: f64 = 1e-5;
 const COARSE: f64 = 1e-4;
 
-/// The step of a duration, and those of a longer and a shorter one, for the derivatives by it.
+/// Of differences of fourth order, and of second ones: the fifth root of rounding, about.
+const FOURTH: f64 = 1e-3;
+
+/// The step of a duration, and what it is given.
 pub(crate) struct Model<S: SecondDerivatives<Scalar = f64>, P> {
     pub(crate) duration: f64,
     pub(crate) stepper: Stepper<S, P>,
-    beside: Vec<Stepper<S, P>>,
-    like: InputOf<S>,
-    places: Vec<usize>,
+    /// How many numbers are constant along a motion, and part of its state: a free duration, or what is estimated.
+    pub(crate) constants: usize,
+    /// Where steps depend on these: a small change of each, and the steppers with it and with its opposite.
+    pub(crate) beside: Vec<(f64, [Stepper<S, P>; 2])>,
+    pub(crate) like: InputOf<S>,
+    pub(crate) places: Vec<usize>,
 }
 
 /// The components of vectors, one after another.
@@ -34,9 +40,36 @@ pub(crate) fn flat<'v, V: Entries<f64> + 'v>(vectors: impl IntoIterator<Item = &
     DVector::from_vec(entries)
 }
 
-fn vector<V: Entries<f64>>(entries: &[f64]) -> V {
-    let mut entries = entries.iter().copied();
+/// Some entries as a vector.
+fn part<V: Entries<f64>>(x: &DVector<f64>, first: usize, count: usize) -> V {
+    let mut entries = x.iter().skip(first).take(count).copied();
     V::from_entries(&mut || entries.next().unwrap_or(0.0))
+}
+
+/// The derivatives of `ξ`, of `exp(ξ) = g_0⁻¹ g = turn`, along displacements: with the tangent `T` of the exponential,
+/// `dξ = T⁻¹ Ad ζ`.
+pub(crate) fn by_displacement<G: LieGroup<Scalar = f64>>(turn: &G) -> Option<DMatrix<f64>>
+where
+    ExponentialRetraction: Retraction<G>,
+{
+    let of = |matrix| {
+        let column = |k| flat([&<G::Vector as Coordinates<f64>>::column(matrix, k)]);
+        DMatrix::from_columns(&(0..G::DIMENSION).map(column).collect::<Vec<_>>())
+    };
+    let tangent = ExponentialRetraction::tangent(&ExponentialRetraction::local_coordinates(turn)?);
+    of(&tangent).lu().solve(&of(&turn.adjoint_matrix()))
+}
+
+/// The state beside this one, by its displacement and the change of its momentum. `None` where there is none.
+pub(crate) fn displaced<S, P>(stepper: &Stepper<S, P>, state: &StateOf<S, P>, x: &DVector<f64>) -> Option<StateOf<S, P>>
+where
+    S: SecondDerivatives<Scalar = f64>,
+    P: Plan<S>,
+    ExponentialRetraction: Retraction<Group<S>>,
+{
+    let dimension = Group::<S>::DIMENSION;
+    let turned = state.attitude().compose(&ExponentialRetraction::retract(&part(x, 0, dimension)));
+    stepper.start_with_momentum(turned, state.momentum() + part(x, dimension, dimension)).ok()
 }
 
 impl<S, P> Model<S, P>
@@ -56,14 +89,15 @@ where
             let (scene, h) = (stepper.scene(), duration * share / control.steps as f64);
             Stepper::with_plan(scene.clone(), stepper.plan().refolded(scene, h).ok()?).ok()
         };
-        let beside = if is_free { vec![of(1.0 + SMALL)?, of(1.0 - SMALL)?] } else { Vec::new() };
+        let beside = if is_free { vec![(SMALL * duration, [of(1.0 + SMALL)?, of(1.0 - SMALL)?])] } else { Vec::new() };
         let stepper = if is_free { of(1.0)? } else { stepper.clone() };
-        Some(Self { duration, stepper, beside, like: control.like, places: control.places.clone() })
+        let (like, places) = (control.like, control.places.clone());
+        Some(Self { duration, stepper, constants: beside.len(), beside, like, places })
     }
 
-    /// The components of a state, with the duration where that is free.
+    /// The components of a state, with what is constant along the motion.
     pub(crate) fn states(&self) -> usize {
-        2 * Group::<S>::DIMENSION + self.beside.len() / 2
+        2 * Group::<S>::DIMENSION + self.constants
     }
 
     /// What a step is given.
@@ -106,19 +140,18 @@ where
             let (attitude, momentum) = &transition.by_input[*place];
             by_input.view_mut((0, k), (whole, 1)).copy_from(&flat([attitude, momentum]));
         }
-        let mut changes = Vec::with_capacity(2);
-        for stepper in &self.beside {
+        let mut bent = DVector::zeros(states);
+        let change = |stepper: &Stepper<S, P>| {
             let mut other = stepper.adopt(state);
             stepper.step_given(&mut other, &input)?;
             let turn = end.attitude().inverse().compose(&other.attitude());
             let turn = ExponentialRetraction::local_coordinates(&turn).ok_or_else(unknown)?;
-            changes.push(flat([&turn, &(other.momentum() - end.momentum())]));
-        }
-        let mut bent = DVector::zeros(states);
-        if let [longer, shorter] = &changes[..] {
-            let small = SMALL * self.duration;
-            by_state.view_mut((0, whole), (whole, 1)).copy_from(&((longer - shorter) / (2.0 * small)));
-            bent.rows_mut(0, whole).copy_from(&((longer + shorter) / (small * small)));
+            Ok::<_, StepError>(flat([&turn, &(other.momentum() - end.momentum())]))
+        };
+        for (k, (small, [more, less])) in self.beside.iter().enumerate() {
+            let (more, less) = (change(more)?, change(less)?);
+            by_state.view_mut((0, whole + k), (whole, 1)).copy_from(&((&more - &less) / (2.0 * small)));
+            bent.rows_mut(0, whole).copy_from(&((more + less) / (small * small)));
         }
         let (state_gradient, input_gradient) = (DVector::zeros(states), DVector::zeros(count));
         let hessian = DMatrix::zeros(states + count, states + count);
@@ -138,11 +171,10 @@ where
         multipliers: &DVector<f64>,
     ) -> Option<DMatrix<f64>> {
         let (dimension, states, inputs) = (Group::<S>::DIMENSION, self.states(), chosen.len());
-        let part = |x: &DVector<f64>, first: usize| -> Vector<S> { vector(&x.as_slice()[first..first + dimension]) };
+        let part = |x: &DVector<f64>, first: usize| -> Vector<S> { part(x, first, dimension) };
         let place = part(multipliers, 0);
         let pull = |stepper: &Stepper<S, P>, x: &DVector<f64>| -> Option<DVector<f64>> {
-            let turned = state.attitude().compose(&ExponentialRetraction::retract(&part(x, 0)));
-            let mut state = stepper.start_with_momentum(turned, state.momentum() + part(x, dimension)).ok()?;
+            let mut state = displaced(stepper, state, x)?;
             let beyond = &stage.by_state * x.rows(0, states) + &stage.by_input * x.rows(states, inputs);
             let attitude = place + Group::<S>::lie_bracket_transpose(&part(&beyond, 0), &place) * 0.5;
             let end = Cotangent { attitude, momentum: part(multipliers, dimension) };
@@ -159,9 +191,8 @@ where
             }
             Some(found)
         };
-        // The momentum that turns the body by a radian on the whole way, and what makes it in one step.
-        let turn = stage.by_state.view((0, dimension), (dimension, dimension)).amax();
-        let momentum = COARSE * self.stepper.step_size() / (self.duration * turn);
+        // And the force that makes this momentum in one step.
+        let momentum = COARSE * self.momentum(stage);
         let force = momentum / stage.by_input.rows(dimension, dimension).amax();
         let mut hessian = DMatrix::zeros(states + inputs, states + inputs);
         for k in (0..2 * dimension).chain(states..states + inputs) {
@@ -176,14 +207,84 @@ where
             let column = (pull(&self.stepper, &x)? - pull(&self.stepper, &-&x)?) / (2.0 * x[k]);
             hessian.set_column(k, &column);
         }
-        if let [longer, shorter] = &self.beside[..] {
+        if let [(small, [longer, shorter])] = &self.beside[..] {
             let (mut x, last) = (DVector::zeros(states + inputs), states - 1);
-            x[last] = SMALL * self.duration;
+            x[last] = *small;
             let column = (pull(longer, &x)? - pull(shorter, &-&x)?) / (2.0 * x[last]);
             hessian.set_column(last, &column);
             hessian.set_row(last, &column.transpose());
             hessian[(last, last)] = multipliers.dot(&stage.bent);
         }
         hessian.iter().all(|entry| entry.is_finite()).then(|| (&hessian + hessian.transpose()) * 0.5)
+    }
+    /// The momentum that turns the body by a radian on the whole way, by the first step of that.
+    fn momentum(&self, stage: &Stage) -> f64 {
+        let dimension = Group::<S>::DIMENSION;
+        let turn = stage.by_state.view((0, dimension), (dimension, dimension)).amax();
+        self.stepper.step_size() / (self.duration * turn)
+    }
+
+    /// Changes of a state in each of its directions, and of what is constant, for differences.
+    fn changes(&self, stage: &Stage, constants: &[f64]) -> DVector<f64> {
+        let dimension = Group::<S>::DIMENSION;
+        let of = |k| match k {
+            _ if k < dimension => 1.0,
+            _ if k < 2 * dimension => self.momentum(stage),
+            _ => constants[k - 2 * dimension],
+        };
+        DVector::from_fn(2 * dimension + constants.len(), |k, _| FOURTH * of(k))
+    }
+
+    /// The derivatives of some values by a state and what is constant, row by row; `None` where a state beside isn't one, or
+    /// values aren't finite.
+    pub(crate) fn slopes(
+        &self,
+        state: &StateOf<S, P>,
+        stage: &Stage,
+        constants: &[f64],
+        values: impl Fn(&StateOf<S, P>, &[f64]) -> Vec<f64>,
+    ) -> Option<DMatrix<f64>> {
+        let changes = self.changes(stage, constants);
+        let column = |k: usize| {
+            let at = |times: f64| {
+                let mut x = DVector::zeros(changes.len());
+                x[k] = times * changes[k];
+                let constants = &x.as_slice()[2 * Group::<S>::DIMENSION..];
+                Some(DVector::from_vec(values(&displaced(&self.stepper, state, &x)?, constants)))
+            };
+            let [far, near] = [2.0, 1.0].map(|times| Some(at(times)? - at(-times)?));
+            Some((near? * 8.0 - far?) / (12.0 * changes[k]))
+        };
+        let columns = (0..changes.len()).map(column).collect::<Option<Vec<_>>>()?;
+        Some(DMatrix::from_columns(&columns)).filter(|found| found.iter().all(|entry| entry.is_finite()))
+    }
+
+    /// The second derivatives of a value by a state, of the exponential's coordinates.
+    pub(crate) fn curvature(
+        &self,
+        state: &StateOf<S, P>,
+        stage: &Stage,
+        value: impl Fn(&StateOf<S, P>) -> f64,
+    ) -> Option<DMatrix<f64>> {
+        let (changes, middle) = (self.changes(stage, &[]), 2.0 * value(state));
+        let even = |places: [usize; 2]| {
+            let mut x = DVector::zeros(changes.len());
+            for k in places {
+                x[k] += changes[k];
+            }
+            let [there, opposite] = [displaced(&self.stepper, state, &x)?, displaced(&self.stepper, state, &-x)?];
+            Some(value(&there) + value(&opposite) - middle)
+        };
+        // Twice along an axis is four times the square.
+        let squares = (0..changes.len()).map(|k| Some(even([k, k])? / 4.0)).collect::<Option<Vec<_>>>()?;
+        let mut found = DMatrix::zeros(self.states(), self.states());
+        for i in 0..changes.len() {
+            for j in 0..=i {
+                let mixed = if i == j { 2.0 * squares[i] } else { even([i, j])? - squares[i] - squares[j] };
+                found[(i, j)] = mixed / (2.0 * changes[i] * changes[j]);
+                found[(j, i)] = found[(i, j)];
+            }
+        }
+        Some(found)
     }
 }

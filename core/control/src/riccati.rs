@@ -38,9 +38,27 @@ pub(crate) struct End {
     pub(crate) gradient: DVector<f64>,
 }
 
-/// The solution: the changes of the free entries of the first state, of the inputs, and the new multipliers.
+/// The second derivatives and the gradient of the cost by the state of this number.
+pub(crate) fn of_state<'s>(
+    stages: &'s mut [Stage],
+    end: &'s mut End,
+    step: usize,
+) -> (&'s mut DMatrix<f64>, &'s mut DVector<f64>) {
+    match stages.get_mut(step) {
+        Some(stage) => (&mut stage.hessian, &mut stage.state_gradient),
+        None => (&mut end.hessian, &mut end.gradient),
+    }
+}
+
+/// `H ← H + weight v vᵀ`, for its first rows and columns.
+pub(crate) fn add_square(hessian: &mut DMatrix<f64>, v: &DVector<f64>, weight: f64) {
+    hessian.view_mut((0, 0), (v.len(), v.len())).ger(weight, v, v, 1.0);
+}
+
+/// The solution: the changes of the states and of the inputs, and the new multipliers.
 pub(crate) struct Solution {
-    pub(crate) start: DVector<f64>,
+    /// One more than there are steps.
+    pub(crate) states: Vec<DVector<f64>>,
     pub(crate) inputs: Vec<DVector<f64>>,
     pub(crate) multipliers: DVector<f64>,
 }
@@ -51,18 +69,87 @@ struct Policy {
     offsets: DMatrix<f64>,
 }
 
+/// The least cost of all steps as a function of the first state, `½ x·P x + (p + Ψ ν)·x + …`, and the inputs that it takes.
+pub(crate) struct Value {
+    /// `P`
+    pub(crate) square: DMatrix<f64>,
+    /// `Π = [p, Ψ]`
+    pub(crate) slopes: DMatrix<f64>,
+    /// `W`
+    bent: DMatrix<f64>,
+    /// From the last to the first.
+    policies: Vec<Policy>,
+}
+
+impl Value {
+    /// `None` where the programme isn't convex in the inputs.
+    pub(crate) fn new(stages: &[Stage], end: &End) -> Option<Self> {
+        let (states, conditions) = (end.by_state.ncols(), end.miss.len());
+        let mut slopes = DMatrix::zeros(states, 1 + conditions);
+        slopes.set_column(0, &end.gradient);
+        slopes.columns_mut(1, conditions).copy_from(&end.by_state.transpose());
+        let bent = DMatrix::zeros(1 + conditions, 1 + conditions);
+        let mut value = Self { square: end.hessian.clone(), slopes, bent, policies: Vec::with_capacity(stages.len()) };
+        for stage in stages.iter().rev() {
+            let policy = value.backwards(stage)?;
+            value.policies.push(policy);
+        }
+        Some(value)
+    }
+
+    /// The inputs from this state, and the states that they make.
+    pub(crate) fn forwards(&self, stages: &[Stage], start: DVector<f64>, multipliers: DVector<f64>) -> Solution {
+        let with_one = multipliers.clone().insert_row(0, 1.0);
+        let (mut state, mut states) = (start, Vec::with_capacity(stages.len() + 1));
+        let mut inputs = Vec::with_capacity(stages.len());
+        for (stage, policy) in stages.iter().zip(self.policies.iter().rev()) {
+            let input = &policy.gain * &state + &policy.offsets * &with_one;
+            let next = &stage.by_state * &state + &stage.by_input * &input;
+            states.push(std::mem::replace(&mut state, next));
+            inputs.push(input);
+        }
+        states.push(state);
+        Solution { states, inputs, multipliers }
+    }
+
+    /// The value before a step from that behind it: with `S = H_uu + Bᵀ P B`, `M = H_ux + Bᵀ P A` and `N = Bᵀ Π + b`,
+    ///
+    /// ```text
+    /// K = −S⁻¹ M    κ = −S⁻¹ N    P ← H_xx + Aᵀ P A + Mᵀ K    Π ← Aᵀ Π + a + Mᵀ κ    W ← W − Nᵀ κ
+    /// ```
+    fn backwards(&mut self, stage: &Stage) -> Option<Policy> {
+        let Self { square: value, slopes, bent, .. } = self;
+        let (a, b) = (&stage.by_state, &stage.by_input);
+        let (states, inputs) = (a.ncols(), b.ncols());
+        let (value_a, value_b) = (&*value * a, &*value * b);
+        let mut square = stage.hessian.view((states, states), (inputs, inputs)) + b.tr_mul(&value_b);
+        let mut mixed = stage.hessian.view((states, 0), (inputs, states)) + b.tr_mul(&value_a);
+        let mut offsets = b.tr_mul(slopes);
+        offsets.column_mut(0).axpy(1.0, &stage.input_gradient, 1.0);
+        for &input in &stage.fixed {
+            square.row_mut(input).fill(0.0);
+            square.column_mut(input).fill(0.0);
+            square[(input, input)] = 1.0;
+            mixed.row_mut(input).fill(0.0);
+            offsets.row_mut(input).fill(0.0);
+        }
+        let factor = square.cholesky()?;
+        let gain = -factor.solve(&mixed);
+        let policy = Policy { offsets: -factor.solve(&offsets), gain };
+        *value = stage.hessian.view((0, 0), (states, states)) + a.tr_mul(&value_a) + mixed.tr_mul(&policy.gain);
+        *value = (&*value + value.transpose()) * 0.5;
+        *bent -= offsets.tr_mul(&policy.offsets);
+        *slopes = a.tr_mul(slopes) + mixed.tr_mul(&policy.offsets);
+        slopes.column_mut(0).axpy(1.0, &stage.state_gradient, 1.0);
+        Some(policy)
+    }
+}
+
 /// `None` where the programme isn't convex in the inputs, or its condition can't be met to first order.
 pub(crate) fn solve(stages: &[Stage], end: &End, free: usize) -> Option<Solution> {
     let (states, conditions) = (end.by_state.ncols(), end.miss.len());
-    let mut value = end.hessian.clone();
-    let mut slopes = DMatrix::zeros(states, 1 + conditions);
-    slopes.set_column(0, &end.gradient);
-    slopes.columns_mut(1, conditions).copy_from(&end.by_state.transpose());
-    let mut bent = DMatrix::zeros(1 + conditions, 1 + conditions);
-    let mut policies = Vec::new();
-    for stage in stages.iter().rev() {
-        policies.push(backwards(stage, &mut value, &mut slopes, &mut bent)?);
-    }
+    let value = Value::new(stages, end)?;
+    let Value { square, slopes, bent, .. } = &value;
 
     // What rounding is of the largest: a condition that nothing acts on leaves its multiplier as it is.
     let proximal =
@@ -71,7 +158,7 @@ pub(crate) fn solve(stages: &[Stage], end: &End, free: usize) -> Option<Solution
     let size = free + conditions;
     let (mut matrix, mut right) = (DMatrix::zeros(size, size), DVector::zeros(size));
     let first = states - free;
-    matrix.view_mut((0, 0), (free, free)).copy_from(&value.view((first, first), (free, free)));
+    matrix.view_mut((0, 0), (free, free)).copy_from(&square.view((first, first), (free, free)));
     let by_multipliers = slopes.view((first, 1), (free, conditions));
     matrix.view_mut((0, free), (free, conditions)).copy_from(&by_multipliers);
     matrix.view_mut((free, 0), (conditions, free)).copy_from(&by_multipliers.transpose());
@@ -89,52 +176,7 @@ pub(crate) fn solve(stages: &[Stage], end: &End, free: usize) -> Option<Solution
         return None;
     }
 
-    let multipliers = found.rows(free, conditions).into_owned();
-    let start = found.rows(0, free).into_owned();
-    let mut state = DVector::zeros(states);
-    state.rows_mut(first, free).copy_from(&start);
-    let with_one = DVector::from_iterator(1 + conditions, std::iter::once(1.0).chain(multipliers.iter().copied()));
-    let mut inputs = Vec::with_capacity(policies.len());
-    for (stage, policy) in stages.iter().zip(policies.iter().rev()) {
-        let input = &policy.gain * &state + &policy.offsets * &with_one;
-        state = &stage.by_state * &state + &stage.by_input * &input;
-        inputs.push(input);
-    }
-    Some(Solution { start, inputs, multipliers })
-}
-
-/// The value before a step from that behind it: with `S = H_uu + Bᵀ P B`, `M = H_ux + Bᵀ P A` and `N = Bᵀ Π + b`,
-///
-/// ```text
-/// K = −S⁻¹ M    κ = −S⁻¹ N    P ← H_xx + Aᵀ P A + Mᵀ K    Π ← Aᵀ Π + a + Mᵀ κ    W ← W − Nᵀ κ
-/// ```
-fn backwards(
-    stage: &Stage,
-    value: &mut DMatrix<f64>,
-    slopes: &mut DMatrix<f64>,
-    bent: &mut DMatrix<f64>,
-) -> Option<Policy> {
-    let (a, b) = (&stage.by_state, &stage.by_input);
-    let (states, inputs) = (a.ncols(), b.ncols());
-    let (value_a, value_b) = (&*value * a, &*value * b);
-    let mut square = stage.hessian.view((states, states), (inputs, inputs)) + b.tr_mul(&value_b);
-    let mut mixed = stage.hessian.view((states, 0), (inputs, states)) + b.tr_mul(&value_a);
-    let mut offsets = b.tr_mul(slopes);
-    offsets.column_mut(0).axpy(1.0, &stage.input_gradient, 1.0);
-    for &input in &stage.fixed {
-        square.row_mut(input).fill(0.0);
-        square.column_mut(input).fill(0.0);
-        square[(input, input)] = 1.0;
-        mixed.row_mut(input).fill(0.0);
-        offsets.row_mut(input).fill(0.0);
-    }
-    let factor = square.cholesky()?;
-    let gain = -factor.solve(&mixed);
-    let policy = Policy { offsets: -factor.solve(&offsets), gain };
-    *value = stage.hessian.view((0, 0), (states, states)) + a.tr_mul(&value_a) + mixed.tr_mul(&policy.gain);
-    *value = (&*value + value.transpose()) * 0.5;
-    *bent -= offsets.tr_mul(&policy.offsets);
-    *slopes = a.tr_mul(slopes) + mixed.tr_mul(&policy.offsets);
-    slopes.column_mut(0).axpy(1.0, &stage.state_gradient, 1.0);
-    Some(policy)
+    let mut start = DVector::zeros(states);
+    start.rows_mut(first, free).copy_from(&found.rows(0, free));
+    Some(value.forwards(stages, start, found.rows(free, conditions).into_owned()))
 }

@@ -3,15 +3,18 @@
 use liestep::StepError;
 use liestep::gradients::Linearisable;
 use liestep::groups::{ExponentialRetraction, LieGroup as _, Retraction};
-use liestep::mechanics::{Group, SecondDerivatives, Vector};
+use liestep::mechanics::{Group, SecondDerivatives};
 use liestep::motion::{Plan, StateOf};
-use liestep::numbers::Coordinates;
+use liestep::numbers::Coordinates as _;
 use nalgebra::{DMatrix, DVector};
 
 use crate::control::{Control, Cost};
-use crate::model::{Model, flat};
-use crate::riccati::{End, Stage};
+use crate::model::{Model, by_displacement, flat};
+use crate::riccati::{End, Stage, add_square, of_state, solve};
 use crate::verdict::{ControlError, ControlPlan, Residual, Verdict};
+
+/// The distance from the target at which a way to it is found.
+pub(crate) const FOUND: f64 = 1e-6;
 
 /// A motion, and what is left from it to the target.
 pub(crate) struct Course<S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
@@ -19,21 +22,52 @@ pub(crate) struct Course<S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
     pub(crate) inputs: Vec<DVector<f64>>,
     pub(crate) states: Vec<StateOf<S, P>>,
     pub(crate) miss: DVector<f64>,
+    /// What is kept, state by state behind the start.
+    pub(crate) kept: Vec<f64>,
+    /// Its distances from the bound, which are positive, and equal to it in the end.
+    pub(crate) distances: Vec<f64>,
+    /// Its derivatives.
+    pub(crate) slopes: Vec<DVector<f64>>,
 }
 
-/// One bound of an input, and its multiplier: `sign (u − limit) ≥ 0`.
+impl<S: SecondDerivatives<Scalar = f64>, P: Plan<S>> Course<S, P> {
+    /// What is kept and isn't, by its place, and how far it is off.
+    pub(crate) fn broken(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.kept.iter().copied().enumerate().filter(|(_, value)| *value < 0.0)
+    }
+}
+
+/// One bound, and its multiplier.
 #[derive(Clone)]
 pub(crate) struct Side {
+    /// The number of the input, or of the state.
     pub(crate) step: usize,
-    pub(crate) input: usize,
-    pub(crate) sign: f64,
-    limit: f64,
+    pub(crate) limit: Limit,
     pub(crate) multiplier: f64,
 }
 
+#[derive(Clone, Copy)]
+pub(crate) enum Limit {
+    /// `sign (u − bound) ≥ 0` for this chosen scalar.
+    Input(usize, f64, f64),
+    /// What is kept, by its place.
+    Kept(usize),
+}
+
 impl Side {
-    pub(crate) fn distance(&self, inputs: &[DVector<f64>]) -> f64 {
-        self.sign * (inputs[self.step][self.input] - self.limit)
+    pub(crate) fn distance<S: SecondDerivatives<Scalar = f64>, P: Plan<S>>(&self, course: &Course<S, P>) -> f64 {
+        match self.limit {
+            Limit::Input(input, sign, bound) => sign * (course.inputs[self.step][input] - bound),
+            Limit::Kept(place) => course.distances[place],
+        }
+    }
+
+    /// How far the distance is behind the value.
+    pub(crate) fn gap<S: SecondDerivatives<Scalar = f64>, P: Plan<S>>(&self, course: &Course<S, P>) -> f64 {
+        match self.limit {
+            Limit::Input(..) => 0.0,
+            Limit::Kept(place) => course.kept[place] - course.distances[place],
+        }
     }
 }
 
@@ -100,58 +134,101 @@ where
         #[allow(clippy::cast_precision_loss)] // exact up to 2⁵³
         let duration = control.stepper.step_size() * control.steps as f64;
         let model = Model::new(control, duration).ok_or(ControlError::Unusable("duration"))?;
+        for (number, value) in control.kept.iter().enumerate() {
+            // NaN is outside, too.
+            match value(0, &control.start) {
+                within if within >= 0.0 => {}
+                value => return Err(ControlError::Outside(number, value)),
+            }
+        }
         let inputs = control.first_inputs();
-        let states = model.run(&control.start, &inputs).map_err(|(step, error)| ControlError::Step(step, error))?;
-        let miss = miss(control, &states).ok_or(ControlError::Unusable("target"))?;
+        let course = course(control, model, inputs)
+            .map_err(|(step, error)| ControlError::Step(step, error))?
+            .ok_or(ControlError::Unusable("target"))?;
+        let multipliers = DVector::zeros(course.miss.len());
+        let (barrier, residual) = (0.0, Residual { target: f64::INFINITY, ..Residual::default() });
+        let (sides, least_barrier, penalty, is_nearest) = (Vec::new(), barrier, 0.0, false);
+        let mut search =
+            Self { control, course, multipliers, sides, barrier, least_barrier, penalty, residual, is_nearest };
+        search.restart(false);
+        Ok(search)
+    }
+
+    /// The bounds, of inputs alone for the nearest.
+    fn sides(&self) -> Vec<Side> {
+        let control = self.control;
         let mut sides = Vec::new();
         for (step, input) in (0..control.steps).flat_map(|step| (0..control.places.len()).map(move |k| (step, k))) {
             let (lower, upper) = (control.bounds)(step, input);
             for (sign, limit) in [(1.0, lower), (-1.0, upper)] {
                 if limit.is_finite() && lower < upper {
-                    sides.push(Side { step, input, sign, limit, multiplier: 0.0 });
+                    sides.push(Side { step, limit: Limit::Input(input, sign, limit), multiplier: 0.0 });
                 }
             }
         }
-        let multipliers = DVector::zeros(miss.len());
-        let course = Course { model, inputs, states, miss };
-        let (barrier, residual) = (0.0, Residual { target: f64::INFINITY, ..Residual::default() });
-        let is_nearest = false;
-        let least_barrier = barrier;
-        let penalty = 0.0;
-        let mut search =
-            Self { control, course, multipliers, sides, barrier, least_barrier, penalty, residual, is_nearest };
-        search.restart();
-        Ok(search)
+        let of_kept = |place| Side { step: 1 + place / control.kept.len(), limit: Limit::Kept(place), multiplier: 0.0 };
+        let kept = if self.is_nearest { 0 } else { self.course.kept.len() };
+        sides.extend((0..kept).map(of_kept));
+        sides
     }
 
     /// The barrier and the multipliers of the bounds at the beginning: of each its share in what the cost may be.
-    fn restart(&mut self) {
-        let Course { model, inputs, .. } = &self.course;
+    fn restart(&mut self, is_nearest: bool) {
+        (self.is_nearest, self.penalty) = (is_nearest, 0.0);
+        // A barrier has to have room.
+        let room = 0.01 * self.course.kept.iter().fold(f64::MIN_POSITIVE, |most, value| most.max(value.abs()));
+        self.course.distances = self.course.kept.iter().map(|value| value.max(room)).collect();
+        self.sides = self.sides();
+        let model = &self.course.model;
         let Cost { time, effort } = self.control.cost;
-        let squares: f64 = self.sides.iter().map(|side| side.distance(inputs).powi(2)).sum();
+        let of_inputs = self.sides.iter().filter(|side| matches!(side.limit, Limit::Input(..)));
+        let squares: f64 = of_inputs.map(|side| side.distance(&self.course).powi(2)).sum();
         let effort = effort * 0.5 * model.stepper.step_size() * squares;
-        let cost = if self.is_nearest { 1.0 } else { time * model.duration + effort };
+        let cost = match time * model.duration + effort {
+            _ if self.is_nearest => 1.0,
+            // The effort without bounds, to first order.
+            0.0 => self.least_effort().unwrap_or(1.0),
+            cost => cost,
+        };
         #[allow(clippy::cast_precision_loss)]
         let count = self.sides.len().max(1) as f64;
         self.barrier = if self.sides.is_empty() { 0.0 } else { 0.1 * cost / count };
         self.least_barrier = (1e-9 * self.barrier).min(0.1 * self.control.tolerance);
         for side in &mut self.sides {
-            side.multiplier = self.barrier / side.distance(inputs);
+            side.multiplier = self.barrier / side.distance(&self.course);
         }
+    }
+
+    fn least_effort(&self) -> Option<f64> {
+        let (stages, end) = (self.stages().ok()?, self.end()?);
+        let solution = solve(&stages, &end, self.course.model.constants)?;
+        let squares: f64 = solution.inputs.iter().zip(&self.course.inputs).map(|(a, b)| (a + b).norm_squared()).sum();
+        Some(self.control.cost.effort * 0.5 * self.course.model.stepper.step_size() * squares)
+            .filter(|cost| *cost > 0.0)
     }
 
     pub(crate) fn run(mut self) -> Result<ControlPlan<S, P>, ControlError> {
         let (tolerance, mut iterations) = (self.control.tolerance, 0);
+        let mut is_found = false;
         let verdict = loop {
-            let Ok(stages) = self.stages() else { break Verdict::Stalled(None) };
-            let end = self.end().ok_or(ControlError::Unusable("target"))?;
-            let covectors = Self::covectors(&stages, &end);
+            // There is a way to the target, from which the search goes on, once.
+            if self.is_nearest && !is_found && self.distance(&self.course) <= FOUND {
+                is_found = true;
+                self.restart(false);
+            }
+            let Ok(mut stages) = self.stages() else { break Verdict::Stalled(None) };
+            let mut end = self.end().ok_or(ControlError::Unusable("target"))?;
+            self.course.slopes = self.slopes(&stages).ok_or(ControlError::Unusable("value that is kept"))?;
+            if self.is_nearest {
+                self.add_squares(&mut stages, &mut end);
+            }
+            let covectors = self.covectors(&stages, &end);
             self.residual = self.residual(&stages, &covectors);
             if !(self.control.progress)(iterations, &self.residual) {
                 break Verdict::Cancelled;
             }
             let Residual { stationarity, complementarity, .. } = self.residual;
-            if self.is_nearest && stationarity.max(complementarity) <= tolerance.max(1e-9) {
+            if self.is_nearest && stationarity.max(complementarity) <= 1e-9 {
                 break self.nearest(&stages, &covectors);
             }
             if !self.is_nearest && self.residual.largest() <= tolerance {
@@ -162,24 +239,49 @@ where
             }
             iterations += 1;
             self.lower_barrier();
-            match self.improve(stages, &end, &covectors) {
+            match self.improve(stages, end, &covectors) {
                 Ok(()) => {}
-                Err(in_the_way) if self.is_nearest || self.course.miss.amax() <= tolerance => {
+                Err(in_the_way) if self.is_nearest || self.residual.target.max(self.residual.kept) <= tolerance => {
                     break Verdict::Stalled(in_the_way);
                 }
                 // Perhaps there is no way to the target.
                 Err(_) => {
-                    self.is_nearest = true;
-                    self.restart();
+                    self.restart(true);
                 }
             }
         };
         let (cost, residual) = (self.cost(&self.course), self.residual);
+        let of_kept = self.sides.iter().filter(|side| matches!(side.limit, Limit::Kept(_)));
+        let prices = of_kept.map(|side| side.multiplier).collect();
         let Course { model, inputs, states, .. } = self.course;
         let inputs = inputs.iter().map(|chosen| model.input(chosen.as_slice())).collect();
         let multipliers = self.multipliers.as_slice().to_vec();
         let (duration, stepper) = (model.duration, model.stepper);
-        Ok(ControlPlan { stepper, states, inputs, duration, cost, multipliers, residual, iterations, verdict })
+        Ok(ControlPlan { stepper, states, inputs, duration, cost, multipliers, prices, residual, iterations, verdict })
+    }
+
+    /// The derivatives of what is kept.
+    fn slopes(&self, stages: &[Stage]) -> Option<Vec<DVector<f64>>> {
+        let (Course { model, states, .. }, kept) = (&self.course, &self.control.kept);
+        let values =
+            |step: usize| move |state: &StateOf<S, P>, _: &[f64]| kept.iter().map(|value| value(step, state)).collect();
+        let mut found = Vec::with_capacity(self.course.kept.len());
+        for (step, stage) in (1..).zip(stages).take_while(|_| !kept.is_empty()) {
+            let slopes =
+                model.slopes(&states[step], stage, &[], values(step))?.resize_horizontally(model.states(), 0.0);
+            found.extend(slopes.row_iter().map(|row| row.transpose()));
+        }
+        Some(found)
+    }
+
+    /// Of what is kept and isn't, half of its square.
+    fn add_squares(&self, stages: &mut [Stage], end: &mut End) {
+        for (place, value) in self.course.broken() {
+            let (hessian, gradient) = of_state(stages, end, 1 + place / self.control.kept.len());
+            let slope = &self.course.slopes[place];
+            add_square(hessian, slope, 1.0);
+            gradient.axpy(value, slope, 1.0);
+        }
     }
 
     /// The blocks of the steps, with the gradients and second derivatives of the cost.
@@ -235,19 +337,14 @@ where
         Some(End { by_state, miss: none.clone(), multipliers: none, hessian, gradient })
     }
 
-    /// The derivatives of the miss: with `exp(ξ) = g_t⁻¹ g` and the tangent `T` of the exponential, `dξ = T⁻¹ Ad ζ`.
+    /// The derivatives of the miss.
     fn by_last_state(&self) -> Option<DMatrix<f64>> {
         let dimension = Self::DIMENSION;
         let mut found = DMatrix::zeros(self.course.miss.len(), self.course.model.states());
         let mut row = 0;
         if let Some(target) = self.control.target.attitude {
             let turn = target.inverse().compose(&self.course.states[self.control.steps].attitude());
-            let of = |matrix| {
-                let column = |k| flat([&<Vector<S> as Coordinates<f64>>::column(matrix, k)]);
-                DMatrix::from_columns(&(0..dimension).map(column).collect::<Vec<_>>())
-            };
-            let tangent = ExponentialRetraction::tangent(&ExponentialRetraction::local_coordinates(&turn)?);
-            let derivative = of(&tangent).lu().solve(&of(&turn.adjoint_matrix()))?;
+            let derivative = by_displacement::<Group<S>>(&turn)?;
             found.view_mut((0, 0), (dimension, dimension)).copy_from(&derivative);
             row = dimension;
         }
@@ -258,22 +355,32 @@ where
     }
 
     /// The derivatives of the Lagrange function by each state, from the first to the last.
-    fn covectors(stages: &[Stage], end: &End) -> Vec<DVector<f64>> {
-        let mut covectors = vec![&end.gradient + end.by_state.tr_mul(&end.multipliers)];
-        for (k, stage) in stages.iter().rev().enumerate() {
-            covectors.push(stage.by_state.tr_mul(&covectors[k]) + &stage.state_gradient);
+    fn covectors(&self, stages: &[Stage], end: &End) -> Vec<DVector<f64>> {
+        let last = &end.gradient + end.by_state.tr_mul(&end.multipliers);
+        let gradients = stages.iter().map(|stage| stage.state_gradient.clone());
+        let mut covectors: Vec<DVector<f64>> = gradients.chain([last]).collect();
+        for side in &self.sides {
+            if let Limit::Kept(place) = side.limit {
+                covectors[side.step].axpy(-side.multiplier, &self.course.slopes[place], 1.0);
+            }
         }
-        covectors.reverse();
+        for (k, stage) in stages.iter().enumerate().rev() {
+            let carried = stage.by_state.tr_mul(&covectors[k + 1]);
+            covectors[k] += carried;
+        }
         covectors
     }
 
     fn residual(&self, stages: &[Stage], covectors: &[DVector<f64>]) -> Residual {
         let slope = |(k, stage): (usize, &Stage)| &stage.input_gradient + stage.by_input.tr_mul(&covectors[k + 1]);
         let mut slopes: Vec<DVector<f64>> = stages.iter().enumerate().map(slope).collect();
-        let mut complementarity = 0.0_f64;
+        let (mut kept, mut complementarity) = (0.0_f64, 0.0_f64);
         for side in &self.sides {
-            slopes[side.step][side.input] -= side.sign * side.multiplier;
-            complementarity = complementarity.max(side.distance(&self.course.inputs) * side.multiplier);
+            if let Limit::Input(input, sign, _) = side.limit {
+                slopes[side.step][input] -= sign * side.multiplier;
+            }
+            kept = kept.max(side.gap(&self.course).abs());
+            complementarity = complementarity.max(side.distance(&self.course) * side.multiplier);
         }
         for (slopes, stage) in slopes.iter_mut().zip(stages) {
             stage.fixed.iter().for_each(|&input| slopes[input] = 0.0);
@@ -281,18 +388,42 @@ where
         let by_duration = covectors[0].iter().skip(2 * Self::DIMENSION);
         let all = slopes.iter().flatten().chain(by_duration);
         let stationarity = all.fold(0.0_f64, |most, slope| most.max(slope.abs()));
-        Residual { stationarity, target: self.course.miss.amax(), complementarity }
+        Residual { stationarity, target: self.course.miss.amax(), kept, complementarity }
     }
 
     /// The barrier is lowered when its own problem is solved well enough.
     fn lower_barrier(&mut self) {
-        let target = if self.is_nearest { 0.0 } else { self.residual.target };
-        let uneven = |side: &Side| (side.distance(&self.course.inputs) * side.multiplier - self.barrier).abs();
+        let target = if self.is_nearest { 0.0 } else { self.residual.target.max(self.residual.kept) };
+        let uneven = |side: &Side| (side.distance(&self.course) * side.multiplier - self.barrier).abs();
         let uneven = self.sides.iter().map(uneven).fold(self.residual.stationarity.max(target), f64::max);
         while self.barrier > self.least_barrier && uneven <= 10.0 * self.barrier {
             self.barrier = (0.2 * self.barrier).min(self.barrier.powf(1.5)).max(self.least_barrier);
         }
     }
+}
+
+/// The course with these inputs, whose distances are what is kept; `None` where the target can't be seen from the end.
+pub(crate) fn course<S, P>(
+    control: &Control<'_, S, P>,
+    model: Model<S, P>,
+    inputs: Vec<DVector<f64>>,
+) -> Result<Option<Course<S, P>>, (usize, StepError)>
+where
+    S: SecondDerivatives<Scalar = f64> + Clone,
+    P: Linearisable<S> + Clone,
+    ExponentialRetraction: Retraction<Group<S>>,
+{
+    let states = model.run(&control.start, &inputs)?;
+    let values = states
+        .iter()
+        .enumerate()
+        .skip(1)
+        .flat_map(|(step, state)| control.kept.iter().map(move |value| value(step, state)));
+    let kept: Vec<f64> = values.collect();
+    let Some(miss) = miss(control, &states).filter(|_| kept.iter().all(|value| value.is_finite())) else {
+        return Ok(None);
+    };
+    Ok(Some(Course { model, inputs, states, miss, distances: kept.clone(), kept, slopes: Vec::new() }))
 }
 
 /// What is left to the target, by its coordinates there; `None` where these don't reach.

@@ -3,7 +3,9 @@
 #![allow(dead_code, unreachable_pub, missing_docs)] // each test has its own part of it
 
 use std::collections::BTreeMap;
+use std::panic::{UnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
 
 use liestep::effects::{Gravity, PrincipalBody};
 use liestep::mechanics::{DiagonalNonstandardInertia, Sum};
@@ -15,7 +17,7 @@ pub type Top = Stepper<Sum<PrincipalBody, Gravity>>;
 pub type State = <Top as liestep::motion::Integrator>::State;
 
 /// A top with moments and a spin drawn. Member 3 is no body, and members 5, 15, 25 … fall too fast for the step.
-pub fn top(member: &Member<'_>) -> Result<(Top, State), Failure> {
+pub fn top(member: &Member<'_>) -> Made {
     let third = if member.number() == 3 { 9.0 } else { member.normal("J_3", 4.0, 0.1) };
     let body =
         PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.1, third))? };
@@ -24,6 +26,31 @@ pub fn top(member: &Member<'_>) -> Result<(Top, State), Failure> {
     let tilted = SO3::exp(Vector3::x() * member.uniform("tilt", 0.2..0.6));
     let state = stepper.start(tilted, Vector3::new(0.1, 0.0, member.uniform("spin", 1.0..8.0)))?;
     Ok((stepper, state))
+}
+
+/// A member, if it can exist.
+pub type Made = Result<(Top, State), Failure>;
+
+/// Each of the members of [`tops`] as it is made.
+pub fn made(members: u64) -> Vec<(u64, Made)> {
+    // An ensemble of no steps hands its members on.
+    let starts = Arc::new(Mutex::new(Vec::new()));
+    let kept = Arc::clone(&starts);
+    let probe = Ensemble::new("tops", members, 0, move |member| {
+        let made = top(member);
+        kept.lock().unwrap().push((member.number(), made.clone()));
+        made
+    });
+    let _ = probe.seed(7).chunks_of(members).chunk(0, &|| false);
+    // Three are asked for once more, by the fingerprint.
+    starts.lock().unwrap().split_off(3)
+}
+
+/// What an ensemble that is refused says.
+pub fn message(of: impl FnOnce() -> Ensemble<Top> + UnwindSafe) -> String {
+    let payload = catch_unwind(of).map(drop).unwrap_err();
+    let text = payload.downcast_ref::<String>().cloned();
+    text.unwrap_or_else(|| (*payload.downcast_ref::<&str>().unwrap()).to_owned())
 }
 
 pub fn axis(state: &State) -> [f64; 3] {

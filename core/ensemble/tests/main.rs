@@ -1,17 +1,18 @@
 //! What comes out of an ensemble is a function of its plan, and what is wrong with it is named.
 
 mod common;
+#[cfg(target_os = "linux")]
 mod full_disk;
 mod plans;
 mod sections;
 mod splittings;
 
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use common::{Folder, Top, axis, contents, top, tops, with_columns};
+use common::{Folder, Top, axis, contents, made, top, tops, with_columns};
 use liestep::mechanics::InertiaError;
 use liestep::motion::{Integrator, Motion, StepReport};
 use liestep::{SO3, StepError, Stepper};
@@ -33,31 +34,37 @@ fn shards(ensemble: &Ensemble<Top>, folder: &Folder) -> Vec<Shard> {
     store.shards(ensemble.fingerprint()).unwrap().map(|shard| shard.unwrap()).collect()
 }
 
-#[test]
-fn files_and_sums_are_the_same_for_threads_shares_and_one_by_one() {
-    let ensemble = tops(MEMBERS, STEPS);
-    let folder = Folder::new("one");
-    let report = run(&ensemble, &Local::threads(1), &folder);
-    assert_eq!((report.chunks, report.made, report.missing), (7, 7, 0));
-    assert_eq!((report.finished, report.failed), (MEMBERS - 14, 14));
-    let expected = contents(&folder.0);
-    assert_eq!(expected.len(), 7);
+/// The folder and the report of one thread: as of more threads, of three shares, and one by one. `missing` is what is left
+/// after each of the shares.
+fn the_same(name: &str, [ensemble, alone]: [&Ensemble<Top>; 2], missing: [u64; 3]) -> (Folder, Report) {
+    let first = Folder::new(name);
+    let report = run(ensemble, &Local::threads(1), &first);
+    let expected = contents(&first.0);
     for threads in [2, 7] {
-        let folder = Folder::new(&format!("{threads}"));
-        assert_eq!(run(&ensemble, &Local::threads(threads), &folder), report);
+        let folder = Folder::new(&format!("{name}-{threads}"));
+        assert_eq!(run(ensemble, &Local::threads(threads), &folder), report);
         assert!(contents(&folder.0) == expected, "{threads} threads");
     }
-    let folder = Folder::new("shares");
-    for (share, missing) in [(2, 5), (0, 2), (1, 0)] {
-        let part = run(&ensemble, &Local::threads(2).share(share, 3), &folder);
+    let folder = Folder::new(&format!("{name}-shares"));
+    for (share, missing) in [2, 0, 1].into_iter().zip(missing) {
+        let part = run(ensemble, &Local::threads(2).share(share, 3), &folder);
         assert_eq!(part.missing, missing, "share {share}");
     }
     assert!(contents(&folder.0) == expected, "shares");
     // Without lanes the plan is the same.
-    let folder = Folder::new("one-by-one");
-    let alone = with_columns(Ensemble::one_by_one("tops", MEMBERS, STEPS, top));
-    assert_eq!(run(&alone, &Local::threads(2), &folder), report);
+    let folder = Folder::new(&format!("{name}-alone"));
+    assert_eq!(run(alone, &Local::threads(2), &folder), report);
     assert!(contents(&folder.0) == expected, "one by one");
+    (first, report)
+}
+
+#[test]
+fn files_and_sums_are_the_same_for_threads_shares_and_one_by_one() {
+    let (ensemble, alone) = (tops(MEMBERS, STEPS), Ensemble::one_by_one("tops", MEMBERS, STEPS, top));
+    let (folder, report) = the_same("one", [&ensemble, &with_columns(alone)], [5, 2, 0]);
+    assert_eq!((report.chunks, report.made, report.missing), (7, 7, 0));
+    assert_eq!((report.finished, report.failed), (MEMBERS - 14, 14));
+    assert_eq!(contents(&folder.0).len(), 7);
     // And what is there isn't made again.
     let again = run(&ensemble, &Local::threads(2), &folder);
     assert_eq!((again.made, again.finished, again.reduced("z")), (0, report.finished, report.reduced("z")));
@@ -81,17 +88,7 @@ fn members_are_what_they_are_alone() {
     }
     let mut expected = Vec::new();
     let mut expected_failures = Vec::new();
-    // An ensemble of no steps hands its members on.
-    let starts = Arc::new(Mutex::new(Vec::new()));
-    let kept = Arc::clone(&starts);
-    let probe = Ensemble::new("tops", MEMBERS, 0, move |member| {
-        let made = top(member);
-        kept.lock().unwrap().push((member.number(), made.clone()));
-        made
-    });
-    let _ = probe.seed(7).chunks_of(MEMBERS).chunk(0, &|| false);
-    // Three are asked for once more, by the fingerprint.
-    for (member, made) in starts.lock().unwrap().drain(..).skip(3) {
+    for (member, made) in made(MEMBERS) {
         let (stepper, mut state) = match made {
             Ok(made) => made,
             Err(failure) => {

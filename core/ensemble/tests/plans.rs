@@ -6,7 +6,7 @@ use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use liestep_ensemble::{Ensemble, Fault, Local, Reduction, Store, Table, share_of};
 use nalgebra::Vector3;
 
-use super::common::{Folder, Top, contents, top, tops};
+use super::common::{Folder, contents, message, top, tops};
 use super::{MEMBERS, STEPS, run};
 
 /// Chunks of their own choice: full lanes, or one member.
@@ -51,12 +51,6 @@ fn columns_are_named_when_the_program_runs() {
     let named = tops(20, STEPS).keep_named(&["t", "none"], |run, row| row[0] = run.stepper.time(run.state));
     assert_eq!(fixed.fingerprint(), named.fingerprint());
     assert!(message(|| tops(1, 1).keep_named(&["a", "a"], |_, _| ())).contains("`a`"));
-}
-
-fn message(of: impl FnOnce() -> Ensemble<Top> + std::panic::UnwindSafe) -> String {
-    let payload = std::panic::catch_unwind(of).map(drop).unwrap_err();
-    let text = payload.downcast_ref::<String>().cloned();
-    text.unwrap_or_else(|| (*payload.downcast_ref::<&str>().unwrap()).to_owned())
 }
 
 #[test]

@@ -2,16 +2,13 @@
 
 #![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)] // hundreds of steps
 
-use std::sync::{Arc, Mutex};
-
 use liestep::motion::Moment;
 use liestep::recording::{Event, sections};
-use liestep_ensemble::{
-    Ensemble, Failure, Local, MemberFailure, Reduction, Section, Shard, Status, Store, Summary, Table,
-};
+use liestep_ensemble::{Ensemble, Failure, MemberFailure, Reduction, Section, Shard, Status, Store, Summary, Table};
 use nalgebra::Vector3;
 
-use crate::common::{Folder, Top, contents, top, tops, with_columns};
+use crate::common::{Top, made, message, top, tops, with_columns};
+use crate::the_same;
 
 const MEMBERS: u64 = 50;
 const STEPS: u64 = 150;
@@ -50,17 +47,8 @@ fn chunks(ensemble: &Ensemble<Top>) -> Vec<Shard> {
 
 #[test]
 fn crossings_are_those_of_each_member_alone() {
-    let starts = Arc::new(Mutex::new(Vec::new()));
-    let kept_starts = Arc::clone(&starts);
-    let probe = Ensemble::new("tops", MEMBERS, 0, move |member| {
-        let made = top(member);
-        kept_starts.lock().unwrap().push((member.number(), made.clone()));
-        made
-    });
-    let _ = probe.seed(7).chunks_of(MEMBERS).chunk(0, &|| false);
     let mut expected: Found = [vec![], vec![]];
-    // Three are asked for once more, by the fingerprint.
-    for (member, made) in starts.lock().unwrap().drain(..).skip(3) {
+    for (member, made) in made(MEMBERS) {
         let Ok((stepper, mut state)) = made else { continue };
         let [mut first, mut second] = [vec![], vec![]];
         let bits = |now: &Moment<'_, Top>| (member, kept(now).map(f64::to_bits));
@@ -93,25 +81,9 @@ fn crossings_are_those_of_each_member_alone() {
 #[test]
 fn files_with_sections_are_the_same_for_threads_shares_and_one_by_one() {
     let ensemble = with_sections(tops(MEMBERS, STEPS));
-    let folder = Folder::new("sections");
-    let store = Store::folder(&folder.0).unwrap();
-    let report = ensemble.run(&Local::threads(1), &store).unwrap();
-    let expected = contents(&folder.0);
-    for threads in [2, 7] {
-        let folder = Folder::new(&format!("sections-{threads}"));
-        let again = ensemble.run(&Local::threads(threads), &Store::folder(&folder.0).unwrap()).unwrap();
-        assert_eq!((&again, contents(&folder.0) == expected), (&report, true), "{threads} threads");
-    }
-    let folder = Folder::new("sections-shares");
-    for share in [1, 0] {
-        let engine = Local::threads(2).share(share, 2);
-        ensemble.run(&engine, &Store::folder(&folder.0).unwrap()).unwrap();
-    }
-    assert!(contents(&folder.0) == expected, "shares");
-    let folder = Folder::new("sections-alone");
     let alone = with_sections(with_columns(Ensemble::one_by_one("tops", MEMBERS, STEPS, top)));
-    assert_eq!(alone.run(&Local::threads(2), &Store::folder(&folder.0).unwrap()).unwrap(), report);
-    assert!(contents(&folder.0) == expected, "one by one");
+    let (folder, report) = the_same("sections", [&ensemble, &alone], [2, 1, 0]);
+    let store = Store::folder(&folder.0).unwrap();
     // What is read is what was written, and a reader of numbers leaves lists out.
     let shards: Vec<Shard> = store.shards(ensemble.fingerprint()).unwrap().map(Result::unwrap).collect();
     // As text, in which NaN is NaN.
@@ -200,15 +172,7 @@ fn a_function_without_a_value_stops_its_member() {
 #[test]
 fn first_passages_are_those_of_each_member_alone() {
     let (mut expected, mut fell) = (Vec::new(), 0);
-    let starts = Arc::new(Mutex::new(Vec::new()));
-    let kept_starts = Arc::clone(&starts);
-    let collected = Ensemble::new("tops", MEMBERS, 0, move |member| {
-        let made = top(member);
-        kept_starts.lock().unwrap().push((member.number(), made.clone()));
-        made
-    });
-    let _ = collected.seed(7).chunks_of(MEMBERS).chunk(0, &|| false);
-    for (member, made) in starts.lock().unwrap().drain(..).skip(3) {
+    for (member, made) in made(MEMBERS) {
         let Ok((stepper, mut state)) = made else { continue };
         let mut all = Vec::new();
         let run = stepper.observed(&mut state);
@@ -279,9 +243,7 @@ fn another_section_is_another_plan() {
 }
 
 fn is_refused(section: impl FnOnce() -> Section<Top> + std::panic::UnwindSafe) -> String {
-    let payload = std::panic::catch_unwind(|| drop(tops(1, 1).section(section()))).unwrap_err();
-    let text = payload.downcast_ref::<String>().cloned();
-    text.unwrap_or_else(|| (*payload.downcast_ref::<&str>().unwrap()).to_owned())
+    message(|| tops(1, 1).section(section()))
 }
 
 #[test]

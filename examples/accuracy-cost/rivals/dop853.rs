@@ -8,7 +8,7 @@
 
 use workbench::top_equations::State;
 
-use super::embedded::{Embedded, Row, Tableau, combination, mean_square, plus, rows, stages};
+use super::embedded::{Embedded, Row, combination, mean_square, plus, stages};
 use super::rates::Rates;
 
 pub struct Dop853;
@@ -43,16 +43,6 @@ impl Embedded for Dop853 {
         let (five, three) = (mean_square(&fifth, scales), mean_square(&third, scales));
         let denominator = five + 0.01 * three;
         if denominator > 0.0 { five / denominator.sqrt() } else { 0.0 }
-    }
-
-    fn tableau() -> Tableau {
-        let third = ERROR_3.iter().chain(&B).copied().collect();
-        Tableau {
-            order: 8,
-            rows: rows![A2 A3 A4 A5 A6 A7 A8 A9 A10 A11 A12],
-            weights: B.into(),
-            estimates: vec![(5, ERROR_5.into()), (3, third)],
-        }
     }
 }
 

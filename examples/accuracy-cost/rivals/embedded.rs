@@ -31,17 +31,6 @@ pub trait Embedded: 'static {
 
     /// The error over the step, as a part of it, in units of these scales.
     fn error(k: &Self::Stages, mean: &State, scales: &State) -> f64;
-
-    /// The rows of a step's stages, its weights, and those of estimates with the order to which each is zero.
-    fn tableau() -> Tableau;
-}
-
-/// Coefficients as the order conditions take them.
-pub struct Tableau {
-    pub order: u32,
-    pub rows: Vec<Vec<(usize, f64)>>,
-    pub weights: Vec<(usize, f64)>,
-    pub estimates: Vec<(u32, Vec<(usize, f64)>)>,
 }
 
 #[inline(always)]
@@ -70,14 +59,6 @@ macro_rules! stages {
     )+};
 }
 pub(super) use stages;
-
-/// The rows of a tableau, of which the first stage has none.
-macro_rules! rows {
-    ($($row:ident)+) => {
-        vec![vec![], $($row.into()),+]
-    };
-}
-pub(super) use rows;
 
 /// One step of fixed length.
 #[inline]

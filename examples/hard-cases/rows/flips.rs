@@ -6,13 +6,13 @@ use liestep::methods::{CompositionScheme, ExactBody, SplittingScheme};
 use liestep::motion::Plan;
 use liestep::prelude::*;
 use nalgebra::{UnitQuaternion, Vector3};
-use workbench::free_body::engines::{Moments, explicit, implicit, rescaled};
 use workbench::heavy_top::rk4::{Body, OnQuaternion};
 use workbench::measure::{four_halvings, order};
 use workbench::run::Method as _;
 
 use crate::closed::flip;
 use crate::curves::Curves;
+use crate::engines::{Moments, explicit, implicit, rescaled};
 use crate::rivals::Update;
 use crate::row::{Effort, Failure, Row};
 

@@ -8,6 +8,7 @@
 
 use declarations::{HeavyTop, Motion};
 use liestep::methods::{CompositionScheme, SplittingScheme, SymmetricBody};
+use liestep::motion::Plan;
 use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 use plotters::style::RGBColor;
@@ -19,17 +20,21 @@ use crate::curves::{Curve, Curves};
 use crate::row::{Effort, Failure, Row, short};
 use crate::walk::{FARTHEST, TopMotion, Walk};
 
-/// Steps and looks.
-fn walk(
-    top: &HeavyTop,
-    start: &TopMotion,
+/// Steps and looks; brings the attitude back to the rotations now and then, where it is to.
+fn walk<P: Plan<HeavyTop>>(
+    stepper: &Stepper<HeavyTop, P>,
+    start: &StateOf<HeavyTop, P>,
     steps: u64,
-    mut step: impl FnMut(u64) -> Result<TopMotion, Failure>,
+    is_corrected: bool,
 ) -> Result<(Walk, f64), Failure> {
+    let (top, mut state) = (stepper.scene(), *start);
     let (mut walk, mut energies) = (Walk::from_state(start, steps), Tenths::new(steps));
     let before = energy(top, &start.momentum(), &start.advected());
     for count in 1..=steps {
-        let state = step(count)?;
+        stepper.step(&mut state)?;
+        if is_corrected && count.is_multiple_of(PERIOD) {
+            state = stepper.start_with_momentum(orthogonal(&state), state.momentum())?;
+        }
         walk.after_step(count, &state);
         energies.after(count, || energy(top, &state.momentum(), &state.advected()) - before);
     }
@@ -78,25 +83,10 @@ pub(crate) fn r1(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     let motion = Motion::looping();
     let composition = Stepper::composed(motion.top.clone(), h, scheme)?;
     let start = composition.start(motion.attitude, motion.velocity)?;
-    let mut state = start;
-    let plain = walk(&motion.top, &start, steps, |_| {
-        composition.step(&mut state)?;
-        Ok(*state)
-    })?;
-    let mut state = start;
-    let corrected = walk(&motion.top, &start, effort.beside(steps), |step| {
-        composition.step(&mut state)?;
-        if step.is_multiple_of(PERIOD) {
-            state = composition.start_with_momentum(orthogonal(&state), state.momentum())?;
-        }
-        Ok(*state)
-    })?;
+    let plain = walk(&composition, &start, steps, false)?;
+    let corrected = walk(&composition, &start, effort.beside(steps), true)?;
     let compensated = composition.clone().compensated();
-    let mut state = compensated.start(motion.attitude, motion.velocity)?;
-    let kept = walk(&motion.top, &start, effort.beside(steps), |_| {
-        compensated.step(&mut state)?;
-        Ok(*state)
-    })?;
+    let kept = walk(&compensated, &compensated.adopt(&start), effort.beside(steps), false)?;
     let row = Row::new(
         "R1",
         "Kahan-Li 8 of (3.13), looping top, h = 0.05, 5e5 steps of 17 stages (5e6 with --long)",
@@ -116,19 +106,8 @@ pub(crate) fn r2(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     let kinetic = SymmetricBody::new(&Inertia::new(motion.top.inertia(&motion.top.advected()))?)?;
     let splitting = Stepper::split(motion.top.clone(), 0.02, kinetic, SplittingScheme::NYSTROM_11)?;
     let start = splitting.start(motion.attitude, motion.velocity)?;
-    let mut state = start;
-    let plain = walk(&motion.top, &start, steps, |_| {
-        splitting.step(&mut state)?;
-        Ok(*state)
-    })?;
-    let mut state = start;
-    let corrected = walk(&motion.top, &start, effort.beside(steps), |step| {
-        splitting.step(&mut state)?;
-        if step.is_multiple_of(PERIOD) {
-            state = splitting.start_with_momentum(orthogonal(&state), state.momentum())?;
-        }
-        Ok(*state)
-    })?;
+    let plain = walk(&splitting, &start, steps, false)?;
+    let corrected = walk(&splitting, &start, effort.beside(steps), true)?;
     let row = Row::new(
         "R2",
         "exact symmetric body and kicks in 11 stages, looping top, h = 0.02, 1e6 steps (1e7 with --long)",
@@ -144,25 +123,9 @@ pub(crate) fn r2(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
 fn three(top: &HeavyTop, velocity: Vector3<f64>, (steps, beside): (u64, u64)) -> Result<[(Walk, f64); 3], Failure> {
     let stepper = Stepper::new(top.clone(), 0.05)?;
     let start = stepper.start(SO3::identity(), velocity)?;
-    let mut state = start;
-    let plain = walk(top, &start, steps, |_| {
-        stepper.step(&mut state)?;
-        Ok(*state)
-    })?;
-    let mut state = start;
-    let corrected = walk(top, &start, beside, |step| {
-        stepper.step(&mut state)?;
-        if step.is_multiple_of(PERIOD) {
-            state = stepper.start_with_momentum(orthogonal(&state), state.momentum())?;
-        }
-        Ok(*state)
-    })?;
-    let carrying = stepper.compensated();
-    let mut state = carrying.adopt(&start);
-    let kept = walk(top, &start, beside, |_| {
-        carrying.step(&mut state)?;
-        Ok(*state)
-    })?;
+    let (plain, corrected) = (walk(&stepper, &start, steps, false)?, walk(&stepper, &start, beside, true)?);
+    let compensated = stepper.compensated();
+    let kept = walk(&compensated, &compensated.adopt(&start), beside, false)?;
     Ok([plain, kept, corrected])
 }
 

@@ -20,6 +20,8 @@ fn rotation(axis: &Vector3<f64>, degrees: f64) -> SO3 {
 /// What became of all guesses.
 struct Seen {
     refused: u32,
+    /// Of these, where the determinant that is named is below zero; about a middle axis it may be above, and the trace tells.
+    negative: u32,
     traps: u32,
     wrong: u32,
     error: f64,
@@ -39,7 +41,10 @@ impl Seen {
             let guess = |degrees: f64| L::Retraction::local_coordinates(&rotation(&axis, degrees)).ok_or("half a turn");
             self.traps += 1;
             let trapped = flow.invert_legendre_minus(&momentum, w, &guess(150.0)?);
-            self.refused += u32::from(matches!(trapped, Err(StepError::WrongBranch { .. })));
+            if let Err(StepError::WrongBranch { determinant }) = trapped {
+                self.refused += 1;
+                self.negative += u32::from(determinant < 0.0);
+            }
             // From elsewhere Newton's iteration may reach either root, but the wrong one never comes out.
             for degrees in (0..=175).step_by(5) {
                 match flow.invert_legendre_minus(&momentum, w, &guess(f64::from(degrees))?) {
@@ -56,7 +61,7 @@ impl Seen {
 }
 
 pub(crate) fn s3(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
-    let mut seen = Seen { refused: 0, traps: 0, wrong: 0, error: 0.0, from_below: true };
+    let mut seen = Seen { refused: 0, negative: 0, traps: 0, wrong: 0, error: 0.0, from_below: true };
     for moments in [[3.0, 3.0, 4.0], [2.0, 3.0, 4.5], [1.0, 2.0, 3.0], [1.0, 1.0, 1.0]] {
         seen.trap(&FreeBody::with_moments(moments), &())?;
     }
@@ -64,12 +69,15 @@ pub(crate) fn s3(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     for top in [HeavyTop::thesis(), HeavyTop::asymmetric()] {
         seen.trap(&HeavyTop { g: 0.0, ..top }, &Vector3::z())?;
     }
-    let Seen { refused, traps, wrong, error, from_below } = seen;
+    let Seen { refused, negative, traps, wrong, error, from_below } = seen;
     let row = Row::new("S3", "guess at 150° where the root is at 30°", "refused; the wrong root never comes out")
         .holds(
             &format!("{refused} of {traps} refused as WrongBranch (four bodies, two tops, three axes)"),
             refused == traps,
         )
+        .holds(&format!("{negative} of them by a determinant below zero, the others by the trace"), {
+            negative > 0 && negative < refused
+        })
         .holds(&format!("{wrong} wrong roots from guesses of 0° to 175°"), wrong == 0)
         .holds("solved from every guess up to 90°", from_below)
         .at_most("error of the root in rad", error, 1e-15);

@@ -1,5 +1,2 @@
-mod body_axes;
-mod closed_forms;
 mod euler_angles;
 mod inertia;
-mod order;

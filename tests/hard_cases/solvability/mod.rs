@@ -1,4 +1,2 @@
 mod at_rest;
-mod reversal;
 mod step_scan;
-mod wrong_root;

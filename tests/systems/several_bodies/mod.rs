@@ -3,7 +3,6 @@
 //! together by joints.
 
 mod casimirs;
-mod chain;
 mod declared;
 mod edges;
 mod forces;

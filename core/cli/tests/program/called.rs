@@ -41,8 +41,20 @@ pub(crate) fn folder(test: &str) -> PathBuf {
     folder
 }
 
+pub(crate) fn called(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(PROGRAM).current_dir(folder).args(arguments).output().unwrap()
+}
+
 pub(crate) fn simulate(folder: &Path, files: &[&str]) -> Output {
-    Command::new(PROGRAM).current_dir(folder).args(["run", "--csv", "--out", "."]).args(files).output().unwrap()
+    called(folder, &[&["run", "--csv", "--out", "."], files].concat())
+}
+
+/// With this code, a message of which that is a part, and nothing printed.
+pub(crate) fn refuses(folder: &Path, arguments: &[&str], code: i32, message: &str) {
+    let output = called(folder, arguments);
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(text.starts_with("error: ") && text.contains(message), "{text}");
+    assert!(output.stdout.is_empty() && output.status.code() == Some(code), "{arguments:?}: {text}");
 }
 
 /// What the program says of a text that it refuses.
@@ -82,7 +94,7 @@ pub(crate) fn table(csv: &str) -> Vec<Vec<f64>> {
 }
 
 pub(crate) fn printed(folder: &Path, arguments: &[&str]) -> String {
-    let output = Command::new(PROGRAM).current_dir(folder).args(arguments).output().unwrap();
+    let output = called(folder, arguments);
     assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).unwrap()
 }

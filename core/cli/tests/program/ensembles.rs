@@ -2,11 +2,10 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use liestep_ensemble::{Shard, Status, Store};
 
-use crate::called::{PROGRAM, TOP, folder, printed, rows};
+use crate::called::{TOP, called, folder, printed, refuses, rows};
 
 /// The top, and what is drawn of it.
 fn drawn(ensemble: &str) -> String {
@@ -62,8 +61,6 @@ fn a_member_is_the_file_with_its_values() {
 #[test]
 fn shares_and_a_second_run_make_the_same_files() {
     let folder = folder("shares_and_a_second_run_make_the_same_files");
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).unwrap();
     let text = drawn("chunk = 8\ndraw.start.velocity = [0, 0, { from = \"60 rpm\", to = \"90 rpm\" }]\n");
     fs::write(folder.join("top.toml"), text.replace("[drag]\nc = 1e-3\n", "")).unwrap();
     let whole = printed(&folder, &["ensemble", "top.toml", "--out", "whole"]);
@@ -93,8 +90,6 @@ fn shares_and_a_second_run_make_the_same_files() {
 #[test]
 fn what_is_shipped_has_many_chunks() {
     let folder = folder("what_is_shipped_has_many_chunks");
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).unwrap();
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/scenes/detumbling.toml");
     let text = fs::read_to_string(shipped).unwrap();
     // For a twentieth of the time, and with quaternions, of which there are no means.
@@ -114,11 +109,9 @@ fn what_is_shipped_has_many_chunks() {
 #[test]
 fn members_fail_by_themselves() {
     let folder = folder("members_fail_by_themselves");
-    let _ = fs::remove_dir_all(folder.join("top.ensemble"));
     let text = drawn("draw.gravity.m = { mean = \"1 kg\", deviation = \"1 kg\" }\n");
     fs::write(folder.join("top.toml"), text).unwrap();
-    let output =
-        Command::new(PROGRAM).current_dir(&folder).args(["ensemble", "top.toml", "--out", "."]).output().unwrap();
+    let output = called(&folder, &["ensemble", "top.toml", "--out", "."]);
     let told = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(3), "{told}");
     assert!(told.contains("failed after 0 steps: top.toml:") && told.contains("must be above zero"), "{told}");
@@ -135,7 +128,6 @@ fn members_fail_by_themselves() {
 #[test]
 fn an_event_has_a_probability() {
     let folder = folder("an_event_has_a_probability");
-    let _ = fs::remove_dir_all(folder.join("top.ensemble"));
     let text = drawn("draw.start.euler = [0, { from = \"10 deg\", to = \"90 deg\" }, 0]\n").replace("60 rpm", "0 rpm")
         + "[[event]]\nname = \"fallen\"\ntilt = \"60 deg\"\ndirection = \"rising\"\n";
     let text = text.replace("members = 40", "members = 40\nchunk = 7").replace("duration = 2", "duration = 1");
@@ -183,7 +175,7 @@ fn mistakes_in_ensembles_have_places() {
     let folder = folder("mistakes_in_ensembles_have_places");
     let checked = |text: &str| {
         fs::write(folder.join("top.toml"), text).unwrap();
-        let output = Command::new(PROGRAM).current_dir(&folder).args(["check", "top.toml"]).output().unwrap();
+        let output = called(&folder, &["check", "top.toml"]);
         assert_eq!(output.status.code(), Some(1), "{text}");
         String::from_utf8(output.stderr).unwrap()
     };
@@ -222,10 +214,6 @@ fn mistakes_in_ensembles_have_places() {
     assert!(told.contains("the members of an ensemble make the same steps"), "{told}");
     let told = checked(&format!("{}\n[output]\ncolumns = [\"energy-error\"]\n", drawn(draws)));
     assert!(told.contains("`energy_error` is measured from the start"), "{told}");
-    let output = {
-        fs::write(folder.join("top.toml"), TOP).unwrap();
-        Command::new(PROGRAM).current_dir(&folder).args(["ensemble", "top.toml"]).output().unwrap()
-    };
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert!(output.status.code() == Some(1) && told.contains("has no table `ensemble`"), "{told}");
+    fs::write(folder.join("top.toml"), TOP).unwrap();
+    refuses(&folder, &["ensemble", "top.toml"], 1, "has no table `ensemble`");
 }

@@ -4,14 +4,12 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::called::{PROGRAM, TOP, folder};
+use crate::called::{TOP, folder, printed, refuses};
 
 /// Runs the top and returns the text of its page.
 fn page(folder: &Path, title: &str) -> String {
     fs::write(folder.join("top.toml"), TOP.replace("A heavy top with drag", title)).unwrap();
-    let arguments = ["run", "top.toml", "--csv", "--html", "--out", "."];
-    let output = Command::new(PROGRAM).current_dir(folder).args(arguments).output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    printed(folder, &["run", "top.toml", "--csv", "--html", "--out", "."]);
     fs::read_to_string(folder.join("top.html")).unwrap()
 }
 
@@ -36,9 +34,7 @@ fn it_is_complete() {
 fn a_table_is_replayed() {
     let folder = folder("replay");
     let page = page(&folder, "top");
-    let arguments = ["replay", "top.csv", "--out", "again"];
-    let output = Command::new(PROGRAM).current_dir(&folder).args(arguments).output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    printed(&folder, &["replay", "top.csv", "--out", "again"]);
     let again = fs::read_to_string(folder.join("again/top.html")).unwrap();
     let lists = |page: &str| -> Vec<String> {
         page.lines().filter(|line| line.len() > 500 && line.contains('"')).map(str::to_owned).collect()
@@ -49,10 +45,7 @@ fn a_table_is_replayed() {
 
     let refused = |table: &str, message: &str| {
         fs::write(folder.join("wrong.csv"), table).unwrap();
-        let output = Command::new(PROGRAM).current_dir(&folder).args(["replay", "wrong.csv"]).output().unwrap();
-        let text = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(1), "{text}");
-        assert!(text.starts_with("error: wrong.csv:") && text.contains(message), "{text}");
+        refuses(&folder, &["replay", "wrong.csv"], 1, &format!("error: wrong.csv{message}"));
     };
     let names = "t,q_w,q_x,q_y,q_z\n";
     refused("", ":1:1: has no columns t;");
@@ -68,9 +61,7 @@ fn a_table_is_replayed() {
     // What else a recorder's table may have: names in quotes, and gaps.
     let table = "t,q_w,q_x,q_y,q_z,\"drag, N\",energy\n0,1,0,0,0,inf,NaN\n1,1,0,0,0,1e-3,2.5\n2,1,0,0,0,-inf,NaN\n";
     fs::write(folder.join("gaps.csv"), table).unwrap();
-    let output =
-        Command::new(PROGRAM).current_dir(&folder).args(["replay", "gaps.csv", "--out", "."]).output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    printed(&folder, &["replay", "gaps.csv", "--out", "."]);
     // NaN, 0 and NaN, of single precision.
     let energy = "{name: \"energy\", values: \"AADAfwAAAAAAAMB/\"}";
     assert!(fs::read_to_string(folder.join("gaps.html")).unwrap().contains(energy));

@@ -14,7 +14,7 @@ use liestep::prelude::*;
 use liestep::recording::{Csv, Recorder};
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::called::{PROGRAM, TOP, folder, printed, refused, rows, simulate, table};
+use crate::called::{PROGRAM, TOP, called, folder, printed, refused, rows, simulate, table};
 
 /// A step that is too large is found out while running: with the file, the time and the largest step.
 #[test]
@@ -32,6 +32,22 @@ fn a_step_that_is_too_large() {
     assert!(message.ends_with(", or `kinetic = \"cayley\"` of the body, which has no such limit\n"), "{message}");
 }
 
+/// The body of the top's file.
+fn body() -> PrincipalBody {
+    PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap() }
+}
+
+/// Its weight.
+fn gravity() -> Gravity {
+    Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() }
+}
+
+/// Its attitude and angular velocity at the start.
+fn start() -> (UnitQuaternion<f64>, Vector3<f64>) {
+    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 45.0 * (PI / 180.0));
+    (tilt, Vector3::new(0.0, 0.0, 60.0 * (6.0 * (PI / 180.0))))
+}
+
 /// The table of a file has the numbers, the signs and the digits of a program's.
 #[test]
 fn a_table_is_that_of_a_recorder() {
@@ -42,11 +58,9 @@ fn a_table_is_that_of_a_recorder() {
     printed(&folder, &["run", "top.toml", "--csv", "--out", "."]);
     let table = fs::read_to_string(folder.join("top.csv")).unwrap();
 
-    let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
-    let scene = PrincipalBody { J_d } + Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
-    let stepper = Stepper::new(scene, 10.0 * 1e-3).unwrap();
-    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 45.0 * (PI / 180.0));
-    let mut state = stepper.start(tilt, Vector3::new(0.0, 0.0, 60.0 * (6.0 * (PI / 180.0)))).unwrap();
+    let stepper = Stepper::new(body() + gravity(), 10.0 * 1e-3).unwrap();
+    let (attitude, velocity) = start();
+    let mut state = stepper.start(attitude, velocity).unwrap();
     let mut recorder = Recorder::new(&stepper, Csv::new(Vec::new()));
     stepper.observed(&mut state).every(7, |now| recorder.record(now)).steps(200).unwrap();
     recorder.record(&Moment::of_step(&stepper, &state)).unwrap();
@@ -130,30 +144,8 @@ fn assert_same_picture(made: &str, kept: &str, name: &str) {
     assert!(moved <= 2.0, "{name}: {moved}");
 }
 
-/// What a file's scene does is what the sum in a program does, bit for bit; and the units are those of SI.
-#[test]
-fn a_file_is_a_sum() {
-    let rows = rows(&folder("sum"), TOP);
-    let last = rows.last().unwrap();
-
-    let body = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
-    let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
-    let stepper = Stepper::new(
-        PrincipalBody { J_d: body } + gravity + Drag { c: 1e-3, J: NonstandardInertia::from(body).to_inertia() },
-        10.0 * 1e-3,
-    )
-    .unwrap();
-    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 45.0 * (PI / 180.0));
-    let mut state = stepper.start(tilt, Vector3::new(0.0, 0.0, 60.0 * (6.0 * (PI / 180.0)))).unwrap();
-    for _ in 0..200 {
-        stepper.step(&mut state).unwrap();
-    }
-    assert_eq!(rows.len(), 201);
-    assert_eq!(last[1..4], *stepper.velocity(&state).as_slice());
-    assert_eq!(last[7].to_bits(), stepper.energy(&state).to_bits());
-}
-
-/// All effects at once.
+/// All effects at once: what a file's scene does is what the sum in a program does, bit for bit, and the units are those
+/// of SI.
 #[test]
 fn a_file_may_have_every_effect() {
     let others = "[gravity_gradient]\nGM = 2\nr = 3\ndirection = [1, 0, 0]\n\
@@ -164,12 +156,10 @@ fn a_file_may_have_every_effect() {
                   [torque]\ntorque = [0.1, 0.2, -0.1]\n\
                   [thrust]\nat = [0.3, 0, 1]\nthrust = [0, 0.2, 0.1]\n[run]";
     let rows = rows(&folder("all"), &TOP.replace("[run]", others));
-    let last = rows.last().unwrap();
-
-    let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
-    let J = NonstandardInertia::from(J_d).to_inertia();
+    assert_eq!(rows.len(), 201);
+    let J = NonstandardInertia::from(body().J_d).to_inertia();
     // Effects are added in the order of the list, and then to the body.
-    let effects = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() }
+    let effects = gravity()
         + GravityGradient { GM: 2.0, r: 3.0, J, direction: Vector3::x() }
         + Dipole { moment: Vector3::new(0.0, 0.1, 1.0), field: Vector3::new(0.2, 0.0, 1.0) }
         + Spring { k: 3.0, length: 0.5, at: Vector3::z(), anchor: Vector3::new(1.0, 0.3, 0.5) }
@@ -178,14 +168,7 @@ fn a_file_may_have_every_effect() {
         + Torque { torque: Vector3::new(0.1, 0.2, -0.1) }
         + Thrust { at: Vector3::new(0.3, 0.0, 1.0), thrust: Vector3::new(0.0, 0.2, 0.1) }
         + MagneticDamping { k: 0.1, field: Vector3::new(0.0, 0.5, 1.0), J };
-    let stepper = Stepper::new(PrincipalBody { J_d } + effects, 10.0 * 1e-3).unwrap();
-    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 45.0 * (PI / 180.0));
-    let mut state = stepper.start(tilt, Vector3::new(0.0, 0.0, 60.0 * (6.0 * (PI / 180.0)))).unwrap();
-    for _ in 0..200 {
-        stepper.step(&mut state).unwrap();
-    }
-    assert_eq!(last[1..4], *stepper.velocity(&state).as_slice());
-    assert_eq!(last[7].to_bits(), stepper.energy(&state).to_bits());
+    same_as(&rows[200], Stepper::new(body() + effects, 10.0 * 1e-3), 0.0);
 }
 
 /// Each effect that the library exports has the table of its name in scene files, and each body its `kinetic`: as the
@@ -234,9 +217,8 @@ where
     S: liestep::mechanics::Effect<Scalar = f64, Group = SO3>,
     P: liestep::motion::Plan<S>,
 {
-    let stepper = stepper.unwrap();
-    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 45.0 * (PI / 180.0));
-    let mut state = stepper.start(tilt, Vector3::new(0.0, 0.0, 60.0 * (6.0 * (PI / 180.0)))).unwrap();
+    let (stepper, (attitude, velocity)) = (stepper.unwrap(), start());
+    let mut state = stepper.start(attitude, velocity).unwrap();
     stepper.run(&mut state, 200).unwrap();
     let (velocity, energy) = (stepper.velocity(&state), stepper.energy(&state));
     assert!((Vector3::new(row[1], row[2], row[3]) - velocity).norm() <= tolerance * velocity.norm(), "{velocity}");
@@ -247,7 +229,7 @@ where
 #[test]
 fn kinetic_terms_and_methods() {
     let J = Inertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
-    let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+    let gravity = gravity();
     let body = RigidBody { J_d: J.to_nonstandard() };
     let (full, h) = ("J = [[3, 0, 0], [0, 3, 0], [0, 0, 4]]\n", 10.0 * 1e-3);
     same_as(&last_row("full", full, ""), Stepper::new(body + gravity, h), 0.0);
@@ -381,8 +363,7 @@ fn sweeps() {
     // Points that stop have a row without numbers.
     let faster = "[sweep]\nstart.velocity = [[0, 0, 1], [0, 0, 1000]]\n[run]";
     fs::write(folder.join("faster.toml"), TOP.replace("[run]", faster)).unwrap();
-    let output =
-        Command::new(PROGRAM).current_dir(&folder).args(["sweep", "faster.toml", "--out", "."]).output().unwrap();
+    let output = called(&folder, &["sweep", "faster.toml", "--out", "."]);
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(3));
     assert!(message.starts_with("note: start.velocity = 0 0 1000 gave no row: faster.toml:22:8: stopped at t = 0 s: "));
@@ -398,12 +379,9 @@ fn a_file_may_ask_for_an_accuracy() {
     let rows = rows(&folder("asked"), &text);
     let last = rows.last().unwrap();
 
-    let body = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
-    let scene = PrincipalBody { J_d: body } + Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
-    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 45.0 * (PI / 180.0));
-    let velocity = Vector3::new(0.0, 0.0, 60.0 * (6.0 * (PI / 180.0)));
+    let (attitude, velocity) = start();
     let accuracy = Accuracy { tolerance: 1e-7, horizon: 2.0 };
-    let stepper = Stepper::for_accuracy(scene, accuracy, tilt, velocity).unwrap();
+    let stepper = Stepper::for_accuracy(body() + gravity(), accuracy, attitude, velocity).unwrap();
     let mut state = stepper.start();
     stepper.run(&mut state).unwrap();
     assert_eq!(rows.len() as u64, stepper.choice().steps + 1);

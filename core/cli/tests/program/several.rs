@@ -1,7 +1,6 @@
 //! Files of several bodies: what programs do, to the bit; springs, loops, and mistakes with their places.
 
 use std::fs;
-use std::process::Command;
 
 use liestep::groups::R3;
 use liestep::mechanics::Each;
@@ -11,7 +10,7 @@ use liestep::prelude::*;
 use liestep_scene::{BodySample, Sample, Scene, System};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
-use crate::called::{PROGRAM, TOP, folder, mistakes, printed, simulate};
+use crate::called::{TOP, folder, mistakes, printed, refuses, simulate, table};
 
 const HELD: &str = r#"title = "Two bodies that are held"
 
@@ -85,11 +84,10 @@ fn a_file_is_what_a_program_makes() {
     let folder = folder("held");
     fs::write(folder.join("held.toml"), HELD.replace("50 cm/s", "0.5 m/s")).unwrap();
     printed(&folder, &["run", "held.toml", "--csv", "--out", "."]);
-    let table = fs::read_to_string(folder.join("held.csv")).unwrap();
-    let rows: Vec<Vec<f64>> =
-        table.lines().skip(1).map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
+    let csv = fs::read_to_string(folder.join("held.csv")).unwrap();
+    let rows = table(&csv);
     assert_eq!(rows.len(), 401);
-    let names: Vec<_> = table.lines().next().unwrap().split(',').collect();
+    let names: Vec<_> = csv.lines().next().unwrap().split(',').collect();
     assert_eq!((names[4], names[10], names[14], names[24]), ("lower_x", "upper_q_z", "lower_q_z", "lower_moving_x"));
 
     let (g, up) = (9.81, Vector3::z());
@@ -301,12 +299,7 @@ fn what_files_of_several_bodies_are_not_for() {
     let folder = folder("several");
     fs::write(folder.join("held.toml"), HELD.replace("50 cm/s", "0.5 m/s")).unwrap();
     fs::write(folder.join("top.toml"), TOP).unwrap();
-    let refused = |arguments: &[&str], code: i32, message: &str| {
-        let output = Command::new(PROGRAM).current_dir(&folder).args(arguments).output().unwrap();
-        let text = String::from_utf8(output.stderr).unwrap();
-        assert!(text.starts_with("error: ") && text.contains(message), "{text}");
-        assert!(output.stdout.is_empty() && output.status.code() == Some(code), "{arguments:?}: {text}");
-    };
+    let refused = |arguments: &[&str], code, message| refuses(&folder, arguments, code, message);
     let one = "held.toml:7:1: the file has several bodies";
     refused(&["sweep", "held.toml"], 1, one);
     refused(&["ensemble", "held.toml"], 1, one);

@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 
 use expect_test::expect;
 
-use crate::called::{PROGRAM, TOP, folder, mistakes, printed, refused, rows, simulate};
+use crate::called::{PROGRAM, TOP, called, folder, mistakes, printed, refused, refuses, rows, simulate};
 
 /// A terminal isn't told to do anything, and the picture stays XML.
 #[test]
@@ -107,12 +107,7 @@ fn a_file_that_is_not_there() {
 fn command_lines() {
     let folder = folder("commands");
     fs::write(folder.join("top.toml"), TOP).unwrap();
-    let refused = |arguments: &[&str], code: i32, message: &str| {
-        let output = Command::new(PROGRAM).current_dir(&folder).args(arguments).output().unwrap();
-        let text = String::from_utf8(output.stderr).unwrap();
-        assert!(text.starts_with("error: ") && text.contains(message), "{text}");
-        assert!(output.stdout.is_empty() && output.status.code() == Some(code), "{arguments:?}: {text}");
-    };
+    let refused = |arguments: &[&str], code, message| refuses(&folder, arguments, code, message);
     refused(&["run"], 2, "required arguments were not provided");
     refused(&["run", "."], 1, ".: cannot be read");
     refused(&["run", "top.toml", "--out", "top.toml"], 4, "cannot write to top.toml");
@@ -139,10 +134,7 @@ fn command_lines() {
 fn a_full_disk() {
     let folder = folder("full");
     fs::write(folder.join("top.toml"), TOP).unwrap();
-    let table = folder.join("top.csv.part");
-    // What was there may be a file.
-    let _ = fs::remove_file(&table);
-    std::os::unix::fs::symlink("/dev/full", &table).unwrap();
+    std::os::unix::fs::symlink("/dev/full", folder.join("top.csv.part")).unwrap();
     let output = simulate(&folder, &["top.toml"]);
     let text = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(4), "{text}");
@@ -169,7 +161,6 @@ fn a_reader_that_goes_away() {
 #[test]
 fn a_killed_table_has_no_name() {
     let folder = folder("a_killed_table_has_no_name");
-    let _ = fs::remove_file(folder.join("top.csv"));
     fs::write(folder.join("top.toml"), TOP.replace("duration = 2", "duration = 1e6")).unwrap();
     let mut program = Command::new(PROGRAM);
     let mut program = program.current_dir(&folder).args(["run", "top.toml", "--csv", "--out", "."]).spawn().unwrap();
@@ -193,7 +184,7 @@ fn what_is_printed() {
     fs::write(folder.join("fast.toml"), TOP.replace("60 rpm", "60000 rpm")).unwrap();
     fs::write(folder.join("wrong.toml"), TOP.replace("[drag]", "[darg]")).unwrap();
     let files = ["check", "wrong.toml", "top.toml", "fast.toml"];
-    let output = Command::new(PROGRAM).current_dir(&folder).args(files).output().unwrap();
+    let output = called(&folder, &files);
     let (told, wrong) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
     assert_eq!((told.lines().count(), wrong.lines().count(), output.status.code()), (1, 2, Some(3)), "{wrong}");
     assert!(wrong.starts_with("error: wrong.toml:12:2: unknown field `darg`"), "{wrong}");
@@ -218,7 +209,7 @@ fn a_duration_is_a_whole_number_of_steps() {
         let text = TOP.replace("step = \"10 ms\"\nduration = 2\n", run);
         assert_ne!(text, TOP);
         fs::write(folder.join("top.toml"), text).unwrap();
-        let output = Command::new(PROGRAM).current_dir(&folder).args(["check", "top.toml"]).output().unwrap();
+        let output = called(&folder, &["check", "top.toml"]);
         (output.status.code(), String::from_utf8([output.stdout, output.stderr].concat()).unwrap())
     };
     let message = "error: top.toml:21:12: `duration` is 1 s, which isn't a whole number of steps of 0.3 s; the nearest is 0.9 s\n";
@@ -239,7 +230,7 @@ fn control_characters_in_mistakes_are_written_out() {
         assert_ne!(text, TOP, "{line}");
         fs::write(folder.join("top\u{1b}.toml"), text).unwrap();
         for command in ["check", "run"] {
-            let output = Command::new(PROGRAM).current_dir(&folder).args([command, "top\u{1b}.toml"]).output().unwrap();
+            let output = called(&folder, &[command, "top\u{1b}.toml"]);
             let message = String::from_utf8(output.stderr).unwrap();
             assert!(output.status.code() == Some(1) && message.contains("top\\u{1b}.toml:"), "{message}");
             assert!(message.chars().all(|letter| letter == '\n' || !letter.is_control()), "{message:?}");

@@ -6,41 +6,40 @@
 use liestep::effects::PrincipalBody;
 use liestep::mechanics::{Effect as _, Term as _};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-
-use crate::run::{Method, Sample, Stopped};
+use workbench::run::{Method, Sample, Stopped};
 
 /// Principal moments, kg m², and their inverses.
 #[derive(Clone, Copy)]
-pub struct Moments {
+pub(crate) struct Moments {
     moments: Vector3<f64>,
     inverses: Vector3<f64>,
 }
 
 impl Moments {
     /// The same body as the declared one.
-    pub fn of(body: &PrincipalBody) -> Self {
+    pub(crate) fn of(body: &PrincipalBody) -> Self {
         let moments = body.inertia(&body.advected()).diagonal();
         Self { moments, inverses: moments.map(f64::recip) }
     }
 
     /// `JΩ`
-    pub fn momentum(&self, rates: &Vector3<f64>) -> Vector3<f64> {
+    pub(crate) fn momentum(&self, rates: &Vector3<f64>) -> Vector3<f64> {
         self.moments.component_mul(rates)
     }
 
     /// `J⁻¹Π`
-    pub fn rates(&self, momentum: &Vector3<f64>) -> Vector3<f64> {
+    pub(crate) fn rates(&self, momentum: &Vector3<f64>) -> Vector3<f64> {
         self.inverses.component_mul(momentum)
     }
 }
 
 /// `Ω + h J⁻¹(JΩ × Ω)`: the torque of the old rates.
-pub fn explicit(body: &Moments, rates: &Vector3<f64>, h: f64) -> Vector3<f64> {
+pub(crate) fn explicit(body: &Moments, rates: &Vector3<f64>, h: f64) -> Vector3<f64> {
     rates + body.rates(&body.momentum(rates).cross(rates)) * h
 }
 
 /// One Newton step from the old rates towards implicit Euler, `J(Ω⁺ − Ω) + h Ω⁺ × JΩ⁺ = 0`.
-pub fn implicit(body: &Moments, rates: &Vector3<f64>, h: f64) -> Vector3<f64> {
+pub(crate) fn implicit(body: &Moments, rates: &Vector3<f64>, h: f64) -> Vector3<f64> {
     let momentum = body.momentum(rates);
     let j = Matrix3::from_diagonal(&body.moments);
     let jacobian = j + (rates.cross_matrix() * j - momentum.cross_matrix()) * h;
@@ -50,19 +49,19 @@ pub fn implicit(body: &Moments, rates: &Vector3<f64>, h: f64) -> Vector3<f64> {
 }
 
 /// The explicit update, with the momentum brought back to its length: energy may still drift, but not without bound.
-pub fn rescaled(body: &Moments, rates: &Vector3<f64>, h: f64) -> Vector3<f64> {
+pub(crate) fn rescaled(body: &Moments, rates: &Vector3<f64>, h: f64) -> Vector3<f64> {
     let next = explicit(body, rates, h);
     next * (body.momentum(rates).norm() / body.momentum(&next).norm())
 }
 
 /// A body with an update for its rates.
 #[derive(Clone)]
-pub struct Engine<U> {
-    pub body: Moments,
-    pub h: f64,
-    pub attitude: UnitQuaternion<f64>,
-    pub rates: Vector3<f64>,
-    pub update: U,
+pub(crate) struct Engine<U> {
+    pub(crate) body: Moments,
+    pub(crate) h: f64,
+    pub(crate) attitude: UnitQuaternion<f64>,
+    pub(crate) rates: Vector3<f64>,
+    pub(crate) update: U,
 }
 
 impl<U: Fn(&Moments, &Vector3<f64>, f64) -> Vector3<f64> + Clone> Method for Engine<U> {

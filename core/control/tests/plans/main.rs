@@ -4,14 +4,17 @@
 
 use std::f64::consts::{PI, TAU};
 
-use liestep::effects::{Gravity, RigidBody};
+use liestep::effects::RigidBody;
 use liestep::gradients::Input;
-use liestep::groups::LieGroup as _;
+use liestep::groups::{LieGroup as _, SE3};
 use liestep::laws::samples::Random;
 use liestep::mechanics::{Sum, Term as _};
-use liestep::{NonstandardInertia, SO3, StepError, Stepper, force};
+use liestep::{NonstandardInertia, SO3, StepError, Stepper, force, lagrangian};
 use liestep_control::{Control, ControlError, ControlPlan, Cost, Target, Verdict};
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Matrix4, SVector, UnitQuaternion, Vector3, Vector4};
+
+mod estimates;
+mod kept;
 
 type Body = Stepper<RigidBody>;
 /// The shortest.
@@ -174,6 +177,37 @@ fn random_slews_converge() {
     assert!(most > 2, "the tasks are too easy");
 }
 
+/// Near a plan each iteration doubles the digits, as second derivatives that are right make it: those of steps from turning
+/// to turning, by a torque and by a duration that is free, and those of what is kept.
+#[test]
+fn near_a_plan_the_digits_double() {
+    let residuals = |task: Control<'_, RigidBody, liestep::motion::Declared<RigidBody>>| {
+        let shown = std::cell::RefCell::new(Vec::new());
+        let note = |_: usize, residual: &liestep_control::Residual| {
+            shown.borrow_mut().push(residual.largest());
+            true
+        };
+        let plan = task.progress(note).solve().expect("a task");
+        assert_eq!(plan.verdict, Verdict::Converged, "{:?}", plan.residual);
+        shown.into_inner()
+    };
+    let stepper = body([1.0, 2.0, 2.5], 0.1);
+    let start = stepper.start(turned([0.3, -0.2, 0.5]), Vector3::new(1.0, -0.8, 0.6)).expect("a start");
+    let target = At { attitude: Some(turned([-0.9, 1.1, 0.4])), momentum: Some(Vector3::new(-0.5, 0.9, 1.2)) };
+    let task = || Control::new(&stepper, start, 20, target);
+    let free = task().minimise(Cost { time: 5.0, effort: 1.0 });
+    for (name, task) in [("torque", task()), ("duration", free)] {
+        let residuals = residuals(task);
+        let near = residuals.windows(2).filter(|pair| pair[0] < 1e-2 && pair[0] > 1e-5);
+        let mut count = 0;
+        for pair in near {
+            count += 1;
+            assert!(pair[1] < 1e-10 + 30.0 * pair[0] * pair[0], "{name}: {residuals:?}");
+        }
+        assert!(count > 0, "{name}: {residuals:?}");
+    }
+}
+
 /// A half turn has two ways that cost as much: each is found from its side.
 #[test]
 fn both_ways_of_a_half_turn() {
@@ -305,22 +339,28 @@ fn what_a_step_is_given_is_chosen() {
     assert!((given.0[0] - 0.75).abs() < 1e-9, "{given:?}");
 }
 
-/// A top in gravity is brought to stand on its tip.
+/// A body with its place.
+#[lagrangian(group = SE3, gradients, l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h))]
+#[derive(Clone, Copy, Debug)]
+struct Flyer {
+    J: Matrix4<f64>,
+}
+
+/// Straight on, by `½∫f² = 6 m² L²/T³`, and with a turn.
 #[test]
-fn a_top_is_swung_up_with_bounded_torque() {
-    let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.2, 1.2, 0.3)).expect("a body");
-    let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z() * 0.5, up: Vector3::z() };
-    let stepper = Stepper::new(RigidBody { J_d } + gravity, 0.02).expect("a stepper");
-    let hanging = turned([PI - 0.05, 0.0, 0.0]);
-    let start = stepper.start(hanging, Vector3::zeros()).expect("a start");
-    // Less than the weight's 4.9 N m on the horizontal.
-    let plan = Control::new(&stepper, start, 200, Target::rest(SO3::identity()))
-        .bounds(|_, _| (-3.0, 3.0))
-        .guess(|step, axis| if axis == 0 { (0.03 * step as f64).sin() } else { 0.0 })
-        .solve()
-        .expect("a task");
-    assert_eq!(plan.verdict, Verdict::Converged, "{:?} after {}", plan.residual, plan.iterations);
-    let last = plan.states.last().expect("states");
-    assert!((last.attitude().matrix() - SO3::<f64>::identity().matrix()).amax() < 1e-9);
-    assert!(last.momentum().norm() < 1e-9);
+fn a_body_flies() {
+    let J = Matrix4::from_diagonal(&Vector4::new(2.0, 1.5, 1.0, 3.0));
+    let stepper = Stepper::new(Flyer { J }, 0.02).expect("a stepper");
+    let start = stepper.start(SE3::identity(), SVector::<f64, 6>::zeros()).expect("a start");
+    let cost = |angles: Vector3<f64>, place: Vector3<f64>| {
+        let end = SE3::from_rotation_and_translation(UnitQuaternion::from_scaled_axis(angles), place);
+        let plan = Control::new(&stepper, start, 100, Target::rest(end)).solve().expect("a task");
+        assert_eq!(plan.verdict, Verdict::Converged, "{:?}", plan.residual);
+        let last = plan.states.last().expect("states").attitude();
+        assert!((last.matrix() - end.matrix()).amax() < 1e-9);
+        plan.cost
+    };
+    let straight = cost(Vector3::zeros(), Vector3::new(0.0, 1.5, 0.0));
+    assert!((straight / (6.0 * 9.0 * 2.25 / 8.0) - 1.0).abs() < 2e-4, "{straight}");
+    assert!(cost(Vector3::new(0.8, -0.5, 1.0), Vector3::new(0.5, 1.5, -1.0)) > straight);
 }

@@ -1,0 +1,370 @@
+//! What a motion was, by its readings.
+
+use liestep::gradients::{Input, InputOf, Linearisable};
+use liestep::groups::{ExponentialRetraction, LieGroup as _, Retraction};
+use liestep::mechanics::{Group, SecondDerivatives, Term};
+use liestep::motion::{Motion, Plan, StateOf, Stepper};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+use crate::model::{Model, SMALL, by_displacement, displaced, flat};
+use crate::riccati::{End, Stage, Value, add_square, of_state};
+use crate::verdict::{ControlError, Verdict};
+
+/// The eigenvalue, in the largest, below which readings don't show a direction: some of what rounding leaves of zero.
+const UNSEEN: f64 = 1e-13;
+/// The damping, in the readings' own second derivatives, at which a step is given up.
+const MOST_DAMPING: f64 = 1e8;
+
+/// What is read of a state, by the number of steps before it and what is constant.
+type Readings<'a, S> = dyn Fn(usize, &Motion<Group<S>, <S as Term>::Advected>, &[f64]) -> Vec<f64> + 'a;
+/// The stepper by what is constant.
+type StepperOf<'a, S, P> = dyn Fn(&[f64]) -> Option<Stepper<S, P>> + 'a;
+
+#[doc = include_str!("estimate.md")]
+pub struct Estimate<'a, S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
+    stepper: &'a Stepper<S, P>,
+    start: StateOf<S, P>,
+    steps: usize,
+    readings: Box<Readings<'a, S>>,
+    constants: Vec<f64>,
+    scales: Vec<f64>,
+    stepper_of: Option<Box<StepperOf<'a, S, P>>>,
+    like: InputOf<S>,
+    places: Vec<usize>,
+    deviations: Vec<f64>,
+    known: DMatrix<f64>,
+    tolerance: f64,
+    most: usize,
+}
+
+/// The motion that suits the readings best.
+#[derive(Clone, Debug)]
+pub struct Fit<S: SecondDerivatives, P: Plan<S>> {
+    /// The stepper of what is constant.
+    pub stepper: Stepper<S, P>,
+    /// The states, one more than there are steps.
+    pub states: Vec<StateOf<S, P>>,
+    /// What each step was given.
+    pub inputs: Vec<InputOf<S>>,
+    /// What is constant.
+    pub constants: Vec<f64>,
+    /// Of displacements of the start, of its momentum and of what is constant; nothing along what the readings don't show.
+    pub covariance: DMatrix<f64>,
+    /// The sum of all squares, in variances.
+    pub squares: f64,
+    /// The length of the last step, in standard deviations.
+    pub step: f64,
+    /// How many iterations there were.
+    pub iterations: usize,
+    /// Why the search stopped.
+    pub verdict: Verdict,
+}
+
+/// A motion, and how far it is from the readings.
+struct Trial<S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
+    model: Model<S, P>,
+    states: Vec<StateOf<S, P>>,
+    inputs: Vec<DVector<f64>>,
+    constants: DVector<f64>,
+    /// By state.
+    readings: Vec<DVector<f64>>,
+    /// How far the start and what is constant are from the first guess.
+    away: DVector<f64>,
+    squares: f64,
+}
+
+impl<'a, S, P> Estimate<'a, S, P>
+where
+    S: SecondDerivatives<Scalar = f64> + Clone,
+    P: Linearisable<S> + Clone,
+    ExponentialRetraction: Retraction<Group<S>>,
+{
+    /// A motion of this number of steps, from near this state, by its readings: for the state after each number of steps, from
+    /// zero on, what is read of it less what was read, in standard deviations. They are shown what is constant, too.
+    ///
+    /// Their derivatives are differences of fourth order.
+    #[must_use]
+    pub fn new(
+        stepper: &'a Stepper<S, P>,
+        start: StateOf<S, P>,
+        steps: usize,
+        readings: impl Fn(usize, &Motion<Group<S>, S::Advected>, &[f64]) -> Vec<f64> + 'a,
+    ) -> Self {
+        let states = 2 * Group::<S>::DIMENSION;
+        Self {
+            stepper,
+            start,
+            steps,
+            readings: Box::new(readings),
+            constants: Vec::new(),
+            scales: Vec::new(),
+            stepper_of: None,
+            like: Input::Free,
+            places: Vec::new(),
+            deviations: Vec::new(),
+            known: DMatrix::zeros(states, states),
+            tolerance: 1e-8,
+            most: 100,
+        }
+    }
+
+    /// Unknown numbers that are constant: first guesses, and changes of them that make a difference.
+    #[must_use]
+    pub fn unknowns(self, guesses: Vec<f64>, scales: Vec<f64>) -> Self {
+        let states = 2 * Group::<S>::DIMENSION + guesses.len();
+        Self { constants: guesses, scales, known: DMatrix::zeros(states, states), ..self }
+    }
+
+    /// The stepper by these numbers, of the same step; without it they are in the readings alone.
+    #[must_use]
+    pub fn steppers(self, of: impl Fn(&[f64]) -> Option<Stepper<S, P>> + 'a) -> Self {
+        Self { stepper_of: Some(Box::new(of)), ..self }
+    }
+
+    /// What each step was given, unknown too: as [`Control::input`](crate::Control::input), about the scalars of `like` with
+    /// these standard deviations, one for each place.
+    #[must_use]
+    pub fn inputs(self, like: InputOf<S>, places: Vec<usize>, deviations: Vec<f64>) -> Self {
+        Self { like, places, deviations, ..self }
+    }
+
+    /// What is known beforehand: the inverse of the covariance about the first guess, in the order of
+    /// [`Fit::covariance`]. It is asked for behind [`unknowns`](Self::unknowns).
+    #[must_use]
+    pub fn known(self, information: DMatrix<f64>) -> Self {
+        Self { known: information, ..self }
+    }
+
+    /// The longest last step, in standard deviations, and the most iterations: `1e-8` and 100 unless said otherwise.
+    #[must_use]
+    pub fn until(self, tolerance: f64, most: usize) -> Self {
+        Self { tolerance, most, ..self }
+    }
+
+    /// Searches the least squares. Whether they are, the [verdict](Fit::verdict) says.
+    ///
+    /// # Errors
+    ///
+    /// [`ControlError`] where the search can't be begun.
+    pub fn solve(&self) -> Result<Fit<S, P>, ControlError> {
+        self.stepper.linearised()?;
+        let (scalars, states) = (self.like.scalars::<f64>().len(), 2 * Group::<S>::DIMENSION + self.constants.len());
+        let is_size = |size: &f64| *size > 0.0 && size.is_finite();
+        let are_places = self.places.iter().all(|place| *place < scalars) && self.places.len() == self.deviations.len();
+        let checks = [
+            ("number of steps", self.steps > 0),
+            ("unknown", self.constants.len() == self.scales.len() && self.scales.iter().all(is_size)),
+            ("input", are_places && self.deviations.iter().all(is_size)),
+            ("prior knowledge", self.known.shape() == (states, states) && self.known.iter().all(|x| x.is_finite())),
+        ];
+        if let Some((what, _)) = checks.iter().find(|(_, is_right)| !is_right) {
+            return Err(ControlError::Unusable(what));
+        }
+        let inputs = vec![self.given(); self.steps];
+        let mut trial = self
+            .trial(self.start, inputs, DVector::from_column_slice(&self.constants))
+            .map_err(|(step, error)| ControlError::Step(step, error))?
+            .ok_or(ControlError::Unusable("reading"))?;
+        let (mut damping, mut iterations) = (0.0, 0);
+        let (verdict, covariance, step) = loop {
+            let Some((stages, value)) = self.value(&trial) else { return Err(ControlError::Unusable("derivative")) };
+            let seen = Seen::new(&value);
+            let step = seen.decrease(&value).sqrt();
+            if step <= self.tolerance {
+                let verdict = seen.unseen.clone().map_or(Verdict::Converged, |direction| Verdict::Unseen { direction });
+                break (verdict, seen.covariance(), step);
+            }
+            if iterations == self.most {
+                break (Verdict::Exhausted, seen.covariance(), step);
+            }
+            iterations += 1;
+            match self.improve(&trial, &stages, (&value, &seen), &mut damping) {
+                Some(better) => trial = better,
+                None => break (Verdict::Stalled(None), seen.covariance(), step),
+            }
+        };
+        let Trial { model, states, inputs, constants, squares, .. } = trial;
+        let inputs = inputs.iter().map(|chosen| model.input(chosen.as_slice())).collect();
+        let (stepper, constants) = (model.stepper, constants.as_slice().to_vec());
+        Ok(Fit { stepper, states, inputs, constants, covariance, squares, step, iterations, verdict })
+    }
+
+    /// What an input is about.
+    fn given(&self) -> DVector<f64> {
+        let scalars = self.like.scalars::<f64>();
+        DVector::from_iterator(self.places.len(), self.places.iter().map(|place| scalars[*place]))
+    }
+
+    fn model(&self, constants: &DVector<f64>) -> Option<Model<S, P>> {
+        let (mut stepper, mut beside) = (self.stepper.clone(), Vec::new());
+        if let Some(of) = &self.stepper_of {
+            stepper = of(constants.as_slice())?;
+            for (k, scale) in self.scales.iter().enumerate() {
+                let changed = |by: f64| {
+                    let mut constants = constants.clone();
+                    constants[k] += by;
+                    of(constants.as_slice())
+                };
+                let small = SMALL * scale;
+                beside.push((small, [changed(small)?, changed(-small)?]));
+            }
+        }
+        #[allow(clippy::cast_precision_loss)] // exact up to 2⁵³
+        let duration = stepper.step_size() * self.steps as f64;
+        let (like, places) = (self.like, self.places.clone());
+        Some(Model { duration, stepper, constants: constants.len(), beside, like, places })
+    }
+
+    /// `None` where something isn't known from there.
+    fn trial(
+        &self,
+        start: StateOf<S, P>,
+        inputs: Vec<DVector<f64>>,
+        constants: DVector<f64>,
+    ) -> Result<Option<Trial<S, P>>, (usize, liestep::StepError)> {
+        let Some(model) = self.model(&constants) else { return Ok(None) };
+        let states = model.run(&start, &inputs)?;
+        let read = |(step, state): (usize, &StateOf<S, P>)| {
+            DVector::from_vec((self.readings)(step, state, constants.as_slice()))
+        };
+        let readings: Vec<_> = states.iter().enumerate().map(read).collect();
+        let turn = self.start.attitude().inverse().compose(&start.attitude());
+        let Some(turn) = ExponentialRetraction::local_coordinates(&turn) else { return Ok(None) };
+        let away = flat([&turn, &(start.momentum() - self.start.momentum())]);
+        let away = DVector::from_iterator(
+            model.states(),
+            away.iter().copied().chain(constants.iter().zip(&self.constants).map(|(now, guess)| now - guess)),
+        );
+        let given = self.given();
+        let of_inputs = inputs.iter().map(|input| (input - &given).component_div(&self.deviations()).norm_squared());
+        let squares =
+            readings.iter().map(DVector::norm_squared).chain(of_inputs).sum::<f64>() + away.dot(&(&self.known * &away));
+        Ok(squares.is_finite().then(|| Trial { model, states, inputs, constants, readings, away, squares }))
+    }
+
+    fn deviations(&self) -> DVector<f64> {
+        DVector::from_column_slice(&self.deviations)
+    }
+
+    /// The programme of Gauss and Newton, and its least cost by the start.
+    fn value(&self, trial: &Trial<S, P>) -> Option<(Vec<Stage>, Value)> {
+        let Trial { model, states, inputs, constants, readings, away, .. } = trial;
+        let (count, deviations, given) = (model.states(), self.deviations(), self.given());
+        let stage = |(state, input): (&StateOf<S, P>, &DVector<f64>)| {
+            let mut stage = model.blocks(state, input).ok()?;
+            let by_input = deviations.map(|deviation| deviation.powi(-2));
+            stage.input_gradient = (input - &given).component_mul(&by_input);
+            stage.hessian.view_mut((count, count), (input.len(), input.len())).set_diagonal(&by_input);
+            Some(stage)
+        };
+        let mut stages = states.iter().zip(inputs).map(stage).collect::<Option<Vec<_>>>()?;
+        let none = DVector::zeros(0);
+        let mut end = End {
+            by_state: DMatrix::zeros(0, count),
+            miss: none.clone(),
+            multipliers: none,
+            hessian: DMatrix::zeros(count, count),
+            gradient: DVector::zeros(count),
+        };
+        for (step, (state, reading)) in states.iter().zip(readings).enumerate() {
+            let values = |state: &StateOf<S, P>, change: &[f64]| {
+                let constants: Vec<f64> = constants.iter().zip(change).map(|(now, change)| now + change).collect();
+                (self.readings)(step, state, &constants)
+            };
+            let slopes = model.slopes(state, &stages[step.min(self.steps - 1)], &self.scales, values)?;
+            let (hessian, gradient) = of_state(&mut stages, &mut end, step);
+            for (slope, reading) in slopes.row_iter().zip(reading.iter()) {
+                let slope = slope.transpose();
+                add_square(hessian, &slope, 1.0);
+                gradient.axpy(*reading, &slope, 1.0);
+            }
+        }
+        let dimension = Group::<S>::DIMENSION;
+        let turn = self.start.attitude().inverse().compose(&states[0].attitude());
+        let mut known = DMatrix::identity(count, count);
+        known.view_mut((0, 0), (dimension, dimension)).copy_from(&by_displacement::<Group<S>>(&turn)?);
+        let (hessian, gradient) = of_state(&mut stages, &mut end, 0);
+        let mut hessian = hessian.view_mut((0, 0), (count, count));
+        hessian += known.tr_mul(&(&self.known * &known));
+        *gradient += known.tr_mul(&(&self.known * away));
+        let value = Value::new(&stages, &end)?;
+        Some((stages, value))
+    }
+
+    /// A motion with smaller squares: the longest step of Levenberg's and Marquardt's that leads to one.
+    fn improve(
+        &self,
+        trial: &Trial<S, P>,
+        stages: &[Stage],
+        (value, seen): (&Value, &Seen),
+        damping: &mut f64,
+    ) -> Option<Trial<S, P>> {
+        // Where no digit of the squares is left to be better, the step is taken as it is.
+        let rounding = 1e-13 * (1.0 + trial.squares);
+        while *damping < MOST_DAMPING {
+            let solution = value.forwards(stages, seen.step(value, *damping), DVector::zeros(0));
+            let change = &solution.states[0];
+            let inputs = trial.inputs.iter().zip(&solution.inputs).map(|(now, change)| now + change).collect();
+            let constants = &trial.constants + change.rows(change.len() - trial.constants.len(), trial.constants.len());
+            let start = displaced(&trial.model.stepper, &trial.states[0], change);
+            let better = start.and_then(|start| self.trial(start, inputs, constants).ok().flatten());
+            if let Some(better) = better.filter(|better| better.squares <= trial.squares + rounding) {
+                *damping = if *damping < 1e-6 { 0.0 } else { 0.1 * *damping };
+                return Some(better);
+            }
+            *damping = (10.0 * *damping).max(1e-3);
+        }
+        None
+    }
+}
+
+/// The directions of the start and of what is constant, each with what the readings show of it.
+struct Seen {
+    /// The lengths that make the second derivatives along each coordinate one.
+    lengths: DVector<f64>,
+    /// Of the second derivatives in these lengths: eigenvalues, zero where nothing is seen, and eigenvectors.
+    squares: SymmetricEigen<f64, nalgebra::Dyn>,
+    /// The direction that is seen least, where it isn't seen.
+    unseen: Option<Vec<f64>>,
+}
+
+impl Seen {
+    fn new(value: &Value) -> Self {
+        let lengths = value.square.diagonal().map(|entry| if entry > 0.0 { entry.sqrt().recip() } else { 1.0 });
+        let scaled =
+            DMatrix::from_fn(lengths.len(), lengths.len(), |i, j| value.square[(i, j)] * lengths[i] * lengths[j]);
+        let mut squares = scaled.symmetric_eigen();
+        let (least, most) = (squares.eigenvalues.argmin(), squares.eigenvalues.max());
+        let is_unseen = |entry: f64| entry <= UNSEEN * most;
+        let direction = || squares.eigenvectors.column(least.0).component_mul(&lengths).normalize().as_slice().to_vec();
+        let unseen = is_unseen(least.1).then(direction);
+        squares.eigenvalues.iter_mut().filter(|entry| is_unseen(**entry)).for_each(|entry| *entry = 0.0);
+        Self { lengths, squares, unseen }
+    }
+
+    /// Sums over what is seen: the gradient's components along the directions, and their second derivatives.
+    fn parts<'s>(&'s self, value: &'s Value) -> impl Iterator<Item = (f64, f64, DVector<f64>)> + 's {
+        let gradient = value.slopes.column(0).component_mul(&self.lengths);
+        let directions = self.squares.eigenvectors.column_iter().zip(self.squares.eigenvalues.iter());
+        directions
+            .filter(|(_, square)| **square > 0.0)
+            .map(move |(direction, square)| (direction.dot(&gradient), *square, direction.component_mul(&self.lengths)))
+    }
+
+    /// By which the squares are to fall in a whole step.
+    fn decrease(&self, value: &Value) -> f64 {
+        self.parts(value).map(|(slope, square, _)| slope * slope / square).sum()
+    }
+
+    fn step(&self, value: &Value, damping: f64) -> DVector<f64> {
+        let zero = DVector::zeros(self.lengths.len());
+        self.parts(value).fold(zero, |sum, (slope, square, direction)| sum - direction * (slope / (square + damping)))
+    }
+
+    fn covariance(&self) -> DMatrix<f64> {
+        let inverses = self.squares.eigenvalues.map(|square| if square > 0.0 { square.recip() } else { 0.0 });
+        let scaled =
+            &self.squares.eigenvectors * DMatrix::from_diagonal(&inverses) * self.squares.eigenvectors.transpose();
+        DMatrix::from_fn(scaled.nrows(), scaled.ncols(), |i, j| scaled[(i, j)] * self.lengths[i] * self.lengths[j])
+    }
+}
