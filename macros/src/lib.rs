@@ -105,8 +105,8 @@ use liestep_derivation::Role;
 /// `given(…)` names, a scalar, a vector or a matrix that the group doesn't move.
 ///
 /// As `h → 0`, with `F = exp(hξ̂)`, a Lagrangian goes like `h`: a kinetic part is a square of `F - I` over `h`, and a
-/// potential has a factor `h`. A term that goes otherwise is an error, as is one that is the same for all `F`, and one that
-/// isn't smooth at `F = I`. An inertia may depend on what is advected. A correction that vanishes with a higher
+/// potential has a factor `h`. A term that goes otherwise is an error, as is one that isn't smooth at `F = I`. A term in
+/// neither `F` nor what is advected, such as an energy at rest, changes no equation. An inertia may depend on what is advected. A correction that vanishes with a higher
 /// power says so by `h.powi(n)`: `h.powi(3) * w.dot(&rho).powi(2)`.
 ///
 /// A Lagrangian without a kinetic part, like a potential, can't move by itself, but adds to one that can:

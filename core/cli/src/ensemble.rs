@@ -7,7 +7,9 @@ use std::sync::Mutex;
 use clap::ArgMatches;
 use liestep::SO3;
 use liestep::motion::{Integrator, Moment};
-use liestep_ensemble::{Ensemble, Failure, Local, Member, MemberFailure, Reduction, Report, Section, Store, Summary};
+use liestep_ensemble::{
+    Engine as _, Ensemble, Failure, Local, Member, MemberFailure, Reduction, Report, Section, Store, Summary,
+};
 use liestep_plot::output::Output;
 use liestep_scene::{Column, MemberEvent, Mistake, SceneEnsemble, SceneFile, Spread};
 
@@ -30,7 +32,8 @@ pub(crate) fn ensemble(given: &ArgMatches) -> Result<(), ProgramFailure> {
     let (mut failed, mut missing) = (0, 0);
     for (path, scene) in paths.iter().zip(&scenes) {
         let Some(drawn) = scene.ensemble() else { continue };
-        let report = made(path, scene, drawn, &Local::threads(threads).share(share, shares), &output)?;
+        let local = Local::threads(threads).share(share, shares);
+        let report = made(path, scene, drawn, (&local, shares > 1), &output)?;
         failed += report.failed;
         missing += report.missing;
     }
@@ -40,12 +43,13 @@ pub(crate) fn ensemble(given: &ArgMatches) -> Result<(), ProgramFailure> {
     if failed == 0 { Ok(()) } else { Err(ProgramFailure::Runs(format!("{failed} members weren't finished"))) }
 }
 
-/// Makes what is missing in the folder of a file's shards, and prints what is there then.
+/// Makes what is missing in the folder of a file's chunks, and prints what is there then. A share reads no rows but its own:
+/// of a thousand shares each would read the results of all.
 fn made(
     path: &Path,
     scene: &SceneFile,
     drawn: &SceneEnsemble,
-    local: &Local<'_>,
+    local: (&Local<'_>, bool),
     output: &Output,
 ) -> Result<Report, ProgramFailure> {
     let steps = scene.steps().unwrap_or_default();
@@ -75,7 +79,7 @@ fn finished<M: Integrator<Group = SO3> + 'static>(
     scene: &SceneFile,
     drawn: &SceneEnsemble,
     members: Ensemble<M>,
-    local: &Local<'_>,
+    (local, is_share): (&Local<'_>, bool),
     output: &Output,
 ) -> Result<Report, ProgramFailure> {
     let cannot = |error: &dyn std::fmt::Display| ProgramFailure::Output(format!("{}: {error}", path.display()));
@@ -95,13 +99,14 @@ fn finished<M: Integrator<Group = SO3> + 'static>(
         eprintln!("note: {fault}; it was made anew");
     }
     let mut tally = Tally::of(scene.events().count());
-    for shard in store.shards(plan.fingerprint()).map_err(|error| cannot(&error))? {
-        tally.add(shard.map_err(|fault| cannot(&fault))?);
+    let files = store.files().map_err(|error| cannot(&error))?;
+    for (_, path) in files.iter().filter(|(chunk, _)| local.has(*chunk)) {
+        tally.add(Store::read(path).map_err(|fault| cannot(&fault))?);
     }
     for MemberFailure { member, steps, failure } in &tally.failures {
         eprintln!("note: member {member} failed after {steps} steps: {failure}");
     }
-    print(&told_of(scene, drawn, (&report, &tally), &folder.display().to_string()))?;
+    print(&told_of(scene, drawn, (&report, &tally), (is_share, &folder.display().to_string())))?;
     Ok(report)
 }
 
@@ -178,10 +183,17 @@ fn columns(scene: &SceneFile) -> impl Iterator<Item = (Column, usize, &'static s
     scene.columns().iter().copied().flat_map(numbers)
 }
 
-fn told_of(scene: &SceneFile, drawn: &SceneEnsemble, (report, tally): (&Report, &Tally), folder: &str) -> String {
-    let mut text =
-        format!("{}\n  {} members drawn by the seed {}: {tally}\n", scene.title(), drawn.members, drawn.seed);
-    if report.missing == 0 && report.finished > 0 {
+fn told_of(
+    scene: &SceneFile,
+    drawn: &SceneEnsemble,
+    (report, tally): (&Report, &Tally),
+    (is_share, folder): (bool, &str),
+) -> String {
+    let of_share = if is_share { ", in this share" } else { "" };
+    let SceneEnsemble { members, seed, .. } = drawn;
+    let mut text = format!("{}\n  {members} members drawn by the seed {seed}{of_share}: {tally}\n", scene.title());
+    let is_whole = report.missing == 0 && !is_share;
+    if is_whole && report.finished > 0 {
         let _ =
             writeln!(text, "  {:<20}{:>16}{:>16}{:>16}{:>16}", "at the end", "mean", "deviation", "least", "largest");
         for (_, _, name) in columns(scene) {
@@ -192,10 +204,13 @@ fn told_of(scene: &SceneFile, drawn: &SceneEnsemble, (report, tally): (&Report, 
             }
         }
     }
-    if report.missing == 0 {
+    if is_whole {
         text.extend(scene.events().zip(&tally.events).map(|(name, event)| tally.of_event(name, event)));
     }
     let _ =
         writeln!(text, "Written to {folder}: {} chunks, {} of them now", report.chunks - report.missing, report.made);
+    if is_share && report.missing == 0 {
+        text += "All chunks are there: without `--shard` the whole ensemble is told of.\n";
+    }
     text
 }

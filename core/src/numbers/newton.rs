@@ -9,6 +9,12 @@ const MOST_ITERATIONS: u32 = 50;
 const MOST_HALVINGS: u32 = 20;
 /// What rounding leaves of the equation, in units of the scalar's epsilon and of the size of its terms.
 const ROUNDINGS: f64 = 1e4;
+/// Where the derivative is large, the rounding of the solution itself leaves more of the equation than that. It is solved
+/// then, too, if the next step is below this many roundings of the solution.
+const ROUNDINGS_OF_SOLUTION: f64 = 4.0;
+/// As far as that is believed: this many times what rounding leaves elsewhere. A derivative that has no bound makes steps
+/// short wherever the equation is missed.
+const AT_MOST: f64 = 1e4;
 
 /// Where [`newton_halving`] ends; of several lanes each goes as it would alone.
 pub(crate) struct NewtonEnd<T: Real, V> {
@@ -73,13 +79,11 @@ pub(crate) fn newton_halving<T: Real, V: Coordinates<T>>(
         }
     }
     let residual = defect.dot(&defect);
+    let step = V::solve(&derivative_of(&solution), &defect).0;
+    let rounding = T::simd_default_epsilon() * real(ROUNDINGS_OF_SOLUTION);
+    let is_rounded = step.dot(&step).simd_le(solution.dot(&solution) * rounding * rounding);
+    let is_settled = residual.simd_le(bound) | (is_rounded & residual.simd_le(bound * real(AT_MOST * AT_MOST)));
     let sign = |solution: &V| V::least_pivot(&derivative_of(solution)).0;
     let is_lost = sign(&zero).simd_gt(real(0.0)) & sign(&solution).simd_le(real(0.0));
-    NewtonEnd {
-        solution,
-        is_settled: residual.simd_le(bound),
-        is_regular: !is_lost,
-        iterations,
-        residual: (residual / terms).simd_sqrt(),
-    }
+    NewtonEnd { solution, is_settled, is_regular: !is_lost, iterations, residual: (residual / terms).simd_sqrt() }
 }

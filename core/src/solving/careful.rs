@@ -6,7 +6,7 @@
 use core::marker::PhantomData;
 
 use super::iteration::{
-    Iteration, LONGEST_DAMPED, Lanes, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, Root, System, is_positive,
+    Iteration, LONGEST_DAMPED, Lanes, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, MOST_HALVINGS, Root, System, is_positive,
 };
 use super::problem::{Problem, newton_system, step_terms};
 use crate::error::StepError;
@@ -140,9 +140,14 @@ impl<G: LieGroup, R: Retraction<G>> CarefulSolve<'_, G, R> {
         })
     }
 
-    /// Newton's iteration from one guess, refused where it settles on another branch.
+    /// Newton's iteration from one guess, refused where it settles on another branch; with shortened steps where it leaves
+    /// what the Lagrangian is defined on.
     fn attempt(&self, guess: &G::Vector) -> Result<Root<G>, StepError> {
-        let (lanes, iterations) = self.iterate(Lanes::starting_at(guess));
+        let (mut lanes, mut iterations) = self.iterate(Lanes::starting_at(guess));
+        if !lanes.half.is_finite() {
+            let accepted = self.accepted(&lanes);
+            (lanes, iterations) = self.iterate_damped(lanes.keeping(accepted, &G::Vector::zero()));
+        }
         self.conclude(&lanes, iterations)
     }
 
@@ -152,13 +157,24 @@ impl<G: LieGroup, R: Retraction<G>> CarefulSolve<'_, G, R> {
         (lanes, made.unwrap_or(MAX_ITERATIONS))
     }
 
-    /// As [`iterate`](Self::iterate), with no update longer than [`LONGEST_DAMPED`].
+    /// As [`iterate`](Self::iterate), with no update longer than [`LONGEST_DAMPED`], and with half of an update as long as
+    /// the whole of it leaves what the Lagrangian is defined on, such as velocities below that of light.
     fn iterate_damped(&self, mut lanes: Lanes<G>) -> (Lanes<G>, u32) {
         let made = lanes.iterate(MAX_DAMPED_ITERATIONS, |lanes| {
             let (update, det) = self.update(&lanes.half);
             let length = update.dot(&update).simd_sqrt();
             let longest = real::<G::Scalar>(LONGEST_DAMPED);
-            let factor = (longest / length).select(length.simd_gt(longest), real(1.0));
+            let mut factor = (longest / length).select(length.simd_gt(longest), real(1.0));
+            for _ in 0..MOST_HALVINGS {
+                let residual = self.equation.residual(&(lanes.half - update * factor));
+                let size = residual.dot(&residual);
+                // Neither NaN nor infinite.
+                let is_defined = (size - size).simd_eq(real(0.0)) | lanes.settled;
+                if is_defined.all() {
+                    break;
+                }
+                factor = factor.select(is_defined, factor * real(0.5));
+            }
             lanes.advance(&update, det, &(update * factor));
             false
         });

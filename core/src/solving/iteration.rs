@@ -11,6 +11,8 @@ pub(crate) const MAX_ITERATIONS: u32 = 20;
 pub(crate) const MAX_DAMPED_ITERATIONS: u32 = 60;
 /// The longest update then, of half the coordinates: half a radian.
 pub(crate) const LONGEST_DAMPED: f64 = 0.25;
+/// Of an update that leaves what the Lagrangian is defined on.
+pub(crate) const MOST_HALVINGS: u32 = 40;
 /// The square of the last update relative to the unknown's, in roundings.
 ///
 /// Convergence is quadratic: a relative update of `√ε/8` is followed by one of the order of `ε/64`. Stopping earlier

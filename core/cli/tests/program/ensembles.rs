@@ -67,7 +67,10 @@ fn shares_and_a_second_run_make_the_same_files() {
     assert!(whole.contains("40 finished") && whole.contains("velocity_z"), "{whole}");
     printed(&folder, &["ensemble", "top.toml", "--shard", "1/2", "--threads", "1", "--out", "parts"]);
     let part = files(&folder.join("parts/top.ensemble")).len();
-    printed(&folder, &["ensemble", "top.toml", "--shard", "0/2", "--out", "parts"]);
+    // A share reads no rows but its own, and tells of these.
+    let last = printed(&folder, &["ensemble", "top.toml", "--shard", "0/2", "--out", "parts"]);
+    assert!(last.contains("in this share: 24 finished") && !last.contains("velocity_z"), "{last}");
+    assert!(last.contains("without `--shard`"), "{last}");
     let [one, other] = ["whole", "parts"].map(|out| files(&folder.join(out).join("top.ensemble")));
     assert!(one == other && one.len() > part && part > 0, "{} {part}", one.len());
     let again = printed(&folder, &["ensemble", "top.toml", "--out", "whole"]);

@@ -97,7 +97,9 @@ pub(super) fn refusal(refusal: Refusal, declaration: &Declaration, tree: &Rc<Tre
             "the limit h → 0 has too many terms: declare the terms one by one, and add them, `Body { … } + Pull { … }`"
                 .to_owned()
         }
-        LimitError::NotALagrangian => "as h → 0 this doesn't become h times a Lagrangian of the velocity".to_owned(),
+        LimitError::NotALagrangian => {
+            "as h → 0 this doesn't become h times a Lagrangian of the velocity: is a term without its `h`?".to_owned()
+        }
     };
     errors.push_over(declaration.expression.as_ref().map(check::value), message);
 }

@@ -64,9 +64,20 @@ impl Checker<'_> {
             }
             _ => {
                 let value = number_of(name).map_or_else(|| "its value".to_owned(), |number| format!("`{number}`"));
-                format!(": make it a field of the struct, or write {value}\nknown: {}", known.join(", "))
+                let place = self.place_of_translated(name);
+                format!(": make it a field of the struct, or write {value}{place}\nknown: {}", known.join(", "))
             }
         }
+    }
+
+    /// The advice for a name that may mean where something translated has come to: an increment is how far it goes in a
+    /// step.
+    fn place_of_translated(&self, name: &str) -> String {
+        let own = self.declaration.group.factors().iter().zip(&self.declaration.factors).find(|(own, _)| own.is_added);
+        let place = |factor: &str| {
+            format!("; if it is where `{factor}` has come to, `advected({name} = {factor}.seen_from(space))`")
+        };
+        own.filter(|_| !self.is_constraint()).map(|(_, factor)| place(&factor.name)).unwrap_or_default()
     }
 
     /// The same for what is a velocity elsewhere.

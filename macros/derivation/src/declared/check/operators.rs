@@ -223,6 +223,7 @@ impl Checker<'_> {
                 Shape::Matrix(_, 1) => format!("there are {}, and `v[0]`", axes.join(", ")),
                 Shape::Matrix(..) => match entry_of(&member) {
                     Some((row, column)) => format!("write `A[({row}, {column})]`"),
+                    None if member == "T" => "write `.transpose()`".to_owned(),
                     None => "write an entry by its indices, `A[(0, 1)]`".to_owned(),
                 },
             };

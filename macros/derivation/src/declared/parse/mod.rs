@@ -405,7 +405,15 @@ fn seen<'a>(
             let seers = (0..factors.len()).filter(turns).map(|at| format!("`{field}.seen_from({})`", factors[at].name));
             let message = match seers.collect::<Vec<_>>().as_slice() {
                 [] => format!("a translation doesn't move a vector: use the field `{field}` itself"),
-                asked => format!("who sees `{field}`? write {}", asked.join(" or ")),
+                asked => {
+                    let added =
+                        (0..factors.len()).find(|at| group.is_some_and(|(group, _)| group.factor(*at).is_added));
+                    let place = added.map(|at| {
+                        let factor = &factors[at].name;
+                        format!("; where `{factor}` has come to is `{name} = {factor}.seen_from(space)`")
+                    });
+                    format!("who sees `{field}`? write {}{}", asked.join(" or "), place.unwrap_or_default())
+                }
             };
             errors.push_decisive(field.span(), message);
             None

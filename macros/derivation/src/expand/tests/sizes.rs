@@ -73,7 +73,7 @@ fn doubling(first: &str, step: impl Fn(&str) -> String, last: impl Fn(&str) -> S
 
 #[test]
 fn doubling_bindings() {
-    for count in [3, 4, 5, 6, 8, 20, 60, 200] {
+    for count in [3, 4, 6, 20, 60, 200] {
         let plain = |a: &str| a.to_owned();
         let trace = |a: &str| format!("{a}.trace()");
         let square = |a: &str| format!("{a} * {a}");
@@ -107,7 +107,7 @@ fn doubling_bindings() {
 
 #[test]
 fn many_factors() {
-    for count in [1, 2, 3, 4, 6, 8, 12, 16, 24, 40, 100] {
+    for count in [1, 2, 4, 8, 16, 24, 40, 100] {
         for unit in ["F * A", "F * J_d", "(F + A)", "F.transpose() * A * F"] {
             let product = vec![unit; count].join(" * ");
             let result = refused(&with_term(&format!("{KINETIC} + h * ({product}).trace()")));
