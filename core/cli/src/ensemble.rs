@@ -6,8 +6,10 @@ use std::sync::Mutex;
 
 use clap::ArgMatches;
 use liestep::SO3;
-use liestep::motion::{AnyStepper, Integrator as _, Moment};
-use liestep_ensemble::{Engine as _, Failure, Local, MemberFailure, Reduction, Report, Section, Store, Summary};
+use liestep::motion::{Integrator, Moment};
+use liestep_ensemble::{
+    Engine as _, Ensemble, Failure, Local, Member, MemberFailure, Reduction, Report, Section, Store, Summary,
+};
 use liestep_plot::output::Output;
 use liestep_scene::{Column, MemberEvent, Mistake, SceneEnsemble, SceneFile, Spread};
 
@@ -47,11 +49,41 @@ fn made(
     path: &Path,
     scene: &SceneFile,
     drawn: &SceneEnsemble,
+    local: (&Local<'_>, bool),
+    output: &Output,
+) -> Result<Report, ProgramFailure> {
+    let steps = scene.steps().unwrap_or_default();
+    let (own, of_lanes) = (drawn.clone(), drawn.clone());
+    let failed = |mistake: Mistake| Failure::Other(mistake.to_string());
+    let drawn_of = |own: &SceneEnsemble, member: &Member<'_>| {
+        own.member(&mut |name: &str, spread: Spread| number(member, name, spread))
+    };
+    if let Some(whole) = scene.whole() {
+        let make = move |member: &Member<'_>| {
+            drawn_of(&of_lanes, member).and_then(|scene| scene.in_lanes(&whole)).map_err(failed)
+        };
+        // Whole lanes: a 64th of all, but a second's work and a million rows at most.
+        let rows = drawn.every.map_or(1, |every| steps / every + 2);
+        let most = ((1 << 20) / rows).min((1 << 24) / steps.max(1)).next_multiple_of(8);
+        let chunk = drawn.members.div_ceil(64).next_multiple_of(8).min(most.max(8));
+        let members = Ensemble::new(&drawn.text, drawn.members, steps, make).chunks_of(chunk);
+        return finished(path, scene, drawn, members, local, output);
+    }
+    let make = move |member: &Member<'_>| drawn_of(&own, member).and_then(|scene| scene.stepper()).map_err(failed);
+    finished(path, scene, drawn, Ensemble::one_by_one(&drawn.text, drawn.members, steps, make), local, output)
+}
+
+/// The same of the members, as they are made.
+fn finished<M: Integrator<Group = SO3> + 'static>(
+    path: &Path,
+    scene: &SceneFile,
+    drawn: &SceneEnsemble,
+    members: Ensemble<M>,
     (local, is_share): (&Local<'_>, bool),
     output: &Output,
 ) -> Result<Report, ProgramFailure> {
     let cannot = |error: &dyn std::fmt::Display| ProgramFailure::Output(format!("{}: {error}", path.display()));
-    let plan = plan(scene, drawn);
+    let plan = plan(scene, drawn, members);
     let folder = output.inner(&name(path, "ensemble"));
     let store = Store::folder(&folder).map_err(|error| cannot(&error))?;
     let progress = Mutex::new(Progress::new());
@@ -78,18 +110,13 @@ fn made(
     Ok(report)
 }
 
-type Member = AnyStepper<SO3, ()>;
-
 /// What is run: the file as a whole tells it from others.
-fn plan(scene: &SceneFile, drawn: &SceneEnsemble) -> liestep_ensemble::Ensemble<Member> {
-    let own = drawn.clone();
-    let make = move |member: &liestep_ensemble::Member<'_>| {
-        let mut draw = |name: &str, spread: Spread| number(member, name, spread);
-        let started = own.member(&mut draw).and_then(|scene| scene.stepper());
-        started.map_err(|mistake| Failure::Other(mistake.to_string()))
-    };
-    let steps = scene.steps().unwrap_or_default();
-    let mut plan = liestep_ensemble::Ensemble::one_by_one(&drawn.text, drawn.members, steps, make).seed(drawn.seed);
+fn plan<M: Integrator<Group = SO3> + 'static>(
+    scene: &SceneFile,
+    drawn: &SceneEnsemble,
+    members: Ensemble<M>,
+) -> Ensemble<M> {
+    let mut plan = members.seed(drawn.seed);
     if let Some(every) = drawn.every {
         plan = plan.every(every);
     }
@@ -107,7 +134,7 @@ fn plan(scene: &SceneFile, drawn: &SceneEnsemble) -> liestep_ensemble::Ensemble<
     plan = plan.keep_named(&names, {
         let draws = draws.clone();
         move |run, row| {
-            let member = liestep_ensemble::Member::of(run.member, seed);
+            let member = Member::of(run.member, seed);
             row.iter_mut().zip(&draws).for_each(|(place, (name, spread))| *place = number(&member, name, *spread));
         }
     });
@@ -123,7 +150,7 @@ fn plan(scene: &SceneFile, drawn: &SceneEnsemble) -> liestep_ensemble::Ensemble<
 }
 
 /// A number that a member draws.
-fn number(member: &liestep_ensemble::Member<'_>, name: &str, spread: Spread) -> f64 {
+fn number(member: &Member<'_>, name: &str, spread: Spread) -> f64 {
     match spread {
         Spread::Uniform { from, to } => member.uniform(name, from..to),
         Spread::Normal { mean, deviation } => member.normal(name, mean, deviation),
@@ -131,7 +158,10 @@ fn number(member: &liestep_ensemble::Member<'_>, name: &str, spread: Spread) -> 
 }
 
 /// Where an event happens: its times, and the scene's columns then.
-fn section(scene: &SceneFile, (name, event, function, stops): MemberEvent) -> Section<Member> {
+fn section<M: Integrator<Group = SO3> + 'static>(
+    scene: &SceneFile,
+    (name, event, function, stops): MemberEvent<M>,
+) -> Section<M> {
     let section = Section::new(event, function);
     let section = if stops { section.until() } else { section };
     let section = section.keep([&format!("{name}_t")], |now| [now.time()]);

@@ -27,7 +27,7 @@ pub trait Backend<T: Real>: Copy + Debug + 'static {
     fn image(code: &Self::Code, constants: &[T]) -> Self::Image;
 
     /// Runs a program, for as many outputs as it has. Arrays are as long as what it reads of them.
-    fn run(code: &Self::Code, image: &Self::Image, arrays: &Arrays<T>, outputs: &mut [T]);
+    fn run<const N: usize>(code: &Self::Code, image: &Self::Image, given: Given<'_, T, N>, outputs: &mut [T]);
 }
 
 /// Programs are read operation by operation: safe, on every machine, and in lanes.
@@ -46,41 +46,13 @@ impl<T: Real> Backend<T> for Interpreted {
         code.image(constants)
     }
 
-    fn run(code: &Code, image: &Box<[T]>, arrays: &Arrays<T>, outputs: &mut [T]) {
-        code.run(image, arrays, outputs);
+    fn run<const N: usize>(code: &Code, image: &Box<[T]>, given: Given<'_, T, N>, outputs: &mut [T]) {
+        code.run(image, &given, outputs);
     }
 }
 
-/// The arrays that inputs are read from; what a stage doesn't have is empty.
-#[derive(Clone, Copy, Debug)]
-pub struct Arrays<'a, T>([&'a [T]; Array::COUNT]);
-
-impl<'a, T> Arrays<'a, T> {
-    /// These, and no others.
-    #[must_use]
-    #[inline]
-    pub fn of<const N: usize>(given: [(Array, &'a [T]); N]) -> Self {
-        let mut arrays: [&[T]; Array::COUNT] = [&[]; Array::COUNT];
-        for (array, numbers) in given {
-            arrays[array as usize] = numbers;
-        }
-        Self(arrays)
-    }
-
-    /// All, in the order of [`Array`].
-    #[must_use]
-    #[inline]
-    pub const fn all(&self) -> [&'a [T]; Array::COUNT] {
-        self.0
-    }
-
-    /// The numbers of an array.
-    #[must_use]
-    #[inline]
-    pub const fn get(&self, array: Array) -> &'a [T] {
-        self.0[array as usize]
-    }
-}
+/// The arrays that inputs are read from, each once; what a stage doesn't have isn't among them.
+pub type Given<'a, T, const N: usize> = [(Array, &'a [T]); N];
 
 /// Straight-line code. Registers hold constants, literals, inputs and what is computed: of these, one that isn't read any
 /// more is used again.
@@ -225,7 +197,12 @@ impl Code {
         self.constants.iter().map(of).chain(self.literals.iter().map(|&literal| real(literal))).collect()
     }
 
-    fn run<T: Real>(&self, image: &[T], arrays: &Arrays<T>, outputs: &mut [T]) {
+    fn run<T: Real>(&self, image: &[T], given: &[(Array, &[T])], outputs: &mut [T]) {
+        let mut arrays: [&[T]; Array::COUNT] = [&[]; Array::COUNT];
+        for &(array, numbers) in given {
+            arrays[array as usize] = numbers;
+        }
+        let arrays = &arrays;
         // Registers beyond those that are used cost time to clear.
         match self.registers {
             0..=32 => self.run_in(&mut [T::zero(); 32], image, arrays, outputs),
@@ -238,13 +215,13 @@ impl Code {
 
     /// In registers whose number is a power of two, so that a masked index is always in range.
     #[inline]
-    fn run_in<T: Real>(&self, registers: &mut [T], image: &[T], arrays: &Arrays<T>, outputs: &mut [T]) {
+    fn run_in<T: Real>(&self, registers: &mut [T], image: &[T], arrays: &[&[T]; Array::COUNT], outputs: &mut [T]) {
         let mask = registers.len().wrapping_sub(1);
         let (known, open) = registers.split_at_mut(image.len().min(registers.len()));
         known.copy_from_slice(&image[..known.len()]);
         for (register, source) in open.iter_mut().zip(&self.inputs) {
             // No step takes NaN for a number.
-            *register = arrays.get(source.array).get(source.at).copied().unwrap_or_else(|| real(f64::NAN));
+            *register = arrays[source.array as usize].get(source.at).copied().unwrap_or_else(|| real(f64::NAN));
         }
         for Run { operation, instructions } in &self.runs {
             match *operation {

@@ -43,6 +43,7 @@ pub(crate) struct Ready<C> {
 }
 
 impl<C> Ready<C> {
+    #[inline]
     pub(crate) const fn reads(&self, array: Array) -> bool {
         self.arrays >> array as u16 & 1 == 1
     }

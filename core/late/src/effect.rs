@@ -8,82 +8,107 @@ use liestep::numbers::{Blocks, Coordinates, Entries, Real, real};
 use liestep_derivation::{Array, MOST_TERMS, Stages};
 
 use crate::carried::Slots;
-use crate::code::{Arrays, Backend, Interpreted};
+use crate::code::{Backend, Given, Interpreted};
 use crate::declaration::{All, Declaration, Ready, ready};
-use crate::term::{Late, is_finite};
+use crate::term::{Late, entries, is_finite};
 
 type Matrix<G> = <G as LieGroup>::Matrix;
 type Vector<G> = <G as LieGroup>::Vector;
 type Square<G> = <Vector<G> as Coordinates<<G as LieGroup>::Scalar>>::Square;
 
-/// The entries of small values, on the stack.
-struct List<T> {
-    entries: [T; 18],
-    more: Vec<T>,
-    length: usize,
+/// The entries of a value, which stand where its size says that there is room: what isn't used costs time to clear.
+macro_rules! listed {
+    ($name:ident = $value:expr) => {
+        let (mut small, mut middle, mut large, mut more);
+        let $name: &[G::Scalar] = match (size_of_val($value).div_ceil(size_of::<G::Scalar>()), $value) {
+            (0..=3, value) => {
+                small = [real::<G::Scalar>(0.0); 3];
+                filled(value, &mut small)
+            }
+            (4..=9, value) => {
+                middle = [real::<G::Scalar>(0.0); 9];
+                filled(value, &mut middle)
+            }
+            (10..=18, value) => {
+                large = [real::<G::Scalar>(0.0); 18];
+                filled(value, &mut large)
+            }
+            (size, value) => {
+                more = vec![real::<G::Scalar>(0.0); size];
+                filled(value, &mut more)
+            }
+        };
+    };
 }
 
-impl<T: Real> List<T> {
-    fn of(value: &impl Entries<T>) -> Self {
-        let mut list = Self { entries: [T::zero(); 18], more: Vec::new(), length: 0 };
-        value.each(&mut |entry| {
-            match list.entries.get_mut(list.length) {
-                Some(place) => *place = entry,
-                None if list.more.is_empty() => {
-                    list.more = list.entries.to_vec();
-                    list.more.push(entry);
-                }
-                None => list.more.push(entry),
-            }
-            list.length += 1;
-        });
-        list
-    }
-
-    fn get(&self) -> &[T] {
-        if self.more.is_empty() { &self.entries[..self.length] } else { &self.more }
-    }
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn filled<'a, T: Real>(value: &impl Entries<T>, room: &'a mut [T]) -> &'a [T] {
+    let mut length = 0;
+    value.each(&mut |entry| {
+        if let Some(place) = room.get_mut(length) {
+            *place = entry;
+        }
+        length += 1;
+    });
+    room.get(..length).unwrap_or(room)
 }
 
 /// Runs a program, and makes something of what comes out.
-fn run<T: Real, B: Backend<T>, R>(
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn run<T: Real, B: Backend<T>, R, const N: usize>(
     program: &Ready<B::Code>,
     image: &B::Image,
-    arrays: &Arrays<T>,
+    given: Given<'_, T, N>,
     make: impl FnOnce(&[T]) -> R,
 ) -> R {
-    let in_place = |outputs: &mut [T]| {
-        B::run(&program.code, image, arrays, outputs);
-        make(outputs)
-    };
     // What isn't used costs time to clear.
-    match program.outputs {
-        count @ 0..=12 => in_place(&mut [T::zero(); 12][..count]),
-        count @ 13..=48 => in_place(&mut [T::zero(); 48][..count]),
-        count => in_place(&mut vec![T::zero(); count]),
+    if const { size_of::<R>() <= 3 * size_of::<T>() } && program.outputs <= 3 {
+        into::<T, B, R, N>(program, image, given, &mut [T::zero(); 3], make)
+    } else if program.outputs <= 12 {
+        into::<T, B, R, N>(program, image, given, &mut [T::zero(); 12], make)
+    } else if const { size_of::<R>() > 12 * size_of::<T>() } && program.outputs <= 48 {
+        into::<T, B, R, N>(program, image, given, &mut [T::zero(); 48], make)
+    } else {
+        into::<T, B, R, N>(program, image, given, &mut vec![T::zero(); program.outputs], make)
     }
 }
 
-/// The same of a program that knows no constants.
-fn run_alone<T: Real, B: Backend<T>, R>(
+/// By this room for the outputs.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn into<T: Real, B: Backend<T>, R, const N: usize>(
     program: &Ready<B::Code>,
-    arrays: &Arrays<T>,
+    image: &B::Image,
+    given: Given<'_, T, N>,
+    outputs: &mut [T],
     make: impl FnOnce(&[T]) -> R,
 ) -> R {
-    run::<T, B, R>(program, &B::image(&program.code, &[]), arrays, make)
+    B::run(&program.code, image, given, outputs);
+    make(outputs)
+}
+
+/// The same of a program that knows no constants.
+fn run_alone<T: Real, B: Backend<T>, R, const N: usize>(
+    program: &Ready<B::Code>,
+    given: Given<'_, T, N>,
+    make: impl FnOnce(&[T]) -> R,
+) -> R {
+    run::<T, B, R, N>(program, &B::image(&program.code, &[]), given, make)
 }
 
 /// The first of these numbers as a vector.
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn vector<T: Real, V: Entries<T>>(outputs: &[T]) -> V {
     let mut outputs = outputs.iter().copied();
     V::from_entries(&mut || outputs.next().unwrap_or_else(|| real(f64::NAN)))
 }
 
 /// The same as a square matrix, row by row.
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn square<G: LieGroup>(outputs: &[G::Scalar]) -> Square<G> {
     Vector::<G>::square(|column| {
-        let mut entries = outputs.iter().skip(column).step_by(G::DIMENSION).copied();
-        Vector::<G>::from_entries(&mut || entries.next().unwrap_or_else(|| real(f64::NAN)))
+        let mut places = (0..).map(|row| column + row * G::DIMENSION);
+        let mut next = || places.next().and_then(|place| outputs.get(place).copied());
+        Vector::<G>::from_entries(&mut || next().unwrap_or_else(|| real(f64::NAN)))
     })
 }
 
@@ -167,16 +192,16 @@ where
         (f, w, h): (&Matrix<G>, &W, G::Scalar),
         make: impl FnOnce(&[G::Scalar]) -> R,
     ) -> R {
-        let (element, advected) = (List::of(f), List::of(w));
-        let inverse = program.reads(Array::Inverse).then(|| List::of(&G::from_matrix_unchecked(*f).inverse().matrix()));
-        let arrays = Arrays::of([
+        let inverse = program.reads(Array::Inverse).then(|| G::from_matrix_unchecked(*f).inverse().matrix());
+        let (element, advected, inverse) = (entries(f), entries(w), inverse.map_or_else(Vec::new, |it| entries(&it)));
+        let given = [
             (Array::Step, std::slice::from_ref(&h)),
             (Array::Parameters, &self.numbers),
-            (Array::Advected, advected.get()),
-            (Array::Element, element.get()),
-            (Array::Inverse, inverse.as_ref().map_or(&[], List::get)),
-        ]);
-        run_alone::<_, B, _>(program, &arrays, make)
+            (Array::Advected, &advected),
+            (Array::Element, &element),
+            (Array::Inverse, &inverse),
+        ];
+        run_alone::<_, B, _, _>(program, given, make)
     }
 
     /// A term of a Lagrangian, of which a force has none.
@@ -251,21 +276,18 @@ where
     }
 
     fn limit(&self, velocity: Option<&Vector<G>>, w: &W) -> Limit<Self> {
-        let (advected, given) = (List::of(w), velocity.map(List::of));
-        let arrays = Arrays::of([
-            (Array::Parameters, &*self.numbers),
-            (Array::Advected, advected.get()),
-            (Array::Velocity, given.as_ref().map_or(&[], List::get)),
-        ]);
+        listed!(advected = w);
+        listed!(given = velocity.unwrap_or(&Vector::<G>::zero()));
+        let arrays = [(Array::Parameters, &*self.numbers), (Array::Advected, advected), (Array::Velocity, given)];
         if let (Some(_), Some([l, momentum, hessian])) = (velocity, &self.stages.at_velocity) {
             return Limit {
-                l: run_alone::<_, B, _>(l, &arrays, |outputs| outputs[0]),
-                momentum: run_alone::<_, B, _>(momentum, &arrays, vector),
-                hessian: run_alone::<_, B, _>(hessian, &arrays, square::<G>),
+                l: run_alone::<_, B, _, _>(l, arrays, |outputs| outputs[0]),
+                momentum: run_alone::<_, B, _, _>(momentum, arrays, vector),
+                hessian: run_alone::<_, B, _, _>(hessian, arrays, square::<G>),
             };
         }
         let entries = G::DIMENSION * G::DIMENSION;
-        run_alone::<_, B, _>(&self.stages.at_rest, &arrays, |outputs| {
+        run_alone::<_, B, _, _>(&self.stages.at_rest, arrays, |outputs| {
             let (inertia, bias) = (square::<G>(outputs), vector(&outputs[entries..]));
             Limit::quadratic(velocity, inertia, bias, outputs[entries + G::DIMENSION])
         })
@@ -283,8 +305,9 @@ where
     }
 
     fn constants(&self, h: G::Scalar) -> Self::Constants {
-        let arrays = Arrays::of([(Array::Step, std::slice::from_ref(&h)), (Array::Parameters, &*self.numbers)]);
-        let numbers = run_alone::<_, B, _>(&self.stages.constants, &arrays, <[G::Scalar]>::to_vec);
+        let given = [(Array::Step, std::slice::from_ref(&h)), (Array::Parameters, &*self.numbers)];
+        let constants = &self.stages.constants;
+        let numbers = run_alone::<_, B, _, _>(constants, given, |outputs| outputs[..constants.outputs].to_vec());
         let programs = self.specialise.map(|specialise| specialise(&self.declaration.programs, &numbers));
         // What is too large now was too large before, and isn't here.
         let own = programs.and_then(|programs| ready::<G::Scalar, B>(&programs).ok());
@@ -296,48 +319,49 @@ where
         constants.0.numbers.iter().all(is_finite)
     }
 
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn kick_before(constants: &Self::Constants, w: &W) -> Vector<G> {
-        let advected = List::of(w);
-        let arrays = Arrays::of([(Array::Constants, &*constants.0.numbers), (Array::Advected, advected.get())]);
-        run::<_, B, _>(&constants.0.stages.kick_before, &constants.0.kick_before, &arrays, vector)
+        let folded = &*constants.0;
+        listed!(advected = w);
+        let given = [(Array::Constants, &*folded.numbers), (Array::Advected, advected)];
+        run::<_, B, _, _>(&folded.stages.kick_before, &folded.kick_before, given, vector)
     }
 
     fn kick_derivative(constants: &Self::Constants, w: &W, velocity: &Vector<G>) -> Option<Vector<G>> {
         let folded = &*constants.0;
         let (program, image) = (folded.stages.kick_derivative.as_ref()?, folded.kick_derivative.as_ref()?);
-        let (advected, velocity) = (List::of(w), List::of(velocity));
-        let arrays = Arrays::of([
-            (Array::Constants, &*folded.numbers),
-            (Array::Advected, advected.get()),
-            (Array::Velocity, velocity.get()),
-        ]);
-        Some(run::<_, B, _>(program, image, &arrays, vector))
+        listed!(advected = w);
+        listed!(velocity = velocity);
+        let given = [(Array::Constants, &*folded.numbers), (Array::Advected, advected), (Array::Velocity, velocity)];
+        Some(run::<_, B, _, _>(program, image, given, vector))
     }
 
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn step_terms(constants: &Self::Constants, a: &Vector<G>, w: &W) -> Self::StepTerms {
         let folded = &*constants.0;
-        let mut numbers = [real::<G::Scalar>(0.0); MOST_TERMS];
+        let mut terms = StepTerms { right_side: *a, advected: *w, numbers: [real(0.0); MOST_TERMS] };
         // Where there is nothing to solve, nobody reads them.
-        if !folded.declaration.parts.unknown {
-            return StepTerms { right_side: *a, advected: *w, numbers };
+        if folded.declaration.parts.unknown {
+            listed!(target = a);
+            listed!(advected = w);
+            let given = [(Array::Constants, &*folded.numbers), (Array::Target, target), (Array::Advected, advected)];
+            B::run(&folded.stages.terms.code, &folded.terms, given, &mut terms.numbers);
         }
-        let (target, advected) = (List::of(a), List::of(w));
-        let arrays = Arrays::of([
-            (Array::Constants, &*folded.numbers),
-            (Array::Target, target.get()),
-            (Array::Advected, advected.get()),
-        ]);
-        B::run(&folded.stages.terms.code, &folded.terms, &arrays, &mut numbers[..folded.stages.terms.outputs]);
-        StepTerms { right_side: *a, advected: *w, numbers }
+        terms
     }
 
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn newton_system(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> (Vector<G>, Square<G>) {
         let folded = &*constants.0;
         let program = (&folded.stages.newton_system, &folded.newton_system);
-        let (residual, jacobian): (Vector<G>, Square<G>) =
-            iteration::<G, W, B, _>(program, folded, terms, half, |outputs| {
-                (vector(outputs), square::<G>(&outputs[G::DIMENSION..]))
-            });
+        let (residual, jacobian): (Vector<G>, Square<G>) = iteration::<G, W, B, _>(
+            program,
+            folded,
+            terms,
+            half,
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            |outputs| (vector(outputs), square::<G>(&outputs[G::DIMENSION..])),
+        );
         if !folded.declaration.in_increment {
             return (residual, jacobian);
         }
@@ -345,31 +369,41 @@ where
         (residual, Vector::<G>::square(|k| jacobian * Vector::<G>::column(&tangent, k)))
     }
 
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> Residual<Vector<G>> {
         let folded = &*constants.0;
         let program = (&folded.stages.newton_residual, &folded.newton_residual);
-        iteration::<G, W, B, _>(program, folded, terms, half, |outputs| Residual {
-            momentum_defect: vector(outputs),
-            moving_kick: folded.declaration.is_expensive.then(|| vector(&outputs[G::DIMENSION..])),
-        })
+        iteration::<G, W, B, _>(
+            program,
+            folded,
+            terms,
+            half,
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            |outputs| Residual {
+                momentum_defect: vector(outputs),
+                moving_kick: folded.declaration.is_expensive.then(|| vector(&outputs[G::DIMENSION..])),
+            },
+        )
     }
 
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn kick_after(constants: &Self::Constants, increment: &Matrix<G>, next: &W) -> Vector<G> {
         let folded = &*constants.0;
-        let program = &folded.stages.kick_after;
-        let (entries, next) = (List::of(increment), List::of(next));
-        let inverse = program.reads(Array::Inverse).then(|| List::of(&G::from_increment(increment).inverse().matrix()));
-        let arrays = Arrays::of([
-            (Array::Constants, &*folded.numbers),
-            (Array::Increment, entries.get()),
-            (Array::Next, next.get()),
-            (Array::Inverse, inverse.as_ref().map_or(&[], List::get)),
-        ]);
-        run::<_, B, _>(program, &folded.kick_after, &arrays, vector)
+        let (program, image) = (&folded.stages.kick_after, &folded.kick_after);
+        listed!(entries = increment);
+        listed!(next = next);
+        let given = [(Array::Constants, &*folded.numbers), (Array::Increment, entries), (Array::Next, next)];
+        if !program.reads(Array::Inverse) {
+            return run::<_, B, _, _>(program, image, given, vector);
+        }
+        listed!(inverse = &G::from_increment(increment).inverse().matrix());
+        let [constants, increment, next] = given;
+        run::<_, B, _, _>(program, image, [constants, increment, next, (Array::Inverse, inverse)], vector)
     }
 }
 
 /// What an iteration computes.
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>, R>(
     (program, image): (&Ready<B::Code>, &B::Image),
     folded: &Folded<G::Scalar, B>,
@@ -380,25 +414,25 @@ fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>, R>(
 where
     CayleyRetraction: Retraction<G>,
 {
-    let coordinates = List::of(half);
-    // Off SO(3) the system is written in the increment.
-    let increment =
-        folded.declaration.in_increment.then(|| <CayleyRetraction as Retraction<G>>::increment_of_half(half));
-    let inverse = increment.filter(|_| program.reads(Array::InverseIncrement)).map(|it| G::inverse_increment(&it));
-    let [increment, inverse] = [increment, inverse].map(|matrix| matrix.map(|matrix| List::of(&matrix)));
-    // Of many terms some are computed anew.
-    let target = program.reads(Array::Target).then(|| List::of(&terms.right_side));
-    let advected = program.reads(Array::Advected).then(|| List::of(&terms.advected));
-    let arrays = Arrays::of([
-        (Array::Constants, &*folded.numbers),
-        (Array::Terms, &terms.numbers),
-        (Array::Half, coordinates.get()),
-        (Array::Increment, increment.as_ref().map_or(&[], List::get)),
-        (Array::InverseIncrement, inverse.as_ref().map_or(&[], List::get)),
-        (Array::Target, target.as_ref().map_or(&[], List::get)),
-        (Array::Advected, advected.as_ref().map_or(&[], List::get)),
-    ]);
-    run::<_, B, _>(program, image, &arrays, make)
+    let (constants, numbers) = ((Array::Constants, &*folded.numbers), (Array::Terms, &terms.numbers[..]));
+    listed!(coordinates = half);
+    let coordinates = (Array::Half, coordinates);
+    // Of many terms some are computed anew, and off SO(3) the system is written in the increment.
+    let more = [Array::Target, Array::Advected, Array::Increment, Array::InverseIncrement];
+    if !more.into_iter().any(|array| program.reads(array)) {
+        return run::<_, B, _, _>(program, image, [constants, numbers, coordinates], make);
+    }
+    let increment = <CayleyRetraction as Retraction<G>>::increment_of_half(half);
+    let is_read = program.reads(Array::InverseIncrement);
+    let inverse = if is_read { G::inverse_increment(&increment) } else { increment };
+    listed!(increment = &increment);
+    listed!(inverse = &inverse);
+    listed!(target = &terms.right_side);
+    listed!(advected = &terms.advected);
+    let increments = [(Array::Increment, increment), (Array::InverseIncrement, inverse)];
+    let [target, advected] = [(Array::Target, target), (Array::Advected, advected)];
+    let given = [constants, numbers, coordinates, increments[0], increments[1], target, advected];
+    run::<_, B, _, _>(program, image, given, make)
 }
 
 impl<G, W, K, B> DiscreteLagrangian for Late<G, W, K, B>

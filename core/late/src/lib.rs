@@ -21,7 +21,7 @@ mod term;
 mod written;
 
 pub use carried::Slots;
-pub use code::{Arrays, Backend, Code, Interpreted, applied};
+pub use code::{Backend, Code, Given, Interpreted, applied};
 pub use declaration::{Declaration, kept};
 pub use effect::{Constants, StepTerms};
 pub use error::{LateError, Mistake};

@@ -234,7 +234,7 @@ fn own_entries(factor: &liestep_derivation::Factor) -> usize {
     factor.generators.first().map_or(0, Vec::len)
 }
 
-fn entries<T: Real>(value: &impl Entries<T>) -> Vec<T> {
+pub(crate) fn entries<T: Real>(value: &impl Entries<T>) -> Vec<T> {
     let mut list = Vec::new();
     value.each(&mut |entry| list.push(entry));
     list

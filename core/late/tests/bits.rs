@@ -21,7 +21,7 @@ use liestep::mechanics::{DiagonalNonstandardInertia, Effect, Inertia, Vector, Wi
 use liestep::motion::Batch;
 use liestep::numbers::Coordinates as _;
 use liestep::{NonstandardInertia, SO3, Stepper};
-use liestep_late::{Array, Arrays, Backend, Declaration, Interpreted, Late, LateError, numbers, specialised};
+use liestep_late::{Array, Backend, Declaration, Interpreted, Late, LateError, numbers, specialised};
 use nalgebra::{Matrix3, Matrix5, Point, SMatrix, SVector, Vector3, Vector5};
 use simba::simd::AutoF64x4;
 
@@ -327,9 +327,9 @@ fn specialised_programs_are_shorter() {
     let parameters: Vec<f64> = numbers.iter().flat_map(|(_, value)| value.iter().copied()).collect();
     let code = <Interpreted as Backend<f64>>::codes(&[&programs.constants]).expect("a program").remove(0);
     let mut constants = vec![0.0; programs.constants.outputs.len()];
-    let arrays = Arrays::of([(Array::Step, &[0.01]), (Array::Parameters, &parameters)]);
+    let given = [(Array::Step, &[0.01][..]), (Array::Parameters, &parameters)];
     let image = <Interpreted as Backend<f64>>::image(&code, &[]);
-    Interpreted::run(&code, &image, &arrays, &mut constants);
+    Interpreted::run(&code, &image, given, &mut constants);
     let lengths = [programs, &specialised(programs, &constants)].map(|all| all.newton_system.operations.len());
     println!("{} operations an iteration, specialised {}", lengths[0], lengths[1]);
     assert!(lengths[0] >= 90 && lengths[1] <= 61, "{lengths:?}");

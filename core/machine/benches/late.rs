@@ -2,7 +2,10 @@
 //! --features cranelift`.
 //!
 //! Times of a step in turns within one run, the fastest of all batches, in those of the compiled step; how long it takes from a
-//! text to the first step, and from each text of the repository to its machine code.
+//! text to the first step, and from each text of the repository to its machine code; `-- instructions` counts those of a step of (3.13), by valgrind.
+
+#[path = "../../../tests/benches/counting.rs"]
+mod counting;
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -20,6 +23,8 @@ use liestep_machine::Machine;
 use nalgebra::Vector3;
 use simba::simd::AutoF64x8;
 
+use counting::{Uncounted, instructions};
+
 const STEPS: u32 = 1_000;
 const ROUNDS: usize = 200;
 const STEP: f64 = 0.01;
@@ -27,15 +32,51 @@ const LANES: u32 = 8;
 
 type LateTop<K, B> = Late<SO3, Vector3<f64>, K, B>;
 
-fn main() {
-    first_steps();
+fn main() -> Result<(), Uncounted> {
+    // Cargo adds `--bench`.
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
     let (rho, up) = (Vector3::new(0.1, -0.2, 0.4), Vector3::z());
     let inertia = Inertia::from_principal_moments(Vector3::new(2.0, 2.5, 3.0)).expect("an inertia");
     let full = FullTop { J_d: inertia.to_nonstandard(), m: 1.5, g: 9.81, rho, up };
+    match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["count", kind, steps] => return count(full, kind, steps.parse()?),
+        ["instructions"] => {
+            for kind in KINDS {
+                let steps = instructions(&std::env::current_exe()?, &["count", kind], 10 * STEPS)?;
+                println!("(3.13), any inertia    {kind:22}{steps:8.0} instructions a step");
+            }
+            return Ok(());
+        }
+        _ => first_steps(),
+    }
     compare::<_, WithKinetic>("(3.13), any inertia", full);
     let fourth = FourthOrderTop { J: inertia, weight: 1.5 * 9.81, rho, up };
     compare::<_, WithExpensiveKinetic>("of the fourth order", fourth);
     texts();
+    Ok(())
+}
+
+const KINDS: [&str; 6] =
+    ["compiled", "machine code", "specialised", "interpreted", "in lanes of eight", "machine code in lanes"];
+
+/// Makes steps of one kind.
+fn count(full: FullTop, kind: &str, steps: u32) -> Result<(), Uncounted> {
+    let machine: LateTop<WithKinetic, Machine> = Late::like(&full)?;
+    let interpreted: LateTop<WithKinetic, Interpreted> = Late::like(&full)?;
+    let mut run = match kind {
+        "compiled" => alone(full),
+        "machine code" => alone(machine),
+        "specialised" => alone(machine.specialised()),
+        "interpreted" => alone(interpreted),
+        "in lanes of eight" => in_lanes(&interpreted),
+        _ => in_lanes(&machine),
+    };
+    // Of lanes as many steps in all.
+    let often = if kind.contains("lanes") { steps / STEPS / LANES } else { steps / STEPS };
+    (0..often).for_each(|_| {
+        run();
+    });
+    Ok(())
 }
 
 fn started<S>(scene: S) -> (Stepper<S>, StateOf<S>)
@@ -88,21 +129,22 @@ where
     LateTop<K, Machine>: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
     LateTop<K, Interpreted>: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
     Stepper<LateTop<K, Interpreted>>: Batchable<AutoF64x8> + Integrator<State = StateOf<LateTop<K, Interpreted>>>,
+    Stepper<LateTop<K, Machine>>: Batchable<AutoF64x8> + Integrator<State = StateOf<LateTop<K, Machine>>>,
 {
     let machine: LateTop<K, Machine> = Late::like(&scene).expect("a declaration");
     let interpreted: LateTop<K, Interpreted> = Late::like(&scene).expect("a declaration");
-    let names = ["compiled", "machine code", "specialised", "interpreted", "in lanes of eight"];
-    let lanes = in_lanes(&interpreted);
+    let lanes = [in_lanes(&interpreted), in_lanes(&machine)];
     let specialised = machine.clone().specialised();
-    let mut kinds = [alone(scene), alone(machine), alone(specialised), alone(interpreted), lanes];
-    let mut least = [f64::INFINITY; 5];
+    let mut kinds: Vec<_> = [alone(scene), alone(machine), alone(specialised), alone(interpreted)].into();
+    kinds.extend(lanes);
+    let mut least = [f64::INFINITY; KINDS.len()];
     for _ in 0..ROUNDS {
         for (least, kind) in least.iter_mut().zip(&mut kinds) {
             *least = least.min(kind());
         }
     }
-    for (kind, ns) in names.iter().zip(least) {
-        println!("{name:22} {kind:18}{ns:8.0} ns a step, {:.2} times", ns / least[0]);
+    for (kind, ns) in KINDS.iter().zip(least) {
+        println!("{name:22} {kind:22}{ns:8.0} ns a step, {:.2} times", ns / least[0]);
     }
 }
 

@@ -3,13 +3,18 @@
 
 use std::any::TypeId;
 use std::fmt;
+use std::mem::MaybeUninit;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use cranelift_jit::JITModule;
 use cranelift_module::FuncId;
-use liestep_late::{Array, Arrays, Program};
+use liestep_late::{Array, Given, Program};
+use simba::simd::AutoF64x8;
 
 use crate::translated;
+
+/// The lanes of an ensemble.
+pub(crate) const LANES: usize = 8;
 
 /// The arrays of the inputs, and the place of the outputs.
 type Entry = unsafe extern "C" fn(*const *const f64, *mut f64);
@@ -17,9 +22,13 @@ type Entry = unsafe extern "C" fn(*const *const f64, *mut f64);
 /// A program as a function.
 pub(crate) struct Function {
     entry: Entry,
-    /// How many numbers it reads at least of each array that it reads.
-    least: Vec<(Array, usize)>,
+    /// How many numbers it reads at least of each array.
+    least: [usize; Array::COUNT],
+    /// A bit for each array that it reads.
+    read: u16,
     outputs: usize,
+    /// How many numbers stand at each place: one, or as many as there are lanes.
+    lanes: usize,
     /// The code is there as long as one of its functions.
     memory: Arc<Memory>,
 }
@@ -45,9 +54,18 @@ impl fmt::Debug for Function {
     }
 }
 
-/// Each program as a function, in one piece of memory.
-pub(crate) fn functions(programs: &[&Program]) -> Result<Vec<Function>, String> {
-    let (module, ids) = translated::module(programs)?;
+/// How many numbers a value of this type is: those of other types are none that machine code knows.
+pub(crate) fn lanes_of<T: 'static>() -> usize {
+    match TypeId::of::<T>() {
+        one if one == TypeId::of::<f64>() => 1,
+        eight if eight == TypeId::of::<AutoF64x8>() && size_of::<T>() == 8 * size_of::<f64>() => LANES,
+        _ => 0,
+    }
+}
+
+/// Each program as a function, of numbers or of lanes, in one piece of memory.
+pub(crate) fn functions(programs: &[&Program], lanes: usize) -> Result<Vec<Function>, String> {
+    let (module, ids) = translated::module(programs, lanes)?;
     let entry = |id: FuncId| {
         let code = module.get_finalized_function(id);
         // SAFETY: the module has been finalised, so that this is the address of a function; `translated` has declared all
@@ -56,11 +74,13 @@ pub(crate) fn functions(programs: &[&Program]) -> Result<Vec<Function>, String> 
     };
     let entries: Vec<Entry> = ids.into_iter().map(entry).collect();
     let memory = Arc::new(Memory(Mutex::new(Some(module))));
-    let function = |(entry, program): (Entry, &&Program)| Function {
-        entry,
-        least: translated::least(program),
-        outputs: program.outputs.len(),
-        memory: Arc::clone(&memory),
+    let function = |(entry, program): (Entry, &&Program)| {
+        let (mut least, mut read) = ([0; Array::COUNT], 0);
+        for (array, count) in translated::least(program) {
+            least[array as usize] = count;
+            read |= 1 << array as u16;
+        }
+        Function { entry, least, read, outputs: program.outputs.len(), lanes, memory: Arc::clone(&memory) }
     };
     Ok(entries.into_iter().zip(programs).map(function).collect())
 }
@@ -71,17 +91,29 @@ impl Function {
     /// # Panics
     ///
     /// Where an array is shorter than what is read of it, or outputs than what is written: then nothing is called.
-    #[inline]
-    pub(crate) fn call<T: 'static>(&self, arrays: &Arrays<T>, outputs: &mut [T]) {
-        assert!(TypeId::of::<T>() == TypeId::of::<f64>(), "machine code is for `f64`");
-        // A handful of comparisons, in release builds too: a call of this function is safe.
-        assert!(self.least.iter().all(|&(array, least)| arrays.get(array).len() >= least), "an input is missing");
-        assert!(outputs.len() >= self.outputs, "there is no place for the outputs");
-        let inputs = arrays.all().map(|array| array.as_ptr().cast::<f64>());
-        // SAFETY: the code reads pointers of `inputs` at places of arrays, of which it has as many; of an array the numbers
-        // that `least` counts, which are there; and writes as many outputs as there is place for, that nobody else can see
-        // while they are borrowed here. `T` is `f64`, as asserted, so the pointers have the right type and alignment. The
-        // memory of the code is held by `self`.
-        unsafe { (self.entry)(inputs.as_ptr(), outputs.as_mut_ptr().cast::<f64>()) };
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub(crate) fn call<T: 'static, const N: usize>(&self, given: Given<'_, T, N>, outputs: &mut [T]) {
+        assert!(self.lanes == lanes_of::<T>(), "machine code is for `f64`, or for eight of them");
+        // A handful of comparisons, in release builds too: a call of this function is safe. What isn't read isn't set.
+        let mut inputs = [const { MaybeUninit::<*const f64>::uninit() }; Array::COUNT];
+        let (mut missing, mut is_there) = (self.read, outputs.len() >= self.outputs);
+        for (array, numbers) in given {
+            missing &= !(1 << array as u16);
+            is_there &= numbers.len() >= self.least[array as usize];
+        }
+        assert!(missing == 0 && is_there, "an input is missing, or a place for the outputs");
+        // Two lanes at a time.
+        for first in (0..lanes_of::<T>()).step_by(2) {
+            for (array, numbers) in given {
+                inputs[array as usize] = MaybeUninit::new(numbers.as_ptr().cast::<f64>().wrapping_add(first));
+            }
+            let outputs = outputs.as_mut_ptr().cast::<f64>().wrapping_add(first);
+            // SAFETY: the code reads pointers of `inputs` at places of arrays that are in `read`, all of which are given and
+            // set; of an array the numbers that `least` counts, which are there; and writes as many outputs as there is
+            // place for, that nobody else can see while they are borrowed here. `T` is `f64`, or an array of as many as the
+            // code was made for, as asserted, of which it reads and writes two from `first` on: so the pointers have the
+            // right type and alignment. The memory of the code is held by `self`.
+            unsafe { (self.entry)(inputs.as_ptr().cast(), outputs) };
+        }
     }
 }

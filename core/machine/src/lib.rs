@@ -4,7 +4,8 @@
 //! [Cranelift](https://cranelift.dev), operation by operation and in the order of the program: nothing is contracted or
 //! reordered, and functions like `sin` are those of the interpreter, called. So the steps are the same to the bit.
 //!
-//! There is machine code for x86-64 and aarch64. In lanes, and for scalars other than `f64`, programs are interpreted.
+//! There is machine code for x86-64 and aarch64, for numbers and for the eight lanes of an ensemble. In other lanes, and for
+//! other scalars, programs are interpreted.
 //!
 //! # Inside
 //!
@@ -15,26 +16,25 @@
 mod called;
 mod translated;
 
-use std::any::TypeId;
+use std::sync::OnceLock;
 
 use liestep::numbers::Real;
-use liestep_late::{Arrays, Backend, Code, Interpreted, LateError, Program};
+use liestep_late::{Backend, Code, Given, Interpreted, LateError, Program};
 
-use called::Function;
+use called::{Function, LANES, lanes_of};
 
 /// Programs are machine code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Machine;
 
-/// A program as machine code, and as what is interpreted in lanes.
+/// A program as machine code, and as what is interpreted.
 #[derive(Debug)]
 pub struct Both {
+    program: Program,
     function: Function,
+    /// Made where somebody asks for it.
+    in_lanes: OnceLock<Option<Function>>,
     interpreted: Code,
-}
-
-fn is_single<T: 'static>() -> bool {
-    TypeId::of::<T>() == TypeId::of::<f64>()
 }
 
 impl<T: Real> Backend<T> for Machine {
@@ -42,25 +42,35 @@ impl<T: Real> Backend<T> for Machine {
     type Image = Box<[T]>;
 
     fn codes(programs: &[&Program]) -> Result<Vec<Both>, LateError> {
-        let functions = called::functions(programs).map_err(LateError::Machine)?;
+        let functions = called::functions(programs, 1).map_err(LateError::Machine)?;
         let interpreted = <Interpreted as Backend<f64>>::codes(programs)?;
-        Ok(functions
-            .into_iter()
-            .zip(interpreted)
-            .map(|(function, interpreted)| Both { function, interpreted })
+        let all = programs.iter().zip(functions).zip(interpreted);
+        Ok(all
+            .map(|((&program, function), interpreted)| Both {
+                program: program.clone(),
+                function,
+                in_lanes: OnceLock::new(),
+                interpreted,
+            })
             .collect())
     }
 
     fn image(code: &Both, constants: &[T]) -> Box<[T]> {
-        if is_single::<T>() { Box::default() } else { <Interpreted as Backend<T>>::image(&code.interpreted, constants) }
+        let made = || called::functions(&[&code.program], LANES).ok()?.pop();
+        match lanes_of::<T>() {
+            1 => Box::default(),
+            LANES if code.in_lanes.get_or_init(made).is_some() => Box::default(),
+            _ => <Interpreted as Backend<T>>::image(&code.interpreted, constants),
+        }
     }
 
-    #[inline]
-    fn run(code: &Both, image: &Box<[T]>, arrays: &Arrays<T>, outputs: &mut [T]) {
-        if is_single::<T>() {
-            code.function.call(arrays, outputs);
-        } else {
-            <Interpreted as Backend<T>>::run(&code.interpreted, image, arrays, outputs);
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn run<const N: usize>(code: &Both, image: &Box<[T]>, given: Given<'_, T, N>, outputs: &mut [T]) {
+        let in_lanes = || code.in_lanes.get().and_then(Option::as_ref);
+        match lanes_of::<T>() {
+            1 => code.function.call(given, outputs),
+            LANES if in_lanes().is_some() => in_lanes().into_iter().for_each(|made| made.call(given, outputs)),
+            _ => <Interpreted as Backend<T>>::run(&code.interpreted, image, given, outputs),
         }
     }
 }

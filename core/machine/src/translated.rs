@@ -9,8 +9,9 @@ use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{FuncId, Linkage, Module as _, default_libcall_names};
 use liestep_late::{Array, Function, Operation, Program, applied};
 
-/// The code of these programs, each a function of the arrays of its inputs and the place of its outputs.
-pub(crate) fn module(programs: &[&Program]) -> Result<(JITModule, Vec<FuncId>), String> {
+/// The code of these programs, each a function of the arrays of its inputs and the place of its outputs: for one number at
+/// each place, or for two of several lanes.
+pub(crate) fn module(programs: &[&Program], lanes: usize) -> Result<(JITModule, Vec<FuncId>), String> {
     let mut flags = settings::builder();
     flags.set("opt_level", "speed").map_err(|error| error.to_string())?;
     let isa = cranelift_native::builder()?.finish(settings::Flags::new(flags)).map_err(|error| error.to_string())?;
@@ -31,7 +32,7 @@ pub(crate) fn module(programs: &[&Program]) -> Result<(JITModule, Vec<FuncId>), 
         let id = id.map_err(|error| error.to_string())?;
         let called = module.declare_func_in_func(shared, &mut own.func);
         let mut builder = FunctionBuilder::new(&mut own.func, &mut context);
-        write(&mut builder, program, called, pointer)?;
+        write(&mut builder, (program, lanes), called, pointer)?;
         builder.finalize(module.target_config());
         module.define_function(id, &mut own).map_err(|error| error.to_string())?;
         module.clear_context(&mut own);
@@ -42,13 +43,13 @@ pub(crate) fn module(programs: &[&Program]) -> Result<(JITModule, Vec<FuncId>), 
 }
 
 /// The place of a number in bytes.
-fn offset(at: usize) -> Result<i32, String> {
-    i32::try_from(8 * at).map_err(|_| "an array is too long".to_owned())
+fn offset(at: usize, lanes: usize) -> Result<i32, String> {
+    i32::try_from(8 * at * lanes).map_err(|_| "an array is too long".to_owned())
 }
 
 fn write(
     builder: &mut FunctionBuilder,
-    program: &Program,
+    (program, lanes): (&Program, usize),
     called: FuncRef,
     pointer: types::Type,
 ) -> Result<(), String> {
@@ -58,16 +59,20 @@ fn write(
     builder.seal_block(block);
     let [arrays, outputs] = [0, 1].map(|at| builder.block_params(block)[at]);
     // The caller has looked whether they are long enough.
-    let trusted = MemFlagsData::trusted();
+    let trusted = MemFlagsData::new().with_notrap();
+    let number = if lanes > 1 { types::F64X2 } else { types::F64 };
     let mut begins: BTreeMap<Array, Value> = BTreeMap::new();
     for (array, _) in least(program) {
-        begins.insert(array, builder.ins().load(pointer, trusted, arrays, offset(array as usize)?));
+        begins.insert(array, builder.ins().load(pointer, trusted, arrays, offset(array as usize, 1)?));
     }
     let mut values = Vec::new();
     for source in &program.inputs {
-        values.push(builder.ins().load(types::F64, trusted, begins[&source.array], offset(source.at)?));
+        values.push(builder.ins().load(number, trusted, begins[&source.array], offset(source.at, lanes)?));
     }
-    values.extend(program.literals.iter().map(|&literal| builder.ins().f64const(literal)));
+    for &literal in &program.literals {
+        let one = builder.ins().f64const(literal);
+        values.push(if lanes > 1 { builder.ins().splat(number, one) } else { one });
+    }
     for &operation in &program.operations {
         let [a, b] = operation.operands().map(|at| values[at]);
         values.push(match operation {
@@ -79,13 +84,23 @@ fn write(
             Operation::Apply(Function::Sqrt, _) => builder.ins().sqrt(a),
             Operation::Apply(function, _) => {
                 let code = builder.ins().iconst(types::I32, i64::from(code(function)));
-                let call = builder.ins().call(called, &[code, a]);
-                builder.inst_results(call)[0]
+                let apply = |builder: &mut FunctionBuilder, a| {
+                    let call = builder.ins().call(called, &[code, a]);
+                    builder.inst_results(call)[0]
+                };
+                if lanes == 1 {
+                    apply(builder, a)
+                } else {
+                    let [first, second] = [0, 1].map(|lane| builder.ins().extractlane(a, lane));
+                    let [first, second] = [first, second].map(|a| apply(builder, a));
+                    let both = builder.ins().splat(number, first);
+                    builder.ins().insertlane(both, second, 1)
+                }
             }
         });
     }
     for (at, &output) in program.outputs.iter().enumerate() {
-        builder.ins().store(trusted, values[output as usize], outputs, offset(at)?);
+        builder.ins().store(trusted, values[output as usize], outputs, offset(at, lanes)?);
     }
     builder.ins().return_(&[]);
     Ok(())

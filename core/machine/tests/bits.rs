@@ -1,5 +1,5 @@
 //! Machine code computes what the interpreter computes, to the bit: each program of each declaration of the repository and of
-//! random ones, with random inputs; and whole steps.
+//! random ones, with random inputs, alone and in lanes; and whole steps.
 
 use declarations::{
     Alike, CayleyTop, ContinuousTop, DoublePendulum, ElasticFlow, FallingBody, FloatingBody, FluidDrag, Flyer,
@@ -14,10 +14,12 @@ use liestep::effects::{
 use liestep::groups::{CayleyRetraction, LieGroup, Retraction, SE3};
 use liestep::laws::samples::Random;
 use liestep::mechanics::{Effect, WithEitherKinetic};
+use liestep::numbers::Real;
 use liestep::{SO3, Stepper};
-use liestep_late::{Array, Arrays, Backend, Declaration, Interpreted, Late, LateError, Operation, Program, Source};
+use liestep_late::{Array, Backend, Declaration, Interpreted, Late, LateError, Operation, Program, Source};
 use liestep_machine::Machine;
-use nalgebra::{Vector3, Vector4};
+use nalgebra::{SimdValue as _, Vector3, Vector4};
+use simba::simd::AutoF64x8;
 
 macro_rules! texts {
     ($($name:ident)+) => { [$(<$name as Effect>::DECLARATION),+] };
@@ -52,11 +54,20 @@ fn outputs<B: Backend<f64>>(program: &Program, arrays: &[Vec<f64>]) -> Vec<u64> 
 }
 
 fn outputs_of<B: Backend<f64>>(code: &B::Code, program: &Program, arrays: &[Vec<f64>]) -> Vec<u64> {
+    numbers_of::<f64, B>(code, program, arrays).into_iter().map(bits).collect()
+}
+
+/// Which NaN one is depends on the order of operands, which is the compiler's.
+fn bits(number: f64) -> u64 {
+    if number.is_nan() { u64::MAX } else { number.to_bits() }
+}
+
+fn numbers_of<T: Real, B: Backend<T>>(code: &B::Code, program: &Program, arrays: &[Vec<T>]) -> Vec<T> {
     let [constants, terms, advected, next, element, increment, inverse, inverse_increment, half, velocity, target] =
         std::array::from_fn(|at| arrays[at + 2].as_slice());
-    let arrays = Arrays::of([
-        (Array::Step, &arrays[0]),
-        (Array::Parameters, &arrays[1]),
+    let given = [
+        (Array::Step, &*arrays[0]),
+        (Array::Parameters, &*arrays[1]),
         (Array::Constants, constants),
         (Array::Terms, terms),
         (Array::Advected, advected),
@@ -68,11 +79,10 @@ fn outputs_of<B: Backend<f64>>(code: &B::Code, program: &Program, arrays: &[Vec<
         (Array::Half, half),
         (Array::Velocity, velocity),
         (Array::Target, target),
-    ]);
-    let mut numbers = vec![0.0; program.outputs.len()];
-    B::run(code, &B::image(code, constants), &arrays, &mut numbers);
-    // Which NaN one is depends on the order of operands, which is the compiler's.
-    numbers.into_iter().map(|number| if number.is_nan() { u64::MAX } else { number.to_bits() }).collect()
+    ];
+    let mut numbers = vec![T::zero(); program.outputs.len()];
+    B::run(code, &B::image(code, constants), given, &mut numbers);
+    numbers
 }
 
 /// As long as the program reads, and random.
@@ -92,11 +102,22 @@ fn assert_same(programs: &[&Program], seed: u64) -> usize {
     let interpreted = <Interpreted as Backend<f64>>::codes(programs).expect("programs");
     let (mut random, mut numbers) = (Random::new(seed), 0);
     for ((program, machine), interpreted) in programs.iter().zip(&machine).zip(&interpreted) {
-        for _ in 0..20 {
-            let arrays = inputs(program, &mut random);
-            let expected = outputs_of::<Interpreted>(interpreted, program, &arrays);
-            assert_eq!(outputs_of::<Machine>(machine, program, &arrays), expected, "{program:?}");
-            numbers += expected.iter().filter(|&&bits| bits != u64::MAX).count();
+        for _ in 0..3 {
+            let all: [_; 8] = std::array::from_fn(|_| inputs(program, &mut random));
+            let expected = all.each_ref().map(|arrays| outputs_of::<Interpreted>(interpreted, program, arrays));
+            for (arrays, expected) in all.iter().zip(&expected) {
+                assert_eq!(&outputs_of::<Machine>(machine, program, arrays), expected, "{program:?}");
+                numbers += expected.iter().filter(|&&bits| bits != u64::MAX).count();
+            }
+            // Side by side.
+            let lanes = |array: usize, at| AutoF64x8::from(std::array::from_fn(|k| all[k][array][at]));
+            let of = |array: usize| (0..all[0][array].len()).map(|at| lanes(array, at)).collect();
+            let together: Vec<Vec<AutoF64x8>> = (0..Array::COUNT).map(of).collect();
+            let found = numbers_of::<AutoF64x8, Machine>(machine, program, &together);
+            for (k, expected) in expected.iter().enumerate() {
+                let lane: Vec<u64> = found.iter().map(|number| bits(number.extract(k))).collect();
+                assert_eq!(&lane, expected, "lane {k}: {program:?}");
+            }
         }
     }
     numbers

@@ -19,6 +19,7 @@ pub trait Entries<T>: Copy {
 
 /// Row by row.
 impl<T: Real, const R: usize, const C: usize> Entries<T> for SMatrix<T, R, C> {
+    #[hot]
     fn from_entries(next: &mut impl FnMut() -> T) -> Self {
         // nalgebra goes by columns.
         SMatrix::<T, C, R>::from_fn(|_, _| next()).transpose()

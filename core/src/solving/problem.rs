@@ -30,7 +30,7 @@ pub(crate) struct Problem<'a, L: Effect> {
 /// The equation where steps are made: inlined, so that all of a solve can stay in registers.
 pub(super) struct InlinedEquation<'a, L: Effect> {
     pub(super) constants: &'a L::Constants,
-    pub(super) terms: L::StepTerms,
+    pub(super) terms: &'a L::StepTerms,
 }
 
 impl<L: Effect> System<Group<L>> for InlinedEquation<'_, L> {
@@ -41,12 +41,12 @@ impl<L: Effect> System<Group<L>> for InlinedEquation<'_, L> {
 
     #[hot]
     fn newton_update(&self, half: &Vector<L>) -> Iteration<Group<L>> {
-        L::newton_update(self.constants, &self.terms, half)
+        L::newton_update(self.constants, self.terms, half)
     }
 
     #[hot]
     fn residual(&self, half: &Vector<L>) -> Vector<L> {
-        L::newton_residual(self.constants, &self.terms, half).momentum_defect
+        L::newton_residual(self.constants, self.terms, half).momentum_defect
     }
 }
 
@@ -68,7 +68,7 @@ impl<L: Effect> Problem<'_, L> {
             let (lanes, iterations) = self.iterate_by_secants(&terms, guess);
             return lanes.settled.all().then(|| lanes.root::<L::Retraction>(iterations));
         }
-        let equation = InlinedEquation::<L> { constants: self.constants, terms };
+        let equation = InlinedEquation::<L> { constants: self.constants, terms: &terms };
         if const { Scalar::<L>::LANES > 1 } {
             return self.solve_together::<REUSE>(&equation, guess, largest);
         }

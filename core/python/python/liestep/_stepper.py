@@ -245,9 +245,11 @@ class Stepper:
         >>> run.events["low"].rising.all()
         np.True_
         """
-        course = _course(until, every, times, events)
-        made = self._native.run(self.step, self.method, _start(attitude, velocity), course)
-        return _finished(self.term, self.step, made, list(events or {}), self._about())
+        return self._made(_start(attitude, velocity), _course(until, every, times, events), list(events or {}))
+
+    def _made(self, start: _Start, course: _Course, names: list[str]) -> Run:
+        made = self._native.run(self.step, self.method, start, course)
+        return _finished(self.term, self.step, made, names, self._about())
 
     def _about(self) -> str:
         kind, scheme, compensated, substeps = self.method
@@ -277,24 +279,23 @@ def _finished(term: Term, step: float, made: dict[str, Any], names: list[str], a
     return run
 
 
-def accurate(
-    term: Term,
-    tolerance: float,
-    *,
-    velocity: Any,
-    attitude: Any = None,
-    until: float,
-    every: int = 1,
-    times: Any = None,
-    events: Mapping[str, str] | None = None,
-) -> Run:
+class _Search(Stepper):
+    """A stepper whose method and step are found by trial runs, for the motion that it is to make."""
+
+    def __init__(self, term: Term, tolerance: float) -> None:
+        self.term, self.tolerance = term, float(tolerance)
+
+    def _made(self, start: _Start, course: _Course, names: list[str]) -> Run:
+        made = self.term._scene().ask(self.tolerance, start, course)
+        about = f"steps of {made['step']:.4g} s by {made['method']}"
+        run = _finished(self.term, made["step"], made, names, about)
+        run.method = _method(made["method"])
+        return run
+
+
+def accurate(term: Term, tolerance: float, **run: Any) -> Run:
     """As `Stepper.run`, by the method and the step that trial runs have found; `Run.choice` has them all."""
-    course = _course(until, every, times, events)
-    made = term._scene().ask(float(tolerance), _start(attitude, velocity), course)
-    about = f"steps of {made['step']:.4g} s by {made['method']}"
-    run = _finished(term, made["step"], made, list(events or {}), about)
-    run.method = _method(made["method"])
-    return run
+    return _Search(term, tolerance).run(**run)
 
 
 def _method(name: str) -> dict[str, Any]:

@@ -9,6 +9,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::file::effects::EFFECTS;
 use crate::file::mistake::Wrong;
+use crate::file::scene::SceneFile;
 use crate::file::tables::{Keys, dotted, ends};
 
 /// The scenes of an ensemble: each draws its values, by what the one who runs it draws with.
@@ -27,6 +28,9 @@ pub struct SceneEnsemble {
     pub text: String,
     pub(crate) axes: Vec<Axis>,
     pub(crate) path: PathBuf,
+    /// The tables of which something is drawn, and the scene that has the others; or all, and none.
+    pub(crate) tables: DeTable<'static>,
+    pub(crate) scene: Option<Box<SceneFile>>,
 }
 
 /// What a value is drawn from; in the unit that the file has.
@@ -126,6 +130,8 @@ pub(crate) fn parts(table: &Spanned<DeValue<'_>>) -> Result<SceneEnsemble, Wrong
         axes: Vec::new(),
         path: PathBuf::new(),
         text: String::new(),
+        tables: DeTable::new(),
+        scene: None,
     };
     for (key, value) in inner {
         let whole = |range: RangeInclusive<u64>| {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use toml::Spanned;
-use toml::de::{DeArray, DeTable, DeValue};
+use toml::de::{DeArray, DeTable, DeValue, Error, ValueDeserializer};
 
 use crate::file::document::scene;
 use crate::file::draws::{Axis, DRAW, SceneEnsemble, Spread, parts};
@@ -20,19 +20,6 @@ impl SceneEnsemble {
     ///
     /// A [`Mistake`] where there is no such scene, as of a mass below zero.
     pub fn member(&self, draw: &mut dyn FnMut(&str, Spread) -> f64) -> Result<SceneFile, Mistake> {
-        let mut document =
-            DeTable::parse(&self.text).map_err(|error| Mistake::of_toml(&self.path, &self.text, &error))?;
-        for table in ["sweep", "ensemble"] {
-            document.get_mut().remove(table);
-        }
-        self.with_values(document, draw)
-    }
-
-    fn with_values(
-        &self,
-        document: Document<'_>,
-        draw: &mut dyn FnMut(&str, Spread) -> f64,
-    ) -> Result<SceneFile, Mistake> {
         let located = |(span, message): Wrong| Mistake::at(&self.path, place_of(&self.text, &span), message);
         // As they could have been written.
         let texts: Vec<Vec<String>> = self
@@ -40,8 +27,7 @@ impl SceneEnsemble {
             .iter()
             .map(|axis| axis.components.iter().map(|part| part.text(&self.text, draw)).collect())
             .collect();
-        let span = document.span();
-        let mut varied = document.into_inner();
+        let mut varied: DeTable<'_> = self.tables.clone();
         for (Axis { keys, components, is_list, span }, texts) in self.axes.iter().zip(&texts) {
             let mut values = DeArray::new();
             for (component, text) in components.iter().zip(texts) {
@@ -54,7 +40,15 @@ impl SceneEnsemble {
             };
             set(&mut varied, keys, value).map_err(located)?;
         }
-        scene(&self.path, &self.text, &Spanned::new(span, varied))
+        let Some(own) = &self.scene else {
+            return scene(&self.path, &self.text, &Spanned::new(0..self.text.len(), varied));
+        };
+        let mut own = SceneFile::clone(own);
+        for (name, table) in varied {
+            let read = own.set(name.get_ref(), ValueDeserializer::from(table));
+            read.map_err(|error| Mistake::of_toml(&self.path, &self.text, &error))?;
+        }
+        Ok(own)
     }
 }
 
@@ -115,9 +109,11 @@ pub(crate) fn read(
         }
     }
     (ensemble.path, ensemble.text) = (path.to_owned(), text.to_owned());
+    let read = read_once(&mut ensemble, file);
+    read.map_err(|error| Mistake::of_toml(path, text, &error))?;
     // What is wrong with a unit or a key is wrong with every member.
     for end in [true, false] {
-        ensemble.with_values(document.clone(), &mut |_, spread| match spread {
+        ensemble.member(&mut |_, spread| match spread {
             Spread::Uniform { from, to } => {
                 if end {
                     from
@@ -129,4 +125,20 @@ pub(crate) fn read(
         })?;
     }
     Ok(ensemble)
+}
+
+/// What no member reads again: the tables of a text, which is kept as long as the program runs.
+fn read_once(ensemble: &mut SceneEnsemble, file: &SceneFile) -> Result<(), Error> {
+    let kept: &'static str = Box::leak(ensemble.text.as_str().into());
+    let tables = DeTable::parse(kept)?.into_inner();
+    let is_drawn = |name: &str| {
+        let mut keys = ensemble.axes.iter().filter_map(|axis| axis.keys.first());
+        keys.any(|key| key.get_ref() == name)
+    };
+    // Of these more than their own table is read anew.
+    let all = is_drawn("lagrangian") || is_drawn("force") || file.run.steps_per_orbit.is_some();
+    let is_read = |name: &str| is_drawn(name) || all && !["sweep", "ensemble"].contains(&name);
+    ensemble.tables = tables.into_iter().filter(|(name, _)| is_read(name.get_ref())).collect();
+    ensemble.scene = (!all).then(|| Box::new(SceneFile { sweep: None, ..file.clone() }));
+    Ok(())
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use liestep::recording;
 use nalgebra::Matrix3;
 use serde::Deserialize;
+use toml::de::{Error, ValueDeserializer};
 
 use crate::file::body::{Body, Kinetic};
 use crate::file::column::{Column, Output};
@@ -42,6 +43,17 @@ macro_rules! scene_file {
             pub(crate) fn effects(&self) -> impl Iterator<Item = (&'static Listed, &dyn Table)> {
                 let tables = [$(self.$name.as_ref().map(|table| table as &dyn Table)),+];
                 EFFECTS.iter().zip(tables).filter_map(|(effect, table)| Some((effect, table?)))
+            }
+
+            /// Reads the table of the body, the start or an effect anew; others are left as they are.
+            pub(crate) fn set(&mut self, name: &str, table: ValueDeserializer<'_>) -> Result<(), Error> {
+                match name {
+                    "body" => self.body = Some(Body::deserialize(table)?),
+                    "start" => self.start = Start::deserialize(table)?,
+                    $(stringify!($name) => self.$name = Some(effects::$table::deserialize(table)?),)+
+                    _ => {}
+                }
+                Ok(())
             }
 
             /// The orbit that they follow.

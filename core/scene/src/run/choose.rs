@@ -5,10 +5,10 @@ use std::rc::Rc;
 use liestep::accuracy::Accuracy;
 use liestep::effects::{CayleyBody, Dipole, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::groups::Advected;
-use liestep::mechanics::{Effect as _, Inertia, KineticPart, Term as _, WithEitherKinetic, WithoutKinetic};
+use liestep::mechanics::{Effect, Inertia, KineticPart, Term as _, WithEitherKinetic, WithoutKinetic};
 use liestep::methods::ExactBody;
 use liestep::motion::AnyStepper;
-use liestep::{SO3, Stepper};
+use liestep::{SO3, StateOf, Stepper};
 use liestep_late::{Declaration, Late, LateError};
 use nalgebra::Vector3;
 
@@ -27,36 +27,52 @@ type V = Vector3<f64>;
 type Program<K> = Late<SO3, Seen, K, Backend>;
 /// The effects of a file and its force.
 type Rest = Program<WithoutKinetic>;
-/// A declaration with the numbers of its parameters.
-type Numbered = (&'static Declaration, Vec<f64>);
+/// All of a scene in one program.
+pub type Whole = Program<WithEitherKinetic>;
 
-/// What has a kinetic term and isn't compiled with the scenes: a Lagrangian of the file's own, or a body of the library.
-fn text_of_body(file: &SceneFile, J: Inertia) -> Result<Option<Numbered>, LateError> {
-    let (text, numbers) = match (&file.lagrangian, file.body.map(|body| body.kinetic)) {
-        (Some(own), _) => return Ok(Some((own.declaration, own.numbers.clone()))),
-        (None, Some(Kinetic::Cayley)) => (CayleyBody::<f64>::DECLARATION, liestep_late::numbers(&CayleyBody { J })),
-        (None, Some(Kinetic::Geodesic)) => {
-            (GeodesicBody::<f64>::DECLARATION, liestep_late::numbers(&GeodesicBody { J }))
+/// What steps it, and the state that it starts from.
+pub type MemberInLanes = (Stepper<Whole>, StateOf<Whole>);
+
+/// What has a kinetic term: a Lagrangian of the file's own, or a body of the library by its text. With its numbers.
+#[derive(Clone)]
+struct Moving {
+    own: Option<&'static Declaration>,
+    text: &'static str,
+    numbers: Vec<f64>,
+}
+
+impl Moving {
+    fn of(file: &SceneFile, J: Inertia) -> Result<Self, Stop> {
+        fn body<E: Effect<Scalar = f64>>(body: &E) -> Moving {
+            Moving { own: None, text: E::DECLARATION, numbers: liestep_late::numbers(body) }
         }
-        (None, Some(Kinetic::FourthOrder)) => {
-            (FourthOrderBody::<f64>::DECLARATION, liestep_late::numbers(&FourthOrderBody { J }))
+        if let Some(own) = &file.lagrangian {
+            return Ok(Self { own: Some(own.declaration), text: "", numbers: own.numbers.clone() });
         }
-        (None, Some(Kinetic::SixthOrder)) => {
-            (SixthOrderBody::<f64>::DECLARATION, liestep_late::numbers(&SixthOrderBody { J }))
-        }
-        (None, Some(Kinetic::Rigid) | None) => return Ok(None),
-    };
-    Ok(Some((Declaration::parse(text)?, numbers)))
+        let given = file.body.ok_or_else(nothing)?;
+        Ok(match (given.kinetic, given.mass) {
+            (Kinetic::Rigid, Distribution::Principal(J_d)) => body(&PrincipalBody { J_d }),
+            (Kinetic::Rigid, Distribution::Full(J_d)) => body(&RigidBody { J_d }),
+            (Kinetic::Cayley, _) => body(&CayleyBody { J }),
+            (Kinetic::Geodesic, _) => body(&GeodesicBody { J }),
+            (Kinetic::FourthOrder, _) => body(&FourthOrderBody { J }),
+            (Kinetic::SixthOrder, _) => body(&SixthOrderBody { J }),
+        })
+    }
+
+    fn declaration(&self) -> Result<&'static Declaration, LateError> {
+        self.own.map_or_else(|| Declaration::parse(self.text), Ok)
+    }
 }
 
 /// The declarations of this body, if it is one, and of what a file names beside it, derived once a program.
 fn program<K: KineticPart>(
     file: &SceneFile,
     J: &Inertia,
-    body: Option<&Numbered>,
+    body: Option<&Moving>,
 ) -> Result<Option<Program<K>>, LateError> {
     let listed = file.effects().map(|(effect, _)| Declaration::parse(effect.derived.1));
-    let (body_itself, own) = (body.map(|body| Ok(body.0)), file.force.iter().map(|own| Ok(own.declaration)));
+    let (body_itself, own) = (body.map(Moving::declaration), file.force.iter().map(|own| Ok(own.declaration)));
     let terms = body_itself.into_iter().chain(listed).chain(own).collect::<Result<Vec<_>, _>>()?;
     if terms.is_empty() {
         return Ok(None);
@@ -64,10 +80,37 @@ fn program<K: KineticPart>(
     Late::of(Declaration::sum(&terms)?)?.with_all(&numbers(file, J, body, 0.0)).map(Some)
 }
 
+/// A scene by its own step as one program, in which members of an ensemble go side by side; none where its steps are others
+/// or see something else at each time.
+pub(crate) fn whole(file: &SceneFile) -> Option<Whole> {
+    let is_of_one_kind = matches!(file.run.method, Method::Step) && !file.has_steps_of_its_own();
+    let J = inertia(file).ok().filter(|_| is_of_one_kind && file.turning().next().is_none())?;
+    program(file, &J, Moving::of(file, J).ok().as_ref()).ok()?
+}
+
+/// The same with the numbers of this file, and its start.
+pub(crate) fn member(file: &SceneFile, whole: &Whole) -> Result<MemberInLanes, Stop> {
+    let Pace::Step { step, .. } = file.run.pace else { return Err(nothing()) };
+    let J = inertia(file)?;
+    let numbers = numbers(file, &J, Some(&Moving::of(file, J)?), 0.0);
+    let stepper = whole.clone().with_all(&numbers).map_err(late_error)?;
+    let stepper = Stepper::new(stepper, step).map_err(Stop::Setup)?;
+    let state = stepper.start(file.start.attitude, file.start.velocity).map_err(Stop::Start)?;
+    Ok((stepper, state))
+}
+
+/// No effect that asks for an inertia is beside a Lagrangian.
+fn inertia(file: &SceneFile) -> Result<Inertia, Stop> {
+    match file.body {
+        Some(body) => Ok(body.inertia()),
+        None => Inertia::from_principal_moments(V::repeat(1.0)).map_err(|error| Stop::Other(error.to_string())),
+    }
+}
+
 /// All their numbers, at a time.
-fn numbers(file: &SceneFile, J: &Inertia, body: Option<&Numbered>, time: f64) -> Vec<f64> {
+fn numbers(file: &SceneFile, J: &Inertia, body: Option<&Moving>, time: f64) -> Vec<f64> {
     let own = file.force.iter().flat_map(|own| own.numbers.iter().copied());
-    let body = body.iter().flat_map(|body| body.1.iter().copied());
+    let body = body.iter().flat_map(|body| body.numbers.iter().copied());
     body.chain(file.effects().flat_map(|(_, table)| table.numbers(J, time))).chain(own).collect()
 }
 
@@ -149,11 +192,7 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
             }
         };
     }
-    // No effect that asks for an inertia is beside a Lagrangian.
-    let J = match file.body {
-        Some(body) => body.inertia(),
-        None => Inertia::from_principal_moments(V::repeat(1.0)).map_err(|error| Stop::Other(error.to_string()))?,
-    };
+    let J = inertia(file)?;
     if matches!(file.run.method, Method::Splitting(_) | Method::Processed(_) | Method::Collocation(_)) {
         return with_exact_body(file, &J, h);
     }
@@ -161,8 +200,9 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
         return any!(Stepper::new(paced.paced().map_err(late_error)?, h).and_then(Stepper::paced));
     }
     let (turns, seen) = (file.turning().next().is_some(), Rc::new(file.clone()));
-    if let Some(body) = text_of_body(file, J).map_err(late_error)? {
-        let whole: Option<Program<WithEitherKinetic>> = program(file, &J, Some(&body)).map_err(late_error)?;
+    if file.lagrangian.is_some() || file.kinetic() != Kinetic::Rigid {
+        let body = Moving::of(file, J)?;
+        let whole: Option<Whole> = program(file, &J, Some(&body)).map_err(late_error)?;
         let Some(whole) = whole else { return Err(nothing()) };
         if !turns {
             return step!(whole);

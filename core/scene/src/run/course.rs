@@ -1,9 +1,8 @@
 //! What is kept of a run of one body, and the functions of its events.
 
-use liestep::SO3;
 use liestep::groups::Advected;
-use liestep::motion::{AnyState, AnyStepper, Moment};
-use liestep::recording;
+use liestep::motion::{AnyState, AnyStepper, Integrator, Moment};
+use liestep::{SO3, recording};
 use nalgebra::Vector3;
 
 use crate::file::event::{Direction, Event, Quantity};
@@ -15,7 +14,7 @@ use crate::run::make::{Course, EventFunction};
 pub type MemberStart = (AnyStepper<SO3, ()>, AnyState<SO3, ()>);
 
 /// The motion of one body now.
-pub(crate) fn sample<A: Advected<SO3>>(now: &Moment<'_, AnyStepper<SO3, A>>) -> Sample {
+pub(crate) fn sample<I: Integrator<Group = SO3>>(now: &Moment<'_, I>) -> Sample {
     let body = BodySample::turning(now.attitude(), now.velocity(), now.momentum());
     Sample {
         time: now.time(),
@@ -52,14 +51,13 @@ pub(crate) fn watches<A: Advected<SO3> + 'static>(
 
 /// An event of a scene for the members of its ensemble: its name, what counts, the function that passes zero there, and
 /// whether the motion ends with it.
-pub type MemberEvent =
-    (String, recording::Event, Box<dyn Fn(&Moment<'_, AnyStepper<SO3, ()>>) -> f64 + Send + Sync>, bool);
+pub type MemberEvent<I> = (String, recording::Event, Box<dyn Fn(&Moment<'_, I>) -> f64 + Send + Sync>, bool);
 
 impl SceneFile {
     /// The events that members are watched for.
-    pub fn member_events(&self) -> impl Iterator<Item = MemberEvent> {
+    pub fn member_events<I: Integrator<Group = SO3>>(&self) -> impl Iterator<Item = MemberEvent<I>> {
         let axis = self.picture.axis.0;
-        let of = move |Event { name, quantity, direction, stops }: &Event| -> MemberEvent {
+        let of = move |Event { name, quantity, direction, stops }: &Event| -> MemberEvent<I> {
             (name.clone(), kind(*direction), Box::new(function(*quantity, axis)), *stops)
         };
         self.event.iter().map(of)
@@ -76,10 +74,10 @@ fn kind(direction: Direction) -> recording::Event {
 }
 
 /// The function that rises through zero as the quantity rises through its value; a tilt is that of this body axis.
-fn function<A: Advected<SO3> + 'static>(
+fn function<I: Integrator<Group = SO3>>(
     quantity: Quantity,
     axis: Vector3<f64>,
-) -> impl Fn(&Moment<'_, AnyStepper<SO3, A>>) -> f64 + Send + Sync + 'static {
+) -> impl Fn(&Moment<'_, I>) -> f64 + Send + Sync + 'static {
     move |now| match quantity {
         // By the cosine, which is smooth at the vertical.
         Quantity::Tilt(angle) => angle.cos() - (now.attitude().as_matrix() * axis).z,

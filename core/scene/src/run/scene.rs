@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use liestep::motion::{AnyStepper, Moment};
+use liestep::motion::{Integrator, Moment};
 use liestep::recording::{self, Csv, Sink};
 use liestep::{SO3, SetupError, StepError};
 
@@ -12,7 +12,7 @@ use crate::file::mistake::Mistake;
 use crate::file::quantity::short;
 use crate::file::scene::{Origin, SceneFile};
 use crate::file::schedule::Pace;
-use crate::run::choose;
+use crate::run::choose::{self, MemberInLanes, Whole};
 use crate::run::course::{MemberStart, sample};
 use crate::run::make::{Listeners, Run, Stop};
 
@@ -73,9 +73,25 @@ impl SceneFile {
         choose::stepper(self).map_err(|stop| self.mistake(stop))
     }
 
+    /// The scene as one program, in which members of its ensemble go side by side; none where its steps aren't its own, or
+    /// see something else at each time.
+    #[must_use]
+    pub fn whole(&self) -> Option<Whole> {
+        choose::whole(self)
+    }
+
+    /// As [`stepper`](Self::stepper), by the program of a file that differs from this one in numbers alone.
+    ///
+    /// # Errors
+    ///
+    /// As [`stepper`](Self::stepper).
+    pub fn in_lanes(&self, whole: &Whole) -> Result<MemberInLanes, Mistake> {
+        choose::member(self, whole).map_err(|stop| self.mistake(stop))
+    }
+
     /// The numbers of its columns in a moment of such a stepper, one after the other. Of the two quaternions it is either.
     #[must_use]
-    pub fn numbers(columns: &[Column], now: &Moment<'_, AnyStepper<SO3, ()>>) -> Vec<f64> {
+    pub fn numbers<I: Integrator<Group = SO3>>(columns: &[Column], now: &Moment<'_, I>) -> Vec<f64> {
         let now = sample(now);
         Column::row(columns, &now, &now)
     }
