@@ -168,8 +168,8 @@ impl<G: LieGroup, R: Retraction<G>> CarefulSolve<'_, G, R> {
             for _ in 0..MOST_HALVINGS {
                 let residual = self.equation.residual(&(lanes.half - update * factor));
                 let size = residual.dot(&residual);
-                // Neither NaN nor infinite.
-                let is_defined = (size - size).simd_eq(real(0.0)) | lanes.settled;
+                // NaN is below nothing.
+                let is_defined = size.simd_lt(real(f64::INFINITY)) | lanes.settled;
                 if is_defined.all() {
                     break;
                 }
