@@ -191,7 +191,7 @@ fn of_any_degree_as_typed() {
     let fastest = 1.0 / axis.dot(&(J * axis)).sqrt();
     for share in [0.7, 0.72, 0.9, 0.99] {
         let mut state = stepper.start(SO3::identity(), axis * (share * fastest)).unwrap();
-        assert!(stepper.max_step(&state) == 0.01, "{share}: {}", stepper.max_step(&state));
+        assert!(stepper.max_step(&state) > 0.009_999, "{share}: {}", stepper.max_step(&state));
         stepper.step(&mut state).unwrap();
     }
     // By rounding the velocity is 1e4 times less sure than the momentum.
