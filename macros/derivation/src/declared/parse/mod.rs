@@ -384,6 +384,19 @@ fn no_field(name: &Ident, source: &Source, fields: &[String], group: Option<(&Gr
     }
 }
 
+/// Which bodies may see a field, and where what is translated has come to, which may be meant.
+fn seers((name, field): (&Ident, &Ident), group: Option<&Group>, factors: &[Factor]) -> String {
+    let is_added = |at: &usize| group.is_some_and(|group| group.factor(*at).is_added);
+    let turning = (0..factors.len()).filter(|at| !is_added(at));
+    let seers: Vec<_> = turning.map(|at| format!("`{field}.seen_from({})`", factors[at].name)).collect();
+    if seers.is_empty() {
+        return format!("a translation doesn't move a vector: use the field `{field}` itself");
+    }
+    let place = |factor: &str| format!("; where `{factor}` has come to is `{name} = {factor}.seen_from(space)`");
+    let place = (0..factors.len()).find(is_added).map(|at| place(&factors[at].name)).unwrap_or_default();
+    format!("who sees `{field}`? write {}{place}", seers.join(" or "))
+}
+
 /// What an advected parameter is, and which bodies move it.
 enum Moved<'a> {
     Field(&'a Ident, Seen),
@@ -401,21 +414,7 @@ fn seen<'a>(
     let place = |name: &Ident| factors.iter().position(|factor| name.unraw() == factor.name);
     match source {
         Source::Field(field) if factors.len() > 1 && !is_given => {
-            let turns = |at: &usize| group.is_none_or(|(group, _)| !group.factor(*at).is_added);
-            let seers = (0..factors.len()).filter(turns).map(|at| format!("`{field}.seen_from({})`", factors[at].name));
-            let message = match seers.collect::<Vec<_>>().as_slice() {
-                [] => format!("a translation doesn't move a vector: use the field `{field}` itself"),
-                asked => {
-                    let added =
-                        (0..factors.len()).find(|at| group.is_some_and(|(group, _)| group.factor(*at).is_added));
-                    let place = added.map(|at| {
-                        let factor = &factors[at].name;
-                        format!("; where `{factor}` has come to is `{name} = {factor}.seen_from(space)`")
-                    });
-                    format!("who sees `{field}`? write {}{}", asked.join(" or "), place.unwrap_or_default())
-                }
-            };
-            errors.push_decisive(field.span(), message);
+            errors.push_decisive(field.span(), seers((name, field), group.map(|(group, _)| group), factors));
             None
         }
         Source::Field(field) => Some(Moved::Field(field, Seen::From(0))),
