@@ -41,7 +41,7 @@ macro_rules! listed {
     };
 }
 
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[inline]
 fn filled<'a, T: Real>(value: &impl Entries<T>, room: &'a mut [T]) -> &'a [T] {
     let mut length = 0;
     value.each(&mut |entry| {
@@ -54,7 +54,7 @@ fn filled<'a, T: Real>(value: &impl Entries<T>, room: &'a mut [T]) -> &'a [T] {
 }
 
 /// Runs a program, and makes something of what comes out.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[inline(never)]
 fn run<T: Real, B: Backend<T>, R, const N: usize>(
     program: &Ready<B::Code>,
     image: &B::Image,
@@ -74,7 +74,7 @@ fn run<T: Real, B: Backend<T>, R, const N: usize>(
 }
 
 /// By this room for the outputs.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[inline]
 fn into<T: Real, B: Backend<T>, R, const N: usize>(
     program: &Ready<B::Code>,
     image: &B::Image,
@@ -319,7 +319,7 @@ where
         constants.0.numbers.iter().all(is_finite)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[inline]
     fn kick_before(constants: &Self::Constants, w: &W) -> Vector<G> {
         let folded = &*constants.0;
         listed!(advected = w);
@@ -336,7 +336,7 @@ where
         Some(run::<_, B, _, _>(program, image, given, vector))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[inline]
     fn step_terms(constants: &Self::Constants, a: &Vector<G>, w: &W) -> Self::StepTerms {
         let folded = &*constants.0;
         let mut terms = StepTerms { right_side: *a, advected: *w, numbers: [real(0.0); MOST_TERMS] };
@@ -350,7 +350,7 @@ where
         terms
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[inline]
     fn newton_system(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> (Vector<G>, Square<G>) {
         let folded = &*constants.0;
         let program = (&folded.stages.newton_system, &folded.newton_system);
@@ -359,7 +359,6 @@ where
             folded,
             terms,
             half,
-            #[cfg_attr(not(debug_assertions), inline(always))]
             |outputs| (vector(outputs), square::<G>(&outputs[G::DIMENSION..])),
         );
         if !folded.declaration.in_increment {
@@ -369,7 +368,7 @@ where
         (residual, Vector::<G>::square(|k| jacobian * Vector::<G>::column(&tangent, k)))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[inline]
     fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> Residual<Vector<G>> {
         let folded = &*constants.0;
         let program = (&folded.stages.newton_residual, &folded.newton_residual);
@@ -378,7 +377,6 @@ where
             folded,
             terms,
             half,
-            #[cfg_attr(not(debug_assertions), inline(always))]
             |outputs| Residual {
                 momentum_defect: vector(outputs),
                 moving_kick: folded.declaration.is_expensive.then(|| vector(&outputs[G::DIMENSION..])),
@@ -386,7 +384,7 @@ where
         )
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[inline]
     fn kick_after(constants: &Self::Constants, increment: &Matrix<G>, next: &W) -> Vector<G> {
         let folded = &*constants.0;
         let (program, image) = (&folded.stages.kick_after, &folded.kick_after);
@@ -403,7 +401,7 @@ where
 }
 
 /// What an iteration computes.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[inline]
 fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>, R>(
     (program, image): (&Ready<B::Code>, &B::Image),
     folded: &Folded<G::Scalar, B>,

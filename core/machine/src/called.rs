@@ -91,7 +91,7 @@ impl Function {
     /// # Panics
     ///
     /// Where an array is shorter than what is read of it, or outputs than what is written: then nothing is called.
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[inline]
     pub(crate) fn call<T: 'static, const N: usize>(&self, given: Given<'_, T, N>, outputs: &mut [T]) {
         assert!(self.lanes == lanes_of::<T>(), "machine code is for `f64`, or for eight of them");
         // A handful of comparisons, in release builds too: a call of this function is safe. What isn't read isn't set.

@@ -64,7 +64,7 @@ impl<T: Real> Backend<T> for Machine {
         }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[inline]
     fn run<const N: usize>(code: &Both, image: &Box<[T]>, given: Given<'_, T, N>, outputs: &mut [T]) {
         let in_lanes = || code.in_lanes.get().and_then(Option::as_ref);
         match lanes_of::<T>() {
