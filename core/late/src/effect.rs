@@ -354,13 +354,10 @@ where
     fn newton_system(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> (Vector<G>, Square<G>) {
         let folded = &*constants.0;
         let program = (&folded.stages.newton_system, &folded.newton_system);
-        let (residual, jacobian): (Vector<G>, Square<G>) = iteration::<G, W, B, _>(
-            program,
-            folded,
-            terms,
-            half,
-            |outputs| (vector(outputs), square::<G>(&outputs[G::DIMENSION..])),
-        );
+        let (residual, jacobian): (Vector<G>, Square<G>) =
+            iteration::<G, W, B, _>(program, folded, terms, half, |outputs| {
+                (vector(outputs), square::<G>(&outputs[G::DIMENSION..]))
+            });
         if !folded.declaration.in_increment {
             return (residual, jacobian);
         }
@@ -372,16 +369,10 @@ where
     fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> Residual<Vector<G>> {
         let folded = &*constants.0;
         let program = (&folded.stages.newton_residual, &folded.newton_residual);
-        iteration::<G, W, B, _>(
-            program,
-            folded,
-            terms,
-            half,
-            |outputs| Residual {
-                momentum_defect: vector(outputs),
-                moving_kick: folded.declaration.is_expensive.then(|| vector(&outputs[G::DIMENSION..])),
-            },
-        )
+        iteration::<G, W, B, _>(program, folded, terms, half, |outputs| Residual {
+            momentum_defect: vector(outputs),
+            moving_kick: folded.declaration.is_expensive.then(|| vector(&outputs[G::DIMENSION..])),
+        })
     }
 
     #[inline]
