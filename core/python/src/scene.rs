@@ -5,8 +5,8 @@ use std::sync::Arc;
 use liestep::SO3;
 use liestep::accuracy::{Accuracy, Choice};
 use liestep::groups::{
-    Advected, CayleyRetraction, Configuration, Given, Heisenberg, LieGroup, R1, R2, R3, Retraction, SE2, SE3, SL2, SO2, SU2,
-    SeenFrom,
+    Advected, CayleyRetraction, Configuration, Given, Heisenberg, LieGroup, R1, R2, R3, Retraction, SE2, SE3, SL2, SO2,
+    SU2, SeenFrom,
 };
 use liestep::mechanics::{KineticPart, Scene as Stepped, Sum, WithEitherKinetic, WithoutKinetic};
 use liestep::motion::{AnyState, AnyStepper};
