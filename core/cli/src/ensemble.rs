@@ -73,7 +73,7 @@ fn made(
     finished(path, scene, drawn, Ensemble::one_by_one(&drawn.text, drawn.members, steps, make), local, output)
 }
 
-/// The same of the members, as they are made.
+/// Makes the chunks of members that go in lanes or take turns, and prints what has become of them.
 fn finished<M: Integrator<Group = SO3> + 'static>(
     path: &Path,
     scene: &SceneFile,

@@ -48,11 +48,12 @@ pub struct Fit<S: SecondDerivatives, P: Plan<S>> {
     pub inputs: Vec<InputOf<S>>,
     /// What is constant.
     pub constants: Vec<f64>,
-    /// Of displacements of the start, of its momentum and of what is constant; nothing along what the readings don't show.
+    /// Of displacements of the start, its momentum and what is constant, a square of `2n + c` rows for a group of dimension `n`
+    /// and `c` constants, in the units of both places; zero along what the readings don't show.
     pub covariance: DMatrix<f64>,
     /// The sum of all squares, in variances.
     pub squares: f64,
-    /// The length of the last step, in standard deviations.
+    /// The length of the last step, standard deviations.
     pub step: f64,
     /// How many iterations there were.
     pub iterations: usize,
