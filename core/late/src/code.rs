@@ -23,11 +23,14 @@ pub trait Backend<T: Real>: Copy + Debug + 'static {
     /// Where it can't run one.
     fn codes(programs: &[&Program]) -> Result<Vec<Self::Code>, LateError>;
 
+    /// Makes now what else is made after some runs.
+    fn prepare(_: &Self::Code) {}
+
     /// The constants, as a program needs them.
     fn image(code: &Self::Code, constants: &[T]) -> Self::Image;
 
     /// Runs a program, for as many outputs as it has. Arrays are as long as what it reads of them.
-    fn run<const N: usize>(code: &Self::Code, image: &Self::Image, given: Given<'_, T, N>, outputs: &mut [T]);
+    fn run(code: &Self::Code, image: &Self::Image, given: &Given<'_, T>, outputs: &mut [T]);
 }
 
 /// Programs are read operation by operation: safe, on every machine, and in lanes.
@@ -46,13 +49,13 @@ impl<T: Real> Backend<T> for Interpreted {
         code.image(constants)
     }
 
-    fn run<const N: usize>(code: &Code, image: &Box<[T]>, given: Given<'_, T, N>, outputs: &mut [T]) {
-        code.run(image, &given, outputs);
+    fn run(code: &Code, image: &Box<[T]>, given: &Given<'_, T>, outputs: &mut [T]) {
+        code.run(image, given, outputs);
     }
 }
 
-/// The arrays that inputs are read from, each once; what a stage doesn't have isn't among them.
-pub type Given<'a, T, const N: usize> = [(Array, &'a [T]); N];
+/// The arrays that inputs other than constants are read from, each once; what a stage doesn't have isn't among them.
+pub type Given<'a, T> = [(Array, &'a [T])];
 
 /// Straight-line code. Registers hold constants, literals, inputs and what is computed: of these, one that isn't read any
 /// more is used again.
@@ -61,7 +64,8 @@ pub struct Code {
     /// What is known before a step, in the first registers: places among the constants, then literals.
     constants: Vec<usize>,
     literals: Vec<f64>,
-    inputs: Vec<Source>,
+    /// Then places in arrays, array by array.
+    inputs: Vec<(Array, Vec<usize>)>,
     runs: Vec<Run>,
     outputs: Vec<u16>,
     registers: usize,
@@ -175,7 +179,16 @@ impl Code {
         let inputs = || program.inputs.iter().enumerate();
         let first = inputs().filter(|(_, source)| is_constant(source)).map(|(value, _)| value);
         let literals = program.inputs.len()..fixed;
-        let others = inputs().filter(|(_, source)| !is_constant(source)).map(|(value, _)| value);
+        let mut others: Vec<usize> =
+            inputs().filter(|(_, source)| !is_constant(source)).map(|(value, _)| value).collect();
+        others.sort_by_key(|&value| program.inputs[value].array);
+        let mut inputs: Vec<(Array, Vec<usize>)> = Vec::new();
+        for Source { array, at } in others.iter().map(|&value| program.inputs[value]) {
+            match inputs.last_mut() {
+                Some((last, places)) if *last == array => places.push(at),
+                _ => inputs.push((array, vec![at])),
+            }
+        }
         let mut place = vec![0; fixed + program.operations.len()];
         for (register, value) in first.chain(literals).chain(others).enumerate() {
             place[value] = u16::try_from(register).ok()?;
@@ -184,7 +197,7 @@ impl Code {
         Some(Self {
             constants: program.inputs.iter().filter(|source| is_constant(source)).map(|source| source.at).collect(),
             literals: program.literals.clone(),
-            inputs: program.inputs.iter().copied().filter(|source| !is_constant(source)).collect(),
+            inputs,
             runs,
             outputs: program.outputs.iter().map(|&output| place[output as usize]).collect(),
             registers,
@@ -197,31 +210,31 @@ impl Code {
         self.constants.iter().map(of).chain(self.literals.iter().map(|&literal| real(literal))).collect()
     }
 
-    fn run<T: Real>(&self, image: &[T], given: &[(Array, &[T])], outputs: &mut [T]) {
-        let mut arrays: [&[T]; Array::COUNT] = [&[]; Array::COUNT];
-        for &(array, numbers) in given {
-            arrays[array as usize] = numbers;
-        }
-        let arrays = &arrays;
+    #[inline(never)]
+    fn run<T: Real>(&self, image: &[T], given: &Given<'_, T>, outputs: &mut [T]) {
         // Registers beyond those that are used cost time to clear.
         match self.registers {
-            0..=32 => self.run_in(&mut [T::zero(); 32], image, arrays, outputs),
-            33..=64 => self.run_in(&mut [T::zero(); 64], image, arrays, outputs),
-            65..=128 => self.run_in(&mut [T::zero(); 128], image, arrays, outputs),
-            129..=256 => self.run_in(&mut [T::zero(); 256], image, arrays, outputs),
-            more => self.run_in(&mut vec![T::zero(); more.next_power_of_two()], image, arrays, outputs),
+            0..=32 => self.run_in(&mut [T::zero(); 32], image, given, outputs),
+            33..=64 => self.run_in(&mut [T::zero(); 64], image, given, outputs),
+            65..=128 => self.run_in(&mut [T::zero(); 128], image, given, outputs),
+            129..=256 => self.run_in(&mut [T::zero(); 256], image, given, outputs),
+            more => self.run_in(&mut vec![T::zero(); more.next_power_of_two()], image, given, outputs),
         }
     }
 
     /// In registers whose number is a power of two, so that a masked index is always in range.
     #[inline]
-    fn run_in<T: Real>(&self, registers: &mut [T], image: &[T], arrays: &[&[T]; Array::COUNT], outputs: &mut [T]) {
+    fn run_in<T: Real>(&self, registers: &mut [T], image: &[T], given: &Given<'_, T>, outputs: &mut [T]) {
         let mask = registers.len().wrapping_sub(1);
         let (known, open) = registers.split_at_mut(image.len().min(registers.len()));
         known.copy_from_slice(&image[..known.len()]);
-        for (register, source) in open.iter_mut().zip(&self.inputs) {
-            // No step takes NaN for a number.
-            *register = arrays[source.array as usize].get(source.at).copied().unwrap_or_else(|| real(f64::NAN));
+        let mut open = open.iter_mut();
+        for (array, places) in &self.inputs {
+            let numbers = given.iter().find(|(given, _)| given == array).map_or(&[][..], |(_, numbers)| numbers);
+            for (&at, register) in places.iter().zip(&mut open) {
+                // No step takes NaN for a number.
+                *register = numbers.get(at).copied().unwrap_or_else(|| real(f64::NAN));
+            }
         }
         for Run { operation, instructions } in &self.runs {
             match *operation {

@@ -16,32 +16,34 @@ type Matrix<G> = <G as LieGroup>::Matrix;
 type Vector<G> = <G as LieGroup>::Vector;
 type Square<G> = <Vector<G> as Coordinates<<G as LieGroup>::Scalar>>::Square;
 
-/// The entries of a value, which stand where its size says that there is room: what isn't used costs time to clear.
-macro_rules! listed {
-    ($name:ident = $value:expr) => {
-        let (mut small, mut middle, mut large, mut more);
-        let $name: &[G::Scalar] = match (size_of_val($value).div_ceil(size_of::<G::Scalar>()), $value) {
-            (0..=3, value) => {
-                small = [real::<G::Scalar>(0.0); 3];
-                filled(value, &mut small)
-            }
-            (4..=9, value) => {
-                middle = [real::<G::Scalar>(0.0); 9];
-                filled(value, &mut middle)
-            }
-            (10..=18, value) => {
-                large = [real::<G::Scalar>(0.0); 18];
-                filled(value, &mut large)
-            }
-            (size, value) => {
-                more = vec![real::<G::Scalar>(0.0); size];
-                filled(value, &mut more)
+/// Room for numbers, on the stack unless they are many: what isn't used costs time to clear.
+macro_rules! room {
+    ($name:ident: $scalar:ty, $count:expr) => { room!($name: $scalar, $count, least 3, few 6, less 12, more 18, most 48) };
+    ($name:ident: $scalar:ty, $count:expr, $($place:ident $most:literal),+) => {
+        let mut beyond;
+        $(let mut $place;)+
+        let $name: &mut [$scalar] = match $count {
+            $(0..=$most => {
+                $place = [real::<$scalar>(0.0); $most];
+                &mut $place
+            })+
+            count => {
+                beyond = vec![real::<$scalar>(0.0); count];
+                &mut beyond
             }
         };
     };
 }
 
-#[inline]
+/// The entries of a value.
+macro_rules! listed {
+    ($name:ident = $value:expr) => {
+        room!(room: G::Scalar, size_of_val($value).div_ceil(size_of::<G::Scalar>()));
+        let $name = filled($value, room);
+    };
+}
+
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn filled<'a, T: Real>(value: &impl Entries<T>, room: &'a mut [T]) -> &'a [T] {
     let mut length = 0;
     value.each(&mut |entry| {
@@ -53,46 +55,11 @@ fn filled<'a, T: Real>(value: &impl Entries<T>, room: &'a mut [T]) -> &'a [T] {
     room.get(..length).unwrap_or(room)
 }
 
-/// Runs a program, and makes something of what comes out.
-#[inline(never)]
-fn run<T: Real, B: Backend<T>, R, const N: usize>(
-    program: &Ready<B::Code>,
-    image: &B::Image,
-    given: Given<'_, T, N>,
-    make: impl FnOnce(&[T]) -> R,
-) -> R {
-    // What isn't used costs time to clear.
-    if const { size_of::<R>() <= 3 * size_of::<T>() } && program.outputs <= 3 {
-        into::<T, B, R, N>(program, image, given, &mut [T::zero(); 3], make)
-    } else if program.outputs <= 12 {
-        into::<T, B, R, N>(program, image, given, &mut [T::zero(); 12], make)
-    } else if const { size_of::<R>() > 12 * size_of::<T>() } && program.outputs <= 48 {
-        into::<T, B, R, N>(program, image, given, &mut [T::zero(); 48], make)
-    } else {
-        into::<T, B, R, N>(program, image, given, &mut vec![T::zero(); program.outputs], make)
-    }
-}
-
-/// By this room for the outputs.
-#[inline]
-fn into<T: Real, B: Backend<T>, R, const N: usize>(
-    program: &Ready<B::Code>,
-    image: &B::Image,
-    given: Given<'_, T, N>,
-    outputs: &mut [T],
-    make: impl FnOnce(&[T]) -> R,
-) -> R {
-    B::run(&program.code, image, given, outputs);
-    make(outputs)
-}
-
-/// The same of a program that knows no constants.
-fn run_alone<T: Real, B: Backend<T>, R, const N: usize>(
-    program: &Ready<B::Code>,
-    given: Given<'_, T, N>,
-    make: impl FnOnce(&[T]) -> R,
-) -> R {
-    run::<T, B, R, N>(program, &B::image(&program.code, &[]), given, make)
+/// What a program computes that reads no constants.
+fn alone<T: Real, B: Backend<T>>(program: &Ready<B::Code>, given: &Given<'_, T>) -> Vec<T> {
+    let mut outputs = vec![T::zero(); program.outputs];
+    B::run(&program.code, &B::image(&program.code, &[]), given, &mut outputs);
+    outputs
 }
 
 /// The first of these numbers as a vector.
@@ -176,7 +143,7 @@ impl<T: Real, B: Backend<T>> PartialEq for Constants<T, B> {
 pub struct StepTerms<T, V, W> {
     right_side: V,
     advected: W,
-    numbers: [T; MOST_TERMS],
+    numbers: Option<[T; MOST_TERMS]>,
 }
 
 impl<G, W, K, B> Late<G, W, K, B>
@@ -186,12 +153,7 @@ where
     B: Backend<G::Scalar>,
 {
     /// What a term comes to, by `F`, `w` and `h`.
-    fn term<R>(
-        &self,
-        program: &Ready<B::Code>,
-        (f, w, h): (&Matrix<G>, &W, G::Scalar),
-        make: impl FnOnce(&[G::Scalar]) -> R,
-    ) -> R {
+    fn term(&self, program: &Ready<B::Code>, (f, w, h): (&Matrix<G>, &W, G::Scalar)) -> Vec<G::Scalar> {
         let inverse = program.reads(Array::Inverse).then(|| G::from_matrix_unchecked(*f).inverse().matrix());
         let (element, advected, inverse) = (entries(f), entries(w), inverse.map_or_else(Vec::new, |it| entries(&it)));
         let given = [
@@ -201,20 +163,13 @@ where
             (Array::Element, &element),
             (Array::Inverse, &inverse),
         ];
-        run_alone::<_, B, _, _>(program, given, make)
+        alone::<_, B>(program, &given)
     }
 
     /// A term of a Lagrangian, of which a force has none.
-    fn of_lagrangian<R>(
-        &self,
-        index: usize,
-        at: (&Matrix<G>, &W, G::Scalar),
-        make: impl FnOnce(&[G::Scalar]) -> R,
-    ) -> R {
-        match &self.stages.lagrangian {
-            Some(terms) => self.term(&terms[index], at, make),
-            None => make(&vec![real(0.0); G::DIMENSION]),
-        }
+    fn of_lagrangian(&self, index: usize, at: (&Matrix<G>, &W, G::Scalar)) -> Vec<G::Scalar> {
+        let terms = self.stages.lagrangian.as_ref();
+        terms.map_or_else(|| vec![real(0.0); G::DIMENSION], |terms| self.term(&terms[index], at))
     }
 }
 
@@ -272,25 +227,21 @@ where
     }
 
     fn momentum_jacobian(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> Square<G> {
-        self.term(&self.stages.momentum_jacobian, (f, w, h), square::<G>)
+        square::<G>(&self.term(&self.stages.momentum_jacobian, (f, w, h)))
     }
 
     fn limit(&self, velocity: Option<&Vector<G>>, w: &W) -> Limit<Self> {
         listed!(advected = w);
         listed!(given = velocity.unwrap_or(&Vector::<G>::zero()));
-        let arrays = [(Array::Parameters, &*self.numbers), (Array::Advected, advected), (Array::Velocity, given)];
-        if let (Some(_), Some([l, momentum, hessian])) = (velocity, &self.stages.at_velocity) {
-            return Limit {
-                l: run_alone::<_, B, _, _>(l, arrays, |outputs| outputs[0]),
-                momentum: run_alone::<_, B, _, _>(momentum, arrays, vector),
-                hessian: run_alone::<_, B, _, _>(hessian, arrays, square::<G>),
-            };
+        let given = [(Array::Parameters, &*self.numbers), (Array::Advected, advected), (Array::Velocity, given)];
+        if let (Some(_), Some(programs)) = (velocity, &self.stages.at_velocity) {
+            let [l, momentum, hessian] = programs.each_ref().map(|program| alone::<_, B>(program, &given));
+            return Limit { l: l[0], momentum: vector(&momentum), hessian: square::<G>(&hessian) };
         }
         let entries = G::DIMENSION * G::DIMENSION;
-        run_alone::<_, B, _, _>(&self.stages.at_rest, arrays, |outputs| {
-            let (inertia, bias) = (square::<G>(outputs), vector(&outputs[entries..]));
-            Limit::quadratic(velocity, inertia, bias, outputs[entries + G::DIMENSION])
-        })
+        let outputs = alone::<_, B>(&self.stages.at_rest, &given);
+        let (inertia, bias) = (square::<G>(&outputs), vector(&outputs[entries..]));
+        Limit::quadratic(velocity, inertia, bias, outputs[entries + G::DIMENSION])
     }
 
     fn with_energy(&self, w: &W, energy: G::Scalar) -> Option<(W, G::Scalar)> {
@@ -306,8 +257,7 @@ where
 
     fn constants(&self, h: G::Scalar) -> Self::Constants {
         let given = [(Array::Step, std::slice::from_ref(&h)), (Array::Parameters, &*self.numbers)];
-        let constants = &self.stages.constants;
-        let numbers = run_alone::<_, B, _, _>(constants, given, |outputs| outputs[..constants.outputs].to_vec());
+        let numbers = alone::<_, B>(&self.stages.constants, &given);
         let programs = self.specialise.map(|specialise| specialise(&self.declaration.programs, &numbers));
         // What is too large now was too large before, and isn't here.
         let own = programs.and_then(|programs| ready::<G::Scalar, B>(&programs).ok());
@@ -323,8 +273,9 @@ where
     fn kick_before(constants: &Self::Constants, w: &W) -> Vector<G> {
         let folded = &*constants.0;
         listed!(advected = w);
-        let given = [(Array::Constants, &*folded.numbers), (Array::Advected, advected)];
-        run::<_, B, _, _>(&folded.stages.kick_before, &folded.kick_before, given, vector)
+        room!(kick: G::Scalar, G::DIMENSION);
+        B::run(&folded.stages.kick_before.code, &folded.kick_before, &[(Array::Advected, advected)], kick);
+        vector(kick)
     }
 
     fn kick_derivative(constants: &Self::Constants, w: &W, velocity: &Vector<G>) -> Option<Vector<G>> {
@@ -332,20 +283,23 @@ where
         let (program, image) = (folded.stages.kick_derivative.as_ref()?, folded.kick_derivative.as_ref()?);
         listed!(advected = w);
         listed!(velocity = velocity);
-        let given = [(Array::Constants, &*folded.numbers), (Array::Advected, advected), (Array::Velocity, velocity)];
-        Some(run::<_, B, _, _>(program, image, given, vector))
+        room!(derivative: G::Scalar, G::DIMENSION);
+        let given = [(Array::Advected, advected), (Array::Velocity, velocity)];
+        B::run(&program.code, image, &given, derivative);
+        Some(vector(derivative))
     }
 
     #[inline]
     fn step_terms(constants: &Self::Constants, a: &Vector<G>, w: &W) -> Self::StepTerms {
         let folded = &*constants.0;
-        let mut terms = StepTerms { right_side: *a, advected: *w, numbers: [real(0.0); MOST_TERMS] };
-        // Where there is nothing to solve, nobody reads them.
-        if folded.declaration.parts.unknown {
+        let mut terms = StepTerms { right_side: *a, advected: *w, numbers: None };
+        // What takes few operations is computed anew where it is needed.
+        if folded.stages.terms.outputs > 0 {
             listed!(target = a);
             listed!(advected = w);
-            let given = [(Array::Constants, &*folded.numbers), (Array::Target, target), (Array::Advected, advected)];
-            B::run(&folded.stages.terms.code, &folded.terms, given, &mut terms.numbers);
+            let given = [(Array::Target, target), (Array::Advected, advected)];
+            let numbers = terms.numbers.insert([real(0.0); MOST_TERMS]);
+            B::run(&folded.stages.terms.code, &folded.terms, &given, numbers);
         }
         terms
     }
@@ -353,11 +307,9 @@ where
     #[inline]
     fn newton_system(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> (Vector<G>, Square<G>) {
         let folded = &*constants.0;
-        let program = (&folded.stages.newton_system, &folded.newton_system);
-        let (residual, jacobian): (Vector<G>, Square<G>) =
-            iteration::<G, W, B, _>(program, folded, terms, half, |outputs| {
-                (vector(outputs), square::<G>(&outputs[G::DIMENSION..]))
-            });
+        room!(outputs: G::Scalar, G::DIMENSION * (G::DIMENSION + 1));
+        iteration::<G, W, B>((&folded.stages.newton_system, &folded.newton_system), terms, half, outputs);
+        let (residual, jacobian) = (vector(outputs), square::<G>(&outputs[G::DIMENSION..]));
         if !folded.declaration.in_increment {
             return (residual, jacobian);
         }
@@ -368,11 +320,10 @@ where
     #[inline]
     fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> Residual<Vector<G>> {
         let folded = &*constants.0;
-        let program = (&folded.stages.newton_residual, &folded.newton_residual);
-        iteration::<G, W, B, _>(program, folded, terms, half, |outputs| Residual {
-            momentum_defect: vector(outputs),
-            moving_kick: folded.declaration.is_expensive.then(|| vector(&outputs[G::DIMENSION..])),
-        })
+        room!(outputs: G::Scalar, 2 * G::DIMENSION);
+        iteration::<G, W, B>((&folded.stages.newton_residual, &folded.newton_residual), terms, half, outputs);
+        let moving_kick = folded.declaration.is_expensive.then(|| vector(&outputs[G::DIMENSION..]));
+        Residual { momentum_defect: vector(outputs), moving_kick }
     }
 
     #[inline]
@@ -381,47 +332,47 @@ where
         let (program, image) = (&folded.stages.kick_after, &folded.kick_after);
         listed!(entries = increment);
         listed!(next = next);
-        let given = [(Array::Constants, &*folded.numbers), (Array::Increment, entries), (Array::Next, next)];
-        if !program.reads(Array::Inverse) {
-            return run::<_, B, _, _>(program, image, given, vector);
+        room!(kick: G::Scalar, G::DIMENSION);
+        let given = [(Array::Increment, entries), (Array::Next, next)];
+        if program.reads(Array::Inverse) {
+            listed!(inverse = &G::from_increment(increment).inverse().matrix());
+            B::run(&program.code, image, &[given[0], given[1], (Array::Inverse, inverse)], kick);
+        } else {
+            B::run(&program.code, image, &given, kick);
         }
-        listed!(inverse = &G::from_increment(increment).inverse().matrix());
-        let [constants, increment, next] = given;
-        run::<_, B, _, _>(program, image, [constants, increment, next, (Array::Inverse, inverse)], vector)
+        vector(kick)
     }
 }
 
 /// What an iteration computes.
 #[inline]
-fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>, R>(
+fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
     (program, image): (&Ready<B::Code>, &B::Image),
-    folded: &Folded<G::Scalar, B>,
     terms: &StepTerms<G::Scalar, Vector<G>, W>,
     half: &Vector<G>,
-    make: impl FnOnce(&[G::Scalar]) -> R,
-) -> R
-where
+    outputs: &mut [G::Scalar],
+) where
     CayleyRetraction: Retraction<G>,
 {
-    let (constants, numbers) = ((Array::Constants, &*folded.numbers), (Array::Terms, &terms.numbers[..]));
     listed!(coordinates = half);
-    let coordinates = (Array::Half, coordinates);
+    listed!(target = &terms.right_side);
+    let numbers = terms.numbers.as_ref().map_or(&[][..], |numbers| numbers);
+    let given = [(Array::Terms, numbers), (Array::Half, coordinates), (Array::Target, target)];
     // Of many terms some are computed anew, and off SO(3) the system is written in the increment.
-    let more = [Array::Target, Array::Advected, Array::Increment, Array::InverseIncrement];
+    let more = [Array::Advected, Array::Increment, Array::InverseIncrement];
     if !more.into_iter().any(|array| program.reads(array)) {
-        return run::<_, B, _, _>(program, image, [constants, numbers, coordinates], make);
+        return B::run(&program.code, image, &given, outputs);
     }
     let increment = <CayleyRetraction as Retraction<G>>::increment_of_half(half);
     let is_read = program.reads(Array::InverseIncrement);
     let inverse = if is_read { G::inverse_increment(&increment) } else { increment };
     listed!(increment = &increment);
     listed!(inverse = &inverse);
-    listed!(target = &terms.right_side);
     listed!(advected = &terms.advected);
     let increments = [(Array::Increment, increment), (Array::InverseIncrement, inverse)];
-    let [target, advected] = [(Array::Target, target), (Array::Advected, advected)];
-    let given = [constants, numbers, coordinates, increments[0], increments[1], target, advected];
-    run::<_, B, _, _>(program, image, given, make)
+    let [numbers, coordinates, target] = given;
+    let given = [numbers, coordinates, target, (Array::Advected, advected), increments[0], increments[1]];
+    B::run(&program.code, image, &given, outputs);
 }
 
 impl<G, W, K, B> DiscreteLagrangian for Late<G, W, K, B>
@@ -440,26 +391,26 @@ where
     }
 
     fn l_d(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> G::Scalar {
-        self.of_lagrangian(0, (f, w, h), |outputs| outputs[0])
+        self.of_lagrangian(0, (f, w, h))[0]
     }
 
     fn right_momentum(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> Vector<G> {
-        self.of_lagrangian(1, (f, w, h), vector)
+        vector(&self.of_lagrangian(1, (f, w, h)))
     }
 
     fn left_momentum(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> Vector<G> {
-        self.of_lagrangian(2, (f, w, h), vector)
+        vector(&self.of_lagrangian(2, (f, w, h)))
     }
 
     fn diamond(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> Vector<G> {
-        self.of_lagrangian(3, (f, w, h), vector)
+        vector(&self.of_lagrangian(3, (f, w, h)))
     }
 
     fn legendre_minus(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> Vector<G> {
-        self.of_lagrangian(4, (f, w, h), vector)
+        vector(&self.of_lagrangian(4, (f, w, h)))
     }
 
     fn discrete_energy(&self, f: &Matrix<G>, w: &W, h: G::Scalar) -> G::Scalar {
-        self.of_lagrangian(5, (f, w, h), |outputs| outputs[0])
+        self.of_lagrangian(5, (f, w, h))[0]
     }
 }

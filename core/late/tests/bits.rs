@@ -329,7 +329,7 @@ fn specialised_programs_are_shorter() {
     let mut constants = vec![0.0; programs.constants.outputs.len()];
     let given = [(Array::Step, &[0.01][..]), (Array::Parameters, &parameters)];
     let image = <Interpreted as Backend<f64>>::image(&code, &[]);
-    Interpreted::run(&code, &image, given, &mut constants);
+    Interpreted::run(&code, &image, &given, &mut constants);
     let lengths = [programs, &specialised(programs, &constants)].map(|all| all.newton_system.operations.len());
     println!("{} operations an iteration, specialised {}", lengths[0], lengths[1]);
     assert!(lengths[0] >= 90 && lengths[1] <= 61, "{lengths:?}");

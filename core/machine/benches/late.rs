@@ -188,7 +188,9 @@ fn texts() {
         });
         drop(all);
         let clock = Instant::now();
-        black_box(<Machine as Backend<f64>>::codes(&programs).expect("machine code"));
+        let codes = <Machine as Backend<f64>>::codes(&programs).expect("programs");
+        codes.iter().for_each(<Machine as Backend<f64>>::prepare);
+        black_box(codes);
         let made = clock.elapsed().as_secs_f64() * 1e3;
         let operations: usize = programs.iter().map(|program| program.operations.len()).sum();
         println!("{name:18} derived in {derived:6.1} ms, machine code of {operations:6} operations in {made:6.1} ms");

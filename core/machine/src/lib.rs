@@ -16,61 +16,107 @@
 mod called;
 mod translated;
 
-use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use liestep::numbers::Real;
 use liestep_late::{Backend, Code, Given, Interpreted, LateError, Program};
 
-use called::{Function, LANES, lanes_of};
+use called::{Bound, Function, LANES, lanes_of};
 
-/// Programs are machine code.
+/// Programs are machine code once they have run some hundred times, and interpreted before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Machine;
 
-/// A program as machine code, and as what is interpreted.
+/// A program as what is interpreted, and as machine code where that has been made.
 #[derive(Debug)]
 pub struct Both {
     program: Program,
-    function: Function,
-    /// Made where somebody asks for it.
-    in_lanes: OnceLock<Option<Function>>,
     interpreted: Code,
+    runs: AtomicU32,
+    of_numbers: OnceLock<Option<Arc<Function>>>,
+    in_lanes: OnceLock<Option<Arc<Function>>>,
 }
+
+impl Both {
+    /// Where machine code is kept for these numbers.
+    fn place<T: Real>(&self) -> Option<&OnceLock<Option<Arc<Function>>>> {
+        match lanes_of::<T>() {
+            1 => Some(&self.of_numbers),
+            LANES => Some(&self.in_lanes),
+            _ => None,
+        }
+    }
+
+    /// The machine code with these constants, if it has been made.
+    fn bound<T: Real>(&self, constants: &[T]) -> Option<Bound<T>> {
+        Bound::of(self.place::<T>()?.get()?.as_ref()?, constants)
+    }
+}
+
+/// The constants of a program: beside its machine code, or until there is one for the interpreter, too.
+#[derive(Debug)]
+pub struct Image<T> {
+    bound: OnceLock<Bound<T>>,
+    constants: Box<[T]>,
+    interpreted: Box<[T]>,
+}
+
+/// As many runs are interpreted in less time than machine code takes to make.
+const FEW: u32 = 256;
 
 impl<T: Real> Backend<T> for Machine {
     type Code = Both;
-    type Image = Box<[T]>;
+    type Image = Image<T>;
 
     fn codes(programs: &[&Program]) -> Result<Vec<Both>, LateError> {
-        let functions = called::functions(programs, 1).map_err(LateError::Machine)?;
+        translated::isa().map_err(LateError::Machine)?;
         let interpreted = <Interpreted as Backend<f64>>::codes(programs)?;
-        let all = programs.iter().zip(functions).zip(interpreted);
-        Ok(all
-            .map(|((&program, function), interpreted)| Both {
-                program: program.clone(),
-                function,
-                in_lanes: OnceLock::new(),
-                interpreted,
-            })
-            .collect())
+        let both = |(&program, interpreted): (&&Program, Code)| Both {
+            program: program.clone(),
+            interpreted,
+            runs: AtomicU32::new(0),
+            of_numbers: OnceLock::new(),
+            in_lanes: OnceLock::new(),
+        };
+        Ok(programs.iter().zip(interpreted).map(both).collect())
     }
 
-    fn image(code: &Both, constants: &[T]) -> Box<[T]> {
-        let made = || called::functions(&[&code.program], LANES).ok()?.pop();
-        match lanes_of::<T>() {
-            1 => Box::default(),
-            LANES if code.in_lanes.get_or_init(made).is_some() => Box::default(),
-            _ => <Interpreted as Backend<T>>::image(&code.interpreted, constants),
+    fn prepare(code: &Both) {
+        if let Some(place) = code.place::<T>() {
+            place.get_or_init(|| Function::of(&code.program, lanes_of::<T>()).ok().map(Arc::new));
         }
     }
 
-    #[inline]
-    fn run<const N: usize>(code: &Both, image: &Box<[T]>, given: Given<'_, T, N>, outputs: &mut [T]) {
-        let in_lanes = || code.in_lanes.get().and_then(Option::as_ref);
-        match lanes_of::<T>() {
-            1 => code.function.call(given, outputs),
-            LANES if in_lanes().is_some() => in_lanes().into_iter().for_each(|made| made.call(given, outputs)),
-            _ => <Interpreted as Backend<T>>::run(&code.interpreted, image, given, outputs),
+    fn image(code: &Both, constants: &[T]) -> Image<T> {
+        match code.bound(constants) {
+            Some(bound) => Image { bound: bound.into(), constants: Box::default(), interpreted: Box::default() },
+            None => Image {
+                bound: OnceLock::new(),
+                constants: constants.into(),
+                interpreted: Interpreted::image(&code.interpreted, constants),
+            },
         }
     }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn run(code: &Both, image: &Image<T>, given: &Given<'_, T>, outputs: &mut [T]) {
+        match image.bound.get() {
+            Some(bound) => bound.call(given, outputs),
+            None => run_first(code, image, given, outputs),
+        }
+    }
+}
+
+/// A run before there is machine code, or the one that makes it.
+#[cold]
+#[inline(never)]
+fn run_first<T: Real>(code: &Both, image: &Image<T>, given: &Given<'_, T>, outputs: &mut [T]) {
+    if code.runs.fetch_add(1, Ordering::Relaxed) >= FEW {
+        <Machine as Backend<T>>::prepare(code);
+        if let Some(bound) = code.bound(&image.constants) {
+            return image.bound.get_or_init(|| bound).call(given, outputs);
+        }
+    }
+    Interpreted::run(&code.interpreted, &image.interpreted, given, outputs);
 }

@@ -1,21 +1,32 @@
 //! Programs as code of Cranelift, operation by operation.
 
 use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
-use cranelift_codegen::ir::{AbiParam, FuncRef, InstBuilder as _, MemFlagsData, Value, types};
+use cranelift_codegen::ir::{AbiParam, FuncRef, InstBuilder as _, MemFlagsData, types};
+use cranelift_codegen::isa::OwnedTargetIsa;
 use cranelift_codegen::settings::{self, Configurable as _};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{FuncId, Linkage, Module as _, default_libcall_names};
 use liestep_late::{Array, Function, Operation, Program, applied};
 
-/// The code of these programs, each a function of the arrays of its inputs and the place of its outputs: for one number at
-/// each place, or for two of several lanes.
-pub(crate) fn module(programs: &[&Program], lanes: usize) -> Result<(JITModule, Vec<FuncId>), String> {
-    let mut flags = settings::builder();
-    flags.set("opt_level", "speed").map_err(|error| error.to_string())?;
-    let isa = cranelift_native::builder()?.finish(settings::Flags::new(flags)).map_err(|error| error.to_string())?;
-    let mut builder = JITBuilder::with_isa(isa, default_libcall_names());
+/// The machine that this runs on.
+pub(crate) fn isa() -> Result<OwnedTargetIsa, String> {
+    static ISA: LazyLock<Result<OwnedTargetIsa, String>> = LazyLock::new(|| {
+        let mut flags = settings::builder();
+        for (name, value) in [("opt_level", "speed"), ("enable_verifier", "false")] {
+            flags.set(name, value).map_err(|error| error.to_string())?;
+        }
+        cranelift_native::builder()?.finish(settings::Flags::new(flags)).map_err(|error| error.to_string())
+    });
+    ISA.clone()
+}
+
+/// The code of a program, a function of its constants, of the arrays of its other inputs and of the place of its outputs: for one
+/// number at each place, or for two of several lanes.
+pub(crate) fn module(program: &Program, lanes: usize) -> Result<(JITModule, FuncId), String> {
+    let mut builder = JITBuilder::with_isa(isa()?, default_libcall_names());
     builder.symbol(FUNCTION, function as *const u8);
     let mut module = JITModule::new(builder);
     let pointer = module.target_config().pointer_type();
@@ -23,23 +34,17 @@ pub(crate) fn module(programs: &[&Program], lanes: usize) -> Result<(JITModule, 
     signature.params.extend([AbiParam::new(types::I32), AbiParam::new(types::F64)]);
     signature.returns.push(AbiParam::new(types::F64));
     let shared = module.declare_function(FUNCTION, Linkage::Import, &signature).map_err(|error| error.to_string())?;
-    let (mut context, mut ids) = (FunctionBuilderContext::new(), Vec::new());
-    for (at, program) in programs.iter().enumerate() {
-        let mut own = module.make_context();
-        own.func.signature.params.extend([AbiParam::new(pointer); 2]);
-        let signature = &own.func.signature;
-        let id = module.declare_function(&format!("program_{at}"), Linkage::Local, signature);
-        let id = id.map_err(|error| error.to_string())?;
-        let called = module.declare_func_in_func(shared, &mut own.func);
-        let mut builder = FunctionBuilder::new(&mut own.func, &mut context);
-        write(&mut builder, (program, lanes), called, pointer)?;
-        builder.finalize(module.target_config());
-        module.define_function(id, &mut own).map_err(|error| error.to_string())?;
-        module.clear_context(&mut own);
-        ids.push(id);
-    }
+    let mut own = module.make_context();
+    own.func.signature.params.extend([AbiParam::new(pointer); 3]);
+    let id = module.declare_anonymous_function(&own.func.signature).map_err(|error| error.to_string())?;
+    let called = module.declare_func_in_func(shared, &mut own.func);
+    let mut context = FunctionBuilderContext::new();
+    let mut builder = FunctionBuilder::new(&mut own.func, &mut context);
+    write(&mut builder, (program, lanes), called, pointer)?;
+    builder.finalize(module.target_config());
+    module.define_function(id, &mut own).map_err(|error| error.to_string())?;
     module.finalize_definitions().map_err(|error| error.to_string())?;
-    Ok((module, ids))
+    Ok((module, id))
 }
 
 /// The place of a number in bytes.
@@ -57,12 +62,13 @@ fn write(
     builder.append_block_params_for_function_params(block);
     builder.switch_to_block(block);
     builder.seal_block(block);
-    let [arrays, outputs] = [0, 1].map(|at| builder.block_params(block)[at]);
-    // The caller has looked whether they are long enough.
-    let trusted = MemFlagsData::new().with_notrap();
+    let [constants, arrays, outputs] = [0, 1, 2].map(|at| builder.block_params(block)[at]);
+    // The caller has looked whether they are long enough. What is read doesn't change, so it is read where it is needed.
+    let written = MemFlagsData::new().with_notrap();
+    let trusted = written.with_readonly().with_can_move();
     let number = if lanes > 1 { types::F64X2 } else { types::F64 };
-    let mut begins: BTreeMap<Array, Value> = BTreeMap::new();
-    for (array, _) in least(program) {
+    let mut begins = BTreeMap::from([(Array::Constants, constants)]);
+    for (array, _) in least(program).into_iter().filter(|(array, _)| *array != Array::Constants) {
         begins.insert(array, builder.ins().load(pointer, trusted, arrays, offset(array as usize, 1)?));
     }
     let mut values = Vec::new();
@@ -100,7 +106,7 @@ fn write(
         });
     }
     for (at, &output) in program.outputs.iter().enumerate() {
-        builder.ins().store(trusted, values[output as usize], outputs, offset(at, lanes)?);
+        builder.ins().store(written, values[output as usize], outputs, offset(at, lanes)?);
     }
     builder.ins().return_(&[]);
     Ok(())

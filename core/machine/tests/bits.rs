@@ -81,7 +81,8 @@ fn numbers_of<T: Real, B: Backend<T>>(code: &B::Code, program: &Program, arrays:
         (Array::Target, target),
     ];
     let mut numbers = vec![T::zero(); program.outputs.len()];
-    B::run(code, &B::image(code, constants), given, &mut numbers);
+    B::prepare(code);
+    B::run(code, &B::image(code, constants), &given, &mut numbers);
     numbers
 }
 
@@ -266,7 +267,7 @@ fn what_is_wrong_is_seen() {
     assert!(swapped.operations.iter_mut().any(difference), "a difference");
     is_seen("a swapped operand", swapped);
     let mut stage = right.clone();
-    let term = stage.inputs.iter_mut().find(|source| source.array == Array::Terms).expect("a term");
+    let term = stage.inputs.iter_mut().find(|source| source.array == Array::Target).expect("a right side");
     *term = Source::new(Array::Constants, term.at);
     is_seen("an input of another stage", stage);
     let mut register = right.clone();

@@ -9,7 +9,7 @@ use liestep::mechanics::{Effect, Inertia, KineticPart, Term as _, WithEitherKine
 use liestep::methods::ExactBody;
 use liestep::motion::AnyStepper;
 use liestep::{SO3, StateOf, Stepper};
-use liestep_late::{Declaration, Late, LateError};
+use liestep_late::{Declaration, Late, LateError, Slots};
 use nalgebra::Vector3;
 
 use crate::file::body::{Distribution, Kinetic};
@@ -24,9 +24,9 @@ use crate::run::make::{Listeners, Run, Stop, make};
 type Seen = (V, V, V, V, V, V);
 type V = Vector3<f64>;
 /// Terms of a scene in one program.
-type Program<K> = Late<SO3, Seen, K, Backend>;
+type Program<K, W = Seen> = Late<SO3, W, K, Backend>;
 /// The effects of a file and its force.
-type Rest = Program<WithoutKinetic>;
+type Rest<W = Seen> = Program<WithoutKinetic, W>;
 /// All of a scene in one program.
 pub type Whole = Program<WithEitherKinetic>;
 
@@ -66,11 +66,11 @@ impl Moving {
 }
 
 /// The declarations of this body, if it is one, and of what a file names beside it, derived once a program.
-fn program<K: KineticPart>(
+fn program<K: KineticPart, W: Advected<SO3> + Slots>(
     file: &SceneFile,
     J: &Inertia,
     body: Option<&Moving>,
-) -> Result<Option<Program<K>>, LateError> {
+) -> Result<Option<Program<K, W>>, LateError> {
     let listed = file.effects().map(|(effect, _)| Declaration::parse(effect.derived.1));
     let (body_itself, own) = (body.map(Moving::declaration), file.force.iter().map(|own| Ok(own.declaration)));
     let terms = body_itself.into_iter().chain(listed).chain(own).collect::<Result<Vec<_>, _>>()?;
@@ -114,7 +114,7 @@ fn numbers(file: &SceneFile, J: &Inertia, body: Option<&Moving>, time: f64) -> V
     body.chain(file.effects().flat_map(|(_, table)| table.numbers(J, time))).chain(own).collect()
 }
 
-fn rest(file: &SceneFile, J: &Inertia) -> Result<Option<Rest>, Stop> {
+fn rest<W: Advected<SO3> + Slots>(file: &SceneFile, J: &Inertia) -> Result<Option<Rest<W>>, Stop> {
     program(file, J, None).map_err(late_error)
 }
 
@@ -215,7 +215,7 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
         return turning!(scene, values);
     }
     // One type of what turns.
-    if let Some(rest) = rest(file, &J)?.filter(|_| turns) {
+    if let Some(rest) = rest::<Seen>(file, &J)?.filter(|_| turns) {
         let scene = RigidBody { J_d: J.to_nonstandard() } + rest.clone();
         let values = move |time| {
             let now = rest.clone().with_all(&numbers(&seen, &J, None, time));
@@ -224,11 +224,14 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
         return turning!(scene, values);
     }
     match (file.run.method, file.body.ok_or_else(nothing)?.mass) {
-        (Method::Step, Distribution::Principal(J_d)) => match rest(file, &J)? {
-            None => any!(Stepper::new(PrincipalBody { J_d }, h)),
-            Some(rest) => any!(Stepper::new(PrincipalBody { J_d } + rest, h)),
+        (Method::Step, Distribution::Principal(J_d)) => match (rest::<()>(file, &J), rest::<V>(file, &J)) {
+            (Ok(None), _) => any!(Stepper::new(PrincipalBody { J_d }, h)),
+            // By the least type that has what is advected.
+            (Ok(Some(rest)), _) => any!(Stepper::new(PrincipalBody { J_d } + rest, h)),
+            (_, Ok(Some(rest))) => any!(Stepper::new(PrincipalBody { J_d } + rest, h)),
+            _ => any!(Stepper::new(PrincipalBody { J_d } + potential(file, &J)?, h)),
         },
-        _ => match rest(file, &J)? {
+        _ => match rest::<Seen>(file, &J)? {
             None => step!(RigidBody { J_d: J.to_nonstandard() }),
             Some(rest) => step!(RigidBody { J_d: J.to_nonstandard() } + rest),
         },

@@ -12,6 +12,9 @@ use crate::mathematics::derive::Inverse;
 use crate::mathematics::symbolic::Expression;
 use crate::program::{Form, Graph, Handed, Node, NodeId, along_directions, limit, needed, term};
 
+/// Operations, and less than a call of a program costs.
+const FEW: usize = 16;
+
 pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> Staged {
     let Steps { chosen, equations, findings } = steps;
     let Chosen { lowered, derived, kernel } = chosen;
@@ -24,9 +27,12 @@ pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> Staged {
     let nothing = Handed::new();
     let none = [&nothing, &nothing];
     let constants = [&stages.constants, &nothing];
-    let all = [&stages.constants, &terms];
     let program = |handed, outputs: &[NodeId]| program(graph, &sources, handed, outputs);
     let of_handed = |handed: &Handed, from| program(from, &handed.keys().copied().collect::<Vec<_>>());
+    // Handing a few results on takes longer than computing them anew.
+    let is_worth = of_handed(&terms, constants).operations.len() > FEW;
+    let terms = if is_worth { terms } else { Handed::new() };
+    let all = [&stages.constants, &terms];
     let derived_term = |form, expression| {
         let (graph, outputs) = term(derived, form, expression);
         self::program(&graph, &sources, none, &outputs)

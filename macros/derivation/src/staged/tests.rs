@@ -22,7 +22,7 @@ fn the_heavy_top_has_its_stages() {
             .newton_system
             .inputs
             .iter()
-            .all(|input| matches!(input.array, Array::Constants | Array::Terms | Array::Half))
+            .all(|input| matches!(input.array, Array::Constants | Array::Target | Array::Half))
     );
     assert!(top.derivation.contains("(R_F)* δl_d/δF"));
 }
