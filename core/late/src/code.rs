@@ -223,7 +223,7 @@ impl Code {
     }
 
     /// In registers whose number is a power of two, so that a masked index is always in range.
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run_in<T: Real>(&self, registers: &mut [T], image: &[T], given: &Given<'_, T>, outputs: &mut [T]) {
         let mask = registers.len().wrapping_sub(1);
         let (known, open) = registers.split_at_mut(image.len().min(registers.len()));
@@ -253,7 +253,7 @@ impl Code {
 }
 
 /// The mask is one less than the number of registers, a power of two.
-#[inline]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn apply<T: Copy>(registers: &mut [T], mask: usize, instructions: &[Instruction], operation: impl Fn(T, T) -> T) {
     for &Instruction { operands: [a, b], result } in instructions {
         let value = operation(registers[usize::from(a) & mask], registers[usize::from(b) & mask]);

@@ -269,7 +269,7 @@ where
         constants.0.numbers.iter().all(is_finite)
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn kick_before(constants: &Self::Constants, w: &W) -> Vector<G> {
         let folded = &*constants.0;
         listed!(advected = w);
@@ -289,7 +289,7 @@ where
         Some(vector(derivative))
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn step_terms(constants: &Self::Constants, a: &Vector<G>, w: &W) -> Self::StepTerms {
         let folded = &*constants.0;
         let mut terms = StepTerms { right_side: *a, advected: *w, numbers: None };
@@ -304,7 +304,7 @@ where
         terms
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn newton_system(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> (Vector<G>, Square<G>) {
         let folded = &*constants.0;
         room!(outputs: G::Scalar, G::DIMENSION * (G::DIMENSION + 1));
@@ -317,7 +317,7 @@ where
         (residual, Vector::<G>::square(|k| jacobian * Vector::<G>::column(&tangent, k)))
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> Residual<Vector<G>> {
         let folded = &*constants.0;
         room!(outputs: G::Scalar, 2 * G::DIMENSION);
@@ -326,7 +326,7 @@ where
         Residual { momentum_defect: vector(outputs), moving_kick }
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn kick_after(constants: &Self::Constants, increment: &Matrix<G>, next: &W) -> Vector<G> {
         let folded = &*constants.0;
         let (program, image) = (&folded.stages.kick_after, &folded.kick_after);
@@ -345,7 +345,7 @@ where
 }
 
 /// What an iteration computes.
-#[inline]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
     (program, image): (&Ready<B::Code>, &B::Image),
     terms: &StepTerms<G::Scalar, Vector<G>, W>,
@@ -354,24 +354,43 @@ fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
 ) where
     CayleyRetraction: Retraction<G>,
 {
+    // Of many terms some are computed anew, and off SO(3) the system is written in the increment.
+    let more = [Array::Advected, Array::Increment, Array::InverseIncrement];
+    if more.into_iter().any(|array| program.reads(array)) {
+        return iteration_with_more::<G, W, B>((program, image), terms, half, outputs);
+    }
     listed!(coordinates = half);
     listed!(target = &terms.right_side);
     let numbers = terms.numbers.as_ref().map_or(&[][..], |numbers| numbers);
     let given = [(Array::Terms, numbers), (Array::Half, coordinates), (Array::Target, target)];
-    // Of many terms some are computed anew, and off SO(3) the system is written in the increment.
-    let more = [Array::Advected, Array::Increment, Array::InverseIncrement];
-    if !more.into_iter().any(|array| program.reads(array)) {
-        return B::run(&program.code, image, &given, outputs);
-    }
+    B::run(&program.code, image, &given, outputs);
+}
+
+#[inline(never)]
+fn iteration_with_more<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
+    (program, image): (&Ready<B::Code>, &B::Image),
+    terms: &StepTerms<G::Scalar, Vector<G>, W>,
+    half: &Vector<G>,
+    outputs: &mut [G::Scalar],
+) where
+    CayleyRetraction: Retraction<G>,
+{
     let increment = <CayleyRetraction as Retraction<G>>::increment_of_half(half);
     let is_read = program.reads(Array::InverseIncrement);
     let inverse = if is_read { G::inverse_increment(&increment) } else { increment };
+    listed!(coordinates = half);
+    listed!(target = &terms.right_side);
+    listed!(advected = &terms.advected);
     listed!(increment = &increment);
     listed!(inverse = &inverse);
-    listed!(advected = &terms.advected);
-    let increments = [(Array::Increment, increment), (Array::InverseIncrement, inverse)];
-    let [numbers, coordinates, target] = given;
-    let given = [numbers, coordinates, target, (Array::Advected, advected), increments[0], increments[1]];
+    let given = [
+        (Array::Terms, terms.numbers.as_ref().map_or(&[][..], |numbers| numbers)),
+        (Array::Half, coordinates),
+        (Array::Target, target),
+        (Array::Advected, advected),
+        (Array::Increment, increment),
+        (Array::InverseIncrement, inverse),
+    ];
     B::run(&program.code, image, &given, outputs);
 }
 
