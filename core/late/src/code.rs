@@ -30,7 +30,7 @@ pub trait Backend<T: Real>: Copy + Debug + 'static {
     fn image(code: &Self::Code, constants: &[T]) -> Self::Image;
 
     /// Runs a program, for as many outputs as it has. Arrays are as long as what it reads of them.
-    fn run(code: &Self::Code, image: &Self::Image, given: &Given<'_, T>, outputs: &mut [T]);
+    fn run<const N: usize>(code: &Self::Code, image: &Self::Image, given: Given<'_, T, N>, outputs: &mut [T]);
 }
 
 /// Programs are read operation by operation: safe, on every machine, and in lanes.
@@ -49,13 +49,13 @@ impl<T: Real> Backend<T> for Interpreted {
         code.image(constants)
     }
 
-    fn run(code: &Code, image: &Box<[T]>, given: &Given<'_, T>, outputs: &mut [T]) {
-        code.run(image, given, outputs);
+    fn run<const N: usize>(code: &Code, image: &Box<[T]>, given: Given<'_, T, N>, outputs: &mut [T]) {
+        code.run(image, &given, outputs);
     }
 }
 
 /// The arrays that inputs other than constants are read from, each once; what a stage doesn't have isn't among them.
-pub type Given<'a, T> = [(Array, &'a [T])];
+pub type Given<'a, T, const N: usize> = [(Array, &'a [T]); N];
 
 /// Straight-line code. Registers hold constants, literals, inputs and what is computed: of these, one that isn't read any
 /// more is used again.
@@ -211,7 +211,7 @@ impl Code {
     }
 
     #[inline(never)]
-    fn run<T: Real>(&self, image: &[T], given: &Given<'_, T>, outputs: &mut [T]) {
+    fn run<T: Real>(&self, image: &[T], given: &[(Array, &[T])], outputs: &mut [T]) {
         // Registers beyond those that are used cost time to clear.
         match self.registers {
             0..=32 => self.run_in(&mut [T::zero(); 32], image, given, outputs),
@@ -224,7 +224,7 @@ impl Code {
 
     /// In registers whose number is a power of two, so that a masked index is always in range.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn run_in<T: Real>(&self, registers: &mut [T], image: &[T], given: &Given<'_, T>, outputs: &mut [T]) {
+    fn run_in<T: Real>(&self, registers: &mut [T], image: &[T], given: &[(Array, &[T])], outputs: &mut [T]) {
         let mask = registers.len().wrapping_sub(1);
         let (known, open) = registers.split_at_mut(image.len().min(registers.len()));
         known.copy_from_slice(&image[..known.len()]);
@@ -255,10 +255,19 @@ impl Code {
 /// The mask is one less than the number of registers, a power of two.
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn apply<T: Copy>(registers: &mut [T], mask: usize, instructions: &[Instruction], operation: impl Fn(T, T) -> T) {
-    for &Instruction { operands: [a, b], result } in instructions {
+    let mut run = |&Instruction { operands: [a, b], result }: &Instruction| {
         let value = operation(registers[usize::from(a) & mask], registers[usize::from(b) & mask]);
         registers[usize::from(result) & mask] = value;
+    };
+    // Fewer loops.
+    let (fours, others) = instructions.as_chunks::<4>();
+    for [first, second, third, fourth] in fours {
+        run(first);
+        run(second);
+        run(third);
+        run(fourth);
     }
+    others.iter().for_each(run);
 }
 
 /// A function of a number: that of the compiled step, so that the bits are the same. NaN where there is none of this order.

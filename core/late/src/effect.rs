@@ -5,7 +5,7 @@ use std::sync::Arc;
 use liestep::groups::{Advected, CayleyRetraction, LieGroup, Retraction};
 use liestep::mechanics::{DiscreteLagrangian, Effect, KineticPart, Limit, Parts, Residual, SceneVisitor};
 use liestep::numbers::{Blocks, Coordinates, Entries, Real, real};
-use liestep_derivation::{Array, MOST_TERMS, Stages};
+use liestep_derivation::{Array, Stages};
 
 use crate::carried::Slots;
 use crate::code::{Backend, Given, Interpreted};
@@ -56,7 +56,7 @@ fn filled<'a, T: Real>(value: &impl Entries<T>, room: &'a mut [T]) -> &'a [T] {
 }
 
 /// What a program computes that reads no constants.
-fn alone<T: Real, B: Backend<T>>(program: &Ready<B::Code>, given: &Given<'_, T>) -> Vec<T> {
+fn alone<T: Real, B: Backend<T>, const N: usize>(program: &Ready<B::Code>, given: Given<'_, T, N>) -> Vec<T> {
     let mut outputs = vec![T::zero(); program.outputs];
     B::run(&program.code, &B::image(&program.code, &[]), given, &mut outputs);
     outputs
@@ -91,7 +91,6 @@ pub(crate) struct Folded<T: Real, B: Backend<T>> {
     pub(crate) is_specialised: bool,
     pub(crate) numbers: Vec<T>,
     /// With them the images of programs.
-    terms: B::Image,
     kick_before: B::Image,
     newton_system: B::Image,
     newton_residual: B::Image,
@@ -107,9 +106,8 @@ impl<T: Real, B: Backend<T>> Constants<T, B> {
         numbers: Vec<T>,
     ) -> Self {
         let image = |program: &Ready<B::Code>| B::image(&program.code, &numbers);
-        let Stages { terms, kick_before, newton_system, newton_residual, kick_after, kick_derivative, .. } = &**stages;
+        let Stages { kick_before, newton_system, newton_residual, kick_after, kick_derivative, .. } = &**stages;
         let folded = Folded {
-            terms: image(terms),
             kick_before: image(kick_before),
             newton_system: image(newton_system),
             newton_residual: image(newton_residual),
@@ -138,12 +136,11 @@ impl<T: Real, B: Backend<T>> PartialEq for Constants<T, B> {
     }
 }
 
-/// What one solve needs: the right side, what is advected, and what they determine.
+/// What one solve needs: the right side, and what is advected.
 #[derive(Clone, Copy, Debug)]
-pub struct StepTerms<T, V, W> {
+pub struct StepTerms<V, W> {
     right_side: V,
     advected: W,
-    numbers: Option<[T; MOST_TERMS]>,
 }
 
 impl<G, W, K, B> Late<G, W, K, B>
@@ -163,7 +160,7 @@ where
             (Array::Element, &element),
             (Array::Inverse, &inverse),
         ];
-        alone::<_, B>(program, &given)
+        alone::<_, B, _>(program, given)
     }
 
     /// A term of a Lagrangian, of which a force has none.
@@ -184,7 +181,7 @@ where
     type Retraction = CayleyRetraction;
     type Kinetic = K;
     type Constants = Constants<G::Scalar, B>;
-    type StepTerms = StepTerms<G::Scalar, Vector<G>, W>;
+    type StepTerms = StepTerms<Vector<G>, W>;
 
     // Those of the declaration are asked of a value.
     const INERTIA_IS_CONSTANT: bool = false;
@@ -235,11 +232,11 @@ where
         listed!(given = velocity.unwrap_or(&Vector::<G>::zero()));
         let given = [(Array::Parameters, &*self.numbers), (Array::Advected, advected), (Array::Velocity, given)];
         if let (Some(_), Some(programs)) = (velocity, &self.stages.at_velocity) {
-            let [l, momentum, hessian] = programs.each_ref().map(|program| alone::<_, B>(program, &given));
+            let [l, momentum, hessian] = programs.each_ref().map(|program| alone::<_, B, _>(program, given));
             return Limit { l: l[0], momentum: vector(&momentum), hessian: square::<G>(&hessian) };
         }
         let entries = G::DIMENSION * G::DIMENSION;
-        let outputs = alone::<_, B>(&self.stages.at_rest, &given);
+        let outputs = alone::<_, B, _>(&self.stages.at_rest, given);
         let (inertia, bias) = (square::<G>(&outputs), vector(&outputs[entries..]));
         Limit::quadratic(velocity, inertia, bias, outputs[entries + G::DIMENSION])
     }
@@ -257,7 +254,7 @@ where
 
     fn constants(&self, h: G::Scalar) -> Self::Constants {
         let given = [(Array::Step, std::slice::from_ref(&h)), (Array::Parameters, &*self.numbers)];
-        let numbers = alone::<_, B>(&self.stages.constants, &given);
+        let numbers = alone::<_, B, _>(&self.stages.constants, given);
         let programs = self.specialise.map(|specialise| specialise(&self.declaration.programs, &numbers));
         // What is too large now was too large before, and isn't here.
         let own = programs.and_then(|programs| ready::<G::Scalar, B>(&programs).ok());
@@ -274,7 +271,7 @@ where
         let folded = &*constants.0;
         listed!(advected = w);
         room!(kick: G::Scalar, G::DIMENSION);
-        B::run(&folded.stages.kick_before.code, &folded.kick_before, &[(Array::Advected, advected)], kick);
+        B::run(&folded.stages.kick_before.code, &folded.kick_before, [(Array::Advected, advected)], kick);
         vector(kick)
     }
 
@@ -285,23 +282,13 @@ where
         listed!(velocity = velocity);
         room!(derivative: G::Scalar, G::DIMENSION);
         let given = [(Array::Advected, advected), (Array::Velocity, velocity)];
-        B::run(&program.code, image, &given, derivative);
+        B::run(&program.code, image, given, derivative);
         Some(vector(derivative))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn step_terms(constants: &Self::Constants, a: &Vector<G>, w: &W) -> Self::StepTerms {
-        let folded = &*constants.0;
-        let mut terms = StepTerms { right_side: *a, advected: *w, numbers: None };
-        // What takes few operations is computed anew where it is needed.
-        if folded.stages.terms.outputs > 0 {
-            listed!(target = a);
-            listed!(advected = w);
-            let given = [(Array::Target, target), (Array::Advected, advected)];
-            let numbers = terms.numbers.insert([real(0.0); MOST_TERMS]);
-            B::run(&folded.stages.terms.code, &folded.terms, &given, numbers);
-        }
-        terms
+    fn step_terms(_: &Self::Constants, a: &Vector<G>, w: &W) -> Self::StepTerms {
+        StepTerms { right_side: *a, advected: *w }
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
@@ -336,9 +323,9 @@ where
         let given = [(Array::Increment, entries), (Array::Next, next)];
         if program.reads(Array::Inverse) {
             listed!(inverse = &G::from_increment(increment).inverse().matrix());
-            B::run(&program.code, image, &[given[0], given[1], (Array::Inverse, inverse)], kick);
+            B::run(&program.code, image, [given[0], given[1], (Array::Inverse, inverse)], kick);
         } else {
-            B::run(&program.code, image, &given, kick);
+            B::run(&program.code, image, given, kick);
         }
         vector(kick)
     }
@@ -348,28 +335,33 @@ where
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
     (program, image): (&Ready<B::Code>, &B::Image),
-    terms: &StepTerms<G::Scalar, Vector<G>, W>,
+    terms: &StepTerms<Vector<G>, W>,
     half: &Vector<G>,
     outputs: &mut [G::Scalar],
 ) where
     CayleyRetraction: Retraction<G>,
 {
-    // Of many terms some are computed anew, and off SO(3) the system is written in the increment.
-    let more = [Array::Advected, Array::Increment, Array::InverseIncrement];
-    if more.into_iter().any(|array| program.reads(array)) {
+    // Off SO(3) the system is written in the increment. Much that is advected takes long to list.
+    let is_little = const { size_of::<W>() <= size_of::<Vector<G>>() };
+    let has_increment = program.reads(Array::Increment) || program.reads(Array::InverseIncrement);
+    if has_increment || !is_little && program.reads(Array::Advected) {
         return iteration_with_more::<G, W, B>((program, image), terms, half, outputs);
     }
     listed!(coordinates = half);
     listed!(target = &terms.right_side);
-    let numbers = terms.numbers.as_ref().map_or(&[][..], |numbers| numbers);
-    let given = [(Array::Terms, numbers), (Array::Half, coordinates), (Array::Target, target)];
-    B::run(&program.code, image, &given, outputs);
+    if is_little {
+        listed!(advected = &terms.advected);
+        let given = [(Array::Half, coordinates), (Array::Target, target), (Array::Advected, advected)];
+        B::run(&program.code, image, given, outputs);
+    } else {
+        B::run(&program.code, image, [(Array::Half, coordinates), (Array::Target, target)], outputs);
+    }
 }
 
 #[inline(never)]
 fn iteration_with_more<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
     (program, image): (&Ready<B::Code>, &B::Image),
-    terms: &StepTerms<G::Scalar, Vector<G>, W>,
+    terms: &StepTerms<Vector<G>, W>,
     half: &Vector<G>,
     outputs: &mut [G::Scalar],
 ) where
@@ -384,14 +376,13 @@ fn iteration_with_more<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
     listed!(increment = &increment);
     listed!(inverse = &inverse);
     let given = [
-        (Array::Terms, terms.numbers.as_ref().map_or(&[][..], |numbers| numbers)),
         (Array::Half, coordinates),
         (Array::Target, target),
         (Array::Advected, advected),
         (Array::Increment, increment),
         (Array::InverseIncrement, inverse),
     ];
-    B::run(&program.code, image, &given, outputs);
+    B::run(&program.code, image, given, outputs);
 }
 
 impl<G, W, K, B> DiscreteLagrangian for Late<G, W, K, B>

@@ -61,13 +61,12 @@ static void increment_of(const double *y, double *d) {
 
 int liestep_make(Stepper *stepper, const double *parameters, double h) {
     const double zero[3] = {0.0, 0.0, 0.0};
-    double terms[TERMS], system[12], a[9];
+    double system[12], a[9];
     double *spatial = stepper->spatial;
     spatial[0] = 0.0;
 SPATIAL_VALUES    stepper->h = h;
     constants(h, parameters, stepper->constants);
-    step_terms(stepper->constants, zero, spatial, terms);
-    newton_system(stepper->constants, terms, zero, zero, spatial, system);
+    newton_system(stepper->constants, zero, zero, spatial, system);
     stepper->safe = adjugate(system + 3, a) * 0.0625;
     const double trace = system[3] + system[7] + system[11];
     const double largest = trace / h * 0.00048828125 / 2.220446049250313e-16;
@@ -118,11 +117,10 @@ static void restore(const Stepper *stepper, State *state) {
 static int solve(const Stepper *stepper, const double *target, const double *advected, double *half) {
     const double epsilon = 2.220446049250313e-16;
     const double expected = epsilon * 0.5, enough = epsilon * 0.03125;
-    double terms[TERMS], system[12], a[9], update[3], det = 0.0;
+    double system[12], a[9], update[3], det = 0.0;
     int settled = 0;
-    step_terms(stepper->constants, target, advected, terms);
     for (int iteration = 0; iteration < 20 && !settled; iteration++) {
-        newton_system(stepper->constants, terms, half, target, advected, system);
+        newton_system(stepper->constants, half, target, advected, system);
         det = adjugate(system + 3, a);
         solved(a, det, system, update);
         for (int i = 0; i < 3; i++) half[i] = half[i] - update[i];
@@ -130,7 +128,7 @@ static int solve(const Stepper *stepper, const double *target, const double *adv
         settled = first <= size * (epsilon * 0.015625);
         if (!settled && first * first * first <= size * (expected * expected) && det > stepper->safe) {
             double residual[3], second[3];
-            newton_residual(stepper->constants, terms, half, target, advected, residual);
+            newton_residual(stepper->constants, half, target, advected, residual);
             solved(a, det, residual, second);
             for (int i = 0; i < 3; i++) half[i] = half[i] - second[i];
             const double length = dot(second, second);

@@ -1,6 +1,6 @@
 //! Several declarations in one: programs that add what theirs compute.
 
-use liestep_derivation::{Array, Carried, MOST_TERMS, Operation, Parameter, Program, Role, Source, Staged, Stages};
+use liestep_derivation::{Array, Carried, Operation, Parameter, Program, Role, Source, Staged, Stages};
 
 use crate::error::LateError;
 use crate::specialised::{Fold, Value};
@@ -11,7 +11,6 @@ struct Part<'a> {
     parameters: usize,
     constants: usize,
     carried: usize,
-    terms: usize,
     /// The right side is that of one term, and zero that of the others.
     has_target: bool,
 }
@@ -23,7 +22,6 @@ impl Part<'_> {
             Array::Parameters => self.parameters,
             Array::Constants => self.constants,
             Array::Advected | Array::Next => self.carried,
-            Array::Terms => self.terms,
             _ => 0,
         };
         Value::Input(Source::new(source.array, first + source.at))
@@ -31,14 +29,6 @@ impl Part<'_> {
 
     fn append(&self, fold: &mut Fold, program: &Program) -> Vec<Value> {
         fold.append(program, |source| self.moved(source), Fold::kept)
-    }
-
-    /// Residual and Jacobian. Terms beyond what is handed to the iterations are computed anew.
-    fn system(&self, fold: &mut Fold) -> Vec<Value> {
-        let terms = self.append(fold, &self.staged.programs.terms);
-        let is_handed = |source: Source| source.array != Array::Terms || self.terms + source.at < MOST_TERMS;
-        let input = |source: Source| if is_handed(source) { self.moved(source) } else { terms[source.at] };
-        fold.append(&self.staged.programs.newton_system, input, Fold::kept)
     }
 
     /// `l`, momentum and Hessian at a velocity: those of `½ ξ·Jξ + s·ξ − V` where it is quadratic.
@@ -117,7 +107,7 @@ fn system(solved: &[&Part<'_>], outputs: usize) -> Program {
     for part in solved {
         let (size, own) = (dimension(part.staged), part.staged.denominators);
         let both = own.max(power);
-        let one = part.system(&mut fold);
+        let one = part.append(&mut fold, &part.staged.programs.newton_system);
         let one = raised(&mut fold, one, size, both - own);
         sum = if part.has_target {
             one
@@ -136,15 +126,10 @@ fn programs(parts: &[Part<'_>]) -> Stages<Program> {
     let stage = |program: fn(&Stages<Program>) -> &Program| {
         sum_of(parts, |part, fold| part.append(fold, program(&part.staged.programs)))
     };
-    let beside = |parts: &[&Part<'_>], program: fn(&Stages<Program>) -> &Program| {
-        let mut fold = Fold::default();
-        let all = parts.iter().flat_map(|part| part.append(&mut fold, program(&part.staged.programs)));
-        let all: Vec<Value> = all.collect();
-        fold.program(&all)
-    };
+    let mut constants = Fold::default();
+    let of_all: Vec<Value> =
+        parts.iter().flat_map(|part| part.append(&mut constants, &part.staged.programs.constants)).collect();
     let solved: Vec<&Part<'_>> = parts.iter().filter(|part| part.has_target || part.staged.parts[0]).collect();
-    let mut terms = beside(&solved, |programs| &programs.terms);
-    terms.outputs.truncate(MOST_TERMS);
     let size = parts.first().map_or(0, |part| dimension(part.staged));
     let kicked = parts.iter().filter(|part| part.staged.parts[1]);
     let derivatives: Option<Vec<_>> =
@@ -157,8 +142,7 @@ fn programs(parts: &[Part<'_>]) -> Stages<Program> {
     let at_velocity = |at: usize| sum_of(parts, |part, fold| std::mem::take(&mut part.at_velocity(fold)[at]));
     let mut all = parts.iter().map(|part| part.staged);
     Stages {
-        constants: beside(&parts.iter().collect::<Vec<_>>(), |programs| &programs.constants),
-        terms,
+        constants: constants.program(&of_all),
         kick_before: stage(|programs| &programs.kick_before),
         newton_system: system(&solved, usize::MAX),
         newton_residual: system(&solved, size),
@@ -189,13 +173,11 @@ pub(crate) fn summed(terms: &[&Staged]) -> Result<Staged, LateError> {
     for (at, &staged) in terms.iter().enumerate() {
         let alike = terms[..at].iter().filter(|other| other.name == staged.name).count();
         let name = if alike == 0 { staged.name.clone() } else { format!("{}{}", staged.name, alike + 1) };
-        let solved = terms[..at].iter().enumerate().filter(|(at, staged)| *at == with_target || staged.parts[0]);
         parts.push(Part {
             staged,
             parameters: parameters.iter().map(|parameter: &Parameter| parameter.kind.len()).sum(),
             constants: terms[..at].iter().map(|staged| staged.programs.constants.outputs.len()).sum(),
             carried: carried.iter().map(|carried| carried.shape.0 * carried.shape.1).sum(),
-            terms: solved.map(|(_, staged)| staged.programs.terms.outputs.len()).sum(),
             has_target: at == with_target,
         });
         let first = parameters.len();

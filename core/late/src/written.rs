@@ -64,7 +64,6 @@ const fn name(array: Array) -> &'static str {
         Array::Step => "h",
         Array::Parameters => "parameters",
         Array::Constants => "constants",
-        Array::Terms => "terms",
         Array::Advected => "advected",
         Array::Next => "next",
         Array::Element => "element",
@@ -86,19 +85,19 @@ fn arrays(program: &Program) -> Vec<Array> {
 }
 
 /// The programs of a step.
-fn stages(declaration: &Declaration) -> [(&'static str, &Program); 6] {
+fn stages(declaration: &Declaration) -> [(&'static str, &Program); 5] {
     let programs = &declaration.programs;
     [
         ("constants", &programs.constants),
         ("kick_before", &programs.kick_before),
-        ("step_terms", &programs.terms),
         ("newton_system", &programs.newton_system),
         ("newton_residual", &programs.newton_residual),
         ("kick_after", &programs.kick_after),
     ]
 }
 
-/// The straight-line code of a step in Rust, as the compiler gets it of the macro: a function for each stage.
+/// The straight-line code of a step in Rust, as the compiler gets it of the macro: a function for each stage. What the macro
+/// computes before a solve is in each iteration.
 ///
 /// # Errors
 ///
@@ -154,14 +153,10 @@ pub fn c(declaration: &Declaration) -> Result<String, LateError> {
         first += length;
     }
     let carried: usize = declaration.carried.iter().map(|carried| carried.shape.0 * carried.shape.1).sum();
-    let terms = declaration.programs.terms.outputs.len().max(1);
     let constants = declaration.programs.constants.outputs.len().max(1);
     let _ = writeln!(text, "*/\n#include <math.h>\n");
-    let _ = writeln!(
-        text,
-        "enum {{ PARAMETERS = {first}, CONSTANTS = {constants}, TERMS = {terms}, ADVECTED = {} }};\n",
-        carried.max(1)
-    );
+    let _ =
+        writeln!(text, "enum {{ PARAMETERS = {first}, CONSTANTS = {constants}, ADVECTED = {} }};\n", carried.max(1));
     for (stage, program) in stages(declaration) {
         let parameter = |array: &Array| match array {
             Array::Step => "double h".to_owned(),
@@ -170,9 +165,8 @@ pub fn c(declaration: &Declaration) -> Result<String, LateError> {
         let of_stage: &[Array] = match stage {
             "constants" => &[Array::Step, Array::Parameters],
             "kick_before" => &[Array::Constants, Array::Advected],
-            "step_terms" => &[Array::Constants, Array::Target, Array::Advected],
             "kick_after" => &[Array::Constants, Array::Increment, Array::Next],
-            _ => &[Array::Constants, Array::Terms, Array::Half, Array::Target, Array::Advected],
+            _ => &[Array::Constants, Array::Half, Array::Target, Array::Advected],
         };
         if arrays(program).iter().any(|array| !of_stage.contains(array)) {
             return Err(LateError::C("a step is written in C where it needs no inverse of the increment"));

@@ -283,18 +283,16 @@ macro_rules! as_summed {
         $assert(&sum, &late, $seed);
         assert_same_terms(&sum, &late, $seed);
         assert!(Late::<_, _, WithEitherKinetic>::of(declaration).and_then(|late| late.with_all(&[1.0])) != Ok(late));
-        declaration
     }};
 }
 
 #[test]
 fn sums_in_one_program() {
     as_summed! { assert_same 1: RigidBody { J_d } Gravity { m g rho up } };
-    let all = as_summed! {
+    as_summed! {
         assert_same 2: RigidBody { J_d } Gravity { m g rho up } GravityGradient { GM r J direction } Dipole { moment field }
         Spring { k length at anchor } Rotor { spin } Drag { c J } Torque { torque } MagneticDamping { k field J }
     };
-    assert!(all.programs.terms.outputs.len() > 40, "{}", all.programs.terms.outputs.len());
     as_summed! { assert_same 3: CayleyBody { J } Rotor { spin } Thrust { at thrust } };
     as_summed! { assert_same 4: Gravity { m g rho up } RigidBody { J_d } Rotor { spin } Rotor { spin } };
     as_summed! { assert_same 5: LogTop { J weight rho up } Gravity { m g rho up } Drag { c J } };
@@ -329,7 +327,7 @@ fn specialised_programs_are_shorter() {
     let mut constants = vec![0.0; programs.constants.outputs.len()];
     let given = [(Array::Step, &[0.01][..]), (Array::Parameters, &parameters)];
     let image = <Interpreted as Backend<f64>>::image(&code, &[]);
-    Interpreted::run(&code, &image, &given, &mut constants);
+    Interpreted::run(&code, &image, given, &mut constants);
     let lengths = [programs, &specialised(programs, &constants)].map(|all| all.newton_system.operations.len());
     println!("{} operations an iteration, specialised {}", lengths[0], lengths[1]);
     assert!(lengths[0] >= 90 && lengths[1] <= 61, "{lengths:?}");

@@ -96,20 +96,20 @@ impl<T: Copy + 'static> Bound<T> {
     ///
     /// Where an array is shorter than what is read of it, or outputs than what is written: then nothing is called.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    pub(crate) fn call(&self, given: &Given<'_, T>, outputs: &mut [T]) {
+    pub(crate) fn call<const N: usize>(&self, given: Given<'_, T, N>, outputs: &mut [T]) {
         let function = &*self.function;
         // A handful of comparisons, in release builds too: a call of this function is safe. What isn't read isn't set.
         let mut inputs = [const { MaybeUninit::<*const f64>::uninit() }; Array::COUNT];
         let (mut missing, mut is_there) = (function.read, outputs.len() >= function.outputs);
-        for &(array, numbers) in given {
-            missing &= !(1 << array as u16);
-            is_there &= numbers.len() >= function.least[array as usize];
+        for (array, numbers) in &given {
+            missing &= !(1 << *array as u16);
+            is_there = is_there && numbers.len() >= function.least[*array as usize];
         }
         assert!(missing == 0 && is_there, "an input is missing, or a place for the outputs");
         // Two lanes at a time.
         for first in (0..lanes_of::<T>()).step_by(2) {
-            for &(array, numbers) in given {
-                inputs[array as usize] = MaybeUninit::new(numbers.as_ptr().cast::<f64>().wrapping_add(first));
+            for (array, numbers) in &given {
+                inputs[*array as usize] = MaybeUninit::new(numbers.as_ptr().cast::<f64>().wrapping_add(first));
             }
             let constants = self.constants.as_ptr().cast::<f64>().wrapping_add(first);
             let outputs = outputs.as_mut_ptr().cast::<f64>().wrapping_add(first);

@@ -1,8 +1,9 @@
 //! The programs of a Lagrangian that is read while a program runs, as machine code.
 //!
-//! [`Machine`] is a back end of [`Late`](liestep_late::Late): `Late<SO3, W, K, Machine>`. Each program becomes a function, by
-//! [Cranelift](https://cranelift.dev), operation by operation and in the order of the program: nothing is contracted or
-//! reordered, and functions like `sin` are those of the interpreter, called. So the steps are the same to the bit.
+//! [`Machine`] is a back end of [`Late`](liestep_late::Late): `Late<SO3, W, K, Machine>`. A program is interpreted until it
+//! has run some hundred times, so that a first step waits for no compiler, and then becomes a function, by
+//! [Cranelift](https://cranelift.dev), operation by operation: nothing is contracted or associated anew, and functions like
+//! `sin` are those of the interpreter, called. So the steps are the same to the bit.
 //!
 //! There is machine code for x86-64 and aarch64, for numbers and for the eight lanes of an ensemble. In other lanes, and for
 //! other scalars, programs are interpreted.
@@ -100,10 +101,10 @@ impl<T: Real> Backend<T> for Machine {
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn run(code: &Both, image: &Image<T>, given: &Given<'_, T>, outputs: &mut [T]) {
+    fn run<const N: usize>(code: &Both, image: &Image<T>, given: Given<'_, T, N>, outputs: &mut [T]) {
         match image.bound.get() {
             Some(bound) => bound.call(given, outputs),
-            None => run_first(code, image, given, outputs),
+            None => run_first::<T, N>(code, image, std::array::from_fn(|at| given[at]), outputs),
         }
     }
 }
@@ -111,7 +112,7 @@ impl<T: Real> Backend<T> for Machine {
 /// A run before there is machine code, or the one that makes it.
 #[cold]
 #[inline(never)]
-fn run_first<T: Real>(code: &Both, image: &Image<T>, given: &Given<'_, T>, outputs: &mut [T]) {
+fn run_first<T: Real, const N: usize>(code: &Both, image: &Image<T>, given: Given<'_, T, N>, outputs: &mut [T]) {
     if code.runs.fetch_add(1, Ordering::Relaxed) >= FEW {
         <Machine as Backend<T>>::prepare(code);
         if let Some(bound) = code.bound(&image.constants) {

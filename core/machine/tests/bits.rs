@@ -63,13 +63,12 @@ fn bits(number: f64) -> u64 {
 }
 
 fn numbers_of<T: Real, B: Backend<T>>(code: &B::Code, program: &Program, arrays: &[Vec<T>]) -> Vec<T> {
-    let [constants, terms, advected, next, element, increment, inverse, inverse_increment, half, velocity, target] =
+    let [constants, advected, next, element, increment, inverse, inverse_increment, half, velocity, target] =
         std::array::from_fn(|at| arrays[at + 2].as_slice());
     let given = [
         (Array::Step, &*arrays[0]),
         (Array::Parameters, &*arrays[1]),
         (Array::Constants, constants),
-        (Array::Terms, terms),
         (Array::Advected, advected),
         (Array::Next, next),
         (Array::Element, element),
@@ -82,7 +81,7 @@ fn numbers_of<T: Real, B: Backend<T>>(code: &B::Code, program: &Program, arrays:
     ];
     let mut numbers = vec![T::zero(); program.outputs.len()];
     B::prepare(code);
-    B::run(code, &B::image(code, constants), &given, &mut numbers);
+    B::run(code, &B::image(code, constants), given, &mut numbers);
     numbers
 }
 

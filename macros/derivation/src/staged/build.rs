@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::sources::{Sources, carried, parameter_kind};
-use super::{Array, Factor, MOST_TERMS, Operation, Parameter, Program, Source, Staged, Stages};
+use super::{Array, Factor, Operation, Parameter, Program, Source, Staged, Stages};
 use crate::declared::Declaration;
 use crate::emit;
 use crate::expand::Steps;
@@ -12,9 +12,6 @@ use crate::mathematics::derive::Inverse;
 use crate::mathematics::symbolic::Expression;
 use crate::program::{Form, Graph, Handed, Node, NodeId, along_directions, limit, needed, term};
 
-/// Operations, and less than a call of a program costs.
-const FEW: usize = 16;
-
 pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> Staged {
     let Steps { chosen, equations, findings } = steps;
     let Chosen { lowered, derived, kernel } = chosen;
@@ -22,17 +19,8 @@ pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> Staged {
     let sources = Sources { declaration, names, directions: Some(&derived.directions) };
     let graph = &kernel.graph;
     let stages = kernel.stages();
-    // Those that come last are computed last, and so are nearest to the iterations.
-    let terms: Handed = stages.terms.iter().map(|(&id, &at)| (id, at)).take(MOST_TERMS).collect();
-    let nothing = Handed::new();
-    let none = [&nothing, &nothing];
-    let constants = [&stages.constants, &nothing];
+    let (constants, none) = (&stages.constants, &Handed::new());
     let program = |handed, outputs: &[NodeId]| program(graph, &sources, handed, outputs);
-    let of_handed = |handed: &Handed, from| program(from, &handed.keys().copied().collect::<Vec<_>>());
-    // Handing a few results on takes longer than computing them anew.
-    let is_worth = of_handed(&terms, constants).operations.len() > FEW;
-    let terms = if is_worth { terms } else { Handed::new() };
-    let all = [&stages.constants, &terms];
     let derived_term = |form, expression| {
         let (graph, outputs) = term(derived, form, expression);
         self::program(&graph, &sources, none, &outputs)
@@ -64,11 +52,13 @@ pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> Staged {
         in_increment: kernel.in_increment,
         blocks: kernel.ends(&derived.group).into_iter().map(|end| derived.group.component_of(end)).collect(),
         programs: Stages {
-            constants: of_handed(&stages.constants, none),
-            terms: of_handed(&terms, constants),
+            constants: program(none, &constants.keys().copied().collect::<Vec<_>>()),
             kick_before: program(constants, &kernel.kick_before),
-            newton_system: program(all, &stages.system),
-            newton_residual: program(all, &if is_expensive { kernel.gradient() } else { kernel.residual.clone() }),
+            newton_system: program(constants, &stages.system),
+            newton_residual: program(
+                constants,
+                &if is_expensive { kernel.gradient() } else { kernel.residual.clone() },
+            ),
             kick_after: program(constants, &kernel.kick_after),
             kick_derivative: kernel.kick_derivative.as_ref().map(|outputs| program(constants, outputs)),
             momentum_jacobian: derived_term(Form::Square, &derived.jacobian),
@@ -91,21 +81,17 @@ pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> Staged {
 fn at_velocity(declaration: &Declaration, equations: &Equations) -> [Program; 3] {
     let sources = Sources { declaration, names: &equations.names, directions: None };
     let derived = &equations.derived;
-    let nothing = Handed::new();
     let of_rank = |rank, expression: &Expression| {
         let mut graph = Graph::default();
         let outputs = along_directions(&mut graph, derived, rank, expression);
-        program(&graph, &sources, [&nothing, &nothing], &outputs)
+        program(&graph, &sources, &Handed::new(), &outputs)
     };
     [of_rank(0, &derived.lagrangian), of_rank(1, &derived.momentum), of_rank(2, &derived.hessian)]
 }
 
-/// The program of these outputs, which reads what earlier stages have handed on.
-fn program(graph: &Graph, sources: &Sources, [constants, terms]: [&Handed; 2], outputs: &[NodeId]) -> Program {
+/// The program of these outputs, which reads these constants.
+fn program(graph: &Graph, sources: &Sources, constants: &Handed, outputs: &[NodeId]) -> Program {
     let source = |id: NodeId| {
-        if let Some(&at) = terms.get(&id) {
-            return Some(Source::new(Array::Terms, at));
-        }
         if let Some(&at) = constants.get(&id) {
             return Some(Source::new(Array::Constants, at));
         }

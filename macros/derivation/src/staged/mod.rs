@@ -39,8 +39,6 @@ pub enum Array {
     Parameters,
     /// What the constants' program has computed.
     Constants,
-    /// What the program of the step's terms has computed.
-    Terms,
     /// What is advected or given, `w`.
     Advected,
     /// The same after the step, `w⁺`.
@@ -63,7 +61,7 @@ pub enum Array {
 
 impl Array {
     /// How many there are.
-    pub const COUNT: usize = 13;
+    pub const COUNT: usize = 12;
 }
 
 /// The place of a number in an array.
@@ -206,11 +204,9 @@ pub struct Factor {
 pub struct Stages<P> {
     /// What the parameters and `h` determine.
     pub constants: P,
-    /// What `a` and `w` determine: at most [`MOST_TERMS`]; iterations compute the others anew.
-    pub terms: P,
     /// As the methods of `Effect`.
     pub kick_before: P,
-    /// Residual, then Jacobian.
+    /// Residual, then Jacobian. What `a` and `w` determine is computed in each iteration: to hand it on would take as long.
     pub newton_system: P,
     /// The residual; behind it the moving kick, where the solve does better without the Jacobian.
     pub newton_residual: P,
@@ -237,7 +233,6 @@ impl<P> Stages<P> {
     pub fn try_map<'a, Q, E>(&'a self, mut make: impl FnMut(&'a P) -> Result<Q, E>) -> Result<Stages<Q>, E> {
         Ok(Stages {
             constants: make(&self.constants)?,
-            terms: make(&self.terms)?,
             kick_before: make(&self.kick_before)?,
             newton_system: make(&self.newton_system)?,
             newton_residual: make(&self.newton_residual)?,
@@ -298,9 +293,6 @@ pub struct Staged {
     /// The programs.
     pub programs: Stages<Program>,
 }
-
-/// What is handed to the iterations of a step.
-pub const MOST_TERMS: usize = 64;
 
 /// Why nothing was derived.
 #[derive(Clone, Debug)]
