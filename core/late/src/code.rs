@@ -255,7 +255,8 @@ impl Code {
 /// The mask is one less than the number of registers, a power of two.
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn apply<T: Copy>(registers: &mut [T], mask: usize, instructions: &[Instruction], operation: impl Fn(T, T) -> T) {
-    let mut run = |&Instruction { operands: [a, b], result }: &Instruction| {
+    let mut run = #[cfg_attr(not(debug_assertions), inline(always))]
+    |&Instruction { operands: [a, b], result }: &Instruction| {
         let value = operation(registers[usize::from(a) & mask], registers[usize::from(b) & mask]);
         registers[usize::from(result) & mask] = value;
     };
