@@ -341,21 +341,15 @@ fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
 ) where
     CayleyRetraction: Retraction<G>,
 {
-    // Off SO(3) the system is written in the increment. Much that is advected takes long to list.
-    let is_little = const { size_of::<W>() <= size_of::<Vector<G>>() };
-    let has_increment = program.reads(Array::Increment) || program.reads(Array::InverseIncrement);
-    if has_increment || !is_little && program.reads(Array::Advected) {
+    // Off SO(3) the system is written in the increment.
+    if program.reads(Array::Increment) || program.reads(Array::InverseIncrement) {
         return iteration_with_more::<G, W, B>((program, image), terms, half, outputs);
     }
     listed!(coordinates = half);
     listed!(target = &terms.right_side);
-    if is_little {
-        listed!(advected = &terms.advected);
-        let given = [(Array::Half, coordinates), (Array::Target, target), (Array::Advected, advected)];
-        B::run(&program.code, image, given, outputs);
-    } else {
-        B::run(&program.code, image, [(Array::Half, coordinates), (Array::Target, target)], outputs);
-    }
+    listed!(advected = &terms.advected);
+    let given = [(Array::Half, coordinates), (Array::Target, target), (Array::Advected, advected)];
+    B::run(&program.code, image, given, outputs);
 }
 
 #[inline(never)]

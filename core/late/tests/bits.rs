@@ -330,7 +330,8 @@ fn specialised_programs_are_shorter() {
     Interpreted::run(&code, &image, given, &mut constants);
     let lengths = [programs, &specialised(programs, &constants)].map(|all| all.newton_system.operations.len());
     println!("{} operations an iteration, specialised {}", lengths[0], lengths[1]);
-    assert!(lengths[0] >= 90 && lengths[1] <= 61, "{lengths:?}");
+    // Three of them are products of the right side.
+    assert!(lengths[0] >= 90 + 3 && lengths[1] <= 61 + 3, "{lengths:?}");
     let (general, specialised) = (after(late.clone()), after(late.specialised()));
     assert!((general - specialised).norm() < 1e-13 * general.norm(), "{general} {specialised}");
 }

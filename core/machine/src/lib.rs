@@ -35,18 +35,14 @@ pub struct Both {
     program: Program,
     interpreted: Code,
     runs: AtomicU32,
-    of_numbers: OnceLock<Option<Arc<Function>>>,
-    in_lanes: OnceLock<Option<Arc<Function>>>,
+    /// Of numbers, and of lanes.
+    functions: [OnceLock<Option<Arc<Function>>>; 2],
 }
 
 impl Both {
     /// Where machine code is kept for these numbers.
     fn place<T: Real>(&self) -> Option<&OnceLock<Option<Arc<Function>>>> {
-        match lanes_of::<T>() {
-            1 => Some(&self.of_numbers),
-            LANES => Some(&self.in_lanes),
-            _ => None,
-        }
+        [1, LANES].iter().zip(&self.functions).find(|(lanes, _)| **lanes == lanes_of::<T>()).map(|(_, place)| place)
     }
 
     /// The machine code with these constants, if it has been made.
@@ -77,8 +73,7 @@ impl<T: Real> Backend<T> for Machine {
             program: program.clone(),
             interpreted,
             runs: AtomicU32::new(0),
-            of_numbers: OnceLock::new(),
-            in_lanes: OnceLock::new(),
+            functions: Default::default(),
         };
         Ok(programs.iter().zip(interpreted).map(both).collect())
     }
