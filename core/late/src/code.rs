@@ -254,9 +254,9 @@ impl Code {
 
 /// The mask is one less than the number of registers, a power of two.
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn apply<T: Copy>(registers: &mut [T], mask: usize, instructions: &[Instruction], operation: impl Fn(T, T) -> T) {
-    // Four in a turn, which the compiler writes one after the other.
-    let (fours, others) = instructions.as_chunks::<4>();
+fn apply<T: Real>(registers: &mut [T], mask: usize, instructions: &[Instruction], operation: impl Fn(T, T) -> T) {
+    // Four in a turn, which the compiler writes one after the other, where they are short.
+    let (fours, others) = if T::LANES == 1 { instructions.as_chunks::<4>() } else { (&[][..], instructions) };
     for four in fours {
         for &instruction in four {
             apply_one(registers, mask, instruction, &operation);
@@ -268,7 +268,7 @@ fn apply<T: Copy>(registers: &mut [T], mask: usize, instructions: &[Instruction]
 }
 
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn apply_one<T: Copy>(registers: &mut [T], mask: usize, made: Instruction, operation: &impl Fn(T, T) -> T) {
+fn apply_one<T: Real>(registers: &mut [T], mask: usize, made: Instruction, operation: &impl Fn(T, T) -> T) {
     let [a, b] = made.operands.map(|operand| registers[usize::from(operand) & mask]);
     registers[usize::from(made.result) & mask] = operation(a, b);
 }

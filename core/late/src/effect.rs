@@ -266,7 +266,7 @@ where
         constants.0.numbers.iter().all(is_finite)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[cfg_attr(all(not(debug_assertions), not(feature = "small")), inline(always))]
     fn kick_before(constants: &Self::Constants, w: &W) -> Vector<G> {
         let folded = &*constants.0;
         listed!(advected = w);
@@ -286,12 +286,12 @@ where
         Some(vector(derivative))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[cfg_attr(all(not(debug_assertions), not(feature = "small")), inline(always))]
     fn step_terms(_: &Self::Constants, a: &Vector<G>, w: &W) -> Self::StepTerms {
         StepTerms { right_side: *a, advected: *w }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[cfg_attr(all(not(debug_assertions), not(feature = "small")), inline(always))]
     fn newton_system(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> (Vector<G>, Square<G>) {
         let folded = &*constants.0;
         room!(outputs: G::Scalar, G::DIMENSION * (G::DIMENSION + 1));
@@ -304,7 +304,7 @@ where
         (residual, Vector::<G>::square(|k| jacobian * Vector::<G>::column(&tangent, k)))
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[cfg_attr(all(not(debug_assertions), not(feature = "small")), inline(always))]
     fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> Residual<Vector<G>> {
         let folded = &*constants.0;
         room!(outputs: G::Scalar, 2 * G::DIMENSION);
@@ -313,7 +313,7 @@ where
         Residual { momentum_defect: vector(outputs), moving_kick }
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[cfg_attr(all(not(debug_assertions), not(feature = "small")), inline(always))]
     fn kick_after(constants: &Self::Constants, increment: &Matrix<G>, next: &W) -> Vector<G> {
         let folded = &*constants.0;
         let (program, image) = (&folded.stages.kick_after, &folded.kick_after);
@@ -332,7 +332,7 @@ where
 }
 
 /// What an iteration computes.
-#[cfg_attr(not(debug_assertions), inline(always))]
+#[cfg_attr(all(not(debug_assertions), not(feature = "small")), inline(always))]
 fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
     (program, image): (&Ready<B::Code>, &B::Image),
     terms: &StepTerms<Vector<G>, W>,
