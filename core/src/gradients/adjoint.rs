@@ -7,7 +7,7 @@ use core::ops::Range;
 
 use crate::error::{SetupError, StepError};
 use crate::gradients::input::{Input, InputOf};
-use crate::gradients::recording::Change;
+use crate::gradients::recording::{Change, Recording};
 use crate::gradients::stage::{Cotangent, FlowDerivatives, Pass, Stage};
 use crate::gradients::{Linearisable, Linearised};
 use crate::groups::LieGroup;
@@ -52,6 +52,11 @@ impl<G: LieGroup> Pass<G> for Back<'_, G> {
     }
 
     #[hot]
+    fn on_the_way_back(&mut self) -> Option<(&mut Cotangent<G::Vector>, &mut [G::Scalar])> {
+        Some((&mut self.cotangent, self.gradient))
+    }
+
+    #[hot]
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>) {
         self.cotangent = stage.pull(&self.cotangent, self.gradient, &mut self.values);
     }
@@ -70,11 +75,18 @@ impl<G: LieGroup> Back<'_, G> {
     }
 }
 
-/// The inputs of the steps, and the motion before each step, which can't be found again from the changes of a step with an
-/// input. Both are empty where the steps have no input.
+/// What is known of a run beside the changes that its steps make.
 struct Given<'i, S: Effect> {
+    steps: u64,
+    /// Of the steps; empty where none has one.
     inputs: &'i [InputOf<S>],
+    /// The motions before the steps of a stretch, and the last of the run; of the others only where these can't be found
+    /// among the changes: of steps with an input, and of those inside of a processor.
     motions: Vec<Motion<Group<S>, S::Advected>>,
+    /// Where the end of the last step begins.
+    before_end: Option<Motion<Group<S>, S::Advected>>,
+    /// How many changes there are at each end of the run; none of a run with inputs, whose steps have them.
+    ends: usize,
 }
 
 impl<S: Effect> Given<'_, S> {
@@ -83,7 +95,7 @@ impl<S: Effect> Given<'_, S> {
     }
 }
 
-/// Several steps, from the last to the first.
+/// Several steps, from the last to the first, and the costs of the states before them, and of that behind the last of all.
 struct Stretch<'a, 'b, S: SecondDerivatives, P: Linearisable<S>, C> {
     linearised: &'a Linearised<'a, S, P>,
     steps: Range<u64>,
@@ -101,30 +113,37 @@ where
     P: Linearisable<S>,
     C: FnMut(u64, &Motion<Group<S>, S::Advected>) -> Cotangent<Vector<S>>,
 {
-    type Output = ();
+    type Output = Result<(), StepError>;
 
     /// For AVX's three-operand instructions; there is nothing to do four at a time.
     const VECTORS: Vectors = Vectors::Four;
 
     #[hot]
-    fn run(self) {
+    fn run(self) -> Self::Output {
         let Linearised { stepper, table } = self.linearised;
         let Stepper { scene, plan } = stepper;
-        // All steps of a plan have the same stages, so each has this number of events.
-        let half = stepper.step_size() * real(0.5);
+        let (Range { start, end }, ends) = (self.steps, self.given.ends);
+        let (half, stages) = (self.linearised.half_step(), plan.stages() - 2 * ends);
         let mut motions = self.given.motions.iter().rev();
-        for (n, step) in self.steps.rev().zip(self.events.chunks(plan.stages()).rev()) {
+        let (begin, changes) = self.events.split_at(if start == 0 && end > 0 { ends } else { 0 });
+        let mut changes = changes.chunks(stages);
+        let out = RefCell::new(Vec::new());
+        for n in (start..=end).rev() {
+            if n == end && n < self.given.steps {
+                continue;
+            }
+            let step = if n < end { changes.next_back().unwrap_or_default() } else { &[] };
             let (input, at_end) = (self.given.input(n), self.back.cotangent.momentum);
             self.back.values.clear();
             if let Input::Values(values) = input {
                 values.each(&mut |_| self.back.values.push(real(0.0)));
             }
             for (index, event) in step.iter().enumerate().rev() {
-                plan.visit((scene, table), index, event, self.back);
+                plan.visit((scene, table), ends + index, event, self.back);
             }
             let mut shares = self.back.values.iter();
             match input {
-                Input::Free if self.given.inputs.is_empty() => {}
+                Input::Free if n == end || self.given.inputs.is_empty() => {}
                 Input::Free => self.by_inputs.push(Input::Free),
                 // Half of the impulse comes before the step, half behind it.
                 Input::Force(_) => self.by_inputs.push(Input::Force((self.back.cotangent.momentum + at_end) * half)),
@@ -132,10 +151,26 @@ where
                     self.by_inputs.push(input.of_scalars(&mut || shares.next().copied().unwrap_or(real(0.0))));
                 }
             }
-            if let Some(before) = motions.next().or(step.first().map(|event| &event.before)) {
-                self.back.add(&(self.cost)(n, before));
+            let first = step.first().map(|event| &event.before);
+            let Some(read) = motions.next().or(first) else { continue };
+            let mut of_cost = (self.cost)(n, read);
+            if ends > 0 && (n == 0 || of_cost != Cotangent::zero()) {
+                // Elsewhere than at the start of the run only the cost is taken inside.
+                out.borrow_mut().clear();
+                if n == 0 {
+                    out.borrow_mut().extend_from_slice(begin);
+                } else if let Some(before) = first.or(self.given.before_end.as_ref()) {
+                    plan.make_end(&mut Recording { motion: *before, events: &out })?;
+                    core::mem::swap(&mut self.back.cotangent, &mut of_cost);
+                }
+                let number = if n == 0 { 0 } else { ends + stages };
+                for (index, event) in out.borrow().iter().enumerate().rev() {
+                    plan.visit((scene, table), number + index, event, self.back);
+                }
             }
+            self.back.add(&of_cost);
         }
+        Ok(())
     }
 }
 
@@ -236,7 +271,8 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         tape: Tape,
         mut cost: impl FnMut(u64, &Motion<Group<S>, S::Advected>) -> Cotangent<Vector<S>>,
     ) -> Result<(GradientOf<S>, Vec<InputOf<S>>), StepError> {
-        let mut given = Given { inputs, motions: Vec::new() };
+        let ends = if inputs.is_empty() { self.stepper.plan.ends() } else { 0 };
+        let mut given = Given { steps, inputs, motions: Vec::new(), before_end: None, ends };
         let mut by_inputs = Vec::with_capacity(inputs.len());
         let length = match tape {
             Tape::All => steps,
@@ -261,7 +297,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         starts.push((made, end));
         self.record_stretch(&mut end, made..steps, &mut given, &events)?;
         let mut gradient = self.no_gradient();
-        let mut back = Back { cotangent: cost(steps, &end.motion), gradient: &mut gradient, values: Vec::new() };
+        let mut back = Back { cotangent: Cotangent::zero(), gradient: &mut gradient, values: Vec::new() };
         let mut last = steps;
         while let Some((first, mut start)) = starts.pop() {
             if last < steps {
@@ -277,7 +313,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
                 by_inputs: &mut by_inputs,
                 back: &mut back,
                 cost: &mut cost,
-            });
+            })?;
             last = first;
         }
         let start = back.cotangent;
@@ -299,11 +335,16 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         events: &RefCell<Vec<Change<Group<S>, S::Advected>>>,
     ) -> Result<(), StepError> {
         given.motions.clear();
-        for n in steps {
-            if !given.inputs.is_empty() {
+        for n in steps.clone() {
+            if !given.inputs.is_empty() || given.ends > 0 {
                 given.motions.push(state.motion);
             }
-            self.recorded_given(state, given.input(n), events)?;
+            let ends = if given.ends > 0 { [n == 0, false] } else { [true; 2] };
+            self.recorded_given(state, given.input(n), events, ends)?;
+        }
+        if steps.end == given.steps {
+            given.motions.push(state.motion);
+            given.before_end = Some(self.stepper.plan.before_end(&state.motion, &state.kept));
         }
         Ok(())
     }
@@ -375,7 +416,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Backwards<'_, S, P> {
         let mut gradient = forwards.no_gradient();
         let mut back = Back { cotangent: cost(steps, &end.motion), gradient: &mut gradient, values: Vec::new() };
         for n in (0..steps).rev() {
-            self.inverse.recorded(&mut now, &events)?;
+            self.inverse.recorded(&mut now, &events, [true; 2])?;
             let mut made = events.borrow_mut();
             // A step back undoes the stages from the last to the first.
             let after = made.iter().skip(1).map(|event| event.before).chain([now.motion]).collect::<Vec<_>>();

@@ -121,7 +121,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
     ) -> Result<StepReport, StepError> {
         let mut next = *state;
         tangent.events.get_mut().clear();
-        let report = self.recorded_given(&mut next, input, &tangent.events)?;
+        let report = self.recorded_given(&mut next, input, &tangent.events, [true; 2])?;
         tangent.is_given_values = matches!(input, Input::Values(_));
         self.carry(tangent)?;
         *state = next;
@@ -202,17 +202,18 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         state: &mut StateOf<S, P>,
         input: &InputOf<S>,
         events: &RefCell<Vec<Change<Group<S>, S::Advected>>>,
+        ends: [bool; 2],
     ) -> Result<StepReport, StepError> {
         let Stepper { scene, plan } = self.stepper;
         match input {
-            Input::Free => self.stepper.recorded(state, events),
+            Input::Free => self.stepper.recorded(state, events, ends),
             Input::Force(force) => {
                 if !force.is_finite() {
                     return Err(StepError::NonFinite { what: "control force" });
                 }
                 let half = *force * self.half_step();
                 plan.push(scene, &mut state.motion, &mut state.kept, &half)?;
-                let report = self.stepper.recorded(state, events)?;
+                let report = self.stepper.recorded(state, events, ends)?;
                 plan.push(scene, &mut state.motion, &mut state.kept, &half)?;
                 if !state.motion.momentum.is_finite() {
                     return Err(StepError::NonFinite { what: "momentum after the step" });
@@ -225,7 +226,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
                 }
                 let seen = values.seen_from(&state.motion.attitude);
                 plan.see(&mut state.motion, &mut state.kept, seen);
-                let report = self.stepper.recorded(state, events)?;
+                let report = self.stepper.recorded(state, events, ends)?;
                 let own = scene.advected().seen_from(&state.motion.attitude);
                 plan.see(&mut state.motion, &mut state.kept, own);
                 Ok(report)

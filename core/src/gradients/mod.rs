@@ -99,7 +99,7 @@ mod tangent;
 pub use adjoint::{Backwards, Gradient, Tape};
 pub use input::{Input, InputOf, Transition};
 pub use recording::Change;
-pub(crate) use stage::ForceGradient;
+pub(crate) use stage::{ForceGradient, add_shares};
 pub use stage::{Cotangent, FlowDerivatives, Pass, Stage};
 pub use tangent::{Tangent, TangentOf};
 
@@ -109,7 +109,7 @@ use core::ops::Range;
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, SecondDerivatives};
-use crate::motion::{Declared, Plan, StateOf, Steerable, StepReport, Stepper, Summation};
+use crate::motion::{Declared, Motion, Plan, StateOf, Steerable, StepReport, Stepper, Summation};
 use crate::numbers::{Kernel, Vectors, dispatch};
 use recording::Recording;
 
@@ -156,10 +156,17 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> + Steerable {
         Ok(())
     }
 
-    /// How many changes a step makes.
+    /// How many changes a step makes, those of a processor at both of its ends among them.
     fn stages(&self) -> usize;
 
-    /// A step whose changes are written down: those that [`stages`](Self::stages) counts, in this order.
+    /// How many of them are those of a processor at the beginning, and as many at the end, which the beginning of the next
+    /// step undoes.
+    fn ends(&self) -> usize {
+        0
+    }
+
+    /// A step whose changes are written down: those that [`stages`](Self::stages) counts, in this order, of a processor
+    /// those at the ends that are asked for. The first step of a run has to be asked for its beginning.
     ///
     /// # Errors
     ///
@@ -170,8 +177,27 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> + Steerable {
         scene: &S,
         motion: &mut M,
         kept: &mut Self::Kept,
+        _ends: [bool; 2],
     ) -> Result<StepReport, StepError> {
         self.step(scene, motion, kept)
+    }
+
+    /// Where the end of a step that ended here began: the motion inside of a processor.
+    fn before_end(
+        &self,
+        read: &Motion<Group<S>, S::Advected>,
+        _kept: &Self::Kept,
+    ) -> Motion<Group<S>, S::Advected> {
+        *read
+    }
+
+    /// Makes the changes of a processor at the end of a step, from there.
+    ///
+    /// # Errors
+    ///
+    /// As [`Plan::step`].
+    fn make_end<M: Summation<Group<S>, S::Advected>>(&self, _motion: &mut M) -> Result<(), StepError> {
+        Ok(())
     }
 
     /// Shows the stage that has made the change of this number to a pass.
@@ -329,10 +355,11 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Stepper<S, P> {
         &self,
         state: &mut StateOf<S, P>,
         events: &RefCell<Vec<Change<Group<S>, S::Advected>>>,
+        ends: [bool; 2],
     ) -> Result<StepReport, StepError> {
         let Self { scene, plan } = self;
         let mut recorded = Recording { motion: state.motion, events };
-        match plan.record(scene, &mut recorded, &mut state.kept) {
+        match plan.record(scene, &mut recorded, &mut state.kept, ends) {
             Ok(report) => {
                 state.motion = recorded.motion;
                 Ok(report)

@@ -353,11 +353,23 @@ fn pulled<G: LieGroup>(matrix: &SquareOf<G>, a: &G::Vector) -> G::Vector {
     G::Vector::of_four(&G::Vector::map_four(&G::Vector::transpose(matrix), &G::Vector::beside(&[*a; 4])), 0)
 }
 
+/// Adds the shares of neighbours among the parameters.
+#[hot]
+pub(crate) fn add_shares<T: Real>(gradient: &mut [T], first: usize, shares: &[T]) {
+    // One check of the range, not one for each scalar.
+    let own = gradient.get_mut(first..first + shares.len()).unwrap_or_default();
+    own.iter_mut().zip(shares).for_each(|(sum, share)| *sum += *share);
+}
+
 /// What is done with the stages of a step, one after the other: by the derivatives of the library's own plans.
 #[doc(hidden)]
 pub trait Pass<G: LieGroup> {
     /// Whether it asks for derivatives by parameters; those of an exact flow may then be left out.
     fn asks_for_parameters(&self) -> bool;
+
+    /// Of a way back the gradient behind the stage, to be replaced by that before it, and that by the parameters, to be
+    /// added to; none of a way forwards.
+    fn on_the_way_back(&mut self) -> Option<(&mut Cotangent<G::Vector>, &mut [G::Scalar])>;
 
     /// Takes notice of a stage.
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>);

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use core::cell::RefCell;
 
 use crate::gradients::recording::Change;
-use crate::gradients::stage::{FlowDerivatives, Kind, Pass, Stage};
+use crate::gradients::stage::{Cotangent, FlowDerivatives, Kind, Pass, Stage};
 use crate::groups::LieGroup;
 use crate::mechanics::pattern_of_type;
 use crate::mechanics::{Group, SecondDerivatives, Term, Vector};
@@ -190,6 +190,11 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
     #[hot]
     fn asks_for_parameters(&self) -> bool {
         !self.shares.is_empty()
+    }
+
+    #[hot]
+    fn on_the_way_back(&mut self) -> Option<(&mut Cotangent<G::Vector>, &mut [G::Scalar])> {
+        None
     }
 
     #[hot]

@@ -8,9 +8,9 @@ use core::fmt::Debug;
 use nalgebra::{Matrix3, Vector3};
 
 use super::kinetic_flow::SymmetricBody;
-use super::{Flow, KineticFlow, Length, Split, StagesOf};
+use super::{Flow, KineticFlow, Length, Split};
 use crate::error::{SetupError, StepError};
-use crate::gradients::{Change, FlowDerivatives, ForceGradient, Linearisable, Pass, Stage};
+use crate::gradients::{Change, Cotangent, FlowDerivatives, ForceGradient, Linearisable, Pass, Stage, add_shares};
 use crate::groups::SO3;
 use crate::groups::rotation_functions::stumpff;
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor, SecondDerivatives};
@@ -111,7 +111,18 @@ impl<T: Real> DifferentiableFlow<T> for SymmetricBody<T> {
         // The second factor turns about the third axis.
         let axis: Vector3<T> = increment.column(2) + Vector3::z();
         let x = momentum * t;
-        let (q, hat) = (x.norm_squared(), x.cross_matrix());
+        let q = x.norm_squared();
+        if let Some((end, gradient)) = pass.on_the_way_back() {
+            let (before, by_turn) = before_turn(&increment, &momentum, end);
+            let (across, along) = (x.cross(&by_turn), axis.dot(&by_turn));
+            let of_direction = by_turn - across * stumpff::<T, 2>(q) + x.cross(&across) * stumpff::<T, 3>(q);
+            let by_momentum = of_direction * t - Vector3::z() * (along * s);
+            *end = Cotangent { momentum: before.momentum + by_momentum, ..before };
+            let spin = along * momentum.z;
+            let by_transverse = (spin - momentum.dot(&by_turn)) * (t / transverse);
+            return add_shares(gradient, first_parameter, &[by_transverse, -(spin * (time / (axial * axial)))]);
+        }
+        let hat = x.cross_matrix();
         let of_direction = (Matrix3::identity() + hat * stumpff::<T, 2>(q) + hat * hat * stumpff::<T, 3>(q)) * t;
         let turn_by_momentum = of_direction - Matrix3::from_columns(&[Vector3::zeros(), Vector3::zeros(), axis * s]);
         // Along p itself dexp is one.
@@ -121,6 +132,18 @@ impl<T: Real> DifferentiableFlow<T> for SymmetricBody<T> {
         let by_parameters = [(first_parameter, by_transverse), (first_parameter + 1, by_axial)];
         pass.flown(&flown(turn_by_momentum, &increment, &momentum, &by_parameters));
     }
+}
+
+/// The gradient before a turn, `F z` and `F p`, but for what the turn itself has in it, and that by the turn,
+/// `F z − μ × F p`; the turn is one by `F = I + D` of a body with the momentum `μ` before it.
+#[hot]
+pub(super) fn before_turn<T: Real>(
+    increment: &Matrix3<T>,
+    momentum: &Vector3<T>,
+    end: &Cotangent<Vector3<T>>,
+) -> (Cotangent<Vector3<T>>, Vector3<T>) {
+    let [attitude, carried] = [end.attitude, end.momentum].map(|part| part + increment * part);
+    (Cotangent { attitude, momentum: carried }, attitude - momentum.cross(&carried))
 }
 
 /// A turn by `F`, whose increment this is, of a body with this momentum before it.
@@ -173,11 +196,19 @@ where
         scene: &S,
         motion: &mut M,
         kept: &mut (),
+        _ends: [bool; 2],
     ) -> Result<StepReport, StepError> {
         if self.spin.is_none() {
             return self.step(scene, motion, kept);
         }
-        self.record_beside((self, kept), scene, motion, (*motion, [&self.first, &self.last]))
+        let mut whole = *motion;
+        for shares in [&self.first, &self.last] {
+            self.make_all::<true, M>(shares, &mut whole, &mut 0)?;
+        }
+        let mut plain = *motion.now();
+        let report = self.step(scene, &mut plain, kept)?;
+        motion.replace(plain);
+        Ok(report)
     }
 
     #[hot]
@@ -203,25 +234,6 @@ where
     S: RigidScene + SecondDerivatives,
     K: DifferentiableFlow<Scalar<S>>,
 {
-    /// A step of a plan of these drifts and kicks, beside the changes that it is made of: these shares one after another,
-    /// from a copy of the motion.
-    #[hot]
-    pub(super) fn record_beside<P: Plan<S>, M: Summation<SO3<Scalar<S>>, S::Advected>>(
-        &self,
-        (plan, kept): (&P, &mut P::Kept),
-        scene: &S,
-        motion: &mut M,
-        (mut whole, shares): (M, [&StagesOf<S, K>; 2]),
-    ) -> Result<StepReport, StepError> {
-        for shares in shares {
-            self.make_all::<true, M>(shares, &mut whole, &mut 0)?;
-        }
-        let mut plain = *motion.now();
-        let report = plan.step(scene, &mut plain, kept)?;
-        motion.replace(plain);
-        Ok(report)
-    }
-
     /// Whether the derivatives of force gradients are known.
     pub(super) fn check_gradients(scene: &S) -> Result<(), SetupError> {
         let (w, zero) = (scene.advected(), Vector3::repeat(real(0.0)));

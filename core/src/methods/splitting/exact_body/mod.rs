@@ -32,6 +32,7 @@
 mod doubling;
 mod frame;
 mod linearised;
+mod reverse;
 mod series;
 
 use nalgebra::{Matrix3, SimdBool as _, Vector3};

@@ -1,6 +1,6 @@
 //! The elliptic functions of a free body over a short time, as polynomials.
 
-use crate::numbers::Number;
+use crate::numbers::{Dual, Number, Real, real};
 
 /// What a motion keeps, in units of half the drift: none is negative, and all are zero where the drift is.
 #[derive(Clone, Copy, Debug)]
@@ -46,8 +46,13 @@ pub(super) const LONG: f64 = 0.05;
 /// With `℘` to its fifth coefficient and the integral to its fifth; terms that are far below a rounding are left out.
 #[hot]
 pub(super) fn short<T: Number>(invariants: &Invariants<T>) -> Functions<T> {
+    short_of(&start(invariants))
+}
+
+#[hot]
+pub(super) fn short_of<T: Number>(start: &Start<T>) -> Functions<T> {
     let k = T::number;
-    let Start { e, x, y, c } = start(invariants);
+    let Start { e, x, y, c } = *start;
     let (w4, w5) = (x * x * k(1.0 / 3.0), x * y * k(3.0 / 11.0));
     let n = ((T::one() + e) + (x + y)) + (w4 + w5);
     let mu = (T::one() - (x + (y + y))) - (w4 * k(3.0) + w5 * k(4.0));
@@ -64,8 +69,13 @@ pub(super) fn short<T: Number>(invariants: &Invariants<T>) -> Functions<T> {
 /// With `℘` to its ninth coefficient and the integral to its eighth, likewise.
 #[hot]
 pub(super) fn long<T: Number>(invariants: &Invariants<T>) -> Functions<T> {
+    long_of(&start(invariants))
+}
+
+#[hot]
+pub(super) fn long_of<T: Number>(start: &Start<T>) -> Functions<T> {
     let k = T::number;
-    let Start { e, x, y, c } = start(invariants);
+    let Start { e, x, y, c } = *start;
     let (xx, yy, xy) = (x * x, y * y, x * y);
     let (w4, w5) = (xx * k(1.0 / 3.0), xy * k(3.0 / 11.0));
     let (w6, w7) = (x * xx * k(2.0 / 39.0) + yy * k(1.0 / 13.0), x * xy * k(2.0 / 33.0));
@@ -93,9 +103,38 @@ pub(super) fn long<T: Number>(invariants: &Invariants<T>) -> Functions<T> {
     Functions { n, mu: mu + mu, integral: integral + k(1.0 / 3.0) }
 }
 
+/// The derivatives by `x`, `y` and `c` of what has these derivatives by the functions that [`short`] makes of them.
+#[hot]
+pub(super) fn short_back<T: Real>(start: &Start<T>, by: &Functions<T>) -> [T; 3] {
+    let k = real::<T>;
+    let (Start { x, y, c, .. }, Functions { n, mu, integral }) = (*start, *by);
+    let (xx, cc, of_5) = (x * x, c * c, (n - mu * k(8.0)) * k(3.0 / 11.0));
+    let of_c_1 = (k(2.0 / 9.0) * x - k(0.2)) + (k(2.0 / 11.0) * y - k(7.0 / 39.0) * xx);
+    let of_c_2 = k(2.0 / 7.0) - (k(6.0 / 11.0) * x + k(6.0 / 13.0) * y);
+    let of_c_3 = k(12.0 / 13.0) * x - k(1.0 / 3.0) + c * (k(4.0 / 11.0) - k(5.0 / 13.0) * c);
+    let by_c = (of_c_1 + of_c_2 * c) + cc * of_c_3;
+    let of_x = (k(4.0 / 33.0) * x - k(1.0 / 7.0)) + c * (k(2.0 / 9.0) - k(14.0 / 39.0) * x);
+    let by_x = of_x + cc * (k(4.0 / 13.0) * c - k(3.0 / 11.0));
+    let by_y = (k(2.0 / 11.0) * c - k(1.0 / 9.0)) - k(3.0 / 13.0) * cc;
+    [
+        integral * by_x + ((n - (mu + mu)) + x * k(2.0 / 3.0) * (n - mu * k(6.0)) + y * of_5),
+        integral * by_y + ((n - mu * k(4.0)) + x * of_5),
+        integral * by_c,
+    ]
+}
+
+/// The same of [`long`], by dual numbers.
+#[hot]
+pub(super) fn long_back<T: Real>(start: &Start<T>, by: &Functions<T>) -> [T; 3] {
+    let [x, y, c] = [(start.x, 0), (start.y, 1), (start.c, 2)].map(|(value, k)| Dual::along(value, k));
+    let Functions { n, mu, integral } = long_of(&Start { e: Dual::constant(start.e), x, y, c });
+    core::array::from_fn(|k| n.slopes[k] * by.n + mu.slopes[k] * by.mu + integral.slopes[k] * by.integral)
+}
+
 /// What the polynomials are in: the mean `e` of the three roots, and the first coefficients `x` and `y` of `℘` and `c` of
 /// the integral.
-struct Start<T> {
+#[derive(Clone, Copy)]
+pub(super) struct Start<T> {
     e: T,
     x: T,
     y: T,
@@ -103,7 +142,7 @@ struct Start<T> {
 }
 
 #[hot]
-fn start<T: Number>(invariants: &Invariants<T>) -> Start<T> {
+pub(super) fn start<T: Number>(invariants: &Invariants<T>) -> Start<T> {
     let Invariants { kb, ka, apart, pole } = *invariants;
     let (k, sum) = (T::number, kb + ka);
     let x = (apart * apart) * k(1.0 / 15.0) + (kb * ka) * k(1.0 / 15.0);

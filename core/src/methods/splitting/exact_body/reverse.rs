@@ -1,0 +1,239 @@
+//! The derivative of a drift that the polynomials are for, along one covector, in reverse.
+//!
+//! An adjoint asks only for `c · ε` of the turn `ε` of the increment, `δF = ε̂ F`, but by the momentum and by the moments at
+//! once: each line of the closed form is taken back once, from the last to the first. With `F = exp(2v̂) F_a`, where
+//! `v = (1 + I) u`, and with the quaternion `Q` of `F_a`,
+//!
+//! ```text
+//! c · ε = c · dexp(2v̂) 2δv + 2 ⟨g Q, δQ⟩/|Q|²        g = exp(−2v̂) c        dexp(x̂) = I + c₂(|x|²) x̂ + c₃(|x|²) x̂²
+//! ```
+//!
+//! As `2 c₂(4q)` is the square of `sin √q/√q` and `4 c₃(4q) = c₂(q) + c₃(q) cos √q`, the functions of the half angle do.
+//! Here `by_x` is the derivative of `c · ε` by `x`.
+
+use nalgebra::{SimdBool as _, Vector3};
+
+use super::Form;
+use super::series::{Functions, Invariants, LONG, SHORT, Start, long_back, long_of, short_back, short_of, start};
+use crate::groups::rotation_coefficients;
+use crate::groups::rotation_functions::stumpff;
+use crate::numbers::{Real, real};
+
+/// The derivatives by `u`, by `A`, `B`, `B − A` and `−AB`, and by the functions at half the drift.
+struct By<T> {
+    u: [T; 3],
+    a: T,
+    b: T,
+    b_less_a: T,
+    c_squared: T,
+    kb: T,
+    ka: T,
+    n: T,
+    mu: T,
+}
+
+#[hot]
+fn twice<T: Real>(x: T) -> T {
+    x + x
+}
+
+impl<T: Real> Form<T> {
+    /// The derivatives of `c · ε` by `u`, and by `A` and `B`; none where the drift is longer than the polynomials are for,
+    /// or where some lanes need the longer ones and some don't.
+    #[hot]
+    pub(super) fn reversed(&self, u: [T; 3], c: [T; 3]) -> Option<([T; 3], [T; 2])> {
+        let invariants = self.invariants(u);
+        let size = invariants.size();
+        let (is_short, is_long) = (size.simd_le(real(SHORT)), size.simd_le(real(LONG)));
+        if is_short.all() {
+            Some(self.taken_back::<true>(u, c, &invariants))
+        } else if !is_short.any() && is_long.all() {
+            Some(self.taken_back::<false>(u, c, &invariants))
+        } else {
+            None
+        }
+    }
+
+    #[hot]
+    fn taken_back<const IS_SHORT: bool>(&self, u: [T; 3], c: [T; 3], invariants: &Invariants<T>) -> ([T; 3], [T; 2]) {
+        let start = start(invariants);
+        let functions = if IS_SHORT { short_of(&start) } else { long_of(&start) };
+        let difference = self.difference(u);
+        let bend = -(self.c_squared * difference);
+        let more = bend * functions.integral;
+        let (along, c) = (Vector3::from(u), Vector3::from(c));
+        let v = along * (T::one() + more);
+        let q = v.norm_squared();
+        let (sinc, versine) = rotation_coefficients(q);
+        let (cosine, square) = (T::one() - q * versine, sinc * sinc);
+        let across = v.cross(&c);
+        let again = v.cross(&across);
+        let by_half_v = c - across * square + again * (versine + stumpff::<T, 3>(q) * cosine);
+        let g = c + (again * square - across * (cosine * sinc)) * real::<T>(2.0);
+        let mut by = self.whole_back(u, invariants, &functions, g.into());
+        let by_v = by_half_v + by_half_v;
+        let by_more = by_v.dot(&along);
+        let of_v = by_v * (T::one() + more);
+        by.u = [by.u[0] + of_v.x, by.u[1] + of_v.y, by.u[2] + of_v.z];
+        self.functions_back::<IS_SHORT>(by, u, (invariants, &start), [by_more * bend, by_more * functions.integral])
+    }
+
+    /// Behind [`whole`](Self::whole), by the covector `g` of the turn `F_a`; the values are those of that function.
+    #[hot]
+    fn whole_back(
+        &self,
+        [a, b, c]: [T; 3],
+        invariants: &Invariants<T>,
+        functions: &Functions<T>,
+        [ga, gb, gc]: [T; 3],
+    ) -> By<T> {
+        let (Invariants { kb, ka, .. }, Functions { n, mu, .. }) = (*invariants, *functions);
+        let (nn, kk) = (n * n, kb * ka);
+        let (base, sum) = (nn - kk, nn + kk);
+        let (db, da) = (sum - twice(kb) * n, sum - twice(ka) * n);
+        let (mu_c, c_c, base_mu) = (mu * c, self.c_squared * c, base * mu);
+        let den = base * base - self.c_squared * (mu_c * mu_c);
+        let (x, y) = (a * da, b * db);
+        let (a_mu, b_mu) = (self.a * mu_c, self.b * mu_c);
+        let in_a = a * den + (x * base - b_mu * y);
+        let in_b = b * den + (y * base + a_mu * x);
+        let c_end = c * (da * db) + (self.b_less_a * (a * b)) * base_mu;
+        let over_mu = n * den + c_c * c_end;
+        let (base_a, base_b) = (self.a * base, self.b * base);
+        let [w, p, q] = [mu * over_mu, base_a * in_a, base_b * in_b];
+        let scale = real::<T>(2.0) / ((p * p + q * q) + w * w);
+        let by_w = -(ga * p + gb * q) * scale;
+        let by_p = (ga * w - gc * q) * scale;
+        let by_q = (gb * w + gc * p) * scale;
+
+        let by_over_mu = by_w * mu;
+        let (by_in_a, by_in_b) = (by_p * base_a, by_q * base_b);
+        let by_c_end = by_over_mu * c_c;
+        let by_den = by_over_mu * n + (by_in_a * a + by_in_b * b);
+        let (by_x, by_y) = (by_in_a * base + by_in_b * a_mu, by_in_b * base - by_in_a * b_mu);
+        let (of_a_mu, of_b_mu) = (by_in_b * x, by_in_a * y);
+        let by_mu_c = (of_a_mu * self.a - of_b_mu * self.b) - twice(by_den * self.c_squared) * mu_c;
+        let (by_da, by_db) = (by_x * a + by_c_end * (c * db), by_y * b + by_c_end * (c * da));
+        let of_ab = by_c_end * base_mu;
+        let by_base_mu = by_c_end * (self.b_less_a * (a * b));
+        let (of_base_a, of_base_b) = (by_p * in_a, by_q * in_b);
+        let by_base = (of_base_a * self.a + of_base_b * self.b)
+            + (by_in_a * x + by_in_b * y)
+            + (twice(by_den * base) + by_base_mu * mu);
+        let by_sum = by_da + by_db;
+        let by_kk = by_sum - by_base;
+        By {
+            u: [
+                by_in_a * den + by_x * da + of_ab * (self.b_less_a * b),
+                by_in_b * den + by_y * db + of_ab * (self.b_less_a * a),
+                by_mu_c * mu + by_c_end * (da * db) + by_over_mu * (self.c_squared * c_end),
+            ],
+            a: of_base_a * base + of_a_mu * mu_c,
+            b: of_base_b * base - of_b_mu * mu_c,
+            b_less_a: of_ab * (a * b),
+            c_squared: by_over_mu * (c * c_end) - by_den * (mu_c * mu_c),
+            kb: by_kk * ka - twice(by_db * n),
+            ka: by_kk * kb - twice(by_da * n),
+            n: by_over_mu * den + twice(n * (by_base + by_sum) - (by_db * kb + by_da * ka)),
+            mu: by_w * over_mu + by_mu_c * c + by_base_mu * base,
+        }
+    }
+
+    /// Behind the functions, the invariants and the constants of the form.
+    #[hot]
+    fn functions_back<const IS_SHORT: bool>(
+        &self,
+        by: By<T>,
+        u: [T; 3],
+        (invariants, start): (&Invariants<T>, &Start<T>),
+        [by_integral, by_bend]: [T; 2],
+    ) -> ([T; 3], [T; 2]) {
+        let [aa, bb, cc] = u.map(|part| part * part);
+        let Invariants { kb, ka, apart, .. } = *invariants;
+        let by_functions = Functions { n: by.n, mu: by.mu, integral: by_integral };
+        let [by_x, by_y, by_c] =
+            if IS_SHORT { short_back(start, &by_functions) } else { long_back(start, &by_functions) };
+        let (by_x, by_y, by_e) = (by_x * real(1.0 / 15.0), by_y * real(-1.0 / 189.0), by.n + by_c);
+        let (past_b, past_a, of_y) = (kb + apart, ka - apart, by_y * (kb + ka));
+        let by_roots = by_y * (past_b * past_a) + by_e * real(1.0 / 3.0);
+        let by_apart = of_y * (past_a - past_b) + twice(by_x * apart);
+        let by_kb = by.kb + (by_roots + of_y * past_a + by_x * ka);
+        let by_ka = by.ka + (by_roots + of_y * past_b + by_x * kb);
+        let (by_of_a, by_of_b, by_of_c) = (by_kb + by_apart, by_ka - by_apart, by_kb + by_ka);
+        let (by_difference, of_pole) = (-(by_bend * self.c_squared), -(by_c * self.c_squared));
+        let by_aa = by_of_a * self.a_squared + (by_difference * self.a + of_pole);
+        let by_bb = by_of_b * self.b_squared + (by_difference * self.b + of_pole);
+        let by_cc = by_of_c * self.c_squared + of_pole;
+        let by_c_squared = by.c_squared + (by_of_c * cc - by_c * ((aa + bb) + cc)) - by_bend * self.difference(u);
+        let (by_a_squared, by_b_squared) = (by_of_a * aa, by_of_b * bb);
+        let by_b_less_a = by.b_less_a + (by_b_squared * self.b - by_a_squared * self.a);
+        let by_a = (by.a + by_difference * aa) - (by_c_squared * self.b + by_a_squared * self.b_less_a) - by_b_less_a;
+        let by_b = (by.b + by_difference * bb) - (by_c_squared * self.a - by_b_squared * self.b_less_a) + by_b_less_a;
+        let [of_a, of_b, of_c] = [by_aa * u[0], by_bb * u[1], by_cc * u[2]].map(twice);
+        ([by.u[0] + of_a, by.u[1] + of_b, by.u[2] + of_c], [by_a, by_b])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::quaternion::product;
+    use super::{Form, SHORT};
+    use crate::numbers::{Dual, Real, real};
+    use nalgebra::SimdBool as _;
+    use simba::simd::WideF64x4;
+
+    /// The derivatives of `c · ε` by `u`, and by `A` and `B`, by dual numbers through the drift itself.
+    fn by_dual_numbers<T: Real>(form: &Form<T>, u: [T; 3], c: [T; 3]) -> [T; 5] {
+        let of = |[a, b]: [Dual<T>; 2], u| {
+            let (scale, b_less_a) = (Dual::constant(form.scale), b - a);
+            let (a_squared, b_squared) = (-(a * b_less_a), b * b_less_a);
+            let turned = Form { scale, a, b, b_less_a, c_squared: -(a * b), a_squared, b_squared }.turned(u);
+            let [w, x, y, z] = turned.quaternion.map(|part| part.value);
+            [0, 1, 2].map(|k| {
+                let [_, x, y, z] = product(turned.quaternion.map(|part| part.slopes[k]), [w, -x, -y, -z]);
+                (x * c[0] + y * c[1] + z * c[2]) * turned.inverse_square.value * real(2.0)
+            })
+        };
+        let [x, y, z] = of([form.a, form.b].map(Dual::constant), [0, 1, 2].map(|k| Dual::along(u[k], k)));
+        let [a, b, _] = of([Dual::along(form.a, 0), Dual::along(form.b, 1)], u.map(Dual::constant));
+        [x, y, z, a, b]
+    }
+
+    /// Checks that the two differ by less than this, of the largest. Returns whether there are derivatives, and whether
+    /// the polynomials are the longer ones.
+    fn check<T: Real>(moments: [T; 3], u: [T; 3], bound: f64) -> Option<bool> {
+        let (form, c) = (Form::of(moments, real(0.1)), [0.7, -0.4, 1.1].map(real));
+        let ([x, y, z], [a, b]) = form.reversed(u, c)?;
+        let (mut error, mut size) = (T::zero(), T::zero());
+        for (found, expected) in [x, y, z, a, b].into_iter().zip(by_dual_numbers(&form, u, c)) {
+            error = error.simd_max((found - expected).simd_abs());
+            size = size.simd_max(expected.simd_abs());
+        }
+        assert!(error.simd_le(size * real(bound)).all(), "{moments:?}, {u:?}: {error:?} of {size:?}");
+        Some(form.invariants(u).size().simd_gt(real(SHORT)).all())
+    }
+
+    /// Bodies with the middle moment last: any, flat, long, symmetric about either axis, and a sphere.
+    const BODIES: [[f64; 3]; 6] =
+        [[4.5, 2.0, 3.0], [5.0, 2.0, 3.0], [3.0, 0.01, 2.995], [2.0, 3.5, 2.0], [3.5, 2.0, 2.0], [2.0, 2.0, 2.0]];
+
+    /// Momenta from rest to beyond the polynomials, about no axis, about each, and near the separatrix; alone, as singles
+    /// and in lanes.
+    #[test]
+    fn it_is_that_of_dual_numbers() {
+        let directions = [[0.9, -0.7, 1.2], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.5, 0.5, 1.0]];
+        let mut counts = [0; 3];
+        for moments in BODIES {
+            for size in [1e-9, 1e-3, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0] {
+                let momenta = directions.map(|direction| direction.map(|part| part * size));
+                for u in momenta {
+                    counts[check(moments, u, 1e-13).map_or(2, usize::from)] += 1;
+                    check(moments.map(real::<f32>), u.map(real::<f32>), 1e-4);
+                }
+                let lanes = [0, 1, 2].map(|k| WideF64x4::from([0, 1, 2, 4].map(|lane| momenta[lane][k])));
+                check(moments.map(real::<WideF64x4>), lanes, 1e-13);
+            }
+        }
+        assert!(counts.into_iter().all(|count| count > 10), "{counts:?}");
+    }
+}
