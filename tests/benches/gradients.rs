@@ -74,7 +74,11 @@ fn ready<P: Linearisable<Top> + 'static>(stepper: Stepper<Top, P>) -> Result<Run
     Ok(Box::new(move |name, steps| {
         let (linear, mut state) = (stepper.linearised()?, black_box(start));
         let cost = |n: u64, _: &_| {
-            if n == steps || name == "costs" { Cotangent { attitude: Vector3::x(), momentum: Vector3::z() } } else { Cotangent::zero() }
+            if n == steps || name == "costs" {
+                Cotangent { attitude: Vector3::x(), momentum: Vector3::z() }
+            } else {
+                Cotangent::zero()
+            }
         };
         match name {
             "step" => {

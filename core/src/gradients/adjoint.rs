@@ -95,6 +95,40 @@ impl<S: Effect> Given<'_, S> {
     }
 }
 
+/// Makes several steps, and writes down their changes, and the motions that aren't among these.
+struct Record<'a, 'i, S: SecondDerivatives, P: Linearisable<S>> {
+    linearised: &'a Linearised<'a, S, P>,
+    state: &'a mut StateOf<S, P>,
+    steps: Range<u64>,
+    given: &'a mut Given<'i, S>,
+    events: &'a RefCell<Vec<Change<Group<S>, S::Advected>>>,
+}
+
+impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Record<'_, '_, S, P> {
+    type Output = Result<(), StepError>;
+
+    /// As that of [`Stretch`].
+    const VECTORS: Vectors = Vectors::Four;
+
+    #[hot]
+    fn run(self) -> Self::Output {
+        let Self { linearised, state, steps, given, events } = self;
+        given.motions.clear();
+        for n in steps.clone() {
+            if !given.inputs.is_empty() || given.ends > 0 {
+                given.motions.push(state.motion);
+            }
+            let ends = if given.ends > 0 { [n == 0, false] } else { [true; 2] };
+            linearised.recorded_given(state, given.input(n), events, ends)?;
+        }
+        if steps.end == given.steps {
+            given.motions.push(state.motion);
+            given.before_end = Some(linearised.stepper.plan.before_end(&state.motion, &state.kept));
+        }
+        Ok(())
+    }
+}
+
 /// Several steps, from the last to the first, and the costs of the states before them, and of that behind the last of all.
 struct Stretch<'a, 'b, S: SecondDerivatives, P: Linearisable<S>, C> {
     linearised: &'a Linearised<'a, S, P>,
@@ -295,14 +329,15 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
             }
         }
         starts.push((made, end));
-        self.record_stretch(&mut end, made..steps, &mut given, &events)?;
+        dispatch(Record { linearised: self, state: &mut end, steps: made..steps, given: &mut given, events: &events })?;
         let mut gradient = self.no_gradient();
         let mut back = Back { cotangent: Cotangent::zero(), gradient: &mut gradient, values: Vec::new() };
         let mut last = steps;
         while let Some((first, mut start)) = starts.pop() {
             if last < steps {
                 events.borrow_mut().clear();
-                self.record_stretch(&mut start, first..last, &mut given, &events)?;
+                let (state, steps) = (&mut start, first..last);
+                dispatch(Record { linearised: self, state, steps, given: &mut given, events: &events })?;
             }
             let events = events.borrow();
             dispatch(Stretch {
@@ -324,29 +359,6 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         }
         *state = end;
         Ok((gradient, by_inputs))
-    }
-
-    /// Makes these steps, and writes down their changes and, of a run with inputs, the motions before them.
-    fn record_stretch(
-        &self,
-        state: &mut StateOf<S, P>,
-        steps: Range<u64>,
-        given: &mut Given<'_, S>,
-        events: &RefCell<Vec<Change<Group<S>, S::Advected>>>,
-    ) -> Result<(), StepError> {
-        given.motions.clear();
-        for n in steps.clone() {
-            if !given.inputs.is_empty() || given.ends > 0 {
-                given.motions.push(state.motion);
-            }
-            let ends = if given.ends > 0 { [n == 0, false] } else { [true; 2] };
-            self.recorded_given(state, given.input(n), events, ends)?;
-        }
-        if steps.end == given.steps {
-            given.motions.push(state.motion);
-            given.before_end = Some(self.stepper.plan.before_end(&state.motion, &state.kept));
-        }
-        Ok(())
     }
 
     fn no_gradient(&self) -> Vec<Scalar<S>> {

@@ -6,11 +6,11 @@ use core::cell::RefCell;
 use crate::error::StepError;
 use crate::gradients::recording::Change;
 use crate::gradients::tangent::{SquareOfVector, Tangent, TangentOf, blocks_of};
-use crate::gradients::{Linearisable, Linearised};
+use crate::gradients::{Carry, Linearisable, Linearised};
 use crate::groups::{Advected as _, LieGroup as _};
 use crate::mechanics::{Effect, Group, Scalar, SecondDerivatives, Term, Vector};
 use crate::motion::{Plan, StateOf, Steerable, StepReport, Stepper};
-use crate::numbers::{Coordinates, Entries, Real, real};
+use crate::numbers::{Coordinates, Entries, Real, dispatch, real};
 
 /// What a step is given beside the state, or the derivative of a number by it: the kind is that of the input, and each
 /// scalar is the derivative by the scalar in its place.
@@ -119,13 +119,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         input: &InputOf<S>,
         tangent: &mut TangentOf<S>,
     ) -> Result<StepReport, StepError> {
-        let mut next = *state;
-        tangent.events.get_mut().clear();
-        let report = self.recorded_given(&mut next, input, &tangent.events, [true; 2])?;
-        tangent.is_given_values = matches!(input, Input::Values(_));
-        self.carry(tangent)?;
-        *state = next;
-        Ok(report)
+        dispatch(Carry { linearised: self, state, input, tangent })
     }
 
     /// One step with this input, and its blocks `A = ∂x⁺/∂x` and `B = ∂x⁺/∂u`. On an error the state is unchanged.
@@ -197,6 +191,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
 
     /// One step with this input, whose stages are written down; after an error the state may be anywhere. The bits are
     /// those of [`Stepper::step_given`].
+    #[hot]
     pub(super) fn recorded_given(
         &self,
         state: &mut StateOf<S, P>,

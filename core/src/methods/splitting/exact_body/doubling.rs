@@ -75,7 +75,7 @@ impl<T: Number> Form<T> {
         let epsilon = T::simd_default_epsilon();
         let part = part.select((size * epsilon * epsilon).simd_lt(one), T::number(f64::NAN));
         let reduced = invariants.scaled(part);
-        let Functions { n, integral, .. } = long(&reduced);
+        let Functions { n, integral, .. } = long(&reduced.start());
         let square = one / n;
         let [of_c, of_d] = [reduced.kb, reduced.ka].map(|k| (one - k * square).simd_sqrt());
         let mut point = Point { s: root * square.simd_sqrt(), c: of_c, d: of_d };

@@ -14,23 +14,13 @@
 use nalgebra::{SimdBool as _, Vector3};
 
 use super::Form;
-use super::series::{Functions, Invariants, LONG, SHORT, Start, long_back, long_of, short_back, short_of, start};
+use super::series::{Functions, Invariants, LONG, SHORT, Start, long, long_back, short, short_back};
 use crate::groups::rotation_coefficients;
 use crate::groups::rotation_functions::stumpff;
 use crate::numbers::{Real, real};
 
-/// The derivatives by `u`, by `A`, `B`, `B − A` and `−AB`, and by the functions at half the drift.
-struct By<T> {
-    u: [T; 3],
-    a: T,
-    b: T,
-    b_less_a: T,
-    c_squared: T,
-    kb: T,
-    ka: T,
-    n: T,
-    mu: T,
-}
+/// The derivatives by `u`, by `A`, `B`, `B − A` and `−AB`, and by `K_b`, `K_a`, `n` and `μ`.
+type By<T> = ([T; 3], [T; 4], [T; 4]);
 
 #[hot]
 fn twice<T: Real>(x: T) -> T {
@@ -56,8 +46,8 @@ impl<T: Real> Form<T> {
 
     #[hot]
     fn taken_back<const IS_SHORT: bool>(&self, u: [T; 3], c: [T; 3], invariants: &Invariants<T>) -> ([T; 3], [T; 2]) {
-        let start = start(invariants);
-        let functions = if IS_SHORT { short_of(&start) } else { long_of(&start) };
+        let start = invariants.start();
+        let functions = if IS_SHORT { short(&start) } else { long(&start) };
         let difference = self.difference(u);
         let bend = -(self.c_squared * difference);
         let more = bend * functions.integral;
@@ -73,8 +63,7 @@ impl<T: Real> Form<T> {
         let mut by = self.whole_back(u, invariants, &functions, g.into());
         let by_v = by_half_v + by_half_v;
         let by_more = by_v.dot(&along);
-        let of_v = by_v * (T::one() + more);
-        by.u = [by.u[0] + of_v.x, by.u[1] + of_v.y, by.u[2] + of_v.z];
+        by.0 = (Vector3::from(by.0) + by_v * (T::one() + more)).into();
         self.functions_back::<IS_SHORT>(by, u, (invariants, &start), [by_more * bend, by_more * functions.integral])
     }
 
@@ -122,55 +111,50 @@ impl<T: Real> Form<T> {
             + (twice(by_den * base) + by_base_mu * mu);
         let by_sum = by_da + by_db;
         let by_kk = by_sum - by_base;
-        By {
-            u: [
-                by_in_a * den + by_x * da + of_ab * (self.b_less_a * b),
-                by_in_b * den + by_y * db + of_ab * (self.b_less_a * a),
-                by_mu_c * mu + by_c_end * (da * db) + by_over_mu * (self.c_squared * c_end),
-            ],
-            a: of_base_a * base + of_a_mu * mu_c,
-            b: of_base_b * base - of_b_mu * mu_c,
-            b_less_a: of_ab * (a * b),
-            c_squared: by_over_mu * (c * c_end) - by_den * (mu_c * mu_c),
-            kb: by_kk * ka - twice(by_db * n),
-            ka: by_kk * kb - twice(by_da * n),
-            n: by_over_mu * den + twice(n * (by_base + by_sum) - (by_db * kb + by_da * ka)),
-            mu: by_w * over_mu + by_mu_c * c + by_base_mu * base,
-        }
+        let by_u = [
+            by_in_a * den + by_x * da + of_ab * (self.b_less_a * b),
+            by_in_b * den + by_y * db + of_ab * (self.b_less_a * a),
+            by_mu_c * mu + by_c_end * (da * db) + by_over_mu * (self.c_squared * c_end),
+        ];
+        let by_c_squared = by_over_mu * (c * c_end) - by_den * (mu_c * mu_c);
+        let [by_a, by_b] = [of_base_a * base + of_a_mu * mu_c, of_base_b * base - of_b_mu * mu_c];
+        let by_n = by_over_mu * den + twice(n * (by_base + by_sum) - (by_db * kb + by_da * ka));
+        let by_mu = by_w * over_mu + by_mu_c * c + by_base_mu * base;
+        let by_roots = [by_kk * ka - twice(by_db * n), by_kk * kb - twice(by_da * n)];
+        (by_u, [by_a, by_b, of_ab * (a * b), by_c_squared], [by_roots[0], by_roots[1], by_n, by_mu])
     }
 
     /// Behind the functions, the invariants and the constants of the form.
     #[hot]
     fn functions_back<const IS_SHORT: bool>(
         &self,
-        by: By<T>,
+        (by_u, [by_a, by_b, by_b_less_a, by_c_squared], [by_kb, by_ka, n, mu]): By<T>,
         u: [T; 3],
         (invariants, start): (&Invariants<T>, &Start<T>),
         [by_integral, by_bend]: [T; 2],
     ) -> ([T; 3], [T; 2]) {
         let [aa, bb, cc] = u.map(|part| part * part);
         let Invariants { kb, ka, apart, .. } = *invariants;
-        let by_functions = Functions { n: by.n, mu: by.mu, integral: by_integral };
-        let [by_x, by_y, by_c] =
-            if IS_SHORT { short_back(start, &by_functions) } else { long_back(start, &by_functions) };
-        let (by_x, by_y, by_e) = (by_x * real(1.0 / 15.0), by_y * real(-1.0 / 189.0), by.n + by_c);
+        let by = Functions { n, mu, integral: by_integral };
+        let [by_x, by_y, by_c] = if IS_SHORT { short_back(start, &by) } else { long_back(start, &by) };
+        let (by_x, by_y, by_e) = (by_x * real(1.0 / 15.0), by_y * real(-1.0 / 189.0), n + by_c);
         let (past_b, past_a, of_y) = (kb + apart, ka - apart, by_y * (kb + ka));
         let by_roots = by_y * (past_b * past_a) + by_e * real(1.0 / 3.0);
         let by_apart = of_y * (past_a - past_b) + twice(by_x * apart);
-        let by_kb = by.kb + (by_roots + of_y * past_a + by_x * ka);
-        let by_ka = by.ka + (by_roots + of_y * past_b + by_x * kb);
+        let by_kb = by_kb + (by_roots + of_y * past_a + by_x * ka);
+        let by_ka = by_ka + (by_roots + of_y * past_b + by_x * kb);
         let (by_of_a, by_of_b, by_of_c) = (by_kb + by_apart, by_ka - by_apart, by_kb + by_ka);
         let (by_difference, of_pole) = (-(by_bend * self.c_squared), -(by_c * self.c_squared));
         let by_aa = by_of_a * self.a_squared + (by_difference * self.a + of_pole);
         let by_bb = by_of_b * self.b_squared + (by_difference * self.b + of_pole);
         let by_cc = by_of_c * self.c_squared + of_pole;
-        let by_c_squared = by.c_squared + (by_of_c * cc - by_c * ((aa + bb) + cc)) - by_bend * self.difference(u);
+        let by_c_squared = by_c_squared + (by_of_c * cc - by_c * ((aa + bb) + cc)) - by_bend * self.difference(u);
         let (by_a_squared, by_b_squared) = (by_of_a * aa, by_of_b * bb);
-        let by_b_less_a = by.b_less_a + (by_b_squared * self.b - by_a_squared * self.a);
-        let by_a = (by.a + by_difference * aa) - (by_c_squared * self.b + by_a_squared * self.b_less_a) - by_b_less_a;
-        let by_b = (by.b + by_difference * bb) - (by_c_squared * self.a - by_b_squared * self.b_less_a) + by_b_less_a;
-        let [of_a, of_b, of_c] = [by_aa * u[0], by_bb * u[1], by_cc * u[2]].map(twice);
-        ([by.u[0] + of_a, by.u[1] + of_b, by.u[2] + of_c], [by_a, by_b])
+        let by_b_less_a = by_b_less_a + (by_b_squared * self.b - by_a_squared * self.a);
+        let by_a = (by_a + by_difference * aa) - (by_c_squared * self.b + by_a_squared * self.b_less_a) - by_b_less_a;
+        let by_b = (by_b + by_difference * bb) - (by_c_squared * self.a - by_b_squared * self.b_less_a) + by_b_less_a;
+        let of_squares = [by_aa, by_bb, by_cc];
+        (core::array::from_fn(|k| by_u[k] + twice(of_squares[k] * u[k])), [by_a, by_b])
     }
 }
 

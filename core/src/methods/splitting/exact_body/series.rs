@@ -20,6 +20,18 @@ impl<T: Number> Invariants<T> {
         self.kb.simd_max(self.ka)
     }
 
+    /// What the polynomials are in.
+    #[hot]
+    pub(super) fn start(&self) -> Start<T> {
+        let Self { kb, ka, apart, pole } = *self;
+        let (k, sum) = (T::number, kb + ka);
+        let x = (apart * apart) * k(1.0 / 15.0) + (kb * ka) * k(1.0 / 15.0);
+        // Three times K_b − e and K_a − e.
+        let y = (sum * k(-1.0 / 189.0)) * ((kb + apart) * (ka - apart));
+        let e = sum * k(1.0 / 3.0);
+        Start { e, x, y, c: e - pole }
+    }
+
     /// Over another time, by the square of the ratio.
     pub(super) fn scaled(&self, part: T) -> Self {
         Self { kb: self.kb * part, ka: self.ka * part, apart: self.apart * part, pole: self.pole * part }
@@ -45,12 +57,7 @@ pub(super) const LONG: f64 = 0.05;
 
 /// With `℘` to its fifth coefficient and the integral to its fifth; terms that are far below a rounding are left out.
 #[hot]
-pub(super) fn short<T: Number>(invariants: &Invariants<T>) -> Functions<T> {
-    short_of(&start(invariants))
-}
-
-#[hot]
-pub(super) fn short_of<T: Number>(start: &Start<T>) -> Functions<T> {
+pub(super) fn short<T: Number>(start: &Start<T>) -> Functions<T> {
     let k = T::number;
     let Start { e, x, y, c } = *start;
     let (w4, w5) = (x * x * k(1.0 / 3.0), x * y * k(3.0 / 11.0));
@@ -68,12 +75,7 @@ pub(super) fn short_of<T: Number>(start: &Start<T>) -> Functions<T> {
 
 /// With `℘` to its ninth coefficient and the integral to its eighth, likewise.
 #[hot]
-pub(super) fn long<T: Number>(invariants: &Invariants<T>) -> Functions<T> {
-    long_of(&start(invariants))
-}
-
-#[hot]
-pub(super) fn long_of<T: Number>(start: &Start<T>) -> Functions<T> {
+pub(super) fn long<T: Number>(start: &Start<T>) -> Functions<T> {
     let k = T::number;
     let Start { e, x, y, c } = *start;
     let (xx, yy, xy) = (x * x, y * y, x * y);
@@ -127,7 +129,7 @@ pub(super) fn short_back<T: Real>(start: &Start<T>, by: &Functions<T>) -> [T; 3]
 #[hot]
 pub(super) fn long_back<T: Real>(start: &Start<T>, by: &Functions<T>) -> [T; 3] {
     let [x, y, c] = [(start.x, 0), (start.y, 1), (start.c, 2)].map(|(value, k)| Dual::along(value, k));
-    let Functions { n, mu, integral } = long_of(&Start { e: Dual::constant(start.e), x, y, c });
+    let Functions { n, mu, integral } = long(&Start { e: Dual::constant(start.e), x, y, c });
     core::array::from_fn(|k| n.slopes[k] * by.n + mu.slopes[k] * by.mu + integral.slopes[k] * by.integral)
 }
 
@@ -139,15 +141,4 @@ pub(super) struct Start<T> {
     x: T,
     y: T,
     c: T,
-}
-
-#[hot]
-pub(super) fn start<T: Number>(invariants: &Invariants<T>) -> Start<T> {
-    let Invariants { kb, ka, apart, pole } = *invariants;
-    let (k, sum) = (T::number, kb + ka);
-    let x = (apart * apart) * k(1.0 / 15.0) + (kb * ka) * k(1.0 / 15.0);
-    // Three times K_b − e and K_a − e.
-    let y = (sum * k(-1.0 / 189.0)) * ((kb + apart) * (ka - apart));
-    let e = sum * k(1.0 / 3.0);
-    Start { e, x, y, c: e - pole }
 }
