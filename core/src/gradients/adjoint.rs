@@ -7,7 +7,7 @@ use core::ops::Range;
 
 use crate::error::{SetupError, StepError};
 use crate::gradients::input::{Input, InputOf};
-use crate::gradients::recording::{Change, Recording};
+use crate::gradients::recording::{Change, ChangeOf, Recording};
 use crate::gradients::stage::{Cotangent, FlowDerivatives, Pass, Stage};
 use crate::gradients::{Linearisable, Linearised};
 use crate::groups::LieGroup;
@@ -101,7 +101,7 @@ struct Record<'a, 'i, S: SecondDerivatives, P: Linearisable<S>> {
     state: &'a mut StateOf<S, P>,
     steps: Range<u64>,
     given: &'a mut Given<'i, S>,
-    events: &'a RefCell<Vec<Change<Group<S>, S::Advected>>>,
+    events: &'a RefCell<Vec<ChangeOf<S>>>,
 }
 
 impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Record<'_, '_, S, P> {
@@ -133,7 +133,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Record<'_, '_, S, P> {
 struct Stretch<'a, 'b, S: SecondDerivatives, P: Linearisable<S>, C> {
     linearised: &'a Linearised<'a, S, P>,
     steps: Range<u64>,
-    events: &'a [Change<Group<S>, S::Advected>],
+    events: &'a [ChangeOf<S>],
     given: &'a Given<'a, S>,
     /// The derivatives by the inputs, from the last to the first.
     by_inputs: &'a mut Vec<InputOf<S>>,
@@ -173,7 +173,7 @@ where
                 values.each(&mut |_| self.back.values.push(real(0.0)));
             }
             for (index, event) in step.iter().enumerate().rev() {
-                plan.visit((scene, table), ends + index, event, self.back);
+                plan.visit((scene, table), (ends + index, event), self.back);
             }
             let mut shares = self.back.values.iter();
             match input {
@@ -199,7 +199,7 @@ where
                 }
                 let number = if n == 0 { 0 } else { ends + stages };
                 for (index, event) in out.borrow().iter().enumerate().rev() {
-                    plan.visit((scene, table), number + index, event, self.back);
+                    plan.visit((scene, table), (number + index, event), self.back);
                 }
             }
             self.back.add(&of_cost);
@@ -214,37 +214,12 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
     ///
     /// `cost` is asked for the derivatives of `c_n` at each state, from `n = steps` to `n = 0`; what a cost takes from the
     /// parameters by itself is the caller's to add. A parameter more is a few operations more: for a heavy top the whole
-    /// gradient takes two plain steps for each step (`cargo bench --bench gradients`).
+    /// gradient takes two plain steps for each step (`cargo bench --bench gradients`). [The chapter](crate::guide::gradients)
+    /// has an example.
     ///
     /// # Errors
     ///
     /// As [`Stepper::step`], and [`StepError::NonFinite`] where the gradient overflows, as it does in chaos.
-    ///
-    /// # Examples
-    ///
-    /// How the height of a top after a second depends on where it starts and on what it is made of.
-    ///
-    /// ```
-    /// use liestep::effects::{Gravity, RigidBody};
-    /// use liestep::gradients::{Cotangent, Tape};
-    /// use liestep::{NonstandardInertia, SO3, Stepper};
-    /// use liestep::groups::LieGroup as _;
-    /// use nalgebra::Vector3;
-    ///
-    /// let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0))?;
-    /// let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
-    /// let stepper = Stepper::new(RigidBody { J_d } + gravity, 0.01)?;
-    /// let linear = stepper.linearised()?;
-    /// let mut state = stepper.start_with_momentum(SO3::identity(), Vector3::new(0.3, 0.0, 48.0))?;
-    /// let gradient = linear.adjoint(&mut state, 100, Tape::All, |n, motion| {
-    ///     // w·e₃ changes by −(ζ × w)·e₃ = −ζ·(w × e₃).
-    ///     let height = Cotangent { attitude: -motion.advected().1.cross(&Vector3::z()), ..Cotangent::zero() };
-    ///     if n == 100 { height } else { Cotangent::zero() }
-    /// })?;
-    /// let mass = linear.numbers(1, "m").ok_or("no such field")?.start;
-    /// assert!(gradient.parameters[mass] != 0.0);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn adjoint(
         &self,
         state: &mut StateOf<S, P>,
@@ -435,7 +410,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Backwards<'_, S, P> {
             for (index, (event, after)) in made.drain(..).zip(after).enumerate() {
                 let increment = Group::<S>::from_increment(&event.increment).inverse().increment();
                 let undone = Change { before: after, increment };
-                forwards.stepper.plan.visit((&forwards.stepper.scene, &self.undone), index, &undone, &mut back);
+                forwards.stepper.plan.visit((&forwards.stepper.scene, &self.undone), (index, &undone), &mut back);
             }
             back.add(&cost(n, &now.motion));
         }

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::cell::RefCell;
 
 use crate::error::StepError;
-use crate::gradients::recording::Change;
+use crate::gradients::recording::ChangeOf;
 use crate::gradients::tangent::{SquareOfVector, Tangent, TangentOf, blocks_of};
 use crate::gradients::{Carry, Linearisable, Linearised};
 use crate::groups::{Advected as _, LieGroup as _};
@@ -196,7 +196,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         &self,
         state: &mut StateOf<S, P>,
         input: &InputOf<S>,
-        events: &RefCell<Vec<Change<Group<S>, S::Advected>>>,
+        events: &RefCell<Vec<ChangeOf<S>>>,
         ends: [bool; 2],
     ) -> Result<StepReport, StepError> {
         let Stepper { scene, plan } = self.stepper;

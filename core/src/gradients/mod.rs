@@ -98,7 +98,7 @@ mod tangent;
 
 pub use adjoint::{Backwards, Gradient, Tape};
 pub use input::{Input, InputOf, Transition};
-pub use recording::Change;
+pub use recording::{Change, ChangeOf};
 pub use stage::{Cotangent, FlowDerivatives, Pass, Stage};
 pub(crate) use stage::{ForceGradient, add_shares};
 pub use tangent::{Tangent, TangentOf};
@@ -197,13 +197,7 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> + Steerable {
     }
 
     /// Shows the stage that has made the change of this number to a pass.
-    fn visit(
-        &self,
-        stages: (&S, &Self::Table),
-        index: usize,
-        event: &Change<Group<S>, S::Advected>,
-        pass: &mut impl Pass<Group<S>>,
-    );
+    fn visit(&self, stages: (&S, &Self::Table), event: (usize, &ChangeOf<S>), pass: &mut impl Pass<Group<S>>);
 }
 
 impl<S: SecondDerivatives> Linearisable<S> for Declared<S> {
@@ -216,13 +210,7 @@ impl<S: SecondDerivatives> Linearisable<S> for Declared<S> {
     }
 
     #[hot]
-    fn visit(
-        &self,
-        (scene, ()): (&S, &()),
-        _: usize,
-        event: &Change<Group<S>, S::Advected>,
-        pass: &mut impl Pass<Group<S>>,
-    ) {
+    fn visit(&self, (scene, ()): (&S, &()), (_, event): (usize, &ChangeOf<S>), pass: &mut impl Pass<Group<S>>) {
         pass.stage(&Stage::step(scene, self.step_size(), event, event.before.advected));
     }
 }
@@ -333,7 +321,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Stepper<S, P> {
     fn recorded(
         &self,
         state: &mut StateOf<S, P>,
-        events: &RefCell<Vec<Change<Group<S>, S::Advected>>>,
+        events: &RefCell<Vec<ChangeOf<S>>>,
         ends: [bool; 2],
     ) -> Result<StepReport, StepError> {
         let Self { scene, plan } = self;
@@ -378,7 +366,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Carry<'_, '_, S, P> {
         tangent.keep();
         let events = tangent.events.take();
         for (index, event) in events.iter().enumerate() {
-            plan.visit((scene, table), index, event, tangent);
+            plan.visit((scene, table), (index, event), tangent);
         }
         tangent.events.replace(events);
         if !tangent.is_finite() {

@@ -321,10 +321,8 @@ impl<V> Cotangent<V> {
 pub struct FlowDerivatives<'a, G: LieGroup> {
     /// `∂ε/∂μ`
     pub(crate) turn_by_momentum: SquareOf<G>,
-    /// `Ad_{F⁻¹}`
+    /// `Ad_{F⁻¹}`, and `Ad*_F`: on SO(3) both are `Fᵀ`.
     pub(crate) turned_back: SquareOf<G>,
-    /// `Ad*_F`
-    pub(crate) carried: SquareOf<G>,
     /// `∂μ⁺/∂ε`, which is `Ad*_F ad*_ε μ` along `ε`.
     pub(crate) end_by_turn: SquareOf<G>,
     /// `∂ε/∂θ` by the numbers of the parameters.
@@ -342,7 +340,7 @@ impl<G: LieGroup> FlowDerivatives<'_, G> {
                 *sum += by_turn.dot(turn);
             }
         }
-        let momentum = pulled::<G>(&self.carried, &end.momentum) + pulled::<G>(&self.turn_by_momentum, &by_turn);
+        let momentum = pulled::<G>(&self.turned_back, &end.momentum) + pulled::<G>(&self.turn_by_momentum, &by_turn);
         Cotangent { attitude, momentum }
     }
 }

@@ -267,7 +267,7 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
             if let Some((of_parameters, _)) = shares {
                 turn = turn + of_parameters;
             }
-            let carried = G::Vector::map_four(&flown.carried, momentum);
+            let carried = G::Vector::map_four(&flown.turned_back, momentum);
             *momentum = carried + G::Vector::map_four(&flown.end_by_turn, &turn);
             *attitude = G::Vector::map_four(&flown.turned_back, &(*attitude + turn));
         }

@@ -231,33 +231,14 @@ fn inertia(nonstandard: &Matrix3<f64>) -> Matrix3<f64> {
 /// `â M`.
 #[hot]
 fn cross_columns(a: &Vector3<f64>, m: &Matrix3<f64>) -> Matrix3<f64> {
-    Matrix3::new(
-        a.y * m.m31 - a.z * m.m21,
-        a.y * m.m32 - a.z * m.m22,
-        a.y * m.m33 - a.z * m.m23,
-        a.z * m.m11 - a.x * m.m31,
-        a.z * m.m12 - a.x * m.m32,
-        a.z * m.m13 - a.x * m.m33,
-        a.x * m.m21 - a.y * m.m11,
-        a.x * m.m22 - a.y * m.m12,
-        a.x * m.m23 - a.y * m.m13,
-    )
+    Matrix3::from_columns(&[0, 1, 2].map(|k| a.cross(&m.column(k))))
 }
 
 /// `M â`: each row times `a`.
 #[hot]
 fn cross_rows(m: &Matrix3<f64>, a: &Vector3<f64>) -> Matrix3<f64> {
-    Matrix3::new(
-        m.m12 * a.z - m.m13 * a.y,
-        m.m13 * a.x - m.m11 * a.z,
-        m.m11 * a.y - m.m12 * a.x,
-        m.m22 * a.z - m.m23 * a.y,
-        m.m23 * a.x - m.m21 * a.z,
-        m.m21 * a.y - m.m22 * a.x,
-        m.m32 * a.z - m.m33 * a.y,
-        m.m33 * a.x - m.m31 * a.z,
-        m.m31 * a.y - m.m32 * a.x,
-    )
+    let [x, y, z] = [0, 1, 2].map(|k| m.column(k).into_owned());
+    Matrix3::from_columns(&[y * a.z - z * a.y, z * a.x - x * a.z, x * a.y - y * a.x])
 }
 
 /// `M + â`.

@@ -10,10 +10,14 @@ use nalgebra::{Matrix3, Vector3};
 use super::kinetic_flow::SymmetricBody;
 use super::{Flow, KineticFlow, Length, Split};
 use crate::error::{SetupError, StepError};
-use crate::gradients::{Change, Cotangent, FlowDerivatives, ForceGradient, Linearisable, Pass, Stage, add_shares};
+use crate::gradients::{
+    Change, ChangeOf, Cotangent, FlowDerivatives, ForceGradient, Linearisable, Pass, Stage, add_shares,
+};
 use crate::groups::SO3;
 use crate::groups::rotation_functions::stumpff;
-use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor, SecondDerivatives};
+use crate::mechanics::{
+    DiscreteLagrangian, Effect, Group, Regular, RigidScene, Scalar, SceneVisitor, SecondDerivatives,
+};
 use crate::motion::{Plan, StepReport, Summation};
 use crate::numbers::{Real, real};
 
@@ -156,7 +160,7 @@ pub(super) fn flown<'a, T: Real>(
 ) -> FlowDerivatives<'a, SO3<T>> {
     let turned_back = (increment + Matrix3::identity()).transpose();
     let end_by_turn = turned_back * momentum.cross_matrix();
-    FlowDerivatives { turn_by_momentum, turned_back, carried: turned_back, end_by_turn, by_parameters }
+    FlowDerivatives { turn_by_momentum, turned_back, end_by_turn, by_parameters }
 }
 
 impl<S, K> Linearisable<S> for Split<S, K>
@@ -212,13 +216,8 @@ where
     }
 
     #[hot]
-    fn visit(
-        &self,
-        (scene, table): (&S, &Self::Table),
-        index: usize,
-        event: &Change<SO3<Scalar<S>>, S::Advected>,
-        pass: &mut impl Pass<SO3<Scalar<S>>>,
-    ) {
+    fn visit(&self, stages: (&S, &Self::Table), event: (usize, &ChangeOf<S>), pass: &mut impl Pass<Group<S>>) {
+        let ((scene, table), (index, event)) = (stages, event);
         let Some((length, slopes)) = table.0.get(index) else { return };
         if let Some(slopes) = slopes {
             return K::visit(&self.kinetic, (length.time, slopes), event, S::PARAMETERS, pass);

@@ -1,8 +1,8 @@
 //! The derivative of a drift that the polynomials are for, along one covector, in reverse.
 //!
-//! An adjoint asks only for `c · ε` of the turn `ε` of the increment, `δF = ε̂ F`, but by the momentum and by the moments at
-//! once: each line of the closed form is taken back once, from the last to the first. With `F = exp(2v̂) F_a`, where
-//! `v = (1 + I) u`, and with the quaternion `Q` of `F_a`,
+//! An adjoint asks for `c · ε` alone of the turn `ε` of the increment, `δF = ε̂ F`, but by the momentum and the moments at
+//! once: each line of the closed form is taken back, from the last to the first, and only the functions have slopes of their
+//! own. With `F = exp(2v̂) F_a`, where `v = (1 + I) u`, and with the quaternion `Q` of `F_a`,
 //!
 //! ```text
 //! c · ε = c · dexp(2v̂) 2δv + 2 ⟨g Q, δQ⟩/|Q|²        g = exp(−2v̂) c        dexp(x̂) = I + c₂(|x|²) x̂ + c₃(|x|²) x̂²
@@ -14,10 +14,10 @@
 use nalgebra::{SimdBool as _, Vector3};
 
 use super::Form;
-use super::series::{Functions, Invariants, LONG, SHORT, Start, long, long_back, short, short_back};
+use super::series::{Functions, Invariants, LONG, SHORT, Start, long, short};
 use crate::groups::rotation_coefficients;
 use crate::groups::rotation_functions::stumpff;
-use crate::numbers::{Real, real};
+use crate::numbers::{Dual, Real, real};
 
 /// The derivatives by `u`, by `A`, `B`, `B − A` and `−AB`, and by `K_b`, `K_a`, `n` and `μ`.
 type By<T> = ([T; 3], [T; 4], [T; 4]);
@@ -33,24 +33,17 @@ impl<T: Real> Form<T> {
     #[hot]
     pub(super) fn reversed(&self, u: [T; 3], c: [T; 3]) -> Option<([T; 3], [T; 2])> {
         let invariants = self.invariants(u);
-        let size = invariants.size();
+        let (Start { e, x, y, c: pole }, size) = (invariants.start(), invariants.size());
+        let [x, y, pole] = [(x, 0), (y, 1), (pole, 2)].map(|(value, k)| Dual::along(value, k));
+        let start = Start { e: Dual::constant(e), x, y, c: pole };
         let (is_short, is_long) = (size.simd_le(real(SHORT)), size.simd_le(real(LONG)));
-        if is_short.all() {
-            Some(self.taken_back::<true>(u, c, &invariants))
-        } else if !is_short.any() && is_long.all() {
-            Some(self.taken_back::<false>(u, c, &invariants))
-        } else {
-            None
-        }
-    }
-
-    #[hot]
-    fn taken_back<const IS_SHORT: bool>(&self, u: [T; 3], c: [T; 3], invariants: &Invariants<T>) -> ([T; 3], [T; 2]) {
-        let start = invariants.start();
-        let functions = if IS_SHORT { short(&start) } else { long(&start) };
-        let difference = self.difference(u);
-        let bend = -(self.c_squared * difference);
-        let more = bend * functions.integral;
+        let functions = match (is_short.all(), is_short.any() || !is_long.all()) {
+            (true, _) => short(&start),
+            (false, false) => long(&start),
+            (false, true) => return None,
+        };
+        let bend = -(self.c_squared * self.difference(u));
+        let more = bend * functions.integral.value;
         let (along, c) = (Vector3::from(u), Vector3::from(c));
         let v = along * (T::one() + more);
         let q = v.norm_squared();
@@ -60,23 +53,18 @@ impl<T: Real> Form<T> {
         let again = v.cross(&across);
         let by_half_v = c - across * square + again * (versine + stumpff::<T, 3>(q) * cosine);
         let g = c + (again * square - across * (cosine * sinc)) * real::<T>(2.0);
-        let mut by = self.whole_back(u, invariants, &functions, g.into());
+        let mut by = self.whole_back(u, &invariants, [functions.n.value, functions.mu.value], g.into());
         let by_v = by_half_v + by_half_v;
-        let by_more = by_v.dot(&along);
         by.0 = (Vector3::from(by.0) + by_v * (T::one() + more)).into();
-        self.functions_back::<IS_SHORT>(by, u, (invariants, &start), [by_more * bend, by_more * functions.integral])
+        let by_more = by_v.dot(&along);
+        let by_integral = [by_more * bend, by_more * functions.integral.value];
+        Some(self.functions_back(by, u, (&invariants, &functions), by_integral))
     }
 
     /// Behind [`whole`](Self::whole), by the covector `g` of the turn `F_a`; the values are those of that function.
     #[hot]
-    fn whole_back(
-        &self,
-        [a, b, c]: [T; 3],
-        invariants: &Invariants<T>,
-        functions: &Functions<T>,
-        [ga, gb, gc]: [T; 3],
-    ) -> By<T> {
-        let (Invariants { kb, ka, .. }, Functions { n, mu, .. }) = (*invariants, *functions);
+    fn whole_back(&self, u: [T; 3], invariants: &Invariants<T>, [n, mu]: [T; 2], g: [T; 3]) -> By<T> {
+        let ([a, b, c], [ga, gb, gc], Invariants { kb, ka, .. }) = (u, g, *invariants);
         let (nn, kk) = (n * n, kb * ka);
         let (base, sum) = (nn - kk, nn + kk);
         let (db, da) = (sum - twice(kb) * n, sum - twice(ka) * n);
@@ -124,20 +112,21 @@ impl<T: Real> Form<T> {
         (by_u, [by_a, by_b, of_ab * (a * b), by_c_squared], [by_roots[0], by_roots[1], by_n, by_mu])
     }
 
-    /// Behind the functions, the invariants and the constants of the form.
+    /// Behind the functions, the invariants and the constants of the form; the slopes of the functions are those by `x`,
+    /// `y` and `c` of their [start](Start).
     #[hot]
-    fn functions_back<const IS_SHORT: bool>(
+    fn functions_back(
         &self,
-        (by_u, [by_a, by_b, by_b_less_a, by_c_squared], [by_kb, by_ka, n, mu]): By<T>,
+        (by_u, [by_a, by_b, by_b_less_a, by_c_squared], [by_kb, by_ka, by_n, by_mu]): By<T>,
         u: [T; 3],
-        (invariants, start): (&Invariants<T>, &Start<T>),
+        (invariants, Functions { n, mu, integral }): (&Invariants<T>, &Functions<Dual<T>>),
         [by_integral, by_bend]: [T; 2],
     ) -> ([T; 3], [T; 2]) {
         let [aa, bb, cc] = u.map(|part| part * part);
         let Invariants { kb, ka, apart, .. } = *invariants;
-        let by = Functions { n, mu, integral: by_integral };
-        let [by_x, by_y, by_c] = if IS_SHORT { short_back(start, &by) } else { long_back(start, &by) };
-        let (by_x, by_y, by_e) = (by_x * real(1.0 / 15.0), by_y * real(-1.0 / 189.0), n + by_c);
+        let by = |k: usize| n.slopes[k] * by_n + mu.slopes[k] * by_mu + integral.slopes[k] * by_integral;
+        let (by_x, by_y, by_c) = (by(0) * real(1.0 / 15.0), by(1) * real(-1.0 / 189.0), by(2));
+        let by_e = by_n + by_c;
         let (past_b, past_a, of_y) = (kb + apart, ka - apart, by_y * (kb + ka));
         let by_roots = by_y * (past_b * past_a) + by_e * real(1.0 / 3.0);
         let by_apart = of_y * (past_a - past_b) + twice(by_x * apart);
@@ -183,40 +172,35 @@ mod tests {
         [x, y, z, a, b]
     }
 
-    /// Checks that the two differ by less than this, of the largest. Returns whether there are derivatives, and whether
-    /// the polynomials are the longer ones.
+    /// Whether the polynomials are the longer ones, if there are derivatives; these differ by less than this, of the largest.
     fn check<T: Real>(moments: [T; 3], u: [T; 3], bound: f64) -> Option<bool> {
         let (form, c) = (Form::of(moments, real(0.1)), [0.7, -0.4, 1.1].map(real));
         let ([x, y, z], [a, b]) = form.reversed(u, c)?;
-        let (mut error, mut size) = (T::zero(), T::zero());
-        for (found, expected) in [x, y, z, a, b].into_iter().zip(by_dual_numbers(&form, u, c)) {
-            error = error.simd_max((found - expected).simd_abs());
-            size = size.simd_max(expected.simd_abs());
+        let expected = by_dual_numbers(&form, u, c);
+        let size = expected.iter().fold(T::zero(), |size, entry| size.simd_max(entry.simd_abs()));
+        for (found, expected) in [x, y, z, a, b].into_iter().zip(expected) {
+            let error = (found - expected).simd_abs();
+            assert!(error.simd_le(size * real(bound)).all(), "{moments:?}, {u:?}: {error:?} of {size:?}");
         }
-        assert!(error.simd_le(size * real(bound)).all(), "{moments:?}, {u:?}: {error:?} of {size:?}");
         Some(form.invariants(u).size().simd_gt(real(SHORT)).all())
     }
 
-    /// Bodies with the middle moment last: any, flat, long, symmetric about either axis, and a sphere.
-    const BODIES: [[f64; 3]; 6] =
-        [[4.5, 2.0, 3.0], [5.0, 2.0, 3.0], [3.0, 0.01, 2.995], [2.0, 3.5, 2.0], [3.5, 2.0, 2.0], [2.0, 2.0, 2.0]];
-
-    /// Momenta from rest to beyond the polynomials, about no axis, about each, and near the separatrix; alone, as singles
-    /// and in lanes.
+    /// Momenta from rest to beyond the polynomials, about no axis, about each, and near the separatrix, alone, as singles
+    /// and in lanes; of a body, a flat one, a long one, symmetric ones and a sphere, the middle moment last.
     #[test]
     fn it_is_that_of_dual_numbers() {
+        let bodies =
+            [[4.5, 2.0, 3.0], [5.0, 2.0, 3.0], [3.0, 0.01, 2.995], [2.0, 3.5, 2.0], [3.5, 2.0, 2.0], [2.0, 2.0, 2.0]];
         let directions = [[0.9, -0.7, 1.2], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.5, 0.5, 1.0]];
-        let mut counts = [0; 3];
-        for moments in BODIES {
-            for size in [1e-9, 1e-3, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0] {
-                let momenta = directions.map(|direction| direction.map(|part| part * size));
-                for u in momenta {
-                    counts[check(moments, u, 1e-13).map_or(2, usize::from)] += 1;
-                    check(moments.map(real::<f32>), u.map(real::<f32>), 1e-4);
-                }
-                let lanes = [0, 1, 2].map(|k| WideF64x4::from([0, 1, 2, 4].map(|lane| momenta[lane][k])));
-                check(moments.map(real::<WideF64x4>), lanes, 1e-13);
+        let (mut counts, sizes) = ([0; 3], [1e-9, 1e-3, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0]);
+        for (moments, size) in bodies.iter().flat_map(|&moments| sizes.map(|size| (moments, size))) {
+            let momenta = directions.map(|direction| direction.map(|part| part * size));
+            for u in momenta {
+                counts[check(moments, u, 1e-13).map_or(2, usize::from)] += 1;
+                check(moments.map(real::<f32>), u.map(real::<f32>), 1e-4);
             }
+            let lanes = [0, 1, 2].map(|k| WideF64x4::from([0, 1, 2, 4].map(|lane| momenta[lane][k])));
+            check(moments.map(real::<WideF64x4>), lanes, 1e-13);
         }
         assert!(counts.into_iter().all(|count| count > 10), "{counts:?}");
     }

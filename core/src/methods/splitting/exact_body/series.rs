@@ -1,6 +1,6 @@
 //! The elliptic functions of a free body over a short time, as polynomials.
 
-use crate::numbers::{Dual, Number, Real, real};
+use crate::numbers::Number;
 
 /// What a motion keeps, in units of half the drift: none is negative, and all are zero where the drift is.
 #[derive(Clone, Copy, Debug)]
@@ -105,40 +105,12 @@ pub(super) fn long<T: Number>(start: &Start<T>) -> Functions<T> {
     Functions { n, mu: mu + mu, integral: integral + k(1.0 / 3.0) }
 }
 
-/// The derivatives by `x`, `y` and `c` of what has these derivatives by the functions that [`short`] makes of them.
-#[hot]
-pub(super) fn short_back<T: Real>(start: &Start<T>, by: &Functions<T>) -> [T; 3] {
-    let k = real::<T>;
-    let (Start { x, y, c, .. }, Functions { n, mu, integral }) = (*start, *by);
-    let (xx, cc, of_5) = (x * x, c * c, (n - mu * k(8.0)) * k(3.0 / 11.0));
-    let of_c_1 = (k(2.0 / 9.0) * x - k(0.2)) + (k(2.0 / 11.0) * y - k(7.0 / 39.0) * xx);
-    let of_c_2 = k(2.0 / 7.0) - (k(6.0 / 11.0) * x + k(6.0 / 13.0) * y);
-    let of_c_3 = k(12.0 / 13.0) * x - k(1.0 / 3.0) + c * (k(4.0 / 11.0) - k(5.0 / 13.0) * c);
-    let by_c = (of_c_1 + of_c_2 * c) + cc * of_c_3;
-    let of_x = (k(4.0 / 33.0) * x - k(1.0 / 7.0)) + c * (k(2.0 / 9.0) - k(14.0 / 39.0) * x);
-    let by_x = of_x + cc * (k(4.0 / 13.0) * c - k(3.0 / 11.0));
-    let by_y = (k(2.0 / 11.0) * c - k(1.0 / 9.0)) - k(3.0 / 13.0) * cc;
-    [
-        integral * by_x + ((n - (mu + mu)) + x * k(2.0 / 3.0) * (n - mu * k(6.0)) + y * of_5),
-        integral * by_y + ((n - mu * k(4.0)) + x * of_5),
-        integral * by_c,
-    ]
-}
-
-/// The same of [`long`], by dual numbers.
-#[hot]
-pub(super) fn long_back<T: Real>(start: &Start<T>, by: &Functions<T>) -> [T; 3] {
-    let [x, y, c] = [(start.x, 0), (start.y, 1), (start.c, 2)].map(|(value, k)| Dual::along(value, k));
-    let Functions { n, mu, integral } = long(&Start { e: Dual::constant(start.e), x, y, c });
-    core::array::from_fn(|k| n.slopes[k] * by.n + mu.slopes[k] * by.mu + integral.slopes[k] * by.integral)
-}
-
 /// What the polynomials are in: the mean `e` of the three roots, and the first coefficients `x` and `y` of `℘` and `c` of
 /// the integral.
 #[derive(Clone, Copy)]
 pub(super) struct Start<T> {
-    e: T,
-    x: T,
-    y: T,
-    c: T,
+    pub(super) e: T,
+    pub(super) x: T,
+    pub(super) y: T,
+    pub(super) c: T,
 }

@@ -8,9 +8,9 @@ use super::super::Length;
 use super::super::linearised::{DifferentiableFlow, Table};
 use super::{Part, Processed};
 use crate::error::{SetupError, StepError};
-use crate::gradients::{Change, Linearisable, Pass};
+use crate::gradients::{ChangeOf, Linearisable, Pass};
 use crate::groups::SO3;
-use crate::mechanics::{RigidScene, Scalar, SceneVisitor, SecondDerivatives, Term};
+use crate::mechanics::{Group, RigidScene, Scalar, SceneVisitor, SecondDerivatives, Term};
 use crate::motion::{Motion, Plan as _, StepReport, Summation};
 use nalgebra::SimdComplexField as _;
 
@@ -86,14 +86,8 @@ where
     }
 
     #[hot]
-    fn visit(
-        &self,
-        stages: (&S, &Self::Table),
-        index: usize,
-        event: &Change<SO3<Scalar<S>>, S::Advected>,
-        pass: &mut impl Pass<SO3<Scalar<S>>>,
-    ) {
-        self.kernel.visit(stages, index, event, pass);
+    fn visit(&self, stages: (&S, &Self::Table), event: (usize, &ChangeOf<S>), pass: &mut impl Pass<Group<S>>) {
+        self.kernel.visit(stages, event, pass);
     }
 }
 
