@@ -8,7 +8,7 @@ use core::ops::Range;
 use crate::error::{SetupError, StepError};
 use crate::gradients::input::{Input, InputOf};
 use crate::gradients::recording::{Change, ChangeOf, Recording};
-use crate::gradients::stage::{Cotangent, FlowDerivatives, Pass, Stage};
+use crate::gradients::stage::{Cotangent, FlowDerivatives, Pass, Stage, WayBack};
 use crate::gradients::{Linearisable, Linearised};
 use crate::groups::LieGroup;
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Scalar, SecondDerivatives, Vector};
@@ -52,7 +52,7 @@ impl<G: LieGroup> Pass<G> for Back<'_, G> {
     }
 
     #[hot]
-    fn on_the_way_back(&mut self) -> Option<(&mut Cotangent<G::Vector>, &mut [G::Scalar])> {
+    fn on_the_way_back(&mut self) -> Option<WayBack<'_, G>> {
         Some((&mut self.cotangent, self.gradient))
     }
 

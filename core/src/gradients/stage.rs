@@ -15,7 +15,8 @@ use crate::numbers::{Coordinates, Entries, Real, real, zero};
 #[derive(Clone, Copy, Debug)]
 pub struct Stage<'a, E: Effect> {
     effect: &'a E,
-    kind: Kind<Scalar<E>>,
+    /// What the stage does.
+    pub(super) kind: Kind<Scalar<E>>,
     attitude: Group<E>,
     advected: E::Advected,
     increment: Matrix<E>,
@@ -69,12 +70,6 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         Self { first, ..self }
     }
 
-    /// What the stage does.
-    #[hot]
-    pub(super) fn kind(&self) -> Kind<Scalar<E>> {
-        self.kind
-    }
-
     /// The blocks of the tangent map of a step of this length.
     #[hot]
     pub(super) fn blocks(&self, h: Scalar<E>) -> StepDerivatives<Square<E>> {
@@ -97,21 +92,6 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         }
         let rows = Vector::<E>::square(|k| self.of_gradient(&Vector::<E>::axis(k), &mut |_, _| {}, &mut []));
         slope + Vector::<E>::transpose(&rows)
-    }
-
-    /// The derivatives of `μ` and `μ⁺` by the parameters, those that are carried not among them.
-    #[hot]
-    fn by_parameters(&self, visit: &mut impl FnMut(usize, Vector<E>, Vector<E>)) {
-        let h = self.length();
-        let first = self.first;
-        self.effect.by_parameters(&self.increment, &self.advected, h, &mut |number, start, end| {
-            visit(first + number, start, end);
-        });
-    }
-
-    #[hot]
-    fn by_advected(&self, visit: &mut impl FnMut(usize, Vector<E>, Vector<E>)) {
-        self.effect.by_advected(&self.increment, &self.advected, self.length(), visit);
     }
 
     /// The step at which the derivatives are evaluated. A kick is proportional to its duration, so its derivatives are those
@@ -145,7 +125,10 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         }
         let scale = self.scale();
         let visit = &mut |number, start, end| visit(number, start * scale, end * scale);
-        self.by_parameters(visit);
+        // Those that are carried aren't among them.
+        self.effect.by_parameters(&self.increment, &self.advected, self.length(), &mut |number, start, end| {
+            visit(self.first + number, start, end);
+        });
         if !is_given_values {
             E::carried_parameters(&mut |place, parameter| {
                 let (start, end) = self.by_value(place);
@@ -168,7 +151,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     fn by_value(&self, place: usize) -> (Vector<E>, Vector<E>) {
         let seen: E::Advected = seen_of_unit(place, &self.attitude);
         let (mut start, mut end) = (Vector::<E>::zero(), Vector::<E>::zero());
-        self.by_advected(&mut |number, by_start, by_end| {
+        self.effect.by_advected(&self.increment, &self.advected, self.length(), &mut |number, by_start, by_end| {
             let change = entry(&seen, number);
             (start, end) = (start + by_start * change, end + by_end * change);
         });
@@ -359,6 +342,9 @@ pub(crate) fn add_shares<T: Real>(gradient: &mut [T], first: usize, shares: &[T]
     own.iter_mut().zip(shares).for_each(|(sum, share)| *sum += *share);
 }
 
+/// A gradient by the state, and that by the parameters.
+pub(super) type WayBack<'a, G> = (&'a mut Cotangent<<G as LieGroup>::Vector>, &'a mut [<G as LieGroup>::Scalar]);
+
 /// What is done with the stages of a step, one after the other: by the derivatives of the library's own plans.
 #[doc(hidden)]
 pub trait Pass<G: LieGroup> {
@@ -367,7 +353,7 @@ pub trait Pass<G: LieGroup> {
 
     /// Of a way back the gradient behind the stage, to be replaced by that before it, and that by the parameters, to be
     /// added to; none of a way forwards.
-    fn on_the_way_back(&mut self) -> Option<(&mut Cotangent<G::Vector>, &mut [G::Scalar])>;
+    fn on_the_way_back(&mut self) -> Option<WayBack<'_, G>>;
 
     /// Takes notice of a stage.
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>);

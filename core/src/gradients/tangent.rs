@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use core::cell::RefCell;
 
 use crate::gradients::recording::Change;
-use crate::gradients::stage::{Cotangent, FlowDerivatives, Kind, Pass, Stage};
+use crate::gradients::stage::{FlowDerivatives, Kind, Pass, Stage, WayBack};
 use crate::groups::LieGroup;
 use crate::mechanics::pattern_of_type;
 use crate::mechanics::{Group, SecondDerivatives, Term, Vector};
@@ -193,7 +193,7 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
     }
 
     #[hot]
-    fn on_the_way_back(&mut self) -> Option<(&mut Cotangent<G::Vector>, &mut [G::Scalar])> {
+    fn on_the_way_back(&mut self) -> Option<WayBack<'_, G>> {
         None
     }
 
@@ -210,7 +210,7 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
                 }
             });
         }
-        match stage.kind() {
+        match stage.kind {
             // Without a step nothing moves.
             Kind::Step(h) if h == real(0.0) => {}
             // `∂μ/∂ε ε = δμ − ∂μ/∂ζ ζ`, `ζ⁺ = Ad_{F⁻¹}(ζ + ε)`, `δμ⁺ = ∂μ⁺/∂ε ε + ∂μ⁺/∂ζ ζ`.

@@ -47,15 +47,17 @@ pub trait DifferentiableFlow<T: Real>: KineticFlow<T> {
     /// Those of this length, s.
     fn slopes(flow: &Self, time: T) -> Self::Slopes;
 
-    /// Shows a pass what the flow did in this time, s. Its parameters are numbered from `first_parameter` on, among those
-    /// of the splitting.
-    fn visit<A>(
-        flow: &Self,
-        drift: (T, &Self::Slopes),
-        event: &Change<SO3<T>, A>,
-        first_parameter: usize,
-        pass: &mut impl Pass<SO3<T>>,
-    );
+    /// Shows it to a pass.
+    fn visit<A>(flow: &Self, drift: &Drifted<'_, T, Self::Slopes, A>, pass: &mut impl Pass<SO3<T>>);
+}
+
+/// What a flow did in a time, s. Its parameters are numbered from `first` on, among those of the splitting.
+#[doc(hidden)]
+pub struct Drifted<'a, T: Real, D, A> {
+    pub(super) time: T,
+    pub(super) slopes: &'a D,
+    pub(super) event: &'a Change<SO3<T>, A>,
+    pub(super) first: usize,
 }
 
 impl<T: Real, L> DifferentiableFlow<T> for L
@@ -73,14 +75,8 @@ where
     }
 
     #[hot]
-    fn visit<A>(
-        flow: &Self,
-        (time, ()): (T, &()),
-        event: &Change<SO3<T>, A>,
-        first_parameter: usize,
-        pass: &mut impl Pass<SO3<T>>,
-    ) {
-        pass.stage(&Stage::step(flow, time, event, ()).behind(first_parameter));
+    fn visit<A>(flow: &Self, drift: &Drifted<'_, T, (), A>, pass: &mut impl Pass<SO3<T>>) {
+        pass.stage(&Stage::step(flow, drift.time, drift.event, ()).behind(drift.first));
     }
 }
 
@@ -101,14 +97,8 @@ impl<T: Real> DifferentiableFlow<T> for SymmetricBody<T> {
     }
 
     #[hot]
-    fn visit<A>(
-        flow: &Self,
-        (time, ()): (T, &()),
-        event: &Change<SO3<T>, A>,
-        first_parameter: usize,
-        pass: &mut impl Pass<SO3<T>>,
-    ) {
-        let (transverse, axial) = Self::moments(flow);
+    fn visit<A>(flow: &Self, drift: &Drifted<'_, T, (), A>, pass: &mut impl Pass<SO3<T>>) {
+        let (&Drifted { time, event, first, .. }, (transverse, axial)) = (drift, Self::moments(flow));
         let (momentum, increment) = (event.before.momentum, event.increment);
         let t = time / transverse;
         let s = t * ((axial - transverse) / axial);
@@ -124,7 +114,7 @@ impl<T: Real> DifferentiableFlow<T> for SymmetricBody<T> {
             *end = Cotangent { momentum: before.momentum + by_momentum, ..before };
             let spin = along * momentum.z;
             let by_transverse = (spin - momentum.dot(&by_turn)) * (t / transverse);
-            return add_shares(gradient, first_parameter, &[by_transverse, -(spin * (time / (axial * axial)))]);
+            return add_shares(gradient, first, &[by_transverse, -(spin * (time / (axial * axial)))]);
         }
         let hat = x.cross_matrix();
         let of_direction = (Matrix3::identity() + hat * stumpff::<T, 2>(q) + hat * hat * stumpff::<T, 3>(q)) * t;
@@ -133,7 +123,7 @@ impl<T: Real> DifferentiableFlow<T> for SymmetricBody<T> {
         let spin = axis * momentum.z;
         let by_transverse = (spin - momentum) * (t / transverse);
         let by_axial = spin * -(time / (axial * axial));
-        let by_parameters = [(first_parameter, by_transverse), (first_parameter + 1, by_axial)];
+        let by_parameters = [(first, by_transverse), (first + 1, by_axial)];
         pass.flown(&flown(turn_by_momentum, &increment, &momentum, &by_parameters));
     }
 }
@@ -220,7 +210,8 @@ where
         let ((scene, table), (index, event)) = (stages, event);
         let Some((length, slopes)) = table.0.get(index) else { return };
         if let Some(slopes) = slopes {
-            return K::visit(&self.kinetic, (length.time, slopes), event, S::PARAMETERS, pass);
+            let drift = Drifted { time: length.time, slopes, event, first: S::PARAMETERS };
+            return K::visit(&self.kinetic, &drift, pass);
         }
         let (torque, inverse_inertia) = (&self.torque, &self.inverse_inertia);
         let gradient = length.gradient.map(|share| ForceGradient { share, torque, inverse_inertia });

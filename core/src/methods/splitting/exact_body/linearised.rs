@@ -10,10 +10,10 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::super::linearised::{DifferentiableFlow, before_turn, flown};
+use super::super::linearised::{DifferentiableFlow, Drifted, before_turn, flown};
 use super::super::quaternion::product;
 use super::{ExactBody, Form};
-use crate::gradients::{Change, Cotangent, Pass, add_shares};
+use crate::gradients::{Cotangent, Pass, add_shares};
 use crate::groups::SO3;
 use crate::mechanics::SceneVisitor;
 use crate::numbers::{Dual, Real};
@@ -46,19 +46,14 @@ impl<T: Real> DifferentiableFlow<T> for ExactBody<T> {
     }
 
     #[hot]
-    fn visit<A>(
-        flow: &Self,
-        (_, Forms(form, [fixed, varied])): (T, &Forms<T>),
-        event: &Change<SO3<T>, A>,
-        first_parameter: usize,
-        pass: &mut impl Pass<SO3<T>>,
-    ) {
+    fn visit<A>(flow: &Self, drift: &Drifted<'_, T, Forms<T>, A>, pass: &mut impl Pass<SO3<T>>) {
+        let (&Drifted { event, first, .. }, Forms(form, [fixed, varied])) = (drift, drift.slopes);
         let (momentum, increment) = (event.before.momentum, event.increment);
         if let Some((end, gradient)) = pass.on_the_way_back()
             && let Some((before, shares)) = flow.pulled(form, (&momentum, &increment), end)
         {
             *end = before;
-            return add_shares(gradient, first_parameter, &shares);
+            return add_shares(gradient, first, &shares);
         }
         let along = flow.frame.within(&momentum);
         let turns = flow.turns(fixed, |k| fixed.scale * Dual::along(along[k], k));
@@ -72,8 +67,8 @@ impl<T: Real> DifferentiableFlow<T> for ExactBody<T> {
         // F(R J Rᵀ, p) = R F(J, Rᵀ p) Rᵀ.
         let by_axes = turn_by_momentum * momentum.cross_matrix() - increment;
         let places = flow.frame.places();
-        let moment = |k: usize| (first_parameter + places[k], by_moments[k]);
-        let axis = |k: usize| (first_parameter + 3 + k, by_axes.column(k).into_owned());
+        let moment = |k: usize| (first + places[k], by_moments[k]);
+        let axis = |k: usize| (first + 3 + k, by_axes.column(k).into_owned());
         let by_parameters = [moment(0), moment(1), moment(2), axis(0), axis(1), axis(2)];
         pass.flown(&flown(turn_by_momentum, &increment, &momentum, &by_parameters));
     }

@@ -390,14 +390,6 @@ fn dot<T: Number>([a, b, c]: [T; 3]) -> T {
     (a * a + b * b) + c * c
 }
 
-/// `exp(2v̂)` as a quaternion.
-#[hot]
-fn rotor<T: Number>([x, y, z]: [T; 3]) -> Quaternion<T> {
-    let q = dot([x, y, z]);
-    let (sinc, versine) = rotation_coefficients(q);
-    [T::one() - q * versine, sinc * x, sinc * y, sinc * z]
-}
-
 /// A rotation by a quaternion of any length.
 #[derive(Clone, Copy, Debug)]
 struct BodyTurn<T> {
