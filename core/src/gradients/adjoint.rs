@@ -7,7 +7,7 @@ use core::ops::Range;
 
 use crate::error::{SetupError, StepError};
 use crate::gradients::input::{Input, InputOf};
-use crate::gradients::recording::{Change, ChangeOf, Recording};
+use crate::gradients::recording::{Change, ChangeOf, MotionOf, Recording};
 use crate::gradients::stage::{Cotangent, FlowDerivatives, Pass, Stage, WayBack};
 use crate::gradients::{Linearisable, Linearised};
 use crate::groups::LieGroup;
@@ -82,9 +82,9 @@ struct Given<'i, S: Effect> {
     inputs: &'i [InputOf<S>],
     /// The motions before the steps of a stretch, and the last of the run; of the others only where these can't be found
     /// among the changes: of steps with an input, and of those inside of a processor.
-    motions: Vec<Motion<Group<S>, S::Advected>>,
+    motions: Vec<MotionOf<S>>,
     /// Where the end of the last step begins.
-    before_end: Option<Motion<Group<S>, S::Advected>>,
+    before_end: Option<MotionOf<S>>,
     /// How many changes there are at each end of the run; none of a run with inputs, whose steps have them.
     ends: usize,
 }
@@ -145,7 +145,7 @@ impl<S, P, C> Kernel for Stretch<'_, '_, S, P, C>
 where
     S: SecondDerivatives,
     P: Linearisable<S>,
-    C: FnMut(u64, &Motion<Group<S>, S::Advected>) -> Cotangent<Vector<S>>,
+    C: FnMut(u64, &MotionOf<S>) -> Cotangent<Vector<S>>,
 {
     type Output = Result<(), StepError>;
 
@@ -305,7 +305,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         }
         starts.push((made, end));
         dispatch(Record { linearised: self, state: &mut end, steps: made..steps, given: &mut given, events: &events })?;
-        let mut gradient = self.no_gradient();
+        let mut gradient = vec![real(0.0); self.stepper.plan.parameters()];
         let mut back = Back { cotangent: Cotangent::zero(), gradient: &mut gradient, values: Vec::new() };
         let mut last = steps;
         while let Some((first, mut start)) = starts.pop() {
@@ -334,10 +334,6 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         }
         *state = end;
         Ok((gradient, by_inputs))
-    }
-
-    fn no_gradient(&self) -> Vec<Scalar<S>> {
-        vec![real(0.0); self.stepper.plan.parameters()]
     }
 
     /// The gradient by a way back of steps of `−h`: no state of the way forwards is kept.
@@ -400,7 +396,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Backwards<'_, S, P> {
         }
         let mut now = self.inverse.adopt(&end);
         let events = RefCell::new(Vec::new());
-        let mut gradient = forwards.no_gradient();
+        let mut gradient = vec![real(0.0); forwards.stepper.plan.parameters()];
         let mut back = Back { cotangent: cost(steps, &end.motion), gradient: &mut gradient, values: Vec::new() };
         for n in (0..steps).rev() {
             self.inverse.recorded(&mut now, &events, [true; 2])?;

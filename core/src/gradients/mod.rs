@@ -98,6 +98,7 @@ mod tangent;
 
 pub use adjoint::{Backwards, Gradient, Tape};
 pub use input::{Input, InputOf, Transition};
+pub(crate) use recording::MotionOf;
 pub use recording::{Change, ChangeOf};
 pub use stage::{Cotangent, FlowDerivatives, Pass, Stage};
 pub(crate) use stage::{ForceGradient, add_shares};
@@ -109,7 +110,7 @@ use core::ops::Range;
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, SecondDerivatives};
-use crate::motion::{Declared, Motion, Plan, StateOf, Steerable, StepReport, Stepper, Summation};
+use crate::motion::{Declared, Plan, StateOf, Steerable, StepReport, Stepper, Summation};
 use crate::numbers::{Kernel, Vectors};
 use recording::Recording;
 
@@ -183,7 +184,7 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> + Steerable {
     }
 
     /// Where the end of a step that ended here began: the motion inside of a processor.
-    fn before_end(&self, read: &Motion<Group<S>, S::Advected>, _kept: &Self::Kept) -> Motion<Group<S>, S::Advected> {
+    fn before_end(&self, read: &MotionOf<S>, _kept: &Self::Kept) -> MotionOf<S> {
         *read
     }
 

@@ -1,6 +1,6 @@
 //! The tangent map of one stage and its transpose.
 
-use alloc::vec;
+use alloc::vec::Vec;
 
 use crate::gradients::recording::Change;
 use crate::groups::{Advected as _, LieGroup, SquareOf, seen_of_unit};
@@ -114,8 +114,10 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     ) {
         if self.gradient.is_some() {
             for axis in (0..Group::<E>::DIMENSION).map(Vector::<E>::axis) {
-                let mut by_values =
-                    vec![real::<Scalar<E>>(0.0); if is_given_values { Self::count_values(&self.advected) } else { 0 }];
+                let mut by_values = Vec::new();
+                if is_given_values {
+                    self.advected.each(&mut |_| by_values.push(real(0.0)));
+                }
                 let add = &mut |number, share| visit(self.first + number, Vector::<E>::zero(), axis * share);
                 self.of_gradient(&axis, add, &mut by_values);
                 for (place, share) in by_values.into_iter().enumerate().take(values) {
@@ -123,7 +125,10 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
                 }
             }
         }
-        let scale = self.scale();
+        let scale = match self.kind {
+            Kind::Step(_) => real(1.0),
+            Kind::Kick(time) => time,
+        };
         let visit = &mut |number, start, end| visit(number, start * scale, end * scale);
         // Those that are carried aren't among them.
         self.effect.by_parameters(&self.increment, &self.advected, self.length(), &mut |number, start, end| {
@@ -139,12 +144,6 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
             let (start, end) = self.by_value(place);
             visit(first_value + place, start, end);
         }
-    }
-
-    fn count_values(values: &E::Advected) -> usize {
-        let mut count = 0;
-        values.each(&mut |_| count += 1);
-        count
     }
 
     /// The derivatives of `μ` and `μ⁺` by the scalar in this place of what is advected, as it is in space.
@@ -258,14 +257,6 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
                 }
                 Cotangent { attitude, momentum: end.momentum }
             }
-        }
-    }
-
-    /// The time that derivatives by parameters are multiplied by.
-    fn scale(&self) -> Scalar<E> {
-        match self.kind {
-            Kind::Step(_) => real(1.0),
-            Kind::Kick(time) => time,
         }
     }
 }

@@ -8,13 +8,11 @@ use super::super::Length;
 use super::super::linearised::{DifferentiableFlow, Table};
 use super::{Part, Processed};
 use crate::error::{SetupError, StepError};
-use crate::gradients::{ChangeOf, Linearisable, Pass};
+use crate::gradients::{ChangeOf, Linearisable, MotionOf, Pass};
 use crate::groups::SO3;
-use crate::mechanics::{Group, RigidScene, Scalar, SceneVisitor, SecondDerivatives, Term};
-use crate::motion::{Motion, Plan as _, StepReport, Summation};
+use crate::mechanics::{Group, RigidScene, Scalar, SceneVisitor, SecondDerivatives};
+use crate::motion::{Plan as _, StepReport, Summation};
 use nalgebra::SimdComplexField as _;
-
-type MotionOf<S> = Motion<SO3<Scalar<S>>, <S as Term>::Advected>;
 
 impl<S, K> Linearisable<S> for Processed<S, K>
 where
