@@ -50,6 +50,25 @@ fn carried<const D: usize>(transition: &Transition<SVector<f64, D>>, x: &Column<
         .fold(zero, |sum, (by, factor)| (sum.0 + by.0 * *factor, sum.1 + by.1 * *factor))
 }
 
+/// What is read of the states of a run; of some it is nothing.
+fn cotangents<const D: usize>(random: &mut Random, steps: usize) -> Vec<Cotangent<SVector<f64, D>>> {
+    let mut read = |n| match n % 3 {
+        1 => Cotangent::zero::<f64>(),
+        _ => Cotangent { attitude: random.sample(), momentum: random.sample() },
+    };
+    (0..=steps).map(&mut read).collect()
+}
+
+/// What each of the columns adds to that.
+fn paired<const D: usize>(columns: &[Column<D>], cotangent: &Cotangent<SVector<f64, D>>) -> Vec<f64> {
+    columns.iter().map(|(a, m)| a.dot(&cotangent.attitude) + m.dot(&cotangent.momentum)).collect()
+}
+
+fn add(sums: &mut Vec<f64>, shares: Vec<f64>) {
+    sums.resize(shares.len(), 0.0);
+    sums.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share);
+}
+
 /// Whether the columns by the start, the parameters and the inputs are as expected, and the adjoints their transposes, with
 /// either tape. Steps behind the last input are free.
 ///
@@ -67,7 +86,6 @@ pub(crate) fn assert_columns<L, P, const D: usize>(
     P: Linearisable<L>,
     SVector<f64, D>: Coordinates<f64, Square = SMatrix<f64, D, D>>,
 {
-    let mut random = Random::new(seed + 300);
     let linear = stepper.linearised().expect("derivatives");
     let numbers: Vec<usize> = (0..linear.parameters().len()).collect();
     let start = stepper.start_with_momentum(start.0, start.1).expect("a start");
@@ -77,19 +95,7 @@ pub(crate) fn assert_columns<L, P, const D: usize>(
         .chain(std::iter::repeat(Input::Free))
         .take(usize::try_from(STEPS).expect("a few"))
         .collect();
-    // Nothing is read from some of the states.
-    let cotangents: Vec<Cotangent<SVector<f64, D>>> = (0..=inputs.len())
-        .map(|n| if n % 3 == 1 { 0.0 } else { 1.0 })
-        .map(|size| [(); 2].map(|()| random.sample::<SVector<f64, D>>() * size))
-        .map(|[attitude, momentum]| Cotangent { attitude, momentum })
-        .collect();
-    let paired = |columns: &[Column<D>], cotangent: &Cotangent<SVector<f64, D>>| -> Vec<f64> {
-        columns.iter().map(|(a, m)| a.dot(&cotangent.attitude) + m.dot(&cotangent.momentum)).collect()
-    };
-    let add = |sums: &mut Vec<f64>, shares: Vec<f64>| {
-        sums.resize(shares.len(), 0.0);
-        sums.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share);
-    };
+    let cotangents = cotangents(&mut Random::new(seed + 300), inputs.len());
 
     // By start and parameters the tangent, and by the inputs the blocks of the steps.
     let (mut state, mut plain, mut blocks) = (start, start, start);

@@ -54,7 +54,8 @@ where
     let (acceleration, turn) = system.euler_poincare(&xi, &w).expect("regular");
     let (first, second) = (HyperDual64::new(0.0, 1.0, 0.0, 0.0), HyperDual64::new(0.0, 0.0, 1.0, 0.0));
     let change = along_each(&|unit| {
-        let [along, across]: [Vector<D2>; 2] = [varied(&xi, &acceleration, first), varied(&(xi - xi), &unit, second)];
+        let [along, across]: [Vector<D2>; 2] =
+            [varied(&xi, &acceleration, first), varied(&Vector::<L>::zero(), &unit, second)];
         hyper.l(&(along + across), &varied(&w, &turn, first)).eps1eps2
     });
     let condition = norm_of_map::<L>(&system.velocity_hessian(&xi, &w));

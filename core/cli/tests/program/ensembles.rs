@@ -183,6 +183,9 @@ fn mistakes_in_ensembles_have_places() {
         assert_eq!(output.status.code(), Some(1), "{text}");
         String::from_utf8(output.stderr).unwrap()
     });
+    let chosen = right.replace("[drag]\nc = 1e-3\n", "").replace("step = \"10 ms\"", "accuracy = 1e-6");
+    fs::write(folder.join("top.toml"), chosen).unwrap();
+    refuses(&folder, &["check", "top.toml"], 1, "the members of an ensemble make the same steps");
     fs::write(folder.join("top.toml"), TOP).unwrap();
     refuses(&folder, &["ensemble", "top.toml"], 1, "has no table `ensemble`");
 }
