@@ -52,7 +52,7 @@ fn carried<const D: usize>(transition: &Transition<SVector<f64, D>>, x: &Column<
 
 /// What is read of the states of a run; of some it is nothing.
 fn cotangents<const D: usize>(random: &mut Random, steps: usize) -> Vec<Cotangent<SVector<f64, D>>> {
-    let mut read = |n| match n % 3 {
+    let mut read = |n: usize| match n % 3 {
         1 => Cotangent::zero::<f64>(),
         _ => Cotangent { attitude: random.sample(), momentum: random.sample() },
     };
