@@ -5,6 +5,7 @@
 //! Whatever takes long leaves the interpreter to others, and asks it now and then whether it is to stop.
 #![forbid(unsafe_code)]
 
+mod control;
 mod ensemble;
 mod failure;
 mod file;
@@ -181,6 +182,8 @@ fn share(text: &str) -> PyResult<(u64, u64)> {
 mod _native {
     #[pymodule_export]
     use super::{Derived, Scene, Table, View, schemes, share};
+    #[pymodule_export]
+    use crate::control::plan;
     #[pymodule_export]
     use crate::file::{File, FileRun, library};
     #[pymodule_export]

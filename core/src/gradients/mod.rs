@@ -232,12 +232,16 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// # Errors
     ///
     /// [`SetupError::NoSecondDerivatives`] for a splitting with force gradients, of a term whose derivatives were written by
-    /// hand without [`kick_gradient`](SecondDerivatives::kick_gradient).
+    /// hand without [`kick_gradient`](SecondDerivatives::kick_gradient), and where they [aren't
+    /// derived](SecondDerivatives::are_derived).
     pub fn linearised(&self) -> Result<Linearised<'_, S, P>, SetupError>
     where
         S: SecondDerivatives,
         P: Linearisable<S>,
     {
+        if !self.scene.are_derived() {
+            return Err(SetupError::NoSecondDerivatives);
+        }
         self.plan.check_stages(&self.scene)?;
         Ok(Linearised { stepper: self, table: self.plan.table() })
     }
