@@ -55,6 +55,7 @@ impl<W, M> Batchable<W> for M where
 /// assert_eq!(batch.state(0), alone);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[repr(align(64))]
 pub struct Batch<W, M: Batchable<W>> {
     stepper: M::Together,
     state: <M::Together as Integrator>::State,
