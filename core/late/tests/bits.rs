@@ -335,8 +335,8 @@ where
     // What nothing depends on may be visited, and needn't be.
     let mut sum = Vector::<E>::zero();
     effect.by_advected(&increment, &w, h, &mut |number, start, end| {
-        let number: f64 = (0..number).map(|_| 1.0).sum();
-        sum = sum + start * (1.5 + number) + end * (2.5 - number);
+        let number = 1.5_f64.powi(i32::try_from(number).unwrap());
+        sum = sum + start * number + end * number.recip();
     });
     add(sum);
     by_advected.each(&mut |entry| found.push(entry));
@@ -346,6 +346,7 @@ where
 /// To the bit; in one program those of a sum to rounding.
 #[test]
 fn derivatives_of_steps() {
+    type Seen = ((((), Vector3<f64>), ()), Vector3<f64>);
     macro_rules! differentiated {
         ($kinetic:ident: $($name:ident { $($field:ident)* })+) => {$(
             let compiled = random!(3, $name { $($field)* });
@@ -362,7 +363,6 @@ fn derivatives_of_steps() {
         (random!(1, RigidBody { J_d }), random!(2, Gravity { m g rho up }), random!(3, Drag { c J }));
     let sum = body + gravity + drag + gravity;
     let terms = [declared(&body), declared(&gravity), declared(&drag), declared(&gravity)];
-    type Seen = ((((), Vector3<f64>), ()), Vector3<f64>);
     let late = Declaration::sum(&terms).and_then(Late::<SO3, Seen, WithEitherKinetic>::of);
     let late = late.and_then(|late| late.with_all(&numbers(&sum))?.differentiable()).expect("derivatives");
     let (one, other) = (derivatives(&sum, 7), derivatives(&late, 7));

@@ -14,12 +14,11 @@ use nalgebra::Vector3;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::Derived;
 use crate::ensemble::kept;
 use crate::failure::Failure;
 use crate::method::Four;
 use crate::run::{Start, listed};
-use crate::scene::{Late, Numbers};
+use crate::scene::Late;
 use crate::table::Columns;
 
 /// One type for all scenes on SO(3).
@@ -98,16 +97,14 @@ impl Task {
     }
 }
 
-/// A plan of the sum of these terms, which were declared with `gradients`.
-#[pyfunction]
+/// A plan of the sum of these terms, which were declared with `gradients`, as Python sees it.
 pub(crate) fn plan<'py>(
     py: Python<'py>,
-    terms: Vec<(Bound<'py, Derived>, Numbers)>,
-    task: Task,
+    terms: &[&'static Declaration],
+    numbers: &[f64],
+    task: &Task,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let declared: Vec<_> = terms.iter().map(|(term, _)| term.get().0).collect();
-    let numbers: Vec<f64> = terms.into_iter().flat_map(|(_, numbers)| numbers).flat_map(|(_, value)| value).collect();
-    let (plan, raised) = py.detach(|| task.solve(&declared, &numbers))?;
+    let (plan, raised) = py.detach(|| task.solve(terms, numbers))?;
     let dictionary = PyDict::new(py);
     let table = |columns: Vec<Column>, rows: Vec<f64>| {
         let mut table = Columns::new(rows.len() / columns.len());
