@@ -44,9 +44,15 @@ fn term(mistake: TermMistake) -> String {
         }
         TermMistake::Vanishing(order) => format!(
             "this vanishes like {} as h → 0: a kinetic part goes like `h`, that is, a square of `F - I` over `h`, as in \
-             `… / (2.0 * h)`{}",
+             `… / (2.0 * h)`{}{}",
             power_of_step(order),
-            by_a_power(2)
+            by_a_power(2),
+            // A potential of what a step adds, `h` times its square.
+            if order < 3 {
+                ""
+            } else {
+                "; if it is meant as a potential, `F` is what a step adds, and where the body is stands in what is `advected`"
+            }
         ),
         TermMistake::TooSingular(power) => too_singular(power),
         TermMistake::Constant => {
