@@ -6,10 +6,11 @@
 //! cargo bench --bench gradients -- count METHOD NAME 1000     runs 1000 steps with one and nothing else
 //! ```
 //!
-//! The methods are (3.13), a splitting with force gradients and a processed one, which is read after each step. The numbers
-//! are the three of the attitude and of the momentum at the start, three moments, `m g` and three of the centre of mass,
-//! and with them what else there is: `up`, and of the exact flow the turns of its axes. All take turns within one run, and
-//! the fastest batch of each counts.
+//! The methods are (3.13), a splitting with force gradients and a processed one, which is read after each step; both of any
+//! body and of a symmetric one. The numbers are the three of the attitude and of the momentum at the start, three moments,
+//! `m g` and three of the centre of mass, and with them what else there is: `up`, and of the exact flow the turns of its
+//! axes. An `adjoint` has a cost at the end of the run, `costs` has one at each step. All take turns within one run, and the
+//! fastest batch of each counts.
 
 mod counting;
 
@@ -18,7 +19,7 @@ use std::time::Instant;
 
 use liestep::gradients::{Cotangent, Linearisable, Tape};
 use liestep::mechanics::{DiagonalNonstandardInertia, Inertia};
-use liestep::methods::{ExactBody, ProcessedScheme, SplittingScheme};
+use liestep::methods::{ExactBody, ProcessedScheme, SplittingScheme, SymmetricBody};
 use liestep::{SO3, Stepper, lagrangian};
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -40,8 +41,8 @@ struct Top {
     up: Vector3<f64>,
 }
 
-const METHODS: [&str; 3] = ["(3.13)", "gradient", "processed"];
-const NAMES: [&str; 6] = ["step", "transition", "columns", "adjoint", "checkpoints", "backwards"];
+const METHODS: [&str; 5] = ["(3.13)", "gradient", "processed", "symmetric gradient", "symmetric processed"];
+const NAMES: [&str; 7] = ["step", "transition", "columns", "adjoint", "costs", "checkpoints", "backwards"];
 const BATCH: u64 = 1_000;
 const ROUNDS: usize = 100;
 
@@ -50,15 +51,19 @@ type Run = Box<dyn Fn(&str, u64) -> Result<(), Uncounted>>;
 
 /// A method with its start, ready to be run.
 fn method(name: &str) -> Result<Run, Uncounted> {
-    let moments = Vector3::new(2.0, 3.0, 4.5);
+    let is_symmetric = name.starts_with("symmetric");
+    let moments = if is_symmetric { Vector3::new(2.0, 2.0, 3.5) } else { Vector3::new(2.0, 3.0, 4.5) };
     let J_d = DiagonalNonstandardInertia::from_principal_moments(moments)?;
     let top = Top { J_d, weight: 9.81, rho: Vector3::new(0.3, 0.2, 0.4), up: Vector3::z() };
-    let flow = ExactBody::new(&Inertia::from_principal_moments(moments)?);
-    let h = black_box(0.01);
+    let inertia = Inertia::from_principal_moments(moments)?;
+    let (flow, h) = (ExactBody::new(&inertia), black_box(0.01));
+    let (gradient, processed) = (SplittingScheme::FORCE_GRADIENT_5, ProcessedScheme::SIX_A);
     match name {
         "(3.13)" => ready(Stepper::new(top, h)?),
-        "gradient" => ready(Stepper::split(top, h, flow, SplittingScheme::FORCE_GRADIENT_5)?),
-        "processed" => ready(Stepper::processed(top, h, flow, ProcessedScheme::SIX_A)?),
+        "gradient" => ready(Stepper::split(top, h, flow, gradient)?),
+        "processed" => ready(Stepper::processed(top, h, flow, processed)?),
+        "symmetric gradient" => ready(Stepper::split(top, h, SymmetricBody::new(&inertia)?, gradient)?),
+        "symmetric processed" => ready(Stepper::processed(top, h, SymmetricBody::new(&inertia)?, processed)?),
         other => Err(format!("there is no method `{other}`, but {METHODS:?}").into()),
     }
 }
@@ -69,7 +74,11 @@ fn ready<P: Linearisable<Top> + 'static>(stepper: Stepper<Top, P>) -> Result<Run
     Ok(Box::new(move |name, steps| {
         let (linear, mut state) = (stepper.linearised()?, black_box(start));
         let cost = |n: u64, _: &_| {
-            if n == steps { Cotangent { attitude: Vector3::x(), momentum: Vector3::z() } } else { Cotangent::zero() }
+            if n == steps || name == "costs" {
+                Cotangent { attitude: Vector3::x(), momentum: Vector3::z() }
+            } else {
+                Cotangent::zero()
+            }
         };
         match name {
             "step" => {
@@ -87,8 +96,8 @@ fn ready<P: Linearisable<Top> + 'static>(stepper: Stepper<Top, P>) -> Result<Run
                 }
                 black_box(tangent);
             }
-            "adjoint" | "checkpoints" => {
-                let tape = if name == "adjoint" { Tape::All } else { Tape::SquareRoot };
+            "adjoint" | "costs" | "checkpoints" => {
+                let tape = if name == "checkpoints" { Tape::SquareRoot } else { Tape::All };
                 black_box(linear.adjoint(&mut state, steps, tape, cost)?);
             }
             "backwards" => {
@@ -105,7 +114,7 @@ fn ready<P: Linearisable<Top> + 'static>(stepper: Stepper<Top, P>) -> Result<Run
 fn table(unit: &str, of: impl Fn(usize, usize) -> f64) {
     for (i, method) in METHODS.iter().enumerate() {
         for (j, name) in NAMES.iter().enumerate() {
-            println!("{method:<12}{name:<12}{:>10.1} {unit} a step{:>8.2} steps", of(i, j), of(i, j) / of(i, 0));
+            println!("{method:<20}{name:<12}{:>10.1} {unit} a step{:>8.2} steps", of(i, j), of(i, j) / of(i, 0));
         }
     }
 }

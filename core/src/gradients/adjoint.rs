@@ -7,8 +7,8 @@ use core::ops::Range;
 
 use crate::error::{SetupError, StepError};
 use crate::gradients::input::{Input, InputOf};
-use crate::gradients::recording::Change;
-use crate::gradients::stage::{Cotangent, FlowDerivatives, Pass, Stage};
+use crate::gradients::recording::{Change, ChangeOf, MotionOf, Recording};
+use crate::gradients::stage::{Cotangent, FlowDerivatives, Pass, Stage, WayBack};
 use crate::gradients::{Linearisable, Linearised};
 use crate::groups::LieGroup;
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Scalar, SecondDerivatives, Vector};
@@ -52,6 +52,11 @@ impl<G: LieGroup> Pass<G> for Back<'_, G> {
     }
 
     #[hot]
+    fn on_the_way_back(&mut self) -> Option<WayBack<'_, G>> {
+        Some((&mut self.cotangent, self.gradient))
+    }
+
+    #[hot]
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>) {
         self.cotangent = stage.pull(&self.cotangent, self.gradient, &mut self.values);
     }
@@ -70,11 +75,18 @@ impl<G: LieGroup> Back<'_, G> {
     }
 }
 
-/// The inputs of the steps, and the motion before each step, which can't be found again from the changes of a step with an
-/// input. Both are empty where the steps have no input.
+/// What is known of a run beside the changes that its steps make.
 struct Given<'i, S: Effect> {
+    steps: u64,
+    /// Of the steps; empty where none has one.
     inputs: &'i [InputOf<S>],
-    motions: Vec<Motion<Group<S>, S::Advected>>,
+    /// The motions before the steps of a stretch, and the last of the run; of the others only where these can't be found
+    /// among the changes: of steps with an input, and of those inside of a processor.
+    motions: Vec<MotionOf<S>>,
+    /// Where the end of the last step begins.
+    before_end: Option<MotionOf<S>>,
+    /// How many changes there are at each end of the run; none of a run with inputs, whose steps have them.
+    ends: usize,
 }
 
 impl<S: Effect> Given<'_, S> {
@@ -83,11 +95,45 @@ impl<S: Effect> Given<'_, S> {
     }
 }
 
-/// Several steps, from the last to the first.
+/// Makes several steps, and writes down their changes, and the motions that aren't among these.
+struct Record<'a, 'i, S: SecondDerivatives, P: Linearisable<S>> {
+    linearised: &'a Linearised<'a, S, P>,
+    state: &'a mut StateOf<S, P>,
+    steps: Range<u64>,
+    given: &'a mut Given<'i, S>,
+    events: &'a RefCell<Vec<ChangeOf<S>>>,
+}
+
+impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Record<'_, '_, S, P> {
+    type Output = Result<(), StepError>;
+
+    /// As that of [`Stretch`].
+    const VECTORS: Vectors = Vectors::Four;
+
+    #[hot]
+    fn run(self) -> Self::Output {
+        let Self { linearised, state, steps, given, events } = self;
+        given.motions.clear();
+        for n in steps.clone() {
+            if !given.inputs.is_empty() || given.ends > 0 {
+                given.motions.push(state.motion);
+            }
+            let ends = if given.ends > 0 { [n == 0, false] } else { [true; 2] };
+            linearised.recorded_given(state, given.input(n), events, ends)?;
+        }
+        if steps.end == given.steps {
+            given.motions.push(state.motion);
+            given.before_end = Some(linearised.stepper.plan.before_end(&state.motion, &state.kept));
+        }
+        Ok(())
+    }
+}
+
+/// Several steps, from the last to the first, and the costs of the states before them, and of that behind the last of all.
 struct Stretch<'a, 'b, S: SecondDerivatives, P: Linearisable<S>, C> {
     linearised: &'a Linearised<'a, S, P>,
     steps: Range<u64>,
-    events: &'a [Change<Group<S>, S::Advected>],
+    events: &'a [ChangeOf<S>],
     given: &'a Given<'a, S>,
     /// The derivatives by the inputs, from the last to the first.
     by_inputs: &'a mut Vec<InputOf<S>>,
@@ -99,32 +145,39 @@ impl<S, P, C> Kernel for Stretch<'_, '_, S, P, C>
 where
     S: SecondDerivatives,
     P: Linearisable<S>,
-    C: FnMut(u64, &Motion<Group<S>, S::Advected>) -> Cotangent<Vector<S>>,
+    C: FnMut(u64, &MotionOf<S>) -> Cotangent<Vector<S>>,
 {
-    type Output = ();
+    type Output = Result<(), StepError>;
 
     /// For AVX's three-operand instructions; there is nothing to do four at a time.
     const VECTORS: Vectors = Vectors::Four;
 
     #[hot]
-    fn run(self) {
+    fn run(self) -> Self::Output {
         let Linearised { stepper, table } = self.linearised;
         let Stepper { scene, plan } = stepper;
-        // All steps of a plan have the same stages, so each has this number of events.
-        let half = stepper.step_size() * real(0.5);
+        let (Range { start, end }, ends) = (self.steps, self.given.ends);
+        let (half, stages) = (self.linearised.half_step(), plan.stages() - 2 * ends);
         let mut motions = self.given.motions.iter().rev();
-        for (n, step) in self.steps.rev().zip(self.events.chunks(plan.stages()).rev()) {
+        let (begin, changes) = self.events.split_at(if start == 0 && end > 0 { ends } else { 0 });
+        let mut changes = changes.chunks(stages);
+        let out = RefCell::new(Vec::new());
+        for n in (start..=end).rev() {
+            if n == end && n < self.given.steps {
+                continue;
+            }
+            let step = if n < end { changes.next_back().unwrap_or_default() } else { &[] };
             let (input, at_end) = (self.given.input(n), self.back.cotangent.momentum);
             self.back.values.clear();
             if let Input::Values(values) = input {
                 values.each(&mut |_| self.back.values.push(real(0.0)));
             }
             for (index, event) in step.iter().enumerate().rev() {
-                plan.visit((scene, table), index, event, self.back);
+                plan.visit((scene, table), (ends + index, event), self.back);
             }
             let mut shares = self.back.values.iter();
             match input {
-                Input::Free if self.given.inputs.is_empty() => {}
+                Input::Free if n == end || self.given.inputs.is_empty() => {}
                 Input::Free => self.by_inputs.push(Input::Free),
                 // Half of the impulse comes before the step, half behind it.
                 Input::Force(_) => self.by_inputs.push(Input::Force((self.back.cotangent.momentum + at_end) * half)),
@@ -132,10 +185,26 @@ where
                     self.by_inputs.push(input.of_scalars(&mut || shares.next().copied().unwrap_or(real(0.0))));
                 }
             }
-            if let Some(before) = motions.next().or(step.first().map(|event| &event.before)) {
-                self.back.add(&(self.cost)(n, before));
+            let first = step.first().map(|event| &event.before);
+            let Some(read) = motions.next().or(first) else { continue };
+            let mut of_cost = (self.cost)(n, read);
+            if ends > 0 && (n == 0 || of_cost != Cotangent::zero()) {
+                // Elsewhere than at the start of the run only the cost is taken inside.
+                out.borrow_mut().clear();
+                if n == 0 {
+                    out.borrow_mut().extend_from_slice(begin);
+                } else if let Some(before) = first.or(self.given.before_end.as_ref()) {
+                    plan.make_end(&mut Recording { motion: *before, events: &out })?;
+                    core::mem::swap(&mut self.back.cotangent, &mut of_cost);
+                }
+                let number = if n == 0 { 0 } else { ends + stages };
+                for (index, event) in out.borrow().iter().enumerate().rev() {
+                    plan.visit((scene, table), (number + index, event), self.back);
+                }
             }
+            self.back.add(&of_cost);
         }
+        Ok(())
     }
 }
 
@@ -145,37 +214,12 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
     ///
     /// `cost` is asked for the derivatives of `c_n` at each state, from `n = steps` to `n = 0`; what a cost takes from the
     /// parameters by itself is the caller's to add. A parameter more is a few operations more: for a heavy top the whole
-    /// gradient takes two plain steps for each step (`cargo bench --bench gradients`).
+    /// gradient takes two plain steps for each step (`cargo bench --bench gradients`). [The chapter](crate::guide::gradients)
+    /// has an example.
     ///
     /// # Errors
     ///
     /// As [`Stepper::step`], and [`StepError::NonFinite`] where the gradient overflows, as it does in chaos.
-    ///
-    /// # Examples
-    ///
-    /// How the height of a top after a second depends on where it starts and on what it is made of.
-    ///
-    /// ```
-    /// use liestep::effects::{Gravity, RigidBody};
-    /// use liestep::gradients::{Cotangent, Tape};
-    /// use liestep::{NonstandardInertia, SO3, Stepper};
-    /// use liestep::groups::LieGroup as _;
-    /// use nalgebra::Vector3;
-    ///
-    /// let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0))?;
-    /// let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
-    /// let stepper = Stepper::new(RigidBody { J_d } + gravity, 0.01)?;
-    /// let linear = stepper.linearised()?;
-    /// let mut state = stepper.start_with_momentum(SO3::identity(), Vector3::new(0.3, 0.0, 48.0))?;
-    /// let gradient = linear.adjoint(&mut state, 100, Tape::All, |n, motion| {
-    ///     // w·e₃ changes by −(ζ × w)·e₃ = −ζ·(w × e₃).
-    ///     let height = Cotangent { attitude: -motion.advected().1.cross(&Vector3::z()), ..Cotangent::zero() };
-    ///     if n == 100 { height } else { Cotangent::zero() }
-    /// })?;
-    /// let mass = linear.numbers(1, "m").ok_or("no such field")?.start;
-    /// assert!(gradient.parameters[mass] != 0.0);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn adjoint(
         &self,
         state: &mut StateOf<S, P>,
@@ -236,7 +280,8 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         tape: Tape,
         mut cost: impl FnMut(u64, &Motion<Group<S>, S::Advected>) -> Cotangent<Vector<S>>,
     ) -> Result<(GradientOf<S>, Vec<InputOf<S>>), StepError> {
-        let mut given = Given { inputs, motions: Vec::new() };
+        let ends = if inputs.is_empty() { self.stepper.plan.ends() } else { 0 };
+        let mut given = Given { steps, inputs, motions: Vec::new(), before_end: None, ends };
         let mut by_inputs = Vec::with_capacity(inputs.len());
         let length = match tape {
             Tape::All => steps,
@@ -259,14 +304,15 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
             }
         }
         starts.push((made, end));
-        self.record_stretch(&mut end, made..steps, &mut given, &events)?;
-        let mut gradient = self.no_gradient();
-        let mut back = Back { cotangent: cost(steps, &end.motion), gradient: &mut gradient, values: Vec::new() };
+        dispatch(Record { linearised: self, state: &mut end, steps: made..steps, given: &mut given, events: &events })?;
+        let mut gradient = vec![real(0.0); self.stepper.plan.parameters()];
+        let mut back = Back { cotangent: Cotangent::zero(), gradient: &mut gradient, values: Vec::new() };
         let mut last = steps;
         while let Some((first, mut start)) = starts.pop() {
             if last < steps {
                 events.borrow_mut().clear();
-                self.record_stretch(&mut start, first..last, &mut given, &events)?;
+                let (state, steps) = (&mut start, first..last);
+                dispatch(Record { linearised: self, state, steps, given: &mut given, events: &events })?;
             }
             let events = events.borrow();
             dispatch(Stretch {
@@ -277,7 +323,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
                 by_inputs: &mut by_inputs,
                 back: &mut back,
                 cost: &mut cost,
-            });
+            })?;
             last = first;
         }
         let start = back.cotangent;
@@ -288,28 +334,6 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         }
         *state = end;
         Ok((gradient, by_inputs))
-    }
-
-    /// Makes these steps, and writes down their changes and, of a run with inputs, the motions before them.
-    fn record_stretch(
-        &self,
-        state: &mut StateOf<S, P>,
-        steps: Range<u64>,
-        given: &mut Given<'_, S>,
-        events: &RefCell<Vec<Change<Group<S>, S::Advected>>>,
-    ) -> Result<(), StepError> {
-        given.motions.clear();
-        for n in steps {
-            if !given.inputs.is_empty() {
-                given.motions.push(state.motion);
-            }
-            self.recorded_given(state, given.input(n), events)?;
-        }
-        Ok(())
-    }
-
-    fn no_gradient(&self) -> Vec<Scalar<S>> {
-        vec![real(0.0); self.stepper.plan.parameters()]
     }
 
     /// The gradient by a way back of steps of `−h`: no state of the way forwards is kept.
@@ -372,17 +396,17 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Backwards<'_, S, P> {
         }
         let mut now = self.inverse.adopt(&end);
         let events = RefCell::new(Vec::new());
-        let mut gradient = forwards.no_gradient();
+        let mut gradient = vec![real(0.0); forwards.stepper.plan.parameters()];
         let mut back = Back { cotangent: cost(steps, &end.motion), gradient: &mut gradient, values: Vec::new() };
         for n in (0..steps).rev() {
-            self.inverse.recorded(&mut now, &events)?;
+            self.inverse.recorded(&mut now, &events, [true; 2])?;
             let mut made = events.borrow_mut();
             // A step back undoes the stages from the last to the first.
             let after = made.iter().skip(1).map(|event| event.before).chain([now.motion]).collect::<Vec<_>>();
             for (index, (event, after)) in made.drain(..).zip(after).enumerate() {
                 let increment = Group::<S>::from_increment(&event.increment).inverse().increment();
                 let undone = Change { before: after, increment };
-                forwards.stepper.plan.visit((&forwards.stepper.scene, &self.undone), index, &undone, &mut back);
+                forwards.stepper.plan.visit((&forwards.stepper.scene, &self.undone), (index, &undone), &mut back);
             }
             back.add(&cost(n, &now.motion));
         }

@@ -4,13 +4,13 @@ use alloc::vec::Vec;
 use core::cell::RefCell;
 
 use crate::error::StepError;
-use crate::gradients::recording::Change;
+use crate::gradients::recording::ChangeOf;
 use crate::gradients::tangent::{SquareOfVector, Tangent, TangentOf, blocks_of};
-use crate::gradients::{Linearisable, Linearised};
+use crate::gradients::{Carry, Linearisable, Linearised};
 use crate::groups::{Advected as _, LieGroup as _};
 use crate::mechanics::{Effect, Group, Scalar, SecondDerivatives, Term, Vector};
 use crate::motion::{Plan, StateOf, Steerable, StepReport, Stepper};
-use crate::numbers::{Coordinates, Entries, Real, real};
+use crate::numbers::{Coordinates, Entries, Real, dispatch, real};
 
 /// What a step is given beside the state, or the derivative of a number by it: the kind is that of the input, and each
 /// scalar is the derivative by the scalar in its place.
@@ -119,13 +119,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         input: &InputOf<S>,
         tangent: &mut TangentOf<S>,
     ) -> Result<StepReport, StepError> {
-        let mut next = *state;
-        tangent.events.get_mut().clear();
-        let report = self.recorded_given(&mut next, input, &tangent.events)?;
-        tangent.is_given_values = matches!(input, Input::Values(_));
-        self.carry(tangent)?;
-        *state = next;
-        Ok(report)
+        dispatch(Carry { linearised: self, state, input, tangent })
     }
 
     /// One step with this input, and its blocks `A = ∂x⁺/∂x` and `B = ∂x⁺/∂u`. On an error the state is unchanged.
@@ -197,22 +191,24 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
 
     /// One step with this input, whose stages are written down; after an error the state may be anywhere. The bits are
     /// those of [`Stepper::step_given`].
+    #[hot]
     pub(super) fn recorded_given(
         &self,
         state: &mut StateOf<S, P>,
         input: &InputOf<S>,
-        events: &RefCell<Vec<Change<Group<S>, S::Advected>>>,
+        events: &RefCell<Vec<ChangeOf<S>>>,
+        ends: [bool; 2],
     ) -> Result<StepReport, StepError> {
         let Stepper { scene, plan } = self.stepper;
         match input {
-            Input::Free => self.stepper.recorded(state, events),
+            Input::Free => self.stepper.recorded(state, events, ends),
             Input::Force(force) => {
                 if !force.is_finite() {
                     return Err(StepError::NonFinite { what: "control force" });
                 }
                 let half = *force * self.half_step();
                 plan.push(scene, &mut state.motion, &mut state.kept, &half)?;
-                let report = self.stepper.recorded(state, events)?;
+                let report = self.stepper.recorded(state, events, ends)?;
                 plan.push(scene, &mut state.motion, &mut state.kept, &half)?;
                 if !state.motion.momentum.is_finite() {
                     return Err(StepError::NonFinite { what: "momentum after the step" });
@@ -225,7 +221,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
                 }
                 let seen = values.seen_from(&state.motion.attitude);
                 plan.see(&mut state.motion, &mut state.kept, seen);
-                let report = self.stepper.recorded(state, events)?;
+                let report = self.stepper.recorded(state, events, ends)?;
                 let own = scene.advected().seen_from(&state.motion.attitude);
                 plan.see(&mut state.motion, &mut state.kept, own);
                 Ok(report)

@@ -12,9 +12,9 @@
 //! They are asked for by the word `gradients` in a declaration; the effects of the library have it, except for the bodies
 //! of fourth and sixth order. A scene without it has nothing of this in its program. They go with a scene's own step, on
 //! any group and with forces, with compositions, and with splittings, processed ones too, whose flow is declared or exact.
-//! `cargo bench --bench gradients` has the costs of scenes' own steps. In a splitting whose symmetric body turns about its axis once a step, a
-//! step with derivatives makes its drifts twice; one of a processed splitting makes both ends of the processor, as what is
-//! differentiated is what is read.
+//! `cargo bench --bench gradients` has the costs. In a splitting whose symmetric body turns about its axis once a step, a
+//! step with derivatives makes its drifts twice. One of a processed splitting makes both ends of the processor, as what is
+//! differentiated is what is read; the adjoint makes an end where a cost is read, and none where the cost is zero.
 //!
 //! # Coordinates
 //!
@@ -44,7 +44,7 @@
 //! (tr(F J_d) I − F J_d)/h`, and the potential is in `∂_ζ` alone.
 //!
 //! Of an exact flow, whose turn is a known function of the momentum, the first line is `ε = ∂_με δμ + ∂_θε δθ`: of a symmetric
-//! body in closed form, of any other by dual numbers through its closed form.
+//! body in closed form, of any other by dual numbers through its closed form. The adjoint takes that form back in reverse.
 //!
 //! A kick in the time `t`, with the share `s` of the force gradient, is `δμ⁺ = δμ + t D_ζ τ + s δf`, where `f` is the torque
 //! of `−½ τ·J⁻¹τ`. With the derivative `D_v τ` of the torque along a velocity,
@@ -98,9 +98,10 @@ mod tangent;
 
 pub use adjoint::{Backwards, Gradient, Tape};
 pub use input::{Input, InputOf, Transition};
-pub use recording::Change;
-pub(crate) use stage::ForceGradient;
+pub(crate) use recording::MotionOf;
+pub use recording::{Change, ChangeOf};
 pub use stage::{Cotangent, FlowDerivatives, Pass, Stage};
+pub(crate) use stage::{ForceGradient, add_shares};
 pub use tangent::{Tangent, TangentOf};
 
 use alloc::vec::Vec;
@@ -110,7 +111,7 @@ use core::ops::Range;
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, SecondDerivatives};
 use crate::motion::{Declared, Plan, StateOf, Steerable, StepReport, Stepper, Summation};
-use crate::numbers::{Kernel, Vectors, dispatch};
+use crate::numbers::{Kernel, Vectors};
 use recording::Recording;
 
 /// A plan whose steps can be differentiated: some of the library's own plans.
@@ -156,10 +157,17 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> + Steerable {
         Ok(())
     }
 
-    /// How many changes a step makes.
+    /// How many changes a step makes, those of a processor at both of its ends among them.
     fn stages(&self) -> usize;
 
-    /// A step whose changes are written down: those that [`stages`](Self::stages) counts, in this order.
+    /// How many of them are those of a processor at the beginning, and as many at the end, which the beginning of the next
+    /// step undoes.
+    fn ends(&self) -> usize {
+        0
+    }
+
+    /// A step whose changes are written down: those that [`stages`](Self::stages) counts, in this order, of a processor
+    /// those at the ends that are asked for. The first step of a run has to be asked for its beginning.
     ///
     /// # Errors
     ///
@@ -170,18 +178,27 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> + Steerable {
         scene: &S,
         motion: &mut M,
         kept: &mut Self::Kept,
+        _ends: [bool; 2],
     ) -> Result<StepReport, StepError> {
         self.step(scene, motion, kept)
     }
 
+    /// Where the end of a step that ended here began: the motion inside of a processor.
+    fn before_end(&self, read: &MotionOf<S>, _kept: &Self::Kept) -> MotionOf<S> {
+        *read
+    }
+
+    /// Makes the changes of a processor at the end of a step, from there.
+    ///
+    /// # Errors
+    ///
+    /// As [`Plan::step`].
+    fn make_end<M: Summation<Group<S>, S::Advected>>(&self, _motion: &mut M) -> Result<(), StepError> {
+        Ok(())
+    }
+
     /// Shows the stage that has made the change of this number to a pass.
-    fn visit(
-        &self,
-        stages: (&S, &Self::Table),
-        index: usize,
-        event: &Change<Group<S>, S::Advected>,
-        pass: &mut impl Pass<Group<S>>,
-    );
+    fn visit(&self, stages: (&S, &Self::Table), event: (usize, &ChangeOf<S>), pass: &mut impl Pass<Group<S>>);
 }
 
 impl<S: SecondDerivatives> Linearisable<S> for Declared<S> {
@@ -194,13 +211,7 @@ impl<S: SecondDerivatives> Linearisable<S> for Declared<S> {
     }
 
     #[hot]
-    fn visit(
-        &self,
-        (scene, ()): (&S, &()),
-        _: usize,
-        event: &Change<Group<S>, S::Advected>,
-        pass: &mut impl Pass<Group<S>>,
-    ) {
+    fn visit(&self, (scene, ()): (&S, &()), (_, event): (usize, &ChangeOf<S>), pass: &mut impl Pass<Group<S>>) {
         pass.stage(&Stage::step(scene, self.step_size(), event, event.before.advected));
     }
 }
@@ -307,23 +318,6 @@ impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearised<'a, S, P> {
     pub fn step(&self, state: &mut StateOf<S, P>, tangent: &mut TangentOf<S>) -> Result<StepReport, StepError> {
         self.step_given(state, &Input::Free, tangent)
     }
-
-    /// Carries a tangent over the stages that it has written down; on an error it is unchanged.
-    fn carry(&self, tangent: &mut TangentOf<S>) -> Result<(), StepError> {
-        let Stepper { scene, plan } = self.stepper;
-        if let Some(count) = tangent.parameters() {
-            let own = plan.parameters();
-            assert_eq!(count, own, "the tangent is that of a plan with {count} parameters, and this one has {own}");
-        }
-        let events = tangent.events.take();
-        let is_finite = dispatch(Carry { plan, stages: (scene, &self.table), events: &events, tangent: &mut *tangent });
-        tangent.events.replace(events);
-        if is_finite {
-            return Ok(());
-        }
-        tangent.go_back();
-        Err(StepError::NonFinite { what: "derivative after the step" })
-    }
 }
 
 impl<S: SecondDerivatives, P: Linearisable<S>> Stepper<S, P> {
@@ -332,11 +326,12 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Stepper<S, P> {
     fn recorded(
         &self,
         state: &mut StateOf<S, P>,
-        events: &RefCell<Vec<Change<Group<S>, S::Advected>>>,
+        events: &RefCell<Vec<ChangeOf<S>>>,
+        ends: [bool; 2],
     ) -> Result<StepReport, StepError> {
         let Self { scene, plan } = self;
         let mut recorded = Recording { motion: state.motion, events };
-        match plan.record(scene, &mut recorded, &mut state.kept) {
+        match plan.record(scene, &mut recorded, &mut state.kept, ends) {
             Ok(report) => {
                 state.motion = recorded.motion;
                 Ok(report)
@@ -347,26 +342,43 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Stepper<S, P> {
     }
 }
 
-/// Carries a tangent over the stages of a step, and says whether all of it is numbers.
-struct Carry<'a, S: SecondDerivatives, P: Linearisable<S>> {
-    plan: &'a P,
-    stages: (&'a S, &'a P::Table),
-    events: &'a [Change<Group<S>, S::Advected>],
+/// A step with its input, and a tangent carried over its stages.
+struct Carry<'a, 'l, S: SecondDerivatives, P: Linearisable<S>> {
+    linearised: &'a Linearised<'l, S, P>,
+    state: &'a mut StateOf<S, P>,
+    input: &'a InputOf<S>,
     tangent: &'a mut TangentOf<S>,
 }
 
-impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Carry<'_, S, P> {
-    type Output = bool;
+impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Carry<'_, '_, S, P> {
+    type Output = Result<StepReport, StepError>;
 
     /// The columns fill registers of four.
     const VECTORS: Vectors = Vectors::Four;
 
     #[hot]
-    fn run(self) -> bool {
-        self.tangent.keep();
-        for (index, event) in self.events.iter().enumerate() {
-            self.plan.visit(self.stages, index, event, self.tangent);
+    fn run(self) -> Self::Output {
+        let Self { linearised, state, input, tangent } = self;
+        let Linearised { stepper: Stepper { scene, plan }, table } = linearised;
+        if let Some(count) = tangent.parameters() {
+            let own = plan.parameters();
+            assert_eq!(count, own, "the tangent is that of a plan with {count} parameters, and this one has {own}");
         }
-        self.tangent.is_finite()
+        let mut next = *state;
+        tangent.events.get_mut().clear();
+        let report = linearised.recorded_given(&mut next, input, &tangent.events, [true; 2])?;
+        tangent.is_given_values = matches!(input, Input::Values(_));
+        tangent.keep();
+        let events = tangent.events.take();
+        for (index, event) in events.iter().enumerate() {
+            plan.visit((scene, table), (index, event), tangent);
+        }
+        tangent.events.replace(events);
+        if !tangent.is_finite() {
+            tangent.go_back();
+            return Err(StepError::NonFinite { what: "derivative after the step" });
+        }
+        *state = next;
+        Ok(report)
     }
 }

@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 use core::cell::RefCell;
 
 use crate::groups::{Advected, LieGroup};
+use crate::mechanics::{Group, Term};
 use crate::motion::{Motion, Summation};
 use crate::numbers::zero;
 
@@ -16,6 +17,13 @@ pub struct Change<G: LieGroup, A> {
     /// `F − I`; of a push zero.
     pub(crate) increment: G::Matrix,
 }
+
+/// The type of a scene's motions.
+pub(crate) type MotionOf<S> = Motion<Group<S>, <S as Term>::Advected>;
+
+/// The type of a scene's changes.
+#[doc(hidden)]
+pub type ChangeOf<S> = Change<Group<S>, <S as Term>::Advected>;
 
 /// A motion that writes down each change; its bits are those of [`Motion`] alone.
 #[derive(Clone, Copy)]

@@ -1,6 +1,6 @@
 //! The tangent map of one stage and its transpose.
 
-use alloc::vec;
+use alloc::vec::Vec;
 
 use crate::gradients::recording::Change;
 use crate::groups::{Advected as _, LieGroup, SquareOf, seen_of_unit};
@@ -15,7 +15,8 @@ use crate::numbers::{Coordinates, Entries, Real, real, zero};
 #[derive(Clone, Copy, Debug)]
 pub struct Stage<'a, E: Effect> {
     effect: &'a E,
-    kind: Kind<Scalar<E>>,
+    /// What the stage does.
+    pub(super) kind: Kind<Scalar<E>>,
     attitude: Group<E>,
     advected: E::Advected,
     increment: Matrix<E>,
@@ -69,12 +70,6 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         Self { first, ..self }
     }
 
-    /// What the stage does.
-    #[hot]
-    pub(super) fn kind(&self) -> Kind<Scalar<E>> {
-        self.kind
-    }
-
     /// The blocks of the tangent map of a step of this length.
     #[hot]
     pub(super) fn blocks(&self, h: Scalar<E>) -> StepDerivatives<Square<E>> {
@@ -99,21 +94,6 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         slope + Vector::<E>::transpose(&rows)
     }
 
-    /// The derivatives of `μ` and `μ⁺` by the parameters, those that are carried not among them.
-    #[hot]
-    fn by_parameters(&self, visit: &mut impl FnMut(usize, Vector<E>, Vector<E>)) {
-        let h = self.length();
-        let first = self.first;
-        self.effect.by_parameters(&self.increment, &self.advected, h, &mut |number, start, end| {
-            visit(first + number, start, end);
-        });
-    }
-
-    #[hot]
-    fn by_advected(&self, visit: &mut impl FnMut(usize, Vector<E>, Vector<E>)) {
-        self.effect.by_advected(&self.increment, &self.advected, self.length(), visit);
-    }
-
     /// The step at which the derivatives are evaluated. A kick is proportional to its duration, so its derivatives are those
     /// of one second.
     #[hot]
@@ -134,8 +114,10 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     ) {
         if self.gradient.is_some() {
             for axis in (0..Group::<E>::DIMENSION).map(Vector::<E>::axis) {
-                let mut by_values =
-                    vec![real::<Scalar<E>>(0.0); if is_given_values { Self::count_values(&self.advected) } else { 0 }];
+                let mut by_values = Vec::new();
+                if is_given_values {
+                    self.advected.each(&mut |_| by_values.push(real(0.0)));
+                }
                 let add = &mut |number, share| visit(self.first + number, Vector::<E>::zero(), axis * share);
                 self.of_gradient(&axis, add, &mut by_values);
                 for (place, share) in by_values.into_iter().enumerate().take(values) {
@@ -143,9 +125,15 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
                 }
             }
         }
-        let scale = self.scale();
+        let scale = match self.kind {
+            Kind::Step(_) => real(1.0),
+            Kind::Kick(time) => time,
+        };
         let visit = &mut |number, start, end| visit(number, start * scale, end * scale);
-        self.by_parameters(visit);
+        // Those that are carried aren't among them.
+        self.effect.by_parameters(&self.increment, &self.advected, self.length(), &mut |number, start, end| {
+            visit(self.first + number, start, end);
+        });
         if !is_given_values {
             E::carried_parameters(&mut |place, parameter| {
                 let (start, end) = self.by_value(place);
@@ -158,17 +146,11 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         }
     }
 
-    fn count_values(values: &E::Advected) -> usize {
-        let mut count = 0;
-        values.each(&mut |_| count += 1);
-        count
-    }
-
     /// The derivatives of `μ` and `μ⁺` by the scalar in this place of what is advected, as it is in space.
     fn by_value(&self, place: usize) -> (Vector<E>, Vector<E>) {
         let seen: E::Advected = seen_of_unit(place, &self.attitude);
         let (mut start, mut end) = (Vector::<E>::zero(), Vector::<E>::zero());
-        self.by_advected(&mut |number, by_start, by_end| {
+        self.effect.by_advected(&self.increment, &self.advected, self.length(), &mut |number, by_start, by_end| {
             let change = entry(&seen, number);
             (start, end) = (start + by_start * change, end + by_end * change);
         });
@@ -277,14 +259,6 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
             }
         }
     }
-
-    /// The time that derivatives by parameters are multiplied by.
-    fn scale(&self) -> Scalar<E> {
-        match self.kind {
-            Kind::Step(_) => real(1.0),
-            Kind::Kick(time) => time,
-        }
-    }
 }
 
 /// The derivative of a number by the state: along `g ↦ g exp(sÊ_k)`, and by the components of the momentum.
@@ -321,10 +295,8 @@ impl<V> Cotangent<V> {
 pub struct FlowDerivatives<'a, G: LieGroup> {
     /// `∂ε/∂μ`
     pub(crate) turn_by_momentum: SquareOf<G>,
-    /// `Ad_{F⁻¹}`
+    /// `Ad_{F⁻¹}`, and `Ad*_F`: on SO(3) both are `Fᵀ`.
     pub(crate) turned_back: SquareOf<G>,
-    /// `Ad*_F`
-    pub(crate) carried: SquareOf<G>,
     /// `∂μ⁺/∂ε`, which is `Ad*_F ad*_ε μ` along `ε`.
     pub(crate) end_by_turn: SquareOf<G>,
     /// `∂ε/∂θ` by the numbers of the parameters.
@@ -342,7 +314,7 @@ impl<G: LieGroup> FlowDerivatives<'_, G> {
                 *sum += by_turn.dot(turn);
             }
         }
-        let momentum = pulled::<G>(&self.carried, &end.momentum) + pulled::<G>(&self.turn_by_momentum, &by_turn);
+        let momentum = pulled::<G>(&self.turned_back, &end.momentum) + pulled::<G>(&self.turn_by_momentum, &by_turn);
         Cotangent { attitude, momentum }
     }
 }
@@ -353,11 +325,26 @@ fn pulled<G: LieGroup>(matrix: &SquareOf<G>, a: &G::Vector) -> G::Vector {
     G::Vector::of_four(&G::Vector::map_four(&G::Vector::transpose(matrix), &G::Vector::beside(&[*a; 4])), 0)
 }
 
+/// Adds the shares of neighbours among the parameters.
+#[hot]
+pub(crate) fn add_shares<T: Real>(gradient: &mut [T], first: usize, shares: &[T]) {
+    // One check of the range, not one for each scalar.
+    let own = gradient.get_mut(first..first + shares.len()).unwrap_or_default();
+    own.iter_mut().zip(shares).for_each(|(sum, share)| *sum += *share);
+}
+
+/// A gradient by the state, and that by the parameters.
+pub(super) type WayBack<'a, G> = (&'a mut Cotangent<<G as LieGroup>::Vector>, &'a mut [<G as LieGroup>::Scalar]);
+
 /// What is done with the stages of a step, one after the other: by the derivatives of the library's own plans.
 #[doc(hidden)]
 pub trait Pass<G: LieGroup> {
     /// Whether it asks for derivatives by parameters; those of an exact flow may then be left out.
     fn asks_for_parameters(&self) -> bool;
+
+    /// Of a way back the gradient behind the stage, to be replaced by that before it, and that by the parameters, to be
+    /// added to; none of a way forwards.
+    fn on_the_way_back(&mut self) -> Option<WayBack<'_, G>>;
 
     /// Takes notice of a stage.
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>);

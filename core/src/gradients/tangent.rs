@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use core::cell::RefCell;
 
 use crate::gradients::recording::Change;
-use crate::gradients::stage::{FlowDerivatives, Kind, Pass, Stage};
+use crate::gradients::stage::{FlowDerivatives, Kind, Pass, Stage, WayBack};
 use crate::groups::LieGroup;
 use crate::mechanics::pattern_of_type;
 use crate::mechanics::{Group, SecondDerivatives, Term, Vector};
@@ -193,6 +193,11 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
     }
 
     #[hot]
+    fn on_the_way_back(&mut self) -> Option<WayBack<'_, G>> {
+        None
+    }
+
+    #[hot]
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>) {
         if !self.shares.is_empty() {
             let zero = G::Vector::zero();
@@ -205,7 +210,7 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
                 }
             });
         }
-        match stage.kind() {
+        match stage.kind {
             // Without a step nothing moves.
             Kind::Step(h) if h == real(0.0) => {}
             // `∂μ/∂ε ε = δμ − ∂μ/∂ζ ζ`, `ζ⁺ = Ad_{F⁻¹}(ζ + ε)`, `δμ⁺ = ∂μ⁺/∂ε ε + ∂μ⁺/∂ζ ζ`.
@@ -262,7 +267,7 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
             if let Some((of_parameters, _)) = shares {
                 turn = turn + of_parameters;
             }
-            let carried = G::Vector::map_four(&flown.carried, momentum);
+            let carried = G::Vector::map_four(&flown.turned_back, momentum);
             *momentum = carried + G::Vector::map_four(&flown.end_by_turn, &turn);
             *attitude = G::Vector::map_four(&flown.turned_back, &(*attitude + turn));
         }

@@ -31,6 +31,7 @@ use nalgebra::ComplexField as _;
 
 use super::link::Link;
 use crate::groups::{CayleyRetraction, Retraction, SO3};
+use crate::numbers::adjugate_3;
 
 /// What a link is, as a step takes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,11 +141,13 @@ pub(super) fn newton(links: &[LinkConstants], work: &mut [Work], longest: f64) -
         let dj = work.increment * link.nonstandard;
         let own = inertia(&(dj + link.nonstandard));
         let (turned_rho, turned_mc) = (link.rho + work.of_rho, link.mc + work.of_mc);
-        let g = cross_columns(&link.rho, &mass);
+        let g = Matrix3::from_columns(&[0, 1, 2].map(|k| link.rho.cross(&mass.column(k))));
         let b = own - cross_rows(&g, &turned_rho);
         let g = add_hat(&g, &link.mc);
         let h = add_hat(&cross_rows(&mass, &turned_rho), &turned_mc);
-        let (inverse, determinant) = inverted(&b);
+        // By Cramer's rule; where the determinant is zero nothing is finite.
+        let (adjugate, determinant) = adjugate_3(&b);
+        let inverse = adjugate * (1.0 / determinant);
         let g = inverse * g;
         let t = inverse * (link.rho.cross(&q) + work.residual(link, &dj, &beyond));
         mass += h * g;
@@ -228,47 +231,15 @@ fn inertia(nonstandard: &Matrix3<f64>) -> Matrix3<f64> {
     Matrix3::from_diagonal_element(nonstandard.trace()) - nonstandard
 }
 
-/// `â M`.
-#[hot]
-fn cross_columns(a: &Vector3<f64>, m: &Matrix3<f64>) -> Matrix3<f64> {
-    Matrix3::new(
-        a.y * m.m31 - a.z * m.m21,
-        a.y * m.m32 - a.z * m.m22,
-        a.y * m.m33 - a.z * m.m23,
-        a.z * m.m11 - a.x * m.m31,
-        a.z * m.m12 - a.x * m.m32,
-        a.z * m.m13 - a.x * m.m33,
-        a.x * m.m21 - a.y * m.m11,
-        a.x * m.m22 - a.y * m.m12,
-        a.x * m.m23 - a.y * m.m13,
-    )
-}
-
 /// `M â`: each row times `a`.
 #[hot]
 fn cross_rows(m: &Matrix3<f64>, a: &Vector3<f64>) -> Matrix3<f64> {
-    Matrix3::new(
-        m.m12 * a.z - m.m13 * a.y,
-        m.m13 * a.x - m.m11 * a.z,
-        m.m11 * a.y - m.m12 * a.x,
-        m.m22 * a.z - m.m23 * a.y,
-        m.m23 * a.x - m.m21 * a.z,
-        m.m21 * a.y - m.m22 * a.x,
-        m.m32 * a.z - m.m33 * a.y,
-        m.m33 * a.x - m.m31 * a.z,
-        m.m31 * a.y - m.m32 * a.x,
-    )
+    let [x, y, z] = [0, 1, 2].map(|k| m.column(k).into_owned());
+    Matrix3::from_columns(&[y * a.z - z * a.y, z * a.x - x * a.z, x * a.y - y * a.x])
 }
 
 /// `M + â`.
 #[hot]
 fn add_hat(m: &Matrix3<f64>, a: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(m.m11, m.m12 - a.z, m.m13 + a.y, m.m21 + a.z, m.m22, m.m23 - a.x, m.m31 - a.y, m.m32 + a.x, m.m33)
-}
-
-/// The inverse, by Cramer's rule, and the determinant. Where it is zero nothing is finite.
-#[hot]
-fn inverted(m: &Matrix3<f64>) -> (Matrix3<f64>, f64) {
-    let (adjugate, determinant) = crate::numbers::adjugate_3(m);
-    (adjugate * (1.0 / determinant), determinant)
 }

@@ -7,7 +7,7 @@ pub use scheme::CompositionScheme;
 use alloc::vec::Vec;
 
 use crate::error::{SetupError, StepError};
-use crate::gradients::{Change, Linearisable, Pass, Stage as Linear};
+use crate::gradients::{ChangeOf, Linearisable, Pass, Stage as Linear};
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Regular, Scalar, SceneVisitor, SecondDerivatives, Vector};
 use crate::motion::{
     Cost, Declared, Motion, Plan, Steerable, StepReport, Stepper, Summation, Variable, beyond_solvable,
@@ -222,13 +222,7 @@ impl<S: SecondDerivatives> Linearisable<S> for Composed<S> {
     }
 
     #[hot]
-    fn visit(
-        &self,
-        (scene, ()): (&S, &()),
-        index: usize,
-        event: &Change<Group<S>, S::Advected>,
-        pass: &mut impl Pass<Group<S>>,
-    ) {
+    fn visit(&self, (scene, ()): (&S, &()), (index, event): (usize, &ChangeOf<S>), pass: &mut impl Pass<Group<S>>) {
         if let Some(substep) = self.stages.get(index).and_then(|stage| self.substeps.get(stage.substep)) {
             pass.stage(&Linear::step(scene, substep.step_size(), event, event.before.advected));
         }

@@ -8,12 +8,16 @@ use core::fmt::Debug;
 use nalgebra::{Matrix3, Vector3};
 
 use super::kinetic_flow::SymmetricBody;
-use super::{Flow, KineticFlow, Length, Split, StagesOf};
+use super::{Flow, KineticFlow, Length, Split};
 use crate::error::{SetupError, StepError};
-use crate::gradients::{Change, FlowDerivatives, ForceGradient, Linearisable, Pass, Stage};
+use crate::gradients::{
+    Change, ChangeOf, Cotangent, FlowDerivatives, ForceGradient, Linearisable, Pass, Stage, add_shares,
+};
 use crate::groups::SO3;
 use crate::groups::rotation_functions::stumpff;
-use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor, SecondDerivatives};
+use crate::mechanics::{
+    DiscreteLagrangian, Effect, Group, Regular, RigidScene, Scalar, SceneVisitor, SecondDerivatives,
+};
 use crate::motion::{Plan, StepReport, Summation};
 use crate::numbers::{Real, real};
 
@@ -43,15 +47,17 @@ pub trait DifferentiableFlow<T: Real>: KineticFlow<T> {
     /// Those of this length, s.
     fn slopes(flow: &Self, time: T) -> Self::Slopes;
 
-    /// Shows a pass what the flow did in this time, s. Its parameters are numbered from `first_parameter` on, among those
-    /// of the splitting.
-    fn visit<A>(
-        flow: &Self,
-        drift: (T, &Self::Slopes),
-        event: &Change<SO3<T>, A>,
-        first_parameter: usize,
-        pass: &mut impl Pass<SO3<T>>,
-    );
+    /// Shows it to a pass.
+    fn visit<A>(flow: &Self, drift: &Drifted<'_, T, Self::Slopes, A>, pass: &mut impl Pass<SO3<T>>);
+}
+
+/// What a flow did in a time, s. Its parameters are numbered from `first` on, among those of the splitting.
+#[doc(hidden)]
+pub struct Drifted<'a, T: Real, D, A> {
+    pub(super) time: T,
+    pub(super) slopes: &'a D,
+    pub(super) event: &'a Change<SO3<T>, A>,
+    pub(super) first: usize,
 }
 
 impl<T: Real, L> DifferentiableFlow<T> for L
@@ -69,14 +75,8 @@ where
     }
 
     #[hot]
-    fn visit<A>(
-        flow: &Self,
-        (time, ()): (T, &()),
-        event: &Change<SO3<T>, A>,
-        first_parameter: usize,
-        pass: &mut impl Pass<SO3<T>>,
-    ) {
-        pass.stage(&Stage::step(flow, time, event, ()).behind(first_parameter));
+    fn visit<A>(flow: &Self, drift: &Drifted<'_, T, (), A>, pass: &mut impl Pass<SO3<T>>) {
+        pass.stage(&Stage::step(flow, drift.time, drift.event, ()).behind(drift.first));
     }
 }
 
@@ -97,30 +97,47 @@ impl<T: Real> DifferentiableFlow<T> for SymmetricBody<T> {
     }
 
     #[hot]
-    fn visit<A>(
-        flow: &Self,
-        (time, ()): (T, &()),
-        event: &Change<SO3<T>, A>,
-        first_parameter: usize,
-        pass: &mut impl Pass<SO3<T>>,
-    ) {
-        let (transverse, axial) = Self::moments(flow);
+    fn visit<A>(flow: &Self, drift: &Drifted<'_, T, (), A>, pass: &mut impl Pass<SO3<T>>) {
+        let (&Drifted { time, event, first, .. }, (transverse, axial)) = (drift, Self::moments(flow));
         let (momentum, increment) = (event.before.momentum, event.increment);
         let t = time / transverse;
         let s = t * ((axial - transverse) / axial);
         // The second factor turns about the third axis.
         let axis: Vector3<T> = increment.column(2) + Vector3::z();
         let x = momentum * t;
-        let (q, hat) = (x.norm_squared(), x.cross_matrix());
+        let q = x.norm_squared();
+        if let Some((end, gradient)) = pass.on_the_way_back() {
+            let (before, by_turn) = before_turn(&increment, &momentum, end);
+            let (across, along) = (x.cross(&by_turn), axis.dot(&by_turn));
+            let of_direction = by_turn - across * stumpff::<T, 2>(q) + x.cross(&across) * stumpff::<T, 3>(q);
+            let by_momentum = of_direction * t - Vector3::z() * (along * s);
+            *end = Cotangent { momentum: before.momentum + by_momentum, ..before };
+            let spin = along * momentum.z;
+            let by_transverse = (spin - momentum.dot(&by_turn)) * (t / transverse);
+            return add_shares(gradient, first, &[by_transverse, -(spin * (time / (axial * axial)))]);
+        }
+        let hat = x.cross_matrix();
         let of_direction = (Matrix3::identity() + hat * stumpff::<T, 2>(q) + hat * hat * stumpff::<T, 3>(q)) * t;
         let turn_by_momentum = of_direction - Matrix3::from_columns(&[Vector3::zeros(), Vector3::zeros(), axis * s]);
         // Along p itself dexp is one.
         let spin = axis * momentum.z;
         let by_transverse = (spin - momentum) * (t / transverse);
         let by_axial = spin * -(time / (axial * axial));
-        let by_parameters = [(first_parameter, by_transverse), (first_parameter + 1, by_axial)];
+        let by_parameters = [(first, by_transverse), (first + 1, by_axial)];
         pass.flown(&flown(turn_by_momentum, &increment, &momentum, &by_parameters));
     }
+}
+
+/// The gradient before a turn, `F z` and `F p`, but for what the turn itself has in it, and that by the turn,
+/// `F z − μ × F p`; the turn is one by `F = I + D` of a body with the momentum `μ` before it.
+#[hot]
+pub(super) fn before_turn<T: Real>(
+    increment: &Matrix3<T>,
+    momentum: &Vector3<T>,
+    end: &Cotangent<Vector3<T>>,
+) -> (Cotangent<Vector3<T>>, Vector3<T>) {
+    let [attitude, carried] = [end.attitude, end.momentum].map(|part| part + increment * part);
+    (Cotangent { attitude, momentum: carried }, attitude - momentum.cross(&carried))
 }
 
 /// A turn by `F`, whose increment this is, of a body with this momentum before it.
@@ -133,7 +150,7 @@ pub(super) fn flown<'a, T: Real>(
 ) -> FlowDerivatives<'a, SO3<T>> {
     let turned_back = (increment + Matrix3::identity()).transpose();
     let end_by_turn = turned_back * momentum.cross_matrix();
-    FlowDerivatives { turn_by_momentum, turned_back, carried: turned_back, end_by_turn, by_parameters }
+    FlowDerivatives { turn_by_momentum, turned_back, end_by_turn, by_parameters }
 }
 
 impl<S, K> Linearisable<S> for Split<S, K>
@@ -173,24 +190,28 @@ where
         scene: &S,
         motion: &mut M,
         kept: &mut (),
+        _ends: [bool; 2],
     ) -> Result<StepReport, StepError> {
         if self.spin.is_none() {
             return self.step(scene, motion, kept);
         }
-        self.record_beside((self, kept), scene, motion, (*motion, [&self.first, &self.last]))
+        let mut whole = *motion;
+        for shares in [&self.first, &self.last] {
+            self.make_all::<true, M>(shares, &mut whole, &mut 0)?;
+        }
+        let mut plain = *motion.now();
+        let report = self.step(scene, &mut plain, kept)?;
+        motion.replace(plain);
+        Ok(report)
     }
 
     #[hot]
-    fn visit(
-        &self,
-        (scene, table): (&S, &Self::Table),
-        index: usize,
-        event: &Change<SO3<Scalar<S>>, S::Advected>,
-        pass: &mut impl Pass<SO3<Scalar<S>>>,
-    ) {
+    fn visit(&self, stages: (&S, &Self::Table), event: (usize, &ChangeOf<S>), pass: &mut impl Pass<Group<S>>) {
+        let ((scene, table), (index, event)) = (stages, event);
         let Some((length, slopes)) = table.0.get(index) else { return };
         if let Some(slopes) = slopes {
-            return K::visit(&self.kinetic, (length.time, slopes), event, S::PARAMETERS, pass);
+            let drift = Drifted { time: length.time, slopes, event, first: S::PARAMETERS };
+            return K::visit(&self.kinetic, &drift, pass);
         }
         let (torque, inverse_inertia) = (&self.torque, &self.inverse_inertia);
         let gradient = length.gradient.map(|share| ForceGradient { share, torque, inverse_inertia });
@@ -203,25 +224,6 @@ where
     S: RigidScene + SecondDerivatives,
     K: DifferentiableFlow<Scalar<S>>,
 {
-    /// A step of a plan of these drifts and kicks, beside the changes that it is made of: these shares one after another,
-    /// from a copy of the motion.
-    #[hot]
-    pub(super) fn record_beside<P: Plan<S>, M: Summation<SO3<Scalar<S>>, S::Advected>>(
-        &self,
-        (plan, kept): (&P, &mut P::Kept),
-        scene: &S,
-        motion: &mut M,
-        (mut whole, shares): (M, [&StagesOf<S, K>; 2]),
-    ) -> Result<StepReport, StepError> {
-        for shares in shares {
-            self.make_all::<true, M>(shares, &mut whole, &mut 0)?;
-        }
-        let mut plain = *motion.now();
-        let report = plan.step(scene, &mut plain, kept)?;
-        motion.replace(plain);
-        Ok(report)
-    }
-
     /// Whether the derivatives of force gradients are known.
     pub(super) fn check_gradients(scene: &S) -> Result<(), SetupError> {
         let (w, zero) = (scene.advected(), Vector3::repeat(real(0.0)));

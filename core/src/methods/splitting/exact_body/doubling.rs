@@ -20,7 +20,7 @@ use nalgebra::SimdBool as _;
 
 use super::super::quaternion::product;
 use super::series::{Functions, Invariants, LONG, long};
-use super::{BodyTurn, Form, rotor};
+use super::{BodyTurn, Form, rotor_and_more};
 use crate::numbers::Number;
 
 /// Enough for any angle of a double that has a digit of its direction left.
@@ -75,7 +75,7 @@ impl<T: Number> Form<T> {
         let epsilon = T::simd_default_epsilon();
         let part = part.select((size * epsilon * epsilon).simd_lt(one), T::number(f64::NAN));
         let reduced = invariants.scaled(part);
-        let Functions { n, integral, .. } = long(&reduced);
+        let Functions { n, integral, .. } = long(&reduced.start());
         let square = one / n;
         let [of_c, of_d] = [reduced.kb, reduced.ka].map(|k| (one - k * square).simd_sqrt());
         let mut point = Point { s: root * square.simd_sqrt(), c: of_c, d: of_d };
@@ -102,7 +102,7 @@ impl<T: Number> Form<T> {
             (one + self.c_squared * (c * c_end) * (s * s)) * (of_c * of_d * T::number(2.0)) / curve.base(&point);
         let across = [real_part, s * self.a * (a + a_end), s * self.b * (b + b_end)];
         let more = curve.bend * part * integral;
-        let turn = rotor([a + a * more, b + b * more, c + c * more]);
+        let turn = rotor_and_more([a + a * more, b + b * more, c + c * more], T::zero());
         BodyTurn::by(product(turn, [about.w, about.f * a, about.f * b, about.f * c]), across)
     }
 

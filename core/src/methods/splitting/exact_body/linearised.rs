@@ -1,4 +1,5 @@
-//! How the exact motion of a body depends on its momentum and on its inertia: by dual numbers through the closed form.
+//! How the exact motion of a body depends on its momentum and on its inertia: forwards, and over long drifts, by dual
+//! numbers through the closed form, and backwards [in reverse](super::reverse).
 //!
 //! The derivatives of elliptic functions by their invariants are quotients that vanish above and below for symmetric
 //! bodies and at the separatrix. The closed form has no such place, and its derivative hasn't either.
@@ -9,17 +10,17 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::super::linearised::{DifferentiableFlow, flown};
+use super::super::linearised::{DifferentiableFlow, Drifted, before_turn, flown};
 use super::super::quaternion::product;
 use super::{ExactBody, Form};
-use crate::gradients::{Change, Pass};
+use crate::gradients::{Cotangent, Pass, add_shares};
 use crate::groups::SO3;
 use crate::mechanics::SceneVisitor;
 use crate::numbers::{Dual, Real};
 
-/// The closed form of a motion of one length: at fixed moments, and along each of them.
+/// The closed form of a motion of one length; with derivatives, at fixed moments and along each of them.
 #[derive(Clone, Debug)]
-pub struct Forms<T>([Form<Dual<T>>; 2]);
+pub struct Forms<T>(Form<T>, [Form<Dual<T>>; 2]);
 
 /// The parameters are those of the docs of [`ExactBody`], under "Derivatives".
 impl<T: Real> DifferentiableFlow<T> for ExactBody<T> {
@@ -30,7 +31,7 @@ impl<T: Real> DifferentiableFlow<T> for ExactBody<T> {
     fn slopes(flow: &Self, time: T) -> Self::Slopes {
         let moments = flow.moments.0;
         let both = [moments.map(Dual::constant), core::array::from_fn(|k| Dual::along(moments[k], k))];
-        Forms(both.map(|moments| Form::of(moments, Dual::constant(time))))
+        Forms(Form::of(moments, time), both.map(|moments| Form::of(moments, Dual::constant(time))))
     }
 
     fn describe_parameters(flow: &Self, visitor: &mut dyn SceneVisitor<T>) {
@@ -45,14 +46,15 @@ impl<T: Real> DifferentiableFlow<T> for ExactBody<T> {
     }
 
     #[hot]
-    fn visit<A>(
-        flow: &Self,
-        (_, Forms([fixed, varied])): (T, &Forms<T>),
-        event: &Change<SO3<T>, A>,
-        first_parameter: usize,
-        pass: &mut impl Pass<SO3<T>>,
-    ) {
+    fn visit<A>(flow: &Self, drift: &Drifted<'_, T, Forms<T>, A>, pass: &mut impl Pass<SO3<T>>) {
+        let (&Drifted { event, first, .. }, Forms(form, [fixed, varied])) = (drift, drift.slopes);
         let (momentum, increment) = (event.before.momentum, event.increment);
+        if let Some((end, gradient)) = pass.on_the_way_back()
+            && let Some((before, shares)) = flow.pulled(form, (&momentum, &increment), end)
+        {
+            *end = before;
+            return add_shares(gradient, first, &shares);
+        }
         let along = flow.frame.within(&momentum);
         let turns = flow.turns(fixed, |k| fixed.scale * Dual::along(along[k], k));
         let inward = |k: usize| flow.frame.within(&Matrix3::identity().column(k).into_owned());
@@ -65,14 +67,37 @@ impl<T: Real> DifferentiableFlow<T> for ExactBody<T> {
         // F(R J Rᵀ, p) = R F(J, Rᵀ p) Rᵀ.
         let by_axes = turn_by_momentum * momentum.cross_matrix() - increment;
         let places = flow.frame.places();
-        let moment = |k: usize| (first_parameter + places[k], by_moments[k]);
-        let axis = |k: usize| (first_parameter + 3 + k, by_axes.column(k).into_owned());
+        let moment = |k: usize| (first + places[k], by_moments[k]);
+        let axis = |k: usize| (first + 3 + k, by_axes.column(k).into_owned());
         let by_parameters = [moment(0), moment(1), moment(2), axis(0), axis(1), axis(2)];
         pass.flown(&flown(turn_by_momentum, &increment, &momentum, &by_parameters));
     }
 }
 
 impl<T: Real> ExactBody<T> {
+    /// The gradient before a drift by that behind it, and the parameters' shares; none of a longer drift.
+    #[hot]
+    fn pulled(
+        &self,
+        form: &Form<T>,
+        (momentum, increment): (&Vector3<T>, &Matrix3<T>),
+        end: &Cotangent<Vector3<T>>,
+    ) -> Option<(Cotangent<Vector3<T>>, [T; 6])> {
+        let along = self.frame.within(momentum);
+        let (before, by_turn) = before_turn(increment, momentum, end);
+        let (by_u, [by_a, by_b]) = form.reversed(along.map(|part| part * form.scale), self.frame.within(&by_turn))?;
+        let [_, x, y, z] = self.frame.back([T::zero(), by_u[0], by_u[1], by_u[2]]);
+        let by_momentum = Vector3::new(x, y, z) * form.scale;
+        let axes = by_momentum.cross(momentum) - increment.tr_mul(&by_turn);
+        let over = self.moments.0.map(|moment| T::one() / moment);
+        let [by_a, by_b, by_scale] = [by_a * over[0], by_b * over[1], momentum.dot(&by_momentum) * over[2]];
+        let of_moments = [-(by_a + by_a * form.a), -(by_b + by_b * form.b), (by_a + by_b) - by_scale];
+        let mut shares = [axes.x; 6];
+        self.frame.places().into_iter().zip(of_moments).for_each(|(place, share)| shares[place] = share);
+        shares[3..].copy_from_slice(axes.as_slice());
+        Some((Cotangent { momentum: before.momentum + by_momentum, ..before }, shares))
+    }
+
     /// The turns `ε`, `δF = ε̂ F`, along three directions, in the body's axes.
     #[hot]
     fn turns(&self, form: &Form<Dual<T>>, u: impl Fn(usize) -> Dual<T>) -> [Vector3<T>; 3] {

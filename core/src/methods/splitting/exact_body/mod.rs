@@ -32,6 +32,7 @@
 mod doubling;
 mod frame;
 mod linearised;
+mod reverse;
 mod series;
 
 use nalgebra::{Matrix3, SimdBool as _, Vector3};
@@ -238,9 +239,9 @@ impl<T: Number> Form<T> {
         let size = invariants.size();
         let (is_short, is_long) = (size.simd_le(T::number(SHORT)), size.simd_le(T::number(LONG)));
         if is_short.all() {
-            self.whole(u, &invariants, &self.near(u, &short(&invariants)))
+            self.whole(u, &invariants, &self.near(u, &short(&invariants.start())))
         } else if !is_short.any() && is_long.all() {
-            self.whole(u, &invariants, &self.near(u, &long(&invariants)))
+            self.whole(u, &invariants, &self.near(u, &long(&invariants.start())))
         } else {
             self.beyond(u, &invariants)
         }
@@ -289,7 +290,7 @@ impl<T: Number> Form<T> {
         let bend = -(self.c_squared * difference);
         let mut root = k([1.0, 0.5, 0.25][DOUBLINGS]);
         let mut part = root * root;
-        let Functions { mut n, mut mu, integral } = long(&invariants.scaled(part));
+        let Functions { mut n, mut mu, integral } = long(&invariants.scaled(part).start());
         let more = bend * part * integral;
         // Quaternions (w, f u) along the momentum.
         let (mut w, mut f) = (T::one(), T::zero());
@@ -350,10 +351,10 @@ impl<T: Number> Kernel for Beyond<'_, T> {
             half = form.farther::<1>(u, invariants).select(is_far, &half);
         }
         if (is_long & !is_short).any() {
-            half = form.near(u, &long(invariants)).select(is_long, &half);
+            half = form.near(u, &long(&invariants.start())).select(is_long, &half);
         }
         if is_short.any() {
-            half = form.near(u, &short(invariants)).select(is_short, &half);
+            half = form.near(u, &short(&invariants.start())).select(is_short, &half);
         }
         let turned = form.whole(u, invariants, &half);
         if is_farther.all() { turned } else { turned.select(is_farther, &form.doubled(u, invariants)) }
@@ -387,14 +388,6 @@ fn turn_and_more<T: Number>(q: T, more: T) -> [T; 2] {
 #[hot]
 fn dot<T: Number>([a, b, c]: [T; 3]) -> T {
     (a * a + b * b) + c * c
-}
-
-/// `exp(2v̂)` as a quaternion.
-#[hot]
-fn rotor<T: Number>([x, y, z]: [T; 3]) -> Quaternion<T> {
-    let q = dot([x, y, z]);
-    let (sinc, versine) = rotation_coefficients(q);
-    [T::one() - q * versine, sinc * x, sinc * y, sinc * z]
 }
 
 /// A rotation by a quaternion of any length.

@@ -20,6 +20,18 @@ impl<T: Number> Invariants<T> {
         self.kb.simd_max(self.ka)
     }
 
+    /// What the polynomials are in.
+    #[hot]
+    pub(super) fn start(&self) -> Start<T> {
+        let Self { kb, ka, apart, pole } = *self;
+        let (k, sum) = (T::number, kb + ka);
+        let x = (apart * apart) * k(1.0 / 15.0) + (kb * ka) * k(1.0 / 15.0);
+        // Three times K_b − e and K_a − e.
+        let y = (sum * k(-1.0 / 189.0)) * ((kb + apart) * (ka - apart));
+        let e = sum * k(1.0 / 3.0);
+        Start { e, x, y, c: e - pole }
+    }
+
     /// Over another time, by the square of the ratio.
     pub(super) fn scaled(&self, part: T) -> Self {
         Self { kb: self.kb * part, ka: self.ka * part, apart: self.apart * part, pole: self.pole * part }
@@ -45,9 +57,9 @@ pub(super) const LONG: f64 = 0.05;
 
 /// With `℘` to its fifth coefficient and the integral to its fifth; terms that are far below a rounding are left out.
 #[hot]
-pub(super) fn short<T: Number>(invariants: &Invariants<T>) -> Functions<T> {
+pub(super) fn short<T: Number>(start: &Start<T>) -> Functions<T> {
     let k = T::number;
-    let Start { e, x, y, c } = start(invariants);
+    let Start { e, x, y, c } = *start;
     let (w4, w5) = (x * x * k(1.0 / 3.0), x * y * k(3.0 / 11.0));
     let n = ((T::one() + e) + (x + y)) + (w4 + w5);
     let mu = (T::one() - (x + (y + y))) - (w4 * k(3.0) + w5 * k(4.0));
@@ -63,9 +75,9 @@ pub(super) fn short<T: Number>(invariants: &Invariants<T>) -> Functions<T> {
 
 /// With `℘` to its ninth coefficient and the integral to its eighth, likewise.
 #[hot]
-pub(super) fn long<T: Number>(invariants: &Invariants<T>) -> Functions<T> {
+pub(super) fn long<T: Number>(start: &Start<T>) -> Functions<T> {
     let k = T::number;
-    let Start { e, x, y, c } = start(invariants);
+    let Start { e, x, y, c } = *start;
     let (xx, yy, xy) = (x * x, y * y, x * y);
     let (w4, w5) = (xx * k(1.0 / 3.0), xy * k(3.0 / 11.0));
     let (w6, w7) = (x * xx * k(2.0 / 39.0) + yy * k(1.0 / 13.0), x * xy * k(2.0 / 33.0));
@@ -95,20 +107,10 @@ pub(super) fn long<T: Number>(invariants: &Invariants<T>) -> Functions<T> {
 
 /// What the polynomials are in: the mean `e` of the three roots, and the first coefficients `x` and `y` of `℘` and `c` of
 /// the integral.
-struct Start<T> {
-    e: T,
-    x: T,
-    y: T,
-    c: T,
-}
-
-#[hot]
-fn start<T: Number>(invariants: &Invariants<T>) -> Start<T> {
-    let Invariants { kb, ka, apart, pole } = *invariants;
-    let (k, sum) = (T::number, kb + ka);
-    let x = (apart * apart) * k(1.0 / 15.0) + (kb * ka) * k(1.0 / 15.0);
-    // Three times K_b − e and K_a − e.
-    let y = (sum * k(-1.0 / 189.0)) * ((kb + apart) * (ka - apart));
-    let e = sum * k(1.0 / 3.0);
-    Start { e, x, y, c: e - pole }
+#[derive(Clone, Copy)]
+pub(super) struct Start<T> {
+    pub(super) e: T,
+    pub(super) x: T,
+    pub(super) y: T,
+    pub(super) c: T,
 }

@@ -1,16 +1,17 @@
 //! The derivatives of a processed splitting's steps: those of the way in, of the kernel's step and of the way out.
 //!
-//! A run is `χ Kⁿ χ⁻¹`, and its derivative between two states that are read is that of `χ K χ⁻¹` for each step. The inside
-//! is where the run has it, the way to there is made from what is read, and parts from it by a rounding.
+//! A run is `χ Kⁿ χ⁻¹`. The tangent map, which is read after each step, is that of `χ K χ⁻¹` for each: the inside is where
+//! the run has it, the way to there is made from what is read, and parts from it by a rounding. The adjoint goes back
+//! through all `K` inside, and through `χ` only from states that a cost is read from.
 
 use super::super::Length;
 use super::super::linearised::{DifferentiableFlow, Table};
 use super::{Part, Processed};
 use crate::error::{SetupError, StepError};
-use crate::gradients::{Change, Linearisable, Pass};
+use crate::gradients::{ChangeOf, Linearisable, MotionOf, Pass};
 use crate::groups::SO3;
-use crate::mechanics::{RigidScene, Scalar, SceneVisitor, SecondDerivatives};
-use crate::motion::{StepReport, Summation};
+use crate::mechanics::{Group, RigidScene, Scalar, SceneVisitor, SecondDerivatives};
+use crate::motion::{Plan as _, StepReport, Summation};
 use nalgebra::SimdComplexField as _;
 
 impl<S, K> Linearisable<S> for Processed<S, K>
@@ -48,31 +49,43 @@ where
         2 * self.parts.len() + self.changes_of_kernel()
     }
 
-    /// The way in is made anew in each step, for its derivatives alone.
+    fn ends(&self) -> usize {
+        self.parts.len()
+    }
+
+    /// Between two steps the way in is made for its derivatives alone, and so is that out again.
     #[hot]
     fn record<M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
         scene: &S,
         motion: &mut M,
         kept: &mut Self::Kept,
+        [begins, ends]: [bool; 2],
     ) -> Result<StepReport, StepError> {
-        let mut whole = *motion;
-        self.kernel.make_all::<true, M>(&self.enter, &mut whole, &mut 0)?;
-        if let Some(inside) = self.inside(kept) {
-            whole.replace(inside.after(motion.now().steps));
+        if begins && self.inside(kept).is_some() {
+            self.kernel.make_all::<true, M>(&self.enter, &mut { *motion }, &mut 0)?;
         }
-        self.kernel.record_beside((self, kept), scene, motion, (whole, [&self.kernel.step, &self.leave]))
+        let report = self.step(scene, motion, kept)?;
+        if ends {
+            let mut out = *motion;
+            out.show(self.before_end(motion.now(), kept));
+            self.make_end(&mut out)?;
+        }
+        Ok(report)
+    }
+
+    fn before_end(&self, read: &MotionOf<S>, kept: &Self::Kept) -> MotionOf<S> {
+        kept.0.map_or(*read, |inside| inside.after(read.steps))
     }
 
     #[hot]
-    fn visit(
-        &self,
-        stages: (&S, &Self::Table),
-        index: usize,
-        event: &Change<SO3<Scalar<S>>, S::Advected>,
-        pass: &mut impl Pass<SO3<Scalar<S>>>,
-    ) {
-        self.kernel.visit(stages, index, event, pass);
+    fn make_end<M: Summation<SO3<Scalar<S>>, S::Advected>>(&self, motion: &mut M) -> Result<(), StepError> {
+        self.kernel.make_all::<true, M>(&self.leave, motion, &mut 0)
+    }
+
+    #[hot]
+    fn visit(&self, stages: (&S, &Self::Table), event: (usize, &ChangeOf<S>), pass: &mut impl Pass<Group<S>>) {
+        self.kernel.visit(stages, event, pass);
     }
 }
 
