@@ -187,7 +187,7 @@ pub enum SetupError {
     NoForceGradient,
     /// A splitting with force gradients can't be linearised: a term has no `kick_gradient`.
     #[error(
-        "the derivatives of a term of the scene were written without `kick_gradient`, so those of its force gradient aren't known; choose a scheme without them, or write it"
+        "the derivatives of a term of the scene aren't known: they were written without `kick_gradient`, which a force gradient asks for, or read from a text without `gradients`; choose another scheme, or write it"
     )]
     NoSecondDerivatives,
     /// The scene has another step of `−h` than the inverse of its step of `h`.

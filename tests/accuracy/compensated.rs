@@ -142,22 +142,6 @@ fn t4_tiny_steps() {
     assert!(error < 5e-16, "{error:e}");
 }
 
-/// The map is the same: over a short time the two differ by roundings.
-#[test]
-fn t3_compensation_changes_nothing_but_rounding() {
-    let stepper = Stepper::new(HeavyTop::asymmetric(), 0.01).unwrap();
-    let start = stepper.start(SO3::identity(), Vector3::new(0.5, 2.0, 3.0)).unwrap();
-    let carrying = stepper.clone().compensated();
-    let (mut plain, mut kept) = (start, carrying.adopt(&start));
-    for _ in 0..100 {
-        assert_eq!(stepper.step(&mut plain), carrying.step(&mut kept));
-    }
-    assert!(relative(&kept.momentum(), &plain.momentum()) < 1e-14);
-    assert!(relative(&kept.advected(), &plain.advected()) < 1e-14);
-    assert!(relative(&kept.attitude().matrix(), &plain.attitude().matrix()) < 1e-14);
-    assert_eq!(kept.steps(), plain.steps());
-}
-
 fn compensated(top: HeavyTop, h: f64) -> Stepper<HeavyTop, Compensated<Declared<HeavyTop>>> {
     Stepper::new(top, h).unwrap().compensated()
 }

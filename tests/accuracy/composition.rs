@@ -1,13 +1,11 @@
 //! Symmetric compositions of declared Lagrangians.
 
+use checks::order::{TOPS, assert_order, counts, end};
 use declarations::{FourthOrderTop, FreeBody, Motion, SixthOrderTop, Top as _};
-use liestep::mechanics::{DiscreteLagrangian, Regular};
 use liestep::methods::CompositionScheme;
 use liestep::prelude::*;
 use nalgebra::Vector3;
-use workbench::measure::relative;
 
-use crate::convergence::{End, TOPS, assert_order, counts};
 use crate::many_digits::heavy_top::Top;
 use crate::many_digits::{self, DoubleDouble};
 
@@ -17,18 +15,6 @@ const SCHEMES: [CompositionScheme; 4] = [
     CompositionScheme::KAHAN_LI_8,
     CompositionScheme::SOFRONIOU_SPALETTA_10,
 ];
-
-fn end<L>(lagrangian: L, scheme: CompositionScheme, motion: &Motion, h: f64, steps: u32) -> End
-where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + Clone,
-{
-    let composed = Stepper::composed(lagrangian, h, scheme).unwrap();
-    let mut state = composed.start(motion.attitude, motion.velocity).unwrap();
-    for _ in 0..steps {
-        composed.step(&mut state).unwrap();
-    }
-    (state.attitude(), composed.velocity(&state))
-}
 
 /// In a double the errors fall faster than their order until rounding shows.
 #[test]
@@ -48,7 +34,7 @@ fn sofroniou_spaletta_10_is_of_order_10() {
             (name, 10.0),
             (coarsest / 2, &counts(coarsest, 1.4, 5)),
             run,
-            |motion, h, steps| end(motion.top.clone(), scheme, motion, h, steps),
+            |motion, h, steps| end(&Stepper::composed(motion.top.clone(), h, scheme).unwrap(), motion, steps),
         );
     }
 }
@@ -57,7 +43,7 @@ fn sofroniou_spaletta_10_is_of_order_10() {
 fn suzuki_6_of_the_fourth_order_top_is_of_order_6() {
     let scheme = CompositionScheme::SUZUKI_6;
     assert_order((scheme.name(), 6), (TOPS[0], 1.0), &counts(40, 1.5, 5), |motion, h, steps| {
-        end(FourthOrderTop::of(&motion.top), scheme, motion, h, steps)
+        end(&Stepper::composed(FourthOrderTop::of(&motion.top), h, scheme).unwrap(), motion, steps)
     });
 }
 
@@ -65,7 +51,7 @@ fn suzuki_6_of_the_fourth_order_top_is_of_order_6() {
 fn suzuki_8_of_the_sixth_order_top_is_of_order_8() {
     let scheme = CompositionScheme::SUZUKI_8;
     assert_order((scheme.name(), 8), (TOPS[0], 1.0), &counts(10, 1.3, 5), |motion, h, steps| {
-        end(SixthOrderTop::of(&motion.top), scheme, motion, h, steps)
+        end(&Stepper::composed(SixthOrderTop::of(&motion.top), h, scheme).unwrap(), motion, steps)
     });
 }
 
@@ -132,20 +118,4 @@ fn a_stage_takes_few_iterations() {
         println!("{}: {each:.2}", scheme.name());
         assert!(each < 3.0, "{}: {each}", scheme.name());
     }
-}
-
-#[test]
-fn a_composition_of_one_stage_is_the_step_itself() {
-    let one = CompositionScheme::new("one", 2, 2, &[1.0]);
-    let motion = Motion::looping();
-    let composed = Stepper::composed(motion.top.clone(), 0.01, one).unwrap();
-    let stepper = Stepper::new(motion.top.clone(), 0.01).unwrap();
-    let mut state = composed.start(motion.attitude, motion.velocity).unwrap();
-    let mut alone = stepper.start(motion.attitude, motion.velocity).unwrap();
-    for _ in 0..100 {
-        composed.step(&mut state).unwrap();
-        stepper.step(&mut alone).unwrap();
-    }
-    assert!(relative(&state.momentum(), &alone.momentum()) < 1e-14);
-    assert!(relative(&state.attitude().matrix(), &alone.attitude().matrix()) < 1e-14);
 }

@@ -1,5 +1,6 @@
 //! Events against closed forms, and the order of the motion between two steps.
 
+use checks::order::{End, assert_order, counts};
 use checks::random::Random;
 use declarations::{FreeBody, HeavyTop, Motion};
 use liestep::mechanics::Effect;
@@ -9,7 +10,6 @@ use liestep::prelude::*;
 use liestep::recording::{Event, sections};
 use nalgebra::Vector3;
 
-use crate::convergence::{End, assert_order, counts};
 use crate::many_digits::{DoubleDouble, Vector, long};
 
 /// A free symmetric body turns steadily about its momentum in space, and so does its axis:

@@ -1,5 +1,6 @@
 //! What every method has: its order, steps of `−h` that undo those of `h`, and the momenta.
 
+use checks::order::{TOPS, assert_order, counts};
 use checks::random::Random;
 use declarations::{HeavyTop, Motion};
 use liestep::methods::{CompositionScheme, ExactBody, ProcessedScheme, SplittingScheme};
@@ -7,8 +8,6 @@ use liestep::motion::{AnyStepper, Integrator as _};
 use liestep::prelude::*;
 use nalgebra::Vector3;
 use workbench::measure::relative;
-
-use crate::convergence::{TOPS, assert_order, counts};
 
 /// Steppers of a top by each method, with its name.
 pub(crate) fn all(top: &HeavyTop, h: f64) -> Vec<(String, AnyStepper<SO3, Vector3<f64>>)> {

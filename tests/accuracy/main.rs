@@ -6,7 +6,6 @@
 mod compensated;
 mod composition;
 mod conditions;
-mod convergence;
 mod events;
 mod every_method;
 mod exact_body;

@@ -1,20 +1,13 @@
 //! Processed splittings: orders, what they keep, and that looking at a motion doesn't disturb it.
 
+use checks::order::{TOPS, counts, end, measured};
 use declarations::{FreeBody, HeavyTop, Motion};
-use liestep::methods::{ExactBody, KineticFlow, ProcessedScheme, SplittingScheme};
+use liestep::methods::{ExactBody, ProcessedScheme, SplittingScheme};
 use liestep::prelude::*;
 use nalgebra::Vector3;
-use workbench::measure::{order, relative};
+use workbench::measure::relative;
 
-use crate::convergence::{End, TOPS, counts};
 use crate::splitting::symmetric;
-
-fn end<K: KineticFlow<f64>>(kinetic: K, scheme: ProcessedScheme, motion: &Motion, h: f64, steps: u32) -> End {
-    let processed = Stepper::processed(motion.top.clone(), h, kinetic, scheme).unwrap();
-    let mut state = processed.start(motion.attitude, motion.velocity).unwrap();
-    processed.run(&mut state, steps.into()).unwrap();
-    (state.attitude(), processed.velocity(&state))
-}
 
 fn exact(top: &HeavyTop) -> ExactBody {
     ExactBody::new(&top.ordinary_inertia())
@@ -32,19 +25,9 @@ fn processed_splittings_have_their_orders() {
         (ProcessedScheme::FOUR_C, 500),
     ] {
         for name in TOPS {
-            let motion = Motion::read(name);
-            let (attitude, velocity) = motion.at(10.0);
-            let errors: Vec<_> = counts(coarsest, 1.25, 5)
-                .into_iter()
-                .map(|steps| {
-                    let h = 10.0 / f64::from(steps);
-                    let found = end(exact(&motion.top), scheme, &motion, h, steps);
-                    (h, relative(found.0.as_matrix(), &attitude).hypot(relative(&found.1, &velocity)))
-                })
-                .collect();
-            let order = order(&errors, 2e-13);
-            let listed: Vec<_> = errors.iter().map(|(_, error)| format!("{error:.1e}")).collect();
-            println!("{}, {name}: order {order:.2}, errors {}", scheme.name(), listed.join(" "));
+            let order = measured(scheme.name(), (name, 10.0), &counts(coarsest, 1.25, 5), |motion, h, steps| {
+                end(&Stepper::processed(motion.top.clone(), h, exact(&motion.top), scheme).unwrap(), motion, steps)
+            });
             assert!((order - f64::from(scheme.order())).abs() < 0.35, "{}, {name}: {order}", scheme.name());
         }
     }
@@ -100,11 +83,10 @@ fn processed_splittings_keep_the_momenta() {
 /// A symmetric top by its own flow, to what any other has.
 #[test]
 fn other_flows_will_do() {
-    let motion = Motion::looping();
-    let [own, exact] = [
-        end(symmetric(&motion.top), ProcessedScheme::SIX_A, &motion, 0.05, 100),
-        end(exact(&motion.top), ProcessedScheme::SIX_A, &motion, 0.05, 100),
-    ];
+    let (motion, scheme) = (Motion::looping(), ProcessedScheme::SIX_A);
+    let own = Stepper::processed(motion.top.clone(), 0.05, symmetric(&motion.top), scheme).unwrap();
+    let exact = Stepper::processed(motion.top.clone(), 0.05, exact(&motion.top), scheme).unwrap();
+    let (own, exact) = (end(&own, &motion, 100), end(&exact, &motion, 100));
     assert!(relative(own.0.as_matrix(), exact.0.as_matrix()) < 1e-12);
 }
 

@@ -1,5 +1,6 @@
 //! Kinetic-potential splittings.
 
+use checks::order::{End, TOPS, assert_order, counts, end, error};
 use checks::solvers::WithJacobian;
 use declarations::{FourthOrderBody, FourthOrderTop, FreeBody, HeavyTop, LogTop, Motion, SixthOrderBody, Top as _};
 use liestep::accuracy::Accuracy;
@@ -10,7 +11,6 @@ use liestep::prelude::*;
 use nalgebra::Vector3;
 use workbench::measure::relative;
 
-use crate::convergence::{End, TOPS, assert_order, counts};
 use crate::many_digits::heavy_top::Top;
 use crate::many_digits::{self, DoubleDouble};
 
@@ -18,11 +18,8 @@ pub(crate) fn symmetric(top: &HeavyTop) -> SymmetricBody {
     SymmetricBody::new(&top.ordinary_inertia()).unwrap()
 }
 
-fn end<K: KineticFlow<f64>>(kinetic: K, scheme: SplittingScheme, motion: &Motion, h: f64, steps: u32) -> End {
-    let splitting = Stepper::split(motion.top.clone(), h, kinetic, scheme).unwrap();
-    let mut state = splitting.start(motion.attitude, motion.velocity).unwrap();
-    splitting.run(&mut state, steps.into()).unwrap();
-    (state.attitude(), splitting.velocity(&state))
+fn split<K: KineticFlow<f64>>(kinetic: K, scheme: SplittingScheme, motion: &Motion, h: f64, steps: u32) -> End {
+    end(&Stepper::split(motion.top.clone(), h, kinetic, scheme).unwrap(), motion, steps)
 }
 
 /// In a double an exact kinetic flow leaves nothing but rounding while the steps are long.
@@ -46,7 +43,7 @@ fn sofroniou_spaletta_10_of_strang_is_of_order_10() {
             (name, 10.0),
             (coarsest / 2, &counts(coarsest, 1.4, 5)),
             run,
-            |motion, h, steps| end(symmetric(&motion.top), scheme, motion, h, steps),
+            |motion, h, steps| split(symmetric(&motion.top), scheme, motion, h, steps),
         );
     }
 }
@@ -74,7 +71,7 @@ fn composed_splittings_are_strang_composed() {
 fn near_integrable_8_6_4_and_10_6_4_are_of_order_4() {
     for scheme in [SplittingScheme::NEAR_INTEGRABLE_8_6_4, SplittingScheme::NEAR_INTEGRABLE_10_6_4] {
         assert_order((scheme.name(), 4), (TOPS[3], 10.0), &counts(200, 1.5, 5), |motion, h, steps| {
-            end(SixthOrderBody { J: motion.top.ordinary_inertia() }, scheme, motion, h, steps)
+            split(SixthOrderBody { J: motion.top.ordinary_inertia() }, scheme, motion, h, steps)
         });
     }
 }
@@ -119,12 +116,12 @@ fn declared_kinetic_flows_keep_the_order() {
     let chaotic = (TOPS[3], 10.0);
     for scheme in [SplittingScheme::NYSTROM_11, SplittingScheme::NYSTROM_14] {
         assert_order((scheme.name(), 6), chaotic, &counts(60, 1.3, 5), |motion, h, steps| {
-            end(SixthOrderBody { J: motion.top.ordinary_inertia() }, scheme, motion, h, steps)
+            split(SixthOrderBody { J: motion.top.ordinary_inertia() }, scheme, motion, h, steps)
         });
     }
     let scheme = SplittingScheme::NYSTROM_6;
     assert_order((scheme.name(), 4), chaotic, &counts(160, 1.5, 5), |motion, h, steps| {
-        end(FourthOrderBody { J: motion.top.ordinary_inertia() }, scheme, motion, h, steps)
+        split(FourthOrderBody { J: motion.top.ordinary_inertia() }, scheme, motion, h, steps)
     });
 }
 
@@ -132,15 +129,10 @@ fn declared_kinetic_flows_keep_the_order() {
 #[test]
 fn the_symmetric_body_moves_exactly() {
     let motion = Motion::read("free symmetric");
-    let (attitude, velocity) = motion.at(10.0);
-    for h in [10.0, 1.0, 0.01] {
-        let found = end(symmetric(&motion.top), SplittingScheme::STRANG, &motion, h, {
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // up to a thousand
-            let steps = (10.0 / h).round() as u32;
-            steps
-        });
-        assert!(relative(found.0.as_matrix(), &attitude) < 1e-13, "h = {h}");
-        assert!(relative(&found.1, &velocity) < 1e-13, "h = {h}");
+    let expected = motion.at(10.0);
+    for (h, steps) in [(10.0, 1), (1.0, 10), (0.01, 1000)] {
+        let found = split(symmetric(&motion.top), SplittingScheme::STRANG, &motion, h, steps);
+        assert!(error(&found, &expected) < 1e-13, "h = {h}");
     }
 }
 
@@ -149,14 +141,9 @@ fn the_symmetric_body_moves_exactly() {
 fn strang_with_the_flow_of_3_13_is_3_13() {
     let motion = Motion::looping();
     let kinetic = FreeBody { J_d: motion.top.J_d.into() };
-    let stepper = Stepper::new(motion.top.clone(), 0.01).unwrap();
-    let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
-    for _ in 0..100 {
-        stepper.step(&mut state).unwrap();
-    }
-    let found = end(kinetic, SplittingScheme::STRANG, &motion, 0.01, 100);
-    assert!(relative(found.0.as_matrix(), state.attitude().as_matrix()) < 1e-13);
-    assert!(relative(&found.1, &stepper.velocity(&state)) < 1e-13);
+    let expected = end(&Stepper::new(motion.top.clone(), 0.01).unwrap(), &motion, 100);
+    let found = split(kinetic, SplittingScheme::STRANG, &motion, 0.01, 100);
+    assert!(error(&found, &(expected.0.matrix(), expected.1)) < 1e-13);
 }
 
 #[test]
@@ -226,15 +213,9 @@ fn the_kinetic_part_is_replaced() {
     let motion = Motion::looping();
     let log = LogTop::of(&motion.top);
     let scheme = SplittingScheme::NYSTROM_11;
-    let (a, b) = (
-        Stepper::split(log, 0.05, symmetric(&motion.top), scheme).unwrap(),
-        Stepper::split(motion.top.clone(), 0.05, symmetric(&motion.top), scheme).unwrap(),
-    );
-    let mut states =
-        (a.start(motion.attitude, motion.velocity).unwrap(), b.start(motion.attitude, motion.velocity).unwrap());
-    a.run(&mut states.0, 100).unwrap();
-    b.run(&mut states.1, 100).unwrap();
-    assert!(relative(&states.0.momentum(), &states.1.momentum()) < 1e-13);
+    let found = end(&Stepper::split(log, 0.05, symmetric(&motion.top), scheme).unwrap(), &motion, 100);
+    let expected = split(symmetric(&motion.top), scheme, &motion, 0.05, 100);
+    assert!(error(&found, &(expected.0.matrix(), expected.1)) < 1e-13);
 }
 
 #[test]

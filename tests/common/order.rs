@@ -1,41 +1,89 @@
-//! Orders of declared Lagrangians, measured at motions of `tests/data`.
+//! Orders, measured at motions of `tests/data`.
 
 use declarations::Motion;
-use liestep::accuracy::{End, Reference, Refinement, convergence};
+use liestep::accuracy::Refinement;
 use liestep::mechanics::Regular;
-use liestep::prelude::*;
-use workbench::measure::steps_in;
+use liestep::motion::Plan;
+use liestep::{SO3, StateOf, Stepper};
+use nalgebra::{Matrix3, Vector3};
+use workbench::measure::{relative, steps_in};
 
-/// Above what some hundred steps lose to rounding.
-const PLATEAU: f64 = 2e-14;
+/// The tops whose equations are nonlinear in every variable: three of the thesis, and one without any symmetry.
+pub const TOPS: [&str; 4] = ["looping A", "cuspidal B", "third A", "chaotic"];
 
-/// The errors at the time `t` with a coarsest step and four halvings of it.
-fn errors<L: Regular<Scalar = f64, Group = SO3>>(
-    motion: &Motion,
-    (t, coarsest): (f64, f64),
-    lagrangian: impl Fn() -> L,
-) -> Refinement {
-    let (attitude, velocity) = motion.at(t);
-    let exact = Reference::End(End { attitude: SO3::from_matrix_unchecked(attitude), velocity });
-    let family = |h| {
-        let stepper = Stepper::new(lagrangian(), h)?;
-        let start = stepper.start(motion.attitude, motion.velocity)?;
-        Ok((stepper, start))
-    };
-    let counts = [1, 2, 4, 8, 16].map(|times| times * steps_in(t, coarsest));
-    convergence(family, t, counts, exact).expect(motion.name)
+/// Above what some thousand stages lose to rounding in attitude and velocity.
+const PLATEAU: f64 = 2e-13;
+
+/// A motion at its end: attitude and body velocity.
+pub type End = (SO3, Vector3<f64>);
+
+/// The state after a number of steps.
+pub fn run<S, P>(stepper: &Stepper<S, P>, mut state: StateOf<S, P>, steps: u32) -> StateOf<S, P>
+where
+    S: Regular<Scalar = f64, Group = SO3>,
+    P: Plan<S>,
+{
+    stepper.run(&mut state, steps.into()).unwrap();
+    state
 }
 
-/// Asserts the order from the errors at a time for a coarsest step and its halvings.
-pub fn assert_order<L: Regular<Scalar = f64, Group = SO3>>(
-    name: &str,
-    expected: f64,
-    span: (f64, f64),
+/// Where a motion is after a number of steps.
+pub fn end<S, P>(stepper: &Stepper<S, P>, motion: &Motion, steps: u32) -> End
+where
+    S: Regular<Scalar = f64, Group = SO3>,
+    P: Plan<S>,
+{
+    let state = run(stepper, stepper.start(motion.attitude, motion.velocity).unwrap(), steps);
+    (state.attitude(), stepper.velocity(&state))
+}
+
+/// The error of attitude and body velocity together, relative to the sizes of both.
+pub fn error(end: &End, (attitude, velocity): &(Matrix3<f64>, Vector3<f64>)) -> f64 {
+    relative(end.0.as_matrix(), attitude).hypot(relative(&end.1, velocity))
+}
+
+/// The order of a method from its errors at the time `t` after these numbers of steps.
+///
+/// `run` makes so many steps of the length given and returns where they end.
+pub fn measured(name: &str, (motion, t): (&str, f64), counts: &[u32], run: impl Fn(&Motion, f64, u32) -> End) -> f64 {
+    let read = Motion::read(motion);
+    let reference = read.at(t);
+    let errors = Refinement::of(counts.iter().map(|&steps| {
+        let h = t / f64::from(steps);
+        (h, error(&run(&read, h, steps), &reference))
+    }));
+    let order = errors.order_above(PLATEAU).expect(name);
+    println!("{name}, {motion}: order {order:.3}\n{errors}");
+    order
+}
+
+/// Asserts this order.
+pub fn assert_order(
+    (name, expected): (&str, u32),
+    (motion, t): (&str, f64),
+    counts: &[u32],
+    run: impl Fn(&Motion, f64, u32) -> End,
+) {
+    let order = measured(name, (motion, t), counts, run);
+    assert!((order - f64::from(expected)).abs() < 0.1, "{name}, {motion}: order {order}");
+}
+
+/// That of a scene's own step, for a coarsest step and its halvings.
+pub fn assert_own_order<L: Regular<Scalar = f64, Group = SO3>>(
+    motion: &str,
+    expected: u32,
+    (t, coarsest): (f64, f64),
     lagrangian: impl Fn(&Motion) -> L,
 ) {
-    let motion = Motion::read(name);
-    let errors = errors(&motion, span, || lagrangian(&motion));
-    let order = errors.order_above(PLATEAU).expect(name);
-    println!("{name}: order {order:.3}\n{errors}");
-    assert!((order - expected).abs() < 0.1, "{name}: order {order}\n{errors}");
+    #[allow(clippy::cast_possible_truncation)] // some hundreds
+    let counts = [1, 2, 4, 8, 16].map(|times| times * steps_in(t, coarsest) as u32);
+    assert_order(("its own step", expected), (motion, t), &counts, |motion, h, steps| {
+        end(&Stepper::new(lagrangian(motion), h).unwrap(), motion, steps)
+    });
+}
+
+/// `count` numbers of steps, each about a `ratio` more than the one before.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // small positive numbers
+pub fn counts(first: u32, ratio: f64, count: i32) -> Vec<u32> {
+    (0..count).map(|k| (f64::from(first) * ratio.powi(k)).round() as u32).collect()
 }

@@ -7,10 +7,11 @@ use checks::random::Random;
 use checks::structure::{System, poisson, stages, symmetry};
 use liestep::effects::Gravity;
 use liestep::groups::{CovariantTensor, LieGroup, R3, SE3, SL2, SO3};
+use liestep::laws::samples::MatrixLieGroup;
 use liestep::mechanics::{ContinuousLagrangian, Inertia};
 use liestep::methods::{CotangentGauss, ExactBody, SplittingScheme};
 use liestep::motion::Moment;
-use liestep::numbers::{Coordinates, Lanes as _, Real};
+use liestep::numbers::{Lanes as _, Real};
 use liestep::recording::{Event, RunError};
 use liestep::{NonstandardInertia, SetupError, StepError, Stepper, lagrangian};
 use nalgebra::{
@@ -91,8 +92,7 @@ impl Ambient {
 /// All claims about a discretisation but those about its terms.
 fn assert_discretised<L, const N: usize, const D: usize>(system: &L, name: &str)
 where
-    L: System<N, D> + ContinuousLagrangian + Clone,
-    SVector<f64, D>: Coordinates<f64, Square = SMatrix<f64, D, D>>,
+    L: System<Group: MatrixLieGroup<N, D>> + ContinuousLagrangian + Clone,
 {
     const { assert!(L::SELF_ADJOINT && !L::IS_QUADRATIC) };
     stages::assert_stages(system, 6);
@@ -180,7 +180,7 @@ fn of_any_degree_as_typed() {
         let squared = (small * J_d * small.transpose()).trace() / (h * h);
         -h * ComplexField::sqrt(HyperDual64::from(1.0) - squared) - h * (0.5 * top.k) * w.dot(&(r + f * r))
     };
-    assert_terms("SO(3), typed", (&top, 0.6, 0.0), typed, 5);
+    assert_terms::<_, SO3<HyperDual64>, _>("SO(3), typed", (&top, 0.6, 0.0), typed, (5, 0.5));
     let stepper = Stepper::new(top, 0.01).unwrap();
     let mut state = stepper.start(SO3::identity(), xi).unwrap();
     let energy = stepper.energy(&state);
@@ -220,9 +220,14 @@ fn on_so3() {
     let l = |_: HyperDual64, xi: &Vector3<_>, w: &Vector3<_>| of_matrix(&xi.cross_matrix(), w);
     let any = Matrix3::identity();
     let trapezoid = |f: &_, w: &_, h| by_hand("trapezoid(Cayley)", &any, l, (f, w, h));
-    assert_terms("SO(3), trapezoid(Cayley)", (&OnSo3::new(), 0.05, 0.0), trapezoid, 5);
+    assert_terms::<_, SO3<HyperDual64>, _>("SO(3), trapezoid(Cayley)", (&OnSo3::new(), 0.05, 0.0), trapezoid, (5, 0.5));
     let midpoint = |f: &_, w: &_, h| by_hand("midpoint(exp)", &any, l, (f, w, h));
-    assert_terms("SO(3), midpoint(exp)", (&OnSo3Halfway::new(), 0.05, 0.0), midpoint, 5);
+    assert_terms::<_, SO3<HyperDual64>, _>(
+        "SO(3), midpoint(exp)",
+        (&OnSo3Halfway::new(), 0.05, 0.0),
+        midpoint,
+        (5, 0.5),
+    );
     assert_discretised(&OnSo3::new(), "SO(3), trapezoid(Cayley)");
     assert_discretised(&OnSo3Halfway::new(), "SO(3), midpoint(exp)");
 }
@@ -244,8 +249,8 @@ fn on_so3_in_the_ambient_matrix() {
     for h in [0.5, 0.05] {
         // `(ξ·Jξ)²` is the square of a difference of traces of J_d/h², which are this large.
         let cancelling = 4.0 * body.k * body.J.to_nonstandard().as_matrix().trace().powi(2) / (h * h * h);
-        assert_terms("SO(3), trapezoid", (&body, h, cancelling), alone, 5);
-        assert_terms("SO(3), a sum", (&both, h, cancelling), sum, 5);
+        assert_terms::<_, SO3<HyperDual64>, _>("SO(3), trapezoid", (&body, h, cancelling), alone, (5, 0.5));
+        assert_terms::<_, SO3<HyperDual64>, _>("SO(3), a sum", (&both, h, cancelling), sum, (5, 0.5));
     }
     assert_discretised(&body, "SO(3), trapezoid");
     assert_discretised(&(body + gravity), "SO(3), a sum");
@@ -255,7 +260,7 @@ fn on_so3_in_the_ambient_matrix() {
 fn on_sl2() {
     let OnSl2 { J, k, r, .. } = OnSl2::<HyperDual64>::new();
     let rule = |f: &_, w: &_, h| by_cayley("trapezoid(Cayley)", quartic((J, k, r)), (f, w, h));
-    assert_terms("SL(2), trapezoid(Cayley)", (&OnSl2::new(), 0.05, 0.0), rule, 5);
+    assert_terms::<_, SL2<HyperDual64>, _>("SL(2), trapezoid(Cayley)", (&OnSl2::new(), 0.05, 0.0), rule, (5, 0.5));
     assert_discretised(&OnSl2::new(), "SL(2), trapezoid(Cayley)");
 }
 
@@ -286,14 +291,14 @@ fn a_form_is_carried_forwards() {
         let l = |form: &Matrix2<HyperDual64>| xi.dot(&(long_m * xi)) * 0.5 - long_r.dot(&(form * long_r));
         (l(&form.0) + l(&(f.transpose() * form.0 * f))) * h * 0.5
     };
-    assert_terms("SL(2), a form", (&Carried { M, r, form }, 0.05, 0.0), rule, 5);
+    assert_terms::<_, SL2<HyperDual64>, _>("SL(2), a form", (&Carried { M, r, form }, 0.05, 0.0), rule, (5, 0.5));
 }
 
 #[test]
 fn on_se3() {
     let OnSe3 { J, k, r, .. } = OnSe3::<HyperDual64>::new();
     let rule = |f: &_, w: &_, h| by_cayley("chord(Cayley)", quartic((J, k, r)), (f, w, h));
-    assert_terms("SE(3), chord(Cayley)", (&OnSe3::new(), 0.05, 0.0), rule, 5);
+    assert_terms::<_, SE3<HyperDual64>, _>("SE(3), chord(Cayley)", (&OnSe3::new(), 0.05, 0.0), rule, (5, 0.5));
     assert_discretised(&OnSe3::new(), "SE(3), chord(Cayley)");
 }
 
@@ -301,7 +306,12 @@ fn on_se3() {
 fn on_affine_maps() {
     let OnAffine { J, k, r, .. } = OnAffine::<HyperDual64>::new();
     let rule = |f: &_, w: &_, h| by_cayley("trapezoid(Cayley)", quartic((J, k, r)), (f, w, h));
-    assert_terms("affine maps, trapezoid(Cayley)", (&OnAffine::new(), 0.05, 0.0), rule, 5);
+    assert_terms::<_, Affine<HyperDual64>, _>(
+        "affine maps, trapezoid(Cayley)",
+        (&OnAffine::new(), 0.05, 0.0),
+        rule,
+        (5, 0.5),
+    );
     assert_discretised(&OnAffine::new(), "affine maps, trapezoid(Cayley)");
 }
 

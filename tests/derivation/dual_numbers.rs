@@ -3,11 +3,12 @@
 
 use std::collections::BTreeMap;
 
-use checks::structure::numbers::{lifted, varied};
-use checks::structure::{System, axis, random_advected};
-use liestep::groups::{Advected as _, LieGroup as _};
-use liestep::laws::samples::{Random, along};
-use liestep::numbers::Entries;
+use checks::structure::numbers::{lifted, numbers, varied};
+use checks::structure::{Group, Vector, axis, norm, norm_of_map, random_advected};
+use liestep::groups::{Advected as _, LieGroup};
+use liestep::laws::samples::Random;
+use liestep::mechanics::DiscreteLagrangian;
+use liestep::numbers::{Coordinates as _, Entries};
 use nalgebra::{Matrix3, RealField, SMatrix, SVector, Vector3, convert};
 use num_dual::HyperDual64;
 
@@ -18,28 +19,36 @@ const ROUNDING: f64 = 1e-14;
 /// the momenta, `(L_F)* δl_d/δF = Ad*_F (R_F)* δl_d/δF` and `μ⁺ = Ad*_F (μ + δl_d/δw ⋄ w)`.
 ///
 /// Each is compared relative to its own size, and to that of terms of `l_d` that cancel, `cancelling`, J s.
-pub(crate) fn assert_terms<L, W, const N: usize, const D: usize>(
+///
+/// `H` is the group of the hyper-dual numbers, and `far` how large the coordinates of an increment get.
+pub(crate) fn assert_terms<L, H, W>(
     name: &str,
     (system, h, cancelling): (&L, f64, f64),
-    l_d: impl Fn(&SMatrix<HyperDual64, N, N>, &W, HyperDual64) -> HyperDual64,
-    seed: u64,
+    l_d: impl Fn(&H::Matrix, &W, HyperDual64) -> HyperDual64,
+    (seed, far): (u64, f64),
 ) where
-    L: System<N, D>,
+    L: DiscreteLagrangian<Scalar = f64, Group: Group>,
+    H: LieGroup<Scalar = HyperDual64>,
     W: Entries<HyperDual64>,
 {
-    let mut random = Random::new(seed);
+    let (mut random, dimension) = (Random::new(seed), L::Group::DIMENSION);
     let step = HyperDual64::from(h);
     let units = [HyperDual64::new(0.0, 1.0, 0.0, 0.0), HyperDual64::new(0.0, 0.0, 1.0, 0.0)];
-    let lift = |matrix: &SMatrix<f64, N, N>| matrix.map(HyperDual64::from);
+    let product = |a: &H::Matrix, b: &H::Matrix| {
+        let [a, b] = [a, b].map(|matrix| H::from_matrix_unchecked(*matrix));
+        a.compose(&b).matrix()
+    };
+    let hat = |k: usize, s: f64| L::Group::hat(&axis(k, s));
     // exp(ε E_k), as ε² = 0.
-    let turned = |k: usize, unit: HyperDual64| SMatrix::identity() + lift(&L::Group::hat(&axis(k, 1.0))) * unit;
+    let turned =
+        |k: usize, unit: HyperDual64| -> H::Matrix { varied(&L::Group::identity().matrix(), &hat(k, 1.0), unit) };
     let mut worst = BTreeMap::<&str, f64>::new();
-    for size in [0.0, 1e-8, 0.1, 0.5, 0.5] {
-        let element = along::<L::Group, N, D>(&random.sample(), size);
+    for size in [0.0, 1e-8, 0.1, 0.5, far] {
+        let element = L::Group::along(&random.sample(), size);
         let (f, w) = (element.matrix(), random_advected(system, &mut random));
-        let (long, still) = (lift(&f), lifted::<_, _, W>(&w));
-        let (right, left) = (system.right_momentum(&f, &w, h), system.left_momentum(&f, &w, h));
-        let (diamond, momentum) = (system.diamond(&f, &w, h), system.legendre_minus(&f, &w, h));
+        let (long, still): (H::Matrix, W) = (lifted(&f), lifted(&w));
+        let [right, left] = [system.right_momentum(&f, &w, h), system.left_momentum(&f, &w, h)];
+        let [diamond, momentum] = [system.diamond(&f, &w, h), system.legendre_minus(&f, &w, h)];
         let (value, jacobian) = (system.l_d(&f, &w, h), system.momentum_jacobian(&f, &w, h));
         let mut close = |what: &'static str, found: f64, expected: f64, scale: f64, cancelling: f64| {
             let error = (found - expected).abs();
@@ -50,20 +59,23 @@ pub(crate) fn assert_terms<L, W, const N: usize, const D: usize>(
                 "{name}, {what}: {found} and {expected}, {error:e} of {scale:e} and {cancelling:e}, at {size}"
             );
         };
-        let of_value = value.abs() + h * right.norm();
-        let of_momenta = right.norm() + left.norm() + jacobian.norm();
-        let of_diamond = diamond.norm() + of_value;
+        let of_value = value.abs() + h * norm(&right);
+        let of_momenta = norm(&right) + norm(&left) + norm_of_map::<L>(&jacobian);
+        let of_diamond = norm(&diamond) + of_value;
         close("l_d", value, l_d(&long, &still, step).re, of_value, cancelling);
-        for k in 0..D {
+        for k in 0..dimension {
             let turn = turned(k, units[0]);
-            let carried = varied(&w, &w.rate(&L::Group::hat(&axis(k, -1.0))), units[0]);
-            close("right momentum", right[k], l_d(&(turn * long), &still, step).eps1, of_momenta, cancelling);
-            close("left momentum", left[k], l_d(&(long * turn), &still, step).eps1, of_momenta, cancelling);
-            close("diamond", diamond[k], -l_d(&long, &carried, step).eps1, of_diamond, cancelling);
-            close("momentum", momentum[k], l_d(&(turn * long), &carried, step).eps1, of_momenta, cancelling);
-            for j in 0..D {
-                let second = l_d(&(turn * turned(j, units[1]) * long), &carried, step).eps1eps2;
-                close("Jacobian", jacobian[(k, j)], second, of_momenta, cancelling);
+            let carried = varied(&w, &w.rate(&hat(k, -1.0)), units[0]);
+            let before = product(&turn, &long);
+            let [right, left, diamond, momentum] = [&right, &left, &diamond, &momentum].map(|of| numbers(of)[k]);
+            close("right momentum", right, l_d(&before, &still, step).eps1, of_momenta, cancelling);
+            close("left momentum", left, l_d(&product(&long, &turn), &still, step).eps1, of_momenta, cancelling);
+            close("diamond", diamond, -l_d(&long, &carried, step).eps1, of_diamond, cancelling);
+            close("momentum", momentum, l_d(&before, &carried, step).eps1, of_momenta, cancelling);
+            for j in 0..dimension {
+                let moved = product(&turn, &product(&turned(j, units[1]), &long));
+                let found = numbers(&Vector::<L>::column(&jacobian, j))[k];
+                close("Jacobian", found, l_d(&moved, &carried, step).eps1eps2, of_momenta, cancelling);
             }
         }
         let energy = -l_d(&long, &still, step + units[0]).eps1;
@@ -71,9 +83,9 @@ pub(crate) fn assert_terms<L, W, const N: usize, const D: usize>(
         let of_energy = energy.abs() + of_value / h;
         close("energy", system.discrete_energy(&f, &w, h), energy, of_energy, 3.0 * cancelling / h);
         let moved = element.adjoint_transpose(&(momentum + diamond));
-        let apart = (left - element.adjoint_transpose(&right)).norm();
+        let apart = norm(&(left - element.adjoint_transpose(&right)));
         close("left = Ad* right", apart, 0.0, of_momenta, cancelling);
-        let apart = (system.legendre_plus(&f, &w, h) - moved).norm();
+        let apart = norm(&(system.legendre_plus(&f, &w, h) - moved));
         close("μ⁺ = Ad* (μ + diamond)", apart, 0.0, of_momenta, cancelling);
     }
     let worst: Vec<String> = worst.iter().map(|(what, error)| format!("{what} {error:.1e}")).collect();

@@ -116,12 +116,17 @@ fn smooth<T: RealField + Copy>(seed: u64) -> Smooth<T> {
 /// All derived terms and the stages; traces that cancel in `l_d` are `cancelling` over `h`.
 fn compare<L, H>(name: &str, build: fn(u64) -> L, hyper: fn(u64) -> H, cancelling: fn(&L) -> f64)
 where
-    L: System<3, 3>,
+    L: System<Group = SO3>,
     H: DiscreteLagrangian<Scalar = HyperDual64, Group = SO3<HyperDual64>, Advected: Entries<HyperDual64>>,
 {
     for (seed, h) in [(0, 0.01), (1, 0.05), (2, 0.1), (3, 0.02)] {
         let (system, long) = (build(seed), hyper(seed));
-        assert_terms(name, (&system, h, cancelling(&system) / h), |f, w, h| long.l_d(f, w, h), seed);
+        assert_terms::<_, SO3<HyperDual64>, _>(
+            name,
+            (&system, h, cancelling(&system) / h),
+            |f, w, h| long.l_d(f, w, h),
+            (seed, 0.5),
+        );
         assert_stages(&system, seed);
     }
 }

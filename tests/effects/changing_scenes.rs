@@ -1,28 +1,16 @@
 //! A state moves from one scene to another, and what both conserve is conserved throughout.
 
-use liestep::effects::{Dipole, Gravity, RigidBody, Rotor};
-use liestep::{NonstandardInertia, SO3, Stepper};
-use nalgebra::{UnitQuaternion, Vector3};
+use liestep::Stepper;
+use liestep::effects::{Dipole, Rotor};
+use nalgebra::Vector3;
 
-fn body() -> RigidBody {
-    RigidBody { J_d: NonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.5)).unwrap() }
-}
-
-fn gravity() -> Gravity {
-    Gravity { m: 1.0, g: 9.81, rho: Vector3::new(0.3, 0.2, 0.4), up: Vector3::z() }
-}
-
-fn attitude() -> SO3 {
-    UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.3, -0.2)).into()
-}
-
-const VELOCITY: Vector3<f64> = Vector3::new(0.5, -1.0, 3.0);
+use super::{body, gravity, started};
 
 /// Free, then heavy, then free again: the vertical component of the spatial momentum belongs to all three.
 #[test]
 fn gravity_comes_and_goes() {
-    let (free, heavy) = (Stepper::new(body(), 0.01).unwrap(), Stepper::new(body() + gravity(), 0.01).unwrap());
-    let mut floating = free.start(attitude(), VELOCITY).unwrap();
+    let (free, mut floating) = started(body(), 0.01);
+    let heavy = Stepper::new(body() + gravity(), 0.01).unwrap();
     let vertical = floating.spatial_momentum().z;
     for _ in 0..1000 {
         free.step(&mut floating).unwrap();
@@ -50,16 +38,9 @@ fn gravity_comes_and_goes() {
 /// The momentum belongs to a time: there and back at once changes nothing, and neither does a detour by the same scene.
 #[test]
 fn adopting_is_no_step() {
-    let heavy = Stepper::new(body() + gravity(), 0.01).unwrap();
-    let magnetic = Stepper::new(
-        body()
-            + gravity()
-            + Dipole { moment: Vector3::x(), field: Vector3::new(0.0, 2.0, 1.0) }
-            + Rotor { spin: Vector3::y() },
-        0.002,
-    )
-    .unwrap();
-    let mut state = heavy.start(attitude(), VELOCITY).unwrap();
+    let (heavy, mut state) = started(body() + gravity(), 0.01);
+    let dipole = Dipole { moment: Vector3::x(), field: Vector3::new(0.0, 2.0, 1.0) };
+    let magnetic = Stepper::new(body() + gravity() + dipole + Rotor { spin: Vector3::y() }, 0.002).unwrap();
     let mut moved = state;
     for _ in 0..100 {
         heavy.step(&mut state).unwrap();

@@ -1,25 +1,11 @@
 //! Torques that are given anew each step.
 
-use liestep::effects::{Gravity, RigidBody, Thrust, Torque};
-use liestep::mechanics::Regular;
-use liestep::{NonstandardInertia, SO3, StateOf, StepError, Stepper};
-use nalgebra::{UnitQuaternion, Vector3};
+use liestep::effects::{Thrust, Torque};
+use liestep::{SO3, StepError, Stepper};
+use nalgebra::Vector3;
 use workbench::measure::relative;
 
-fn body() -> RigidBody {
-    RigidBody { J_d: NonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.5)).unwrap() }
-}
-
-fn gravity() -> Gravity {
-    Gravity { m: 1.0, g: 9.81, rho: Vector3::new(0.3, 0.2, 0.4), up: Vector3::z() }
-}
-
-fn started<L: Regular<Scalar = f64, Group = SO3>>(scene: L, h: f64) -> (Stepper<L>, StateOf<L>) {
-    let stepper = Stepper::new(scene, h).unwrap();
-    let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.3, -0.2));
-    let state = stepper.start(attitude, Vector3::new(0.5, 1.0, 3.0)).unwrap();
-    (stepper, state)
-}
+use super::{body, gravity, started};
 
 /// The same torque in each step is the effect; so is a thrust with that torque.
 #[test]

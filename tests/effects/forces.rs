@@ -1,15 +1,15 @@
 //! Forces by the discrete Lagrange–d'Alembert principle: what is derived from their virtual work, and what they do.
 
+use checks::structure::forces::assert_stages;
 use declarations::{FluidDrag, Thruster};
-use liestep::effects::{Drag, Gravity, MagneticDamping, RigidBody, Thrust, Torque};
-use liestep::groups::{Advected as _, LieGroup as _, Retraction as _, SE2, SL2};
-
-use liestep::laws::samples::{self, MatrixLieGroup, along, derivative};
-use liestep::mechanics::Force;
-use liestep::numbers::Coordinates;
-use liestep::{NonstandardInertia, SO3, Stepper, force};
-use nalgebra::{Matrix2, Matrix3, Point2, SMatrix, SVector, Vector2, Vector3};
+use liestep::effects::{Drag, MagneticDamping, Thrust, Torque};
+use liestep::groups::{SE2, SL2};
+use liestep::laws::samples;
+use liestep::{SO3, Stepper, force};
+use nalgebra::{Matrix2, Matrix3, Point2, Vector2, Vector3};
 use workbench::measure::relative;
+
+use super::{body, gravity, moved};
 
 /// A force of no physics, different at both ends, with terms of all kinds.
 #[force(
@@ -29,71 +29,22 @@ struct Push {
     up: Vector3<f64>,
 }
 
-/// `f⁻` and `f⁺` by their components.
-fn forces<E, const N: usize, const D: usize>(
-    push: &E,
-    f: &SMatrix<f64, N, N>,
-    w: &E::Advected,
-    h: f64,
-) -> [SVector<f64, D>; 2]
-where
-    E: Force<Scalar = f64, Group: MatrixLieGroup<N, D>>,
-{
-    let zero = SVector::zeros();
-    let unit = |k| SVector::from_fn(|i, _| f64::from(u8::from(i == k)));
-    let before = SVector::from_fn(|k, _| push.virtual_work(f, w, h, &unit(k), &zero));
-    [before, SVector::from_fn(|k, _| push.virtual_work(f, w, h, &zero, &unit(k)))]
-}
-
-/// The stages against the declared virtual work, at random increments.
-fn check<E, const N: usize, const D: usize>(push: &E, r: &mut samples::Random)
-where
-    E: Force<Scalar = f64, Group: MatrixLieGroup<N, D>>,
-    SVector<f64, D>: Coordinates<f64, Square = SMatrix<f64, D, D>>,
-{
-    let (h, half) = (0.1, r.sample::<SVector<f64, D>>() * 0.4);
-    let element = E::Retraction::retract(&(half * 2.0));
-    let f = element.matrix();
-    let w = push.advected().seen_from(&along::<E::Group, N, D>(&r.sample(), 1.0));
-    let constants = push.constants(h);
-    let [before, after] = forces(push, &f, &w, h);
-    let kick = E::kick_before(&constants, &w);
-    // U = −(f⁻ − kick_before), and newton_system is a multiple of U − a.
-    let a: SVector<f64, D> = r.sample();
-    let terms = E::step_terms(&constants, &a, &w);
-    let (residual, jacobian) = E::newton_system(&constants, &terms, &half);
-    let factor = 0.5 * h * (1.0 + half.norm_squared()).powi(E::DENOMINATORS.cast_signed());
-    assert!((residual - (kick - before - a) * factor).norm() < 1e-13 * factor * (1.0 + before.norm()));
-    for j in 0..D {
-        let unit = SVector::<f64, D>::axis(j);
-        let slope = derivative(|s| E::newton_system(&constants, &terms, &(half + unit * s)).0);
-        assert!((jacobian.column(j) - slope).norm() < 1e-9 * (1.0 + slope.norm()));
-        let turned = |s: f64| along::<E::Group, N, D>(&unit, s).compose(&element).matrix();
-        let slope = derivative(|s| -forces::<E, N, D>(push, &turned(s), &w, h)[0]);
-        assert!((push.momentum_jacobian(&f, &w, h).column(j) - slope).norm() < 1e-9 * (1.0 + slope.norm()));
-    }
-    let next = w.advect(&element.increment());
-    let expected = element.adjoint_transpose(&(before - kick)) + after;
-    assert!(
-        (E::kick_after(&constants, &element.increment(), &next) - expected).norm() < 1e-13 * (1.0 + expected.norm())
-    );
-}
-
+/// Of forces of every kind, at random increments.
 #[test]
 fn stages_follow_from_the_virtual_work() {
     let mut r = samples::Random::new(7);
     for _ in 0..10 {
         let J = body().J_d.to_inertia();
-        check(&Drag { c: 1.0 + r.signed(), J }, &mut r);
-        check(&Torque { torque: r.sample() }, &mut r);
-        check(&Thrust { at: r.sample(), thrust: r.sample() }, &mut r);
-        check(&MagneticDamping { k: 1.0 + r.signed(), field: r.sample(), J }, &mut r);
+        assert_stages(&Drag { c: 1.0 + r.signed(), J }, &mut r);
+        assert_stages(&Torque { torque: r.sample() }, &mut r);
+        assert_stages(&Thrust { at: r.sample(), thrust: r.sample() }, &mut r);
+        assert_stages(&MagneticDamping { k: 1.0 + r.signed(), field: r.sample(), J }, &mut r);
         let push = Push { k: r.signed(), c: r.signed(), A: r.sample(), rho: r.sample(), up: r.sample() };
-        check(&push, &mut r);
-        check(&Thruster { at: r.sample::<Vector3<f64>>().into(), thrust: r.sample() }, &mut r);
-        check(&FluidDrag { C: r.sample() }, &mut r);
-        check(&Shear { k: r.sample(), s: r.sample(), A: r.sample(), line: r.sample() }, &mut r);
-        check(&Pull { u: r.sample(), c: r.signed(), point: r.sample::<Vector2<f64>>().into() }, &mut r);
+        assert_stages(&push, &mut r);
+        assert_stages(&Thruster { at: r.sample::<Vector3<f64>>().into(), thrust: r.sample() }, &mut r);
+        assert_stages(&FluidDrag { C: r.sample() }, &mut r);
+        assert_stages(&Shear { k: r.sample(), s: r.sample(), A: r.sample(), line: r.sample() }, &mut r);
+        assert_stages(&Pull { u: r.sample(), c: r.signed(), point: r.sample::<Vector2<f64>>().into() }, &mut r);
     }
 }
 
@@ -124,10 +75,6 @@ struct Pull {
     point: Point2<f64>,
 }
 
-fn body() -> RigidBody {
-    RigidBody { J_d: NonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.5)).unwrap() }
-}
-
 /// About a principal axis the momentum of a constant torque grows by `h τ` a step, and by nothing else.
 #[test]
 fn a_constant_torque_adds_its_impulse() {
@@ -139,20 +86,14 @@ fn a_constant_torque_adds_its_impulse() {
     }
 }
 
-/// A heavy body with drag, a torque and the rest, against a fine step: second order.
+/// A heavy body with drag, damping in a field and a torque, against a fine step: second order.
 #[test]
 fn forces_keep_the_order() {
-    let scene = || {
-        let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::new(0.3, 0.2, 0.4), up: Vector3::z() };
-        body() + gravity + Drag { c: 0.7, J: body().J_d.to_inertia() } + Torque { torque: Vector3::new(0.3, -0.2, 0.1) }
-    };
     let at_one = |steps: u32| {
-        let stepper = Stepper::new(scene(), 1.0 / f64::from(steps)).unwrap();
-        let mut state = stepper.start(SO3::identity(), Vector3::new(0.5, 1.0, 3.0)).unwrap();
-        for _ in 0..steps {
-            stepper.step(&mut state).unwrap();
-        }
-        state.momentum()
+        let (drag, torque) = (Drag { c: 0.7, J: body().J_d.to_inertia() }, Vector3::new(0.3, -0.2, 0.1));
+        let damping = MagneticDamping { k: 1.5, field: Vector3::new(0.5, -0.7, 0.6), J: drag.J };
+        let scene = body() + gravity() + drag + Torque { torque } + damping;
+        moved(scene, 1.0 / f64::from(steps), steps.into()).momentum()
     };
     let truth = at_one(20_000);
     let [coarse, fine] = [100, 200].map(|steps| relative(&at_one(steps), &truth));

@@ -7,6 +7,8 @@ use liestep::prelude::*;
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::relative;
 
+use super::started;
+
 fn body(moments: [f64; 3]) -> PrincipalBody {
     PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(moments.into()).unwrap() }
 }
@@ -16,9 +18,7 @@ fn moved<L>(scene: L, count: usize) -> (StateOf<L>, f64)
 where
     L: Regular<Scalar = f64, Group = SO3> + AxiallyInvariant,
 {
-    let stepper = Stepper::new(scene, 0.01).unwrap();
-    let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.3, -0.2));
-    let mut state = stepper.start(attitude, Vector3::new(0.3, -1.0, 2.0)).unwrap();
+    let (stepper, mut state) = started(scene, 0.01);
     let axial = stepper.momentum_along_advected(&state);
     let mut error = 0.0_f64;
     for _ in 0..count {

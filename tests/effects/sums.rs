@@ -1,15 +1,16 @@
 //! Scenes are sums: a sum is the same integrator as the Lagrangian written in one piece, and costs what it holds.
 
 use checks::random::Random;
+use checks::structure::stages::assert_stages;
 use declarations::{FreeBody, FullTop, HeavyTop};
 use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, RigidBody, Rotor, SixthOrderBody, Spring};
-use liestep::groups::{Advected, LieGroup as _, Retraction as _};
-use liestep::laws::samples::derivative;
-use liestep::mechanics::{DiscreteLagrangian, Effect, Inertia, Regular, Term as _};
-use liestep::motion::Motion;
-use liestep::{NonstandardInertia, SO3, State, StateOf, Stepper, lagrangian};
-use nalgebra::{UnitQuaternion, Vector3};
+use liestep::groups::{Advected as _, LieGroup as _};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Inertia, Term as _};
+use liestep::{NonstandardInertia, SO3, State, StateOf, lagrangian};
+use nalgebra::Vector3;
 use workbench::measure::relative;
+
+use super::{apart, moved};
 
 /// A kinetic term with a part of fourth order: its Newton system has the square of the Cayley denominator.
 #[lagrangian(
@@ -114,23 +115,6 @@ fn gravity(top: &HeavyTop) -> Gravity {
     Gravity { m: top.m, g: top.g, rho: top.rho, up: top.up }
 }
 
-/// How far attitude and momentum of two motions are apart.
-fn apart<A: Advected<SO3>, B: Advected<SO3>>(a: &Motion<SO3, A>, b: &Motion<SO3, B>) -> f64 {
-    let attitude = (a.attitude().as_matrix() - b.attitude().as_matrix()).norm();
-    attitude.max(relative(&a.momentum(), &b.momentum()))
-}
-
-/// The state after so many steps from one start.
-fn moved<L: Regular<Scalar = f64, Group = SO3>>(lagrangian: L, h: f64, count: usize) -> StateOf<L> {
-    let stepper = Stepper::new(lagrangian, h).unwrap();
-    let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.3, -0.2));
-    let mut state = stepper.start_with_momentum(attitude, Vector3::new(1.5, -4.0, 9.0)).unwrap();
-    for _ in 0..count {
-        stepper.step(&mut state).unwrap();
-    }
-    state
-}
-
 /// Asymmetric, with the centre of mass off the axes; the second inertia isn't diagonal.
 #[test]
 fn body_and_gravity_are_the_heavy_top() {
@@ -191,30 +175,14 @@ fn derived_terms_add() {
 /// The Newton system of a sum is the declared multiple of its equation, and its Jacobian the derivative.
 #[test]
 fn newton_systems_of_three_scales_add() {
-    fn check<L: DiscreteLagrangian<Scalar = f64, Group = SO3>>(sum: &L, r: &mut Random) {
-        let (h, half, offset) = (0.05, r.vector() * 0.5, r.vector());
-        let f = L::Retraction::retract(&(half * 2.0)).matrix();
-        let w = sum.advected().seen_from(&r.rotation());
-        let constants = sum.constants(h);
-        let unknown = sum.legendre_minus(&f, &w, h) + L::kick_before(&constants, &w);
-        let a = unknown + offset;
-        let terms = L::step_terms(&constants, &a, &w);
-        let (residual, jacobian) = L::newton_system(&constants, &terms, &half);
-        let factor = 0.5 * h * (1.0 + half.norm_squared()).powi(L::DENOMINATORS.cast_signed());
-        assert!((residual + offset * factor).norm() < 1e-13 * factor * (1.0 + unknown.norm()));
-        for j in 0..3 {
-            let slope = derivative(|s| L::newton_system(&constants, &terms, &(half + Vector3::ith(j, s))).0);
-            assert!((jacobian.column(j) - slope).norm() < 1e-10 * jacobian.norm());
-        }
-    }
     assert_eq!([Ball::DENOMINATORS, RigidBody::<f64>::DENOMINATORS, Quartic::DENOMINATORS], [0, 1, 2]);
     let mut r = Random::new(3);
-    for _ in 0..5 {
+    for seed in 0..5 {
         let (body, quartic, ball, rotor, gravity, ..) = Everything::random(&mut r).terms();
-        check(&(body + rotor), &mut r);
-        check(&(ball + gravity + body), &mut r);
-        check(&(ball + quartic), &mut r);
-        check(&(gravity + (quartic + (body + rotor))), &mut r);
+        assert_stages(&(body + rotor), seed);
+        assert_stages(&(ball + gravity + body), seed);
+        assert_stages(&(ball + quartic), seed);
+        assert_stages(&(gravity + (quartic + (body + rotor))), seed);
     }
 }
 

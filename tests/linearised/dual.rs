@@ -1,6 +1,6 @@
 //! Tangent maps and adjoints against dual numbers through the steps themselves, or differences of them.
 
-use liestep::gradients::{Cotangent, Input, InputOf, Linearisable, TangentOf, Tape};
+use liestep::gradients::{Input, InputOf, Linearisable};
 use liestep::groups::LieGroup;
 use liestep::laws::samples::{MatrixLieGroup, Random, along};
 use liestep::mechanics::{Effect, SecondDerivatives};
@@ -9,14 +9,15 @@ use liestep::numbers::{Coordinates, Entries};
 use nalgebra::{SMatrix, SVector};
 use num_dual::Dual64;
 
-use super::inputs::{assert_given, some_inputs};
+use super::inputs::{assert_columns, some_inputs};
 
 pub(crate) const STEPS: u64 = 12;
 pub(crate) const STEP: f64 = 0.02;
 /// Of the largest entry, and of the largest of each column. Small columns are what is left of larger terms.
 pub(crate) const BOUNDS: (f64, f64) = (1e-13, 1e-11);
 /// What may be found where nothing is expected, of the largest entry.
-const ROUNDING: f64 = 1e-17;
+pub(crate) const ROUNDING: f64 = 1e-17;
+pub(crate) const SEEDS: std::ops::Range<u64> = 0..2;
 
 /// How attitude and momentum change, for each number that is varied.
 pub(crate) type Columns<const D: usize> = Vec<(SVector<f64, D>, SVector<f64, D>)>;
@@ -74,11 +75,10 @@ where
     of_attitude.chain(of_momentum).chain(of_parameters).chain(of_inputs).collect()
 }
 
-/// Tangent map and adjoints at a random start, without inputs and with some.
+/// Tangent map and adjoints at random starts, without inputs and with some.
 pub(crate) fn assert_linearised<L, M, P, Q, const N: usize, const D: usize>(
     stepper: &Stepper<L, P>,
     dual: impl Fn(Option<usize>) -> Stepper<M, Q>,
-    seed: u64,
 ) where
     L: SecondDerivatives<Scalar = f64>,
     L::Group: MatrixLieGroup<N, D>,
@@ -88,87 +88,15 @@ pub(crate) fn assert_linearised<L, M, P, Q, const N: usize, const D: usize>(
     Q: Plan<M> + Steerable,
     SVector<f64, D>: Coordinates<f64, Square = SMatrix<f64, D, D>>,
 {
-    let mut random = Random::new(seed);
-    let (attitude, momentum) = (along::<L::Group, N, D>(&random.sample(), 1.0), random.sample());
     let parameters = stepper.linearised().expect("derivatives").parameters().len();
-    let start = (attitude.matrix(), momentum);
-    let expected = by_dual_numbers(&dual, parameters, start, &[] as &[InputOf<L>]);
-    assert_columns(stepper, (attitude, momentum), &expected, BOUNDS, seed);
-    let inputs = some_inputs(stepper, seed, usize::MAX);
-    let expected = by_dual_numbers(&dual, parameters, start, &inputs);
-    assert_given(stepper, (attitude, momentum), &inputs, &expected, seed);
-}
-
-/// Tangent map, adjoints with either tape, and their duality.
-///
-/// The first bound is of the largest entry, which that of the adjoint is as well, the second of each column's own.
-pub(crate) fn assert_columns<L, P, const D: usize>(
-    stepper: &Stepper<L, P>,
-    start: (L::Group, SVector<f64, D>),
-    expected: &Columns<D>,
-    bounds: (f64, f64),
-    seed: u64,
-) where
-    L: SecondDerivatives<Scalar = f64>,
-    L::Group: LieGroup<Scalar = f64, Vector = SVector<f64, D>>,
-    P: Linearisable<L>,
-    SVector<f64, D>: Coordinates<f64, Square = SMatrix<f64, D, D>>,
-{
-    let mut random = Random::new(seed + 100);
-    let linear = stepper.linearised().expect("derivatives");
-    let numbers: Vec<usize> = (0..linear.parameters().len()).collect();
-    let mut tangent = linear.tangent(&numbers);
-    let start = stepper.start_with_momentum(start.0, start.1).expect("a start");
-    let mut state = start;
-    // Nothing is read from some of the states.
-    let mut read = |n| match n % 3 {
-        1 => Cotangent::zero::<f64>(),
-        _ => Cotangent { attitude: random.sample(), momentum: random.sample() },
-    };
-    let cotangents: Vec<Cotangent<SVector<f64, D>>> = (0..=STEPS).map(&mut read).collect();
-    let mut paired = vec![0.0; 2 * D + numbers.len()];
-    let mut add = |tangent: &TangentOf<L>, cotangent: &Cotangent<SVector<f64, D>>| {
-        for (sum, (attitude, momentum)) in paired.iter_mut().zip(tangent.columns()) {
-            *sum += attitude.dot(&cotangent.attitude) + momentum.dot(&cotangent.momentum);
+    for seed in SEEDS {
+        let mut random = Random::new(seed);
+        let (attitude, momentum) = (along::<L::Group, N, D>(&random.sample(), 1.0), random.sample());
+        let inputs = some_inputs(stepper, seed, usize::MAX);
+        // Of inputs a column need only be right to its own size.
+        for (inputs, bounds) in [(&[][..], BOUNDS), (&inputs, (BOUNDS.0, 1.0))] {
+            let expected = by_dual_numbers(&dual, parameters, (attitude.matrix(), momentum), inputs);
+            assert_columns(stepper, (attitude, momentum), inputs, &expected, bounds, seed);
         }
-    };
-    add(&tangent, &cotangents[0]);
-    for cotangent in &cotangents[1..] {
-        linear.step(&mut state, &mut tangent).expect("a step");
-        add(&tangent, cotangent);
-    }
-    // The step itself is what it is without.
-    let mut plain = start;
-    for _ in 0..STEPS {
-        stepper.step(&mut plain).expect("a step");
-    }
-    assert_eq!(plain, state);
-
-    let largest = |v: &SVector<f64, D>| v.amax();
-    let size = expected.iter().fold(0.0_f64, |size, (a, b)| size.max(largest(a)).max(largest(b)));
-    assert_eq!(tangent.columns().len(), expected.len());
-    for (number, (found, expected)) in tangent.columns().zip(expected).enumerate() {
-        let error = largest(&(found.0 - expected.0)).max(largest(&(found.1 - expected.1)));
-        let own = largest(&expected.0).max(largest(&expected.1));
-        let is_right = error <= bounds.0 * size && error <= bounds.1 * own + ROUNDING * size;
-        assert!(is_right, "column {number}: off by {error:e} of {own:e}, {found:?}, not {expected:?}");
-    }
-
-    let mut gradients = Vec::new();
-    for tape in [Tape::All, Tape::SquareRoot] {
-        let mut state = start;
-        let place = |n: u64| usize::try_from(n).expect("a few");
-        let gradient = linear.adjoint(&mut state, STEPS, tape, |n, _| cotangents[place(n)]).expect("a gradient");
-        assert_eq!(plain, state);
-        gradients.push(gradient);
-    }
-    assert_eq!(gradients[0], gradients[1], "checkpoints change a bit");
-    let gradient = &gradients[0];
-    let start = gradient.start.attitude.iter().chain(gradient.start.momentum.iter());
-    let found: Vec<f64> = start.chain(&gradient.parameters).copied().collect();
-    let size = paired.iter().fold(size, |size, entry| size.max(entry.abs()));
-    for (number, (found, expected)) in found.iter().zip(&paired).enumerate() {
-        let error = (found - expected).abs();
-        assert!(error <= BOUNDS.0 * size, "{number}: {found} by the adjoint, {expected} by the tangent map");
     }
 }

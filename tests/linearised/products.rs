@@ -6,9 +6,9 @@ use liestep::mechanics::{DiscreteLagrangian, Regular};
 use liestep::{SO3, Stepper, lagrangian};
 use nalgebra::{Matrix3, SVector, Vector3};
 
-use super::dual::{Columns, STEP, STEPS, assert_columns};
-use super::inputs::assert_blocks;
-use super::scenes::{J_D, Numbers, SEEDS};
+use super::dual::{Columns, SEEDS, STEP, STEPS};
+use super::inputs::{assert_blocks, assert_columns};
+use super::scenes::{J_D, Numbers};
 
 type Pair = (SO3, SO3);
 
@@ -143,7 +143,7 @@ fn a_body_with_a_wheel_that_is_translated() {
         let attitude: (SO3, R1, R3) = CayleyRetraction::retract(&random.sample());
         let start = (attitude, random.sample());
         let expected = by_differences(carried, parameters, start);
-        assert_columns(&stepper, start, &expected, (1e-10, 1e-7), seed);
+        assert_columns(&stepper, start, &[], &expected, (1e-10, 1e-7), seed);
         // The direction up: a derivation uses that the others are a rotation and a place.
         assert_blocks(&stepper, start, seed, 3);
     }
@@ -158,7 +158,7 @@ fn two_links() {
         let attitude: Pair = CayleyRetraction::retract(&random.sample());
         let start = (attitude, random.sample());
         let expected = by_differences(links, parameters, start);
-        assert_columns(&stepper, start, &expected, (1e-10, 1e-7), seed);
+        assert_columns(&stepper, start, &[], &expected, (1e-10, 1e-7), seed);
         assert_blocks(&stepper, start, seed, usize::MAX);
     }
 }

@@ -1,98 +1,13 @@
-//! The continuous equations of random Lagrangians, against dual numbers of the declared `l`.
-//!
-//! The gradient of `l` is that of dual numbers, its change along a motion that of hyper-dual ones; the brackets and the
-//! rates of what is advected are those of the library, which its laws test.
+//! Collocation of random Lagrangians.
 
-use checks::structure::numbers::{Numbers, lifted, varied};
-use checks::structure::poisson;
-use liestep::groups::{Advected, LieGroup};
+use checks::structure::{Group, poisson};
+use liestep::groups::LieGroup as _;
 use liestep::laws::samples::{MatrixLieGroup, Random};
 use liestep::mechanics::ContinuousLagrangian;
 use liestep::methods::CotangentGauss;
 use liestep::motion::RightHandSide;
-use liestep::numbers::{Coordinates, Entries};
 use nalgebra::{SMatrix, SVector};
-use num_dual::{Dual64, HyperDual64};
 use workbench::runge_kutta;
-
-/// Some dozens of roundings, relative to the size of the terms. The worst of each Lagrangian is printed by
-/// `cargo test -p liestep-tests --test random_lagrangians continuous -- --nocapture`.
-const BOUND: f64 = 1e-14;
-
-/// Returns the error, relative to the scale.
-fn assert_near<const D: usize>(found: &SVector<f64, D>, expected: &SVector<f64, D>, scale: f64, what: &str) -> f64 {
-    let error = (found - expected).norm();
-    assert!(error <= BOUND * scale, "{what}: {error:e} of {scale:e}, {found} and {expected}");
-    error / scale
-}
-
-/// Momentum, diamond, Euler–Poincaré, Lie–Poisson and their inverse, at a random velocity.
-pub(crate) fn assert_equations<L, D1, D2, const N: usize, const D: usize>(system: &L, dual: &D1, hyper: &D2, seed: u64)
-where
-    L: ContinuousLagrangian<Scalar = f64, Group: MatrixLieGroup<N, D>> + Clone,
-    SVector<f64, D>: Coordinates<f64, Square = SMatrix<f64, D, D>>,
-    D1: ContinuousLagrangian<Scalar = Dual64>,
-    D1::Group: LieGroup<Scalar = Dual64, Vector = SVector<Dual64, D>>,
-    D2: ContinuousLagrangian<Scalar = HyperDual64>,
-    D2::Group: LieGroup<Scalar = HyperDual64, Vector = SVector<HyperDual64, D>>,
-{
-    let mut random = Random::new(seed ^ 0xC0);
-    let (xi, w): (SVector<f64, D>, L::Advected) = (random.sample(), random.sample());
-    let unit = |k: usize| SVector::<f64, D>::from_fn(|j, _| if j == k { 1.0 } else { 0.0 });
-    let epsilon = Dual64::new(0.0, 1.0);
-    // δw along `E_k`, by the library's action.
-    let carried = |eta: &SVector<f64, D>| w.rate(&L::Group::hat(&-eta));
-    let none = random.sample::<L::Advected>().zip(&w, &mut |_, _| 0.0);
-    let slope = |eta: &SVector<f64, D>, delta: &L::Advected| {
-        dual.l(&varied(&xi, eta, epsilon), &varied(&w, delta, epsilon)).eps
-    };
-    let momentum = SVector::<f64, D>::from_fn(|k, _| slope(&unit(k), &none));
-    let diamond = SVector::<f64, D>::from_fn(|k, _| -slope(&SVector::zeros(), &carried(&unit(k))));
-    let scale = 1.0 + momentum.norm() * (1.0 + xi.norm()) + diamond.norm();
-    let mut worst = assert_near(&system.momentum(&xi, &w), &momentum, scale, "momentum");
-    worst = worst.max(assert_near(&system.diamond_rate(&xi, &w), &diamond, scale, "diamond"));
-    let rate = L::Group::lie_bracket_transpose(&xi, &momentum) + diamond;
-    worst = worst.max(assert_near(&system.momentum_rate(&xi, &w), &rate, scale, "rate of the momentum"));
-
-    // Along the motion the momentum changes as (1.4) and (2.2) say.
-    let (acceleration, turn) = system.euler_poincare(&xi, &w).expect("regular");
-    let (first, second) = (HyperDual64::new(0.0, 1.0, 0.0, 0.0), HyperDual64::new(0.0, 0.0, 1.0, 0.0));
-    let change = SVector::<f64, D>::from_fn(|k, _| {
-        let along: SVector<HyperDual64, D> = varied(&xi, &acceleration, first);
-        let direction: SVector<HyperDual64, D> = lifted(&unit(k));
-        hyper.l(&(along + direction * second), &varied(&w, &turn, first)).eps1eps2
-    });
-    let scale = scale + system.velocity_hessian(&xi, &w).norm() * acceleration.norm();
-    worst = worst.max(assert_near(&change, &rate, scale, "Euler–Poincaré"));
-
-    // Solved for the velocity again, and with the Hamiltonian's equations in (μ, w).
-    let found = system.velocity(&momentum, &w).expect("a convex kinetic energy");
-    let condition = system.velocity_hessian(&xi, &w).norm();
-    worst = worst.max(assert_near(&found, &xi, (1.0 + condition) * (1.0 + xi.norm()), "velocity of the momentum"));
-    let (torque, again) = system.lie_poisson(&momentum, &w).expect("a convex kinetic energy");
-    worst = worst.max(assert_near(&torque, &rate, scale, "Lie–Poisson"));
-    let mut entries = Vec::new();
-    again.each(&mut |entry| entries.push(entry));
-    let mut others = Vec::new();
-    turn.each(&mut |entry| others.push(entry));
-    let allowed = 10.0 * BOUND * (1.0 + condition) * (1.0 + xi.norm());
-    assert!(entries.iter().zip(&others).all(|(a, b)| (a - b).abs() <= allowed), "the rate of what is advected");
-    let energy = momentum.dot(&xi) - dual.l(&lifted(&xi), &lifted(&w)).re;
-    let hamiltonian = system.hamiltonian(&momentum, &w).expect("a convex kinetic energy");
-    assert!((hamiltonian - energy).abs() <= 10.0 * BOUND * (scale + energy.abs() + (momentum.dot(&xi)).abs()));
-
-    // For a solver it is the same in numbers.
-    let numbers = RightHandSide::new(system.clone()).expect("regular at rest");
-    let attitude = L::Group::identity();
-    let spatial = system.advected();
-    let expected = system.lie_poisson(&momentum, &spatial).expect("a convex kinetic energy").0;
-    let state = numbers.state(&attitude, &momentum);
-    let mut rates = vec![0.0; state.len()];
-    numbers.rate(&state, &mut rates).expect("a convex kinetic energy");
-    let found = SVector::from_column_slice(&rates[N * N..]);
-    worst = worst.max(assert_near(&found, &expected, 1.0 + expected.norm(), "numbers"));
-    println!("the worst error of a term is {worst:.1e} of its size");
-}
 
 /// Where a motion ends after the time, in so many steps; `None` where one is too long for the iteration.
 fn end<L, const PAIRS: usize, const N: usize, const D: usize>(
@@ -121,9 +36,7 @@ fn orders(errors: impl Iterator<Item = (u32, Option<f64>)>, rounding: f64) -> Ve
 /// symmetries.
 pub(crate) fn assert_collocation<L, const N: usize, const D: usize>(with: impl Fn(&L::Advected) -> L, seed: u64)
 where
-    L: ContinuousLagrangian<Scalar = f64, Group: MatrixLieGroup<N, D>> + Clone,
-    L::Advected: Numbers,
-    SVector<f64, D>: Coordinates<f64, Square = SMatrix<f64, D, D>>,
+    L: ContinuousLagrangian<Scalar = f64, Group: Group + MatrixLieGroup<N, D>> + Clone,
 {
     let mut random = Random::new(seed ^ 0x6A);
     let (xi, w): (SVector<f64, D>, L::Advected) = (random.sample(), random.sample());
@@ -177,7 +90,7 @@ where
         (momentum, gauss.advected(&attitude))
     };
     let differences = &poisson::smooth_derivative;
-    let (defect, scale) = poisson::defect_by::<L::Group, L::Advected, N, D>(map, &momentum, &w, differences);
+    let (defect, scale) = poisson::defect_of::<L::Group, _>(map, &momentum, &w, differences);
     println!("Poisson {:.1e}, {defect:.1e} of {scale:.1e}", defect / scale);
     assert!(defect <= 1e-12 * scale, "Poisson: {defect:e} of {scale:e}");
 }

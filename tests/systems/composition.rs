@@ -3,6 +3,7 @@
 use checks::structure::System;
 use liestep::Stepper;
 use liestep::groups::LieGroup as _;
+use liestep::laws::samples::MatrixLieGroup;
 use liestep::methods::CompositionScheme;
 use nalgebra::SVector;
 use workbench::measure::{four_halvings, order, relative, steps_in};
@@ -22,11 +23,11 @@ fn errors<L, const N: usize, const D: usize>(
     system: &L,
     scheme: CompositionScheme,
     body: &Body<N, D>,
-    (attitude, velocity): Start<L::Group, D>,
+    (attitude, velocity): Start<L::Group>,
     coarsest: f64,
 ) -> [(f64, f64); 5]
 where
-    L: System<N, D> + Clone,
+    L: System<Group: MatrixLieGroup<N, D>> + Clone,
 {
     let momentum: SVector<f64, D> = body.inertia * velocity;
     let exact: Phase<N, D> = body.solution::<L::Group>((attitude.matrix(), momentum), TIME, 1000);
@@ -43,10 +44,10 @@ where
 fn assert_fourth_order<L, const N: usize, const D: usize>(
     system: &L,
     body: &Body<N, D>,
-    start: Start<L::Group, D>,
+    start: Start<L::Group>,
     coarsest: f64,
 ) where
-    L: System<N, D> + Clone,
+    L: System<Group: MatrixLieGroup<N, D>> + Clone,
 {
     for scheme in SCHEMES {
         let errors = errors(system, scheme, body, start, coarsest);

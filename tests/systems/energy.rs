@@ -8,9 +8,9 @@ use crate::samples::{self, Start};
 const STEP: f64 = 0.02;
 
 /// The largest distances of the energy from that at the start, one for each so many steps of a motion.
-fn deviations<L: System<N, D> + Clone, const N: usize, const D: usize, const COUNT: usize>(
+fn deviations<L: System + Clone, const COUNT: usize>(
     system: &L,
-    (attitude, velocity): Start<L::Group, D>,
+    (attitude, velocity): Start<L::Group>,
     h: f64,
     steps: [u32; COUNT],
 ) -> [f64; COUNT] {
@@ -25,7 +25,7 @@ fn deviations<L: System<N, D> + Clone, const N: usize, const D: usize, const COU
     })
 }
 
-fn assert_bounded<L: System<N, D> + Clone, const N: usize, const D: usize>(system: &L, start: Start<L::Group, D>) {
+fn assert_bounded<L: System + Clone>(system: &L, start: Start<L::Group>) {
     // So short that irregular motions are still the same at both steps.
     let [coarse] = deviations(system, start, STEP, [500]);
     let [fine] = deviations(system, start, 0.5 * STEP, [1000]);

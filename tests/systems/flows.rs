@@ -7,7 +7,7 @@ use crate::samples::every_system;
 /// Of 30 steps; the worst leaves 1.5e-14.
 const ROUNDING: f64 = 1e-13;
 
-fn p5<L: System<N, D> + Clone, const N: usize, const D: usize>(system: &L, name: &str) {
+fn p5<L: System + Clone>(system: &L, name: &str) {
     let parting = two_flows::parting(system, 0.01, 30, 44);
     println!("{name}: the flows (2.5) and (2.8) part by {parting:.1e}");
     assert!(parting < ROUNDING, "{name}: the flows (2.5) and (2.8) part by {parting:e}");

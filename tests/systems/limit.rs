@@ -1,12 +1,12 @@
 //! The continuous limit of every declared system, from its `l_d` alone: `l(ξ, w) = lim l_d(exp hξ, w)/h`, its momentum
 //! (1.14), and its energy (1.16), whose derivative is the velocity.
 
-use checks::structure::{System, axis};
+use checks::structure::{Group as _, System, Vector, axis, gradient, norm, norm_of_map};
 use liestep::Stepper;
 use liestep::effects::{RigidBody, Rotor};
 use liestep::groups::LieGroup as _;
-use liestep::laws::samples::{Random, along, derivative};
-use nalgebra::SVector;
+use liestep::laws::samples::Random;
+use liestep::numbers::Coordinates as _;
 
 use crate::samples::{self, every_system};
 
@@ -25,26 +25,23 @@ fn limit(value: impl Fn(f64) -> f64) -> f64 {
     table[table.len() - 1]
 }
 
-fn assert_limit<L: System<N, D> + Clone, const N: usize, const D: usize>(system: &L, name: &str) {
+pub(crate) fn assert_limit<L: System + Clone>(system: &L, name: &str) {
     let mut random = Random::new(16);
     let stepper = Stepper::new(system.clone(), 0.01).unwrap();
-    let attitude = along::<L::Group, N, D>(&random.sample(), 0.3);
-    let velocity: SVector<f64, D> = random.sample();
+    let (attitude, velocity) = (L::Group::along(&random.sample(), 0.3), random.sample());
     let state = stepper.start(attitude, velocity).unwrap();
     let (momentum, w) = (state.momentum(), state.advected());
-    let l = |xi: &SVector<f64, D>| limit(|h| system.l_d(&along::<L::Group, N, D>(xi, h).matrix(), &w, h) / h);
-    let scale = system.inertia(&system.advected()).norm() + system.potential(&w).abs() + momentum.norm();
+    let l = |xi: Vector<L>| limit(|h| system.l_d(&L::Group::along(&xi, h).matrix(), &w, h) / h);
+    let scale = norm_of_map::<L>(&system.inertia(&w)) + system.potential(&w).abs() + norm(&momentum);
 
-    let slope = SVector::<f64, D>::from_fn(|k, _| derivative(|t| l(&(velocity + axis(k, t)))));
-    let missed = (slope - momentum).norm() / scale;
-    let legendre = (stepper.energy(&state) - (momentum.dot(&velocity) - l(&velocity))).abs() / scale;
+    let missed = norm(&(gradient::<L>(&|k, t| l(velocity + axis(k, t))) - momentum)) / scale;
+    let legendre = (stepper.energy(&state) - (momentum.dot(&velocity) - l(velocity))).abs() / scale;
     println!("{name}: (1.14) {missed:.1e}, (1.16) {legendre:.1e}");
     assert!(missed < DIFFERENCES, "{name}: μ = δl/δξ, (1.14): off by {missed:e}");
     assert!(legendre < LIMIT, "{name}: h = μ·ξ − l, (1.16): off by {legendre:e}");
 
-    let h = |momentum: SVector<f64, D>| stepper.energy(&stepper.start_with_momentum(attitude, momentum).unwrap());
-    let slope = SVector::<f64, D>::from_fn(|k, _| derivative(|t| h(momentum + axis(k, t))));
-    let missed = (slope - stepper.velocity(&state)).norm();
+    let h = |momentum| stepper.energy(&stepper.start_with_momentum(attitude, momentum).unwrap());
+    let missed = norm(&(gradient::<L>(&|k, t| h(momentum + axis(k, t))) - stepper.velocity(&state)));
     assert!(missed < LIMIT * scale, "{name}: δh/δμ = ξ: off by {missed:e}");
 }
 

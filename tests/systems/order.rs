@@ -4,6 +4,7 @@ use checks::structure::System;
 use declarations::{OrbitingBody, TetheredPlate, UnderwaterBody};
 use liestep::Stepper;
 use liestep::groups::{LieGroup as _, SL2};
+use liestep::laws::samples::MatrixLieGroup;
 use nalgebra::{Matrix3, Matrix4, Point3, SMatrix, SVector, Vector3, Vector6};
 use workbench::measure::{four_halvings, order, relative, steps_in};
 use workbench::runge_kutta;
@@ -30,11 +31,11 @@ fn rotation(g: &Matrix4<f64>) -> Matrix3<f64> {
 pub(crate) fn errors<L, const N: usize, const D: usize>(
     system: &L,
     body: &Body<N, D>,
-    (attitude, velocity): Start<L::Group, D>,
+    (attitude, velocity): Start<L::Group>,
     shift: impl Fn(&L::Advected, f64) -> SVector<f64, D>,
 ) -> [(f64, f64); 5]
 where
-    L: System<N, D> + Clone,
+    L: System<Group: MatrixLieGroup<N, D>> + Clone,
 {
     let momentum = body.inertia * velocity;
     let exact: Phase<N, D> = body.solution::<L::Group>((attitude.matrix(), momentum), TIME, 1000);
@@ -54,10 +55,10 @@ pub(crate) fn unshifted<A, const D: usize>(_: &A, _: f64) -> SVector<f64, D> {
     SVector::zeros()
 }
 
-fn assert_second_order<L: System<N, D> + Clone, const N: usize, const D: usize>(
+fn assert_second_order<L: System<Group: MatrixLieGroup<N, D>> + Clone, const N: usize, const D: usize>(
     system: &L,
     inertia: SMatrix<f64, D, D>,
-    start: Start<L::Group, D>,
+    start: Start<L::Group>,
     potential: impl Fn(&SMatrix<f64, N, N>) -> f64,
 ) {
     let body = Body { inertia, potential: &potential };

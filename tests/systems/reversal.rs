@@ -7,7 +7,7 @@ use crate::samples::{self, every_system};
 /// Some products of small matrices, both ways.
 const ROUNDING: f64 = 1e-14;
 
-fn reverses<L: System<N, D> + Clone, const N: usize, const D: usize>(system: &L, name: &str) {
+fn reverses<L: System + Clone>(system: &L, name: &str) {
     let error = reversal::error_of_return(system, 0.1, 44);
     println!("{name}: {error:.1e}");
     assert!(error < ROUNDING, "{error:e}");

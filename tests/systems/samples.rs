@@ -6,14 +6,14 @@ use declarations::{
     CayleyTop, ElasticFlow, FourthOrderBody, FourthOrderTop, FreeBody, FullTop, HeavyTop, LogTop, LogTraceTop, Magnet,
     OrbitingBody, Satellite, SixthOrderTop, SlidingTop, Spring, TetheredPlate, Top, UnderwaterBody,
 };
-use liestep::groups::{CovariantTensor, SL2};
+use liestep::groups::{CovariantTensor, LieGroup, SL2};
 use liestep::prelude::*;
 use nalgebra::{
-    Matrix2, Matrix3, Matrix4, Point2, Point3, SVector, UnitComplex, UnitQuaternion, Vector2, Vector3, Vector4, Vector6,
+    Matrix2, Matrix3, Matrix4, Point2, Point3, UnitComplex, UnitQuaternion, Vector2, Vector3, Vector4, Vector6,
 };
 
 /// Where a motion starts.
-pub type Start<G, const D: usize> = (G, SVector<f64, D>);
+pub type Start<G> = (G, <G as LieGroup>::Vector);
 
 /// Calls `$check` in a test of its own for each declaration.
 macro_rules! every_system {
@@ -46,28 +46,28 @@ fn rotation() -> UnitQuaternion<f64> {
     UnitQuaternion::from_scaled_axis(Vector3::new(0.8, -0.3, 0.4))
 }
 
-pub fn on_so3() -> Start<SO3, 3> {
+pub fn on_so3() -> Start<SO3> {
     (rotation().into(), Vector3::new(0.5, 1.0, -1.5))
 }
 
-pub fn on_se2() -> Start<SE2, 3> {
+pub fn on_se2() -> Start<SE2> {
     let motion = SE2::from_rotation_and_translation(UnitComplex::new(0.8), Vector2::new(0.5, -0.2));
     (motion, Vector3::new(1.2, 0.4, -0.3))
 }
 
-pub fn on_se3() -> Start<SE3, 6> {
+pub fn on_se3() -> Start<SE3> {
     let motion = SE3::from_rotation_and_translation(rotation(), Vector3::new(0.5, -0.2, 0.1));
     (motion, Vector6::new(0.5, 1.0, -0.8, 0.3, 0.9, -0.4))
 }
 
 /// Near a circular orbit of [`orbiting_body`], spinning so fast that the motion is regular.
-pub fn in_orbit() -> Start<SE3, 6> {
+pub fn in_orbit() -> Start<SE3> {
     let motion = SE3::from_rotation_and_translation(rotation(), Vector3::zeros());
     let velocity = rotation().inverse_transform_vector(&Vector3::new(-0.4, 0.9, 0.0));
     (motion, Vector6::new(0.1, 0.2, 2.0, velocity.x, velocity.y, velocity.z))
 }
 
-pub fn on_sl2() -> Start<SL2, 3> {
+pub fn on_sl2() -> Start<SL2> {
     (SL2::try_from(Matrix2::new(1.5, 0.5, 1.0, 1.0)).unwrap(), Vector3::new(0.4, -0.3, 0.8))
 }
 

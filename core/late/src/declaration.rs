@@ -52,19 +52,25 @@ impl<C> Ready<C> {
 /// All programs of a declaration, ready to run.
 pub(crate) type All<C> = Arc<Stages<Ready<C>>>;
 
+/// Those of the derivatives of a step.
+pub(crate) type Derivatives<C> = Arc<[Ready<C>; 4]>;
+
 /// The programs, as this back end runs them.
-pub(crate) fn ready<T: Real, B: Backend<T>>(programs: &Stages<Program>) -> Result<All<B::Code>, LateError> {
+pub(crate) fn ready<T: Real, B: Backend<T>>(programs: &Stages<Program>) -> Result<Stages<Ready<B::Code>>, LateError> {
     let mut list = Vec::new();
     programs.try_map(|program| {
         list.push(program);
         Ok::<_, LateError>(())
     })?;
-    let mut codes = B::codes(&list)?.into_iter();
-    let stages = programs.try_map(|program| {
-        let arrays = program.inputs.iter().fold(0, |arrays, source| arrays | 1 << source.array as u16);
-        Ok(Ready { code: codes.next().ok_or(LateError::TooLarge)?, outputs: program.outputs.len(), arrays })
-    });
-    stages.map(Arc::new)
+    let mut each = ready_each::<T, B>(&list)?.into_iter();
+    programs.try_map(|_| each.next().ok_or(LateError::TooLarge))
+}
+
+fn ready_each<T: Real, B: Backend<T>>(programs: &[&Program]) -> Result<Vec<Ready<B::Code>>, LateError> {
+    let arrays = |program: &Program| program.inputs.iter().fold(0, |arrays, source| arrays | 1 << source.array as u16);
+    let codes = B::codes(programs)?.into_iter();
+    let each = codes.zip(programs);
+    Ok(each.map(|(code, program)| Ready { code, outputs: program.outputs.len(), arrays: arrays(program) }).collect())
 }
 
 /// A longer text is no Lagrangian that a person has typed.
@@ -157,12 +163,21 @@ impl Declaration {
 
     /// The programs, as this back end runs them: made once.
     pub(crate) fn ready<T: Real, B: Backend<T>>(&self) -> Result<All<B::Code>, LateError> {
+        self.once(|| ready::<T, B>(&self.staged.programs))
+    }
+
+    /// Those of the derivatives of a step.
+    pub(crate) fn ready_derivatives<T: Real, B: Backend<T>>(&self) -> Result<Derivatives<B::Code>, LateError> {
+        let programs = self.staged.derivatives.as_ref().ok_or(LateError::NoGradients)?;
+        self.once(|| ready_each::<T, B>(&programs.each_ref())?.try_into().map_err(|_| LateError::TooLarge))
+    }
+
+    fn once<M: Any + Send + Sync>(&self, make: impl FnOnce() -> Result<M, LateError>) -> Result<Arc<M>, LateError> {
         let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = made.iter().find_map(|one| Arc::clone(one).downcast::<Stages<Ready<B::Code>>>().ok());
-        if let Some(known) = known {
+        if let Some(known) = made.iter().find_map(|one| Arc::clone(one).downcast::<M>().ok()) {
             return Ok(known);
         }
-        let all = ready::<T, B>(&self.staged.programs)?;
+        let all = Arc::new(make()?);
         made.push(Arc::clone(&all) as Arc<dyn Any + Send + Sync>);
         Ok(all)
     }

@@ -12,9 +12,9 @@ use crate::code::{Backend, Given, Interpreted};
 use crate::declaration::{All, Declaration, Ready, ready};
 use crate::term::{Late, entries, is_finite};
 
-type Matrix<G> = <G as LieGroup>::Matrix;
-type Vector<G> = <G as LieGroup>::Vector;
-type Square<G> = <Vector<G> as Coordinates<<G as LieGroup>::Scalar>>::Square;
+pub(crate) type Matrix<G> = <G as LieGroup>::Matrix;
+pub(crate) type Vector<G> = <G as LieGroup>::Vector;
+pub(crate) type Square<G> = <Vector<G> as Coordinates<<G as LieGroup>::Scalar>>::Square;
 
 /// Room for numbers, on the stack unless they are many: what isn't used costs time to clear.
 macro_rules! room {
@@ -56,7 +56,10 @@ fn filled<'a, T: Real>(value: &impl Entries<T>, room: &'a mut [T]) -> &'a [T] {
 }
 
 /// What a program computes that reads no constants.
-fn alone<T: Real, B: Backend<T>, const N: usize>(program: &Ready<B::Code>, given: Given<'_, T, N>) -> Vec<T> {
+pub(crate) fn alone<T: Real, B: Backend<T>, const N: usize>(
+    program: &Ready<B::Code>,
+    given: Given<'_, T, N>,
+) -> Vec<T> {
     let mut outputs = vec![T::zero(); program.outputs];
     B::run(&program.code, &B::image(&program.code, &[]), given, &mut outputs);
     outputs
@@ -64,14 +67,14 @@ fn alone<T: Real, B: Backend<T>, const N: usize>(program: &Ready<B::Code>, given
 
 /// The first of these numbers as a vector.
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn vector<T: Real, V: Entries<T>>(outputs: &[T]) -> V {
+pub(crate) fn vector<T: Real, V: Entries<T>>(outputs: &[T]) -> V {
     let mut outputs = outputs.iter().copied();
     V::from_entries(&mut || outputs.next().unwrap_or_else(|| real(f64::NAN)))
 }
 
 /// The same as a square matrix, row by row.
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn square<G: LieGroup>(outputs: &[G::Scalar]) -> Square<G> {
+pub(crate) fn square<G: LieGroup>(outputs: &[G::Scalar]) -> Square<G> {
     Vector::<G>::square(|column| {
         let mut places = (0..).map(|row| column + row * G::DIMENSION);
         let mut next = || places.next().and_then(|place| outputs.get(place).copied());
@@ -257,7 +260,7 @@ where
         let numbers = alone::<_, B, _>(&self.stages.constants, given);
         let programs = self.specialise.map(|specialise| specialise(&self.declaration.programs, &numbers));
         // What is too large now was too large before, and isn't here.
-        let own = programs.and_then(|programs| ready::<G::Scalar, B>(&programs).ok());
+        let own = programs.and_then(|programs| ready::<G::Scalar, B>(&programs).ok()).map(Arc::new);
         let is_specialised = own.is_some();
         Constants::of(self.declaration, own.as_ref().unwrap_or(&self.stages), is_specialised, numbers)
     }

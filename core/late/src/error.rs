@@ -47,6 +47,11 @@ pub enum LateError {
     /// It is a sum of a declaration with a pace, whose energy is that of all terms.
     #[error("a Lagrangian with a pace has all its terms in its text")]
     Pace,
+    /// The derivatives of its steps weren't asked for.
+    #[error(
+        "the derivatives of the steps weren't derived: write the word `gradients` into the declaration, of each term"
+    )]
+    NoGradients,
     /// The declaration is on another group.
     #[error("the declaration is on {declared}: take that group")]
     Group {

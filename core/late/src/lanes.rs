@@ -92,6 +92,7 @@ where
             stages: Arc::clone(&lane.stages),
             numbers: lane.numbers.iter().map(|&number| G::Scalar::splat(number)).collect(),
             specialise: None,
+            derivatives: lane.derivatives.clone(),
             types: PhantomData,
         }
     }
@@ -102,6 +103,7 @@ where
             stages: Arc::clone(&self.stages),
             numbers: self.numbers.iter().map(|number| number.extract(k)).collect(),
             specialise: None,
+            derivatives: self.derivatives.clone(),
             types: PhantomData,
         }
     }

@@ -6,6 +6,7 @@ use crate::error::LateError;
 use crate::specialised::{Fold, Value};
 
 /// A term, and where its numbers begin among those of all.
+#[derive(Clone, Copy)]
 struct Part<'a> {
     staged: &'a Staged,
     parameters: usize,
@@ -158,6 +159,23 @@ fn programs(parts: &[Part<'_>]) -> Stages<Program> {
     }
 }
 
+/// What is of the place is added, and what is of the numbers that are carried stands in the order of the terms.
+fn derivatives(parts: &[Part<'_>]) -> Option<[Program; 4]> {
+    let all = parts.iter().map(|part| Some((part, part.staged.derivatives.as_ref()?)));
+    let all = all.collect::<Option<Vec<_>>>()?;
+    let of = |at: usize, of_place: usize| {
+        let (mut fold, mut sum, mut behind) = (Fold::default(), Vec::new(), Vec::new());
+        for (part, programs) in &all {
+            // The weights are those of all terms.
+            let mut one = Part { has_target: true, ..**part }.append(&mut fold, &programs[at]);
+            behind.extend(one.split_off(of_place.min(one.len())));
+            sum = if sum.is_empty() { one } else { added(&mut fold, &sum, &one) };
+        }
+        fold.program(&[sum, behind].concat())
+    };
+    Some([of(0, usize::MAX), of(1, usize::MAX), of(2, dimension(parts.first()?.staged)), of(3, 0)])
+}
+
 /// The sum of several.
 pub(crate) fn summed(terms: &[&Staged]) -> Result<Staged, LateError> {
     let first = *terms.first().ok_or(LateError::Nothing)?;
@@ -205,6 +223,7 @@ pub(crate) fn summed(terms: &[&Staged]) -> Result<Staged, LateError> {
         energy: None,
         blocks: solved().next().map_or_else(Vec::new, |one| one.blocks.iter().copied().filter(in_all).collect()),
         programs: programs(&parts),
+        derivatives: derivatives(&parts),
         parameters,
         carried,
     })

@@ -14,7 +14,7 @@ use nalgebra::Vector1;
 
 use crate::carried::Slots;
 use crate::code::{Backend, Interpreted};
-use crate::declaration::{All, Declaration};
+use crate::declaration::{All, Declaration, Derivatives};
 use crate::error::LateError;
 use crate::specialised::specialised;
 
@@ -35,13 +35,15 @@ pub struct Late<G: LieGroup, W = (), K = WithKinetic, B: Backend<G::Scalar> = In
     /// Of all parameters, NaN where none was given.
     pub(crate) numbers: Arc<[G::Scalar]>,
     pub(crate) specialise: Option<Specialise<G::Scalar>>,
+    pub(crate) derivatives: Option<Derivatives<B::Code>>,
     pub(crate) types: PhantomData<(W, K)>,
 }
 
 impl<G: LieGroup, W, K, B: Backend<G::Scalar>> Clone for Late<G, W, K, B> {
     fn clone(&self) -> Self {
         let (stages, numbers) = (Arc::clone(&self.stages), Arc::clone(&self.numbers));
-        Self { declaration: self.declaration, stages, numbers, specialise: self.specialise, types: PhantomData }
+        let (specialise, derivatives) = (self.specialise, self.derivatives.clone());
+        Self { declaration: self.declaration, stages, numbers, specialise, derivatives, types: PhantomData }
     }
 }
 
@@ -102,8 +104,20 @@ impl<G: LieGroup, W: Advected<G> + Slots, K: KineticPart, B: Backend<G::Scalar>>
             stages: declaration.ready::<G::Scalar, B>()?,
             numbers: vec![real(f64::NAN); numbers].into(),
             specialise: None,
+            derivatives: None,
             types: PhantomData,
         })
+    }
+
+    /// With the derivatives of its steps, by the state and by what they are given, for
+    /// [`Stepper::linearised`](liestep::Stepper::linearised) and what goes by it. Those by the parameters aren't among them.
+    ///
+    /// # Errors
+    ///
+    /// [`LateError::NoGradients`] where the text, or that of a term, is without the word `gradients`.
+    pub fn differentiable(mut self) -> Result<Self, LateError> {
+        self.derivatives = Some(self.declaration.ready_derivatives::<G::Scalar, B>()?);
+        Ok(self)
     }
 
     /// The declaration of a compiled effect, derived anew, with its numbers.

@@ -17,10 +17,12 @@ use liestep::effects::{
 use liestep::groups::{CayleyRetraction, CovariantTensor, LieGroup as _, Retraction, SE23};
 use liestep::lagrangian;
 use liestep::laws::samples::Random;
-use liestep::mechanics::{DiagonalNonstandardInertia, Effect, Inertia, Vector, WithEitherKinetic, WithoutKinetic};
+use liestep::mechanics::{
+    DiagonalNonstandardInertia, Effect, Inertia, SecondDerivatives, Vector, WithEitherKinetic, WithoutKinetic,
+};
 use liestep::motion::Batch;
-use liestep::numbers::Coordinates as _;
-use liestep::{NonstandardInertia, SO3, Stepper};
+use liestep::numbers::{Coordinates as _, Entries as _};
+use liestep::{NonstandardInertia, SO3, SetupError, Stepper};
 use liestep_late::{Array, Backend, Declaration, Interpreted, Late, LateError, numbers, specialised};
 use nalgebra::{Matrix3, Matrix5, Point, SMatrix, SVector, Vector3, Vector5};
 use simba::simd::AutoF64x4;
@@ -163,6 +165,7 @@ fn effects_of_the_library() {
 /// On SE(2,3), with what moves there.
 #[lagrangian(
     group = SE23,
+    gradients,
     advected(w = up),
     l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * k * w.dot(&(r + F * r)),
 )]
@@ -306,6 +309,71 @@ fn sums_in_one_program() {
     assert!(
         two.parameters[4].name == "Gravity2.m" && std::ptr::eq(two, Declaration::sum(&[gravity; 2]).expect("kept"))
     );
+}
+
+/// Numbers of all derivatives of a step, at a random one.
+fn derivatives<E>(effect: &E, seed: u64) -> Vec<f64>
+where
+    E: SecondDerivatives<Scalar = f64>,
+    CayleyRetraction: Retraction<E::Group>,
+{
+    let mut random = Random::new(seed);
+    let [turn, u, p]: [Vector<E>; 3] = [random.sample(), random.sample(), random.sample()];
+    let increment = <CayleyRetraction as Retraction<E::Group>>::retract(&(turn * 0.4)).increment();
+    let (w, h, mut found) = (effect.advected(), 0.1, Vec::new());
+    let mut add = |vector: Vector<E>| vector.each(&mut |entry| found.push(entry));
+    let blocks = effect.step_derivatives(&increment, &w, h);
+    add(blocks.start_by_turn * u);
+    add(blocks.end_by_turn * u);
+    add(blocks.start_by_place * u);
+    add(blocks.end_by_place * u);
+    let (matrix, right_side) = effect.adjoint_system(&increment, &w, h, &p);
+    let (by_place, by_advected) = effect.adjoint_gradient(&increment, &w, h, [&u, &p], &mut |_, _| {});
+    [matrix * u, right_side, by_place].into_iter().for_each(&mut add);
+    // What nothing depends on may be visited, and needn't be.
+    let mut sum = Vector::<E>::zero();
+    effect.by_advected(&increment, &w, h, &mut |number, start, end| {
+        let number = 1.5_f64.powi(i32::try_from(number).unwrap());
+        sum = sum + start * number + end * number.recip();
+    });
+    add(sum);
+    by_advected.each(&mut |entry| found.push(entry));
+    found
+}
+
+/// To the bit; in one program those of a sum to rounding.
+#[test]
+fn derivatives_of_steps() {
+    type Seen = ((((), Vector3<f64>), ()), Vector3<f64>);
+    macro_rules! differentiated {
+        ($kinetic:ident: $($name:ident { $($field:ident)* })+) => {$(
+            let compiled = random!(3, $name { $($field)* });
+            let late = Late::<_, _, $kinetic>::like(&compiled).and_then(Late::differentiable).expect("derivatives");
+            assert_eq!(derivatives(&compiled, 5), derivatives(&late, 5), "{}", stringify!($name));
+        )+};
+    }
+    differentiated! { WithEitherKinetic: RigidBody { J_d } CayleyBody { J } GeodesicBody { J } Vehicle { J k r up } }
+    differentiated! { WithoutKinetic:
+        Gravity { m g rho up } GravityGradient { GM r J direction } Dipole { moment field } Spring { k length at anchor }
+        Rotor { spin } Drag { c J } MagneticDamping { k field J } Thrust { at thrust } Torque { torque }
+    }
+    let (body, gravity, drag) =
+        (random!(1, RigidBody { J_d }), random!(2, Gravity { m g rho up }), random!(3, Drag { c J }));
+    let sum = body + gravity + drag + gravity;
+    let terms = [declared(&body), declared(&gravity), declared(&drag), declared(&gravity)];
+    let late = Declaration::sum(&terms).and_then(Late::<SO3, Seen, WithEitherKinetic>::of);
+    let late = late.and_then(|late| late.with_all(&numbers(&sum))?.differentiable()).expect("derivatives");
+    let (one, other) = (derivatives(&sum, 7), derivatives(&late, 7));
+    assert!(
+        one.len() == other.len() && one.iter().zip(&other).all(|(a, b)| (a - b).abs() < 1e-11),
+        "{one:?} {other:?}"
+    );
+    let plain: Late<_, _, WithEitherKinetic> = Late::like(&random!(1, FreeBody { J_d })).expect("a declaration");
+    assert_eq!(
+        Stepper::new(plain.clone(), 0.1).expect("a stepper").linearised().err(),
+        Some(SetupError::NoSecondDerivatives)
+    );
+    assert_eq!(plain.differentiable(), Err(LateError::NoGradients));
 }
 
 /// With all numbers written in, a step is a shorter program, which is the same but for roundings.

@@ -243,12 +243,16 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// # Errors
     ///
     /// [`SetupError::NoSecondDerivatives`] for a splitting with force gradients, of a term whose derivatives were written by
-    /// hand without [`kick_gradient`](SecondDerivatives::kick_gradient).
+    /// hand without [`kick_gradient`](SecondDerivatives::kick_gradient), and where they [aren't
+    /// derived](SecondDerivatives::are_derived).
     pub fn linearised(&self) -> Result<Linearised<'_, S, P>, SetupError>
     where
         S: SecondDerivatives,
         P: Linearisable<S>,
     {
+        if !self.scene.are_derived() {
+            return Err(SetupError::NoSecondDerivatives);
+        }
         self.plan.check_stages(&self.scene)?;
         Ok(Linearised { stepper: self, table: self.plan.table() })
     }
@@ -360,9 +364,10 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Carry<'_, '_, S, P> {
             let own = plan.parameters();
             assert_eq!(count, own, "the tangent is that of a plan with {count} parameters, and this one has {own}");
         }
-        let mut next = *state;
+        let before = *state;
         tangent.events.get_mut().clear();
-        let report = linearised.recorded_given(&mut next, input, &tangent.events, [true; 2])?;
+        let made = linearised.recorded_given(state, input, &tangent.events, [true; 2]);
+        let report = made.inspect_err(|_| *state = before)?;
         tangent.is_given_values = matches!(input, Input::Values(_));
         tangent.keep();
         let events = tangent.events.take();
@@ -370,11 +375,11 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Carry<'_, '_, S, P> {
             plan.visit((scene, table), (index, event), tangent);
         }
         tangent.events.replace(events);
-        if !tangent.is_finite() {
-            tangent.go_back();
-            return Err(StepError::NonFinite { what: "derivative after the step" });
+        if tangent.is_finite() {
+            return Ok(report);
         }
-        *state = next;
-        Ok(report)
+        tangent.go_back();
+        *state = before;
+        Err(StepError::NonFinite { what: "derivative after the step" })
     }
 }

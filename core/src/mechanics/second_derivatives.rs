@@ -34,6 +34,12 @@ pub trait SecondDerivatives: Effect {
     /// How many scalars [`describe`](Effect::describe) shows.
     const PARAMETERS: usize;
 
+    /// Whether the derivatives are there, asked of a value: a text that is read while a program runs may be without
+    /// `gradients`.
+    fn are_derived(&self) -> bool {
+        true
+    }
+
     /// The derivatives along turns and displacements; `increment` is `F − I`.
     fn step_derivatives(
         &self,
@@ -166,6 +172,10 @@ where
     B: SecondDerivatives<Scalar = A::Scalar, Group = A::Group, Retraction = A::Retraction>,
 {
     const PARAMETERS: usize = A::PARAMETERS + B::PARAMETERS;
+
+    fn are_derived(&self) -> bool {
+        self.first.are_derived() && self.second.are_derived()
+    }
 
     #[hot]
     fn step_derivatives(

@@ -1,12 +1,11 @@
 //! Rates of densities of steps, ready made: [`Stepper::with_density`](crate::Stepper::with_density) takes them.
 
-use nalgebra::{Vector3, Vector6};
+use nalgebra::{Matrix3, Vector3, Vector6};
 
-use crate::error::SetupError;
 use crate::groups::{R3, SO3};
-use crate::mechanics::ContinuousLagrangian;
-use crate::motion::{Motion, RightHandSide};
-use crate::numbers::Bodies;
+use crate::mechanics::DiscreteLagrangian;
+use crate::motion::Motion;
+use crate::numbers::{Bodies, Coordinates as _};
 
 /// Steps proportional to the power `p` of the distance between two of several bodies, counted from zero:
 /// `G = −p r·ṙ/|r|²`, 1/s. Of two bodies that attract each other by gravity 3/2 is Kepler's own.
@@ -25,23 +24,20 @@ pub fn distance<const N: usize, A>(
 }
 
 /// Steps in which a body turns by about as much, `h ∝ (|Ω|² + ω²)^{-1/2}` with `ω` in rad/s, below which they don't get
-/// longer: `G = Ω·Ω̇/(|Ω|² + ω²)`, 1/s. The rate `Ω̇` is that of the scene's equations of motion, without forces.
+/// longer: `G = Ω·Ω̇/(|Ω|² + ω²)`, 1/s, with `J Ω̇ = μ × Ω + τ` and the torque `τ` of the scene at rest, without forces. Where
+/// the inertia depends on the attitude `Ω̇` is about that, which a density may be.
 ///
-/// # Errors
+/// # Source
 ///
-/// As [`RightHandSide::new`].
+/// \[RDAE, (1.12)\]; as `l_d(I, w) = −h V(w)`, its diamond there is `h τ`.
 #[allow(clippy::type_complexity)] // as above
-pub fn turn<L: ContinuousLagrangian<Scalar = f64, Group = SO3> + Clone>(
+pub fn turn<L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Clone>(
     scene: L,
     floor: f64,
-) -> Result<impl Fn(&Motion<SO3, L::Advected>, &Vector3<f64>) -> f64 + Clone, SetupError> {
-    let scene = RightHandSide::new(scene)?;
-    Ok(move |motion: &Motion<SO3, L::Advected>, velocity: &Vector3<f64>| {
-        let rate = scene.rates(&motion.attitude, &motion.momentum).and_then(|(_, momentum)| {
-            // Velocities are linear in momenta, but for those at which the body is at rest.
-            let [moving, rest] = [momentum, Vector3::zeros()].map(|of| scene.velocity(&of, &motion.advected));
-            Ok(moving? - rest?)
-        });
-        rate.map_or(f64::NAN, |rate| velocity.dot(&rate) / (velocity.norm_squared() + floor * floor))
-    })
+) -> impl Fn(&Motion<SO3, L::Advected>, &Vector3<f64>) -> f64 + Clone {
+    move |motion, velocity| {
+        let torque = scene.diamond(&Matrix3::identity(), &motion.advected, 1.0);
+        let (rate, _) = Vector3::solve(&scene.inertia(&motion.advected), &(motion.momentum.cross(velocity) + torque));
+        velocity.dot(&rate) / (velocity.norm_squared() + floor * floor)
+    }
 }

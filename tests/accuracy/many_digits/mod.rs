@@ -16,10 +16,10 @@ pub(crate) mod heavy_top;
 pub(crate) mod motion;
 mod poisson;
 
+use checks::order::{End, error};
 pub(crate) use workbench::double_double::{DoubleDouble, long};
-use workbench::measure::{order, relative};
+use workbench::measure::order;
 
-use crate::convergence::End;
 use motion::Motion;
 
 /// Three of them.
@@ -42,7 +42,7 @@ pub(crate) type LongEnd = (Matrix, Vector);
 /// Above what some ten thousand stages lose to rounding here.
 const PLATEAU: f64 = 1e-24;
 
-/// As [`crate::convergence::assert_order`]; and after fewer steps, `compared`, so few that what they miss is more than
+/// As [`checks::order::assert_order`]; and after fewer steps, `compared`, so few that what they miss is more than
 /// rounding, the library has come to the same place.
 pub(crate) fn assert_order(
     (name, expected): (&str, u32),
@@ -60,8 +60,7 @@ pub(crate) fn assert_order(
     let order = order(&errors, PLATEAU);
     let (missed, attitude, velocity) = after(compared);
     let found = library(&declarations::Motion::read(motion), t / f64::from(compared), compared);
-    let apart = relative(found.0.as_matrix(), &attitude.map(DoubleDouble::rounded))
-        .hypot(relative(&found.1, &velocity.map(DoubleDouble::rounded)));
+    let apart = error(&found, &(attitude.map(DoubleDouble::rounded), velocity.map(DoubleDouble::rounded)));
     let listed: Vec<_> = errors.iter().map(|(_, error)| format!("{error:.1e}")).collect();
     println!("{name}, {motion}: order {order:.3}, errors {}", listed.join(" "));
     println!("    the library: {apart:.1e} apart where the error is {missed:.1e}");

@@ -8,7 +8,7 @@ use super::collocation::{self, Tableau};
 use super::heavy_top::Top;
 use super::motion::Motion;
 use super::{DoubleDouble, Matrix, Vector, hat, long};
-use crate::convergence::TOPS;
+use checks::order::TOPS;
 use declarations::{FourthOrderBody, FreeBody, HeavyTop, SixthOrderBody};
 use liestep::methods::{CompositionScheme, ExactBody, Flow, KineticFlow, ProcessedScheme, SplittingScheme};
 use liestep::motion::Plan;

@@ -1,71 +1,95 @@
-//! The claims about structure, for a Lagrangian on any matrix group with any advected parameters.
+//! The claims about structure, for a Lagrangian on any group with any advected parameters.
 
+pub mod equations;
+pub mod forces;
 pub mod momenta;
 pub mod numbers;
 pub mod poisson;
 pub mod reversal;
 pub mod stages;
 pub mod symmetry;
+pub mod symplectic;
 pub mod two_flows;
 
-use liestep::groups::Advected as _;
-use liestep::laws::samples::{MatrixLieGroup, Random, along};
-use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::groups::{Advected as _, ExponentialRetraction, LieGroup, Retraction};
+use liestep::laws::samples::{Random, derivative};
+use liestep::mechanics::{DiscreteLagrangian, Regular, Term};
 use liestep::motion::{DiscreteLiePoisson, Increment};
-use nalgebra::SVector;
+use liestep::numbers::Coordinates;
 
-use numbers::Numbers;
+use numbers::{from_numbers, numbers};
 
-/// A Lagrangian over `f64` on a group of `N` × `N` matrices of dimension `D`.
-pub trait System<const N: usize, const D: usize>:
-    DiscreteLagrangian<Scalar = f64, Group: MatrixLieGroup<N, D>, Advected: Numbers> + Regular
-{
+/// A group over `f64` whose exponential is known.
+pub trait Group: LieGroup<Scalar = f64> {
+    /// `exp(t ξ̂)`.
+    fn along(xi: &Self::Vector, t: f64) -> Self;
+
+    /// `exp(s E_k)`.
+    fn turn(k: usize, s: f64) -> Self {
+        Self::along(&axis(k, s), 1.0)
+    }
 }
 
-impl<L, const N: usize, const D: usize> System<N, D> for L where
-    L: DiscreteLagrangian<Scalar = f64, Group: MatrixLieGroup<N, D>, Advected: Numbers> + Regular
+impl<G: LieGroup<Scalar = f64>> Group for G
+where
+    ExponentialRetraction: Retraction<G>,
 {
+    fn along(xi: &G::Vector, t: f64) -> G {
+        ExponentialRetraction::retract(&(*xi * t))
+    }
 }
+
+/// A Lagrangian over `f64`.
+pub trait System: DiscreteLagrangian<Scalar = f64, Group: Group> + Regular {}
+
+impl<L: DiscreteLagrangian<Scalar = f64, Group: Group> + Regular> System for L {}
+
+/// Components of velocities and of momenta.
+pub type Vector<L> = <<L as Term>::Group as LieGroup>::Vector;
 
 /// `s` along the `k`th axis.
-pub fn axis<const D: usize>(k: usize, s: f64) -> SVector<f64, D> {
-    SVector::from_fn(|i, _| if i == k { s } else { 0.0 })
+pub fn axis<V: Coordinates<f64>>(k: usize, s: f64) -> V {
+    V::axis(k) * s
 }
 
-/// `exp(s E_k)`.
-pub fn turn<L: System<N, D>, const N: usize, const D: usize>(k: usize, s: f64) -> L::Group {
-    along::<L::Group, N, D>(&axis(k, s), 1.0)
+/// The length of a vector of components.
+pub fn norm<V: Coordinates<f64>>(components: &V) -> f64 {
+    components.dot(components).sqrt()
+}
+
+/// The Frobenius norm of a map of components; of several bodies that of its blocks.
+pub fn norm_of_map<L: Term<Scalar = f64>>(map: &<Vector<L> as Coordinates<f64>>::Square) -> f64 {
+    (0..L::Group::DIMENSION).map(|k| norm(&Vector::<L>::column(map, k))).fold(0.0, f64::hypot)
+}
+
+/// The derivatives at zero along each axis.
+pub fn gradient<L: Term<Scalar = f64>>(value: &dyn Fn(usize, f64) -> f64) -> Vector<L> {
+    from_numbers((0..L::Group::DIMENSION).map(|k| derivative(|s| value(k, s))))
 }
 
 /// The declared parameters seen from a random attitude.
 ///
 /// It is within half a unit of each coordinate: where the group stretches, larger parameters make functions of them so
 /// steep that differences at a spacing of 10⁻³ miss their derivatives by more than rounding.
-pub fn seen_at_random<L: System<N, D>, const N: usize, const D: usize>(
-    lagrangian: &L,
-    random: &mut Random,
-) -> L::Advected {
-    lagrangian.advected().seen_from(&along::<L::Group, N, D>(&random.sample(), 0.5))
+pub fn seen_at_random<L: Term<Scalar = f64, Group: Group>>(lagrangian: &L, random: &mut Random) -> L::Advected {
+    lagrangian.advected().seen_from(&L::Group::along(&random.sample(), 0.5))
 }
 
 /// The same, each number off by up to a tenth: not on the orbit of the declared value, and not near a singularity of
-/// the potential that this keeps away from.
-pub fn random_advected<L: System<N, D>, const N: usize, const D: usize>(
-    lagrangian: &L,
-    random: &mut Random,
-) -> L::Advected {
-    let seen = seen_at_random(lagrangian, random).numbers();
-    L::Advected::from_numbers(seen.into_iter().map(|number| number + 0.1 * random.signed()))
+/// the potential that this keeps away from. Of several bodies they are on it, as derivations use that an attitude that
+/// another body sees is a rotation.
+pub fn random_advected<L: Term<Scalar = f64, Group: Group>>(lagrangian: &L, random: &mut Random) -> L::Advected {
+    let seen = seen_at_random(lagrangian, random);
+    if L::Group::BODIES > 1 || !L::Group::FACTORS.is_whole() {
+        return seen;
+    }
+    from_numbers(numbers(&seen).iter().map(|number| number + 0.1 * random.signed()))
 }
 
 /// A step from the cold guess.
 ///
 /// The flow's own is inlined wherever it is called, with all of the generated code: this is one copy for all claims.
 #[inline(never)]
-pub fn step<L: System<N, D>, const N: usize, const D: usize>(
-    flow: &DiscreteLiePoisson<L>,
-    momentum: &SVector<f64, D>,
-    w: &L::Advected,
-) -> Increment<L> {
-    flow.step(momentum, w, &SVector::zeros()).unwrap_or_else(|error| panic!("{error}: {momentum} {w:?}"))
+pub fn step<L: System>(flow: &DiscreteLiePoisson<L>, momentum: &Vector<L>, w: &L::Advected) -> Increment<L> {
+    flow.step(momentum, w, &Vector::<L>::zero()).unwrap_or_else(|error| panic!("{error}: {momentum:?} {w:?}"))
 }

@@ -1,13 +1,12 @@
 //! P1: the flow (2.8) is a Poisson map of the semidirect product, `DΦ B(z) DΦᵀ = B(Φ(z))` for `z = (μ, w)`.
 
 use liestep::groups::{Advected, LieGroup as _};
-use liestep::laws::samples::derivative;
-use liestep::laws::samples::{MatrixLieGroup, Random, along};
+use liestep::laws::samples::{Random, derivative};
 use liestep::motion::DiscreteLiePoisson;
-use nalgebra::{DMatrix, DVector, SVector};
+use nalgebra::{DMatrix, DVector};
 
-use super::numbers::Numbers;
-use super::{System, axis, random_advected, step};
+use super::numbers::{from_numbers, numbers};
+use super::{Group, System, Vector, axis, random_advected, step};
 
 /// What takes the derivative at zero of a curve.
 type Derivative<'a> = &'a dyn Fn(&dyn Fn(f64) -> DVector<f64>) -> DVector<f64>;
@@ -17,62 +16,30 @@ type Derivative<'a> = &'a dyn Fn(&dyn Fn(f64) -> DVector<f64>) -> DVector<f64>;
 /// ```text
 /// {μ_k, μ_l} = −⟨μ, [E_k, E_l]⟩,     {μ_k, w} = E_k · w,     {w, w} = 0
 /// ```
-pub fn tensor<L: System<N, D>, const N: usize, const D: usize>(
-    momentum: &SVector<f64, D>,
-    w: &L::Advected,
-) -> DMatrix<f64> {
-    tensor_on::<L::Group, L::Advected, N, D>(momentum, w)
-}
-
-fn tensor_on<G: MatrixLieGroup<N, D>, A: Advected<G> + Numbers, const N: usize, const D: usize>(
-    momentum: &SVector<f64, D>,
-    w: &A,
-) -> DMatrix<f64> {
-    let numbers = DVector::from_vec(w.numbers());
-    let mut tensor = DMatrix::zeros(D + numbers.len(), D + numbers.len());
-    for k in 0..D {
-        for l in 0..D {
+pub fn tensor<G: Group, A: Advected<G>>(momentum: &G::Vector, w: &A) -> DMatrix<f64> {
+    let (dimension, size) = (G::DIMENSION, G::DIMENSION + numbers(w).len());
+    let mut tensor = DMatrix::zeros(size, size);
+    for k in 0..dimension {
+        for l in 0..dimension {
             tensor[(k, l)] = G::lie_poisson_bracket(momentum, &axis(k, 1.0), &axis(l, 1.0));
         }
         // What an attitude g sees is g⁻¹ · w.
-        let moved = derivative(|s| DVector::from_vec(w.seen_from(&along::<G, N, D>(&axis(k, -s), 1.0)).numbers()));
+        let moved = derivative(|s| numbers(&w.seen_from(&G::turn(k, -s))));
         for (j, rate) in moved.iter().enumerate() {
-            tensor[(k, D + j)] = *rate;
-            tensor[(D + j, k)] = -rate;
+            tensor[(k, dimension + j)] = *rate;
+            tensor[(dimension + j, k)] = -rate;
         }
     }
     tensor
 }
 
-fn taken_apart<A: Numbers, const D: usize>(z: &DVector<f64>) -> (SVector<f64, D>, A) {
-    (z.fixed_rows::<D>(0).into_owned(), A::from_numbers(z.iter().skip(D).copied()))
-}
-
-fn joined<const D: usize>(momentum: &SVector<f64, D>, w: &impl Numbers) -> DVector<f64> {
-    DVector::from_iterator(D + w.numbers().len(), momentum.iter().copied().chain(w.numbers()))
-}
-
 /// The largest entry of `DΦ B(z) DΦᵀ − B(Φ(z))` for a step of the flow, and its scale; see [`defect_of`].
-pub fn defect<L: System<N, D>, const N: usize, const D: usize>(
-    flow: &DiscreteLiePoisson<L>,
-    momentum: &SVector<f64, D>,
-    w: &L::Advected,
-) -> (f64, f64) {
-    let map = |momentum: &SVector<f64, D>, w: &L::Advected| {
+pub fn defect<L: System>(flow: &DiscreteLiePoisson<L>, momentum: &Vector<L>, w: &L::Advected) -> (f64, f64) {
+    let map = |momentum: &Vector<L>, w: &L::Advected| {
         let step = step(flow, momentum, w);
         (step.momentum, step.advected)
     };
-    defect_of::<L, N, D>(map, momentum, w)
-}
-
-/// The largest entry of `DΦ B(z) DΦᵀ − B(Φ(z))` for a map of momentum and parameters, and that of `Φ(z)` times those of
-/// `B(z)` and `DΦ`, or one if that is less: the differences are off by rounding of `Φ`.
-pub fn defect_of<L: System<N, D>, const N: usize, const D: usize>(
-    map: impl Fn(&SVector<f64, D>, &L::Advected) -> (SVector<f64, D>, L::Advected),
-    momentum: &SVector<f64, D>,
-    w: &L::Advected,
-) -> (f64, f64) {
-    defect_on::<L::Group, L::Advected, N, D>(map, momentum, w)
+    defect_of::<L::Group, L::Advected>(map, momentum, w, &|f| derivative(f))
 }
 
 /// The derivative at zero of a function that is smooth on the scale of one, by ten values at a spacing of 1/50: rounding
@@ -85,36 +52,27 @@ pub fn smooth_derivative(f: &dyn Fn(f64) -> DVector<f64>) -> DVector<f64> {
     terms.reduce(|sum, term| sum + term).expect("five terms")
 }
 
-/// The same for any group and parameters.
-pub fn defect_on<G: MatrixLieGroup<N, D>, A: Advected<G> + Numbers, const N: usize, const D: usize>(
-    map: impl Fn(&SVector<f64, D>, &A) -> (SVector<f64, D>, A),
-    momentum: &SVector<f64, D>,
-    w: &A,
-) -> (f64, f64) {
-    defect_by::<G, A, N, D>(map, momentum, w, &|f| derivative(f))
-}
-
-/// The same with these differences.
-pub fn defect_by<G: MatrixLieGroup<N, D>, A: Advected<G> + Numbers, const N: usize, const D: usize>(
-    map: impl Fn(&SVector<f64, D>, &A) -> (SVector<f64, D>, A),
-    momentum: &SVector<f64, D>,
+/// The largest entry of `DΦ B(z) DΦᵀ − B(Φ(z))` for a map of momentum and parameters, by these differences, and that of
+/// `Φ(z)` times those of `B(z)` and `DΦ`, or one if that is less: the differences are off by rounding of `Φ`.
+pub fn defect_of<G: Group, A: Advected<G>>(
+    map: impl Fn(&G::Vector, &A) -> (G::Vector, A),
+    momentum: &G::Vector,
     w: &A,
     derivative: Derivative<'_>,
 ) -> (f64, f64) {
-    let z = joined(momentum, w);
+    let z = numbers(&(*momentum, *w));
     let mut tangent = DMatrix::zeros(z.len(), z.len());
     for k in 0..z.len() {
         let direction = DVector::from_fn(z.len(), |i, _| f64::from(u8::from(i == k)));
         let column = derivative(&|t| {
-            let (momentum, w) = taken_apart::<A, D>(&(&z + &direction * t));
-            let (momentum, w) = map(&momentum, &w);
-            joined(&momentum, &w)
+            let (momentum, w) = from_numbers((&z + &direction * t).iter().copied());
+            numbers(&map(&momentum, &w))
         });
         tangent.set_column(k, &column);
     }
-    let (after, w_after) = map(momentum, w);
-    let (before, expected) = (tensor_on::<G, A, N, D>(momentum, w), tensor_on::<G, A, N, D>(&after, &w_after));
-    let scale = joined(&after, &w_after).amax() * before.amax() * tangent.amax();
+    let after = map(momentum, w);
+    let (before, expected) = (tensor(momentum, w), tensor(&after.0, &after.1));
+    let scale = numbers(&after).amax() * before.amax() * tangent.amax();
     ((&tangent * before * tangent.transpose() - expected).amax(), scale.max(1.0))
 }
 
@@ -122,19 +80,15 @@ pub fn defect_by<G: MatrixLieGroup<N, D>, A: Advected<G> + Numbers, const N: usi
 ///
 /// The claim holds for any `w`, not only for those on the orbit of the declared one, and for large steps: at `h = 0.3`
 /// the largest turn by some 60°.
-pub fn worst<L: System<N, D> + Clone, const N: usize, const D: usize>(
-    lagrangian: &L,
-    steps: &[f64],
-    seed: u64,
-) -> (f64, f64) {
+pub fn worst<L: System + Clone>(lagrangian: &L, steps: &[f64], seed: u64) -> (f64, f64) {
     let mut random = Random::new(seed);
     let (mut absolute, mut relative) = (0.0_f64, 0.0_f64);
     for &h in steps {
         let flow = DiscreteLiePoisson::new(lagrangian.clone(), h).unwrap();
         for _ in 0..5 {
             let w = random_advected(lagrangian, &mut random);
-            let velocity = random.sample::<SVector<f64, D>>() * 2.0;
-            let f = along::<L::Group, N, D>(&velocity, h).matrix();
+            let velocity = random.sample::<Vector<L>>() * 2.0;
+            let f = L::Group::along(&velocity, h).matrix();
             let (defect, scale) = defect(&flow, &lagrangian.legendre_minus(&f, &w, h), &w);
             (absolute, relative) = (absolute.max(defect), relative.max(defect / scale));
         }
@@ -147,11 +101,7 @@ pub fn worst<L: System<N, D> + Clone, const N: usize, const D: usize>(
 pub const TOLERANCE: f64 = 1e-10;
 
 /// For such systems.
-pub fn assert_poisson<L: System<N, D> + Clone, const N: usize, const D: usize>(
-    lagrangian: &L,
-    steps: &[f64],
-    seed: u64,
-) {
+pub fn assert_poisson<L: System + Clone>(lagrangian: &L, steps: &[f64], seed: u64) {
     let (defect, _) = worst(lagrangian, steps, seed);
     assert!(defect < TOLERANCE, "{defect:e}");
 }

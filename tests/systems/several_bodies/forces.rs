@@ -1,13 +1,13 @@
 //! Forces on several bodies: what is derived of their virtual work, and what a motor does to a wheel.
 
-use liestep::groups::{Advected, Given, LieGroup as _, R1, R3};
-use liestep::laws::samples::{Random, derivative};
-use liestep::mechanics::{Effect, Force, Term};
+use checks::structure::forces::assert_stages;
+use liestep::groups::{Given, LieGroup as _, R1, R3};
+use liestep::laws::samples::Random;
 use liestep::{SO3, Stepper, force};
 use nalgebra::{Matrix3, SVector, Vector3};
 
+use super::part;
 use super::translated::gyrostat;
-use super::{element, part};
 
 /// Of no physics: different at both ends, with terms of all kinds.
 #[force(
@@ -34,44 +34,11 @@ struct Push {
 /// The stages against the declared virtual work, at random increments.
 #[test]
 fn stages_follow_from_the_virtual_work() {
-    type Group = <Push as Term>::Group;
-    const D: usize = 9;
     let mut r = Random::new(17);
     for _ in 0..10 {
         let push =
             Push { k: r.signed(), c: r.signed(), A: r.sample(), rho: r.sample(), up: r.sample(), wind: r.sample() };
-        let (h, half): (f64, SVector<f64, D>) = (0.1, r.sample::<SVector<f64, D>>() * 0.4);
-        let at = element::<Group, D>(&(half * 2.0));
-        let (f, far) = (at.matrix(), r.sample());
-        let w = push.advected().seen_from(&element::<Group, D>(&far));
-        let unit = |k: usize, s: f64| SVector::<f64, D>::from_fn(|i, _| if i == k { s } else { 0.0 });
-        let works = |f: &_, k: usize| {
-            let [along, zero] = [unit(k, 1.0), SVector::zeros()];
-            [push.virtual_work(f, &w, h, &along, &zero), push.virtual_work(f, &w, h, &zero, &along)]
-        };
-        let [before, after] = [0, 1].map(|end| SVector::<f64, D>::from_fn(|k, _| works(&f, k)[end]));
-        let constants = push.constants(h);
-        let kick = Push::kick_before(&constants, &w);
-        // U = −(f⁻ − kick_before), and the system is a multiple of U − a.
-        let a: SVector<f64, D> = r.sample();
-        let terms = Push::step_terms(&constants, &a, &w);
-        let (residual, jacobian) = Push::newton_system(&constants, &terms, &half);
-        let expected = (kick - before - a) * (0.5 * h);
-        assert!((residual - expected).norm() < 1e-13 * (1.0 + before.norm()), "{residual} {expected}");
-        for j in 0..D {
-            let slope = derivative(|s| Push::newton_system(&constants, &terms, &(half + unit(j, s))).0);
-            assert!((jacobian.column(j) - slope).norm() < 1e-9 * (1.0 + slope.norm()), "column {j}");
-            let slope = derivative(|s| {
-                let turned = element::<Group, D>(&unit(j, s)).compose(&at).matrix();
-                SVector::<f64, D>::from_fn(|k, _| -works(&turned, k)[0])
-            });
-            let column = push.momentum_jacobian(&f, &w, h).column(j).into_owned();
-            assert!((column - slope).norm() < 1e-9 * (1.0 + slope.norm()), "column {j}: {column} {slope}");
-        }
-        let next = Advected::<Group>::advect(&w, &at.increment());
-        let expected = at.adjoint_transpose(&(before - kick)) + after;
-        let found = Push::kick_after(&constants, &at.increment(), &next);
-        assert!((found - expected).norm() < 1e-13 * (1.0 + expected.norm()), "{found} {expected}");
+        assert_stages(&push, &mut r);
     }
 }
 

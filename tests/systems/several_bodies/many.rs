@@ -1,10 +1,10 @@
 //! Systems of many bodies: terms on one body and on two, put at places.
 
+use checks::structure::momenta::assert_momenta;
 use declarations::Alike;
 use declarations::motions::{matrix, number, read, vector};
 use liestep::effects::{CayleyBody, Gravity, PrincipalBody, Spring};
-use liestep::groups::{Advected as _, CayleyRetraction, LieGroup, Retraction};
-use liestep::laws::samples::{Random, derivative};
+use liestep::groups::LieGroup;
 use liestep::mechanics::{
     Along, Between, DiagonalNonstandardInertia, DiscreteLagrangian, Each, Effect as _, Inertia, On, Pairs, Regular,
     Term as _,
@@ -196,43 +196,10 @@ fn unlike_denominators() {
 /// Momentum maps, diamond and momentum equation are derivatives of the sum of what was declared.
 #[test]
 fn what_is_put_at_places_is_derived_there() {
-    fn turned(element: [SO3; 3], k: usize, s: f64) -> [SO3; 3] {
-        let mut turned = element;
-        let axis = Vector3::from_fn(|i, _| if i == k % 3 { s } else { 0.0 });
-        turned[k / 3] = <CayleyRetraction as Retraction<SO3>>::retract(&axis);
-        turned
-    }
     let bodies = Each::<3>::of([principal([2.0, 3.0, 4.0]), principal([1.0, 1.5, 2.0]), principal([5.0, 4.0, 3.0])]);
     let (kappa, other) = ([Alike { kappa: 3.0 }], [Alike { kappa: 1.0 }, Alike { kappa: 2.0 }]);
     let l = bodies + Along::<3>::of(other) + Between::<2, 0, 3>::of(kappa) + Pairs::<3>::of(kappa);
-    let (h, mut random) = (0.05, Random::new(9));
-    let axis = |k: usize, s: f64| turned(<[SO3; 3]>::identity(), k, s);
-    let mut element = |size: f64| -> [SO3; 3] {
-        let mut xi = || {
-            let xi: Vector3<f64> = random.sample();
-            <CayleyRetraction as Retraction<SO3>>::retract(&(xi * size))
-        };
-        [xi(), xi(), xi()]
-    };
-    let (f, g) = (element(0.3), element(1.0));
-    let w = l.advected().seen_from(&g);
-    let moved = |e: &[SO3; 3]| w.seen_from(&e.inverse());
-    let m = f.matrix();
-    for k in 0..9 {
-        let of = |function: &dyn Fn(&[SO3; 3]) -> f64| derivative(|s| function(&axis(k, s)));
-        let right = of(&|e| l.l_d(&e.compose(&f).matrix(), &w, h));
-        let left = of(&|e| l.l_d(&f.compose(e).matrix(), &w, h));
-        let diamond = -of(&|e| l.l_d(&m, &moved(e), h));
-        let momentum = of(&|e| l.l_d(&e.compose(&f).matrix(), &moved(e), h));
-        for (name, found, expected) in [
-            ("right", l.right_momentum(&m, &w, h), right),
-            ("left", l.left_momentum(&m, &w, h), left),
-            ("diamond", l.diamond(&m, &w, h), diamond),
-            ("(2.7)", l.legendre_minus(&m, &w, h), momentum),
-        ] {
-            assert!((found.0[k / 3][k % 3] - expected).abs() < 1e-8, "{name} {k}: {found:?} {expected}");
-        }
-    }
+    assert_momenta(&l, 9);
 }
 
 /// In a million steps the energy stays within its bounds and doesn't drift, and the whole momentum is kept to rounding.

@@ -2,15 +2,16 @@
 
 use core::array::from_fn;
 
+use checks::structure::momenta::assert_momenta;
+use checks::structure::stages::assert_stages;
 use declarations::{FloatingBody, PointSpring, RodElement};
 use liestep::groups::{Advected as _, LieGroup as _, R3, SE3};
-use liestep::laws::samples::Random;
 use liestep::mechanics::{Along, Coupled, DiscreteLagrangian, Each, Placed, Sum, Term as _};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
 use nalgebra::{Matrix4, Vector3, Vector4, Vector6};
 
-use super::check_derived;
+use crate::limit::assert_limit;
 
 const N: usize = 6;
 type Rod = Sum<Placed<Each<N>, FloatingBody, 1>, Placed<Coupled<N>, RodElement, 1>>;
@@ -57,7 +58,10 @@ fn whole(bodies: &[Body; N], momenta: &Bodies<Vector6<f64>, N>) -> [Vector3<f64>
 #[test]
 fn what_is_derived_of_an_element() {
     let element = RodElement { k: 3.0, c: 2.0, a: Vector3::new(0.4, 0.1, -0.2), b: Vector3::new(-0.3, 0.2, 0.5) };
-    check_derived::<_, 12>(&element, &mut Random::new(12));
+    const { assert!(RodElement::<f64>::SELF_ADJOINT) };
+    assert_momenta(&element, 12);
+    assert_stages(&element, 12);
+    assert_limit(&rod(40.0, 3.0), "a rod");
 }
 
 /// A step begins and ends with the momenta that the Lagrangian has there, along the whole row.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use liestep_ensemble::{Shard, Status, Store};
 
-use crate::called::{TOP, called, folder, printed, refuses, rows};
+use crate::called::{TOP, called, folder, mistakes, printed, refuses, rows};
 
 /// The top, and what is drawn of it.
 fn drawn(ensemble: &str) -> String {
@@ -176,47 +176,16 @@ fn an_event_has_a_probability() {
 #[test]
 fn mistakes_in_ensembles_have_places() {
     let folder = folder("mistakes_in_ensembles_have_places");
-    let checked = |text: &str| {
+    let right = drawn("draw.gravity.g = { from = 1, to = 2 }\n");
+    mistakes("ensembles", &right, |text| {
         fs::write(folder.join("top.toml"), text).unwrap();
         let output = called(&folder, &["check", "top.toml"]);
         assert_eq!(output.status.code(), Some(1), "{text}");
         String::from_utf8(output.stderr).unwrap()
-    };
-    let line = drawn("").lines().count() + 1;
-    for (wrong, column, message) in [
-        ("draw.gravity.g = { from = 1, to = \"2 m/s²\" }", 35, "two numbers, or texts with the same unit"),
-        ("draw.gravity.g = { from = 2, to = 1 }", 35, "a range goes from a number to a larger one"),
-        ("draw.gravity.g = { mean = 2, deviation = -1 }", 42, "isn't below zero"),
-        ("draw.gravity.g = 5", 18, "a value is drawn by"),
-        ("draw.gravity.g = { from = \"1 kg\", to = \"2 kg\" }", 27, "an acceleration isn't in `kg`"),
-        ("draw.gravity.height = { from = 1, to = 2 }", 14, "unknown field `height`"),
-        ("draw.start.velocity = [0, { from = 1, to = 2 }]", 23, "expected three components, found 2"),
-        ("draw.start.velocity = [0, 1, 2]", 23, "a value is drawn by"),
-        ("draw.run.duration = { from = 1, to = 2 }", 6, "an ensemble draws what is in `body`"),
-        ("draw.gravity.g = { from = true, to = 1 }", 27, "a value is drawn by"),
-        ("draw.gravity.g = { from = 1, mean = 1 }", 30, "a value is drawn by"),
-        ("draw.gravity.g = { from = 1 }", 18, "a value is drawn by"),
-        ("draw.gravity.g = { form = 1, to = 2 }", 20, "a value is drawn by"),
-        ("draw.gravity.g = {}", 18, "a value is drawn by"),
-        ("draw.rotor = {}", 14, "a value is drawn by"),
-        ("draw.rotor.spin = [0, 0, { from = 1, to = 2 }]", 6, "the file has no `rotor`"),
-        ("draw.gravity.g = { from = 1, to = 2 }\nevery = 201", 9, "a run has 200 steps"),
-        ("every = 0", 9, "`every` is a whole number from 1"),
-        ("column = 1", 1, "`ensemble` has `members`"),
-    ] {
-        let told = checked(&drawn(wrong));
-        let line = line + wrong.lines().count() - 1;
-        assert!(told.contains(&format!("top.toml:{line}:{column}:")) && told.contains(message), "{wrong}: {told}");
-    }
-    let draws = "draw.gravity.g = { from = 1, to = 2 }";
-    let told = checked(&drawn(draws).replace("members = 40", ""));
-    assert!(told.contains("an ensemble has `members`"), "{told}");
-    let told = checked(&drawn(""));
-    assert!(told.contains("`ensemble` draws nothing"), "{told}");
-    let told = checked(&drawn(draws).replace("[drag]\nc = 1e-3\n", "").replace("step = \"10 ms\"", "accuracy = 1e-6"));
-    assert!(told.contains("the members of an ensemble make the same steps"), "{told}");
-    let told = checked(&format!("{}\n[output]\ncolumns = [\"energy-error\"]\n", drawn(draws)));
-    assert!(told.contains("`energy_error` is measured from the start"), "{told}");
+    });
+    let chosen = right.replace("[drag]\nc = 1e-3\n", "").replace("step = \"10 ms\"", "accuracy = 1e-6");
+    fs::write(folder.join("top.toml"), chosen).unwrap();
+    refuses(&folder, &["check", "top.toml"], 1, "the members of an ensemble make the same steps");
     fs::write(folder.join("top.toml"), TOP).unwrap();
     refuses(&folder, &["ensemble", "top.toml"], 1, "has no table `ensemble`");
 }

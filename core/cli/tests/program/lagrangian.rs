@@ -1,6 +1,10 @@
 //! A Lagrangian in a file: the same rows as by the library's effects, and mistakes at their places.
 
+use std::f64::consts::{FRAC_PI_4, TAU};
 use std::fs;
+
+use liestep::prelude::*;
+use liestep::with::densities;
 
 use crate::called::{folder, mistakes, printed, refused, rows};
 
@@ -128,6 +132,44 @@ fn it_has_a_pace() {
     assert!((end[7] - rows[0][7]).abs() < 1e-3 * rows[0][7].abs(), "{end:?}");
     let composed = paced + &RUN.replace("step =", "method = { composition = \"Suzuki 4\" }\nstep =");
     assert!(refused(&folder, &composed).contains("a pace is that of the Lagrangian's own step"));
+}
+
+/// Steps of different lengths are those of the library.
+#[test]
+fn it_has_a_density() {
+    let folder = folder("lagrangian-density");
+    let run = RUN
+        .replace("step =", "density = { turn = \"6 rpm\" }\nstep =")
+        .replace("duration = 2", "duration = 4")
+        .replace("\"60 rpm\"", "0.4");
+    let J_d = NonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
+    let top = RigidBody { J_d } + Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+    let stepper = Stepper::new(top, 0.01).unwrap().with_density(densities::turn(top, TAU / 10.0));
+    for text in [TOP, BY_EFFECTS] {
+        let rows = rows(&folder, &format!("{text}{run}"));
+        let start = stepper.start(SO3::from_euler_angles(0.0, FRAC_PI_4, 0.0), Vector3::new(0.1, 0.0, 0.4));
+        let mut state = start.unwrap();
+        let mut lengths = [f64::MAX, 0.0];
+        for (row, next) in rows.iter().zip(rows.iter().skip(1)) {
+            let velocity = stepper.velocity(&state);
+            let off = velocity
+                .iter()
+                .zip(&row[1..])
+                .fold(stepper.time(&state) - row[0], |off, (a, b)| off.max((a - b).abs()));
+            assert!(off.abs() < 1e-10, "{off:e} at {} s", row[0]);
+            lengths = [lengths[0].min(next[0] - row[0]), lengths[1].max(next[0] - row[0])];
+            stepper.step(&mut state).unwrap();
+        }
+        let end = rows[rows.len() - 1][0];
+        assert!(end >= 4.0 && end < 4.0 + lengths[1] && lengths[1] > 2.0 * lengths[0], "{lengths:?} {end}");
+    }
+    let odd = |key: &str, other: &str| refused(&folder, &format!("{TOP}{}", run.replace(key, other)));
+    assert!(odd("step = \"10 ms\"", "accuracy = 1e-6").contains("the first `step`"));
+    assert!(odd("step =", "method = { composition = \"Suzuki 4\" }\nstep =").contains("leave `method` out"));
+    let paced = TOP.replace("advected =", "pace = \"1.0 / (1.0 + w.dot(&rho).powi(2))\"\nadvected =");
+    assert!(refused(&folder, &format!("{paced}{run}")).contains("what has no `pace`"));
+    let drawn = "[ensemble]\nmembers = 4\ndraw.lagrangian.g = { from = 9, to = 10 }\n";
+    assert!(refused(&folder, &format!("{TOP}{run}{drawn}")).contains("those of a `density` end at different times"));
 }
 
 #[test]

@@ -4,13 +4,14 @@
 
 use std::f64::consts::{PI, TAU};
 
-use liestep::effects::RigidBody;
+use liestep::effects::{Gravity, RigidBody};
 use liestep::gradients::Input;
 use liestep::groups::{LieGroup as _, SE3};
 use liestep::laws::samples::Random;
-use liestep::mechanics::{Sum, Term as _};
+use liestep::mechanics::{Effect as _, Regular, SecondDerivatives, Sum, Term as _, WithEitherKinetic};
 use liestep::{NonstandardInertia, SO3, StepError, Stepper, force, lagrangian};
 use liestep_control::{Control, ControlError, ControlPlan, Cost, Target, Verdict};
+use liestep_late::{Declaration, Late, numbers};
 use nalgebra::{Matrix4, SVector, UnitQuaternion, Vector3, Vector4};
 
 mod estimates;
@@ -311,6 +312,30 @@ fn progress() {
     assert_eq!((task.solve().expect("a task").verdict, shown.get()), (Verdict::Cancelled, 3));
     let short = slew(&stepper, 20, [1.0, 0.5, 0.2]).until(1e-10, 1);
     assert_eq!(short.solve().expect("a task").verdict, Verdict::Exhausted);
+}
+
+/// Of a turn of some scene.
+fn cost<S: SecondDerivatives<Scalar = f64, Group = SO3> + Regular + Clone>(scene: S) -> f64 {
+    let stepper = Stepper::new(scene, 0.1).expect("a stepper");
+    let start = stepper.start(turned([0.4, 0.0, 0.0]), Vector3::zeros()).expect("a start");
+    let end = SO3::from_euler_angles(0.3, 1.5, 0.2);
+    let plan = Control::new(&stepper, start, 20, Target::rest(end)).bounds(|_, _| (-4.0, 4.0)).solve();
+    let plan = plan.expect("a task");
+    assert_eq!(plan.verdict, Verdict::Converged, "{:?}", plan.residual);
+    plan.cost
+}
+
+/// A heavy top by its text has the plan of the compiled one.
+#[test]
+fn a_text_is_planned_as_what_is_compiled() {
+    let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 1.4, 2.0)).expect("a body");
+    let top = RigidBody { J_d } + Gravity { m: 0.5, g: 2.0, rho: Vector3::new(0.1, 0.0, 0.3), up: Vector3::z() };
+    let terms =
+        [RigidBody::<f64>::DECLARATION, Gravity::<f64>::DECLARATION].map(Declaration::parse).map(Result::unwrap);
+    let late = Declaration::sum(&terms).and_then(Late::<SO3, ((), Vector3<f64>), WithEitherKinetic>::of);
+    let late = late.and_then(|late| late.with_all(&numbers(&top))?.differentiable()).expect("a text");
+    let costs = [cost(top), cost(late)];
+    assert!(costs.iter().all(|cost| (cost / 1.473_736_859_111_866 - 1.0).abs() < 1e-12), "{costs:?}");
 }
 
 /// A torque that is named in a declaration.

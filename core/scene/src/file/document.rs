@@ -69,7 +69,7 @@ fn has(document: &Document<'_>, table: &str, key: &str) -> bool {
 
 /// Keys that don't go together, though each could stand there.
 fn at_odds(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
-    let of = [of_pace, of_orbit, of_method];
+    let of = [of_pace, of_orbit, of_density, of_method];
     of.iter().find_map(|odds| odds(document, file))
 }
 
@@ -136,6 +136,22 @@ fn of_orbit(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
         }
     }
     None
+}
+
+/// Beside a density.
+fn of_density(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
+    let has_a_pace = file.lagrangian.as_ref().is_some_and(|own| own.has_a_pace);
+    let beside = [
+        (!has(document, "run", "step"), "the first `step`: give one in the place of `accuracy` and `steps_per_orbit`"),
+        (has(document, "run", "method"), "the scene's own step: leave `method` out"),
+        (
+            file.turning().next().is_some(),
+            "what doesn't change with time: what turns with an orbit has `steps_per_orbit`",
+        ),
+        (has_a_pace, "what has no `pace`: leave one of both out"),
+    ];
+    let (_, what) = file.run.density.and_then(|_| beside.into_iter().find(|(is_odd, _)| *is_odd))?;
+    Some((span(document, &["run", "density"]), format!("a `density` is around {what}")))
 }
 
 /// Beside a method, that of a Lagrangian first.

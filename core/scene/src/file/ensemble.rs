@@ -65,10 +65,11 @@ pub(crate) fn read(
     if file.asks_for_accuracy() {
         return wrong(&["run", "accuracy"], "the members of an ensemble make the same steps: give a `step`".to_owned());
     }
-    if file.lagrangian.as_ref().is_some_and(|own| own.has_a_pace) {
-        let message =
-            "members make the same number of steps, and those of a `pace` end at different times: leave it out";
-        return wrong(&["lagrangian", "pace"], message.to_owned());
+    let has_a_pace = file.lagrangian.as_ref().is_some_and(|own| own.has_a_pace);
+    if has_a_pace || file.run.density.is_some() {
+        let keys = if has_a_pace { ["lagrangian", "pace"] } else { ["run", "density"] };
+        let why = "members make the same number of steps, and those of a";
+        return wrong(&keys, format!("{why} `{}` end at different times: leave it out", keys[1]));
     }
     if let Some(column) = file.columns().iter().find(|column| column.is_since_the_start()) {
         let names = column.names().join(", ");

@@ -153,7 +153,8 @@ impl SceneFile {
 
     /// Whether the steps have different lengths.
     pub(crate) fn has_steps_of_its_own(&self) -> bool {
-        self.run.steps_per_orbit.is_some() || self.lagrangian.as_ref().is_some_and(|own| own.has_a_pace)
+        let is_varied = self.run.steps_per_orbit.is_some() || self.run.density.is_some();
+        is_varied || self.lagrangian.as_ref().is_some_and(|own| own.has_a_pace)
     }
 
     /// How many steps the scene asks for; none where they are chosen for an accuracy.

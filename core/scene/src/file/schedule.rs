@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 use serde::Deserialize;
 
 use crate::file::method::Method;
-use crate::file::quantity::{Duration, Number, Positive, short};
+use crate::file::quantity::{Duration, Number, Positive, Rate, short};
 
 /// The duration, the steps and the method.
 #[derive(Clone, Deserialize)]
@@ -17,6 +17,16 @@ pub(crate) struct Schedule {
     pub(crate) method: Method,
     /// Along an orbit, in the place of equal ones.
     pub(crate) steps_per_orbit: Option<NonZeroU32>,
+    /// By which steps get other lengths, the first being the `step`.
+    pub(crate) density: Option<Density>,
+}
+
+/// A density of steps, by the names of [`liestep::with::densities`].
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Density {
+    /// Of steps in which the body turns by about as much, from this velocity on.
+    Turn(Positive<Rate>),
 }
 
 /// What sets the step.
@@ -34,6 +44,7 @@ struct ScheduleTable {
     step: Option<Positive<Duration>>,
     accuracy: Option<Positive<Number>>,
     steps_per_orbit: Option<NonZeroU32>,
+    density: Option<Density>,
     duration: Positive<Duration>,
     #[serde(default)]
     method: Method,
@@ -54,7 +65,8 @@ impl TryFrom<ScheduleTable> for Schedule {
             (None, Some(accuracy)) => Pace::Accuracy(accuracy.value),
             (None, None) => return Err("a run has a `step`, `steps_per_orbit` or an `accuracy`".to_owned()),
         };
-        Ok(Self { duration, pace, method: table.method, steps_per_orbit: table.steps_per_orbit })
+        let ScheduleTable { method, steps_per_orbit, density, .. } = table;
+        Ok(Self { duration, pace, method, steps_per_orbit, density })
     }
 }
 

@@ -8,6 +8,7 @@ use liestep::groups::Advected;
 use liestep::mechanics::{Effect, Inertia, KineticPart, Term as _, WithEitherKinetic, WithoutKinetic};
 use liestep::methods::ExactBody;
 use liestep::motion::AnyStepper;
+use liestep::with::densities;
 use liestep::{SO3, StateOf, Stepper};
 use liestep_late::{Declaration, Late, LateError, Slots};
 use nalgebra::Vector3;
@@ -16,7 +17,7 @@ use crate::file::body::{Distribution, Kinetic};
 use crate::file::lagrangian::Backend;
 use crate::file::method::{Method, Stages};
 use crate::file::scene::SceneFile;
-use crate::file::schedule::Pace;
+use crate::file::schedule::{Density, Pace};
 use crate::run::course::{MemberStart, course, sample, watches};
 use crate::run::make::{Listeners, Run, Stop, make};
 
@@ -195,6 +196,12 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
     let J = inertia(file)?;
     if matches!(file.run.method, Method::Splitting(_) | Method::Processed(_) | Method::Collocation(_)) {
         return with_exact_body(file, &J, h);
+    }
+    if let Some(Density::Turn(floor)) = file.run.density {
+        let whole: Option<Whole> = program(file, &J, Some(&Moving::of(file, J)?)).map_err(late_error)?;
+        let whole = whole.ok_or_else(nothing)?;
+        let rate = densities::turn(whole.clone(), floor.value);
+        return any!(Stepper::new(whole, h).map(|stepper| stepper.with_density(rate)));
     }
     if let Some(paced) = file.lagrangian.as_ref().filter(|own| own.has_a_pace) {
         return any!(Stepper::new(paced.paced().map_err(late_error)?, h).and_then(Stepper::paced));

@@ -292,6 +292,10 @@ pub struct Staged {
     pub blocks: Vec<usize>,
     /// The programs.
     pub programs: Stages<Program>,
+    /// Where they are asked for, the derivatives of a step by `F − I`, `w` and `h`, as `SecondDerivatives` has them: the
+    /// blocks; matrix and right side of the adjoint's system, with `p` in the array of the velocity; its gradient by the
+    /// place and by `w`, with `u` in that of the target; and both momenta by each number of `w`.
+    pub derivatives: Option<[Program; 4]>,
 }
 
 /// Why nothing was derived.

@@ -2,11 +2,11 @@
 
 use core::array::from_fn;
 
+use declarations::SuspendedLoad;
 use declarations::motions::{number, read};
-use declarations::{FallingBody, SuspendedLoad};
 use liestep::groups::R3;
 use liestep::laws::samples::Random;
-use liestep::mechanics::{Along, Each, Term as _};
+use liestep::mechanics::{Along, Term as _};
 use liestep::methods::{BallJoint, Joined, Joint, Joints, PinJoint};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
@@ -14,7 +14,7 @@ use nalgebra::{SVector, UnitQuaternion, Vector3, Vector6};
 
 use super::super::{all, apart};
 use super::loops::{closed_loop, state_of};
-use super::{EPSILON, Free, assert_no_work, plain, row, scene, six};
+use super::{EPSILON, Free, LEFT, RIGHT, assert_no_work, ball, chained, plain, rod, row, scene, six};
 
 /// A force that is given to each step anew: with the weight of the bodies it is their step under gravity, and
 /// velocities keep to the joints.
@@ -51,21 +51,19 @@ fn a_control_force() {
 /// A planar linkage whose last joint, which closes the loop, is a pin, under a force that changes with each step.
 #[test]
 fn a_loop_that_a_pin_closes_is_driven() {
-    let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.1)).unwrap();
-    let [left, right] = [-0.5, 0.5].map(|x| Vector3::x() * x);
-    let ball = |above, below| Joint::Ball(BallJoint { above, below });
+    let ball = |above, below| Joint::Ball(ball(above, below));
     let pin = |above, below| {
         Joint::Pin(PinJoint { above, below, axis_above: Vector3::y(), axis_below: Vector3::new(0.2, 2.0, 0.0) })
     };
     let (places, corner) = row([0.9, 0.0, -0.9]);
     let tree = [
-        Joined::to_space(ball(Vector3::zeros(), left), 0),
-        Joined::between(pin(right, left), 0, 1),
-        Joined::between(ball(right, left), 1, 2),
+        Joined::to_space(ball(Vector3::zeros(), LEFT), 0),
+        Joined::between(pin(RIGHT, LEFT), 0, 1),
+        Joined::between(ball(RIGHT, LEFT), 1, 2),
     ];
-    let last = Joined::to_space(pin(corner, right), 2);
+    let last = Joined::to_space(pin(corner, RIGHT), 2);
     let joints = [tree[0], tree[1], tree[2], last];
-    let bodies = scene([1.0, 0.7, 1.2].map(|m| Free { m, K }), 9.81, Vector3::z());
+    let bodies = scene([1.0, 0.7, 1.2].map(rod), 9.81, Vector3::z());
     let stepper = Stepper::jointed(bodies, Joints::tree(tree).closed_by([last]), 0.005).unwrap();
     let mut random = Random::new(4);
     let mut state = stepper.start_nearest(places, Bodies(from_fn(|_| random.sample()))).unwrap();
@@ -103,14 +101,9 @@ struct Cord {
 #[test]
 fn bodies_that_joints_and_springs_hold() {
     const N: usize = 3;
-    let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.09)).unwrap();
-    let [left, right] = [-0.5, 0.5].map(|x| Vector3::x() * x);
-    let joints: [Joined<BallJoint>; N] = from_fn(|k| match k {
-        0 => Joined::to_space(BallJoint { above: Vector3::zeros(), below: left }, 0),
-        _ => Joined::between(BallJoint { above: right, below: left }, k - 1, k),
-    });
+    let joints = chained::<N>();
     let of = |stiffness: f64, h: f64| {
-        let bodies = Each::<N>::of([FallingBody { m: 1.0, J_d: K, g: 9.81, up: Vector3::z() }; N]);
+        let bodies = scene([rod(1.0); N], 9.81, Vector3::z());
         let cord = Cord { stiffness, at_1: Vector3::new(0.1, 0.2, 0.0), at_2: Vector3::new(-0.1, 0.2, 0.1) };
         Stepper::jointed(bodies + Along::<N>::of([cord]), Joints::tree(joints), h).unwrap()
     };

@@ -11,7 +11,7 @@ use liestep::{NonstandardInertia, SO3, SetupError, Stepper, constraint};
 use nalgebra::{Matrix3, SVector, Vector3, Vector6};
 
 use super::super::apart;
-use super::{Body, EPSILON, Free, assert_no_work, place, scene, six};
+use super::{Body, EPSILON, Free, assert_no_work, place, rod, scene, six, watched};
 
 /// Slopes are the derivatives of gaps, for turns and shifts of either body.
 fn check_slopes<C: Constraint<K>, const K: usize>(joint: &C, random: &mut Random) {
@@ -307,11 +307,10 @@ fn a_joint_that_repeats_itself() {
             self.0.iter().for_each(|&height| visit("height", height));
         }
     }
-    let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.1)).unwrap();
     let still = Bodies([Vector6::zeros()]);
     for heights in [[1.0, 1.0], [1.0, 0.3], [1.0, 0.0], [0.0, 1.0]] {
         let joints = Joints::tree([Joined::to_space(Heights(heights), 0)]);
-        let stepper = Stepper::jointed(scene([Free { m: 1.0, K }], 9.81, Vector3::z()), joints, 0.01).unwrap();
+        let stepper = Stepper::jointed(scene([rod(1.0)], 9.81, Vector3::z()), joints, 0.01).unwrap();
         let named = |error: Result<_, SetupError>| matches!(error, Err(SetupError::RedundantJoint { joint: 0, .. }));
         assert!(named(stepper.start([Body::identity()], still).map(|_| ())), "{heights:?}");
         assert!(named(stepper.start_nearest([Body::identity()], still).map(|_| ())), "{heights:?}");
@@ -345,12 +344,7 @@ fn a_joint_of_ones_own() {
     let (before, energy) = (state, stepper.energy(&state));
     stepper.step(&mut state).unwrap();
     assert_no_work((stepper.scene(), 0.005), &joined("strut", 0.8), &Bodies([Vector6::zeros(); 2]), [&before, &state]);
-    let (mut gap, mut off) = (0.0_f64, 0.0_f64);
-    for _ in 1..1000 {
-        stepper.step(&mut state).unwrap();
-        gap = gap.max(stepper.widest_gap(&state));
-        off = off.max((stepper.energy(&state) - energy).abs());
-    }
+    let [off, gap] = watched(&stepper, &mut state, energy, 999);
     println!("energy {energy:.3} within {off:.1e}, gap {gap:.1e}");
     assert!(off < 0.6 && gap < 4.0 * EPSILON * 3.0);
 
@@ -366,8 +360,7 @@ fn a_joint_of_ones_own() {
 #[test]
 fn a_loop_of_struts_that_whips() {
     let strut = |above: Vector3<f64>, below, length| Strut { called: "strut", above, below, length };
-    let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.09)).unwrap();
-    let bodies = scene([1.0, 0.7].map(|m| Free { m, K }), 9.81, Vector3::z());
+    let bodies = scene([1.0, 0.7].map(rod), 9.81, Vector3::z());
     let at = Vector3::new(0.1, 0.3, -0.2);
     let all = [
         Joined::to_space(strut(at, -Vector3::x(), 0.5), 0),

@@ -13,7 +13,10 @@ use nalgebra::{Vector3, Vector6};
 use serde_json::Value;
 
 use super::super::{all, apart, order, tenths};
-use super::{Body, Components, EPSILON, Free, Held, assert_no_work, plain, row, scene, six, whole};
+use super::{
+    Body, Components, EPSILON, Free, Held, LEFT, RIGHT, assert_no_work, ball, chained, plain, rod, row, scene, six,
+    watched, whole,
+};
 
 /// Of the reference, with this joint as the one that closes the loop.
 pub(super) fn closed_loop(h: f64, cut: usize) -> Held<BallJoint, 3, 3, 3, 1> {
@@ -24,10 +27,10 @@ pub(super) fn closed_loop(h: f64, cut: usize) -> Held<BallJoint, 3, 3, 3, 1> {
     });
     let end = |body: usize, side: &str| plain(&data["bodies"][body][side]);
     let joints = [
-        Joined::to_space(BallJoint { above: Vector3::zeros(), below: end(0, "left") }, 0),
-        Joined::between(BallJoint { above: end(0, "right"), below: end(1, "left") }, 0, 1),
-        Joined::between(BallJoint { above: end(1, "right"), below: end(2, "left") }, 1, 2),
-        Joined::to_space(BallJoint { above: plain(&data["pivot"]), below: end(2, "right") }, 2),
+        Joined::to_space(ball(Vector3::zeros(), end(0, "left")), 0),
+        Joined::between(ball(end(0, "right"), end(1, "left")), 0, 1),
+        Joined::between(ball(end(1, "right"), end(2, "left")), 1, 2),
+        Joined::to_space(ball(plain(&data["pivot"]), end(2, "right")), 2),
     ];
     let tree = from_fn(|k| joints[if k < cut { k } else { k + 1 }]);
     let scene = scene(bodies.try_into().unwrap(), number(&data["g"]), Vector3::z());
@@ -53,11 +56,7 @@ fn a_closed_loop() {
         let stepper = closed_loop(h, 3);
         let mut state = stepper.start(start, velocity).unwrap();
         assert!((stepper.energy(&state) - number(&states[0]["energy"])).abs() < 1e-13);
-        let mut gap = 0.0_f64;
-        for _ in 0..steps {
-            stepper.step(&mut state).unwrap();
-            gap = gap.max(stepper.widest_gap(&state));
-        }
+        let [_, gap] = watched(&stepper, &mut state, 0.0, steps);
         assert!(gap < 4.0 * EPSILON * 2.0, "{gap:e}");
         let found = state.attitude();
         let places = found.iter().zip(&end).map(|(a, b)| (a.1.translation() - b.1.translation()).amax());
@@ -149,54 +148,30 @@ fn a_million_steps_of_a_closed_loop() {
 #[test]
 fn momenta_of_a_ring() {
     const N: usize = 6;
-    let side = 0.5;
-    let K = NonstandardInertia::from_principal_moments(Vector3::new(0.01, 0.05, 0.045)).unwrap();
-    let link = BallJoint { above: Vector3::x() * side, below: Vector3::x() * -side };
-    let pivot = Vector3::new(-side, 0.0, 0.0);
     // A hexagon, upright; the first side begins at the origin.
-    let attitudes: [SO3; N] = from_fn(|k| {
-        let k = u8::try_from(k).unwrap();
-        SO3::exp(Vector3::y() * (core::f64::consts::FRAC_PI_3 * f64::from(k)))
-    });
-    let mut corner = Vector3::zeros();
-    let places = attitudes.map(|attitude| {
-        let along = attitude.as_matrix() * Vector3::x();
-        let centre = corner + along * side;
-        corner += along * (2.0 * side);
-        (attitude, R3::from(centre))
-    });
+    let (places, _) = row([0.0, 1.0, 2.0, 3.0, 4.0, 5.0].map(|k| core::f64::consts::FRAC_PI_3 * k));
     let mut random = Random::new(8);
     let moving = Bodies(from_fn(|_| {
         let (omega, v): (Vector3<f64>, Vector3<f64>) = (random.sample(), random.sample());
         six(&omega, &v)
     }));
 
-    let row: [Joined<BallJoint>; N - 1] = from_fn(|k| Joined::between(link, k, k + 1));
-    let ring = Joints::tree(row).closed_by([Joined::between(link, N - 1, 0)]);
-    let free = Stepper::jointed(scene([Free { m: 1.0, K }; N], 0.0, Vector3::z()), ring, 0.01).unwrap();
+    let (tree, last) = (chained::<N>(), Joined::between(ball(RIGHT, LEFT), N - 1, 0));
+    let between: [_; N - 1] = from_fn(|k| tree[k + 1]);
+    let ring = Joints::tree(between).closed_by([last]);
+    let free = Stepper::jointed(scene([rod(1.0); N], 0.0, Vector3::z()), ring, 0.01).unwrap();
     let mut state = free.start_nearest(places, moving).unwrap();
     let ([p, l], energy) = (whole(&state), free.energy(&state));
-    let mut gap = 0.0_f64;
-    for _ in 0..5000 {
-        free.step(&mut state).unwrap();
-        gap = gap.max(free.widest_gap(&state));
-    }
+    let [off, gap] = watched(&free, &mut state, energy, 5000);
     let [dp, dl] = whole(&state);
     // It has flown away by its velocity, and roundings of places with it.
     let far = state.attitude()[0].1.translation().norm();
-    println!(
-        "free: {:.1e} {:.1e}, energy {:.1e}, gap {gap:.1e} at {far:.0} m",
-        (dp - p).amax(),
-        (dl - l).amax(),
-        free.energy(&state) - energy
-    );
-    assert!((dp - p).amax() < 1e-12 && (dl - l).amax() < 1e-10 && gap < 4.0 * EPSILON * far.max(1.0));
-    assert!((free.energy(&state) - energy).abs() < 1e-2 * energy);
+    let moved = [(dp - p).amax(), (dl - l).amax()];
+    println!("free: {moved:?}, energy within {off:.1e}, gap {gap:.1e} at {far:.0} m");
+    assert!(moved[0] < 1e-12 && moved[1] < 1e-10 && gap < 4.0 * EPSILON * far.max(1.0) && off < 1e-2 * energy);
 
-    let hung = [Joined::to_space(BallJoint { above: Vector3::zeros(), below: pivot }, 0)];
-    let tree: [Joined<BallJoint>; N] = from_fn(|k| if k == 0 { hung[0] } else { row[k - 1] });
-    let ring = Joints::tree(tree).closed_by([Joined::between(link, N - 1, 0)]);
-    let hanging = Stepper::jointed(scene([Free { m: 1.0, K }; N], 9.81, Vector3::z()), ring, 0.005).unwrap();
+    let ring = Joints::tree(tree).closed_by([last]);
+    let hanging = Stepper::jointed(scene([rod(1.0); N], 9.81, Vector3::z()), ring, 0.005).unwrap();
     let mut state = hanging.start_nearest(places, moving).unwrap();
     let (vertical, energy) = (whole(&state)[1].z, hanging.energy(&state));
     hanging.run(&mut state, 5000).unwrap();
@@ -206,17 +181,8 @@ fn momenta_of_a_ring() {
 
 /// Three links of one metre with these masses between pivots so far apart, under gravity.
 fn garland(masses: [f64; 3], apart: f64) -> Held<BallJoint, 3, 3, 3, 1> {
-    let bodies = masses
-        .map(|m| Free { m, K: NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.1) * m).unwrap() });
-    let [left, right] = [-0.5, 0.5].map(|x| Vector3::x() * x);
-    let pivot = |x: f64, below| BallJoint { above: Vector3::x() * x, below };
-    let joints = Joints::tree([
-        Joined::to_space(pivot(0.0, left), 0),
-        Joined::between(BallJoint { above: right, below: left }, 0, 1),
-        Joined::between(BallJoint { above: right, below: left }, 1, 2),
-    ]);
-    let joints = joints.closed_by([Joined::to_space(pivot(apart, right), 2)]);
-    Stepper::jointed(scene(bodies, 9.81, Vector3::z()), joints, 0.002).unwrap()
+    let joints = Joints::tree(chained()).closed_by([Joined::to_space(ball(Vector3::x() * apart, RIGHT), 2)]);
+    Stepper::jointed(scene(masses.map(rod), 9.81, Vector3::z()), joints, 0.002).unwrap()
 }
 
 /// A loop whose bodies differ by ten thousand in mass: energy and joints as ever. It can't be stretched.
@@ -226,12 +192,8 @@ fn a_loop_of_unlike_masses() {
         let stepper = garland(masses, 0.9);
         let about = row([1.6, 0.3, -1.5]).0;
         let mut state = stepper.start_nearest(about, Bodies([Vector6::from_element(0.2); 3])).unwrap();
-        let (before, mut most, mut gap) = (stepper.energy(&state), 0.0_f64, 0.0_f64);
-        for _ in 0..2000 {
-            stepper.step(&mut state).unwrap();
-            most = most.max((stepper.energy(&state) - before).abs());
-            gap = gap.max(stepper.widest_gap(&state));
-        }
+        let before = stepper.energy(&state);
+        let [most, gap] = watched(&stepper, &mut state, before, 2000);
         let scale = 9.81 * masses.iter().sum::<f64>();
         println!("{masses:?}: energy {:.1e}, gap {gap:.1e}", most / scale);
         assert!(most < 1e-3 * scale && gap < 4.0 * EPSILON * 2.0);
@@ -263,15 +225,11 @@ fn a_loop_that_is_stretched_names_the_joint() {
 /// state stays.
 #[test]
 fn a_singular_position_names_the_joint() {
-    let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.1)).unwrap();
-    let [left, right] = [-0.5, 0.5].map(|x| Vector3::x() * x);
-    let pivot = |x: f64, below| BallJoint { above: Vector3::x() * x, below };
     let joints = |apart: f64| {
-        let link = BallJoint { above: right, below: left };
-        let tree = [Joined::to_space(pivot(0.0, left), 0), Joined::between(link, 0, 1)];
-        Joints::tree(tree).closed_by([Joined::to_space(pivot(apart, right), 1)])
+        let last = Joined::to_space(ball(Vector3::x() * apart, RIGHT), 1);
+        Joints::tree(chained::<2>()).closed_by([last])
     };
-    let scene = scene([Free { m: 1.0, K }; 2], 9.81, Vector3::z());
+    let scene = scene([rod(1.0); 2], 9.81, Vector3::z());
     let stepper = Stepper::jointed(scene, joints(2.0), 0.01).unwrap();
     let straight = [0.5, 1.5].map(|x| (SO3::identity(), R3::from(Vector3::x() * x)));
     let still = Bodies([Vector6::zeros(); 2]);
@@ -302,18 +260,8 @@ fn a_singular_position_names_the_joint() {
 /// Three rods of 1 m between pivots that are farther apart stay open, and the error says by how much.
 #[test]
 fn joints_that_cannot_close_stay_open() {
-    let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.1)).unwrap();
-    let [left, right] = [-0.5, 0.5].map(|x| Vector3::x() * x);
-    let ball = |above, below| BallJoint { above, below };
-    let tree = Joints::tree([
-        Joined::to_space(ball(Vector3::zeros(), left), 0),
-        Joined::between(ball(right, left), 0, 1),
-        Joined::between(ball(right, left), 1, 2),
-    ]);
     for (apart, missing) in [(3.001, 1e-3), (3.1, 0.1), (4.0, 1.0)] {
-        let last = Joined::to_space(ball(Vector3::x() * apart, right), 2);
-        let scene = scene([Free { m: 1.0, K }; 3], 9.81, Vector3::z());
-        let stepper = Stepper::jointed(scene, tree.closed_by([last]), 0.005).unwrap();
+        let stepper = garland([1.0; 3], apart);
         let error = stepper.start_nearest(row([0.9, 0.0, -0.9]).0, Bodies([Vector6::zeros(); 3])).unwrap_err();
         println!("{error}");
         let SetupError::OffConstraint { by, .. } = error else { panic!("{error}") };
@@ -325,38 +273,26 @@ fn joints_that_cannot_close_stay_open() {
 /// A planar linkage of pins alone: the others do a part of what the last is to do.
 #[test]
 fn redundant_pins_are_named() {
-    let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.1)).unwrap();
-    let [left, right] = [-0.5, 0.5].map(|x| Vector3::x() * x);
-    let pin = |above, below| PinJoint { above, below, axis_above: Vector3::y(), axis_below: Vector3::y() };
-    let ball = |above, below| BallJoint { above, below };
+    let pin = |above, below| Joint::Pin(PinJoint { above, below, axis_above: Vector3::y(), axis_below: Vector3::y() });
     let (places, corner) = row([0.9, 0.0, -0.9]);
-    let tree = Joints::tree([
-        Joined::to_space(Joint::Pin(pin(Vector3::zeros(), left)), 0),
-        Joined::between(Joint::Pin(pin(right, left)), 0, 1),
-        Joined::between(Joint::Ball(ball(right, left)), 1, 2),
-    ]);
-    let scene = scene([Free { m: 1.0, K }; 3], 9.81, Vector3::z());
+    let tree = |last| {
+        let pins = [Joined::to_space(pin(Vector3::zeros(), LEFT), 0), Joined::between(pin(RIGHT, LEFT), 0, 1)];
+        Joints::tree([pins[0], pins[1], Joined::between(last, 1, 2)])
+    };
+    let scene = scene([rod(1.0); 3], 9.81, Vector3::z());
     let still = Bodies([Vector6::zeros(); 3]);
-    let all_pins = Joints::tree([
-        Joined::to_space(Joint::Pin(pin(Vector3::zeros(), left)), 0),
-        Joined::between(Joint::Pin(pin(right, left)), 0, 1),
-        Joined::between(Joint::Pin(pin(right, left)), 1, 2),
-    ]);
-    let last = Joined::to_space(Joint::Pin(pin(corner, right)), 2);
-    let redundant = Stepper::jointed(scene, all_pins.closed_by([last]), 0.005).unwrap();
+    let last = Joined::to_space(pin(corner, RIGHT), 2);
+    let redundant = Stepper::jointed(scene, tree(pin(RIGHT, LEFT)).closed_by([last]), 0.005).unwrap();
     let error = redundant.start(places, still).unwrap_err();
     println!("{error}");
     assert!(matches!(error, SetupError::RedundantJoint { joint: 3, .. }));
     // With balls at both ends of the last body it is a linkage that turns one way, and that body about itself.
-    let last = Joined::to_space(Joint::Ball(ball(corner, right)), 2);
-    let linkage = Stepper::jointed(scene, tree.closed_by([last]), 0.005).unwrap();
+    let last = Joined::to_space(Joint::Ball(ball(corner, RIGHT)), 2);
+    let joints = tree(Joint::Ball(ball(RIGHT, LEFT))).closed_by([last]);
+    let linkage = Stepper::jointed(scene, joints, 0.005).unwrap();
     let mut state = linkage.start(places, still).unwrap();
-    let (energy, mut gap, mut off) = (linkage.energy(&state), 0.0_f64, 0.0_f64);
-    for _ in 0..2000 {
-        linkage.step(&mut state).unwrap();
-        gap = gap.max(linkage.widest_gap(&state));
-        off = off.max((linkage.energy(&state) - energy).abs());
-    }
+    let energy = linkage.energy(&state);
+    let [off, gap] = watched(&linkage, &mut state, energy, 2000);
     // Pins and an even start keep it in its plane.
     let sideways = state.attitude().iter().map(|body| body.1.translation().y.abs()).fold(0.0, f64::max);
     println!("energy {off:.1e}, gap {gap:.1e}, sideways {sideways:.1e}");
@@ -367,24 +303,17 @@ fn redundant_pins_are_named() {
 /// Whichever joints are given apart, joints do no work, and the motion is the same.
 #[test]
 fn two_loops() {
-    let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.09)).unwrap();
-    let bodies = scene([1.0, 1.3, 0.8, 0.6].map(|m| Free { m, K }), 9.81, Vector3::z());
-    let [left, right] = [-0.5, 0.5].map(|x| Vector3::x() * x);
-    let link = BallJoint { above: right, below: left };
+    let bodies = scene([1.0, 1.3, 0.8, 0.6].map(rod), 9.81, Vector3::z());
     let (places, corner) = row([0.9, 0.1, -0.7]);
     // At right angles to the garland, from a point of the middle body that isn't its centre.
-    let knot = BallJoint { above: Vector3::new(0.1, 0.0, 0.05), below: left };
+    let knot = ball(Vector3::new(0.1, 0.0, 0.05), LEFT);
     let start = super::place(&places[1]).of(&knot.above);
     let fourth = SO3::exp(Vector3::z() * 1.1);
     let along = fourth.as_matrix() * Vector3::x();
-    let all = [
-        Joined::to_space(BallJoint { above: Vector3::zeros(), below: left }, 0),
-        Joined::between(link, 0, 1),
-        Joined::between(link, 1, 2),
-        Joined::to_space(BallJoint { above: corner, below: right }, 2),
-        Joined::between(knot, 1, 3),
-        Joined::to_space(BallJoint { above: start + along, below: right }, 3),
-    ];
+    let [first, second, third] = chained();
+    let last = Joined::to_space(ball(corner, RIGHT), 2);
+    let others = [Joined::between(knot, 1, 3), Joined::to_space(ball(start + along, RIGHT), 3)];
+    let all = [first, second, third, last, others[0], others[1]];
     let places = [places[0], places[1], places[2], (fourth, R3::from(start + along * 0.5))];
     let mut random = Random::new(12);
     let moving = Bodies(from_fn(|_| random.sample()));
@@ -397,12 +326,7 @@ fn two_loops() {
         assert!(energy > stepper.energy(&stepper.start(places, Bodies([Vector6::zeros(); 4])).unwrap()) + 0.1);
         stepper.step(&mut state).unwrap();
         assert_no_work((stepper.scene(), 0.005), &all, &Bodies([Vector6::zeros(); 4]), [&before, &state]);
-        let (mut gap, mut off) = (0.0_f64, 0.0_f64);
-        for _ in 1..400 {
-            stepper.step(&mut state).unwrap();
-            gap = gap.max(stepper.widest_gap(&state));
-            off = off.max((stepper.energy(&state) - energy).abs());
-        }
+        let [off, gap] = watched(&stepper, &mut state, energy, 399);
         println!("energy {energy:.3} within {off:.1e}, gap {gap:.1e}");
         assert!(off < 1e-2 && gap < 4.0 * EPSILON * 2.0);
         state.attitude().map(|body| body.0)

@@ -14,8 +14,8 @@ use declarations::motions::number;
 use liestep::groups::{Advected as _, CayleyRetraction, LieGroup as _, R3, Retraction};
 use liestep::laws::samples::derivative;
 use liestep::mechanics::{DiscreteLagrangian, Each, Placed};
-use liestep::methods::{Constraint, Joined, Jointed, Place};
-use liestep::motion::Motion;
+use liestep::methods::{BallJoint, Constraint, Joined, Jointed, Place};
+use liestep::motion::{Integrator, Motion};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, Stepper};
 use nalgebra::{DMatrix, DVector, Vector3, Vector6};
@@ -40,6 +40,39 @@ struct Free {
 
 fn scene<const N: usize>(bodies: [Free; N], g: f64, up: Vector3<f64>) -> Scene<N> {
     Each::<N>::of(bodies.map(|Free { m, K }| FallingBody { m, J_d: K, g, up }))
+}
+
+/// Where a rod of one metre begins and ends, from its centre.
+const LEFT: Vector3<f64> = Vector3::new(-0.5, 0.0, 0.0);
+const RIGHT: Vector3<f64> = Vector3::new(0.5, 0.0, 0.0);
+
+fn rod(m: f64) -> Free {
+    Free { m, K: NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.1) * m).unwrap() }
+}
+
+fn ball(above: Vector3<f64>, below: Vector3<f64>) -> BallJoint {
+    BallJoint { above, below }
+}
+
+/// Rods one after the other, the first from the origin.
+fn chained<const N: usize>() -> [Joined<BallJoint>; N] {
+    from_fn(|k| match k {
+        0 => Joined::to_space(ball(Vector3::zeros(), LEFT), 0),
+        _ => Joined::between(ball(RIGHT, LEFT), k - 1, k),
+    })
+}
+
+/// Makes steps: how far the energy is at most off this one, J, and how far a joint is at most open, m.
+fn watched<C: Constraint<K>, const K: usize, const N: usize, const T: usize, const L: usize>(
+    stepper: &Held<C, K, N, T, L>,
+    state: &mut <Held<C, K, N, T, L> as Integrator>::State,
+    energy: f64,
+    steps: u32,
+) -> [f64; 2] {
+    (0..steps).fold([0.0_f64; 2], |[off, gap], _| {
+        stepper.step(state).unwrap();
+        [off.max((stepper.energy(state) - energy).abs()), gap.max(stepper.widest_gap(state))]
+    })
 }
 
 fn six(turning: &Vector3<f64>, velocity: &Vector3<f64>) -> Vector6<f64> {

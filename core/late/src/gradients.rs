@@ -1,0 +1,104 @@
+//! The derivatives of a step, by a back end.
+
+use liestep::groups::{Advected, CayleyRetraction, LieGroup, Retraction};
+use liestep::mechanics::{KineticPart, SecondDerivatives, StepDerivatives};
+use liestep::numbers::{Coordinates as _, real};
+use liestep_derivation::Array;
+
+use crate::carried::Slots;
+use crate::code::Backend;
+use crate::effect::{Matrix, Square, Vector, alone, square, vector};
+use crate::term::{Late, entries};
+
+impl<G, W, K, B> Late<G, W, K, B>
+where
+    G: LieGroup,
+    W: Advected<G> + Slots,
+    B: Backend<G::Scalar>,
+{
+    /// What one of the programs computes, with these weights; nothing where the derivatives aren't there.
+    fn derived<R>(
+        &self,
+        at: usize,
+        (increment, w, h): (&Matrix<G>, &W, G::Scalar),
+        [start, end]: [&Vector<G>; 2],
+        make: impl FnOnce(&[G::Scalar]) -> R,
+    ) -> R {
+        let Some(programs) = &self.derivatives else { return make(&[]) };
+        let given = [
+            (Array::Step, &[h][..]),
+            (Array::Parameters, &self.numbers),
+            (Array::Advected, &entries(w)),
+            (Array::Increment, &entries(increment)),
+            (Array::InverseIncrement, &entries(&G::inverse_increment(increment))),
+            (Array::Target, &entries(start)),
+            (Array::Velocity, &entries(end)),
+        ];
+        make(&alone::<_, B, _>(&programs[at], given))
+    }
+}
+
+/// Derivatives by the parameters aren't there: how many there are isn't known in the type.
+impl<G, W, K, B> SecondDerivatives for Late<G, W, K, B>
+where
+    G: LieGroup,
+    W: Advected<G> + Slots,
+    K: KineticPart,
+    B: Backend<G::Scalar>,
+    CayleyRetraction: Retraction<G>,
+{
+    const PARAMETERS: usize = 0;
+
+    fn are_derived(&self) -> bool {
+        self.derivatives.is_some()
+    }
+
+    fn step_derivatives(&self, increment: &Matrix<G>, w: &W, h: G::Scalar) -> StepDerivatives<Square<G>> {
+        let zero = Vector::<G>::zero();
+        self.derived(0, (increment, w, h), [&zero; 2], |outputs| {
+            let mut blocks = outputs.chunks(G::DIMENSION * G::DIMENSION);
+            let mut next = || square::<G>(blocks.next().unwrap_or_default());
+            let [start_by_turn, end_by_turn, start_by_place, end_by_place] = [(); 4].map(|()| next());
+            StepDerivatives { start_by_turn, end_by_turn, start_by_place, end_by_place }
+        })
+    }
+
+    fn by_parameters(&self, _: &Matrix<G>, _: &W, _: G::Scalar, _: &mut impl FnMut(usize, Vector<G>, Vector<G>)) {}
+
+    fn by_advected(
+        &self,
+        increment: &Matrix<G>,
+        w: &W,
+        h: G::Scalar,
+        visit: &mut impl FnMut(usize, Vector<G>, Vector<G>),
+    ) {
+        let zero = Vector::<G>::zero();
+        self.derived(3, (increment, w, h), [&zero; 2], |outputs| {
+            for (number, both) in outputs.chunks(2 * G::DIMENSION).enumerate() {
+                visit(number, vector(both), vector(both.get(G::DIMENSION..).unwrap_or_default()));
+            }
+        });
+    }
+
+    fn carried_parameters(_: &mut impl FnMut(usize, usize)) {}
+
+    fn adjoint_system(&self, increment: &Matrix<G>, w: &W, h: G::Scalar, at_end: &Vector<G>) -> (Square<G>, Vector<G>) {
+        self.derived(1, (increment, w, h), [at_end; 2], |outputs| {
+            (square::<G>(outputs), vector(outputs.get(G::DIMENSION * G::DIMENSION..).unwrap_or_default()))
+        })
+    }
+
+    fn adjoint_gradient(
+        &self,
+        increment: &Matrix<G>,
+        w: &W,
+        h: G::Scalar,
+        ends: [&Vector<G>; 2],
+        _: &mut impl FnMut(usize, G::Scalar),
+    ) -> (Vector<G>, W) {
+        self.derived(2, (increment, w, h), ends, |outputs| {
+            let mut by_advected = outputs.iter().skip(G::DIMENSION).copied();
+            (vector(outputs), W::from_entries(&mut || by_advected.next().unwrap_or_else(|| real(0.0))))
+        })
+    }
+}
