@@ -133,7 +133,7 @@ fn store_error(error: &impl std::fmt::Display) -> Failure {
 }
 
 /// The columns of a member, as a run has them.
-fn kept<G: LieGroup<Scalar = f64>>() -> Vec<Column> {
+pub(crate) fn kept<G: LieGroup<Scalar = f64>>() -> Vec<Column> {
     let components = G::named_components();
     let named = |quantity: &'static str, which: usize| {
         components.iter().map(move |(name, units)| (format!("{quantity}_{name}"), units[which]))

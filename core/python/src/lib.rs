@@ -1,10 +1,11 @@
 //! liestep in Python: the part that is written in Rust, and that the package `liestep` is made of.
 //!
-//! `lib → {scene, file, picture} → ensemble → {run, method} → {table, failure}`: a text is derived by `liestep-late`; what it
+//! `lib → {control, file, picture} → scene → ensemble → {run, method} → {table, failure}`: a text is derived by `liestep-late`; what it
 //! declares is stepped by any method, recorded into columns that `NumPy` and Arrow look at where they are, or drawn at random.
 //! Whatever takes long leaves the interpreter to others, and asks it now and then whether it is to stop.
 #![forbid(unsafe_code)]
 
+mod control;
 mod ensemble;
 mod failure;
 mod file;
@@ -21,6 +22,7 @@ use liestep_late::Declaration;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::control::Task;
 use crate::ensemble::{Draws, Members};
 use crate::failure::Failure;
 use crate::method::Method;
@@ -165,6 +167,14 @@ fn shown(py: Python<'_>, recorded: Recorded) -> PyResult<Bound<'_, PyDict>> {
     Ok(dictionary)
 }
 
+/// A plan of the sum of these terms.
+#[pyfunction]
+fn plan<'py>(py: Python<'py>, terms: Vec<(Bound<'py, Derived>, Numbers)>, task: Task) -> PyResult<Bound<'py, PyDict>> {
+    let declared: Vec<_> = terms.iter().map(|(term, _)| term.get().0).collect();
+    let numbers: Vec<f64> = terms.into_iter().flat_map(|(_, numbers)| numbers).flat_map(|(_, value)| value).collect();
+    control::plan(py, &declared, &numbers, &task)
+}
+
 /// The names of all schemes, by the kind of the method.
 #[pyfunction]
 fn schemes() -> Vec<(&'static str, Vec<&'static str>)> {
@@ -180,7 +190,7 @@ fn share(text: &str) -> PyResult<(u64, u64)> {
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use super::{Derived, Scene, Table, View, schemes, share};
+    use super::{Derived, Scene, Table, View, plan, schemes, share};
     #[pymodule_export]
     use crate::file::{File, FileRun, library};
     #[pymodule_export]

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use liestep::SO3;
 use liestep::accuracy::{Accuracy, Choice};
 use liestep::groups::{
-    Advected, CayleyRetraction, Configuration, Given, Heisenberg, LieGroup, R1, R2, R3, Retraction, SE2, SE3, SL2, SO2,
-    SU2, SeenFrom,
+    Advected, CayleyRetraction, Configuration, Heisenberg, LieGroup, R1, R2, R3, Retraction, SE2, SE3, SL2, SO2, SU2,
+    SeenFrom,
 };
 use liestep::mechanics::{KineticPart, Scene as Stepped, Sum, WithEitherKinetic, WithoutKinetic};
 use liestep::motion::{AnyState, AnyStepper};
@@ -17,7 +17,7 @@ use nalgebra::{Matrix4, Point2, Point3, Quaternion, UnitQuaternion};
 
 use crate::ensemble::{Draws, Members, Outcome, run_members};
 use crate::failure::Failure;
-use crate::method::{Method, Methods};
+use crate::method::{Four, Method, Methods, V, WithEnergy};
 use crate::run::{Course, Recorded, Start, record};
 
 /// Values of parameters, by their names.
@@ -29,7 +29,7 @@ type Backend = liestep_machine::Machine;
 #[cfg(not(feature = "machine"))]
 type Backend = liestep_late::Interpreted;
 
-type Late<G, W, K> = liestep_late::Late<G, W, K, Backend>;
+pub(crate) type Late<G, W, K> = liestep_late::Late<G, W, K, Backend>;
 type Lagrangian<G, W> = Late<G, W, WithEitherKinetic>;
 type Force<G, W> = Late<G, W, WithoutKinetic>;
 
@@ -65,7 +65,7 @@ macro_rules! with_stepper {
     ($own:expr, ($method:expr, $h:expr), |$stepper:ident| $body:expr) => {
         match $own.force.clone() {
             None => {
-                let $stepper = $method.of($own.lagrangian.clone(), $h)?;
+                let $stepper = <(G, W)>::stepper($own.lagrangian.clone(), $h, $method)?;
                 $body
             }
             Some(force) => {
@@ -79,8 +79,9 @@ macro_rules! with_stepper {
 
 impl<G, W> Scene for Declared<G, W>
 where
-    G: LieGroup<Scalar = f64> + Methods<Lagrangian<G, W>> + liestep::accuracy::Steppable<Lagrangian<G, W>>,
+    G: LieGroup<Scalar = f64> + liestep::accuracy::Steppable<Lagrangian<G, W>>,
     W: Advected<G> + Slots + Send + Sync + 'static,
+    (G, W): Methods<Lagrangian<G, W>>,
     CayleyRetraction: Retraction<G>,
     Lagrangian<G, W>: Stepped<Scalar = f64, Group = G, Advected = W> + Send + Sync,
     Sum<Lagrangian<G, W>, Force<G, W>>: Stepped<Scalar = f64, Group = G, Advected = (W, W)>,
@@ -112,8 +113,9 @@ where
 
     fn members(&self, method: (Method, f64), start: &Start, draws: Draws, plan: Members) -> Result<Outcome, Failure> {
         let (own, (method, h)) = (self.clone(), method);
-        if own.lagrangian.declaration().energy.is_some() {
-            let message = "members make the same number of steps, and those of a pace end at different times";
+        if own.lagrangian.declaration().energy.is_some() || method.varies() {
+            let message =
+                "members make the same number of steps, and those of a pace or a density end at different times";
             return Err(Failure::Of("SetupError", message.to_owned()));
         }
         // The first member says what is wrong with all of them.
@@ -131,7 +133,7 @@ where
         };
         let Some(force) = self.force.clone() else {
             let make = move |draw: &mut dyn FnMut(&str, &mut [f64])| {
-                method.of(drawn(&own, draw)?, h).map(AnyStepper::hiding_advected)
+                <(G, W)>::stepper(drawn(&own, draw)?, h, method).map(AnyStepper::hiding_advected)
             };
             return run_members(plan, start, draws, make, h);
         };
@@ -232,14 +234,11 @@ impl Fits<'_> {
     }
 }
 
-type Two<V> = (SeenFrom<0, V>, SeenFrom<1, V>);
-
 /// The scene of a Lagrangian, with the sum of forces if there is one.
 pub(crate) fn scene(
     lagrangian: (&'static Declaration, &Numbers),
     force: Option<(&'static Declaration, &Numbers)>,
 ) -> Result<Arc<dyn Scene>, Failure> {
-    type V<const N: usize> = nalgebra::SVector<f64, N>;
     let fits = Fits { lagrangian, force };
     if !lagrangian.0.has_kinetic {
         let message = "nothing moves by a potential alone: add a kinetic energy, as in `ls.body(J) + potential`";
@@ -258,7 +257,7 @@ pub(crate) fn scene(
         )+)+};
     }
     first_that_fits! {
-        SO3: V<3>, (V<3>, V<3>, V<3>, V<3>), (Given<f64>, V<3>, V<3>, V<3>);
+        SO3: V<3>, Four, WithEnergy;
         SO2: V<2>;
         SE2: V<3>, Point2<f64>;
         SE3: V<4>, Point3<f64>;
@@ -268,7 +267,7 @@ pub(crate) fn scene(
         R2: V<3>;
         R3: V<4>;
         Heisenberg: ();
-        (SO3, SO3): Two<V<3>>;
+        (SO3, SO3): (SeenFrom<0, V<3>>, SeenFrom<1, V<3>>);
         (SO3, R3): Configuration<1, Matrix4<f64>>, (SeenFrom<0, V<3>>, Configuration<1, Matrix4<f64>>);
     }
     let known = "on SO3 up to four vectors in space are advected, on SO2, SL2, R1, R2 and R3 one vector, on SE2 and SE3 one vector or point, on \

@@ -30,6 +30,42 @@ def test_a_scene_of_several_bodies():
     assert len(run) > 10 and run.html() is None and run.svg().startswith("<svg")
 
 
+def test_steps_of_a_density_are_those_of_a_file():
+    text = """title = "a top"
+[body]
+moments = [3, 3, 4]
+[gravity]
+m = 1
+g = 9.81
+rho = [0, 0, 1]
+up = [0, 0, 1]
+[start]
+euler = [0, 0.8, 0]
+velocity = [0.1, 0, 6]
+[run]
+step = 0.01
+duration = 4
+density = { turn = 0.5 }
+[output]
+columns = ["velocity"]
+"""
+    filed = ls.scene("top.toml", text).run()
+    stepper = pickle.loads(pickle.dumps(heavy_top().stepper(0.01, density={"turn": 0.5})))
+    run = stepper.run(velocity=[0.1, 0, 6], attitude=ls.euler(0, 0.8), until=4)
+    lengths = np.diff(run.time)
+    assert len(run) == len(filed) and lengths.max() > 1.01 * lengths.min() and "density" in repr(stepper)
+    assert abs(run.velocity - filed.group("velocity_")).max() < 1e-10
+    with pytest.raises(ls.SetupError):
+        heavy_top().ensemble(10, velocity=[0, 0, 1], method={"density": {"turn": 1}}).run("nowhere", until=1)
+    for wrong in ({"turn": 0}, {"turn": "a"}, {"distance": 1}, 1.0, {}):
+        with pytest.raises(ls.SetupError):
+            heavy_top().stepper(0.01, density=wrong)
+    with pytest.raises(ls.SetupError):
+        heavy_top().stepper(0.01, density={"turn": 1}, compensated=True)
+    with pytest.raises(ls.SetupError):
+        (heavy_top() + ls.drag(c=1, J=[3, 3, 4])).stepper(0.01, density={"turn": 1})
+
+
 def test_a_mistake_of_a_file_has_its_place():
     with pytest.raises(ls.SceneError) as found:
         ls.scene("top.toml", 'title = "x"\n[body]\nmomnts = [1, 2, 3]\n')

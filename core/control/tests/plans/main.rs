@@ -325,7 +325,7 @@ fn cost<S: SecondDerivatives<Scalar = f64, Group = SO3> + Regular + Clone>(scene
     plan.cost
 }
 
-/// A heavy top by its text has the plan of the compiled one.
+/// A heavy top by its text has the plan of the compiled one, and that of Python.
 #[test]
 fn a_text_is_planned_as_what_is_compiled() {
     let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 1.4, 2.0)).expect("a body");

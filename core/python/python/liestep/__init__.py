@@ -10,6 +10,7 @@ True
 """
 
 from . import errors
+from ._control import Control, Plan
 from ._declared import Term, force, lagrangian, point
 from ._ensemble import Ensemble, Many, Spread, normal, rotation, uniform
 from ._library import (
@@ -21,7 +22,7 @@ from .errors import DeclarationError, Error, SceneError, SetupError, StepError, 
 
 __version__ = "0.1.0"
 __all__ = [
-    "Columns", "DeclarationError", "Ensemble", "Error", "Happenings", "Many", "Run", "Scene", "SceneError", "SceneRun",
+    "Columns", "Control", "DeclarationError", "Ensemble", "Error", "Happenings", "Many", "Plan", "Run", "Scene", "SceneError", "SceneRun",
     "SetupError", "Spread", "StepError", "Stepper", "StoreError", "Term", "body", "dipole", "drag", "errors", "euler",
     "force", "gravity", "gravity_gradient", "lagrangian", "magnetic_damping", "nonstandard", "normal", "point", "rotation",
     "rotor", "scene", "schemes", "spring", "thrust", "torque", "translation", "uniform",

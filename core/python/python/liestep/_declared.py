@@ -11,6 +11,7 @@ from . import _native
 from .errors import DeclarationError
 
 if TYPE_CHECKING:
+    from ._control import Control
     from ._ensemble import Ensemble
     from ._stepper import Stepper
 
@@ -105,16 +106,19 @@ class Term:
     @property
     def declaration(self) -> str:
         """The declaration as Rust has it."""
+        return self._declared("")
+
+    def _declared(self, words: str) -> str:
         advected = "".join(f"{name} = {source}, " for name, source in self.advected.items())
         carried = f"advected({advected.rstrip(', ')}), " if advected else ""
         if self.head.startswith("pace = "):
             carried = "given(E_0 = E_0_of_the_start), " + carried
         fields = ", ".join(f"{name}: {kind}" for name, (kind, _) in self.numbers.items())
-        return f"#[{self.role}({self.group}, {carried}{self.head} =\n{self.text}\n)]\nstruct Declared {{ {fields} }}"
+        return f"#[{self.role}({self.group}, {words}{carried}{self.head} =\n{self.text}\n)]\nstruct Declared {{ {fields} }}"
 
-    def _derived(self) -> _native.Derived:
+    def _derived(self, gradients: bool = False) -> _native.Derived:
         try:
-            return _native.Derived(self.declaration)
+            return _native.Derived(self._declared("gradients, " if gradients else ""))
         except DeclarationError as error:
             raise self._placed(error) from None
 
@@ -127,13 +131,14 @@ class Term:
         ]
         return DeclarationError.of(own) if own else error
 
+    def _values(self) -> list[tuple[str, list[float]]]:
+        return [(name, list(value)) for name, (_, value) in self.numbers.items()]
+
     def _scene(self) -> _native.Scene:
-        force = _summed(self.forces) if self.forces else None
-        numbers = [(name, list(value)) for name, (_, value) in self.numbers.items()]
-        if force is None:
-            return _native.Scene(self._derived(), numbers)
-        of_force = [(name, list(value)) for name, (_, value) in force.numbers.items()]
-        return _native.Scene(self._derived(), numbers, force._derived(), of_force)
+        if not self.forces:
+            return _native.Scene(self._derived(), self._values())
+        force = _summed(self.forces)
+        return _native.Scene(self._derived(), self._values(), force._derived(), force._values())
 
     @property
     def derivation(self) -> str:
@@ -212,6 +217,20 @@ class Term:
         from ._stepper import accurate
 
         return accurate(self, tolerance, **run)
+
+    def control(self, *, step: float, steps: int, **task: Any) -> Control:
+        """A motion from here to there by torques, in the shortest time or by the least effort; see `liestep.Control`.
+
+        Examples
+        --------
+        >>> import liestep as ls
+        >>> plan = ls.body([4, 3, 2]).control(step=0.02, steps=50, goal=ls.euler(0, 1.5), bound=24).solve()
+        >>> plan.converged, bool(abs(plan.torque).max() <= 24)
+        (True, True)
+        """
+        from ._control import Control
+
+        return Control(self, step=step, steps=steps, **task)
 
     def ensemble(self, members: int, *, step: float = 0.01, **rest: Any) -> Ensemble:
         """Many motions drawn at random; see `liestep.Ensemble`."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import inf
 from typing import Any
 
 from . import _native
@@ -157,6 +158,9 @@ class Stepper:
         exact motion of the free body and its kicks.
     collocation : {4, 8}, optional
         The stages of a Gauss collocation.
+    density : mapping, optional
+        On SO(3) ``{"turn": 1.0}``: the first step is about `step`, and in each the body turns by about as much, from this
+        velocity on, rad/s. Reversible; without members of an ensemble, a force, or another method.
     compensated : bool
         Whether what rounding takes from sums is added to the next.
     substeps : int
@@ -179,12 +183,19 @@ class Stepper:
         splitting: str | None = None,
         processed: str | None = None,
         collocation: int | None = None,
+        density: Mapping[str, float] | None = None,
         compensated: bool = False,
         substeps: int = 1,
     ) -> None:
-        given = {
+        given: dict[str, Any] = {
             "composition": composition, "splitting": splitting, "processed": processed, "collocation": collocation,
         }
+        if density is not None:
+            is_turn = isinstance(density, Mapping) and list(density) == ["turn"]
+            (floor,) = _numbers("density", density["turn"], ((),)) if is_turn else (0.0,)
+            if not 0 < floor < inf:
+                raise SetupError(f'a density is `{{"turn": velocity}}`, rad/s, above zero, not {density!r:.80}')
+            given["density"] = repr(floor)
         named = [(kind, str(scheme)) for kind, scheme in given.items() if scheme is not None]
         if len(named) > 1:
             raise SetupError(f"one method at a time: {' and '.join(kind for kind, _ in named)} are two")
@@ -253,7 +264,7 @@ class Stepper:
 
     def _about(self) -> str:
         kind, scheme, compensated, substeps = self.method
-        by = {"step": "", "collocation": f" by {scheme} stages"}.get(kind, f" by the {kind} {scheme}")
+        by = {"step": "", "density": f" at first, of a density by the turn from {scheme} rad/s on", "collocation": f" by {scheme} stages"}.get(kind, f" by the {kind} {scheme}")
         rest = (", compensated" if compensated else "") + (f", or {substeps} parts" if substeps > 1 else "")
         return f"steps of {self.step:g} s{by}{rest}"
 
@@ -266,7 +277,7 @@ class Stepper:
 
 def _again(term: Term, step: float, method: tuple[str, str, bool, int]) -> Stepper:
     kind, scheme, compensated, substeps = method
-    given: dict[str, Any] = {} if kind == "step" else {kind: scheme}
+    given: dict[str, Any] = {} if kind == "step" else {kind: {"turn": float(scheme)} if kind == "density" else scheme}
     return Stepper(term, step, **given, compensated=compensated, substeps=substeps)
 
 
