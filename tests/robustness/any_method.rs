@@ -262,7 +262,7 @@ where
     let (mut plain, mut carrying) = (started(stepper), started(&compensated));
     stepper.run(&mut plain, 50).unwrap();
     compensated.run(&mut carrying, 50).unwrap();
-    assert!(apart::<S, P, _>(&plain, &carrying) < 1e-13, "{name}: compensated");
+    assert!(apart::<S, P, _>(&plain, &carrying) < 1e-14, "{name}: compensated");
 }
 
 #[test]

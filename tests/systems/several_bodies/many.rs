@@ -86,7 +86,6 @@ fn trajectory() {
         assert!((whole(&state) - before).norm() < 1e-12);
         error(&state.attitude(), &stepper.velocity(&state))
     });
-    println!("{errors:?}");
     for pair in errors.windows(2) {
         let order = (pair[0] / pair[1]).log2();
         assert!((order - 2.0).abs() < 0.02, "{order}");
