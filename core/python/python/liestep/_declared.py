@@ -224,8 +224,8 @@ class Term:
         Examples
         --------
         >>> import liestep as ls
-        >>> plan = ls.body([4, 3, 2]).control(step=0.02, steps=50, goal=ls.euler(0, 1.5), bound=24).solve()
-        >>> plan.converged, bool(abs(plan.torque).max() <= 24)
+        >>> plan = ls.body([4, 3, 2]).control(step=0.02, steps=50, goal=ls.euler(0, 1.5), bound=30).solve()
+        >>> plan.converged, bool(abs(plan.torque).max() <= 30)
         (True, True)
         """
         from ._control import Control
