@@ -382,6 +382,5 @@ fn rods_move_as_directions() {
         state.attitude().map(|attitude| attitude.as_matrix() * e)
     });
     let off = ends[0].iter().zip(&ends[1]).map(|(a, b)| (a - b).amax()).fold(0.0, f64::max);
-    println!("apart by {off:.1e}");
     assert!(off < 1e-12 && (ends[0][3] - directions[3]).norm() > 0.5, "{off:e}");
 }
