@@ -201,7 +201,9 @@ def everything(options):
         path, timed = options.out / f"{name}.json", options.out / f"{name}.time.json"
         if path.exists() and ENGINES[name].title not in reasons:
             results[name] = json.loads(path.read_text())
-            results[name]["time"] = json.loads(timed.read_text()) if timed.exists() else None
+            known = json.loads(timed.read_text()) if timed.exists() else None
+            # One that was taken beside others isn't shown.
+            results[name]["time"] = known if known and known["others"] < QUIET else None
             if name == "Ours":
                 results[name]["time"] = {"ratio": 1.0, "others": 0.0}
     for title, reason in reasons.items():
@@ -248,12 +250,12 @@ def name_of_step(engine, step):
     return f"1/{1 / step:.0f}" if step in (1 / 60, 1 / 240) else f"{step:g}"
 
 
-def quiet(results):
-    return all(r["time"] and r["time"]["others"] < QUIET for r in results.values())
+def has_times(results):
+    return sum(r["time"] is not None for r in results.values()) > 1
 
 
-def ratio(result, timed):
-    return short(result["time"]["ratio"]) if timed and result["time"] else "–"
+def ratio(result):
+    return short(result["time"]["ratio"]) if result["time"] else "–"
 
 
 def table_of_versions(results):
@@ -265,7 +267,7 @@ def table_of_versions(results):
         yield f"| {e.title} | `{e.package}` {result['version']} | {e.setting} | {e.digits} | {usual} |"
 
 
-def table_of_wing_nut(results, timed):
+def table_of_wing_nut(results):
     yield ("| engine | step, s | energy, 100 turns | direction, rad | length | flips ahead | turns in all | energy | direction, rad "
            "| length | flips ahead | time of a step |")
     yield "|---|---|---|---|---|---|---|---|---|---|---|---|"
@@ -281,7 +283,7 @@ def table_of_wing_nut(results, timed):
                 cells += [short(at(one, what, turns)) for what in ("energy", "direction", "length")] + [flips(one, turns)]
             if len(cells) < 9:
                 cells += ["100"] + cells[:4]
-            yield f"| {e.title} | {name_of_step(e, one['asked'][1])} | {' | '.join(cells)} | {ratio(result, timed)} |"
+            yield f"| {e.title} | {name_of_step(e, one['asked'][1])} | {' | '.join(cells)} | {ratio(result)} |"
 
 
 def table_of_others(results):
@@ -322,7 +324,7 @@ def picture(results, path):
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    timed = quiet(results)
+    timed = has_times(results)
     plt.rcParams |= {"svg.fonttype": "none", "font.family": "sans-serif", "font.size": 9, "svg.hashsalt": "free-body"}
     figure, (left, right) = plt.subplots(1, 2, figsize=(12, 6.2), gridspec_kw={"width_ratios": [1.25, 1]})
     lines = []
@@ -341,6 +343,8 @@ def picture(results, path):
                       annotation_clip=False, arrowprops={"arrowstyle": "-", "lw": 0.4, "color": color, "alpha": 0.5})
     for name, result in results.items():
         e, points = ENGINES[name], []
+        if timed and not result["time"]:
+            continue
         for key, one in result["runs"].items():
             phase = at(one, "phase", 100) if key.startswith("wing nut") and "usual" not in key else None
             if phase is None or stuck(one):
@@ -367,10 +371,10 @@ def picture(results, path):
 
 def readme(results, reasons):
     """The tables between the marks of README.md."""
-    path, timed = HERE / "README.md", quiet(results)
+    path = HERE / "README.md"
     text = path.read_text()
     left_out = [f"Left out: {title}, as {reason}." for title, reason in reasons.items()]
-    blocks = {"versions": [*table_of_versions(results), "", *left_out], "wing nut": table_of_wing_nut(results, timed),
+    blocks = {"versions": [*table_of_versions(results), "", *left_out], "wing nut": table_of_wing_nut(results),
               "others": table_of_others(results)}
     for mark, lines in blocks.items():
         head, rest = text.split(f"<!-- {mark} -->\n", 1)
@@ -378,9 +382,9 @@ def readme(results, reasons):
         text = head + f"<!-- {mark} -->\n" + "\n".join(lines) + f"\n<!-- end of {mark} -->" + tail
     path.write_text(text)
     picture(results, PICTURE)
-    if not timed:
-        print(f"others kept more than {QUIET} processors busy: the column of times is left empty; what was measured so is "
-              "measured again by the next run")
+    if beside := [ENGINES[name].title for name, result in results.items() if not result["time"]]:
+        print(f"others kept more than {QUIET} processors busy beside {', '.join(beside)}: no time is shown there, and the next "
+              "run measures it again")
 
 
 def main():
@@ -412,7 +416,7 @@ def main():
         about.error("--readme takes the whole work, not --quick")
     results, reasons = everything(options)
     print()
-    for line in [*table_of_versions(results), "", *table_of_wing_nut(results, True)]:
+    for line in [*table_of_versions(results), "", *table_of_wing_nut(results)]:
         print(line)
     if options.readme:
         readme(results, reasons)
