@@ -344,7 +344,7 @@ fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
 ) where
     CayleyRetraction: Retraction<G>,
 {
-    // Off SO(3) the system is written in the increment.
+    // Off SO(3) the system is written in the increment. That is called, and a step on SO(3) stays short.
     if program.reads(Array::Increment) || program.reads(Array::InverseIncrement) {
         return iteration_with_more::<G, W, B>((program, image), terms, half, outputs);
     }
