@@ -13,6 +13,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::args::{Schedule, Stretch};
 use crate::progress::Progress;
 use crate::table::short;
+use crate::tenths::float;
 
 /// Attitude (body to space) and angular momentum (body frame, kg m²/s).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,11 +91,6 @@ pub fn run<M: Method>(name: &str, mut method: M, schedule: &Schedule) -> Result<
     costs.sort_by(f64::total_cmp);
     let nanoseconds = costs[costs.len() / 2];
     Ok(Record { samples, iterations: float(iterations) / float(schedule.steps), nanoseconds })
-}
-
-#[allow(clippy::cast_precision_loss)] // counts of steps and iterations are far below 2⁵³
-fn float(count: u64) -> f64 {
-    count as f64
 }
 
 /// Bit for bit, where it is finite: an explicit method may have blown up, and NaN isn't equal to itself.

@@ -1,6 +1,7 @@
 //! The period of a body that flips about its middle axis.
 
 use nalgebra::Vector3;
+use workbench::heavy_top::precession::complete_integral;
 
 /// The time of two flips, `4 K(k)/λ`, for moments `J_1 < J_2 < J_3` and a body velocity.
 ///
@@ -18,15 +19,5 @@ pub(crate) fn period(moments: &Vector3<f64>, velocity: &Vector3<f64>) -> f64 {
     } else {
         (((b - a) * below / (a * b * c)).sqrt(), -(c - a) * middle / ((b - a) * below))
     };
-    2.0 * std::f64::consts::PI / (mean(complement.sqrt()) * rate)
-}
-
-/// The arithmetic-geometric mean of one and `k'`; `K(k)` is `π/2` over it.
-fn mean(complement: f64) -> f64 {
-    let (mut a, mut g) = (1.0, complement);
-    // It converges quadratically.
-    for _ in 0..40 {
-        (a, g) = (0.5 * (a + g), (a * g).sqrt());
-    }
-    a
+    4.0 * complete_integral(complement.sqrt()) / rate
 }

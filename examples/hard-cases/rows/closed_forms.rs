@@ -7,7 +7,6 @@ use workbench::measure::{four_halvings, greater, order, relative, steps_in};
 use workbench::run::Method as _;
 
 use crate::closed::{separatrix, symmetric};
-use crate::curves::Curves;
 use crate::row::{Effort, Failure, Row, short};
 
 /// What is left of the invariants, and the error at the end.
@@ -41,7 +40,7 @@ fn end(
     Ok(left)
 }
 
-pub(crate) fn b8(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn b8(_: Effort) -> Result<Row, Failure> {
     let mut row = Row::new(
         "B8",
         "on the separatrix, and symmetric bodies, against closed forms",

@@ -8,7 +8,6 @@ use workbench::heavy_top::euler_angles::OnEulerAngles;
 use workbench::measure::{four_halvings, greater, order, relative, steps_in};
 use workbench::run::{Method as _, Sample};
 
-use crate::curves::Curves;
 use crate::rivals::energy_of;
 use crate::row::{Effort, Failure, Row};
 use crate::rows::passage;
@@ -56,7 +55,7 @@ fn through_the_pole(h: f64, miss: f64) -> Result<[(f64, f64); 2], Failure> {
     Ok([change(&method.sample()), change(&ours)])
 }
 
-pub(crate) fn t10(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn t10(_: Effort) -> Result<Row, Failure> {
     let mut row = Row::new(
         "T10",
         "Euler angles, (3.10) to (3.12): the thesis' tops for 2 s, and a passage within 5e-7 rad of straight up",

@@ -11,7 +11,6 @@ use workbench::measure::{four_halvings, order};
 use workbench::run::Method as _;
 
 use crate::closed::flip;
-use crate::curves::Curves;
 use crate::engines::{Moments, explicit, implicit, rescaled};
 use crate::rivals::Update;
 use crate::row::{Effort, Failure, Row};
@@ -79,7 +78,7 @@ where
     }))
 }
 
-pub(crate) fn b7(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn b7(_: Effort) -> Result<Row, Failure> {
     let (moments, velocity) = (Vector3::new(1.0, 2.0, 3.0), Vector3::new(0.01, 2.0, 0.02));
     let exact = flip::period(&moments, &velocity);
     let inertia = DiagonalNonstandardInertia::from_principal_moments(moments)?;

@@ -5,7 +5,6 @@ use liestep::Stepper;
 use nalgebra::Vector3;
 use workbench::measure::{four_halvings, order, steps_in};
 
-use crate::curves::Curves;
 use crate::row::{Effort, Failure, Row};
 
 /// What the step conserves is `H` and `h²` times this, up to an oscillation of fourth order:
@@ -41,7 +40,7 @@ fn oscillations(motion: &Motion, h: f64) -> Result<(f64, f64), Failure> {
     Ok((range[0].1 - range[0].0, range[1].1 - range[1].0))
 }
 
-pub(crate) fn t2(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn t2(_: Effort) -> Result<Row, Failure> {
     let mut row = Row::new("T2", "modified Hamiltonian along 10 s", "its oscillation falls with order 4.0 ± 0.1");
     for motion in [Motion::looping(), Motion::chaotic()] {
         let (mut plain, mut modified) = (Vec::new(), Vec::new());

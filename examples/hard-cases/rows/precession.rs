@@ -4,7 +4,7 @@
 use declarations::Motion;
 use liestep::Stepper;
 use liestep::groups::LieGroup as _;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use workbench::heavy_top::euler_angles::EulerAngles;
 use workbench::heavy_top::precession::{Kind, Precession};
 use workbench::heavy_top::rk4::Body;
@@ -12,9 +12,9 @@ use workbench::measure::{float, four_halvings, greater, order, steps_in};
 use workbench::run::{Method, Sample};
 use workbench::variational::Variational;
 
-use crate::curves::Curves;
-use crate::rivals::{on_matrix, on_quaternion, rk4_body};
+use crate::rivals::{on_matrix, on_quaternion};
 use crate::row::{Effort, Failure, Row};
+use crate::walk::orthogonality;
 
 /// The least and the greatest of two quantities, and the times at which the first begins to grow.
 struct Seen {
@@ -51,7 +51,7 @@ fn seen(body: &Body, method: &mut impl Method, h: f64, from: f64, to: f64) -> Re
 fn ours(motion: &Motion, h: f64, from: f64, to: f64) -> Result<Seen, Failure> {
     let stepper = Stepper::new(motion.top.clone(), h)?;
     let state = stepper.start(motion.attitude, motion.velocity)?;
-    seen(&rk4_body(&motion.top), &mut Variational { stepper: &stepper, state }, h, from, to)
+    seen(&Body::of(&motion.top), &mut Variational { stepper: &stepper, state }, h, from, to)
 }
 
 fn closed(motion: &Motion) -> Precession {
@@ -68,7 +68,7 @@ fn apart(a: (f64, f64), b: (f64, f64)) -> f64 {
 const KINDS: [Kind; 6] =
     [Kind::Looping, Kind::Cuspidal, Kind::Looping, Kind::Looping, Kind::Cuspidal, Kind::Unidirectional];
 
-pub(crate) fn t11(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn t11(_: Effort) -> Result<Row, Failure> {
     let mut row = Row::new(
         "T11",
         "nutation and precession of the thesis' tops, both readings, 20 s",
@@ -108,11 +108,7 @@ pub(crate) fn t11(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
 const END: f64 = 200.0;
 const COARSE: f64 = 0.05;
 
-fn rigidity(attitude: &Matrix3<f64>) -> f64 {
-    (attitude.transpose() * attitude - Matrix3::identity()).norm()
-}
-
-pub(crate) fn t12(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn t12(_: Effort) -> Result<Row, Failure> {
     let motion = Motion::looping();
     let closed = closed(&motion);
     let mut row = Row::new(
@@ -126,9 +122,9 @@ pub(crate) fn t12(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
         let stepper = Stepper::new(motion.top.clone(), h)?;
         let mut state = stepper.start(motion.attitude, motion.velocity)?;
         stepper.run(&mut state, steps_in(END, h))?;
-        let lost = rigidity(&theirs.sample().attitude);
+        let lost = orthogonality(&theirs.sample().attitude);
         row = row
-            .at_most(&format!("h = {h}: our ‖RᵀR − I‖"), rigidity(&state.attitude().matrix()), 1e-13)
+            .at_most(&format!("h = {h}: our ‖RᵀR − I‖"), orthogonality(&state.attitude().matrix()), 1e-13)
             .holds(&format!("h = {h}: that of RK4 in nine entries {lost:.1e}"), lost > 1e-2);
     }
     let drawn = |Path { tilt, turns_back, .. }: &Path| {

@@ -3,12 +3,11 @@
 use declarations::Motion;
 use liestep::Stepper;
 use liestep::groups::LieGroup as _;
-use workbench::heavy_top::rk4::OnQuaternion;
+use workbench::heavy_top::rk4::{Body, OnQuaternion};
 use workbench::measure::relative;
 use workbench::run::Method as _;
 
-use crate::curves::Curves;
-use crate::rivals::{on_quaternion, rk4_body};
+use crate::rivals::on_quaternion;
 use crate::row::{Effort, Failure, Row, short};
 
 const STEPS: u64 = 1_000_000;
@@ -29,7 +28,7 @@ fn error_on_return(motion: &Motion, h: f64, steps: u64) -> Result<f64, Failure> 
     Ok(attitude.max(momentum).max(relative(&state.advected(), &before.advected())))
 }
 
-pub(crate) fn s5(effort: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn s5(effort: Effort) -> Result<Row, Failure> {
     let motion = Motion::looping();
     let standing = Stepper::new(motion.top.clone(), 0.0)?;
     let mut state = standing.start(motion.attitude, motion.velocity)?;
@@ -42,7 +41,7 @@ pub(crate) fn s5(effort: Effort, _: &mut Curves) -> Result<Row, Failure> {
     rk4.advance(effort.beside(STEPS))?;
     let turned = rk4.sample();
     let quaternion = nalgebra::UnitQuaternion::from_matrix(&turned.attitude);
-    let mut rk4 = OnQuaternion::new(rk4_body(&motion.top), -1e-4, &quaternion, turned.momentum);
+    let mut rk4 = OnQuaternion::new(Body::of(&motion.top), -1e-4, &quaternion, turned.momentum);
     rk4.advance(effort.beside(STEPS))?;
     let end = rk4.sample();
     let theirs = relative(&end.attitude, &start.attitude).max(relative(&end.momentum, &start.momentum));

@@ -7,7 +7,6 @@ use workbench::heavy_top::continuous::{phase, solution};
 use workbench::measure::{relative, steps_in};
 use workbench::run::Method as _;
 
-use crate::curves::Curves;
 use crate::rivals::on_quaternion;
 use crate::row::{Effort, Failure, Row, short};
 
@@ -30,7 +29,7 @@ fn by_products(motion: &Motion, h: f64) -> Result<Vector3<f64>, Failure> {
     Ok(momentum)
 }
 
-pub(crate) fn t4(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn t4(_: Effort) -> Result<Row, Failure> {
     let (motion, h) = (Motion::looping(), 1e-8);
     let stepper = Stepper::new(motion.top.clone(), h)?;
     let carrying = stepper.clone().compensated();

@@ -13,11 +13,7 @@ use liestep::numbers::{Bodies, Coordinates as _};
 use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper};
 use nalgebra::{Matrix3, Vector3, Vector6};
 
-use super::{all, apart, assert_reference, attitudes_of, part, tenths};
-
-fn array<R, const N: usize>(values: Vec<R>) -> [R; N] {
-    values.try_into().unwrap_or_else(|_| panic!("another number of links"))
-}
+use super::{all, apart, array, assert_reference, attitudes_of, part, tenths};
 
 /// A link, with its inertia about its centre of mass.
 fn link(central: &Matrix3<f64>, m: f64, c: Vector3<f64>, rho: Vector3<f64>) -> Link {

@@ -11,11 +11,11 @@ use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
 use nalgebra::{Matrix4, Vector3, Vector4, Vector6};
 
+use super::{Body, six, whole};
 use crate::limit::assert_limit;
 
 const N: usize = 6;
 type Rod = Sum<Placed<Each<N>, FloatingBody, 1>, Placed<Coupled<N>, RodElement, 1>>;
-type Body = (SO3, R3);
 type Start = ([Body; N], Bodies<Vector6<f64>, N>);
 
 /// Half of a body, m.
@@ -41,18 +41,9 @@ fn arc() -> Start {
         (attitude, R3::from(corner - half))
     });
     let moving = bodies.map(|(attitude, place): Body| {
-        let (turn, shift) = (attitude.as_matrix().tr_mul(&omega), omega.cross(&place.translation()));
-        Vector6::from_fn(|k, _| if k < 3 { turn[k] } else { shift[k - 3] })
+        six(&attitude.as_matrix().tr_mul(&omega), &omega.cross(&place.translation()))
     });
     (bodies, Bodies(moving))
-}
-
-/// The momentum of all, and their angular momentum about the origin.
-fn whole(bodies: &[Body; N], momenta: &Bodies<Vector6<f64>, N>) -> [Vector3<f64>; 2] {
-    bodies.iter().zip(&momenta.0).fold([Vector3::zeros(); 2], |[p, l], (body, momentum)| {
-        let [turning, linear] = [0, 3].map(|first| momentum.fixed_rows::<3>(first).into_owned());
-        [p + linear, l + body.0.as_matrix() * turning + body.1.translation().cross(&linear)]
-    })
 }
 
 #[test]

@@ -9,9 +9,10 @@ use liestep::methods::CompositionScheme;
 use liestep::motion::Integrator;
 use liestep::numbers::{Bodies, Entries};
 use liestep::recording::RunError;
-use liestep::{NonstandardInertia, SO3, SetupError, State, Stepper};
-use nalgebra::{Matrix3, SVector, Vector1, Vector2, Vector3};
+use liestep::{NonstandardInertia, SO3, SetupError, Stepper};
+use nalgebra::{Matrix3, Matrix3x4, SVector, Vector1, Vector2, Vector3};
 use serde_json::Value;
+use workbench::runge_kutta;
 
 use super::{apart, attitudes_of, check_derived, check_symplectic, order, part, solved};
 
@@ -200,12 +201,8 @@ where
     W: liestep::groups::Advected<Pair> + Copy,
 {
     let (g, momentum) = (state.attitude(), state.momentum());
-    let of = |attitude: &SO3, place: &R3, first: usize| {
-        let (turning, p): (Vector3<f64>, Vector3<f64>) = (part(&momentum, first), part(&momentum, first + 1));
-        (p, attitude.as_matrix() * turning + place.translation().cross(&p))
-    };
-    let [first, second] = [of(&g.0, &g.1, 0), of(&g.2, &g.3, 2)];
-    (first.0 + second.0, first.1 + second.1)
+    let momenta = [0, 6].map(|first| momentum.fixed_rows::<6>(first).into_owned());
+    super::whole(&[(g.0, g.1), (g.2, g.3)], &Bodies(momenta)).into()
 }
 
 /// Against a reference in inertial coordinates with quaternions, which shares nothing with reduced equations.
@@ -268,16 +265,10 @@ fn a_system_of_bodies_that_are_translated() {
     // Tied away from their centres they turn each other, and keep all of their momentum.
     let system = tied(Vector3::new(0.3, 0.0, 0.1), Vector3::new(0.0, -0.2, 0.1));
     let mut state = system.start(start, Bodies([velocity, velocity * 0.5])).unwrap();
-    let momenta = |state: &State<[(SO3, R3); 2], _, _>| {
-        let (g, Bodies(mu)) = (state.attitude(), state.momentum());
-        let p = [0, 1].map(|body| mu[body].fixed_rows::<3>(3).into_owned());
-        let of_body =
-            |body: usize| g[body].0.matrix() * mu[body].fixed_rows::<3>(0) + g[body].1.translation().cross(&p[body]);
-        (p[0] + p[1], of_body(0) + of_body(1))
-    };
-    let (energy, (p, l)) = (system.energy(&state), momenta(&state));
+    let (energy, [p, l]) = (system.energy(&state), super::whole(&state.attitude(), &state.momentum()));
     system.run(&mut state, 2000).unwrap();
-    let (p, l) = ((momenta(&state).0 - p).amax(), (momenta(&state).1 - l).amax());
+    let [now_p, now_l] = super::whole(&state.attitude(), &state.momentum());
+    let (p, l) = ((now_p - p).amax(), (now_l - l).amax());
     assert!(p < 1e-13 && l < 1e-12 && (system.energy(&state) / energy - 1.0).abs() < 1e-3, "{p:e} {l:e}");
     assert!((state.attitude()[0].0.matrix() - turning.attitude().0.matrix()).amax() > 0.1);
 }
@@ -402,22 +393,18 @@ fn a_spacecraft_with_wheels() {
     let whole = Vector3::new(2.0, 2.5, 3.0).component_mul(&omega) + axes * of_wheels;
     assert!((part::<6>(&momentum, 0) - whole).amax().max((part::<6>(&momentum, 1) - of_wheels).amax()) < 1e-14);
     let body = Matrix3::from_diagonal(&Vector3::new(0.5, 0.4, 1.0 / 3.0));
-    let rates = |(attitude, p): &(Matrix3<f64>, Vector3<f64>)| {
-        let omega = body * (p - axes * of_wheels);
-        (attitude * omega.cross_matrix(), p.cross(&omega))
+    // The attitude's columns, and the momentum beside them.
+    let joined = |attitude: Matrix3<f64>, p: Vector3<f64>| {
+        Matrix3x4::from_fn(|i, j| if j < 3 { attitude[(i, j)] } else { p[i] })
     };
-    let plus =
-        |(a, p): (Matrix3<f64>, Vector3<f64>), (b, q): &(Matrix3<f64>, Vector3<f64>), h: f64| (a + b * h, p + q * h);
-    let (mut exact, h, steps) = ((Matrix3::identity(), whole), 5e-4, 4000);
-    for _ in 0..steps {
-        let first = rates(&exact);
-        let second = rates(&plus(exact, &first, 0.5 * h));
-        let third = rates(&plus(exact, &second, 0.5 * h));
-        let fourth = rates(&plus(exact, &third, h));
-        for (rate, weight) in [(first, 1.0), (second, 2.0), (third, 2.0), (fourth, 1.0)] {
-            exact = plus(exact, &rate, weight * h / 6.0);
-        }
-    }
+    let apart = |z: &Matrix3x4<f64>| (z.fixed_columns::<3>(0).into_owned(), z.column(3).into_owned());
+    let rates = |z: Matrix3x4<f64>| {
+        let (attitude, p) = apart(&z);
+        let omega = body * (p - axes * of_wheels);
+        joined(attitude * omega.cross_matrix(), p.cross(&omega))
+    };
+    let start = joined(Matrix3::identity(), whole);
+    let exact = apart(&(0..4000).fold(start, |z, _| z + runge_kutta::change(z, 5e-4, rates)));
     let errors = [(0.02, 100_u64), (0.01, 200), (0.005, 400)].map(|(h, steps)| {
         let stepper = Stepper::new(system.clone(), h).unwrap();
         let mut state = stepper.start(at_rest(), velocity).unwrap();

@@ -84,8 +84,7 @@ pub(crate) fn mistakes(file: &str, text: &str, message: impl Fn(&str) -> String)
 /// The rows of a scene's table, after a run of a text.
 pub(crate) fn rows(folder: &Path, text: &str) -> Vec<Vec<f64>> {
     fs::write(folder.join("scene.toml"), text).unwrap();
-    let output = simulate(folder, &["scene.toml"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    printed(folder, &["run", "scene.toml", "--csv", "--out", "."]);
     table(&fs::read_to_string(folder.join("scene.csv")).unwrap())
 }
 
