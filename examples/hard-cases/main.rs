@@ -68,7 +68,6 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     drop(progress);
     output.write("hard-cases.md", &report::markdown(&done))?;
-    output.write("hard-cases.csv", &report::csv(&done))?;
     print(&format!("{}\n\n{output}", report::text(&done)))?;
     Ok(())
 }

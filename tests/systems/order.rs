@@ -107,30 +107,20 @@ fn assert_orders<L: System<Group: MatrixLieGroup<N, D>> + Clone, const N: usize,
     }
 }
 
+/// Three kinetic terms under the same weight.
 #[test]
-fn heavy_top() {
-    let top = samples::heavy_top();
-    let inertia = ordinary(&top.J_d.to_matrix());
-    assert_second_order(&top, inertia, samples::on_so3(), |r| top.m * top.g * top.up.dot(&(r * top.rho)));
-}
-
-#[test]
-fn full_top() {
-    let top = samples::full_top();
-    let inertia = ordinary(top.J_d.as_matrix());
-    assert_second_order(&top, inertia, samples::on_so3(), |r| top.m * top.g * top.up.dot(&(r * top.rho)));
+fn tops() {
+    let (top, full, cayley) = (samples::heavy_top(), samples::full_top(), samples::cayley_top());
+    let potential = |r: &Matrix3<f64>| top.m * top.g * top.up.dot(&(r * top.rho));
+    assert_second_order(&top, ordinary(&top.J_d.to_matrix()), samples::on_so3(), potential);
+    assert_second_order(&full, ordinary(full.J_d.as_matrix()), samples::on_so3(), potential);
+    assert_second_order(&cayley, *cayley.J.as_matrix(), samples::on_so3(), potential);
 }
 
 #[test]
 fn free_body() {
     let body = samples::free_body();
     assert_second_order(&body, ordinary(body.J_d.as_matrix()), samples::on_so3(), |_| 0.0);
-}
-
-#[test]
-fn cayley_top() {
-    let top = samples::cayley_top();
-    assert_second_order(&top, *top.J.as_matrix(), samples::on_so3(), |r| top.weight * top.up.dot(&(r * top.rho)));
 }
 
 /// The kick before the step is the sum of two halves: from between them the scheme is of second order, and from

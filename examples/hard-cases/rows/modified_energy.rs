@@ -14,8 +14,7 @@ use crate::row::{Effort, Failure, Row};
 /// V̈ = m g [(w × Ω) × Ω + w × J⁻¹(JΩ × Ω)]·ρ
 /// ```
 fn correction(top: &HeavyTop, velocity: &Vector3<f64>, w: &Vector3<f64>) -> f64 {
-    let d = top.J_d.diagonal();
-    let (j, weight) = (Vector3::new(d.y + d.z, d.z + d.x, d.x + d.y), top.m * top.g);
+    let (j, weight) = (top.moments(), top.m * top.g);
     let momentum = j.component_mul(velocity);
     let gyroscopic = velocity.cross(&momentum);
     let torque = w.cross(&top.rho) * weight;

@@ -305,23 +305,6 @@ fn a_body_without_inertia_is_named() {
     assert_eq!(whose(TwoBodies { m_1: 1e-120, m_2: 1e-120, ..two_bodies(&data["two_bodies"]["parameters"]) }), None);
 }
 
-#[test]
-fn momenta_of_two_bodies() {
-    let data = &read("several bodies")["two_bodies"];
-    let system = two_bodies(&data["parameters"]);
-    let (start, velocity) = pair(&data["states"][0]);
-    let [before, after] = solved_badly(&system, start, &velocity).map(|motion| whole(&motion).0);
-    assert!((after - before).amax() < 1e-13, "{:e}", (after - before).amax());
-
-    let stepper = Stepper::new(system, 0.01).unwrap();
-    let mut state = stepper.start(start, velocity).unwrap();
-    let (momentum, turning) = whole(&state);
-    let (most, apart) = energies(&stepper, &mut state, 50_000);
-    let (momentum, turning) = ((whole(&state).0 - momentum).amax(), (whole(&state).1 - turning).amax());
-    println!("momentum {momentum:.1e}, angular {turning:.1e}, energy {most:.3e}, means apart {apart:.1e}");
-    assert!(momentum < 1e-12 && turning < 1e-10 && most < 1e-2 && apart < 1e-2);
-}
-
 /// A step that goes over a close pass has a solution, and its energy tells.
 #[test]
 fn a_close_pass_that_is_stepped_over_is_an_error() {

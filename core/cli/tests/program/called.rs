@@ -92,6 +92,12 @@ pub(crate) fn table(csv: &str) -> Vec<Vec<f64>> {
     csv.lines().skip(1).map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
 }
 
+/// The largest difference of two tables' numbers.
+pub(crate) fn apart(rows: &[Vec<f64>], others: &[Vec<f64>]) -> f64 {
+    assert_eq!(rows.len(), others.len());
+    rows.iter().flatten().zip(others.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
 pub(crate) fn printed(folder: &Path, arguments: &[&str]) -> String {
     let output = called(folder, arguments);
     assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
