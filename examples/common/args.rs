@@ -89,13 +89,6 @@ impl Words {
         }
     }
 
-    /// A whole number above zero.
-    pub fn count<T: std::str::FromStr + Default + PartialOrd>(&mut self) -> Result<T, Failure> {
-        let text = self.text()?;
-        let count = text.parse().ok().filter(|count| *count > T::default());
-        count.ok_or_else(|| self.invalid(&text, "is not a whole number above zero"))
-    }
-
     /// A folder, which has a name.
     pub fn folder(&mut self) -> Result<PathBuf, Failure> {
         let folder = self.parser.value().map_err(|error| told(&error))?;

@@ -3,7 +3,6 @@
 use checks::random::Random;
 use checks::structure::poisson::{self, tensor};
 use checks::structure::{System, momenta, reversal, stages, two_flows};
-use declarations::HeavyTop;
 use liestep::SO3;
 use nalgebra::DMatrix;
 
@@ -48,13 +47,6 @@ fn s5<L: System + Clone>(system: &L, name: &str) {
 }
 
 every_system!(assert_structure);
-
-#[test]
-fn of_the_thesis() {
-    let (top, name) = (HeavyTop::thesis(), "the thesis' top");
-    p1(&top, name);
-    p2(&top);
-}
 
 /// The tensor that the claims are made with is that of the thesis.
 #[test]
