@@ -67,7 +67,7 @@ fn asking<S>(scene: &Scene, body: S) -> Box<Ask>
 where
     S: mechanics::Scene<Scalar = f64, Group = SO3>,
 {
-    let (attitude, velocity) = (SO3::from_matrix_unchecked(scene.attitude), scene.velocity);
+    let (attitude, velocity) = (scene.motion.attitude, scene.motion.velocity);
     Box::new(move |accuracy| Stepper::for_accuracy(body.clone(), accuracy, attitude, velocity).map(Answer::new))
 }
 

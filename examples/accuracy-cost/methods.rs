@@ -209,7 +209,7 @@ where
 {
     Method::new(name, Family::Poisson, Control::Step(longest), move |scene, t, h| {
         let (stepper, steps) = (stepper(scene, h)?, count(t, h));
-        let start = stepper.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
+        let start = stepper.start(scene.motion.attitude, scene.motion.velocity).ok()?;
         Some(Box::new(move || {
             let mut state = start;
             stepper.run(&mut state, steps).ok()?;

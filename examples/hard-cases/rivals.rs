@@ -1,4 +1,4 @@
-//! Other methods on the bodies of the rows.
+//! Our method and others on the bodies of the rows.
 
 use declarations::{FreeBody, HeavyTop, Motion};
 use liestep::prelude::*;
@@ -109,6 +109,13 @@ impl Trace {
     pub(crate) fn worst(&self, size: impl Fn(&Kept) -> f64) -> f64 {
         self.kept.iter().map(size).fold(0.0, workbench::measure::greater)
     }
+}
+
+/// The step (3.13) of a motion's top, and the start.
+pub(crate) fn started(motion: &Motion, h: f64) -> Result<(Stepper<HeavyTop>, StateOf<HeavyTop>), Failure> {
+    let stepper = Stepper::new(motion.top.clone(), h)?;
+    let state = stepper.start(motion.attitude, motion.velocity)?;
+    Ok((stepper, state))
 }
 
 /// Runge–Kutta on a motion, with the quaternion brought back to unit length after every step.

@@ -7,6 +7,7 @@ use liestep::{SO3, StateOf, Stepper};
 use nalgebra::{Matrix3, SVector, Vector3};
 use workbench::measure::{Tenths, greater};
 
+use crate::rivals::started;
 use crate::row::Failure;
 
 /// A motion with one advected vector.
@@ -168,8 +169,7 @@ impl Run {
 
     /// Steps of (3.13) along a motion.
     pub(crate) fn along(motion: &Motion, h: f64, steps: u64, is_compensated: bool) -> Result<Self, Failure> {
-        let stepper = Stepper::new(motion.top.clone(), h)?;
-        let start = stepper.start(motion.attitude, motion.velocity)?;
+        let (stepper, start) = started(motion, h)?;
         if is_compensated {
             let compensated = stepper.compensated();
             Self::of(&compensated, &compensated.adopt(&start), steps, false)

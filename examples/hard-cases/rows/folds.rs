@@ -6,7 +6,7 @@ use liestep::prelude::*;
 use workbench::measure::{greater, relative};
 use workbench::run::Method as _;
 
-use crate::rivals::{energy_of, on_quaternion};
+use crate::rivals::{energy_of, on_quaternion, started};
 use crate::row::{Effort, Failure, Row, short};
 
 /// The largest solvable step of a symmetric top by the closed criterion: with `κ = h a_3/(2 J_3)`,
@@ -27,8 +27,7 @@ fn fold_of_symmetric_top(motion: &Motion) -> Result<f64, Failure> {
 
 /// The first step of a motion: its iterations and its angle in degrees; `None` where there is no solution.
 fn first_step(motion: &Motion, h: f64) -> Result<Result<(u32, f64), StepError>, Failure> {
-    let stepper = Stepper::new(motion.top.clone(), h)?;
-    let mut state = stepper.start(motion.attitude, motion.velocity)?;
+    let (stepper, mut state) = started(motion, h)?;
     let before = state.attitude();
     Ok(stepper.step(&mut state).map(|report| {
         let increment = before.inverse().compose(&state.attitude());
@@ -49,14 +48,13 @@ fn largest(holds: impl Fn(f64) -> Result<bool, Failure>) -> Result<f64, Failure>
 pub(crate) fn s1(_: Effort) -> Result<Row, Failure> {
     let motion = Motion::looping();
     let known = |h: f64| -> Result<Solvability, Failure> {
-        let stepper = Stepper::new(motion.top.clone(), h)?;
-        let state = stepper.start(motion.attitude, motion.velocity)?;
+        let (stepper, state) = started(&motion, h)?;
         Ok(stepper.solvability(&state))
     };
     let certain = largest(|h| Ok(known(h)? == Solvability::Certain))?;
     let impossible = largest(|h| Ok(known(h)? != Solvability::Impossible))?;
-    let wide = Stepper::new(motion.top.clone(), 1.0)?;
-    let fold = wide.max_step(&wide.start(motion.attitude, motion.velocity)?);
+    let (wide, state) = started(&motion, 1.0)?;
+    let fold = wide.max_step(&state);
 
     let (mut angles, mut iterations) = (Vec::new(), 0);
     let fractions = (1..=198).map(|k| f64::from(k) / 200.0).chain([0.995, 0.998, 0.999]);
@@ -99,8 +97,7 @@ pub(crate) fn s1(_: Effort) -> Result<Row, Failure> {
 
 pub(crate) fn s2(_: Effort) -> Result<Row, Failure> {
     let (motion, h) = (Motion::looping(), 0.1);
-    let stepper = Stepper::new(motion.top.clone(), h)?;
-    let mut state = stepper.start(motion.attitude, motion.velocity)?;
+    let (stepper, mut state) = started(&motion, h)?;
     let before = state;
     let refused = stepper.step(&mut state);
     // The text of a float has all its digits and the sign of zero.

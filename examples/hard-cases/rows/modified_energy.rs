@@ -1,10 +1,10 @@
 //! T2: backward error analysis of (3.13).
 
 use declarations::{HeavyTop, Motion};
-use liestep::Stepper;
 use nalgebra::Vector3;
 use workbench::measure::{four_halvings, order, steps_in};
 
+use crate::rivals::started;
 use crate::row::{Effort, Failure, Row};
 
 /// What the step conserves is `H` and `h²` times this, up to an oscillation of fourth order:
@@ -25,8 +25,7 @@ fn correction(top: &HeavyTop, velocity: &Vector3<f64>, w: &Vector3<f64>) -> f64 
 
 /// How far `H`, and `H` with its correction, move along ten seconds.
 fn oscillations(motion: &Motion, h: f64) -> Result<(f64, f64), Failure> {
-    let stepper = Stepper::new(motion.top.clone(), h)?;
-    let mut state = stepper.start(motion.attitude, motion.velocity)?;
+    let (stepper, mut state) = started(motion, h)?;
     let mut range = [(f64::INFINITY, f64::NEG_INFINITY); 2];
     for _ in 0..steps_in(10.0, h) {
         stepper.step(&mut state)?;

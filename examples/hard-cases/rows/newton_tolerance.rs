@@ -1,9 +1,9 @@
 //! P4: what stopping Newton's iteration early costs.
 
 use declarations::Motion;
-use liestep::Stepper;
 use workbench::newton_tolerance::{EXPONENTS, Form, Guess, Left, by_the_library, run};
 
+use crate::rivals::started;
 use crate::row::{Effort, Failure, Row, short};
 
 const H: f64 = 0.01;
@@ -21,8 +21,7 @@ fn told(name: &str, exponent: i32, left: &Left) -> String {
 pub(crate) fn p4(effort: Effort) -> Result<Row, Failure> {
     let steps = effort.steps(1_000_000, 10_000_000);
     let motion = Motion::looping();
-    let stepper = Stepper::new(motion.top.clone(), H)?;
-    let state = stepper.start(motion.attitude, motion.velocity)?;
+    let (stepper, state) = started(&motion, H)?;
     let start = (state.momentum(), state.advected());
     let Left { energy: drift, iterations, vertical, axial } = by_the_library(&stepper, state, steps)?;
     let mut row = Row::new(

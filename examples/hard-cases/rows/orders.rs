@@ -1,21 +1,19 @@
 //! T1: the tops of the thesis against references of 33 digits.
 
 use declarations::Motion;
-use liestep::Stepper;
 use liestep::groups::LieGroup as _;
 use workbench::heavy_top::rk4::Body;
 use workbench::measure::{four_halvings, greater, order, relative, steps_in};
 use workbench::run::Method as _;
 
-use crate::rivals::on_quaternion;
+use crate::rivals::{on_quaternion, started};
 use crate::row::{Effort, Failure, Row};
 
 /// Below, roundings of the longest run count.
 const PLATEAU: f64 = 1e-11;
 
 fn error(motion: &Motion, t: f64, h: f64) -> Result<f64, Failure> {
-    let stepper = Stepper::new(motion.top.clone(), h)?;
-    let mut state = stepper.start(motion.attitude, motion.velocity)?;
+    let (stepper, mut state) = started(motion, h)?;
     for _ in 0..steps_in(t, h) {
         stepper.step(&mut state)?;
     }

@@ -2,7 +2,6 @@
 //! takes, and when Runge–Kutta loses them.
 
 use declarations::Motion;
-use liestep::Stepper;
 use liestep::groups::LieGroup as _;
 use nalgebra::Vector3;
 use workbench::heavy_top::euler_angles::EulerAngles;
@@ -12,7 +11,7 @@ use workbench::measure::{float, four_halvings, greater, order, steps_in};
 use workbench::run::{Method, Sample};
 use workbench::variational::Variational;
 
-use crate::rivals::{on_matrix, on_quaternion};
+use crate::rivals::{on_matrix, on_quaternion, started};
 use crate::row::{Effort, Failure, Row};
 use crate::walk::orthogonality;
 
@@ -49,8 +48,7 @@ fn seen(body: &Body, method: &mut impl Method, h: f64, from: f64, to: f64) -> Re
 }
 
 fn ours(motion: &Motion, h: f64, from: f64, to: f64) -> Result<Seen, Failure> {
-    let stepper = Stepper::new(motion.top.clone(), h)?;
-    let state = stepper.start(motion.attitude, motion.velocity)?;
+    let (stepper, state) = started(motion, h)?;
     seen(&Body::of(&motion.top), &mut Variational { stepper: &stepper, state }, h, from, to)
 }
 
@@ -119,8 +117,7 @@ pub(crate) fn t12(_: Effort) -> Result<Row, Failure> {
     for h in [0.02, COARSE] {
         let mut theirs = on_matrix(&motion, h);
         theirs.advance(steps_in(END, h))?;
-        let stepper = Stepper::new(motion.top.clone(), h)?;
-        let mut state = stepper.start(motion.attitude, motion.velocity)?;
+        let (stepper, mut state) = started(&motion, h)?;
         stepper.run(&mut state, steps_in(END, h))?;
         let lost = orthogonality(&theirs.sample().attitude);
         row = row
@@ -131,8 +128,7 @@ pub(crate) fn t12(_: Effort) -> Result<Row, Failure> {
         format!("tilt {:.2} to {:.2}, the azimuth turns back {turns_back} times", tilt.0, tilt.1)
     };
     row = row.shows(format!("the exact tilt is {:.2} to {:.2}", closed.tilt.0, closed.tilt.1));
-    let stepper = Stepper::new(motion.top.clone(), COARSE)?;
-    let state = stepper.start(motion.attitude, motion.velocity)?;
+    let (stepper, state) = started(&motion, COARSE)?;
     let path = late_path(&mut Variational { stepper: &stepper, state })?;
     row = row.holds(&format!("h = {COARSE}, the last 20 s, ours: {}", drawn(&path)), {
         apart(path.tilt, closed.tilt) < 0.02 && path.turns_back > 40
