@@ -19,10 +19,10 @@ use checks::structure::momenta::assert_momenta;
 use checks::structure::stages::assert_stages;
 use checks::structure::{System, Vector, symplectic};
 use liestep::groups::{Advected as _, CayleyRetraction, LieGroup, R3, Retraction};
-use liestep::mechanics::ContinuousLagrangian;
+use liestep::mechanics::{ContinuousLagrangian, Regular};
 use liestep::motion::RightHandSide;
 use liestep::numbers::Bodies;
-use liestep::{SO3, Stepper};
+use liestep::{SO3, StateOf, Stepper};
 use nalgebra::{SVector, Vector3, Vector6};
 use serde_json::Value;
 use workbench::runge_kutta;
@@ -145,10 +145,20 @@ where
     (attitude, continuous.velocity(&momentum, &w).unwrap())
 }
 
+/// A stepper of a system, and where it starts.
+fn started<L: Regular<Scalar = f64>>(
+    system: L,
+    h: f64,
+    (attitude, velocity): (L::Group, liestep::mechanics::Vector<L>),
+) -> (Stepper<L>, StateOf<L>) {
+    let stepper = Stepper::new(system, h).unwrap();
+    let state = stepper.start(attitude, velocity).unwrap();
+    (stepper, state)
+}
+
 /// P1.
 fn check_symplectic<L: System + Clone>(l: L, h: f64, attitude: L::Group, velocity: Vector<L>) {
-    let stepper = Stepper::new(l, h).unwrap();
-    let start = stepper.start(attitude, velocity).unwrap();
+    let (stepper, start) = started(l, h, (attitude, velocity));
     let [defect, of_other_sign] = symplectic::defects(&stepper.flow(), &attitude, &start.momentum());
     println!("symplectic to {defect:.1e}, with the other sign of the bracket {of_other_sign:.1e}");
     assert!(defect < 1e-11 && of_other_sign > 1e-6, "{defect:e}, {of_other_sign:e}");

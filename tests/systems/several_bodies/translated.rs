@@ -13,7 +13,7 @@ use nalgebra::{Matrix3, Matrix3x4, SVector, Vector1, Vector2, Vector3};
 use serde_json::Value;
 use workbench::runge_kutta;
 
-use super::{apart, attitudes_of, check_derived, check_symplectic, order, part, solved, tenths};
+use super::{apart, attitudes_of, check_derived, check_symplectic, order, part, solved, started, tenths};
 
 fn moments(values: &Value) -> Vector3<f64> {
     Vector3::from_fn(|k, _| values[k].as_f64().unwrap())
@@ -53,8 +53,7 @@ fn a_top_on_a_cart() {
     let (end, end_velocity) = on_cart(&data["states"][1]);
     let error = |g: &OnCart| apart(&[g.0], &[end.0]).max((g.1.translation() - end.1.translation()).amax());
     let errors = [(0.005, 400_u64), (0.0025, 800), (0.00125, 1600)].map(|(h, steps)| {
-        let stepper = Stepper::new(system.clone(), h).unwrap();
-        let mut state = stepper.start(start, velocity).unwrap();
+        let (stepper, mut state) = started(system.clone(), h, (start, velocity));
         // The reference counts heights from the plane of the pivot.
         assert!((stepper.energy(&state) - number(&data["states"][0]["energy"])).abs() < 1e-13 * 20.0);
         stepper.run(&mut state, steps).unwrap();
@@ -98,8 +97,7 @@ fn momenta_of_a_top_on_a_cart() {
     let [before, after] = solved_badly(&system, start, &velocity);
     assert_eq!(sideways(&after.momentum()), sideways(&before.momentum()));
 
-    let stepper = Stepper::new(system, 0.005).unwrap();
-    let mut state = stepper.start(start, velocity).unwrap();
+    let (stepper, mut state) = started(system, 0.005, (start, velocity));
     let turning = |state: &liestep::motion::Motion<OnCart, _>| {
         let (g, momentum) = (state.attitude(), state.momentum());
         let (place, p) = (g.1.translation(), sideways(&momentum));
@@ -140,8 +138,7 @@ where
     L: DiscreteLagrangian<Scalar = f64, Group: LieGroup<Scalar = f64, Vector = SVector<f64, D>>> + Clone,
     Badly<L>: DiscreteLagrangian<Scalar = f64, Group = L::Group, Advected = L::Advected> + Regular,
 {
-    let badly = Stepper::new(Badly(system.clone()), 0.01).unwrap();
-    let mut state = badly.start(start, *velocity).unwrap();
+    let (badly, mut state) = started(Badly(system.clone()), 0.01, (start, *velocity));
     let (before, mut least) = (*state, f64::INFINITY);
     for _ in 0..1000 {
         let last = state;
@@ -201,8 +198,7 @@ fn two_bodies_that_attract_each_other() {
         apart(&[g.0, g.2], &[end.0, end.2]).max(places)
     };
     let errors = [(0.01, 200_u64), (0.005, 400), (0.0025, 800)].map(|(h, steps)| {
-        let stepper = Stepper::new(system.clone(), h).unwrap();
-        let mut state = stepper.start(start, velocity).unwrap();
+        let (stepper, mut state) = started(system.clone(), h, (start, velocity));
         assert!((stepper.energy(&state) - number(&data["states"][0]["energy"])).abs() < 1e-14);
         stepper.run(&mut state, steps).unwrap();
         error(&state.attitude())
@@ -372,8 +368,7 @@ fn a_spacecraft_with_wheels() {
     let start = joined(Matrix3::identity(), whole);
     let exact = apart(&(0..4000).fold(start, |z, _| z + runge_kutta::change(z, 5e-4, rates)));
     let errors = [(0.02, 100_u64), (0.01, 200), (0.005, 400)].map(|(h, steps)| {
-        let stepper = Stepper::new(system.clone(), h).unwrap();
-        let mut state = stepper.start(at_rest(), velocity).unwrap();
+        let (stepper, mut state) = started(system.clone(), h, (at_rest(), velocity));
         stepper.run(&mut state, steps).unwrap();
         (state.attitude().0.as_matrix() - exact.0).amax().max((part::<6>(&state.momentum(), 0) - exact.1).amax())
     });
