@@ -36,7 +36,7 @@ fn cheapest(methods: &[Measured], family: Family, error: f64) -> Option<(&str, f
 }
 
 /// Microseconds, to two digits.
-fn microseconds(cost: f64) -> String {
+pub(crate) fn microseconds(cost: f64) -> String {
     let value = cost * 1e6;
     if value < 9.95 { format!("{value:.1}") } else { format!("{value:.0}") }
 }

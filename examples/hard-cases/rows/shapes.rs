@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use workbench::measure::{greater, relative};
 
 use super::boxes::{box_of_engines, kept};
-use crate::rivals::Spin;
+use crate::rivals::{Spin, Trace};
 use crate::row::{Effort, Failure, Row, short};
 
 /// A cylinder of 1 kg and 1 m length about its centre.
@@ -15,6 +15,11 @@ fn rod(slenderness: f64) -> Result<DiagonalNonstandardInertia, Failure> {
     let diameter = 1.0 / slenderness;
     let across = diameter * diameter / 16.0;
     Ok(DiagonalNonstandardInertia::from_diagonal(Vector3::new(across, across, 1.0 / 12.0))?)
+}
+
+fn errors(traces: &[Trace]) -> String {
+    let errors: Vec<_> = traces.iter().map(|trace| format!("{} {}", trace.name, short(trace.energy_error()))).collect();
+    errors.join(", ")
 }
 
 pub(crate) fn b3(_: Effort) -> Result<Row, Failure> {
@@ -31,8 +36,7 @@ pub(crate) fn b3(_: Effort) -> Result<Row, Failure> {
         let traces = spin.traces(10_000)?;
         row = kept(row, &format!("{name}: "), &traces[0], 1e-13);
         row = kept(row, &format!("{name}, full tensor: "), &spin.full(10_000)?, 1e-13);
-        let others: Vec<_> = traces[1..].iter().map(|t| format!("{} {}", t.name, short(t.energy_error()))).collect();
-        row = row.other(format!("{name}: energy error {}", others.join(", ")));
+        row = row.other(format!("{name}: energy error {}", errors(&traces[1..])));
     }
     let needle = rod(1e9).map_or_else(|error| error.to_string(), |_| "accepted".to_owned());
     Ok(row.shows(format!("rod 10⁹:1: {needle}")))
@@ -66,9 +70,7 @@ pub(crate) fn b4(_: Effort) -> Result<Row, Failure> {
         row = row.at_most(&format!("{name}iterations"), f64::from(iterations), 1.0);
         row = row.at_most(&format!("{name}energy"), error, 0.0);
     }
-    let traces = spin.traces(10_000)?;
-    let others: Vec<_> = traces[1..].iter().map(|t| format!("{} {}", t.name, short(t.energy_error()))).collect();
-    Ok(row.other(format!("energy error {}", others.join(", "))))
+    Ok(row.other(format!("energy error {}", errors(&spin.traces(10_000)?[1..]))))
 }
 
 pub(crate) fn b5(_: Effort) -> Result<Row, Failure> {
