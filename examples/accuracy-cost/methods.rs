@@ -116,11 +116,9 @@ pub fn ours(scene: &Scene) -> Vec<Method> {
             gauss(Scene::free_body),
         ],
         // Of these potentials only (3.13) is declared.
-        Kind::Sprung => vec![
-            declared("(3.13)", Scene::sprung, 2),
-            splittings("exact", Scene::sprung, exact),
-            gauss(Scene::sprung),
-        ],
+        Kind::Sprung => {
+            vec![declared("(3.13)", Scene::sprung, 2), splittings("exact", Scene::sprung, exact), gauss(Scene::sprung)]
+        }
         Kind::Satellite => vec![
             declared("(3.13)", Scene::satellite, 2),
             splittings("exact", Scene::satellite, exact),

@@ -38,4 +38,3 @@ pub fn markdown(rows: &[Row]) -> String {
     }
     text
 }
-

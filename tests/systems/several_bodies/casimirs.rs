@@ -14,8 +14,8 @@ use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::{DMatrix, DVector, Matrix3, Point2, SVector, UnitComplex, Vector2, Vector3};
 
 use super::declared::CoupledAttitudes;
-use super::{element, started};
 use super::translated::missed;
+use super::{element, started};
 
 const STEPS: u32 = 20_000;
 

@@ -12,9 +12,9 @@ use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, StepError, Stepper};
 use nalgebra::{SVector, Vector3, Vector6};
 
-use super::{assert_same, started};
 use super::links::irregular;
 use super::translated::whole;
+use super::{assert_same, started};
 use liestep::laws::samples::Random;
 
 /// What ends the steps that have a solution.

@@ -40,9 +40,8 @@ fn arc() -> Start {
         corner += half * 2.0;
         (attitude, R3::from(corner - half))
     });
-    let moving = bodies.map(|(attitude, place): Body| {
-        six(&attitude.as_matrix().tr_mul(&omega), &omega.cross(&place.translation()))
-    });
+    let moving = bodies
+        .map(|(attitude, place): Body| six(&attitude.as_matrix().tr_mul(&omega), &omega.cross(&place.translation())));
     (bodies, Bodies(moving))
 }
 

@@ -61,7 +61,12 @@ fn files_of_another_kind() {
 fn a_file_without_an_end() {
     let folder = folder("endless");
     fs::File::create(folder.join("endless.toml")).unwrap().set_len(100_000_000).unwrap();
-    refuses(&folder, &["run", "endless.toml"], 1, "error: endless.toml: has more than 1048576 bytes, so it is no scene\n");
+    refuses(
+        &folder,
+        &["run", "endless.toml"],
+        1,
+        "error: endless.toml: has more than 1048576 bytes, so it is no scene\n",
+    );
 }
 
 /// A mark of the byte order is no mistake.

@@ -9,8 +9,8 @@ use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper};
 use nalgebra::{Vector3, Vector6};
 
-use super::super::{apart, part};
 use super::super::links::{irregular, rods};
+use super::super::{apart, part};
 use super::{Body, Components, EPSILON, Free, Held, row, scene, six, watched, whole};
 
 /// The same chain with a joint for each link, its bodies about their centres of mass.
