@@ -10,7 +10,7 @@ use liestep::groups::{Advected, LieGroup, R3, SE2};
 use liestep::laws::samples::{Random, derivative};
 use liestep::mechanics::{DiscreteLagrangian, Each, On, Regular};
 use liestep::numbers::Bodies;
-use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::{DMatrix, DVector, Matrix3, Point2, SVector, UnitComplex, Vector2, Vector3};
 
 use super::declared::CoupledAttitudes;

@@ -36,7 +36,7 @@ fn vertical(motion: &liestep::motion::Motion<Group, <DoublePendulum as Term>::Ad
 #[test]
 fn vertical_momentum_and_energy() {
     let stepper = Stepper::new(DoublePendulum::asymmetric(), 0.01).unwrap();
-    let attitude = element::<_, 6>(&Random::new(7).sample());
+    let attitude = element::<Group, 6>(&Random::new(7).sample());
     let mut state = stepper.start(attitude, Vector6::new(0.5, -1.0, 2.0, 1.0, 0.3, -0.5)).unwrap();
     let (before, energy) = (vertical(&state), stepper.energy(&state));
     let (mut most, mut iterations) = (0.0_f64, 0);
@@ -71,7 +71,7 @@ fn vertical_momentum_and_energy() {
 fn a_record_has_the_columns_of_each_body() {
     let stepper = Stepper::new(DoublePendulum::asymmetric(), 0.01).unwrap();
     let velocity = Vector6::new(0.5, -1.0, 2.0, 1.0, 0.3, -0.5);
-    let mut state = stepper.start(element::<_, 6>(&Random::new(8).sample()), velocity).unwrap();
+    let mut state = stepper.start(element::<Group, 6>(&Random::new(8).sample()), velocity).unwrap();
     let mut recorder = Recorder::new(&stepper, Table::new());
     stepper.observed(&mut state).every(10, |now| recorder.record(now)).steps(50).unwrap();
     let table = recorder.finish().unwrap();

@@ -9,7 +9,7 @@ use liestep::groups::R3;
 
 use liestep::motion::Integrator;
 use liestep::numbers::Bodies;
-use liestep::{NonstandardInertia, SO3, StepError, Stepper};
+use liestep::{NonstandardInertia, SO3, StepError};
 use nalgebra::{SVector, Vector3, Vector6};
 
 use super::links::irregular;

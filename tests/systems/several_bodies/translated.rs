@@ -108,7 +108,7 @@ fn momenta_of_a_top_on_a_cart() {
         stepper.step(&mut state).unwrap();
         stepper.energy(&state) - energy
     });
-    println!("about the vertical {:.1e}, energy {most:.3e}, means {means:.1e?}", turning(&state) - before);
+    println!("about the vertical {:.1e}, energy {most:.3e}, means {means:?}", turning(&state) - before);
     assert!((turning(&state) - before).abs() < 1e-10 && most < 0.1 && (means[9] - means[0]).abs() < 0.1);
 }
 
