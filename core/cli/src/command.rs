@@ -12,10 +12,10 @@ use crate::output::print;
 
 const CODES: &str = "\
 Exit codes:
-  0  all is done
+  0  all is done; members of an ensemble that can't exist are counted
   1  a file can't be read or is wrong; the message has its line and column
   2  the command line is wrong
-  3  a run stopped: a step or a start that isn't possible
+  3  a run stopped: a step or a start that isn't possible; of an ensemble, members broke down
   4  a result can't be written or printed";
 
 pub(crate) fn command() -> Command {

@@ -23,35 +23,33 @@ pub(crate) fn ensemble(given: &ArgMatches) -> Result<(), ProgramFailure> {
     let scenes = scenes(&paths)?;
     let threads = given.get_one::<usize>("threads").copied().unwrap_or_default();
     let (share, shares) = given.get_one::<(u64, u64)>("shard").copied().unwrap_or((0, 1));
-    for (path, scene) in paths.iter().zip(&scenes) {
-        if scene.ensemble().is_none() {
-            return Err(Mistake::no_table(path, "ensemble").into());
-        }
+    if let Some((path, _)) = paths.iter().zip(&scenes).find(|(_, scene)| scene.ensemble().is_none()) {
+        return Err(Mistake::no_table(path, "ensemble").into());
     }
     let output = folder(given)?;
-    let (mut failed, mut missing) = (0, 0);
+    let (mut stopped, mut missing) = (0, 0);
     for (path, scene) in paths.iter().zip(&scenes) {
         let Some(drawn) = scene.ensemble() else { continue };
         let local = Local::threads(threads).share(share, shares);
-        let report = made(path, scene, drawn, (&local, shares > 1), &output)?;
-        failed += report.failed;
-        missing += report.missing;
+        let [broken, left] = made(path, scene, drawn, (&local, shares > 1), &output)?;
+        stopped += broken;
+        missing += left;
     }
     if missing > 0 {
         print(&format!("{missing} chunks are left to other shares.\n"))?;
     }
-    if failed == 0 { Ok(()) } else { Err(ProgramFailure::Runs(format!("{failed} members weren't finished"))) }
+    if stopped == 0 { Ok(()) } else { Err(ProgramFailure::Runs(format!("{stopped} members broke down"))) }
 }
 
 /// Makes what is missing in the folder of a file's chunks, and prints what is there then. A share reads no rows but its own:
-/// of a thousand shares each would read the results of all.
+/// of a thousand shares each would read the results of all. The numbers of members that broke down and of missing chunks.
 fn made(
     path: &Path,
     scene: &SceneFile,
     drawn: &SceneEnsemble,
     local: (&Local<'_>, bool),
     output: &Output,
-) -> Result<Report, ProgramFailure> {
+) -> Result<[u64; 2], ProgramFailure> {
     let steps = scene.steps().unwrap_or_default();
     let (own, of_lanes) = (drawn.clone(), drawn.clone());
     let failed = |mistake: Mistake| Failure::Other(mistake.to_string());
@@ -81,7 +79,7 @@ fn finished<M: Integrator<Group = SO3> + 'static>(
     members: Ensemble<M>,
     (local, is_share): (&Local<'_>, bool),
     output: &Output,
-) -> Result<Report, ProgramFailure> {
+) -> Result<[u64; 2], ProgramFailure> {
     let cannot = |error: &dyn std::fmt::Display| ProgramFailure::Output(format!("{}: {error}", path.display()));
     let plan = plan(scene, drawn, members);
     let folder = output.inner(&name(path, "ensemble"));
@@ -103,11 +101,14 @@ fn finished<M: Integrator<Group = SO3> + 'static>(
     for (_, path) in files.iter().filter(|(chunk, _)| local.has(*chunk)) {
         tally.add(Store::read(path).map_err(|fault| cannot(&fault))?);
     }
+    if let Some(MemberFailure { member, failure, .. }) = &tally.unmade {
+        eprintln!("note: {} can't exist; the first of them is member {member}: {failure}", tally.impossible);
+    }
     for MemberFailure { member, steps, failure } in &tally.failures {
         eprintln!("note: member {member} failed after {steps} steps: {failure}");
     }
     print(&told_of(scene, drawn, (&report, &tally), (is_share, &folder.display().to_string())))?;
-    Ok(report)
+    Ok([tally.stopped, report.missing])
 }
 
 /// What is run: the file as a whole tells it from others.
@@ -138,7 +139,8 @@ fn plan<M: Integrator<Group = SO3> + 'static>(
             row.iter_mut().zip(&draws).for_each(|(place, (name, spread))| *place = number(&member, name, *spread));
         }
     });
-    for (column, place, name) in columns(scene).filter(|(column, ..)| has_moments(*column)) {
+    // A quaternion and its opposite are one attitude, and which of them a member ends with means nothing.
+    for (column, place, name) in columns(scene).filter(|(column, ..)| column.key() != "quaternion") {
         plan = plan.reduce(name, Reduction::Moments, move |run| {
             let numbers = SceneFile::numbers(&[column], &Moment::of_step(run.stepper, run.state));
             numbers.get(place).copied().unwrap_or(f64::NAN)
@@ -170,11 +172,6 @@ fn section<M: Integrator<Group = SO3> + 'static>(
             [SceneFile::numbers(&[column], now).get(place).copied().unwrap_or(f64::NAN)]
         })
     })
-}
-
-/// A quaternion and its opposite are one attitude, and which of them a member ends with means nothing.
-fn has_moments(column: Column) -> bool {
-    column.key() != "quaternion"
 }
 
 /// Each number of the scene's columns: its column, its place there and its name.

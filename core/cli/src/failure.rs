@@ -12,7 +12,7 @@ pub(crate) enum Failure {
     Scene(Mistake),
     /// 2, as for all that is wrong with a command line.
     Command(String),
-    /// 3: of several runs these weren't finished.
+    /// 3: of several runs these stopped.
     Runs(String),
     /// 4.
     Output(String),

@@ -9,14 +9,18 @@ use liestep_ensemble::{MemberFailure, Shard, Status};
 const SHOWN: usize = 10;
 
 /// Members by what has become of them, and by what has happened to them.
+#[derive(Default)]
 pub(crate) struct Tally {
     finished: u64,
     /// Ended by an event.
     left: u64,
     /// Made, but not to their ends.
-    stopped: u64,
+    pub(crate) stopped: u64,
     /// That couldn't be made, such as bodies with moments of inertia that no body has.
-    impossible: u64,
+    pub(crate) impossible: u64,
+    /// The first of these.
+    pub(crate) unmade: Option<MemberFailure>,
+    /// Of those that stopped.
     pub(crate) failures: Vec<MemberFailure>,
     pub(crate) events: Vec<Happened>,
 }
@@ -33,19 +37,19 @@ pub(crate) struct Happened {
 impl Tally {
     pub(crate) fn of(events: usize) -> Self {
         let nothing = Happened { first: (0.0, f64::INFINITY, f64::NEG_INFINITY), ..Happened::default() };
-        Self { finished: 0, left: 0, stopped: 0, impossible: 0, failures: Vec::new(), events: vec![nothing; events] }
+        Self { events: vec![nothing; events], ..Self::default() }
     }
 
     pub(crate) fn add(&mut self, shard: Shard) {
         let rows = shard.rows;
-        let mut ended = BTreeSet::new();
+        let (mut ended, mut unmade) = (BTreeSet::new(), BTreeSet::new());
         for (member, status) in rows.member.iter().zip(&rows.status) {
             match status {
                 Status::Going => continue,
                 Status::Finished => self.finished += 1,
                 Status::Left => self.left += 1,
                 Status::Stopped => self.stopped += 1,
-                Status::Impossible => self.impossible += 1,
+                Status::Impossible => _ = unmade.insert(*member),
             }
             if matches!(status, Status::Finished | Status::Left) {
                 ended.insert(*member);
@@ -67,7 +71,11 @@ impl Tally {
                 }
             }
         }
-        self.failures.extend(shard.failures.into_iter().take(SHOWN - self.failures.len()));
+        self.impossible += unmade.len() as u64;
+        let (impossible, stopped): (Vec<_>, Vec<_>) =
+            shard.failures.into_iter().partition(|failure| unmade.contains(&failure.member));
+        self.unmade = self.unmade.take().or_else(|| impossible.into_iter().next());
+        self.failures.extend(stopped.into_iter().take(SHOWN - self.failures.len()));
     }
 
     /// How likely an event is, in a line.
@@ -81,13 +89,16 @@ impl Tally {
         let share = event.members as f64 / all as f64;
         let [from, to] = wilson(event.members as f64, all as f64);
         let Happened { members, times, .. } = event;
+        let often = if times > members { format!("{times} times ") } else { String::new() };
         let first = if *members > 0 {
-            format!("; first at {:.6e} s in the mean, from {least:.6e} to {largest:.6e} s", sum / *members as f64)
+            let digits = |time: f64| format!("{time:.6e}").parse().unwrap_or(time);
+            let [mean, least, largest] = [sum / *members as f64, least, largest].map(digits);
+            format!("; first at {mean} s in the mean, from {least} to {largest} s")
         } else {
             String::new()
         };
         format!(
-            "  {name}: {times} times in {members} of {all} members; probability {share:.4}, with 95 % from {from:.4} to {to:.4}{first}\n"
+            "  {name}: {often}in {members} of {all} members; probability {share:.4}, with 95 % from {from:.4} to {to:.4}{first}\n"
         )
     }
 }

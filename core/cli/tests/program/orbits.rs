@@ -145,7 +145,7 @@ fn all_commands_have_orbits() {
     assert!(events.lines().count() > 1);
     let both = text.clone() + event;
     fs::write(folder.join("scene.toml"), both).unwrap();
-    refuses(&folder, &["check", "scene.toml"], 1, "isn't known between its steps");
+    refuses(&folder, &["check", "scene.toml"], 1, "`columns` and events, or `ensemble` out of the file");
     fs::write(folder.join("scene.toml"), &text).unwrap();
     printed(&folder, &["run", "scene.toml", "--csv", "--html", "--out", "."]);
     printed(&folder, &["sweep", "scene.toml", "--out", "."]);
@@ -184,6 +184,12 @@ fn steps_follow_an_orbit() {
     let [coarse, short] =
         ["steps_per_orbit = 400", "steps_per_orbit = 800"].map(|steps| (0.5 * (end(steps) - fine)).sin().abs());
     assert!(short < 1e-3 && (3.8..4.2).contains(&(coarse / short)), "{coarse:e} {short:e}");
+    let orbit = text[text.rfind("orbit = ").unwrap()..].replace("100 min", "6000 s").replace("1.0]", "2]");
+    let both = text.replace("step = 7800.0", "steps_per_orbit = 400") + DAMPING + &orbit;
+    fs::write(folder.join("both.toml"), both).unwrap();
+    let told = [&["check", "both.toml"][..], &["run", "both.toml", "--html"]].map(|words| printed(&folder, words));
+    let shown = ["out/both.svg", "out/both.html"].map(|name| fs::read_to_string(folder.join(name)).unwrap());
+    assert_eq!([told, shown].as_flattened().concat().matches(" 15 s on the average").count(), 4);
     // The step of (3.13) turns a body at the rate Ω too far by (hΩ)³/6: most in the long steps far from the planet. The
     // geodesic one doesn't.
     let text = text.replace("105, 110]", "105, 110]\nkinetic = \"geodesic\"");

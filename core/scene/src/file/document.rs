@@ -36,7 +36,7 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
         if has(document, "run", "step") || has(document, "run", "accuracy") {
             return Err(wrong("`steps_per_orbit` stands in the place of a `step` or an `accuracy`".to_owned()));
         }
-        let orbit = file.orbit().ok_or_else(|| wrong("no effect of the file follows an `orbit`".to_owned()))?;
+        let (_, orbit) = file.turning().next().ok_or_else(|| wrong("no effect follows an `orbit`".to_owned()))?;
         let (_, step) = orbit.clock(steps).map_err(|error| wrong(error.to_string()))?;
         file.run.pace = Pace::Step { step, steps: equal_steps(step, file.run.duration).map_err(wrong)? };
     }
@@ -92,16 +92,12 @@ fn of_pace(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
             return wrong(&["run", "accuracy"], message);
         }
         if has(document, "run", "method") {
-            return wrong(
-                &["run", "method"],
-                "an `accuracy` chooses the method; give a `step` to choose it".to_owned(),
-            );
+            let message = "an `accuracy` chooses the method; give a `step` to choose it";
+            return wrong(&["run", "method"], message.to_owned());
         }
         if file.kinetic() != Kinetic::Rigid {
-            return wrong(
-                &["body", "kinetic"],
-                "an `accuracy` chooses the method for the kinetic term `rigid`".to_owned(),
-            );
+            let message = "an `accuracy` chooses the method for the kinetic term `rigid`";
+            return wrong(&["body", "kinetic"], message.to_owned());
         }
     }
     None
@@ -112,18 +108,27 @@ fn of_orbit(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
     let wrong = |keys: &[&str], message: String| Some((span(document, keys), message));
     if let Some(gradient) = &file.gravity_gradient {
         let is_given = [gradient.GM.is_some(), gradient.r.is_some()];
-        if !gradient.turns() && is_given != [true; 2] {
+        if gradient.orbit().is_none() && is_given != [true; 2] {
             return wrong(&["gravity_gradient"], "beside a direction that is fixed stand `GM` and `r`".to_owned());
         }
-        if gradient.turns() && is_given != [false; 2] {
+        if gradient.orbit().is_some() && is_given != [false; 2] {
             let key = if is_given[0] { "GM" } else { "r" };
             let message =
                 "the orbit's period says how strong the gradient is, by Kepler's third law: leave `GM` and `r` out";
             return wrong(&["gravity_gradient", key], message.to_owned());
         }
     }
-    if let Some(effect) = file.turning().next() {
-        let name = effect.name(" ");
+    let mut all: Vec<_> = file.turning().collect();
+    all.sort_by_key(|(keys, _)| span(document, keys).start);
+    for ((first, one), (keys, other)) in all.iter().zip(all.iter().skip(1)) {
+        let mut pairs = one.said().into_iter().zip(other.said());
+        if let Some(((key, value), _)) = pairs.find(|(one, other)| one != other) {
+            let message = format!("a body goes round one orbit, and `{}` has the {key} {value}", first.join("."));
+            return wrong(&[keys.as_slice(), &[key]].concat(), message);
+        }
+    }
+    if let Some(([effect, ..], _)) = file.turning().next() {
+        let name = effect.replace('_', " ");
         if let Pace::Accuracy(_) = file.run.pace {
             let message = format!(
                 "an accuracy chooses a method for what doesn't change with time; {name} does, so give a `step`"
@@ -141,13 +146,11 @@ fn of_orbit(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
 /// Beside a density.
 fn of_density(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
     let has_a_pace = file.lagrangian.as_ref().is_some_and(|own| own.has_a_pace);
+    let turns = file.turning().next().is_some();
     let beside = [
         (!has(document, "run", "step"), "the first `step`: give one in the place of `accuracy` and `steps_per_orbit`"),
         (has(document, "run", "method"), "the scene's own step: leave `method` out"),
-        (
-            file.turning().next().is_some(),
-            "what doesn't change with time: what turns with an orbit has `steps_per_orbit`",
-        ),
+        (turns, "what doesn't change with time: what turns with an orbit has `steps_per_orbit`"),
         (has_a_pace, "what has no `pace`: leave one of both out"),
     ];
     let (_, what) = file.run.density.and_then(|_| beside.into_iter().find(|(is_odd, _)| *is_odd))?;
@@ -194,10 +197,8 @@ fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
         && scheme.0.base() != file.order()
     {
         let (name, base, order) = (scheme.0.called(), scheme.0.base(), file.order());
-        return wrong(
-            &["run", "method"],
-            format!("{name} composes a step of order {base}, and that of this scene is of order {order}"),
-        );
+        let message = format!("{name} composes a step of order {base}, and that of this scene is of order {order}");
+        return wrong(&["run", "method"], message);
     }
     if let Method::Splitting(_) | Method::Processed(_) | Method::Collocation(_) = method
         && file.kinetic() != Kinetic::Rigid

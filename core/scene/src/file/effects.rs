@@ -17,13 +17,8 @@ pub(crate) trait Table {
     /// The numbers of the effect on the body with this inertia, with what it is at a time, s.
     fn numbers(&self, J: &Inertia, time: f64) -> Vec<f64>;
 
-    /// Along which orbit it is another at each time.
-    fn orbit(&self) -> Option<&Orbit>;
-
-    /// Whether it is another at each time.
-    fn turns(&self) -> bool {
-        self.orbit().is_some()
-    }
+    /// Along which orbit it is another at each time, and by which parameter.
+    fn orbit(&self) -> Option<(&'static str, &Orbit)>;
 }
 
 /// Shows the list to a macro, behind what that is given: of each effect the table in a file, its keys, and how these make
@@ -111,8 +106,8 @@ macro_rules! tables {
                     numbers(&effect)
                 }
 
-                fn orbit(&self) -> Option<&Orbit> {
-                    [$(self.$field.orbit()),+].into_iter().flatten().next()
+                fn orbit(&self) -> Option<(&'static str, &Orbit)> {
+                    [$(self.$field.orbit().map(|orbit| (stringify!($field), orbit))),+].into_iter().flatten().next()
                 }
             }
         )+

@@ -73,17 +73,15 @@ pub(crate) fn read(
     }
     if let Some(column) = file.columns().iter().find(|column| column.is_since_the_start()) {
         let names = column.names().join(", ");
-        return wrong(
-            &["output", "columns"],
-            format!("an ensemble keeps states, and `{names}` is measured from the start of a run; leave it out"),
-        );
+        let why = "is measured from the start of a run; leave it out";
+        return wrong(&["output", "columns"], format!("an ensemble keeps states, and `{names}` {why}"));
     }
     let names_energy = |event: &Event| matches!(event.quantity, Quantity::Energy(_));
     let keeps_energy = file.columns().iter().any(|column| column.key() == "energy");
     if file.turning().next().is_some()
         && (file.event.iter().any(names_energy) || keeps_energy && !file.event.is_empty())
     {
-        let message = "beside an orbit the energy of a member isn't known between its steps, where events are: leave `energy` out of `columns` and events";
+        let message = "beside an orbit the energy of a member isn't known between its steps, where events are: leave `energy` out of `columns` and events, or `ensemble` out of the file";
         return wrong(&["output", "columns"], message.to_owned());
     }
     let written = table.get_ref().as_table().and_then(|table| table.get("every"));
@@ -95,8 +93,12 @@ pub(crate) fn read(
         return Err(located((value.span(), message)));
     }
     for Axis { keys, .. } in &ensemble.axes {
+        let [tables @ .., last] = keys.as_slice() else { continue };
+        if tables.get(2).is_some_and(|key| key.get_ref() == "orbit") && file.turning().nth(1).is_some() {
+            let message = "effects of the file share this orbit, and a draw would change it for one of them alone";
+            return Err(located((last.span(), message.to_owned())));
+        }
         // What a file doesn't have isn't there because of a number that is drawn.
-        let [tables @ .., _] = keys.as_slice() else { continue };
         let mut here = Some(document.get_ref());
         for key in tables {
             let name = key.get_ref();
@@ -115,14 +117,8 @@ pub(crate) fn read(
     // What is wrong with a unit or a key is wrong with every member.
     for end in [true, false] {
         ensemble.member(&mut |_, spread| match spread {
-            Spread::Uniform { from, to } => {
-                if end {
-                    from
-                } else {
-                    to
-                }
-            }
-            Spread::Normal { mean, .. } => mean,
+            Spread::Uniform { from: value, .. } if end => value,
+            Spread::Uniform { to: value, .. } | Spread::Normal { mean: value, .. } => value,
         })?;
     }
     Ok(ensemble)

@@ -12,7 +12,7 @@ use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 
-use crate::file::quantity::{Angle, Direction, Duration, FluxDensity, Number, Positive, Scalar, Triple};
+use crate::file::quantity::{Angle, Direction, Duration, FluxDensity, Number, Positive, Scalar, Triple, short};
 
 /// A closed orbit about a far mass, by Kepler's laws.
 #[derive(Clone, Copy, Deserialize)]
@@ -64,6 +64,20 @@ impl Orbit {
     pub(crate) fn clock(&self, steps: NonZeroU32) -> Result<(Clock, f64), SetupError> {
         let clock = Clock::orbit_from(self.phase, self.eccentricity, self.period, steps.get())?;
         Ok((clock, self.period / f64::from(steps.get())))
+    }
+
+    /// What it has by its keys, in the digits of a person.
+    pub(crate) fn said(&self) -> [(&'static str, String); 5] {
+        let [near, on] = &self.axes;
+        // Without the roundings of a zero, and its sign.
+        let direction = |v: Vector3<f64>| format!("{:?}", v.map(|x| (x * 1e9).round() / 1e9 + 0.0).data.0[0]);
+        [
+            ("period", short(self.period) + " s"),
+            ("normal", direction(near.cross(on))),
+            ("eccentricity", short(self.eccentricity)),
+            ("phase", short(self.phase.to_degrees()) + " deg"),
+            ("periapsis", direction(*near)),
+        ]
     }
 
     /// The mean motion `2π/T`, rad/s.

@@ -30,7 +30,7 @@ macro_rules! scene_file {
         ///
         /// | effect | parameters |
         /// |---|---|
-        $(#[doc = concat!("| `", stringify!($name), "` |", $(" `", stringify!($key), "`"),+, " |")])+
+        $(#[doc = concat!("| `", stringify!($name), "` |", $(" `", stringify!($key), ": ", stringify!($type), "`"),+, " |")])+
         #[derive(Clone, Deserialize)]
         #[serde(deny_unknown_fields)]
         pub struct SceneFile {
@@ -54,11 +54,6 @@ macro_rules! scene_file {
                     _ => {}
                 }
                 Ok(())
-            }
-
-            /// The orbit that they follow.
-            pub(crate) fn orbit(&self) -> Option<&Orbit> {
-                [$(self.$name.as_ref().and_then(Table::orbit)),+].into_iter().flatten().next()
             }
         }
     };
@@ -195,9 +190,10 @@ impl SceneFile {
         listed.or_else(|| self.force.as_ref().map(|_| "`force`".to_owned()))
     }
 
-    /// The effects that are others at each time.
-    pub(crate) fn turning(&self) -> impl Iterator<Item = &'static Listed> {
-        self.effects().filter(|(_, table)| table.turns()).map(|(effect, _)| effect)
+    /// The effects that are others at each time: the keys of their orbits, and these.
+    pub(crate) fn turning(&self) -> impl Iterator<Item = ([&'static str; 3], &Orbit)> {
+        self.effects()
+            .filter_map(|(effect, table)| table.orbit().map(|(key, orbit)| ([effect.key, key, "orbit"], orbit)))
     }
 
     /// The kinetic term of the library's body.

@@ -185,7 +185,7 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
     }
     macro_rules! turning {
         ($scene:expr, $values:expr) => {
-            match file.run.steps_per_orbit.and_then(|steps| file.orbit()?.clock(steps).ok()) {
+            match file.run.steps_per_orbit.and_then(|steps| file.turning().next()?.1.clock(steps).ok()) {
                 None => any!(Stepper::new($scene, h).map(|stepper| stepper.driven($values))),
                 Some((clock, _)) => {
                     any!(Stepper::new($scene, 1.0).map(|stepper| stepper.with_clock(clock).driven($values)))

@@ -10,6 +10,7 @@ use liestep::recording::{self, Reason, RecordError, Recorder, RunError, Sink};
 use liestep::{SetupError, StepError};
 
 use crate::file::column::{Column, picture_stride};
+use crate::file::quantity::short;
 use crate::file::sample::Sample;
 
 /// A run that came to its end.
@@ -18,6 +19,8 @@ pub struct Run {
     samples: Vec<Sample>,
     /// s.
     step: f64,
+    /// What is said behind it where it is a mean.
+    pub(crate) average: &'static str,
     steps: u64,
     happenings: Vec<Happening>,
     /// The event that ended it.
@@ -150,8 +153,12 @@ pub(crate) fn make<I: Integrator<Group: LieGroup<Scalar: Into<f64>>>>(
         Reason::Event { event, .. } => Some(event),
         _ => None,
     };
-    let (step, happenings) = (stepper.step_size().into(), happenings.into_inner());
-    Ok(Run { samples, happenings, step, steps: end.steps, ending, choice: None })
+    #[allow(clippy::cast_precision_loss)] // a count
+    let (step, average) = match until {
+        Some(_) => (samples.last().map_or(0.0, |last| last.time) / end.steps.max(1) as f64, " on the average"),
+        None => (stepper.step_size().into(), ""),
+    };
+    Ok(Run { samples, happenings: happenings.into_inner(), step, average, steps: end.steps, ending, choice: None })
 }
 
 fn keep(samples: &mut Vec<Sample>, mut now: Sample) {
@@ -216,7 +223,7 @@ impl Run {
         self.happenings.iter().filter(move |happening| happening.event == event).map(|happening| happening.sample.time)
     }
 
-    /// The step, s.
+    /// The step, s; of steps that vary their mean.
     #[must_use]
     pub fn step(&self) -> f64 {
         self.step
@@ -237,8 +244,8 @@ impl Run {
     /// The scene, the steps and the energy at both ends; what else is said of the ends comes behind it.
     pub(crate) fn summary(&self, title: &str, sum: &str, rest: impl FnOnce(&Sample, &Sample) -> String) -> String {
         let (Some(first), Some(last)) = (self.samples.first(), self.samples.last()) else { return String::new() };
-        let (steps, step, rest) = (self.steps, self.step, rest(first, last));
+        let (Self { steps, average, .. }, step, rest) = (self, short(self.step), rest(first, last));
         let [before, after] = [first.energy, last.energy];
-        format!("{title}\n  {sum}, {steps} steps of {step} s\n  energy {before:.6} J → {after:.6} J{rest}\n")
+        format!("{title}\n  {sum}, {steps} steps of {step} s{average}\n  energy {before:.6} J → {after:.6} J{rest}\n")
     }
 }

@@ -28,7 +28,7 @@ impl SceneFile {
         let (picture, samples) = (&self.picture, run.samples());
         // A step that was chosen for an accuracy has more digits than anyone reads.
         let step = format!("{:.4e}", run.step()).parse().unwrap_or(run.step());
-        let subtitle = format!("{}, h = {step} s", self.sum());
+        let subtitle = format!("{}, h = {step} s{}", self.sum(), run.average);
         let path = |area: &Area<'_>| picture.draw_path(area, samples);
         let curve = |curve: &Curve, area: &Area<'_>| curve.draw(area, samples, &picture.axis.0);
         draw((&self.title, &subtitle), &[], path, &picture.panels, curve)

@@ -48,11 +48,8 @@ impl Recording {
         let bytes = fs::read(path).map_err(|cause| Mistake::unreadable(path, &cause))?;
         let wrong = |line, column, message: String| Mistake::at(path, (line, column), message);
         if ARROW.iter().any(|beginning| bytes.starts_with(beginning)) {
-            return Err(wrong(
-                1,
-                1,
-                "is a table of Arrow IPC; pages are made of CSV, as `liestep run --csv` writes it".to_owned(),
-            ));
+            let message = "is a table of Arrow IPC; pages are made of CSV, as `liestep run --csv` writes it";
+            return Err(wrong(1, 1, message.to_owned()));
         }
         let text = String::from_utf8(bytes).map_err(|error| Mistake::not_text(path, &error))?;
         let Table { names, columns, below, lines } =
@@ -144,7 +141,7 @@ impl Recording {
         };
         Self {
             title: scene.title.clone(),
-            about: format!("{}, {} steps of {} s", scene.sum(), run.steps(), short(run.step())),
+            about: format!("{}, {} steps of {} s{}", scene.sum(), run.steps(), short(run.step()), run.average),
             figure: Figure::of(&scene.inertia().unwrap_or_else(Matrix3::identity), arm, &axis),
             times: collect(&|sample| sample.time),
             attitudes,
