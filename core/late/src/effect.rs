@@ -35,11 +35,14 @@ macro_rules! room {
     };
 }
 
-/// The entries of a value.
+/// The entries of a value, copied unless they stand one after the other.
 macro_rules! listed {
     ($name:ident = $value:expr) => {
         room!(room: G::Scalar, size_of_val($value).div_ceil(size_of::<G::Scalar>()));
-        let $name = filled($value, room);
+        let $name = match $value.in_place() {
+            Some(slice) => slice,
+            None => filled($value, room),
+        };
     };
 }
 
@@ -232,15 +235,19 @@ where
 
     fn limit(&self, velocity: Option<&Vector<G>>, w: &W) -> Limit<Self> {
         listed!(advected = w);
-        listed!(given = velocity.unwrap_or(&Vector::<G>::zero()));
+        let zero = Vector::<G>::zero();
+        listed!(given = velocity.unwrap_or(&zero));
         let given = [(Array::Parameters, &*self.numbers), (Array::Advected, advected), (Array::Velocity, given)];
         if let (Some(_), Some(programs)) = (velocity, &self.stages.at_velocity) {
             let [l, momentum, hessian] = programs.each_ref().map(|program| alone::<_, B, _>(program, given));
             return Limit { l: l[0], momentum: vector(&momentum), hessian: square::<G>(&hessian) };
         }
+        // Where the inertia varies, each step asks for it.
         let entries = G::DIMENSION * G::DIMENSION;
-        let outputs = alone::<_, B, _>(&self.stages.at_rest, given);
-        let (inertia, bias) = (square::<G>(&outputs), vector(&outputs[entries..]));
+        room!(outputs: G::Scalar, entries + G::DIMENSION + 1);
+        let code = &self.stages.at_rest.code;
+        B::run(code, &B::image(code, &[]), given, outputs);
+        let (inertia, bias) = (square::<G>(outputs), vector(&outputs[entries..]));
         Limit::quadratic(velocity, inertia, bias, outputs[entries + G::DIMENSION])
     }
 
@@ -320,15 +327,14 @@ where
     fn kick_after(constants: &Self::Constants, increment: &Matrix<G>, next: &W) -> Vector<G> {
         let folded = &*constants.0;
         let (program, image) = (&folded.stages.kick_after, &folded.kick_after);
-        listed!(entries = increment);
-        listed!(next = next);
+        let next = *next;
+        listed!(next = &next);
         room!(kick: G::Scalar, G::DIMENSION);
-        let given = [(Array::Increment, entries), (Array::Next, next)];
-        if program.reads(Array::Inverse) {
-            listed!(inverse = &G::from_increment(increment).inverse().matrix());
-            B::run(&program.code, image, [given[0], given[1], (Array::Inverse, inverse)], kick);
+        let next = (Array::Next, next);
+        if program.reads(Array::Increment) || program.reads(Array::Inverse) {
+            run_with_more::<G, B, 1>((program, image), [next], &{ *increment }, kick);
         } else {
-            B::run(&program.code, image, given, kick);
+            B::run(&program.code, image, [next], kick);
         }
         vector(kick)
     }
@@ -344,42 +350,40 @@ fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
 ) where
     CayleyRetraction: Retraction<G>,
 {
-    // Off SO(3) the system is written in the increment. That is called, and a step on SO(3) stays short.
-    if program.reads(Array::Increment) || program.reads(Array::InverseIncrement) {
-        return iteration_with_more::<G, W, B>((program, image), terms, half, outputs);
-    }
-    listed!(coordinates = half);
+    // What is lent stays in memory: what is lent is a copy.
+    let half = *half;
+    listed!(coordinates = &half);
     listed!(target = &terms.right_side);
     listed!(advected = &terms.advected);
     let given = [(Array::Half, coordinates), (Array::Target, target), (Array::Advected, advected)];
-    B::run(&program.code, image, given, outputs);
+    // Off SO(3) the system is written in the increment.
+    if program.reads(Array::Increment) || program.reads(Array::InverseIncrement) {
+        let increment = <CayleyRetraction as Retraction<G>>::increment_of_half(&half);
+        run_with_more::<G, B, 3>((program, image), given, &increment, outputs);
+    } else {
+        B::run(&program.code, image, given, outputs);
+    }
 }
 
+/// Runs a program that has the increment in it, too. It is called, and a step on SO(3) stays short.
 #[inline(never)]
-fn iteration_with_more<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
+fn run_with_more<G: LieGroup, B: Backend<G::Scalar>, const N: usize>(
     (program, image): (&Ready<B::Code>, &B::Image),
-    terms: &StepTerms<Vector<G>, W>,
-    half: &Vector<G>,
+    given: Given<'_, G::Scalar, N>,
+    increment: &Matrix<G>,
     outputs: &mut [G::Scalar],
-) where
-    CayleyRetraction: Retraction<G>,
-{
-    let increment = <CayleyRetraction as Retraction<G>>::increment_of_half(half);
+) {
+    let inverse = || G::from_increment(increment).inverse().matrix();
+    let inverse = if program.reads(Array::Inverse) { inverse() } else { *increment };
     let is_read = program.reads(Array::InverseIncrement);
-    let inverse = if is_read { G::inverse_increment(&increment) } else { increment };
-    listed!(coordinates = half);
-    listed!(target = &terms.right_side);
-    listed!(advected = &terms.advected);
-    listed!(increment = &increment);
+    let small = if is_read { G::inverse_increment(increment) } else { *increment };
+    listed!(increment = increment);
     listed!(inverse = &inverse);
-    let given = [
-        (Array::Half, coordinates),
-        (Array::Target, target),
-        (Array::Advected, advected),
-        (Array::Increment, increment),
-        (Array::InverseIncrement, inverse),
-    ];
-    B::run(&program.code, image, given, outputs);
+    listed!(small = &small);
+    let more = [(Array::Increment, increment), (Array::Inverse, inverse), (Array::InverseIncrement, small)];
+    // Of three at most; one that stands twice is the same.
+    let all: Given<'_, G::Scalar, 6> = std::array::from_fn(|at| if at < 3 { more[at] } else { given[(at - 3) % N] });
+    B::run(&program.code, image, all, outputs);
 }
 
 impl<G, W, K, B> DiscreteLagrangian for Late<G, W, K, B>

@@ -34,6 +34,7 @@ pub(super) fn value(expression: &Expr, env: &Env) -> Option<Matrix> {
         Expr::Reference(inner) => of(&inner.expr)?,
         Expr::Path(path) => env.get(&path.path.get_ident()?.to_string())?.clone(),
         Expr::Lit(ExprLit { lit: Lit::Float(number), .. }) => Matrix::scalar(number.base10_parse().ok()?),
+        Expr::Lit(ExprLit { lit: Lit::Int(number), .. }) => Matrix::scalar(number.base10_parse().ok()?),
         Expr::Unary(unary) => of(&unary.expr)?.scaled(-1.0),
         Expr::Binary(binary) => match (&binary.op, of(&binary.left)?, of(&binary.right)?) {
             (BinOp::Add(_), a, b) if same(&a, &b) => a.plus(&b),
