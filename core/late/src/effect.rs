@@ -327,17 +327,32 @@ where
     fn kick_after(constants: &Self::Constants, increment: &Matrix<G>, next: &W) -> Vector<G> {
         let folded = &*constants.0;
         let (program, image) = (&folded.stages.kick_after, &folded.kick_after);
-        let next = *next;
-        listed!(next = &next);
         room!(kick: G::Scalar, G::DIMENSION);
-        let next = (Array::Next, next);
         if program.reads(Array::Increment) || program.reads(Array::Inverse) {
-            run_with_more::<G, B, 1>((program, image), [next], &{ *increment }, kick);
+            kick_with_more::<G, W, B>((program, image), &{ *increment }, &{ *next }, kick);
         } else {
-            B::run(&program.code, image, [next], kick);
+            let next = *next;
+            listed!(next = &next);
+            B::run(&program.code, image, [(Array::Next, next)], kick);
         }
         vector(kick)
     }
+}
+
+/// A kick that is written in the increment, too.
+#[inline(never)]
+fn kick_with_more<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
+    (program, image): (&Ready<B::Code>, &B::Image),
+    increment: &Matrix<G>,
+    next: &W,
+    kick: &mut [G::Scalar],
+) {
+    let is_read = program.reads(Array::Inverse);
+    let inverse = if is_read { G::from_increment(increment).inverse().matrix() } else { *increment };
+    listed!(increment = increment);
+    listed!(next = next);
+    listed!(inverse = &inverse);
+    B::run(&program.code, image, [(Array::Increment, increment), (Array::Next, next), (Array::Inverse, inverse)], kick);
 }
 
 /// What an iteration computes.
@@ -350,40 +365,44 @@ fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
 ) where
     CayleyRetraction: Retraction<G>,
 {
-    // What is lent stays in memory: what is lent is a copy.
+    // What is lent stays in memory, so what is lent here are copies.
     let half = *half;
+    // Off SO(3) the system is written in the increment. That is called, and a step on SO(3) stays short.
+    if program.reads(Array::Increment) || program.reads(Array::InverseIncrement) {
+        return iteration_with_more::<G, W, B>((program, image), &{ *terms }, &{ half }, outputs);
+    }
     listed!(coordinates = &half);
     listed!(target = &terms.right_side);
     listed!(advected = &terms.advected);
     let given = [(Array::Half, coordinates), (Array::Target, target), (Array::Advected, advected)];
-    // Off SO(3) the system is written in the increment.
-    if program.reads(Array::Increment) || program.reads(Array::InverseIncrement) {
-        let increment = <CayleyRetraction as Retraction<G>>::increment_of_half(&half);
-        run_with_more::<G, B, 3>((program, image), given, &increment, outputs);
-    } else {
-        B::run(&program.code, image, given, outputs);
-    }
+    B::run(&program.code, image, given, outputs);
 }
 
-/// Runs a program that has the increment in it, too. It is called, and a step on SO(3) stays short.
 #[inline(never)]
-fn run_with_more<G: LieGroup, B: Backend<G::Scalar>, const N: usize>(
+fn iteration_with_more<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
     (program, image): (&Ready<B::Code>, &B::Image),
-    given: Given<'_, G::Scalar, N>,
-    increment: &Matrix<G>,
+    terms: &StepTerms<Vector<G>, W>,
+    half: &Vector<G>,
     outputs: &mut [G::Scalar],
-) {
-    let inverse = || G::from_increment(increment).inverse().matrix();
-    let inverse = if program.reads(Array::Inverse) { inverse() } else { *increment };
+) where
+    CayleyRetraction: Retraction<G>,
+{
+    let increment = <CayleyRetraction as Retraction<G>>::increment_of_half(half);
     let is_read = program.reads(Array::InverseIncrement);
-    let small = if is_read { G::inverse_increment(increment) } else { *increment };
-    listed!(increment = increment);
+    let inverse = if is_read { G::inverse_increment(&increment) } else { increment };
+    listed!(coordinates = half);
+    listed!(target = &terms.right_side);
+    listed!(advected = &terms.advected);
+    listed!(increment = &increment);
     listed!(inverse = &inverse);
-    listed!(small = &small);
-    let more = [(Array::Increment, increment), (Array::Inverse, inverse), (Array::InverseIncrement, small)];
-    // Of three at most; one that stands twice is the same.
-    let all: Given<'_, G::Scalar, 6> = std::array::from_fn(|at| if at < 3 { more[at] } else { given[(at - 3) % N] });
-    B::run(&program.code, image, all, outputs);
+    let given = [
+        (Array::Half, coordinates),
+        (Array::Target, target),
+        (Array::Advected, advected),
+        (Array::Increment, increment),
+        (Array::InverseIncrement, inverse),
+    ];
+    B::run(&program.code, image, given, outputs);
 }
 
 impl<G, W, K, B> DiscreteLagrangian for Late<G, W, K, B>
