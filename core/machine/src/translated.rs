@@ -59,7 +59,7 @@ fn offset(at: usize, lanes: usize) -> Result<i32, String> {
 }
 
 /// What a program has come to.
-struct Values {
+struct Registers {
     /// The type of a number, or of two lanes.
     number: Type,
     flags: MemFlagsData,
@@ -69,7 +69,7 @@ struct Values {
     values: Vec<Option<Value>>,
 }
 
-impl Values {
+impl Registers {
     /// What hasn't been read is read where it is needed: an operation takes it from memory.
     fn at(&self, builder: &mut FunctionBuilder, at: usize) -> Value {
         self.values[at].unwrap_or_else(|| {
@@ -130,19 +130,19 @@ fn write(
         begins[array as usize] = builder.ins().load(pointer, flags.with_readonly(), arrays, place);
     }
     let number = if lanes > 1 { types::F64X2 } else { types::F64 };
-    let mut values = Values { number, flags, places: Vec::new(), values: Vec::new() };
+    let mut registers = Registers { number, flags, places: Vec::new(), values: Vec::new() };
     let literals = builder.ins().symbol_value(pointer, literals);
     for source in &program.inputs {
-        values.places.push((begins[source.array as usize], offset(source.at, lanes)?));
+        registers.places.push((begins[source.array as usize], offset(source.at, lanes)?));
     }
     for at in 0..program.literals.len() {
-        values.places.push((literals, offset(at, lanes.min(2))?));
+        registers.places.push((literals, offset(at, lanes.min(2))?));
     }
-    values.values.resize(values.places.len(), None);
+    registers.values.resize(registers.places.len(), None);
     for (at, _) in program.inputs.iter().enumerate().filter(|(_, source)| source.array != Array::Constants) {
         let operands = program.operations.iter().flat_map(|operation| operation.operands());
         if operands.filter(|&operand| operand == at).count() > 1 {
-            values.values[at] = Some(values.at(builder, at));
+            registers.values[at] = Some(registers.at(builder, at));
         }
     }
     // A caller reads a vector, and the Jacobian behind it, two numbers at a time: for what isn't written so it would wait.
@@ -152,14 +152,14 @@ fn write(
     let (mut operations, mut at) = (program.operations.iter(), 0);
     for pair in vector.chunks(most).chain(jacobian.chunks(most)) {
         let [first, second] = [pair[0], pair[pair.len() - 1]].map(|output| output as usize);
-        let missing = (first.max(second) + 1).saturating_sub(values.values.len());
+        let missing = (first.max(second) + 1).saturating_sub(registers.values.len());
         for &operation in operations.by_ref().take(missing) {
-            let result = values.result(builder, operation, called);
-            values.values.push(Some(result));
+            let result = registers.result(builder, operation, called);
+            registers.values.push(Some(result));
         }
-        let mut written = values.at(builder, first);
+        let mut written = registers.at(builder, first);
         if pair.len() > 1 {
-            let second = values.at(builder, second);
+            let second = registers.at(builder, second);
             written = both(builder, written, second);
         }
         builder.ins().store(flags, written, outputs, offset(at, lanes)?);
