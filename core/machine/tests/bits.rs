@@ -63,25 +63,10 @@ fn bits(number: f64) -> u64 {
 }
 
 fn numbers_of<T: Real, B: Backend<T>>(code: &B::Code, program: &Program, arrays: &[Vec<T>]) -> Vec<T> {
-    let [constants, advected, next, element, increment, inverse, inverse_increment, half, velocity, target] =
-        std::array::from_fn(|at| arrays[at + 2].as_slice());
-    let given = [
-        (Array::Step, &*arrays[0]),
-        (Array::Parameters, &*arrays[1]),
-        (Array::Constants, constants),
-        (Array::Advected, advected),
-        (Array::Next, next),
-        (Array::Element, element),
-        (Array::Increment, increment),
-        (Array::Inverse, inverse),
-        (Array::InverseIncrement, inverse_increment),
-        (Array::Half, half),
-        (Array::Velocity, velocity),
-        (Array::Target, target),
-    ];
+    let given = Array::ALL.map(|array| (array, arrays[array as usize].as_slice()));
     let mut numbers = vec![T::zero(); program.outputs.len()];
     B::prepare(code);
-    B::run(code, &B::image(code, constants), given, &mut numbers);
+    B::run(code, &B::image(code, &arrays[Array::Constants as usize]), given, &mut numbers);
     numbers
 }
 

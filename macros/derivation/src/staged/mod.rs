@@ -62,6 +62,13 @@ pub enum Array {
 impl Array {
     /// How many there are.
     pub const COUNT: usize = 12;
+
+    /// Each of them, in order.
+    #[rustfmt::skip]
+    pub const ALL: [Self; Self::COUNT] = [
+        Self::Step, Self::Parameters, Self::Constants, Self::Advected, Self::Next, Self::Element, Self::Increment,
+        Self::Inverse, Self::InverseIncrement, Self::Half, Self::Velocity, Self::Target,
+    ];
 }
 
 /// The place of a number in an array.
