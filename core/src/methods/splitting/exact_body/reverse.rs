@@ -61,7 +61,7 @@ impl<T: Real> Form<T> {
         Some(self.functions_back(by, u, (&invariants, &functions), by_integral))
     }
 
-    /// Behind [`whole`](Self::whole), by the covector `g` of the turn `F_a`; the values are those of that function.
+    /// Behind [`whole`](Self::whole), by the covector `g` of the turn `F_a`, whose quaternion is taken `N` times here.
     #[hot]
     fn whole_back(&self, u: [T; 3], invariants: &Invariants<T>, [n, mu]: [T; 2], g: [T; 3]) -> By<T> {
         let ([a, b, c], [ga, gb, gc], Invariants { kb, ka, .. }) = (u, g, *invariants);
