@@ -14,7 +14,6 @@ use crate::groups::LieGroup;
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Scalar, SecondDerivatives, Vector};
 use crate::motion::{Motion, StateOf, Stepper};
 use crate::numbers::{Coordinates as _, Entries as _, Kernel, Vectors, dispatch, is_finite, real};
-use nalgebra::SimdValue;
 
 /// What an adjoint keeps of the way forwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -110,7 +109,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Record<'_, '_, S, P> {
 
     /// As that of [`Stretch`].
     const VECTORS: Vectors = Vectors::Four;
-    const IS_IN_LANES: bool = <Scalar<S> as SimdValue>::LANES > 1;
+    const IS_IN_LANES: bool = <Scalar<S> as nalgebra::SimdValue>::LANES > 1;
 
     #[hot]
     fn run(self) -> Self::Output {
@@ -153,7 +152,7 @@ where
 
     /// For AVX's three-operand instructions; there is nothing to do four at a time.
     const VECTORS: Vectors = Vectors::Four;
-    const IS_IN_LANES: bool = <Scalar<S> as SimdValue>::LANES > 1;
+    const IS_IN_LANES: bool = <Scalar<S> as nalgebra::SimdValue>::LANES > 1;
 
     #[hot]
     fn run(self) -> Self::Output {

@@ -112,7 +112,6 @@ use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, SecondDerivatives};
 use crate::motion::{Declared, Plan, StateOf, Steerable, StepReport, Stepper, Summation};
 use crate::numbers::{Kernel, Vectors};
-use nalgebra::SimdValue;
 use recording::Recording;
 
 /// A plan whose steps can be differentiated: some of the library's own plans.
@@ -356,7 +355,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Carry<'_, '_, S, P> {
 
     /// The columns fill registers of four.
     const VECTORS: Vectors = Vectors::Four;
-    const IS_IN_LANES: bool = <Scalar<S> as SimdValue>::LANES > 1;
+    const IS_IN_LANES: bool = <Scalar<S> as nalgebra::SimdValue>::LANES > 1;
 
     #[hot]
     fn run(self) -> Self::Output {

@@ -19,7 +19,6 @@ struct Step<'a, P: Plan<Top>, const WIDE: usize>(&'a Stepper<Top, P>, &'a mut Ru
 
 impl<P: Plan<Top>, const WIDE: usize> Kernel for Step<'_, P, WIDE> {
     type Output = StepReport;
-    const IS_IN_LANES: bool = false;
     const VECTORS: Vectors = match WIDE {
         2 => Vectors::AsCompiled,
         4 => Vectors::Four,

@@ -28,7 +28,7 @@ pub(crate) trait Kernel {
     const VECTORS: Vectors;
 
     /// Whether its numbers are lanes, whose vectors are put in memory and taken from there all the time.
-    const IS_IN_LANES: bool;
+    const IS_IN_LANES: bool = false;
 
     /// Does it; marked `#[inline(always)]` but for builds with debug assertions.
     fn run(self) -> Self::Output;

@@ -10,7 +10,6 @@ use crate::motion::report::StepReport;
 use crate::motion::state::State;
 use crate::motion::summation::Motion;
 use crate::numbers::{Coordinates as _, Kernel, Vectors, dispatch, is_finite, real};
-use nalgebra::SimdValue;
 
 /// # Step
 ///
@@ -331,7 +330,7 @@ struct Step<'a, S: Effect, P: Plan<S>>(&'a Stepper<S, P>, &'a mut StateOf<S, P>)
 impl<S: Effect, P: Plan<S>> Kernel for Step<'_, S, P> {
     type Output = Result<StepReport, StepError>;
     const VECTORS: Vectors = P::VECTORS;
-    const IS_IN_LANES: bool = <Scalar<S> as SimdValue>::LANES > 1;
+    const IS_IN_LANES: bool = <Scalar<S> as nalgebra::SimdValue>::LANES > 1;
 
     #[hot]
     fn run(self) -> Self::Output {

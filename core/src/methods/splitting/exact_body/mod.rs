@@ -147,7 +147,7 @@ impl<T: Real> KineticFlow<T> for ExactBody<T> {
     const EXACT: bool = true;
 
     // With the shorter polynomials.
-    const OPERATIONS: Operations = Operations { step: 270, iteration: 0 };
+    const OPERATIONS: Operations = Operations { step: 232, iteration: 0 };
 
     fn describe(flow: &Self, visitor: &mut dyn SceneVisitor<T>) {
         visitor.term("exact flow of a body");
@@ -364,7 +364,6 @@ struct Beyond<'a, T> {
 impl<T: Number> Kernel for Beyond<'_, T> {
     type Output = BodyTurn<T>;
     const VECTORS: Vectors = Vectors::Four;
-    // Or singles, which are seldom here.
     const IS_IN_LANES: bool = true;
 
     #[hot]
