@@ -24,19 +24,18 @@ pub(super) fn product_across<T: Number>([s, a, b, c]: Quaternion<T>, [w, x, y]: 
     [s * w - (a * x + b * y), (s * x + a * w) - c * y, (s * y + b * w) + c * x, c * w + (a * y - b * x)]
 }
 
-/// `F − I`, by one over the square of the length.
+/// `F − I`, by two over the square of the length.
 #[hot]
-pub(super) fn increment<T: Real>([w, x, y, z]: Quaternion<T>, inverse_square: T) -> Matrix3<T> {
-    let twice = inverse_square + inverse_square;
+pub(super) fn increment<T: Real>([w, x, y, z]: Quaternion<T>, scale: T) -> Matrix3<T> {
+    let less = -scale;
     let (wx, wy, wz) = (w * x, w * y, w * z);
     let (xy, xz, yz) = (x * y, x * z, y * z);
     let (xx, yy, zz) = (x * x, y * y, z * z);
-    let less = -twice;
     #[rustfmt::skip]
     let increment = Matrix3::new(
-        (yy + zz) * less,  (xy - wz) * twice, (xz + wy) * twice,
-        (xy + wz) * twice, (xx + zz) * less,  (yz - wx) * twice,
-        (xz - wy) * twice, (yz + wx) * twice, (xx + yy) * less,
+        (yy + zz) * less,  (xy - wz) * scale, (xz + wy) * scale,
+        (xy + wz) * scale, (xx + zz) * less,  (yz - wx) * scale,
+        (xz - wy) * scale, (yz + wx) * scale, (xx + yy) * less,
     );
     increment
 }

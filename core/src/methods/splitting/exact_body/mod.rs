@@ -241,7 +241,7 @@ impl<T: Real> ExactDrift<T> {
     #[hot]
     fn turn(&self, frame: &Frame<T>, momentum: &Vector3<T>) -> Turn<T> {
         let turned = self.form.turned(frame.within(&(momentum * self.form.scale)));
-        let increment = increment(frame.back(turned.quaternion), turned.inverse_square);
+        let increment = increment(frame.back(turned.quaternion), turned.scale);
         let change = SO3::adjoint_transpose_increment(&increment, momentum);
         Turn { increment, change, iterations: 0 }
     }
@@ -284,8 +284,8 @@ impl<T: Number> Form<T> {
         } else {
             // By values, so that no other drift puts in memory what one of these reads and writes there.
             let [a, b, c] = u;
-            let BodyTurn { quaternion, inverse_square } = self.beyond(a, b, c);
-            BodyTurn { quaternion, inverse_square }
+            let BodyTurn { quaternion, scale } = self.beyond(a, b, c);
+            BodyTurn { quaternion, scale }
         }
     }
 
@@ -417,8 +417,8 @@ fn dot<T: Number>([a, b, c]: [T; 3]) -> T {
 #[derive(Clone, Copy, Debug)]
 struct BodyTurn<T> {
     quaternion: Quaternion<T>,
-    /// One over the square of its length.
-    inverse_square: T,
+    /// Two over the square of its length.
+    scale: T,
 }
 
 impl<T: Number> BodyTurn<T> {
@@ -428,14 +428,14 @@ impl<T: Number> BodyTurn<T> {
         let [real_part, along_a, along_b] = across;
         // What roundings do to the one is divided out, too: the rotation may be the same in each step.
         let square = (along_a * along_a + along_b * along_b) + real_part * real_part;
-        let inverse_square = T::one() / (square * about.square(dot(u)));
+        let scale = T::number(2.0) / (square * about.square(dot(u)));
         let About { w, f } = about;
-        Self { quaternion: product_across([w, f * u[0], f * u[1], f * u[2]], across), inverse_square }
+        Self { quaternion: product_across([w, f * u[0], f * u[1], f * u[2]], across), scale }
     }
 
     #[hot]
     fn select(&self, mask: T::Mask, other: &Self) -> Self {
         let quaternion = core::array::from_fn(|k| self.quaternion[k].select(mask, other.quaternion[k]));
-        Self { quaternion, inverse_square: self.inverse_square.select(mask, other.inverse_square) }
+        Self { quaternion, scale: self.scale.select(mask, other.scale) }
     }
 }

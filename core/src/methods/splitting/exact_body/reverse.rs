@@ -164,7 +164,7 @@ mod tests {
             let [w, x, y, z] = turned.quaternion.map(|part| part.value);
             [0, 1, 2].map(|k| {
                 let [_, x, y, z] = product(turned.quaternion.map(|part| part.slopes[k]), [w, -x, -y, -z]);
-                (x * c[0] + y * c[1] + z * c[2]) * turned.inverse_square.value * real(2.0)
+                (x * c[0] + y * c[1] + z * c[2]) * turned.scale.value
             })
         };
         let [x, y, z] = of([form.a, form.b].map(Dual::constant), [0, 1, 2].map(|k| Dual::along(u[k], k)));

@@ -55,7 +55,8 @@ pub(super) const SHORT: f64 = 0.0075;
 /// And up to here those of [`long`], whose next ones are `38 · 18 K¹⁰/π²⁰` and `13 (4/π²)⁹ K⁹ · K/21`.
 pub(super) const LONG: f64 = 0.05;
 
-/// With `℘` to its fifth coefficient and the integral to its fifth; terms that are far below a rounding are left out.
+/// With `℘` to its fifth coefficient and the integral to its fifth; terms that together are below half a rounding of the angle
+/// are left out.
 #[hot]
 pub(super) fn short<T: Number>(start: &Start<T>) -> Functions<T> {
     let k = T::number;
@@ -66,9 +67,7 @@ pub(super) fn short<T: Number>(start: &Start<T>) -> Functions<T> {
     let of_0 = (k(2.0 / 33.0) * xx - (k(1.0 / 7.0) * x + k(1.0 / 9.0) * y)) + k(1.0 / 3.0);
     let of_1 = (k(2.0 / 9.0) * x - k(0.2)) + k(2.0 / 11.0) * y;
     let of_2 = k(1.0 / 7.0) - k(3.0 / 11.0) * x;
-    let of_3 = k(4.0 / 13.0) * x - k(1.0 / 9.0);
-    let of_4 = k(1.0 / 11.0) - k(1.0 / 13.0) * c;
-    let integral = (of_0 + of_1 * c) + cc * ((of_2 + of_3 * c) + cc * of_4);
+    let integral = (of_0 + of_1 * c) + cc * ((of_2 - k(1.0 / 9.0) * c) + k(1.0 / 11.0) * cc);
     Functions { n, mu: mu + mu, integral }
 }
 
