@@ -78,9 +78,7 @@ where
     // A multiple of the torque makes no difference, and without it a body that is symmetric about its third axis gets
     // exactly nothing there.
     let across = velocity - tau * m.m11;
-    let [of_y, of_z] = [across.z * tau.x, across.y * tau.x];
-    let of_x = across.y * tau.z - across.z * tau.y;
-    Some(change + if DIAGONAL { Vector3::new(of_x, of_y, -of_z) } else { across.cross(&tau) })
+    Some(change + across.cross(&tau))
 }
 
 /// Whether the derivative of the torque is known.

@@ -27,15 +27,14 @@ pub(super) fn product_across<T: Number>([s, a, b, c]: Quaternion<T>, [w, x, y]: 
 /// `F − I`, by two over the square of the length.
 #[hot]
 pub(super) fn increment<T: Real>([w, x, y, z]: Quaternion<T>, scale: T) -> Matrix3<T> {
-    let less = -scale;
     let (wx, wy, wz) = (w * x, w * y, w * z);
     let (xy, xz, yz) = (x * y, x * z, y * z);
     let (xx, yy, zz) = (x * x, y * y, z * z);
     #[rustfmt::skip]
     let increment = Matrix3::new(
-        (yy + zz) * less,  (xy - wz) * scale, (xz + wy) * scale,
-        (xy + wz) * scale, (xx + zz) * less,  (yz - wx) * scale,
-        (xz - wy) * scale, (yz + wx) * scale, (xx + yy) * less,
+        -(yy + zz), xy - wz,    xz + wy,
+        xy + wz,    -(xx + zz), yz - wx,
+        xz - wy,    yz + wx,    -(xx + yy),
     );
-    increment
+    increment * scale
 }
