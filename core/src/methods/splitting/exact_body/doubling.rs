@@ -149,7 +149,7 @@ impl<T: Number> Curve<T> {
             f: (self.bend + self.bend) * (ss * s) * (c * d),
         };
         let next = about.and(about, square).and(&tangent, square);
-        let length = next.square(square).simd_sqrt();
+        let length = (next.w * next.w + next.f * next.f * square).simd_sqrt();
         // Where both vanish the body stays at its middle axis.
         let next = About { w: next.w / length, f: next.f / length };
         next.select(length.simd_gt(T::zero()), &About { w: T::one(), f: T::zero() })

@@ -225,12 +225,6 @@ impl<T: Number> About<T> {
         Self { w: self.w * other.w - self.f * other.f * q, f: self.w * other.f + self.f * other.w }
     }
 
-    /// The square of the length.
-    #[hot]
-    fn square(&self, q: T) -> T {
-        self.w * self.w + (self.f * self.f) * q
-    }
-
     #[hot]
     fn select(&self, mask: T::Mask, other: &Self) -> Self {
         Self { w: self.w.select(mask, other.w), f: self.f.select(mask, other.f) }
@@ -424,13 +418,12 @@ struct BodyTurn<T> {
 impl<T: Number> BodyTurn<T> {
     /// A rotation about the momentum after one across the middle axis, both of any length.
     #[hot]
-    fn by(u: [T; 3], about: About<T>, across: [T; 3]) -> Self {
-        let [real_part, along_a, along_b] = across;
+    fn by(u: [T; 3], About { w, f }: About<T>, across: [T; 3]) -> Self {
+        let ([x, y, z], [real_part, along_a, along_b]) = ([f * u[0], f * u[1], f * u[2]], across);
         // What roundings do to the one is divided out, too: the rotation may be the same in each step.
+        let length = (w * w + x * x) + (y * y + z * z);
         let square = (along_a * along_a + along_b * along_b) + real_part * real_part;
-        let scale = T::number(2.0) / (square * about.square(dot(u)));
-        let About { w, f } = about;
-        Self { quaternion: product_across([w, f * u[0], f * u[1], f * u[2]], across), scale }
+        Self { quaternion: product_across([w, x, y, z], across), scale: T::number(2.0) / (square * length) }
     }
 
     #[hot]
