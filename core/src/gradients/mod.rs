@@ -355,6 +355,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Carry<'_, '_, S, P> {
 
     /// The columns fill registers of four.
     const VECTORS: Vectors = Vectors::Four;
+    const IS_IN_LANES: bool = <Scalar<S> as nalgebra::SimdValue>::LANES > 1;
 
     #[hot]
     fn run(self) -> Self::Output {

@@ -308,6 +308,7 @@ struct Run<'a, 'n, S: Effect, P: Plan<S>>(
 impl<S: Effect, P: Plan<S>> Kernel for Run<'_, '_, S, P> {
     type Output = Result<u64, StepError>;
     const VECTORS: Vectors = P::VECTORS;
+    const IS_IN_LANES: bool = <Scalar<S> as SimdValue>::LANES > 1;
 
     /// Those who look at the motion are called from here, so that constants needn't be loaded again after them.
     #[hot]

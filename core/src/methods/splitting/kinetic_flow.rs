@@ -32,6 +32,12 @@ pub trait KineticFlow<T: Real>: Clone {
     /// The inertia `J` of the body, kg m².
     fn inertia(flow: &Self) -> Matrix3<T>;
 
+    /// Whether the inertia is diagonal.
+    #[must_use]
+    fn has_principal_axes(_flow: &Self) -> bool {
+        false
+    }
+
     /// The momentum `s` at rest, `p = JΩ + s`, kg m²/s: that of rotors in the body, which most bodies haven't got.
     fn momentum_bias(_flow: &Self) -> Vector3<T> {
         Vector3::repeat(T::zero())
@@ -148,6 +154,11 @@ impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
 
     fn inertia(flow: &Self) -> Matrix3<T> {
         Matrix3::from_diagonal(&Vector3::new(flow.transverse, flow.transverse, flow.axial))
+    }
+
+    #[hot]
+    fn has_principal_axes(_: &Self) -> bool {
+        true
     }
 
     fn drift(&self, h: T) -> Result<Self::Drift, SetupError> {

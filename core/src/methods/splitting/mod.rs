@@ -234,7 +234,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
     fn is_without_torque(&self, scene: &S) -> bool {
         spin::all_samples(scene, |w| {
             let torque: Vector3<Scalar<S>> = S::kick_before(&self.torque, w);
-            let gradient = kick::force_gradient::<S>(&self.torque, &self.inverse_inertia, w);
+            let gradient = kick::force_gradient::<S, false>(&self.torque, &self.inverse_inertia, w);
             let gradient = gradient.filter(|_| self.scheme.has_gradients()).unwrap_or_else(Vector3::zeros);
             torque.z.simd_eq(real(0.0)).all() && gradient.z.simd_eq(real(0.0)).all()
         })
@@ -357,7 +357,11 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         // There is a gradient: the step is refused without one when it is set up.
         let change = match &kick.mobility {
             Some(mobility) => {
-                let gradient = kick::force_gradient::<S>(&self.torque, mobility, &advected);
+                let gradient = if K::has_principal_axes(&self.kinetic) {
+                    kick::force_gradient::<S, true>(&self.torque, mobility, &advected)
+                } else {
+                    kick::force_gradient::<S, false>(&self.torque, mobility, &advected)
+                };
                 of_torque + gradient.unwrap_or_else(Vector3::zeros)
             }
             None => of_torque,

@@ -103,12 +103,11 @@ impl<T: Real> ExactBody<T> {
     fn turns(&self, form: &Form<Dual<T>>, u: impl Fn(usize) -> Dual<T>) -> [Vector3<T>; 3] {
         let turned = form.turned([u(0), u(1), u(2)]);
         let [w, x, y, z] = turned.quaternion.map(|part| part.value);
-        let twice = turned.inverse_square.value + turned.inverse_square.value;
         core::array::from_fn(|k| {
             // ½ ε̂ is the change of the quaternion over itself.
             let [_, a, b, c] = product(turned.quaternion.map(|part| part.slopes[k]), [w, -x, -y, -z]);
             let [_, x, y, z] = self.frame.back([T::zero(), a, b, c]);
-            Vector3::new(x, y, z) * twice
+            Vector3::new(x, y, z) * turned.scale.value
         })
     }
 }
