@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::groups::{Advected, Factor, LieGroup, SO3};
+use crate::mechanics::{Group, Term};
 use crate::numbers::Real;
 
 /// How many steps go by between two looks at what roundings have done to the attitude.
@@ -34,6 +35,9 @@ pub struct Motion<G: LieGroup, A> {
     #[shared]
     pub(crate) steps: u64,
 }
+
+/// The type of a scene's motions.
+pub(crate) type MotionOf<S> = Motion<Group<S>, <S as Term>::Advected>;
 
 impl<G: LieGroup, A: Advected<G>> Motion<G, A> {
     /// The attitude `g_i`, body to space.

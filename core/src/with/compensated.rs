@@ -10,7 +10,7 @@ use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
 use crate::methods::{Composed, Jointed, KineticFlow, Linked, Processed, Split};
 use crate::motion::{
-    Declared, Kept, Motion, Plan, Steerable, StepReport, Stepper, Summation, TOLERATED, Variable, restored,
+    Declared, Kept, Motion, MotionOf, Plan, Steerable, StepReport, Stepper, Summation, TOLERATED, Variable, restored,
 };
 use crate::numbers::{Entries, carried_sum, zero};
 use crate::with::remedies::Substeps;
@@ -124,7 +124,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
         self.0.refolded(scene, h).map(Self)
     }
 
-    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
+    fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept {
         MemoryWithCarry { kept: self.0.keep(scene, motion), carry: Carry::nothing() }
     }
 
@@ -171,7 +171,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
         Ok(())
     }
 
-    fn see(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut Self::Kept, advected: S::Advected) {
+    fn see(&self, motion: &mut MotionOf<S>, kept: &mut Self::Kept, advected: S::Advected) {
         self.0.see(motion, &mut kept.kept, advected);
         kept.carry.advected = zero();
     }

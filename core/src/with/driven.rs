@@ -3,7 +3,7 @@
 use crate::error::{SetupError, StepError};
 use crate::groups::Advected as _;
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor};
-use crate::motion::{Motion, Plan, Steerable, StepReport, Stepper, Summation};
+use crate::motion::{MotionOf, Plan, Steerable, StepReport, Stepper, Summation};
 use crate::numbers::real;
 use nalgebra::{SimdPartialOrd as _, SimdValue as _};
 
@@ -85,7 +85,7 @@ where
         self.plan.counted(steps)
     }
 
-    fn length(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, kept: &P::Kept, is_ahead: bool) -> Scalar<S> {
+    fn length(&self, scene: &S, motion: &MotionOf<S>, kept: &P::Kept, is_ahead: bool) -> Scalar<S> {
         self.plan.length(scene, motion, kept, is_ahead)
     }
 
@@ -111,10 +111,10 @@ where
     fn part(
         &self,
         scene: &S,
-        motion: &Motion<Group<S>, S::Advected>,
+        motion: &MotionOf<S>,
         kept: &P::Kept,
         fraction: Scalar<S>,
-    ) -> Result<Motion<Group<S>, S::Advected>, StepError> {
+    ) -> Result<MotionOf<S>, StepError> {
         let (mut now, mut kept) = (*motion, *kept);
         let [ahead, back] = [true, false].map(|is_ahead| self.plan.length(scene, &now, &kept, is_ahead));
         let is_ahead = fraction.simd_ge(real(0.0));
@@ -135,7 +135,7 @@ impl<P, V> Driven<P, V> {
     /// Shows a plan the values after this time, and returns those after that one.
     fn see_middle<S: Effect>(
         &self,
-        (motion, kept): (&mut Motion<Group<S>, S::Advected>, &mut P::Kept),
+        (motion, kept): (&mut MotionOf<S>, &mut P::Kept),
         [middle, end]: [Scalar<S>; 2],
     ) -> Result<S::Advected, StepError>
     where

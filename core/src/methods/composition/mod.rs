@@ -10,7 +10,7 @@ use crate::error::{SetupError, StepError};
 use crate::gradients::{ChangeOf, Linearisable, Pass, Stage as Linear};
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Regular, Scalar, SceneVisitor, SecondDerivatives, Vector};
 use crate::motion::{
-    Cost, Declared, Motion, Plan, Steerable, StepReport, Stepper, Summation, Variable, beyond_solvable,
+    Cost, Declared, MotionOf, Plan, Steerable, StepReport, Stepper, Summation, Variable, beyond_solvable,
     half_coordinates,
 };
 use crate::numbers::{Coordinates, Mask, Real, real};
@@ -160,7 +160,7 @@ impl<S: Effect> Plan<S> for Composed<S> {
         Self::new(scene, h, self.scheme)
     }
 
-    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
+    fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept {
         Guess::of(half_coordinates(scene, motion, self.substeps[0].step_size()))
     }
 
@@ -191,13 +191,7 @@ impl<S: Effect> Plan<S> for Composed<S> {
     const RUNS_BY_STEPS: bool = true;
 
     #[cold]
-    fn explained(
-        &self,
-        error: StepError,
-        scene: &S,
-        motion: &Motion<Group<S>, S::Advected>,
-        kept: &Self::Kept,
-    ) -> StepError {
+    fn explained(&self, error: StepError, scene: &S, motion: &MotionOf<S>, kept: &Self::Kept) -> StepError {
         let StepError::BeyondSolvable { .. } = error else { return error };
         beyond_solvable(scene, self.h, &motion.momentum, &motion.advected, self.max_step(scene, motion, kept))
     }

@@ -13,7 +13,7 @@ use crate::mechanics::{
 use crate::motion::increment::Increment;
 use crate::motion::plan::{Cost, Plan, Steerable, Variable};
 use crate::motion::report::StepReport;
-use crate::motion::summation::{Motion, Summation, is_due};
+use crate::motion::summation::{Motion, MotionOf, Summation, is_due};
 use crate::numbers::{Coordinates as _, is_finite, real, reported};
 use crate::solving::{Kick, Problem, Root, WarmStart, newton_system, safe, step_terms, trusted_radius};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
@@ -240,7 +240,7 @@ impl<S: Effect> Plan<S> for Declared<S> {
         Self::folded(scene, h)
     }
 
-    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
+    fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept {
         WarmStart::of(half_coordinates(scene, motion, self.h), S::jacobian_is_expensive(&self.constants))
     }
 
@@ -258,7 +258,7 @@ impl<S: Effect> Plan<S> for Declared<S> {
         }
     }
 
-    fn max_step(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, _: &Self::Kept) -> Scalar<S> {
+    fn max_step(&self, scene: &S, motion: &MotionOf<S>, _: &Self::Kept) -> Scalar<S> {
         self.largest_solvable(scene, &motion.momentum, &motion.advected)
     }
 
@@ -315,11 +315,7 @@ fn look<S: Effect, M: Summation<Group<S>, S::Advected>>(scene: &S, motion: &mut 
 }
 
 /// Half the coordinates of the first increment, about: every retraction has the identity as its derivative at zero.
-pub(crate) fn half_coordinates<S: Effect>(
-    scene: &S,
-    motion: &Motion<Group<S>, S::Advected>,
-    h: Scalar<S>,
-) -> Vector<S> {
+pub(crate) fn half_coordinates<S: Effect>(scene: &S, motion: &MotionOf<S>, h: Scalar<S>) -> Vector<S> {
     estimated_velocity(scene, &motion.momentum, &motion.advected) * (h * real(0.5))
 }
 
