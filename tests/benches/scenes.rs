@@ -25,7 +25,7 @@ use liestep::prelude::*;
 use nalgebra::Vector3;
 
 use counting::{Uncounted, built, instructions};
-use stepping::{Count, Time, Visit};
+use stepping::{Count, Ready, Time, Visit};
 
 /// Body and rotor in one piece.
 #[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + spin.dot(&vee(F)))]
@@ -64,10 +64,10 @@ fn visit_all(visit: &mut impl Visit) {
     // As many steps of either in 12 s.
     let equal = Stepper::new(EqualNeedle { J_d, a, rho, delta }, 0.006).expect("a usable step");
     let start = equal.start_with_momentum(SO3::identity(), momentum).expect("a usable start");
-    visit.visit_from("needle", &equal, start);
+    visit.visit_from("needle", (equal, start));
     let paced = Stepper::new(needle, 0.01).and_then(Stepper::paced).expect("a usable step");
     let start = paced.start_with_momentum(SO3::identity(), momentum).expect("a usable start");
-    visit.visit_from("needle with its pace", &paced, start);
+    visit.visit_from("needle with its pace", (paced, start));
 }
 
 /// Two links of unit mass and length.
@@ -96,12 +96,7 @@ const COUNTED_OF_FILES: u32 = 40_000;
 struct Instructions(Result<(), Uncounted>);
 
 impl Visit for Instructions {
-    fn visit_from<L: Regular<Scalar = f64>, P: Plan<L>>(
-        &mut self,
-        name: &'static str,
-        _: &Stepper<L, P>,
-        _: StateOf<L, P>,
-    ) {
+    fn visit_from<L: Regular<Scalar = f64>, P: Plan<L>>(&mut self, name: &'static str, _: Ready<L, P>) {
         let count = || -> Result<(), Uncounted> {
             let steps = instructions(&std::env::current_exe()?, &["count", name], COUNTED)?;
             println!("{name:<28}{steps:>8.1} instructions a step");

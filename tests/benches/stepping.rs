@@ -14,22 +14,20 @@ const STEP: f64 = 0.01;
 const BATCH: u32 = 20_000;
 const ROUNDS: usize = 100;
 
+/// A stepper and a start.
+pub(crate) type Ready<L, P> = (Stepper<L, P>, StateOf<L, P>);
+
 /// What is done with each scene.
 pub(crate) trait Visit {
     fn visit<L: Regular<Scalar = f64, Group: Begin>>(&mut self, name: &'static str, scene: L) {
         let stepper = Stepper::new(scene, STEP).expect("a usable step");
         let (attitude, velocity) = L::Group::begin();
         let state = stepper.start(attitude, velocity).expect("a usable start");
-        self.visit_from(name, &stepper, state);
+        self.visit_from(name, (stepper, state));
     }
 
     /// By any plan, from a state.
-    fn visit_from<L: Regular<Scalar = f64>, P: Plan<L>>(
-        &mut self,
-        name: &'static str,
-        by: &Stepper<L, P>,
-        from: StateOf<L, P>,
-    );
+    fn visit_from<L: Regular<Scalar = f64>, P: Plan<L>>(&mut self, name: &'static str, ready: Ready<L, P>);
 }
 
 #[inline(never)]
@@ -64,18 +62,13 @@ impl Begin for (SO3, SO3) {
 pub(crate) struct Time;
 
 impl Visit for Time {
-    fn visit_from<L: Regular<Scalar = f64>, P: Plan<L>>(
-        &mut self,
-        name: &'static str,
-        by: &Stepper<L, P>,
-        from: StateOf<L, P>,
-    ) {
+    fn visit_from<L: Regular<Scalar = f64>, P: Plan<L>>(&mut self, name: &'static str, (by, from): Ready<L, P>) {
         let mut times: Vec<f64> = (0..ROUNDS)
             .map(|_| {
                 // From the beginning: a torque would wind the body up until no step can be made.
                 let mut state = from;
                 let start = Instant::now();
-                run(black_box(by), black_box(&mut state), BATCH);
+                run(black_box(&by), black_box(&mut state), BATCH);
                 start.elapsed().as_secs_f64() * 1e9 / f64::from(BATCH)
             })
             .collect();
@@ -99,15 +92,10 @@ impl<'a> Count<'a> {
 }
 
 impl Visit for Count<'_> {
-    fn visit_from<L: Regular<Scalar = f64>, P: Plan<L>>(
-        &mut self,
-        name: &'static str,
-        by: &Stepper<L, P>,
-        mut from: StateOf<L, P>,
-    ) {
+    fn visit_from<L: Regular<Scalar = f64>, P: Plan<L>>(&mut self, name: &'static str, (by, mut from): Ready<L, P>) {
         if name == self.wanted {
             self.found = true;
-            run(black_box(by), black_box(&mut from), self.steps);
+            run(black_box(&by), black_box(&mut from), self.steps);
         }
     }
 }

@@ -10,7 +10,8 @@ use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
 use crate::methods::{Composed, Jointed, KineticFlow, Linked, Processed, Split};
 use crate::motion::{
-    Declared, Kept, Motion, MotionOf, Plan, Steerable, StepReport, Stepper, Summation, TOLERATED, Variable, restored,
+    Declared, Kept, Motion, MotionOf, Plan, Steerable, StepReport, Stepper, Summation, SumsOf, TOLERATED, Variable,
+    restored,
 };
 use crate::numbers::{Entries, carried_sum, zero};
 use crate::with::remedies::Substeps;
@@ -129,12 +130,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
     }
 
     #[hot]
-    fn step<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         let mut sums = Sums { motion: *motion.now(), carry: kept.carry };
         let report = self.0.step(scene, &mut sums, &mut kept.kept)?;
         motion.replace(sums.motion);

@@ -2,8 +2,8 @@
 
 use crate::error::{SetupError, StepError};
 use crate::groups::Advected as _;
-use crate::mechanics::{Effect, Group, Scalar, SceneVisitor};
-use crate::motion::{MotionOf, Plan, Steerable, StepReport, Stepper, Summation};
+use crate::mechanics::{Effect, Scalar, SceneVisitor};
+use crate::motion::{MotionOf, Plan, Steerable, StepReport, Stepper, SumsOf};
 use crate::numbers::real;
 use nalgebra::{SimdPartialOrd as _, SimdValue as _};
 
@@ -89,12 +89,7 @@ where
         self.plan.length(scene, motion, kept, is_ahead)
     }
 
-    fn step<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         let (mut now, mut next) = (*motion.now(), *kept);
         let length = self.plan.length(scene, &now, &next, true);
         let end = self.see_middle((&mut now, &mut next), [length * real(0.5), length])?;

@@ -4,7 +4,7 @@ use super::compensated::Compensated;
 use super::density::DensityMemory;
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, SceneVisitor, Vector, energy};
-use crate::motion::{Declared, Elapsed, Motion, MotionOf, Plan, StepReport, Stepper, Summation};
+use crate::motion::{Declared, Elapsed, Motion, MotionOf, Plan, StepReport, Stepper, SumsOf};
 use crate::numbers::Vectors;
 
 /// A plan whose steps are equal in `τ`, `dt = s dτ`, by [`Stepper::paced`].
@@ -107,12 +107,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for Paced<P> {
     }
 
     #[hot]
-    fn step<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         let energy = scene.with_energy(&motion.now().advected, 0.0);
         let report = self.0.step(scene, motion, &mut kept.0)?;
         // Now and then what is advected is seen anew, and given as in the scene.

@@ -2,8 +2,8 @@
 
 use super::lengths::Lengths;
 use crate::error::{SetupError, StepError};
-use crate::mechanics::{Effect, Group, SceneVisitor};
-use crate::motion::{MotionOf, Plan, StepReport, Stepper, Summation, Variable};
+use crate::mechanics::{Effect, SceneVisitor};
+use crate::motion::{MotionOf, Plan, StepReport, Stepper, SumsOf, Variable};
 use crate::numbers::Vectors;
 
 /// A plan each of whose steps has a length of its own, by [`Stepper::with_clock`] and [`Stepper::with_density`].
@@ -75,12 +75,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for Varied<P, L
     }
 
     #[hot]
-    fn step<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         let length = self.checked(scene, motion.now(), kept, true)?;
         let report = self.plan.step_of(scene, motion, &mut kept.0, length)?;
         motion.count();

@@ -16,7 +16,7 @@ pub(crate) mod heavy_top;
 pub(crate) mod motion;
 pub(crate) mod poisson;
 
-use core::ops::Neg;
+use core::ops::Sub;
 
 use checks::order::{End, error};
 use nalgebra::{Matrix3, Vector3};
@@ -32,11 +32,11 @@ pub(crate) type Vector = Vector3<DoubleDouble>;
 pub(crate) type Matrix = Matrix3<DoubleDouble>;
 
 /// `v̂`, which nalgebra has for fields only.
-fn hat<T: nalgebra::Scalar + Copy + Zero + Neg<Output = T>>(v: &Vector3<T>) -> Matrix3<T> {
+fn hat<T: nalgebra::Scalar + Copy + Zero + Sub<Output = T>>(v: &Vector3<T>) -> Matrix3<T> {
     Matrix3::from_fn(|i, j| match (i + 3 - j) % 3 {
         0 => T::zero(),
         1 => v[3 - i - j],
-        _ => -v[3 - i - j],
+        _ => T::zero() - v[3 - i - j],
     })
 }
 

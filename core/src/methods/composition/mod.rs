@@ -10,8 +10,7 @@ use crate::error::{SetupError, StepError};
 use crate::gradients::{ChangeOf, Linearisable, Pass, Stage as Linear};
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Regular, Scalar, SceneVisitor, SecondDerivatives, Vector};
 use crate::motion::{
-    Cost, Declared, MotionOf, Plan, Steerable, StepReport, Stepper, Summation, Variable, beyond_solvable,
-    half_coordinates,
+    Cost, Declared, MotionOf, Plan, Steerable, StepReport, Stepper, SumsOf, Variable, beyond_solvable, half_coordinates,
 };
 use crate::numbers::{Coordinates, Mask, Real, real};
 use crate::solving::Guess;
@@ -166,12 +165,7 @@ impl<S: Effect> Plan<S> for Composed<S> {
 
     /// The iterations of the report are those of all stages.
     #[hot]
-    fn step<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         let (mut next, mut guess) = (*motion, *kept);
         let mut iterations = 0;
         for stage in &self.stages {

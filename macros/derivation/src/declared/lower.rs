@@ -67,10 +67,8 @@ pub(crate) fn readings_without(
         });
         Displacements(each.collect())
     });
-    let attempt = |lets, opens_matrices| {
-        let (symbols, known) = (symbols.clone(), BTreeMap::new());
-        Lowering { symbols, names: &names, known, lets, opens_matrices, velocity_matrix: None }.whole(tree)
-    };
+    let attempt =
+        |lets, opens_matrices| Lowering { opens_matrices, ..Lowering::new(symbols.clone(), &names, lets) }.whole(tree);
     let lowered = |(symbols, expression, lets): (Symbols, Expression, Vec<Let>)| {
         let (group, increments) = (declaration.group.clone(), increments.clone());
         let (advected, names) = (advected.clone(), names.clone());
@@ -124,8 +122,7 @@ pub(crate) fn continuous(declaration: &Declaration, tree: &Rc<Tree>, errors: &mu
     }
     // Of several bodies none has one.
     let velocity_matrix = velocities.first().and_then(|velocity| velocity.matrix);
-    let lowering =
-        Lowering { symbols, names: &names, known: BTreeMap::new(), lets: None, opens_matrices: false, velocity_matrix };
+    let lowering = Lowering { velocity_matrix, ..Lowering::new(symbols, &names, None) };
     match lowering.whole(tree) {
         Ok((symbols, expression, _)) => {
             let declared = DeclaredContinuous { group, symbols, expression, velocities, advected };
@@ -154,14 +151,7 @@ pub(crate) fn constraint(
     let (mut symbols, mut names) = (Symbols::default(), BTreeMap::new());
     let carried = parameters(declaration, &|_, structure| structure, &mut symbols, &mut names);
     let bodies = ["a", "b"].map(|body| Body::new(body, &mut symbols));
-    let mut lowering = Lowering {
-        symbols,
-        names: &names,
-        known: BTreeMap::new(),
-        lets: None,
-        opens_matrices: false,
-        velocity_matrix: None,
-    };
+    let mut lowering = Lowering::new(symbols, &names, None);
     let seen: Option<Vec<Expression>> = carried
         .iter()
         .enumerate()
@@ -270,7 +260,11 @@ struct Lowering<'a> {
     velocity_matrix: Option<SymbolId>,
 }
 
-impl Lowering<'_> {
+impl<'a> Lowering<'a> {
+    fn new(symbols: Symbols, names: &'a BTreeMap<Name, SymbolId>, lets: Option<Vec<Let>>) -> Self {
+        Self { symbols, names, known: BTreeMap::new(), lets, opens_matrices: false, velocity_matrix: None }
+    }
+
     fn whole(mut self, tree: &Rc<Tree>) -> Result<(Symbols, Expression, Vec<Let>), Failure> {
         let expression = self.expression(tree)?;
         let lets = self.lets.unwrap_or_default();
