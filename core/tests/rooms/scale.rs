@@ -12,7 +12,7 @@ const LENGTHS: [usize; 3] = [500, 80, 126];
 /// The lines of each room and package, and of each room of the library the names that it makes public.
 #[rustfmt::skip]
 const BUDGETS: [(&str, usize, usize); 40] = [
-    ("core/src/lib", 52, 11), ("core/src/prelude", 12, 28), ("core/src/private", 176, 61), ("core/src/error", 588, 2),
+    ("core/src/lib", 52, 11), ("core/src/prelude", 12, 28), ("core/src/private", 176, 62), ("core/src/error", 588, 2),
     ("core/src/numbers", 2562, 14), ("core/src/groups", 4201, 35), ("core/src/laws", 706, 3),
     ("core/src/mechanics", 3722, 43), ("core/src/effects", 403, 15), ("core/src/solving", 1355, 3),
     ("core/src/motion", 3562, 30), ("core/src/gradients", 1847, 13), ("core/src/methods", 7968, 28),
