@@ -14,44 +14,57 @@
 //!
 //! Every figure names its reading of the thesis' `diag(2, 2, 1)`: as `J_d` (A, which (3.13) says) or as `J` (B).
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-use workbench::args::{Common, Failure, example};
-use workbench::common_help;
+use workbench::args::{Failure, example};
 use workbench::heavy_top::cases::{Case, Reading};
 use workbench::heavy_top::figures::Figures;
 use workbench::heavy_top::overview::overview;
 use workbench::heavy_top::quantities::Series;
 use workbench::heavy_top::runs::all_methods;
 use workbench::output::{Output, print};
+use workbench::run::Schedule;
 use workbench::table::{aligned, number, short};
 
-const HELP: &str = concat!(
-    "Simulates the heavy top of the thesis and draws its figures 3.4 to 3.10 again
+const HELP: &str = "Simulates the heavy top of the thesis and draws its figures 3.4 to 3.10 again
 
 Options:
       --case <CASE>     The initial condition, named as in the thesis: looping, cuspidal or unidirectional
                         [default: looping]
       --reading <A|B>   What the thesis' diag(2, 2, 1) stands for: the nonstandard inertia J_d or the ordinary J
                         [default: a]
-",
-    common_help!()
-);
+      --step <SECONDS>  The step, s [default: 0.01]
+      --time <SECONDS>  The time to simulate, s [default: 200]
+      --out <DIR>       The folder for the figures [default: out/heavy-top]
+      --csv             Also write every series as CSV, next to the figures
+  -h, --help            Print this
+";
 
 struct Arguments {
     case: Case,
     reading: Reading,
-    common: Common,
+    /// s
+    step: f64,
+    /// s
+    time: f64,
+    out: PathBuf,
+    csv: bool,
 }
 
 fn main() -> ExitCode {
     example(HELP, |words| {
-        let mut arguments = Arguments { case: Case::Looping, reading: Reading::A, common: Common::default() };
+        let (case, reading, out) = (Case::Looping, Reading::A, "out/heavy-top".into());
+        let mut arguments = Arguments { case, reading, step: 0.01, time: 200.0, out, csv: false };
         while let Some(option) = words.option()? {
             match option.as_str() {
                 "case" => arguments.case = words.one_of(&Case::NAMED)?,
                 "reading" => arguments.reading = words.one_of(&Reading::NAMED)?,
-                other => arguments.common.take(other, words)?,
+                "step" => arguments.step = words.seconds()?,
+                "time" => arguments.time = words.seconds()?,
+                "out" => arguments.out = words.folder()?,
+                "csv" => arguments.csv = true,
+                _ => return Err(words.unknown()),
             }
         }
         simulate(&arguments)
@@ -60,8 +73,8 @@ fn main() -> ExitCode {
 
 fn simulate(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { case, reading, .. } = *arguments;
-    let schedule = arguments.common.schedule()?;
-    let mut output = Output::new(arguments.common.folder("heavy-top"))?;
+    let schedule = Schedule::new(arguments.step, arguments.time)?;
+    let mut output = Output::new(arguments.out.clone())?;
 
     let series = all_methods(case, reading, &schedule)?;
     let figures = Figures { case, reading, schedule, series: &series };
@@ -74,7 +87,7 @@ fn simulate(arguments: &Arguments) -> Result<(), Failure> {
             Err(cause) => eprintln!("note: no path of the tip for the case {other}: {cause}"),
         }
     }
-    if arguments.common.csv {
+    if arguments.csv {
         for method in &series {
             output.write(method.file, &method.csv())?;
         }

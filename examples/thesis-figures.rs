@@ -9,13 +9,14 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use workbench::args::{Common, Failure, Schedule, example};
+use workbench::args::{Failure, example};
 use workbench::heavy_top::cases::{Case, Reading};
 use workbench::heavy_top::drawings;
 use workbench::heavy_top::figures::{Figures, precessions};
 use workbench::heavy_top::quantities::Series;
 use workbench::heavy_top::runs::all_methods;
 use workbench::output::{Output, print};
+use workbench::run::Schedule;
 
 const HELP: &str = "Draws figures 3.1 to 3.10 of the thesis
 
@@ -23,6 +24,10 @@ Options:
       --out <DIR>  The folder for the figures [default: out/thesis-figures]
   -h, --help       Print this
 ";
+
+/// The step of most figures and the thesis' time, s.
+const STEP: f64 = 0.01;
+const TIME: f64 = 200.0;
 
 /// At this step Runge–Kutta in nine entries loses its path within the thesis' 200 s; at 0.01 s it doesn't.
 const COARSE: f64 = 0.05;
@@ -47,7 +52,7 @@ fn draw(output: &mut Output) -> Result<(), Failure> {
     output.write("3-1.svg", &drawings::euler_angles()?)?;
     output.write("3-2.svg", &drawings::top()?)?;
 
-    let round = Common { time: ROUND, ..Common::default() }.schedule()?;
+    let round = Schedule::new(STEP, ROUND)?;
     let kinds = [
         ("looping: case 3.8, reading A", Case::Looping, Reading::A),
         ("cuspidal: case 3.9, reading A", Case::Cuspidal, Reading::A),
@@ -60,7 +65,7 @@ fn draw(output: &mut Output) -> Result<(), Failure> {
     let paths: Vec<(&str, &Series)> = runs.iter().map(|(name, series)| (*name, &series[0])).collect();
     output.write("3-3.svg", &precessions(&paths, ROUND)?)?;
 
-    let schedule = Common::default().schedule()?;
+    let schedule = Schedule::new(STEP, TIME)?;
     let series = all_methods(Case::Looping, Reading::A, &schedule)?;
     let figures = Figures { case: Case::Looping, reading: Reading::A, schedule, series: &series };
     output.write("3-4.svg", &figures.rigidity()?)?;
@@ -68,7 +73,7 @@ fn draw(output: &mut Output) -> Result<(), Failure> {
     output.write("3-6.svg", &figures.energy()?)?;
     output.write("3-7.svg", &figures.body_rates()?)?;
 
-    let schedule = Common { step: COARSE, ..Common::default() }.schedule()?;
+    let schedule = Schedule::new(COARSE, TIME)?;
     for (file, (_, case, reading)) in ["3-8.svg", "3-9.svg", "3-10.svg"].into_iter().zip(kinds) {
         output.write(file, &path(case, reading, schedule)?)?;
     }

@@ -8,7 +8,7 @@ use liestep::{SO3, Stepper, mechanics};
 use workbench::table::{aligned, number};
 
 use crate::measure::ladder;
-use crate::methods::{self, Family, Prepared};
+use crate::methods::{self, Prepared};
 use crate::scenes::{Kind, Scene, error};
 
 /// The tolerances asked for.
@@ -67,7 +67,7 @@ fn asking<S>(scene: &Scene, body: S) -> Box<Ask>
 where
     S: mechanics::Scene<Scalar = f64, Group = SO3>,
 {
-    let (attitude, velocity) = (SO3::from_matrix_unchecked(scene.attitude), scene.velocity);
+    let (attitude, velocity) = (scene.motion.attitude, scene.motion.velocity);
     Box::new(move |accuracy| Stepper::for_accuracy(body.clone(), accuracy, attitude, velocity).map(Answer::new))
 }
 
@@ -82,7 +82,6 @@ fn add(rows: &mut Vec<Vec<String>>, scene: &Scene, t: f64, effort: (Effort, f64)
             Ok(answer) => {
                 let best = runs
                     .iter()
-                    .filter(|(method, _)| method.family != Family::Rival)
                     .filter_map(|(method, runs)| Some((method.name.as_str(), runs.seconds_to(tolerance)?)))
                     .min_by(|a, b| a.1.total_cmp(&b.1));
                 let repeated = effort.0.repeated.max(Duration::from_millis(5));

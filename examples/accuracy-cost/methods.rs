@@ -96,61 +96,46 @@ pub fn all(scene: &Scene) -> Vec<Method> {
 
 /// Of these, those that keep the structure.
 pub fn ours(scene: &Scene) -> Vec<Method> {
-    match scene.kind {
-        Kind::Sprung => return under_another_potential(Scene::sprung),
-        Kind::Satellite => return under_another_potential(Scene::satellite),
-        _ => {}
-    }
-    let mut methods = Vec::new();
-    if scene.kind == Kind::Free {
-        methods.extend(declared("(3.13)", Scene::free_body, 2));
-        methods.extend(declared("K4", Scene::fourth_order_body, 4));
-        methods.extend(declared("K6", Scene::sixth_order_body, 6));
-    } else {
-        methods.extend(declared("(3.13)", Scene::top, 2));
-        methods.extend(declared("L4", Scene::fourth_order_top, 4));
-        methods.extend(declared("L6", Scene::sixth_order_top, 6));
-    }
-    match scene.kind {
-        Kind::Free => {
-            methods.push(exact_alone());
-        }
+    let exact = |scene: &Scene| Some(ExactBody::new(&scene.inertia()));
+    let tops = || {
+        let of_orders = [declared("L4", Scene::fourth_order_top, 4), declared("L6", Scene::sixth_order_top, 6)];
+        declared("(3.13)", Scene::top, 2).into_iter().chain(of_orders.into_iter().flatten()).collect()
+    };
+    let kinds = match scene.kind {
         Kind::SymmetricTop => {
-            methods.extend(splittings("exact", Family::Poisson, Scene::top, |scene| {
-                SymmetricBody::new(&scene.inertia()).ok()
-            }));
+            let symmetric = |scene: &Scene| SymmetricBody::new(&scene.inertia()).ok();
+            vec![tops(), splittings("exact", Scene::top, symmetric), gauss(Scene::top)]
         }
-        Kind::Sprung | Kind::Satellite => {}
         Kind::Top => {
-            methods.extend(splittings("exact", Family::Poisson, Scene::top, |scene| {
-                Some(ExactBody::new(&scene.inertia()))
-            }));
-            methods.extend(splittings("K6", Family::Poisson, Scene::top, |scene| Some(scene.sixth_order_body())));
+            let declared = splittings("K6", Scene::top, |scene| Some(scene.sixth_order_body()));
+            vec![tops(), splittings("exact", Scene::top, exact), declared, gauss(Scene::top)]
         }
-    }
-    if scene.kind == Kind::Free {
-        methods.extend(gauss(Scene::free_body));
-    } else {
-        methods.extend(gauss(Scene::top));
-    }
-    methods
-}
-
-/// Of an asymmetric body under a potential that only (3.13) is declared with.
-fn under_another_potential<L>(scene: impl Fn(&Scene) -> L + Copy + 'static) -> Vec<Method>
-where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + 'static,
-{
-    let exact = splittings("exact", Family::Poisson, scene, |scene| Some(ExactBody::new(&scene.inertia())));
-    declared("(3.13)", scene, 2).into_iter().chain(exact).chain(gauss(scene)).collect()
+        Kind::Free => vec![
+            declared("(3.13)", Scene::free_body, 2),
+            declared("K4", Scene::fourth_order_body, 4),
+            declared("K6", Scene::sixth_order_body, 6),
+            vec![exact_alone()],
+            gauss(Scene::free_body),
+        ],
+        // Of these potentials only (3.13) is declared.
+        Kind::Sprung => {
+            vec![declared("(3.13)", Scene::sprung, 2), splittings("exact", Scene::sprung, exact), gauss(Scene::sprung)]
+        }
+        Kind::Satellite => vec![
+            declared("(3.13)", Scene::satellite, 2),
+            splittings("exact", Scene::satellite, exact),
+            gauss(Scene::satellite),
+        ],
+    };
+    kinds.into_iter().flatten().collect()
 }
 
 /// Gauss collocation with several numbers of stages.
-fn gauss<L>(lagrangian: impl Fn(&Scene) -> L + Copy + 'static) -> [Method; 4]
+fn gauss<L>(lagrangian: impl Fn(&Scene) -> L + Copy + 'static) -> Vec<Method>
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + 'static,
 {
-    [
+    vec![
         collocation::<L, 1>(lagrangian),
         collocation::<L, 2>(lagrangian),
         collocation::<L, 3>(lagrangian),
@@ -163,12 +148,12 @@ where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + 'static,
 {
     let name = format!("Gauss, {} stages", 2 * PAIRS);
-    stepped(name, Family::Poisson, 2.0, move |scene, h| Stepper::collocated::<PAIRS>(lagrangian(scene), h).ok())
+    stepped(name, 2.0, move |scene, h| Stepper::collocated::<PAIRS>(lagrangian(scene), h).ok())
 }
 
 /// The exact motion of the free body: its kicks are none, so that any splitting is it.
 fn exact_alone() -> Method {
-    stepped("exact", Family::Poisson, 100.0, |scene, h| {
+    stepped("exact", 100.0, |scene, h| {
         let flow = ExactBody::new(&scene.inertia());
         Stepper::split(scene.free_body(), h, flow, SplittingScheme::STRANG).ok()
     })
@@ -177,7 +162,6 @@ fn exact_alone() -> Method {
 /// Splittings with a kinetic flow.
 fn splittings<L, K>(
     name: &'static str,
-    family: Family,
     lagrangian: impl Fn(&Scene) -> L + Copy + 'static,
     kinetic: impl Fn(&Scene) -> Option<K> + Copy + 'static,
 ) -> Vec<Method>
@@ -186,12 +170,12 @@ where
     K: KineticFlow<f64> + 'static,
 {
     let method = |scheme: SplittingScheme| {
-        stepped(format!("{name}, {}", scheme.name()), family, 5.0, move |scene, h| {
+        stepped(format!("{name}, {}", scheme.name()), 5.0, move |scene, h| {
             Stepper::split(lagrangian(scene), h, kinetic(scene)?, scheme).ok()
         })
     };
     let processed = |scheme: ProcessedScheme| {
-        stepped(format!("{name}, {}", scheme.name()), family, 5.0, move |scene, h| {
+        stepped(format!("{name}, {}", scheme.name()), 5.0, move |scene, h| {
             Stepper::processed(lagrangian(scene), h, kinetic(scene)?, scheme).ok()
         })
     };
@@ -203,10 +187,10 @@ fn declared<L>(name: &'static str, lagrangian: impl Fn(&Scene) -> L + Copy + 'st
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + 'static,
 {
-    let alone = stepped(name, Family::Poisson, 1.0, move |scene, h| Stepper::new(lagrangian(scene), h).ok());
+    let alone = stepped(name, 1.0, move |scene, h| Stepper::new(lagrangian(scene), h).ok());
     let schemes = CompositionScheme::ALL.into_iter().filter(|scheme| scheme.base() == order);
     let composed = schemes.map(|scheme| {
-        stepped(format!("{name}, {}", scheme.name()), Family::Poisson, 1.0, move |scene, h| {
+        stepped(format!("{name}, {}", scheme.name()), 1.0, move |scene, h| {
             Stepper::composed(lagrangian(scene), h, scheme).ok()
         })
     });
@@ -216,7 +200,6 @@ where
 /// A stepper, with steps from the longest on, s.
 fn stepped<S, P>(
     name: impl Into<String>,
-    family: Family,
     longest: f64,
     stepper: impl Fn(&Scene, f64) -> Option<Stepper<S, P>> + 'static,
 ) -> Method
@@ -224,9 +207,9 @@ where
     S: DiscreteLagrangian<Scalar = f64, Group = SO3> + 'static,
     P: Plan<S> + 'static,
 {
-    Method::new(name, family, Control::Step(longest), move |scene, t, h| {
+    Method::new(name, Family::Poisson, Control::Step(longest), move |scene, t, h| {
         let (stepper, steps) = (stepper(scene, h)?, count(t, h));
-        let start = stepper.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
+        let start = stepper.start(scene.motion.attitude, scene.motion.velocity).ok()?;
         Some(Box::new(move || {
             let mut state = start;
             stepper.run(&mut state, steps).ok()?;

@@ -3,11 +3,14 @@
 //! The references are those of the tests, to 25 digits and more; `tests/data/README.md` says how each was validated.
 
 use declarations::motions::End;
-use declarations::{FourthOrderBody, FourthOrderTop, FreeBody, HeavyTop, Motion, SixthOrderBody, SixthOrderTop};
+use declarations::{
+    FourthOrderBody, FourthOrderTop, FreeBody, HeavyTop, Motion, SixthOrderBody, SixthOrderTop, Top as _,
+};
 use liestep::effects::{GravityGradient, PrincipalBody, Spring};
 use liestep::mechanics::Sum;
 use liestep::prelude::*;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
+use workbench::measure::relative;
 use workbench::top_equations::{Equations, State};
 
 use crate::rivals::rates::{Orbiting, Sprung};
@@ -18,18 +21,8 @@ pub struct Scene {
     /// For names of files and columns.
     pub short: &'static str,
     pub kind: Kind,
-    /// Principal moments of the ordinary inertia, kg m².
-    pub moments: Vector3<f64>,
-    nonstandard: DiagonalNonstandardInertia,
-    /// `m g`, N.
-    pub weight: f64,
-    /// Centre of mass from the pivot, body frame, m.
-    pub rho: Vector3<f64>,
-    /// At the start, body to space.
-    pub attitude: Matrix3<f64>,
-    /// At the start, body frame, rad/s.
-    pub velocity: Vector3<f64>,
-    states: Vec<(f64, End)>,
+    /// Its body under gravity, which other potentials are added to or take the place of.
+    pub motion: Motion,
 }
 
 /// What methods a scene allows.
@@ -63,32 +56,22 @@ impl Scene {
             ("asymmetric top on a spring", "sprung", Kind::Sprung, "sprung"),
             ("fast asymmetric satellite", "orbiting", Kind::Satellite, "satellite"),
         ]
-        .map(|(name, short, kind, motion)| {
-            let motion = Motion::read(motion);
-            Self {
-                name,
-                short,
-                kind,
-                moments: motion.top.moments(),
-                nonstandard: motion.top.J_d,
-                weight: motion.top.m * motion.top.g,
-                rho: motion.top.rho,
-                attitude: motion.attitude.matrix(),
-                velocity: motion.velocity,
-                states: motion.states().to_vec(),
-            }
-        })
+        .map(|(name, short, kind, motion)| Self { name, short, kind, motion: Motion::read(motion) })
     }
 
     /// The exact state at a time of the reference, s.
     pub fn reference(&self, t: f64) -> Option<&End> {
-        self.states.iter().find(|(time, _)| (time - t).abs() < 1e-9).map(|(_, end)| end)
+        self.motion.states().iter().find(|(time, _)| (time - t).abs() < 1e-9).map(|(_, end)| end)
+    }
+
+    fn body(&self) -> PrincipalBody {
+        PrincipalBody { J_d: self.motion.top.J_d }
     }
 
     /// The top on its spring.
     pub fn sprung(&self) -> Sum<Sum<PrincipalBody, Gravity>, Spring> {
-        let gravity = Gravity { m: 1.0, g: self.weight, rho: self.rho, up: Vector3::z() };
-        PrincipalBody { J_d: self.nonstandard } + gravity + SPRING
+        let HeavyTop { m, g, rho, up, .. } = self.motion.top;
+        self.body() + Gravity { m, g, rho, up } + SPRING
     }
 
     pub fn sprung_equations(&self) -> Sprung {
@@ -98,45 +81,45 @@ impl Scene {
 
     /// The satellite, in a field with `GM/r³ = 1`.
     pub fn satellite(&self) -> Sum<PrincipalBody, GravityGradient> {
-        let field = GravityGradient { GM: 1.0, r: 1.0, J: self.inertia(), direction: Vector3::z() };
-        PrincipalBody { J_d: self.nonstandard } + field
+        self.body() + GravityGradient { GM: 1.0, r: 1.0, J: self.inertia(), direction: Vector3::z() }
     }
 
     pub fn satellite_equations(&self) -> Orbiting {
-        let inverse_moments = self.moments.map(f64::recip).into();
-        Orbiting { moments: self.moments.into(), inverse_moments, gradient: 3.0 }
+        let moments = self.motion.top.moments();
+        Orbiting { moments: moments.into(), inverse_moments: moments.map(f64::recip).into(), gradient: 3.0 }
     }
 
     /// In the variables of the rivals.
     pub fn equations(&self) -> Equations {
-        Equations::new(self.moments.into(), (self.rho * self.weight).into())
+        let HeavyTop { m, g, rho, .. } = self.motion.top;
+        Equations::new(self.motion.top.moments().into(), (rho * (m * g)).into())
     }
 
     /// Where the rivals start.
     pub fn start(&self) -> State {
-        let q = SO3::from_matrix_unchecked(self.attitude).to_quaternion();
-        let p = self.moments.component_mul(&self.velocity);
+        let q = self.motion.attitude.to_quaternion();
+        let p = self.motion.top.moments().component_mul(&self.motion.velocity);
         [q.w, q.i, q.j, q.k, p.x, p.y, p.z]
     }
 
     /// The body with the kinetic term of (3.13) under gravity.
     pub fn top(&self) -> HeavyTop {
-        HeavyTop { J_d: self.nonstandard, m: 1.0, g: self.weight, rho: self.rho, up: Vector3::z() }
+        self.motion.top.clone()
     }
 
     /// The body with the kinetic term of (3.13) alone.
     pub fn free_body(&self) -> FreeBody {
-        FreeBody { J_d: self.nonstandard.into() }
+        FreeBody { J_d: self.motion.top.J_d.into() }
     }
 
     /// The top by the Lagrangian of order 4.
     pub fn fourth_order_top(&self) -> FourthOrderTop {
-        FourthOrderTop { J: self.inertia(), weight: self.weight, rho: self.rho, up: Vector3::z() }
+        FourthOrderTop::of(&self.motion.top)
     }
 
     /// The top by the Lagrangian of order 6.
     pub fn sixth_order_top(&self) -> SixthOrderTop {
-        SixthOrderTop { J: self.inertia(), weight: self.weight, rho: self.rho, up: Vector3::z() }
+        SixthOrderTop::of(&self.motion.top)
     }
 
     /// The body by the Lagrangian of order 4.
@@ -151,12 +134,11 @@ impl Scene {
 
     /// The ordinary inertia.
     pub fn inertia(&self) -> Inertia {
-        liestep::NonstandardInertia::from(self.nonstandard).to_inertia()
+        self.motion.top.ordinary_inertia()
     }
 }
 
 /// The error of attitude and body velocity together, each relative to the size of the exact one.
 pub fn error(end: &End, exact: &End) -> f64 {
-    let attitude = (end.0 - exact.0).norm() / exact.0.norm();
-    attitude.hypot((end.1 - exact.1).norm() / exact.1.norm())
+    relative(&end.0, &exact.0).hypot(relative(&end.1, &exact.1))
 }

@@ -57,12 +57,6 @@ impl DoubleDouble {
         self.high
     }
 
-    /// The whole number below.
-    fn floor(self) -> f64 {
-        let floor = self.high.floor();
-        if self.high - floor <= 0.0 && self.low < 0.0 { floor - 1.0 } else { floor }
-    }
-
     #[inline]
     pub fn sqrt(self) -> Self {
         let root = self.high.sqrt();
@@ -75,26 +69,6 @@ impl DoubleDouble {
 #[inline]
 pub fn long(number: f64) -> DoubleDouble {
     number.into()
-}
-
-/// Thirty digits after the point, as coefficients are written; of numbers below one all are exact but the last.
-impl core::fmt::Display for DoubleDouble {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let is_negative = self.high < 0.0;
-        let mut rest = if is_negative { -*self } else { *self };
-        // Half of the last digit, so that cutting off rounds.
-        rest += (0..30).fold(long(0.5), |half, _| half / long(10.0));
-        let whole = rest.floor();
-        rest -= long(whole);
-        let mut text = format!("{}{whole}.", if is_negative { "-" } else { "" });
-        for _ in 0..30 {
-            rest *= long(10.0);
-            let digit = rest.floor();
-            rest -= long(digit);
-            text += &digit.to_string();
-        }
-        f.pad(&text)
-    }
 }
 
 impl From<f64> for DoubleDouble {

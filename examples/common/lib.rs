@@ -8,7 +8,6 @@
 #![allow(clippy::must_use_candidate, clippy::return_self_not_must_use)]
 
 pub mod args;
-pub mod csv;
 pub mod double_double;
 pub mod heavy_top;
 pub mod measure;

@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 use crate::tenths::{Tenths, float, greater};
 
 /// The tolerances of the table, as powers of ten.
-pub const EXPONENTS: [i32; 11] = [-12, -10, -8, -7, -6, -5, -4, -3, -2, -1, 0];
+pub const EXPONENTS: [i32; 8] = [-12, -10, -8, -6, -4, -2, -1, 0];
 
 /// Where the iteration starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,7 +120,7 @@ where
 }
 
 /// The energy of a declared scene at a momentum and a parameter, J: that of its continuous limit without a bias.
-pub fn energy<L: Effect<Scalar = f64, Group = SO3, Advected = Vector3<f64>>>(
+fn energy<L: Effect<Scalar = f64, Group = SO3, Advected = Vector3<f64>>>(
     lagrangian: &L,
     momentum: &Vector3<f64>,
     w: &Vector3<f64>,

@@ -10,9 +10,85 @@ use std::time::Instant;
 use liestep::StepError;
 use nalgebra::{Matrix3, Vector3};
 
-use crate::args::{Schedule, Stretch};
+use crate::args::Failure;
 use crate::progress::Progress;
 use crate::table::short;
+use crate::tenths::float;
+
+/// A finite number of equal steps.
+#[derive(Clone, Copy, Debug)]
+pub struct Schedule {
+    /// The step, s.
+    pub step: f64,
+    /// How many.
+    pub steps: u64,
+}
+
+/// A stretch of a run whose samples are equally far apart.
+#[derive(Clone, Copy, Debug)]
+pub struct Stretch {
+    /// Where it ends, in steps from the start.
+    pub end: u64,
+    /// The number of steps between two samples.
+    pub stride: u64,
+}
+
+/// About an hour of stepping.
+const MOST_STEPS: f64 = 1e10;
+
+/// More samples than a figure has room for, few enough for any memory.
+const MOST_SAMPLES: u64 = 20_000;
+
+/// The beginning that is kept in detail, s.
+const BEGINNING: f64 = 20.0;
+
+/// The end that is kept in detail, s: from 100 s to 200 s in the thesis.
+pub const ENDING: f64 = 100.0;
+
+impl Schedule {
+    /// The whole number of steps nearest to a time, both in s.
+    pub fn new(step: f64, time: f64) -> Result<Self, Failure> {
+        let steps = (time / step).round();
+        if steps < 1.0 {
+            let (time, step) = (short(time), short(step));
+            return Err(format!("--time {time} is shorter than one --step {step}; nothing would happen").into());
+        }
+        if steps > MOST_STEPS {
+            let most = format!("more than {MOST_STEPS:.0e}; take a larger step");
+            return Err(format!("--time over --step makes {steps:.1e} steps, {most}").into());
+        }
+        Ok(Self { step, steps: whole(steps) })
+    }
+
+    /// The time after this number of steps, s.
+    pub fn time_after(&self, steps: u64) -> f64 {
+        self.step * float(steps)
+    }
+
+    /// The time at the end, s.
+    pub fn end(&self) -> f64 {
+        self.time_after(self.steps)
+    }
+
+    /// The beginning, the middle and the end, each with as many samples as can be drawn.
+    pub fn stretches(&self) -> [Stretch; 3] {
+        let beginning = whole(BEGINNING / self.step).min(self.steps);
+        let ending = self.steps.saturating_sub(whole(ENDING / self.step)).max(beginning);
+        let mut start = 0;
+        [beginning, ending, self.steps].map(|end| {
+            let stride = (end - start).div_ceil(MOST_SAMPLES).max(1);
+            start = end;
+            Stretch { end, stride }
+        })
+    }
+}
+
+/// The nearest whole number of steps; beyond the most that are allowed, that.
+fn whole(steps: f64) -> u64 {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // clamped
+    let whole = steps.round().clamp(0.0, MOST_STEPS) as u64;
+    whole
+}
 
 /// Attitude (body to space) and angular momentum (body frame, kg m²/s).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,11 +166,6 @@ pub fn run<M: Method>(name: &str, mut method: M, schedule: &Schedule) -> Result<
     costs.sort_by(f64::total_cmp);
     let nanoseconds = costs[costs.len() / 2];
     Ok(Record { samples, iterations: float(iterations) / float(schedule.steps), nanoseconds })
-}
-
-#[allow(clippy::cast_precision_loss)] // counts of steps and iterations are far below 2⁵³
-fn float(count: u64) -> f64 {
-    count as f64
 }
 
 /// Bit for bit, where it is finite: an explicit method may have blown up, and NaN isn't equal to itself.

@@ -5,9 +5,7 @@
 #![allow(clippy::must_use_candidate, clippy::return_self_not_must_use)]
 
 mod closed;
-pub mod curves;
 mod engines;
-pub mod figure;
 mod poisson;
 pub mod report;
 mod rivals;

@@ -14,19 +14,18 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use cases::curves::Curves;
 use cases::row::{Effort, Failure};
-use cases::{figure, report, rows};
+use cases::{report, rows};
 use workbench::args::example;
 use workbench::output::{Output, print};
 use workbench::progress::Progress;
 
-const HELP: &str = "Runs the hard cases, and writes a table and a figure of what is left of each
+const HELP: &str = "Runs the hard cases, and writes a table of what is left of each
 
 Options:
       --long       1e8 steps where the others have 1e6, and 3e7 of the chaotic top
-      --row <ROW>  Only this row, as in T3; the figure then has what that row measures
-      --out <DIR>  The folder for the table and the figure [default: out/hard-cases]
+      --row <ROW>  Only this row, as in T3
+      --out <DIR>  The folder for the table [default: out/hard-cases]
   -h, --help       Print this
 ";
 
@@ -60,19 +59,15 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(format!("--row is one of {}", ids.join(", ")).into());
     }
     let effort = Effort { long: arguments.long, verdict_only: false };
-    let (mut done, mut curves) = (Vec::new(), Curves::default());
+    let mut done = Vec::new();
     let mut progress = Progress::new(rows.len().try_into()?);
     for (id, measure) in rows {
         progress.add(0, id);
-        done.push(measure(effort, &mut curves).map_err(|cause| format!("row {id}: {cause}"))?);
+        done.push(measure(effort).map_err(|cause| format!("row {id}: {cause}"))?);
         progress.add(1, id);
     }
     drop(progress);
     output.write("hard-cases.md", &report::markdown(&done))?;
-    output.write("hard-cases.csv", &report::csv(&done))?;
-    if !curves.is_empty() {
-        output.write("hard-cases.svg", &figure::figure(&curves)?)?;
-    }
     print(&format!("{}\n\n{output}", report::text(&done)))?;
     Ok(())
 }

@@ -4,12 +4,13 @@
 
 use liestep::laws::samples::derivative;
 use nalgebra::{Matrix6, Vector3, Vector6};
+use workbench::heavy_top::continuous::phase;
 
 /// Momentum and vertical.
 pub(crate) type Phase = (Vector3<f64>, Vector3<f64>);
 
 fn joined((momentum, w): &Phase) -> Vector6<f64> {
-    Vector6::from_fn(|i, _| if i < 3 { momentum[i] } else { w[i - 3] })
+    phase(momentum, w)
 }
 
 fn apart(z: &Vector6<f64>) -> Phase {

@@ -1,4 +1,4 @@
-//! The table, for the terminal, as Markdown and as comma-separated values.
+//! The table, for the terminal and as Markdown.
 
 use std::fmt::Write as _;
 
@@ -33,22 +33,8 @@ pub fn markdown(rows: &[Row]) -> String {
     for row in rows {
         let cells = [row.id, row.case, row.criterion, &row.ours.join("; "), &row.others.join("; ")];
         let cells = cells.map(|cell| cell.replace('|', "\\|"));
-        let _ = writeln!(text, "| {} | {} |", cells.join(" | "), verdict(row));
+        let verdict = if row.is_met { "met" } else { "missed" };
+        let _ = writeln!(text, "| {} | {verdict} |", cells.join(" | "));
     }
     text
-}
-
-/// As comma-separated values, each in quotes.
-pub fn csv(rows: &[Row]) -> String {
-    let mut text = "row,case,criterion,measured,others,verdict\n".to_owned();
-    for row in rows {
-        let cells = [row.id, row.case, row.criterion, &row.ours.join("; "), &row.others.join("; "), verdict(row)];
-        let cells = cells.map(|cell| format!("\"{}\"", cell.replace('"', "\"\"")));
-        let _ = writeln!(text, "{}", cells.join(","));
-    }
-    text
-}
-
-fn verdict(row: &Row) -> &'static str {
-    if row.is_met { "met" } else { "missed" }
 }

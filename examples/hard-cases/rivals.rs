@@ -1,18 +1,14 @@
-//! Other methods on the bodies of the rows.
+//! Our method and others on the bodies of the rows.
 
 use declarations::{FreeBody, HeavyTop, Motion};
 use liestep::prelude::*;
 use nalgebra::{UnitQuaternion, Vector3};
-use plotters::style::RGBColor;
 use workbench::heavy_top::rk4::{Body, OnMatrix, OnQuaternion};
-use workbench::plot::{BLUE, GREEN, ORANGE, PURPLE};
 use workbench::run::{Method, Sample, Stopped};
 use workbench::variational::Variational;
 
 use crate::engines::{Engine, Moments, explicit, implicit, rescaled};
 use crate::row::Failure;
-
-pub(crate) const GREY: RGBColor = RGBColor(120, 120, 120);
 
 /// A free body, its start and its step.
 #[derive(Clone, Copy)]
@@ -27,16 +23,14 @@ pub(crate) struct Spin {
 /// What is conserved of a free body, at one time.
 #[derive(Clone, Copy)]
 pub(crate) struct Kept {
-    pub(crate) time: f64,
     pub(crate) energy: f64,
     pub(crate) spatial: Vector3<f64>,
     pub(crate) velocity: Vector3<f64>,
 }
 
-/// The run of a method, sampled.
+/// The run of a method, step by step.
 pub(crate) struct Trace {
     pub(crate) name: &'static str,
-    pub(crate) colour: RGBColor,
     pub(crate) kept: Vec<Kept>,
 }
 
@@ -51,8 +45,8 @@ impl Spin {
         Vector3::new(d.y + d.z, d.z + d.x, d.x + d.y)
     }
 
-    /// The derived integrator first, then the engines' updates and Runge–Kutta, with each `stride`th step kept.
-    pub(crate) fn traces(&self, steps: u64, stride: u64) -> Result<Vec<Trace>, Failure> {
+    /// The derived integrator first, then the engines' updates and Runge–Kutta.
+    pub(crate) fn traces(&self, steps: u64) -> Result<Vec<Trace>, Failure> {
         let (attitude, rates, h) = (UnitQuaternion::identity(), self.velocity, self.h);
         let stepper = Stepper::new(self.body(), h)?;
         let state = stepper.start(attitude, rates)?;
@@ -61,11 +55,11 @@ impl Spin {
         let momentum = state.momentum();
         let engine = |update: Update| Engine { body, h, attitude, rates, update };
         Ok(vec![
-            self.trace("variational", BLUE, Variational { stepper: &stepper, state }, steps, stride)?,
-            self.trace("explicit", ORANGE, engine(explicit), steps, stride)?,
-            self.trace("implicit", GREEN, engine(implicit), steps, stride)?,
-            self.trace("rescaled", PURPLE, engine(rescaled), steps, stride)?,
-            self.trace("RK4", GREY, OnQuaternion::new(rk4, h, &attitude, momentum), steps, stride)?,
+            self.trace("variational", Variational { stepper: &stepper, state }, steps)?,
+            self.trace("explicit", engine(explicit), steps)?,
+            self.trace("implicit", engine(implicit), steps)?,
+            self.trace("rescaled", engine(rescaled), steps)?,
+            self.trace("RK4", OnQuaternion::new(rk4, h, &attitude, momentum), steps)?,
         ])
     }
 
@@ -73,29 +67,21 @@ impl Spin {
     pub(crate) fn full(&self, steps: u64) -> Result<Trace, Failure> {
         let stepper = Stepper::new(FreeBody { J_d: self.inertia.into() }, self.h)?;
         let state = stepper.start(UnitQuaternion::identity(), self.velocity)?;
-        Ok(self.trace("full tensor", BLUE, Variational { stepper: &stepper, state }, steps, 1)?)
+        Ok(self.trace("full tensor", Variational { stepper: &stepper, state }, steps)?)
     }
 
-    fn trace<M: Method>(
-        &self,
-        name: &'static str,
-        colour: RGBColor,
-        mut method: M,
-        steps: u64,
-        stride: u64,
-    ) -> Result<Trace, Stopped> {
-        let mut kept = vec![self.kept(0, &method.sample())];
-        for sample in 1..=steps / stride {
-            method.advance(stride)?;
-            kept.push(self.kept(sample * stride, &method.sample()));
+    fn trace(&self, name: &'static str, mut method: impl Method, steps: u64) -> Result<Trace, Stopped> {
+        let mut kept = vec![self.kept(&method.sample())];
+        for _ in 0..steps {
+            method.advance(1)?;
+            kept.push(self.kept(&method.sample()));
         }
-        Ok(Trace { name, colour, kept })
+        Ok(Trace { name, kept })
     }
 
-    fn kept(&self, steps: u64, Sample { attitude, momentum }: &Sample) -> Kept {
+    fn kept(&self, Sample { attitude, momentum }: &Sample) -> Kept {
         let velocity = momentum.component_div(&self.moments());
-        let time = self.h * workbench::measure::float(steps);
-        Kept { time, energy: 0.5 * velocity.dot(momentum), spatial: attitude * momentum, velocity }
+        Kept { energy: 0.5 * velocity.dot(momentum), spatial: attitude * momentum, velocity }
     }
 }
 
@@ -115,15 +101,9 @@ impl Trace {
         self.worst(|kept| (kept.spatial - start).norm() / start.norm())
     }
 
-    /// `E/E(0)` at each sample; nothing where it isn't finite.
-    pub(crate) fn relative_energy(&self) -> Vec<(f64, f64)> {
-        let start = self.kept[0].energy;
-        self.kept.iter().map(|kept| (kept.time, kept.energy / start)).collect()
-    }
-
     /// `E/E(0)` at the end.
     pub(crate) fn final_energy(&self) -> f64 {
-        self.relative_energy().last().map_or(f64::NAN, |(_, energy)| *energy)
+        self.kept[self.kept.len() - 1].energy / self.kept[0].energy
     }
 
     pub(crate) fn worst(&self, size: impl Fn(&Kept) -> f64) -> f64 {
@@ -131,16 +111,16 @@ impl Trace {
     }
 }
 
-/// The body of a top, in the form that the Runge–Kutta methods use.
-pub(crate) fn rk4_body(top: &HeavyTop) -> Body {
-    let d = top.J_d.diagonal();
-    let moments = Vector3::new(d.y + d.z, d.z + d.x, d.x + d.y);
-    Body { inverse_moments: moments.map(f64::recip), lever: top.rho * (top.m * top.g) }
+/// The step (3.13) of a motion's top, and the start.
+pub(crate) fn started(motion: &Motion, h: f64) -> Result<(Stepper<HeavyTop>, StateOf<HeavyTop>), Failure> {
+    let stepper = Stepper::new(motion.top.clone(), h)?;
+    let state = stepper.start(motion.attitude, motion.velocity)?;
+    Ok((stepper, state))
 }
 
 /// Runge–Kutta on a motion, with the quaternion brought back to unit length after every step.
 pub(crate) fn on_quaternion(motion: &Motion, h: f64) -> OnQuaternion {
-    let body = rk4_body(&motion.top);
+    let body = Body::of(&motion.top);
     let momentum = motion.velocity.component_div(&body.inverse_moments);
     OnQuaternion::new(body, h, &motion.attitude.to_quaternion(), momentum)
 }
@@ -153,6 +133,6 @@ pub(crate) fn on_matrix(motion: &Motion, h: f64) -> OnMatrix {
 
 /// The energy of a top, J.
 pub(crate) fn energy_of(top: &HeavyTop, Sample { attitude, momentum }: &Sample) -> f64 {
-    let body = rk4_body(top);
+    let body = Body::of(top);
     0.5 * momentum.dot(&body.inverse_moments.component_mul(momentum)) + (attitude * body.lever).z
 }

@@ -1,13 +1,17 @@
 //! Long runs: defects of the group and of the Casimirs while they grow.
 
-use liestep::SO3;
+use declarations::{HeavyTop, Motion};
 use liestep::groups::LieGroup as _;
-use liestep::motion::Motion;
+use liestep::motion::Plan;
+use liestep::{SO3, StateOf, Stepper};
 use nalgebra::{Matrix3, SVector, Vector3};
-use workbench::measure::{float, greater};
+use workbench::measure::{Tenths, greater};
+
+use crate::rivals::started;
+use crate::row::Failure;
 
 /// A motion with one advected vector.
-pub(crate) type TopMotion = Motion<SO3, Vector3<f64>>;
+pub(crate) type TopMotion = liestep::motion::Motion<SO3, Vector3<f64>>;
 
 /// `‖RᵀR − I‖`.
 pub(crate) fn orthogonality(attitude: &Matrix3<f64>) -> f64 {
@@ -64,9 +68,6 @@ pub(crate) struct Walk {
     /// Steps from one look to the next.
     stride: u64,
     pub(crate) worst: Defects,
-    /// At ten numbers of steps a decade.
-    pub(crate) history: Vec<(f64, Defects)>,
-    next: f64,
 }
 
 /// Looking at every step would cost more than the step.
@@ -77,12 +78,7 @@ impl Walk {
     pub(crate) fn from(momentum: &Vector3<f64>, w: &Vector3<f64>, steps: u64) -> Self {
         let start = (momentum.dot(w), momentum.z);
         let stride = (steps / LOOKS).next_multiple_of(SAMPLE);
-        let (worst, followed) = (Defects::default(), Followed::new());
-        Self { start, followed, stride, worst, history: Vec::new(), next: 100.0 }
-    }
-
-    pub(crate) fn from_state(state: &TopMotion, steps: u64) -> Self {
-        Self::from(&state.momentum(), &state.advected(), steps)
+        Self { start, followed: Followed::new(), stride, worst: Defects::default() }
     }
 
     /// Looks at the state after the step of this number now and then.
@@ -90,11 +86,6 @@ impl Walk {
         if step.is_multiple_of(SAMPLE) {
             self.look(step, &state());
         }
-    }
-
-    /// As [`after`](Self::after), for our states.
-    pub(crate) fn after_step(&mut self, step: u64, state: &TopMotion) {
-        self.after(step, || (state.attitude().matrix(), state.momentum(), state.advected()));
     }
 
     fn look(&mut self, step: u64, (attitude, momentum, w): &(Matrix3<f64>, Vector3<f64>, Vector3<f64>)) {
@@ -117,15 +108,6 @@ impl Walk {
                 momentum.dot(w) / vertical - 1.0,
             ]));
         }
-        if float(step) >= self.next {
-            self.history.push((float(step), self.worst));
-            self.next = float(step) * 10.0_f64.powf(0.1);
-        }
-    }
-
-    /// A defect against the logarithm of the number of steps.
-    pub(crate) fn points(&self, defect: impl Fn(&Defects) -> f64) -> Vec<(f64, f64)> {
-        self.history.iter().map(|(steps, defects)| (steps.log10(), defect(defects))).collect()
     }
 
     /// How far the attitude has left the rotations, in standard deviations of a walk.
@@ -141,3 +123,58 @@ impl Walk {
 
 /// Farther than this no walk goes.
 pub(crate) const FARTHEST: f64 = 4.0;
+
+/// What is left of a long run of ours.
+pub(crate) struct Run {
+    pub(crate) walk: Walk,
+    /// J, at the start.
+    pub(crate) energy: f64,
+    /// How far it is from that.
+    pub(crate) energies: Tenths,
+    /// The steps that changed `p_3`.
+    pub(crate) axial: u64,
+}
+
+/// How often the attitude is brought back to the rotations, in steps, where it is to.
+const PERIOD: u64 = 1000;
+
+/// The attitude after a step towards its polar factor.
+fn orthogonal(state: &TopMotion) -> SO3 {
+    let r = state.attitude().matrix();
+    SO3::from_matrix_unchecked(r * (Matrix3::identity() * 3.0 - r.transpose() * r) * 0.5)
+}
+
+impl Run {
+    /// This number of steps.
+    pub(crate) fn of<P: Plan<HeavyTop>>(
+        stepper: &Stepper<HeavyTop, P>,
+        start: &StateOf<HeavyTop, P>,
+        steps: u64,
+        is_corrected: bool,
+    ) -> Result<Self, Failure> {
+        let (mut state, energy, axial) = (*start, stepper.energy(start), start.momentum().z);
+        let walk = Walk::from(&start.momentum(), &start.advected(), steps);
+        let mut run = Self { walk, energy, energies: Tenths::new(steps), axial: 0 };
+        for step in 1..=steps {
+            stepper.step(&mut state)?;
+            if is_corrected && step.is_multiple_of(PERIOD) {
+                state = stepper.start_with_momentum(orthogonal(&state), state.momentum())?;
+            }
+            run.axial += u64::from(state.momentum().z.to_bits() != axial.to_bits());
+            run.energies.after(step, || stepper.energy(&state) - energy);
+            run.walk.after(step, || (state.attitude().matrix(), state.momentum(), state.advected()));
+        }
+        Ok(run)
+    }
+
+    /// Steps of (3.13) along a motion.
+    pub(crate) fn along(motion: &Motion, h: f64, steps: u64, is_compensated: bool) -> Result<Self, Failure> {
+        let (stepper, start) = started(motion, h)?;
+        if is_compensated {
+            let compensated = stepper.compensated();
+            Self::of(&compensated, &compensated.adopt(&start), steps, false)
+        } else {
+            Self::of(&stepper, &start, steps, false)
+        }
+    }
+}

@@ -1,13 +1,12 @@
 //! The rows of the table: what is measured and every bound are those of `cargo run --example hard-cases`, which prints
 //! them beside what other methods do.
 
-use cases::curves::Curves;
 use cases::row::Effort;
 use cases::{report, rows};
 
 fn assert_met(id: &str, effort: Effort) {
     let (_, measure) = rows::ALL.into_iter().find(|row| row.0 == id).unwrap();
-    let row = measure(effort, &mut Curves::default()).unwrap_or_else(|failure| panic!("{id}: {failure}"));
+    let row = measure(effort).unwrap_or_else(|failure| panic!("{id}: {failure}"));
     let (is_met, text) = (row.is_met, report::text(&[row]));
     println!("{text}");
     assert!(is_met, "{text}");

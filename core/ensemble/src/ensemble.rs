@@ -171,16 +171,11 @@ impl<M: Integrator> Ensemble<M> {
     /// Where there is a column of that name already; `member`, `step` and `status` always are.
     #[must_use]
     pub fn keep<const N: usize>(
-        mut self,
+        self,
         names: [&str; N],
         values: impl Fn(&Run<'_, M>) -> [f64; N] + Send + Sync + 'static,
     ) -> Self {
-        for name in names {
-            self.assert_new_column(name);
-            self.names.push(name.to_owned());
-        }
-        self.columns.push(Box::new(move |run, row| row.extend(values(run))));
-        self.changed()
+        self.keep_named(&names, move |run, row| row.copy_from_slice(&values(run)))
     }
 
     /// As [`keep`](Self::keep), of names that are known when the program runs: the slice has a place for each, NaN until

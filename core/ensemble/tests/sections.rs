@@ -8,7 +8,7 @@ use liestep_ensemble::{Ensemble, Failure, MemberFailure, Reduction, Section, Sha
 use nalgebra::Vector3;
 
 use crate::common::{Top, made, message, top, tops, with_columns};
-use crate::the_same;
+use crate::{assert_unlike, the_same};
 
 const MEMBERS: u64 = 50;
 const STEPS: u64 = 150;
@@ -26,19 +26,16 @@ fn kept(now: &Moment<'_, Top>) -> [f64; 2] {
     [now.time(), now.velocity().z]
 }
 
-/// By section: member and bits of what is kept.
-type Found = [Vec<(u64, [u64; 2])>; 2];
+/// Member and bits of what is kept.
+type Found = Vec<(u64, Vec<u64>)>;
 
-fn found(shards: &[Shard]) -> Found {
-    [0, 1].map(|section| {
-        let of_shard = |shard: &Shard| {
-            let crossings = &shard.rows.crossings[section];
-            let [times, spins] = crossings.columns.as_slice() else { panic!("{:?}", crossings.names) };
-            let values = times.iter().zip(spins).map(|(time, spin)| [time.to_bits(), spin.to_bits()]);
-            crossings.row.iter().map(|row| shard.rows.member[*row]).zip(values).collect::<Vec<_>>()
-        };
-        shards.iter().flat_map(of_shard).collect()
-    })
+fn found(shards: &[Shard], section: usize) -> Found {
+    let of_shard = |shard: &Shard| -> Found {
+        let crossings = &shard.rows.crossings[section];
+        let kept = |place: usize| crossings.columns.iter().map(|column| column[place].to_bits()).collect();
+        crossings.row.iter().enumerate().map(|(place, row)| (shard.rows.member[*row], kept(place))).collect()
+    };
+    shards.iter().flat_map(of_shard).collect()
 }
 
 fn chunks(ensemble: &Ensemble<Top>) -> Vec<Shard> {
@@ -47,11 +44,11 @@ fn chunks(ensemble: &Ensemble<Top>) -> Vec<Shard> {
 
 #[test]
 fn crossings_are_those_of_each_member_alone() {
-    let mut expected: Found = [vec![], vec![]];
+    let mut expected: [Found; 2] = [vec![], vec![]];
     for (member, made) in made(MEMBERS) {
         let Ok((stepper, mut state)) = made else { continue };
         let [mut first, mut second] = [vec![], vec![]];
-        let bits = |now: &Moment<'_, Top>| (member, kept(now).map(f64::to_bits));
+        let bits = |now: &Moment<'_, Top>| (member, kept(now).map(f64::to_bits).to_vec());
         let run = stepper
             .observed(&mut state)
             .event(Event::rising(), sections::plane(Vector3::x(), Vector3::z()), |now| first.push(bits(now)))
@@ -63,10 +60,11 @@ fn crossings_are_those_of_each_member_alone() {
         expected[1].append(&mut second);
     }
     assert!(expected.iter().all(|crossings| crossings.len() > 20), "{}, {}", expected[0].len(), expected[1].len());
-    assert_eq!(found(&chunks(&with_sections(tops(MEMBERS, STEPS)))), expected);
+    let shards = chunks(&with_sections(tops(MEMBERS, STEPS)));
+    assert_eq!([0, 1].map(|section| found(&shards, section)), expected);
     // More rows change nothing but where a crossing is written.
     let shards = chunks(&with_sections(tops(MEMBERS, STEPS)).every(40));
-    assert_eq!(found(&shards), expected);
+    assert_eq!([0, 1].map(|section| found(&shards, section)), expected);
     for Shard { rows, .. } in &shards {
         for crossings in &rows.crossings {
             for (row, time) in crossings.row.iter().zip(&crossings.columns[0]) {
@@ -178,12 +176,12 @@ fn first_passages_are_those_of_each_member_alone() {
         let run = stepper.observed(&mut state);
         let _ = run
             .event(Event::crossing(), sections::plane(Vector3::x(), Vector3::z()), |now| {
-                all.push((member, now.time().to_bits(), now.rising() == Some(false)));
+                all.push((vec![now.time().to_bits()], now.rising() == Some(false)));
             })
             .steps(STEPS);
-        if let Some((member, time, falls)) = all.first() {
-            fell += usize::from(*falls);
-            expected.push((*member, *time));
+        if let Some((time, falls)) = all.into_iter().next() {
+            fell += usize::from(falls);
+            expected.push((member, time));
         }
     }
     assert!(expected.len() > 20 && fell > 20, "{} and {fell}", expected.len());
@@ -193,32 +191,24 @@ fn first_passages_are_those_of_each_member_alone() {
         let plane = plane.reduce("passage", Reduction::Quantiles, |now: &Moment<'_, Top>| now.time());
         if in_lanes { plane.in_lanes(sections::plane(Vector3::x(), Vector3::z())) } else { plane }
     };
-    let found = |shards: &[Shard]| -> Vec<(u64, u64)> {
-        let of_shard = |shard: &Shard| {
-            let crossings = &shard.rows.crossings[0];
-            let rows = crossings.row.iter().map(|row| shard.rows.member[*row]);
-            rows.zip(crossings.columns[0].iter().map(|time| time.to_bits())).collect::<Vec<_>>()
-        };
-        shards.iter().flat_map(of_shard).collect()
-    };
     for in_lanes in [false, true] {
         let shards = chunks(&tops(MEMBERS, STEPS).section(section(in_lanes).first()));
-        assert_eq!(found(&shards), expected);
+        assert_eq!(found(&shards, 0), expected);
         assert!(shards.iter().all(|shard| shard.left == 0));
         let shards = chunks(&tops(MEMBERS, STEPS).section(section(in_lanes).until()));
-        assert_eq!(found(&shards), expected);
+        assert_eq!(found(&shards, 0), expected);
         assert_eq!(shards.iter().map(|shard| shard.left).sum::<u64>(), expected.len() as u64);
         for Shard { rows, finished, left, failures, .. } in &shards {
             assert_eq!(finished + left + failures.len() as u64, rows.member.len() as u64);
             let last = rows.member.iter().zip(&rows.step).zip(&rows.status);
             for ((member, step), status) in last.filter(|(_, status)| **status == Status::Left) {
                 let (_, time) = expected.iter().find(|(passed, _)| passed == member).unwrap();
-                let steps = f64::from_bits(*time) / 0.02;
+                let steps = f64::from_bits(time[0]) / 0.02;
                 assert!(*step as f64 >= steps && (*step as f64) < steps + 1.0, "{member}: {step} {steps} {status:?}");
             }
         }
         // All crossings, and not only the first, are the same in lanes.
-        let all = [false, true].map(|lanes| found(&chunks(&tops(MEMBERS, STEPS).section(section(lanes)))));
+        let all = [false, true].map(|lanes| found(&chunks(&tops(MEMBERS, STEPS).section(section(lanes))), 0));
         assert!(all[0] == all[1] && all[0].len() > expected.len());
     }
 }
@@ -236,10 +226,7 @@ fn another_section_is_another_plan() {
         tops(20, 100).section(section(Event::rising(), 0.0).keep(["t"], |now| [now.time()])),
         tops(20, 100).section(section(Event::rising(), 0.0).reduce("t", Reduction::Moments, |now| 2.0 * now.time())),
     ];
-    let mut fingerprints: Vec<u64> = plans.iter().map(Ensemble::fingerprint).collect();
-    fingerprints.sort_unstable();
-    fingerprints.dedup();
-    assert_eq!(fingerprints.len(), plans.len());
+    assert_unlike(&plans);
 }
 
 fn is_refused(section: impl FnOnce() -> Section<Top> + std::panic::UnwindSafe) -> String {

@@ -4,10 +4,10 @@ use nalgebra::Vector3;
 
 use super::cases::{Case, Reading};
 use super::quantities::{Quantities, Series};
-use crate::args::{ENDING, Schedule};
 use crate::output::Output;
 use crate::plot::{Area, BLUE, GREEN, Line, PURPLE, Panel, Path, PlotResult, Vertical, heading, legend, px};
 use crate::plot::{render, sphere};
+use crate::run::{ENDING, Schedule};
 use crate::table::short;
 
 /// What the figures are of: the variational run first, then its rivals.
@@ -176,22 +176,18 @@ impl Figures<'_> {
             heading(&header, &title, &subtitle)?;
             for (place, series) in body.split_evenly((1, 2)).iter().zip([ours, theirs]) {
                 let (above, below) = place.split_vertically(px(470));
-                let points: Vec<_> = series.between(start, end).iter().map(|q| q.tip).collect();
-                sphere(
-                    &above,
-                    &Path {
-                        title: series.name,
-                        colour: series.colour,
-                        width: 1,
-                        points: &points,
-                        axis: (Vector3::z(), "e₃"),
-                    },
-                )?;
+                tip_path(&above, (series.name, 1), series, (start, end))?;
                 self.close_up(&self.close_up_title(), series).draw(&below)?;
             }
             Ok(())
         })
     }
+}
+
+/// The path of a run's tip on the sphere from one time to another, with a title and a width of line.
+pub fn tip_path(area: &Area<'_>, (title, width): (&str, u32), series: &Series, (start, end): (f64, f64)) -> PlotResult {
+    let points: Vec<_> = series.between(start, end).iter().map(|q| q.tip).collect();
+    sphere(area, &Path { title, colour: series.colour, width, points: &points, axis: (Vector3::z(), "e₃") })
 }
 
 /// Figure 3.3: the variational paths of some runs, side by side, with a name for each.
@@ -201,9 +197,7 @@ pub fn precessions(runs: &[(&str, &Series)], end: f64) -> PlotResult<String> {
         let subtitle = format!("the path of the tip, the first {} s; after figure 3.3 of the thesis", short(end));
         heading(&header, "Three kinds of precession", &subtitle)?;
         for (place, (title, series)) in body.split_evenly((1, runs.len())).iter().zip(runs) {
-            let points: Vec<_> = series.between(0.0, end).iter().map(|q| q.tip).collect();
-            let axis = (Vector3::z(), "e₃");
-            sphere(place, &Path { title, colour: series.colour, width: 2, points: &points, axis })?;
+            tip_path(place, (title, 2), series, (0.0, end))?;
         }
         Ok(())
     })

@@ -1,9 +1,7 @@
 //! One figure with all of it, for a front page.
 
-use nalgebra::Vector3;
-
-use super::figures::Figures;
-use crate::plot::{Path, PlotResult, heading, px, render, sphere};
+use super::figures::{Figures, tip_path};
+use crate::plot::{PlotResult, heading, px, render};
 use crate::table::short;
 
 /// The path on the sphere, its last seconds, and what is conserved.
@@ -18,12 +16,8 @@ pub fn overview(figures: &Figures<'_>) -> PlotResult<String> {
         figures.legend(&header, (16, 68))?;
         let (left, right) = body.split_horizontally(px(520));
         let (top, bottom) = left.split_vertically(px(470));
-        let points: Vec<_> = ours.between(start, end).iter().map(|q| q.tip).collect();
         let title = format!("Path of the tip, {} s to {} s", short(start), short(end));
-        sphere(
-            &top,
-            &Path { title: &title, colour: ours.colour, width: 1, points: &points, axis: (Vector3::z(), "e₃") },
-        )?;
+        tip_path(&top, (&title, 1), ours, (start, end))?;
         figures.close_up(&figures.close_up_title(), ours).draw(&bottom)?;
         let panels = [
             figures.geometry("Rigidity: how far R leaves the rotations"),

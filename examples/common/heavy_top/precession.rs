@@ -45,7 +45,7 @@ impl Precession {
         let rates = (0..=1000).map(|i| rate(low + (high - low) * f64::from(i) / 1000.0));
         let rate = rates.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), r| (least.min(r), most.max(r)));
         let modulus = (high - low) / (beyond - low);
-        let period = 4.0 * complete_integral(modulus) / (beta * (beyond - low)).sqrt();
+        let period = 4.0 * complete_integral((1.0 - modulus).sqrt()) / (beta * (beyond - low)).sqrt();
         Self { tilt: (high.acos(), low.acos()), rate, period }
     }
 
@@ -71,9 +71,9 @@ fn roots(a: f64, b: f64, c: f64) -> [f64; 3] {
     roots
 }
 
-/// `K(m)` by the arithmetic–geometric mean.
-fn complete_integral(m: f64) -> f64 {
-    let (mut one, mut other) = (1.0, (1.0 - m).sqrt());
+/// `K` of the complementary modulus `k'`, by the arithmetic–geometric mean, which converges quadratically.
+pub fn complete_integral(complement: f64) -> f64 {
+    let (mut one, mut other) = (1.0, complement);
     for _ in 0..40 {
         (one, other) = (0.5 * (one + other), f64::sqrt(one * other));
     }

@@ -4,7 +4,6 @@ use nalgebra::{Matrix3, Vector3};
 use plotters::style::RGBColor;
 
 use super::rk4::Body;
-use crate::csv;
 use crate::run::{Record, Sample};
 
 /// A state's invariants and what else is drawn of it.
@@ -79,7 +78,7 @@ impl Series {
         largest(self.between(0.9 * end, end)) / largest(self.between(0.0, 0.1 * end))
     }
 
-    /// As comma-separated values.
+    /// As comma-separated values: a line of names, then numbers to their last digit.
     pub fn csv(&self) -> String {
         let names = [
             "time_s",
@@ -95,8 +94,9 @@ impl Series {
         ];
         let row = |q: &Quantities| {
             let (o, p) = (q.rates, q.tip);
-            [q.time, q.defect, q.vertical, q.energy, o.x, o.y, o.z, p.x, p.y, p.z]
+            let numbers = [q.time, q.defect, q.vertical, q.energy, o.x, o.y, o.z, p.x, p.y, p.z];
+            "\n".to_owned() + &numbers.map(|number| format!("{number:e}")).join(",")
         };
-        csv::table(names, self.values.iter().map(row))
+        names.join(",") + &self.values.iter().map(row).collect::<String>() + "\n"
     }
 }

@@ -5,9 +5,9 @@ use liestep::Stepper;
 use super::cases::{Case, Reading};
 use super::quantities::Series;
 use super::rk4::{Body, OnMatrix, OnQuaternion};
-use crate::args::{Failure, Schedule};
+use crate::args::Failure;
 use crate::plot::{BLUE, GREEN, ORANGE};
-use crate::run::run;
+use crate::run::{Schedule, run};
 use crate::variational::Variational;
 
 /// The variational run and its two rivals.

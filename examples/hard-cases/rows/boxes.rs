@@ -3,7 +3,6 @@
 use liestep::mechanics::DiagonalNonstandardInertia;
 use nalgebra::Vector3;
 
-use crate::curves::{Curve, Curves};
 use crate::rivals::{Spin, Trace};
 use crate::row::{Effort, Failure, Row, short};
 
@@ -34,30 +33,18 @@ fn judged(mut row: Row, name: &str, traces: &[Trace], full: &Trace, bound: f64) 
     row
 }
 
-fn drawn(curves: &mut Curves, title: &'static str, traces: &[Trace]) {
-    let lines = traces.iter().map(|trace| {
-        // What has blown up would press the others flat.
-        let points = trace.relative_energy().into_iter().filter(|point| point.1 < 1.5).collect();
-        Curve { name: trace.name, colour: trace.colour, points }
-    });
-    curves.energies.push((title, lines.collect()));
-}
-
-pub(crate) fn b1(_: Effort, curves: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn b1(_: Effort) -> Result<Row, Failure> {
     let spin = box_of_engines([1.0, 2.0, 3.0], 0.01)?;
-    let traces = spin.traces(500, 1)?;
-    drawn(curves, "B1: box, ω = (1, 2, 3), h = 0.01", &traces);
+    let traces = spin.traces(500)?;
     let row = Row::new("B1", "box, ω = (1, 2, 3), h = 0.01, 500 steps", "energy to 1e-14");
     Ok(judged(row, "", &traces, &spin.full(500)?, 1e-14))
 }
 
-pub(crate) fn b2(_: Effort, curves: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn b2(_: Effort) -> Result<Row, Failure> {
     let (steps, h) = (20_000, 0.005);
     let spins = [box_of_engines([0.05, 5.0, 0.05], h)?, box_of_engines([20.0, 0.05, 0.05], h)?];
-    let (middle, fast) = (spins[0].traces(steps, 1)?, spins[1].traces(steps, 1)?);
+    let (middle, fast) = (spins[0].traces(steps)?, spins[1].traces(steps)?);
     let full = [spins[0].full(steps)?, spins[1].full(steps)?];
-    drawn(curves, "B2: middle axis, ω = (.05, 5, .05), h = 0.005", &middle);
-    drawn(curves, "B2: fast stable spin, ω = (20, .05, .05), h = 0.005", &fast);
     let mut row = Row::new(
         "B2",
         "the box about its middle axis, and spun fast about its major one, h = 0.005, 20 000 steps",

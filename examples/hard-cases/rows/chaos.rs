@@ -1,46 +1,21 @@
 //! T7: an asymmetric top in chaotic motion.
 
-use declarations::HeavyTop;
 use declarations::Motion;
-use liestep::Stepper;
-use liestep::motion::Plan;
 use workbench::measure::{Tenths, float};
 use workbench::run::Method as _;
 
-use crate::curves::Curves;
 use crate::rivals::{energy_of, on_quaternion};
 use crate::row::{Effort, Failure, Row, short};
-use crate::walk::Walk;
+use crate::walk::Run;
 
 const H: f64 = 0.02;
 
-/// The largest change of the energy in the first and in the last tenth, and the Casimirs.
-fn ours(motion: &Motion, steps: u64, compensated: bool) -> Result<(Tenths, Walk), Failure> {
-    let stepper = Stepper::new(motion.top.clone(), H)?;
-    if compensated { stepped(&stepper.compensated(), motion, steps) } else { stepped(&stepper, motion, steps) }
-}
-
-fn stepped<P: Plan<HeavyTop>>(
-    stepper: &Stepper<HeavyTop, P>,
-    motion: &Motion,
-    steps: u64,
-) -> Result<(Tenths, Walk), Failure> {
-    let mut state = stepper.start(motion.attitude, motion.velocity)?;
-    let start = stepper.energy(&state);
-    let (mut energies, mut walk) = (Tenths::new(steps), Walk::from_state(&state, steps));
-    for step in 1..=steps {
-        stepper.step(&mut state)?;
-        energies.after(step, || stepper.energy(&state) - start);
-        walk.after_step(step, &state);
-    }
-    Ok((energies, walk))
-}
-
+/// The largest change of the energy in the first and in the last tenth.
 fn amplitudes(energies: &Tenths) -> [f64; 2] {
     [energies.first, energies.last].map(|window| window.highest.abs().max(window.lowest.abs()))
 }
 
-pub(crate) fn t7(effort: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn t7(effort: Effort) -> Result<Row, Failure> {
     let steps = effort.steps(3_000_000, 30_000_000);
     let motion = Motion::chaotic();
     let mut row = Row::new(
@@ -50,7 +25,7 @@ pub(crate) fn t7(effort: Effort, _: &mut Curves) -> Result<Row, Failure> {
     )
     .shows(format!("{:.0e} steps", float(steps)));
     for (name, compensated) in [("plain", false), ("compensated", true)] {
-        let (energies, walk) = ours(&motion, steps, compensated)?;
+        let Run { energies, walk, .. } = Run::along(&motion, H, steps, compensated)?;
         let [first, last] = amplitudes(&energies);
         let what = format!("{name}: max |ΔE| {first:.4e} J in the first tenth, {last:.4e} J in the last; growth");
         row = row.at_most(&what, last / first - 1.0, 0.02);

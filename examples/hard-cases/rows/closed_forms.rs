@@ -6,8 +6,7 @@ use workbench::heavy_top::rk4::{Body, OnQuaternion};
 use workbench::measure::{four_halvings, greater, order, relative, steps_in};
 use workbench::run::Method as _;
 
-use crate::closed::{separatrix, symmetric};
-use crate::curves::Curves;
+use crate::closed::{on_separatrix, symmetric_body};
 use crate::row::{Effort, Failure, Row, short};
 
 /// What is left of the invariants, and the error at the end.
@@ -41,21 +40,21 @@ fn end(
     Ok(left)
 }
 
-pub(crate) fn b8(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn b8(_: Effort) -> Result<Row, Failure> {
     let mut row = Row::new(
         "B8",
         "on the separatrix, and symmetric bodies, against closed forms",
         "order 2, invariants to round-off (1e-13)",
     );
     let moments = Vector3::new(1.0, 2.0, 3.0);
-    let start = separatrix::velocity(&moments, 2.0, 0.0);
-    let far = (None, separatrix::velocity(&moments, 2.0, 5.0));
+    let start = on_separatrix(&moments, 2.0, 0.0);
+    let far = (None, on_separatrix(&moments, 2.0, 5.0));
     let body = Vector3::new(3.0, 3.0, 4.0);
     let momentum = body.component_mul(&Vector3::new(1.0, 0.5, 2.0));
-    let turned = symmetric::motion(&body, &momentum, 10.0);
+    let turned = symmetric_body(&body, &momentum, 10.0);
     let turned = (Some(turned.0), turned.1.component_div(&body));
     let long = Vector3::new(2.0, 2.0, 0.5);
-    let tumbling = symmetric::motion(&long, &long.component_mul(&Vector3::new(1.0, 0.5, 2.0)), 10.0);
+    let tumbling = symmetric_body(&long, &long.component_mul(&Vector3::new(1.0, 0.5, 2.0)), 10.0);
     let tumbling = (Some(tumbling.0), tumbling.1.component_div(&long));
     let cases = [
         ("separatrix, t = 5", moments, start, 5.0, far),

@@ -5,7 +5,6 @@ use liestep::mechanics::{DiagonalNonstandardInertia, Effect, Regular};
 use liestep::{NonstandardInertia, SO3, Stepper, force};
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::curves::Curves;
 use crate::row::{Effort, Failure, Row};
 
 /// A torque `−c Ω` that acts at the beginning of the step alone: of first order, and implicit in the momentum.
@@ -44,7 +43,7 @@ where
     Ok((falls, flips))
 }
 
-pub(crate) fn p6(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn p6(_: Effort) -> Result<Row, Failure> {
     let inertia = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.5))?;
     let body = PrincipalBody { J_d: inertia };
     let J = NonstandardInertia::from(inertia).to_inertia();

@@ -8,8 +8,7 @@ use workbench::heavy_top::euler_angles::OnEulerAngles;
 use workbench::measure::{four_halvings, greater, order, relative, steps_in};
 use workbench::run::{Method as _, Sample};
 
-use crate::curves::Curves;
-use crate::rivals::energy_of;
+use crate::rivals::{energy_of, started};
 use crate::row::{Effort, Failure, Row};
 use crate::rows::passage;
 
@@ -27,8 +26,7 @@ fn by_angles(motion: &Motion, t: f64, h: f64) -> Result<Sample, Failure> {
 
 /// How far our steps of `h` end from the angles' end.
 fn error(motion: &Motion, end: &Sample, h: f64) -> Result<f64, Failure> {
-    let stepper = Stepper::new(motion.top.clone(), h)?;
-    let mut state = stepper.start(motion.attitude, motion.velocity)?;
+    let (stepper, mut state) = started(motion, h)?;
     stepper.run(&mut state, steps_in(TIME, h))?;
     Ok(relative(&state.attitude().matrix(), &end.attitude).hypot(relative(&state.momentum(), &end.momentum)))
 }
@@ -56,7 +54,7 @@ fn through_the_pole(h: f64, miss: f64) -> Result<[(f64, f64); 2], Failure> {
     Ok([change(&method.sample()), change(&ours)])
 }
 
-pub(crate) fn t10(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn t10(_: Effort) -> Result<Row, Failure> {
     let mut row = Row::new(
         "T10",
         "Euler angles, (3.10) to (3.12): the thesis' tops for 2 s, and a passage within 5e-7 rad of straight up",

@@ -10,8 +10,7 @@ use workbench::heavy_top::rk4::{Body, OnQuaternion};
 use workbench::measure::{four_halvings, order};
 use workbench::run::Method as _;
 
-use crate::closed::flip;
-use crate::curves::Curves;
+use crate::closed::flip_period;
 use crate::engines::{Moments, explicit, implicit, rescaled};
 use crate::rivals::Update;
 use crate::row::{Effort, Failure, Row};
@@ -79,9 +78,9 @@ where
     }))
 }
 
-pub(crate) fn b7(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn b7(_: Effort) -> Result<Row, Failure> {
     let (moments, velocity) = (Vector3::new(1.0, 2.0, 3.0), Vector3::new(0.01, 2.0, 0.02));
-    let exact = flip::period(&moments, &velocity);
+    let exact = flip_period(&moments, &velocity);
     let inertia = DiagonalNonstandardInertia::from_principal_moments(moments)?;
     let (body, start) = (PrincipalBody { J_d: inertia }, moments.component_mul(&velocity));
     let off = |method: &Steps<'_>, h: f64| period(method, start, h).map(|period| period / exact - 1.0);

@@ -8,7 +8,6 @@ use liestep::prelude::*;
 use nalgebra::Vector3;
 use workbench::measure::{greater, relative};
 
-use crate::curves::Curves;
 use crate::row::{Effort, Failure, Row};
 
 const STEPS: u32 = 1000;
@@ -76,7 +75,7 @@ fn sums(motion: &Motion, h: f64) -> Result<f64, Failure> {
     Ok(worst)
 }
 
-pub(crate) fn p5(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn p5(_: Effort) -> Result<Row, Failure> {
     let mut row = Row::new(
         "P5",
         "(2.5) and (2.8); the sum of effects and (3.13), 1000 steps",

@@ -4,11 +4,9 @@ use declarations::Motion;
 use liestep::motion::Solvability;
 use liestep::prelude::*;
 use workbench::measure::{greater, relative};
-use workbench::plot::BLUE;
 use workbench::run::Method as _;
 
-use crate::curves::{Curve, Curves};
-use crate::rivals::{energy_of, on_quaternion};
+use crate::rivals::{energy_of, on_quaternion, started};
 use crate::row::{Effort, Failure, Row, short};
 
 /// The largest solvable step of a symmetric top by the closed criterion: with `κ = h a_3/(2 J_3)`,
@@ -29,8 +27,7 @@ fn fold_of_symmetric_top(motion: &Motion) -> Result<f64, Failure> {
 
 /// The first step of a motion: its iterations and its angle in degrees; `None` where there is no solution.
 fn first_step(motion: &Motion, h: f64) -> Result<Result<(u32, f64), StepError>, Failure> {
-    let stepper = Stepper::new(motion.top.clone(), h)?;
-    let mut state = stepper.start(motion.attitude, motion.velocity)?;
+    let (stepper, mut state) = started(motion, h)?;
     let before = state.attitude();
     Ok(stepper.step(&mut state).map(|report| {
         let increment = before.inverse().compose(&state.attitude());
@@ -48,28 +45,26 @@ fn largest(holds: impl Fn(f64) -> Result<bool, Failure>) -> Result<f64, Failure>
     Ok(low)
 }
 
-pub(crate) fn s1(_: Effort, curves: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn s1(_: Effort) -> Result<Row, Failure> {
     let motion = Motion::looping();
     let known = |h: f64| -> Result<Solvability, Failure> {
-        let stepper = Stepper::new(motion.top.clone(), h)?;
-        let state = stepper.start(motion.attitude, motion.velocity)?;
+        let (stepper, state) = started(&motion, h)?;
         Ok(stepper.solvability(&state))
     };
     let certain = largest(|h| Ok(known(h)? == Solvability::Certain))?;
     let impossible = largest(|h| Ok(known(h)? != Solvability::Impossible))?;
-    let wide = Stepper::new(motion.top.clone(), 1.0)?;
-    let fold = wide.max_step(&wide.start(motion.attitude, motion.velocity)?);
+    let (wide, state) = started(&motion, 1.0)?;
+    let fold = wide.max_step(&state);
 
-    let (mut angles, mut iterations) = (Vec::new(), Vec::new());
+    let (mut angles, mut iterations) = (Vec::new(), 0);
     let fractions = (1..=198).map(|k| f64::from(k) / 200.0).chain([0.995, 0.998, 0.999]);
     for fraction in fractions {
         let h = fraction * fold;
         let (count, angle) = first_step(&motion, h)?.map_err(|error| format!("at {fraction} of the fold: {error}"))?;
-        angles.push((h, angle));
-        iterations.push((h, f64::from(count)));
+        angles.push(angle);
+        iterations = count.max(iterations);
     }
-    let grows = angles.windows(2).all(|pair| pair[1].1 > pair[0].1);
-    let most = |points: &[(f64, f64)]| points.iter().map(|point| point.1).fold(0.0, greater);
+    let grows = angles.windows(2).all(|pair| pair[1] > pair[0]);
     let closed = fold_of_symmetric_top(&motion)?;
     let (mut named, mut told) = (0.0, true);
     for factor in [1.000_01, 1.001, 1.006, 1.01, 1.1, 1.5, 2.0, 3.0, 10.0, 100.0, 1e6] {
@@ -92,21 +87,17 @@ pub(crate) fn s1(_: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     .near("fold", fold, 0.0815, 5e-5)
     .near("fold by the closed criterion of a symmetric top", closed, 0.0815, 5e-5)
     .at_most("impossible", impossible, 0.0820)
-    .at_most("Newton iterations", most(&iterations), 9.0)
-    .at_most("angle in degrees", most(&angles), 91.0)
+    .at_most("Newton iterations", f64::from(iterations), 9.0)
+    .at_most("angle in degrees", angles.into_iter().fold(0.0, greater), 91.0)
     .holds("the angle grows with the step", grows)
     .at_most("largest step named in errors, relative error", named, 1e-5)
     .holds("errors tell both steps", told);
-    curves.limits = [certain, fold, impossible];
-    curves.angles.push(Curve { name: "angle", colour: BLUE, points: angles });
-    curves.iterations.push(Curve { name: "iterations", colour: BLUE, points: iterations });
     Ok(row)
 }
 
-pub(crate) fn s2(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn s2(_: Effort) -> Result<Row, Failure> {
     let (motion, h) = (Motion::looping(), 0.1);
-    let stepper = Stepper::new(motion.top.clone(), h)?;
-    let mut state = stepper.start(motion.attitude, motion.velocity)?;
+    let (stepper, mut state) = started(&motion, h)?;
     let before = state;
     let refused = stepper.step(&mut state);
     // The text of a float has all its digits and the sign of zero.

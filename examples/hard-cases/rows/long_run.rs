@@ -1,49 +1,14 @@
 //! T3: many steps of the looping top.
 
-use declarations::HeavyTop;
 use declarations::Motion;
-use liestep::Stepper;
-use liestep::motion::Plan;
-use workbench::measure::{Tenths, float};
-use workbench::plot::{BLUE, GREEN, ORANGE};
+use workbench::measure::float;
 use workbench::run::{Method, Sample};
 
-use crate::curves::{Curve, Curves};
-use crate::rivals::{GREY, energy_of, on_matrix, on_quaternion};
+use crate::rivals::{energy_of, on_matrix, on_quaternion};
 use crate::row::{Effort, Failure, Row, short};
-use crate::walk::{FARTHEST, Walk};
+use crate::walk::{FARTHEST, Run, Walk};
 
 const STEP: f64 = 0.01;
-
-/// What is left after a run.
-struct Run {
-    walk: Walk,
-    energies: Tenths,
-    /// The steps that changed `p_3`.
-    axial: u64,
-}
-
-fn ours(motion: &Motion, steps: u64, compensated: bool) -> Result<(f64, Run), Failure> {
-    let stepper = Stepper::new(motion.top.clone(), STEP)?;
-    if compensated { stepped(&stepper.compensated(), motion, steps) } else { stepped(&stepper, motion, steps) }
-}
-
-fn stepped<P: Plan<HeavyTop>>(
-    stepper: &Stepper<HeavyTop, P>,
-    motion: &Motion,
-    steps: u64,
-) -> Result<(f64, Run), Failure> {
-    let mut state = stepper.start(motion.attitude, motion.velocity)?;
-    let (start, axial) = (stepper.energy(&state), state.momentum().z);
-    let mut run = Run { walk: Walk::from_state(&state, steps), energies: Tenths::new(steps), axial: 0 };
-    for step in 1..=steps {
-        stepper.step(&mut state)?;
-        run.axial += u64::from(state.momentum().z.to_bits() != axial.to_bits());
-        run.energies.after(step, || stepper.energy(&state) - start);
-        run.walk.after_step(step, &state);
-    }
-    Ok((start, run))
-}
 
 fn theirs<M: Method>(motion: &Motion, mut method: M, steps: u64) -> Result<(Walk, f64), Failure> {
     let vertical = |sample: &Sample| sample.attitude.row(2).transpose();
@@ -60,23 +25,17 @@ fn theirs<M: Method>(motion: &Motion, mut method: M, steps: u64) -> Result<(Walk
     Ok((walk, drift))
 }
 
-/// `N` to a power through a point, from 100 steps on.
-fn guide(name: &'static str, (at, height): (f64, f64), power: f64, end: f64) -> Curve {
-    let line = |x: f64| (x, height * 10.0_f64.powf(power * (x - at)));
-    Curve { name, colour: GREY, points: (0..=40).map(|k| line(2.0 + f64::from(k) / 40.0 * (end - 2.0))).collect() }
-}
-
-pub(crate) fn t3(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn t3(effort: Effort) -> Result<Row, Failure> {
     let steps = effort.steps(10_000_000, 100_000_000);
     let motion = Motion::looping();
-    let (energy, plain) = ours(&motion, steps, false)?;
+    let plain = Run::along(&motion, STEP, steps, false)?;
     let compensated = effort.steps(1_000_000, 100_000_000);
-    let (_, kept) = ours(&motion, compensated, true)?;
+    let kept = Run::along(&motion, STEP, compensated, true)?;
     // The nine entries leave the rotations soon, and a million steps show it.
     let (quaternion, change) = theirs(&motion, on_quaternion(&motion, STEP), effort.beside(compensated))?;
     let (matrix, _) = theirs(&motion, on_matrix(&motion, STEP), effort.beside(steps.min(1_000_000)))?;
 
-    let worst = plain.walk.worst;
+    let (worst, energy) = (plain.walk.worst, plain.energy);
     let mut row = Row::new(
         "T3",
         "looping top, h = 0.01, ten million steps (1e8 with --long)",
@@ -119,25 +78,5 @@ pub(crate) fn t3(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
             short(worst.axial)
         ));
     }
-    row = row.other(format!("RK4 (quaternion): energy at the end off by {change:+.1e}"));
-
-    let end = float(steps).log10();
-    let anchor = plain.walk.points(|d| d.orthogonality)[10];
-    let line = |name, colour, points| Curve { name, colour, points };
-    curves.orthogonality.extend([
-        line("RK4 (R)", ORANGE, matrix.points(|d| d.orthogonality)),
-        line("variational", BLUE, plain.walk.points(|d| d.orthogonality)),
-        line("compensated", GREEN, kept.walk.points(|d| d.orthogonality)),
-        guide("√N and N", anchor, 0.5, end),
-        guide("", anchor, 1.0, end),
-    ]);
-    let anchor = plain.walk.points(|d| d.vertical)[10];
-    curves.casimirs.extend([
-        line("RK4 (q)", ORANGE, quaternion.points(|d| d.vertical)),
-        line("variational", BLUE, plain.walk.points(|d| d.vertical)),
-        line("compensated", GREEN, kept.walk.points(|d| d.vertical)),
-        guide("√N and N", anchor, 0.5, end),
-        guide("", anchor, 1.0, end),
-    ]);
-    Ok(row)
+    Ok(row.other(format!("RK4 (quaternion): energy at the end off by {change:+.1e}")))
 }

@@ -30,11 +30,10 @@ mod units;
 mod unlimited;
 mod weightless;
 
-use crate::curves::Curves;
 use crate::row::{Effort, Failure, Row};
 
-/// Measures a row, and leaves what the figure shows of it.
-pub type Measure = fn(Effort, &mut Curves) -> Result<Row, Failure>;
+/// Measures a row.
+pub type Measure = fn(Effort) -> Result<Row, Failure>;
 
 /// All of them in the order of the table: where a step has no solution or several, bodies, tops, structure, round-off.
 pub const ALL: [(&str, Measure); 38] = [

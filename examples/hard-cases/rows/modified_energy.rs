@@ -1,11 +1,10 @@
 //! T2: backward error analysis of (3.13).
 
 use declarations::{HeavyTop, Motion};
-use liestep::Stepper;
 use nalgebra::Vector3;
 use workbench::measure::{four_halvings, order, steps_in};
 
-use crate::curves::Curves;
+use crate::rivals::started;
 use crate::row::{Effort, Failure, Row};
 
 /// What the step conserves is `H` and `h²` times this, up to an oscillation of fourth order:
@@ -15,8 +14,7 @@ use crate::row::{Effort, Failure, Row};
 /// V̈ = m g [(w × Ω) × Ω + w × J⁻¹(JΩ × Ω)]·ρ
 /// ```
 fn correction(top: &HeavyTop, velocity: &Vector3<f64>, w: &Vector3<f64>) -> f64 {
-    let d = top.J_d.diagonal();
-    let (j, weight) = (Vector3::new(d.y + d.z, d.z + d.x, d.x + d.y), top.m * top.g);
+    let (j, weight) = (top.moments(), top.m * top.g);
     let momentum = j.component_mul(velocity);
     let gyroscopic = velocity.cross(&momentum);
     let torque = w.cross(&top.rho) * weight;
@@ -27,8 +25,7 @@ fn correction(top: &HeavyTop, velocity: &Vector3<f64>, w: &Vector3<f64>) -> f64 
 
 /// How far `H`, and `H` with its correction, move along ten seconds.
 fn oscillations(motion: &Motion, h: f64) -> Result<(f64, f64), Failure> {
-    let stepper = Stepper::new(motion.top.clone(), h)?;
-    let mut state = stepper.start(motion.attitude, motion.velocity)?;
+    let (stepper, mut state) = started(motion, h)?;
     let mut range = [(f64::INFINITY, f64::NEG_INFINITY); 2];
     for _ in 0..steps_in(10.0, h) {
         stepper.step(&mut state)?;
@@ -41,7 +38,7 @@ fn oscillations(motion: &Motion, h: f64) -> Result<(f64, f64), Failure> {
     Ok((range[0].1 - range[0].0, range[1].1 - range[1].0))
 }
 
-pub(crate) fn t2(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn t2(_: Effort) -> Result<Row, Failure> {
     let mut row = Row::new("T2", "modified Hamiltonian along 10 s", "its oscillation falls with order 4.0 ± 0.1");
     for motion in [Motion::looping(), Motion::chaotic()] {
         let (mut plain, mut modified) = (Vec::new(), Vec::new());

@@ -9,7 +9,6 @@ use liestep::motion::DiscreteLiePoisson;
 use nalgebra::{SVector, Vector3};
 use workbench::measure::{greater, relative};
 
-use crate::curves::Curves;
 use crate::row::{Effort, Failure, Row};
 
 /// How far `left = Ad* right` and `μ⁺ = Ad*(μ + diamond)` are from holding, relative, and the Casimirs `|w|²` and
@@ -37,7 +36,7 @@ where
     Ok(worst)
 }
 
-pub(crate) fn p2(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn p2(_: Effort) -> Result<Row, Failure> {
     let top = Motion::chaotic().top;
     // Steps, and momenta that they can turn by.
     let usual = &[(0.05, 10.0)];
@@ -79,7 +78,7 @@ fn changes<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() -> (f64, f
 }
 
 #[allow(clippy::unnecessary_wraps)] // as all rows
-pub(crate) fn p3(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn p3(_: Effort) -> Result<Row, Failure> {
     let groups = [
         ("SE(2)", changes::<SE2, _, _>()),
         ("SE(3)", changes::<SE3, _, _>()),

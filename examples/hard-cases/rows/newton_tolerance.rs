@@ -1,12 +1,9 @@
 //! P4: what stopping Newton's iteration early costs.
 
 use declarations::Motion;
-use liestep::Stepper;
 use workbench::newton_tolerance::{EXPONENTS, Form, Guess, Left, by_the_library, run};
-use workbench::plot::{BLUE, ORANGE};
 
-use crate::curves::{Curve, Curves};
-use crate::rivals::GREY;
+use crate::rivals::started;
 use crate::row::{Effort, Failure, Row, short};
 
 const H: f64 = 0.01;
@@ -21,11 +18,10 @@ fn told(name: &str, exponent: i32, left: &Left) -> String {
     )
 }
 
-pub(crate) fn p4(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn p4(effort: Effort) -> Result<Row, Failure> {
     let steps = effort.steps(1_000_000, 10_000_000);
     let motion = Motion::looping();
-    let stepper = Stepper::new(motion.top.clone(), H)?;
-    let state = stepper.start(motion.attitude, motion.velocity)?;
+    let (stepper, state) = started(&motion, H)?;
     let start = (state.momentum(), state.advected());
     let Left { energy: drift, iterations, vertical, axial } = by_the_library(&stepper, state, steps)?;
     let mut row = Row::new(
@@ -36,33 +32,24 @@ pub(crate) fn p4(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     .at_most(&format!("default, {iterations:.2} iterations a step: drift"), drift, 1e-11)
     .at_most("default: p₃", axial, 0.0)
     .at_most("default: p·w", vertical, 1e-12);
-    for (name, guess, colour) in
-        [("from the last increment", Guess::Last, ORANGE), ("extrapolated", Guess::Extrapolated, BLUE)]
-    {
-        let mut points = Vec::new();
+    for (name, guess) in [("from the last increment", Guess::Last), ("extrapolated", Guess::Extrapolated)] {
         // The criterion asks for one of them.
         let judged = |exponent: i32| (guess, exponent) == (Guess::Last, -1);
         for exponent in EXPONENTS.into_iter().filter(|exponent| judged(*exponent) || !effort.verdict_only) {
             let left = run(&motion.top, H, start, (guess, 10.0_f64.powi(exponent)), Form::Transport, steps);
-            points.push((f64::from(exponent), left.energy));
             if judged(exponent) {
                 // One iteration a step: the drift is there, and the Casimirs hide it.
                 row = row
                     .holds("from the last increment, 1e-1: E and p₃ drift", left.energy > 1e-7 && left.axial > 1e-7)
                     .at_most("from the last increment, 1e-1: p·w", left.vertical, 1e-12);
             }
-            // One iteration more or less is what makes the difference.
-            if exponent % 2 == 0 {
-                row = row.shows(told(name, exponent, &left));
-            }
+            row = row.shows(told(name, exponent, &left));
         }
-        curves.tolerance.push(Curve { name, colour, points });
     }
     for exponent in [-8, -4, 0] {
         let stop = (Guess::Last, 10.0_f64.powi(exponent));
         let left = run(&motion.top, H, start, stop, Form::Printed, effort.beside(steps.min(1_000_000)));
         row = row.other(told("μ⁺ by (3.18) as printed", exponent, &left));
     }
-    curves.tolerance.push(Curve { name: "the library", colour: GREY, points: vec![(-12.0, drift), (0.0, drift)] });
     Ok(row)
 }

@@ -1,21 +1,19 @@
 //! T1: the tops of the thesis against references of 33 digits.
 
 use declarations::Motion;
-use liestep::Stepper;
 use liestep::groups::LieGroup as _;
+use workbench::heavy_top::rk4::Body;
 use workbench::measure::{four_halvings, greater, order, relative, steps_in};
 use workbench::run::Method as _;
 
-use crate::curves::Curves;
-use crate::rivals::{on_quaternion, rk4_body};
+use crate::rivals::{on_quaternion, started};
 use crate::row::{Effort, Failure, Row};
 
 /// Below, roundings of the longest run count.
 const PLATEAU: f64 = 1e-11;
 
 fn error(motion: &Motion, t: f64, h: f64) -> Result<f64, Failure> {
-    let stepper = Stepper::new(motion.top.clone(), h)?;
-    let mut state = stepper.start(motion.attitude, motion.velocity)?;
+    let (stepper, mut state) = started(motion, h)?;
     for _ in 0..steps_in(t, h) {
         stepper.step(&mut state)?;
     }
@@ -28,7 +26,7 @@ fn rk4_error(motion: &Motion, t: f64, h: f64) -> Result<f64, Failure> {
     method.advance(steps_in(t, h))?;
     let (attitude, velocity) = motion.at(t);
     let end = method.sample();
-    let rates = rk4_body(&motion.top).inverse_moments.component_mul(&end.momentum);
+    let rates = Body::of(&motion.top).inverse_moments.component_mul(&end.momentum);
     Ok(relative(&end.attitude, &attitude).hypot(relative(&rates, &velocity)))
 }
 
@@ -41,7 +39,7 @@ fn measured(error: impl Fn(f64) -> Result<f64, Failure>, coarsest: f64) -> Resul
     Ok((order(&errors, PLATEAU), errors[0].1))
 }
 
-pub(crate) fn t1(effort: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn t1(effort: Effort) -> Result<Row, Failure> {
     let mut row = Row::new(
         "T1",
         "the three tops of the thesis, both readings, t = 1, 10, 100",

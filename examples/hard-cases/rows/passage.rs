@@ -6,7 +6,6 @@ use nalgebra::{UnitQuaternion, Vector3};
 use workbench::heavy_top::continuous::{phase, solution};
 use workbench::measure::{four_halvings, greater, order, relative, steps_in};
 
-use crate::curves::Curves;
 use crate::row::{Effort, Failure, Row};
 
 /// How near to the vertical the axis comes, rad.
@@ -70,7 +69,7 @@ fn pass(down: f64, h: f64) -> Result<Passage, Failure> {
     Ok(passage)
 }
 
-pub(crate) fn t6(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn t6(_: Effort) -> Result<Row, Failure> {
     let mut row = Row::new(
         "T6",
         "passage within 1e-6 rad of straight up and straight down, four halvings from h = 0.01",

@@ -2,9 +2,8 @@
 //! takes, and when Runge–Kutta loses them.
 
 use declarations::Motion;
-use liestep::Stepper;
 use liestep::groups::LieGroup as _;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use workbench::heavy_top::euler_angles::EulerAngles;
 use workbench::heavy_top::precession::{Kind, Precession};
 use workbench::heavy_top::rk4::Body;
@@ -12,9 +11,9 @@ use workbench::measure::{float, four_halvings, greater, order, steps_in};
 use workbench::run::{Method, Sample};
 use workbench::variational::Variational;
 
-use crate::curves::Curves;
-use crate::rivals::{on_matrix, on_quaternion, rk4_body};
+use crate::rivals::{on_matrix, on_quaternion, started};
 use crate::row::{Effort, Failure, Row};
+use crate::walk::orthogonality;
 
 /// The least and the greatest of two quantities, and the times at which the first begins to grow.
 struct Seen {
@@ -49,9 +48,8 @@ fn seen(body: &Body, method: &mut impl Method, h: f64, from: f64, to: f64) -> Re
 }
 
 fn ours(motion: &Motion, h: f64, from: f64, to: f64) -> Result<Seen, Failure> {
-    let stepper = Stepper::new(motion.top.clone(), h)?;
-    let state = stepper.start(motion.attitude, motion.velocity)?;
-    seen(&rk4_body(&motion.top), &mut Variational { stepper: &stepper, state }, h, from, to)
+    let (stepper, state) = started(motion, h)?;
+    seen(&Body::of(&motion.top), &mut Variational { stepper: &stepper, state }, h, from, to)
 }
 
 fn closed(motion: &Motion) -> Precession {
@@ -68,7 +66,7 @@ fn apart(a: (f64, f64), b: (f64, f64)) -> f64 {
 const KINDS: [Kind; 6] =
     [Kind::Looping, Kind::Cuspidal, Kind::Looping, Kind::Looping, Kind::Cuspidal, Kind::Unidirectional];
 
-pub(crate) fn t11(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn t11(_: Effort) -> Result<Row, Failure> {
     let mut row = Row::new(
         "T11",
         "nutation and precession of the thesis' tops, both readings, 20 s",
@@ -108,11 +106,7 @@ pub(crate) fn t11(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
 const END: f64 = 200.0;
 const COARSE: f64 = 0.05;
 
-fn rigidity(attitude: &Matrix3<f64>) -> f64 {
-    (attitude.transpose() * attitude - Matrix3::identity()).norm()
-}
-
-pub(crate) fn t12(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn t12(_: Effort) -> Result<Row, Failure> {
     let motion = Motion::looping();
     let closed = closed(&motion);
     let mut row = Row::new(
@@ -123,20 +117,18 @@ pub(crate) fn t12(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     for h in [0.02, COARSE] {
         let mut theirs = on_matrix(&motion, h);
         theirs.advance(steps_in(END, h))?;
-        let stepper = Stepper::new(motion.top.clone(), h)?;
-        let mut state = stepper.start(motion.attitude, motion.velocity)?;
+        let (stepper, mut state) = started(&motion, h)?;
         stepper.run(&mut state, steps_in(END, h))?;
-        let lost = rigidity(&theirs.sample().attitude);
+        let lost = orthogonality(&theirs.sample().attitude);
         row = row
-            .at_most(&format!("h = {h}: our ‖RᵀR − I‖"), rigidity(&state.attitude().matrix()), 1e-13)
+            .at_most(&format!("h = {h}: our ‖RᵀR − I‖"), orthogonality(&state.attitude().matrix()), 1e-13)
             .holds(&format!("h = {h}: that of RK4 in nine entries {lost:.1e}"), lost > 1e-2);
     }
     let drawn = |Path { tilt, turns_back, .. }: &Path| {
         format!("tilt {:.2} to {:.2}, the azimuth turns back {turns_back} times", tilt.0, tilt.1)
     };
     row = row.shows(format!("the exact tilt is {:.2} to {:.2}", closed.tilt.0, closed.tilt.1));
-    let stepper = Stepper::new(motion.top.clone(), COARSE)?;
-    let state = stepper.start(motion.attitude, motion.velocity)?;
+    let (stepper, state) = started(&motion, COARSE)?;
     let path = late_path(&mut Variational { stepper: &stepper, state })?;
     row = row.holds(&format!("h = {COARSE}, the last 20 s, ours: {}", drawn(&path)), {
         apart(path.tilt, closed.tilt) < 0.02 && path.turns_back > 40

@@ -4,14 +4,13 @@ use liestep::NonstandardInertia;
 use liestep::mechanics::{Inertia, InertiaError};
 use nalgebra::{Matrix3, Vector3};
 
-use crate::curves::Curves;
 use crate::row::{Effort, Failure, Row};
 
 /// Whether an error is of the right kind.
 type IsRight = fn(&InertiaError) -> bool;
 
 #[allow(clippy::unnecessary_wraps)] // as all rows
-pub(crate) fn b6(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn b6(_: Effort) -> Result<Row, Failure> {
     let diagonal = |x, y, z| Matrix3::from_diagonal(&Vector3::new(x, y, z));
     let mut askew = diagonal(2.0, 2.0, 1.0);
     askew.m12 = 0.1;

@@ -4,11 +4,9 @@ use declarations::{FreeBody, HeavyTop, Motion};
 use liestep::mechanics::{DiscreteLagrangian, Regular};
 use liestep::{SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
-use workbench::heavy_top::rk4::OnQuaternion;
+use workbench::heavy_top::rk4::{Body, OnQuaternion};
 use workbench::run::Method as _;
 
-use crate::curves::Curves;
-use crate::rivals::rk4_body;
 use crate::row::{Effort, Failure, Row};
 
 const STEPS: u64 = 1000;
@@ -30,7 +28,7 @@ where
     Ok(stepper.energy(&state).to_bits() == energy.to_bits())
 }
 
-pub(crate) fn s4(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn s4(_: Effort) -> Result<Row, Failure> {
     let tilted = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, -0.3, 0.1));
     let (level, top) = (UnitQuaternion::identity(), Motion::chaotic().top);
     let rho = Vector3::new(0.3, 0.2, 0.4);
@@ -50,7 +48,7 @@ pub(crate) fn s4(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     for (name, scene, attitude) in scenes {
         // A vertical that isn't e₃ is no scene of the Runge–Kutta program.
         if scene.up == Vector3::z() {
-            let mut rk4 = OnQuaternion::new(rk4_body(&scene), 0.01, &attitude, Vector3::zeros());
+            let mut rk4 = OnQuaternion::new(Body::of(&scene), 0.01, &attitude, Vector3::zeros());
             let before = rk4.sample();
             rk4.advance(STEPS)?;
             still += u32::from((rk4.sample().attitude - before.attitude).amax() < 1e-15);

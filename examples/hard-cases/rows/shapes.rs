@@ -7,8 +7,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use workbench::measure::{greater, relative};
 
 use super::boxes::{box_of_engines, kept};
-use crate::curves::Curves;
-use crate::rivals::Spin;
+use crate::rivals::{Spin, Trace};
 use crate::row::{Effort, Failure, Row, short};
 
 /// A cylinder of 1 kg and 1 m length about its centre.
@@ -18,7 +17,12 @@ fn rod(slenderness: f64) -> Result<DiagonalNonstandardInertia, Failure> {
     Ok(DiagonalNonstandardInertia::from_diagonal(Vector3::new(across, across, 1.0 / 12.0))?)
 }
 
-pub(crate) fn b3(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+fn errors(traces: &[Trace]) -> String {
+    let errors: Vec<_> = traces.iter().map(|trace| format!("{} {}", trace.name, short(trace.energy_error()))).collect();
+    errors.join(", ")
+}
+
+pub(crate) fn b3(_: Effort) -> Result<Row, Failure> {
     let moments = |moments: [f64; 3]| DiagonalNonstandardInertia::from_principal_moments(moments.into());
     let bodies = [
         ("rod 100:1", rod(1e2)?, [1.0, 0.5, 3.0]),
@@ -29,11 +33,10 @@ pub(crate) fn b3(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     let mut row = Row::new("B3", "rods, a flat plate, an extreme ratio, at 60 Hz, 10⁴ steps", "energy to 1e-13");
     for (name, inertia, velocity) in bodies {
         let spin = Spin { inertia, velocity: velocity.into(), h: 1.0 / 60.0 };
-        let traces = spin.traces(10_000, 1)?;
+        let traces = spin.traces(10_000)?;
         row = kept(row, &format!("{name}: "), &traces[0], 1e-13);
         row = kept(row, &format!("{name}, full tensor: "), &spin.full(10_000)?, 1e-13);
-        let others: Vec<_> = traces[1..].iter().map(|t| format!("{} {}", t.name, short(t.energy_error()))).collect();
-        row = row.other(format!("{name}: energy error {}", others.join(", ")));
+        row = row.other(format!("{name}: energy error {}", errors(&traces[1..])));
     }
     let needle = rod(1e9).map_or_else(|error| error.to_string(), |_| "accepted".to_owned());
     Ok(row.shows(format!("rod 10⁹:1: {needle}")))
@@ -57,7 +60,7 @@ where
     Ok((iterations, error))
 }
 
-pub(crate) fn b4(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn b4(_: Effort) -> Result<Row, Failure> {
     let inertia = DiagonalNonstandardInertia::from_principal_moments(Vector3::repeat(0.4))?;
     let spin = Spin { inertia, velocity: Vector3::new(1.0, 2.0, 3.0), h: 0.01 };
     let mut row = Row::new("B4", "sphere, 10⁴ steps", "one Newton iteration, energy exact");
@@ -67,12 +70,10 @@ pub(crate) fn b4(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
         row = row.at_most(&format!("{name}iterations"), f64::from(iterations), 1.0);
         row = row.at_most(&format!("{name}energy"), error, 0.0);
     }
-    let traces = spin.traces(10_000, 1)?;
-    let others: Vec<_> = traces[1..].iter().map(|t| format!("{} {}", t.name, short(t.energy_error()))).collect();
-    Ok(row.other(format!("energy error {}", others.join(", "))))
+    Ok(row.other(format!("energy error {}", errors(&spin.traces(10_000)?[1..]))))
 }
 
-pub(crate) fn b5(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn b5(_: Effort) -> Result<Row, Failure> {
     const STEPS: u32 = 500;
     let spin = box_of_engines([1.0, 2.0, 3.0], 0.01)?;
     // Attitude and momentum at the end, in the axes of the box, whatever the axes of the computation.

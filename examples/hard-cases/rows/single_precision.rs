@@ -8,7 +8,6 @@ use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 use workbench::measure::{Tenths, four_halvings, greater, order, relative, steps_in};
 
-use crate::curves::Curves;
 use crate::row::{Effort, Failure, Row};
 
 const EPSILON: f64 = f32::EPSILON as f64;
@@ -227,7 +226,7 @@ fn million(row: Row, motion: &Motion) -> Result<Row, Failure> {
         .at_most("T3: Casimirs, ε", casimirs / EPSILON, units(3e-12)))
 }
 
-pub(crate) fn p8(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn p8(_: Effort) -> Result<Row, Failure> {
     let motion = Motion::looping();
     let mut row = Row::new("P8", "f32", "thresholds of f64 in units of epsilon; the same errors");
     row = folds(orders(bodies(row)?)?, &motion)?.holds("S4 at rest, weightless and hanging", at_rest(&motion)?);

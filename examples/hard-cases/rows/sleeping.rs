@@ -3,12 +3,10 @@
 use declarations::HeavyTop;
 use liestep::Stepper;
 use nalgebra::{UnitQuaternion, Vector3};
-use workbench::heavy_top::rk4::OnQuaternion;
+use workbench::heavy_top::rk4::{Body, OnQuaternion};
 use workbench::measure::float;
 use workbench::run::Method as _;
 
-use crate::curves::Curves;
-use crate::rivals::rk4_body;
 use crate::row::{Effort, Failure, Row, short};
 
 const H: f64 = 0.01;
@@ -37,7 +35,7 @@ fn tilts(fraction: f64, steps: usize) -> Result<Vec<f64>, Failure> {
 
 /// The same with Runge–Kutta.
 fn rk4_tilts(fraction: f64, steps: usize) -> Result<Vec<f64>, Failure> {
-    let body = rk4_body(&HeavyTop::thesis());
+    let body = Body::of(&HeavyTop::thesis());
     let (attitude, velocity) = start(fraction);
     let mut method = OnQuaternion::new(body, H, &attitude, velocity.component_div(&body.inverse_moments));
     let mut tilts = Vec::with_capacity(steps);
@@ -64,7 +62,7 @@ fn continuous_rate(fraction: f64) -> f64 {
     (9.81 / j1 - (spin / (2.0 * j1)).powi(2)).sqrt()
 }
 
-pub(crate) fn t5(effort: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn t5(effort: Effort) -> Result<Row, Failure> {
     let mut row = Row::new(
         "T5",
         "sleeping top on both sides of ω_c = 2.712471, h = 0.01",

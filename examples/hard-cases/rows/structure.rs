@@ -1,18 +1,18 @@
 //! P1: the step is a Poisson map.
 
-use declarations::{CayleyTop, FourthOrderTop, FullTop, LogTop, LogTraceTop, Motion, SixthOrderTop, Top as _};
+use declarations::{
+    CayleyTop, FourthOrderTop, FullTop, HeavyTop, LogTop, LogTraceTop, Motion, SixthOrderTop, Top as _,
+};
 use liestep::SO3;
 use liestep::laws::samples::Random;
 use liestep::mechanics::{DiscreteLagrangian, Regular};
 use liestep::motion::DiscreteLiePoisson;
 use nalgebra::Vector3;
-use workbench::heavy_top::rk4::OnQuaternion;
+use workbench::heavy_top::rk4::{Body, OnQuaternion};
 use workbench::measure::greater;
 use workbench::run::Method as _;
 
-use crate::curves::Curves;
 use crate::poisson::{Phase, defect};
-use crate::rivals::rk4_body;
 use crate::row::{Effort, Failure, Row, short};
 
 const H: f64 = 0.1;
@@ -39,7 +39,7 @@ where
     Ok(phases.iter().map(|z| defect(map, z)).fold(0.0, greater))
 }
 
-pub(crate) fn p1(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn p1(_: Effort) -> Result<Row, Failure> {
     let top = Motion::chaotic().top;
     let phases = phases(&top.moments());
     let axes = nalgebra::Rotation3::from_euler_angles(0.3, -0.7, 1.1).into_inner();
@@ -61,8 +61,7 @@ pub(crate) fn p1(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
         // scaling.
         let map = |(momentum, w): &Phase| {
             let length = w.norm();
-            let body = rk4_body(&top);
-            let body = workbench::heavy_top::rk4::Body { lever: body.lever * length, ..body };
+            let body = Body::of(&HeavyTop { m: top.m * length, ..top.clone() });
             let attitude = nalgebra::UnitQuaternion::rotation_between(w, &Vector3::z())?;
             let mut method = OnQuaternion::new(body, H, &attitude, *momentum);
             method.advance(1).ok()?;

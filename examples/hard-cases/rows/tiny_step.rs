@@ -7,16 +7,14 @@ use workbench::heavy_top::continuous::{phase, solution};
 use workbench::measure::{relative, steps_in};
 use workbench::run::Method as _;
 
-use crate::curves::Curves;
-use crate::rivals::on_quaternion;
+use crate::rivals::{on_quaternion, started};
 use crate::row::{Effort, Failure, Row, short};
 
 const TIME: f64 = 0.01;
 
 /// The same step with products in the place of sums: `R F`, `Fᵀ w`, `Fᵀ a`, as one writes it down.
 fn by_products(motion: &Motion, h: f64) -> Result<Vector3<f64>, Failure> {
-    let stepper = Stepper::new(motion.top.clone(), h)?;
-    let state = stepper.start(motion.attitude, motion.velocity)?;
+    let (stepper, state) = started(motion, h)?;
     let (mut momentum, mut w, mut guess) = (state.momentum(), state.advected(), Vector3::zeros());
     let half_kick = motion.top.rho * (0.5 * h * motion.top.m * motion.top.g);
     for _ in 0..steps_in(TIME, h) {
@@ -30,11 +28,10 @@ fn by_products(motion: &Motion, h: f64) -> Result<Vector3<f64>, Failure> {
     Ok(momentum)
 }
 
-pub(crate) fn t4(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn t4(_: Effort) -> Result<Row, Failure> {
     let (motion, h) = (Motion::looping(), 1e-8);
-    let stepper = Stepper::new(motion.top.clone(), h)?;
+    let (stepper, mut plain) = started(&motion, h)?;
     let carrying = stepper.clone().compensated();
-    let mut plain = stepper.start(motion.attitude, motion.velocity)?;
     let mut kept = carrying.start(motion.attitude, motion.velocity)?;
     // Runge and Kutta's error over 200 steps of 0.0006 rad is about 10⁻¹⁶ of the turn of 0.12 rad; the scheme's own is
     // `(hΩ)²/6` of it, 3·10⁻¹⁶.

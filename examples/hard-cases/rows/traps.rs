@@ -8,7 +8,6 @@ use liestep::{SO3, StepError};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::greater;
 
-use crate::curves::Curves;
 use crate::row::{Effort, Failure, Row};
 
 const STEP: f64 = 0.1;
@@ -60,7 +59,7 @@ impl Seen {
     }
 }
 
-pub(crate) fn s3(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn s3(_: Effort) -> Result<Row, Failure> {
     let mut seen = Seen { refused: 0, negative: 0, traps: 0, wrong: 0, error: 0.0, from_below: true };
     for moments in [[3.0, 3.0, 4.0], [2.0, 3.0, 4.5], [1.0, 2.0, 3.0], [1.0, 1.0, 1.0]] {
         seen.trap(&FreeBody::with_moments(moments), &())?;

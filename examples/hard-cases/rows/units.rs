@@ -4,7 +4,6 @@ use declarations::{HeavyTop, Motion};
 use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 
-use crate::curves::Curves;
 use crate::row::{Effort, Failure, Row};
 
 /// Attitude, momentum and the vertical as the body sees it.
@@ -27,7 +26,7 @@ fn moved(motion: &Motion, mass: f64, time: f64) -> Result<End, Failure> {
     Ok((state.attitude().matrix(), state.momentum() * (time / mass), state.advected()))
 }
 
-pub(crate) fn t9(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn t9(_: Effort) -> Result<Row, Failure> {
     let mut row = Row::new("T9", "mass × 2ᵏ, time × 2ᵏ, 10⁵ steps", "the same bits, k to ± 200 in mass");
     for motion in [Motion::looping(), Motion::chaotic()] {
         let original = moved(&motion, 1.0, 1.0)?;

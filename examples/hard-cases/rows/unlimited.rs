@@ -6,10 +6,9 @@ use liestep::mechanics::Inertia;
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::greater;
 
-use crate::curves::Curves;
 use crate::row::{Effort, Failure, Row};
 
-pub(crate) fn s6(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn s6(_: Effort) -> Result<Row, Failure> {
     let (h, velocity) = (0.1, Vector3::new(0.5, 1.0, 24.6));
     let (weight, rho, up) = (9.81, Vector3::z(), Vector3::z());
     let tilted = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));

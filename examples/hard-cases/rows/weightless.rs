@@ -6,7 +6,6 @@ use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 use workbench::measure::{greater, relative};
 
-use crate::curves::Curves;
 use crate::row::{Effort, Failure, Row};
 
 /// Attitude and momentum after a thousand steps, about twenty turns, and how far `R p` has gone.
@@ -24,15 +23,13 @@ where
     Ok((state.attitude().matrix(), state.momentum(), error))
 }
 
-pub(crate) fn t8(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
-    let (mut apart, mut kept, mut bits) = (0.0, 0.0, true);
+pub(crate) fn t8(_: Effort) -> Result<Row, Failure> {
+    let (mut apart, mut kept) = (0.0, 0.0);
     for motion in [Motion::looping(), Motion::chaotic()] {
         let top = motion.top.clone();
-        let free = moved(PrincipalBody { J_d: top.J_d }, &motion)?;
-        kept = greater(kept, free.2);
         let body = PrincipalBody { J_d: top.J_d };
-        let sum = moved(body, &motion)?;
-        bits &= (sum.0, sum.1) == (free.0, free.1);
+        let free = moved(body, &motion)?;
+        kept = greater(kept, free.2);
         let weightless = [
             HeavyTop { g: 0.0, ..top.clone() },
             HeavyTop { m: 0.0, ..top.clone() },
@@ -50,9 +47,8 @@ pub(crate) fn t8(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
         apart = greater(apart, relative(&attitude, &free.0).max(relative(&momentum, &free.1)));
     }
     // Two sums may round differently; a thousand steps and their twist make 1000^{3/2} ε of it.
-    let row = Row::new("T8", "no gravity, 1000 steps", "the free body to round-off; a scene without it to the bit")
+    let row = Row::new("T8", "no gravity, 1000 steps", "the free body to round-off")
         .at_most("g, m or ρ zero, against the free body", apart, 7e-12)
-        .at_most("spatial momentum", kept, 5e-14)
-        .holds("a scene without gravity is the free body to the bit", bits);
+        .at_most("spatial momentum", kept, 5e-14);
     Ok(row)
 }

@@ -85,12 +85,4 @@ fn numbers_have_32_digits() {
         let error = (found - number(expected)).rounded();
         assert!(error.abs() < 1e-31, "{expected}: off by {error:e}");
     }
-    for text in [
-        "0.142857142857142857142857142857",
-        "0.249999999999999999999999999999",
-        "-1.000000000000000000000000000001",
-        "0.000000000000000000000000000000",
-    ] {
-        assert_eq!(number(text).to_string(), text);
-    }
 }

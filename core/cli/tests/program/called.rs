@@ -84,13 +84,18 @@ pub(crate) fn mistakes(file: &str, text: &str, message: impl Fn(&str) -> String)
 /// The rows of a scene's table, after a run of a text.
 pub(crate) fn rows(folder: &Path, text: &str) -> Vec<Vec<f64>> {
     fs::write(folder.join("scene.toml"), text).unwrap();
-    let output = simulate(folder, &["scene.toml"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    printed(folder, &["run", "scene.toml", "--csv", "--out", "."]);
     table(&fs::read_to_string(folder.join("scene.csv")).unwrap())
 }
 
 pub(crate) fn table(csv: &str) -> Vec<Vec<f64>> {
     csv.lines().skip(1).map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
+}
+
+/// The largest difference of two tables' numbers.
+pub(crate) fn apart(rows: &[Vec<f64>], others: &[Vec<f64>]) -> f64 {
+    assert_eq!(rows.len(), others.len());
+    rows.iter().flatten().zip(others.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
 pub(crate) fn printed(folder: &Path, arguments: &[&str]) -> String {

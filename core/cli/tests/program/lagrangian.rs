@@ -6,7 +6,7 @@ use std::fs;
 use liestep::prelude::*;
 use liestep::with::densities;
 
-use crate::called::{folder, mistakes, printed, refused, rows};
+use crate::called::{apart, folder, mistakes, printed, refused, rows};
 
 const RUN: &str = r#"
 [start]
@@ -61,9 +61,7 @@ fn it_has_the_rows_of_the_librarys_effects() {
         &TOP[..at],
         &TOP[end..]
     );
-    let (own, library) = (rows(&folder, &continuous), rows(&folder, &(BY_EFFECTS.to_owned() + RUN)));
-    let error = |(a, b): (&f64, &f64)| (a - b).abs();
-    let worst = own.iter().flatten().zip(library.iter().flatten()).map(error).fold(0.0, f64::max);
+    let worst = apart(&rows(&folder, &continuous), &rows(&folder, &(BY_EFFECTS.to_owned() + RUN)));
     assert!(worst < 1e-10, "{worst:e}");
 }
 
@@ -103,10 +101,8 @@ fn a_force_of_its_own() {
     let force = "[force]\nwork = \"h * tau.dot(eta + eta_next) / 2\"\ntau = [0.1, 0.2, \"300 mN m\"]\n";
     let torque = rows(&folder, &format!("{BY_EFFECTS}[torque]\ntorque = [0.1, 0.2, 0.3]\n{RUN}"));
     for own in [BY_EFFECTS, TOP] {
-        let rows = rows(&folder, &format!("{own}{force}{RUN}"));
-        let error = |(a, b): (&f64, &f64)| (a - b).abs();
-        let worst = rows.iter().flatten().zip(torque.iter().flatten()).map(error).fold(0.0, f64::max);
-        assert!(rows.len() == 201 && worst < 1e-11, "{worst:e}");
+        let worst = apart(&rows(&folder, &format!("{own}{force}{RUN}")), &torque);
+        assert!(torque.len() == 201 && worst < 1e-11, "{worst:e}");
     }
     let drawn = "[ensemble]\nmembers = 4\ndraw.force.tau = [0, 0, { from = 0, to = 1 }]\n";
     fs::write(folder.join("drawn.toml"), format!("{BY_EFFECTS}{force}{RUN}{drawn}")).unwrap();

@@ -33,49 +33,6 @@ fn rk4<const N: usize>(y: &mut SVector<f64, N>, h: f64, f: &dyn Fn(&SVector<f64,
     *y += (a + (b + c) * 2.0 + d) * (h / 6.0);
 }
 
-/// Beletsky's equation, with the true anomaly as the variable, to the time 7800 s: the angle in space and its rate.
-///
-/// V. V. Beletsky, Motion of an artificial satellite about its center of mass, 1966.
-fn beletsky(e: f64, ratio: f64, angle: f64, rate: f64) -> (f64, f64) {
-    // The mean anomaly at the start is 40°: from there back to the periapsis and no equation of Kepler's.
-    let of_anomaly = |nu: f64| RATE * (1.0 + e * nu.cos()).powi(2) / (1.0 - e * e).powf(1.5);
-    let f = |y: &SVector<f64, 4>| {
-        let [delta, slope, nu, _] = [y[0], y[1], y[2], y[3]];
-        let rest = 2.0 * e * nu.sin() * (1.0 + slope) - 3.0 * ratio * delta.sin() * delta.cos();
-        SVector::from([slope, rest / (1.0 + e * nu.cos()), 1.0, 1.0 / of_anomaly(nu)])
-    };
-    let until = |y: &mut SVector<f64, 4>, time: f64| {
-        while time - y[3] > 1e-10 {
-            let h = ((time - y[3]) * of_anomaly(y[2])).min(1e-3);
-            rk4(y, h, &f);
-        }
-    };
-    let mut y = SVector::from([0.0, 0.0, 0.0, 0.0]);
-    until(&mut y, PERIOD / 9.0);
-    (y[0], y[1], y[3]) = (angle - y[2], rate / of_anomaly(y[2]) - 1.0, 0.0);
-    until(&mut y, 7800.0);
-    (y[0] + y[2], (y[1] + 1.0) * of_anomaly(y[2]))
-}
-
-#[test]
-fn a_planar_satellite_follows_beletskys_equation() {
-    let folder = folder("a_planar_satellite_follows_beletskys_equation");
-    for e in [0.0, 0.1] {
-        let (angle, rate) = beletsky(e, 0.5, 0.9, 1.3 * RATE);
-        let error = |steps| {
-            let start = format!("euler = [0.9, 0, 0]\nvelocity = [0, 0, {:?}]", 1.3 * RATE);
-            let rows = rows(&folder, &satellite(GRADIENT, [0.0, 0.0, 1.0], e, &start, steps));
-            let end = &rows[rows.len() - 1];
-            let turned = 2.0 * end[4].atan2(end[1]);
-            ((0.5 * (turned - angle)).sin().abs() * 2.0, (end[7] - rate).abs() / RATE)
-        };
-        let [coarse, fine] = [error(780), error(1560)];
-        assert!(fine.0 < 1e-4 && fine.1 < 1e-4, "{e}: {coarse:?} {fine:?}");
-        // Of second order.
-        assert!((3.8..4.2).contains(&(coarse.0 / fine.0)), "{e}: {coarse:?} {fine:?}");
-    }
-}
-
 /// A torque by the place of the satellite, its angular velocity and what turns space into the body.
 type Torque<'a> = &'a dyn Fn(Vector3<f64>, &Vector3<f64>, &Matrix3<f64>) -> Vector3<f64>;
 
