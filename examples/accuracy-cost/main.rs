@@ -37,7 +37,7 @@ Options:
       --quick         Fewer and shorter runs: all is done within a minute
       --scene <NAME>  Only this scene: looping, cuspidal, third, chaotic, free, sprung or orbiting
       --heyoka        Run with_heyoka.py, too, where Python has heyoka
-      --readme        Put the table of ratios and the figure into README, too
+      --readme        Put the table of ratios into the examples' page and the figure into README, too
       --asked         Ask for accuracies instead, and see what the choices take beside the best fixed ones
       --out <DIR>     The folder for the figure and the runs [default: out/accuracy-cost]
   -h, --help          Print this

@@ -76,7 +76,7 @@ fn best_of(methods: &[Measured], family: Family, what: &str) -> String {
     aligned(&rows)
 }
 
-/// The table of README: our cheapest Poisson method's time as a multiple of the fastest rival's, a scene a row.
+/// The table of the examples' page: our cheapest Poisson method's time as a multiple of the fastest rival's, a scene a row.
 pub fn ratios(results: &[(String, Vec<Measured>)]) -> String {
     let errors = ERRORS.map(|error| format!("{error:.0e}")).join(" | ");
     let mut text = format!("| error of attitude and velocity | {errors} |\n|---|---|---|---|---|---|---|\n");
@@ -92,18 +92,22 @@ pub fn ratios(results: &[(String, Vec<Measured>)]) -> String {
     text
 }
 
-/// Puts the table of ratios in the place of README's, and the figure in that of the one it shows.
+/// Puts the table of ratios in the place of that of the examples' page, and the figure in that of README's.
+///
+/// # Errors
+///
+/// Where the page has no such table, or can't be read or written.
 pub fn put_into_readme(table: &str, figure: &str) -> Result<(), std::io::Error> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let place = root.join("README.md");
-    let readme = std::fs::read_to_string(&place)?;
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let place = examples.join("README.md");
+    let page = std::fs::read_to_string(&place)?;
     let heading = table.lines().next().unwrap_or_default();
-    let is_row = |line: &&str| line.starts_with('|');
-    let before = readme.lines().take_while(|line| *line != heading);
-    let after = readme.lines().skip_while(|line| *line != heading).skip_while(is_row);
-    let lines: Vec<&str> = before.chain(table.lines()).chain(after).collect();
-    std::fs::write(place, lines.join("\n") + "\n")?;
-    std::fs::write(root.join("examples/figures/accuracy-cost.svg"), figure)
+    let (before, rest) =
+        page.split_once(heading).ok_or_else(|| std::io::Error::other("the page has no table of ratios"))?;
+    let after = rest.lines().skip(1).skip_while(|line| line.starts_with('|'));
+    let lines: Vec<&str> = table.lines().chain(after).collect();
+    std::fs::write(place, before.to_owned() + &lines.join("\n") + "\n")?;
+    std::fs::write(examples.join("figures/accuracy-cost.svg"), figure)
 }
 
 /// All runs of all methods, for programs to read.

@@ -74,14 +74,16 @@ fn main() -> Result<(), Error> {
                 Ok((stepper, state))
             };
             let begun = Instant::now();
-            let ensemble = Ensemble::one_by_one("tops", 100_000, 100, make).seed(7).keep(
-                ["energy", "velocity_x", "velocity_y", "velocity_z", "momentum_x", "momentum_y", "momentum_z"],
-                |run| {
-                    let (velocity, momentum) = (run.stepper.velocity(run.state), run.state.momentum());
-                    let energy = run.stepper.energy(run.state);
-                    [energy, velocity.x, velocity.y, velocity.z, momentum.x, momentum.y, momentum.z]
-                },
-            );
+            // What Python keeps of a member.
+            let columns = (0..17).map(|column| format!("column_{column}")).collect::<Vec<_>>();
+            let columns = columns.iter().map(String::as_str).collect::<Vec<_>>();
+            let ensemble = Ensemble::one_by_one("tops", 100_000, 100, make).seed(7).keep_named(&columns, |run, row| {
+                let (velocity, energy) = run.stepper.velocity_and_energy(run.state, None);
+                let (attitude, momentum) = (run.state.attitude(), run.state.momentum());
+                let numbers = std::iter::once(run.stepper.time(run.state)).chain(attitude.as_matrix().iter().copied());
+                let numbers = numbers.chain(velocity.iter().copied()).chain(momentum.iter().copied());
+                row.iter_mut().zip(numbers.chain([energy])).for_each(|(place, number)| *place = number);
+            });
             ensemble.run(&Local::threads(1), &Store::folder(folder)?)?;
             println!("{:.4}", begun.elapsed().as_secs_f64());
         }

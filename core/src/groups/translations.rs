@@ -28,10 +28,11 @@ pub type R2<T = f64> = MatrixGroup<TranslationGenerators, T, 3, 2>;
 /// # Examples
 ///
 /// ```
-/// use liestep::groups::{LieGroup, R3};
+/// use liestep::groups::{LieGroup, R1, R3};
 /// use nalgebra::Vector3;
 /// let shift = R3::from(Vector3::new(1.0, 2.0, 3.0));
 /// assert_eq!(shift.compose(&shift).translation(), Vector3::new(2.0, 4.0, 6.0));
+/// assert_eq!(R1::from(0.2).value(), 0.2);
 /// ```
 pub type R3<T = f64> = MatrixGroup<TranslationGenerators, T, 4, 3>;
 
@@ -76,6 +77,12 @@ macro_rules! translations {
             }
         }
     };
+}
+
+impl<T: Real> From<T> for R1<T> {
+    fn from(x: T) -> Self {
+        Self::from(SVector::<T, 1>::new(x))
+    }
 }
 
 impl<T: Real> R1<T> {
