@@ -7,12 +7,12 @@ use core::ops::Range;
 
 use crate::error::{SetupError, StepError};
 use crate::gradients::input::{Input, InputOf};
-use crate::gradients::recording::{Change, ChangeOf, MotionOf, Recording};
+use crate::gradients::recording::{Change, ChangeOf, Recording};
 use crate::gradients::stage::{Cotangent, FlowDerivatives, Pass, Stage, WayBack};
 use crate::gradients::{Linearisable, Linearised};
 use crate::groups::LieGroup;
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Scalar, SecondDerivatives, Vector};
-use crate::motion::{Motion, StateOf, Stepper};
+use crate::motion::{MotionOf, StateOf, Stepper};
 use crate::numbers::{Coordinates as _, Entries as _, Kernel, Vectors, dispatch, is_finite, real};
 
 /// What an adjoint keeps of the way forwards.
@@ -227,7 +227,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         state: &mut StateOf<S, P>,
         steps: u64,
         tape: Tape,
-        cost: impl FnMut(u64, &Motion<Group<S>, S::Advected>) -> Cotangent<Vector<S>>,
+        cost: impl FnMut(u64, &MotionOf<S>) -> Cotangent<Vector<S>>,
     ) -> Result<GradientOf<S>, StepError> {
         self.adjoint_of(state, (steps, &[]), tape, cost).map(|(gradient, _)| gradient)
     }
@@ -270,7 +270,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         state: &mut StateOf<S, P>,
         inputs: &[InputOf<S>],
         tape: Tape,
-        cost: impl FnMut(u64, &Motion<Group<S>, S::Advected>) -> Cotangent<Vector<S>>,
+        cost: impl FnMut(u64, &MotionOf<S>) -> Cotangent<Vector<S>>,
     ) -> Result<(GradientOf<S>, Vec<InputOf<S>>), StepError> {
         self.adjoint_of(state, (inputs.len() as u64, inputs), tape, cost)
     }
@@ -280,7 +280,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         state: &mut StateOf<S, P>,
         (steps, inputs): (u64, &[InputOf<S>]),
         tape: Tape,
-        mut cost: impl FnMut(u64, &Motion<Group<S>, S::Advected>) -> Cotangent<Vector<S>>,
+        mut cost: impl FnMut(u64, &MotionOf<S>) -> Cotangent<Vector<S>>,
     ) -> Result<(GradientOf<S>, Vec<InputOf<S>>), StepError> {
         let ends = if inputs.is_empty() { self.stepper.plan.ends() } else { 0 };
         let mut given = Given { steps, inputs, motions: Vec::new(), before_end: None, ends };
@@ -389,7 +389,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Backwards<'_, S, P> {
         &self,
         state: &mut StateOf<S, P>,
         steps: u64,
-        mut cost: impl FnMut(u64, &Motion<Group<S>, S::Advected>) -> Cotangent<Vector<S>>,
+        mut cost: impl FnMut(u64, &MotionOf<S>) -> Cotangent<Vector<S>>,
     ) -> Result<GradientOf<S>, StepError> {
         let forwards = self.linearised;
         let mut end = *state;

@@ -98,7 +98,6 @@ mod tangent;
 
 pub use adjoint::{Backwards, Gradient, Tape};
 pub use input::{Input, InputOf, Transition};
-pub(crate) use recording::MotionOf;
 pub use recording::{Change, ChangeOf};
 pub use stage::{Cotangent, FlowDerivatives, Pass, Stage};
 pub(crate) use stage::{ForceGradient, add_shares};
@@ -110,7 +109,7 @@ use core::ops::Range;
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, SecondDerivatives};
-use crate::motion::{Declared, Plan, StateOf, Steerable, StepReport, Stepper, Summation};
+use crate::motion::{Declared, MotionOf, Plan, StateOf, Steerable, StepReport, Stepper, Summation};
 use crate::numbers::{Kernel, Vectors};
 use recording::Recording;
 

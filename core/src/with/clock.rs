@@ -7,8 +7,8 @@ use super::lengths::Lengths;
 use super::orbit::orbit;
 use super::varied::Varied;
 use crate::error::SetupError;
-use crate::mechanics::{Effect, Group, SceneVisitor, Vector};
-use crate::motion::{Elapsed, Motion, Plan, Steerable, Stepper, Variable};
+use crate::mechanics::{Effect, SceneVisitor, Vector};
+use crate::motion::{Elapsed, MotionOf, Plan, Steerable, Stepper, Variable};
 
 /// Lengths of steps that are known beforehand, `h_k = h c_k`: the `c_k`, one after the other or in rounds.
 ///
@@ -154,7 +154,7 @@ impl<S: Effect<Scalar = f64>> Lengths<S> for Clock {
     fn length(
         &self,
         unit: f64,
-        motion: &Motion<Group<S>, S::Advected>,
+        motion: &MotionOf<S>,
         _velocity: impl FnOnce() -> Vector<S>,
         ((), is_ahead): (&(), bool),
     ) -> f64 {
@@ -168,7 +168,7 @@ impl<S: Effect<Scalar = f64>> Lengths<S> for Clock {
         length.map_or(f64::NAN, |length| unit * length)
     }
 
-    fn after(&self, _: [f64; 2], _: &Motion<Group<S>, S::Advected>, _: impl FnOnce() -> Vector<S>, (): &()) {}
+    fn after(&self, _: [f64; 2], _: &MotionOf<S>, _: impl FnOnce() -> Vector<S>, (): &()) {}
 
     #[allow(clippy::cast_precision_loss)] // a number of rounds
     fn time(&self, steps: u64, unit: f64, (): &()) -> f64 {

@@ -10,7 +10,8 @@ use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
 use crate::methods::{Composed, Jointed, KineticFlow, Linked, Processed, Split};
 use crate::motion::{
-    Declared, Kept, Motion, Plan, Steerable, StepReport, Stepper, Summation, TOLERATED, Variable, restored,
+    Declared, Kept, Motion, MotionOf, Plan, Steerable, StepReport, Stepper, Summation, SumsOf, TOLERATED, Variable,
+    restored,
 };
 use crate::numbers::{Entries, carried_sum, zero};
 use crate::with::remedies::Substeps;
@@ -124,17 +125,12 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
         self.0.refolded(scene, h).map(Self)
     }
 
-    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
+    fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept {
         MemoryWithCarry { kept: self.0.keep(scene, motion), carry: Carry::nothing() }
     }
 
     #[hot]
-    fn step<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         let mut sums = Sums { motion: *motion.now(), carry: kept.carry };
         let report = self.0.step(scene, &mut sums, &mut kept.kept)?;
         motion.replace(sums.motion);
@@ -171,7 +167,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
         Ok(())
     }
 
-    fn see(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut Self::Kept, advected: S::Advected) {
+    fn see(&self, motion: &mut MotionOf<S>, kept: &mut Self::Kept, advected: S::Advected) {
         self.0.see(motion, &mut kept.kept, advected);
         kept.carry.advected = zero();
     }

@@ -2,8 +2,8 @@
 
 use super::lengths::Lengths;
 use super::varied::Varied;
-use crate::mechanics::{Effect, Group, SceneVisitor, Vector};
-use crate::motion::{Elapsed, Kept, Motion, Plan, Stepper, Variable};
+use crate::mechanics::{Effect, SceneVisitor, Vector};
+use crate::motion::{Elapsed, Kept, MotionOf, Plan, Stepper, Variable};
 
 /// The rate of a density of steps.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +37,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Stepper<S, P> {
     pub fn with_density<D>(self, rate: D) -> Stepper<S, Varied<P, Density<D>>>
     where
         P: Variable,
-        D: Fn(&Motion<Group<S>, S::Advected>, &Vector<S>) -> f64 + Clone,
+        D: Fn(&MotionOf<S>, &Vector<S>) -> f64 + Clone,
     {
         self.varied(Density(rate))
     }
@@ -45,7 +45,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Stepper<S, P> {
 
 impl<S: Effect<Scalar = f64>, D> Lengths<S> for Density<D>
 where
-    D: Fn(&Motion<Group<S>, S::Advected>, &Vector<S>) -> f64 + Clone,
+    D: Fn(&MotionOf<S>, &Vector<S>) -> f64 + Clone,
 {
     type Memory = DensityMemory;
     const COUNTED: bool = false;
@@ -57,7 +57,7 @@ where
     fn length(
         &self,
         unit: f64,
-        motion: &Motion<Group<S>, S::Advected>,
+        motion: &MotionOf<S>,
         velocity: impl FnOnce() -> Vector<S>,
         (memory, is_ahead): (&DensityMemory, bool),
     ) -> f64 {
@@ -68,7 +68,7 @@ where
     fn after(
         &self,
         [unit, length]: [f64; 2],
-        motion: &Motion<Group<S>, S::Advected>,
+        motion: &MotionOf<S>,
         velocity: impl FnOnce() -> Vector<S>,
         before: &DensityMemory,
     ) -> DensityMemory {

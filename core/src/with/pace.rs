@@ -4,7 +4,7 @@ use super::compensated::Compensated;
 use super::density::DensityMemory;
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, SceneVisitor, Vector, energy};
-use crate::motion::{Declared, Elapsed, Motion, Plan, StepReport, Stepper, Summation};
+use crate::motion::{Declared, Elapsed, Motion, MotionOf, Plan, StepReport, Stepper, SumsOf};
 use crate::numbers::Vectors;
 
 /// A plan whose steps are equal in `τ`, `dt = s dτ`, by [`Stepper::paced`].
@@ -72,12 +72,12 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for Paced<P> {
         self.0.refolded(scene, h).map(Self)
     }
 
-    fn begun(&self, scene: &S, motion: Motion<Group<S>, S::Advected>) -> Motion<Group<S>, S::Advected> {
+    fn begun(&self, scene: &S, motion: MotionOf<S>) -> MotionOf<S> {
         let advected = scene.with_energy(&motion.advected, self.energy(scene, &motion));
         Motion { advected: advected.map_or(motion.advected, |(w, _)| w), ..motion }
     }
 
-    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
+    fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept {
         let memory = DensityMemory { density: pace(scene, &motion.advected), time: Elapsed::nothing() };
         (self.0.keep(scene, motion), memory)
     }
@@ -86,33 +86,28 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for Paced<P> {
         self.0.momentum(scene, attitude, &(*velocity * pace(scene, w)), w)
     }
 
-    fn velocity(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
+    fn velocity(&self, scene: &S, motion: &MotionOf<S>) -> Vector<S> {
         self.0.velocity(scene, motion) * pace(scene, &motion.advected).recip()
     }
 
     /// That of `s (H − E_0)` with zero for `E_0`, over `s`.
-    fn energy(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> f64 {
+    fn energy(&self, scene: &S, motion: &MotionOf<S>) -> f64 {
         let w = scene.with_energy(&motion.advected, 0.0).map_or(motion.advected, |(w, _)| w);
         energy(scene, &motion.momentum, &w) / pace(scene, &w)
     }
 
-    fn time(&self, _: &Motion<Group<S>, S::Advected>, kept: &Self::Kept) -> f64 {
+    fn time(&self, _: &MotionOf<S>, kept: &Self::Kept) -> f64 {
         kept.1.time.sum
     }
 
     /// By making the step.
-    fn length(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, kept: &Self::Kept, is_ahead: bool) -> f64 {
+    fn length(&self, scene: &S, motion: &MotionOf<S>, kept: &Self::Kept, is_ahead: bool) -> f64 {
         let part = self.0.part(scene, motion, &kept.0, if is_ahead { 1.0 } else { -1.0 });
         part.map_or(f64::NAN, |part| self.step_size() * 0.5 * (kept.1.density + pace(scene, &part.advected)))
     }
 
     #[hot]
-    fn step<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         let energy = scene.with_energy(&motion.now().advected, 0.0);
         let report = self.0.step(scene, motion, &mut kept.0)?;
         // Now and then what is advected is seen anew, and given as in the scene.
@@ -129,10 +124,10 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for Paced<P> {
     fn part(
         &self,
         scene: &S,
-        motion: &Motion<Group<S>, S::Advected>,
+        motion: &MotionOf<S>,
         kept: &Self::Kept,
         fraction: f64,
-    ) -> Result<Motion<Group<S>, S::Advected>, StepError> {
+    ) -> Result<MotionOf<S>, StepError> {
         let h = self.step_size();
         let time = fraction * self.length(scene, motion, kept, fraction > 0.0);
         let mut share = fraction;

@@ -11,7 +11,7 @@ use super::link::Link;
 use crate::error::{SetupError, StepError};
 use crate::groups::{CayleyRetraction, Retraction, SO3};
 use crate::mechanics::{Effect, Operations, SceneVisitor};
-use crate::motion::{Cost, Motion, Plan, Steerable, StepReport, Stepper, Summation, Variable};
+use crate::motion::{Cost, Motion, Plan, Steerable, StepReport, Stepper, Summation, SumsOf, Variable};
 use crate::numbers::{Bodies, Coordinates as _, filled};
 use crate::solving::{Curvature, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, WarmStart};
 
@@ -268,12 +268,7 @@ where
     }
 
     #[hot]
-    fn step<M: Summation<[SO3; N], S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         if self.h == 0.0 {
             motion.count();
             return Ok(StepReport::of(0));

@@ -10,8 +10,7 @@ use crate::error::{SetupError, StepError};
 use crate::gradients::{ChangeOf, Linearisable, Pass, Stage as Linear};
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Regular, Scalar, SceneVisitor, SecondDerivatives, Vector};
 use crate::motion::{
-    Cost, Declared, Motion, Plan, Steerable, StepReport, Stepper, Summation, Variable, beyond_solvable,
-    half_coordinates,
+    Cost, Declared, MotionOf, Plan, Steerable, StepReport, Stepper, SumsOf, Variable, beyond_solvable, half_coordinates,
 };
 use crate::numbers::{Coordinates, Mask, Real, real};
 use crate::solving::Guess;
@@ -160,18 +159,13 @@ impl<S: Effect> Plan<S> for Composed<S> {
         Self::new(scene, h, self.scheme)
     }
 
-    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
+    fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept {
         Guess::of(half_coordinates(scene, motion, self.substeps[0].step_size()))
     }
 
     /// The iterations of the report are those of all stages.
     #[hot]
-    fn step<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         let (mut next, mut guess) = (*motion, *kept);
         let mut iterations = 0;
         for stage in &self.stages {
@@ -191,13 +185,7 @@ impl<S: Effect> Plan<S> for Composed<S> {
     const RUNS_BY_STEPS: bool = true;
 
     #[cold]
-    fn explained(
-        &self,
-        error: StepError,
-        scene: &S,
-        motion: &Motion<Group<S>, S::Advected>,
-        kept: &Self::Kept,
-    ) -> StepError {
+    fn explained(&self, error: StepError, scene: &S, motion: &MotionOf<S>, kept: &Self::Kept) -> StepError {
         let StepError::BeyondSolvable { .. } = error else { return error };
         beyond_solvable(scene, self.h, &motion.momentum, &motion.advected, self.max_step(scene, motion, kept))
     }

@@ -15,7 +15,7 @@ use super::{Constraint, Place};
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, CayleyRetraction, LieGroup, Retraction, SO3};
 use crate::mechanics::{Effect, Operations, SceneVisitor};
-use crate::motion::{Cost, Motion, Plan, Steerable, StepReport, Summation, Variable, half_coordinates, is_due};
+use crate::motion::{Cost, Motion, Plan, Steerable, StepReport, Summation, SumsOf, Variable, half_coordinates, is_due};
 use crate::numbers::{Bodies, Coordinates as _, Polynomial, Vectors, filled};
 use crate::solving::{
     LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, SETTLED, WarmStart, has_sufficed, may_suffice,
@@ -257,12 +257,7 @@ where
         self.check_start(scene, motion)
     }
 
-    fn step<M: Summation<[Body; N], S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         // A copy: after an error the motion has to be where it was.
         let mut next = *motion;
         if self.h == 0.0 {

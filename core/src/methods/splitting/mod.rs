@@ -27,7 +27,8 @@ use crate::mechanics::{
     DiscreteLagrangian, Effect, Operations, Regular, RigidScene, Scalar, SceneVisitor, Term, constant_inertia,
 };
 use crate::motion::{
-    Cost, Declared, Motion, Plan, STEPS_BETWEEN_CHECKS, Steerable, StepReport, Stepper, Summation, Variable, is_due,
+    Cost, Declared, Motion, Plan, STEPS_BETWEEN_CHECKS, Steerable, StepReport, Stepper, Summation, SumsOf, Variable,
+    is_due,
 };
 use crate::numbers::{Coordinates, Real, Vectors, count, largest_lane, real, reported};
 use nalgebra::{
@@ -422,12 +423,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
     fn keep(&self, _: &S, _: &Motion<SO3<Scalar<S>>, S::Advected>) {}
 
     #[hot]
-    fn step<M: Summation<SO3<Scalar<S>>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut (),
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut ()) -> Result<StepReport, StepError> {
         self.run(scene, motion, kept, 1).map(StepReport::of_run)
     }
 
@@ -435,13 +431,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
 
     /// The last drift of a step and the first of the next are made as one.
     #[hot]
-    fn run<M: Summation<SO3<Scalar<S>>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        (): &mut (),
-        steps: u64,
-    ) -> Result<u64, StepError> {
+    fn run<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, (): &mut (), steps: u64) -> Result<u64, StepError> {
         let (mut next, ends) = (*motion, (Some(&self.first), &self.last));
         let iterations = if const { K::OPERATIONS_OF_SPIN > 0 } && self.spin.is_some() {
             self.make_steps::<false, M>(scene, &mut next, ends, steps)?

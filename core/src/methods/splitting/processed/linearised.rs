@@ -8,10 +8,10 @@ use super::super::Length;
 use super::super::linearised::{DifferentiableFlow, Table};
 use super::{Part, Processed};
 use crate::error::{SetupError, StepError};
-use crate::gradients::{ChangeOf, Linearisable, MotionOf, Pass};
+use crate::gradients::{ChangeOf, Linearisable, Pass};
 use crate::groups::SO3;
 use crate::mechanics::{Group, RigidScene, Scalar, SceneVisitor, SecondDerivatives};
-use crate::motion::{Plan as _, StepReport, Summation};
+use crate::motion::{MotionOf, Plan as _, StepReport, Summation};
 use nalgebra::SimdComplexField as _;
 
 impl<S, K> Linearisable<S> for Processed<S, K>

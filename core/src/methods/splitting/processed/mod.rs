@@ -16,7 +16,7 @@ use super::{KineticFlow, Length, Split, Stages, has_force_gradient, share_of};
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, SO3};
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor, Term};
-use crate::motion::{Cost, Declared, Motion, Plan, Steerable, StepReport, Stepper, Summation};
+use crate::motion::{Cost, Declared, Motion, Plan, Steerable, StepReport, Stepper, Summation, SumsOf};
 use crate::numbers::{Coordinates, Real, Vectors, real};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector3};
 
@@ -214,12 +214,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
     }
 
     #[hot]
-    fn step<M: Summation<SO3<Scalar<S>>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         self.run(scene, motion, kept, 1).map(StepReport::of_run)
     }
 
