@@ -8,7 +8,8 @@
 //! cargo bench --bench lanes -- count f64-lanes 1000            1000 steps of all tops by one kernel, nothing else
 //! ```
 //!
-//! The kernels of the last are `f64`, `f64-lanes`, `f32`, `f32-lanes` and `chain`, one of ten links; valgrind counts their instructions. A step of lanes takes the instructions of the machine, whatever it was compiled for, but types of lanes
+//! The kernels of the last are `f64`, `f64-lanes`, `f32`, `f32-lanes` and `chain`, one of ten links; valgrind counts their
+//! instructions. A step of lanes takes the instructions of the machine, whatever it was compiled for, but types of lanes
 //! differ in what they make of that. Those of simba that are arrays leave it to the compiler, which makes registers of
 //! four `f64` of most of `AutoF64x8` where there is AVX2, and of less of narrower ones. `WideF64x4` and `WideF32x8` are
 //! pairs of registers of x86-64's common instructions, two `f64` or four `f32` each, unless the program is compiled for
