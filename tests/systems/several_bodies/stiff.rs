@@ -11,11 +11,11 @@ use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
 use nalgebra::{Matrix4, Vector3, Vector4, Vector6};
 
+use super::{Body, six, started, whole};
 use crate::limit::assert_limit;
 
 const N: usize = 6;
 type Rod = Sum<Placed<Each<N>, FloatingBody, 1>, Placed<Coupled<N>, RodElement, 1>>;
-type Body = (SO3, R3);
 type Start = ([Body; N], Bodies<Vector6<f64>, N>);
 
 /// Half of a body, m.
@@ -40,19 +40,9 @@ fn arc() -> Start {
         corner += half * 2.0;
         (attitude, R3::from(corner - half))
     });
-    let moving = bodies.map(|(attitude, place): Body| {
-        let (turn, shift) = (attitude.as_matrix().tr_mul(&omega), omega.cross(&place.translation()));
-        Vector6::from_fn(|k, _| if k < 3 { turn[k] } else { shift[k - 3] })
-    });
+    let moving = bodies
+        .map(|(attitude, place): Body| six(&attitude.as_matrix().tr_mul(&omega), &omega.cross(&place.translation())));
     (bodies, Bodies(moving))
-}
-
-/// The momentum of all, and their angular momentum about the origin.
-fn whole(bodies: &[Body; N], momenta: &Bodies<Vector6<f64>, N>) -> [Vector3<f64>; 2] {
-    bodies.iter().zip(&momenta.0).fold([Vector3::zeros(); 2], |[p, l], (body, momentum)| {
-        let [turning, linear] = [0, 3].map(|first| momentum.fixed_rows::<3>(first).into_owned());
-        [p + linear, l + body.0.as_matrix() * turning + body.1.translation().cross(&linear)]
-    })
 }
 
 #[test]
@@ -67,9 +57,8 @@ fn what_is_derived_of_an_element() {
 /// A step begins and ends with the momenta that the Lagrangian has there, along the whole row.
 #[test]
 fn a_step_of_a_rod_is_that_of_the_momentum_maps() {
-    let (l, h, (bodies, velocities)) = (rod(40.0, 3.0), 0.1, arc());
-    let stepper = Stepper::new(l, h).unwrap();
-    let mut state = stepper.start(bodies, velocities).unwrap();
+    let (l, h) = (rod(40.0, 3.0), 0.1);
+    let (stepper, mut state) = started(l, h, arc());
     stepper.run(&mut state, 5).unwrap();
     let before = state;
     let report = stepper.step(&mut state).unwrap();
@@ -90,10 +79,8 @@ fn a_step_of_a_rod_is_that_of_the_momentum_maps() {
 /// Richardson's ratio of a rod whose oscillations are resolved.
 #[test]
 fn steps_of_a_rod_are_of_order_two() {
-    let (bodies, velocities) = arc();
     let ends = [400_u32, 800, 1600].map(|steps| {
-        let stepper = Stepper::new(rod(100.0, 5.0), 1.0 / f64::from(steps)).unwrap();
-        let mut state = stepper.start(bodies, velocities).unwrap();
+        let (stepper, mut state) = started(rod(100.0, 5.0), 1.0 / f64::from(steps), arc());
         stepper.run(&mut state, steps.into()).unwrap();
         state.attitude().map(|body| body.1.translation())
     });
@@ -114,9 +101,7 @@ fn a_stiff_rod_is_stepped_over_its_fast_oscillations() {
     // J = m l²/12 that is ω² = 4 (k/m) (sin²(q/2) + 3 cos²(q/2)), 12 k/m at most; along the row it is 4 k/m.
     let omega = (12.0_f64 * k).sqrt();
     let h = 10.0 * 2.0 / omega;
-    let (bodies_at, velocities) = arc();
-    let stepper = Stepper::new(rod(k, c), h).unwrap();
-    let mut state = stepper.start(bodies_at, velocities).unwrap();
+    let (stepper, mut state) = started(rod(k, c), h, arc());
     let (energy, [p, l]) = (stepper.energy(&state), whole(&state.attitude(), &state.momentum()));
     let (mut means, mut most, mut open, mut iterations) = ([0.0; 4], 0.0_f64, 0.0_f64, 0);
     for mean in &mut means {
@@ -140,8 +125,7 @@ fn a_stiff_rod_is_stepped_over_its_fast_oscillations() {
     assert!(apart < 0.005 * energy, "{means:?}");
     assert!(moved[0] < 1e-12 && moved[1] < 1e-10, "{moved:?}");
 
-    let explicit = Stepper::new(bodies() + Along::<N>::of([PointSpring { k, a: HALF, b: -HALF }]), h).unwrap();
-    let mut state = explicit.start(bodies_at, velocities).unwrap();
+    let (explicit, mut state) = started(bodies() + Along::<N>::of([PointSpring { k, a: HALF, b: -HALF }]), h, arc());
     let stays = (0..200).all(|_| explicit.step(&mut state).is_ok() && explicit.energy(&state) < 100.0 * energy);
     assert!(!stays, "the step isn't too long for potentials of the ends");
 }
@@ -195,8 +179,7 @@ fn stepped<L, const M: usize>(l: L, h: f64, start: [R3; M], velocities: Bodies<V
 where
     L: liestep::mechanics::Regular<Scalar = f64, Group = [R3; M]>,
 {
-    let stepper = Stepper::new(l, h).unwrap();
-    let mut state = stepper.start(start, velocities).unwrap();
+    let (stepper, mut state) = started(l, h, (start, velocities));
     stepper.run(&mut state, 25).unwrap();
     state.attitude()
 }

@@ -21,7 +21,7 @@ use super::{EPSILON, Free, LEFT, RIGHT, assert_no_work, ball, chained, plain, ro
 #[test]
 fn a_control_force() {
     let (start, velocity) = state_of(&read("closed loop")["states"][0]);
-    let falling = closed_loop(0.01, 3);
+    let falling = closed_loop(0.01);
     let data = &read("closed loop")["parameters"];
     let weights = all(&data["bodies"], |body| number(&body["m"]) * number(&data["g"]));
     let bodies = all(&data["bodies"], |body| Free {

@@ -21,7 +21,7 @@ use liestep::{NonstandardInertia, SO3, Stepper};
 use nalgebra::{DMatrix, DVector, Vector3, Vector6};
 use serde_json::Value;
 
-type Body = (SO3, R3);
+use super::{Body, six};
 
 type Scene<const N: usize> = Placed<Each<N>, FallingBody, N>;
 
@@ -75,15 +75,6 @@ fn watched<C: Constraint<K>, const K: usize, const N: usize, const T: usize, con
     })
 }
 
-fn six(turning: &Vector3<f64>, velocity: &Vector3<f64>) -> Vector6<f64> {
-    Vector6::from_fn(|k, _| if k < 3 { turning[k] } else { velocity[k - 3] })
-}
-
-/// The turning part, and the other.
-fn halves(of: &Vector6<f64>) -> [Vector3<f64>; 2] {
-    [0, 3].map(|first| of.fixed_rows::<3>(first).into_owned())
-}
-
 fn place(body: &Body) -> Place {
     Place { attitude: *body.0.as_matrix(), position: body.1.translation() }
 }
@@ -93,11 +84,7 @@ fn whole<A, const N: usize>(motion: &Motion<[Body; N], A>) -> [Vector3<f64>; 2]
 where
     A: liestep::groups::Advected<[Body; N]>,
 {
-    let (bodies, momenta) = (motion.attitude(), motion.momentum());
-    bodies.iter().zip(&momenta.0).fold([Vector3::zeros(); 2], |[p, l], (body, momentum)| {
-        let [turning, linear] = halves(momentum);
-        [p + linear, l + body.0.as_matrix() * turning + body.1.translation().cross(&linear)]
-    })
+    super::whole(&motion.attitude(), &motion.momentum())
 }
 
 /// Links of one metre in a row from the origin, each turned about the y axis by so much, and where the last ends.
