@@ -24,7 +24,7 @@ const BUDGETS: [(&str, usize, usize); 40] = [
     ("macros/derivation/src/program", 2468, 0), ("macros/derivation/src/mathematics", 4548, 0),
     ("core/late", 3407, 0), ("core/machine", 886, 0), ("core/python", 1815, 0), ("core/scene", 5536, 0), ("core/cli", 2986, 0),
     ("core/plot", 790, 0), ("core/ensemble", 5033, 0), ("core/arrow", 215, 0), ("core/control", 2511, 0), ("examples", 11550, 0),
-    ("tests", 23380, 0), ("tests/ui", 1694, 0),
+    ("tests", 23398, 0), ("tests/ui", 1694, 0),
 ];
 
 /// The circles that are still there. Lines may go, and none be added.
