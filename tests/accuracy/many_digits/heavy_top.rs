@@ -89,7 +89,7 @@ impl<'a> Top<'a> {
                 return self.move_by(&rotation(&xi));
             }
         }
-        panic!("no solution for {}", self.momentum);
+        panic!("no solution for {:?}", self.momentum);
     }
 
     fn move_by(&mut self, turn: &Matrix) {
