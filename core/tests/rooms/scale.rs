@@ -15,7 +15,7 @@ const BUDGETS: [(&str, usize, usize); 40] = [
     ("core/src/lib", 52, 11), ("core/src/prelude", 12, 28), ("core/src/private", 176, 61), ("core/src/error", 588, 2),
     ("core/src/numbers", 2567, 14), ("core/src/groups", 4201, 35), ("core/src/laws", 706, 3),
     ("core/src/mechanics", 3708, 43), ("core/src/effects", 403, 15), ("core/src/solving", 1355, 3),
-    ("core/src/motion", 3589, 30), ("core/src/gradients", 1854, 13), ("core/src/methods", 8032, 28),
+    ("core/src/motion", 3589, 30), ("core/src/gradients", 1854, 13), ("core/src/methods", 8016, 28),
     ("core/src/recording", 1909, 14), ("core/src/with", 1729, 7), ("core/src/accuracy", 1829, 16),
     ("core/src/conventions", 12, 0), ("core/src/guide", 19, 0), ("core/tests", 1236, 0), ("macros/src", 234, 0),
     ("macros/derivation/src/lib", 28, 0), ("macros/derivation/src/expand", 2982, 0),
