@@ -156,11 +156,6 @@ impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
         Matrix3::from_diagonal(&Vector3::new(flow.transverse, flow.transverse, flow.axial))
     }
 
-    #[hot]
-    fn has_principal_axes(_: &Self) -> bool {
-        true
-    }
-
     fn drift(&self, h: T) -> Result<Self::Drift, SetupError> {
         let (about_momentum, difference) = (h / self.transverse, (self.axial - self.transverse) / self.axial);
         let about_axis = about_momentum * difference;

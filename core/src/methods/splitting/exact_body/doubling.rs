@@ -18,8 +18,9 @@
 
 use nalgebra::SimdBool as _;
 
+use super::super::quaternion::Quaternion;
 use super::series::{Functions, Invariants, LONG, long};
-use super::{About, BodyTurn, Form};
+use super::{About, Form};
 use crate::numbers::Number;
 
 /// Enough for any angle of a double that has a digit of its direction left.
@@ -53,7 +54,7 @@ struct Curve<T: Number> {
 
 impl<T: Number> Form<T> {
     /// By the functions over a part of the drift that is short enough, doubled as often as it takes.
-    pub(super) fn doubled(&self, u: [T; 3], invariants: &Invariants<T>) -> BodyTurn<T> {
+    pub(super) fn doubled(&self, u: [T; 3], invariants: &Invariants<T>) -> Quaternion<T> {
         let (one, half, quarter) = (T::one(), T::number(0.5), T::number(0.25));
         let (size, [a, b, c]) = (invariants.size(), u);
         // The half of the drift, and its square; lanes that are short enough wait.
@@ -96,7 +97,7 @@ impl<T: Number> Form<T> {
         let longer = one + curve.bend * part * integral;
         let turn = About::turn(curve.square * (longer * longer));
         let turn = About { f: turn.f * longer, ..turn };
-        BodyTurn::by(u, turn.and(&about, curve.square), across)
+        turn.and(&about, curve.square).by(u, across)
     }
 
     fn curve(&self, u: [T; 3], invariants: &Invariants<T>) -> Curve<T> {

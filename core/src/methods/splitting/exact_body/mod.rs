@@ -225,6 +225,12 @@ impl<T: Number> About<T> {
         Self { w: self.w * other.w - self.f * other.f * q, f: self.w * other.f + self.f * other.w }
     }
 
+    /// The quaternion of this turn after one across the middle axis, of any length.
+    #[hot]
+    fn by(&self, [a, b, c]: [T; 3], across: [T; 3]) -> Quaternion<T> {
+        product_across([self.w, self.f * a, self.f * b, self.f * c], across)
+    }
+
     #[hot]
     fn select(&self, mask: T::Mask, other: &Self) -> Self {
         Self { w: self.w.select(mask, other.w), f: self.f.select(mask, other.f) }
@@ -234,8 +240,7 @@ impl<T: Number> About<T> {
 impl<T: Real> ExactDrift<T> {
     #[hot]
     fn turn(&self, frame: &Frame<T>, momentum: &Vector3<T>) -> Turn<T> {
-        let turned = self.form.turned(frame.within(&(momentum * self.form.scale)));
-        let increment = increment(frame.back(turned.quaternion), turned.scale);
+        let increment = increment(frame.back(self.form.turned(frame.within(&(momentum * self.form.scale)))));
         let change = SO3::adjoint_transpose_increment(&increment, momentum);
         Turn { increment, change, iterations: 0 }
     }
@@ -265,9 +270,9 @@ impl<T: Number> Form<T> {
         self.a * (a * a) + self.b * (b * b)
     }
 
-    /// The drift, for the momentum in units of half of it.
+    /// The quaternion of the drift, of any length, for the momentum in units of half of it.
     #[hot]
-    fn turned(&self, u: [T; 3]) -> BodyTurn<T> {
+    fn turned(&self, u: [T; 3]) -> Quaternion<T> {
         let invariants = self.invariants(u);
         let size = invariants.size();
         let (is_short, is_long) = (size.simd_le(T::number(SHORT)), size.simd_le(T::number(LONG)));
@@ -278,8 +283,8 @@ impl<T: Number> Form<T> {
         } else {
             // By values, so that no other drift puts in memory what one of these reads and writes there.
             let [a, b, c] = u;
-            let BodyTurn { quaternion, scale } = self.beyond(a, b, c);
-            BodyTurn { quaternion, scale }
+            let [w, x, y, z] = self.beyond(a, b, c);
+            [w, x, y, z]
         }
     }
 
@@ -297,7 +302,7 @@ impl<T: Number> Form<T> {
     /// What takes the time is the chain from the momentum to the increment, so nothing is divided before the end of it,
     /// and sums are ordered by what is there first.
     #[hot]
-    fn whole(&self, u: [T; 3], invariants: &Invariants<T>, half: &Half<T>) -> BodyTurn<T> {
+    fn whole(&self, u: [T; 3], invariants: &Invariants<T>, half: &Half<T>) -> Quaternion<T> {
         let ([a, b, c], Invariants { kb, ka, .. }, Half { n, mu, about }) = (u, *invariants, *half);
         let (nn, kk, twice) = (n * n, kb * ka, n + n);
         let (base, sum) = (nn - kk, nn + kk);
@@ -307,7 +312,7 @@ impl<T: Number> Form<T> {
         let real_part = (n * base) * mu - mu_c * (c * ((of_a + of_b) + base) - (self.b_less_a * (a * b)) * mu);
         let along_a = (self.a * a) * (den + of_a * base) + mu_c * (b * of_b);
         let along_b = (self.b * b) * (den + of_b * base) - mu_c * (a * of_a);
-        BodyTurn::by(u, about, [real_part, along_a, along_b])
+        about.by(u, [real_part, along_a, along_b])
     }
 
     /// Half a drift that is `2^DOUBLINGS` times as long as the polynomials are for.
@@ -343,7 +348,7 @@ impl<T: Number> Form<T> {
     }
 
     #[inline(never)]
-    fn beyond(&self, a: T, b: T, c: T) -> BodyTurn<T> {
+    fn beyond(&self, a: T, b: T, c: T) -> Quaternion<T> {
         dispatch(Beyond { form: self, u: [a, b, c] })
     }
 }
@@ -356,12 +361,12 @@ struct Beyond<'a, T> {
 }
 
 impl<T: Number> Kernel for Beyond<'_, T> {
-    type Output = BodyTurn<T>;
+    type Output = Quaternion<T>;
     const VECTORS: Vectors = Vectors::Four;
     const IS_IN_LANES: bool = true;
 
     #[hot]
-    fn run(self) -> BodyTurn<T> {
+    fn run(self) -> Quaternion<T> {
         let Self { form, u } = self;
         let invariants = &form.invariants(u);
         let size = invariants.size();
@@ -381,7 +386,11 @@ impl<T: Number> Kernel for Beyond<'_, T> {
             half = form.near::<true>(u, invariants).select(is_short, &half);
         }
         let turned = form.whole(u, invariants, &half);
-        if is_farther.all() { turned } else { turned.select(is_farther, &form.doubled(u, invariants)) }
+        if is_farther.all() {
+            return turned;
+        }
+        let doubled = form.doubled(u, invariants);
+        core::array::from_fn(|k| turned[k].select(is_farther, doubled[k]))
     }
 }
 
@@ -405,30 +414,4 @@ fn turn_and_less<const IS_SHORT: bool, T: Number>(q: T, less: T) -> About<T> {
 #[hot]
 fn dot<T: Number>([a, b, c]: [T; 3]) -> T {
     (a * a + b * b) + c * c
-}
-
-/// A rotation by a quaternion of any length.
-#[derive(Clone, Copy, Debug)]
-struct BodyTurn<T> {
-    quaternion: Quaternion<T>,
-    /// Two over the square of its length.
-    scale: T,
-}
-
-impl<T: Number> BodyTurn<T> {
-    /// A rotation about the momentum after one across the middle axis, both of any length.
-    #[hot]
-    fn by(u: [T; 3], About { w, f }: About<T>, across: [T; 3]) -> Self {
-        let ([x, y, z], [real_part, along_a, along_b]) = ([f * u[0], f * u[1], f * u[2]], across);
-        // What roundings do to the one is divided out, too: the rotation may be the same in each step.
-        let length = (w * w + x * x) + (y * y + z * z);
-        let square = (along_a * along_a + along_b * along_b) + real_part * real_part;
-        Self { quaternion: product_across([w, x, y, z], across), scale: T::number(2.0) / (square * length) }
-    }
-
-    #[hot]
-    fn select(&self, mask: T::Mask, other: &Self) -> Self {
-        let quaternion = core::array::from_fn(|k| self.quaternion[k].select(mask, other.quaternion[k]));
-        Self { quaternion, scale: self.scale.select(mask, other.scale) }
-    }
 }
