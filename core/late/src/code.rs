@@ -35,9 +35,9 @@ pub trait Backend<T: Real>: Copy + Debug + 'static {
 
 /// Programs are read operation by operation: safe, on every machine, and in lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Interpreted;
+pub struct Interpreter;
 
-impl<T: Real> Backend<T> for Interpreted {
+impl<T: Real> Backend<T> for Interpreter {
     type Code = Code;
     type Image = Box<[T]>;
 

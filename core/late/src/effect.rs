@@ -8,7 +8,7 @@ use liestep::numbers::{Blocks, Coordinates, Entries, Real, real};
 use liestep_derivation::{Array, Stages};
 
 use crate::carried::Slots;
-use crate::code::{Backend, Given, Interpreted};
+use crate::code::{Backend, Given, Interpreter};
 use crate::declaration::{All, Declaration, Ready, ready};
 use crate::term::{Late, entries, is_finite};
 
@@ -87,7 +87,7 @@ pub(crate) fn square<G: LieGroup>(outputs: &[G::Scalar]) -> Square<G> {
 
 /// The constants of a step.
 #[derive(Debug)]
-pub struct Constants<T: Real, B: Backend<T> = Interpreted>(pub(crate) Arc<Folded<T, B>>);
+pub struct Constants<T: Real, B: Backend<T> = Interpreter>(pub(crate) Arc<Folded<T, B>>);
 
 /// Numbers that don't change from step to step, and what runs with them.
 #[derive(Debug)]

@@ -13,7 +13,7 @@ use liestep_derivation::{ParameterKind, Program, Stages};
 use nalgebra::Vector1;
 
 use crate::carried::Slots;
-use crate::code::{Backend, Interpreted};
+use crate::code::{Backend, Interpreter};
 use crate::declaration::{All, Declaration, Derivatives};
 use crate::error::LateError;
 use crate::specialised::specialised;
@@ -29,7 +29,7 @@ pub(crate) type Specialise<T> = fn(&Stages<Program>, &[T]) -> Stages<Program>;
 /// # Source
 ///
 /// As of every [`Effect`]: \[RDAE\], section 2.2.
-pub struct Late<G: LieGroup, W = (), K = WithKinetic, B: Backend<G::Scalar> = Interpreted> {
+pub struct Late<G: LieGroup, W = (), K = WithKinetic, B: Backend<G::Scalar> = Interpreter> {
     pub(crate) declaration: &'static Declaration,
     pub(crate) stages: All<B::Code>,
     /// Of all parameters, NaN where none was given.

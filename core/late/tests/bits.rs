@@ -23,7 +23,7 @@ use liestep::mechanics::{
 use liestep::motion::Batch;
 use liestep::numbers::{Coordinates as _, Entries as _};
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper};
-use liestep_late::{Array, Backend, Declaration, Interpreted, Late, LateError, numbers, specialised};
+use liestep_late::{Array, Backend, Declaration, Interpreter, Late, LateError, numbers, specialised};
 use nalgebra::{Matrix3, Matrix5, Point, SMatrix, SVector, Vector3, Vector5};
 use simba::simd::AutoF64x4;
 
@@ -364,11 +364,11 @@ fn specialised_programs_are_shorter() {
     };
     let programs = &late.declaration().programs;
     let parameters: Vec<f64> = numbers.iter().flat_map(|(_, value)| value.iter().copied()).collect();
-    let code = <Interpreted as Backend<f64>>::codes(&[&programs.constants]).expect("a program").remove(0);
+    let code = <Interpreter as Backend<f64>>::codes(&[&programs.constants]).expect("a program").remove(0);
     let mut constants = vec![0.0; programs.constants.outputs.len()];
     let given = [(Array::Step, &[0.01][..]), (Array::Parameters, &parameters)];
-    let image = <Interpreted as Backend<f64>>::image(&code, &[]);
-    Interpreted::run(&code, &image, given, &mut constants);
+    let image = <Interpreter as Backend<f64>>::image(&code, &[]);
+    Interpreter::run(&code, &image, given, &mut constants);
     let lengths = [programs, &specialised(programs, &constants)].map(|all| all.newton_system.operations.len());
     println!("{} operations an iteration, specialised {}", lengths[0], lengths[1]);
     // Three of them are products of the right side.

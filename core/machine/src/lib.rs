@@ -22,7 +22,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use liestep::numbers::Real;
-use liestep_late::{Backend, Code, Given, Interpreted, LateError, Program};
+use liestep_late::{Backend, Code, Given, Interpreter, LateError, Program};
 
 use called::{Bound, Function, LANES, lanes_of};
 
@@ -69,7 +69,7 @@ impl<T: Real> Backend<T> for Machine {
 
     fn codes(programs: &[&Program]) -> Result<Vec<Both>, LateError> {
         translated::isa().map_err(LateError::Machine)?;
-        let interpreted = <Interpreted as Backend<f64>>::codes(programs)?;
+        let interpreted = <Interpreter as Backend<f64>>::codes(programs)?;
         let both = |(&program, interpreted): (&&Program, Code)| Both {
             program: program.clone(),
             interpreted,
@@ -91,7 +91,7 @@ impl<T: Real> Backend<T> for Machine {
             None => Image {
                 bound: OnceLock::new(),
                 constants: constants.into(),
-                interpreted: Interpreted::image(&code.interpreted, constants),
+                interpreted: Interpreter::image(&code.interpreted, constants),
             },
         }
     }
@@ -115,5 +115,5 @@ fn run_first<T: Real, const N: usize>(code: &Both, image: &Image<T>, given: Give
             return image.bound.get_or_init(|| bound).call(given, outputs);
         }
     }
-    Interpreted::run(&code.interpreted, &image.interpreted, given, outputs);
+    Interpreter::run(&code.interpreted, &image.interpreted, given, outputs);
 }

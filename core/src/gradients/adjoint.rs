@@ -9,7 +9,7 @@ use crate::error::{SetupError, StepError};
 use crate::gradients::input::{Input, InputOf};
 use crate::gradients::recording::{Change, ChangeOf, Recording};
 use crate::gradients::stage::{Cotangent, FlowDerivatives, Pass, Stage, WayBack};
-use crate::gradients::{Linearisable, Linearised};
+use crate::gradients::{Linearisable, Linearisation};
 use crate::groups::LieGroup;
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Scalar, SecondDerivatives, Vector};
 use crate::motion::{MotionOf, StateOf, Stepper};
@@ -30,7 +30,7 @@ pub enum Tape {
 pub struct Gradient<V, T> {
     /// By attitude and momentum at the start.
     pub start: Cotangent<V>,
-    /// By the parameters, in the order of [`Linearised::parameters`].
+    /// By the parameters, in the order of [`Linearisation::parameters`].
     pub parameters: Vec<T>,
 }
 
@@ -97,7 +97,7 @@ impl<S: Effect> Given<'_, S> {
 
 /// Makes several steps, and writes down their changes, and the motions that aren't among these.
 struct Record<'a, 'i, S: SecondDerivatives, P: Linearisable<S>> {
-    linearised: &'a Linearised<'a, S, P>,
+    linearised: &'a Linearisation<'a, S, P>,
     state: &'a mut StateOf<S, P>,
     steps: Range<u64>,
     given: &'a mut Given<'i, S>,
@@ -132,7 +132,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Record<'_, '_, S, P> {
 
 /// Several steps, from the last to the first, and the costs of the states before them, and of that behind the last of all.
 struct Stretch<'a, 'b, S: SecondDerivatives, P: Linearisable<S>, C> {
-    linearised: &'a Linearised<'a, S, P>,
+    linearised: &'a Linearisation<'a, S, P>,
     steps: Range<u64>,
     events: &'a [ChangeOf<S>],
     given: &'a Given<'a, S>,
@@ -156,7 +156,7 @@ where
 
     #[hot]
     fn run(self) -> Self::Output {
-        let Linearised { stepper, table } = self.linearised;
+        let Linearisation { stepper, table } = self.linearised;
         let Stepper { scene, plan } = stepper;
         let (Range { start, end }, ends) = (self.steps, self.given.ends);
         let (half, stages) = (self.linearised.half_step(), plan.stages() - 2 * ends);
@@ -210,7 +210,7 @@ where
     }
 }
 
-impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
+impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
     /// Makes `steps` steps, and returns the gradient of `Σ_n c_n(state_n)`, by the state before them and by all
     /// parameters; on an error the state is unchanged.
     ///
@@ -370,21 +370,21 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
     }
 }
 
-/// Adjoints without a tape, by [`Linearised::backwards`].
+/// Adjoints without a tape, by [`Linearisation::backwards`].
 #[derive(Clone, Debug)]
 pub struct Backwards<'a, S: SecondDerivatives, P: Linearisable<S>> {
-    linearised: &'a Linearised<'a, S, P>,
+    linearised: &'a Linearisation<'a, S, P>,
     inverse: Stepper<S, P>,
     /// Of the stages forwards, as steps back undo them.
     undone: P::Table,
 }
 
 impl<S: SecondDerivatives, P: Linearisable<S>> Backwards<'_, S, P> {
-    /// As [`Linearised::adjoint`]; `cost` is shown the states of the way back.
+    /// As [`Linearisation::adjoint`]; `cost` is shown the states of the way back.
     ///
     /// # Errors
     ///
-    /// As [`Linearised::adjoint`].
+    /// As [`Linearisation::adjoint`].
     pub fn adjoint(
         &self,
         state: &mut StateOf<S, P>,

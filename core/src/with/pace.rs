@@ -1,16 +1,16 @@
 //! Steps of a transformed time, whose pace is declared.
 
-use super::compensated::Compensated;
+use super::compensated::CompensatedSums;
 use super::density::DensityMemory;
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, SceneVisitor, Vector, energy};
-use crate::motion::{Declared, Elapsed, Motion, MotionOf, Plan, StepReport, Stepper, SumsOf};
+use crate::motion::{ElapsedTime, Motion, MotionOf, OwnStep, Plan, StepReport, Stepper, SumsOf};
 use crate::numbers::Vectors;
 
 /// A plan whose steps are equal in `τ`, `dt = s dτ`, by [`Stepper::paced`].
 #[derive(Clone, Debug)]
 #[doc(hidden)]
-pub struct Paced<P>(P);
+pub struct PacedStep<P>(P);
 
 /// A plan whose step is one of `l_d`, which has the pace in it.
 #[diagnostic::on_unimplemented(
@@ -19,8 +19,8 @@ pub struct Paced<P>(P);
 )]
 pub trait Pacable {}
 
-impl<S: Effect> Pacable for Declared<S> {}
-impl<P: Pacable> Pacable for Compensated<P> {}
+impl<S: Effect> Pacable for OwnStep<S> {}
+impl<P: Pacable> Pacable for CompensatedSums<P> {}
 
 /// Beside this energy, J, all others vanish. It is a power of two, so that digits stay.
 const VAST: f64 = f64::from_bits((1023 + 500) << 52);
@@ -42,11 +42,11 @@ impl<S: Effect<Scalar = f64>, P: Plan<S> + Pacable> Stepper<S, P> {
     ///
     /// E. Hairer, *Variable time step integration with symplectic methods*, Appl. Numer. Math. 25 (1997), and S. Reich,
     /// *Backward error analysis for numerical integrators*, SIAM J. Numer. Anal. 36 (1999).
-    pub fn paced(self) -> Result<Stepper<S, Paced<P>>, SetupError> {
+    pub fn paced(self) -> Result<Stepper<S, PacedStep<P>>, SetupError> {
         if self.scene.with_energy(&self.scene.advected(), 0.0).is_none() {
             return Err(SetupError::Parameter { field: "pace", cause: "isn't declared, or not of the whole scene" });
         }
-        Ok(Stepper { scene: self.scene, plan: Paced(self.plan) })
+        Ok(Stepper { scene: self.scene, plan: PacedStep(self.plan) })
     }
 }
 
@@ -56,7 +56,7 @@ fn pace<S: Effect<Scalar = f64>>(scene: &S, w: &S::Advected) -> f64 {
     scene.with_energy(w, VAST).map_or(f64::NAN, |(w, _)| -scene.potential(&w) / VAST)
 }
 
-impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for Paced<P> {
+impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for PacedStep<P> {
     /// The pace is kept in the place of a density.
     type Kept = (P::Kept, DensityMemory);
 
@@ -78,7 +78,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for Paced<P> {
     }
 
     fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept {
-        let memory = DensityMemory { density: pace(scene, &motion.advected), time: Elapsed::nothing() };
+        let memory = DensityMemory { density: pace(scene, &motion.advected), time: ElapsedTime::nothing() };
         (self.0.keep(scene, motion), memory)
     }
 

@@ -8,19 +8,19 @@ use crate::numbers::Vectors;
 
 /// A plan each of whose steps has a length of its own, by [`Stepper::with_clock`] and [`Stepper::with_density`].
 #[derive(Clone, Debug)]
-pub struct Varied<P, L> {
+pub struct VariedSteps<P, L> {
     plan: P,
     lengths: L,
 }
 
 impl<S: Effect<Scalar = f64>, P: Plan<S> + Variable> Stepper<S, P> {
-    pub(super) fn varied<L: Lengths<S>>(self, lengths: L) -> Stepper<S, Varied<P, L>> {
+    pub(super) fn varied<L: Lengths<S>>(self, lengths: L) -> Stepper<S, VariedSteps<P, L>> {
         const { assert!(!P::VARIES, "a step has one length: choose a clock or a density") }
-        Stepper { scene: self.scene, plan: Varied { plan: self.plan, lengths } }
+        Stepper { scene: self.scene, plan: VariedSteps { plan: self.plan, lengths } }
     }
 }
 
-impl<P, L> Varied<P, L> {
+impl<P, L> VariedSteps<P, L> {
     /// The length of a step, if it is one: of the sign of the unit, and long enough that time goes on.
     fn checked<S>(
         &self,
@@ -41,7 +41,7 @@ impl<P, L> Varied<P, L> {
     }
 }
 
-impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for Varied<P, L> {
+impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for VariedSteps<P, L> {
     type Kept = (P::Kept, L::Memory);
 
     const VECTORS: Vectors = P::VECTORS;
@@ -111,4 +111,4 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for Varied<P, L
     }
 }
 
-impl<P: Variable, L> Variable for Varied<P, L> {}
+impl<P: Variable, L> Variable for VariedSteps<P, L> {}

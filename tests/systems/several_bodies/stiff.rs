@@ -6,7 +6,7 @@ use checks::structure::momenta::assert_momenta;
 use checks::structure::stages::assert_stages;
 use declarations::{FloatingBody, PointSpring, RodElement};
 use liestep::groups::{Advected as _, LieGroup as _, R3, SE3};
-use liestep::mechanics::{Along, Coupled, DiscreteLagrangian, Each, Placed, Sum, Term as _};
+use liestep::mechanics::{Along, Coupling, DiscreteLagrangian, Each, Placement, Sum, Term as _};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
 use nalgebra::{Matrix4, Vector3, Vector4, Vector6};
@@ -15,20 +15,20 @@ use super::{Body, six, started, whole};
 use crate::limit::assert_limit;
 
 const N: usize = 6;
-type Rod = Sum<Placed<Each<N>, FloatingBody, 1>, Placed<Coupled<N>, RodElement, 1>>;
+type Rod = Sum<Placement<Each<N>, FloatingBody, 1>, Placement<Coupling<N>, RodElement, 1>>;
 type Start = ([Body; N], Bodies<Vector6<f64>, N>);
 
 /// Half of a body, m.
 const HALF: Vector3<f64> = Vector3::new(0.5, 0.0, 0.0);
 
 /// Of uniform bodies of one metre and one kilogram.
-fn bodies() -> Placed<Each<N>, FloatingBody, 1> {
+fn bodies() -> Placement<Each<N>, FloatingBody, 1> {
     let J_d = NonstandardInertia::from_diagonal(Vector3::new(1.0 / 12.0, 1e-3, 1e-3)).unwrap();
     Each::<N>::of([FloatingBody { m: 1.0, J_d }])
 }
 
 fn rod(k: f64, c: f64) -> Rod {
-    bodies() + Coupled::<N>::of([RodElement { k, c, a: HALF, b: -HALF }])
+    bodies() + Coupling::<N>::of([RodElement { k, c, a: HALF, b: -HALF }])
 }
 
 /// An arc, each body turned against the one before, that turns about itself and about an axis across.
@@ -154,7 +154,7 @@ struct Spring {
 fn a_row_of_masses_moves_in_its_modes() {
     const M: usize = 4;
     let (h, k, m) = (0.3, 50.0, 0.8);
-    let (masses, springs) = (Each::<M>::of([Mass { m }]), Coupled::<M>::of([Spring { k }]));
+    let (masses, springs) = (Each::<M>::of([Mass { m }]), Coupling::<M>::of([Spring { k }]));
     let mode = |place: u8, number: f64| (number * core::f64::consts::PI * (f64::from(place) + 0.5) / 4.0).cos();
     let start = |number: f64| [0_u8, 1, 2, 3].map(|place| R3::from(Vector3::new(0.1, -0.2, 0.3) * mode(place, number)));
     let at_rest = Bodies([Vector3::zeros(); M]);
@@ -202,7 +202,7 @@ struct Held {
 #[test]
 fn steps_of_a_row_beyond_a_right_angle_are_refused() {
     let J_d = NonstandardInertia::from_diagonal(Vector3::new(1.0, 1.0, 1.0)).unwrap();
-    let l = Each::<2>::of([FloatingBody { m: 1.0, J_d }]) + Coupled::<2>::of([Held { c: 1.0 }]);
+    let l = Each::<2>::of([FloatingBody { m: 1.0, J_d }]) + Coupling::<2>::of([Held { c: 1.0 }]);
     let stepper = Stepper::new(l, 1.0).unwrap();
     let turned = |angles: [f64; 2]| angles.map(|angle| (SO3::exp(Vector3::z() * angle), R3::identity()));
     let stepped = |angles: [f64; 2]| {
@@ -233,7 +233,7 @@ fn masses_that_cannot_turn_are_not_said_to() {
     const M: usize = 4;
     let (k, m) = (50.0_f64, 0.8);
     let fastest = 2.0 * (k / m).sqrt() * (3.0 * core::f64::consts::PI / 8.0).sin();
-    let row = Each::<M>::of([Mass { m }]) + Coupled::<M>::of([Spring { k: -k }]);
+    let row = Each::<M>::of([Mass { m }]) + Coupling::<M>::of([Spring { k: -k }]);
     let stepper = Stepper::new(row, 3.0 / fastest).unwrap();
     let start = [0.0, 1.0, 2.1, 2.9].map(|x| R3::from(Vector3::x() * x));
     let mut state = stepper.start(start, Bodies([Vector3::y(); M])).unwrap();

@@ -10,7 +10,7 @@ use crate::error::{SetupError, StepError};
 use crate::gradients::{ChangeOf, Linearisable, Pass, Stage as Linear};
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Regular, Scalar, SceneVisitor, SecondDerivatives, Vector};
 use crate::motion::{
-    Cost, Declared, MotionOf, Plan, Steerable, StepReport, Stepper, SumsOf, Variable, beyond_solvable, half_coordinates,
+    Cost, MotionOf, OwnStep, Plan, Steerable, StepReport, Stepper, SumsOf, Variable, beyond_solvable, half_coordinates,
 };
 use crate::numbers::{Coordinates, Mask, Real, real};
 use crate::solving::Guess;
@@ -80,12 +80,12 @@ use nalgebra::SimdBool as _;
 ///
 /// \[Su90\], \[KL97\], \[SS05\]; see [`conventions`](crate::conventions).
 #[derive(Clone, Debug, Lanes, InLanes)]
-pub struct Composed<S: Effect> {
+pub struct Composition<S: Effect> {
     #[shared]
     scheme: CompositionScheme,
     h: Scalar<S>,
     /// One for each of the distinct substeps, that of the first stage first.
-    substeps: Vec<Declared<S>>,
+    substeps: Vec<OwnStep<S>>,
     stages: Vec<Stage<Scalar<S>>>,
 }
 
@@ -104,12 +104,12 @@ struct Stage<T> {
 
 /// # Make: a composition
 impl<S: Effect> Stepper<S> {
-    /// A symmetric composition of the scene's own step; see [`Composed`].
+    /// A symmetric composition of the scene's own step; see [`Composition`].
     ///
     /// # Errors
     ///
     /// As [`Stepper::new`], for a substep.
-    pub fn composed(scene: S, h: Scalar<S>, scheme: CompositionScheme) -> Result<Stepper<S, Composed<S>>, SetupError>
+    pub fn composed(scene: S, h: Scalar<S>, scheme: CompositionScheme) -> Result<Stepper<S, Composition<S>>, SetupError>
     where
         S: DiscreteLagrangian + Regular,
     {
@@ -119,15 +119,15 @@ impl<S: Effect> Stepper<S> {
         if !scene.is_self_adjoint() {
             return Err(SetupError::NotSelfAdjoint);
         }
-        let plan = Composed::new(&scene, h, scheme)?;
+        let plan = Composition::new(&scene, h, scheme)?;
         Ok(Stepper { scene, plan })
     }
 }
 
-impl<S: Effect> Composed<S> {
+impl<S: Effect> Composition<S> {
     fn new(scene: &S, h: Scalar<S>, scheme: CompositionScheme) -> Result<Self, SetupError> {
         let (distinct, places) = scheme.distinct();
-        let substeps = distinct.iter().map(|&gamma| Declared::folded(scene, h * real(gamma)));
+        let substeps = distinct.iter().map(|&gamma| OwnStep::folded(scene, h * real(gamma)));
         let substeps = substeps.collect::<Result<_, _>>()?;
         let around = |stage: usize| distinct[places[stage % places.len()]];
         let stages = (0..places.len()).map(|stage| {
@@ -145,10 +145,10 @@ impl<S: Effect> Composed<S> {
     }
 }
 
-impl<S: Effect> Steerable for Composed<S> {}
-impl<S: Effect> Variable for Composed<S> {}
+impl<S: Effect> Steerable for Composition<S> {}
+impl<S: Effect> Variable for Composition<S> {}
 
-impl<S: Effect> Plan<S> for Composed<S> {
+impl<S: Effect> Plan<S> for Composition<S> {
     type Kept = Guess<Vector<S>>;
 
     fn step_size(&self) -> Scalar<S> {
@@ -200,7 +200,7 @@ impl<S: Effect> Plan<S> for Composed<S> {
     }
 }
 
-impl<S: SecondDerivatives> Linearisable<S> for Composed<S> {
+impl<S: SecondDerivatives> Linearisable<S> for Composition<S> {
     type Table = ();
 
     fn table(&self) {}

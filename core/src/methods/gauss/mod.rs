@@ -21,7 +21,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::SO3;
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, SceneVisitor, constant_inertia};
 use crate::methods::splitting::torque;
-use crate::motion::{Cost, Declared, Motion, Plan, StepReport, Stepper, Summation, SumsOf, Variable};
+use crate::motion::{Cost, Motion, OwnStep, Plan, StepReport, Stepper, Summation, SumsOf, Variable};
 use crate::numbers::{Vectors, two_sum};
 use nalgebra::Vector3;
 
@@ -109,7 +109,7 @@ impl<S: Effect> Stepper<S> {
             );
         }
         // For its checks of the scene and the step.
-        Declared::new(&scene, h)?;
+        OwnStep::new(&scene, h)?;
         let plan = Gauss::new(&scene, h)?;
         Ok(Stepper { scene, plan })
     }

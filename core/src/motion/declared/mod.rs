@@ -20,7 +20,7 @@ use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 
 /// The step of the scene itself, by its momentum equation (2.7): the plan of [`Stepper::new`](crate::Stepper::new).
 #[derive(Clone, Debug, Lanes, InLanes)]
-pub struct Declared<S: Effect> {
+pub struct OwnStep<S: Effect> {
     h: Scalar<S>,
     constants: S::Constants,
     /// The square of a right side far beyond those of steps that have a solution.
@@ -33,7 +33,7 @@ pub struct Declared<S: Effect> {
 /// What a step keeps for the next: as much history as its solve makes use of.
 type Memory<S> = WarmStart<Vector<S>, <<S as Effect>::Kinetic as KineticPart>::History<Scalar<S>, Vector<S>>>;
 
-impl<S: Effect> Declared<S> {
+impl<S: Effect> OwnStep<S> {
     /// Checks the parameters and folds the constants for the step `h`.
     ///
     /// # Errors
@@ -214,10 +214,10 @@ impl<S: Effect> Declared<S> {
     }
 }
 
-impl<S: Effect> Steerable for Declared<S> {}
-impl<S: Effect> Variable for Declared<S> {}
+impl<S: Effect> Steerable for OwnStep<S> {}
+impl<S: Effect> Variable for OwnStep<S> {}
 
-impl<S: Effect> Plan<S> for Declared<S> {
+impl<S: Effect> Plan<S> for OwnStep<S> {
     type Kept = Memory<S>;
 
     const RUNS_BY_STEPS: bool = true;
@@ -257,7 +257,7 @@ impl<S: Effect> Plan<S> for Declared<S> {
     }
 }
 
-impl<S: Effect> Declared<S> {
+impl<S: Effect> OwnStep<S> {
     /// A rare step, to its end: if it came back to the common way, that would have to keep in memory what it has in
     /// registers.
     #[cold]

@@ -5,7 +5,7 @@ use core::array::from_fn;
 use declarations::motions::{matrix, number, read, vector};
 use liestep::groups::R3;
 use liestep::laws::samples::Random;
-use liestep::methods::{BallJoint, Joined, Joint, Joints, PinJoint};
+use liestep::methods::{BallJoint, Joint, Joints, PinJoint, PlacedJoint};
 use liestep::motion::Integrator as _;
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper};
@@ -27,11 +27,11 @@ pub(super) fn closed_loop(h: f64) -> Held<BallJoint, 3, 3, 3, 1> {
     });
     let end = |body: usize, side: &str| plain(&data["bodies"][body][side]);
     let tree = [
-        Joined::to_space(ball(Vector3::zeros(), end(0, "left")), 0),
-        Joined::between(ball(end(0, "right"), end(1, "left")), 0, 1),
-        Joined::between(ball(end(1, "right"), end(2, "left")), 1, 2),
+        PlacedJoint::to_space(ball(Vector3::zeros(), end(0, "left")), 0),
+        PlacedJoint::between(ball(end(0, "right"), end(1, "left")), 0, 1),
+        PlacedJoint::between(ball(end(1, "right"), end(2, "left")), 1, 2),
     ];
-    let last = Joined::to_space(ball(plain(&data["pivot"]), end(2, "right")), 2);
+    let last = PlacedJoint::to_space(ball(plain(&data["pivot"]), end(2, "right")), 2);
     let scene = scene(bodies.try_into().unwrap(), number(&data["g"]), Vector3::z());
     Stepper::jointed(scene, Joints::tree(tree).closed_by([last]), h).unwrap()
 }
@@ -133,7 +133,7 @@ fn momenta_of_a_ring() {
         six(&omega, &v)
     }));
 
-    let (tree, last) = (chained::<N>(), Joined::between(ball(RIGHT, LEFT), N - 1, 0));
+    let (tree, last) = (chained::<N>(), PlacedJoint::between(ball(RIGHT, LEFT), N - 1, 0));
     let between: [_; N - 1] = from_fn(|k| tree[k + 1]);
     let ring = Joints::tree(between).closed_by([last]);
     let free = Stepper::jointed(scene([rod(1.0); N], 0.0, Vector3::z()), ring, 0.01).unwrap();
@@ -158,7 +158,7 @@ fn momenta_of_a_ring() {
 
 /// Three links of one metre with these masses between pivots so far apart, under gravity.
 fn garland(masses: [f64; 3], apart: f64) -> Held<BallJoint, 3, 3, 3, 1> {
-    let joints = Joints::tree(chained()).closed_by([Joined::to_space(ball(Vector3::x() * apart, RIGHT), 2)]);
+    let joints = Joints::tree(chained()).closed_by([PlacedJoint::to_space(ball(Vector3::x() * apart, RIGHT), 2)]);
     Stepper::jointed(scene(masses.map(rod), 9.81, Vector3::z()), joints, 0.002).unwrap()
 }
 
@@ -203,7 +203,7 @@ fn a_loop_that_is_stretched_names_the_joint() {
 #[test]
 fn a_singular_position_names_the_joint() {
     let joints = |apart: f64| {
-        let last = Joined::to_space(ball(Vector3::x() * apart, RIGHT), 1);
+        let last = PlacedJoint::to_space(ball(Vector3::x() * apart, RIGHT), 1);
         Joints::tree(chained::<2>()).closed_by([last])
     };
     let scene = scene([rod(1.0); 2], 9.81, Vector3::z());
@@ -253,18 +253,19 @@ fn redundant_pins_are_named() {
     let pin = |above, below| Joint::Pin(PinJoint { above, below, axis_above: Vector3::y(), axis_below: Vector3::y() });
     let (places, corner) = row([0.9, 0.0, -0.9]);
     let tree = |last| {
-        let pins = [Joined::to_space(pin(Vector3::zeros(), LEFT), 0), Joined::between(pin(RIGHT, LEFT), 0, 1)];
-        Joints::tree([pins[0], pins[1], Joined::between(last, 1, 2)])
+        let pins =
+            [PlacedJoint::to_space(pin(Vector3::zeros(), LEFT), 0), PlacedJoint::between(pin(RIGHT, LEFT), 0, 1)];
+        Joints::tree([pins[0], pins[1], PlacedJoint::between(last, 1, 2)])
     };
     let scene = scene([rod(1.0); 3], 9.81, Vector3::z());
     let still = Bodies([Vector6::zeros(); 3]);
-    let last = Joined::to_space(pin(corner, RIGHT), 2);
+    let last = PlacedJoint::to_space(pin(corner, RIGHT), 2);
     let redundant = Stepper::jointed(scene, tree(pin(RIGHT, LEFT)).closed_by([last]), 0.005).unwrap();
     let error = redundant.start(places, still).unwrap_err();
     println!("{error}");
     assert!(matches!(error, SetupError::RedundantJoint { joint: 3, .. }));
     // With balls at both ends of the last body it is a linkage that turns one way, and that body about itself.
-    let last = Joined::to_space(Joint::Ball(ball(corner, RIGHT)), 2);
+    let last = PlacedJoint::to_space(Joint::Ball(ball(corner, RIGHT)), 2);
     let joints = tree(Joint::Ball(ball(RIGHT, LEFT))).closed_by([last]);
     let linkage = Stepper::jointed(scene, joints, 0.005).unwrap();
     let mut state = linkage.start(places, still).unwrap();
@@ -288,8 +289,8 @@ fn two_loops() {
     let fourth = SO3::exp(Vector3::z() * 1.1);
     let along = fourth.as_matrix() * Vector3::x();
     let [first, second, third] = chained();
-    let last = Joined::to_space(ball(corner, RIGHT), 2);
-    let others = [Joined::between(knot, 1, 3), Joined::to_space(ball(start + along, RIGHT), 3)];
+    let last = PlacedJoint::to_space(ball(corner, RIGHT), 2);
+    let others = [PlacedJoint::between(knot, 1, 3), PlacedJoint::to_space(ball(start + along, RIGHT), 3)];
     let all = [first, second, third, last, others[0], others[1]];
     let places = [places[0], places[1], places[2], (fourth, R3::from(start + along * 0.5))];
     let mut random = Random::new(12);

@@ -13,8 +13,8 @@ use declarations::FallingBody;
 use declarations::motions::number;
 use liestep::groups::{Advected as _, CayleyRetraction, LieGroup as _, R3, Retraction};
 use liestep::laws::samples::derivative;
-use liestep::mechanics::{DiscreteLagrangian, Each, Placed};
-use liestep::methods::{BallJoint, Constraint, Joined, Jointed, Place};
+use liestep::mechanics::{DiscreteLagrangian, Each, Placement};
+use liestep::methods::{BallJoint, Constraint, JointedBodies, Place, PlacedJoint};
 use liestep::motion::{Integrator, Motion};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, Stepper};
@@ -23,10 +23,10 @@ use serde_json::Value;
 
 use super::{Body, six};
 
-type Scene<const N: usize> = Placed<Each<N>, FallingBody, N>;
+type Scene<const N: usize> = Placement<Each<N>, FallingBody, N>;
 
 type Held<C, const K: usize, const N: usize, const T: usize, const L: usize> =
-    Stepper<Scene<N>, Jointed<Scene<N>, C, K, N, T, L>>;
+    Stepper<Scene<N>, JointedBodies<Scene<N>, C, K, N, T, L>>;
 type Components<const N: usize> = Bodies<Vector6<f64>, N>;
 
 const EPSILON: f64 = f64::EPSILON;
@@ -55,10 +55,10 @@ fn ball(above: Vector3<f64>, below: Vector3<f64>) -> BallJoint {
 }
 
 /// Rods one after the other, the first from the origin.
-fn chained<const N: usize>() -> [Joined<BallJoint>; N] {
+fn chained<const N: usize>() -> [PlacedJoint<BallJoint>; N] {
     from_fn(|k| match k {
-        0 => Joined::to_space(ball(Vector3::zeros(), LEFT), 0),
-        _ => Joined::between(ball(RIGHT, LEFT), k - 1, k),
+        0 => PlacedJoint::to_space(ball(Vector3::zeros(), LEFT), 0),
+        _ => PlacedJoint::between(ball(RIGHT, LEFT), k - 1, k),
     })
 }
 
@@ -116,11 +116,11 @@ fn moved(body: &Body, k: usize, s: f64) -> Body {
 /// How much of an impulse on bodies at these places does work while the joints stay closed: what of it isn't in the span
 /// of their slopes, by differences of what they compare.
 fn working<C: Constraint<K>, const K: usize, const N: usize>(
-    joints: &[Joined<C>],
+    joints: &[PlacedJoint<C>],
     bodies: &[Body; N],
     impulse: &Components<N>,
 ) -> f64 {
-    let gap = |joined: &Joined<C>, bodies: &[Body; N]| {
+    let gap = |joined: &PlacedJoint<C>, bodies: &[Body; N]| {
         let above = joined.above.map_or(Place::SPACE, |above| place(&bodies[above]));
         joined.joint.gap(&above, &place(&bodies[joined.below]))
     };
@@ -143,7 +143,7 @@ fn working<C: Constraint<K>, const K: usize, const N: usize>(
 /// Half of what is given to the step is given at either end.
 fn assert_no_work<S, C, const K: usize, const N: usize>(
     stepper: (&S, f64),
-    joints: &[Joined<C>],
+    joints: &[PlacedJoint<C>],
     given: &Components<N>,
     [before, after]: [&Motion<[Body; N], S::Advected>; 2],
 ) where

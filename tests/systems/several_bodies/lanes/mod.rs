@@ -7,11 +7,11 @@ use core::fmt::Debug;
 use declarations::{Alike, DoublePendulum, FloatingBody, PointSpring, TwoBodies};
 use liestep::groups::{ExponentialRetraction, R1, R2, R3, Retraction as _, SE3};
 use liestep::laws::samples::Random;
-use liestep::mechanics::{Along, Between, Coupled, Each, On, Pairs, Regular};
+use liestep::mechanics::{Along, Between, Coupling, Each, On, Pairs, Regular};
 use liestep::methods::CompositionScheme;
-use liestep::motion::{Batch, Batchable, Declared, Integrator};
+use liestep::motion::{Batch, Batchable, Integrator, OwnStep};
 use liestep::numbers::{Bodies, InLanes, Lanes as _};
-use liestep::with::Compensated;
+use liestep::with::CompensatedSums;
 use liestep::{NonstandardInertia, SO3, SetupError, StateOf, StepError, Stepper, lagrangian};
 use nalgebra::{Matrix3, RealField, SVector, Vector3, Vector6};
 use simba::simd::AutoF64x4;
@@ -83,7 +83,7 @@ fn compensated<L: Regular<Scalar = f64>>((stepper, state): (Stepper<L>, StateOf<
     (stepper, state)
 }
 
-type Carrying<L> = (Stepper<L, Compensated<Declared<L>>>, StateOf<L, Compensated<Declared<L>>>);
+type Carrying<L> = (Stepper<L, CompensatedSums<OwnStep<L>>>, StateOf<L, CompensatedSums<OwnStep<L>>>);
 
 type InLanesOf<M> = <<M as InLanes<AutoF64x4>>::Together as Integrator>::State;
 
@@ -335,7 +335,7 @@ fn each_lane_of_bodies_on_springs_is_one() {
     });
     assert_each_is_alone(&loose, 200);
     let stiff = parts.map(|(bodies, [a, b], start)| {
-        started(bodies + Coupled::<3>::of([StiffSpring { k: 30.0 + a.x, a, b }]), 0.02, start)
+        started(bodies + Coupling::<3>::of([StiffSpring { k: 30.0 + a.x, a, b }]), 0.02, start)
     });
     assert_each_is_alone(&stiff, 200);
 }

@@ -5,7 +5,7 @@ use core::fmt::Debug;
 use declarations::Alike;
 use liestep::groups::LieGroup as _;
 use liestep::laws::samples::Random;
-use liestep::mechanics::{Along, Each, Placed, Sum};
+use liestep::mechanics::{Along, Each, Placement, Sum};
 use liestep::motion::{Batchable, Integrator};
 use liestep::numbers::{Bodies, Lanes as _};
 use liestep::{SO3, StepError, Stepper};
@@ -15,7 +15,7 @@ use simba::simd::AutoF64x4;
 use super::{Turning, assert_each_is_alone, compensated, inertia, links, start, together, vector};
 use crate::several_bodies::{assert_same, started};
 
-type Row = Sum<Placed<Each<4>, Turning<f64>, 4>, Placed<Along<4>, Alike<f64>, 1>>;
+type Row = Sum<Placement<Each<4>, Turning<f64>, 4>, Placement<Along<4>, Alike<f64>, 1>>;
 
 /// Four that would like to stand alike.
 fn row(random: &mut Random) -> Row {

@@ -67,7 +67,7 @@ use crate::numbers::{Kernel, Number, Numbers, Real, Vectors, dispatch, is_finite
 ///
 /// # Derivatives
 ///
-/// By six [parameters](crate::gradients::Linearised::parameters), not by the six entries of the inertia: where two
+/// By six [parameters](crate::gradients::Linearisation::parameters), not by the six entries of the inertia: where two
 /// moments are the same, the axes have no derivative by an entry beside the diagonal.
 ///
 /// - Three with the name `moment`, kg m². Where the body's axes are the principal ones they are in the order of these;
