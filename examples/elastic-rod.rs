@@ -11,7 +11,7 @@ use std::error::Error;
 use std::time::Instant;
 
 use liestep::groups::R3;
-use liestep::mechanics::{Along, Coupled, Each, Placed, Regular};
+use liestep::mechanics::{Along, Coupling, Each, Placement, Regular};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::{Vector3, Vector6};
@@ -58,14 +58,14 @@ fn bound() -> f64 {
     2.0 / (12.0 * STIFF.0).sqrt()
 }
 
-fn pieces<const N: usize>() -> Result<Placed<Each<N>, FloatingBody, 1>, Failure> {
+fn pieces<const N: usize>() -> Result<Placement<Each<N>, FloatingBody, 1>, Failure> {
     let J_d = NonstandardInertia::from_diagonal(Vector3::new(1.0 / 12.0, 1e-3, 1e-3))?;
     Ok(Each::<N>::of([FloatingBody { m: 1.0, J_d }]))
 }
 
 fn middle<const N: usize>() -> Result<impl Rod<N>, Failure> {
     let (k, c) = STIFF;
-    Ok(pieces::<N>()? + Coupled::<N>::of([RodElement { k, c, a: HALF, b: -HALF }]))
+    Ok(pieces::<N>()? + Coupling::<N>::of([RodElement { k, c, a: HALF, b: -HALF }]))
 }
 
 fn ends<const N: usize>() -> Result<impl Rod<N>, Failure> {

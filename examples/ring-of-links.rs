@@ -10,7 +10,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use liestep::groups::R3;
 use liestep::mechanics::Each;
-use liestep::methods::{BallJoint, Joined, Joints};
+use liestep::methods::{BallJoint, Joints, PlacedJoint};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, Stepper};
 use nalgebra::{Vector3, Vector6};
@@ -28,18 +28,18 @@ fn rod() -> Result<FallingBody, Box<dyn Error>> {
 }
 
 /// Between the ends of two rods, and at the beginning of the first, which hangs at the origin.
-fn joint(below: usize) -> Joined<BallJoint> {
+fn joint(below: usize) -> PlacedJoint<BallJoint> {
     let [left, right] = [-0.5, 0.5].map(|x| Vector3::x() * x);
     match below.checked_sub(1) {
-        None => Joined::to_space(BallJoint { above: Vector3::zeros(), below: left }, below),
-        Some(above) => Joined::between(BallJoint { above: right, below: left }, above, below),
+        None => PlacedJoint::to_space(BallJoint { above: Vector3::zeros(), below: left }, below),
+        Some(above) => PlacedJoint::between(BallJoint { above: right, below: left }, above, below),
     }
 }
 
 /// It is let go from a circle on its edge.
 fn main() -> Result<(), Box<dyn Error>> {
     const N: usize = 16;
-    let closing = Joined { above: Some(N - 1), below: 0, ..joint(1) };
+    let closing = PlacedJoint { above: Some(N - 1), below: 0, ..joint(1) };
     let joints = Joints::tree(from_fn::<_, N, _>(joint)).closed_by([closing]);
     let stepper = Stepper::jointed(Each::<N>::of([rod()?]), joints, 0.002)?;
     #[allow(clippy::cast_precision_loss)] // a small count

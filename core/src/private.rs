@@ -15,7 +15,7 @@ pub use crate::groups::{Generators, LieGroup, MatrixGroup, SO3};
 pub use crate::mechanics::{
     ContinuousLagrangian, DiscreteLagrangian, Effect, Force, LeftInvariant, Legendre, Limit, Operations, Parts,
     Residual, SceneVisitor, SecondDerivatives, SharedBy, StepDerivatives, Sum, Term, WithExpensiveKinetic, WithKinetic,
-    WithoutKinetic,
+    WithPace, WithoutKinetic,
 };
 pub use crate::methods::{Constraint, Place, Slope};
 pub use crate::numbers::{Blocks, Entries, InLanes, Lanes, Numbers, Real, real};

@@ -5,7 +5,9 @@ use core::f64::consts::TAU;
 use liestep::effects::GravityGradient;
 use liestep::groups::{Advected, LieGroup, R3};
 use liestep::mechanics::{Each, Effect, LeftInvariant, Pairs, Sum};
-use liestep::methods::{BallJoint, Chain, CompositionScheme, ExactBody, Flow, Joined, Joints, Link, SplittingScheme};
+use liestep::methods::{
+    BallJoint, Chain, CompositionScheme, ExactBody, Flow, Joints, Link, PlacedJoint, SplittingScheme,
+};
 use liestep::motion::{Integrator as _, Motion as At, Plan, Variable};
 use liestep::numbers::{Bodies, Entries as _};
 use liestep::prelude::*;
@@ -130,7 +132,7 @@ fn any_method_varies() {
     assert_varies("chain", |h| chain.stepper(h).unwrap(), start.unwrap());
     let joint = BallJoint { above: Vector3::zeros(), below: Vector3::z() };
     let body = Each::<1>::of([FallingBody { m: 1.0, J_d, g: 9.81, up }]);
-    let jointed = |h: f64| Stepper::jointed(body, Joints::tree([Joined::to_space(joint, 0)]), h).unwrap();
+    let jointed = |h: f64| Stepper::jointed(body, Joints::tree([PlacedJoint::to_space(joint, 0)]), h).unwrap();
     let place = [(SO3::identity(), R3::from(-Vector3::z()))];
     let start = jointed(0.01).start(place, Bodies([Vector6::new(0.0, 1.0, 0.5, -1.0, 0.0, 0.0)])).unwrap();
     assert_varies("joints", jointed, start);

@@ -9,6 +9,7 @@ use workbench::table::{aligned, number};
 
 use crate::measure::ladder;
 use crate::methods::{self, Prepared};
+use crate::report::microseconds;
 use crate::scenes::{Kind, Scene, error};
 
 /// The tolerances asked for.
@@ -103,8 +104,4 @@ fn add(rows: &mut Vec<Vec<String>>, scene: &Scene, t: f64, effort: (Effort, f64)
         }
         rows.push(row);
     }
-}
-
-fn microseconds(cost: f64) -> String {
-    format!("{:.1}", cost * 1e6)
 }

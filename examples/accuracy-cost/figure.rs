@@ -24,7 +24,7 @@ const KINDS: [(Kind, &str, RGBColor); 6] = [
     (Kind::Steps, "Stepper::new, composed", GREY),
     (Kind::OtherFlows, "split, another flow", GREEN),
     (Kind::Exact, "split, ExactBody", BLUE),
-    (Kind::Processed, "processed", BLACK),
+    (Kind::ProcessedSplitting, "processed", BLACK),
     (Kind::Collocation, "collocated", PURPLE),
 ];
 
@@ -34,7 +34,7 @@ enum Kind {
     Steps,
     OtherFlows,
     Exact,
-    Processed,
+    ProcessedSplitting,
     Collocation,
 }
 
@@ -44,7 +44,7 @@ fn kind(method: &Measured) -> Kind {
     match name {
         _ if method.family == Family::Rival => Kind::Rival,
         _ if name.starts_with("Gauss") => Kind::Collocation,
-        _ if name.starts_with("exact, processed") => Kind::Processed,
+        _ if name.starts_with("exact, processed") => Kind::ProcessedSplitting,
         _ if name.starts_with("exact") => Kind::Exact,
         _ if is_flow => Kind::OtherFlows,
         _ => Kind::Steps,

@@ -34,8 +34,6 @@ pub struct Method {
 pub enum Family {
     /// The Poisson structure and the momentum maps.
     Poisson,
-    /// The momentum maps, and the Poisson structure to the order of the method.
-    NearlyPoisson,
     /// Nothing: an explicit Runge–Kutta method.
     Rival,
 }

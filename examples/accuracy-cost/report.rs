@@ -36,7 +36,7 @@ fn cheapest(methods: &[Measured], family: Family, error: f64) -> Option<(&str, f
 }
 
 /// Microseconds, to two digits.
-fn microseconds(cost: f64) -> String {
+pub(crate) fn microseconds(cost: f64) -> String {
     let value = cost * 1e6;
     if value < 9.95 { format!("{value:.1}") } else { format!("{value:.0}") }
 }
@@ -54,17 +54,9 @@ pub fn costs(methods: &[Measured]) -> String {
 
 /// The cheapest of our methods for each error, beside the cheapest rival.
 pub fn best(methods: &[Measured]) -> String {
-    let mut tables = vec![best_of(methods, Family::Poisson, "Poisson")];
-    if methods.iter().any(|method| method.family == Family::NearlyPoisson) {
-        tables.push(best_of(methods, Family::NearlyPoisson, "nearly Poisson"));
-    }
-    tables.join("\n\n")
-}
-
-fn best_of(methods: &[Measured], family: Family, what: &str) -> String {
-    let mut rows = vec![["error", what, "µs", "best rival", "µs", "ratio"].map(str::to_owned).to_vec()];
+    let mut rows = vec![["error", "Poisson", "µs", "best rival", "µs", "ratio"].map(str::to_owned).to_vec()];
     for error in ERRORS {
-        let (ours, rival) = (cheapest(methods, family, error), cheapest(methods, Family::Rival, error));
+        let (ours, rival) = (cheapest(methods, Family::Poisson, error), cheapest(methods, Family::Rival, error));
         let cell = |found: Option<(&str, f64)>| {
             found.map_or_else(|| ["–".to_owned(), "–".to_owned()], |(name, cost)| [name.to_owned(), microseconds(cost)])
         };

@@ -25,7 +25,7 @@ use std::process::ExitCode;
 use liestep::effects::{Gravity, PrincipalBody};
 use liestep::laws::samples::Random;
 use liestep::mechanics::{DiagonalNonstandardInertia, Sum};
-use liestep::methods::{Composed, CompositionScheme};
+use liestep::methods::{Composition, CompositionScheme};
 use liestep::motion::Motion;
 use liestep::{SO3, Stepper};
 use liestep_control::{Estimate, Fit, Verdict};
@@ -43,7 +43,7 @@ const BEGINNINGS: [usize; 3] = [100, 250, 500];
 
 /// A scene with a body in its principal axes.
 type Top = Sum<PrincipalBody, Gravity>;
-type Fitted = Fit<Top, Composed<Top>>;
+type Fitted = Fit<Top, Composition<Top>>;
 
 const HELP: &str = "Fits the inertia of a top to the readings of a gyroscope
 
@@ -78,7 +78,7 @@ fn inertia(moments: &Vector3<f64>) -> Vector3<f64> {
 }
 
 impl Reference {
-    fn stepper(&self, scheme: CompositionScheme) -> Result<Stepper<Top, Composed<Top>>, Failure> {
+    fn stepper(&self, scheme: CompositionScheme) -> Result<Stepper<Top, Composition<Top>>, Failure> {
         let body = PrincipalBody { J_d: DiagonalNonstandardInertia::from_diagonal(self.moments)? };
         let gravity = Gravity { m: 1.0, g: 9.81, rho: self.rho, up: Vector3::z() };
         Ok(Stepper::composed(body + gravity, STEP, scheme)?)

@@ -3,7 +3,7 @@
 //! Each point of the grid is a pair of members, a hair's breadth apart at the start. What is drawn is the exponent over
 //! a finite time, `ln(d(T)/d(0))/T`: of a regular motion it falls with `T` like `ln T/T`, of a chaotic one it stays.
 //!
-//! All exponents of one motion are given by `Linearised::lyapunov_exponents`. Its tangent maps are of one motion alone,
+//! All exponents of one motion are given by `Linearisation::lyapunov_exponents`. Its tangent maps are of one motion alone,
 //! whereas pairs are members like any, in lanes; and the map shows the largest exponent only.
 
 use liestep::effects::{Gravity, PrincipalBody};

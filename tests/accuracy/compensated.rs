@@ -4,9 +4,9 @@ use std::sync::OnceLock;
 
 use checks::random::Random;
 use declarations::{HeavyTop, Motion};
-use liestep::motion::{self, Declared};
+use liestep::motion::{self, OwnStep};
 use liestep::prelude::*;
-use liestep::with::Compensated;
+use liestep::with::CompensatedSums;
 use nalgebra::{SVector, Vector3};
 use workbench::measure::{order, relative, steps_in};
 
@@ -142,7 +142,7 @@ fn t4_tiny_steps() {
     assert!(error < 5e-16, "{error:e}");
 }
 
-fn compensated(top: HeavyTop, h: f64) -> Stepper<HeavyTop, Compensated<Declared<HeavyTop>>> {
+fn compensated(top: HeavyTop, h: f64) -> Stepper<HeavyTop, CompensatedSums<OwnStep<HeavyTop>>> {
     Stepper::new(top, h).unwrap().compensated()
 }
 

@@ -13,6 +13,7 @@ mod for_accuracy;
 mod gauss;
 mod higher_order;
 mod many_digits;
+mod pace;
 mod processed;
 mod refinement;
 mod splitting;

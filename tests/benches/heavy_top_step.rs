@@ -23,9 +23,9 @@ use core::hint::black_box;
 use std::time::Instant;
 
 use declarations::HeavyTop;
-use liestep::motion::{Declared, WarmStart};
+use liestep::motion::{OwnStep, WarmStart};
 use liestep::prelude::*;
-use liestep::with::{Compensated as Plan, MemoryWithCarry};
+use liestep::with::{CompensatedSums as Plan, MemoryWithCarry};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::top_equations::Equations;
 
@@ -39,7 +39,7 @@ const ROUNDS: usize = 300;
 
 type Derived = Stepper<HeavyTop>;
 type DerivedState = State<SO3, Vector3<f64>>;
-type Compensated = Stepper<HeavyTop, Plan<Declared<HeavyTop>>>;
+type Compensated = Stepper<HeavyTop, Plan<OwnStep<HeavyTop>>>;
 type CompensatedMotion = State<SO3, Vector3<f64>, MemoryWithCarry<WarmStart<Vector3<f64>>, SO3, Vector3<f64>>>;
 
 fn derived() -> (Derived, DerivedState) {

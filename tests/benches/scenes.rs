@@ -14,17 +14,18 @@ mod counting;
 mod files;
 mod stepping;
 
-use declarations::{DoublePendulum, HeavyTop};
+use declarations::{DoublePendulum, EqualNeedle, HeavyTop, Needle};
 use liestep::effects::{
     CayleyBody, Dipole, Drag, FourthOrderBody, GeodesicBody, GravityGradient, MagneticDamping, Rotor, SixthOrderBody,
     Spring, Thrust, Torque,
 };
 use liestep::mechanics::Regular;
+use liestep::motion::Plan;
 use liestep::prelude::*;
 use nalgebra::Vector3;
 
 use counting::{Uncounted, built, instructions};
-use stepping::{Begin, Count, Time, Visit};
+use stepping::{Count, Ready, Time, Visit};
 
 /// Body and rotor in one piece.
 #[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + spin.dot(&vee(F)))]
@@ -58,6 +59,15 @@ fn visit_all(visit: &mut impl Visit) {
     visit.visit("body of sixth order", SixthOrderBody { J });
     visit.visit("body, full inertia", RigidBody { J_d: J.to_nonstandard() });
     visit.visit("double pendulum", double_pendulum());
+    let needle @ Needle { J_d, a, rho, delta, .. } = Needle::new(0.05);
+    let momentum = Vector3::new(0.9, 0.15, 0.3);
+    // As many steps of either in 12 s.
+    let equal = Stepper::new(EqualNeedle { J_d, a, rho, delta }, 0.006).expect("a usable step");
+    let start = equal.start_with_momentum(SO3::identity(), momentum).expect("a usable start");
+    visit.visit_from("needle", (equal, start));
+    let paced = Stepper::new(needle, 0.01).and_then(Stepper::paced).expect("a usable step");
+    let start = paced.start_with_momentum(SO3::identity(), momentum).expect("a usable start");
+    visit.visit_from("needle with its pace", (paced, start));
 }
 
 /// Two links of unit mass and length.
@@ -86,7 +96,7 @@ const COUNTED_OF_FILES: u32 = 40_000;
 struct Instructions(Result<(), Uncounted>);
 
 impl Visit for Instructions {
-    fn visit<L: Regular<Scalar = f64, Group: Begin>>(&mut self, name: &'static str, _: L) {
+    fn visit_from<L: Regular<Scalar = f64>, P: Plan<L>>(&mut self, name: &'static str, _: Ready<L, P>) {
         let count = || -> Result<(), Uncounted> {
             let steps = instructions(&std::env::current_exe()?, &["count", name], COUNTED)?;
             println!("{name:<28}{steps:>8.1} instructions a step");

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use liestep::groups::LieGroup;
 use liestep::mechanics::Regular;
+use liestep::motion::Plan;
 use liestep::{SO3, StateOf, Stepper};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
@@ -13,13 +14,24 @@ const STEP: f64 = 0.01;
 const BATCH: u32 = 20_000;
 const ROUNDS: usize = 100;
 
+/// A stepper and a start.
+pub(crate) type Ready<L, P> = (Stepper<L, P>, StateOf<L, P>);
+
 /// What is done with each scene.
 pub(crate) trait Visit {
-    fn visit<L: Regular<Scalar = f64, Group: Begin>>(&mut self, name: &'static str, scene: L);
+    fn visit<L: Regular<Scalar = f64, Group: Begin>>(&mut self, name: &'static str, scene: L) {
+        let stepper = Stepper::new(scene, STEP).expect("a usable step");
+        let (attitude, velocity) = L::Group::begin();
+        let state = stepper.start(attitude, velocity).expect("a usable start");
+        self.visit_from(name, (stepper, state));
+    }
+
+    /// By any plan, from a state.
+    fn visit_from<L: Regular<Scalar = f64>, P: Plan<L>>(&mut self, name: &'static str, ready: Ready<L, P>);
 }
 
 #[inline(never)]
-fn run<L: Regular<Scalar = f64>>(stepper: &Stepper<L>, state: &mut StateOf<L>, steps: u32) {
+fn run<L: Regular<Scalar = f64>, P: Plan<L>>(stepper: &Stepper<L, P>, state: &mut StateOf<L, P>, steps: u32) {
     for _ in 0..steps {
         stepper.step(state).expect("a solvable step");
     }
@@ -46,25 +58,17 @@ impl Begin for (SO3, SO3) {
     }
 }
 
-fn start<L: Regular<Scalar = f64, Group: Begin>>(scene: L) -> (Stepper<L>, StateOf<L>) {
-    let stepper = Stepper::new(scene, STEP).expect("a usable step");
-    let (attitude, velocity) = L::Group::begin();
-    let state = stepper.start(attitude, velocity).expect("a usable start");
-    (stepper, state)
-}
-
 /// Times every scene.
 pub(crate) struct Time;
 
 impl Visit for Time {
-    fn visit<L: Regular<Scalar = f64, Group: Begin>>(&mut self, name: &'static str, scene: L) {
-        let (stepper, first) = start(scene);
+    fn visit_from<L: Regular<Scalar = f64>, P: Plan<L>>(&mut self, name: &'static str, (by, from): Ready<L, P>) {
         let mut times: Vec<f64> = (0..ROUNDS)
             .map(|_| {
                 // From the beginning: a torque would wind the body up until no step can be made.
-                let mut state = first;
+                let mut state = from;
                 let start = Instant::now();
-                run(black_box(&stepper), black_box(&mut state), BATCH);
+                run(black_box(&by), black_box(&mut state), BATCH);
                 start.elapsed().as_secs_f64() * 1e9 / f64::from(BATCH)
             })
             .collect();
@@ -88,11 +92,10 @@ impl<'a> Count<'a> {
 }
 
 impl Visit for Count<'_> {
-    fn visit<L: Regular<Scalar = f64, Group: Begin>>(&mut self, name: &'static str, scene: L) {
+    fn visit_from<L: Regular<Scalar = f64>, P: Plan<L>>(&mut self, name: &'static str, (by, mut from): Ready<L, P>) {
         if name == self.wanted {
             self.found = true;
-            let (stepper, mut state) = start(scene);
-            run(black_box(&stepper), black_box(&mut state), self.steps);
+            run(black_box(&by), black_box(&mut from), self.steps);
         }
     }
 }

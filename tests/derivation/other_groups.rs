@@ -145,7 +145,7 @@ fn kinds_of_advected_parameters() {
     derived_terms(&kinds());
 }
 
-/// Where `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`, a step of `−h` undoes one of `h`; `tests/systems/reversal.rs` has other groups, and
+/// Where `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`, a step of `−h` undoes one of `h`; `tests/systems/structure.rs` has other groups, and
 /// `one_sided.rs` there what doesn't.
 #[test]
 fn self_adjoint_declarations_reverse() {

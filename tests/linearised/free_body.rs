@@ -2,7 +2,7 @@
 
 use liestep::effects::{Gravity, RigidBody};
 use liestep::mechanics::Sum;
-use liestep::methods::{ExactBody, Split, SplittingScheme};
+use liestep::methods::{ExactBody, Splitting, SplittingScheme};
 use liestep::{SO3, Stepper};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use workbench::runge_kutta;
@@ -10,7 +10,7 @@ use workbench::runge_kutta;
 use super::dual::Columns;
 use super::scenes::{MOMENTS, exact_flow, heavy};
 
-type Free = Stepper<Sum<RigidBody, Gravity>, Split<Sum<RigidBody, Gravity>, ExactBody>>;
+type Free = Stepper<Sum<RigidBody, Gravity>, Splitting<Sum<RigidBody, Gravity>, ExactBody>>;
 
 /// Where the library doubles the closed form; below, a drift has polynomials or a curve of at most two doublings.
 const IS_DOUBLED: f64 = 0.8;

@@ -4,7 +4,7 @@ use liestep::effects::{Gravity, PrincipalBody};
 use liestep::gradients::{Cotangent, Gradient, Linearisable, Tape};
 use liestep::mechanics::{DiagonalNonstandardInertia, Effect, Inertia, Sum, Term as _};
 use liestep::methods::{
-    CompositionScheme, ExactBody, Processed, ProcessedScheme, Split, SplittingScheme, SymmetricBody,
+    CompositionScheme, ExactBody, ProcessedScheme, ProcessedSplitting, Splitting, SplittingScheme, SymmetricBody,
 };
 use liestep::{SO3, StepError, Stepper};
 use nalgebra::{SMatrix, Vector3};
@@ -48,7 +48,7 @@ fn the_transition_matrix_keeps_the_symplectic_form() {
 }
 
 /// A splitting with an exact flow; on the axis, its spin is made apart.
-fn symmetric(beside: f64) -> Stepper<Top, Split<Top, SymmetricBody>> {
+fn symmetric(beside: f64) -> Stepper<Top, Splitting<Top, SymmetricBody>> {
     let moments = Vector3::new(3.0, 3.0, 4.5);
     let body = PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(moments).expect("a body") };
     let scene = body + Gravity { rho: Vector3::new(beside, 0.0, 0.4), ..top().second };
@@ -57,11 +57,11 @@ fn symmetric(beside: f64) -> Stepper<Top, Split<Top, SymmetricBody>> {
     Stepper::split(scene, 0.01, flow, SplittingScheme::NYSTROM_6).expect("a stepper")
 }
 
-fn exact(scene: Top, h: f64, scheme: SplittingScheme) -> Stepper<Top, Split<Top, ExactBody>> {
+fn exact(scene: Top, h: f64, scheme: SplittingScheme) -> Stepper<Top, Splitting<Top, ExactBody>> {
     Stepper::split(scene, h, exact_body(&scene), scheme).expect("a stepper")
 }
 
-fn processed(scheme: ProcessedScheme, h: f64) -> Stepper<Top, Processed<Top, ExactBody>> {
+fn processed(scheme: ProcessedScheme, h: f64) -> Stepper<Top, ProcessedSplitting<Top, ExactBody>> {
     Stepper::processed(top(), h, exact_body(&top()), scheme).expect("a stepper")
 }
 

@@ -50,13 +50,6 @@ bounded! {
     sliding_top on_so3 magnet on_so3 tethered_plate on_se2 elastic_flow on_sl2
 }
 
-/// That of (3.13) without gravity is exact.
-#[test]
-fn free_body() {
-    let [largest] = deviations(&samples::free_body(), samples::on_so3(), STEP, [20_000]);
-    assert!(largest < 1e-12, "{largest:e}");
-}
-
 /// Floating in balance, as a heavier body sinks faster and faster, up to where the step has no solution.
 #[test]
 fn underwater_body() {

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use liestep::effects::{Gravity, PrincipalBody};
 use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, Sum};
-use liestep::methods::{Processed, ProcessedScheme, Split, SplittingScheme, SymmetricBody};
+use liestep::methods::{ProcessedScheme, ProcessedSplitting, Splitting, SplittingScheme, SymmetricBody};
 use liestep::motion::{Batch, Batchable, Integrator};
 use liestep::{SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -65,7 +65,7 @@ trait Scheme: Copy {
 }
 
 impl Scheme for SplittingScheme {
-    type Stepper = Stepper<Scene, Split<Scene, SymmetricBody>>;
+    type Stepper = Stepper<Scene, Splitting<Scene, SymmetricBody>>;
 
     fn name(self) -> &'static str {
         SplittingScheme::name(&self)
@@ -79,7 +79,7 @@ impl Scheme for SplittingScheme {
 }
 
 impl Scheme for ProcessedScheme {
-    type Stepper = Stepper<Scene, Processed<Scene, SymmetricBody>>;
+    type Stepper = Stepper<Scene, ProcessedSplitting<Scene, SymmetricBody>>;
 
     fn name(self) -> &'static str {
         ProcessedScheme::name(&self)

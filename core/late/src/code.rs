@@ -35,9 +35,9 @@ pub trait Backend<T: Real>: Copy + Debug + 'static {
 
 /// Programs are read operation by operation: safe, on every machine, and in lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Interpreted;
+pub struct Interpreter;
 
-impl<T: Real> Backend<T> for Interpreted {
+impl<T: Real> Backend<T> for Interpreter {
     type Code = Code;
     type Image = Box<[T]>;
 
@@ -165,10 +165,11 @@ fn by_kind(program: &Program) -> Vec<usize> {
 
 impl Code {
     fn of(program: &Program) -> Result<Self, LateError> {
-        if let Some(missing) = functions(program).find(|&&function| !exists(function)) {
-            return Err(LateError::Function(format!("{missing:?}")));
-        }
-        Self::allocated(program).ok_or(LateError::TooLarge)
+        let missing = program.operations.iter().find_map(|operation| match operation {
+            Operation::Apply(function, _) if !exists(*function) => Some(LateError::Function(format!("{function:?}"))),
+            _ => None,
+        });
+        missing.map_or_else(|| Self::allocated(program).ok_or(LateError::TooLarge), Err)
     }
 
     /// `None` of a program that needs more registers than there are names for.
@@ -207,7 +208,7 @@ impl Code {
     /// The first registers of every run with these constants.
     fn image<T: Real>(&self, constants: &[T]) -> Box<[T]> {
         let of = |&at: &usize| constants.get(at).copied().unwrap_or_else(|| real(f64::NAN));
-        self.constants.iter().map(of).chain(self.literals.iter().map(|&literal| real(literal))).collect()
+        self.constants.iter().map(of).collect()
     }
 
     #[inline(never)]
@@ -229,6 +230,7 @@ impl Code {
         let (known, open) = registers.split_at_mut(image.len().min(registers.len()));
         known.copy_from_slice(&image[..known.len()]);
         let mut open = open.iter_mut();
+        self.literals.iter().zip(&mut open).for_each(|(&literal, register)| *register = real(literal));
         for (array, places) in &self.inputs {
             let numbers = given.iter().find(|(given, _)| given == array).map_or(&[][..], |(_, numbers)| numbers);
             for (&at, register) in places.iter().zip(&mut open) {
@@ -310,13 +312,6 @@ const fn exists(function: Function) -> bool {
         Function::LogRatio(order) => order <= 6,
         _ => true,
     }
-}
-
-fn functions(program: &Program) -> impl Iterator<Item = &Function> {
-    program.operations.iter().filter_map(|operation| match operation {
-        Operation::Apply(function, _) => Some(function),
-        _ => None,
-    })
 }
 
 const fn kind(operation: Operation) -> Arithmetic {

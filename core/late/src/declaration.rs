@@ -7,7 +7,7 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 use liestep::mechanics::Parts;
 use liestep::numbers::{Blocks, Real};
-use liestep_derivation::{Action, Array, Program, Refusal, Staged, Stages, staged};
+use liestep_derivation::{Action, Array, Program, Refusal, StagedDeclaration, Stages, staged};
 use proc_macro2::{LexError, TokenStream};
 
 use crate::code::Backend;
@@ -17,7 +17,7 @@ use crate::sum::summed;
 /// A declaration with the programs of its stages. Each text is derived once and kept as long as the program runs.
 #[derive(Debug)]
 pub struct Declaration {
-    staged: Staged,
+    staged: StagedDeclaration,
     pub(crate) parts: Parts,
     pub(crate) apart: Blocks,
     /// What back ends have made of the programs.
@@ -26,9 +26,9 @@ pub struct Declaration {
 
 /// What was derived.
 impl Deref for Declaration {
-    type Target = Staged;
+    type Target = StagedDeclaration;
 
-    fn deref(&self) -> &Staged {
+    fn deref(&self) -> &StagedDeclaration {
         &self.staged
     }
 }
@@ -122,7 +122,10 @@ impl Declaration {
     }
 
     /// What is kept by this name, or is made and kept.
-    fn kept(name: &str, make: impl FnOnce() -> Result<Staged, LateError>) -> Result<&'static Self, LateError> {
+    fn kept(
+        name: &str,
+        make: impl FnOnce() -> Result<StagedDeclaration, LateError>,
+    ) -> Result<&'static Self, LateError> {
         let known = || KEPT.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(declaration) = known().get(name) {
             return Ok(declaration);
@@ -135,7 +138,7 @@ impl Declaration {
         Ok(known().entry(name.to_owned()).or_insert_with(|| Box::leak(Box::new(declaration))))
     }
 
-    fn derived(text: &str) -> Result<Staged, LateError> {
+    fn derived(text: &str) -> Result<StagedDeclaration, LateError> {
         let tokens: TokenStream = text.parse().map_err(|error: LexError| {
             let place = error.span().start();
             let message = "a bracket isn't closed or opened, or a sign has no meaning here".to_owned();
@@ -155,7 +158,7 @@ impl Declaration {
         found.map(|(staged, _)| staged)
     }
 
-    fn of(staged: Staged) -> Self {
+    fn of(staged: StagedDeclaration) -> Self {
         let [unknown, kick_before, kick_after] = staged.parts;
         let apart = staged.blocks.iter().fold(Blocks::WHOLE, |blocks, &end| blocks.then(end, Blocks::WHOLE));
         Self { parts: Parts { unknown, kick_before, kick_after }, apart, made: Mutex::default(), staged }

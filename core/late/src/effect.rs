@@ -8,7 +8,7 @@ use liestep::numbers::{Blocks, Coordinates, Entries, Real, real};
 use liestep_derivation::{Array, Stages};
 
 use crate::carried::Slots;
-use crate::code::{Backend, Given, Interpreted};
+use crate::code::{Backend, Given, Interpreter};
 use crate::declaration::{All, Declaration, Ready, ready};
 use crate::term::{Late, entries, is_finite};
 
@@ -35,11 +35,14 @@ macro_rules! room {
     };
 }
 
-/// The entries of a value.
+/// The entries of a value, copied unless they stand one after the other.
 macro_rules! listed {
     ($name:ident = $value:expr) => {
         room!(room: G::Scalar, size_of_val($value).div_ceil(size_of::<G::Scalar>()));
-        let $name = filled($value, room);
+        let $name = match $value.in_place() {
+            Some(slice) => slice,
+            None => filled($value, room),
+        };
     };
 }
 
@@ -84,7 +87,7 @@ pub(crate) fn square<G: LieGroup>(outputs: &[G::Scalar]) -> Square<G> {
 
 /// The constants of a step.
 #[derive(Debug)]
-pub struct Constants<T: Real, B: Backend<T> = Interpreted>(pub(crate) Arc<Folded<T, B>>);
+pub struct Constants<T: Real, B: Backend<T> = Interpreter>(pub(crate) Arc<Folded<T, B>>);
 
 /// Numbers that don't change from step to step, and what runs with them.
 #[derive(Debug)]
@@ -232,15 +235,19 @@ where
 
     fn limit(&self, velocity: Option<&Vector<G>>, w: &W) -> Limit<Self> {
         listed!(advected = w);
-        listed!(given = velocity.unwrap_or(&Vector::<G>::zero()));
+        let zero = Vector::<G>::zero();
+        listed!(given = velocity.unwrap_or(&zero));
         let given = [(Array::Parameters, &*self.numbers), (Array::Advected, advected), (Array::Velocity, given)];
         if let (Some(_), Some(programs)) = (velocity, &self.stages.at_velocity) {
             let [l, momentum, hessian] = programs.each_ref().map(|program| alone::<_, B, _>(program, given));
             return Limit { l: l[0], momentum: vector(&momentum), hessian: square::<G>(&hessian) };
         }
+        // Where the inertia varies, each step asks for it.
         let entries = G::DIMENSION * G::DIMENSION;
-        let outputs = alone::<_, B, _>(&self.stages.at_rest, given);
-        let (inertia, bias) = (square::<G>(&outputs), vector(&outputs[entries..]));
+        room!(outputs: G::Scalar, entries + G::DIMENSION + 1);
+        let code = &self.stages.at_rest.code;
+        B::run(code, &B::image(code, &[]), given, outputs);
+        let (inertia, bias) = (square::<G>(outputs), vector(&outputs[entries..]));
         Limit::quadratic(velocity, inertia, bias, outputs[entries + G::DIMENSION])
     }
 
@@ -320,18 +327,32 @@ where
     fn kick_after(constants: &Self::Constants, increment: &Matrix<G>, next: &W) -> Vector<G> {
         let folded = &*constants.0;
         let (program, image) = (&folded.stages.kick_after, &folded.kick_after);
-        listed!(entries = increment);
-        listed!(next = next);
         room!(kick: G::Scalar, G::DIMENSION);
-        let given = [(Array::Increment, entries), (Array::Next, next)];
-        if program.reads(Array::Inverse) {
-            listed!(inverse = &G::from_increment(increment).inverse().matrix());
-            B::run(&program.code, image, [given[0], given[1], (Array::Inverse, inverse)], kick);
+        if program.reads(Array::Increment) || program.reads(Array::Inverse) {
+            kick_with_more::<G, W, B>((program, image), &{ *increment }, &{ *next }, kick);
         } else {
-            B::run(&program.code, image, given, kick);
+            let next = *next;
+            listed!(next = &next);
+            B::run(&program.code, image, [(Array::Next, next)], kick);
         }
         vector(kick)
     }
+}
+
+/// A kick that is written in the increment, too.
+#[inline(never)]
+fn kick_with_more<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
+    (program, image): (&Ready<B::Code>, &B::Image),
+    increment: &Matrix<G>,
+    next: &W,
+    kick: &mut [G::Scalar],
+) {
+    let is_read = program.reads(Array::Inverse);
+    let inverse = if is_read { G::from_increment(increment).inverse().matrix() } else { *increment };
+    listed!(increment = increment);
+    listed!(next = next);
+    listed!(inverse = &inverse);
+    B::run(&program.code, image, [(Array::Increment, increment), (Array::Next, next), (Array::Inverse, inverse)], kick);
 }
 
 /// What an iteration computes.
@@ -344,11 +365,13 @@ fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
 ) where
     CayleyRetraction: Retraction<G>,
 {
+    // What is lent stays in memory, so what is lent here are copies.
+    let half = *half;
     // Off SO(3) the system is written in the increment. That is called, and a step on SO(3) stays short.
     if program.reads(Array::Increment) || program.reads(Array::InverseIncrement) {
-        return iteration_with_more::<G, W, B>((program, image), terms, half, outputs);
+        return iteration_with_more::<G, W, B>((program, image), &{ *terms }, &{ half }, outputs);
     }
-    listed!(coordinates = half);
+    listed!(coordinates = &half);
     listed!(target = &terms.right_side);
     listed!(advected = &terms.advected);
     let given = [(Array::Half, coordinates), (Array::Target, target), (Array::Advected, advected)];

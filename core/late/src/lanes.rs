@@ -1,6 +1,5 @@
 //! Declarations in lanes: several bodies of one text, each with numbers of its own, in one step.
 
-use std::marker::PhantomData;
 use std::sync::Arc;
 
 use liestep::SO3;
@@ -87,25 +86,13 @@ where
     type Lane = Late<G::Over, W::Over, K, B>;
 
     fn splat(lane: &Self::Lane) -> Self {
-        Self {
-            declaration: lane.declaration,
-            stages: Arc::clone(&lane.stages),
-            numbers: lane.numbers.iter().map(|&number| G::Scalar::splat(number)).collect(),
-            specialise: None,
-            derivatives: lane.derivatives.clone(),
-            types: PhantomData,
-        }
+        let numbers = lane.numbers.iter().map(|&number| G::Scalar::splat(number)).collect();
+        Self::made(lane.declaration, &lane.stages, numbers, lane.derivatives.clone())
     }
 
     fn lane(&self, k: usize) -> Self::Lane {
-        Late {
-            declaration: self.declaration,
-            stages: Arc::clone(&self.stages),
-            numbers: self.numbers.iter().map(|number| number.extract(k)).collect(),
-            specialise: None,
-            derivatives: self.derivatives.clone(),
-            types: PhantomData,
-        }
+        let numbers = self.numbers.iter().map(|number| number.extract(k)).collect();
+        Late::made(self.declaration, &self.stages, numbers, self.derivatives.clone())
     }
 
     fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {

@@ -4,7 +4,7 @@
 //!
 //! `{lanes, gradients} → effect → term → declaration → sum → specialised → code → error`, and `{latex, written} → declaration`: a [`Declaration`] is what was derived of a text, with its
 //! stages as straight-line programs, or the `sum` of several; a [`Late`] is one with numbers, and an [`Effect`](liestep::mechanics::Effect) as any
-//! other. A [`Backend`] runs the programs: [`Interpreted`] here, machine code in `liestep-machine`. `carried` compares what
+//! other. A [`Backend`] runs the programs: [`Interpreter`] here, machine code in `liestep-machine`. `carried` compares what
 //! is advected with the type that carries it.
 #![forbid(unsafe_code)]
 
@@ -22,7 +22,7 @@ mod term;
 mod written;
 
 pub use carried::Slots;
-pub use code::{Backend, Code, Given, Interpreted, applied};
+pub use code::{Backend, Code, Given, Interpreter, applied};
 pub use declaration::{Declaration, kept};
 pub use effect::{Constants, StepTerms};
 pub use error::{LateError, Mistake};

@@ -1,6 +1,6 @@
 //! Several declarations in one: programs that add what theirs compute.
 
-use liestep_derivation::{Array, Carried, Operation, Parameter, Program, Role, Source, Staged, Stages};
+use liestep_derivation::{Array, Carried, Operation, Parameter, Program, Role, Source, StagedDeclaration, Stages};
 
 use crate::error::LateError;
 use crate::specialised::{Fold, Value};
@@ -8,7 +8,7 @@ use crate::specialised::{Fold, Value};
 /// A term, and where its numbers begin among those of all.
 #[derive(Clone, Copy)]
 struct Part<'a> {
-    staged: &'a Staged,
+    staged: &'a StagedDeclaration,
     parameters: usize,
     constants: usize,
     carried: usize,
@@ -50,7 +50,7 @@ impl Part<'_> {
 }
 
 /// Components of covectors.
-fn dimension(staged: &Staged) -> usize {
+fn dimension(staged: &StagedDeclaration) -> usize {
     staged.programs.kick_before.outputs.len()
 }
 
@@ -177,7 +177,7 @@ fn derivatives(parts: &[Part<'_>]) -> Option<[Program; 4]> {
 }
 
 /// The sum of several.
-pub(crate) fn summed(terms: &[&Staged]) -> Result<Staged, LateError> {
+pub(crate) fn summed(terms: &[&StagedDeclaration]) -> Result<StagedDeclaration, LateError> {
     let first = *terms.first().ok_or(LateError::Nothing)?;
     if let Some(other) = terms.iter().find(|staged| staged.factors != first.factors) {
         let names: Vec<&str> = other.factors.iter().map(|factor| factor.name.as_str()).collect();
@@ -206,8 +206,10 @@ pub(crate) fn summed(terms: &[&Staged]) -> Result<Staged, LateError> {
     }
     let solved = || terms.iter().filter(|staged| staged.parts[0]);
     let in_all = |end: &usize| solved().all(|staged| staged.blocks.contains(end));
-    let joined = |of: fn(&Staged) -> &str, by: &str| terms.iter().map(|staged| of(staged)).collect::<Vec<_>>().join(by);
-    Ok(Staged {
+    let joined = |of: fn(&StagedDeclaration) -> &str, by: &str| {
+        terms.iter().map(|staged| of(staged)).collect::<Vec<_>>().join(by)
+    };
+    Ok(StagedDeclaration {
         name: joined(|staged| &staged.name, " + "),
         role: terms.iter().map(|staged| staged.role).find(|&role| role == Role::Lagrangian).unwrap_or(first.role),
         factors: first.factors.clone(),

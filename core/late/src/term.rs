@@ -13,7 +13,7 @@ use liestep_derivation::{ParameterKind, Program, Stages};
 use nalgebra::Vector1;
 
 use crate::carried::Slots;
-use crate::code::{Backend, Interpreted};
+use crate::code::{Backend, Interpreter};
 use crate::declaration::{All, Declaration, Derivatives};
 use crate::error::LateError;
 use crate::specialised::specialised;
@@ -29,7 +29,7 @@ pub(crate) type Specialise<T> = fn(&Stages<Program>, &[T]) -> Stages<Program>;
 /// # Source
 ///
 /// As of every [`Effect`]: \[RDAE\], section 2.2.
-pub struct Late<G: LieGroup, W = (), K = WithKinetic, B: Backend<G::Scalar> = Interpreted> {
+pub struct Late<G: LieGroup, W = (), K = WithKinetic, B: Backend<G::Scalar> = Interpreter> {
     pub(crate) declaration: &'static Declaration,
     pub(crate) stages: All<B::Code>,
     /// Of all parameters, NaN where none was given.
@@ -99,14 +99,8 @@ impl<G: LieGroup, W: Advected<G> + Slots, K: KineticPart, B: Backend<G::Scalar>>
             return Err(LateError::Kinetic { declared: declaration.kinetic() });
         }
         let numbers = declaration.parameters.iter().map(|parameter| parameter.kind.len()).sum();
-        Ok(Self {
-            declaration,
-            stages: declaration.ready::<G::Scalar, B>()?,
-            numbers: vec![real(f64::NAN); numbers].into(),
-            specialise: None,
-            derivatives: None,
-            types: PhantomData,
-        })
+        let numbers = vec![real(f64::NAN); numbers].into();
+        Ok(Self::made(declaration, &declaration.ready::<G::Scalar, B>()?, numbers, None))
     }
 
     /// With the derivatives of its steps, by the state and by what they are given, for
@@ -159,6 +153,16 @@ impl<G: LieGroup<Scalar = f64>, W, K, B: Backend<f64>> Late<G, W, K, B> {
 }
 
 impl<G: LieGroup, W, K, B: Backend<G::Scalar>> Late<G, W, K, B> {
+    /// Of these programs, by any numbers.
+    pub(crate) fn made(
+        declaration: &'static Declaration,
+        stages: &All<B::Code>,
+        numbers: Arc<[G::Scalar]>,
+        derivatives: Option<Derivatives<B::Code>>,
+    ) -> Self {
+        Self { declaration, stages: Arc::clone(stages), numbers, specialise: None, derivatives, types: PhantomData }
+    }
+
     /// With a value for a parameter, that of a matrix row by row. An inertia may be given by its three moments, and a
     /// diagonal one by its tensor.
     ///

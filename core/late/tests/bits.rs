@@ -23,7 +23,7 @@ use liestep::mechanics::{
 use liestep::motion::Batch;
 use liestep::numbers::{Coordinates as _, Entries as _};
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper};
-use liestep_late::{Array, Backend, Declaration, Interpreted, Late, LateError, numbers, specialised};
+use liestep_late::{Array, Backend, Declaration, Interpreter, Late, LateError, numbers, specialised};
 use nalgebra::{Matrix3, Matrix5, Point, SMatrix, SVector, Vector3, Vector5};
 use simba::simd::AutoF64x4;
 
@@ -108,15 +108,9 @@ macro_rules! as_compiled_beside {
 #[test]
 fn tops() {
     as_compiled! {
-        HeavyTop { J_d m g rho up }
-        FullTop { J_d m g rho up }
-        CayleyTop { J weight rho up }
-        LogTop { J weight rho up }
-        LogTraceTop { I1 weight rho up }
-        ContinuousTop { J_d m g rho up }
-        SlidingTop { J_d m g rho up }
-        FreeBody { J_d }
-        Magnet { J_d m Q field gradient }
+        HeavyTop { J_d m g rho up } FullTop { J_d m g rho up } CayleyTop { J weight rho up }
+        LogTop { J weight rho up } LogTraceTop { I1 weight rho up } ContinuousTop { J_d m g rho up }
+        SlidingTop { J_d m g rho up } FreeBody { J_d } Magnet { J_d m Q field gradient }
         Satellite { J_d m tip GM centre }
     }
 }
@@ -132,9 +126,7 @@ fn a_spring() {
 #[test]
 fn of_higher_orders() {
     as_compiled! {
-        FourthOrderTop { J weight rho up }
-        SixthOrderTop { J weight rho up }
-        FourthOrderBody { J }
+        FourthOrderTop { J weight rho up } SixthOrderTop { J weight rho up } FourthOrderBody { J }
         SixthOrderBody { J }
     }
 }
@@ -142,23 +134,13 @@ fn of_higher_orders() {
 #[test]
 fn effects_of_the_library() {
     as_compiled! {
-        RigidBody { J_d }
-        PrincipalBody { J_d }
-        CayleyBody { J }
-        GeodesicBody { J }
+        RigidBody { J_d } PrincipalBody { J_d } CayleyBody { J } GeodesicBody { J }
     }
     as_compiled_beside! {
         RigidBody { J_d }:
-        Gravity { m g rho up }
-        GravityGradient { GM r J direction }
-        Dipole { moment field }
-        Spring { k length at anchor }
-        Rotor { spin }
-        Drag { c J }
-        MagneticDamping { k field J }
-        Thrust { at thrust }
-        Torque { torque }
-        Torquer { moment field }
+        Gravity { m g rho up } GravityGradient { GM r J direction } Dipole { moment field }
+        Spring { k length at anchor } Rotor { spin } Drag { c J } MagneticDamping { k field J } Thrust { at thrust }
+        Torque { torque } Torquer { moment field }
     }
 }
 
@@ -180,12 +162,8 @@ struct Vehicle {
 #[test]
 fn other_groups() {
     as_compiled! {
-        ElasticFlow { M k metric }
-        TetheredPlate { J k length p anchor }
-        Flyer { J }
-        OrbitingBody { J m1 p1 m2 p2 GM centre }
-        UnderwaterBody { J M origin weight height }
-        Vehicle { J k r up }
+        ElasticFlow { M k metric } TetheredPlate { J k length p anchor } Flyer { J }
+        OrbitingBody { J m1 p1 m2 p2 GM centre } UnderwaterBody { J M origin weight height } Vehicle { J k r up }
     }
     as_compiled_beside! { Flyer { J }: FluidDrag { C } Thruster { at thrust } }
 }
@@ -193,19 +171,14 @@ fn other_groups() {
 #[test]
 fn several_bodies() {
     as_compiled! {
-        DoublePendulum { J_1 J_2 rho s_1 s_2 g up }
-        TopOnCart { J_d s M g }
-        FloatingBody { m J_d }
-        FallingBody { m J_d g up }
-        SuspendedLoad { J_d m K m_load cable g up }
-        Gyrostat { J_d J_w a_1 a_2 a_3 }
+        DoublePendulum { J_1 J_2 rho s_1 s_2 g up } TopOnCart { J_d s M g } FloatingBody { m J_d }
+        FallingBody { m J_d g up } SuspendedLoad { J_d m K m_load cable g up } Gyrostat { J_d J_w a_1 a_2 a_3 }
     }
     as_compiled_beside! { DoublePendulum { J_1 J_2 rho s_1 s_2 g up }: Alike { kappa } }
     as_compiled! { TwoBodies { m_1 m_2 K_1 K_2 J_1 J_2 G } }
     as_compiled_beside! {
         TwoBodies { m_1 m_2 K_1 K_2 J_1 J_2 G }:
-        PointSpring { k a b }
-        RodElement { k c a b }
+        PointSpring { k a b } RodElement { k c a b }
     }
 }
 
@@ -391,11 +364,11 @@ fn specialised_programs_are_shorter() {
     };
     let programs = &late.declaration().programs;
     let parameters: Vec<f64> = numbers.iter().flat_map(|(_, value)| value.iter().copied()).collect();
-    let code = <Interpreted as Backend<f64>>::codes(&[&programs.constants]).expect("a program").remove(0);
+    let code = <Interpreter as Backend<f64>>::codes(&[&programs.constants]).expect("a program").remove(0);
     let mut constants = vec![0.0; programs.constants.outputs.len()];
     let given = [(Array::Step, &[0.01][..]), (Array::Parameters, &parameters)];
-    let image = <Interpreted as Backend<f64>>::image(&code, &[]);
-    Interpreted::run(&code, &image, given, &mut constants);
+    let image = <Interpreter as Backend<f64>>::image(&code, &[]);
+    Interpreter::run(&code, &image, given, &mut constants);
     let lengths = [programs, &specialised(programs, &constants)].map(|all| all.newton_system.operations.len());
     println!("{} operations an iteration, specialised {}", lengths[0], lengths[1]);
     // Three of them are products of the right side.

@@ -6,7 +6,7 @@ use liestep::effects::RigidBody;
 use liestep::groups::SE3;
 use liestep::mechanics::{Inertia, Term as _, WithExpensiveKinetic, WithoutKinetic};
 use liestep::{SO3, SetupError, Stepper};
-use liestep_late::{Backend, Declaration, Function, Interpreted, Late, LateError, Operation, Program};
+use liestep_late::{Backend, Declaration, Function, Interpreter, Late, LateError, Operation, Program};
 use nalgebra::{Matrix3, Vector3};
 
 const KINETIC: &str = "((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)";
@@ -155,7 +155,7 @@ fn missing_functions_are_told() {
     for function in [Function::Stumpff(11), Function::Stumpff(0), Function::LogRatio(7)] {
         let operations = vec![Operation::Apply(function, 0)];
         let program = Program { inputs: Vec::new(), literals: vec![1.0], operations, outputs: vec![1] };
-        let refused = <Interpreted as Backend<f64>>::codes(&[&program]).unwrap_err();
+        let refused = <Interpreter as Backend<f64>>::codes(&[&program]).unwrap_err();
         assert!(matches!(&refused, LateError::Function(name) if *name == format!("{function:?}")), "{refused}");
     }
 }

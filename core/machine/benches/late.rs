@@ -18,7 +18,7 @@ use declarations::{
 use liestep::mechanics::{Effect, Inertia, KineticPart, Regular, WithExpensiveKinetic, WithKinetic};
 use liestep::motion::{Batch, Batchable, Integrator};
 use liestep::{SO3, StateOf, Stepper};
-use liestep_late::{Backend, Declaration, Interpreted, Late, LateError, Program};
+use liestep_late::{Backend, Declaration, Interpreter, Late, LateError, Program};
 use liestep_machine::Machine;
 use nalgebra::Vector3;
 use simba::simd::AutoF64x8;
@@ -62,7 +62,7 @@ const KINDS: [&str; 6] =
 /// Makes steps of one kind.
 fn count(full: FullTop, kind: &str, steps: u32) -> Result<(), Uncounted> {
     let machine: LateTop<WithKinetic, Machine> = Late::like(&full)?;
-    let interpreted: LateTop<WithKinetic, Interpreted> = Late::like(&full)?;
+    let interpreted: LateTop<WithKinetic, Interpreter> = Late::like(&full)?;
     let mut run = match kind {
         "compiled" => alone(full),
         "machine code" => alone(machine),
@@ -127,12 +127,12 @@ where
     S: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
     K: KineticPart,
     LateTop<K, Machine>: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
-    LateTop<K, Interpreted>: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
-    Stepper<LateTop<K, Interpreted>>: Batchable<AutoF64x8> + Integrator<State = StateOf<LateTop<K, Interpreted>>>,
+    LateTop<K, Interpreter>: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
+    Stepper<LateTop<K, Interpreter>>: Batchable<AutoF64x8> + Integrator<State = StateOf<LateTop<K, Interpreter>>>,
     Stepper<LateTop<K, Machine>>: Batchable<AutoF64x8> + Integrator<State = StateOf<LateTop<K, Machine>>>,
 {
     let machine: LateTop<K, Machine> = Late::like(&scene).expect("a declaration");
-    let interpreted: LateTop<K, Interpreted> = Late::like(&scene).expect("a declaration");
+    let interpreted: LateTop<K, Interpreter> = Late::like(&scene).expect("a declaration");
     let lanes = [in_lanes(&interpreted), in_lanes(&machine)];
     let specialised = machine.clone().specialised();
     let mut kinds: Vec<_> = [alone(scene), alone(machine), alone(specialised), alone(interpreted)].into();

@@ -65,12 +65,8 @@ impl Function {
         // SAFETY: the module has been finalised, so that this is the address of a function; `translated` has declared it
         // with the signature of `Entry` and the calling convention of C.
         let entry = unsafe { std::mem::transmute::<*const u8, Entry>(code) };
-        let (mut least, mut read) = ([0; Array::COUNT], 0);
-        for (array, count) in translated::least(program) {
-            least[array as usize] = count;
-            read |= 1 << array as u16;
-        }
-        read &= !(1 << Array::Constants as u16);
+        let least = translated::least(program);
+        let read = translated::given(&least).fold(0, |read, array| read | 1 << array as u16);
         let memory = Mutex::new(Some(module));
         Ok(Self { entry, least, read, outputs: program.outputs.len(), lanes, memory })
     }

@@ -1,21 +1,21 @@
 //! Programs as code of Cranelift, operation by operation.
 
-use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-use cranelift_codegen::ir::{AbiParam, FuncRef, InstBuilder as _, MemFlagsData, types};
+use cranelift_codegen::ir::{AbiParam, FuncRef, GlobalValue, InstBuilder as _, MemFlagsData, Type, Value, types};
 use cranelift_codegen::isa::OwnedTargetIsa;
 use cranelift_codegen::settings::{self, Configurable as _};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_jit::{JITBuilder, JITModule};
-use cranelift_module::{FuncId, Linkage, Module as _, default_libcall_names};
+use cranelift_module::{DataDescription, FuncId, Linkage, Module as _, default_libcall_names};
 use liestep_late::{Array, Function, Operation, Program, applied};
 
 /// The machine that this runs on.
 pub(crate) fn isa() -> Result<OwnedTargetIsa, String> {
     static ISA: LazyLock<Result<OwnedTargetIsa, String>> = LazyLock::new(|| {
         let mut flags = settings::builder();
-        for (name, value) in [("opt_level", "speed"), ("enable_verifier", "false")] {
+        // An optimiser would read each constant once, and give it a register that others need.
+        for (name, value) in [("opt_level", "none"), ("enable_verifier", "false")] {
             flags.set(name, value).map_err(|error| error.to_string())?;
         }
         cranelift_native::builder()?.finish(settings::Flags::new(flags)).map_err(|error| error.to_string())
@@ -38,9 +38,15 @@ pub(crate) fn module(program: &Program, lanes: usize) -> Result<(JITModule, Func
     own.func.signature.params.extend([AbiParam::new(pointer); 3]);
     let id = module.declare_anonymous_function(&own.func.signature).map_err(|error| error.to_string())?;
     let called = module.declare_func_in_func(shared, &mut own.func);
+    let literals = module.declare_anonymous_data(false, false).map_err(|error| error.to_string())?;
+    let mut data = DataDescription::new();
+    data.set_align(16);
+    data.define(program.literals.iter().flat_map(|one| one.to_ne_bytes().repeat(lanes.min(2))).collect());
+    module.define_data(literals, &data).map_err(|error| error.to_string())?;
+    let literals = module.declare_data_in_func(literals, &mut own.func);
     let mut context = FunctionBuilderContext::new();
     let mut builder = FunctionBuilder::new(&mut own.func, &mut context);
-    write(&mut builder, (program, lanes), called, pointer)?;
+    write(&mut builder, (program, lanes), (called, literals), pointer)?;
     builder.finalize(module.target_config());
     module.define_function(id, &mut own).map_err(|error| error.to_string())?;
     module.finalize_definitions().map_err(|error| error.to_string())?;
@@ -52,36 +58,31 @@ fn offset(at: usize, lanes: usize) -> Result<i32, String> {
     i32::try_from(8 * at * lanes).map_err(|_| "an array is too long".to_owned())
 }
 
-fn write(
-    builder: &mut FunctionBuilder,
-    (program, lanes): (&Program, usize),
-    called: FuncRef,
-    pointer: types::Type,
-) -> Result<(), String> {
-    let block = builder.create_block();
-    builder.append_block_params_for_function_params(block);
-    builder.switch_to_block(block);
-    builder.seal_block(block);
-    let [constants, arrays, outputs] = [0, 1, 2].map(|at| builder.block_params(block)[at]);
-    // The caller has looked whether they are long enough. What is read doesn't change, so it is read where it is needed.
-    let written = MemFlagsData::new().with_notrap();
-    let trusted = written.with_readonly().with_can_move();
-    let number = if lanes > 1 { types::F64X2 } else { types::F64 };
-    let mut begins = BTreeMap::from([(Array::Constants, constants)]);
-    for (array, _) in least(program).into_iter().filter(|(array, _)| *array != Array::Constants) {
-        begins.insert(array, builder.ins().load(pointer, trusted, arrays, offset(array as usize, 1)?));
+/// What a program has come to.
+struct Registers {
+    /// The type of a number, or of two lanes.
+    number: Type,
+    flags: MemFlagsData,
+    /// Where inputs stand, and behind them literals.
+    places: Vec<(Value, i32)>,
+    /// Of these what has been read, and behind them results.
+    values: Vec<Option<Value>>,
+}
+
+impl Registers {
+    /// What hasn't been read is read where it is needed: an operation takes it from memory.
+    fn at(&self, builder: &mut FunctionBuilder, at: usize) -> Value {
+        self.values[at].unwrap_or_else(|| {
+            let (array, offset) = self.places[at];
+            builder.ins().load(self.number, self.flags.with_readonly(), array, offset)
+        })
     }
-    let mut values = Vec::new();
-    for source in &program.inputs {
-        values.push(builder.ins().load(number, trusted, begins[&source.array], offset(source.at, lanes)?));
-    }
-    for &literal in &program.literals {
-        let one = builder.ins().f64const(literal);
-        values.push(if lanes > 1 { builder.ins().splat(number, one) } else { one });
-    }
-    for &operation in &program.operations {
-        let [a, b] = operation.operands().map(|at| values[at]);
-        values.push(match operation {
+
+    fn result(&self, builder: &mut FunctionBuilder, operation: Operation, called: FuncRef) -> Value {
+        let [first, second] = operation.operands();
+        let a = self.at(builder, first);
+        let b = if second == first { a } else { self.at(builder, second) };
+        match operation {
             Operation::Negate(_) => builder.ins().fneg(a),
             Operation::Add(..) => builder.ins().fadd(a, b),
             Operation::Subtract(..) => builder.ins().fsub(a, b),
@@ -94,32 +95,93 @@ fn write(
                     let call = builder.ins().call(called, &[code, a]);
                     builder.inst_results(call)[0]
                 };
-                if lanes == 1 {
-                    apply(builder, a)
-                } else {
-                    let [first, second] = [0, 1].map(|lane| builder.ins().extractlane(a, lane));
-                    let [first, second] = [first, second].map(|a| apply(builder, a));
-                    let both = builder.ins().splat(number, first);
-                    builder.ins().insertlane(both, second, 1)
+                if self.number == types::F64 {
+                    return apply(builder, a);
                 }
+                let [first, second] = [0, 1].map(|lane| builder.ins().extractlane(a, lane));
+                let [first, second] = [first, second].map(|a| apply(builder, a));
+                both(builder, first, second)
             }
-        });
+        }
     }
-    for (at, &output) in program.outputs.iter().enumerate() {
-        builder.ins().store(written, values[output as usize], outputs, offset(at, lanes)?);
+}
+
+fn both(builder: &mut FunctionBuilder, first: Value, second: Value) -> Value {
+    let both = builder.ins().splat(types::F64X2, first);
+    builder.ins().insertlane(both, second, 1)
+}
+
+fn write(
+    builder: &mut FunctionBuilder,
+    (program, lanes): (&Program, usize),
+    (called, literals): (FuncRef, GlobalValue),
+    pointer: Type,
+) -> Result<(), String> {
+    let block = builder.create_block();
+    builder.append_block_params_for_function_params(block);
+    builder.switch_to_block(block);
+    builder.seal_block(block);
+    let [constants, arrays, outputs] = [0, 1, 2].map(|at| builder.block_params(block)[at]);
+    // The caller has looked whether they are long enough.
+    let flags = MemFlagsData::new().with_notrap();
+    let mut begins = [constants; Array::COUNT];
+    for array in given(&least(program)) {
+        let place = offset(array as usize, 1)?;
+        begins[array as usize] = builder.ins().load(pointer, flags.with_readonly(), arrays, place);
+    }
+    let number = if lanes > 1 { types::F64X2 } else { types::F64 };
+    let mut registers = Registers { number, flags, places: Vec::new(), values: Vec::new() };
+    let literals = builder.ins().symbol_value(pointer, literals);
+    for source in &program.inputs {
+        registers.places.push((begins[source.array as usize], offset(source.at, lanes)?));
+    }
+    for at in 0..program.literals.len() {
+        registers.places.push((literals, offset(at, lanes.min(2))?));
+    }
+    registers.values.resize(registers.places.len(), None);
+    for (at, _) in program.inputs.iter().enumerate().filter(|(_, source)| source.array != Array::Constants) {
+        let operands = program.operations.iter().flat_map(|operation| operation.operands());
+        if operands.filter(|&operand| operand == at).count() > 1 {
+            registers.values[at] = Some(registers.at(builder, at));
+        }
+    }
+    // A caller reads a vector, and the Jacobian behind it, two numbers at a time: for what isn't written so it would wait.
+    let (count, size) = (program.outputs.len(), program.outputs.len().isqrt());
+    let (vector, jacobian) = program.outputs.split_at(if size * (size + 1) == count { size } else { count });
+    let most = if lanes > 1 { 1 } else { 2 };
+    let (mut operations, mut at) = (program.operations.iter(), 0);
+    for pair in vector.chunks(most).chain(jacobian.chunks(most)) {
+        let [first, second] = [pair[0], pair[pair.len() - 1]].map(|output| output as usize);
+        let missing = (first.max(second) + 1).saturating_sub(registers.values.len());
+        for &operation in operations.by_ref().take(missing) {
+            let result = registers.result(builder, operation, called);
+            registers.values.push(Some(result));
+        }
+        let mut written = registers.at(builder, first);
+        if pair.len() > 1 {
+            let second = registers.at(builder, second);
+            written = both(builder, written, second);
+        }
+        builder.ins().store(flags, written, outputs, offset(at, lanes)?);
+        at += pair.len();
     }
     builder.ins().return_(&[]);
     Ok(())
 }
 
-/// How many numbers a program reads at least of each array that it reads.
-pub(crate) fn least(program: &Program) -> Vec<(Array, usize)> {
-    let mut least = BTreeMap::new();
+/// How many numbers a program reads at least of each array.
+pub(crate) fn least(program: &Program) -> [usize; Array::COUNT] {
+    let mut least = [0; Array::COUNT];
     for source in &program.inputs {
-        let count = least.entry(source.array).or_insert(0);
+        let count = &mut least[source.array as usize];
         *count = source.at.saturating_add(1).max(*count);
     }
-    least.into_iter().collect()
+    least
+}
+
+/// The arrays that have to be given, those that are read but constants.
+pub(crate) fn given(least: &[usize; Array::COUNT]) -> impl Iterator<Item = Array> {
+    Array::ALL.into_iter().filter(|&array| array != Array::Constants && least[array as usize] > 0)
 }
 
 /// The symbol of what applies a function.

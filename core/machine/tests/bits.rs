@@ -16,7 +16,7 @@ use liestep::laws::samples::Random;
 use liestep::mechanics::{Effect, WithEitherKinetic};
 use liestep::numbers::Real;
 use liestep::{SO3, Stepper};
-use liestep_late::{Array, Backend, Declaration, Interpreted, Late, LateError, Operation, Program, Source};
+use liestep_late::{Array, Backend, Declaration, Interpreter, Late, LateError, Operation, Program, Source};
 use liestep_machine::Machine;
 use nalgebra::{SimdValue as _, Vector3, Vector4};
 use simba::simd::AutoF64x8;
@@ -63,25 +63,10 @@ fn bits(number: f64) -> u64 {
 }
 
 fn numbers_of<T: Real, B: Backend<T>>(code: &B::Code, program: &Program, arrays: &[Vec<T>]) -> Vec<T> {
-    let [constants, advected, next, element, increment, inverse, inverse_increment, half, velocity, target] =
-        std::array::from_fn(|at| arrays[at + 2].as_slice());
-    let given = [
-        (Array::Step, &*arrays[0]),
-        (Array::Parameters, &*arrays[1]),
-        (Array::Constants, constants),
-        (Array::Advected, advected),
-        (Array::Next, next),
-        (Array::Element, element),
-        (Array::Increment, increment),
-        (Array::Inverse, inverse),
-        (Array::InverseIncrement, inverse_increment),
-        (Array::Half, half),
-        (Array::Velocity, velocity),
-        (Array::Target, target),
-    ];
+    let given = Array::ALL.map(|array| (array, arrays[array as usize].as_slice()));
     let mut numbers = vec![T::zero(); program.outputs.len()];
     B::prepare(code);
-    B::run(code, &B::image(code, constants), given, &mut numbers);
+    B::run(code, &B::image(code, &arrays[Array::Constants as usize]), given, &mut numbers);
     numbers
 }
 
@@ -99,12 +84,12 @@ fn inputs(program: &Program, random: &mut Random) -> Vec<Vec<f64>> {
 /// How many of the outputs are numbers.
 fn assert_same(programs: &[&Program], seed: u64) -> usize {
     let machine = <Machine as Backend<f64>>::codes(programs).expect("machine code");
-    let interpreted = <Interpreted as Backend<f64>>::codes(programs).expect("programs");
+    let interpreted = <Interpreter as Backend<f64>>::codes(programs).expect("programs");
     let (mut random, mut numbers) = (Random::new(seed), 0);
     for ((program, machine), interpreted) in programs.iter().zip(&machine).zip(&interpreted) {
         for _ in 0..3 {
             let all: [_; 8] = std::array::from_fn(|_| inputs(program, &mut random));
-            let expected = all.each_ref().map(|arrays| outputs_of::<Interpreted>(interpreted, program, arrays));
+            let expected = all.each_ref().map(|arrays| outputs_of::<Interpreter>(interpreted, program, arrays));
             for (arrays, expected) in all.iter().zip(&expected) {
                 assert_eq!(&outputs_of::<Machine>(machine, program, arrays), expected, "{program:?}");
                 numbers += expected.iter().filter(|&&bits| bits != u64::MAX).count();
@@ -199,7 +184,7 @@ where
         numbers.iter().fold(late, |late, (name, value)| late.with(name, value).expect("a parameter"))
     }
     let one = Stepper::new(numbered::<G, W, Machine>(text, numbers), 0.01).expect("a stepper");
-    let other = Stepper::new(numbered::<G, W, Interpreted>(text, numbers), 0.01).expect("a stepper");
+    let other = Stepper::new(numbered::<G, W, Interpreter>(text, numbers), 0.01).expect("a stepper");
     let velocity: G::Vector = Random::new(1).sample();
     let start = || CayleyRetraction::retract(&(velocity * 0.3));
     let mut first = one.start(start(), velocity).expect("a start");
@@ -241,7 +226,7 @@ fn what_is_wrong_is_seen() {
     let declaration = Declaration::parse(FullTop::DECLARATION).expect("a declaration");
     let right = &declaration.programs.newton_system;
     let arrays = inputs(right, &mut Random::new(5));
-    let expected = outputs::<Interpreted>(right, &arrays);
+    let expected = outputs::<Interpreter>(right, &arrays);
     assert_eq!(outputs::<Machine>(right, &arrays), expected);
     let is_seen = |what: &str, wrong: Program| {
         // The arrays are at least as long as the wrong program needs them.
@@ -249,7 +234,7 @@ fn what_is_wrong_is_seen() {
         for array in &mut arrays {
             array.resize(array.len().max(64), 0.5);
         }
-        let expected = outputs::<Interpreted>(right, &arrays);
+        let expected = outputs::<Interpreter>(right, &arrays);
         let found = outputs::<Machine>(&wrong, &arrays);
         let differing = found.iter().zip(&expected).filter(|(found, expected)| found != expected).count();
         println!("{what}: {differing} of {} outputs differ", expected.len());

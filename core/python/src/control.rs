@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use liestep::gradients::Input;
 use liestep::groups::LieGroup as _;
 use liestep::mechanics::WithEitherKinetic;
-use liestep::motion::Declared;
+use liestep::motion::OwnStep;
 use liestep::recording::{Column, Sink as _};
 use liestep::{SO3, Stepper};
 use liestep_control::{Control, ControlError, ControlPlan, Cost, Residual, Target, Verdict};
@@ -46,7 +46,7 @@ pub(crate) struct Task {
 }
 
 /// The plan, and what was raised in the middle of its search.
-type Found = (ControlPlan<Scene, Declared<Scene>>, Option<PyErr>);
+type Found = (ControlPlan<Scene, OwnStep<Scene>>, Option<PyErr>);
 
 impl Task {
     fn solve(&self, terms: &[&'static Declaration], numbers: &[f64]) -> Result<Found, Failure> {

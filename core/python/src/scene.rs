@@ -27,7 +27,7 @@ pub(crate) type Numbers = Vec<(String, Vec<f64>)>;
 #[cfg(feature = "machine")]
 type Backend = liestep_machine::Machine;
 #[cfg(not(feature = "machine"))]
-type Backend = liestep_late::Interpreted;
+type Backend = liestep_late::Interpreter;
 
 pub(crate) type Late<G, W, K> = liestep_late::Late<G, W, K, Backend>;
 type Lagrangian<G, W> = Late<G, W, WithEitherKinetic>;

@@ -7,12 +7,12 @@ use core::ops::Range;
 
 use crate::error::{SetupError, StepError};
 use crate::gradients::input::{Input, InputOf};
-use crate::gradients::recording::{Change, ChangeOf, MotionOf, Recording};
+use crate::gradients::recording::{Change, ChangeOf, Recording};
 use crate::gradients::stage::{Cotangent, FlowDerivatives, Pass, Stage, WayBack};
-use crate::gradients::{Linearisable, Linearised};
+use crate::gradients::{Linearisable, Linearisation};
 use crate::groups::LieGroup;
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Scalar, SecondDerivatives, Vector};
-use crate::motion::{Motion, StateOf, Stepper};
+use crate::motion::{MotionOf, StateOf, Stepper};
 use crate::numbers::{Coordinates as _, Entries as _, Kernel, Vectors, dispatch, is_finite, real};
 
 /// What an adjoint keeps of the way forwards.
@@ -30,7 +30,7 @@ pub enum Tape {
 pub struct Gradient<V, T> {
     /// By attitude and momentum at the start.
     pub start: Cotangent<V>,
-    /// By the parameters, in the order of [`Linearised::parameters`].
+    /// By the parameters, in the order of [`Linearisation::parameters`].
     pub parameters: Vec<T>,
 }
 
@@ -97,7 +97,7 @@ impl<S: Effect> Given<'_, S> {
 
 /// Makes several steps, and writes down their changes, and the motions that aren't among these.
 struct Record<'a, 'i, S: SecondDerivatives, P: Linearisable<S>> {
-    linearised: &'a Linearised<'a, S, P>,
+    linearised: &'a Linearisation<'a, S, P>,
     state: &'a mut StateOf<S, P>,
     steps: Range<u64>,
     given: &'a mut Given<'i, S>,
@@ -109,6 +109,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Record<'_, '_, S, P> {
 
     /// As that of [`Stretch`].
     const VECTORS: Vectors = Vectors::Four;
+    const IS_IN_LANES: bool = <Scalar<S> as nalgebra::SimdValue>::LANES > 1;
 
     #[hot]
     fn run(self) -> Self::Output {
@@ -131,7 +132,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Record<'_, '_, S, P> {
 
 /// Several steps, from the last to the first, and the costs of the states before them, and of that behind the last of all.
 struct Stretch<'a, 'b, S: SecondDerivatives, P: Linearisable<S>, C> {
-    linearised: &'a Linearised<'a, S, P>,
+    linearised: &'a Linearisation<'a, S, P>,
     steps: Range<u64>,
     events: &'a [ChangeOf<S>],
     given: &'a Given<'a, S>,
@@ -151,10 +152,11 @@ where
 
     /// For AVX's three-operand instructions; there is nothing to do four at a time.
     const VECTORS: Vectors = Vectors::Four;
+    const IS_IN_LANES: bool = <Scalar<S> as nalgebra::SimdValue>::LANES > 1;
 
     #[hot]
     fn run(self) -> Self::Output {
-        let Linearised { stepper, table } = self.linearised;
+        let Linearisation { stepper, table } = self.linearised;
         let Stepper { scene, plan } = stepper;
         let (Range { start, end }, ends) = (self.steps, self.given.ends);
         let (half, stages) = (self.linearised.half_step(), plan.stages() - 2 * ends);
@@ -208,7 +210,7 @@ where
     }
 }
 
-impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
+impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
     /// Makes `steps` steps, and returns the gradient of `Σ_n c_n(state_n)`, by the state before them and by all
     /// parameters; on an error the state is unchanged.
     ///
@@ -225,7 +227,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         state: &mut StateOf<S, P>,
         steps: u64,
         tape: Tape,
-        cost: impl FnMut(u64, &Motion<Group<S>, S::Advected>) -> Cotangent<Vector<S>>,
+        cost: impl FnMut(u64, &MotionOf<S>) -> Cotangent<Vector<S>>,
     ) -> Result<GradientOf<S>, StepError> {
         self.adjoint_of(state, (steps, &[]), tape, cost).map(|(gradient, _)| gradient)
     }
@@ -268,7 +270,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         state: &mut StateOf<S, P>,
         inputs: &[InputOf<S>],
         tape: Tape,
-        cost: impl FnMut(u64, &Motion<Group<S>, S::Advected>) -> Cotangent<Vector<S>>,
+        cost: impl FnMut(u64, &MotionOf<S>) -> Cotangent<Vector<S>>,
     ) -> Result<(GradientOf<S>, Vec<InputOf<S>>), StepError> {
         self.adjoint_of(state, (inputs.len() as u64, inputs), tape, cost)
     }
@@ -278,7 +280,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         state: &mut StateOf<S, P>,
         (steps, inputs): (u64, &[InputOf<S>]),
         tape: Tape,
-        mut cost: impl FnMut(u64, &Motion<Group<S>, S::Advected>) -> Cotangent<Vector<S>>,
+        mut cost: impl FnMut(u64, &MotionOf<S>) -> Cotangent<Vector<S>>,
     ) -> Result<(GradientOf<S>, Vec<InputOf<S>>), StepError> {
         let ends = if inputs.is_empty() { self.stepper.plan.ends() } else { 0 };
         let mut given = Given { steps, inputs, motions: Vec::new(), before_end: None, ends };
@@ -368,26 +370,26 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
     }
 }
 
-/// Adjoints without a tape, by [`Linearised::backwards`].
+/// Adjoints without a tape, by [`Linearisation::backwards`].
 #[derive(Clone, Debug)]
 pub struct Backwards<'a, S: SecondDerivatives, P: Linearisable<S>> {
-    linearised: &'a Linearised<'a, S, P>,
+    linearised: &'a Linearisation<'a, S, P>,
     inverse: Stepper<S, P>,
     /// Of the stages forwards, as steps back undo them.
     undone: P::Table,
 }
 
 impl<S: SecondDerivatives, P: Linearisable<S>> Backwards<'_, S, P> {
-    /// As [`Linearised::adjoint`]; `cost` is shown the states of the way back.
+    /// As [`Linearisation::adjoint`]; `cost` is shown the states of the way back.
     ///
     /// # Errors
     ///
-    /// As [`Linearised::adjoint`].
+    /// As [`Linearisation::adjoint`].
     pub fn adjoint(
         &self,
         state: &mut StateOf<S, P>,
         steps: u64,
-        mut cost: impl FnMut(u64, &Motion<Group<S>, S::Advected>) -> Cotangent<Vector<S>>,
+        mut cost: impl FnMut(u64, &MotionOf<S>) -> Cotangent<Vector<S>>,
     ) -> Result<GradientOf<S>, StepError> {
         let forwards = self.linearised;
         let mut end = *state;

@@ -4,14 +4,14 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::error::StepError;
-use crate::gradients::{Linearisable, Linearised};
+use crate::gradients::{Linearisable, Linearisation};
 use crate::groups::LieGroup as _;
 use crate::mechanics::{Group, Scalar, SecondDerivatives};
 use crate::motion::StateOf;
 use crate::numbers::{is_finite, real};
 use nalgebra::SimdComplexField as _;
 
-impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
+impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
     /// The Lyapunov exponents over `steps` steps, 1/s, from the largest about to the least: one for each dimension of
     /// `(ζ, μ)`. On an error the state is unchanged.
     ///

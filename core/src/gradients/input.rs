@@ -6,7 +6,7 @@ use core::cell::RefCell;
 use crate::error::StepError;
 use crate::gradients::recording::ChangeOf;
 use crate::gradients::tangent::{SquareOfVector, Tangent, TangentOf, blocks_of};
-use crate::gradients::{Carry, Linearisable, Linearised};
+use crate::gradients::{Carry, Linearisable, Linearisation};
 use crate::groups::{Advected as _, LieGroup as _};
 use crate::mechanics::{Effect, Group, Scalar, SecondDerivatives, Term, Vector};
 use crate::motion::{Plan, StateOf, Steerable, StepReport, Stepper};
@@ -102,7 +102,7 @@ impl<S: Effect, P: Plan<S> + Steerable> Stepper<S, P> {
     }
 }
 
-impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
+impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
     /// One step with this input, and the derivatives by start and parameters carried over it. On an error both are
     /// unchanged.
     ///

@@ -2,12 +2,12 @@
 //!
 //! | | |
 //! |---|---|
-//! | how the end of a motion changes with its start and with some parameters | [`Linearised::step`] with a [`Tangent`] |
+//! | how the end of a motion changes with its start and with some parameters | [`Linearisation::step`] with a [`Tangent`] |
 //! | the state transition matrix | [`Tangent::transition`] |
-//! | how the end of a step changes with its beginning and with a control force, or with values that it is given | [`Linearised::transition`] |
-//! | how one number changes with the start and with all parameters | [`Linearised::adjoint`], [`Linearised::backwards`] |
-//! | the same with what each step is given, and how the number changes with that | [`Linearised::adjoint_given`] |
-//! | Lyapunov exponents | [`Linearised::lyapunov_exponents`] |
+//! | how the end of a step changes with its beginning and with a control force, or with values that it is given | [`Linearisation::transition`] |
+//! | how one number changes with the start and with all parameters | [`Linearisation::adjoint`], [`Linearisation::backwards`] |
+//! | the same with what each step is given, and how the number changes with that | [`Linearisation::adjoint_given`] |
+//! | Lyapunov exponents | [`Linearisation::lyapunov_exponents`] |
 //!
 //! They are asked for by the word `gradients` in a declaration; the effects of the library have it, except for the bodies
 //! of fourth and sixth order. A scene without it has nothing of this in its program. They go with a scene's own step, on
@@ -98,7 +98,6 @@ mod tangent;
 
 pub use adjoint::{Backwards, Gradient, Tape};
 pub use input::{Input, InputOf, Transition};
-pub(crate) use recording::MotionOf;
 pub use recording::{Change, ChangeOf};
 pub use stage::{Cotangent, FlowDerivatives, Pass, Stage};
 pub(crate) use stage::{ForceGradient, add_shares};
@@ -110,7 +109,7 @@ use core::ops::Range;
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, SecondDerivatives};
-use crate::motion::{Declared, Plan, StateOf, Steerable, StepReport, Stepper, Summation};
+use crate::motion::{MotionOf, OwnStep, Plan, StateOf, Steerable, StepReport, Stepper, Summation};
 use crate::numbers::{Kernel, Vectors};
 use recording::Recording;
 
@@ -123,7 +122,7 @@ use recording::Recording;
     note = "known are those of a scene's own step, of compositions, and of splittings, processed ones too, whose flow is exact or declared with `gradients`"
 )]
 pub trait Linearisable<S: SecondDerivatives>: Plan<S> + Steerable {
-    /// What is known of the stages before any step is made, once for each [`Linearised`]: the lengths of a splitting's, and
+    /// What is known of the stages before any step is made, once for each [`Linearisation`]: the lengths of a splitting's, and
     /// what the derivatives of an exact motion have in common.
     type Table: Clone + core::fmt::Debug;
 
@@ -201,7 +200,7 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> + Steerable {
     fn visit(&self, stages: (&S, &Self::Table), event: (usize, &ChangeOf<S>), pass: &mut impl Pass<Group<S>>);
 }
 
-impl<S: SecondDerivatives> Linearisable<S> for Declared<S> {
+impl<S: SecondDerivatives> Linearisable<S> for OwnStep<S> {
     type Table = ();
 
     fn table(&self) {}
@@ -218,7 +217,7 @@ impl<S: SecondDerivatives> Linearisable<S> for Declared<S> {
 
 /// A stepper with the derivatives of its steps, by [`Stepper::linearised`].
 #[derive(Clone, Debug)]
-pub struct Linearised<'a, S: SecondDerivatives, P: Linearisable<S>> {
+pub struct Linearisation<'a, S: SecondDerivatives, P: Linearisable<S>> {
     stepper: &'a Stepper<S, P>,
     table: P::Table,
 }
@@ -245,7 +244,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// [`SetupError::NoSecondDerivatives`] for a splitting with force gradients, of a term whose derivatives were written by
     /// hand without [`kick_gradient`](SecondDerivatives::kick_gradient), and where they [aren't
     /// derived](SecondDerivatives::are_derived).
-    pub fn linearised(&self) -> Result<Linearised<'_, S, P>, SetupError>
+    pub fn linearised(&self) -> Result<Linearisation<'_, S, P>, SetupError>
     where
         S: SecondDerivatives,
         P: Linearisable<S>,
@@ -254,11 +253,11 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
             return Err(SetupError::NoSecondDerivatives);
         }
         self.plan.check_stages(&self.scene)?;
-        Ok(Linearised { stepper: self, table: self.plan.table() })
+        Ok(Linearisation { stepper: self, table: self.plan.table() })
     }
 }
 
-impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearised<'a, S, P> {
+impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearisation<'a, S, P> {
     /// The stepper.
     #[must_use]
     pub fn stepper(&self) -> &'a Stepper<S, P> {
@@ -344,7 +343,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Stepper<S, P> {
 
 /// A step with its input, and a tangent carried over its stages.
 struct Carry<'a, 'l, S: SecondDerivatives, P: Linearisable<S>> {
-    linearised: &'a Linearised<'l, S, P>,
+    linearised: &'a Linearisation<'l, S, P>,
     state: &'a mut StateOf<S, P>,
     input: &'a InputOf<S>,
     tangent: &'a mut TangentOf<S>,
@@ -355,11 +354,12 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Carry<'_, '_, S, P> {
 
     /// The columns fill registers of four.
     const VECTORS: Vectors = Vectors::Four;
+    const IS_IN_LANES: bool = <Scalar<S> as nalgebra::SimdValue>::LANES > 1;
 
     #[hot]
     fn run(self) -> Self::Output {
         let Self { linearised, state, input, tangent } = self;
-        let Linearised { stepper: Stepper { scene, plan }, table } = linearised;
+        let Linearisation { stepper: Stepper { scene, plan }, table } = linearised;
         if let Some(count) = tangent.parameters() {
             let own = plan.parameters();
             assert_eq!(count, own, "the tangent is that of a plan with {count} parameters, and this one has {own}");

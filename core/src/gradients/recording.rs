@@ -18,9 +18,6 @@ pub struct Change<G: LieGroup, A> {
     pub(crate) increment: G::Matrix,
 }
 
-/// The type of a scene's motions.
-pub(crate) type MotionOf<S> = Motion<Group<S>, <S as Term>::Advected>;
-
 /// The type of a scene's changes.
 #[doc(hidden)]
 pub type ChangeOf<S> = Change<Group<S>, <S as Term>::Advected>;

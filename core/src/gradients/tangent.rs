@@ -13,7 +13,7 @@ use crate::numbers::{Coordinates, Entries as _, Real, is_finite, real};
 use nalgebra::SimdComplexField as _;
 
 /// How a state changes with its start, and with parameters: columns `(ζ, δμ)` that
-/// [`Linearised::step`](super::Linearised::step) carries along.
+/// [`Linearisation::step`](super::Linearisation::step) carries along.
 ///
 /// The first columns are the derivatives by the start, first along its displacements `ζ_0`, then by the components of
 /// `μ_0`; together they are the state transition matrix. The others are those by parameters, at a fixed start.

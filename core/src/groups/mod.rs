@@ -24,7 +24,7 @@
 //!
 //! Any other is declared in the same way, outside of this crate too: see [`Generators`]. A product of two to four of them
 //! is the tuple, as `(SO3, SO3)` for two bodies: its components are those of its [factors](Factor), one after the other.
-//! `[SO3; N]` is the product of `N` equal groups, for [systems](crate::mechanics::Placed) of many bodies.
+//! `[SO3; N]` is the product of `N` equal groups, for [systems](crate::mechanics::Placement) of many bodies.
 
 mod advected;
 mod bodies;

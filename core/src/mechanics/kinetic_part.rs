@@ -2,7 +2,7 @@
 
 use crate::numbers::{Coordinates, Either, History, Parabola, Polynomial, Real};
 
-/// [`WithKinetic`], [`WithExpensiveKinetic`], [`WithEitherKinetic`] or [`WithoutKinetic`].
+/// [`WithKinetic`], [`WithPace`], [`WithExpensiveKinetic`], [`WithEitherKinetic`] or [`WithoutKinetic`].
 #[doc(hidden)]
 pub trait KineticPart {
     /// Whether there is one.
@@ -49,6 +49,20 @@ impl KineticPart for WithKinetic {
     type History<T: Real, V: Coordinates<T>> = Parabola<V>;
     type Or<Other: KineticPart> = Self;
     type ByNewton = Self;
+}
+
+/// In a time in which motion is smooth: its history guesses an increment that one iteration brings to rounding.
+#[derive(Clone, Copy, Debug)]
+#[doc(hidden)]
+pub struct WithPace;
+
+impl KineticPart for WithPace {
+    const IS_THERE: bool = true;
+    const JACOBIAN_IS_EXPENSIVE: bool = false;
+
+    type History<T: Real, V: Coordinates<T>> = Polynomial<V>;
+    type Or<Other: KineticPart> = Self;
+    type ByNewton = WithKinetic;
 }
 
 impl KineticPart for WithExpensiveKinetic {

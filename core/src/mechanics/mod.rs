@@ -1,7 +1,7 @@
 //! Mechanics: what a scene is made of, as the macro declares it or a user writes it by hand.
 //!
 //! An [`Effect`] is one term with all that a step needs of it; a [`DiscreteLagrangian`] is one with `l_d(F, w)`
-//! itself, a [`Force`] one with virtual work; a [`Sum`] of two is one again, and so is what is [`Placed`] on bodies of a
+//! itself, a [`Force`] one with virtual work; a [`Sum`] of two is one again, and so is a [`Placement`] of terms on bodies of a
 //! system. A [`ContinuousLagrangian`] is `l(ξ, w)`
 //! with the continuous equations. Nothing here solves an equation but that of the inverse Legendre transform.
 
@@ -28,14 +28,16 @@ pub use effect::{Effect, Group, Limit, Matrix, Moves, NewtonUpdate, Parts, Regul
 pub(crate) use effect::{pattern, pattern_of_type, update_of};
 pub use force::Force;
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
-pub use kinetic_part::{KineticPart, WithEitherKinetic, WithExpensiveKinetic, WithKinetic, WithoutKinetic};
+pub use kinetic_part::{KineticPart, WithEitherKinetic, WithExpensiveKinetic, WithKinetic, WithPace, WithoutKinetic};
 pub use lagrangian::{DiscreteLagrangian, RigidScene, Scene};
 pub(crate) use noether::{left_symmetries, right_symmetries};
 pub use operations::Operations;
 pub use second_derivatives::{SecondDerivatives, StepDerivatives};
 pub use sum::{SharedBy, Sum};
 pub use symmetry::{AxiallyInvariant, LeftInvariant, OneVector};
-pub use systems::{Along, At, Between, Coupled, Each, Neighbours, On, Pairs, Placed, Places, SeenBetween, WhereAllAre};
+pub use systems::{
+    Along, At, Between, Coupling, Each, Neighbours, On, Pairs, Placement, Places, SeenBetween, WhereAllAre,
+};
 pub use term::Term;
 pub use velocity::FactoredInertia;
 pub(crate) use velocity::{

@@ -2,14 +2,14 @@
 //!
 //! | method | order | needs | keeps exactly |
 //! |---|---|---|---|
-//! | [`Declared`](crate::motion::Declared), by [`Stepper::new`](crate::Stepper::new) | the declaration's, mostly 2 | a kinetic part | Poisson structure, momentum maps |
-//! | [`Composed`], by [`Stepper::composed`](crate::Stepper::composed) | 4 to 10 | a self-adjoint Lagrangian | the same |
-//! | [`Split`], by [`Stepper::split`](crate::Stepper::split) | 2 to 10 | SO(3), a potential apart | the same; nothing is solved with a closed [`KineticFlow`] |
-//! | [`Processed`], by [`Stepper::processed`](crate::Stepper::processed) | 4, 6 | the same, and kick derivatives | the same |
+//! | [`OwnStep`](crate::motion::OwnStep), by [`Stepper::new`](crate::Stepper::new) | the declaration's, mostly 2 | a kinetic part | Poisson structure, momentum maps |
+//! | [`Composition`], by [`Stepper::composed`](crate::Stepper::composed) | 4 to 10 | a self-adjoint Lagrangian | the same |
+//! | [`Splitting`], by [`Stepper::split`](crate::Stepper::split) | 2 to 10 | SO(3), a potential apart | the same; nothing is solved with a closed [`KineticFlow`] |
+//! | [`ProcessedSplitting`], by [`Stepper::processed`](crate::Stepper::processed) | 4, 6 | the same, and kick derivatives | the same |
 //! | [`Gauss`], by [`Stepper::collocated`](crate::Stepper::collocated) | `4 PAIRS` | SO(3), a potential apart, `f64` | the same |
 //! | [`CotangentGauss`], a map of its own | `4 PAIRS` | any `l(ξ, w)` on any one group, `f64` | the same |
-//! | [`Linked`], by [`Stepper::linked`](crate::Stepper::linked) | 2 | links on ball joints, potentials, `f64` | Poisson structure, momentum maps |
-//! | [`Jointed`], by [`Stepper::jointed`](crate::Stepper::jointed) | the declaration's, mostly 2 | bodies `(SO3, R3)` and joints, `f64` | Poisson structure, momentum maps |
+//! | [`LinkedBodies`], by [`Stepper::linked`](crate::Stepper::linked) | 2 | links on ball joints, potentials, `f64` | Poisson structure, momentum maps |
+//! | [`JointedBodies`], by [`Stepper::jointed`](crate::Stepper::jointed) | the declaration's, mostly 2 | bodies `(SO3, R3)` and joints, `f64` | Poisson structure, momentum maps |
 
 #[macro_use]
 mod schemes;
@@ -22,12 +22,12 @@ mod splitting;
 #[cfg(test)]
 mod tests;
 
-pub use chain::{Chain, ChainStepper, Link, Linked, Weights};
-pub use composition::{Composed, CompositionScheme};
+pub use chain::{Chain, ChainStepper, Link, LinkedBodies, Weights};
+pub use composition::{Composition, CompositionScheme};
 pub use gauss::{CollocationMemory, CotangentCarry, CotangentGauss, Gauss};
-pub use joints::{BallJoint, Constraint, Joined, Joint, Jointed, Joints, PinJoint, Place, Slope};
+pub use joints::{BallJoint, Constraint, Joint, JointedBodies, Joints, PinJoint, Place, PlacedJoint, Slope};
 pub(crate) use splitting::has_force_gradient;
 pub use splitting::{
-    DifferentiableFlow, ExactBody, Flow, Inside, KineticFlow, Processed, ProcessedScheme, Split, SplittingScheme,
-    SymmetricBody, Turn,
+    DifferentiableFlow, ExactBody, Flow, Inside, KineticFlow, ProcessedScheme, ProcessedSplitting, Splitting,
+    SplittingScheme, SymmetricBody, Turn,
 };

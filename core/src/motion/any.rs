@@ -39,11 +39,11 @@ impl<G: LieGroup, A> Clone for AnyStepper<G, A> {
 }
 
 /// The state of an [`AnyStepper`].
-pub type AnyState<G, A> = State<G, A, AnyKept>;
+pub type AnyState<G, A> = State<G, A, AnyHistory>;
 
 /// What a method keeps, whichever it is.
 #[doc(hidden)]
-pub struct AnyKept(Box<dyn AnyMemory>);
+pub struct AnyHistory(Box<dyn AnyMemory>);
 
 trait AnyMemory: Any + Debug {
     fn copied(&self) -> Box<dyn AnyMemory>;
@@ -60,26 +60,26 @@ impl<K: Any + Clone + Debug + PartialEq> AnyMemory for K {
     }
 }
 
-impl AnyKept {
+impl AnyHistory {
     fn of(kept: impl AnyMemory) -> Self {
         Self(Box::new(kept))
     }
 }
 
-impl Clone for AnyKept {
+impl Clone for AnyHistory {
     fn clone(&self) -> Self {
         // Through the box: that is such a memory, too.
         Self(self.0.as_ref().copied())
     }
 }
 
-impl PartialEq for AnyKept {
+impl PartialEq for AnyHistory {
     fn eq(&self, other: &Self) -> bool {
         self.0.as_ref().equals(other.0.as_ref())
     }
 }
 
-impl Debug for AnyKept {
+impl Debug for AnyHistory {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.as_ref().fmt(f)
     }
@@ -163,7 +163,7 @@ where
             (state.motion, state.elapsed) = (own.motion, own.elapsed);
             match (state.kept.0.as_mut() as &mut dyn Any).downcast_mut::<K>() {
                 Some(place) => *place = own.kept,
-                None => state.kept = AnyKept::of(own.kept),
+                None => state.kept = AnyHistory::of(own.kept),
             }
         }
         made
@@ -171,7 +171,7 @@ where
 }
 
 fn erased<G: LieGroup, A, K: AnyMemory>(state: State<G, A, K>) -> AnyState<G, A> {
-    State { motion: state.motion, kept: AnyKept::of(state.kept), elapsed: state.elapsed }
+    State { motion: state.motion, kept: AnyHistory::of(state.kept), elapsed: state.elapsed }
 }
 
 impl<I, G, A, K> Integrator for Erasure<I>
@@ -286,13 +286,13 @@ struct WithoutAdvected<G: LieGroup, A>(AnyStepper<G, A>);
 #[derive(Clone, Debug, PartialEq)]
 struct HiddenState<A> {
     advected: A,
-    kept: AnyKept,
+    kept: AnyHistory,
 }
 
 impl<G: LieGroup, A: Advected<G>> WithoutAdvected<G, A> {
     #[allow(clippy::unused_self)] // by the form that `wraps` asks for
     fn change<R>(&self, state: &mut State<G, (), HiddenState<A>>, steps: impl FnOnce(&mut AnyState<G, A>) -> R) -> R {
-        let kept = mem::replace(&mut state.kept.kept, AnyKept::of(()));
+        let kept = mem::replace(&mut state.kept.kept, AnyHistory::of(()));
         let mut own = State { motion: seeing(&state.motion, state.kept.advected), kept, elapsed: state.elapsed };
         let made = steps(&mut own);
         *state = hidden(own);

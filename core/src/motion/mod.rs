@@ -1,7 +1,7 @@
 //! Motion: the state of a body, the stepper that carries it along, and the flows of the thesis, (2.5) and (2.8).
 //!
 //! A [`Stepper`] is a scene and a [`Plan`], the method with its constants folded; a [`State`] is a [`Motion`] and what
-//! the plan keeps from step to step. [`Declared`] is the plan of the scene's own step; the others are in
+//! the plan keeps from step to step. [`OwnStep`] is the plan of the scene's own step; the others are in
 //! [`methods`](crate::methods), and what is put around a plan in [`with`](crate::with). A [`RightHandSide`] is the
 //! continuous motion, for an ODE solver of another library. What steps is an [`Integrator`], whatever its method: with
 //! it a motion is read between its steps, and [recorded and stopped](crate::recording).
@@ -24,9 +24,9 @@ mod right_hand_side;
 mod state;
 mod summation;
 
-pub use any::{AnyKept, AnyState, AnyStepper};
+pub use any::{AnyHistory, AnyState, AnyStepper};
 pub use batch::{Batch, Batchable};
-pub use declared::Declared;
+pub use declared::OwnStep;
 pub(crate) use declared::{beyond_solvable, half_coordinates};
 pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, reconstruct};
 pub use increment::Increment;
@@ -36,11 +36,11 @@ pub use plan::{Cost, NextSteps, Plan, Steerable, Variable};
 pub use report::{Remedy, StepReport};
 pub use right_hand_side::RightHandSide;
 #[doc(hidden)]
-pub use state::Elapsed;
+pub use state::ElapsedTime;
 pub use state::State;
 pub(crate) use stepper::check_attitude;
 pub use stepper::{StateOf, Stepper};
-pub use summation::{Motion, Summation};
-pub(crate) use summation::{STEPS_BETWEEN_CHECKS, TOLERATED, is_due, restored};
+pub use summation::{Motion, Summation, SumsOf};
+pub(crate) use summation::{MotionOf, STEPS_BETWEEN_CHECKS, TOLERATED, is_due, restored};
 
 pub use crate::solving::{Guess, Solvability, WarmStart};

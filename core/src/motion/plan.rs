@@ -7,7 +7,7 @@ use crate::mechanics::{
 };
 use crate::motion::kept::Kept;
 use crate::motion::report::StepReport;
-use crate::motion::summation::{Motion, Summation};
+use crate::motion::summation::{Motion, MotionOf, Summation};
 use crate::numbers::{Coordinates as _, Kernel, Vectors, dispatch, is_finite, real};
 use crate::solving::largest_fraction;
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue};
@@ -48,19 +48,19 @@ pub trait Plan<S: Effect> {
         Self: Sized;
 
     /// A motion as it begins: what is advected or given may have to do with the rest.
-    fn begun(&self, _scene: &S, motion: Motion<Group<S>, S::Advected>) -> Motion<Group<S>, S::Advected> {
+    fn begun(&self, _scene: &S, motion: MotionOf<S>) -> MotionOf<S> {
         motion
     }
 
     /// What is kept at the beginning of a motion.
-    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept;
+    fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept;
 
     /// Whether a motion may start here. Of a method that holds bodies in joints: whether these are closed.
     ///
     /// # Errors
     ///
     /// [`SetupError`] where it may not.
-    fn admits(&self, _scene: &S, _motion: &Motion<Group<S>, S::Advected>) -> Result<(), SetupError> {
+    fn admits(&self, _scene: &S, _motion: &MotionOf<S>) -> Result<(), SetupError> {
         Ok(())
     }
 
@@ -77,19 +77,13 @@ pub trait Plan<S: Effect> {
     }
 
     /// The time of a motion since its start, s.
-    fn time(&self, motion: &Motion<Group<S>, S::Advected>, _kept: &Self::Kept) -> Scalar<S> {
+    fn time(&self, motion: &MotionOf<S>, _kept: &Self::Kept) -> Scalar<S> {
         self.counted(motion.steps)
     }
 
     /// The length of the step ahead of a motion, or of that behind it, s; not finite where there is none. A step back is a
     /// step of its negative.
-    fn length(
-        &self,
-        _scene: &S,
-        _motion: &Motion<Group<S>, S::Advected>,
-        _kept: &Self::Kept,
-        _is_ahead: bool,
-    ) -> Scalar<S> {
+    fn length(&self, _scene: &S, _motion: &MotionOf<S>, _kept: &Self::Kept, _is_ahead: bool) -> Scalar<S> {
         self.step_size()
     }
 
@@ -108,12 +102,12 @@ pub trait Plan<S: Effect> {
     }
 
     /// The body velocity, as [`Stepper::velocity`](crate::Stepper::velocity) says it.
-    fn velocity(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
+    fn velocity(&self, scene: &S, motion: &MotionOf<S>) -> Vector<S> {
         velocity_of_momentum(scene, &motion.momentum, &motion.advected)
     }
 
     /// The energy, J, where the plan has the inertia.
-    fn energy(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S> {
+    fn energy(&self, scene: &S, motion: &MotionOf<S>) -> Scalar<S> {
         self.velocity(scene, motion).dot(&motion.momentum) * real(0.5) + scene.potential(&motion.advected)
     }
 
@@ -176,10 +170,10 @@ pub trait Plan<S: Effect> {
     fn part(
         &self,
         scene: &S,
-        motion: &Motion<Group<S>, S::Advected>,
+        motion: &MotionOf<S>,
         _kept: &Self::Kept,
         fraction: Scalar<S>,
-    ) -> Result<Motion<Group<S>, S::Advected>, StepError>
+    ) -> Result<MotionOf<S>, StepError>
     where
         Self: Sized,
     {
@@ -249,7 +243,7 @@ pub trait Plan<S: Effect> {
 
     /// Replaces the advected values that the body sees, and forgets what the memory has derived from the old ones.
     #[hot]
-    fn see(&self, motion: &mut Motion<Group<S>, S::Advected>, _kept: &mut Self::Kept, advected: S::Advected) {
+    fn see(&self, motion: &mut MotionOf<S>, _kept: &mut Self::Kept, advected: S::Advected) {
         motion.advected = advected;
     }
 
@@ -259,18 +253,12 @@ pub trait Plan<S: Effect> {
 
     /// The error of a step as it is shown: where a stage has none, the largest step that would do is that of the whole.
     #[cold]
-    fn explained(
-        &self,
-        error: StepError,
-        _scene: &S,
-        _motion: &Motion<Group<S>, S::Advected>,
-        _kept: &Self::Kept,
-    ) -> StepError {
+    fn explained(&self, error: StepError, _scene: &S, _motion: &MotionOf<S>, _kept: &Self::Kept) -> StepError {
         error
     }
 
     /// The largest fraction of the step, in seconds to six digits, that can be made from here.
-    fn max_step(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, _kept: &Self::Kept) -> Scalar<S>
+    fn max_step(&self, scene: &S, motion: &MotionOf<S>, _kept: &Self::Kept) -> Scalar<S>
     where
         Self: Sized,
     {
@@ -300,7 +288,7 @@ pub(crate) type Next<'a, G, A> = Option<&'a mut NextSteps<'a, G, A>>;
 struct Run<'a, 'n, S: Effect, P: Plan<S>>(
     &'a P,
     &'a S,
-    &'a mut Motion<Group<S>, S::Advected>,
+    &'a mut MotionOf<S>,
     &'a mut P::Kept,
     (u64, Next<'n, Group<S>, S::Advected>),
 );
@@ -308,6 +296,7 @@ struct Run<'a, 'n, S: Effect, P: Plan<S>>(
 impl<S: Effect, P: Plan<S>> Kernel for Run<'_, '_, S, P> {
     type Output = Result<u64, StepError>;
     const VECTORS: Vectors = P::VECTORS;
+    const IS_IN_LANES: bool = <Scalar<S> as SimdValue>::LANES > 1;
 
     /// Those who look at the motion are called from here, so that constants needn't be loaded again after them.
     #[hot]
@@ -330,7 +319,7 @@ impl<S: Effect, P: Plan<S>> Kernel for Run<'_, '_, S, P> {
 pub(crate) fn run_plan<S: Effect, P: Plan<S>>(
     plan: &P,
     scene: &S,
-    motion: &mut Motion<Group<S>, S::Advected>,
+    motion: &mut MotionOf<S>,
     kept: &mut P::Kept,
     steps: (u64, Next<'_, Group<S>, S::Advected>),
 ) -> Result<u64, StepError> {

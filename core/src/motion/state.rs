@@ -19,18 +19,18 @@ pub struct State<G: LieGroup, A, K = WarmStart<<G as LieGroup>::Vector>> {
     pub(crate) motion: Motion<G, A>,
     pub(crate) kept: K,
     /// What steps of another length have added to the time of those that are counted.
-    pub(crate) elapsed: Elapsed<G::Scalar>,
+    pub(crate) elapsed: ElapsedTime<G::Scalar>,
 }
 
 /// A time that is summed, and what rounding has left behind of the sum.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 #[doc(hidden)]
-pub struct Elapsed<T> {
+pub struct ElapsedTime<T> {
     pub(crate) sum: T,
     pub(crate) carry: T,
 }
 
-impl<T: Real> Elapsed<T> {
+impl<T: Real> ElapsedTime<T> {
     pub(crate) fn nothing() -> Self {
         Self { sum: real(0.0), carry: real(0.0) }
     }

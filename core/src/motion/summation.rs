@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::groups::{Advected, Factor, LieGroup, SO3};
+use crate::mechanics::{Group, Term};
 use crate::numbers::Real;
 
 /// How many steps go by between two looks at what roundings have done to the attitude.
@@ -34,6 +35,9 @@ pub struct Motion<G: LieGroup, A> {
     #[shared]
     pub(crate) steps: u64,
 }
+
+/// The type of a scene's motions.
+pub(crate) type MotionOf<S> = Motion<Group<S>, <S as Term>::Advected>;
 
 impl<G: LieGroup, A: Advected<G>> Motion<G, A> {
     /// The attitude `g_i`, body to space.
@@ -167,6 +171,12 @@ fn by_copy<M: Copy>(motion: &mut M, change: impl FnOnce(&mut M)) {
 pub(crate) fn is_due<G: LieGroup>(steps: u64) -> bool {
     steps.is_multiple_of(u64::from(if has_several::<G>() { STEPS_BETWEEN_SEVERAL } else { STEPS_BETWEEN_CHECKS }))
 }
+
+/// A [`Summation`] of a scene's motions.
+#[doc(hidden)]
+pub trait SumsOf<S: Term>: Summation<Group<S>, S::Advected> {}
+
+impl<S: Term, M: Summation<Group<S>, S::Advected>> SumsOf<S> for M {}
 
 impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Motion<G, A> {
     const CARRIES: bool = false;

@@ -12,6 +12,12 @@ pub trait Entries<T>: Copy {
     /// Visits the scalars.
     fn each(&self, visit: &mut impl FnMut(T));
 
+    /// The scalars, where they stand in this order in memory.
+    #[hot]
+    fn in_place(&self) -> Option<&[T]> {
+        None
+    }
+
     /// Combines the scalars at the same places.
     #[must_use]
     fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self;
@@ -32,6 +38,11 @@ impl<T: Real, const R: usize, const C: usize> Entries<T> for SMatrix<T, R, C> {
                 visit(self[(row, column)]);
             }
         }
+    }
+
+    #[hot]
+    fn in_place(&self) -> Option<&[T]> {
+        (C == 1).then(|| self.as_slice())
     }
 
     #[hot]

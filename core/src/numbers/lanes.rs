@@ -70,7 +70,7 @@ pub trait Lanes: Sized {
 /// What can be put into lanes of the scalar `W`, and what it is there.
 ///
 /// Scenes that are generic over their scalar can: of one body, of several that are declared together, and
-/// [systems](crate::mechanics::Placed) of bodies with terms at their places. So can the methods [`Stepper::new`](crate::Stepper::new),
+/// [systems](crate::mechanics::Placement) of bodies with terms at their places. So can the methods [`Stepper::new`](crate::Stepper::new),
 /// [`composed`](crate::Stepper::composed), [`split`](crate::Stepper::split) and [`processed`](crate::Stepper::processed), and
 /// all of them [`compensated`](crate::Stepper::compensated).
 ///
@@ -82,7 +82,7 @@ pub trait Lanes: Sized {
 ///   for it.
 /// - Bodies in joints are solved along a graph: pivots, the joint that is named, and how often a step is begun anew are
 ///   those of one system, and would have to be found for all lanes at once.
-/// - [Links](crate::methods::Linked) are solved with branches that a chain takes alone: shortened updates, Jacobians that
+/// - [Links](crate::methods::LinkedBodies) are solved with branches that a chain takes alone: shortened updates, Jacobians that
 ///   are used again.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` can't be put into lanes of `{W}`",

@@ -27,6 +27,9 @@ pub(crate) trait Kernel {
     /// for all of them.
     const VECTORS: Vectors;
 
+    /// Whether its numbers are lanes, whose vectors are put in memory and taken from there all the time.
+    const IS_IN_LANES: bool = false;
+
     /// Does it; marked `#[inline(always)]` but for builds with debug assertions.
     fn run(self) -> Self::Output;
 }
@@ -52,8 +55,10 @@ pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
             // The frame that the kernel is inlined into begins at a multiple of 64 bytes for it. Its vectors stand at
             // multiples of 32 bytes from there; elsewhere every other one would lie across two cache lines, and one of
             // them across two pages, whose stores take up to a third of a step.
-            let line = core::mem::MaybeUninit::<CacheLine>::uninit();
-            core::hint::black_box(&line);
+            if const { K::IS_IN_LANES } {
+                let line = core::mem::MaybeUninit::<CacheLine>::uninit();
+                core::hint::black_box(&line);
+            }
             self.0.run()
         }
     }
@@ -76,6 +81,6 @@ pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
 #[cfg(not(feature = "dispatch"))]
 #[hot]
 pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
-    let _ = K::VECTORS;
+    let _ = (K::VECTORS, K::IS_IN_LANES);
     kernel.run()
 }

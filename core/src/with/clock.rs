@@ -5,10 +5,10 @@ use core::f64::consts::TAU;
 
 use super::lengths::Lengths;
 use super::orbit::orbit;
-use super::varied::Varied;
+use super::varied::VariedSteps;
 use crate::error::SetupError;
-use crate::mechanics::{Effect, Group, SceneVisitor, Vector};
-use crate::motion::{Elapsed, Motion, Plan, Steerable, Stepper, Variable};
+use crate::mechanics::{Effect, SceneVisitor, Vector};
+use crate::motion::{ElapsedTime, MotionOf, Plan, Steerable, Stepper, Variable};
 
 /// Lengths of steps that are known beforehand, `h_k = h c_k`: the `c_k`, one after the other or in rounds.
 ///
@@ -34,7 +34,7 @@ impl Clock {
     /// [`SetupError::Parameter`] where there is none, or one isn't positive and finite.
     pub fn of_lengths(lengths: impl IntoIterator<Item = f64>) -> Result<Self, SetupError> {
         let lengths: Vec<f64> = lengths.into_iter().collect();
-        let (mut sum, mut times) = (Elapsed::nothing(), [0.0].to_vec());
+        let (mut sum, mut times) = (ElapsedTime::nothing(), [0.0].to_vec());
         times.extend(lengths.iter().map(|&length| {
             sum.add(length);
             sum.sum
@@ -135,7 +135,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Stepper<S, P> {
     /// let _ = stepper.with_clock(Clock::orbit(0.7, 6000.0, 400).unwrap());
     /// ```
     #[must_use]
-    pub fn with_clock(self, clock: Clock) -> Stepper<S, Varied<P, Clock>>
+    pub fn with_clock(self, clock: Clock) -> Stepper<S, VariedSteps<P, Clock>>
     where
         P: Variable,
     {
@@ -143,7 +143,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Stepper<S, P> {
     }
 }
 
-impl<P: Steerable> Steerable for Varied<P, Clock> {}
+impl<P: Steerable> Steerable for VariedSteps<P, Clock> {}
 
 impl<S: Effect<Scalar = f64>> Lengths<S> for Clock {
     type Memory = ();
@@ -154,7 +154,7 @@ impl<S: Effect<Scalar = f64>> Lengths<S> for Clock {
     fn length(
         &self,
         unit: f64,
-        motion: &Motion<Group<S>, S::Advected>,
+        motion: &MotionOf<S>,
         _velocity: impl FnOnce() -> Vector<S>,
         ((), is_ahead): (&(), bool),
     ) -> f64 {
@@ -168,7 +168,7 @@ impl<S: Effect<Scalar = f64>> Lengths<S> for Clock {
         length.map_or(f64::NAN, |length| unit * length)
     }
 
-    fn after(&self, _: [f64; 2], _: &Motion<Group<S>, S::Advected>, _: impl FnOnce() -> Vector<S>, (): &()) {}
+    fn after(&self, _: [f64; 2], _: &MotionOf<S>, _: impl FnOnce() -> Vector<S>, (): &()) {}
 
     #[allow(clippy::cast_precision_loss)] // a number of rounds
     fn time(&self, steps: u64, unit: f64, (): &()) -> f64 {

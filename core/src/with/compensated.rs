@@ -8,9 +8,10 @@
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
-use crate::methods::{Composed, Jointed, KineticFlow, Linked, Processed, Split};
+use crate::methods::{Composition, JointedBodies, KineticFlow, LinkedBodies, ProcessedSplitting, Splitting};
 use crate::motion::{
-    Declared, Kept, Motion, Plan, Steerable, StepReport, Stepper, Summation, TOLERATED, Variable, restored,
+    Kept, Motion, MotionOf, OwnStep, Plan, Steerable, StepReport, Stepper, Summation, SumsOf, TOLERATED, Variable,
+    restored,
 };
 use crate::numbers::{Entries, carried_sum, zero};
 use crate::with::remedies::Substeps;
@@ -44,7 +45,7 @@ use nalgebra::SimdValue as _;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, Lanes, InLanes)]
-pub struct Compensated<P>(P);
+pub struct CompensatedSums<P>(P);
 
 /// What a plan keeps, and what the rounding of its sums has left behind.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
@@ -77,19 +78,21 @@ impl<G: LieGroup, A: Advected<G>> Carry<G, A> {
 )]
 pub trait Compensable {}
 
-impl<S: Effect> Compensable for Declared<S> {}
-impl<S: Effect> Compensable for Composed<S> {}
-impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Compensable for Jointed<S, C, K, N, T, L> where
-    S: Effect
+impl<S: Effect> Compensable for OwnStep<S> {}
+impl<S: Effect> Compensable for Composition<S> {}
+impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Compensable
+    for JointedBodies<S, C, K, N, T, L>
+where
+    S: Effect,
 {
 }
-impl<S: Effect, const N: usize> Compensable for Linked<S, N> {}
-impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Split<S, K> {}
-impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Processed<S, K> {}
+impl<S: Effect, const N: usize> Compensable for LinkedBodies<S, N> {}
+impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Splitting<S, K> {}
+impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for ProcessedSplitting<S, K> {}
 impl<P: Compensable> Compensable for Substeps<P> {}
 
-impl<P: Steerable> Steerable for Compensated<P> {}
-impl<P: Variable> Variable for Compensated<P> {}
+impl<P: Steerable> Steerable for CompensatedSums<P> {}
+impl<P: Variable> Variable for CompensatedSums<P> {}
 
 /// # Wrap: compensated sums
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
@@ -107,15 +110,15 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// let _ = Stepper::collocated::<4>(body, 0.1).unwrap().compensated();
     /// ```
     #[must_use]
-    pub fn compensated(self) -> Stepper<S, Compensated<P>>
+    pub fn compensated(self) -> Stepper<S, CompensatedSums<P>>
     where
         P: Compensable,
     {
-        Stepper { scene: self.scene, plan: Compensated(self.plan) }
+        Stepper { scene: self.scene, plan: CompensatedSums(self.plan) }
     }
 }
 
-impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
+impl<S: Effect, P: Plan<S>> Plan<S> for CompensatedSums<P> {
     type Kept = MemoryWithCarry<P::Kept, Group<S>, S::Advected>;
 
     delegate_plan!(0, |kept| kept.kept; constants step_size admits momentum velocity is_in_step explained max_step cost);
@@ -124,17 +127,12 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
         self.0.refolded(scene, h).map(Self)
     }
 
-    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
+    fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept {
         MemoryWithCarry { kept: self.0.keep(scene, motion), carry: Carry::nothing() }
     }
 
     #[hot]
-    fn step<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         let mut sums = Sums { motion: *motion.now(), carry: kept.carry };
         let report = self.0.step(scene, &mut sums, &mut kept.kept)?;
         motion.replace(sums.motion);
@@ -171,7 +169,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
         Ok(())
     }
 
-    fn see(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut Self::Kept, advected: S::Advected) {
+    fn see(&self, motion: &mut MotionOf<S>, kept: &mut Self::Kept, advected: S::Advected) {
         self.0.see(motion, &mut kept.kept, advected);
         kept.carry.advected = zero();
     }

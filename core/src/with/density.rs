@@ -1,9 +1,9 @@
 //! Lengths of steps that follow the motion, and come back where the motion does.
 
 use super::lengths::Lengths;
-use super::varied::Varied;
-use crate::mechanics::{Effect, Group, SceneVisitor, Vector};
-use crate::motion::{Elapsed, Kept, Motion, Plan, Stepper, Variable};
+use super::varied::VariedSteps;
+use crate::mechanics::{Effect, SceneVisitor, Vector};
+use crate::motion::{ElapsedTime, Kept, MotionOf, Plan, Stepper, Variable};
 
 /// The rate of a density of steps.
 #[derive(Clone, Copy, Debug)]
@@ -13,7 +13,7 @@ pub struct Density<D>(D);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DensityMemory {
     pub(super) density: f64,
-    pub(super) time: Elapsed<f64>,
+    pub(super) time: ElapsedTime<f64>,
 }
 
 /// # Wrap: lengths that follow the motion
@@ -34,10 +34,10 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Stepper<S, P> {
     /// E. Hairer and G. Söderlind, *Explicit, time reversible, adaptive step size control*, SIAM J. Sci. Comput. 26 (2005),
     /// (3.5), with the density kept at the states and not between them.
     #[must_use]
-    pub fn with_density<D>(self, rate: D) -> Stepper<S, Varied<P, Density<D>>>
+    pub fn with_density<D>(self, rate: D) -> Stepper<S, VariedSteps<P, Density<D>>>
     where
         P: Variable,
-        D: Fn(&Motion<Group<S>, S::Advected>, &Vector<S>) -> f64 + Clone,
+        D: Fn(&MotionOf<S>, &Vector<S>) -> f64 + Clone,
     {
         self.varied(Density(rate))
     }
@@ -45,19 +45,19 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Stepper<S, P> {
 
 impl<S: Effect<Scalar = f64>, D> Lengths<S> for Density<D>
 where
-    D: Fn(&Motion<Group<S>, S::Advected>, &Vector<S>) -> f64 + Clone,
+    D: Fn(&MotionOf<S>, &Vector<S>) -> f64 + Clone,
 {
     type Memory = DensityMemory;
     const COUNTED: bool = false;
 
     fn begin(&self) -> DensityMemory {
-        DensityMemory { density: 1.0, time: Elapsed::nothing() }
+        DensityMemory { density: 1.0, time: ElapsedTime::nothing() }
     }
 
     fn length(
         &self,
         unit: f64,
-        motion: &Motion<Group<S>, S::Advected>,
+        motion: &MotionOf<S>,
         velocity: impl FnOnce() -> Vector<S>,
         (memory, is_ahead): (&DensityMemory, bool),
     ) -> f64 {
@@ -68,7 +68,7 @@ where
     fn after(
         &self,
         [unit, length]: [f64; 2],
-        motion: &Motion<Group<S>, S::Advected>,
+        motion: &MotionOf<S>,
         velocity: impl FnOnce() -> Vector<S>,
         before: &DensityMemory,
     ) -> DensityMemory {
@@ -96,6 +96,6 @@ impl Kept<f64> for DensityMemory {
     }
 
     fn from_numbers(next: &mut dyn FnMut() -> f64) -> Option<Self> {
-        Some(Self { density: next(), time: Elapsed::from_numbers(next) })
+        Some(Self { density: next(), time: ElapsedTime::from_numbers(next) })
     }
 }

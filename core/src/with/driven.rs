@@ -2,8 +2,8 @@
 
 use crate::error::{SetupError, StepError};
 use crate::groups::Advected as _;
-use crate::mechanics::{Effect, Group, Scalar, SceneVisitor};
-use crate::motion::{Motion, Plan, Steerable, StepReport, Stepper, Summation};
+use crate::mechanics::{Effect, Scalar, SceneVisitor};
+use crate::motion::{MotionOf, Plan, Steerable, StepReport, Stepper, SumsOf};
 use crate::numbers::real;
 use nalgebra::{SimdPartialOrd as _, SimdValue as _};
 
@@ -85,16 +85,11 @@ where
         self.plan.counted(steps)
     }
 
-    fn length(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, kept: &P::Kept, is_ahead: bool) -> Scalar<S> {
+    fn length(&self, scene: &S, motion: &MotionOf<S>, kept: &P::Kept, is_ahead: bool) -> Scalar<S> {
         self.plan.length(scene, motion, kept, is_ahead)
     }
 
-    fn step<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         let (mut now, mut next) = (*motion.now(), *kept);
         let length = self.plan.length(scene, &now, &next, true);
         let end = self.see_middle((&mut now, &mut next), [length * real(0.5), length])?;
@@ -111,10 +106,10 @@ where
     fn part(
         &self,
         scene: &S,
-        motion: &Motion<Group<S>, S::Advected>,
+        motion: &MotionOf<S>,
         kept: &P::Kept,
         fraction: Scalar<S>,
-    ) -> Result<Motion<Group<S>, S::Advected>, StepError> {
+    ) -> Result<MotionOf<S>, StepError> {
         let (mut now, mut kept) = (*motion, *kept);
         let [ahead, back] = [true, false].map(|is_ahead| self.plan.length(scene, &now, &kept, is_ahead));
         let is_ahead = fraction.simd_ge(real(0.0));
@@ -135,7 +130,7 @@ impl<P, V> Driven<P, V> {
     /// Shows a plan the values after this time, and returns those after that one.
     fn see_middle<S: Effect>(
         &self,
-        (motion, kept): (&mut Motion<Group<S>, S::Advected>, &mut P::Kept),
+        (motion, kept): (&mut MotionOf<S>, &mut P::Kept),
         [middle, end]: [Scalar<S>; 2],
     ) -> Result<S::Advected, StepError>
     where

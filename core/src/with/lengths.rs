@@ -1,7 +1,7 @@
 //! What gives each step its length.
 
-use crate::mechanics::{Effect, Group, SceneVisitor, Vector};
-use crate::motion::{Kept, Motion};
+use crate::mechanics::{Effect, SceneVisitor, Vector};
+use crate::motion::{Kept, MotionOf};
 
 /// What gives each step its length.
 pub trait Lengths<S: Effect>: Clone {
@@ -17,7 +17,7 @@ pub trait Lengths<S: Effect>: Clone {
     fn length(
         &self,
         unit: f64,
-        motion: &Motion<Group<S>, S::Advected>,
+        motion: &MotionOf<S>,
         velocity: impl FnOnce() -> Vector<S>,
         way: (&Self::Memory, bool),
     ) -> f64;
@@ -26,7 +26,7 @@ pub trait Lengths<S: Effect>: Clone {
     fn after(
         &self,
         lengths: [f64; 2],
-        motion: &Motion<Group<S>, S::Advected>,
+        motion: &MotionOf<S>,
         velocity: impl FnOnce() -> Vector<S>,
         before: &Self::Memory,
     ) -> Self::Memory;

@@ -19,7 +19,7 @@ mod varied;
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, CheckpointError, Storable};
 pub use clock::Clock;
-pub use compensated::{Compensable, Compensated, MemoryWithCarry};
+pub use compensated::{Compensable, CompensatedSums, MemoryWithCarry};
 #[doc(hidden)]
 pub use density::Density;
 pub use driven::Driven;
@@ -27,7 +27,7 @@ pub use driven::Driven;
 pub use lengths::Lengths;
 pub use pace::Pacable;
 #[doc(hidden)]
-pub use pace::Paced;
+pub use pace::PacedStep;
 pub use remedies::Substeps;
 #[doc(hidden)]
-pub use varied::Varied;
+pub use varied::VariedSteps;

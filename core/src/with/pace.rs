@@ -1,16 +1,16 @@
 //! Steps of a transformed time, whose pace is declared.
 
-use super::compensated::Compensated;
+use super::compensated::CompensatedSums;
 use super::density::DensityMemory;
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, SceneVisitor, Vector, energy};
-use crate::motion::{Declared, Elapsed, Motion, Plan, StepReport, Stepper, Summation};
+use crate::motion::{ElapsedTime, Motion, MotionOf, OwnStep, Plan, StepReport, Stepper, SumsOf};
 use crate::numbers::Vectors;
 
 /// A plan whose steps are equal in `τ`, `dt = s dτ`, by [`Stepper::paced`].
 #[derive(Clone, Debug)]
 #[doc(hidden)]
-pub struct Paced<P>(P);
+pub struct PacedStep<P>(P);
 
 /// A plan whose step is one of `l_d`, which has the pace in it.
 #[diagnostic::on_unimplemented(
@@ -19,8 +19,8 @@ pub struct Paced<P>(P);
 )]
 pub trait Pacable {}
 
-impl<S: Effect> Pacable for Declared<S> {}
-impl<P: Pacable> Pacable for Compensated<P> {}
+impl<S: Effect> Pacable for OwnStep<S> {}
+impl<P: Pacable> Pacable for CompensatedSums<P> {}
 
 /// Beside this energy, J, all others vanish. It is a power of two, so that digits stay.
 const VAST: f64 = f64::from_bits((1023 + 500) << 52);
@@ -42,11 +42,11 @@ impl<S: Effect<Scalar = f64>, P: Plan<S> + Pacable> Stepper<S, P> {
     ///
     /// E. Hairer, *Variable time step integration with symplectic methods*, Appl. Numer. Math. 25 (1997), and S. Reich,
     /// *Backward error analysis for numerical integrators*, SIAM J. Numer. Anal. 36 (1999).
-    pub fn paced(self) -> Result<Stepper<S, Paced<P>>, SetupError> {
+    pub fn paced(self) -> Result<Stepper<S, PacedStep<P>>, SetupError> {
         if self.scene.with_energy(&self.scene.advected(), 0.0).is_none() {
             return Err(SetupError::Parameter { field: "pace", cause: "isn't declared, or not of the whole scene" });
         }
-        Ok(Stepper { scene: self.scene, plan: Paced(self.plan) })
+        Ok(Stepper { scene: self.scene, plan: PacedStep(self.plan) })
     }
 }
 
@@ -56,7 +56,7 @@ fn pace<S: Effect<Scalar = f64>>(scene: &S, w: &S::Advected) -> f64 {
     scene.with_energy(w, VAST).map_or(f64::NAN, |(w, _)| -scene.potential(&w) / VAST)
 }
 
-impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for Paced<P> {
+impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for PacedStep<P> {
     /// The pace is kept in the place of a density.
     type Kept = (P::Kept, DensityMemory);
 
@@ -72,13 +72,13 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for Paced<P> {
         self.0.refolded(scene, h).map(Self)
     }
 
-    fn begun(&self, scene: &S, motion: Motion<Group<S>, S::Advected>) -> Motion<Group<S>, S::Advected> {
+    fn begun(&self, scene: &S, motion: MotionOf<S>) -> MotionOf<S> {
         let advected = scene.with_energy(&motion.advected, self.energy(scene, &motion));
         Motion { advected: advected.map_or(motion.advected, |(w, _)| w), ..motion }
     }
 
-    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
-        let memory = DensityMemory { density: pace(scene, &motion.advected), time: Elapsed::nothing() };
+    fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept {
+        let memory = DensityMemory { density: pace(scene, &motion.advected), time: ElapsedTime::nothing() };
         (self.0.keep(scene, motion), memory)
     }
 
@@ -86,33 +86,28 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for Paced<P> {
         self.0.momentum(scene, attitude, &(*velocity * pace(scene, w)), w)
     }
 
-    fn velocity(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
+    fn velocity(&self, scene: &S, motion: &MotionOf<S>) -> Vector<S> {
         self.0.velocity(scene, motion) * pace(scene, &motion.advected).recip()
     }
 
     /// That of `s (H − E_0)` with zero for `E_0`, over `s`.
-    fn energy(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> f64 {
+    fn energy(&self, scene: &S, motion: &MotionOf<S>) -> f64 {
         let w = scene.with_energy(&motion.advected, 0.0).map_or(motion.advected, |(w, _)| w);
         energy(scene, &motion.momentum, &w) / pace(scene, &w)
     }
 
-    fn time(&self, _: &Motion<Group<S>, S::Advected>, kept: &Self::Kept) -> f64 {
+    fn time(&self, _: &MotionOf<S>, kept: &Self::Kept) -> f64 {
         kept.1.time.sum
     }
 
     /// By making the step.
-    fn length(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, kept: &Self::Kept, is_ahead: bool) -> f64 {
+    fn length(&self, scene: &S, motion: &MotionOf<S>, kept: &Self::Kept, is_ahead: bool) -> f64 {
         let part = self.0.part(scene, motion, &kept.0, if is_ahead { 1.0 } else { -1.0 });
         part.map_or(f64::NAN, |part| self.step_size() * 0.5 * (kept.1.density + pace(scene, &part.advected)))
     }
 
     #[hot]
-    fn step<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         let energy = scene.with_energy(&motion.now().advected, 0.0);
         let report = self.0.step(scene, motion, &mut kept.0)?;
         // Now and then what is advected is seen anew, and given as in the scene.
@@ -129,10 +124,10 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for Paced<P> {
     fn part(
         &self,
         scene: &S,
-        motion: &Motion<Group<S>, S::Advected>,
+        motion: &MotionOf<S>,
         kept: &Self::Kept,
         fraction: f64,
-    ) -> Result<Motion<Group<S>, S::Advected>, StepError> {
+    ) -> Result<MotionOf<S>, StepError> {
         let h = self.step_size();
         let time = fraction * self.length(scene, motion, kept, fraction > 0.0);
         let mut share = fraction;

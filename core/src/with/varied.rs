@@ -2,30 +2,30 @@
 
 use super::lengths::Lengths;
 use crate::error::{SetupError, StepError};
-use crate::mechanics::{Effect, Group, SceneVisitor};
-use crate::motion::{Motion, Plan, StepReport, Stepper, Summation, Variable};
+use crate::mechanics::{Effect, SceneVisitor};
+use crate::motion::{MotionOf, Plan, StepReport, Stepper, SumsOf, Variable};
 use crate::numbers::Vectors;
 
 /// A plan each of whose steps has a length of its own, by [`Stepper::with_clock`] and [`Stepper::with_density`].
 #[derive(Clone, Debug)]
-pub struct Varied<P, L> {
+pub struct VariedSteps<P, L> {
     plan: P,
     lengths: L,
 }
 
 impl<S: Effect<Scalar = f64>, P: Plan<S> + Variable> Stepper<S, P> {
-    pub(super) fn varied<L: Lengths<S>>(self, lengths: L) -> Stepper<S, Varied<P, L>> {
+    pub(super) fn varied<L: Lengths<S>>(self, lengths: L) -> Stepper<S, VariedSteps<P, L>> {
         const { assert!(!P::VARIES, "a step has one length: choose a clock or a density") }
-        Stepper { scene: self.scene, plan: Varied { plan: self.plan, lengths } }
+        Stepper { scene: self.scene, plan: VariedSteps { plan: self.plan, lengths } }
     }
 }
 
-impl<P, L> Varied<P, L> {
+impl<P, L> VariedSteps<P, L> {
     /// The length of a step, if it is one: of the sign of the unit, and long enough that time goes on.
     fn checked<S>(
         &self,
         scene: &S,
-        motion: &Motion<Group<S>, S::Advected>,
+        motion: &MotionOf<S>,
         kept: &(P::Kept, L::Memory),
         is_ahead: bool,
     ) -> Result<f64, StepError>
@@ -41,7 +41,7 @@ impl<P, L> Varied<P, L> {
     }
 }
 
-impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for Varied<P, L> {
+impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for VariedSteps<P, L> {
     type Kept = (P::Kept, L::Memory);
 
     const VECTORS: Vectors = P::VECTORS;
@@ -57,7 +57,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for Varied<P, L
         Ok(Self { plan: self.plan.refolded(scene, h)?, lengths: self.lengths.clone() })
     }
 
-    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
+    fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept {
         (self.plan.keep(scene, motion), self.lengths.begin())
     }
 
@@ -65,22 +65,17 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for Varied<P, L
         self.lengths.time(steps, self.plan.step_size(), &self.lengths.begin())
     }
 
-    fn time(&self, motion: &Motion<Group<S>, S::Advected>, kept: &Self::Kept) -> f64 {
+    fn time(&self, motion: &MotionOf<S>, kept: &Self::Kept) -> f64 {
         self.lengths.time(motion.steps, self.plan.step_size(), &kept.1)
     }
 
-    fn length(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, kept: &Self::Kept, is_ahead: bool) -> f64 {
+    fn length(&self, scene: &S, motion: &MotionOf<S>, kept: &Self::Kept, is_ahead: bool) -> f64 {
         let velocity = || self.plan.velocity(scene, motion);
         self.lengths.length(self.plan.step_size(), motion, velocity, (&kept.1, is_ahead))
     }
 
     #[hot]
-    fn step<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         let length = self.checked(scene, motion.now(), kept, true)?;
         let report = self.plan.step_of(scene, motion, &mut kept.0, length)?;
         motion.count();
@@ -92,10 +87,10 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for Varied<P, L
     fn part(
         &self,
         scene: &S,
-        motion: &Motion<Group<S>, S::Advected>,
+        motion: &MotionOf<S>,
         kept: &Self::Kept,
         fraction: f64,
-    ) -> Result<Motion<Group<S>, S::Advected>, StepError> {
+    ) -> Result<MotionOf<S>, StepError> {
         if fraction == 0.0 || self.plan.step_size() == 0.0 {
             return Ok(*motion);
         }
@@ -104,7 +99,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for Varied<P, L
     }
 
     /// That of the next length.
-    fn max_step(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, kept: &Self::Kept) -> f64 {
+    fn max_step(&self, scene: &S, motion: &MotionOf<S>, kept: &Self::Kept) -> f64 {
         let whole = self.checked(scene, motion, kept, true);
         let whole = whole.ok().and_then(|length| self.plan.refolded(scene, length).ok());
         whole.map_or(0.0, |whole| whole.max_step(scene, motion, &whole.keep(scene, motion)))
@@ -116,4 +111,4 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for Varied<P, L
     }
 }
 
-impl<P: Variable, L> Variable for Varied<P, L> {}
+impl<P: Variable, L> Variable for VariedSteps<P, L> {}

@@ -53,7 +53,7 @@ pub(crate) fn p1(_: Effort) -> Result<Row, Failure> {
             .at_most("log-trace", worst(log_trace, &phases)?, 1e-10)
             .at_most("L4", worst(FourthOrderTop::of(&top), &phases)?, 1e-10)
             .at_most("L6", worst(SixthOrderTop::of(&top), &phases)?, 1e-10)
-            .shows("all other declared systems: tests/systems/poisson.rs");
+            .shows("all other declared systems: tests/systems/structure.rs");
 
     let mut theirs = 0.0;
     for z in &phases {

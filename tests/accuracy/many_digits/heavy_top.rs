@@ -89,7 +89,7 @@ impl<'a> Top<'a> {
                 return self.move_by(&rotation(&xi));
             }
         }
-        panic!("no solution for {}", self.momentum);
+        panic!("no solution for {:?}", self.momentum);
     }
 
     fn move_by(&mut self, turn: &Matrix) {
@@ -101,7 +101,7 @@ impl<'a> Top<'a> {
     /// `F` with `(F J_d − J_d Fᵀ)^∨ = b`, by Newton's iteration for the imaginary part of its quaternion.
     ///
     /// Its Jacobian is a double's, so an iteration gains sixteen digits at most.
-    fn turn(&self, b: &Vector) -> Matrix {
+    pub(crate) fn turn(&self, b: &Vector) -> Matrix {
         let nonstandard = Matrix::from_diagonal(&self.motion.nonstandard);
         let inertia = Matrix3::from_diagonal(&self.motion.moments.map(DoubleDouble::rounded));
         let mut q = Vector::zeros();

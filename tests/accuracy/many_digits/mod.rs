@@ -14,25 +14,29 @@ mod cotangent;
 pub(crate) mod free_body;
 pub(crate) mod heavy_top;
 pub(crate) mod motion;
-mod poisson;
+pub(crate) mod poisson;
+
+use core::ops::Sub;
 
 use checks::order::{End, error};
+use nalgebra::{Matrix3, Vector3};
+use num_traits::Zero;
 pub(crate) use workbench::double_double::{DoubleDouble, long};
 use workbench::measure::order;
 
 use motion::Motion;
 
 /// Three of them.
-pub(crate) type Vector = nalgebra::Vector3<DoubleDouble>;
+pub(crate) type Vector = Vector3<DoubleDouble>;
 /// Three by three of them.
-pub(crate) type Matrix = nalgebra::Matrix3<DoubleDouble>;
+pub(crate) type Matrix = Matrix3<DoubleDouble>;
 
 /// `v̂`, which nalgebra has for fields only.
-fn hat(v: &Vector) -> Matrix {
-    Matrix::from_fn(|i, j| match (i + 3 - j) % 3 {
-        0 => long(0.0),
+fn hat<T: nalgebra::Scalar + Copy + Zero + Sub<Output = T>>(v: &Vector3<T>) -> Matrix3<T> {
+    Matrix3::from_fn(|i, j| match (i + 3 - j) % 3 {
+        0 => T::zero(),
         1 => v[3 - i - j],
-        _ => -v[3 - i - j],
+        _ => T::zero() - v[3 - i - j],
     })
 }
 

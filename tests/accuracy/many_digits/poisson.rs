@@ -2,7 +2,10 @@
 //! beyond all doubt of rounding. The maps are those of this folder; a step of the library is compared with each, one of
 //! collocation where its order is measured.
 
-use nalgebra::{Matrix6, Vector3, Vector6};
+use core::ops::Div;
+
+use nalgebra::{ClosedAddAssign, ClosedMulAssign, ClosedSubAssign, SMatrix, SVector, Scalar, Vector3, Vector6};
+use num_traits::{One, Zero};
 
 use super::collocation::{self, Tableau};
 use super::heavy_top::Top;
@@ -17,33 +20,56 @@ use liestep::{SO3, Stepper};
 /// Momentum and vertical.
 type Phase = Vector6<DoubleDouble>;
 
-fn phase(momentum: &Vector, w: &Vector) -> Phase {
-    Phase::from_fn(|i, _| if i < 3 { momentum[i] } else { w[i - 3] })
+/// Momentum, what is advected, and what else there is.
+pub(crate) fn phase<T: Digits, const N: usize>(momentum: &Vector3<T>, w: &Vector3<T>, rest: &[T]) -> SVector<T, N> {
+    SVector::from_fn(|i, _| [momentum.as_slice(), w.as_slice(), rest].concat()[i])
 }
 
-/// `B = [[μ̂, ŵ], [ŵ, 0]]`
-fn tensor(z: &Phase) -> Matrix6<DoubleDouble> {
-    let (momentum, w) = (hat(&Vector3::new(z[0], z[1], z[2])), hat(&Vector3::new(z[3], z[4], z[5])));
-    Matrix6::from_fn(|i, j| match (i < 3, j < 3) {
-        (true, true) => momentum[(i, j)],
-        (false, false) => long(0.0),
-        _ => w[(i % 3, j % 3)],
+/// A number of 16 or of 32 digits.
+pub(crate) trait Digits:
+    Scalar + Copy + From<f64> + Zero + One + ClosedAddAssign + ClosedSubAssign + ClosedMulAssign + Div<Output = Self>
+{
+}
+
+impl Digits for f64 {}
+impl Digits for DoubleDouble {}
+
+/// `B = [[μ̂, ŵ], [ŵ, 0]]`, and where time and energy go with these `{t, −E_0} = 1`.
+fn tensor<T: Digits, const N: usize>(z: &SVector<T, N>) -> SMatrix<T, N, N> {
+    let [momentum, w] = [0, 3].map(|at| hat(&Vector3::new(z[at], z[at + 1], z[at + 2])));
+    SMatrix::from_fn(|i, j| match (i / 3, j / 3) {
+        (0, 0) => momentum[(i, j)],
+        (0, 1) | (1, 0) => w[(i % 3, j % 3)],
+        _ if (i, j) == (6, 7) => T::zero() - T::one(),
+        _ if (i, j) == (7, 6) => T::one(),
+        _ => T::zero(),
     })
 }
 
-/// The largest entry of `DΦ B(z) DΦᵀ − B(Φ(z))`.
-fn defect(map: impl Fn(&Phase) -> Phase, z: &Phase) -> f64 {
-    // Of six points so far apart a smooth map leaves some 10⁻²⁶, by the seventh derivative and by rounding.
-    let d = 1e-5;
-    let column = |k: usize| {
-        let at = |steps: f64| map(&Phase::from_fn(|i, _| if i == k { z[i] + long(steps) * long(d) } else { z[i] }));
-        let odd = |steps: f64| at(steps) - at(-steps);
-        (odd(1.0) * long(45.0) - odd(2.0) * long(9.0) + odd(3.0)).map(|change| change / (long(60.0) * long(d)))
+/// Of 32 digits: some 10⁻²⁷ is left of what is smooth on the scale of one.
+pub(crate) const APART: f64 = 1e-4;
+
+/// The derivative at zero, of ten points so far apart: what is missing has the eleventh derivative in it.
+pub(crate) fn derivative<T: Digits, const N: usize>(f: impl Fn(T) -> SVector<T, N>, apart: f64) -> SVector<T, N> {
+    let odd = |(k, weight): (f64, f64)| {
+        let at = T::from(k) * T::from(apart);
+        (f(at) - f(T::zero() - at)) * T::from(weight)
     };
-    let columns: Vec<_> = (0..6).map(column).collect();
-    let tangent = Matrix6::from_columns(&columns);
-    let defect = tangent * tensor(z) * tangent.transpose() - tensor(&map(z));
-    defect.iter().map(|entry| entry.rounded().abs()).fold(0.0, f64::max)
+    let all = [(1.0, 2100.0), (2.0, -600.0), (3.0, 150.0), (4.0, -25.0), (5.0, 2.0)].map(odd);
+    let sum = all.into_iter().fold(SVector::<T, N>::zeros(), |sum, one| sum + one);
+    sum.map(|change| change / (T::from(2520.0) * T::from(apart)))
+}
+
+/// `DΦ B(z) DΦᵀ − B(Φ(z))`, with [derivatives](derivative) by points so far apart.
+pub(crate) fn defect<T: Digits, const N: usize>(
+    map: impl Fn(&SVector<T, N>) -> SVector<T, N>,
+    z: &SVector<T, N>,
+    apart: f64,
+) -> SMatrix<T, N, N> {
+    let unit = |k: usize| SVector::<T, N>::from_fn(|i, _| if i == k { T::one() } else { T::zero() });
+    let columns: [_; N] = core::array::from_fn(|k| derivative(|t| map(&(z + unit(k) * t)), apart));
+    let tangent = SMatrix::<T, N, N>::from_columns(&columns);
+    tangent * tensor(z) * tangent.transpose() - tensor(&map(z))
 }
 
 /// A parameter off the orbit of the vertical is that of another top, whose vertical it is.
@@ -57,7 +83,7 @@ fn top_at(z: &Phase) -> Motion {
 }
 
 fn start() -> Phase {
-    phase(&Vector3::new(2.0, -1.0, 1.5).map(long), &Vector3::new(0.6, 0.1, 0.8).map(long))
+    phase(&Vector3::new(2.0, -1.0, 1.5).map(long), &Vector3::new(0.6, 0.1, 0.8).map(long), &[])
 }
 
 /// Of all steps here, s.
@@ -68,7 +94,7 @@ fn moved(z: &Phase, act: impl Fn(&mut Top<'_>)) -> Phase {
     let motion = top_at(z);
     let mut top = Top::at_start_of(&motion);
     act(&mut top);
-    phase(&top.momentum, &top.w)
+    phase(&top.momentum, &top.w, &[])
 }
 
 /// What is done to a top is a Poisson map, and a step of the library does just that.
@@ -81,7 +107,7 @@ fn assert_poisson<P, E>(
     E: core::fmt::Debug,
 {
     let map = |z: &Phase| moved(z, &act);
-    let defect = defect(map, &start());
+    let defect = defect(map, &start(), APART).map(DoubleDouble::rounded).amax();
     let [end, start] = [map(&start()), start()].map(|z| z.map(DoubleDouble::rounded));
     let [momentum, up] = [0, 3].map(|first| start.fixed_rows::<3>(first).into_owned());
     let stepper = library(HeavyTop { up, ..declarations::Motion::read(TOPS[3]).top }).unwrap();
@@ -128,9 +154,9 @@ fn p1_collocation_is_a_poisson_map_to_twenty_digits() {
         let map = |z: &Phase| {
             let motion = top_at(z);
             let (attitude, velocity) = collocation::end(&tableau, &motion, long(H), 1);
-            phase(&motion.moments.component_mul(&velocity), &(attitude.transpose() * motion.up))
+            phase(&motion.moments.component_mul(&velocity), &(attitude.transpose() * motion.up), &[])
         };
-        let defect = defect(map, &start());
+        let defect = defect(map, &start(), APART).map(DoubleDouble::rounded).amax();
         println!("{stages} stages: {defect:.1e}");
         assert!(defect < 1e-20, "{stages} stages: {defect:e}");
     }

@@ -10,12 +10,12 @@ use liestep::groups::{Advected, LieGroup, R3, SE2};
 use liestep::laws::samples::{Random, derivative};
 use liestep::mechanics::{DiscreteLagrangian, Each, On, Regular};
 use liestep::numbers::Bodies;
-use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::{DMatrix, DVector, Matrix3, Point2, SVector, UnitComplex, Vector2, Vector3};
 
 use super::declared::CoupledAttitudes;
-use super::element;
 use super::translated::missed;
+use super::{element, started};
 
 const STEPS: u32 = 20_000;
 
@@ -100,8 +100,7 @@ impl<W, const D: usize> Orbit<'_, W, D> {
             + Clone,
         W: Advected<S::Group>,
     {
-        let stepper = Stepper::new(scene.clone(), h).unwrap();
-        let mut state = stepper.start(attitude, *velocity).unwrap();
+        let (stepper, mut state) = started(scene.clone(), h, (attitude, *velocity));
         let now = |momentum, w| self.joined(&momentum, &w);
         let first = now(state.momentum(), state.advected());
         self.assert_complete(&first);
@@ -274,8 +273,7 @@ where
     S: DiscreteLagrangian<Scalar = f64, Group = [SE2; 2], Advected = Seen> + Regular,
 {
     let spatial = scene.advected();
-    let stepper = Stepper::new(scene, 0.01).unwrap();
-    let mut state = stepper.start(start, velocity).unwrap();
+    let (stepper, mut state) = started(scene, 0.01, (start, velocity));
     let first = kept(&state.advected(), &state.momentum());
     let (mut off, mut parted, mut naive) = (0.0_f64, 0.0_f64, 0.0_f64);
     let mut misses = [f64::INFINITY, 0.0];

@@ -1,23 +1,15 @@
 //! The double pendulum as it is declared.
 
 use declarations::DoublePendulum;
-use declarations::motions::{number, read, vector};
-use liestep::groups::{CayleyRetraction, Retraction};
 use liestep::laws::samples::Random;
 use liestep::mechanics::{DiagonalNonstandardInertia, Effect, Term};
-use liestep::methods::CompositionScheme;
 use liestep::recording::{Recorder, Table};
-use liestep::{NonstandardInertia, SO3, Stepper};
-use nalgebra::{SVector, UnitQuaternion, Vector3, Vector6};
+use liestep::{SO3, Stepper};
+use nalgebra::{UnitQuaternion, Vector6};
 
-use super::{check_derived, check_symplectic, order, part, stacked};
+use super::{check_derived, check_symplectic, element, part};
 
 type Group = (SO3, SO3);
-
-fn element(random: &mut Random, size: f64) -> Group {
-    let xi: SVector<f64, 6> = random.sample();
-    <CayleyRetraction as Retraction<Group>>::retract(&(xi * size))
-}
 
 #[test]
 fn what_is_derived_is_what_is_declared() {
@@ -29,63 +21,8 @@ fn what_is_derived_is_what_is_declared() {
 fn a_step_is_symplectic() {
     let mut random = Random::new(8);
     for h in [0.02, 0.1] {
-        check_symplectic(DoublePendulum::asymmetric(), h, element(&mut random, 1.0), random.sample());
+        check_symplectic(DoublePendulum::asymmetric(), h, element::<_, 6>(&random.sample()), random.sample());
     }
-}
-
-/// Two point masses on rods. The reference knows directions alone, and bodies that start without spin move as these,
-/// whatever their moments about their axes.
-#[test]
-fn spherical_pendulum() {
-    let data = &read("several bodies")["double_spherical_pendulum"];
-    let (start, end) = (&data["states"][0], &data["states"][1]);
-    let (e, direction) = (Vector3::z(), |value: &serde_json::Value, k: usize| vector(&value["q"][k]));
-    let started = |pendulum: &DoublePendulum| {
-        let [first, second] = [(0, pendulum.J_1), (1, pendulum.J_2)]
-            .map(|(k, inertia)| inertia.pointing(&e, &direction(start, k), &vector(&start["omega"][k])).unwrap());
-        ((first.0, second.0), stacked(&[first.1, second.1]))
-    };
-    let directions = |at: &Group| [at.0, at.1].map(|attitude| attitude.as_matrix() * e);
-    let error = |end_at: &Group| {
-        let [first, second] = directions(end_at);
-        (first - direction(end, 0)).amax().max((second - direction(end, 1)).amax())
-    };
-    let run = |pendulum: DoublePendulum, (h, steps): (f64, u64)| {
-        let ((attitude, velocity), stepper) = (started(&pendulum), Stepper::new(pendulum, h).unwrap());
-        let mut state = stepper.start(attitude, velocity).unwrap();
-        let energy = stepper.energy(&state);
-        assert!((energy - number(&start["energy"])).abs() < 1e-13, "{energy}");
-        for hundreds in 1..=steps / 100 {
-            stepper.run(&mut state, 100).unwrap();
-            let momentum = state.momentum();
-            // What roundings of so many steps leave.
-            let allowed = 1e-15 * f64::from(u32::try_from(hundreds).unwrap());
-            let about_axes = momentum[2].abs().max(momentum[5].abs()) / momentum.norm();
-            assert!(about_axes < allowed, "about the axes: {about_axes:e}");
-        }
-        state.attitude()
-    };
-    let errors =
-        [(0.01, 200), (0.005, 400), (0.0025, 800)].map(|steps| error(&run(DoublePendulum::spherical(0.01), steps)));
-    order(&errors);
-    for (found, expected) in errors.iter().zip([1.78e-3, 4.45e-4, 1.11e-4]) {
-        assert!((found / expected - 1.0).abs() < 0.01, "{errors:?}");
-    }
-    let expected = directions(&run(DoublePendulum::spherical(0.01), (0.01, 200)));
-    for spinning in [1e-4, 0.3, 1.0] {
-        let found = directions(&run(DoublePendulum::spherical(spinning), (0.01, 200)));
-        let off = (found[0] - expected[0]).amax().max((found[1] - expected[1]).amax());
-        println!("with {spinning} about the axes: {off:.1e}");
-        assert!(off < 1e-13, "{spinning}: {off:e}");
-    }
-    let pendulum = DoublePendulum::spherical(0.25 * 1.7);
-    assert!((NonstandardInertia::of_rod(1.7, &e).unwrap().as_matrix() - pendulum.J_1.as_matrix()).amax() < 1e-15);
-    let (attitude, velocity) = started(&pendulum);
-    let composed = Stepper::composed(pendulum, 0.02, CompositionScheme::KAHAN_LI_8).unwrap();
-    let mut state = composed.start(attitude, velocity).unwrap();
-    composed.run(&mut state, 100).unwrap();
-    println!("of order 8: {:.1e}", error(&state.attitude()));
-    assert!(error(&state.attitude()) < 1e-8);
 }
 
 /// Along the vertical the momentum of both.
@@ -99,7 +36,7 @@ fn vertical(motion: &liestep::motion::Motion<Group, <DoublePendulum as Term>::Ad
 #[test]
 fn vertical_momentum_and_energy() {
     let stepper = Stepper::new(DoublePendulum::asymmetric(), 0.01).unwrap();
-    let attitude = element(&mut Random::new(7), 1.0);
+    let attitude = element::<Group, 6>(&Random::new(7).sample());
     let mut state = stepper.start(attitude, Vector6::new(0.5, -1.0, 2.0, 1.0, 0.3, -0.5)).unwrap();
     let (before, energy) = (vertical(&state), stepper.energy(&state));
     let (mut most, mut iterations) = (0.0_f64, 0);
@@ -134,7 +71,7 @@ fn vertical_momentum_and_energy() {
 fn a_record_has_the_columns_of_each_body() {
     let stepper = Stepper::new(DoublePendulum::asymmetric(), 0.01).unwrap();
     let velocity = Vector6::new(0.5, -1.0, 2.0, 1.0, 0.3, -0.5);
-    let mut state = stepper.start(element(&mut Random::new(8), 1.0), velocity).unwrap();
+    let mut state = stepper.start(element::<Group, 6>(&Random::new(8).sample()), velocity).unwrap();
     let mut recorder = Recorder::new(&stepper, Table::new());
     stepper.observed(&mut state).every(10, |now| recorder.record(now)).steps(50).unwrap();
     let table = recorder.finish().unwrap();

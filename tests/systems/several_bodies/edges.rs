@@ -9,12 +9,12 @@ use liestep::groups::R3;
 
 use liestep::motion::Integrator;
 use liestep::numbers::Bodies;
-use liestep::{NonstandardInertia, SO3, StepError, Stepper};
+use liestep::{NonstandardInertia, SO3, StepError};
 use nalgebra::{SVector, Vector3, Vector6};
 
-use super::assert_same;
 use super::links::irregular;
 use super::translated::whole;
+use super::{assert_same, started};
 use liestep::laws::samples::Random;
 
 /// What ends the steps that have a solution.
@@ -99,11 +99,7 @@ fn scanned<I>(
 fn steps_of_a_double_pendulum_up_to_the_longest() {
     let attitudes = (SO3::from_euler_angles(0.3, 1.0, -0.2), SO3::from_euler_angles(-0.5, 0.4, 0.1));
     for velocity in [Vector6::new(0.5, -1.0, 2.0, 1.0, 0.3, -0.5), Vector6::new(4.0, 1.0, 9.0, -3.0, 2.0, -8.0)] {
-        let started = |h: f64| {
-            let stepper = Stepper::new(DoublePendulum::asymmetric(), h).unwrap();
-            let state = stepper.start(attitudes, velocity).unwrap();
-            (stepper, state)
-        };
+        let started = |h: f64| started(DoublePendulum::asymmetric(), h, (attitudes, velocity));
         scanned(
             started,
             |state| vec![state.attitude().0, state.attitude().1],
@@ -155,8 +151,7 @@ fn bodies_that_nearly_touch() {
     // Kepler's period, of the semi-major axis 51/101.
     let period = 2.0 * PI * ((51.0_f64 / 101.0).powi(3) / (G * 1.4)).sqrt();
     let errors = [2e-5, 1e-5].map(|h| {
-        let stepper = Stepper::new(scene.clone(), h).unwrap();
-        let mut state = stepper.start(at(1.0), velocity).unwrap();
+        let (stepper, mut state) = started(scene.clone(), h, (at(1.0), velocity));
         let (energy, momenta) = (stepper.energy(&state), whole(&state));
         let (mut nearest, mut most, mut time, mut moved) = (f64::INFINITY, 0.0_f64, 0.0, [0.0_f64; 2]);
         while time < period {
@@ -186,8 +181,7 @@ fn bodies_that_nearly_touch() {
     let order = (errors[0] / errors[1]).log2();
     assert!((order - 2.0).abs() < 0.05, "{order}");
 
-    let stepper = Stepper::new(scene, 1e-3).unwrap();
-    let mut state = stepper.start(at(0.0), velocity).unwrap();
+    let (stepper, mut state) = started(scene, 1e-3, (at(0.0), velocity));
     let before = state;
     let error = stepper.step(&mut state).unwrap_err();
     println!("{error}");

@@ -13,11 +13,7 @@ use liestep::numbers::{Bodies, Coordinates as _};
 use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper};
 use nalgebra::{Matrix3, Vector3, Vector6};
 
-use super::{all, apart, assert_reference, attitudes_of, part, tenths};
-
-fn array<R, const N: usize>(values: Vec<R>) -> [R; N] {
-    values.try_into().unwrap_or_else(|_| panic!("another number of links"))
-}
+use super::{all, apart, array, assert_reference, attitudes_of, part, tenths};
 
 /// A link, with its inertia about its centre of mass.
 fn link(central: &Matrix3<f64>, m: f64, c: Vector3<f64>, rho: Vector3<f64>) -> Link {
@@ -298,19 +294,6 @@ pub(super) fn rods<const N: usize>(last: f64) -> Chain<N> {
     let mut links = [rod(1.0); N];
     links[N - 1] = rod(last);
     Chain { links, g: 9.81, up: e }
-}
-
-/// Ten links keep their momentum about the vertical.
-#[test]
-fn momentum_of_ten_links() {
-    let stepper = rods::<10>(1.0).stepper(0.01).unwrap();
-    let tilted = core::array::from_fn(|k| SO3::from_euler_angles([0.4, -0.3][k % 2], 0.5, 0.0));
-    let mut state = stepper.start(tilted, Bodies([Vector3::new(0.1, 0.2, 0.0); 10])).unwrap();
-    let before = stepper.vertical_momentum(&state);
-    for _ in 0..100 {
-        stepper.run(&mut state, 100).unwrap();
-        assert!((stepper.vertical_momentum(&state) - before).abs() < 5e-13);
-    }
 }
 
 /// The link that can't be, and the one that would turn too far, are named; the state is what it was.

@@ -16,7 +16,7 @@ use liestep::{SO3, SetupError, Stepper};
 use nalgebra::{SVector, Vector3};
 
 use super::declared::CoupledAttitudes;
-use super::{End, all, apart, attitudes_of, momentum, stacked, tenths};
+use super::{all, apart, array, attitudes_of, momentum, order, stacked, started, tenths};
 
 fn principal(J: [f64; 3]) -> PrincipalBody {
     PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(J.into()).unwrap() }
@@ -33,10 +33,6 @@ fn parts() -> ([PrincipalBody; 4], f64) {
 fn row() -> impl DiscreteLagrangian<Scalar = f64, Group = [SO3; 4], Advected: 'static> + Regular + Clone {
     let (bodies, kappa) = parts();
     Each::<4>::of(bodies) + Along::<4>::of([Alike { kappa }])
-}
-
-fn array<R, const N: usize>(values: Vec<R>) -> [R; N] {
-    values.try_into().unwrap_or_else(|_| panic!("another number of bodies"))
 }
 
 fn whole<A: liestep::groups::Advected<[SO3; N]>, const N: usize>(state: &Motion<[SO3; N], A>) -> Vector3<f64> {
@@ -74,22 +70,18 @@ fn trajectory() {
     let states = &read("several bodies")["coupled_attitudes4"]["states"];
     let start: [SO3; 4] = array(all(&states[0]["bodies"], |body| SO3::try_from(matrix(&body["R"])).unwrap()));
     let velocity = Bodies(array(all(&states[0]["bodies"], |body| vector(&body["Omega_body"]))));
-    let end: Vec<End> = all(&states[1]["bodies"], |body| (matrix(&body["R"]), vector(&body["Omega_body"])));
+    let end = all(&states[1]["bodies"], |body| (matrix(&body["R"]), vector(&body["Omega_body"])));
     let error = |attitude: &[SO3; 4], velocity: &Bodies<Vector3<f64>, 4>| {
         (attitude[3].as_matrix() - end[3].0).norm() + (velocity.0[1] - end[1].1).norm()
     };
     let errors = [(0.02, 100), (0.01, 200), (0.005, 400)].map(|(h, steps)| {
-        let stepper = Stepper::new(row(), h).unwrap();
-        let mut state = stepper.start(start, velocity).unwrap();
+        let (stepper, mut state) = started(row(), h, (start, velocity));
         let before = whole(&state);
         stepper.run(&mut state, steps).unwrap();
         assert!((whole(&state) - before).norm() < 1e-12);
         error(&state.attitude(), &stepper.velocity(&state))
     });
-    for pair in errors.windows(2) {
-        let order = (pair[0] / pair[1]).log2();
-        assert!((order - 2.0).abs() < 0.02, "{order}");
-    }
+    order(&errors);
     let composed = Stepper::composed(row(), 0.02, CompositionScheme::KAHAN_LI_8).unwrap();
     let mut state = composed.start(start, velocity).unwrap();
     composed.run(&mut state, 100).unwrap();
@@ -109,21 +101,12 @@ fn bodies_that_are_not_coupled_move_as_alone() {
     let velocities = [Vector3::new(1.0, 2.0, 3.0), Vector3::new(-0.1, 0.2, 0.3), Vector3::new(0.0, 0.5, 2.0)];
     let mut state = together.start(attitudes, Bodies(velocities)).unwrap();
     together.run(&mut state, 200).unwrap();
-    for k in 0..3 {
-        let weight = gravity(f64::from(u8::try_from(k).unwrap()) + 1.0);
-        let (attitude, momentum) = if k == 1 {
-            let alone = Stepper::new(bodies[k] + weight + spring, 0.01).unwrap();
-            let mut state = alone.start(attitudes[k], velocities[k]).unwrap();
-            alone.run(&mut state, 200).unwrap();
-            (state.attitude(), state.momentum())
-        } else {
-            let alone = Stepper::new(bodies[k] + weight, 0.01).unwrap();
-            let mut state = alone.start(attitudes[k], velocities[k]).unwrap();
-            alone.run(&mut state, 200).unwrap();
-            (state.attitude(), state.momentum())
-        };
-        assert!(apart(&[attitude], &state.attitude()[k..=k]) < 1e-13, "{k}");
-        assert!((state.momentum().0[k] - momentum).norm() < 1e-12, "{k}");
+    for (k, (times, stiffness)) in [(1.0, 0.0), (2.0, spring.k), (3.0, 0.0)].into_iter().enumerate() {
+        let held = bodies[k] + gravity(times) + Spring { k: stiffness, ..spring };
+        let (alone, mut one) = started(held, 0.01, (attitudes[k], velocities[k]));
+        alone.run(&mut one, 200).unwrap();
+        assert!(apart(&[one.attitude()], &state.attitude()[k..=k]) < 1e-13, "{k}");
+        assert!((state.momentum().0[k] - one.momentum()).norm() < 1e-12, "{k}");
     }
 }
 
@@ -144,8 +127,7 @@ fn pairs_are_what_is_between_each_two() {
     pairs.run(&mut second, 500).unwrap();
     assert!(apart(&first.attitude(), &second.attitude()) < 1e-12);
     assert!((whole(&first) - before).norm() < 1e-12 && (whole(&second) - before).norm() < 1e-12);
-    let alone = Stepper::new(bodies, 0.01).unwrap();
-    let mut free = alone.start(attitudes, velocities).unwrap();
+    let (alone, mut free) = started(bodies, 0.01, (attitudes, velocities));
     alone.run(&mut free, 500).unwrap();
     assert!(apart(&first.attitude(), &free.attitude()) > 1e-2, "the bodies don't feel each other");
 }
@@ -182,8 +164,7 @@ fn unlike_denominators() {
     let mut state = together.start(attitudes, Bodies(velocities)).unwrap();
     together.run(&mut state, 100).unwrap();
     for k in 0..2 {
-        let alone = Stepper::new(bodies[k] + more[k], 0.05).unwrap();
-        let mut one = alone.start(attitudes[k], velocities[k]).unwrap();
+        let (alone, mut one) = started(bodies[k] + more[k], 0.05, (attitudes[k], velocities[k]));
         alone.run(&mut one, 100).unwrap();
         let errors =
             [apart(&[one.attitude()], &state.attitude()[k..=k]), (state.momentum().0[k] - one.momentum()).norm()];
@@ -207,8 +188,7 @@ fn energy_and_momentum_of_a_million_steps() {
     let states = &read("several bodies")["coupled_attitudes4"]["states"];
     let start: [SO3; 4] = array(all(&states[0]["bodies"], |body| SO3::try_from(matrix(&body["R"])).unwrap()));
     let velocity = Bodies(array(all(&states[0]["bodies"], |body| vector(&body["Omega_body"]))));
-    let stepper = Stepper::new(row(), 0.01).unwrap();
-    let mut state = stepper.start(start, velocity).unwrap();
+    let (stepper, mut state) = started(row(), 0.01, (start, velocity));
     let (before, energy) = (whole(&state), stepper.energy(&state));
     let (means, most) = tenths(|| {
         stepper.run(&mut state, 10).unwrap();

@@ -18,19 +18,33 @@ use core::fmt::Debug;
 use checks::structure::momenta::assert_momenta;
 use checks::structure::stages::assert_stages;
 use checks::structure::{System, Vector, symplectic};
-use liestep::groups::{Advected as _, CayleyRetraction, LieGroup, Retraction};
-use liestep::mechanics::ContinuousLagrangian;
+use liestep::groups::{Advected as _, CayleyRetraction, LieGroup, R3, Retraction};
+use liestep::mechanics::{ContinuousLagrangian, Regular};
 use liestep::motion::RightHandSide;
-use liestep::{SO3, Stepper};
-use nalgebra::{Matrix3, SVector, Vector3};
+use liestep::numbers::Bodies;
+use liestep::{SO3, StateOf, Stepper};
+use nalgebra::{SVector, Vector3, Vector6};
 use serde_json::Value;
 use workbench::runge_kutta;
 
 use crate::limit::assert_limit;
 use declarations::motions::{matrix, number, read, vector};
 
-/// Attitude and body velocity of one body.
-type End = (Matrix3<f64>, Vector3<f64>);
+/// A body that is translated, too.
+type Body = (SO3, R3);
+
+/// The turning part, and the other.
+fn six(turning: &Vector3<f64>, velocity: &Vector3<f64>) -> Vector6<f64> {
+    Vector6::from_fn(|k, _| if k < 3 { turning[k] } else { velocity[k - 3] })
+}
+
+/// The momentum of all, and their angular momentum about the origin.
+fn whole<const N: usize>(bodies: &[Body; N], momenta: &Bodies<Vector6<f64>, N>) -> [Vector3<f64>; 2] {
+    bodies.iter().zip(&momenta.0).fold([Vector3::zeros(); 2], |[p, l], (body, momentum)| {
+        let [turning, linear] = [0, 1].map(|half| part(momentum, half));
+        [p + linear, l + body.0.as_matrix() * turning + body.1.translation().cross(&linear)]
+    })
+}
 
 /// The components of all bodies, one after the other.
 fn stacked<const D: usize>(parts: &[Vector3<f64>]) -> SVector<f64, D> {
@@ -40,6 +54,11 @@ fn stacked<const D: usize>(parts: &[Vector3<f64>]) -> SVector<f64, D> {
 /// Those of one body.
 fn part<const D: usize>(of: &SVector<f64, D>, body: usize) -> Vector3<f64> {
     of.fixed_rows::<3>(3 * body).into_owned()
+}
+
+/// What a file has, as many as the system has bodies.
+fn array<R, const N: usize>(values: Vec<R>) -> [R; N] {
+    values.try_into().unwrap_or_else(|_| panic!("another number of bodies"))
 }
 
 /// What a file has of all bodies.
@@ -126,10 +145,20 @@ where
     (attitude, continuous.velocity(&momentum, &w).unwrap())
 }
 
+/// A stepper of a system, and where it starts.
+fn started<L: Regular<Scalar = f64>>(
+    system: L,
+    h: f64,
+    (attitude, velocity): (L::Group, liestep::mechanics::Vector<L>),
+) -> (Stepper<L>, StateOf<L>) {
+    let stepper = Stepper::new(system, h).unwrap();
+    let state = stepper.start(attitude, velocity).unwrap();
+    (stepper, state)
+}
+
 /// P1.
 fn check_symplectic<L: System + Clone>(l: L, h: f64, attitude: L::Group, velocity: Vector<L>) {
-    let stepper = Stepper::new(l, h).unwrap();
-    let start = stepper.start(attitude, velocity).unwrap();
+    let (stepper, start) = started(l, h, (attitude, velocity));
     let [defect, of_other_sign] = symplectic::defects(&stepper.flow(), &attitude, &start.momentum());
     println!("symplectic to {defect:.1e}, with the other sign of the bracket {of_other_sign:.1e}");
     assert!(defect < 1e-11 && of_other_sign > 1e-6, "{defect:e}, {of_other_sign:e}");

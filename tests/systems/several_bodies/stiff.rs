@@ -6,29 +6,29 @@ use checks::structure::momenta::assert_momenta;
 use checks::structure::stages::assert_stages;
 use declarations::{FloatingBody, PointSpring, RodElement};
 use liestep::groups::{Advected as _, LieGroup as _, R3, SE3};
-use liestep::mechanics::{Along, Coupled, DiscreteLagrangian, Each, Placed, Sum, Term as _};
+use liestep::mechanics::{Along, Coupling, DiscreteLagrangian, Each, Placement, Sum, Term as _};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
 use nalgebra::{Matrix4, Vector3, Vector4, Vector6};
 
+use super::{Body, six, started, whole};
 use crate::limit::assert_limit;
 
 const N: usize = 6;
-type Rod = Sum<Placed<Each<N>, FloatingBody, 1>, Placed<Coupled<N>, RodElement, 1>>;
-type Body = (SO3, R3);
+type Rod = Sum<Placement<Each<N>, FloatingBody, 1>, Placement<Coupling<N>, RodElement, 1>>;
 type Start = ([Body; N], Bodies<Vector6<f64>, N>);
 
 /// Half of a body, m.
 const HALF: Vector3<f64> = Vector3::new(0.5, 0.0, 0.0);
 
 /// Of uniform bodies of one metre and one kilogram.
-fn bodies() -> Placed<Each<N>, FloatingBody, 1> {
+fn bodies() -> Placement<Each<N>, FloatingBody, 1> {
     let J_d = NonstandardInertia::from_diagonal(Vector3::new(1.0 / 12.0, 1e-3, 1e-3)).unwrap();
     Each::<N>::of([FloatingBody { m: 1.0, J_d }])
 }
 
 fn rod(k: f64, c: f64) -> Rod {
-    bodies() + Coupled::<N>::of([RodElement { k, c, a: HALF, b: -HALF }])
+    bodies() + Coupling::<N>::of([RodElement { k, c, a: HALF, b: -HALF }])
 }
 
 /// An arc, each body turned against the one before, that turns about itself and about an axis across.
@@ -40,19 +40,9 @@ fn arc() -> Start {
         corner += half * 2.0;
         (attitude, R3::from(corner - half))
     });
-    let moving = bodies.map(|(attitude, place): Body| {
-        let (turn, shift) = (attitude.as_matrix().tr_mul(&omega), omega.cross(&place.translation()));
-        Vector6::from_fn(|k, _| if k < 3 { turn[k] } else { shift[k - 3] })
-    });
+    let moving = bodies
+        .map(|(attitude, place): Body| six(&attitude.as_matrix().tr_mul(&omega), &omega.cross(&place.translation())));
     (bodies, Bodies(moving))
-}
-
-/// The momentum of all, and their angular momentum about the origin.
-fn whole(bodies: &[Body; N], momenta: &Bodies<Vector6<f64>, N>) -> [Vector3<f64>; 2] {
-    bodies.iter().zip(&momenta.0).fold([Vector3::zeros(); 2], |[p, l], (body, momentum)| {
-        let [turning, linear] = [0, 3].map(|first| momentum.fixed_rows::<3>(first).into_owned());
-        [p + linear, l + body.0.as_matrix() * turning + body.1.translation().cross(&linear)]
-    })
 }
 
 #[test]
@@ -67,9 +57,8 @@ fn what_is_derived_of_an_element() {
 /// A step begins and ends with the momenta that the Lagrangian has there, along the whole row.
 #[test]
 fn a_step_of_a_rod_is_that_of_the_momentum_maps() {
-    let (l, h, (bodies, velocities)) = (rod(40.0, 3.0), 0.1, arc());
-    let stepper = Stepper::new(l, h).unwrap();
-    let mut state = stepper.start(bodies, velocities).unwrap();
+    let (l, h) = (rod(40.0, 3.0), 0.1);
+    let (stepper, mut state) = started(l, h, arc());
     stepper.run(&mut state, 5).unwrap();
     let before = state;
     let report = stepper.step(&mut state).unwrap();
@@ -90,10 +79,8 @@ fn a_step_of_a_rod_is_that_of_the_momentum_maps() {
 /// Richardson's ratio of a rod whose oscillations are resolved.
 #[test]
 fn steps_of_a_rod_are_of_order_two() {
-    let (bodies, velocities) = arc();
     let ends = [400_u32, 800, 1600].map(|steps| {
-        let stepper = Stepper::new(rod(100.0, 5.0), 1.0 / f64::from(steps)).unwrap();
-        let mut state = stepper.start(bodies, velocities).unwrap();
+        let (stepper, mut state) = started(rod(100.0, 5.0), 1.0 / f64::from(steps), arc());
         stepper.run(&mut state, steps.into()).unwrap();
         state.attitude().map(|body| body.1.translation())
     });
@@ -114,9 +101,7 @@ fn a_stiff_rod_is_stepped_over_its_fast_oscillations() {
     // J = m l²/12 that is ω² = 4 (k/m) (sin²(q/2) + 3 cos²(q/2)), 12 k/m at most; along the row it is 4 k/m.
     let omega = (12.0_f64 * k).sqrt();
     let h = 10.0 * 2.0 / omega;
-    let (bodies_at, velocities) = arc();
-    let stepper = Stepper::new(rod(k, c), h).unwrap();
-    let mut state = stepper.start(bodies_at, velocities).unwrap();
+    let (stepper, mut state) = started(rod(k, c), h, arc());
     let (energy, [p, l]) = (stepper.energy(&state), whole(&state.attitude(), &state.momentum()));
     let (mut means, mut most, mut open, mut iterations) = ([0.0; 4], 0.0_f64, 0.0_f64, 0);
     for mean in &mut means {
@@ -140,8 +125,7 @@ fn a_stiff_rod_is_stepped_over_its_fast_oscillations() {
     assert!(apart < 0.005 * energy, "{means:?}");
     assert!(moved[0] < 1e-12 && moved[1] < 1e-10, "{moved:?}");
 
-    let explicit = Stepper::new(bodies() + Along::<N>::of([PointSpring { k, a: HALF, b: -HALF }]), h).unwrap();
-    let mut state = explicit.start(bodies_at, velocities).unwrap();
+    let (explicit, mut state) = started(bodies() + Along::<N>::of([PointSpring { k, a: HALF, b: -HALF }]), h, arc());
     let stays = (0..200).all(|_| explicit.step(&mut state).is_ok() && explicit.energy(&state) < 100.0 * energy);
     assert!(!stays, "the step isn't too long for potentials of the ends");
 }
@@ -170,7 +154,7 @@ struct Spring {
 fn a_row_of_masses_moves_in_its_modes() {
     const M: usize = 4;
     let (h, k, m) = (0.3, 50.0, 0.8);
-    let (masses, springs) = (Each::<M>::of([Mass { m }]), Coupled::<M>::of([Spring { k }]));
+    let (masses, springs) = (Each::<M>::of([Mass { m }]), Coupling::<M>::of([Spring { k }]));
     let mode = |place: u8, number: f64| (number * core::f64::consts::PI * (f64::from(place) + 0.5) / 4.0).cos();
     let start = |number: f64| [0_u8, 1, 2, 3].map(|place| R3::from(Vector3::new(0.1, -0.2, 0.3) * mode(place, number)));
     let at_rest = Bodies([Vector3::zeros(); M]);
@@ -195,8 +179,7 @@ fn stepped<L, const M: usize>(l: L, h: f64, start: [R3; M], velocities: Bodies<V
 where
     L: liestep::mechanics::Regular<Scalar = f64, Group = [R3; M]>,
 {
-    let stepper = Stepper::new(l, h).unwrap();
-    let mut state = stepper.start(start, velocities).unwrap();
+    let (stepper, mut state) = started(l, h, (start, velocities));
     stepper.run(&mut state, 25).unwrap();
     state.attitude()
 }
@@ -219,7 +202,7 @@ struct Held {
 #[test]
 fn steps_of_a_row_beyond_a_right_angle_are_refused() {
     let J_d = NonstandardInertia::from_diagonal(Vector3::new(1.0, 1.0, 1.0)).unwrap();
-    let l = Each::<2>::of([FloatingBody { m: 1.0, J_d }]) + Coupled::<2>::of([Held { c: 1.0 }]);
+    let l = Each::<2>::of([FloatingBody { m: 1.0, J_d }]) + Coupling::<2>::of([Held { c: 1.0 }]);
     let stepper = Stepper::new(l, 1.0).unwrap();
     let turned = |angles: [f64; 2]| angles.map(|angle| (SO3::exp(Vector3::z() * angle), R3::identity()));
     let stepped = |angles: [f64; 2]| {
@@ -250,7 +233,7 @@ fn masses_that_cannot_turn_are_not_said_to() {
     const M: usize = 4;
     let (k, m) = (50.0_f64, 0.8);
     let fastest = 2.0 * (k / m).sqrt() * (3.0 * core::f64::consts::PI / 8.0).sin();
-    let row = Each::<M>::of([Mass { m }]) + Coupled::<M>::of([Spring { k: -k }]);
+    let row = Each::<M>::of([Mass { m }]) + Coupling::<M>::of([Spring { k: -k }]);
     let stepper = Stepper::new(row, 3.0 / fastest).unwrap();
     let start = [0.0, 1.0, 2.1, 2.9].map(|x| R3::from(Vector3::x() * x));
     let mut state = stepper.start(start, Bodies([Vector3::y(); M])).unwrap();

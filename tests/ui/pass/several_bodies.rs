@@ -7,7 +7,7 @@
 use core::fmt::Debug;
 
 use liestep::groups::R3;
-use liestep::mechanics::{Along, Between, DiscreteLagrangian, Each, On, Pairs, Placed, Regular};
+use liestep::mechanics::{Along, Between, DiscreteLagrangian, Each, On, Pairs, Placement, Regular};
 use liestep::methods::{Constraint, Place};
 use liestep::numbers::{Bodies, Real};
 use liestep::{NonstandardInertia, SO3, Stepper, constraint, force, lagrangian};
@@ -250,7 +250,7 @@ struct Row;
 impl Row {
     const ALIKE: Alike = Alike { k: 1.0 };
     const BODIES: usize = 2 + 1;
-    const TIED: Placed<Along<{ Self::BODIES }>, Alike, 1> = Along::<{ Self::BODIES }>::of([Self::ALIKE]);
+    const TIED: Placement<Along<{ Self::BODIES }>, Alike, 1> = Along::<{ Self::BODIES }>::of([Self::ALIKE]);
 }
 
 /// What all keep together, of so many bodies.

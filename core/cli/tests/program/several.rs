@@ -4,7 +4,7 @@ use std::fs;
 
 use liestep::groups::R3;
 use liestep::mechanics::Each;
-use liestep::methods::{BallJoint, Joined, Joint, Joints, PinJoint};
+use liestep::methods::{BallJoint, Joint, Joints, PinJoint, PlacedJoint};
 use liestep::numbers::Bodies;
 use liestep::prelude::*;
 use liestep_scene::{BodySample, Sample, Scene, System};
@@ -98,7 +98,7 @@ fn a_file_is_what_a_program_makes() {
     let axis = Vector3::x();
     let pivot = PinJoint { above: Vector3::zeros(), below: up * 0.5, axis_above: axis, axis_below: axis };
     let joint = BallJoint { above: up * -0.5, below: axis * -0.3 };
-    let joints = [Joined::to_space(Joint::Pin(pivot), 0), Joined::between(Joint::Ball(joint), 0, 1)];
+    let joints = [PlacedJoint::to_space(Joint::Pin(pivot), 0), PlacedJoint::between(Joint::Ball(joint), 0, 1)];
     let stepper = Stepper::jointed(scene, Joints::tree(joints), 5.0 * 1e-3).unwrap();
     let place = |x: f64, z: f64| (SO3::from(UnitQuaternion::identity()), R3::from(Vector3::new(x, 0.0, z)));
     let moving = |y: f64| Vector6::new(1.0, 0.0, 0.0, 0.0, y, 0.0);

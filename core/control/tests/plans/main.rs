@@ -33,11 +33,7 @@ fn turned(angles: [f64; 3]) -> SO3 {
 }
 
 /// From rest to rest.
-fn slew(
-    stepper: &Body,
-    steps: usize,
-    angles: [f64; 3],
-) -> Control<'_, RigidBody, liestep::motion::Declared<RigidBody>> {
+fn slew(stepper: &Body, steps: usize, angles: [f64; 3]) -> Control<'_, RigidBody, liestep::motion::OwnStep<RigidBody>> {
     let start = stepper.start(SO3::identity(), Vector3::zeros()).expect("a start");
     Control::new(stepper, start, steps, Target::rest(turned(angles)))
 }
@@ -109,7 +105,7 @@ fn the_shortest_half_turn_of_a_sphere() {
 }
 
 /// Beside the eigenaxis' way, where the gradient vanishes by symmetry: by a torque that goes round once meanwhile.
-fn half_turn(stepper: &Body, steps: usize) -> Control<'_, RigidBody, liestep::motion::Declared<RigidBody>> {
+fn half_turn(stepper: &Body, steps: usize) -> Control<'_, RigidBody, liestep::motion::OwnStep<RigidBody>> {
     let guess = move |step, axis| {
         let share = step as f64 / steps as f64;
         match axis {
@@ -182,7 +178,7 @@ fn random_slews_converge() {
 /// to turning, by a torque and by a duration that is free, and those of what is kept.
 #[test]
 fn near_a_plan_the_digits_double() {
-    let residuals = |task: Control<'_, RigidBody, liestep::motion::Declared<RigidBody>>| {
+    let residuals = |task: Control<'_, RigidBody, liestep::motion::OwnStep<RigidBody>>| {
         let shown = std::cell::RefCell::new(Vec::new());
         let note = |_: usize, residual: &liestep_control::Residual| {
             shown.borrow_mut().push(residual.largest());

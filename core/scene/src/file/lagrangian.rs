@@ -22,7 +22,7 @@ use crate::file::tables::Document;
 #[cfg(feature = "machine")]
 pub(crate) type Backend = liestep_machine::Machine;
 #[cfg(not(feature = "machine"))]
-pub(crate) type Backend = liestep_late::Interpreted;
+pub(crate) type Backend = liestep_late::Interpreter;
 
 /// What a Lagrangian advects; where it is less, the others are zero.
 type Seen = (Vector3<f64>, Vector3<f64>, Vector3<f64>, Vector3<f64>);

@@ -4,8 +4,8 @@
 use std::array::from_fn;
 
 use liestep::groups::{LieGroup as _, R3};
-use liestep::mechanics::{Each, Placed, Sum};
-use liestep::methods::{Joined, Joint, Jointed, Joints};
+use liestep::mechanics::{Each, Placement, Sum};
+use liestep::methods::{Joint, JointedBodies, Joints, PlacedJoint};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper, lagrangian};
 use nalgebra::{Vector3, Vector6};
@@ -32,8 +32,9 @@ pub(crate) struct Heavy {
     pub(crate) up: Vector3<f64>,
 }
 
-type Parts<const N: usize> = Sum<Placed<Each<N>, Heavy, N>, Springs<N>>;
-pub(crate) type SystemStepper<const N: usize, const L: usize> = Stepper<Parts<N>, Jointed<Parts<N>, Link, 5, N, N, L>>;
+type Parts<const N: usize> = Sum<Placement<Each<N>, Heavy, N>, Springs<N>>;
+pub(crate) type SystemStepper<const N: usize, const L: usize> =
+    Stepper<Parts<N>, JointedBodies<Parts<N>, Link, 5, N, N, L>>;
 
 /// A joint, or the place of one.
 type Link = Option<Joint>;
@@ -43,9 +44,9 @@ impl Arrangement {
         let joined = |&number: &usize| {
             let between = &joints[number];
             let [above, below] = between.bodies;
-            Joined { joint: Some(between.of), above, below: below.unwrap_or_default() }
+            PlacedJoint { joint: Some(between.of), above, below: below.unwrap_or_default() }
         };
-        let loose = |below: usize| Joined::to_space(None, below);
+        let loose = |below: usize| PlacedJoint::to_space(None, below);
         let of_tree =
             |place: usize| self.tree.get(place).map_or_else(|| loose(self.free[place - self.tree.len()]), joined);
         Joints::tree(from_fn(of_tree))

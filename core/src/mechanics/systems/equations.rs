@@ -4,7 +4,7 @@ use alloc::string::String;
 use core::fmt::Debug;
 
 use super::places::{At, Places};
-use super::{Placed, TermConstants, term_at};
+use super::{Placement, TermConstants, term_at};
 use crate::groups::Retraction;
 use crate::mechanics::description::SceneVisitor;
 use crate::mechanics::effect::{Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, pattern};
@@ -13,7 +13,7 @@ use crate::mechanics::lagrangian::DiscreteLagrangian;
 use crate::mechanics::operations::Operations;
 use crate::numbers::{Blocks, Coordinates as _, real};
 
-impl<P, E, const M: usize> Placed<P, E, M>
+impl<P, E, const M: usize> Placement<P, E, M>
 where
     P: Places<E> + Copy + Debug + PartialEq,
     E: Effect,
@@ -50,7 +50,7 @@ where
     }
 }
 
-impl<P, E, const M: usize> Effect for Placed<P, E, M>
+impl<P, E, const M: usize> Effect for Placement<P, E, M>
 where
     P: Places<E> + Copy + Debug + PartialEq,
     E: Effect,
@@ -240,7 +240,7 @@ const fn places_of<P: Places<E>, E: Effect>() -> u32 {
     P::PLACES as u32
 }
 
-impl<P, E, const M: usize> DiscreteLagrangian for Placed<P, E, M>
+impl<P, E, const M: usize> DiscreteLagrangian for Placement<P, E, M>
 where
     P: Places<E> + Copy + Debug + PartialEq,
     E: DiscreteLagrangian,

@@ -10,10 +10,10 @@
 //! | [`Along<N>`](Along) | two bodies, `(G, G)`; `(A, B, A, B)` where `G` is `(A, B)` |
 //! | [`Between<A, B, N>`](Between) | two bodies |
 //! | [`Pairs<N>`](Pairs) | two bodies |
-//! | [`Coupled<N>`](Coupled) | two bodies: a potential that depends on where both are within the step |
+//! | [`Coupling<N>`](Coupling) | two bodies: a potential that depends on where both are within the step |
 //!
 //! Between bodies potentials of the ends of a step leave the Newton matrix block diagonal, and each body's equation is
-//! solved by its own block. A potential of the middle of a step, as of a stiff rod, is put at [`Coupled`] places, and the
+//! solved by its own block. A potential of the middle of a step, as of a stiff rod, is put at [`Coupling`] places, and the
 //! equations of the row are solved together, in time proportional to `N`. A term on two bodies that couples velocities
 //! doesn't compile here; a chain of links on ball joints has a [plan of its own](crate::methods::Linked).
 
@@ -24,7 +24,7 @@ mod seen;
 use core::fmt::Debug;
 use core::ops::Add;
 
-pub use places::{Along, At, Between, Coupled, Each, On, Pairs, Places};
+pub use places::{Along, At, Between, Coupling, Each, On, Pairs, Places};
 pub use seen::{Neighbours, SeenBetween, WhereAllAre};
 
 use crate::error::SetupError;
@@ -91,7 +91,7 @@ use crate::mechanics::term::Term;
 /// let joint = Along::<3>::of([Linked { rho: Vector3::z(), s: Vector3::z() }]);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Lanes, InLanes)]
-pub struct Placed<P, E, const M: usize> {
+pub struct Placement<P, E, const M: usize> {
     #[shared]
     places: P,
     /// One for all or one for each, as [`of`](Each::of) has checked.
@@ -102,12 +102,12 @@ macro_rules! of {
     ([$($parameters:tt)*] $places:ident<$($arguments:ident),+>) => {
         impl<$($parameters)*> $places<$($arguments),+> {
             /// Terms at these places: one that is the same at all, or one for each.
-            pub const fn of<E: Effect, const M: usize>(terms: [E; M]) -> Placed<Self, E, M>
+            pub const fn of<E: Effect, const M: usize>(terms: [E; M]) -> Placement<Self, E, M>
             where
                 Self: Places<E>,
             {
                 const { check::<Self, E, M>() };
-                Placed { places: Self, terms }
+                Placement { places: Self, terms }
             }
         }
     };
@@ -133,7 +133,7 @@ const fn check<P: Places<E>, E: Effect, const M: usize>() {
     assert!(
         P::LINKS_NEIGHBOURS || !E::PARTS.unknown,
         "this term depends on where two bodies are within the step: put it at neighbours in a row, by \
-         `Coupled::<N>::of`, or take the means of what it has at the ends of the step"
+         `Coupling::<N>::of`, or take the means of what it has at the ends of the step"
     );
     assert!(
         !P::LINKS_NEIGHBOURS || (E::IS_QUADRATIC && E::DENOMINATORS == 0),
@@ -144,11 +144,11 @@ const fn check<P: Places<E>, E: Effect, const M: usize>() {
 of!([const N: usize] Each<N>);
 of!([const K: usize, const N: usize] On<K, N>);
 of!([const N: usize] Along<N>);
-of!([const N: usize] Coupled<N>);
+of!([const N: usize] Coupling<N>);
 of!([const A: usize, const B: usize, const N: usize] Between<A, B, N>);
 of!([const N: usize] Pairs<N>);
 
-impl<P, E, C, const M: usize> Add<C> for Placed<P, E, M>
+impl<P, E, C, const M: usize> Add<C> for Placement<P, E, M>
 where
     P: Places<E>,
     E: Effect,
@@ -170,7 +170,7 @@ const fn term_at<const M: usize>(place: usize) -> usize {
 /// Constants of a term, and its spatial values.
 type TermConstants<E, const M: usize> = [(<E as Effect>::Constants, <E as Term>::Advected); M];
 
-impl<P, E, const M: usize> Term for Placed<P, E, M>
+impl<P, E, const M: usize> Term for Placement<P, E, M>
 where
     P: Places<E> + Copy + Debug + PartialEq,
     E: Effect,

@@ -20,12 +20,12 @@ mod tests;
 use nalgebra::Vector3;
 
 pub use link::Link;
-pub use plan::Linked;
+pub use plan::LinkedBodies;
 
 use crate::effects::Gravity;
 use crate::error::SetupError;
 use crate::groups::SO3;
-use crate::mechanics::{Each, Placed, Term as _};
+use crate::mechanics::{Each, Placement, Term as _};
 use crate::motion::{Motion, Stepper};
 use crate::numbers::{Bodies, Coordinates as _};
 
@@ -33,10 +33,10 @@ use crate::numbers::{Bodies, Coordinates as _};
 const ROUNDED: f64 = f64::EPSILON * 1e4;
 
 /// The weight of each link and of what it carries.
-pub type Weights<const N: usize> = Placed<Each<N>, Gravity, N>;
+pub type Weights<const N: usize> = Placement<Each<N>, Gravity, N>;
 
 /// What [`Chain::stepper`] makes: an integrator of links under gravity alone.
-pub type ChainStepper<const N: usize> = Stepper<Weights<N>, Linked<Weights<N>, N>>;
+pub type ChainStepper<const N: usize> = Stepper<Weights<N>, LinkedBodies<Weights<N>, N>>;
 
 /// Links on ball joints, the first on a fixed pivot, under uniform gravity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +51,7 @@ pub struct Chain<const N: usize> {
 
 impl<const N: usize> Chain<N> {
     /// An integrator of these links with a fixed step, s; of second order, symmetric and symplectic. A negative step is the
-    /// inverse map; `h = 0` is the identity. [`Linked`] says how steps are made, and what they cost.
+    /// inverse map; `h = 0` is the identity. [`LinkedBodies`] says how steps are made, and what they cost.
     ///
     /// # Errors
     ///

@@ -11,7 +11,7 @@ use super::link::Link;
 use crate::error::{SetupError, StepError};
 use crate::groups::{CayleyRetraction, Retraction, SO3};
 use crate::mechanics::{Effect, Operations, SceneVisitor};
-use crate::motion::{Cost, Motion, Plan, Steerable, StepReport, Stepper, Summation, Variable};
+use crate::motion::{Cost, Motion, Plan, Steerable, StepReport, Stepper, Summation, SumsOf, Variable};
 use crate::numbers::{Bodies, Coordinates as _, filled};
 use crate::solving::{Curvature, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, WarmStart};
 
@@ -36,7 +36,7 @@ type Components<const N: usize> = Bodies<Vector3<f64>, N>;
 /// The equations are (2.7) and (2.9) of \[RDAE\] for the Lagrangian of a [`Chain`](super::Chain), relative attitudes being advected;
 /// the minimal form is that of the authors of \[LML05\], the elimination that of Featherstone's articulated bodies.
 #[derive(Clone, Debug)]
-pub struct Linked<S: Effect, const N: usize> {
+pub struct LinkedBodies<S: Effect, const N: usize> {
     h: f64,
     constants: S::Constants,
     pub(super) links: [LinkConstants; N],
@@ -53,19 +53,23 @@ impl<S: Effect> Stepper<S> {
     ///
     /// [`SetupError::BodyParameter`] names the link whose parameters can't be used; [`SetupError::Parameter`] for those
     /// of the scene, [`SetupError::InvalidStep`] for a step that isn't finite or whose inverse isn't.
-    pub fn linked<const N: usize>(scene: S, links: [Link; N], h: f64) -> Result<Stepper<S, Linked<S, N>>, SetupError>
+    pub fn linked<const N: usize>(
+        scene: S,
+        links: [Link; N],
+        h: f64,
+    ) -> Result<Stepper<S, LinkedBodies<S, N>>, SetupError>
     where
         S: Effect<Scalar = f64, Group = [SO3; N]>,
     {
         for (body, link) in links.iter().enumerate() {
             link.validate(body)?;
         }
-        let plan = Linked::new(&scene, links.each_ref().map(LinkConstants::from), h)?;
+        let plan = LinkedBodies::new(&scene, links.each_ref().map(LinkConstants::from), h)?;
         Ok(Stepper { scene, plan })
     }
 }
 
-impl<S: Effect<Group = [SO3; N]>, const N: usize> Stepper<S, Linked<S, N>> {
+impl<S: Effect<Group = [SO3; N]>, const N: usize> Stepper<S, LinkedBodies<S, N>> {
     /// Where each link's lower joint is in space, m from the pivot.
     #[must_use]
     pub fn joints(&self, motion: &Motion<[SO3; N], S::Advected>) -> [Vector3<f64>; N] {
@@ -77,7 +81,7 @@ impl<S: Effect<Group = [SO3; N]>, const N: usize> Stepper<S, Linked<S, N>> {
     }
 }
 
-impl<S, const N: usize> Linked<S, N>
+impl<S, const N: usize> LinkedBodies<S, N>
 where
     S: Effect<Scalar = f64, Group = [SO3; N]>,
 {
@@ -243,10 +247,10 @@ fn iterate(links: &[LinkConstants], work: &mut [Work], most: u32, longest: f64) 
     (made, false)
 }
 
-impl<S: Effect, const N: usize> Steerable for Linked<S, N> {}
-impl<S: Effect, const N: usize> Variable for Linked<S, N> {}
+impl<S: Effect, const N: usize> Steerable for LinkedBodies<S, N> {}
+impl<S: Effect, const N: usize> Variable for LinkedBodies<S, N> {}
 
-impl<S, const N: usize> Plan<S> for Linked<S, N>
+impl<S, const N: usize> Plan<S> for LinkedBodies<S, N>
 where
     S: Effect<Scalar = f64, Group = [SO3; N]>,
 {
@@ -268,12 +272,7 @@ where
     }
 
     #[hot]
-    fn step<M: Summation<[SO3; N], S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         if self.h == 0.0 {
             motion.count();
             return Ok(StepReport::of(0));

@@ -10,8 +10,7 @@ use crate::error::{SetupError, StepError};
 use crate::gradients::{ChangeOf, Linearisable, Pass, Stage as Linear};
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Regular, Scalar, SceneVisitor, SecondDerivatives, Vector};
 use crate::motion::{
-    Cost, Declared, Motion, Plan, Steerable, StepReport, Stepper, Summation, Variable, beyond_solvable,
-    half_coordinates,
+    Cost, MotionOf, OwnStep, Plan, Steerable, StepReport, Stepper, SumsOf, Variable, beyond_solvable, half_coordinates,
 };
 use crate::numbers::{Coordinates, Mask, Real, real};
 use crate::solving::Guess;
@@ -81,12 +80,12 @@ use nalgebra::SimdBool as _;
 ///
 /// \[Su90\], \[KL97\], \[SS05\]; see [`conventions`](crate::conventions).
 #[derive(Clone, Debug, Lanes, InLanes)]
-pub struct Composed<S: Effect> {
+pub struct Composition<S: Effect> {
     #[shared]
     scheme: CompositionScheme,
     h: Scalar<S>,
     /// One for each of the distinct substeps, that of the first stage first.
-    substeps: Vec<Declared<S>>,
+    substeps: Vec<OwnStep<S>>,
     stages: Vec<Stage<Scalar<S>>>,
 }
 
@@ -105,12 +104,12 @@ struct Stage<T> {
 
 /// # Make: a composition
 impl<S: Effect> Stepper<S> {
-    /// A symmetric composition of the scene's own step; see [`Composed`].
+    /// A symmetric composition of the scene's own step; see [`Composition`].
     ///
     /// # Errors
     ///
     /// As [`Stepper::new`], for a substep.
-    pub fn composed(scene: S, h: Scalar<S>, scheme: CompositionScheme) -> Result<Stepper<S, Composed<S>>, SetupError>
+    pub fn composed(scene: S, h: Scalar<S>, scheme: CompositionScheme) -> Result<Stepper<S, Composition<S>>, SetupError>
     where
         S: DiscreteLagrangian + Regular,
     {
@@ -120,15 +119,15 @@ impl<S: Effect> Stepper<S> {
         if !scene.is_self_adjoint() {
             return Err(SetupError::NotSelfAdjoint);
         }
-        let plan = Composed::new(&scene, h, scheme)?;
+        let plan = Composition::new(&scene, h, scheme)?;
         Ok(Stepper { scene, plan })
     }
 }
 
-impl<S: Effect> Composed<S> {
+impl<S: Effect> Composition<S> {
     fn new(scene: &S, h: Scalar<S>, scheme: CompositionScheme) -> Result<Self, SetupError> {
         let (distinct, places) = scheme.distinct();
-        let substeps = distinct.iter().map(|&gamma| Declared::folded(scene, h * real(gamma)));
+        let substeps = distinct.iter().map(|&gamma| OwnStep::folded(scene, h * real(gamma)));
         let substeps = substeps.collect::<Result<_, _>>()?;
         let around = |stage: usize| distinct[places[stage % places.len()]];
         let stages = (0..places.len()).map(|stage| {
@@ -146,10 +145,10 @@ impl<S: Effect> Composed<S> {
     }
 }
 
-impl<S: Effect> Steerable for Composed<S> {}
-impl<S: Effect> Variable for Composed<S> {}
+impl<S: Effect> Steerable for Composition<S> {}
+impl<S: Effect> Variable for Composition<S> {}
 
-impl<S: Effect> Plan<S> for Composed<S> {
+impl<S: Effect> Plan<S> for Composition<S> {
     type Kept = Guess<Vector<S>>;
 
     fn step_size(&self) -> Scalar<S> {
@@ -160,18 +159,13 @@ impl<S: Effect> Plan<S> for Composed<S> {
         Self::new(scene, h, self.scheme)
     }
 
-    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
+    fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept {
         Guess::of(half_coordinates(scene, motion, self.substeps[0].step_size()))
     }
 
     /// The iterations of the report are those of all stages.
     #[hot]
-    fn step<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         let (mut next, mut guess) = (*motion, *kept);
         let mut iterations = 0;
         for stage in &self.stages {
@@ -191,13 +185,7 @@ impl<S: Effect> Plan<S> for Composed<S> {
     const RUNS_BY_STEPS: bool = true;
 
     #[cold]
-    fn explained(
-        &self,
-        error: StepError,
-        scene: &S,
-        motion: &Motion<Group<S>, S::Advected>,
-        kept: &Self::Kept,
-    ) -> StepError {
+    fn explained(&self, error: StepError, scene: &S, motion: &MotionOf<S>, kept: &Self::Kept) -> StepError {
         let StepError::BeyondSolvable { .. } = error else { return error };
         beyond_solvable(scene, self.h, &motion.momentum, &motion.advected, self.max_step(scene, motion, kept))
     }
@@ -212,7 +200,7 @@ impl<S: Effect> Plan<S> for Composed<S> {
     }
 }
 
-impl<S: SecondDerivatives> Linearisable<S> for Composed<S> {
+impl<S: SecondDerivatives> Linearisable<S> for Composition<S> {
     type Table = ();
 
     fn table(&self) {}

@@ -7,7 +7,7 @@ use super::settling::{Changes, MOST_ITERATIONS, Next};
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{ContinuousLagrangian, Legendre, Matrix, Term, Vector, check_inertia, check_velocity};
-use crate::motion::{Elapsed, Integrator, Motion, State, StepReport};
+use crate::motion::{ElapsedTime, Integrator, Motion, State, StepReport};
 use crate::numbers::{Coordinates, carried_sum};
 
 // Roots and powers without a standard library.
@@ -239,7 +239,7 @@ where
             return Err(SetupError::NonFinite { what: "momentum" });
         }
         let motion = Motion { attitude, momentum, advected, steps: 0 };
-        Ok(State { motion, kept: CotangentCarry::nothing(), elapsed: Elapsed::nothing() })
+        Ok(State { motion, kept: CotangentCarry::nothing(), elapsed: ElapsedTime::nothing() })
     }
 
     /// What a step of any length changes.
@@ -344,7 +344,7 @@ where
         State {
             motion: Motion { advected: self.advected(&motion.attitude), steps: 0, ..*motion },
             kept: CotangentCarry::nothing(),
-            elapsed: Elapsed::nothing(),
+            elapsed: ElapsedTime::nothing(),
         }
     }
 

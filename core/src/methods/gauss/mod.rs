@@ -21,7 +21,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::SO3;
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, SceneVisitor, constant_inertia};
 use crate::methods::splitting::torque;
-use crate::motion::{Cost, Declared, Motion, Plan, StepReport, Stepper, Summation, Variable};
+use crate::motion::{Cost, Motion, OwnStep, Plan, StepReport, Stepper, Summation, SumsOf, Variable};
 use crate::numbers::{Vectors, two_sum};
 use nalgebra::Vector3;
 
@@ -109,7 +109,7 @@ impl<S: Effect> Stepper<S> {
             );
         }
         // For its checks of the scene and the step.
-        Declared::new(&scene, h)?;
+        OwnStep::new(&scene, h)?;
         let plan = Gauss::new(&scene, h)?;
         Ok(Stepper { scene, plan })
     }
@@ -181,12 +181,7 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS
 
     /// [`StepError::NotConverged`] where the step is too long for the iteration.
     #[inline(always)]
-    fn step<M: Summation<SO3, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         self.run(scene, motion, kept, 1).map(StepReport::of_run)
     }
 
@@ -194,13 +189,7 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS
 
     /// Attitude and momentum are read off at the end.
     #[inline(always)]
-    fn run<M: Summation<SO3, S::Advected>>(
-        &self,
-        _: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-        steps: u64,
-    ) -> Result<u64, StepError> {
+    fn run<M: SumsOf<S>>(&self, _: &S, motion: &mut M, kept: &mut Self::Kept, steps: u64) -> Result<u64, StepError> {
         let mut iterations = 0;
         for _ in 0..steps {
             iterations += u64::from(self.advance(kept)?);

@@ -55,7 +55,7 @@ pub struct Slope<const K: usize> {
 /// ```
 /// use liestep::groups::R3;
 /// use liestep::mechanics::Each;
-/// use liestep::methods::{Joined, Joints};
+/// use liestep::methods::{PlacedJoint, Joints};
 /// use liestep::numbers::Bodies;
 /// use liestep::{NonstandardInertia, SO3, Stepper, constraint, lagrangian};
 /// use nalgebra::{Vector3, Vector6};
@@ -91,7 +91,7 @@ pub struct Slope<const K: usize> {
 ///
 /// let J_d = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.09))?;
 /// let strut = Strut { above: Vector3::zeros(), below: Vector3::x() * 0.2, length: 1.0 };
-/// let joints = Joints::tree([Joined::to_space(strut, 0)]);
+/// let joints = Joints::tree([PlacedJoint::to_space(strut, 0)]);
 /// let start = [(SO3::identity(), R3::from(Vector3::new(-0.2, 0.0, -1.0)))];
 /// let off = |h: f64, steps: u32| -> Result<f64, Box<dyn std::error::Error>> {
 ///     let stepper = Stepper::jointed(Each::<1>::of([Heavy { J_d, m: 1.0, g: 9.81 }]), joints, h)?;
@@ -342,7 +342,7 @@ impl Constraint<5> for Joint {
     }
 }
 
-/// A place where there may be a joint: `None` holds nothing. With it [`Jointed`](crate::methods::Jointed) has a joint less
+/// A place where there may be a joint: `None` holds nothing. With it [`JointedBodies`](crate::methods::JointedBodies) has a joint less
 /// than its type says.
 impl<C: Constraint<K>, const K: usize> Constraint<K> for Option<C> {
     fn name(&self) -> &'static str {

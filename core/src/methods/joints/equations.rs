@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, SMatrix, SVector, Vector2, Vector6};
 use nalgebra::ComplexField as _;
 
 use super::elimination::{Body, Closing, Unknowns, factorise, solve};
-use super::graph::{Joined, Joints, Tree};
+use super::graph::{Joints, PlacedJoint, Tree};
 use super::places::{Ends, Places, Slopes, after, before, parts};
 use super::{Constraint, Slope};
 
@@ -110,7 +110,7 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
     pub(super) fn solve(
         &mut self,
         residuals: &[Vector6<f64>; N],
-        gap: impl Fn(&Joined<C>) -> SVector<f64, K>,
+        gap: impl Fn(&PlacedJoint<C>) -> SVector<f64, K>,
     ) -> Vector2<f64> {
         self.unknowns.bodies = *residuals;
         for (unknown, member) in self.unknowns.joints.iter_mut().zip(&self.tree.members) {

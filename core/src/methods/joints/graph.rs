@@ -5,7 +5,7 @@ use crate::error::SetupError;
 
 /// A joint between two bodies, or between space and a body. Bodies are counted from zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Joined<C> {
+pub struct PlacedJoint<C> {
     /// The joint.
     pub joint: C,
     /// The body above; `None` is space.
@@ -14,7 +14,7 @@ pub struct Joined<C> {
     pub below: usize,
 }
 
-impl<C> Joined<C> {
+impl<C> PlacedJoint<C> {
     /// Between two bodies.
     #[must_use]
     pub const fn between(joint: C, above: usize, below: usize) -> Self {
@@ -40,7 +40,7 @@ impl<C> Joined<C> {
 ///
 /// ```
 /// use core::array::from_fn;
-/// use liestep::methods::{BallJoint, Joined, Joints};
+/// use liestep::methods::{BallJoint, PlacedJoint, Joints};
 /// use nalgebra::Vector3;
 ///
 /// // From the centre of mass of each link.
@@ -48,35 +48,35 @@ impl<C> Joined<C> {
 /// let pivot = |x: f64, below| BallJoint { above: Vector3::new(x, 0.0, 0.0), below };
 /// let link = BallJoint { above: lower, below: upper };
 /// let chain = Joints::tree(from_fn::<_, 10, _>(|k| match k {
-///     0 => Joined::to_space(pivot(0.0, upper), 0),
-///     _ => Joined::between(link, k - 1, k),
+///     0 => PlacedJoint::to_space(pivot(0.0, upper), 0),
+///     _ => PlacedJoint::between(link, k - 1, k),
 /// }));
-/// let garland = chain.closed_by([Joined::to_space(pivot(8.0, lower), 9)]);
+/// let garland = chain.closed_by([PlacedJoint::to_space(pivot(8.0, lower), 9)]);
 /// # let _ = garland;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Joints<C, const T: usize, const L: usize> {
-    pub(super) tree: [Joined<C>; T],
-    pub(super) loops: [Joined<C>; L],
+    pub(super) tree: [PlacedJoint<C>; T],
+    pub(super) loops: [PlacedJoint<C>; L],
 }
 
 impl<C, const T: usize> Joints<C, T, 0> {
     /// Without loops.
     #[must_use]
-    pub const fn tree(tree: [Joined<C>; T]) -> Self {
+    pub const fn tree(tree: [PlacedJoint<C>; T]) -> Self {
         Self { tree, loops: [] }
     }
 
     /// With joints that close a loop each.
     #[must_use]
-    pub fn closed_by<const L: usize>(self, loops: [Joined<C>; L]) -> Joints<C, T, L> {
+    pub fn closed_by<const L: usize>(self, loops: [PlacedJoint<C>; L]) -> Joints<C, T, L> {
         Joints { tree: self.tree, loops }
     }
 }
 
 impl<C, const T: usize, const L: usize> Joints<C, T, L> {
     /// Each with its number, those of the tree first.
-    pub(super) fn all(&self) -> impl Iterator<Item = (usize, &Joined<C>)> {
+    pub(super) fn all(&self) -> impl Iterator<Item = (usize, &PlacedJoint<C>)> {
         self.tree.iter().chain(&self.loops).enumerate()
     }
 

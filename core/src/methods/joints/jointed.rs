@@ -29,7 +29,7 @@ pub(super) type Body = (SO3, R3);
 /// The step (2.7) of \[RDAE\] with the multipliers of constrained variational integrators, \[MW01\], section 3: SHAKE in
 /// positions, RATTLE in momenta.
 #[derive(Clone, Debug)]
-pub struct Jointed<S: Effect, C, const K: usize, const N: usize, const T: usize, const L: usize> {
+pub struct JointedBodies<S: Effect, C, const K: usize, const N: usize, const T: usize, const L: usize> {
     pub(super) h: f64,
     pub(super) constants: S::Constants,
     pub(super) joints: Joints<C, T, L>,
@@ -43,7 +43,7 @@ impl<S: Effect> Stepper<S> {
     /// Bodies that are held together by joints; the scene is that of the bodies without them.
     ///
     /// Each body is translated too: `(SO3, R3)`, with its centre of mass as origin, or any other point. Of joints that
-    /// form loops one of each loop is [given apart](Joints::closed_by). [`Jointed`] says how steps are made, and what
+    /// form loops one of each loop is [given apart](Joints::closed_by). [`JointedBodies`] says how steps are made, and what
     /// they cost.
     ///
     /// # Errors
@@ -61,7 +61,7 @@ impl<S: Effect> Stepper<S> {
     /// use core::array::from_fn;
     /// use liestep::groups::R3;
     /// use liestep::mechanics::Each;
-    /// use liestep::methods::{BallJoint, Joined, Joints};
+    /// use liestep::methods::{BallJoint, PlacedJoint, Joints};
     /// use liestep::numbers::Bodies;
     /// use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
     /// use nalgebra::{Vector3, Vector6};
@@ -86,10 +86,10 @@ impl<S: Effect> Stepper<S> {
     /// let (left, right) = (Vector3::x() * -0.5, Vector3::x() * 0.5);
     /// let pivot = |x: f64, below| BallJoint { above: Vector3::x() * x, below };
     /// let joints = Joints::tree(from_fn::<_, 4, _>(|k| match k {
-    ///     0 => Joined::to_space(pivot(0.0, left), 0),
-    ///     _ => Joined::between(BallJoint { above: right, below: left }, k - 1, k),
+    ///     0 => PlacedJoint::to_space(pivot(0.0, left), 0),
+    ///     _ => PlacedJoint::between(BallJoint { above: right, below: left }, k - 1, k),
     /// }));
-    /// let swing = joints.closed_by([Joined::to_space(pivot(3.0, right), 3)]);
+    /// let swing = joints.closed_by([PlacedJoint::to_space(pivot(3.0, right), 3)]);
     /// let stepper = Stepper::jointed(rods, swing, 0.01)?;
     ///
     /// // About a garland; it starts at a place next to it where the joints are closed.
@@ -109,17 +109,17 @@ impl<S: Effect> Stepper<S> {
         scene: S,
         joints: Joints<C, T, L>,
         h: f64,
-    ) -> Result<Stepper<S, Jointed<S, C, K, N, T, L>>, SetupError>
+    ) -> Result<Stepper<S, JointedBodies<S, C, K, N, T, L>>, SetupError>
     where
         S: Regular + Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,
         C: Constraint<K>,
     {
-        let plan = Jointed::new(&scene, joints, h)?;
+        let plan = JointedBodies::new(&scene, joints, h)?;
         Ok(Stepper { scene, plan })
     }
 }
 
-impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Jointed<S, C, K, N, T, L>
+impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> JointedBodies<S, C, K, N, T, L>
 where
     S: Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,
     C: Constraint<K>,
@@ -137,7 +137,7 @@ where
             assert!(S::IS_QUADRATIC, "joints hold bodies whose continuous limit is quadratic in the velocity");
         }
         // The scene without joints has to be one that can be stepped.
-        crate::motion::Declared::<S>::folded(scene, h)?;
+        crate::motion::OwnStep::<S>::folded(scene, h)?;
         let tree = joints.planted()?;
         let lengths = scene.inertia(&scene.advected()).0.map(|inertia| {
             let trace = |first: usize| (first..first + 3).map(|k| inertia[(k, k)]).sum::<f64>();

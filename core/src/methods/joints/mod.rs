@@ -13,7 +13,7 @@
 //! That is RATTLE of (2.7) and (2.9). As `λ` takes what `ν` has left, positions are those of SHAKE; with `ν`
 //! velocities keep to the joints, too. The step is variational: order 2, symmetric and symplectic where the scene's
 //! is, and in the coordinates that are left, if one has them, the same as the step of the minimal form.
-//! [`Linked`](super::Linked) has these for chains.
+//! [`LinkedBodies`](super::LinkedBodies) has these for chains.
 //!
 //! What [`Stepper::jointed`](crate::Stepper::jointed) takes is a scene on bodies `(SO3, R3)`, of which terms may
 //! couple anything but velocities, and [`Joints`]. There are no limits, motors or contacts.
@@ -31,5 +31,5 @@ mod plan;
 mod start;
 
 pub use constraint::{BallJoint, Constraint, Joint, PinJoint, Place, Slope};
-pub use graph::{Joined, Joints};
-pub use jointed::Jointed;
+pub use graph::{Joints, PlacedJoint};
+pub use jointed::JointedBodies;

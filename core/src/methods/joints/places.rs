@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _;
 
-use super::graph::Joined;
+use super::graph::PlacedJoint;
 use super::{Constraint, Place, Slope};
 use crate::groups::{R3, SO3};
 
@@ -70,13 +70,13 @@ impl<const N: usize> Places<N> {
     }
 
     /// The functions of a joint.
-    pub(super) fn gap<C: Constraint<K>, const K: usize>(&self, joined: &Joined<C>) -> SVector<f64, K> {
+    pub(super) fn gap<C: Constraint<K>, const K: usize>(&self, joined: &PlacedJoint<C>) -> SVector<f64, K> {
         joined.joint.gap(self.get(joined.above), &self.0[joined.below])
     }
 
     /// Their derivatives, that of the body below first.
     #[hot]
-    pub(super) fn slope<C: Constraint<K>, const K: usize>(&self, joined: &Joined<C>) -> [Slope<K>; 2] {
+    pub(super) fn slope<C: Constraint<K>, const K: usize>(&self, joined: &PlacedJoint<C>) -> [Slope<K>; 2] {
         let [above, below] = joined.joint.slope(self.get(joined.above), &self.0[joined.below]);
         [below, above]
     }

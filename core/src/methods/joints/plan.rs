@@ -9,13 +9,13 @@ use nalgebra::{Matrix3, Vector2, Vector6};
 use nalgebra::ComplexField as _;
 
 use super::equations::Equations;
-use super::jointed::{Body, Jointed};
+use super::jointed::{Body, JointedBodies};
 use super::places::{Places, parts};
 use super::{Constraint, Place};
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, CayleyRetraction, LieGroup, Retraction, SO3};
 use crate::mechanics::{Effect, Operations, SceneVisitor};
-use crate::motion::{Cost, Motion, Plan, Steerable, StepReport, Summation, Variable, half_coordinates, is_due};
+use crate::motion::{Cost, Motion, Plan, Steerable, StepReport, Summation, SumsOf, Variable, half_coordinates, is_due};
 use crate::numbers::{Bodies, Coordinates as _, Polynomial, Vectors, filled};
 use crate::solving::{
     LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, SETTLED, WarmStart, has_sufficed, may_suffice,
@@ -35,7 +35,7 @@ fn squares(of: &Vector6<f64>) -> Vector2<f64> {
 
 /// What is solved for a step.
 struct Problem<'a, 'b, S: Effect, C, const K: usize, const N: usize, const T: usize, const L: usize> {
-    plan: &'a Jointed<S, C, K, N, T, L>,
+    plan: &'a JointedBodies<S, C, K, N, T, L>,
     terms: S::StepTerms,
     attitude: &'a [Body; N],
     places: Places<N>,
@@ -221,16 +221,16 @@ where
     motion.now().attitude != given.attitude
 }
 
-impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Steerable for Jointed<S, C, K, N, T, L> where
+impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Steerable for JointedBodies<S, C, K, N, T, L> where
     S: Effect
 {
 }
-impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Variable for Jointed<S, C, K, N, T, L> where
+impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Variable for JointedBodies<S, C, K, N, T, L> where
     S: Effect
 {
 }
 
-impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Plan<S> for Jointed<S, C, K, N, T, L>
+impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Plan<S> for JointedBodies<S, C, K, N, T, L>
 where
     S: Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,
     C: Constraint<K>,
@@ -257,12 +257,7 @@ where
         self.check_start(scene, motion)
     }
 
-    fn step<M: Summation<[Body; N], S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         // A copy: after an error the motion has to be where it was.
         let mut next = *motion;
         if self.h == 0.0 {

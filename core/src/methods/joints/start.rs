@@ -4,7 +4,7 @@ use nalgebra::{SVector, Vector6};
 
 use super::Constraint;
 use super::equations::{Equations, Widest};
-use super::jointed::{Body, Jointed};
+use super::jointed::{Body, JointedBodies};
 use super::places::Places;
 use crate::error::SetupError;
 use crate::groups::{Advected as _, CayleyRetraction, LieGroup as _, Retraction};
@@ -25,7 +25,7 @@ const LONGEST: f64 = 2.0 * LONGEST_DAMPED;
 type StateOf<A, const N: usize> =
     State<[Body; N], A, WarmStart<Bodies<Vector6<f64>, N>, Polynomial<Bodies<Vector6<f64>, N>>>>;
 
-impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Jointed<S, C, K, N, T, L>
+impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> JointedBodies<S, C, K, N, T, L>
 where
     S: Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,
     C: Constraint<K>,
@@ -130,7 +130,7 @@ fn check_redundance<C: Constraint<K>, const K: usize, const N: usize, const T: u
 }
 
 /// # Start: bodies in joints
-impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Stepper<S, Jointed<S, C, K, N, T, L>>
+impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Stepper<S, JointedBodies<S, C, K, N, T, L>>
 where
     S: Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,
     C: Constraint<K>,
@@ -158,7 +158,7 @@ where
         let mut equations = self.plan.equations();
         // The second time for what roundings of the first leave, where bodies are of unlike masses.
         for _ in 0..2 {
-            let taken = Jointed::projection(&mut equations, &self.scene, &places, &advected, &momentum);
+            let taken = JointedBodies::projection(&mut equations, &self.scene, &places, &advected, &momentum);
             momentum = momentum - taken.map_err(|(joint, pivot)| SetupError::RedundantJoint { joint, pivot })?;
         }
         self.start_with_momentum(attitude, momentum)

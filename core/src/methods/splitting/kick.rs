@@ -60,8 +60,10 @@ where
 ///
 /// since the second derivatives `η·∂_v τ` of the potential along left-invariant fields commute but for their bracket;
 /// the commutator itself is that of \[Ch97\]. Body frame; kg m²/s⁴, so that `h³` makes it a momentum.
+///
+/// Of an inertia that is `DIAGONAL` the other entries aren't looked at.
 #[hot]
-pub(super) fn force_gradient<L>(
+pub(super) fn force_gradient<L, const DIAGONAL: bool>(
     torque: &L::Constants,
     inverse_inertia: &Matrix3<L::Scalar>,
     w: &L::Advected,
@@ -70,11 +72,12 @@ where
     L: DiscreteLagrangian<Group = SO3<<L as Term>::Scalar>>,
 {
     let tau: Vector3<L::Scalar> = L::kick_before(torque, w);
-    let velocity = inverse_inertia * tau;
+    let m = inverse_inertia;
+    let velocity = if DIAGONAL { Vector3::new(m.m11 * tau.x, m.m22 * tau.y, m.m33 * tau.z) } else { m * tau };
     let change = L::kick_derivative(torque, w, &velocity)?;
     // A multiple of the torque makes no difference, and without it a body that is symmetric about its third axis gets
     // exactly nothing there.
-    let across = velocity - tau * inverse_inertia.m11;
+    let across = velocity - tau * m.m11;
     Some(change + across.cross(&tau))
 }
 

@@ -32,6 +32,12 @@ pub trait KineticFlow<T: Real>: Clone {
     /// The inertia `J` of the body, kg m².
     fn inertia(flow: &Self) -> Matrix3<T>;
 
+    /// Whether the inertia is diagonal.
+    #[must_use]
+    fn has_principal_axes(_flow: &Self) -> bool {
+        false
+    }
+
     /// The momentum `s` at rest, `p = JΩ + s`, kg m²/s: that of rotors in the body, which most bodies haven't got.
     fn momentum_bias(_flow: &Self) -> Vector3<T> {
         Vector3::repeat(T::zero())

@@ -8,7 +8,7 @@ use core::fmt::Debug;
 use nalgebra::{Matrix3, Vector3};
 
 use super::kinetic_flow::SymmetricBody;
-use super::{Flow, KineticFlow, Length, Split};
+use super::{Flow, KineticFlow, Length, Splitting};
 use crate::error::{SetupError, StepError};
 use crate::gradients::{
     Change, ChangeOf, Cotangent, FlowDerivatives, ForceGradient, Linearisable, Pass, Stage, add_shares,
@@ -153,7 +153,7 @@ pub(super) fn flown<'a, T: Real>(
     FlowDerivatives { turn_by_momentum, turned_back, end_by_turn, by_parameters }
 }
 
-impl<S, K> Linearisable<S> for Split<S, K>
+impl<S, K> Linearisable<S> for Splitting<S, K>
 where
     S: RigidScene + SecondDerivatives,
     K: DifferentiableFlow<Scalar<S>>,
@@ -219,7 +219,7 @@ where
     }
 }
 
-impl<S, K> Split<S, K>
+impl<S, K> Splitting<S, K>
 where
     S: RigidScene + SecondDerivatives,
     K: DifferentiableFlow<Scalar<S>>,

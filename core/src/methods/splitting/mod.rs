@@ -16,7 +16,7 @@ pub(crate) use kick::{has_force_gradient, torque};
 pub(crate) use kinetic_flow::inverse_inertia;
 pub use kinetic_flow::{KineticFlow, SymmetricBody, Turn};
 pub use linearised::DifferentiableFlow;
-pub use processed::{Inside, Processed, ProcessedScheme};
+pub use processed::{Inside, ProcessedScheme, ProcessedSplitting};
 pub use scheme::{Flow, SplittingScheme};
 
 use alloc::vec::Vec;
@@ -27,7 +27,8 @@ use crate::mechanics::{
     DiscreteLagrangian, Effect, Operations, Regular, RigidScene, Scalar, SceneVisitor, Term, constant_inertia,
 };
 use crate::motion::{
-    Cost, Declared, Motion, Plan, STEPS_BETWEEN_CHECKS, Steerable, StepReport, Stepper, Summation, Variable, is_due,
+    Cost, Motion, OwnStep, Plan, STEPS_BETWEEN_CHECKS, Steerable, StepReport, Stepper, Summation, SumsOf, Variable,
+    is_due,
 };
 use crate::numbers::{Coordinates, Real, Vectors, count, largest_lane, real, reported};
 use nalgebra::{
@@ -88,7 +89,7 @@ use nalgebra::{
 ///
 /// \[BM02\], \[ML95\], \[BCF13\], with force gradients \[Ch97\], \[OMF02\]; see [`conventions`](crate::conventions).
 #[derive(Clone, Debug, Lanes, InLanes)]
-pub struct Split<S: Effect, K: KineticFlow<Scalar<S>>> {
+pub struct Splitting<S: Effect, K: KineticFlow<Scalar<S>>> {
     #[shared]
     scheme: SplittingScheme,
     torque: S::Constants,
@@ -168,7 +169,7 @@ struct Kick<T> {
 
 /// # Make: a splitting
 impl<S: Effect> Stepper<S> {
-    /// A kinetic-potential splitting with this flow of the free body and the coefficients of a scheme; see [`Split`].
+    /// A kinetic-potential splitting with this flow of the free body and the coefficients of a scheme; see [`Splitting`].
     ///
     /// # Errors
     ///
@@ -181,19 +182,19 @@ impl<S: Effect> Stepper<S> {
         h: Scalar<S>,
         flow: K,
         scheme: SplittingScheme,
-    ) -> Result<Stepper<S, Split<S, K>>, SetupError>
+    ) -> Result<Stepper<S, Splitting<S, K>>, SetupError>
     where
         S: DiscreteLagrangian<Group = SO3<<S as Term>::Scalar>> + Regular,
         K: KineticFlow<Scalar<S>>,
     {
         // For its checks of the scene and the step.
-        Declared::new(&scene, h)?;
-        let plan = Split::new(&scene, h, flow, scheme)?;
+        OwnStep::new(&scene, h)?;
+        let plan = Splitting::new(&scene, h, flow, scheme)?;
         Ok(Stepper { scene, plan })
     }
 }
 
-impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
+impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Splitting<S, K> {
     fn new(scene: &S, h: Scalar<S>, kinetic: K, scheme: SplittingScheme) -> Result<Self, SetupError> {
         let mut splitting = Self::folded(scene, h, kinetic, scheme)?;
         // A turn for itself costs about what three others save.
@@ -234,7 +235,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
     fn is_without_torque(&self, scene: &S) -> bool {
         spin::all_samples(scene, |w| {
             let torque: Vector3<Scalar<S>> = S::kick_before(&self.torque, w);
-            let gradient = kick::force_gradient::<S>(&self.torque, &self.inverse_inertia, w);
+            let gradient = kick::force_gradient::<S, false>(&self.torque, &self.inverse_inertia, w);
             let gradient = gradient.filter(|_| self.scheme.has_gradients()).unwrap_or_else(Vector3::zeros);
             torque.z.simd_eq(real(0.0)).all() && gradient.z.simd_eq(real(0.0)).all()
         })
@@ -357,7 +358,11 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         // There is a gradient: the step is refused without one when it is set up.
         let change = match &kick.mobility {
             Some(mobility) => {
-                let gradient = kick::force_gradient::<S>(&self.torque, mobility, &advected);
+                let gradient = if K::has_principal_axes(&self.kinetic) {
+                    kick::force_gradient::<S, true>(&self.torque, mobility, &advected)
+                } else {
+                    kick::force_gradient::<S, false>(&self.torque, mobility, &advected)
+                };
                 of_torque + gradient.unwrap_or_else(Vector3::zeros)
             }
             None => of_torque,
@@ -366,8 +371,8 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
     }
 }
 
-impl<S: Effect, K: KineticFlow<Scalar<S>>> Steerable for Split<S, K> {}
-impl<S: Effect, K: KineticFlow<Scalar<S>>> Variable for Split<S, K> {}
+impl<S: Effect, K: KineticFlow<Scalar<S>>> Steerable for Splitting<S, K> {}
+impl<S: Effect, K: KineticFlow<Scalar<S>>> Variable for Splitting<S, K> {}
 
 /// How long a share is.
 #[derive(Clone, Copy, Debug)]
@@ -399,7 +404,7 @@ fn share_of<T: Real, K: KineticFlow<T>>(
     })
 }
 
-impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
+impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Splitting<S, K> {
     type Kept = ();
 
     /// A body alone doesn't fill wide registers. It gains by instructions with three operands, which save copies, and under
@@ -418,12 +423,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
     fn keep(&self, _: &S, _: &Motion<SO3<Scalar<S>>, S::Advected>) {}
 
     #[hot]
-    fn step<M: Summation<SO3<Scalar<S>>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut (),
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut ()) -> Result<StepReport, StepError> {
         self.run(scene, motion, kept, 1).map(StepReport::of_run)
     }
 
@@ -431,13 +431,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
 
     /// The last drift of a step and the first of the next are made as one.
     #[hot]
-    fn run<M: Summation<SO3<Scalar<S>>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        (): &mut (),
-        steps: u64,
-    ) -> Result<u64, StepError> {
+    fn run<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, (): &mut (), steps: u64) -> Result<u64, StepError> {
         let (mut next, ends) = (*motion, (Some(&self.first), &self.last));
         let iterations = if const { K::OPERATIONS_OF_SPIN > 0 } && self.spin.is_some() {
             self.make_steps::<false, M>(scene, &mut next, ends, steps)?

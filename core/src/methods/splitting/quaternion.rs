@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use crate::numbers::{Number, Real};
+use crate::numbers::{Number, Real, real};
 
 /// A real part and the parts along three axes.
 pub(super) type Quaternion<T> = [T; 4];
@@ -24,18 +24,21 @@ pub(super) fn product_across<T: Number>([s, a, b, c]: Quaternion<T>, [w, x, y]: 
     [s * w - (a * x + b * y), (s * x + a * w) - c * y, (s * y + b * w) + c * x, c * w + (a * y - b * x)]
 }
 
-/// `F − I` times the square of the length.
+/// `F − I` of a quaternion of any length.
+///
+/// That is taken from the very products of the matrix: roundings of a factor that is the same in each step, or of its
+/// length, would be made in each step, too.
 #[hot]
-pub(super) fn scaled_increment<T: Real>([w, x, y, z]: Quaternion<T>) -> Matrix3<T> {
-    let (tx, ty, tz) = (x + x, y + y, z + z);
-    let (wx, wy, wz) = (w * tx, w * ty, w * tz);
-    let (xy, xz, yz) = (x * ty, x * tz, y * tz);
-    let (sx, sy, sz) = (x * tx, y * ty, z * tz);
+pub(super) fn increment<T: Real>([w, x, y, z]: Quaternion<T>) -> Matrix3<T> {
+    let (wx, wy, wz) = (w * x, w * y, w * z);
+    let (xy, xz, yz) = (x * y, x * z, y * z);
+    let (xx, yy, zz) = (x * x, y * y, z * z);
+    let across = xx + yy;
     #[rustfmt::skip]
     let increment = Matrix3::new(
-        -(sy + sz), xy - wz,    xz + wy,
-        xy + wz,    -(sx + sz), yz - wx,
-        xz - wy,    yz + wx,    -(sx + sy),
+        -(yy + zz), xy - wz,    xz + wy,
+        xy + wz,    -(xx + zz), yz - wx,
+        xz - wy,    yz + wx,    -across,
     );
-    increment
+    increment * (real::<T>(2.0) / ((w * w + zz) + across))
 }

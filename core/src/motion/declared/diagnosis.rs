@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::{Declared, kicked};
+use super::{OwnStep, kicked};
 use crate::error::StepError;
 use crate::groups::{Advected as _, LieGroup, Retraction as _};
 use crate::mechanics::{Effect, Group, Scalar, Vector, estimated_velocity};
@@ -12,7 +12,7 @@ use crate::solving::{
 };
 use nalgebra::SimdComplexField as _;
 
-impl<S: Effect> Declared<S> {
+impl<S: Effect> OwnStep<S> {
     /// The solve with all its fallbacks, from the beginning.
     #[cold]
     #[inline(never)]

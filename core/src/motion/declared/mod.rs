@@ -13,14 +13,14 @@ use crate::mechanics::{
 use crate::motion::increment::Increment;
 use crate::motion::plan::{Cost, Plan, Steerable, Variable};
 use crate::motion::report::StepReport;
-use crate::motion::summation::{Motion, Summation, is_due};
+use crate::motion::summation::{Motion, MotionOf, Summation, SumsOf, is_due};
 use crate::numbers::{Coordinates as _, is_finite, real, reported};
 use crate::solving::{Kick, Problem, Root, WarmStart, newton_system, safe, step_terms, trusted_radius};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 
 /// The step of the scene itself, by its momentum equation (2.7): the plan of [`Stepper::new`](crate::Stepper::new).
 #[derive(Clone, Debug, Lanes, InLanes)]
-pub struct Declared<S: Effect> {
+pub struct OwnStep<S: Effect> {
     h: Scalar<S>,
     constants: S::Constants,
     /// The square of a right side far beyond those of steps that have a solution.
@@ -33,7 +33,7 @@ pub struct Declared<S: Effect> {
 /// What a step keeps for the next: as much history as its solve makes use of.
 type Memory<S> = WarmStart<Vector<S>, <<S as Effect>::Kinetic as KineticPart>::History<Scalar<S>, Vector<S>>>;
 
-impl<S: Effect> Declared<S> {
+impl<S: Effect> OwnStep<S> {
     /// Checks the parameters and folds the constants for the step `h`.
     ///
     /// # Errors
@@ -113,12 +113,7 @@ impl<S: Effect> Declared<S> {
 
     /// The step, if nothing about it is doubtful.
     #[hot]
-    fn increment_directly<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &M,
-        half_guess: &Vector<S>,
-    ) -> Option<Increment<S>> {
+    fn increment_directly<M: SumsOf<S>>(&self, scene: &S, motion: &M, half_guess: &Vector<S>) -> Option<Increment<S>> {
         let now = motion.now();
         let problem = self.problem(scene, &now.momentum, &now.advected);
         let root = problem.solve_directly::<true>(half_guess, self.largest_target)?;
@@ -151,12 +146,7 @@ impl<S: Effect> Declared<S> {
 
     /// By `F` from a motion, with `a = μ + kick_before(w)`.
     #[hot]
-    fn moved<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        motion: &M,
-        a: &Vector<S>,
-        root: &Root<Group<S>>,
-    ) -> Increment<S> {
+    fn moved<M: SumsOf<S>>(&self, motion: &M, a: &Vector<S>, root: &Root<Group<S>>) -> Increment<S> {
         let Root { half, increment, iterations, far, ref kick } = *root;
         let Motion { momentum, advected, .. } = motion.now();
         // Another order of these moves some scenes by two hundredths, up and down.
@@ -224,10 +214,10 @@ impl<S: Effect> Declared<S> {
     }
 }
 
-impl<S: Effect> Steerable for Declared<S> {}
-impl<S: Effect> Variable for Declared<S> {}
+impl<S: Effect> Steerable for OwnStep<S> {}
+impl<S: Effect> Variable for OwnStep<S> {}
 
-impl<S: Effect> Plan<S> for Declared<S> {
+impl<S: Effect> Plan<S> for OwnStep<S> {
     type Kept = Memory<S>;
 
     const RUNS_BY_STEPS: bool = true;
@@ -240,17 +230,13 @@ impl<S: Effect> Plan<S> for Declared<S> {
         Self::folded(scene, h)
     }
 
-    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
-        WarmStart::of(half_coordinates(scene, motion, self.h), S::jacobian_is_expensive(&self.constants))
+    fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept {
+        let has_pace = scene.with_energy(&motion.advected, real(0.0)).is_some();
+        WarmStart::of(half_coordinates(scene, motion, self.h), has_pace || S::jacobian_is_expensive(&self.constants))
     }
 
     #[hot]
-    fn step<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         let guess = kept.guess(<Group<S> as LieGroup>::DIMENSION);
         match self.increment_directly(scene, motion, &guess) {
             Some(made) => Ok(taken(scene, motion, kept, &made)),
@@ -258,7 +244,7 @@ impl<S: Effect> Plan<S> for Declared<S> {
         }
     }
 
-    fn max_step(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, _: &Self::Kept) -> Scalar<S> {
+    fn max_step(&self, scene: &S, motion: &MotionOf<S>, _: &Self::Kept) -> Scalar<S> {
         self.largest_solvable(scene, &motion.momentum, &motion.advected)
     }
 
@@ -271,7 +257,7 @@ impl<S: Effect> Plan<S> for Declared<S> {
     }
 }
 
-impl<S: Effect> Declared<S> {
+impl<S: Effect> OwnStep<S> {
     /// A rare step, to its end: if it came back to the common way, that would have to keep in memory what it has in
     /// registers.
     #[cold]
@@ -289,12 +275,7 @@ impl<S: Effect> Declared<S> {
 }
 
 #[hot]
-fn taken<S: Effect, M: Summation<Group<S>, S::Advected>>(
-    scene: &S,
-    motion: &mut M,
-    kept: &mut Memory<S>,
-    made: &Increment<S>,
-) -> StepReport {
+fn taken<S: Effect, M: SumsOf<S>>(scene: &S, motion: &mut M, kept: &mut Memory<S>, made: &Increment<S>) -> StepReport {
     motion.proceed(&made.increment, &made.change, (made.momentum, made.advected));
     kept.follow(made.half, made.far);
     if is_due::<Group<S>>(motion.now().steps) {
@@ -315,11 +296,7 @@ fn look<S: Effect, M: Summation<Group<S>, S::Advected>>(scene: &S, motion: &mut 
 }
 
 /// Half the coordinates of the first increment, about: every retraction has the identity as its derivative at zero.
-pub(crate) fn half_coordinates<S: Effect>(
-    scene: &S,
-    motion: &Motion<Group<S>, S::Advected>,
-    h: Scalar<S>,
-) -> Vector<S> {
+pub(crate) fn half_coordinates<S: Effect>(scene: &S, motion: &MotionOf<S>, h: Scalar<S>) -> Vector<S> {
     estimated_velocity(scene, &motion.momentum, &motion.advected) * (h * real(0.5))
 }
 

@@ -3,7 +3,7 @@
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup as _;
 use crate::mechanics::{Effect, Group, Regular, Scalar, Vector};
-use crate::motion::declared::Declared;
+use crate::motion::declared::OwnStep;
 use crate::motion::increment::Increment;
 use crate::motion::plan::Plan as _;
 use crate::motion::summation::Motion;
@@ -17,7 +17,7 @@ use crate::solving::Solvability;
 #[derive(Clone, Debug, Lanes)]
 pub struct DiscreteLiePoisson<L: Effect> {
     scene: L,
-    declared: Declared<L>,
+    declared: OwnStep<L>,
 }
 
 impl<L: Effect> DiscreteLiePoisson<L> {
@@ -33,11 +33,11 @@ impl<L: Effect> DiscreteLiePoisson<L> {
     where
         L: Regular,
     {
-        let declared = Declared::new(&scene, h)?;
+        let declared = OwnStep::new(&scene, h)?;
         Ok(Self { scene, declared })
     }
 
-    pub(in crate::motion) fn of(scene: L, declared: Declared<L>) -> Self {
+    pub(in crate::motion) fn of(scene: L, declared: OwnStep<L>) -> Self {
         Self { scene, declared }
     }
 

@@ -3,7 +3,7 @@
 use super::Stepper;
 use crate::error::SetupError;
 use crate::mechanics::{Effect, Regular, Scalar};
-use crate::motion::declared::Declared;
+use crate::motion::declared::OwnStep;
 use crate::motion::plan::Plan;
 
 /// # Make
@@ -22,7 +22,7 @@ impl<S: Effect> Stepper<S> {
     where
         S: Regular,
     {
-        let plan = Declared::new(&scene, h)?;
+        let plan = OwnStep::new(&scene, h)?;
         Ok(Self { scene, plan })
     }
 }

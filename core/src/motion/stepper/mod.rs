@@ -10,12 +10,12 @@ mod wrap;
 pub(crate) use start::check_attitude;
 
 use crate::mechanics::{Effect, Group, Term};
-use crate::motion::declared::Declared;
+use crate::motion::declared::OwnStep;
 use crate::motion::plan::Plan;
 use crate::motion::state::State;
 
 /// The state of a scene `S` that is stepped by the plan `P`, its own step unless another is named.
-pub type StateOf<S, P = Declared<S>> = State<Group<S>, <S as Term>::Advected, <P as Plan<S>>::Kept>;
+pub type StateOf<S, P = OwnStep<S>> = State<Group<S>, <S as Term>::Advected, <P as Plan<S>>::Kept>;
 
 /// An integrator with a fixed step: a scene, and a method whose constants are folded for it.
 ///
@@ -67,7 +67,7 @@ pub type StateOf<S, P = Declared<S>> = State<Group<S>, <S as Term>::Advected, <P
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, Lanes, InLanes)]
-pub struct Stepper<S: Effect, P = Declared<S>> {
+pub struct Stepper<S: Effect, P = OwnStep<S>> {
     pub(crate) scene: S,
     pub(crate) plan: P,
 }

@@ -4,9 +4,9 @@ use alloc::string::String;
 
 use super::{StateOf, Stepper};
 use crate::groups::SO3;
-use crate::mechanics::{AxiallyInvariant, Effect, Group, LeftInvariant, Scalar, Vector, energy};
+use crate::mechanics::{AxiallyInvariant, Effect, LeftInvariant, Scalar, Vector, energy};
 use crate::motion::plan::Plan;
-use crate::motion::summation::Motion;
+use crate::motion::summation::MotionOf;
 use crate::solving::Solvability;
 
 /// # Read
@@ -51,7 +51,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// Where the [scene](Self::scene) is a [`ContinuousLagrangian`](crate::mechanics::ContinuousLagrangian), its `velocity`
     /// says why, as an error. A [control force](Self::step_forced) and an event that are made of NaN are refused.
     #[must_use]
-    pub fn velocity(&self, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
+    pub fn velocity(&self, motion: &MotionOf<S>) -> Vector<S> {
         self.plan.velocity(&self.scene, motion)
     }
 
@@ -61,7 +61,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// Where the scene is a [`DiscreteLagrangian`](crate::mechanics::DiscreteLagrangian) it oscillates about its initial value, at the order of the scheme, and
     /// doesn't drift.
     #[must_use]
-    pub fn energy(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S> {
+    pub fn energy(&self, motion: &MotionOf<S>) -> Scalar<S> {
         if const { P::HAS_OWN_INERTIA } {
             return self.plan.energy(&self.scene, motion);
         }
@@ -77,7 +77,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
 
     /// The spatial momentum, `R Π` on SO(3), in a scene that conserves it: nothing is advected, though values may be given.
     #[must_use]
-    pub fn spatial_momentum(&self, motion: &Motion<Group<S>, S::Advected>) -> Vector<S>
+    pub fn spatial_momentum(&self, motion: &MotionOf<S>) -> Vector<S>
     where
         S: LeftInvariant,
     {
@@ -87,7 +87,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// The momentum along the advected vector, `Π·w` (`e₃·R Π` for the vertical), in a scene that conserves it: one
     /// vector is advected, (3.20).
     #[must_use]
-    pub fn momentum_along_advected(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S>
+    pub fn momentum_along_advected(&self, motion: &MotionOf<S>) -> Scalar<S>
     where
         S: AxiallyInvariant<Group = SO3<Scalar<S>>>,
     {
@@ -99,7 +99,7 @@ impl<S: Effect> Stepper<S> {
     /// What is proved about the next step: whether it surely has a solution or surely has none, where bounds are known;
     /// see [`DiscreteLiePoisson::solvability`](crate::motion::DiscreteLiePoisson::solvability).
     #[must_use]
-    pub fn solvability(&self, motion: &Motion<Group<S>, S::Advected>) -> Solvability {
+    pub fn solvability(&self, motion: &MotionOf<S>) -> Solvability {
         self.plan.solvability(&self.scene, &motion.momentum, &motion.advected)
     }
 }

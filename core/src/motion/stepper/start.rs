@@ -6,7 +6,7 @@ use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, Vector, check_inertia, check_velocity, velocity_of_momentum};
 use crate::motion::kept::Kept;
 use crate::motion::plan::Plan;
-use crate::motion::state::{Elapsed, State};
+use crate::motion::state::{ElapsedTime, State};
 use crate::motion::summation::Motion;
 use crate::numbers::{Coordinates as _, Real, is_finite, real, reported};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
@@ -109,7 +109,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     fn begin(&self, attitude: Group<S>, momentum: Vector<S>) -> StateOf<S, P> {
         let advected = self.plan.advected(&self.scene, 0).seen_from(&attitude);
         let motion = self.plan.begun(&self.scene, Motion { attitude, momentum, advected, steps: 0 });
-        State { motion, kept: self.plan.keep(&self.scene, &motion), elapsed: Elapsed::nothing() }
+        State { motion, kept: self.plan.keep(&self.scene, &motion), elapsed: ElapsedTime::nothing() }
     }
 }
 

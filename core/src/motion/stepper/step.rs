@@ -8,7 +8,7 @@ use crate::motion::integrator::{Integrator, run_or_step, seeing};
 use crate::motion::plan::{Cost, Next, NextSteps, Plan, Steerable, Variable, run_plan};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
-use crate::motion::summation::Motion;
+use crate::motion::summation::{Motion, MotionOf};
 use crate::numbers::{Coordinates as _, Kernel, Vectors, dispatch, is_finite, real};
 
 /// # Step
@@ -271,7 +271,7 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
         self.plan.is_in_step(&state.kept)
     }
 
-    fn part(&self, state: &Self::State, fraction: Scalar<S>) -> Result<Motion<Group<S>, S::Advected>, StepError> {
+    fn part(&self, state: &Self::State, fraction: Scalar<S>) -> Result<MotionOf<S>, StepError> {
         self.plan.part(&self.scene, &state.motion, &state.kept, fraction)
     }
 
@@ -287,11 +287,11 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
         Some(self.plan.cost())
     }
 
-    fn adopt(&self, motion: &Motion<Group<S>, S::Advected>) -> Self::State {
+    fn adopt(&self, motion: &MotionOf<S>) -> Self::State {
         Stepper::adopt(self, motion)
     }
 
-    fn seen(&self, motion: &Motion<Group<S>, ()>) -> Motion<Group<S>, S::Advected> {
+    fn seen(&self, motion: &Motion<Group<S>, ()>) -> MotionOf<S> {
         seeing(motion, self.plan.advected(&self.scene, motion.steps).seen_from(&motion.attitude))
     }
 
@@ -299,11 +299,11 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
         Stepper::step_size(self)
     }
 
-    fn velocity(&self, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
+    fn velocity(&self, motion: &MotionOf<S>) -> Vector<S> {
         Stepper::velocity(self, motion)
     }
 
-    fn energy(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S> {
+    fn energy(&self, motion: &MotionOf<S>) -> Scalar<S> {
         Stepper::energy(self, motion)
     }
 
@@ -314,7 +314,7 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
     #[hot]
     fn velocity_and_energy(
         &self,
-        motion: &Motion<Group<S>, S::Advected>,
+        motion: &MotionOf<S>,
         inertia: Option<&FactoredInertia<Group<S>>>,
     ) -> (Vector<S>, Scalar<S>) {
         if const { P::HAS_OWN_INERTIA } {
@@ -330,6 +330,7 @@ struct Step<'a, S: Effect, P: Plan<S>>(&'a Stepper<S, P>, &'a mut StateOf<S, P>)
 impl<S: Effect, P: Plan<S>> Kernel for Step<'_, S, P> {
     type Output = Result<StepReport, StepError>;
     const VECTORS: Vectors = P::VECTORS;
+    const IS_IN_LANES: bool = <Scalar<S> as nalgebra::SimdValue>::LANES > 1;
 
     #[hot]
     fn run(self) -> Self::Output {

@@ -19,7 +19,7 @@ pub use stored::Storable;
 
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar};
-use crate::motion::{Elapsed, Kept, Motion, Plan, State, StateOf, Stepper};
+use crate::motion::{ElapsedTime, Kept, Motion, Plan, State, StateOf, Stepper};
 use crate::numbers::{Digest, Entries, Real, real, reported};
 use fingerprint::Parameters;
 
@@ -189,7 +189,7 @@ impl<S: Effect<Scalar: Storable>, P: Plan<S>> Stepper<S, P> {
 }
 
 /// What a method keeps, if these numbers can be that.
-fn remembered<T: Storable, K: Kept<T>>(list: &[T]) -> Result<Option<(K, Elapsed<T>)>, CheckpointError> {
+fn remembered<T: Storable, K: Kept<T>>(list: &[T]) -> Result<Option<(K, ElapsedTime<T>)>, CheckpointError> {
     let mut expected = 0;
     let _ = K::from_numbers(&mut || {
         expected += 1;
@@ -198,7 +198,7 @@ fn remembered<T: Storable, K: Kept<T>>(list: &[T]) -> Result<Option<(K, Elapsed<
     readable("kept", list, expected + 2)?;
     let mut numbers = list.iter();
     let mut next = || numbers.next().copied().unwrap_or_else(T::zero);
-    Ok(K::from_numbers(&mut next).map(|kept| (kept, Elapsed::from_numbers(&mut next))))
+    Ok(K::from_numbers(&mut next).map(|kept| (kept, ElapsedTime::from_numbers(&mut next))))
 }
 
 fn list<T: Real>(entries: &impl Entries<T>) -> Vec<T> {

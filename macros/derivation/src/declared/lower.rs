@@ -28,8 +28,8 @@ pub(crate) struct Lowered {
     pub(crate) names: BTreeMap<Name, SymbolId>,
 }
 
-/// The two readings of the tree, multiplied out and with its `let`s closed; `None` where both are too large, which has
-/// been reported.
+/// The readings of the tree, multiplied out and with its `let`s closed, and of a pace with these closed and matrices
+/// multiplied out; `None` where all are too large, which has been reported.
 pub(crate) fn readings(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Vec<Lowered>> {
     readings_without(declaration, tree, &|_, structure| structure, errors)
 }
@@ -67,10 +67,8 @@ pub(crate) fn readings_without(
         });
         Displacements(each.collect())
     });
-    let attempt = |lets| {
-        let (symbols, known) = (symbols.clone(), BTreeMap::new());
-        Lowering { symbols, names: &names, known, lets, velocity_matrix: None }.whole(tree)
-    };
+    let attempt =
+        |lets, opens_matrices| Lowering { opens_matrices, ..Lowering::new(symbols.clone(), &names, lets) }.whole(tree);
     let lowered = |(symbols, expression, lets): (Symbols, Expression, Vec<Let>)| {
         let (group, increments) = (declaration.group.clone(), increments.clone());
         let (advected, names) = (advected.clone(), names.clone());
@@ -90,11 +88,13 @@ pub(crate) fn readings_without(
         };
         Lowered { declared, names }
     };
-    let multiplied_out = attempt(None);
+    let multiplied_out = attempt(None, false);
     // The work of a force is always multiplied out: it is linear in the displacements, and short.
     let may_close = displacements.is_none() && (multiplied_out.is_err() || has_let(tree));
-    let closed = if may_close { Some(attempt(Some(Vec::new()))) } else { None };
-    let all = [Some(multiplied_out), closed].into_iter().flatten();
+    let closed = may_close.then(|| attempt(Some(Vec::new()), false));
+    // In `tr((F − I) J_d (F − I)ᵀ)` all but `F` cancels, and the pace is best left as it is.
+    let opened = declaration.energy.map(|_| attempt(Some(Vec::new()), true));
+    let all = [Some(multiplied_out), closed, opened].into_iter().flatten();
     let (found, failures): (Vec<_>, Vec<_>) = all.partition(Result::is_ok);
     if found.is_empty() {
         failures.into_iter().filter_map(Result::err).take(1).for_each(|failure| report(failure, tree, errors));
@@ -122,7 +122,7 @@ pub(crate) fn continuous(declaration: &Declaration, tree: &Rc<Tree>, errors: &mu
     }
     // Of several bodies none has one.
     let velocity_matrix = velocities.first().and_then(|velocity| velocity.matrix);
-    let lowering = Lowering { symbols, names: &names, known: BTreeMap::new(), lets: None, velocity_matrix };
+    let lowering = Lowering { velocity_matrix, ..Lowering::new(symbols, &names, None) };
     match lowering.whole(tree) {
         Ok((symbols, expression, _)) => {
             let declared = DeclaredContinuous { group, symbols, expression, velocities, advected };
@@ -151,7 +151,7 @@ pub(crate) fn constraint(
     let (mut symbols, mut names) = (Symbols::default(), BTreeMap::new());
     let carried = parameters(declaration, &|_, structure| structure, &mut symbols, &mut names);
     let bodies = ["a", "b"].map(|body| Body::new(body, &mut symbols));
-    let mut lowering = Lowering { symbols, names: &names, known: BTreeMap::new(), lets: None, velocity_matrix: None };
+    let mut lowering = Lowering::new(symbols, &names, None);
     let seen: Option<Vec<Expression>> = carried
         .iter()
         .enumerate()
@@ -254,11 +254,17 @@ struct Lowering<'a> {
     known: BTreeMap<*const Tree, Expression>,
     /// The `let`s so far, where they stay closed.
     lets: Option<Vec<Let>>,
+    /// Whether sums of matrices are multiplied out all the same.
+    opens_matrices: bool,
     /// What stands for the matrix of the velocity in a continuous Lagrangian.
     velocity_matrix: Option<SymbolId>,
 }
 
-impl Lowering<'_> {
+impl<'a> Lowering<'a> {
+    fn new(symbols: Symbols, names: &'a BTreeMap<Name, SymbolId>, lets: Option<Vec<Let>>) -> Self {
+        Self { symbols, names, known: BTreeMap::new(), lets, opens_matrices: false, velocity_matrix: None }
+    }
+
     fn whole(mut self, tree: &Rc<Tree>) -> Result<(Symbols, Expression, Vec<Let>), Failure> {
         let expression = self.expression(tree)?;
         let lets = self.lets.unwrap_or_default();
@@ -319,7 +325,8 @@ impl Lowering<'_> {
     /// A sum that is about to be multiplied: where `let`s stay closed, a product of sums isn't multiplied out either.
     fn factor(&mut self, tree: &Rc<Tree>) -> Result<Expression, Failure> {
         let value = self.expression(tree)?;
-        Ok(if value.len() < 2 { value } else { self.closed(tree, value) })
+        let is_open = value.len() < 2 || self.opens_matrices && value.shape().0.min(value.shape().1) > 1;
+        Ok(if is_open { value } else { self.closed(tree, value) })
     }
 
     /// A value that a derivative goes through as one.

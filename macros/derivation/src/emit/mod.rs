@@ -74,7 +74,7 @@ pub(crate) fn implementation(
     let describe = emitter.describe();
     let private = &header.private;
     let span = Span::mixed_site();
-    let types = header.types(kinetic(chosen), &stages.constants_type, &stages.step_terms_type);
+    let types = header.types(kinetic(declaration, chosen), &stages.constants_type, &stages.step_terms_type);
     let parts = stages::parts(&emitter, kernel);
     let is_force = declaration.role == Role::Force;
     let (name, mathematics) =
@@ -125,9 +125,10 @@ pub(crate) fn implementation(
 }
 
 /// Whether there is a kinetic part, and what its solve costs.
-fn kinetic(chosen: &Chosen) -> &'static str {
+fn kinetic(declaration: &Declaration, chosen: &Chosen) -> &'static str {
     match (chosen.derived.limit.has_kinetic, chosen.kernel.jacobian_is_expensive()) {
         (false, _) => "WithoutKinetic",
+        (true, false) if declaration.energy.is_some() => "WithPace",
         (true, false) => "WithKinetic",
         (true, true) => "WithExpensiveKinetic",
     }

@@ -27,9 +27,11 @@ pub(crate) fn with_values<'a>(
 pub(crate) fn with_lets(graph: &mut Graph, derived: &Derived, given: Given) -> Given {
     let lets = derived.closed.iter().map(|closed| (closed.symbol, &closed.value));
     let mut given = with_values(graph, &derived.symbols, lets, given);
+    let has_increment = derived.directions.factors.iter().any(|one| given.contains_key(&one.small));
     for closed in derived.closed.iter().rev() {
         let shape = derived.symbols.get(closed.symbol).shape;
-        let entries = dual(graph, derived, &given, (&closed.pairing, closed.direction, shape));
+        let pairing = if has_increment { &closed.near } else { &closed.pairing };
+        let entries = dual(graph, derived, &given, (pairing, closed.direction, shape));
         given.insert(closed.multiplier, entries);
     }
     given

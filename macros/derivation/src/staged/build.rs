@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::sources::{Sources, carried, parameter_kind};
-use super::{Array, Factor, Operation, Parameter, Program, Source, Staged, Stages};
+use super::{Array, Factor, Operation, Parameter, Program, Source, StagedDeclaration, Stages};
 use crate::declared::Declaration;
 use crate::emit;
 use crate::expand::Steps;
@@ -12,7 +12,7 @@ use crate::mathematics::derive::Inverse;
 use crate::mathematics::symbolic::Expression;
 use crate::program::{Derivatives, Form, Graph, Handed, Node, NodeId, along_directions, limit, needed, term};
 
-pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> Staged {
+pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> StagedDeclaration {
     let Steps { chosen, equations, findings } = steps;
     let Chosen { lowered, derived, kernel } = chosen;
     let names = &lowered.names;
@@ -32,7 +32,7 @@ pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> Staged {
     };
     let factors = declaration.factors.iter().zip(declaration.group.factors());
     let is_nonlinear = |equations: &&Equations| equations.derived.inverse == Inverse::Nonlinear;
-    Staged {
+    StagedDeclaration {
         name: declaration.item.ident.to_string(),
         role: declaration.role,
         factors: factors.map(|(named, own)| Factor { name: named.group_name(), generators: generators(own) }).collect(),

@@ -62,6 +62,13 @@ pub enum Array {
 impl Array {
     /// How many there are.
     pub const COUNT: usize = 12;
+
+    /// Each of them, in order.
+    #[rustfmt::skip]
+    pub const ALL: [Self; Self::COUNT] = [
+        Self::Step, Self::Parameters, Self::Constants, Self::Advected, Self::Next, Self::Element, Self::Increment,
+        Self::Inverse, Self::InverseIncrement, Self::Half, Self::Velocity, Self::Target,
+    ];
 }
 
 /// The place of a number in an array.
@@ -257,7 +264,7 @@ impl<P> Stages<P> {
 /// A declaration with the programs of its step.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(clippy::struct_excessive_bools)] // facts that have nothing to do with each other
-pub struct Staged {
+pub struct StagedDeclaration {
     /// The name of the struct.
     pub name: String,
     /// What was declared.
@@ -313,7 +320,7 @@ pub enum Refusal {
 /// # Errors
 ///
 /// Its mistakes; or it takes more.
-pub fn staged(text: &TokenStream, most: u64) -> Result<(Staged, u64), Refusal> {
+pub fn staged(text: &TokenStream, most: u64) -> Result<(StagedDeclaration, u64), Refusal> {
     let mut errors = Errors::default();
     let (found, work) = work::within(most, || of_text(text, &mut errors)).ok_or(Refusal::TooMuchWork)?;
     match found {
@@ -322,7 +329,7 @@ pub fn staged(text: &TokenStream, most: u64) -> Result<(Staged, u64), Refusal> {
     }
 }
 
-fn of_text(text: &TokenStream, errors: &mut Errors) -> Option<Staged> {
+fn of_text(text: &TokenStream, errors: &mut Errors) -> Option<StagedDeclaration> {
     let (role, arguments, item) = parse::attribute_and_item(text, errors)?;
     let declaration = parse::declaration(role, &arguments, &item, errors)?;
     let declaration = Declaration { is_text: true, ..declaration };

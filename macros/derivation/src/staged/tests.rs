@@ -3,7 +3,7 @@
 use super::{Action, Array, Operation, Program, Refusal, staged};
 use crate::expand::tests::{HEAVY_TOP, top};
 
-fn heavy_top() -> super::Staged {
+fn heavy_top() -> super::StagedDeclaration {
     let text = format!("#[lagrangian({HEAVY_TOP})] {}", top("NonstandardInertia"));
     staged(&text.parse().expect("tokens"), u64::MAX).expect("a declaration").0
 }

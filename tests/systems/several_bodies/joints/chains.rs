@@ -4,14 +4,14 @@ use core::array::from_fn;
 
 use liestep::groups::{CayleyRetraction, LieGroup as _, R3, Retraction};
 use liestep::laws::samples::Random;
-use liestep::methods::{BallJoint, Chain, Joined, Joints, PinJoint};
+use liestep::methods::{BallJoint, Chain, Joints, PinJoint, PlacedJoint};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper};
 use nalgebra::{Vector3, Vector6};
 
-use super::super::apart;
 use super::super::links::{irregular, rods};
-use super::{Body, Components, EPSILON, Free, Held, halves, row, scene, six, watched, whole};
+use super::super::{apart, part};
+use super::{Body, Components, EPSILON, Free, Held, row, scene, six, watched, whole};
 
 /// The same chain with a joint for each link, its bodies about their centres of mass.
 fn with_joints<const N: usize>(chain: &Chain<N>, h: f64) -> Held<BallJoint, 3, N, N, 0> {
@@ -22,10 +22,10 @@ fn with_joints<const N: usize>(chain: &Chain<N>, h: f64) -> Held<BallJoint, 3, N
     let joints = Joints::tree(from_fn(|k| {
         let below = -chain.links[k].c;
         if k == 0 {
-            return Joined::to_space(BallJoint { above: Vector3::zeros(), below }, 0);
+            return PlacedJoint::to_space(BallJoint { above: Vector3::zeros(), below }, 0);
         }
         let upper = chain.links[k - 1];
-        Joined::between(BallJoint { above: upper.rho - upper.c, below }, k - 1, k)
+        PlacedJoint::between(BallJoint { above: upper.rho - upper.c, below }, k - 1, k)
     }));
     Stepper::jointed(scene(bodies, chain.g, chain.up), joints, h).unwrap()
 }
@@ -73,7 +73,7 @@ fn a_chain_moves_as_in_its_minimal_form() {
             let found = state.attitude().map(|body| body.0);
             let velocity = stepper.velocity(&state);
             let other = minimal.velocity(&expected);
-            let slower = (0..N).map(|k| (halves(&velocity.0[k])[0] - other.0[k]).amax()).fold(0.0, f64::max);
+            let slower = (0..N).map(|k| (part(&velocity.0[k], 0) - other.0[k]).amax()).fold(0.0, f64::max);
             let errors = [apart(&found, &expected.attitude()), slower, stepper.widest_gap(&state)];
             println!("{h}: {errors:?}");
             assert!(errors[0] < 1e-12 && errors[1] < 1e-12 && errors[2] < 4.0 * EPSILON * 5.0, "{errors:?}");
@@ -140,11 +140,12 @@ fn a_tree() {
     });
     let joints: [BallJoint; N] = from_fn(|_| BallJoint { above: next(0.5), below: next(0.5) });
     let parents = [None, Some(0), Some(0), Some(0), Some(2)];
-    let straight: [Joined<BallJoint>; N] = from_fn(|k| Joined { joint: joints[k], above: parents[k], below: k });
-    let turned: [Joined<BallJoint>; N] = from_fn(|k| {
-        let Joined { joint, above, below } = straight[N - 1 - k];
+    let straight: [PlacedJoint<BallJoint>; N] =
+        from_fn(|k| PlacedJoint { joint: joints[k], above: parents[k], below: k });
+    let turned: [PlacedJoint<BallJoint>; N] = from_fn(|k| {
+        let PlacedJoint { joint, above, below } = straight[N - 1 - k];
         let back = BallJoint { above: joint.below, below: joint.above };
-        above.map_or(straight[N - 1 - k], |above| Joined::between(back, below, above))
+        above.map_or(straight[N - 1 - k], |above| PlacedJoint::between(back, below, above))
     });
     let about = from_fn(|_| {
         let turn: SO3 = <CayleyRetraction as Retraction<SO3>>::retract(&next(1.0));
@@ -197,17 +198,17 @@ fn errors_name_the_joint() {
 
     let link = BallJoint { above: Vector3::z(), below: -Vector3::z() };
     let scene = scene([Free { m: 1.0, K: rods::<1>(1.0).links[0].J_d }; 3], 9.81, Vector3::z());
-    let refused = |tree: [Joined<BallJoint>; 2]| Stepper::jointed(scene, Joints::tree(tree), 0.01).unwrap_err();
-    let first = Joined::between(link, 0, 1);
-    assert!(matches!(refused([first, Joined::between(link, 1, 3)]), SetupError::Joint { joint: 1, .. }));
-    assert!(matches!(refused([first, Joined::between(link, 2, 2)]), SetupError::Joint { joint: 1, .. }));
-    assert!(matches!(refused([first, Joined::between(link, 1, 0)]), SetupError::Joint { .. }));
+    let refused = |tree: [PlacedJoint<BallJoint>; 2]| Stepper::jointed(scene, Joints::tree(tree), 0.01).unwrap_err();
+    let first = PlacedJoint::between(link, 0, 1);
+    assert!(matches!(refused([first, PlacedJoint::between(link, 1, 3)]), SetupError::Joint { joint: 1, .. }));
+    assert!(matches!(refused([first, PlacedJoint::between(link, 2, 2)]), SetupError::Joint { joint: 1, .. }));
+    assert!(matches!(refused([first, PlacedJoint::between(link, 1, 0)]), SetupError::Joint { .. }));
     let broken = BallJoint { below: Vector3::new(0.0, f64::NAN, 0.0), ..link };
-    let error = refused([first, Joined::between(broken, 1, 2)]);
+    let error = refused([first, PlacedJoint::between(broken, 1, 2)]);
     assert!(matches!(error, SetupError::JointParameter { joint: 1, field: "below", .. }), "{error}");
     let (axis_above, axis_below) = (Vector3::zeros(), Vector3::x());
     let pin = PinJoint { above: Vector3::z(), below: Vector3::z(), axis_above, axis_below };
-    let error = Stepper::jointed(scene, Joints::tree([Joined::between(pin, 0, 1)]), 0.01).unwrap_err();
+    let error = Stepper::jointed(scene, Joints::tree([PlacedJoint::between(pin, 0, 1)]), 0.01).unwrap_err();
     assert!(matches!(error, SetupError::JointParameter { joint: 0, field: "axis_above", .. }), "{error}");
     assert!(matches!(with_joints_checked(&chain, f64::NAN), Err(SetupError::InvalidStep { .. })));
 
@@ -236,7 +237,7 @@ fn small_and_slow() {
         let moments = Vector3::new(0.02, 0.1, 0.1) * (mass * size * size);
         let K = NonstandardInertia::from_principal_moments(moments).unwrap();
         let link = BallJoint { above: e, below: -e };
-        let joints = Joints::tree([Joined::between(link, 0, 1), Joined::between(link, 1, 2)]);
+        let joints = Joints::tree([PlacedJoint::between(link, 0, 1), PlacedJoint::between(link, 1, 2)]);
         let scene = scene([Free { m: mass, K }; 3], 0.0, Vector3::z());
         let stepper = Stepper::jointed(scene, joints, 0.01).unwrap();
         let about = row([0.9, 0.2, -0.5]).0.map(|(turn, place)| (turn, R3::from(place.translation() * size)));

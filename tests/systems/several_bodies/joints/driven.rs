@@ -7,7 +7,7 @@ use declarations::motions::{number, read};
 use liestep::groups::R3;
 use liestep::laws::samples::Random;
 use liestep::mechanics::{Along, Term as _};
-use liestep::methods::{BallJoint, Joined, Joint, Joints, PinJoint};
+use liestep::methods::{BallJoint, Joint, Joints, PinJoint, PlacedJoint};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::{SVector, UnitQuaternion, Vector3, Vector6};
@@ -21,7 +21,7 @@ use super::{EPSILON, Free, LEFT, RIGHT, assert_no_work, ball, chained, plain, ro
 #[test]
 fn a_control_force() {
     let (start, velocity) = state_of(&read("closed loop")["states"][0]);
-    let falling = closed_loop(0.01, 3);
+    let falling = closed_loop(0.01);
     let data = &read("closed loop")["parameters"];
     let weights = all(&data["bodies"], |body| number(&body["m"]) * number(&data["g"]));
     let bodies = all(&data["bodies"], |body| Free {
@@ -57,11 +57,11 @@ fn a_loop_that_a_pin_closes_is_driven() {
     };
     let (places, corner) = row([0.9, 0.0, -0.9]);
     let tree = [
-        Joined::to_space(ball(Vector3::zeros(), LEFT), 0),
-        Joined::between(pin(RIGHT, LEFT), 0, 1),
-        Joined::between(ball(RIGHT, LEFT), 1, 2),
+        PlacedJoint::to_space(ball(Vector3::zeros(), LEFT), 0),
+        PlacedJoint::between(pin(RIGHT, LEFT), 0, 1),
+        PlacedJoint::between(ball(RIGHT, LEFT), 1, 2),
     ];
-    let last = Joined::to_space(pin(corner, RIGHT), 2);
+    let last = PlacedJoint::to_space(pin(corner, RIGHT), 2);
     let joints = [tree[0], tree[1], tree[2], last];
     let bodies = scene([1.0, 0.7, 1.2].map(rod), 9.81, Vector3::z());
     let stepper = Stepper::jointed(bodies, Joints::tree(tree).closed_by([last]), 0.005).unwrap();
@@ -158,7 +158,7 @@ fn a_load_under_a_quadrotor() {
     let (m, m_load, g, up, cable) = (1.0, 0.4, 9.81, Vector3::z(), Vector3::new(0.1, 0.05, -0.9));
     for h in [0.01, -0.005] {
         let declared = Stepper::new(SuspendedLoad { J_d, m, K, m_load, cable, g, up }, h).unwrap();
-        let joint = Joined::between(BallJoint { above: Vector3::zeros(), below: -cable }, 0, 1);
+        let joint = PlacedJoint::between(BallJoint { above: Vector3::zeros(), below: -cable }, 0, 1);
         let bodies = scene([Free { m, K: J_d }, Free { m: m_load, K }], g, up);
         let jointed = Stepper::jointed(bodies, Joints::tree([joint]), h).unwrap();
         let mut random = Random::new(31);

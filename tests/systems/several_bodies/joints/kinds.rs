@@ -5,7 +5,7 @@ use core::array::from_fn;
 use declarations::Strut;
 use liestep::groups::{CayleyRetraction, LieGroup as _, R3, Retraction};
 use liestep::laws::samples::{Random, derivative};
-use liestep::methods::{BallJoint, Constraint, Joined, Joint, Joints, PinJoint, Place, Slope};
+use liestep::methods::{BallJoint, Constraint, Joint, Joints, PinJoint, Place, PlacedJoint, Slope};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper, constraint};
 use nalgebra::{Matrix3, SVector, Vector3, Vector6};
@@ -171,7 +171,7 @@ fn a_sleeve_on_a_rail() {
     // The body's z axis, about which it is symmetric in no way, along the rail.
     let attitude = SO3::from(nalgebra::UnitQuaternion::rotation_between(&Vector3::z(), &along).unwrap());
     let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.03, 0.04)).unwrap();
-    let joints = Joints::tree([Joined::to_space(Sleeve { first, second, axis: Vector3::z() }, 0)]);
+    let joints = Joints::tree([PlacedJoint::to_space(Sleeve { first, second, axis: Vector3::z() }, 0)]);
     let stepper = Stepper::jointed(scene([Free { m: 1.3, K }], g, Vector3::z()), joints, h).unwrap();
     let (speed, rate) = (0.4, 3.0);
     let start = [(attitude, R3::from(along * 0.2))];
@@ -212,7 +212,7 @@ fn a_pendulum_on_a_pin() {
         axis_above: Vector3::y() * 2.0,
         axis_below: Vector3::z(),
     };
-    let joints = Joints::tree([Joined::to_space(pin, 0)]);
+    let joints = Joints::tree([PlacedJoint::to_space(pin, 0)]);
     let stepper = Stepper::jointed(scene([Free { m, K }], 9.81, Vector3::z()), joints, h).unwrap();
     // From hanging along −z the angle turns towards −x.
     let attitude = |angle: f64| {
@@ -254,7 +254,7 @@ fn a_wheel_on_its_axle() {
     let axis = Vector3::new(0.3, -0.7, 0.2);
     for centre in [Vector3::zeros(), Vector3::new(1e6, 0.0, 0.0)] {
         let pin = PinJoint { above: centre, below: Vector3::zeros(), axis_above: axis, axis_below: Vector3::z() };
-        let joints = Joints::tree([Joined::to_space(pin, 0)]);
+        let joints = Joints::tree([PlacedJoint::to_space(pin, 0)]);
         let stepper = Stepper::jointed(scene([Free { m: 5.0, K }], 0.0, Vector3::z()), joints, 0.01).unwrap();
         let attitude = nalgebra::Rotation3::rotation_between(&Vector3::z(), &axis).unwrap();
         let about = [(SO3::try_from(*attitude.matrix()).unwrap(), R3::from(centre))];
@@ -309,7 +309,7 @@ fn a_joint_that_repeats_itself() {
     }
     let still = Bodies([Vector6::zeros()]);
     for heights in [[1.0, 1.0], [1.0, 0.3], [1.0, 0.0], [0.0, 1.0]] {
-        let joints = Joints::tree([Joined::to_space(Heights(heights), 0)]);
+        let joints = Joints::tree([PlacedJoint::to_space(Heights(heights), 0)]);
         let stepper = Stepper::jointed(scene([rod(1.0)], 9.81, Vector3::z()), joints, 0.01).unwrap();
         let named = |error: Result<_, SetupError>| matches!(error, Err(SetupError::RedundantJoint { joint: 0, .. }));
         assert!(named(stepper.start([Body::identity()], still).map(|_| ())), "{heights:?}");
@@ -329,8 +329,9 @@ fn a_joint_of_ones_own() {
     check_slopes(&strut("strut", 0.7), &mut Random::new(6));
     let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.09)).unwrap();
     let bodies = scene([1.0, 0.7].map(|m| Free { m, K }), 9.81, Vector3::z());
-    let joined =
-        |called, length| [Joined::to_space(strut(called, 0.5), 0), Joined::between(strut(called, length), 0, 1)];
+    let joined = |called, length| {
+        [PlacedJoint::to_space(strut(called, 0.5), 0), PlacedJoint::between(strut(called, length), 0, 1)]
+    };
     let of = |called, length| Stepper::jointed(bodies, Joints::tree(joined(called, length)), 0.005);
     let refused = of("strut", -1.0).unwrap_err();
     assert!(matches!(refused, SetupError::JointParameter { joint: 1, field: "length", .. }), "{refused}");
@@ -363,9 +364,9 @@ fn a_loop_of_struts_that_whips() {
     let bodies = scene([1.0, 0.7].map(rod), 9.81, Vector3::z());
     let at = Vector3::new(0.1, 0.3, -0.2);
     let all = [
-        Joined::to_space(strut(at, -Vector3::x(), 0.5), 0),
-        Joined::between(strut(at, -Vector3::x(), 0.8), 0, 1),
-        Joined::to_space(strut(Vector3::new(1.5, 0.3, 0.4), Vector3::x(), 0.6), 1),
+        PlacedJoint::to_space(strut(at, -Vector3::x(), 0.5), 0),
+        PlacedJoint::between(strut(at, -Vector3::x(), 0.8), 0, 1),
+        PlacedJoint::to_space(strut(Vector3::new(1.5, 0.3, 0.4), Vector3::x(), 0.6), 1),
     ];
     let mut random = Random::new(7);
     let about = from_fn(|k| {

@@ -13,20 +13,20 @@ use declarations::FallingBody;
 use declarations::motions::number;
 use liestep::groups::{Advected as _, CayleyRetraction, LieGroup as _, R3, Retraction};
 use liestep::laws::samples::derivative;
-use liestep::mechanics::{DiscreteLagrangian, Each, Placed};
-use liestep::methods::{BallJoint, Constraint, Joined, Jointed, Place};
+use liestep::mechanics::{DiscreteLagrangian, Each, Placement};
+use liestep::methods::{BallJoint, Constraint, JointedBodies, Place, PlacedJoint};
 use liestep::motion::{Integrator, Motion};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, Stepper};
 use nalgebra::{DMatrix, DVector, Vector3, Vector6};
 use serde_json::Value;
 
-type Body = (SO3, R3);
+use super::{Body, six};
 
-type Scene<const N: usize> = Placed<Each<N>, FallingBody, N>;
+type Scene<const N: usize> = Placement<Each<N>, FallingBody, N>;
 
 type Held<C, const K: usize, const N: usize, const T: usize, const L: usize> =
-    Stepper<Scene<N>, Jointed<Scene<N>, C, K, N, T, L>>;
+    Stepper<Scene<N>, JointedBodies<Scene<N>, C, K, N, T, L>>;
 type Components<const N: usize> = Bodies<Vector6<f64>, N>;
 
 const EPSILON: f64 = f64::EPSILON;
@@ -55,10 +55,10 @@ fn ball(above: Vector3<f64>, below: Vector3<f64>) -> BallJoint {
 }
 
 /// Rods one after the other, the first from the origin.
-fn chained<const N: usize>() -> [Joined<BallJoint>; N] {
+fn chained<const N: usize>() -> [PlacedJoint<BallJoint>; N] {
     from_fn(|k| match k {
-        0 => Joined::to_space(ball(Vector3::zeros(), LEFT), 0),
-        _ => Joined::between(ball(RIGHT, LEFT), k - 1, k),
+        0 => PlacedJoint::to_space(ball(Vector3::zeros(), LEFT), 0),
+        _ => PlacedJoint::between(ball(RIGHT, LEFT), k - 1, k),
     })
 }
 
@@ -75,15 +75,6 @@ fn watched<C: Constraint<K>, const K: usize, const N: usize, const T: usize, con
     })
 }
 
-fn six(turning: &Vector3<f64>, velocity: &Vector3<f64>) -> Vector6<f64> {
-    Vector6::from_fn(|k, _| if k < 3 { turning[k] } else { velocity[k - 3] })
-}
-
-/// The turning part, and the other.
-fn halves(of: &Vector6<f64>) -> [Vector3<f64>; 2] {
-    [0, 3].map(|first| of.fixed_rows::<3>(first).into_owned())
-}
-
 fn place(body: &Body) -> Place {
     Place { attitude: *body.0.as_matrix(), position: body.1.translation() }
 }
@@ -93,11 +84,7 @@ fn whole<A, const N: usize>(motion: &Motion<[Body; N], A>) -> [Vector3<f64>; 2]
 where
     A: liestep::groups::Advected<[Body; N]>,
 {
-    let (bodies, momenta) = (motion.attitude(), motion.momentum());
-    bodies.iter().zip(&momenta.0).fold([Vector3::zeros(); 2], |[p, l], (body, momentum)| {
-        let [turning, linear] = halves(momentum);
-        [p + linear, l + body.0.as_matrix() * turning + body.1.translation().cross(&linear)]
-    })
+    super::whole(&motion.attitude(), &motion.momentum())
 }
 
 /// Links of one metre in a row from the origin, each turned about the y axis by so much, and where the last ends.
@@ -129,11 +116,11 @@ fn moved(body: &Body, k: usize, s: f64) -> Body {
 /// How much of an impulse on bodies at these places does work while the joints stay closed: what of it isn't in the span
 /// of their slopes, by differences of what they compare.
 fn working<C: Constraint<K>, const K: usize, const N: usize>(
-    joints: &[Joined<C>],
+    joints: &[PlacedJoint<C>],
     bodies: &[Body; N],
     impulse: &Components<N>,
 ) -> f64 {
-    let gap = |joined: &Joined<C>, bodies: &[Body; N]| {
+    let gap = |joined: &PlacedJoint<C>, bodies: &[Body; N]| {
         let above = joined.above.map_or(Place::SPACE, |above| place(&bodies[above]));
         joined.joint.gap(&above, &place(&bodies[joined.below]))
     };
@@ -156,7 +143,7 @@ fn working<C: Constraint<K>, const K: usize, const N: usize>(
 /// Half of what is given to the step is given at either end.
 fn assert_no_work<S, C, const K: usize, const N: usize>(
     stepper: (&S, f64),
-    joints: &[Joined<C>],
+    joints: &[PlacedJoint<C>],
     given: &Components<N>,
     [before, after]: [&Motion<[Body; N], S::Advected>; 2],
 ) where

@@ -7,15 +7,16 @@ use core::fmt::Debug;
 use declarations::{Alike, DoublePendulum, FloatingBody, PointSpring, TwoBodies};
 use liestep::groups::{ExponentialRetraction, R1, R2, R3, Retraction as _, SE3};
 use liestep::laws::samples::Random;
-use liestep::mechanics::{Along, Between, Coupled, Each, On, Pairs};
+use liestep::mechanics::{Along, Between, Coupling, Each, On, Pairs, Regular};
 use liestep::methods::CompositionScheme;
-use liestep::motion::{Batch, Batchable, Integrator};
+use liestep::motion::{Batch, Batchable, Integrator, OwnStep};
 use liestep::numbers::{Bodies, InLanes, Lanes as _};
-use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper, lagrangian};
+use liestep::with::CompensatedSums;
+use liestep::{NonstandardInertia, SO3, SetupError, StateOf, StepError, Stepper, lagrangian};
 use nalgebra::{Matrix3, RealField, SVector, Vector3, Vector6};
 use simba::simd::AutoF64x4;
 
-use super::assert_same;
+use super::{assert_same, started};
 
 /// Two bodies that would like to stand alike: each is solved for itself.
 #[lagrangian(
@@ -75,6 +76,15 @@ fn together<M: Batchable<AutoF64x4>>(bodies: &[(M, M::State)]) -> (M::Together, 
     all
 }
 
+/// With its sums compensated.
+fn compensated<L: Regular<Scalar = f64>>((stepper, state): (Stepper<L>, StateOf<L>)) -> Carrying<L> {
+    let stepper = stepper.compensated();
+    let state = stepper.adopt(&state);
+    (stepper, state)
+}
+
+type Carrying<L> = (Stepper<L, CompensatedSums<OwnStep<L>>>, StateOf<L, CompensatedSums<OwnStep<L>>>);
+
 type InLanesOf<M> = <<M as InLanes<AutoF64x4>>::Together as Integrator>::State;
 
 /// Four together, against each alone.
@@ -122,18 +132,10 @@ where
 #[test]
 fn each_lane_of_a_double_pendulum_is_one() {
     let random = &mut Random::new(31);
-    let bodies: Vec<_> = (0..4)
-        .map(|_| {
-            let stepper = Stepper::new(links(random), 0.01).unwrap();
-            let (attitude, velocity) = start(random, 1.0);
-            let state = stepper.start(attitude, velocity).unwrap();
-            (stepper, state)
-        })
-        .collect();
+    let mut bodies = [0, 1, 2, 3].map(|_| started(links(random), 0.01, start(random, 1.0)));
     assert_each_is_alone(&bodies, 200);
 
     // One that turns too far stops by itself.
-    let mut bodies = bodies;
     let fast = bodies[2].0.start(start(random, 1.0).0, Vector6::z() * 500.0).unwrap();
     bodies[2].1 = fast;
     let error = stopped(&bodies, 2, 50);
@@ -191,18 +193,13 @@ struct Cart<T> {
 #[test]
 fn each_lane_of_a_top_on_a_cart_is_one() {
     let random = &mut Random::new(33);
-    let started = |method: fn(Cart<f64>) -> Stepper<Cart<f64>>, random: &mut Random| {
-        [0, 1, 2, 3].map(|_| {
-            let J_d = inertia::<f64>(random);
-            let s = vector(random) * 0.2;
-            let stepper = method(Cart { J_d, s, M: 1.5 + s.x, wheel: 0.1 - 0.1 * s.y, g: 9.81 });
-            let (at, velocity): (Vector3<f64>, Vector6<f64>) = (vector(random), random.sample());
-            let place = (SO3::exp(vector(random)), R2::from(at.xy()), R1::from(nalgebra::Vector1::new(at.z)));
-            let state = stepper.start(place, velocity).unwrap();
-            (stepper, state)
-        })
-    };
-    let mut bodies = started(|cart| Stepper::new(cart, 0.01).unwrap(), random);
+    let mut bodies = [0, 1, 2, 3].map(|_| {
+        let (J_d, s) = (inertia::<f64>(random), vector(random) * 0.2);
+        let cart = Cart { J_d, s, M: 1.5 + s.x, wheel: 0.1 - 0.1 * s.y, g: 9.81 };
+        let (at, velocity): (Vector3<f64>, Vector6<f64>) = (vector(random), random.sample());
+        let place = (SO3::exp(vector(random)), R2::from(at.xy()), R1::from(nalgebra::Vector1::new(at.z)));
+        started(cart, 0.01, (place, velocity))
+    });
     assert_each_is_alone(&bodies, 200);
     // One that turns too far stops by itself.
     let fast = bodies[1].0.start(bodies[1].1.attitude(), Vector6::z() * 500.0).unwrap();
@@ -296,20 +293,11 @@ fn each_lane_of_a_row_of_bodies_is_one() {
             + Between::<3, 0, N>::of([tied[0]])
             + Pairs::<N>::of([Alike { kappa: 0.1 + 0.1 * vector(random).y }])
             + On::<1, N>::of([weight]);
-        let stepper = Stepper::new(scene, 0.02).unwrap();
         let attitudes = [0, 1, 2, 3].map(|_| SO3::exp(vector(random)));
-        let state = stepper.start(attitudes, Bodies([0, 1, 2, 3].map(|_| vector(random)))).unwrap();
-        (stepper, state)
+        started(scene, 0.02, (attitudes, Bodies([0, 1, 2, 3].map(|_| vector(random)))))
     });
     assert_each_is_alone(&bodies, 200);
-    assert_each_is_alone(
-        &bodies.clone().map(|(stepper, state)| {
-            let stepper = stepper.compensated();
-            let state = stepper.adopt(&state);
-            (stepper, state)
-        }),
-        200,
-    );
+    assert_each_is_alone(&bodies.clone().map(compensated), 200);
 
     let mut bodies = bodies;
     let mut fast = [Vector3::zeros(); N];
@@ -340,18 +328,14 @@ fn each_lane_of_bodies_on_springs_is_one() {
             Each::<3>::of([0, 1, 2].map(|_| FloatingBody { m: 1.0 + 0.2 * vector(random).x, J_d: inertia(random) }));
         let ends = [0, 1].map(|_| vector(random) * 0.3);
         let places = [0, 1, 2].map(|_| (SO3::exp(vector(random)), R3::from(vector(random))));
-        (bodies, ends, places, Bodies([0, 1, 2].map(|_| random.sample())))
+        (bodies, ends, (places, Bodies([0, 1, 2].map(|_| random.sample()))))
     });
-    let loose = parts.map(|(bodies, [a, b], places, velocities)| {
-        let stepper = Stepper::new(bodies + Along::<3>::of([PointSpring { k: 3.0 + a.x, a, b }]), 0.02).unwrap();
-        let state = stepper.start(places, velocities).unwrap();
-        (stepper, state)
+    let loose = parts.map(|(bodies, [a, b], start)| {
+        started(bodies + Along::<3>::of([PointSpring { k: 3.0 + a.x, a, b }]), 0.02, start)
     });
     assert_each_is_alone(&loose, 200);
-    let stiff = parts.map(|(bodies, [a, b], places, velocities)| {
-        let stepper = Stepper::new(bodies + Coupled::<3>::of([StiffSpring { k: 30.0 + a.x, a, b }]), 0.02).unwrap();
-        let state = stepper.start(places, velocities).unwrap();
-        (stepper, state)
+    let stiff = parts.map(|(bodies, [a, b], start)| {
+        started(bodies + Coupling::<3>::of([StiffSpring { k: 30.0 + a.x, a, b }]), 0.02, start)
     });
     assert_each_is_alone(&stiff, 200);
 }

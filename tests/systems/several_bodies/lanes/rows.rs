@@ -5,17 +5,17 @@ use core::fmt::Debug;
 use declarations::Alike;
 use liestep::groups::LieGroup as _;
 use liestep::laws::samples::Random;
-use liestep::mechanics::{Along, Each, Placed, Sum};
+use liestep::mechanics::{Along, Each, Placement, Sum};
 use liestep::motion::{Batchable, Integrator};
 use liestep::numbers::{Bodies, Lanes as _};
 use liestep::{SO3, StepError, Stepper};
 use nalgebra::Vector3;
 use simba::simd::AutoF64x4;
 
-use super::{Turning, assert_each_is_alone, inertia, links, start, together, vector};
-use crate::several_bodies::assert_same;
+use super::{Turning, assert_each_is_alone, compensated, inertia, links, start, together, vector};
+use crate::several_bodies::{assert_same, started};
 
-type Row = Sum<Placed<Each<4>, Turning<f64>, 4>, Placed<Along<4>, Alike<f64>, 1>>;
+type Row = Sum<Placement<Each<4>, Turning<f64>, 4>, Placement<Along<4>, Alike<f64>, 1>>;
 
 /// Four that would like to stand alike.
 fn row(random: &mut Random) -> Row {
@@ -59,19 +59,12 @@ fn part_in_a_solve<M>(
 
 #[test]
 fn lanes_that_part_in_a_solve() {
-    let pendulum = |random: &mut Random, h: f64| {
-        let stepper = Stepper::new(links(random), h).unwrap();
-        let (attitude, velocity) = start(random, 1.0);
-        let state = stepper.start(attitude, velocity).unwrap();
-        (stepper, state)
-    };
+    let pendulum = |random: &mut Random, h: f64| started(links(random), h, start(random, 1.0));
     // One needs another start than the velocity: from one start there are at most twenty.
     part_in_a_solve(pendulum, |(stepper, state)| stepper.max_step(state), 20);
     let in_a_row = |random: &mut Random, h: f64| {
-        let stepper = Stepper::new(row(random), h).unwrap();
-        let attitudes = [0, 1, 2, 3].map(|_| SO3::exp(vector(random)));
-        let state = stepper.start(attitudes, Bodies([0, 1, 2, 3].map(|_| vector(random) * 5.0))).unwrap();
-        (stepper, state)
+        let (row, attitudes) = (row(random), [0, 1, 2, 3].map(|_| SO3::exp(vector(random))));
+        started(row, h, (attitudes, Bodies([0, 1, 2, 3].map(|_| vector(random) * 5.0))))
     };
     // Bodies of a row have one start, and one is near its end.
     part_in_a_solve(in_a_row, |(stepper, state)| stepper.max_step(state), 10);
@@ -83,15 +76,13 @@ fn lanes_that_part_in_a_solve() {
 fn lanes_that_are_far_guess_by_themselves() {
     let random = &mut Random::new(37);
     let bodies = [0, 1, 2, 3].map(|lane| {
-        let stepper = Stepper::new(row(random), 0.02).unwrap();
+        let row = row(random);
         let mut velocities = [0, 1, 2, 3].map(|_| vector(random) * 3.0);
         if lane == 2 {
             // By 75° a step, about an axis of inertia.
             velocities[1] = Vector3::z() * (75.0_f64.to_radians().sin() / 0.02);
         }
-        let attitudes = [0, 1, 2, 3].map(|_| SO3::exp(vector(random)));
-        let state = stepper.start(attitudes, Bodies(velocities)).unwrap();
-        (stepper, state)
+        started(row, 0.02, ([0, 1, 2, 3].map(|_| SO3::exp(vector(random))), Bodies(velocities)))
     });
     assert_each_is_alone(&bodies, 20);
     let (stepper, mut state) = bodies[2].clone();
@@ -110,15 +101,14 @@ fn off(attitude: SO3) -> SO3 {
 fn what_is_off_the_group_is_restored_lane_by_lane() {
     let random = &mut Random::new(38);
     let bodies = [0, 1, 2, 3].map(|lane| {
-        let stepper = Stepper::new(row(random), 0.02).unwrap();
+        let row = row(random);
         let mut attitudes = [0, 1, 2, 3].map(|_| SO3::exp(vector(random)));
         for (of, body) in [(1, 2), (3, 0)] {
             if lane == of {
                 attitudes[body] = off(attitudes[body]);
             }
         }
-        let state = stepper.start(attitudes, Bodies([0, 1, 2, 3].map(|_| vector(random)))).unwrap();
-        (stepper, state)
+        started(row, 0.02, (attitudes, Bodies([0, 1, 2, 3].map(|_| vector(random)))))
     });
     let defect = |(stepper, state): &(Stepper<Row>, <Stepper<Row> as Integrator>::State), steps: u64| {
         let mut state = *state;
@@ -127,23 +117,16 @@ fn what_is_off_the_group_is_restored_lane_by_lane() {
     };
     assert!(defect(&bodies[1], 0) > 1e-12 && defect(&bodies[1], 1100) < 1e-13);
     assert_each_is_alone(&bodies, 1100);
-    let compensated = bodies.map(|(stepper, state)| {
-        let stepper = stepper.compensated();
-        let state = stepper.adopt(&state);
-        (stepper, state)
-    });
-    assert_each_is_alone(&compensated, 1100);
+    assert_each_is_alone(&bodies.map(compensated), 1100);
 
     let pendulums = [0, 1, 2, 3].map(|lane| {
-        let stepper = Stepper::new(links(random), 0.005).unwrap();
-        let ((first, second), velocity) = start(random, 1.0);
+        let (links, ((first, second), velocity)) = (links(random), start(random, 1.0));
         let attitudes = match lane {
             0 => (first, off(second)),
             2 => (off(first), second),
             _ => (first, second),
         };
-        let state = stepper.start(attitudes, velocity).unwrap();
-        (stepper, state)
+        started(links, 0.005, (attitudes, velocity))
     });
     assert_each_is_alone(&pendulums, 1100);
 }
@@ -156,16 +139,14 @@ fn the_farthest_body_of_all_lanes_is_named() {
     for bodies_of in [[3, 1], [1, 3], [2, 2]] {
         let random = &mut Random::new(39);
         let bodies = [0, 1, 2, 3].map(|lane| {
-            let stepper = Stepper::new(row(random), h).unwrap();
-            let attitudes = [0, 1, 2, 3].map(|_| SO3::exp(vector(random)));
+            let (row, attitudes) = (row(random), [0, 1, 2, 3].map(|_| SO3::exp(vector(random))));
             let mut velocities = [0, 1, 2, 3].map(|_| vector(random));
             match lane {
                 0 => velocities[bodies_of[0]] = Vector3::z() * 500.0,
                 2 => velocities[bodies_of[1]] = Vector3::x() * 700.0,
                 _ => {}
             }
-            let state = stepper.start(attitudes, Bodies(velocities)).unwrap();
-            (stepper, state)
+            started(row, h, (attitudes, Bodies(velocities)))
         });
         let (stepper, mut state) = together(&bodies);
         let error = stepper.step(&mut state).unwrap_err();

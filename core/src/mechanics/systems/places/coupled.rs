@@ -27,7 +27,7 @@ use crate::numbers::{BlockDiagonal, Bodies, Coordinates as _};
 ///
 /// ```
 /// use liestep::groups::R3;
-/// use liestep::mechanics::{Coupled, Each};
+/// use liestep::mechanics::{Coupling, Each};
 /// use liestep::numbers::Bodies;
 /// use liestep::{Stepper, lagrangian};
 /// use nalgebra::Vector3;
@@ -49,7 +49,7 @@ use crate::numbers::{BlockDiagonal, Bodies, Coordinates as _};
 /// }
 ///
 /// let h = 0.1;
-/// let row = Each::<3>::of([Mass { m: 1.0 }]) + Coupled::<3>::of([Tied { k: 1e6 }]); // ω h is above 100
+/// let row = Each::<3>::of([Mass { m: 1.0 }]) + Coupling::<3>::of([Tied { k: 1e6 }]); // ω h is above 100
 /// let stepper = Stepper::new(row, h)?;
 /// let place = |x: f64| R3::from(Vector3::new(x, 0.0, 0.0));
 /// let mut state = stepper.start([place(0.0), place(0.01), place(0.0)], Bodies([Vector3::y(); 3]))?;
@@ -61,9 +61,9 @@ use crate::numbers::{BlockDiagonal, Bodies, Coordinates as _};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Coupled<const N: usize>;
+pub struct Coupling<const N: usize>;
 
-impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Coupled<N> {
+impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Coupling<N> {
     /// There are `N − 1` pairs; the last of the `N` entries isn't used.
     type Of<T: Copy> = [T; N];
 

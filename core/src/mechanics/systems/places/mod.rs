@@ -4,7 +4,7 @@ mod coupled;
 mod one_body;
 mod two_bodies;
 
-pub use coupled::Coupled;
+pub use coupled::Coupling;
 pub use one_body::{Each, On};
 pub use two_bodies::{Along, Between, Pairs};
 
@@ -21,7 +21,7 @@ pub struct At {
     pub bodies: [usize; 2],
 }
 
-/// Where the terms `E` of a [`Placed`](super::Placed) are: [`Each`], [`On`], [`Along`], [`Coupled`], [`Between`] or
+/// Where the terms `E` of a [`Placement`](super::Placement) are: [`Each`], [`On`], [`Along`], [`Coupling`], [`Between`] or
 /// [`Pairs`].
 pub trait Places<E: Effect> {
     /// The group of the system.

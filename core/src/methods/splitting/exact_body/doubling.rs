@@ -18,9 +18,9 @@
 
 use nalgebra::SimdBool as _;
 
-use super::super::quaternion::product;
+use super::super::quaternion::Quaternion;
 use super::series::{Functions, Invariants, LONG, long};
-use super::{BodyTurn, Form, rotor_and_more};
+use super::{About, Form};
 use crate::numbers::Number;
 
 /// Enough for any angle of a double that has a digit of its direction left.
@@ -32,13 +32,6 @@ struct Point<T> {
     s: T,
     c: T,
     d: T,
-}
-
-/// A quaternion `(w, f u)` along the momentum.
-#[derive(Clone, Copy, Debug)]
-struct About<T> {
-    w: T,
-    f: T,
 }
 
 /// What is doubled with.
@@ -61,7 +54,7 @@ struct Curve<T: Number> {
 
 impl<T: Number> Form<T> {
     /// By the functions over a part of the drift that is short enough, doubled as often as it takes.
-    pub(super) fn doubled(&self, u: [T; 3], invariants: &Invariants<T>) -> BodyTurn<T> {
+    pub(super) fn doubled(&self, u: [T; 3], invariants: &Invariants<T>) -> Quaternion<T> {
         let (one, half, quarter) = (T::one(), T::number(0.5), T::number(0.25));
         let (size, [a, b, c]) = (invariants.size(), u);
         // The half of the drift, and its square; lanes that are short enough wait.
@@ -101,9 +94,10 @@ impl<T: Number> Form<T> {
         let real_part =
             (one + self.c_squared * (c * c_end) * (s * s)) * (of_c * of_d * T::number(2.0)) / curve.base(&point);
         let across = [real_part, s * self.a * (a + a_end), s * self.b * (b + b_end)];
-        let more = curve.bend * part * integral;
-        let turn = rotor_and_more([a + a * more, b + b * more, c + c * more], T::zero());
-        BodyTurn::by(product(turn, [about.w, about.f * a, about.f * b, about.f * c]), across)
+        let longer = one + curve.bend * part * integral;
+        let turn = About::turn(curve.square * (longer * longer));
+        let turn = About { f: turn.f * longer, ..turn };
+        turn.and(&about, curve.square).by(u, across)
     }
 
     fn curve(&self, u: [T; 3], invariants: &Invariants<T>) -> Curve<T> {
@@ -146,7 +140,7 @@ impl<T: Number> Curve<T> {
 
     /// Twice the rotation, and that by the tangent.
     fn turned_on(&self, about: &About<T>, point: &Point<T>) -> About<T> {
-        let (Point { s, c, d }, About { w, f }, square) = (*point, *about, self.square);
+        let (Point { s, c, d }, square) = (*point, self.square);
         let (ss, cc, dd) = (s * s, c * c, d * d);
         // 1 − ν s², of two terms of one sign.
         let (of_a, of_b) = (self.a * self.h, self.b * self.h);
@@ -155,12 +149,10 @@ impl<T: Number> Curve<T> {
             w: cc * dd * from_pole + ss * (of_b * cc + of_a * dd),
             f: (self.bend + self.bend) * (ss * s) * (c * d),
         };
-        let twice = About { w: w * w - f * f * square, f: (w + w) * f };
-        let w = twice.w * tangent.w - twice.f * tangent.f * square;
-        let f = twice.w * tangent.f + twice.f * tangent.w;
-        let length = (w * w + f * f * square).simd_sqrt();
+        let next = about.and(about, square).and(&tangent, square);
+        let length = (next.w * next.w + next.f * next.f * square).simd_sqrt();
         // Where both vanish the body stays at its middle axis.
-        let next = About { w: w / length, f: f / length };
+        let next = About { w: next.w / length, f: next.f / length };
         next.select(length.simd_gt(T::zero()), &About { w: T::one(), f: T::zero() })
     }
 }
@@ -169,11 +161,5 @@ impl<T: Number> Point<T> {
     fn select(&self, mask: T::Mask, other: &Self) -> Self {
         let Self { s, c, d } = *self;
         Self { s: s.select(mask, other.s), c: c.select(mask, other.c), d: d.select(mask, other.d) }
-    }
-}
-
-impl<T: Number> About<T> {
-    fn select(&self, mask: T::Mask, other: &Self) -> Self {
-        Self { w: self.w.select(mask, other.w), f: self.f.select(mask, other.f) }
     }
 }

@@ -16,7 +16,7 @@ use super::{ExactBody, Form};
 use crate::gradients::{Cotangent, Pass, add_shares};
 use crate::groups::SO3;
 use crate::mechanics::SceneVisitor;
-use crate::numbers::{Dual, Real};
+use crate::numbers::{Dual, Real, real};
 
 /// The closed form of a motion of one length; with derivatives, at fixed moments and along each of them.
 #[derive(Clone, Debug)]
@@ -102,13 +102,13 @@ impl<T: Real> ExactBody<T> {
     #[hot]
     fn turns(&self, form: &Form<Dual<T>>, u: impl Fn(usize) -> Dual<T>) -> [Vector3<T>; 3] {
         let turned = form.turned([u(0), u(1), u(2)]);
-        let [w, x, y, z] = turned.quaternion.map(|part| part.value);
-        let twice = turned.inverse_square.value + turned.inverse_square.value;
+        let [w, x, y, z] = turned.map(|part| part.value);
+        let scale = real::<T>(2.0) / ((w * w + x * x) + (y * y + z * z));
         core::array::from_fn(|k| {
             // ½ ε̂ is the change of the quaternion over itself.
-            let [_, a, b, c] = product(turned.quaternion.map(|part| part.slopes[k]), [w, -x, -y, -z]);
+            let [_, a, b, c] = product(turned.map(|part| part.slopes[k]), [w, -x, -y, -z]);
             let [_, x, y, z] = self.frame.back([T::zero(), a, b, c]);
-            Vector3::new(x, y, z) * twice
+            Vector3::new(x, y, z) * scale
         })
     }
 }

@@ -14,7 +14,8 @@
 //! N = n² − K_a K_b      C = N − 2 K_b (n − K_a)      D = N − 2 K_a (n − K_b)      M = N² + AB μ² c²
 //!
 //! M a⁺ = a D N − B μ b c C      M b⁺ = b C N + A μ a c D      M c⁺ = c C D + (B − A) μ a b N
-//! F_a = the rotation of the quaternion (μ (n M − AB c · M c⁺), N A (M a + M a⁺), N B (M b + M b⁺), 0)
+//! F_a = the rotation of the quaternion (μ (n M − AB c · M c⁺)/N, A (M a + M a⁺), B (M b + M b⁺), 0)
+//! n M − AB c · M c⁺ = N (n N + AB c (c (C + D + N) − (B − A) μ a b))
 //! ```
 //!
 //! `F_a p⁺ = p`, and what is left of the motion is a turn about the momentum,
@@ -41,7 +42,7 @@ use self::frame::Frame;
 use self::series::{Functions, Invariants, LONG, SHORT, long, short};
 use super::axes::Axes;
 use super::kinetic_flow::{KineticFlow, Turn};
-use super::quaternion::{Quaternion, product_across, scaled_increment};
+use super::quaternion::{Quaternion, increment, product_across};
 use crate::error::{SetupError, StepError};
 use crate::groups::rotation_coefficients;
 use crate::groups::{LieGroup as _, SO3};
@@ -66,7 +67,7 @@ use crate::numbers::{Kernel, Number, Numbers, Real, Vectors, dispatch, is_finite
 ///
 /// # Derivatives
 ///
-/// By six [parameters](crate::gradients::Linearised::parameters), not by the six entries of the inertia: where two
+/// By six [parameters](crate::gradients::Linearisation::parameters), not by the six entries of the inertia: where two
 /// moments are the same, the axes have no derivative by an entry beside the diagonal.
 ///
 /// - Three with the name `moment`, kg m². Where the body's axes are the principal ones they are in the order of these;
@@ -146,7 +147,7 @@ impl<T: Real> KineticFlow<T> for ExactBody<T> {
     const EXACT: bool = true;
 
     // With the shorter polynomials.
-    const OPERATIONS: Operations = Operations { step: 270, iteration: 0 };
+    const OPERATIONS: Operations = Operations { step: 232, iteration: 0 };
 
     fn describe(flow: &Self, visitor: &mut dyn SceneVisitor<T>) {
         visitor.term("exact flow of a body");
@@ -157,6 +158,11 @@ impl<T: Real> KineticFlow<T> for ExactBody<T> {
 
     fn inertia(flow: &Self) -> Matrix3<T> {
         flow.inertia
+    }
+
+    #[hot]
+    fn has_principal_axes(flow: &Self) -> bool {
+        matches!(flow.frame, Frame::Along(_))
     }
 
     fn drift(&self, h: T) -> Result<Self::Drift, SetupError> {
@@ -186,23 +192,55 @@ impl<T: Real> KineticFlow<T> for ExactBody<T> {
 struct Half<T> {
     n: T,
     mu: T,
-    /// The turn about the momentum, of the whole drift and of any length.
-    about: Quaternion<T>,
+    /// The turn about the momentum, of the whole drift.
+    about: About<T>,
 }
 
 impl<T: Number> Half<T> {
     #[hot]
     fn select(&self, mask: T::Mask, other: &Self) -> Self {
-        let about = core::array::from_fn(|k| self.about[k].select(mask, other.about[k]));
+        let about = self.about.select(mask, &other.about);
         Self { n: self.n.select(mask, other.n), mu: self.mu.select(mask, other.mu), about }
+    }
+}
+
+/// A quaternion `(w, f u)` along the momentum, of any length.
+#[derive(Clone, Copy, Debug)]
+struct About<T> {
+    w: T,
+    f: T,
+}
+
+impl<T: Number> About<T> {
+    /// `exp(2û)`, where `|u|² = q`.
+    #[hot]
+    fn turn(q: T) -> Self {
+        let (sinc, versine) = rotation_coefficients(q);
+        Self { w: T::one() - q * versine, f: sinc }
+    }
+
+    /// Both, one after the other.
+    #[hot]
+    fn and(&self, other: &Self, q: T) -> Self {
+        Self { w: self.w * other.w - self.f * other.f * q, f: self.w * other.f + self.f * other.w }
+    }
+
+    /// The quaternion of this turn after one across the middle axis, of any length.
+    #[hot]
+    fn by(&self, [a, b, c]: [T; 3], across: [T; 3]) -> Quaternion<T> {
+        product_across([self.w, self.f * a, self.f * b, self.f * c], across)
+    }
+
+    #[hot]
+    fn select(&self, mask: T::Mask, other: &Self) -> Self {
+        Self { w: self.w.select(mask, other.w), f: self.f.select(mask, other.f) }
     }
 }
 
 impl<T: Real> ExactDrift<T> {
     #[hot]
     fn turn(&self, frame: &Frame<T>, momentum: &Vector3<T>) -> Turn<T> {
-        let turned = self.form.turned(frame.within(&(momentum * self.form.scale)));
-        let increment = scaled_increment(frame.back(turned.quaternion)) * turned.inverse_square;
+        let increment = increment(frame.back(self.form.turned(frame.within(&(momentum * self.form.scale)))));
         let change = SO3::adjoint_transpose_increment(&increment, momentum);
         Turn { increment, change, iterations: 0 }
     }
@@ -232,27 +270,31 @@ impl<T: Number> Form<T> {
         self.a * (a * a) + self.b * (b * b)
     }
 
-    /// The drift, for the momentum in units of half of it.
+    /// The quaternion of the drift, of any length, for the momentum in units of half of it.
     #[hot]
-    fn turned(&self, u: [T; 3]) -> BodyTurn<T> {
+    fn turned(&self, u: [T; 3]) -> Quaternion<T> {
         let invariants = self.invariants(u);
         let size = invariants.size();
         let (is_short, is_long) = (size.simd_le(T::number(SHORT)), size.simd_le(T::number(LONG)));
         if is_short.all() {
-            self.whole(u, &invariants, &self.near(u, &short(&invariants.start())))
+            self.whole(u, &invariants, &self.near::<true>(u, &invariants))
         } else if !is_short.any() && is_long.all() {
-            self.whole(u, &invariants, &self.near(u, &long(&invariants.start())))
+            self.whole(u, &invariants, &self.near::<false>(u, &invariants))
         } else {
-            self.beyond(u, &invariants)
+            // By values, so that no other drift puts in memory what one of these reads and writes there.
+            let [a, b, c] = u;
+            let [w, x, y, z] = self.beyond(a, b, c);
+            [w, x, y, z]
         }
     }
 
     /// Where the functions are those of half the drift.
     #[hot]
-    fn near(&self, u: [T; 3], functions: &Functions<T>) -> Half<T> {
-        let Functions { n, mu, integral } = *functions;
-        let more = -(self.c_squared * self.difference(u)) * integral;
-        Half { n, mu, about: rotor_and_more(u, more) }
+    fn near<const IS_SHORT: bool>(&self, u: [T; 3], invariants: &Invariants<T>) -> Half<T> {
+        let start = invariants.start();
+        let Functions { n, mu, integral } = if IS_SHORT { short(&start) } else { long(&start) };
+        let less = (self.c_squared * self.difference(u)) * integral;
+        Half { n, mu, about: turn_and_less::<IS_SHORT, T>(dot(u), less) }
     }
 
     /// The drift, by what is known of half of it.
@@ -260,23 +302,17 @@ impl<T: Number> Form<T> {
     /// What takes the time is the chain from the momentum to the increment, so nothing is divided before the end of it,
     /// and sums are ordered by what is there first.
     #[hot]
-    fn whole(&self, [a, b, c]: [T; 3], invariants: &Invariants<T>, half: &Half<T>) -> BodyTurn<T> {
-        let Invariants { kb, ka, .. } = *invariants;
-        let Half { n, mu, about } = *half;
-        let (nn, kk) = (n * n, kb * ka);
+    fn whole(&self, u: [T; 3], invariants: &Invariants<T>, half: &Half<T>) -> Quaternion<T> {
+        let ([a, b, c], Invariants { kb, ka, .. }, Half { n, mu, about }) = (u, *invariants, *half);
+        let (nn, kk, twice) = (n * n, kb * ka, n + n);
         let (base, sum) = (nn - kk, nn + kk);
-        let (of_b, of_a) = (sum - (kb + kb) * n, sum - (ka + ka) * n);
-        let (mu_c, mu_cc) = (mu * c, mu * (self.c_squared * (c * c)));
-        let den = base * base - mu_cc * mu;
-        let (by_a, by_b) = (a * of_a, b * of_b);
-        let a_end = by_a * base - (self.b * mu_c) * by_b;
-        let b_end = by_b * base + (self.a * mu_c) * by_a;
-        // With M c⁺ written out.
-        let of_all = ((self.c_squared * self.b_less_a) * (a * b)) * (mu_c * (mu * base));
-        let real_part = ((mu * n) * den + mu_cc * (of_a * of_b)) + of_all;
-        let along_a = (self.a * base) * (a * den + a_end);
-        let along_b = (self.b * base) * (b * den + b_end);
-        BodyTurn::by(about, [real_part, along_a, along_b])
+        let (of_b, of_a) = (sum - kb * twice, sum - ka * twice);
+        let mu_c = (self.c_squared * c) * mu;
+        let den = base * base - (mu_c * c) * mu;
+        let real_part = (n * base) * mu - mu_c * (c * ((of_a + of_b) + base) - (self.b_less_a * (a * b)) * mu);
+        let along_a = (self.a * a) * (den + of_a * base) + mu_c * (b * of_b);
+        let along_b = (self.b * b) * (den + of_b * base) - mu_c * (a * of_a);
+        about.by(u, [real_part, along_a, along_b])
     }
 
     /// Half a drift that is `2^DOUBLINGS` times as long as the polynomials are for.
@@ -287,25 +323,19 @@ impl<T: Number> Form<T> {
     fn farther<const DOUBLINGS: usize>(&self, u: [T; 3], invariants: &Invariants<T>) -> Half<T> {
         let k = T::number;
         let (difference, q) = (self.difference(u), dot(u));
-        let bend = -(self.c_squared * difference);
+        let bend = self.c_squared * difference;
         let mut root = k([1.0, 0.5, 0.25][DOUBLINGS]);
         let mut part = root * root;
         let Functions { mut n, mut mu, integral } = long(&invariants.scaled(part).start());
-        let more = bend * part * integral;
-        // Quaternions (w, f u) along the momentum.
-        let (mut w, mut f) = (T::one(), T::zero());
+        let less = bend * part * integral;
+        let mut about = About { w: T::one(), f: T::zero() };
         for doubled in 0..DOUBLINGS {
             let Invariants { kb, ka, pole, .. } = invariants.scaled(part);
             let (past_b, past_a) = (n - kb, n - ka);
             let towards = (self.b * past_b + self.a * past_a) * (difference * part);
             let tangent = (past_b * past_a) * (n - pole) + n * towards;
-            let across = (bend * part * root) * mu;
-            (w, f) = if doubled == 0 {
-                (tangent, across)
-            } else {
-                let (twice, both) = (w * w - f * f * q, (w + w) * f);
-                (twice * tangent - both * across * q, twice * across + both * tangent)
-            };
+            let tangent = About { w: tangent, f: -((bend * part * root) * mu) };
+            about = if doubled == 0 { tangent } else { about.and(&about, q).and(&tangent, q) };
             let over = T::one() / mu;
             let (nn, kk) = (n * n, kb * ka);
             let (base, sum) = (nn - kk, nn + kk);
@@ -314,14 +344,12 @@ impl<T: Number> Form<T> {
             n = k(4.0) * ((base * over) * (base * over));
             (root, part) = (root + root, part * k(4.0));
         }
-        let [turn_w, turn_f] = turn_and_more(q, more);
-        let (w, f) = (turn_w * w - turn_f * f * q, turn_w * f + turn_f * w);
-        Half { n, mu, about: [w, f * u[0], f * u[1], f * u[2]] }
+        Half { n, mu, about: turn_and_less::<false, T>(q, less).and(&about, q) }
     }
 
     #[inline(never)]
-    fn beyond(&self, u: [T; 3], invariants: &Invariants<T>) -> BodyTurn<T> {
-        dispatch(Beyond { form: self, u, invariants })
+    fn beyond(&self, a: T, b: T, c: T) -> Quaternion<T> {
+        dispatch(Beyond { form: self, u: [a, b, c] })
     }
 }
 
@@ -330,20 +358,21 @@ impl<T: Number> Form<T> {
 struct Beyond<'a, T> {
     form: &'a Form<T>,
     u: [T; 3],
-    invariants: &'a Invariants<T>,
 }
 
 impl<T: Number> Kernel for Beyond<'_, T> {
-    type Output = BodyTurn<T>;
+    type Output = Quaternion<T>;
     const VECTORS: Vectors = Vectors::Four;
+    const IS_IN_LANES: bool = true;
 
     #[hot]
-    fn run(self) -> BodyTurn<T> {
-        let Self { form, u, invariants } = self;
+    fn run(self) -> Quaternion<T> {
+        let Self { form, u } = self;
+        let invariants = &form.invariants(u);
         let size = invariants.size();
         let [is_short, is_long, is_far, is_farther] =
             [SHORT, LONG, FAR, FARTHER].map(|limit| size.simd_le(T::number(limit)));
-        let mut half = Half { n: T::one(), mu: T::one(), about: [T::one(); 4] };
+        let mut half = Half { n: T::one(), mu: T::one(), about: About { w: T::one(), f: T::one() } };
         if (is_farther & !is_far).any() {
             half = form.farther::<2>(u, invariants);
         }
@@ -351,13 +380,17 @@ impl<T: Number> Kernel for Beyond<'_, T> {
             half = form.farther::<1>(u, invariants).select(is_far, &half);
         }
         if (is_long & !is_short).any() {
-            half = form.near(u, &long(&invariants.start())).select(is_long, &half);
+            half = form.near::<false>(u, invariants).select(is_long, &half);
         }
         if is_short.any() {
-            half = form.near(u, &short(&invariants.start())).select(is_short, &half);
+            half = form.near::<true>(u, invariants).select(is_short, &half);
         }
         let turned = form.whole(u, invariants, &half);
-        if is_farther.all() { turned } else { turned.select(is_farther, &form.doubled(u, invariants)) }
+        if is_farther.all() {
+            return turned;
+        }
+        let doubled = form.doubled(u, invariants);
+        core::array::from_fn(|k| turned[k].select(is_farther, doubled[k]))
     }
 }
 
@@ -365,53 +398,20 @@ impl<T: Number> Kernel for Beyond<'_, T> {
 const FAR: f64 = 4.0 * LONG;
 const FARTHER: f64 = 16.0 * LONG;
 
-/// `exp(2 (1 + I) û)` as a quaternion.
+/// `exp(2 (1 + I) û)` times a number, of `|u|² = q` and `−I`, which is small: the turn by `u` needn't wait for it, and that by
+/// `I u` is made by its tangent. `I |u|` is less than 0.006, in a short drift less than 10⁻⁴, so that few terms do.
 #[hot]
-fn rotor_and_more<T: Number>(u: [T; 3], more: T) -> Quaternion<T> {
-    let [w, f] = turn_and_more(dot(u), more);
-    [w, f * u[0], f * u[1], f * u[2]]
-}
-
-/// `w` and `f` of the quaternion `(w, f u)` of `exp(2 (1 + I) û)` where `|u|² = q` and `I` is small: `I |u|` is less than
-/// 0.006, so that few terms of its sine and cosine do, and those of `|u|` needn't wait for it.
-#[hot]
-fn turn_and_more<T: Number>(q: T, more: T) -> [T; 2] {
-    let (sinc, versine) = rotation_coefficients(q);
-    let cosine = T::one() - q * versine;
-    let (sinc_q, square) = (sinc * q, (more * more) * q);
-    let less = square * (T::number(0.5) - square * T::number(1.0 / 24.0));
-    let more = more - (more * square) * (T::number(1.0 / 6.0) - square * T::number(1.0 / 120.0));
-    [cosine - (cosine * less + sinc_q * more), sinc + (cosine * more - sinc * less)]
+fn turn_and_less<const IS_SHORT: bool, T: Number>(q: T, less: T) -> About<T> {
+    let About { w, f } = About::turn(q);
+    let square = (less * less) * q;
+    let of_tangent = T::number(1.0 / 3.0);
+    let of_tangent = if IS_SHORT { of_tangent } else { of_tangent + square * T::number(2.0 / 15.0) };
+    let tangent = less + (less * square) * of_tangent;
+    About { w: w + (f * q) * tangent, f: f - w * tangent }
 }
 
 /// `|u|²`
 #[hot]
 fn dot<T: Number>([a, b, c]: [T; 3]) -> T {
     (a * a + b * b) + c * c
-}
-
-/// A rotation by a quaternion of any length.
-#[derive(Clone, Copy, Debug)]
-struct BodyTurn<T> {
-    quaternion: Quaternion<T>,
-    /// One over the square of its length.
-    inverse_square: T,
-}
-
-impl<T: Number> BodyTurn<T> {
-    /// A rotation about the momentum after one across the middle axis, both of any length.
-    #[hot]
-    fn by(about: Quaternion<T>, across: [T; 3]) -> Self {
-        let ([w, x, y, z], [real_part, along_a, along_b]) = (about, across);
-        // What roundings do to the one is divided out, too: the rotation may be the same in each step.
-        let length = (w * w + x * x) + (y * y + z * z);
-        let square = (along_a * along_a + along_b * along_b) + real_part * real_part;
-        Self { quaternion: product_across(about, across), inverse_square: T::one() / (square * length) }
-    }
-
-    #[hot]
-    fn select(&self, mask: T::Mask, other: &Self) -> Self {
-        let quaternion = core::array::from_fn(|k| self.quaternion[k].select(mask, other.quaternion[k]));
-        Self { quaternion, inverse_square: self.inverse_square.select(mask, other.inverse_square) }
-    }
 }

@@ -61,7 +61,7 @@ impl<T: Real> Form<T> {
         Some(self.functions_back(by, u, (&invariants, &functions), by_integral))
     }
 
-    /// Behind [`whole`](Self::whole), by the covector `g` of the turn `F_a`; the values are those of that function.
+    /// Behind [`whole`](Self::whole), by the covector `g` of the turn `F_a`, whose quaternion is taken `N` times here.
     #[hot]
     fn whole_back(&self, u: [T; 3], invariants: &Invariants<T>, [n, mu]: [T; 2], g: [T; 3]) -> By<T> {
         let ([a, b, c], [ga, gb, gc], Invariants { kb, ka, .. }) = (u, g, *invariants);
@@ -161,10 +161,10 @@ mod tests {
             let (scale, b_less_a) = (Dual::constant(form.scale), b - a);
             let (a_squared, b_squared) = (-(a * b_less_a), b * b_less_a);
             let turned = Form { scale, a, b, b_less_a, c_squared: -(a * b), a_squared, b_squared }.turned(u);
-            let [w, x, y, z] = turned.quaternion.map(|part| part.value);
+            let [w, x, y, z] = turned.map(|part| part.value);
             [0, 1, 2].map(|k| {
-                let [_, x, y, z] = product(turned.quaternion.map(|part| part.slopes[k]), [w, -x, -y, -z]);
-                (x * c[0] + y * c[1] + z * c[2]) * turned.inverse_square.value * real(2.0)
+                let [_, x, y, z] = product(turned.map(|part| part.slopes[k]), [w, -x, -y, -z]);
+                (x * c[0] + y * c[1] + z * c[2]) * real(2.0) / (w * w + x * x + y * y + z * z)
             })
         };
         let [x, y, z] = of([form.a, form.b].map(Dual::constant), [0, 1, 2].map(|k| Dual::along(u[k], k)));

@@ -25,7 +25,7 @@ impl<T: Number> Invariants<T> {
     pub(super) fn start(&self) -> Start<T> {
         let Self { kb, ka, apart, pole } = *self;
         let (k, sum) = (T::number, kb + ka);
-        let x = (apart * apart) * k(1.0 / 15.0) + (kb * ka) * k(1.0 / 15.0);
+        let x = (apart * apart + kb * ka) * k(1.0 / 15.0);
         // Three times K_b − e and K_a − e.
         let y = (sum * k(-1.0 / 189.0)) * ((kb + apart) * (ka - apart));
         let e = sum * k(1.0 / 3.0);
@@ -55,22 +55,20 @@ pub(super) const SHORT: f64 = 0.0075;
 /// And up to here those of [`long`], whose next ones are `38 · 18 K¹⁰/π²⁰` and `13 (4/π²)⁹ K⁹ · K/21`.
 pub(super) const LONG: f64 = 0.05;
 
-/// With `℘` to its fifth coefficient and the integral to its fifth; terms that are far below a rounding are left out.
+/// With `℘` to its fifth coefficient and the integral to its fifth; terms that together are below half a rounding of the angle
+/// are left out.
 #[hot]
 pub(super) fn short<T: Number>(start: &Start<T>) -> Functions<T> {
     let k = T::number;
     let Start { e, x, y, c } = *start;
-    let (w4, w5) = (x * x * k(1.0 / 3.0), x * y * k(3.0 / 11.0));
-    let n = ((T::one() + e) + (x + y)) + (w4 + w5);
-    let mu = (T::one() - (x + (y + y))) - (w4 * k(3.0) + w5 * k(4.0));
-    let (cc, xx) = (c * c, x * x);
-    let of_0 = k(2.0 / 33.0) * xx - (k(1.0 / 7.0) * x + k(1.0 / 9.0) * y);
-    let of_1 = (k(2.0 / 9.0) * x - k(0.2)) + (k(2.0 / 11.0) * y - k(7.0 / 39.0) * xx);
-    let of_2 = k(1.0 / 7.0) - (k(3.0 / 11.0) * x + k(3.0 / 13.0) * y);
-    let of_3 = k(4.0 / 13.0) * x - k(1.0 / 9.0);
-    let of_4 = k(1.0 / 11.0) - k(1.0 / 13.0) * c;
-    let integral = (of_0 + of_1 * c) + cc * ((of_2 + of_3 * c) + cc * of_4);
-    Functions { n, mu: mu + mu, integral: integral + k(1.0 / 3.0) }
+    let (xx, cc, w5) = (x * x, c * c, x * y * k(3.0 / 11.0));
+    let n = ((T::one() + e) + (x + y)) + (xx * k(1.0 / 3.0) + w5);
+    let mu = (T::one() - (x + (y + y))) - (xx + w5 * k(4.0));
+    let of_0 = (k(2.0 / 33.0) * xx - (k(1.0 / 7.0) * x + k(1.0 / 9.0) * y)) + k(1.0 / 3.0);
+    let of_1 = (k(2.0 / 9.0) * x - k(0.2)) + k(2.0 / 11.0) * y;
+    let of_2 = k(1.0 / 7.0) - k(3.0 / 11.0) * x;
+    let integral = (of_0 + of_1 * c) + cc * ((of_2 - k(1.0 / 9.0) * c) + k(1.0 / 11.0) * cc);
+    Functions { n, mu: mu + mu, integral }
 }
 
 /// With `℘` to its ninth coefficient and the integral to its eighth, likewise.

@@ -5,7 +5,7 @@ use crate::motion::{Kept, Motion};
 use crate::numbers::{Entries, Real, count, counted, real, zero};
 use nalgebra::SimdBool as _;
 
-/// Where a run is inside of its processor, by [`Processed`](super::Processed), and by which step; or that it isn't there:
+/// Where a run is inside of its processor, by [`ProcessedSplitting`](super::ProcessedSplitting), and by which step; or that it isn't there:
 /// at the start, after a push and after another method's steps.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 #[doc(hidden)]

@@ -6,15 +6,15 @@
 
 use super::super::Length;
 use super::super::linearised::{DifferentiableFlow, Table};
-use super::{Part, Processed};
+use super::{Part, ProcessedSplitting};
 use crate::error::{SetupError, StepError};
-use crate::gradients::{ChangeOf, Linearisable, MotionOf, Pass};
+use crate::gradients::{ChangeOf, Linearisable, Pass};
 use crate::groups::SO3;
 use crate::mechanics::{Group, RigidScene, Scalar, SceneVisitor, SecondDerivatives};
-use crate::motion::{Plan as _, StepReport, Summation};
+use crate::motion::{MotionOf, Plan as _, StepReport, Summation};
 use nalgebra::SimdComplexField as _;
 
-impl<S, K> Linearisable<S> for Processed<S, K>
+impl<S, K> Linearisable<S> for ProcessedSplitting<S, K>
 where
     S: RigidScene + SecondDerivatives,
     K: DifferentiableFlow<Scalar<S>>,
@@ -40,7 +40,7 @@ where
 
     fn check_stages(&self, scene: &S) -> Result<(), SetupError> {
         if self.parts.iter().any(Part::has_gradient) {
-            return super::Split::<S, K>::check_gradients(scene);
+            return super::Splitting::<S, K>::check_gradients(scene);
         }
         self.kernel.check_stages(scene)
     }
@@ -89,7 +89,7 @@ where
     }
 }
 
-impl<S: RigidScene, K: DifferentiableFlow<Scalar<S>>> Processed<S, K> {
+impl<S: RigidScene, K: DifferentiableFlow<Scalar<S>>> ProcessedSplitting<S, K> {
     /// The first share of the kernel is joined to the last.
     fn changes_of_kernel(&self) -> usize {
         self.scheme.kernel().shares().count() - 1

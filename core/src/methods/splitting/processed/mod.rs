@@ -12,11 +12,11 @@ use alloc::vec::Vec;
 use inside::InsideMotion;
 
 use super::scheme::Flow;
-use super::{KineticFlow, Length, Split, Stages, has_force_gradient, share_of};
+use super::{KineticFlow, Length, Splitting, Stages, has_force_gradient, share_of};
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, SO3};
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor, Term};
-use crate::motion::{Cost, Declared, Motion, Plan, Steerable, StepReport, Stepper, Summation};
+use crate::motion::{Cost, Motion, OwnStep, Plan, Steerable, StepReport, Stepper, Summation, SumsOf};
 use crate::numbers::{Coordinates, Real, Vectors, real};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector3};
 
@@ -34,7 +34,7 @@ use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector
 ///
 /// # What is kept
 ///
-/// The same as by [`Split`]: every stage is a Poisson map that keeps the momentum maps, those of the processor, too. A
+/// The same as by [`Splitting`]: every stage is a Poisson map that keeps the momentum maps, those of the processor, too. A
 /// step of `−h` undoes one of `h`: the processor of both is that of `|h|`.
 ///
 /// # Contract
@@ -69,13 +69,13 @@ use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector
 ///
 /// \[BCR99\], \[BCM06\]; see [`conventions`](crate::conventions).
 #[derive(Clone, Debug, Lanes, InLanes)]
-pub struct Processed<S: Effect, K: KineticFlow<Scalar<S>>> {
+pub struct ProcessedSplitting<S: Effect, K: KineticFlow<Scalar<S>>> {
     #[shared]
     scheme: ProcessedScheme,
     /// [`leave`](Self::leave)'s; reversed and with the other sign, [`enter`](Self::enter)'s.
     #[shared]
     parts: Vec<Part>,
-    kernel: Split<S, K>,
+    kernel: Splitting<S, K>,
     /// From what is read to the end of the first share of the kernel, from which its steps are all the same.
     enter: Stages<K::Drift, Scalar<S>>,
     /// From there to what is read.
@@ -84,7 +84,7 @@ pub struct Processed<S: Effect, K: KineticFlow<Scalar<S>>> {
 
 /// # Make: a processed splitting
 impl<S: Effect> Stepper<S> {
-    /// A processed kinetic-potential splitting with this flow of the free body; see [`Processed`].
+    /// A processed kinetic-potential splitting with this flow of the free body; see [`ProcessedSplitting`].
     ///
     /// # Errors
     ///
@@ -94,14 +94,14 @@ impl<S: Effect> Stepper<S> {
         h: Scalar<S>,
         flow: K,
         scheme: ProcessedScheme,
-    ) -> Result<Stepper<S, Processed<S, K>>, SetupError>
+    ) -> Result<Stepper<S, ProcessedSplitting<S, K>>, SetupError>
     where
         S: DiscreteLagrangian<Group = SO3<<S as Term>::Scalar>> + Regular,
         K: KineticFlow<Scalar<S>>,
     {
         // For its checks of the scene and the step.
-        Declared::new(&scene, h)?;
-        let plan = Processed::new(&scene, h, flow, scheme)?;
+        OwnStep::new(&scene, h)?;
+        let plan = ProcessedSplitting::new(&scene, h, flow, scheme)?;
         Ok(Stepper { scene, plan })
     }
 }
@@ -155,9 +155,9 @@ fn way_out(scheme: &ProcessedScheme) -> Vec<Part> {
     parts
 }
 
-impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Processed<S, K> {
+impl<S: RigidScene, K: KineticFlow<Scalar<S>>> ProcessedSplitting<S, K> {
     fn new(scene: &S, h: Scalar<S>, kinetic: K, scheme: ProcessedScheme) -> Result<Self, SetupError> {
-        let kernel = Split::folded(scene, h, kinetic, scheme.kernel())?;
+        let kernel = Splitting::folded(scene, h, kinetic, scheme.kernel())?;
         let parts = way_out(&scheme);
         // The kernel's own were asked for with the kernel.
         if parts.iter().any(Part::has_gradient) && !has_force_gradient(scene) {
@@ -185,12 +185,12 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Processed<S, K> {
 }
 
 /// A step that is given values goes in and out of the processor with them.
-impl<S: Effect, K: KineticFlow<Scalar<S>>> Steerable for Processed<S, K> {}
+impl<S: Effect, K: KineticFlow<Scalar<S>>> Steerable for ProcessedSplitting<S, K> {}
 
-impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
+impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for ProcessedSplitting<S, K> {
     type Kept = Inside<Scalar<S>, S::Advected>;
 
-    const VECTORS: Vectors = <Split<S, K> as Plan<S>>::VECTORS;
+    const VECTORS: Vectors = <Splitting<S, K> as Plan<S>>::VECTORS;
 
     fn step_size(&self) -> Scalar<S> {
         self.kernel.h
@@ -214,12 +214,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
     }
 
     #[hot]
-    fn step<M: Summation<SO3<Scalar<S>>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         self.run(scene, motion, kept, 1).map(StepReport::of_run)
     }
 
@@ -286,7 +281,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
     }
 
     fn cost(&self) -> Cost {
-        let [enter, leave] = [&self.enter, &self.leave].map(Split::<S, K>::operations);
+        let [enter, leave] = [&self.enter, &self.leave].map(Splitting::<S, K>::operations);
         Cost { once: enter + leave, ..self.kernel.cost() }
     }
 }

@@ -12,6 +12,7 @@
 //! evaluations. The second variation goes through `v` and `λ` as well, forwards.
 
 use super::Context;
+use super::transport::in_small_increment;
 use crate::mathematics::symbolic::{Expression, Structure, SymbolId, Symbols, Variations, stage_of, variation};
 
 /// A `let` that isn't multiplied out.
@@ -33,6 +34,8 @@ pub(crate) struct Closed {
     /// `λ`, and `⟨λ, δv⟩`.
     pub(crate) multiplier: SymbolId,
     pub(crate) pairing: Expression,
+    /// The same by `D = F − I`, where its constants cancel then.
+    pub(crate) near: Expression,
     /// `v` and `⟨λ, δv⟩` varied along `F ↦ exp(t E_j) F`.
     pub(crate) tangent: (SymbolId, Expression),
     pub(crate) multiplier_tangent: (SymbolId, Expression),
@@ -56,6 +59,7 @@ pub(super) fn multipliers(lets: &[Let], l_d: &Expression, symbols: &mut Symbols)
             direction,
             multiplier,
             pairing: zero(),
+            near: zero(),
             tangent: (tangent, Expression::zero(shape)),
             multiplier_tangent: (multiplier_tangent, zero()),
         });
@@ -85,6 +89,8 @@ pub(super) fn tangents(context: &Context, closed: &mut [Closed]) {
         if !one.multiplier_tangent.1.is_zero() {
             varied.insert(one.multiplier, context.symbol(one.multiplier_tangent.0));
         }
+        let near = in_small_increment(context, &one.pairing);
+        one.near = if near.len() < one.pairing.len() { near } else { one.pairing.clone() };
     }
 }
 

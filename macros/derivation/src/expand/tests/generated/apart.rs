@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use quote::ToTokens as _;
-use syn::{BinOp, Expr, ExprLit, Lit, Local, Pat, Stmt};
+use syn::{BinOp, Expr, Local, Pat, Stmt};
 
 use crate::declared::Declaration;
 use crate::mathematics::derive::Seen;
@@ -33,7 +33,7 @@ pub(super) fn value(expression: &Expr, env: &Env) -> Option<Matrix> {
         Expr::Paren(inner) => of(&inner.expr)?,
         Expr::Reference(inner) => of(&inner.expr)?,
         Expr::Path(path) => env.get(&path.path.get_ident()?.to_string())?.clone(),
-        Expr::Lit(ExprLit { lit: Lit::Float(number), .. }) => Matrix::scalar(number.base10_parse().ok()?),
+        Expr::Lit(literal) => Matrix::scalar(literal.to_token_stream().to_string().parse().ok()?),
         Expr::Unary(unary) => of(&unary.expr)?.scaled(-1.0),
         Expr::Binary(binary) => match (&binary.op, of(&binary.left)?, of(&binary.right)?) {
             (BinOp::Add(_), a, b) if same(&a, &b) => a.plus(&b),

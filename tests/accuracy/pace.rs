@@ -1,75 +1,26 @@
 //! A pace that is declared: steps of a transformed time.
 
+use checks::order::TOPS;
+use declarations::{EqualNeedle, Needle};
 use liestep::groups::{Given, R3};
 use liestep::mechanics::{DiscreteLagrangian as _, Effect};
 use liestep::motion::Plan;
 use liestep::prelude::*;
 use liestep::recording::Event;
-use nalgebra::{Matrix3, SMatrix, SVector, Vector6};
+use nalgebra::{Matrix3, SVector, Vector6};
 
-/// A body whose axis is attracted by a direction.
-macro_rules! needle {
-    ($name:ident { $($energy:ident)? } $($pace:tt)*) => {
-        #[lagrangian(
-            group = SO3,
-            advected(w = a),
-            $($pace)*
-            l_d = {
-                let U = |w: Vector3<f64>| ((w - rho).norm_squared() + delta * delta).sqrt();
-                ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
-                    + 0.5 * h * (1.0 / U(w) + 1.0 / U(F.transpose() * w))
-            },
-        )]
-        #[derive(Clone, Copy, Debug)]
-        struct $name {
-            J_d: NonstandardInertia,
-            a: Vector3<f64>,
-            rho: Vector3<f64>,
-            delta: f64,
-            $($energy: f64,)?
-        }
-    };
-}
+use crate::many_digits::heavy_top::Top;
+use crate::many_digits::motion::Motion;
+use crate::many_digits::poisson::{self, defect, derivative, phase};
+use crate::many_digits::{DoubleDouble, Matrix, Vector, long};
 
-needle! { Plain {} }
-needle! { Needle { energy }
-    given(E_0 = energy),
-    pace = {
-        let u = ((w - rho).norm_squared() + delta * delta).sqrt();
-        2.0 * u * u.sqrt()
-    },
-}
-
-impl Needle {
-    fn new(delta: f64) -> Self {
-        let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 1.4, 2.0)).unwrap();
-        Self { J_d, a: Vector3::new(0.0, 0.6, 0.8), rho: Vector3::z(), delta, energy: 0.0 }
-    }
-
-    /// In plain Rust.
-    fn gap(&self, w: &Vector3<f64>) -> f64 {
-        ((w - self.rho).norm_squared() + self.delta * self.delta).sqrt()
-    }
-
-    fn pace(&self, w: &Vector3<f64>) -> f64 {
-        2.0 * self.gap(w).powf(1.5)
-    }
-
-    /// `l_d(F, w, h s̄) + h s̄ E_0`.
-    fn rewritten(&self, F: &Matrix3<f64>, w: &Vector3<f64>, h: f64) -> f64 {
-        let next = F.transpose() * w;
-        let step = h * 0.5 * (self.pace(w) + self.pace(&next));
-        let change = F - Matrix3::identity();
-        let kinetic = (change * self.J_d.as_matrix() * change.transpose()).trace() / (2.0 * step);
-        kinetic + 0.5 * step * (1.0 / self.gap(w) + 1.0 / self.gap(&next)) + step * self.energy
-    }
-}
-
-/// The derivative at zero of what is smooth on the scale of one.
-fn derivative<const N: usize>(f: impl Fn(f64) -> SVector<f64, N>) -> SVector<f64, N> {
-    let weights = [5.0 / 6.0, -5.0 / 21.0, 5.0 / 84.0, -5.0 / 504.0, 1.0 / 1260.0];
-    let odd = |k: f64| f(0.02 * k) - f(-0.02 * k);
-    weights.iter().zip([1.0, 2.0, 3.0, 4.0, 5.0]).map(|(weight, k)| odd(k) * (weight / 0.02)).sum()
+/// `l_d(F, w, h s̄) + h s̄ E_0`.
+fn rewritten(body: &Needle, F: &Matrix3<f64>, w: &Vector3<f64>, h: f64) -> f64 {
+    let next = F.transpose() * w;
+    let step = h * 0.5 * (body.pace(w) + body.pace(&next));
+    let change = F - Matrix3::identity();
+    let kinetic = (change * body.J_d.as_matrix() * change.transpose()).trace() / (2.0 * step);
+    kinetic + 0.5 * step * (1.0 / body.gap(w) + 1.0 / body.gap(&next)) + step * body.energy
 }
 
 /// The derived terms are the derivatives of the rewriting.
@@ -79,21 +30,25 @@ fn the_rewriting() {
     let (w, h) = (Vector3::new(0.3, -0.2, 0.9), 0.3);
     let F = *SO3::exp(Vector3::new(0.2, -0.3, 0.4)).as_matrix();
     let seen = (w, Given::scalar(body.energy));
-    let slope = |f: &dyn Fn(f64) -> f64| derivative(|t| SVector::<f64, 1>::new(f(t))).x;
-    assert!((body.l_d(&F, &seen, h) - body.rewritten(&F, &w, h)).abs() < 1e-14);
+    let slope = |f: &dyn Fn(f64) -> f64| derivative(|t: f64| SVector::<f64, 1>::new(f(t)), APART).x;
+    assert!((body.l_d(&F, &seen, h) - rewritten(&body, &F, &w, h)).abs() < 1e-14);
     for k in 0..3 {
         let turn = |t: f64| *SO3::exp(Vector3::ith(k, t)).as_matrix();
         // At both ends of the step: `(R_F)* ∂/∂F + ∂/∂w ⋄ w`, and `(L_F)* ∂/∂F`.
-        let before = slope(&|t| body.rewritten(&(turn(t) * F), &(turn(t) * w), h));
-        let after = slope(&|t| body.rewritten(&(F * turn(t)), &w, h));
+        let before = slope(&|t| rewritten(&body, &(turn(t) * F), &(turn(t) * w), h));
+        let after = slope(&|t| rewritten(&body, &(F * turn(t)), &w, h));
         assert!((before - body.legendre_minus(&F, &seen, h)[k]).abs() < 1e-12, "{k}");
         assert!((after - body.left_momentum(&F, &seen, h)[k]).abs() < 1e-12, "{k}");
     }
-    let energy = -slope(&|t| body.rewritten(&F, &w, h * (1.0 + 0.2 * t)) / (0.2 * h));
+    let energy = -slope(&|t| rewritten(&body, &F, &w, h * (1.0 + 0.2 * t)) / (0.2 * h));
     assert!((energy - body.discrete_energy(&F, &seen, h)).abs() < 1e-11);
 }
 
-/// `DΦ B DΦᵀ = B` on momentum, `w`, time and `E_0`, in which `{t, −E_0} = 1`.
+/// In doubles, for what is smooth on the scale of one.
+const APART: f64 = 0.02;
+
+/// `DΦ B DΦᵀ = B` on momentum, `w`, time and `E_0`: of a step of the library, and with 32 digits of one that is written down
+/// from its equations, as [`many_digits`](crate::many_digits) does it.
 #[test]
 fn the_extended_map_is_poisson() {
     let (body, h) = (Needle::new(0.8), 0.2);
@@ -104,24 +59,45 @@ fn the_extended_map_is_poisson() {
         stepper.step(&mut state).unwrap();
         let (next, Given(energy)) = state.advected();
         let time = z[6] + 0.5 * h * (body.pace(&w) + body.pace(&next));
-        let momentum = state.momentum();
-        let numbers = momentum.iter().chain(next.iter()).chain([&time, &energy.x]).copied();
-        SVector::<f64, 8>::from_iterator(numbers.collect::<Vec<_>>())
-    };
-    let tensor = |z: &SVector<f64, 8>| {
-        let mut tensor = SMatrix::<f64, 8, 8>::zeros();
-        for (row, column, of) in [(0, 0, 0), (0, 3, 3), (3, 0, 3)] {
-            tensor.fixed_view_mut::<3, 3>(row, column).copy_from(&z.fixed_rows::<3>(of).into_owned().cross_matrix());
-        }
-        (tensor[(6, 7)], tensor[(7, 6)]) = (-1.0, 1.0);
-        tensor
+        phase(&state.momentum(), &next, &[time, energy.x])
     };
     let z = SVector::<f64, 8>::from_column_slice(&[0.9, 0.15, 0.3, 0.1, 0.6, 0.8, 0.0, -0.9]);
-    let columns: [_; 8] = core::array::from_fn(|k| derivative(|t| map(&(z + SVector::<f64, 8>::ith(k, t)))));
-    let tangent = SMatrix::<f64, 8, 8>::from_columns(&columns);
-    let defect = (tangent * tensor(&z) * tangent.transpose() - tensor(&map(&z))).amax();
-    println!("Poisson {defect:.1e}");
-    assert!(defect < 1e-12, "{defect:e}");
+    let (few, long) = (defect(map, &z, APART).amax(), z.map(long));
+    let many = defect(|z| long_step(&body, z, h), &long, poisson::APART).map(DoubleDouble::rounded).amax();
+    let apart = (long_step(&body, &long, h).map(DoubleDouble::rounded) - map(&z)).norm();
+    println!("Poisson {few:.1e}, with 32 digits {many:.1e}; both steps {apart:.1e} apart");
+    assert!(few < 1e-12 && many < 1e-26 && apart < 1e-14, "{few:e}, {many:e}, {apart:e}");
+}
+
+/// A step of momentum, `w`, time and `E_0`, from its equations: `p` is what each end of it is pushed by,
+///
+/// ```text
+/// (F J_d − J_d Fᵀ)^∨ = H (μ + p)      μ⁺ = Fᵀ(μ + p) + p⁺      H = h s̄
+/// p = ½ w × (H ∇V − h λ ∇s)           λ = E_0 − tr((F − I) J_d (F − I)ᵀ)/2H² − ½ (V + V⁺)
+/// ```
+fn long_step(needle: &Needle, z: &SVector<DoubleDouble, 8>, h: f64) -> SVector<DoubleDouble, 8> {
+    let mut body = Motion::read(TOPS[3]);
+    body.nonstandard = needle.J_d.as_matrix().diagonal().map(long);
+    body.moments = body.nonstandard.map(|one| body.nonstandard.sum() - one);
+    let (top, J_d) = (Top::at_start_of(&body), Matrix::from_diagonal(&body.nonstandard));
+    let [momentum, w] = [0, 3].map(|at| z.fixed_rows::<3>(at).into_owned());
+    let (one, half, h, delta, rho) = (long(1.0), long(0.5), long(h), long(needle.delta), needle.rho.map(long));
+    let gap = |w: &Vector| ((w - rho).dot(&(w - rho)) + delta * delta).sqrt();
+    let pace = |w: &Vector| long(2.0) * gap(w) * gap(w).sqrt();
+    let pushed = |w: &Vector, step: DoubleDouble, excess: DoubleDouble| {
+        let u = gap(w);
+        rho.cross(w) * (half * step / (u * u * u) - long(1.5) * h * excess / u.sqrt())
+    };
+    let (mut step, mut excess, mut next, mut end) = (h * pace(&w), long(0.0), w, momentum);
+    for _ in 0..60 {
+        let middle = momentum + pushed(&w, step, excess);
+        let back = top.turn(&(middle * step)).transpose();
+        (next, end) = (back * w, back * middle + pushed(&(back * w), step, excess));
+        step = half * h * (pace(&w) + pace(&next));
+        let kinetic = (J_d - J_d * back).trace() / (step * step);
+        excess = z[7] - kinetic + half * (one / gap(&w) + one / gap(&next));
+    }
+    phase(&end, &next, &[z[6] + step, z[7]])
 }
 
 /// What is read is of the time `t`, and steps back undo steps.
@@ -157,7 +133,6 @@ fn what_is_read_is_of_the_time() {
         let again = paced.state_at(&start, *time).unwrap();
         assert!((motion.momentum().x - 0.7).abs() < 1e-12 && (again.momentum() - motion.momentum()).norm() < 1e-11);
     }
-    #[cfg(feature = "serde")]
     assert_eq!(paced.resume(&paced.checkpoint(&state)).unwrap(), state);
     paced.inverse().unwrap().run(&mut state, 300).unwrap();
     assert!((state.momentum() - momentum).norm() < 1e-10 && paced.time(&state).abs() < 1e-10);
@@ -182,7 +157,7 @@ where
         .fold((0.0, 0.0), |(most, _), now| (f64::max(most, (stepper.energy(&now) - before).abs()), stepper.time(&now)))
 }
 
-/// The table of the guide's chapter: `cargo test -p liestep --test pace -- a_pace_is_worth --nocapture`.
+/// The table of the guide's chapter: `cargo test -p liestep-accuracy-tests -- a_pace_is_worth --nocapture`.
 #[test]
 fn what_a_pace_is_worth() {
     let needle @ Needle { J_d, a, rho, delta, .. } = Needle::new(0.05);
@@ -190,7 +165,7 @@ fn what_a_pace_is_worth() {
     // So that the steps end at 12 s.
     let tau = (0..6).fold(12.0, |tau, _| tau * 12.0 / paced(2000, tau / 2000.0).1);
     let rows = [500, 1000, 2000, 4000].map(|n| {
-        let equal = Stepper::new(Plain { J_d, a, rho, delta }, 12.0 / f64::from(n)).unwrap().or_substeps(64);
+        let equal = Stepper::new(EqualNeedle { J_d, a, rho, delta }, 12.0 / f64::from(n)).unwrap().or_substeps(64);
         let errors = (worst(&equal, n).0, paced(n, tau / f64::from(n)).0);
         println!("{n} steps: equal {:.2e}, paced {:.2e}, {:.0} times less", errors.0, errors.1, errors.0 / errors.1);
         errors
