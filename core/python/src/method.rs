@@ -28,7 +28,7 @@ enum Kind {
     Step,
     Composition(CompositionScheme),
     Splitting(SplittingScheme),
-    ProcessedSplitting(ProcessedScheme),
+    Processed(ProcessedScheme),
     /// By its number of stages.
     Collocation(usize),
     /// Of steps in which a body turns by about as much, from this velocity on, rad/s.
@@ -72,7 +72,7 @@ impl Method {
             "step" => Kind::Step,
             "composition" => Kind::Composition(named!(CompositionScheme)),
             "splitting" => Kind::Splitting(named!(SplittingScheme)),
-            "processed" => Kind::ProcessedSplitting(named!(ProcessedScheme)),
+            "processed" => Kind::Processed(named!(ProcessedScheme)),
             "collocation" => match scheme {
                 "4" => Kind::Collocation(4),
                 "8" => Kind::Collocation(8),
@@ -149,7 +149,7 @@ fn on_so3<S: Scene<Scalar = f64, Group = SO3>>(scene: S, h: f64, method: Method)
         Kind::Step => method.compensated(Stepper::new(scene, h).map_err(setup)?),
         Kind::Composition(scheme) => method.compensated(Stepper::composed(scene, h, scheme).map_err(setup)?),
         Kind::Splitting(scheme) => method.compensated(Stepper::split(scene, h, flow?, scheme).map_err(setup)?),
-        Kind::ProcessedSplitting(scheme) => method.compensated(Stepper::processed(scene, h, flow?, scheme).map_err(setup)?),
+        Kind::Processed(scheme) => method.compensated(Stepper::processed(scene, h, flow?, scheme).map_err(setup)?),
         _ if method.substeps > 1 => refused("`substeps` go with the declared step, and not with a collocation"),
         Kind::Collocation(4) => Ok(Stepper::collocated::<2>(scene, h).map_err(setup)?.into_any()),
         Kind::Collocation(_) => Ok(Stepper::collocated::<4>(scene, h).map_err(setup)?.into_any()),

@@ -200,7 +200,7 @@ fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
         let message = format!("{name} composes a step of order {base}, and that of this scene is of order {order}");
         return wrong(&["run", "method"], message);
     }
-    if let Method::Splitting(_) | Method::ProcessedSplitting(_) | Method::Collocation(_) = method
+    if let Method::Splitting(_) | Method::Processed(_) | Method::Collocation(_) = method
         && file.kinetic() != Kinetic::Rigid
     {
         let message = format!("{} moves the body exactly; leave `kinetic` out", method.name());

@@ -14,7 +14,7 @@ pub(crate) enum Method {
     /// With the exact motion of the free body.
     Splitting(Named<SplittingScheme>),
     /// With the exact motion of the free body, inside of a processor.
-    ProcessedSplitting(Named<ProcessedScheme>),
+    Processed(Named<ProcessedScheme>),
     /// By its number of stages.
     Collocation(Stages),
 }
@@ -25,7 +25,7 @@ impl Method {
         match self {
             Self::Step => "a step",
             Self::Composition(_) => "a composition",
-            Self::Splitting(_) | Self::ProcessedSplitting(_) => "a splitting",
+            Self::Splitting(_) | Self::Processed(_) => "a splitting",
             Self::Collocation(_) => "a collocation",
         }
     }

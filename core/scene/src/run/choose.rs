@@ -194,7 +194,7 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
         };
     }
     let J = inertia(file)?;
-    if matches!(file.run.method, Method::Splitting(_) | Method::ProcessedSplitting(_) | Method::Collocation(_)) {
+    if matches!(file.run.method, Method::Splitting(_) | Method::Processed(_) | Method::Collocation(_)) {
         return with_exact_body(file, &J, h);
     }
     if let Some(Density::Turn(floor)) = file.run.density {
@@ -256,7 +256,7 @@ fn with_exact_body(file: &SceneFile, J: &Inertia, h: f64) -> Result<Box<dyn Scen
     match file.run.method {
         Method::Step | Method::Composition(_) => any!(Stepper::new(scene, h)),
         Method::Splitting(scheme) => any!(Stepper::split(scene, h, ExactBody::new(J), scheme.0)),
-        Method::ProcessedSplitting(scheme) => any!(Stepper::processed(scene, h, ExactBody::new(J), scheme.0)),
+        Method::Processed(scheme) => any!(Stepper::processed(scene, h, ExactBody::new(J), scheme.0)),
         Method::Collocation(Stages::Four) => any!(Stepper::collocated::<2>(scene, h)),
         Method::Collocation(Stages::Eight) => any!(Stepper::collocated::<4>(scene, h)),
     }
