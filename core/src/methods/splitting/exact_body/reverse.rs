@@ -162,9 +162,10 @@ mod tests {
             let (a_squared, b_squared) = (-(a * b_less_a), b * b_less_a);
             let turned = Form { scale, a, b, b_less_a, c_squared: -(a * b), a_squared, b_squared }.turned(u);
             let [w, x, y, z] = turned.map(|part| part.value);
+            let square = w * w + x * x + y * y + z * z;
             [0, 1, 2].map(|k| {
                 let [_, x, y, z] = product(turned.map(|part| part.slopes[k]), [w, -x, -y, -z]);
-                (x * c[0] + y * c[1] + z * c[2]) * real(2.0) / (w * w + x * x + y * y + z * z)
+                (x * c[0] + y * c[1] + z * c[2]) * real(2.0) / square
             })
         };
         let [x, y, z] = of([form.a, form.b].map(Dual::constant), [0, 1, 2].map(|k| Dual::along(u[k], k)));
