@@ -250,7 +250,8 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for ProcessedSplitting<S,
         Ok(all + u64::from(iterations))
     }
 
-    /// What is inside belongs to the momentum before.
+    /// What is inside belongs to the momentum before. Without an impulse nothing is added: what is carried is that of the
+    /// sums inside.
     fn push<M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
         _scene: &S,
@@ -258,8 +259,8 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for ProcessedSplitting<S,
         kept: &mut Self::Kept,
         impulse: &Vector3<Scalar<S>>,
     ) -> Result<(), StepError> {
-        motion.push(impulse);
         if !impulse.iter().all(|part| part.simd_eq(real(0.0)).all()) {
+            motion.push(impulse);
             kept.0 = None;
         }
         Ok(())
