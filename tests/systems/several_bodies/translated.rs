@@ -214,6 +214,23 @@ fn two_bodies_that_attract_each_other() {
     assert_eq!(TwoBodies::<f64>::APART, <Pair as liestep::groups::LieGroup>::FACTORS);
 }
 
+/// How far the momentum of both and their angular momentum are off after each tenth of a run, relative to what moves.
+fn off(steps: u64) -> [[f64; 2]; 10] {
+    let data = &read("several bodies")["two_bodies"];
+    let (stepper, mut state) = started(two_bodies(&data["parameters"]), 0.01, pair(&data["states"][0]));
+    let (p, l) = whole(&state);
+    [(); 10].map(|()| {
+        stepper.run(&mut state, steps / 10).unwrap();
+        let (now_p, now_l) = whole(&state);
+        [(now_p - p).norm(), (now_l - l).norm() / l.norm()]
+    })
+}
+
+#[test]
+fn momenta_of_two_bodies() {
+    for steps in [10_000, 100_000, 1_000_000] { let start = std::time::Instant::now(); println!("{steps}: {:?} {:?}", off(steps), start.elapsed()); }
+}
+
 /// As a system, of bodies and of what is between them, they move as the oscillator that they are, and turn freely.
 #[test]
 fn a_system_of_bodies_that_are_translated() {

@@ -130,7 +130,8 @@ const DIAMOND: &str = "∂l/∂w ⋄ w";
 /// (1.4) with (2.2), on SO(3) in cross products.
 fn momentum_rate(derived: &Continuous, has_moved: bool) -> Equation {
     let force = moved_by(DIAMOND, &seen(derived));
-    let source = if has_moved { format!("(1.4) and (2.2): ad*_ξ μ + {force}") } else { "(1.4): ad*_ξ μ".to_owned() };
+    let source =
+        if has_moved { format!("(1.4) and (2.2): ad*_ξ μ + {force}") } else { "(1.4): ad*_ξ μ".to_owned() };
     if derived.group.is_product() {
         return Equation::new("momentum_rate", "dμ/dt", momentum_rates(derived), &(source + ", of each"));
     }
