@@ -385,7 +385,7 @@ fn adjoint(findings: &Findings, w: &[String]) -> String {
         ),
         SelfAdjointness::No => ("≠", "at random points", "order 1 in general; a step of −h doesn't undo a step of h"),
     };
-    let [here, there] = ["", "F⁻¹·"].map(|turned| w.iter().map(|w| format!("{turned}{w}, ")).collect::<String>());
+    let [here, there] = ["", "F⁻¹·"].map(|turned| w.iter().fold(String::new(), |all, w| all + turned + w + ", "));
     format!("l_d(F, {here}h) {sign} −l_d(F⁻¹, {there}−h)    [{how}: {consequence}]")
 }
 

@@ -314,7 +314,7 @@ pub(in crate::emit) fn section(declaration: &Declaration, equations: &Equations)
     let limit = if declaration.continuous.is_some() && declaration.discretisation().is_none() {
         String::new()
     } else {
-        let w: String = names(declaration).iter().map(|name| format!(", {name}")).collect();
+        let w = names(declaration).iter().fold(String::new(), |w, name| w + ", " + name);
         format!("    l_d(exp(h {xi}){w}, h) = h l({xi}{w}) + O(h²)    [at random points, exactly, without a bound]\n")
     };
     let certainty = certified("the equations", equations.sureness);
