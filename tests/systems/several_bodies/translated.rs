@@ -243,7 +243,7 @@ fn momenta_of_two_bodies() {
     assert!(p < 1e-15 && l < 5e-14, "{p:e} {l:e}");
 }
 
-/// Where the centre of mass goes 280 m, the places have so many fewer digits: 1.8e-12.
+/// Where the centre of mass goes 280 m a place is rounded to 6e-14 m, which is 1.8e-12 of the angular momentum.
 #[test]
 #[ignore = "twenty seconds: `cargo test -p liestep-tests --test systems momenta_of_two_bodies -- --ignored`"]
 fn momenta_of_two_bodies_after_a_million_steps() {
