@@ -4,6 +4,7 @@
 //! cargo bench --bench scenes                       times a step of every scene
 //! cargo bench --bench scenes -- instructions       counts the instructions of a step of every scene, by valgrind
 //! cargo bench --bench scenes -- files              counts those of scenes from files
+//! cargo bench --bench scenes -- members            times the members of a file's ensemble
 //! cargo bench --bench scenes -- zero-cost          counts those of the free body here and in a program of its own
 //! cargo bench --bench scenes -- count NAME 1000    runs 1000 steps of one scene and nothing else
 //! ```
@@ -142,6 +143,7 @@ fn main() -> Result<(), Uncounted> {
             Ok(files::run(tables, steps.parse()?)?)
         }
         ["files"] => from_files(),
+        ["members"] => files::members(),
         ["instructions"] => {
             let mut all = Instructions(Ok(()));
             visit_all(&mut all);

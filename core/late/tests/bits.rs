@@ -18,7 +18,8 @@ use liestep::groups::{CayleyRetraction, CovariantTensor, LieGroup as _, Retracti
 use liestep::lagrangian;
 use liestep::laws::samples::Random;
 use liestep::mechanics::{
-    DiagonalNonstandardInertia, Effect, Inertia, SecondDerivatives, Vector, WithEitherKinetic, WithoutKinetic,
+    DiagonalNonstandardInertia, Effect, Inertia, OnlyKicks, SecondDerivatives, Vector, WithEitherKinetic,
+    WithoutKinetic,
 };
 use liestep::motion::Batch;
 use liestep::numbers::{Coordinates as _, Entries as _};
@@ -101,6 +102,9 @@ macro_rules! as_compiled_beside {
             let compiled = random!(seed, $name { $($field)* });
             let late: Late<_, _, WithoutKinetic> = Late::like(&compiled).expect("a declaration");
             assert_same(&(body() + compiled), &(body() + late), seed);
+            if let Ok(kicks) = Late::<_, _, OnlyKicks>::like(&compiled) {
+                assert_same(&(body() + compiled), &(body() + kicks), seed);
+            }
         })+
     };
 }
@@ -215,6 +219,7 @@ fn sums_of_what_is_read() {
     let late_drag: Late<_, (), WithoutKinetic> = Late::like(&drag).expect("a declaration");
     let late_gravity: Late<_, Vector3<f64>, WithoutKinetic> = Late::like(&gravity).expect("a declaration");
     assert_same(&(body + drag + gravity), &(late + late_drag + late_gravity), 4);
+    assert!(Late::<SO3, (), OnlyKicks>::like(&drag).is_err() && Late::<_, _, OnlyKicks>::like(&gravity).is_ok());
     let body = random!(1, FourthOrderBody { J });
     let late: Late<_, (), WithEitherKinetic> = Late::like(&body).expect("a declaration");
     let late_gravity: Late<_, Vector3<f64>, WithoutKinetic> = Late::like(&gravity).expect("a declaration");
