@@ -62,7 +62,9 @@ pub(crate) fn members() -> Result<(), Uncounted> {
         }
         making = making.min(clock.elapsed().as_secs_f64() * 1e6 / f64::from(MEMBERS));
         let clock = Instant::now();
-        batch.iter_mut().for_each(|batch| batch.run(MEMBERS.into()));
+        if let Some(batch) = &mut batch {
+            batch.run(MEMBERS.into());
+        }
         stepping = stepping.min(clock.elapsed().as_secs_f64() * 1e6 / f64::from(8 * MEMBERS));
     }
     println!("a member: {making:.2} µs of its own; in lanes of eight: {:.1} million steps a second", 1.0 / stepping);

@@ -20,11 +20,11 @@ const BUDGETS: [(&str, usize, usize); 40] = [
     ("core/src/conventions", 12, 0), ("core/src/guide", 19, 0), ("core/tests", 990, 0), ("macros/src", 234, 0),
     ("macros/derivation/src/lib", 28, 0), ("macros/derivation/src/expand", 3004, 0),
     ("macros/derivation/src/staged", 703, 0), ("macros/derivation/src/emit", 3697, 0),
-    ("macros/derivation/src/judged", 5751, 0), ("macros/derivation/src/declared", 5169, 0),
-    ("macros/derivation/src/program", 2481, 0), ("macros/derivation/src/mathematics", 4599, 0),
-    ("core/late", 3431, 0), ("core/machine", 930, 0), ("core/python", 1815, 0), ("core/scene", 5552, 0), ("core/cli", 3005, 0),
+    ("macros/derivation/src/judged", 5741, 0), ("macros/derivation/src/declared", 5169, 0),
+    ("macros/derivation/src/program", 2481, 0), ("macros/derivation/src/mathematics", 4576, 0),
+    ("core/late", 3421, 0), ("core/machine", 930, 0), ("core/python", 1815, 0), ("core/scene", 5552, 0), ("core/cli", 3005, 0),
     ("core/plot", 790, 0), ("core/ensemble", 5033, 0), ("core/arrow", 215, 0), ("core/control", 2507, 0), ("examples", 11592, 0),
-    ("tests", 23721, 0), ("tests/ui", 1694, 0),
+    ("tests", 23713, 0), ("tests/ui", 1694, 0),
 ];
 
 /// The circles that are still there. Lines may go, and none be added.
