@@ -210,7 +210,9 @@ fn first_passages_are_those_of_each_member_alone() {
         }
         // All crossings, and not only the first, are the same in lanes.
         let shards = [false, true].map(|lanes| chunks(&tops(MEMBERS, STEPS).section(section(lanes))));
-        shards.iter().for_each(|shards| assert_passages(shards));
+        for shards in &shards {
+            assert_passages(shards);
+        }
         let all = shards.map(|shards| found(&shards, 0));
         assert!(all[0] == all[1] && all[0].len() > expected.len());
     }
@@ -220,8 +222,8 @@ fn first_passages_are_those_of_each_member_alone() {
 fn assert_passages(shards: &[Shard]) {
     for Shard { rows, outcome, .. } in shards {
         let has_ended = |member: u64| {
-            let own = (0..rows.member.len()).filter(|row| rows.member[*row] == member);
-            own.last().is_some_and(|row| matches!(rows.status[row], Status::Finished | Status::Left))
+            let mut own = (0..rows.member.len()).filter(|row| rows.member[*row] == member);
+            own.next_back().is_some_and(|row| matches!(rows.status[row], Status::Finished | Status::Left))
         };
         let crossings = &rows.crossings[0];
         let members = crossings.row.iter().map(|row| rows.member[*row]);
