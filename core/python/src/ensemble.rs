@@ -7,18 +7,19 @@ use std::time::Duration;
 
 use liestep::groups::LieGroup;
 use liestep::motion::{AnyStepper, Integrator as _};
+use liestep::numbers::Entries as _;
 use liestep::recording::Column;
 use liestep_ensemble::{Ensemble, Local, Member, MemberFailure, Progress, Report, Store};
 use pyo3::prelude::*;
 
 use crate::failure::Failure;
-use crate::run::{Start, listed, steps_to};
+use crate::run::{Start, steps_to};
 use crate::table::Columns;
 
 /// What is drawn: of which parameter, `velocity` or `attitude` among them, which number, and from what.
 #[derive(Clone, FromPyObject)]
 pub(crate) struct Draw {
-    of: String,
+    pub(crate) of: String,
     place: usize,
     /// `normal` with mean and deviation, `uniform` from the first to below the second.
     kind: String,
@@ -106,14 +107,18 @@ where
     }
     let columns = kept::<G>();
     let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
-    ensemble = ensemble.keep_named(&names, |run, row| {
+    let attitude_numbers = G::named_numbers().len();
+    ensemble = ensemble.keep_named(&names, move |run, row| {
         let (stepper, state) = (run.stepper, run.state);
-        let mut attitude = vec![0.0; G::named_numbers().len()];
-        state.attitude().write_numbers(&mut attitude);
         let (velocity, energy) = stepper.velocity_and_energy(state, None);
-        let numbers = std::iter::once(stepper.time(state)).chain(attitude).chain(listed(&velocity));
-        let numbers = numbers.chain(listed(&state.momentum())).chain([energy]);
-        row.iter_mut().zip(numbers).for_each(|(place, number)| *place = number);
+        let (attitude, others) = row[1..].split_at_mut(attitude_numbers);
+        state.attitude().write_numbers(attitude);
+        let mut places = others.iter_mut();
+        let mut write = |number| places.next().into_iter().for_each(|place| *place = number);
+        velocity.each(&mut write);
+        state.momentum().each(&mut write);
+        write(energy);
+        row[0] = stepper.time(state);
     });
     let store = Store::folder(&plan.folder).map_err(|error| store_error(&error))?;
     let report = in_threads(&ensemble, &store, &plan)?;

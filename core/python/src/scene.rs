@@ -112,7 +112,8 @@ where
     }
 
     fn members(&self, method: (Method, f64), start: &Start, draws: Draws, plan: Members) -> Result<Outcome, Failure> {
-        let (own, (method, h)) = (self.clone(), method);
+        let (mut own, (method, h)) = (self.clone(), method);
+        own.numbers.retain(|(name, _)| draws.iter().any(|draw| draw.of == *name));
         if own.lagrangian.declaration().energy.is_some() || method.varies() {
             let message =
                 "members make the same number of steps, and those of a pace or a density end at different times";

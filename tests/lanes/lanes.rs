@@ -1,5 +1,5 @@
-//! Steps a second of eight heavy tops (3.13), and of eight scenes of several bodies, on one core: one after another, and in
-//! SIMD lanes.
+//! Steps a second of eight heavy tops (3.13) on one core: one after another, and in SIMD lanes. `lanes_of_systems.rs` has
+//! those of several bodies.
 //!
 //! ```text
 //! cargo bench --bench lanes                                    scalars by the target's common instructions
@@ -20,15 +20,14 @@
 //! each counts: what else the machine does only slows, and slows the longer batches more often, so that medians would
 //! flatter the lanes.
 
+#[path = "../benches/counting.rs"]
 mod counting;
-mod eight_scenes;
 mod eight_tops;
 
 use core::hint::black_box;
 use std::time::Instant;
 
 use liestep::methods::{Chain, Link};
-use liestep::motion::{Batch, Batchable, Integrator};
 use liestep::numbers::{Bodies, Lanes as _, Real};
 use liestep::prelude::*;
 use nalgebra::{RealField, Vector3};
@@ -109,44 +108,6 @@ fn compare<T, const LANES: usize, const N: usize>(
     println!("{name:<20}{slow:>12.1}{fast:>12.1}{:>12.2}", fast / slow);
 }
 
-/// A scene of several bodies, each of which starts otherwise.
-struct Several;
-
-impl eight_scenes::Visit for Several {
-    fn visit<M>(&mut self, name: &str, scenes: [(M, M::State); TOPS])
-    where
-        M: Batchable<AutoF64x8> + Integrator<State: PartialEq + core::fmt::Debug>,
-    {
-        let mut batch = Batch::<AutoF64x8, M>::new(&scenes).expect("scenes that are alike");
-        let mut alone = scenes;
-        let steps = u64::from(BATCH);
-        let run = |alone: &mut [(M, M::State); TOPS]| {
-            for (stepper, state) in alone {
-                stepper.run(state, steps).expect("solvable steps");
-            }
-        };
-        run(&mut alone);
-        batch.run(steps);
-        for (number, (_, state)) in alone.iter().enumerate() {
-            assert_eq!(&batch.state(number), state, "{name} {number}");
-        }
-        let (mut fast, mut slow) = (f64::INFINITY, f64::INFINITY);
-        for _ in 0..ROUNDS / 20 {
-            slow = slow.min(seconds(|| run(black_box(&mut alone))));
-            fast = fast.min(seconds(|| black_box(&mut batch).run(steps)));
-        }
-        #[allow(clippy::cast_precision_loss)] // eight
-        let made = f64::from(BATCH) * TOPS as f64 / 1e6;
-        println!("{name:<20}{:>12.2}{:>12.2}{:>12.2}", made / slow, made / fast, slow / fast);
-    }
-}
-
-fn seconds(run: impl FnOnce()) -> f64 {
-    let start = Instant::now();
-    run();
-    start.elapsed().as_secs_f64()
-}
-
 fn count(kernel: &str, steps: u32) {
     match kernel {
         "f64" => run(black_box(&mut core::array::from_fn::<_, TOPS, _>(single::<f64>)), steps),
@@ -209,7 +170,5 @@ fn main() -> Result<(), Uncounted> {
     let two = [lanes::<WideF64x4>(0), lanes::<WideF64x4>(4)];
     compare::<WideF64x4, 4, 2>("f64, two WideF64x4", two, core::array::from_fn(single));
     compare::<WideF32x8, 8, 1>("f32, WideF32x8", [lanes::<WideF32x8>(0)], core::array::from_fn(single));
-    println!("\n{:<20}{:>12}{:>12}{:>12}", "AutoF64x8", "alone", "in lanes", "ratio");
-    eight_scenes::visit_all(&mut Several);
     Ok(())
 }

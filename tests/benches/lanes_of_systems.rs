@@ -1,25 +1,28 @@
-//! Scenes of several bodies. Each stands eight times, from eight different starts.
+//! Steps a second of eight scenes of several bodies on one core: one after another, and in SIMD lanes.
+//!
+//! ```text
+//! cargo bench --bench lanes-of-systems
+//! ```
+//!
+//! The eight start each from another state. They make the same steps alone and in lanes, which is asserted before they are
+//! timed, and take turns within one run; the fastest batch of each counts, as in `lanes`.
 
 use core::array::from_fn;
 use core::fmt::Debug;
+use core::hint::black_box;
+use std::time::Instant;
 
 use declarations::{Alike, DoublePendulum, TopOnCart, TwoBodies};
 use liestep::effects::PrincipalBody;
 use liestep::groups::{R2, R3};
 use liestep::mechanics::{Along, DiagonalNonstandardInertia, Each};
-use liestep::motion::{Batchable, Integrator};
+use liestep::motion::{Batch, Batchable, Integrator};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, Stepper};
 use nalgebra::{SVector, Vector2, Vector3};
 use simba::simd::AutoF64x8;
 
-/// What is done with each scene.
-pub(crate) trait Visit {
-    fn visit<M>(&mut self, name: &str, scenes: [(M, M::State); 8])
-    where
-        M: Batchable<AutoF64x8> + Integrator<State: PartialEq + Debug>;
-}
-
+const SCENES: usize = 8;
 const STEP: f64 = 0.01;
 
 /// A small turn that is another for each scene and body.
@@ -39,8 +42,45 @@ fn body() -> NonstandardInertia {
     NonstandardInertia::from_principal_moments(Vector3::new(0.5, 0.4, 1.0 / 3.0)).expect("a body")
 }
 
-/// So many bodies, neighbours of which would like to stand alike.
-fn row<const N: usize>(visit: &mut impl Visit) {
+/// Steps of each scene in a batch, and how often batches take turns.
+const BATCH: u64 = 500;
+const ROUNDS: usize = 200;
+
+/// Eight scenes one after another, and in lanes.
+fn compare<M>(name: &str, scenes: [(M, M::State); SCENES])
+where
+    M: Batchable<AutoF64x8> + Integrator<State: PartialEq + Debug>,
+{
+    let mut batch = Batch::<AutoF64x8, M>::new(&scenes).expect("scenes that are alike");
+    let mut alone = scenes;
+    let run = |alone: &mut [(M, M::State); SCENES]| {
+        for (stepper, state) in alone {
+            stepper.run(state, BATCH).expect("solvable steps");
+        }
+    };
+    run(&mut alone);
+    batch.run(BATCH);
+    for (number, (_, state)) in alone.iter().enumerate() {
+        assert_eq!(&batch.state(number), state, "{name} {number}");
+    }
+    let (mut fast, mut slow) = (f64::INFINITY, f64::INFINITY);
+    for _ in 0..ROUNDS {
+        slow = slow.min(seconds(|| run(black_box(&mut alone))));
+        fast = fast.min(seconds(|| black_box(&mut batch).run(BATCH)));
+    }
+    #[allow(clippy::cast_precision_loss)] // some thousand steps
+    let made = (BATCH * SCENES as u64) as f64 / 1e6;
+    println!("{name:<20}{:>12.2}{:>12.2}{:>12.2}", made / slow, made / fast, slow / fast);
+}
+
+fn seconds(run: impl FnOnce()) -> f64 {
+    let start = Instant::now();
+    run();
+    start.elapsed().as_secs_f64()
+}
+
+/// A row of bodies, neighbours of which are drawn to the same attitude.
+fn row<const N: usize>() {
     let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.0)).expect("a body");
     let scene = Each::<N>::of([PrincipalBody { J_d }]) + Along::<N>::of([Alike { kappa: 2.0 }]);
     let started = |number: usize| {
@@ -49,11 +89,12 @@ fn row<const N: usize>(visit: &mut impl Visit) {
         let state = stepper.start(from_fn::<_, N, _>(|body| turn(number, body)), velocities).expect("a usable start");
         (stepper, state)
     };
-    visit.visit(&format!("row of {N}"), from_fn(started));
+    compare(&format!("row of {N}"), from_fn(started));
 }
 
-pub(crate) fn visit_all(visit: &mut impl Visit) {
-    visit.visit(
+fn main() {
+    println!("{:<20}{:>12}{:>12}{:>12}", "10⁶ steps a second", "alone", "in lanes", "ratio");
+    compare(
         "double pendulum",
         from_fn(|number| {
             let stepper = Stepper::new(DoublePendulum::asymmetric(), STEP).expect("a usable step");
@@ -61,7 +102,7 @@ pub(crate) fn visit_all(visit: &mut impl Visit) {
             (stepper, state)
         }),
     );
-    visit.visit(
+    compare(
         "top on a cart",
         from_fn(|number| {
             let top = TopOnCart { J_d: body(), s: Vector3::z() * 0.4, M: 2.0, g: 9.81 };
@@ -71,7 +112,7 @@ pub(crate) fn visit_all(visit: &mut impl Visit) {
             (stepper, state)
         }),
     );
-    visit.visit(
+    compare(
         "two-body problem",
         from_fn(|number| {
             let (K_1, K_2) = (body(), body());
@@ -87,6 +128,6 @@ pub(crate) fn visit_all(visit: &mut impl Visit) {
             (stepper, state)
         }),
     );
-    row::<4>(visit);
-    row::<32>(visit);
+    row::<4>();
+    row::<32>();
 }
