@@ -3,7 +3,7 @@
 pub use core;
 pub use nalgebra;
 
-// What asks a group of one's own for its generators, and declares it.
+// What asks a user's group for its generators, and declares it.
 pub use liestep_macros::{constraint, force, lagrangian, matrix_group};
 
 // What a declaration becomes.

@@ -1,4 +1,4 @@
-//! A joint of one's own.
+//! A joint that the library doesn't have.
 
 use liestep::SetupError;
 use liestep::methods::{Constraint, Place, Slope};

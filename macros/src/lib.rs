@@ -34,7 +34,7 @@ use liestep_derivation::Role;
 /// .component_mul(&v) .powi(n) .sqrt() .ln() .exp() .sin() .cos()`, indexing, decimal literals, and five functions:
 /// `hat(v)`, the matrix `Σ v_k E_k` of the Lie algebra; `vee(A)`, the vector of `½ (A − Aᵀ)`; `log(F)`, the rotation
 /// vector of a rotation; `exp(v)`, the rotation by a vector; and `inverse(J)` of a field or of `F`. A `let` may name a
-/// function of one's own, `let U = |y: Vector3<f64>| …;`, as a potential that both ends of a step have. A large Lagrangian
+/// function, `let U = |y: Vector3<f64>| …;`, as a potential that both ends of a step have. A large Lagrangian
 /// is best written with `let`s: what isn't cheaper multiplied out is differentiated through them, by multipliers.
 ///
 /// # Several bodies
@@ -181,7 +181,7 @@ pub fn constraint(arguments: proc_macro::TokenStream, item: proc_macro::TokenStr
     derivation::expand(Role::Constraint, arguments.into(), &item.into()).into()
 }
 
-/// Declares a matrix group of one's own: a type alias for it, and its generators, written once.
+/// Declares a matrix group: a type alias for it, and its generators, written once.
 ///
 /// ```text
 /// matrix_group! {

@@ -1,4 +1,4 @@
-//! A group of one's own: the affine maps `x ↦ a x + b` of the line, `a > 0`.
+//! A group that the library doesn't have: the affine maps `x ↦ a x + b` of the line, `a > 0`.
 
 use liestep::groups::{Generators, MatrixGroup};
 use nalgebra::{RealField, SMatrix};

@@ -93,31 +93,33 @@ struct SymmetricAddedMass {
 // A constant: a composition that needs it can ask at compile time.
 const _: () = assert!(FullTop::SELF_ADJOINT && !OneEnd::SELF_ADJOINT);
 
-/// What the constant says, if the text says it with these words.
-fn found<L: DiscreteLagrangian>(words: &str) -> Option<bool> {
-    let line = L::DERIVATION.lines().find(|line| line.contains("l_d(F, w, h)"));
-    line.filter(|line| line.contains(words)).map(|_| L::SELF_ADJOINT)
+/// What the constant says, if the text says it with this sign, and how it was found with these words.
+fn found<L: DiscreteLagrangian>(sign: &str, how: &str) -> Option<bool> {
+    let (sign, how) = (format!(" {sign} −l_d(F⁻¹, "), format!(" −h)    [{how}"));
+    let mut lines = L::DERIVATION.lines().filter(|line| line.contains(&sign) && line.contains(&how));
+    lines.next().map(|_| L::SELF_ADJOINT)
 }
 
 #[test]
 fn it_is_found_by_the_normal_forms() {
-    let words = "= −l_d(F⁻¹, F⁻¹·w, −h)    [by the normal forms";
-    assert_eq!([found::<FullTop>(words), found::<CayleyTop>(words), found::<LogTrace>(words)], [Some(true); 3]);
+    let found = [found::<FullTop>, found::<CayleyTop>, found::<LogTrace>].map(|of| of("=", "by the normal forms"));
+    assert_eq!(found, [Some(true); 3]);
 }
 
 #[test]
 fn it_is_found_at_random_points() {
-    let words = "= −l_d(F⁻¹, F⁻¹·w, −h)    [at random points, a wrong one would pass with a probability below 2⁻";
-    assert_eq!([found::<Body>(words), found::<SymmetricAddedMass>(words), found::<Attracted>(words)], [Some(true); 3]);
-    assert_eq!([found::<OrbitingBody>(words), found::<TetheredPlate>(words)], [Some(true); 2]);
+    let how = "at random points, a wrong one would pass with a probability below 2⁻";
+    let all = [found::<Body>, found::<SymmetricAddedMass>, found::<Attracted>];
+    let all = all.into_iter().chain([found::<OrbitingBody>, found::<TetheredPlate>]);
+    assert!(all.map(|of| of("=", how)).all(|found| found == Some(true)));
 }
 
 #[test]
 fn it_is_missing() {
-    let words = "≠ −l_d(F⁻¹, F⁻¹·w, −h)    [at random points";
-    assert_eq!([found::<OneEnd>(words), found::<AddedMass>(words)], [Some(false); 2]);
-    let words = "≠ −l_d(F⁻¹, F⁻¹·w, −h)    [equal, at random points, if all vectors have 1 for their last coordinate";
-    assert_eq!(found::<AttractedVector>(words), Some(false));
+    let how = "at random points";
+    assert_eq!([found::<OneEnd>("≠", how), found::<AddedMass>("≠", how)], [Some(false); 2]);
+    let how = "equal, at random points, if all vectors have 1 for their last coordinate";
+    assert_eq!(found::<AttractedVector>("≠", how), Some(false));
 }
 
 /// The promise is among the hypotheses, where it is used: of the four coordinates three are left.

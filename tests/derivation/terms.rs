@@ -58,13 +58,15 @@ struct Everything<T: Real> {
     field: Vector3<T>,
 }
 
-/// Smooth functions: the logarithmic kinetic term of Bobenko and Suris, a spring, an oscillating field.
+/// Smooth functions: the logarithmic kinetic term of Bobenko and Suris, a spring, an oscillating field, a turn by what is
+/// advected.
 #[lagrangian(
     group = SO3,
     advected(w = up),
     l_d = -(2.0 * k / h) * ((1.0 + F.trace()) / 4.0).ln()
         - h * k * ((F * rho - w).norm() + (k * w.dot(&rho)).sin() + (w.dot(&(F * rho)) / k).exp())
-        - h / (3.0 + (F * rho).dot(&w).powi(2)) + h * (w.dot(&(F.transpose() * rho))).cos(),
+        - h / (3.0 + (F * rho).dot(&w).powi(2)) + h * (w.dot(&(F.transpose() * rho))).cos()
+        + h * k * (exp(w)[(0, 2)] + exp(w.cross(&(F * rho)) * k)[(1, 2)]),
 )]
 struct Smooth<T: Real> {
     k: T,

@@ -1,4 +1,4 @@
-//! A kind of parameter of one's own, and what is computed for a group of one's own, the affine maps `x ↦ a x + b`. How to
+//! A user's kind of parameter, and what is computed for a user's group, the affine maps `x ↦ a x + b`. How to
 //! declare it, with its laws as tests, is `examples/how-to-add-a-group.rs`.
 
 use checks::affine::Affine;
@@ -10,7 +10,7 @@ mod density {
     liestep::advected_laws!(super::Affine, super::Density);
 }
 
-/// A parameter of one's own: a mass per length, which a map that stretches the line by `a` divides by `a`.
+/// A user's parameter: a mass per length, which a map that stretches the line by `a` divides by `a`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Density(f64);
 

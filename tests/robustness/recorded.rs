@@ -193,7 +193,7 @@ fn what_cannot_be_recorded_ends_the_run() {
     recorder.finish().unwrap();
     assert_eq!(calls.seen(), (&[3, 3, 2, 1, 1][..], 1));
 
-    // An observer of one's own.
+    // An observer that a user writes.
     let error = stepper.observed(&mut start.clone()).every(3, |_| Err::<(), _>("enough")).steps(10).unwrap_err();
     assert!(matches!(error, RunError::Observer { time: 0.0, .. }) && error.to_string().ends_with("enough"));
     let mut state = start;

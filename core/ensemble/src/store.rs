@@ -241,7 +241,7 @@ impl Store {
     }
 
     /// The chunks that are there, by their names, and what is wrong with other files. Read are the files of chunks that have
-    /// two, of one's own chunks the beginning of one file, whether it is of this plan, and [all](Self::verified) if asked for.
+    /// two, of the share's own chunks the beginning of one file, whether it is of this plan, and [all](Self::verified) if asked for.
     pub(crate) fn look(
         &self,
         plan: u64,

@@ -18,13 +18,13 @@ const BUDGETS: [(&str, usize, usize); 40] = [
     ("core/src/motion", 3564, 30), ("core/src/gradients", 1850, 13), ("core/src/methods", 7974, 28),
     ("core/src/recording", 1909, 14), ("core/src/with", 1707, 7), ("core/src/accuracy", 1829, 16),
     ("core/src/conventions", 12, 0), ("core/src/guide", 19, 0), ("core/tests", 990, 0), ("macros/src", 234, 0),
-    ("macros/derivation/src/lib", 28, 0), ("macros/derivation/src/expand", 2996, 0),
-    ("macros/derivation/src/staged", 700, 0), ("macros/derivation/src/emit", 3697, 0),
-    ("macros/derivation/src/judged", 5741, 0), ("macros/derivation/src/declared", 5169, 0),
+    ("macros/derivation/src/lib", 28, 0), ("macros/derivation/src/expand", 3037, 0),
+    ("macros/derivation/src/staged", 700, 0), ("macros/derivation/src/emit", 3729, 0),
+    ("macros/derivation/src/judged", 5733, 0), ("macros/derivation/src/declared", 5179, 0),
     ("macros/derivation/src/program", 2470, 0), ("macros/derivation/src/mathematics", 4554, 0),
     ("core/late", 3394, 0), ("core/machine", 930, 0), ("core/python", 1821, 0), ("core/scene", 5564, 0), ("core/cli", 2969, 0),
     ("core/plot", 790, 0), ("core/ensemble", 5062, 0), ("core/arrow", 215, 0), ("core/control", 2507, 0), ("examples", 11592, 0),
-    ("tests", 23671, 0), ("tests/ui", 1694, 0),
+    ("tests", 23771, 0), ("tests/ui", 1757, 0),
 ];
 
 /// The circles that are still there. Lines may go, and none be added.

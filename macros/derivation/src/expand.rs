@@ -21,7 +21,7 @@ pub fn expand(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenSt
     }
 }
 
-/// The items of a group of one's own, or its mistakes.
+/// The items of a user's group, or its mistakes.
 #[must_use]
 pub fn matrix_group(tokens: TokenStream) -> TokenStream {
     let mut errors = Errors::default();

@@ -1,7 +1,9 @@
 //! How the compiler shows our messages: what they underline, and that who uses the struct reads no second one.
 
+use liestep::groups::{R3, matrix_group};
 use liestep::mechanics::{Effect, Term as _};
-use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::methods::Constraint;
+use liestep::{NonstandardInertia, SO3, Stepper, constraint, lagrangian};
 use nalgebra::{Translation3, Vector3};
 
 macro_rules! use_of {
@@ -156,6 +158,67 @@ struct VectorAddedToScalar {
     rho: Vector3<f64>,
 }
 
+// What isn't read doesn't add a message where it is used.
+#[lagrangian(group(I = SO3), l_d = ((I - I) * J_d * (I - I).transpose()).trace() / (2.0 * h))]
+struct IncrementCalledAsTheIdentity {
+    J_d: NonstandardInertia,
+}
+
+#[lagrangian(group = SO3, advected(w = up), l_d = (F * J_d).trace() / h - h * w.z)]
+struct AdvectedText {
+    J_d: NonstandardInertia,
+    up: String,
+}
+
+#[lagrangian(group = SO3, given(u = missing), l_d = (F * J_d).trace() / h - h * u)]
+struct GivenMissing {
+    J_d: NonstandardInertia,
+}
+
+#[lagrangian(group = SO3, l_d = { use core::f64::consts::PI; PI * (F * J_d).trace() / h })]
+struct UseInABlock {
+    J_d: NonstandardInertia,
+}
+
+#[lagrangian(group = SO3, l_d = (F * J_d).trace() / h; gradients)]
+struct Semicolon {
+    J_d: NonstandardInertia,
+}
+
+#[lagrangian(group = SO3,, l_d = (F * J_d).trace() / h)]
+struct TwoCommas {
+    J_d: NonstandardInertia,
+}
+
+#[lagrangian(group = SO3, crate = 3, l_d = (F * J_d).trace() / h)]
+struct CrateIsANumber {
+    J_d: NonstandardInertia,
+}
+
+#[lagrangian(group(d_1 = R3, d_2 = R3), l_d = m * (d_1.dot(&d_2) + d_3.norm_squared()) / (2.0 * h))]
+struct IncrementNotDeclared {
+    m: f64,
+}
+
+#[constraint(group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3), advected(y = d_2.seen_from(d_1)), zero = y.z - k)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct LengthNotDeclared {}
+
+fn held(joint: LengthNotDeclared) -> &'static str {
+    Constraint::<1>::name(&joint)
+}
+
+// A group that is refused is said to be once, and not where a declaration names it.
+matrix_group! {
+    pub type Crooked = [[[1.0, 2.0]]];
+}
+
+#[lagrangian(group = Crooked!, l_d = k * F[(0, 1)].powi(2) / h)]
+struct OnCrooked {
+    k: f64,
+}
+
 fn main() {
+    use_of!(IncrementCalledAsTheIdentity AdvectedText GivenMissing UseInABlock Semicolon TwoCommas CrateIsANumber IncrementNotDeclared);
     use_of!(AdvectedAsAValue AdvectedFieldMissing AdvectedFieldNotAVector ReferenceMissing Enumeration FieldTypeUnknown FieldUnused ScalarsMixed SeveralMistakes TupleStruct GroupMissing GroupUnknown StatementInABlock ArgumentUnknown CommaMissing IntegerLiteral LagrangianMissing LagrangianUnfinished UnknownMethod UnknownName NestedTooDeep NotSmooth LagrangianNotAScalar VectorAddedToScalar);
 }

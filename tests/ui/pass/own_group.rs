@@ -1,4 +1,4 @@
-//! A group of one's own, with its generators written once.
+//! A user's group, with its generators written once.
 
 mod groups {
     use nalgebra::{RealField, SMatrix};

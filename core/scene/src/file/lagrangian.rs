@@ -1,4 +1,4 @@
-//! The table of a Lagrangian or a force of one's own: its text, derived, with the numbers of its parameters.
+//! The table of a Lagrangian or a force that a user declares: its text, derived, with the numbers of its parameters.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

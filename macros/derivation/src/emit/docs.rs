@@ -1,6 +1,6 @@
 //! The derived equations as documentation of the generated methods, and as one text.
 
-use crate::declared::{Declaration, Factor};
+use crate::declared::{AdvectedParameter, Declaration, Factor};
 use crate::judged::{Chosen, Equations, Findings, Sureness};
 use crate::mathematics::derive::{Continuous, Declared, Derived, Inverse, Seen, SelfAdjointness};
 use crate::mathematics::symbolic::{Stage, Variance, covector_text, matrix_text, text, vector_text};
@@ -50,19 +50,21 @@ pub(super) fn equations(derived: &Derived, declared: &Declared, continuous: Opti
     let covector = |expression| covectors(derived, expression);
     let scalar = |expression| text(expression, symbols);
     let equation = Equation::new;
+    let w: Vec<&str> = declared.advected.iter().map(|w| symbols.get(w.symbol).name.as_str()).collect();
+    let at = at(&w);
     let mut equations = vec![
         equation("l_d", "l_d", scalar(&declared.expression), "as declared, in normal form"),
         equation("right_momentum", "(R_F)* δl_d/δF", covector(&derived.right_momentum), "section 3.2.1, item 2"),
         equation("left_momentum", "(L_F)* δl_d/δF", covector(&derived.left_momentum), "section 3.2.1, item 1; (2.6)"),
-        equation("diamond", "δl_d/δw ⋄ w", covector(&derived.diamond), "(2.1)"),
+        equation("diamond", &moved_by("δl_d/δw ⋄ w", &w), covector(&derived.diamond), "(2.1)"),
         equation("legendre_minus", "μ", covector(&derived.momentum), "(2.7)"),
         equation("momentum_jacobian", "∂μ_k along exp(tE_j)F", scalar(&derived.jacobian), "exact, right-trivialised"),
         equation("discrete_energy", "−∂l_d/∂h", scalar(&derived.energy), ""),
         inertia(derived, continuous),
-        equation("momentum_bias", "s", covector(&derived.limit.bias), of_limit(continuous)),
-        equation("potential", "V", scalar(&derived.limit.potential), of_limit(continuous)),
-        equation("kick_before", "k₀", covector(&derived.kick_before), "a = μ + k₀"),
-        equation("kick_after", "k₁⁺", covector(&derived.shown_kick_after), "μ⁺ = Ad*_F a + k₁⁺"),
+        equation("momentum_bias", &format!("s{at}"), covector(&derived.limit.bias), of_limit(continuous)),
+        equation("potential", &format!("V{at}"), scalar(&derived.limit.potential), of_limit(continuous)),
+        equation("kick_before", "k₀", covector(&derived.kick_before), "a step solves U(F) = μ + k₀"),
+        equation("kick_after", "k₁⁺", covector(&derived.shown_kick_after), "μ⁺ = Ad*_F (μ + k₀) + k₁⁺"),
     ];
     let shares = declared.advected.iter().zip(&derived.shares).map(|(w, share)| {
         let name = &symbols.get(w.symbol).name;
@@ -77,9 +79,30 @@ pub(super) fn equations(derived: &Derived, declared: &Declared, continuous: Opti
         }
     }
     if let Some(change) = &derived.kick_derivative {
-        equations.push(equation("kick_derivative", "∂k₀ along exp(−tE_j)·w", covector(change), "the force gradient's"));
+        let left = moved_by("∂k₀ along exp(−tE_j)·w", &w);
+        equations.push(equation("kick_derivative", &left, covector(change), "the force gradient's"));
     }
     equations
+}
+
+/// The names of what is advected.
+pub(super) fn names(declaration: &Declaration) -> Vec<String> {
+    declaration.advected.iter().map(AdvectedParameter::plain_name).collect()
+}
+
+/// `(w, v)`: where something is a function of what is advected.
+pub(super) fn at(w: &[impl AsRef<str>]) -> String {
+    let names = w.iter().map(AsRef::as_ref).collect::<Vec<_>>().join(", ");
+    if names.is_empty() { names } else { format!("({names})") }
+}
+
+/// A formula in `w` with the name of what is advected, or with those of several together.
+pub(super) fn moved_by(formula: &str, w: &[impl AsRef<str>]) -> String {
+    match w {
+        [] => formula.to_owned(),
+        [one] => formula.replace('w', one.as_ref()),
+        several => formula.replace('w', &at(several)),
+    }
 }
 
 /// A covector; of several bodies that of each.
@@ -113,10 +136,10 @@ fn inertia(derived: &Derived, continuous: Option<&Equations>) -> Equation {
     let quadratic = continuous.filter(|equations| equations.derived.inverse != Inverse::Nonlinear);
     let as_matrix = quadratic.and_then(|equations| inertia_matrix(&equations.derived));
     match as_matrix {
-        Some(text) if text.len() <= LONGEST => Equation::new("inertia", "J", text, "continuous limit"),
+        Some(text) if text.len() <= LONGEST => Equation::new("inertia", "𝕀", text, "continuous limit"),
         _ => {
             let text = text(&derived.limit.inertia, &derived.symbols);
-            Equation::new("inertia", "η·Jξ for η̂ = E_k, ξ̂ = E_j", text, of_limit(continuous))
+            Equation::new("inertia", "η·𝕀ξ for η̂ = E_k, ξ̂ = E_j", text, of_limit(continuous))
         }
     }
 }
@@ -131,8 +154,8 @@ pub(super) fn equations_of_force(derived: &Derived, declared: &Declared) -> Vec<
         equation("virtual_work", "f⁻·η + f⁺·η⁺", work, "as declared, with FᵀF = I used"),
         equation("momentum", "−f⁻", covector(&derived.momentum), "the share in (2.7)"),
         equation("momentum_jacobian", "−∂f⁻_k along exp(tE_j)F", jacobian, "exact, right-trivialised"),
-        equation("kick_before", "k₀", covector(&derived.kick_before), "a = μ + k₀"),
-        equation("kick_after", "k₁⁺", covector(&derived.shown_kick_after), "μ⁺ = Ad*_F a + k₁⁺"),
+        equation("kick_before", "k₀", covector(&derived.kick_before), "a step solves U(F) = μ + k₀"),
+        equation("kick_after", "k₁⁺", covector(&derived.shown_kick_after), "μ⁺ = Ad*_F (μ + k₀) + k₁⁺"),
     ]
 }
 
@@ -172,7 +195,7 @@ pub(super) fn derivation(
     };
     let sections = [
         ("hypotheses used", hypotheses),
-        ("self-adjoint", adjoint(findings)),
+        ("self-adjoint", adjoint(findings, &names(declaration))),
         ("certainty", certified(OF_A_STEP, findings.sureness)),
         ("Newton system", candidates(&chosen.kernel)),
         ("operations", costs(&chosen.kernel)),
@@ -279,7 +302,12 @@ pub(super) fn setting(declaration: &Declaration, is_discrete: bool) -> String {
         (false, false) => "g".to_owned(),
     };
     let bodies = if is_product && !is_discrete { format!(", of {increments}") } else { String::new() };
-    format!("group\n    {whole} in {group}{bodies}\n{advected}")
+    let basis = match (is_discrete, is_product) {
+        (false, _) => "",
+        (true, false) => "    E_k, E_j: of the basis of the algebra, μ_k = ⟨μ, E_k⟩\n",
+        (true, true) => "    E_k_1, E_j_1: of the basis of the first factor's algebra, and so on\n",
+    };
+    format!("group\n    {whole} in {group}{bodies}\n{advected}{basis}")
 }
 
 /// `F⁻¹ w` with the names of an increment and of what it moves, which may have the letters of each other.
@@ -298,9 +326,9 @@ fn with_names(formula: &str, increment: &str, moved: &str) -> String {
 /// The unknown of the Newton system, how it is written, and how it might have been.
 pub(super) fn candidates(kernel: &Kernel) -> String {
     let unknown = if kernel.in_increment {
-        "U(F, w) = a along F ↦ exp(tE_j)F, right-trivialised"
+        "U(F) = μ + k₀ along F ↦ exp(tE_j)F, right-trivialised"
     } else {
-        "U(F, w) = a in the Cayley vector y of F, tan(θ/2) along the axis"
+        "U(F) = μ + k₀ in the Cayley vector y of F, tan(θ/2) along the axis"
     };
     let line = |(index, candidate): (usize, &Candidate)| {
         let verdict = if index == 0 { "taken" } else { "rejected" };
@@ -339,7 +367,7 @@ fn superscript(digit: char) -> Option<char> {
 }
 
 /// Whether the Lagrangian is self-adjoint, how that was found, and what follows.
-fn adjoint(findings: &Findings) -> String {
+fn adjoint(findings: &Findings, w: &[String]) -> String {
     let even = "even order; a step of −h undoes a step of h";
     let how_sure = match (findings.sureness, findings.self_adjointness) {
         (Sureness::Certified(exponent), SelfAdjointness::Exact) => wrong(exponent),
@@ -357,7 +385,8 @@ fn adjoint(findings: &Findings) -> String {
         ),
         SelfAdjointness::No => ("≠", "at random points", "order 1 in general; a step of −h doesn't undo a step of h"),
     };
-    format!("l_d(F, w, h) {sign} −l_d(F⁻¹, F⁻¹·w, −h)    [{how}: {consequence}]")
+    let [here, there] = ["", "F⁻¹·"].map(|turned| w.iter().fold(String::new(), |all, w| all + turned + w + ", "));
+    format!("l_d(F, {here}h) {sign} −l_d(F⁻¹, {there}−h)    [{how}: {consequence}]")
 }
 
 #[cfg(test)]

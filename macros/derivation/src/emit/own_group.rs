@@ -1,4 +1,4 @@
-//! A group of one's own: its type, its generators, and a `macro_rules!` macro of its name that hands them on.
+//! A user's group: its type, its generators, and a `macro_rules!` macro of its name that hands them on.
 //!
 //! What one attribute has read another can't know, whatever is written to a file or kept in memory between them: the
 //! compiler may run them in any order, or not at all. A macro of the group's name is found by the rules of names, and

@@ -1,4 +1,4 @@
-//! Kinds of joints, and some of one's own.
+//! Kinds of joints, and some that a user writes.
 
 use core::array::from_fn;
 
@@ -320,7 +320,7 @@ fn a_joint_that_repeats_itself() {
     }
 }
 
-/// A kind of one's own: two bodies on struts. Their ends whip so fast that a step meets places where a strut is as long on
+/// A kind that a user writes: two bodies on struts. Their ends whip so fast that a step meets places where a strut is as long on
 /// its other side; taken there, the energy would be sixty times what it is. Its parameters are checked, and a kind that has
 /// another name and the same numbers doesn't go on from its checkpoints.
 #[test]

@@ -83,9 +83,7 @@ fn known(role: Role) -> Vec<&'static str> {
 
 fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) -> syn::Result<()> {
     let known = known(role);
-    if input.peek(Token![,]) {
-        return Err(input.error("there is one comma too many: remove it"));
-    }
+    one_comma(input)?;
     let Some(key) = key(input, &known) else {
         if !arguments.has_nameless {
             errors.push(input.span(), format!("arguments have names: write `group = SO3`, `{} = …`", role.key()));
@@ -213,10 +211,17 @@ fn is_at_end(input: ParseStream) -> bool {
     input.is_empty() || input.peek(Token![,])
 }
 
+/// A mistake where a comma follows another.
+fn one_comma(input: ParseStream) -> syn::Result<()> {
+    if input.peek(Token![,]) { Err(input.error("there is one comma too many: remove it")) } else { Ok(()) }
+}
+
+fn no_semicolon(input: ParseStream) -> syn::Result<()> {
+    if input.peek(Token![;]) { Err(input.error("a comma stands between arguments: write `,`")) } else { Ok(()) }
+}
+
 fn comma(input: ParseStream) -> syn::Result<()> {
-    if input.peek(Token![;]) {
-        return Err(input.error("a comma stands between arguments: write `,`"));
-    }
+    no_semicolon(input)?;
     if !input.is_empty() {
         let missing = "a comma is missing before this, or within an expression an operator, as in `a * b`";
         input.parse::<Token![,]>().map_err(|_| input.error(missing))?;
@@ -228,8 +233,10 @@ fn comma(input: ParseStream) -> syn::Result<()> {
 fn factors(input: ParseStream, errors: &mut Errors) -> syn::Result<Vec<(Ident, group::Named)>> {
     let mut factors = vec![factor(input, errors)?];
     while !input.is_empty() {
+        no_semicolon(input)?;
         input.parse::<Token![,]>()?;
         if !input.is_empty() {
+            one_comma(input)?;
             factors.push(factor(input, errors)?);
         }
     }
@@ -365,6 +372,7 @@ fn advected_pairs(
 }
 
 fn advected_pair(input: ParseStream) -> syn::Result<(Ident, Source)> {
+    one_comma(input)?;
     if !input.peek(Ident::peek_any) {
         return Err(input.error("write `w = up`: a name for the expression, then the field"));
     }
@@ -387,6 +395,7 @@ fn advected_pair(input: ParseStream) -> syn::Result<(Ident, Source)> {
     let field: Ident = input.parse().map_err(|_| syn::Error::new(span, &message))?;
     if input.peek(Token![.]) {
         let seen = seen(field, input)?;
+        no_semicolon(input)?;
         // What begins with a name is the next one, and a comma is missing.
         if let (Source::Seen { what, from }, false) = (&seen, is_at_end(input) || input.peek(Ident::peek_any)) {
             let message = format!(
@@ -396,6 +405,7 @@ fn advected_pair(input: ParseStream) -> syn::Result<(Ident, Source)> {
         }
         return Ok((name, seen));
     }
+    no_semicolon(input)?;
     if !is_at_end(input) {
         return Err(input.error(message));
     }

@@ -163,11 +163,11 @@ const IN_PRODUCTS: [&str; 4] = ["SO3", "R1", "R2", "R3"];
 const MOST_FACTORS: usize = 4;
 
 /// Mistakes where an increment, of one body or of several, has a name that means something else: it would hide that.
-pub(super) fn check_increments(factors: &[Factor], taken: &Taken, errors: &mut Errors) {
+pub(super) fn check_increments(role: Role, factors: &[Factor], taken: &Taken, errors: &mut Errors) {
     // One that isn't named is `F`, which no other can be.
     for Factor { name, place, .. } in factors.iter().filter(|factor| factor.name != "F") {
         let meaning = if Role::Lagrangian.reserved(true).contains(&name.as_str()) {
-            "already has a meaning in the Lagrangian"
+            &format!("already has a meaning in {}", role.definite())
         } else if name == "space" {
             "is what isn't a body, as in `seen_from(space)`"
         } else if taken.fields.contains(name) {

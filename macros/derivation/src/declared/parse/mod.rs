@@ -128,7 +128,7 @@ pub(crate) fn as_far_as_readable(
             .map(|name| name.unraw().to_string())
             .collect(),
     };
-    group::check_increments(&factors, &taken, errors);
+    group::check_increments(role, &factors, &taken, errors);
     let advected = advected(
         role,
         &arguments.advected,

@@ -1,4 +1,4 @@
-//! A group of one's own: its declaration by `matrix_group!`, and `group = Name!`, which asks it for its generators.
+//! A user's group: its declaration by `matrix_group!`, and `group = Name!`, which asks it for its generators.
 
 use proc_macro2::{TokenStream, TokenTree};
 use syn::parse::{Parse, ParseStream, Parser as _};

@@ -1,7 +1,7 @@
 //! The continuous equations in print.
 
 use crate::declared::{Declaration, FieldKind};
-use crate::emit::docs::{Equation, certified, inertia_matrix, setting};
+use crate::emit::docs::{Equation, at, certified, inertia_matrix, moved_by, names, setting};
 use crate::judged::Equations;
 use crate::mathematics::derive::{Carried, Continuous, Element, Inverse, Seen};
 use crate::mathematics::group::Group;
@@ -51,11 +51,10 @@ pub(super) fn equations(declaration: &Declaration, equations: &Equations) -> Vec
         None => Equation::new(method, &format!("⟨{name}, η⟩"), scalar(expression), source),
     };
     let w = names(declaration);
-    let at: Vec<&str> = velocities(derived).into_iter().chain(w.iter().map(String::as_str)).collect();
-    let at = at.join(", ");
+    let all: Vec<&str> = velocities(derived).into_iter().chain(w.iter().map(String::as_str)).collect();
     let source = if declaration.continuous.is_some() { "as declared, in normal form" } else { "the limit of l_d/h" };
     let mut list = vec![
-        Equation::new("l", &format!("l({at})"), scalar(&derived.lagrangian), source),
+        Equation::new("l", &format!("l{}", at(&all)), scalar(&derived.lagrangian), source),
         paired("momentum", "μ", &derived.momentum, "∂l/∂ξ, (1.14)"),
     ];
     list.push(match inertia_matrix(derived) {
@@ -64,15 +63,16 @@ pub(super) fn equations(declaration: &Declaration, equations: &Equations) -> Vec
     });
     let has_moved = derived.advected.iter().any(is_moved);
     if has_moved {
-        list.push(paired("diamond_rate", "∂l/∂w ⋄ w", &derived.diamond, "(2.1)"));
+        list.push(paired("diamond_rate", &moved_by(DIAMOND, &w), &derived.diamond, "(2.1)"));
     }
     if !derived.advection.is_zero() {
-        list.push(paired("momentum_advection", "(∂²l/∂w∂ξ)(ξ·w)", &derived.advection, "by which μ of a fixed ξ falls"));
+        let left = moved_by("(∂²l/∂w∂ξ)(ξ·w)", &w);
+        list.push(paired("momentum_advection", &left, &derived.advection, "by which μ of a fixed ξ falls"));
     }
     list.push(momentum_rate(derived, has_moved));
     list.extend(advected_rates(declaration, derived));
-    if derived.has_kinetic() && derived.inverse != Inverse::Nonlinear && without_bias(derived) == UNWRITTEN_BIAS {
-        list.push(paired("momentum", "s(w)", &derived.bias(), "μ at rest"));
+    if derived.has_kinetic() && derived.inverse != Inverse::Nonlinear && without_bias(derived) == unwritten(derived) {
+        list.push(paired("momentum", &format!("s{}", at(&w)), &derived.bias(), "μ at rest"));
     }
     list.push(inverse(derived));
     list.push(hamiltonian(derived, &hamiltonian_of(&w)));
@@ -89,11 +89,6 @@ fn of_bodies(derived: &Continuous, expression: &Expression) -> String {
         if found.len() <= LONGEST { found } else { "…, which is long".to_owned() }
     };
     derived.directions.iter().enumerate().map(of_body).collect::<Vec<_>>().join(";  ")
-}
-
-/// The names of what is advected.
-fn names(declaration: &Declaration) -> Vec<String> {
-    declaration.advected.iter().map(crate::declared::AdvectedParameter::plain_name).collect()
 }
 
 fn sum(terms: &[String]) -> String {
@@ -122,22 +117,23 @@ fn momentum_rates(derived: &Continuous) -> String {
         let diamond = of_factor(derived, factor, &derived.diamond);
         let force = vector_text(&diamond, derived.directions[factor][0].components, &derived.symbols);
         let force = force.filter(|text| text.len() <= LONGEST);
-        let force = force.unwrap_or_else(|| format!("(∂l/∂w ⋄ w)_{}", factor + 1));
+        let force = force.unwrap_or_else(|| format!("({})_{}", moved_by(DIAMOND, &seen(derived)), factor + 1));
         let turn = format!("μ_{} × {}", factor + 1, velocities[factor]);
         sum(&if own.is_added { vec![force] } else { vec![turn, force] })
     };
     derived.group.factors().iter().enumerate().map(of_body).collect::<Vec<_>>().join(";  ")
 }
 
+/// (2.1).
+const DIAMOND: &str = "∂l/∂w ⋄ w";
+
 /// (1.4) with (2.2), on SO(3) in cross products.
 fn momentum_rate(derived: &Continuous, has_moved: bool) -> Equation {
+    let force = moved_by(DIAMOND, &seen(derived));
+    let source =
+        if has_moved { format!("(1.4) and (2.2): ad*_ξ μ + {force}") } else { "(1.4): ad*_ξ μ".to_owned() };
     if derived.group.is_product() {
-        let source = if has_moved {
-            "(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w, of each"
-        } else {
-            "(1.4): ad*_ξ μ, of each"
-        };
-        return Equation::new("momentum_rate", "dμ/dt", momentum_rates(derived), source);
+        return Equation::new("momentum_rate", "dμ/dt", momentum_rates(derived), &(source + ", of each"));
     }
     let xi = velocity(derived);
     let momentum = covector(derived, &derived.momentum);
@@ -147,16 +143,15 @@ fn momentum_rate(derived: &Continuous, has_moved: bool) -> Equation {
             sum(&[format!("({momentum}) × {xi}"), diamond])
         }
         (_, _, Some(diamond)) if has_moved && derived.group.is_so3 => sum(&[format!("μ × {xi}"), diamond]),
-        _ if has_moved => format!("ad*_{xi} μ + ∂l/∂w ⋄ w"),
+        _ if has_moved => format!("ad*_{xi} μ + {force}"),
         _ => format!("ad*_{xi} μ"),
     };
-    let source = if has_moved { "(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w" } else { "(1.4): ad*_ξ μ" };
     let left = if derived.inverse == Inverse::Constant && derived.advection.is_zero() && derived.has_kinetic() {
         "dμ/dt = 𝕀 dξ/dt"
     } else {
         "dμ/dt"
     };
-    Equation::new("momentum_rate", &left.replace("ξ", xi), right, source)
+    Equation::new("momentum_rate", &left.replace("ξ", xi), right, &source)
 }
 
 /// (2.2), by the kind of each parameter.
@@ -197,8 +192,15 @@ fn advected_rates(declaration: &Declaration, derived: &Continuous) -> Vec<Equati
     names(declaration).into_iter().enumerate().filter_map(|(index, name)| rate(index, name)).collect()
 }
 
-/// Of a momentum at rest that has a line of its own.
-const UNWRITTEN_BIAS: &str = "μ − s(w)";
+/// The names of what is advected.
+fn seen(derived: &Continuous) -> Vec<&str> {
+    derived.advected.iter().map(|w| derived.symbols.get(w.symbol).name.as_str()).collect()
+}
+
+/// `μ − s(w)`, of a momentum at rest that has a line of its own.
+fn unwritten(derived: &Continuous) -> String {
+    format!("μ − s{}", at(&seen(derived)))
+}
 
 /// `μ − s(w)`.
 fn without_bias(derived: &Continuous) -> String {
@@ -206,7 +208,7 @@ fn without_bias(derived: &Continuous) -> String {
         _ if derived.bias().is_zero() => "μ".to_owned(),
         Some(bias) if !bias.contains(" + ") && !bias.contains('−') => format!("μ − {bias}"),
         Some(bias) => format!("μ − ({bias})"),
-        None => UNWRITTEN_BIAS.to_owned(),
+        None => unwritten(derived),
     }
 }
 
@@ -216,7 +218,7 @@ fn inverse(derived: &Continuous) -> Equation {
     let (right, source) = match derived.inverse {
         _ if !derived.has_kinetic() => ("not determined by μ: add a kinetic part".to_owned(), ""),
         Inverse::Constant => (format!("𝕀⁻¹ {difference}"), "(1.14) inverted, 𝕀⁻¹ once for all"),
-        Inverse::Varying => (format!("𝕀(w)⁻¹ {difference}"), "(1.14) inverted"),
+        Inverse::Varying => (format!("𝕀{}⁻¹ {difference}", at(&seen(derived))), "(1.14) inverted"),
         Inverse::Nonlinear => ("the solution of ∂l/∂ξ = μ".to_owned(), "(1.14) inverted by Newton's iteration"),
     };
     Equation::new("velocity", xi, right, source)
@@ -224,12 +226,12 @@ fn inverse(derived: &Continuous) -> Equation {
 
 fn hamiltonian(derived: &Continuous, name: &str) -> Equation {
     let potential = text(&derived.potential(), &derived.symbols);
-    let difference = without_bias(derived);
+    let (difference, at) = (without_bias(derived), at(&seen(derived)));
     let right = match derived.inverse {
         Inverse::Nonlinear => format!("⟨μ, {0}⟩ − l at {0} = ∂h/∂μ", velocity(derived)),
         _ if !derived.has_kinetic() => potential,
-        Inverse::Varying if difference == "μ" => sum(&["½ ⟨μ, 𝕀(w)⁻¹ μ⟩".to_owned(), potential]),
-        Inverse::Varying => sum(&[format!("½ ⟨{difference}, 𝕀(w)⁻¹ ({difference})⟩"), potential]),
+        Inverse::Varying if difference == "μ" => sum(&[format!("½ ⟨μ, 𝕀{at}⁻¹ μ⟩"), potential]),
+        Inverse::Varying => sum(&[format!("½ ⟨{difference}, 𝕀{at}⁻¹ ({difference})⟩"), potential]),
         Inverse::Constant if difference == "μ" => sum(&["½ ⟨μ, 𝕀⁻¹ μ⟩".to_owned(), potential]),
         Inverse::Constant => sum(&[format!("½ ⟨{difference}, 𝕀⁻¹ ({difference})⟩"), potential]),
     };
@@ -312,7 +314,8 @@ pub(in crate::emit) fn section(declaration: &Declaration, equations: &Equations)
     let limit = if declaration.continuous.is_some() && declaration.discretisation().is_none() {
         String::new()
     } else {
-        format!("    l_d(exp(h {xi}), w, h) = h l({xi}, w) + O(h²)    [at random points, exactly, without a bound]\n")
+        let w = names(declaration).iter().fold(String::new(), |w, name| w + ", " + name);
+        format!("    l_d(exp(h {xi}){w}, h) = h l({xi}{w}) + O(h²)    [at random points, exactly, without a bound]\n")
     };
     let certainty = certified("the equations", equations.sureness);
     format!("continuous\n    {named} = g⁻¹ dg/dt\n{limit}    pairing: {pairing}\n{lines}    certainty: {certainty}\n")

@@ -91,6 +91,22 @@ fn of_the_heavy_top() {
     expect_file!["printed/heavy_top.txt"].assert_eq(&derivation(HEAVY_TOP, &top("NonstandardInertia")));
 }
 
+/// Whatever parameters are called, the equations have no letter that is another's.
+#[test]
+fn the_names_are_those_of_the_declaration() {
+    let text = derivation(
+        "group = SO3, advected(A = a),
+        l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * V * A.dot(&(s + F * s))",
+        "struct Top { J: NonstandardInertia, V: f64, s: Vector3<f64>, a: Vector3<f64> }",
+    );
+    for line in
+        ["𝕀 = tr(J) I − J ", "V(A) = V ⟨s, A⟩ ", "s(A) = 0 ", "∂l/∂A ⋄ A = V A × s ", "dA/dt = A × Ω    [(2.2): −ξ·A]"]
+    {
+        assert!(text.contains(&format!("\n    {line}")), "{line} isn't in {text}");
+    }
+    assert!(!text.split(|letter: char| !letter.is_alphanumeric()).any(|word| word == "w"), "{text}");
+}
+
 /// The line below a title.
 fn section(arguments: &str, item: &str, title: &str) -> String {
     let text = derivation(arguments, item);

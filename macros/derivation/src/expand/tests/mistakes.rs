@@ -61,14 +61,26 @@ fn between(text: &str, ends: [LineColumn; 2]) -> String {
     underlined.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// A declaration with its messages.
+/// Whether a name stands in a text.
+fn has_name(text: &str, name: &str) -> bool {
+    text.split(|letter: char| !letter.is_alphanumeric() && letter != '_').any(|word| word == name)
+}
+
+/// A declaration with its messages, of which none says to write `h` for an `l`, which has no step.
 fn annotated(declaration: &str) -> String {
     let expansion = expansion(declaration);
     assert!(super::is_refused(&expansion), "{declaration}\nis right");
     assert!(syn::parse2::<syn::File>(expansion.clone()).is_ok(), "{declaration}\nbecomes no items");
-    let mut lines = vec![declaration.to_owned()];
+    let (mut lines, has_step) =
+        (vec![declaration.to_owned()], !has_name(declaration, "l") || has_name(declaration, "h"));
     for (ends, message) in messages(expansion) {
         let (LineColumn { line, column }, text) = (ends[0], between(declaration, ends));
+        // Not what a rule puts in the place of a velocity.
+        let is_code = |code: &str| has_name(code, "h") && !code.ends_with("- I) / h");
+        assert!(
+            has_step || !message.split('`').skip(1).step_by(2).any(is_code),
+            "{declaration}\nhas no step: {message}"
+        );
         // What is missing has no place: the compiler underlines the attribute.
         let place = if text.is_empty() { "^".to_owned() } else { format!("^ {line}:{} {text}", column + 1) };
         lines.extend([place, format!("  {}", message.replace('\n', "\n  "))]);

@@ -10,7 +10,7 @@ mod higher_order;
 mod mistakes;
 mod not_quadratic;
 mod own_group;
-mod right;
+pub(crate) mod right;
 mod rooms;
 mod several_bodies;
 mod sizes;
@@ -35,7 +35,15 @@ pub(crate) fn top(inertia: &str) -> String {
     format!("struct Top {{ J_d: {inertia}, m: f64, g: f64, rho: Vector3<f64>, up: Vector3<f64> }}")
 }
 
-fn tokens(text: &str) -> TokenStream {
+/// A struct with those of the fields that a declaration names.
+pub(crate) fn struct_of(fields: &[&str], arguments: &str) -> String {
+    let names: Vec<&str> = arguments.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+    let is_used = |field: &&&str| field.split(':').next().is_some_and(|name| names.contains(&name));
+    let fields: Vec<&str> = fields.iter().filter(is_used).copied().collect();
+    format!("struct Body {{ {} }}", fields.join(", "))
+}
+
+pub(crate) fn tokens(text: &str) -> TokenStream {
     text.parse().expect("tokens")
 }
 

@@ -1,4 +1,4 @@
-//! A group of one's own, declared once.
+//! A user's group, declared once.
 
 use super::{expanded, is_refused, tokens};
 use crate::expand::matrix_group;

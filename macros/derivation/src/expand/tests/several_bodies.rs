@@ -61,7 +61,7 @@ fn shares_of_the_diamond() {
     let item = "struct Bead { J: NonstandardInertia, m: f64, a: Vector3<f64>, up: Vector3<f64> }";
     let text = expanded(arguments, item).to_string();
     for line in [
-        "δl_d/δw ⋄ w = h y (a wᵀ − w aᵀ)^∨;  −h ⟨a, w⟩    [(2.1)]",
+        "δl_d/δ(w, y) ⋄ (w, y) = h y (a wᵀ − w aᵀ)^∨;  −h ⟨a, w⟩    [(2.1)]",
         "δl_d/δw ⋄ w = h y (a wᵀ − w aᵀ)^∨;  0    [of w alone]",
         "δl_d/δy ⋄ y = 0;  −h ⟨a, w⟩    [of y alone]",
         "(R_F)* δl_d/δF = (1/h) (F J − J Fᵀ)^∨;  (s m/h)    [",

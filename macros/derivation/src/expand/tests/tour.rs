@@ -1,7 +1,7 @@
 //! A tour of plausible declarations: what is right is accepted. `mistakes/tour.txt` has what is wrong, alone and with
 //! another term beside it.
 
-use super::{is_refused, tokens};
+use super::{is_refused, struct_of, tokens};
 use crate::declared::Role;
 
 /// Kinetic parts that are right.
@@ -35,23 +35,15 @@ const WORKS: [&str; 4] = [
     "-m * (A * log(F)).dot(&eta_next)",
 ];
 
-const FIELDS: [(&str, &str); 5] = [
-    ("J_d", "J_d: NonstandardInertia"),
-    ("A", "A: Matrix3<f64>"),
-    ("m", "m: f64"),
-    ("rho", "rho: Vector3<f64>"),
-    ("w", "up: Vector3<f64>"),
-];
+const FIELDS: [&str; 5] =
+    ["J_d: NonstandardInertia", "A: Matrix3<f64>", "m: f64", "rho: Vector3<f64>", "up: Vector3<f64>"];
 
 /// The expansion of an expression, in a struct of the fields that it names.
 fn declared(role: Role, expression: &str) -> proc_macro2::TokenStream {
-    let names: Vec<&str> = expression.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
-    let is_used = |name: &str| names.contains(&name) || (name == "w" && names.contains(&"up"));
-    let fields: Vec<&str> = FIELDS.iter().filter(|(name, _)| is_used(name)).map(|(_, field)| *field).collect();
-    let advected = if is_used("w") { "advected(w = up)," } else { "" };
+    let is_seen = expression.split(|c: char| !c.is_alphanumeric()).any(|name| name == "w");
+    let advected = if is_seen { "advected(w = up)," } else { "" };
     let arguments = format!("group = SO3, {advected} {} = {expression}", role.key());
-    let item = tokens(&format!("struct Tour {{ {} }}", fields.join(", ")));
-    super::super::expand(role, tokens(&arguments), &item)
+    super::super::expand(role, tokens(&arguments), &tokens(&struct_of(&FIELDS, &arguments)))
 }
 
 #[track_caller]

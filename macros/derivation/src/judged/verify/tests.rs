@@ -11,7 +11,7 @@ use super::{KineticPart, Subject, Sureness, Unconfirmed, degree, increments, kin
 use crate::declared::errors::Errors;
 use crate::declared::lower::{Lowered, readings};
 use crate::declared::{Declaration, Name, Role, Tree, check, parse};
-use crate::expand::tests::{HEAVY_TOP, top};
+use crate::expand::tests::{HEAVY_TOP, struct_of, top};
 use crate::judged::{Chosen, cheapest, held};
 use crate::mathematics::derive::{Derived, SelfAdjointness, derive};
 use crate::mathematics::symbolic::{Expression, Rational};
@@ -147,7 +147,7 @@ fn functions_that_repeat_others() {
         let arguments =
             format!("group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3), advected({}), zero = {zero}", seen.join(", "));
         let fields = ["a: Vector3<f64>", "b: Vector3<f64>", "k: f64"];
-        let (declaration, trees) = checked_as(Role::Constraint, &arguments, &used(&fields, zero));
+        let (declaration, trees) = checked_as(Role::Constraint, &arguments, &struct_of(&fields, zero));
         let mut errors = Errors::default();
         let held = held(&declaration, trees, &mut errors);
         assert_eq!(held.is_some(), errors.is_empty(), "{zero}");
@@ -328,7 +328,7 @@ fn constants_that_are_zero_in_the_field_refuse_nothing() {
         (Role::Constraint, zero, "(R_1 * r - R_2 * u) / P".to_owned()),
     ] {
         let arguments = format!("{head}{}", term.replace('P', "2305843009213693951.0"));
-        let item = used(&["J: NonstandardInertia", "r: Vector3<f64>", "u: Vector3<f64>"], &arguments);
+        let item = struct_of(&["J: NonstandardInertia", "r: Vector3<f64>", "u: Vector3<f64>"], &arguments);
         let [tokens, item] = [arguments.as_str(), item.as_str()].map(|text| text.parse().expect("tokens"));
         let expansion = crate::expand::expand(role, tokens, &item).to_string();
         assert!(!expansion.contains("compile_error"), "{arguments}: {expansion}");
@@ -365,16 +365,6 @@ fn adjoints_with_functions() {
     assert_eq!(body("(2.0 * k - k).sin() + (-k).sin()"), Ok(SelfAdjointness::Exact));
 }
 
-/// A struct with those of the fields that a Lagrangian uses.
-fn used(fields: &[&str], l_d: &str) -> String {
-    let is_used = |field: &&&str| {
-        let (name, _) = field.split_once(':').expect("a type");
-        l_d.split(|c: char| !c.is_alphanumeric()).any(|word| word == name)
-    };
-    let fields: Vec<&str> = fields.iter().filter(is_used).copied().collect();
-    format!("struct Body {{ {} }}", fields.join(", "))
-}
-
 #[test]
 fn singular_kinetic_parts() {
     for declared in both() {
@@ -382,7 +372,7 @@ fn singular_kinetic_parts() {
     }
     let kinetic_part = |group: &str, l_d: &str| {
         let arguments = format!("group = {group}, l_d = {l_d}");
-        Declared::new(&arguments, &used(&["k: f64", "J: Matrix4<f64>", "v: Vector3<f64>"], l_d)).kinetic_part()
+        Declared::new(&arguments, &struct_of(&["k: f64", "J: Matrix4<f64>", "v: Vector3<f64>"], l_d)).kinetic_part()
     };
     let rotation = "k * (4.0 - F.trace()) / h + 0.0 * h * (F * J).trace()";
     assert_eq!(kinetic_part("SE3", rotation), KineticPart::Singular(vec![3, 4, 5]));
@@ -396,7 +386,7 @@ fn singular_kinetic_parts() {
 fn kinetic_parts_that_are_not_stationary() {
     let kinetic_part = |group: &str, l_d: &str| {
         let arguments = format!("group = {group}, l_d = {l_d}");
-        Declared::new(&arguments, &used(&["k: f64", "A: Matrix3<f64>", "B: Matrix3<f64>"], l_d)).kinetic_part()
+        Declared::new(&arguments, &struct_of(&["k: f64", "A: Matrix3<f64>", "B: Matrix3<f64>"], l_d)).kinetic_part()
     };
     assert_eq!(kinetic_part("SO3", "k * (F * A).trace() / h"), KineticPart::NotStationary(vec![1]));
     assert_eq!(kinetic_part("SO3", "(F * (k * A + B)).trace() / h"), KineticPart::NotStationary(vec![1, 2]));

@@ -14,8 +14,9 @@ use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Role, Tree, check, lower, parse};
 use crate::expand::tests::continuous::{CART, LINKS, OF_CART, OF_LINKS};
 use crate::expand::tests::generated::texts::on_a_product;
+use crate::expand::tests::right::once_refused;
 use crate::expand::tests::time::declarations_in;
-use crate::expand::tests::{HEAVY_TOP, top};
+use crate::expand::tests::{HEAVY_TOP, tokens, top};
 use crate::judged::{self, Chosen, cheapest, held};
 use crate::mathematics::derive::{Derived, Seen, derive};
 use crate::mathematics::symbolic::{Expression, Rational, SymbolId, degree};
@@ -199,8 +200,7 @@ fn larger(term: &Expression, error: Rational, is_meant: &Place) -> Expression {
 }
 
 fn prepared(role: Role, arguments: &str, item: &str) -> Prepared {
-    let [arguments, item] = [arguments, item].map(|text| text.parse().expect("tokens"));
-    Prepared::new(role, &arguments, &item).expect("a step")
+    Prepared::new(role, &tokens(arguments), &tokens(item)).expect("a step")
 }
 
 #[test]
@@ -352,7 +352,7 @@ fn small_errors_of_slopes() {
     assert_eq!(check_slopes(&declaration, &trees), 2 * 2 * 3 * 4 * 2);
 }
 
-/// All declarations of the repository, those that other tests compile among them, with one term and error in `share` of
+/// All declarations of the repository, those that other tests compile and what was once refused among them, with one term and error in `share` of
 /// each, another in the next; returns how many declarations there are.
 fn check_everywhere(share: usize, most: usize) -> usize {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -360,6 +360,8 @@ fn check_everywhere(share: usize, most: usize) -> usize {
     for folder in ["core/src", "examples", "tests", "tests/ui/pass"] {
         declarations_in(&root.join(folder), &mut all);
     }
+    let texts = once_refused().into_iter();
+    all.extend(texts.map(|[text, item]| (text.clone(), Role::Lagrangian, tokens(&text), tokens(&item))));
     for (name, role, arguments, item) in all {
         if role == Role::Constraint {
             let mut errors = Errors::default();
