@@ -491,6 +491,6 @@ fn two_collocations_agree() {
     for h in [2.0, 50.0, 1e160] {
         let error = CotangentGauss::<_, 2, 3>::new(scene, h).unwrap().step(&attitude, &momentum).unwrap_err();
         assert!(matches!(error, StepError::NotConverged { .. } | StepError::Singular), "{error}");
-        assert!(!error.to_string().contains("in 1 iterations"), "{error}");
+        assert!(!error.to_string().contains("did not settle"), "{error}");
     }
 }

@@ -99,10 +99,14 @@ fn the_names_are_those_of_the_declaration() {
         l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * V * A.dot(&(s + F * s))",
         "struct Top { J: NonstandardInertia, V: f64, s: Vector3<f64>, a: Vector3<f64> }",
     );
-    for line in
-        ["𝕀 = tr(J) I − J ", "V(A) = V ⟨s, A⟩ ", "s(A) = 0 ", "∂l/∂A ⋄ A = V A × s ", "dA/dt = A × Ω    [(2.2): −ξ·A]"]
-    {
-        assert!(text.contains(&format!("\n    {line}")), "{line} isn't in {text}");
+    for line in [
+        "inertia\n    𝕀 = tr(J) I − J ",
+        "momentum_bias\n    s(A) = 0 ",
+        "potential\n    V(A) = V ⟨s, A⟩ ",
+        "    ∂l/∂A ⋄ A = V A × s ",
+        "    dA/dt = A × Ω    [(2.2): −ξ·A]",
+    ] {
+        assert!(text.contains(&format!("\n{line}")), "{line} isn't in {text}");
     }
     assert!(!text.split(|letter: char| !letter.is_alphanumeric()).any(|word| word == "w"), "{text}");
 }
