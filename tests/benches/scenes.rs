@@ -16,8 +16,8 @@ mod stepping;
 
 use declarations::{DoublePendulum, EqualNeedle, HeavyTop, Needle};
 use liestep::effects::{
-    CayleyBody, Dipole, Drag, FourthOrderBody, GeodesicBody, GravityGradient, MagneticDamping, Rotor, SixthOrderBody,
-    Spring, Thrust, Torque,
+    AirDrag, CayleyBody, Dipole, Drag, FourthOrderBody, GeodesicBody, GravityGradient, MagneticDamping, Rotor,
+    SixthOrderBody, Spring, Thrust, Torque,
 };
 use liestep::mechanics::Regular;
 use liestep::motion::Plan;
@@ -51,6 +51,7 @@ fn visit_all(visit: &mut impl Visit) {
     visit.visit("body + torque", body + Torque { torque: spin * 1e-3 });
     visit.visit("body + thrust", body + Thrust { at: rho, thrust: spin * 1e-3 });
     visit.visit("body + drag", body + Drag { c: 1e-3, J });
+    visit.visit("body + air drag", body + AirDrag { c: 1e-3, air: spin, J });
     visit.visit("body + magnetic damping", body + MagneticDamping { k: 1e-3, field: rho, J });
     visit.visit("gyrostat in one piece", Gyrostat { J_d, spin });
     visit.visit("Cayley body", CayleyBody { J });

@@ -11,8 +11,8 @@ use declarations::{
     TwoBodies, UnderwaterBody,
 };
 use liestep::effects::{
-    CayleyBody, Dipole, Drag, FourthOrderBody, GeodesicBody, Gravity, GravityGradient, MagneticDamping, PrincipalBody,
-    RigidBody, Rotor, SixthOrderBody, Spring, Thrust, Torque,
+    AirDrag, CayleyBody, Dipole, Drag, FourthOrderBody, GeodesicBody, Gravity, GravityGradient, MagneticDamping,
+    PrincipalBody, RigidBody, Rotor, SixthOrderBody, Spring, Thrust, Torque,
 };
 use liestep::groups::{CayleyRetraction, CovariantTensor, LieGroup as _, Retraction, SE23};
 use liestep::lagrangian;
@@ -139,7 +139,7 @@ fn effects_of_the_library() {
     as_compiled_beside! {
         RigidBody { J_d }:
         Gravity { m g rho up } GravityGradient { GM r J direction } Dipole { moment field }
-        Spring { k length at anchor } Rotor { spin } Drag { c J } MagneticDamping { k field J } Thrust { at thrust }
+        Spring { k length at anchor } Rotor { spin } Drag { c J } AirDrag { c air J } MagneticDamping { k field J } Thrust { at thrust }
         Torque { torque } Torquer { moment field }
     }
 }
@@ -328,7 +328,7 @@ fn derivatives_of_steps() {
     differentiated! { WithEitherKinetic: RigidBody { J_d } CayleyBody { J } GeodesicBody { J } Vehicle { J k r up } }
     differentiated! { WithoutKinetic:
         Gravity { m g rho up } GravityGradient { GM r J direction } Dipole { moment field } Spring { k length at anchor }
-        Rotor { spin } Drag { c J } MagneticDamping { k field J } Thrust { at thrust } Torque { torque }
+        Rotor { spin } Drag { c J } AirDrag { c air J } MagneticDamping { k field J } Thrust { at thrust } Torque { torque }
     }
     let (body, gravity, drag) =
         (random!(1, RigidBody { J_d }), random!(2, Gravity { m g rho up }), random!(3, Drag { c J }));
