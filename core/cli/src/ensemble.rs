@@ -79,10 +79,10 @@ fn made(
         let make = move |member: &Member<'_>| {
             drawn_of(&of_lanes, member).and_then(|scene| scene.in_lanes(&whole)).map_err(failed)
         };
-        // Whole lanes: a 64th of all, but a second's work and a million rows at most.
+        // Whole lanes: a 64th of all, but a second's work, or of very many a 4096th, and a million rows at most.
         let rows = drawn.every.map_or(1, |every| steps / every + 2);
-        let most = ((1 << 20) / rows).min((1 << 24) / steps.max(1)).next_multiple_of(8);
-        let chunk = drawn.members.div_ceil(64).next_multiple_of(8).min(most.max(8));
+        let share = drawn.members.div_ceil(64).min((1 << 24) / steps.max(1)).max(drawn.members >> 12);
+        let chunk = share.min((1 << 20) / rows).next_multiple_of(8).max(8);
         let members = Ensemble::new(&drawn.text, drawn.members, steps, make).chunks_of(chunk);
         return finished(path, scene, drawn, members, local, store);
     }
