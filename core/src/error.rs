@@ -1,22 +1,41 @@
 //! What can go wrong, each with the sentence that a user sees.
 
 use alloc::borrow::ToOwned as _;
+#[cfg(all(feature = "serde", feature = "std"))]
+use alloc::collections::BTreeSet;
 use alloc::format;
 use alloc::string::String;
 
 use thiserror::Error;
 
+/// A text that lasts as long as the program. Of a `&str` serde would borrow from what is read.
+pub(crate) type Text = &'static str;
+
+/// Of the texts that are read one copy each is kept.
+#[cfg(all(feature = "serde", feature = "std"))]
+pub(crate) fn kept<'de, D: serde::Deserializer<'de>>(source: D) -> Result<Text, D::Error> {
+    static KNOWN: std::sync::Mutex<BTreeSet<Text>> = std::sync::Mutex::new(BTreeSet::new());
+    let text: String = serde::Deserialize::deserialize(source)?;
+    let mut known = KNOWN.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let text = known.get(text.as_str()).copied().unwrap_or_else(|| String::leak(text));
+    known.insert(text);
+    Ok(text)
+}
+
 /// Why a stepper couldn't be built, or a motion not be started.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[cfg_attr(all(feature = "serde", feature = "std"), derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum SetupError {
     /// A parameter has a value that can't be used.
     #[error("parameter `{field}` {cause}; give it another value")]
     Parameter {
         /// The field of the Lagrangian.
-        field: &'static str,
+        #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
+        field: Text,
         /// What is wrong with it.
-        cause: &'static str,
+        #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
+        cause: Text,
     },
     /// A parameter of one of several bodies has a value that can't be used.
     #[error("parameter `{field}` of the body {body} (from zero) {cause}; give it another value")]
@@ -24,9 +43,11 @@ pub enum SetupError {
         /// The body, from zero.
         body: usize,
         /// The field of it.
-        field: &'static str,
+        #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
+        field: Text,
         /// What is wrong with it.
-        cause: &'static str,
+        #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
+        cause: Text,
     },
     /// A joint can't be where it was put.
     #[error("the joint {joint} (from zero) {cause}; check the bodies that it joins")]
@@ -34,7 +55,8 @@ pub enum SetupError {
         /// The joint, from zero: those of trees first, then those that close loops.
         joint: usize,
         /// What is wrong with it.
-        cause: &'static str,
+        #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
+        cause: Text,
     },
     /// A parameter of a joint has a value that can't be used.
     #[error("parameter `{field}` of the joint {joint} (from zero) {cause}; give it another value")]
@@ -42,9 +64,11 @@ pub enum SetupError {
         /// The joint, from zero.
         joint: usize,
         /// The field of it.
-        field: &'static str,
+        #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
+        field: Text,
         /// What is wrong with it.
-        cause: &'static str,
+        #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
+        cause: Text,
     },
     /// A joint is open where the motion is to start, and of all it is open farthest.
     #[error(
@@ -109,7 +133,8 @@ pub enum SetupError {
     #[error("the initial {what} is not finite; give finite numbers, far from the ends of the scalar's range")]
     NonFinite {
         /// Which part.
-        what: &'static str,
+        #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
+        what: Text,
     },
     /// No velocity has the initial momentum, or none on whose side of the singularities of `∂²l/∂ξ²` rest is.
     #[error(
@@ -127,7 +152,8 @@ pub enum SetupError {
     #[error("the {what} has the length {length:e}; give one of length one")]
     NotUnit {
         /// Which one.
-        what: &'static str,
+        #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
+        what: Text,
         /// Its length.
         length: f64,
     },
@@ -225,6 +251,7 @@ fn ambiguity(difference: f64) -> String {
 ///
 /// Of several lanes one was enough; a number in which the lanes differ is NaN.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[cfg_attr(all(feature = "serde", feature = "std"), derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum StepError {
     /// A part of the state isn't finite, before the step or after it; or the momentum equation (2.7) isn't, where a force or
@@ -239,7 +266,8 @@ pub enum StepError {
     )]
     NonFinite {
         /// Which part, or `"momentum equation"`.
-        what: &'static str,
+        #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
+        what: Text,
     },
     /// The momentum equation (2.7) has no solution that continues the identity at this step, but has one at a smaller.
     #[error("no solution at the step {step:e} s{}", beyond_solvable([*.step, *.largest, *.turn], *.body))]

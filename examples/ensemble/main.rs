@@ -96,10 +96,10 @@ fn run(arguments: &Arguments) -> Result<(), Mistake> {
          Half of them point more than 10° from the nominal one after {lost} s.\n\
          {chaotic} of {} points of the map have an exponent over 20 s above {CHAOTIC}/s, the largest is {largest:.2}/s.\n\
          The section has {points} points; no energy is off by more than {off:.1e} J at the end.\n\n{output}",
-        report.finished,
-        of_map.finished,
-        of_section.finished,
-        report.failed + of_map.failed + of_section.failed,
+        report.outcome.finished,
+        of_map.outcome.finished,
+        of_section.outcome.finished,
+        report.outcome.failed() + of_map.outcome.failed() + of_section.outcome.failed(),
         exponents.len(),
     ))?;
     Ok(())

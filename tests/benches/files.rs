@@ -1,6 +1,12 @@
-//! The same scenes from files: a compiled body, and beside it a program that is interpreted.
+//! The same scenes from files: a compiled body, and beside it a program that is interpreted, or machine code.
 
-use liestep_scene::Mistake;
+use std::time::Instant;
+
+use liestep::motion::Batch;
+use liestep_scene::{Mistake, Spread};
+use simba::simd::AutoF64x8;
+
+use crate::counting::Uncounted;
 
 /// The tables of a file beside the body.
 pub(crate) const FILES: [(&str, &str); 11] = [
@@ -19,10 +25,48 @@ pub(crate) const FILES: [(&str, &str); 11] = [
 
 /// Makes steps of a file's scene, and keeps no state between.
 pub(crate) fn run(tables: &str, steps: u32) -> Result<(), Mistake> {
+    liestep_scene::parse("bench.toml", &text(tables))?.first(steps).map(|_| ())
+}
+
+fn text(tables: &str) -> String {
     let body = if tables.contains("[body]") { "" } else { "[body]\nmoments = [2, 3, 4.5]\n" };
-    let text = format!(
+    format!(
         "title = \"bench\"\n{body}{tables}\n[start]\neuler = [0, 0.8, 0]\nvelocity = [0.5, 2, 12]\n\
          [run]\nstep = 0.01\nduration = 1e6\n[output]\nevery = 1000000\n"
-    );
-    liestep_scene::parse("bench.toml", &text)?.first(steps).map(|_| ())
+    )
+}
+
+const MEMBERS: u32 = 8_000;
+
+/// What a member of a file's ensemble of (3.13) costs before its first step, and what a core makes of their steps in lanes:
+/// the fastest of some rounds.
+pub(crate) fn members() -> Result<(), Uncounted> {
+    let draws = "[ensemble]\nmembers = 8000\ndraw.gravity.m = { mean = 1.0, deviation = 0.01 }\n\
+                 draw.start.velocity = [0.5, 2, { from = 8.0, to = 12.0 }]\n";
+    let scene = liestep_scene::parse("bench.toml", &format!("{}{draws}", text(FILES[1].1)))?;
+    let (drawn, whole) = (scene.ensemble().ok_or("no ensemble")?, scene.whole().ok_or("not one program")?);
+    let member = |number: u32| {
+        let share = f64::from(number) / f64::from(MEMBERS);
+        let number = |_: &str, spread: Spread| match spread {
+            Spread::Uniform { from: start, to: end } => start + (end - start) * share,
+            Spread::Normal { mean, deviation } => mean + deviation * share,
+        };
+        drawn.member(&mut { number })?.in_lanes(&whole)
+    };
+    let (mut making, mut stepping, mut batch) = (f64::INFINITY, f64::INFINITY, None);
+    for _ in 0..40 {
+        let clock = Instant::now();
+        for lanes in 0..MEMBERS / 8 {
+            let eight = (8 * lanes..8 * lanes + 8).map(member).collect::<Result<Vec<_>, _>>()?;
+            batch = Some(Batch::<AutoF64x8, _>::new(&eight)?);
+        }
+        making = making.min(clock.elapsed().as_secs_f64() * 1e6 / f64::from(MEMBERS));
+        let clock = Instant::now();
+        if let Some(batch) = &mut batch {
+            batch.run(MEMBERS.into());
+        }
+        stepping = stepping.min(clock.elapsed().as_secs_f64() * 1e6 / f64::from(8 * MEMBERS));
+    }
+    println!("a member: {making:.2} µs of its own; in lanes of eight: {:.1} million steps a second", 1.0 / stepping);
+    Ok(())
 }

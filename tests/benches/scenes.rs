@@ -4,6 +4,7 @@
 //! cargo bench --bench scenes                       times a step of every scene
 //! cargo bench --bench scenes -- instructions       counts the instructions of a step of every scene, by valgrind
 //! cargo bench --bench scenes -- files              counts those of scenes from files
+//! cargo bench --bench scenes -- members            times the members of a file's ensemble
 //! cargo bench --bench scenes -- zero-cost          counts those of the free body here and in a program of its own
 //! cargo bench --bench scenes -- count NAME 1000    runs 1000 steps of one scene and nothing else
 //! ```
@@ -16,8 +17,8 @@ mod stepping;
 
 use declarations::{DoublePendulum, EqualNeedle, HeavyTop, Needle};
 use liestep::effects::{
-    CayleyBody, Dipole, Drag, FourthOrderBody, GeodesicBody, GravityGradient, MagneticDamping, Rotor, SixthOrderBody,
-    Spring, Thrust, Torque,
+    AirDrag, CayleyBody, Dipole, Drag, FourthOrderBody, GeodesicBody, GravityGradient, MagneticDamping, Rotor,
+    SixthOrderBody, Spring, Thrust, Torque,
 };
 use liestep::mechanics::Regular;
 use liestep::motion::Plan;
@@ -51,6 +52,7 @@ fn visit_all(visit: &mut impl Visit) {
     visit.visit("body + torque", body + Torque { torque: spin * 1e-3 });
     visit.visit("body + thrust", body + Thrust { at: rho, thrust: spin * 1e-3 });
     visit.visit("body + drag", body + Drag { c: 1e-3, J });
+    visit.visit("body + air drag", body + AirDrag { c: 1e-3, air: spin, J });
     visit.visit("body + magnetic damping", body + MagneticDamping { k: 1e-3, field: rho, J });
     visit.visit("gyrostat in one piece", Gyrostat { J_d, spin });
     visit.visit("Cayley body", CayleyBody { J });
@@ -142,6 +144,7 @@ fn main() -> Result<(), Uncounted> {
             Ok(files::run(tables, steps.parse()?)?)
         }
         ["files"] => from_files(),
+        ["members"] => files::members(),
         ["instructions"] => {
             let mut all = Instructions(Ok(()));
             visit_all(&mut all);

@@ -2,7 +2,7 @@
 
 use checks::structure::forces::assert_stages;
 use declarations::{FluidDrag, Thruster};
-use liestep::effects::{Drag, MagneticDamping, Thrust, Torque};
+use liestep::effects::{AirDrag, Drag, MagneticDamping, Thrust, Torque};
 use liestep::groups::{SE2, SL2};
 use liestep::laws::samples;
 use liestep::{SO3, Stepper, force};
@@ -36,6 +36,7 @@ fn stages_follow_from_the_virtual_work() {
     for _ in 0..10 {
         let J = body().J_d.to_inertia();
         assert_stages(&Drag { c: 1.0 + r.signed(), J }, &mut r);
+        assert_stages(&AirDrag { c: 1.0 + r.signed(), air: r.sample(), J }, &mut r);
         assert_stages(&Torque { torque: r.sample() }, &mut r);
         assert_stages(&Thrust { at: r.sample(), thrust: r.sample() }, &mut r);
         assert_stages(&MagneticDamping { k: 1.0 + r.signed(), field: r.sample(), J }, &mut r);

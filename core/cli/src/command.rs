@@ -20,6 +20,9 @@ Exit codes:
 
 pub(crate) fn command() -> Command {
     let scenes = || files("The scene files");
+    let verify = || {
+        flag("verify", "Read every file that is there, and set damaged ones aside; without, their names are trusted")
+    };
     Command::new("liestep")
         .version(env!("CARGO_PKG_VERSION"))
         .about("Simulates rigid bodies from scene files, by steps that keep what the motion conserves")
@@ -61,6 +64,14 @@ pub(crate) fn command() -> Command {
                         .help("Only this share of the members, from 0/N on: for an array of jobs, which write to one folder")
                         .value_parser(share_of),
                 )
+                .arg(verify())
+                .arg(out()),
+        )
+        .subcommand(
+            Command::new("report")
+                .about("Prints what has become of an ensemble's members by now; of their files it reads the heads, or sums of a thousand of these")
+                .arg(scenes())
+                .arg(verify())
                 .arg(out()),
         )
         .subcommand(

@@ -3,26 +3,31 @@
 use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::Mutex;
+use std::sync::atomic::AtomicBool;
 
 use clap::ArgMatches;
 use liestep::SO3;
 use liestep::motion::{Integrator, Moment};
-use liestep_ensemble::{
-    Engine as _, Ensemble, Failure, Local, Member, MemberFailure, Reduction, Report, Section, Store, Summary,
-};
-use liestep_plot::output::Output;
+use liestep_ensemble::{Ensemble, Failure, Local, Member, MemberFailure, Reduction, Report, Section, Store, Summary};
 use liestep_scene::{Column, MemberEvent, Mistake, SceneEnsemble, SceneFile, Spread};
 
 use crate::failure::Failure as ProgramFailure;
 use crate::files::{different_files, folder, name, scenes};
 use crate::output::{Progress, print};
-use crate::tally::Tally;
+use crate::tally::{counts, of_event};
 
-pub(crate) fn ensemble(given: &ArgMatches) -> Result<(), ProgramFailure> {
+/// Makes what is missing of the members, or only tells of those that are there.
+pub(crate) fn ensemble(given: &ArgMatches, only_tells: bool) -> Result<(), ProgramFailure> {
     let paths = different_files(given)?;
     let scenes = scenes(&paths)?;
-    let threads = given.get_one::<usize>("threads").copied().unwrap_or_default();
-    let (share, shares) = given.get_one::<(u64, u64)>("shard").copied().unwrap_or((0, 1));
+    let (threads, (share, shares)) = if only_tells {
+        (1, (0, 1))
+    } else {
+        let share = given.get_one::<(u64, u64)>("shard").copied();
+        (given.get_one::<usize>("threads").copied().unwrap_or_default(), share.unwrap_or((0, 1)))
+    };
+    // One that is stopped before it begins makes nothing.
+    let stop = AtomicBool::new(only_tells);
     if let Some((path, _)) = paths.iter().zip(&scenes).find(|(_, scene)| scene.ensemble().is_none()) {
         return Err(Mistake::no_table(path, "ensemble").into());
     }
@@ -30,25 +35,39 @@ pub(crate) fn ensemble(given: &ArgMatches) -> Result<(), ProgramFailure> {
     let (mut stopped, mut missing) = (0, 0);
     for (path, scene) in paths.iter().zip(&scenes) {
         let Some(drawn) = scene.ensemble() else { continue };
-        let local = Local::threads(threads).share(share, shares);
-        let [broken, left] = made(path, scene, drawn, (&local, shares > 1), &output)?;
+        let local = Local::threads(threads).share(share, shares).stopped_by(&stop);
+        let folder = output.inner(&name(path, "ensemble"));
+        if only_tells && !folder.is_dir() {
+            return Err(ProgramFailure::Output(format!(
+                "{}: nothing is there; `liestep ensemble` makes it",
+                folder.display()
+            )));
+        }
+        let store = Store::folder(&folder).map_err(|error| cannot(path, &error))?;
+        let store = if given.get_flag("verify") { store.verified() } else { store };
+        let [broken, left] = made(path, scene, drawn, (&local, shares > 1), (&store, &folder))?;
         stopped += broken;
         missing += left;
     }
     if missing > 0 {
-        print(&format!("{missing} chunks are left to other shares.\n"))?;
+        let by = if only_tells { "`liestep ensemble`" } else { "other shares" };
+        print(&format!("{missing} chunks are left to {by}.\n"))?;
     }
     if stopped == 0 { Ok(()) } else { Err(ProgramFailure::Runs(format!("{stopped} members broke down"))) }
 }
 
-/// Makes what is missing in the folder of a file's chunks, and prints what is there then. A share reads no rows but its own:
-/// of a thousand shares each would read the results of all. The numbers of members that broke down and of missing chunks.
+fn cannot(path: &Path, error: &dyn std::fmt::Display) -> ProgramFailure {
+    ProgramFailure::Output(format!("{}: {error}", path.display()))
+}
+
+/// Makes what is missing in the folder of a file's chunks, and prints what is there then: while chunks are missing, of this
+/// share. No rows are read. The numbers of members that broke down and of missing chunks.
 fn made(
     path: &Path,
     scene: &SceneFile,
     drawn: &SceneEnsemble,
     local: (&Local<'_>, bool),
-    output: &Output,
+    store: (&Store, &Path),
 ) -> Result<[u64; 2], ProgramFailure> {
     let steps = scene.steps().unwrap_or_default();
     let (own, of_lanes) = (drawn.clone(), drawn.clone());
@@ -60,15 +79,15 @@ fn made(
         let make = move |member: &Member<'_>| {
             drawn_of(&of_lanes, member).and_then(|scene| scene.in_lanes(&whole)).map_err(failed)
         };
-        // Whole lanes: a 64th of all, but a second's work and a million rows at most.
+        // Whole lanes: a 64th of all, but a second's work, or of very many a 4096th, and a million rows at most.
         let rows = drawn.every.map_or(1, |every| steps / every + 2);
-        let most = ((1 << 20) / rows).min((1 << 24) / steps.max(1)).next_multiple_of(8);
-        let chunk = drawn.members.div_ceil(64).next_multiple_of(8).min(most.max(8));
+        let share = drawn.members.div_ceil(64).min((1 << 24) / steps.max(1)).max(drawn.members >> 12);
+        let chunk = share.min((1 << 20) / rows).next_multiple_of(8).max(8);
         let members = Ensemble::new(&drawn.text, drawn.members, steps, make).chunks_of(chunk);
-        return finished(path, scene, drawn, members, local, output);
+        return finished(path, scene, drawn, members, local, store);
     }
     let make = move |member: &Member<'_>| drawn_of(&own, member).and_then(|scene| scene.stepper()).map_err(failed);
-    finished(path, scene, drawn, Ensemble::one_by_one(&drawn.text, drawn.members, steps, make), local, output)
+    finished(path, scene, drawn, Ensemble::one_by_one(&drawn.text, drawn.members, steps, make), local, store)
 }
 
 /// Makes the chunks of members that go in lanes or take turns, and prints what has become of them.
@@ -78,37 +97,30 @@ fn finished<M: Integrator<Group = SO3> + 'static>(
     drawn: &SceneEnsemble,
     members: Ensemble<M>,
     (local, is_share): (&Local<'_>, bool),
-    output: &Output,
+    (store, folder): (&Store, &Path),
 ) -> Result<[u64; 2], ProgramFailure> {
-    let cannot = |error: &dyn std::fmt::Display| ProgramFailure::Output(format!("{}: {error}", path.display()));
     let plan = plan(scene, drawn, members);
-    let folder = output.inner(&name(path, "ensemble"));
-    let store = Store::folder(&folder).map_err(|error| cannot(&error))?;
     let progress = Mutex::new(Progress::new());
     let told = |now: liestep_ensemble::Progress| {
         if let Ok(mut progress) = progress.lock() {
-            #[allow(clippy::cast_precision_loss)] // a share
-            progress.show(now.done as f64 / now.chunks as f64);
+            progress.show(&now);
         }
     };
-    let report = plan.run_telling(local, &store, &told).map_err(|error| cannot(&error))?;
+    let report = plan.run_telling(local, store, &told).map_err(|error| cannot(path, &error))?;
     drop(progress);
     for fault in &report.faults {
-        eprintln!("note: {fault}; it was made anew");
+        eprintln!("note: {fault}; it is set aside, and made anew");
     }
-    let mut tally = Tally::of(scene.events().count());
-    let files = store.files().map_err(|error| cannot(&error))?;
-    for (_, path) in files.iter().filter(|(chunk, _)| local.has(*chunk)) {
-        tally.add(Store::read(path).map_err(|fault| cannot(&fault))?);
+    let (unmade, stopped): (Vec<_>, Vec<_>) = report.outcome.failures.iter().partition(|failed| !failed.was_made);
+    if let Some(MemberFailure { member, failure, .. }) = unmade.first() {
+        eprintln!("note: {} can't exist; the first of them is member {member}: {failure}", report.outcome.impossible);
     }
-    if let Some(MemberFailure { member, failure, .. }) = &tally.unmade {
-        eprintln!("note: {} can't exist; the first of them is member {member}: {failure}", tally.impossible);
-    }
-    for MemberFailure { member, steps, failure } in &tally.failures {
+    for MemberFailure { member, steps, failure, .. } in stopped {
         eprintln!("note: member {member} failed after {steps} steps: {failure}");
     }
-    print(&told_of(scene, drawn, (&report, &tally), (is_share, &folder.display().to_string())))?;
-    Ok([tally.stopped, report.missing])
+    let is_share = is_share && report.missing > 0;
+    print(&told_of(scene, drawn, &report, (is_share, &folder.display().to_string())))?;
+    Ok([report.outcome.stopped, report.missing])
 }
 
 /// What is run: the file as a whole tells it from others.
@@ -180,17 +192,16 @@ fn columns(scene: &SceneFile) -> impl Iterator<Item = (Column, usize, &'static s
     scene.columns().iter().copied().flat_map(numbers)
 }
 
-fn told_of(
-    scene: &SceneFile,
-    drawn: &SceneEnsemble,
-    (report, tally): (&Report, &Tally),
-    (is_share, folder): (bool, &str),
-) -> String {
+fn told_of(scene: &SceneFile, drawn: &SceneEnsemble, report: &Report, (is_share, folder): (bool, &str)) -> String {
     let of_share = if is_share { ", in this share" } else { "" };
     let SceneEnsemble { members, seed, .. } = drawn;
-    let mut text = format!("{}\n  {members} members drawn by the seed {seed}{of_share}: {tally}\n", scene.title());
-    let is_whole = report.missing == 0 && !is_share;
-    if is_whole && report.finished > 0 {
+    let mut text = format!(
+        "{}\n  {members} members drawn by the seed {seed}{of_share}: {}\n",
+        scene.title(),
+        counts(&report.outcome)
+    );
+    let is_whole = report.missing == 0;
+    if is_whole && report.outcome.finished > 0 {
         let _ =
             writeln!(text, "  {:<20}{:>16}{:>16}{:>16}{:>16}", "at the end", "mean", "deviation", "least", "largest");
         for (_, _, name) in columns(scene) {
@@ -202,12 +213,10 @@ fn told_of(
         }
     }
     if is_whole {
-        text.extend(scene.events().zip(&tally.events).map(|(name, event)| tally.of_event(name, event)));
+        let events = scene.events().zip(&report.outcome.passages);
+        text.extend(events.map(|(name, passages)| of_event(name, &report.outcome, passages)));
     }
     let _ =
         writeln!(text, "Written to {folder}: {} chunks, {} of them now", report.chunks - report.missing, report.made);
-    if is_share && report.missing == 0 {
-        text += "All chunks are there: without `--shard` the whole ensemble is told of.\n";
-    }
     text
 }

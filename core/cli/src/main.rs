@@ -46,7 +46,8 @@ fn answer(matches: &ArgMatches) -> Result<(), Failure> {
         Some(("run", given)) => run(given),
         Some(("check", given)) => check(given),
         Some(("sweep", given)) => sweep::sweep(given),
-        Some(("ensemble", given)) => ensemble::ensemble(given),
+        Some(("ensemble", given)) => ensemble::ensemble(given, false),
+        Some(("report", given)) => ensemble::ensemble(given, true),
         Some(("derive", given)) => derive(given),
         Some(("replay", given)) => replay(given),
         Some(("completions", given)) => command::complete(given),
@@ -126,7 +127,7 @@ fn simulate(
     run: impl for<'a> FnOnce(&'a mut dyn FnMut(f64), Option<&'a mut dyn Sink>) -> Result<Run, Mistake>,
 ) -> Result<Run, Mistake> {
     let mut progress = Progress::new();
-    let mut show = |share| progress.show(share);
+    let mut show = |share| progress.show(&format_args!("{:>3.0} %", 100.0 * share));
     let sink = |kind: &'static str| -> Box<dyn Sink> {
         let file = output.grows(&name(path, kind));
         if kind == ARROW_STREAM { Box::new(ArrowStream::new(file)) } else { Box::new(Csv::new(file)) }

@@ -1,5 +1,6 @@
 //! What is printed, and how far a run is.
 
+use std::fmt::Display;
 use std::io::{self, IsTerminal as _, Write as _};
 use std::time::{Duration, Instant};
 
@@ -20,13 +21,13 @@ impl Progress {
         Self { start: io::stderr().is_terminal().then(Instant::now), is_shown: false }
     }
 
-    pub(crate) fn show(&mut self, share: f64) {
+    pub(crate) fn show(&mut self, progress: &dyn Display) {
         /// What takes less needs no patience.
         const PATIENCE: Duration = Duration::from_millis(300);
         if self.start.is_some_and(|start| start.elapsed() > PATIENCE) {
             self.is_shown = true;
             // Nobody reads it where it can't be written.
-            let _ = write!(io::stderr(), "\r{:>3.0} %", 100.0 * share);
+            let _ = write!(io::stderr(), "\r{progress}\x1b[K");
         }
     }
 }

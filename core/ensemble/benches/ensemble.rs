@@ -58,7 +58,7 @@ fn folder(name: &str) -> PathBuf {
 /// Chunks and no files; how many steps were made, and how many members failed.
 fn compute(ensemble: &Ensemble<Top>, members: u64) -> (u64, usize) {
     let shards = (0..ensemble.chunks()).filter_map(|chunk| ensemble.chunk(chunk, &|| false));
-    let failures: Vec<u64> = shards.flat_map(|shard| shard.failures).map(|failed| failed.steps).collect();
+    let failures: Vec<u64> = shards.flat_map(|shard| shard.outcome.failures).map(|failed| failed.steps).collect();
     let count = failures.len();
     ((members - count as u64) * STEPS + failures.into_iter().sum::<u64>(), count)
 }
@@ -104,7 +104,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 let report =
                     tops(members, 10, None).chunks_of(16_384).run(&Local::threads(0), &Store::folder(&folder)?)?;
                 std::fs::remove_dir_all(folder)?;
-                println!("{} finished; the most memory was {:?} MB", report.finished, most_memory());
+                println!("{} finished; the most memory was {:?} MB", report.outcome.finished, most_memory());
             }
             _ => {
                 return Err(

@@ -7,7 +7,7 @@ use liestep::motion::Integrator;
 use crate::ensemble::{Ensemble, Run};
 use crate::failure::{Failure, MemberFailure};
 use crate::group::{Group, Start};
-use crate::reduce::Summary;
+use crate::outcome::Outcome;
 use crate::section::{Crossing, Place, Watch};
 use crate::shard::{Crossings, Rows, Shard, Status};
 
@@ -27,8 +27,7 @@ impl<M: Integrator> Ensemble<M> {
 
     pub(crate) fn shard(&self, plan: u64, chunk: u64, is_stopped: &dyn Fn() -> bool) -> Option<Shard> {
         let members = self.range(chunk);
-        let mut made =
-            Tally { rows: self.no_rows(), finished: 0, left: 0, failures: Vec::new(), reduced: self.nothing_reduced() };
+        let mut made = Tally { rows: self.no_rows(), outcome: self.nothing() };
         // Those that can't be made are taken out first, so that they leave no lane empty.
         let mut waiting: Vec<(u64, Option<MemberFailure>)> = Vec::new();
         let mut starts: Vec<Start<M>> = Vec::new();
@@ -38,14 +37,14 @@ impl<M: Integrator> Ensemble<M> {
             }
             let start = (self.make)(&self.member(member));
             let impossible = start.map(|start| starts.push(start)).err();
-            waiting.push((member, impossible.map(|failure| MemberFailure { member, steps: 0, failure })));
+            waiting
+                .push((member, impossible.map(|failure| MemberFailure { member, steps: 0, was_made: false, failure })));
             if starts.len() == crate::section::LANES {
                 self.move_on(&mut waiting, &mut starts, &mut made, is_stopped)?;
             }
         }
         self.move_on(&mut waiting, &mut starts, &mut made, is_stopped)?;
-        let Tally { rows, finished, left, failures, reduced } = made;
-        Some(Shard { plan, chunk, names: self.names.clone(), rows, finished, left, failures, reduced })
+        Some(Shard { plan, chunk, names: self.names.clone(), rows: made.rows, outcome: made.outcome })
     }
 
     /// Runs those that are waiting to their ends, in lanes, and writes down what is kept of them in their order. `None` if
@@ -68,24 +67,36 @@ impl<M: Integrator> Ensemble<M> {
             first += count;
         }
         let mut moved = courses.into_iter();
+        let Tally { rows: all, outcome } = made;
         for (member, impossible) in waiting.drain(..) {
             if let Some(failed) = impossible {
-                made.rows.push(member, 0, Status::Impossible, core::iter::repeat_n(f64::NAN, self.names.len()));
-                made.failures.push(failed);
+                all.push(member, 0, Status::Impossible, core::iter::repeat_n(f64::NAN, self.names.len()));
+                outcome.impossible += 1;
+                outcome.failures.push(failed);
                 continue;
             }
-            let Some(Course { rows, reduced, end, .. }) = moved.next() else { continue };
-            made.rows.append(rows);
+            let Some(Course { rows, reduced, passed, end, .. }) = moved.next() else { continue };
+            all.append(rows);
             for (number, value) in reduced {
-                made.reduced[number].add(value);
+                outcome.reduced[number].add(value);
             }
             match end {
-                Ok(None) => made.left += 1,
-                Ok(Some(values)) => {
-                    made.finished += 1;
-                    made.reduced.iter_mut().zip(values).for_each(|(reduced, value)| reduced.add(value));
+                Err(failed) => {
+                    outcome.stopped += 1;
+                    outcome.failures.push(failed);
+                    continue;
                 }
-                Err(failed) => made.failures.push(failed),
+                Ok(None) => outcome.left += 1,
+                Ok(Some(values)) => {
+                    outcome.finished += 1;
+                    outcome.reduced.iter_mut().zip(values).for_each(|(reduced, value)| reduced.add(value));
+                }
+            }
+            for (passages, (times, first)) in
+                outcome.passages.iter_mut().zip(passed).filter(|(_, (times, _))| *times > 0)
+            {
+                passages.times += times;
+                passages.first.add(first);
             }
         }
         starts.clear();
@@ -160,7 +171,7 @@ impl<M: Integrator> Ensemble<M> {
             let values = || self.reductions.iter().map(|(_, _, value)| value(&run)).collect();
             course.end = match failure {
                 None => Ok((!has_left).then(values)),
-                Some(failure) => Err(MemberFailure { member, steps: made, failure }),
+                Some(failure) => Err(MemberFailure { member, steps: made, was_made: true, failure }),
             };
         }
         Some(())
@@ -178,7 +189,8 @@ impl<M: Integrator> Ensemble<M> {
             Ok(watches) => (watches, None),
             Err(failure) => (Vec::new(), Some((start.clone(), Some(failure)))),
         };
-        Course { rows: self.no_rows(), watches, reduced: Vec::new(), ended, end: Ok(None) }
+        let passed = vec![(0, 0.0); self.sections.len()];
+        Course { rows: self.no_rows(), watches, reduced: Vec::new(), passed, ended, end: Ok(None) }
     }
 
     /// Keeps the crossings up to here, which belong to the next row; of a member that leaves none later than that.
@@ -205,8 +217,13 @@ impl<M: Integrator> Ensemble<M> {
             }
         }
         let mut first = self.reductions.len();
-        for ((section, crossings), kept) in self.sections.iter().zip(found).zip(&mut course.rows.crossings) {
-            for Crossing { columns, reduced, .. } in crossings.into_iter().filter(|it| it.time.abs() <= left) {
+        let kept = course.rows.crossings.iter_mut().zip(&mut course.passed);
+        for ((section, crossings), (kept, (times, earliest))) in self.sections.iter().zip(found).zip(kept) {
+            for Crossing { time, columns, reduced } in crossings.into_iter().filter(|it| it.time.abs() <= left) {
+                if *times == 0 {
+                    *earliest = time;
+                }
+                *times += 1;
                 kept.push(course.rows.member.len(), &columns);
                 course.reduced.extend((first..).zip(reduced));
             }
@@ -236,10 +253,7 @@ impl<M: Integrator> Ensemble<M> {
 /// What there is of a chunk so far.
 struct Tally {
     rows: Rows,
-    finished: u64,
-    left: u64,
-    failures: Vec<MemberFailure>,
-    reduced: Vec<Summary>,
+    outcome: Outcome,
 }
 
 /// What there is of one member so far.
@@ -249,6 +263,8 @@ struct Course<M: Integrator> {
     watches: Vec<Watch<M::State>>,
     /// What sections reduce, with the number of the reduction.
     reduced: Vec<(usize, f64)>,
+    /// How often it has crossed each section, and when first, s.
+    passed: Vec<(u64, f64)>,
     /// Where it left, or could be followed no further, as the function of a section had no value.
     ended: Option<(M::State, Option<Failure>)>,
     /// What is reduced of its end; nothing where it left.

@@ -8,7 +8,8 @@ use simba::simd::AutoF64x8;
 
 use crate::draw::Member;
 use crate::group::{Grouping, Start, in_lanes, one_by_one};
-use crate::reduce::{Reduction, Summary};
+use crate::outcome::{Outcome, Passages};
+use crate::reduce::{Moments, Reduction};
 use crate::section::{LANES, Section};
 use crate::{Failure, Table};
 use liestep::numbers::Digest;
@@ -298,7 +299,7 @@ impl<M: Integrator> Ensemble<M> {
         self.names.iter().for_each(|name| digest.text(name));
         for (name, reduction, _) in &self.reductions {
             digest.text(name);
-            digest.text(&reduction.begin().to_line());
+            digest.text(&format!("{reduction:?}"));
         }
         self.sections.iter().for_each(|section| section.describe(&mut digest));
         for member in self.looked_at() {
@@ -326,7 +327,7 @@ impl<M: Integrator> Ensemble<M> {
                     }
                 }
             }
-            Err(failure) => digest.text(&failure.to_line()),
+            Err(failure) => digest.text(&failure.to_string()),
         }
     }
 }
@@ -364,8 +365,11 @@ impl<M: Integrator> Ensemble<M> {
         of_ends.chain(of_sections.map(|(name, reduction, _)| (name, reduction)))
     }
 
-    pub(crate) fn nothing_reduced(&self) -> Vec<Summary> {
-        self.all_reductions().map(|(_, reduction)| reduction.begin()).collect()
+    /// Of no members.
+    pub(crate) fn nothing(&self) -> Outcome {
+        let passages = vec![Passages { times: 0, first: Moments::NONE }; self.sections.len()];
+        let reduced = self.all_reductions().map(|(_, reduction)| reduction.begin()).collect();
+        Outcome { passages, reduced, ..Outcome::default() }
     }
 }
 

@@ -26,7 +26,7 @@
 //! # let _ = std::fs::remove_dir_all(&out);
 //!
 //! let report = ensemble.run(&Local::threads(0), &Store::folder(&out)?)?; // goes on where it was
-//! assert_eq!((report.finished, report.failed), (100, 0));
+//! assert_eq!((report.outcome.finished, report.outcome.failed()), (100, 0));
 //! println!("{:?}", report.reduced("energy"));
 //! # std::fs::remove_dir_all(&out)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -60,6 +60,7 @@ pub mod engines;
 mod ensemble;
 mod failure;
 mod group;
+mod outcome;
 mod reduce;
 mod report;
 mod section;
@@ -71,6 +72,7 @@ pub use draw::Member;
 pub use engine::{Engine, Local, MakeChunk, share_of};
 pub use ensemble::{Ensemble, Run};
 pub use failure::{Failure, MemberFailure};
+pub use outcome::{Outcome, Passages};
 pub use reduce::{Histogram, Moments, Quantiles, Reduction, Summary};
 pub use report::{Progress, Report};
 pub use section::Section;

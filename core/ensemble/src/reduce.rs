@@ -4,8 +4,9 @@
 //! bits of a sum don't depend on who made which.
 
 use core::ops::Range;
-use core::str::FromStr;
 use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
 
 /// How values are reduced.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +25,7 @@ pub enum Reduction {
 }
 
 /// Values reduced.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Summary {
     /// By [`Reduction::Moments`].
     Moments(Moments),
@@ -36,7 +37,7 @@ pub enum Summary {
 
 /// Counts of values by sign, power of two, and the 128 equal parts between two powers: whole numbers, which have the same
 /// sums in whatever order they are added.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Quantiles {
     /// By the leading bits of the values, in their order.
     counts: BTreeMap<i64, u64>,
@@ -85,7 +86,7 @@ impl Quantiles {
 }
 
 /// Count, mean, variance and range of values; those that aren't finite are counted apart.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Moments {
     /// How many were finite.
     pub count: u64,
@@ -102,7 +103,7 @@ pub struct Moments {
 }
 
 impl Moments {
-    const NONE: Self =
+    pub(crate) const NONE: Self =
         Self { count: 0, not_finite: 0, mean: 0.0, squares: 0.0, least: f64::INFINITY, largest: f64::NEG_INFINITY };
 
     /// The variance of the distribution that the values are a sample of; NaN of fewer than two.
@@ -115,7 +116,7 @@ impl Moments {
     /// T. F. Chan, G. H. Golub, R. J. `LeVeque`, *Updating formulae and a pairwise algorithm for computing sample variances*,
     /// 1979.
     #[allow(clippy::cast_precision_loss)] // members
-    fn merge(&mut self, other: &Self) {
+    pub(crate) fn merge(&mut self, other: &Self) {
         self.not_finite += other.not_finite;
         if other.count == 0 {
             return;
@@ -134,7 +135,7 @@ impl Moments {
         self.largest = self.largest.max(other.largest);
     }
 
-    fn add(&mut self, value: f64) {
+    pub(crate) fn add(&mut self, value: f64) {
         let mut one = Self::NONE;
         if value.is_finite() {
             one = Self { count: 1, mean: value, least: value, largest: value, ..one };
@@ -146,7 +147,7 @@ impl Moments {
 }
 
 /// Counts of values in equal parts of a range.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Histogram {
     /// From where to where.
     pub range: Range<f64>,
@@ -229,61 +230,16 @@ impl Summary {
             _ => {}
         }
     }
-
-    /// As numbers in a line; floats to their last bit.
-    pub(crate) fn to_line(&self) -> String {
-        match self {
-            Self::Moments(Moments { count, not_finite, mean, squares, least, largest }) => {
-                format!("moments {count} {not_finite} {mean:?} {squares:?} {least:?} {largest:?}")
-            }
-            Self::Histogram(Histogram { range, counts, below, above, not_a_number }) => {
-                let line = format!("histogram {:?} {:?} {below} {above} {not_a_number}", range.start, range.end);
-                core::iter::once(line).chain(counts.iter().map(|count| format!(" {count}"))).collect()
-            }
-            Self::Quantiles(Quantiles { counts, not_a_number }) => {
-                let counts = counts.iter().map(|(size, count)| format!(" {size} {count}"));
-                core::iter::once(format!("quantiles {not_a_number}")).chain(counts).collect()
-            }
-        }
-    }
-
-    pub(crate) fn of_line(line: &str) -> Option<Self> {
-        let mut words = line.split(' ');
-        Some(match words.next()? {
-            "moments" => Self::Moments(Moments {
-                count: next(&mut words)?,
-                not_finite: next(&mut words)?,
-                mean: next(&mut words)?,
-                squares: next(&mut words)?,
-                least: next(&mut words)?,
-                largest: next(&mut words)?,
-            }),
-            "histogram" => Self::Histogram(Histogram {
-                range: next(&mut words)?..next(&mut words)?,
-                below: next(&mut words)?,
-                above: next(&mut words)?,
-                not_a_number: next(&mut words)?,
-                counts: words.map(|word| word.parse().ok()).collect::<Option<_>>()?,
-            }),
-            "quantiles" => {
-                let mut quantiles = Quantiles { not_a_number: next(&mut words)?, ..Quantiles::default() };
-                while let Some(size) = words.next() {
-                    quantiles.counts.insert(size.parse().ok()?, next(&mut words)?);
-                }
-                Self::Quantiles(quantiles)
-            }
-            _ => return None,
-        })
-    }
-}
-
-fn next<'a, T: FromStr>(words: &mut impl Iterator<Item = &'a str>) -> Option<T> {
-    words.next()?.parse().ok()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Reduction, Summary};
+    use super::{Histogram, Reduction, Summary};
+
+    /// As it is written and read again.
+    fn read(summary: &Summary) -> Summary {
+        toml::from_str(&toml::to_string(summary).unwrap()).unwrap()
+    }
 
     #[test]
     fn moments_are_those_of_the_values() {
@@ -305,7 +261,7 @@ mod tests {
         assert_eq!((moments.count, moments.not_finite, moments.least, moments.largest), (5, 1, -1.0, 7.0));
         // Of 1, 2, 6, −1 and 7: the mean 3, and 4 + 1 + 9 + 16 + 16 about it.
         assert!((moments.mean - 3.0).abs() < 1e-15 && (moments.variance() - 46.0 / 4.0).abs() < 1e-14);
-        assert_eq!(Summary::of_line(&all.to_line()), Some(all));
+        assert_eq!(read(&all), all);
     }
 
     /// Their squares aren't doubles.
@@ -337,8 +293,8 @@ mod tests {
             }
             all
         });
-        assert_eq!(merged[0].to_line(), merged[1].to_line());
-        assert_eq!(Summary::of_line(&merged[0].to_line()).as_ref(), Some(&merged[0]));
+        assert_eq!(merged[0], merged[1]);
+        assert_eq!(read(&merged[0]), merged[0]);
         let Summary::Quantiles(quantiles) = &merged[0] else { panic!("they are quantiles") };
         values.sort_by(f64::total_cmp);
         for place in [0_u16, 1, 100, 499, 500, 700, 998] {
@@ -361,9 +317,19 @@ mod tests {
         for value in [-1.0, -0.6, -0.5, 0.99, 1.0, -1.5, f64::NAN, f64::INFINITY] {
             histogram.add(value);
         }
-        assert_eq!(histogram.to_line(), "histogram -1.0 1.0 1 2 1 2 1 0 1");
-        assert_eq!(Summary::of_line(&histogram.to_line()), Some(histogram.clone()));
+        let expected = |times: u64| {
+            let counts = [2, 1, 0, 1].map(|count| count * times).to_vec();
+            Summary::Histogram(Histogram {
+                range: -1.0..1.0,
+                counts,
+                below: times,
+                above: 2 * times,
+                not_a_number: times,
+            })
+        };
+        assert_eq!(histogram, expected(1));
+        assert_eq!(read(&histogram), histogram);
         histogram.merge(&histogram.clone());
-        assert_eq!(histogram.to_line(), "histogram -1.0 1.0 2 4 2 4 2 0 2");
+        assert_eq!(histogram, expected(2));
     }
 }

@@ -1,5 +1,6 @@
 //! Running an ensemble, and what has become of it.
 
+use core::fmt;
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant, SystemTime};
@@ -8,6 +9,7 @@ use liestep::motion::Integrator;
 
 use crate::engine::Engine;
 use crate::ensemble::Ensemble;
+use crate::outcome::Outcome;
 use crate::reduce::Summary;
 use crate::store::{Fault, Store, StoreError};
 
@@ -20,23 +22,19 @@ pub struct Report {
     pub made: u64,
     /// How many are still missing: of other shares, or after a stop.
     pub missing: u64,
-    /// How many members came to their ends.
-    pub finished: u64,
-    /// How many [left](crate::Section::until) before.
-    pub left: u64,
-    /// How many did neither; [`Store::shards`] has them with their errors.
-    pub failed: u64,
+    /// What has become of members; [`Store::shards`] has all that failed with their errors.
+    pub outcome: Outcome,
     /// The files that were found to be damaged. They are now called `….damaged`, and their chunks were made anew; but for those
     /// that were found at the end, which are left to the next run. Rows are read by a [verified](Store::verified) store only.
     pub faults: Vec<Fault>,
-    reductions: Vec<(String, Summary)>,
+    names: Vec<String>,
 }
 
 impl Report {
     /// What a reduction has come to, over the chunks that are there.
     #[must_use]
     pub fn reduced(&self, name: &str) -> Option<&Summary> {
-        self.reductions.iter().find(|(own, _)| own == name).map(|(_, reduced)| reduced)
+        self.names.iter().zip(&self.outcome.reduced).find(|(own, _)| *own == name).map(|(_, reduced)| reduced)
     }
 }
 
@@ -49,6 +47,18 @@ pub struct Progress {
     pub chunks: u64,
     /// How long the others will take, as long as those of this run did.
     pub remaining: Duration,
+}
+
+/// In a line, as `57 of 400 chunks, about 12 min left`.
+impl fmt::Display for Progress {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (left, unit) = match self.remaining.as_secs() {
+            seconds @ ..120 => (seconds, "s"),
+            seconds @ 120..7200 => (seconds / 60, "min"),
+            seconds => (seconds / 3600, "h"),
+        };
+        write!(f, "{} of {} chunks, about {left} {unit} left", self.done, self.chunks)
+    }
 }
 
 impl<M: Integrator> Ensemble<M> {
@@ -117,21 +127,14 @@ impl<M: Integrator> Ensemble<M> {
             chunks,
             made: made.load(Ordering::Relaxed),
             missing: chunks,
-            finished: 0,
-            left: 0,
-            failed: 0,
+            outcome: self.nothing(),
             faults,
-            reductions: self.all_reductions().map(|(name, reduction)| (name.clone(), reduction.begin())).collect(),
+            names: self.all_reductions().map(|(name, _)| name.clone()).collect(),
         };
         if leads {
             let is_whole = store.look(plan, &|_| false)?.0.len() as u64 == chunks;
-            // In the order of their numbers, as sums are.
-            let (found, damaged) = store.survey(plan, &|chunk| is_whole || is_own(chunk), |shard| {
-                report.finished += shard.finished;
-                report.left += shard.left;
-                report.failed += shard.failures.len() as u64;
-                report.reductions.iter_mut().zip(&shard.reduced).for_each(|((_, all), part)| all.merge(part));
-            })?;
+            let is_told = |chunk: u64| is_whole || is_own(chunk);
+            let (found, damaged) = store.survey(plan, &is_told, &self.nothing(), &mut report.outcome)?;
             Store::set_aside(&damaged)?;
             report.faults.extend(damaged);
             report.missing = chunks - found;

@@ -244,7 +244,7 @@ impl<M: Integrator> Section<M> {
         self.names.iter().for_each(|name| digest.text(name));
         for (name, reduction, _) in &self.reductions {
             digest.text(name);
-            digest.text(&reduction.begin().to_line());
+            digest.text(&format!("{reduction:?}"));
         }
     }
 

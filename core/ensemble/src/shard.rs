@@ -11,9 +11,9 @@ use arrow_array::{ArrayRef, Float64Array, RecordBatch, UInt8Array, UInt64Array};
 use arrow_ipc::reader::{FileReader, StreamReader};
 use arrow_ipc::writer::FileWriter;
 use arrow_schema::{ArrowError, DataType, Field, Schema};
+use serde::{Deserialize, Serialize};
 
-use crate::failure::{Failure, MemberFailure};
-use crate::reduce::Summary;
+use crate::outcome::Outcome;
 
 /// What has become of a member by the time of a row; in a file its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,7 +35,7 @@ impl Status {
 }
 
 /// Rows, column by column.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rows {
     /// Whose they are.
     pub member: Vec<u64>,
@@ -157,30 +157,26 @@ impl Rows {
 }
 
 /// What is kept of a chunk.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shard {
     /// The [fingerprint](crate::Ensemble::fingerprint) of the plan.
     pub plan: u64,
     /// The number of the chunk.
     pub chunk: u64,
     /// The names of the columns.
+    #[serde(skip)]
     pub names: Vec<String>,
     /// By member and then by time.
+    #[serde(skip)]
     pub rows: Rows,
-    /// How many members came to their ends.
-    pub finished: u64,
-    /// How many [left](crate::Section::until) before.
-    pub left: u64,
-    /// Those that did neither.
-    pub failures: Vec<MemberFailure>,
-    /// What the ends were reduced to, in the order of the plan.
-    pub reduced: Vec<Summary>,
+    /// What has become of its members.
+    pub outcome: Outcome,
 }
 
 /// The key of the schema's metadata that holds what isn't in rows. One only: the order of several isn't fixed.
 const KEY: &str = "liestep-ensemble";
-/// Another layout has another number.
-const FORMAT: &str = "format 2";
+/// What that begins with, a comment of TOML; another layout has another number.
+const FORMAT: &str = "# format 3";
 
 impl Shard {
     /// The file's bytes, the same each time.
@@ -197,7 +193,8 @@ impl Shard {
             let field = |name: &String| Field::new(name, list.clone(), false).with_metadata(metadata.clone());
             fields.extend(crossings.names.iter().map(field));
         }
-        let metadata = HashMap::from([(KEY.to_owned(), self.summary())]);
+        let summary = toml::to_string(self).map_err(|error| ArrowError::ExternalError(Box::new(error)))?;
+        let metadata = HashMap::from([(KEY.to_owned(), format!("{FORMAT}\n{summary}"))]);
         let schema = Arc::new(Schema::new_with_metadata(fields, metadata));
         let Rows { member, step, status, columns, crossings } = &self.rows;
         let mut arrays: Vec<ArrayRef> = vec![
@@ -246,7 +243,9 @@ impl Shard {
         if summary.lines().next() != Some(FORMAT) {
             return Ok(None);
         }
-        let mut shard = Self::of_summary(summary).ok_or("its summary can't be read")?;
+        let unread = |error: toml::de::Error| format!("its summary can't be read: {}", error.message());
+        let mut shard: Self = toml::from_str(summary).map_err(unread)?;
+        shard.rows = Rows::of_columns(0, vec![Crossings::default(); shard.outcome.passages.len()]);
         for field in schema.fields().iter().skip(3) {
             let name = field.name().clone();
             let Some(section) = field.metadata().get(KEY) else {
@@ -282,60 +281,13 @@ impl Shard {
         }
         Some(())
     }
-
-    /// All that isn't in rows, line by line.
-    fn summary(&self) -> String {
-        let mut lines = vec![
-            FORMAT.to_owned(),
-            format!("plan {:016x}", self.plan),
-            format!("chunk {}", self.chunk),
-            format!("sections {}", self.rows.crossings.len()),
-            format!("finished {}", self.finished),
-            format!("left {}", self.left),
-        ];
-        lines.extend(self.reduced.iter().map(|reduced| format!("reduced {}", reduced.to_line())));
-        lines.extend(
-            self.failures.iter().map(|MemberFailure { member, steps, failure }| {
-                format!("failed {member} {steps} {}", failure.to_line())
-            }),
-        );
-        lines.join("\n")
-    }
-
-    /// Without columns.
-    fn of_summary(summary: &str) -> Option<Self> {
-        let mut lines = summary.lines().skip(1);
-        let mut value = |key: &str| lines.next()?.strip_prefix(key)?.strip_prefix(' ').map(str::to_owned);
-        let mut shard = Self {
-            plan: u64::from_str_radix(&value("plan")?, 16).ok()?,
-            chunk: value("chunk")?.parse().ok()?,
-            // A plan has less than 256 sections; a file may say anything, and so much memory isn't taken for it.
-            rows: Rows::of_columns(0, vec![Crossings::default(); usize::from(value("sections")?.parse::<u8>().ok()?)]),
-            finished: value("finished")?.parse().ok()?,
-            left: value("left")?.parse().ok()?,
-            names: Vec::new(),
-            failures: Vec::new(),
-            reduced: Vec::new(),
-        };
-        for line in lines {
-            match line.split_once(' ')? {
-                ("reduced", reduced) => shard.reduced.push(Summary::of_line(reduced)?),
-                ("failed", failed) => {
-                    let (member, rest) = failed.split_once(' ')?;
-                    let (steps, failure) = rest.split_once(' ')?;
-                    let (member, steps) = (member.parse().ok()?, steps.parse().ok()?);
-                    shard.failures.push(MemberFailure { member, steps, failure: Failure::of_line(failure)? });
-                }
-                _ => return None,
-            }
-        }
-        Some(shard)
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::{Crossings, FORMAT, Rows, Shard, Status};
+    use crate::outcome::{Outcome, Passages};
+    use crate::reduce::Moments;
 
     /// Two columns of one section whose lists differ in length have no rows in common.
     #[test]
@@ -366,8 +318,14 @@ mod tests {
         let mut rows = Rows::of_columns(0, vec![crossings]);
         rows.push(3, 10, Status::Going, core::iter::empty());
         rows.push(3, 20, Status::Finished, core::iter::empty());
-        let shard =
-            Shard { plan: 1, chunk: 2, names: vec![], rows, finished: 1, left: 0, failures: vec![], reduced: vec![] };
+        let passages = vec![Passages { times: 3, first: Moments::NONE }];
+        let shard = Shard {
+            plan: u64::MAX,
+            chunk: 2,
+            names: vec![],
+            rows,
+            outcome: Outcome { passages, ..Outcome::default() },
+        };
         assert_eq!(Shard::of_bytes(&shard.to_bytes().unwrap()), Ok(Some(shard)));
     }
 
@@ -379,10 +337,7 @@ mod tests {
             chunk: 2,
             names: vec!["x".to_owned()],
             rows: Rows::of_columns(1, vec![]),
-            finished: 0,
-            left: 0,
-            failures: vec![],
-            reduced: vec![],
+            outcome: Outcome::default(),
         };
         let bytes = shard.to_bytes().unwrap();
         assert_eq!(Shard::of_bytes(&bytes), Ok(Some(shard)));

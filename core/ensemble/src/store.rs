@@ -1,5 +1,6 @@
 //! A folder of shards, each of which is there whole or not at all.
 
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{ErrorKind, Read as _, Write as _};
@@ -9,6 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::SystemTime;
 use thiserror::Error;
 
+use crate::outcome::Outcome;
 use crate::shard::Shard;
 use liestep::numbers::Digest;
 
@@ -18,7 +20,7 @@ use liestep::numbers::Digest;
 /// A file is written beside, brought to the disk, and then renamed; the folder is brought to the disk, too. So whatever
 /// ends a run, a shard is there whole or not at all, and the next run makes what is missing. Several processes may write
 /// to one folder, on a shared file system too. Files of other names are nobody's business here: they are neither read nor
-/// removed.
+/// removed. Beside a folder that has its thousand is the sum of their heads, `00000.toml`, so that who reports needn't open them.
 ///
 /// Every file is Arrow IPC and can be read without this library: `polars.read_ipc("out/*/*.arrow")`. Its columns are
 /// `member`, `step`, `status` (a [`Status`](crate::Status)), those that are [kept](crate::Ensemble::keep), and lists of what
@@ -89,6 +91,18 @@ pub enum StoreError {
 /// What Arrow IPC files end with.
 const END: &[u8] = b"ARROW1";
 const PER_FOLDER: u64 = 1000;
+
+/// What has become of the members of a whole folder.
+#[derive(Serialize, Deserialize)]
+struct Sum {
+    plan: u64,
+    /// A digest of the names of its files, in which are those of their contents.
+    names: u64,
+    outcome: Outcome,
+}
+
+/// What it is called behind the name of the folder, which it lies beside.
+const SUM: &str = ".toml";
 
 impl Store {
     /// This folder, which is made where there is none.
@@ -209,7 +223,8 @@ impl Store {
     /// Removes what killed runs have left half-written before this time; what is newer another process may be writing.
     pub(crate) fn sweep(&self, before: SystemTime) -> Result<(), StoreError> {
         let is_older = |path: &Path| path.metadata().and_then(|file| file.modified()).is_ok_and(|time| time < before);
-        for folder in entries(&self.folder)?.into_iter().filter(|path| path.is_dir()) {
+        let folders = entries(&self.folder)?.into_iter().filter(|path| path.is_dir());
+        for folder in folders.chain([self.folder.clone()]) {
             for path in entries(&folder)? {
                 if is_part(&path) && is_older(&path) {
                     let _ = fs::remove_file(path);
@@ -252,27 +267,51 @@ impl Store {
         Ok((found, faults))
     }
 
-    /// Shows these of the chunks that are there, without rows and in the order of their numbers; returns how many chunks there
-    /// are in all, and what is wrong with other files.
+    /// Adds what has become of these of the chunks that are there, in the order of their numbers; returns how many chunks
+    /// there are in all, and what is wrong with other files. No rows are read, and of a folder that has all of its chunks only
+    /// the sum beside it, which whoever needs it first writes.
     pub(crate) fn survey(
         &self,
         plan: u64,
         is_own: &dyn Fn(u64) -> bool,
-        mut show: impl FnMut(Shard),
+        nothing: &Outcome,
+        all: &mut Outcome,
     ) -> Result<(u64, Vec<Fault>), StoreError> {
-        let (mut count, mut last, mut faults) = (0, None, Vec::new());
-        for (chunk, path) in self.files()? {
-            let shard = if is_own(chunk) { Self::shard(&path, plan, false)? } else { None };
-            match shard {
-                Some(Err(fault)) => {
-                    faults.push(fault);
-                    continue;
-                }
-                Some(Ok(_)) if last == Some(chunk) => return Err(StoreError::Twice { path }),
-                Some(Ok(shard)) => show(shard),
-                None => {}
+        let (mut count, mut faults) = (0, Vec::new());
+        for files in self.files()?.chunk_by(|(first, _), (second, _)| first / PER_FOLDER == second / PER_FOLDER) {
+            let mut names = Digest::default();
+            files.iter().filter_map(|(_, path)| path.file_name()).for_each(|name| names.text(&name.to_string_lossy()));
+            let sum = self.folder.join(folder_of(files[0].0) + SUM);
+            let is_whole = files.len() as u64 == PER_FOLDER && files.iter().all(|(chunk, _)| is_own(*chunk));
+            let is_same = |sum: &Sum| is_whole && (sum.plan, sum.names) == (plan, names.value());
+            if let Some(sum) = fs::read_to_string(&sum).ok().and_then(|text| toml::from_str(&text).ok()).filter(is_same)
+            {
+                count += PER_FOLDER;
+                all.merge(&sum.outcome);
+                continue;
             }
-            count += u64::from(last.replace(chunk) != Some(chunk));
+            let mut made = Sum { plan, names: names.value(), outcome: nothing.clone() };
+            let (before, mut last) = ((count, faults.len()), None);
+            for (chunk, path) in files {
+                let shard = if is_own(*chunk) { Self::shard(path, plan, false)? } else { None };
+                match shard {
+                    Some(Err(fault)) => {
+                        faults.push(fault);
+                        continue;
+                    }
+                    Some(Ok(_)) if last == Some(*chunk) => return Err(StoreError::Twice { path: path.clone() }),
+                    Some(Ok(shard)) => made.outcome.merge(&shard.outcome),
+                    None => {}
+                }
+                count += u64::from(last.replace(*chunk) != Some(*chunk));
+            }
+            all.merge(&made.outcome);
+            if is_whole && (count, faults.len()) == (before.0 + PER_FOLDER, before.1) {
+                // Where it can't be written it is summed again.
+                let (part, text) = (self.folder.join(part_of(SUM)), toml::to_string(&made).unwrap_or_default());
+                let _ =
+                    fs::write(&part, text).and_then(|()| fs::rename(&part, &sum)).or_else(|_| fs::remove_file(&part));
+            }
         }
         Ok((count, faults))
     }
@@ -346,10 +385,10 @@ fn part_of(name: &str) -> String {
     format!("{name}.{host}-{}-{}.part", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed))
 }
 
-/// Whether it is a shard's that hasn't got its name yet.
+/// Whether it is a shard's, or a sum, that hasn't got its name yet.
 fn is_part(path: &Path) -> bool {
     let shard = || path.to_str()?.strip_suffix(".part")?.rsplit_once('.');
-    shard().is_some_and(|(shard, _)| name_of(Path::new(shard)).is_some())
+    shard().map(|(shard, _)| Path::new(shard)).is_some_and(|own| own.ends_with(SUM) || name_of(own).is_some())
 }
 
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, StoreError> {

@@ -63,11 +63,14 @@ fn files_and_sums_are_the_same_for_threads_shares_and_one_by_one() {
     let (ensemble, alone) = (tops(MEMBERS, STEPS), Ensemble::one_by_one("tops", MEMBERS, STEPS, top));
     let (folder, report) = the_same("one", [&ensemble, &with_columns(alone)], [5, 2, 0]);
     assert_eq!((report.chunks, report.made, report.missing), (7, 7, 0));
-    assert_eq!((report.finished, report.failed), (MEMBERS - 14, 14));
+    assert_eq!((report.outcome.finished, report.outcome.failed()), (MEMBERS - 14, 14));
     assert_eq!(contents(&folder.0).len(), 7);
     // And what is there isn't made again.
     let again = run(&ensemble, &Local::threads(2), &folder);
-    assert_eq!((again.made, again.finished, again.reduced("z")), (0, report.finished, report.reduced("z")));
+    assert_eq!(
+        (again.made, again.outcome.finished, again.reduced("z")),
+        (0, report.outcome.finished, report.reduced("z"))
+    );
 }
 
 /// Each member as its stepper moves it, step by step, with nothing of the ensemble's.
@@ -84,7 +87,7 @@ fn members_are_what_they_are_alone() {
             let values = [0, 1, 2, 3].map(|column| columns[column][row].to_bits());
             (shard.rows.member[row], shard.rows.step[row], shard.rows.status[row], values)
         }));
-        failures.extend(shard.failures);
+        failures.extend(shard.outcome.failures);
     }
     let mut expected = Vec::new();
     let mut expected_failures = Vec::new();
@@ -93,7 +96,7 @@ fn members_are_what_they_are_alone() {
             Ok(made) => made,
             Err(failure) => {
                 expected.push((member, 0, Status::Impossible, [f64::NAN.to_bits(); 4]));
-                expected_failures.push(MemberFailure { member, steps: 0, failure });
+                expected_failures.push(MemberFailure { member, steps: 0, was_made: false, failure });
                 continue;
             }
         };
@@ -116,7 +119,7 @@ fn members_are_what_they_are_alone() {
             None => keep(STEPS, Status::Finished, &state),
             Some((steps, error)) => {
                 keep(steps, Status::Stopped, &state);
-                expected_failures.push(MemberFailure { member, steps, failure: error.into() });
+                expected_failures.push(MemberFailure { member, steps, was_made: true, failure: error.into() });
             }
         }
     }
@@ -148,7 +151,7 @@ fn sums_are_those_of_the_files() {
         ends.extend(z.iter().zip(steps).filter(|(_, steps)| **steps > 149.5).map(|(z, _)| *z));
         assert_eq!(finished, ends.len() - last);
     }
-    assert_eq!(ends.len() as u64, report.finished);
+    assert_eq!(ends.len() as u64, report.outcome.finished);
     let Some(Summary::Moments(moments)) = report.reduced("z") else { panic!("{report:?}") };
     #[allow(clippy::cast_precision_loss)] // a hundred
     let mean = ends.iter().sum::<f64>() / ends.len() as f64;
@@ -158,7 +161,7 @@ fn sums_are_those_of_the_files() {
     let Some(Summary::Histogram(Histogram { counts, below, above, .. })) = report.reduced("zs") else {
         panic!("{report:?}")
     };
-    assert_eq!((counts.iter().sum::<u64>(), *below, *above), (report.finished, 0, 0));
+    assert_eq!((counts.iter().sum::<u64>(), *below, *above), (report.outcome.finished, 0, 0));
     assert_eq!(counts[7], ends.iter().filter(|z| **z >= 0.75).count() as u64);
     assert!(report.reduced("y").is_none());
 }
@@ -411,7 +414,8 @@ fn members_go_as_far_as_their_steps_do() {
     let stepwise =
         stepwise.seed(7).chunks_of(20).keep(["x", "y", "z"], |run| axis(run.state)).chunk(0, &|| false).unwrap();
     let expected = tops(20, STEPS).chunk(0, &|| false).unwrap();
-    assert_eq!((stepwise.finished, &stepwise.failures), (17, &expected.failures));
+    assert_eq!(stepwise.outcome.finished, 17);
+    assert_eq!(stepwise.outcome.failures, expected.outcome.failures);
     assert_eq!(stepwise.rows.step, expected.rows.step);
     let bits = |shard: &Shard| -> Vec<u64> { shard.rows.columns[..3].iter().flatten().map(|x| x.to_bits()).collect() };
     assert_eq!(bits(&stepwise), bits(&expected));

@@ -1,9 +1,11 @@
 //! What a plan of an ensemble is made of: chunks, columns, reductions, members of a table, scenes, shares.
 
+use core::time::Duration;
+
 use liestep::effects::RigidBody;
 use liestep::methods::CompositionScheme;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
-use liestep_ensemble::{Ensemble, Fault, Local, Reduction, Store, Table, share_of};
+use liestep_ensemble::{Ensemble, Fault, Local, Progress, Reduction, Store, Table, share_of};
 use nalgebra::Vector3;
 
 use super::common::{Folder, contents, message, top, tops};
@@ -85,7 +87,7 @@ fn members_are_read_from_a_table() {
     for (found, expected) in shard.rows.columns[0].iter().zip([5.0_f64, 6.0, 7.0]) {
         assert!((found - expected).abs() < 1e-13);
     }
-    let [failed] = shard.failures.as_slice() else { panic!("{:?}", shard.failures) };
+    let [failed] = shard.outcome.failures.as_slice() else { panic!("{:?}", shard.outcome) };
     assert!(failed.member == 3 && failed.failure.to_string().contains("no row 3"), "{failed:?}");
     let uneven = Table::new([("a".to_owned(), vec![1.0]), ("b".to_owned(), vec![])]);
     assert!(uneven.is_err_and(|error| error.to_string().contains("`b`")));
@@ -153,7 +155,7 @@ fn who_is_done_helps_others() {
     let expected = run(&ensemble, &Local::threads(2), &whole);
     assert_eq!(run(&ensemble, &Local::threads(1).share(1, 3), &folder).made, 2);
     let helped = run(&ensemble, &Local::threads(2).share(2, 3).helping(), &folder);
-    assert_eq!((helped.made, helped.missing, helped.finished), (5, 0, expected.finished));
+    assert_eq!((helped.made, helped.missing, helped.outcome.finished), (5, 0, expected.outcome.finished));
     assert!(contents(&folder.0) == contents(&whole.0));
 }
 
@@ -162,8 +164,42 @@ fn who_is_done_helps_others() {
 fn a_share_sums_its_own_chunks_until_all_are_there() {
     let (ensemble, folder) = (tops(MEMBERS, STEPS), Folder::new("sums-of-shares"));
     let of_share = |share| run(&ensemble, &Local::threads(1).share(share, 3), &folder);
-    let counted = [1, 2, 0].map(|share| (of_share(share).missing, of_share(share).finished + of_share(share).failed));
+    let counted = [1, 2, 0]
+        .map(|share| (of_share(share).missing, of_share(share).outcome.finished + of_share(share).outcome.failed()));
     assert_eq!(counted, [(5, 40), (3, 40), (0, MEMBERS)]);
+}
+
+/// Of a thousand chunks one small file is read, and no head; what is verified is read whole.
+#[test]
+fn a_whole_folder_is_told_of_from_its_sum() {
+    let (ensemble, folder) = (tops(1003, 2).chunks_of(1), Folder::new("sums-of-folders"));
+    let made = run(&ensemble, &Local::threads(2), &folder);
+    assert_eq!((made.made, made.missing, made.outcome.finished + made.outcome.failed()), (1003, 0, 1003));
+    let shards: Vec<_> = Store::folder(&folder.0).unwrap().shards(ensemble.fingerprint()).unwrap().flatten().collect();
+    assert_eq!(shards.iter().map(|shard| shard.outcome.finished).sum::<u64>(), made.outcome.finished);
+    let store = Store::folder(&folder.0).unwrap();
+    let sum = folder.0.join("00000.toml");
+    assert!(sum.exists() && !folder.0.join("00001.toml").exists());
+    let (_, path) = store.files().unwrap().remove(500);
+    let whole = std::fs::read(&path).unwrap();
+    std::fs::write(&path, b"ARROW1").unwrap();
+    assert_eq!(run(&ensemble, &Local::threads(1), &folder).outcome, made.outcome);
+    // Without the sum, or with another's, the heads are read.
+    for text in ["", &std::fs::read_to_string(&sum).unwrap().replace("names = ", "names = 1")] {
+        std::fs::write(&path, &whole).unwrap();
+        std::fs::write(&sum, text).unwrap();
+        assert_eq!(run(&ensemble, &Local::threads(1), &folder).outcome, made.outcome);
+    }
+    std::fs::write(&path, b"ARROW1").unwrap();
+    let again = ensemble.run(&Local::threads(1), &store.verified()).unwrap();
+    assert_eq!((again.made, &again.faults[..], again.outcome), (1, &[Fault::Altered(path)][..], made.outcome));
+}
+
+#[test]
+fn progress_says_what_is_left() {
+    let said = |seconds| Progress { done: 57, chunks: 400, remaining: Duration::from_secs(seconds) }.to_string();
+    assert_eq!(said(119), "57 of 400 chunks, about 119 s left");
+    assert_eq!([said(120), said(7200)].map(|said| said[18..].to_owned()), ["about 2 min left", "about 2 h left"]);
 }
 
 #[test]

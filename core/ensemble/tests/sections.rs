@@ -137,9 +137,9 @@ fn a_function_without_a_value_stops_its_member() {
     for event in [Event::crossing(), Event::crossing().curvature(1.0)] {
         let shard = tops(12, STEPS).section(section(event)).chunk(0, &|| false).unwrap();
         let is_lost = |failed: &&MemberFailure| matches!(failed.failure, Failure::Other(_));
-        let lost: Vec<_> = shard.failures.iter().filter(is_lost).collect();
+        let lost: Vec<_> = shard.outcome.failures.iter().filter(is_lost).collect();
         assert!((1..10).contains(&lost.len()), "{lost:?}");
-        assert_eq!(shard.finished + lost.len() as u64, undisturbed.finished, "{lost:?}");
+        assert_eq!(shard.outcome.finished + lost.len() as u64, undisturbed.outcome.finished, "{lost:?}");
         for failed in lost {
             assert!(failed.failure.to_string().contains("no value at t = "), "{failed:?}");
             assert_eq!(Some(failed.steps), first_without(failed.member), "{failed:?}");
@@ -156,13 +156,13 @@ fn a_function_without_a_value_stops_its_member() {
                 _ => 1.0,
             });
         let shard = tops(2, STEPS).section(only).chunk(0, &|| false).unwrap();
-        let steps: Vec<u64> = shard.failures.iter().map(|failed| failed.steps).collect();
-        assert_eq!((shard.finished, steps), (0, vec![40, 40]));
+        let steps: Vec<u64> = shard.outcome.failures.iter().map(|failed| failed.steps).collect();
+        assert_eq!((shard.outcome.finished, steps), (0, vec![40, 40]));
     }
     // From the start on.
     let never = Section::new(Event::crossing(), |_: &Moment<'_, Top>| f64::NAN);
     let shard = tops(2, STEPS).section(never).chunk(0, &|| false).unwrap();
-    assert_eq!((shard.finished, shard.failures.len(), shard.failures[0].steps), (0, 2, 0));
+    assert_eq!((shard.outcome.finished, shard.outcome.failures.len(), shard.outcome.failures[0].steps), (0, 2, 0));
 }
 
 /// First passages of each member alone, in any direction and without a bound: what a section keeps of them, and where
@@ -194,12 +194,13 @@ fn first_passages_are_those_of_each_member_alone() {
     for in_lanes in [false, true] {
         let shards = chunks(&tops(MEMBERS, STEPS).section(section(in_lanes).first()));
         assert_eq!(found(&shards, 0), expected);
-        assert!(shards.iter().all(|shard| shard.left == 0));
+        assert!(shards.iter().all(|shard| shard.outcome.left == 0));
         let shards = chunks(&tops(MEMBERS, STEPS).section(section(in_lanes).until()));
         assert_eq!(found(&shards, 0), expected);
-        assert_eq!(shards.iter().map(|shard| shard.left).sum::<u64>(), expected.len() as u64);
-        for Shard { rows, finished, left, failures, .. } in &shards {
-            assert_eq!(finished + left + failures.len() as u64, rows.member.len() as u64);
+        assert_eq!(shards.iter().map(|shard| shard.outcome.left).sum::<u64>(), expected.len() as u64);
+        assert_passages(&shards);
+        for Shard { rows, outcome, .. } in &shards {
+            assert_eq!(outcome.finished + outcome.left + outcome.failed(), rows.member.len() as u64);
             let last = rows.member.iter().zip(&rows.step).zip(&rows.status);
             for ((member, step), status) in last.filter(|(_, status)| **status == Status::Left) {
                 let (_, time) = expected.iter().find(|(passed, _)| passed == member).unwrap();
@@ -208,8 +209,30 @@ fn first_passages_are_those_of_each_member_alone() {
             }
         }
         // All crossings, and not only the first, are the same in lanes.
-        let all = [false, true].map(|lanes| found(&chunks(&tops(MEMBERS, STEPS).section(section(lanes))), 0));
+        let shards = [false, true].map(|lanes| chunks(&tops(MEMBERS, STEPS).section(section(lanes))));
+        for shards in &shards {
+            assert_passages(shards);
+        }
+        let all = shards.map(|shards| found(&shards, 0));
         assert!(all[0] == all[1] && all[0].len() > expected.len());
+    }
+}
+
+/// Passages of members that came to an end, counted from the rows, where the times are kept first.
+fn assert_passages(shards: &[Shard]) {
+    for Shard { rows, outcome, .. } in shards {
+        let has_ended = |member: u64| {
+            let mut own = (0..rows.member.len()).filter(|row| rows.member[*row] == member);
+            own.next_back().is_some_and(|row| matches!(rows.status[row], Status::Finished | Status::Left))
+        };
+        let crossings = &rows.crossings[0];
+        let members = crossings.row.iter().map(|row| rows.member[*row]);
+        let all: Vec<_> = members.zip(&crossings.columns[0]).filter(|(member, _)| has_ended(*member)).collect();
+        let first: Vec<f64> = all.chunk_by(|(one, _), (next, _)| one == next).map(|passed| *passed[0].1).collect();
+        let passages = &outcome.passages[0];
+        assert_eq!((passages.times, passages.first.count), (all.len() as u64, first.len() as u64));
+        assert!((passages.first.mean - first.iter().sum::<f64>() / first.len() as f64).abs() < 1e-13);
+        assert_eq!(passages.first.largest.to_bits(), first.iter().copied().fold(0.0, f64::max).to_bits());
     }
 }
 

@@ -38,7 +38,7 @@ fn top(member: &Member<'_>, is_symmetric: bool, beside: f64) -> Result<Top, Iner
 
 fn bits(shard: &Shard) -> (Vec<u64>, Vec<u64>, String) {
     let values = shard.rows.columns.iter().flatten().map(|value| value.to_bits()).collect();
-    (shard.rows.step.clone(), values, format!("{:?}", shard.failures))
+    (shard.rows.step.clone(), values, format!("{:?}", shard.outcome.failures))
 }
 
 fn assert_same<S, P>(
@@ -84,8 +84,8 @@ where
     };
     let together = kept(Ensemble::new("tops", MEMBERS, STEPS, member));
     let alone = kept(Ensemble::one_by_one("tops", MEMBERS, STEPS, member).chunks_of(MEMBERS));
-    assert!(bits(&together) == bits(&alone), "{name}: {:?}, {:?}", together.failures, alone.failures);
-    together.failures
+    assert!(bits(&together) == bits(&alone), "{name}: {:?}, {:?}", together.outcome.failures, alone.outcome.failures);
+    together.outcome.failures
 }
 
 #[test]

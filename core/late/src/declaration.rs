@@ -7,7 +7,7 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 use liestep::mechanics::Parts;
 use liestep::numbers::{Blocks, Real};
-use liestep_derivation::{Action, Array, Program, Refusal, StagedDeclaration, Stages, staged};
+use liestep_derivation::{Action, Array, MOST_WORK, Program, Refusal, StagedDeclaration, Stages, staged};
 use proc_macro2::{LexError, TokenStream};
 
 use crate::code::Backend;
@@ -47,6 +47,11 @@ impl<C> Ready<C> {
     pub(crate) const fn reads(&self, array: Array) -> bool {
         self.arrays >> array as u16 & 1 == 1
     }
+
+    /// Whether it computes the same whatever it is given.
+    pub(crate) const fn reads_constants_alone(&self) -> bool {
+        self.arrays & !(1 << Array::Constants as u16) == 0
+    }
 }
 
 /// All programs of a declaration, ready to run.
@@ -75,8 +80,6 @@ fn ready_each<T: Real, B: Backend<T>>(programs: &[&Program]) -> Result<Vec<Ready
 
 /// A longer text is no Lagrangian that a person has typed.
 const LONGEST: usize = 64 * 1024;
-/// Products of terms and operations: many times what the largest declaration of the repository takes.
-const MOST_WORK: u64 = 20_000_000;
 /// A large declaration is kept in some 100 kB.
 const MOST: usize = 10_000;
 
@@ -84,7 +87,7 @@ const MOST: usize = 10_000;
 static KEPT: LazyLock<Mutex<BTreeMap<String, &'static Declaration>>> = LazyLock::new(Mutex::default);
 
 /// How many declarations are kept. A text is derived and kept once, however often it is declared; a program may keep
-/// 10,000.
+/// 10,000. One of a body keeps 43 kB, which the ignored test in `core/late/tests/hostile.rs` measures.
 #[must_use]
 pub fn kept() -> usize {
     KEPT.lock().unwrap_or_else(PoisonError::into_inner).len()

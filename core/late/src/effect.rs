@@ -102,6 +102,8 @@ pub(crate) struct Folded<T: Real, B: Backend<T>> {
     newton_residual: B::Image,
     kick_after: B::Image,
     kick_derivative: Option<B::Image>,
+    /// Kicks before and after that depend on nothing else.
+    known: [Option<Box<[T]>>; 2],
 }
 
 impl<T: Real, B: Backend<T>> Constants<T, B> {
@@ -113,7 +115,15 @@ impl<T: Real, B: Backend<T>> Constants<T, B> {
     ) -> Self {
         let image = |program: &Ready<B::Code>| B::image(&program.code, &numbers);
         let Stages { kick_before, newton_system, newton_residual, kick_after, kick_derivative, .. } = &**stages;
+        let known = [kick_before, kick_after].map(|program| {
+            program.reads_constants_alone().then(|| {
+                let mut kick = vec![T::zero(); program.outputs];
+                B::run(&program.code, &image(program), [], &mut kick);
+                kick.into()
+            })
+        });
         let folded = Folded {
+            known,
             kick_before: image(kick_before),
             newton_system: image(newton_system),
             newton_residual: image(newton_residual),
@@ -189,9 +199,10 @@ where
     type Constants = Constants<G::Scalar, B>;
     type StepTerms = StepTerms<Vector<G>, W>;
 
-    // Those of the declaration are asked of a value.
-    const INERTIA_IS_CONSTANT: bool = false;
-    const IS_QUADRATIC: bool = false;
+    // Those of the declaration are asked of a value, but where the type has no more than kicks.
+    const PARTS: Parts = Parts { unknown: K::MAY_BE_UNKNOWN, ..Parts::ALL };
+    const INERTIA_IS_CONSTANT: bool = !K::MAY_BE_UNKNOWN;
+    const IS_QUADRATIC: bool = !K::MAY_BE_UNKNOWN;
     const DERIVATION: &'static str = "a declaration that was read while the program runs; see its derivation\n";
 
     fn derivation(&self) -> String {
@@ -199,11 +210,11 @@ where
     }
 
     fn has_constant_inertia(&self) -> bool {
-        self.declaration.has_constant_inertia
+        Self::INERTIA_IS_CONSTANT || self.declaration.has_constant_inertia
     }
 
     fn is_quadratic(&self) -> bool {
-        self.declaration.is_quadratic
+        Self::IS_QUADRATIC || self.declaration.is_quadratic
     }
 
     fn denominators(constants: &Self::Constants) -> u32 {
@@ -279,6 +290,9 @@ where
     #[cfg_attr(all(not(debug_assertions), not(feature = "small")), inline(always))]
     fn kick_before(constants: &Self::Constants, w: &W) -> Vector<G> {
         let folded = &*constants.0;
+        if let Some(kick) = &folded.known[0] {
+            return vector(&kick[..G::DIMENSION]);
+        }
         listed!(advected = w);
         room!(kick: G::Scalar, G::DIMENSION);
         B::run(&folded.stages.kick_before.code, &folded.kick_before, [(Array::Advected, advected)], kick);
@@ -326,6 +340,9 @@ where
     #[cfg_attr(all(not(debug_assertions), not(feature = "small")), inline(always))]
     fn kick_after(constants: &Self::Constants, increment: &Matrix<G>, next: &W) -> Vector<G> {
         let folded = &*constants.0;
+        if let Some(kick) = &folded.known[1] {
+            return vector(&kick[..G::DIMENSION]);
+        }
         let (program, image) = (&folded.stages.kick_after, &folded.kick_after);
         room!(kick: G::Scalar, G::DIMENSION);
         if program.reads(Array::Increment) || program.reads(Array::Inverse) {

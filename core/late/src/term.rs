@@ -95,7 +95,9 @@ impl<G: LieGroup, W: Advected<G> + Slots, K: KineticPart, B: Backend<G::Scalar>>
             return Err(LateError::Advected { declared: format!("{:?}", declaration.slots()) });
         }
         let is_expensive = declaration.is_expensive() || K::IS_EITHER;
-        if (K::IS_THERE, K::JACOBIAN_IS_EXPENSIVE) != (declaration.has_kinetic, is_expensive) {
+        let only_kicks = !declaration.parts.unknown && declaration.has_constant_inertia && declaration.is_quadratic;
+        let has_kind = (K::IS_THERE, K::JACOBIAN_IS_EXPENSIVE) == (declaration.has_kinetic, is_expensive);
+        if !has_kind || !(K::MAY_BE_UNKNOWN || only_kicks) {
             return Err(LateError::Kinetic { declared: declaration.kinetic() });
         }
         let numbers = declaration.parameters.iter().map(|parameter| parameter.kind.len()).sum();

@@ -11,14 +11,15 @@ use declarations::{
     TwoBodies, UnderwaterBody,
 };
 use liestep::effects::{
-    CayleyBody, Dipole, Drag, FourthOrderBody, GeodesicBody, Gravity, GravityGradient, MagneticDamping, PrincipalBody,
-    RigidBody, Rotor, SixthOrderBody, Spring, Thrust, Torque,
+    AirDrag, CayleyBody, Dipole, Drag, FourthOrderBody, GeodesicBody, Gravity, GravityGradient, MagneticDamping,
+    PrincipalBody, RigidBody, Rotor, SixthOrderBody, Spring, Thrust, Torque,
 };
 use liestep::groups::{CayleyRetraction, CovariantTensor, LieGroup as _, Retraction, SE23};
 use liestep::lagrangian;
 use liestep::laws::samples::Random;
 use liestep::mechanics::{
-    DiagonalNonstandardInertia, Effect, Inertia, SecondDerivatives, Vector, WithEitherKinetic, WithoutKinetic,
+    DiagonalNonstandardInertia, Effect, Inertia, OnlyKicks, SecondDerivatives, Vector, WithEitherKinetic,
+    WithoutKinetic,
 };
 use liestep::motion::Batch;
 use liestep::numbers::{Coordinates as _, Entries as _};
@@ -101,6 +102,9 @@ macro_rules! as_compiled_beside {
             let compiled = random!(seed, $name { $($field)* });
             let late: Late<_, _, WithoutKinetic> = Late::like(&compiled).expect("a declaration");
             assert_same(&(body() + compiled), &(body() + late), seed);
+            if let Ok(kicks) = Late::<_, _, OnlyKicks>::like(&compiled) {
+                assert_same(&(body() + compiled), &(body() + kicks), seed);
+            }
         })+
     };
 }
@@ -139,7 +143,7 @@ fn effects_of_the_library() {
     as_compiled_beside! {
         RigidBody { J_d }:
         Gravity { m g rho up } GravityGradient { GM r J direction } Dipole { moment field }
-        Spring { k length at anchor } Rotor { spin } Drag { c J } MagneticDamping { k field J } Thrust { at thrust }
+        Spring { k length at anchor } Rotor { spin } Drag { c J } AirDrag { c air J } MagneticDamping { k field J } Thrust { at thrust }
         Torque { torque } Torquer { moment field }
     }
 }
@@ -215,6 +219,7 @@ fn sums_of_what_is_read() {
     let late_drag: Late<_, (), WithoutKinetic> = Late::like(&drag).expect("a declaration");
     let late_gravity: Late<_, Vector3<f64>, WithoutKinetic> = Late::like(&gravity).expect("a declaration");
     assert_same(&(body + drag + gravity), &(late + late_drag + late_gravity), 4);
+    assert!(Late::<SO3, (), OnlyKicks>::like(&drag).is_err() && Late::<_, _, OnlyKicks>::like(&gravity).is_ok());
     let body = random!(1, FourthOrderBody { J });
     let late: Late<_, (), WithEitherKinetic> = Late::like(&body).expect("a declaration");
     let late_gravity: Late<_, Vector3<f64>, WithoutKinetic> = Late::like(&gravity).expect("a declaration");
@@ -328,7 +333,7 @@ fn derivatives_of_steps() {
     differentiated! { WithEitherKinetic: RigidBody { J_d } CayleyBody { J } GeodesicBody { J } Vehicle { J k r up } }
     differentiated! { WithoutKinetic:
         Gravity { m g rho up } GravityGradient { GM r J direction } Dipole { moment field } Spring { k length at anchor }
-        Rotor { spin } Drag { c J } MagneticDamping { k field J } Thrust { at thrust } Torque { torque }
+        Rotor { spin } Drag { c J } AirDrag { c air J } MagneticDamping { k field J } Thrust { at thrust } Torque { torque }
     }
     let (body, gravity, drag) =
         (random!(1, RigidBody { J_d }), random!(2, Gravity { m g rho up }), random!(3, Drag { c J }));

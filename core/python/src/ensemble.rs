@@ -201,7 +201,7 @@ fn collected<M: liestep::motion::Integrator>(
     let (mut chunks, mut failures) = (BTreeMap::new(), Vec::new());
     for shard in store.shards(ensemble.fingerprint()).map_err(|error| store_error(&error))? {
         let shard = shard.map_err(|fault| store_error(&fault))?;
-        failures.extend(shard.failures);
+        failures.extend(shard.outcome.failures);
         chunks.insert(shard.chunk, shard.rows);
     }
     #[allow(clippy::cast_precision_loss)] // a billion members of as many steps at most

@@ -143,8 +143,8 @@ impl Scene {
         dictionary.set_item("chunks", report.chunks)?;
         dictionary.set_item("made", report.made)?;
         dictionary.set_item("missing", report.missing)?;
-        dictionary.set_item("finished", report.finished)?;
-        dictionary.set_item("failed", report.failed)?;
+        dictionary.set_item("finished", report.outcome.finished)?;
+        dictionary.set_item("failed", report.outcome.failed())?;
         let failures = outcome.failures.iter().map(|one| (one.member, one.steps, one.failure.to_string()));
         dictionary.set_item("failures", failures.collect::<Vec<_>>())?;
         let faults = report.faults.iter().map(ToString::to_string);

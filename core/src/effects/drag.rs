@@ -1,5 +1,7 @@
 //! Viscous drag.
 
+use nalgebra::Vector3;
+
 use crate::groups::SO3;
 use crate::mechanics::Inertia;
 use liestep_macros::force;
@@ -30,5 +32,30 @@ pub struct Drag<T = f64> {
     /// Coefficient, N m s.
     pub c: T,
     /// Inertia of the scene, kg m²: no moment larger than the body's, or a spin may turn over after all.
+    pub J: Inertia<T>,
+}
+
+/// A torque `−c (Ω − w)` in air, or another fluid, that turns at the rate `w`: [`Drag`] against what is left of the velocity.
+///
+/// Torques are shared between the ends of a step as there, and the end sees the air from the attitude there, `F⁻¹ w`. Air
+/// that turns with an orbit is given anew by [`Stepper::driven`](crate::Stepper::driven).
+#[force(
+    group = SO3,
+    gradients,
+    advected(w = air),
+    work = {
+        let y = 0.5 * c * h * inverse(J).trace();
+        let end = 0.5 * c / (1.0 + y * y);
+        let turn = vee(F);
+        (w * h - turn).dot(&eta) * (c - end) + (F.transpose() * w * h - turn).dot(&eta_next) * end
+    },
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AirDrag<T = f64> {
+    /// Coefficient, N m s.
+    pub c: T,
+    /// Angular velocity of the air, in space, rad/s.
+    pub air: Vector3<T>,
+    /// Inertia of the scene, kg m²; as in [`Drag`].
     pub J: Inertia<T>,
 }

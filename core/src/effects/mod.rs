@@ -29,6 +29,7 @@
 //! | force | torque |
 //! |---|---|
 //! | [`Drag`] | `−c Ω` |
+//! | [`AirDrag`] | `−c (Ω − w)` |
 //! | [`MagneticDamping`] | `−k (B × Ω) × B` |
 //! | [`Thrust`] | of a force that is constant in the body, at a point of it |
 //! | [`Torque`] | constant in the body |
@@ -52,7 +53,7 @@ mod torque;
 
 pub use cayley_body::CayleyBody;
 pub use dipole::Dipole;
-pub use drag::Drag;
+pub use drag::{AirDrag, Drag};
 pub use geodesic_body::GeodesicBody;
 pub use gravity::Gravity;
 pub use gravity_gradient::GravityGradient;

@@ -14,10 +14,12 @@
 use nalgebra::{Matrix3, RealField, Vector3};
 use thiserror::Error;
 
+use crate::error::Text;
 use crate::numbers::{Real, real, reported};
 
 /// Why a matrix isn't the inertia of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[cfg_attr(all(feature = "serde", feature = "std"), derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum InertiaError {
     /// An entry is NaN or infinite.
@@ -27,7 +29,8 @@ pub enum InertiaError {
     #[error("the {what} of the inertia is {value:e}, not above zero; give a positive one")]
     NotPositive {
         /// Which.
-        what: &'static str,
+        #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "crate::error::kept"))]
+        what: Text,
         /// Its value, kg or m.
         value: f64,
     },

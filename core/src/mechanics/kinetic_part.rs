@@ -2,7 +2,7 @@
 
 use crate::numbers::{Coordinates, Either, History, Parabola, Polynomial, Real};
 
-/// [`WithKinetic`], [`WithPace`], [`WithExpensiveKinetic`], [`WithEitherKinetic`] or [`WithoutKinetic`].
+/// [`WithKinetic`], [`WithPace`], [`WithExpensiveKinetic`], [`WithEitherKinetic`], [`WithoutKinetic`] or [`OnlyKicks`].
 #[doc(hidden)]
 pub trait KineticPart {
     /// Whether there is one.
@@ -13,6 +13,9 @@ pub trait KineticPart {
 
     /// Whether an effect of this kind may be expensive or not.
     const IS_EITHER: bool = false;
+
+    /// Whether an effect of this kind may be solved for: see [`Parts::unknown`](crate::mechanics::Parts::unknown).
+    const MAY_BE_UNKNOWN: bool = true;
 
     /// What a state keeps of the last increments to guess the next one. It is copied with each state, so it is no longer
     /// than the solve pays for.
@@ -41,6 +44,10 @@ pub struct WithEitherKinetic;
 /// There is none, as in a potential.
 #[derive(Clone, Copy, Debug)]
 pub struct WithoutKinetic;
+
+/// There is none, and nothing to solve for: kicks at both ends of a step alone, as of a weight or a constant torque.
+#[derive(Clone, Copy, Debug)]
+pub struct OnlyKicks;
 
 impl KineticPart for WithKinetic {
     const IS_THERE: bool = true;
@@ -87,6 +94,16 @@ impl KineticPart for WithEitherKinetic {
 impl KineticPart for WithoutKinetic {
     const IS_THERE: bool = false;
     const JACOBIAN_IS_EXPENSIVE: bool = false;
+
+    type History<T: Real, V: Coordinates<T>> = Parabola<V>;
+    type Or<Other: KineticPart> = Other;
+    type ByNewton = Self;
+}
+
+impl KineticPart for OnlyKicks {
+    const IS_THERE: bool = false;
+    const JACOBIAN_IS_EXPENSIVE: bool = false;
+    const MAY_BE_UNKNOWN: bool = false;
 
     type History<T: Real, V: Coordinates<T>> = Parabola<V>;
     type Or<Other: KineticPart> = Other;

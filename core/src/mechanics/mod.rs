@@ -28,7 +28,9 @@ pub use effect::{Effect, Group, Limit, Matrix, Moves, NewtonUpdate, Parts, Regul
 pub(crate) use effect::{pattern, pattern_of_type, update_of};
 pub use force::Force;
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
-pub use kinetic_part::{KineticPart, WithEitherKinetic, WithExpensiveKinetic, WithKinetic, WithPace, WithoutKinetic};
+pub use kinetic_part::{
+    KineticPart, OnlyKicks, WithEitherKinetic, WithExpensiveKinetic, WithKinetic, WithPace, WithoutKinetic,
+};
 pub use lagrangian::{DiscreteLagrangian, RigidScene, Scene};
 pub(crate) use noether::{left_symmetries, right_symmetries};
 pub use operations::Operations;

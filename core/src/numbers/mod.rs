@@ -15,6 +15,7 @@ mod history;
 mod join;
 mod lanes;
 mod newton;
+mod registers;
 mod scalar;
 mod simd;
 
@@ -26,7 +27,6 @@ pub use coordinates::Coordinates;
 #[doc(hidden)]
 pub use digest::Digest;
 pub(crate) use dual::{Dual, Number};
-pub(crate) use elimination::adjugate_3;
 pub use entries::Entries;
 pub(crate) use entries::{sum, zero};
 pub(crate) use exact::{carried_sum, two_square, two_sum};
@@ -34,6 +34,7 @@ pub(crate) use history::{Either, History, Parabola, Polynomial};
 pub use join::{Join, Twice};
 pub use lanes::{InLanes, Lanes, Numbers};
 pub(crate) use newton::{NewtonEnd, newton_halving};
+pub(crate) use registers::{Columns, OnRegisters, Plain, Register, cross, dot, on_registers, padded, square, vector};
 pub use scalar::real;
 pub use scalar::{Mask, Real};
 pub(crate) use scalar::{count, counted, is_finite, largest_lane, nowhere, reported};

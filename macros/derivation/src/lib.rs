@@ -23,6 +23,6 @@ pub use declared::errors::{Mistake, suggestion};
 pub use emit::{hot, lanes};
 pub use expand::{expand, matrix_group};
 pub use staged::{
-    Action, Array, Carried, Factor, Function, Operation, Parameter, ParameterKind, Program, Refusal, Source,
+    Action, Array, Carried, Factor, Function, MOST_WORK, Operation, Parameter, ParameterKind, Program, Refusal, Source,
     StagedDeclaration, Stages, staged,
 };

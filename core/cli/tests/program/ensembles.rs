@@ -37,7 +37,7 @@ fn a_member_is_the_file_with_its_values() {
     let told = printed(&folder, &["ensemble", "top.toml", "--out", "."]);
     assert!(told.contains("40 finished, 0 broke down, 0 can't exist"), "{told}");
     let shards = shards(&folder.join("top.ensemble"));
-    assert_eq!(shards.iter().map(|shard| shard.finished).sum::<u64>(), 40);
+    assert_eq!(shards.iter().map(|shard| shard.outcome.finished).sum::<u64>(), 40);
     for shard in &shards {
         // At the start, after a hundred steps, and at the end.
         assert_eq!(shard.rows.step[..3], [0, 100, 200]);
@@ -65,16 +65,27 @@ fn shares_and_a_second_run_make_the_same_files() {
     fs::write(folder.join("top.toml"), text.replace("[drag]\nc = 1e-3\n", "")).unwrap();
     let whole = printed(&folder, &["ensemble", "top.toml", "--out", "whole"]);
     assert!(whole.contains("40 finished") && whole.contains("velocity_z"), "{whole}");
-    printed(&folder, &["ensemble", "top.toml", "--shard", "1/2", "--threads", "1", "--out", "parts"]);
+    let first = printed(&folder, &["ensemble", "top.toml", "--shard", "1/2", "--threads", "1", "--out", "parts"]);
     let part = files(&folder.join("parts/top.ensemble")).len();
-    // A share reads no rows but its own, and tells of these.
+    // The last share tells of all.
     let last = printed(&folder, &["ensemble", "top.toml", "--shard", "0/2", "--out", "parts"]);
-    assert!(last.contains("in this share: 24 finished") && !last.contains("velocity_z"), "{last}");
-    assert!(last.contains("without `--shard`"), "{last}");
+    assert!(first.contains("in this share: 16 finished") && !first.contains("velocity_z"), "{first}");
+    assert!(last.contains("seed 7: 40 finished") && last.contains("velocity_z"), "{last}");
     let [one, other] = ["whole", "parts"].map(|out| files(&folder.join(out).join("top.ensemble")));
     assert!(one == other && one.len() > part && part > 0, "{} {part}", one.len());
     let again = printed(&folder, &["ensemble", "top.toml", "--out", "whole"]);
     assert!(again.contains(", 0 of them now"), "{again}");
+    assert_eq!(printed(&folder, &["report", "top.toml", "--out", "whole"]), again);
+    refuses(&folder, &["report", "top.toml", "--out", "nowhere"], 4, "`liestep ensemble` makes it");
+    // Rows that have changed are found by who reads them.
+    let damaged = folder.join("whole/top.ensemble").join(&one[1].0);
+    let rows = &one[1].1;
+    fs::write(&damaged, [&rows[..rows.len() / 2], &[77], &rows[rows.len() / 2 + 1..]].concat()).unwrap();
+    assert_eq!(printed(&folder, &["report", "top.toml", "--out", "whole"]), again);
+    let verified = printed(&folder, &["report", "top.toml", "--verify", "--out", "whole"]);
+    assert!(verified.contains("4 chunks, 0 of them now\n1 chunks are left to `liestep ensemble`"), "{verified}");
+    let made = printed(&folder, &["ensemble", "top.toml", "--verify", "--out", "whole"]);
+    assert!(made.contains("5 chunks, 1 of them now") && fs::read(damaged).unwrap() == *rows, "{made}");
 
     let spin: Vec<f64> = shards(&folder.join("whole/top.ensemble"))
         .into_iter()
@@ -117,9 +128,9 @@ fn members_fail_by_themselves() {
     let output = called(&folder, &["ensemble", "top.toml", "--out", "."]);
     let notes = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(0), "{notes}");
-    let (finished, failed) = shards(&folder.join("top.ensemble"))
-        .iter()
-        .fold((0, 0), |(finished, failed), shard| (finished + shard.finished, failed + shard.failures.len()));
+    let (finished, failed) = shards(&folder.join("top.ensemble")).iter().fold((0, 0), |(finished, failed), shard| {
+        (finished + shard.outcome.finished, failed + shard.outcome.failures.len())
+    });
     assert!(finished > 20 && failed > 0 && finished + failed as u64 == 40, "{finished} {failed}");
     let told = String::from_utf8(output.stdout).unwrap();
     assert!(told.contains(&format!("{finished} finished, 0 broke down, {failed} can't exist")), "{told}");

@@ -1,5 +1,6 @@
 //! Satellites on orbits, against integrations that know Newton's law and no Kepler.
 
+use std::cell::Cell;
 use std::fs;
 
 use nalgebra::{Matrix3, Quaternion, SVector, UnitQuaternion, Vector3};
@@ -23,6 +24,8 @@ fn satellite(effect: &str, normal: [f64; 3], e: f64, start: &str, steps: u32) ->
 const GRADIENT: &str = "[gravity_gradient.direction]\n";
 const DAMPING: &str =
     "[magnetic_damping]\nk = 1e7\n[magnetic_damping.field]\nequator = [\"2 µT\", \"5 µT\", \"25 µT\"]\n";
+
+const AIR: &str = "[air_drag]\nc = 0.05\n[air_drag.air]\n";
 
 /// One step of the classical Runge–Kutta method.
 fn rk4<const N: usize>(y: &mut SVector<f64, N>, h: f64, f: &dyn Fn(&SVector<f64, N>) -> SVector<f64, N>) {
@@ -91,8 +94,16 @@ fn in_space_it_is_as_newtons_and_eulers_equations_have_it() {
         let field = place * (3.0 * along / r.powi(5)) - m / r.powi(3);
         field.cross(turning).cross(&field) * -1e7
     };
-    for (effect, torque) in [(GRADIENT, &gradient as Torque<'_>), (DAMPING, &damping)] {
-        for e in [0.0, 0.1] {
+    // The direction of the planet turns by twice the area, which is swept evenly, over the square of the distance.
+    let areal = Cell::new(0.0);
+    let drag = |place: Vector3<f64>, turning: &Vector3<f64>, to_body: &Matrix3<f64>| {
+        (to_body * normal * (areal.get() / place.norm_squared()) - turning) * 0.05
+    };
+    for (effect, eccentric, torque) in
+        [(GRADIENT, 0.1, &gradient as Torque<'_>), (DAMPING, 0.1, &damping), (AIR, 0.3, &drag)]
+    {
+        for e in [0.0_f64, eccentric] {
+            areal.set((1.0 - e * e).sqrt() * RATE);
             let (expected, turned) = integrated(e, normal, attitude, velocity, torque);
             let error = |steps| {
                 let text = satellite(effect, normal.into(), e, &start, steps);

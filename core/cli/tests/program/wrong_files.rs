@@ -49,7 +49,7 @@ fn files_of_another_kind() {
     });
     expect![[r"
         error: empty.toml:1:1: missing field `title`
-        error: mark.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `start`, `run`, `picture`, `event`, `output`, `lagrangian`, `force`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `torque`, `thrust`, `magnetic_damping`; did you mean `drag`?
+        error: mark.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `start`, `run`, `picture`, `event`, `output`, `lagrangian`, `force`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `air_drag`, `torque`, `thrust`, `magnetic_damping`; did you mean `drag`?
         error: bytes.toml:1:12: isn't a text in UTF-8
         error: nested.toml:1:89: cannot recurse further; max recursion depth met
         error: table.toml:1:1: missing field `name`
@@ -180,7 +180,7 @@ fn what_is_printed() {
     assert_eq!((told.lines().count(), wrong.lines().count(), output.status.code()), (1, 2, Some(3)), "{wrong}");
     assert!(wrong.starts_with("error: wrong.toml:12:2: unknown field `darg`"), "{wrong}");
     let names = printed(&folder, &["derive"]);
-    assert_eq!(names.lines().count(), 15);
+    assert_eq!(names.lines().count(), 16);
     for name in names.lines() {
         assert!(printed(&folder, &["derive", name]).contains("momentum"), "{name}");
     }

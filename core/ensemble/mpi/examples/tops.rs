@@ -75,8 +75,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         "{} of {} chunks are missing; {} tops finished, {} failed; energy {:?}",
         report.missing,
         report.chunks,
-        report.finished,
-        report.failed,
+        report.outcome.finished,
+        report.outcome.failed(),
         report.reduced("energy"),
     );
     Ok(())

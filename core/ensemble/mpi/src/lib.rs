@@ -7,7 +7,7 @@
 //! let engine = Mpi::world().ok_or("MPI has been initialised already")?;
 //! let report = ensemble.run(&engine, &Store::folder("shared/out")?)?; // in every process
 //! if engine.is_first() {
-//!     println!("{} finished", report.finished);
+//!     println!("{} finished", report.outcome.finished);
 //! }
 //! # Ok(())
 //! # }

@@ -1,11 +1,13 @@
 //! The list of the effects, with their tables in a file: what is made of all effects is made of this list.
 
-use liestep::effects::{Dipole, Drag, Gravity, GravityGradient, MagneticDamping, Rotor, Spring, Thrust, Torque};
+use liestep::effects::{
+    AirDrag, Dipole, Drag, Gravity, GravityGradient, MagneticDamping, Rotor, Spring, Thrust, Torque,
+};
 use liestep::mechanics::{Effect, Inertia};
 use liestep_late::numbers;
 use serde::Deserialize;
 
-use crate::file::orbit::{OnOrbit, Orbit, Parameter as _, Turning, TurningDirection, TurningField};
+use crate::file::orbit::{OnOrbit, Orbit, Parameter as _, Turning, TurningAir, TurningDirection, TurningField};
 use crate::file::quantity;
 use crate::file::quantity::{
     Acceleration, Damping, Direction, Force, GravitationalParameter, Length, MagneticGain, MagneticMoment, Mass,
@@ -54,6 +56,8 @@ macro_rules! effects {
                 }
             rotor: RotorTable { spin: Triple<Momentum> } => |_, _, p| -> Rotor { Rotor { spin: p.spin.value } }
             drag: DragTable { c: Positive<Damping> } => |J, _, p| -> Drag { Drag { c: p.c.value, J: *J } }
+            air_drag: AirDragTable { c: Positive<Damping>, air: TurningAir }
+                => |J, t, p| -> AirDrag { AirDrag { c: p.c.value, air: p.air.at(t), J: *J } }
             torque: TorqueTable { torque: Triple<quantity::Torque> }
                 => |_, _, p| -> Torque { Torque { torque: p.torque.value } }
             thrust: ThrustTable { at: Triple<Length>, thrust: Triple<Force> }

@@ -48,7 +48,7 @@ impl<S: Scheme> TryFrom<String> for Named<S> {
     fn try_from(wanted: String) -> Result<Self, String> {
         S::ALL.iter().find(|scheme| scheme.called().eq_ignore_ascii_case(&wanted)).copied().map(Self).ok_or_else(|| {
             let names: Vec<_> = S::ALL.iter().map(|scheme| format!("`{}`", scheme.called())).collect();
-            format!("no such scheme; there are {}", names.join(", "))
+            format!("unknown scheme `{wanted}`, expected one of {}", names.join(", "))
         })
     }
 }

@@ -12,7 +12,7 @@ use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 
-use crate::file::quantity::{Angle, Direction, Duration, FluxDensity, Number, Positive, Scalar, Triple, short};
+use crate::file::quantity::{Angle, Direction, Duration, FluxDensity, Number, Positive, Rate, Scalar, Triple, short};
 
 /// A closed orbit about a far mass, by Kepler's laws.
 #[derive(Clone, Copy, Deserialize)]
@@ -121,6 +121,8 @@ pub(crate) enum Turning<F, T> {
 
 /// The direction of the mass.
 pub(crate) type TurningDirection = Turning<Direction, OnOrbit>;
+/// The angular velocity of the air.
+pub(crate) type TurningAir = Turning<Triple<Rate>, OnOrbit>;
 /// A magnetic flux density.
 pub(crate) type TurningField = Turning<Triple<FluxDensity>, DipoleField>;
 
@@ -154,6 +156,21 @@ impl Turning<Direction, OnOrbit> {
     }
 }
 
+impl Turning<Triple<Rate>, OnOrbit> {
+    /// The angular velocity at a time, s, in space, rad/s: along an orbit that of the direction of the mass, which by Kepler's
+    /// second law is `n √(1 − e²) (a/r)²`.
+    pub(crate) fn at(&self, time: f64) -> Vector3<f64> {
+        match self {
+            Self::Fixed(rate) => rate.value,
+            Self::Turns(OnOrbit { orbit }) => {
+                let [near, on] = &orbit.axes;
+                let rate = orbit.rate() * ((1.0 - orbit.eccentricity) * (1.0 + orbit.eccentricity)).sqrt();
+                near.cross(on) * (rate / orbit.place(time).norm_squared())
+            }
+        }
+    }
+}
+
 impl Turning<Triple<FluxDensity>, DipoleField> {
     /// The flux density at a time, s, in space, T: `(a/r)³ (B − 3 (B·r̂) r̂)` of that at the equator, `B`.
     pub(crate) fn at(&self, time: f64) -> Vector3<f64> {
@@ -181,7 +198,7 @@ impl<Q> Parameter for Triple<Q> {}
 impl<Q> Parameter for Option<Q> {}
 impl Parameter for Direction {}
 
-impl Parameter for TurningDirection {
+impl<F> Parameter for Turning<F, OnOrbit> {
     fn orbit(&self) -> Option<&Orbit> {
         if let Self::Turns(OnOrbit { orbit }) = self { Some(orbit) } else { None }
     }

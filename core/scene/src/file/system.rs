@@ -13,7 +13,7 @@ use toml::Spanned;
 use crate::file::arrangement::{Arrangement, BODIES, LOOPS};
 use crate::file::body::{Full, INERTIA, Moments, Nonstandard};
 use crate::file::column::{Column, Output};
-use crate::file::mistake::{Mistake, Wrong, place_of};
+use crate::file::mistake::{Mistake, Wrong, advised, place_of};
 use crate::file::picture::PlanePicture;
 use crate::file::quantity::{
     Acceleration, Direction, Duration, Length, Mass, Positive, Scalar, Speed, Stiffness, Triple, short,
@@ -339,8 +339,8 @@ fn numbers(names: &Names, bodies: &[SystemBody]) -> Result<[Option<usize>; 2], W
         *number = bodies.iter().position(|body| body.name == *name.get_ref());
         if number.is_none() {
             let known: Vec<_> = bodies.iter().map(|body| format!("`{}`", body.name)).collect();
-            let message = format!("there is no body `{}`; there are {}, and `space`", name.get_ref(), known.join(", "));
-            return Err((name.span(), message));
+            let message = format!("unknown body `{}`, expected one of {}, `{SPACE}`", name.get_ref(), known.join(", "));
+            return Err((name.span(), advised(&message)));
         }
     }
     if numbers[0] == numbers[1] {

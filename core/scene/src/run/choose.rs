@@ -5,7 +5,9 @@ use std::rc::Rc;
 use liestep::accuracy::Accuracy;
 use liestep::effects::{CayleyBody, Dipole, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::groups::Advected;
-use liestep::mechanics::{Effect, Inertia, KineticPart, Term as _, WithEitherKinetic, WithoutKinetic};
+use liestep::mechanics::{
+    Effect, Inertia, KineticPart, OnlyKicks, Term as _, WithEitherKinetic, WithKinetic, WithoutKinetic,
+};
 use liestep::methods::ExactBody;
 use liestep::motion::AnyStepper;
 use liestep::with::densities;
@@ -147,7 +149,7 @@ impl<A: Advected<SO3> + 'static> SceneStepper for AnyStepper<SO3, A> {
 }
 
 /// Simulates the sum of a body and what acts on it. By (3.13) the body is compiled, and the rest is one program; by other
-/// kinetic terms, and of a Lagrangian of the file, all is one program.
+/// kinetic terms, of a Lagrangian of the file, and where a force is solved for, all is one program.
 ///
 /// Several effects are added before they are added to a compiled body.
 pub(crate) fn run(file: &SceneFile, listeners: Listeners<'_>) -> Result<Run, Stop> {
@@ -231,13 +233,20 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
         return turning!(scene, values);
     }
     match (file.run.method, file.body.ok_or_else(nothing)?.mass) {
-        (Method::Step, Distribution::Principal(J_d)) => match (rest::<()>(file, &J), rest::<V>(file, &J)) {
-            (Ok(None), _) => any!(Stepper::new(PrincipalBody { J_d }, h)),
-            // By the least type that has what is advected.
-            (Ok(Some(rest)), _) => any!(Stepper::new(PrincipalBody { J_d } + rest, h)),
-            (_, Ok(Some(rest))) => any!(Stepper::new(PrincipalBody { J_d } + rest, h)),
-            _ => any!(Stepper::new(PrincipalBody { J_d } + potential(file, &J)?, h)),
-        },
+        (Method::Step, Distribution::Principal(J_d)) => {
+            let body = PrincipalBody { J_d };
+            // By the least type that has what acts and what is advected.
+            if let Ok(kicks) = program::<OnlyKicks, ()>(file, &J, None) {
+                kicks.map_or_else(|| any!(Stepper::new(body, h)), |kicks| any!(Stepper::new(body + kicks, h)))
+            } else if let Ok(Some(kicks)) = program::<OnlyKicks, V>(file, &J, None) {
+                any!(Stepper::new(body + kicks, h))
+            } else if let Ok(Some(whole)) = program::<WithKinetic, V>(file, &J, Some(&Moving::of(file, J)?)) {
+                // A call for all that is solved for.
+                any!(Stepper::new(whole, h))
+            } else {
+                any!(Stepper::new(body + potential(file, &J)?, h))
+            }
+        }
         _ => match rest::<Seen>(file, &J)? {
             None => step!(RigidBody { J_d: J.to_nonstandard() }),
             Some(rest) => step!(RigidBody { J_d: J.to_nonstandard() } + rest),

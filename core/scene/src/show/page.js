@@ -10,6 +10,10 @@ for (const chart of motion.charts) for (const line of chart.lines) line.values =
 // Letters and lines are larger for a lecture hall: L, or `#large`.
 let large = new URLSearchParams(location.hash.slice(1)).has("large") ? 1.7 : 1;
 const letters = size => `${Math.round(size * large)}px system-ui, sans-serif`;
+// With the page's white around it, where a line may pass.
+const overLines = (pen, text, x, y) => {
+  pen.strokeStyle = "#fff"; pen.lineWidth = 3 * large; pen.lineJoin = "round"; pen.strokeText(text, x, y); pen.fillText(text, x, y);
+};
 // Where seconds would have five digits, time is told in hours.
 const [UNIT, UNIT_NAME] = end - start >= 1e4 ? [3600, "h"] : [1, "s"];
 
@@ -97,7 +101,7 @@ const view = canvasIn(document.getElementById("view"), (pen, width, height) => {
   };
   const name = (text, p, colour) => {
     const [x, y] = place(p);
-    pen.fillStyle = colour; pen.font = letters(12); pen.fillText(text, x + 4, y - 4);
+    pen.fillStyle = colour; pen.font = letters(12); overLines(pen, text, x + 4, y - 4);
   };
   // Space: its axes, and the sphere on which the path is.
   pen.beginPath(); pen.arc(centre[0], centre[1], size, 0, 7); pen.strokeStyle = FAINT; pen.lineWidth = 1; pen.stroke();
@@ -257,7 +261,7 @@ const charts = motion.charts.map(chart => {
     const inSight = motion.events.filter(([time]) => time >= stretch.from && time <= stretch.to), areFew = inSight.length <= MOST_LINES;
     for (const [time, name] of inSight) {
       pen.strokeStyle = "#999"; pen.lineWidth = 0.7 * large; pen.beginPath(); pen.moveTo(across(time), TOP); pen.lineTo(across(time), TOP + (areFew ? deep : 6 * large)); pen.stroke();
-      if (inSight.length < 9) { pen.textAlign = "left"; pen.fillStyle = "#777"; pen.fillText(name, across(time) + 3, TOP + 8 * large); }
+      if (inSight.length < 9) { pen.textAlign = "left"; pen.fillStyle = "#777"; overLines(pen, name, across(time) + 3, TOP + 8 * large); }
     }
     pen.strokeStyle = PATH; pen.lineWidth = 1.5; pen.beginPath(); pen.moveTo(across(now), TOP); pen.lineTo(across(now), TOP + deep); pen.stroke();
     pen.restore();

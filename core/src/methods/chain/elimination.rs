@@ -18,94 +18,138 @@
 //! z = B⁻¹(G v + t)                     Π' = Q (Π + m I + H B⁻¹ G) Qᵀ               q' = Q (q + H B⁻¹ t)
 //! ```
 //!
+//! Matrices are columns in registers, and a step takes as long as what waits for each other: `ρ̂ Q` is there before `Π'` is,
+//! and `H adj(B) G` is made while `det B` divides one.
+//!
 //! `B` is what of the Newton matrix is left of the link once all that hangs on it is eliminated. At the identity `Π` is the
 //! mass at the joint that the articulated-body algorithm has, and symmetric.
 //!
 //! Nothing here depends on the number of links but the length of slices, so it is compiled once.
-
-use nalgebra::{Matrix3, Vector3};
 
 // Roots and powers without a standard library.
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _;
 
 use super::link::Link;
-use crate::groups::{CayleyRetraction, Retraction, SO3};
-use crate::numbers::adjugate_3;
+use crate::numbers::{Columns, Register, cross, dot, padded, square};
 
-/// What a link is, as a step takes it.
+/// What a link is, as a step takes it: vectors as registers load them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LinkConstants {
-    /// `J`, `m`, `m c` and `ρ` of the [`Link`].
-    pub(super) nonstandard: Matrix3<f64>,
+    /// `J` by columns, `m`, `m c` and `ρ` of the [`Link`].
+    pub(super) nonstandard: [[f64; 4]; 3],
     pub(super) m: f64,
-    pub(super) mc: Vector3<f64>,
-    pub(super) rho: Vector3<f64>,
+    pub(super) mc: [f64; 4],
+    pub(super) rho: [f64; 4],
 }
 
 impl From<&Link> for LinkConstants {
     fn from(link: &Link) -> Self {
-        Self { nonstandard: *link.J_d.as_matrix(), m: link.m, mc: link.c * link.m, rho: link.rho }
+        let J_d = link.J_d.as_matrix();
+        let nonstandard = [0, 1, 2].map(|k| padded(&J_d.column(k).into_owned()));
+        Self { nonstandard, m: link.m, mc: padded(&(link.c * link.m)), rho: padded(&link.rho) }
     }
 }
 
-/// What is known of a link while a step is solved; at first of one without a neighbour, at rest.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Work {
-    /// `Q`, from the axes of the next link to these; zero where there is none.
-    pub(super) next: Matrix3<f64>,
+/// What is known of a link while a step is solved.
+#[derive(Clone, Copy)]
+pub(super) struct Work<R> {
+    /// `Q`, from the axes of the next link to these; zero where there is none. `Qᵀ`, and `ρ̂ Q`.
+    pub(super) next: Columns<R>,
+    back: Columns<R>,
+    arm: Columns<R>,
     /// `h a`.
-    pub(super) target: Vector3<f64>,
+    pub(super) target: R,
     /// Half the Cayley coordinates of `F`, and what they were before an update that may be shortened.
-    pub(super) half: Vector3<f64>,
-    before: Vector3<f64>,
+    pub(super) half: R,
+    before: R,
     /// The last update, which was taken from `half`, or a part of it.
-    pub(super) update: Vector3<f64>,
+    pub(super) update: R,
     /// `D`, and `D ρ`, `D m c`.
-    pub(super) increment: Matrix3<f64>,
-    pub(super) of_rho: Vector3<f64>,
-    pub(super) of_mc: Vector3<f64>,
+    pub(super) increment: Columns<R>,
+    pub(super) of_rho: R,
+    pub(super) of_mc: R,
     /// `u`, m.
-    pub(super) u: Vector3<f64>,
+    pub(super) u: R,
     /// `B⁻¹ t`.
-    t: Vector3<f64>,
+    t: R,
     /// `B⁻¹`, `B⁻¹ G` and `H` where they were last computed.
-    inverse: Matrix3<f64>,
-    g: Matrix3<f64>,
-    h: Matrix3<f64>,
+    inverse: Columns<R>,
+    g: Columns<R>,
+    h: Columns<R>,
     /// `det B`.
     pub(super) determinant: f64,
 }
 
-impl Work {
+impl<R: Register> Work<R> {
+    /// Of a link without a neighbour, at rest.
+    #[hot]
+    pub(super) fn none(zero: R) -> Self {
+        let none = Columns([zero; 3]);
+        let (next, back, arm, increment, inverse, g, h) = (none, none, none, none, none, none, none);
+        let (target, half, before, update, of_rho, of_mc, u, t) = (zero, zero, zero, zero, zero, zero, zero, zero);
+        let determinant = 0.0;
+        Self {
+            next,
+            back,
+            arm,
+            target,
+            half,
+            before,
+            update,
+            increment,
+            of_rho,
+            of_mc,
+            u,
+            t,
+            inverse,
+            g,
+            h,
+            determinant,
+        }
+    }
+
+    /// Puts the next link, whose attitude is this one's times `next`.
+    #[hot]
+    pub(super) fn place(&mut self, link: &LinkConstants, next: Columns<R>) {
+        self.arm = Columns::hat(self.u.of(link.rho)) * next;
+        (self.next, self.back) = (next, next.transposed());
+    }
+
     /// Whether the link turns by less than 90° and its determinant has the sign that it has at rest.
+    #[hot]
     pub(super) fn is_wanted(&self) -> bool {
-        self.determinant > 0.0 && self.half.norm_squared() < 1.0
+        self.determinant > 0.0 && square(self.half) < 1.0
     }
 
     /// The link's momentum times `h`, `m (u + D c)`, kg m.
     #[hot]
-    pub(super) fn momentum(&self, link: &LinkConstants) -> Vector3<f64> {
-        self.u * link.m + self.of_mc
+    pub(super) fn momentum(&self, link: &LinkConstants) -> R {
+        self.u * self.u.of([link.m; 4]) + self.of_mc
     }
 
     /// Turns it, where the way of its upper joint is `u`; returns that of the lower one, as the next link sees it.
     #[hot]
-    fn turn(&mut self, link: &LinkConstants, u: Vector3<f64>) -> Vector3<f64> {
-        self.increment = <CayleyRetraction as Retraction<SO3>>::increment_of_half(&self.half);
-        self.of_rho = self.increment * link.rho;
-        self.of_mc = self.increment * link.mc;
+    fn turn(&mut self, link: &LinkConstants, u: R) -> R {
+        // D = s (ŷ + y yᵀ − |y|² I), s = 2/(1 + |y|²).
+        let (half, squared) = (self.half, dot(self.half, self.half));
+        let scale = u.of([2.0; 4]) / (u.of([1.0; 4]) + squared);
+        let part = half * scale;
+        let [x, y, z, _] = half.entries();
+        let dyad = Columns([part * part.of([x; 4]), part * part.of([y; 4]), part * part.of([z; 4])]);
+        self.increment = dyad + Columns::hat(part) - Columns::multiple(u, (squared * scale).entries()[0]);
+        self.of_rho = self.increment.map(u.of(link.rho));
+        self.of_mc = self.increment.map(u.of(link.mc));
         self.u = u;
-        self.next.tr_mul(&(u + self.of_rho))
+        self.back.map(u + self.of_rho)
     }
 
-    /// `(D J − J Dᵀ)^∨ + m c × u + ρ × P − h a` with `D J`, and `P` beyond.
+    /// `t = ρ × q + h r` with `D J`, and `P` beyond.
     #[hot]
-    fn residual(&self, link: &LinkConstants, dj: &Matrix3<f64>, beyond: &Vector3<f64>) -> Vector3<f64> {
-        Vector3::new(dj.m32 - dj.m23, dj.m13 - dj.m31, dj.m21 - dj.m12)
-            + link.mc.cross(&self.u)
-            + link.rho.cross(beyond)
-            - self.target
+    fn residual(&self, link: &LinkConstants, dj: &Columns<R>, beyond: R, q: R) -> R {
+        let (mc, rho) = (q.of(link.mc), q.of(link.rho));
+        let [[_, m21, m31, _], [m12, _, m32, _], [m13, m23, ..]] = dj.entries();
+        q.of([m32 - m23, m13 - m31, m21 - m12, 0.0]) + cross(mc, self.u) + cross(rho, q + beyond) - self.target
     }
 }
 
@@ -119,8 +163,8 @@ pub(super) struct Update {
 
 /// Where the joints go.
 #[hot]
-pub(super) fn outwards(links: &[LinkConstants], work: &mut [Work]) {
-    let mut u = Vector3::zeros();
+pub(super) fn outwards<R: Register>(zero: R, links: &[LinkConstants], work: &mut [Work<R>]) {
+    let mut u = zero;
     for (link, work) in links.iter().zip(work) {
         u = work.turn(link, u);
     }
@@ -129,117 +173,107 @@ pub(super) fn outwards(links: &[LinkConstants], work: &mut [Work]) {
 /// One of Newton's iterations, from where the joints go to where they go by it; where a link's update is longer than
 /// `longest`, all are shortened.
 #[hot]
-pub(super) fn newton(links: &[LinkConstants], work: &mut [Work], longest: f64) -> Update {
-    let (mut beyond, mut mass, mut q) = (Vector3::zeros(), Matrix3::zeros(), Vector3::zeros());
+pub(super) fn newton<R: Register>(zero: R, links: &[LinkConstants], work: &mut [Work<R>], longest: f64) -> Update {
+    let (mut beyond, mut mass, mut q) = (zero, Columns([zero; 3]), zero);
     for (link, work) in links.iter().zip(&mut *work).rev() {
         // From the axes of the next link; at the end all are zero.
-        let turn = work.next;
-        beyond = turn * beyond;
-        q = turn * q;
-        mass = turn * mass * turn.transpose();
+        beyond = work.next.map(beyond);
+        q = work.next.map(q);
+        let turned = mass * work.back;
+        mass = work.next * turned;
 
-        let dj = work.increment * link.nonstandard;
-        let own = inertia(&(dj + link.nonstandard));
-        let (turned_rho, turned_mc) = (link.rho + work.of_rho, link.mc + work.of_mc);
-        let g = Matrix3::from_columns(&[0, 1, 2].map(|k| link.rho.cross(&mass.column(k))));
-        let b = own - cross_rows(&g, &turned_rho);
-        let g = add_hat(&g, &link.mc);
-        let h = add_hat(&cross_rows(&mass, &turned_rho), &turned_mc);
+        let nonstandard = Columns(link.nonstandard.map(|column| zero.of(column)));
+        let dj = work.increment * nonstandard;
+        let (rho, mc) = (zero.of(link.rho), zero.of(link.mc));
+        let (turned_rho, turned_mc) = (rho + work.of_rho, mc + work.of_mc);
+        let g = work.arm * turned;
+        let b = inertia(zero, dj + nonstandard) - g.cross_rows(turned_rho);
+        let h = mass.cross_rows(turned_rho) + Columns::hat(turned_mc);
         // By Cramer's rule; where the determinant is zero nothing is finite.
-        let (adjugate, determinant) = adjugate_3(&b);
-        let inverse = adjugate * (1.0 / determinant);
-        let g = inverse * g;
-        let t = inverse * (link.rho.cross(&q) + work.residual(link, &dj, &beyond));
-        mass += h * g;
-        mass.m11 += link.m;
-        mass.m22 += link.m;
-        mass.m33 += link.m;
-        q += h * t;
-        beyond += work.momentum(link);
-        (work.inverse, work.g, work.h, work.t, work.determinant) = (inverse, g, h, t, determinant);
+        let [x, y, z] = b.0;
+        let rows = [cross(y, z), cross(z, x), cross(x, y)];
+        let (adjugate, determinant) = (Columns(rows).transposed(), dot(x, rows[0]));
+        let divisor = zero.of([1.0; 4]) / determinant;
+        let g = adjugate * (g + Columns::hat(mc));
+        mass = mass + Columns::multiple(zero, link.m) + (h * g).scaled(divisor);
+        let inverse = adjugate.scaled(divisor);
+        let t = inverse.map(work.residual(link, &dj, beyond, q));
+        q = q + h.map(t);
+        beyond = beyond + work.momentum(link);
+        (work.inverse, work.g, work.h, work.t) = (inverse, g.scaled(divisor), h, t);
+        work.determinant = determinant.entries()[0];
     }
-    solved(links, work, longest)
+    solved(zero, links, work, longest)
 }
 
 /// Another with the matrix of the last.
 #[hot]
-pub(super) fn simplified(links: &[LinkConstants], work: &mut [Work]) -> Update {
-    let (mut beyond, mut q) = (Vector3::zeros(), Vector3::zeros());
+pub(super) fn simplified<R: Register>(zero: R, links: &[LinkConstants], work: &mut [Work<R>]) -> Update {
+    let (mut beyond, mut q) = (zero, zero);
     for (link, work) in links.iter().zip(&mut *work).rev() {
-        beyond = work.next * beyond;
-        q = work.next * q;
-        let dj = work.increment * link.nonstandard;
-        work.t = work.inverse * (link.rho.cross(&q) + work.residual(link, &dj, &beyond));
-        q += work.h * work.t;
-        beyond += work.momentum(link);
+        beyond = work.next.map(beyond);
+        q = work.next.map(q);
+        let dj = work.increment * Columns(link.nonstandard.map(|column| zero.of(column)));
+        work.t = work.inverse.map(work.residual(link, &dj, beyond, q));
+        q = q + work.h.map(work.t);
+        beyond = beyond + work.momentum(link);
     }
-    solved(links, work, f64::INFINITY)
+    solved(zero, links, work, f64::INFINITY)
 }
 
 /// Outwards the update, and where the joints go by it.
 #[hot]
-fn solved(links: &[LinkConstants], work: &mut [Work], longest: f64) -> Update {
-    // What has taken a whole update doesn't tell what it was: of that a rounding of the update is lost, which has no bound.
-    if longest.is_finite() {
-        for work in work.iter_mut() {
-            work.before = work.half;
-        }
-    }
-    let (mut u, mut v) = (Vector3::zeros(), Vector3::zeros());
-    for (link, work) in links.iter().zip(&mut *work) {
-        let (y, z) = (work.half, work.g * v + work.t);
-        v = work.next.tr_mul(&(v - z.cross(&(link.rho + work.of_rho))));
-        // dF F⁻¹ = (2 (I + ŷ) dy/(1 + |y|²))^ = −ẑ, solved for `−dy`.
-        work.update = (z - y.cross(&z) + y * y.dot(&z)) * 0.5;
-        work.half -= work.update;
-        u = work.turn(link, u);
-    }
-    let largest = work.iter().map(|work| work.update.norm_squared()).fold(0.0, f64::max);
-    if largest > longest * longest {
-        let part = longest / largest.sqrt();
-        for work in work.iter_mut() {
-            work.half = work.before - work.update * part;
-        }
-        outwards(links, work);
-    }
+fn solved<R: Register>(zero: R, links: &[LinkConstants], work: &mut [Work<R>], longest: f64) -> Update {
+    let (mut u, mut v) = (zero, zero);
     // What isn't a number makes the size none either.
-    let (mut update, mut size) = (0.0, 0.0);
-    for work in work {
-        update += work.update.norm_squared();
-        size += work.half.norm_squared();
+    let (mut length, mut size, mut largest) = (0.0, 0.0, 0.0_f64);
+    for (link, work) in links.iter().zip(&mut *work) {
+        let (y, z) = (work.half, work.g.map(v) + work.t);
+        v = work.back.map(v - cross(z, zero.of(link.rho) + work.of_rho));
+        // dF F⁻¹ = (2 (I + ŷ) dy/(1 + |y|²))^ = −ẑ, solved for `−dy`.
+        work.update = (z - cross(y, z) + y * dot(y, z)) * zero.of([0.5; 4]);
+        // What has taken a whole update doesn't tell what it was: of that a rounding of the update is lost, which has no
+        // bound.
+        (work.before, work.half) = (y, y - work.update);
+        u = work.turn(link, u);
+        let squared = square(work.update);
+        length += squared;
+        largest = largest.max(squared);
+        size += square(work.half);
     }
-    Update { length: update, size, is_whole: largest <= longest * longest }
+    let is_whole = largest <= longest * longest;
+    if !is_whole {
+        let part = zero.of([longest / largest.sqrt(); 4]);
+        size = 0.0;
+        for work in &mut *work {
+            work.half = work.before - work.update * part;
+            size += square(work.half);
+        }
+        outwards(zero, links, work);
+    }
+    Update { length, size, is_whole }
 }
 
 /// The momenta `target` of the velocities `half`.
-pub(super) fn momenta_of_velocities(links: &[LinkConstants], work: &mut [Work]) {
-    let (mut u, mut beyond) = (Vector3::zeros(), Vector3::zeros());
+pub(super) fn momenta_of_velocities<R: Register>(zero: R, links: &[LinkConstants], work: &mut [Work<R>]) {
+    let (mut u, mut beyond) = (zero, zero);
     for (link, work) in links.iter().zip(&mut *work) {
-        (work.of_rho, work.of_mc, work.u) = (work.half.cross(&link.rho), work.half.cross(&link.mc), u);
-        u = work.next.tr_mul(&(u + work.of_rho));
+        work.u = u;
+        (work.of_rho, work.of_mc) = (cross(work.half, zero.of(link.rho)), cross(work.half, zero.of(link.mc)));
+        u = work.back.map(u + work.of_rho);
     }
     for (link, work) in links.iter().zip(&mut *work).rev() {
-        beyond = work.next * beyond;
-        work.target = inertia(&link.nonstandard) * work.half + link.mc.cross(&work.u) + link.rho.cross(&beyond);
-        beyond += work.momentum(link);
+        beyond = work.next.map(beyond);
+        let of_joints = cross(zero.of(link.mc), work.u) + cross(zero.of(link.rho), beyond);
+        let inertia = inertia(zero, Columns(link.nonstandard.map(|column| zero.of(column))));
+        work.target = inertia.map(work.half) + of_joints;
+        beyond = beyond + work.momentum(link);
     }
 }
 
 /// The ordinary inertia about a joint, `tr(J) I − J`.
 #[hot]
-fn inertia(nonstandard: &Matrix3<f64>) -> Matrix3<f64> {
-    Matrix3::from_diagonal_element(nonstandard.trace()) - nonstandard
-}
-
-/// `M â`: each row times `a`.
-#[hot]
-fn cross_rows(m: &Matrix3<f64>, a: &Vector3<f64>) -> Matrix3<f64> {
-    let [x, y, z] = [0, 1, 2].map(|k| m.column(k).into_owned());
-    Matrix3::from_columns(&[y * a.z - z * a.y, z * a.x - x * a.z, x * a.y - y * a.x])
-}
-
-/// `M + â`.
-#[hot]
-fn add_hat(m: &Matrix3<f64>, a: &Vector3<f64>) -> Matrix3<f64> {
-    Matrix3::new(m.m11, m.m12 - a.z, m.m13 + a.y, m.m21 + a.z, m.m22, m.m23 - a.x, m.m31 - a.y, m.m32 + a.x, m.m33)
+fn inertia<R: Register>(zero: R, nonstandard: Columns<R>) -> Columns<R> {
+    let [[m11, ..], [_, m22, ..], [_, _, m33, _]] = nonstandard.entries();
+    Columns::multiple(zero, m11 + m22 + m33) - nonstandard
 }

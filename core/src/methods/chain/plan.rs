@@ -12,7 +12,10 @@ use crate::error::{SetupError, StepError};
 use crate::groups::{CayleyRetraction, Retraction, SO3};
 use crate::mechanics::{Effect, Operations, SceneVisitor};
 use crate::motion::{Cost, Motion, Plan, Steerable, StepReport, Stepper, Summation, SumsOf, Variable};
-use crate::numbers::{Bodies, Coordinates as _, filled};
+use crate::numbers::{
+    Bodies, Columns, Coordinates as _, OnRegisters, Plain, Register, Vectors, cross, filled, on_registers, padded,
+    square, vector,
+};
 use crate::solving::{Curvature, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, WarmStart};
 
 /// Operations of a link beside those of its potentials, in a step and in an iteration: of its products with matrices.
@@ -75,7 +78,8 @@ impl<S: Effect<Group = [SO3; N]>, const N: usize> Stepper<S, LinkedBodies<S, N>>
     pub fn joints(&self, motion: &Motion<[SO3; N], S::Advected>) -> [Vector3<f64>; N] {
         let mut place = Vector3::zeros();
         filled!([place; N], |k| {
-            place += motion.attitude[k].as_matrix() * self.plan.links[k].rho;
+            let [x, y, z, _] = self.plan.links[k].rho;
+            place += motion.attitude[k].as_matrix() * Vector3::new(x, y, z);
             place
         })
     }
@@ -102,19 +106,25 @@ where
 
     /// The attitude of each link relative to that before.
     #[hot]
-    fn place(attitudes: &[SO3; N], work: &mut [Work; N]) {
-        for (pair, work) in attitudes.windows(2).zip(work) {
-            work.next = pair[0].as_matrix().tr_mul(pair[1].as_matrix());
+    fn place<R: Register>(&self, zero: R, attitudes: &[SO3; N], work: &mut [Work<R>; N]) {
+        for ((pair, work), link) in attitudes.windows(2).zip(work).zip(&self.links) {
+            let (before, next) = (pair[0].as_matrix(), pair[1].as_matrix());
+            work.place(link, Columns::of(zero, before).transposed() * Columns::of(zero, next));
         }
     }
 
     /// What the increments are to satisfy; returns what the scene gives before the step.
     #[hot]
-    pub(super) fn prepare(&self, now: &Motion<[SO3; N], S::Advected>, work: &mut [Work; N]) -> Components<N> {
+    pub(super) fn prepare<R: Register>(
+        &self,
+        zero: R,
+        now: &Motion<[SO3; N], S::Advected>,
+        work: &mut [Work<R>; N],
+    ) -> Components<N> {
         let kick = if S::PARTS.kick_before { S::kick_before(&self.constants, &now.advected) } else { Bodies::zero() };
-        Self::place(&now.attitude, work);
+        self.place(zero, &now.attitude, work);
         for (k, work) in work.iter_mut().enumerate() {
-            work.target = (now.momentum.0[k] + kick.0[k]) * self.h;
+            work.target = zero.of(padded(&((now.momentum.0[k] + kick.0[k]) * self.h)));
         }
         kick
     }
@@ -122,7 +132,7 @@ where
     /// From the guess; where that fails from rest, and then with shortened updates. Returns the iterations, those of
     /// abandoned attempts included, and whether they have led to a solution.
     #[hot]
-    pub(super) fn solve(&self, work: &mut [Work; N], guess: &Components<N>) -> (u32, bool) {
+    pub(super) fn solve<R: Register>(&self, zero: R, work: &mut [Work<R>; N], guess: &Components<N>) -> (u32, bool) {
         const ATTEMPTS: [(bool, u32, f64); 3] = [
             (true, MAX_ITERATIONS, f64::INFINITY),
             (false, MAX_ITERATIONS, f64::INFINITY),
@@ -132,9 +142,9 @@ where
         // A loop, as `iterate` is inlined where it is called, and is to be compiled once.
         for (is_guessed, most, longest) in ATTEMPTS {
             for (work, guess) in work.iter_mut().zip(&guess.0) {
-                work.half = if is_guessed { *guess } else { Vector3::zeros() };
+                work.half = if is_guessed { zero.of(padded(guess)) } else { zero };
             }
-            let (iterations, is_solved) = iterate(&self.links, work, most, longest);
+            let (iterations, is_solved) = iterate(zero, &self.links, work, most, longest);
             spent += iterations;
             if is_solved {
                 return (spent, true);
@@ -149,26 +159,29 @@ where
     ///
     /// [`StepError::NonFinite`] where a momentum after it isn't finite.
     #[hot]
-    pub(super) fn proceed<M: Summation<[SO3; N], S::Advected>>(
+    pub(super) fn proceed<R: Register, M: Summation<[SO3; N], S::Advected>>(
         &self,
         scene: &S,
         motion: &mut M,
-        work: &[Work; N],
+        work: &[Work<R>; N],
         kick: Components<N>,
     ) -> Result<(), StepError> {
         let (now, inverse_step) = (motion.now(), 1.0 / self.h);
-        let increment = filled!([Matrix3::zeros(); N], |k| work[k].increment);
+        let increment = filled!([Matrix3::zeros(); N], |k| Matrix3::from_columns(&work[k].increment.0.map(vector)));
         let advected = motion.turned(&increment);
         let mut change =
             if S::PARTS.kick_after { S::kick_after(&self.constants, &increment, &advected) } else { Bodies::zero() };
-        let (mut beyond, mut momentum) = (Vector3::zeros(), now.momentum);
+        let (zero, mut momentum) = (work[0].u.of([0.0; 4]), now.momentum);
+        let (mut beyond, inverse_step) = (zero, zero.of([inverse_step; 4]));
         for (k, work) in work.iter().enumerate().rev() {
-            beyond = work.next * beyond;
+            beyond = work.next.map(beyond);
             // The diamond: what moves the links, and what the scene gives them.
-            let kick = kick.0[k] + (work.of_mc.cross(&work.u) + work.of_rho.cross(&beyond)) * inverse_step;
-            beyond += work.momentum(&self.links[k]);
+            let of_joints = cross(work.of_mc, work.u) + cross(work.of_rho, beyond);
+            let kick = zero.of(padded(&kick.0[k])) + of_joints * inverse_step;
+            beyond = beyond + work.momentum(&self.links[k]);
             // μ⁺ = Fᵀ(μ + κ), (2.9): the change.
-            change.0[k] += kick + work.increment.tr_mul(&(momentum.0[k] + kick));
+            let pushed = zero.of(padded(&momentum.0[k])) + kick;
+            change.0[k] += vector(kick + work.increment.transposed().map(pushed));
             momentum.0[k] += change.0[k];
         }
         if !momentum.is_finite() {
@@ -182,33 +195,39 @@ where
     /// Which link is to blame, by where the iteration has ended, and by how far each would turn at its velocity; where it
     /// has no values, the one that turns farthest.
     #[cold]
-    fn reason(&self, motion: &Motion<[SO3; N], S::Advected>, work: &[Work; N], iterations: u32) -> StepError {
+    fn reason<R: Register>(
+        &self,
+        motion: &Motion<[SO3; N], S::Advected>,
+        work: &[Work<R>; N],
+        iterations: u32,
+    ) -> StepError {
         let turn = self.velocities(motion).0.map(|velocity| (velocity * self.h).norm());
         let blamed =
             |body: usize| StepError::UnsolvedBody { body, turn: turn[body], determinant: work[body].determinant };
-        if !work.iter().all(|work| work.half.norm_squared().is_finite()) {
+        if !work.iter().all(|work| square(work.half).is_finite()) {
             let farthest = (0..N).max_by(|&a, &b| turn[a].total_cmp(&turn[b]));
             return blamed(farthest.unwrap_or(0));
         }
         if let Some(body) = work.iter().position(|work| !work.is_wanted()) {
             return blamed(body);
         }
-        let sum = |of: fn(&Work) -> &Vector3<f64>| work.iter().map(|work| of(work).norm_squared()).sum::<f64>();
-        let (update, size) = (sum(|work| &work.update), sum(|work| &work.half));
+        let sum = |of: fn(&Work<R>) -> R| work.iter().map(|work| square(of(work))).sum::<f64>();
+        let (update, size) = (sum(|work| work.update), sum(|work| work.half));
         StepError::NotConverged { iterations, residual: (update / size).sqrt() }
     }
 
     /// Near rest the momenta times `h` are linear in `y`: those of the velocities `2 y`, which one iteration solves for.
     #[inline(never)]
     fn velocities(&self, motion: &Motion<[SO3; N], S::Advected>) -> Components<N> {
-        let mut work = [Work::default(); N];
-        Self::place(&motion.attitude, &mut work);
+        let zero = Plain::ZERO;
+        let mut work = at_rest(zero);
+        self.place(zero, &motion.attitude, &mut work);
         for (work, momentum) in work.iter_mut().zip(&motion.momentum.0) {
-            work.target = *momentum;
+            work.target = zero.of(padded(momentum));
         }
-        outwards(&self.links, &mut work);
-        newton(&self.links, &mut work, f64::INFINITY);
-        Bodies(work.map(|work| work.half * 2.0))
+        outwards(zero, &self.links, &mut work);
+        newton(zero, &self.links, &mut work, f64::INFINITY);
+        Bodies(work.map(|work| vector(work.half) * 2.0))
     }
 }
 
@@ -219,32 +238,52 @@ where
 /// `2C²|u₁|³ ≤ ε|y|/16`, and the first is longer than `√ε|y|/8`, so `C|u₁| < 1e-4`. The Jacobian changes by twice that of
 /// itself, and for another sign it would have to change by all.
 #[hot]
-fn iterate(links: &[LinkConstants], work: &mut [Work], most: u32, longest: f64) -> (u32, bool) {
-    outwards(links, work);
+fn iterate<R: Register>(
+    zero: R,
+    links: &[LinkConstants],
+    work: &mut [Work<R>],
+    most: u32,
+    longest: f64,
+) -> (u32, bool) {
+    outwards(zero, links, work);
     // The last update, if Newton's next is of its second order: of one that was shortened too much is left, and after one
     // with a Jacobian used again what is left is that Jacobian's.
     let (mut made, mut before) = (0, None);
     for _ in 0..most {
         made += 1;
-        let Update { length: update, size, is_whole } = newton(links, work, longest);
+        let Update { length: update, size, is_whole } = newton(zero, links, work, longest);
         if !size.is_finite() {
             break;
         }
         let curvature = Curvature::told(before, update);
         if curvature.has_settled(update, size) {
-            return (made, work.iter().all(Work::is_wanted));
+            return (made, are_wanted(work));
         }
         before = is_whole.then_some(update);
         if is_whole && curvature.may_suffice(update, size) {
-            let second = simplified(links, work);
+            let second = simplified(zero, links, work);
             made += 1;
             if curvature.has_sufficed(update, second.length, second.size) {
-                return (made, work.iter().all(Work::is_wanted));
+                return (made, are_wanted(work));
             }
             before = None;
         }
     }
     (made, false)
+}
+
+#[hot]
+fn are_wanted<R: Register>(work: &[Work<R>]) -> bool {
+    let mut wanted = true;
+    for work in work {
+        wanted &= work.is_wanted();
+    }
+    wanted
+}
+
+#[hot]
+pub(super) fn at_rest<R: Register, const N: usize>(zero: R) -> [Work<R>; N] {
+    core::array::from_fn(|_| Work::none(zero))
 }
 
 impl<S: Effect, const N: usize> Steerable for LinkedBodies<S, N> {}
@@ -256,6 +295,8 @@ where
 {
     type Kept = WarmStart<Components<N>>;
 
+    /// Each step finds them.
+    const VECTORS: Vectors = Vectors::AsCompiled;
     const RUNS_BY_STEPS: bool = true;
     const HAS_OWN_INERTIA: bool = true;
 
@@ -273,30 +314,18 @@ where
 
     #[hot]
     fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
-        if self.h == 0.0 {
-            motion.count();
-            return Ok(StepReport::of(0));
-        }
-        let mut work = [Work::default(); N];
-        let kick = self.prepare(motion.now(), &mut work);
-        let (iterations, is_solved) = self.solve(&mut work, &kept.guess.next);
-        if !is_solved {
-            return Err(self.reason(motion.now(), &work, iterations));
-        }
-        let is_first = motion.now().steps == 0;
-        self.proceed(scene, motion, &work, kick)?;
-        follow(kept, &work, is_first);
-        Ok(StepReport::of(iterations))
+        on_registers(Step(self, scene, motion, kept))
     }
 
     fn momentum(&self, _: &S, attitude: &[SO3; N], velocity: &Components<N>, _: &S::Advected) -> Components<N> {
-        let mut work = [Work::default(); N];
-        Self::place(attitude, &mut work);
+        let zero = Plain::ZERO;
+        let mut work = at_rest(zero);
+        self.place(zero, attitude, &mut work);
         for (work, velocity) in work.iter_mut().zip(&velocity.0) {
-            work.half = *velocity;
+            work.half = zero.of(padded(velocity));
         }
-        momenta_of_velocities(&self.links, &mut work);
-        Bodies(work.map(|work| work.target))
+        momenta_of_velocities(zero, &self.links, &mut work);
+        Bodies(work.map(|work| vector(work.target)))
     }
 
     fn velocity(&self, _: &S, motion: &Motion<[SO3; N], S::Advected>) -> Components<N> {
@@ -306,10 +335,11 @@ where
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
         visitor.term("its own step, of links on ball joints");
         for link in &self.links {
-            link.nonstandard.iter().for_each(|&entry| visitor.parameter("J_d", entry));
-            visitor.parameter("m", link.m);
-            link.mc.iter().for_each(|&entry| visitor.parameter("m c", entry));
-            link.rho.iter().for_each(|&entry| visitor.parameter("rho", entry));
+            let mut tell = |name, entries: &[f64]| entries.iter().for_each(|&entry| visitor.parameter(name, entry));
+            link.nonstandard.iter().for_each(|column| tell("J_d", &column[..3]));
+            tell("m", &[link.m]);
+            tell("m c", &link.mc[..3]);
+            tell("rho", &link.rho[..3]);
         }
     }
 
@@ -321,10 +351,44 @@ where
     }
 }
 
+/// A step.
+pub(super) struct Step<'a, S, P, M, K>(pub(super) &'a P, pub(super) &'a S, pub(super) &'a mut M, pub(super) &'a mut K);
+
+impl<S, M, const N: usize> OnRegisters for Step<'_, S, LinkedBodies<S, N>, M, WarmStart<Components<N>>>
+where
+    S: Effect<Scalar = f64, Group = [SO3; N]>,
+    M: SumsOf<S>,
+{
+    type Output = Result<StepReport, StepError>;
+
+    #[hot]
+    fn run<R: Register>(self, zero: R) -> Self::Output {
+        let Self(plan, scene, motion, kept) = self;
+        if plan.h == 0.0 {
+            motion.count();
+            return Ok(StepReport::of(0));
+        }
+        let mut work = at_rest(zero);
+        let kick = plan.prepare(zero, motion.now(), &mut work);
+        let (iterations, is_solved) = plan.solve(zero, &mut work, &kept.guess.next);
+        if !is_solved {
+            return Err(plan.reason(motion.now(), &work, iterations));
+        }
+        let is_first = motion.now().steps == 0;
+        plan.proceed(scene, motion, &work, kick)?;
+        follow(kept, &work, is_first);
+        Ok(StepReport::of(iterations))
+    }
+}
+
 /// Guesses the next increments by these.
 #[hot]
-pub(super) fn follow<const N: usize>(kept: &mut WarmStart<Components<N>>, work: &[Work; N], is_first: bool) {
-    let half = Bodies(filled!([Vector3::zeros(); N], |k| work[k].half));
+pub(super) fn follow<R: Register, const N: usize>(
+    kept: &mut WarmStart<Components<N>>,
+    work: &[Work<R>; N],
+    is_first: bool,
+) {
+    let half = Bodies(filled!([Vector3::zeros(); N], |k| vector(work[k].half)));
     let far = !<CayleyRetraction as Retraction<[SO3; N]>>::is_half_well_near_identity(&half);
     kept.follow(half, far);
     if is_first {

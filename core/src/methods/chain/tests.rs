@@ -6,14 +6,16 @@ use std::println;
 use nalgebra::{Matrix3, Vector3};
 
 use super::elimination::{LinkConstants, Work, newton, outwards};
-use super::plan::follow;
+use super::plan::{at_rest, follow};
 use super::{Chain, Link};
 use crate::groups::SO3;
 use crate::mechanics::NonstandardInertia;
-use crate::numbers::Bodies;
+use crate::numbers::{Bodies, Plain, Register, padded, vector};
+
+const ZERO: Plain = Plain::ZERO;
 
 /// What is done in the place of a solution.
-type Solve<'a> = &'a dyn Fn(&[LinkConstants], &mut [Work]);
+type Solve<'a> = &'a dyn Fn(&[LinkConstants], &mut [Work<Plain>]);
 
 fn link(central: Matrix3<f64>, m: f64, c: [f64; 3], rho: [f64; 3]) -> Link {
     let [c, rho] = [c, rho].map(Vector3::from);
@@ -57,14 +59,14 @@ fn reference() -> Started {
 /// the first case; so what rounding may move is relative to the largest.
 #[test]
 fn momentum_of_badly_solved_steps() {
-    let unsolved = |links: &[LinkConstants], work: &mut [Work]| {
+    let unsolved = |links: &[LinkConstants], work: &mut [Work<Plain>]| {
         for work in &mut *work {
-            work.half *= 0.999;
+            work.half = work.half * ZERO.of([0.999; 4]);
         }
-        outwards(links, work);
+        outwards(ZERO, links, work);
     };
-    let once = |links: &[LinkConstants], work: &mut [Work]| {
-        newton(links, work, f64::INFINITY);
+    let once = |links: &[LinkConstants], work: &mut [Work<Plain>]| {
+        newton(ZERO, links, work, f64::INFINITY);
     };
     let badly: [(f64, u32, Solve<'_>, f64); 3] =
         [(0.01, 10_000, &unsolved, 1e-3), (0.0025, 10_000, &unsolved, 5e-4), (0.01, 100_000, &once, 1e-10)];
@@ -75,13 +77,14 @@ fn momentum_of_badly_solved_steps() {
         let before = stepper.vertical_momentum(&state);
         let (mut least, mut largest) = (f64::INFINITY, 0.0_f64);
         for _ in 0..steps {
-            let (plan, mut work) = (stepper.plan(), [Work::default(); 3]);
-            let kick = plan.prepare(&state, &mut work);
-            outwards(&plan.links, &mut work);
-            newton(&plan.links, &mut work, f64::INFINITY);
+            let plan = stepper.plan();
+            let mut work = at_rest(ZERO);
+            let kick = plan.prepare(ZERO, &state, &mut work);
+            outwards(ZERO, &plan.links, &mut work);
+            newton(ZERO, &plan.links, &mut work, f64::INFINITY);
             solve(&plan.links, &mut work);
             // How far one of Newton's iterations would move them, which isn't made.
-            let update = newton(&plan.links, &mut work.clone(), f64::INFINITY);
+            let update = newton(ZERO, &plan.links, &mut work.clone(), f64::INFINITY);
             least = least.min((update.length / update.size).sqrt());
             plan.proceed(stepper.scene(), &mut state.motion, &work, kick).unwrap();
             largest = state.momentum().0.iter().map(Vector3::norm).fold(largest, f64::max);
@@ -131,15 +134,16 @@ fn nothing_but_roundings_is_missing() {
         let mut state = stepper.start(attitudes, Bodies(velocities)).unwrap();
         let (mut missing, mut worst, mut iterations) = (0.0_f64, 0.0_f64, 0);
         for step in 0..2000 {
-            let (plan, mut work) = (stepper.plan(), [Work::default(); 5]);
-            let kick = plan.prepare(&state, &mut work);
-            let (made, is_solved) = plan.solve(&mut work, &state.kept.guess.next);
+            let plan = stepper.plan();
+            let mut work = at_rest(ZERO);
+            let kick = plan.prepare(ZERO, &state, &mut work);
+            let (made, is_solved) = plan.solve(ZERO, &mut work, &state.kept.guess.next);
             assert!(is_solved, "{slimness:e} {off} {last:e} {spin} {h}: no step {step}");
             iterations += made;
             let mut more = work;
             // In roundings of all unknowns.
             let mut further = || {
-                let updated = newton(&plan.links, &mut more, f64::INFINITY);
+                let updated = newton(ZERO, &plan.links, &mut more, f64::INFINITY);
                 (updated.length / updated.size).sqrt() / f64::EPSILON
             };
             let first = further();
@@ -162,15 +166,16 @@ fn a_shortened_update_is_a_part_of_the_whole() {
     let links = [LinkConstants::from(&chain.links[2])];
     for size in [1e2, 1e10, 1e17, 1e30] {
         for start in [0.0, 0.3] {
-            let mut work = [Work::default()];
-            (work[0].half, work[0].target) = (Vector3::new(start, -start, start), Vector3::new(0.3, -1.0, 2.0) * size);
-            outwards(&links, &mut work);
-            let before = work[0].half;
-            let updated = newton(&links, &mut work, 0.25);
-            let moved = work[0].half - before;
+            let mut work = [Work::none(ZERO)];
+            work[0].half = ZERO.of([start, -start, start, 0.0]);
+            work[0].target = ZERO.of(padded(&(Vector3::new(0.3, -1.0, 2.0) * size)));
+            outwards(ZERO, &links, &mut work);
+            let before = vector(work[0].half);
+            let updated = newton(ZERO, &links, &mut work, 0.25);
+            let moved = vector(work[0].half) - before;
             assert!(!updated.is_whole && updated.length.sqrt() > 0.01 * size, "{size:e} {start}");
             assert!((moved.norm() - 0.25).abs() < 1e-15, "{size:e} {start}: {moved}");
-            let off = moved.normalize() + work[0].update.normalize();
+            let off = moved.normalize() + vector(work[0].update).normalize();
             assert!(off.norm() < 1e-14, "{size:e} {start}: {off}");
         }
     }
@@ -180,7 +185,8 @@ fn a_shortened_update_is_a_part_of_the_whole() {
 #[cfg(all(feature = "dispatch", not(debug_assertions)))]
 #[test]
 fn vector_instructions_change_no_digit() {
-    use crate::motion::Plan as _;
+    use super::plan::Step;
+    use crate::numbers::OnRegisters as _;
 
     for (chain, attitudes, velocities) in [oblique(), reference()] {
         let stepper = chain.stepper(0.01).unwrap();
@@ -188,7 +194,8 @@ fn vector_instructions_change_no_digit() {
         let mut other = state;
         for step in 0..1000 {
             let report = stepper.step(&mut state);
-            assert_eq!(report, stepper.plan().step(stepper.scene(), &mut other.motion, &mut other.kept), "{step}");
+            let step_by_numbers = Step(stepper.plan(), stepper.scene(), &mut other.motion, &mut other.kept);
+            assert_eq!(report, step_by_numbers.run(ZERO), "{step}");
             assert_eq!(state, other, "{step}");
         }
     }

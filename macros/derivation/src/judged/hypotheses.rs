@@ -93,7 +93,7 @@ fn operations(lowered: &Lowered) -> usize {
     }
     let given =
         with_values(&mut graph, &symbols, declared.lets.iter().map(|one| (one.symbol, &one.value)), Given::new());
-    let mut scalariser = Scalariser { graph: &mut graph, symbols: &symbols, given };
+    let mut scalariser = Scalariser::new(&mut graph, &symbols, given);
     let output = scalariser.scalar(&declared.expression);
     count(&graph, &[output], None).arithmetic
 }

@@ -57,7 +57,7 @@ pub(super) fn entries(graph: &mut Graph, symbols: &Symbols, given: &Given, expre
         let shape = if transposed { (1, size) } else { (size, 1) };
         Expression::from_word(vec![Factor::Unit { index, size, transposed }], shape, symbols)
     };
-    let mut scalariser = Scalariser { graph, symbols, given: given.clone() };
+    let mut scalariser = Scalariser::new(graph, symbols, given.clone());
     Entries::new(rows, columns, |row, column| {
         if (rows, columns) == (1, 1) {
             return scalariser.scalar(expression);
@@ -80,6 +80,6 @@ fn dual(
         let unit = Entries::new(rows, columns, |i, j| if (i, j) == (row, column) { one } else { zero });
         let mut given = given.clone();
         given.insert(direction, unit);
-        Scalariser { graph, symbols: &derived.symbols, given }.scalar(pairing)
+        Scalariser::new(graph, &derived.symbols, given).scalar(pairing)
     })
 }

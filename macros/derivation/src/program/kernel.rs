@@ -106,7 +106,7 @@ pub(crate) fn components(graph: &mut Graph, derived: &Derived, given: &Given, co
             for (factor, one) in derived.directions.factors.iter().enumerate() {
                 given.insert(one.first, generator(graph, &derived.group, factor, k));
             }
-            Scalariser { graph, symbols: &derived.symbols, given }.scalar(covector)
+            Scalariser::new(graph, &derived.symbols, given).scalar(covector)
         })
         .collect()
 }
@@ -124,7 +124,7 @@ pub(crate) fn along_unit_vectors(
         let (zero, one) = (graph.zero(), graph.one());
         let along = Entries::new(3, 1, |at, _| if at == k { one } else { zero });
         let of_row = unit(row, rows, true, symbols).times(column, symbols);
-        Scalariser { graph, symbols, given: Given::from([(direction, along)]) }.scalar(&of_row)
+        Scalariser::new(graph, symbols, Given::from([(direction, along)])).scalar(&of_row)
     };
     places.map(entry).collect()
 }
@@ -148,7 +148,7 @@ pub(crate) fn along_directions(graph: &mut Graph, derived: &Continuous, rank: us
                 }
             }
         }
-        Scalariser { graph, symbols: &derived.symbols, given }.scalar(term)
+        Scalariser::new(graph, &derived.symbols, given).scalar(term)
     };
     places.map(of_place).collect()
 }
@@ -176,7 +176,7 @@ pub(crate) fn diamond_matrices(graph: &mut Graph, derived: &Continuous) -> Vec<V
                 let unit = Entries::new(shape.0, shape.1, |row, column| if is_one(row, column) { one } else { zero });
                 given.insert(any, unit);
             }
-            Scalariser { graph, symbols: &derived.symbols, given }.scalar(&derived.diamond_of_any)
+            Scalariser::new(graph, &derived.symbols, given).scalar(&derived.diamond_of_any)
         };
         places.map(entry).collect()
     };
@@ -379,7 +379,7 @@ fn system(graph: &mut Graph, derived: &Derived, given: &Given) -> Vec<NodeId> {
 }
 
 fn half_step(graph: &mut Graph, derived: &Derived) -> NodeId {
-    Scalariser { graph, symbols: &derived.symbols, given: Given::new() }.scalar(&derived.half_step)
+    Scalariser::new(graph, &derived.symbols, Given::new()).scalar(&derived.half_step)
 }
 
 /// `(h/2) a`, once a step.

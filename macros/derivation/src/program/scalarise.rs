@@ -40,13 +40,19 @@ impl Entries {
 
 /// Turns expressions into nodes of a graph.
 pub(crate) struct Scalariser<'a> {
-    pub(crate) graph: &'a mut Graph,
-    pub(crate) symbols: &'a Symbols,
+    graph: &'a mut Graph,
+    symbols: &'a Symbols,
     /// Symbols whose entries aren't inputs: directions, or what is computed from other inputs.
-    pub(crate) given: BTreeMap<SymbolId, Entries>,
+    given: BTreeMap<SymbolId, Entries>,
+    /// The nodes of scalars so far: what a derivative has in each of its terms is looked into once.
+    known: BTreeMap<Atom, NodeId>,
 }
 
-impl Scalariser<'_> {
+impl<'a> Scalariser<'a> {
+    pub(crate) fn new(graph: &'a mut Graph, symbols: &'a Symbols, given: BTreeMap<SymbolId, Entries>) -> Self {
+        Self { graph, symbols, given, known: BTreeMap::new() }
+    }
+
     /// A scalar expression.
     pub(crate) fn scalar(&mut self, expression: &Expression) -> NodeId {
         let terms: Vec<NodeId> = expression
@@ -89,15 +95,20 @@ impl Scalariser<'_> {
     }
 
     fn atom(&mut self, atom: &Atom) -> NodeId {
-        match atom {
-            Atom::Symbol(id) => self.symbol(*id).at(0, 0),
+        if let Some(&known) = self.known.get(atom) {
+            return known;
+        }
+        let node = match atom {
+            Atom::Symbol(id) => return self.symbol(*id).at(0, 0),
             Atom::Trace(word) => self.trace(word, None),
             Atom::Function(function, inner) => {
                 let argument = self.scalar(inner);
                 self.graph.apply(*function, argument)
             }
             Atom::Sum(inner) => self.scalar(inner),
-        }
+        };
+        self.known.insert(atom.clone(), node);
+        node
     }
 
     fn symbol(&mut self, id: SymbolId) -> Entries {

@@ -38,7 +38,7 @@ pub(crate) fn limit(derived: &Derived) -> (Graph, [Vec<NodeId>; 3]) {
 fn in_form(graph: &mut Graph, derived: &Derived, given: &Given, form: Form, expression: &Expression) -> Vec<NodeId> {
     match form {
         Form::Scalar => {
-            vec![Scalariser { graph, symbols: &derived.symbols, given: given.clone() }.scalar(expression)]
+            vec![Scalariser::new(graph, &derived.symbols, given.clone()).scalar(expression)]
         }
         Form::Vector => components(graph, derived, given, expression),
         Form::Square => square(graph, derived, given, expression),

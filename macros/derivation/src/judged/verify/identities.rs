@@ -55,7 +55,7 @@ impl Terms {
         let mut graph = none.graph;
         let [right, left, diamond] = [&derived.right_momentum, &derived.left_momentum, &derived.diamond]
             .map(|covector| components(&mut graph, derived, &given, covector));
-        let energy = Scalariser { graph: &mut graph, symbols: &derived.symbols, given }.scalar(&derived.energy);
+        let energy = Scalariser::new(&mut graph, &derived.symbols, given).scalar(&derived.energy);
         Self { right, left, diamond, energy: Some(energy), graph, ..none }
     }
 }

@@ -181,8 +181,7 @@ fn evaluated_from<T: Number>(
         |input: Input| inputs.get(&input.symbol).map_or(T::UNDEFINED, |value| value.at(input.row, input.column));
     for id in order {
         let at = |operand: NodeId| known[operand.0];
-        known[id.0] = match graph.node(id) {
-            _ if given.contains_key(&id) => given[&id],
+        let made = || match graph.node(id) {
             Node::Constant(value) => T::of(value),
             Node::Input(entry) => input(entry),
             Node::Negate(a) => -at(a),
@@ -192,6 +191,7 @@ fn evaluated_from<T: Number>(
             Node::Divide(a, b) => at(a) / at(b),
             Node::Apply(function, a) => at(a).apply(function),
         };
+        known[id.0] = given.get(&id).copied().unwrap_or_else(made);
     }
     outputs.iter().map(|output| known[output.0]).collect()
 }

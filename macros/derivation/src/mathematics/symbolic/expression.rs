@@ -1,6 +1,8 @@
 //! Sums of words with scalar coefficients, in normal form.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use super::functions::Function;
 use super::rational::Rational;
@@ -19,9 +21,9 @@ pub(crate) enum Atom {
     /// The trace of a closed word, or a bilinear form `uᵀ W v`, in canonical form.
     Trace(Vec<Factor>),
     /// A smooth function of a scalar.
-    Function(Function, Box<Expression>),
+    Function(Function, Rc<Expression>),
     /// A sum under a power that isn't expanded.
-    Sum(Box<Expression>),
+    Sum(Rc<Expression>),
 }
 
 /// What a coefficient multiplies: powers of scalars and a word (empty: the identity, or one for a scalar).
@@ -52,10 +54,26 @@ impl Monomial {
 }
 
 /// A scalar, vector or matrix expression.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Expression {
     shape: (usize, usize),
     terms: BTreeMap<Monomial, Rational>,
+}
+
+impl Ord for Expression {
+    /// Those inside of scalars are shared, and compared with themselves more often than with others.
+    fn cmp(&self, other: &Self) -> Ordering {
+        if std::ptr::eq(self, other) {
+            return Ordering::Equal;
+        }
+        (self.shape, &self.terms).cmp(&(other.shape, &other.terms))
+    }
+}
+
+impl PartialOrd for Expression {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
 }
 
 impl Expression {
@@ -97,7 +115,7 @@ impl Expression {
         {
             return Self::rational(value);
         }
-        Self::atom(Atom::Function(function, Box::new(argument)), 1)
+        Self::atom(Atom::Function(function, Rc::new(argument)), 1)
     }
 
     pub(crate) fn atom(atom: Atom, exponent: i32) -> Self {
@@ -268,7 +286,7 @@ impl Expression {
             return power;
         }
         if !(0..=4).contains(&exponent) {
-            return Self::atom(Atom::Sum(Box::new(self)), exponent);
+            return Self::atom(Atom::Sum(Rc::new(self)), exponent);
         }
         (0..exponent).fold(Self::identity(1), |product, _| product.times(&self, symbols))
     }

@@ -18,6 +18,9 @@ impl Rational {
     pub(crate) const OVERFLOW: Self = Self { numerator: 0, denominator: 0 };
 
     pub(crate) fn new(numerator: i128, denominator: i128) -> Self {
+        if denominator == 1 && numerator > i128::MIN {
+            return Self::integer(numerator);
+        }
         let divisor = gcd(numerator.unsigned_abs(), denominator.unsigned_abs());
         let Ok(divisor) = i128::try_from(divisor) else { return Self::OVERFLOW };
         // The least number has no negative.

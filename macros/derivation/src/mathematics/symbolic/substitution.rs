@@ -1,6 +1,7 @@
 //! Replacing symbols by expressions.
 
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use super::expression::{Atom, Expression, Monomial};
 use super::symbols::{SymbolId, Symbols};
@@ -37,7 +38,7 @@ fn atom_image(atom: &Atom, map: &BTreeMap<SymbolId, Expression>, symbols: &Symbo
         Atom::Function(function, inner) => Expression::function(*function, substitute(inner, map, symbols)),
         Atom::Sum(inner) => {
             let inner = substitute(inner, map, symbols);
-            if inner.len() == 1 { inner } else { Expression::atom(Atom::Sum(Box::new(inner)), 1) }
+            if inner.len() == 1 { inner } else { Expression::atom(Atom::Sum(Rc::new(inner)), 1) }
         }
     }
 }
