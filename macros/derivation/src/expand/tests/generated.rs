@@ -353,7 +353,8 @@ fn right_and_wrong_declarations() {
         accepted.len()
     );
     assert!(wrong.is_empty() && refused.len() as u64 <= 3 * count.div_ceil(3_000), "{wrong:#?} {refused:#?}");
-    assert!(cfg!(debug_assertions) || slowest.0 < Duration::from_secs(1), "{slowest:?}");
+    // Only a text has a bound of work.
+    assert!(cfg!(debug_assertions) || compiled > 0 || slowest.0 < Duration::from_secs(1), "{slowest:?}");
     accepted.truncate(usize::try_from(compiled).expect("small"));
     compile(&accepted);
 }
