@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use liestep::motion::Batch;
-use liestep_scene::{Mistake, Spread};
+use liestep_scene::{LeastWhole, Mistake, Spread};
 use simba::simd::AutoF64x8;
 
 use crate::counting::Uncounted;
@@ -44,7 +44,8 @@ pub(crate) fn members() -> Result<(), Uncounted> {
     let draws = "[ensemble]\nmembers = 8000\ndraw.gravity.m = { mean = 1.0, deviation = 0.01 }\n\
                  draw.start.velocity = [0.5, 2, { from = 8.0, to = 12.0 }]\n";
     let scene = liestep_scene::parse("bench.toml", &format!("{}{draws}", text(FILES[1].1)))?;
-    let (drawn, whole) = (scene.ensemble().ok_or("no ensemble")?, scene.whole().ok_or("not one program")?);
+    let (drawn, whole): (_, LeastWhole) =
+        (scene.ensemble().ok_or("no ensemble")?, scene.whole().ok_or("not one program")?);
     let member = |number: u32| {
         let share = f64::from(number) / f64::from(MEMBERS);
         let number = |_: &str, spread: Spread| match spread {

@@ -9,7 +9,7 @@ use clap::ArgMatches;
 use liestep::SO3;
 use liestep::motion::{Integrator, Moment};
 use liestep_ensemble::{Ensemble, Failure, Local, Member, MemberFailure, Reduction, Report, Section, Store, Summary};
-use liestep_scene::{Column, MemberEvent, Mistake, SceneEnsemble, SceneFile, Spread};
+use liestep_scene::{Column, LeastWhole, MemberEvent, Mistake, SceneEnsemble, SceneFile, Spread, Whole};
 
 use crate::failure::Failure as ProgramFailure;
 use crate::files::{different_files, folder, name, scenes};
@@ -70,22 +70,29 @@ fn made(
     store: (&Store, &Path),
 ) -> Result<[u64; 2], ProgramFailure> {
     let steps = scene.steps().unwrap_or_default();
-    let (own, of_lanes) = (drawn.clone(), drawn.clone());
     let failed = |mistake: Mistake| Failure::Other(mistake.to_string());
     let drawn_of = |own: &SceneEnsemble, member: &Member<'_>| {
         own.member(&mut |name: &str, spread: Spread| number(member, name, spread))
     };
-    if let Some(whole) = scene.whole() {
-        let make = move |member: &Member<'_>| {
-            drawn_of(&of_lanes, member).and_then(|scene| scene.in_lanes(&whole)).map_err(failed)
+    macro_rules! in_lanes {
+        ($whole:ty) => {
+            if let Some(whole) = scene.whole() {
+                let (whole, own): ($whole, _) = (whole, drawn.clone());
+                let make = move |member: &Member<'_>| {
+                    drawn_of(&own, member).and_then(|scene| scene.in_lanes(&whole)).map_err(failed)
+                };
+                // Whole lanes: a 64th of all, but a second's work, or of very many a 4096th, and a million rows at most.
+                let rows = drawn.every.map_or(1, |every| steps / every + 2);
+                let share = drawn.members.div_ceil(64).min((1 << 24) / steps.max(1)).max(drawn.members >> 12);
+                let chunk = share.min((1 << 20) / rows).next_multiple_of(8).max(8);
+                let members = Ensemble::new(&drawn.text, drawn.members, steps, make).chunks_of(chunk);
+                return finished(path, scene, drawn, members, local, store);
+            }
         };
-        // Whole lanes: a 64th of all, but a second's work, or of very many a 4096th, and a million rows at most.
-        let rows = drawn.every.map_or(1, |every| steps / every + 2);
-        let share = drawn.members.div_ceil(64).min((1 << 24) / steps.max(1)).max(drawn.members >> 12);
-        let chunk = share.min((1 << 20) / rows).next_multiple_of(8).max(8);
-        let members = Ensemble::new(&drawn.text, drawn.members, steps, make).chunks_of(chunk);
-        return finished(path, scene, drawn, members, local, store);
     }
+    in_lanes!(LeastWhole);
+    in_lanes!(Whole);
+    let own = drawn.clone();
     let make = move |member: &Member<'_>| drawn_of(&own, member).and_then(|scene| scene.stepper()).map_err(failed);
     finished(path, scene, drawn, Ensemble::one_by_one(&drawn.text, drawn.members, steps, make), local, store)
 }

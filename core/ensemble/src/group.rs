@@ -2,7 +2,7 @@
 
 use liestep::motion::{Batch, Batchable, Integrator};
 use liestep::numbers::{InLanes, Lanes as _};
-use liestep::{SetupError, StepError};
+use liestep::StepError;
 use simba::simd::AutoF64x8;
 
 use crate::section::{LANES, Section};
@@ -59,15 +59,7 @@ impl<M: Batchable<AutoF64x8> + 'static> Group<M> for Together<M> {
 pub(crate) fn in_lanes<M: Batchable<AutoF64x8> + 'static>(members: &[Start<M>]) -> Vec<(Box<dyn Group<M>>, usize)> {
     let mut groups: Vec<(Box<dyn Group<M>>, usize)> = Vec::new();
     let mut left = members;
-    while !left.is_empty() {
-        let mut count = left.len().min(LANES);
-        let batch = loop {
-            match Batch::<AutoF64x8, M>::new(&left[..count]) {
-                Ok(batch) => break batch,
-                Err(SetupError::Unlike { lane }) if lane > 0 => count = lane,
-                Err(error) => unreachable!("one body is like itself: {error}"),
-            }
-        };
+    while let Some((batch, count)) = Batch::<AutoF64x8, M>::of_first(&left[..left.len().min(LANES)]) {
         let before = batch.states().clone();
         groups.push((Box::new(Together { batch, before }), count));
         left = &left[count..];

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Debug;
+use std::ops::Range;
 
 use liestep::__private::{log_ratio, stumpff};
 use liestep::numbers::{Real, real};
@@ -13,8 +14,6 @@ use crate::error::LateError;
 pub trait Backend<T: Real>: Copy + Debug + 'static {
     /// What it makes of a program.
     type Code: Debug + Send + Sync + 'static;
-    /// What it makes of the constants of a stepper.
-    type Image: Debug + Send + Sync;
 
     /// The programs of a declaration, each made ready.
     ///
@@ -26,11 +25,8 @@ pub trait Backend<T: Real>: Copy + Debug + 'static {
     /// Makes now what else is made after some runs.
     fn prepare(_: &Self::Code) {}
 
-    /// The constants, as a program needs them.
-    fn image(code: &Self::Code, constants: &[T]) -> Self::Image;
-
-    /// Runs a program, for as many outputs as it has. Arrays are as long as what it reads of them.
-    fn run<const N: usize>(code: &Self::Code, image: &Self::Image, given: Given<'_, T, N>, outputs: &mut [T]);
+    /// Runs a program, for as many outputs as it has. Arrays are as long as what it reads of them, as the constants are.
+    fn run<const N: usize>(code: &Self::Code, constants: &[T], given: Given<'_, T, N>, outputs: &mut [T]);
 }
 
 /// Programs are read operation by operation: safe, on every machine, and in lanes.
@@ -39,18 +35,13 @@ pub struct Interpreter;
 
 impl<T: Real> Backend<T> for Interpreter {
     type Code = Code;
-    type Image = Box<[T]>;
 
     fn codes(programs: &[&Program]) -> Result<Vec<Code>, LateError> {
         programs.iter().map(|program| Code::of(program)).collect()
     }
 
-    fn image(code: &Code, constants: &[T]) -> Box<[T]> {
-        code.image(constants)
-    }
-
-    fn run<const N: usize>(code: &Code, image: &Box<[T]>, given: Given<'_, T, N>, outputs: &mut [T]) {
-        code.run(image, &given, outputs);
+    fn run<const N: usize>(code: &Code, constants: &[T], given: Given<'_, T, N>, outputs: &mut [T]) {
+        code.run(constants, &given, outputs);
     }
 }
 
@@ -61,8 +52,9 @@ pub type Given<'a, T, const N: usize> = [(Array, &'a [T]); N];
 /// more is used again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Code {
-    /// What is known before a step, in the first registers: places among the constants, then literals.
-    constants: Vec<usize>,
+    /// What is known before a step, in the first registers: constants from the first to the last that is read, copied as they
+    /// stand, then literals.
+    constants: Range<usize>,
     literals: Vec<f64>,
     /// Then places in arrays, array by array.
     inputs: Vec<(Array, Vec<usize>)>,
@@ -94,9 +86,14 @@ enum Arithmetic {
     Apply(Function),
 }
 
-/// The operations in that order, each with a register for its result; `place` has those of inputs and literals, and gets
-/// those of results. With the number of registers.
-fn allocated(program: &Program, order: &[usize], place: &mut [u16]) -> Option<(Vec<Run>, usize)> {
+/// The operations in that order, each with a register for its result; `place` has those of inputs and literals, as many as
+/// `registers`, and gets those of results. With the number of registers.
+fn allocated(
+    program: &Program,
+    order: &[usize],
+    place: &mut [u16],
+    mut registers: usize,
+) -> Option<(Vec<Run>, usize)> {
     let fixed = program.inputs.len() + program.literals.len();
     // When each value is read last; an output is never done with.
     let mut last = vec![0; place.len()];
@@ -108,7 +105,7 @@ fn allocated(program: &Program, order: &[usize], place: &mut [u16]) -> Option<(V
     for &output in &program.outputs {
         last[output as usize] = usize::MAX;
     }
-    let (mut free, mut registers) = (Vec::new(), fixed);
+    let mut free = Vec::new();
     let mut runs: Vec<Run> = Vec::new();
     for (time, &at) in order.iter().enumerate() {
         let (operation, read) = (kind(program.operations[at]), program.operations[at].operands());
@@ -177,11 +174,11 @@ impl Code {
         let fixed = program.inputs.len() + program.literals.len();
         // A register for each input and literal, what is known before a step first.
         let is_constant = |source: &Source| source.array == Array::Constants;
-        let inputs = || program.inputs.iter().enumerate();
-        let first = inputs().filter(|(_, source)| is_constant(source)).map(|(value, _)| value);
+        let of_constants = || program.inputs.iter().filter(|source| is_constant(source)).map(|source| source.at);
+        let constants = of_constants().min().unwrap_or(0)..of_constants().max().map_or(0, |last| last.saturating_add(1));
         let literals = program.inputs.len()..fixed;
         let mut others: Vec<usize> =
-            inputs().filter(|(_, source)| !is_constant(source)).map(|(value, _)| value).collect();
+            (0..program.inputs.len()).filter(|&value| !is_constant(&program.inputs[value])).collect();
         others.sort_by_key(|&value| program.inputs[value].array);
         let mut inputs: Vec<(Array, Vec<usize>)> = Vec::new();
         for Source { array, at } in others.iter().map(|&value| program.inputs[value]) {
@@ -191,12 +188,17 @@ impl Code {
             }
         }
         let mut place = vec![0; fixed + program.operations.len()];
-        for (register, value) in first.chain(literals).chain(others).enumerate() {
-            place[value] = u16::try_from(register).ok()?;
+        for (place, source) in place.iter_mut().zip(&program.inputs).filter(|(_, source)| is_constant(source)) {
+            *place = u16::try_from(source.at - constants.start).ok()?;
         }
-        let (runs, registers) = allocated(program, &by_kind(program), &mut place)?;
+        let mut registers = constants.len();
+        for value in literals.chain(others) {
+            place[value] = u16::try_from(registers).ok()?;
+            registers += 1;
+        }
+        let (runs, registers) = allocated(program, &by_kind(program), &mut place, registers)?;
         Some(Self {
-            constants: program.inputs.iter().filter(|source| is_constant(source)).map(|source| source.at).collect(),
+            constants,
             literals: program.literals.clone(),
             inputs,
             runs,
@@ -205,36 +207,33 @@ impl Code {
         })
     }
 
-    /// The first registers of every run with these constants.
-    fn image<T: Real>(&self, constants: &[T]) -> Box<[T]> {
-        let of = |&at: &usize| constants.get(at).copied().unwrap_or_else(|| real(f64::NAN));
-        self.constants.iter().map(of).collect()
-    }
-
     #[inline(never)]
-    fn run<T: Real>(&self, image: &[T], given: &[(Array, &[T])], outputs: &mut [T]) {
+    fn run<T: Real>(&self, constants: &[T], given: &[(Array, &[T])], outputs: &mut [T]) {
         // Registers beyond those that are used cost time to clear.
         match self.registers {
-            0..=32 => self.run_in(&mut [T::zero(); 32], image, given, outputs),
-            33..=64 => self.run_in(&mut [T::zero(); 64], image, given, outputs),
-            65..=128 => self.run_in(&mut [T::zero(); 128], image, given, outputs),
-            129..=256 => self.run_in(&mut [T::zero(); 256], image, given, outputs),
-            more => self.run_in(&mut vec![T::zero(); more.next_power_of_two()], image, given, outputs),
+            0..=32 => self.run_in(&mut [T::zero(); 32], constants, given, outputs),
+            33..=64 => self.run_in(&mut [T::zero(); 64], constants, given, outputs),
+            65..=128 => self.run_in(&mut [T::zero(); 128], constants, given, outputs),
+            129..=256 => self.run_in(&mut [T::zero(); 256], constants, given, outputs),
+            more => self.run_in(&mut vec![T::zero(); more.next_power_of_two()], constants, given, outputs),
         }
     }
 
     /// In registers whose number is a power of two, so that a masked index is always in range.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn run_in<T: Real>(&self, registers: &mut [T], image: &[T], given: &[(Array, &[T])], outputs: &mut [T]) {
+    fn run_in<T: Real>(&self, registers: &mut [T], constants: &[T], given: &[(Array, &[T])], outputs: &mut [T]) {
         let mask = registers.len().wrapping_sub(1);
-        let (known, open) = registers.split_at_mut(image.len().min(registers.len()));
-        known.copy_from_slice(&image[..known.len()]);
+        let (known, open) = registers.split_at_mut(self.constants.len().min(registers.len()));
+        // No step takes NaN for a number.
+        match constants.get(self.constants.clone()) {
+            Some(read) => known.copy_from_slice(&read[..known.len()]),
+            None => known.fill(real(f64::NAN)),
+        }
         let mut open = open.iter_mut();
         self.literals.iter().zip(&mut open).for_each(|(&literal, register)| *register = real(literal));
         for (array, places) in &self.inputs {
             let numbers = given.iter().find(|(given, _)| given == array).map_or(&[][..], |(_, numbers)| numbers);
             for (&at, register) in places.iter().zip(&mut open) {
-                // No step takes NaN for a number.
                 *register = numbers.get(at).copied().unwrap_or_else(|| real(f64::NAN));
             }
         }

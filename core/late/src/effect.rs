@@ -64,7 +64,7 @@ pub(crate) fn alone<T: Real, B: Backend<T>, const N: usize>(
     given: Given<'_, T, N>,
 ) -> Vec<T> {
     let mut outputs = vec![T::zero(); program.outputs];
-    B::run(&program.code, &B::image(&program.code, &[]), given, &mut outputs);
+    B::run(&program.code, &[], given, &mut outputs);
     outputs
 }
 
@@ -90,20 +90,14 @@ pub(crate) fn square<G: LieGroup>(outputs: &[G::Scalar]) -> Square<G> {
 pub struct Constants<T: Real, B: Backend<T> = Interpreter>(pub(crate) Arc<Folded<T, B>>);
 
 /// Numbers that don't change from step to step, and what runs with them.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Folded<T: Real, B: Backend<T>> {
     pub(crate) declaration: &'static Declaration,
     pub(crate) stages: All<B::Code>,
     pub(crate) is_specialised: bool,
     pub(crate) numbers: Vec<T>,
-    /// With them the images of programs.
-    kick_before: B::Image,
-    newton_system: B::Image,
-    newton_residual: B::Image,
-    kick_after: B::Image,
-    kick_derivative: Option<B::Image>,
     /// Kicks before and after that depend on nothing else.
-    known: [Option<Box<[T]>>; 2],
+    pub(crate) known: [Option<Box<[T]>>; 2],
 }
 
 impl<T: Real, B: Backend<T>> Constants<T, B> {
@@ -113,28 +107,14 @@ impl<T: Real, B: Backend<T>> Constants<T, B> {
         is_specialised: bool,
         numbers: Vec<T>,
     ) -> Self {
-        let image = |program: &Ready<B::Code>| B::image(&program.code, &numbers);
-        let Stages { kick_before, newton_system, newton_residual, kick_after, kick_derivative, .. } = &**stages;
-        let known = [kick_before, kick_after].map(|program| {
+        let known = [&stages.kick_before, &stages.kick_after].map(|program| {
             program.reads_constants_alone().then(|| {
                 let mut kick = vec![T::zero(); program.outputs];
-                B::run(&program.code, &image(program), [], &mut kick);
+                B::run(&program.code, &numbers, [], &mut kick);
                 kick.into()
             })
         });
-        let folded = Folded {
-            known,
-            kick_before: image(kick_before),
-            newton_system: image(newton_system),
-            newton_residual: image(newton_residual),
-            kick_after: image(kick_after),
-            kick_derivative: kick_derivative.as_ref().map(image),
-            declaration,
-            is_specialised,
-            numbers,
-            stages: Arc::clone(stages),
-        };
-        Self(Arc::new(folded))
+        Self(Arc::new(Folded { declaration, stages: Arc::clone(stages), is_specialised, numbers, known }))
     }
 }
 
@@ -257,7 +237,7 @@ where
         let entries = G::DIMENSION * G::DIMENSION;
         room!(outputs: G::Scalar, entries + G::DIMENSION + 1);
         let code = &self.stages.at_rest.code;
-        B::run(code, &B::image(code, &[]), given, outputs);
+        B::run(code, &[], given, outputs);
         let (inertia, bias) = (square::<G>(outputs), vector(&outputs[entries..]));
         Limit::quadratic(velocity, inertia, bias, outputs[entries + G::DIMENSION])
     }
@@ -295,18 +275,18 @@ where
         }
         listed!(advected = w);
         room!(kick: G::Scalar, G::DIMENSION);
-        B::run(&folded.stages.kick_before.code, &folded.kick_before, [(Array::Advected, advected)], kick);
+        B::run(&folded.stages.kick_before.code, &folded.numbers, [(Array::Advected, advected)], kick);
         vector(kick)
     }
 
     fn kick_derivative(constants: &Self::Constants, w: &W, velocity: &Vector<G>) -> Option<Vector<G>> {
         let folded = &*constants.0;
-        let (program, image) = (folded.stages.kick_derivative.as_ref()?, folded.kick_derivative.as_ref()?);
+        let program = folded.stages.kick_derivative.as_ref()?;
         listed!(advected = w);
         listed!(velocity = velocity);
         room!(derivative: G::Scalar, G::DIMENSION);
         let given = [(Array::Advected, advected), (Array::Velocity, velocity)];
-        B::run(&program.code, image, given, derivative);
+        B::run(&program.code, &folded.numbers, given, derivative);
         Some(vector(derivative))
     }
 
@@ -319,7 +299,7 @@ where
     fn newton_system(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> (Vector<G>, Square<G>) {
         let folded = &*constants.0;
         room!(outputs: G::Scalar, G::DIMENSION * (G::DIMENSION + 1));
-        iteration::<G, W, B>((&folded.stages.newton_system, &folded.newton_system), terms, half, outputs);
+        iteration::<G, W, B>((&folded.stages.newton_system, &folded.numbers), terms, half, outputs);
         let (residual, jacobian) = (vector(outputs), square::<G>(&outputs[G::DIMENSION..]));
         if !folded.declaration.in_increment {
             return (residual, jacobian);
@@ -332,7 +312,7 @@ where
     fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> Residual<Vector<G>> {
         let folded = &*constants.0;
         room!(outputs: G::Scalar, 2 * G::DIMENSION);
-        iteration::<G, W, B>((&folded.stages.newton_residual, &folded.newton_residual), terms, half, outputs);
+        iteration::<G, W, B>((&folded.stages.newton_residual, &folded.numbers), terms, half, outputs);
         let moving_kick = folded.declaration.is_expensive.then(|| vector(&outputs[G::DIMENSION..]));
         Residual { momentum_defect: vector(outputs), moving_kick }
     }
@@ -343,14 +323,14 @@ where
         if let Some(kick) = &folded.known[1] {
             return vector(&kick[..G::DIMENSION]);
         }
-        let (program, image) = (&folded.stages.kick_after, &folded.kick_after);
+        let program = &folded.stages.kick_after;
         room!(kick: G::Scalar, G::DIMENSION);
         if program.reads(Array::Increment) || program.reads(Array::Inverse) {
-            kick_with_more::<G, W, B>((program, image), &{ *increment }, &{ *next }, kick);
+            kick_with_more::<G, W, B>((program, &folded.numbers), &{ *increment }, &{ *next }, kick);
         } else {
             let next = *next;
             listed!(next = &next);
-            B::run(&program.code, image, [(Array::Next, next)], kick);
+            B::run(&program.code, &folded.numbers, [(Array::Next, next)], kick);
         }
         vector(kick)
     }
@@ -359,7 +339,7 @@ where
 /// A kick that is written in the increment, too.
 #[inline(never)]
 fn kick_with_more<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
-    (program, image): (&Ready<B::Code>, &B::Image),
+    (program, constants): (&Ready<B::Code>, &[G::Scalar]),
     increment: &Matrix<G>,
     next: &W,
     kick: &mut [G::Scalar],
@@ -369,13 +349,13 @@ fn kick_with_more<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
     listed!(increment = increment);
     listed!(next = next);
     listed!(inverse = &inverse);
-    B::run(&program.code, image, [(Array::Increment, increment), (Array::Next, next), (Array::Inverse, inverse)], kick);
+    B::run(&program.code, constants, [(Array::Increment, increment), (Array::Next, next), (Array::Inverse, inverse)], kick);
 }
 
 /// What an iteration computes.
 #[cfg_attr(all(not(debug_assertions), not(feature = "small")), inline(always))]
 fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
-    (program, image): (&Ready<B::Code>, &B::Image),
+    (program, constants): (&Ready<B::Code>, &[G::Scalar]),
     terms: &StepTerms<Vector<G>, W>,
     half: &Vector<G>,
     outputs: &mut [G::Scalar],
@@ -386,18 +366,18 @@ fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
     let half = *half;
     // Off SO(3) the system is written in the increment. That is called, and a step on SO(3) stays short.
     if program.reads(Array::Increment) || program.reads(Array::InverseIncrement) {
-        return iteration_with_more::<G, W, B>((program, image), &{ *terms }, &{ half }, outputs);
+        return iteration_with_more::<G, W, B>((program, constants), &{ *terms }, &{ half }, outputs);
     }
     listed!(coordinates = &half);
     listed!(target = &terms.right_side);
     listed!(advected = &terms.advected);
     let given = [(Array::Half, coordinates), (Array::Target, target), (Array::Advected, advected)];
-    B::run(&program.code, image, given, outputs);
+    B::run(&program.code, constants, given, outputs);
 }
 
 #[inline(never)]
 fn iteration_with_more<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
-    (program, image): (&Ready<B::Code>, &B::Image),
+    (program, constants): (&Ready<B::Code>, &[G::Scalar]),
     terms: &StepTerms<Vector<G>, W>,
     half: &Vector<G>,
     outputs: &mut [G::Scalar],
@@ -419,7 +399,7 @@ fn iteration_with_more<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
         (Array::Increment, increment),
         (Array::InverseIncrement, inverse),
     ];
-    B::run(&program.code, image, given, outputs);
+    B::run(&program.code, constants, given, outputs);
 }
 
 impl<G, W, K, B> DiscreteLagrangian for Late<G, W, K, B>

@@ -64,14 +64,9 @@ macro_rules! tuples {
 
 tuples!(()(A, B)(A, B, C)(A, B, C, D)(A, B, C, D, E)(A, B, C, D, E, F));
 
-/// Those of all lanes, of which lane `k` is others.
-fn replaced<T: Real>(numbers: &[T], k: usize, lane: &[T::Element]) -> Vec<T> {
-    let replaced = |(&number, &lane): (&T, &T::Element)| {
-        let mut number = number;
-        number.replace(k, lane);
-        number
-    };
-    numbers.iter().zip(lane).map(replaced).collect()
+/// Puts others into lane `k`.
+fn replace<T: Real>(numbers: &mut [T], k: usize, lane: &[T::Element]) {
+    numbers.iter_mut().zip(lane).for_each(|(number, &lane)| number.replace(k, lane));
 }
 
 /// Lanes share the text; what is specialised for one isn't for all.
@@ -96,7 +91,7 @@ where
     }
 
     fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
-        self.numbers = replaced(&self.numbers, k, &lane.numbers).into();
+        replace(Arc::make_mut(&mut self.numbers), k, &lane.numbers);
         std::ptr::eq(self.declaration, lane.declaration)
     }
 }
@@ -131,9 +126,12 @@ where
     }
 
     fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
-        let numbers = replaced(&self.0.numbers, k, &lane.0.numbers);
-        *self = Self::of(self.0.declaration, &self.0.stages.clone(), self.0.is_specialised, numbers);
+        let (own, lane) = (Arc::make_mut(&mut self.0), &lane.0);
+        replace(&mut own.numbers, k, &lane.numbers);
+        for (own, lane) in own.known.iter_mut().zip(&lane.known) {
+            own.iter_mut().zip(lane).for_each(|(own, lane)| replace(own, k, lane));
+        }
         // The programs of one that is specialised are its own.
-        std::ptr::eq(self.0.declaration, lane.0.declaration) && Arc::ptr_eq(&self.0.stages, &lane.0.stages)
+        std::ptr::eq(own.declaration, lane.declaration) && Arc::ptr_eq(&own.stages, &lane.stages)
     }
 }

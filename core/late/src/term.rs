@@ -203,17 +203,17 @@ impl<G: LieGroup, W, K, B: Backend<G::Scalar>> Late<G, W, K, B> {
     /// Where there are more or fewer.
     pub fn with_all(mut self, numbers: &[G::Scalar]) -> Result<Self, LateError> {
         // An effect describes a diagonal inertia by its tensor.
-        let described = self.declaration.parameters.iter().flat_map(|parameter| match parameter.kind {
-            ParameterKind::DiagonalInertia => [true, false, false, false].repeat(3)[..9].to_vec(),
-            kind => vec![true; kind.len()],
+        let described = self.declaration.parameters.iter().map(|parameter| match parameter.kind {
+            ParameterKind::DiagonalInertia => (9, 4),
+            kind => (kind.len(), 1),
         });
-        let described: Vec<bool> = described.collect();
-        let (expected, found) = (described.len(), numbers.len());
+        let (expected, found) = (described.clone().map(|(length, _)| length).sum(), numbers.len());
         if expected != found {
             return Err(LateError::Size { name: self.declaration.name.clone(), expected, found });
         }
-        self.numbers =
-            numbers.iter().zip(described).filter_map(|(&number, is_kept)| is_kept.then_some(number)).collect();
+        let (mut numbers, mut kept) = (numbers.iter().copied(), Vec::with_capacity(self.numbers.len()));
+        described.for_each(|(length, stride)| kept.extend(numbers.by_ref().take(length).step_by(stride)));
+        self.numbers = kept.into();
         Ok(self)
     }
 

@@ -372,8 +372,7 @@ fn specialised_programs_are_shorter() {
     let code = <Interpreter as Backend<f64>>::codes(&[&programs.constants]).expect("a program").remove(0);
     let mut constants = vec![0.0; programs.constants.outputs.len()];
     let given = [(Array::Step, &[0.01][..]), (Array::Parameters, &parameters)];
-    let image = <Interpreter as Backend<f64>>::image(&code, &[]);
-    Interpreter::run(&code, &image, given, &mut constants);
+    Interpreter::run(&code, &[], given, &mut constants);
     let lengths = [programs, &specialised(programs, &constants)].map(|all| all.newton_system.operations.len());
     println!("{} operations an iteration, specialised {}", lengths[0], lengths[1]);
     // Three of them are products of the right side.

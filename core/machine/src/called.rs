@@ -4,7 +4,7 @@
 use std::any::TypeId;
 use std::fmt;
 use std::mem::MaybeUninit;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 use cranelift_jit::JITModule;
 use liestep_late::{Array, Given, Program};
@@ -70,51 +70,37 @@ impl Function {
         let memory = Mutex::new(Some(module));
         Ok(Self { entry, least, read, outputs: program.outputs.len(), lanes, memory })
     }
-}
 
-/// A function of `T` with the constants that it reads.
-#[derive(Debug)]
-pub(crate) struct Bound<T> {
-    function: Arc<Function>,
-    constants: Box<[T]>,
-}
-
-impl<T: Copy + 'static> Bound<T> {
-    /// `None` where the function isn't one of `T`, or reads more constants.
-    pub(crate) fn of(function: &Arc<Function>, constants: &[T]) -> Option<Self> {
-        let constants = constants.get(..function.least[Array::Constants as usize])?.into();
-        (function.lanes == lanes_of::<T>()).then(|| Self { function: Arc::clone(function), constants })
-    }
-
-    /// Calls it.
+    /// Calls it with constants and what else it is given.
     ///
     /// # Panics
     ///
-    /// Where an array is shorter than what is read of it, or outputs than what is written: then nothing is called.
+    /// Where it isn't a function of `T`, an array is shorter than what is read of it, or outputs than what is written: then
+    /// nothing is called.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    pub(crate) fn call<const N: usize>(&self, given: Given<'_, T, N>, outputs: &mut [T]) {
-        let function = &*self.function;
+    pub(crate) fn call<T: 'static, const N: usize>(&self, constants: &[T], given: Given<'_, T, N>, outputs: &mut [T]) {
         // A handful of comparisons, in release builds too: a call of this function is safe. What isn't read isn't set.
         let mut inputs = [const { MaybeUninit::<*const f64>::uninit() }; Array::COUNT];
-        let (mut missing, mut is_there) = (function.read, outputs.len() >= function.outputs);
+        let (mut missing, mut is_there) = (self.read, outputs.len() >= self.outputs);
+        is_there = is_there && self.lanes == lanes_of::<T>() && constants.len() >= self.least[Array::Constants as usize];
         for (array, numbers) in &given {
             missing &= !(1 << *array as u16);
-            is_there = is_there && numbers.len() >= function.least[*array as usize];
+            is_there = is_there && numbers.len() >= self.least[*array as usize];
         }
-        assert!(missing == 0 && is_there, "an input is missing, or a place for the outputs");
+        assert!(missing == 0 && is_there, "an input is missing, or a place for the outputs, or it is of other numbers");
         // Two lanes at a time.
         for first in (0..lanes_of::<T>()).step_by(2) {
             for (array, numbers) in &given {
                 inputs[*array as usize] = MaybeUninit::new(numbers.as_ptr().cast::<f64>().wrapping_add(first));
             }
-            let constants = self.constants.as_ptr().cast::<f64>().wrapping_add(first);
+            let constants = constants.as_ptr().cast::<f64>().wrapping_add(first);
             let outputs = outputs.as_mut_ptr().cast::<f64>().wrapping_add(first);
             // SAFETY: the code reads pointers of `inputs` at places of arrays that are in `read`, all of which are given and
-            // set; of an array the numbers that `least` counts, which are there, as those of the constants are since `of`; and
-            // writes as many outputs as there is place for, that nobody else can see while they are borrowed here. `T` is
-            // `f64`, or an array of as many as the code was made for, as `of` has seen, of which it reads and writes two from
-            // `first` on: so the pointers have the right type and alignment. The memory of the code is held by `function`.
-            unsafe { (function.entry)(constants, inputs.as_ptr().cast(), outputs) };
+            // set; of an array the numbers that `least` counts, which are there, as those of the constants are; and writes as
+            // many outputs as there is place for, that nobody else can see while they are borrowed here. `T` is `f64`, or an
+            // array of as many as the code was made for, of which it reads and writes two from `first` on: so the pointers
+            // have the right type and alignment. The memory of the code is held by `self`.
+            unsafe { (self.entry)(constants, inputs.as_ptr().cast(), outputs) };
         }
     }
 }

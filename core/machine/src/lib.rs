@@ -19,12 +19,12 @@ mod called;
 mod translated;
 
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 
 use liestep::numbers::Real;
 use liestep_late::{Backend, Code, Given, Interpreter, LateError, Program};
 
-use called::{Bound, Function, LANES, lanes_of};
+use called::{Function, LANES, lanes_of};
 
 /// Programs are machine code once they have run some hundred times, and interpreted before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,28 +36,20 @@ pub struct Both {
     program: Program,
     interpreted: Code,
     runs: AtomicU32,
-    /// Of numbers, and of lanes.
-    functions: [OnceLock<Option<Arc<Function>>>; 2],
+    /// Of numbers, and of lanes; none where it couldn't be made.
+    functions: [OnceLock<Option<Function>>; 2],
 }
 
 impl Both {
     /// Where machine code is kept for these numbers.
-    fn place<T: Real>(&self) -> Option<&OnceLock<Option<Arc<Function>>>> {
-        [1, LANES].iter().zip(&self.functions).find(|(lanes, _)| **lanes == lanes_of::<T>()).map(|(_, place)| place)
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn place<T: Real>(&self) -> Option<&OnceLock<Option<Function>>> {
+        match lanes_of::<T>() {
+            1 => Some(&self.functions[0]),
+            LANES => Some(&self.functions[1]),
+            _ => None,
+        }
     }
-
-    /// The machine code with these constants, if it has been made.
-    fn bound<T: Real>(&self, constants: &[T]) -> Option<Bound<T>> {
-        Bound::of(self.place::<T>()?.get()?.as_ref()?, constants)
-    }
-}
-
-/// The constants of a program: beside its machine code, or until there is one for the interpreter, too.
-#[derive(Debug)]
-pub struct Image<T> {
-    bound: OnceLock<Bound<T>>,
-    constants: Box<[T]>,
-    interpreted: Box<[T]>,
 }
 
 /// As many runs are interpreted in less time than machine code takes to make.
@@ -65,7 +57,6 @@ const FEW: u32 = 256;
 
 impl<T: Real> Backend<T> for Machine {
     type Code = Both;
-    type Image = Image<T>;
 
     fn codes(programs: &[&Program]) -> Result<Vec<Both>, LateError> {
         translated::isa().map_err(LateError::Machine)?;
@@ -81,26 +72,15 @@ impl<T: Real> Backend<T> for Machine {
 
     fn prepare(code: &Both) {
         if let Some(place) = code.place::<T>() {
-            place.get_or_init(|| Function::of(&code.program, lanes_of::<T>()).ok().map(Arc::new));
-        }
-    }
-
-    fn image(code: &Both, constants: &[T]) -> Image<T> {
-        match code.bound(constants) {
-            Some(bound) => Image { bound: bound.into(), constants: Box::default(), interpreted: Box::default() },
-            None => Image {
-                bound: OnceLock::new(),
-                constants: constants.into(),
-                interpreted: Interpreter::image(&code.interpreted, constants),
-            },
+            place.get_or_init(|| Function::of(&code.program, lanes_of::<T>()).ok());
         }
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn run<const N: usize>(code: &Both, image: &Image<T>, given: Given<'_, T, N>, outputs: &mut [T]) {
-        match image.bound.get() {
-            Some(bound) => bound.call(given, outputs),
-            None => run_first::<T, N>(code, image, std::array::from_fn(|at| given[at]), outputs),
+    fn run<const N: usize>(code: &Both, constants: &[T], given: Given<'_, T, N>, outputs: &mut [T]) {
+        match code.place::<T>().and_then(OnceLock::get) {
+            Some(Some(function)) => function.call(constants, given, outputs),
+            _ => run_first::<T, N>(code, constants, std::array::from_fn(|at| given[at]), outputs),
         }
     }
 }
@@ -108,12 +88,9 @@ impl<T: Real> Backend<T> for Machine {
 /// A run before there is machine code, or the one that makes it.
 #[cold]
 #[inline(never)]
-fn run_first<T: Real, const N: usize>(code: &Both, image: &Image<T>, given: Given<'_, T, N>, outputs: &mut [T]) {
+fn run_first<T: Real, const N: usize>(code: &Both, constants: &[T], given: Given<'_, T, N>, outputs: &mut [T]) {
     if code.runs.fetch_add(1, Ordering::Relaxed) >= FEW {
         <Machine as Backend<T>>::prepare(code);
-        if let Some(bound) = code.bound(&image.constants) {
-            return image.bound.get_or_init(|| bound).call(given, outputs);
-        }
     }
-    Interpreter::run(&code.interpreted, &image.interpreted, given, outputs);
+    Interpreter::run(&code.interpreted, constants, given, outputs);
 }

@@ -66,7 +66,7 @@ fn numbers_of<T: Real, B: Backend<T>>(code: &B::Code, program: &Program, arrays:
     let given = Array::ALL.map(|array| (array, arrays[array as usize].as_slice()));
     let mut numbers = vec![T::zero(); program.outputs.len()];
     B::prepare(code);
-    B::run(code, &B::image(code, &arrays[Array::Constants as usize]), given, &mut numbers);
+    B::run(code, &arrays[Array::Constants as usize], given, &mut numbers);
     numbers
 }
 

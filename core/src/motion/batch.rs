@@ -81,7 +81,29 @@ impl<W, M: Batchable<W>> Batch<W, M> {
     ///
     /// Where there are more bodies than lanes.
     pub fn new(bodies: &[(M, M::State)]) -> Result<Self, SetupError> {
-        let ((stepper, state), others) = bodies.split_first().ok_or(SetupError::Unlike { lane: 0 })?;
+        Self::joined(bodies).map_err(|lane| SetupError::Unlike { lane })
+    }
+
+    /// As [`new`](Self::new) of the first of these bodies, as many as can be beside each other, and how many that are; of no
+    /// bodies nothing.
+    ///
+    /// # Panics
+    ///
+    /// Where there are more bodies than lanes.
+    #[must_use]
+    pub fn of_first(mut bodies: &[(M, M::State)]) -> Option<(Self, usize)> {
+        while !bodies.is_empty() {
+            match Self::joined(bodies) {
+                Ok(batch) => return Some((batch, bodies.len())),
+                Err(lane) => bodies = &bodies[..lane],
+            }
+        }
+        None
+    }
+
+    /// All of them, or the number of the first that is unlike those before it.
+    fn joined(bodies: &[(M, M::State)]) -> Result<Self, usize> {
+        let ((stepper, state), others) = bodies.split_first().ok_or(0_usize)?;
         let mut batch = Self {
             stepper: Lanes::splat(stepper),
             state: Lanes::splat(state),
@@ -89,7 +111,7 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         };
         for (lane, (stepper, state)) in (1..).zip(others) {
             if !batch.set(lane, stepper, state) {
-                return Err(SetupError::Unlike { lane });
+                return Err(lane);
             }
         }
         Ok(batch)

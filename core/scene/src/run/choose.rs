@@ -6,7 +6,7 @@ use liestep::accuracy::Accuracy;
 use liestep::effects::{CayleyBody, Dipole, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::groups::Advected;
 use liestep::mechanics::{
-    Effect, Inertia, KineticPart, OnlyKicks, Term as _, WithEitherKinetic, WithKinetic, WithoutKinetic,
+    Effect, Inertia, KineticPart, OnlyKicks, Regular, Term as _, WithEitherKinetic, WithKinetic, WithoutKinetic,
 };
 use liestep::methods::ExactBody;
 use liestep::motion::AnyStepper;
@@ -31,10 +31,13 @@ type Program<K, W = Seen> = Late<SO3, W, K, Backend>;
 /// The effects of a file and its force.
 type Rest<W = Seen> = Program<WithoutKinetic, W>;
 /// All of a scene in one program.
-pub type Whole = Program<WithEitherKinetic>;
+pub type Whole<K = WithEitherKinetic, W = Seen> = Program<K, W>;
+
+/// That of a scene that advects one vector, or none, and has a Jacobian that is cheap: shorter states make faster steps.
+pub type LeastWhole = Whole<WithKinetic, V>;
 
 /// What steps it, and the state that it starts from.
-pub type MemberInLanes = (Stepper<Whole>, StateOf<Whole>);
+pub type MemberInLanes<K, W> = (Stepper<Whole<K, W>>, StateOf<Whole<K, W>>);
 
 /// What has a kinetic term: a Lagrangian of the file's own, or a body of the library by its text. With its numbers.
 #[derive(Clone)]
@@ -84,15 +87,20 @@ fn program<K: KineticPart, W: Advected<SO3> + Slots>(
 }
 
 /// A scene by its own step as one program, in which members of an ensemble go side by side; none where its steps are others
-/// or see something else at each time.
-pub(crate) fn whole(file: &SceneFile) -> Option<Whole> {
+/// or see something else at each time, or where the type is that of other scenes.
+pub(crate) fn whole<K: KineticPart, W: Advected<SO3> + Slots>(file: &SceneFile) -> Option<Whole<K, W>> {
     let is_of_one_kind = matches!(file.run.method, Method::Step) && !file.has_steps_of_its_own();
     let J = inertia(file).ok().filter(|_| is_of_one_kind && file.turning().next().is_none())?;
     program(file, &J, Moving::of(file, J).ok().as_ref()).ok()?
 }
 
 /// The same with the numbers of this file, and its start.
-pub(crate) fn member(file: &SceneFile, whole: &Whole) -> Result<MemberInLanes, Stop> {
+pub(crate) fn member<K, W>(file: &SceneFile, whole: &Whole<K, W>) -> Result<MemberInLanes<K, W>, Stop>
+where
+    W: Advected<SO3> + Slots,
+    K: KineticPart,
+    Whole<K, W>: Regular<Scalar = f64, Group = SO3>,
+{
     let Pace::Step { step, .. } = file.run.pace else { return Err(nothing()) };
     let J = inertia(file)?;
     let numbers = numbers(file, &J, Some(&Moving::of(file, J)?), 0.0);

@@ -2,9 +2,12 @@
 
 use std::error::Error;
 
+use liestep::groups::Advected;
+use liestep::mechanics::{KineticPart, Regular};
 use liestep::motion::{Integrator, Moment};
 use liestep::recording::{self, Csv, Sink};
 use liestep::{SO3, SetupError, StepError};
+use liestep_late::Slots;
 
 use crate::file::column::Column;
 use crate::file::event::Event;
@@ -73,10 +76,10 @@ impl SceneFile {
         choose::stepper(self).map_err(|stop| self.mistake(stop))
     }
 
-    /// The scene as one program, in which members of its ensemble go side by side; none where its steps aren't its own, or
-    /// see something else at each time.
+    /// The scene as one program, in which members of its ensemble go side by side; none where its steps aren't its own or
+    /// see something else at each time, or where the type is that of other scenes.
     #[must_use]
-    pub fn whole(&self) -> Option<Whole> {
+    pub fn whole<K: KineticPart, W: Advected<SO3> + Slots>(&self) -> Option<Whole<K, W>> {
         choose::whole(self)
     }
 
@@ -85,7 +88,13 @@ impl SceneFile {
     /// # Errors
     ///
     /// As [`stepper`](Self::stepper).
-    pub fn in_lanes(&self, whole: &Whole) -> Result<MemberInLanes, Mistake> {
+    pub fn in_lanes<K: KineticPart, W: Advected<SO3> + Slots>(
+        &self,
+        whole: &Whole<K, W>,
+    ) -> Result<MemberInLanes<K, W>, Mistake>
+    where
+        Whole<K, W>: Regular<Scalar = f64, Group = SO3>,
+    {
         choose::member(self, whole).map_err(|stop| self.mistake(stop))
     }
 
