@@ -1,8 +1,8 @@
 //! Some members that are stepped side by side: in lanes, or one by one.
 
+use liestep::StepError;
 use liestep::motion::{Batch, Batchable, Integrator};
 use liestep::numbers::{InLanes, Lanes as _};
-use liestep::StepError;
 use simba::simd::AutoF64x8;
 
 use crate::section::{LANES, Section};

@@ -88,12 +88,7 @@ enum Arithmetic {
 
 /// The operations in that order, each with a register for its result; `place` has those of inputs and literals, as many as
 /// `registers`, and gets those of results. With the number of registers.
-fn allocated(
-    program: &Program,
-    order: &[usize],
-    place: &mut [u16],
-    mut registers: usize,
-) -> Option<(Vec<Run>, usize)> {
+fn allocated(program: &Program, order: &[usize], place: &mut [u16], mut registers: usize) -> Option<(Vec<Run>, usize)> {
     let fixed = program.inputs.len() + program.literals.len();
     // When each value is read last; an output is never done with.
     let mut last = vec![0; place.len()];
@@ -175,7 +170,8 @@ impl Code {
         // A register for each input and literal, what is known before a step first.
         let is_constant = |source: &Source| source.array == Array::Constants;
         let of_constants = || program.inputs.iter().filter(|source| is_constant(source)).map(|source| source.at);
-        let constants = of_constants().min().unwrap_or(0)..of_constants().max().map_or(0, |last| last.saturating_add(1));
+        let constants =
+            of_constants().min().unwrap_or(0)..of_constants().max().map_or(0, |last| last.saturating_add(1));
         let literals = program.inputs.len()..fixed;
         let mut others: Vec<usize> =
             (0..program.inputs.len()).filter(|&value| !is_constant(&program.inputs[value])).collect();

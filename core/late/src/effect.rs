@@ -5,7 +5,7 @@ use std::sync::Arc;
 use liestep::groups::{Advected, CayleyRetraction, LieGroup, Retraction};
 use liestep::mechanics::{DiscreteLagrangian, Effect, KineticPart, Limit, Parts, Residual, SceneVisitor};
 use liestep::numbers::{Blocks, Coordinates, Entries, Real, real};
-use liestep_derivation::{Array, Stages};
+use liestep_derivation::Array;
 
 use crate::carried::Slots;
 use crate::code::{Backend, Given, Interpreter};
@@ -85,19 +85,15 @@ pub(crate) fn square<G: LieGroup>(outputs: &[G::Scalar]) -> Square<G> {
     })
 }
 
-/// The constants of a step.
+/// The constants of a step: numbers that don't change from step to step, and what runs with them.
 #[derive(Debug)]
-pub struct Constants<T: Real, B: Backend<T> = Interpreter>(pub(crate) Arc<Folded<T, B>>);
-
-/// Numbers that don't change from step to step, and what runs with them.
-#[derive(Clone, Debug)]
-pub(crate) struct Folded<T: Real, B: Backend<T>> {
+pub struct Constants<T: Real, B: Backend<T> = Interpreter> {
     pub(crate) declaration: &'static Declaration,
     pub(crate) stages: All<B::Code>,
     pub(crate) is_specialised: bool,
-    pub(crate) numbers: Vec<T>,
+    pub(crate) numbers: Arc<[T]>,
     /// Kicks before and after that depend on nothing else.
-    pub(crate) known: [Option<Box<[T]>>; 2],
+    pub(crate) known: [Option<Arc<[T]>>; 2],
 }
 
 impl<T: Real, B: Backend<T>> Constants<T, B> {
@@ -105,7 +101,7 @@ impl<T: Real, B: Backend<T>> Constants<T, B> {
         declaration: &'static Declaration,
         stages: &All<B::Code>,
         is_specialised: bool,
-        numbers: Vec<T>,
+        numbers: Arc<[T]>,
     ) -> Self {
         let known = [&stages.kick_before, &stages.kick_after].map(|program| {
             program.reads_constants_alone().then(|| {
@@ -114,21 +110,21 @@ impl<T: Real, B: Backend<T>> Constants<T, B> {
                 kick.into()
             })
         });
-        Self(Arc::new(Folded { declaration, stages: Arc::clone(stages), is_specialised, numbers, known }))
+        Self { declaration, stages: Arc::clone(stages), is_specialised, numbers, known }
     }
 }
 
 impl<T: Real, B: Backend<T>> Clone for Constants<T, B> {
     fn clone(&self) -> Self {
-        Self(Arc::clone(&self.0))
+        let (stages, numbers, known) = (Arc::clone(&self.stages), Arc::clone(&self.numbers), self.known.clone());
+        Self { declaration: self.declaration, stages, is_specialised: self.is_specialised, numbers, known }
     }
 }
 
 impl<T: Real, B: Backend<T>> PartialEq for Constants<T, B> {
     fn eq(&self, other: &Self) -> bool {
-        let (one, other) = (&*self.0, &*other.0);
-        let is_same = std::ptr::eq(one.declaration, other.declaration) && one.is_specialised == other.is_specialised;
-        is_same && one.numbers == other.numbers
+        let is_same = std::ptr::eq(self.declaration, other.declaration) && self.is_specialised == other.is_specialised;
+        is_same && self.numbers == other.numbers
     }
 }
 
@@ -198,19 +194,19 @@ where
     }
 
     fn denominators(constants: &Self::Constants) -> u32 {
-        constants.0.declaration.denominators
+        constants.declaration.denominators
     }
 
     fn parts(constants: &Self::Constants) -> Parts {
-        constants.0.declaration.parts
+        constants.declaration.parts
     }
 
     fn apart(constants: &Self::Constants) -> Blocks {
-        constants.0.declaration.apart
+        constants.declaration.apart
     }
 
     fn jacobian_is_expensive(constants: &Self::Constants) -> bool {
-        constants.0.declaration.is_expensive()
+        constants.declaration.is_expensive()
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<G::Scalar>) {
@@ -260,33 +256,31 @@ where
         // What is too large now was too large before, and isn't here.
         let own = programs.and_then(|programs| ready::<G::Scalar, B>(&programs).ok()).map(Arc::new);
         let is_specialised = own.is_some();
-        Constants::of(self.declaration, own.as_ref().unwrap_or(&self.stages), is_specialised, numbers)
+        Constants::of(self.declaration, own.as_ref().unwrap_or(&self.stages), is_specialised, numbers.into())
     }
 
     fn are_finite(constants: &Self::Constants) -> bool {
-        constants.0.numbers.iter().all(is_finite)
+        constants.numbers.iter().all(is_finite)
     }
 
     #[cfg_attr(all(not(debug_assertions), not(feature = "small")), inline(always))]
     fn kick_before(constants: &Self::Constants, w: &W) -> Vector<G> {
-        let folded = &*constants.0;
-        if let Some(kick) = &folded.known[0] {
+        if let Some(kick) = &constants.known[0] {
             return vector(&kick[..G::DIMENSION]);
         }
         listed!(advected = w);
         room!(kick: G::Scalar, G::DIMENSION);
-        B::run(&folded.stages.kick_before.code, &folded.numbers, [(Array::Advected, advected)], kick);
+        B::run(&constants.stages.kick_before.code, &constants.numbers, [(Array::Advected, advected)], kick);
         vector(kick)
     }
 
     fn kick_derivative(constants: &Self::Constants, w: &W, velocity: &Vector<G>) -> Option<Vector<G>> {
-        let folded = &*constants.0;
-        let program = folded.stages.kick_derivative.as_ref()?;
+        let program = constants.stages.kick_derivative.as_ref()?;
         listed!(advected = w);
         listed!(velocity = velocity);
         room!(derivative: G::Scalar, G::DIMENSION);
         let given = [(Array::Advected, advected), (Array::Velocity, velocity)];
-        B::run(&program.code, &folded.numbers, given, derivative);
+        B::run(&program.code, &constants.numbers, given, derivative);
         Some(vector(derivative))
     }
 
@@ -297,11 +291,10 @@ where
 
     #[cfg_attr(all(not(debug_assertions), not(feature = "small")), inline(always))]
     fn newton_system(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> (Vector<G>, Square<G>) {
-        let folded = &*constants.0;
         room!(outputs: G::Scalar, G::DIMENSION * (G::DIMENSION + 1));
-        iteration::<G, W, B>((&folded.stages.newton_system, &folded.numbers), terms, half, outputs);
+        iteration::<G, W, B>((&constants.stages.newton_system, &constants.numbers), terms, half, outputs);
         let (residual, jacobian) = (vector(outputs), square::<G>(&outputs[G::DIMENSION..]));
-        if !folded.declaration.in_increment {
+        if !constants.declaration.in_increment {
             return (residual, jacobian);
         }
         let tangent = <CayleyRetraction as Retraction<G>>::tangent_of_half(half);
@@ -310,27 +303,25 @@ where
 
     #[cfg_attr(all(not(debug_assertions), not(feature = "small")), inline(always))]
     fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> Residual<Vector<G>> {
-        let folded = &*constants.0;
         room!(outputs: G::Scalar, 2 * G::DIMENSION);
-        iteration::<G, W, B>((&folded.stages.newton_residual, &folded.numbers), terms, half, outputs);
-        let moving_kick = folded.declaration.is_expensive.then(|| vector(&outputs[G::DIMENSION..]));
+        iteration::<G, W, B>((&constants.stages.newton_residual, &constants.numbers), terms, half, outputs);
+        let moving_kick = constants.declaration.is_expensive.then(|| vector(&outputs[G::DIMENSION..]));
         Residual { momentum_defect: vector(outputs), moving_kick }
     }
 
     #[cfg_attr(all(not(debug_assertions), not(feature = "small")), inline(always))]
     fn kick_after(constants: &Self::Constants, increment: &Matrix<G>, next: &W) -> Vector<G> {
-        let folded = &*constants.0;
-        if let Some(kick) = &folded.known[1] {
+        if let Some(kick) = &constants.known[1] {
             return vector(&kick[..G::DIMENSION]);
         }
-        let program = &folded.stages.kick_after;
+        let program = &constants.stages.kick_after;
         room!(kick: G::Scalar, G::DIMENSION);
         if program.reads(Array::Increment) || program.reads(Array::Inverse) {
-            kick_with_more::<G, W, B>((program, &folded.numbers), &{ *increment }, &{ *next }, kick);
+            kick_with_more::<G, W, B>((program, &constants.numbers), &{ *increment }, &{ *next }, kick);
         } else {
             let next = *next;
             listed!(next = &next);
-            B::run(&program.code, &folded.numbers, [(Array::Next, next)], kick);
+            B::run(&program.code, &constants.numbers, [(Array::Next, next)], kick);
         }
         vector(kick)
     }
@@ -349,7 +340,12 @@ fn kick_with_more<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
     listed!(increment = increment);
     listed!(next = next);
     listed!(inverse = &inverse);
-    B::run(&program.code, constants, [(Array::Increment, increment), (Array::Next, next), (Array::Inverse, inverse)], kick);
+    B::run(
+        &program.code,
+        constants,
+        [(Array::Increment, increment), (Array::Next, next), (Array::Inverse, inverse)],
+        kick,
+    );
 }
 
 /// What an iteration computes.

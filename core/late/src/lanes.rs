@@ -116,22 +116,20 @@ where
     type Lane = Constants<T::Element, B>;
 
     fn splat(lane: &Self::Lane) -> Self {
-        let numbers = lane.0.numbers.iter().map(|&number| T::splat(number)).collect();
-        Self::of(lane.0.declaration, &lane.0.stages, lane.0.is_specialised, numbers)
+        let numbers = lane.numbers.iter().map(|&number| T::splat(number)).collect();
+        Self::of(lane.declaration, &lane.stages, lane.is_specialised, numbers)
     }
 
     fn lane(&self, k: usize) -> Self::Lane {
-        let numbers = self.0.numbers.iter().map(|number| number.extract(k)).collect();
-        Constants::of(self.0.declaration, &self.0.stages, self.0.is_specialised, numbers)
+        let numbers = self.numbers.iter().map(|number| number.extract(k)).collect();
+        Constants::of(self.declaration, &self.stages, self.is_specialised, numbers)
     }
 
     fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
-        let (own, lane) = (Arc::make_mut(&mut self.0), &lane.0);
-        replace(&mut own.numbers, k, &lane.numbers);
-        for (own, lane) in own.known.iter_mut().zip(&lane.known) {
-            own.iter_mut().zip(lane).for_each(|(own, lane)| replace(own, k, lane));
-        }
+        replace(Arc::make_mut(&mut self.numbers), k, &lane.numbers);
+        let known = self.known.iter_mut().flatten().zip(lane.known.iter().flatten());
+        known.for_each(|(own, lane)| replace(Arc::make_mut(own), k, lane));
         // The programs of one that is specialised are its own.
-        std::ptr::eq(own.declaration, lane.declaration) && Arc::ptr_eq(&own.stages, &lane.stages)
+        std::ptr::eq(self.declaration, lane.declaration) && Arc::ptr_eq(&self.stages, &lane.stages)
     }
 }

@@ -82,7 +82,8 @@ impl Function {
         // A handful of comparisons, in release builds too: a call of this function is safe. What isn't read isn't set.
         let mut inputs = [const { MaybeUninit::<*const f64>::uninit() }; Array::COUNT];
         let (mut missing, mut is_there) = (self.read, outputs.len() >= self.outputs);
-        is_there = is_there && self.lanes == lanes_of::<T>() && constants.len() >= self.least[Array::Constants as usize];
+        is_there =
+            is_there && self.lanes == lanes_of::<T>() && constants.len() >= self.least[Array::Constants as usize];
         for (array, numbers) in &given {
             missing &= !(1 << *array as u16);
             is_there = is_there && numbers.len() >= self.least[*array as usize];

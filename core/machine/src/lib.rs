@@ -18,8 +18,8 @@
 mod called;
 mod translated;
 
-use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use liestep::numbers::Real;
 use liestep_late::{Backend, Code, Given, Interpreter, LateError, Program};
