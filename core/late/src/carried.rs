@@ -20,29 +20,18 @@ impl Slots for () {
     fn list(_: &mut Vec<(Action, (usize, usize))>) {}
 }
 
-macro_rules! columns {
-    ($($type:ident $action:ident),+) => {
+macro_rules! carried {
+    ($columns:tt: $($type:ident $action:ident),+) => {
         $(impl<T: Real, const N: usize> Slots for $type<T, N> {
             fn list(slots: &mut Vec<(Action, (usize, usize))>) {
-                slots.push((Action::$action(0), (N, 1)));
+                slots.push((Action::$action(0), (N, $columns)));
             }
         })+
     };
 }
 
-columns!(SVector Covector, ContravariantVector Contravariant, Point Point);
-
-macro_rules! tensors {
-    ($($type:ident $action:ident),+) => {
-        $(impl<T: Real, const N: usize> Slots for $type<T, N> {
-            fn list(slots: &mut Vec<(Action, (usize, usize))>) {
-                slots.push((Action::$action(0), (N, N)));
-            }
-        })+
-    };
-}
-
-tensors!(ContravariantTensor ContravariantTensor, CovariantTensor CovariantTensor, MixedTensor MixedTensor);
+carried!(1: SVector Covector, ContravariantVector Contravariant, Point Point);
+carried!(N: ContravariantTensor ContravariantTensor, CovariantTensor CovariantTensor, MixedTensor MixedTensor);
 
 impl<T, const R: usize, const C: usize> Slots for Given<T, R, C> {
     fn list(slots: &mut Vec<(Action, (usize, usize))>) {
@@ -55,15 +44,15 @@ impl<const A: usize, W: Slots> Slots for SeenFrom<A, W> {
         let from = slots.len();
         W::list(slots);
         for (action, _) in slots.iter_mut().skip(from) {
-            *action = match *action {
-                Action::Covector(_) => Action::Covector(A),
-                Action::Contravariant(_) => Action::Contravariant(A),
-                Action::Point(_) => Action::Point(A),
-                Action::ContravariantTensor(_) => Action::ContravariantTensor(A),
-                Action::CovariantTensor(_) => Action::CovariantTensor(A),
-                Action::MixedTensor(_) => Action::MixedTensor(A),
-                other => other,
-            };
+            if let Action::Covector(factor)
+            | Action::Contravariant(factor)
+            | Action::Point(factor)
+            | Action::ContravariantTensor(factor)
+            | Action::CovariantTensor(factor)
+            | Action::MixedTensor(factor) = action
+            {
+                *factor = A;
+            }
         }
     }
 }

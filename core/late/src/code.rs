@@ -158,7 +158,9 @@ fn by_kind(program: &Program) -> Vec<usize> {
 impl Code {
     fn of(program: &Program) -> Result<Self, LateError> {
         let missing = program.operations.iter().find_map(|operation| match operation {
-            Operation::Apply(function, _) if !exists(*function) => Some(LateError::Function(format!("{function:?}"))),
+            Operation::Apply(function, _) if applied(*function, 0.5).is_nan() => {
+                Some(LateError::Function(format!("{function:?}")))
+            }
             _ => None,
         });
         missing.map_or_else(|| Self::allocated(program).ok_or(LateError::TooLarge), Err)
@@ -270,7 +272,8 @@ fn apply_one<T: Real>(registers: &mut [T], mask: usize, made: Instruction, opera
     registers[usize::from(made.result) & mask] = operation(a, b);
 }
 
-/// A function of a number: that of the compiled step, so that the bits are the same. NaN where there is none of this order.
+/// A function of a number: that of the compiled step, so that the bits are the same. Between zero and one it is a number, but
+/// NaN where there is no function of this order.
 #[cold]
 #[must_use]
 pub fn applied<T: Real>(function: Function, a: T) -> T {
@@ -299,15 +302,6 @@ macro_rules! of_order {
 
 of_order!(stumpff_of of stumpff: 1 2 3 4 5 6 7 8 9 10);
 of_order!(log_ratio_of of log_ratio: 0 1 2 3 4 5 6);
-
-/// Whether there is such a function.
-const fn exists(function: Function) -> bool {
-    match function {
-        Function::Stumpff(order) => 0 < order && order <= 10,
-        Function::LogRatio(order) => order <= 6,
-        _ => true,
-    }
-}
 
 const fn kind(operation: Operation) -> Arithmetic {
     match operation {

@@ -233,7 +233,7 @@ impl<G: LieGroup, W, K, B: Backend<G::Scalar>> Late<G, W, K, B> {
 fn has_generators<G: LieGroup>(declaration: &Declaration) -> bool {
     let (mut component, mut own) = (0, Vec::new());
     for factor in &declaration.factors {
-        own.extend(std::iter::repeat_n(own_entries(factor), 1).map(|entries| (component, entries)));
+        own.push((component, factor.generators.first().map_or(0, Vec::len)));
         component += factor.generators.len();
     }
     if component != G::DIMENSION {
@@ -248,10 +248,6 @@ fn has_generators<G: LieGroup>(declaration: &Declaration) -> bool {
         }
         found.len() == expected.len() && found.iter().zip(expected).all(|(&found, expected)| found == real(expected))
     })
-}
-
-fn own_entries(factor: &liestep_derivation::Factor) -> usize {
-    factor.generators.first().map_or(0, Vec::len)
 }
 
 pub(crate) fn entries<T: Real>(value: &impl Entries<T>) -> Vec<T> {

@@ -191,14 +191,10 @@ pub fn c(declaration: &Declaration) -> Result<String, LateError> {
         at += length;
     }
     let parts = declaration.parts;
+    let [before, after] = [parts.kick_before, parts.kick_after].map(|is_there| u8::from(is_there).to_string());
     let step = STEP.replace("SPATIAL_VALUES", &places.0).replace("TURNED_VALUES", &places.1);
-    text +=
-        &step.replace("HAS_KICK_BEFORE", digit(parts.kick_before)).replace("HAS_KICK_AFTER", digit(parts.kick_after));
+    text += &step.replace("HAS_KICK_BEFORE", &before).replace("HAS_KICK_AFTER", &after);
     Ok(text)
-}
-
-const fn digit(is_there: bool) -> &'static str {
-    if is_there { "1" } else { "0" }
 }
 
 const HEAD: &str = include_str!("head.c");

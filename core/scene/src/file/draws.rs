@@ -28,9 +28,9 @@ pub struct SceneEnsemble {
     pub text: String,
     pub(crate) axes: Vec<Axis>,
     pub(crate) path: PathBuf,
-    /// The tables of which something is drawn, and the scene that has the others; or all, and none.
+    /// The tables of which something is drawn, and a member that has the others; or all, and none.
     pub(crate) tables: DeTable<'static>,
-    pub(crate) scene: Option<Box<SceneFile>>,
+    pub(crate) like: Option<Box<SceneFile>>,
 }
 
 /// What a value is drawn from; in the unit that the file has.
@@ -73,7 +73,7 @@ pub(crate) enum Component {
 pub(crate) struct Draw {
     name: String,
     spread: Spread,
-    unit: String,
+    pub(crate) unit: String,
     /// That of its first number.
     span: Range<usize>,
 }
@@ -101,10 +101,11 @@ impl SceneEnsemble {
 }
 
 impl Component {
-    pub(crate) fn text(&self, file: &str, draw: &mut dyn FnMut(&str, Spread) -> f64) -> String {
+    /// As it could have been written, with the next of these numbers where one is drawn.
+    pub(crate) fn text(&self, file: &str, numbers: &mut impl Iterator<Item = f64>) -> String {
         match self {
-            Self::Draw(Draw { name, spread, unit, .. }) => {
-                let number = draw(name, *spread);
+            Self::Draw(Draw { unit, .. }) => {
+                let number = numbers.next().unwrap_or(f64::NAN);
                 if unit.is_empty() { format!("{number:?}") } else { format!("\"{number:?} {unit}\"") }
             }
             Self::Fixed(span) => file.get(span.clone()).unwrap_or_default().to_owned(),
@@ -131,7 +132,7 @@ pub(crate) fn parts(table: &Spanned<DeValue<'_>>) -> Result<SceneEnsemble, Wrong
         path: PathBuf::new(),
         text: String::new(),
         tables: DeTable::new(),
-        scene: None,
+        like: None,
     };
     for (key, value) in inner {
         let whole = |range: RangeInclusive<u64>| {

@@ -21,6 +21,9 @@ pub(crate) trait Table {
 
     /// Along which orbit it is another at each time, and by which parameter.
     fn orbit(&self) -> Option<(&'static str, &Orbit)>;
+
+    /// As [`Parameter::put`](crate::file::orbit::Parameter::put), for that of this key.
+    fn put(&mut self, place: (&str, usize), number: f64, unit: &str) -> bool;
 }
 
 /// Shows the list to a macro, behind what that is given: of each effect the table in a file, its keys, and how these make
@@ -112,6 +115,13 @@ macro_rules! tables {
 
                 fn orbit(&self) -> Option<(&'static str, &Orbit)> {
                     [$(self.$field.orbit().map(|orbit| (stringify!($field), orbit))),+].into_iter().flatten().next()
+                }
+
+                fn put(&mut self, (key, component): (&str, usize), number: f64, unit: &str) -> bool {
+                    match key {
+                        $(stringify!($field) => self.$field.put(component, number, unit),)+
+                        _ => false,
+                    }
                 }
             }
         )+

@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use toml::Spanned;
-use toml::de::{DeArray, DeTable, DeValue, Error, ValueDeserializer};
+use toml::de::{DeArray, DeTable, DeValue, ValueDeserializer};
 
 use crate::file::document::scene;
-use crate::file::draws::{Axis, DRAW, SceneEnsemble, Spread, parts};
+use crate::file::draws::{Axis, Component, DRAW, SceneEnsemble, Spread, parts};
 use crate::file::event::{Event, Quantity};
 use crate::file::mistake::{Mistake, Wrong, place_of};
 use crate::file::scene::SceneFile;
@@ -20,13 +20,32 @@ impl SceneEnsemble {
     ///
     /// A [`Mistake`] where there is no such scene, as of a mass below zero.
     pub fn member(&self, draw: &mut dyn FnMut(&str, Spread) -> f64) -> Result<SceneFile, Mistake> {
+        let numbers: Vec<f64> = self.draws().map(|(name, spread)| draw(name, spread)).collect();
+        self.numbered(&numbers).map_or_else(|| self.written(&numbers), Ok)
+    }
+
+    /// With these numbers in the place of those of another member; none where a text has to be read.
+    fn numbered(&self, numbers: &[f64]) -> Option<SceneFile> {
+        let (mut numbers, mut scene) = (numbers.iter(), SceneFile::clone(self.like.as_ref()?));
+        for Axis { keys, components, .. } in &self.axes {
+            let [table, key] = keys.as_slice() else { return None };
+            for (component, part) in components.iter().enumerate() {
+                if let Component::Draw(drawn) = part {
+                    let keys = [table, key].map(|key| key.get_ref().as_str());
+                    scene.put(keys, component, *numbers.next()?, &drawn.unit).then_some(())?;
+                }
+            }
+        }
+        Some(scene)
+    }
+
+    /// With these numbers as they could have been written.
+    fn written(&self, numbers: &[f64]) -> Result<SceneFile, Mistake> {
         let located = |(span, message): Wrong| Mistake::at(&self.path, place_of(&self.text, &span), message);
-        // As they could have been written.
-        let texts: Vec<Vec<String>> = self
-            .axes
-            .iter()
-            .map(|axis| axis.components.iter().map(|part| part.text(&self.text, draw)).collect())
-            .collect();
+        let mut numbers = numbers.iter().copied();
+        let mut text = |part: &Component| part.text(&self.text, &mut numbers);
+        let texts: Vec<Vec<String>> =
+            self.axes.iter().map(|axis| axis.components.iter().map(&mut text).collect()).collect();
         let mut varied: DeTable<'_> = self.tables.clone();
         for (Axis { keys, components, is_list, span }, texts) in self.axes.iter().zip(&texts) {
             let mut values = DeArray::new();
@@ -40,7 +59,7 @@ impl SceneEnsemble {
             };
             set(&mut varied, keys, value).map_err(located)?;
         }
-        let Some(own) = &self.scene else {
+        let Some(own) = &self.like else {
             return scene(&self.path, &self.text, &Spanned::new(0..self.text.len(), varied));
         };
         let mut own = SceneFile::clone(own);
@@ -112,30 +131,23 @@ pub(crate) fn read(
         }
     }
     (ensemble.path, ensemble.text) = (path.to_owned(), text.to_owned());
-    let read = read_once(&mut ensemble, file);
-    read.map_err(|error| Mistake::of_toml(path, text, &error))?;
-    // What is wrong with a unit or a key is wrong with every member.
-    for end in [true, false] {
-        ensemble.member(&mut |_, spread| match spread {
-            Spread::Uniform { from: value, .. } if end => value,
-            Spread::Uniform { to: value, .. } | Spread::Normal { mean: value, .. } => value,
-        })?;
-    }
-    Ok(ensemble)
-}
-
-/// What no member reads again: the tables of a text, which is kept as long as the program runs.
-fn read_once(ensemble: &mut SceneEnsemble, file: &SceneFile) -> Result<(), Error> {
-    let kept: &'static str = Box::leak(ensemble.text.as_str().into());
-    let tables = DeTable::parse(kept)?.into_inner();
-    let is_drawn = |name: &str| {
-        let mut keys = ensemble.axes.iter().filter_map(|axis| axis.keys.first());
-        keys.any(|key| key.get_ref() == name)
-    };
+    // No member reads the text again, which is kept as long as the program runs.
+    let tables = DeTable::parse(Box::leak(text.into())).map_err(|error| Mistake::of_toml(path, text, &error))?;
+    let axes = &ensemble.axes;
+    let is_drawn = |name: &str| axes.iter().any(|axis| axis.keys.first().is_some_and(|key| key.get_ref() == name));
     // Of these more than their own table is read anew.
     let all = is_drawn("lagrangian") || is_drawn("force") || file.run.steps_per_orbit.is_some();
     let is_read = |name: &str| is_drawn(name) || all && !["sweep", "ensemble"].contains(&name);
-    ensemble.tables = tables.into_iter().filter(|(name, _)| is_read(name.get_ref())).collect();
-    ensemble.scene = (!all).then(|| Box::new(SceneFile { sweep: None, ..file.clone() }));
-    Ok(())
+    ensemble.tables = tables.into_inner().into_iter().filter(|(name, _)| is_read(name.get_ref())).collect();
+    ensemble.like = (!all).then(|| Box::new(SceneFile { sweep: None, ..file.clone() }));
+    // What is wrong with a unit or a key is wrong with every member.
+    for end in [true, false] {
+        let value = |(_, spread)| match spread {
+            Spread::Uniform { from: value, .. } if end => value,
+            Spread::Uniform { to: value, .. } | Spread::Normal { mean: value, .. } => value,
+        };
+        let one = ensemble.written(&ensemble.draws().map(value).collect::<Vec<_>>())?;
+        ensemble.like = ensemble.like.is_some().then(|| Box::new(one));
+    }
+    Ok(ensemble)
 }

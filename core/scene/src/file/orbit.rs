@@ -12,7 +12,9 @@ use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 
-use crate::file::quantity::{Angle, Direction, Duration, FluxDensity, Number, Positive, Rate, Scalar, Triple, short};
+use crate::file::quantity::{
+    Angle, Direction, Duration, FluxDensity, Number, Positive, Quantity, Rate, Scalar, Triple, in_si, short,
+};
 
 /// A closed orbit about a far mass, by Kepler's laws.
 #[derive(Clone, Copy, Deserialize)]
@@ -185,16 +187,43 @@ impl Turning<Triple<FluxDensity>, DipoleField> {
     }
 }
 
-/// A parameter of an effect, of which it is asked along which orbit it is another at each time.
+/// A parameter of an effect.
 pub(crate) trait Parameter {
+    /// Along which orbit it is another at each time.
     fn orbit(&self) -> Option<&Orbit> {
         None
     }
+
+    /// Puts a number with a unit into the component of this number, and says whether it is what would be read of a text with
+    /// it; where it isn't, or that isn't known, the text has to be read.
+    fn put(&mut self, _component: usize, _number: f64, _unit: &str) -> bool {
+        false
+    }
 }
 
-impl<Q> Parameter for Scalar<Q> {}
-impl<Q> Parameter for Positive<Q> {}
-impl<Q> Parameter for Triple<Q> {}
+/// Puts a value where there is one and a place for it.
+pub(crate) fn put(place: Option<&mut f64>, value: Option<f64>) -> bool {
+    place.zip(value).map(|(place, value)| *place = value).is_some()
+}
+
+impl<Q: Quantity> Parameter for Scalar<Q> {
+    fn put(&mut self, _: usize, number: f64, unit: &str) -> bool {
+        put(Some(&mut self.value), in_si::<Q>(number, unit))
+    }
+}
+
+impl<Q: Quantity> Parameter for Positive<Q> {
+    fn put(&mut self, _: usize, number: f64, unit: &str) -> bool {
+        put(Some(&mut self.value), in_si::<Q>(number, unit).filter(|&number| number > 0.0))
+    }
+}
+
+impl<Q: Quantity> Parameter for Triple<Q> {
+    fn put(&mut self, component: usize, number: f64, unit: &str) -> bool {
+        put(self.value.get_mut(component), in_si::<Q>(number, unit))
+    }
+}
+
 impl<Q> Parameter for Option<Q> {}
 impl Parameter for Direction {}
 

@@ -61,6 +61,12 @@ quantities! {
     Torque: "a torque" in "N m" 1.0, "mN m" 1e-3, "µN m" 1e-6;
 }
 
+/// A number in this unit in those of SI, as one that is read; none where it isn't finite or has no such unit.
+pub(crate) fn in_si<Q: Quantity>(number: f64, unit: &str) -> Option<f64> {
+    let size = if unit.is_empty() { 1.0 } else { Q::UNITS.iter().find(|(name, _)| *name == unit)?.1 };
+    Some(number * size).filter(|number| number.is_finite())
+}
+
 /// A finite number, in SI units.
 #[derive(Clone, Copy)]
 pub(crate) struct Scalar<Q> {
@@ -152,14 +158,12 @@ impl<Q: Quantity> Visitor<'_> for NumberOrText<Q> {
             None if Q::UNITS.len() > 8 => {
                 Err(E::custom(format!("`{unit}` isn't a unit that is known here: take one of SI, or leave it out")))
             }
-            None => Err(E::custom(format!("{} isn't in `{unit}` but in {}", Q::NAME, listed::<Q>()))),
+            None => {
+                let names: Vec<_> = Q::UNITS.iter().map(|(name, _)| format!("`{name}`")).collect();
+                Err(E::custom(format!("{} isn't in `{unit}` but in {}", Q::NAME, names.join(", "))))
+            }
         }
     }
-}
-
-fn listed<Q: Quantity>() -> String {
-    let names: Vec<_> = Q::UNITS.iter().map(|(name, _)| format!("`{name}`")).collect();
-    names.join(", ")
 }
 
 /// A number as a person would write it, without the rounding errors of the last digits.

@@ -13,9 +13,9 @@ use crate::file::draws::SceneEnsemble;
 use crate::file::effects::{self, EFFECTS, Listed, Table, effects};
 use crate::file::event::Event;
 use crate::file::lagrangian::{Declared, taken};
-use crate::file::orbit::Orbit;
+use crate::file::orbit::{Orbit, put};
 use crate::file::picture::SpherePicture;
-use crate::file::quantity::short;
+use crate::file::quantity::{Rate, in_si, short};
 use crate::file::schedule::{Pace, Schedule};
 use crate::file::start::Start;
 use crate::file::text::title;
@@ -43,6 +43,20 @@ macro_rules! scene_file {
             pub(crate) fn effects(&self) -> impl Iterator<Item = (&'static Listed, &dyn Table)> {
                 let tables = [$(self.$name.as_ref().map(|table| table as &dyn Table)),+];
                 EFFECTS.iter().zip(tables).filter_map(|(effect, table)| Some((effect, table?)))
+            }
+
+            /// Puts a number with a unit into a component of what these keys lead to, as
+            /// [`Parameter::put`](crate::file::orbit::Parameter::put): of an effect, or of the velocity of the start.
+            pub(crate) fn put(&mut self, [name, key]: [&str; 2], component: usize, number: f64, unit: &str) -> bool {
+                match name {
+                    "start" if key == "velocity" => {
+                        put(self.start.velocity.get_mut(component), in_si::<Rate>(number, unit))
+                    }
+                    $(stringify!($name) => {
+                        self.$name.as_mut().is_some_and(|table| table.put((key, component), number, unit))
+                    })+
+                    _ => false,
+                }
             }
 
             /// Reads the table of the body, the start or an effect anew; others are left as they are.
