@@ -77,18 +77,11 @@ fn math(expression: &str) -> String {
 
 /// Where the bracket that begins a text is closed.
 fn closed(text: &str) -> Option<usize> {
-    let mut depth = 0;
-    for (at, character) in text.char_indices() {
-        match character {
-            '(' => depth += 1,
-            ')' => depth -= 1,
-            _ => {}
-        }
-        if depth == 0 {
-            return Some(at + 1);
-        }
-    }
-    None
+    let mut depths = text.char_indices().scan(0, |depth, (at, character)| {
+        *depth += i32::from(character == '(') - i32::from(character == ')');
+        Some((at, *depth))
+    });
+    depths.find(|&(_, depth)| depth == 0).map(|(at, _)| at + 1)
 }
 
 /// What stands in brackets; a quotient without sums is a fraction.

@@ -13,7 +13,7 @@ use crate::file::scene::SceneFile;
 use crate::file::tables::{Keys, dotted, ends};
 
 /// The scenes of an ensemble: each draws its values, by what the one who runs it draws with.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 #[non_exhaustive]
 pub struct SceneEnsemble {
     /// How many members there are.
@@ -123,17 +123,7 @@ impl Component {
 /// The table, read.
 pub(crate) fn parts(table: &Spanned<DeValue<'_>>) -> Result<SceneEnsemble, Wrong> {
     let DeValue::Table(inner) = table.get_ref() else { return Err((table.span(), "`ensemble` is a table".to_owned())) };
-    let mut ensemble = SceneEnsemble {
-        members: 0,
-        seed: 0,
-        every: None,
-        chunk: None,
-        axes: Vec::new(),
-        path: PathBuf::new(),
-        text: String::new(),
-        tables: DeTable::new(),
-        like: None,
-    };
+    let mut ensemble = SceneEnsemble::default();
     for (key, value) in inner {
         let whole = |range: RangeInclusive<u64>| {
             let number = value
