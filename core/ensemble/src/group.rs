@@ -56,9 +56,8 @@ impl<M: Batchable<AutoF64x8> + 'static> Group<M> for Together<M> {
 }
 
 /// Eight in a batch, and fewer where one is unlike those before it.
-pub(crate) fn in_lanes<M: Batchable<AutoF64x8> + 'static>(members: &[Start<M>]) -> Vec<(Box<dyn Group<M>>, usize)> {
+pub(crate) fn in_lanes<M: Batchable<AutoF64x8> + 'static>(mut left: &[Start<M>]) -> Vec<(Box<dyn Group<M>>, usize)> {
     let mut groups: Vec<(Box<dyn Group<M>>, usize)> = Vec::new();
-    let mut left = members;
     while let Some((batch, count)) = Batch::<AutoF64x8, M>::of_first(&left[..left.len().min(LANES)]) {
         let before = batch.states().clone();
         groups.push((Box::new(Together { batch, before }), count));

@@ -158,7 +158,7 @@ fn by_kind(program: &Program) -> Vec<usize> {
 impl Code {
     fn of(program: &Program) -> Result<Self, LateError> {
         let missing = program.operations.iter().find_map(|operation| match operation {
-            Operation::Apply(function, _) if applied(*function, 0.5).is_nan() => {
+            Operation::Apply(function, _) if applied(*function, 0.5_f64).is_nan() => {
                 Some(LateError::Function(format!("{function:?}")))
             }
             _ => None,

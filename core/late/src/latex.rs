@@ -14,14 +14,13 @@ const SIGNS: [(char, &str); 41] = [
     ('⁸', "^{8}"), ('⁹', "^{9}"), ('₀', "_{0}"), ('₁', "_{1}"), ('₂', "_{2}"), ('∞', r"\infty "),
 ];
 
-/// Names that are letters to LaTeX.
+/// Names of letters and functions that LaTeX knows.
 #[rustfmt::skip]
-const LETTERS: [&str; 34] = [
+const KNOWN: [&str; 40] = [
     "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu", "nu", "xi",
     "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega", "Gamma", "Delta", "Theta", "Lambda", "Xi", "Pi",
-    "Sigma", "Phi", "Psi", "Omega", "Upsilon",
+    "Sigma", "Phi", "Psi", "Omega", "Upsilon", "exp", "log", "sin", "cos", "ln", "det",
 ];
-const FUNCTIONS: [&str; 6] = ["exp", "log", "sin", "cos", "ln", "det"];
 
 /// The equations that were derived, each a line of an `align*`.
 #[must_use]
@@ -98,7 +97,7 @@ fn group(content: &str) -> String {
 fn word(name: &str) -> String {
     let (head, below) = name.split_once('_').map_or((name, None), |(head, below)| (head, Some(below)));
     let head = match head {
-        _ if LETTERS.contains(&head) || FUNCTIONS.contains(&head) => format!("\\{head} "),
+        _ if KNOWN.contains(&head) => format!("\\{head} "),
         "tr" => "\\operatorname{tr}".to_owned(),
         _ if head.chars().count() == 1 => head.to_owned(),
         _ => format!("\\mathrm{{{head}}}"),

@@ -388,9 +388,14 @@ fn lanes_have_the_bits_of_single_steps() {
     let full: Late<SO3, Vector3<f64>, WithEitherKinetic> = Late::like(&top).expect("a declaration");
     let top = random!(2, FourthOrderTop { J weight rho up });
     let fourth: Late<SO3, Vector3<f64>, WithEitherKinetic> = Late::like(&top).expect("a declaration");
-    for (late, name) in [(full, "m"), (fourth, "weight")] {
+    // Of a torque the kicks are known before a step.
+    let both = [RigidBody::<f64>::DECLARATION, Torque::<f64>::DECLARATION].map(|it| Declaration::parse(it).unwrap());
+    let values = [numbers(&random!(1, RigidBody { J_d })), numbers(&random!(2, Torque { torque }))].concat();
+    let both = Late::of(Declaration::sum(&both).unwrap()).and_then(|late| late.with_all(&values)).expect("numbers");
+    for (late, name, count) in [(full, "m", 1), (fourth, "weight", 1), (both, "Torque.torque", 3)] {
         let bodies = [1.0, 1.5, 2.0, 2.5].map(|number| {
-            let stepper = Stepper::new(late.clone().with(name, &[number]).expect("a number"), 0.01).expect("a stepper");
+            let late = late.clone().with(name, &vec![number; count]).expect("a number");
+            let stepper = Stepper::new(late, 0.01).expect("a stepper");
             let state = stepper.start(SO3::exp(Vector3::x() * number), Vector3::new(0.3, 1.0, 5.0)).expect("a start");
             (stepper, state)
         });

@@ -22,8 +22,8 @@ const BUDGETS: [(&str, usize, usize); 40] = [
     ("macros/derivation/src/staged", 703, 0), ("macros/derivation/src/emit", 3729, 0),
     ("macros/derivation/src/judged", 5733, 0), ("macros/derivation/src/declared", 5179, 0),
     ("macros/derivation/src/program", 2485, 0), ("macros/derivation/src/mathematics", 4576, 0),
-    ("core/late", 3355, 0), ("core/machine", 894, 0), ("core/python", 1821, 0), ("core/scene", 5650, 0), ("core/cli", 2976, 0),
-    ("core/plot", 790, 0), ("core/ensemble", 5054, 0), ("core/arrow", 215, 0), ("core/control", 2507, 0), ("examples", 11592, 0),
+    ("core/late", 3359, 0), ("core/machine", 894, 0), ("core/python", 1821, 0), ("core/scene", 5650, 0), ("core/cli", 2976, 0),
+    ("core/plot", 790, 0), ("core/ensemble", 5053, 0), ("core/arrow", 215, 0), ("core/control", 2507, 0), ("examples", 11592, 0),
     ("tests", 23818, 0), ("tests/ui", 1757, 0),
 ];
 
