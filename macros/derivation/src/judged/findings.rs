@@ -8,12 +8,15 @@ use super::{explain, hypotheses};
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Role, Tree};
 use crate::mathematics::derive::SelfAdjointness;
-use crate::program::Derivatives;
+use crate::program::{Derivatives, Outputs, Stages};
 
 /// What its documentation says beside the equations.
 pub(crate) struct Findings {
     pub(crate) self_adjointness: SelfAdjointness,
     pub(crate) sureness: Sureness,
+    /// What the stages of a step hand on, and the Jacobian of its momentum.
+    pub(crate) stages: Stages,
+    pub(crate) jacobian: Outputs,
     /// Of a step, where they are asked for.
     pub(crate) derivatives: Option<Derivatives>,
     pub(crate) hypotheses: Vec<String>,
@@ -35,14 +38,15 @@ pub(crate) fn findings(
     }
     let is_force = declaration.role == Role::Force;
     match verify::verify(of, kernel) {
-        Ok(Verified { self_adjointness, sureness, derivatives }) => {
+        Ok(Verified { self_adjointness, sureness, stages, jacobian, derivatives }) => {
             let asked = declaration.discretisation().filter(|_| self_adjointness == SelfAdjointness::No);
             if let Some(asked) = asked {
                 explain::not_self_adjoint(asked, errors);
                 return None;
             }
-            let hypotheses = if is_force { Vec::new() } else { hypotheses::hypotheses(declaration, tree, lowered) };
-            Some(Findings { self_adjointness, sureness, derivatives, hypotheses })
+            let of = || hypotheses::hypotheses(declaration, tree, lowered, derived);
+            let hypotheses = if is_force { Vec::new() } else { of() };
+            Some(Findings { self_adjointness, sureness, stages, jacobian, derivatives, hypotheses })
         }
         Err(unconfirmed) => {
             explain::unconfirmed(unconfirmed, declaration, tree, errors);

@@ -31,7 +31,7 @@ pub(crate) fn with_lets(graph: &mut Graph, derived: &Derived, given: Given) -> G
     for closed in derived.closed.iter().rev() {
         let shape = derived.symbols.get(closed.symbol).shape;
         let pairing = if has_increment { &closed.near } else { &closed.pairing };
-        let entries = dual(graph, derived, &given, (pairing, closed.direction, shape));
+        let entries = dual(graph, derived, &mut given, (pairing, closed.direction, shape));
         given.insert(closed.multiplier, entries);
     }
     given
@@ -44,7 +44,7 @@ pub(crate) fn with_tangents(graph: &mut Graph, derived: &Derived, mut given: Giv
     for closed in derived.closed.iter().rev() {
         let shape = derived.symbols.get(closed.symbol).shape;
         let (symbol, pairing) = &closed.multiplier_tangent;
-        let entries = dual(graph, derived, &given, (pairing, closed.direction, shape));
+        let entries = dual(graph, derived, &mut given, (pairing, closed.direction, shape));
         given.insert(*symbol, entries);
     }
     given
@@ -57,7 +57,7 @@ pub(super) fn entries(graph: &mut Graph, symbols: &Symbols, given: &Given, expre
         let shape = if transposed { (1, size) } else { (size, 1) };
         Expression::from_word(vec![Factor::Unit { index, size, transposed }], shape, symbols)
     };
-    let mut scalariser = Scalariser::new(graph, symbols, given.clone());
+    let mut scalariser = Scalariser::new(graph, symbols, given);
     Entries::new(rows, columns, |row, column| {
         if (rows, columns) == (1, 1) {
             return scalariser.scalar(expression);
@@ -72,13 +72,12 @@ pub(super) fn entries(graph: &mut Graph, symbols: &Symbols, given: &Given, expre
 fn dual(
     graph: &mut Graph,
     derived: &Derived,
-    given: &Given,
+    given: &mut Given,
     (pairing, direction, (rows, columns)): (&Expression, SymbolId, (usize, usize)),
 ) -> Entries {
     Entries::new(rows, columns, |row, column| {
         let (zero, one) = (graph.zero(), graph.one());
         let unit = Entries::new(rows, columns, |i, j| if (i, j) == (row, column) { one } else { zero });
-        let mut given = given.clone();
         given.insert(direction, unit);
         Scalariser::new(graph, &derived.symbols, given).scalar(pairing)
     })

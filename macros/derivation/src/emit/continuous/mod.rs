@@ -136,7 +136,8 @@ pub(super) fn discretised(emitter: &Emitter, discretisation: Discretisation) -> 
     }
     let lagrangian = &emitter.lowered.declared.expression;
     let equations = docs::equations(emitter.derived, &emitter.lowered.declared, emitter.equations);
-    emitter.method("l_d", Form::Scalar, lagrangian, &equations)
+    let l_d = emitter.kernel.beginning.term(emitter.derived, Form::Scalar, lagrangian);
+    emitter.method("l_d", Form::Scalar, &l_d, &equations)
 }
 
 impl Code<'_> {

@@ -73,14 +73,14 @@ use crate::declared::{Declaration, FieldKind, Name, Role, Shape};
 use crate::mathematics::derive::SelfAdjointness;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId};
-use crate::program::{Derivatives, Graph, Input, Kernel, Node, NodeId};
+use crate::program::{Derivatives, Graph, Input, Kernel, Node, NodeId, Outputs, Stages};
 
 pub(super) use cayley::{is_cayley_coordinates, nilpotency};
 pub(crate) use constraint::Held;
 pub(super) use constraint::{Row, constraint};
 pub(crate) use continuous::Motion;
 use evaluation::Evaluation;
-use identities::Identities;
+use identities::{Identities, Terms};
 pub(super) use inertia::{KineticPart, kinetic_part};
 use number::Number;
 pub(super) use orders::{TermMistake, not_smooth_at_identity, term_mistakes, without_value};
@@ -117,6 +117,8 @@ pub(crate) struct Verified {
     pub(crate) self_adjointness: SelfAdjointness,
     pub(crate) sureness: Sureness,
     /// What was compared, to be emitted.
+    pub(crate) stages: Stages,
+    pub(crate) jacobian: Outputs,
     pub(crate) derivatives: Option<Derivatives>,
 }
 
@@ -160,7 +162,8 @@ pub(super) fn verify(of: Subject, kernel: &Kernel) -> Result<Verified, Unconfirm
             reversal::self_adjointness(reversed, of.derived.adjoint_defect.is_zero()).map_err(Unconfirmed::Disagrees)?
         }
     };
-    Ok(Verified { self_adjointness, sureness, derivatives: identities.derivatives })
+    let Identities { stages, terms: Terms { graph, jacobian, .. }, derivatives, .. } = identities;
+    Ok(Verified { self_adjointness, sureness, stages, jacobian: (graph, jacobian), derivatives })
 }
 
 /// The values of operations.
