@@ -269,11 +269,7 @@ impl Emitter<'_> {
     /// One derived term as a method, with its equation as documentation.
     fn method(&self, name: &str, form: Form, (graph, outputs): &Outputs, equations: &[docs::Equation]) -> TokenStream {
         let (span, d, private) = (Span::mixed_site(), self.derived, &self.header.private);
-        let result = match form {
-            Form::Scalar => self.header.scalar.clone(),
-            Form::Vector => self.header.vector(),
-            Form::Square => self.header.square(),
-        };
+        let result = self.header.of(form);
         let documentation = docs::of(equations, &[name], graph, outputs);
         let inverse =
             d.directions.factors.iter().any(|one| stages::uses(graph, outputs, one.inverse)).then(

@@ -16,11 +16,8 @@ pub(super) struct Stages {
     pub(super) step_terms_type: TokenStream,
 }
 
-pub(super) fn stages(
-    emitter: &Emitter,
-    program::Stages { system, constants, terms: step_terms }: &program::Stages,
-    equations: &[super::docs::Equation],
-) -> Stages {
+pub(super) fn stages(emitter: &Emitter, stages: &program::Stages, equations: &[super::docs::Equation]) -> Stages {
+    let program::Stages { system, constants, terms: step_terms } = stages;
     let (kernel, graph) = (emitter.kernel, &emitter.kernel.graph);
     let (span, private) = (Span::mixed_site(), &emitter.header.private);
     let (vector, scalar) = (emitter.header.vector(), &emitter.header.scalar);

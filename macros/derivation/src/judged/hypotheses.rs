@@ -5,20 +5,17 @@
 
 use std::rc::Rc;
 
+use super::choose::Chosen;
 use crate::declared::errors::Errors;
 use crate::declared::lower::{Lowered, readings_without};
 use crate::declared::{Declaration, FieldKind, Name, Tree};
-use crate::mathematics::derive::{Derived, has_equations};
+use crate::mathematics::derive::has_equations;
 use crate::mathematics::symbolic::{Stage, Structure};
 use crate::program::{Given, Graph, Scalariser, count, with_values};
 
 /// The hypotheses that are used, as a paper would write them.
-pub(super) fn hypotheses(
-    declaration: &Declaration,
-    tree: &Rc<Tree>,
-    lowered: &Lowered,
-    derived: &Derived,
-) -> Vec<String> {
+pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Chosen) -> Vec<String> {
+    let Chosen { lowered, derived, .. } = chosen;
     let without = |name: Name, weaker: Structure| {
         // All increments at once.
         let is_meant = |other: Name| match name {

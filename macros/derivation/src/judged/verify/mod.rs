@@ -112,14 +112,16 @@ pub(crate) enum Unconfirmed {
     NotSmooth,
 }
 
-/// What the self-check has found of a declaration that it confirms.
-pub(crate) struct Verified {
+/// What has been found of a declaration that the self-check confirms.
+pub(crate) struct Findings {
     pub(crate) self_adjointness: SelfAdjointness,
     pub(crate) sureness: Sureness,
-    /// What was compared, to be emitted.
+    /// What was compared, to be emitted; derivatives of a step where they are asked for.
     pub(crate) stages: Stages,
     pub(crate) jacobian: Outputs,
     pub(crate) derivatives: Option<Derivatives>,
+    /// What the equations rest on, which is asked afterwards.
+    pub(crate) hypotheses: Vec<String>,
 }
 
 /// How sure it is that what was derived is right.
@@ -146,7 +148,7 @@ impl Sureness {
 }
 
 /// Checks all that was derived. The error is the first term that disagrees.
-pub(super) fn verify(of: Subject, kernel: &Kernel) -> Result<Verified, Unconfirmed> {
+pub(super) fn verify(of: Subject, kernel: &Kernel) -> Result<Findings, Unconfirmed> {
     // Whether it has a value is asked of real numbers: the field has roots of all.
     if Sample::draws(of).next().is_none() {
         return Err(Unconfirmed::NoValue);
@@ -163,7 +165,8 @@ pub(super) fn verify(of: Subject, kernel: &Kernel) -> Result<Verified, Unconfirm
         }
     };
     let Identities { stages, terms: Terms { graph, jacobian, .. }, derivatives, .. } = identities;
-    Ok(Verified { self_adjointness, sureness, stages, jacobian: (graph, jacobian), derivatives })
+    let (jacobian, hypotheses) = ((graph, jacobian), Vec::new());
+    Ok(Findings { self_adjointness, sureness, stages, jacobian, derivatives, hypotheses })
 }
 
 /// The values of operations.
