@@ -9,6 +9,21 @@ use crate::mathematics::symbolic::{Expression, Factor, SymbolId, Symbols};
 
 pub(crate) type Given = BTreeMap<SymbolId, Entries>;
 
+/// What each derived term begins with: the values of all `let`s and multipliers where `F` and `w` are any.
+#[derive(Clone, Debug)]
+pub(crate) struct Beginning {
+    pub(crate) graph: Graph,
+    pub(crate) given: Given,
+}
+
+impl Beginning {
+    pub(super) fn new(derived: &Derived) -> Self {
+        let mut graph = Graph::default();
+        let given = with_lets(&mut graph, derived, Given::new());
+        Self { graph, given }
+    }
+}
+
 /// With the values of all `let`s where `F` and `w` are as given.
 pub(crate) fn with_values<'a>(
     graph: &mut Graph,

@@ -2,13 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::closed::{Given, entries, with_lets, with_tangents};
+use super::closed::{Beginning, Given, entries, with_lets, with_tangents};
 use super::count::{Operations, count};
 use super::expand::expanded;
 use super::graph::{Graph, Input, Node, NodeId};
 use super::retraction::{denominator, rotation, translation};
 use super::scalarise::{Entries, Scalariser};
-use super::terms::Beginning;
 use crate::mathematics::derive::{Cleared, Continuous, Derived, OfFactor, unit};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Expression, Rational, Stage, SymbolId, Symbols};

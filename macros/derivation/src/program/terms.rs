@@ -1,6 +1,6 @@
 //! The derived terms that know no stages, each as outputs of a graph.
 
-use super::closed::{Given, with_lets};
+use super::closed::Beginning;
 use super::graph::{Graph, NodeId};
 use super::kernel::{components, square};
 use super::scalarise::Scalariser;
@@ -20,20 +20,7 @@ pub(crate) enum Form {
 /// A graph with outputs.
 pub(crate) type Outputs<T = Vec<NodeId>> = (Graph, T);
 
-/// What each term begins with: closed `let`s and their multipliers at any `F` and `w`.
-#[derive(Clone, Debug)]
-pub(crate) struct Beginning {
-    pub(crate) graph: Graph,
-    pub(crate) given: Given,
-}
-
 impl Beginning {
-    pub(super) fn new(derived: &Derived) -> Self {
-        let mut graph = Graph::default();
-        let given = with_lets(&mut graph, derived, Given::new());
-        Self { graph, given }
-    }
-
     /// The outputs of one derived term.
     pub(crate) fn term(&self, derived: &Derived, form: Form, expression: &Expression) -> Outputs {
         let mut graph = self.graph.clone();
