@@ -45,23 +45,20 @@ struct Back<'a, G: LieGroup> {
     values: Vec<G::Scalar>,
 }
 
+#[hot]
 impl<G: LieGroup> Pass<G> for Back<'_, G> {
-    #[hot]
     fn asks_for_parameters(&self) -> bool {
         true
     }
 
-    #[hot]
     fn on_the_way_back(&mut self) -> Option<WayBack<'_, G>> {
         Some((&mut self.cotangent, self.gradient))
     }
 
-    #[hot]
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>) {
         self.cotangent = stage.pull(&self.cotangent, self.gradient, &mut self.values);
     }
 
-    #[hot]
     fn flown(&mut self, flown: &FlowDerivatives<'_, G>) {
         self.cotangent = flown.pull(&self.cotangent, self.gradient);
     }

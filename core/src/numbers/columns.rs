@@ -48,17 +48,16 @@ impl<T: Real, const D: usize> Sub for FourVectors<T, D> {
     }
 }
 
+#[hot]
 impl<T: Real, const D: usize> Entries<T> for FourVectors<T, D> {
     fn from_entries(next: &mut impl FnMut() -> T) -> Self {
         Self(core::array::from_fn(|_| core::array::from_fn(|_| next())))
     }
 
-    #[hot]
     fn each(&self, visit: &mut impl FnMut(T)) {
         self.0.as_flattened().iter().for_each(|entry| visit(*entry));
     }
 
-    #[hot]
     fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
         let mut combined = *self;
         for (entry, other) in combined.0.as_flattened_mut().iter_mut().zip(other.0.as_flattened()) {

@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 use serde::de::{Error as _, Unexpected};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::stored::Storable;
+use super::Storable;
 use crate::mechanics::{Effect, SceneVisitor};
 use crate::motion::Plan;
 use crate::numbers::Digest;
