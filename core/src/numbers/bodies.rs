@@ -31,23 +31,9 @@ macro_rules! filled {
 
 pub(crate) use filled;
 
-impl<V: Copy + Add<Output = V>, const N: usize> Add for Bodies<V, N> {
-    type Output = Self;
+operation!([V: Copy + Add<Output = V>, const N: usize] Bodies<V, N>, Add add |a, b| Self(filled!(a.0, |k| a.0[k] + b.0[k])));
 
-    #[hot]
-    fn add(self, other: Self) -> Self {
-        Self(filled!(self.0, |k| self.0[k] + other.0[k]))
-    }
-}
-
-impl<V: Copy + Sub<Output = V>, const N: usize> Sub for Bodies<V, N> {
-    type Output = Self;
-
-    #[hot]
-    fn sub(self, other: Self) -> Self {
-        Self(filled!(self.0, |k| self.0[k] - other.0[k]))
-    }
-}
+operation!([V: Copy + Sub<Output = V>, const N: usize] Bodies<V, N>, Sub sub |a, b| Self(filled!(a.0, |k| a.0[k] - b.0[k])));
 
 impl<V: Copy + Neg<Output = V>, const N: usize> Neg for Bodies<V, N> {
     type Output = Self;
@@ -67,14 +53,7 @@ impl<T: Real, V: Copy + Mul<T, Output = V>, const N: usize> Mul<T> for Bodies<V,
     }
 }
 
-impl<S: Copy + Add<Output = S>, const N: usize> Add for BlockDiagonal<S, N> {
-    type Output = Self;
-
-    #[hot]
-    fn add(self, other: Self) -> Self {
-        Self(filled!(self.0, |k| self.0[k] + other.0[k]))
-    }
-}
+operation!([S: Copy + Add<Output = S>, const N: usize] BlockDiagonal<S, N>, Add add |a, b| Self(filled!(a.0, |k| a.0[k] + b.0[k])));
 
 impl<T: Real, S: Copy + Mul<T, Output = S>, const N: usize> Mul<T> for BlockDiagonal<S, N> {
     type Output = Self;

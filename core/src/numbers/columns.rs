@@ -30,23 +30,8 @@ impl<T: Real, const D: usize> FourVectors<T, D> {
     }
 }
 
-impl<T: Real, const D: usize> Add for FourVectors<T, D> {
-    type Output = Self;
-
-    #[hot]
-    fn add(self, other: Self) -> Self {
-        self.zip(&other, &mut |a, b| a + b)
-    }
-}
-
-impl<T: Real, const D: usize> Sub for FourVectors<T, D> {
-    type Output = Self;
-
-    #[hot]
-    fn sub(self, other: Self) -> Self {
-        self.zip(&other, &mut |a, b| a - b)
-    }
-}
+operation!([T: Real, const D: usize] FourVectors<T, D>, Add add |a, b| a.zip(&b, &mut |a, b| a + b));
+operation!([T: Real, const D: usize] FourVectors<T, D>, Sub sub |a, b| a.zip(&b, &mut |a, b| a - b));
 
 #[hot]
 impl<T: Real, const D: usize> Entries<T> for FourVectors<T, D> {

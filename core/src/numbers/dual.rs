@@ -114,43 +114,13 @@ impl<T: Real> Dual<T> {
     }
 }
 
-impl<T: Real> Add for Dual<T> {
-    type Output = Self;
-
-    #[hot]
-    fn add(self, other: Self) -> Self {
-        self.zip(other, self.value + other.value, |a, b| a + b)
-    }
-}
-
-impl<T: Real> Sub for Dual<T> {
-    type Output = Self;
-
-    #[hot]
-    fn sub(self, other: Self) -> Self {
-        self.zip(other, self.value - other.value, |a, b| a - b)
-    }
-}
-
-impl<T: Real> Mul for Dual<T> {
-    type Output = Self;
-
-    #[hot]
-    #[allow(clippy::suspicious_arithmetic_impl)] // the rule for products has a sum
-    fn mul(self, other: Self) -> Self {
-        self.zip(other, self.value * other.value, |a, b| a * other.value + self.value * b)
-    }
-}
-
-impl<T: Real> Div for Dual<T> {
-    type Output = Self;
-
-    #[hot]
-    fn div(self, other: Self) -> Self {
-        let (inverse, ratio) = (T::one() / other.value, self.value / other.value);
-        self.zip(other, ratio, |a, b| (a - ratio * b) * inverse)
-    }
-}
+operation!([T: Real] Dual<T>, Add add |a, b| a.zip(b, a.value + b.value, |a, b| a + b));
+operation!([T: Real] Dual<T>, Sub sub |a, b| a.zip(b, a.value - b.value, |a, b| a - b));
+operation!([T: Real] Dual<T>, Mul mul |a, b| a.zip(b, a.value * b.value, |of_a, of_b| of_a * b.value + a.value * of_b));
+operation!([T: Real] Dual<T>, Div div |a, b| {
+    let (inverse, ratio) = (T::one() / b.value, a.value / b.value);
+    a.zip(b, ratio, |of_a, of_b| (of_a - ratio * of_b) * inverse)
+});
 
 impl<T: Real> Neg for Dual<T> {
     type Output = Self;

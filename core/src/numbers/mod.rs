@@ -2,6 +2,20 @@
 //!
 //! Nothing here knows of groups or of mechanics.
 
+/// An operator of two numbers of one kind, inlined: its trait, its function, and what it makes of both.
+macro_rules! operation {
+    ([$($parameter:tt)*] $kind:ty, $operation:ident $function:ident |$a:ident, $b:ident| $made:expr) => {
+        impl<$($parameter)*> $operation for $kind {
+            type Output = Self;
+            #[hot]
+            fn $function(self, $b: Self) -> Self {
+                let $a = self;
+                $made
+            }
+        }
+    };
+}
+
 mod blocks;
 mod bodies;
 mod columns;

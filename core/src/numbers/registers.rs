@@ -14,19 +14,6 @@ pub(crate) trait Register:
     fn entries(self) -> [f64; 4];
 }
 
-macro_rules! operation {
-    ([$($parameter:tt)*] $kind:ty, $operation:ident $function:ident |$a:ident, $b:ident| $made:expr) => {
-        impl<$($parameter)*> $operation for $kind {
-            type Output = Self;
-            #[hot]
-            fn $function(self, $b: Self) -> Self {
-                let $a = self;
-                $made
-            }
-        }
-    };
-}
-
 /// Numbers in what the program was compiled for.
 #[derive(Clone, Copy)]
 pub(crate) struct Plain(Vector3<f64>);

@@ -87,16 +87,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// The same step with compensated sums: what rounding takes from attitude, momentum and advected parameters is kept
     /// and added to the next step's changes.
     ///
-    /// Collocation compensates its sums anyway, and is refused:
-    ///
-    /// ```compile_fail,E0277
-    /// use liestep::effects::RigidBody;
-    /// use liestep::{NonstandardInertia, Stepper};
-    /// use nalgebra::Vector3;
-    ///
-    /// let body = RigidBody { J_d: NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap() };
-    /// let _ = Stepper::collocated::<4>(body, 0.1).unwrap().compensated();
-    /// ```
+    /// Collocation compensates its sums anyway, and is refused when a program is built.
     #[must_use]
     pub fn compensated(self) -> Stepper<S, CompensatedSums<P>>
     where

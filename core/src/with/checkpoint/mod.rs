@@ -14,30 +14,13 @@ use nalgebra::{SimdComplexField as _, SimdRealField as _};
 use serde::{Deserialize, Serialize};
 
 pub use error::CheckpointError;
+pub use fingerprint::Storable;
 
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar};
 use crate::motion::{ElapsedTime, Kept, Motion, Plan, State, StateOf, Stepper};
 use crate::numbers::{Digest, Entries, Real, real, reported};
 use fingerprint::Parameters;
-
-/// A scalar that is stored by its bits: `f64` or `f32`.
-pub trait Storable: Real + PartialOrd + Serialize + for<'de> Deserialize<'de> {
-    /// The bits, of `f32` in the lower half.
-    fn bits(self) -> u64;
-}
-
-impl Storable for f64 {
-    fn bits(self) -> u64 {
-        self.to_bits()
-    }
-}
-
-impl Storable for f32 {
-    fn bits(self) -> u64 {
-        u64::from(self.to_bits())
-    }
-}
 
 /// What the numbers below mean; another layout has another number.
 const FORMAT: u32 = 4;

@@ -62,7 +62,11 @@ pub fn hot(item: TokenStream) -> TokenStream {
             }
             quote!(#block)
         }
-        _ => quote!(#mark #item),
+        _ => {
+            let mut marked = quote!(#mark);
+            marked.extend(item);
+            marked
+        }
     }
 }
 
