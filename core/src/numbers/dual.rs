@@ -116,7 +116,10 @@ impl<T: Real> Dual<T> {
 
 operation!([T: Real] Dual<T>, Add add |a, b| a.zip(b, a.value + b.value, |a, b| a + b));
 operation!([T: Real] Dual<T>, Sub sub |a, b| a.zip(b, a.value - b.value, |a, b| a - b));
-operation!([T: Real] Dual<T>, Mul mul |a, b| a.zip(b, a.value * b.value, |of_a, of_b| of_a * b.value + a.value * of_b));
+// The rule for products has a sum.
+operation!([T: Real] #[allow(clippy::suspicious_arithmetic_impl)] Dual<T>, Mul mul |a, b| {
+    a.zip(b, a.value * b.value, |of_a, of_b| of_a * b.value + a.value * of_b)
+});
 operation!([T: Real] Dual<T>, Div div |a, b| {
     let (inverse, ratio) = (T::one() / b.value, a.value / b.value);
     a.zip(b, ratio, |of_a, of_b| (of_a - ratio * of_b) * inverse)

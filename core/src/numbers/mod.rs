@@ -4,10 +4,11 @@
 
 /// An operator of two numbers of one kind, inlined: its trait, its function, and what it makes of both.
 macro_rules! operation {
-    ([$($parameter:tt)*] $kind:ty, $operation:ident $function:ident |$a:ident, $b:ident| $made:expr) => {
+    ([$($parameter:tt)*] $(#[$attribute:meta])? $kind:ty, $operation:ident $function:ident |$a:ident, $b:ident| $made:expr) => {
         impl<$($parameter)*> $operation for $kind {
             type Output = Self;
             #[hot]
+            $(#[$attribute])?
             fn $function(self, $b: Self) -> Self {
                 let $a = self;
                 $made

@@ -63,7 +63,7 @@ use nalgebra::{
 /// let stepper = Stepper::split(top, 0.05, SymmetricBody::new(&J)?, SplittingScheme::NYSTROM_11)?;
 /// let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
 /// let mut state = stepper.start(attitude, Vector3::new(0.5, 2.0, 12.0))?;
-/// let energy = stepper.energy(&state);
+/// let energy: f64 = stepper.energy(&state);
 /// stepper.run(&mut state, 200)?;
 /// assert!((stepper.energy(&state) - energy).abs() < 1e-6);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
