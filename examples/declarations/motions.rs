@@ -1,7 +1,11 @@
 //! Motions with exact states: `tests/data/README.md` says how each was validated.
 
-use liestep::SO3;
+use std::array::from_fn;
+
 use liestep::mechanics::DiagonalNonstandardInertia;
+use liestep::methods::{Chain, Link};
+use liestep::numbers::Bodies;
+use liestep::{NonstandardInertia, SO3};
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 use workbench::heavy_top::declaration::HeavyTop;
@@ -122,4 +126,29 @@ impl Motion {
     pub fn states(&self) -> &[(f64, End)] {
         &self.states
     }
+}
+
+/// A link, with its inertia about its centre of mass.
+pub fn link(central: &Matrix3<f64>, m: f64, c: Vector3<f64>, rho: Vector3<f64>) -> Link {
+    Link { J_d: NonstandardInertia::new(central + c * c.transpose() * m).unwrap(), m, c, rho }
+}
+
+/// The chain of three links.
+pub fn chain3() -> Chain<3> {
+    let data = &read("several bodies")["chain3"]["parameters"];
+    let plain = |value: &Value| Vector3::from_fn(|k, _| value[k].as_f64().unwrap());
+    let links = from_fn(|k| {
+        let body = &data["bodies"][k];
+        let moments = plain(&body["J_cm"]);
+        let central = Matrix3::from_diagonal_element(0.5 * moments.sum()) - Matrix3::from_diagonal(&moments);
+        link(&central, body["m"].as_f64().unwrap(), plain(&body["c"]), plain(&body["rho"]))
+    });
+    Chain { links, g: data["g"].as_f64().unwrap(), up: Vector3::z() }
+}
+
+/// Where its reference starts.
+pub fn start3() -> ([SO3; 3], Bodies<Vector3<f64>, 3>) {
+    let start = &read("several bodies")["chain3"]["states"][0]["bodies"];
+    let attitudes = from_fn(|k| SO3::try_from(matrix(&start[k]["R"])).unwrap());
+    (attitudes, Bodies(from_fn(|k| vector(&start[k]["Omega_body"]))))
 }

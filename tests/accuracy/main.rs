@@ -3,6 +3,7 @@
 //!
 //! One crate, so that the declarations are expanded once, and a fast one.
 
+mod chain;
 mod compensated;
 mod composition;
 mod conditions;

@@ -6,6 +6,7 @@
 
 pub mod affine;
 pub mod any_scalar;
+pub mod drift;
 pub mod examples;
 pub mod order;
 pub mod random;

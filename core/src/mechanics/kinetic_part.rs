@@ -3,7 +3,6 @@
 use crate::numbers::{Coordinates, Either, History, Parabola, Polynomial, Real};
 
 /// [`WithKinetic`], [`WithPace`], [`WithExpensiveKinetic`], [`WithEitherKinetic`], [`WithoutKinetic`] or [`OnlyKicks`].
-#[doc(hidden)]
 pub trait KineticPart {
     /// Whether there is one.
     const IS_THERE: bool;
@@ -28,84 +27,42 @@ pub trait KineticPart {
     type ByNewton: KineticPart;
 }
 
-/// There is a term in `1/h`.
-#[derive(Clone, Copy, Debug)]
-pub struct WithKinetic;
+macro_rules! kinds {
+    ($($(#[$doc:meta])* $Kind:ident: $there:literal, $expensive:literal, $History:ident, $Or:ty, $ByNewton:ty
+        $(, $name:ident = $value:literal)?;)*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug)]
+        pub struct $Kind;
 
-/// There is a term in `1/h`, whose Jacobian costs more than several residuals.
-#[derive(Clone, Copy, Debug)]
-pub struct WithExpensiveKinetic;
+        impl KineticPart for $Kind {
+            const IS_THERE: bool = $there;
+            const JACOBIAN_IS_EXPENSIVE: bool = $expensive;
+            $(const $name: bool = $value;)?
 
-/// There is a term in `1/h`, and the effect says as a value whether its Jacobian is expensive: see
-/// [`jacobian_is_expensive`](crate::mechanics::Effect::jacobian_is_expensive).
-#[derive(Clone, Copy, Debug)]
-pub struct WithEitherKinetic;
-
-/// There is none, as in a potential.
-#[derive(Clone, Copy, Debug)]
-pub struct WithoutKinetic;
-
-/// There is none, and nothing to solve for: kicks at both ends of a step alone, as of a weight or a constant torque.
-#[derive(Clone, Copy, Debug)]
-pub struct OnlyKicks;
-
-impl KineticPart for WithKinetic {
-    const IS_THERE: bool = true;
-    const JACOBIAN_IS_EXPENSIVE: bool = false;
-
-    type History<T: Real, V: Coordinates<T>> = Parabola<V>;
-    type Or<Other: KineticPart> = Self;
-    type ByNewton = Self;
+            type History<T: Real, V: Coordinates<T>> = $History<V>;
+            type Or<Other: KineticPart> = $Or;
+            type ByNewton = $ByNewton;
+        }
+    )*};
 }
 
-/// In a time in which motion is smooth: its history guesses an increment that one iteration brings to rounding.
-#[derive(Clone, Copy, Debug)]
-#[doc(hidden)]
-pub struct WithPace;
+kinds! {
+    /// There is a term in `1/h`.
+    WithKinetic: true, false, Parabola, Self, Self;
 
-impl KineticPart for WithPace {
-    const IS_THERE: bool = true;
-    const JACOBIAN_IS_EXPENSIVE: bool = false;
+    /// In a time in which motion is smooth: its history guesses an increment that one iteration brings to rounding.
+    WithPace: true, false, Polynomial, Self, WithKinetic;
 
-    type History<T: Real, V: Coordinates<T>> = Polynomial<V>;
-    type Or<Other: KineticPart> = Self;
-    type ByNewton = WithKinetic;
-}
+    /// There is a term in `1/h`, whose Jacobian costs more than several residuals.
+    WithExpensiveKinetic: true, true, Polynomial, Self, WithKinetic;
 
-impl KineticPart for WithExpensiveKinetic {
-    const IS_THERE: bool = true;
-    const JACOBIAN_IS_EXPENSIVE: bool = true;
+    /// There is a term in `1/h`, and the effect says as a value whether its Jacobian is expensive: see
+    /// [`jacobian_is_expensive`](crate::mechanics::Effect::jacobian_is_expensive).
+    WithEitherKinetic: true, true, Either, Self, WithKinetic, IS_EITHER = true;
 
-    type History<T: Real, V: Coordinates<T>> = Polynomial<V>;
-    type Or<Other: KineticPart> = Self;
-    type ByNewton = WithKinetic;
-}
+    /// There is none, as in a potential.
+    WithoutKinetic: false, false, Parabola, Other, Self;
 
-impl KineticPart for WithEitherKinetic {
-    const IS_THERE: bool = true;
-    const JACOBIAN_IS_EXPENSIVE: bool = true;
-    const IS_EITHER: bool = true;
-
-    type History<T: Real, V: Coordinates<T>> = Either<V>;
-    type Or<Other: KineticPart> = Self;
-    type ByNewton = WithKinetic;
-}
-
-impl KineticPart for WithoutKinetic {
-    const IS_THERE: bool = false;
-    const JACOBIAN_IS_EXPENSIVE: bool = false;
-
-    type History<T: Real, V: Coordinates<T>> = Parabola<V>;
-    type Or<Other: KineticPart> = Other;
-    type ByNewton = Self;
-}
-
-impl KineticPart for OnlyKicks {
-    const IS_THERE: bool = false;
-    const JACOBIAN_IS_EXPENSIVE: bool = false;
-    const MAY_BE_UNKNOWN: bool = false;
-
-    type History<T: Real, V: Coordinates<T>> = Parabola<V>;
-    type Or<Other: KineticPart> = Other;
-    type ByNewton = Self;
+    /// There is none, and nothing to solve for: kicks at both ends of a step alone, as of a weight or a constant torque.
+    OnlyKicks: false, false, Parabola, Other, Self, MAY_BE_UNKNOWN = false;
 }

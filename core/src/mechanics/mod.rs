@@ -28,9 +28,9 @@ pub use effect::{Effect, Group, Limit, Matrix, Moves, NewtonUpdate, Parts, Regul
 pub(crate) use effect::{pattern, pattern_of_type, update_of};
 pub use force::Force;
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
-pub use kinetic_part::{
-    KineticPart, OnlyKicks, WithEitherKinetic, WithExpensiveKinetic, WithKinetic, WithPace, WithoutKinetic,
-};
+#[doc(hidden)]
+pub use kinetic_part::{KineticPart, OnlyKicks, WithExpensiveKinetic, WithPace};
+pub use kinetic_part::{WithEitherKinetic, WithKinetic, WithoutKinetic};
 pub use lagrangian::{DiscreteLagrangian, RigidScene, Scene};
 pub(crate) use noether::{left_symmetries, right_symmetries};
 pub use operations::Operations;

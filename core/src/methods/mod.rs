@@ -24,7 +24,9 @@ mod tests;
 
 pub use chain::{Chain, ChainStepper, Link, LinkedBodies, Weights};
 pub use composition::{Composition, CompositionScheme};
-pub use gauss::{CollocationMemory, CotangentCarry, CotangentGauss, Gauss};
+#[doc(hidden)]
+pub use gauss::{CollocationMemory, CotangentCarry};
+pub use gauss::{CotangentGauss, Gauss};
 pub use joints::{BallJoint, Constraint, Joint, JointedBodies, Joints, PinJoint, Place, PlacedJoint, Slope};
 pub(crate) use splitting::has_force_gradient;
 pub use splitting::{

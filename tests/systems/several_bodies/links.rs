@@ -2,7 +2,7 @@
 //! Newton matrix, and against derivatives of the action in terms of where all masses are.
 
 use declarations::DoublePendulum;
-use declarations::motions::{matrix, number, read, vector};
+use declarations::motions::{chain3, link, matrix, number, read, start3, vector};
 use liestep::effects::Spring;
 use liestep::groups::{CayleyRetraction, Retraction};
 use liestep::laws::samples::{Random, derivative};
@@ -13,31 +13,7 @@ use liestep::numbers::{Bodies, Coordinates as _};
 use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper};
 use nalgebra::{Matrix3, SVector, Vector3, Vector6};
 
-use super::{all, apart, array, assert_reference, attitudes_of, momentum, part, stacked, tenths};
-
-/// A link, with its inertia about its centre of mass.
-fn link(central: &Matrix3<f64>, m: f64, c: Vector3<f64>, rho: Vector3<f64>) -> Link {
-    Link { J_d: NonstandardInertia::new(central + c * c.transpose() * m).unwrap(), m, c, rho }
-}
-
-/// Of the reference.
-pub(super) fn chain3() -> Chain<3> {
-    let data = &read("several bodies")["chain3"]["parameters"];
-    let plain = |value: &serde_json::Value| Vector3::from_fn(|k, _| value[k].as_f64().unwrap());
-    let links = all(&data["bodies"], |body| {
-        let moments = plain(&body["J_cm"]);
-        let central = Matrix3::from_diagonal_element(0.5 * moments.sum()) - Matrix3::from_diagonal(&moments);
-        link(&central, body["m"].as_f64().unwrap(), plain(&body["c"]), plain(&body["rho"]))
-    });
-    Chain { links: array(links), g: data["g"].as_f64().unwrap(), up: Vector3::z() }
-}
-
-/// Where the reference starts.
-fn start3() -> ([SO3; 3], Bodies<Vector3<f64>, 3>) {
-    let start = &read("several bodies")["chain3"]["states"][0]["bodies"];
-    let attitudes = all(start, |body| SO3::try_from(matrix(&body["R"])).unwrap());
-    (array(attitudes), Bodies(array(all(start, |body| vector(&body["Omega_body"])))))
-}
+use super::{all, apart, array, assert_reference, attitudes_of, momentum, part, stacked};
 
 fn farthest<const N: usize>(a: &Bodies<Vector3<f64>, N>, b: &[Vector3<f64>]) -> f64 {
     a.0.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
@@ -226,40 +202,6 @@ fn a_step_is_that_of_the_action() {
             assert!(missed < 1e-8 * size, "{k}: {found:?} {minus} {plus}");
         }
     }
-}
-
-/// Over a hundred thousand stretches of so many steps the energy is within its bounds, its means over the first half and
-/// the second are this far apart at most, and the momentum is moved by roundings. The motion is chaotic, and how large the
-/// largest swing of the energy is in it depends on roundings, so its bound has a margin.
-fn assert_bounded(stretch: u64, [of_momentum, of_halves]: [f64; 2]) {
-    let (attitudes, velocities) = start3();
-    let stepper = chain3().stepper(0.01).unwrap();
-    let mut state = stepper.start(attitudes, velocities).unwrap();
-    let (energy, vertical) = (stepper.energy(&state), stepper.vertical_momentum(&state));
-    let mut moved = 0.0_f64;
-    let (means, most) = tenths(|| {
-        stepper.run(&mut state, stretch).unwrap();
-        moved = moved.max((stepper.vertical_momentum(&state) - vertical).abs());
-        stepper.energy(&state) - energy
-    });
-    let [first, second] = [&means[..5], &means[5..]].map(|half| half.iter().sum::<f64>() / 5.0);
-    println!("energy {energy}: within {most:.4}; means of tenths {means:.5?}; momentum {moved:.1e}");
-    assert!(most < 0.05 && (first - second).abs() < of_halves, "{most} {means:?}");
-    assert!(means.iter().all(|mean| (mean - means[0]).abs() < 2e-3), "{means:?}");
-    assert!(moved < of_momentum, "{moved:e}");
-}
-
-/// Three hours of motion.
-#[test]
-fn energy_and_momentum_of_a_million_steps() {
-    assert_bounded(10, [1e-12, 7e-4]);
-}
-
-/// Eight hours and twenty minutes.
-#[test]
-#[ignore = "takes a minute: `cargo test -p liestep-tests --test systems three_million_steps -- --ignored --nocapture`"]
-fn three_million_steps() {
-    assert_bounded(30, [2e-12, 4e-3]);
 }
 
 /// What is put around a step goes with links as with any method: a checkpoint goes on to the bit, a torque does its work, a

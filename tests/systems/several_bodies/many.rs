@@ -1,5 +1,6 @@
 //! Systems of many bodies: terms on one body and on two, put at places.
 
+use checks::drift::tenths;
 use checks::structure::momenta::assert_momenta;
 use declarations::Alike;
 use declarations::motions::{matrix, number, read, vector};
@@ -16,7 +17,7 @@ use liestep::{SO3, SetupError, Stepper};
 use nalgebra::{SVector, Vector3};
 
 use super::declared::CoupledAttitudes;
-use super::{all, apart, array, attitudes_of, momentum, order, stacked, started, tenths};
+use super::{all, apart, array, attitudes_of, momentum, order, stacked, started};
 
 fn principal(J: [f64; 3]) -> PrincipalBody {
     PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(J.into()).unwrap() }

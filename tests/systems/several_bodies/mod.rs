@@ -163,18 +163,3 @@ fn check_symplectic<L: System + Clone>(l: L, h: f64, attitude: L::Group, velocit
     println!("symplectic to {defect:.1e}, with the other sign of the bracket {of_other_sign:.1e}");
     assert!(defect < 1e-11 && of_other_sign > 1e-6, "{defect:e}, {of_other_sign:e}");
 }
-
-/// The means of each tenth of a hundred thousand numbers, and the largest of their sizes.
-fn tenths(mut next: impl FnMut() -> f64) -> ([f64; 10], f64) {
-    let mut most = 0.0_f64;
-    let means = [(); 10].map(|()| {
-        let mut sum = 0.0;
-        for _ in 0..10_000 {
-            let number = next();
-            sum += number;
-            most = most.max(number.abs());
-        }
-        sum / 10_000.0
-    });
-    (means, most)
-}

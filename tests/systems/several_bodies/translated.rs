@@ -1,5 +1,6 @@
 //! Bodies that are translated too: a top on a cart, two bodies that attract each other, a spacecraft with wheels.
 
+use checks::drift::tenths;
 use checks::solvers::Badly;
 use declarations::motions::{number, read, vector};
 use declarations::{FloatingBody, Gyrostat, PointSpring, TopOnCart, TwoBodies};
@@ -13,7 +14,7 @@ use nalgebra::{Matrix3, Matrix3x4, SVector, Vector1, Vector2, Vector3};
 use serde_json::Value;
 use workbench::runge_kutta;
 
-use super::{apart, attitudes_of, check_derived, check_symplectic, order, part, solved, started, tenths};
+use super::{apart, attitudes_of, check_derived, check_symplectic, order, part, solved, started};
 
 fn moments(values: &Value) -> Vector3<f64> {
     Vector3::from_fn(|k, _| values[k].as_f64().unwrap())

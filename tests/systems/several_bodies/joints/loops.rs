@@ -2,6 +2,7 @@
 
 use core::array::from_fn;
 
+use checks::drift::tenths;
 use declarations::motions::{matrix, number, read, vector};
 use liestep::groups::R3;
 use liestep::laws::samples::Random;
@@ -12,7 +13,7 @@ use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper};
 use nalgebra::{Vector3, Vector6};
 use serde_json::Value;
 
-use super::super::{all, apart, order, tenths};
+use super::super::{all, apart, order};
 use super::{
     Body, Components, EPSILON, Free, Held, LEFT, RIGHT, assert_no_work, ball, chained, plain, rod, row, scene, six,
     watched, whole,
