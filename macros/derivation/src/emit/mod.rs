@@ -32,12 +32,41 @@ pub(crate) use fallback::mistakes;
 use header::Header;
 pub(crate) use own_group::{ask, own_group};
 
-/// A function that is inlined but where it is to be built soon.
+/// A function that is inlined but where it is to be built soon; of a block all those that say nothing else of themselves.
 #[must_use]
 pub fn hot(item: TokenStream) -> TokenStream {
-    let mut marked = quote!(#[cfg_attr(not(debug_assertions), inline(always))]);
-    marked.extend(item);
-    marked
+    let mark: syn::Attribute = syn::parse_quote!(#[cfg_attr(not(debug_assertions), inline(always))]);
+    let says_it = |attribute: &syn::Attribute| attribute.path().is_ident("inline") || attribute.path().is_ident("cold");
+    let marked = |attributes: &mut Vec<syn::Attribute>| {
+        if !attributes.iter().any(says_it) {
+            attributes.push(mark.clone());
+        }
+    };
+    match syn::parse2(item.clone()) {
+        Ok(syn::Item::Impl(mut block)) => {
+            for item in &mut block.items {
+                if let syn::ImplItem::Fn(function) = item {
+                    marked(&mut function.attrs);
+                }
+            }
+            quote!(#block)
+        }
+        Ok(syn::Item::Trait(mut block)) => {
+            for item in &mut block.items {
+                if let syn::TraitItem::Fn(function) = item
+                    && function.default.is_some()
+                {
+                    marked(&mut function.attrs);
+                }
+            }
+            quote!(#block)
+        }
+        _ => {
+            let mut marked = quote!(#mark);
+            marked.extend(item);
+            marked
+        }
+    }
 }
 
 /// What the derive macros `Lanes` and `InLanes` make of a struct of liestep.
