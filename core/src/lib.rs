@@ -15,6 +15,14 @@ compile_error!(
 // Expansions name this crate by its path from outside; our own documentation and tests do too.
 extern crate self as liestep;
 
+/// Roots and powers, which without a standard library are nalgebra's.
+macro_rules! roots {
+    () => {
+        #[cfg(not(feature = "std"))]
+        use nalgebra::ComplexField as _;
+    };
+}
+
 // First, so that the page of `Stepper` begins with `new`, `start` and `step`.
 #[macro_use]
 pub mod motion;

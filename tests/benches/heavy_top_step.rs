@@ -25,7 +25,7 @@ use std::time::Instant;
 use declarations::HeavyTop;
 use liestep::motion::{OwnStep, WarmStart};
 use liestep::prelude::*;
-use liestep::with::{CompensatedSums as Plan, MemoryWithCarry};
+use liestep::with::{Carry, CompensatedSums as Plan};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::top_equations::Equations;
 
@@ -40,7 +40,7 @@ const ROUNDS: usize = 300;
 type Derived = Stepper<HeavyTop>;
 type DerivedState = State<SO3, Vector3<f64>>;
 type Compensated = Stepper<HeavyTop, Plan<OwnStep<HeavyTop>>>;
-type CompensatedMotion = State<SO3, Vector3<f64>, MemoryWithCarry<WarmStart<Vector3<f64>>, SO3, Vector3<f64>>>;
+type CompensatedMotion = State<SO3, Vector3<f64>, (WarmStart<Vector3<f64>>, Carry<SO3, Vector3<f64>>)>;
 
 fn derived() -> (Derived, DerivedState) {
     let inertia = DiagonalNonstandardInertia::from_principal_moments(MOMENTS.into()).expect("a body");

@@ -66,7 +66,7 @@ pub struct Code {
 /// Operations of one kind, one after the other.
 #[derive(Clone, Debug, PartialEq)]
 struct Run {
-    operation: Arithmetic,
+    operation: Kind,
     instructions: Vec<Instruction>,
 }
 
@@ -76,15 +76,8 @@ struct Instruction {
     result: u16,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Arithmetic {
-    Negate,
-    Add,
-    Subtract,
-    Multiply,
-    Divide,
-    Apply(Function),
-}
+/// An operation without its operands.
+type Kind = Operation<()>;
 
 /// The operations in that order, each with a register for its result; `place` has those of inputs and literals, as many as
 /// `registers`, and gets those of results. With the number of registers.
@@ -136,7 +129,7 @@ fn by_kind(program: &Program) -> Vec<usize> {
         }
     }
     let kind = |at: usize| kind(program.operations[at]);
-    let mut ready: BTreeMap<Arithmetic, Vec<usize>> = BTreeMap::new();
+    let mut ready: BTreeMap<Kind, Vec<usize>> = BTreeMap::new();
     (0..count).filter(|&at| missing[at] == 0).for_each(|at| ready.entry(kind(at)).or_default().push(at));
     let mut order = Vec::with_capacity(count);
     while let Some(chosen) = ready.iter().max_by_key(|(_, ready)| ready.len()).map(|(&kind, _)| kind) {
@@ -237,12 +230,12 @@ impl Code {
         }
         for Run { operation, instructions } in &self.runs {
             match *operation {
-                Arithmetic::Negate => apply(registers, mask, instructions, |a, _| -a),
-                Arithmetic::Add => apply(registers, mask, instructions, |a, b| a + b),
-                Arithmetic::Subtract => apply(registers, mask, instructions, |a, b| a - b),
-                Arithmetic::Multiply => apply(registers, mask, instructions, |a, b| a * b),
-                Arithmetic::Divide => apply(registers, mask, instructions, |a, b| a / b),
-                Arithmetic::Apply(function) => apply(registers, mask, instructions, |a, _| applied(function, a)),
+                Operation::Negate(()) => apply(registers, mask, instructions, |a, _| -a),
+                Operation::Add(..) => apply(registers, mask, instructions, |a, b| a + b),
+                Operation::Subtract(..) => apply(registers, mask, instructions, |a, b| a - b),
+                Operation::Multiply(..) => apply(registers, mask, instructions, |a, b| a * b),
+                Operation::Divide(..) => apply(registers, mask, instructions, |a, b| a / b),
+                Operation::Apply(function, ()) => apply(registers, mask, instructions, |a, _| applied(function, a)),
             }
         }
         for (output, &register) in outputs.iter_mut().zip(&self.outputs) {
@@ -303,13 +296,6 @@ macro_rules! of_order {
 of_order!(stumpff_of of stumpff: 1 2 3 4 5 6 7 8 9 10);
 of_order!(log_ratio_of of log_ratio: 0 1 2 3 4 5 6);
 
-const fn kind(operation: Operation) -> Arithmetic {
-    match operation {
-        Operation::Negate(_) => Arithmetic::Negate,
-        Operation::Add(..) => Arithmetic::Add,
-        Operation::Subtract(..) => Arithmetic::Subtract,
-        Operation::Multiply(..) => Arithmetic::Multiply,
-        Operation::Divide(..) => Arithmetic::Divide,
-        Operation::Apply(function, _) => Arithmetic::Apply(function),
-    }
+fn kind(operation: Operation) -> Kind {
+    operation.of([(); 2])
 }

@@ -8,9 +8,7 @@ use super::question::{End, Start, Trials};
 use crate::groups::{Advected, LieGroup};
 use crate::motion::{Cost, Integrator as _};
 
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+roots!();
 
 /// Errors that are larger fall by no law of powers.
 pub(super) const LARGEST_ERROR: f64 = 0.05;

@@ -3,9 +3,7 @@
 use crate::groups::LieGroup;
 use crate::numbers::{Coordinates as _, Entries};
 
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+roots!();
 
 /// How near to the true motion, and until when.
 ///

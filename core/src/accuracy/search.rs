@@ -12,9 +12,7 @@ use super::question::{Accuracy, Start, Trials};
 use crate::groups::{Advected, LieGroup};
 use crate::motion::Cost;
 
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+roots!();
 
 /// The ratio of the lengths of two successive parts of the motion.
 const SHORTER: f64 = 8.0;

@@ -45,23 +45,20 @@ struct Back<'a, G: LieGroup> {
     values: Vec<G::Scalar>,
 }
 
+#[hot]
 impl<G: LieGroup> Pass<G> for Back<'_, G> {
-    #[hot]
     fn asks_for_parameters(&self) -> bool {
         true
     }
 
-    #[hot]
     fn on_the_way_back(&mut self) -> Option<WayBack<'_, G>> {
         Some((&mut self.cotangent, self.gradient))
     }
 
-    #[hot]
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>) {
         self.cotangent = stage.pull(&self.cotangent, self.gradient, &mut self.values);
     }
 
-    #[hot]
     fn flown(&mut self, flown: &FlowDerivatives<'_, G>) {
         self.cotangent = flown.pull(&self.cotangent, self.gradient);
     }
@@ -343,20 +340,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
     /// Such a step undoes one of `h` exactly but for rounding, which the motion magnifies like any other deviation.
     ///
     /// For that `l_d` has to be self-adjoint; another is refused when the user's crate is built, and so is a scene with a
-    /// force:
-    ///
-    /// ```compile_fail,E0277
-    /// use liestep::effects::{Drag, RigidBody};
-    /// use liestep::mechanics::Inertia;
-    /// use liestep::{NonstandardInertia, Stepper};
-    /// use nalgebra::Vector3;
-    ///
-    /// let moments = Vector3::new(2.0, 3.0, 4.0);
-    /// let body = RigidBody { J_d: NonstandardInertia::from_principal_moments(moments).unwrap() };
-    /// let drag = Drag { c: 0.1, J: Inertia::from_principal_moments(moments).unwrap() };
-    /// let stepper = Stepper::new(body + drag, 0.01).unwrap();
-    /// let _ = stepper.linearised().unwrap().backwards();
-    /// ```
+    /// force.
     ///
     /// # Errors
     ///

@@ -36,44 +36,38 @@ impl<G: LieGroup, A: Advected<G>> Recording<'_, G, A> {
     }
 }
 
+#[hot]
 impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Recording<'_, G, A> {
     const CARRIES: bool = false;
 
-    #[hot]
     fn now(&self) -> &Motion<G, A> {
         &self.motion
     }
 
-    #[hot]
     fn turn(&mut self, increment: &G::Matrix) {
         self.note(*increment);
         self.motion.turn(increment);
     }
 
-    #[hot]
     fn turned(&self, increment: &G::Matrix) -> A {
         self.motion.turned(increment)
     }
 
-    #[hot]
     fn push(&mut self, change: &G::Vector) {
         self.note(zero());
         Summation::push(&mut self.motion, change);
     }
 
-    #[hot]
     fn turn_and_push(&mut self, increment: &G::Matrix, change: &G::Vector) {
         self.note(*increment);
         self.motion.turn_and_push(increment, change);
     }
 
-    #[hot]
     fn proceed(&mut self, increment: &G::Matrix, change: &G::Vector, end: (G::Vector, A)) {
         self.note(*increment);
         self.motion.proceed(increment, change, end);
     }
 
-    #[hot]
     fn recount(&mut self, steps: u64) {
         self.motion.recount(steps);
     }
@@ -87,7 +81,6 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Recording<'_, G, A> {
         self.motion = motion;
     }
 
-    #[hot]
     fn show(&mut self, motion: Motion<G, A>) {
         self.motion = motion;
     }

@@ -47,6 +47,7 @@ pub(super) enum Kind<T> {
     Kick(T),
 }
 
+#[hot]
 impl<'a, E: SecondDerivatives> Stage<'a, E> {
     /// The effect's own step of length `h`.
     pub(crate) fn step<A>(effect: &'a E, h: Scalar<E>, event: &Change<Group<E>, A>, advected: E::Advected) -> Self {
@@ -55,6 +56,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     }
 
     /// The kick of its potential, with a share of the force gradient or without.
+    #[inline]
     pub(crate) fn kick(
         effect: &'a E,
         time: Scalar<E>,
@@ -71,19 +73,16 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     }
 
     /// The blocks of the tangent map of a step of this length.
-    #[hot]
     pub(super) fn blocks(&self, h: Scalar<E>) -> StepDerivatives<Square<E>> {
         self.effect.step_derivatives(&self.increment, &self.advected, h)
     }
 
     /// `Ad_{F⁻¹}`.
-    #[hot]
     pub(super) fn turned_back(&self) -> Square<E> {
         Group::<E>::from_increment(&self.increment).inverse().adjoint_matrix()
     }
 
     /// The slope `S` of a kick in this time, `δμ⁺ = δμ + S ζ`.
-    #[hot]
     pub(super) fn slope(&self, time: Scalar<E>) -> Square<E> {
         let blocks = self.blocks(real(1.0));
         let slope = (blocks.end_by_place + blocks.start_by_place * real::<Scalar<E>>(-1.0)) * time;
@@ -96,7 +95,6 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
 
     /// The step at which the derivatives are evaluated. A kick is proportional to its duration, so its derivatives are those
     /// of one second.
-    #[hot]
     fn length(&self) -> Scalar<E> {
         match self.kind {
             Kind::Step(h) => h,
@@ -107,6 +105,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     /// The derivatives of `μ` and `μ⁺` by all parameters, and by as many values as are asked for, numbered from the first of
     /// these on; parameters that are advected have none in a step that is given values. Those of a number that is visited
     /// again are added.
+    #[inline]
     pub(super) fn forwards(
         &self,
         (first_value, values, is_given_values): (usize, usize, bool),
@@ -147,6 +146,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     }
 
     /// The derivatives of `μ` and `μ⁺` by the scalar in this place of what is advected, as it is in space.
+    #[inline]
     fn by_value(&self, place: usize) -> (Vector<E>, Vector<E>) {
         let seen: E::Advected = seen_of_unit(place, &self.attitude);
         let (mut start, mut end) = (Vector::<E>::zero(), Vector::<E>::zero());
@@ -159,7 +159,6 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
 
     /// Adds the gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` by the parameters at a fixed increment, for `[u, p]`, and returns that along
     /// displacements; to `values` it adds that by what is advected, as it is in space.
-    #[hot]
     fn fixed_increment(
         &self,
         ends: [&Vector<E>; 2],
@@ -177,7 +176,6 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     ///
     /// `⟨p, f⟩ = ⟨u, D_v τ⟩` with `J u = τ` and, `s` being the share, `v = s p`. How `u` changes is in the gradient of
     /// `⟨u, D_v τ⟩ + ⟨r, τ − J u⟩` at fixed `u` and `r` where `J r = D_v τ`.
-    #[hot]
     fn of_gradient(
         &self,
         paired: &Vector<E>,
@@ -201,7 +199,6 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
 
     /// Adds what the parameters that are carried have in the gradient by what the body sees; of a step that is given values,
     /// to `values` what these have in it.
-    #[hot]
     fn add_carried(&self, by_seen: &E::Advected, add: &mut impl FnMut(usize, Scalar<E>), values: &mut [Scalar<E>]) {
         if !values.is_empty() {
             let mut sums = values.iter_mut();
@@ -221,7 +218,6 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
 
     /// Takes the gradient at the end of the stage to its beginning, and adds the parameters' shares, and those of the values
     /// that the step is given where they are asked for.
-    #[hot]
     pub(super) fn pull(
         &self,
         end: &Cotangent<Vector<E>>,

@@ -186,18 +186,16 @@ impl<G: LieGroup, A> Tangent<G, A> {
     }
 }
 
+#[hot]
 impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
-    #[hot]
     fn asks_for_parameters(&self) -> bool {
         !self.shares.is_empty()
     }
 
-    #[hot]
     fn on_the_way_back(&mut self) -> Option<WayBack<'_, G>> {
         None
     }
 
-    #[hot]
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>) {
         if !self.shares.is_empty() {
             let zero = G::Vector::zero();
@@ -249,7 +247,6 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
         }
     }
 
-    #[hot]
     fn flown(&mut self, flown: &FlowDerivatives<'_, G>) {
         if !self.shares.is_empty() {
             let zero = G::Vector::zero();

@@ -16,6 +16,7 @@ fn zero<G: LieGroup, const N: usize>() -> [G::Matrix; N] {
 }
 
 /// Body by body; the [pattern](LieGroup::FACTORS) is that of one.
+#[hot]
 impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
     type Scalar = G::Scalar;
     type Vector = Bodies<G::Vector, N>;
@@ -38,22 +39,18 @@ impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
         filled!(*self, |k| self[k].inverse())
     }
 
-    #[hot]
     fn matrix(&self) -> Self::Matrix {
         filled!(zero::<G, N>(), |k| self[k].matrix())
     }
 
-    #[hot]
     fn from_matrix_unchecked(matrix: Self::Matrix) -> Self {
         filled!([G::identity(); N], |k| G::from_matrix_unchecked(matrix[k]))
     }
 
-    #[hot]
     fn hat(components: &Self::Vector) -> Self::Matrix {
         filled!(zero::<G, N>(), |k| G::hat(&components.0[k]))
     }
 
-    #[hot]
     fn vee(matrix: &Self::Matrix) -> Self::Vector {
         Bodies(filled!([G::Vector::zero(); N], |k| G::vee(&matrix[k])))
     }
@@ -62,7 +59,6 @@ impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
         Bodies(filled!(velocity.0, |k| self[k].adjoint(&velocity.0[k])))
     }
 
-    #[hot]
     fn adjoint_transpose(&self, momentum: &Self::Vector) -> Self::Vector {
         Bodies(filled!(momentum.0, |k| self[k].adjoint_transpose(&momentum.0[k])))
     }
@@ -75,32 +71,26 @@ impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
         Bodies(filled!(xi.0, |k| G::lie_bracket_transpose(&xi.0[k], &momentum.0[k])))
     }
 
-    #[hot]
     fn from_increment(increment: &Self::Matrix) -> Self {
         filled!([G::identity(); N], |k| G::from_increment(&increment[k]))
     }
 
-    #[hot]
     fn increment(&self) -> Self::Matrix {
         filled!(zero::<G, N>(), |k| self[k].increment())
     }
 
-    #[hot]
     fn inverse_increment(increment: &Self::Matrix) -> Self::Matrix {
         filled!(*increment, |k| G::inverse_increment(&increment[k]))
     }
 
-    #[hot]
     fn change(&self, increment: &Self::Matrix) -> Self::Matrix {
         filled!(*increment, |k| self[k].change(&increment[k]))
     }
 
-    #[hot]
     fn advance(&self, increment: &Self::Matrix) -> Self {
         filled!(*self, |k| self[k].advance(&increment[k]))
     }
 
-    #[hot]
     fn adjoint_transpose_increment(increment: &Self::Matrix, momentum: &Self::Vector) -> Self::Vector {
         Bodies(filled!(momentum.0, |k| G::adjoint_transpose_increment(&increment[k], &momentum.0[k])))
     }
@@ -126,6 +116,7 @@ impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
         self.iter().fold(nalgebra::zero(), |sum, body| sum + body.defect())
     }
 
+    #[inline]
     fn restored(&self, beyond: f64) -> Option<(Self, Mask<G::Scalar>)> {
         let (mut elements, mut far) = (*self, nowhere::<G::Scalar>());
         for element in &mut elements {
@@ -192,22 +183,20 @@ retraction_of_bodies!(CayleyRetraction);
 retraction_of_bodies!(ExponentialRetraction);
 
 /// The body `K`, counted from zero.
+#[hot]
 impl<G: LieGroup, const K: usize, const N: usize> Factor<K> for [G; N] {
     type Of = G;
 
-    #[hot]
     fn factor(&self) -> G {
         const { assert!(K < N, "there is no body with this number: they are counted from zero") };
         self[K]
     }
 
-    #[hot]
     fn of_matrix(matrix: &[G::Matrix; N]) -> G::Matrix {
         const { assert!(K < N, "there is no body with this number: they are counted from zero") };
         matrix[K]
     }
 
-    #[hot]
     fn components(joined: &Bodies<G::Vector, N>) -> G::Vector {
         const { assert!(K < N, "there is no body with this number: they are counted from zero") };
         joined.0[K]
@@ -215,17 +204,16 @@ impl<G: LieGroup, const K: usize, const N: usize> Factor<K> for [G; N] {
 }
 
 /// What each body sees.
+#[hot]
 impl<G: LieGroup, W: Advected<G>, const N: usize> Advected<[G; N]> for [W; N] {
     fn seen_from(&self, attitude: &[G; N]) -> Self {
         filled!(*self, |k| self[k].seen_from(&attitude[k]))
     }
 
-    #[hot]
     fn change(&self, increment: &[G::Matrix; N]) -> Self {
         filled!(*self, |k| self[k].change(&increment[k]))
     }
 
-    #[hot]
     fn advect(&self, increment: &[G::Matrix; N]) -> Self {
         filled!(*self, |k| self[k].advect(&increment[k]))
     }
@@ -236,11 +224,6 @@ impl<G: LieGroup, W: Advected<G>, const N: usize> Advected<[G; N]> for [W; N] {
 
     fn seen_through(&self, matrix: &[G::Matrix; N], inverse: &[G::Matrix; N]) -> Self {
         filled!(*self, |k| self[k].seen_through(&matrix[k], &inverse[k]))
-    }
-
-    #[hot]
-    fn is_finite(&self) -> bool {
-        self.iter().all(W::is_finite)
     }
 }
 
@@ -272,6 +255,7 @@ pub trait Pair: LieGroup {
     fn blocks(matrix: &SquareOf<Self>) -> [[SquareOf<Self::Body>; 2]; 2];
 }
 
+#[hot]
 impl<G: LieGroup> Pair for (G, G)
 where
     (G, G): LieGroup<Scalar = G::Scalar, Matrix = (G::Matrix, G::Matrix), Vector = JoinedVector<G>>,
@@ -279,27 +263,22 @@ where
 {
     type Body = G;
 
-    #[hot]
     fn pair(first: &G, second: &G) -> Self {
         (*first, *second)
     }
 
-    #[hot]
     fn matrices(first: &G::Matrix, second: &G::Matrix) -> Self::Matrix {
         (*first, *second)
     }
 
-    #[hot]
     fn parts(joined: &Self::Vector) -> [G::Vector; 2] {
         G::Vector::split(joined).into()
     }
 
-    #[hot]
     fn joined(first: &G::Vector, second: &G::Vector) -> Self::Vector {
         first.join(second)
     }
 
-    #[hot]
     fn blocks(matrix: &SquareOf<Self>) -> [[SquareOf<G>; 2]; 2] {
         G::Vector::blocks(matrix)
     }
@@ -308,6 +287,7 @@ where
 /// The components of two.
 type JoinedVector<G> = <<G as LieGroup>::Vector as Join<<G as LieGroup>::Scalar, <G as LieGroup>::Vector>>::Joined;
 
+#[hot]
 impl<A, B> Pair for (A, B, A, B)
 where
     A: LieGroup,
@@ -323,27 +303,22 @@ where
 {
     type Body = (A, B);
 
-    #[hot]
     fn pair(first: &(A, B), second: &(A, B)) -> Self {
         (first.0, first.1, second.0, second.1)
     }
 
-    #[hot]
     fn matrices(first: &(A::Matrix, B::Matrix), second: &(A::Matrix, B::Matrix)) -> Self::Matrix {
         (first.0, first.1, second.0, second.1)
     }
 
-    #[hot]
     fn parts(joined: &Self::Vector) -> [<(A, B) as LieGroup>::Vector; 2] {
         <(A, B) as LieGroup>::Vector::split(joined).into()
     }
 
-    #[hot]
     fn joined(first: &<(A, B) as LieGroup>::Vector, second: &<(A, B) as LieGroup>::Vector) -> Self::Vector {
         first.join(second)
     }
 
-    #[hot]
     fn blocks(matrix: &SquareOf<Self>) -> [[SquareOf<(A, B)>; 2]; 2] {
         <(A, B) as LieGroup>::Vector::blocks(matrix)
     }

@@ -126,6 +126,7 @@ fn nonzero<const N: usize>(matrix: &[[f64; N]; N]) -> impl Iterator<Item = (usiz
     (0..N * N).map(|place| (place / N, place % N, matrix[place / N][place % N])).filter(|entry| entry.2 != 0.0)
 }
 
+#[hot]
 impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for MatrixGroup<K, T, N, D> {
     type Scalar = T;
     type Vector = SVector<T, D>;
@@ -138,27 +139,22 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
         Self::from_matrix_unchecked(SMatrix::identity())
     }
 
-    #[hot]
     fn compose(&self, right: &Self) -> Self {
         Self::from_matrix_unchecked(self.0 * right.0)
     }
 
-    #[hot]
     fn inverse(&self) -> Self {
         Self::from_matrix_unchecked(Self::inverse_of(&self.0))
     }
 
-    #[hot]
     fn matrix(&self) -> SMatrix<T, N, N> {
         self.0
     }
 
-    #[hot]
     fn from_matrix_unchecked(matrix: SMatrix<T, N, N>) -> Self {
         Self(matrix, PhantomData)
     }
 
-    #[hot]
     fn hat(components: &SVector<T, D>) -> SMatrix<T, N, N> {
         let mut algebra = SMatrix::zeros();
         for (k, (entries, count)) in Self::ENTRIES.iter().enumerate() {
@@ -170,24 +166,20 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
     }
 
     /// Of a matrix that isn't in the algebra, the components of its orthogonal projection.
-    #[hot]
     fn vee(matrix: &SMatrix<T, N, N>) -> SVector<T, D> {
         let pairings = Self::pairings(matrix);
         SVector::from_fn(|k, _| pairings[k] * real(1.0 / Self::SQUARED_LENGTHS[k]))
     }
 
-    #[hot]
     fn adjoint(&self, velocity: &SVector<T, D>) -> SVector<T, D> {
         Self::vee(&(self.0 * Self::hat(velocity) * Self::inverse_of(&self.0)))
     }
 
     /// Components `⟨μ, F E_k F⁻¹⟩`.
-    #[hot]
     fn adjoint_transpose(&self, momentum: &SVector<T, D>) -> SVector<T, D> {
         Self::pairings(&(self.0.transpose() * Self::dual_hat(momentum) * Self::inverse_of(&self.0).transpose()))
     }
 
-    #[hot]
     fn lie_bracket(xi: &SVector<T, D>, eta: &SVector<T, D>) -> SVector<T, D> {
         let mut bracket = SVector::zeros();
         for (i, constants) in Self::STRUCTURE.iter().enumerate() {
@@ -198,7 +190,6 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
         bracket
     }
 
-    #[hot]
     fn lie_bracket_transpose(xi: &SVector<T, D>, momentum: &SVector<T, D>) -> SVector<T, D> {
         let mut transposed = SVector::zeros();
         for (i, constants) in Self::STRUCTURE.iter().enumerate() {
@@ -209,17 +200,14 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
         transposed
     }
 
-    #[hot]
     fn from_increment(increment: &SMatrix<T, N, N>) -> Self {
         Self::from_matrix_unchecked(increment + SMatrix::identity())
     }
 
-    #[hot]
     fn increment(&self) -> SMatrix<T, N, N> {
         self.0 - SMatrix::identity()
     }
 
-    #[hot]
     fn inverse_increment(increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
         if const { Self::IS_ADDED } {
             return -increment;
@@ -227,7 +215,6 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
         -(Self::inverse_of(&(increment + SMatrix::identity())) * increment)
     }
 
-    #[hot]
     fn change(&self, increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
         if const { Self::IS_ADDED } {
             return *increment;
@@ -236,7 +223,6 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
     }
 
     /// With `F⁻¹ = I + E`, `E = −F⁻¹D`: components `⟨DᵀM + (M + DᵀM) Eᵀ, E_k⟩` for the covector's matrix `M`.
-    #[hot]
     fn adjoint_transpose_increment(increment: &SMatrix<T, N, N>, momentum: &SVector<T, D>) -> SVector<T, D> {
         if const { Self::IS_ADDED } {
             return SVector::zeros();
@@ -248,6 +234,7 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
     }
 
     /// Those whose generators are skew.
+    #[inline]
     fn turning_components() -> Vec<bool> {
         let is_skew =
             |e: &[[f64; N]; N]| (0..N * N).all(|place| e[place / N][place % N] + e[place % N][place / N] == 0.0);

@@ -210,18 +210,17 @@ macro_rules! product {
         $scalar:ident $joined:ident $split:block $join:expr, $squares:expr, [$($bound:tt)*]
     ) => {
         /// Factor by factor.
+        #[hot]
         impl<$($group: LieGroup<Scalar = $scalar>,)+ $scalar: crate::numbers::Real> Retraction<($($group,)+)> for $retraction
         where
             $($retraction: Retraction<$group>,)+
             $($bound)*
         {
-            #[hot]
             fn increment($joined: &<($($group,)+) as LieGroup>::Vector) -> ($($group::Matrix,)+) {
                 let ($($part,)+) = $split;
                 ($(<$retraction as Retraction<$group>>::increment(&$part),)+)
             }
 
-            #[hot]
             fn increment_of_half($joined: &<($($group,)+) as LieGroup>::Vector) -> ($($group::Matrix,)+) {
                 let ($($part,)+) = $split;
                 ($(<$retraction as Retraction<$group>>::increment_of_half(&$part),)+)
@@ -232,6 +231,7 @@ macro_rules! product {
                 Some($join)
             }
 
+            #[inline]
             fn tangent(
                 $joined: &<($($group,)+) as LieGroup>::Vector,
             ) -> <<($($group,)+) as LieGroup>::Vector as Coordinates<$scalar>>::Square {
@@ -240,19 +240,16 @@ macro_rules! product {
                 $squares
             }
 
-            #[hot]
             fn is_near_identity($joined: &<($($group,)+) as LieGroup>::Vector) -> Mask<$scalar> {
                 let ($($part,)+) = $split;
                 !nowhere::<$scalar>() $(& <$retraction as Retraction<$group>>::is_near_identity(&$part))+
             }
 
-            #[hot]
             fn is_half_near_identity($joined: &<($($group,)+) as LieGroup>::Vector) -> Mask<$scalar> {
                 let ($($part,)+) = $split;
                 !nowhere::<$scalar>() $(& <$retraction as Retraction<$group>>::is_half_near_identity(&$part))+
             }
 
-            #[hot]
             fn is_half_well_near_identity($joined: &<($($group,)+) as LieGroup>::Vector) -> Mask<$scalar> {
                 let ($($part,)+) = $split;
                 !nowhere::<$scalar>() $(& <$retraction as Retraction<$group>>::is_half_well_near_identity(&$part))+
@@ -266,23 +263,21 @@ macro_rules! product {
         @factor $own:ident $own_place:tt $own_part:ident [$($group:ident $place:tt $part:ident),+]
         $scalar:ident $joined:ident $split:block [$($bound:tt)*]
     ) => {
+        #[hot]
         impl<$($group: LieGroup<Scalar = $scalar>,)+ $scalar: crate::numbers::Real> Factor<$own_place> for ($($group,)+)
         where
             $($bound)*
         {
             type Of = $own;
 
-            #[hot]
             fn factor(&self) -> $own {
                 self.$own_place
             }
 
-            #[hot]
             fn of_matrix(matrix: &Self::Matrix) -> $own::Matrix {
                 matrix.$own_place
             }
 
-            #[hot]
             fn components($joined: &Self::Vector) -> $own::Vector {
                 let ($($part,)+) = $split;
                 let _ = ($(&$part,)+);

@@ -181,6 +181,7 @@ impl<T: RealField + Copy> TryFrom<Matrix3<T>> for SO3<T> {
     }
 }
 
+#[hot]
 impl<T: Real> LieGroup for SO3<T> {
     type Scalar = T;
     type Vector = Vector3<T>;
@@ -193,81 +194,66 @@ impl<T: Real> LieGroup for SO3<T> {
         Self(Matrix3::identity())
     }
 
-    #[inline]
     fn compose(&self, right: &Self) -> Self {
         Self(self.0 * right.0)
     }
 
-    #[inline]
     fn inverse(&self) -> Self {
         Self(self.0.transpose())
     }
 
-    #[inline]
     fn matrix(&self) -> Matrix3<T> {
         self.0
     }
 
-    #[hot]
     fn from_matrix_unchecked(matrix: Matrix3<T>) -> Self {
         Self(matrix)
     }
 
-    #[inline]
     fn hat(v: &Vector3<T>) -> Matrix3<T> {
         let zero = T::zero();
         Matrix3::new(zero, -v.z, v.y, v.z, zero, -v.x, -v.y, v.x, zero)
     }
 
     /// Of a matrix that isn't skew, the components of its skew part.
-    #[inline]
     fn vee(m: &Matrix3<T>) -> Vector3<T> {
         skew_components(m)
     }
 
-    #[inline]
     fn adjoint(&self, velocity: &Vector3<T>) -> Vector3<T> {
         self.0 * velocity
     }
 
-    #[hot]
     fn adjoint_matrix(&self) -> Matrix3<T> {
         self.0
     }
 
-    #[inline]
     fn adjoint_transpose(&self, momentum: &Vector3<T>) -> Vector3<T> {
         transpose_mul(&self.0, momentum)
     }
 
-    #[inline]
     fn lie_bracket(xi: &Vector3<T>, eta: &Vector3<T>) -> Vector3<T> {
         xi.cross(eta)
     }
 
     /// `μ × ξ`.
-    #[inline]
     fn lie_bracket_transpose(xi: &Vector3<T>, momentum: &Vector3<T>) -> Vector3<T> {
         momentum.cross(xi)
     }
 
-    #[inline]
     fn from_increment(increment: &Matrix3<T>) -> Self {
         Self(increment + Matrix3::identity())
     }
 
-    #[inline]
     fn increment(&self) -> Matrix3<T> {
         self.0 - Matrix3::identity()
     }
 
     /// `Dᵀ`.
-    #[hot]
     fn inverse_increment(increment: &Matrix3<T>) -> Matrix3<T> {
         increment.transpose()
     }
 
-    #[hot]
     fn change(&self, increment: &Matrix3<T>) -> Matrix3<T> {
         // Of the product of matrices, which isn't always inlined, lanes would have the target's common instructions.
         let mut product = Matrix3::zeros();
@@ -280,7 +266,6 @@ impl<T: Real> LieGroup for SO3<T> {
         product
     }
 
-    #[hot]
     fn adjoint_transpose_increment(increment: &Matrix3<T>, momentum: &Vector3<T>) -> Vector3<T> {
         transpose_mul(increment, momentum)
     }
@@ -294,7 +279,6 @@ impl<T: Real> LieGroup for SO3<T> {
     }
 
     // Inlined, so that nothing checks a length that the caller's array has.
-    #[hot]
     fn write_numbers<'a>(&self, numbers: &'a mut [T]) -> &'a mut [T] {
         let quaternion = quaternion(&self.0);
         let Some((own, behind)) = numbers.split_first_chunk_mut::<4>() else { return &mut [] };
@@ -314,7 +298,6 @@ impl<T: Real> LieGroup for SO3<T> {
     }
 
     /// `‖RᵀR − I‖` in the Frobenius norm; of a reflection, which is orthogonal too, `|det R − 1|` more.
-    #[hot]
     fn defect(&self) -> T {
         let determinant = self.0.column(0).cross(&self.0.column(1)).dot(&self.0.column(2));
         self.departure() + (T::one() - determinant).select(determinant.simd_lt(T::zero()), T::zero())
@@ -322,7 +305,6 @@ impl<T: Real> LieGroup for SO3<T> {
 
     /// By one Newton step of the polar decomposition, `½ R (3 I − RᵀR)`, which squares the defect.
     // Inlined, as the optimiser otherwise decides by the rest of the program.
-    #[hot]
     fn restored(&self, beyond: f64) -> Option<(Self, Mask<T>)> {
         let far = self.departure().simd_gt(T::simd_default_epsilon() * real(beyond));
         far.any().then(|| (self.nearer(far), far))

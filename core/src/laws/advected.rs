@@ -10,9 +10,7 @@ use super::samples::{
 use crate::groups::{Advected, ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 use crate::numbers::Entries;
 
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+roots!();
 
 /// `e · w = w`, `(gf)⁻¹ · w = f⁻¹ · (g⁻¹ · w)`, linear in `w`, and `−ξ·w` is the rate along `exp(tξ)`.
 pub fn parameter_is_acted_on<G, A, const N: usize, const D: usize>()

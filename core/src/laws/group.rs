@@ -7,9 +7,7 @@ use super::samples::{
     derivative, eliminated_inverse,
 };
 
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+roots!();
 
 /// Closure, associativity, neutral and inverse elements.
 pub fn group_axioms<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {

@@ -6,9 +6,7 @@ use core::ops::{Add, Mul, Sub};
 
 use nalgebra::{SMatrix, SVector};
 
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+roots!();
 
 use crate::groups::{LieGroup, exponential};
 use crate::numbers::Entries;

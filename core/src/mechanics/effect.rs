@@ -169,6 +169,7 @@ impl<E: Effect + ?Sized> Limit<E> {
     note = "a continuous Lagrangian `l = …` is one with `discretise = …`, which makes its steps",
     note = "joints hold the bodies of a scene together: `Stepper::jointed(scene, Joints::tree([…]), h)`"
 )]
+#[hot]
 pub trait Effect: Term {
     /// The coordinates of the Newton unknown.
     type Retraction: Retraction<Self::Group>;
@@ -229,42 +230,36 @@ pub trait Effect: Term {
 
     /// [`INERTIA_IS_CONSTANT`](Self::INERTIA_IS_CONSTANT), asked of a value: an effect that is declared when a program
     /// runs doesn't know it in its type.
-    #[hot]
     #[must_use]
     fn has_constant_inertia(&self) -> bool {
         Self::INERTIA_IS_CONSTANT
     }
 
     /// [`IS_QUADRATIC`](Self::IS_QUADRATIC), asked of a value.
-    #[hot]
     #[must_use]
     fn is_quadratic(&self) -> bool {
         Self::IS_QUADRATIC
     }
 
     /// [`DENOMINATORS`](Self::DENOMINATORS), asked of a value.
-    #[hot]
     #[must_use]
     fn denominators(_: &Self::Constants) -> u32 {
         Self::DENOMINATORS
     }
 
     /// [`PARTS`](Self::PARTS), asked of a value: of those that the type has, it may lack some.
-    #[hot]
     #[must_use]
     fn parts(_: &Self::Constants) -> Parts {
         Self::PARTS
     }
 
     /// [`APART`](Self::APART), asked of a value: it may have more blocks than the type.
-    #[hot]
     #[must_use]
     fn apart(_: &Self::Constants) -> Blocks {
         Self::APART
     }
 
     /// [`JACOBIAN_IS_EXPENSIVE`](Self::JACOBIAN_IS_EXPENSIVE), asked of a value where the type has it.
-    #[hot]
     #[must_use]
     fn jacobian_is_expensive(_: &Self::Constants) -> bool {
         Self::JACOBIAN_IS_EXPENSIVE
@@ -287,19 +282,16 @@ pub trait Effect: Term {
     fn limit(&self, velocity: Option<&Vector<Self>>, w: &Self::Advected) -> Limit<Self>;
 
     /// The matrix `J(w)` of the [limit](Self::limit) at rest; of a body alone it is the same for all `w`.
-    #[hot]
     fn inertia(&self, w: &Self::Advected) -> Square<Self> {
         self.limit(None, w).hessian
     }
 
     /// The covector `s` of the [limit](Self::limit): what is linear in the velocity.
-    #[hot]
     fn momentum_bias(&self, w: &Self::Advected) -> Vector<Self> {
         self.limit(None, w).momentum
     }
 
     /// The potential `V(w)` of the [limit](Self::limit), in J.
-    #[hot]
     fn potential(&self, w: &Self::Advected) -> Self::Scalar {
         -self.limit(None, w).l
     }
@@ -329,7 +321,6 @@ pub trait Effect: Term {
     /// `exp(−t v̂)·w`. `None` where it isn't known.
     ///
     /// The kicks of a [`SplittingScheme`](crate::methods::SplittingScheme) with force gradients are made with it.
-    #[hot]
     #[must_use]
     fn kick_derivative(_: &Self::Constants, _: &Self::Advected, _: &Vector<Self>) -> Option<Vector<Self>> {
         None
@@ -351,7 +342,6 @@ pub trait Effect: Term {
 
     /// One of Newton's iterations: the update that is to be subtracted, and what it was solved from, as
     /// [`Coordinates::factorise_with`] gives it. A system of many bodies makes it body by body.
-    #[hot]
     #[must_use]
     fn newton_update(
         constants: &Self::Constants,
@@ -363,7 +353,6 @@ pub trait Effect: Term {
 
     /// [`newton_system`](Self::newton_system), with the blocks that join neighbours in a row of bodies added to those that
     /// are given.
-    #[hot]
     fn newton_linked(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -374,7 +363,6 @@ pub trait Effect: Term {
     }
 
     /// The residual of [`newton_system`](Self::newton_system) without its Jacobian.
-    #[hot]
     fn newton_residual(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -385,7 +373,6 @@ pub trait Effect: Term {
 
     /// What of [`kick_after`](Self::kick_after) isn't in the [`moving_kick`](Residual::moving_kick) of
     /// [`newton_residual`](Self::newton_residual): that of the other terms of a sum.
-    #[hot]
     #[must_use]
     fn kick_beside(_: &Self::Constants, _: &Matrix<Self>, _: &Self::Advected) -> Option<Vector<Self>> {
         None

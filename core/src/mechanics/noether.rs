@@ -8,9 +8,7 @@ use crate::mechanics::continuous::ContinuousLagrangian;
 use crate::mechanics::term::Term;
 use crate::numbers::{Coordinates, Entries, real, reported};
 
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+roots!();
 
 type Vector<L> = <<L as Term>::Group as LieGroup>::Vector;
 

@@ -166,6 +166,7 @@ impl<M: Add<Output = M>> Add for StepDerivatives<M> {
     }
 }
 
+#[hot]
 impl<A, B> SecondDerivatives for Sum<A, B>
 where
     A: SecondDerivatives,
@@ -177,7 +178,6 @@ where
         self.first.are_derived() && self.second.are_derived()
     }
 
-    #[hot]
     fn step_derivatives(
         &self,
         increment: &Matrix<Self>,
@@ -187,7 +187,6 @@ where
         self.first.step_derivatives(increment, &w.0, h) + self.second.step_derivatives(increment, &w.1, h)
     }
 
-    #[hot]
     fn by_parameters(
         &self,
         increment: &Matrix<Self>,
@@ -201,7 +200,6 @@ where
         });
     }
 
-    #[hot]
     fn by_advected(
         &self,
         increment: &Matrix<Self>,
@@ -214,14 +212,12 @@ where
         self.second.by_advected(increment, &w.1, h, &mut |number, start, end| visit(before + number, start, end));
     }
 
-    #[hot]
     fn carried_parameters(visit: &mut impl FnMut(usize, usize)) {
         let before = scalars::<Scalar<Self>, A::Advected>();
         A::carried_parameters(visit);
         B::carried_parameters(&mut |place, number| visit(before + place, A::PARAMETERS + number));
     }
 
-    #[hot]
     fn adjoint_system(
         &self,
         increment: &Matrix<Self>,
@@ -234,7 +230,6 @@ where
         (first + second, right_side + other)
     }
 
-    #[hot]
     fn adjoint_gradient(
         &self,
         increment: &Matrix<Self>,
@@ -249,7 +244,6 @@ where
         (first + second, (seen, other))
     }
 
-    #[hot]
     fn kick_gradient(
         &self,
         w: &Self::Advected,

@@ -133,6 +133,7 @@ macro_rules! of_those_with {
     };
 }
 
+#[hot]
 impl<A, B> Effect for Sum<A, B>
 where
     A: Effect,
@@ -182,34 +183,28 @@ where
         format!("{}\n{}", self.first.derivation(), self.second.derivation())
     }
 
-    #[hot]
     fn has_constant_inertia(&self) -> bool {
         self.first.has_constant_inertia() && self.second.has_constant_inertia()
     }
 
-    #[hot]
     fn is_quadratic(&self) -> bool {
         self.first.is_quadratic() && self.second.is_quadratic()
     }
 
-    #[hot]
     fn denominators(constants: &Self::Constants) -> u32 {
         let (first, second) = (A::denominators(&constants.0), B::denominators(&constants.1));
         of_those_with!(constants, unknown: first.max(second), first, second)
     }
 
-    #[hot]
     fn parts(constants: &Self::Constants) -> Parts {
         A::parts(&constants.0).or(B::parts(&constants.1))
     }
 
-    #[hot]
     fn apart(constants: &Self::Constants) -> Blocks {
         let (first, second) = (A::apart(&constants.0), B::apart(&constants.1));
         of_those_with!(constants, unknown: first.or(second), first, second)
     }
 
-    #[hot]
     fn jacobian_is_expensive(constants: &Self::Constants) -> bool {
         let (first, second) = (A::jacobian_is_expensive(&constants.0), B::jacobian_is_expensive(&constants.1));
         of_those_with!(constants, unknown: false, first, second)
@@ -224,7 +219,6 @@ where
         fn momentum_jacobian(f: &Matrix<Self>, w, h: Self::Scalar) -> Square<Self>;
     }
 
-    #[hot]
     fn limit(&self, velocity: Option<&Vector<Self>>, w: &Self::Advected) -> Limit<Self> {
         let (first, second) = (self.first.limit(velocity, &w.0), self.second.limit(velocity, &w.1));
         Limit {
@@ -242,7 +236,6 @@ where
         A::are_finite(&constants.0) && B::are_finite(&constants.1)
     }
 
-    #[hot]
     fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> Vector<Self> {
         of_those_with!(
             constants, kick_before: A::kick_before(&constants.0, &w.0) + B::kick_before(&constants.1, &w.1),
@@ -251,7 +244,6 @@ where
         )
     }
 
-    #[hot]
     fn kick_derivative(
         constants: &Self::Constants,
         w: &Self::Advected,
@@ -263,7 +255,6 @@ where
     }
 
     /// The right side `a` belongs to one unknown part, zero to the other.
-    #[hot]
     fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &Self::Advected) -> Self::StepTerms {
         let zero = Vector::<Self>::zero();
         // What only joins bodies would take it twice.
@@ -273,7 +264,6 @@ where
         (A::step_terms(&constants.0, first, &w.0), B::step_terms(&constants.1, second, &w.1))
     }
 
-    #[hot]
     fn newton_system(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -294,7 +284,6 @@ where
         )
     }
 
-    #[hot]
     fn newton_update(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -307,7 +296,6 @@ where
         )
     }
 
-    #[hot]
     fn newton_linked(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -325,7 +313,6 @@ where
         )
     }
 
-    #[hot]
     fn newton_residual(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -338,7 +325,6 @@ where
         )
     }
 
-    #[hot]
     fn kick_beside(
         constants: &Self::Constants,
         increment: &Matrix<Self>,
@@ -357,7 +343,6 @@ where
         }
     }
 
-    #[hot]
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self> {
         of_those_with!(
             constants, kick_after: A::kick_after(&constants.0, increment, &next.0) + B::kick_after(&constants.1, increment, &next.1),

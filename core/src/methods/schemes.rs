@@ -1,11 +1,23 @@
 //! Tables of coefficients.
 
-/// Constants of a type, and the list of all of them.
+/// Constants of a type, the list of all of them, and what each is called by and has for an order.
 macro_rules! schemes {
     ($($(#[$doc:meta])* $name:ident = $scheme:expr;)+) => {
         $($(#[$doc])* pub const $name: Self = $scheme;)+
 
         /// All of these.
         pub const ALL: [Self; [$(stringify!($name)),+].len()] = [$(Self::$name),+];
+
+        /// What it is called in tables.
+        #[must_use]
+        pub fn name(&self) -> &'static str {
+            self.name
+        }
+
+        /// The order in the step, of the whole.
+        #[must_use]
+        pub fn order(&self) -> u32 {
+            self.order
+        }
     };
 }

@@ -85,9 +85,10 @@ impl Debug for AnyHistory {
     }
 }
 
-/// How a wrapper steps, as its `change` lets what it wraps, and is read: as this, of the motion that it sees.
+/// How a wrapper steps, as its `change` lets what it wraps, and is read: as this, of the motion that it sees. What follows a
+/// stretch is shown a motion as this.
 macro_rules! wraps {
-    ($self:ident, $inner:expr, $state:ident => $own:expr, $motion:ident: $type:ty, $seen:expr) => {
+    ($self:ident, $inner:expr, $state:ident => $own:expr, $motion:ident: $type:ty, $seen:expr, $next:ident => $shown:expr) => {
         fn step(&$self, state: &mut Self::State) -> Result<StepReport, StepError> {
             $self.change(state, |own| $inner.step(own))
         }
@@ -98,6 +99,19 @@ macro_rules! wraps {
 
         fn attempt(&$self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
             $self.change(state, |own| $inner.attempt(own, steps))
+        }
+
+        fn run_stretches(
+            &$self,
+            state: &mut Self::State,
+            steps: u64,
+            $next: &mut NextSteps<'_, Self::Group, Self::Advected>,
+        ) -> Result<u64, StepError> {
+            $self.change(state, |own| $inner.run_stretches(own, steps, $shown))
+        }
+
+        fn cost(&$self) -> Option<Cost> {
+            Integrator::cost(&$inner)
         }
 
         fn time(&$self, $state: &Self::State) -> G::Scalar {
@@ -185,21 +199,8 @@ where
     type Advected = A;
     type State = AnyState<G, A>;
 
-    fn run_stretches(
-        &self,
-        state: &mut Self::State,
-        steps: u64,
-        next: &mut NextSteps<'_, G, A>,
-    ) -> Result<u64, StepError> {
-        self.change(state, |own| self.0.run_stretches(own, steps, next))
-    }
-
     fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, A>, StepError> {
         self.0.part(&self.own(state), fraction)
-    }
-
-    fn cost(&self) -> Option<Cost> {
-        self.0.cost()
     }
 
     fn adopt(&self, motion: &Motion<G, A>) -> Self::State {
@@ -210,7 +211,7 @@ where
         self.0.seen(motion)
     }
 
-    wraps!(self, self.0, state => &self.own(state), motion: &Motion<G, A>, motion);
+    wraps!(self, self.0, state => &self.own(state), motion: &Motion<G, A>, motion, next => next);
 }
 
 /// # Wrap: a stepper of any type
@@ -252,21 +253,8 @@ impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
     type Advected = A;
     type State = AnyState<G, A>;
 
-    fn run_stretches(
-        &self,
-        state: &mut Self::State,
-        steps: u64,
-        next: &mut NextSteps<'_, G, A>,
-    ) -> Result<u64, StepError> {
-        self.stepper.run_stretches(state, steps, next)
-    }
-
     fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, A>, StepError> {
         self.stepper.part(state, fraction)
-    }
-
-    fn cost(&self) -> Option<Cost> {
-        Some(self.cost)
     }
 
     fn adopt(&self, motion: &Motion<G, A>) -> Self::State {
@@ -277,7 +265,7 @@ impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
         self.stepper.seen(motion)
     }
 
-    wraps!(self, self.stepper, state => state, motion: &Motion<G, A>, motion);
+    wraps!(self, *self.stepper, state => state, motion: &Motion<G, A>, motion, next => next);
 }
 
 /// A stepper that hides what is advected: it is kept with what the method keeps.
@@ -314,28 +302,18 @@ impl<G: LieGroup, A: Advected<G>> Integrator for WithoutAdvected<G, A> {
     type Advected = ();
     type State = State<G, (), HiddenState<A>>;
 
-    fn run_stretches(
-        &self,
-        state: &mut Self::State,
-        steps: u64,
-        next: &mut NextSteps<'_, G, ()>,
-    ) -> Result<u64, StepError> {
-        self.change(state, |own| self.0.run_stretches(own, steps, &mut |shown, time| next(&seeing(shown, ()), time)))
-    }
-
     fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, ()>, StepError> {
         Ok(seeing(&self.0.part(&shown(state), fraction)?, ()))
-    }
-
-    fn cost(&self) -> Option<Cost> {
-        Some(self.0.cost)
     }
 
     fn adopt(&self, motion: &Motion<G, ()>) -> Self::State {
         hidden(self.0.adopt(&self.0.seen(motion)))
     }
 
-    wraps!(self, self.0, state => &shown(state), motion: &Motion<G, ()>, &self.0.seen(motion));
+    wraps!(
+        self, self.0, state => &shown(state), motion: &Motion<G, ()>, &self.0.seen(motion),
+        next => &mut |shown, time| next(&seeing(shown, ()), time)
+    );
 }
 
 impl<G: LieGroup, A: Advected<G> + 'static> AnyStepper<G, A> {

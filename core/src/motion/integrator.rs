@@ -11,9 +11,7 @@ use crate::motion::report::StepReport;
 use crate::motion::summation::Motion;
 use crate::numbers::{Entries as _, real};
 
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+roots!();
 
 /// Something that steps a motion: a [`Stepper`](crate::Stepper) with any plan, an [`AnyStepper`](crate::motion::AnyStepper), a
 /// [`CotangentGauss`](crate::methods::CotangentGauss).

@@ -14,16 +14,15 @@ pub struct StepReport {
     pub remedy: Option<Remedy>,
 }
 
+#[hot]
 impl StepReport {
     /// The report of a step without a remedy.
-    #[hot]
     #[must_use]
     pub const fn of(iterations: u32) -> Self {
         Self { iterations, remedy: None }
     }
 
     /// The report of a step that was made as a run of one.
-    #[hot]
     pub(crate) fn of_run(iterations: u64) -> Self {
         Self::of(u32::try_from(iterations).unwrap_or(u32::MAX))
     }

@@ -98,6 +98,7 @@ impl<T: Real, A: Advected<SO3<T>>> Motion<SO3<T>, A> {
 /// carried to the next step.
 ///
 /// A [`Plan`](crate::motion::Plan) makes all its changes by these functions, and so works with any summation.
+#[hot]
 pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
     /// Whether what rounding leaves behind is kept.
     const CARRIES: bool;
@@ -116,7 +117,6 @@ pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
     fn push(&mut self, change: &G::Vector);
 
     /// One after the other: a turn that carries the momentum along.
-    #[hot]
     fn turn_and_push(&mut self, increment: &G::Matrix, change: &G::Vector) {
         self.turn(increment);
         self.push(change);
@@ -126,7 +126,6 @@ pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
     fn proceed(&mut self, increment: &G::Matrix, change: &G::Vector, end: (G::Vector, A));
 
     /// Counts a step.
-    #[hot]
     fn count(&mut self) {
         self.recount(self.now().steps + 1);
     }
@@ -145,7 +144,6 @@ pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
     fn show(&mut self, motion: Motion<G, A>);
 
     /// Counts a step, and now and then [restores](Self::restore).
-    #[hot]
     fn finish(&mut self, spatial: impl FnOnce() -> A) {
         self.count();
         if is_due::<G>(self.now().steps) {
@@ -178,37 +176,32 @@ pub trait SumsOf<S: Term>: Summation<Group<S>, S::Advected> {}
 
 impl<S: Term, M: Summation<Group<S>, S::Advected>> SumsOf<S> for M {}
 
+#[hot]
 impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Motion<G, A> {
     const CARRIES: bool = false;
 
-    #[hot]
     fn now(&self) -> &Motion<G, A> {
         self
     }
 
-    #[hot]
     fn turn(&mut self, increment: &G::Matrix) {
         self.attitude = self.attitude.advance(increment);
         self.advected = self.advected.advect(increment);
     }
 
-    #[hot]
     fn turned(&self, increment: &G::Matrix) -> A {
         self.advected.advect(increment)
     }
 
-    #[hot]
     fn push(&mut self, change: &G::Vector) {
         self.momentum = self.momentum + *change;
     }
 
-    #[hot]
     fn proceed(&mut self, increment: &G::Matrix, _: &G::Vector, end: (G::Vector, A)) {
         self.attitude = self.attitude.advance(increment);
         (self.momentum, self.advected) = end;
     }
 
-    #[hot]
     fn recount(&mut self, steps: u64) {
         self.steps = steps;
     }
@@ -222,7 +215,6 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Motion<G, A> {
         *self = motion;
     }
 
-    #[hot]
     fn show(&mut self, motion: Motion<G, A>) {
         *self = motion;
     }

@@ -59,3 +59,8 @@ pub struct Pattern {
     /// The unknowns that solve together; between these blocks the matrix is zero. They end where factors end.
     pub apart: Blocks,
 }
+
+impl Pattern {
+    /// Nothing: one block.
+    pub const WHOLE: Self = Self { factors: Blocks::WHOLE, apart: Blocks::WHOLE };
+}

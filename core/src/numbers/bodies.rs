@@ -5,8 +5,7 @@ use core::ops::{Add, Mul, Neg, Sub};
 
 use super::blocks::{Blocks, Pattern};
 use super::coordinates::{Coordinates, lesser_pivot};
-use super::entries::Entries;
-
+use super::entries::{Entries, entries_of_value};
 use super::scalar::{Mask, Real, real};
 
 /// The components of `N` equal bodies, one after the other.
@@ -32,23 +31,9 @@ macro_rules! filled {
 
 pub(crate) use filled;
 
-impl<V: Copy + Add<Output = V>, const N: usize> Add for Bodies<V, N> {
-    type Output = Self;
+operation!([V: Copy + Add<Output = V>, const N: usize] Bodies<V, N>, Add add |a, b| Self(filled!(a.0, |k| a.0[k] + b.0[k])));
 
-    #[hot]
-    fn add(self, other: Self) -> Self {
-        Self(filled!(self.0, |k| self.0[k] + other.0[k]))
-    }
-}
-
-impl<V: Copy + Sub<Output = V>, const N: usize> Sub for Bodies<V, N> {
-    type Output = Self;
-
-    #[hot]
-    fn sub(self, other: Self) -> Self {
-        Self(filled!(self.0, |k| self.0[k] - other.0[k]))
-    }
-}
+operation!([V: Copy + Sub<Output = V>, const N: usize] Bodies<V, N>, Sub sub |a, b| Self(filled!(a.0, |k| a.0[k] - b.0[k])));
 
 impl<V: Copy + Neg<Output = V>, const N: usize> Neg for Bodies<V, N> {
     type Output = Self;
@@ -68,14 +53,7 @@ impl<T: Real, V: Copy + Mul<T, Output = V>, const N: usize> Mul<T> for Bodies<V,
     }
 }
 
-impl<S: Copy + Add<Output = S>, const N: usize> Add for BlockDiagonal<S, N> {
-    type Output = Self;
-
-    #[hot]
-    fn add(self, other: Self) -> Self {
-        Self(filled!(self.0, |k| self.0[k] + other.0[k]))
-    }
-}
+operation!([S: Copy + Add<Output = S>, const N: usize] BlockDiagonal<S, N>, Add add |a, b| Self(filled!(a.0, |k| a.0[k] + b.0[k])));
 
 impl<T: Real, S: Copy + Mul<T, Output = S>, const N: usize> Mul<T> for BlockDiagonal<S, N> {
     type Output = Self;
@@ -95,42 +73,24 @@ impl<V: Copy, S: Copy + Mul<V, Output = V>, const N: usize> Mul<Bodies<V, N>> fo
     }
 }
 
+#[hot]
 impl<T: Real, E: Entries<T>, const N: usize> Entries<T> for [E; N] {
     fn from_entries(next: &mut impl FnMut() -> T) -> Self {
         from_fn(|_| E::from_entries(next))
     }
 
-    #[hot]
     fn each(&self, visit: &mut impl FnMut(T)) {
         for body in self {
             body.each(visit);
         }
     }
 
-    #[hot]
     fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
         filled!(*self, |k| self[k].zip(&other[k], combine))
     }
 }
 
-impl<T: Real, E: Entries<T>, const N: usize> Entries<T> for Bodies<E, N> {
-    fn from_entries(next: &mut impl FnMut() -> T) -> Self {
-        Self(Entries::from_entries(next))
-    }
-
-    #[hot]
-    fn each(&self, visit: &mut impl FnMut(T)) {
-        self.0.each(visit);
-    }
-
-    #[hot]
-    fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
-        Self(self.0.zip(&other.0, combine))
-    }
-}
-
-/// One block a body.
-const WHOLE: Pattern = Pattern { factors: Blocks::WHOLE, apart: Blocks::WHOLE };
+entries_of_value!([E: Entries<S>, const N: usize] Bodies<E, N>);
 
 /// How many components there are.
 #[hot]
@@ -156,23 +116,21 @@ pub(crate) fn most<T: Real>() -> T {
 /// its diagonal: the product of a hundred of them would be out of range, and two negative ones would hide each other.
 ///
 /// `a bᵀ` has none of the blocks that would join bodies, so it is that map only where the rest isn't asked for.
+#[hot]
 impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N> {
     type Square = BlockDiagonal<V::Square, N>;
     /// For each body but the last its block with the next, and that of the next with it.
     type Links = [[V::Square; 2]; N];
     type Four = Bodies<V::Four, N>;
 
-    #[hot]
     fn beside(columns: &[Self; 4]) -> Self::Four {
         Bodies(from_fn(|body| V::beside(&from_fn(|k| columns[k].0[body]))))
     }
 
-    #[hot]
     fn of_four(four: &Self::Four, k: usize) -> Self {
         Self(from_fn(|body| V::of_four(&four.0[body], k)))
     }
 
-    #[hot]
     fn map_four(matrix: &Self::Square, four: &Self::Four) -> Self::Four {
         Bodies(filled!(four.0, |body| V::map_four(&matrix.0[body], &four.0[body])))
     }
@@ -182,6 +140,7 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         BlockDiagonal(from_fn(|body| V::square(|k| column(body * dimension + k).0[body])))
     }
 
+    #[inline]
     fn column(matrix: &Self::Square, k: usize) -> Self {
         let dimension = dimension::<T, V>();
         let mut column = Self::zero();
@@ -189,11 +148,11 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         column
     }
 
-    #[hot]
     fn zero() -> Self {
         Self([V::zero(); N])
     }
 
+    #[inline]
     fn axis(k: usize) -> Self {
         let dimension = dimension::<T, V>();
         let mut axis = Self::zero();
@@ -201,7 +160,6 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         axis
     }
 
-    #[hot]
     fn dot(&self, other: &Self) -> T {
         let mut sum = T::zero();
         for k in 0..N {
@@ -210,49 +168,32 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         sum
     }
 
-    #[hot]
     fn outer(&self, other: &Self) -> Self::Square {
         BlockDiagonal(from_fn(|k| self.0[k].outer(&other.0[k])))
     }
 
-    #[hot]
     fn is_finite(&self) -> bool {
         self.0.iter().all(V::is_finite)
     }
 
-    #[hot]
     fn select(self, mask: Mask<T>, other: Self) -> Self {
         Self(filled!(self.0, |k| self.0[k].select(mask, other.0[k])))
     }
 
-    #[hot]
-    fn factorise(matrix: &Self::Square) -> (Self::Square, T) {
-        Self::factorise_apart(matrix, WHOLE)
-    }
-
-    #[hot]
-    fn solve_again(factors: &Self::Square, _: T, right_side: &Self) -> Self {
-        Self::solve_apart(factors, WHOLE, right_side)
-    }
-
-    #[hot]
     fn factorise_with(matrix: &Self::Square, pattern: Pattern) -> (Self::Square, T) {
         Self::factorise_apart(matrix, pattern)
     }
 
-    #[hot]
     fn solve_again_with(factors: &Self::Square, _: T, pattern: Pattern, right_side: &Self) -> Self {
         Self::solve_apart(factors, pattern, right_side)
     }
 
-    #[hot]
     fn inverse_with(factors: &Self::Square, _: T, pattern: Pattern) -> Self::Square {
         let of_body = |factors| V::square(|k| V::solve_apart(factors, pattern, &V::axis(k)));
         BlockDiagonal(filled!(factors.0, |body| of_body(&factors.0[body])))
     }
 
     /// The pattern is that of one body.
-    #[hot]
     fn factorise_apart(matrix: &Self::Square, pattern: Pattern) -> (Self::Square, T) {
         let (mut factors, mut smallest) = (*matrix, most());
         for k in 0..N {
@@ -263,19 +204,16 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         (factors, smallest)
     }
 
-    #[hot]
     fn solve_apart(factors: &Self::Square, pattern: Pattern, right_side: &Self) -> Self {
         Self(filled!(right_side.0, |k| V::solve_apart(&factors.0[k], pattern, &right_side.0[k])))
     }
 
-    #[hot]
     fn no_links() -> Self::Links {
         let zero = V::zero();
         [[zero.outer(&zero); 2]; N]
     }
 
     /// By elimination from the first body to the last, `A_{k+1} ← A_{k+1} − L_k A_k⁻¹ U_k`.
-    #[hot]
     fn solve_linked(matrix: &mut Self::Square, links: &Self::Links, pattern: Pattern, right_side: &mut Self) -> T {
         let pattern = Pattern { apart: Blocks::WHOLE, ..pattern };
         let (BlockDiagonal(own), Bodies(solution), mut smallest) = (matrix, right_side, most());
@@ -310,16 +248,15 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         matrix.0.iter().fold(most(), |smallest, body| least(smallest, V::least_trace(body, blocks)))
     }
 
-    #[hot]
     fn trace(matrix: &Self::Square) -> T {
         matrix.0.iter().fold(T::zero(), |sum, body| sum + V::trace(body))
     }
 
-    #[hot]
     fn transpose(matrix: &Self::Square) -> Self::Square {
         BlockDiagonal(filled!(matrix.0, |k| V::transpose(&matrix.0[k])))
     }
 
+    #[inline]
     fn least_pivot(matrix: &Self::Square) -> (T, usize) {
         let dimension = dimension::<T, V>();
         let of_bodies = matrix.0.iter().enumerate().map(|(body, square)| {
@@ -329,7 +266,6 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         of_bodies.fold((most(), 0), lesser_pivot)
     }
 
-    #[hot]
     fn raised(residual: &Self, jacobian: &Self::Square, power: u32, half: &Self) -> (Self, Self::Square) {
         let mut raised = (*residual, *jacobian);
         for k in 0..N {

@@ -30,35 +30,19 @@ impl<T: Real, const D: usize> FourVectors<T, D> {
     }
 }
 
-impl<T: Real, const D: usize> Add for FourVectors<T, D> {
-    type Output = Self;
+operation!([T: Real, const D: usize] FourVectors<T, D>, Add add |a, b| a.zip(&b, &mut |a, b| a + b));
+operation!([T: Real, const D: usize] FourVectors<T, D>, Sub sub |a, b| a.zip(&b, &mut |a, b| a - b));
 
-    #[hot]
-    fn add(self, other: Self) -> Self {
-        self.zip(&other, &mut |a, b| a + b)
-    }
-}
-
-impl<T: Real, const D: usize> Sub for FourVectors<T, D> {
-    type Output = Self;
-
-    #[hot]
-    fn sub(self, other: Self) -> Self {
-        self.zip(&other, &mut |a, b| a - b)
-    }
-}
-
+#[hot]
 impl<T: Real, const D: usize> Entries<T> for FourVectors<T, D> {
     fn from_entries(next: &mut impl FnMut() -> T) -> Self {
         Self(core::array::from_fn(|_| core::array::from_fn(|_| next())))
     }
 
-    #[hot]
     fn each(&self, visit: &mut impl FnMut(T)) {
         self.0.as_flattened().iter().for_each(|entry| visit(*entry));
     }
 
-    #[hot]
     fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
         let mut combined = *self;
         for (entry, other) in combined.0.as_flattened_mut().iter_mut().zip(other.0.as_flattened()) {

@@ -12,6 +12,7 @@ use crate::numbers::entries::Entries;
 use crate::numbers::scalar::{Mask, Real, real};
 
 /// Components with respect to the declared basis `E_k` of a Lie algebra, or, for a covector, `μ_k = ⟨μ, E_k⟩`.
+#[hot]
 pub trait Coordinates<T: Real>:
     Entries<T> + Debug + PartialEq + Add<Output = Self> + Sub<Output = Self> + Neg<Output = Self> + Mul<T, Output = Self>
 {
@@ -87,14 +88,21 @@ pub trait Coordinates<T: Real>:
     /// order of the basis, and both triangles are returned: as accurate as any for a matrix whose symmetric part is
     /// positive definite, like the Jacobian of a kinetic energy near the identity, and not finite where a leading minor
     /// is zero.
-    fn factorise(matrix: &Self::Square) -> (Self::Square, T);
+    #[must_use]
+    #[hot]
+    fn factorise(matrix: &Self::Square) -> (Self::Square, T) {
+        Self::factorise_with(matrix, Pattern::WHOLE)
+    }
 
     /// The solution `z` of `A z = b` from what [`factorise`](Self::factorise) has made of `A`.
-    fn solve_again(factors: &Self::Square, det: T, right_side: &Self) -> Self;
+    #[must_use]
+    #[hot]
+    fn solve_again(factors: &Self::Square, det: T, right_side: &Self) -> Self {
+        Self::solve_again_with(factors, det, Pattern::WHOLE, right_side)
+    }
 
     /// The solution `z` of `A z = b`, and `det A`.
     #[must_use]
-    #[hot]
     fn solve(matrix: &Self::Square, right_side: &Self) -> (Self, T) {
         let (factors, det) = Self::factorise(matrix);
         (Self::solve_again(&factors, det, right_side), det)
@@ -134,7 +142,6 @@ pub trait Coordinates<T: Real>:
     /// `Dᵏ r` and its derivative, for `D = 1 + |y|²` of half the coordinates `y` and a residual `r` with its derivative;
     /// of several bodies each with its own `D`.
     #[must_use]
-    #[hot]
     fn raised(residual: &Self, jacobian: &Self::Square, power: u32, half: &Self) -> (Self, Self::Square) {
         if power == 0 {
             return (*residual, *jacobian);
@@ -160,27 +167,24 @@ pub trait Coordinates<T: Real>:
     fn least_pivot(matrix: &Self::Square) -> (T, usize);
 }
 
+#[hot]
 impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     type Square = SMatrix<T, D, D>;
     type Links = ();
     type Four = FourVectors<T, D>;
 
-    #[hot]
     fn beside(columns: &[Self; 4]) -> FourVectors<T, D> {
         FourVectors(core::array::from_fn(|row| core::array::from_fn(|k| columns[k][row])))
     }
 
-    #[hot]
     fn of_four(four: &FourVectors<T, D>, k: usize) -> Self {
         entries::<T, D>(|row| four.0[row][k])
     }
 
-    #[hot]
     fn map_four(matrix: &SMatrix<T, D, D>, four: &FourVectors<T, D>) -> FourVectors<T, D> {
         four.mapped(matrix)
     }
 
-    #[hot]
     fn square(column: impl Fn(usize) -> Self) -> SMatrix<T, D, D> {
         let mut square = SMatrix::<T, D, D>::zeros();
         for k in 0..D {
@@ -192,45 +196,42 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         square
     }
 
-    #[hot]
     fn column(matrix: &SMatrix<T, D, D>, k: usize) -> Self {
         matrix.column(k).into()
     }
 
-    #[hot]
     fn zero() -> Self {
         Self::zeros()
     }
 
+    #[inline]
     fn axis(k: usize) -> Self {
         let mut axis = Self::zeros();
         axis[k] = T::one();
         axis
     }
 
-    #[hot]
     fn dot(&self, other: &Self) -> T {
         sum::<T, D>(|k| self[k] * other[k])
     }
 
-    #[hot]
     fn outer(&self, other: &Self) -> SMatrix<T, D, D> {
         SMatrix::from_fn(|row, column| self[row] * other[column])
     }
 
-    #[hot]
     fn is_finite(&self) -> bool {
         // Zero times an infinity or a NaN is NaN; the sum itself could overflow.
         sum::<T, D>(|k| self[k] * T::zero()).simd_eq(T::zero()).all()
     }
 
-    #[hot]
     fn select(self, mask: Mask<T>, other: Self) -> Self {
         self.zip_map(&other, |a, b| a.select(mask, b))
     }
 
-    #[hot]
-    fn factorise(matrix: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
+    fn factorise_with(matrix: &SMatrix<T, D, D>, pattern: Pattern) -> (SMatrix<T, D, D>, T) {
+        if !pattern.factors.is_whole() {
+            return Self::factorise_apart(matrix, pattern);
+        }
         // `D` is a constant, so that one of these is left.
         match D {
             1 => (SMatrix::from_element(T::one()), matrix[(0, 0)]),
@@ -240,8 +241,10 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         }
     }
 
-    #[hot]
-    fn solve_again(factors: &SMatrix<T, D, D>, det: T, b: &Self) -> Self {
+    fn solve_again_with(factors: &SMatrix<T, D, D>, det: T, pattern: Pattern, b: &Self) -> Self {
+        if !pattern.factors.is_whole() {
+            return Self::solve_apart(factors, pattern, b);
+        }
         match D {
             1 => b / det,
             2 | 3 => {
@@ -252,21 +255,6 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         }
     }
 
-    #[hot]
-    fn factorise_with(matrix: &SMatrix<T, D, D>, pattern: Pattern) -> (SMatrix<T, D, D>, T) {
-        if pattern.factors.is_whole() { Self::factorise(matrix) } else { Self::factorise_apart(matrix, pattern) }
-    }
-
-    #[hot]
-    fn solve_again_with(factors: &SMatrix<T, D, D>, det: T, pattern: Pattern, b: &Self) -> Self {
-        if pattern.factors.is_whole() {
-            Self::solve_again(factors, det, b)
-        } else {
-            Self::solve_apart(factors, pattern, b)
-        }
-    }
-
-    #[hot]
     fn inverse_with(factors: &SMatrix<T, D, D>, det: T, pattern: Pattern) -> SMatrix<T, D, D> {
         if pattern.factors.is_whole() && D <= 3 {
             // For these the factors are the adjugate.
@@ -275,20 +263,16 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         Self::square(|k| Self::solve_again_with(factors, det, pattern, &Self::axis(k)))
     }
 
-    #[hot]
     fn factorise_apart(matrix: &SMatrix<T, D, D>, pattern: Pattern) -> (SMatrix<T, D, D>, T) {
         elimination::factorise(matrix, pattern)
     }
 
-    #[hot]
     fn solve_apart(factors: &SMatrix<T, D, D>, pattern: Pattern, b: &Self) -> Self {
         elimination::solve_again(factors, pattern, b)
     }
 
-    #[hot]
     fn no_links() {}
 
-    #[hot]
     fn solve_linked(matrix: &mut SMatrix<T, D, D>, (): &(), pattern: Pattern, right_side: &mut Self) -> T {
         let (factors, det) = Self::factorise_with(matrix, pattern);
         *right_side = Self::solve_again_with(&factors, det, pattern, right_side);
@@ -299,16 +283,15 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         elimination::least_trace(matrix, blocks)
     }
 
-    #[hot]
     fn trace(matrix: &SMatrix<T, D, D>) -> T {
         sum::<T, D>(|k| matrix[(k, k)])
     }
 
-    #[hot]
     fn transpose(matrix: &SMatrix<T, D, D>) -> SMatrix<T, D, D> {
         matrix.transpose()
     }
 
+    #[inline]
     fn least_pivot(matrix: &SMatrix<T, D, D>) -> (T, usize) {
         let (factors, _) = eliminate(*matrix);
         let relative = |k: usize| (factors[(k, k)] / matrix[(k, k)].simd_abs(), k);

@@ -9,6 +9,7 @@ use nalgebra::SimdBool;
 ///
 /// It is less than a [`Real`], whose fifty functions a derivative would need to know, and has the names of that one's
 /// functions.
+#[hot]
 pub(crate) trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
@@ -26,71 +27,59 @@ pub(crate) trait Number:
     /// Zero in these lanes, where it is zero but for a rounding. A derivative stays.
     fn vanishing(self, mask: Self::Mask) -> Self;
 
-    #[hot]
     fn zero() -> Self {
         Self::number(0.0)
     }
 
-    #[hot]
     fn one() -> Self {
         Self::number(1.0)
     }
 
-    #[hot]
     fn simd_gt(self, other: Self) -> Self::Mask {
         other.simd_lt(self)
     }
 
-    #[hot]
     fn simd_ge(self, other: Self) -> Self::Mask {
         other.simd_le(self)
     }
 }
 
+#[hot]
 impl<T: Real> Number for T {
     type Mask = Mask<T>;
 
-    #[hot]
     fn number(value: f64) -> Self {
         real(value)
     }
 
-    #[hot]
     fn simd_default_epsilon() -> Self {
         <T as nalgebra::SimdRealField>::simd_default_epsilon()
     }
 
-    #[hot]
     fn simd_sqrt(self) -> Self {
         nalgebra::SimdComplexField::simd_sqrt(self)
     }
 
-    #[hot]
     fn simd_abs(self) -> Self {
         nalgebra::SimdComplexField::simd_abs(self)
     }
 
-    #[hot]
     fn simd_max(self, other: Self) -> Self {
         nalgebra::SimdPartialOrd::simd_max(self, other)
     }
 
-    #[hot]
     fn simd_lt(self, other: Self) -> Self::Mask {
         nalgebra::SimdPartialOrd::simd_lt(self, other)
     }
 
-    #[hot]
     fn simd_le(self, other: Self) -> Self::Mask {
         nalgebra::SimdPartialOrd::simd_le(self, other)
     }
 
-    #[hot]
     fn select(self, mask: Self::Mask, other: Self) -> Self {
         nalgebra::SimdValue::select(self, mask, other)
     }
 
-    #[hot]
     fn vanishing(self, mask: Self::Mask) -> Self {
         nalgebra::SimdValue::select(T::zero(), mask, self)
     }
@@ -103,68 +92,38 @@ pub(crate) struct Dual<T> {
     pub(crate) slopes: [T; 3],
 }
 
+#[hot]
 impl<T: Real> Dual<T> {
     /// What doesn't vary.
-    #[hot]
     pub(crate) fn constant(value: T) -> Self {
         Self { value, slopes: [T::zero(); 3] }
     }
 
     /// What varies along one of the directions.
-    #[hot]
     pub(crate) fn along(value: T, direction: usize) -> Self {
         Self { value, slopes: core::array::from_fn(|k| if k == direction { T::one() } else { T::zero() }) }
     }
 
     /// A function with this value, and this derivative by the number.
-    #[hot]
     fn chained(self, value: T, slope: T) -> Self {
         Self { value, slopes: self.slopes.map(|own| own * slope) }
     }
 
-    #[hot]
     fn zip(self, other: Self, value: T, slope: impl Fn(T, T) -> T) -> Self {
         Self { value, slopes: core::array::from_fn(|k| slope(self.slopes[k], other.slopes[k])) }
     }
 }
 
-impl<T: Real> Add for Dual<T> {
-    type Output = Self;
-
-    #[hot]
-    fn add(self, other: Self) -> Self {
-        self.zip(other, self.value + other.value, |a, b| a + b)
-    }
-}
-
-impl<T: Real> Sub for Dual<T> {
-    type Output = Self;
-
-    #[hot]
-    fn sub(self, other: Self) -> Self {
-        self.zip(other, self.value - other.value, |a, b| a - b)
-    }
-}
-
-impl<T: Real> Mul for Dual<T> {
-    type Output = Self;
-
-    #[hot]
-    #[allow(clippy::suspicious_arithmetic_impl)] // the rule for products has a sum
-    fn mul(self, other: Self) -> Self {
-        self.zip(other, self.value * other.value, |a, b| a * other.value + self.value * b)
-    }
-}
-
-impl<T: Real> Div for Dual<T> {
-    type Output = Self;
-
-    #[hot]
-    fn div(self, other: Self) -> Self {
-        let (inverse, ratio) = (T::one() / other.value, self.value / other.value);
-        self.zip(other, ratio, |a, b| (a - ratio * b) * inverse)
-    }
-}
+operation!([T: Real] Dual<T>, Add add |a, b| a.zip(b, a.value + b.value, |a, b| a + b));
+operation!([T: Real] Dual<T>, Sub sub |a, b| a.zip(b, a.value - b.value, |a, b| a - b));
+// The rule for products has a sum.
+operation!([T: Real] #[allow(clippy::suspicious_arithmetic_impl)] Dual<T>, Mul mul |a, b| {
+    a.zip(b, a.value * b.value, |of_a, of_b| of_a * b.value + a.value * of_b)
+});
+operation!([T: Real] Dual<T>, Div div |a, b| {
+    let (inverse, ratio) = (T::one() / b.value, a.value / b.value);
+    a.zip(b, ratio, |of_a, of_b| (of_a - ratio * of_b) * inverse)
+});
 
 impl<T: Real> Neg for Dual<T> {
     type Output = Self;
@@ -175,52 +134,44 @@ impl<T: Real> Neg for Dual<T> {
     }
 }
 
+#[hot]
 impl<T: Real> Number for Dual<T> {
     type Mask = Mask<T>;
 
-    #[hot]
     fn number(value: f64) -> Self {
         Self::constant(real(value))
     }
 
-    #[hot]
     fn simd_default_epsilon() -> Self {
         Self::constant(<T as nalgebra::SimdRealField>::simd_default_epsilon())
     }
 
-    #[hot]
     fn simd_sqrt(self) -> Self {
         let root = nalgebra::SimdComplexField::simd_sqrt(self.value);
         self.chained(root, real::<T>(0.5) / root)
     }
 
-    #[hot]
     fn simd_abs(self) -> Self {
         (-self).select(self.simd_lt(Self::zero()), self)
     }
 
-    #[hot]
     fn simd_max(self, other: Self) -> Self {
         other.select(self.simd_lt(other), self)
     }
 
-    #[hot]
     fn simd_lt(self, other: Self) -> Self::Mask {
         nalgebra::SimdPartialOrd::simd_lt(self.value, other.value)
     }
 
-    #[hot]
     fn simd_le(self, other: Self) -> Self::Mask {
         nalgebra::SimdPartialOrd::simd_le(self.value, other.value)
     }
 
-    #[hot]
     fn select(self, mask: Self::Mask, other: Self) -> Self {
         let value = nalgebra::SimdValue::select(self.value, mask, other.value);
         self.zip(other, value, |a, b| nalgebra::SimdValue::select(a, mask, b))
     }
 
-    #[hot]
     fn vanishing(self, mask: Self::Mask) -> Self {
         Self { value: nalgebra::SimdValue::select(T::zero(), mask, self.value), slopes: self.slopes }
     }

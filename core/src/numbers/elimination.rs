@@ -82,18 +82,17 @@ struct Product<T: Real> {
     is_negative: Mask<T>,
 }
 
+#[hot]
 impl<T: Real> Product<T> {
     fn one() -> Self {
         Self { value: T::one(), is_negative: nowhere::<T>() }
     }
 
-    #[hot]
     fn times(&mut self, determinant: T, diagonal: T) {
         self.value *= determinant / diagonal.simd_abs();
         self.is_negative = self.is_negative | determinant.simd_lt(T::zero());
     }
 
-    #[hot]
     fn signed(self) -> T {
         (-self.value.simd_abs()).select(self.is_negative, self.value)
     }

@@ -24,14 +24,13 @@ pub trait Entries<T>: Copy {
 }
 
 /// Row by row.
+#[hot]
 impl<T: Real, const R: usize, const C: usize> Entries<T> for SMatrix<T, R, C> {
-    #[hot]
     fn from_entries(next: &mut impl FnMut() -> T) -> Self {
         // nalgebra goes by columns.
         SMatrix::<T, C, R>::from_fn(|_, _| next()).transpose()
     }
 
-    #[hot]
     fn each(&self, visit: &mut impl FnMut(T)) {
         for row in 0..R {
             for column in 0..C {
@@ -40,12 +39,10 @@ impl<T: Real, const R: usize, const C: usize> Entries<T> for SMatrix<T, R, C> {
         }
     }
 
-    #[hot]
     fn in_place(&self) -> Option<&[T]> {
         (C == 1).then(|| self.as_slice())
     }
 
-    #[hot]
     fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
         if T::LANES == 1 {
             return self.zip_map(other, combine);
@@ -73,17 +70,16 @@ impl<T> Entries<T> for () {
 
 macro_rules! tuple {
     ($($name:ident $index:tt),+) => {
+        #[hot]
         impl<S, $($name: Entries<S>),+> Entries<S> for ($($name,)+) {
             fn from_entries(next: &mut impl FnMut() -> S) -> Self {
                 ($($name::from_entries(next),)+)
             }
 
-            #[hot]
             fn each(&self, visit: &mut impl FnMut(S)) {
                 $(self.$index.each(visit);)+
             }
 
-            #[hot]
             fn zip(&self, other: &Self, combine: &mut impl FnMut(S, S) -> S) -> Self {
                 ($(self.$index.zip(&other.$index, combine),)+)
             }
@@ -96,6 +92,28 @@ tuple!(A 0, B 1, C 2);
 tuple!(A 0, B 1, C 2, D 3);
 tuple!(A 0, B 1, C 2, D 3, E 4);
 tuple!(A 0, B 1, C 2, D 3, E 4, F 5);
+
+/// The entries of what holds one value, which are those of the value; the scalar is `S`.
+macro_rules! entries_of_value {
+    ([$($parameters:tt)*] $type:ty $(, $marker:expr)?) => {
+        #[hot]
+        impl<S: $crate::numbers::Real, $($parameters)*> $crate::numbers::Entries<S> for $type {
+            fn from_entries(next: &mut impl FnMut() -> S) -> Self {
+                Self($crate::numbers::Entries::from_entries(next) $(, $marker)?)
+            }
+
+            fn each(&self, visit: &mut impl FnMut(S)) {
+                $crate::numbers::Entries::each(&self.0, visit);
+            }
+
+            fn zip(&self, other: &Self, combine: &mut impl FnMut(S, S) -> S) -> Self {
+                Self($crate::numbers::Entries::zip(&self.0, &other.0, combine) $(, $marker)?)
+            }
+        }
+    };
+}
+
+pub(crate) use entries_of_value;
 
 /// `a + b`, place by place.
 #[hot]

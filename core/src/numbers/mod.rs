@@ -2,6 +2,21 @@
 //!
 //! Nothing here knows of groups or of mechanics.
 
+/// An operator of two numbers of one kind, inlined: its trait, its function, and what it makes of both.
+macro_rules! operation {
+    ([$($parameter:tt)*] $(#[$attribute:meta])? $kind:ty, $operation:ident $function:ident |$a:ident, $b:ident| $made:expr) => {
+        impl<$($parameter)*> $operation for $kind {
+            type Output = Self;
+            #[hot]
+            $(#[$attribute])?
+            fn $function(self, $b: Self) -> Self {
+                let $a = self;
+                $made
+            }
+        }
+    };
+}
+
 mod blocks;
 mod bodies;
 mod columns;
@@ -28,7 +43,7 @@ pub use coordinates::Coordinates;
 pub use digest::Digest;
 pub(crate) use dual::{Dual, Number};
 pub use entries::Entries;
-pub(crate) use entries::{sum, zero};
+pub(crate) use entries::{entries_of_value, sum, zero};
 pub(crate) use exact::{carried_sum, two_square, two_sum};
 pub(crate) use history::{Either, History, Parabola, Polynomial};
 pub use join::{Join, Twice};

@@ -14,19 +14,6 @@ pub(crate) trait Register:
     fn entries(self) -> [f64; 4];
 }
 
-macro_rules! operation {
-    ([$($parameter:tt)*] $kind:ty, $operation:ident $function:ident |$a:ident, $b:ident| $made:expr) => {
-        impl<$($parameter)*> $operation for $kind {
-            type Output = Self;
-            #[hot]
-            fn $function(self, $b: Self) -> Self {
-                let $a = self;
-                $made
-            }
-        }
-    };
-}
-
 /// Numbers in what the program was compiled for.
 #[derive(Clone, Copy)]
 pub(crate) struct Plain(Vector3<f64>);
@@ -40,13 +27,12 @@ operation!([] Plain, Sub sub |a, b| Self(a.0 - b.0));
 operation!([] Plain, Mul mul |a, b| Self(a.0.component_mul(&b.0)));
 operation!([] Plain, Div div |a, b| Self(a.0.component_div(&b.0)));
 
+#[hot]
 impl Register for Plain {
-    #[hot]
     fn of(self, [x, y, z, _]: [f64; 4]) -> Self {
         Self(Vector3::new(x, y, z))
     }
 
-    #[hot]
     fn entries(self) -> [f64; 4] {
         padded(&self.0)
     }
@@ -89,13 +75,12 @@ mod avx2 {
     operation!([] Four, Mul mul |a, b| Self(a.0, a.0.avx._mm256_mul_pd(a.1, b.1)));
     operation!([] Four, Div div |a, b| Self(a.0, a.0.avx._mm256_div_pd(a.1, b.1)));
 
+    #[hot]
     impl Register for Four {
-        #[hot]
         fn of(self, entries: [f64; 4]) -> Self {
             Self(self.0, cast(entries))
         }
 
-        #[hot]
         fn entries(self) -> [f64; 4] {
             cast(self.1)
         }
@@ -162,52 +147,45 @@ operation!([R: Register] Columns<R>, Add add |a, b| Self([a.0[0] + b.0[0], a.0[1
 operation!([R: Register] Columns<R>, Sub sub |a, b| Self([a.0[0] - b.0[0], a.0[1] - b.0[1], a.0[2] - b.0[2]]));
 operation!([R: Register] Columns<R>, Mul mul |a, b| Self([a.map(b.0[0]), a.map(b.0[1]), a.map(b.0[2])]));
 
+#[hot]
 impl<R: Register> Columns<R> {
-    #[hot]
     pub(crate) fn of(zero: R, m: &Matrix3<f64>) -> Self {
         Self([0, 1, 2].map(|k| zero.of([m[(0, k)], m[(1, k)], m[(2, k)], 0.0])))
     }
 
     /// `â`.
-    #[hot]
     pub(crate) fn hat(a: R) -> Self {
         let [x, y, z, _] = a.entries();
         Self([a.of([0.0, z, -y, 0.0]), a.of([-z, 0.0, x, 0.0]), a.of([y, -x, 0.0, 0.0])])
     }
 
     /// `s I`.
-    #[hot]
     pub(crate) fn multiple(zero: R, s: f64) -> Self {
         Self([zero.of([s, 0.0, 0.0, 0.0]), zero.of([0.0, s, 0.0, 0.0]), zero.of([0.0, 0.0, s, 0.0])])
     }
 
     /// `M v`.
-    #[hot]
     pub(crate) fn map(&self, v: R) -> R {
         self.0[0] * spread::<0, R>(v) + self.0[1] * spread::<1, R>(v) + self.0[2] * spread::<2, R>(v)
     }
 
     /// By a number in all places.
-    #[hot]
     pub(crate) fn scaled(&self, s: R) -> Self {
         Self([self.0[0] * s, self.0[1] * s, self.0[2] * s])
     }
 
-    #[hot]
     pub(crate) fn transposed(&self) -> Self {
         let [a, b, c] = self.entries();
         Self([0, 1, 2].map(|k| self.0[0].of([a[k], b[k], c[k], 0.0])))
     }
 
     /// `M â`: each row times `a`.
-    #[hot]
     pub(crate) fn cross_rows(&self, a: R) -> Self {
         let (x, y, z) = (spread::<0, R>(a), spread::<1, R>(a), spread::<2, R>(a));
         let m = &self.0;
         Self([m[1] * z - m[2] * y, m[2] * x - m[0] * z, m[0] * y - m[1] * x])
     }
 
-    #[hot]
     pub(crate) fn entries(&self) -> [[f64; 4]; 3] {
         self.0.map(R::entries)
     }

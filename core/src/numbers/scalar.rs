@@ -2,9 +2,7 @@
 
 use nalgebra::{RealField, SimdBool as _, SimdRealField, SimdValue};
 
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+roots!();
 
 /// A real scalar: `f64`, `f32`, a dual number, or several of them in SIMD lanes.
 ///

@@ -7,9 +7,7 @@ use crate::error::StepError;
 use crate::motion::{Integrator, Motion, ScalarIn};
 use crate::numbers::real;
 
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+roots!();
 
 /// A motion that is shown at times of its viewer's: frames of a game, samples of a loudspeaker, slow motion.
 ///

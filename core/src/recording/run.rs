@@ -16,9 +16,7 @@ use crate::methods::CotangentGauss;
 use crate::motion::{Answer, AnyState, AnyStepper, Integrator, Moment, Plan, ScalarIn, StateOf, Stepper};
 use crate::numbers::{real, reported};
 
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+roots!();
 
 type Condition<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> Result<bool, RunError> + 'a>;
 

@@ -1,7 +1,6 @@
 //! The largest fraction of a step that will do.
 
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _; // roots and powers
+roots!();
 
 /// The largest fraction of one that passes, to six digits: one itself if that does, `None` if nothing above 10⁻³⁰⁰
 /// does.

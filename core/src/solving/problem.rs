@@ -33,23 +33,22 @@ pub(super) struct InlinedEquation<'a, L: Effect> {
     pub(super) terms: &'a L::StepTerms,
 }
 
+#[hot]
 impl<L: Effect> System<Group<L>> for InlinedEquation<'_, L> {
-    #[hot]
     fn pattern(&self) -> Pattern {
         pattern::<L>(self.constants)
     }
 
-    #[hot]
     fn newton_update(&self, half: &Vector<L>) -> Iteration<Group<L>> {
         L::newton_update(self.constants, self.terms, half)
     }
 
-    #[hot]
     fn residual(&self, half: &Vector<L>) -> Vector<L> {
         L::newton_residual(self.constants, self.terms, half).momentum_defect
     }
 }
 
+#[hot]
 impl<L: Effect> Problem<'_, L> {
     /// The solution from the guess, if it is near the identity and nothing is doubtful.
     ///
@@ -57,7 +56,6 @@ impl<L: Effect> Problem<'_, L> {
     /// doubtful: the Jacobian is lost in its rounding, and an update may vanish far from any solution.
     ///
     /// `REUSE` says whether a Jacobian may be [reused](super::reused_jacobian). Nothing here is lent to a function that isn't inlined; that is a sixth of the time of a step.
-    #[hot]
     pub(crate) fn solve_directly<const REUSE: bool>(
         &self,
         guess: &Vector<L>,
@@ -82,7 +80,6 @@ impl<L: Effect> Problem<'_, L> {
     }
 
     /// What an iteration has settled on, if nothing about it is doubtful.
-    #[hot]
     pub(super) fn usual(
         &self,
         half: &Vector<L>,

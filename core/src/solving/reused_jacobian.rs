@@ -49,11 +49,11 @@ pub(super) fn has_no_derivatives<T: Real>() -> bool {
     element == TypeId::of::<f64>() || element == TypeId::of::<f32>()
 }
 
+#[hot]
 impl<G: LieGroup> Lanes<G> {
     /// An iteration of the lanes that haven't settled. With `REUSE`, the lanes that it has brought near enough make one
     /// more with the same Jacobian. Where steps are so long that they seldom can, asking costs more than it saves.
     /// Returns whether a lane has settled by that.
-    #[hot]
     pub(super) fn iterate_once<const REUSE: bool>(
         &mut self,
         equation: &(impl System<G> + ?Sized),
@@ -65,7 +65,6 @@ impl<G: LieGroup> Lanes<G> {
     }
 
     /// The second part of [`iterate_once`](Self::iterate_once).
-    #[hot]
     pub(super) fn reuse_jacobian<const REUSE: bool>(
         &mut self,
         equation: &(impl System<G> + ?Sized),
@@ -110,9 +109,9 @@ pub(crate) fn has_sufficed<T: Real>(first: T, second: T, size: T) -> Mask<T> {
 pub(crate) struct Curvature(Option<f64>);
 
 // Lengths are given by their squares.
+#[hot]
 impl Curvature {
     /// By an update of Newton's iteration and the one before, if that was another.
-    #[hot]
     pub(crate) fn told(before: Option<f64>, update: f64) -> Self {
         Self(before.map(|before| (update / (before * before)).max(1.0)))
     }
@@ -121,14 +120,12 @@ impl Curvature {
     ///
     /// `C` is told along the update before. Along this one it may be larger, by the ratio of inertias, by which roundings
     /// are magnified, too. Of chains with slim or heavy links no more is missing then than where [`SETTLED`] is asked for.
-    #[hot]
     pub(crate) fn has_settled(self, update: f64, size: f64) -> bool {
         let by_curvature = |square| square * update * update <= size * REST_OF_SIZE;
         update <= size * (f64::EPSILON * SETTLED) || self.0.is_some_and(by_curvature)
     }
 
     /// Whether another with the same Jacobian will be: `2C²|u₁|³ ≤ REST ε|y|`, or [`may_suffice`].
-    #[hot]
     pub(crate) fn may_suffice(self, first: f64, size: f64) -> bool {
         match self.0 {
             Some(square) => 4.0 * square * square * (first * first * first) <= size * REST_OF_SIZE,
@@ -140,7 +137,6 @@ impl Curvature {
     ///
     /// Where `u₂` is all rounding it tells too large a `C`, `|u₂|/|u₁|²`. But an update `u₁` that hasn't settled is longer
     /// than `√ε|y|/8`, and with that `2|u₂|²/|u₁| ≤ ε|y|/16` for roundings of up to `512 ε|y|`.
-    #[hot]
     pub(crate) fn has_sufficed(self, first: f64, second: f64, size: f64) -> bool {
         let along = (self.0.unwrap_or(1.0) * first).max(second / first);
         4.0 * along * second <= size * REST_OF_SIZE

@@ -72,8 +72,8 @@ struct Verdict<L: Effect> {
     doubtful: Mask<Scalar<L>>,
 }
 
+#[hot]
 impl<L: Effect> Updates<L> {
-    #[hot]
     fn none() -> Self {
         Self {
             made: [Vector::<L>::zero(); MAX_UPDATES],
@@ -86,7 +86,6 @@ impl<L: Effect> Updates<L> {
     }
 
     /// The update that the corrected model makes of `plain`, that of the model itself.
-    #[hot]
     fn corrected(&self, plain: Vector<L>) -> Vector<L> {
         let Some(last) = self.count.checked_sub(1) else { return plain };
         let along = |k: usize, update: &Vector<L>| self.made[k].dot(update) / self.lengths[k];
@@ -99,7 +98,6 @@ impl<L: Effect> Updates<L> {
     }
 
     /// Takes notice of the update that has led to `half`.
-    #[hot]
     fn record(&mut self, update: Vector<L>, half: &Vector<L>) -> Verdict<L> {
         let rounding = Scalar::<L>::simd_default_epsilon();
         let (length, size) = (update.dot(&update), half.dot(half));
@@ -127,16 +125,15 @@ impl<L: Effect> Updates<L> {
     }
 }
 
+#[hot]
 impl<L: Effect> Problem<'_, L> {
     /// Whether the solve starts without the Jacobian.
-    #[hot]
     pub(super) fn goes_by_secants(&self) -> bool {
         L::jacobian_is_expensive(self.constants) && has_no_derivatives::<Scalar<L>>()
     }
 
     /// From the guess until no lane goes on; `settled` are those whose solution is beyond doubt. With the number of
     /// residuals.
-    #[hot]
     pub(super) fn iterate_by_secants(&self, terms: &L::StepTerms, guess: &Vector<L>) -> (Lanes<Group<L>>, u32) {
         let model = L::Retraction::free_momentum_tangent(&self.scene.inertia(self.w), &(*guess + *guess));
         let mut lanes = Lanes::<Group<L>>::starting_at(guess);
@@ -168,7 +165,6 @@ impl<L: Effect> Problem<'_, L> {
 
     /// Whether this update changes the kick by less than its rounding, judged by what those before have changed; the
     /// last of them has made the change that is given.
-    #[hot]
     fn kick_has_settled(&self, change: &Vector<L>, update: &Vector<L>, updates: &mut Updates<L>) -> Mask<Scalar<L>> {
         let Some(last) = updates.count.checked_sub(1) else { return nowhere::<Scalar<L>>() };
         updates.kick_slope = updates.kick_slope.simd_max(change.dot(change) / updates.lengths[last]);

@@ -3,9 +3,8 @@
 use alloc::vec::Vec;
 use core::f64::consts::TAU;
 
-use super::lengths::Lengths;
 use super::orbit::orbit;
-use super::varied::VariedSteps;
+use super::varied::{Lengths, VariedSteps};
 use crate::error::SetupError;
 use crate::mechanics::{Effect, SceneVisitor, Vector};
 use crate::motion::{ElapsedTime, MotionOf, Plan, Steerable, Stepper, Variable};

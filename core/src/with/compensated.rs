@@ -24,19 +24,14 @@ use nalgebra::SimdValue as _;
 /// # Examples
 ///
 /// ```
-/// use liestep::{SO3, Stepper, lagrangian};
+/// use liestep::effects::PrincipalBody;
+/// use liestep::{SO3, Stepper};
 /// use liestep::groups::LieGroup as _;
 /// use liestep::mechanics::DiagonalNonstandardInertia;
 /// use nalgebra::Vector3;
 ///
-/// /// A free rigid body.
-/// #[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
-/// struct Body {
-///     J_d: DiagonalNonstandardInertia,
-/// }
-///
 /// let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5))?;
-/// let stepper = Stepper::new(Body { J_d }, 1e-4)?.compensated();
+/// let stepper = Stepper::new(PrincipalBody { J_d }, 1e-4)?.compensated();
 /// let mut state = stepper.start(SO3::identity(), Vector3::new(0.01, 2.0, 0.02))?;
 /// for _ in 0..1000 {
 ///     stepper.step(&mut state)?;
@@ -47,16 +42,9 @@ use nalgebra::SimdValue as _;
 #[derive(Clone, Debug, Lanes, InLanes)]
 pub struct CompensatedSums<P>(P);
 
-/// What a plan keeps, and what the rounding of its sums has left behind.
+/// The exact sums less the rounded ones, which are kept beside what the plan keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
-pub struct MemoryWithCarry<K, G: LieGroup, A> {
-    kept: K,
-    carry: Carry<G, A>,
-}
-
-/// The exact sums less the rounded ones.
-#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
-struct Carry<G: LieGroup, A> {
+pub struct Carry<G: LieGroup, A> {
     attitude: G::Matrix,
     momentum: G::Vector,
     advected: A,
@@ -99,16 +87,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// The same step with compensated sums: what rounding takes from attitude, momentum and advected parameters is kept
     /// and added to the next step's changes.
     ///
-    /// Collocation compensates its sums anyway, and is refused:
-    ///
-    /// ```compile_fail,E0277
-    /// use liestep::effects::RigidBody;
-    /// use liestep::{NonstandardInertia, Stepper};
-    /// use nalgebra::Vector3;
-    ///
-    /// let body = RigidBody { J_d: NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap() };
-    /// let _ = Stepper::collocated::<4>(body, 0.1).unwrap().compensated();
-    /// ```
+    /// Collocation compensates its sums anyway, and is refused when a program is built.
     #[must_use]
     pub fn compensated(self) -> Stepper<S, CompensatedSums<P>>
     where
@@ -119,24 +98,24 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
 }
 
 impl<S: Effect, P: Plan<S>> Plan<S> for CompensatedSums<P> {
-    type Kept = MemoryWithCarry<P::Kept, Group<S>, S::Advected>;
+    type Kept = (P::Kept, Carry<Group<S>, S::Advected>);
 
-    delegate_plan!(0, |kept| kept.kept; constants step_size admits momentum velocity is_in_step explained max_step cost);
+    delegate_plan!(0, |kept| kept.0; constants step_size admits momentum velocity is_in_step explained max_step cost);
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
         self.0.refolded(scene, h).map(Self)
     }
 
     fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept {
-        MemoryWithCarry { kept: self.0.keep(scene, motion), carry: Carry::nothing() }
+        (self.0.keep(scene, motion), Carry::nothing())
     }
 
     #[hot]
     fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
-        let mut sums = Sums { motion: *motion.now(), carry: kept.carry };
-        let report = self.0.step(scene, &mut sums, &mut kept.kept)?;
+        let mut sums = Sums { motion: *motion.now(), carry: kept.1 };
+        let report = self.0.step(scene, &mut sums, &mut kept.0)?;
         motion.replace(sums.motion);
-        kept.carry = sums.carry;
+        kept.1 = sums.carry;
         Ok(report)
     }
 
@@ -148,10 +127,10 @@ impl<S: Effect, P: Plan<S>> Plan<S> for CompensatedSums<P> {
         kept: &mut Self::Kept,
         steps: u64,
     ) -> Result<u64, StepError> {
-        let mut sums = Sums { motion: *motion.now(), carry: kept.carry };
-        let iterations = self.0.run(scene, &mut sums, &mut kept.kept, steps)?;
+        let mut sums = Sums { motion: *motion.now(), carry: kept.1 };
+        let iterations = self.0.run(scene, &mut sums, &mut kept.0, steps)?;
         motion.replace(sums.motion);
-        kept.carry = sums.carry;
+        kept.1 = sums.carry;
         Ok(iterations)
     }
 
@@ -162,16 +141,16 @@ impl<S: Effect, P: Plan<S>> Plan<S> for CompensatedSums<P> {
         kept: &mut Self::Kept,
         impulse: &Vector<S>,
     ) -> Result<(), StepError> {
-        let mut sums = Sums { motion: *motion.now(), carry: kept.carry };
-        self.0.push(scene, &mut sums, &mut kept.kept, impulse)?;
+        let mut sums = Sums { motion: *motion.now(), carry: kept.1 };
+        self.0.push(scene, &mut sums, &mut kept.0, impulse)?;
         motion.replace(sums.motion);
-        kept.carry = sums.carry;
+        kept.1 = sums.carry;
         Ok(())
     }
 
     fn see(&self, motion: &mut MotionOf<S>, kept: &mut Self::Kept, advected: S::Advected) {
-        self.0.see(motion, &mut kept.kept, advected);
-        kept.carry.advected = zero();
+        self.0.see(motion, &mut kept.0, advected);
+        kept.1.advected = zero();
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
@@ -180,22 +159,16 @@ impl<S: Effect, P: Plan<S>> Plan<S> for CompensatedSums<P> {
     }
 }
 
-impl<K: Kept<G::Scalar>, G: LieGroup, A: Advected<G>> Kept<G::Scalar> for MemoryWithCarry<K, G, A> {
+impl<G: LieGroup, A: Advected<G>> Kept<G::Scalar> for Carry<G, A> {
     fn each(&self, mut visit: &mut dyn FnMut(G::Scalar)) {
-        self.kept.each(visit);
-        self.carry.attitude.each(&mut visit);
-        self.carry.momentum.each(&mut visit);
-        self.carry.advected.each(&mut visit);
+        self.attitude.each(&mut visit);
+        self.momentum.each(&mut visit);
+        self.advected.each(&mut visit);
     }
 
     fn from_numbers(mut next: &mut dyn FnMut() -> G::Scalar) -> Option<Self> {
-        let kept = K::from_numbers(next)?;
         let (attitude, momentum) = (Entries::from_entries(&mut next), Entries::from_entries(&mut next));
-        Some(Self { kept, carry: Carry { attitude, momentum, advected: Entries::from_entries(&mut next) } })
-    }
-
-    fn scaled(&self, ratio: G::Scalar) -> Self {
-        Self { kept: self.kept.scaled(ratio), ..*self }
+        Some(Self { attitude, momentum, advected: Entries::from_entries(&mut next) })
     }
 }
 
@@ -206,15 +179,14 @@ struct Sums<G: LieGroup, A> {
     carry: Carry<G, A>,
 }
 
+#[hot]
 impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Sums<G, A> {
     const CARRIES: bool = true;
 
-    #[hot]
     fn now(&self) -> &Motion<G, A> {
         &self.motion
     }
 
-    #[hot]
     fn turn(&mut self, increment: &G::Matrix) {
         let Self { motion, carry } = self;
         let attitude = carried_sum(&motion.attitude.matrix(), &motion.attitude.change(increment), &carry.attitude);
@@ -224,24 +196,20 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Sums<G, A> {
         (carry.attitude, carry.advected) = (attitude.1, advected.1);
     }
 
-    #[hot]
     fn turned(&self, increment: &G::Matrix) -> A {
         let Self { motion, carry } = self;
         carried_sum(&motion.advected, &motion.advected.change(increment), &carry.advected).0
     }
 
-    #[hot]
     fn push(&mut self, change: &G::Vector) {
         let momentum = carried_sum(&self.motion.momentum, change, &self.carry.momentum);
         (self.motion.momentum, self.carry.momentum) = momentum;
     }
 
-    #[hot]
     fn proceed(&mut self, increment: &G::Matrix, change: &G::Vector, _: (G::Vector, A)) {
         self.turn_and_push(increment, change);
     }
 
-    #[hot]
     fn recount(&mut self, steps: u64) {
         self.motion.steps = steps;
     }
@@ -259,7 +227,6 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Sums<G, A> {
         *self = Self { motion, carry: Carry::nothing() };
     }
 
-    #[hot]
     fn show(&mut self, motion: Motion<G, A>) {
         self.motion = motion;
     }

@@ -1,7 +1,6 @@
 //! Lengths of steps that follow the motion, and come back where the motion does.
 
-use super::lengths::Lengths;
-use super::varied::VariedSteps;
+use super::varied::{Lengths, VariedSteps};
 use crate::mechanics::{Effect, SceneVisitor, Vector};
 use crate::motion::{ElapsedTime, Kept, MotionOf, Plan, Stepper, Variable};
 

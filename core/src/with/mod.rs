@@ -10,7 +10,6 @@ mod compensated;
 pub mod densities;
 mod density;
 mod driven;
-mod lengths;
 mod orbit;
 mod pace;
 mod remedies;
@@ -19,15 +18,13 @@ mod varied;
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, CheckpointError, Storable};
 pub use clock::Clock;
-pub use compensated::{Compensable, CompensatedSums, MemoryWithCarry};
+pub use compensated::{Carry, Compensable, CompensatedSums};
 #[doc(hidden)]
 pub use density::Density;
 pub use driven::Driven;
-#[doc(hidden)]
-pub use lengths::Lengths;
 pub use pace::Pacable;
 #[doc(hidden)]
 pub use pace::PacedStep;
 pub use remedies::Substeps;
 #[doc(hidden)]
-pub use varied::VariedSteps;
+pub use varied::{Lengths, VariedSteps};

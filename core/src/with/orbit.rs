@@ -3,9 +3,7 @@
 use alloc::vec::Vec;
 use core::f64::consts::TAU;
 
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+roots!();
 
 /// Of an integral over a round, which converges as fast as a power with their number.
 const RECTANGLES: u32 = 65_536;

@@ -31,19 +31,14 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// ```
     /// use liestep::motion::Remedy;
-    /// use liestep::{SO3, Stepper, lagrangian};
+    /// use liestep::effects::PrincipalBody;
+    /// use liestep::{SO3, Stepper};
     /// use liestep::groups::LieGroup as _;
     /// use liestep::mechanics::DiagonalNonstandardInertia;
     /// use nalgebra::Vector3;
     ///
-    /// /// A free rigid body.
-    /// #[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
-    /// struct Body {
-    ///     J_d: DiagonalNonstandardInertia,
-    /// }
-    ///
     /// let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5))?;
-    /// let stepper = Stepper::new(Body { J_d }, 0.1)?.or_substeps(8);
+    /// let stepper = Stepper::new(PrincipalBody { J_d }, 0.1)?.or_substeps(8);
     /// let mut state = stepper.start(SO3::identity(), Vector3::new(0.0, 25.0, 0.0))?;
     /// let report = stepper.step(&mut state)?;
     /// assert_eq!(report.remedy, Some(Remedy::Substeps(4)));

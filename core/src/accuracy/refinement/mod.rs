@@ -7,9 +7,7 @@ mod timed;
 
 use alloc::vec::Vec;
 
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+roots!();
 
 pub use runs::{Reference, RefinementError, convergence};
 #[cfg(feature = "std")]

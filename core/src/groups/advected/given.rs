@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, Vector1};
 
 use super::Advected;
 use crate::groups::LieGroup;
-use crate::numbers::{Entries, Real, is_finite};
+use crate::numbers::{Real, entries_of_value};
 
 /// A value that a step may be [given](crate::Stepper::step_with) anew: what `given(u = torque)` makes of the field
 /// `torque`, a scalar as a 1 × 1 matrix, a vector or a matrix.
@@ -22,39 +22,22 @@ impl<T: Real> Given<T> {
     }
 }
 
-impl<T: Real, const R: usize, const C: usize> Entries<T> for Given<T, R, C> {
-    fn from_entries(next: &mut impl FnMut() -> T) -> Self {
-        Self(Entries::from_entries(next))
-    }
+entries_of_value!([const R: usize, const C: usize] Given<S, R, C>);
 
-    #[hot]
-    fn each(&self, visit: &mut impl FnMut(T)) {
-        self.0.each(visit);
-    }
-
-    #[hot]
-    fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
-        Self(self.0.zip(&other.0, combine))
-    }
-}
-
+#[hot]
 impl<T: Real, G: LieGroup<Scalar = T>, const R: usize, const C: usize> Advected<G> for Given<T, R, C> {
-    #[hot]
     fn seen_from(&self, _: &G) -> Self {
         *self
     }
 
-    #[hot]
     fn pulled_back(&self, _: &G) -> Self {
         *self
     }
 
-    #[hot]
     fn change(&self, _: &G::Matrix) -> Self {
         Self(SMatrix::zeros())
     }
 
-    #[hot]
     fn rate(&self, _: &G::Matrix) -> Self {
         Self(SMatrix::zeros())
     }
@@ -63,12 +46,7 @@ impl<T: Real, G: LieGroup<Scalar = T>, const R: usize, const C: usize> Advected<
         *self
     }
 
-    #[hot]
     fn advect(&self, _: &G::Matrix) -> Self {
         *self
-    }
-
-    fn is_finite(&self) -> bool {
-        self.0.iter().all(|&entry| is_finite(entry))
     }
 }

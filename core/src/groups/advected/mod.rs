@@ -33,7 +33,7 @@ pub(crate) use points::homogeneous;
 pub use several::{Configuration, Relative, SeenFrom};
 pub use tensors::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{SMatrix, SVector, SimdBool as _, SimdPartialOrd as _};
 
 use crate::groups::LieGroup;
 use crate::numbers::{Coordinates, Entries, Real, real, sum, zero};
@@ -84,7 +84,14 @@ pub trait Advected<G: LieGroup>: Entries<G::Scalar> + Debug + PartialEq {
     }
 
     /// Whether all components are finite.
-    fn is_finite(&self) -> bool;
+    #[hot]
+    #[must_use]
+    fn is_finite(&self) -> bool {
+        // Zero times an infinity or a NaN is NaN; the sum itself could overflow.
+        let (zero, mut sum) = (real::<G::Scalar>(0.0), real::<G::Scalar>(0.0));
+        self.each(&mut |entry| sum += entry * zero);
+        sum.simd_eq(zero).all()
+    }
 }
 
 /// How the value that the body sees changes with the scalar of this number of the value in space.
@@ -108,13 +115,10 @@ impl<G: LieGroup> Advected<G> for () {
     fn rate(&self, _: &G::Matrix) -> Self {}
 
     fn seen_through(&self, _: &G::Matrix, _: &G::Matrix) -> Self {}
-
-    fn is_finite(&self) -> bool {
-        true
-    }
 }
 
 /// An element of `V*`.
+#[hot]
 impl<G, T: Real, const N: usize> Advected<G> for SVector<T, N>
 where
     G: LieGroup<Scalar = T, Matrix = SMatrix<T, N, N>>,
@@ -126,19 +130,16 @@ where
     }
 
     /// `ρ(g)` times the gradient.
-    #[hot]
     fn pulled_back(&self, attitude: &G) -> Self {
         mul(&attitude.matrix(), self)
     }
 
     /// `Dᵀ w`.
-    #[hot]
     fn change(&self, increment: &SMatrix<T, N, N>) -> Self {
         transpose_mul(increment, self)
     }
 
     /// `ξ̂ᵀ w`.
-    #[hot]
     fn rate(&self, velocity: &SMatrix<T, N, N>) -> Self {
         transpose_mul(velocity, self)
     }
@@ -147,7 +148,6 @@ where
         transpose_mul(matrix, self)
     }
 
-    #[hot]
     fn is_finite(&self) -> bool {
         Coordinates::is_finite(self)
     }
@@ -183,34 +183,26 @@ fn mul<T: Real, const N: usize>(a: &SMatrix<T, N, N>, v: &SVector<T, N>) -> SVec
 
 macro_rules! tuple {
     ($($name:ident $index:tt),+) => {
+        #[hot]
         impl<G: LieGroup, $($name: Advected<G>),+> Advected<G> for ($($name,)+) {
-            #[hot]
             fn seen_from(&self, attitude: &G) -> Self {
                 ($(self.$index.seen_from(attitude),)+)
             }
 
-            #[hot]
             fn pulled_back(&self, attitude: &G) -> Self {
                 ($(self.$index.pulled_back(attitude),)+)
             }
 
-            #[hot]
             fn change(&self, increment: &G::Matrix) -> Self {
                 ($(self.$index.change(increment),)+)
             }
 
-            #[hot]
             fn rate(&self, velocity: &G::Matrix) -> Self {
                 ($(self.$index.rate(velocity),)+)
             }
 
             fn seen_through(&self, matrix: &G::Matrix, inverse: &G::Matrix) -> Self {
                 ($(self.$index.seen_through(matrix, inverse),)+)
-            }
-
-            #[hot]
-            fn is_finite(&self) -> bool {
-                $(self.$index.is_finite())&&+
             }
         }
     };

@@ -7,7 +7,7 @@ use nalgebra::{Point, SMatrix, SVector};
 
 use super::Advected;
 use crate::groups::LieGroup;
-use crate::numbers::{Entries, Real, is_finite};
+use crate::numbers::{Entries, Real};
 
 /// `(p, 1)`.
 #[hot]
@@ -57,10 +57,6 @@ macro_rules! points {
             fn seen_through(&self, _: &SMatrix<T, $size, $size>, inverse: &SMatrix<T, $size, $size>) -> Self {
                 let moved: SVector<T, $size> = inverse * homogeneous(self);
                 Self::from(moved.fixed_rows::<$dimension>(0).into_owned())
-            }
-
-            fn is_finite(&self) -> bool {
-                self.iter().all(|&entry| is_finite(entry))
             }
         })+
     };

@@ -10,7 +10,7 @@ use nalgebra::SMatrix;
 
 use super::Advected;
 use crate::groups::{Factor, LieGroup};
-use crate::numbers::{Entries, Real, is_finite};
+use crate::numbers::{Entries, Real, entries_of_value};
 
 /// What the body that is the factor `A` of a product sees; the others don't move it.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
@@ -39,48 +39,25 @@ impl<const B: usize, T: Real, const N: usize> Default for Configuration<B, SMatr
     }
 }
 
-/// Entries are those of the value.
-macro_rules! of_its_value {
-    ($type:ident, $($place:ident),+) => {
-        impl<$(const $place: usize,)+ S, W: Entries<S>> Entries<S> for $type<$($place,)+ W> {
-            fn from_entries(next: &mut impl FnMut() -> S) -> Self {
-                Self(Entries::from_entries(next))
-            }
+entries_of_value!([const A: usize, W: Entries<S>] SeenFrom<A, W>);
+entries_of_value!([const A: usize, const B: usize, W: Entries<S>] Relative<A, B, W>);
+entries_of_value!([const B: usize, W: Entries<S>] Configuration<B, W>);
 
-            #[hot]
-            fn each(&self, visit: &mut impl FnMut(S)) {
-                self.0.each(visit);
-            }
-
-            #[hot]
-            fn zip(&self, other: &Self, combine: &mut impl FnMut(S, S) -> S) -> Self {
-                Self(self.0.zip(&other.0, combine))
-            }
-        }
-    };
-}
-
-of_its_value!(SeenFrom, A);
-of_its_value!(Relative, A, B);
-of_its_value!(Configuration, B);
-
+#[hot]
 impl<const A: usize, G: Factor<A>, W: Advected<G::Of>> Advected<G> for SeenFrom<A, W> {
     #[inline]
     fn seen_from(&self, attitude: &G) -> Self {
         Self(self.0.seen_from(&attitude.factor()))
     }
 
-    #[hot]
     fn pulled_back(&self, attitude: &G) -> Self {
         Self(self.0.pulled_back(&attitude.factor()))
     }
 
-    #[hot]
     fn change(&self, increment: &G::Matrix) -> Self {
         Self(self.0.change(&G::of_matrix(increment)))
     }
 
-    #[hot]
     fn rate(&self, velocity: &G::Matrix) -> Self {
         Self(self.0.rate(&G::of_matrix(velocity)))
     }
@@ -88,16 +65,12 @@ impl<const A: usize, G: Factor<A>, W: Advected<G::Of>> Advected<G> for SeenFrom<
     fn seen_through(&self, matrix: &G::Matrix, inverse: &G::Matrix) -> Self {
         Self(self.0.seen_through(&G::of_matrix(matrix), &G::of_matrix(inverse)))
     }
-
-    #[hot]
-    fn is_finite(&self) -> bool {
-        self.0.is_finite()
-    }
 }
 
 /// The matrices of the factor `K`.
 type Of<G, const K: usize> = <<G as Factor<K>>::Of as LieGroup>::Matrix;
 
+#[hot]
 impl<const A: usize, const B: usize, G, T, const N: usize> Advected<G> for Relative<A, B, SMatrix<T, N, N>>
 where
     T: Real,
@@ -118,7 +91,6 @@ where
     }
 
     /// `E Q + (Q + E Q) D_B` with `E = F_A⁻¹ − I`.
-    #[hot]
     fn change(&self, increment: &G::Matrix) -> Self {
         let (from, to) = (<G as Factor<A>>::of_matrix(increment), <G as Factor<B>>::of_matrix(increment));
         let turned = product(&<G as Factor<A>>::Of::inverse_increment(&from), &self.0);
@@ -126,7 +98,6 @@ where
     }
 
     /// `Q ξ̂_B − ξ̂_A Q`.
-    #[hot]
     fn rate(&self, velocity: &G::Matrix) -> Self {
         let (from, to) = (<G as Factor<A>>::of_matrix(velocity), <G as Factor<B>>::of_matrix(velocity));
         Self(product(&self.0, &to) - product(&from, &self.0))
@@ -136,13 +107,9 @@ where
         let (from, to) = (<G as Factor<A>>::of_matrix(inverse), <G as Factor<B>>::of_matrix(matrix));
         Self(product(&product(&from, &self.0), &to))
     }
-
-    #[hot]
-    fn is_finite(&self) -> bool {
-        all_finite(&self.0)
-    }
 }
 
+#[hot]
 impl<const B: usize, G, T: Real, const N: usize> Advected<G> for Configuration<B, SMatrix<T, N, N>>
 where
     G: Factor<B, Of: LieGroup<Matrix = SMatrix<T, N, N>>> + LieGroup<Scalar = T>,
@@ -159,24 +126,17 @@ where
     }
 
     /// `R D`.
-    #[hot]
     fn change(&self, increment: &G::Matrix) -> Self {
         Self(product(&self.0, &G::of_matrix(increment)))
     }
 
     /// `R ξ̂`.
-    #[hot]
     fn rate(&self, velocity: &G::Matrix) -> Self {
         Self(product(&self.0, &G::of_matrix(velocity)))
     }
 
     fn seen_through(&self, matrix: &G::Matrix, _: &G::Matrix) -> Self {
         Self(product(&self.0, &G::of_matrix(matrix)))
-    }
-
-    #[hot]
-    fn is_finite(&self) -> bool {
-        all_finite(&self.0)
     }
 }
 
@@ -194,9 +154,4 @@ fn product<T: Real, const N: usize>(a: &SMatrix<T, N, N>, b: &SMatrix<T, N, N>) 
         }
     }
     product
-}
-
-#[hot]
-fn all_finite<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool {
-    matrix.iter().all(|&entry| is_finite(entry))
 }

@@ -7,7 +7,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::Advected;
 use crate::groups::LieGroup;
-use crate::numbers::{Entries, Real, is_finite};
+use crate::numbers::{Real, entries_of_value};
 
 /// An element of `V`, moved by `ρ(f)⁻¹`: what is fixed in space, as the body sees it.
 ///
@@ -29,19 +29,7 @@ pub struct MixedTensor<T, const N: usize>(pub SMatrix<T, N, N>);
 
 macro_rules! kind {
     ($type:ident, $pulled:expr, $change:expr, $rate:expr, $through:expr) => {
-        impl<T: Real, const N: usize> Entries<T> for $type<T, N> {
-            fn from_entries(next: &mut impl FnMut() -> T) -> Self {
-                Self(Entries::from_entries(next))
-            }
-
-            fn each(&self, visit: &mut impl FnMut(T)) {
-                self.0.each(visit);
-            }
-
-            fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
-                Self(self.0.zip(&other.0, combine))
-            }
-        }
+        entries_of_value!([const N: usize] $type<S, N>);
 
         impl<G, T: Real, const N: usize> Advected<G> for $type<T, N>
         where
@@ -65,10 +53,6 @@ macro_rules! kind {
 
             fn seen_through(&self, matrix: &SMatrix<T, N, N>, inverse: &SMatrix<T, N, N>) -> Self {
                 Self($through(&self.0, matrix, inverse))
-            }
-
-            fn is_finite(&self) -> bool {
-                self.0.iter().all(|&entry| is_finite(entry))
             }
         }
     };

@@ -13,6 +13,7 @@ use crate::groups::{LieGroup, SO3};
 use crate::numbers::{Mask, Real, real};
 
 /// Coordinates `ξ ↦ τ(ξ)` of a group about its identity.
+#[hot]
 pub trait Retraction<G: LieGroup> {
     /// `D = τ(ξ) − I`, formed without subtracting `I`, so that a small `ξ` keeps all its digits.
     fn increment(xi: &G::Vector) -> G::Matrix;
@@ -20,7 +21,6 @@ pub trait Retraction<G: LieGroup> {
     /// `D` for half the coordinates, `y = ξ/2`, which are what Newton's iteration solves for: on SO(3) in Cayley
     /// coordinates `tan(θ/2) n`, in which formulas are shortest.
     #[must_use]
-    #[hot]
     fn increment_of_half(half: &G::Vector) -> G::Matrix {
         Self::increment(&(*half + *half))
     }
@@ -39,7 +39,6 @@ pub trait Retraction<G: LieGroup> {
 
     /// The same for half the coordinates, `y = ξ/2`: `dF F⁻¹ = (T dy)^`.
     #[must_use]
-    #[hot]
     fn tangent_of_half(half: &G::Vector) -> <G::Vector as crate::numbers::Coordinates<G::Scalar>>::Square {
         Self::tangent(&(*half + *half)) * real::<G::Scalar>(2.0)
     }
@@ -51,6 +50,7 @@ pub trait Retraction<G: LieGroup> {
     /// expensive, see [`Effect::JACOBIAN_IS_EXPENSIVE`](crate::mechanics::Effect::JACOBIAN_IS_EXPENSIVE), and corrects
     /// it as it goes. This default is its value at the identity, `J`.
     #[must_use]
+    #[inline]
     fn free_momentum_tangent(
         inertia: &<G::Vector as crate::numbers::Coordinates<G::Scalar>>::Square,
         _xi: &G::Vector,
@@ -68,14 +68,12 @@ pub trait Retraction<G: LieGroup> {
 
     /// [`is_near_identity`](Self::is_near_identity) for half the coordinates.
     #[must_use]
-    #[hot]
     fn is_half_near_identity(half: &G::Vector) -> Mask<G::Scalar> {
         Self::is_near_identity(&(*half + *half))
     }
 
     /// The same for 3/2 of these, which keeps well away from where increments change fast from step to step.
     #[must_use]
-    #[hot]
     fn is_half_well_near_identity(half: &G::Vector) -> Mask<G::Scalar> {
         Self::is_near_identity(&(*half * real(3.0)))
     }
@@ -90,9 +88,9 @@ pub trait Retraction<G: LieGroup> {
 #[derive(Clone, Copy, Debug)]
 pub struct CayleyRetraction;
 
+#[hot]
 impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
     /// `D = (ξ̂ + ξ̂²/2) · 4/(4 + |ξ|²)`.
-    #[hot]
     fn increment(xi: &Vector3<T>) -> Matrix3<T> {
         let squared = xi.x * xi.x + xi.y * xi.y + xi.z * xi.z;
         let four = real::<T>(4.0);
@@ -101,7 +99,6 @@ impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
     }
 
     /// `D = (ŷ + ŷ²) · 2/(1 + |y|²)`: the same bits.
-    #[hot]
     fn increment_of_half(half: &Vector3<T>) -> Matrix3<T> {
         let squared = half.x * half.x + half.y * half.y + half.z * half.z;
         let scale = real::<T>(2.0) / (T::one() + squared);
@@ -109,6 +106,7 @@ impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
     }
 
     /// `2 (F − Fᵀ)^∨ / (1 + tr F)`.
+    #[inline]
     fn local_coordinates(element: &SO3<T>) -> Option<Vector3<T>> {
         let f = element.as_matrix();
         let scale = real::<T>(2.0) / (T::one() + f.m11 + f.m22 + f.m33);
@@ -117,6 +115,7 @@ impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
     }
 
     /// `T = (I + ξ̂/2) · 4/(4 + |ξ|²)`.
+    #[inline]
     fn tangent(xi: &Vector3<T>) -> Matrix3<T> {
         let four = real::<T>(4.0);
         let scale = four / (four + xi.norm_squared());
@@ -124,22 +123,18 @@ impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
     }
 
     /// To the relative order of `|ξ|⁴`.
-    #[hot]
     fn free_momentum_tangent(inertia: &Matrix3<T>, xi: &Vector3<T>) -> Matrix3<T> {
         free_body::momentum_tangent(inertia, xi)
     }
 
-    #[hot]
     fn is_near_identity(xi: &Vector3<T>) -> Mask<T> {
         (xi.x * xi.x + xi.y * xi.y + xi.z * xi.z).simd_lt(real(4.0))
     }
 
-    #[hot]
     fn is_half_near_identity(half: &Vector3<T>) -> Mask<T> {
         (half.x * half.x + half.y * half.y + half.z * half.z).simd_lt(T::one())
     }
 
-    #[hot]
     fn is_half_well_near_identity(half: &Vector3<T>) -> Mask<T> {
         (half.x * half.x + half.y * half.y + half.z * half.z).simd_lt(real(4.0 / 9.0))
     }

@@ -50,6 +50,7 @@ where
     }
 }
 
+#[hot]
 impl<P, E, const M: usize> Effect for Placement<P, E, M>
 where
     P: Places<E> + Copy + Debug + PartialEq,
@@ -78,39 +79,36 @@ where
         self.terms.first().map(E::derivation).unwrap_or_default()
     }
 
-    #[hot]
     fn has_constant_inertia(&self) -> bool {
         self.terms.iter().all(E::has_constant_inertia)
     }
 
-    #[hot]
     fn is_quadratic(&self) -> bool {
         self.terms.iter().all(E::is_quadratic)
     }
 
-    #[hot]
     fn denominators(constants: &Self::Constants) -> u32 {
         constants.iter().map(|(constants, _)| E::denominators(constants)).max().unwrap_or(0)
     }
 
     // Of several values it is what the type says.
-    #[hot]
     fn parts(constants: &Self::Constants) -> Parts {
         if M == 1 { E::parts(&constants[0].0) } else { Self::PARTS }
     }
 
-    #[hot]
     fn apart(constants: &Self::Constants) -> Blocks {
         if M == 1 && !P::LINKS_NEIGHBOURS { E::apart(&constants[0].0) } else { Self::APART }
     }
 
     #[allow(clippy::cast_precision_loss)] // far fewer than a float counts
+    #[inline]
     fn describe(&self, visitor: &mut dyn SceneVisitor<Self::Scalar>) {
         visitor.term(P::NAME.0);
         P::NAME.1.iter().for_each(|&body| visitor.parameter("body", real(body as f64)));
         self.terms.iter().for_each(|term| term.describe(visitor));
     }
 
+    #[inline]
     fn momentum_jacobian(&self, f: &Matrix<Self>, w: &P::Advected, h: Self::Scalar) -> Square<Self> {
         P::squares(|at| {
             let term = self.term(at);
@@ -118,7 +116,6 @@ where
         })
     }
 
-    #[hot]
     fn limit(&self, velocity: Option<&Vector<Self>>, w: &P::Advected) -> Limit<Self> {
         let at_its_place = |at: At| {
             let (term, velocity) = (self.term(at), velocity.map(|velocity| P::components(velocity, at)));
@@ -141,7 +138,6 @@ where
         constants.iter().all(|(constants, _)| E::are_finite(constants))
     }
 
-    #[hot]
     fn kick_before(constants: &Self::Constants, w: &P::Advected) -> Vector<Self> {
         P::sum(
             #[cfg_attr(not(debug_assertions), inline(always))]
@@ -152,7 +148,6 @@ where
         )
     }
 
-    #[hot]
     fn kick_derivative(constants: &Self::Constants, w: &P::Advected, velocity: &Vector<Self>) -> Option<Vector<Self>> {
         let mut is_known = true;
         let all = P::sum(
@@ -167,7 +162,6 @@ where
         is_known.then_some(all)
     }
 
-    #[hot]
     fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &P::Advected) -> Self::StepTerms {
         P::gather(
             #[cfg_attr(not(debug_assertions), inline(always))]
@@ -178,7 +172,6 @@ where
         )
     }
 
-    #[hot]
     fn newton_system(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -187,7 +180,6 @@ where
         P::system(Self::systems(constants, terms, half))
     }
 
-    #[hot]
     fn newton_linked(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -197,7 +189,6 @@ where
         P::linked(links, Self::systems(constants, terms, half))
     }
 
-    #[hot]
     fn newton_update(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -206,7 +197,6 @@ where
         P::newton_update(pattern::<Self>(constants), Self::systems(constants, terms, half))
     }
 
-    #[hot]
     fn newton_residual(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -222,7 +212,6 @@ where
         Residual { momentum_defect, moving_kick: None }
     }
 
-    #[hot]
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &P::Advected) -> Vector<Self> {
         P::sum(
             #[cfg_attr(not(debug_assertions), inline(always))]

@@ -71,25 +71,7 @@ use crate::mechanics::term::Term;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// A term that couples velocities isn't one for two places:
-///
-/// ```compile_fail,E0080
-/// use liestep::groups::Relative;
-/// use liestep::mechanics::Along;
-/// use liestep::{Stepper, lagrangian};
-/// use nalgebra::Vector3;
-///
-/// #[lagrangian(
-///     group(F_1 = SO3, F_2 = SO3),
-///     advected(Q = F_2.seen_from(F_1)),
-///     l_d = ((F_1 - I) * rho).dot(&(Q * ((F_2 - I) * s))) / h,
-/// )]
-/// struct Linked {
-///     rho: Vector3<f64>,
-///     s: Vector3<f64>,
-/// }
-/// let joint = Along::<3>::of([Linked { rho: Vector3::z(), s: Vector3::z() }]);
-/// ```
+/// A term that couples velocities isn't one for two places, and is refused when a program is built.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes, InLanes)]
 pub struct Placement<P, E, const M: usize> {
     #[shared]

@@ -3,7 +3,7 @@
 use core::marker::PhantomData;
 
 use crate::groups::{Advected, LieGroup, Pair};
-use crate::numbers::{Entries, Real, filled, zero};
+use crate::numbers::{Entries, entries_of_value, filled, zero};
 
 /// What each two neighbours see, as a group `P` of two bodies moves it. Behind it there is one more, which never changes:
 /// stable Rust has no arrays of `N − 1`.
@@ -26,29 +26,9 @@ impl<G: LieGroup, const N: usize> Default for WhereAllAre<G, N> {
     }
 }
 
-macro_rules! entries {
-    ([$($parameters:tt)*] $type:ty, $($marker:expr)?) => {
-        impl<S: Real, $($parameters)*> Entries<S> for $type {
-            fn from_entries(next: &mut impl FnMut() -> S) -> Self {
-                Self(Entries::from_entries(next), $($marker)?)
-            }
-
-            #[hot]
-            fn each(&self, visit: &mut impl FnMut(S)) {
-                self.0.each(visit);
-            }
-
-            #[hot]
-            fn zip(&self, other: &Self, combine: &mut impl FnMut(S, S) -> S) -> Self {
-                Self(self.0.zip(&other.0, combine), $($marker)?)
-            }
-        }
-    };
-}
-
-entries!([P: Copy, W: Entries<S>, const N: usize] Neighbours<P, W, N>, PhantomData);
-entries!([P: Copy, W: Entries<S>, const A: usize, const B: usize] SeenBetween<P, W, A, B>, PhantomData);
-entries!([G: LieGroup<Scalar = S>, const N: usize] WhereAllAre<G, N>,);
+entries_of_value!([P: Copy, W: Entries<S>, const N: usize] Neighbours<P, W, N>, PhantomData);
+entries_of_value!([P: Copy, W: Entries<S>, const A: usize, const B: usize] SeenBetween<P, W, A, B>, PhantomData);
+entries_of_value!([G: LieGroup<Scalar = S>, const N: usize] WhereAllAre<G, N>);
 
 impl<P, W: Copy, const N: usize> Neighbours<P, W, N> {
     /// Something of each two neighbours in the place of what is there; the one behind stays.
@@ -61,6 +41,7 @@ impl<P, W: Copy, const N: usize> Neighbours<P, W, N> {
     }
 }
 
+#[hot]
 impl<G, P, W, const N: usize> Advected<[G; N]> for Neighbours<P, W, N>
 where
     G: LieGroup,
@@ -71,7 +52,6 @@ where
         Self(self.0, PhantomData).with(|k| self.0[k].seen_from(&P::pair(&attitude[k], &attitude[k + 1])))
     }
 
-    #[hot]
     fn change(&self, increment: &[G::Matrix; N]) -> Self {
         Self([zero::<G::Scalar, W>(); N], PhantomData).with(
             #[cfg_attr(not(debug_assertions), inline(always))]
@@ -79,7 +59,6 @@ where
         )
     }
 
-    #[hot]
     fn advect(&self, increment: &[G::Matrix; N]) -> Self {
         Self(self.0, PhantomData).with(
             #[cfg_attr(not(debug_assertions), inline(always))]
@@ -96,13 +75,9 @@ where
         let pair = |of: &[G::Matrix; N], k: usize| P::matrices(&of[k], &of[k + 1]);
         Self(self.0, PhantomData).with(|k| self.0[k].seen_through(&pair(matrix, k), &pair(inverse, k)))
     }
-
-    #[hot]
-    fn is_finite(&self) -> bool {
-        self.0.iter().all(W::is_finite)
-    }
 }
 
+#[hot]
 impl<G, P, W, const A: usize, const B: usize, const N: usize> Advected<[G; N]> for SeenBetween<P, W, A, B>
 where
     G: LieGroup,
@@ -113,7 +88,6 @@ where
         Self(self.0.seen_from(&P::pair(&attitude[A], &attitude[B])), PhantomData)
     }
 
-    #[hot]
     fn change(&self, increment: &[G::Matrix; N]) -> Self {
         Self(self.0.change(&P::matrices(&increment[A], &increment[B])), PhantomData)
     }
@@ -125,11 +99,6 @@ where
     fn seen_through(&self, matrix: &[G::Matrix; N], inverse: &[G::Matrix; N]) -> Self {
         let pair = |of: &[G::Matrix; N]| P::matrices(&of[A], &of[B]);
         Self(self.0.seen_through(&pair(matrix), &pair(inverse)), PhantomData)
-    }
-
-    #[hot]
-    fn is_finite(&self) -> bool {
-        self.0.is_finite()
     }
 }
 
@@ -152,11 +121,5 @@ impl<G: LieGroup, const N: usize> Advected<[G; N]> for WhereAllAre<G, N> {
     fn seen_through(&self, matrix: &[G::Matrix; N], _: &[G::Matrix; N]) -> Self {
         let moved = |k: usize| G::from_matrix_unchecked(self.0[k]).compose(&G::from_matrix_unchecked(matrix[k]));
         Self(filled!(self.0, |k| moved(k).matrix()))
-    }
-
-    fn is_finite(&self) -> bool {
-        let mut is_finite = true;
-        self.each(&mut |entry| is_finite &= crate::numbers::is_finite::<G::Scalar>(entry));
-        is_finite
     }
 }

@@ -26,9 +26,7 @@
 //!
 //! Nothing here depends on the number of links but the length of slices, so it is compiled once.
 
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+roots!();
 
 use super::link::Link;
 use crate::numbers::{Columns, Register, cross, dot, padded, square};
@@ -81,55 +79,48 @@ pub(super) struct Work<R> {
     pub(super) determinant: f64,
 }
 
+#[hot]
 impl<R: Register> Work<R> {
     /// Of a link without a neighbour, at rest.
-    #[hot]
     pub(super) fn none(zero: R) -> Self {
         let none = Columns([zero; 3]);
-        let (next, back, arm, increment, inverse, g, h) = (none, none, none, none, none, none, none);
-        let (target, half, before, update, of_rho, of_mc, u, t) = (zero, zero, zero, zero, zero, zero, zero, zero);
-        let determinant = 0.0;
         Self {
-            next,
-            back,
-            arm,
-            target,
-            half,
-            before,
-            update,
-            increment,
-            of_rho,
-            of_mc,
-            u,
-            t,
-            inverse,
-            g,
-            h,
-            determinant,
+            next: none,
+            back: none,
+            arm: none,
+            target: zero,
+            half: zero,
+            before: zero,
+            update: zero,
+            increment: none,
+            of_rho: zero,
+            of_mc: zero,
+            u: zero,
+            t: zero,
+            inverse: none,
+            g: none,
+            h: none,
+            determinant: 0.0,
         }
     }
 
     /// Puts the next link, whose attitude is this one's times `next`.
-    #[hot]
     pub(super) fn place(&mut self, link: &LinkConstants, next: Columns<R>) {
         self.arm = Columns::hat(self.u.of(link.rho)) * next;
         (self.next, self.back) = (next, next.transposed());
     }
 
     /// Whether the link turns by less than 90° and its determinant has the sign that it has at rest.
-    #[hot]
     pub(super) fn is_wanted(&self) -> bool {
         self.determinant > 0.0 && square(self.half) < 1.0
     }
 
     /// The link's momentum times `h`, `m (u + D c)`, kg m.
-    #[hot]
     pub(super) fn momentum(&self, link: &LinkConstants) -> R {
         self.u * self.u.of([link.m; 4]) + self.of_mc
     }
 
     /// Turns it, where the way of its upper joint is `u`; returns that of the lower one, as the next link sees it.
-    #[hot]
     fn turn(&mut self, link: &LinkConstants, u: R) -> R {
         // D = s (ŷ + y yᵀ − |y|² I), s = 2/(1 + |y|²).
         let (half, squared) = (self.half, dot(self.half, self.half));
@@ -145,7 +136,6 @@ impl<R: Register> Work<R> {
     }
 
     /// `t = ρ × q + h r` with `D J`, and `P` beyond.
-    #[hot]
     fn residual(&self, link: &LinkConstants, dj: &Columns<R>, beyond: R, q: R) -> R {
         let (mc, rho) = (q.of(link.mc), q.of(link.rho));
         let [[_, m21, m31, _], [m12, _, m32, _], [m13, m23, ..]] = dj.entries();

@@ -2,9 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+roots!();
 
 use super::elimination::{LinkConstants, Update, Work, momenta_of_velocities, newton, outwards, simplified};
 use super::link::Link;
@@ -85,10 +83,12 @@ impl<S: Effect<Group = [SO3; N]>, const N: usize> Stepper<S, LinkedBodies<S, N>>
     }
 }
 
+#[hot]
 impl<S, const N: usize> LinkedBodies<S, N>
 where
     S: Effect<Scalar = f64, Group = [SO3; N]>,
 {
+    #[inline]
     fn new(scene: &S, links: [LinkConstants; N], h: f64) -> Result<Self, SetupError> {
         const {
             assert!(N > 0, "a chain has a link");
@@ -105,7 +105,6 @@ where
     }
 
     /// The attitude of each link relative to that before.
-    #[hot]
     fn place<R: Register>(&self, zero: R, attitudes: &[SO3; N], work: &mut [Work<R>; N]) {
         for ((pair, work), link) in attitudes.windows(2).zip(work).zip(&self.links) {
             let (before, next) = (pair[0].as_matrix(), pair[1].as_matrix());
@@ -114,7 +113,6 @@ where
     }
 
     /// What the increments are to satisfy; returns what the scene gives before the step.
-    #[hot]
     pub(super) fn prepare<R: Register>(
         &self,
         zero: R,
@@ -131,7 +129,6 @@ where
 
     /// From the guess; where that fails from rest, and then with shortened updates. Returns the iterations, those of
     /// abandoned attempts included, and whether they have led to a solution.
-    #[hot]
     pub(super) fn solve<R: Register>(&self, zero: R, work: &mut [Work<R>; N], guess: &Components<N>) -> (u32, bool) {
         const ATTEMPTS: [(bool, u32, f64); 3] = [
             (true, MAX_ITERATIONS, f64::INFINITY),
@@ -158,7 +155,6 @@ where
     /// # Errors
     ///
     /// [`StepError::NonFinite`] where a momentum after it isn't finite.
-    #[hot]
     pub(super) fn proceed<R: Register, M: Summation<[SO3; N], S::Advected>>(
         &self,
         scene: &S,

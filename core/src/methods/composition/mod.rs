@@ -54,25 +54,19 @@ use nalgebra::SimdBool as _;
 /// # Examples
 ///
 /// ```
+/// use liestep::effects::PrincipalBody;
+/// use liestep::groups::LieGroup as _;
 /// use liestep::methods::CompositionScheme;
-/// use liestep::{SO3, Stepper, lagrangian};
+/// use liestep::{SO3, Stepper};
 /// use liestep::mechanics::DiagonalNonstandardInertia;
 /// use nalgebra::Vector3;
 ///
-/// /// A free rigid body.
-/// #[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
-/// #[derive(Clone)]
-/// struct Body {
-///     J_d: DiagonalNonstandardInertia,
-/// }
-///
 /// let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 3.0))?;
-/// let composed = Stepper::composed(Body { J_d }, 0.1, CompositionScheme::KAHAN_LI_8)?;
+/// let composed = Stepper::composed(PrincipalBody { J_d }, 0.1, CompositionScheme::KAHAN_LI_8)?;
 /// let mut state = composed.start(SO3::identity(), Vector3::new(0.01, 2.0, 0.02))?;
 /// for _ in 0..100 {
 ///     composed.step(&mut state)?;
 /// }
-/// # use liestep::groups::LieGroup;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///

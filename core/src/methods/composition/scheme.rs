@@ -75,19 +75,8 @@ impl CompositionScheme {
         self.half
     }
 
-    /// What it is called in tables.
-    #[must_use]
-    pub fn name(&self) -> &'static str {
-        self.name
-    }
-
-    /// The order of the composition of a method of order [`base`](Self::base).
-    #[must_use]
-    pub fn order(&self) -> u32 {
-        self.order
-    }
-
-    /// The order of the method that the coefficients are for. For one of a lower order the composition's is lower too.
+    /// The order of the method that the coefficients are for: that of the composition is for such a one, and lower for one of
+    /// a lower order.
     #[must_use]
     pub fn base(&self) -> u32 {
         self.base

@@ -1,7 +1,6 @@
 //! Gauss's coefficients, by pairs of stages that mirror each other.
 
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _; // roots and powers
+roots!();
 
 /// A number for each stage: for those of the first half of the step, then for their mirror images.
 pub(super) type OfStages<const PAIRS: usize> = [[f64; PAIRS]; 2];

@@ -10,9 +10,7 @@ use crate::mechanics::{ContinuousLagrangian, Legendre, Matrix, Term, Vector, che
 use crate::motion::{ElapsedTime, Integrator, Motion, State, StepReport};
 use crate::numbers::{Coordinates, carried_sum};
 
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+roots!();
 
 /// A step of order `4 PAIRS`, by Gauss collocation with `2 PAIRS` stages in attitude and conjugate momentum, for any
 /// smooth `l(ξ, w)` on a group of `N` × `N` matrices.

@@ -6,8 +6,7 @@ use super::coefficients::{Coefficients, Columns, OfStages};
 use super::lift::PhasePoint;
 use super::settling::{Changes, MOST_ITERATIONS, Next};
 use crate::error::StepError;
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _; // roots and powers
+roots!();
 
 /// A number for each component and each stage.
 pub(super) type Numbers<const PAIRS: usize> = [OfStages<PAIRS>; 8];

@@ -8,9 +8,7 @@ use crate::groups::SO3;
 use crate::motion::Kept;
 use crate::numbers::{count, counted};
 
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+roots!();
 
 /// The motion as [`Gauss`](super::Gauss) integrates it: the unit quaternion and its momentum, what rounding has left
 /// behind of their sums, and the stages of the last step, from which the next ones are guessed.

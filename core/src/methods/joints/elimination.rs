@@ -25,10 +25,7 @@ use nalgebra::{SMatrix, SVector, Vector2, Vector6};
 
 use super::graph::Tree;
 use super::places::{Ends, Slopes};
-use crate::numbers::{Blocks, Coordinates as _, Pattern};
-
-/// A body's equations are solved together.
-const WHOLE: Pattern = Pattern { factors: Blocks::WHOLE, apart: Blocks::WHOLE };
+use crate::numbers::{Coordinates as _, Pattern};
 
 type Matrix6 = SMatrix<f64, 6, 6>;
 
@@ -138,7 +135,7 @@ pub(super) fn factorise<const K: usize, const N: usize, const L: usize>(
         for side in 0..2 {
             let Some(body) = closing.bodies[side] else { continue };
             let Ends { before, after } = &closing.slopes.0[side];
-            let factors = Vector6::factorise_apart(&bodies[body].matrix, WHOLE).0;
+            let factors = Vector6::factorise_apart(&bodies[body].matrix, Pattern::WHOLE).0;
             let own = *after * solved(&factors, before);
             closing.free += own.diagonal();
         }
@@ -146,7 +143,7 @@ pub(super) fn factorise<const K: usize, const N: usize, const L: usize>(
     for &k in tree.order.iter().rev() {
         let member = tree.members[k];
         let body = &mut bodies[k];
-        (body.matrix, body.determinant) = Vector6::factorise_apart(&body.matrix, WHOLE);
+        (body.matrix, body.determinant) = Vector6::factorise_apart(&body.matrix, Pattern::WHOLE);
         if member.joint.is_none() {
             continue;
         }
@@ -279,7 +276,7 @@ fn substitute<const K: usize, const N: usize, const C: usize>(
 fn solved<const C: usize>(factors: &Matrix6, right: &SMatrix<f64, 6, C>) -> SMatrix<f64, 6, C> {
     let mut solved = *right;
     for mut column in solved.column_iter_mut() {
-        let solution = Vector6::solve_apart(factors, WHOLE, &column.clone_owned());
+        let solution = Vector6::solve_apart(factors, Pattern::WHOLE, &column.clone_owned());
         column.copy_from(&solution);
     }
     solved

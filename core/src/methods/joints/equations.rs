@@ -2,9 +2,7 @@
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector2, Vector6};
 
-// Roots without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+roots!();
 
 use super::elimination::{Body, Closing, Unknowns, factorise, solve};
 use super::graph::{Joints, PlacedJoint, Tree};

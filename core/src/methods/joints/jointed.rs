@@ -1,8 +1,6 @@
 //! A system of joined bodies.
 
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+roots!();
 
 use super::Constraint;
 use super::graph::{Joints, Tree};

@@ -2,9 +2,7 @@
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
-// Roots without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+roots!();
 
 use super::graph::PlacedJoint;
 use super::{Constraint, Place, Slope};

@@ -4,9 +4,7 @@ use core::f64::consts::FRAC_PI_2;
 
 use nalgebra::{Matrix3, Vector2, Vector6};
 
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+roots!();
 
 use super::equations::Equations;
 use super::jointed::{Body, JointedBodies};

@@ -12,9 +12,9 @@ pub(super) enum Axes {
     Zxy,
 }
 
+#[hot]
 impl Axes {
     /// The components of a vector along these axes, which are right-handed.
-    #[hot]
     pub(super) fn of<T: Real>(self, v: &Vector3<T>) -> [T; 3] {
         let (x, y, z) = (v.x, v.y, v.z);
         match self {
@@ -25,7 +25,6 @@ impl Axes {
     }
 
     /// A quaternion from those components of its vector to the body's.
-    #[hot]
     pub(super) fn back<T: Real>(self, [w, a, b, c]: [T; 4]) -> [T; 4] {
         match self {
             Self::Xyz => [w, a, b, c],

@@ -1,7 +1,8 @@
-//! The kicks of a declared Lagrangian's potential, and the check that it has one.
+//! The kicks of a declared Lagrangian's potential, and the checks that it has one and that the rest is the kinetic flow's.
 
 use nalgebra::{Matrix3, SimdBool as _, Vector3};
 
+use super::kinetic_flow::KineticFlow;
 use crate::error::SetupError;
 use crate::groups::{Advected as _, CayleyRetraction, LieGroup as _, Retraction as _, SO3};
 use crate::mechanics::{DiscreteLagrangian, Term};
@@ -88,4 +89,21 @@ where
     L: DiscreteLagrangian<Scalar = T, Group = SO3<T>>,
 {
     L::kick_derivative(&lagrangian.constants(T::one()), &lagrangian.advected(), &Vector3::zeros()).is_some()
+}
+
+/// Whether the flow has the rotors of the Lagrangian whose kinetic part it replaces: `s` in `p = JΩ + s`, compared at two
+/// attitudes, as a declared one may depend on what is advected.
+pub(super) fn has_bias_of_flow<T, L, K>(lagrangian: &L, kinetic: &K) -> bool
+where
+    T: Real,
+    L: DiscreteLagrangian<Scalar = T, Group = SO3<T>>,
+    K: KineticFlow<T>,
+{
+    let of_flow = K::momentum_bias(kinetic);
+    [[0.7, -0.4, 1.1], [-0.3, 0.9, 0.5]].iter().all(|xi| {
+        let attitude = CayleyRetraction::retract(&Vector3::from(*xi).map(real::<T>));
+        let declared = lagrangian.momentum_bias(&lagrangian.advected().seen_from(&attitude));
+        let allowed = (declared.norm_squared() + of_flow.norm_squared()) * real(1e-24);
+        (declared - of_flow).norm_squared().simd_le(allowed).all()
+    })
 }

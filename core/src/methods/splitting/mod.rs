@@ -1,7 +1,6 @@
 //! Kinetic-potential splittings: the free body's motion and the potential's kicks in alternation.
 
 mod axes;
-mod bias;
 mod exact_body;
 mod kick;
 mod kinetic_flow;
@@ -52,34 +51,19 @@ use nalgebra::{
 /// # Examples
 ///
 /// ```
-/// use liestep::methods::{SplittingScheme, SymmetricBody};
-/// use liestep::{SO3, Stepper, lagrangian};
+/// use liestep::effects::{Gravity, RigidBody};
 /// use liestep::mechanics::Inertia;
+/// use liestep::methods::{SplittingScheme, SymmetricBody};
+/// use liestep::Stepper;
 /// use nalgebra::{UnitQuaternion, Vector3};
 ///
-/// /// A heavy top.
-/// #[lagrangian(
-///     group = SO3,
-///     advected(w = up),
-///     l_d = {
-///         let xi = log(F);
-///         xi.dot(&(J * xi)) / (2.0 * h) - 0.5 * h * weight * w.dot(&(rho + F * rho))
-///     },
-/// )]
-/// #[derive(Clone)]
-/// struct Top {
-///     J: Inertia,
-///     weight: f64,
-///     rho: Vector3<f64>,
-///     up: Vector3<f64>,
-/// }
-///
 /// let J = Inertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0))?;
-/// let top = Top { J, weight: 9.81, rho: Vector3::z(), up: Vector3::z() };
+/// let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+/// let top = RigidBody { J_d: J.to_nonstandard() } + gravity;
 /// let stepper = Stepper::split(top, 0.05, SymmetricBody::new(&J)?, SplittingScheme::NYSTROM_11)?;
 /// let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
 /// let mut state = stepper.start(attitude, Vector3::new(0.5, 2.0, 12.0))?;
-/// let energy = stepper.energy(&state);
+/// let energy: f64 = stepper.energy(&state);
 /// stepper.run(&mut state, 200)?;
 /// assert!((stepper.energy(&state) - energy).abs() < 1e-6);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -213,7 +197,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Splitting<S, K> {
         if !difference.simd_le(inertia.trace() * Scalar::<S>::simd_default_epsilon() * real(64.0)).all() {
             return Err(SetupError::InertiaMismatch { difference: reported(difference) });
         }
-        if !bias::is_shared(scene, &kinetic) {
+        if !kick::has_bias_of_flow(scene, &kinetic) {
             return Err(SetupError::BiasMismatch);
         }
         let torque = torque(scene)?;

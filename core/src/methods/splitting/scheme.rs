@@ -128,18 +128,6 @@ impl SplittingScheme {
         Self { gradients, ..self }
     }
 
-    /// What it is called in tables.
-    #[must_use]
-    pub fn name(&self) -> &'static str {
-        self.name
-    }
-
-    /// The order in the step.
-    #[must_use]
-    pub fn order(&self) -> u32 {
-        self.order
-    }
-
     /// All shares of the step, in order.
     pub fn shares(&self) -> impl Iterator<Item = (Flow, f64)> + use<> {
         let (half, first) = (self.half, self.first);

@@ -54,10 +54,7 @@ impl<S: Effect> OwnStep<S> {
         beyond_solvable(scene, self.h, momentum, advected, largest)
     }
 
-    /// Whether the step from `(μ, w)` surely has a solution or surely has none, where bounds are known: for the kinetic
-    /// part of (3.13) and potentials of the positions, with `a = μ + (h/2) τ`, below `h|a| = J_min` and above `J_max`.
-    ///
-    /// A step asks only when its solve hasn't succeeded at once, so that the steps that do cost nothing more.
+    /// As [`DiscreteLiePoisson::solvability`](crate::motion::DiscreteLiePoisson::solvability).
     pub(in crate::motion) fn solvability(
         &self,
         scene: &S,
@@ -92,10 +89,7 @@ impl<S: Effect> OwnStep<S> {
         at(self.h * real(0.5)).and(at(self.h))
     }
 
-    /// The largest fraction of this step, in seconds, whose momentum equation has a solution, to six digits.
-    ///
-    /// It is found by bisection between zero and `h`, so it costs up to some dozens of solves, fewer where the bounds
-    /// of [`solvability`](Self::solvability) decide.
+    /// As [`DiscreteLiePoisson::max_step`](crate::motion::DiscreteLiePoisson::max_step).
     pub(in crate::motion) fn largest_solvable(
         &self,
         scene: &S,

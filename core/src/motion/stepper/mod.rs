@@ -45,25 +45,20 @@ pub type StateOf<S, P = OwnStep<S>> = State<Group<S>, <S as Term>::Advected, <P 
 /// # Examples
 ///
 /// ```
-/// use liestep::{SO3, Stepper, lagrangian};
+/// use liestep::effects::PrincipalBody;
+/// use liestep::groups::LieGroup as _;
+/// use liestep::{SO3, Stepper};
 /// use liestep::mechanics::DiagonalNonstandardInertia;
 /// use nalgebra::Vector3;
 ///
-/// /// A free rigid body.
-/// #[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
-/// struct Body {
-///     J_d: DiagonalNonstandardInertia,
-/// }
-///
 /// let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5))?;
-/// let stepper = Stepper::new(Body { J_d }, 0.01)?;
+/// let stepper = Stepper::new(PrincipalBody { J_d }, 0.01)?;
 /// let mut state = stepper.start(SO3::identity(), Vector3::new(0.01, 2.0, 0.02))?;
 /// let before = state.spatial_momentum();
 /// for _ in 0..1000 {
 ///     stepper.step(&mut state)?;
 /// }
 /// assert!((state.spatial_momentum() - before).norm() < 1e-12);
-/// # use liestep::groups::LieGroup;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, Lanes, InLanes)]

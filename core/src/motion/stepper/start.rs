@@ -56,15 +56,12 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         if !momentum.is_finite() {
             return Err(SetupError::NonFinite { what: "momentum" });
         }
+        let w = self.plan.advected(&self.scene, 0).seen_from(&attitude);
         if !self.scene.has_constant_inertia() {
-            let w = self.plan.advected(&self.scene, 0).seen_from(&attitude);
             check_inertia::<Group<S>>(&self.scene.inertia(&w))?;
         }
-        if !self.scene.is_quadratic() {
-            let w = self.plan.advected(&self.scene, 0).seen_from(&attitude);
-            if !velocity_of_momentum(&self.scene, &momentum, &w).is_finite() {
-                return Err(SetupError::NoVelocity);
-            }
+        if !self.scene.is_quadratic() && !velocity_of_momentum(&self.scene, &momentum, &w).is_finite() {
+            return Err(SetupError::NoVelocity);
         }
         let state = self.begin(attitude, momentum);
         check_range(&state)?;

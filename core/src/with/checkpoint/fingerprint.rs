@@ -7,10 +7,9 @@ use alloc::vec::Vec;
 use serde::de::{Error as _, Unexpected};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::stored::Storable;
 use crate::mechanics::{Effect, SceneVisitor};
 use crate::motion::Plan;
-use crate::numbers::Digest;
+use crate::numbers::{Digest, Real};
 
 // In files it is text, as not every format has numbers of 64 bits.
 impl Serialize for Digest {
@@ -26,6 +25,24 @@ impl<'de> Deserialize<'de> for Digest {
         value
             .filter(|value| format!("{value:?}") == text)
             .ok_or_else(|| D::Error::invalid_value(Unexpected::Str(&text), &"sixteen hexadecimal digits in lower case"))
+    }
+}
+
+/// A scalar that is stored by its bits: `f64` or `f32`.
+pub trait Storable: Real + PartialOrd + Serialize + for<'de> Deserialize<'de> {
+    /// The bits, of `f32` in the lower half.
+    fn bits(self) -> u64;
+}
+
+impl Storable for f64 {
+    fn bits(self) -> u64 {
+        self.to_bits()
+    }
+}
+
+impl Storable for f32 {
+    fn bits(self) -> u64 {
+        u64::from(self.to_bits())
     }
 }
 

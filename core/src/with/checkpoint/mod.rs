@@ -6,7 +6,6 @@
 
 mod error;
 mod fingerprint;
-mod stored;
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -15,7 +14,7 @@ use nalgebra::{SimdComplexField as _, SimdRealField as _};
 use serde::{Deserialize, Serialize};
 
 pub use error::CheckpointError;
-pub use stored::Storable;
+pub use fingerprint::Storable;
 
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar};

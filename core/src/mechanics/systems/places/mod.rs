@@ -23,6 +23,7 @@ pub struct At {
 
 /// Where the terms `E` of a [`Placement`](super::Placement) are: [`Each`], [`On`], [`Along`], [`Coupling`], [`Between`] or
 /// [`Pairs`].
+#[hot]
 pub trait Places<E: Effect> {
     /// The group of the system.
     type Group: LieGroup<Scalar = E::Scalar>;
@@ -67,7 +68,6 @@ pub trait Places<E: Effect> {
     fn squares(of: impl FnMut(At) -> Square<E>) -> SquareOf<Self::Group>;
 
     /// Both, from a vector and a matrix of each place.
-    #[hot]
     fn system(
         mut of: impl FnMut(At) -> (Vector<E>, Square<E>),
     ) -> (<Self::Group as LieGroup>::Vector, SquareOf<Self::Group>) {
@@ -84,7 +84,6 @@ pub trait Places<E: Effect> {
     }
 
     /// The same, with the blocks that join neighbours added to those that are given.
-    #[hot]
     fn linked(
         _: &mut LinksOf<Self::Group>,
         of: impl FnMut(At) -> (Vector<E>, Square<E>),
@@ -93,7 +92,6 @@ pub trait Places<E: Effect> {
     }
 
     /// One of Newton's iterations, from residual and Jacobian of each place.
-    #[hot]
     fn newton_update(
         pattern: Pattern,
         system: impl FnMut(At) -> (Vector<E>, Square<E>),

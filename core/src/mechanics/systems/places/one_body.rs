@@ -34,6 +34,7 @@ macro_rules! at_one_body {
     };
 }
 
+#[hot]
 impl<E: Effect, const N: usize> Places<E> for Each<N> {
     type Advected = [E::Advected; N];
     type Of<T: Copy> = [T; N];
@@ -45,14 +46,12 @@ impl<E: Effect, const N: usize> Places<E> for Each<N> {
 
     at_one_body!();
 
-    #[hot]
     fn visit(mut each: impl FnMut(At)) {
         for place in 0..N {
             each(At { place, bodies: [place; 2] });
         }
     }
 
-    #[hot]
     fn gather<T: Copy>(mut make: impl FnMut(At) -> T) -> [T; N] {
         let mut all = [make(At { place: 0, bodies: [0; 2] }); N];
         for (place, of) in all.iter_mut().enumerate().skip(1) {
@@ -65,24 +64,20 @@ impl<E: Effect, const N: usize> Places<E> for Each<N> {
         from_fn(of)
     }
 
-    #[hot]
     fn seen(all: &[E::Advected; N], _: &E::Advected, at: At) -> E::Advected {
         all[at.place]
     }
 
-    #[hot]
     fn sum(mut of: impl FnMut(At) -> Vector<E>) -> Bodies<Vector<E>, N> {
         Bodies(filled!([Vector::<E>::zero(); N], |place| of(At { place, bodies: [place; 2] })))
     }
 
-    #[hot]
     fn squares(mut of: impl FnMut(At) -> Square<E>) -> BlockDiagonal<Square<E>, N> {
         let zero = Vector::<E>::zero();
         BlockDiagonal(filled!([zero.outer(&zero); N], |place| of(At { place, bodies: [place; 2] })))
     }
 
     /// Body by body: what both have in common is computed once.
-    #[hot]
     fn system(mut of: impl FnMut(At) -> (Vector<E>, Square<E>)) -> (Bodies<Vector<E>, N>, BlockDiagonal<Square<E>, N>) {
         let zero = Vector::<E>::zero();
         let (mut vectors, mut squares) = ([zero; N], [zero.outer(&zero); N]);
@@ -93,7 +88,6 @@ impl<E: Effect, const N: usize> Places<E> for Each<N> {
     }
 
     /// Body by body, so that what is solved for one stays in registers.
-    #[hot]
     fn newton_update(
         pattern: Pattern,
         mut system: impl FnMut(At) -> (Vector<E>, Square<E>),
@@ -111,6 +105,7 @@ impl<E: Effect, const N: usize> Places<E> for Each<N> {
     }
 }
 
+#[hot]
 impl<E: Effect, const K: usize, const N: usize> Places<E> for On<K, N> {
     type Advected = SeenFrom<K, E::Advected>;
     type Of<T: Copy> = [T; 1];
@@ -125,12 +120,10 @@ impl<E: Effect, const K: usize, const N: usize> Places<E> for On<K, N> {
 
     at_one_body!();
 
-    #[hot]
     fn visit(mut each: impl FnMut(At)) {
         each(At { place: 0, bodies: [K; 2] });
     }
 
-    #[hot]
     fn gather<T: Copy>(mut make: impl FnMut(At) -> T) -> [T; 1] {
         [make(At { place: 0, bodies: [K; 2] })]
     }
@@ -139,18 +132,17 @@ impl<E: Effect, const K: usize, const N: usize> Places<E> for On<K, N> {
         SeenFrom(of(0))
     }
 
-    #[hot]
     fn seen(all: &Self::Advected, _: &E::Advected, _: At) -> E::Advected {
         all.0
     }
 
-    #[hot]
     fn sum(mut of: impl FnMut(At) -> Vector<E>) -> Bodies<Vector<E>, N> {
         let mut all = [Vector::<E>::zero(); N];
         all[K] = of(At { place: 0, bodies: [K; 2] });
         Bodies(all)
     }
 
+    #[inline]
     fn squares(mut of: impl FnMut(At) -> Square<E>) -> BlockDiagonal<Square<E>, N> {
         let zero = Vector::<E>::zero();
         let mut squares = [zero.outer(&zero); N];

@@ -121,6 +121,7 @@ impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Along<N> {
     neighbours!("along the row");
 }
 
+#[hot]
 impl<E: Effect<Group: Pair>, const A: usize, const B: usize, const N: usize> Places<E> for Between<A, B, N> {
     type Advected = SeenBetween<Group<E>, E::Advected, A, B>;
 
@@ -137,7 +138,6 @@ impl<E: Effect<Group: Pair>, const A: usize, const B: usize, const N: usize> Pla
     at_two_bodies!();
     of_ends!();
 
-    #[hot]
     fn visit(mut each: impl FnMut(At)) {
         each(At { place: 0, bodies: [A, B] });
     }
@@ -146,12 +146,12 @@ impl<E: Effect<Group: Pair>, const A: usize, const B: usize, const N: usize> Pla
         SeenBetween(of(0), PhantomData)
     }
 
-    #[hot]
     fn seen(all: &Self::Advected, _: &E::Advected, _: At) -> E::Advected {
         all.0
     }
 }
 
+#[hot]
 impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Pairs<N> {
     type Advected = WhereAllAre<Body<E>, N>;
 
@@ -163,7 +163,6 @@ impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Pairs<N> {
     at_two_bodies!();
     of_ends!();
 
-    #[hot]
     fn visit(mut each: impl FnMut(At)) {
         let mut place = 0;
         for first in 0..N {
@@ -179,7 +178,6 @@ impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Pairs<N> {
     }
 
     /// Formed where it is needed: registers don't hold all pairs.
-    #[hot]
     fn seen(all: &Self::Advected, spatial: &E::Advected, at: At) -> E::Advected {
         let [first, second] = at.bodies.map(|body| Body::<E>::from_matrix_unchecked(all.0[body]));
         spatial.seen_from(&Group::<E>::pair(&first, &second))

@@ -74,9 +74,9 @@ impl<T: Real> DifferentiableFlow<T> for ExactBody<T> {
     }
 }
 
+#[hot]
 impl<T: Real> ExactBody<T> {
     /// The gradient before a drift by that behind it, and the parameters' shares; none of a longer drift.
-    #[hot]
     fn pulled(
         &self,
         form: &Form<T>,
@@ -99,7 +99,6 @@ impl<T: Real> ExactBody<T> {
     }
 
     /// The turns `ε`, `δF = ε̂ F`, along three directions, in the body's axes.
-    #[hot]
     fn turns(&self, form: &Form<Dual<T>>, u: impl Fn(usize) -> Dual<T>) -> [Vector3<T>; 3] {
         let turned = form.turned([u(0), u(1), u(2)]);
         let [w, x, y, z] = turned.map(|part| part.value);

@@ -211,27 +211,24 @@ struct About<T> {
     f: T,
 }
 
+#[hot]
 impl<T: Number> About<T> {
     /// `exp(2û)`, where `|u|² = q`.
-    #[hot]
     fn turn(q: T) -> Self {
         let (sinc, versine) = rotation_coefficients(q);
         Self { w: T::one() - q * versine, f: sinc }
     }
 
     /// Both, one after the other.
-    #[hot]
     fn and(&self, other: &Self, q: T) -> Self {
         Self { w: self.w * other.w - self.f * other.f * q, f: self.w * other.f + self.f * other.w }
     }
 
     /// The quaternion of this turn after one across the middle axis, of any length.
-    #[hot]
     fn by(&self, [a, b, c]: [T; 3], across: [T; 3]) -> Quaternion<T> {
         product_across([self.w, self.f * a, self.f * b, self.f * c], across)
     }
 
-    #[hot]
     fn select(&self, mask: T::Mask, other: &Self) -> Self {
         Self { w: self.w.select(mask, other.w), f: self.f.select(mask, other.f) }
     }
@@ -246,8 +243,10 @@ impl<T: Real> ExactDrift<T> {
     }
 }
 
+#[hot]
 impl<T: Number> Form<T> {
     /// The form for the moments about the three axes, the last the middle one, and the time, s.
+    #[inline]
     fn of([of_a, of_b, of_c]: [T; 3], h: T) -> Self {
         // Without cancellation.
         let (a, b) = ((of_c - of_a) / of_a, (of_c - of_b) / of_b);
@@ -256,7 +255,6 @@ impl<T: Number> Form<T> {
         Self { scale, a, b, b_less_a, c_squared: -(a * b), a_squared, b_squared }
     }
 
-    #[hot]
     fn invariants(&self, [a, b, c]: [T; 3]) -> Invariants<T> {
         let (aa, bb, cc) = (a * a, b * b, c * c);
         let of_c = self.c_squared * cc;
@@ -265,13 +263,11 @@ impl<T: Number> Form<T> {
     }
 
     /// `A a² + B b²`: zero on the separatrix and for spherical bodies.
-    #[hot]
     fn difference(&self, [a, b, _]: [T; 3]) -> T {
         self.a * (a * a) + self.b * (b * b)
     }
 
     /// The quaternion of the drift, of any length, for the momentum in units of half of it.
-    #[hot]
     fn turned(&self, u: [T; 3]) -> Quaternion<T> {
         let invariants = self.invariants(u);
         let size = invariants.size();
@@ -289,7 +285,6 @@ impl<T: Number> Form<T> {
     }
 
     /// Where the functions are those of half the drift.
-    #[hot]
     fn near<const IS_SHORT: bool>(&self, u: [T; 3], invariants: &Invariants<T>) -> Half<T> {
         let start = invariants.start();
         let Functions { n, mu, integral } = if IS_SHORT { short(&start) } else { long(&start) };
@@ -301,7 +296,6 @@ impl<T: Number> Form<T> {
     ///
     /// What takes the time is the chain from the momentum to the increment, so nothing is divided before the end of it,
     /// and sums are ordered by what is there first.
-    #[hot]
     fn whole(&self, u: [T; 3], invariants: &Invariants<T>, half: &Half<T>) -> Quaternion<T> {
         let ([a, b, c], Invariants { kb, ka, .. }, Half { n, mu, about }) = (u, *invariants, *half);
         let (nn, kk, twice) = (n * n, kb * ka, n + n);
@@ -319,7 +313,6 @@ impl<T: Number> Form<T> {
     ///
     /// By the points of the curve `μ² = 4 n (n − K_a)(n − K_b)`, whose doubling is rational. The turn about the momentum is
     /// twice that of half the time and once more, by the tangent to the curve at the point; see [`doubling`].
-    #[hot]
     fn farther<const DOUBLINGS: usize>(&self, u: [T; 3], invariants: &Invariants<T>) -> Half<T> {
         let k = T::number;
         let (difference, q) = (self.difference(u), dot(u));

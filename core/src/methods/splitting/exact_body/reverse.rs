@@ -27,10 +27,10 @@ fn twice<T: Real>(x: T) -> T {
     x + x
 }
 
+#[hot]
 impl<T: Real> Form<T> {
     /// The derivatives of `c · ε` by `u`, and by `A` and `B`; none where the drift is longer than the polynomials are for,
     /// or where some lanes need the longer ones and some don't.
-    #[hot]
     pub(super) fn reversed(&self, u: [T; 3], c: [T; 3]) -> Option<([T; 3], [T; 2])> {
         let invariants = self.invariants(u);
         let (Start { e, x, y, c: pole }, size) = (invariants.start(), invariants.size());
@@ -62,7 +62,6 @@ impl<T: Real> Form<T> {
     }
 
     /// Behind [`whole`](Self::whole), by the covector `g` of the turn `F_a`, whose quaternion is taken `N` times here.
-    #[hot]
     fn whole_back(&self, u: [T; 3], invariants: &Invariants<T>, [n, mu]: [T; 2], g: [T; 3]) -> By<T> {
         let ([a, b, c], [ga, gb, gc], Invariants { kb, ka, .. }) = (u, g, *invariants);
         let (nn, kk) = (n * n, kb * ka);
@@ -114,7 +113,6 @@ impl<T: Real> Form<T> {
 
     /// Behind the functions, the invariants and the constants of the form; the slopes of the functions are those by `x`,
     /// `y` and `c` of their [start](Start).
-    #[hot]
     fn functions_back(
         &self,
         (by_u, [by_a, by_b, by_b_less_a, by_c_squared], [by_kb, by_ka, by_n, by_mu]): By<T>,

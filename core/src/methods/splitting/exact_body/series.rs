@@ -13,15 +13,14 @@ pub(super) struct Invariants<T> {
     pub(super) pole: T,
 }
 
+#[hot]
 impl<T: Number> Invariants<T> {
     /// What tells how short the drift is.
-    #[hot]
     pub(super) fn size(&self) -> T {
         self.kb.simd_max(self.ka)
     }
 
     /// What the polynomials are in.
-    #[hot]
     pub(super) fn start(&self) -> Start<T> {
         let Self { kb, ka, apart, pole } = *self;
         let (k, sum) = (T::number, kb + ka);

@@ -100,18 +100,6 @@ impl ProcessedScheme {
         Self { name, order, kernel, processor, last }
     }
 
-    /// What it is called in tables.
-    #[must_use]
-    pub fn name(&self) -> &'static str {
-        self.name
-    }
-
-    /// The order in the step, of the whole.
-    #[must_use]
-    pub fn order(&self) -> u32 {
-        self.order
-    }
-
     /// What is stepped.
     #[must_use]
     pub fn kernel(&self) -> SplittingScheme {
