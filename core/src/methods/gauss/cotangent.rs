@@ -261,7 +261,7 @@ where
                 return Err(StepError::NotConverged { iterations, residual });
             }
             stages = next;
-            let judged = changes.judge(change, || of_attitude);
+            let judged = changes.judge(change, of_attitude);
             is_settled = last || judged == Next::Nothing;
             last = judged == Next::Once;
         }

@@ -42,11 +42,11 @@ impl Changes {
     /// A change that doesn't fall any more is rounding where it is small. Near an equilibrium the momentum is smaller than
     /// the terms of the torque, whose rounding is a larger part of it: there it is rounding where the attitude's is.
     #[inline(always)]
-    pub(super) fn judge(&mut self, change: f64, of_attitude: impl FnOnce() -> f64) -> Next {
+    pub(super) fn judge(&mut self, change: f64, of_attitude: f64) -> Next {
         let Self { before, earlier } = *self;
         (self.before, self.earlier) = (change, before);
         let (rounding, epsilon) = (ROUNDING * ROUNDING, f64::EPSILON * f64::EPSILON);
-        if change <= rounding && change >= before || change >= earlier && of_attitude() <= rounding {
+        if change <= rounding && change >= before || change >= earlier && of_attitude <= rounding {
             Next::Nothing
         } else if change * change <= epsilon * before && change * before <= epsilon * earlier {
             Next::Once

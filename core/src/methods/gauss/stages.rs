@@ -73,8 +73,8 @@ impl<const PAIRS: usize> Stages<PAIRS> {
         let over_size = if (1.0 / size).is_finite() { 1.0 / size } else { 0.0 };
         let (mut last, mut residual) = (false, f64::INFINITY);
         for iteration in 1..=MOST_ITERATIONS {
-            let (next, change) = self.iterated(coefficients, (y, carry), over_size, equations);
-            let judged = changes.judge(change, || self.change_of_quaternion(&next));
+            let (next, [of_attitude, change]) = self.iterated(coefficients, (y, carry), over_size, equations);
+            let judged = changes.judge(change, of_attitude);
             *self = next;
             if last || judged == Next::Nothing {
                 return Ok(iteration);
@@ -88,17 +88,9 @@ impl<const PAIRS: usize> Stages<PAIRS> {
         Err(StepError::NotConverged { iterations: MOST_ITERATIONS, residual })
     }
 
-    /// By how much the quaternion's stages differ from these, squared.
-    #[cold]
-    #[inline(never)]
-    fn change_of_quaternion(&self, next: &Self) -> f64 {
-        let numbers =
-            |stages: &Self| stages.0.into_iter().take(4).flat_map(|of_stages| of_stages.into_iter().flatten());
-        numbers(self).zip(numbers(next)).map(|(a, b)| (a - b) * (a - b)).sum()
-    }
-
-    /// The next iterate, and by how much it differs: the quaternion's stages relative to one and the momentum's to the
-    /// momentum, both squared; NaN where anything is.
+    /// The next iterate, and by how much it differs, squared: the quaternion's stages relative to one, and these and the
+    /// momentum's relative to the momentum; NaN where anything is. Both are numbers, as a reference to the iterate would put it
+    /// in memory, from where each iteration would wait for a copy.
     #[inline(always)]
     fn iterated(
         &self,
@@ -106,9 +98,9 @@ impl<const PAIRS: usize> Stages<PAIRS> {
         (y, carry): (&PhasePoint, &PhasePoint),
         over_size: f64,
         equations: &impl WeightedRates,
-    ) -> (Self, f64) {
+    ) -> (Self, [f64; 2]) {
         let mut next = [[[0.0; PAIRS]; 2]; 8];
-        let mut change = [[0.0; PAIRS]; 2];
+        let mut changes = [[[0.0; PAIRS]; 2]; 2];
         // One loop over all stages, of which the compiler makes lanes.
         for stage in 0..2 * PAIRS {
             let places = each(|component| {
@@ -122,9 +114,10 @@ impl<const PAIRS: usize> Stages<PAIRS> {
             put(&mut next, stage, &rate);
             let quaternion = (squared[0] + squared[1]) + (squared[2] + squared[3]);
             let momentum = (squared[4] + squared[5]) + (squared[6] + squared[7]);
-            change.as_flattened_mut()[stage] = quaternion + momentum * over_size;
+            changes[0].as_flattened_mut()[stage] = quaternion;
+            changes[1].as_flattened_mut()[stage] = quaternion + momentum * over_size;
         }
-        (Self(next), total(&change))
+        (Self(next), changes.map(|change| total(&change)))
     }
 }
 
