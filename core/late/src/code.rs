@@ -74,7 +74,7 @@ pub struct Code {
 /// Operations of one kind, one after the other.
 #[derive(Clone, Debug, PartialEq)]
 struct Run {
-    operation: Arithmetic,
+    operation: Kind,
     instructions: Vec<Instruction>,
 }
 
@@ -84,15 +84,8 @@ struct Instruction {
     result: u16,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Arithmetic {
-    Negate,
-    Add,
-    Subtract,
-    Multiply,
-    Divide,
-    Apply(Function),
-}
+/// An operation without its operands.
+type Kind = Operation<()>;
 
 /// The operations in that order, each with a register for its result; `place` has those of inputs and literals, and gets
 /// those of results. With the number of registers.
@@ -144,7 +137,7 @@ fn by_kind(program: &Program) -> Vec<usize> {
         }
     }
     let kind = |at: usize| kind(program.operations[at]);
-    let mut ready: BTreeMap<Arithmetic, Vec<usize>> = BTreeMap::new();
+    let mut ready: BTreeMap<Kind, Vec<usize>> = BTreeMap::new();
     (0..count).filter(|&at| missing[at] == 0).for_each(|at| ready.entry(kind(at)).or_default().push(at));
     let mut order = Vec::with_capacity(count);
     while let Some(chosen) = ready.iter().max_by_key(|(_, ready)| ready.len()).map(|(&kind, _)| kind) {
@@ -240,12 +233,12 @@ impl Code {
         }
         for Run { operation, instructions } in &self.runs {
             match *operation {
-                Arithmetic::Negate => apply(registers, mask, instructions, |a, _| -a),
-                Arithmetic::Add => apply(registers, mask, instructions, |a, b| a + b),
-                Arithmetic::Subtract => apply(registers, mask, instructions, |a, b| a - b),
-                Arithmetic::Multiply => apply(registers, mask, instructions, |a, b| a * b),
-                Arithmetic::Divide => apply(registers, mask, instructions, |a, b| a / b),
-                Arithmetic::Apply(function) => apply(registers, mask, instructions, |a, _| applied(function, a)),
+                Operation::Negate(()) => apply(registers, mask, instructions, |a, _| -a),
+                Operation::Add(..) => apply(registers, mask, instructions, |a, b| a + b),
+                Operation::Subtract(..) => apply(registers, mask, instructions, |a, b| a - b),
+                Operation::Multiply(..) => apply(registers, mask, instructions, |a, b| a * b),
+                Operation::Divide(..) => apply(registers, mask, instructions, |a, b| a / b),
+                Operation::Apply(function, ()) => apply(registers, mask, instructions, |a, _| applied(function, a)),
             }
         }
         for (output, &register) in outputs.iter_mut().zip(&self.outputs) {
@@ -314,13 +307,6 @@ const fn exists(function: Function) -> bool {
     }
 }
 
-const fn kind(operation: Operation) -> Arithmetic {
-    match operation {
-        Operation::Negate(_) => Arithmetic::Negate,
-        Operation::Add(..) => Arithmetic::Add,
-        Operation::Subtract(..) => Arithmetic::Subtract,
-        Operation::Multiply(..) => Arithmetic::Multiply,
-        Operation::Divide(..) => Arithmetic::Divide,
-        Operation::Apply(function, _) => Arithmetic::Apply(function),
-    }
+fn kind(operation: Operation) -> Kind {
+    operation.of([(); 2])
 }

@@ -42,15 +42,7 @@ impl Value {
 }
 
 /// An operation of the new program.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
-enum Made {
-    Negate(Value),
-    Add(Value, Value),
-    Subtract(Value, Value),
-    Multiply(Value, Value),
-    Divide(Value, Value),
-    Apply(liestep_derivation::Function, Value),
-}
+type Made = Operation<Value>;
 
 /// A program that is made.
 #[derive(Default)]
@@ -194,12 +186,7 @@ impl Fold {
             Operation::Add(..) if a == zero => b,
             Operation::Add(..) | Operation::Subtract(..) if b == zero => a,
             Operation::Multiply(..) if a == zero || b == zero => zero,
-            Operation::Negate(_) => self.push(Made::Negate(a)),
-            Operation::Add(..) => self.push(Made::Add(a, b)),
-            Operation::Subtract(..) => self.push(Made::Subtract(a, b)),
-            Operation::Multiply(..) => self.push(Made::Multiply(a, b)),
-            Operation::Divide(..) => self.push(Made::Divide(a, b)),
-            Operation::Apply(function, _) => self.push(Made::Apply(function, a)),
+            _ => self.push(operation.of([a, b])),
         }
     }
 
@@ -209,18 +196,11 @@ impl Fold {
     }
 }
 
-fn operands(made: Made) -> [Value; 2] {
-    match made {
-        Made::Negate(a) | Made::Apply(_, a) => [a, a],
-        Made::Add(a, b) | Made::Subtract(a, b) | Made::Multiply(a, b) | Made::Divide(a, b) => [a, b],
-    }
-}
-
 fn written(operations: &[Made], outputs: &[Value]) -> Program {
     let mut needed: BTreeSet<Value> = outputs.iter().copied().collect();
     for (at, &made) in operations.iter().enumerate().rev() {
         if needed.contains(&Value::Result(at)) {
-            needed.extend(operands(made));
+            needed.extend(made.read());
         }
     }
     // Numbers, inputs and results, in this order; of a program inputs come first.
@@ -234,17 +214,7 @@ fn written(operations: &[Made], outputs: &[Value]) -> Program {
         Value::Result(at) => operations.get(at),
         _ => None,
     });
-    let operation = |&made: &Made| {
-        let [a, b] = operands(made).map(|value| registers[&value]);
-        match made {
-            Made::Negate(_) => Operation::Negate(a),
-            Made::Add(..) => Operation::Add(a, b),
-            Made::Subtract(..) => Operation::Subtract(a, b),
-            Made::Multiply(..) => Operation::Multiply(a, b),
-            Made::Divide(..) => Operation::Divide(a, b),
-            Made::Apply(function, _) => Operation::Apply(function, a),
-        }
-    };
+    let operation = |made: &Made| made.of(made.read().map(|value| registers[&value]));
     let source = |value| match value {
         Value::Input(source) => Some(source),
         _ => None,

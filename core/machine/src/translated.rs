@@ -187,31 +187,19 @@ pub(crate) fn given(least: &[usize; Array::COUNT]) -> impl Iterator<Item = Array
 /// The symbol of what applies a function.
 const FUNCTION: &str = "liestep_function";
 
-/// A function as a number, for [`function`].
-const fn code(function: Function) -> u32 {
-    match function {
-        Function::Sqrt => 0,
-        Function::Ln => 1,
-        Function::Exp => 2,
-        Function::Sin => 3,
-        Function::Cos => 4,
-        Function::Stumpff(order) => 0x100 + order as u32,
-        Function::LogRatio(order) => 0x200 + order as u32,
-    }
+/// All functions.
+static FUNCTIONS: LazyLock<Vec<Function>> = LazyLock::new(|| {
+    let named = [Function::Sqrt, Function::Ln, Function::Exp, Function::Sin, Function::Cos];
+    let families = (1..=10).map(Function::Stumpff).chain((0..=6).map(Function::LogRatio));
+    named.into_iter().chain(families).collect()
+});
+
+/// The place of a function among all, for [`function`].
+fn code(function: Function) -> u32 {
+    FUNCTIONS.iter().zip(0..).find(|(one, _)| **one == function).map_or(u32::MAX, |(_, place)| place)
 }
 
 /// A function of a number: the interpreter's.
 extern "C" fn function(code: u32, a: f64) -> f64 {
-    #[allow(clippy::cast_possible_truncation)] // the order is the last byte
-    let order = code as u8;
-    let function = match (code >> 8, order) {
-        (0, 0) => Function::Sqrt,
-        (0, 1) => Function::Ln,
-        (0, 2) => Function::Exp,
-        (0, 3) => Function::Sin,
-        (0, _) => Function::Cos,
-        (1, order) => Function::Stumpff(order),
-        (_, order) => Function::LogRatio(order),
-    };
-    applied(function, a)
+    FUNCTIONS.get(code as usize).map_or(f64::NAN, |&function| applied(function, a))
 }

@@ -7,6 +7,7 @@ use syn::{Ident, Path};
 use crate::declared::{Declaration, FieldKind, Scalar, Shape};
 use crate::mathematics::derive::Seen;
 use crate::mathematics::symbolic::Variance;
+use crate::program::Form;
 
 /// What the signatures are written with.
 pub(crate) struct Header {
@@ -90,6 +91,15 @@ impl Header {
     /// Linear maps of components.
     pub(crate) fn square(&self) -> TokenStream {
         self.matrix_of(self.dimension)
+    }
+
+    /// The type of what has this form.
+    pub(crate) fn of(&self, form: Form) -> TokenStream {
+        match form {
+            Form::Scalar => self.scalar.clone(),
+            Form::Vector => self.vector(),
+            Form::Square => self.square(),
+        }
     }
 
     /// The matrices of the group.

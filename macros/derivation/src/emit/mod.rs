@@ -23,8 +23,7 @@ use crate::declared::lower::Lowered;
 use crate::declared::{Declaration, FieldKind, Role};
 use crate::judged::{Chosen, Equations, Findings};
 use crate::mathematics::derive::Derived;
-use crate::mathematics::symbolic::Expression;
-use crate::program::{self, Form};
+use crate::program::{Form, Kernel, Outputs};
 
 use code::Code;
 pub(crate) use constraint::constraint;
@@ -88,10 +87,10 @@ pub(crate) fn implementation(
     let (header, Chosen { lowered, derived, kernel }) = (Header::new(declaration), chosen);
     let (names, symbols) = (&lowered.names, &derived.symbols);
     let code = Code { declaration, header: &header, names, symbols, directions: Some(&derived.directions) };
-    let emitter = Emitter { code, lowered, derived, equations };
+    let emitter = Emitter { code, lowered, derived, kernel, equations };
     let texts = equations_of(declaration, chosen, equations);
-    let (mathematics, effect) = emitter.mathematics(&texts);
-    let stages = stages::stages(&emitter, kernel, &texts);
+    let (mathematics, effect) = emitter.mathematics(&findings.jacobian, &texts);
+    let stages = stages::stages(&emitter, &findings.stages, &texts);
     let declared = match declaration.discretisation() {
         Some(discretisation) => continuous::discretised(&emitter, discretisation),
         None => verbatim::declared(declaration, &header),
@@ -236,6 +235,7 @@ struct Emitter<'a> {
     code: Code<'a>,
     lowered: &'a Lowered,
     derived: &'a Derived,
+    kernel: &'a Kernel,
     /// Of a Lagrangian, its continuous equations.
     equations: Option<&'a Equations>,
 }
@@ -250,9 +250,11 @@ impl<'a> std::ops::Deref for Emitter<'a> {
 
 impl Emitter<'_> {
     /// The derived terms that don't know stages: those of a Lagrangian, and those of any effect.
-    fn mathematics(&self, equations: &[docs::Equation]) -> (TokenStream, TokenStream) {
+    fn mathematics(&self, jacobian: &Outputs, equations: &[docs::Equation]) -> (TokenStream, TokenStream) {
         let d = self.derived;
-        let method = |(name, form, expression)| self.method(name, form, expression, equations);
+        let method = |(name, form, expression)| {
+            self.method(name, form, &self.kernel.beginning.term(d, form, expression), equations)
+        };
         let of_lagrangian = [
             ("right_momentum", Form::Vector, &d.right_momentum),
             ("left_momentum", Form::Vector, &d.left_momentum),
@@ -260,7 +262,7 @@ impl Emitter<'_> {
             ("legendre_minus", Form::Vector, &d.momentum),
             ("discrete_energy", Form::Scalar, &d.energy),
         ];
-        let jacobian = method(("momentum_jacobian", Form::Square, &d.jacobian));
+        let jacobian = self.method("momentum_jacobian", Form::Square, jacobian, equations);
         let limit = self.limit(equations);
         (of_lagrangian.map(method).into_iter().collect(), quote!(#jacobian #limit))
     }
@@ -268,7 +270,7 @@ impl Emitter<'_> {
     /// The continuous limit, which the other limits of an effect are read from.
     fn limit(&self, equations: &[docs::Equation]) -> TokenStream {
         let (span, d, private) = (Span::mixed_site(), self.derived, &self.header.private);
-        let (graph, [inertia, bias, potential]) = program::limit(d);
+        let (graph, [inertia, bias, potential]) = self.kernel.beginning.limit(d);
         let (bias_from, potential_from) = (inertia.len(), inertia.len() + bias.len());
         let outputs = [inertia, bias, potential].concat();
         let documentation = docs::of(equations, &["inertia", "momentum_bias", "potential"], &graph, &outputs);
@@ -294,20 +296,15 @@ impl Emitter<'_> {
     }
 
     /// One derived term as a method, with its equation as documentation.
-    fn method(&self, name: &str, form: Form, expression: &Expression, equations: &[docs::Equation]) -> TokenStream {
+    fn method(&self, name: &str, form: Form, (graph, outputs): &Outputs, equations: &[docs::Equation]) -> TokenStream {
         let (span, d, private) = (Span::mixed_site(), self.derived, &self.header.private);
-        let (graph, outputs) = program::term(d, form, expression);
-        let result = match form {
-            Form::Scalar => self.header.scalar.clone(),
-            Form::Vector => self.header.vector(),
-            Form::Square => self.header.square(),
-        };
-        let documentation = docs::of(equations, &[name], &graph, &outputs);
+        let result = self.header.of(form);
+        let documentation = docs::of(equations, &[name], graph, outputs);
         let inverse =
-            d.directions.factors.iter().any(|one| stages::uses(&graph, &outputs, one.inverse)).then(
+            d.directions.factors.iter().any(|one| stages::uses(graph, outputs, one.inverse)).then(
                 || quote_spanned!(span=> let inverse = #private::inverse_of::<<Self as #private::Term>::Group>(*f);),
             );
-        let body = self.body(form, &graph, &outputs, &|input| self.input_token(input));
+        let body = self.body(form, graph, outputs, &|input| self.input_token(input));
         let name = syn::Ident::new(name, span);
         let (matrix, scalar) = (self.header.matrix(), &self.header.scalar);
         quote_spanned! {span=>

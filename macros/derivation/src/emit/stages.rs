@@ -16,22 +16,22 @@ pub(super) struct Stages {
     pub(super) step_terms_type: TokenStream,
 }
 
-pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::docs::Equation]) -> Stages {
-    let graph = &kernel.graph;
-    let program::Stages { system, constants, terms: step_terms } = kernel.stages();
+pub(super) fn stages(emitter: &Emitter, stages: &program::Stages, equations: &[super::docs::Equation]) -> Stages {
+    let program::Stages { system, constants, terms: step_terms } = stages;
+    let (kernel, graph) = (emitter.kernel, &emitter.kernel.graph);
     let (span, private) = (Span::mixed_site(), &emitter.header.private);
     let (vector, scalar) = (emitter.header.vector(), &emitter.header.scalar);
     let matrix = emitter.header.matrix();
     let from_parameters = |id: NodeId| input(emitter, graph, id);
-    let from_constants = |id: NodeId| slot(&constants, id, "constants").or_else(|| input(emitter, graph, id));
-    let from_terms = |id: NodeId| slot(&step_terms, id, "terms").or_else(|| from_constants(id));
+    let from_constants = |id: NodeId| slot(constants, id, "constants").or_else(|| input(emitter, graph, id));
+    let from_terms = |id: NodeId| slot(step_terms, id, "terms").or_else(|| from_constants(id));
     let numbers = |nodes: &Handed, given: super::code::Given| {
         let nodes: Vec<NodeId> = nodes.keys().copied().collect();
         let (lets, values) = emitter.statements(graph, &nodes, given);
         quote_spanned!(span=> #lets #private::Numbers([#(#values),*]))
     };
-    let constants_body = numbers(&constants, &from_parameters);
-    let step_terms_body = numbers(&step_terms, &from_constants);
+    let constants_body = numbers(constants, &from_parameters);
+    let step_terms_body = numbers(step_terms, &from_constants);
     let value = |outputs: &[NodeId], given: super::code::Given| {
         let (lets, values) = emitter.statements(graph, outputs, given);
         let value = emitter.assembled(Form::Vector, &values);
@@ -43,7 +43,7 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
         let documentation = super::docs::of(equations, &["kick_derivative"], graph, outputs);
         kick_derivative(emitter, &documentation, &value(outputs, &from_constants))
     });
-    let newton_system = newton_system(emitter, kernel, &system, &from_terms);
+    let newton_system = newton_system(emitter, kernel, system, &from_terms);
     let inverse = inverse(emitter, kernel);
     let length = |nodes: &Handed| {
         let length = Literal::usize_unsuffixed(nodes.len());
@@ -90,7 +90,7 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
             #kick_after
         }
     };
-    Stages { methods, constants_type: length(&constants), step_terms_type: length(&step_terms) }
+    Stages { methods, constants_type: length(constants), step_terms_type: length(step_terms) }
 }
 
 /// The Newton system, and where that is worth it its residual alone; `given` has what the stages before leave.

@@ -35,7 +35,7 @@ pub(crate) fn of_declared(declaration: &Declaration, tree: &Rc<Tree>, errors: &m
     let lowered = lower::continuous(declaration, tree, errors)?;
     let derived = derive::continuous(lowered.declared);
     let derived = derived.map_err(|refusal| explain::refusal(refusal, declaration, tree, errors)).ok()?;
-    checked(declaration, (Some(tree), tree), lowered.names, derived, errors)
+    checked(declaration, (tree, None), lowered.names, derived, errors)
 }
 
 /// Those of a discrete Lagrangian: of the `l` that it was made of, which its limit has to be, or of the limit.
@@ -46,21 +46,27 @@ pub(crate) fn continuous(
     chosen: &Chosen,
     errors: &mut Errors,
 ) -> Option<Equations> {
-    let is_declared = declared.is_some();
-    let mut equations = match declared {
-        Some(equations) => equations,
-        None => of_limit(declaration, discrete, chosen, errors)?,
-    };
-    let motion = Motion::new(declaration, is_declared.then_some(tree), &equations.names, &equations.derived);
-    // What isn't declared and quadratic may have a limit that the field doesn't tell.
-    let has_limit = motion.has_limit(discrete);
-    let has_limit = has_limit.unwrap_or(!is_declared && equations.derived.inverse != Inverse::Nonlinear);
-    let Some(Ok(at_rest)) = has_limit.then(|| motion.rest_holds((&chosen.lowered.names, &chosen.derived))) else {
-        explain::unconfirmed_term("continuous limit", declaration, errors);
-        return None;
-    };
+    let Some(mut equations) = declared else { return of_limit(declaration, discrete, chosen, errors) };
+    let motion = Motion::new(declaration, Some(tree), &equations.names, &equations.derived);
+    let at_rest = limit_holds(&motion, false, (declaration, discrete, chosen), errors)?;
     equations.sureness = equations.sureness.and(at_rest);
     Some(equations)
+}
+
+/// Where the field doesn't tell, a discrete Lagrangian may have this for a limit, or not.
+fn limit_holds(
+    motion: &Motion,
+    may_have_limit: bool,
+    (declaration, discrete, chosen): (&Declaration, &Rc<Tree>, &Chosen),
+    errors: &mut Errors,
+) -> Option<Sureness> {
+    let limit = || chosen.kernel.beginning.limit(&chosen.derived);
+    let limit = motion.has_limit(discrete).unwrap_or(may_have_limit).then(limit);
+    let at_rest = limit.and_then(|limit| motion.rest_holds(&chosen.lowered.names, limit).ok());
+    if at_rest.is_none() {
+        explain::unconfirmed_term("continuous limit", declaration, errors);
+    }
+    at_rest
 }
 
 fn of_limit(declaration: &Declaration, discrete: &Rc<Tree>, chosen: &Chosen, errors: &mut Errors) -> Option<Equations> {
@@ -72,23 +78,28 @@ fn of_limit(declaration: &Declaration, discrete: &Rc<Tree>, chosen: &Chosen, err
         explain::unconfirmed_term("continuous limit", declaration, errors);
         return None;
     };
-    checked(declaration, (None, discrete), names, derived, errors)
+    checked(declaration, (discrete, Some(chosen)), names, derived, errors)
 }
 
+/// Those of this tree, or of the limit of what was chosen for it.
 fn checked(
     declaration: &Declaration,
-    (tree, place): (Option<&Rc<Tree>>, &Rc<Tree>),
+    (tree, chosen): (&Rc<Tree>, Option<&Chosen>),
     names: BTreeMap<Name, SymbolId>,
     derived: Continuous,
     errors: &mut Errors,
 ) -> Option<Equations> {
-    let motion = Motion::new(declaration, tree, &names, &derived);
-    if tree.is_some() && derived.has_kinetic() {
+    let motion = Motion::new(declaration, Some(tree).filter(|_| chosen.is_none()), &names, &derived);
+    if chosen.is_none() && derived.has_kinetic() {
         explain::continuous_kinetic_part(&motion.kinetic_part(), declaration, errors)?;
     }
     let sureness = motion.holds();
-    let sureness =
-        sureness.map_err(|unconfirmed| explain::unconfirmed(unconfirmed, declaration, place, errors)).ok()?;
+    let mut sureness =
+        sureness.map_err(|unconfirmed| explain::unconfirmed(unconfirmed, declaration, tree, errors)).ok()?;
+    if let Some(chosen) = chosen {
+        let is_quadratic = derived.inverse != Inverse::Nonlinear;
+        sureness = sureness.and(limit_holds(&motion, is_quadratic, (declaration, tree, chosen), errors)?);
+    }
     let right_symmetries = motion.right_symmetries();
     Some(Equations { names, derived, right_symmetries, sureness })
 }

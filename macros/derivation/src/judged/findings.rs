@@ -3,21 +3,11 @@
 use std::rc::Rc;
 
 use super::choose::Chosen;
-use super::verify::{self, Subject, Sureness, Verified};
+use super::verify::{self, Findings, Subject};
 use super::{explain, hypotheses};
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Role, Tree};
 use crate::mathematics::derive::SelfAdjointness;
-use crate::program::Derivatives;
-
-/// What its documentation says beside the equations.
-pub(crate) struct Findings {
-    pub(crate) self_adjointness: SelfAdjointness,
-    pub(crate) sureness: Sureness,
-    /// Of a step, where they are asked for.
-    pub(crate) derivatives: Option<Derivatives>,
-    pub(crate) hypotheses: Vec<String>,
-}
 
 /// Checks all that was derived; `None` where something is wrong with the Lagrangian, or with the derivation, which has
 /// been reported.
@@ -35,14 +25,14 @@ pub(crate) fn findings(
     }
     let is_force = declaration.role == Role::Force;
     match verify::verify(of, kernel) {
-        Ok(Verified { self_adjointness, sureness, derivatives }) => {
-            let asked = declaration.discretisation().filter(|_| self_adjointness == SelfAdjointness::No);
+        Ok(verified) => {
+            let asked = declaration.discretisation().filter(|_| verified.self_adjointness == SelfAdjointness::No);
             if let Some(asked) = asked {
                 explain::not_self_adjoint(asked, errors);
                 return None;
             }
-            let hypotheses = if is_force { Vec::new() } else { hypotheses::hypotheses(declaration, tree, lowered) };
-            Some(Findings { self_adjointness, sureness, derivatives, hypotheses })
+            let hypotheses = if is_force { Vec::new() } else { hypotheses::hypotheses(declaration, tree, chosen) };
+            Some(Findings { hypotheses, ..verified })
         }
         Err(unconfirmed) => {
             explain::unconfirmed(unconfirmed, declaration, tree, errors);

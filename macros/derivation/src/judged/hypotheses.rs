@@ -5,15 +5,17 @@
 
 use std::rc::Rc;
 
+use super::choose::Chosen;
 use crate::declared::errors::Errors;
 use crate::declared::lower::{Lowered, readings_without};
 use crate::declared::{Declaration, FieldKind, Name, Tree};
-use crate::mathematics::derive::principal_equations;
+use crate::mathematics::derive::has_equations;
 use crate::mathematics::symbolic::{Stage, Structure};
 use crate::program::{Given, Graph, Scalariser, count, with_values};
 
 /// The hypotheses that are used, as a paper would write them.
-pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, lowered: &Lowered) -> Vec<String> {
+pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Chosen) -> Vec<String> {
+    let Chosen { lowered, derived, .. } = chosen;
     let without = |name: Name, weaker: Structure| {
         // All increments at once.
         let is_meant = |other: Name| match name {
@@ -28,10 +30,9 @@ pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, lowered: &L
         found.declared.discretised.clone_from(&lowered.declared.discretised);
         Some(found)
     };
-    let equations = principal_equations(&lowered.declared);
     let changes_equations = |name: Name, weaker: Structure| {
         let weakened = without(name, weaker);
-        weakened.is_none_or(|weakened| principal_equations(&weakened.declared) != equations)
+        weakened.is_none_or(|weakened| !has_equations(&weakened.declared, &lowered.declared, derived))
     };
     let operations = operations(lowered);
     let mut used = Vec::new();
@@ -93,7 +94,7 @@ fn operations(lowered: &Lowered) -> usize {
     }
     let given =
         with_values(&mut graph, &symbols, declared.lets.iter().map(|one| (one.symbol, &one.value)), Given::new());
-    let mut scalariser = Scalariser::new(&mut graph, &symbols, given);
+    let mut scalariser = Scalariser::new(&mut graph, &symbols, &given);
     let output = scalariser.scalar(&declared.expression);
     count(&graph, &[output], None).arithmetic
 }

@@ -9,6 +9,21 @@ use crate::mathematics::symbolic::{Expression, Factor, SymbolId, Symbols};
 
 pub(crate) type Given = BTreeMap<SymbolId, Entries>;
 
+/// What each derived term begins with: the values of all `let`s and multipliers where `F` and `w` are any.
+#[derive(Clone, Debug)]
+pub(crate) struct Beginning {
+    pub(crate) graph: Graph,
+    pub(crate) given: Given,
+}
+
+impl Beginning {
+    pub(super) fn new(derived: &Derived) -> Self {
+        let mut graph = Graph::default();
+        let given = with_lets(&mut graph, derived, Given::new());
+        Self { graph, given }
+    }
+}
+
 /// With the values of all `let`s where `F` and `w` are as given.
 pub(crate) fn with_values<'a>(
     graph: &mut Graph,
@@ -31,7 +46,7 @@ pub(crate) fn with_lets(graph: &mut Graph, derived: &Derived, given: Given) -> G
     for closed in derived.closed.iter().rev() {
         let shape = derived.symbols.get(closed.symbol).shape;
         let pairing = if has_increment { &closed.near } else { &closed.pairing };
-        let entries = dual(graph, derived, &given, (pairing, closed.direction, shape));
+        let entries = dual(graph, derived, &mut given, (pairing, closed.direction, shape));
         given.insert(closed.multiplier, entries);
     }
     given
@@ -44,7 +59,7 @@ pub(crate) fn with_tangents(graph: &mut Graph, derived: &Derived, mut given: Giv
     for closed in derived.closed.iter().rev() {
         let shape = derived.symbols.get(closed.symbol).shape;
         let (symbol, pairing) = &closed.multiplier_tangent;
-        let entries = dual(graph, derived, &given, (pairing, closed.direction, shape));
+        let entries = dual(graph, derived, &mut given, (pairing, closed.direction, shape));
         given.insert(*symbol, entries);
     }
     given
@@ -57,7 +72,7 @@ pub(super) fn entries(graph: &mut Graph, symbols: &Symbols, given: &Given, expre
         let shape = if transposed { (1, size) } else { (size, 1) };
         Expression::from_word(vec![Factor::Unit { index, size, transposed }], shape, symbols)
     };
-    let mut scalariser = Scalariser::new(graph, symbols, given.clone());
+    let mut scalariser = Scalariser::new(graph, symbols, given);
     Entries::new(rows, columns, |row, column| {
         if (rows, columns) == (1, 1) {
             return scalariser.scalar(expression);
@@ -72,13 +87,12 @@ pub(super) fn entries(graph: &mut Graph, symbols: &Symbols, given: &Given, expre
 fn dual(
     graph: &mut Graph,
     derived: &Derived,
-    given: &Given,
+    given: &mut Given,
     (pairing, direction, (rows, columns)): (&Expression, SymbolId, (usize, usize)),
 ) -> Entries {
     Entries::new(rows, columns, |row, column| {
         let (zero, one) = (graph.zero(), graph.one());
         let unit = Entries::new(rows, columns, |i, j| if (i, j) == (row, column) { one } else { zero });
-        let mut given = given.clone();
         given.insert(direction, unit);
         Scalariser::new(graph, &derived.symbols, given).scalar(pairing)
     })

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::closed::{Given, entries, with_lets, with_tangents};
+use super::closed::{Beginning, Given, entries, with_lets, with_tangents};
 use super::count::{Operations, count};
 use super::expand::expanded;
 use super::graph::{Graph, Input, Node, NodeId};
@@ -24,6 +24,8 @@ pub(crate) struct Candidate {
 /// The outputs of the stages, in one graph.
 #[derive(Clone, Debug)]
 pub(crate) struct Kernel {
+    /// Of the derived terms, which have graphs of their own, too.
+    pub(crate) beginning: Beginning,
     pub(crate) graph: Graph,
     pub(crate) kick_before: Vec<NodeId>,
     /// The derivative of `kick_before` along a body velocity, where it is derived.
@@ -100,15 +102,14 @@ impl Kernel {
 
 /// `tr(E_k W)` and the like for each generator: the components of a covector.
 pub(crate) fn components(graph: &mut Graph, derived: &Derived, given: &Given, covector: &Expression) -> Vec<NodeId> {
-    (0..derived.group.dimension())
-        .map(|k| {
-            let mut given = given.clone();
-            for (factor, one) in derived.directions.factors.iter().enumerate() {
-                given.insert(one.first, generator(graph, &derived.group, factor, k));
-            }
-            Scalariser::new(graph, &derived.symbols, given).scalar(covector)
-        })
-        .collect()
+    let mut given = given.clone();
+    let mut of = |k| {
+        for (factor, one) in derived.directions.factors.iter().enumerate() {
+            given.insert(one.first, generator(graph, &derived.group, factor, k));
+        }
+        Scalariser::new(graph, &derived.symbols, &given).scalar(covector)
+    };
+    (0..derived.group.dimension()).map(&mut of).collect()
 }
 
 /// The matrix of a column that is linear in a direction of three components, row by row.
@@ -124,7 +125,7 @@ pub(crate) fn along_unit_vectors(
         let (zero, one) = (graph.zero(), graph.one());
         let along = Entries::new(3, 1, |at, _| if at == k { one } else { zero });
         let of_row = unit(row, rows, true, symbols).times(column, symbols);
-        Scalariser::new(graph, symbols, Given::from([(direction, along)])).scalar(&of_row)
+        Scalariser::new(graph, symbols, &Given::from([(direction, along)])).scalar(&of_row)
     };
     places.map(entry).collect()
 }
@@ -148,7 +149,7 @@ pub(crate) fn along_directions(graph: &mut Graph, derived: &Continuous, rank: us
                 }
             }
         }
-        Scalariser::new(graph, &derived.symbols, given).scalar(term)
+        Scalariser::new(graph, &derived.symbols, &given).scalar(term)
     };
     places.map(of_place).collect()
 }
@@ -176,7 +177,7 @@ pub(crate) fn diamond_matrices(graph: &mut Graph, derived: &Continuous) -> Vec<V
                 let unit = Entries::new(shape.0, shape.1, |row, column| if is_one(row, column) { one } else { zero });
                 given.insert(any, unit);
             }
-            Scalariser::new(graph, &derived.symbols, given).scalar(&derived.diamond_of_any)
+            Scalariser::new(graph, &derived.symbols, &given).scalar(&derived.diamond_of_any)
         };
         places.map(entry).collect()
     };
@@ -244,9 +245,9 @@ fn by_rows(dimension: usize, columns: &[Vec<NodeId>]) -> Vec<NodeId> {
 }
 
 pub(crate) fn kernel(derived: &Derived) -> Kernel {
-    let mut graph = Graph::default();
-    let none = with_lets(&mut graph, derived, Given::new());
-    let kick_before = components(&mut graph, derived, &none, &derived.kick_before);
+    let beginning = Beginning::new(derived);
+    let mut graph = beginning.graph.clone();
+    let kick_before = components(&mut graph, derived, &beginning.given, &derived.kick_before);
     let kick_derivative = derived.kick_derivative.as_ref().map(|expression| {
         let velocity = velocity(&mut graph, derived);
         let second = derived.directions.factors.first().map(|one| (one.second, velocity));
@@ -292,6 +293,7 @@ pub(crate) fn kernel(derived: &Derived) -> Kernel {
     let outputs = found.first().map(|(_, outputs)| outputs.clone()).unwrap_or_default();
     let (residual, jacobian) = outputs.split_at(derived.group.dimension().min(outputs.len()));
     Kernel {
+        beginning,
         kick_before,
         kick_derivative,
         residual: residual.to_vec(),
@@ -379,7 +381,7 @@ fn system(graph: &mut Graph, derived: &Derived, given: &Given) -> Vec<NodeId> {
 }
 
 fn half_step(graph: &mut Graph, derived: &Derived) -> NodeId {
-    Scalariser::new(graph, &derived.symbols, Given::new()).scalar(&derived.half_step)
+    Scalariser::new(graph, &derived.symbols, &Given::new()).scalar(&derived.half_step)
 }
 
 /// `(h/2) a`, once a step.

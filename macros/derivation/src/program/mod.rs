@@ -23,7 +23,7 @@ mod terms;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use closed::{Given, with_lets, with_values};
+pub(crate) use closed::{Beginning, Given, with_values};
 pub(crate) use count::count;
 pub(crate) use graph::{Graph, Input, Node, NodeId};
 pub(crate) use kernel::{
@@ -32,4 +32,4 @@ pub(crate) use kernel::{
 pub(crate) use scalarise::Scalariser;
 pub(crate) use stages::{Handed, Stages, needed};
 pub(crate) use tangent::{ByNumbers, Derivatives, Place, WeightedGradient};
-pub(crate) use terms::{Form, limit, term};
+pub(crate) use terms::{Form, Outputs};

@@ -43,13 +43,13 @@ pub(crate) struct Scalariser<'a> {
     graph: &'a mut Graph,
     symbols: &'a Symbols,
     /// Symbols whose entries aren't inputs: directions, or what is computed from other inputs.
-    given: BTreeMap<SymbolId, Entries>,
+    given: &'a BTreeMap<SymbolId, Entries>,
     /// The nodes of scalars so far: what a derivative has in each of its terms is looked into once.
     known: BTreeMap<Atom, NodeId>,
 }
 
 impl<'a> Scalariser<'a> {
-    pub(crate) fn new(graph: &'a mut Graph, symbols: &'a Symbols, given: BTreeMap<SymbolId, Entries>) -> Self {
+    pub(crate) fn new(graph: &'a mut Graph, symbols: &'a Symbols, given: &'a BTreeMap<SymbolId, Entries>) -> Self {
         Self { graph, symbols, given, known: BTreeMap::new() }
     }
 

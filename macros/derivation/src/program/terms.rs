@@ -1,6 +1,6 @@
 //! The derived terms that know no stages, each as outputs of a graph.
 
-use super::closed::{Given, with_lets};
+use super::closed::Beginning;
 use super::graph::{Graph, NodeId};
 use super::kernel::{components, square};
 use super::scalarise::Scalariser;
@@ -17,30 +17,30 @@ pub(crate) enum Form {
     Square,
 }
 
-/// The outputs of one derived term.
-pub(crate) fn term(derived: &Derived, form: Form, expression: &Expression) -> (Graph, Vec<NodeId>) {
-    let mut graph = Graph::default();
-    let given = with_lets(&mut graph, derived, Given::new());
-    let outputs = in_form(&mut graph, derived, &given, form, expression);
-    (graph, outputs)
-}
+/// A graph with outputs.
+pub(crate) type Outputs<T = Vec<NodeId>> = (Graph, T);
 
-/// Inertia, bias and potential of the limit at rest.
-pub(crate) fn limit(derived: &Derived) -> (Graph, [Vec<NodeId>; 3]) {
-    let mut graph = Graph::default();
-    let given = with_lets(&mut graph, derived, Given::new());
-    let limit = &derived.limit;
-    let parts = [(Form::Square, &limit.inertia), (Form::Vector, &limit.bias), (Form::Scalar, &limit.potential)];
-    let outputs = parts.map(|(form, part)| in_form(&mut graph, derived, &given, form, part));
-    (graph, outputs)
-}
+impl Beginning {
+    /// The outputs of one derived term.
+    pub(crate) fn term(&self, derived: &Derived, form: Form, expression: &Expression) -> Outputs {
+        let mut graph = self.graph.clone();
+        let outputs = self.in_form(&mut graph, derived, form, expression);
+        (graph, outputs)
+    }
 
-fn in_form(graph: &mut Graph, derived: &Derived, given: &Given, form: Form, expression: &Expression) -> Vec<NodeId> {
-    match form {
-        Form::Scalar => {
-            vec![Scalariser::new(graph, &derived.symbols, given.clone()).scalar(expression)]
+    /// Inertia, bias and potential of the limit at rest.
+    pub(crate) fn limit(&self, derived: &Derived) -> Outputs<[Vec<NodeId>; 3]> {
+        let (mut graph, limit) = (self.graph.clone(), &derived.limit);
+        let parts = [(Form::Square, &limit.inertia), (Form::Vector, &limit.bias), (Form::Scalar, &limit.potential)];
+        let outputs = parts.map(|(form, part)| self.in_form(&mut graph, derived, form, part));
+        (graph, outputs)
+    }
+
+    fn in_form(&self, graph: &mut Graph, derived: &Derived, form: Form, expression: &Expression) -> Vec<NodeId> {
+        match form {
+            Form::Scalar => vec![Scalariser::new(graph, &derived.symbols, &self.given).scalar(expression)],
+            Form::Vector => components(graph, derived, &self.given, expression),
+            Form::Square => square(graph, derived, &self.given, expression),
         }
-        Form::Vector => components(graph, derived, given, expression),
-        Form::Square => square(graph, derived, given, expression),
     }
 }

@@ -1,7 +1,5 @@
 //! The programs of a step, of its kernel and its derived terms.
 
-use std::collections::BTreeMap;
-
 use super::sources::{Sources, carried, parameter_kind};
 use super::{Array, Factor, Operation, Parameter, Program, Source, StagedDeclaration, Stages};
 use crate::declared::Declaration;
@@ -10,22 +8,19 @@ use crate::expand::Steps;
 use crate::judged::{Chosen, Equations};
 use crate::mathematics::derive::Inverse;
 use crate::mathematics::symbolic::Expression;
-use crate::program::{Derivatives, Form, Graph, Handed, Node, NodeId, along_directions, limit, needed, term};
+use crate::program::{Derivatives, Form, Graph, Handed, Node, NodeId, Outputs, along_directions, needed};
 
 pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> StagedDeclaration {
     let Steps { chosen, equations, findings } = steps;
     let Chosen { lowered, derived, kernel } = chosen;
     let names = &lowered.names;
     let sources = Sources { declaration, names, directions: Some(&derived.directions) };
-    let graph = &kernel.graph;
-    let stages = kernel.stages();
+    let (graph, stages) = (&kernel.graph, &findings.stages);
     let (constants, none) = (&stages.constants, &Handed::new());
     let program = |handed, outputs: &[NodeId]| program(graph, &sources, handed, outputs);
-    let derived_term = |form, expression| {
-        let (graph, outputs) = term(derived, form, expression);
-        self::program(&graph, &sources, none, &outputs)
-    };
-    let (limit_graph, at_rest) = limit(derived);
+    let alone = |(graph, outputs): &Outputs| self::program(graph, &sources, none, outputs);
+    let derived_term = |form, expression| alone(&kernel.beginning.term(derived, form, expression));
+    let (limit_graph, at_rest) = kernel.beginning.limit(derived);
     let is_expensive = kernel.jacobian_is_expensive();
     let generators = |factor: &crate::mathematics::group::Group| {
         factor.generators.iter().map(|one| one.iter().map(|entry| entry.to_f64()).collect()).collect()
@@ -62,8 +57,8 @@ pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> StagedDeclarat
             ),
             kick_after: program(constants, &kernel.kick_after),
             kick_derivative: kernel.kick_derivative.as_ref().map(|outputs| program(constants, outputs)),
-            momentum_jacobian: derived_term(Form::Square, &derived.jacobian),
-            at_rest: self::program(&limit_graph, &sources, none, &at_rest.concat()),
+            momentum_jacobian: alone(&findings.jacobian),
+            at_rest: alone(&(limit_graph, at_rest.concat())),
             at_velocity: equations.as_ref().filter(is_nonlinear).map(|equations| at_velocity(declaration, equations)),
             lagrangian: equations.as_ref().map(|_| {
                 [
@@ -122,34 +117,31 @@ fn program(graph: &Graph, sources: &Sources, constants: &Handed, outputs: &[Node
         }
     };
     let order = needed(graph, outputs, &|id| source(id).is_some());
-    let given: Vec<(NodeId, Source)> = order.iter().filter_map(|&id| Some((id, source(id)?))).collect();
-    let literal = |id: &NodeId| Some((*id, graph.value(*id).filter(|_| source(*id).is_none())?.to_f64()));
-    let literals: Vec<(NodeId, f64)> = order.iter().filter_map(literal).collect();
-    let leaves = given.iter().map(|(id, _)| *id).chain(literals.iter().map(|(id, _)| *id));
-    let number = |at: usize| u32::try_from(at).unwrap_or(u32::MAX);
-    let mut registers: BTreeMap<NodeId, u32> = leaves.enumerate().map(|(at, id)| (id, number(at))).collect();
-    let mut operations = Vec::new();
-    for id in order {
-        if registers.contains_key(&id) {
-            continue;
+    let (mut inputs, mut literals, mut made) = ((vec![], vec![]), (vec![], vec![]), vec![]);
+    for &id in &order {
+        match (source(id), graph.node(id)) {
+            (Some(source), _) => inputs.extend([(id, source)]),
+            (None, Node::Constant(value)) => literals.extend([(id, value.to_f64())]),
+            (None, Node::Input(_)) => {}
+            _ => made.push(id),
         }
-        let at = |id: NodeId| registers.get(&id).copied().unwrap_or_default();
-        operations.push(match graph.node(id) {
-            Node::Negate(a) => Operation::Negate(at(a)),
-            Node::Add(a, b) => Operation::Add(at(a), at(b)),
-            Node::Subtract(a, b) => Operation::Subtract(at(a), at(b)),
-            Node::Multiply(a, b) => Operation::Multiply(at(a), at(b)),
-            Node::Divide(a, b) => Operation::Divide(at(a), at(b)),
-            Node::Apply(function, a) => Operation::Apply(function, at(a)),
-            // They are leaves.
-            Node::Constant(_) | Node::Input(_) => continue,
-        });
-        registers.insert(id, number(registers.len()));
     }
-    Program {
-        inputs: given.into_iter().map(|(_, source)| source).collect(),
-        literals: literals.into_iter().map(|(_, value)| value).collect(),
-        operations,
-        outputs: outputs.iter().map(|output| registers.get(output).copied().unwrap_or_default()).collect(),
+    let mut registers = vec![0; order.iter().map(|id| id.0 + 1).max().unwrap_or(0)];
+    for (&id, at) in inputs.0.iter().chain(&literals.0).chain(&made).zip(0..) {
+        registers[id.0] = at;
     }
+    let at = |id: NodeId| registers[id.0];
+    let operation = |&id: &NodeId| match graph.node(id) {
+        Node::Negate(a) => Some(Operation::Negate(at(a))),
+        Node::Add(a, b) => Some(Operation::Add(at(a), at(b))),
+        Node::Subtract(a, b) => Some(Operation::Subtract(at(a), at(b))),
+        Node::Multiply(a, b) => Some(Operation::Multiply(at(a), at(b))),
+        Node::Divide(a, b) => Some(Operation::Divide(at(a), at(b))),
+        Node::Apply(function, a) => Some(Operation::Apply(function, at(a))),
+        // They are leaves.
+        Node::Constant(_) | Node::Input(_) => None,
+    };
+    let operations = made.iter().filter_map(operation).collect();
+    let outputs = outputs.iter().map(|&output| at(output)).collect();
+    Program { inputs: inputs.1, literals: literals.1, operations, outputs }
 }

@@ -88,29 +88,48 @@ impl Source {
     }
 }
 
-/// One operation on registers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// One operation, on registers or on what is known of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[allow(missing_docs)] // their names say it
-pub enum Operation {
-    Negate(u32),
-    Add(u32, u32),
-    Subtract(u32, u32),
-    Multiply(u32, u32),
-    Divide(u32, u32),
+pub enum Operation<R = u32> {
+    Negate(R),
+    Add(R, R),
+    Subtract(R, R),
+    Multiply(R, R),
+    Divide(R, R),
     /// A function of one number.
-    Apply(Function, u32),
+    Apply(Function, R),
+}
+
+impl<R: Copy> Operation<R> {
+    /// What it reads; the only one twice.
+    #[must_use]
+    pub fn read(self) -> [R; 2] {
+        match self {
+            Self::Negate(a) | Self::Apply(_, a) => [a, a],
+            Self::Add(a, b) | Self::Subtract(a, b) | Self::Multiply(a, b) | Self::Divide(a, b) => [a, b],
+        }
+    }
+
+    /// The same operation on others; on the first of them alone, if it reads one.
+    #[must_use]
+    pub fn of<S>(self, [a, b]: [S; 2]) -> Operation<S> {
+        match self {
+            Self::Negate(_) => Operation::Negate(a),
+            Self::Add(..) => Operation::Add(a, b),
+            Self::Subtract(..) => Operation::Subtract(a, b),
+            Self::Multiply(..) => Operation::Multiply(a, b),
+            Self::Divide(..) => Operation::Divide(a, b),
+            Self::Apply(function, _) => Operation::Apply(function, a),
+        }
+    }
 }
 
 impl Operation {
     /// The registers that it reads; the only one twice.
     #[must_use]
-    pub const fn operands(self) -> [usize; 2] {
-        match self {
-            Self::Negate(a) | Self::Apply(_, a) => [a as usize, a as usize],
-            Self::Add(a, b) | Self::Subtract(a, b) | Self::Multiply(a, b) | Self::Divide(a, b) => {
-                [a as usize, b as usize]
-            }
-        }
+    pub fn operands(self) -> [usize; 2] {
+        self.read().map(|register| register as usize)
     }
 }
 

@@ -136,7 +136,8 @@ pub(super) fn discretised(emitter: &Emitter, discretisation: Discretisation) -> 
     }
     let lagrangian = &emitter.lowered.declared.expression;
     let equations = docs::equations(emitter.derived, &emitter.lowered.declared, emitter.equations);
-    emitter.method("l_d", Form::Scalar, lagrangian, &equations)
+    let l_d = emitter.kernel.beginning.term(emitter.derived, Form::Scalar, lagrangian);
+    emitter.method("l_d", Form::Scalar, &l_d, &equations)
 }
 
 impl Code<'_> {
@@ -155,11 +156,7 @@ impl Code<'_> {
         let outputs = along_directions(&mut graph, &equations.derived, rank, expression);
         let documentation = docs::of(texts, &[name], &graph, &outputs);
         let body = self.body(form, &graph, &outputs, &|input| self.input_token(input));
-        let result = match form {
-            Form::Scalar => header.scalar.clone(),
-            Form::Vector => header.vector(),
-            Form::Square => header.square(),
-        };
+        let result = header.of(form);
         let (name, vector) = (Ident::new(name, span), header.vector());
         quote_spanned! {span=>
             #[doc = #documentation]

@@ -203,7 +203,7 @@ fn the_limit_is_what_was_discretised() {
         let own = equations(&arguments, PARAMETERS);
         let disagrees = |derived: &Derived| {
             let motion = Motion::new(&declaration, None, &own.names, &own.derived);
-            motion.rest_holds((&chosen.lowered.names, derived)).is_err()
+            motion.rest_holds(&chosen.lowered.names, chosen.kernel.beginning.limit(derived)).is_err()
         };
         assert!(!disagrees(&chosen.derived), "{rule}");
         let mut changed = chosen.derived.clone();

@@ -22,7 +22,7 @@ use crate::judged::{Chosen, Held, cheapest, discretised, held};
 use crate::mathematics::derive::{Derived, Seen, derive};
 use crate::mathematics::symbolic::tests::numeric::Matrix;
 use crate::mathematics::symbolic::tests::random::{Random, exponential};
-use crate::program::{Given, Graph, Input, Scalariser, components, with_lets};
+use crate::program::{Beginning, Input, Scalariser, components};
 use crate::staged::{MOST_WORK, staged};
 
 /// `l_d`, or what `discretise` makes of `l`.
@@ -121,16 +121,15 @@ fn found(declaration: &Declaration, env: &Env) -> Option<Vec<f64>> {
         tree = discretised(declaration, &tree, asked, &mut errors)?;
     }
     let readings = lower::readings(declaration, &tree, &mut errors)?;
-    let Chosen { derived, lowered, .. } = cheapest(readings, derive, declaration, &tree, &mut errors)?;
-    let mut graph = Graph::default();
-    let given = with_lets(&mut graph, &derived, Given::new());
+    let Chosen { derived, lowered, kernel } = cheapest(readings, derive, declaration, &tree, &mut errors)?;
+    let Beginning { mut graph, given } = kernel.beginning;
     let Derived { right_momentum, left_momentum, diamond, momentum, symbols, energy, .. } = &derived;
     let terms = [right_momentum, left_momentum, diamond, momentum];
     let terms = terms.map(|term| components(&mut graph, &derived, &given, term));
     let mut outputs: Vec<_> = (0..terms[3].len()).flat_map(|k| terms.each_ref().map(|term| term[k])).collect();
     match declaration.role {
         Role::Force => outputs.clone_from(&terms[3]),
-        _ => outputs.push(Scalariser::new(&mut graph, symbols, given).scalar(energy)),
+        _ => outputs.push(Scalariser::new(&mut graph, symbols, &given).scalar(energy)),
     }
     let mut inputs = BTreeMap::new();
     for (name, symbol) in lowered.names {

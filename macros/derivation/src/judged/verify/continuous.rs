@@ -19,14 +19,14 @@ use super::sample::{along_motion, exponentials, moved};
 use super::series::Series;
 use super::value::Value;
 use super::{
-    SAMPLES, Sureness, Unconfirmed, Values, algebra, components_of, dot, evaluated, increments, over, parameter,
-    parameters, shares, stream, velocities,
+    SAMPLES, Sureness, Unconfirmed, Values, algebra, dot, evaluated, increments, over, parameter, parameters, shares,
+    stream, velocities,
 };
 use crate::declared::{Declaration, FieldKind, Name, Tree};
-use crate::mathematics::derive::{Continuous, Derived};
+use crate::mathematics::derive::Continuous;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId};
-use crate::program::{Graph, NodeId, along_directions, diamond_matrices, limit};
+use crate::program::{Graph, NodeId, Outputs, along_directions, diamond_matrices};
 
 /// The continuous equations of a declaration as operations.
 pub(crate) struct Motion<'a> {
@@ -207,9 +207,9 @@ impl<'a> Motion<'a> {
     /// rest.
     pub(crate) fn rest_holds(
         &self,
-        (names, derived): (&BTreeMap<Name, SymbolId>, &Derived),
+        names: &BTreeMap<Name, SymbolId>,
+        (graph, limit): Outputs<[Vec<NodeId>; 3]>,
     ) -> Result<Sureness, Unconfirmed> {
-        let (graph, limit) = limit(derived);
         let limit = limit.concat();
         let degrees = |same: &mut Same<Degree>| {
             let point = self.point_of_degrees(&mut Degree::stream());
@@ -261,12 +261,13 @@ impl<'a> Motion<'a> {
     /// a constant is zero in the field alone.
     pub(crate) fn right_symmetries(&self) -> Vec<Vec<Rational>> {
         let (dimension, mut rates) = (self.group().dimension(), Subspace::default());
+        let has_multiple = Content::of_graph(&self.graph).has_multiple;
         for seed in 1..=2 * u64::try_from(dimension).unwrap_or(0) + 2 {
             let point = self.point(Residue::stream(seed));
             let at = |outputs: &[NodeId]| self.values(outputs, &point);
             let rate = coadjoint(self.group(), &self.velocity(&point), &at(&self.momentum));
             let rate: Vec<Residue> = rate.iter().zip(at(&self.diamond)).map(|(&x, y)| x + y).collect();
-            if Content::of_graph(&self.graph).has_multiple || rate.iter().any(|entry| !entry.is_defined()) {
+            if has_multiple || rate.iter().any(|entry| !entry.is_defined()) {
                 return Vec::new();
             }
             rates.extend(rate);
@@ -296,10 +297,14 @@ impl<'a> Motion<'a> {
 fn coadjoint<T: Number>(group: &Group, xi: &[T], momentum: &[T]) -> Vec<T> {
     let of_factor = |((own, xi), (_, momentum)): ((&Group, &[T]), (_, &[T]))| {
         let xi = Value::combination(own.size, &own.generators, xi);
+        let mut pairing = vec![T::ZERO; own.size * own.size];
+        for (k, row, column, share) in own.dual() {
+            let entry = &mut pairing[row * own.size + column];
+            *entry = *entry + T::of(share) * momentum[k];
+        }
         let along = |entries| {
             let e = Value::square(own.size, entries);
-            let bracket = xi.times(&e).zip(&e.times(&xi), |x, y| x - y);
-            dot(&components_of(own, &[bracket]), momentum)
+            dot(&xi.times(&e).zip(&e.times(&xi), |x, y| x - y).entries, &pairing)
         };
         own.generators.iter().map(|entries| along(entries)).collect::<Vec<T>>()
     };

@@ -20,8 +20,8 @@ use crate::judged::places::{places, shape, variables};
 use crate::mathematics::derive::Derived;
 use crate::mathematics::symbolic::{Rational, Stage, SymbolId};
 use crate::program::{
-    ByNumbers, Derivatives, Given, Graph, Handed, Kernel, NodeId, Scalariser, Stages, WeightedGradient, components,
-    limit, square, with_lets,
+    Beginning, ByNumbers, Derivatives, Graph, Handed, Kernel, NodeId, Outputs, Scalariser, Stages, WeightedGradient,
+    components, square,
 };
 
 /// Values of symbols.
@@ -31,10 +31,11 @@ type Inputs<T> = BTreeMap<SymbolId, Value<T>>;
 pub(super) type Same<'a, T> = dyn FnMut(&'static str, T, T) -> Result<(), Unconfirmed> + 'a;
 
 /// The derived terms as operations.
-struct Terms {
-    graph: Graph,
+pub(super) struct Terms {
+    pub(super) graph: Graph,
+    /// As if it were alone in the graph.
+    pub(super) jacobian: Vec<NodeId>,
     momentum: Vec<NodeId>,
-    jacobian: Vec<NodeId>,
     /// Of a Lagrangian alone.
     right: Vec<NodeId>,
     left: Vec<NodeId>,
@@ -43,11 +44,9 @@ struct Terms {
 }
 
 impl Terms {
-    fn new(derived: &Derived, role: Role) -> Self {
-        let mut graph = Graph::default();
-        let given = with_lets(&mut graph, derived, Given::new());
-        let momentum = components(&mut graph, derived, &given, &derived.momentum);
+    fn new(derived: &Derived, role: Role, Beginning { mut graph, given }: Beginning) -> Self {
         let jacobian = square(&mut graph, derived, &given, &derived.jacobian);
+        let momentum = components(&mut graph, derived, &given, &derived.momentum);
         let none = Self { momentum, jacobian, right: vec![], left: vec![], diamond: vec![], energy: None, graph };
         if role == Role::Force {
             return none;
@@ -55,7 +54,7 @@ impl Terms {
         let mut graph = none.graph;
         let [right, left, diamond] = [&derived.right_momentum, &derived.left_momentum, &derived.diamond]
             .map(|covector| components(&mut graph, derived, &given, covector));
-        let energy = Scalariser::new(&mut graph, &derived.symbols, given).scalar(&derived.energy);
+        let energy = Scalariser::new(&mut graph, &derived.symbols, &given).scalar(&derived.energy);
         Self { right, left, diamond, energy: Some(energy), graph, ..none }
     }
 }
@@ -65,10 +64,10 @@ pub(super) struct Identities<'a> {
     pub(super) of: Subject<'a>,
     kernel: &'a Kernel,
     pub(super) stages: Stages,
-    terms: Terms,
+    pub(super) terms: Terms,
     pub(super) derivatives: Option<Derivatives>,
     /// `J`, `s` and `V` of the limit, where they have derivatives.
-    limit: Option<(Graph, [Vec<NodeId>; 3])>,
+    limit: Option<Outputs<[Vec<NodeId>; 3]>>,
 }
 
 /// One point with one direction.
@@ -113,8 +112,9 @@ impl<'a> Identities<'a> {
         let derivatives =
             derived.ends.as_ref().map(|ends| Derivatives::new(derived, ends, &places(declaration, &lowered.names)));
         let has_gradient = derivatives.as_ref().is_some_and(|all| all.of_kick.is_some());
-        let (stages, terms) = (kernel.stages(), Terms::new(derived, declaration.role));
-        Self { of, kernel, stages, terms, derivatives, limit: has_gradient.then(|| limit(derived)) }
+        let terms = Terms::new(derived, declaration.role, kernel.beginning.clone());
+        let limit = has_gradient.then(|| kernel.beginning.limit(derived));
+        Self { of, kernel, stages: kernel.stages(), terms, derivatives, limit }
     }
 
     /// Of the declaration and of what was derived.

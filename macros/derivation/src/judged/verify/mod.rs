@@ -32,8 +32,8 @@
 //!    terms that were compared before. A step needs `U(F) = μ + k₀` and `μ⁺ = Ad*_F (μ + k₀) + k₁⁺`: any `k₀` will do that
 //!    doesn't depend on `F`, and that it doesn't is asked of the graph. The derivatives of a step are compared as the graph that
 //!    is emitted; by the entries of an attitude that is seen, with those of its momenta and not of the declaration, as
-//!    `RᵀR = I` may have been used. Tokens are written from these graphs, and those of single terms from graphs that the code
-//!    of these builds again.
+//!    `RᵀR = I` may have been used. Tokens are written from these graphs, as is the momentum's Jacobian, and those of other
+//!    single terms from graphs that the code of these builds again.
 //!
 //! # What is taken for right
 //!
@@ -73,14 +73,14 @@ use crate::declared::{Declaration, FieldKind, Name, Role, Shape};
 use crate::mathematics::derive::SelfAdjointness;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId};
-use crate::program::{Derivatives, Graph, Input, Kernel, Node, NodeId};
+use crate::program::{Derivatives, Graph, Input, Kernel, Node, NodeId, Outputs, Stages};
 
 pub(super) use cayley::{is_cayley_coordinates, nilpotency};
 pub(crate) use constraint::Held;
 pub(super) use constraint::{Row, constraint};
 pub(crate) use continuous::Motion;
 use evaluation::Evaluation;
-use identities::Identities;
+use identities::{Identities, Terms};
 pub(super) use inertia::{KineticPart, kinetic_part};
 use number::Number;
 pub(super) use orders::{TermMistake, not_smooth_at_identity, term_mistakes, without_value};
@@ -112,12 +112,16 @@ pub(crate) enum Unconfirmed {
     NotSmooth,
 }
 
-/// What the self-check has found of a declaration that it confirms.
-pub(crate) struct Verified {
+/// What has been found of a declaration that the self-check confirms.
+pub(crate) struct Findings {
     pub(crate) self_adjointness: SelfAdjointness,
     pub(crate) sureness: Sureness,
-    /// What was compared, to be emitted.
+    /// What was compared, to be emitted; derivatives of a step where they are asked for.
+    pub(crate) stages: Stages,
+    pub(crate) jacobian: Outputs,
     pub(crate) derivatives: Option<Derivatives>,
+    /// What the equations rest on, which is asked afterwards.
+    pub(crate) hypotheses: Vec<String>,
 }
 
 /// How sure it is that what was derived is right.
@@ -144,7 +148,7 @@ impl Sureness {
 }
 
 /// Checks all that was derived. The error is the first term that disagrees.
-pub(super) fn verify(of: Subject, kernel: &Kernel) -> Result<Verified, Unconfirmed> {
+pub(super) fn verify(of: Subject, kernel: &Kernel) -> Result<Findings, Unconfirmed> {
     // Whether it has a value is asked of real numbers: the field has roots of all.
     if Sample::draws(of).next().is_none() {
         return Err(Unconfirmed::NoValue);
@@ -160,7 +164,9 @@ pub(super) fn verify(of: Subject, kernel: &Kernel) -> Result<Verified, Unconfirm
             reversal::self_adjointness(reversed, of.derived.adjoint_defect.is_zero()).map_err(Unconfirmed::Disagrees)?
         }
     };
-    Ok(Verified { self_adjointness, sureness, derivatives: identities.derivatives })
+    let Identities { stages, terms: Terms { graph, jacobian, .. }, derivatives, .. } = identities;
+    let (jacobian, hypotheses) = ((graph, jacobian), Vec::new());
+    Ok(Findings { self_adjointness, sureness, stages, jacobian, derivatives, hypotheses })
 }
 
 /// The values of operations.

@@ -262,21 +262,31 @@ fn lagrangian(declared: &Declared) -> Result<Derived, LimitError> {
     })
 }
 
-/// What is derived by one variation, the kicks of the transport form, and the limit.
-pub(crate) fn principal_equations(declared: &Declared) -> Vec<Expression> {
+/// Whether a Lagrangian, of which less is known, has all that was derived by one variation, the kicks of the transport
+/// form, and the limit. What is quickly found is asked first.
+pub(crate) fn has_equations(declared: &Declared, known: &Declared, derived: &Derived) -> bool {
+    let values = |of: &[Let]| of.iter().map(|one| one.value.clone()).collect::<Vec<_>>();
+    if declared.expression != known.expression || values(&declared.lets) != values(&known.lets) {
+        return false;
+    }
     let mut symbols = declared.symbols.clone();
     let directions = directions(declared, &mut symbols);
     let (closed, lagrangian) = closed::multipliers(&declared.lets, &declared.expression, &mut symbols);
     let context = Context { declared, lagrangian: &lagrangian, symbols: &symbols, directions: &directions };
-    let (right, left) = (momentum_maps::right(&context), momentum_maps::left(&context));
-    let diamond = diamond::diamond(&context);
-    let momentum = momentum_equation::momentum(&right, &diamond);
-    let parts = transport::parts(&context, &momentum, &diamond);
-    let limit =
-        limit::limit(&context, &momentum).map(|limit| [limit.slope, limit.inertia, limit.bias, limit.potential]);
-    let all = [declared.expression.clone(), right, left, diamond, momentum, parts.kick_before, parts.kick_after];
-    let lets = closed.into_iter().flat_map(|one| [one.value, one.pairing]);
-    all.into_iter().chain(limit.into_iter().flatten()).chain(lets).collect()
+    let has_parts = || {
+        let parts = transport::parts(&context, &derived.momentum, &derived.diamond);
+        parts.kick_before == derived.kick_before && parts.kick_after == derived.shown_kick_after
+    };
+    let has_limit = |Limit { slope, inertia, bias, potential, .. }: Limit| {
+        let known = &derived.limit;
+        [slope, inertia, bias, potential].iter().eq([&known.slope, &known.inertia, &known.bias, &known.potential])
+    };
+    closed.iter().zip(&derived.closed).all(|(one, known)| one.pairing == known.pairing)
+        && momentum_maps::right(&context) == derived.right_momentum
+        && momentum_maps::left(&context) == derived.left_momentum
+        && diamond::diamond(&context) == derived.diamond
+        && has_parts()
+        && limit::limit(&context, &derived.momentum).is_ok_and(has_limit)
 }
 
 /// What every rule needs.

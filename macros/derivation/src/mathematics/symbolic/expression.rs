@@ -359,8 +359,10 @@ pub(crate) fn monomial_contains(monomial: &Monomial, symbol: SymbolId) -> bool {
 
 /// When the value of a monomial is known: with the last of its symbols.
 pub(crate) fn stage_of_monomial(monomial: &Monomial, symbols: &Symbols) -> Stage {
-    let present = symbols.ids().filter(|&id| monomial_contains(monomial, id));
-    present.map(|id| symbols.get(id).stage).max().unwrap_or(Stage::Construction)
+    symbols.ids().fold(Stage::Construction, |latest, id| {
+        let stage = symbols.get(id).stage;
+        if stage > latest && monomial_contains(monomial, id) { stage } else { latest }
+    })
 }
 
 /// When the value of an expression is known.

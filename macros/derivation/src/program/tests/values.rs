@@ -105,7 +105,7 @@ fn entries_by_structure() {
         };
         let matrix = world.expression(id);
         let entry = unit(row, true).times(&matrix, &world.symbols).times(&unit(column, false), &world.symbols);
-        Scalariser::new(&mut graph, &world.symbols, BTreeMap::new()).scalar(&entry)
+        Scalariser::new(&mut graph, &world.symbols, &BTreeMap::new()).scalar(&entry)
     };
     assert_eq!(entry(world.symmetric, 0, 2), entry(world.symmetric, 2, 0));
     assert_ne!(entry(world.a, 0, 2), entry(world.a, 2, 0));

@@ -9,7 +9,7 @@ use proc_macro2::TokenStream;
 use super::super::identities::Identities;
 use super::super::residue::Residue;
 use super::super::sample::{Element, Sample};
-use super::super::{Row, Subject, Sureness, Unconfirmed, Verified, constraint, verify};
+use super::super::{Findings, Row, Subject, Sureness, Unconfirmed, constraint, verify};
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Role, Tree, check, lower, parse};
 use crate::expand::tests::continuous::{CART, LINKS, OF_CART, OF_LINKS};
@@ -102,7 +102,7 @@ impl Prepared {
         Subject { declaration: &self.declaration, tree: &self.tree, lowered: &self.chosen.lowered, derived }
     }
 
-    fn found(&self, derived: &Derived, kernel: &Kernel) -> Result<Verified, Unconfirmed> {
+    fn found(&self, derived: &Derived, kernel: &Kernel) -> Result<Findings, Unconfirmed> {
         verify(self.subject(derived), kernel)
     }
 
