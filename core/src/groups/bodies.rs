@@ -116,7 +116,7 @@ impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
         self.iter().fold(nalgebra::zero(), |sum, body| sum + body.defect())
     }
 
-    #[inline]
+    #[cold]
     fn restored(&self, beyond: f64) -> Option<(Self, Mask<G::Scalar>)> {
         let (mut elements, mut far) = (*self, nowhere::<G::Scalar>());
         for element in &mut elements {
