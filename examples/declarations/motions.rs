@@ -133,7 +133,7 @@ pub fn link(central: &Matrix3<f64>, m: f64, c: Vector3<f64>, rho: Vector3<f64>) 
     Link { J_d: NonstandardInertia::new(central + c * c.transpose() * m).unwrap(), m, c, rho }
 }
 
-/// The chain of three links.
+/// The chain of three links of the reference.
 pub fn chain3() -> Chain<3> {
     let data = &read("several bodies")["chain3"]["parameters"];
     let plain = |value: &Value| Vector3::from_fn(|k, _| value[k].as_f64().unwrap());
@@ -146,7 +146,7 @@ pub fn chain3() -> Chain<3> {
     Chain { links, g: data["g"].as_f64().unwrap(), up: Vector3::z() }
 }
 
-/// Where its reference starts.
+/// The attitudes and body velocities from which the reference of [`chain3`] starts.
 pub fn start3() -> ([SO3; 3], Bodies<Vector3<f64>, 3>) {
     let start = &read("several bodies")["chain3"]["states"][0]["bodies"];
     let attitudes = from_fn(|k| SO3::try_from(matrix(&start[k]["R"])).unwrap());

@@ -210,8 +210,8 @@ pub fn matrix_group(tokens: proc_macro::TokenStream) -> proc_macro::TokenStream 
 
 /// Inlined into every caller, but for builds with debug assertions, which are to be built soon: what a step is made of.
 ///
-/// On a block it marks all functions but those with `#[inline]`, `#[inline(never)]` or `#[cold]`. For the sources of liestep
-/// alone. Closures write the attribute out, as attribute macros can't stand on them.
+/// On an `impl` or a `trait` it marks all functions but those with `#[inline]`, `#[inline(never)]` or `#[cold]`, and those
+/// that a macro makes there. For liestep's sources alone. Closures write it out, as attribute macros can't stand on them.
 #[doc(hidden)]
 #[proc_macro_attribute]
 pub fn hot(_: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {

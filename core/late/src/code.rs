@@ -25,7 +25,7 @@ pub trait Backend<T: Real>: Copy + Debug + 'static {
     /// Makes now what else is made after some runs.
     fn prepare(_: &Self::Code) {}
 
-    /// Runs a program, for as many outputs as it has. Arrays are as long as what it reads of them, as the constants are.
+    /// Runs a program, for as many outputs as it has. Constants and arrays have all that it reads, or it gives NaN or panics.
     fn run<const N: usize>(code: &Self::Code, constants: &[T], given: Given<'_, T, N>, outputs: &mut [T]);
 }
 

@@ -64,7 +64,7 @@ macro_rules! tuples {
 
 tuples!(()(A, B)(A, B, C)(A, B, C, D)(A, B, C, D, E)(A, B, C, D, E, F));
 
-/// Puts others into lane `k`.
+/// Puts the numbers of `lane` into lane `k`.
 fn replace<T: Real>(numbers: &mut [T], k: usize, lane: &[T::Element]) {
     numbers.iter_mut().zip(lane).for_each(|(number, &lane)| number.replace(k, lane));
 }

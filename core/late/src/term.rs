@@ -202,7 +202,7 @@ impl<G: LieGroup, W, K, B: Backend<G::Scalar>> Late<G, W, K, B> {
     ///
     /// Where there are more or fewer.
     pub fn with_all(mut self, numbers: &[G::Scalar]) -> Result<Self, LateError> {
-        // An effect describes a diagonal inertia by its tensor.
+        // An effect describes a diagonal inertia by the nine entries of its tensor: every fourth is on the diagonal.
         let described = self.declaration.parameters.iter().map(|parameter| match parameter.kind {
             ParameterKind::DiagonalInertia => (9, 4),
             kind => (kind.len(), 1),

@@ -187,7 +187,7 @@ pub(crate) fn given(least: &[usize; Array::COUNT]) -> impl Iterator<Item = Array
 /// The symbol of what applies a function.
 const FUNCTION: &str = "liestep_function";
 
-/// All functions.
+/// All functions that the interpreter has.
 static FUNCTIONS: LazyLock<Vec<Function>> = LazyLock::new(|| {
     let named = [Function::Sqrt, Function::Ln, Function::Exp, Function::Sin, Function::Cos];
     let families = (1..=10).map(Function::Stumpff).chain((0..=6).map(Function::LogRatio));

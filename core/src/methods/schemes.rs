@@ -1,6 +1,6 @@
 //! Tables of coefficients.
 
-/// Constants of a type, the list of all of them, and what each is called by and has for an order.
+/// Constants of a type, the list of all of them, and the functions `name` and `order`.
 macro_rules! schemes {
     ($($(#[$doc:meta])* $name:ident = $scheme:expr;)+) => {
         $($(#[$doc])* pub const $name: Self = $scheme;)+
@@ -14,7 +14,7 @@ macro_rules! schemes {
             self.name
         }
 
-        /// The order in the step, of the whole.
+        /// The order in the step of the whole method; of a composition, where the composed method has the order `base`.
         #[must_use]
         pub fn order(&self) -> u32 {
             self.order

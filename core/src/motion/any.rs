@@ -85,8 +85,8 @@ impl Debug for AnyHistory {
     }
 }
 
-/// How a wrapper steps, as its `change` lets what it wraps, and is read: as this, of the motion that it sees. What follows a
-/// stretch is shown a motion as this.
+/// How a wrapper steps and is read. Its `change` steps what it wraps, which reads a state as `own` and a motion as `seen`,
+/// and calls `shown` after each stretch.
 macro_rules! wraps {
     ($self:ident, $inner:expr, $state:ident => $own:expr, $motion:ident: $type:ty, $seen:expr, $next:ident => $shown:expr) => {
         fn step(&$self, state: &mut Self::State) -> Result<StepReport, StepError> {

@@ -84,8 +84,8 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         Self::joined(bodies).map_err(|lane| SetupError::Unlike { lane })
     }
 
-    /// As [`new`](Self::new) of the first of these bodies, as many as can be beside each other, and how many that are; of no
-    /// bodies nothing.
+    /// As [`new`](Self::new), of as many of these bodies, from the first on, as can be beside each other; with their number.
+    /// `None` where there are no bodies.
     ///
     /// # Panics
     ///

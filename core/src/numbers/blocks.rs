@@ -61,6 +61,6 @@ pub struct Pattern {
 }
 
 impl Pattern {
-    /// Nothing: one block.
+    /// Nothing is known: all unknowns are one block.
     pub const WHOLE: Self = Self { factors: Blocks::WHOLE, apart: Blocks::WHOLE };
 }

@@ -89,14 +89,12 @@ pub trait Coordinates<T: Real>:
     /// positive definite, like the Jacobian of a kinetic energy near the identity, and not finite where a leading minor
     /// is zero.
     #[must_use]
-    #[hot]
     fn factorise(matrix: &Self::Square) -> (Self::Square, T) {
         Self::factorise_with(matrix, Pattern::WHOLE)
     }
 
     /// The solution `z` of `A z = b` from what [`factorise`](Self::factorise) has made of `A`.
     #[must_use]
-    #[hot]
     fn solve_again(factors: &Self::Square, det: T, right_side: &Self) -> Self {
         Self::solve_again_with(factors, det, Pattern::WHOLE, right_side)
     }

@@ -28,7 +28,7 @@ pub struct SceneEnsemble {
     pub text: String,
     pub(crate) axes: Vec<Axis>,
     pub(crate) path: PathBuf,
-    /// The tables of which something is drawn, and a member that has the others; or all, and none.
+    /// The tables of which something is drawn, and a member that has the others; without such a member, all tables.
     pub(crate) tables: DeTable<'static>,
     pub(crate) like: Option<Box<SceneFile>>,
 }

@@ -131,7 +131,7 @@ pub(crate) fn read(
         }
     }
     (ensemble.path, ensemble.text) = (path.to_owned(), text.to_owned());
-    // No member reads the text again, which is kept as long as the program runs.
+    // The text is parsed once, and kept as long as the program runs.
     let tables = DeTable::parse(Box::leak(text.into())).map_err(|error| Mistake::of_toml(path, text, &error))?;
     let axes = &ensemble.axes;
     let is_drawn = |name: &str| axes.iter().any(|axis| axis.keys.first().is_some_and(|key| key.get_ref() == name));

@@ -194,14 +194,14 @@ pub(crate) trait Parameter {
         None
     }
 
-    /// Puts a number with a unit into the component of this number, and says whether it is what would be read of a text with
-    /// it; where it isn't, or that isn't known, the text has to be read.
+    /// Puts a number with a unit into a component, numbered from zero. `false` where nothing is put and a text with this
+    /// number has to be read: it might be refused, or say more than a number.
     fn put(&mut self, _component: usize, _number: f64, _unit: &str) -> bool {
         false
     }
 }
 
-/// Puts a value where there is one and a place for it.
+/// Puts a value into a place, where there are both; says whether there are.
 pub(crate) fn put(place: Option<&mut f64>, value: Option<f64>) -> bool {
     place.zip(value).map(|(place, value)| *place = value).is_some()
 }

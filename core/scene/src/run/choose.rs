@@ -33,10 +33,10 @@ type Rest<W = Seen> = Program<WithoutKinetic, W>;
 /// All of a scene in one program.
 pub type Whole<K = WithEitherKinetic, W = Seen> = Program<K, W>;
 
-/// That of a scene that advects one vector, or none, and has a Jacobian that is cheap: shorter states make faster steps.
+/// A [`Whole`] that advects one vector, or none, and whose Jacobian is cheap: shorter states make faster steps.
 pub type LeastWhole = Whole<WithKinetic, V>;
 
-/// What steps it, and the state that it starts from.
+/// The stepper of a member in lanes, and the state that it starts from.
 pub type MemberInLanes<K, W> = (Stepper<Whole<K, W>>, StateOf<Whole<K, W>>);
 
 /// What has a kinetic term: a Lagrangian of the file's own, or a body of the library by its text. With its numbers.
@@ -87,7 +87,7 @@ fn program<K: KineticPart, W: Advected<SO3> + Slots>(
 }
 
 /// A scene by its own step as one program, in which members of an ensemble go side by side; none where its steps are others
-/// or see something else at each time, or where the type is that of other scenes.
+/// or see something else at each time, or where its terms need another `K` or `W`.
 pub(crate) fn whole<K: KineticPart, W: Advected<SO3> + Slots>(file: &SceneFile) -> Option<Whole<K, W>> {
     let is_of_one_kind = matches!(file.run.method, Method::Step) && !file.has_steps_of_its_own();
     let J = inertia(file).ok().filter(|_| is_of_one_kind && file.turning().next().is_none())?;

@@ -77,7 +77,7 @@ impl SceneFile {
     }
 
     /// The scene as one program, in which members of its ensemble go side by side; none where its steps aren't its own or
-    /// see something else at each time, or where the type is that of other scenes.
+    /// see something else at each time, or need another `K` or `W`: [`LeastWhole`](crate::LeastWhole) is asked for first.
     #[must_use]
     pub fn whole<K: KineticPart, W: Advected<SO3> + Slots>(&self) -> Option<Whole<K, W>> {
         choose::whole(self)

@@ -75,8 +75,8 @@ impl CompositionScheme {
         self.half
     }
 
-    /// The order of the method that the coefficients are for: that of the composition is for such a one, and lower for one of
-    /// a lower order.
+    /// The order of the method that the coefficients are for. Of a method of a lower order the composition has a lower
+    /// [`order`](Self::order), too.
     #[must_use]
     pub fn base(&self) -> u32 {
         self.base

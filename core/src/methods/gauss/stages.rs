@@ -88,9 +88,9 @@ impl<const PAIRS: usize> Stages<PAIRS> {
         Err(StepError::NotConverged { iterations: MOST_ITERATIONS, residual })
     }
 
-    /// The next iterate, and by how much it differs, squared: the quaternion's stages relative to one, and these and the
-    /// momentum's relative to the momentum; NaN where anything is. Both are numbers, as a reference to the iterate would put it
-    /// in memory, from where each iteration would wait for a copy.
+    /// The next iterate, and two squared changes: that of the quaternion's stages, relative to one, and the sum of this and
+    /// that of the momentum's stages, relative to the momentum. They are NaN where anything is. They are made here, as a
+    /// reference to the iterate would put it in memory, and each iteration would wait for a copy from there.
     #[inline(always)]
     fn iterated(
         &self,

@@ -53,7 +53,7 @@ pub(crate) fn continuous(
     Some(equations)
 }
 
-/// Where the field doesn't tell, a discrete Lagrangian may have this for a limit, or not.
+/// Checks that this is the limit of the discrete Lagrangian. `may_have_limit` counts where the field doesn't tell.
 fn limit_holds(
     motion: &Motion,
     may_have_limit: bool,
@@ -81,7 +81,7 @@ fn of_limit(declaration: &Declaration, discrete: &Rc<Tree>, chosen: &Chosen, err
     checked(declaration, (discrete, Some(chosen)), names, derived, errors)
 }
 
-/// Those of this tree, or of the limit of what was chosen for it.
+/// The equations of this tree, checked, or of the limit of what was chosen for it.
 fn checked(
     declaration: &Declaration,
     (tree, chosen): (&Rc<Tree>, Option<&Chosen>),

@@ -24,7 +24,7 @@ pub(crate) struct Candidate {
 /// The outputs of the stages, in one graph.
 #[derive(Clone, Debug)]
 pub(crate) struct Kernel {
-    /// Of the derived terms, which have graphs of their own, too.
+    /// What the graph below begins with, and those of single terms.
     pub(crate) beginning: Beginning,
     pub(crate) graph: Graph,
     pub(crate) kick_before: Vec<NodeId>,

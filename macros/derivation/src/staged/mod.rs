@@ -88,7 +88,7 @@ impl Source {
     }
 }
 
-/// One operation, on registers or on what is known of them.
+/// One operation: on registers, on values that stand for them, or, where its kind alone counts, on `()`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[allow(missing_docs)] // their names say it
 pub enum Operation<R = u32> {

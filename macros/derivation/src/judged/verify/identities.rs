@@ -33,7 +33,7 @@ pub(super) type Same<'a, T> = dyn FnMut(&'static str, T, T) -> Result<(), Unconf
 /// The derived terms as operations.
 pub(super) struct Terms {
     pub(super) graph: Graph,
-    /// As if it were alone in the graph.
+    /// Made first, so that it is as it would be alone in the graph.
     pub(super) jacobian: Vec<NodeId>,
     momentum: Vec<NodeId>,
     /// Of a Lagrangian alone.

@@ -32,8 +32,8 @@
 //!    terms that were compared before. A step needs `U(F) = μ + k₀` and `μ⁺ = Ad*_F (μ + k₀) + k₁⁺`: any `k₀` will do that
 //!    doesn't depend on `F`, and that it doesn't is asked of the graph. The derivatives of a step are compared as the graph that
 //!    is emitted; by the entries of an attitude that is seen, with those of its momenta and not of the declaration, as
-//!    `RᵀR = I` may have been used. Tokens are written from these graphs, as is the momentum's Jacobian, and those of other
-//!    single terms from graphs that the code of these builds again.
+//!    `RᵀR = I` may have been used. Tokens are written from these graphs, and those of the momentum's Jacobian from the graph
+//!    that was compared. Those of other single terms are written from graphs that the same code builds again.
 //!
 //! # What is taken for right
 //!
