@@ -173,8 +173,8 @@ impl<E: Effect + ?Sized> Limit<E> {
 pub trait Effect: Term {
     /// The coordinates of the Newton unknown.
     type Retraction: Retraction<Self::Group>;
-    /// Whether there is a kinetic part: [`WithKinetic`], [`WithExpensiveKinetic`](crate::mechanics::WithExpensiveKinetic) or
-    /// [`WithoutKinetic`](crate::mechanics::WithoutKinetic).
+    /// Whether there is a kinetic part: [`WithKinetic`], [`WithEitherKinetic`](crate::mechanics::WithEitherKinetic) or
+    /// [`WithoutKinetic`](crate::mechanics::WithoutKinetic); the macros write further kinds.
     type Kinetic: KineticPart;
     /// What the parameters and `h` determine.
     type Constants: Clone + Debug + PartialEq;
