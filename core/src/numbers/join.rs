@@ -80,3 +80,22 @@ where
         [[block(0, 0), block(0, A)], [block(A, 0), block(A, A)]]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Join as _;
+    use nalgebra::{Matrix3, SMatrix, SVector, Vector1, Vector3};
+
+    #[test]
+    fn components_are_joined_and_taken_apart() {
+        let (a, b) = (Vector3::new(1.0, 2.0, 3.0), Vector1::new(4.0));
+        let joined: SVector<f64, 4> = a.join(&b);
+        assert_eq!(joined.as_slice(), [1.0, 2.0, 3.0, 4.0]);
+        assert_eq!(Vector3::split(&joined), (a, b));
+        let squares: SMatrix<f64, 4, 4> = <Vector3<f64> as super::Join<f64, Vector1<f64>>>::join_squares(
+            &(Matrix3::identity() * 2.0),
+            &SMatrix::from_element(5.0),
+        );
+        assert_eq!(squares * joined, SVector::from([2.0, 4.0, 6.0, 20.0]));
+    }
+}

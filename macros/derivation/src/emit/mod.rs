@@ -36,7 +36,8 @@ pub(crate) use own_group::{ask, own_group};
 #[must_use]
 pub fn hot(item: TokenStream) -> TokenStream {
     let mark: syn::Attribute = syn::parse_quote!(#[cfg_attr(not(debug_assertions), inline(always))]);
-    let says_it = |attribute: &syn::Attribute| attribute.path().is_ident("inline") || attribute.path().is_ident("cold");
+    let says_it =
+        |attribute: &syn::Attribute| ["inline", "cold", "hot"].iter().any(|word| attribute.path().is_ident(word));
     let marked = |attributes: &mut Vec<syn::Attribute>| {
         if !attributes.iter().any(says_it) {
             attributes.push(mark.clone());

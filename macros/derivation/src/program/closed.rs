@@ -90,10 +90,13 @@ fn dual(
     given: &mut Given,
     (pairing, direction, (rows, columns)): (&Expression, SymbolId, (usize, usize)),
 ) -> Entries {
-    Entries::new(rows, columns, |row, column| {
+    let values = Entries::new(rows, columns, |row, column| {
         let (zero, one) = (graph.zero(), graph.one());
         let unit = Entries::new(rows, columns, |i, j| if (i, j) == (row, column) { one } else { zero });
         given.insert(direction, unit);
         Scalariser::new(graph, &derived.symbols, given).scalar(pairing)
-    })
+    });
+    // No term that is made later may take the last of them for what it varies by.
+    given.remove(&direction);
+    values
 }
