@@ -30,7 +30,9 @@ use crate::motion::{
     is_due,
 };
 use crate::numbers::{Coordinates, Real, Vectors, count, largest_lane, real, reported};
-use nalgebra::{Matrix3, SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, Vector3};
+use nalgebra::{
+    Matrix3, SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue, Vector3,
+};
 
 /// The plan of [`Stepper::split`](crate::Stepper::split), for a body on SO(3) under a potential: `l_d = K(F) − (h/2) (V(w) + V(F⁻¹·w))` with its step in shares.
 ///
@@ -389,10 +391,12 @@ fn share_of<T: Real, K: KineticFlow<T>>(
 impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Splitting<S, K> {
     type Kept = ();
 
-    /// A body alone gains by instructions with three operands, which save copies. It doesn't fill the widest registers: an
-    /// increment's entries are moved together in them and apart again, for which the next kick waits. Lanes that are arrays
-    /// are slower with the widest, too. `cargo bench --bench vectors` shows both.
-    const VECTORS: Vectors = Vectors::Four;
+    /// A body alone gains by instructions with three operands, which save copies, and a symmetric one, whose turn is short, by
+    /// more registers. Another doesn't fill the widest: an increment's entries are moved together in them and apart again,
+    /// for which the next kick waits. Lanes that are arrays are slower with the widest, too. `cargo bench --bench vectors`
+    /// shows all three.
+    const VECTORS: Vectors =
+        if <Scalar<S> as SimdValue>::LANES == 1 && K::OPERATIONS_OF_SPIN > 0 { Vectors::Eight } else { Vectors::Four };
 
     fn step_size(&self) -> Scalar<S> {
         self.h
