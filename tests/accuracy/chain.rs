@@ -3,7 +3,7 @@
 use checks::drift::tenths;
 use declarations::motions::{chain3, start3};
 
-/// Over a hundred thousand stretches of so many steps the energy is within its bounds, its means over the first half and
+/// Over a hundred thousand stretches of `stretch` steps the energy is within its bounds, its means over the first half and
 /// the second are this far apart at most, and the momentum is moved by roundings. The motion is chaotic, and how large the
 /// largest swing of the energy is in it depends on roundings, so its bound has a margin.
 fn assert_bounded(stretch: u64, [of_momentum, of_halves]: [f64; 2]) {
