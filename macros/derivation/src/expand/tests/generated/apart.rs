@@ -70,7 +70,9 @@ pub(super) fn value(expression: &Expr, env: &Env) -> Option<Matrix> {
                 "exp" => exponential(&of(argument)?),
                 "inverse" => {
                     let Expr::Path(name) = argument else { return None };
-                    env.get(&inverse_of(&name.path.get_ident()?.to_string()))?.clone()
+                    let name = name.path.get_ident()?.to_string();
+                    let of_field = || env.get(&name).filter(|field| field.entries.len() == 9).map(inverse);
+                    env.get(&inverse_of(&name)).cloned().or_else(of_field)?
                 }
                 _ => return None,
             }
@@ -106,10 +108,19 @@ pub(super) fn value(expression: &Expr, env: &Env) -> Option<Matrix> {
     })
 }
 
-/// Of a rotation, `(θ/sin θ) vee(R)`.
+/// Of a rotation, `(θ/sin θ) vee(R)`; a matrix whose trace no rotation has has none.
 fn logarithm(rotation: &Matrix) -> Matrix {
-    let angle = (0.5 * (rotation.trace() - 1.0)).clamp(-1.0, 1.0).acos();
+    let cosine = 0.5 * (rotation.trace() - 1.0);
+    let angle = if (cosine - 1.0).abs() < 1e-12 { 0.0 } else { cosine.acos() };
     rotation.vee().scaled(if angle == 0.0 { 1.0 } else { angle / angle.sin() })
+}
+
+/// Of three rows, by their vector products.
+fn inverse(matrix: &Matrix) -> Matrix {
+    let row = |at: usize| Matrix::new(3, 1, |k, _| matrix.at(at % 3, k));
+    let column = |at: usize| row(at + 1).hat().times(&row(at + 2));
+    let determinant = row(0).transpose().times(&column(0)).trace();
+    Matrix::new(3, 3, |k, at| column(at).at(k, 0) / determinant)
 }
 
 fn exp(x: &Matrix) -> Matrix {
