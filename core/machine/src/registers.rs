@@ -13,23 +13,26 @@ pub(crate) type Place = (Value, i32);
 
 /// The values of a program, while its code is written.
 ///
-/// A value that is needed last of all leaves its register: it is stored once, and an operation reads it from memory, as it
-/// reads inputs. Cranelift would load it into a register for each operation.
+/// Where there are too many for the registers, the value that is read last of all leaves its own. It is stored once, and
+/// operations read it from memory, as they read inputs. Cranelift would load it into a register for each operation.
 pub(crate) struct Registers {
     pub(crate) number: Type,
     flags: MemFlagsData,
+    /// Those in registers.
     held: Vec<(usize, Value)>,
+    /// Where each stands in memory, if it does.
     places: Vec<Option<Place>>,
-    /// When a value is read, the next time last.
+    /// When each is read, the next time last.
     reads: Vec<Vec<usize>>,
-    /// The frame of the function, and the places in it that are free.
+    /// The frame of the function: it grows with what is stored.
     slot: StackSlot,
     frame: Value,
+    /// Places in the frame whose values aren't read again.
     free: Vec<i32>,
 }
 
 impl Registers {
-    /// Of values that stand at places, and of results that are read at times, each list from its end.
+    /// Of values that are given at places, and of results behind them; each is read at times, in a list with the next one last.
     pub(crate) fn new(
         builder: &mut FunctionBuilder,
         (number, pointer): (Type, Type),
@@ -39,14 +42,12 @@ impl Registers {
     ) -> Self {
         let mut places: Vec<_> = given.into_iter().map(Some).collect();
         places.resize(reads.len(), None);
-        // It grows with what is stored.
-        let data = StackSlotData::new(StackSlotKind::ExplicitSlot, 0, 4);
-        let slot = builder.create_sized_stack_slot(data);
+        let slot = builder.create_sized_stack_slot(StackSlotData::new(StackSlotKind::ExplicitSlot, 0, 4));
         let frame = builder.ins().stack_addr(pointer, slot, 0);
         Self { number, flags, held: Vec::new(), places, reads, slot, frame, free: Vec::new() }
     }
 
-    /// Two values for an operation that reads them now: the first in a register, the second there or in memory.
+    /// Two values for an operation that reads them now: the first in a register, the second there or from memory.
     pub(crate) fn read(
         &mut self,
         builder: &mut FunctionBuilder,
@@ -57,18 +58,17 @@ impl Registers {
         if second != first {
             self.reads[second].pop();
         }
-        // What stands in no register is read sooner or later again.
+        // Of two in memory the one that is read again sooner gets a register.
         let soon = |at: usize| (self.held(at).is_some(), self.reads[at].last().map(|&at| Reverse(at)));
         if commutes && soon(second) > soon(first) {
             (first, second) = (second, first);
         }
-        let a = match self.held(first) {
-            Some(value) => value,
-            None => {
-                let value = self.load(builder, first)?;
-                self.hold(builder, first, value);
-                value
-            }
+        let a = if let Some(value) = self.held(first) {
+            value
+        } else {
+            let value = self.load(builder, first)?;
+            self.hold(builder, first, value);
+            value
         };
         let b = if second == first { a } else { self.held(second).map_or_else(|| self.load(builder, second), Ok)? };
         for at in [first, second] {
@@ -90,10 +90,10 @@ impl Registers {
         Ok(builder.ins().load(self.number, self.flags, array, offset))
     }
 
-    /// A result.
+    /// Takes a result.
     pub(crate) fn compute(&mut self, builder: &mut FunctionBuilder, at: usize, value: Value) {
-        // Cranelift takes an operand from memory only where the result is read once, and a parameter of a block is another
-        // value.
+        // Cranelift lets an operation read from memory only if its result is read once. A parameter of a block is a new value,
+        // so that here it is.
         let is_read_often = self.reads[at].len() > 1;
         let value = if is_read_often {
             let next = builder.create_block();
@@ -114,7 +114,7 @@ impl Registers {
         }
     }
 
-    /// Stores what is needed last, but a number of values.
+    /// Takes from the registers what is read last, all but this number of values.
     pub(crate) fn leave(&mut self, builder: &mut FunctionBuilder, most: usize) {
         while self.held.len() > most {
             let next = |&(_, &(at, _)): &(usize, &(usize, Value))| self.reads[at].last().copied();

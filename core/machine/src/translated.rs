@@ -3,12 +3,14 @@
 use std::ops::Range;
 use std::sync::LazyLock;
 
+use cranelift_codegen::control::ControlPlane;
 use cranelift_codegen::ir::{AbiParam, FuncRef, GlobalValue, InstBuilder as _, MemFlagsData, Type, Value, types};
-use cranelift_codegen::isa::OwnedTargetIsa;
+use cranelift_codegen::isa::{OwnedTargetIsa, TargetIsa};
 use cranelift_codegen::settings::{self, Configurable as _};
+use cranelift_codegen::{CompiledCode, Context};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_jit::{JITBuilder, JITModule};
-use cranelift_module::{DataDescription, FuncId, Linkage, Module as _, default_libcall_names};
+use cranelift_module::{DataDescription, FuncId, Linkage, Module as _, ModuleReloc, default_libcall_names};
 use liestep_late::{Array, Function, Operation, Program, applied};
 
 use crate::registers::Registers;
@@ -17,7 +19,7 @@ use crate::registers::Registers;
 pub(crate) fn isa() -> Result<OwnedTargetIsa, String> {
     static ISA: LazyLock<Result<OwnedTargetIsa, String>> = LazyLock::new(|| {
         let mut flags = settings::builder();
-        // An optimiser would read each constant once, and give it a register that others need.
+        // What an optimiser would do has been done in the program, or is done by `Registers`.
         for (name, value) in [("opt_level", "none"), ("enable_verifier", "false")] {
             flags.set(name, value).map_err(|error| error.to_string())?;
         }
@@ -51,41 +53,23 @@ pub(crate) fn module(program: &Program, lanes: usize) -> Result<(JITModule, Func
     let mut builder = FunctionBuilder::new(&mut own.func, &mut context);
     write(&mut builder, (program, lanes), (called, literals), pointer)?;
     builder.finalize(module.target_config());
-    own.compute_cfg();
-    own.compute_domtree();
-    let dump = std::env::var_os("LIESTEP_DUMP").is_some();
-    let code = module.isa().compile_function(
-        &own.func,
-        &own.domtree,
-        &mut regalloc2::Ctx::default(),
-        dump,
-        &mut Default::default(),
-    );
-    let code = code.map_err(|error| error.to_string())?.apply_params(&own.func.params);
-    if dump {
-        eprintln!(
-            "FUNCTION operations {} inputs {} literals {} outputs {} lanes {lanes}\n{}",
-            program.operations.len(),
-            program.inputs.len(),
-            program.literals.len(),
-            program.outputs.len(),
-            code.vcode.as_ref().unwrap()
-        );
-    }
-    if dump {
-        std::fs::write(format!("/tmp/w/code-{}.bin", program.operations.len()), code.code_buffer()).unwrap();
-    }
-    let relocs: Vec<_> = code
-        .buffer
-        .relocs()
-        .iter()
-        .map(|one| cranelift_module::ModuleReloc::from_mach_reloc(one, &own.func, id))
-        .collect();
-    module
-        .define_function_bytes(id, u64::from(code.buffer.alignment), code.code_buffer(), &relocs)
-        .map_err(|error| error.to_string())?;
+    let code = compiled(&mut own, module.isa())?;
+    let relocations: Vec<_> =
+        code.buffer.relocs().iter().map(|one| ModuleReloc::from_mach_reloc(one, &own.func, id)).collect();
+    let defined = module.define_function_bytes(id, u64::from(code.buffer.alignment), code.code_buffer(), &relocations);
+    defined.map_err(|error| error.to_string())?;
     module.finalize_definitions().map_err(|error| error.to_string())?;
     Ok((module, id))
+}
+
+/// The machine code of a function, without the passes that [`Context::compile`] makes before: one would take the blocks'
+/// parameters out again that [`Registers`] writes.
+fn compiled(context: &mut Context, isa: &dyn TargetIsa) -> Result<CompiledCode, String> {
+    context.compute_cfg();
+    context.compute_domtree();
+    let (function, registers) = (&context.func, &mut regalloc2::Ctx::default());
+    let code = isa.compile_function(function, &context.domtree, registers, false, &mut ControlPlane::default());
+    Ok(code.map_err(|error| error.to_string())?.apply_params(&function.params))
 }
 
 /// The place of a number in bytes.
@@ -143,8 +127,8 @@ fn result(
     operation: Operation,
     [a, b]: [Value; 2],
     called: FuncRef,
-) -> Value {
-    match operation {
+) -> Result<Value, String> {
+    Ok(match operation {
         Operation::Negate(_) => builder.ins().fneg(a),
         Operation::Add(..) => builder.ins().fadd(a, b),
         Operation::Subtract(..) => builder.ins().fsub(a, b),
@@ -154,19 +138,19 @@ fn result(
         Operation::Apply(function, _) => {
             // A call leaves no register as it was.
             registers.leave(builder, 0);
-            let code = builder.ins().iconst(types::I32, i64::from(code(function)));
+            let code = builder.ins().iconst(types::I32, code(function)?);
             let apply = |builder: &mut FunctionBuilder, a| {
                 let call = builder.ins().call(called, &[code, a]);
                 builder.inst_results(call)[0]
             };
             if registers.number == types::F64 {
-                return apply(builder, a);
+                return Ok(apply(builder, a));
             }
             let [first, second] = [0, 1].map(|lane| builder.ins().extractlane(a, lane));
             let [first, second] = [first, second].map(|a| apply(builder, a));
             both(builder, first, second)
         }
-    }
+    })
 }
 
 fn both(builder: &mut FunctionBuilder, first: Value, second: Value) -> Value {
@@ -212,12 +196,10 @@ fn write(
     }
     let mut registers = Registers::new(builder, (number, pointer), flags, given, reads);
     for part in parts {
-        let operands = part.operands(program);
-        let commutes = part.commutes(program);
-        let values = registers.read(builder, operands, commutes)?;
+        let values = registers.read(builder, part.operands(program), part.commutes(program))?;
         match part {
             Part::Operation(at) => {
-                let value = result(builder, &mut registers, program.operations[at], values, called);
+                let value = result(builder, &mut registers, program.operations[at], values, called)?;
                 registers.compute(builder, results + at, value);
             }
             Part::Outputs(places) => {
@@ -256,8 +238,9 @@ static FUNCTIONS: LazyLock<Vec<Function>> = LazyLock::new(|| {
 });
 
 /// The place of a function among all, for [`function`].
-fn code(function: Function) -> u32 {
-    FUNCTIONS.iter().zip(0..).find(|(one, _)| **one == function).map_or(u32::MAX, |(_, place)| place)
+fn code(function: Function) -> Result<i64, String> {
+    let place = FUNCTIONS.iter().zip(0..).find(|(one, _)| **one == function);
+    place.map(|(_, place)| place).ok_or_else(|| format!("{function:?} isn't among the functions"))
 }
 
 /// A function of a number: the interpreter's.
