@@ -6,7 +6,7 @@ use declarations::{FourthOrderBody, FourthOrderTop, FreeBody, HeavyTop, LogTop, 
 use liestep::accuracy::Accuracy;
 use liestep::effects::{GravityGradient, Rotor, Spring};
 use liestep::mechanics::{Effect, Term as _};
-use liestep::methods::{CompositionScheme, Flow, KineticFlow, SplittingScheme, SymmetricBody};
+use liestep::methods::{CompositionScheme, KineticFlow, SplittingScheme, SymmetricBody};
 use liestep::prelude::*;
 use nalgebra::Vector3;
 use workbench::measure::relative;
@@ -45,24 +45,6 @@ fn sofroniou_spaletta_10_of_strang_is_of_order_10() {
             run,
             |motion, h, steps| split(symmetric(&motion.top), scheme, motion, h, steps),
         );
-    }
-}
-
-/// The coefficients of the composed schemes are those of the compositions.
-#[test]
-fn composed_splittings_are_strang_composed() {
-    for (splitting, composition) in [
-        (SplittingScheme::KAHAN_LI_8, CompositionScheme::KAHAN_LI_8),
-        (SplittingScheme::SOFRONIOU_SPALETTA_10, CompositionScheme::SOFRONIOU_SPALETTA_10),
-    ] {
-        let mut left = 0.0;
-        let mut shares = splitting.shares();
-        for gamma in composition.stages() {
-            assert_eq!(shares.next(), Some((Flow::Kick, 0.5 * (left + gamma))));
-            assert_eq!(shares.next(), Some((Flow::Drift, gamma)));
-            left = gamma;
-        }
-        assert_eq!((shares.next(), shares.next()), (Some((Flow::Kick, 0.5 * left)), None));
     }
 }
 

@@ -123,29 +123,6 @@ impl LieGroup for Embedded {
     }
 }
 
-macro_rules! factor {
-    ($place:literal: $of:ty, $entry:tt) => {
-        impl Factor<$place> for Embedded {
-            type Of = $of;
-
-            fn factor(&self) -> $of {
-                self.product().$entry
-            }
-
-            fn of_matrix(matrix: &Matrix6<f64>) -> Matrix3<f64> {
-                blocks(matrix).$entry
-            }
-
-            fn components(joined: &Vector6<f64>) -> Vector3<f64> {
-                <Product as Factor<$place>>::components(joined)
-            }
-        }
-    };
-}
-
-factor!(0: SO3, 0);
-factor!(1: SE2, 1);
-
 /// The product's own Cayley map.
 struct ByFactors;
 
@@ -173,22 +150,6 @@ mod group {
 
 mod retraction {
     liestep::retraction_laws!(super::Embedded, super::ByFactors);
-}
-
-mod seen_by_the_first {
-    liestep::advected_laws!(super::Embedded, super::SeenFrom<0, nalgebra::Vector3<f64>>);
-}
-
-mod seen_by_the_second {
-    liestep::advected_laws!(super::Embedded, super::SeenFrom<1, liestep::groups::ContravariantVector<f64, 3>>);
-}
-
-mod one_seen_by_the_other {
-    liestep::advected_laws!(super::Embedded, super::Relative<0, 1, nalgebra::Matrix3<f64>>);
-}
-
-mod the_second_in_space {
-    liestep::advected_laws!(super::Embedded, super::Configuration<1, nalgebra::Matrix3<f64>>);
 }
 
 /// Each body is near on its own.

@@ -37,20 +37,23 @@ fn main() -> Result<(), Uncounted> {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
     let (rho, up) = (Vector3::new(0.1, -0.2, 0.4), Vector3::z());
     let inertia = Inertia::from_principal_moments(Vector3::new(2.0, 2.5, 3.0)).expect("an inertia");
+    let fourth = FourthOrderTop { J: inertia, weight: 1.5 * 9.81, rho, up };
     let full = FullTop { J_d: inertia.to_nonstandard(), m: 1.5, g: 9.81, rho, up };
     match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        ["count", kind, steps] => return count(full, kind, steps.parse()?),
+        ["count", "fourth", kind, steps] => return count::<_, WithExpensiveKinetic>(fourth, kind, steps.parse()?),
+        ["count", _, kind, steps] => return count::<_, WithKinetic>(full, kind, steps.parse()?),
         ["instructions"] => {
-            for kind in KINDS {
-                let steps = instructions(&std::env::current_exe()?, &["count", kind], 10 * STEPS)?;
-                println!("(3.13), any inertia    {kind:22}{steps:8.0} instructions a step");
+            for (scene, name) in [("full", "(3.13), any inertia"), ("fourth", "of the fourth order")] {
+                for kind in KINDS {
+                    let steps = instructions(&std::env::current_exe()?, &["count", scene, kind], 10 * STEPS)?;
+                    println!("{name:22} {kind:22}{steps:8.0} instructions a step");
+                }
             }
             return Ok(());
         }
         _ => first_steps(),
     }
     compare::<_, WithKinetic>("(3.13), any inertia", full);
-    let fourth = FourthOrderTop { J: inertia, weight: 1.5 * 9.81, rho, up };
     compare::<_, WithExpensiveKinetic>("of the fourth order", fourth);
     texts();
     Ok(())
@@ -60,11 +63,19 @@ const KINDS: [&str; 6] =
     ["compiled", "machine code", "specialised", "interpreted", "in lanes of eight", "machine code in lanes"];
 
 /// Makes steps of one kind.
-fn count(full: FullTop, kind: &str, steps: u32) -> Result<(), Uncounted> {
-    let machine: LateTop<WithKinetic, Machine> = Late::like(&full)?;
-    let interpreted: LateTop<WithKinetic, Interpreter> = Late::like(&full)?;
+fn count<S, K>(scene: S, kind: &str, steps: u32) -> Result<(), Uncounted>
+where
+    S: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
+    K: KineticPart,
+    LateTop<K, Machine>: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
+    LateTop<K, Interpreter>: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
+    Stepper<LateTop<K, Interpreter>>: Batchable<AutoF64x8> + Integrator<State = StateOf<LateTop<K, Interpreter>>>,
+    Stepper<LateTop<K, Machine>>: Batchable<AutoF64x8> + Integrator<State = StateOf<LateTop<K, Machine>>>,
+{
+    let machine: LateTop<K, Machine> = Late::like(&scene)?;
+    let interpreted: LateTop<K, Interpreter> = Late::like(&scene)?;
     let mut run = match kind {
-        "compiled" => alone(full),
+        "compiled" => alone(scene),
         "machine code" => alone(machine),
         "specialised" => alone(machine.specialised()),
         "interpreted" => alone(interpreted),

@@ -18,21 +18,19 @@ pub(crate) const LANES: usize = 8;
 /// The constants, the arrays of the other inputs, and the place of the outputs.
 type Entry = unsafe extern "C" fn(*const f64, *const *const f64, *mut f64);
 
-/// A program as a function.
-pub(crate) struct Function {
+/// A program as a function: of numbers, or of as many lanes.
+pub(crate) struct Function<const LANES: usize> {
     entry: Entry,
     /// How many numbers it reads at least of each array.
     least: [usize; Array::COUNT],
     /// A bit for each array that has to be given.
     read: u16,
     outputs: usize,
-    /// How many numbers stand at each place: one, or as many as there are lanes.
-    lanes: usize,
     /// Executable memory: the code is there as long as its function.
     memory: Mutex<Option<JITModule>>,
 }
 
-impl Drop for Function {
+impl<const LANES: usize> Drop for Function<LANES> {
     fn drop(&mut self) {
         if let Some(module) = self.memory.get_mut().unwrap_or_else(PoisonError::into_inner).take() {
             // SAFETY: this is the only function of the module, and `entry` isn't handed out: none is left that could be
@@ -42,7 +40,7 @@ impl Drop for Function {
     }
 }
 
-impl fmt::Debug for Function {
+impl<const LANES: usize> fmt::Debug for Function<LANES> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Function").field("least", &self.least).field("outputs", &self.outputs).finish_non_exhaustive()
     }
@@ -57,10 +55,9 @@ pub(crate) fn lanes_of<T: 'static>() -> usize {
     }
 }
 
-impl Function {
-    /// Of numbers, or of lanes.
-    pub(crate) fn of(program: &Program, lanes: usize) -> Result<Self, String> {
-        let (module, id) = translated::module(program, lanes)?;
+impl<const LANES: usize> Function<LANES> {
+    pub(crate) fn of(program: &Program) -> Result<Self, String> {
+        let (module, id) = translated::module(program, LANES)?;
         let code = module.get_finalized_function(id);
         // SAFETY: the module has been finalised, so that this is the address of a function; `translated` has declared it
         // with the signature of `Entry` and the calling convention of C.
@@ -68,7 +65,7 @@ impl Function {
         let least = translated::least(program);
         let read = translated::given(&least).fold(0, |read, array| read | 1 << array as u16);
         let memory = Mutex::new(Some(module));
-        Ok(Self { entry, least, read, outputs: program.outputs.len(), lanes, memory })
+        Ok(Self { entry, least, read, outputs: program.outputs.len(), memory })
     }
 
     /// Calls it with constants and what else it is given.
@@ -82,8 +79,7 @@ impl Function {
         // A handful of comparisons, in release builds too: a call of this function is safe. What isn't read isn't set.
         let mut inputs = [const { MaybeUninit::<*const f64>::uninit() }; Array::COUNT];
         let (mut missing, mut is_there) = (self.read, outputs.len() >= self.outputs);
-        is_there =
-            is_there && self.lanes == lanes_of::<T>() && constants.len() >= self.least[Array::Constants as usize];
+        is_there = is_there && lanes_of::<T>() == LANES && constants.len() >= self.least[Array::Constants as usize];
         for (array, numbers) in &given {
             missing &= !(1 << *array as u16);
             is_there = is_there && numbers.len() >= self.least[*array as usize];

@@ -11,11 +11,13 @@
 //!
 //! # Inside
 //!
-//! `lib → called → translated`: `translated` makes the code, and all that is unsafe is in `called`.
+//! `lib → called → translated → registers`: `translated` makes the code, `registers` says what stands in registers and what
+//! in memory, and all that is unsafe is in `called`.
 
 #![cfg(feature = "cranelift")]
 
 mod called;
+mod registers;
 mod translated;
 
 use std::sync::OnceLock;
@@ -35,19 +37,33 @@ pub struct Machine;
 pub struct Both {
     program: Program,
     interpreted: Code,
-    runs: AtomicU32,
-    /// Of numbers, and of lanes; none where it couldn't be made.
-    functions: [OnceLock<Option<Function>>; 2],
+    of_numbers: Made<1>,
+    of_lanes: Made<LANES>,
 }
 
-impl Both {
-    /// Where machine code is kept for these numbers.
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn place<T: Real>(&self) -> Option<&OnceLock<Option<Function>>> {
-        match lanes_of::<T>() {
-            1 => Some(&self.functions[0]),
-            LANES => Some(&self.functions[1]),
-            _ => None,
+/// A function, once it has been made.
+#[derive(Debug, Default)]
+struct Made<const LANES: usize> {
+    /// Those that were interpreted.
+    runs: AtomicU32,
+    /// None where it couldn't be made, either.
+    function: OnceLock<Function<LANES>>,
+}
+
+impl<const LANES: usize> Made<LANES> {
+    fn make(&self, program: &Program) {
+        if self.function.get().is_none()
+            && let Ok(function) = Function::of(program)
+        {
+            // Of two threads the first has made it.
+            let _ = self.function.set(function);
+        }
+    }
+
+    /// Another run; what couldn't be made after some isn't tried again.
+    fn run(&self, program: &Program) {
+        if self.runs.fetch_add(1, Ordering::Relaxed) == FEW {
+            self.make(program);
         }
     }
 }
@@ -64,23 +80,29 @@ impl<T: Real> Backend<T> for Machine {
         let both = |(&program, interpreted): (&&Program, Code)| Both {
             program: program.clone(),
             interpreted,
-            runs: AtomicU32::new(0),
-            functions: Default::default(),
+            of_numbers: Made::default(),
+            of_lanes: Made::default(),
         };
         Ok(programs.iter().zip(interpreted).map(both).collect())
     }
 
     fn prepare(code: &Both) {
-        if let Some(place) = code.place::<T>() {
-            place.get_or_init(|| Function::of(&code.program, lanes_of::<T>()).ok());
+        match lanes_of::<T>() {
+            1 => code.of_numbers.make(&code.program),
+            LANES => code.of_lanes.make(&code.program),
+            _ => {}
         }
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<const N: usize>(code: &Both, constants: &[T], given: Given<'_, T, N>, outputs: &mut [T]) {
-        match code.place::<T>().and_then(OnceLock::get) {
-            Some(Some(function)) => function.call(constants, given, outputs),
-            _ => run_first::<T, N>(code, constants, std::array::from_fn(|at| given[at]), outputs),
+        let lanes = lanes_of::<T>();
+        if let Some(function) = code.of_numbers.function.get().filter(|_| lanes == 1) {
+            function.call(constants, given, outputs);
+        } else if let Some(function) = code.of_lanes.function.get().filter(|_| lanes == LANES) {
+            function.call(constants, given, outputs);
+        } else {
+            run_first::<T, N>(code, constants, std::array::from_fn(|at| given[at]), outputs);
         }
     }
 }
@@ -89,8 +111,10 @@ impl<T: Real> Backend<T> for Machine {
 #[cold]
 #[inline(never)]
 fn run_first<T: Real, const N: usize>(code: &Both, constants: &[T], given: Given<'_, T, N>, outputs: &mut [T]) {
-    if code.runs.fetch_add(1, Ordering::Relaxed) >= FEW {
-        <Machine as Backend<T>>::prepare(code);
+    match lanes_of::<T>() {
+        1 => code.of_numbers.run(&code.program),
+        LANES => code.of_lanes.run(&code.program),
+        _ => {}
     }
     Interpreter::run(&code.interpreted, constants, given, outputs);
 }

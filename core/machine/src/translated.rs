@@ -1,20 +1,25 @@
 //! Programs as code of Cranelift, operation by operation.
 
+use std::ops::Range;
 use std::sync::LazyLock;
 
+use cranelift_codegen::control::ControlPlane;
 use cranelift_codegen::ir::{AbiParam, FuncRef, GlobalValue, InstBuilder as _, MemFlagsData, Type, Value, types};
-use cranelift_codegen::isa::OwnedTargetIsa;
+use cranelift_codegen::isa::{OwnedTargetIsa, TargetIsa};
 use cranelift_codegen::settings::{self, Configurable as _};
+use cranelift_codegen::{CompiledCode, Context};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_jit::{JITBuilder, JITModule};
-use cranelift_module::{DataDescription, FuncId, Linkage, Module as _, default_libcall_names};
+use cranelift_module::{DataDescription, FuncId, Linkage, Module as _, ModuleReloc, default_libcall_names};
 use liestep_late::{Array, Function, Operation, Program, applied};
+
+use crate::registers::Registers;
 
 /// The machine that this runs on.
 pub(crate) fn isa() -> Result<OwnedTargetIsa, String> {
     static ISA: LazyLock<Result<OwnedTargetIsa, String>> = LazyLock::new(|| {
         let mut flags = settings::builder();
-        // An optimiser would read each constant once, and give it a register that others need.
+        // What an optimiser would do has been done in the program, or is done by `Registers`.
         for (name, value) in [("opt_level", "none"), ("enable_verifier", "false")] {
             flags.set(name, value).map_err(|error| error.to_string())?;
         }
@@ -48,9 +53,23 @@ pub(crate) fn module(program: &Program, lanes: usize) -> Result<(JITModule, Func
     let mut builder = FunctionBuilder::new(&mut own.func, &mut context);
     write(&mut builder, (program, lanes), (called, literals), pointer)?;
     builder.finalize(module.target_config());
-    module.define_function(id, &mut own).map_err(|error| error.to_string())?;
+    let code = compiled(&mut own, module.isa())?;
+    let relocations: Vec<_> =
+        code.buffer.relocs().iter().map(|one| ModuleReloc::from_mach_reloc(one, &own.func, id)).collect();
+    let defined = module.define_function_bytes(id, u64::from(code.buffer.alignment), code.code_buffer(), &relocations);
+    defined.map_err(|error| error.to_string())?;
     module.finalize_definitions().map_err(|error| error.to_string())?;
     Ok((module, id))
+}
+
+/// The machine code of a function, without the passes that [`Context::compile`] makes before: one would take the blocks'
+/// parameters out again that [`Registers`] writes.
+fn compiled(context: &mut Context, isa: &dyn TargetIsa) -> Result<CompiledCode, String> {
+    context.compute_cfg();
+    context.compute_domtree();
+    let (function, registers) = (&context.func, &mut regalloc2::Ctx::default());
+    let code = isa.compile_function(function, &context.domtree, registers, false, &mut ControlPlane::default());
+    Ok(code.map_err(|error| error.to_string())?.apply_params(&function.params))
 }
 
 /// The place of a number in bytes.
@@ -58,52 +77,80 @@ fn offset(at: usize, lanes: usize) -> Result<i32, String> {
     i32::try_from(8 * at * lanes).map_err(|_| "an array is too long".to_owned())
 }
 
-/// What a program has come to.
-struct Registers {
-    /// The type of a number, or of two lanes.
-    number: Type,
-    flags: MemFlagsData,
-    /// Where inputs stand, and behind them literals.
-    places: Vec<(Value, i32)>,
-    /// Of these what has been read, and behind them results.
-    values: Vec<Option<Value>>,
+/// What is done at one time.
+enum Part {
+    /// One of the operations.
+    Operation(usize),
+    /// One output is written, or two.
+    Outputs(Range<usize>),
 }
 
-impl Registers {
-    /// What hasn't been read is read where it is needed: an operation takes it from memory.
-    fn at(&self, builder: &mut FunctionBuilder, at: usize) -> Value {
-        self.values[at].unwrap_or_else(|| {
-            let (array, offset) = self.places[at];
-            builder.ins().load(self.number, self.flags.with_readonly(), array, offset)
-        })
-    }
-
-    fn result(&self, builder: &mut FunctionBuilder, operation: Operation, called: FuncRef) -> Value {
-        let [first, second] = operation.operands();
-        let a = self.at(builder, first);
-        let b = if second == first { a } else { self.at(builder, second) };
-        match operation {
-            Operation::Negate(_) => builder.ins().fneg(a),
-            Operation::Add(..) => builder.ins().fadd(a, b),
-            Operation::Subtract(..) => builder.ins().fsub(a, b),
-            Operation::Multiply(..) => builder.ins().fmul(a, b),
-            Operation::Divide(..) => builder.ins().fdiv(a, b),
-            Operation::Apply(Function::Sqrt, _) => builder.ins().sqrt(a),
-            Operation::Apply(function, _) => {
-                let code = builder.ins().iconst(types::I32, i64::from(code(function)));
-                let apply = |builder: &mut FunctionBuilder, a| {
-                    let call = builder.ins().call(called, &[code, a]);
-                    builder.inst_results(call)[0]
-                };
-                if self.number == types::F64 {
-                    return apply(builder, a);
-                }
-                let [first, second] = [0, 1].map(|lane| builder.ins().extractlane(a, lane));
-                let [first, second] = [first, second].map(|a| apply(builder, a));
-                both(builder, first, second)
-            }
+impl Part {
+    /// What it reads; the only one twice.
+    fn operands(&self, program: &Program) -> [usize; 2] {
+        match self {
+            Self::Operation(at) => program.operations[*at].operands(),
+            Self::Outputs(places) => [places.start, places.end - 1].map(|place| program.outputs[place] as usize),
         }
     }
+
+    fn commutes(&self, program: &Program) -> bool {
+        let Self::Operation(at) = self else { return false };
+        matches!(program.operations[*at], Operation::Add(..) | Operation::Multiply(..))
+    }
+}
+
+/// A program in the order of its machine code.
+///
+/// A caller reads a vector, and the Jacobian behind it, two numbers at a time: for what isn't written so it would wait.
+fn parts(program: &Program, lanes: usize) -> Vec<Part> {
+    let (count, size) = (program.outputs.len(), program.outputs.len().isqrt());
+    let vector = if size * (size + 1) == count { size } else { count };
+    let (most, fixed) = (if lanes > 1 { 1 } else { 2 }, program.inputs.len() + program.literals.len());
+    let (mut parts, mut made, mut at) = (Vec::new(), 0, 0);
+    while at < count {
+        let end = if at < vector { vector } else { count }.min(at + most);
+        for &output in &program.outputs[at..end] {
+            let missing = (output as usize + 1).saturating_sub(fixed);
+            parts.extend((made..missing).map(Part::Operation));
+            made = made.max(missing);
+        }
+        parts.push(Part::Outputs(at..end));
+        at = end;
+    }
+    parts
+}
+
+fn result(
+    builder: &mut FunctionBuilder,
+    registers: &mut Registers,
+    operation: Operation,
+    [a, b]: [Value; 2],
+    called: FuncRef,
+) -> Result<Value, String> {
+    Ok(match operation {
+        Operation::Negate(_) => builder.ins().fneg(a),
+        Operation::Add(..) => builder.ins().fadd(a, b),
+        Operation::Subtract(..) => builder.ins().fsub(a, b),
+        Operation::Multiply(..) => builder.ins().fmul(a, b),
+        Operation::Divide(..) => builder.ins().fdiv(a, b),
+        Operation::Apply(Function::Sqrt, _) => builder.ins().sqrt(a),
+        Operation::Apply(function, _) => {
+            // A call leaves no register as it was.
+            registers.leave(builder, 0);
+            let code = builder.ins().iconst(types::I32, code(function)?);
+            let apply = |builder: &mut FunctionBuilder, a| {
+                let call = builder.ins().call(called, &[code, a]);
+                builder.inst_results(call)[0]
+            };
+            if registers.number == types::F64 {
+                return Ok(apply(builder, a));
+            }
+            let [first, second] = [0, 1].map(|lane| builder.ins().extractlane(a, lane));
+            let [first, second] = [first, second].map(|a| apply(builder, a));
+            both(builder, first, second)
+        }
+    })
 }
 
 fn both(builder: &mut FunctionBuilder, first: Value, second: Value) -> Value {
@@ -130,40 +177,36 @@ fn write(
         begins[array as usize] = builder.ins().load(pointer, flags.with_readonly(), arrays, place);
     }
     let number = if lanes > 1 { types::F64X2 } else { types::F64 };
-    let mut registers = Registers { number, flags, places: Vec::new(), values: Vec::new() };
     let literals = builder.ins().symbol_value(pointer, literals);
+    let mut given = Vec::new();
     for source in &program.inputs {
-        registers.places.push((begins[source.array as usize], offset(source.at, lanes)?));
+        given.push((begins[source.array as usize], offset(source.at, lanes)?));
     }
     for at in 0..program.literals.len() {
-        registers.places.push((literals, offset(at, lanes.min(2))?));
+        given.push((literals, offset(at, lanes.min(2))?));
     }
-    registers.values.resize(registers.places.len(), None);
-    for (at, _) in program.inputs.iter().enumerate().filter(|(_, source)| source.array != Array::Constants) {
-        let operands = program.operations.iter().flat_map(|operation| operation.operands());
-        if operands.filter(|&operand| operand == at).count() > 1 {
-            registers.values[at] = Some(registers.at(builder, at));
+    let (parts, results) = (parts(program, lanes), given.len());
+    let mut reads = vec![Vec::new(); results + program.operations.len()];
+    for (time, part) in parts.iter().enumerate().rev() {
+        let [first, second] = part.operands(program);
+        reads[first].push(time);
+        if second != first {
+            reads[second].push(time);
         }
     }
-    // A caller reads a vector, and the Jacobian behind it, two numbers at a time: for what isn't written so it would wait.
-    let (count, size) = (program.outputs.len(), program.outputs.len().isqrt());
-    let (vector, jacobian) = program.outputs.split_at(if size * (size + 1) == count { size } else { count });
-    let most = if lanes > 1 { 1 } else { 2 };
-    let (mut operations, mut at) = (program.operations.iter(), 0);
-    for pair in vector.chunks(most).chain(jacobian.chunks(most)) {
-        let [first, second] = [pair[0], pair[pair.len() - 1]].map(|output| output as usize);
-        let missing = (first.max(second) + 1).saturating_sub(registers.values.len());
-        for &operation in operations.by_ref().take(missing) {
-            let result = registers.result(builder, operation, called);
-            registers.values.push(Some(result));
+    let mut registers = Registers::new(builder, (number, pointer), flags, given, reads);
+    for part in parts {
+        let values = registers.read(builder, part.operands(program), part.commutes(program))?;
+        match part {
+            Part::Operation(at) => {
+                let value = result(builder, &mut registers, program.operations[at], values, called)?;
+                registers.compute(builder, results + at, value);
+            }
+            Part::Outputs(places) => {
+                let written = if places.len() > 1 { both(builder, values[0], values[1]) } else { values[0] };
+                builder.ins().store(flags, written, outputs, offset(places.start, lanes)?);
+            }
         }
-        let mut written = registers.at(builder, first);
-        if pair.len() > 1 {
-            let second = registers.at(builder, second);
-            written = both(builder, written, second);
-        }
-        builder.ins().store(flags, written, outputs, offset(at, lanes)?);
-        at += pair.len();
     }
     builder.ins().return_(&[]);
     Ok(())
@@ -195,8 +238,9 @@ static FUNCTIONS: LazyLock<Vec<Function>> = LazyLock::new(|| {
 });
 
 /// The place of a function among all, for [`function`].
-fn code(function: Function) -> u32 {
-    FUNCTIONS.iter().zip(0..).find(|(one, _)| **one == function).map_or(u32::MAX, |(_, place)| place)
+fn code(function: Function) -> Result<i64, String> {
+    let place = FUNCTIONS.iter().zip(0..).find(|(one, _)| **one == function);
+    place.map(|(_, place)| place).ok_or_else(|| format!("{function:?} isn't among the functions"))
 }
 
 /// A function of a number: the interpreter's.

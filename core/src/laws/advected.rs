@@ -78,34 +78,6 @@ pub fn kinds_move_as_declared<G: MatrixLieGroup<N, D>, const N: usize, const D: 
     }
 }
 
-/// `⟨w, v⟩` and the values of tensors, when all that they are made of moves.
-pub fn pairings_are_invariant<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
-    let mut random = Random::new(23);
-    for f in random.elements::<G, N, D>() {
-        let d = f.increment();
-        let covectors: [SVector<f64, N>; 2] = [random.sample(), random.sample()];
-        let vectors: [ContravariantVector<f64, N>; 2] = [random.sample(), random.sample()];
-        let contravariant: ContravariantTensor<f64, N> = random.sample();
-        let covariant: CovariantTensor<f64, N> = random.sample();
-        let mixed: MixedTensor<f64, N> = random.sample();
-        let values = |[w, u]: [SVector<f64, N>; 2], [v, x]: [ContravariantVector<f64, N>; 2], s, t, m| {
-            let (s, t, m): (ContravariantTensor<f64, N>, CovariantTensor<f64, N>, MixedTensor<f64, N>) = (s, t, m);
-            [w.dot(&v.0), w.dot(&(s.0 * u)), v.0.dot(&(t.0 * x.0)), w.dot(&(m.0 * v.0))]
-        };
-        let before = values(covectors, vectors, contravariant, covariant, mixed);
-        let after = values(
-            covectors.map(|w| Advected::<G>::advect(&w, &d)),
-            vectors.map(|v| Advected::<G>::advect(&v, &d)),
-            Advected::<G>::advect(&contravariant, &d),
-            Advected::<G>::advect(&covariant, &d),
-            Advected::<G>::advect(&mixed, &d),
-        );
-        for (before, after) in before.iter().zip(after) {
-            assert_small((before - after).abs(), ROUNDING * condition(&f).powi(2), "a pairing doesn't change");
-        }
-    }
-}
-
 fn moves_as<G, A, const N: usize, const D: usize>(f: &G, parameter: &A, expected: &impl Entries<f64>, law: &str)
 where
     G: MatrixLieGroup<N, D>,

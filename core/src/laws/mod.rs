@@ -90,7 +90,6 @@ macro_rules! retraction_laws {
 /// |---|---|
 /// | `kinds_move_as_declared` | the product that each kind is defined by |
 /// | `kinds_act` | the laws of an action, below |
-/// | `pairings_are_invariant` | `⟨w, v⟩` and the values of tensors don't change when all move |
 ///
 /// With a type of parameters as well, which must implement [`Entries`](crate::numbers::Entries), they are the
 /// laws of an action for that type: `e · w = w`, `(gf)⁻¹ · w = f⁻¹ · (g⁻¹ · w)`, linear in `w`.
@@ -113,7 +112,7 @@ macro_rules! retraction_laws {
 #[macro_export]
 macro_rules! advected_laws {
     ($group:ty) => {
-        $crate::__law_tests! { advected::<$group>: kinds_move_as_declared kinds_act pairings_are_invariant }
+        $crate::__law_tests! { advected::<$group>: kinds_move_as_declared kinds_act }
     };
     ($group:ty, $kind:ty) => {
         $crate::__law_tests! { advected::<$group, $kind>: parameter_is_acted_on }

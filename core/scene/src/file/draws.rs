@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 use std::ops::{Range, RangeInclusive};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -13,7 +13,7 @@ use crate::file::scene::SceneFile;
 use crate::file::tables::{Keys, dotted, ends};
 
 /// The scenes of an ensemble: each draws its values, by what the one who runs it draws with.
-#[derive(Clone, Default)]
+#[derive(Clone)]
 #[non_exhaustive]
 pub struct SceneEnsemble {
     /// How many members there are.
@@ -120,10 +120,21 @@ impl Component {
     }
 }
 
-/// The table, read.
-pub(crate) fn parts(table: &Spanned<DeValue<'_>>) -> Result<SceneEnsemble, Wrong> {
+/// The table of a file, read, without a member.
+pub(crate) fn parts((path, text): (&Path, &str), table: &Spanned<DeValue<'_>>) -> Result<SceneEnsemble, Wrong> {
     let DeValue::Table(inner) = table.get_ref() else { return Err((table.span(), "`ensemble` is a table".to_owned())) };
-    let mut ensemble = SceneEnsemble::default();
+    let (path, text) = (path.to_owned(), text.to_owned());
+    let mut ensemble = SceneEnsemble {
+        members: 0,
+        seed: 0,
+        every: None,
+        chunk: None,
+        text,
+        axes: Vec::new(),
+        path,
+        tables: DeTable::new(),
+        like: None,
+    };
     for (key, value) in inner {
         let whole = |range: RangeInclusive<u64>| {
             let number = value

@@ -79,7 +79,7 @@ pub(crate) fn read(
     file: &SceneFile,
 ) -> Result<SceneEnsemble, Mistake> {
     let located = |(span, message): Wrong| Mistake::at(path, place_of(text, &span), message);
-    let mut ensemble = parts(table).map_err(located)?;
+    let mut ensemble = parts((path, text), table).map_err(located)?;
     let wrong = |keys: &[&str], message: String| Err(located((span(document, keys), message)));
     if file.asks_for_accuracy() {
         return wrong(&["run", "accuracy"], "the members of an ensemble make the same steps: give a `step`".to_owned());
@@ -130,7 +130,6 @@ pub(crate) fn read(
             here = inner.and_then(|value| value.get_ref().as_table());
         }
     }
-    (ensemble.path, ensemble.text) = (path.to_owned(), text.to_owned());
     // The text is parsed once, and kept as long as the program runs.
     let tables = DeTable::parse(Box::leak(text.into())).map_err(|error| Mistake::of_toml(path, text, &error))?;
     let axes = &ensemble.axes;

@@ -63,8 +63,13 @@ quantities! {
 
 /// A number in this unit in those of SI, as one that is read; none where it isn't finite or has no such unit.
 pub(crate) fn in_si<Q: Quantity>(number: f64, unit: &str) -> Option<f64> {
-    let size = if unit.is_empty() { 1.0 } else { Q::UNITS.iter().find(|(name, _)| *name == unit)?.1 };
+    let size = if unit.is_empty() { 1.0 } else { size::<Q>(unit)? };
     Some(number * size).filter(|number| number.is_finite())
+}
+
+/// A unit in that of SI.
+fn size<Q: Quantity>(unit: &str) -> Option<f64> {
+    Q::UNITS.iter().find(|(name, _)| *name == unit).map(|(_, size)| *size)
 }
 
 /// A finite number, in SI units.
@@ -152,8 +157,8 @@ impl<Q: Quantity> Visitor<'_> for NumberOrText<Q> {
             E::custom(format!("`{text}` doesn't begin with a number; a quantity is written as in \"30 deg\""))
         })?;
         let written = unit.trim().replace("^2", "²").replace("^3", "³");
-        match Q::UNITS.iter().find(|(name, _)| *name == written) {
-            Some((_, size)) => self.visit_f64(value * size),
+        match size::<Q>(&written) {
+            Some(size) => self.visit_f64(value * size),
             // Where the quantity is any, they would be all that there are.
             None if Q::UNITS.len() > 8 => {
                 Err(E::custom(format!("`{unit}` isn't a unit that is known here: take one of SI, or leave it out")))

@@ -126,13 +126,6 @@ impl Refinement {
         });
         reached.chain(between).min_by(f64::total_cmp)
     }
-
-    /// The longest step whose error isn't larger than this one, s; below zero, where the runs go backwards.
-    #[must_use]
-    pub fn longest_step_to(&self, error: f64) -> Option<f64> {
-        let steps = self.rows.iter().filter(|row| row.error <= error).map(|row| row.step);
-        steps.max_by(|one, other| one.abs().total_cmp(&other.abs()))
-    }
 }
 
 /// Of rows that were measured otherwise, in the order of the runs.

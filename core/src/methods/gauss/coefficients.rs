@@ -157,16 +157,6 @@ mod tests {
         assert_order_conditions::<8>();
     }
 
-    #[test]
-    fn two_stages_are_those_of_the_books() {
-        let coefficients = Coefficients::<1>::new();
-        assert!((coefficients.weights[0] - 0.5).abs() < 2e-16);
-        // a_12 = 1/4 − √3/6 and a_21 = 1/4 + √3/6.
-        let [[of_first], [of_second]] = coefficients.places;
-        assert!((0.5 * of_second[0][0] - (0.25 - 3.0_f64.sqrt() / 6.0)).abs() < 2e-16);
-        assert!((0.5 * of_first[1][0] - (0.25 + 3.0_f64.sqrt() / 6.0)).abs() < 2e-16);
-    }
-
     /// A polynomial of the degree that they determine is continued exactly.
     #[test]
     fn stages_are_continued_by_their_polynomial() {

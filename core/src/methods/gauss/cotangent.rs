@@ -246,7 +246,7 @@ where
         let rate = self.rate(&start)?;
         let weights = self.coefficients.weights.map(|weight| h * weight);
         let mut stages: Stages<PAIRS, N> = [weights.map(|weight| rate.map(|part| part * weight)); 2];
-        let (mut changes, mut last, mut is_settled) = (Changes::of_constants(), false, false);
+        let (mut changes, mut last, mut is_settled) = (Changes::none(), false, false);
         let (mut residual, mut iterations) = (f64::INFINITY, 0);
         while !is_settled {
             if iterations == MOST_ITERATIONS {

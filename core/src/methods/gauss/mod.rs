@@ -14,7 +14,6 @@ pub use state::CollocationMemory;
 
 use coefficients::Coefficients;
 use lift::{Lift, PhasePoint, length_squared};
-use settling::Changes;
 use stages::{Stages, WeightedRates};
 
 use crate::error::{SetupError, StepError};
@@ -137,11 +136,11 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Gauss<S, PAIRS> {
     #[inline(always)]
     fn advance(&self, kept: &mut CollocationMemory<PAIRS>) -> Result<u32, StepError> {
         let CollocationMemory { lifted: y, carry, stages } = &*kept;
-        let (mut stages, changes) = match stages {
-            Some(stages) => (stages.continued(&self.coefficients), Changes::of_guesses()),
-            None => (Stages::constant(y, self), Changes::of_constants()),
+        let mut stages = match stages {
+            Some(stages) => stages.continued(&self.coefficients),
+            None => Stages::constant(y, self),
         };
-        let iterations = stages.solve(changes, &self.coefficients, (y, carry), self)?;
+        let iterations = stages.solve(&self.coefficients, (y, carry), self)?;
         let (next, left) = compensated(y, &stages.change(), carry);
         if !next.iter().all(|component| component.is_finite()) {
             return Err(StepError::NonFinite { what: "momentum after the step" });

@@ -25,14 +25,9 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 pub(super) const MOST_ITERATIONS: u32 = 60;
 
 impl Changes {
-    /// For unknowns whose guesses have errors of one size.
-    pub(super) const fn of_guesses() -> Self {
-        Self { before: f64::NAN, earlier: f64::INFINITY }
-    }
-
-    /// For unknowns of which some may be known much better than others. Near an equilibrium attitude and momentum then
-    /// change in alternation, so that it takes three changes to see how they fall.
-    pub(super) const fn of_constants() -> Self {
+    /// Near an equilibrium attitude and momentum change in alternation where some unknowns are known much better than
+    /// others, so that it takes three changes to see how they fall.
+    pub(super) const fn none() -> Self {
         Self { before: f64::NAN, earlier: f64::NAN }
     }
 

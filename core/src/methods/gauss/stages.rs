@@ -63,7 +63,6 @@ impl<const PAIRS: usize> Stages<PAIRS> {
     #[inline(always)]
     pub(super) fn solve(
         &mut self,
-        mut changes: Changes,
         coefficients: &Coefficients<PAIRS>,
         (y, carry): (&PhasePoint, &PhasePoint),
         equations: &impl WeightedRates,
@@ -71,7 +70,7 @@ impl<const PAIRS: usize> Stages<PAIRS> {
         // A body at rest has no momentum before the step. One so small that it has no inverse isn't looked at.
         let size: f64 = (4..8).map(|k| y[k] * y[k] + self.0[k][0][0] * self.0[k][0][0]).sum();
         let over_size = if (1.0 / size).is_finite() { 1.0 / size } else { 0.0 };
-        let (mut last, mut residual) = (false, f64::INFINITY);
+        let (mut changes, mut last, mut residual) = (Changes::none(), false, f64::INFINITY);
         for iteration in 1..=MOST_ITERATIONS {
             let (next, [of_attitude, change]) = self.iterated(coefficients, (y, carry), over_size, equations);
             let judged = changes.judge(change, of_attitude);

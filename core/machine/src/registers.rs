@@ -1,0 +1,134 @@
+//! Which values of a program stand in registers, and which in memory.
+
+use std::cmp::Reverse;
+
+use cranelift_codegen::ir::{InstBuilder as _, MemFlagsData, StackSlot, StackSlotData, StackSlotKind, Type, Value};
+use cranelift_frontend::FunctionBuilder;
+
+/// Values in registers at once. One more is loaded, and one computed.
+const MOST: usize = if cfg!(target_arch = "aarch64") { 28 } else { 14 };
+
+/// Where a value stands in memory: behind a pointer.
+pub(crate) type Place = (Value, i32);
+
+/// The values of a program, while its code is written.
+///
+/// Where there are too many for the registers, the value that is read last of all leaves its own. It is stored once, and
+/// operations read it from memory, as they read inputs. Cranelift would load it into a register for each operation.
+pub(crate) struct Registers {
+    pub(crate) number: Type,
+    flags: MemFlagsData,
+    /// Those in registers.
+    held: Vec<(usize, Value)>,
+    /// Where each stands in memory, if it does.
+    places: Vec<Option<Place>>,
+    /// When each is read, the next time last.
+    reads: Vec<Vec<usize>>,
+    /// The frame of the function: it grows with what is stored.
+    slot: StackSlot,
+    frame: Value,
+    /// Places in the frame whose values aren't read again.
+    free: Vec<i32>,
+}
+
+impl Registers {
+    /// Of values that are given at places, and of results behind them; each is read at times, in a list with the next one last.
+    pub(crate) fn new(
+        builder: &mut FunctionBuilder,
+        (number, pointer): (Type, Type),
+        flags: MemFlagsData,
+        given: impl IntoIterator<Item = Place>,
+        reads: Vec<Vec<usize>>,
+    ) -> Self {
+        let mut places: Vec<_> = given.into_iter().map(Some).collect();
+        places.resize(reads.len(), None);
+        let slot = builder.create_sized_stack_slot(StackSlotData::new(StackSlotKind::ExplicitSlot, 0, 4));
+        let frame = builder.ins().stack_addr(pointer, slot, 0);
+        Self { number, flags, held: Vec::new(), places, reads, slot, frame, free: Vec::new() }
+    }
+
+    /// Two values for an operation that reads them now: the first in a register, the second there or from memory.
+    pub(crate) fn read(
+        &mut self,
+        builder: &mut FunctionBuilder,
+        [mut first, mut second]: [usize; 2],
+        commutes: bool,
+    ) -> Result<[Value; 2], String> {
+        self.reads[first].pop();
+        if second != first {
+            self.reads[second].pop();
+        }
+        // Of two in memory the one that is read again sooner gets a register.
+        let soon = |at: usize| (self.held(at).is_some(), self.reads[at].last().map(|&at| Reverse(at)));
+        if commutes && soon(second) > soon(first) {
+            (first, second) = (second, first);
+        }
+        let a = if let Some(value) = self.held(first) {
+            value
+        } else {
+            let value = self.load(builder, first)?;
+            self.hold(builder, first, value);
+            value
+        };
+        let b = if second == first { a } else { self.held(second).map_or_else(|| self.load(builder, second), Ok)? };
+        for at in [first, second] {
+            if self.reads[at].is_empty() {
+                self.held.retain(|&(one, _)| one != at);
+                let place = self.places[at].take_if(|place| place.0 == self.frame);
+                self.free.extend(place.map(|place| place.1));
+            }
+        }
+        Ok([a, b])
+    }
+
+    fn held(&self, at: usize) -> Option<Value> {
+        self.held.iter().find(|&&(one, _)| one == at).map(|&(_, value)| value)
+    }
+
+    fn load(&self, builder: &mut FunctionBuilder, at: usize) -> Result<Value, String> {
+        let (array, offset) = self.places[at].ok_or("a program reads what it hasn't computed")?;
+        Ok(builder.ins().load(self.number, self.flags, array, offset))
+    }
+
+    /// Takes a result.
+    pub(crate) fn compute(&mut self, builder: &mut FunctionBuilder, at: usize, value: Value) {
+        // Cranelift lets an operation read from memory only if its result is read once. A parameter of a block is a new value,
+        // so that here it is.
+        let is_read_often = self.reads[at].len() > 1;
+        let value = if is_read_often {
+            let next = builder.create_block();
+            builder.ins().jump(next, &[value.into()]);
+            builder.switch_to_block(next);
+            builder.seal_block(next);
+            builder.append_block_param(next, self.number)
+        } else {
+            value
+        };
+        self.hold(builder, at, value);
+    }
+
+    fn hold(&mut self, builder: &mut FunctionBuilder, at: usize, value: Value) {
+        if !self.reads[at].is_empty() {
+            self.held.push((at, value));
+            self.leave(builder, MOST);
+        }
+    }
+
+    /// Takes from the registers what is read last, all but this number of values.
+    pub(crate) fn leave(&mut self, builder: &mut FunctionBuilder, most: usize) {
+        while self.held.len() > most {
+            let next = |&(_, &(at, _)): &(usize, &(usize, Value))| self.reads[at].last().copied();
+            let Some((last, _)) = self.held.iter().enumerate().max_by_key(next) else { return };
+            let (at, value) = self.held.swap_remove(last);
+            if self.places[at].is_none() {
+                let offset = self.free.pop().unwrap_or_else(|| {
+                    let frame = &mut builder.func.sized_stack_slots[self.slot];
+                    frame.size += self.number.bytes();
+                    (frame.size - self.number.bytes()).cast_signed()
+                });
+                builder.ins().store(self.flags, value, self.frame, offset);
+                self.places[at] = Some((self.frame, offset));
+            }
+        }
+    }
+}
