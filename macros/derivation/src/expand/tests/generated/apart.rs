@@ -68,12 +68,7 @@ pub(super) fn value(expression: &Expr, env: &Env) -> Option<Matrix> {
                 "vee" => of(argument)?.vee(),
                 "log" => logarithm(&of(argument)?),
                 "exp" => exponential(&of(argument)?),
-                "inverse" => {
-                    let Expr::Path(name) = argument else { return None };
-                    let name = name.path.get_ident()?.to_string();
-                    let of_field = || env.get(&name).filter(|field| field.entries.len() == 9).map(inverse);
-                    env.get(&inverse_of(&name)).cloned().or_else(of_field)?
-                }
+                "inverse" => inverse(argument, env)?,
                 _ => return None,
             }
         }
@@ -115,12 +110,18 @@ fn logarithm(rotation: &Matrix) -> Matrix {
     rotation.vee().scaled(if angle == 0.0 { 1.0 } else { angle / angle.sin() })
 }
 
-/// Of three rows, by their vector products.
-fn inverse(matrix: &Matrix) -> Matrix {
+/// Of an increment its own; of a field with three rows by their vector products.
+fn inverse(argument: &Expr, env: &Env) -> Option<Matrix> {
+    let Expr::Path(name) = argument else { return None };
+    let name = name.path.get_ident()?.to_string();
+    if let Some(known) = env.get(&inverse_of(&name)) {
+        return Some(known.clone());
+    }
+    let matrix = env.get(&name).filter(|field| field.entries.len() == 9)?;
     let row = |at: usize| Matrix::new(3, 1, |k, _| matrix.at(at % 3, k));
     let column = |at: usize| row(at + 1).hat().times(&row(at + 2));
     let determinant = row(0).transpose().times(&column(0)).trace();
-    Matrix::new(3, 3, |k, at| column(at).at(k, 0) / determinant)
+    Some(Matrix::new(3, 3, |k, at| column(at).at(k, 0) / determinant))
 }
 
 fn exp(x: &Matrix) -> Matrix {
