@@ -57,6 +57,7 @@ impl<'a> Scalariser<'a> {
     pub(crate) fn scalar(&mut self, expression: &Expression) -> NodeId {
         let terms: Vec<NodeId> = expression
             .terms()
+            .take_while(|_| work::spend(1))
             .map(|(monomial, coefficient)| {
                 let coefficient = self.graph.constant(coefficient);
                 self.monomial(monomial, coefficient)

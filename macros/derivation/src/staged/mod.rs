@@ -333,11 +333,11 @@ pub enum Refusal {
     TooMuchWork,
 }
 
-/// What a derivation may take that answers within a second: twice as much as the largest of the repository.
-pub const MOST_WORK: u64 = 500_000;
+/// What a derivation may take that answers within a second: four times as much as the largest of the repository.
+pub const MOST_WORK: u64 = 1_000_000;
 
 /// Derives a struct with `#[lagrangian(…)]` or `#[force(…)]` and proves what was derived, as the macro does, but with no
-/// more than this work: products of terms, and operations of programs. Beside it stands how much it took.
+/// more than this work: products of terms, terms that become programs, and their operations. Beside it stands how much it took.
 ///
 /// # Errors
 ///

@@ -7,7 +7,7 @@ thread_local! {
     static LEFT: Cell<u64> = const { Cell::new(u64::MAX) };
 }
 
-/// Counts products of terms and operations. Where nothing is left, what would be computed is as well taken for zero: so
+/// Counts products of terms, terms that are looked into, and operations. Where nothing is left, what would be computed is as well taken for zero: so
 /// all that follows is short, and what comes out is refused.
 pub(crate) fn spend(work: usize) -> bool {
     let left = LEFT.get();
