@@ -26,7 +26,7 @@ use accuracy_cost::measure::ladder;
 use accuracy_cost::report::Measured;
 use accuracy_cost::scenes::Scene;
 use accuracy_cost::{methods, report};
-use liestep::accuracy::Effort;
+use liestep_refinement::Effort;
 use workbench::args::{Failure, example};
 use workbench::output::{Output, print};
 use workbench::progress::Progress;

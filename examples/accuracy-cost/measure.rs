@@ -1,6 +1,6 @@
 //! Error against time: a method run with shorter and shorter steps.
 
-use liestep::accuracy::{Effort, Refinement};
+use liestep_refinement::{Effort, Refinement};
 
 use crate::methods::Method;
 use crate::scenes::{Scene, error};

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use liestep::accuracy::Refinement;
+use liestep_refinement::Refinement;
 use workbench::table::aligned;
 
 use crate::methods::{Family, Method};

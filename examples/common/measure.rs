@@ -1,6 +1,6 @@
 //! Distances, orders, and what is left of a run.
 
-use liestep::accuracy::Refinement;
+use liestep_refinement::Refinement;
 use nalgebra::{Dim, Matrix, RawStorage};
 
 pub use crate::tenths::{Tenths, float, greater};

@@ -3,11 +3,10 @@
 use std::time::Duration;
 
 use declarations::{HeavyTop, Motion};
-use liestep::accuracy::{
-    Effort, End, Measurement, Reference, Refinement, RefinementError, convergence, work_precision,
-};
+use liestep::accuracy::End;
 use liestep::prelude::*;
 use liestep::{SetupError, StepError};
+use liestep_refinement::{Effort, Measurement, Reference, Refinement, RefinementError, convergence, work_precision};
 use workbench::measure::relative;
 
 type Made = (Stepper<HeavyTop>, State<SO3, Vector3<f64>>);

@@ -1,10 +1,10 @@
 //! Orders, measured at motions of `tests/data`.
 
 use declarations::Motion;
-use liestep::accuracy::Refinement;
 use liestep::mechanics::Regular;
 use liestep::motion::Plan;
 use liestep::{SO3, StateOf, Stepper};
+use liestep_refinement::Refinement;
 use nalgebra::{Matrix3, Vector3};
 use workbench::measure::{relative, steps_in};
 

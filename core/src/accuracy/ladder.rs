@@ -84,10 +84,14 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
         run
     }
 
+    fn apart(&self, end: &End<G>, exact: &End<G>) -> f64 {
+        end.error(exact, &self.start.velocity, self.start.horizon)
+    }
+
     /// By how far a run ends from one that starts some roundings away.
     pub(super) fn rounding(&self, run: &Run<G>, trials: &mut Trials) -> f64 {
         let nearby = self.made(&self.start.nearby(), run.steps, trials).0;
-        nearby.end.zip(run.end).map_or(f64::INFINITY, |(nearby, end)| self.start.difference(&nearby, &end))
+        nearby.end.zip(run.end).map_or(f64::INFINITY, |(nearby, end)| self.apart(&nearby, &end))
     }
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number, far below the largest
@@ -112,7 +116,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
 
     /// The error of a run against a reference, which is at least that of the reference.
     pub(super) fn error(&self, run: &Run<G>, (exact, left): &Reference<G>) -> Option<f64> {
-        run.end.map(|end| self.start.difference(&end, exact).max(*left).max(f64::EPSILON))
+        run.end.map(|end| self.apart(&end, exact).max(*left).max(f64::EPSILON))
     }
 
     /// The errors against a reference, from where they are small enough to say something; without one against the

@@ -1,11 +1,6 @@
-//! Asking by accuracy: the cheapest method and its step; and measuring it: orders, and what an error costs.
+//! Asking by accuracy: the cheapest method and its step, by [`Stepper::for_accuracy`](crate::motion::Stepper::for_accuracy).
 //!
-//! | | |
-//! |---|---|
-//! | the cheapest method and step for an error | [`Stepper::for_accuracy`](crate::motion::Stepper::for_accuracy) |
-//! | errors and orders of a method with ever shorter steps | [`convergence`] |
-//! | what an error costs in time | [`work_precision`] |
-//! | the same of anything else that runs | [`Refinement`] |
+//! Errors, orders and costs of a method that you choose yourself are measured by the package `liestep-refinement`.
 //!
 //! # How a choice is made
 //!
@@ -25,16 +20,12 @@ mod error;
 mod ladder;
 mod methods;
 mod question;
-mod refinement;
 mod search;
 
 pub use choice::{Choice, Offer};
 pub use error::AccuracyError;
 pub use methods::{Methods, Steppable};
 pub use question::{Accuracy, End, Trials};
-#[cfg(feature = "std")]
-pub use refinement::{Effort, work_precision};
-pub use refinement::{Measurement, Reference, Refinement, RefinementError, convergence};
 
 use core::ops::Deref;
 

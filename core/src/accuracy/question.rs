@@ -69,17 +69,34 @@ impl<G: LieGroup<Scalar = f64>> Start<G> {
         let velocity = self.velocity + aside * size(&self.velocity).max(self.horizon.recip());
         Self { attitude, velocity, horizon: self.horizon }
     }
-
-    /// The error that [`Accuracy`] defines.
-    pub(super) fn difference(&self, end: &End<G>, exact: &End<G>) -> f64 {
-        let apart = |a: &G::Vector, b: &G::Vector| size(&a.zip(b, &mut |a, b| a - b));
-        let attitudes = end.attitude.matrix().zip(&exact.attitude.matrix(), &mut |a, b| a - b);
-        let scale = size(&self.velocity).max(size(&exact.velocity)).max(self.horizon.recip());
-        (size(&attitudes) / size(&exact.attitude.matrix())).hypot(apart(&end.velocity, &exact.velocity) / scale)
-    }
 }
 
 impl<G: LieGroup<Scalar = f64>> End<G> {
+    /// The error that [`Accuracy`] defines, without a unit: of a run that starts with this body velocity `Ω(0)`, on SO(3) in
+    /// rad/s, and takes the time `T`, s, or `−T`.
+    ///
+    /// It isn't finite where one of the ends isn't.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use liestep::SO3;
+    /// use liestep::accuracy::End;
+    /// use liestep::groups::LieGroup;
+    /// use nalgebra::Vector3;
+    ///
+    /// let exact = End { attitude: SO3::identity(), velocity: Vector3::z() };
+    /// let end = End { attitude: SO3::exp(Vector3::z() * 1e-3), ..exact };
+    /// assert!((end.error(&exact, &Vector3::z(), 10.0) - 0.816e-3).abs() < 1e-6);
+    /// ```
+    #[must_use]
+    pub fn error(&self, exact: &Self, start: &G::Vector, time: f64) -> f64 {
+        let apart = |a: &G::Vector, b: &G::Vector| size(&a.zip(b, &mut |a, b| a - b));
+        let attitudes = self.attitude.matrix().zip(&exact.attitude.matrix(), &mut |a, b| a - b);
+        let scale = size(start).max(size(&exact.velocity)).max(time.abs().recip());
+        (size(&attitudes) / size(&exact.attitude.matrix())).hypot(apart(&self.velocity, &exact.velocity) / scale)
+    }
+
     pub(super) fn is_finite(&self) -> bool {
         (size(&self.attitude.matrix()) + size(&self.velocity)).is_finite()
     }

@@ -1,15 +1,12 @@
 //! Runs of an integrator with ever shorter steps, and their errors.
 
-use alloc::vec::Vec;
+use liestep::accuracy::End;
+use liestep::groups::LieGroup;
+use liestep::motion::Integrator;
+use liestep::{SetupError, StepError};
 use thiserror::Error;
 
-use super::{Measurement, Refinement};
-use crate::accuracy::question::Start;
-use crate::error::{SetupError, StepError};
-use crate::groups::LieGroup;
-use crate::motion::Integrator;
-
-use crate::accuracy::question::End;
+use crate::table::{Measurement, Refinement};
 
 /// What the ends of the runs are compared with.
 #[derive(Clone, Copy, Debug)]
@@ -78,8 +75,9 @@ pub enum RefinementError {
 }
 
 /// A run made ready.
-pub(super) struct Ready<I: Integrator> {
-    pub(super) step: f64,
+pub(crate) struct Ready<I: Integrator> {
+    time: f64,
+    step: f64,
     steps: u64,
     integrator: I,
     start: I::State,
@@ -88,7 +86,7 @@ pub(super) struct Ready<I: Integrator> {
 impl<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>> Ready<I> {
     /// A run of this number of equal steps up to a time.
     #[allow(clippy::cast_precision_loss)] // no run has 2⁵³ steps
-    pub(super) fn new(
+    pub(crate) fn new(
         family: &mut impl FnMut(f64) -> Result<(I, I::State), SetupError>,
         time: f64,
         steps: u64,
@@ -102,17 +100,11 @@ impl<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>> Ready<I> {
         if !is_this {
             return Err(RefinementError::OtherStep { asked: step, found });
         }
-        Ok(Self { step, steps, integrator, start })
-    }
-
-    /// Where the motion starts, and until when it goes.
-    pub(super) fn start(&self, time: f64) -> Start<G> {
-        let velocity = self.integrator.velocity(&self.start);
-        Start { attitude: self.start.attitude(), velocity, horizon: time.abs() }
+        Ok(Self { time, step, steps, integrator, start })
     }
 
     /// Where it ends, and its iterations.
-    pub(super) fn run(&self) -> Result<(End<G>, u64), RefinementError> {
+    pub(crate) fn run(&self) -> Result<(End<G>, u64), RefinementError> {
         let mut state = self.start.clone();
         let iterations = self
             .integrator
@@ -121,8 +113,14 @@ impl<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>> Ready<I> {
         Ok((End { attitude: state.attitude(), velocity: self.integrator.velocity(&state) }, iterations))
     }
 
+    /// The row of a run that ended there, after so many iterations.
     #[allow(clippy::cast_precision_loss)] // as above
-    pub(super) fn measurement(&self, error: f64, iterations: u64) -> Result<Measurement, RefinementError> {
+    pub(crate) fn measurement(
+        &self,
+        (end, iterations): (End<G>, u64),
+        exact: &End<G>,
+    ) -> Result<Measurement, RefinementError> {
+        let error = end.error(exact, &self.integrator.velocity(&self.start), self.time);
         if !error.is_finite() {
             return Err(RefinementError::NonFinite { step: self.step });
         }
@@ -133,7 +131,7 @@ impl<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>> Ready<I> {
 
 /// The numbers of steps, the fewest first, and the reference, for which the most steps are made if none is given.
 #[allow(clippy::type_complexity)] // two things, each named above
-pub(super) fn plan<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
+pub(crate) fn plan<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
     family: &mut impl FnMut(f64) -> Result<(I, I::State), SetupError>,
     time: f64,
     counts: impl IntoIterator<Item = u64>,
@@ -145,26 +143,21 @@ pub(super) fn plan<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
     let mut counts: Vec<u64> = counts.into_iter().collect();
     counts.sort_unstable();
     counts.dedup();
-    if counts.first() == Some(&0) {
+    let known = match reference {
+        Reference::End(end) => Ok(end),
+        Reference::Finest => Err(counts.pop().unwrap_or(0)),
+    };
+    if counts.first().is_none_or(|fewest| *fewest == 0) {
         return Err(RefinementError::NoSteps);
     }
-    let exact = match reference {
-        Reference::End(end) => end,
-        Reference::Finest => {
-            let most = counts.pop().ok_or(RefinementError::NoSteps)?;
-            if counts.is_empty() {
-                return Err(RefinementError::NoSteps);
-            }
-            Ready::new(family, time, most)?.run()?.0
-        }
-    };
-    if counts.is_empty() { Err(RefinementError::NoSteps) } else { Ok((counts, exact)) }
+    let exact = known.or_else(|most| Ready::new(family, time, most)?.run().map(|(end, _)| end))?;
+    Ok((counts, exact))
 }
 
 /// How fast the errors of a method fall: runs to the time `time`, s, with ever more steps.
 ///
 /// The family is what makes the stepper for a step, and its start. The error is that of attitude and body velocity
-/// together, as [`Accuracy`](crate::accuracy::Accuracy) defines it. No clock is asked, so the table is the same each time.
+/// together, as [`Accuracy`](liestep::accuracy::Accuracy) defines it. No clock is asked, so the table is the same each time.
 ///
 /// # Errors
 ///
@@ -172,24 +165,7 @@ pub(super) fn plan<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
 ///
 /// # Examples
 ///
-/// Of which order is the composition of five steps?
-///
-/// ```
-/// use liestep::accuracy::{Reference, convergence};
-/// use liestep::methods::CompositionScheme;
-/// use liestep::prelude::*;
-///
-/// let body = RigidBody { J_d: NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5))? };
-/// let family = |h| {
-///     let stepper = Stepper::composed(body, h, CompositionScheme::SUZUKI_4)?;
-///     let start = stepper.start(SO3::identity(), Vector3::new(0.3, 2.0, 0.2))?;
-///     Ok((stepper, start))
-/// };
-/// let table = convergence(family, 2.0, [20, 40, 80, 160, 1280], Reference::Finest)?;
-/// assert!((table.order_above(1e-13).ok_or("too few errors")? - 4.0).abs() < 0.1, "{table}");
-/// println!("{table}\n{}", table.to_csv());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
+/// The orders of three methods are measured on [the page of this package](crate).
 pub fn convergence<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
     mut family: impl FnMut(f64) -> Result<(I, I::State), SetupError>,
     time: f64,
@@ -197,11 +173,9 @@ pub fn convergence<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
     reference: Reference<G>,
 ) -> Result<Refinement, RefinementError> {
     let (counts, exact) = plan(&mut family, time, counts, reference)?;
-    let mut rows = Vec::with_capacity(counts.len());
-    for steps in counts {
+    let row = |steps| {
         let ready = Ready::new(&mut family, time, steps)?;
-        let (end, iterations) = ready.run()?;
-        rows.push(ready.measurement(ready.start(time).difference(&end, &exact), iterations)?);
-    }
-    Ok(Refinement { rows })
+        ready.measurement(ready.run()?, &exact)
+    };
+    counts.into_iter().map(row).collect()
 }

@@ -1,14 +1,14 @@
-//! Work and precision: the runs of a refinement, timed. This is the only file of the library that asks a clock.
+//! Work and precision: the runs of a refinement, timed. Nothing else asks a clock.
 
-use alloc::vec::Vec;
 use std::time::{Duration, Instant};
 
-use super::runs::{Ready, Reference, RefinementError, plan};
-use super::{Measurement, Refinement};
-use crate::accuracy::question::End;
-use crate::error::SetupError;
-use crate::groups::LieGroup;
-use crate::motion::Integrator;
+use liestep::SetupError;
+use liestep::accuracy::End;
+use liestep::groups::LieGroup;
+use liestep::motion::Integrator;
+
+use crate::runs::{Ready, Reference, RefinementError, plan};
+use crate::table::{Measurement, Refinement};
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,7 +101,7 @@ impl Refinement {
     /// Euler's method for `y' = −y`:
     ///
     /// ```
-    /// use liestep::accuracy::{Effort, Refinement};
+    /// use liestep_refinement::{Effort, Refinement};
     ///
     /// let costs = Refinement::timed(
     ///     (4..10).map(|k| 0.5_f64.powi(k)),
@@ -132,12 +132,12 @@ impl Refinement {
                 break;
             }
         }
-        Self { rows }
+        rows.into_iter().collect()
     }
 }
 
-/// What accuracy costs in time: as [`convergence`](super::convergence), and each run is timed. The making
-/// of the stepper isn't.
+/// What accuracy costs in time: as [`convergence`](crate::convergence), and each run is timed. The making of the
+/// stepper isn't.
 ///
 /// Runs whose stepper can't be built, whose step has no solution or whose end isn't made of finite numbers are left out,
 /// and so are those with errors of 0.5 and more. The last run is the first that takes longer than the effort allows, or one
@@ -157,10 +157,10 @@ impl Refinement {
 /// What does an error of 1e-4 cost with either kinetic term?
 ///
 /// ```
-/// use liestep::accuracy::{Effort, Reference, Refinement, RefinementError, work_precision};
 /// use liestep::effects::CayleyBody;
 /// use liestep::mechanics::Regular;
 /// use liestep::prelude::*;
+/// use liestep_refinement::{Effort, Reference, Refinement, RefinementError, work_precision};
 ///
 /// fn costs<B>(body: B) -> Result<Refinement, RefinementError>
 /// where
@@ -214,7 +214,7 @@ pub fn work_precision<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
     if rows.is_empty() {
         return Err(failure.unwrap_or(RefinementError::OtherMotion { least }));
     }
-    Ok(Refinement { rows })
+    Ok(rows.into_iter().collect())
 }
 
 /// A run of this number of steps, with its time, s.
@@ -225,7 +225,7 @@ fn measured<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
     effort: Effort,
 ) -> Result<(Measurement, f64), RefinementError> {
     let ready = Ready::new(family, time, steps)?;
-    let ((end, iterations), seconds) = effort.time(|| ready.run())?;
-    let row = ready.measurement(ready.start(time).difference(&end, exact), iterations)?;
+    let (ended, seconds) = effort.time(|| ready.run())?;
+    let row = ready.measurement(ended, exact)?;
     Ok((Measurement { seconds: Some(seconds), ..row }, seconds))
 }

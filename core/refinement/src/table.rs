@@ -1,17 +1,4 @@
-//! Runs of one method with ever shorter steps: errors, orders and costs, as a table, as CSV and as JSON.
-
-mod runs;
-mod text;
-#[cfg(feature = "std")]
-mod timed;
-
-use alloc::vec::Vec;
-
-roots!();
-
-pub use runs::{Reference, RefinementError, convergence};
-#[cfg(feature = "std")]
-pub use timed::{Effort, work_precision};
+//! Runs of one method with ever shorter steps, as a table.
 
 /// A run with one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,8 +13,8 @@ pub struct Measurement {
     pub seconds: Option<f64>,
 }
 
-/// What the runs of one method with ever shorter steps show: [`convergence`] makes them, and [`work_precision`] takes their
-/// times, too.
+/// What the runs of one method with ever shorter steps show: [`convergence`](crate::convergence) makes them, and
+/// [`work_precision`](crate::work_precision) takes their times, too.
 ///
 /// As text it is a table, and [`to_csv`](Self::to_csv) and [`to_json`](Self::to_json) write the same columns; with the
 /// feature `serde` it serialises as the latter does. Errors that were measured otherwise, of another library for
@@ -59,7 +46,7 @@ impl Refinement {
     /// The trapezoidal rule for `∫₀¹ eˣ dx`:
     ///
     /// ```
-    /// use liestep::accuracy::Refinement;
+    /// use liestep_refinement::Refinement;
     ///
     /// let rule = |n: i32| {
     ///     let h = 1.0 / f64::from(n);

@@ -1,12 +1,8 @@
 //! Refinements as tables, as CSV and as JSON.
 
-use alloc::borrow::ToOwned as _;
-use alloc::format;
-use alloc::string::String;
-use alloc::vec::Vec;
-use core::fmt::{self, Write as _};
+use std::fmt::{self, Write as _};
 
-use super::{Measurement, Refinement};
+use crate::table::{Measurement, Refinement};
 
 /// The columns, and their names in tables.
 const COLUMNS: [(&str, &str); 6] = [
@@ -22,7 +18,7 @@ type Row = [Option<f64>; COLUMNS.len()];
 
 impl Refinement {
     fn lines(&self) -> impl Iterator<Item = Row> + '_ {
-        let none = core::iter::once(None);
+        let none = std::iter::once(None);
         let ratios = none.clone().chain(self.ratios().map(Some));
         let orders = none.chain(self.orders().map(Some));
         self.rows().iter().zip(ratios.zip(orders)).map(|(row, (ratio, order))| {
