@@ -1,5 +1,7 @@
 //! What states are made of, scalar by scalar: what a sum with a carry, a checkpoint and the laws' samples need.
 
+use alloc::vec::Vec;
+
 use nalgebra::SMatrix;
 
 use crate::numbers::scalar::Real;
@@ -114,6 +116,14 @@ macro_rules! entries_of_value {
 }
 
 pub(crate) use entries_of_value;
+
+/// With others in the place of these scalars, which are shown in the order of [`each`](Entries::each).
+pub(crate) fn replaced<T: Real, E: Entries<T>>(entries: &E, scalar: &mut dyn FnMut(T) -> T) -> E {
+    let mut others = Vec::new();
+    entries.each(&mut |entry| others.push(scalar(entry)));
+    let mut others = others.into_iter();
+    E::from_entries(&mut || others.next().unwrap_or_else(T::zero))
+}
 
 /// `a + b`, place by place.
 #[hot]
