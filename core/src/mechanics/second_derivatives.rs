@@ -117,6 +117,7 @@ pub trait SecondDerivatives: Effect {
 
 /// The point at which a step is differentiated.
 #[derive(Clone, Copy, Debug)]
+#[doc(hidden)]
 pub struct StepPoint<'a, G: LieGroup, A> {
     /// `F − I`.
     pub increment: &'a G::Matrix,
