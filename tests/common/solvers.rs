@@ -6,7 +6,7 @@ use core::fmt::Debug;
 use liestep::groups::Retraction as _;
 use liestep::mechanics::{
     DiscreteLagrangian, Effect, Group, Limit, Matrix, Parts, Residual, Scalar, SceneVisitor, SecondDerivatives, Square,
-    StepDerivatives, Term, Vector, WithExpensiveKinetic, WithKinetic,
+    StepDerivatives, StepPoint, Term, Vector, WithExpensiveKinetic, WithKinetic,
 };
 use liestep::numbers::Real;
 use liestep::prelude::*;
@@ -302,18 +302,18 @@ impl<L: SecondDerivatives> SecondDerivatives for WithoutKickGradient<L> {
     const PARAMETERS: usize = L::PARAMETERS;
 
     of_inner! {
-        fn step_derivatives(f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> StepDerivatives<Square<Self>>;
+        fn step_derivatives(at: StepPoint<'_, Self::Group, Self::Advected>) -> StepDerivatives<Square<Self>>;
         fn by_parameters(
-            f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar, visit: &mut impl FnMut(usize, Vector<Self>, Vector<Self>)
+            at: StepPoint<'_, Self::Group, Self::Advected>, visit: &mut impl FnMut(usize, Vector<Self>, Vector<Self>)
         );
         fn by_advected(
-            f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar, visit: &mut impl FnMut(usize, Vector<Self>, Vector<Self>)
+            at: StepPoint<'_, Self::Group, Self::Advected>, visit: &mut impl FnMut(usize, Vector<Self>, Vector<Self>)
         );
         fn adjoint_system(
-            f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar, at_end: &Vector<Self>
+            at: StepPoint<'_, Self::Group, Self::Advected>, at_end: &Vector<Self>
         ) -> (Square<Self>, Vector<Self>);
         fn adjoint_gradient(
-            f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar, ends: [&Vector<Self>; 2],
+            at: StepPoint<'_, Self::Group, Self::Advected>, ends: [&Vector<Self>; 2],
             visit: &mut impl FnMut(usize, Self::Scalar)
         ) -> (Vector<Self>, Self::Advected);
     }

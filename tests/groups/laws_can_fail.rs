@@ -200,7 +200,7 @@ impl<const WHAT: usize> Retraction<SE2> for Wrong<WHAT> {
         <CayleyRetraction as Retraction<SE2>>::tangent(&xi) * if WHAT == HALF { 0.5 } else { 1.0 }
     }
 
-    fn is_near_identity(_: &Vector3<f64>) -> bool {
+    fn is_near(_: &Vector3<f64>, _: f64) -> bool {
         true
     }
 }

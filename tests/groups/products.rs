@@ -139,8 +139,8 @@ impl Retraction<Embedded> for ByFactors {
         <CayleyRetraction as Retraction<Product>>::tangent(xi)
     }
 
-    fn is_near_identity(xi: &Vector6<f64>) -> Mask<f64> {
-        <CayleyRetraction as Retraction<Product>>::is_near_identity(xi)
+    fn is_near(xi: &Vector6<f64>, times: f64) -> Mask<f64> {
+        <CayleyRetraction as Retraction<Product>>::is_near(xi, times)
     }
 }
 

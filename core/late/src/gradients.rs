@@ -1,13 +1,13 @@
 //! The derivatives of a step, by a back end.
 
 use liestep::groups::{Advected, CayleyRetraction, LieGroup, Retraction};
-use liestep::mechanics::{KineticPart, SecondDerivatives, StepDerivatives};
+use liestep::mechanics::{KineticPart, SecondDerivatives, StepDerivatives, StepPoint};
 use liestep::numbers::{Coordinates as _, real};
 use liestep_derivation::Array;
 
 use crate::carried::Slots;
 use crate::code::Backend;
-use crate::effect::{Matrix, Square, Vector, alone, square, vector};
+use crate::effect::{Square, Vector, alone, square, vector};
 use crate::term::{Late, entries};
 
 impl<G, W, K, B> Late<G, W, K, B>
@@ -19,8 +19,8 @@ where
     /// What one of the programs computes, with these weights; nothing where the derivatives aren't there.
     fn derived<R>(
         &self,
-        at: usize,
-        (increment, w, h): (&Matrix<G>, &W, G::Scalar),
+        program: usize,
+        StepPoint { increment, w, h }: StepPoint<'_, G, W>,
         [start, end]: [&Vector<G>; 2],
         make: impl FnOnce(&[G::Scalar]) -> R,
     ) -> R {
@@ -34,7 +34,7 @@ where
             (Array::Target, &entries(start)),
             (Array::Velocity, &entries(end)),
         ];
-        make(&alone::<_, B, _>(&programs[at], given))
+        make(&alone::<_, B, _>(&programs[program], given))
     }
 }
 
@@ -53,9 +53,9 @@ where
         self.derivatives.is_some()
     }
 
-    fn step_derivatives(&self, increment: &Matrix<G>, w: &W, h: G::Scalar) -> StepDerivatives<Square<G>> {
+    fn step_derivatives(&self, at: StepPoint<'_, G, W>) -> StepDerivatives<Square<G>> {
         let zero = Vector::<G>::zero();
-        self.derived(0, (increment, w, h), [&zero; 2], |outputs| {
+        self.derived(0, at, [&zero; 2], |outputs| {
             let mut blocks = outputs.chunks(G::DIMENSION * G::DIMENSION);
             let mut next = || square::<G>(blocks.next().unwrap_or_default());
             let [start_by_turn, end_by_turn, start_by_place, end_by_place] = [(); 4].map(|()| next());
@@ -63,17 +63,11 @@ where
         })
     }
 
-    fn by_parameters(&self, _: &Matrix<G>, _: &W, _: G::Scalar, _: &mut impl FnMut(usize, Vector<G>, Vector<G>)) {}
+    fn by_parameters(&self, _: StepPoint<'_, G, W>, _: &mut impl FnMut(usize, Vector<G>, Vector<G>)) {}
 
-    fn by_advected(
-        &self,
-        increment: &Matrix<G>,
-        w: &W,
-        h: G::Scalar,
-        visit: &mut impl FnMut(usize, Vector<G>, Vector<G>),
-    ) {
+    fn by_advected(&self, at: StepPoint<'_, G, W>, visit: &mut impl FnMut(usize, Vector<G>, Vector<G>)) {
         let zero = Vector::<G>::zero();
-        self.derived(3, (increment, w, h), [&zero; 2], |outputs| {
+        self.derived(3, at, [&zero; 2], |outputs| {
             for (number, both) in outputs.chunks(2 * G::DIMENSION).enumerate() {
                 visit(number, vector(both), vector(both.get(G::DIMENSION..).unwrap_or_default()));
             }
@@ -82,21 +76,19 @@ where
 
     fn carried_parameters(_: &mut impl FnMut(usize, usize)) {}
 
-    fn adjoint_system(&self, increment: &Matrix<G>, w: &W, h: G::Scalar, at_end: &Vector<G>) -> (Square<G>, Vector<G>) {
-        self.derived(1, (increment, w, h), [at_end; 2], |outputs| {
+    fn adjoint_system(&self, at: StepPoint<'_, G, W>, at_end: &Vector<G>) -> (Square<G>, Vector<G>) {
+        self.derived(1, at, [at_end; 2], |outputs| {
             (square::<G>(outputs), vector(outputs.get(G::DIMENSION * G::DIMENSION..).unwrap_or_default()))
         })
     }
 
     fn adjoint_gradient(
         &self,
-        increment: &Matrix<G>,
-        w: &W,
-        h: G::Scalar,
+        at: StepPoint<'_, G, W>,
         ends: [&Vector<G>; 2],
         _: &mut impl FnMut(usize, G::Scalar),
     ) -> (Vector<G>, W) {
-        self.derived(2, (increment, w, h), ends, |outputs| {
+        self.derived(2, at, ends, |outputs| {
             let mut by_advected = outputs.iter().skip(G::DIMENSION).copied();
             (vector(outputs), W::from_entries(&mut || by_advected.next().unwrap_or_else(|| real(0.0))))
         })

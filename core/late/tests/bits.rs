@@ -18,7 +18,7 @@ use liestep::groups::{CayleyRetraction, CovariantTensor, LieGroup as _, Retracti
 use liestep::lagrangian;
 use liestep::laws::samples::Random;
 use liestep::mechanics::{
-    DiagonalNonstandardInertia, Effect, Inertia, OnlyKicks, SecondDerivatives, Vector, WithEitherKinetic,
+    DiagonalNonstandardInertia, Effect, Inertia, OnlyKicks, SecondDerivatives, StepPoint, Vector, WithEitherKinetic,
     WithoutKinetic,
 };
 use liestep::motion::Batch;
@@ -298,19 +298,20 @@ where
     let mut random = Random::new(seed);
     let [turn, u, p]: [Vector<E>; 3] = [random.sample(), random.sample(), random.sample()];
     let increment = <CayleyRetraction as Retraction<E::Group>>::retract(&(turn * 0.4)).increment();
-    let (w, h, mut found) = (effect.advected(), 0.1, Vec::new());
+    let (w, mut found) = (effect.advected(), Vec::new());
+    let at = StepPoint { increment: &increment, w: &w, h: 0.1 };
     let mut add = |vector: Vector<E>| vector.each(&mut |entry| found.push(entry));
-    let blocks = effect.step_derivatives(&increment, &w, h);
+    let blocks = effect.step_derivatives(at);
     add(blocks.start_by_turn * u);
     add(blocks.end_by_turn * u);
     add(blocks.start_by_place * u);
     add(blocks.end_by_place * u);
-    let (matrix, right_side) = effect.adjoint_system(&increment, &w, h, &p);
-    let (by_place, by_advected) = effect.adjoint_gradient(&increment, &w, h, [&u, &p], &mut |_, _| {});
+    let (matrix, right_side) = effect.adjoint_system(at, &p);
+    let (by_place, by_advected) = effect.adjoint_gradient(at, [&u, &p], &mut |_, _| {});
     [matrix * u, right_side, by_place].into_iter().for_each(&mut add);
     // What nothing depends on may be visited, and needn't be.
     let mut sum = Vector::<E>::zero();
-    effect.by_advected(&increment, &w, h, &mut |number, start, end| {
+    effect.by_advected(at, &mut |number, start, end| {
         let number = 1.5_f64.powi(i32::try_from(number).unwrap());
         sum = sum + start * number + end * number.recip();
     });

@@ -5,7 +5,9 @@ use alloc::vec::Vec;
 use crate::gradients::recording::Change;
 use crate::groups::{Advected as _, LieGroup, SquareOf, seen_of_unit};
 use crate::mechanics::pattern_of_type;
-use crate::mechanics::{Effect, Group, Matrix, Scalar, SecondDerivatives, Square, StepDerivatives, Vector};
+use crate::mechanics::{
+    Effect, Group, Matrix, PointOf, Scalar, SecondDerivatives, Square, StepDerivatives, StepPoint, Vector,
+};
 use crate::numbers::{Coordinates, Entries, Real, real, zero};
 
 /// One change of the motion and the effect that made it: what is differentiated, by an own step of the effect or by a
@@ -72,9 +74,14 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         Self { first, ..self }
     }
 
+    /// Where the derivatives of a step of this length are taken.
+    fn point(&self, h: Scalar<E>) -> PointOf<'_, E> {
+        StepPoint { increment: &self.increment, w: &self.advected, h }
+    }
+
     /// The blocks of the tangent map of a step of this length.
     pub(super) fn blocks(&self, h: Scalar<E>) -> StepDerivatives<Square<E>> {
-        self.effect.step_derivatives(&self.increment, &self.advected, h)
+        self.effect.step_derivatives(self.point(h))
     }
 
     /// `Ad_{F⁻¹}`.
@@ -130,7 +137,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         };
         let visit = &mut |number, start, end| visit(number, start * scale, end * scale);
         // Those that are carried aren't among them.
-        self.effect.by_parameters(&self.increment, &self.advected, self.length(), &mut |number, start, end| {
+        self.effect.by_parameters(self.point(self.length()), &mut |number, start, end| {
             visit(self.first + number, start, end);
         });
         if !is_given_values {
@@ -150,7 +157,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     fn by_value(&self, place: usize) -> (Vector<E>, Vector<E>) {
         let seen: E::Advected = seen_of_unit(place, &self.attitude);
         let (mut start, mut end) = (Vector::<E>::zero(), Vector::<E>::zero());
-        self.effect.by_advected(&self.increment, &self.advected, self.length(), &mut |number, by_start, by_end| {
+        self.effect.by_advected(self.point(self.length()), &mut |number, by_start, by_end| {
             let change = entry(&seen, number);
             (start, end) = (start + by_start * change, end + by_end * change);
         });
@@ -165,8 +172,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         add: &mut impl FnMut(usize, Scalar<E>),
         values: &mut [Scalar<E>],
     ) -> Vector<E> {
-        let (by_place, by_seen) =
-            self.effect.adjoint_gradient(&self.increment, &self.advected, self.length(), ends, &mut *add);
+        let (by_place, by_seen) = self.effect.adjoint_gradient(self.point(self.length()), ends, &mut *add);
         self.add_carried(&by_seen, add, values);
         by_place
     }
@@ -236,7 +242,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
             // Without a step nothing moves.
             Kind::Step(h) if h == real(0.0) => *end,
             Kind::Step(h) => {
-                let (matrix, share) = self.effect.adjoint_system(&self.increment, &self.advected, h, &end.momentum);
+                let (matrix, share) = self.effect.adjoint_system(self.point(h), &end.momentum);
                 let inverse = Group::<E>::from_increment(&self.increment).inverse();
                 let attitude = inverse.adjoint_transpose(&end.attitude);
                 let (factors, det) =

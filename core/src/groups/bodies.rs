@@ -164,19 +164,16 @@ macro_rules! retraction_of_bodies {
                 BlockDiagonal(from_fn(|k| <Self as Retraction<G>>::tangent(&xi.0[k])))
             }
 
-            retraction_of_bodies!(@near is_near_identity is_half_near_identity is_half_well_near_identity);
+            #[hot]
+            fn is_near(coordinates: &Bodies<G::Vector, N>, times: f64) -> Mask<G::Scalar> {
+                let mut near = !nowhere::<G::Scalar>();
+                for body in &coordinates.0 {
+                    near = near & <Self as Retraction<G>>::is_near(body, times);
+                }
+                near
+            }
         }
     };
-    (@near $($is_near:ident)+) => {$(
-        #[hot]
-        fn $is_near(coordinates: &Bodies<G::Vector, N>) -> Mask<G::Scalar> {
-            let mut near = !nowhere::<G::Scalar>();
-            for body in &coordinates.0 {
-                near = near & <Self as Retraction<G>>::$is_near(body);
-            }
-            near
-        }
-    )+};
 }
 
 retraction_of_bodies!(CayleyRetraction);

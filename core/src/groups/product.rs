@@ -240,19 +240,9 @@ macro_rules! product {
                 $squares
             }
 
-            fn is_near_identity($joined: &<($($group,)+) as LieGroup>::Vector) -> Mask<$scalar> {
+            fn is_near($joined: &<($($group,)+) as LieGroup>::Vector, times: f64) -> Mask<$scalar> {
                 let ($($part,)+) = $split;
-                !nowhere::<$scalar>() $(& <$retraction as Retraction<$group>>::is_near_identity(&$part))+
-            }
-
-            fn is_half_near_identity($joined: &<($($group,)+) as LieGroup>::Vector) -> Mask<$scalar> {
-                let ($($part,)+) = $split;
-                !nowhere::<$scalar>() $(& <$retraction as Retraction<$group>>::is_half_near_identity(&$part))+
-            }
-
-            fn is_half_well_near_identity($joined: &<($($group,)+) as LieGroup>::Vector) -> Mask<$scalar> {
-                let ($($part,)+) = $split;
-                !nowhere::<$scalar>() $(& <$retraction as Retraction<$group>>::is_half_well_near_identity(&$part))+
+                !nowhere::<$scalar>() $(& <$retraction as Retraction<$group>>::is_near(&$part, times))+
             }
         }
     };

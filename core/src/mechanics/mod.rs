@@ -34,7 +34,8 @@ pub use kinetic_part::{WithEitherKinetic, WithKinetic, WithoutKinetic};
 pub use lagrangian::{DiscreteLagrangian, RigidScene, Scene};
 pub(crate) use noether::{left_symmetries, right_symmetries};
 pub use operations::Operations;
-pub use second_derivatives::{SecondDerivatives, StepDerivatives};
+pub(crate) use second_derivatives::PointOf;
+pub use second_derivatives::{SecondDerivatives, StepDerivatives, StepPoint};
 pub use sum::{SharedBy, Sum};
 pub use symmetry::{AxiallyInvariant, LeftInvariant, OneVector};
 pub use systems::{

@@ -2,8 +2,10 @@
 
 use core::ops::Add;
 
-use crate::mechanics::effect::{Effect, Matrix, Scalar, Square, Vector};
+use crate::groups::LieGroup;
+use crate::mechanics::effect::{Effect, Group, Scalar, Square, Vector};
 use crate::mechanics::sum::Sum;
+use crate::mechanics::term::Term;
 use crate::numbers::{Entries, Real, zero};
 
 /// An effect with the derivatives of its shares in the momenta at both ends of a step: what the tangent map and the
@@ -40,35 +42,18 @@ pub trait SecondDerivatives: Effect {
         true
     }
 
-    /// The derivatives along turns and displacements; `increment` is `F − I`.
-    fn step_derivatives(
-        &self,
-        increment: &Matrix<Self>,
-        w: &Self::Advected,
-        h: Scalar<Self>,
-    ) -> StepDerivatives<Square<Self>>;
+    /// The derivatives along turns and displacements.
+    fn step_derivatives(&self, at: PointOf<'_, Self>) -> StepDerivatives<Square<Self>>;
 
     /// The derivatives of `μ` and `μ⁺` by the scalars of the parameters, as [`describe`](Effect::describe) numbers them,
     /// at fixed `w`; what isn't visited is zero.
     ///
     /// A symmetric matrix has all nine scalars: for a symmetric change `δ` of it, the sum over them of derivative times
     /// change is the change of the momentum.
-    fn by_parameters(
-        &self,
-        increment: &Matrix<Self>,
-        w: &Self::Advected,
-        h: Scalar<Self>,
-        visit: &mut impl FnMut(usize, Vector<Self>, Vector<Self>),
-    );
+    fn by_parameters(&self, at: PointOf<'_, Self>, visit: &mut impl FnMut(usize, Vector<Self>, Vector<Self>));
 
     /// The same by the scalars of `w`, as [`Entries`](crate::numbers::Entries) numbers them.
-    fn by_advected(
-        &self,
-        increment: &Matrix<Self>,
-        w: &Self::Advected,
-        h: Scalar<Self>,
-        visit: &mut impl FnMut(usize, Vector<Self>, Vector<Self>),
-    );
+    fn by_advected(&self, at: PointOf<'_, Self>, visit: &mut impl FnMut(usize, Vector<Self>, Vector<Self>));
 
     /// Visits each scalar of [`advected`](crate::mechanics::Term::advected) that is a parameter: its number there, and that among the
     /// parameters. A field that is advected under two names is visited for each.
@@ -87,13 +72,7 @@ pub trait SecondDerivatives: Effect {
     ///
     /// This and [`adjoint_gradient`](Self::adjoint_gradient) go from the momenta back, so that they take a few times the
     /// operations of the momenta themselves, and not as many as all derivatives.
-    fn adjoint_system(
-        &self,
-        increment: &Matrix<Self>,
-        w: &Self::Advected,
-        h: Scalar<Self>,
-        at_end: &Vector<Self>,
-    ) -> (Square<Self>, Vector<Self>);
+    fn adjoint_system(&self, at: PointOf<'_, Self>, at_end: &Vector<Self>) -> (Square<Self>, Vector<Self>);
 
     /// The gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment, for `ends = [u, p]`: `u` pairs with the momentum `μ` at the
     /// start and solves the system of [`adjoint_system`](Self::adjoint_system), `p` pairs with `μ⁺` at the end.
@@ -104,9 +83,7 @@ pub trait SecondDerivatives: Effect {
     /// Each is in the unit of the number per that of what it is by.
     fn adjoint_gradient(
         &self,
-        increment: &Matrix<Self>,
-        w: &Self::Advected,
-        h: Scalar<Self>,
+        at: PointOf<'_, Self>,
         ends: [&Vector<Self>; 2],
         visit: &mut impl FnMut(usize, Scalar<Self>),
     ) -> (Vector<Self>, Self::Advected);
@@ -135,6 +112,29 @@ pub trait SecondDerivatives: Effect {
     ) -> Option<(Vector<Self>, Self::Advected)> {
         let _ = (w, velocity, weights, visit);
         None
+    }
+}
+
+/// The point at which a step is differentiated.
+#[derive(Clone, Copy, Debug)]
+#[doc(hidden)]
+pub struct StepPoint<'a, G: LieGroup, A> {
+    /// `F − I`.
+    pub increment: &'a G::Matrix,
+    /// What the body sees before the step.
+    pub w: &'a A,
+    /// The length of the step, s.
+    pub h: G::Scalar,
+}
+
+pub(crate) type PointOf<'a, E> = StepPoint<'a, Group<E>, <E as Term>::Advected>;
+
+impl<'a, G: LieGroup, A, B> StepPoint<'a, G, (A, B)> {
+    /// For each of two terms.
+    #[hot]
+    fn of_terms(self) -> (StepPoint<'a, G, A>, StepPoint<'a, G, B>) {
+        let Self { increment, w: (first, second), h } = self;
+        (StepPoint { increment, w: first, h }, StepPoint { increment, w: second, h })
     }
 }
 
@@ -178,38 +178,23 @@ where
         self.first.are_derived() && self.second.are_derived()
     }
 
-    fn step_derivatives(
-        &self,
-        increment: &Matrix<Self>,
-        w: &Self::Advected,
-        h: Scalar<Self>,
-    ) -> StepDerivatives<Square<Self>> {
-        self.first.step_derivatives(increment, &w.0, h) + self.second.step_derivatives(increment, &w.1, h)
+    fn step_derivatives(&self, at: PointOf<'_, Self>) -> StepDerivatives<Square<Self>> {
+        let (first, second) = at.of_terms();
+        self.first.step_derivatives(first) + self.second.step_derivatives(second)
     }
 
-    fn by_parameters(
-        &self,
-        increment: &Matrix<Self>,
-        w: &Self::Advected,
-        h: Scalar<Self>,
-        visit: &mut impl FnMut(usize, Vector<Self>, Vector<Self>),
-    ) {
-        self.first.by_parameters(increment, &w.0, h, visit);
-        self.second.by_parameters(increment, &w.1, h, &mut |number, start, end| {
+    fn by_parameters(&self, at: PointOf<'_, Self>, visit: &mut impl FnMut(usize, Vector<Self>, Vector<Self>)) {
+        let (first, second) = at.of_terms();
+        self.first.by_parameters(first, visit);
+        self.second.by_parameters(second, &mut |number, start, end| {
             visit(A::PARAMETERS + number, start, end);
         });
     }
 
-    fn by_advected(
-        &self,
-        increment: &Matrix<Self>,
-        w: &Self::Advected,
-        h: Scalar<Self>,
-        visit: &mut impl FnMut(usize, Vector<Self>, Vector<Self>),
-    ) {
-        let before = scalars::<Scalar<Self>, A::Advected>();
-        self.first.by_advected(increment, &w.0, h, visit);
-        self.second.by_advected(increment, &w.1, h, &mut |number, start, end| visit(before + number, start, end));
+    fn by_advected(&self, at: PointOf<'_, Self>, visit: &mut impl FnMut(usize, Vector<Self>, Vector<Self>)) {
+        let ((first, second), before) = (at.of_terms(), scalars::<Scalar<Self>, A::Advected>());
+        self.first.by_advected(first, visit);
+        self.second.by_advected(second, &mut |number, start, end| visit(before + number, start, end));
     }
 
     fn carried_parameters(visit: &mut impl FnMut(usize, usize)) {
@@ -218,29 +203,23 @@ where
         B::carried_parameters(&mut |place, number| visit(before + place, A::PARAMETERS + number));
     }
 
-    fn adjoint_system(
-        &self,
-        increment: &Matrix<Self>,
-        w: &Self::Advected,
-        h: Scalar<Self>,
-        at_end: &Vector<Self>,
-    ) -> (Square<Self>, Vector<Self>) {
-        let (first, right_side) = self.first.adjoint_system(increment, &w.0, h, at_end);
-        let (second, other) = self.second.adjoint_system(increment, &w.1, h, at_end);
+    fn adjoint_system(&self, at: PointOf<'_, Self>, at_end: &Vector<Self>) -> (Square<Self>, Vector<Self>) {
+        let (first, second) = at.of_terms();
+        let (first, right_side) = self.first.adjoint_system(first, at_end);
+        let (second, other) = self.second.adjoint_system(second, at_end);
         (first + second, right_side + other)
     }
 
     fn adjoint_gradient(
         &self,
-        increment: &Matrix<Self>,
-        w: &Self::Advected,
-        h: Scalar<Self>,
+        at: PointOf<'_, Self>,
         ends: [&Vector<Self>; 2],
         visit: &mut impl FnMut(usize, Scalar<Self>),
     ) -> (Vector<Self>, Self::Advected) {
-        let (first, seen) = self.first.adjoint_gradient(increment, &w.0, h, ends, visit);
+        let (first, second) = at.of_terms();
+        let (first, seen) = self.first.adjoint_gradient(first, ends, visit);
         let behind = &mut |number, share| visit(A::PARAMETERS + number, share);
-        let (second, other) = self.second.adjoint_gradient(increment, &w.1, h, ends, behind);
+        let (second, other) = self.second.adjoint_gradient(second, ends, behind);
         (first + second, (seen, other))
     }
 

@@ -2,17 +2,22 @@
 
 use core::fmt::Debug;
 
-use crate::numbers::{Coordinates, History, Real};
+use crate::numbers::{Coordinates, History, Real, replaced};
 use crate::solving::{Guess, WarmStart};
 
 /// What a [`Plan`](crate::motion::Plan) keeps from step to step, as numbers that a checkpoint stores.
 pub trait Kept<T: Real>: Copy + Debug + PartialEq {
-    /// Visits all of it, in a fixed order and number.
-    fn each(&self, visit: &mut dyn FnMut(T));
+    /// The same with others in the place of its numbers, which are shown in a fixed order; how many there are doesn't
+    /// depend on their values. `None` if the others can't be those of such a memory.
+    fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self>;
 
-    /// Made of the next numbers of a stream, in the order in which [`each`](Self::each) visits them; `None` if they can't
-    /// be those of such a memory.
-    fn from_numbers(next: &mut dyn FnMut() -> T) -> Option<Self>;
+    /// Visits all of it, in that order.
+    fn each(&self, visit: &mut dyn FnMut(T)) {
+        let _ = self.with_numbers(&mut |number| {
+            visit(number);
+            number
+        });
+    }
 
     /// As kept for a next step that is longer by this ratio: increments are proportional to its length.
     #[must_use]
@@ -22,22 +27,15 @@ pub trait Kept<T: Real>: Copy + Debug + PartialEq {
 }
 
 impl<T: Real> Kept<T> for () {
-    fn each(&self, _: &mut dyn FnMut(T)) {}
-
-    fn from_numbers(_: &mut dyn FnMut() -> T) -> Option<Self> {
+    fn with_numbers(&self, _: &mut dyn FnMut(T) -> T) -> Option<Self> {
         Some(())
     }
 }
 
 /// Of a plan around another: what that keeps, and what it keeps besides.
 impl<T: Real, A: Kept<T>, B: Kept<T>> Kept<T> for (A, B) {
-    fn each(&self, visit: &mut dyn FnMut(T)) {
-        self.0.each(visit);
-        self.1.each(visit);
-    }
-
-    fn from_numbers(next: &mut dyn FnMut() -> T) -> Option<Self> {
-        Some((A::from_numbers(next)?, B::from_numbers(next)?))
+    fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self> {
+        Some((self.0.with_numbers(number)?, self.1.with_numbers(number)?))
     }
 
     fn scaled(&self, ratio: T) -> Self {
@@ -46,13 +44,8 @@ impl<T: Real, A: Kept<T>, B: Kept<T>> Kept<T> for (A, B) {
 }
 
 impl<T: Real, V: Coordinates<T>> Kept<T> for Guess<V> {
-    fn each(&self, mut visit: &mut dyn FnMut(T)) {
-        self.half.each(&mut visit);
-        self.next.each(&mut visit);
-    }
-
-    fn from_numbers(mut next: &mut dyn FnMut() -> T) -> Option<Self> {
-        Some(Self { half: V::from_entries(&mut next), next: V::from_entries(&mut next) })
+    fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self> {
+        Some(Self { half: replaced(&self.half, number), next: replaced(&self.next, number) })
     }
 
     fn scaled(&self, ratio: T) -> Self {
@@ -61,13 +54,8 @@ impl<T: Real, V: Coordinates<T>> Kept<T> for Guess<V> {
 }
 
 impl<T: Real, V: Coordinates<T>, H: History<T, V>> Kept<T> for WarmStart<V, H> {
-    fn each(&self, visit: &mut dyn FnMut(T)) {
-        Kept::each(&self.guess, visit);
-        self.history.each(visit);
-    }
-
-    fn from_numbers(next: &mut dyn FnMut() -> T) -> Option<Self> {
-        Some(Self { guess: Guess::from_numbers(next)?, history: H::from_numbers(next)? })
+    fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self> {
+        Some(Self { guess: self.guess.with_numbers(number)?, history: self.history.with_numbers(number)? })
     }
 
     fn scaled(&self, ratio: T) -> Self {
@@ -88,7 +76,7 @@ mod tests {
     /// Half the increment, a guess, how many increments there were, and their differences.
     fn read(increments: f64) -> Option<Memory> {
         let mut numbers = [1.0, 2.0, 3.0, 4.0, increments].into_iter().chain((0..14).map(f64::from));
-        Memory::from_numbers(&mut || numbers.next().unwrap())
+        Memory::of(Vector2::zeros(), true).with_numbers(&mut |_| numbers.next().unwrap())
     }
 
     #[test]
@@ -96,10 +84,11 @@ mod tests {
         let mut numbers = Vec::new();
         read(3.0).unwrap().each(&mut |number| numbers.push(number));
         let mut again = numbers.iter().copied();
-        assert_eq!(Memory::from_numbers(&mut || again.next().unwrap()), read(3.0));
+        assert_eq!(read(0.0).unwrap().with_numbers(&mut |_| again.next().unwrap()), read(3.0));
         assert_eq!((numbers.len(), again.next()), (19, None));
         let mut three = numbers[..6].iter().copied();
-        let short = WarmStart::<Vector2<f64>>::from_numbers(&mut || three.next().unwrap()).unwrap();
+        let short = WarmStart::<Vector2<f64>>::of(Vector2::zeros(), false);
+        let short = short.with_numbers(&mut |_| three.next().unwrap()).unwrap();
         let mut again = Vec::new();
         short.each(&mut |number| again.push(number));
         assert_eq!(again, numbers[..6]);

@@ -23,7 +23,7 @@ use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRe
 ///   were.
 /// - It changes the motion by [`Summation`]'s functions only, and depends on nothing but its arguments: the same
 ///   arguments give the same bits.
-pub trait Plan<S: Effect> {
+pub trait Plan<S: Effect>: Sized {
     /// What one step leaves for the next: guesses, stages. `()` where there is nothing.
     type Kept: Kept<Scalar<S>>;
 
@@ -43,9 +43,7 @@ pub trait Plan<S: Effect> {
     /// # Errors
     ///
     /// [`SetupError`] where the scene can't be stepped by it.
-    fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError>
-    where
-        Self: Sized;
+    fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError>;
 
     /// A motion as it begins: what is advected or given may have to do with the rest.
     fn begun(&self, _scene: &S, motion: MotionOf<S>) -> MotionOf<S> {
@@ -116,19 +114,25 @@ pub trait Plan<S: Effect> {
         true
     }
 
-    /// One step; marked `#[inline(always)]`, as what is called isn't kept in registers and has no vector instructions of
-    /// the machine. The library's own are marked so but for builds with debug assertions, which are to be built soon.
+    /// One step; by default a [run](Self::run) of one, where [`STEPS_BY_RUNS`](Self::STEPS_BY_RUNS) says so.
+    ///
+    /// It is marked `#[inline(always)]`, as what is called isn't kept in registers and has no vector instructions of the
+    /// machine. The library's own are marked so but for builds with debug assertions, which are to be built soon.
     ///
     /// # Errors
     ///
     /// [`StepError`] where there is no such step, or a value isn't finite. `motion` and `kept` are then as before: callers
     /// make no copy of `kept` to go back to.
+    #[hot]
     fn step<M: Summation<Group<S>, S::Advected>>(
         &self,
         scene: &S,
         motion: &mut M,
         kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError>;
+    ) -> Result<StepReport, StepError> {
+        const { assert!(Self::STEPS_BY_RUNS, "a plan says what a step is, or a run by which steps are made") }
+        self.run(scene, motion, kept, 1).map(StepReport::of_run)
+    }
 
     /// One step of another length, s, which isn't counted.
     ///
@@ -141,10 +145,7 @@ pub trait Plan<S: Effect> {
         motion: &mut M,
         kept: &mut Self::Kept,
         length: Scalar<S>,
-    ) -> Result<StepReport, StepError>
-    where
-        Self: Sized,
-    {
+    ) -> Result<StepReport, StepError> {
         if length.simd_eq(real(0.0)).all() {
             return Ok(StepReport::of(0));
         }
@@ -173,10 +174,7 @@ pub trait Plan<S: Effect> {
         motion: &MotionOf<S>,
         _kept: &Self::Kept,
         fraction: Scalar<S>,
-    ) -> Result<MotionOf<S>, StepError>
-    where
-        Self: Sized,
-    {
+    ) -> Result<MotionOf<S>, StepError> {
         // Nothing of a change so small would be seen, and of a step so small constants may leave the scalar's range.
         let least = Scalar::<S>::simd_default_epsilon() * Scalar::<S>::simd_default_epsilon();
         if fraction.simd_abs().simd_lt(least).all() {
@@ -205,10 +203,7 @@ pub trait Plan<S: Effect> {
         motion: &mut M,
         kept: &mut Self::Kept,
         steps: u64,
-    ) -> Result<u64, StepError>
-    where
-        Self: Sized,
-    {
+    ) -> Result<u64, StepError> {
         let mut iterations = 0;
         for _ in 0..steps {
             iterations += u64::from(self.step(scene, motion, kept)?.iterations);
@@ -258,10 +253,7 @@ pub trait Plan<S: Effect> {
     }
 
     /// The largest fraction of the step, in seconds to six digits, that can be made from here.
-    fn max_step(&self, scene: &S, motion: &MotionOf<S>, _kept: &Self::Kept) -> Scalar<S>
-    where
-        Self: Sized,
-    {
+    fn max_step(&self, scene: &S, motion: &MotionOf<S>, _kept: &Self::Kept) -> Scalar<S> {
         let solvable = |fraction: f64| {
             self.refolded(scene, self.step_size() * real(fraction)).is_ok_and(|part| {
                 let (mut motion, mut kept) = (*motion, part.keep(scene, motion));

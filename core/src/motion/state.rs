@@ -39,13 +39,8 @@ impl<T: Real> ElapsedTime<T> {
         (self.sum, self.carry) = two_sum(self.sum, length + self.carry);
     }
 
-    pub(crate) fn each(&self, visit: &mut dyn FnMut(T)) {
-        visit(self.sum);
-        visit(self.carry);
-    }
-
-    pub(crate) fn from_numbers(next: &mut dyn FnMut() -> T) -> Self {
-        Self { sum: next(), carry: next() }
+    pub(crate) fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Self {
+        Self { sum: number(self.sum), carry: number(self.carry) }
     }
 }
 

@@ -1,5 +1,7 @@
 //! What states are made of, scalar by scalar: what a sum with a carry, a checkpoint and the laws' samples need.
 
+use alloc::vec::Vec;
+
 use nalgebra::SMatrix;
 
 use crate::numbers::scalar::Real;
@@ -59,39 +61,41 @@ impl<T: Real, const R: usize, const C: usize> Entries<T> for SMatrix<T, R, C> {
     }
 }
 
-impl<T> Entries<T> for () {
-    fn from_entries(_: &mut impl FnMut() -> T) -> Self {}
-
-    #[hot]
-    fn each(&self, _: &mut impl FnMut(T)) {}
-
-    fn zip(&self, (): &Self, _: &mut impl FnMut(T, T) -> T) -> Self {}
-}
-
 macro_rules! tuple {
-    ($($name:ident $index:tt),+) => {
+    ($($name:ident $index:tt),*) => {
+        #[allow(clippy::unused_unit, unused_variables)] // of none
         #[hot]
-        impl<S, $($name: Entries<S>),+> Entries<S> for ($($name,)+) {
+        impl<S, $($name: Entries<S>),*> Entries<S> for ($($name,)*) {
             fn from_entries(next: &mut impl FnMut() -> S) -> Self {
-                ($($name::from_entries(next),)+)
+                ($($name::from_entries(next),)*)
             }
 
             fn each(&self, visit: &mut impl FnMut(S)) {
-                $(self.$index.each(visit);)+
+                $(self.$index.each(visit);)*
             }
 
             fn zip(&self, other: &Self, combine: &mut impl FnMut(S, S) -> S) -> Self {
-                ($(self.$index.zip(&other.$index, combine),)+)
+                ($(self.$index.zip(&other.$index, combine),)*)
             }
         }
     };
 }
 
-tuple!(A 0, B 1);
-tuple!(A 0, B 1, C 2);
-tuple!(A 0, B 1, C 2, D 3);
-tuple!(A 0, B 1, C 2, D 3, E 4);
-tuple!(A 0, B 1, C 2, D 3, E 4, F 5);
+/// Writes the impls of all tuples by this macro, which takes the name and the place of each part.
+macro_rules! of_tuples {
+    ($tuple:ident) => {
+        $tuple!();
+        $tuple!(A 0, B 1);
+        $tuple!(A 0, B 1, C 2);
+        $tuple!(A 0, B 1, C 2, D 3);
+        $tuple!(A 0, B 1, C 2, D 3, E 4);
+        $tuple!(A 0, B 1, C 2, D 3, E 4, F 5);
+    };
+}
+
+pub(crate) use of_tuples;
+
+of_tuples!(tuple);
 
 /// The entries of what holds one value, which are those of the value; the scalar is `S`.
 macro_rules! entries_of_value {
@@ -114,6 +118,14 @@ macro_rules! entries_of_value {
 }
 
 pub(crate) use entries_of_value;
+
+/// With others in the place of these scalars, which are shown in the order of [`each`](Entries::each).
+pub(crate) fn replaced<T: Real, E: Entries<T>>(entries: &E, scalar: &mut dyn FnMut(T) -> T) -> E {
+    let mut others = Vec::new();
+    entries.each(&mut |entry| others.push(scalar(entry)));
+    let mut others = others.into_iter();
+    E::from_entries(&mut || others.next().unwrap_or_else(T::zero))
+}
 
 /// `a + b`, place by place.
 #[hot]

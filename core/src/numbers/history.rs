@@ -2,7 +2,7 @@
 
 use core::fmt::Debug;
 
-use crate::numbers::{Coordinates, Real, count, counted};
+use crate::numbers::{Coordinates, Real, count, counted, replaced};
 
 /// What is remembered of values at equal times to guess the next one.
 pub trait History<T: Real, V: Coordinates<T>>: Copy + Debug + PartialEq {
@@ -15,12 +15,9 @@ pub trait History<T: Real, V: Coordinates<T>>: Copy + Debug + PartialEq {
     /// Called after the first value. The value before it was an estimate, so the difference of the two is forgotten.
     fn forget_the_estimate(&mut self);
 
-    /// Visits all numbers, in a fixed order.
-    fn each(&self, visit: &mut dyn FnMut(T));
-
-    /// Made of the next numbers of a stream, in the order in which [`each`](Self::each) visits them; `None` if they can't
-    /// be those of a history.
-    fn from_numbers(next: &mut dyn FnMut() -> T) -> Option<Self>;
+    /// The same with others in the place of its numbers, which are shown in a fixed order; `None` if the others can't be
+    /// those of a history.
+    fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self>;
 
     /// The history of the values times this.
     fn scaled(&self, ratio: T) -> Self;
@@ -56,12 +53,8 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Parabola<V> {
         *self = Self { difference: V::zero() };
     }
 
-    fn each(&self, mut visit: &mut dyn FnMut(T)) {
-        self.difference.each(&mut visit);
-    }
-
-    fn from_numbers(mut next: &mut dyn FnMut() -> T) -> Option<Self> {
-        Some(Self { difference: V::from_entries(&mut next) })
+    fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self> {
+        Some(Self { difference: replaced(&self.difference, number) })
     }
 
     fn scaled(&self, ratio: T) -> Self {
@@ -104,14 +97,9 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Polynomial<V> {
     /// The first value has been compared with nothing.
     fn forget_the_estimate(&mut self) {}
 
-    fn each(&self, mut visit: &mut dyn FnMut(T)) {
-        visit(count(self.values));
-        self.differences.iter().for_each(|difference| difference.each(&mut visit));
-    }
-
-    fn from_numbers(mut next: &mut dyn FnMut() -> T) -> Option<Self> {
-        let values = counted(next()).filter(|&values| values <= DIFFERENCES + 1)?;
-        Some(Self { differences: core::array::from_fn(|_| V::from_entries(&mut next)), values })
+    fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self> {
+        let values = counted(number(count(self.values))).filter(|&values| values <= DIFFERENCES + 1)?;
+        Some(Self { differences: self.differences.map(|difference| replaced(&difference, number)), values })
     }
 
     fn scaled(&self, ratio: T) -> Self {
@@ -144,15 +132,10 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Either<V> {
         self.parabola = Parabola::none(self.is_long);
     }
 
-    fn each(&self, visit: &mut dyn FnMut(T)) {
-        visit(count(usize::from(self.is_long)));
-        self.parabola.each(visit);
-        self.polynomial.each(visit);
-    }
-
-    fn from_numbers(next: &mut dyn FnMut() -> T) -> Option<Self> {
-        let is_long = counted(next()).filter(|&is_long| is_long <= 1)? == 1;
-        Some(Self { is_long, parabola: Parabola::from_numbers(next)?, polynomial: Polynomial::from_numbers(next)? })
+    fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self> {
+        let is_long = counted(number(count(usize::from(self.is_long)))).filter(|&is_long| is_long <= 1)? == 1;
+        let parabola = self.parabola.with_numbers(number)?;
+        Some(Self { is_long, parabola, polynomial: self.polynomial.with_numbers(number)? })
     }
 
     fn scaled(&self, ratio: T) -> Self {

@@ -5,6 +5,7 @@ use core::marker::PhantomData;
 
 use nalgebra::{Point, SMatrix};
 
+use crate::numbers::entries::of_tuples;
 use crate::numbers::scalar::Real;
 
 /// A value made of scalars with several [lanes](crate::numbers::Real#lanes), each lane of which is a value of its own.
@@ -221,40 +222,25 @@ impl<V: Lanes> Lanes for PhantomData<V> {
     }
 }
 
-impl Lanes for () {
-    type Lane = ();
-
-    fn splat((): &()) -> Self {}
-
-    fn lane(&self, _: usize) -> Self::Lane {}
-
-    fn set_lane(&mut self, _: usize, (): &()) -> bool {
-        true
-    }
-}
-
 macro_rules! tuple {
-    ($($name:ident $index:tt),+) => {
-        impl<$($name: Lanes),+> Lanes for ($($name,)+) {
-            type Lane = ($($name::Lane,)+);
+    ($($name:ident $index:tt),*) => {
+        #[allow(clippy::unused_unit, unused_variables)] // of none
+        impl<$($name: Lanes),*> Lanes for ($($name,)*) {
+            type Lane = ($($name::Lane,)*);
 
             fn splat(lane: &Self::Lane) -> Self {
-                ($($name::splat(&lane.$index),)+)
+                ($($name::splat(&lane.$index),)*)
             }
 
             fn lane(&self, k: usize) -> Self::Lane {
-                ($(self.$index.lane(k),)+)
+                ($(self.$index.lane(k),)*)
             }
 
             fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
-                $(self.$index.set_lane(k, &lane.$index))&&+
+                true $(&& self.$index.set_lane(k, &lane.$index))*
             }
         }
     };
 }
 
-tuple!(A 0, B 1);
-tuple!(A 0, B 1, C 2);
-tuple!(A 0, B 1, C 2, D 3);
-tuple!(A 0, B 1, C 2, D 3, E 4);
-tuple!(A 0, B 1, C 2, D 3, E 4, F 5);
+of_tuples!(tuple);

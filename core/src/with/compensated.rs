@@ -13,7 +13,7 @@ use crate::motion::{
     Kept, Motion, MotionOf, OwnStep, Plan, Steerable, StepReport, Stepper, Summation, SumsOf, TOLERATED, Variable,
     restored,
 };
-use crate::numbers::{Entries, carried_sum, zero};
+use crate::numbers::{Entries, carried_sum, replaced, zero};
 use crate::with::remedies::Substeps;
 use nalgebra::SimdValue as _;
 
@@ -160,15 +160,9 @@ impl<S: Effect, P: Plan<S>> Plan<S> for CompensatedSums<P> {
 }
 
 impl<G: LieGroup, A: Advected<G>> Kept<G::Scalar> for Carry<G, A> {
-    fn each(&self, mut visit: &mut dyn FnMut(G::Scalar)) {
-        self.attitude.each(&mut visit);
-        self.momentum.each(&mut visit);
-        self.advected.each(&mut visit);
-    }
-
-    fn from_numbers(mut next: &mut dyn FnMut() -> G::Scalar) -> Option<Self> {
-        let (attitude, momentum) = (Entries::from_entries(&mut next), Entries::from_entries(&mut next));
-        Some(Self { attitude, momentum, advected: Entries::from_entries(&mut next) })
+    fn with_numbers(&self, number: &mut dyn FnMut(G::Scalar) -> G::Scalar) -> Option<Self> {
+        let (attitude, momentum) = (replaced(&self.attitude, number), replaced(&self.momentum, number));
+        Some(Self { attitude, momentum, advected: replaced(&self.advected, number) })
     }
 }
 

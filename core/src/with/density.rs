@@ -89,12 +89,7 @@ where
 }
 
 impl Kept<f64> for DensityMemory {
-    fn each(&self, visit: &mut dyn FnMut(f64)) {
-        visit(self.density);
-        self.time.each(visit);
-    }
-
-    fn from_numbers(next: &mut dyn FnMut() -> f64) -> Option<Self> {
-        Some(Self { density: next(), time: ElapsedTime::from_numbers(next) })
+    fn with_numbers(&self, number: &mut dyn FnMut(f64) -> f64) -> Option<Self> {
+        Some(Self { density: number(self.density), time: self.time.with_numbers(number) })
     }
 }

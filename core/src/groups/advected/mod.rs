@@ -36,7 +36,7 @@ pub use tensors::{ContravariantTensor, ContravariantVector, CovariantTensor, Mix
 use nalgebra::{SMatrix, SVector, SimdBool as _, SimdPartialOrd as _};
 
 use crate::groups::LieGroup;
-use crate::numbers::{Coordinates, Entries, Real, real, sum, zero};
+use crate::numbers::{Coordinates, Entries, Real, of_tuples, real, sum, zero};
 
 /// The advected parameters of a Lagrangian: `()` for none, a vector for one, a tuple for several.
 pub trait Advected<G: LieGroup>: Entries<G::Scalar> + Debug + PartialEq {
@@ -105,18 +105,6 @@ pub(crate) fn seen_of_unit<G: LieGroup, A: Advected<G>>(number: usize, attitude:
     unit.seen_from(attitude).zip(&zero::<G::Scalar, A>().seen_from(attitude), &mut |a, b| a - b)
 }
 
-impl<G: LieGroup> Advected<G> for () {
-    fn seen_from(&self, _: &G) -> Self {}
-
-    fn pulled_back(&self, _: &G) -> Self {}
-
-    fn change(&self, _: &G::Matrix) -> Self {}
-
-    fn rate(&self, _: &G::Matrix) -> Self {}
-
-    fn seen_through(&self, _: &G::Matrix, _: &G::Matrix) -> Self {}
-}
-
 /// An element of `V*`.
 #[hot]
 impl<G, T: Real, const N: usize> Advected<G> for SVector<T, N>
@@ -182,34 +170,31 @@ fn mul<T: Real, const N: usize>(a: &SMatrix<T, N, N>, v: &SVector<T, N>) -> SVec
 }
 
 macro_rules! tuple {
-    ($($name:ident $index:tt),+) => {
+    ($($name:ident $index:tt),*) => {
+        #[allow(clippy::unused_unit, unused_variables)] // of none
         #[hot]
-        impl<G: LieGroup, $($name: Advected<G>),+> Advected<G> for ($($name,)+) {
+        impl<G: LieGroup, $($name: Advected<G>),*> Advected<G> for ($($name,)*) {
             fn seen_from(&self, attitude: &G) -> Self {
-                ($(self.$index.seen_from(attitude),)+)
+                ($(self.$index.seen_from(attitude),)*)
             }
 
             fn pulled_back(&self, attitude: &G) -> Self {
-                ($(self.$index.pulled_back(attitude),)+)
+                ($(self.$index.pulled_back(attitude),)*)
             }
 
             fn change(&self, increment: &G::Matrix) -> Self {
-                ($(self.$index.change(increment),)+)
+                ($(self.$index.change(increment),)*)
             }
 
             fn rate(&self, velocity: &G::Matrix) -> Self {
-                ($(self.$index.rate(velocity),)+)
+                ($(self.$index.rate(velocity),)*)
             }
 
             fn seen_through(&self, matrix: &G::Matrix, inverse: &G::Matrix) -> Self {
-                ($(self.$index.seen_through(matrix, inverse),)+)
+                ($(self.$index.seen_through(matrix, inverse),)*)
             }
         }
     };
 }
 
-tuple!(A 0, B 1);
-tuple!(A 0, B 1, C 2);
-tuple!(A 0, B 1, C 2, D 3);
-tuple!(A 0, B 1, C 2, D 3, E 4);
-tuple!(A 0, B 1, C 2, D 3, E 4, F 5);
+of_tuples!(tuple);

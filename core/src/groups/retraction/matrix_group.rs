@@ -68,8 +68,8 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> Retraction<Ma
 
     /// Lane by lane, as the group's own answer is.
     #[hot]
-    fn is_near_identity(xi: &SVector<T, D>) -> Mask<T> {
-        let far = lane_by_lane::<T, Vector1<T>, N>(&MatrixGroup::<K, T, N, D>::hat(xi), |lane| {
+    fn is_near(xi: &SVector<T, D>, times: f64) -> Mask<T> {
+        let far = lane_by_lane::<T, Vector1<T>, N>(&MatrixGroup::<K, T, N, D>::hat(&(xi * real::<T>(times))), |lane| {
             Vector1::new(if K::is_near_identity(lane) { zero() } else { one() })
         });
         far.x.simd_eq(T::zero())
@@ -102,7 +102,7 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> R
         exponential(&bracket).1
     }
 
-    fn is_near_identity(xi: &SVector<T, D>) -> Mask<T> {
-        K::is_near_identity(&MatrixGroup::<K, T, N, D>::hat(xi))
+    fn is_near(xi: &SVector<T, D>, times: f64) -> Mask<T> {
+        K::is_near_identity(&MatrixGroup::<K, T, N, D>::hat(&(xi * real::<T>(times))))
     }
 }

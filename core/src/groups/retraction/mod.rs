@@ -58,24 +58,30 @@ pub trait Retraction<G: LieGroup> {
         *inertia
     }
 
-    /// Whether `ξ` lies so near to the identity that a solution there is the one that continues the identity.
+    /// Whether `ξ` times this lies so near to the identity that a solution there is the one that continues the identity.
     ///
     /// On SO(3) that is an angle below 90°: for a body whose `J_d` is positive semidefinite there is at most one
     /// such solution. On a [`MatrixGroup`](crate::groups::MatrixGroup) it is what the
     /// [`Generators`](crate::groups::Generators::is_near_identity) say. Farther out a solver looks closer. Each lane has its
     /// own answer.
-    fn is_near_identity(xi: &G::Vector) -> Mask<G::Scalar>;
+    fn is_near(xi: &G::Vector, times: f64) -> Mask<G::Scalar>;
 
-    /// [`is_near_identity`](Self::is_near_identity) for half the coordinates.
+    /// [`is_near`](Self::is_near) for the coordinates themselves.
+    #[must_use]
+    fn is_near_identity(xi: &G::Vector) -> Mask<G::Scalar> {
+        Self::is_near(xi, 1.0)
+    }
+
+    /// The same for half the coordinates.
     #[must_use]
     fn is_half_near_identity(half: &G::Vector) -> Mask<G::Scalar> {
-        Self::is_near_identity(&(*half + *half))
+        Self::is_near(half, 2.0)
     }
 
     /// The same for 3/2 of these, which keeps well away from where increments change fast from step to step.
     #[must_use]
     fn is_half_well_near_identity(half: &G::Vector) -> Mask<G::Scalar> {
-        Self::is_near_identity(&(*half * real(3.0)))
+        Self::is_near(half, 3.0)
     }
 }
 
@@ -127,16 +133,8 @@ impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
         free_body::momentum_tangent(inertia, xi)
     }
 
-    fn is_near_identity(xi: &Vector3<T>) -> Mask<T> {
-        (xi.x * xi.x + xi.y * xi.y + xi.z * xi.z).simd_lt(real(4.0))
-    }
-
-    fn is_half_near_identity(half: &Vector3<T>) -> Mask<T> {
-        (half.x * half.x + half.y * half.y + half.z * half.z).simd_lt(T::one())
-    }
-
-    fn is_half_well_near_identity(half: &Vector3<T>) -> Mask<T> {
-        (half.x * half.x + half.y * half.y + half.z * half.z).simd_lt(real(4.0 / 9.0))
+    fn is_near(xi: &Vector3<T>, times: f64) -> Mask<T> {
+        (xi.x * xi.x + xi.y * xi.y + xi.z * xi.z).simd_lt(real(4.0 / (times * times)))
     }
 }
 
@@ -176,8 +174,8 @@ impl<T: RealField + Copy> Retraction<SO3<T>> for ExponentialRetraction {
         Matrix3::identity() + quadratic_increment(xi, half * half * real(0.5), third)
     }
 
-    fn is_near_identity(xi: &Vector3<T>) -> Mask<T> {
-        xi.norm_squared() < T::frac_pi_2() * T::frac_pi_2()
+    fn is_near(xi: &Vector3<T>, times: f64) -> Mask<T> {
+        (xi * real::<T>(times)).norm_squared() < T::frac_pi_2() * T::frac_pi_2()
     }
 }
 

@@ -229,6 +229,15 @@ const fn places_of<P: Places<E>, E: Effect>() -> u32 {
     P::PLACES as u32
 }
 
+/// Functions that are sums over the places, by those of [`Placement`] that make such sums.
+macro_rules! summed {
+    ($($sum:ident: $($name:ident)+ -> $result:ty;)+) => {$($(
+        fn $name(&self, f: &Matrix<Self>, w: &P::Advected, h: Self::Scalar) -> $result {
+            self.$sum(w, |term, w, at| term.$name(&P::matrix(f, at), w, h))
+        }
+    )+)+};
+}
+
 impl<P, E, const M: usize> DiscreteLagrangian for Placement<P, E, M>
 where
     P: Places<E> + Copy + Debug + PartialEq,
@@ -241,27 +250,8 @@ where
         self.terms.iter().all(E::is_self_adjoint)
     }
 
-    fn l_d(&self, f: &Matrix<Self>, w: &P::Advected, h: Self::Scalar) -> Self::Scalar {
-        self.total(w, |term, w, at| term.l_d(&P::matrix(f, at), w, h))
-    }
-
-    fn right_momentum(&self, f: &Matrix<Self>, w: &P::Advected, h: Self::Scalar) -> Vector<Self> {
-        self.gathered(w, |term, w, at| term.right_momentum(&P::matrix(f, at), w, h))
-    }
-
-    fn left_momentum(&self, f: &Matrix<Self>, w: &P::Advected, h: Self::Scalar) -> Vector<Self> {
-        self.gathered(w, |term, w, at| term.left_momentum(&P::matrix(f, at), w, h))
-    }
-
-    fn diamond(&self, f: &Matrix<Self>, w: &P::Advected, h: Self::Scalar) -> Vector<Self> {
-        self.gathered(w, |term, w, at| term.diamond(&P::matrix(f, at), w, h))
-    }
-
-    fn legendre_minus(&self, f: &Matrix<Self>, w: &P::Advected, h: Self::Scalar) -> Vector<Self> {
-        self.gathered(w, |term, w, at| term.legendre_minus(&P::matrix(f, at), w, h))
-    }
-
-    fn discrete_energy(&self, f: &Matrix<Self>, w: &P::Advected, h: Self::Scalar) -> Self::Scalar {
-        self.total(w, |term, w, at| term.discrete_energy(&P::matrix(f, at), w, h))
+    summed! {
+        total: l_d discrete_energy -> Self::Scalar;
+        gathered: right_momentum left_momentum diamond legendre_minus -> Vector<Self>;
     }
 }

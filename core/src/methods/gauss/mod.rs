@@ -20,7 +20,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::SO3;
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, SceneVisitor, constant_inertia};
 use crate::methods::splitting::torque;
-use crate::motion::{Cost, Motion, OwnStep, Plan, StepReport, Stepper, Summation, SumsOf, Variable};
+use crate::motion::{Cost, Motion, OwnStep, Plan, Stepper, Summation, SumsOf, Variable};
 use crate::numbers::{Vectors, two_sum};
 use nalgebra::Vector3;
 
@@ -178,15 +178,10 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS
         CollocationMemory::of(motion.attitude, &motion.momentum)
     }
 
-    /// [`StepError::NotConverged`] where the step is too long for the iteration.
-    #[inline(always)]
-    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
-        self.run(scene, motion, kept, 1).map(StepReport::of_run)
-    }
-
     const STEPS_BY_RUNS: bool = true;
 
-    /// Attitude and momentum are read off at the end.
+    /// Attitude and momentum are read off at the end. [`StepError::NotConverged`] where the step is too long for the
+    /// iteration.
     #[inline(always)]
     fn run<M: SumsOf<S>>(&self, _: &S, motion: &mut M, kept: &mut Self::Kept, steps: u64) -> Result<u64, StepError> {
         let mut iterations = 0;

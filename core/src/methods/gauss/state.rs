@@ -47,23 +47,11 @@ impl<const PAIRS: usize> CollocationMemory<PAIRS> {
 }
 
 impl<const PAIRS: usize> Kept<f64> for CollocationMemory<PAIRS> {
-    fn each(&self, visit: &mut dyn FnMut(f64)) {
-        self.lifted.iter().chain(&self.carry).for_each(|&number| visit(number));
-        visit(count(usize::from(self.stages.is_some())));
-        let stages = self.stages.map_or([[[0.0; PAIRS]; 2]; 8], |stages| stages.0);
-        stages.as_flattened().as_flattened().iter().for_each(|&number| visit(number));
-    }
-
-    fn from_numbers(next: &mut dyn FnMut() -> f64) -> Option<Self> {
-        let lifted = core::array::from_fn(|_| next());
-        let carry = core::array::from_fn(|_| next());
-        let has_stages = match counted(next())? {
-            0 => false,
-            1 => true,
-            _ => return None,
-        };
-        let mut stages = [[[0.0; PAIRS]; 2]; 8];
-        stages.as_flattened_mut().as_flattened_mut().iter_mut().for_each(|number| *number = next());
+    fn with_numbers(&self, number: &mut dyn FnMut(f64) -> f64) -> Option<Self> {
+        let (lifted, carry) = (self.lifted.map(&mut *number), self.carry.map(&mut *number));
+        let has_stages = counted(number(count(usize::from(self.stages.is_some())))).filter(|&has| has <= 1)? == 1;
+        let mut stages = self.stages.map_or([[[0.0; PAIRS]; 2]; 8], |stages| stages.0);
+        stages.as_flattened_mut().as_flattened_mut().iter_mut().for_each(|entry| *entry = number(*entry));
         // A unit quaternion, to some roundings.
         let is_unit = (length_squared(&lifted) - 1.0).abs() < f64::EPSILON.sqrt();
         is_unit.then_some(Self { lifted, carry, stages: has_stages.then_some(Stages(stages)) })

@@ -103,7 +103,7 @@ impl<const K: usize, const N: usize, const L: usize> Closing<K, N, L> {
     }
 
     /// Its ends at bodies.
-    fn ends(&self) -> impl Iterator<Item = (usize, &Ends<K>)> {
+    pub(super) fn ends(&self) -> impl Iterator<Item = (usize, &Ends<K>)> {
         let both = self.bodies.into_iter().zip(&self.slopes.0);
         both.filter_map(|(body, ends)| Some((body?, ends)))
     }
@@ -131,14 +131,10 @@ pub(super) fn factorise<const K: usize, const N: usize, const L: usize>(
     loops: &mut [Closing<K, N, L>; L],
 ) {
     for closing in loops.iter_mut().filter(|closing| closing.rows > 0) {
-        closing.free = SVector::zeros();
-        for side in 0..2 {
-            let Some(body) = closing.bodies[side] else { continue };
-            let Ends { before, after } = &closing.slopes.0[side];
+        closing.free = closing.ends().fold(SVector::zeros(), |free, (body, Ends { before, after })| {
             let factors = Vector6::factorise_apart(&bodies[body].matrix, Pattern::WHOLE).0;
-            let own = *after * solved(&factors, before);
-            closing.free += own.diagonal();
-        }
+            free + (after * solved(&factors, before)).diagonal()
+        });
     }
     for &k in tree.order.iter().rev() {
         let member = tree.members[k];
@@ -168,13 +164,10 @@ fn close<const K: usize, const N: usize, const L: usize>(
     loops: &mut [Closing<K, N, L>; L],
 ) {
     for closing in loops.iter_mut().filter(|closing| closing.rows > 0) {
-        closing.columns = [SMatrix::zeros(); N];
         closing.multipliers = [SMatrix::zeros(); N];
-        for (side, body) in closing.bodies.into_iter().enumerate() {
-            if let Some(body) = body {
-                closing.columns[body] += closing.slopes.0[side].before;
-            }
-        }
+        let mut columns = [SMatrix::zeros(); N];
+        closing.ends().for_each(|(body, ends)| columns[body] += ends.before);
+        closing.columns = columns;
         substitute(tree, bodies, &mut closing.columns, &mut closing.multipliers);
     }
     for i in 0..L {

@@ -135,11 +135,7 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
             }
         }
         for (closing, multiplier) in self.loops.iter().zip(&self.unknowns.loops) {
-            for (body, ends) in closing.bodies.into_iter().zip(&closing.slopes.0) {
-                if let Some(body) = body {
-                    reactions[body] += ends.before * multiplier;
-                }
-            }
+            closing.ends().for_each(|(body, ends)| reactions[body] += ends.before * multiplier);
         }
         reactions
     }

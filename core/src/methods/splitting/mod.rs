@@ -26,8 +26,7 @@ use crate::mechanics::{
     DiscreteLagrangian, Effect, Operations, Regular, RigidScene, Scalar, SceneVisitor, Term, constant_inertia,
 };
 use crate::motion::{
-    Cost, Motion, OwnStep, Plan, STEPS_BETWEEN_CHECKS, Steerable, StepReport, Stepper, Summation, SumsOf, Variable,
-    is_due,
+    Cost, Motion, OwnStep, Plan, STEPS_BETWEEN_CHECKS, Steerable, Stepper, Summation, SumsOf, Variable, is_due,
 };
 use crate::numbers::{Coordinates, Real, Vectors, count, largest_lane, real, reported};
 use nalgebra::{
@@ -407,11 +406,6 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Splitting<S, K> {
     }
 
     fn keep(&self, _: &S, _: &Motion<SO3<Scalar<S>>, S::Advected>) {}
-
-    #[hot]
-    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut ()) -> Result<StepReport, StepError> {
-        self.run(scene, motion, kept, 1).map(StepReport::of_run)
-    }
 
     const STEPS_BY_RUNS: bool = true;
 

@@ -97,7 +97,7 @@ impl<S: Effect<Scalar: Storable>, P: Plan<S>> Stepper<S, P> {
         let (own, method) = (Parameters::of_scene(&self.scene), Parameters::of_plan(&self.plan));
         let mut numbers = Vec::new();
         kept.each(&mut |number| numbers.push(number));
-        elapsed.each(&mut |number| numbers.push(number));
+        numbers.extend([elapsed.sum, elapsed.carry]);
         let mut checkpoint = Checkpoint {
             format: FORMAT,
             scene: own.fingerprint,
@@ -132,7 +132,7 @@ impl<S: Effect<Scalar: Storable>, P: Plan<S>> Stepper<S, P> {
             advected: unlisted::<_, S::Advected>("advected", &checkpoint.advected)?,
             steps: checkpoint.steps,
         };
-        let kept = remembered::<Scalar<S>, P::Kept>(&checkpoint.kept)?;
+        let kept = remembered(&checkpoint.kept, &self.plan.keep(&self.scene, &motion))?;
         // Far more than rounding makes in any number of steps, far less than what isn't an attitude.
         let allowed = Scalar::<S>::simd_default_epsilon().simd_sqrt();
         let defect = attitude.defect();
@@ -187,17 +187,14 @@ impl<S: Effect<Scalar: Storable>, P: Plan<S>> Stepper<S, P> {
     }
 }
 
-/// What a method keeps, if these numbers can be that.
-fn remembered<T: Storable, K: Kept<T>>(list: &[T]) -> Result<Option<(K, ElapsedTime<T>)>, CheckpointError> {
-    let mut expected = 0;
-    let _ = K::from_numbers(&mut || {
-        expected += 1;
-        T::zero()
-    });
-    readable("kept", list, expected + 2)?;
+/// What a method keeps that keeps such a memory, if these numbers can be that.
+fn remembered<T: Storable, K: Kept<T>>(list: &[T], like: &K) -> Result<Option<(K, ElapsedTime<T>)>, CheckpointError> {
+    let mut expected = 2;
+    like.each(&mut |_| expected += 1);
+    readable("kept", list, expected)?;
     let mut numbers = list.iter();
-    let mut next = || numbers.next().copied().unwrap_or_else(T::zero);
-    Ok(K::from_numbers(&mut next).map(|kept| (kept, ElapsedTime::from_numbers(&mut next))))
+    let mut next = |_| numbers.next().copied().unwrap_or_else(T::zero);
+    Ok(like.with_numbers(&mut next).map(|kept| (kept, ElapsedTime::nothing().with_numbers(&mut next))))
 }
 
 fn list<T: Real>(entries: &impl Entries<T>) -> Vec<T> {

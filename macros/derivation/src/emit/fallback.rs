@@ -160,13 +160,14 @@ fn constraint(header: &Header) -> TokenStream {
 fn gradients(header: &Header) -> TokenStream {
     let (span, private, implementation) =
         (Span::mixed_site(), &header.private, header.implementation("SecondDerivatives"));
-    let (vector, square, matrix, scalar) = (header.vector(), header.square(), header.matrix(), &header.scalar);
+    let (vector, square, scalar) = (header.vector(), header.square(), &header.scalar);
     let core = quote_spanned!(span=> #private::core);
+    let point = quote_spanned!(span=> #private::StepPoint<'_, Self::Group, Self::Advected>);
     let visits = ["by_parameters", "by_advected"].map(|name| {
         let name = syn::Ident::new(name, span);
         quote_spanned! {span=>
             fn #name(
-                &self, _: &#matrix, _: &Self::Advected, _: #scalar,
+                &self, _: #point,
                 _: &mut impl #core::ops::FnMut(#core::primitive::usize, #vector, #vector),
             ) {
                 loop {}
@@ -178,12 +179,12 @@ fn gradients(header: &Header) -> TokenStream {
         #[allow(clippy::all, clippy::pedantic)]
         #implementation {
             const PARAMETERS: #core::primitive::usize = 0;
-            fn step_derivatives(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #private::StepDerivatives<#square> { loop {} }
+            fn step_derivatives(&self, _: #point) -> #private::StepDerivatives<#square> { loop {} }
             #(#visits)*
             fn carried_parameters(_: &mut impl #core::ops::FnMut(#core::primitive::usize, #core::primitive::usize)) {}
-            fn adjoint_system(&self, _: &#matrix, _: &Self::Advected, _: #scalar, _: &#vector) -> (#square, #vector) { loop {} }
+            fn adjoint_system(&self, _: #point, _: &#vector) -> (#square, #vector) { loop {} }
             fn adjoint_gradient(
-                &self, _: &#matrix, _: &Self::Advected, _: #scalar, _: [&#vector; 2],
+                &self, _: #point, _: [&#vector; 2],
                 _: &mut impl #core::ops::FnMut(#core::primitive::usize, #scalar),
             ) -> (#vector, Self::Advected) {
                 loop {}

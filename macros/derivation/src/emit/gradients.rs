@@ -21,9 +21,12 @@ pub(super) fn implementation(emitter: &Emitter, derivatives: Option<&Derivatives
     let of_kick = kick_gradient(emitter, derivatives);
     let (usize, count) = (quote_spanned!(span=> #private::core::primitive::usize), parameter_count(emitter));
     let carried = carried_parameters(emitter);
-    let (scalar, matrix, vector) = (&emitter.header.scalar, emitter.header.matrix(), emitter.header.vector());
+    let (scalar, vector) = (&emitter.header.scalar, emitter.header.vector());
     let implementation = emitter.header.implementation("SecondDerivatives");
     let square = emitter.header.square();
+    let point = quote_spanned! {span=>
+        #private::StepPoint { increment, w, h }: #private::StepPoint<'_, Self::Group, Self::Advected>
+    };
     let visit = quote_spanned!(span=> visit: &mut impl #private::core::ops::FnMut(#usize, #vector, #vector));
     Some(quote_spanned! {span=>
         #[automatically_derived]
@@ -32,17 +35,17 @@ pub(super) fn implementation(emitter: &Emitter, derivatives: Option<&Derivatives
             const PARAMETERS: #usize = #count;
 
             #[cfg_attr(not(debug_assertions), inline(always))]
-            fn step_derivatives(&self, increment: &#matrix, w: &Self::Advected, h: #scalar) -> #private::StepDerivatives<#square> {
+            fn step_derivatives(&self, #point) -> #private::StepDerivatives<#square> {
                 #blocks
             }
 
             #[cfg_attr(not(debug_assertions), inline(always))]
-            fn by_parameters(&self, increment: &#matrix, w: &Self::Advected, h: #scalar, #visit) {
+            fn by_parameters(&self, #point, #visit) {
                 #parameters
             }
 
             #[cfg_attr(not(debug_assertions), inline(always))]
-            fn by_advected(&self, increment: &#matrix, w: &Self::Advected, h: #scalar, #visit) {
+            fn by_advected(&self, #point, #visit) {
                 #advected
             }
 
@@ -53,14 +56,14 @@ pub(super) fn implementation(emitter: &Emitter, derivatives: Option<&Derivatives
 
             #[cfg_attr(not(debug_assertions), inline(always))]
             fn adjoint_system(
-                &self, increment: &#matrix, w: &Self::Advected, h: #scalar, at_end: &#vector,
+                &self, #point, at_end: &#vector,
             ) -> (#square, #vector) {
                 #system
             }
 
             #[cfg_attr(not(debug_assertions), inline(always))]
             fn adjoint_gradient(
-                &self, increment: &#matrix, w: &Self::Advected, h: #scalar, [at_start, at_end]: [&#vector; 2],
+                &self, #point, [at_start, at_end]: [&#vector; 2],
                 visit: &mut impl #private::core::ops::FnMut(#usize, #scalar),
             ) -> (#vector, Self::Advected) {
                 #gradient

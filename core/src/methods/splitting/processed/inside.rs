@@ -2,7 +2,7 @@
 
 use crate::groups::{Advected, LieGroup as _, SO3};
 use crate::motion::{Kept, Motion};
-use crate::numbers::{Entries, Real, count, counted, real, zero};
+use crate::numbers::{Real, count, counted, real, replaced, zero};
 use nalgebra::SimdBool as _;
 
 /// Where a run is inside of its processor, by [`ProcessedSplitting`](super::ProcessedSplitting), and by which step; or that it isn't there:
@@ -33,8 +33,8 @@ impl<T: Real, A: Advected<SO3<T>>> InsideMotion<T, A> {
 }
 
 impl<T: Real, A: Advected<SO3<T>>> Kept<T> for Inside<T, A> {
-    fn each(&self, mut visit: &mut dyn FnMut(T)) {
-        visit(count(usize::from(self.0.is_some())));
+    fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self> {
+        let is_inside = counted(number(count(usize::from(self.0.is_some())))).filter(|&is_inside| is_inside <= 1)? == 1;
         let nothing = || InsideMotion {
             attitude: SO3::from_matrix_unchecked(zero()),
             momentum: zero::<T, nalgebra::Vector3<T>>(),
@@ -42,21 +42,8 @@ impl<T: Real, A: Advected<SO3<T>>> Kept<T> for Inside<T, A> {
             h: T::zero(),
         };
         let InsideMotion { attitude, momentum, advected, h } = self.0.unwrap_or_else(nothing);
-        Entries::each(attitude.as_matrix(), &mut visit);
-        Entries::each(&momentum, &mut visit);
-        advected.each(&mut visit);
-        visit(h);
-    }
-
-    fn from_numbers(mut next: &mut dyn FnMut() -> T) -> Option<Self> {
-        let is_inside = match counted(next())? {
-            0 => false,
-            1 => true,
-            _ => return None,
-        };
-        let attitude = SO3::from_matrix_unchecked(Entries::from_entries(&mut next));
-        let (momentum, advected) = (Entries::from_entries(&mut next), Entries::from_entries(&mut next));
-        let h = next();
+        let attitude = SO3::from_matrix_unchecked(replaced(attitude.as_matrix(), number));
+        let (momentum, advected, h) = (replaced(&momentum, number), replaced(&advected, number), number(h));
         if !is_inside {
             return Some(Self(None));
         }
@@ -76,7 +63,7 @@ mod tests {
     fn read(flag: f64, corner: f64) -> Option<Inside<f64, Vector3<f64>>> {
         let attitude = [corner, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0];
         let mut numbers = [flag].into_iter().chain(attitude).chain([1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 0.1]);
-        Inside::from_numbers(&mut || numbers.next().unwrap())
+        Inside(None).with_numbers(&mut |_| numbers.next().unwrap())
     }
 
     #[test]
@@ -85,7 +72,7 @@ mod tests {
             let (mut numbers, inside) = (Vec::new(), read(flag, 1.0).unwrap());
             inside.each(&mut |number| numbers.push(number));
             let mut again = numbers.iter().copied();
-            assert_eq!(Inside::from_numbers(&mut || again.next().unwrap()), Some(inside));
+            assert_eq!(Inside(None).with_numbers(&mut |_| again.next().unwrap()), Some(inside));
             assert_eq!((numbers.len(), again.next()), (17, None));
         }
     }

@@ -16,7 +16,7 @@ use super::{KineticFlow, Length, Splitting, Stages, has_force_gradient, share_of
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, SO3};
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor, Term};
-use crate::motion::{Cost, Motion, OwnStep, Plan, Steerable, StepReport, Stepper, Summation, SumsOf};
+use crate::motion::{Cost, Motion, OwnStep, Plan, Steerable, Stepper, Summation};
 use crate::numbers::{Coordinates, Real, Vectors, real};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector3};
 
@@ -211,11 +211,6 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for ProcessedSplitting<S,
             let is_there = inside.h.simd_eq(self.kernel.h);
             is_there.all() || !is_there.any()
         })
-    }
-
-    #[hot]
-    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
-        self.run(scene, motion, kept, 1).map(StepReport::of_run)
     }
 
     const STEPS_BY_RUNS: bool = true;
