@@ -59,6 +59,8 @@ fn assert_knows_a_quarter_turn<R: Retraction<SO3>>() {
         let near = R::local_coordinates(&random.rotation_by(FRAC_PI_2 - 1e-9)).unwrap();
         let far = R::local_coordinates(&random.rotation_by(FRAC_PI_2 + 1e-9)).unwrap();
         assert!(R::is_near_identity(&near) && !R::is_near_identity(&far));
+        assert!(R::is_half_near_identity(&(near * 0.5)) && !R::is_half_near_identity(&(far * 0.5)));
+        assert!(R::is_half_well_near_identity(&(near / 3.0)) && !R::is_half_well_near_identity(&(far / 3.0)));
     }
     assert!(R::is_near_identity(&Vector3::zeros()));
 }

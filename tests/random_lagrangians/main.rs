@@ -38,8 +38,8 @@ fn assert_structure<L: System + Clone>(lagrangian: &L, seed: u64) {
     assert!(parameters < ROUNDING, "parameters: {parameters:e}");
 }
 
-/// Whether a claim holds of some random seeds; a failure names its seed. One function for all, as a runner for each would
-/// be a tenth of what is compiled here.
+/// Asserts a claim for eight random seeds; a failure names its seed. All tests share this one runner: one for each would be
+/// a twentieth of what is compiled here.
 fn for_seeds(claim: &dyn Fn(u64)) {
     let config = Config { cases: 8, failure_persistence: None, max_shrink_iters: 0, ..Config::default() };
     let run = TestRunner::new(config).run(&any::<u64>(), |seed| {

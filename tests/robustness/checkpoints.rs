@@ -125,6 +125,18 @@ fn edited(stored: &Checkpoint<f64>, edit: impl FnOnce(&mut Value)) -> Checkpoint
 }
 
 #[test]
+fn p7_a_density_around_collocation_is_kept() {
+    let motion = Motion::looping();
+    let stepper = Stepper::collocated::<2>(motion.top.clone(), 0.01).unwrap().with_density(|_, _| 0.0);
+    let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
+    stepper.run(&mut state, 10).unwrap();
+    let stored = stepper.checkpoint(&state);
+    assert_eq!(stepper.resume(&stored).unwrap(), state);
+    let scaled = stepper.resume(&edited(&stored, |value| value["attitude"][4] = json!(0.5))).unwrap_err();
+    assert!(matches!(scaled, CheckpointError::NotInGroup { .. }), "{scaled}");
+}
+
+#[test]
 fn p7_what_is_no_state_of_the_scene_is_refused() {
     let (stepper, stored) = checkpoint();
     let refused = |edit: fn(&mut Value)| stepper.resume(&edited(&stored, edit)).unwrap_err();

@@ -143,14 +143,14 @@ pub(crate) fn plan<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
     let mut counts: Vec<u64> = counts.into_iter().collect();
     counts.sort_unstable();
     counts.dedup();
-    let known = match reference {
-        Reference::End(end) => Ok(end),
-        Reference::Finest => Err(counts.pop().unwrap_or(0)),
-    };
+    let most = if matches!(reference, Reference::Finest) { counts.pop() } else { None };
     if counts.first().is_none_or(|fewest| *fewest == 0) {
         return Err(RefinementError::NoSteps);
     }
-    let exact = known.or_else(|most| Ready::new(family, time, most)?.run().map(|(end, _)| end))?;
+    let exact = match (reference, most) {
+        (Reference::End(end), _) => end,
+        (Reference::Finest, most) => Ready::new(family, time, most.unwrap_or(0))?.run()?.0,
+    };
     Ok((counts, exact))
 }
 

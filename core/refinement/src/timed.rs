@@ -1,4 +1,4 @@
-//! Work and precision: the runs of a refinement, timed. Nothing else asks a clock.
+//! Work and precision: the runs of a refinement, timed. No other file of this package asks a clock.
 
 use std::time::{Duration, Instant};
 

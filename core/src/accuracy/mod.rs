@@ -1,6 +1,6 @@
 //! Asking by accuracy: the cheapest method and its step, by [`Stepper::for_accuracy`](crate::motion::Stepper::for_accuracy).
 //!
-//! Errors, orders and costs of a method that you choose yourself are measured by the package `liestep-refinement`.
+//! The package `liestep-refinement` measures errors, orders and costs of a method that you choose yourself.
 //!
 //! # How a choice is made
 //!

@@ -72,10 +72,10 @@ impl<G: LieGroup<Scalar = f64>> Start<G> {
 }
 
 impl<G: LieGroup<Scalar = f64>> End<G> {
-    /// The error that [`Accuracy`] defines, without a unit: of a run that starts with this body velocity `Ω(0)`, on SO(3) in
-    /// rad/s, and takes the time `T`, s, or `−T`.
+    /// The error of this end, as [`Accuracy`] defines it: that of attitude and body velocity together, without a unit.
     ///
-    /// It isn't finite where one of the ends isn't.
+    /// `exact` is where the run should have ended. `start` is the body velocity `Ω(0)` at its start, on SO(3) in rad/s.
+    /// `time` is the time of the run, s; its sign doesn't matter. The error isn't finite if one of the ends isn't.
     ///
     /// # Examples
     ///

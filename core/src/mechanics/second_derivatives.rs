@@ -117,16 +117,16 @@ pub trait SecondDerivatives: Effect {
 
 /// The point at which a step is differentiated.
 #[derive(Clone, Copy, Debug)]
-#[doc(hidden)]
 pub struct StepPoint<'a, G: LieGroup, A> {
-    /// `F − I`.
+    /// The increment less the identity, `F − I`, as a matrix of the group.
     pub increment: &'a G::Matrix,
-    /// What the body sees before the step.
+    /// What the body sees before the step, `w`.
     pub w: &'a A,
-    /// The length of the step, s.
+    /// The length `h` of the step, s.
     pub h: G::Scalar,
 }
 
+/// The point of a step of this effect.
 pub(crate) type PointOf<'a, E> = StepPoint<'a, Group<E>, <E as Term>::Advected>;
 
 impl<'a, G: LieGroup, A, B> StepPoint<'a, G, (A, B)> {

@@ -2,16 +2,19 @@
 
 use core::fmt::Debug;
 
+use crate::motion::state::ElapsedTime;
 use crate::numbers::{Coordinates, History, Real, replaced};
 use crate::solving::{Guess, WarmStart};
 
 /// What a [`Plan`](crate::motion::Plan) keeps from step to step, as numbers that a checkpoint stores.
 pub trait Kept<T: Real>: Copy + Debug + PartialEq {
-    /// The same with others in the place of its numbers, which are shown in a fixed order; how many there are doesn't
-    /// depend on their values. `None` if the others can't be those of such a memory.
+    /// A memory of the same kind with other numbers.
+    ///
+    /// `number` is called with each number of this memory, in a fixed order, and returns the one that takes its place. How
+    /// often it is called doesn't depend on the numbers. `None` if the new ones can't be those of such a memory.
     fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self>;
 
-    /// Visits all of it, in that order.
+    /// Visits all numbers, in the order of [`with_numbers`](Self::with_numbers).
     fn each(&self, visit: &mut dyn FnMut(T)) {
         let _ = self.with_numbers(&mut |number| {
             visit(number);
@@ -32,10 +35,18 @@ impl<T: Real> Kept<T> for () {
     }
 }
 
+impl<T: Real> Kept<T> for ElapsedTime<T> {
+    fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self> {
+        Some(Self { sum: number(self.sum), carry: number(self.carry) })
+    }
+}
+
 /// Of a plan around another: what that keeps, and what it keeps besides.
 impl<T: Real, A: Kept<T>, B: Kept<T>> Kept<T> for (A, B) {
     fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self> {
-        Some((self.0.with_numbers(number)?, self.1.with_numbers(number)?))
+        // Both are visited even if the first can't be: how many numbers there are doesn't depend on their values.
+        let (first, second) = (self.0.with_numbers(number), self.1.with_numbers(number));
+        Some((first?, second?))
     }
 
     fn scaled(&self, ratio: T) -> Self {

@@ -114,10 +114,11 @@ pub trait Plan<S: Effect>: Sized {
         true
     }
 
-    /// One step; by default a [run](Self::run) of one, where [`STEPS_BY_RUNS`](Self::STEPS_BY_RUNS) says so.
+    /// One step. A plan writes it, or it writes [`run`](Self::run) and sets [`STEPS_BY_RUNS`](Self::STEPS_BY_RUNS); then a
+    /// step is a run of one.
     ///
-    /// It is marked `#[inline(always)]`, as what is called isn't kept in registers and has no vector instructions of the
-    /// machine. The library's own are marked so but for builds with debug assertions, which are to be built soon.
+    /// Mark your own `#[inline(always)]`: a function that is called isn't kept in registers and has no vector instructions
+    /// of the machine. The library's own are called in builds with debug assertions, which are to be built soon.
     ///
     /// # Errors
     ///
@@ -130,7 +131,7 @@ pub trait Plan<S: Effect>: Sized {
         motion: &mut M,
         kept: &mut Self::Kept,
     ) -> Result<StepReport, StepError> {
-        const { assert!(Self::STEPS_BY_RUNS, "a plan says what a step is, or a run by which steps are made") }
+        const { assert!(Self::STEPS_BY_RUNS, "a plan has neither: write `step`, or `run` with `STEPS_BY_RUNS = true`") }
         self.run(scene, motion, kept, 1).map(StepReport::of_run)
     }
 
@@ -204,6 +205,7 @@ pub trait Plan<S: Effect>: Sized {
         kept: &mut Self::Kept,
         steps: u64,
     ) -> Result<u64, StepError> {
+        const { assert!(!Self::STEPS_BY_RUNS, "with `STEPS_BY_RUNS` a step is a run of one: write `run`") }
         let mut iterations = 0;
         for _ in 0..steps {
             iterations += u64::from(self.step(scene, motion, kept)?.iterations);

@@ -38,10 +38,6 @@ impl<T: Real> ElapsedTime<T> {
     pub(crate) fn add(&mut self, length: T) {
         (self.sum, self.carry) = two_sum(self.sum, length + self.carry);
     }
-
-    pub(crate) fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Self {
-        Self { sum: number(self.sum), carry: number(self.carry) }
-    }
 }
 
 impl<G: LieGroup, A, K> Deref for State<G, A, K> {

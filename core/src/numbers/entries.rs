@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use nalgebra::SMatrix;
 
-use crate::numbers::scalar::Real;
+use crate::numbers::scalar::{Real, count, counted};
 
 /// A fixed number of scalars in a fixed order.
 pub trait Entries<T>: Copy {
@@ -63,7 +63,7 @@ impl<T: Real, const R: usize, const C: usize> Entries<T> for SMatrix<T, R, C> {
 
 macro_rules! tuple {
     ($($name:ident $index:tt),*) => {
-        #[allow(clippy::unused_unit, unused_variables)] // of none
+        #[allow(clippy::unused_unit, unused_variables)] // in the impl of the empty tuple
         #[hot]
         impl<S, $($name: Entries<S>),*> Entries<S> for ($($name,)*) {
             fn from_entries(next: &mut impl FnMut() -> S) -> Self {
@@ -81,7 +81,7 @@ macro_rules! tuple {
     };
 }
 
-/// Writes the impls of all tuples by this macro, which takes the name and the place of each part.
+/// Calls a macro for the tuples of no part and of two to six, with the name and the index of each part.
 macro_rules! of_tuples {
     ($tuple:ident) => {
         $tuple!();
@@ -119,12 +119,18 @@ macro_rules! entries_of_value {
 
 pub(crate) use entries_of_value;
 
-/// With others in the place of these scalars, which are shown in the order of [`each`](Entries::each).
+/// A value with other scalars: `scalar` is called with each of these, in the order of [`each`](Entries::each), and returns
+/// the one that takes its place.
 pub(crate) fn replaced<T: Real, E: Entries<T>>(entries: &E, scalar: &mut dyn FnMut(T) -> T) -> E {
     let mut others = Vec::new();
     entries.each(&mut |entry| others.push(scalar(entry)));
     let mut others = others.into_iter();
     E::from_entries(&mut || others.next().unwrap_or_else(T::zero))
+}
+
+/// A flag that is kept as zero or one; `None` if the number in its place is neither.
+pub(crate) fn flag<T: Real>(is_set: bool, number: &mut dyn FnMut(T) -> T) -> Option<bool> {
+    counted(number(count(usize::from(is_set)))).filter(|&flag| flag <= 1).map(|flag| flag == 1)
 }
 
 /// `a + b`, place by place.

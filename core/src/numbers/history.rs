@@ -2,7 +2,7 @@
 
 use core::fmt::Debug;
 
-use crate::numbers::{Coordinates, Real, count, counted, replaced};
+use crate::numbers::{Coordinates, Real, count, counted, flag, replaced};
 
 /// What is remembered of values at equal times to guess the next one.
 pub trait History<T: Real, V: Coordinates<T>>: Copy + Debug + PartialEq {
@@ -15,8 +15,7 @@ pub trait History<T: Real, V: Coordinates<T>>: Copy + Debug + PartialEq {
     /// Called after the first value. The value before it was an estimate, so the difference of the two is forgotten.
     fn forget_the_estimate(&mut self);
 
-    /// The same with others in the place of its numbers, which are shown in a fixed order; `None` if the others can't be
-    /// those of a history.
+    /// A history with other numbers, as [`Kept::with_numbers`](crate::motion::Kept::with_numbers) makes a memory.
     fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self>;
 
     /// The history of the values times this.
@@ -133,7 +132,7 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Either<V> {
     }
 
     fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self> {
-        let is_long = counted(number(count(usize::from(self.is_long)))).filter(|&is_long| is_long <= 1)? == 1;
+        let is_long = flag(self.is_long, number)?;
         let parabola = self.parabola.with_numbers(number)?;
         Some(Self { is_long, parabola, polynomial: self.polynomial.with_numbers(number)? })
     }

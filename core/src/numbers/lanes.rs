@@ -224,7 +224,7 @@ impl<V: Lanes> Lanes for PhantomData<V> {
 
 macro_rules! tuple {
     ($($name:ident $index:tt),*) => {
-        #[allow(clippy::unused_unit, unused_variables)] // of none
+        #[allow(clippy::unused_unit, unused_variables)] // in the impl of the empty tuple
         impl<$($name: Lanes),*> Lanes for ($($name,)*) {
             type Lane = ($($name::Lane,)*);
 

@@ -43,7 +43,7 @@ pub use coordinates::Coordinates;
 pub use digest::Digest;
 pub(crate) use dual::{Dual, Number};
 pub use entries::Entries;
-pub(crate) use entries::{entries_of_value, of_tuples, replaced, sum, zero};
+pub(crate) use entries::{entries_of_value, flag, of_tuples, replaced, sum, zero};
 pub(crate) use exact::{carried_sum, two_square, two_sum};
 pub(crate) use history::{Either, History, Parabola, Polynomial};
 pub use join::{Join, Twice};

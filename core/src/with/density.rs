@@ -90,6 +90,6 @@ where
 
 impl Kept<f64> for DensityMemory {
     fn with_numbers(&self, number: &mut dyn FnMut(f64) -> f64) -> Option<Self> {
-        Some(Self { density: number(self.density), time: self.time.with_numbers(number) })
+        Some(Self { density: number(self.density), time: self.time.with_numbers(number)? })
     }
 }

@@ -13,10 +13,10 @@ const LENGTHS: [usize; 3] = [500, 80, 126];
 #[rustfmt::skip]
 const BUDGETS: [(&str, usize, usize); 41] = [
     ("core/src/lib", 60, 11), ("core/src/prelude", 12, 28), ("core/src/private", 176, 63), ("core/src/error", 522, 2),
-    ("core/src/numbers", 2639, 14), ("core/src/groups", 4008, 35), ("core/src/laws", 671, 3),
-    ("core/src/mechanics", 3559, 44), ("core/src/effects", 431, 16), ("core/src/solving", 1343, 3),
-    ("core/src/motion", 3515, 30), ("core/src/gradients", 1826, 13), ("core/src/methods", 7913, 28),
-    ("core/src/recording", 1905, 14), ("core/src/with", 1636, 7), ("core/src/accuracy", 1132, 9),
+    ("core/src/numbers", 2644, 14), ("core/src/groups", 4009, 35), ("core/src/laws", 671, 3),
+    ("core/src/mechanics", 3560, 45), ("core/src/effects", 431, 16), ("core/src/solving", 1343, 3),
+    ("core/src/motion", 3524, 30), ("core/src/gradients", 1826, 13), ("core/src/methods", 7913, 28),
+    ("core/src/recording", 1905, 14), ("core/src/with", 1635, 7), ("core/src/accuracy", 1132, 9),
     ("core/src/conventions", 12, 0), ("core/src/guide", 19, 0), ("core/tests", 990, 0), ("macros/src", 235, 0),
     ("macros/derivation/src/lib", 28, 0), ("macros/derivation/src/expand", 3061, 0),
     ("macros/derivation/src/staged", 714, 0), ("macros/derivation/src/emit", 3767, 0),
@@ -24,7 +24,7 @@ const BUDGETS: [(&str, usize, usize); 41] = [
     ("macros/derivation/src/program", 2506, 0), ("macros/derivation/src/mathematics", 4588, 0),
     ("core/late", 3308, 0), ("core/machine", 1112, 0), ("core/python", 1821, 0), ("core/scene", 5665, 0), ("core/cli", 2976, 0),
     ("core/plot", 790, 0), ("core/refinement", 661, 0), ("core/ensemble", 5053, 0), ("core/arrow", 215, 0),
-    ("core/control", 2507, 0), ("examples", 11622, 0), ("tests", 23753, 0), ("tests/ui", 1757, 0),
+    ("core/control", 2507, 0), ("examples", 11622, 0), ("tests", 23767, 0), ("tests/ui", 1757, 0),
 ];
 
 /// The circles that are still there. Lines may go, and none be added.

@@ -171,7 +171,7 @@ fn mul<T: Real, const N: usize>(a: &SMatrix<T, N, N>, v: &SVector<T, N>) -> SVec
 
 macro_rules! tuple {
     ($($name:ident $index:tt),*) => {
-        #[allow(clippy::unused_unit, unused_variables)] // of none
+        #[allow(clippy::unused_unit, unused_variables)] // in the impl of the empty tuple
         #[hot]
         impl<G: LieGroup, $($name: Advected<G>),*> Advected<G> for ($($name,)*) {
             fn seen_from(&self, attitude: &G) -> Self {

@@ -58,27 +58,28 @@ pub trait Retraction<G: LieGroup> {
         *inertia
     }
 
-    /// Whether `ξ` times this lies so near to the identity that a solution there is the one that continues the identity.
+    /// Whether `times ξ` is so near to the identity that a solution there is the one that continues the identity.
     ///
-    /// On SO(3) that is an angle below 90°: for a body whose `J_d` is positive semidefinite there is at most one
+    /// `times` is a positive number: a solver that has half the coordinates asks with 2. On SO(3) near is an angle below 90°: for a body whose `J_d` is positive semidefinite there is at most one
     /// such solution. On a [`MatrixGroup`](crate::groups::MatrixGroup) it is what the
     /// [`Generators`](crate::groups::Generators::is_near_identity) say. Farther out a solver looks closer. Each lane has its
     /// own answer.
     fn is_near(xi: &G::Vector, times: f64) -> Mask<G::Scalar>;
 
-    /// [`is_near`](Self::is_near) for the coordinates themselves.
+    /// Whether `ξ` is near to the identity, as [`is_near`](Self::is_near) says it.
     #[must_use]
     fn is_near_identity(xi: &G::Vector) -> Mask<G::Scalar> {
         Self::is_near(xi, 1.0)
     }
 
-    /// The same for half the coordinates.
+    /// Whether `ξ` is near to the identity, for `half = ξ/2`.
     #[must_use]
     fn is_half_near_identity(half: &G::Vector) -> Mask<G::Scalar> {
         Self::is_near(half, 2.0)
     }
 
-    /// The same for 3/2 of these, which keeps well away from where increments change fast from step to step.
+    /// Whether `3/2 ξ` is near to the identity, for `half = ξ/2`. Such a `ξ` keeps well away from where increments change
+    /// fast from step to step.
     #[must_use]
     fn is_half_well_near_identity(half: &G::Vector) -> Mask<G::Scalar> {
         Self::is_near(half, 3.0)

@@ -229,7 +229,8 @@ const fn places_of<P: Places<E>, E: Effect>() -> u32 {
     P::PLACES as u32
 }
 
-/// Functions that are sums over the places, by those of [`Placement`] that make such sums.
+/// Writes functions that add up the terms at all places. Each line has the method of [`Placement`] that adds, the functions,
+/// and what they return.
 macro_rules! summed {
     ($($sum:ident: $($name:ident)+ -> $result:ty;)+) => {$($(
         fn $name(&self, f: &Matrix<Self>, w: &P::Advected, h: Self::Scalar) -> $result {

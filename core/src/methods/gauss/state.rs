@@ -6,7 +6,7 @@ use super::lift::{PhasePoint, length_squared, lifted, rotation, times, twice_mom
 use super::stages::Stages;
 use crate::groups::SO3;
 use crate::motion::Kept;
-use crate::numbers::{count, counted};
+use crate::numbers::flag;
 
 roots!();
 
@@ -49,7 +49,7 @@ impl<const PAIRS: usize> CollocationMemory<PAIRS> {
 impl<const PAIRS: usize> Kept<f64> for CollocationMemory<PAIRS> {
     fn with_numbers(&self, number: &mut dyn FnMut(f64) -> f64) -> Option<Self> {
         let (lifted, carry) = (self.lifted.map(&mut *number), self.carry.map(&mut *number));
-        let has_stages = counted(number(count(usize::from(self.stages.is_some())))).filter(|&has| has <= 1)? == 1;
+        let has_stages = flag(self.stages.is_some(), number)?;
         let mut stages = self.stages.map_or([[[0.0; PAIRS]; 2]; 8], |stages| stages.0);
         stages.as_flattened_mut().as_flattened_mut().iter_mut().for_each(|entry| *entry = number(*entry));
         // A unit quaternion, to some roundings.

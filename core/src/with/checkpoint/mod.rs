@@ -96,8 +96,7 @@ impl<S: Effect<Scalar: Storable>, P: Plan<S>> Stepper<S, P> {
         let State { motion, kept, elapsed } = state;
         let (own, method) = (Parameters::of_scene(&self.scene), Parameters::of_plan(&self.plan));
         let mut numbers = Vec::new();
-        kept.each(&mut |number| numbers.push(number));
-        numbers.extend([elapsed.sum, elapsed.carry]);
+        (*kept, *elapsed).each(&mut |number| numbers.push(number));
         let mut checkpoint = Checkpoint {
             format: FORMAT,
             scene: own.fingerprint,
@@ -132,7 +131,7 @@ impl<S: Effect<Scalar: Storable>, P: Plan<S>> Stepper<S, P> {
             advected: unlisted::<_, S::Advected>("advected", &checkpoint.advected)?,
             steps: checkpoint.steps,
         };
-        let kept = remembered(&checkpoint.kept, &self.plan.keep(&self.scene, &motion))?;
+        let kept = remembered(&checkpoint.kept, &(self.plan.keep(&self.scene, &motion), ElapsedTime::nothing()))?;
         // Far more than rounding makes in any number of steps, far less than what isn't an attitude.
         let allowed = Scalar::<S>::simd_default_epsilon().simd_sqrt();
         let defect = attitude.defect();
@@ -187,14 +186,14 @@ impl<S: Effect<Scalar: Storable>, P: Plan<S>> Stepper<S, P> {
     }
 }
 
-/// What a method keeps that keeps such a memory, if these numbers can be that.
-fn remembered<T: Storable, K: Kept<T>>(list: &[T], like: &K) -> Result<Option<(K, ElapsedTime<T>)>, CheckpointError> {
-    let mut expected = 2;
+/// A memory made of the numbers of a checkpoint; `None` if they can't be those of such a memory. `like` is any memory of
+/// the same method: it says how many numbers there are.
+fn remembered<T: Storable, K: Kept<T>>(list: &[T], like: &K) -> Result<Option<K>, CheckpointError> {
+    let mut expected = 0;
     like.each(&mut |_| expected += 1);
     readable("kept", list, expected)?;
     let mut numbers = list.iter();
-    let mut next = |_| numbers.next().copied().unwrap_or_else(T::zero);
-    Ok(like.with_numbers(&mut next).map(|kept| (kept, ElapsedTime::nothing().with_numbers(&mut next))))
+    Ok(like.with_numbers(&mut |_| numbers.next().copied().unwrap_or_else(T::zero)))
 }
 
 fn list<T: Real>(entries: &impl Entries<T>) -> Vec<T> {

@@ -2,7 +2,7 @@
 
 use crate::groups::{Advected, LieGroup as _, SO3};
 use crate::motion::{Kept, Motion};
-use crate::numbers::{Real, count, counted, real, replaced, zero};
+use crate::numbers::{Real, flag, real, replaced, zero};
 use nalgebra::SimdBool as _;
 
 /// Where a run is inside of its processor, by [`ProcessedSplitting`](super::ProcessedSplitting), and by which step; or that it isn't there:
@@ -34,7 +34,7 @@ impl<T: Real, A: Advected<SO3<T>>> InsideMotion<T, A> {
 
 impl<T: Real, A: Advected<SO3<T>>> Kept<T> for Inside<T, A> {
     fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self> {
-        let is_inside = counted(number(count(usize::from(self.0.is_some())))).filter(|&is_inside| is_inside <= 1)? == 1;
+        let is_inside = flag(self.0.is_some(), number)?;
         let nothing = || InsideMotion {
             attitude: SO3::from_matrix_unchecked(zero()),
             momentum: zero::<T, nalgebra::Vector3<T>>(),
