@@ -14,8 +14,8 @@ const LENGTHS: [usize; 3] = [500, 80, 120];
 const BUDGETS: [(&str, usize, usize); 41] = [
     ("core/src/lib", 60, 11), ("core/src/prelude", 12, 28), ("core/src/private", 176, 63), ("core/src/error", 522, 2),
     ("core/src/numbers", 2644, 14), ("core/src/groups", 4009, 35), ("core/src/laws", 671, 3),
-    ("core/src/mechanics", 3560, 45), ("core/src/effects", 431, 16), ("core/src/solving", 1343, 3),
-    ("core/src/motion", 3524, 30), ("core/src/gradients", 1826, 13), ("core/src/methods", 7913, 28),
+    ("core/src/mechanics", 3560, 43), ("core/src/effects", 431, 16), ("core/src/solving", 1343, 3),
+    ("core/src/motion", 3524, 29), ("core/src/gradients", 1826, 13), ("core/src/methods", 7913, 25),
     ("core/src/recording", 1905, 14), ("core/src/with", 1635, 7), ("core/src/accuracy", 1132, 9),
     ("core/src/conventions", 12, 0), ("core/src/guide", 19, 0), ("core/tests", 990, 0), ("macros/src", 235, 0),
     ("macros/derivation/src/lib", 28, 0), ("macros/derivation/src/expand", 3061, 0),
