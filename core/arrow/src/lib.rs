@@ -32,45 +32,45 @@ use arrow_ipc::writer::StreamWriter;
 use arrow_schema::{ArrowError, DataType, Field, Schema, SchemaRef};
 use liestep::recording::{Column, RecordError, Sink, SinkError};
 
-/// A table as an Arrow IPC stream, a record batch for each block of rows.
+/// A sink that writes a table as an Arrow IPC stream, one record batch per block of rows.
 ///
-/// Memory doesn't grow with it, and of a run that didn't come to its end it has all blocks. An Arrow IPC file ("Feather")
-/// would keep a list of all batches for its footer, without which it can't be read.
+/// Memory doesn't grow with the stream, and an interrupted run leaves every block that was written. An Arrow IPC file
+/// ("Feather") would list all batches in its footer, and can't be read without it.
 pub struct ArrowStream<W: Write> {
     stage: Stage<W>,
 }
 
 enum Stage<W: Write> {
-    /// The columns aren't known yet.
+    /// The writer before the columns are known.
     Before(W),
     Writing(Box<StreamWriter<W>>, SchemaRef),
     Done(W),
-    /// An error has ended it.
+    /// The stage after an error, and a placeholder while the stage changes.
     Failed,
 }
 
 impl ArrowStream<BufWriter<File>> {
-    /// Writes to this file, in the place of what was there.
+    /// Creates a file, or replaces its contents.
     ///
     /// # Errors
     ///
-    /// Where the file can't be made.
+    /// The file can't be created.
     pub fn create(path: impl AsRef<Path>) -> io::Result<Self> {
         Ok(Self::new(BufWriter::new(File::create(path)?)))
     }
 }
 
 impl<W: Write> ArrowStream<W> {
-    /// Writes to anything.
+    /// Writes to any writer.
     pub fn new(writer: W) -> Self {
         Self { stage: Stage::Before(writer) }
     }
 
-    /// What was written to.
+    /// The writer, after the end of the stream.
     ///
     /// # Errors
     ///
-    /// Where the table is begun and isn't finished.
+    /// The table is unfinished, or an error has ended it.
     pub fn into_inner(self) -> Result<W, RecordError> {
         match self.stage {
             Stage::Before(writer) | Stage::Done(writer) => Ok(writer),
@@ -102,13 +102,13 @@ impl<W: Write> Sink for ArrowStream<W> {
         };
         let batch = RecordBatch::try_new(Arc::clone(schema), (0..width).map(column).collect());
         batch.and_then(|batch| writer.write(&batch))?;
-        // Else a killed run would lack what a buffer holds.
+        // A buffered block would be lost if the process were killed.
         Ok(writer.flush()?)
     }
 
     fn end(&mut self) -> Result<(), SinkError> {
         let Stage::Writing(writer, _) = std::mem::replace(&mut self.stage, Stage::Failed) else { return Err(order()) };
-        // It writes the mark of the end.
+        // The writer is returned after the end-of-stream marker.
         self.stage = Stage::Done(writer.into_inner()?);
         if let Stage::Done(writer) = &mut self.stage {
             writer.flush()?;
@@ -117,7 +117,7 @@ impl<W: Write> Sink for ArrowStream<W> {
     }
 }
 
-/// Columns come first, then rows, then the end.
+/// The error of calls out of order: columns come first, then rows, then the end.
 fn order() -> SinkError {
     ArrowError::IpcError("the table isn't begun, or is finished".to_owned()).into()
 }
@@ -141,7 +141,7 @@ mod tests {
     use std::io::{self, Write};
     use std::sync::{Arc, Mutex};
 
-    /// What is read is what a table in memory has, to the bit, with names and units.
+    /// The columns read back equal those of a table in memory to the bit, with names and units.
     #[test]
     fn what_is_written_is_read() {
         let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5)).unwrap();
@@ -170,7 +170,7 @@ mod tests {
         }
     }
 
-    /// What has come out of it by now.
+    /// The bytes that have reached the file.
     #[derive(Clone, Default)]
     struct Shared(Arc<Mutex<Vec<u8>>>);
 
@@ -184,7 +184,7 @@ mod tests {
         }
     }
 
-    /// A killed run leaves its buffers behind.
+    /// Every block is flushed: a killed process would leave its buffers behind.
     #[test]
     fn each_block_is_there_before_the_end() {
         let file = Shared::default();
