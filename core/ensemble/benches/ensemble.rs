@@ -1,10 +1,10 @@
-//! What an ensemble of tops (3.13) of a thousand steps makes a second, and what failures, threads and files cost.
+//! Steps a second of an ensemble of tops (3.13), and the costs of failures, threads and files.
 //!
 //! ```text
 //! cargo bench -p liestep-ensemble --bench steps                     with and without files, on one and two threads, in turns
 //! cargo bench -p liestep-ensemble --bench steps -- plain 4096       that many tops and no files: to count instructions
 //! cargo bench -p liestep-ensemble --bench steps -- failing 4096     one of a hundred falls too fast at some time
-//! cargo bench -p liestep-ensemble --bench steps -- section 4096     their axis passes a plane; `section-in-lanes`, asked in lanes
+//! cargo bench -p liestep-ensemble --bench steps -- section 4096     axes pass a plane; `section-in-lanes`, found in lanes
 //! cargo bench -p liestep-ensemble --bench steps -- many 10000000    that many of ten steps into files, and the memory for it
 //! cargo bench -p liestep-ensemble --bench steps -- splittings       symmetric tops, beside heyoka where Python has it
 //! ```
@@ -27,14 +27,14 @@ type Top = Stepper<Sum<Sum<PrincipalBody, Gravity>, Torque>>;
 const STEPS: u64 = 1_000;
 const TURNS: usize = 5;
 
-/// One top in this number is spun up until it is too fast for the step, at some time of the run.
+/// Tops of which one in `failing` is spun up until it is too fast for the step, at some time of the run.
 fn tops(members: u64, steps: u64, failing: Option<u64>) -> Ensemble<Top> {
     let make = move |member: &Member<'_>| -> Result<_, Failure> {
         let moments = Vector3::new(3.0, member.normal("J_2", 3.1, 0.01), member.normal("J_3", 4.0, 0.01));
         let body = PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(moments)? };
         let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
         let fails = failing.is_some_and(|failing| member.number() % failing == failing / 2);
-        // It turns by 1.5 rad a step after this number of steps.
+        // The torque makes it turn by 1.5 rad a step after this number of steps.
         let size = if fails { 6e4 / member.uniform("end", 1.0..1e3) } else { 0.0 };
         let stepper = Stepper::new(body + gravity + Torque { torque: Vector3::z() * size }, 0.01)?;
         let tilt = member.uniform("tilt", 0.2..0.6);
@@ -55,7 +55,7 @@ fn folder(name: &str) -> PathBuf {
     path
 }
 
-/// Chunks and no files; how many steps were made, and how many members failed.
+/// Computes chunks without files; returns the number of steps and of failures.
 fn compute(ensemble: &Ensemble<Top>, members: u64) -> (u64, usize) {
     let shards = (0..ensemble.chunks()).filter_map(|chunk| ensemble.chunk(chunk, &|| false));
     let failures: Vec<u64> = shards.flat_map(|shard| shard.outcome.failures).map(|failed| failed.steps).collect();
@@ -63,7 +63,7 @@ fn compute(ensemble: &Ensemble<Top>, members: u64) -> (u64, usize) {
     ((members - count as u64) * STEPS + failures.into_iter().sum::<u64>(), count)
 }
 
-/// Into files, by a number of threads; in seconds.
+/// The time to run into files by a number of threads, s.
 fn written(ensemble: &Ensemble<Top>, threads: usize) -> Result<f64, Box<dyn Error>> {
     let folder = folder("written");
     let start = Instant::now();
@@ -73,7 +73,7 @@ fn written(ensemble: &Ensemble<Top>, threads: usize) -> Result<f64, Box<dyn Erro
     Ok(seconds)
 }
 
-/// The most memory that this process has had, in MB; Linux tells.
+/// The peak memory of this process, MB; Linux only.
 fn most_memory() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

@@ -1,4 +1,5 @@
-//! What ten seconds of a symmetric top take by splittings in lanes on one core, beside a Taylor integrator's batches.
+//! The time for ten seconds of a symmetric top by splittings in lanes on one core, beside a Taylor integrator's
+//! batches.
 
 use std::error::Error;
 use std::io::Write as _;
@@ -15,14 +16,14 @@ use simba::simd::AutoF64x8;
 
 type Failure = Box<dyn Error>;
 type Scene = Sum<PrincipalBody, Gravity>;
-/// A stepper, and a state of it.
+/// A stepper and its initial state.
 type Top<I> = (I, <I as Integrator>::State);
 
 const TOPS: u32 = 64;
 const LANES: usize = 8;
 const TIME: f64 = 10.0; // s
 const ERRORS: [f64; 2] = [1e-6, 1e-8];
-/// Of all that is measured the fastest counts.
+/// The number of measurements, of which the fastest counts.
 const TURNS: usize = 2;
 const REPEATED: usize = 30;
 const STEPS: [u32; 16] = [16, 20, 25, 32, 40, 50, 64, 80, 100, 128, 160, 200, 256, 320, 400, 512];
@@ -44,7 +45,7 @@ struct Body {
 }
 
 fn body(number: u32) -> Body {
-    // By the golden ratio and its powers.
+    // Powers of the golden ratio spread the numbers.
     let part = |k: i32| (f64::from(number + 1) * 0.618_033_988_749_894_9_f64.powi(k)).fract();
     let transverse = 2.5 + part(1);
     Body {
@@ -107,10 +108,10 @@ fn tops<S: Scheme>(scheme: S, steps: u32) -> Result<Vec<Top<S::Stepper>>, Failur
     (0..TOPS).map(|number| scheme.top(&body(number), TIME / f64::from(steps))).collect()
 }
 
-/// The vertical and the velocity that a body sees.
+/// The vertical direction and the angular velocity, both in the body frame.
 type End = [Vector3<f64>; 2];
 
-/// In lanes: all ends, and the time for a top, s.
+/// The ends of all tops, run in lanes, and the time for a top, s.
 fn ends<S: Scheme>(scheme: S, steps: u32, repeated: usize) -> Result<(Vec<End>, f64), Failure> {
     let tops = tops(scheme, steps)?;
     let (mut ends, mut time) = (Vec::new(), 0.0);
@@ -140,7 +141,7 @@ fn error(ends: &[End], exact: &[End]) -> f64 {
     (squares.sum::<f64>() / f64::from(TOPS)).sqrt()
 }
 
-/// The least time to an error, on straight lines between the runs, both axes logarithmic.
+/// The least time to an error, interpolated linearly between the runs on logarithmic axes.
 fn cost(runs: &[(f64, f64)], wanted: f64) -> f64 {
     let exact = runs.iter().filter(|(error, _)| *error <= wanted).map(|(_, time)| *time);
     let between = runs.windows(2).filter(|pair| pair[0].0 > wanted && wanted >= pair[1].0).map(|pair| {
@@ -150,7 +151,7 @@ fn cost(runs: &[(f64, f64)], wanted: f64) -> f64 {
     exact.chain(between).fold(f64::INFINITY, f64::min)
 }
 
-/// µs a top to each error by these schemes, where they are better than the best so far.
+/// Replaces the best costs, µs a top, by those of these schemes if they are lower.
 fn compare<S: Scheme>(schemes: &[S], exact: &[End], best: &mut [(f64, &'static str); 2]) -> Result<(), Failure> {
     for &scheme in schemes {
         let run = |steps| -> Result<_, Failure> {
@@ -168,7 +169,7 @@ fn compare<S: Scheme>(schemes: &[S], exact: &[End], best: &mut [(f64, &'static s
     Ok(())
 }
 
-/// The time of `with_heyoka.py`, where Python has heyoka.
+/// The times by `with_heyoka.py`, if Python has heyoka.
 fn theirs(exact: &[End]) -> Result<Option<[f64; 2]>, Failure> {
     let mut python = Command::new("python3");
     python.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/benches/with_heyoka.py"));
@@ -185,7 +186,7 @@ fn theirs(exact: &[End]) -> Result<Option<[f64; 2]>, Failure> {
         lines += &numbers.map(|number| format!("{number:e}")).collect::<Vec<_>>().join(" ");
         lines += "\n";
     }
-    // A program that ends early says why on its own.
+    // A program that ends early prints its own reason.
     let _ = child.stdin.take().ok_or("no pipe")?.write_all(lines.as_bytes());
     let answer = String::from_utf8(child.wait_with_output()?.stdout)?;
     let costs: Vec<f64> = answer.split_whitespace().filter_map(|word| word.parse().ok()).collect();

@@ -18,9 +18,9 @@ impl<M: Integrator> Ensemble<M> {
         chunk * size..((chunk + 1) * size).min(self.members)
     }
 
-    /// What is kept of the members of a chunk: the same for the same plan and number, whoever computes it. `None` if it is
-    /// told to stop on the way, which is asked between members and after each [piece](Self::PIECE) of their steps,
-    /// with sections after each step.
+    /// The recorded rows and the outcome of a chunk, a function of the plan and the number. `None` after a request to
+    /// stop; `is_stopped` is called between members and after each [piece](Self::PIECE) of their steps, with sections
+    /// after each step.
     pub fn chunk(&self, chunk: u64, is_stopped: &dyn Fn() -> bool) -> Option<Shard> {
         self.shard(self.fingerprint(), chunk, is_stopped)
     }
@@ -28,7 +28,7 @@ impl<M: Integrator> Ensemble<M> {
     pub(crate) fn shard(&self, plan: u64, chunk: u64, is_stopped: &dyn Fn() -> bool) -> Option<Shard> {
         let members = self.range(chunk);
         let mut made = Tally { rows: self.no_rows(), outcome: self.nothing() };
-        // Those that can't be made are taken out first, so that they leave no lane empty.
+        // Members that can't be constructed are set apart first, so that they leave no lane empty.
         let mut waiting: Vec<(u64, Option<MemberFailure>)> = Vec::new();
         let mut starts: Vec<Start<M>> = Vec::new();
         for member in members {
@@ -47,8 +47,8 @@ impl<M: Integrator> Ensemble<M> {
         Some(Shard { plan, chunk, names: self.names.clone(), rows: made.rows, outcome: made.outcome })
     }
 
-    /// Runs those that are waiting to their ends, in lanes, and writes down what is kept of them in their order. `None` if
-    /// it is told to stop.
+    /// Runs the waiting members to their ends, in lanes, and adds their rows and outcomes in their order. `None` after
+    /// a request to stop.
     fn move_on(
         &self,
         waiting: &mut Vec<(u64, Option<MemberFailure>)>,
@@ -103,7 +103,7 @@ impl<M: Integrator> Ensemble<M> {
         Some(())
     }
 
-    /// Runs members that are stepped side by side to their ends. `None` if it is told to stop.
+    /// Runs a group of members to their ends. `None` after a request to stop.
     fn run_group(
         &self,
         group: &mut dyn Group<M>,
@@ -112,9 +112,9 @@ impl<M: Integrator> Ensemble<M> {
         courses: &mut [Course<M>],
         is_stopped: &dyn Fn() -> bool,
     ) -> Option<()> {
-        // With sections each step is looked at.
+        // Sections are checked after each step.
         let longest = if self.sections.is_empty() { Self::PIECE } else { 1 };
-        // Those that are still under way, and where they are.
+        // Whether a member is still running.
         let going = |group: &dyn Group<M>, place: usize, course: &Course<M>| {
             group.error(place).is_none() && course.ended.is_none()
         };
@@ -153,7 +153,7 @@ impl<M: Integrator> Ensemble<M> {
         for (place, course) in courses.iter_mut().enumerate() {
             let (member, (stepper, start)) = (members[place], &starts[place]);
             if course.ended.is_none() {
-                // All steps have been looked at.
+                // All steps have been checked; whether a zero at the last one is a crossing is still open.
                 let now = || group.state(place);
                 self.look_at_sections(stepper, &|_| Place { value: None, before: &now, now: &now }, course, true);
             }
@@ -182,7 +182,7 @@ impl<M: Integrator> Ensemble<M> {
         Rows::of_columns(self.names.len(), crossings)
     }
 
-    /// At its start.
+    /// The course of a member at its start.
     fn course(&self, (stepper, start): &Start<M>) -> Course<M> {
         let watches: Result<_, _> = self.sections.iter().map(|section| section.watch(stepper, start)).collect();
         let (watches, ended) = match watches {
@@ -193,7 +193,7 @@ impl<M: Integrator> Ensemble<M> {
         Course { rows: self.no_rows(), watches, reduced: Vec::new(), passed, ended, end: Ok(None) }
     }
 
-    /// Keeps the crossings up to here, which belong to the next row; of a member that leaves none later than that.
+    /// Records the crossings up to here, which belong to the next row. Crossings after a member leaves are dropped.
     fn look_at_sections<'a>(
         &self,
         stepper: &M,
@@ -234,12 +234,12 @@ impl<M: Integrator> Ensemble<M> {
         }
     }
 
-    /// One row for a member and a step: one that ends where it was last kept has a last row already.
+    /// Adds a row for a member and a step. If its last row is of this step, only the status of that row changes.
     fn keep_row(&self, run: &Run<'_, M>, steps: u64, status: Status, rows: &mut Rows) {
         if rows.step.last() == Some(&steps) {
             rows.status.pop();
             rows.status.push(status);
-            // Whatever is found here crossed no later than that row.
+            // Crossings found here are not later than that row.
             let last = rows.member.len() - 1;
             rows.crossings.iter_mut().flat_map(|crossings| &mut crossings.row).for_each(|row| *row = last.min(*row));
             return;
@@ -250,23 +250,24 @@ impl<M: Integrator> Ensemble<M> {
     }
 }
 
-/// What there is of a chunk so far.
+/// The rows and the outcome of a chunk so far.
 struct Tally {
     rows: Rows,
     outcome: Outcome,
 }
 
-/// What there is of one member so far.
+/// The rows and values of one member so far.
 struct Course<M: Integrator> {
     rows: Rows,
-    /// One for each section.
+    /// The watch of each section.
     watches: Vec<Watch<M::State>>,
-    /// What sections reduce, with the number of the reduction.
+    /// The values that sections reduce, with the number of the reduction.
     reduced: Vec<(usize, f64)>,
-    /// How often it has crossed each section, and when first, s.
+    /// The number of crossings of each section, and the time of the first, s.
     passed: Vec<(u64, f64)>,
-    /// Where it left, or could be followed no further, as the function of a section had no value.
+    /// The state at which a section ended the member: it left, or, with a failure, it couldn't be followed further, as
+    /// the function of the section had no value.
     ended: Option<(M::State, Option<Failure>)>,
-    /// What is reduced of its end; nothing where it left.
+    /// The values of its end that are reduced; `None` if the member left.
     end: Result<Option<Vec<f64>>, MemberFailure>,
 }

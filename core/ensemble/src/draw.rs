@@ -1,4 +1,4 @@
-//! Random numbers that are functions of a seed, a member and a name, and of nothing before them.
+//! Random numbers that are functions of a seed, a member and a name, and of no earlier draws.
 
 use core::f64::consts::TAU;
 use core::ops::Range;
@@ -9,11 +9,11 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use crate::{Failure, Table};
 use liestep::numbers::Digest;
 
-/// One member of an ensemble: what its scene and its start are made of.
+/// One member of an ensemble, from which its scene and its initial state draw numbers.
 ///
-/// Numbers are drawn by name: the same seed, member and name give the same number, in whatever order they are asked for,
-/// so that a member is the same on every machine that has it. (Logarithms, sines and cosines are those of the machine's
-/// own library; [`uniform`](Self::uniform) asks for none.)
+/// Numbers are drawn by name: the same seed, member and name give the same number, in whatever order they are drawn, so
+/// that a member is the same on every machine. (Logarithms, sines and cosines are those of the machine's own library;
+/// [`uniform`](Self::uniform) needs none.)
 #[derive(Clone, Copy, Debug)]
 pub struct Member<'a> {
     pub(crate) number: u64,
@@ -34,19 +34,19 @@ impl Member<'_> {
         self.number
     }
 
-    /// A number of this range, each as likely.
+    /// A uniformly distributed number of this range.
     #[must_use]
     pub fn uniform(&self, name: &str, range: Range<f64>) -> f64 {
         range.start + (range.end - range.start) * self.units(name, 0)[0]
     }
 
-    /// A number of the normal distribution, by [`samples::normal`].
+    /// A normally distributed number, by [`samples::normal`].
     #[must_use]
     pub fn normal(&self, name: &str, mean: f64, deviation: f64) -> f64 {
         mean + deviation * samples::normal(self.units(name, 0))
     }
 
-    /// A direction, each as likely; of length one.
+    /// A uniformly distributed unit vector.
     #[must_use]
     pub fn direction(&self, name: &str) -> Vector3<f64> {
         let [height, angle] = self.units(name, 0);
@@ -55,7 +55,7 @@ impl Member<'_> {
         Vector3::new(across * (TAU * angle).cos(), across * (TAU * angle).sin(), z)
     }
 
-    /// A rotation, each as likely.
+    /// A uniformly distributed rotation.
     ///
     /// # Source
     ///
@@ -73,11 +73,11 @@ impl Member<'_> {
         ))
     }
 
-    /// The number of this member's row in a column of the [table](crate::Ensemble::over).
+    /// The number in a column of the [table](crate::Ensemble::over), in this member's row.
     ///
     /// # Errors
     ///
-    /// [`Failure::Other`] where there is no table, no such column or no such row.
+    /// [`Failure::Other`] if there is no table, no such column or no such row.
     pub fn cell(&self, column: &str) -> Result<f64, Failure> {
         let table = self.table.ok_or_else(|| Failure::Other("the ensemble has no table".to_owned()))?;
         table.cell(column, self.number)
@@ -98,7 +98,7 @@ impl Member<'_> {
     }
 }
 
-#[allow(clippy::cast_possible_truncation)] // it is what is meant
+#[allow(clippy::cast_possible_truncation)] // each half is cut off on purpose
 fn halves(number: u64) -> [u32; 2] {
     [number as u32, (number >> 32) as u32]
 }
@@ -122,7 +122,7 @@ fn philox(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
 mod tests {
     use super::{Member, philox};
 
-    /// The known answers that its authors publish with their library.
+    /// The known answers that the authors of Philox publish with their library.
     #[test]
     fn it_is_philox() {
         assert_eq!(philox([0; 4], [0; 2]), [0x6627_e8d5, 0xe169_c58d, 0xbc57_ac4c, 0x9b00_dbd8]);
@@ -131,7 +131,8 @@ mod tests {
         assert_eq!(philox(pi, [0xa409_3822, 0x299f_31d0]), [0xd16c_fe09, 0x94fd_cceb, 0x5001_e420, 0x2412_6ea1]);
     }
 
-    /// Means and spreads of a hundred thousand within four standard errors, and no two names or members alike.
+    /// Means and spreads of a hundred thousand draws are within four standard errors; draws of two names are
+    /// uncorrelated, and two members differ.
     #[test]
     fn numbers_are_spread_as_they_should_be() {
         let count = 100_000_u32;

@@ -1,4 +1,4 @@
-//! Who makes which chunk.
+//! Engines, which assign chunks to workers.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,36 +7,36 @@ use rayon::prelude::*;
 
 use crate::store::StoreError;
 
-/// Makes chunks. Which worker makes which, and in what order, changes nothing of what comes out.
+/// An engine that computes chunks. The assignment and the order of chunks don't change the results.
 pub trait Engine {
-    /// Whether this process looks what is missing and says what has become of it; of several one does.
+    /// Whether this process lists the missing chunks and reports the outcome; one of several processes does.
     fn leads(&self) -> bool {
         true
     }
 
-    /// Whether a chunk is one of this engine's, where several have a part each.
+    /// Whether a chunk belongs to the share of this engine.
     fn has(&self, _chunk: u64) -> bool {
         true
     }
 
-    /// Has every missing chunk made by `make`, once and somewhere; only the one that [leads](Self::leads) knows them, and
-    /// calls `tell` for each that another process has made.
+    /// Computes every missing chunk by `make`, once and in some process. Only the process that [leads](Self::leads)
+    /// passes their numbers, and calls `tell` for each chunk that another process has computed.
     ///
     /// # Errors
     ///
-    /// The first error of `make`; what is under way then is given up.
+    /// The first error of `make`, which cancels the chunks in progress.
     fn distribute(&self, missing: &[u64], make: &MakeChunk<'_>, tell: &(dyn Fn() + Sync)) -> Result<(), StoreError>;
 }
 
-/// Makes a chunk of a number and writes it, unless it is told to stop on the way, which it asks between members and
-/// after each [piece](crate::Ensemble::PIECE) of their steps.
+/// A function that computes the chunk of a number and writes it. The second argument requests a stop; it is called
+/// between members and after each [piece](crate::Ensemble::PIECE) of their steps.
 pub type MakeChunk<'a> = dyn Fn(u64, &dyn Fn() -> bool) -> Result<(), StoreError> + Sync + 'a;
 
-/// The threads of this process, and if asked for only a share of the chunks: whose numbers leave the rest `share` when
-/// divided by `shares`.
+/// An engine of this process's threads, for all chunks or for one share: the chunks whose numbers leave the remainder
+/// `share` when divided by `shares`.
 ///
-/// So one program is run several times at once, by an array of jobs for example, over one folder and without
-/// a server. The next run makes what is missing, whichever share it was.
+/// Several runs of one program, for example by an array of jobs, can so share one folder without a server. A later run
+/// computes what is missing, whichever share it belonged to.
 #[derive(Debug)]
 pub struct Local<'a> {
     threads: usize,
@@ -47,17 +47,17 @@ pub struct Local<'a> {
 }
 
 impl<'a> Local<'a> {
-    /// So many threads; zero means as many as there are cores.
+    /// Sets the number of threads; zero stands for the number of cores.
     #[must_use]
     pub fn threads(threads: usize) -> Self {
         Self { threads, share: 0, shares: 1, helps: false, stop: None }
     }
 
-    /// Only this one of the shares.
+    /// Restricts the engine to one share.
     ///
     /// # Panics
     ///
-    /// Where there is no such share.
+    /// If there is no such share.
     #[must_use]
     pub fn share(mut self, share: u64, shares: u64) -> Self {
         assert!(share < shares, "shares are numbered from zero to {shares}, without it");
@@ -65,15 +65,16 @@ impl<'a> Local<'a> {
         self
     }
 
-    /// After its share also chunks of others that are missing still, from behind, so that a slow one isn't waited for. Two
-    /// may make the same chunk then, and write the same file.
+    /// Lets the engine compute missing chunks of other shares after its own, the last ones first, so that nobody waits
+    /// for a slow process. Two processes may then compute the same chunk and write the same file.
     #[must_use]
     pub fn helping(mut self) -> Self {
         self.helps = true;
         self
     }
 
-    /// Stops within a [piece](crate::Ensemble::PIECE) of steps once this is set, from a handler of signals for example. Chunks that are done are kept.
+    /// Stops within a [piece](crate::Ensemble::PIECE) of steps once this is set, for example by a signal handler.
+    /// Finished chunks stay.
     #[must_use]
     pub fn stopped_by(mut self, stop: &'a AtomicBool) -> Self {
         self.stop = Some(stop);
@@ -89,7 +90,7 @@ impl Engine for Local<'_> {
     fn distribute(&self, missing: &[u64], make: &MakeChunk<'_>, _: &(dyn Fn() + Sync)) -> Result<(), StoreError> {
         let (mut own, mut others): (Vec<u64>, Vec<u64>) = missing.iter().partition(|chunk| self.has(**chunk));
         if self.helps {
-            // Those who help begin at different places.
+            // Helpers begin with different shares.
             others.reverse();
             others.sort_by_key(|chunk| (chunk % self.shares + self.shares - self.share) % self.shares);
             own.append(&mut others);
@@ -99,7 +100,7 @@ impl Engine for Local<'_> {
             || has_failed.load(Ordering::Relaxed) || self.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));
         let make = |&chunk: &u64| {
             let made = if is_stopped() { Ok(()) } else { make(chunk, &is_stopped) };
-            // The others needn't come to the ends of their chunks.
+            // The error stops the other workers within their chunks.
             made.inspect_err(|_| has_failed.store(true, Ordering::Relaxed))
         };
         if self.threads == 1 {
@@ -107,7 +108,7 @@ impl Engine for Local<'_> {
         }
         let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads).build();
         let pool = pool.map_err(|error| StoreError::Unwritable { reason: format!("no threads: {error}") })?;
-        // One chunk at a time, in about the order of their numbers.
+        // Workers take one chunk at a time, in about the order of the numbers.
         let left = Mutex::new(own.iter());
         let next = || left.lock().unwrap_or_else(std::sync::PoisonError::into_inner).next();
         let workers = 0..pool.current_num_threads();
@@ -117,11 +118,11 @@ impl Engine for Local<'_> {
     }
 }
 
-/// `2/8` as the share 2 of 8, for command lines.
+/// Parses `2/8` as share 2 of 8, for command lines.
 ///
 /// # Errors
 ///
-/// A sentence that says what to write.
+/// The text is no share; the error is a sentence that says what to write.
 pub fn share_of(text: &str) -> Result<(u64, u64), String> {
     let mistake = || format!("`{text}` isn't a share: write `i/n`, from `0/n` to one below `n/n`");
     let (share, shares) = text.split_once('/').ok_or_else(mistake)?;

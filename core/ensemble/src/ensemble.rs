@@ -1,4 +1,4 @@
-//! What is to be computed: members, steps, and what is kept of them.
+//! The plan of an ensemble: members, steps, and recorded columns.
 
 use core::fmt;
 use std::sync::OnceLock;
@@ -14,14 +14,14 @@ use crate::section::{LANES, Section};
 use crate::{Failure, Table};
 use liestep::numbers::Digest;
 
-/// A member at one time: what is kept is computed from it.
+/// A member at one time, from which recorded values are computed.
 #[derive(Debug)]
 pub struct Run<'a, M: Integrator> {
     /// The member's number.
     pub member: u64,
-    /// Its stepper, with its scene.
+    /// The member's stepper, with its scene.
     pub stepper: &'a M,
-    /// Its state.
+    /// The member's state.
     pub state: &'a M::State,
 }
 
@@ -29,12 +29,12 @@ type Make<M> = dyn Fn(&Member<'_>) -> Result<Start<M>, Failure> + Send + Sync;
 type Value<M> = dyn Fn(&Run<'_, M>) -> f64 + Send + Sync;
 type Values<M> = dyn Fn(&Run<'_, M>, &mut Vec<f64>) + Send + Sync;
 
-/// Many motions of one kind: who they are, how long they take, and what is kept of them.
+/// A plan for many motions of one kind: the members, the number of steps, and the recorded columns.
 ///
-/// It is a plan, and is run by [`run`](Self::run). What comes out depends on the plan alone: not on how many threads or
-/// processes there are, who of them has what, in which order, or how often a run was interrupted. Each member moves, bit
-/// for bit, as its stepper [runs](Integrator::run) it alone, in pieces of [`PIECE`](Self::PIECE) steps from one kept
-/// time to the next; but for a splitting pieces don't matter.
+/// [`run`](Self::run) executes it. Results depend on the plan alone: not on the number of threads or processes, the
+/// assignment or the order of chunks, or interruptions. Each member moves, bit for bit, as its stepper
+/// [runs](Integrator::run) it alone, in pieces of [`PIECE`](Self::PIECE) steps from one recorded time to the next; the
+/// length of pieces matters for splittings only.
 pub struct Ensemble<M: Integrator> {
     pub(crate) name: String,
     pub(crate) members: u64,
@@ -55,21 +55,22 @@ pub struct Ensemble<M: Integrator> {
 }
 
 impl<M: Integrator> Ensemble<M> {
-    /// How many steps a member makes between two looks whether it can go on. One that can't makes the last piece again,
+    /// The number of steps between two checks whether a member can go on. A member that can't repeats its last piece
     /// step by step.
     pub const PIECE: u64 = 64;
 
-    /// An ensemble of a number of members with a number of steps each, eight members at a time in [lanes](liestep::numbers::Real#lanes).
+    /// An ensemble of a number of members with a number of steps each, run eight at a time in
+    /// [lanes](liestep::numbers::Real#lanes).
     ///
-    /// The name tells one ensemble from another in the files. `make` is a member's stepper and its start, or why there is
-    /// none; it has to give the same each time. Who changes `make` takes another name or another folder: of what it
-    /// makes the [fingerprint](Self::fingerprint) sees three members only.
+    /// The name distinguishes ensembles in the files. `make` constructs a member's stepper and initial state, or says
+    /// why there are none; it must be deterministic. After a change of `make`, choose another name or folder: the
+    /// [fingerprint](Self::fingerprint) samples three members only.
     ///
-    /// Scenes are generic over their scalar for that, as the library's are: `Top<f64>` here, declared as `Top<T>`. Of methods,
-    /// [`Stepper::new`](liestep::Stepper::new), [`composed`](liestep::Stepper::composed), [`split`](liestep::Stepper::split),
-    /// [`processed`](liestep::Stepper::processed), and all of them [`compensated`](liestep::Stepper::compensated), have lanes.
-    /// Members of any other scene or method go [`one_by_one`](Self::one_by_one): Gauss collocation and
-    /// remedies.
+    /// Lanes need scenes that are generic over their scalar, as the library's are: `Top<f64>` here, declared as
+    /// `Top<T>`. The methods with lanes are [`Stepper::new`](liestep::Stepper::new),
+    /// [`composed`](liestep::Stepper::composed), [`split`](liestep::Stepper::split) and
+    /// [`processed`](liestep::Stepper::processed), each of them also [`compensated`](liestep::Stepper::compensated).
+    /// Members of other scenes or methods, as Gauss collocation and remedies, run [`one_by_one`](Self::one_by_one).
     pub fn new(
         name: &str,
         members: u64,
@@ -82,7 +83,7 @@ impl<M: Integrator> Ensemble<M> {
         Self::of(name, members, steps, Box::new(make), in_lanes::<M>, false)
     }
 
-    /// As [`new`](Self::new), for any stepper: members take their turns.
+    /// An ensemble for any stepper, as [`new`](Self::new) but without lanes: members run one after another.
     pub fn one_by_one(
         name: &str,
         members: u64,
@@ -116,32 +117,33 @@ impl<M: Integrator> Ensemble<M> {
         }
     }
 
-    /// Another plan than before.
+    /// Clears the stored fingerprint and chunk size, which depend on the plan.
     fn changed(self) -> Self {
         Self { fingerprint: OnceLock::new(), size: OnceLock::new(), ..self }
     }
 
-    /// What members draw their numbers with; zero if nothing is said.
+    /// Sets the seed from which members draw their numbers; the default is zero.
     #[must_use]
     pub fn seed(mut self, seed: u64) -> Self {
         self.seed = seed;
         self.changed()
     }
 
-    /// The table of which member `k` reads row `k`, by [`Member::cell`].
+    /// Adds the table of which member `k` reads row `k`, by [`Member::cell`].
     #[must_use]
     pub fn over(mut self, table: Table) -> Self {
         self.table = Some(table);
         self.changed()
     }
 
-    /// Keeps the columns at the start, after each multiple of a number of steps, and at the end; without it at the end only.
+    /// Records the columns at the start, after each multiple of a number of steps, and at the end; by default at the
+    /// end only.
     ///
-    /// A chunk is made in memory, all rows of its members: those of one member are bounded by this number only.
+    /// A chunk is computed in memory with all rows of its members: this number alone bounds the rows of one member.
     ///
     /// # Panics
     ///
-    /// Where the number is zero.
+    /// If the number is zero.
     #[must_use]
     pub fn every(mut self, steps: u64) -> Self {
         assert!(steps > 0, "columns are kept after a number of steps above zero");
@@ -149,15 +151,15 @@ impl<M: Integrator> Ensemble<M> {
         self.changed()
     }
 
-    /// So many members to a chunk, which is what one worker makes at a time and one file holds.
+    /// Sets the number of members of a chunk, the unit of work of one worker and the content of one file.
     ///
-    /// If nothing is said it is about a second's work of one core by what a step of the method [costs](Integrator::cost), or a
-    /// 64th of the members, so that all cores and all shares have some, and a million rows at most where one member hasn't
-    /// more. It is the same on every machine, as the plan is.
+    /// The default is about a second's work of one core by the [cost](Integrator::cost) of a step of the method, or a
+    /// 64th of the members, so that all cores and all shares have some, and at most a million rows unless one member
+    /// has more. Like the plan, it is the same on every machine.
     ///
     /// # Panics
     ///
-    /// Where the number is zero.
+    /// If the number is zero.
     #[must_use]
     pub fn chunks_of(mut self, members: u64) -> Self {
         assert!(members > 0, "a chunk has members");
@@ -165,11 +167,11 @@ impl<M: Integrator> Ensemble<M> {
         self.changed()
     }
 
-    /// Keeps columns of these names.
+    /// Records columns of these names.
     ///
     /// # Panics
     ///
-    /// Where there is a column of that name already; `member`, `step` and `status` always are.
+    /// If a column of that name exists already; `member`, `step` and `status` always do.
     #[must_use]
     pub fn keep<const N: usize>(
         self,
@@ -179,12 +181,12 @@ impl<M: Integrator> Ensemble<M> {
         self.keep_named(&names, move |run, row| row.copy_from_slice(&values(run)))
     }
 
-    /// As [`keep`](Self::keep), of names that are known when the program runs: the slice has a place for each, NaN until
-    /// it is filled.
+    /// Records columns, as [`keep`](Self::keep), whose names are known at run time only: the slice has a place for each
+    /// name, initialised with NaN.
     ///
     /// # Panics
     ///
-    /// As [`keep`](Self::keep).
+    /// On the conditions of [`keep`](Self::keep).
     #[must_use]
     pub fn keep_named(
         mut self,
@@ -204,11 +206,11 @@ impl<M: Integrator> Ensemble<M> {
         self.changed()
     }
 
-    /// Reduces a value of every member that has come to its end.
+    /// Reduces a value of every member that completes its steps.
     ///
     /// # Panics
     ///
-    /// Where a histogram has no bins or no range, or two reductions have one name.
+    /// If a histogram has no bins or no range, or two reductions have the same name.
     #[must_use]
     pub fn reduce(
         mut self,
@@ -235,7 +237,7 @@ impl<M: Integrator> Ensemble<M> {
         assert!(is_new, "there is a reduction `{name}` already");
     }
 
-    /// How many chunks there are.
+    /// The number of chunks.
     #[must_use]
     pub fn chunks(&self) -> u64 {
         self.members.div_ceil(self.members_of_chunk())
@@ -247,7 +249,7 @@ impl<M: Integrator> Ensemble<M> {
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // an estimate
     fn usual_chunk(&self) -> u64 {
-        // What a core makes in a second of the steps of (3.13), in lanes and one by one; and what one of these costs.
+        // Steps of (3.13) that a core makes in a second, in lanes and one by one, and the cost of one such step.
         const STEPS: [f64; 2] = [33_554_432.0, 4_194_304.0];
         const OF_A_STEP: f64 = 448.0;
         const ROWS: u64 = 1 << 20;
@@ -258,15 +260,15 @@ impl<M: Integrator> Ensemble<M> {
         });
         let ratio = OF_A_STEP / cost.unwrap_or(OF_A_STEP).max(1.0);
         let second = (STEPS[usize::from(self.takes_turns)] * ratio / self.steps.max(1) as f64) as u64;
-        // As many as give 64 workers something to do; in lanes all of these, and a 32nd of a second, beside which a file is
-        // cheap.
+        // Chunks are small enough for 64 workers to have some. In lanes a chunk takes at least a 32nd of a second, so
+        // that its file is cheap beside it.
         let least = if self.takes_turns { 1 } else { (second / 32).max(LANES as u64) };
         let shared = self.members.div_ceil(CHUNKS).max(least).min(second);
-        // Of very many, a few thousand files.
+        // Very many members go to a few thousand files.
         let most = (self.members >> 12).clamp(1 << 16, ROWS);
         let rows = self.every.map_or(1, |every| self.steps / every + 2);
         let members = shared.max(self.members >> 12).min(ROWS / rows.min(ROWS)).clamp(1, most);
-        // Full lanes, if there are members for one.
+        // Chunks fill whole lanes if there are enough members.
         if self.takes_turns || members < LANES as u64 { members } else { members - members % LANES as u64 }
     }
 
@@ -274,14 +276,14 @@ impl<M: Integrator> Ensemble<M> {
         Member { number, seed: self.seed, table: self.table.as_ref() }
     }
 
-    /// What tells this plan from another: all its numbers and names, its table, and what is kept of its first, its middle
-    /// and its last member at the start and after a piece, as a function can't be compared.
+    /// A digest of the plan: all its numbers and names, its table, and the recorded values of three members at the
+    /// start and after a piece, since functions can't be compared.
     #[must_use]
     pub fn fingerprint(&self) -> u64 {
         *self.fingerprint.get_or_init(|| self.print())
     }
 
-    /// Its first, its middle and its last member.
+    /// The members that the fingerprint samples: the first, the middle and the last.
     fn looked_at(&self) -> Vec<u64> {
         let mut looked_at = vec![0, self.members / 2, self.members.saturating_sub(1)];
         looked_at.dedup();
@@ -308,7 +310,7 @@ impl<M: Integrator> Ensemble<M> {
         digest.value()
     }
 
-    /// What a member is, by what is kept of it.
+    /// Adds a sampled member to the digest, by its recorded values.
     fn look_at(&self, member: u64, digest: &mut Digest) {
         match (self.make)(&self.member(member)) {
             Ok((stepper, mut state)) => {
@@ -333,15 +335,17 @@ impl<M: Integrator> Ensemble<M> {
 }
 
 impl<M: Integrator> Ensemble<M> {
-    /// Keeps columns where members cross a surface.
+    /// Records columns where members cross a surface.
     ///
-    /// Members stay in lanes; each of their steps is looked at, and those that cross are made again alone. As in every run
-    /// with [events](liestep::recording::Run::event) a member makes each step by itself. Rows are kept as without, and in each are the
-    /// crossings since the one before: how many these are nothing bounds but the motion, and a chunk is made in memory.
+    /// Members stay in lanes; each of their steps is checked, and steps with a crossing are repeated by the member
+    /// alone. Each step is made separately, as in every run with [events](liestep::recording::Run::event). The rows are
+    /// those without a section, and each row has the crossings since the previous one. Only the motion bounds their
+    /// number, and a chunk is computed in memory.
     ///
     /// # Panics
     ///
-    /// As [`keep`](Self::keep) and [`reduce`](Self::reduce), for its columns and reductions, and for the 256th section.
+    /// On the conditions of [`keep`](Self::keep) and [`reduce`](Self::reduce), for its columns and reductions, and for
+    /// the 256th section.
     #[must_use]
     pub fn section(mut self, section: Section<M>) -> Self {
         for (place, name) in section.names.iter().enumerate() {
@@ -358,14 +362,14 @@ impl<M: Integrator> Ensemble<M> {
         self.changed()
     }
 
-    /// All reductions and their names: of ends, then of sections.
+    /// All reductions and their names: those of ends, then those of sections.
     pub(crate) fn all_reductions(&self) -> impl Iterator<Item = (&String, &Reduction)> {
         let of_ends = self.reductions.iter().map(|(name, reduction, _)| (name, reduction));
         let of_sections = self.sections.iter().flat_map(|section| &section.reductions);
         of_ends.chain(of_sections.map(|(name, reduction, _)| (name, reduction)))
     }
 
-    /// Of no members.
+    /// The outcome of no members.
     pub(crate) fn nothing(&self) -> Outcome {
         let passages = vec![Passages { times: 0, first: Moments::NONE }; self.sections.len()];
         let reduced = self.all_reductions().map(|(_, reduction)| reduction.begin()).collect();

@@ -1,21 +1,21 @@
-//! Why a member has no end.
+//! The failure of a member.
 
 use liestep::mechanics::InertiaError;
 use liestep::{SetupError, StepError};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// Why a member couldn't be made, or couldn't be stepped to its end.
+/// The reason why a member couldn't be constructed, or couldn't be stepped to its end.
 #[derive(Clone, Debug, PartialEq, Error, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Failure {
-    /// Its scene or its start is impossible.
+    /// The scene or the initial state is impossible.
     #[error(transparent)]
     Setup(#[from] SetupError),
-    /// It has the inertia of no body.
+    /// The inertia is that of no body.
     #[error(transparent)]
     Inertia(#[from] InertiaError),
-    /// A step of it has no solution.
+    /// A step has no solution.
     #[error(transparent)]
     Step(#[from] StepError),
     /// Another reason, in words.
@@ -23,16 +23,16 @@ pub enum Failure {
     Other(String),
 }
 
-/// A member that has failed, and the number of steps that it had made.
+/// A failed member, and the number of steps that it completed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MemberFailure {
-    /// Its number.
+    /// The member's number.
     pub member: u64,
-    /// The steps that it made; none where it couldn't be made itself.
+    /// The completed steps; zero if the member couldn't be constructed.
     pub steps: u64,
-    /// Whether it could be made, and stopped then.
+    /// Whether the member could be constructed, and failed later.
     pub was_made: bool,
-    /// Why there are no more.
+    /// The reason of the failure.
     pub failure: Failure,
 }
 
@@ -42,7 +42,7 @@ mod tests {
     use liestep::mechanics::InertiaError;
     use liestep::{SetupError, StepError};
 
-    /// Of variants with fields of each type and with none, floats to their last bit.
+    /// Failures with fields of each type and with none are read back, floats to their last bit.
     #[test]
     fn a_failure_is_read_as_it_was_written() {
         let failures: [Failure; 12] = [

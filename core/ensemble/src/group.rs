@@ -1,4 +1,4 @@
-//! Some members that are stepped side by side: in lanes, or one by one.
+//! Groups of members that are stepped together: in lanes, or one by one.
 
 use liestep::StepError;
 use liestep::motion::{Batch, Batchable, Integrator};
@@ -7,24 +7,24 @@ use simba::simd::AutoF64x8;
 
 use crate::section::{LANES, Section};
 
-/// Members under way, numbered from zero.
+/// A group of running members, numbered from zero.
 pub(crate) trait Group<M: Integrator> {
     fn run(&mut self, steps: u64);
     fn state(&self, member: usize) -> M::State;
-    /// Before the last run, if that was of one step.
+    /// The state before the last run, if that was of one step.
     fn before(&self, member: usize) -> M::State;
-    /// The values of a section's function, where it has them in lanes.
+    /// The values of a section's function, if the section computes them in lanes.
     fn values(&self, section: &Section<M>) -> Option<[f64; LANES]>;
     fn error(&self, member: usize) -> Option<StepError>;
 }
 
-/// Members as [`group`s](Group), in their order: as few as will do.
+/// A function that divides members, in their order, into as few [`group`s](Group) as will do, each with its size.
 pub(crate) type Grouping<M> = fn(&[Start<M>]) -> Vec<(Box<dyn Group<M>>, usize)>;
 
-/// A member's stepper and where it starts.
+/// A member's stepper and its initial state.
 pub(crate) type Start<M> = (M, <M as Integrator>::State);
 
-/// Members in lanes.
+/// A group of members in lanes.
 struct Together<M: Batchable<AutoF64x8>> {
     batch: Batch<AutoF64x8, M>,
     before: <<M as InLanes<AutoF64x8>>::Together as Integrator>::State,
@@ -55,7 +55,7 @@ impl<M: Batchable<AutoF64x8> + 'static> Group<M> for Together<M> {
     }
 }
 
-/// Eight in a batch, and fewer where one is unlike those before it.
+/// Groups of eight members, and of fewer if a member can't share a batch with those before it.
 pub(crate) fn in_lanes<M: Batchable<AutoF64x8> + 'static>(mut left: &[Start<M>]) -> Vec<(Box<dyn Group<M>>, usize)> {
     let mut groups: Vec<(Box<dyn Group<M>>, usize)> = Vec::new();
     while let Some((batch, count)) = Batch::<AutoF64x8, M>::of_first(&left[..left.len().min(LANES)]) {
@@ -66,7 +66,7 @@ pub(crate) fn in_lanes<M: Batchable<AutoF64x8> + 'static>(mut left: &[Start<M>])
     groups
 }
 
-/// One member.
+/// A group of one member.
 struct SingleMember<M: Integrator> {
     stepper: M,
     state: M::State,
@@ -75,7 +75,7 @@ struct SingleMember<M: Integrator> {
 }
 
 impl<M: Integrator> Group<M> for SingleMember<M> {
-    /// As [`Batch::run`].
+    /// Steps the member as [`Batch::run`] does.
     fn run(&mut self, steps: u64) {
         if self.error.is_some() {
             return;
@@ -103,7 +103,7 @@ impl<M: Integrator> Group<M> for SingleMember<M> {
     }
 }
 
-/// Each by itself.
+/// Groups of one member each.
 pub(crate) fn one_by_one<M: Integrator + Clone + 'static>(members: &[Start<M>]) -> Vec<(Box<dyn Group<M>>, usize)> {
     let alone = |(stepper, state): &Start<M>| -> (Box<dyn Group<M>>, usize) {
         let (stepper, state, before) = (stepper.clone(), state.clone(), state.clone());

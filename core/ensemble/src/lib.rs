@@ -1,7 +1,7 @@
 //! Ensembles: many motions of one kind, run on all cores or on a cluster.
 //!
-//! Members are drawn by a seed or read from a table, run eight at a time in SIMD lanes and on all cores, and kept in
-//! files that any kill leaves whole. What comes out is a function of the plan alone, to the last bit.
+//! Members are drawn by a seed or read from a table, run eight at a time in SIMD lanes and on all cores, and recorded
+//! in files that stay whole if the process is killed. Results are a function of the plan alone, to the last bit.
 //!
 //! ```
 //! use liestep::effects::{Gravity, PrincipalBody};
@@ -32,14 +32,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # What it is made of
+//! # Parts
 //!
 //! ```text
-//! Ensemble       members, steps, seed or table, what is kept           → fingerprint
+//! Ensemble       members, steps, seed or table, recorded columns        → fingerprint
 //! member k       a function of the seed and k, or of row k
-//! chunk c        a function of the plan and c: members in lanes, those that fail with their errors
-//! Store          a folder of shards, one to a chunk: written whole or not at all
-//! Engine         who makes which chunk: threads here, shares of a job array, MPI
+//! chunk c        a function of the plan and c: members in lanes, failures with their errors
+//! Store          a folder of shards, one file per chunk: written whole or not at all
+//! Engine         assigns chunks to workers: threads here, shares of a job array, MPI
 //! ```
 //!
 //! | | |
@@ -49,7 +49,7 @@
 //! | keep columns at the end, or at times | [`Ensemble::keep`], [`Ensemble::every`] |
 //! | keep columns where members cross a surface, or end there | [`Ensemble::section`], [`Section::until`] |
 //! | moments, histograms and quantiles of the ends, or of crossings | [`Ensemble::reduce`], [`Section::reduce`] |
-//! | find out who failed, when and why | [`Store::shards`], [`MemberFailure`] |
+//! | find out which members failed, when and why | [`Store::shards`], [`MemberFailure`] |
 //! | read the files elsewhere | [`Store`] |
 //! | use several machines | [`engines`] |
 

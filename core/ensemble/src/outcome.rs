@@ -1,48 +1,48 @@
-//! What has become of members: of a chunk, of a folder of chunks, of all.
+//! Outcomes: counts, failures and reductions of the members of a chunk, of a folder of chunks, or of all.
 
 use serde::{Deserialize, Serialize};
 
 use crate::failure::MemberFailure;
 use crate::reduce::{Moments, Summary};
 
-/// What has become of members, and what was made of them.
+/// The outcome of members, and the values that they were reduced to.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
-    /// How many came to their ends.
+    /// The number of members that completed their steps.
     pub finished: u64,
-    /// How many [left](crate::Section::until) before.
+    /// The number of members that [left](crate::Section::until) before.
     pub left: u64,
-    /// How many could be followed no further.
+    /// The number of members that could be followed no further.
     pub stopped: u64,
-    /// How many couldn't be made.
+    /// The number of members that couldn't be constructed.
     pub impossible: u64,
-    /// Those that stopped or couldn't be made; of several chunks the first ten of each kind.
+    /// The failures; of several chunks the first ten of each kind.
     pub failures: Vec<MemberFailure>,
-    /// How those that finished or left crossed each section.
+    /// The crossings of each section by members that finished or left.
     pub passages: Vec<Passages>,
-    /// What ends and crossings were reduced to, in the order of the plan.
+    /// The reductions of ends and crossings, in the order of the plan.
     pub reduced: Vec<Summary>,
 }
 
-/// How members crossed a surface.
+/// The crossings of a surface by members.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Passages {
-    /// How often.
+    /// The number of crossings.
     pub times: u64,
-    /// The times of first crossings, s: one of each member that has crossed it.
+    /// The times of first crossings, s, of the members that crossed.
     pub first: Moments,
 }
 
 impl Outcome {
-    /// How many neither finished nor left.
+    /// The number of members that neither finished nor left.
     #[must_use]
     pub fn failed(&self) -> u64 {
         self.stopped + self.impossible
     }
 
-    /// Both have to be of one plan.
+    /// Adds another outcome of the same plan.
     pub(crate) fn merge(&mut self, other: &Self) {
-        /// All are in the chunks.
+        /// The number of failures of a kind that are listed; the shards have all.
         const SHOWN: usize = 10;
         self.finished += other.finished;
         self.left += other.left;

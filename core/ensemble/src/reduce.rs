@@ -1,52 +1,52 @@
-//! What is made of all members while they run.
+//! Reductions: statistics of all members, accumulated while they run.
 //!
-//! A chunk's share is made in the order of its members, and the shares are merged in the order of the chunks, so that the
-//! bits of a sum don't depend on who made which.
+//! Each chunk accumulates in the order of its members, and chunks are merged in the order of their numbers, so that the
+//! bits of a sum don't depend on who computed which.
 
 use core::ops::Range;
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-/// How values are reduced.
+/// The kind of a reduction.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reduction {
     /// Count, mean, variance and range.
     Moments,
-    /// Counts of equal parts of a range.
+    /// Counts in equal parts of a range.
     Histogram {
-        /// From where to where.
+        /// The ends of the range.
         range: Range<f64>,
-        /// In how many parts.
+        /// The number of parts.
         bins: usize,
     },
     /// Counts by size, of any range, from which medians and other [quantiles](Quantiles::at) are read.
     Quantiles,
 }
 
-/// Values reduced.
+/// The result of a reduction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Summary {
-    /// By [`Reduction::Moments`].
+    /// The result of [`Reduction::Moments`].
     Moments(Moments),
-    /// By [`Reduction::Histogram`].
+    /// The result of [`Reduction::Histogram`].
     Histogram(Histogram),
-    /// By [`Reduction::Quantiles`].
+    /// The result of [`Reduction::Quantiles`].
     Quantiles(Quantiles),
 }
 
-/// Counts of values by sign, power of two, and the 128 equal parts between two powers: whole numbers, which have the same
-/// sums in whatever order they are added.
+/// Counts of values by sign, power of two, and the 128 equal parts between two powers: whole numbers, whose sums don't
+/// depend on the order.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Quantiles {
-    /// By the leading bits of the values, in their order.
+    /// The counts by the leading bits of the values, in the order of the values.
     counts: BTreeMap<i64, u64>,
-    /// Of what isn't a number.
+    /// The count of NaNs.
     pub not_a_number: u64,
 }
 
 impl Quantiles {
-    /// Bits of a value that its size to one part in 128 leaves out.
+    /// The low bits of a double that are dropped: the rest is its size to one part in 128.
     const LEFT_OUT: u32 = 45;
 
     fn add(&mut self, value: f64) {
@@ -66,7 +66,8 @@ impl Quantiles {
         }
     }
 
-    /// The value that this share of all, from 0 to 1, is below, with an error of at most a 256th of it; NaN of none.
+    /// The quantile at this share of all values, from 0 to 1, with an error of at most a 256th of it; NaN without
+    /// values.
     #[must_use]
     #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a share of members
     pub fn at(&self, share: f64) -> f64 {
@@ -85,20 +86,20 @@ impl Quantiles {
     }
 }
 
-/// Count, mean, variance and range of values; those that aren't finite are counted apart.
+/// Count, mean, variance and range of values; values that aren't finite are counted apart.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Moments {
-    /// How many were finite.
+    /// The number of finite values.
     pub count: u64,
-    /// How many weren't.
+    /// The number of other values.
     pub not_finite: u64,
-    /// The mean of the finite ones; zero of none.
+    /// The mean of the finite values; zero without any.
     pub mean: f64,
     /// The sum of squares about the mean.
     pub squares: f64,
-    /// The least, or infinity.
+    /// The least value, or infinity.
     pub least: f64,
-    /// The largest, or minus infinity.
+    /// The largest value, or minus infinity.
     pub largest: f64,
 }
 
@@ -106,15 +107,15 @@ impl Moments {
     pub(crate) const NONE: Self =
         Self { count: 0, not_finite: 0, mean: 0.0, squares: 0.0, least: f64::INFINITY, largest: f64::NEG_INFINITY };
 
-    /// The variance of the distribution that the values are a sample of; NaN of fewer than two.
+    /// The unbiased estimate of the variance; NaN for fewer than two values.
     #[must_use]
     #[allow(clippy::cast_precision_loss)] // members
     pub fn variance(&self) -> f64 {
         if self.count < 2 { f64::NAN } else { self.squares / (self.count - 1) as f64 }
     }
 
-    /// T. F. Chan, G. H. Golub, R. J. `LeVeque`, *Updating formulae and a pairwise algorithm for computing sample variances*,
-    /// 1979.
+    /// Merges two samples by T. F. Chan, G. H. Golub, R. J. `LeVeque`, *Updating formulae and a pairwise algorithm for
+    /// computing sample variances*, 1979.
     #[allow(clippy::cast_precision_loss)] // members
     pub(crate) fn merge(&mut self, other: &Self) {
         self.not_finite += other.not_finite;
@@ -122,7 +123,7 @@ impl Moments {
             return;
         }
         if self.count == 0 {
-            // By the formula the square of a large mean would be infinite, and zero times that.
+            // The formula below would give NaN: the square of a large mean is infinite, and is multiplied by zero.
             *self = Self { not_finite: self.not_finite, ..other.clone() };
             return;
         }
@@ -149,15 +150,15 @@ impl Moments {
 /// Counts of values in equal parts of a range.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Histogram {
-    /// From where to where.
+    /// The ends of the range.
     pub range: Range<f64>,
-    /// Of each part, its beginning included.
+    /// The count in each part, its beginning included.
     pub counts: Vec<u64>,
-    /// Of values below the range.
+    /// The count of values below the range.
     pub below: u64,
-    /// Of values from its end on.
+    /// The count of values from its end on.
     pub above: u64,
-    /// Of what isn't a number.
+    /// The count of NaNs.
     pub not_a_number: u64,
 }
 
@@ -185,7 +186,7 @@ impl Histogram {
 }
 
 impl Reduction {
-    /// What is wrong with it, if something is.
+    /// The mistake in its parameters, if there is one.
     pub(crate) fn mistake(&self) -> Option<String> {
         let Self::Histogram { range, bins } = self else { return None };
         if *bins == 0 {
@@ -196,7 +197,7 @@ impl Reduction {
         (!is_range).then(|| format!("the range of a histogram goes from a number to a larger one, not {range:?}"))
     }
 
-    /// Of no values.
+    /// The summary of no values.
     pub(crate) fn begin(&self) -> Summary {
         match self {
             Self::Moments => Summary::Moments(Moments::NONE),
@@ -221,7 +222,7 @@ impl Summary {
         }
     }
 
-    /// Both have to be of one reduction.
+    /// Adds another summary of the same reduction.
     pub(crate) fn merge(&mut self, other: &Self) {
         match (self, other) {
             (Self::Moments(own), Self::Moments(other)) => own.merge(other),
@@ -236,7 +237,7 @@ impl Summary {
 mod tests {
     use super::{Histogram, Reduction, Summary};
 
-    /// As it is written and read again.
+    /// A summary after it was written and read.
     fn read(summary: &Summary) -> Summary {
         toml::from_str(&toml::to_string(summary).unwrap()).unwrap()
     }
@@ -259,12 +260,12 @@ mod tests {
         assert_eq!((turned.count, turned.least, turned.largest), (5, -1.0, 7.0));
         let Summary::Moments(moments) = &all else { panic!("they are moments") };
         assert_eq!((moments.count, moments.not_finite, moments.least, moments.largest), (5, 1, -1.0, 7.0));
-        // Of 1, 2, 6, −1 and 7: the mean 3, and 4 + 1 + 9 + 16 + 16 about it.
+        // The mean of 1, 2, 6, −1 and 7 is 3, and the squares about it are 4 + 1 + 9 + 16 + 16.
         assert!((moments.mean - 3.0).abs() < 1e-15 && (moments.variance() - 46.0 / 4.0).abs() < 1e-14);
         assert_eq!(read(&all), all);
     }
 
-    /// Their squares aren't doubles.
+    /// The squares of these values overflow.
     #[test]
     fn moments_of_large_values_are_numbers() {
         let mut all = Reduction::Moments.begin();
@@ -278,7 +279,7 @@ mod tests {
         assert_eq!(merged, all);
     }
 
-    /// Against the sorted values; parts merged in another order are the same to the bit.
+    /// Quantiles are compared with the sorted values; parts merged in another order agree to the bit.
     #[test]
     fn quantiles_are_those_of_the_sorted_values() {
         let mut values: Vec<f64> = (0..999).map(|k| (f64::from(k) * 0.7).sin() * f64::from(k % 50).exp()).collect();

@@ -1,4 +1,4 @@
-//! Running an ensemble, and what has become of it.
+//! The run of an ensemble, and its report.
 
 use core::fmt;
 use std::collections::BTreeSet;
@@ -13,43 +13,43 @@ use crate::outcome::Outcome;
 use crate::reduce::Summary;
 use crate::store::{Fault, Store, StoreError};
 
-/// What is there of an ensemble after a run; while chunks of other shares are missing, of this one.
+/// The report of a run; it covers this share alone while chunks of other shares are missing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
-    /// How many chunks the ensemble has.
+    /// The number of chunks of the ensemble.
     pub chunks: u64,
-    /// How many of them this process made in this run.
+    /// The number of chunks that this process computed in this run.
     pub made: u64,
-    /// How many are still missing: of other shares, or after a stop.
+    /// The number of chunks still missing: those of other shares, or those after a stop.
     pub missing: u64,
-    /// What has become of members; [`Store::shards`] has all that failed with their errors.
+    /// The outcome of the members; [`Store::shards`] has all failures with their errors.
     pub outcome: Outcome,
-    /// The files that were found to be damaged. They are now called `….damaged`, and their chunks were made anew; but for those
-    /// that were found at the end, which are left to the next run. Rows are read by a [verified](Store::verified) store only.
+    /// The damaged files. They are now called `….damaged`, and their chunks were recomputed, except for those found at
+    /// the end, which are left to the next run. Only a [verified](Store::verified) store reads rows.
     pub faults: Vec<Fault>,
     names: Vec<String>,
 }
 
 impl Report {
-    /// What a reduction has come to, over the chunks that are there.
+    /// The result of a reduction, over the chunks that exist.
     #[must_use]
     pub fn reduced(&self, name: &str) -> Option<&Summary> {
         self.names.iter().zip(&self.outcome.reduced).find(|(own, _)| *own == name).map(|(_, reduced)| reduced)
     }
 }
 
-/// How far a run has come.
+/// The progress of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// Chunks that are there.
+    /// The number of chunks that exist.
     pub done: u64,
-    /// All chunks.
+    /// The number of all chunks.
     pub chunks: u64,
-    /// How long the others will take, as long as those of this run did.
+    /// The estimated time for the remaining chunks, from the time of this run's chunks so far.
     pub remaining: Duration,
 }
 
-/// In a line, as `57 of 400 chunks, about 12 min left`.
+/// Writes one line, as `57 of 400 chunks, about 12 min left`.
 impl fmt::Display for Progress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (left, unit) = match self.remaining.as_secs() {
@@ -62,21 +62,21 @@ impl fmt::Display for Progress {
 }
 
 impl<M: Integrator> Ensemble<M> {
-    /// Makes what is missing in the folder, and says what is there then.
+    /// Computes the chunks that are missing in the folder, and reports.
     ///
     /// # Errors
     ///
-    /// [`StoreError`] where the folder has files of another plan, or can't be written to. Chunks that are done are kept.
+    /// [`StoreError`] if the folder has files of another plan, or can't be written to. Finished chunks stay.
     pub fn run(&self, engine: &dyn Engine, store: &Store) -> Result<Report, StoreError> {
         self.run_telling(engine, store, &|_| {})
     }
 
-    /// As [`run`](Self::run), and tells after each chunk how far it has come; of several processes the one that
+    /// Runs as [`run`](Self::run), and reports the progress after each chunk; of several processes the one that
     /// [leads](Engine::leads) does.
     ///
     /// # Errors
     ///
-    /// As [`run`](Self::run).
+    /// The errors of [`run`](Self::run).
     pub fn run_telling(
         &self,
         engine: &dyn Engine,
@@ -94,7 +94,7 @@ impl<M: Integrator> Ensemble<M> {
         let (missing, faults): (Vec<u64>, Vec<Fault>) = match looked {
             Ok(found) => found,
             Err(error) => {
-                // The other processes wait for numbers: there are none.
+                // The other processes wait for numbers of chunks: an empty list lets them go on.
                 engine.distribute(&[], &|_, _| Ok(()), &|| ())?;
                 return Err(error);
             }
@@ -112,7 +112,7 @@ impl<M: Integrator> Ensemble<M> {
             }
         };
         let make = |chunk: u64, is_stopped: &dyn Fn() -> bool| {
-            // Of others some are there by now.
+            // Another share may have computed its own chunk by now.
             if others.contains(&chunk) && store.has(chunk) {
                 return Ok(());
             }

@@ -12,7 +12,7 @@ use crate::Failure;
 use crate::reduce::Reduction;
 use liestep::numbers::Digest;
 
-/// The lanes of `AutoF64x8`.
+/// The number of lanes of `AutoF64x8`.
 pub(crate) const LANES: usize = 8;
 
 type Value<M> = dyn Fn(&Moment<'_, M>) -> f64 + Send + Sync;
@@ -20,11 +20,12 @@ type Values<M> = dyn Fn(&Moment<'_, M>, &mut Vec<f64>) + Send + Sync;
 type Time<M> = fn(&Moment<'_, M>) -> f64;
 type Find<M> = fn(&Section<M>, &M, &<M as Integrator>::State, u64) -> Result<Vec<Crossing>, RunError>;
 
-/// A surface, and what is kept where members cross it: [`Ensemble::section`](crate::Ensemble::section) takes it.
+/// A surface, and the columns that are recorded where members cross it, for
+/// [`Ensemble::section`](crate::Ensemble::section).
 ///
-/// The surface is where a function of the motion is zero; [`sections`](liestep::recording::sections) has some. Crossings lie
-/// between the ends of steps and are found as [`Run::event`] finds them, to the bit, with its contract of what isn't
-/// missed.
+/// The surface is the zero set of a function of the motion; [`sections`](liestep::recording::sections) has some
+/// functions. Crossings lie between the ends of steps and are located as by [`Run::event`], to the bit, and with its
+/// guarantee on missed crossings.
 ///
 /// # Examples
 ///
@@ -56,7 +57,7 @@ type Find<M> = fn(&Section<M>, &M, &<M as Integrator>::State, u64) -> Result<Vec
 pub struct Section<M: Integrator> {
     event: Event,
     function: Box<Value<M>>,
-    /// In lanes, a [`Together`].
+    /// The function in lanes, a [`Together`].
     together: Option<Box<dyn Any + Send + Sync>>,
     only_first: bool,
     pub(crate) ends: bool,
@@ -67,44 +68,45 @@ pub struct Section<M: Integrator> {
     pub(crate) reductions: Vec<(String, Reduction, Box<Value<M>>)>,
 }
 
-/// A function of members in lanes.
+/// A section's function of members in lanes.
 type Together<M> = Box<dyn Fn(&Moment<'_, <M as InLanes<AutoF64x8>>::Together>) -> AutoF64x8 + Send + Sync>;
 
-/// What is kept of one crossing: for the columns, and for the reductions.
+/// The recorded values of one crossing: for the columns, and for the reductions.
 pub(crate) struct Crossing {
-    /// s
+    /// The time, s.
     pub(crate) time: f64,
     pub(crate) columns: Vec<f64>,
     pub(crate) reduced: Vec<f64>,
 }
 
-/// How far one member has been looked at.
+/// The progress of a section's search for crossings along one member.
 pub(crate) struct Watch<S> {
-    /// At the last step but those at whose ends the function was zero, where it was.
+    /// The state before the first of the last steps, if the function was zero at the ends of these steps.
     before: Option<S>,
-    /// Whether it was above zero at the last step that has been looked at; nothing where it was zero.
+    /// Whether the function was above zero at the last step checked; `None` for a zero or a NaN.
     above: Option<bool>,
-    /// Whether the only crossing that is kept has been.
+    /// Whether the only crossing to be recorded has been found.
     is_done: bool,
 }
 
-/// Where a member is, which is taken out of its lane where it is asked for.
+/// The last step of a member; its states are taken out of their lane on demand.
 pub(crate) struct Place<'a, S> {
-    /// The function's value, where it was found in lanes.
+    /// The function's value after the step, if it was computed in lanes.
     pub(crate) value: Option<f64>,
-    /// A step ago, or here where that has been looked at.
+    /// The state before the step, or the present one if the step has been checked.
     pub(crate) before: &'a dyn Fn() -> S,
     pub(crate) now: &'a dyn Fn() -> S,
 }
 
 impl<M: Integrator> Section<M> {
-    /// Where this function crosses zero so.
+    /// A section at the zeros of a function that the event selects.
     ///
-    /// With a [bound](Event::curvature) every step is looked at closely and made twice, without only those that cross.
+    /// A [bound](Event::curvature) makes every step be checked closely and computed twice; without one only the steps
+    /// with a crossing are.
     ///
     /// # Panics
     ///
-    /// Where the event is [terminal](Event::terminal): a member ends by [`until`](Self::until).
+    /// If the event is [terminal](Event::terminal): a member ends by [`until`](Self::until).
     pub fn new<Y: Into<f64>>(event: Event, function: impl Fn(&Moment<'_, M>) -> Y + Send + Sync + 'static) -> Self
     where
         ScalarIn<M>: Into<f64>,
@@ -124,8 +126,9 @@ impl<M: Integrator> Section<M> {
         }
     }
 
-    /// The same function of members in lanes, so that only those that cross are taken out of them: `sections::plane` once
-    /// more, or what is generic over its scalar. Members one by one don't ask it.
+    /// Adds the same function for members in lanes, so that only members that cross are taken out of their lanes.
+    /// Repeat `sections::plane`, or pass any function that is generic over its scalar. Members that run one by one
+    /// don't use it.
     #[must_use]
     pub fn in_lanes(
         mut self,
@@ -139,23 +142,23 @@ impl<M: Integrator> Section<M> {
         self
     }
 
-    /// Only the first crossing of each member: its first passage.
+    /// Restricts the section to the first crossing of each member: its first passage.
     #[must_use]
     pub fn first(mut self) -> Self {
         self.only_first = true;
         self
     }
 
-    /// Only the first crossing, and the member ends with the step in which it is, with the status
-    /// [`Left`](crate::Status::Left). What is reduced of ends is so of members that come to theirs.
+    /// Restricts the section to the first crossing, and ends the member with the step that has it, with the status
+    /// [`Left`](crate::Status::Left). Reductions of ends leave such members out.
     #[must_use]
     pub fn until(mut self) -> Self {
         (self.only_first, self.ends) = (true, true);
         self
     }
 
-    /// Keeps columns of these names, a list of numbers for each row of a member: those of the crossings since its row
-    /// before, in their order.
+    /// Records columns of these names, a list of numbers for each row of a member: the values at the crossings since
+    /// the previous row, in their order.
     #[must_use]
     pub fn keep<const N: usize>(
         mut self,
@@ -167,7 +170,7 @@ impl<M: Integrator> Section<M> {
         self
     }
 
-    /// Reduces a value of every crossing, also of a member that doesn't come to its end.
+    /// Reduces a value of every crossing, also of members that don't complete their steps.
     #[must_use]
     pub fn reduce(
         mut self,
@@ -186,15 +189,15 @@ impl<M: Integrator> Section<M> {
         Crossing { time: (self.time)(now), columns, reduced }
     }
 
-    /// From here on.
+    /// The watch of a member from its start on.
     pub(crate) fn watch(&self, stepper: &M, start: &M::State) -> Result<Watch<M::State>, Failure> {
-        // It has no value, or it has.
+        // A search of no steps fails if the function has no value at the start.
         (self.find)(self, stepper, start, 0).map_err(failure)?;
         let above = side((self.function)(&Moment::of_step(stepper, start)));
         Ok(Watch { before: None, above, is_done: false })
     }
 
-    /// Its values in lanes, where it has them.
+    /// The values of the function in lanes, if the section has such a function.
     pub(crate) fn lanes(&self, all: &Moment<'_, <M as InLanes<AutoF64x8>>::Together>) -> Option<[f64; LANES]>
     where
         M: Batchable<AutoF64x8> + 'static,
@@ -203,9 +206,9 @@ impl<M: Integrator> Section<M> {
         Some(core::array::from_fn(|lane| values.extract(lane)))
     }
 
-    /// The crossings up to here that haven't been found yet; `is_last` where there is no further look.
+    /// The crossings up to here that haven't been found yet; `is_last` if no further check follows.
     ///
-    /// The steps that cross are made again, by the member's own stepper.
+    /// Steps with a crossing are repeated by the member's own stepper.
     pub(crate) fn look(
         &self,
         watch: &mut Watch<M::State>,
@@ -218,7 +221,7 @@ impl<M: Integrator> Section<M> {
         }
         let value = at.value.unwrap_or_else(|| (self.function)(&Moment::of_step(stepper, &(at.now)())));
         let (above, is_lost) = (side(value), value.is_nan());
-        // Whether it crosses at a zero the next sign tells; without a value there is none to wait for.
+        // The next sign decides whether a zero is a crossing; a NaN has no next sign to wait for.
         if above.is_none() && !is_lost && !is_last {
             watch.before.get_or_insert_with(at.before);
             return Ok(Vec::new());
@@ -238,7 +241,7 @@ impl<M: Integrator> Section<M> {
         Ok(found)
     }
 
-    /// What tells it from another, but for its functions.
+    /// Adds everything of the section but its functions to the digest.
     pub(crate) fn describe(&self, digest: &mut Digest) {
         digest.text(&format!("{:?} {} {}", self.event, self.only_first, self.ends));
         self.names.iter().for_each(|name| digest.text(name));
@@ -248,14 +251,14 @@ impl<M: Integrator> Section<M> {
         }
     }
 
-    /// Its functions' values somewhere.
+    /// The values of all functions of the section at one time.
     pub(crate) fn values(&self, now: &Moment<'_, M>) -> Vec<f64> {
         let Crossing { columns, reduced, .. } = self.at(now);
         [vec![(self.function)(now)], columns, reduced].concat()
     }
 }
 
-/// Above zero or below; nothing where it is zero, or no number.
+/// Whether a value is above zero; `None` for a zero or a NaN.
 fn side(value: f64) -> Option<bool> {
     (value != 0.0 && !value.is_nan()).then_some(value > 0.0)
 }

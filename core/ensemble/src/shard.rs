@@ -1,4 +1,4 @@
-//! What is kept of a chunk, and how it is written: a file of Arrow IPC.
+//! Shards: the recorded rows and the outcome of a chunk, as an Arrow IPC file.
 
 use std::collections::HashMap;
 use std::io::{Cursor, Read};
@@ -15,18 +15,18 @@ use serde::{Deserialize, Serialize};
 
 use crate::outcome::Outcome;
 
-/// What has become of a member by the time of a row; in a file its number.
+/// The status of a member at the time of a row; files have its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// 0: it was on its way.
+    /// 0: the member is still running.
     Going,
-    /// 1: it was at its end.
+    /// 1: the member has completed its steps.
     Finished,
-    /// 2: it could be followed no further: its next step had no solution, or the function of a section has no value here.
+    /// 2: the member has failed: its next step has no solution, or the function of a section has no value here.
     Stopped,
-    /// 3: it couldn't be made; its columns are NaN.
+    /// 3: the member couldn't be constructed; its columns are NaN.
     Impossible,
-    /// 4: it had [left](crate::Section::until), and this is the step in which it did.
+    /// 4: the member has [left](crate::Section::until) within this step.
     Left,
 }
 
@@ -34,29 +34,29 @@ impl Status {
     const ALL: [Self; 5] = [Self::Going, Self::Finished, Self::Stopped, Self::Impossible, Self::Left];
 }
 
-/// Rows, column by column.
+/// Recorded rows, column by column.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rows {
-    /// Whose they are.
+    /// The member of each row.
     pub member: Vec<u64>,
-    /// After how many steps.
+    /// The steps that the member has completed.
     pub step: Vec<u64>,
-    /// What had become of the member.
+    /// The status of the member.
     pub status: Vec<Status>,
-    /// What was kept.
+    /// The recorded columns.
     pub columns: Vec<Vec<f64>>,
-    /// What was kept at crossings, one of these for each section of the plan.
+    /// The recorded crossings, one element for each section of the plan.
     pub crossings: Vec<Crossings>,
 }
 
-/// What was kept where members crossed one surface; in a file a list for each row.
+/// The columns recorded where members cross one surface; files have a list for each row.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Crossings {
     /// The names of the columns.
     pub names: Vec<String>,
-    /// For each crossing the number of the first row after it, which tells the member; none without columns.
+    /// The number of the first row after each crossing, which determines the member; empty without columns.
     pub row: Vec<usize>,
-    /// What was kept, by member and then by time.
+    /// The recorded values, by member and then by time.
     pub columns: Vec<Vec<f64>>,
 }
 
@@ -65,7 +65,7 @@ impl Crossings {
         Self { names: names.to_vec(), row: vec![], columns: vec![vec![]; names.len()] }
     }
 
-    /// One that belongs to this row.
+    /// Adds a crossing that belongs to this row.
     pub(crate) fn push(&mut self, row: usize, values: &[f64]) {
         if !self.columns.is_empty() {
             self.row.push(row);
@@ -73,7 +73,7 @@ impl Crossings {
         self.columns.iter_mut().zip(values).for_each(|(column, value)| column.push(*value));
     }
 
-    /// How many crossings each of the rows has.
+    /// The number of crossings of each row.
     fn counts(&self, rows: usize) -> Vec<usize> {
         let mut counts = vec![0; rows];
         for row in &self.row {
@@ -98,7 +98,7 @@ impl Crossings {
         Arc::new(lists.finish())
     }
 
-    /// Takes lists in again; the first column says whose they are. `None` where another has lists of other lengths.
+    /// Reads the lists of a column; those of the first column determine the rows. `None` if others have other lengths.
     fn read(&mut self, place: usize, array: &ArrayRef, first_row: usize) -> Option<()> {
         let lists = array.as_list_opt::<i32>()?;
         let lengths = lists.value_offsets().windows(2).map(|ends| usize::try_from(ends[1] - ends[0]));
@@ -107,7 +107,7 @@ impl Crossings {
                 self.row.extend(core::iter::repeat_n(first_row + row, length.ok()?));
             }
         } else {
-            // What was there before belongs to the rows of other batches.
+            // Earlier crossings belong to the rows of other batches.
             let own = self.row.partition_point(|row| *row < first_row);
             let rows = lengths
                 .enumerate()
@@ -116,7 +116,7 @@ impl Crossings {
                 return None;
             }
         }
-        // Of what is before the first list and behind the last nothing is part of one.
+        // Values before the first list and after the last belong to no row.
         let (first, last) = (lists.value_offsets().first()?, lists.value_offsets().last()?);
         let range = usize::try_from(*first).ok()?..usize::try_from(*last).ok()?;
         let values = lists.values().as_primitive_opt::<Float64Type>()?.values().get(range)?;
@@ -130,7 +130,7 @@ impl Crossings {
     }
 }
 
-/// What Arrow calls the field within a list.
+/// Arrow's name of the field within a list.
 const ITEM: &str = "item";
 
 impl Rows {
@@ -156,7 +156,7 @@ impl Rows {
     }
 }
 
-/// What is kept of a chunk.
+/// The recorded rows and the outcome of a chunk, the contents of one file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shard {
     /// The [fingerprint](crate::Ensemble::fingerprint) of the plan.
@@ -166,20 +166,21 @@ pub struct Shard {
     /// The names of the columns.
     #[serde(skip)]
     pub names: Vec<String>,
-    /// By member and then by time.
+    /// The rows, by member and then by time.
     #[serde(skip)]
     pub rows: Rows,
-    /// What has become of its members.
+    /// The outcome of the chunk's members.
     pub outcome: Outcome,
 }
 
-/// The key of the schema's metadata that holds what isn't in rows. One only: the order of several isn't fixed.
+/// The key of the schema's metadata that stores everything but the rows. A single key, as the order of several isn't
+/// fixed.
 const KEY: &str = "liestep-ensemble";
-/// What that begins with, a comment of TOML; another layout has another number.
+/// The first line of that metadata, a comment of TOML; another layout of files has another number.
 const FORMAT: &str = "# format 3";
 
 impl Shard {
-    /// The file's bytes, the same each time.
+    /// The bytes of the file, which are reproducible.
     pub(crate) fn to_bytes(&self) -> Result<Vec<u8>, ArrowError> {
         let mut fields = vec![
             Field::new("member", DataType::UInt64, false),
@@ -214,18 +215,18 @@ impl Shard {
         Ok(bytes)
     }
 
-    /// As [`of_bytes`](Self::of_bytes), without its rows and from the first part of the file alone, where a stream of Arrow
-    /// begins.
+    /// Reads a shard without its rows from the first part of the file, where an Arrow stream begins; otherwise as
+    /// [`of_bytes`](Self::of_bytes).
     pub(crate) fn head(mut file: impl Read) -> Result<Option<Self>, String> {
-        // What the writer begins with, up to its alignment.
+        // The writer's magic bytes with their padding.
         let mut magic = [0; 64];
         file.read_exact(&mut magic).map_err(|error| error.to_string())?;
         let reader = StreamReader::try_new(file, None).map_err(|error| error.to_string())?;
         Self::of_schema(&reader.schema())
     }
 
-    /// What a file holds that was written by [`to_bytes`](Self::to_bytes), or why it wasn't; `None` where another version
-    /// of the format has written it.
+    /// Reads the bytes of a file by [`to_bytes`](Self::to_bytes), or says why they are none; `None` if another version
+    /// of the format wrote them.
     pub(crate) fn of_bytes(bytes: &[u8]) -> Result<Option<Self>, String> {
         let reader = FileReader::try_new(Cursor::new(bytes), None).map_err(|error| error.to_string())?;
         let Some(mut shard) = Self::of_schema(&reader.schema())? else { return Ok(None) };
@@ -237,7 +238,7 @@ impl Shard {
         Ok(Some(shard))
     }
 
-    /// Without rows.
+    /// The shard of a schema's metadata, without rows.
     fn of_schema(schema: &Schema) -> Result<Option<Self>, String> {
         let summary = schema.metadata().get(KEY).ok_or("it has no summary of a chunk")?;
         if summary.lines().next() != Some(FORMAT) {
@@ -289,7 +290,7 @@ mod tests {
     use crate::outcome::{Outcome, Passages};
     use crate::reduce::Moments;
 
-    /// Two columns of one section whose lists differ in length have no rows in common.
+    /// Two columns of one section are refused if their lists differ in length.
     #[test]
     fn columns_of_a_section_have_lists_of_the_same_lengths() {
         let lists = |row: Vec<usize>| {
@@ -299,7 +300,7 @@ mod tests {
         let (own, other) = (lists(vec![0, 2, 2]), lists(vec![0, 0, 2]));
         for (second, expected) in [(&own, Some(())), (&other, None)] {
             let mut crossings = Crossings { columns: vec![vec![]; 2], ..Crossings::default() };
-            // Behind another batch of four rows.
+            // The second batch follows four rows of the first.
             for first_row in [0, 4] {
                 assert_eq!(crossings.read(0, &own, first_row), Some(()));
                 assert_eq!(
@@ -329,7 +330,7 @@ mod tests {
         assert_eq!(Shard::of_bytes(&shard.to_bytes().unwrap()), Ok(Some(shard)));
     }
 
-    /// A later version's file isn't damaged: there is nothing to be made anew in its place.
+    /// A later version's file isn't damaged: its chunk must not be recomputed in its place.
     #[test]
     fn another_format_is_told_from_what_cannot_be_read() {
         let shard = Shard {
@@ -342,7 +343,7 @@ mod tests {
         let bytes = shard.to_bytes().unwrap();
         assert_eq!(Shard::of_bytes(&bytes), Ok(Some(shard)));
         let mut later = bytes.clone();
-        // At the beginning and in the footer.
+        // The format's number stands at the beginning and in the footer.
         for (place, part) in bytes.windows(FORMAT.len()).enumerate() {
             if part == FORMAT.as_bytes() {
                 later[place + FORMAT.len() - 1] = b'9';

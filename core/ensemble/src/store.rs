@@ -1,4 +1,4 @@
-//! A folder of shards, each of which is there whole or not at all.
+//! A folder of shards, each written whole or not at all.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -14,54 +14,54 @@ use crate::outcome::Outcome;
 use crate::shard::Shard;
 use liestep::numbers::Digest;
 
-/// A folder that shards are written to and read from, `00000/00000012-0123456789abcdef.arrow`: a thousand to a folder,
-/// named by the number of the chunk and by a digest of the whole file.
+/// A folder that shards are written to and read from, `00000/00000012-0123456789abcdef.arrow`: a thousand to a
+/// subfolder, named by the number of the chunk and by a digest of the whole file.
 ///
-/// A file is written beside, brought to the disk, and then renamed; the folder is brought to the disk, too. So whatever
-/// ends a run, a shard is there whole or not at all, and the next run makes what is missing. Several processes may write
-/// to one folder, on a shared file system too. Files of other names are nobody's business here: they are neither read nor
-/// removed. Beside a folder that has its thousand is the sum of their heads, `00000.toml`, so that who reports needn't open them.
+/// A file is written under a temporary name, flushed to the disk, and then renamed; the folder is flushed, too. So
+/// after any interruption a shard is there whole or not at all, and the next run computes what is missing. Several
+/// processes may write to one folder, on a shared file system too. Files of other names are neither read nor removed. A
+/// full subfolder has the sum of its outcomes beside it, `00000.toml`, so that a report needn't open its files.
 ///
 /// Every file is Arrow IPC and can be read without this library: `polars.read_ipc("out/*/*.arrow")`. Its columns are
-/// `member`, `step`, `status` (a [`Status`](crate::Status)), those that are [kept](crate::Ensemble::keep), and lists of what
-/// is kept at [sections](crate::Ensemble::section), which polars and pandas `explode` into rows.
+/// `member`, `step`, `status` (a [`Status`](crate::Status)), the [recorded](crate::Ensemble::keep) ones, and lists of
+/// values at [sections](crate::Ensemble::section), which polars and pandas `explode` into rows.
 #[derive(Clone, Debug)]
 pub struct Store {
     folder: PathBuf,
     verifies: bool,
 }
 
-/// A file that isn't what it should be, with its path.
+/// The fault of a file, with its path.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum Fault {
-    /// Its end is missing.
+    /// The end of the file is missing.
     #[error("{0} is truncated")]
     Truncated(PathBuf),
-    /// It has changed since it was written.
+    /// The file has changed since it was written.
     #[error("{0} has been altered: its digest is another")]
     Altered(PathBuf),
-    /// It is whole, but of another plan, or of another version of this format.
+    /// The file is whole, but of another plan, or of another version of this format.
     #[error("{0} is of another plan")]
     Foreign(PathBuf),
-    /// It can't be read as a shard.
+    /// The file can't be read as a shard.
     #[error("{0} isn't a shard: {1}")]
     Unreadable(PathBuf, String),
-    /// The file system doesn't give it.
+    /// The file system can't read the file.
     #[error("{0} can't be read: {1}")]
     Io(PathBuf, String),
 }
 
-/// Why shards can't be read or written.
+/// An error in reading or writing shards.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum StoreError {
-    /// The file system says no: a full disk, a folder that mustn't be written to, …
+    /// The file system refuses: a full disk, a folder without permission to write, …
     #[error("{path}: {error}")]
     Io {
-        /// Where.
+        /// The path.
         path: PathBuf,
-        /// Why.
+        /// The error of the file system.
         error: std::io::Error,
     },
     /// The folder has shards of another plan, or of another version of this format, which are left alone.
@@ -69,66 +69,66 @@ pub enum StoreError {
         "{path} is of another plan (other members, steps, columns, or a changed program or library); take another folder, or delete that file"
     )]
     Foreign {
-        /// One of them.
+        /// One of these shards.
         path: PathBuf,
     },
-    /// A chunk has two whole files, which differ: members aren't the same each time that they are made.
+    /// A chunk has two whole files, which differ: its members aren't reproducible.
     #[error(
         "{path} is a second file of its chunk with other contents: members have to be the same each time and on every machine; delete one of the two"
     )]
     Twice {
-        /// The second.
+        /// The second file.
         path: PathBuf,
     },
     /// A shard can't be put into its format.
     #[error("a shard can't be written: {reason}")]
     Unwritable {
-        /// Why.
+        /// The reason.
         reason: String,
     },
 }
 
-/// What Arrow IPC files end with.
+/// The last bytes of Arrow IPC files.
 const END: &[u8] = b"ARROW1";
 const PER_FOLDER: u64 = 1000;
 
-/// What has become of the members of a whole folder.
+/// The summed outcome of a full subfolder.
 #[derive(Serialize, Deserialize)]
 struct Sum {
     plan: u64,
-    /// A digest of the names of its files, in which are those of their contents.
+    /// A digest of the names of the files, which contain digests of their contents.
     names: u64,
     outcome: Outcome,
 }
 
-/// What it is called behind the name of the folder, which it lies beside.
+/// The suffix of the sum's name, after the name of the subfolder beside it.
 const SUM: &str = ".toml";
 
 impl Store {
-    /// This folder, which is made where there is none.
+    /// Opens a folder, which is created if there is none.
     ///
     /// # Errors
     ///
-    /// [`StoreError::Io`] where it can't be made.
+    /// [`StoreError::Io`] if it can't be created.
     pub fn folder(path: impl Into<PathBuf>) -> Result<Self, StoreError> {
         let folder = path.into();
         fs::create_dir_all(&folder).map_err(|error| StoreError::Io { path: folder.clone(), error })?;
         Ok(Self { folder, verifies: false })
     }
 
-    /// A run that begins reads its chunks that are there, and makes anew what is damaged. Without, it trusts their names, which
-    /// files get when they are whole, and reads no rows.
+    /// Lets a run read the chunks of its share that are there first, and recompute damaged ones. Without it a run
+    /// trusts the names, which only whole files get, and reads no rows.
     #[must_use]
     pub fn verified(mut self) -> Self {
         self.verifies = true;
         self
     }
 
-    /// The files of shards by the numbers of their chunks, in the order of the numbers. Of the contents nothing is known.
+    /// The files of shards by the numbers of their chunks, in the order of the numbers. Their contents aren't checked.
     ///
     /// # Errors
     ///
-    /// [`StoreError::Io`] where a folder can't be read.
+    /// [`StoreError::Io`] if a folder can't be read.
     pub fn files(&self) -> Result<Vec<(u64, PathBuf)>, StoreError> {
         let mut files = Vec::new();
         for folder in entries(&self.folder)?.into_iter().filter(|path| path.is_dir()) {
@@ -143,7 +143,7 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// A [`Fault`] where it is truncated, altered or no shard, or the file system doesn't give it.
+    /// A [`Fault`] if it is truncated, altered or no shard, or if the file system fails.
     pub fn read(path: &Path) -> Result<Shard, Fault> {
         let bytes = fs::read(path).map_err(|error| Fault::Io(path.to_owned(), error.to_string()))?;
         Self::shard_of(path, &bytes)
@@ -154,7 +154,7 @@ impl Store {
         let (chunk, digest) =
             name_of(path).ok_or_else(|| unreadable("its name, or that of its folder, isn't a shard's"))?;
         if Digest::of_file(bytes) != digest {
-            // As files of format 1 have it.
+            // Files of format 1 have this digest.
             if Digest::of(bytes) == digest {
                 return Err(Fault::Foreign(path.to_owned()));
             }
@@ -166,11 +166,11 @@ impl Store {
         if shard.chunk == chunk { Ok(shard) } else { Err(Fault::Altered(path.to_owned())) }
     }
 
-    /// The shards of a plan, one after another in the order of their chunks, and what is wrong with other files.
+    /// The shards of a plan, one after another in the order of their chunks, and the faults of other files.
     ///
     /// # Errors
     ///
-    /// [`StoreError::Io`] where a folder can't be read.
+    /// [`StoreError::Io`] if a folder can't be read.
     pub fn shards(&self, plan: u64) -> Result<impl Iterator<Item = Result<Shard, Fault>>, StoreError> {
         let read = move |(_, path): (u64, PathBuf)| {
             let shard = Self::read(&path)?;
@@ -183,7 +183,7 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// [`StoreError`] where that can't be done. Other shards are as they were.
+    /// [`StoreError`] if that fails. Other shards stay as they were.
     pub fn write(&self, shard: &Shard) -> Result<(), StoreError> {
         let bytes = shard.to_bytes().map_err(|error| StoreError::Unwritable { reason: error.to_string() })?;
         let folder = self.folder.join(folder_of(shard.chunk));
@@ -208,10 +208,10 @@ impl Store {
             tries += 1;
             match write() {
                 Ok(()) => break,
-                // A process whose clock is ahead took it for one of a killed run.
+                // A process whose clock is ahead has swept the file as one of a killed run.
                 Err(error) if error.kind() == ErrorKind::NotFound && tries < MOST_TRIES => {}
                 Err(error) => {
-                    // On a full disk it is in the way.
+                    // A part of a file would take up a full disk.
                     let _ = fs::remove_file(&beside);
                     return Err(StoreError::Io { path: beside, error });
                 }
@@ -220,7 +220,8 @@ impl Store {
         bring_to_disk(&folder).map_err(io(&folder))
     }
 
-    /// Removes what killed runs have left half-written before this time; what is newer another process may be writing.
+    /// Removes partial files of killed runs that are older than this time; another process may still be writing newer
+    /// ones.
     pub(crate) fn sweep(&self, before: SystemTime) -> Result<(), StoreError> {
         let is_older = |path: &Path| path.metadata().and_then(|file| file.modified()).is_ok_and(|time| time < before);
         let folders = entries(&self.folder)?.into_iter().filter(|path| path.is_dir());
@@ -234,14 +235,15 @@ impl Store {
         Ok(())
     }
 
-    /// Whether a chunk is there by now, by its name.
+    /// Whether a file of this chunk exists, by its name.
     pub(crate) fn has(&self, chunk: u64) -> bool {
         let folder = entries(&self.folder.join(folder_of(chunk)));
         folder.is_ok_and(|paths| paths.iter().any(|path| name_of(path).is_some_and(|(own, _)| own == chunk)))
     }
 
-    /// The chunks that are there, by their names, and what is wrong with other files. Read are the files of chunks that have
-    /// two, of the share's own chunks the beginning of one file, whether it is of this plan, and [all](Self::verified) if asked for.
+    /// The chunks that exist, by the names of their files, and the faults of other files. All files of a chunk with two
+    /// are read. Of the share's own chunks, one file's head is read, to check the plan, or all files if
+    /// [verified](Self::verified).
     pub(crate) fn look(
         &self,
         plan: u64,
@@ -267,9 +269,9 @@ impl Store {
         Ok((found, faults))
     }
 
-    /// Adds what has become of these of the chunks that are there, in the order of their numbers; returns how many chunks
-    /// there are in all, and what is wrong with other files. No rows are read, and of a folder that has all of its chunks only
-    /// the sum beside it, which whoever needs it first writes.
+    /// Adds the outcomes of the chunks that exist and that `is_own` selects, in the order of their numbers; returns the
+    /// number of all chunks that exist, and the faults of other files. No rows are read. A full subfolder is read by
+    /// the sum beside it alone, which its first reader writes.
     pub(crate) fn survey(
         &self,
         plan: u64,
@@ -307,7 +309,7 @@ impl Store {
             }
             all.merge(&made.outcome);
             if is_whole && (count, faults.len()) == (before.0 + PER_FOLDER, before.1) {
-                // Where it can't be written it is summed again.
+                // Without a written sum the next survey sums again.
                 let (part, text) = (self.folder.join(part_of(SUM)), toml::to_string(&made).unwrap_or_default());
                 let _ =
                     fs::write(&part, text).and_then(|()| fs::rename(&part, &sum)).or_else(|_| fs::remove_file(&part));
@@ -316,7 +318,7 @@ impl Store {
         Ok((count, faults))
     }
 
-    /// A file's shard, whole or its beginning; nothing where another process has just set it aside.
+    /// The shard of a file, whole or its head; `None` if another process has just renamed the file.
     fn shard(path: &Path, plan: u64, is_whole: bool) -> Result<Option<Result<Shard, Fault>>, StoreError> {
         let opened = File::open(path).and_then(|mut file| {
             if !is_whole {
@@ -336,14 +338,14 @@ impl Store {
         }
     }
 
-    /// Gives the damaged files that are named in faults another name, `….arrow.damaged`: their chunks are made anew.
+    /// Renames the damaged files to `….arrow.damaged`, so that their chunks are recomputed.
     pub(crate) fn set_aside(faults: &[Fault]) -> Result<(), StoreError> {
         for fault in faults {
             let (Fault::Truncated(path) | Fault::Altered(path) | Fault::Unreadable(path, _)) = fault else { continue };
             let mut aside = path.clone().into_os_string();
             aside.push(".damaged");
             match fs::rename(path, aside) {
-                // Another process was faster.
+                // Another process has renamed it before.
                 Err(error) if error.kind() == ErrorKind::NotFound => {}
                 renamed => renamed.map_err(|error| StoreError::Io { path: path.clone(), error })?,
             }
@@ -360,7 +362,7 @@ fn file_of(chunk: u64, digest: u64) -> String {
     format!("{chunk:08}-{digest:016x}.arrow")
 }
 
-/// The number and the digest in a shard's name, where it is to the letter the one that [`Store::write`] gives.
+/// The number and the digest in a shard's name, if it is exactly a name by [`Store::write`].
 fn name_of(path: &Path) -> Option<(u64, u64)> {
     let name = path.file_name()?.to_str()?;
     let (chunk, digest) = name.strip_suffix(".arrow")?.split_once('-')?;
@@ -369,11 +371,11 @@ fn name_of(path: &Path) -> Option<(u64, u64)> {
     (name == file_of(chunk, digest) && folder == folder_of(chunk)).then_some((chunk, digest))
 }
 
-/// How often a file that somebody takes away is written again.
+/// The most attempts to write a file that another process removes.
 const MOST_TRIES: u32 = 8;
 
-/// What a shard of this name is called while it is written: by the machine, the process and a number, so that no two are
-/// alike, of several machines and threads.
+/// The name of a file while it is written. The machine, the process and a number make it unique among machines and
+/// threads.
 fn part_of(name: &str) -> String {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     static HOST: OnceLock<String> = OnceLock::new();
@@ -385,7 +387,7 @@ fn part_of(name: &str) -> String {
     format!("{name}.{host}-{}-{}.part", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed))
 }
 
-/// Whether it is a shard's, or a sum, that hasn't got its name yet.
+/// Whether a file is a shard or a sum under its temporary name.
 fn is_part(path: &Path) -> bool {
     let shard = || path.to_str()?.strip_suffix(".part")?.rsplit_once('.');
     shard().map(|(shard, _)| Path::new(shard)).is_some_and(|own| own.ends_with(SUM) || name_of(own).is_some())
@@ -396,7 +398,7 @@ fn entries(folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
     fs::read_dir(folder).map_err(io)?.map(|entry| entry.map(|entry| entry.path()).map_err(io)).collect()
 }
 
-/// A new name in a folder is on the disk when the folder is. Elsewhere than on Unix folders can't be opened.
+/// Flushes a folder and the new names in it to the disk. Only Unix can open folders.
 fn bring_to_disk(folder: &Path) -> std::io::Result<()> {
     if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
 }

@@ -1,4 +1,4 @@
-//! Tables that members are read from.
+//! Tables of the numbers of members.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -15,23 +15,23 @@ use thiserror::Error;
 use crate::Failure;
 use liestep::numbers::Digest;
 
-/// Columns of numbers by their names, a row for each member.
+/// Columns of numbers by their names, with a row for each member.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     columns: BTreeMap<String, Vec<f64>>,
     rows: u64,
 }
 
-/// Why a file isn't a table of numbers.
+/// The reason why a file isn't a table of numbers.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum TableError {
-    /// It can't be read, or isn't Arrow IPC.
+    /// The file can't be read, or isn't Arrow IPC.
     #[error("{path} isn't an Arrow IPC file: {reason}")]
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The reason.
         reason: String,
     },
     /// A cell of a column of numbers is empty.
@@ -42,7 +42,7 @@ pub enum TableError {
         /// The first such row, from zero.
         row: usize,
     },
-    /// A whole number of more than 53 bits, which isn't a double.
+    /// A whole number has more than 53 bits, and isn't a double.
     #[error(
         "the whole number in row {row} of the column `{column}` is beyond 2⁵³, so that a double hasn't all of its digits; write the column as text or in two"
     )]
@@ -55,17 +55,17 @@ pub enum TableError {
     /// Two columns differ in length.
     #[error("the column `{column}` has another length than those before it")]
     Uneven {
-        /// The one that differs from those before.
+        /// The column that differs.
         column: String,
     },
 }
 
 impl Table {
-    /// Of columns of one length.
+    /// A table of columns of one length.
     ///
     /// # Errors
     ///
-    /// [`TableError::Uneven`] where they differ in length.
+    /// [`TableError::Uneven`] if they differ in length.
     pub fn new(columns: impl IntoIterator<Item = (String, Vec<f64>)>) -> Result<Self, TableError> {
         let mut table = Self { columns: BTreeMap::new(), rows: 0 };
         for (column, numbers) in columns {
@@ -83,7 +83,7 @@ impl Table {
     ///
     /// # Errors
     ///
-    /// [`TableError`] where the file can't be read, a number is missing, or a whole number is beyond 2⁵³.
+    /// [`TableError`] if the file can't be read, a number is missing, or a whole number is beyond 2⁵³.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, TableError> {
         let path = path.as_ref();
         let unreadable = |reason: String| TableError::Unreadable { path: path.to_owned(), reason };
@@ -114,7 +114,7 @@ impl Table {
         self.rows
     }
 
-    /// The numbers of a column, if there is one of this name.
+    /// The numbers of the column of this name, if there is one.
     #[must_use]
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         self.columns.get(name).map(Vec::as_slice)
@@ -141,8 +141,8 @@ impl Table {
     }
 }
 
-/// Of a column of numbers.
-#[allow(clippy::cast_precision_loss)] // `first_too_large` finds those that would lose some
+/// The numbers of a column; `None` if its type isn't numeric.
+#[allow(clippy::cast_precision_loss)] // `first_too_large` finds the numbers that would be rounded
 fn numbers(array: &ArrayRef) -> Option<Vec<f64>> {
     Some(match array.data_type() {
         DataType::Float64 => array.as_primitive::<Float64Type>().values().to_vec(),
@@ -159,7 +159,7 @@ fn numbers(array: &ArrayRef) -> Option<Vec<f64>> {
     })
 }
 
-/// The first row of a whole number that a double may not have all digits of.
+/// The first row whose whole number may lose digits as a double.
 fn first_too_large(array: &ArrayRef) -> Option<usize> {
     const LARGEST: u64 = 1 << f64::MANTISSA_DIGITS;
     match array.data_type() {

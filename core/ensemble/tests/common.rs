@@ -1,6 +1,6 @@
-//! What the tests share: a small ensemble of tops, some of which fail, and folders.
+//! The fixtures of the tests: a small ensemble of tops, some of which fail, and folders.
 
-#![allow(dead_code, unreachable_pub, missing_docs)] // each test has its own part of it
+#![allow(dead_code, unreachable_pub, missing_docs)] // each test uses a part of it
 
 use std::collections::BTreeMap;
 use std::panic::{UnwindSafe, catch_unwind};
@@ -16,7 +16,7 @@ use nalgebra::Vector3;
 pub type Top = Stepper<Sum<PrincipalBody, Gravity>>;
 pub type State = <Top as liestep::motion::Integrator>::State;
 
-/// A top with moments and a spin drawn. Member 3 is no body, and members 5, 15, 25 … fall too fast for the step.
+/// A top with random moments and spin. Member 3 is no body, and members 5, 15, 25 … fall too fast for the step.
 pub fn top(member: &Member<'_>) -> Made {
     let third = if member.number() == 3 { 9.0 } else { member.normal("J_3", 4.0, 0.1) };
     let body =
@@ -28,12 +28,12 @@ pub fn top(member: &Member<'_>) -> Made {
     Ok((stepper, state))
 }
 
-/// A member, if it can exist.
+/// A member, if it can be constructed.
 pub type Made = Result<(Top, State), Failure>;
 
-/// Each of the members of [`tops`] as it is made.
+/// The members of [`tops`] as constructed.
 pub fn made(members: u64) -> Vec<(u64, Made)> {
-    // An ensemble of no steps hands its members on.
+    // An ensemble of no steps passes its members on.
     let starts = Arc::new(Mutex::new(Vec::new()));
     let kept = Arc::clone(&starts);
     let probe = Ensemble::new("tops", members, 0, move |member| {
@@ -42,11 +42,11 @@ pub fn made(members: u64) -> Vec<(u64, Made)> {
         made
     });
     let _ = probe.seed(7).chunks_of(members).chunk(0, &|| false);
-    // Three are asked for once more, by the fingerprint.
+    // The fingerprint has constructed three members before.
     starts.lock().unwrap().split_off(3)
 }
 
-/// What an ensemble that is refused says.
+/// The message of a panic at the construction of an ensemble.
 pub fn message(of: impl FnOnce() -> Ensemble<Top> + UnwindSafe) -> String {
     let payload = catch_unwind(of).map(drop).unwrap_err();
     let text = payload.downcast_ref::<String>().cloned();
@@ -57,7 +57,7 @@ pub fn axis(state: &State) -> [f64; 3] {
     (state.attitude().as_matrix() * Vector3::z()).into()
 }
 
-/// In chunks of twenty, which isn't a number of lanes.
+/// Tops in chunks of twenty, which isn't a multiple of the lanes.
 pub fn tops(members: u64, steps: u64) -> Ensemble<Top> {
     with_columns(Ensemble::new("tops", members, steps, top))
 }
@@ -72,7 +72,7 @@ pub fn with_columns(ensemble: Ensemble<Top>) -> Ensemble<Top> {
         .reduce("zs", Reduction::Histogram { range: -1.0..1.0, bins: 8 }, |run| axis(run.state)[2])
 }
 
-/// A folder of this process, empty; removed at the end.
+/// An empty folder of this process; removed when dropped.
 pub struct Folder(pub PathBuf);
 
 impl Folder {

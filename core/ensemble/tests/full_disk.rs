@@ -1,4 +1,4 @@
-//! A full disk is an error, and whatever had been written is there; so it is where others write to the folder.
+//! A full disk is an error that leaves finished shards; so is interference by other processes in the folder.
 
 use std::io::ErrorKind;
 use std::path::Path;
@@ -12,7 +12,7 @@ use crate::common::{Folder, contents, tops};
 const MEMBERS: u64 = 400;
 const STEPS: u64 = 50;
 
-/// One file's bytes go to the device that is always full.
+/// The bytes of one file go to the device that is always full.
 #[test]
 fn a_full_disk_is_an_error_that_loses_no_finished_shard() {
     let (ensemble, expected, folder) = (tops(MEMBERS, STEPS), Folder::new("roomy"), Folder::new("devfull"));
@@ -21,7 +21,7 @@ fn a_full_disk_is_an_error_that_loses_no_finished_shard() {
     let files = Store::folder(&expected.0).unwrap().files().unwrap();
     let name = files[7].1.file_name().unwrap().to_str().unwrap();
     std::fs::create_dir(folder.0.join("00000")).unwrap();
-    // Of the machine, the process, and one of the numbers that are next.
+    // A temporary name contains the host, the process, and one of the next numbers.
     let host = std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap();
     let host = host.trim().replace(|letter: char| !letter.is_ascii_alphanumeric(), "-");
     let part = |count| folder.0.join("00000").join(format!("{name}.{host}-{}-{count}.part", std::process::id()));
@@ -29,7 +29,7 @@ fn a_full_disk_is_an_error_that_loses_no_finished_shard() {
     let error = ensemble.run(&Local::threads(1), &store).unwrap_err();
     let is_full = matches!(&error, StoreError::Io { error, .. } if error.kind() == ErrorKind::StorageFull);
     assert!(is_full && error.to_string().contains(name), "{error}");
-    // Those before it, whole; of itself nothing is left in the way.
+    // The shards before the full disk are whole; no part of the failing one is left in the way.
     let removed = (0..20_000).filter(|count| std::fs::remove_file(part(*count)).is_ok()).count();
     assert_eq!(removed, 19_999);
     assert_eq!(contents(&folder.0).len(), 7);
@@ -39,7 +39,7 @@ fn a_full_disk_is_an_error_that_loses_no_finished_shard() {
     assert!(contents(&folder.0) == contents(&expected.0));
 }
 
-/// Two processes at once in one folder: who ends first leaves what the other is writing, and takes what was left before.
+/// Two processes share a folder: the first to end leaves the other's temporary file, and removes older ones.
 #[test]
 fn what_another_is_writing_stays() {
     let (ensemble, folder) = (tops(MEMBERS, STEPS), Folder::new("beside"));
@@ -57,7 +57,7 @@ fn what_another_is_writing_stays() {
     assert!(!before.exists() && folder.0.join("00000/00000001-cbf29ce484222325.arrow.host-2-0.part").exists());
 }
 
-/// A file that is taken away before it has its name is written again.
+/// A temporary file that another process removes is written again.
 #[test]
 fn what_another_has_taken_is_written_again() {
     let (ensemble, folder, taken) = (tops(MEMBERS, 1), Folder::new("taken"), AtomicU32::new(0));

@@ -1,6 +1,6 @@
-//! A run that is killed ten times, with no warning, ends with the files of one that wasn't. So do two runs at once.
+//! A run that is killed ten times without warning ends with the files of an undisturbed one. So do two runs at once.
 //!
-//! Called with a folder this program is the run that is killed; otherwise it is the test.
+//! This program is the run to be killed if it is called with a folder, otherwise the test.
 
 mod common;
 
@@ -40,7 +40,7 @@ fn main() {
     while kills < 10 {
         let before = whole(&killed.0);
         let mut child = start(&killed.0);
-        // When one to five more are there, and then some part of the time that the next takes.
+        // The kill comes after one to five more files, and some part of the time for the next one.
         moments = moments.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         while whole(&killed.0) <= before + (moments >> 61) as usize % 5 && child.try_wait().unwrap().is_none() {
             std::thread::sleep(Duration::from_micros(200));
@@ -50,7 +50,7 @@ fn main() {
         child.kill().unwrap();
         assert!(!child.wait().unwrap().success());
         kills += 1;
-        // Whatever has its name is whole.
+        // A file under its final name is whole.
         for (_, path) in Store::folder(&killed.0).unwrap().files().unwrap() {
             Store::read(&path).unwrap();
         }

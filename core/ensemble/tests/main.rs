@@ -1,4 +1,4 @@
-//! What comes out of an ensemble is a function of its plan, and what is wrong with it is named.
+//! The results of an ensemble are a function of its plan, and its failures are named.
 
 mod common;
 #[cfg(target_os = "linux")]
@@ -34,8 +34,8 @@ fn shards(ensemble: &Ensemble<Top>, folder: &Folder) -> Vec<Shard> {
     store.shards(ensemble.fingerprint()).unwrap().map(|shard| shard.unwrap()).collect()
 }
 
-/// The folder and the report of one thread: as of more threads, of three shares, and one by one. `missing` is what is left
-/// after each of the shares.
+/// The folder and the report of one thread, which more threads, three shares, and members one by one reproduce.
+/// `missing` is the number of chunks missing after each of the shares.
 fn the_same(name: &str, [ensemble, alone]: [&Ensemble<Top>; 2], missing: [u64; 3]) -> (Folder, Report) {
     let first = Folder::new(name);
     let report = run(ensemble, &Local::threads(1), &first);
@@ -51,7 +51,7 @@ fn the_same(name: &str, [ensemble, alone]: [&Ensemble<Top>; 2], missing: [u64; 3
         assert_eq!(part.missing, missing, "share {share}");
     }
     assert!(contents(&folder.0) == expected, "shares");
-    // Without lanes the plan is the same.
+    // The plan doesn't depend on lanes.
     let folder = Folder::new(&format!("{name}-alone"));
     assert_eq!(run(alone, &Local::threads(2), &folder), report);
     assert!(contents(&folder.0) == expected, "one by one");
@@ -65,7 +65,7 @@ fn files_and_sums_are_the_same_for_threads_shares_and_one_by_one() {
     assert_eq!((report.chunks, report.made, report.missing), (7, 7, 0));
     assert_eq!((report.outcome.finished, report.outcome.failed()), (MEMBERS - 14, 14));
     assert_eq!(contents(&folder.0).len(), 7);
-    // And what is there isn't made again.
+    // Finished chunks aren't computed again.
     let again = run(&ensemble, &Local::threads(2), &folder);
     assert_eq!(
         (again.made, again.outcome.finished, again.reduced("z")),
@@ -73,7 +73,7 @@ fn files_and_sums_are_the_same_for_threads_shares_and_one_by_one() {
     );
 }
 
-/// Each member as its stepper moves it, step by step, with nothing of the ensemble's.
+/// Rows and failures are those of each member stepped by its own stepper, without an ensemble.
 #[test]
 fn members_are_what_they_are_alone() {
     let ensemble = tops(MEMBERS, STEPS).every(60);
@@ -125,7 +125,7 @@ fn members_are_what_they_are_alone() {
     }
     assert_eq!(rows, expected);
     assert_eq!(failures, expected_failures);
-    // They are read back as the library's own errors.
+    // Failures are read back as the library's own errors.
     assert_eq!(failures.len(), 14);
     assert!(matches!(
         failures[0],
@@ -136,7 +136,7 @@ fn members_are_what_they_are_alone() {
         && matches!(failed.failure, Failure::Step(StepError::BeyondSolvable { largest, step, .. }) if largest < step)));
 }
 
-/// What a reader of the files alone makes of them.
+/// Reductions equal those computed from the files alone.
 #[test]
 fn sums_are_those_of_the_files() {
     let ensemble = tops(MEMBERS, STEPS);
@@ -166,7 +166,7 @@ fn sums_are_those_of_the_files() {
     assert!(report.reduced("y").is_none());
 }
 
-/// An engine that makes nothing; how many chunks it was told of, each time.
+/// An engine that computes nothing, and records the number of chunks of each call.
 struct Told(Mutex<Vec<usize>>);
 
 impl Engine for Told {
@@ -176,7 +176,7 @@ impl Engine for Told {
     }
 }
 
-/// A cut file, a bit that has turned over, a file of another plan, and one that isn't a shard.
+/// Damaged files: a truncated one, one with a flipped bit, one of another plan, and one that isn't a shard.
 #[test]
 fn damaged_files_are_named_and_made_anew() {
     let ensemble = tops(MEMBERS, STEPS);
@@ -195,7 +195,7 @@ fn damaged_files_are_named_and_made_anew() {
         std::fs::write(&turned, bytes).unwrap();
         assert_eq!(Store::read(&turned), Err(Fault::Altered(turned.clone())), "byte {place}");
     }
-    // Names are trusted, but by a store that verifies.
+    // A store trusts the names unless it verifies.
     assert_eq!(run(&ensemble, &Local::threads(2), &folder).made, 0);
     let store = store.verified();
     let named: Vec<Fault> = store.shards(ensemble.fingerprint()).unwrap().filter_map(Result::err).collect();
@@ -204,14 +204,14 @@ fn damaged_files_are_named_and_made_anew() {
     assert!(named[0].to_string().contains("truncated") && named[1].to_string().contains("digest"));
     let report = ensemble.run(&Local::threads(2), &store).unwrap();
     assert_eq!((report.made, report.missing, &report.faults), (2, 0, &faults));
-    // What was damaged is there under another name.
+    // The damaged files are there under another name.
     let aside = |path: &Path| PathBuf::from(format!("{}.damaged", path.display()));
     assert_eq!(std::fs::read(aside(&cut)).unwrap(), bytes[..bytes.len() / 2]);
     assert_ne!(std::fs::read(aside(&turned)).unwrap(), whole);
     std::fs::remove_file(aside(&cut)).unwrap();
     std::fs::remove_file(aside(&turned)).unwrap();
     assert!(contents(&folder.0) == expected);
-    // Of another plan: nothing is touched.
+    // A file of another plan stops the run, and nothing is touched.
     let foreign = tops(MEMBERS, STEPS).seed(8);
     let other = Folder::new("foreign");
     run(&foreign, &Local::threads(2), &other);
@@ -221,24 +221,24 @@ fn damaged_files_are_named_and_made_anew() {
     let refused = ensemble.run(&Local::threads(2), &store).unwrap_err();
     assert!(matches!(&refused, StoreError::Foreign { path } if *path == to), "{refused}");
     assert!(to.exists());
-    // Who else waits for numbers is told that there are none.
+    // Other processes that wait for numbers get an empty list.
     let told = Told(Mutex::new(Vec::new()));
     assert!(ensemble.run(&told, &store).is_err());
     assert_eq!(*told.0.lock().unwrap(), [0]);
     let named: Vec<Fault> = store.shards(ensemble.fingerprint()).unwrap().filter_map(Result::err).collect();
     assert_eq!(named, [Fault::Foreign(to.clone())]);
     std::fs::remove_file(&to).unwrap();
-    // The right name, and no shard.
+    // An empty file with a shard's name is no shard.
     let empty = folder.0.join("00000").join("00000002-860389c57a9c1205.arrow");
     std::fs::write(&empty, b"").unwrap();
     assert!(matches!(Store::read(&empty), Err(Fault::Unreadable(..))));
     assert_eq!(run(&ensemble, &Local::threads(2), &folder).made, 0);
     assert!(!empty.exists() && aside(&empty).exists());
-    // The file system gives no folder where a file should be.
+    // A folder can't be read as a file.
     assert!(matches!(Store::read(&folder.0.join("00000")), Err(Fault::Io(..))));
 }
 
-/// Whatever else lies in the folder stays where it is, whatever it is called; what a killed run has left half-written goes.
+/// Files of others stay, whatever their names; the partial file of a killed run is removed.
 #[test]
 fn files_of_others_survive() {
     let ensemble = tops(MEMBERS, STEPS);
@@ -246,12 +246,12 @@ fn files_of_others_survive() {
     run(&ensemble, &Local::threads(2), &folder);
     let own = contents(&folder.0);
     let names = [
-        "2024/2024-12.arrow", // by months
+        "2024/2024-12.arrow", // of a month
         "00000/2024-12.arrow",
-        "00000/1-cbf29ce484222325.arrow",        // a number that isn't filled up
+        "00000/1-cbf29ce484222325.arrow",        // a number without leading zeros
         "00000/00000001-CBF29CE484222325.arrow", // a digest in capitals
         "00000/+0000001-cbf29ce484222325.arrow",
-        "00001/00000001-cbf29ce484222325.arrow", // another folder than its number's
+        "00001/00000001-cbf29ce484222325.arrow", // in the folder of another number
         "00000/film.part",
         "00000/00000001-cbf29ce484222325.arrow.part",
         "00000/notes.damaged",
@@ -271,7 +271,7 @@ fn files_of_others_survive() {
     assert!(found == own);
 }
 
-/// Members that aren't the same each time make two whole files of a chunk, of which neither is counted.
+/// Two whole files of a chunk, as by members that aren't reproducible, are refused, and neither is counted.
 #[test]
 fn two_files_of_one_chunk_are_refused() {
     let folder = Folder::new("twice");
@@ -287,7 +287,7 @@ fn two_files_of_one_chunk_are_refused() {
     assert_eq!(store.files().unwrap().len(), 2);
 }
 
-/// Whatever changes what comes out is another plan: also a function that is another, which only its values tell.
+/// A plan with other results has another fingerprint, also if functions differ in their values only.
 #[test]
 fn another_plan_has_another_fingerprint() {
     let plans = [
@@ -308,7 +308,7 @@ fn another_plan_has_another_fingerprint() {
             let stepper = Stepper::new(heavier, 0.01)?;
             Ok((stepper, state))
         })),
-        // Only the last member is another.
+        // Only the last member differs.
         with_columns(Ensemble::new("tops", MEMBERS, STEPS, |member| {
             let (stepper, state) = top(member)?;
             let state =
@@ -320,7 +320,7 @@ fn another_plan_has_another_fingerprint() {
     assert_unlike(&plans);
 }
 
-/// No two have one fingerprint.
+/// Asserts that no two plans have the same fingerprint.
 fn assert_unlike(plans: &[Ensemble<Top>]) {
     let mut fingerprints: Vec<u64> = plans.iter().map(Ensemble::fingerprint).collect();
     fingerprints.sort_unstable();
@@ -328,7 +328,7 @@ fn assert_unlike(plans: &[Ensemble<Top>]) {
     assert_eq!(fingerprints.len(), plans.len());
 }
 
-/// What can't be written is an error, and what has been written stays.
+/// An error in writing one shard leaves the others.
 #[test]
 fn a_shard_that_cannot_be_written_loses_no_other() {
     let ensemble = tops(MEMBERS, STEPS);
@@ -337,7 +337,7 @@ fn a_shard_that_cannot_be_written_loses_no_other() {
     run(&ensemble, &Local::threads(1), &folder);
     let expected = contents(&folder.0);
     let (_, last) = store.files().unwrap().pop().unwrap();
-    // In the way of its name there is a folder.
+    // A folder takes up the shard's name.
     std::fs::remove_file(&last).unwrap();
     std::fs::create_dir(&last).unwrap();
     let error = ensemble.run(&Local::threads(2), &store).unwrap_err();
@@ -366,7 +366,7 @@ fn a_run_can_be_watched_and_stopped() {
     assert_eq!(run(&ensemble, &Local::threads(2), &folder).made, 4);
 }
 
-/// A top whose steps can be made one by one only, as digits of a splitting may have it.
+/// A top whose steps work one by one only; longer runs fail, as a splitting's may for lack of digits.
 #[derive(Clone)]
 struct OnlySteps(Top);
 
@@ -404,7 +404,7 @@ impl Integrator for OnlySteps {
     }
 }
 
-/// A run's error stops nobody whose steps have none.
+/// An error of a longer run doesn't stop a member whose single steps have none.
 #[test]
 fn members_go_as_far_as_their_steps_do() {
     let stepwise = Ensemble::one_by_one("tops", 20, STEPS, |member| {
@@ -421,7 +421,7 @@ fn members_go_as_far_as_their_steps_do() {
     assert_eq!(bits(&stepwise), bits(&expected));
 }
 
-/// A member that ends where it was last kept has no second row for it.
+/// A member that ends at a recorded time has no second row for it.
 #[test]
 fn a_member_has_one_row_for_each_step() {
     for (steps, every) in [(STEPS, 1), (40, 40), (0, 5)] {
@@ -439,7 +439,7 @@ fn a_member_has_one_row_for_each_step() {
     assert!(stopped.rows.status.contains(&Status::Stopped));
 }
 
-/// It is asked while members run, not only while they are made.
+/// A request to stop is answered while members run, not only between them.
 #[test]
 fn a_long_member_can_be_stopped() {
     let asked = AtomicU64::new(0);
@@ -447,7 +447,7 @@ fn a_long_member_can_be_stopped() {
     assert!(tops(1, 1_000_000_000).chunk(0, &is_stopped).is_none());
 }
 
-/// One worker's error ends what the others are about.
+/// An error of one worker stops the others within their chunks.
 #[test]
 fn an_error_stops_the_other_workers() {
     let is_there = AtomicBool::new(false);

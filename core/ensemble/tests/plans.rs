@@ -1,4 +1,4 @@
-//! What a plan of an ensemble is made of: chunks, columns, reductions, members of a table, scenes, shares.
+//! The parts of an ensemble's plan: chunks, columns, reductions, members of a table, scenes, shares.
 
 use core::time::Duration;
 
@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 use super::common::{Folder, contents, message, top, tops};
 use super::{MEMBERS, STEPS, run};
 
-/// Chunks of their own choice: full lanes, or one member.
+/// Default chunks are full lanes, or fewer members than lanes.
 #[test]
 fn chunks_hold_a_million_rows_at_most() {
     for (steps, every, members) in [(1 << 22, 1 << 22, 8), (1 << 23, 1 << 23, 4), (1 << 18, 1, 3), (1 << 30, 1, 1)] {
@@ -20,8 +20,8 @@ fn chunks_hold_a_million_rows_at_most() {
     }
 }
 
-/// Twenty thousand members of a thousand steps are something for twenty workers; a dearer method has smaller chunks; of very
-/// many members there are a few thousand files.
+/// Twenty thousand members of a thousand steps are shared by twenty workers; a dearer method has smaller chunks; very
+/// many members go to a few thousand files.
 #[test]
 fn chunks_know_workers_and_what_a_step_costs() {
     let chunks = |members, steps| Ensemble::new("tops", members, steps, top).chunks();
@@ -32,11 +32,11 @@ fn chunks_know_workers_and_what_a_step_costs() {
         let state = stepper.start(state.attitude(), Vector3::zeros())?;
         Ok((stepper, state))
     });
-    // Of seventeen stages.
+    // The composition has seventeen stages.
     assert!((14..=20).contains(&(composed.chunks() / chunks(4_000_000, 1_000))), "{}", composed.chunks());
 }
 
-/// One by one there is something to share, however little work it is; and a second's work is shorter.
+/// Members that run one by one can be shared even if there is little work; and a second's work is fewer steps.
 #[test]
 fn chunks_of_members_one_by_one_can_be_shared() {
     for (members, steps, chunks) in
@@ -46,7 +46,7 @@ fn chunks_of_members_one_by_one_can_be_shared() {
     }
 }
 
-/// Names of the moment are columns as others are; what isn't filled is no number.
+/// Columns named at run time equal columns named in the program; places that aren't filled are NaN.
 #[test]
 fn columns_are_named_when_the_program_runs() {
     let fixed = tops(20, STEPS).keep(["t", "none"], |run| [run.stepper.time(run.state), f64::NAN]);
@@ -72,7 +72,7 @@ fn columns_and_reductions_have_names_of_their_own() {
     }
 }
 
-/// Rows of a table are members; one too many has no row, and says so.
+/// Each row of a table is a member; a member beyond the last row fails with a message.
 #[test]
 fn members_are_read_from_a_table() {
     let spins = Table::new([("spin".to_owned(), vec![5.0, 6.0, 7.0])]).unwrap();
@@ -94,7 +94,7 @@ fn members_are_read_from_a_table() {
     assert!(Table::read("Cargo.toml").is_err_and(|error| error.to_string().contains("Cargo.toml")));
 }
 
-/// A declaration of `f64` alone, and a composition of members that can't be in one batch.
+/// Two ensembles without common lanes: a declaration for `f64` alone, and compositions that can't share a batch.
 #[test]
 fn other_scenes_and_methods() {
     #[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
@@ -115,7 +115,7 @@ fn other_scenes_and_methods() {
     assert!(energy.chunks(3).all(|run| (run[0] - run[2]).abs() < 1e-14), "{energy:?}");
     let composed = |alone: bool| {
         let make = move |member: &liestep_ensemble::Member<'_>| {
-            // By two methods in turn: no two neighbours agree.
+            // Two schemes alternate, so that neighbours differ.
             let schemes = [CompositionScheme::SUZUKI_4, CompositionScheme::KAHAN_LI_6];
             let scheme = schemes[usize::from(member.number() % 3 == 1)];
             let stepper = Stepper::composed(RigidBody { J_d }, 0.02, scheme)?;
@@ -132,7 +132,7 @@ fn other_scenes_and_methods() {
     assert_eq!(composed(false), composed(true));
 }
 
-/// Whose chunk it is a file says twice.
+/// The number of a chunk stands in the name and in the contents of its file.
 #[test]
 fn a_shard_of_another_number_is_damaged() {
     let (ensemble, folder) = (tops(MEMBERS, STEPS), Folder::new("renamed"));
@@ -148,7 +148,7 @@ fn a_shard_of_another_number_is_damaged() {
     assert!(!renamed.exists());
 }
 
-/// Who helps makes what others have left, and nobody makes what is there.
+/// Helpers compute the missing chunks of other shares, and no chunk is computed twice.
 #[test]
 fn who_is_done_helps_others() {
     let (ensemble, folder, whole) = (tops(MEMBERS, STEPS), Folder::new("helped"), Folder::new("whole"));
@@ -159,7 +159,7 @@ fn who_is_done_helps_others() {
     assert!(contents(&folder.0) == contents(&whole.0));
 }
 
-/// A share of many reads its own chunks, and of these no rows.
+/// A share of many reads the heads of its own chunks only, and no rows.
 #[test]
 fn a_share_sums_its_own_chunks_until_all_are_there() {
     let (ensemble, folder) = (tops(MEMBERS, STEPS), Folder::new("sums-of-shares"));
@@ -169,7 +169,7 @@ fn a_share_sums_its_own_chunks_until_all_are_there() {
     assert_eq!(counted, [(5, 40), (3, 40), (0, MEMBERS)]);
 }
 
-/// Of a thousand chunks one small file is read, and no head; what is verified is read whole.
+/// A full folder is summed from one small file without reading heads; a verified store reads all bytes.
 #[test]
 fn a_whole_folder_is_told_of_from_its_sum() {
     let (ensemble, folder) = (tops(1003, 2).chunks_of(1), Folder::new("sums-of-folders"));
@@ -184,7 +184,7 @@ fn a_whole_folder_is_told_of_from_its_sum() {
     let whole = std::fs::read(&path).unwrap();
     std::fs::write(&path, b"ARROW1").unwrap();
     assert_eq!(run(&ensemble, &Local::threads(1), &folder).outcome, made.outcome);
-    // Without the sum, or with another's, the heads are read.
+    // Heads are read if the sum is missing or belongs to other files.
     for text in ["", &std::fs::read_to_string(&sum).unwrap().replace("names = ", "names = 1")] {
         std::fs::write(&path, &whole).unwrap();
         std::fs::write(&sum, text).unwrap();

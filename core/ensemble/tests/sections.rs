@@ -1,4 +1,4 @@
-//! What is kept at sections is what a run of each member alone finds, to the bit.
+//! The crossings recorded at sections are those found in a run of each member alone, to the bit.
 
 #![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)] // hundreds of steps
 
@@ -13,7 +13,7 @@ use crate::{assert_unlike, the_same};
 const MEMBERS: u64 = 50;
 const STEPS: u64 = 150;
 
-/// The first axis rises through the horizontal plane; the third passes one that stands, looked at closely.
+/// Two sections: the first axis rises through the horizontal plane; the third passes an upright plane, with a bound.
 fn with_sections(ensemble: Ensemble<Top>) -> Ensemble<Top> {
     let horizon = Section::new(Event::rising(), sections::plane(Vector3::x(), Vector3::z()));
     let upright = Section::new(Event::crossing().curvature(300.0), sections::plane(Vector3::z(), Vector3::y()));
@@ -26,7 +26,7 @@ fn kept(now: &Moment<'_, Top>) -> [f64; 2] {
     [now.time(), now.velocity().z]
 }
 
-/// Member and bits of what is kept.
+/// Members, and the bits of their recorded values.
 type Found = Vec<(u64, Vec<u64>)>;
 
 fn found(shards: &[Shard], section: usize) -> Found {
@@ -62,7 +62,7 @@ fn crossings_are_those_of_each_member_alone() {
     assert!(expected.iter().all(|crossings| crossings.len() > 20), "{}, {}", expected[0].len(), expected[1].len());
     let shards = chunks(&with_sections(tops(MEMBERS, STEPS)));
     assert_eq!([0, 1].map(|section| found(&shards, section)), expected);
-    // More rows change nothing but where a crossing is written.
+    // More rows change only the row to which a crossing belongs.
     let shards = chunks(&with_sections(tops(MEMBERS, STEPS)).every(40));
     assert_eq!([0, 1].map(|section| found(&shards, section)), expected);
     for Shard { rows, .. } in &shards {
@@ -82,13 +82,13 @@ fn files_with_sections_are_the_same_for_threads_shares_and_one_by_one() {
     let alone = with_sections(with_columns(Ensemble::one_by_one("tops", MEMBERS, STEPS, top)));
     let (folder, report) = the_same("sections", [&ensemble, &alone], [2, 1, 0]);
     let store = Store::folder(&folder.0).unwrap();
-    // What is read is what was written, and a reader of numbers leaves lists out.
+    // Shards are read as written, and a reader of numbers leaves lists out.
     let shards: Vec<Shard> = store.shards(ensemble.fingerprint()).unwrap().map(Result::unwrap).collect();
-    // As text, in which NaN is NaN.
+    // The comparison is by text, in which NaN equals NaN.
     assert!(format!("{shards:?}") == format!("{:?}", chunks(&ensemble)));
     let table = Table::read(&store.files().unwrap()[0].1).unwrap();
     assert!(table.column("spin").is_none() && table.column("energy").is_some());
-    // The sums are those of the crossings in the files.
+    // The reductions are those of the crossings in the files.
     let spins: Vec<f64> = shards.iter().flat_map(|shard| shard.rows.crossings[0].columns[1].clone()).collect();
     let Some(Summary::Moments(moments)) = report.reduced("spins") else { panic!("{report:?}") };
     let mean = spins.iter().sum::<f64>() / spins.len() as f64;
@@ -96,7 +96,7 @@ fn files_with_sections_are_the_same_for_threads_shares_and_one_by_one() {
     assert!((moments.mean - mean).abs() < 1e-13, "{moments:?}, {mean}");
 }
 
-/// Once, where the function is zero at the end of a step, to the bit; not at the start, nor where no sign follows.
+/// A zero at the end of a step is one crossing; a zero at the start, or one that no sign follows, is none.
 #[test]
 fn a_zero_at_the_end_of_a_step_is_one_crossing() {
     let times = |zero: f64, event: Event| {
@@ -110,7 +110,7 @@ fn a_zero_at_the_end_of_a_step_is_one_crossing() {
     assert_eq!(times(0.2, Event::falling()), (vec![], vec![]));
     for event in [Event::rising(), Event::rising().curvature(1e-3)] {
         let (row, found) = times(0.2, event);
-        // The row of step 10 has been written when the sign is known.
+        // The row of step 10 was written before the sign was known.
         assert_eq!((row, found.len()), (vec![2], 1), "{event:?}");
         assert!((found[0] - 0.2).abs() < 1e-15);
     }
@@ -125,7 +125,7 @@ fn a_function_without_a_value_stops_its_member() {
         Section::new(event, function).keep(["t"], |now| [now.time()])
     };
     let undisturbed = tops(12, STEPS).every(1).chunk(0, &|| false).unwrap();
-    // Each member's steps meet the same condition.
+    // The expected steps follow from recorded velocities, by that condition.
     let spins = Section::new(Event::crossing(), |_: &Moment<'_, Top>| 1.0);
     let watched = tops(12, STEPS).every(1).section(spins).keep(["w"], |run| [run.stepper.velocity(run.state).z]);
     let watched = watched.chunk(0, &|| false).unwrap().rows;
@@ -147,7 +147,7 @@ fn a_function_without_a_value_stops_its_member() {
             assert_eq!((shard.rows.status[row], shard.rows.step[row]), (Status::Stopped, failed.steps));
         }
     }
-    // At one step only, with a sign before and behind, and right behind a zero.
+    // The function has no value at one step only: with a sign before and behind, and right behind a zero.
     for zero in [0, 1] {
         let only =
             Section::new(Event::crossing(), move |now: &Moment<'_, Top>| match (now.time() / 0.02).round() as u64 {
@@ -159,14 +159,14 @@ fn a_function_without_a_value_stops_its_member() {
         let steps: Vec<u64> = shard.outcome.failures.iter().map(|failed| failed.steps).collect();
         assert_eq!((shard.outcome.finished, steps), (0, vec![40, 40]));
     }
-    // From the start on.
+    // The function has no value from the start on.
     let never = Section::new(Event::crossing(), |_: &Moment<'_, Top>| f64::NAN);
     let shard = tops(2, STEPS).section(never).chunk(0, &|| false).unwrap();
     assert_eq!((shard.outcome.finished, shard.outcome.failures.len(), shard.outcome.failures[0].steps), (0, 2, 0));
 }
 
-/// First passages of each member alone, in any direction and without a bound: what a section keeps of them, and where
-/// members end that leave with them. In lanes they are the same to the bit.
+/// The first crossings, in any direction and without a bound, are those of each member alone, for sections that record
+/// only them and for those that end members. Lanes give the same bits.
 #[test]
 fn first_passages_are_those_of_each_member_alone() {
     let (mut expected, mut fell) = (Vec::new(), 0);
@@ -208,7 +208,7 @@ fn first_passages_are_those_of_each_member_alone() {
                 assert!(*step as f64 >= steps && (*step as f64) < steps + 1.0, "{member}: {step} {steps} {status:?}");
             }
         }
-        // All crossings, and not only the first, are the same in lanes.
+        // All crossings, and not only the first, agree in lanes.
         let shards = [false, true].map(|lanes| chunks(&tops(MEMBERS, STEPS).section(section(lanes))));
         for shards in &shards {
             assert_passages(shards);
@@ -218,7 +218,7 @@ fn first_passages_are_those_of_each_member_alone() {
     }
 }
 
-/// Passages of members that came to an end, counted from the rows, where the times are kept first.
+/// Asserts that the passages of members that finished or left are those of the rows, whose first column is the time.
 fn assert_passages(shards: &[Shard]) {
     for Shard { rows, outcome, .. } in shards {
         let has_ended = |member: u64| {

@@ -1,4 +1,4 @@
-//! Splittings in lanes are those of each member alone, to the bit.
+//! Members stepped by splittings in lanes equal members stepped alone, to the bit.
 
 use liestep::effects::{Gravity, PrincipalBody, RigidBody};
 use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, InertiaError, RigidScene, Sum, Term};
@@ -15,8 +15,8 @@ const STEPS: u64 = 150;
 type Scene = Sum<PrincipalBody, Gravity>;
 type StateOf<S, P> = State<SO3, <S as Term>::Advected, <P as Plan<S>>::Kept>;
 
-/// A body, in one order of its moments, and what is heavy in it, on the third axis or beside. The spin of member 6 has
-/// no digit left within a step; the others turn from slowly to several radians a step.
+/// A body with moments in one order, and its weight, on the third axis or beside it. Member 6 turns so fast that its
+/// angle has no digit left within a step; the others turn from slowly to several radians a step.
 struct Top {
     scene: Scene,
     inertia: Inertia,
@@ -57,7 +57,7 @@ fn assert_same<S, P>(
     assert!(failed.member == 6 && is_named, "{name}: {failed:?}");
 }
 
-/// Kept on the way, so that runs are of unequal lengths. The members that fail, which are the same, too.
+/// Compares rows recorded at times that divide the run unequally; returns the failures, which are equal, too.
 fn same<S, P>(
     name: &str,
     is_symmetric: bool,
@@ -91,7 +91,7 @@ where
 #[test]
 fn symmetric_bodies_in_lanes_move_as_alone() {
     let split = |scheme| move |top: Top| Stepper::split(top.scene, 0.05, SymmetricBody::new(&top.inertia)?, scheme);
-    // With the turn about the axis taken out, and without.
+    // The centre of mass lies on the axis, so that the turn about it is taken out, or beside it.
     for beside in [0.0, 0.2] {
         assert_same("Strang", true, beside, split(SplittingScheme::STRANG));
         assert_same("Nyström", true, beside, split(SplittingScheme::NYSTROM_11));
@@ -119,7 +119,7 @@ fn other_bodies_in_lanes_move_as_alone() {
         let scheme = ProcessedScheme::SIX_A;
         Ok(Stepper::processed(top.scene, 0.05, ExactBody::new(&top.inertia), scheme)?.compensated())
     });
-    // Its step is limited, by the spin of the last ones too.
+    // The step of a declared flow is limited, also by the spin of the last members.
     let failures = same("a declared flow", false, 0.2, |top| {
         let flow = top.scene.first;
         Stepper::split(top.scene, 0.02, flow, SplittingScheme::STRANG)
@@ -127,7 +127,7 @@ fn other_bodies_in_lanes_move_as_alone() {
     assert!(failures.iter().any(|failed| failed.member == 6) && failures.len() < 8, "{failures:?}");
 }
 
-/// The body and its weight, in other axes where the third moment is so.
+/// The body and its weight, in turned axes if `is_turned`.
 fn turned(top: &Top, is_turned: bool) -> Result<(Sum<RigidBody, Gravity>, Inertia), SetupError> {
     let turn = if is_turned { Rotation3::new(Vector3::new(0.4, -0.3, 0.7)).into_inner() } else { Matrix3::identity() };
     let matrix = turn * top.inertia.as_matrix() * turn.transpose();
@@ -149,7 +149,8 @@ fn bodies_in_other_axes_move_in_lanes_as_alone() {
     });
 }
 
-/// One that was stepped by another step enters the processor, and those that are inside go on there: they are unlike.
+/// A batch refuses a state outside of the processor beside states inside: one that was stepped by another step has to
+/// enter the processor first.
 #[test]
 fn a_processed_body_of_another_step_has_lanes_of_its_own() {
     let moments = Vector3::new(1.1, 1.5, 1.7);
@@ -180,7 +181,7 @@ fn a_processed_body_of_another_step_has_lanes_of_its_own() {
     }
 }
 
-/// Unlike schemes share no lanes; spheres share them with other bodies.
+/// Members of unlike schemes share no lanes; spheres share them with other bodies.
 #[test]
 fn unlike_splittings_have_lanes_of_their_own() {
     assert_same("two alternating schemes", true, 0.0, |top| {

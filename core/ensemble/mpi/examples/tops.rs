@@ -1,11 +1,11 @@
-//! Some tops, by all processes of a job; the first prints what has become of them.
+//! An ensemble of tops, run by all processes of a job; the first prints the outcome.
 //!
 //! ```text
 //! mpirun -n 4 tops shared/out          all chunks that are missing
 //! tops shared/out --shard 2/8          a share of them, by threads: for arrays of jobs, in the same folder
 //!
 //! Options: --threads N of a share, as many as there are cores without it; --members N; --panics N, a member whose function
-//! panics; --tells, how far it has come
+//! panics; --tells, the progress
 //! ```
 
 use std::error::Error;
@@ -22,7 +22,7 @@ fn tops(members: u64, panics: u64) -> Ensemble<Stepper<Sum<PrincipalBody, Gravit
         assert!(member.number() != panics, "the member {panics} panics");
         let moments = Vector3::new(3.0, 3.1, member.normal("J_3", 4.0, 0.1));
         let body = PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(moments)? };
-        // One of a hundred falls too fast for the step.
+        // One of a hundred tops falls too fast for the step.
         let m = if member.number() % 100 == 50 { 1e3 } else { 1.0 };
         let stepper = Stepper::new(body + Gravity { m, g: 9.81, rho: Vector3::z(), up: Vector3::z() }, 0.02)?;
         let tilt = SO3::exp(Vector3::x() * member.uniform("tilt", 0.2..0.6));

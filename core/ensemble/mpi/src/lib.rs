@@ -13,12 +13,13 @@
 //! # }
 //! ```
 //!
-//! Every process calls the same; the folder is one that all of them see. The first looks what is missing, hands out
-//! numbers of chunks and makes chunks itself between two answers. A worker asks for the next number when it has written a
-//! shard: 16 bytes each way a chunk, and no rows. The report of the others knows what they made, and no more.
+//! Every process runs the same code, on a folder that all of them share. The first lists the missing chunks, hands out
+//! their numbers, and computes chunks itself between two answers. A worker requests the next number after it has
+//! written a shard: 16 bytes each way per chunk, and no rows. The reports of the other processes count their own chunks
+//! only.
 //!
-//! A process that dies takes the job with it, as MPI has it; the shards that are there stay, and the next run makes the
-//! others. An error in one process, or a panic in a member's function, ends all of them with a code that isn't zero.
+//! A process that dies ends the job, as is MPI's rule; finished shards stay, and the next run computes the others. An
+//! error in one process, or a panic in a member's function, ends all of them with a nonzero code.
 
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -28,32 +29,32 @@ use mpi::environment::Universe;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator as _, Destination as _, Source as _};
 
-/// What is sent in the place of a number where there is none left.
+/// The answer to a worker when no number is left.
 const NONE: u64 = u64::MAX;
 const FIRST: i32 = 0;
 
-/// All processes of the job.
+/// The engine of all processes of the job.
 pub struct Mpi {
     world: SimpleCommunicator,
-    /// MPI ends with it.
+    /// MPI is finalised when this is dropped.
     _universe: Universe,
 }
 
 impl Mpi {
-    /// The processes that `mpirun` has started; one alone without it. `None` where MPI has been initialised already.
+    /// The processes that `mpirun` has started; this one alone without it. `None` if MPI has been initialised already.
     #[must_use]
     pub fn world() -> Option<Self> {
         let universe = mpi::initialize()?;
         Some(Self { world: universe.world(), _universe: universe })
     }
 
-    /// Whether this is the process that says what has become of it.
+    /// Whether this is the process that reports.
     #[must_use]
     pub fn is_first(&self) -> bool {
         self.world.rank() == FIRST
     }
 
-    /// An error or a panic of one is the end of all: the others would wait for it, and MPI for them.
+    /// Aborts all processes after an error or a panic of one: the others would wait for it, and MPI for them.
     fn or_abort(&self, make: impl FnOnce() -> Result<(), StoreError>) {
         match catch_unwind(AssertUnwindSafe(make)) {
             Ok(Ok(())) => {}
@@ -61,12 +62,12 @@ impl Mpi {
                 eprintln!("error in process {}: {error}", self.world.rank());
                 self.world.abort(1)
             }
-            // Its message is there already.
+            // The panic's message has been printed already.
             Err(_) => self.world.abort(101),
         }
     }
 
-    /// Hands out the numbers, and makes a chunk where nobody asks.
+    /// Hands out the numbers, and computes chunks while no worker waits.
     fn lead(&self, missing: &[u64], make: &MakeChunk<'_>, tell: &(dyn Fn() + Sync)) {
         let (left, workers) = (Cell::new(missing), Cell::new(self.world.size() - 1));
         let next = || {
@@ -92,7 +93,7 @@ impl Mpi {
             false
         };
         while let Some(chunk) = next() {
-            // It answers within its own chunk, each time that it asks whether to stop.
+            // Workers are answered within this chunk, each time that it calls `is_stopped`.
             self.or_abort(|| make(chunk, &answer_all));
         }
         while workers.get() > 0 {
@@ -100,10 +101,10 @@ impl Mpi {
         }
     }
 
-    /// Makes what it is told.
+    /// Computes the chunks whose numbers the first process sends.
     fn follow(&self, make: &MakeChunk<'_>) {
         let first = self.world.process_at_rank(FIRST);
-        // How many it has made since it asked last.
+        // The number of chunks computed since the last request.
         let mut made = 0_u64;
         loop {
             first.send(&made);
