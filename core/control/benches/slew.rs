@@ -1,4 +1,5 @@
-//! How long a search takes, and the most memory so far where the system says it: the shortest half turn of a sphere, and the least effort of many steps.
+//! The time of a search, and the peak memory so far if the system reports it: the shortest half turn of a sphere, and
+//! the least effort of many steps.
 
 use std::f64::consts::{PI, TAU};
 use std::time::Instant;
@@ -21,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let end = UnitQuaternion::from_scaled_axis(Vector3::from(angles));
         let mut task = Control::new(&stepper, start, steps as usize, Target::rest(end));
         if time > 0.0 {
-            // A torque that goes round once meanwhile.
+            // The guessed torque goes round once during the turn.
             let guess = move |step: usize, axis: usize| {
                 let share = step as f64 / f64::from(steps);
                 let spin = if share < 0.5 { 0.9 } else { -0.9 };

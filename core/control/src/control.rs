@@ -1,4 +1,4 @@
-//! The task: from where, to where, with what, for how much.
+//! The task of optimal control: start, target, inputs, bounds and cost.
 
 use liestep::gradients::{Input, InputOf, Linearisable};
 use liestep::groups::{ExponentialRetraction, LieGroup, Retraction};
@@ -9,35 +9,35 @@ use nalgebra::DVector;
 
 use crate::verdict::Residual;
 
-/// Where a motion is to end: at an attitude, with a momentum in the body's axes (kg m²/s), or both.
+/// The target of a motion: an attitude, a momentum in the body's axes (kg m²/s), or both.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Target<G, V> {
-    /// At this attitude; at any without.
+    /// The attitude at the end; free if there is none.
     pub attitude: Option<G>,
-    /// With this momentum; with any without.
+    /// The momentum at the end; free if there is none.
     pub momentum: Option<V>,
 }
 
 impl<G: LieGroup> Target<G, G::Vector> {
-    /// At this attitude, without momentum.
+    /// The target of this attitude, at rest.
     pub fn rest(attitude: impl Into<G>) -> Self {
         Self { attitude: Some(attitude.into()), momentum: Some(G::Vector::zero()) }
     }
 }
 
-/// What is minimised: `time · T + effort · ½∫|u|² dt`; the duration is free where it costs something.
+/// The cost, `time · T + effort · ½∫|u|² dt`; the duration is free if it has a cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cost {
-    /// Per second.
+    /// The cost of a second.
     pub time: f64,
-    /// Of half the integral of the squares; exact, as inputs are held over each step.
+    /// The weight of half the integral of the squares; the integral is exact, as inputs are constant over each step.
     pub effort: f64,
 }
 
-/// A value of the state after this number of steps.
+/// A constrained value of the state after this number of steps.
 pub(crate) type Value<'a, S> = dyn Fn(usize, &Motion<Group<S>, <S as Term>::Advected>) -> f64 + 'a;
 
-/// What is shown each iteration, and says whether to go on.
+/// A function that gets the number and the residual of each iteration, and returns whether to go on.
 type Watch<'a> = dyn Fn(usize, &Residual) -> bool + 'a;
 
 #[doc = include_str!("control.md")]
@@ -63,8 +63,8 @@ where
     P: Linearisable<S> + Clone,
     ExponentialRetraction: Retraction<Group<S>>,
 {
-    /// A motion of this number of steps from this state to the target by the least effort, with a control force without
-    /// bounds: on SO(3) a torque about each axis of the body, N m.
+    /// The task to reach the target from this state, in this number of steps, by the least effort, with a control force
+    /// without bounds: on SO(3) a torque about each axis of the body, N m.
     #[must_use]
     pub fn new(
         stepper: &'a Stepper<S, P>,
@@ -89,54 +89,56 @@ where
         }
     }
 
-    /// What is chosen in each step: the scalars in these places of an input like this one, in the order of
-    /// [`Input::scalars`], each once; the others stay as they are.
+    /// Selects the inputs that are chosen in each step: the scalars in these places of an input like this one, in the
+    /// order of [`Input::scalars`], each once; the others stay as they are.
     #[must_use]
     pub fn input(self, like: InputOf<S>, places: impl IntoIterator<Item = usize>) -> Self {
         Self { like, places: places.into_iter().collect(), ..self }
     }
 
-    /// The least and the largest value, by the numbers of step and chosen scalar; where they are equal it is that value.
+    /// Sets the least and the largest value of inputs, by the numbers of step and chosen scalar; equal ones fix the
+    /// input.
     #[must_use]
     pub fn bounds(self, bounds: impl Fn(usize, usize) -> (f64, f64) + 'a) -> Self {
         Self { bounds: Box::new(bounds), ..self }
     }
 
-    /// A value of the states that is to be at least zero, by the number of steps before them and the motion there; one more
-    /// for each call. The start has to be within, the motion of the first guess needn't.
+    /// Adds a constraint: a value of the states that is at least zero, by the number of steps before them and the
+    /// motion there. The start must satisfy it, the motion of the first guess needn't.
     ///
-    /// Its derivatives are differences of fourth order, so it is to be smooth: the cosine of an angle rather than the angle.
+    /// Its derivatives are differences of fourth order, so it has to be smooth: the cosine of an angle rather than the
+    /// angle.
     #[must_use]
     pub fn keep(mut self, value: impl Fn(usize, &Motion<Group<S>, S::Advected>) -> f64 + 'a) -> Self {
         self.kept.push(Box::new(value));
         self
     }
 
-    /// What is to be least.
+    /// Sets the cost.
     #[must_use]
     pub fn minimise(self, cost: Cost) -> Self {
         Self { cost, ..self }
     }
 
-    /// The first guess, by the numbers of step and chosen scalar; its duration is that of the stepper's steps.
+    /// Sets the first guess, by the numbers of step and chosen scalar; its duration is that of the stepper's steps.
     #[must_use]
     pub fn guess(self, guess: impl Fn(usize, usize) -> f64 + 'a) -> Self {
         Self { guess: Box::new(guess), ..self }
     }
 
-    /// Shows each iteration, by its number and residual; the search is cancelled where `false` comes back.
+    /// Reports each iteration, by its number and residual; the search is cancelled if `false` is returned.
     #[must_use]
     pub fn progress(self, progress: impl Fn(usize, &Residual) -> bool + 'a) -> Self {
         Self { progress: Box::new(progress), ..self }
     }
 
-    /// The largest residual of a plan that has converged, and the most iterations: `1e-10` and 200 unless said otherwise.
+    /// Sets the largest residual of a converged plan, and the most iterations; the defaults are `1e-10` and 200.
     #[must_use]
     pub fn until(self, tolerance: f64, most: usize) -> Self {
         Self { tolerance, most, ..self }
     }
 
-    /// The first guess, moved within the bounds: a barrier has to have room.
+    /// The first guess, moved inside the bounds, as a barrier needs room.
     pub(crate) fn first_inputs(&self) -> Vec<DVector<f64>> {
         let inside = |step, input| {
             let ((lower, upper), guess) = ((self.bounds)(step, input), (self.guess)(step, input));

@@ -1,4 +1,4 @@
-//! What a motion was, by its readings.
+//! Estimates of a motion from its readings.
 
 use liestep::gradients::{Input, InputOf, Linearisable};
 use liestep::groups::{ExponentialRetraction, LieGroup as _, Retraction};
@@ -10,14 +10,14 @@ use crate::model::{Model, SMALL, by_displacement, displaced, flat};
 use crate::riccati::{End, Stage, Value, add_square, of_state};
 use crate::verdict::{ControlError, Verdict};
 
-/// The eigenvalue, in the largest, below which readings don't show a direction: some of what rounding leaves of zero.
+/// The eigenvalue, relative to the largest, below which readings don't determine a direction: a zero after rounding.
 const UNSEEN: f64 = 1e-13;
-/// The damping, in the readings' own second derivatives, at which a step is given up.
+/// The damping, relative to the readings' own second derivatives, at which a step is given up.
 const MOST_DAMPING: f64 = 1e8;
 
-/// What is read of a state, by the number of steps before it and what is constant.
+/// The residuals of a state's readings, by the number of steps before it and the constants.
 type Readings<'a, S> = dyn Fn(usize, &Motion<Group<S>, <S as Term>::Advected>, &[f64]) -> Vec<f64> + 'a;
-/// The stepper by what is constant.
+/// The stepper as a function of the constants.
 type StepperOf<'a, S, P> = dyn Fn(&[f64]) -> Option<Stepper<S, P>> + 'a;
 
 #[doc = include_str!("estimate.md")]
@@ -40,36 +40,37 @@ pub struct Estimate<'a, S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
 /// The motion that suits the readings best.
 #[derive(Clone, Debug)]
 pub struct Fit<S: SecondDerivatives, P: Plan<S>> {
-    /// The stepper of what is constant.
+    /// The stepper with the fitted constants.
     pub stepper: Stepper<S, P>,
     /// The states, one more than there are steps.
     pub states: Vec<StateOf<S, P>>,
-    /// What each step was given.
+    /// The input of each step.
     pub inputs: Vec<InputOf<S>>,
-    /// What is constant.
+    /// The fitted constants.
     pub constants: Vec<f64>,
-    /// Of displacements of the start, its momentum and what is constant, a square of `2n + c` rows for a group of dimension `n`
-    /// and `c` constants, in the units of both places; zero along what the readings don't show.
+    /// The covariance of displacements of the start, its momentum and the constants, a square of `2n + c` rows for a
+    /// group of dimension `n` and `c` constants, in the units of both places; zero along directions that the readings
+    /// don't determine.
     pub covariance: DMatrix<f64>,
     /// The sum of all squares, in variances.
     pub squares: f64,
     /// The length of the last step, standard deviations.
     pub step: f64,
-    /// How many iterations there were.
+    /// The number of iterations.
     pub iterations: usize,
-    /// Why the search stopped.
+    /// The reason why the search stopped.
     pub verdict: Verdict,
 }
 
-/// A motion, and how far it is from the readings.
+/// A motion, and its residuals from the readings.
 struct Trial<S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
     model: Model<S, P>,
     states: Vec<StateOf<S, P>>,
     inputs: Vec<DVector<f64>>,
     constants: DVector<f64>,
-    /// By state.
+    /// The residuals of the readings, state by state.
     readings: Vec<DVector<f64>>,
-    /// How far the start and what is constant are from the first guess.
+    /// The differences of the start and the constants from the first guess.
     away: DVector<f64>,
     squares: f64,
 }
@@ -80,10 +81,11 @@ where
     P: Linearisable<S> + Clone,
     ExponentialRetraction: Retraction<Group<S>>,
 {
-    /// A motion of this number of steps, from near this state, by its readings: for the state after each number of steps, from
-    /// zero on, what is read of it less what was read, in standard deviations. They are shown what is constant, too.
+    /// The estimate of a motion of this number of steps, from near this state. For the state after each number of
+    /// steps, from zero on, `readings` returns predicted minus measured values in standard deviations; it gets the
+    /// constants, too.
     ///
-    /// Their derivatives are differences of fourth order.
+    /// Derivatives of the readings are differences of fourth order.
     #[must_use]
     pub fn new(
         stepper: &'a Stepper<S, P>,
@@ -109,44 +111,44 @@ where
         }
     }
 
-    /// Unknown numbers that are constant: first guesses, and changes of them that make a difference.
+    /// Adds unknown constants: their first guesses, and changes of them that make a difference.
     #[must_use]
     pub fn unknowns(self, guesses: Vec<f64>, scales: Vec<f64>) -> Self {
         let states = 2 * Group::<S>::DIMENSION + guesses.len();
         Self { constants: guesses, scales, known: DMatrix::zeros(states, states), ..self }
     }
 
-    /// The stepper by these numbers, of the same step; without it they are in the readings alone.
+    /// Sets the stepper as a function of the constants, of the same step; without it they act on the readings alone.
     #[must_use]
     pub fn steppers(self, of: impl Fn(&[f64]) -> Option<Stepper<S, P>> + 'a) -> Self {
         Self { stepper_of: Some(Box::new(of)), ..self }
     }
 
-    /// What each step was given, unknown too: as [`Control::input`](crate::Control::input), about the scalars of `like` with
+    /// Adds unknown inputs of each step: as [`Control::input`](crate::Control::input), about the scalars of `like` with
     /// these standard deviations, one for each place.
     #[must_use]
     pub fn inputs(self, like: InputOf<S>, places: Vec<usize>, deviations: Vec<f64>) -> Self {
         Self { like, places, deviations, ..self }
     }
 
-    /// What is known beforehand: the inverse of the covariance about the first guess, in the order of
-    /// [`Fit::covariance`]. It is asked for behind [`unknowns`](Self::unknowns).
+    /// Sets the prior information: the inverse of the covariance about the first guess, in the order of
+    /// [`Fit::covariance`]. Call it after [`unknowns`](Self::unknowns), which resets it.
     #[must_use]
     pub fn known(self, information: DMatrix<f64>) -> Self {
         Self { known: information, ..self }
     }
 
-    /// The longest last step, in standard deviations, and the most iterations: `1e-8` and 100 unless said otherwise.
+    /// Sets the longest last step, in standard deviations, and the most iterations; the defaults are `1e-8` and 100.
     #[must_use]
     pub fn until(self, tolerance: f64, most: usize) -> Self {
         Self { tolerance, most, ..self }
     }
 
-    /// Searches the least squares. Whether they are, the [verdict](Fit::verdict) says.
+    /// Searches the least squares; the [verdict](Fit::verdict) says whether they were found.
     ///
     /// # Errors
     ///
-    /// [`ControlError`] where the search can't be begun.
+    /// [`ControlError`] if the search can't start.
     pub fn solve(&self) -> Result<Fit<S, P>, ControlError> {
         self.stepper.linearised()?;
         let (scalars, states) = (self.like.scalars::<f64>().len(), 2 * Group::<S>::DIMENSION + self.constants.len());
@@ -190,7 +192,7 @@ where
         Ok(Fit { stepper, states, inputs, constants, covariance, squares, step, iterations, verdict })
     }
 
-    /// What an input is about.
+    /// The expected input.
     fn given(&self) -> DVector<f64> {
         let scalars = self.like.scalars::<f64>();
         DVector::from_iterator(self.places.len(), self.places.iter().map(|place| scalars[*place]))
@@ -216,7 +218,7 @@ where
         Some(Model { duration, stepper, constants: constants.len(), beside, like, places })
     }
 
-    /// `None` where something isn't known from there.
+    /// The trial of these unknowns; `None` if no stepper, no coordinates or no finite squares exist there.
     fn trial(
         &self,
         start: StateOf<S, P>,
@@ -247,7 +249,7 @@ where
         DVector::from_column_slice(&self.deviations)
     }
 
-    /// The programme of Gauss and Newton, and its least cost by the start.
+    /// The Gauss–Newton programme, and its least cost as a function of the start.
     fn value(&self, trial: &Trial<S, P>) -> Option<(Vec<Stage>, Value)> {
         let Trial { model, states, inputs, constants, readings, away, .. } = trial;
         let (count, deviations, given) = (model.states(), self.deviations(), self.given());
@@ -292,7 +294,7 @@ where
         Some((stages, value))
     }
 
-    /// A motion with smaller squares: the longest step of Levenberg's and Marquardt's that leads to one.
+    /// A motion with smaller squares: the longest Levenberg–Marquardt step that leads to one.
     fn improve(
         &self,
         trial: &Trial<S, P>,
@@ -300,7 +302,7 @@ where
         (value, seen): (&Value, &Seen),
         damping: &mut f64,
     ) -> Option<Trial<S, P>> {
-        // Where no digit of the squares is left to be better, the step is taken as it is.
+        // At the level of rounding the step is taken without a decrease.
         let rounding = 1e-13 * (1.0 + trial.squares);
         while *damping < MOST_DAMPING {
             let solution = value.forwards(stages, seen.step(value, *damping), DVector::zeros(0));
@@ -319,13 +321,14 @@ where
     }
 }
 
-/// The directions of the start and of what is constant, each with what the readings show of it.
+/// The directions of the start and the constants, each with the information of the readings on it.
 struct Seen {
-    /// The lengths that make the second derivatives along each coordinate one.
+    /// The lengths that scale the second derivative along each coordinate to one.
     lengths: DVector<f64>,
-    /// Of the second derivatives in these lengths: eigenvalues, zero where nothing is seen, and eigenvectors.
+    /// The eigenvalues and eigenvectors of the scaled second derivatives; zero where the readings don't determine a
+    /// direction.
     squares: SymmetricEigen<f64, nalgebra::Dyn>,
-    /// The direction that is seen least, where it isn't seen.
+    /// The direction of the least information, if the readings don't determine it.
     unseen: Option<Vec<f64>>,
 }
 
@@ -343,7 +346,7 @@ impl Seen {
         Self { lengths, squares, unseen }
     }
 
-    /// Sums over what is seen: the gradient's components along the directions, and their second derivatives.
+    /// The gradient's component, the second derivative and the direction itself, for each direction that is determined.
     fn parts<'s>(&'s self, value: &'s Value) -> impl Iterator<Item = (f64, f64, DVector<f64>)> + 's {
         let gradient = value.slopes.column(0).component_mul(&self.lengths);
         let directions = self.squares.eigenvectors.column_iter().zip(self.squares.eigenvalues.iter());
@@ -352,7 +355,7 @@ impl Seen {
             .map(move |(direction, square)| (direction.dot(&gradient), *square, direction.component_mul(&self.lengths)))
     }
 
-    /// By which the squares are to fall in a whole step.
+    /// The decrease of the squares that a whole step predicts.
     fn decrease(&self, value: &Value) -> f64 {
         self.parts(value).map(|(slope, square, _)| slope * slope / square).sum()
     }

@@ -12,18 +12,18 @@ use crate::riccati::{End, Solution, Stage, add_square, of_state, solve};
 use crate::search::{Course, FOUND, Limit, Search, course};
 use crate::verdict::Verdict;
 
-/// How near to its bound a step may bring an input, as a share of the room.
+/// The largest part of the room to its bound that a step of an input may take.
 const ROOM: f64 = 0.995;
-/// The decrease that a step has to have, as a share of the one foretold: Armijo's.
+/// The least decrease of a step, as a share of the predicted one: Armijo's.
 const ARMIJO: f64 = 1e-4;
-/// The shortest step that is tried, as a share of the whole.
+/// The shortest step that is tried, as a share of the whole step.
 const SHORTEST: f64 = 1e-7;
 /// The largest change of the duration, as a share of it.
 const DURATION: f64 = 0.3;
-/// The residual below which a corner is near.
+/// The residual below which the corner of the optimum is near.
 const NEAR: f64 = 1e-4;
-/// What is tried in turn to make a programme convex: the weight of the condition's square, in multipliers, and the damping,
-/// in the least second derivative by an input.
+/// The attempts to make a programme convex, in turn: the weight of the condition's square, relative to the multipliers,
+/// and the damping, relative to the least second derivative by an input.
 const CONVEX: [(f64, f64); 7] =
     [(0.0, 0.0), (10.0, 0.0), (1e3, 0.0), (1e3, 1.0), (1e3, 10.0), (1e3, 100.0), (1e3, 1e4)];
 
@@ -33,8 +33,8 @@ where
     P: Linearisable<S> + Clone,
     ExponentialRetraction: Retraction<Group<S>>,
 {
-    /// Makes a step that is better by the merit `cost + barrier + penalty · |miss|`; an error is a step of the motion that
-    /// was in the way.
+    /// Makes a step that is better by the merit `cost + barrier + penalty · |miss|`; the error has the step of the
+    /// motion that failed, if one did.
     pub(crate) fn improve(
         &mut self,
         mut stages: Vec<Stage>,
@@ -45,12 +45,12 @@ where
         let solution = self.direction(stages, &end, covectors).ok_or(None)?;
         let longer = solution.states[0].sum();
         let mut longest = (DURATION * self.course.model.duration / longer.abs()).min(1.0);
-        // Cost is in proportion to the duration.
+        // The cost is proportional to the duration.
         let mut slope = longer * self.cost(&self.course) / self.course.model.duration;
         let effort = self.control.cost.effort * self.course.model.stepper.step_size();
         let by_inputs = self.course.inputs.iter().zip(&solution.inputs).map(|(now, change)| now.dot(change));
         slope += effort * by_inputs.sum::<f64>();
-        // How distances and multipliers change, `δs` and `β/s − z − z/s δs`, and how far both may go.
+        // The changes of slacks and multipliers, `δs` and `β/s − z − z/s δs`, and the longest steps of both.
         let mut changes = Vec::with_capacity(self.sides.len());
         let (mut of_multipliers, mut squares) = (1.0_f64, solution.multipliers.norm_squared());
         for side in &self.sides {
@@ -76,14 +76,14 @@ where
         }
         let distance = self.distance(&self.course);
         if self.is_nearest {
-            // Its square is the cost, and any decrease will do.
+            // The merit is half the squared distance, and any decrease will do.
             (slope, self.penalty) = (0.0, 0.0);
         } else if distance > 0.0 {
             self.penalty = self.penalty.max(1.1 * slope / (0.9 * distance)).max(1.1 * squares.sqrt());
             slope -= self.penalty * distance;
         }
         let merit = self.merit(&self.course);
-        // Where no digit of the merit is left to be better, the step is taken as it is.
+        // At the level of rounding the step is taken without a decrease.
         let rounding = 1e-13 * (1.0 + merit.abs());
         let (mut share, mut in_the_way) = (longest, None);
         while share > SHORTEST {
@@ -106,7 +106,8 @@ where
         Err(in_the_way)
     }
 
-    /// `z/s` in the second derivatives, and `β/s` in the gradient, but for what the distance is behind.
+    /// Adds `z/s` to the second derivatives, and `−(β − z g)/s` to the gradient, with the gap `g` between a value and
+    /// its slack.
     fn add_barrier(&self, stages: &mut [Stage], end: &mut End) {
         let states = self.course.model.states();
         for side in &self.sides {
@@ -129,10 +130,10 @@ where
         }
     }
 
-    /// The programme's solution: with the second derivatives of the steps where they help, else without.
+    /// The solution of the programme, with the second derivatives of the steps if they help, else without.
     ///
-    /// A cost of time alone has its optimum in a corner, where second derivatives say nothing; on the way there they are those
-    /// of a saddle. They are asked for when all corners are known.
+    /// A cost of time alone has its optimum in a corner, where second derivatives don't matter; on the way there they
+    /// are those of a saddle. They are used near the corner only.
     fn direction(&self, mut stages: Vec<Stage>, end: &End, covectors: &[DVector<f64>]) -> Option<Solution> {
         let is_far_from_its_corner = self.control.cost.effort == 0.0 && self.residual.largest() > NEAR;
         let is_nearest = self.is_nearest && self.course.model.constants == 0;
@@ -140,7 +141,7 @@ where
         if !is_nearest && (self.multipliers.amax() == 0.0 || is_far_from_its_corner) {
             return solve(&stages, end, constants);
         }
-        // All else of the stages is there once: memory is what a long plan waits for.
+        // Only the second derivatives are copied, as memory limits a long plan.
         let plain: Vec<_> = stages.iter().map(|stage| stage.hessian.clone()).collect();
         let bent = self.bend(&mut stages, end.clone(), covectors);
         bent.and_then(|end| self.convex(&mut stages, &end)).or_else(|| {
@@ -149,7 +150,7 @@ where
         })
     }
 
-    /// Adds the second derivatives of the steps and of what is kept. `None` where a step beside one can't be made.
+    /// Adds the second derivatives of the steps and of the constraints. `None` if a neighbouring step fails.
     fn bend(&self, stages: &mut [Stage], mut end: End, covectors: &[DVector<f64>]) -> Option<End> {
         let Course { model, states, inputs, .. } = &self.course;
         for (step, stage) in stages.iter_mut().enumerate() {
@@ -170,8 +171,8 @@ where
         Some(end)
     }
 
-    /// The solution of a programme, made convex where it isn't: by a square of the condition, which changes its solution in
-    /// nothing, and by a damping of the inputs.
+    /// The solution of a programme that is made convex if it isn't: by a square of the condition, which doesn't change
+    /// the solution, and by a damping of the inputs.
     fn convex(&self, stages: &mut [Stage], end: &End) -> Option<Solution> {
         let (states, size, mut damped) = (self.course.model.states(), self.multipliers.norm(), 0.0);
         let of_inputs =
@@ -195,7 +196,8 @@ where
         })
     }
 
-    /// `None` where the target can't be seen from the end, or no stepper has such a duration.
+    /// The course after a share of a step. `None` if the target's coordinates don't reach it, or no stepper has such a
+    /// duration.
     fn course_after(
         &self,
         solution: &Solution,
@@ -209,7 +211,7 @@ where
         let mut course = course(self.control, model, inputs)?;
         for (side, (further, _)) in self.sides.iter().zip(changes) {
             if let (Limit::Kept(place), Some(course)) = (side.limit, &mut course) {
-                // A value that is further than its distance takes it along.
+                // The slack is the value itself, or the slack's own step if that is larger.
                 let distance = &mut course.distances[place];
                 *distance = distance.max(self.course.distances[place] + share * further);
             }
@@ -217,7 +219,7 @@ where
         Ok(course)
     }
 
-    /// How far a course is from the target and from what is to be kept.
+    /// The distance of a course from the target and from the constraints.
     pub(crate) fn distance(&self, course: &Course<S, P>) -> f64 {
         let squares: f64 = if self.is_nearest {
             course.broken().map(|(_, value)| value * value).sum()
@@ -235,7 +237,7 @@ where
         if self.sides.is_empty() { merit } else { merit - self.barrier * logarithms }
     }
 
-    /// The verdict where the miss is least: what the bounds let the inputs take off it, to first order.
+    /// The verdict at the least miss, by the decrease that the bounds of the inputs allow, to first order.
     pub(crate) fn nearest(&self, stages: &[Stage], covectors: &[DVector<f64>]) -> Verdict {
         let distance = self.distance(&self.course);
         let mut best = 0.0;

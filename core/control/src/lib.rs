@@ -1,8 +1,8 @@
-//! Optimal control of what [liestep] steps, and estimates of it, on the discrete equations themselves.
+//! Optimal control and estimation of motions that [liestep] steps, on the discrete equations themselves.
 //!
-//! A [`Control`] says from where to where, by which inputs, within which bounds, and for what; its [`ControlPlan`] is a motion of
-//! the stepper, with the inputs of its steps and the [`Verdict`] of the search. An [`Estimate`] has readings of a motion in the
-//! place of a target; its [`Fit`] is the motion that suits them best.
+//! A [`Control`] states start, target, inputs, bounds and cost; its [`ControlPlan`] is a motion of the stepper, with
+//! the inputs of its steps and the [`Verdict`] of the search. An [`Estimate`] has readings of a motion in the place of
+//! a target; its [`Fit`] is the motion that suits them best.
 
 mod control;
 mod estimate;

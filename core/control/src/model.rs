@@ -1,5 +1,5 @@
-//! The steps of a plan, and their first and second derivatives in flat coordinates: a displacement `ζ`, the momentum, and
-//! behind them the duration where that is free.
+//! The steps of a plan, and their first and second derivatives in flat coordinates: a displacement `ζ`, the momentum,
+//! and behind them the constants of the motion, as a free duration.
 
 use liestep::StepError;
 use liestep::gradients::{Cotangent, Input, InputOf, Linearisable, Tape};
@@ -12,20 +12,22 @@ use nalgebra::{DMatrix, DVector};
 use crate::control::Control;
 use crate::riccati::Stage;
 
-/// Of differences by the duration, and of those of derivatives: about a third of the digits, and a quarter.
+/// The relative changes for differences by the duration, and of derivatives: about the third and the fourth root of
+/// rounding.
 pub(crate) const SMALL: f64 = 1e-5;
 const COARSE: f64 = 1e-4;
 
-/// Of differences of fourth order, and of second ones: the fifth root of rounding, about.
+/// The relative changes for differences of fourth order, and for second ones: about the fifth root of rounding.
 const FOURTH: f64 = 1e-3;
 
-/// The step of a duration, and what it is given.
+/// The stepper of a duration, and the kind of its inputs.
 pub(crate) struct Model<S: SecondDerivatives<Scalar = f64>, P> {
     pub(crate) duration: f64,
     pub(crate) stepper: Stepper<S, P>,
-    /// How many numbers are constant along a motion, and part of its state: a free duration, or what is estimated.
+    /// The number of constants of a motion that are part of its state: a free duration, or the unknowns of an estimate.
     pub(crate) constants: usize,
-    /// Where steps depend on these: a small change of each, and the steppers with it and with its opposite.
+    /// A small change of each constant, and the steppers with it and with its opposite; empty if steps don't depend on
+    /// constants.
     pub(crate) beside: Vec<(f64, [Stepper<S, P>; 2])>,
     pub(crate) like: InputOf<S>,
     pub(crate) places: Vec<usize>,
@@ -40,7 +42,7 @@ pub(crate) fn flat<'v, V: Entries<f64> + 'v>(vectors: impl IntoIterator<Item = &
     DVector::from_vec(entries)
 }
 
-/// Some entries as a vector.
+/// A vector of consecutive entries.
 fn part<V: Entries<f64>>(x: &DVector<f64>, first: usize, count: usize) -> V {
     let mut entries = x.iter().skip(first).take(count).copied();
     V::from_entries(&mut || entries.next().unwrap_or(0.0))
@@ -60,7 +62,8 @@ where
     of(&tangent).lu().solve(&of(&turn.adjoint_matrix()))
 }
 
-/// The state beside this one, by its displacement and the change of its momentum. `None` where there is none.
+/// The state beside this one, by its displacement and the change of its momentum. `None` if the stepper can't start
+/// there.
 pub(crate) fn displaced<S, P>(stepper: &Stepper<S, P>, state: &StateOf<S, P>, x: &DVector<f64>) -> Option<StateOf<S, P>>
 where
     S: SecondDerivatives<Scalar = f64>,
@@ -78,7 +81,7 @@ where
     P: Linearisable<S> + Clone,
     ExponentialRetraction: Retraction<Group<S>>,
 {
-    /// `None` where the scene can't be stepped in this time.
+    /// The model of a task; `None` if the scene can't be stepped in this time.
     pub(crate) fn new(control: &Control<'_, S, P>, duration: f64) -> Option<Self>
     where
         P: Plan<S>,
@@ -95,12 +98,12 @@ where
         Some(Self { duration, stepper, constants: beside.len(), beside, like, places })
     }
 
-    /// The components of a state, with what is constant along the motion.
+    /// The number of components of a state, with the constants of the motion.
     pub(crate) fn states(&self) -> usize {
         2 * Group::<S>::DIMENSION + self.constants
     }
 
-    /// What a step is given.
+    /// The input with these chosen scalars.
     pub(crate) fn input(&self, chosen: &[f64]) -> InputOf<S> {
         let mut scalars: Vec<f64> = self.like.scalars();
         for (place, scalar) in self.places.iter().zip(chosen) {
@@ -110,7 +113,7 @@ where
         self.like.of_scalars(&mut || scalars.next().unwrap_or(0.0))
     }
 
-    /// The states of these inputs; of a step that can't be made its number and error.
+    /// The states with these inputs; the error is that of a step, with its number.
     pub(crate) fn run(
         &self,
         start: &StateOf<S, P>,
@@ -125,7 +128,7 @@ where
         Ok(states)
     }
 
-    /// The derivatives of the step from this state, without any of a cost.
+    /// The derivatives of the step from this state, without those of a cost.
     pub(crate) fn blocks(&self, state: &StateOf<S, P>, chosen: &DVector<f64>) -> Result<Stage, StepError> {
         let unknown = || StepError::NonFinite { what: "derivative" };
         let (input, states, count) = (self.input(chosen.as_slice()), self.states(), chosen.len());
@@ -158,11 +161,12 @@ where
         Ok(Stage { by_state, by_input, state_gradient, input_gradient, hessian, fixed: Vec::new(), bent })
     }
 
-    /// The second derivatives of `λ·x⁺` by state and input, in the coordinates of the exponential, by differences of the
-    /// adjoint. `None` where a step beside this one can't be made.
+    /// The second derivatives of `λ·x⁺` by state and input, in the coordinates of the exponential, by differences of
+    /// the adjoint. `None` if a neighbouring step fails.
     ///
-    /// At the end of a step beside this one the covector is `λ + ½ ad*_y λ`, where `y` is how far that is; at its beginning
-    /// the same makes the differences of derivatives asymmetric, so their symmetric part is taken.
+    /// The covector at the end of a neighbouring step is `λ + ½ ad*_y λ`, where `y` is the displacement of that end.
+    /// The same effect at the beginning makes the differences of derivatives asymmetric, so their symmetric part is
+    /// taken.
     pub(crate) fn bending(
         &self,
         state: &StateOf<S, P>,
@@ -191,7 +195,7 @@ where
             }
             Some(found)
         };
-        // And the force that makes this momentum in one step.
+        // The force causes this momentum in one step.
         let momentum = COARSE * self.momentum(stage);
         let force = momentum / stage.by_input.rows(dimension, dimension).amax();
         let mut hessian = DMatrix::zeros(states + inputs, states + inputs);
@@ -217,14 +221,14 @@ where
         }
         hessian.iter().all(|entry| entry.is_finite()).then(|| (&hessian + hessian.transpose()) * 0.5)
     }
-    /// The momentum that turns the body by a radian on the whole way, by the first step of that.
+    /// The momentum that turns the body by a radian over the whole duration, estimated by a first step.
     fn momentum(&self, stage: &Stage) -> f64 {
         let dimension = Group::<S>::DIMENSION;
         let turn = stage.by_state.view((0, dimension), (dimension, dimension)).amax();
         self.stepper.step_size() / (self.duration * turn)
     }
 
-    /// Changes of a state in each of its directions, and of what is constant, for differences.
+    /// The changes of a state along each coordinate, and of the constants, for differences.
     fn changes(&self, stage: &Stage, constants: &[f64]) -> DVector<f64> {
         let dimension = Group::<S>::DIMENSION;
         let of = |k| match k {
@@ -235,8 +239,8 @@ where
         DVector::from_fn(2 * dimension + constants.len(), |k, _| FOURTH * of(k))
     }
 
-    /// The derivatives of some values by a state and what is constant, row by row; `None` where a state beside isn't one, or
-    /// values aren't finite.
+    /// The derivatives of values by a state and the constants, row by row; `None` if a neighbouring state doesn't
+    /// exist, or values aren't finite.
     pub(crate) fn slopes(
         &self,
         state: &StateOf<S, P>,
@@ -259,7 +263,7 @@ where
         Some(DMatrix::from_columns(&columns)).filter(|found| found.iter().all(|entry| entry.is_finite()))
     }
 
-    /// The second derivatives of a value by a state, of the exponential's coordinates.
+    /// The second derivatives of a value by a state, in the coordinates of the exponential.
     pub(crate) fn curvature(
         &self,
         state: &StateOf<S, P>,
@@ -275,7 +279,7 @@ where
             let [there, opposite] = [displaced(&self.stepper, state, &x)?, displaced(&self.stepper, state, &-x)?];
             Some(value(&there) + value(&opposite) - middle)
         };
-        // Twice along an axis is four times the square.
+        // The change is doubled along one axis, which makes the difference four times as large.
         let squares = (0..changes.len()).map(|k| Some(even([k, k])? / 4.0)).collect::<Option<Vec<_>>>()?;
         let mut found = DMatrix::zeros(self.states(), self.states());
         for i in 0..changes.len() {

@@ -4,16 +4,16 @@
 //! minimise  Σ_k ½ (x_k, u_k)·H_k (x_k, u_k) + a_k·x_k + b_k·u_k      under  x_{k+1} = A_k x_k + B_k u_k,   E x_N = −e
 //! ```
 //!
-//! where `x_0` is zero but for its last entries, which are free. Of the value `½ x·P x + (p + Ψ ν)·x` of the steps that are
-//! left, for multipliers `ν` of the last condition, `Π = [p, Ψ]` is carried backwards in one matrix. What it costs is
+//! where `x_0` is zero except for its last entries, which are free. The value of the remaining steps is `½ x·P x + (p +
+//! Ψ ν)·x`, for multipliers `ν` of the last condition; `Π = [p, Ψ]` is carried backwards in one matrix. The time is
 //! linear in the number of steps.
 
 use nalgebra::{DMatrix, DVector};
 
-/// What an iteration knows about a step.
+/// The coefficients of one step in the programme.
 #[derive(Clone)]
 pub(crate) struct Stage {
-    /// `∂x⁺/∂x` and `∂x⁺/∂u`.
+    /// The derivatives `∂x⁺/∂x` and `∂x⁺/∂u`.
     pub(crate) by_state: DMatrix<f64>,
     pub(crate) by_input: DMatrix<f64>,
     /// The gradients `a` and `b` of the cost.
@@ -21,18 +21,18 @@ pub(crate) struct Stage {
     pub(crate) input_gradient: DVector<f64>,
     /// The second derivatives by state and input, in this order.
     pub(crate) hessian: DMatrix<f64>,
-    /// Inputs that have no room to change.
+    /// The inputs that have no room to change.
     pub(crate) fixed: Vec<usize>,
-    /// The second derivatives of the end by the last component of the state.
+    /// The second derivatives of the step's end by the last component of the state.
     pub(crate) bent: DVector<f64>,
 }
 
-/// The condition at the end: `E`, `e`, and the second derivatives by the last state.
+/// The condition at the end, `E` and `e`, and the gradient and second derivatives of the cost by the last state.
 #[derive(Clone)]
 pub(crate) struct End {
     pub(crate) by_state: DMatrix<f64>,
     pub(crate) miss: DVector<f64>,
-    /// The multipliers that new ones are kept beside where inputs don't act on a condition.
+    /// The present multipliers, near which new ones stay if inputs don't act on a condition.
     pub(crate) multipliers: DVector<f64>,
     pub(crate) hessian: DMatrix<f64>,
     pub(crate) gradient: DVector<f64>,
@@ -57,32 +57,33 @@ pub(crate) fn add_square(hessian: &mut DMatrix<f64>, v: &DVector<f64>, weight: f
 
 /// The solution: the changes of the states and of the inputs, and the new multipliers.
 pub(crate) struct Solution {
-    /// One more than there are steps.
+    /// The changes of the states, one more than there are steps.
     pub(crate) states: Vec<DVector<f64>>,
     pub(crate) inputs: Vec<DVector<f64>>,
     pub(crate) multipliers: DVector<f64>,
 }
 
-/// `u = K x + κ (1, ν)`
+/// The input as a function of the state, `u = K x + κ (1, ν)`.
 struct Policy {
     gain: DMatrix<f64>,
     offsets: DMatrix<f64>,
 }
 
-/// The least cost of all steps as a function of the first state, `½ x·P x + (p + Ψ ν)·x + …`, and the inputs that it takes.
+/// The least cost of all steps as a function of the first state, `½ x·P x + (p + Ψ ν)·x + …`, and the inputs that
+/// attain it.
 pub(crate) struct Value {
-    /// `P`
+    /// The second derivatives `P`.
     pub(crate) square: DMatrix<f64>,
-    /// `Π = [p, Ψ]`
+    /// The slopes `Π = [p, Ψ]`.
     pub(crate) slopes: DMatrix<f64>,
-    /// `W`
+    /// Minus the second derivatives by `(1, ν)`, `W`.
     bent: DMatrix<f64>,
-    /// From the last to the first.
+    /// The policies of the steps, from the last to the first.
     policies: Vec<Policy>,
 }
 
 impl Value {
-    /// `None` where the programme isn't convex in the inputs.
+    /// The least cost of a programme; `None` if it isn't convex in the inputs.
     pub(crate) fn new(stages: &[Stage], end: &End) -> Option<Self> {
         let (states, conditions) = (end.by_state.ncols(), end.miss.len());
         let mut slopes = DMatrix::zeros(states, 1 + conditions);
@@ -97,7 +98,7 @@ impl Value {
         Some(value)
     }
 
-    /// The inputs from this state, and the states that they make.
+    /// The inputs from this state on, and the states that follow.
     pub(crate) fn forwards(&self, stages: &[Stage], start: DVector<f64>, multipliers: DVector<f64>) -> Solution {
         let with_one = multipliers.clone().insert_row(0, 1.0);
         let (mut state, mut states) = (start, Vec::with_capacity(stages.len() + 1));
@@ -112,7 +113,7 @@ impl Value {
         Solution { states, inputs, multipliers }
     }
 
-    /// The value before a step from that behind it: with `S = H_uu + Bᵀ P B`, `M = H_ux + Bᵀ P A` and `N = Bᵀ Π + b`,
+    /// The value before a step from that after it: with `S = H_uu + Bᵀ P B`, `M = H_ux + Bᵀ P A` and `N = Bᵀ Π + b`,
     ///
     /// ```text
     /// K = −S⁻¹ M    κ = −S⁻¹ N    P ← H_xx + Aᵀ P A + Mᵀ K    Π ← Aᵀ Π + a + Mᵀ κ    W ← W − Nᵀ κ
@@ -145,16 +146,16 @@ impl Value {
     }
 }
 
-/// `None` where the programme isn't convex in the inputs, or its condition can't be met to first order.
+/// The solution of a programme; `None` if it isn't convex in the inputs, or its condition can't be met to first order.
 pub(crate) fn solve(stages: &[Stage], end: &End, free: usize) -> Option<Solution> {
     let (states, conditions) = (end.by_state.ncols(), end.miss.len());
     let value = Value::new(stages, end)?;
     let Value { square, slopes, bent, .. } = &value;
 
-    // What rounding is of the largest: a condition that nothing acts on leaves its multiplier as it is.
+    // A damping in rounding of the largest entry: the multiplier of a condition that no input acts on stays as it is.
     let proximal =
         1e-13 * bent.diagonal().iter().skip(1).fold(0.0_f64, |most, entry| most.max(*entry)).max(f64::MIN_POSITIVE);
-    // Stationary in the free entries and in the multipliers.
+    // The solution is stationary in the free entries and in the multipliers.
     let size = free + conditions;
     let (mut matrix, mut right) = (DMatrix::zeros(size, size), DVector::zeros(size));
     let first = states - free;
@@ -170,7 +171,7 @@ pub(crate) fn solve(stages: &[Stage], end: &End, free: usize) -> Option<Solution
     right
         .rows_mut(free, conditions)
         .copy_from(&(bent.view((1, 0), (conditions, 1)) - &end.miss - &end.multipliers * proximal));
-    // Nothing is free without a condition and with a fixed duration.
+    // The system is empty without a condition and with a fixed duration.
     let found = if size == 0 { right } else { matrix.lu().solve(&right)? };
     if found.iter().any(|entry| !entry.is_finite()) {
         return None;

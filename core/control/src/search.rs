@@ -13,31 +13,31 @@ use crate::model::{Model, by_displacement, flat};
 use crate::riccati::{End, Stage, add_square, of_state, solve};
 use crate::verdict::{ControlError, ControlPlan, Residual, Verdict};
 
-/// The distance from the target at which a way to it is found.
+/// The distance from the target and the constraints below which a motion is feasible.
 pub(crate) const FOUND: f64 = 1e-6;
 
-/// A motion, and what is left from it to the target.
+/// A motion, and its miss of the target.
 pub(crate) struct Course<S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
     pub(crate) model: Model<S, P>,
     pub(crate) inputs: Vec<DVector<f64>>,
     pub(crate) states: Vec<StateOf<S, P>>,
     pub(crate) miss: DVector<f64>,
-    /// What is kept, state by state behind the start.
+    /// The constrained values, state by state after the start.
     pub(crate) kept: Vec<f64>,
-    /// Its distances from the bound, which are positive, and equal to it in the end.
+    /// The slacks of the constraints, which are positive, and equal to the values in the end.
     pub(crate) distances: Vec<f64>,
-    /// Its derivatives.
+    /// The derivatives of the constrained values.
     pub(crate) slopes: Vec<DVector<f64>>,
 }
 
 impl<S: SecondDerivatives<Scalar = f64>, P: Plan<S>> Course<S, P> {
-    /// What is kept and isn't, by its place, and how far it is off.
+    /// The violated constraints, by their places, and their negative values.
     pub(crate) fn broken(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.kept.iter().copied().enumerate().filter(|(_, value)| *value < 0.0)
     }
 }
 
-/// One bound, and its multiplier.
+/// One bound or constraint, and its multiplier.
 #[derive(Clone)]
 pub(crate) struct Side {
     /// The number of the input, or of the state.
@@ -48,9 +48,9 @@ pub(crate) struct Side {
 
 #[derive(Clone, Copy)]
 pub(crate) enum Limit {
-    /// `sign (u − bound) ≥ 0` for this chosen scalar.
+    /// The bound `sign (u − bound) ≥ 0` of this chosen scalar.
     Input(usize, f64, f64),
-    /// What is kept, by its place.
+    /// The constraint of this place.
     Kept(usize),
 }
 
@@ -62,7 +62,7 @@ impl Side {
         }
     }
 
-    /// How far the distance is behind the value.
+    /// The constrained value minus its slack.
     pub(crate) fn gap<S: SecondDerivatives<Scalar = f64>, P: Plan<S>>(&self, course: &Course<S, P>) -> f64 {
         match self.limit {
             Limit::Input(..) => 0.0,
@@ -75,16 +75,16 @@ impl Side {
 pub(crate) struct Search<'c, 'a, S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
     pub(crate) control: &'c Control<'a, S, P>,
     pub(crate) course: Course<S, P>,
-    /// Of the conditions at the end.
+    /// The multipliers of the conditions at the end.
     pub(crate) multipliers: DVector<f64>,
     pub(crate) sides: Vec<Side>,
     pub(crate) barrier: f64,
     least_barrier: f64,
     /// The weight of the miss in the merit.
     pub(crate) penalty: f64,
-    /// Before the last step.
+    /// The residual before the last step.
     pub(crate) residual: Residual,
-    /// Whether the miss itself is minimised, and not the cost under the condition that there is none.
+    /// Whether the miss itself is minimised, instead of the cost under the condition that there is no miss.
     pub(crate) is_nearest: bool,
 }
 
@@ -94,11 +94,11 @@ where
     P: Linearisable<S> + Clone,
     ExponentialRetraction: Retraction<Group<S>>,
 {
-    /// Searches an optimum. Whether there is one, the [verdict](ControlPlan::verdict) says.
+    /// Searches an optimum; the [verdict](ControlPlan::verdict) says whether one was found.
     ///
     /// # Errors
     ///
-    /// [`ControlError`] where the search can't be begun.
+    /// [`ControlError`] if the search can't start.
     pub fn solve(&self) -> Result<ControlPlan<S, P>, ControlError> {
         self.stepper.linearised()?;
         let scalars = self.like.scalars::<f64>().len();
@@ -135,7 +135,7 @@ where
         let duration = control.stepper.step_size() * control.steps as f64;
         let model = Model::new(control, duration).ok_or(ControlError::Unusable("duration"))?;
         for (number, value) in control.kept.iter().enumerate() {
-            // NaN is outside, too.
+            // A NaN violates the constraint, too.
             match value(0, &control.start) {
                 within if within >= 0.0 => {}
                 value => return Err(ControlError::Outside(number, value)),
@@ -154,7 +154,7 @@ where
         Ok(search)
     }
 
-    /// The bounds, of inputs alone for the nearest.
+    /// The bounds and the constraints; only the bounds of inputs while the miss is minimised.
     fn sides(&self) -> Vec<Side> {
         let control = self.control;
         let mut sides = Vec::new();
@@ -172,10 +172,10 @@ where
         sides
     }
 
-    /// The barrier and the multipliers of the bounds at the beginning: of each its share in what the cost may be.
+    /// Sets the first barrier, an equal share of an estimated cost for each bound, and the multipliers.
     fn restart(&mut self, is_nearest: bool) {
         (self.is_nearest, self.penalty) = (is_nearest, 0.0);
-        // A barrier has to have room.
+        // A barrier needs room.
         let room = 0.01 * self.course.kept.iter().fold(f64::MIN_POSITIVE, |most, value| most.max(value.abs()));
         self.course.distances = self.course.kept.iter().map(|value| value.max(room)).collect();
         self.sides = self.sides();
@@ -186,7 +186,7 @@ where
         let effort = effort * 0.5 * model.stepper.step_size() * squares;
         let cost = match time * model.duration + effort {
             _ if self.is_nearest => 1.0,
-            // The effort without bounds, to first order.
+            // The least effort without bounds stands for a cost of zero, to first order.
             0.0 => self.least_effort().unwrap_or(1.0),
             cost => cost,
         };
@@ -211,7 +211,7 @@ where
         let (tolerance, mut iterations) = (self.control.tolerance, 0);
         let mut is_found = false;
         let verdict = loop {
-            // There is a way to the target, from which the search goes on, once.
+            // The motion is feasible: the search for the optimum goes on from it, once.
             if self.is_nearest && !is_found && self.distance(&self.course) <= FOUND {
                 is_found = true;
                 self.restart(false);
@@ -244,7 +244,7 @@ where
                 Err(in_the_way) if self.is_nearest || self.residual.target.max(self.residual.kept) <= tolerance => {
                     break Verdict::Stalled(in_the_way);
                 }
-                // Perhaps there is no way to the target.
+                // Perhaps no motion is feasible: the miss is minimised next.
                 Err(_) => {
                     self.restart(true);
                 }
@@ -260,7 +260,7 @@ where
         Ok(ControlPlan { stepper, states, inputs, duration, cost, multipliers, prices, residual, iterations, verdict })
     }
 
-    /// The derivatives of what is kept.
+    /// The derivatives of the constrained values.
     fn slopes(&self, stages: &[Stage]) -> Option<Vec<DVector<f64>>> {
         let (Course { model, states, .. }, kept) = (&self.course, &self.control.kept);
         let values =
@@ -274,7 +274,7 @@ where
         Some(found)
     }
 
-    /// Of what is kept and isn't, half of its square.
+    /// Adds half the squared violation of each constraint.
     fn add_squares(&self, stages: &mut [Stage], end: &mut End) {
         for (place, value) in self.course.broken() {
             let (hessian, gradient) = of_state(stages, end, 1 + place / self.control.kept.len());
@@ -293,7 +293,7 @@ where
         let (states, h) = (model.states(), model.stepper.step_size());
         let stage = |(step, chosen): (usize, &DVector<f64>)| {
             let mut stage = model.blocks(&self.course.states[step], chosen)?;
-            // The nearest has a little of a cost of its own, where no bound has one.
+            // A small effort makes the least miss unique in inputs without bounds.
             let square = if self.is_nearest { 1e-8 * h } else { weights.effort * h };
             for input in 0..chosen.len() {
                 let (lower, upper) = (self.control.bounds)(step, input);
@@ -323,7 +323,7 @@ where
         time * course.model.duration + effort * 0.5 * course.model.stepper.step_size() * squares
     }
 
-    /// The condition at the end; of the nearest there is none, but the square of the miss.
+    /// The condition at the end; while the miss is minimised there is none, but half the squared miss is a cost.
     fn end(&self) -> Option<End> {
         let (states, miss) = (self.course.model.states(), self.course.miss.clone());
         let by_state = self.by_last_state()?;
@@ -337,7 +337,7 @@ where
         Some(End { by_state, miss: none.clone(), multipliers: none, hessian, gradient })
     }
 
-    /// The derivatives of the miss.
+    /// The derivatives of the miss by the last state.
     fn by_last_state(&self) -> Option<DMatrix<f64>> {
         let dimension = Self::DIMENSION;
         let mut found = DMatrix::zeros(self.course.miss.len(), self.course.model.states());
@@ -391,7 +391,7 @@ where
         Residual { stationarity, target: self.course.miss.amax(), kept, complementarity }
     }
 
-    /// The barrier is lowered when its own problem is solved well enough.
+    /// Lowers the barrier once its own problem is solved well enough.
     fn lower_barrier(&mut self) {
         let target = if self.is_nearest { 0.0 } else { self.residual.target.max(self.residual.kept) };
         let uneven = |side: &Side| (side.distance(&self.course) * side.multiplier - self.barrier).abs();
@@ -402,7 +402,8 @@ where
     }
 }
 
-/// The course with these inputs, whose distances are what is kept; `None` where the target can't be seen from the end.
+/// The course with these inputs, its slacks equal to the constrained values; `None` if the target's coordinates don't
+/// reach the end, or a value isn't finite.
 pub(crate) fn course<S, P>(
     control: &Control<'_, S, P>,
     model: Model<S, P>,
@@ -426,7 +427,7 @@ where
     Ok(Some(Course { model, inputs, states, miss, distances: kept.clone(), kept, slopes: Vec::new() }))
 }
 
-/// What is left to the target, by its coordinates there; `None` where these don't reach.
+/// The miss of the target, in coordinates about it; `None` if these don't reach the end.
 pub(crate) fn miss<S, P>(control: &Control<'_, S, P>, states: &[StateOf<S, P>]) -> Option<DVector<f64>>
 where
     S: SecondDerivatives<Scalar = f64>,

@@ -1,4 +1,4 @@
-//! Motions from readings.
+//! Estimates of motions from readings.
 
 use liestep::effects::Gravity;
 use liestep::groups::R1;
@@ -17,8 +17,8 @@ struct Particle {
 
 const DEVIATIONS: [f64; 3] = [0.1, 0.05, 0.3];
 
-/// Places and velocities of a particle that is pushed at random, by a clock that is off: everything is linear, and the fit
-/// that of the normal equations, written out.
+/// Places and velocities of a particle that is pushed at random, read with an offset of the velocity: the task is
+/// linear, and the fit is that of the normal equations, written out.
 #[test]
 fn a_line_has_the_normal_equations() {
     let (h, m, steps) = (0.5, 2.0, 8);
@@ -27,7 +27,7 @@ fn a_line_has_the_normal_equations() {
     let known = DMatrix::from_diagonal(&DVector::from_column_slice(&[4.0, 1.0, 9.0]));
     let guess = [0.3, 0.4, 0.2];
 
-    // Of start, momentum, offset and forces: the rows of all squares.
+    // The rows of all squares, by start, momentum, offset and forces.
     let count = 3 + steps;
     let (mut rows, mut right) = (Vec::new(), Vec::new());
     let unit = |k: usize| DVector::from_fn(count, |i, _| if i == k { 1.0 } else { 0.0 });
@@ -82,7 +82,8 @@ fn top(m: f64, rho: Vector3<f64>) -> Stepper<Top> {
     Stepper::new(RigidBody { J_d } + Gravity { m, g: 9.81, rho, up: Vector3::z() }, 0.01).expect("a stepper")
 }
 
-/// A gyroscope in a top tells its centre of mass and its start, but for a turn about the vertical, which it says.
+/// Readings of a top's gyroscope determine its centre of mass and its start, except for a turn about the vertical,
+/// which the verdict names.
 #[test]
 fn a_gyroscope_in_a_top() {
     let rho = Vector3::new(0.3, 0.2, 0.4);
@@ -133,7 +134,7 @@ fn estimates_that_are_none() {
     assert_eq!(task(3).known(DMatrix::zeros(5, 5)).solve().err(), unusable("prior knowledge"));
     let wrong = |_: usize, _: &Motion<SO3, ()>, _: &[f64]| vec![f64::NAN];
     assert_eq!(Estimate::new(&stepper, start, 3, wrong).solve().err(), unusable("reading"));
-    // Nothing is read, and nothing is known.
+    // Nothing is determined without readings and prior information.
     let fit = task(3).solve().expect("a task");
     assert!(matches!(fit.verdict, Verdict::Unseen { .. }) && fit.covariance.amax() == 0.0, "{:?}", fit.verdict);
 }

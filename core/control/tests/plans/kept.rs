@@ -1,4 +1,4 @@
-//! Values of the states that are to be kept.
+//! Constraints on values of the states.
 
 use liestep::motion::{Motion, OwnStep};
 
@@ -6,7 +6,7 @@ use super::*;
 
 type MotionOfBody = Motion<SO3, ()>;
 
-/// Where the instrument along the body's x axis looks is to be so far from the sun.
+/// The constraint that the instrument along the body's x axis points away from the sun by at least an angle.
 fn away_from(sun: Vector3<f64>, angle: f64) -> impl Fn(usize, &MotionOfBody) -> f64 {
     move |_, motion| angle.cos() - sun.dot(&(motion.attitude().matrix() * Vector3::x()))
 }
@@ -17,8 +17,8 @@ fn past_the_sun(stepper: &Body, steps: usize, angle: f64) -> Control<'_, RigidBo
     slew(stepper, steps, [0.0, 0.0, 1.5]).keep(away_from(sun, angle))
 }
 
-/// With a rate of at most `v`, a turn by `θ` in `T` speeds up until `t = 3/2 (v T − θ)/v`, by a torque that falls linearly to
-/// zero, and turns at that rate: `½∫u² dt = 4/3 J² v²/t`.
+/// The exact solution with a rate of at most `v`: a turn by `θ` in `T` speeds up until `t = 3/2 (v T − θ)/v`, by a
+/// torque that falls linearly to zero, and then goes on at that rate: `½∫u² dt = 4/3 J² v²/t`.
 #[test]
 fn the_least_effort_with_a_rate_that_is_kept() {
     let (rate, time) = (1.8 / 2.6, 0.4);
@@ -39,7 +39,8 @@ fn the_least_effort_with_a_rate_that_is_kept() {
     assert!(errors[2].abs() < 1e-3, "{errors:?}");
 }
 
-/// What a wider cone costs is what the prices say: by plans with cones beside this one.
+/// The prices add up to the derivative of the least cost by the cone's width, as found from plans with neighbouring
+/// cones.
 #[test]
 fn an_instrument_goes_round_the_sun() {
     let stepper = body([1.0, 2.0, 2.5], 0.02);
@@ -60,7 +61,7 @@ fn an_instrument_goes_round_the_sun() {
     assert!((price - slope).abs() < 1e-5 * slope, "{price}, not {slope}");
 }
 
-/// Beside bounds, and as soon as it can be: begun with the least effort in some time, the shortest doesn't depend on that.
+/// The shortest duration under bounds doesn't depend on that of the first guess, a plan of the least effort.
 #[test]
 fn the_shortest_way_round_the_sun() {
     let shortest = |h, angle| {
@@ -89,7 +90,7 @@ fn a_start_at_the_edge_and_one_beyond_it() {
     assert!(matches!(nothing, Err(ControlError::Outside(0, value)) if value.is_nan()));
 }
 
-/// A target in the sun, and a rate that doesn't reach the target in time.
+/// Two infeasible tasks: a target in the sun, and a rate too low to reach the target in time.
 #[test]
 fn what_cannot_be_kept_has_a_certificate() {
     let stepper = body([1.0, 2.0, 2.5], 0.05);
@@ -108,8 +109,8 @@ fn what_cannot_be_kept_has_a_certificate() {
     }
 }
 
-/// Bodies of all kinds, turned past a sun that is in the middle of the way: most are found, to what can be asked for here, and
-/// the others are said not to be.
+/// Random bodies turn past a sun in the middle of the way: most plans are found, to the tolerance that is advised here,
+/// and the verdicts of the others say that they aren't.
 #[test]
 fn random_turns_past_a_sun() {
     let mut random = Random::new(11);

@@ -18,7 +18,7 @@ mod estimates;
 mod kept;
 
 type Body = Stepper<RigidBody>;
-/// The shortest.
+/// The cost of the shortest time.
 const TIME: Cost = Cost { time: 1.0, effort: 0.0 };
 
 type At = Target<SO3, Vector3<f64>>;
@@ -32,7 +32,7 @@ fn turned(angles: [f64; 3]) -> SO3 {
     UnitQuaternion::from_scaled_axis(Vector3::from(angles)).into()
 }
 
-/// From rest to rest.
+/// A turn from rest to rest.
 fn slew(stepper: &Body, steps: usize, angles: [f64; 3]) -> Control<'_, RigidBody, liestep::motion::OwnStep<RigidBody>> {
     let start = stepper.start(SO3::identity(), Vector3::zeros()).expect("a start");
     Control::new(stepper, start, steps, Target::rest(turned(angles)))
@@ -46,7 +46,7 @@ fn torques<P: liestep::motion::Plan<RigidBody>>(plan: &ControlPlan<RigidBody, P>
     plan.inputs.iter().map(torque).collect()
 }
 
-/// `½∫u² dt = 6 J² θ²/T³`, to second order in the step.
+/// The least effort is `½∫u² dt = 6 J² θ²/T³`, to second order in the step.
 #[test]
 fn the_least_effort_of_a_turn_about_one_axis() {
     let exact = 6.0 * 9.0 * 1.2 * 1.2 / 8.0;
@@ -63,7 +63,7 @@ fn the_least_effort_of_a_turn_about_one_axis() {
     assert!(errors[3].abs() < 1e-4, "{errors:?}");
 }
 
-/// The multipliers are the derivatives of the least cost by the target: by plans to targets beside this one.
+/// The multipliers are the derivatives of the least cost by the target, as found from plans to neighbouring targets.
 #[test]
 fn multipliers_are_the_price_of_the_target() {
     let stepper = body([1.0, 2.0, 2.5], 0.05);
@@ -86,7 +86,7 @@ fn multipliers_are_the_price_of_the_target() {
             }
         };
         let slope = (beside(1e-4) - beside(-1e-4)) / 2e-4;
-        // What the end is off by is paid back.
+        // A multiplier is minus the derivative.
         let found = -plan.multipliers[k];
         assert!((found - slope).abs() < 1e-6 * (1.0 + slope.abs()), "{k}: {found}, not {slope}");
     }
@@ -99,12 +99,12 @@ fn the_shortest_half_turn_of_a_sphere() {
     let plan = half_turn(&stepper, 200).solve().expect("a task");
     assert_eq!(plan.verdict, Verdict::Converged, "{:?}", plan.residual);
     assert!(plan.duration <= 3.2435, "{}", plan.duration);
-    // No discrete plan is faster than the continuous optimum, but for the error of the step.
+    // A discrete plan is no faster than the continuous optimum, up to the error of the step.
     assert!(plan.duration > 3.2425, "{}", plan.duration);
     assert!(torques(&plan).iter().all(|torque| torque.amax() <= 1.0));
 }
 
-/// Beside the eigenaxis' way, where the gradient vanishes by symmetry: by a torque that goes round once meanwhile.
+/// A half turn whose guessed torque goes round once: on the eigenaxis' own way the gradient vanishes by symmetry.
 fn half_turn(stepper: &Body, steps: usize) -> Control<'_, RigidBody, liestep::motion::OwnStep<RigidBody>> {
     let guess = move |step, axis| {
         let share = step as f64 / steps as f64;
@@ -118,7 +118,7 @@ fn half_turn(stepper: &Body, steps: usize) -> Control<'_, RigidBody, liestep::mo
     slew(stepper, steps, [0.0, 0.0, PI]).bounds(|_, _| (-1.0, 1.0)).minimise(TIME).guess(guess)
 }
 
-/// From starts at random on either side, of which each finds a way; nearly all of them the shortest.
+/// Random first guesses on either side all lead to a plan, and nearly all to the shortest.
 #[test]
 fn half_turns_from_many_starts() {
     let stepper = body([1.0; 3], 3.5 / 40.0);
@@ -135,7 +135,7 @@ fn half_turns_from_many_starts() {
     assert!(shortest >= 10, "{shortest}");
 }
 
-/// A plan in which no input is allowed in between: its momentum in space is kept to rounding there.
+/// An arc without inputs conserves the momentum in space to rounding.
 #[test]
 fn an_arc_without_inputs_keeps_the_momentum() {
     let stepper = body([1.0, 2.0, 2.5], 0.02);
@@ -152,7 +152,7 @@ fn an_arc_without_inputs_keeps_the_momentum() {
     assert!(torques(&plan).iter().all(|torque| torque.amax() <= 4.0));
 }
 
-/// Bodies of all kinds, turned to anywhere.
+/// Random bodies turn to random attitudes.
 #[test]
 fn random_slews_converge() {
     let mut random = Random::new(7);
@@ -174,8 +174,8 @@ fn random_slews_converge() {
     assert!(most > 2, "the tasks are too easy");
 }
 
-/// Near a plan each iteration doubles the digits, as second derivatives that are right make it: those of steps from turning
-/// to turning, by a torque and by a duration that is free, and those of what is kept.
+/// The digits of a plan double in each iteration near it, which takes right second derivatives: those of steps between
+/// moving ends, by a torque and by a free duration.
 #[test]
 fn near_a_plan_the_digits_double() {
     let residuals = |task: Control<'_, RigidBody, liestep::motion::OwnStep<RigidBody>>| {
@@ -205,7 +205,7 @@ fn near_a_plan_the_digits_double() {
     }
 }
 
-/// A half turn has two ways that cost as much: each is found from its side.
+/// A half turn has two ways of equal cost: each is found from a guess on its side.
 #[test]
 fn both_ways_of_a_half_turn() {
     let stepper = body([2.0, 3.0, 4.0], 0.02);
@@ -219,7 +219,7 @@ fn both_ways_of_a_half_turn() {
     assert!(plans[0].1 > 1.0 && plans[1].1 < -1.0, "{plans:?}");
 }
 
-/// With a torque of at most `u`, rest to rest, no body turns further than `u T²/4J` about an axis.
+/// The bounds are too tight: a torque of at most `u` turns a body from rest to rest by at most `u T²/4J` about an axis.
 #[test]
 fn bounds_that_are_too_tight_have_a_certificate() {
     let stepper = body([2.0; 3], 0.02);
@@ -233,7 +233,7 @@ fn bounds_that_are_too_tight_have_a_certificate() {
     let size: f64 = direction.iter().map(|entry| entry * entry).sum();
     assert!((size - 1.0).abs() < 1e-12);
     assert!(torques(&plan).iter().all(|torque| torque.iter().all(|entry| entry.is_finite() && entry.abs() <= 4.0)));
-    // On the other side of the limit 4 J θ/T² = 4.8 there is a plan.
+    // A plan exists on the other side of the limit 4 J θ/T² = 4.8.
     assert_eq!(task(4.9).verdict, Verdict::Converged);
 }
 
@@ -257,12 +257,12 @@ fn one_step() {
         Control::new(&stepper, start, 1, Target { attitude: None, momentum: Some(momentum) }).solve().expect("a task");
     assert_eq!(plan.verdict, Verdict::Converged);
     assert!((plan.states[1].momentum() - momentum).norm() < 1e-10);
-    // Three inputs can't do it for six.
+    // Three inputs can't meet six conditions.
     let plan = slew(&stepper, 1, [0.3, 0.2, 0.1]).solve().expect("a task");
     assert!(!matches!(plan.verdict, Verdict::Converged), "{:?}", plan.verdict);
 }
 
-/// Steps that can't be made: in the first guess an error, later in the way of the search, which goes round them.
+/// A failing step is an error in the first guess; later the search goes round it.
 #[test]
 fn steps_that_cannot_be_made() {
     let stepper = body([1.0, 2.0, 2.5], 0.5);
@@ -296,7 +296,7 @@ fn tasks_that_are_none() {
     assert_eq!(error(Control::new(&stepper, start, 3, nowhere)), unusable("target"));
 }
 
-/// The search shows what it does, and stops when it is told to.
+/// The search reports its iterations, and stops on request.
 #[test]
 fn progress() {
     let stepper = body([1.0, 2.0, 2.5], 0.1);
@@ -310,7 +310,7 @@ fn progress() {
     assert_eq!(short.solve().expect("a task").verdict, Verdict::Exhausted);
 }
 
-/// Of a turn of some scene.
+/// The cost of a turn of some scene.
 fn cost<S: SecondDerivatives<Scalar = f64, Group = SO3> + Regular + Clone>(scene: S) -> f64 {
     let stepper = Stepper::new(scene, 0.1).expect("a stepper");
     let start = stepper.start(turned([0.4, 0.0, 0.0]), Vector3::zeros()).expect("a start");
@@ -321,7 +321,7 @@ fn cost<S: SecondDerivatives<Scalar = f64, Group = SO3> + Regular + Clone>(scene
     plan.cost
 }
 
-/// A heavy top by its text has the plan of the compiled one, and that of Python.
+/// A heavy top that is declared by a text has the plan of the compiled one, and that of Python.
 #[test]
 fn a_text_is_planned_as_what_is_compiled() {
     let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 1.4, 2.0)).expect("a body");
@@ -334,7 +334,7 @@ fn a_text_is_planned_as_what_is_compiled() {
     assert!(costs.iter().all(|cost| (cost / 1.473_736_859_111_866 - 1.0).abs() < 1e-12), "{costs:?}");
 }
 
-/// A torque that is named in a declaration.
+/// A torque that is an input of a declaration.
 #[force(group = SO3, given(u = torque), gradients, work = 0.5 * h * u * (eta + eta_next)[2])]
 #[derive(Clone, Copy, Debug)]
 struct Wheel {
@@ -351,7 +351,7 @@ fn what_a_step_is_given_is_chosen() {
     let like = Input::Values(stepper.scene().advected());
     let target = Target { attitude: None, momentum: Some(Vector3::new(0.0, 0.0, 1.5)) };
     let task = Control::new(&stepper, start, 20, target).input(like, [0]);
-    // The other two components are zero whatever is given, so that conditions on them say nothing.
+    // The other two components of the momentum are always zero, so that conditions on them have no effect.
     let plan = task.solve().expect("a task");
     assert!(plan.states.iter().all(|state| state.momentum().x == 0.0));
     assert_eq!(plan.verdict, Verdict::Converged, "{:?}", plan.residual);
@@ -360,14 +360,14 @@ fn what_a_step_is_given_is_chosen() {
     assert!((given.0[0] - 0.75).abs() < 1e-9, "{given:?}");
 }
 
-/// A body with its place.
+/// A rigid body with a position.
 #[lagrangian(group = SE3, gradients, l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h))]
 #[derive(Clone, Copy, Debug)]
 struct Flyer {
     J: Matrix4<f64>,
 }
 
-/// Straight on, by `½∫f² = 6 m² L²/T³`, and with a turn.
+/// The cost of a straight flight is `½∫f² = 6 m² L²/T³`; a turn adds to it.
 #[test]
 fn a_body_flies() {
     let J = Matrix4::from_diagonal(&Vector4::new(2.0, 1.5, 1.0, 3.0));
