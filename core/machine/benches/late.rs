@@ -1,8 +1,9 @@
-//! A declaration that is read while a program runs, beside the one that is compiled: `cargo bench -p liestep-machine
-//! --features cranelift`.
+//! A declaration that is read while a program runs, beside the compiled one: `cargo bench -p liestep-machine --features
+//! cranelift`.
 //!
-//! Times of a step in turns within one run, the fastest of all batches, in those of the compiled step; how long it takes from a
-//! text to the first step, and from each text of the repository to its machine code; `-- instructions` counts those of a step of (3.13), by valgrind.
+//! The output is the time of a step in multiples of the compiled step, measured in turns within one run, the fastest of
+//! all batches; the time from a text to the first step, and that from each text of the repository to its machine code.
+//! The instructions of a step of (3.13) are counted by `-- instructions`, with valgrind.
 
 #[path = "../../../tests/benches/counting.rs"]
 mod counting;
@@ -62,7 +63,7 @@ fn main() -> Result<(), Uncounted> {
 const KINDS: [&str; 6] =
     ["compiled", "machine code", "specialised", "interpreted", "in lanes of eight", "machine code in lanes"];
 
-/// Makes steps of one kind.
+/// Runs steps of one kind.
 fn count<S, K>(scene: S, kind: &str, steps: u32) -> Result<(), Uncounted>
 where
     S: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
@@ -82,7 +83,7 @@ where
         "in lanes of eight" => in_lanes(&interpreted),
         _ => in_lanes(&machine),
     };
-    // Of lanes as many steps in all.
+    // The lanes share the number of steps.
     let often = if kind.contains("lanes") { steps / STEPS / LANES } else { steps / STEPS };
     (0..often).for_each(|_| {
         run();
@@ -99,7 +100,7 @@ where
     (stepper, state)
 }
 
-/// ns a step of one of several scenes.
+/// The time of a step of one of several scenes, ns.
 fn ns(clock: Instant, scenes: u32) -> f64 {
     clock.elapsed().as_secs_f64() * 1e9 / f64::from(STEPS) / f64::from(scenes)
 }
@@ -159,7 +160,7 @@ where
     }
 }
 
-/// From texts that are new, if they differ in their names alone.
+/// Measures the time from a text to the first step; texts that differ in their names alone are derived anew.
 fn first_steps() {
     let times = (0..20).map(|number| {
         let text = FullTop::DECLARATION.replace("FullTop", &format!("Top{number}"));

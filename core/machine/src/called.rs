@@ -1,4 +1,4 @@
-//! Machine code, called: the only place where anything is unsafe.
+//! Calls of machine code: the only place where anything is unsafe.
 #![allow(unsafe_code)]
 
 use std::any::TypeId;
@@ -12,21 +12,21 @@ use simba::simd::AutoF64x8;
 
 use crate::translated;
 
-/// The lanes of an ensemble.
+/// The number of lanes of an ensemble.
 pub(crate) const LANES: usize = 8;
 
-/// The constants, the arrays of the other inputs, and the place of the outputs.
+/// A function of the constants, of the arrays of the other inputs, and of the array of outputs.
 type Entry = unsafe extern "C" fn(*const f64, *const *const f64, *mut f64);
 
-/// A program as a function: of numbers, or of as many lanes.
+/// A program as a machine function: of numbers, or of as many lanes.
 pub(crate) struct Function<const LANES: usize> {
     entry: Entry,
-    /// How many numbers it reads at least of each array.
+    /// The least length of each array.
     least: [usize; Array::COUNT],
-    /// A bit for each array that has to be given.
+    /// A bit for each array that a call has to pass.
     read: u16,
     outputs: usize,
-    /// Executable memory: the code is there as long as its function.
+    /// The executable memory, which lives as long as the function.
     memory: Mutex<Option<JITModule>>,
 }
 
@@ -46,7 +46,7 @@ impl<const LANES: usize> fmt::Debug for Function<LANES> {
     }
 }
 
-/// How many numbers a value of this type is: those of other types are none that machine code knows.
+/// The number of lanes of a value of this type; zero for types without machine code.
 pub(crate) fn lanes_of<T: 'static>() -> usize {
     match TypeId::of::<T>() {
         one if one == TypeId::of::<f64>() => 1,
@@ -68,15 +68,16 @@ impl<const LANES: usize> Function<LANES> {
         Ok(Self { entry, least, read, outputs: program.outputs.len(), memory })
     }
 
-    /// Calls it with constants and what else it is given.
+    /// Calls the function with constants and the other inputs.
     ///
     /// # Panics
     ///
-    /// Where it isn't a function of `T`, an array is shorter than what is read of it, or outputs than what is written: then
-    /// nothing is called.
+    /// If it isn't a function of `T`, an array is missing or shorter than what is read of it, or the outputs are
+    /// shorter than what is written: then nothing is called.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn call<T: 'static, const N: usize>(&self, constants: &[T], given: Given<'_, T, N>, outputs: &mut [T]) {
-        // A handful of comparisons, in release builds too: a call of this function is safe. What isn't read isn't set.
+        // A handful of comparisons, also in release builds, makes a call safe. Pointers that aren't read stay
+        // uninitialised.
         let mut inputs = [const { MaybeUninit::<*const f64>::uninit() }; Array::COUNT];
         let (mut missing, mut is_there) = (self.read, outputs.len() >= self.outputs);
         is_there = is_there && lanes_of::<T>() == LANES && constants.len() >= self.least[Array::Constants as usize];
@@ -85,18 +86,19 @@ impl<const LANES: usize> Function<LANES> {
             is_there = is_there && numbers.len() >= self.least[*array as usize];
         }
         assert!(missing == 0 && is_there, "an input is missing, or a place for the outputs, or it is of other numbers");
-        // Two lanes at a time.
+        // The code computes two lanes at a time.
         for first in (0..lanes_of::<T>()).step_by(2) {
             for (array, numbers) in &given {
                 inputs[*array as usize] = MaybeUninit::new(numbers.as_ptr().cast::<f64>().wrapping_add(first));
             }
             let constants = constants.as_ptr().cast::<f64>().wrapping_add(first);
             let outputs = outputs.as_mut_ptr().cast::<f64>().wrapping_add(first);
-            // SAFETY: the code reads pointers of `inputs` at places of arrays that are in `read`, all of which are given and
-            // set; of an array the numbers that `least` counts, which are there, as those of the constants are; and writes as
-            // many outputs as there is place for, that nobody else can see while they are borrowed here. `T` is `f64`, or an
-            // array of as many as the code was made for, of which it reads and writes two from `first` on: so the pointers
-            // have the right type and alignment. The memory of the code is held by `self`.
+            // SAFETY: the code reads pointers of `inputs` at places of arrays that are in `read`, all of which are
+            // passed and set; it reads as many numbers of an array as `least` counts, which are there, as those of the
+            // constants are; and it writes as many outputs as there is place for, which nobody else can access while
+            // they are borrowed here. `T` is `f64`, or an array of as many as the code was compiled for, of which it
+            // reads and writes two from `first` on: so the pointers have the right type and alignment. The memory of
+            // the code is owned by `self`.
             unsafe { (self.entry)(constants, inputs.as_ptr().cast(), outputs) };
         }
     }

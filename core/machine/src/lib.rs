@@ -1,18 +1,18 @@
-//! The programs of a Lagrangian that is read while a program runs, as machine code.
+//! Machine code for the programs of a Lagrangian that is read while a program runs.
 //!
-//! [`Machine`] is a back end of [`Late`](liestep_late::Late): `Late<SO3, W, K, Machine>`. A program is interpreted until it
-//! has run some hundred times, so that a first step waits for no compiler, and then becomes a function, by
-//! [Cranelift](https://cranelift.dev), operation by operation: nothing is contracted or associated anew, and functions like
-//! `sin` are those of the interpreter, called. So the steps are the same to the bit.
+//! [`Machine`] is a back end of [`Late`](liestep_late::Late): `Late<SO3, W, K, Machine>`. A program is interpreted
+//! until it has run some hundred times, so that a first step waits for no compiler, and then becomes a function, by
+//! [Cranelift](https://cranelift.dev), operation by operation: nothing is contracted or reassociated, and functions
+//! like `sin` are calls of the interpreter's. So the steps are the same to the bit.
 //!
-//! There is machine code for x86-64 and aarch64, for numbers and for the eight lanes of an ensemble. In other lanes, and for
-//! other scalars, programs are interpreted. On aarch64 it hasn't been run: the tests here hold it to the interpreter there,
-//! too.
+//! There is machine code for x86-64 and aarch64, for numbers and for the eight lanes of an ensemble. In other lanes,
+//! and for other scalars, programs are interpreted. The code for aarch64 hasn't been run; there, too, the tests here
+//! compare it with the interpreter.
 //!
 //! # Inside
 //!
-//! `lib → called → translated → registers`: `translated` makes the code, `registers` says what stands in registers and what
-//! in memory, and all that is unsafe is in `called`.
+//! `lib → called → translated → registers`: `translated` generates the code, `registers` assigns values to registers
+//! and memory, and everything unsafe is in `called`.
 
 #![cfg(feature = "cranelift")]
 
@@ -28,11 +28,11 @@ use liestep_late::{Backend, Code, Given, Interpreter, LateError, Program};
 
 use called::{Function, LANES, lanes_of};
 
-/// Programs are machine code once they have run some hundred times, and interpreted before.
+/// A back end that interprets programs until they have run some hundred times, and then compiles them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Machine;
 
-/// A program as what is interpreted, and as machine code where that has been made.
+/// A program as interpreted code, and as machine code once it is compiled.
 #[derive(Debug)]
 pub struct Both {
     program: Program,
@@ -41,12 +41,12 @@ pub struct Both {
     of_lanes: Made<LANES>,
 }
 
-/// A function, once it has been made.
+/// A function, once it is compiled.
 #[derive(Debug, Default)]
 struct Made<const LANES: usize> {
-    /// Those that were interpreted.
+    /// The number of interpreted runs.
     runs: AtomicU32,
-    /// None where it couldn't be made, either.
+    /// The function; also missing if the compilation failed.
     function: OnceLock<Function<LANES>>,
 }
 
@@ -55,12 +55,12 @@ impl<const LANES: usize> Made<LANES> {
         if self.function.get().is_none()
             && let Ok(function) = Function::of(program)
         {
-            // Of two threads the first has made it.
+            // Another thread may have compiled it first.
             let _ = self.function.set(function);
         }
     }
 
-    /// Another run; what couldn't be made after some isn't tried again.
+    /// Counts a run, and compiles after some; a compilation that failed isn't repeated.
     fn run(&self, program: &Program) {
         if self.runs.fetch_add(1, Ordering::Relaxed) == FEW {
             self.make(program);
@@ -68,7 +68,7 @@ impl<const LANES: usize> Made<LANES> {
     }
 }
 
-/// As many runs are interpreted in less time than machine code takes to make.
+/// The number of runs that are interpreted in less time than a compilation takes.
 const FEW: u32 = 256;
 
 impl<T: Real> Backend<T> for Machine {
@@ -107,7 +107,7 @@ impl<T: Real> Backend<T> for Machine {
     }
 }
 
-/// A run before there is machine code, or the one that makes it.
+/// Interprets a run before there is machine code, and compiles the program when that is due.
 #[cold]
 #[inline(never)]
 fn run_first<T: Real, const N: usize>(code: &Both, constants: &[T], given: Given<'_, T, N>, outputs: &mut [T]) {

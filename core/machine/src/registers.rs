@@ -1,30 +1,30 @@
-//! Which values of a program stand in registers, and which in memory.
+//! The assignment of a program's values to registers and memory.
 
 use std::cmp::Reverse;
 
 use cranelift_codegen::ir::{InstBuilder as _, MemFlagsData, StackSlot, StackSlotData, StackSlotKind, Type, Value};
 use cranelift_frontend::FunctionBuilder;
 
-/// Values in registers at once. One more is loaded, and one computed.
+/// The most values in registers at once. One more is loaded, and one computed.
 const MOST: usize = if cfg!(target_arch = "aarch64") { 28 } else { 14 };
 
-/// Where a value stands in memory: behind a pointer.
+/// The place of a value in memory: a pointer and an offset.
 pub(crate) type Place = (Value, i32);
 
-/// The values of a program, while its code is written.
+/// The values of a program, while its code is generated.
 ///
-/// Where there are too many for the registers, the value that is read last of all leaves its own. It is stored once, and
-/// operations read it from memory, as they read inputs. Cranelift would load it into a register for each operation.
+/// If there are too many for the registers, the value whose next use is the latest leaves its own. It is stored once,
+/// and operations read it from memory, as they read inputs. Cranelift would load it into a register for each operation.
 pub(crate) struct Registers {
     pub(crate) number: Type,
     flags: MemFlagsData,
-    /// Those in registers.
+    /// The values in registers.
     held: Vec<(usize, Value)>,
-    /// Where each stands in memory, if it does.
+    /// The place of each value in memory, if it has one.
     places: Vec<Option<Place>>,
-    /// When each is read, the next time last.
+    /// The times at which each value is read, the next time last.
     reads: Vec<Vec<usize>>,
-    /// The frame of the function: it grows with what is stored.
+    /// The frame of the function, which grows with the stored values.
     slot: StackSlot,
     frame: Value,
     /// Places in the frame whose values aren't read again.
@@ -32,7 +32,8 @@ pub(crate) struct Registers {
 }
 
 impl Registers {
-    /// Of values that are given at places, and of results behind them; each is read at times, in a list with the next one last.
+    /// The values of a program: inputs with their places, and results after them; `reads` has the times at which each
+    /// is read, the next one last.
     pub(crate) fn new(
         builder: &mut FunctionBuilder,
         (number, pointer): (Type, Type),
@@ -47,7 +48,8 @@ impl Registers {
         Self { number, flags, held: Vec::new(), places, reads, slot, frame, free: Vec::new() }
     }
 
-    /// Two values for an operation that reads them now: the first in a register, the second there or from memory.
+    /// Two values for an operation that reads them now: the first in a register, the second in a register or from
+    /// memory.
     pub(crate) fn read(
         &mut self,
         builder: &mut FunctionBuilder,
@@ -58,7 +60,7 @@ impl Registers {
         if second != first {
             self.reads[second].pop();
         }
-        // Of two in memory the one that is read again sooner gets a register.
+        // If both are in memory, the one that is read again sooner gets a register.
         let soon = |at: usize| (self.held(at).is_some(), self.reads[at].last().map(|&at| Reverse(at)));
         if commutes && soon(second) > soon(first) {
             (first, second) = (second, first);
@@ -90,10 +92,10 @@ impl Registers {
         Ok(builder.ins().load(self.number, self.flags, array, offset))
     }
 
-    /// Takes a result.
+    /// Adds a result.
     pub(crate) fn compute(&mut self, builder: &mut FunctionBuilder, at: usize, value: Value) {
-        // Cranelift lets an operation read from memory only if its result is read once. A parameter of a block is a new value,
-        // so that here it is.
+        // Cranelift lets an operation read from memory only if its result is read once. A parameter of a block is a new
+        // value, which stands for the result here.
         let is_read_often = self.reads[at].len() > 1;
         let value = if is_read_often {
             let next = builder.create_block();
@@ -114,7 +116,7 @@ impl Registers {
         }
     }
 
-    /// Takes from the registers what is read last, all but this number of values.
+    /// Moves values out of the registers until this number is left, those first whose next use is the latest.
     pub(crate) fn leave(&mut self, builder: &mut FunctionBuilder, most: usize) {
         while self.held.len() > most {
             let next = |&(_, &(at, _)): &(usize, &(usize, Value))| self.reads[at].last().copied();

@@ -1,4 +1,4 @@
-//! Programs as code of Cranelift, operation by operation.
+//! The translation of programs to code of Cranelift, operation by operation.
 
 use std::ops::Range;
 use std::sync::LazyLock;
@@ -15,11 +15,11 @@ use liestep_late::{Array, Function, Operation, Program, applied};
 
 use crate::registers::Registers;
 
-/// The machine that this runs on.
+/// The instruction set of this machine.
 pub(crate) fn isa() -> Result<OwnedTargetIsa, String> {
     static ISA: LazyLock<Result<OwnedTargetIsa, String>> = LazyLock::new(|| {
         let mut flags = settings::builder();
-        // What an optimiser would do has been done in the program, or is done by `Registers`.
+        // The program is optimised already, and `Registers` allocates registers.
         for (name, value) in [("opt_level", "none"), ("enable_verifier", "false")] {
             flags.set(name, value).map_err(|error| error.to_string())?;
         }
@@ -28,8 +28,8 @@ pub(crate) fn isa() -> Result<OwnedTargetIsa, String> {
     ISA.clone()
 }
 
-/// The code of a program, a function of its constants, of the arrays of its other inputs and of the place of its outputs: for one
-/// number at each place, or for two of several lanes.
+/// Compiles a program to a function of its constants, of the arrays of its other inputs and of the array of its
+/// outputs: for one number at each place, or for two of several lanes.
 pub(crate) fn module(program: &Program, lanes: usize) -> Result<(JITModule, FuncId), String> {
     let mut builder = JITBuilder::with_isa(isa()?, default_libcall_names());
     builder.symbol(FUNCTION, function as *const u8);
@@ -62,8 +62,8 @@ pub(crate) fn module(program: &Program, lanes: usize) -> Result<(JITModule, Func
     Ok((module, id))
 }
 
-/// The machine code of a function, without the passes that [`Context::compile`] makes before: one would take the blocks'
-/// parameters out again that [`Registers`] writes.
+/// The machine code of a function, without the passes that [`Context::compile`] runs before: one would remove the block
+/// parameters that [`Registers`] adds.
 fn compiled(context: &mut Context, isa: &dyn TargetIsa) -> Result<CompiledCode, String> {
     context.compute_cfg();
     context.compute_domtree();
@@ -72,21 +72,21 @@ fn compiled(context: &mut Context, isa: &dyn TargetIsa) -> Result<CompiledCode, 
     Ok(code.map_err(|error| error.to_string())?.apply_params(&function.params))
 }
 
-/// The place of a number in bytes.
+/// The offset of a number in bytes.
 fn offset(at: usize, lanes: usize) -> Result<i32, String> {
     i32::try_from(8 * at * lanes).map_err(|_| "an array is too long".to_owned())
 }
 
-/// What is done at one time.
+/// A part of the generated code.
 enum Part {
-    /// One of the operations.
+    /// An operation.
     Operation(usize),
-    /// One output is written, or two.
+    /// The store of one output, or of two.
     Outputs(Range<usize>),
 }
 
 impl Part {
-    /// What it reads; the only one twice.
+    /// The values that the part reads; a single one twice.
     fn operands(&self, program: &Program) -> [usize; 2] {
         match self {
             Self::Operation(at) => program.operations[*at].operands(),
@@ -100,9 +100,10 @@ impl Part {
     }
 }
 
-/// A program in the order of its machine code.
+/// The parts of a program in the order of its machine code.
 ///
-/// A caller reads a vector, and the Jacobian behind it, two numbers at a time: for what isn't written so it would wait.
+/// A caller loads a vector, and the Jacobian behind it, two numbers at a time: it would wait for stores of another
+/// width.
 fn parts(program: &Program, lanes: usize) -> Vec<Part> {
     let (count, size) = (program.outputs.len(), program.outputs.len().isqrt());
     let vector = if size * (size + 1) == count { size } else { count };
@@ -136,7 +137,7 @@ fn result(
         Operation::Divide(..) => builder.ins().fdiv(a, b),
         Operation::Apply(Function::Sqrt, _) => builder.ins().sqrt(a),
         Operation::Apply(function, _) => {
-            // A call leaves no register as it was.
+            // A call may overwrite every register.
             registers.leave(builder, 0);
             let code = builder.ins().iconst(types::I32, code(function)?);
             let apply = |builder: &mut FunctionBuilder, a| {
@@ -169,7 +170,7 @@ fn write(
     builder.switch_to_block(block);
     builder.seal_block(block);
     let [constants, arrays, outputs] = [0, 1, 2].map(|at| builder.block_params(block)[at]);
-    // The caller has looked whether they are long enough.
+    // The caller has checked that the arrays are long enough.
     let flags = MemFlagsData::new().with_notrap();
     let mut begins = [constants; Array::COUNT];
     for array in given(&least(program)) {
@@ -212,7 +213,7 @@ fn write(
     Ok(())
 }
 
-/// How many numbers a program reads at least of each array.
+/// The least length of each array that a program reads.
 pub(crate) fn least(program: &Program) -> [usize; Array::COUNT] {
     let mut least = [0; Array::COUNT];
     for source in &program.inputs {
@@ -222,28 +223,28 @@ pub(crate) fn least(program: &Program) -> [usize; Array::COUNT] {
     least
 }
 
-/// The arrays that have to be given, those that are read but constants.
+/// The arrays that a call has to pass: all that are read, except constants.
 pub(crate) fn given(least: &[usize; Array::COUNT]) -> impl Iterator<Item = Array> {
     Array::ALL.into_iter().filter(|&array| array != Array::Constants && least[array as usize] > 0)
 }
 
-/// The symbol of what applies a function.
+/// The symbol of the function that applies the interpreter's functions.
 const FUNCTION: &str = "liestep_function";
 
-/// All functions that the interpreter has.
+/// All functions of the interpreter.
 static FUNCTIONS: LazyLock<Vec<Function>> = LazyLock::new(|| {
     let named = [Function::Sqrt, Function::Ln, Function::Exp, Function::Sin, Function::Cos];
     let families = (1..=10).map(Function::Stumpff).chain((0..=6).map(Function::LogRatio));
     named.into_iter().chain(families).collect()
 });
 
-/// The place of a function among all, for [`function`].
+/// The number of a function in the list, for [`function`].
 fn code(function: Function) -> Result<i64, String> {
     let place = FUNCTIONS.iter().zip(0..).find(|(one, _)| **one == function);
     place.map(|(_, place)| place).ok_or_else(|| format!("{function:?} isn't among the functions"))
 }
 
-/// A function of a number: the interpreter's.
+/// Applies a function of the interpreter to a number.
 extern "C" fn function(code: u32, a: f64) -> f64 {
     FUNCTIONS.get(code as usize).map_or(f64::NAN, |&function| applied(function, a))
 }

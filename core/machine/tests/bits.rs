@@ -26,7 +26,7 @@ macro_rules! texts {
     ($($name:ident)+) => { [$(<$name as Effect>::DECLARATION),+] };
 }
 
-/// All declarations of the repository that make steps.
+/// All declarations of the repository that have steps.
 fn texts() -> Vec<&'static str> {
     texts! {
         HeavyTop FullTop CayleyTop LogTop LogTraceTop ContinuousTop SlidingTop FreeBody Magnet Satellite
@@ -48,7 +48,7 @@ fn programs(declaration: &Declaration) -> Vec<&Program> {
     all.map(|_| list).expect("no program fails")
 }
 
-/// What it computes of these arrays.
+/// The outputs of a program for these arrays.
 fn outputs<B: Backend<f64>>(program: &Program, arrays: &[Vec<f64>]) -> Vec<u64> {
     let code = B::codes(&[program]).expect("a program").remove(0);
     outputs_of::<B>(&code, program, arrays)
@@ -58,7 +58,7 @@ fn outputs_of<B: Backend<f64>>(code: &B::Code, program: &Program, arrays: &[Vec<
     numbers_of::<f64, B>(code, program, arrays).into_iter().map(bits).collect()
 }
 
-/// Which NaN one is depends on the order of operands, which is the compiler's.
+/// The bits of a number; all NaNs are equal, as their bits depend on the compiler's order of operands.
 fn bits(number: f64) -> u64 {
     if number.is_nan() { u64::MAX } else { number.to_bits() }
 }
@@ -71,7 +71,7 @@ fn numbers_of<T: Real, B: Backend<T>>(code: &B::Code, program: &Program, arrays:
     numbers
 }
 
-/// As long as the program reads, and random.
+/// Random arrays, as long as the program reads them.
 fn inputs(program: &Program, random: &mut Random) -> Vec<Vec<f64>> {
     let mut arrays = vec![Vec::new(); Array::COUNT];
     for source in &program.inputs {
@@ -82,7 +82,7 @@ fn inputs(program: &Program, random: &mut Random) -> Vec<Vec<f64>> {
     arrays
 }
 
-/// How many of the outputs are numbers.
+/// Asserts that machine code and interpreter agree; returns how many of the outputs are numbers.
 fn assert_same(programs: &[&Program], seed: u64) -> usize {
     let machine = <Machine as Backend<f64>>::codes(programs).expect("machine code");
     let interpreted = <Interpreter as Backend<f64>>::codes(programs).expect("programs");
@@ -95,7 +95,7 @@ fn assert_same(programs: &[&Program], seed: u64) -> usize {
                 assert_eq!(&outputs_of::<Machine>(machine, program, arrays), expected, "{program:?}");
                 numbers += expected.iter().filter(|&&bits| bits != u64::MAX).count();
             }
-            // Side by side.
+            // The eight sets of inputs run side by side in lanes.
             let lanes = |array: usize, at| AutoF64x8::from(std::array::from_fn(|k| all[k][array][at]));
             let of = |array: usize| (0..all[0][array].len()).map(|at| lanes(array, at)).collect();
             let together: Vec<Vec<AutoF64x8>> = (0..Array::COUNT).map(of).collect();
@@ -120,11 +120,11 @@ fn all_declarations_of_the_repository() {
     assert!(numbers > 50_000, "{numbers}");
 }
 
-/// A vector, or a number, of some depth.
+/// A random expression of some depth, for a vector or a number.
 fn expression(random: &mut Random, is_vector: bool, depth: u32) -> String {
     let chosen = (random.signed() + 1.0) * if depth == 0 { 1.5 } else { 3.0 };
     let mut deeper = |is_vector| expression(random, is_vector, depth.saturating_sub(1));
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // of few
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // one of few
     match (is_vector, chosen as u32) {
         (true, 0) => "w".to_owned(),
         (true, 1) => "r".to_owned(),
@@ -140,7 +140,7 @@ fn expression(random: &mut Random, is_vector: bool, depth: u32) -> String {
     }
 }
 
-/// Of a potential that nobody has thought of, on each group.
+/// Random declarations with random potentials, on each group.
 #[test]
 fn random_declarations() {
     let groups =
@@ -221,7 +221,8 @@ fn steps_are_the_same() {
     assert_same_steps::<SE3, Vector4<f64>>(UnderwaterBody::DECLARATION, of_water);
 }
 
-/// Lanes of machine code with kicks that are known before a step, from the first steps, which are interpreted, on.
+/// Lanes of machine code with kicks that are known before a step have the bits of single steps, from the first,
+/// interpreted steps on.
 #[test]
 fn lanes_have_the_bits_of_single_steps() {
     let both = [RigidBody::<f64>::DECLARATION, Torque::<f64>::DECLARATION].map(|it| Declaration::parse(it).unwrap());
@@ -241,7 +242,7 @@ fn lanes_have_the_bits_of_single_steps() {
     }
 }
 
-/// A swapped operand, an input of another stage and another register are seen by these comparisons.
+/// The comparison detects a swapped operand, an input of another stage and another register.
 #[test]
 fn what_is_wrong_is_seen() {
     let declaration = Declaration::parse(FullTop::DECLARATION).expect("a declaration");
@@ -285,7 +286,7 @@ fn what_is_wrong_is_seen() {
     is_seen("another register", register);
 }
 
-/// What a program reads is there, or nothing is called.
+/// A program isn't called with an array shorter than it reads.
 #[test]
 #[should_panic(expected = "an input is missing")]
 fn short_arrays_are_refused() {
