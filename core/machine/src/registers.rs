@@ -95,7 +95,7 @@ impl Registers {
     /// Adds a result.
     pub(crate) fn compute(&mut self, builder: &mut FunctionBuilder, at: usize, value: Value) {
         // Cranelift lets an operation read from memory only if its result is read once. A parameter of a block is a new
-        // value, which stands for the result here.
+        // value that may be read often; the result itself is read once, as its argument.
         let is_read_often = self.reads[at].len() > 1;
         let value = if is_read_often {
             let next = builder.create_block();
