@@ -1,4 +1,4 @@
-//! A drawing as a string.
+//! A drawing as an SVG string.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -6,13 +6,13 @@ use plotters::prelude::*;
 /// A rectangle of a drawing.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// Drawing into a string fails only for an impossible layout.
+/// The result of drawing: drawing into a string fails only for an impossible layout.
 pub type PlotResult<T = ()> = Result<T, Box<dyn std::error::Error>>;
 
-/// The back end draws on whole units, so a pixel is made of two of them: lines stay smooth.
+/// The units in a pixel: the back end draws on whole units, and two in a pixel keep lines smooth.
 pub(super) const UNITS: u32 = 2;
 
-/// Pixels in the units of the drawing.
+/// A number of pixels in the units of the drawing.
 #[must_use]
 pub const fn px(pixels: u32) -> u32 {
     pixels * UNITS
@@ -33,7 +33,7 @@ pub fn render((width, height): (u32, u32), draw: impl FnOnce(&Area<'_>) -> PlotR
         draw(&root)?;
         root.present()?;
     }
-    // Shown at its size in pixels; and round joins, because a mitre on a dense zigzag becomes a spike.
+    // The SVG is displayed at its size in pixels. Joins are round, because a mitre on a dense zigzag becomes a spike.
     let drawn = format!("<svg width=\"{wide}\" height=\"{high}\"");
     let shown =
         format!("<svg width=\"{width}\" height=\"{height}\" stroke-linejoin=\"round\" stroke-linecap=\"round\"");

@@ -1,12 +1,12 @@
-//! Fewer points for the same picture. Points that aren't finite are left out.
+//! Selections of points that leave the picture as it is. Points that aren't finite are left out.
 
-/// The highest point in each of `columns` equal parts of the horizontal range: what matters of a deviation.
+/// The highest point in each of `columns` equal parts of the horizontal range, as deviations matter by their peaks.
 pub(super) fn crest(points: &[(f64, f64)], columns: u32) -> Vec<(f64, f64)> {
     split(points, columns).into_iter().map(|column| column.high).collect()
 }
 
-/// In each of `columns` equal parts of the horizontal range, only the lowest and the highest point, in their order:
-/// what a line through all of them would cover.
+/// The lowest and the highest point in each of `columns` equal parts of the horizontal range, in their order: they
+/// cover what a line through all points covers.
 pub(super) fn envelope(points: &[(f64, f64)], columns: u32) -> Vec<(f64, f64)> {
     split(points, columns).into_iter().flat_map(Column::points).collect()
 }

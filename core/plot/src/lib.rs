@@ -2,7 +2,7 @@
 //!
 //! Only the SVG back end is used, and text stays text, so no font is needed where the figures are made.
 
-// What fails is said once, of `PlotResult`.
+// The errors of all functions are described at `PlotResult`.
 #![allow(clippy::missing_errors_doc)]
 
 mod canvas;

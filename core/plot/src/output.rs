@@ -1,4 +1,4 @@
-//! The folder that results are written to, and what is printed.
+//! The folder for results, and the printed report.
 
 use std::fmt;
 use std::fs;
@@ -7,14 +7,14 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process;
 
-/// A folder that exists and takes files, and what was written there.
+/// A folder that exists and can be written to, and the list of files written there.
 pub struct Output {
     folder: PathBuf,
-    /// Names and lengths.
+    /// The names and lengths of the files.
     written: Vec<(String, u64)>,
 }
 
-/// A folder or a file that couldn't be made.
+/// A folder or a file that couldn't be created.
 #[derive(Debug)]
 pub struct CannotWrite {
     path: PathBuf,
@@ -34,9 +34,9 @@ impl std::error::Error for CannotWrite {
 }
 
 impl Output {
-    /// Makes the folder and tries it, so that a long run doesn't end with nowhere to go.
+    /// Creates the folder and tries to write there, so that a long run doesn't fail at its end.
     pub fn new(folder: PathBuf) -> Result<Self, CannotWrite> {
-        // Others may try it at the same time.
+        // Other processes may try the same folder at this time.
         let probe = folder.join(format!(".writable-{}", process::id()));
         fs::create_dir_all(&folder)
             .and_then(|()| fs::write(&probe, ""))
@@ -45,12 +45,12 @@ impl Output {
         Ok(Self { folder, written: Vec::new() })
     }
 
-    /// Writes one file, as a whole or not at all.
+    /// Writes one file, whole or not at all.
     pub fn write(&mut self, name: &str, content: &str) -> Result<(), CannotWrite> {
         let (path, beside) = (self.folder.join(name), self.folder.join(format!(".{name}-{}", process::id())));
         let written = fs::write(&beside, content).and_then(|()| fs::rename(&beside, &path));
         written.map_err(|cause| {
-            // It may not be there.
+            // The temporary file may not exist.
             let _ = fs::remove_file(&beside);
             CannotWrite { path, cause }
         })?;
@@ -58,21 +58,21 @@ impl Output {
         Ok(())
     }
 
-    /// A file for what is written bit by bit, which is made with the first. It is called `NAME.part` until that ends, so
-    /// that what was killed on its way can be told from what is whole.
+    /// A file that is written in pieces, and created with the first. It is called `NAME.part` until it is complete, so
+    /// that a killed run's file is known by its name.
     #[must_use]
     pub fn grows(&self, name: &str) -> GrowingFile {
         let part = self.folder.join(format!("{name}.part"));
         GrowingFile { path: self.folder.join(name), part, file: None, is_cut: false }
     }
 
-    /// A folder within it.
+    /// The path of a folder within this one.
     #[must_use]
     pub fn inner(&self, name: &str) -> PathBuf {
         self.folder.join(name)
     }
 
-    /// Lists a file that has grown.
+    /// Adds a file that has grown to the list.
     pub fn grown(&mut self, name: &str) -> Result<(), CannotWrite> {
         let path = self.folder.join(name);
         let length = fs::metadata(&path).map_err(|cause| CannotWrite { path, cause })?.len();
@@ -81,9 +81,9 @@ impl Output {
     }
 }
 
-/// A file that is there from the first write on, so that what can't begin leaves the file that was there.
+/// A file that is created by the first write, so that a run that can't begin leaves the previous file.
 ///
-/// It gets its name when this is gone, with its last piece; not if a piece couldn't be written.
+/// It gets its final name when dropped, unless a piece couldn't be written.
 pub struct GrowingFile {
     path: PathBuf,
     part: PathBuf,
@@ -94,7 +94,7 @@ pub struct GrowingFile {
 impl Drop for GrowingFile {
     fn drop(&mut self) {
         if self.file.take().is_some() && !self.is_cut {
-            // Who lists the file finds out.
+            // The caller that lists the file finds the error.
             let _ = fs::rename(&self.part, &self.path);
         }
     }
@@ -121,7 +121,7 @@ impl Write for GrowingFile {
     }
 }
 
-/// Prints the report. A reader that has gone away is an error and not a panic.
+/// Prints the report. A closed pipe is an error and not a panic.
 pub fn print(report: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
     out.write_all(report.as_bytes())?;

@@ -11,49 +11,49 @@ use super::thin::thinned;
 
 /// A line of one colour.
 pub struct Line {
-    /// Its colour.
+    /// The colour of the line.
     pub colour: RGBColor,
-    /// Half pixels; wider where another line would hide it.
+    /// The width in half pixels; wider if another line would hide this one.
     pub width: u32,
-    /// Across and up, in the units of the axes.
+    /// The points, across and up, in the units of the axes.
     pub points: Vec<(f64, f64)>,
 }
 
-/// How heights are shown.
+/// The scale of the vertical axis.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Vertical {
-    /// In equal distances.
+    /// Equal distances.
     Linear,
-    /// Powers of ten, and of many points in a pixel the highest: deviations pass through zero all the time.
+    /// Powers of ten, with the highest of many points in a pixel: deviations pass through zero all the time.
     Logarithmic,
 }
 
 /// Axes with their names, a title, and lines.
 pub struct Panel<'a> {
-    /// Above the axes.
+    /// The title above the axes.
     pub title: &'a str,
     /// The name of the horizontal axis.
     pub across: &'a str,
     /// The name of the vertical axis.
     pub up: &'a str,
-    /// Its scale.
+    /// The scale of the vertical axis.
     pub vertical: Vertical,
-    /// False where lines are paths rather than functions of the horizontal axis.
+    /// Whether lines are functions of the horizontal axis; otherwise they are paths.
     pub function: bool,
-    /// From behind to the front.
+    /// The lines, from behind to the front.
     pub lines: Vec<Line>,
 }
 
-/// The name of time.
+/// The name of the time axis.
 const SECONDS: &str = "time, s";
-/// From here on seconds have five digits, and hours are told.
+/// The time, s, from which on hours are displayed: seconds would have five digits.
 const HOURS_FROM: f64 = 1e4;
 
-/// Below a double's rounding at one.
+/// The least deviation that is drawn, below a double's rounding at one.
 const FLOOR: f64 = 1e-17;
 
 impl<'a> Panel<'a> {
-    /// Functions of time.
+    /// A panel of functions of time.
     #[must_use]
     pub fn over_time(title: &'a str, up: &'a str, vertical: Vertical, lines: Vec<Line>) -> Self {
         Self { title, across: SECONDS, up, vertical, function: true, lines }
@@ -61,10 +61,10 @@ impl<'a> Panel<'a> {
 }
 
 impl Panel<'_> {
-    /// Draws it into the area.
+    /// Draws the panel into the area.
     pub fn draw(&self, area: &Area<'_>) -> PlotResult {
         let (width, height) = area.dim_in_pixel();
-        // Two pixels each: a line has about that width.
+        // A column is two pixels wide, about the width of a line.
         let columns = width / px(2);
         let seconds = range(self.lines.iter().flat_map(|line| &line.points).map(|p| p.0), 0.0);
         let (unit, across) =
@@ -77,7 +77,8 @@ impl Panel<'_> {
             Vertical::Linear => range(all().map(|p| p.1), 0.06),
             Vertical::Logarithmic => decades(all().map(|p| p.1)),
         };
-        // The axes take a part of the area, so that this is on the fine side.
+        // The axes take a part of the area, so that these scales are too large, and thinning leaves more points than it
+        // has to.
         let (wide, up) = (f64::from(width) / length(&x_range), f64::from(height) / length(&y_range));
         let (x_step, y_step) = (tick_step(&x_range), tick_step(&y_range));
         area.draw_text(self.title, &letters(13, INK), (at(16), at(6)))?;
@@ -120,7 +121,7 @@ impl Panel<'_> {
             Vertical::Linear => line.points.iter().copied().filter(|(x, y)| (x + y).is_finite()).collect(),
             Vertical::Logarithmic => {
                 let crest = crest(&line.points, columns);
-                // A moment without any deviation would be drawn as a line down to the bottom.
+                // A zero deviation would be drawn as a line down to the bottom.
                 let nothing = crest.iter().all(|(_, y)| *y <= FLOOR);
                 let shown = crest.into_iter().filter(|(_, y)| nothing || *y > FLOOR);
                 shown.map(|(x, y)| (x, y.max(FLOOR).log10())).collect()
@@ -130,7 +131,7 @@ impl Panel<'_> {
     }
 }
 
-/// From the least to the greatest, and a margin in units of their distance; something if there is nothing.
+/// The range from the least to the greatest value, with a margin in units of its length; 0 to 1 if there are none.
 fn range(values: impl Iterator<Item = f64>, margin: f64) -> Range<f64> {
     let (low, high) = values
         .filter(|v| v.is_finite())
@@ -155,12 +156,12 @@ fn length(range: &Range<f64>) -> f64 {
     range.end - range.start
 }
 
-/// About the distance of two labels.
+/// A tenth of the range, about the distance of two labels.
 fn tick_step(range: &Range<f64>) -> f64 {
     length(range) / 10.0
 }
 
-/// With as many places as a distance needs that this is about the size of.
+/// A decimal with as many places as a distance of about this size needs.
 fn decimal(value: f64, distance: f64) -> String {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // clamped
     let places = (-distance.log10().floor()).clamp(0.0, 12.0) as usize;

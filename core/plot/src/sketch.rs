@@ -7,22 +7,22 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::canvas::{Area, PlotResult, at, px};
 use super::style::letters;
 
-/// A place to draw in, seen from outside and above.
+/// A drawing of space, seen from outside and above.
 pub struct Sketch<'a, 'b> {
     area: &'a Area<'b>,
     centre: (i32, i32),
-    /// Units of the drawing in one of length.
+    /// The units of the drawing in a unit of length.
     size: f64,
     right: Vector3<f64>,
     up: Vector3<f64>,
 }
 
-/// How far the first axis is turned to the left of the eye, and how high the eye is, rad.
+/// The angle of the first axis to the left of the eye, and the elevation of the eye, rad.
 const AZIMUTH: f64 = 0.55;
 const ELEVATION: f64 = 0.35;
 
 impl<'a, 'b> Sketch<'a, 'b> {
-    /// With the origin at a share of the width and the height, and pixels for one of length.
+    /// A sketch with the origin at a share of the width and the height, and a unit of length in pixels.
     #[must_use]
     pub fn new(area: &'a Area<'b>, (across, down): (f64, f64), pixels: u32) -> Self {
         let (width, height) = area.dim_in_pixel();
@@ -38,7 +38,7 @@ impl<'a, 'b> Sketch<'a, 'b> {
         }
     }
 
-    /// Where a point is drawn.
+    /// The projection of a point.
     fn place(&self, point: &Vector3<f64>) -> (i32, i32) {
         #[allow(clippy::cast_possible_truncation)] // within the drawing
         let unit = |x: f64| (self.size * x).round() as i32;

@@ -9,19 +9,19 @@ use super::thin::thinned;
 
 /// A path near the unit sphere.
 pub struct Path<'a> {
-    /// Above the sphere.
+    /// The title above the sphere.
     pub title: &'a str,
-    /// Its colour.
+    /// The colour of the path.
     pub colour: RGBColor,
-    /// Half pixels; thin where a path covers itself many times.
+    /// The width in half pixels; thin for a path that covers itself many times.
     pub width: u32,
-    /// In space, from the beginning to the end.
+    /// The points in space, from the beginning to the end.
     pub points: &'a [Vector3<f64>],
-    /// A direction to mark, and its name.
+    /// A direction to be marked, and its name.
     pub axis: (Vector3<f64>, &'a str),
 }
 
-/// Where the eye is: high enough to see the rim of a cap at 45°.
+/// The direction of the eye: high enough to see the rim of a cap at 45°.
 const AZIMUTH: f64 = 0.6;
 const ELEVATION: f64 = 0.6;
 
@@ -49,7 +49,7 @@ pub fn sphere(area: &Area<'_>, path: &Path<'_>) -> PlotResult {
         }
     }
     area.draw(&Circle::new(view.centre, view.size, NEAR_GRATICULE.stroke_width(px(1))))?;
-    // The end of the path is marked: a path that shrinks to a point would not be seen otherwise.
+    // The end of the path is marked: a path that shrinks to a point would be invisible otherwise.
     if let Some((arc, end)) = arcs.last().and_then(|arc| Some((arc, arc.points.last()?))) {
         let ink = if arc.near { path.colour } else { faint(path.colour) };
         area.draw(&Circle::new(*end, px(3), ink.filled()))?;
@@ -57,7 +57,7 @@ pub fn sphere(area: &Area<'_>, path: &Path<'_>) -> PlotResult {
     Ok(())
 }
 
-/// Mixed with white rather than transparent: overlapping arcs would add up.
+/// A pale colour, mixed with white rather than transparent, as overlapping arcs would add up.
 fn faint(RGBColor(r, g, b): RGBColor) -> RGBColor {
     let mixed = |c: u8| 255 - (255 - c) / 3;
     RGBColor(mixed(r), mixed(g), mixed(b))
@@ -124,7 +124,7 @@ impl View {
         arcs
     }
 
-    /// A direction, from the surface outwards.
+    /// Draws a direction, from the surface outwards.
     fn axis(&self, area: &Area<'_>, (direction, name): (Vector3<f64>, &str)) -> PlotResult {
         let ends = [1.0, 1.3].map(|length| self.project(&(direction * length)));
         area.draw(&PathElement::new(ends.to_vec(), INK.stroke_width(px(1))))?;
@@ -133,7 +133,7 @@ impl View {
     }
 }
 
-/// Circles every 30°.
+/// The graticule: circles every 30°.
 fn graticule() -> Vec<Vec<Vector3<f64>>> {
     let angles = || (0..=90).map(|k| (f64::from(k) * 4.0).to_radians());
     let parallels = (-2..=2).map(|k| {

@@ -6,22 +6,22 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::canvas::{Area, PlotResult, at, px};
 
 // Okabe and Ito's palette, which stays distinct under the common forms of colour blindness.
-/// The first of a series.
+/// The first colour of a series.
 pub const BLUE: RGBColor = RGBColor(0, 114, 178);
-/// The second.
+/// The second colour of a series.
 pub const ORANGE: RGBColor = RGBColor(230, 159, 0);
-/// The third.
+/// The third colour of a series.
 pub const GREEN: RGBColor = RGBColor(0, 158, 115);
-/// A path.
+/// The colour of a path.
 pub const PURPLE: RGBColor = RGBColor(204, 121, 167);
-/// The fifth of a series.
+/// The fifth colour of a series.
 pub const SKY: RGBColor = RGBColor(86, 180, 233);
-/// The sixth of a series.
+/// The sixth colour of a series.
 pub const VERMILION: RGBColor = RGBColor(213, 94, 0);
-/// The last of a series, and the faintest.
+/// The last colour of a series, and the faintest.
 pub const YELLOW: RGBColor = RGBColor(240, 228, 66);
 
-/// Letters and axes.
+/// The colour of letters and axes.
 pub const INK: RGBColor = RGBColor(45, 45, 45);
 pub(super) const GRID: RGBColor = RGBColor(226, 226, 226);
 

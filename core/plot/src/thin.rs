@@ -1,11 +1,11 @@
-//! Lines without the points that nobody would miss.
+//! Lines without points that can't be distinguished.
 
-/// Half pixels: below what can be seen beside a line of usual width.
+/// The tolerance in half pixels, invisible beside a line of usual width.
 const TOLERANCE: f64 = 1.0;
 
-/// A line with as few of its points as keep it within half a pixel of itself: the first, the last, and between two that
-/// are kept the one that is farthest from their straight line, where that is too far (Ramer 1972; Douglas and Peucker
-/// 1973). `place` tells where a point is drawn, in half pixels.
+/// A line reduced to as few points as describe it within half a pixel: the first, the last, and between two of these
+/// the point farthest from their straight line, if it is too far (Ramer 1972; Douglas and Peucker 1973). `place` is the
+/// position of a point in the drawing, in half pixels.
 pub(super) fn thinned<P: Copy>(points: &[P], place: impl Fn(&P) -> (f64, f64)) -> Vec<P> {
     let places: Vec<_> = points.iter().map(place).collect();
     let mut kept = vec![false; places.len()];
@@ -26,7 +26,7 @@ pub(super) fn thinned<P: Copy>(points: &[P], place: impl Fn(&P) -> (f64, f64)) -
     points.iter().zip(kept).filter_map(|(point, kept)| kept.then_some(*point)).collect()
 }
 
-/// Of a point from the stretch between two others.
+/// The distance of a point from the segment between two others.
 fn distance(point: &(f64, f64), first: &(f64, f64), last: &(f64, f64)) -> f64 {
     let (along, off) = ((last.0 - first.0, last.1 - first.1), (point.0 - first.0, point.1 - first.1));
     let squared = along.0 * along.0 + along.1 * along.1;
