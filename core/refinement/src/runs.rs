@@ -8,47 +8,47 @@ use thiserror::Error;
 
 use crate::table::{Measurement, Refinement};
 
-/// What the ends of the runs are compared with.
+/// The reference with which the ends of runs are compared.
 #[derive(Clone, Copy, Debug)]
 pub enum Reference<G: LieGroup> {
-    /// A state that is known: of a closed form, or of a method that is more accurate by far.
+    /// A known state: of a closed form, or of a method that is more accurate by far.
     End(End<G>),
-    /// The run with the most steps, which then is no row. Where that has `r` times the steps of the run before and errors
-    /// fall by the order `p`, the last row's error is too small by the part `r⁻ᵖ`, and those before by less. It is made
-    /// once, before the others, however long it takes.
+    /// The run with the most steps, which then is no row. If it has `r` times the steps of the run before and errors
+    /// fall by the order `p`, the last row's error is too small by the part `r⁻ᵖ`, and the earlier ones by less. It is
+    /// made once, before the others, however long it takes.
     Finest,
 }
 
-/// Why there are no runs to compare.
+/// The reason why there are no runs to compare.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RefinementError {
     /// The end isn't a finite time other than zero.
     #[error("a run can't end at {time:e} s; choose a finite time other than zero")]
     Time {
-        /// What was asked for, s.
+        /// The requested time, s.
         time: f64,
     },
     /// There is no number of steps, or only that of the reference; or one is zero.
     #[error("there are no runs to compare; give numbers of steps above zero, with `Reference::Finest` two or more")]
     NoSteps,
-    /// A stepper couldn't be built, or its motion not be started.
+    /// A stepper couldn't be constructed, or its motion not be started.
     #[error("with steps of {step:e} s: {cause}")]
     Setup {
-        /// Its step, s.
+        /// The step, s.
         step: f64,
-        /// Why.
+        /// The reason.
         #[source]
         cause: SetupError,
     },
-    /// A stepper has another step than it was asked to have.
+    /// A stepper has another step than requested.
     #[error(
         "a stepper for {asked:e} s was asked for and makes steps of {found:e} s; build it with the step that the closure is given"
     )]
     OtherStep {
-        /// What was asked for, s.
+        /// The requested step, s.
         asked: f64,
-        /// What it has, s.
+        /// The stepper's own step, s.
         found: f64,
     },
     /// A step had no solution.
@@ -56,11 +56,11 @@ pub enum RefinementError {
     Step {
         /// The step, s.
         step: f64,
-        /// Why.
+        /// The reason.
         #[source]
         cause: StepError,
     },
-    /// Runs came to their ends, but none near the reference: all errors are 0.5 and more.
+    /// All runs ended far from the reference: all errors are 0.5 and more.
     #[error("no run ends near the reference, the least error is {least:.1e}; make more steps")]
     OtherMotion {
         /// The least error.
@@ -74,7 +74,7 @@ pub enum RefinementError {
     },
 }
 
-/// A run made ready.
+/// A run that is ready to start.
 pub(crate) struct Ready<I: Integrator> {
     time: f64,
     step: f64,
@@ -103,7 +103,7 @@ impl<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>> Ready<I> {
         Ok(Self { time, step, steps, integrator, start })
     }
 
-    /// Where it ends, and its iterations.
+    /// The end of the run, and its iterations.
     pub(crate) fn run(&self) -> Result<(End<G>, u64), RefinementError> {
         let mut state = self.start.clone();
         let iterations = self
@@ -113,7 +113,7 @@ impl<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>> Ready<I> {
         Ok((End { attitude: state.attitude(), velocity: self.integrator.velocity(&state) }, iterations))
     }
 
-    /// The row of a run that ended there, after so many iterations.
+    /// The row of a run with this end and this number of iterations.
     #[allow(clippy::cast_precision_loss)] // as above
     pub(crate) fn measurement(
         &self,
@@ -129,7 +129,7 @@ impl<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>> Ready<I> {
     }
 }
 
-/// The numbers of steps, the fewest first, and the reference, for which the most steps are made if none is given.
+/// The numbers of steps, the fewest first, and the reference, by a run of the most steps if none is known.
 #[allow(clippy::type_complexity)] // two things, each named above
 pub(crate) fn plan<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
     family: &mut impl FnMut(f64) -> Result<(I, I::State), SetupError>,
@@ -154,14 +154,15 @@ pub(crate) fn plan<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
     Ok((counts, exact))
 }
 
-/// How fast the errors of a method fall: runs to the time `time`, s, with ever more steps.
+/// Measures how fast the errors of a method fall, by runs to the time `time`, s, with ever more steps.
 ///
-/// The family is what makes the stepper for a step, and its start. The error is that of attitude and body velocity
-/// together, as [`Accuracy`](liestep::accuracy::Accuracy) defines it. No clock is asked, so the table is the same each time.
+/// The family constructs the stepper for a step, and its start. The error is that of attitude and body velocity
+/// together, as [`Accuracy`](liestep::accuracy::Accuracy) defines it. No clock is used, so the table is the same each
+/// time.
 ///
 /// # Errors
 ///
-/// [`RefinementError`]: all runs have to come to their ends.
+/// [`RefinementError`]: all runs have to complete.
 ///
 /// # Examples
 ///

@@ -3,22 +3,22 @@
 /// A run with one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement {
-    /// The step `h`, s; of a method that chooses its steps, the tolerance that it was given.
+    /// The step `h`, s; the tolerance for a method that chooses its steps.
     pub step: f64,
     /// The error at the end of the run.
     pub error: f64,
-    /// Iterations of a step on average, where they were counted: Newton's, or those of a fixed point.
+    /// The iterations of a step on average, if they were counted: Newton's, or those of a fixed point.
     pub iterations: Option<f64>,
-    /// The time of the run, s, where it was taken.
+    /// The time of the run, s, if it was measured.
     pub seconds: Option<f64>,
 }
 
-/// What the runs of one method with ever shorter steps show: [`convergence`](crate::convergence) makes them, and
-/// [`work_precision`](crate::work_precision) takes their times, too.
+/// The results of one method with ever shorter steps: [`convergence`](crate::convergence) runs it, and
+/// [`work_precision`](crate::work_precision) also measures times.
 ///
-/// As text it is a table, and [`to_csv`](Self::to_csv) and [`to_json`](Self::to_json) write the same columns; with the
-/// feature `serde` it serialises as the latter does. Errors that were measured otherwise, of another library for
-/// example, come in by [`of`](Self::of) and [`timed`](Self::timed), and whole rows are collected.
+/// Its text is a table, and [`to_csv`](Self::to_csv) and [`to_json`](Self::to_json) write the same columns; with the
+/// feature `serde` it serialises as the latter does. Other errors, of another library for example, come in by
+/// [`of`](Self::of) and [`timed`](Self::timed), and whole rows are collected.
 ///
 /// | column | |
 /// |---|---|
@@ -29,17 +29,17 @@ pub struct Measurement {
 /// | `iterations` | of a step on average |
 /// | `seconds` | of the run |
 ///
-/// A number that there isn't is empty in CSV and `null` in JSON.
+/// A missing number is empty in CSV and `null` in JSON.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Refinement {
     rows: Vec<Measurement>,
 }
 
-/// The least number of points that a slope is read off, so that it isn't that of a plateau's edge.
+/// The least number of points for a slope, so that it isn't that of a plateau's edge.
 const FEWEST_POINTS: usize = 4;
 
 impl Refinement {
-    /// Of steps and errors, in the order of the runs.
+    /// A refinement of steps and errors, in the order of the runs.
     ///
     /// # Examples
     ///
@@ -63,26 +63,26 @@ impl Refinement {
         errors.into_iter().map(row).collect()
     }
 
-    /// The runs, in the order in which they were made.
+    /// The rows, in the order of the runs.
     #[must_use]
     pub fn rows(&self) -> &[Measurement] {
         &self.rows
     }
 
-    /// For each run but the first: by what the error before is divided.
+    /// The ratio of the error before to its own, for each run but the first.
     pub fn ratios(&self) -> impl Iterator<Item = f64> + '_ {
         self.rows.windows(2).map(|pair| pair[0].error / pair[1].error)
     }
 
-    /// For each run but the first: the power of the step by which the error has fallen.
+    /// The power of the step by which the error has fallen, for each run but the first.
     pub fn orders(&self) -> impl Iterator<Item = f64> + '_ {
         self.ratios().zip(self.rows.windows(2)).map(|(ratio, pair)| ratio.ln() / (pair[0].step / pair[1].step).ln())
     }
 
-    /// The order: the slope of `ln error` over `ln h` by least squares, over the runs whose error is above what rounding
-    /// leaves, finite and not zero.
+    /// The order: the slope of `ln error` over `ln h` by least squares, over the runs whose error is above the plateau
+    /// of rounding, finite and not zero.
     ///
-    /// None where fewer than four are, so that a slope isn't read off the edge of a plateau, and where all have one step.
+    /// `None` if fewer than four are, so that a slope isn't read off the edge of a plateau, or if all have one step.
     #[must_use]
     #[allow(clippy::cast_precision_loss, clippy::float_cmp)] // a handful of runs, and steps that are one to the last bit
     pub fn order_above(&self, plateau: f64) -> Option<f64> {
@@ -98,8 +98,8 @@ impl Refinement {
         Some(covariance / points.iter().map(|point| (point.0 - x).powi(2)).sum::<f64>())
     }
 
-    /// The least time in which the runs reach an error, s: of those that do, and on straight lines between two runs, both
-    /// axes logarithmic. None where no run comes so near, and where no times were taken.
+    /// The least time in which the runs reach an error, s: that of a run, or of a point on the straight line between
+    /// two runs, both axes logarithmic. `None` if no run comes so near, or no times were measured.
     #[must_use]
     pub fn seconds_to(&self, error: f64) -> Option<f64> {
         let reached = self.rows.iter().filter(|row| row.error <= error).filter_map(|row| row.seconds);
@@ -115,7 +115,7 @@ impl Refinement {
     }
 }
 
-/// Of rows that were measured otherwise, in the order of the runs.
+/// Collects other rows, in the order of the runs.
 impl FromIterator<Measurement> for Refinement {
     fn from_iter<R: IntoIterator<Item = Measurement>>(rows: R) -> Self {
         Self { rows: rows.into_iter().collect() }

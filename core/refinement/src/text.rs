@@ -27,7 +27,7 @@ impl Refinement {
         })
     }
 
-    /// A line of names, then a line for each run. Numbers have as few digits as tell them from all others.
+    /// A line of names, then a line for each run. Numbers have as few digits as distinguish them from all others.
     #[must_use]
     pub fn to_csv(&self) -> String {
         let mut text = COLUMNS.map(|(name, _)| name).join(",");
@@ -45,7 +45,7 @@ impl Refinement {
         text
     }
 
-    /// An array with an object for each run. What isn't finite is `null`, as JSON has no other word for it.
+    /// An array with an object for each run. Numbers that aren't finite are `null`, as JSON has no other word for them.
     #[must_use]
     pub fn to_json(&self) -> String {
         let mut text = String::from("[");
@@ -66,7 +66,7 @@ impl Refinement {
     }
 }
 
-/// As [`Refinement::to_json`] has it.
+/// Serialises as [`Refinement::to_json`] does.
 #[cfg(feature = "serde")]
 impl serde::Serialize for Refinement {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -82,7 +82,7 @@ impl serde::Serialize for Refinement {
     }
 }
 
-/// A table; columns of which there is nothing are left out.
+/// Writes a table; empty columns are left out.
 impl fmt::Display for Refinement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let lines: Vec<Row> = self.lines().collect();
@@ -102,7 +102,7 @@ impl fmt::Display for Refinement {
 }
 
 fn width(column: usize) -> usize {
-    // Behind a space; the longest heading has ten letters.
+    // A space precedes each column; the longest heading has ten letters.
     if column == 4 { 11 } else { 9 }
 }
 

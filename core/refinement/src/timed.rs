@@ -1,4 +1,4 @@
-//! Work and precision: the runs of a refinement, timed. No other file of this package asks a clock.
+//! Work and precision: the runs of a refinement, timed. No other file of this package uses a clock.
 
 use std::time::{Duration, Instant};
 
@@ -10,17 +10,17 @@ use liestep::motion::Integrator;
 use crate::runs::{Ready, Reference, RefinementError, plan};
 use crate::table::{Measurement, Refinement};
 
-/// How much is measured.
+/// The effort of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effort {
-    /// The first run that takes longer is the last, s.
+    /// The longest time of a run, s: the first run that takes longer is the last.
     pub longest: f64,
-    /// Each run is repeated for about so long, and a thousand times at most; the shortest counts, which other programs
+    /// The time in which each run is repeated, a thousand times at most; the shortest counts, which other programs
     /// disturb least. A run that fails isn't repeated.
     pub repeated: Duration,
 }
 
-/// More repetitions find nothing shorter.
+/// The most repetitions; more find nothing shorter.
 const MOST_REPETITIONS: u32 = 1000;
 
 /// Runs of up to 0.1 s, each repeated for 10 ms.
@@ -31,11 +31,11 @@ impl Default for Effort {
 }
 
 impl Effort {
-    /// What a run returns, and how long the fastest of its repetitions took, s.
+    /// The result of a run, and the time of its fastest repetition, s.
     ///
     /// # Errors
     ///
-    /// The run's own.
+    /// The error of the run.
     pub fn time<X, E>(&self, mut run: impl FnMut() -> Result<X, E>) -> Result<(X, f64), E> {
         let started = Instant::now();
         let (mut best, mut repetitions) = (Duration::MAX, 0);
@@ -51,7 +51,7 @@ impl Effort {
     }
 }
 
-/// A run with a larger error follows another motion and is left out.
+/// The largest error of a run that follows the motion; others are left out.
 const LARGEST_ERROR: f64 = 0.5;
 
 /// Whether an error is a number, and small enough for the run to follow the motion.
@@ -59,14 +59,14 @@ fn is_near(error: f64) -> bool {
     error < LARGEST_ERROR
 }
 
-/// Smaller errors are those of rounding.
+/// The smallest error that isn't due to rounding.
 const SMALLEST_ERROR: f64 = 1e-14;
-/// Errors that are larger may rise and fall; smaller ones that rise are rounding's.
+/// The error above which errors may rise and fall; smaller ones that rise are due to rounding.
 const NEAR_ROUNDING: f64 = 1e-10;
-/// After this number of runs in a row that don't improve, the errors are taken for those of rounding.
+/// The number of runs in a row without an improvement after which errors are due to rounding.
 const NO_BETTER: u32 = 3;
 
-/// Whether shorter steps have nothing to say any more.
+/// The search for the run from which shorter steps gain nothing.
 #[derive(Default)]
 struct Progress {
     best: Option<f64>,
@@ -75,7 +75,7 @@ struct Progress {
 
 impl Progress {
     fn is_done(&mut self, effort: Effort, error: f64, seconds: f64) -> bool {
-        // What is of another motion, or isn't a number, is no better and no worse.
+        // A run of another motion, or without a number, is no better and no worse.
         if !is_near(error) {
             return seconds > effort.longest;
         }
@@ -92,9 +92,9 @@ impl Progress {
 impl Refinement {
     /// Errors and times of anything that runs with a parameter: a rival, written otherwise or in another library.
     ///
-    /// `prepare` makes a run ready for a step (or a tolerance), so that what it does isn't timed, and `error` judges where the
-    /// run ends. Runs that fail, and those with errors of 0.5 and more, are left out; shorter steps aren't tried where a run
-    /// is longer than the effort allows, or errors have stopped falling.
+    /// `prepare` sets up a run for a step (or a tolerance), outside of the measured time, and `error` evaluates the end
+    /// of the run. Runs that fail, and those with errors of 0.5 and more, are left out; shorter steps aren't tried once
+    /// a run is longer than the effort allows, or errors have stopped falling.
     ///
     /// # Examples
     ///
@@ -136,25 +136,25 @@ impl Refinement {
     }
 }
 
-/// What accuracy costs in time: as [`convergence`](crate::convergence), and each run is timed. The making of the
-/// stepper isn't.
+/// Measures the time that an accuracy costs: as [`convergence`](crate::convergence), with the time of each run, without
+/// the construction of the stepper.
 ///
-/// Runs whose stepper can't be built, whose step has no solution or whose end isn't made of finite numbers are left out,
-/// and so are those with errors of 0.5 and more. The last run is the first that takes longer than the effort allows, or one
-/// after which errors have stopped falling.
+/// Runs whose stepper can't be constructed, whose step has no solution or whose end isn't made of finite numbers are
+/// left out, and so are those with errors of 0.5 and more. The last run is the first that takes longer than the effort
+/// allows, or one after which errors have stopped falling.
 ///
-/// [`Reference::Finest`] is one more run, with the most steps, whatever the effort allows. It comes first, it isn't timed and
-/// isn't repeated. Where each number of steps is twice the one before, it takes about as long as all others once; more, where
-/// these end early. [`Reference::End`] costs nothing.
+/// [`Reference::Finest`] is one more run, with the most steps, whatever the effort allows. It comes first, and is
+/// neither timed nor repeated. If each number of steps is twice the one before, it takes about as long as all others
+/// once; more, if these end early. [`Reference::End`] costs nothing.
 ///
 /// # Errors
 ///
-/// [`RefinementError`] where the plan has no runs or a stepper has another step than it was asked to have; where no run is
-/// left, that of the last one that failed, or [`OtherMotion`](RefinementError::OtherMotion) if none did.
+/// [`RefinementError`] if the plan has no runs or a stepper has another step than requested; if no run is left, that of
+/// the last one that failed, or [`OtherMotion`](RefinementError::OtherMotion) if none did.
 ///
 /// # Examples
 ///
-/// What does an error of 1e-4 cost with either kinetic term?
+/// The cost of an error of 1e-4 with either kinetic term:
 ///
 /// ```
 /// use liestep::effects::CayleyBody;
@@ -196,7 +196,7 @@ pub fn work_precision<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
         // A step may be too long to be taken, or to be solvable; the next is shorter.
         let (row, seconds) = match measured(&mut family, (time, steps), &exact, effort) {
             Ok(measured) => measured,
-            // No shorter step mends this.
+            // Shorter steps don't help.
             Err(cause @ RefinementError::OtherStep { .. }) => return Err(cause),
             Err(cause) => {
                 failure = Some(cause);
