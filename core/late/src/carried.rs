@@ -1,4 +1,4 @@
-//! What is advected, as types say it.
+//! Advected parameters as a type describes them.
 
 use liestep::groups::{
     Configuration, ContravariantTensor, ContravariantVector, CovariantTensor, Given, MixedTensor, Relative, SeenFrom,
@@ -9,10 +9,10 @@ use nalgebra::{Point, SMatrix, SVector};
 
 /// The actions in a type of advected parameters, each with rows and columns of what is stored.
 ///
-/// A declaration has a type of its own: `()` where nothing is advected or given, one of these for one, and a tuple for
-/// several, in the order of the declaration.
+/// A declaration has one such type: `()` if nothing is advected or given, one of these for one parameter, and a tuple
+/// for several, in the order of the declaration.
 pub trait Slots {
-    /// Adds them to the list.
+    /// Adds the actions to the list.
     fn list(slots: &mut Vec<(Action, (usize, usize))>);
 }
 

@@ -1,4 +1,4 @@
-//! A program for few registers, and its interpreter.
+//! Code for a program in few registers, and its interpreter.
 
 use std::collections::BTreeMap;
 use std::fmt::Debug;
@@ -10,26 +10,27 @@ use liestep_derivation::{Array, Function, Operation, Program, Source};
 
 use crate::error::LateError;
 
-/// What runs programs: the same for all of a declaration, so that a step calls it directly.
+/// A back end, which runs programs: one type for all of a declaration, so that a step calls it directly.
 pub trait Backend<T: Real>: Copy + Debug + 'static {
-    /// What it makes of a program.
+    /// The code of a program.
     type Code: Debug + Send + Sync + 'static;
 
-    /// The programs of a declaration, each made ready.
+    /// The programs of a declaration, each as code.
     ///
     /// # Errors
     ///
-    /// Where it can't run one.
+    /// A program that the back end can't run.
     fn codes(programs: &[&Program]) -> Result<Vec<Self::Code>, LateError>;
 
-    /// Makes now what else is made after some runs.
+    /// Compiles code now that is otherwise compiled after some runs.
     fn prepare(_: &Self::Code) {}
 
-    /// Runs a program, for as many outputs as it has. Constants and arrays have all that it reads, or it gives NaN or panics.
+    /// Runs a program, for as many outputs as it has. If constants or arrays are shorter than it reads, it gives NaN or
+    /// panics.
     fn run<const N: usize>(code: &Self::Code, constants: &[T], given: Given<'_, T, N>, outputs: &mut [T]);
 }
 
-/// Programs are read operation by operation: safe, on every machine, and in lanes.
+/// The back end that interprets programs operation by operation: safe, on every machine, and in lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Interpreter;
 
@@ -45,18 +46,18 @@ impl<T: Real> Backend<T> for Interpreter {
     }
 }
 
-/// The arrays that inputs other than constants are read from, each once; what a stage doesn't have isn't among them.
+/// The arrays of inputs other than constants, each once, without those that a stage doesn't have.
 pub type Given<'a, T, const N: usize> = [(Array, &'a [T]); N];
 
-/// Straight-line code. Registers hold constants, literals, inputs and what is computed: of these, one that isn't read any
-/// more is used again.
+/// Straight-line code. Registers hold constants, literals, inputs and results; a result's register is reused after its
+/// last read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Code {
-    /// What is known before a step, in the first registers: constants from the first to the last that is read, copied as they
-    /// stand, then literals.
+    /// The constants in the first registers, copied in one piece from the first to the last that is read; literals
+    /// follow.
     constants: Range<usize>,
     literals: Vec<f64>,
-    /// Then places in arrays, array by array.
+    /// The inputs in the next registers, by their places in arrays, array by array.
     inputs: Vec<(Array, Vec<usize>)>,
     runs: Vec<Run>,
     outputs: Vec<u16>,
@@ -79,11 +80,11 @@ struct Instruction {
 /// An operation without its operands.
 type Kind = Operation<()>;
 
-/// The operations in that order, each with a register for its result; `place` has those of inputs and literals, as many as
-/// `registers`, and gets those of results. With the number of registers.
+/// Allocates registers for the results of operations in an order; `place` has those of inputs and literals, as many as
+/// `registers`, and gets those of results. Returns the code and the number of registers, if 16 bits count them.
 fn allocated(program: &Program, order: &[usize], place: &mut [u16], mut registers: usize) -> Option<(Vec<Run>, usize)> {
     let fixed = program.inputs.len() + program.literals.len();
-    // When each value is read last; an output is never done with.
+    // The last read of each value; the register of an output is never reused.
     let mut last = vec![0; place.len()];
     for (time, &at) in order.iter().enumerate() {
         for operand in program.operations[at].operands() {
@@ -117,7 +118,7 @@ fn allocated(program: &Program, order: &[usize], place: &mut [u16], mut register
     u16::try_from(registers).is_ok().then_some((runs, registers))
 }
 
-/// Operations in an order in which like ones stand together: an interpreter then decides once for many what to do.
+/// An order of operations that puts like ones together: an interpreter then dispatches once for many.
 fn by_kind(program: &Program) -> Vec<usize> {
     let fixed = program.inputs.len() + program.literals.len();
     let count = program.operations.len();
@@ -133,7 +134,7 @@ fn by_kind(program: &Program) -> Vec<usize> {
     (0..count).filter(|&at| missing[at] == 0).for_each(|at| ready.entry(kind(at)).or_default().push(at));
     let mut order = Vec::with_capacity(count);
     while let Some(chosen) = ready.iter().max_by_key(|(_, ready)| ready.len()).map(|(&kind, _)| kind) {
-        // As long as there are any, those that become ready meanwhile too.
+        // Like operations that become ready meanwhile follow at once.
         while let Some(at) = ready.get_mut(&chosen).and_then(Vec::pop) {
             order.push(at);
             for &reader in &readers[at] {
@@ -159,10 +160,10 @@ impl Code {
         missing.map_or_else(|| Self::allocated(program).ok_or(LateError::TooLarge), Err)
     }
 
-    /// `None` of a program that needs more registers than there are names for.
+    /// The code with allocated registers; `None` if 16 bits don't count them.
     fn allocated(program: &Program) -> Option<Self> {
         let fixed = program.inputs.len() + program.literals.len();
-        // A register for each input and literal, what is known before a step first.
+        // Each input and literal has a register, constants first.
         let is_constant = |source: &Source| source.array == Array::Constants;
         let of_constants = || program.inputs.iter().filter(|source| is_constant(source)).map(|source| source.at);
         let constants =
@@ -200,7 +201,7 @@ impl Code {
 
     #[inline(never)]
     fn run<T: Real>(&self, constants: &[T], given: &[(Array, &[T])], outputs: &mut [T]) {
-        // Registers beyond those that are used cost time to clear.
+        // Clearing unused registers costs time.
         match self.registers {
             0..=32 => self.run_in(&mut [T::zero(); 32], constants, given, outputs),
             33..=64 => self.run_in(&mut [T::zero(); 64], constants, given, outputs),
@@ -210,12 +211,12 @@ impl Code {
         }
     }
 
-    /// In registers whose number is a power of two, so that a masked index is always in range.
+    /// Runs in a power of two of registers, so that a masked index is always in range.
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run_in<T: Real>(&self, registers: &mut [T], constants: &[T], given: &[(Array, &[T])], outputs: &mut [T]) {
         let mask = registers.len().wrapping_sub(1);
         let (known, open) = registers.split_at_mut(self.constants.len().min(registers.len()));
-        // No step takes NaN for a number.
+        // A NaN stands for missing constants, as no step accepts it for a number.
         match constants.get(self.constants.clone()) {
             Some(read) => known.copy_from_slice(&read[..known.len()]),
             None => known.fill(real(f64::NAN)),
@@ -244,10 +245,10 @@ impl Code {
     }
 }
 
-/// The mask is one less than the number of registers, a power of two.
+/// Applies one operation to its operands in turn; the mask is one less than the number of registers, a power of two.
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn apply<T: Real>(registers: &mut [T], mask: usize, instructions: &[Instruction], operation: impl Fn(T, T) -> T) {
-    // Four in a turn, which the compiler writes one after the other, where they are short.
+    // The loop over plain numbers is unrolled by four.
     let (fours, others) = if T::LANES == 1 { instructions.as_chunks::<4>() } else { (&[][..], instructions) };
     for four in fours {
         for &instruction in four {
@@ -265,8 +266,8 @@ fn apply_one<T: Real>(registers: &mut [T], mask: usize, made: Instruction, opera
     registers[usize::from(made.result) & mask] = operation(a, b);
 }
 
-/// A function of a number: that of the compiled step, so that the bits are the same. Between zero and one it is a number, but
-/// NaN where there is no function of this order.
+/// Applies a function to a number as the compiled step does, to the bit. Its value between zero and one is a number, or
+/// NaN if there is no function of this order.
 #[cold]
 #[must_use]
 pub fn applied<T: Real>(function: Function, a: T) -> T {
@@ -283,7 +284,7 @@ pub fn applied<T: Real>(function: Function, a: T) -> T {
 
 macro_rules! of_order {
     ($name:ident of $function:ident: $($order:literal)+) => {
-        /// The orders that there are.
+        /// The function of this order; NaN if there is none.
         fn $name<T: Real>(order: u8, a: T) -> T {
             match order {
                 $($order => $function::<T, $order>(a),)+

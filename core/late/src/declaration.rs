@@ -1,4 +1,4 @@
-//! What a text declares, derived once.
+//! Declarations of texts, each derived once.
 
 use std::any::Any;
 use std::collections::BTreeMap;
@@ -14,17 +14,17 @@ use crate::code::Backend;
 use crate::error::{LateError, Mistake};
 use crate::sum::summed;
 
-/// A declaration with the programs of its stages. Each text is derived once and kept as long as the program runs.
+/// A declaration with the programs of its stages. Each text is derived once and stored as long as the process runs.
 #[derive(Debug)]
 pub struct Declaration {
     staged: StagedDeclaration,
     pub(crate) parts: Parts,
     pub(crate) apart: Blocks,
-    /// What back ends have made of the programs.
+    /// The code of the programs by each back end.
     made: Mutex<Vec<Arc<dyn Any + Send + Sync>>>,
 }
 
-/// What was derived.
+/// Dereferences to the derivation.
 impl Deref for Declaration {
     type Target = StagedDeclaration;
 
@@ -38,7 +38,7 @@ impl Deref for Declaration {
 pub(crate) struct Ready<C> {
     pub(crate) code: C,
     pub(crate) outputs: usize,
-    /// A bit for each array that it reads.
+    /// A bit for each array that the program reads.
     arrays: u16,
 }
 
@@ -48,7 +48,7 @@ impl<C> Ready<C> {
         self.arrays >> array as u16 & 1 == 1
     }
 
-    /// Whether it computes the same whatever it is given.
+    /// Whether the program reads constants alone, so that its outputs don't change from step to step.
     pub(crate) const fn reads_constants_alone(&self) -> bool {
         self.arrays & !(1 << Array::Constants as u16) == 0
     }
@@ -57,10 +57,10 @@ impl<C> Ready<C> {
 /// All programs of a declaration, ready to run.
 pub(crate) type All<C> = Arc<Stages<Ready<C>>>;
 
-/// Those of the derivatives of a step.
+/// The programs of the derivatives of a step.
 pub(crate) type Derivatives<C> = Arc<[Ready<C>; 4]>;
 
-/// The programs, as this back end runs them.
+/// The programs as code of a back end.
 pub(crate) fn ready<T: Real, B: Backend<T>>(programs: &Stages<Program>) -> Result<Stages<Ready<B::Code>>, LateError> {
     let mut list = Vec::new();
     programs.try_map(|program| {
@@ -78,16 +78,16 @@ fn ready_each<T: Real, B: Backend<T>>(programs: &[&Program]) -> Result<Vec<Ready
     Ok(each.map(|(code, program)| Ready { code, outputs: program.outputs.len(), arrays: arrays(program) }).collect())
 }
 
-/// A longer text is no Lagrangian that a person has typed.
+/// The most bytes of a text; a longer one is no Lagrangian that a person has typed.
 const LONGEST: usize = 64 * 1024;
-/// A large declaration is kept in some 100 kB.
+/// The most declarations; a large one takes some 100 kB.
 const MOST: usize = 10_000;
 
-/// The declarations of the program, by their texts.
+/// The declarations of the process, by their texts.
 static KEPT: LazyLock<Mutex<BTreeMap<String, &'static Declaration>>> = LazyLock::new(Mutex::default);
 
-/// How many declarations are kept. A text is derived and kept once, however often it is declared; a program may keep
-/// 10,000. One of a body keeps 43 kB, which the ignored test in `core/late/tests/hostile.rs` measures.
+/// The number of stored declarations. A text is derived and stored once, however often it is declared; a process may
+/// store 10,000. One of a body takes 43 kB, which the ignored test in `core/late/tests/hostile.rs` measures.
 #[must_use]
 pub fn kept() -> usize {
     KEPT.lock().unwrap_or_else(PoisonError::into_inner).len()
@@ -98,7 +98,7 @@ impl Declaration {
     ///
     /// # Errors
     ///
-    /// The mistakes of the text, each with its line and column, or why it can't be kept.
+    /// The mistakes of the text, each with its line and column, or the reason why it can't be stored.
     pub fn parse(text: &str) -> Result<&'static Self, LateError> {
         if text.len() > LONGEST {
             return Err(LateError::TooLong(LONGEST));
@@ -106,25 +106,26 @@ impl Declaration {
         Self::kept(text, || Self::derived(text))
     }
 
-    /// The sum of declarations on one group, in one: programs that add what theirs compute. On SO(3) it has the bits of the
-    /// same sum of compiled effects; where the retraction's tangent is taken behind the sum, it differs by roundings.
+    /// The sum of declarations on one group as one declaration, whose programs add the outputs of theirs. On SO(3) it
+    /// has the bits of the same sum of compiled effects; if the retraction's tangent is taken behind the sum, it
+    /// differs by roundings.
     ///
-    /// The parameter `m` of a term `Gravity` is called `Gravity.m`; numbers and what is carried stand
-    /// in the order of the terms. A Jacobian is taken in every solve, unless there is one term only.
+    /// The parameter `m` of a term `Gravity` is called `Gravity.m`; numbers and advected parameters stand in the order
+    /// of the terms. A Jacobian is taken in every solve, unless there is one term only.
     ///
     /// # Errors
     ///
-    /// Where they are on several groups, or there are none.
+    /// The terms are on several groups, or there are none.
     pub fn sum(terms: &[&'static Self]) -> Result<&'static Self, LateError> {
         if let [only] = terms {
             return Ok(only);
         }
-        // Declarations stay where they are.
+        // Declarations are never moved, so that addresses identify them.
         let places: Vec<*const Self> = terms.iter().map(|&term| &raw const *term).collect();
         Self::kept(&format!("{places:?}"), || summed(&terms.iter().map(|term| &term.staged).collect::<Vec<_>>()))
     }
 
-    /// What is kept by this name, or is made and kept.
+    /// The stored declaration of this name; otherwise the declaration is made and stored.
     fn kept(
         name: &str,
         make: impl FnOnce() -> Result<StagedDeclaration, LateError>,
@@ -137,7 +138,7 @@ impl Declaration {
             return Err(LateError::TooMany(MOST));
         }
         let declaration = Self::of(make()?);
-        // Where two threads have derived it, the second drops its own.
+        // The second of two threads that have derived it drops its own.
         Ok(known().entry(name.to_owned()).or_insert_with(|| Box::leak(Box::new(declaration))))
     }
 
@@ -156,7 +157,7 @@ impl Declaration {
             LateError::Mistakes(placed.collect())
         });
         drop(tokens);
-        // What the tokens' places are found by would be kept, too.
+        // The texts by which the tokens' places are found would stay in memory, too.
         proc_macro2::extra::invalidate_current_thread_spans();
         found.map(|(staged, _)| staged)
     }
@@ -167,12 +168,12 @@ impl Declaration {
         Self { parts: Parts { unknown, kick_before, kick_after }, apart, made: Mutex::default(), staged }
     }
 
-    /// The programs, as this back end runs them: made once.
+    /// The programs as code of this back end, prepared once.
     pub(crate) fn ready<T: Real, B: Backend<T>>(&self) -> Result<All<B::Code>, LateError> {
         self.once(|| ready::<T, B>(&self.staged.programs))
     }
 
-    /// Those of the derivatives of a step.
+    /// The programs of the derivatives of a step, prepared once.
     pub(crate) fn ready_derivatives<T: Real, B: Backend<T>>(&self) -> Result<Derivatives<B::Code>, LateError> {
         let programs = self.staged.derivatives.as_ref().ok_or(LateError::NoGradients)?;
         self.once(|| ready_each::<T, B>(&programs.each_ref())?.try_into().map_err(|_| LateError::TooLarge))
@@ -188,12 +189,12 @@ impl Declaration {
         Ok(all)
     }
 
-    /// Whether a solve does better without the Jacobian: of what moves by itself.
+    /// Whether a solve with a kinetic part is faster without the Jacobian.
     pub(crate) const fn is_expensive(&self) -> bool {
         self.staged.has_kinetic && self.staged.is_expensive
     }
 
-    /// The kinetic part, as its type is called.
+    /// The name of the kinetic part's type.
     #[must_use]
     pub const fn kinetic(&self) -> &'static str {
         match (self.staged.has_kinetic, self.staged.is_expensive) {
@@ -203,20 +204,20 @@ impl Declaration {
         }
     }
 
-    /// The group, as it is written.
+    /// The group as it is written in Rust.
     #[must_use]
     pub fn group(&self) -> String {
         let names: Vec<&str> = self.factors.iter().map(|factor| factor.name.as_str()).collect();
         if names.len() == 1 { names.concat() } else { format!("({})", names.join(", ")) }
     }
 
-    /// The first of a parameter's numbers among those of all, and how many it has.
+    /// The place of a parameter's first number among all numbers, and how many it has.
     pub(crate) fn place(&self, index: usize) -> (usize, usize) {
         let lengths = || self.parameters.iter().map(|parameter| parameter.kind.len());
         (lengths().take(index).sum(), lengths().nth(index).unwrap_or(0))
     }
 
-    /// Actions with shapes, as a type of advected parameters lists them.
+    /// The actions with shapes, as a type of advected parameters lists them.
     pub(crate) fn slots(&self) -> Vec<(Action, (usize, usize))> {
         self.carried.iter().map(|carried| (carried.action, carried.shape)).collect()
     }

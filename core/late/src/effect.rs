@@ -1,4 +1,4 @@
-//! The stages of a step, by a back end.
+//! The stages of a step, run by a back end.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ pub(crate) type Matrix<G> = <G as LieGroup>::Matrix;
 pub(crate) type Vector<G> = <G as LieGroup>::Vector;
 pub(crate) type Square<G> = <Vector<G> as Coordinates<<G as LieGroup>::Scalar>>::Square;
 
-/// Room for numbers, on the stack unless they are many: what isn't used costs time to clear.
+/// Room for numbers, on the stack unless they are many; several sizes, as unused room costs time to clear.
 macro_rules! room {
     ($name:ident: $scalar:ty, $count:expr) => { room!($name: $scalar, $count, least 3, few 6, less 12, more 18, most 48) };
     ($name:ident: $scalar:ty, $count:expr, $($place:ident $most:literal),+) => {
@@ -35,7 +35,7 @@ macro_rules! room {
     };
 }
 
-/// The entries of a value, copied unless they stand one after the other.
+/// The entries of a value as a slice, copied unless they are contiguous.
 macro_rules! listed {
     ($name:ident = $value:expr) => {
         room!(room: G::Scalar, size_of_val($value).div_ceil(size_of::<G::Scalar>()));
@@ -58,7 +58,7 @@ fn filled<'a, T: Real>(value: &impl Entries<T>, room: &'a mut [T]) -> &'a [T] {
     room.get(..length).unwrap_or(room)
 }
 
-/// What a program computes that reads no constants.
+/// The outputs of a program that reads no constants.
 pub(crate) fn alone<T: Real, B: Backend<T>, const N: usize>(
     program: &Ready<B::Code>,
     given: Given<'_, T, N>,
@@ -75,7 +75,7 @@ pub(crate) fn vector<T: Real, V: Entries<T>>(outputs: &[T]) -> V {
     V::from_entries(&mut || outputs.next().unwrap_or_else(|| real(f64::NAN)))
 }
 
-/// The same as a square matrix, row by row.
+/// The first of these numbers as a square matrix, row by row.
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn square<G: LieGroup>(outputs: &[G::Scalar]) -> Square<G> {
     Vector::<G>::square(|column| {
@@ -85,14 +85,14 @@ pub(crate) fn square<G: LieGroup>(outputs: &[G::Scalar]) -> Square<G> {
     })
 }
 
-/// The constants of a step: numbers that don't change from step to step, and what runs with them.
+/// The constants of a step: numbers that don't change from step to step, and the programs that read them.
 #[derive(Debug)]
 pub struct Constants<T: Real, B: Backend<T> = Interpreter> {
     pub(crate) declaration: &'static Declaration,
     pub(crate) stages: All<B::Code>,
     pub(crate) is_specialised: bool,
     pub(crate) numbers: Arc<[T]>,
-    /// Kicks before and after that depend on nothing else.
+    /// The kicks before and after, if they depend on constants alone.
     pub(crate) known: [Option<Arc<[T]>>; 2],
 }
 
@@ -128,7 +128,7 @@ impl<T: Real, B: Backend<T>> PartialEq for Constants<T, B> {
     }
 }
 
-/// What one solve needs: the right side, and what is advected.
+/// The right-hand side of one solve, and the advected parameters.
 #[derive(Clone, Copy, Debug)]
 pub struct StepTerms<V, W> {
     right_side: V,
@@ -141,7 +141,7 @@ where
     W: Advected<G> + Slots,
     B: Backend<G::Scalar>,
 {
-    /// What a term comes to, by `F`, `w` and `h`.
+    /// The value of a term at `F`, `w` and `h`.
     fn term(&self, program: &Ready<B::Code>, (f, w, h): (&Matrix<G>, &W, G::Scalar)) -> Vec<G::Scalar> {
         let inverse = program.reads(Array::Inverse).then(|| G::from_matrix_unchecked(*f).inverse().matrix());
         let (element, advected, inverse) = (entries(f), entries(w), inverse.map_or_else(Vec::new, |it| entries(&it)));
@@ -155,7 +155,7 @@ where
         alone::<_, B, _>(program, given)
     }
 
-    /// A term of a Lagrangian, of which a force has none.
+    /// The value of a term of the Lagrangian; zero for a force, which has none.
     fn of_lagrangian(&self, index: usize, at: (&Matrix<G>, &W, G::Scalar)) -> Vec<G::Scalar> {
         let terms = self.stages.lagrangian.as_ref();
         terms.map_or_else(|| vec![real(0.0); G::DIMENSION], |terms| self.term(&terms[index], at))
@@ -175,7 +175,7 @@ where
     type Constants = Constants<G::Scalar, B>;
     type StepTerms = StepTerms<Vector<G>, W>;
 
-    // Those of the declaration are asked of a value, but where the type has no more than kicks.
+    // A value has the parts of its declaration; the type allows all of them, or kicks alone.
     const PARTS: Parts = Parts { unknown: K::MAY_BE_UNKNOWN, ..Parts::ALL };
     const INERTIA_IS_CONSTANT: bool = !K::MAY_BE_UNKNOWN;
     const IS_QUADRATIC: bool = !K::MAY_BE_UNKNOWN;
@@ -229,7 +229,7 @@ where
             let [l, momentum, hessian] = programs.each_ref().map(|program| alone::<_, B, _>(program, given));
             return Limit { l: l[0], momentum: vector(&momentum), hessian: square::<G>(&hessian) };
         }
-        // Where the inertia varies, each step asks for it.
+        // A varying inertia is evaluated in each step.
         let entries = G::DIMENSION * G::DIMENSION;
         room!(outputs: G::Scalar, entries + G::DIMENSION + 1);
         let code = &self.stages.at_rest.code;
@@ -253,7 +253,7 @@ where
         let given = [(Array::Step, std::slice::from_ref(&h)), (Array::Parameters, &*self.numbers)];
         let numbers = alone::<_, B, _>(&self.stages.constants, given);
         let programs = self.specialise.map(|specialise| specialise(&self.declaration.programs, &numbers));
-        // What is too large now was too large before, and isn't here.
+        // A specialised program is no larger than the general one, which the back end has accepted.
         let own = programs.and_then(|programs| ready::<G::Scalar, B>(&programs).ok()).map(Arc::new);
         let is_specialised = own.is_some();
         Constants::of(self.declaration, own.as_ref().unwrap_or(&self.stages), is_specialised, numbers.into())
@@ -327,7 +327,7 @@ where
     }
 }
 
-/// A kick that is written in the increment, too.
+/// Runs a kick that also depends on the increment.
 #[inline(never)]
 fn kick_with_more<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
     (program, constants): (&Ready<B::Code>, &[G::Scalar]),
@@ -348,7 +348,7 @@ fn kick_with_more<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
     );
 }
 
-/// What an iteration computes.
+/// Runs the program of an iteration.
 #[cfg_attr(all(not(debug_assertions), not(feature = "small")), inline(always))]
 fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
     (program, constants): (&Ready<B::Code>, &[G::Scalar]),
@@ -358,9 +358,10 @@ fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
 ) where
     CayleyRetraction: Retraction<G>,
 {
-    // What is lent stays in memory, so what is lent here are copies.
+    // A borrowed value has to stay in memory: only copies are borrowed.
     let half = *half;
-    // Off SO(3) the system is written in the increment. That is called, and a step on SO(3) stays short.
+    // The system depends on the increment on groups other than SO(3). A separate function for these leaves a step on
+    // SO(3) short.
     if program.reads(Array::Increment) || program.reads(Array::InverseIncrement) {
         return iteration_with_more::<G, W, B>((program, constants), &{ *terms }, &{ half }, outputs);
     }
@@ -406,7 +407,7 @@ where
     B: Backend<G::Scalar>,
     CayleyRetraction: Retraction<G>,
 {
-    // Asked of a value.
+    // The method below answers for each value.
     const SELF_ADJOINT: bool = true;
 
     fn is_self_adjoint(&self) -> bool {

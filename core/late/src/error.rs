@@ -1,19 +1,19 @@
-//! Why a text or its numbers can't be used.
+//! Errors of texts and of their numbers.
 
 use thiserror::Error;
 
-/// A mistake of a text, where it is.
+/// A mistake of a text, with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mistake {
-    /// What is wrong, then what to write.
+    /// The mistake, then what to write.
     pub message: String,
-    /// The line, from one; zero where a mistake has no place.
+    /// The line, from one; zero for a mistake without a place.
     pub line: usize,
     /// The column, from one.
     pub column: usize,
 }
 
-/// Why a text or its numbers can't be used.
+/// An error of a text or of its numbers.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum LateError {
@@ -23,31 +23,31 @@ pub enum LateError {
     /// The text is longer than the given number of bytes.
     #[error("the text is longer than {0} bytes")]
     TooLong(usize),
-    /// To derive it takes too long: it was given up.
+    /// The derivation takes too long, and was given up.
     #[error("this takes too long to be derived: declare parts as terms of their own, and add them")]
     TooMuchWork,
-    /// As many declarations are kept as may be, see [`kept`](crate::kept).
+    /// The limit of stored declarations is reached, see [`kept`](crate::kept).
     #[error("{0} declarations are kept already: declare each text once")]
     TooMany(usize),
     /// The step has more operations or numbers than an interpreter has names for.
     #[error("the step of this declaration is too large to be interpreted")]
     TooLarge,
-    /// It takes a function that the library doesn't have: one of these families of a higher order.
+    /// The step needs a function that the library doesn't have: one of these families of a higher order.
     #[error("a step of this declaration needs {0}, and there is none of this order")]
     Function(String),
-    /// The program couldn't be made for this machine, and why.
+    /// Machine code can't be generated, for this reason.
     #[error("no machine code can be made: {0}")]
     Machine(String),
-    /// A step of it isn't written in C, and why.
+    /// The step isn't written in C, for this reason.
     #[error("{0}")]
     C(&'static str),
-    /// It is a sum of no declarations.
+    /// The sum has no declarations.
     #[error("a sum has a declaration at least")]
     Nothing,
-    /// It is a sum of a declaration with a pace, whose energy is that of all terms.
+    /// The sum has a declaration with a pace, whose energy is that of all terms.
     #[error("a Lagrangian with a pace has all its terms in its text")]
     Pace,
-    /// The derivatives of its steps weren't asked for.
+    /// The derivatives of the steps weren't derived.
     #[error(
         "the derivatives of the steps weren't derived: write the word `gradients` into the declaration, of each term"
     )]
@@ -58,10 +58,10 @@ pub enum LateError {
         /// The group of the declaration.
         declared: String,
     },
-    /// Another type carries what is advected or given.
+    /// The type of the advected or given parameters is another.
     #[error("the declaration has {declared}: take a type that carries these")]
     Advected {
-        /// What is declared.
+        /// The actions and shapes of the declaration.
         declared: String,
     },
     /// The declaration has no kinetic part, or one of another kind.
@@ -70,12 +70,12 @@ pub enum LateError {
         /// The kind of the declaration.
         declared: &'static str,
     },
-    /// There is no parameter of this name.
+    /// No parameter has this name.
     #[error("there is no parameter `{name}`; there are {known}")]
     Unknown {
         /// The name.
         name: String,
-        /// Those that there are.
+        /// The known names.
         known: String,
     },
     /// A parameter has another number of numbers.
@@ -83,9 +83,9 @@ pub enum LateError {
     Size {
         /// The name.
         name: String,
-        /// How many there are to be.
+        /// The expected number of numbers.
         expected: usize,
-        /// How many were given.
+        /// The number of numbers that were passed.
         found: usize,
     },
 }

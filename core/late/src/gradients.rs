@@ -1,4 +1,4 @@
-//! The derivatives of a step, by a back end.
+//! The derivatives of a step, run by a back end.
 
 use liestep::groups::{Advected, CayleyRetraction, LieGroup, Retraction};
 use liestep::mechanics::{KineticPart, SecondDerivatives, StepDerivatives, StepPoint};
@@ -16,7 +16,7 @@ where
     W: Advected<G> + Slots,
     B: Backend<G::Scalar>,
 {
-    /// What one of the programs computes, with these weights; nothing where the derivatives aren't there.
+    /// The outputs of one of the programs, with these weights; none if the derivatives weren't derived.
     fn derived<R>(
         &self,
         program: usize,
@@ -38,7 +38,7 @@ where
     }
 }
 
-/// Derivatives by the parameters aren't there: how many there are isn't known in the type.
+/// Derivatives by the parameters are missing, as the type doesn't know the number of parameters.
 impl<G, W, K, B> SecondDerivatives for Late<G, W, K, B>
 where
     G: LieGroup,

@@ -14,9 +14,9 @@ use crate::code::Backend;
 use crate::effect::Constants;
 use crate::term::Late;
 
-/// A group, or what is advected on it, over another scalar.
+/// A group, or an advected parameter, over another scalar.
 pub trait Wider<T> {
-    /// The same over `T`.
+    /// The type over `T`.
     type Over;
 }
 
@@ -69,7 +69,7 @@ fn replace<T: Real>(numbers: &mut [T], k: usize, lane: &[T::Element]) {
     numbers.iter_mut().zip(lane).for_each(|(number, &lane)| number.replace(k, lane));
 }
 
-/// Lanes share the text; what is specialised for one isn't for all.
+/// Lanes share the text; a program that is specialised for one lane isn't for all.
 impl<G, W, K, B> Lanes for Late<G, W, K, B>
 where
     G: LieGroup + Wider<<G::Scalar as SimdValue>::Element>,
@@ -129,7 +129,7 @@ where
         replace(Arc::make_mut(&mut self.numbers), k, &lane.numbers);
         let known = self.known.iter_mut().flatten().zip(lane.known.iter().flatten());
         known.for_each(|(own, lane)| replace(Arc::make_mut(own), k, lane));
-        // The programs of one that is specialised are its own.
+        // A specialised program belongs to one lane alone.
         std::ptr::eq(self.declaration, lane.declaration) && Arc::ptr_eq(&self.stages, &lane.stages)
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::declaration::Declaration;
 
-/// Signs of the equations in print, each with what LaTeX calls it.
+/// The signs of printed equations, each with its LaTeX command.
 #[rustfmt::skip]
 const SIGNS: [(char, &str); 41] = [
     ('−', "-"), ('·', r"\cdot "), ('×', r"\times "), ('⋄', r"\diamond "), ('∂', r"\partial "), ('∨', r"\vee"),
@@ -14,7 +14,7 @@ const SIGNS: [(char, &str); 41] = [
     ('⁸', "^{8}"), ('⁹', "^{9}"), ('₀', "_{0}"), ('₁', "_{1}"), ('₂', "_{2}"), ('∞', r"\infty "),
 ];
 
-/// Names of letters and functions that LaTeX knows.
+/// The names of letters and functions that LaTeX knows.
 #[rustfmt::skip]
 const KNOWN: [&str; 40] = [
     "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu", "nu", "xi",
@@ -22,11 +22,11 @@ const KNOWN: [&str; 40] = [
     "Sigma", "Phi", "Psi", "Omega", "Upsilon", "exp", "log", "sin", "cos", "ln", "det",
 ];
 
-/// The equations that were derived, each a line of an `align*`.
+/// The derived equations, each a line of an `align*`.
 #[must_use]
 pub fn latex(declaration: &Declaration) -> String {
     let equations = declaration.derivation.lines().filter_map(|line| {
-        // Only an equation has its source in brackets behind it.
+        // A line with its source in brackets at the end is an equation.
         let (equation, source) = line.rsplit_once("    [")?;
         let (left, right) = equation.split_once(" = ")?;
         let source = source.trim_end_matches(']');
@@ -68,13 +68,13 @@ fn math(expression: &str) -> String {
         }
         rest = behind;
     }
-    // An exponent after another is one.
+    // Two exponents in sequence are joined.
     let joined = [("  ", " "), (" ^", "^"), (" _", "_"), (" }", "}"), ("^{-}^{", "^{-"), ("^{+}^{\\top}", "^{+\\top}")];
     let made = joined.iter().fold(made, |made, (from, to)| made.replace(from, to));
     made.replace(r"^{\top}^{+}", r"^{\top+}").trim_end().to_owned()
 }
 
-/// Where the bracket that begins a text is closed.
+/// The end of the bracket that begins a text.
 fn closed(text: &str) -> Option<usize> {
     let mut depths = text.char_indices().scan(0, |depth, (at, character)| {
         *depth += i32::from(character == '(') - i32::from(character == ')');
@@ -83,7 +83,7 @@ fn closed(text: &str) -> Option<usize> {
     depths.find(|&(_, depth)| depth == 0).map(|(at, _)| at + 1)
 }
 
-/// What stands in brackets; a quotient without sums is a fraction.
+/// The contents of brackets; a quotient without sums is a fraction.
 fn group(content: &str) -> String {
     if let Some((above, below)) = content.split_once('/')
         && ![above, below].iter().any(|part| part.contains(['/', '(', '+', '−']))
@@ -93,7 +93,7 @@ fn group(content: &str) -> String {
     format!("\\left({}\\right)", math(content))
 }
 
-/// A name, with what is behind its first underscore below it.
+/// A name, with everything after its first underscore as a subscript.
 fn word(name: &str) -> String {
     let (head, below) = name.split_once('_').map_or((name, None), |(head, below)| (head, Some(below)));
     let head = match head {

@@ -1,5 +1,5 @@
-//! Programs made of others: with all numbers known, constants written in and what they make foreseeable folded; or several
-//! in one.
+//! Programs made of others: with all numbers known, constants as literals and operations on them folded; or several in
+//! one.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -8,15 +8,15 @@ use liestep_derivation::{Array, Operation, Program, Source, Stages};
 use crate::code::applied;
 
 /// The programs of a step with these constants, those of the parameters and `h`, as literals: products with zero and
-/// one, sums with zero and equal operations are gone, and divisions by a number are products. The bits may differ from
-/// those of the general programs by rounding.
+/// one, sums with zero and equal operations are removed, and divisions by a number are products. The bits may differ
+/// from those of the general programs by rounding.
 #[must_use]
 pub fn specialised(programs: &Stages<Program>, constants: &[f64]) -> Stages<Program> {
     let Ok(folded) = programs.try_map(|program| Ok::<_, std::convert::Infallible>(fold(program, constants)));
     folded
 }
 
-/// What a register holds.
+/// The contents of a register.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) enum Value {
     /// A number, by its bits.
@@ -29,7 +29,7 @@ pub(crate) enum Value {
 
 impl Value {
     pub(crate) fn of(number: f64) -> Self {
-        // Zeros are one.
+        // Zeros of both signs are one value.
         Self::Number((number + 0.0).to_bits())
     }
 
@@ -44,7 +44,7 @@ impl Value {
 /// An operation of the new program.
 type Made = Operation<Value>;
 
-/// A program that is made.
+/// A program under construction.
 #[derive(Default)]
 pub(crate) struct Fold {
     operations: Vec<Made>,
@@ -60,7 +60,7 @@ impl Fold {
         })
     }
 
-    /// What is negated to make this, if that is known.
+    /// The value whose negative this is, if that is known.
     fn negated(&self, value: Value) -> Option<Value> {
         match value {
             Value::Number(bits) => Some(Value::of(-f64::from_bits(bits))),
@@ -113,7 +113,7 @@ impl Fold {
             (Some(1.0), _) => b,
             (Some(-1.0), _) => self.negate(b),
             (Some(number), _) => match b {
-                // Numbers are gathered.
+                // Numerical factors are collected in one.
                 Value::Result(at) => match self.operations[at] {
                     Made::Multiply(inner, c) if inner.number().is_some() => {
                         let product = number * inner.number().unwrap_or(1.0);
@@ -149,7 +149,7 @@ fn fold(program: &Program, constants: &[f64]) -> Program {
 }
 
 impl Fold {
-    /// Adds what a program computes of these inputs, each operation by `make`.
+    /// Adds a program with these inputs, each operation by `make`; returns its outputs.
     pub(crate) fn append(
         &mut self,
         program: &Program,
@@ -179,7 +179,7 @@ impl Fold {
         }
     }
 
-    /// The operation itself, so that the bits are those of the program; but zeros are dropped.
+    /// Adds the operation itself, so that the bits are those of the program; but zeros are dropped.
     pub(crate) fn kept(&mut self, operation: Operation, [a, b]: [Value; 2]) -> Value {
         let zero = Value::of(0.0);
         match operation {
@@ -203,7 +203,7 @@ fn written(operations: &[Made], outputs: &[Value]) -> Program {
             needed.extend(made.read());
         }
     }
-    // Numbers, inputs and results, in this order; of a program inputs come first.
+    // A set has numbers before inputs and results; a program has its inputs first.
     let of = |kind: fn(&Value) -> bool| needed.iter().filter(move |value| kind(value)).copied();
     let inputs = || of(|value| matches!(value, Value::Input(_)));
     let all = inputs()

@@ -21,18 +21,18 @@ use crate::specialised::specialised;
 /// Programs with the constants of a stepper written into them.
 pub(crate) type Specialise<T> = fn(&Stages<Program>, &[T]) -> Stages<Program>;
 
-/// A declaration that was read while the program runs, with numbers for its parameters: an effect on the group `G`, with
-/// what is advected or given in `W`, as the macro would have it, and the kinetic part `K`, which may be
-/// [`WithEitherKinetic`](liestep::mechanics::WithEitherKinetic) where that isn't known. In a longer tuple than the
-/// declaration's what it doesn't name is zero. `B` runs its programs.
+/// A declaration that was read while the program runs, with numbers for its parameters: an effect on the group `G`,
+/// with the advected or given parameters `W`, of the types that the macro has for them, and the kinetic part `K`, which
+/// may be [`WithEitherKinetic`](liestep::mechanics::WithEitherKinetic) if it isn't known. The elements of a longer
+/// tuple that the declaration doesn't name are zero. `B` runs its programs.
 ///
 /// # Source
 ///
-/// As of every [`Effect`]: \[RDAE\], section 2.2.
+/// \[RDAE\], section 2.2, as for every [`Effect`].
 pub struct Late<G: LieGroup, W = (), K = WithKinetic, B: Backend<G::Scalar> = Interpreter> {
     pub(crate) declaration: &'static Declaration,
     pub(crate) stages: All<B::Code>,
-    /// Of all parameters, NaN where none was given.
+    /// The numbers of all parameters, NaN until they are set.
     pub(crate) numbers: Arc<[G::Scalar]>,
     pub(crate) specialise: Option<Specialise<G::Scalar>>,
     pub(crate) derivatives: Option<Derivatives<B::Code>>,
@@ -64,7 +64,7 @@ impl<G: LieGroup, W, K, B: Backend<G::Scalar>> PartialEq for Late<G, W, K, B> {
     }
 }
 
-/// In all lanes.
+/// Whether a number is finite in all lanes.
 pub(crate) fn is_finite<T: Real>(number: &T) -> bool {
     Coordinates::is_finite(&Vector1::new(*number))
 }
@@ -80,11 +80,11 @@ impl<G: LieGroup, W: Advected<G> + Slots, K: KineticPart, B: Backend<G::Scalar>>
         Self::of(Declaration::parse(text)?)
     }
 
-    /// Of a declaration that was derived.
+    /// The effect of a declaration.
     ///
     /// # Errors
     ///
-    /// Where it isn't one on `G`, with `W` and `K`.
+    /// The declaration isn't one on `G`, with `W` and `K`.
     pub fn of(declaration: &'static Declaration) -> Result<Self, LateError> {
         if !has_generators::<G>(declaration) {
             return Err(LateError::Group { declared: declaration.group() });
@@ -105,12 +105,13 @@ impl<G: LieGroup, W: Advected<G> + Slots, K: KineticPart, B: Backend<G::Scalar>>
         Ok(Self::made(declaration, &declaration.ready::<G::Scalar, B>()?, numbers, None))
     }
 
-    /// With the derivatives of its steps, by the state and by what they are given, for
-    /// [`Stepper::linearised`](liestep::Stepper::linearised) and what goes by it. Those by the parameters aren't among them.
+    /// Adds the derivatives of its steps, by the state and by the inputs, for
+    /// [`Stepper::linearised`](liestep::Stepper::linearised) and what goes by it. Those by the parameters aren't among
+    /// them.
     ///
     /// # Errors
     ///
-    /// [`LateError::NoGradients`] where the text, or that of a term, is without the word `gradients`.
+    /// [`LateError::NoGradients`] if the text, or that of a term, is without the word `gradients`.
     pub fn differentiable(mut self) -> Result<Self, LateError> {
         self.derivatives = Some(self.declaration.ready_derivatives::<G::Scalar, B>()?);
         Ok(self)
@@ -120,7 +121,7 @@ impl<G: LieGroup, W: Advected<G> + Slots, K: KineticPart, B: Backend<G::Scalar>>
     ///
     /// # Errors
     ///
-    /// Where the effect wasn't declared, as a sum isn't; or as [`parse`](Self::parse).
+    /// The effect has no declaration, like a sum; or an error of [`parse`](Self::parse).
     pub fn like<E: Effect<Scalar = G::Scalar, Group = G, Advected = W>>(effect: &E) -> Result<Self, LateError> {
         Self::parse(E::DECLARATION)?.with_all(&numbers(effect))
     }
@@ -145,8 +146,8 @@ impl<T> SceneVisitor<T> for Numbers<T> {
 }
 
 impl<G: LieGroup<Scalar = f64>, W, K, B: Backend<f64>> Late<G, W, K, B> {
-    /// With programs that have all numbers of a stepper written into them: it is faster, and its bits may differ by
-    /// rounding from those of the compiled step. Making one takes as long as many steps.
+    /// Uses programs that have all numbers of a stepper written into them: they are faster, and their bits may differ
+    /// by rounding from those of the compiled step. Specialising them takes as long as many steps.
     #[must_use]
     pub fn specialised(mut self) -> Self {
         self.specialise = Some(specialised);
@@ -155,7 +156,7 @@ impl<G: LieGroup<Scalar = f64>, W, K, B: Backend<f64>> Late<G, W, K, B> {
 }
 
 impl<G: LieGroup, W, K, B: Backend<G::Scalar>> Late<G, W, K, B> {
-    /// Of these programs, by any numbers.
+    /// The effect with these programs and any numbers.
     pub(crate) fn made(
         declaration: &'static Declaration,
         stages: &All<B::Code>,
@@ -165,12 +166,12 @@ impl<G: LieGroup, W, K, B: Backend<G::Scalar>> Late<G, W, K, B> {
         Self { declaration, stages: Arc::clone(stages), numbers, specialise: None, derivatives, types: PhantomData }
     }
 
-    /// With a value for a parameter, that of a matrix row by row. An inertia may be given by its three moments, and a
-    /// diagonal one by its tensor.
+    /// Sets a parameter, a matrix row by row. An inertia may be given by its three moments, and a diagonal one by its
+    /// tensor.
     ///
     /// # Errors
     ///
-    /// Where there is no such parameter, or where it has another number of numbers.
+    /// No parameter has this name, or it has another number of numbers.
     pub fn with(mut self, name: &str, value: &[G::Scalar]) -> Result<Self, LateError> {
         let parameters = &self.declaration.parameters;
         let Some(index) = parameters.iter().position(|known| known.name == name) else {
@@ -196,11 +197,11 @@ impl<G: LieGroup, W, K, B: Backend<G::Scalar>> Late<G, W, K, B> {
         Ok(self)
     }
 
-    /// With values for all parameters, in their order, a diagonal inertia by its tensor: see [`numbers`].
+    /// Sets all parameters, in their order, a diagonal inertia by its tensor: see [`numbers`].
     ///
     /// # Errors
     ///
-    /// Where there are more or fewer.
+    /// The number of numbers is another.
     pub fn with_all(mut self, numbers: &[G::Scalar]) -> Result<Self, LateError> {
         // An effect describes a diagonal inertia by the nine entries of its tensor: every fourth is on the diagonal.
         let described = self.declaration.parameters.iter().map(|parameter| match parameter.kind {
@@ -217,7 +218,7 @@ impl<G: LieGroup, W, K, B: Backend<G::Scalar>> Late<G, W, K, B> {
         Ok(self)
     }
 
-    /// What was derived.
+    /// The declaration of this effect.
     #[must_use]
     pub const fn declaration(&self) -> &'static Declaration {
         self.declaration

@@ -7,7 +7,7 @@ use liestep_derivation::{Action, Array, Function, Operation, Program};
 use crate::declaration::Declaration;
 use crate::error::LateError;
 
-/// A language, as far as straight-line code tells one from another.
+/// A language, as far as its straight-line code differs from another's.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Language {
     Rust,
@@ -96,12 +96,12 @@ fn stages(declaration: &Declaration) -> [(&'static str, &Program); 5] {
     ]
 }
 
-/// The straight-line code of a step in Rust, as the compiler gets it of the macro: a function for each stage. What the macro
-/// computes before a solve is in each iteration.
+/// The straight-line code of a step in Rust, as the macro passes it to the compiler: a function for each stage. Values
+/// that the macro computes before a solve are computed in each iteration.
 ///
 /// # Errors
 ///
-/// None of Rust; the type is that of [`c`].
+/// None for Rust; the type is that of [`c`].
 pub fn rust(declaration: &Declaration) -> Result<String, LateError> {
     let mut text = format!("//! The stages of a step of `{}`.\n", declaration.name);
     if stages(declaration).iter().any(|(_, program)| has_own_functions(program)) {
@@ -129,8 +129,8 @@ fn has_own_functions(program: &Program) -> bool {
     program.operations.iter().any(is_own)
 }
 
-/// A step on SO(3) as C99 that needs nothing but `math.h`: with `-ffp-contract=off` it has the bits of the library's step.
-/// A step that the library makes with care is refused there: it returns 0, and nothing has changed.
+/// A step on SO(3) as C99 that needs nothing but `math.h`: with `-ffp-contract=off` it has the bits of the library's
+/// step. A step that the library makes with care is refused there: it returns 0, and nothing has changed.
 ///
 /// # Errors
 ///
