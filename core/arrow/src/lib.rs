@@ -45,7 +45,7 @@ enum Stage<W: Write> {
     Before(W),
     Writing(Box<StreamWriter<W>>, SchemaRef),
     Done(W),
-    /// The stage after an error, and a placeholder while the stage changes.
+    /// The stage after an error, and during a change.
     Failed,
 }
 
@@ -66,7 +66,7 @@ impl<W: Write> ArrowStream<W> {
         Self { stage: Stage::Before(writer) }
     }
 
-    /// The writer, after the end of the stream.
+    /// The writer, after the end.
     ///
     /// # Errors
     ///
@@ -108,7 +108,7 @@ impl<W: Write> Sink for ArrowStream<W> {
 
     fn end(&mut self) -> Result<(), SinkError> {
         let Stage::Writing(writer, _) = std::mem::replace(&mut self.stage, Stage::Failed) else { return Err(order()) };
-        // The writer is returned after the end-of-stream marker.
+        // The end-of-stream marker is written first.
         self.stage = Stage::Done(writer.into_inner()?);
         if let Stage::Done(writer) = &mut self.stage {
             writer.flush()?;
@@ -117,7 +117,7 @@ impl<W: Write> Sink for ArrowStream<W> {
     }
 }
 
-/// The error of calls out of order: columns come first, then rows, then the end.
+/// The error of calls out of order.
 fn order() -> SinkError {
     ArrowError::IpcError("the table isn't begun, or is finished".to_owned()).into()
 }
@@ -184,7 +184,7 @@ mod tests {
         }
     }
 
-    /// Every block is flushed: a killed process would leave its buffers behind.
+    /// Every block is flushed, as the process may be killed.
     #[test]
     fn each_block_is_there_before_the_end() {
         let file = Shared::default();

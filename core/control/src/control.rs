@@ -30,14 +30,14 @@ impl<G: LieGroup> Target<G, G::Vector> {
 pub struct Cost {
     /// The cost of a second.
     pub time: f64,
-    /// The weight of half the integral of the squares; the integral is exact, as inputs are constant over each step.
+    /// The weight of half the integral of the squares, which is exact, as inputs are constant over a step.
     pub effort: f64,
 }
 
 /// A constrained value of the state after this number of steps.
 pub(crate) type Value<'a, S> = dyn Fn(usize, &Motion<Group<S>, <S as Term>::Advected>) -> f64 + 'a;
 
-/// A function that gets the number and the residual of each iteration, and returns whether to go on.
+/// An observer of iterations, which returns whether to go on.
 type Watch<'a> = dyn Fn(usize, &Residual) -> bool + 'a;
 
 #[doc = include_str!("control.md")]
@@ -89,8 +89,8 @@ where
         }
     }
 
-    /// Selects the inputs that are chosen in each step: the scalars in these places of an input like this one, in the
-    /// order of [`Input::scalars`], each once; the others stay as they are.
+    /// Selects the inputs of each step: the scalars in these places of an input like this one, in the order of
+    /// [`Input::scalars`], each once; the others stay as they are.
     #[must_use]
     pub fn input(self, like: InputOf<S>, places: impl IntoIterator<Item = usize>) -> Self {
         Self { like, places: places.into_iter().collect(), ..self }

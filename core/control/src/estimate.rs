@@ -48,9 +48,8 @@ pub struct Fit<S: SecondDerivatives, P: Plan<S>> {
     pub inputs: Vec<InputOf<S>>,
     /// The fitted constants.
     pub constants: Vec<f64>,
-    /// The covariance of displacements of the start, its momentum and the constants, a square of `2n + c` rows for a
-    /// group of dimension `n` and `c` constants, in the units of both places; zero along directions that the readings
-    /// don't determine.
+    /// The covariance of displacements of the start, its momentum and the constants, of `2n + c` rows for a group of
+    /// dimension `n` and `c` constants, in the units of both places; zero along directions that aren't determined.
     pub covariance: DMatrix<f64>,
     /// The sum of all squares, in variances.
     pub squares: f64,
@@ -68,7 +67,7 @@ struct Trial<S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
     states: Vec<StateOf<S, P>>,
     inputs: Vec<DVector<f64>>,
     constants: DVector<f64>,
-    /// The residuals of the readings, state by state.
+    /// One vector for each state.
     readings: Vec<DVector<f64>>,
     /// The differences of the start and the constants from the first guess.
     away: DVector<f64>,
@@ -118,7 +117,7 @@ where
         Self { constants: guesses, scales, known: DMatrix::zeros(states, states), ..self }
     }
 
-    /// Sets the stepper as a function of the constants, of the same step; without it they act on the readings alone.
+    /// Sets the stepper as a function of the constants, with the same step; without it they act on the readings alone.
     #[must_use]
     pub fn steppers(self, of: impl Fn(&[f64]) -> Option<Stepper<S, P>> + 'a) -> Self {
         Self { stepper_of: Some(Box::new(of)), ..self }
@@ -144,7 +143,7 @@ where
         Self { tolerance, most, ..self }
     }
 
-    /// Searches the least squares; the [verdict](Fit::verdict) says whether they were found.
+    /// Searches for the least squares; the [verdict](Fit::verdict) says whether they were found.
     ///
     /// # Errors
     ///
@@ -218,7 +217,7 @@ where
         Some(Model { duration, stepper, constants: constants.len(), beside, like, places })
     }
 
-    /// The trial of these unknowns; `None` if no stepper, no coordinates or no finite squares exist there.
+    /// The trial of these unknowns, if stepper, coordinates and finite squares exist there.
     fn trial(
         &self,
         start: StateOf<S, P>,
@@ -325,10 +324,9 @@ where
 struct Seen {
     /// The lengths that scale the second derivative along each coordinate to one.
     lengths: DVector<f64>,
-    /// The eigenvalues and eigenvectors of the scaled second derivatives; zero where the readings don't determine a
-    /// direction.
+    /// The eigenvalues, zero if a direction isn't determined, and eigenvectors of the scaled second derivatives.
     squares: SymmetricEigen<f64, nalgebra::Dyn>,
-    /// The direction of the least information, if the readings don't determine it.
+    /// The least determined direction, if it isn't determined.
     unseen: Option<Vec<f64>>,
 }
 
@@ -346,7 +344,7 @@ impl Seen {
         Self { lengths, squares, unseen }
     }
 
-    /// The gradient's component, the second derivative and the direction itself, for each direction that is determined.
+    /// The gradient, the second derivative and the direction itself, for each determined direction.
     fn parts<'s>(&'s self, value: &'s Value) -> impl Iterator<Item = (f64, f64, DVector<f64>)> + 's {
         let gradient = value.slopes.column(0).component_mul(&self.lengths);
         let directions = self.squares.eigenvectors.column_iter().zip(self.squares.eigenvalues.iter());

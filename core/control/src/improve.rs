@@ -22,8 +22,8 @@ const SHORTEST: f64 = 1e-7;
 const DURATION: f64 = 0.3;
 /// The residual below which the corner of the optimum is near.
 const NEAR: f64 = 1e-4;
-/// The attempts to make a programme convex, in turn: the weight of the condition's square, relative to the multipliers,
-/// and the damping, relative to the least second derivative by an input.
+/// The attempts to make a programme convex: the weight of the condition's square, in multipliers, and the damping, in
+/// the least second derivative by an input.
 const CONVEX: [(f64, f64); 7] =
     [(0.0, 0.0), (10.0, 0.0), (1e3, 0.0), (1e3, 1.0), (1e3, 10.0), (1e3, 100.0), (1e3, 1e4)];
 

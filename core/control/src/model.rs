@@ -1,5 +1,5 @@
 //! The steps of a plan, and their first and second derivatives in flat coordinates: a displacement `ζ`, the momentum,
-//! and behind them the constants of the motion, as a free duration.
+//! and then the constants of the motion, as a free duration.
 
 use liestep::StepError;
 use liestep::gradients::{Cotangent, Input, InputOf, Linearisable, Tape};
@@ -12,12 +12,11 @@ use nalgebra::{DMatrix, DVector};
 use crate::control::Control;
 use crate::riccati::Stage;
 
-/// The relative changes for differences by the duration, and of derivatives: about the third and the fourth root of
-/// rounding.
+/// The changes for differences by the duration, and of derivatives: about the third and fourth root of rounding.
 pub(crate) const SMALL: f64 = 1e-5;
 const COARSE: f64 = 1e-4;
 
-/// The relative changes for differences of fourth order, and for second ones: about the fifth root of rounding.
+/// The change for differences of fourth order, and for second ones: about the fifth root of rounding.
 const FOURTH: f64 = 1e-3;
 
 /// The stepper of a duration, and the kind of its inputs.
@@ -26,8 +25,7 @@ pub(crate) struct Model<S: SecondDerivatives<Scalar = f64>, P> {
     pub(crate) stepper: Stepper<S, P>,
     /// The number of constants of a motion that are part of its state: a free duration, or the unknowns of an estimate.
     pub(crate) constants: usize,
-    /// A small change of each constant, and the steppers with it and with its opposite; empty if steps don't depend on
-    /// constants.
+    /// A small change of each constant that steps depend on, and the steppers with it and with its opposite.
     pub(crate) beside: Vec<(f64, [Stepper<S, P>; 2])>,
     pub(crate) like: InputOf<S>,
     pub(crate) places: Vec<usize>,
@@ -81,7 +79,7 @@ where
     P: Linearisable<S> + Clone,
     ExponentialRetraction: Retraction<Group<S>>,
 {
-    /// The model of a task; `None` if the scene can't be stepped in this time.
+    /// The model, if the scene can be stepped in this time.
     pub(crate) fn new(control: &Control<'_, S, P>, duration: f64) -> Option<Self>
     where
         P: Plan<S>,
@@ -279,7 +277,7 @@ where
             let [there, opposite] = [displaced(&self.stepper, state, &x)?, displaced(&self.stepper, state, &-x)?];
             Some(value(&there) + value(&opposite) - middle)
         };
-        // The change is doubled along one axis, which makes the difference four times as large.
+        // Twice the change along an axis makes four times the difference.
         let squares = (0..changes.len()).map(|k| Some(even([k, k])? / 4.0)).collect::<Option<Vec<_>>>()?;
         let mut found = DMatrix::zeros(self.states(), self.states());
         for i in 0..changes.len() {

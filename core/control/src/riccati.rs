@@ -4,9 +4,9 @@
 //! minimise  Σ_k ½ (x_k, u_k)·H_k (x_k, u_k) + a_k·x_k + b_k·u_k      under  x_{k+1} = A_k x_k + B_k u_k,   E x_N = −e
 //! ```
 //!
-//! where `x_0` is zero except for its last entries, which are free. The value of the remaining steps is `½ x·P x + (p +
-//! Ψ ν)·x`, for multipliers `ν` of the last condition; `Π = [p, Ψ]` is carried backwards in one matrix. The time is
-//! linear in the number of steps.
+//! where `x_0` is zero except for its last entries, which are free. The value of the remaining steps is
+//! `½ x·P x + (p + Ψ ν)·x`, for multipliers `ν` of the last condition; `Π = [p, Ψ]` is carried backwards in one matrix.
+//! The time is linear in the number of steps.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -27,7 +27,7 @@ pub(crate) struct Stage {
     pub(crate) bent: DVector<f64>,
 }
 
-/// The condition at the end, `E` and `e`, and the gradient and second derivatives of the cost by the last state.
+/// The condition at the end, `E` and `e`, and the derivatives of the cost by the last state.
 #[derive(Clone)]
 pub(crate) struct End {
     pub(crate) by_state: DMatrix<f64>,
@@ -57,7 +57,7 @@ pub(crate) fn add_square(hessian: &mut DMatrix<f64>, v: &DVector<f64>, weight: f
 
 /// The solution: the changes of the states and of the inputs, and the new multipliers.
 pub(crate) struct Solution {
-    /// The changes of the states, one more than there are steps.
+    /// State changes, one more than there are steps.
     pub(crate) states: Vec<DVector<f64>>,
     pub(crate) inputs: Vec<DVector<f64>>,
     pub(crate) multipliers: DVector<f64>,
@@ -72,13 +72,13 @@ struct Policy {
 /// The least cost of all steps as a function of the first state, `½ x·P x + (p + Ψ ν)·x + …`, and the inputs that
 /// attain it.
 pub(crate) struct Value {
-    /// The second derivatives `P`.
+    /// The matrix `P`.
     pub(crate) square: DMatrix<f64>,
     /// The slopes `Π = [p, Ψ]`.
     pub(crate) slopes: DMatrix<f64>,
     /// Minus the second derivatives by `(1, ν)`, `W`.
     bent: DMatrix<f64>,
-    /// The policies of the steps, from the last to the first.
+    /// Policies from the last step to the first.
     policies: Vec<Policy>,
 }
 
@@ -152,7 +152,7 @@ pub(crate) fn solve(stages: &[Stage], end: &End, free: usize) -> Option<Solution
     let value = Value::new(stages, end)?;
     let Value { square, slopes, bent, .. } = &value;
 
-    // A damping in rounding of the largest entry: the multiplier of a condition that no input acts on stays as it is.
+    // A damping by rounding: the multiplier of a condition that no input acts on stays as it is.
     let proximal =
         1e-13 * bent.diagonal().iter().skip(1).fold(0.0_f64, |most, entry| most.max(*entry)).max(f64::MIN_POSITIVE);
     // The solution is stationary in the free entries and in the multipliers.

@@ -13,7 +13,7 @@ use crate::model::{Model, by_displacement, flat};
 use crate::riccati::{End, Stage, add_square, of_state, solve};
 use crate::verdict::{ControlError, ControlPlan, Residual, Verdict};
 
-/// The distance from the target and the constraints below which a motion is feasible.
+/// The distance from target and constraints of a feasible motion.
 pub(crate) const FOUND: f64 = 1e-6;
 
 /// A motion, and its miss of the target.
@@ -71,7 +71,6 @@ impl Side {
     }
 }
 
-/// The state of a search.
 pub(crate) struct Search<'c, 'a, S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
     pub(crate) control: &'c Control<'a, S, P>,
     pub(crate) course: Course<S, P>,
@@ -94,7 +93,7 @@ where
     P: Linearisable<S> + Clone,
     ExponentialRetraction: Retraction<Group<S>>,
 {
-    /// Searches an optimum; the [verdict](ControlPlan::verdict) says whether one was found.
+    /// Searches for an optimum; the [verdict](ControlPlan::verdict) says whether one was found.
     ///
     /// # Errors
     ///
@@ -154,7 +153,7 @@ where
         Ok(search)
     }
 
-    /// The bounds and the constraints; only the bounds of inputs while the miss is minimised.
+    /// The bounds, and the constraints unless the miss is minimised.
     fn sides(&self) -> Vec<Side> {
         let control = self.control;
         let mut sides = Vec::new();
@@ -186,7 +185,7 @@ where
         let effort = effort * 0.5 * model.stepper.step_size() * squares;
         let cost = match time * model.duration + effort {
             _ if self.is_nearest => 1.0,
-            // The least effort without bounds stands for a cost of zero, to first order.
+            // The effort without bounds, to first order.
             0.0 => self.least_effort().unwrap_or(1.0),
             cost => cost,
         };
@@ -293,7 +292,7 @@ where
         let (states, h) = (model.states(), model.stepper.step_size());
         let stage = |(step, chosen): (usize, &DVector<f64>)| {
             let mut stage = model.blocks(&self.course.states[step], chosen)?;
-            // A small effort makes the least miss unique in inputs without bounds.
+            // A small damping makes the least miss convex in inputs without bounds.
             let square = if self.is_nearest { 1e-8 * h } else { weights.effort * h };
             for input in 0..chosen.len() {
                 let (lower, upper) = (self.control.bounds)(step, input);
@@ -323,7 +322,7 @@ where
         time * course.model.duration + effort * 0.5 * course.model.stepper.step_size() * squares
     }
 
-    /// The condition at the end; while the miss is minimised there is none, but half the squared miss is a cost.
+    /// The condition at the end, or half the squared miss as a cost while that is minimised.
     fn end(&self) -> Option<End> {
         let (states, miss) = (self.course.model.states(), self.course.miss.clone());
         let by_state = self.by_last_state()?;
@@ -402,8 +401,7 @@ where
     }
 }
 
-/// The course with these inputs, its slacks equal to the constrained values; `None` if the target's coordinates don't
-/// reach the end, or a value isn't finite.
+/// The course with these inputs, and slacks equal to the values; `None` without finite values and a finite miss.
 pub(crate) fn course<S, P>(
     control: &Control<'_, S, P>,
     model: Model<S, P>,

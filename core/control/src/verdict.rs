@@ -1,4 +1,4 @@
-//! The results of a search: a plan, its residual, and the reason why the search stopped.
+//! The results of a search: a plan, its residual, and a verdict.
 
 use liestep::gradients::InputOf;
 use liestep::mechanics::SecondDerivatives;
@@ -21,8 +21,8 @@ pub struct ControlPlan<S: SecondDerivatives, P: Plan<S>> {
     /// The multipliers of the target: minus the derivatives of the least cost by its attitude's displacements and its
     /// momentum.
     pub multipliers: Vec<f64>,
-    /// The multipliers of the constraints: the derivatives of the least cost by the bounds of the constrained values,
-    /// value by value of one state after another from the first step's end.
+    /// The multipliers of the constraints: the derivatives of the least cost by their bounds, value by value of one
+    /// state after another from the first step's end.
     pub prices: Vec<f64>,
     /// The residual of the conditions of an optimum.
     pub residual: Residual,

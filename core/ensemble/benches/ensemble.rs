@@ -4,7 +4,7 @@
 //! cargo bench -p liestep-ensemble --bench steps                     with and without files, on one and two threads, in turns
 //! cargo bench -p liestep-ensemble --bench steps -- plain 4096       that many tops and no files: to count instructions
 //! cargo bench -p liestep-ensemble --bench steps -- failing 4096     one of a hundred falls too fast at some time
-//! cargo bench -p liestep-ensemble --bench steps -- section 4096     axes pass a plane; `section-in-lanes`, found in lanes
+//! cargo bench -p liestep-ensemble --bench steps -- section 4096     axes pass a plane; or `section-in-lanes`
 //! cargo bench -p liestep-ensemble --bench steps -- many 10000000    that many of ten steps into files, and the memory for it
 //! cargo bench -p liestep-ensemble --bench steps -- splittings       symmetric tops, beside heyoka where Python has it
 //! ```

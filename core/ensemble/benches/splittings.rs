@@ -108,7 +108,7 @@ fn tops<S: Scheme>(scheme: S, steps: u32) -> Result<Vec<Top<S::Stepper>>, Failur
     (0..TOPS).map(|number| scheme.top(&body(number), TIME / f64::from(steps))).collect()
 }
 
-/// The vertical direction and the angular velocity, both in the body frame.
+/// The vertical and the velocity in the body frame.
 type End = [Vector3<f64>; 2];
 
 /// The ends of all tops, run in lanes, and the time for a top, s.

@@ -12,7 +12,6 @@ use crate::section::{Crossing, Place, Watch};
 use crate::shard::{Crossings, Rows, Shard, Status};
 
 impl<M: Integrator> Ensemble<M> {
-    /// The members of a chunk.
     pub(crate) fn range(&self, chunk: u64) -> Range<u64> {
         let size = self.members_of_chunk();
         chunk * size..((chunk + 1) * size).min(self.members)
@@ -114,7 +113,6 @@ impl<M: Integrator> Ensemble<M> {
     ) -> Option<()> {
         // Sections are checked after each step.
         let longest = if self.sections.is_empty() { Self::PIECE } else { 1 };
-        // Whether a member is still running.
         let going = |group: &dyn Group<M>, place: usize, course: &Course<M>| {
             group.error(place).is_none() && course.ended.is_none()
         };
@@ -153,7 +151,7 @@ impl<M: Integrator> Ensemble<M> {
         for (place, course) in courses.iter_mut().enumerate() {
             let (member, (stepper, start)) = (members[place], &starts[place]);
             if course.ended.is_none() {
-                // All steps have been checked; whether a zero at the last one is a crossing is still open.
+                // All steps have been checked, but for a zero at the last.
                 let now = || group.state(place);
                 self.look_at_sections(stepper, &|_| Place { value: None, before: &now, now: &now }, course, true);
             }
@@ -182,7 +180,6 @@ impl<M: Integrator> Ensemble<M> {
         Rows::of_columns(self.names.len(), crossings)
     }
 
-    /// The course of a member at its start.
     fn course(&self, (stepper, start): &Start<M>) -> Course<M> {
         let watches: Result<_, _> = self.sections.iter().map(|section| section.watch(stepper, start)).collect();
         let (watches, ended) = match watches {
@@ -250,23 +247,22 @@ impl<M: Integrator> Ensemble<M> {
     }
 }
 
-/// The rows and the outcome of a chunk so far.
+/// The result of a chunk so far.
 struct Tally {
     rows: Rows,
     outcome: Outcome,
 }
 
-/// The rows and values of one member so far.
+/// The result of a member so far.
 struct Course<M: Integrator> {
     rows: Rows,
-    /// The watch of each section.
+    /// One for each section.
     watches: Vec<Watch<M::State>>,
     /// The values that sections reduce, with the number of the reduction.
     reduced: Vec<(usize, f64)>,
     /// The number of crossings of each section, and the time of the first, s.
     passed: Vec<(u64, f64)>,
-    /// The state at which a section ended the member: it left, or, with a failure, it couldn't be followed further, as
-    /// the function of the section had no value.
+    /// The state at which a section ended the member: it left, or failed, as the function had no value.
     ended: Option<(M::State, Option<Failure>)>,
     /// The values of its end that are reduced; `None` if the member left.
     end: Result<Option<Vec<f64>>, MemberFailure>,

@@ -131,8 +131,8 @@ mod tests {
         assert_eq!(philox(pi, [0xa409_3822, 0x299f_31d0]), [0xd16c_fe09, 0x94fd_cceb, 0x5001_e420, 0x2412_6ea1]);
     }
 
-    /// Means and spreads of a hundred thousand draws are within four standard errors; draws of two names are
-    /// uncorrelated, and two members differ.
+    /// Means and spreads of a hundred thousand are within four standard errors; names are uncorrelated, and members
+    /// differ.
     #[test]
     fn numbers_are_spread_as_they_should_be() {
         let count = 100_000_u32;

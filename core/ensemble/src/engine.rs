@@ -19,8 +19,8 @@ pub trait Engine {
         true
     }
 
-    /// Computes every missing chunk by `make`, once and in some process. Only the process that [leads](Self::leads)
-    /// passes their numbers, and calls `tell` for each chunk that another process has computed.
+    /// Computes every missing chunk by `make`, once and in some process. The process that [leads](Self::leads) passes
+    /// their numbers, and calls `tell` for each chunk of another.
     ///
     /// # Errors
     ///
@@ -28,14 +28,14 @@ pub trait Engine {
     fn distribute(&self, missing: &[u64], make: &MakeChunk<'_>, tell: &(dyn Fn() + Sync)) -> Result<(), StoreError>;
 }
 
-/// A function that computes the chunk of a number and writes it. The second argument requests a stop; it is called
-/// between members and after each [piece](crate::Ensemble::PIECE) of their steps.
+/// Computes the chunk of a number and writes it. The other argument requests a stop; it is called between members and
+/// after each [piece](crate::Ensemble::PIECE) of their steps.
 pub type MakeChunk<'a> = dyn Fn(u64, &dyn Fn() -> bool) -> Result<(), StoreError> + Sync + 'a;
 
 /// An engine of this process's threads, for all chunks or for one share: the chunks whose numbers leave the remainder
 /// `share` when divided by `shares`.
 ///
-/// Several runs of one program, for example by an array of jobs, can so share one folder without a server. A later run
+/// Several runs of one program, for example by an array of jobs, can share one folder without a server. A later run
 /// computes what is missing, whichever share it belonged to.
 #[derive(Debug)]
 pub struct Local<'a> {
@@ -65,8 +65,8 @@ impl<'a> Local<'a> {
         self
     }
 
-    /// Lets the engine compute missing chunks of other shares after its own, the last ones first, so that nobody waits
-    /// for a slow process. Two processes may then compute the same chunk and write the same file.
+    /// Computes missing chunks of other shares after its own, the last ones first, so that nobody waits for a slow
+    /// process. Two may compute the same chunk then, and write the same file.
     #[must_use]
     pub fn helping(mut self) -> Self {
         self.helps = true;
@@ -122,7 +122,7 @@ impl Engine for Local<'_> {
 ///
 /// # Errors
 ///
-/// The text is no share; the error is a sentence that says what to write.
+/// A sentence that says what to write.
 pub fn share_of(text: &str) -> Result<(u64, u64), String> {
     let mistake = || format!("`{text}` isn't a share: write `i/n`, from `0/n` to one below `n/n`");
     let (share, shares) = text.split_once('/').ok_or_else(mistake)?;

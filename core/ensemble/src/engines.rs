@@ -14,8 +14,8 @@
 //! rest by MPI, and of a job with a killed process: they are identical.
 //!
 //! MPI hands out chunks on request, so that slow ones don't delay the rest; shares are fixed beforehand, and need no
-//! dependency and no server. With [`Local::helping`](crate::Local::helping) processes that are done take chunks of
-//! other shares, the last ones first. Both need a folder that all processes share.
+//! dependency and no server. Processes that are done take chunks of other shares with
+//! [`Local::helping`](crate::Local::helping), the last ones first. Both need a folder that all processes share.
 //!
 //! A starting process lists the files, and reads the head of one. At its end it reads the heads of its own files, some
 //! 1.5 kB each, to sum their outcomes, or those of all files once all chunks exist: one part in 6,000 for 10⁹ members
@@ -62,8 +62,8 @@
 //! `core/ensemble/elsewhere/run` runs the example `ensemble` by threads; by the job file of Slurm and by the command in
 //! that of Kubernetes, for each of four shares in the scheduler's environment, and for one of Slurm's as a
 //! resubmission; and, if Python has them, by Dask and Ray, with two workers on one machine, one program of which is
-//! killed (`--install` fetches them). It compares all files, and reads them with polars and pandas, crossings of
-//! sections included. The schedulers themselves were not run: whether `sbatch` and `kubectl` accept the files is
+//! killed (`--install` fetches them). The script compares all files, and reads them with polars and pandas, crossings
+//! of sections included. The schedulers themselves were not run: whether `sbatch` and `kubectl` accept the files is
 //! untested.
 //!
 //! # Size of chunks

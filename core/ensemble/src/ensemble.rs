@@ -55,7 +55,7 @@ pub struct Ensemble<M: Integrator> {
 }
 
 impl<M: Integrator> Ensemble<M> {
-    /// The number of steps between two checks whether a member can go on. A member that can't repeats its last piece
+    /// The number of steps between two checks whether a member can go on. A failing member repeats its last piece
     /// step by step.
     pub const PIECE: u64 = 64;
 
@@ -83,7 +83,7 @@ impl<M: Integrator> Ensemble<M> {
         Self::of(name, members, steps, Box::new(make), in_lanes::<M>, false)
     }
 
-    /// An ensemble for any stepper, as [`new`](Self::new) but without lanes: members run one after another.
+    /// An ensemble for any stepper: as [`new`](Self::new), without lanes.
     pub fn one_by_one(
         name: &str,
         members: u64,
@@ -117,7 +117,7 @@ impl<M: Integrator> Ensemble<M> {
         }
     }
 
-    /// Clears the stored fingerprint and chunk size, which depend on the plan.
+    /// Clears results that depend on the plan.
     fn changed(self) -> Self {
         Self { fingerprint: OnceLock::new(), size: OnceLock::new(), ..self }
     }
@@ -181,8 +181,8 @@ impl<M: Integrator> Ensemble<M> {
         self.keep_named(&names, move |run, row| row.copy_from_slice(&values(run)))
     }
 
-    /// Records columns, as [`keep`](Self::keep), whose names are known at run time only: the slice has a place for each
-    /// name, initialised with NaN.
+    /// Records columns as [`keep`](Self::keep), by names known at run time: the slice has a place for each, initialised
+    /// with NaN.
     ///
     /// # Panics
     ///
@@ -249,7 +249,7 @@ impl<M: Integrator> Ensemble<M> {
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // an estimate
     fn usual_chunk(&self) -> u64 {
-        // Steps of (3.13) that a core makes in a second, in lanes and one by one, and the cost of one such step.
+        // Steps of (3.13) that a core computes in a second, in lanes and one by one, and the cost of one such step.
         const STEPS: [f64; 2] = [33_554_432.0, 4_194_304.0];
         const OF_A_STEP: f64 = 448.0;
         const ROWS: u64 = 1 << 20;
@@ -260,8 +260,7 @@ impl<M: Integrator> Ensemble<M> {
         });
         let ratio = OF_A_STEP / cost.unwrap_or(OF_A_STEP).max(1.0);
         let second = (STEPS[usize::from(self.takes_turns)] * ratio / self.steps.max(1) as f64) as u64;
-        // Chunks are small enough for 64 workers to have some. In lanes a chunk takes at least a 32nd of a second, so
-        // that its file is cheap beside it.
+        // Chunks for 64 workers, and in lanes at least a 32nd of a second each, beside which a file is cheap.
         let least = if self.takes_turns { 1 } else { (second / 32).max(LANES as u64) };
         let shared = self.members.div_ceil(CHUNKS).max(least).min(second);
         // Very many members go to a few thousand files.
@@ -283,7 +282,7 @@ impl<M: Integrator> Ensemble<M> {
         *self.fingerprint.get_or_init(|| self.print())
     }
 
-    /// The members that the fingerprint samples: the first, the middle and the last.
+    /// The sampled members: first, middle and last.
     fn looked_at(&self) -> Vec<u64> {
         let mut looked_at = vec![0, self.members / 2, self.members.saturating_sub(1)];
         looked_at.dedup();
@@ -310,7 +309,7 @@ impl<M: Integrator> Ensemble<M> {
         digest.value()
     }
 
-    /// Adds a sampled member to the digest, by its recorded values.
+    /// Adds a member's recorded values to the digest.
     fn look_at(&self, member: u64, digest: &mut Digest) {
         match (self.make)(&self.member(member)) {
             Ok((stepper, mut state)) => {
@@ -338,9 +337,9 @@ impl<M: Integrator> Ensemble<M> {
     /// Records columns where members cross a surface.
     ///
     /// Members stay in lanes; each of their steps is checked, and steps with a crossing are repeated by the member
-    /// alone. Each step is made separately, as in every run with [events](liestep::recording::Run::event). The rows are
-    /// those without a section, and each row has the crossings since the previous one. Only the motion bounds their
-    /// number, and a chunk is computed in memory.
+    /// alone. Each step is made separately, as in every run with [events](liestep::recording::Run::event). Rows stay as
+    /// they are, and each has the crossings since the one before. Only the motion bounds their number, and a chunk is
+    /// computed in memory.
     ///
     /// # Panics
     ///

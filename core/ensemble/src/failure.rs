@@ -5,7 +5,7 @@ use liestep::{SetupError, StepError};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// The reason why a member couldn't be constructed, or couldn't be stepped to its end.
+/// The reason why a member couldn't be constructed, or stepped to its end.
 #[derive(Clone, Debug, PartialEq, Error, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Failure {

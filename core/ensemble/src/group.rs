@@ -18,13 +18,13 @@ pub(crate) trait Group<M: Integrator> {
     fn error(&self, member: usize) -> Option<StepError>;
 }
 
-/// A function that divides members, in their order, into as few [`group`s](Group) as will do, each with its size.
+/// Divides members, in their order, into as few [`group`s](Group) as will do.
 pub(crate) type Grouping<M> = fn(&[Start<M>]) -> Vec<(Box<dyn Group<M>>, usize)>;
 
 /// A member's stepper and its initial state.
 pub(crate) type Start<M> = (M, <M as Integrator>::State);
 
-/// A group of members in lanes.
+/// Members in lanes.
 struct Together<M: Batchable<AutoF64x8>> {
     batch: Batch<AutoF64x8, M>,
     before: <<M as InLanes<AutoF64x8>>::Together as Integrator>::State,
@@ -55,7 +55,7 @@ impl<M: Batchable<AutoF64x8> + 'static> Group<M> for Together<M> {
     }
 }
 
-/// Groups of eight members, and of fewer if a member can't share a batch with those before it.
+/// Groups of eight members, or fewer if a member can't share a batch.
 pub(crate) fn in_lanes<M: Batchable<AutoF64x8> + 'static>(mut left: &[Start<M>]) -> Vec<(Box<dyn Group<M>>, usize)> {
     let mut groups: Vec<(Box<dyn Group<M>>, usize)> = Vec::new();
     while let Some((batch, count)) = Batch::<AutoF64x8, M>::of_first(&left[..left.len().min(LANES)]) {
@@ -66,7 +66,7 @@ pub(crate) fn in_lanes<M: Batchable<AutoF64x8> + 'static>(mut left: &[Start<M>])
     groups
 }
 
-/// A group of one member.
+/// One member.
 struct SingleMember<M: Integrator> {
     stepper: M,
     state: M::State,
@@ -75,7 +75,7 @@ struct SingleMember<M: Integrator> {
 }
 
 impl<M: Integrator> Group<M> for SingleMember<M> {
-    /// Steps the member as [`Batch::run`] does.
+    /// Runs as [`Batch::run`].
     fn run(&mut self, steps: u64) {
         if self.error.is_some() {
             return;

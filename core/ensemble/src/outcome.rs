@@ -1,20 +1,20 @@
-//! Outcomes: counts, failures and reductions of the members of a chunk, of a folder of chunks, or of all.
+//! Outcomes of members: of a chunk, of a folder of chunks, or of all.
 
 use serde::{Deserialize, Serialize};
 
 use crate::failure::MemberFailure;
 use crate::reduce::{Moments, Summary};
 
-/// The outcome of members, and the values that they were reduced to.
+/// The outcome of members: counts, failures and reductions.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
-    /// The number of members that completed their steps.
+    /// Members that completed their steps.
     pub finished: u64,
-    /// The number of members that [left](crate::Section::until) before.
+    /// Members that [left](crate::Section::until) before.
     pub left: u64,
-    /// The number of members that could be followed no further.
+    /// Members that failed on the way.
     pub stopped: u64,
-    /// The number of members that couldn't be constructed.
+    /// Members that couldn't be constructed.
     pub impossible: u64,
     /// The failures; of several chunks the first ten of each kind.
     pub failures: Vec<MemberFailure>,
@@ -34,7 +34,7 @@ pub struct Passages {
 }
 
 impl Outcome {
-    /// The number of members that neither finished nor left.
+    /// Members that neither finished nor left.
     #[must_use]
     pub fn failed(&self) -> u64 {
         self.stopped + self.impossible
@@ -42,7 +42,7 @@ impl Outcome {
 
     /// Adds another outcome of the same plan.
     pub(crate) fn merge(&mut self, other: &Self) {
-        /// The number of failures of a kind that are listed; the shards have all.
+        /// The shards have all failures.
         const SHOWN: usize = 10;
         self.finished += other.finished;
         self.left += other.left;

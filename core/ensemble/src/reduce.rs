@@ -1,7 +1,7 @@
 //! Reductions: statistics of all members, accumulated while they run.
 //!
-//! Each chunk accumulates in the order of its members, and chunks are merged in the order of their numbers, so that the
-//! bits of a sum don't depend on who computed which.
+//! Chunks accumulate in the order of their members, and are merged in their own order, so that the bits of a sum don't
+//! depend on who computed which.
 
 use core::ops::Range;
 use std::collections::BTreeMap;
@@ -39,14 +39,14 @@ pub enum Summary {
 /// depend on the order.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Quantiles {
-    /// The counts by the leading bits of the values, in the order of the values.
+    /// Counts by the leading bits of values, in their order.
     counts: BTreeMap<i64, u64>,
     /// The count of NaNs.
     pub not_a_number: u64,
 }
 
 impl Quantiles {
-    /// The low bits of a double that are dropped: the rest is its size to one part in 128.
+    /// Low bits that are dropped: the size is left to one part in 128.
     const LEFT_OUT: u32 = 45;
 
     fn add(&mut self, value: f64) {
@@ -114,7 +114,7 @@ impl Moments {
         if self.count < 2 { f64::NAN } else { self.squares / (self.count - 1) as f64 }
     }
 
-    /// Merges two samples by T. F. Chan, G. H. Golub, R. J. `LeVeque`, *Updating formulae and a pairwise algorithm for
+    /// Merges moments by T. F. Chan, G. H. Golub, R. J. `LeVeque`, *Updating formulae and a pairwise algorithm for
     /// computing sample variances*, 1979.
     #[allow(clippy::cast_precision_loss)] // members
     pub(crate) fn merge(&mut self, other: &Self) {
@@ -123,7 +123,7 @@ impl Moments {
             return;
         }
         if self.count == 0 {
-            // The formula below would give NaN: the square of a large mean is infinite, and is multiplied by zero.
+            // The formula would multiply the infinite square of a large mean by zero.
             *self = Self { not_finite: self.not_finite, ..other.clone() };
             return;
         }
@@ -260,7 +260,7 @@ mod tests {
         assert_eq!((turned.count, turned.least, turned.largest), (5, -1.0, 7.0));
         let Summary::Moments(moments) = &all else { panic!("they are moments") };
         assert_eq!((moments.count, moments.not_finite, moments.least, moments.largest), (5, 1, -1.0, 7.0));
-        // The mean of 1, 2, 6, −1 and 7 is 3, and the squares about it are 4 + 1 + 9 + 16 + 16.
+        // The mean of 1, 2, 6, −1 and 7 is 3, the squares 4 + 1 + 9 + 16 + 16.
         assert!((moments.mean - 3.0).abs() < 1e-15 && (moments.variance() - 46.0 / 4.0).abs() < 1e-14);
         assert_eq!(read(&all), all);
     }

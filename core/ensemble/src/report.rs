@@ -16,11 +16,11 @@ use crate::store::{Fault, Store, StoreError};
 /// The report of a run; it covers this share alone while chunks of other shares are missing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
-    /// The number of chunks of the ensemble.
+    /// Chunks of the ensemble.
     pub chunks: u64,
-    /// The number of chunks that this process computed in this run.
+    /// Chunks that this process computed in this run.
     pub made: u64,
-    /// The number of chunks still missing: those of other shares, or those after a stop.
+    /// Chunks still missing: of other shares, or after a stop.
     pub missing: u64,
     /// The outcome of the members; [`Store::shards`] has all failures with their errors.
     pub outcome: Outcome,
@@ -41,11 +41,11 @@ impl Report {
 /// The progress of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// The number of chunks that exist.
+    /// Chunks that exist.
     pub done: u64,
-    /// The number of all chunks.
+    /// All chunks.
     pub chunks: u64,
-    /// The estimated time for the remaining chunks, from the time of this run's chunks so far.
+    /// The estimated time for the others, by the time of this run's chunks.
     pub remaining: Duration,
 }
 
@@ -94,7 +94,7 @@ impl<M: Integrator> Ensemble<M> {
         let (missing, faults): (Vec<u64>, Vec<Fault>) = match looked {
             Ok(found) => found,
             Err(error) => {
-                // The other processes wait for numbers of chunks: an empty list lets them go on.
+                // The other processes wait for numbers: there are none.
                 engine.distribute(&[], &|_, _| Ok(()), &|| ())?;
                 return Err(error);
             }
@@ -112,7 +112,7 @@ impl<M: Integrator> Ensemble<M> {
             }
         };
         let make = |chunk: u64, is_stopped: &dyn Fn() -> bool| {
-            // Another share may have computed its own chunk by now.
+            // Another share may have written it by now.
             if others.contains(&chunk) && store.has(chunk) {
                 return Ok(());
             }

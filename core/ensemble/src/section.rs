@@ -20,12 +20,11 @@ type Values<M> = dyn Fn(&Moment<'_, M>, &mut Vec<f64>) + Send + Sync;
 type Time<M> = fn(&Moment<'_, M>) -> f64;
 type Find<M> = fn(&Section<M>, &M, &<M as Integrator>::State, u64) -> Result<Vec<Crossing>, RunError>;
 
-/// A surface, and the columns that are recorded where members cross it, for
-/// [`Ensemble::section`](crate::Ensemble::section).
+/// A surface, and the columns recorded where members cross it, for [`Ensemble::section`](crate::Ensemble::section).
 ///
-/// The surface is the zero set of a function of the motion; [`sections`](liestep::recording::sections) has some
-/// functions. Crossings lie between the ends of steps and are located as by [`Run::event`], to the bit, and with its
-/// guarantee on missed crossings.
+/// The surface is the zero set of a function of the motion; [`sections`](liestep::recording::sections) has some.
+/// Crossings lie between the ends of steps and are located as by [`Run::event`], to the bit, and with its guarantee on
+/// missed crossings.
 ///
 /// # Examples
 ///
@@ -79,9 +78,9 @@ pub(crate) struct Crossing {
     pub(crate) reduced: Vec<f64>,
 }
 
-/// The progress of a section's search for crossings along one member.
+/// The search for crossings along one member.
 pub(crate) struct Watch<S> {
-    /// The state before the first of the last steps, if the function was zero at the ends of these steps.
+    /// The state before the last steps at whose ends the function was zero, if there are any.
     before: Option<S>,
     /// Whether the function was above zero at the last step checked; `None` for a zero or a NaN.
     above: Option<bool>,
@@ -93,7 +92,7 @@ pub(crate) struct Watch<S> {
 pub(crate) struct Place<'a, S> {
     /// The function's value after the step, if it was computed in lanes.
     pub(crate) value: Option<f64>,
-    /// The state before the step, or the present one if the step has been checked.
+    /// The state before the step; the present one if that was checked.
     pub(crate) before: &'a dyn Fn() -> S,
     pub(crate) now: &'a dyn Fn() -> S,
 }
@@ -101,8 +100,8 @@ pub(crate) struct Place<'a, S> {
 impl<M: Integrator> Section<M> {
     /// A section at the zeros of a function that the event selects.
     ///
-    /// A [bound](Event::curvature) makes every step be checked closely and computed twice; without one only the steps
-    /// with a crossing are.
+    /// Every step is checked and computed twice if the event has a [bound](Event::curvature), else only those that
+    /// cross.
     ///
     /// # Panics
     ///
@@ -126,9 +125,8 @@ impl<M: Integrator> Section<M> {
         }
     }
 
-    /// Adds the same function for members in lanes, so that only members that cross are taken out of their lanes.
-    /// Repeat `sections::plane`, or pass any function that is generic over its scalar. Members that run one by one
-    /// don't use it.
+    /// Adds the same function for members in lanes, so that only those that cross leave their lanes: `sections::plane`
+    /// again, or what is generic over its scalar. Members one by one don't use it.
     #[must_use]
     pub fn in_lanes(
         mut self,
@@ -142,14 +140,14 @@ impl<M: Integrator> Section<M> {
         self
     }
 
-    /// Restricts the section to the first crossing of each member: its first passage.
+    /// Records only the first crossing of each member: its first passage.
     #[must_use]
     pub fn first(mut self) -> Self {
         self.only_first = true;
         self
     }
 
-    /// Restricts the section to the first crossing, and ends the member with the step that has it, with the status
+    /// Records only the first crossing, and ends the member with its step, with the status
     /// [`Left`](crate::Status::Left). Reductions of ends leave such members out.
     #[must_use]
     pub fn until(mut self) -> Self {
@@ -189,15 +187,15 @@ impl<M: Integrator> Section<M> {
         Crossing { time: (self.time)(now), columns, reduced }
     }
 
-    /// The watch of a member from its start on.
+    /// The watch of a member from its start.
     pub(crate) fn watch(&self, stepper: &M, start: &M::State) -> Result<Watch<M::State>, Failure> {
-        // A search of no steps fails if the function has no value at the start.
+        // The function may have no value at the start.
         (self.find)(self, stepper, start, 0).map_err(failure)?;
         let above = side((self.function)(&Moment::of_step(stepper, start)));
         Ok(Watch { before: None, above, is_done: false })
     }
 
-    /// The values of the function in lanes, if the section has such a function.
+    /// The function's values in lanes, if it has them.
     pub(crate) fn lanes(&self, all: &Moment<'_, <M as InLanes<AutoF64x8>>::Together>) -> Option<[f64; LANES]>
     where
         M: Batchable<AutoF64x8> + 'static,
@@ -251,7 +249,7 @@ impl<M: Integrator> Section<M> {
         }
     }
 
-    /// The values of all functions of the section at one time.
+    /// The values of all its functions at one time.
     pub(crate) fn values(&self, now: &Moment<'_, M>) -> Vec<f64> {
         let Crossing { columns, reduced, .. } = self.at(now);
         [vec![(self.function)(now)], columns, reduced].concat()

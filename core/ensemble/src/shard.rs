@@ -39,7 +39,7 @@ impl Status {
 pub struct Rows {
     /// The member of each row.
     pub member: Vec<u64>,
-    /// The steps that the member has completed.
+    /// The steps completed by then.
     pub step: Vec<u64>,
     /// The status of the member.
     pub status: Vec<Status>,
@@ -156,7 +156,7 @@ impl Rows {
     }
 }
 
-/// The recorded rows and the outcome of a chunk, the contents of one file.
+/// The rows and the outcome of a chunk: one file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shard {
     /// The [fingerprint](crate::Ensemble::fingerprint) of the plan.
@@ -176,7 +176,7 @@ pub struct Shard {
 /// The key of the schema's metadata that stores everything but the rows. A single key, as the order of several isn't
 /// fixed.
 const KEY: &str = "liestep-ensemble";
-/// The first line of that metadata, a comment of TOML; another layout of files has another number.
+/// The first line of it, a comment of TOML; another layout has another number.
 const FORMAT: &str = "# format 3";
 
 impl Shard {
@@ -238,7 +238,7 @@ impl Shard {
         Ok(Some(shard))
     }
 
-    /// The shard of a schema's metadata, without rows.
+    /// A shard without rows.
     fn of_schema(schema: &Schema) -> Result<Option<Self>, String> {
         let summary = schema.metadata().get(KEY).ok_or("it has no summary of a chunk")?;
         if summary.lines().next() != Some(FORMAT) {
@@ -343,7 +343,7 @@ mod tests {
         let bytes = shard.to_bytes().unwrap();
         assert_eq!(Shard::of_bytes(&bytes), Ok(Some(shard)));
         let mut later = bytes.clone();
-        // The format's number stands at the beginning and in the footer.
+        // The format is at the beginning and in the footer.
         for (place, part) in bytes.windows(FORMAT.len()).enumerate() {
             if part == FORMAT.as_bytes() {
                 later[place + FORMAT.len() - 1] = b'9';

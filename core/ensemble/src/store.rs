@@ -61,7 +61,7 @@ pub enum StoreError {
     Io {
         /// The path.
         path: PathBuf,
-        /// The error of the file system.
+        /// The reason.
         error: std::io::Error,
     },
     /// The folder has shards of another plan, or of another version of this format, which are left alone.
@@ -242,7 +242,7 @@ impl Store {
     }
 
     /// The chunks that exist, by the names of their files, and the faults of other files. All files of a chunk with two
-    /// are read. Of the share's own chunks, one file's head is read, to check the plan, or all files if
+    /// are read. The share's own chunks have one file's head read, to check the plan, or all files if
     /// [verified](Self::verified).
     pub(crate) fn look(
         &self,

@@ -1,4 +1,4 @@
-//! Tables of the numbers of members.
+//! Tables from which members read their numbers.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -141,7 +141,7 @@ impl Table {
     }
 }
 
-/// The numbers of a column; `None` if its type isn't numeric.
+/// The numbers of a column, if it has some.
 #[allow(clippy::cast_precision_loss)] // `first_too_large` finds the numbers that would be rounded
 fn numbers(array: &ArrayRef) -> Option<Vec<f64>> {
     Some(match array.data_type() {

@@ -46,7 +46,7 @@ pub fn made(members: u64) -> Vec<(u64, Made)> {
     starts.lock().unwrap().split_off(3)
 }
 
-/// The message of a panic at the construction of an ensemble.
+/// The panic of an ensemble that is refused.
 pub fn message(of: impl FnOnce() -> Ensemble<Top> + UnwindSafe) -> String {
     let payload = catch_unwind(of).map(drop).unwrap_err();
     let text = payload.downcast_ref::<String>().cloned();

@@ -1,4 +1,4 @@
-//! A full disk is an error that leaves finished shards; so is interference by other processes in the folder.
+//! Finished shards survive a full disk, which is an error, and other processes that write to the folder.
 
 use std::io::ErrorKind;
 use std::path::Path;
@@ -29,7 +29,7 @@ fn a_full_disk_is_an_error_that_loses_no_finished_shard() {
     let error = ensemble.run(&Local::threads(1), &store).unwrap_err();
     let is_full = matches!(&error, StoreError::Io { error, .. } if error.kind() == ErrorKind::StorageFull);
     assert!(is_full && error.to_string().contains(name), "{error}");
-    // The shards before the full disk are whole; no part of the failing one is left in the way.
+    // The shards before are whole, and no part of the last is left.
     let removed = (0..20_000).filter(|count| std::fs::remove_file(part(*count)).is_ok()).count();
     assert_eq!(removed, 19_999);
     assert_eq!(contents(&folder.0).len(), 7);

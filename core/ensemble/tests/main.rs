@@ -34,8 +34,8 @@ fn shards(ensemble: &Ensemble<Top>, folder: &Folder) -> Vec<Shard> {
     store.shards(ensemble.fingerprint()).unwrap().map(|shard| shard.unwrap()).collect()
 }
 
-/// The folder and the report of one thread, which more threads, three shares, and members one by one reproduce.
-/// `missing` is the number of chunks missing after each of the shares.
+/// The folder and the report of one thread, equal to those of more threads, of three shares, and one by one. `missing`
+/// is left after each of the shares.
 fn the_same(name: &str, [ensemble, alone]: [&Ensemble<Top>; 2], missing: [u64; 3]) -> (Folder, Report) {
     let first = Folder::new(name);
     let report = run(ensemble, &Local::threads(1), &first);
@@ -73,7 +73,7 @@ fn files_and_sums_are_the_same_for_threads_shares_and_one_by_one() {
     );
 }
 
-/// Rows and failures are those of each member stepped by its own stepper, without an ensemble.
+/// Rows and failures are those of each member's own stepper, without an ensemble.
 #[test]
 fn members_are_what_they_are_alone() {
     let ensemble = tops(MEMBERS, STEPS).every(60);
@@ -211,7 +211,7 @@ fn damaged_files_are_named_and_made_anew() {
     std::fs::remove_file(aside(&cut)).unwrap();
     std::fs::remove_file(aside(&turned)).unwrap();
     assert!(contents(&folder.0) == expected);
-    // A file of another plan stops the run, and nothing is touched.
+    // A file of another plan: nothing is touched.
     let foreign = tops(MEMBERS, STEPS).seed(8);
     let other = Folder::new("foreign");
     run(&foreign, &Local::threads(2), &other);
@@ -320,7 +320,7 @@ fn another_plan_has_another_fingerprint() {
     assert_unlike(&plans);
 }
 
-/// Asserts that no two plans have the same fingerprint.
+/// No two have one fingerprint.
 fn assert_unlike(plans: &[Ensemble<Top>]) {
     let mut fingerprints: Vec<u64> = plans.iter().map(Ensemble::fingerprint).collect();
     fingerprints.sort_unstable();
@@ -366,7 +366,7 @@ fn a_run_can_be_watched_and_stopped() {
     assert_eq!(run(&ensemble, &Local::threads(2), &folder).made, 4);
 }
 
-/// A top whose steps work one by one only; longer runs fail, as a splitting's may for lack of digits.
+/// A top whose longer runs fail, as a splitting's may for lack of digits.
 #[derive(Clone)]
 struct OnlySteps(Top);
 
@@ -404,7 +404,7 @@ impl Integrator for OnlySteps {
     }
 }
 
-/// An error of a longer run doesn't stop a member whose single steps have none.
+/// Errors of longer runs stop no member whose steps have none.
 #[test]
 fn members_go_as_far_as_their_steps_do() {
     let stepwise = Ensemble::one_by_one("tops", 20, STEPS, |member| {
@@ -439,7 +439,7 @@ fn a_member_has_one_row_for_each_step() {
     assert!(stopped.rows.status.contains(&Status::Stopped));
 }
 
-/// A request to stop is answered while members run, not only between them.
+/// A request to stop is answered while members run.
 #[test]
 fn a_long_member_can_be_stopped() {
     let asked = AtomicU64::new(0);

@@ -36,7 +36,7 @@ fn chunks_know_workers_and_what_a_step_costs() {
     assert!((14..=20).contains(&(composed.chunks() / chunks(4_000_000, 1_000))), "{}", composed.chunks());
 }
 
-/// Members that run one by one can be shared even if there is little work; and a second's work is fewer steps.
+/// Members one by one can be shared even if there is little work; a second's work is fewer steps.
 #[test]
 fn chunks_of_members_one_by_one_can_be_shared() {
     for (members, steps, chunks) in
@@ -46,7 +46,7 @@ fn chunks_of_members_one_by_one_can_be_shared() {
     }
 }
 
-/// Columns named at run time equal columns named in the program; places that aren't filled are NaN.
+/// Columns named at run time are as others; places that aren't filled are NaN.
 #[test]
 fn columns_are_named_when_the_program_runs() {
     let fixed = tops(20, STEPS).keep(["t", "none"], |run| [run.stepper.time(run.state), f64::NAN]);
@@ -94,7 +94,7 @@ fn members_are_read_from_a_table() {
     assert!(Table::read("Cargo.toml").is_err_and(|error| error.to_string().contains("Cargo.toml")));
 }
 
-/// Two ensembles without common lanes: a declaration for `f64` alone, and compositions that can't share a batch.
+/// A declaration for `f64` alone, and compositions that can't share a batch.
 #[test]
 fn other_scenes_and_methods() {
     #[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
@@ -132,7 +132,7 @@ fn other_scenes_and_methods() {
     assert_eq!(composed(false), composed(true));
 }
 
-/// The number of a chunk stands in the name and in the contents of its file.
+/// A file has its chunk's number in its name and inside.
 #[test]
 fn a_shard_of_another_number_is_damaged() {
     let (ensemble, folder) = (tops(MEMBERS, STEPS), Folder::new("renamed"));

@@ -84,7 +84,7 @@ fn files_with_sections_are_the_same_for_threads_shares_and_one_by_one() {
     let store = Store::folder(&folder.0).unwrap();
     // Shards are read as written, and a reader of numbers leaves lists out.
     let shards: Vec<Shard> = store.shards(ensemble.fingerprint()).unwrap().map(Result::unwrap).collect();
-    // The comparison is by text, in which NaN equals NaN.
+    // In text NaN equals NaN.
     assert!(format!("{shards:?}") == format!("{:?}", chunks(&ensemble)));
     let table = Table::read(&store.files().unwrap()[0].1).unwrap();
     assert!(table.column("spin").is_none() && table.column("energy").is_some());
@@ -125,7 +125,7 @@ fn a_function_without_a_value_stops_its_member() {
         Section::new(event, function).keep(["t"], |now| [now.time()])
     };
     let undisturbed = tops(12, STEPS).every(1).chunk(0, &|| false).unwrap();
-    // The expected steps follow from recorded velocities, by that condition.
+    // Recorded velocities meet that condition, too.
     let spins = Section::new(Event::crossing(), |_: &Moment<'_, Top>| 1.0);
     let watched = tops(12, STEPS).every(1).section(spins).keep(["w"], |run| [run.stepper.velocity(run.state).z]);
     let watched = watched.chunk(0, &|| false).unwrap().rows;
@@ -147,7 +147,7 @@ fn a_function_without_a_value_stops_its_member() {
             assert_eq!((shard.rows.status[row], shard.rows.step[row]), (Status::Stopped, failed.steps));
         }
     }
-    // The function has no value at one step only: with a sign before and behind, and right behind a zero.
+    // The function has no value at one step only: between two signs, or right after a zero.
     for zero in [0, 1] {
         let only =
             Section::new(Event::crossing(), move |now: &Moment<'_, Top>| match (now.time() / 0.02).round() as u64 {
@@ -159,14 +159,14 @@ fn a_function_without_a_value_stops_its_member() {
         let steps: Vec<u64> = shard.outcome.failures.iter().map(|failed| failed.steps).collect();
         assert_eq!((shard.outcome.finished, steps), (0, vec![40, 40]));
     }
-    // The function has no value from the start on.
+    // No value from the start on.
     let never = Section::new(Event::crossing(), |_: &Moment<'_, Top>| f64::NAN);
     let shard = tops(2, STEPS).section(never).chunk(0, &|| false).unwrap();
     assert_eq!((shard.outcome.finished, shard.outcome.failures.len(), shard.outcome.failures[0].steps), (0, 2, 0));
 }
 
-/// The first crossings, in any direction and without a bound, are those of each member alone, for sections that record
-/// only them and for those that end members. Lanes give the same bits.
+/// First crossings, in any direction and without a bound, are those of each member alone, whether sections record only
+/// them or end members. Lanes have the same bits.
 #[test]
 fn first_passages_are_those_of_each_member_alone() {
     let (mut expected, mut fell) = (Vec::new(), 0);
@@ -218,7 +218,7 @@ fn first_passages_are_those_of_each_member_alone() {
     }
 }
 
-/// Asserts that the passages of members that finished or left are those of the rows, whose first column is the time.
+/// The passages of members that finished or left are those of the rows, whose first column is the time.
 fn assert_passages(shards: &[Shard]) {
     for Shard { rows, outcome, .. } in shards {
         let has_ended = |member: u64| {

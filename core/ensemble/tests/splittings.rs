@@ -91,7 +91,7 @@ where
 #[test]
 fn symmetric_bodies_in_lanes_move_as_alone() {
     let split = |scheme| move |top: Top| Stepper::split(top.scene, 0.05, SymmetricBody::new(&top.inertia)?, scheme);
-    // The centre of mass lies on the axis, so that the turn about it is taken out, or beside it.
+    // The turn about the axis is taken out, or isn't.
     for beside in [0.0, 0.2] {
         assert_same("Strang", true, beside, split(SplittingScheme::STRANG));
         assert_same("Nyström", true, beside, split(SplittingScheme::NYSTROM_11));
@@ -119,7 +119,7 @@ fn other_bodies_in_lanes_move_as_alone() {
         let scheme = ProcessedScheme::SIX_A;
         Ok(Stepper::processed(top.scene, 0.05, ExactBody::new(&top.inertia), scheme)?.compensated())
     });
-    // The step of a declared flow is limited, also by the spin of the last members.
+    // The step is limited, by the spin of the last members too.
     let failures = same("a declared flow", false, 0.2, |top| {
         let flow = top.scene.first;
         Stepper::split(top.scene, 0.02, flow, SplittingScheme::STRANG)
@@ -149,8 +149,7 @@ fn bodies_in_other_axes_move_in_lanes_as_alone() {
     });
 }
 
-/// A batch refuses a state outside of the processor beside states inside: one that was stepped by another step has to
-/// enter the processor first.
+/// States inside the processor share no lanes with one that was stepped by another step, and has yet to enter it.
 #[test]
 fn a_processed_body_of_another_step_has_lanes_of_its_own() {
     let moments = Vector3::new(1.1, 1.5, 1.7);

@@ -7,7 +7,7 @@ use liestep::numbers::Real;
 use liestep_derivation::Action;
 use nalgebra::{Point, SMatrix, SVector};
 
-/// The actions in a type of advected parameters, each with rows and columns of what is stored.
+/// The actions in a type of advected parameters, each with the rows and columns of the stored array.
 ///
 /// A declaration has one such type: `()` if nothing is advected or given, one of these for one parameter, and a tuple
 /// for several, in the order of the declaration.

@@ -10,7 +10,7 @@ use liestep_derivation::{Array, Function, Operation, Program, Source};
 
 use crate::error::LateError;
 
-/// A back end, which runs programs: one type for all of a declaration, so that a step calls it directly.
+/// A back end that runs programs: one for all of a declaration, so that a step calls it directly.
 pub trait Backend<T: Real>: Copy + Debug + 'static {
     /// The code of a program.
     type Code: Debug + Send + Sync + 'static;
@@ -30,7 +30,7 @@ pub trait Backend<T: Real>: Copy + Debug + 'static {
     fn run<const N: usize>(code: &Self::Code, constants: &[T], given: Given<'_, T, N>, outputs: &mut [T]);
 }
 
-/// The back end that interprets programs operation by operation: safe, on every machine, and in lanes.
+/// Interprets programs operation by operation: safe, on every machine, and in lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Interpreter;
 
@@ -57,7 +57,7 @@ pub struct Code {
     /// follow.
     constants: Range<usize>,
     literals: Vec<f64>,
-    /// The inputs in the next registers, by their places in arrays, array by array.
+    /// Inputs follow, array by array.
     inputs: Vec<(Array, Vec<usize>)>,
     runs: Vec<Run>,
     outputs: Vec<u16>,
@@ -80,8 +80,8 @@ struct Instruction {
 /// An operation without its operands.
 type Kind = Operation<()>;
 
-/// Allocates registers for the results of operations in an order; `place` has those of inputs and literals, as many as
-/// `registers`, and gets those of results. Returns the code and the number of registers, if 16 bits count them.
+/// Allocates registers for results in an order; `place` has those of inputs and literals, as many as `registers`, and
+/// gets those of results. Returns the code and the number of registers, if 16 bits count them.
 fn allocated(program: &Program, order: &[usize], place: &mut [u16], mut registers: usize) -> Option<(Vec<Run>, usize)> {
     let fixed = program.inputs.len() + program.literals.len();
     // The last read of each value; the register of an output is never reused.
@@ -216,7 +216,7 @@ impl Code {
     fn run_in<T: Real>(&self, registers: &mut [T], constants: &[T], given: &[(Array, &[T])], outputs: &mut [T]) {
         let mask = registers.len().wrapping_sub(1);
         let (known, open) = registers.split_at_mut(self.constants.len().min(registers.len()));
-        // A NaN stands for missing constants, as no step accepts it for a number.
+        // No step accepts NaN for a number.
         match constants.get(self.constants.clone()) {
             Some(read) => known.copy_from_slice(&read[..known.len()]),
             None => known.fill(real(f64::NAN)),
@@ -245,7 +245,7 @@ impl Code {
     }
 }
 
-/// Applies one operation to its operands in turn; the mask is one less than the number of registers, a power of two.
+/// The mask is one less than the number of registers, a power of two.
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn apply<T: Real>(registers: &mut [T], mask: usize, instructions: &[Instruction], operation: impl Fn(T, T) -> T) {
     // The loop over plain numbers is unrolled by four.
@@ -266,8 +266,8 @@ fn apply_one<T: Real>(registers: &mut [T], mask: usize, made: Instruction, opera
     registers[usize::from(made.result) & mask] = operation(a, b);
 }
 
-/// Applies a function to a number as the compiled step does, to the bit. Its value between zero and one is a number, or
-/// NaN if there is no function of this order.
+/// Applies a function as the compiled step does, to the bit. Between zero and one it is a number, or NaN if there is no
+/// function of this order.
 #[cold]
 #[must_use]
 pub fn applied<T: Real>(function: Function, a: T) -> T {
@@ -284,7 +284,7 @@ pub fn applied<T: Real>(function: Function, a: T) -> T {
 
 macro_rules! of_order {
     ($name:ident of $function:ident: $($order:literal)+) => {
-        /// The function of this order; NaN if there is none.
+        /// The function, or NaN for other orders.
         fn $name<T: Real>(order: u8, a: T) -> T {
             match order {
                 $($order => $function::<T, $order>(a),)+

@@ -1,4 +1,4 @@
-//! Declarations of texts, each derived once.
+//! Declarations read from texts, each derived once.
 
 use std::any::Any;
 use std::collections::BTreeMap;
@@ -33,7 +33,6 @@ impl Deref for Declaration {
     }
 }
 
-/// A program that is ready to run.
 #[derive(Debug)]
 pub(crate) struct Ready<C> {
     pub(crate) code: C,
@@ -48,7 +47,7 @@ impl<C> Ready<C> {
         self.arrays >> array as u16 & 1 == 1
     }
 
-    /// Whether the program reads constants alone, so that its outputs don't change from step to step.
+    /// Whether it reads constants alone: its outputs don't change.
     pub(crate) const fn reads_constants_alone(&self) -> bool {
         self.arrays & !(1 << Array::Constants as u16) == 0
     }
@@ -78,7 +77,7 @@ fn ready_each<T: Real, B: Backend<T>>(programs: &[&Program]) -> Result<Vec<Ready
     Ok(each.map(|(code, program)| Ready { code, outputs: program.outputs.len(), arrays: arrays(program) }).collect())
 }
 
-/// The most bytes of a text; a longer one is no Lagrangian that a person has typed.
+/// A longer text is no Lagrangian that a person has typed.
 const LONGEST: usize = 64 * 1024;
 /// The most declarations; a large one takes some 100 kB.
 const MOST: usize = 10_000;
@@ -94,7 +93,7 @@ pub fn kept() -> usize {
 }
 
 impl Declaration {
-    /// Derives a struct with `#[lagrangian(…)]` or `#[force(…)]`, and proves what was derived.
+    /// Derives a struct with `#[lagrangian(…)]` or `#[force(…)]`, and proves the derivation.
     ///
     /// # Errors
     ///
@@ -107,7 +106,7 @@ impl Declaration {
     }
 
     /// The sum of declarations on one group as one declaration, whose programs add the outputs of theirs. On SO(3) it
-    /// has the bits of the same sum of compiled effects; if the retraction's tangent is taken behind the sum, it
+    /// has the bits of the same sum of compiled effects; if the retraction's tangent is taken after the sum, it
     /// differs by roundings.
     ///
     /// The parameter `m` of a term `Gravity` is called `Gravity.m`; numbers and advected parameters stand in the order
@@ -120,12 +119,12 @@ impl Declaration {
         if let [only] = terms {
             return Ok(only);
         }
-        // Declarations are never moved, so that addresses identify them.
+        // Addresses identify declarations.
         let places: Vec<*const Self> = terms.iter().map(|&term| &raw const *term).collect();
         Self::kept(&format!("{places:?}"), || summed(&terms.iter().map(|term| &term.staged).collect::<Vec<_>>()))
     }
 
-    /// The stored declaration of this name; otherwise the declaration is made and stored.
+    /// The stored declaration of this name, or a new one.
     fn kept(
         name: &str,
         make: impl FnOnce() -> Result<StagedDeclaration, LateError>,
@@ -138,7 +137,7 @@ impl Declaration {
             return Err(LateError::TooMany(MOST));
         }
         let declaration = Self::of(make()?);
-        // The second of two threads that have derived it drops its own.
+        // A second thread that has derived it drops its own.
         Ok(known().entry(name.to_owned()).or_insert_with(|| Box::leak(Box::new(declaration))))
     }
 
@@ -157,7 +156,7 @@ impl Declaration {
             LateError::Mistakes(placed.collect())
         });
         drop(tokens);
-        // The texts by which the tokens' places are found would stay in memory, too.
+        // The texts of the tokens' places would be stored, too.
         proc_macro2::extra::invalidate_current_thread_spans();
         found.map(|(staged, _)| staged)
     }
@@ -173,7 +172,7 @@ impl Declaration {
         self.once(|| ready::<T, B>(&self.staged.programs))
     }
 
-    /// The programs of the derivatives of a step, prepared once.
+    /// The programs of a step's derivatives.
     pub(crate) fn ready_derivatives<T: Real, B: Backend<T>>(&self) -> Result<Derivatives<B::Code>, LateError> {
         let programs = self.staged.derivatives.as_ref().ok_or(LateError::NoGradients)?;
         self.once(|| ready_each::<T, B>(&programs.each_ref())?.try_into().map_err(|_| LateError::TooLarge))

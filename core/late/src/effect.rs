@@ -16,7 +16,7 @@ pub(crate) type Matrix<G> = <G as LieGroup>::Matrix;
 pub(crate) type Vector<G> = <G as LieGroup>::Vector;
 pub(crate) type Square<G> = <Vector<G> as Coordinates<<G as LieGroup>::Scalar>>::Square;
 
-/// Room for numbers, on the stack unless they are many; several sizes, as unused room costs time to clear.
+/// Room for numbers, on the stack unless they are many: clearing unused room costs time.
 macro_rules! room {
     ($name:ident: $scalar:ty, $count:expr) => { room!($name: $scalar, $count, least 3, few 6, less 12, more 18, most 48) };
     ($name:ident: $scalar:ty, $count:expr, $($place:ident $most:literal),+) => {
@@ -155,7 +155,7 @@ where
         alone::<_, B, _>(program, given)
     }
 
-    /// The value of a term of the Lagrangian; zero for a force, which has none.
+    /// A term of the Lagrangian; zero for a force.
     fn of_lagrangian(&self, index: usize, at: (&Matrix<G>, &W, G::Scalar)) -> Vec<G::Scalar> {
         let terms = self.stages.lagrangian.as_ref();
         terms.map_or_else(|| vec![real(0.0); G::DIMENSION], |terms| self.term(&terms[index], at))
@@ -175,7 +175,7 @@ where
     type Constants = Constants<G::Scalar, B>;
     type StepTerms = StepTerms<Vector<G>, W>;
 
-    // A value has the parts of its declaration; the type allows all of them, or kicks alone.
+    // A value has its declaration's parts; the type allows all, or kicks alone.
     const PARTS: Parts = Parts { unknown: K::MAY_BE_UNKNOWN, ..Parts::ALL };
     const INERTIA_IS_CONSTANT: bool = !K::MAY_BE_UNKNOWN;
     const IS_QUADRATIC: bool = !K::MAY_BE_UNKNOWN;
@@ -253,7 +253,7 @@ where
         let given = [(Array::Step, std::slice::from_ref(&h)), (Array::Parameters, &*self.numbers)];
         let numbers = alone::<_, B, _>(&self.stages.constants, given);
         let programs = self.specialise.map(|specialise| specialise(&self.declaration.programs, &numbers));
-        // A specialised program is no larger than the general one, which the back end has accepted.
+        // A specialised program is no larger than the general one.
         let own = programs.and_then(|programs| ready::<G::Scalar, B>(&programs).ok()).map(Arc::new);
         let is_specialised = own.is_some();
         Constants::of(self.declaration, own.as_ref().unwrap_or(&self.stages), is_specialised, numbers.into())
@@ -348,7 +348,6 @@ fn kick_with_more<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
     );
 }
 
-/// Runs the program of an iteration.
 #[cfg_attr(all(not(debug_assertions), not(feature = "small")), inline(always))]
 fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
     (program, constants): (&Ready<B::Code>, &[G::Scalar]),
@@ -360,8 +359,7 @@ fn iteration<G: LieGroup, W: Advected<G>, B: Backend<G::Scalar>>(
 {
     // A borrowed value has to stay in memory: only copies are borrowed.
     let half = *half;
-    // The system depends on the increment on groups other than SO(3). A separate function for these leaves a step on
-    // SO(3) short.
+    // Off SO(3) the system depends on the increment: a separate function leaves a step on SO(3) short.
     if program.reads(Array::Increment) || program.reads(Array::InverseIncrement) {
         return iteration_with_more::<G, W, B>((program, constants), &{ *terms }, &{ half }, outputs);
     }
@@ -407,7 +405,7 @@ where
     B: Backend<G::Scalar>,
     CayleyRetraction: Retraction<G>,
 {
-    // The method below answers for each value.
+    // Values answer by `is_self_adjoint`.
     const SELF_ADJOINT: bool = true;
 
     fn is_self_adjoint(&self) -> bool {

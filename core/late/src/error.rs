@@ -61,7 +61,7 @@ pub enum LateError {
     /// The type of the advected or given parameters is another.
     #[error("the declaration has {declared}: take a type that carries these")]
     Advected {
-        /// The actions and shapes of the declaration.
+        /// The declared types.
         declared: String,
     },
     /// The declaration has no kinetic part, or one of another kind.
@@ -78,14 +78,14 @@ pub enum LateError {
         /// The known names.
         known: String,
     },
-    /// A parameter has another number of numbers.
+    /// A parameter has another count of numbers.
     #[error("`{name}` has {expected} numbers, and {found} were given")]
     Size {
         /// The name.
         name: String,
-        /// The expected number of numbers.
+        /// The expected count.
         expected: usize,
-        /// The number of numbers that were passed.
+        /// The count that was passed.
         found: usize,
     },
 }

@@ -2,11 +2,11 @@
 //!
 //! # Inside
 //!
-//! `{lanes, gradients} → effect → term → declaration → sum → specialised → code → error`, and `{latex, written} →
-//! declaration`: a [`Declaration`] is the derivation of a text, with its stages as straight-line programs, or the `sum`
-//! of several; a [`Late`] is one with numbers, and an [`Effect`](liestep::mechanics::Effect) like any other. A
-//! [`Backend`] runs the programs: [`Interpreter`] here, machine code in `liestep-machine`. `carried` compares advected
-//! parameters with their type.
+//! `{lanes, gradients} → effect → term → declaration → sum → specialised → code → error`, and
+//! `{latex, written} → declaration`: a [`Declaration`] is the derivation of a text, with its stages as straight-line
+//! programs, or the `sum` of several; a [`Late`] is one with numbers, and an [`Effect`](liestep::mechanics::Effect) as
+//! any other. A [`Backend`] runs the programs: [`Interpreter`] here, machine code in `liestep-machine`. `carried`
+//! compares advected parameters with their type.
 #![forbid(unsafe_code)]
 
 mod carried;

@@ -29,7 +29,7 @@ pub(crate) enum Value {
 
 impl Value {
     pub(crate) fn of(number: f64) -> Self {
-        // Zeros of both signs are one value.
+        // Zeros of both signs are equal.
         Self::Number((number + 0.0).to_bits())
     }
 
@@ -113,7 +113,7 @@ impl Fold {
             (Some(1.0), _) => b,
             (Some(-1.0), _) => self.negate(b),
             (Some(number), _) => match b {
-                // Numerical factors are collected in one.
+                // Numerical factors are collected.
                 Value::Result(at) => match self.operations[at] {
                     Made::Multiply(inner, c) if inner.number().is_some() => {
                         let product = number * inner.number().unwrap_or(1.0);
@@ -179,7 +179,7 @@ impl Fold {
         }
     }
 
-    /// Adds the operation itself, so that the bits are those of the program; but zeros are dropped.
+    /// Adds the operation itself, to keep the bits of the program; but zeros are dropped.
     pub(crate) fn kept(&mut self, operation: Operation, [a, b]: [Value; 2]) -> Value {
         let zero = Value::of(0.0);
         match operation {

@@ -22,9 +22,9 @@ use crate::specialised::specialised;
 pub(crate) type Specialise<T> = fn(&Stages<Program>, &[T]) -> Stages<Program>;
 
 /// A declaration that was read while the program runs, with numbers for its parameters: an effect on the group `G`,
-/// with the advected or given parameters `W`, of the types that the macro has for them, and the kinetic part `K`, which
-/// may be [`WithEitherKinetic`](liestep::mechanics::WithEitherKinetic) if it isn't known. The elements of a longer
-/// tuple that the declaration doesn't name are zero. `B` runs its programs.
+/// with the advected or given parameters `W`, as the macro has them, and the kinetic part `K`, which may be
+/// [`WithEitherKinetic`](liestep::mechanics::WithEitherKinetic) if it isn't known. The elements of a longer tuple that
+/// the declaration doesn't name are zero. `B` runs its programs.
 ///
 /// # Source
 ///
@@ -64,13 +64,13 @@ impl<G: LieGroup, W, K, B: Backend<G::Scalar>> PartialEq for Late<G, W, K, B> {
     }
 }
 
-/// Whether a number is finite in all lanes.
+/// Finite in all lanes.
 pub(crate) fn is_finite<T: Real>(number: &T) -> bool {
     Coordinates::is_finite(&Vector1::new(*number))
 }
 
 impl<G: LieGroup, W: Advected<G> + Slots, K: KineticPart, B: Backend<G::Scalar>> Late<G, W, K, B> {
-    /// Derives a struct with `#[lagrangian(…)]` or `#[force(…)]`, and proves what was derived. Its parameters have no
+    /// Derives a struct with `#[lagrangian(…)]` or `#[force(…)]`, and proves the derivation. Its parameters have no
     /// values yet.
     ///
     /// # Errors
@@ -106,7 +106,7 @@ impl<G: LieGroup, W: Advected<G> + Slots, K: KineticPart, B: Backend<G::Scalar>>
     }
 
     /// Adds the derivatives of its steps, by the state and by the inputs, for
-    /// [`Stepper::linearised`](liestep::Stepper::linearised) and what goes by it. Those by the parameters aren't among
+    /// [`Stepper::linearised`](liestep::Stepper::linearised) and its users. Derivatives by parameters aren't among
     /// them.
     ///
     /// # Errors

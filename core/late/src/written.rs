@@ -76,7 +76,6 @@ const fn name(array: Array) -> &'static str {
     }
 }
 
-/// The arrays that a program reads.
 fn arrays(program: &Program) -> Vec<Array> {
     let mut arrays: Vec<Array> = program.inputs.iter().map(|source| source.array).collect();
     arrays.sort_unstable();
@@ -84,7 +83,6 @@ fn arrays(program: &Program) -> Vec<Array> {
     arrays
 }
 
-/// The programs of a step.
 fn stages(declaration: &Declaration) -> [(&'static str, &Program); 5] {
     let programs = &declaration.programs;
     [
@@ -96,8 +94,8 @@ fn stages(declaration: &Declaration) -> [(&'static str, &Program); 5] {
     ]
 }
 
-/// The straight-line code of a step in Rust, as the macro passes it to the compiler: a function for each stage. Values
-/// that the macro computes before a solve are computed in each iteration.
+/// The straight-line code of a step in Rust, as the macro passes it to the compiler: a function for each stage. Each
+/// iteration has what the macro computes before a solve.
 ///
 /// # Errors
 ///
@@ -130,7 +128,7 @@ fn has_own_functions(program: &Program) -> bool {
 }
 
 /// A step on SO(3) as C99 that needs nothing but `math.h`: with `-ffp-contract=off` it has the bits of the library's
-/// step. A step that the library makes with care is refused there: it returns 0, and nothing has changed.
+/// step. A step that takes the library's special care is refused in C: it returns 0 and changes nothing.
 ///
 /// # Errors
 ///

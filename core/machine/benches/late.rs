@@ -1,9 +1,9 @@
-//! A declaration that is read while a program runs, beside the compiled one: `cargo bench -p liestep-machine --features
-//! cranelift`.
+//! A declaration that is read while a program runs, beside the compiled one:
+//! `cargo bench -p liestep-machine --features cranelift`.
 //!
-//! The output is the time of a step in multiples of the compiled step, measured in turns within one run, the fastest of
-//! all batches; the time from a text to the first step, and that from each text of the repository to its machine code.
-//! The instructions of a step of (3.13) are counted by `-- instructions`, with valgrind.
+//! Times of a step, in those of the compiled step: measured in turns within one run, the fastest of all batches; the
+//! time from a text to the first step, and from each text of the repository to its machine code; `-- instructions`
+//! counts those of a step of (3.13), by valgrind.
 
 #[path = "../../../tests/benches/counting.rs"]
 mod counting;
@@ -160,7 +160,7 @@ where
     }
 }
 
-/// Measures the time from a text to the first step; texts that differ in their names alone are derived anew.
+/// Each text is derived anew, as it differs in its name.
 fn first_steps() {
     let times = (0..20).map(|number| {
         let text = FullTop::DECLARATION.replace("FullTop", &format!("Top{number}"));

@@ -72,8 +72,7 @@ impl<const LANES: usize> Function<LANES> {
     ///
     /// # Panics
     ///
-    /// If it isn't a function of `T`, an array is missing or shorter than what is read of it, or the outputs are
-    /// shorter than what is written: then nothing is called.
+    /// If it isn't a function of `T`, an array is missing or too short, or the outputs are: then nothing is called.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn call<T: 'static, const N: usize>(&self, constants: &[T], given: Given<'_, T, N>, outputs: &mut [T]) {
         // A handful of comparisons, also in release builds, makes a call safe. Pointers that aren't read stay
@@ -86,7 +85,7 @@ impl<const LANES: usize> Function<LANES> {
             is_there = is_there && numbers.len() >= self.least[*array as usize];
         }
         assert!(missing == 0 && is_there, "an input is missing, or a place for the outputs, or it is of other numbers");
-        // The code computes two lanes at a time.
+        // Two lanes at a time.
         for first in (0..lanes_of::<T>()).step_by(2) {
             for (array, numbers) in &given {
                 inputs[*array as usize] = MaybeUninit::new(numbers.as_ptr().cast::<f64>().wrapping_add(first));

@@ -107,7 +107,7 @@ impl<T: Real> Backend<T> for Machine {
     }
 }
 
-/// Interprets a run before there is machine code, and compiles the program when that is due.
+/// Interprets a run, and compiles the program when that is due.
 #[cold]
 #[inline(never)]
 fn run_first<T: Real, const N: usize>(code: &Both, constants: &[T], given: Given<'_, T, N>, outputs: &mut [T]) {

@@ -13,16 +13,16 @@ pub(crate) type Place = (Value, i32);
 
 /// The values of a program, while its code is generated.
 ///
-/// If there are too many for the registers, the value whose next use is the latest leaves its own. It is stored once,
-/// and operations read it from memory, as they read inputs. Cranelift would load it into a register for each operation.
+/// If there are too many for the registers, the value whose next use is the latest leaves its own. Such a value is
+/// stored once, and operations read it from memory, as they read inputs. Cranelift would load it into a register for
+/// each operation.
 pub(crate) struct Registers {
     pub(crate) number: Type,
     flags: MemFlagsData,
-    /// The values in registers.
     held: Vec<(usize, Value)>,
     /// The place of each value in memory, if it has one.
     places: Vec<Option<Place>>,
-    /// The times at which each value is read, the next time last.
+    /// The times of each value's reads, the next last.
     reads: Vec<Vec<usize>>,
     /// The frame of the function, which grows with the stored values.
     slot: StackSlot,
@@ -32,8 +32,8 @@ pub(crate) struct Registers {
 }
 
 impl Registers {
-    /// The values of a program: inputs with their places, and results after them; `reads` has the times at which each
-    /// is read, the next one last.
+    /// Inputs with their places, and results after them; `reads` has the times at which each is read, the next one
+    /// last.
     pub(crate) fn new(
         builder: &mut FunctionBuilder,
         (number, pointer): (Type, Type),
@@ -94,8 +94,8 @@ impl Registers {
 
     /// Adds a result.
     pub(crate) fn compute(&mut self, builder: &mut FunctionBuilder, at: usize, value: Value) {
-        // Cranelift lets an operation read from memory only if its result is read once. A parameter of a block is a new
-        // value that may be read often; the result itself is read once, as its argument.
+        // Cranelift lets an operation read from memory only if its result is read once: here by the block, whose
+        // parameter is read often.
         let is_read_often = self.reads[at].len() > 1;
         let value = if is_read_often {
             let next = builder.create_block();
@@ -116,7 +116,7 @@ impl Registers {
         }
     }
 
-    /// Moves values out of the registers until this number is left, those first whose next use is the latest.
+    /// Leaves this number of values in registers, those that are read next.
     pub(crate) fn leave(&mut self, builder: &mut FunctionBuilder, most: usize) {
         while self.held.len() > most {
             let next = |&(_, &(at, _)): &(usize, &(usize, Value))| self.reads[at].last().copied();

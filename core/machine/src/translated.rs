@@ -1,4 +1,4 @@
-//! The translation of programs to code of Cranelift, operation by operation.
+//! Programs as code of Cranelift, operation by operation.
 
 use std::ops::Range;
 use std::sync::LazyLock;
@@ -79,7 +79,6 @@ fn offset(at: usize, lanes: usize) -> Result<i32, String> {
 
 /// A part of the generated code.
 enum Part {
-    /// An operation.
     Operation(usize),
     /// The store of one output, or of two.
     Outputs(Range<usize>),
@@ -102,7 +101,7 @@ impl Part {
 
 /// The parts of a program in the order of its machine code.
 ///
-/// A caller loads a vector, and the Jacobian behind it, two numbers at a time: it would wait for stores of another
+/// A caller loads a vector, and the Jacobian after it, two numbers at a time: it would wait for stores of another
 /// width.
 fn parts(program: &Program, lanes: usize) -> Vec<Part> {
     let (count, size) = (program.outputs.len(), program.outputs.len().isqrt());
@@ -228,10 +227,9 @@ pub(crate) fn given(least: &[usize; Array::COUNT]) -> impl Iterator<Item = Array
     Array::ALL.into_iter().filter(|&array| array != Array::Constants && least[array as usize] > 0)
 }
 
-/// The symbol of the function that applies the interpreter's functions.
+/// The symbol of `function`.
 const FUNCTION: &str = "liestep_function";
 
-/// All functions of the interpreter.
 static FUNCTIONS: LazyLock<Vec<Function>> = LazyLock::new(|| {
     let named = [Function::Sqrt, Function::Ln, Function::Exp, Function::Sin, Function::Cos];
     let families = (1..=10).map(Function::Stumpff).chain((0..=6).map(Function::LogRatio));

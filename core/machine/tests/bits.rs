@@ -1,5 +1,5 @@
-//! Machine code computes what the interpreter computes, to the bit: each program of each declaration of the repository and of
-//! random ones, with random inputs, alone and in lanes; and whole steps.
+//! Machine code computes what the interpreter computes, to the bit: each program of each declaration of the repository
+//! and of random ones, with random inputs, alone and in lanes; and whole steps.
 
 use declarations::{
     Alike, CayleyTop, ContinuousTop, DoublePendulum, ElasticFlow, FallingBody, FloatingBody, FluidDrag, Flyer,
@@ -38,7 +38,6 @@ fn texts() -> Vec<&'static str> {
     .to_vec()
 }
 
-/// The programs of a declaration.
 fn programs(declaration: &Declaration) -> Vec<&Program> {
     let mut list = Vec::new();
     let all = declaration.programs.try_map(|program| {
@@ -58,7 +57,7 @@ fn outputs_of<B: Backend<f64>>(code: &B::Code, program: &Program, arrays: &[Vec<
     numbers_of::<f64, B>(code, program, arrays).into_iter().map(bits).collect()
 }
 
-/// The bits of a number; all NaNs are equal, as their bits depend on the compiler's order of operands.
+/// Bits of NaNs depend on the order of operands, which is the compiler's.
 fn bits(number: f64) -> u64 {
     if number.is_nan() { u64::MAX } else { number.to_bits() }
 }
@@ -82,7 +81,7 @@ fn inputs(program: &Program, random: &mut Random) -> Vec<Vec<f64>> {
     arrays
 }
 
-/// Asserts that machine code and interpreter agree; returns how many of the outputs are numbers.
+/// Compares all outputs; returns how many are numbers.
 fn assert_same(programs: &[&Program], seed: u64) -> usize {
     let machine = <Machine as Backend<f64>>::codes(programs).expect("machine code");
     let interpreted = <Interpreter as Backend<f64>>::codes(programs).expect("programs");
@@ -95,7 +94,7 @@ fn assert_same(programs: &[&Program], seed: u64) -> usize {
                 assert_eq!(&outputs_of::<Machine>(machine, program, arrays), expected, "{program:?}");
                 numbers += expected.iter().filter(|&&bits| bits != u64::MAX).count();
             }
-            // The eight sets of inputs run side by side in lanes.
+            // All inputs in lanes.
             let lanes = |array: usize, at| AutoF64x8::from(std::array::from_fn(|k| all[k][array][at]));
             let of = |array: usize| (0..all[0][array].len()).map(|at| lanes(array, at)).collect();
             let together: Vec<Vec<AutoF64x8>> = (0..Array::COUNT).map(of).collect();
@@ -120,7 +119,7 @@ fn all_declarations_of_the_repository() {
     assert!(numbers > 50_000, "{numbers}");
 }
 
-/// A random expression of some depth, for a vector or a number.
+/// A random vector, or number, of some depth.
 fn expression(random: &mut Random, is_vector: bool, depth: u32) -> String {
     let chosen = (random.signed() + 1.0) * if depth == 0 { 1.5 } else { 3.0 };
     let mut deeper = |is_vector| expression(random, is_vector, depth.saturating_sub(1));
@@ -221,8 +220,7 @@ fn steps_are_the_same() {
     assert_same_steps::<SE3, Vector4<f64>>(UnderwaterBody::DECLARATION, of_water);
 }
 
-/// Lanes of machine code with kicks that are known before a step have the bits of single steps, from the first,
-/// interpreted steps on.
+/// Lanes with kicks known before a step have the bits of single steps, from the first, interpreted ones on.
 #[test]
 fn lanes_have_the_bits_of_single_steps() {
     let both = [RigidBody::<f64>::DECLARATION, Torque::<f64>::DECLARATION].map(|it| Declaration::parse(it).unwrap());

@@ -6,7 +6,7 @@ use plotters::prelude::*;
 /// A rectangle of a drawing.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// The result of drawing: drawing into a string fails only for an impossible layout.
+/// Drawing into a string fails only for an impossible layout.
 pub type PlotResult<T = ()> = Result<T, Box<dyn std::error::Error>>;
 
 /// The units in a pixel: the back end draws on whole units, and two in a pixel keep lines smooth.

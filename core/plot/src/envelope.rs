@@ -1,4 +1,4 @@
-//! Selections of points that leave the picture as it is. Points that aren't finite are left out.
+//! Fewer points for the same picture. Points that aren't finite are left out.
 
 /// The highest point in each of `columns` equal parts of the horizontal range, as deviations matter by their peaks.
 pub(super) fn crest(points: &[(f64, f64)], columns: u32) -> Vec<(f64, f64)> {

@@ -1,6 +1,6 @@
 //! Figures as SVG: panels with axes, and paths on a sphere; and the folder that they are written to.
 //!
-//! Only the SVG back end is used, and text stays text, so no font is needed where the figures are made.
+//! Only the SVG back end is used, and text stays text, so creating a figure needs no font.
 
 // The errors of all functions are described at `PlotResult`.
 #![allow(clippy::missing_errors_doc)]

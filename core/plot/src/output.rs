@@ -36,7 +36,7 @@ impl std::error::Error for CannotWrite {
 impl Output {
     /// Creates the folder and tries to write there, so that a long run doesn't fail at its end.
     pub fn new(folder: PathBuf) -> Result<Self, CannotWrite> {
-        // Other processes may try the same folder at this time.
+        // Other processes may try it, too.
         let probe = folder.join(format!(".writable-{}", process::id()));
         fs::create_dir_all(&folder)
             .and_then(|()| fs::write(&probe, ""))
@@ -58,15 +58,15 @@ impl Output {
         Ok(())
     }
 
-    /// A file that is written in pieces, and created with the first. It is called `NAME.part` until it is complete, so
-    /// that a killed run's file is known by its name.
+    /// A file that is written in pieces, created with the first, and called `NAME.part` until it is complete, so that a
+    /// killed run's file is known by its name.
     #[must_use]
     pub fn grows(&self, name: &str) -> GrowingFile {
         let part = self.folder.join(format!("{name}.part"));
         GrowingFile { path: self.folder.join(name), part, file: None, is_cut: false }
     }
 
-    /// The path of a folder within this one.
+    /// The path of an inner folder.
     #[must_use]
     pub fn inner(&self, name: &str) -> PathBuf {
         self.folder.join(name)
@@ -83,7 +83,7 @@ impl Output {
 
 /// A file that is created by the first write, so that a run that can't begin leaves the previous file.
 ///
-/// It gets its final name when dropped, unless a piece couldn't be written.
+/// The file gets its final name when dropped, unless a piece couldn't be written.
 pub struct GrowingFile {
     path: PathBuf,
     part: PathBuf,
@@ -94,7 +94,7 @@ pub struct GrowingFile {
 impl Drop for GrowingFile {
     fn drop(&mut self) {
         if self.file.take().is_some() && !self.is_cut {
-            // The caller that lists the file finds the error.
+            // Listing the file finds the error.
             let _ = fs::rename(&self.part, &self.path);
         }
     }

@@ -46,10 +46,10 @@ pub struct Panel<'a> {
 
 /// The name of the time axis.
 const SECONDS: &str = "time, s";
-/// The time, s, from which on hours are displayed: seconds would have five digits.
+/// From here on, s, hours are displayed, as seconds have five digits.
 const HOURS_FROM: f64 = 1e4;
 
-/// The least deviation that is drawn, below a double's rounding at one.
+/// The least deviation, below a double's rounding at one.
 const FLOOR: f64 = 1e-17;
 
 impl<'a> Panel<'a> {
@@ -77,8 +77,7 @@ impl Panel<'_> {
             Vertical::Linear => range(all().map(|p| p.1), 0.06),
             Vertical::Logarithmic => decades(all().map(|p| p.1)),
         };
-        // The axes take a part of the area, so that these scales are too large, and thinning leaves more points than it
-        // has to.
+        // The axes take a part of the area, so these scales are too large, on the fine side.
         let (wide, up) = (f64::from(width) / length(&x_range), f64::from(height) / length(&y_range));
         let (x_step, y_step) = (tick_step(&x_range), tick_step(&y_range));
         area.draw_text(self.title, &letters(13, INK), (at(16), at(6)))?;

@@ -57,7 +57,7 @@ pub fn sphere(area: &Area<'_>, path: &Path<'_>) -> PlotResult {
     Ok(())
 }
 
-/// A pale colour, mixed with white rather than transparent, as overlapping arcs would add up.
+/// Mixed with white rather than transparent, as overlapping arcs would add up.
 fn faint(RGBColor(r, g, b): RGBColor) -> RGBColor {
     let mixed = |c: u8| 255 - (255 - c) / 3;
     RGBColor(mixed(r), mixed(g), mixed(b))

@@ -14,8 +14,8 @@ pub enum Reference<G: LieGroup> {
     /// A known state: of a closed form, or of a method that is more accurate by far.
     End(End<G>),
     /// The run with the most steps, which then is no row. If it has `r` times the steps of the run before and errors
-    /// fall by the order `p`, the last row's error is too small by the part `r⁻ᵖ`, and the earlier ones by less. It is
-    /// made once, before the others, however long it takes.
+    /// fall by the order `p`, the last row's error is too small by the part `r⁻ᵖ`, and the earlier ones by less. It
+    /// runs once, before the others, however long it takes.
     Finest,
 }
 
@@ -66,7 +66,7 @@ pub enum RefinementError {
         /// The least error.
         least: f64,
     },
-    /// An end, or the reference, isn't made of finite numbers.
+    /// An end, or the reference, isn't finite.
     #[error("the run with steps of {step:e} s, or its reference, doesn't end in finite numbers")]
     NonFinite {
         /// The step of the run, s.

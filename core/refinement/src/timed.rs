@@ -13,7 +13,7 @@ use crate::table::{Measurement, Refinement};
 /// The effort of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effort {
-    /// The longest time of a run, s: the first run that takes longer is the last.
+    /// The longest time, s: the first run that takes longer is the last.
     pub longest: f64,
     /// The time in which each run is repeated, a thousand times at most; the shortest counts, which other programs
     /// disturb least. A run that fails isn't repeated.
@@ -143,7 +143,7 @@ impl Refinement {
 /// left out, and so are those with errors of 0.5 and more. The last run is the first that takes longer than the effort
 /// allows, or one after which errors have stopped falling.
 ///
-/// [`Reference::Finest`] is one more run, with the most steps, whatever the effort allows. It comes first, and is
+/// [`Reference::Finest`] is one more run, with the most steps, whatever the effort allows. This run comes first, and is
 /// neither timed nor repeated. If each number of steps is twice the one before, it takes about as long as all others
 /// once; more, if these end early. [`Reference::End`] costs nothing.
 ///

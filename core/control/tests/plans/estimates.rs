@@ -82,8 +82,7 @@ fn top(m: f64, rho: Vector3<f64>) -> Stepper<Top> {
     Stepper::new(RigidBody { J_d } + Gravity { m, g: 9.81, rho, up: Vector3::z() }, 0.01).expect("a stepper")
 }
 
-/// Readings of a top's gyroscope determine its centre of mass and its start, except for a turn about the vertical,
-/// which the verdict names.
+/// A gyroscope determines a top's centre of mass and start, but for a turn about the vertical, as the verdict says.
 #[test]
 fn a_gyroscope_in_a_top() {
     let rho = Vector3::new(0.3, 0.2, 0.4);
@@ -134,7 +133,7 @@ fn estimates_that_are_none() {
     assert_eq!(task(3).known(DMatrix::zeros(5, 5)).solve().err(), unusable("prior knowledge"));
     let wrong = |_: usize, _: &Motion<SO3, ()>, _: &[f64]| vec![f64::NAN];
     assert_eq!(Estimate::new(&stepper, start, 3, wrong).solve().err(), unusable("reading"));
-    // Nothing is determined without readings and prior information.
+    // There are no readings and no prior information.
     let fit = task(3).solve().expect("a task");
     assert!(matches!(fit.verdict, Verdict::Unseen { .. }) && fit.covariance.amax() == 0.0, "{:?}", fit.verdict);
 }

@@ -6,7 +6,7 @@ use super::*;
 
 type MotionOfBody = Motion<SO3, ()>;
 
-/// The constraint that the instrument along the body's x axis points away from the sun by at least an angle.
+/// The constraint that the instrument along the body's x axis is so far from the sun.
 fn away_from(sun: Vector3<f64>, angle: f64) -> impl Fn(usize, &MotionOfBody) -> f64 {
     move |_, motion| angle.cos() - sun.dot(&(motion.attitude().matrix() * Vector3::x()))
 }
@@ -18,7 +18,7 @@ fn past_the_sun(stepper: &Body, steps: usize, angle: f64) -> Control<'_, RigidBo
 }
 
 /// The exact solution with a rate of at most `v`: a turn by `θ` in `T` speeds up until `t = 3/2 (v T − θ)/v`, by a
-/// torque that falls linearly to zero, and then goes on at that rate: `½∫u² dt = 4/3 J² v²/t`.
+/// torque that falls linearly to zero, and goes on at that rate: `½∫u² dt = 4/3 J² v²/t`.
 #[test]
 fn the_least_effort_with_a_rate_that_is_kept() {
     let (rate, time) = (1.8 / 2.6, 0.4);
@@ -39,8 +39,7 @@ fn the_least_effort_with_a_rate_that_is_kept() {
     assert!(errors[2].abs() < 1e-3, "{errors:?}");
 }
 
-/// The prices add up to the derivative of the least cost by the cone's width, as found from plans with neighbouring
-/// cones.
+/// The prices determine the derivative of the least cost by the cone's width.
 #[test]
 fn an_instrument_goes_round_the_sun() {
     let stepper = body([1.0, 2.0, 2.5], 0.02);
@@ -90,7 +89,7 @@ fn a_start_at_the_edge_and_one_beyond_it() {
     assert!(matches!(nothing, Err(ControlError::Outside(0, value)) if value.is_nan()));
 }
 
-/// Two infeasible tasks: a target in the sun, and a rate too low to reach the target in time.
+/// A target in the sun and too low a rate are infeasible.
 #[test]
 fn what_cannot_be_kept_has_a_certificate() {
     let stepper = body([1.0, 2.0, 2.5], 0.05);

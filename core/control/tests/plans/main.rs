@@ -104,7 +104,7 @@ fn the_shortest_half_turn_of_a_sphere() {
     assert!(torques(&plan).iter().all(|torque| torque.amax() <= 1.0));
 }
 
-/// A half turn whose guessed torque goes round once: on the eigenaxis' own way the gradient vanishes by symmetry.
+/// A half turn whose guessed torque goes round once: on the way about the eigenaxis the gradient vanishes by symmetry.
 fn half_turn(stepper: &Body, steps: usize) -> Control<'_, RigidBody, liestep::motion::OwnStep<RigidBody>> {
     let guess = move |step, axis| {
         let share = step as f64 / steps as f64;
@@ -219,7 +219,7 @@ fn both_ways_of_a_half_turn() {
     assert!(plans[0].1 > 1.0 && plans[1].1 < -1.0, "{plans:?}");
 }
 
-/// The bounds are too tight: a torque of at most `u` turns a body from rest to rest by at most `u T²/4J` about an axis.
+/// A torque of at most `u` turns a body by at most `u T²/4J` about an axis, from rest to rest.
 #[test]
 fn bounds_that_are_too_tight_have_a_certificate() {
     let stepper = body([2.0; 3], 0.02);

@@ -36,7 +36,7 @@ const FIRST: i32 = 0;
 /// The engine of all processes of the job.
 pub struct Mpi {
     world: SimpleCommunicator,
-    /// MPI is finalised when this is dropped.
+    /// Dropping it ends MPI.
     _universe: Universe,
 }
 
@@ -101,7 +101,7 @@ impl Mpi {
         }
     }
 
-    /// Computes the chunks whose numbers the first process sends.
+    /// Computes the chunks that the first process sends.
     fn follow(&self, make: &MakeChunk<'_>) {
         let first = self.world.process_at_rank(FIRST);
         // The number of chunks computed since the last request.
