@@ -17,8 +17,8 @@ use super::matrix_group::MatrixGroup;
 /// | relation | `det F = 1` |
 /// | units | none |
 ///
-/// Neither the exponential nor the Cayley map reaches all of it: not a matrix with eigenvalues `−λ`, `−1/λ`, or not
-/// one with the eigenvalue −1.
+/// Neither retraction reaches the whole group: the exponential misses matrices with eigenvalues `−λ`, `−1/λ`, the
+/// Cayley map those with the eigenvalue −1.
 ///
 /// # Examples
 ///
