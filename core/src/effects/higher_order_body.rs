@@ -23,9 +23,9 @@ pub struct FourthOrderBody<T = f64> {
     pub J: Inertia<T>,
 }
 
-/// A rigid body with a kinetic term of the sixth order: the action of a path that is bent by the acceleration `a =
-/// J⁻¹(Jξ × ξ)` and its rate `b = J⁻¹(Ja × ξ + Jξ × a + J(a × ξ))`, in units of the step, `K = (ξ·Jξ/2 − a·Ja/24 + ((a
-/// × ξ)·J(a × ξ) + Jξ·(a × (a × ξ)))/240 − b·Jb/1440)/h`.
+/// A rigid body with a kinetic term of the sixth order: the action of a path that is bent by the acceleration
+/// `a = J⁻¹(Jξ × ξ)` and its rate `b = J⁻¹(Ja × ξ + Jξ × a + J(a × ξ))`, in units of the step,
+/// `K = (ξ·Jξ/2 − a·Ja/24 + ((a × ξ)·J(a × ξ) + Jξ·(a × (a × ξ)))/240 − b·Jb/1440)/h`.
 ///
 /// The order is that of a free body; with potentials it is as for [`FourthOrderBody`].
 #[lagrangian(

@@ -6,15 +6,16 @@ use crate::groups::SO3;
 use crate::mechanics::Inertia;
 use liestep_macros::force;
 
-/// Magnetic damping, the torque `m × B` of a moment `m = −k dB/dt`, with the rate of the field in the body frame, `−Ω ×
-/// B`.
+/// Magnetic damping, the torque `m × B` of a moment `m = −k dB/dt`, with the rate of the field in the body frame,
+/// `−Ω × B`.
 ///
-/// Magnetorquers detumble a satellite in this way (the B-dot law), and eddy currents damp a sphere. The power is `−k |B
-/// × Ω|²`, so a turn about the field isn't damped, and the momentum along it is conserved.
+/// Magnetorquers detumble a satellite in this way (the B-dot law), and eddy currents damp a sphere. The power is
+/// `−k |B × Ω|²`, so a turn about the field isn't damped, and the momentum along it is conserved.
 ///
 /// Both ends of a step take the field `(b + Fᵀb)/2` of its middle: so that momentum is conserved to rounding, and the
-/// energy of a free body with the kinetic term of (3.13) never rises. The gain is `k/√(1 + y²)` with `y = (h/2) k |B|²
-/// tr J⁻¹`: of second order where the step resolves the damping, and too little to reverse a spin where it doesn't.
+/// energy of a free body with the kinetic term of (3.13) never rises. The gain is `k/√(1 + y²)` with
+/// `y = (h/2) k |B|² tr J⁻¹`: of second order where the step resolves the damping, and too little to reverse a spin
+/// where it doesn't.
 #[force(
     group = SO3,
     gradients,

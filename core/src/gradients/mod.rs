@@ -11,16 +11,16 @@
 //!
 //! The word `gradients` in a declaration adds them; the effects of the library have it, except for the bodies of fourth
 //! and sixth order. A scene without it has no code for derivatives. They work with a scene's own step, on any group and
-//! with forces, with compositions, and with splittings, processed ones too, whose flow is declared or exact. `cargo
-//! bench --bench gradients` has the costs. In a splitting whose symmetric body turns about its axis once a step, a step
-//! with derivatives makes its drifts twice. One of a processed splitting makes both ends of the processor, as the
-//! derivatives are those of the processed state; the adjoint makes an end for the cost of a state, unless the cost is
-//! zero.
+//! with forces, with compositions, and with splittings, processed ones too, whose flow is declared or exact.
+//! `cargo bench --bench gradients` has the costs. In a splitting whose symmetric body turns about its axis once a step,
+//! a step with derivatives makes its drifts twice. One of a processed splitting makes both ends of the processor, as
+//! the derivatives are those of the processed state; the adjoint makes an end for the cost of a state, unless the cost
+//! is zero.
 //!
 //! # Coordinates
 //!
-//! A state is `(g, μ)`; in the body frame the advected parameters are `w = g⁻¹·a_0`. A change of the state is `(ζ,
-//! δμ)`, with `g ← g exp ζ̂` and the components of the momentum, so that
+//! A state is `(g, μ)`; in the body frame the advected parameters are `w = g⁻¹·a_0`. A change of the state is
+//! `(ζ, δμ)`, with `g ← g exp ζ̂` and the components of the momentum, so that
 //!
 //! ```text
 //! δw = −ζ·w + g⁻¹·δa_0
@@ -41,8 +41,8 @@
 //! ```
 //!
 //! where `∂_ζ` is along `δw = −ζ·w` at fixed `F`. The blocks are [second derivatives](SecondDerivatives) of `l_d`,
-//! which the macro derives from the momenta. They add in a sum. No division by `h` is cancelled later: for (3.13) `A =
-//! (tr(F J_d) I − F J_d)/h`, and the potential is in `∂_ζ` alone.
+//! which the macro derives from the momenta. They add in a sum. No division by `h` is cancelled later: for (3.13)
+//! `A = (tr(F J_d) I − F J_d)/h`, and the potential is in `∂_ζ` alone.
 //!
 //! For an exact flow, whose turn is a known function of the momentum, the first line is `ε = ∂_με δμ + ∂_θε δθ`: for a
 //! symmetric body in closed form, for any other by dual numbers through its closed form. The adjoint differentiates

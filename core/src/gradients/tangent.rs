@@ -106,8 +106,8 @@ impl<G: LieGroup, A> Tangent<G, A> {
         self.columns().skip(2 * G::DIMENSION)
     }
 
-    /// The four blocks of the state transition matrix `∂(ζ, μ)/∂(ζ_0, μ_0)`: `[[∂ζ/∂ζ_0, ∂ζ/∂μ_0], [∂μ/∂ζ_0,
-    /// ∂μ/∂μ_0]]`.
+    /// The four blocks of the state transition matrix `∂(ζ, μ)/∂(ζ_0, μ_0)`:
+    /// `[[∂ζ/∂ζ_0, ∂ζ/∂μ_0], [∂μ/∂ζ_0, ∂μ/∂μ_0]]`.
     #[must_use]
     pub fn transition(&self) -> [[SquareOfVector<G::Vector, G::Scalar>; 2]; 2] {
         blocks_of(&self.columns().collect::<Vec<_>>())

@@ -10,8 +10,8 @@ const MAX_HALVINGS: u32 = 64;
 
 /// The pair `(e^X − I, Σ X^k/(k + 1)!)`, neither computed by subtracting `I`.
 ///
-/// The series are summed for `X` of a norm up to ½ and doubled: `e^{2X} − I = 2D + D²`, and `P(2X) = ½ (e^X + I) P(X) =
-/// P + ½ D P` for `P(X) = X⁻¹(e^X − I)`.
+/// The series are summed for `X` of a norm up to ½ and doubled: `e^{2X} − I = 2D + D²`, and
+/// `P(2X) = ½ (e^X + I) P(X) = P + ½ D P` for `P(X) = X⁻¹(e^X − I)`.
 pub(crate) fn exponential<T: RealField + Copy, const N: usize>(
     x: &SMatrix<T, N, N>,
 ) -> (SMatrix<T, N, N>, SMatrix<T, N, N>) {

@@ -143,8 +143,8 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
     /// The adjoint action `Ad_F ξ`.
     fn adjoint(&self, velocity: &Self::Vector) -> Self::Vector;
 
-    /// The matrix of `Ad_F`, for many vectors: `D × D` for the `D` components of the algebra, column `k` being `Ad_F
-    /// E_k`; for several equal bodies its diagonal blocks, one for each body.
+    /// The matrix of `Ad_F`, for many vectors: `D × D` for the `D` components of the algebra, column `k` being
+    /// `Ad_F E_k`; for several equal bodies its diagonal blocks, one for each body.
     #[hot]
     #[must_use]
     fn adjoint_matrix(&self) -> <Self::Vector as Coordinates<Self::Scalar>>::Square {

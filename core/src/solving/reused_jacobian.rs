@@ -149,8 +149,8 @@ mod tests {
 
     const EPSILON: f64 = f64::EPSILON;
 
-    /// The two criteria agree for `C = 1/16`, at the first update after which a second is just enough: `|u₁|³ =
-    /// ε|y|/2`.
+    /// The two criteria agree for `C = 1/16`, at the first update after which a second is just enough:
+    /// `|u₁|³ = ε|y|/2`.
     #[test]
     fn what_is_expected_is_what_is_asked_for() {
         for size in [1e-80_f64, 1e-8, 0.06, 1.0] {

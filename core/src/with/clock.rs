@@ -52,8 +52,8 @@ impl Clock {
         Self { is_repeated: true, ..self }
     }
 
-    /// A clock for a Kepler orbit, `dt ∝ r^{3/2}`, from pericentre on and round after round: for a stepper with `h =
-    /// 1`, in the unit of the period. Its steps are symmetric about both apsides.
+    /// A clock for a Kepler orbit, `dt ∝ r^{3/2}`, from pericentre on and round after round: for a stepper with
+    /// `h = 1`, in the unit of the period. Its steps are symmetric about both apsides.
     ///
     /// # Errors
     ///

@@ -1,9 +1,9 @@
 //! Compensated summation: the rounding error of each sum in a state is stored and added to the next summand.
 //!
-//! A step adds small changes to the attitude, the momentum and the advected parameters: `R + R D`, `w + Dᵀ w`, `p + (Dᵀ
-//! a + kicks)`. Each sum loses some `ε` of the state, and these errors walk at random; the changes themselves are wrong
-//! by some `ε` of a change only. With compensation only the walk of the changes is left, smaller by the angle of a
-//! step: at `h = 10⁻⁴` it can't be measured in 10⁷ steps, near a radian a step nothing is gained.
+//! A step adds small changes to the attitude, the momentum and the advected parameters: `R + R D`, `w + Dᵀ w`,
+//! `p + (Dᵀ a + kicks)`. Each sum loses some `ε` of the state, and these errors walk at random; the changes themselves
+//! are wrong by some `ε` of a change only. With compensation only the walk of the changes is left, smaller by the angle
+//! of a step: at `h = 10⁻⁴` it can't be measured in 10⁷ steps, near a radian a step nothing is gained.
 
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};

@@ -23,10 +23,10 @@ pub fn distance<const N: usize, A>(
     }
 }
 
-/// The rate `G = Ω·Ω̇/(|Ω|² + ω²)`, 1/s, for steps in which a body turns by about the same angle, `h ∝ (|Ω|² +
-/// ω²)^{-1/2}`, with a `floor` `ω`, rad/s, of the velocity that limits the length of a step. `J Ω̇ = μ × Ω + τ` has the
-/// torque `τ` of the scene at rest, without forces. If the inertia depends on the attitude `Ω̇` is approximate, which a
-/// density may be.
+/// The rate `G = Ω·Ω̇/(|Ω|² + ω²)`, 1/s, for steps in which a body turns by about the same angle,
+/// `h ∝ (|Ω|² + ω²)^{-1/2}`, with a `floor` `ω`, rad/s, of the velocity that limits the length of a step.
+/// `J Ω̇ = μ × Ω + τ` has the torque `τ` of the scene at rest, without forces. If the inertia depends on the attitude
+/// `Ω̇` is approximate, which a density may be.
 ///
 /// # Source
 ///

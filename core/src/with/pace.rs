@@ -29,9 +29,9 @@ const VAST: f64 = f64::from_bits((1023 + 500) << 52);
 impl<S: Effect<Scalar = f64>, P: Plan<S> + Pacable> Stepper<S, P> {
     /// Steps of `dt = s dτ` with the declared `pace = s(w)`. The times of all arguments and results are times `t`.
     ///
-    /// The stepper's `h` is one of `τ`. The energy of a start becomes the number `E_0` of its state. A step takes `h
-    /// (s(w) + s(w⁺))/2`, s, which is known when it has been made; the [time](Self::time) is their compensated sum. The
-    /// map of attitude, momentum, `t` and `−E_0` is symplectic, and momentum maps are conserved. [The
+    /// The stepper's `h` is one of `τ`. The energy of a start becomes the number `E_0` of its state. A step takes
+    /// `h (s(w) + s(w⁺))/2`, s, which is known when it has been made; the [time](Self::time) is their compensated sum.
+    /// The map of attitude, momentum, `t` and `−E_0` is symplectic, and momentum maps are conserved. [The
     /// chapter](crate::guide::varying) measures the gain, and lists what can be combined with it.
     ///
     /// # Errors
