@@ -124,7 +124,7 @@ pub enum SetupError {
         /// The body of a system, or the factor of a product, from zero. None if there is only one.
         body: Option<usize>,
     },
-    /// A constant of the scene isn't finite, whatever the step.
+    /// A constant of the scene isn't finite for any step.
     #[error(
         "a constant of the scene is not finite: a divisor is zero, a root or a logarithm has no value, or a product is out of range; give the parameters other values"
     )]

@@ -26,7 +26,7 @@ use crate::groups::{Advected, homogeneous};
 use crate::mechanics::{DiagonalNonstandardInertia, Inertia, NonstandardInertia};
 use crate::numbers::Coordinates;
 
-/// `F⁻¹` of a group element.
+/// The inverse `F⁻¹` of a group element.
 #[inline]
 pub fn inverse_of<G: LieGroup>(element: G::Matrix) -> G::Matrix {
     G::from_matrix_unchecked(element).inverse().matrix()

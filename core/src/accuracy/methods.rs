@@ -18,7 +18,7 @@ use crate::motion::{AnyStepper, Plan, Stepper};
 pub(super) struct Method<G: LieGroup, A> {
     pub(super) name: String,
     pub(super) order: u32,
-    /// Whether it has no error but rounding.
+    /// Whether the method has no error but rounding.
     pub(super) is_exact: bool,
     pub(super) make: Make<G, A>,
 }

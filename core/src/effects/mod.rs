@@ -24,7 +24,7 @@
 //! | [`FourthOrderBody`] | 4 | oscillates | 125° |
 //! | [`SixthOrderBody`] | 6 | oscillates | 115° |
 //!
-//! The last three angles were measured on the bodies that bear the least, rods that spin end over end.
+//! The last three angles were measured for the bodies with the smallest limits, rods that spin end over end.
 //!
 //! | force | torque |
 //! |---|---|

@@ -10,7 +10,7 @@ use liestep_macros::lagrangian;
 #[lagrangian(group = SO3, gradients, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidBody<T = f64> {
-    /// Nonstandard inertia about that point, kg m².
+    /// Nonstandard inertia about the fixed point or the centre of mass, kg m².
     pub J_d: NonstandardInertia<T>,
 }
 

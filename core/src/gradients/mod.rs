@@ -89,7 +89,7 @@
 //! - In chaos derivatives grow like the deviations: after `10/λ` they say nothing about a motion that isn't known to
 //!   `e⁻¹⁰`.
 //! - Gradients are at a fixed initial momentum. If that is `JΩ_0`, it depends on `J` and `Ω_0`, and the caller has to
-//!   add   that derivative: `⟨p_0, δJ Ω_0⟩` of the gradient's `p_0`.
+//!   add that derivative: `⟨p_0, δJ Ω_0⟩` of the gradient's `p_0`.
 //! - A number in several terms, for example the inertia of two, is a parameter of each; the derivatives add.
 
 mod adjoint;

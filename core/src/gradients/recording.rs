@@ -12,7 +12,7 @@ use crate::numbers::zero;
 #[derive(Clone, Copy, Debug)]
 #[doc(hidden)]
 pub struct Change<G: LieGroup, A> {
-    /// The motion before.
+    /// The motion before the change.
     pub(crate) before: Motion<G, A>,
     /// The increment minus the identity, `F − I`; zero for a push.
     pub(crate) increment: G::Matrix,

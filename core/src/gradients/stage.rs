@@ -34,7 +34,7 @@ pub(crate) struct ForceGradient<'a, T, C, M> {
     pub(crate) share: T,
     /// The constants for which [`Effect::kick_before`] returns the torque `τ`.
     pub(crate) torque: &'a C,
-    /// `J⁻¹`.
+    /// The inverse inertia `J⁻¹`.
     pub(crate) inverse_inertia: &'a M,
 }
 

@@ -214,7 +214,7 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
         match stage.kind {
             // A step of zero length changes nothing.
             Kind::Step(h) if h == real(0.0) => {}
-            // `∂μ/∂ε ε = δμ − ∂μ/∂ζ ζ`, `ζ⁺ = Ad_{F⁻¹}(ζ + ε)`, `δμ⁺ = ∂μ⁺/∂ε ε + ∂μ⁺/∂ζ ζ`.
+            // The solve is `∂μ/∂ε ε = δμ − ∂μ/∂ζ ζ`; then `ζ⁺ = Ad_{F⁻¹}(ζ + ε)`, `δμ⁺ = ∂μ⁺/∂ε ε + ∂μ⁺/∂ζ ζ`.
             Kind::Step(h) => {
                 let blocks = stage.blocks(h);
                 let (factors, determinant) = Vector::<E>::factorise_with(&blocks.start_by_turn, pattern_of_type::<E>());

@@ -30,7 +30,7 @@ use super::matrix_group::MatrixGroup;
 /// ```
 pub type SL2<T = f64> = MatrixGroup<SL2Generators, T, 2, 3>;
 
-/// Declares [`SL2`].
+/// The generators of [`SL2`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct SL2Generators;

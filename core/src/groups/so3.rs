@@ -39,7 +39,7 @@ pub struct SO3<T = f64>(Matrix3<T>);
     "the matrix is not a rotation: ‖RᵀR − I‖ = {defect:e}, det R = {determinant}; pass a UnitQuaternion or an orthogonal matrix"
 )]
 pub struct NotARotation {
-    /// `‖RᵀR − I‖` in the Frobenius norm, or NaN.
+    /// The departure `‖RᵀR − I‖` from orthogonality in the Frobenius norm, or NaN.
     pub defect: f64,
     /// The determinant, 1 for a rotation.
     pub determinant: f64,

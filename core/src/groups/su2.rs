@@ -31,7 +31,7 @@ use super::matrix_group::MatrixGroup;
 /// ```
 pub type SU2<T = f64> = MatrixGroup<SU2Generators, T, 4, 3>;
 
-/// Declares [`SU2`].
+/// The generators of [`SU2`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct SU2Generators;

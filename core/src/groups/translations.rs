@@ -36,7 +36,7 @@ pub type R2<T = f64> = MatrixGroup<TranslationGenerators, T, 3, 2>;
 /// ```
 pub type R3<T = f64> = MatrixGroup<TranslationGenerators, T, 4, 3>;
 
-/// Declares [`R1`], [`R2`] and [`R3`].
+/// The generators of [`R1`], [`R2`] and [`R3`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct TranslationGenerators;

@@ -89,7 +89,7 @@ where
     assert_same(&parameter.advect(&f.increment()), expected, allowed, law);
 }
 
-/// `2 w + v`.
+/// The combination `2 w + v`.
 fn combined<A: Entries<f64>>(w: &A, v: &A) -> A {
     w.zip(v, &mut |w, v| 2.0 * w + v)
 }

@@ -109,7 +109,7 @@ pub fn condition<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>(f: &G)
     f.matrix().norm() * eliminated_inverse(f).norm()
 }
 
-/// `f'(0)` from six values at a spacing of 10⁻³.
+/// The derivative `f'(0)`, from six values at a spacing of 10⁻³.
 ///
 /// The remainder is of the order of 10⁻¹⁸ by the seventh derivative, rounding of 10⁻¹³ by the size of `f`.
 pub fn derivative<V: Add<Output = V> + Sub<Output = V> + Mul<f64, Output = V>>(f: impl Fn(f64) -> V) -> V {

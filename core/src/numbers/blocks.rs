@@ -9,7 +9,7 @@ impl Blocks {
     /// Limit of the unknowns in several blocks. A product of groups with more doesn't compile.
     pub const MOST: usize = 64;
 
-    /// One block.
+    /// All unknowns in one block.
     pub const WHOLE: Self = Self(0);
 
     /// The blocks of the first `size` unknowns, followed by other blocks.

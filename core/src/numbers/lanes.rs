@@ -78,7 +78,7 @@ pub trait Lanes: Sized {
 /// Other methods step the bodies one after the other, each for a reason of its own:
 ///
 /// - Collocation has the stages of one body side by side in the registers already, with its matrices as tables of
-///   `f64`.   With bodies side by side its sums would have another order, and a body other bits than alone.
+///   `f64`. With bodies side by side its sums would have another order, and a body other bits than alone.
 /// - A remedy repeats single steps that fail a check in another way, for one body at a time. The other lanes would have
 ///   to wait for it.
 /// - Bodies in joints are solved along a graph: the pivots, the joint in an error and the number of restarts of a step

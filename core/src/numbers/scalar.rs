@@ -26,8 +26,8 @@ roots!();
 /// - Every lane's step is solved, or the whole step is an error and the state of all lanes is unchanged. An error's
 ///   numbers are NaN if the lanes differ. All steps `h` are zero, or none is. In a `Batch` only the failing lane stops.
 /// - Coordinates are Cayley's. The group is [`SO3`](crate::groups::SO3), one of translations, a product of these or an
-///   array   of them, whose steps are vector instructions; or another [`MatrixGroup`](crate::groups::MatrixGroup),
-///   whose   inverses and relations are computed lane by lane, as pivots differ from lane to lane.
+///   array of them, whose steps are vector instructions; or another [`MatrixGroup`](crate::groups::MatrixGroup), whose
+///   inverses and relations are computed lane by lane, as pivots differ from lane to lane.
 ///
 /// [`Stepper::step`](crate::motion::Stepper::step), like every method's step, detects the vector instructions of the
 /// machine and uses them, up to [four `f64`](crate::numbers::Vectors::Four) a register: a program needn't be compiled

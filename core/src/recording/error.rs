@@ -96,7 +96,7 @@ pub struct RunReport {
 pub enum Reason {
     /// The run reached its end.
     Done,
-    /// An observer stopped it.
+    /// An observer stopped the run.
     Stopped {
         /// The time of the observed moment, s.
         time: f64,

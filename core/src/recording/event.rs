@@ -26,19 +26,19 @@ pub struct Event {
 }
 
 impl Event {
-    /// The function goes from below zero to above.
+    /// An event at which the function rises through zero.
     #[must_use]
     pub const fn rising() -> Self {
         Self { rising: true, falling: false, terminal: false, curvature: None }
     }
 
-    /// The function goes from above zero to below.
+    /// An event at which the function falls through zero.
     #[must_use]
     pub const fn falling() -> Self {
         Self { rising: false, falling: true, terminal: false, curvature: None }
     }
 
-    /// The function crosses zero in either direction.
+    /// An event at which the function crosses zero in either direction.
     #[must_use]
     pub const fn crossing() -> Self {
         Self { rising: true, falling: true, terminal: false, curvature: None }

@@ -53,8 +53,8 @@ type Condition<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> Result<bool, RunError> 
 /// # Contract
 ///
 /// - The steps between two observed ones are made in place, without a copy; those of a splitting as by
-///   [`Stepper::run`]. A   run with a condition, with events or with requested times makes each step by itself. That
-///   changes digits for   splittings only, as documented at `run`.
+///   [`Stepper::run`]. A run with a condition, with events or with requested times makes each step by itself. That
+///   changes digits for splittings only, as documented at `run`.
 /// - Observers change nothing: for other methods the steps are those of an unobserved run, bit for bit.
 /// - Memory doesn't grow with the run.
 /// - After an error, and when an observer stops the run, the state is that after the last step.
@@ -97,7 +97,7 @@ struct TimedObserver<'a, I: Integrator> {
     observer: Observer<'a, I>,
 }
 
-/// # Wrap: a run that is observed
+/// # Wrap: a run with observers
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// A run from this state with observers; see [`Run`].
     pub fn observed<'a>(&'a self, state: &'a mut StateOf<S, P>) -> Run<'a, Self> {
@@ -374,7 +374,7 @@ where
     ///
     /// # Examples
     ///
-    /// When does a body that flips about its middle axis change sign?
+    /// The listing finds the times at which a flipping body's momentum about its middle axis changes sign.
     ///
     /// ```
     /// use liestep::effects::RigidBody;

@@ -28,10 +28,9 @@
 //! starts again with Newton's iteration:
 //!
 //! - `ξ` lies in the ball where, by samples taken when the flow was constructed, the model is near the Jacobian in all
-//!   directions, see [`trusted_radius`](super::branch::trusted_radius). If `‖I − B⁻¹A‖ < 1` for the model `B` and   the
-//!   Jacobian `A`, `det A` has the sign of `det B`, which on that ball is that at the identity. So a ball that
-//!   contains the identity has no fold to cross, and a solution in it is the one that Newton's iteration would   have
-//!   accepted.
+//!   directions, see [`trusted_radius`](super::branch::trusted_radius). If `‖I − B⁻¹A‖ < 1` for the model `B` and the
+//!   Jacobian `A`, `det A` has the sign of `det B`, which on that ball is that at the identity. So a ball that contains
+//!   the identity has no fold to cross, and a solution in it is the one that Newton's iteration would have accepted.
 //! - Each update is shorter than a quarter of the last. Updates alone aren't enough: those of a motion with a symmetry,
 //!   such as a planar pendulum's, lie in one plane, and don't test the directions across it. But they test what lies
 //!   between the samples of the ball.

@@ -107,7 +107,7 @@ impl Clock {
     }
 }
 
-/// # Wrap: lengths known beforehand
+/// # Wrap: prescribed lengths
 impl<S: Effect<Scalar = f64>, P: Plan<S>> Stepper<S, P> {
     /// Wraps the method so that its steps have the lengths of a clock, in units of its `h`.
     ///

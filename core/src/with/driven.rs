@@ -15,7 +15,7 @@ pub struct Driven<P, V> {
     values: V,
 }
 
-/// # Wrap: given values
+/// # Wrap: prescribed values
 impl<S: Effect, P: Plan<S> + Steerable> Stepper<S, P> {
     /// A stepper whose steps have prescribed parameters, each [with](Self::step_with) those in its middle. The function
     /// `values` of the time since the start, s, returns the advected parameters in space, as `scene.advected()` does.
