@@ -1,4 +1,4 @@
-//! Errors of setting up a stepper and of a step. Each message names the cause, the measured value and a way out.
+//! Errors of a stepper's setup and of a step.
 
 use alloc::borrow::ToOwned as _;
 #[cfg(all(feature = "serde", feature = "std"))]
@@ -11,7 +11,7 @@ use thiserror::Error;
 /// A text with a static lifetime: deserialising a `&str` would borrow from the input.
 pub(crate) type Text = &'static str;
 
-/// Deserialises a static text. Each distinct text is leaked once and then found again.
+/// Deserialises a static text; each distinct one is leaked once.
 #[cfg(all(feature = "serde", feature = "std"))]
 pub(crate) fn kept<'de, D: serde::Deserializer<'de>>(source: D) -> Result<Text, D::Error> {
     static KNOWN: std::sync::Mutex<BTreeSet<Text>> = std::sync::Mutex::new(BTreeSet::new());
@@ -33,7 +33,7 @@ pub enum SetupError {
         /// The field of the Lagrangian.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         field: Text,
-        /// The fault, as the predicate of a sentence.
+        /// The fault, as a predicate.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         cause: Text,
     },
@@ -45,7 +45,7 @@ pub enum SetupError {
         /// The field of the body.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         field: Text,
-        /// The fault, as the predicate of a sentence.
+        /// The fault, as a predicate.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         cause: Text,
     },
@@ -54,7 +54,7 @@ pub enum SetupError {
     Joint {
         /// The joint, from zero: those of trees first, then those that close loops.
         joint: usize,
-        /// The fault, as the predicate of a sentence.
+        /// The fault, as a predicate.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         cause: Text,
     },
@@ -66,7 +66,7 @@ pub enum SetupError {
         /// The field of the joint.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         field: Text,
-        /// The fault, as the predicate of a sentence.
+        /// The fault, as a predicate.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         cause: Text,
     },
@@ -98,7 +98,7 @@ pub enum SetupError {
     RedundantJoint {
         /// The joint, from zero.
         joint: usize,
-        /// Pivot of the joint, relative to its value between free bodies: the part that the others leave unconstrained.
+        /// Pivot of the joint, relative to its value between free bodies.
         pivot: f64,
     },
     /// The step is NaN or infinite, or so small or large that the constants of the step leave the scalar's range.
@@ -232,7 +232,7 @@ pub enum SetupError {
     },
 }
 
-/// The words for the body or factor with the faulty kinetic part, if there are several.
+/// The words for the faulty body or factor, if there are several.
 fn of_body(body: Option<usize>) -> String {
     body.map_or_else(String::new, |body| format!(" of the body or factor {body} (from zero)"))
 }
@@ -285,7 +285,7 @@ pub enum StepError {
         /// is only one body, if none turns, or if bodies are declared as one product: then `turn` is that of all.
         body: Option<usize>,
     },
-    /// The body would turn by an angle so large that the scalar has no digit left for its fraction of a turn.
+    /// The body would turn by an angle too large for the scalar to resolve a turn.
     #[error("the body would turn by {turn:.2e} rad, of which no digit is left; take a smaller step")]
     AngleWithoutDigits {
         /// The angle, rad.
@@ -308,8 +308,8 @@ pub enum StepError {
         /// trace's does. For joined bodies it is the determinant of the whole system, relative to its diagonal.
         determinant: f64,
     },
-    /// A clock or a density gives the next step no length: the clock has ended, the density isn't positive or has no
-    /// value, or the time plus the length rounds to the time.
+    /// The next step has no length: the clock has ended, the density isn't positive or has no value, or the length is
+    /// below the rounding of the time.
     #[error(
         "the next step has no length ({length:e} s): a clock is at its end, or a density isn't positive; give a longer clock, or a density with a smaller unit of the steps"
     )]
@@ -338,7 +338,7 @@ pub enum StepError {
     SingularJoint {
         /// The joint, from zero: those of trees first, then those that close loops.
         joint: usize,
-        /// Pivot of the joint, relative to its value between free bodies: the part that the others leave unconstrained.
+        /// Pivot of the joint, relative to its value between free bodies.
         pivot: f64,
     },
     /// One of several coupled bodies has no increment on the branch of the identity at this step.

@@ -3,10 +3,10 @@
 pub use core;
 pub use nalgebra;
 
-// The macros of declarations, which the macro of a user's group calls back with the group's generators.
+// Declaration macros, which the macro of a user's group calls back.
 pub use liestep_macros::{constraint, force, lagrangian, matrix_group};
 
-// Types, traits and functions that an expanded declaration names.
+// Names in an expanded declaration.
 pub use crate::error::SetupError;
 pub use crate::groups::rotation_functions::{inverse, log_ratio, rotation_exp, rotation_log, stumpff};
 pub use crate::groups::{CayleyRetraction, Configuration, Relative, Retraction, SeenFrom};
@@ -45,7 +45,7 @@ fn at_the_end<L: ContinuousLagrangian, R: Retraction<L::Group>>(
     (velocity, w.seen_from(&element))
 }
 
-/// The trapezoid `(h/2) (l(ξ, w) + l(ξ, F⁻¹·w))` of a continuous Lagrangian.
+/// The trapezoidal rule `(h/2) (l(ξ, w) + l(ξ, F⁻¹·w))`.
 pub fn trapezoid<L: ContinuousLagrangian, R: Retraction<L::Group>>(
     lagrangian: &L,
     f: &<L::Group as LieGroup>::Matrix,
@@ -56,7 +56,7 @@ pub fn trapezoid<L: ContinuousLagrangian, R: Retraction<L::Group>>(
     (lagrangian.l(&velocity, w) + lagrangian.l(&velocity, &next)) * (h * real(0.5))
 }
 
-/// The step `h l(ξ, (w + F⁻¹·w)/2)` of a continuous Lagrangian with the mean of the parameters at both ends.
+/// The chord rule `h l(ξ, (w + F⁻¹·w)/2)`.
 pub fn chord<L: ContinuousLagrangian, R: Retraction<L::Group>>(
     lagrangian: &L,
     f: &<L::Group as LieGroup>::Matrix,
@@ -104,7 +104,7 @@ pub fn are_finite<T: Real, const N: usize>(constants: &Numbers<T, N>) -> bool {
     constants.0.iter().all(|constant| crate::numbers::is_finite(*constant))
 }
 
-/// The error for a scalar that isn't finite, as [`Parameter::validate`].
+/// The validation of a scalar, as [`Parameter::validate`].
 ///
 /// # Errors
 ///

@@ -7,7 +7,7 @@ use core::fmt;
 
 use super::question::Accuracy;
 
-/// A method for an accuracy, with its step and its cost.
+/// A method for an accuracy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Offer {
     /// Name of the method in tables.

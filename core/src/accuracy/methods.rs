@@ -64,7 +64,7 @@ where
 
 impl<S: Scene<Scalar = f64, Group = Self>> Steppable<S> for SO3 {
     fn add_methods(scene: &S, methods: &mut Methods<Self, S::Advected>) {
-        // Requirements of these methods: a physical, constant inertia and a separable Lagrangian.
+        // These methods need a physical, constant inertia and a separable Lagrangian.
         let Ok(inertia) = Inertia::new(scene.inertia(&scene.advected())) else { return };
         let body = ExactBody::new(&inertia);
         if Stepper::split(scene.clone(), 1.0, body, SplittingScheme::STRANG).is_err() {
@@ -74,7 +74,7 @@ impl<S: Scene<Scalar = f64, Group = Self>> Steppable<S> for SO3 {
             Ok(symmetric) => methods.add_splittings(scene, &symmetric),
             Err(_) => methods.add_splittings(scene, &body),
         }
-        // Six stages are left out: they don't fill the machine's vectors, and take longer than eight.
+        // Six stages don't fill the machine's vectors, and take longer than eight.
         methods.add("Gauss, 4 stages".to_owned(), 8, scene, Stepper::collocated::<2>);
         methods.add("Gauss, 8 stages".to_owned(), 16, scene, Stepper::collocated::<4>);
     }

@@ -21,7 +21,7 @@ const MOST_SHORTENINGS: i32 = 20;
 /// The share of the tolerance for the reference's own error; the rest is for the run.
 const OF_THE_REFERENCE: f64 = 0.1;
 const ACCEPTED: f64 = 1.0 - OF_THE_REFERENCE;
-/// The error at which a run aims, relative to the tolerance.
+/// The error to aim at, relative to the tolerance.
 const AIM: f64 = ACCEPTED - 0.5 * OF_THE_REFERENCE;
 /// The ratio of the best run's cost to that of a method's first run, if no shorter part gives an estimate.
 const FIRST: f64 = 16.0;
@@ -327,8 +327,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
         self.refused.many.get_or_insert_with(|| (steps, is_bound, name()));
     }
 
-    /// The error of a failed search. An invalid step counts, as it is a short one; the failure of a long step doesn't
-    /// if shorter ones would be needed.
+    /// The error of a failed search. Long steps may fail in any way, so that their failure comes last.
     fn refusal(&mut self) -> AccuracyError {
         let Refused { many, floor, failure, .. } = core::mem::take(&mut self.refused);
         let (trials, tolerance) = (self.trials, self.accuracy.tolerance);

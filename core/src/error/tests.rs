@@ -1,4 +1,4 @@
-//! Tests that every error's message names its cause, the measured value, the limit if there is one, and a way out.
+//! Messages of errors: each names its cause, the measured value, the limit if there is one, and a way out.
 
 #[cfg(feature = "serde")]
 use alloc::borrow::ToOwned as _;

@@ -1,4 +1,4 @@
-//! The adjoint: the gradient of a scalar by the start and by all parameters at once, from the last step to the first.
+//! The adjoint: the gradient of a scalar by the start and all parameters, from the last step to the first.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -80,7 +80,7 @@ struct Given<'i, S: Effect> {
     /// Motions that aren't among the changes: those before the steps of a stretch, if steps have inputs or a processor,
     /// and the last of the run.
     motions: Vec<MotionOf<S>>,
-    /// The motion at which the processor's end of the last step begins.
+    /// The motion at the beginning of the last step's end.
     before_end: Option<MotionOf<S>>,
     /// Number of a processor's changes at each end of the run; zero for a run with inputs, whose steps include them.
     ends: usize,
@@ -364,7 +364,7 @@ pub struct Backwards<'a, S: SecondDerivatives, P: Linearisable<S>> {
 }
 
 impl<S: SecondDerivatives, P: Linearisable<S>> Backwards<'_, S, P> {
-    /// The gradient as by [`Linearisation::adjoint`]; `cost` is called with the states of the backward steps.
+    /// The gradient of [`Linearisation::adjoint`]; `cost` takes the states of the backward steps.
     ///
     /// # Errors
     ///

@@ -129,7 +129,7 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> + Steerable {
     /// common parts of the derivatives of an exact motion.
     type Table: Clone + core::fmt::Debug;
 
-    /// Computes the constants of the stages.
+    /// Computes these constants.
     fn table(&self) -> Self::Table;
 
     /// The constants of the stages that a step of `−h` undoes, by the same numbers.

@@ -14,7 +14,7 @@ use crate::numbers::zero;
 pub struct Change<G: LieGroup, A> {
     /// The motion before the change.
     pub(crate) before: Motion<G, A>,
-    /// The increment minus the identity, `F − I`; zero for a push.
+    /// The increment `F − I`; zero for a push.
     pub(crate) increment: G::Matrix,
 }
 

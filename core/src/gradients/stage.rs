@@ -30,7 +30,7 @@ pub struct Stage<'a, E: Effect> {
 /// The share of a force gradient in a kick: of the push `f` of the potential `−½ τ·J⁻¹τ`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ForceGradient<'a, T, C, M> {
-    /// The share's factor, s³.
+    /// The share, s³.
     pub(crate) share: T,
     /// The constants for which [`Effect::kick_before`] returns the torque `τ`.
     pub(crate) torque: &'a C,

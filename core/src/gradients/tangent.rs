@@ -72,7 +72,7 @@ impl<G: LieGroup, A> Tangent<G, A> {
         axes().map(|axis| (axis, zero)).chain(axes().map(|axis| (zero, axis))).collect()
     }
 
-    /// Sets the columns of the start, and zeros for the parameters.
+    /// Sets the start's columns, and zeros for the parameters.
     fn set_columns(&mut self, start: &[(G::Vector, G::Vector)]) {
         let zero = G::Vector::zero();
         let count = start.len() + self.numbers.len();

@@ -21,7 +21,7 @@ pub(crate) fn exponential<T: RealField + Copy, const N: usize>(
         scaled *= half;
         halvings += 1;
     }
-    // The first omitted term, `½¹⁵/16!`, is below half a rounding of one.
+    // The first omitted term, `½¹⁵/16!`, is below half a rounding.
     let mut mean = SMatrix::identity();
     for k in (2..=15).rev() {
         mean = SMatrix::identity() + scaled * mean / real::<T>(f64::from(k));
@@ -34,7 +34,7 @@ pub(crate) fn exponential<T: RealField + Copy, const N: usize>(
     (increment, mean)
 }
 
-/// The logarithm `log(I + D)`; the result is meaningless if the principal logarithm doesn't exist.
+/// The logarithm `log(I + D)`, meaningless if the principal one doesn't exist.
 ///
 /// Square roots reduce `D` to a norm of ¼; then `log F = 2 artanh Z` with `Z = (F + I)⁻¹ (F − I)`.
 pub(crate) fn logarithm<T: RealField + Copy, const N: usize>(increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
@@ -49,7 +49,7 @@ pub(crate) fn logarithm<T: RealField + Copy, const N: usize>(increment: &SMatrix
     }
     let z = inverse(&(root + identity + identity)) * root;
     let squared = z * z;
-    // The first omitted term is below half a rounding of one: `7⁻²⁰/21` for `‖Z‖ ≤ 1/7`.
+    // The first omitted term, `7⁻²⁰/21` for `‖Z‖ ≤ 1/7`, is below half a rounding.
     let mut series = SMatrix::zeros();
     for k in (0..10).rev() {
         series = identity / real::<T>(f64::from(2 * k + 1)) + squared * series;
@@ -67,7 +67,7 @@ fn square_root<T: RealField + Copy, const N: usize>(matrix: &SMatrix<T, N, N>) -
         inverse_root = (inverse_root + inverse(&root)) * half;
         let change = (next - root).norm();
         root = next;
-        // Convergence is quadratic: the next change is the square of this one.
+        // The next change is the square of this one.
         if change <= T::default_epsilon().sqrt() * root.norm() * real(0.125) {
             break;
         }

@@ -209,7 +209,7 @@ macro_rules! product {
         @retraction $retraction:ident [$($group:ident $place:tt $part:ident),+]
         $scalar:ident $joined:ident $split:block $join:expr, $squares:expr, [$($bound:tt)*]
     ) => {
-        /// The retraction acts factor by factor.
+        /// Retraction factor by factor.
         #[hot]
         impl<$($group: LieGroup<Scalar = $scalar>,)+ $scalar: crate::numbers::Real> Retraction<($($group,)+)> for $retraction
         where

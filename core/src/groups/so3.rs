@@ -39,7 +39,7 @@ pub struct SO3<T = f64>(Matrix3<T>);
     "the matrix is not a rotation: ‖RᵀR − I‖ = {defect:e}, det R = {determinant}; pass a UnitQuaternion or an orthogonal matrix"
 )]
 pub struct NotARotation {
-    /// The departure `‖RᵀR − I‖` from orthogonality in the Frobenius norm, or NaN.
+    /// The departure `‖RᵀR − I‖` in the Frobenius norm, or NaN.
     pub defect: f64,
     /// The determinant, 1 for a rotation.
     pub determinant: f64,
@@ -314,7 +314,7 @@ impl<T: Real> LieGroup for SO3<T> {
 }
 
 impl<T: Real> SO3<T> {
-    /// The departure `‖RᵀR − I‖` from orthogonality in the Frobenius norm.
+    /// The departure `‖RᵀR − I‖` in the Frobenius norm.
     // Inlined into `restored`, which every step calls.
     #[hot]
     fn departure(&self) -> T {

@@ -29,7 +29,7 @@ pub fn group_axioms<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     }
 }
 
-/// The hat is linear, and the vee is its inverse, `ξ̂^∨ = ξ`.
+/// The linear hat and its inverse, `ξ̂^∨ = ξ`.
 pub fn hat_and_vee<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     let mut random = Random::new(2);
     assert_small(f64::from(u8::from(G::DIMENSION != D)), 0.0, "the dimension is that of the vectors");
@@ -101,7 +101,7 @@ pub fn brackets_are_derivatives<G: MatrixLieGroup<N, D>, const N: usize, const D
     }
 }
 
-/// A variation of the velocity is `δξ = η' + ad_ξ η` for `g(ε, t) = g(t) exp(ε η(t))`, \[RDAE, (1.3), (1.6)\].
+/// The velocity's variation `δξ = η' + ad_ξ η` for `g(ε, t) = g(t) exp(ε η(t))`, \[RDAE, (1.3), (1.6)\].
 pub fn variations<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     let mut random = Random::new(9);
     for _ in 0..20 {
@@ -124,7 +124,7 @@ pub fn variations<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
 pub fn lie_poisson_brackets<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     let mut random = Random::new(10);
     for f in random.elements::<G, N, D>() {
-        // Three functions `½ μ·Aμ + a·μ`, each as the matrix and the vector of its derivative.
+        // Three functions `½ μ·Aμ + a·μ`, by their derivatives.
         let functions: [(SMatrix<f64, D, D>, SVector<f64, D>); 3] = core::array::from_fn(|_| {
             let matrix: SMatrix<f64, D, D> = random.sample();
             (matrix + matrix.transpose(), random.sample())
@@ -140,7 +140,7 @@ pub fn lie_poisson_brackets<G: MatrixLieGroup<N, D>, const N: usize, const D: us
         assert_small((bracket(&momentum, 0, 1) - by_rate).abs(), ROUNDING, "{f, h} = ⟨δf/δμ, ad*_{δh/δμ} μ⟩, (1.12)");
 
         let jacobi = |i: usize, j: usize, k: usize| {
-            // The bracket is cubic in μ, so the difference of six points has no remainder but rounding.
+            // The bracket is cubic in μ, so that six points leave rounding alone.
             let inner = SVector::from_fn(|axis, _| derivative(|t| bracket(&(momentum + unit(axis) * t), j, k)));
             G::lie_poisson_bracket(&momentum, &slope(i, &momentum), &inner)
         };
@@ -161,7 +161,7 @@ fn unit<const D: usize>(axis: usize) -> SVector<f64, D> {
     SVector::from_fn(|i, _| if i == axis { 1.0 } else { 0.0 })
 }
 
-/// The functions of an increment `D` agree with those of the element `F = I + D`.
+/// Increments `D` act as the elements `F = I + D`.
 pub fn increments<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     let mut random = Random::new(7);
     for f in random.elements::<G, N, D>() {

@@ -2,7 +2,7 @@
 //!
 //! The laws are tested at the identity, next to it and at random places, with a fixed seed, so that a failure repeats.
 
-// Public because the macros expand to paths through these modules.
+// Public for the macros' expansions.
 #[doc(hidden)]
 pub mod advected;
 #[doc(hidden)]

@@ -7,7 +7,7 @@ use super::samples::{
 };
 use crate::groups::Retraction;
 
-/// A retraction maps zero to the identity, with the identity as its derivative.
+/// A retraction at zero: `τ(0) = e` with the identity as its derivative.
 pub fn retraction_at_zero<G: MatrixLieGroup<N, D>, R: Retraction<G>, const N: usize, const D: usize>() {
     let zero = SVector::<f64, D>::zeros();
     assert_close(&R::increment(&zero), &SMatrix::zeros(), 0.0, "τ(0) = e");
@@ -26,7 +26,7 @@ pub fn retraction_stays_in_the_group<G: MatrixLieGroup<N, D>, R: Retraction<G>, 
     }
 }
 
-/// Local coordinates are the inverse of a retraction: `τ⁻¹(τ(ξ)) = ξ` and `τ(τ⁻¹(F)) = F`.
+/// Local coordinates invert a retraction: `τ⁻¹(τ(ξ)) = ξ` and `τ(τ⁻¹(F)) = F`.
 pub fn retraction_round_trips<G: MatrixLieGroup<N, D>, R: Retraction<G>, const N: usize, const D: usize>() {
     let mut random = Random::new(12);
     for xi in random.coordinates() {
@@ -45,7 +45,7 @@ pub fn retraction_round_trips<G: MatrixLieGroup<N, D>, R: Retraction<G>, const N
     }
 }
 
-/// The tangent is the derivative of a retraction, `dF F⁻¹ = (T dξ)^`.
+/// The tangent of a retraction: `dF F⁻¹ = (T dξ)^`.
 pub fn retraction_tangent<G: MatrixLieGroup<N, D>, R: Retraction<G>, const N: usize, const D: usize>() {
     for xi in Random::new(13).coordinates() {
         let f: G = R::retract(&xi);
@@ -59,7 +59,7 @@ pub fn retraction_tangent<G: MatrixLieGroup<N, D>, R: Retraction<G>, const N: us
     }
 }
 
-/// The increment of a small `ξ` loses no digits to a subtraction of `I`.
+/// The increment has all digits of a small `ξ`.
 pub fn retraction_keeps_digits<G: MatrixLieGroup<N, D>, R: Retraction<G>, const N: usize, const D: usize>() {
     let mut random = Random::new(14);
     for _ in 0..20 {
@@ -73,7 +73,7 @@ pub fn retraction_keeps_digits<G: MatrixLieGroup<N, D>, R: Retraction<G>, const 
     }
 }
 
-/// The local coordinates of an element, or NaN out of the retraction's reach, which fails every comparison.
+/// The local coordinates, or NaN out of their reach, which fails every comparison.
 fn coordinates_of<G: MatrixLieGroup<N, D>, R: Retraction<G>, const N: usize, const D: usize>(f: &G) -> SVector<f64, D> {
     R::local_coordinates(f).unwrap_or_else(|| SVector::repeat(f64::NAN))
 }

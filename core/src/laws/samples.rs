@@ -33,7 +33,7 @@ impl Random {
         Self(seed)
     }
 
-    /// A number of the uniform distribution on `[−1, 1)`.
+    /// A uniform number in `[−1, 1)`.
     #[allow(clippy::cast_precision_loss)] // 53 bits are left
     pub fn signed(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);

@@ -1,4 +1,4 @@
-//! Block structure of a matrix of several bodies: the ends of its blocks, and the unknowns that are solved together.
+//! Block structure of a matrix of several bodies, and the unknowns that are solved together.
 
 /// The ends of the blocks on the diagonal of a matrix, in which the unknowns of a body are in one block. It has at most
 /// [`MOST`](Self::MOST) unknowns.

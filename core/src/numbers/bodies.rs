@@ -194,7 +194,7 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         BlockDiagonal(filled!(factors.0, |body| of_body(&factors.0[body])))
     }
 
-    /// A matrix has the pattern of one body for each of its blocks.
+    /// The pattern is that of one body.
     fn factorise_apart(matrix: &Self::Square, pattern: Pattern) -> (Self::Square, T) {
         let (mut factors, mut smallest) = (*matrix, most());
         for k in 0..N {

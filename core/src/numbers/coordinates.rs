@@ -219,7 +219,7 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     }
 
     fn is_finite(&self) -> bool {
-        // Zero times an infinity or a NaN is NaN; the sum of the components themselves could overflow.
+        // Zero times an infinity or a NaN is NaN; the plain sum could overflow.
         sum::<T, D>(|k| self[k] * T::zero()).simd_eq(T::zero()).all()
     }
 

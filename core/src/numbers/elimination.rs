@@ -280,7 +280,7 @@ mod tests {
         let mut broken: SMatrix<f64, 6, 6> = a;
         broken[(0, 0)] = f64::NAN;
         assert!(Vector6::least_trace(&broken, FACTORS).is_nan());
-        // Blocks of up to three unknowns are tested, too.
+        // Up to three unknowns, too.
         let two = Pattern { factors: Blocks::WHOLE.then(1, Blocks::WHOLE), apart: Blocks::WHOLE };
         let (_, det) = Vector2::<f64>::factorise_with(&nalgebra::Matrix2::new(-1.0, 0.0, 0.0, -2.0), two);
         assert!((det + 1.0).abs() < 1e-15);

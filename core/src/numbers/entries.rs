@@ -25,7 +25,7 @@ pub trait Entries<T>: Copy {
     fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self;
 }
 
-/// The entries of a matrix are visited row by row.
+/// Entries of a matrix, row by row.
 #[hot]
 impl<T: Real, const R: usize, const C: usize> Entries<T> for SMatrix<T, R, C> {
     fn from_entries(next: &mut impl FnMut() -> T) -> Self {

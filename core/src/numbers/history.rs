@@ -41,7 +41,7 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Parabola<V> {
         Self { difference: V::zero() }
     }
 
-    /// The parabola's next value `y + ∇ y + ∇² y`.
+    /// The value `y + ∇ y + ∇² y`.
     #[hot]
     fn next(&mut self, last: V, y: V) -> V {
         let difference = y - last;
@@ -49,7 +49,7 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Parabola<V> {
         y + (difference + (difference - before))
     }
 
-    /// The estimate's difference would make the parabola pass through the estimate.
+    /// The parabola would pass through the estimate.
     fn forget_the_estimate(&mut self) {
         *self = Self { difference: V::zero() };
     }
@@ -83,7 +83,7 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Polynomial<V> {
         Self { differences: [V::zero(); DIFFERENCES], values: 0 }
     }
 
-    /// The polynomial's next value `y + ∇ y + ∇² y + …`.
+    /// The value `y + ∇ y + ∇² y + …`.
     #[hot]
     fn next(&mut self, last: V, y: V) -> V {
         let (mut difference, mut guess) = (y - last, y);
@@ -96,7 +96,7 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Polynomial<V> {
         guess
     }
 
-    /// Nothing to discard: the first value wasn't subtracted from an estimate.
+    /// The first value has no difference.
     fn forget_the_estimate(&mut self) {}
 
     fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self> {

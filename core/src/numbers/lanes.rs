@@ -129,8 +129,7 @@ impl<T: Real, const D: usize> Lanes for Point<T, D> {
     }
 }
 
-/// An array of scalars. The lanes of a plain array are those of its entries, and a single scalar has no lanes in that
-/// sense.
+/// An array of scalars in lanes. The entries of a plain array implement [`Lanes`], and scalars don't.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Numbers<T, const N: usize>(pub [T; N]);
 
@@ -185,7 +184,7 @@ impl<V: Lanes> Lanes for Vec<V> {
     }
 }
 
-/// An optional value in lanes, present in all of them or in none.
+/// An optional value, in all lanes or in none.
 impl<V: Lanes> Lanes for Option<V> {
     type Lane = Option<V::Lane>;
 

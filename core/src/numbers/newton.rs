@@ -40,7 +40,7 @@ pub(crate) fn newton_halving<T: Real, V: Coordinates<T>>(
 ) -> NewtonEnd<T, V> {
     let defect_at = |solution: &V| *target - value_of(solution);
     let (zero, first) = (V::zero(), defect_at(&V::zero()));
-    // The iteration begins at zero if the guess has the larger residual, or is outside of the domain of `f`.
+    // Begins at zero if the guess has the larger residual, or is outside of the domain of `f`.
     let mut defect = defect_at(&solution);
     let starts = defect.dot(&defect).simd_le(first.dot(&first));
     solution = solution.select(starts, zero);
@@ -54,7 +54,7 @@ pub(crate) fn newton_halving<T: Real, V: Coordinates<T>>(
     let mut iterations = 0;
     while iterations < MOST_ITERATIONS {
         let size = defect.dot(&defect);
-        // A full step that doesn't help ends the iteration near rounding; farther away it is too long, and is halved.
+        // Near rounding a step that doesn't help ends the iteration; farther away it is too long.
         let is_near = size.simd_le(bound);
         let step = V::solve(&derivative_of(&solution), &defect).0;
         let (mut fraction, mut next, mut next_defect) = (real::<T>(1.0), solution, defect);

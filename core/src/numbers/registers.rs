@@ -154,13 +154,13 @@ impl<R: Register> Columns<R> {
         Self([0, 1, 2].map(|k| zero.of([m[(0, k)], m[(1, k)], m[(2, k)], 0.0])))
     }
 
-    /// The matrix `â` of the cross product with `a`.
+    /// The skew matrix `â`.
     pub(crate) fn hat(a: R) -> Self {
         let [x, y, z, _] = a.entries();
         Self([a.of([0.0, z, -y, 0.0]), a.of([-z, 0.0, x, 0.0]), a.of([y, -x, 0.0, 0.0])])
     }
 
-    /// The multiple `s I` of the identity.
+    /// The matrix `s I`.
     pub(crate) fn multiple(zero: R, s: f64) -> Self {
         Self([zero.of([s, 0.0, 0.0, 0.0]), zero.of([0.0, s, 0.0, 0.0]), zero.of([0.0, 0.0, s, 0.0])])
     }
@@ -170,7 +170,7 @@ impl<R: Register> Columns<R> {
         self.0[0] * spread::<0, R>(v) + self.0[1] * spread::<1, R>(v) + self.0[2] * spread::<2, R>(v)
     }
 
-    /// The product with a number that is in all places of a register.
+    /// The product with a number in all places.
     pub(crate) fn scaled(&self, s: R) -> Self {
         Self([self.0[0] * s, self.0[1] * s, self.0[2] * s])
     }
@@ -180,7 +180,7 @@ impl<R: Register> Columns<R> {
         Self([0, 1, 2].map(|k| self.0[0].of([a[k], b[k], c[k], 0.0])))
     }
 
-    /// The product `M â`: the cross product of each row with `a`.
+    /// The product `M â`: each row times `a`.
     pub(crate) fn cross_rows(&self, a: R) -> Self {
         let (x, y, z) = (spread::<0, R>(a), spread::<1, R>(a), spread::<2, R>(a));
         let m = &self.0;

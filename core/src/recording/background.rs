@@ -12,7 +12,7 @@ use super::recorder::{Column, RecordError, Sink, SinkError};
 /// or at the end. If this is dropped before its end the sink isn't ended either.
 #[derive(Debug)]
 pub struct Background<S> {
-    /// The channel to the thread; none once the table is finished.
+    /// The channel to the thread, until the table is finished.
     work: Option<SyncSender<Work>>,
     /// Written blocks, whose memory is reused.
     written: Receiver<Vec<f64>>,
@@ -54,7 +54,7 @@ impl<S: Sink + Send + 'static> Background<S> {
     fn send(&mut self, work: Work) -> Result<(), SinkError> {
         match &self.work {
             Some(sender) if sender.send(work).is_ok() => Ok(()),
-            // The thread has ended, and its result has the reason.
+            // The thread's result has the reason.
             _ => self.join(),
         }
     }
@@ -74,13 +74,13 @@ fn write_all(sink: &mut impl Sink, waiting: &Receiver<Work>, back: &SyncSender<V
             Work::Begin(columns) => sink.begin(&columns)?,
             Work::Write(rows) => {
                 sink.write(&rows)?;
-                // A full channel refuses the block, which is then freed.
+                // A full channel refuses the block.
                 let _ = back.try_send(rows);
             }
             Work::End => return sink.end(),
         }
     }
-    // The sender was dropped before the end: the sink isn't ended, so that an incomplete table doesn't look complete.
+    // Dropped before its end: the sink isn't ended, so that the table doesn't look complete.
     Ok(())
 }
 
@@ -98,7 +98,7 @@ impl<S: Sink + Send + 'static> Sink for Background<S> {
 
     fn end(&mut self) -> Result<(), SinkError> {
         if let Some(work) = &self.work {
-            // The result of a thread that has ended has the reason.
+            // The thread's result has the reason.
             let _ = work.send(Work::End);
         }
         self.join()

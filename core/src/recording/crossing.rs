@@ -18,7 +18,7 @@ pub(super) struct Looks {
 
 /// The shortest interval in which two zeros are separated, in parts of the step.
 const SHORTEST: f64 = 1.0 / 16_777_216.0;
-/// Limit of the evaluations, more than any sensible bound takes.
+/// Limit of the evaluations.
 const MOST_LOOKS: u32 = 10_000;
 
 /// A part of the interval: its ends, and the function's values there.
@@ -81,7 +81,7 @@ pub(super) fn zeros<E>(
     Ok(Some(found))
 }
 
-/// Limit of the iterations: bisections alone make every bracket shorter than a rounding.
+/// Limit of the iterations, in which bisections alone reach rounding.
 const MOST_ITERATIONS: u32 = 120;
 
 /// The zero in a part whose ends have different signs, or that begins with a zero, by inverse quadratic interpolation

@@ -38,7 +38,7 @@ impl Event {
         Self { rising: false, falling: true, terminal: false, curvature: None }
     }
 
-    /// An event at which the function crosses zero in either direction.
+    /// An event at which the function crosses zero either way.
     #[must_use]
     pub const fn crossing() -> Self {
         Self { rising: true, falling: true, terminal: false, curvature: None }
@@ -140,7 +140,7 @@ pub(super) fn crossings<I: Integrator>(
         let (value, above) = (core::mem::replace(&mut watched.value, next), watched.above);
         watched.above = side(next).or(above);
         let bound = watched.event.curvature.map(|bound| bound.abs() * h * h);
-        // The usual case: most steps have no crossing.
+        // Most steps have no crossing.
         if bound.is_none() && (above.is_none() || watched.above == above) {
             continue;
         }

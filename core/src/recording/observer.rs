@@ -7,12 +7,12 @@ use super::error::{Reason, RunError, RunReport};
 use crate::motion::{Answer, Integrator, Moment};
 use crate::numbers::reported;
 
-/// The verdict of an observer: whether the run goes on, or an error.
+/// The verdict of an observer.
 pub(super) type Verdict = Result<ControlFlow<()>, Box<dyn core::error::Error + Send + Sync>>;
-/// An observer. It returns `None` for a run that goes on, in a register; other verdicts are in memory.
+/// An observer. `None`, which is returned in a register, means that the run goes on.
 pub(super) type Observer<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> Option<Box<Verdict>> + 'a>;
 
-/// The verdict of an observer's answer, or none for a run that goes on.
+/// The verdict of an answer, or none to go on.
 #[hot]
 pub(super) fn unless_it_goes_on(answer: impl Answer) -> Option<Box<Verdict>> {
     match answer.verdict() {

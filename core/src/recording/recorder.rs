@@ -158,7 +158,7 @@ where
         let named = |quantity: &'static str, which: usize| {
             components.iter().map(move |(name, units)| (format!("{quantity}_{name}"), units[which]))
         };
-        // The unit of the energy is that of the product of a velocity and a momentum.
+        // The unit of a velocity times a momentum.
         let energy = if components.iter().all(|(_, units)| *units == ["rad/s", "kg m²/s"]) { "J" } else { "" };
         let columns = attitude.into_iter().chain(named("velocity", 0)).chain(named("momentum", 1));
         let columns = columns.chain([("energy".to_owned(), energy), ("defect".to_owned(), "1")]);
@@ -358,7 +358,7 @@ fn write_attitude<'a, G: LieGroup<Scalar: Into<f64>>>(
     behind
 }
 
-/// The error for a state that doesn't occur: the sink lives as long as the recorder, and a row has at least the time.
+/// An error that can't occur: the sink lives as long as the recorder, and a row has at least the time.
 fn unreachable() -> RecordError {
     RecordError::Sink { cause: "the table is finished".into() }
 }

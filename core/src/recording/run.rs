@@ -123,7 +123,7 @@ where
 }
 
 impl<'a, I: Integrator> Run<'a, I> {
-    /// A run of any integrator, for generic code; the library's own integrators have a method `observed`.
+    /// A run of any integrator; one whose type is known has `observed`.
     pub fn new(integrator: &'a I, state: &'a mut I::State) -> Self {
         Self {
             integrator,
@@ -145,7 +145,7 @@ impl<'a, I: Integrator> Run<'a, I> {
     /// Observes the motion after every `steps` steps, counted from its start, and at step zero. A run that continues
     /// another doesn't observe its first state again: it was the last of the run before.
     ///
-    /// With zero steps it never observes.
+    /// Zero means never.
     pub fn every<R: Answer>(mut self, steps: u64, mut observer: impl FnMut(&Moment<'_, I>) -> R + 'a) -> Self {
         if steps > 0 {
             let observer = Box::new(move |now: &Moment<'_, I>| unless_it_goes_on(observer(now)));
@@ -328,7 +328,7 @@ impl<I: Integrator> Observers<'_, I> {
             progress((made - self.start) as f64 / (self.end - self.start) as f64);
         }
         if made == self.told {
-            // Progress is reported at most a hundred times.
+            // At most a hundred reports.
             self.told = made.saturating_add((self.end - self.start).div_ceil(100).max(1));
         }
         self.seldom = if !self.conditions.is_empty() {
@@ -374,7 +374,7 @@ where
     ///
     /// # Examples
     ///
-    /// The listing finds the times at which a flipping body's momentum about its middle axis changes sign.
+    /// A flipping body's momentum about its middle axis changes sign at these times:
     ///
     /// ```
     /// use liestep::effects::RigidBody;
@@ -437,7 +437,7 @@ where
                 let now = reported(now.time()) / h;
                 seen.set(now >= end);
                 let share = ((now - begun) / (steps - begun)).min(1.0);
-                // Progress is reported at most a hundred times.
+                // At most a hundred reports.
                 if let Some(progress) = &mut progress
                     && (now > begun && share >= told || seen.get())
                 {

@@ -113,7 +113,7 @@ impl<L: Effect> Equation<Group<L>> for CalledEquation<'_, L> {
 /// A solve of one equation with fallbacks.
 struct CarefulSolve<'a, G: LieGroup, R> {
     equation: &'a dyn Equation<G>,
-    /// The determinant above which a Jacobian may be reused, [`Problem::safe`].
+    /// The safe determinant, [`Problem::safe`].
     safe: G::Scalar,
     retraction: PhantomData<R>,
 }

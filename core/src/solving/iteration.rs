@@ -5,8 +5,7 @@ use crate::mechanics::NewtonUpdate;
 use crate::numbers::{Coordinates as _, Mask, Pattern, Real, nowhere, real};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue as _};
 
-/// Limit of the iterations. Quadratic convergence needs at most nine up to 0.999 of the fold; more indicate that there
-/// is no solution.
+/// Limit of the iterations. Quadratic convergence needs at most nine up to 0.999 of the fold.
 pub(crate) const MAX_ITERATIONS: u32 = 20;
 /// Limit of the iterations with shortened updates, which converge more slowly.
 pub(crate) const MAX_DAMPED_ITERATIONS: u32 = 60;
@@ -46,7 +45,7 @@ pub(super) trait System<G: LieGroup> {
 pub(crate) struct Root<G: LieGroup> {
     /// Half the coordinates of `F`, `y = ξ/2`.
     pub(crate) half: G::Vector,
-    /// The increment minus the identity, `F − I`.
+    /// The increment `F − I`.
     pub(crate) increment: G::Matrix,
     /// Number of iterations, including those of abandoned attempts.
     pub(crate) iterations: u32,
@@ -148,7 +147,7 @@ pub(super) fn far<R: Retraction<G>, G: LieGroup>(half: &G::Vector) -> Mask<G::Sc
     !R::is_half_well_near_identity(half)
 }
 
-/// Whether the determinant of a Jacobian has the sign that it has at the identity, where it is that of the inertia.
+/// Whether a determinant has its sign at the identity, that of the inertia.
 #[hot]
 pub(super) fn is_positive<T: Real>(value: T) -> Mask<T> {
     value.simd_gt(real(0.0))

@@ -23,9 +23,9 @@ pub(crate) struct Problem<'a, L: Effect> {
     pub(crate) a: Vector<L>,
     pub(crate) w: &'a L::Advected,
     pub(crate) h: Scalar<L>,
-    /// The radius in which secants are trusted, [`trusted_radius`](super::trusted_radius), or zero.
+    /// The radius for secants, [`trusted_radius`](super::trusted_radius), or zero.
     pub(crate) trusted: Scalar<L>,
-    /// The determinant above which a Jacobian may be reused, see [`safe`](super::safe).
+    /// A [`safe`](super::safe) determinant for a reused Jacobian.
     pub(crate) safe: Scalar<L>,
 }
 

@@ -96,7 +96,7 @@ pub(crate) fn may_suffice<T: Real>(first: T, size: T) -> Mask<T> {
     (first * first * first).simd_le(size * (tolerance * tolerance))
 }
 
-/// Whether the second update was the last: `2|u₁||u₂| max(|u₂|/|u₁|², 1) ≤ REST ε|y|`. All arguments are squares.
+/// Whether it was the last: `2|u₁||u₂| max(|u₂|/|u₁|², 1) ≤ REST ε|y|`. Arguments are squares.
 #[hot]
 pub(crate) fn has_sufficed<T: Real>(first: T, second: T, size: T) -> Mask<T> {
     let tolerance = T::simd_default_epsilon() * real(0.5 * REST);
@@ -179,9 +179,8 @@ mod tests {
         assert!(!enough(1.0, f64::NAN) && !has_sufficed(0.0, f64::NAN, size));
     }
 
-    /// The criteria agree with the error for the iterates of `y' = C y²`, which are their own errors as the solution is
-    /// zero: the next is below a sixteenth of a rounding of `y = 1e-4` if and only if the estimate of two updates
-    /// implies it.
+    /// The iterates of `y' = C y²`, whose solution is zero, are their own errors, and the next is below a sixteenth of
+    /// a rounding of `y = 1e-4` if and only if the estimate of two updates implies it.
     #[test]
     fn a_curvature_of_two_updates_tells_what_is_missing() {
         let (size, rest) = (1e-4_f64, EPSILON * 1e-4 / 16.0);

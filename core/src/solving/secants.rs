@@ -43,7 +43,7 @@ use crate::mechanics::{Effect, Group, Residual, Scalar, Vector};
 use crate::numbers::{Coordinates as _, Mask, nowhere, real};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
 
-/// Limit of the updates. Contraction by a quarter may need more, but then Newton's iteration is cheaper.
+/// Limit of the updates. Beyond, Newton's iteration is cheaper.
 const MAX_UPDATES: usize = 8;
 /// Ratio by which updates must shrink at least.
 const CONTRACTION: f64 = 0.25;
@@ -57,7 +57,7 @@ struct Updates<L: Effect> {
     made: [Vector<L>; MAX_UPDATES],
     lengths: [Scalar<L>; MAX_UPDATES],
     count: usize,
-    /// The square of the largest ratio, `θ²`.
+    /// The square `θ²`.
     contraction: Scalar<L>,
     /// The square of the largest change of the kick by an update, relative to the update's length.
     kick_slope: Scalar<L>,

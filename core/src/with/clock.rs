@@ -109,7 +109,7 @@ impl Clock {
 
 /// # Wrap: prescribed lengths
 impl<S: Effect<Scalar = f64>, P: Plan<S>> Stepper<S, P> {
-    /// Wraps the method so that its steps have the lengths of a clock, in units of its `h`.
+    /// Steps with the lengths of a clock, in units of the method's `h`.
     ///
     /// A clock that is adapted to the motion, as `dt ∝ r^{3/2}` along an orbit, saves many steps; [the
     /// chapter](crate::guide::varying) has measurements, and cases in which it saves none. The energy isn't nearly

@@ -208,7 +208,7 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Sums<G, A> {
         self.motion.steps = steps;
     }
 
-    /// The carry of attitude and advected parameters is cleared, as it belongs to the attitude before.
+    /// Clears the carry, which belongs to the attitude before.
     #[cold]
     fn restore(&mut self, spatial: &A) {
         let Some(far) = restored(&mut self.motion, spatial, TOLERATED) else { return };

@@ -17,9 +17,8 @@ pub struct DensityMemory {
 
 /// # Wrap: lengths that follow the motion
 impl<S: Effect<Scalar = f64>, P: Plan<S>> Stepper<S, P> {
-    /// Wraps the method so that its steps are `h/ρ`, the first about `h`. The argument `rate` is `G = d/dt ln ρ` of the
-    /// desired density of steps, 1/s, as a function of motion and body velocity. [`densities`](super::densities) has
-    /// some rates.
+    /// Steps of `h/ρ`, the first about `h`. The argument `rate` is `G = d/dt ln ρ` of the desired density of steps,
+    /// 1/s, as a function of motion and body velocity. [`densities`](super::densities) has some rates.
     ///
     /// `ρ_{k+1/2} = ρ_k + ½ h G(state_k)`, a step of `h/ρ_{k+1/2}`, `ρ_{k+1} = ρ_{k+1/2} + ½ h G(state_{k+1})`. The
     /// density isn't a function of the state but a number beside it. So [`inverse`](Self::inverse) retraces all steps,

@@ -111,8 +111,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for PacedStep<P> {
     fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         let energy = scene.with_energy(&motion.now().advected, 0.0);
         let report = self.0.step(scene, motion, &mut kept.0)?;
-        // A step sometimes recomputes the advected parameters from the scene, without the energy of the start: it is
-        // restored.
+        // A step may recompute the advected parameters from the scene, without the energy of the start.
         let own = energy.and_then(|(_, energy)| scene.with_energy(&motion.now().advected, energy));
         if let Some((advected, _)) = own {
             motion.show(Motion { advected, ..*motion.now() });
@@ -151,5 +150,5 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for PacedStep<P> {
     }
 }
 
-/// Limit of the iterations for a part of a step, which takes a few.
+/// Limit of the iterations for a part of a step.
 const MOST_ITERATIONS: u32 = 30;

@@ -18,8 +18,7 @@ pub struct Substeps<P> {
 
 /// # Wrap: remedies
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
-    /// Wraps the method so that a step without a solution is divided into 2, 4, 8, … equal parts, as few as can be
-    /// solved and no more than `at_most`.
+    /// Divides a step without a solution into 2, 4, 8, … equal parts, as few as can be solved and at most `at_most`.
     ///
     /// The motion through such a step is as good as any other, but the step isn't constant: the energy stays within its
     /// bound between two such steps and may change by the order of `h²` at each, so that over many it can drift. The
@@ -46,7 +45,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// ```
     #[must_use]
     pub fn or_substeps(self, at_most: u32) -> Stepper<S, Substeps<P>> {
-        // The parts of a step have a count of their own, which values and lengths by count would misread.
+        // The parts of a step have a count of their own.
         const {
             assert!(!P::COUNTS_TIME, "ask for substeps before the values: `.or_substeps(…).driven(…)`");
             assert!(!P::VARIES, "ask for substeps before the lengths: `.or_substeps(…).with_clock(…)`");

@@ -88,7 +88,7 @@ pub trait Advected<G: LieGroup>: Entries<G::Scalar> + Debug + PartialEq {
     #[hot]
     #[must_use]
     fn is_finite(&self) -> bool {
-        // Zero times an infinity or a NaN is NaN; the sum of the components themselves could overflow.
+        // Zero times an infinity or a NaN is NaN; the plain sum could overflow.
         let (zero, mut sum) = (real::<G::Scalar>(0.0), real::<G::Scalar>(0.0));
         self.each(&mut |entry| sum += entry * zero);
         sum.simd_eq(zero).all()
@@ -102,7 +102,7 @@ pub(crate) fn seen_of_unit<G: LieGroup, A: Advected<G>>(number: usize, attitude:
         place += 1;
         if place == number + 1 { real(1.0) } else { real(0.0) }
     });
-    // The action on a point is affine, so the image of zero is subtracted.
+    // The action on a point is affine.
     unit.seen_from(attitude).zip(&zero::<G::Scalar, A>().seen_from(attitude), &mut |a, b| a - b)
 }
 

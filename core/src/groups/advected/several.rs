@@ -12,7 +12,7 @@ use super::Advected;
 use crate::groups::{Factor, LieGroup};
 use crate::numbers::{Entries, Real, entries_of_value};
 
-/// A parameter in the frame of the body that is the factor `A` of a product; the other factors don't act on it.
+/// A parameter in the frame of the factor `A` of a product; the other factors don't act on it.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct SeenFrom<const A: usize, W>(pub W);
 

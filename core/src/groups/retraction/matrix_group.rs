@@ -87,7 +87,7 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> R
     fn local_coordinates(element: &MatrixGroup<K, T, N, D>) -> Option<SVector<T, D>> {
         let xi = MatrixGroup::<K, T, N, D>::vee(&logarithm(&element.increment()));
         let missed = <Self as Retraction<MatrixGroup<K, T, N, D>>>::increment(&xi) - element.increment();
-        // A logarithm has half of the digits right at least; the series has none if the logarithm doesn't exist.
+        // Half of the digits distinguish a logarithm from a divergent series.
         (missed.norm() <= T::default_epsilon().sqrt() * element.matrix().norm()).then_some(xi)
     }
 

@@ -105,7 +105,7 @@ impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
         quadratic_increment(xi, scale, scale * real(0.5))
     }
 
-    /// The increment `D = (ŷ + ŷ²) · 2/(1 + |y|²)`, with the same bits.
+    /// The increment `(ŷ + ŷ²) · 2/(1 + |y|²)`, with the same bits.
     fn increment_of_half(half: &Vector3<T>) -> Matrix3<T> {
         let squared = half.x * half.x + half.y * half.y + half.z * half.z;
         let scale = real::<T>(2.0) / (T::one() + squared);
@@ -163,8 +163,7 @@ impl<T: RealField + Copy> Retraction<SO3<T>> for ExponentialRetraction {
     fn tangent(xi: &Vector3<T>) -> Matrix3<T> {
         let angle_squared = xi.norm_squared();
         let half = sinc(angle_squared * real(0.25));
-        // A subtraction cancels digits of (θ − sin θ)/θ³ at small θ; below this bound its Taylor polynomial is exact to
-        // a rounding.
+        // Digits of (θ − sin θ)/θ³ cancel at small θ; below this bound its Taylor polynomial is exact to a rounding.
         let third = if angle_squared < real(0.04) {
             let t = angle_squared;
             let [a, b, c, d, e] =

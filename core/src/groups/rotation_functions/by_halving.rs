@@ -66,8 +66,8 @@ fn large<T: Number>(q: T) -> (T, T) {
     (sinc, versine)
 }
 
-/// The polynomial `Σ a_k q^k` in pairs, which don't depend on each other; small terms are added first, as a large sum
-/// would lose each of them that is below half of its rounding.
+/// The polynomial `Σ a_k q^k` in pairs, independent of each other; small terms are added first, as a large sum would
+/// round each of them off.
 #[hot]
 fn polynomial<T: Number>(a: &[f64; 8], q: T, q2: T, q4: T) -> T {
     let pair = |k: usize| T::number(a[k]) + q * T::number(a[k + 1]);

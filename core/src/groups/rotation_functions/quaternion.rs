@@ -52,7 +52,7 @@ mod tests {
     use crate::groups::{LieGroup as _, SO3};
     use nalgebra::{UnitQuaternion, Vector3};
 
-    /// Rotations near every half turn and far from it, whose quaternions have the sign of the one before.
+    /// Rotations near every half turn and far from it, with the sign of the one before.
     #[test]
     fn a_rotation_is_shown_by_its_quaternion() {
         let mut numbers = [0.0; 4];

@@ -85,7 +85,7 @@ pub enum CheckpointError {
         "the checkpoint's advected parameters differ by {distance:e} from what its attitude sees; take another file, this one is damaged"
     )]
     NotAdvected {
-        /// Distance of the advected parameters from those in the frame of the attitude.
+        /// Distance from the parameters at this attitude.
         distance: f64,
     },
     /// The method's memory has numbers that no such memory can have.

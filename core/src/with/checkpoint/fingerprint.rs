@@ -1,4 +1,4 @@
-//! Fingerprints of scenes and methods, by which a checkpoint is compared with a stepper.
+//! Fingerprints by which a checkpoint is compared with a stepper.
 
 use alloc::format;
 use alloc::string::String;

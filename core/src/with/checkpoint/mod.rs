@@ -39,7 +39,7 @@ pub struct Checkpoint<T> {
     /// The fingerprint of the terms' derivations and the scalar.
     scene: Digest,
     parameters: Vec<T>,
-    /// The method's name, followed by the fingerprint of all its constants.
+    /// The method's name, and the fingerprint of its constants.
     method: String,
     coefficients: Digest,
     step_size: T,
@@ -132,15 +132,14 @@ impl<S: Effect<Scalar: Storable>, P: Plan<S>> Stepper<S, P> {
             steps: checkpoint.steps,
         };
         let kept = remembered(&checkpoint.kept, &(self.plan.keep(&self.scene, &motion), ElapsedTime::nothing()))?;
-        // Tolerance far above the rounding of any number of steps, and far below the defect of a matrix that isn't an
-        // attitude.
+        // Tolerance far above the rounding of any run, and far below the defect of other matrices.
         let allowed = Scalar::<S>::simd_default_epsilon().simd_sqrt();
         let defect = attitude.defect();
         let is_in_group = defect < allowed;
         if !is_in_group {
             return Err(CheckpointError::NotInGroup { defect: reported(defect) });
         }
-        // The energy of a start is compared by itself: it belongs to the motion, not to the scene.
+        // The energy of a start belongs to the motion, not to the scene.
         let without = |w: S::Advected| self.scene.with_energy(&w, real(0.0)).map_or(w, |(w, _)| w);
         let [found, expected] = [motion.advected, self.scene.advected().seen_from(&attitude)].map(without);
         let (mut squared, mut size) = (real::<Scalar<S>>(0.0), real::<Scalar<S>>(0.0));
@@ -152,7 +151,7 @@ impl<S: Effect<Scalar: Storable>, P: Plan<S>> Stepper<S, P> {
         if !is_seen {
             return Err(CheckpointError::NotAdvected { distance: reported(squared.simd_sqrt()) });
         }
-        // The digest comes last, as every other error is more specific.
+        // The digest is last, as every other error is more specific.
         if checkpoint.digest != checkpoint.digested() {
             return Err(CheckpointError::Altered);
         }
