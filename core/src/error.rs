@@ -1,4 +1,4 @@
-//! What can go wrong, each with the sentence that a user sees.
+//! Errors of a stepper's setup and of a step.
 
 use alloc::borrow::ToOwned as _;
 #[cfg(all(feature = "serde", feature = "std"))]
@@ -8,10 +8,10 @@ use alloc::string::String;
 
 use thiserror::Error;
 
-/// A text that lasts as long as the program. Of a `&str` serde would borrow from what is read.
+/// A text with a static lifetime: deserialising a `&str` would borrow from the input.
 pub(crate) type Text = &'static str;
 
-/// Of the texts that are read one copy each is kept.
+/// Deserialises a static text; each distinct one is leaked once.
 #[cfg(all(feature = "serde", feature = "std"))]
 pub(crate) fn kept<'de, D: serde::Deserializer<'de>>(source: D) -> Result<Text, D::Error> {
     static KNOWN: std::sync::Mutex<BTreeSet<Text>> = std::sync::Mutex::new(BTreeSet::new());
@@ -22,7 +22,7 @@ pub(crate) fn kept<'de, D: serde::Deserializer<'de>>(source: D) -> Result<Text, 
     Ok(text)
 }
 
-/// Why a stepper couldn't be built, or a motion not be started.
+/// An error of building a stepper, or of starting a motion.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[cfg_attr(all(feature = "serde", feature = "std"), derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -33,7 +33,7 @@ pub enum SetupError {
         /// The field of the Lagrangian.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         field: Text,
-        /// What is wrong with it.
+        /// The fault, as a predicate.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         cause: Text,
     },
@@ -42,19 +42,19 @@ pub enum SetupError {
     BodyParameter {
         /// The body, from zero.
         body: usize,
-        /// The field of it.
+        /// The field of the body.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         field: Text,
-        /// What is wrong with it.
+        /// The fault, as a predicate.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         cause: Text,
     },
-    /// A joint can't be where it was put.
+    /// A joint doesn't fit the bodies that it joins.
     #[error("the joint {joint} (from zero) {cause}; check the bodies that it joins")]
     Joint {
         /// The joint, from zero: those of trees first, then those that close loops.
         joint: usize,
-        /// What is wrong with it.
+        /// The fault, as a predicate.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         cause: Text,
     },
@@ -63,42 +63,42 @@ pub enum SetupError {
     JointParameter {
         /// The joint, from zero.
         joint: usize,
-        /// The field of it.
+        /// The field of the joint.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         field: Text,
-        /// What is wrong with it.
+        /// The fault, as a predicate.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         cause: Text,
     },
-    /// A joint is open where the motion is to start, and of all it is open farthest.
+    /// Joints are open at the initial positions; this one is open the farthest.
     #[error(
         "the joint {joint} (from zero) is open by {by:e} (in the units of its functions: m, of axes the cosine); give other places, or let `start_nearest` close the joints"
     )]
     OffConstraint {
         /// The joint, from zero.
         joint: usize,
-        /// By how much, in the units of its functions: m, of axes the cosine.
+        /// Size of the gap, in the units of the joint's functions: m, for axes the cosine.
         by: f64,
     },
-    /// The initial velocities would open a joint, and this one the fastest.
+    /// The initial velocities would open joints; this one opens the fastest.
     #[error(
         "the initial velocities open the joint {joint} (from zero) by {by:e} (in the units of its functions per second: m/s, of axes the cosine per second); give others, or let `start_nearest` find those next to them"
     )]
     OffVelocity {
         /// The joint, from zero.
         joint: usize,
-        /// How fast, in the units of its functions per second: m/s, of axes the cosine per second.
+        /// Rate of opening, in the units of the joint's functions per second: m/s, for axes the cosine per second.
         by: f64,
     },
-    /// A joint has nothing to do that the others, or its own functions, don't, at least along one direction, and at least where the motion is to
-    /// start: its force isn't determined.
+    /// A joint is redundant along at least one direction, at least where the motion starts: other joints, or its own
+    /// functions, constrain the same motion, and its force isn't determined.
     #[error(
         "the others, or its own functions, do a part of what the joint {joint} (from zero) is to do (pivot {pivot:e}), at least where the motion starts; take one with fewer functions, or start elsewhere"
     )]
     RedundantJoint {
         /// The joint, from zero.
         joint: usize,
-        /// What the others leave it to do, relative to what it would have to between free bodies.
+        /// Pivot of the joint, relative to its value between free bodies.
         pivot: f64,
     },
     /// The step is NaN or infinite, or so small or large that the constants of the step leave the scalar's range.
@@ -112,8 +112,8 @@ pub enum SetupError {
     SingularKinetic {
         /// The determinant of the inertia of the continuous limit.
         determinant: f64,
-        /// The body of a system, or the factor of a product, from zero, along which it is once those before are eliminated.
-        /// None where there is but one, or where no pivot is zero and their product is out of range.
+        /// The body of a system, or the factor of a product, from zero, whose inertia is singular once those before are
+        /// eliminated. None if there is only one, or if no pivot is zero and their product is out of range.
         body: Option<usize>,
     },
     /// The kinetic energy is negative along a direction.
@@ -121,10 +121,10 @@ pub enum SetupError {
     NegativeKinetic {
         /// The smallest pivot of the inertia of the continuous limit, relative to its entry of the diagonal.
         pivot: f64,
-        /// The body of a system, or the factor of a product, from zero, that it is of. None where there is but one.
+        /// The body of a system, or the factor of a product, from zero. None if there is only one.
         body: Option<usize>,
     },
-    /// A constant of the scene isn't finite, whatever the step.
+    /// A constant of the scene isn't finite for any step.
     #[error(
         "a constant of the scene is not finite: a divisor is zero, a root or a logarithm has no value, or a product is out of range; give the parameters other values"
     )]
@@ -132,51 +132,51 @@ pub enum SetupError {
     /// A part of the initial state isn't finite.
     #[error("the initial {what} is not finite; give finite numbers, far from the ends of the scalar's range")]
     NonFinite {
-        /// Which part.
+        /// Name of the part.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         what: Text,
     },
-    /// No velocity has the initial momentum, or none on whose side of the singularities of `∂²l/∂ξ²` rest is.
+    /// No velocity has the initial momentum, or only velocities that a singularity of `∂²l/∂ξ²` separates from rest.
     #[error(
         "no velocity that rest can be continued to has the initial momentum; choose a momentum nearer to that at rest"
     )]
     NoVelocity,
-    /// The momentum of the initial velocity is that of another, which the motion would start with.
+    /// The momentum of the initial velocity belongs to a second velocity, with which the motion would start.
     #[error("{}; choose a velocity nearer to rest", ambiguity(*.difference))]
     AmbiguousVelocity {
-        /// By how much the two differ, relative to the one that was given, both measured by the momentum that they would
-        /// have with the inertia at rest. NaN where the velocity has no momentum, or its momentum no velocity.
+        /// Difference of the two velocities relative to the initial one, both measured by the momentum that they would
+        /// have with the inertia at rest. NaN if the velocity has no momentum, or its momentum no velocity.
         difference: f64,
     },
-    /// A vector that is to be of length one isn't.
+    /// A unit vector doesn't have the length one.
     #[error("the {what} has the length {length:e}; give one of length one")]
     NotUnit {
-        /// Which one.
+        /// Name of the vector.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         what: Text,
-        /// Its length.
+        /// Length of the vector.
         length: f64,
     },
-    /// A body that is to move as a direction isn't symmetric about its axis.
+    /// A body that is simulated by the direction of its axis isn't symmetric about that axis.
     #[error(
         "the body isn't symmetric about the axis: an entry of its nonstandard inertia is {difference:e} kg m² from that of one that is; give its axis of symmetry, or start it by an attitude"
     )]
     NotAxisymmetric {
-        /// How far an entry of its nonstandard inertia is from that of a symmetric one at most, kg m².
+        /// Largest difference of an entry of the nonstandard inertia to that of a symmetric body, kg m².
         difference: f64,
     },
-    /// A body that is to move as a direction has a velocity about its axis.
+    /// A body that is simulated by the direction of its axis has a velocity about that axis.
     #[error(
         "the velocity has the part {spin:e} rad/s about the direction, which doesn't move that; give one at right angles to it, or start the body by an attitude"
     )]
     Spin {
-        /// That part of the velocity, rad/s.
+        /// Component of the velocity about the axis, rad/s.
         spin: f64,
     },
     /// The initial attitude isn't in the group.
     #[error("the initial attitude is not in the group (defect {defect:e}, more than rounding); normalise it first")]
     NotInGroup {
-        /// How far the matrix is from the relation of the group.
+        /// Residual of the relation of the group for this matrix.
         defect: f64,
     },
     /// A splitting needs a Lagrangian `K(F) − (h/2) (V(w) + V(F⁻¹·w))`.
@@ -184,10 +184,10 @@ pub enum SetupError {
         "the Lagrangian is not K(F) − (h/2) (V(w) + V(F⁻¹·w)) (defect {defect:e}, more than rounding), so it can't be split; compose it instead"
     )]
     NotSeparable {
-        /// How much the rest depends on `w` when the half kicks are taken away, relative to its size.
+        /// Dependence of the rest on `w` once the half kicks are subtracted, relative to its size.
         defect: f64,
     },
-    /// The kinetic flow of a splitting is that of another body than the Lagrangian's.
+    /// The kinetic flow of a splitting has another inertia than the Lagrangian.
     #[error(
         "the kinetic flow is that of another body: two entries of the inertias differ by {difference:e}; build both from one"
     )]
@@ -195,13 +195,13 @@ pub enum SetupError {
         /// The largest difference of two entries, kg m².
         difference: f64,
     },
-    /// The method has the motion of one free body in it, and the inertia depends on what is advected or given, or on the
-    /// velocity.
+    /// The inertia depends on an advected or prescribed parameter, or on the velocity, and the method contains the
+    /// motion of one free body.
     #[error(
         "the inertia depends on what is advected or given, or on the velocity, and this method needs one that is the same everywhere; compose the scene's own step instead"
     )]
     VaryingInertia,
-    /// The kinetic flow of a splitting has other rotors than the Lagrangian, or none.
+    /// The kinetic flow of a splitting has other rotors than the Lagrangian, or lacks them.
     #[error(
         "the kinetic flow hasn't the momentum at rest that the Lagrangian has, or has another: rotors differ; compose the scene instead, or choose a flow that has them"
     )]
@@ -216,28 +216,28 @@ pub enum SetupError {
         "the derivatives of a term of the scene aren't known: they were written without `kick_gradient`, which a force gradient asks for, or read from a text without `gradients`; choose another scheme, or write it"
     )]
     NoSecondDerivatives,
-    /// The scene has another step of `−h` than the inverse of its step of `h`.
+    /// The step of `−h` isn't the inverse of the step of `h`.
     #[error(
         "the step of −h doesn't undo that of h, which a composition and an inverse need: l_d(F, w, h) isn't −l_d(F⁻¹, F⁻¹·w, −h); take the mean of both, as the trapezoid does"
     )]
     NotSelfAdjoint,
-    /// A stepper or a state can't be in a lane beside the others: lanes share the scheme of a method and the number of
-    /// steps made, for example.
+    /// A stepper or a state can't share a batch with those in the lanes before it. Lanes share the scheme of a method
+    /// and the number of steps made, for example.
     #[error(
         "the body of lane {lane} can't be stepped beside those before it: they have another method, or have made another number of steps; build a batch of like ones"
     )]
     Unlike {
-        /// The first such lane.
+        /// The first lane that differs.
         lane: usize,
     },
 }
 
-/// Whose a kinetic part is, if there are several.
+/// The words for the faulty body or factor, if there are several.
 fn of_body(body: Option<usize>) -> String {
     body.map_or_else(String::new, |body| format!(" of the body or factor {body} (from zero)"))
 }
 
-/// What is wrong with an initial velocity, of which this is the difference to that of its momentum.
+/// The message for an ambiguous initial velocity, from its difference to the velocity with the same momentum.
 fn ambiguity(difference: f64) -> String {
     if difference.is_nan() {
         return "the initial velocity has no momentum, or none that determines a velocity: it is out of the range in which the Lagrangian is defined and regular".to_owned();
@@ -247,15 +247,15 @@ fn ambiguity(difference: f64) -> String {
     )
 }
 
-/// Why a step couldn't be made. The state is then what it was before.
+/// An error of a step. The state is unchanged.
 ///
-/// Of several lanes one was enough; a number in which the lanes differ is NaN.
+/// In a batch one failing lane is enough; a number in which the lanes differ is NaN.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[cfg_attr(all(feature = "serde", feature = "std"), derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum StepError {
-    /// A part of the state isn't finite, before the step or after it; or the momentum equation (2.7) isn't, where a force or
-    /// a potential has no value.
+    /// A part of the state isn't finite, before the step or after it; or the momentum equation (2.7) isn't finite,
+    /// because a force or a potential has no value.
     #[error(
         "the {what} is not finite{}",
         if *.what == "momentum equation" {
@@ -265,98 +265,99 @@ pub enum StepError {
         }
     )]
     NonFinite {
-        /// Which part, or `"momentum equation"`.
+        /// Name of the part, or `"momentum equation"`.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         what: Text,
     },
-    /// The momentum equation (2.7) has no solution that continues the identity at this step, but has one at a smaller.
+    /// The momentum equation (2.7) has no solution on the branch of the identity at this step, but has one at a smaller
+    /// step.
     #[error("no solution at the step {step:e} s{}", beyond_solvable([*.step, *.largest, *.turn], *.body))]
     BeyondSolvable {
-        /// The step that was asked for, s.
+        /// The attempted step, s.
         step: f64,
         /// The largest step that this state allows, s.
         largest: f64,
-        /// How far the body would turn at the velocity that it has after the first kick, rad; of several lanes the largest.
-        /// A potential of the middle of a step isn't in that kick. Zero where nothing is known to turn, as in a translation.
+        /// Angle by which the body would turn with the velocity after the first kick, rad; the largest of several
+        /// lanes. A potential in the middle of a step isn't in that kick. Zero if no rotation is known, as in a
+        /// translation.
         turn: f64,
-        /// The body of a system that this is said of, from zero: the one that would turn farthest, of several lanes in that of
-        /// the largest. None where there is but one, where none turns, or where bodies are declared as one product, of which
-        /// `turn` is that of all.
+        /// The body of a system that would turn farthest, from zero, in the lane with the largest angle. None if there
+        /// is only one body, if none turns, or if bodies are declared as one product: then `turn` is that of all.
         body: Option<usize>,
     },
-    /// The body would turn by an angle of which the scalar has no digit left.
+    /// The body would turn by an angle too large for the scalar to resolve a turn.
     #[error("the body would turn by {turn:.2e} rad, of which no digit is left; take a smaller step")]
     AngleWithoutDigits {
         /// The angle, rad.
         turn: f64,
     },
-    /// The iteration didn't settle: Newton's, or the fixed-point iteration of [`Gauss`](crate::methods::Gauss).
+    /// The iteration didn't converge: Newton's, or the fixed-point iteration of [`Gauss`](crate::methods::Gauss).
     #[error("the iteration {}; try a smaller step", unsettled(*iterations, *residual))]
     NotConverged {
-        /// How many iterations were made.
+        /// Number of iterations made.
         iterations: u32,
-        /// The size of the last update relative to the unknown.
+        /// Size of the last update relative to the unknown.
         residual: f64,
     },
-    /// The iteration settled on a solution that doesn't continue the identity.
+    /// The iteration converged to a solution on another branch than that of the identity.
     #[error(
         "the solution found doesn't continue the identity (Jacobian determinant {determinant:e}: its sign or that of the trace is wrong); try a smaller step"
     )]
     WrongBranch {
-        /// The determinant of the Jacobian there, or NaN. Its sign differs from that at the identity, or else the
-        /// trace's does. Of joined bodies it is that of the whole system, relative to its diagonal.
+        /// Determinant of the Jacobian at the solution, or NaN. Its sign differs from that at the identity, or else the
+        /// trace's does. For joined bodies it is the determinant of the whole system, relative to its diagonal.
         determinant: f64,
     },
-    /// A clock or a density gives the next step no length: the clock has no more, a density isn't positive or has no value,
-    /// or time wouldn't go on.
+    /// The next step has no length: the clock has ended, the density isn't positive or has no value, or the length is
+    /// below the rounding of the time.
     #[error(
         "the next step has no length ({length:e} s): a clock is at its end, or a density isn't positive; give a longer clock, or a density with a smaller unit of the steps"
     )]
     NoLength {
-        /// What was found, s; NaN at the end of a clock.
+        /// The computed length, s; NaN at the end of a clock.
         length: f64,
     },
-    /// A time before the state was asked for, where steps vary and aren't retraced.
+    /// The requested time lies before the state's, and steps of varying length aren't retraced.
     #[error(
         "the time {time} s is before the state's, {now} s, and steps that vary aren't retraced; give a later time, or an earlier state"
     )]
     Past {
-        /// The time, s.
+        /// The requested time, s.
         time: f64,
-        /// That of the state, s.
+        /// The time of the state, s.
         now: f64,
     },
     /// The Jacobian is singular at an iterate.
     #[error("the Newton Jacobian is singular; try a smaller step")]
     Singular,
-    /// A joint that closes a loop is at a singular position, or the step meets one: the others leave the joint nothing to do
-    /// along one direction, and its force isn't determined.
+    /// A joint that closes a loop is at a singular position, or the step meets one: along one direction the other
+    /// joints constrain the motion already, and its force isn't determined.
     #[error(
         "the joint {joint} (from zero) comes to a singular position (pivot {pivot:e}), where its force isn't determined; take a joint with fewer functions, smaller steps, or another way"
     )]
     SingularJoint {
         /// The joint, from zero: those of trees first, then those that close loops.
         joint: usize,
-        /// What the others leave it to do, relative to what it would have to between free bodies.
+        /// Pivot of the joint, relative to its value between free bodies.
         pivot: f64,
     },
-    /// One of several bodies that move each other has no increment that continues the identity at this step.
+    /// One of several coupled bodies has no increment on the branch of the identity at this step.
     #[error(
         "no increment of the body {body} (from zero) that continues the identity: it would turn by {turn:.2e} rad, and its part of the Jacobian has the determinant {determinant:e}; take smaller steps"
     )]
     UnsolvedBody {
-        /// The body, from zero: the first that turns too far where the iteration has ended, or whose part of the Jacobian
-        /// has the wrong sign there. Where it has ended in no numbers, the one that would turn farthest.
+        /// The body, from zero: the first that turns too far at the last iterate, or whose part of the Jacobian has the
+        /// wrong sign there. If the last iterate isn't finite, the body that would turn farthest.
         body: usize,
-        /// How far it would turn at the velocity that it has after the first kick, rad.
+        /// Angle by which the body would turn with the velocity after the first kick, rad.
         turn: f64,
-        /// The determinant of its part of the Jacobian, once the bodies behind it are eliminated, where the iteration has
-        /// ended; NaN where that is nowhere.
+        /// Determinant of the body's part of the Jacobian at the last iterate, once the bodies behind it are
+        /// eliminated; NaN if the last iterate isn't finite.
         determinant: f64,
     },
 }
 
-/// What became of an iteration.
+/// The words for an iteration that didn't converge.
 fn unsettled(iterations: u32, residual: f64) -> String {
     if residual.is_finite() {
         format!("did not settle in {iterations} iterations (last relative update {residual:e})")
@@ -365,9 +366,9 @@ fn unsettled(iterations: u32, residual: f64) -> String {
     }
 }
 
-/// How far a body would turn, and the way out.
+/// The words for a turn that is too large, and the way out.
 fn beyond_solvable([step, largest, turn]: [f64; 3], body: Option<usize>) -> String {
-    // In lanes that differ the largest step isn't one number.
+    // The largest step is NaN if the lanes have different ones.
     let is_known = !largest.is_nan();
     let body = body.map_or_else(String::new, |body| format!(" {body} (from zero)"));
     let advice =

@@ -1,6 +1,6 @@
-//! What most programs need: `use liestep::prelude::*;`
+//! The names that most programs need: `use liestep::prelude::*;`
 //!
-//! The traits are here without their names, so that their methods are found and nothing is in the way of yours.
+//! The traits are imported without their names, so that their methods are found and no name of yours is shadowed.
 
 pub use crate::effects::{Gravity, PrincipalBody, RigidBody};
 pub use crate::error::{SetupError, StepError};

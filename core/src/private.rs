@@ -1,12 +1,12 @@
-//! What expansions name. Not part of the interface.
+//! Names that expansions use. Not part of the interface.
 
 pub use core;
 pub use nalgebra;
 
-// What asks a user's group for its generators, and declares it.
+// Declaration macros, which the macro of a user's group calls back.
 pub use liestep_macros::{constraint, force, lagrangian, matrix_group};
 
-// What a declaration becomes.
+// Names in an expanded declaration.
 pub use crate::error::SetupError;
 pub use crate::groups::rotation_functions::{inverse, log_ratio, rotation_exp, rotation_log, stumpff};
 pub use crate::groups::{CayleyRetraction, Configuration, Relative, Retraction, SeenFrom};
@@ -26,13 +26,13 @@ use crate::groups::{Advected, homogeneous};
 use crate::mechanics::{DiagonalNonstandardInertia, Inertia, NonstandardInertia};
 use crate::numbers::Coordinates;
 
-/// `F⁻¹` of a group element.
+/// The inverse `F⁻¹` of a group element.
 #[inline]
 pub fn inverse_of<G: LieGroup>(element: G::Matrix) -> G::Matrix {
     G::from_matrix_unchecked(element).inverse().matrix()
 }
 
-/// The velocity of a step with increment `F`, and `F⁻¹·w`; NaN where the retraction's coordinates don't reach `F`.
+/// The velocity of a step with increment `F`, and `F⁻¹·w`; NaN if `F` is outside of the retraction's coordinates.
 fn at_the_end<L: ContinuousLagrangian, R: Retraction<L::Group>>(
     f: &<L::Group as LieGroup>::Matrix,
     w: &L::Advected,
@@ -45,7 +45,7 @@ fn at_the_end<L: ContinuousLagrangian, R: Retraction<L::Group>>(
     (velocity, w.seen_from(&element))
 }
 
-/// `(h/2) (l(ξ, w) + l(ξ, F⁻¹·w))`.
+/// The trapezoidal rule `(h/2) (l(ξ, w) + l(ξ, F⁻¹·w))`.
 pub fn trapezoid<L: ContinuousLagrangian, R: Retraction<L::Group>>(
     lagrangian: &L,
     f: &<L::Group as LieGroup>::Matrix,
@@ -56,7 +56,7 @@ pub fn trapezoid<L: ContinuousLagrangian, R: Retraction<L::Group>>(
     (lagrangian.l(&velocity, w) + lagrangian.l(&velocity, &next)) * (h * real(0.5))
 }
 
-/// `h l(ξ, (w + F⁻¹·w)/2)`.
+/// The chord rule `h l(ξ, (w + F⁻¹·w)/2)`.
 pub fn chord<L: ContinuousLagrangian, R: Retraction<L::Group>>(
     lagrangian: &L,
     f: &<L::Group as LieGroup>::Matrix,
@@ -68,25 +68,25 @@ pub fn chord<L: ContinuousLagrangian, R: Retraction<L::Group>>(
     lagrangian.l(&velocity, &middle) * h
 }
 
-/// A field of a declared Lagrangian: its value for the declared expression, and whether it can be used.
+/// A field of a declared Lagrangian: its value in the declared expression, and whether it is finite.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` isn't the type that a declaration takes it for",
     label = "another type of this name",
     note = "types of fields are known by their names: give yours another one, or import that of liestep or nalgebra"
 )]
 pub trait Parameter {
-    /// What the expression computes with.
+    /// The type with which the expression computes.
     type Value;
-    /// What the value is made of.
+    /// The scalar type of its entries.
     type Scalar: Real;
 
-    /// The value.
+    /// The value in the expression.
     fn value(&self) -> Self::Value;
 
     /// Whether all entries are finite.
     fn is_finite(&self) -> bool;
 
-    /// Shows every scalar.
+    /// Passes every scalar to the visitor.
     fn describe(&self, field: &'static str, visitor: &mut dyn SceneVisitor<Self::Scalar>);
 
     /// The error for the first parameter that isn't finite.
@@ -99,12 +99,12 @@ pub trait Parameter {
     }
 }
 
-/// Whether all of these are finite.
+/// Whether all of the constants are finite.
 pub fn are_finite<T: Real, const N: usize>(constants: &Numbers<T, N>) -> bool {
     constants.0.iter().all(|constant| crate::numbers::is_finite(*constant))
 }
 
-/// As [`Parameter::validate`], for a scalar.
+/// The validation of a scalar, as [`Parameter::validate`].
 ///
 /// # Errors
 ///
@@ -113,8 +113,8 @@ pub fn validate_scalar<T: Real>(value: T, field: &'static str) -> Result<(), Set
     if crate::numbers::is_finite(value) { Ok(()) } else { Err(SetupError::Parameter { field, cause: "is not finite" }) }
 }
 
-/// Parameters with entries: the value that an expression computes with, and the entries that are shown and looked at where
-/// they aren't those of the value.
+/// Implements `Parameter`: the value with which an expression computes, and the entries that are described and checked
+/// if they differ from those of the value.
 macro_rules! parameters {
     ($($type:ty $(where $(const $n:ident),+)?: $value:ty = |$of:ident| $get:expr $(, $entries:expr)?;)+) => {$(
         impl<T: Real $($(, const $n: usize)+)?> Parameter for $type {

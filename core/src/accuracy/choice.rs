@@ -1,4 +1,4 @@
-//! What was chosen, and what else there was.
+//! The chosen method, and the alternatives.
 
 use alloc::format;
 use alloc::string::String;
@@ -10,19 +10,19 @@ use super::question::Accuracy;
 /// A method for an accuracy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Offer {
-    /// What it is called in tables.
+    /// Name of the method in tables.
     pub name: String,
-    /// The order promised; errors fall faster where a small potential is split off.
+    /// Order of the method. Errors may fall faster if a small potential is split off.
     pub order: u32,
-    /// About the step that it needs, s; a larger one than it needs, if [`is_bound`](Self::is_bound).
+    /// Approximate step that the method needs, s; an upper bound if [`is_bound`](Self::is_bound).
     pub step: f64,
-    /// The arithmetic of the run, relative to that of the method chosen.
+    /// The arithmetic of the run, relative to that of the chosen method.
     pub cost: f64,
-    /// Whether its trials ended early, as it could only have been more expensive.
+    /// Whether its trials ended early, as it could only be more expensive.
     pub is_bound: bool,
 }
 
-/// What [`Stepper::for_accuracy`](crate::motion::Stepper::for_accuracy) has chosen, with its reasons; as text, a table.
+/// The choice of [`Stepper::for_accuracy`](crate::motion::Stepper::for_accuracy), with its reasons; as text, a table.
 ///
 /// # Examples
 ///
@@ -47,28 +47,28 @@ pub struct Offer {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
-    /// What was asked for.
+    /// The requested accuracy.
     pub accuracy: Accuracy,
     /// The number of steps to the horizon.
     pub steps: u64,
-    /// The error at the horizon, measured against a run with a smaller one.
+    /// The error at the horizon, measured against a run with a smaller error.
     pub error: f64,
     /// The arithmetic of all trial runs, relative to that of the run.
     pub trials: f64,
-    /// What the method costs for ten times the tolerance and for a tenth of it.
+    /// Costs of the method for ten times the tolerance and for a tenth of it.
     pub nearby: [f64; 2],
     pub(super) offers: Vec<Offer>,
     pub(super) chosen: usize,
 }
 
 impl Choice {
-    /// The method chosen.
+    /// The chosen method.
     #[must_use]
     pub fn chosen(&self) -> &Offer {
         &self.offers[self.chosen]
     }
 
-    /// All methods that the scene can be stepped by.
+    /// All methods for the scene.
     #[must_use]
     pub fn offers(&self) -> &[Offer] {
         &self.offers

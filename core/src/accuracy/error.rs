@@ -1,4 +1,4 @@
-//! Why no step was chosen.
+//! Errors of a choice by accuracy.
 
 use alloc::string::String;
 use thiserror::Error;
@@ -6,55 +6,55 @@ use thiserror::Error;
 use super::question::Trials;
 use crate::error::{SetupError, StepError};
 
-/// Why there is no method and step for an accuracy.
+/// An error of the search for a method and step.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum AccuracyError {
-    /// The tolerance isn't a number above zero, or so large that it would be another motion.
+    /// The tolerance isn't a number above zero, or it is so large that the run would be another motion.
     #[error("the tolerance {tolerance:e} can't be used; choose one above 0 and up to 0.05")]
     Tolerance {
-        /// What was asked for.
+        /// The requested tolerance.
         tolerance: f64,
     },
     /// The horizon isn't a finite time above zero.
     #[error("the horizon {horizon:e} s can't be used; choose a finite time above zero")]
     Horizon {
-        /// What was asked for, s.
+        /// The requested horizon, s.
         horizon: f64,
     },
-    /// No method comes so near to the motion in double precision: rounding, as much as the motion magnifies it until
-    /// the horizon, is larger.
+    /// No method reaches the tolerance in double precision: rounding, magnified by the motion until the horizon, is
+    /// larger.
     #[error(
         "the tolerance {tolerance:e} is below what rounding leaves at the horizon: about {floor:.0e} can be reached; choose a larger one or a nearer horizon"
     )]
     Unreachable {
-        /// What was asked for.
+        /// The requested tolerance.
         tolerance: f64,
-        /// About the smallest tolerance that can be reached; of the order of one where the motion can't be predicted so
+        /// Approximate smallest tolerance that can be reached; of the order of one if the motion can't be predicted so
         /// far.
         floor: f64,
-        /// What was tried.
+        /// The trial runs made.
         trials: Trials,
     },
-    /// The steps that all methods would need are too many to be tried.
+    /// All methods would need too many steps for a trial.
     #[error(
         "{} {steps:.0e} steps of the method `{method}` would be needed, which {} trials of up to {:.0e} steps show; choose a larger tolerance or a nearer horizon",
         if *.is_bound { "at least" } else { "about" }, .trials.runs, .trials.most_steps
     )]
     TooManySteps {
-        /// About how many the one that looks cheapest would make.
+        /// Approximate number of steps of the method that seems cheapest.
         steps: f64,
-        /// Whether `steps` is a lower bound: even steps as short haven't shown the motion.
+        /// Whether `steps` is a lower bound: the error is too large to be measured even with such steps.
         is_bound: bool,
-        /// What it is called.
+        /// Name of the method.
         method: String,
-        /// What was tried.
+        /// The trial runs made.
         trials: Trials,
     },
-    /// The scene or the start can't be used, or a step short enough can't.
+    /// The scene, the start or a short enough step is invalid.
     #[error("{0}")]
     Setup(#[from] SetupError),
-    /// A method doesn't get to the horizon, with however short a step, and no other does for the accuracy.
+    /// A method fails before the horizon with any step, and no other reaches the accuracy.
     #[error("no step leads to the horizon: {0}")]
     Step(#[source] StepError),
 }

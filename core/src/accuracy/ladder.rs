@@ -1,4 +1,4 @@
-//! The runs of one method with ever shorter steps, and what they say of the steps that an error takes.
+//! Runs of one method with ever shorter steps, from which the number of steps for an error is estimated.
 
 use alloc::vec::Vec;
 
@@ -10,24 +10,24 @@ use crate::motion::{Cost, Integrator as _};
 
 roots!();
 
-/// Errors that are larger fall by no law of powers.
+/// Limit of errors that fall by a power of the step.
 pub(super) const LARGEST_ERROR: f64 = 0.05;
-/// Errors may fall by so many powers more than promised, where a potential is small.
+/// Excess of the power of an error's fall over the order, at most. It occurs if the potential is small.
 const BEYOND_THE_ORDER: f64 = 4.0;
 
-/// A run to the horizon, near which a method has this many steps.
+/// A run to the horizon with `steps` steps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Run<G: LieGroup> {
     pub(super) steps: f64,
     /// Operations of a step.
     a_step: f64,
-    /// Operations of all.
+    /// Operations of the run.
     pub(super) cost: f64,
-    /// None where there is no such step, or one had no solution.
+    /// The end, or none if the step is invalid, or one had no solution.
     pub(super) end: Option<End<G>>,
 }
 
-/// The end of a fine run, and the error that it is thought to have.
+/// The end of a fine run, and its estimated error.
 pub(super) type Reference<G> = (End<G>, f64);
 
 /// An error at the horizon.
@@ -43,9 +43,9 @@ pub(super) struct Ladder<'a, G: LieGroup, A> {
     pub(super) method: &'a Method<G, A>,
     start: Start<G>,
     cost: Cost,
-    /// By their numbers of steps.
+    /// The runs, sorted by their numbers of steps.
     pub(super) runs: Vec<Run<G>>,
-    /// Why the last run failed.
+    /// The error of the last run, if it failed.
     pub(super) failure: Option<AccuracyError>,
 }
 
@@ -54,7 +54,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
         Self { method, start, cost, runs: Vec::new(), failure: None }
     }
 
-    /// Operations of a run with so many steps, at least.
+    /// Lower bound of the operations of a run with `steps` steps.
     pub(super) fn least(&self, steps: f64) -> f64 {
         self.cost.once + steps * self.cost.least()
     }
@@ -71,12 +71,12 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
         self.runs.iter().any(|run| run.steps.to_bits() == steps.to_bits())
     }
 
-    /// Whether any run has come to its end.
+    /// Whether any run has reached the horizon.
     pub(super) fn has_end(&self) -> bool {
         self.runs.iter().any(|run| run.end.is_some())
     }
 
-    /// A run with so many steps from the start, which is kept.
+    /// Makes and stores a run of `steps` steps from the start.
     pub(super) fn run(&mut self, steps: f64, trials: &mut Trials) -> Run<G> {
         let (run, failure) = self.made(&self.start, steps, trials);
         self.runs.insert(self.runs.partition_point(|other| other.steps < steps), run);
@@ -88,7 +88,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
         end.error(exact, &self.start.velocity, self.start.horizon)
     }
 
-    /// By how far a run ends from one that starts some roundings away.
+    /// Distance of a run's end from that of a run whose start differs by some roundings.
     pub(super) fn rounding(&self, run: &Run<G>, trials: &mut Trials) -> f64 {
         let nearby = self.made(&self.start.nearby(), run.steps, trials).0;
         nearby.end.zip(run.end).map_or(f64::INFINITY, |(nearby, end)| self.apart(&nearby, &end))
@@ -114,13 +114,13 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
         (run, failure)
     }
 
-    /// The error of a run against a reference, which is at least that of the reference.
+    /// The error of a run against a reference, or that of the reference if it is larger.
     pub(super) fn error(&self, run: &Run<G>, (exact, left): &Reference<G>) -> Option<f64> {
         run.end.map(|end| self.apart(&end, exact).max(*left).max(f64::EPSILON))
     }
 
-    /// The errors against a reference, from where they are small enough to say something; without one against the
-    /// finest run.
+    /// The errors against a reference, from the first that is small enough for a power law on; without a reference, the
+    /// differences to the finest run.
     fn points(&self, reference: Option<&Reference<G>>) -> Vec<Point> {
         let own = self.finest().and_then(|finest| Some((finest.end?, 0.0)));
         let (Some(exact), measured) = (match reference {
@@ -141,13 +141,13 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
         points
     }
 
-    /// The order that the last errors show, if there are two.
+    /// The order estimated from the last two errors, if there are two.
     fn shown(points: &[Point], most: f64) -> Option<f64> {
         let [.., before, last] = points else { return None };
         Some(power(before, last).clamp(1.0, most))
     }
 
-    /// Steps that an error takes, and the operations of one, if any run has an error that says something.
+    /// Number of steps for an error, and the operations of one, if any run has a small enough error.
     pub(super) fn takes(&self, reference: &Reference<G>, error: f64) -> Option<(f64, f64)> {
         let (points, most) = (self.points(Some(reference)), self.order() + BEYOND_THE_ORDER);
         let last = points.last()?;
@@ -156,7 +156,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
             None => (by_power(last, Self::shown(&points, most).unwrap_or(most)), last.a_step),
             Some(0) => {
                 let (first, too_long) = (&points[0], self.runs.partition_point(|run| run.steps < points[0].steps));
-                // What isn't more than the reference's error may be far less, and follow no power.
+                // An error no larger than the reference's may be far smaller in truth, and follow no power.
                 let steps = by_power(first, if first.error > reference.1 { self.order() } else { 1.0 });
                 let between = too_long.checked_sub(1).map_or(0.0, |run| (self.runs[run].steps * first.steps).sqrt());
                 (steps.max(between), first.a_step)
@@ -165,13 +165,13 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
         })
     }
 
-    /// A run with these steps, each of so many operations: a whole number of them, and its cost.
+    /// A whole number of steps, each with so many operations, and the cost of the run.
     pub(super) fn of_run(&self, (steps, a_step): (f64, f64)) -> (f64, f64) {
         let steps = steps.ceil().max(1.0);
         (steps, self.cost.once + steps * a_step)
     }
 
-    /// The error of a run with so many steps, by those that were made.
+    /// The error of a run with `steps` steps, extrapolated from the nearest run.
     pub(super) fn error_at(&self, reference: &Reference<G>, steps: f64) -> Option<f64> {
         let points = self.points(Some(reference));
         let away = |point: &Point| (point.steps / steps).ln().abs();
@@ -180,25 +180,25 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
         Some(near.error * (near.steps / steps).powf(order))
     }
 
-    /// Of runs whose errors say nothing yet, the steps that one with an error has at least, and those to be tried next.
+    /// Lower bound of the steps for an error, if no run has a small enough error yet, and the steps of the next trial.
     pub(super) fn bound(&self, error: f64) -> (f64, f64) {
         let finest = self.finest().map_or(0.0, |finest| finest.steps);
         let falls = (LARGEST_ERROR / error).max(1.0).powf((self.order() + BEYOND_THE_ORDER).recip());
         (finest * falls.max(1.2), (finest * falls.clamp(1.2, 2.0)).ceil())
     }
 
-    /// The error that the finest run is left with, by those before it, and the order by which it falls: that which is
-    /// shown, up to the one promised, and otherwise this one.
+    /// The error of the finest run by Richardson's extrapolation, and the order of its fall: the estimated one, limited
+    /// by the method's order, or `unseen` without an estimate.
     pub(super) fn left(&self, unseen: f64) -> Option<(f64, f64)> {
         let (points, finest) = (self.points(None), self.finest()?);
         let last = points.last()?;
         let order = Self::shown(&points, self.order()).unwrap_or(unseen);
         let ratio = (last.steps / finest.steps).powf(order);
-        // What is measured is the difference of two errors.
+        // The measured difference is that of two errors.
         Some((last.error * ratio / (1.0 - ratio), order))
     }
 
-    /// Whether the runs agree as nearly as this, of whatever order their errors are.
+    /// Whether the runs agree within this error, whatever the order of their errors.
     pub(super) fn is_within(&self, error: f64) -> bool {
         self.left(1.0).is_some_and(|(left, _)| left <= error)
     }

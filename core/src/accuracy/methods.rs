@@ -1,4 +1,4 @@
-//! The methods to choose from.
+//! The methods among which an accuracy chooses.
 
 use alloc::borrow::ToOwned as _;
 use alloc::boxed::Box;
@@ -14,31 +14,30 @@ use crate::methods::{
 };
 use crate::motion::{AnyStepper, Plan, Stepper};
 
-/// A method, to be made for a step.
+/// A method as a constructor from a step.
 pub(super) struct Method<G: LieGroup, A> {
     pub(super) name: String,
     pub(super) order: u32,
-    /// Whether it has no error but rounding.
+    /// Whether the method has no error but rounding.
     pub(super) is_exact: bool,
     pub(super) make: Make<G, A>,
 }
 
 type Make<G, A> = Box<dyn Fn(f64) -> Result<AnyStepper<G, A>, SetupError>>;
 
-/// The methods that a scene can be stepped by.
+/// The methods for a scene.
 pub struct Methods<G: LieGroup, A>(pub(super) Vec<Method<G, A>>);
 
-/// A group whose scenes can be asked for an accuracy: what they can be stepped by beside their own step and its
-/// compositions.
+/// A group whose scenes have a choice by accuracy. It names methods besides their own step and its compositions.
 ///
-/// On SO(3) these are splittings, processed ones, collocation and the exact motion, as far as a scene allows them. A
+/// On SO(3) these are splittings, processed ones, collocation and the exact motion, as far as a scene admits them. A
 /// group of another crate needs a line: `impl<S: Scene<Scalar = f64, Group = Self>> Steppable<S> for MyGroup {}`.
 #[diagnostic::on_unimplemented(
     message = "scenes on `{Self}` can't be asked for an accuracy",
     note = "`impl<S: Scene<Scalar = f64, Group = Self>> Steppable<S> for` the group lets its scenes be asked"
 )]
 pub trait Steppable<S: Scene<Scalar = f64, Group = Self>>: LieGroup<Scalar = f64> {
-    /// Adds these methods.
+    /// Adds the methods for the scene.
     fn add_methods(_scene: &S, _methods: &mut Methods<Self, S::Advected>) {}
 }
 
@@ -65,7 +64,7 @@ where
 
 impl<S: Scene<Scalar = f64, Group = Self>> Steppable<S> for SO3 {
     fn add_methods(scene: &S, methods: &mut Methods<Self, S::Advected>) {
-        // What these methods ask of a scene.
+        // These methods need a physical, constant inertia and a separable Lagrangian.
         let Ok(inertia) = Inertia::new(scene.inertia(&scene.advected())) else { return };
         let body = ExactBody::new(&inertia);
         if Stepper::split(scene.clone(), 1.0, body, SplittingScheme::STRANG).is_err() {
@@ -82,7 +81,8 @@ impl<S: Scene<Scalar = f64, Group = Self>> Steppable<S> for SO3 {
 }
 
 impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Methods<G, A> {
-    /// The scene's own step, which is taken to be of order 2, its symmetric compositions, and what its group adds.
+    /// The scene's own step, which is assumed to be of order 2, its symmetric compositions, and the methods of its
+    /// group.
     pub(super) fn of<S>(scene: &S) -> Self
     where
         S: Scene<Scalar = f64, Group = G, Advected = A>,
@@ -115,7 +115,7 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Methods<G, A> {
 }
 
 impl<A: Advected<SO3> + 'static> Methods<SO3, A> {
-    /// Splittings, processed ones among them, with this flow of the body; of a free body that flow alone.
+    /// Adds splittings, processed ones among them, with this flow of the body; for a free body that flow alone.
     fn add_splittings<S, K>(&mut self, scene: &S, flow: &K)
     where
         S: Scene<Scalar = f64, Group = SO3, Advected = A>,
@@ -125,7 +125,7 @@ impl<A: Advected<SO3> + 'static> Methods<SO3, A> {
             let flow = flow.clone();
             move |scene, h| Stepper::split(scene, h, flow.clone(), scheme)
         };
-        // Nothing is kicked: any splitting is the flow, which this one makes once a step.
+        // There are no kicks: any splitting is the flow, and this one makes it once a step.
         if !S::parts(&scene.constants(1.0)).kick_before {
             self.add("exact".to_owned(), SplittingScheme::STRANG.order(), scene, split(SplittingScheme::STRANG));
             if let Some(method) = self.0.last_mut() {

@@ -1,19 +1,20 @@
-//! Asking by accuracy: the cheapest method and its step, by [`Stepper::for_accuracy`](crate::motion::Stepper::for_accuracy).
+//! Choice by accuracy: the cheapest method and its step, by
+//! [`Stepper::for_accuracy`](crate::motion::Stepper::for_accuracy).
 //!
-//! The package `liestep-refinement` measures errors, orders and costs of a method that you choose yourself.
+//! The package `liestep-refinement` measures errors, orders and costs of a method of your own choice.
 //!
-//! # How a choice is made
+//! # The search
 //!
-//! Methods are compared by the operations of their runs, by no clock, so that the same question has the same answer each
-//! time on one platform. One method is run with ever shorter steps until its runs agree (Richardson); the finest is the
-//! reference for all others. Of these the one that may be the cheapest is run next, until none may be cheaper than the
-//! best. This is done over a short part of the motion first, and over parts eight times as long each with the steps that
-//! the part before has shown, up to the horizon: the step is taken from a run to the horizon whose error has been measured
-//! against a finer one.
+//! Methods are compared by the operations of their runs, not by a clock, so that the same request has the same answer
+//! each time on one platform. One method is run with ever shorter steps until its runs agree (Richardson); the finest
+//! is the reference for all others. Then the method with the lowest expected cost is run, again and again, until none
+//! can be cheaper than the best. The search begins with a short part of the motion, and repeats over parts eight times
+//! as long, each with the steps estimated from the part before, up to the horizon. The final step is that of a run to
+//! the horizon whose error has been measured against a finer one.
 //!
-//! A fraction of a turn at a tolerance of some hundredths can be answered by runs of one and two steps that agree by
-//! chance. The operations of all trials are bounded: a scene that would take more than some seconds is refused with what
-//! was tried.
+//! For a fraction of a turn at a tolerance of some hundredths, runs of one and two steps may agree by chance. The
+//! operations of all trials are bounded: a scene that would take more than some seconds is refused with a report of the
+//! trials.
 
 mod choice;
 mod error;
@@ -37,21 +38,21 @@ use crate::mechanics::{Effect, Group, Scene, Vector};
 use crate::motion::{AnyState, AnyStepper, Integrator as _, Stepper};
 
 impl<S: Effect> Stepper<S> {
-    /// The cheapest method for an accuracy, with the step that is just short enough for the motion from this attitude
-    /// (body to space) and body velocity.
+    /// The cheapest method for an accuracy, with the longest sufficient step for the motion from this attitude (body to
+    /// space) and body velocity.
     ///
     /// Every self-adjoint scene has its own step and its symmetric compositions of order 4 to 10. A body on SO(3) whose
     /// potential can be split off has splittings with the exact motion of the free body, processed ones among them, and
-    /// Gauss collocation; a free body is moved exactly.
+    /// Gauss collocation; a free body has its exact motion.
     ///
-    /// The choice takes trial runs, which cost together some twenty times what the run does; [`Choice::trials`] says how
-    /// much. The step is then fixed: energy and momenta are kept as by any fixed step, and the same question gives the
-    /// same bits.
+    /// The choice makes trial runs, whose total cost is some twenty times that of the run; [`Choice::trials`] has the
+    /// ratio. The step is then fixed: energy and momenta are conserved as by any fixed step, and the same request gives
+    /// the same bits.
     ///
     /// # Errors
     ///
-    /// [`AccuracyError`], among others where rounding alone is larger than the tolerance at the horizon, and where
-    /// trials would take more than some seconds.
+    /// [`AccuracyError`], among others if rounding alone is larger than the tolerance at the horizon, or if trials
+    /// would take more than some seconds.
     ///
     /// # Examples
     ///
@@ -71,7 +72,7 @@ impl<S: Effect> Stepper<S> {
     /// assert!((stepper.time(&state) - 20.0).abs() < 1e-12);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    #[allow(clippy::needless_pass_by_value)] // as all others that make a stepper take it
+    #[allow(clippy::needless_pass_by_value)] // as in all other constructors of steppers
     pub fn for_accuracy(
         scene: S,
         accuracy: Accuracy,
@@ -99,7 +100,7 @@ impl<S: Effect> Stepper<S> {
 
 /// A stepper chosen for an accuracy by [`Stepper::for_accuracy`].
 ///
-/// It steps, tells time, velocity and energy as the [`AnyStepper`] that it holds.
+/// It has the steps, times, velocities and energies of the [`AnyStepper`] inside.
 #[derive(Debug)]
 pub struct AccurateStepper<G: LieGroup, A> {
     stepper: AnyStepper<G, A>,
@@ -108,22 +109,23 @@ pub struct AccurateStepper<G: LieGroup, A> {
 }
 
 impl<G: LieGroup, A: Advected<G>> AccurateStepper<G, A> {
-    /// The motion that the accuracy was asked for, at its start.
+    /// The start of the motion for which the accuracy was requested.
     #[must_use]
     pub fn start(&self) -> AnyState<G, A> {
         self.start.clone()
     }
 
-    /// All steps from the state to the horizon; none where it is there or beyond. On an error the state is unchanged.
+    /// Makes all steps from the state to the horizon; none if it is there or beyond. On an error the state is
+    /// unchanged.
     ///
     /// # Errors
     ///
-    /// [`StepError`] as of the method; none for the motion from [`start`](Self::start).
+    /// [`StepError`] of the method; none for the motion from [`start`](Self::start).
     pub fn run(&self, state: &mut AnyState<G, A>) -> Result<(), StepError> {
         self.stepper.run(state, self.choice.steps.saturating_sub(state.steps())).map(|_| ())
     }
 
-    /// What was chosen, and what else there was.
+    /// The chosen method, and the alternatives.
     #[must_use]
     pub fn choice(&self) -> &Choice {
         &self.choice

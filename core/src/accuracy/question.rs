@@ -1,11 +1,11 @@
-//! What is asked, and how far a run is from the motion.
+//! The requested accuracy, and the error of a run.
 
 use crate::groups::LieGroup;
 use crate::numbers::{Coordinates as _, Entries};
 
 roots!();
 
-/// How near to the true motion, and until when.
+/// The requested error, and the time until which it holds.
 ///
 /// The error at the horizon `T` is that of attitude and body velocity together,
 ///
@@ -17,13 +17,13 @@ roots!();
 /// attitude wrong by the angle `θ`, about `0.8 θ`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
-    /// The largest error at the horizon, up to 0.05: what is larger isn't an error but another motion.
+    /// The largest error at the horizon, up to 0.05: a larger one would be another motion.
     pub tolerance: f64,
     /// The time `T` from the start, s.
     pub horizon: f64,
 }
 
-/// Where a run ends.
+/// The end of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct End<G: LieGroup> {
     /// The attitude, body to space.
@@ -32,18 +32,18 @@ pub struct End<G: LieGroup> {
     pub velocity: G::Vector,
 }
 
-/// The trial runs that a choice has taken.
+/// The trial runs of a choice.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Trials {
-    /// How many.
+    /// Number of trial runs.
     pub runs: u64,
-    /// Steps of the longest.
+    /// Number of steps of the longest.
     pub most_steps: f64,
     /// The arithmetic of all, in operations on doubles.
     pub operations: f64,
 }
 
-/// Where runs start, and how far they go.
+/// The start of the runs, and their horizon.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Start<G: LieGroup> {
     pub(super) attitude: G,
@@ -51,17 +51,17 @@ pub(super) struct Start<G: LieGroup> {
     pub(super) horizon: f64,
 }
 
-/// How far apart two starts are that rounding doesn't tell apart in a run: about what the roundings of its first
-/// hundred stages add up to.
+/// Distance of two starts that rounding doesn't distinguish: about the sum of the roundings in the first hundred stages
+/// of a run.
 const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 
 impl<G: LieGroup<Scalar = f64>> Start<G> {
-    /// The same motion, for another time.
+    /// This start with another horizon.
     pub(super) fn until(&self, horizon: f64) -> Self {
         Self { horizon, ..*self }
     }
 
-    /// A start some roundings away, in all directions.
+    /// A start that differs by some roundings, in all directions.
     pub(super) fn nearby(&self) -> Self {
         let axes = (0..G::DIMENSION).map(G::Vector::axis);
         let aside = axes.fold(G::Vector::zero(), |sum, axis| sum * -0.8 + axis) * ROUNDINGS;
@@ -74,8 +74,8 @@ impl<G: LieGroup<Scalar = f64>> Start<G> {
 impl<G: LieGroup<Scalar = f64>> End<G> {
     /// The error of this end, as [`Accuracy`] defines it: that of attitude and body velocity together, without a unit.
     ///
-    /// `exact` is where the run should have ended. `start` is the body velocity `Ω(0)` at its start, on SO(3) in rad/s.
-    /// `time` is the time of the run, s; its sign doesn't matter. The error isn't finite if one of the ends isn't.
+    /// `exact` is the exact end of the run. `start` is the body velocity `Ω(0)` at its start, on SO(3) in rad/s. `time`
+    /// is the time of the run, s; its sign doesn't matter. The error isn't finite if one of the ends isn't.
     ///
     /// # Examples
     ///

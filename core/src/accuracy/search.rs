@@ -1,5 +1,5 @@
-//! The search for the cheapest method: all are compared over a short part of the motion, and over parts eight times as
-//! long each those that are still near the cheapest.
+//! The search for the cheapest method: all are compared over a short part of the motion, and those still near the
+//! cheapest over parts eight times as long each.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -16,27 +16,27 @@ roots!();
 
 /// The ratio of the lengths of two successive parts of the motion.
 const SHORTER: f64 = 8.0;
-/// The largest number of such shortenings before the first part.
+/// Limit of the shortenings before the first part.
 const MOST_SHORTENINGS: i32 = 20;
-/// The share of the tolerance that is left to the reference's own error; the rest is left to the run.
+/// The share of the tolerance for the reference's own error; the rest is for the run.
 const OF_THE_REFERENCE: f64 = 0.1;
 const ACCEPTED: f64 = 1.0 - OF_THE_REFERENCE;
-/// What is aimed at.
+/// The error to aim at, relative to the tolerance.
 const AIM: f64 = ACCEPTED - 0.5 * OF_THE_REFERENCE;
-/// The ratio of the best run's cost to that of a method's first run, where no shorter part has shown more.
+/// The ratio of the best run's cost to that of a method's first run, if no shorter part gives an estimate.
 const FIRST: f64 = 16.0;
-/// A run to the horizon is worth its trial if it costs less than this share of the best one.
+/// A run to the horizon is worth its trial if its expected cost is below this share of the best one's.
 const WORTH: f64 = 0.98;
-/// The most that all trials together may cost, in runs of the chosen method.
+/// Limit of the cost of all trials together, in runs of the chosen method.
 const MOST_RUNS: f64 = 55.0;
-/// What other runs say of a method's next one may be wrong by so much.
+/// Uncertainty of a method's expected cost by its other runs, as a factor.
 const UNSURE: f64 = 1.15;
-/// Before two runs agree trials may make so many operations, a second of a processor; and then ten times as many.
+/// Limit of the operations of trials before two runs agree, a second of a processor; afterwards ten times as many.
 const MOST_OPERATIONS: f64 = 1e9;
-/// What of the tolerance rounding may grow to.
+/// The share of the tolerance to which rounding may grow.
 const OF_ROUNDING: f64 = 0.25;
 
-/// A run that is near enough.
+/// The cheapest accurate run so far.
 #[derive(Clone, Copy)]
 struct Best<G: LieGroup> {
     index: usize,
@@ -44,14 +44,14 @@ struct Best<G: LieGroup> {
     run: Run<G>,
 }
 
-/// What was found of methods that don't come near enough.
+/// Reasons against methods that don't reach the tolerance.
 #[derive(Default)]
 struct Refused {
-    /// Steps that the first would have made, whether it would make at least so many, and its name.
+    /// Steps of the first method with too many, whether they are a lower bound, and its name.
     many: Option<(f64, bool, String)>,
-    /// The least tolerance that rounding leaves.
+    /// The least tolerance that rounding permits.
     floor: Option<f64>,
-    /// Whether that is what the motion makes of roundings, whatever the method.
+    /// Whether that floor is the motion's magnification of roundings, and so the same for every method.
     is_final: bool,
     failure: Option<AccuracyError>,
 }
@@ -64,7 +64,7 @@ struct Survey<'a, G: LieGroup, A> {
     best: Best<G>,
 }
 
-/// A question, and what has been tried to answer it.
+/// A requested accuracy, and the results of the trials.
 struct Search<'a, G: LieGroup, A> {
     methods: &'a [Method<G, A>],
     costs: Vec<Cost>,
@@ -80,7 +80,7 @@ pub(super) fn search<G: LieGroup<Scalar = f64>, A: Advected<G>>(
     accuracy: Accuracy,
     start: Start<G>,
 ) -> Result<Choice, AccuracyError> {
-    // What is wrong with the scene or with the start is wrong with any step.
+    // A fault of the scene or of the start doesn't depend on the step.
     let cost = |method: &Method<G, A>| -> Result<Cost, AccuracyError> {
         let stepper = (method.make)(accuracy.horizon / 1024.0).or_else(|_| (method.make)(accuracy.horizon))?;
         stepper.start(start.attitude, start.velocity)?;
@@ -130,7 +130,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
             let step = self.accuracy.horizon / steps;
             Offer { name: name.clone(), order: *order, step, cost: cost / run.cost, is_bound }
         };
-        // Any tolerance takes one step of the exact motion.
+        // The exact motion takes one step for any tolerance.
         let is_exact = ladders[index].method.is_exact;
         let of = |error| cost(index, error).filter(|_| !is_exact).map_or(run.cost, |(_, cost)| cost);
         Some(Choice {
@@ -169,7 +169,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
         None
     }
 
-    /// The error over a part, if errors grow in proportion to time; below some hundred roundings it isn't measured there.
+    /// The tolerance over a part, if errors grow in proportion to time, but at least some hundred roundings.
     fn tolerance(&self, times: f64) -> f64 {
         let Accuracy { tolerance, .. } = self.accuracy;
         if times <= 1.0 { tolerance } else { (tolerance / times).max(512.0 * f64::EPSILON) }
@@ -179,7 +179,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
         Ladder::new(&self.methods[index], self.costs[index], self.start.until(self.accuracy.horizon / times))
     }
 
-    /// Compares the methods over a part, by what a shorter one has shown.
+    /// Compares the methods over a part, with estimates from a shorter one.
     fn survey(
         &mut self,
         times: f64,
@@ -198,7 +198,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
         let mut scouts: Vec<usize> = (0..ladders.len()).collect();
         let place = |index: usize| {
             let ladder: &Ladder<'_, G, A> = &ladders[index];
-            // As if errors of all fell from the largest with one step.
+            // Expected cost if the errors of all methods fell from the largest with one step.
             let alike = || ladder.least((LARGEST_ERROR / (OF_THE_REFERENCE * tolerance)).powf(ladder.order().recip()));
             let cost = promised(index).map(|(_, cost)| cost);
             (!ladder.is_within(OF_THE_REFERENCE * tolerance), cost.is_none(), cost.unwrap_or_else(alike))
@@ -216,7 +216,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
         Some(self.compared(ladders, found, (tolerance, is_whole), shorter))
     }
 
-    /// Runs a method with ever shorter steps until they show the error of those before: the finest is the reference.
+    /// Runs a method with ever shorter steps until its runs agree: the finest is the reference.
     fn approach(
         &mut self,
         index: usize,
@@ -226,7 +226,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
     ) -> Option<(Reference<G>, Best<G>)> {
         let next = |ladder: &Ladder<'a, G, A>| ladder.finest().map_or(1.0, |run| 2.0 * run.steps);
         let (mut steps, mut is_looked_at) = (first.unwrap_or_else(|| next(ladder)), false);
-        // A few long steps may not show the method's order yet, so it is assumed only after it has been observed.
+        // A few long steps may not have the method's order yet, so it is assumed only after it has been observed.
         let unseen = first.map_or(1.0, |_| ladder.order());
         if let (Some((left, _)), Some(run)) = (ladder.left(1.0), ladder.finest().copied())
             && left <= OF_THE_REFERENCE * tolerance
@@ -242,7 +242,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
                 return None;
             }
             let run = ladder.run(steps, &mut self.trials);
-            // Longer steps could be had, so shorter ones can't either.
+            // A longer step was valid, so all shorter ones are invalid, too.
             if let (Some(AccuracyError::Setup(_)), true) = (&ladder.failure, ladder.has_end()) {
                 self.refused.failure = self.refused.failure.take().or(ladder.failure.take());
                 return None;
@@ -258,7 +258,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
             if floor.is_some() && !is_whole {
                 return Some(((run.end?, left), Best { index, error: left, run }));
             }
-            // Far more steps than a part has shown: that may be rounding.
+            // Far more steps than a shorter part predicts may be a sign of rounding.
             if floor.is_some() || (first.is_some_and(|first| steps > 4.0 * first) && !is_looked_at) {
                 is_looked_at = true;
                 let rounding = ladder.rounding(&run, &mut self.trials) / OF_ROUNDING;
@@ -277,7 +277,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
         }
     }
 
-    /// Runs the method that may be the cheapest, again and again, until none may be cheaper than the best.
+    /// Runs the method with the lowest expected cost, again and again, until none can be cheaper than the best.
     fn compared(
         &mut self,
         mut ladders: Vec<Ladder<'a, G, A>>,
@@ -321,13 +321,13 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
         }
     }
 
-    /// Remembers the first method that needs too many steps.
+    /// Records the first method that needs too many steps.
     fn note_steps(&mut self, index: usize, steps: f64, is_bound: bool) {
         let name = || self.methods[index].name.clone();
         self.refused.many.get_or_insert_with(|| (steps, is_bound, name()));
     }
 
-    /// Long steps may fail in any way; that a step can't be had at all has to do with short ones.
+    /// The error of a failed search. Long steps may fail in any way, so that their failure comes last.
     fn refusal(&mut self) -> AccuracyError {
         let Refused { many, floor, failure, .. } = core::mem::take(&mut self.refused);
         let (trials, tolerance) = (self.trials, self.accuracy.tolerance);
@@ -335,26 +335,27 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
             (Some(floor), ..) => AccuracyError::Unreachable { tolerance, floor, trials },
             (_, Some(failure @ AccuracyError::Setup(_)), _) | (_, Some(failure), None) => failure,
             (.., Some((steps, is_bound, method))) => AccuracyError::TooManySteps { steps, is_bound, method, trials },
-            // Without methods.
+            // Without any method.
             (..) => AccuracyError::TooManySteps { steps: 0.0, is_bound: true, method: String::new(), trials },
         }
     }
 }
 
 impl<G: LieGroup<Scalar = f64>, A: Advected<G>> Survey<'_, G, A> {
-    /// Steps and operations over the next part, by what an error takes here.
+    /// Expected steps and operations over the next part, from the steps for an error over this one.
     fn promised(&self, index: usize, error: f64) -> Option<(f64, f64)> {
         let (steps, a_step) = self.ladders[index].takes(&self.reference, error)?;
         Some(self.ladders[index].of_run((SHORTER * steps, a_step)))
     }
 
-    /// The same, at least, of a method whose errors here say nothing: with one step, if that is too long for this part.
+    /// Lower bounds of the same for a method without a small enough error here; with one step, if that is too long for
+    /// this part.
     fn bound(&self, index: usize, error: f64) -> (f64, f64) {
         let ladder = &self.ladders[index];
         ladder.of_run((SHORTER * ladder.bound(error).0, ladder.least(1.0) - ladder.least(0.0)))
     }
 
-    /// The error here that is the one aimed at over the next part, as a run there shows how errors grow.
+    /// The error over this part that corresponds to `aim` over the next, by the growth of the best run's error.
     fn level(&self, best: &Best<G>, aim: f64) -> f64 {
         let here = self.ladders[best.index].error_at(&self.reference, best.run.steps / SHORTER);
         here.map_or(AIM * self.tolerance, |here| here * (aim / best.error)).max(f64::EPSILON)

@@ -9,8 +9,8 @@ use liestep_macros::lagrangian;
 /// The second-order term of the potential of a body about its centre of mass in the field of a far point mass,
 /// `3 GM/(2 r³) n·Jn` with the direction `n` of that mass; it turns the axis of the least moment into that direction.
 ///
-/// The direction is fixed in space. A satellite on an orbit sees its planet go round:
-/// [`step_with`](crate::Stepper::step_with) gives each step the direction in its middle.
+/// The direction is fixed in space. For a satellite on an orbit, [`step_with`](crate::Stepper::step_with) prescribes
+/// the planet's direction in the middle of each step.
 #[lagrangian(
     group = SO3,
     gradients,
@@ -24,10 +24,10 @@ use liestep_macros::lagrangian;
 pub struct GravityGradient<T = f64> {
     /// The gravitational parameter of the far mass, m³/s².
     pub GM: T,
-    /// Its distance, m.
+    /// Distance of the far mass, m.
     pub r: T,
     /// Inertia of the body about its centre of mass, kg m².
     pub J: Inertia<T>,
-    /// Its direction, in space; of length one.
+    /// Direction of the far mass, in space; of length one.
     pub direction: Vector3<T>,
 }

@@ -4,11 +4,11 @@ use crate::groups::SO3;
 use crate::mechanics::Inertia;
 use liestep_macros::lagrangian;
 
-/// A rigid body to the fourth order: the geodesic kinetic term less what the acceleration `a = J⁻¹(Jξ × ξ)` bends the
-/// path, `K = (ξ·Jξ/2 − a·Ja/24)/h`.
+/// A rigid body with a kinetic term of the fourth order: the geodesic one, corrected for the path that the acceleration
+/// `a = J⁻¹(Jξ × ξ)` bends, `K = (ξ·Jξ/2 − a·Ja/24)/h`.
 ///
-/// That is the order of a free body. Potentials are added at the ends of a step, which is of second order; a scene with
-/// one keeps the fourth only as a composition or a splitting.
+/// The order is that of a free body. Potentials are added at the ends of a step, which is of second order; a scene with
+/// one has the fourth order only as a composition or a splitting.
 #[lagrangian(
     group = SO3,
     l_d = {
@@ -23,11 +23,11 @@ pub struct FourthOrderBody<T = f64> {
     pub J: Inertia<T>,
 }
 
-/// A rigid body to the sixth order: the action of a path that is bent by the acceleration `a = J⁻¹(Jξ × ξ)` and its
-/// rate `b = J⁻¹(Ja × ξ + Jξ × a + J(a × ξ))`, in units of the step,
+/// A rigid body with a kinetic term of the sixth order: the action of a path that is bent by the acceleration
+/// `a = J⁻¹(Jξ × ξ)` and its rate `b = J⁻¹(Ja × ξ + Jξ × a + J(a × ξ))`, in units of the step,
 /// `K = (ξ·Jξ/2 − a·Ja/24 + ((a × ξ)·J(a × ξ) + Jξ·(a × (a × ξ)))/240 − b·Jb/1440)/h`.
 ///
-/// That is the order of a free body; with potentials it is as for [`FourthOrderBody`].
+/// The order is that of a free body; with potentials it is as for [`FourthOrderBody`].
 #[lagrangian(
     group = SO3,
     l_d = {

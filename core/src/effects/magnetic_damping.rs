@@ -6,14 +6,15 @@ use crate::groups::SO3;
 use crate::mechanics::Inertia;
 use liestep_macros::force;
 
-/// The torque `m × B` of a magnetic moment `m = −k dB/dt` against the change of the field that the body sees, `−Ω × B`.
+/// Magnetic damping, the torque `m × B` of a moment `m = −k dB/dt`, with the rate of the field in the body frame,
+/// `−Ω × B`.
 ///
-/// It is what magnetorquers do to detumble a satellite (the B-dot law), and what eddy currents do in a sphere. The
-/// power is `−k |B × Ω|²`, so a turn about the field isn't damped, and the momentum along it is conserved.
+/// Magnetorquers detumble a satellite in this way (the B-dot law), and eddy currents damp a sphere. The power is
+/// `−k |B × Ω|²`, so a turn about the field isn't damped, and the momentum along it is conserved.
 ///
-/// With the field `(b + Fᵀb)/2` of the middle of a step at both of its ends that momentum is conserved to rounding, and
-/// the energy of a free body with the kinetic term of (3.13) never rises. The gain is `k/√(1 + y²)` with
-/// `y = (h/2) k |B|² tr J⁻¹`: of second order where the step resolves the damping, and too little to turn a spin over
+/// Both ends of a step take the field `(b + Fᵀb)/2` of its middle: so that momentum is conserved to rounding, and the
+/// energy of a free body with the kinetic term of (3.13) never rises. The gain is `k/√(1 + y²)` with
+/// `y = (h/2) k |B|² tr J⁻¹`: of second order where the step resolves the damping, and too little to reverse a spin
 /// where it doesn't.
 #[force(
     group = SO3,
@@ -23,7 +24,7 @@ use liestep_macros::force;
         let y = 0.5 * h * k * b.norm_squared() * inverse(J).trace();
         let after = F.transpose() * b;
         let turn = vee(F);
-        // Twice B × (turn × B) for the middle field B = (b + Fᵀb)/2, which has the same part along the turn as b.
+        // Twice B × (turn × B) for the middle field B = (b + Fᵀb)/2, whose component along the turn is that of b.
         let across = turn * (b.norm_squared() + b.dot(&after)) - (b + after) * b.dot(&turn);
         -0.25 * k / (1.0 + y * y).sqrt() * across.dot(&(eta + eta_next))
     },

@@ -1,8 +1,8 @@
-//! A library of effects on a rigid body, to be added up to scenes: `RigidBody { … } + Gravity { … }`.
+//! Effects on a rigid body, which are added up to scenes: `RigidBody { … } + Gravity { … }`.
 //!
-//! Each is a declaration like a user's own, and adds with those. A scene needs a body; what isn't in the sum isn't
-//! simulated. Attitudes are those of the body's axes in space, vectors "in space" are advected: the body sees them
-//! turn.
+//! Each effect is a declaration like a user's own, and is added to those. A scene needs a body; an effect that isn't in
+//! the sum isn't simulated. The attitude turns the body's axes into space. Vectors "in space" are advected: in the body
+//! frame they turn.
 //!
 //! | effect | energy |
 //! |---|---|
@@ -18,13 +18,13 @@
 //!
 //! | kinetic term | order of a free body | its energy | a spin turns in a step by up to |
 //! |---|---|---|---|
-//! | [`RigidBody`], [`PrincipalBody`], (3.13) | 2 | kept to rounding | 90° |
+//! | [`RigidBody`], [`PrincipalBody`], (3.13) | 2 | conserved to rounding | 90° |
 //! | [`CayleyBody`] | 2 | oscillates | 180°, at any speed |
 //! | [`GeodesicBody`] | 2 | oscillates | 145° |
 //! | [`FourthOrderBody`] | 4 | oscillates | 125° |
 //! | [`SixthOrderBody`] | 6 | oscillates | 115° |
 //!
-//! The last three angles were measured on the bodies that bear the least, rods that spin end over end.
+//! The last three angles were measured for the bodies with the smallest limits, rods that spin end over end.
 //!
 //! | force | torque |
 //! |---|---|
@@ -34,7 +34,7 @@
 //! | [`Thrust`] | of a force that is constant in the body, at a point of it |
 //! | [`Torque`] | constant in the body |
 //!
-//! A torque that is given anew each step isn't an effect but data of the step:
+//! A torque that is prescribed step by step isn't an effect but an argument of the step:
 //! [`Stepper::step_forced`](crate::motion::Stepper::step_forced).
 
 mod cayley_body;

@@ -6,11 +6,11 @@ use liestep_macros::lagrangian;
 
 /// A rigid body about a fixed point or its centre of mass: the kinetic term of (3.13).
 ///
-/// By itself it conserves the spatial momentum and the energy to rounding.
+/// Without other effects it conserves the spatial momentum and the energy to rounding.
 #[lagrangian(group = SO3, gradients, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidBody<T = f64> {
-    /// Nonstandard inertia about that point, kg m².
+    /// Nonstandard inertia about the fixed point or the centre of mass, kg m².
     pub J_d: NonstandardInertia<T>,
 }
 

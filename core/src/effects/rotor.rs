@@ -7,8 +7,8 @@ use liestep_macros::lagrangian;
 
 /// A balanced rotor on an axis fixed in the body, with a constant momentum about it: the Lagrangian `s·Ω`.
 ///
-/// The body's inertia holds the rotor's, but for its moment about the axis. The momentum of the state is the whole
-/// system's, `JΩ + s`.
+/// The body's inertia includes the rotor's, except for the moment about the rotor's axis. The momentum of the state is
+/// that of the whole system, `JΩ + s`.
 #[lagrangian(group = SO3, gradients, l_d = spin.dot(&vee(F)))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotor<T = f64> {

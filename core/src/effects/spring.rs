@@ -7,7 +7,7 @@ use liestep_macros::lagrangian;
 
 /// A linear spring from a point of the body to a point of space, both from the fixed point that the body turns about.
 ///
-/// The force has no direction where the two points meet, so they mustn't.
+/// The two points mustn't meet, as the force has no direction there.
 #[lagrangian(
     group = SO3,
     gradients,

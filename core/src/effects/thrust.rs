@@ -12,7 +12,7 @@ use liestep_macros::force;
 #[force(group = SO3, gradients, work = 0.5 * h * at.cross(&thrust).dot(&(eta + eta_next)))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thrust<T = f64> {
-    /// Where the engine is, body frame, m.
+    /// Point of the body at which the engine pushes, body frame, m.
     pub at: Vector3<T>,
     /// The force on the body, body frame, N.
     pub thrust: Vector3<T>,

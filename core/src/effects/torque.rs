@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use crate::groups::SO3;
 use liestep_macros::force;
 
-/// A torque from within the body, as of a thruster that is fixed to it.
+/// A torque that is constant in the body frame, as that of a thruster.
 #[force(group = SO3, gradients, work = 0.5 * h * torque.dot(&(eta + eta_next)))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Torque<T = f64> {

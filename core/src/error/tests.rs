@@ -1,4 +1,4 @@
-//! Every error names its cause, what was measured, the limit where there is one, and what to do.
+//! Messages of errors: each names its cause, the measured value, the limit if there is one, and a way out.
 
 #[cfg(feature = "serde")]
 use alloc::borrow::ToOwned as _;
@@ -11,11 +11,11 @@ use crate::mechanics::InertiaError;
 #[cfg(feature = "serde")]
 use crate::with::CheckpointError;
 
-/// What a user can do begins with one of these.
+/// The verbs with which the advice of a message may begin.
 const ADVICE: [&str; 12] =
     ["build", "check", "choose", "compose", "give", "normalise", "pass", "project", "resume", "take", "try", "write"];
 
-/// The message has each of the parts, and a last clause that says what to do.
+/// Asserts that the message contains each of the parts, and ends in a clause with advice.
 fn assert_says(message: &str, parts: &[&str]) {
     println!("{message}");
     for part in parts {
@@ -25,14 +25,14 @@ fn assert_says(message: &str, parts: &[&str]) {
     assert!(ADVICE.iter().any(|verb| advice.starts_with(verb)), "{message:?} doesn't say what to do");
 }
 
-/// Tests what the variants of an error say. The match doesn't compile where one isn't listed.
+/// Tests the messages of the variants of an error. The match doesn't compile if a variant isn't listed.
 macro_rules! errors_say {
     ($test:ident: $Error:ident {
         $($Variant:ident $({ $($field:ident: $value:expr),+ })? => [$($part:literal),+];)+
     }) => {
         #[test]
         fn $test() {
-            #[allow(unreachable_patterns)] // one may say several things
+            #[allow(unreachable_patterns)] // a variant may be listed several times
             let _ = |error: &$Error| match error {
                 $($Error::$Variant { .. } => (),)+
             };

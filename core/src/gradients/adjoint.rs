@@ -1,4 +1,4 @@
-//! The adjoint, backwards: the gradient of a number by the start and by all parameters at once.
+//! The adjoint: the gradient of a scalar by the start and all parameters, from the last step to the first.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -15,33 +15,33 @@ use crate::mechanics::{DiscreteLagrangian, Effect, Group, Scalar, SecondDerivati
 use crate::motion::{MotionOf, StateOf, Stepper};
 use crate::numbers::{Coordinates as _, Entries as _, Kernel, Vectors, dispatch, is_finite, real};
 
-/// What an adjoint keeps of the way forwards.
+/// The storage of the forward run for an adjoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tape {
-    /// Every stage: on SO(3) 200 bytes each.
+    /// Every stage is stored: on SO(3) 200 bytes each.
     All,
-    /// A state at every `√N`th of `N` steps, and the stages between two of them. All steps but those after the last of
-    /// these states are made twice. The gradient is the same to the bit.
+    /// Checkpoints: the state at every `√N`th of `N` steps is stored, and the stages between two of them. All steps but
+    /// those after the last checkpoint are made twice. The gradient is the same to the bit.
     SquareRoot,
 }
 
-/// The gradient of a number by a motion's start, and by the parameters at a fixed start.
+/// The gradient of a scalar by a motion's start, and by the parameters at a fixed start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gradient<V, T> {
-    /// By attitude and momentum at the start.
+    /// The derivatives by attitude and momentum at the start.
     pub start: Cotangent<V>,
-    /// By the parameters, in the order of [`Linearisation::parameters`].
+    /// The derivatives by the parameters, in the order of [`Linearisation::parameters`].
     pub parameters: Vec<T>,
 }
 
 type GradientOf<S> = Gradient<Vector<S>, Scalar<S>>;
 
-/// The way back.
+/// The state of the reverse pass.
 struct Back<'a, G: LieGroup> {
     cotangent: Cotangent<G::Vector>,
-    /// By the parameters, so far.
+    /// The sums of the derivatives by the parameters.
     gradient: &'a mut [G::Scalar],
-    /// By the values that the step is given, so far; none where it isn't given any.
+    /// The sums of the derivatives by the step's prescribed values; empty for a step without them.
     values: Vec<G::Scalar>,
 }
 
@@ -72,17 +72,17 @@ impl<G: LieGroup> Back<'_, G> {
     }
 }
 
-/// What is known of a run beside the changes that its steps make.
+/// Data of a run besides the changes by its steps.
 struct Given<'i, S: Effect> {
     steps: u64,
-    /// Of the steps; empty where none has one.
+    /// The inputs of the steps; empty if no step has one.
     inputs: &'i [InputOf<S>],
-    /// The motions before the steps of a stretch, and the last of the run; of the others only where these can't be found
-    /// among the changes: of steps with an input, and of those inside of a processor.
+    /// Motions that aren't among the changes: those before the steps of a stretch, if steps have inputs or a processor,
+    /// and the last of the run.
     motions: Vec<MotionOf<S>>,
-    /// Where the end of the last step begins.
+    /// The motion at the beginning of the last step's end.
     before_end: Option<MotionOf<S>>,
-    /// How many changes there are at each end of the run; none of a run with inputs, whose steps have them.
+    /// Number of a processor's changes at each end of the run; zero for a run with inputs, whose steps include them.
     ends: usize,
 }
 
@@ -92,7 +92,7 @@ impl<S: Effect> Given<'_, S> {
     }
 }
 
-/// Makes several steps, and writes down their changes, and the motions that aren't among these.
+/// Makes several steps, and records their changes, and the motions that aren't among these.
 struct Record<'a, 'i, S: SecondDerivatives, P: Linearisable<S>> {
     linearised: &'a Linearisation<'a, S, P>,
     state: &'a mut StateOf<S, P>,
@@ -104,7 +104,7 @@ struct Record<'a, 'i, S: SecondDerivatives, P: Linearisable<S>> {
 impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Record<'_, '_, S, P> {
     type Output = Result<(), StepError>;
 
-    /// As that of [`Stretch`].
+    /// The vector registers of [`Stretch`].
     const VECTORS: Vectors = Vectors::Four;
     const IS_IN_LANES: bool = <Scalar<S> as nalgebra::SimdValue>::LANES > 1;
 
@@ -127,7 +127,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Record<'_, '_, S, P> {
     }
 }
 
-/// Several steps, from the last to the first, and the costs of the states before them, and of that behind the last of all.
+/// The reverse pass over several steps, with the costs of the states before them, and that of the run's last state.
 struct Stretch<'a, 'b, S: SecondDerivatives, P: Linearisable<S>, C> {
     linearised: &'a Linearisation<'a, S, P>,
     steps: Range<u64>,
@@ -147,7 +147,7 @@ where
 {
     type Output = Result<(), StepError>;
 
-    /// For AVX's three-operand instructions; there is nothing to do four at a time.
+    /// AVX has three-operand instructions; nothing here acts on four numbers at a time.
     const VECTORS: Vectors = Vectors::Four;
     const IS_IN_LANES: bool = <Scalar<S> as nalgebra::SimdValue>::LANES > 1;
 
@@ -178,7 +178,7 @@ where
             match input {
                 Input::Free if n == end || self.given.inputs.is_empty() => {}
                 Input::Free => self.by_inputs.push(Input::Free),
-                // Half of the impulse comes before the step, half behind it.
+                // Half of the impulse comes before the step, and half after it.
                 Input::Force(_) => self.by_inputs.push(Input::Force((self.back.cotangent.momentum + at_end) * half)),
                 Input::Values(_) => {
                     self.by_inputs.push(input.of_scalars(&mut || shares.next().copied().unwrap_or(real(0.0))));
@@ -188,7 +188,7 @@ where
             let Some(read) = motions.next().or(first) else { continue };
             let mut of_cost = (self.cost)(n, read);
             if ends > 0 && (n == 0 || of_cost != Cotangent::zero()) {
-                // Elsewhere than at the start of the run only the cost is taken inside.
+                // The processor's ends aren't traversed between steps, except for the cost of a state.
                 out.borrow_mut().clear();
                 if n == 0 {
                     out.borrow_mut().extend_from_slice(begin);
@@ -208,17 +208,17 @@ where
 }
 
 impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
-    /// Makes `steps` steps, and returns the gradient of `Σ_n c_n(state_n)`, by the state before them and by all
+    /// Makes `steps` steps, and returns the gradient of `Σ_n c_n(state_n)` by the state before them and by all
     /// parameters; on an error the state is unchanged.
     ///
-    /// `cost` is asked for the derivatives of `c_n` at each state, from `n = steps` to `n = 0`; what a cost takes from the
-    /// parameters by itself is the caller's to add. A parameter more is a few operations more: for a heavy top the whole
-    /// gradient takes two plain steps for each step (`cargo bench --bench gradients`). [The chapter](crate::guide::gradients)
-    /// has an example.
+    /// `cost` returns the derivatives of `c_n` by each state, and is called from `n = steps` to `n = 0`. If a cost
+    /// depends on the parameters directly, the caller has to add that derivative. A further parameter takes a few
+    /// operations more: for a heavy top the whole gradient takes two plain steps for each step
+    /// (`cargo bench --bench gradients`). [The chapter](crate::guide::gradients) has an example.
     ///
     /// # Errors
     ///
-    /// As [`Stepper::step`], and [`StepError::NonFinite`] where the gradient overflows, as it does in chaos.
+    /// The errors of [`Stepper::step`], and [`StepError::NonFinite`] if the gradient overflows, as it does in chaos.
     pub fn adjoint(
         &self,
         state: &mut StateOf<S, P>,
@@ -229,20 +229,20 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
         self.adjoint_of(state, (steps, &[]), tape, cost).map(|(gradient, _)| gradient)
     }
 
-    /// As [`adjoint`](Self::adjoint), of a run that makes a step with each of these inputs: the gradient by the start and the
-    /// parameters, and behind it the derivatives by the inputs, each of the kind of its input.
+    /// Makes a step with each of these inputs, and returns the gradient by the start and the parameters, as
+    /// [`adjoint`](Self::adjoint), and the derivatives by the inputs, each of the kind of its input.
     ///
-    /// The derivative by a control force is `h/2 (u + p)`, where `u` pairs with the momentum before the step and `p` with that
-    /// behind it. That by values is the derivative by what the body sees of them, taken back to space and added over the
-    /// stages; the parameters that are advected have no share in a step with other values.
+    /// The derivative by a control force is `h/2 (u + p)`, where `u` pairs with the momentum before the step and `p`
+    /// with that after it. The derivative by values is that by their components in the body frame, transformed to space
+    /// and summed over the stages; advected parameters have no derivative in a step with other values.
     ///
     /// # Errors
     ///
-    /// As [`Stepper::step_given`], and [`StepError::NonFinite`] where the gradient overflows.
+    /// The errors of [`Stepper::step_given`], and [`StepError::NonFinite`] if the gradient overflows.
     ///
     /// # Examples
     ///
-    /// How the last momentum of a body depends on the torques of all steps.
+    /// The derivatives of a body's last momentum by the torques of all steps:
     ///
     /// ```
     /// use liestep::effects::RigidBody;
@@ -289,12 +289,12 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
         let length = length.max(1);
         let (mut end, mut starts) = (*state, Vec::new());
         let mut events = Vec::new();
-        // A reservation that fails isn't an error yet: the stages that are stored below are, if there is no memory for them.
+        // A reservation that fails isn't an error: storing the stages below is, if there is no memory for them.
         let _ = events
             .try_reserve(usize::try_from(length).unwrap_or(usize::MAX).saturating_mul(self.stepper.plan.stages()));
         let events = RefCell::new(events);
         let mut made = 0;
-        // All but the last stretch is only stepped through.
+        // All stretches but the last are stepped through without recording.
         while steps - made > length {
             starts.push((made, end));
             for _ in 0..length {
@@ -335,16 +335,16 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
         Ok((gradient, by_inputs))
     }
 
-    /// The gradient by a way back of steps of `−h`: no state of the way forwards is kept.
+    /// Adjoints with a reverse pass by steps of `−h`, which stores no state of the forward run.
     ///
-    /// Such a step undoes one of `h` exactly but for rounding, which the motion magnifies like any other deviation.
+    /// Such a step is the inverse of one of `h` except for rounding, which the motion magnifies like any other
+    /// deviation.
     ///
-    /// For that `l_d` has to be self-adjoint; another is refused when the user's crate is built, and so is a scene with a
-    /// force.
+    /// For that `l_d` has to be self-adjoint; another doesn't compile, and neither does a scene with a force.
     ///
     /// # Errors
     ///
-    /// [`SetupError`] where the scene has no step of `−h`.
+    /// [`SetupError`] if the scene has no step of `−h`.
     pub fn backwards(&self) -> Result<Backwards<'_, S, P>, SetupError>
     where
         S: DiscreteLagrangian + Clone,
@@ -359,16 +359,16 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
 pub struct Backwards<'a, S: SecondDerivatives, P: Linearisable<S>> {
     linearised: &'a Linearisation<'a, S, P>,
     inverse: Stepper<S, P>,
-    /// Of the stages forwards, as steps back undo them.
+    /// The table of the forward stages, as backward steps undo them.
     undone: P::Table,
 }
 
 impl<S: SecondDerivatives, P: Linearisable<S>> Backwards<'_, S, P> {
-    /// As [`Linearisation::adjoint`]; `cost` is shown the states of the way back.
+    /// The gradient of [`Linearisation::adjoint`]; `cost` takes the states of the backward steps.
     ///
     /// # Errors
     ///
-    /// As [`Linearisation::adjoint`].
+    /// The errors of [`Linearisation::adjoint`].
     pub fn adjoint(
         &self,
         state: &mut StateOf<S, P>,
@@ -387,7 +387,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Backwards<'_, S, P> {
         for n in (0..steps).rev() {
             self.inverse.recorded(&mut now, &events, [true; 2])?;
             let mut made = events.borrow_mut();
-            // A step back undoes the stages from the last to the first.
+            // A backward step undoes the stages from the last to the first.
             let after = made.iter().skip(1).map(|event| event.before).chain([now.motion]).collect::<Vec<_>>();
             for (index, (event, after)) in made.drain(..).zip(after).enumerate() {
                 let increment = Group::<S>::from_increment(&event.increment).inverse().increment();

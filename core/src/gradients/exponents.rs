@@ -1,4 +1,4 @@
-//! Lyapunov exponents, of the tangent map by `QR`.
+//! Lyapunov exponents, from `QR` factorisations of the tangent map.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -12,19 +12,19 @@ use crate::numbers::{is_finite, real};
 use nalgebra::SimdComplexField as _;
 
 impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
-    /// The Lyapunov exponents over `steps` steps, 1/s, from the largest about to the least: one for each dimension of
+    /// The Lyapunov exponents over `steps` steps, 1/s, in approximately descending order: one for each dimension of
     /// `(ζ, μ)`. On an error the state is unchanged.
     ///
-    /// The columns are made orthonormal every `between` steps; an interval in which none grows a million times is short
-    /// enough. Those of a Poisson map come in pairs `±λ`. In the components of the declared basis, an exponent of a finite
-    /// time depends on the units, but not its limit.
+    /// The columns are orthonormalised every `between` steps; an interval in which none grows a million times is short
+    /// enough. The exponents of a Poisson map come in pairs `±λ`. In the components of the declared basis, an exponent
+    /// over a finite time depends on the units, but its limit doesn't.
     ///
-    /// `steps = 0` gives zeros, and `between = 0` is taken for one.
+    /// `steps = 0` gives zeros, and `between = 0` counts as one.
     ///
     /// # Errors
     ///
-    /// As [`step`](Self::step), and [`StepError::NonFinite`] where an exponent isn't a number: at `h = 0`, where no time
-    /// passes, and where the length of a column is zero or out of range.
+    /// The errors of [`step`](Self::step), and [`StepError::NonFinite`] if an exponent isn't a number: at `h = 0`,
+    /// where no time passes, and if the length of a column is zero or out of range.
     ///
     /// # Source
     ///

@@ -1,4 +1,4 @@
-//! What a step is given beside the state, and the derivatives of a step by it.
+//! Inputs of a step besides the state, and the derivatives of a step by them.
 
 use alloc::vec::Vec;
 use core::cell::RefCell;
@@ -12,15 +12,15 @@ use crate::mechanics::{Effect, Group, Scalar, SecondDerivatives, Term, Vector};
 use crate::motion::{Plan, StateOf, Steerable, StepReport, Stepper};
 use crate::numbers::{Coordinates, Entries, Real, dispatch, real};
 
-/// What a step is given beside the state, or the derivative of a number by it: the kind is that of the input, and each
-/// scalar is the derivative by the scalar in its place.
+/// An input of a step besides the state, or the derivative of a scalar by it: that has the kind of the input, and each
+/// of its numbers is the derivative by the number in its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Input<V, A> {
-    /// Nothing: the step is [`Stepper::step`].
+    /// No input: the step is [`Stepper::step`].
     Free,
-    /// A control force, held over the step: [`Stepper::step_forced`]. On SO(3) a torque in the body's axes, N m.
+    /// A control force, constant over the step: [`Stepper::step_forced`]. On SO(3) a torque in the body's axes, N m.
     Force(V),
-    /// What is advected, as it is in space during the step: [`Stepper::step_with`].
+    /// Advected parameters in space during the step: [`Stepper::step_with`].
     Values(A),
 }
 
@@ -28,7 +28,7 @@ pub enum Input<V, A> {
 pub type InputOf<S> = Input<Vector<S>, <S as Term>::Advected>;
 
 impl<V, A> Input<V, A> {
-    /// The scalars: the components of the force, or those of the values in the order of [`Entries`].
+    /// The numbers of the input: the components of the force, or those of the values in the order of [`Entries`].
     #[must_use]
     pub fn scalars<T: Copy>(&self) -> Vec<T>
     where
@@ -44,7 +44,7 @@ impl<V, A> Input<V, A> {
         scalars
     }
 
-    /// An input of the same kind, made of the next scalars of a stream.
+    /// An input of the same kind, from the next numbers of a stream.
     #[must_use]
     pub fn of_scalars<T>(&self, next: &mut impl FnMut() -> T) -> Self
     where
@@ -59,23 +59,24 @@ impl<V, A> Input<V, A> {
     }
 }
 
-/// The derivatives of the state after a step, `(ζ⁺, δμ⁺)`, by the state before it and by what the step is given.
+/// The derivatives of the state after a step, `(ζ⁺, δμ⁺)`, by the state before it and by the input.
 ///
 /// ```text
 /// (ζ⁺, δμ⁺) = A (ζ, δμ) + B δu
 /// ```
 ///
-/// The unknowns on the group are those of `g exp ζ̂`: on SO(3) radians about the body's axes at either end of the step.
+/// The coordinates on the group are those of `g exp ζ̂`: on SO(3) radians about the body's axes at either end of the
+/// step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transition<V> {
-    /// The columns of `A`: along displacements `ζ`, and behind them by the components of the momentum.
+    /// The columns of `A`: first along displacements `ζ`, then by the components of the momentum.
     pub by_state: Vec<(V, V)>,
     /// The columns of `B`, one for each of the [scalars](Input::scalars) of the input.
     pub by_input: Vec<(V, V)>,
 }
 
 impl<V> Transition<V> {
-    /// `A`, by its four blocks: `[[∂ζ⁺/∂ζ, ∂ζ⁺/∂μ], [∂μ⁺/∂ζ, ∂μ⁺/∂μ]]`.
+    /// The four blocks of `A`: `[[∂ζ⁺/∂ζ, ∂ζ⁺/∂μ], [∂μ⁺/∂ζ, ∂μ⁺/∂μ]]`.
     #[must_use]
     pub fn blocks<T: Real>(&self) -> [[SquareOfVector<V, T>; 2]; 2]
     where
@@ -88,11 +89,11 @@ impl<V> Transition<V> {
 /// # Step: of any kind
 impl<S: Effect, P: Plan<S> + Steerable> Stepper<S, P> {
     /// One step with this input: [`step`](Self::step), [`step_forced`](Self::step_forced) or
-    /// [`step_with`](Self::step_with), as its kind is. On an error the state is unchanged.
+    /// [`step_with`](Self::step_with), according to its kind. On an error the state is unchanged.
     ///
     /// # Errors
     ///
-    /// As these.
+    /// The errors of these functions.
     pub fn step_given(&self, state: &mut StateOf<S, P>, input: &InputOf<S>) -> Result<StepReport, StepError> {
         match input {
             Input::Free => self.step(state),
@@ -103,16 +104,16 @@ impl<S: Effect, P: Plan<S> + Steerable> Stepper<S, P> {
 }
 
 impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
-    /// One step with this input, and the derivatives by start and parameters carried over it. On an error both are
-    /// unchanged.
+    /// One step with this input, and its tangent map applied to the derivatives by start and parameters. On an error
+    /// both are unchanged.
     ///
     /// # Errors
     ///
-    /// As [`Stepper::step_given`], and [`StepError::NonFinite`] where a derivative overflows.
+    /// The errors of [`Stepper::step_given`], and [`StepError::NonFinite`] if a derivative overflows.
     ///
     /// # Panics
     ///
-    /// As [`step`](Self::step).
+    /// The panics of [`step`](Self::step).
     pub fn step_given(
         &self,
         state: &mut StateOf<S, P>,
@@ -124,22 +125,22 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
 
     /// One step with this input, and its blocks `A = ∂x⁺/∂x` and `B = ∂x⁺/∂u`. On an error the state is unchanged.
     ///
-    /// A control force `f` acts by half of its impulse `h f` before the step and by half of it behind, so that with the
-    /// columns `A_μ` by the momentum
+    /// A control force `f` acts by half of its impulse `h f` before the step and by half of it after the step, so that
+    /// with the columns `A_μ` by the momentum
     ///
     /// ```text
     /// B = h/2 (A_μ + (0, I))
     /// ```
     ///
-    /// Values act in each stage as parameters that are advected do; what a body sees of a value is `δw = g⁻¹·δa`.
+    /// Values act in each stage as advected parameters do; in the body frame a value changes by `δw = g⁻¹·δa`.
     ///
     /// # Errors
     ///
-    /// As [`step_given`](Self::step_given).
+    /// The errors of [`step_given`](Self::step_given).
     ///
     /// # Examples
     ///
-    /// What a torque does to a body at rest: in one step it turns by `h²/2 J⁻¹ f`.
+    /// A torque on a body at rest turns it in one step by `h²/2 J⁻¹ f`:
     ///
     /// ```
     /// use liestep::effects::RigidBody;
@@ -184,13 +185,13 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
         Ok(Transition { by_state, by_input })
     }
 
-    /// Half of the step, in which half of a force's impulse is given.
+    /// Half of the step, which multiplies a force in each half impulse.
     pub(super) fn half_step(&self) -> Scalar<S> {
         self.stepper.step_size() * real(0.5)
     }
 
-    /// One step with this input, whose stages are written down; after an error the state may be anywhere. The bits are
-    /// those of [`Stepper::step_given`].
+    /// One step with this input, whose stages are recorded; after an error the state is undefined. The bits are those
+    /// of [`Stepper::step_given`].
     #[hot]
     pub(super) fn recorded_given(
         &self,

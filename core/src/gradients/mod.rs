@@ -1,37 +1,38 @@
-//! Derivatives of motions: the tangent map of a step, its transpose, and what is made of them.
+//! Derivatives of motions: the tangent map of a step, its transpose, and applications of both.
 //!
 //! | | |
 //! |---|---|
-//! | how the end of a motion changes with its start and with some parameters | [`Linearisation::step`] with a [`Tangent`] |
+//! | the derivatives of the end of a motion by its start and by some parameters | [`Linearisation::step`] with a [`Tangent`] |
 //! | the state transition matrix | [`Tangent::transition`] |
-//! | how the end of a step changes with its beginning and with a control force, or with values that it is given | [`Linearisation::transition`] |
-//! | how one number changes with the start and with all parameters | [`Linearisation::adjoint`], [`Linearisation::backwards`] |
-//! | the same with what each step is given, and how the number changes with that | [`Linearisation::adjoint_given`] |
+//! | the derivatives of the end of a step by its beginning and by a control force, or by prescribed values | [`Linearisation::transition`] |
+//! | the gradient of a scalar by the start and by all parameters | [`Linearisation::adjoint`], [`Linearisation::backwards`] |
+//! | the same with inputs of the steps, and the derivatives by them | [`Linearisation::adjoint_given`] |
 //! | Lyapunov exponents | [`Linearisation::lyapunov_exponents`] |
 //!
-//! They are asked for by the word `gradients` in a declaration; the effects of the library have it, except for the bodies
-//! of fourth and sixth order. A scene without it has nothing of this in its program. They go with a scene's own step, on
-//! any group and with forces, with compositions, and with splittings, processed ones too, whose flow is declared or exact.
-//! `cargo bench --bench gradients` has the costs. In a splitting whose symmetric body turns about its axis once a step, a
-//! step with derivatives makes its drifts twice. One of a processed splitting makes both ends of the processor, as what is
-//! differentiated is what is read; the adjoint makes an end where a cost is read, and none where the cost is zero.
+//! The word `gradients` in a declaration adds them; the effects of the library have it, except for the bodies of fourth
+//! and sixth order. A scene without it has no code for derivatives. They work with a scene's own step, on any group and
+//! with forces, with compositions, and with splittings, processed ones too, whose flow is declared or exact.
+//! `cargo bench --bench gradients` has the costs. In a splitting whose symmetric body turns about its axis once a step,
+//! a step with derivatives makes its drifts twice. One of a processed splitting makes both ends of the processor, as
+//! the derivatives are those of the processed state; the adjoint makes an end for the cost of a state, unless the cost
+//! is zero.
 //!
 //! # Coordinates
 //!
-//! A state is `(g, μ)`; the body sees `w = g⁻¹·a_0`. Its changes are `(ζ, δμ)`, with `g ← g exp ζ̂` and the components of
-//! the momentum, so that
+//! A state is `(g, μ)`; in the body frame the advected parameters are `w = g⁻¹·a_0`. A change of the state is
+//! `(ζ, δμ)`, with `g ← g exp ζ̂` and the components of the momentum, so that
 //!
 //! ```text
 //! δw = −ζ·w + g⁻¹·δa_0
 //! ```
 //!
-//! On SO(3) `ζ` is a small turn in the body's axes, in rad. The derivative of a number is a [`Cotangent`]: a covector, and
-//! an element of the algebra.
+//! On SO(3) `ζ` is a small turn in the body's axes, in rad. The derivative of a scalar is a [`Cotangent`]: a covector,
+//! and an element of the algebra.
 //!
 //! # The tangent map of a step
 //!
-//! A step solves (2.7), `μ = μ(F, w; θ)`, and ends with (2.6), `μ⁺ = μ⁺(F, w; θ)`, and (2.10), `g⁺ = g F`. With the turn `ε`
-//! of the increment, `δF = ε̂ F`,
+//! A step solves (2.7), `μ = μ(F, w; θ)`, and ends with (2.6), `μ⁺ = μ⁺(F, w; θ)`, and (2.10), `g⁺ = g F`. With the
+//! turn `ε` of the increment, `δF = ε̂ F`,
 //!
 //! ```text
 //! A ε = δμ − ∂_ζμ ζ − ∂_θμ δθ            A = ∂_εμ, the exact Newton Jacobian
@@ -39,12 +40,13 @@
 //! δμ⁺ = ∂_εμ⁺ ε + ∂_ζμ⁺ ζ + ∂_θμ⁺ δθ
 //! ```
 //!
-//! where `∂_ζ` is along `δw = −ζ·w` at fixed `F`. The blocks are [second derivatives](SecondDerivatives) of `l_d`, which
-//! the macro makes of the derived momenta. They add in a sum. Nothing is divided by `h` that cancels later: for (3.13) `A =
-//! (tr(F J_d) I − F J_d)/h`, and the potential is in `∂_ζ` alone.
+//! where `∂_ζ` is along `δw = −ζ·w` at fixed `F`. The blocks are [second derivatives](SecondDerivatives) of `l_d`,
+//! which the macro derives from the momenta. They add in a sum. No division by `h` is cancelled later: for (3.13)
+//! `A = (tr(F J_d) I − F J_d)/h`, and the potential is in `∂_ζ` alone.
 //!
-//! Of an exact flow, whose turn is a known function of the momentum, the first line is `ε = ∂_με δμ + ∂_θε δθ`: of a symmetric
-//! body in closed form, of any other by dual numbers through its closed form. The adjoint takes that form back in reverse.
+//! For an exact flow, whose turn is a known function of the momentum, the first line is `ε = ∂_με δμ + ∂_θε δθ`: for a
+//! symmetric body in closed form, for any other by dual numbers through its closed form. The adjoint differentiates
+//! that form in reverse.
 //!
 //! A kick in the time `t`, with the share `s` of the force gradient, is `δμ⁺ = δμ + t D_ζ τ + s δf`, where `f` is the torque
 //! of `−½ τ·J⁻¹τ`. With the derivative `D_v τ` of the torque along a velocity,
@@ -54,13 +56,13 @@
 //! δ⟨v, f⟩ = ⟨u, δD_v τ⟩ + ⟨r, δτ − δJ u⟩             J r = D_v τ
 //! ```
 //!
-//! at fixed `u`, `v` and `r`: by the place, by the parameters and by those of the inertia. That is what
-//! [`kick_gradient`](SecondDerivatives::kick_gradient) gives, and it adds in a sum though `f` doesn't. The columns of the
-//! tangent map take it for each axis `v`, the adjoint once.
+//! at fixed `u`, `v` and `r`: by the attitude, by the parameters and by those of the inertia.
+//! [`kick_gradient`](SecondDerivatives::kick_gradient) returns that, and it adds in a sum though `f` doesn't. The
+//! columns of the tangent map need it for each axis `v`, the adjoint once.
 //!
 //! # The adjoint
 //!
-//! Of a number with the derivative `(z, p)` at the end of the step, that at its beginning is `(ζ*, u)`:
+//! If a scalar has the derivative `(z, p)` at the end of a step, it has `(ζ*, u)` at the beginning:
 //!
 //! ```text
 //! Aᵀ u = Ad*_{F⁻¹} z + ∂_εμ⁺ᵀ p
@@ -68,26 +70,27 @@
 //! θ*   = p·∂_θμ⁺ − u·∂_θμ                  added up over the steps
 //! ```
 //!
-//! One solve gives the derivatives by all parameters at once. It needs `F`, `w` and `g` of each step, from the last to the
-//! first: a [`Tape`] has them, all or by checkpoints, and a self-adjoint scene finds them again by steps of `−h`.
+//! One solve gives the derivatives by all parameters at once. It needs `F`, `w` and `g` of each step, from the last to
+//! the first: a [`Tape`] stores them, all or by checkpoints, and a self-adjoint scene recomputes them by steps of `−h`.
 //!
-//! # What is kept
+//! # Symplecticity
 //!
-//! Of a scene without forces the transition matrix `Φ` is symplectic, `ω(Φx, Φy) = ω(x, y)` for the form
+//! The transition matrix `Φ` of a scene without forces is symplectic, `ω(Φx, Φy) = ω(x, y)` for the form
 //!
 //! ```text
 //! ω((ζ, δμ), (ζ', δμ')) = ⟨δμ', ζ⟩ − ⟨δμ, ζ'⟩ + ⟨μ, [ζ, ζ']⟩
 //! ```
 //!
-//! at the momentum of each end, to rounding at any step: it is the derivative of a map that keeps it. So exponents come in
+//! at the momentum of each end, to rounding at any step: it is the derivative of a symplectic map. So exponents come in
 //! pairs `±λ`.
 //!
 //! # Traps
 //!
-//! - In chaos derivatives grow like the deviations: after `10/λ` they tell nothing of a motion that isn't known to `e⁻¹⁰`.
-//! - Gradients are at a fixed momentum at the start. Where that is `JΩ_0`, `J` and `Ω_0` have a share in it, which is the
-//!   caller's to add: `⟨p_0, δJ Ω_0⟩` of the gradient's `p_0`.
-//! - A number of an own scale, an inertia of two terms for example, is a parameter of each; the derivatives add.
+//! - In chaos derivatives grow like the deviations: after `10/λ` they say nothing about a motion that isn't known to
+//!   `e⁻¹⁰`.
+//! - Gradients are at a fixed initial momentum. If that is `JΩ_0`, it depends on `J` and `Ω_0`, and the caller has to
+//!   add that derivative: `⟨p_0, δJ Ω_0⟩` of the gradient's `p_0`.
+//! - A number in several terms, for example the inertia of two, is a parameter of each; the derivatives add.
 
 mod adjoint;
 mod exponents;
@@ -115,62 +118,62 @@ use recording::Recording;
 
 /// A plan whose steps can be differentiated: some of the library's own plans.
 ///
-/// A plan written elsewhere can't be one, as only the library makes a [`Stage`].
+/// Other crates can't implement it, as only the library makes a [`Stage`].
 #[diagnostic::on_unimplemented(
     message = "the derivatives of a step of `{Self}` aren't known",
     label = "not with this method",
     note = "known are those of a scene's own step, of compositions, and of splittings, processed ones too, whose flow is exact or declared with `gradients`"
 )]
 pub trait Linearisable<S: SecondDerivatives>: Plan<S> + Steerable {
-    /// What is known of the stages before any step is made, once for each [`Linearisation`]: the lengths of a splitting's, and
-    /// what the derivatives of an exact motion have in common.
+    /// Constants of the stages, computed once for each [`Linearisation`]: the lengths of a splitting's stages, and the
+    /// common parts of the derivatives of an exact motion.
     type Table: Clone + core::fmt::Debug;
 
-    /// Makes it.
+    /// Computes these constants.
     fn table(&self) -> Self::Table;
 
-    /// That of the stages that a step of `−h` undoes, by the same numbers.
+    /// The constants of the stages that a step of `−h` undoes, by the same numbers.
     ///
-    /// The lengths of most plans are odd in `h`: stage `i` of a step of `−h` has minus the length of stage `i` of one of
-    /// `h`, and that is what it undoes. A plan whose lengths aren't says so here, as a processed splitting does.
+    /// The lengths of most plans are odd in `h`: stage `i` of a step of `−h` has minus the length of stage `i` of one
+    /// of `h`, and undoes it. A plan with other lengths, as a processed splitting, overrides this.
     fn table_undone(&self) -> Self::Table {
         self.table()
     }
 
-    /// How many scalars the parameters have: those of the scene, and behind them those of what else the plan moves by.
+    /// Number of the scalars in the parameters: those of the scene, followed by those of the plan's other flows.
     fn parameters(&self) -> usize {
         S::PARAMETERS
     }
 
-    /// Shows them.
+    /// Passes the parameters to the visitor.
     fn describe_parameters(&self, scene: &S, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
         scene.describe(visitor);
     }
 
-    /// Whether all stages have known derivatives.
+    /// Checks that all stages have known derivatives.
     ///
     /// # Errors
     ///
-    /// [`SetupError::NoSecondDerivatives`] where one hasn't.
+    /// [`SetupError::NoSecondDerivatives`] if a stage has none.
     fn check_stages(&self, _scene: &S) -> Result<(), SetupError> {
         Ok(())
     }
 
-    /// How many changes a step makes, those of a processor at both of its ends among them.
+    /// Number of changes in a step, including those of a processor at both of its ends.
     fn stages(&self) -> usize;
 
-    /// How many of them are those of a processor at the beginning, and as many at the end, which the beginning of the next
-    /// step undoes.
+    /// Number of the processor's changes at the beginning of a step; as many are at its end, which the beginning of the
+    /// next step undoes.
     fn ends(&self) -> usize {
         0
     }
 
-    /// A step whose changes are written down: those that [`stages`](Self::stages) counts, in this order, of a processor
-    /// those at the ends that are asked for. The first step of a run has to be asked for its beginning.
+    /// Makes a step whose changes are recorded: those that [`stages`](Self::stages) counts, in this order; those of a
+    /// processor only at the ends that `ends` requests. The first step of a run has to request its beginning.
     ///
     /// # Errors
     ///
-    /// As [`Plan::step`].
+    /// The errors of [`Plan::step`].
     #[hot]
     fn record<M: Summation<Group<S>, S::Advected>>(
         &self,
@@ -182,21 +185,21 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> + Steerable {
         self.step(scene, motion, kept)
     }
 
-    /// Where the end of a step that ended here began: the motion inside of a processor.
+    /// The motion at which the processor's end of the last step began, inside of the processor.
     fn before_end(&self, read: &MotionOf<S>, _kept: &Self::Kept) -> MotionOf<S> {
         *read
     }
 
-    /// Makes the changes of a processor at the end of a step, from there.
+    /// Makes the processor's changes at the end of a step, from that motion.
     ///
     /// # Errors
     ///
-    /// As [`Plan::step`].
+    /// The errors of [`Plan::step`].
     fn make_end<M: Summation<Group<S>, S::Advected>>(&self, _motion: &mut M) -> Result<(), StepError> {
         Ok(())
     }
 
-    /// Shows the stage that has made the change of this number to a pass.
+    /// Passes the stage that has made the change of this number to a pass.
     fn visit(&self, stages: (&S, &Self::Table), event: (usize, &ChangeOf<S>), pass: &mut impl Pass<Group<S>>);
 }
 
@@ -227,22 +230,22 @@ pub struct Linearisation<'a, S: SecondDerivatives, P: Linearisable<S>> {
 pub struct Parameter<T> {
     /// The number of the term in the sum, from the left.
     pub term: usize,
-    /// The field that it belongs to.
+    /// The field with this scalar.
     pub field: &'static str,
-    /// Its value.
+    /// The value of the scalar.
     pub value: T,
 }
 
 /// # Wrap: derivatives
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
-    /// The derivatives of the steps, by the start and by every parameter.
+    /// The derivatives of the steps by the start and by every parameter.
     ///
-    /// A scene is asked for them by the word `gradients` in its declaration; the effects of the library have it.
+    /// The word `gradients` in a scene's declaration adds them; the effects of the library have it.
     ///
     /// # Errors
     ///
-    /// [`SetupError::NoSecondDerivatives`] for a splitting with force gradients, of a term whose derivatives were written by
-    /// hand without [`kick_gradient`](SecondDerivatives::kick_gradient), and where they [aren't
+    /// [`SetupError::NoSecondDerivatives`] for a splitting with force gradients, if a term's derivatives were written
+    /// by hand without [`kick_gradient`](SecondDerivatives::kick_gradient), and for derivatives that [aren't
     /// derived](SecondDerivatives::are_derived).
     pub fn linearised(&self) -> Result<Linearisation<'_, S, P>, SetupError>
     where
@@ -283,7 +286,7 @@ impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearisation<'a, S, P> {
         all.1
     }
 
-    /// The numbers of a field's scalars among the parameters; `None` where that term has no such field.
+    /// The numbers of a field's scalars among the parameters; `None` if the term has no such field.
     #[must_use]
     pub fn numbers(&self, term: usize, field: &str) -> Option<Range<usize>> {
         let parameters = self.parameters();
@@ -293,11 +296,11 @@ impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearisation<'a, S, P> {
         Some(start..end + 1)
     }
 
-    /// The identity, to be carried along by [`step`](Self::step); with columns for these parameters, by their numbers.
+    /// The identity as the tangent map before the first [`step`](Self::step), with columns for the numbered parameters.
     ///
     /// # Panics
     ///
-    /// Where there is no parameter of a number.
+    /// If there is no parameter of a number.
     #[must_use]
     pub fn tangent(&self, parameters: &[usize]) -> TangentOf<S> {
         let count = self.stepper.plan.parameters();
@@ -305,22 +308,22 @@ impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearisation<'a, S, P> {
         Tangent::new([count, 0], parameters)
     }
 
-    /// One step, and the derivatives carried over it. On an error both are unchanged.
+    /// One step, and its tangent map applied to the derivatives. On an error both are unchanged.
     ///
     /// # Errors
     ///
-    /// As [`Stepper::step`], and [`StepError::NonFinite`] where a derivative overflows, as it does in chaos.
+    /// The errors of [`Stepper::step`], and [`StepError::NonFinite`] if a derivative overflows, as it does in chaos.
     ///
     /// # Panics
     ///
-    /// Where the tangent has columns for the parameters of another plan, which has more of them or fewer.
+    /// If the tangent has columns for the parameters of another plan, which has more of them or fewer.
     pub fn step(&self, state: &mut StateOf<S, P>, tangent: &mut TangentOf<S>) -> Result<StepReport, StepError> {
         self.step_given(state, &Input::Free, tangent)
     }
 }
 
 impl<S: SecondDerivatives, P: Linearisable<S>> Stepper<S, P> {
-    /// One step, whose stages are written down.
+    /// One step, whose stages are recorded.
     #[hot]
     fn recorded(
         &self,
@@ -341,7 +344,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Stepper<S, P> {
     }
 }
 
-/// A step with its input, and a tangent carried over its stages.
+/// A step with its input, and a tangent that its stages transform.
 struct Carry<'a, 'l, S: SecondDerivatives, P: Linearisable<S>> {
     linearised: &'a Linearisation<'l, S, P>,
     state: &'a mut StateOf<S, P>,

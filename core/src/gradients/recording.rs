@@ -1,4 +1,4 @@
-//! What a step has done to a motion, stage by stage.
+//! Recorded changes of a motion by the stages of a step.
 
 use alloc::vec::Vec;
 use core::cell::RefCell;
@@ -8,13 +8,13 @@ use crate::mechanics::{Group, Term};
 use crate::motion::{Motion, Summation};
 use crate::numbers::zero;
 
-/// One change that one of the library's own plans has made: a turn, a push, or both.
+/// One change by a stage of one of the library's plans: a turn, a push, or both.
 #[derive(Clone, Copy, Debug)]
 #[doc(hidden)]
 pub struct Change<G: LieGroup, A> {
-    /// The motion before.
+    /// The motion before the change.
     pub(crate) before: Motion<G, A>,
-    /// `F − I`; of a push zero.
+    /// The increment `F − I`; zero for a push.
     pub(crate) increment: G::Matrix,
 }
 
@@ -22,7 +22,7 @@ pub struct Change<G: LieGroup, A> {
 #[doc(hidden)]
 pub type ChangeOf<S> = Change<Group<S>, <S as Term>::Advected>;
 
-/// A motion that writes down each change; its bits are those of [`Motion`] alone.
+/// A motion that records each change; its bits are those of [`Motion`] alone.
 #[derive(Clone, Copy)]
 pub(super) struct Recording<'a, G: LieGroup, A> {
     pub(super) motion: Motion<G, A>,

@@ -10,19 +10,18 @@ use crate::mechanics::{
 };
 use crate::numbers::{Coordinates, Entries, Real, real, zero};
 
-/// One change of the motion and the effect that made it: what is differentiated, by an own step of the effect or by a
-/// kick of its potential.
+/// One differentiable change of the motion, and the effect that made it by its own step or by a kick of its potential.
 ///
-/// The library's own plans make stages, and its derivatives read them; there is nothing else to do with one.
+/// The library's own plans make stages, and its derivatives read them; they have no other use.
 #[derive(Clone, Copy, Debug)]
 pub struct Stage<'a, E: Effect> {
     effect: &'a E,
-    /// What the stage does.
+    /// The kind of the change.
     pub(super) kind: Kind<Scalar<E>>,
     attitude: Group<E>,
     advected: E::Advected,
     increment: Matrix<E>,
-    /// What a kick has of the force gradient.
+    /// The force gradient of a kick.
     gradient: Option<ForceGradient<'a, Scalar<E>, E::Constants, Square<E>>>,
     /// The index of the effect's first parameter among the parameters of the plan.
     first: usize,
@@ -31,21 +30,21 @@ pub struct Stage<'a, E: Effect> {
 /// The share of a force gradient in a kick: of the push `f` of the potential `−½ τ·J⁻¹τ`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ForceGradient<'a, T, C, M> {
-    /// s³.
+    /// The share, s³.
     pub(crate) share: T,
     /// The constants for which [`Effect::kick_before`] returns the torque `τ`.
     pub(crate) torque: &'a C,
-    /// `J⁻¹`.
+    /// The inverse inertia `J⁻¹`.
     pub(crate) inverse_inertia: &'a M,
 }
 
-/// What was done. It is matched where its derivatives are used, so that each arm is straight-line code with its own
-/// values.
+/// The kind of a change. It is matched where its derivatives are used, so that each arm is straight-line code with its
+/// own values.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Kind<T> {
     /// A step of this length, s.
     Step(T),
-    /// The push of the effect's potential in this time, s.
+    /// The kick of the effect's potential in this time, s.
     Kick(T),
 }
 
@@ -57,7 +56,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         Self { effect, kind: Kind::Step(h), attitude, advected, increment, gradient: None, first: 0 }
     }
 
-    /// The kick of its potential, with a share of the force gradient or without.
+    /// The kick of the effect's potential, with a share of the force gradient or without.
     #[inline]
     pub(crate) fn kick(
         effect: &'a E,
@@ -69,12 +68,12 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         Self { effect, kind: Kind::Kick(time), attitude, advected, increment: zero(), gradient, first: 0 }
     }
 
-    /// With the effect's parameters after this number of others.
+    /// The stage with the effect's parameters after this number of others.
     pub(crate) fn behind(self, first: usize) -> Self {
         Self { first, ..self }
     }
 
-    /// Where the derivatives of a step of this length are taken.
+    /// The point at which the derivatives of a step of this length are evaluated.
     fn point(&self, h: Scalar<E>) -> PointOf<'_, E> {
         StepPoint { increment: &self.increment, w: &self.advected, h }
     }
@@ -84,7 +83,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         self.effect.step_derivatives(self.point(h))
     }
 
-    /// `Ad_{F⁻¹}`.
+    /// The matrix of `Ad_{F⁻¹}`.
     pub(super) fn turned_back(&self) -> Square<E> {
         Group::<E>::from_increment(&self.increment).inverse().adjoint_matrix()
     }
@@ -109,9 +108,9 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         }
     }
 
-    /// The derivatives of `μ` and `μ⁺` by all parameters, and by as many values as are asked for, numbered from the first of
-    /// these on; parameters that are advected have none in a step that is given values. Those of a number that is visited
-    /// again are added.
+    /// Visits the derivatives of `μ` and `μ⁺` by all parameters, and by the first `values` scalars of the values,
+    /// numbered from `first_value` on; advected parameters have none in a step with prescribed values. Derivatives by
+    /// one number that is visited several times add.
     #[inline]
     pub(super) fn forwards(
         &self,
@@ -136,7 +135,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
             Kind::Kick(time) => time,
         };
         let visit = &mut |number, start, end| visit(number, start * scale, end * scale);
-        // Those that are carried aren't among them.
+        // The derivatives by advected parameters follow below.
         self.effect.by_parameters(self.point(self.length()), &mut |number, start, end| {
             visit(self.first + number, start, end);
         });
@@ -152,7 +151,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         }
     }
 
-    /// The derivatives of `μ` and `μ⁺` by the scalar in this place of what is advected, as it is in space.
+    /// The derivatives of `μ` and `μ⁺` by the scalar in this place of the advected parameters in space.
     #[inline]
     fn by_value(&self, place: usize) -> (Vector<E>, Vector<E>) {
         let seen: E::Advected = seen_of_unit(place, &self.attitude);
@@ -164,8 +163,8 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         (start, end)
     }
 
-    /// Adds the gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` by the parameters at a fixed increment, for `[u, p]`, and returns that along
-    /// displacements; to `values` it adds that by what is advected, as it is in space.
+    /// Adds the gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` by the parameters at a fixed increment, for `[u, p]`, and returns that
+    /// along displacements; to `values` it adds that by the advected parameters in space.
     fn fixed_increment(
         &self,
         ends: [&Vector<E>; 2],
@@ -177,11 +176,11 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         by_place
     }
 
-    /// Adds the gradient of `⟨p, f⟩` by the parameters, where `f` is the push of the force gradient, and returns that along
-    /// displacements.
+    /// Adds the gradient of `⟨p, f⟩` by the parameters, where `f` is the push of the force gradient, and returns that
+    /// along displacements.
     ///
-    /// `⟨p, f⟩ = ⟨u, D_v τ⟩` with `J u = τ` and, `s` being the share, `v = s p`. How `u` changes is in the gradient of
-    /// `⟨u, D_v τ⟩ + ⟨r, τ − J u⟩` at fixed `u` and `r` where `J r = D_v τ`.
+    /// `⟨p, f⟩ = ⟨u, D_v τ⟩` with `J u = τ` and `v = s p` for the share `s`. The change of `u` is included in the
+    /// gradient of `⟨u, D_v τ⟩ + ⟨r, τ − J u⟩` at fixed `u` and `r` with `J r = D_v τ`.
     fn of_gradient(
         &self,
         paired: &Vector<E>,
@@ -193,7 +192,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         };
         let along = *paired * share;
         let u = *inverse_inertia * E::kick_before(torque, &self.advected);
-        // The derivative is known: the plan refuses scenes without it.
+        // The derivative exists, as the plan refuses scenes without it.
         let change = E::kick_derivative(torque, &self.advected, &along).unwrap_or_else(Vector::<E>::zero);
         let r = *inverse_inertia * change;
         let Some((by_place, by_seen)) = self.effect.kick_gradient(&self.advected, &along, [&u, &r], &mut *add) else {
@@ -203,8 +202,8 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         by_place
     }
 
-    /// Adds what the parameters that are carried have in the gradient by what the body sees; of a step that is given values,
-    /// to `values` what these have in it.
+    /// Adds the derivatives by the advected parameters, from the gradient by their components in the body frame; for a
+    /// step with prescribed values, adds the derivatives by these to `values`.
     fn add_carried(&self, by_seen: &E::Advected, add: &mut impl FnMut(usize, Scalar<E>), values: &mut [Scalar<E>]) {
         if !values.is_empty() {
             let mut sums = values.iter_mut();
@@ -222,15 +221,15 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         });
     }
 
-    /// Takes the gradient at the end of the stage to its beginning, and adds the parameters' shares, and those of the values
-    /// that the step is given where they are asked for.
+    /// Transforms the gradient at the end of the stage to its beginning, and adds the derivatives by the parameters,
+    /// and by the prescribed values if `values` isn't empty.
     pub(super) fn pull(
         &self,
         end: &Cotangent<Vector<E>>,
         gradient: &mut [Scalar<E>],
         values: &mut [Scalar<E>],
     ) -> Cotangent<Vector<E>> {
-        // One check of the range, not one for each scalar.
+        // The range is checked once, not for each scalar.
         let own = gradient.get_mut(self.first..self.first + E::PARAMETERS).unwrap_or_default();
         debug_assert_eq!(own.len(), E::PARAMETERS, "a plan counts the parameters of its stages");
         let add = &mut |number: usize, share: Scalar<E>| {
@@ -239,7 +238,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
             }
         };
         match self.kind {
-            // Without a step nothing moves.
+            // A step of zero length changes nothing.
             Kind::Step(h) if h == real(0.0) => *end,
             Kind::Step(h) => {
                 let (matrix, share) = self.effect.adjoint_system(self.point(h), &end.momentum);
@@ -263,19 +262,19 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     }
 }
 
-/// The derivative of a number by the state: along `g ↦ g exp(sÊ_k)`, and by the components of the momentum.
+/// The derivative of a scalar by the state: along `g ↦ g exp(sÊ_k)`, and by the components of the momentum.
 ///
 /// On SO(3) `attitude` is per radian of a turn about the body's axes, `momentum` per kg m²/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cotangent<V> {
-    /// Along displacements of the body, a covector.
+    /// The derivative along displacements of the body, a covector.
     pub attitude: V,
-    /// By the momentum, an element of the algebra.
+    /// The derivative by the momentum, an element of the algebra.
     pub momentum: V,
 }
 
 impl<V> Cotangent<V> {
-    /// The gradient of a number that doesn't depend on this state.
+    /// The gradient of a scalar that doesn't depend on this state.
     #[must_use]
     pub fn zero<T: Real>() -> Self
     where
@@ -291,22 +290,22 @@ impl<V> Cotangent<V> {
 /// ε = ∂_με δμ + ∂_θε δθ        ζ⁺ = Ad_{F⁻¹}(ζ + ε)        δμ⁺ = Ad*_F(δμ + ad*_ε μ)
 /// ```
 ///
-/// As a [`Stage`], it is made by the library's own plans and read by its derivatives.
+/// The library's own plans make it, and its derivatives read it, as a [`Stage`].
 #[derive(Clone, Copy, Debug)]
 #[doc(hidden)]
 pub struct FlowDerivatives<'a, G: LieGroup> {
-    /// `∂ε/∂μ`
+    /// The derivative `∂ε/∂μ` of the turn.
     pub(crate) turn_by_momentum: SquareOf<G>,
-    /// `Ad_{F⁻¹}`, and `Ad*_F`: on SO(3) both are `Fᵀ`.
+    /// The matrices of `Ad_{F⁻¹}`, and of `Ad*_F`: on SO(3) both are `Fᵀ`.
     pub(crate) turned_back: SquareOf<G>,
-    /// `∂μ⁺/∂ε`, which is `Ad*_F ad*_ε μ` along `ε`.
+    /// The derivative `∂μ⁺/∂ε`, which is `Ad*_F ad*_ε μ` along `ε`.
     pub(crate) end_by_turn: SquareOf<G>,
-    /// `∂ε/∂θ` by the numbers of the parameters.
+    /// The derivatives `∂ε/∂θ`, each with the number of its parameter.
     pub(crate) by_parameters: &'a [(usize, G::Vector)],
 }
 
 impl<G: LieGroup> FlowDerivatives<'_, G> {
-    /// Takes the gradient at the end to the beginning, and adds the parameters' shares.
+    /// Transforms the gradient at the end to the beginning, and adds the derivatives by the parameters.
     #[hot]
     pub(super) fn pull(&self, end: &Cotangent<G::Vector>, gradient: &mut [G::Scalar]) -> Cotangent<G::Vector> {
         let attitude = pulled::<G>(&self.turned_back, &end.attitude);
@@ -321,16 +320,16 @@ impl<G: LieGroup> FlowDerivatives<'_, G> {
     }
 }
 
-/// `Mᵀ a`
+/// The product `Mᵀ a`.
 #[hot]
 fn pulled<G: LieGroup>(matrix: &SquareOf<G>, a: &G::Vector) -> G::Vector {
     G::Vector::of_four(&G::Vector::map_four(&G::Vector::transpose(matrix), &G::Vector::beside(&[*a; 4])), 0)
 }
 
-/// Adds the shares of neighbours among the parameters.
+/// Adds derivatives by consecutive parameters.
 #[hot]
 pub(crate) fn add_shares<T: Real>(gradient: &mut [T], first: usize, shares: &[T]) {
-    // One check of the range, not one for each scalar.
+    // The range is checked once, not for each scalar.
     let own = gradient.get_mut(first..first + shares.len()).unwrap_or_default();
     own.iter_mut().zip(shares).for_each(|(sum, share)| *sum += *share);
 }
@@ -338,24 +337,24 @@ pub(crate) fn add_shares<T: Real>(gradient: &mut [T], first: usize, shares: &[T]
 /// A gradient by the state, and that by the parameters.
 pub(super) type WayBack<'a, G> = (&'a mut Cotangent<<G as LieGroup>::Vector>, &'a mut [<G as LieGroup>::Scalar]);
 
-/// What is done with the stages of a step, one after the other: by the derivatives of the library's own plans.
+/// A pass over the stages of a step, by the derivatives of the library's own plans.
 #[doc(hidden)]
 pub trait Pass<G: LieGroup> {
-    /// Whether it asks for derivatives by parameters; those of an exact flow may then be left out.
+    /// Whether it needs derivatives by parameters; those of an exact flow may otherwise be left out.
     fn asks_for_parameters(&self) -> bool;
 
-    /// Of a way back the gradient behind the stage, to be replaced by that before it, and that by the parameters, to be
-    /// added to; none of a way forwards.
+    /// The gradients of a reverse pass: by the state after the stage, to be replaced by that before it, and by the
+    /// parameters, to be added to. None for a forward pass.
     fn on_the_way_back(&mut self) -> Option<WayBack<'_, G>>;
 
-    /// Takes notice of a stage.
+    /// Processes a stage.
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>);
 
-    /// Takes notice of an exact flow.
+    /// Processes an exact flow.
     fn flown(&mut self, flown: &FlowDerivatives<'_, G>);
 }
 
-/// One of the scalars.
+/// The scalar of this number.
 #[hot]
 fn entry<T: Real, A: Entries<T>>(values: &A, number: usize) -> T {
     let (mut place, mut found) = (0, T::zero());

@@ -1,4 +1,4 @@
-//! The tangent map, forwards: columns that are carried along with a motion.
+//! The tangent map: columns that each step of a motion transforms.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -12,32 +12,33 @@ use crate::mechanics::{Group, SecondDerivatives, Term, Vector};
 use crate::numbers::{Coordinates, Entries as _, Real, is_finite, real};
 use nalgebra::SimdComplexField as _;
 
-/// How a state changes with its start, and with parameters: columns `(ζ, δμ)` that
-/// [`Linearisation::step`](super::Linearisation::step) carries along.
+/// The derivatives of a state by its start, and by parameters: columns `(ζ, δμ)` that
+/// [`Linearisation::step`](super::Linearisation::step) transforms.
 ///
 /// The first columns are the derivatives by the start, first along its displacements `ζ_0`, then by the components of
 /// `μ_0`; together they are the state transition matrix. The others are those by parameters, at a fixed start.
 #[derive(Clone, Debug)]
 pub struct Tangent<G: LieGroup, A> {
-    /// Four by four; what is left over of the last four is zero.
+    /// The columns in groups of four; the last group is padded with zeros.
     columns: Vec<FourColumns<Four<G>>>,
     /// The columns before a step.
     kept: Vec<FourColumns<Four<G>>>,
-    /// The parameters that the columns behind those of the start are the derivatives by, by their numbers.
+    /// The numbers of the parameters whose derivatives follow the columns of the start.
     numbers: Vec<usize>,
-    /// The parameters' shares in a stage, by their numbers; behind them those of the values that a step is given.
+    /// The derivatives of a stage by the parameters, by their numbers; followed by those by the step's prescribed
+    /// values.
     shares: Vec<(G::Vector, G::Vector)>,
-    /// How many of the shares are those of values.
+    /// How many of the shares belong to values.
     values: usize,
-    /// Whether the step is given values, so that parameters which are advected have no share.
+    /// Whether the step has prescribed values, so that advected parameters have no share.
     pub(super) is_given_values: bool,
-    /// The stages of the last step; the memory is used again.
+    /// The stages of the last step; the memory is reused.
     pub(super) events: RefCell<Vec<Change<G, A>>>,
 }
 
 type Four<G> = <<G as LieGroup>::Vector as Coordinates<<G as LieGroup>::Scalar>>::Four;
 
-/// Four directions.
+/// Four columns side by side.
 #[derive(Clone, Copy, Debug)]
 struct FourColumns<F> {
     attitude: F,
@@ -45,8 +46,8 @@ struct FourColumns<F> {
 }
 
 impl<G: LieGroup, A> Tangent<G, A> {
-    /// The identity, with a column for each parameter that is numbered, or value behind these; first is how many there are
-    /// of each.
+    /// The identity, with a column for each of the numbered parameters and values; the first argument has the counts of
+    /// both.
     pub(super) fn new([parameters, values]: [usize; 2], numbers: &[usize]) -> Self {
         let zero = G::Vector::zero();
         let shares = if numbers.is_empty() { Vec::new() } else { vec![(zero, zero); parameters + values] };
@@ -64,14 +65,14 @@ impl<G: LieGroup, A> Tangent<G, A> {
         tangent
     }
 
-    /// The columns of the start.
+    /// The identity's columns of the start.
     fn identity() -> Vec<(G::Vector, G::Vector)> {
         let zero = G::Vector::zero();
         let axes = || (0..G::DIMENSION).map(G::Vector::axis);
         axes().map(|axis| (axis, zero)).chain(axes().map(|axis| (zero, axis))).collect()
     }
 
-    /// These, and zeros for the parameters.
+    /// Sets the start's columns, and zeros for the parameters.
     fn set_columns(&mut self, start: &[(G::Vector, G::Vector)]) {
         let zero = G::Vector::zero();
         let count = start.len() + self.numbers.len();
@@ -85,13 +86,14 @@ impl<G: LieGroup, A> Tangent<G, A> {
         self.kept.clone_from(&self.columns);
     }
 
-    /// How many parameters its plan has; `None` without columns for them, where any plan of the scene will do.
+    /// Number of parameters of the tangent's plan; `None` without columns for them, which suits any plan of the scene.
     #[hot]
     pub(super) fn parameters(&self) -> Option<usize> {
         (!self.shares.is_empty()).then_some(self.shares.len() - self.values)
     }
 
-    /// The columns: how the attitude moves, `g ← g exp ζ̂`, and the change `δμ` of the momentum, for each.
+    /// The columns: the displacement `ζ` of the attitude, `g ← g exp ζ̂`, and the change `δμ` of the momentum, for
+    /// each.
     pub fn columns(&self) -> impl ExactSizeIterator<Item = (G::Vector, G::Vector)> + '_ {
         (0..2 * G::DIMENSION + self.numbers.len()).map(|k| {
             let FourColumns { attitude, momentum } = &self.columns[k / 4];
@@ -99,22 +101,23 @@ impl<G: LieGroup, A> Tangent<G, A> {
         })
     }
 
-    /// The columns of the parameters, in the order in which they were asked for.
+    /// The columns of the parameters, in the order in which they were requested.
     pub fn by_parameters(&self) -> impl ExactSizeIterator<Item = (G::Vector, G::Vector)> + '_ {
         self.columns().skip(2 * G::DIMENSION)
     }
 
-    /// The state transition matrix `∂(ζ, μ)/∂(ζ_0, μ_0)`, by its four blocks: `[[∂ζ/∂ζ_0, ∂ζ/∂μ_0], [∂μ/∂ζ_0, ∂μ/∂μ_0]]`.
+    /// The four blocks of the state transition matrix `∂(ζ, μ)/∂(ζ_0, μ_0)`:
+    /// `[[∂ζ/∂ζ_0, ∂ζ/∂μ_0], [∂μ/∂ζ_0, ∂μ/∂μ_0]]`.
     #[must_use]
     pub fn transition(&self) -> [[SquareOfVector<G::Vector, G::Scalar>; 2]; 2] {
         blocks_of(&self.columns().collect::<Vec<_>>())
     }
 
-    /// Makes the columns of the start orthonormal, from the first to the last, and shows how long each was: the diagonal of
-    /// `R` in `Φ = Q R`, of which Lyapunov exponents are made. Columns by parameters are dropped, as they would be
-    /// derivatives along no parameter.
+    /// Orthonormalises the columns of the start, from the first to the last, and visits the length of each: the
+    /// diagonal of `R` in `Φ = Q R`, from which Lyapunov exponents are computed. Columns by parameters are dropped, as
+    /// they would be derivatives along no parameter.
     ///
-    /// The vector is only memory that is used again.
+    /// `columns` is a buffer that is reused.
     pub(super) fn orthonormalise(
         &mut self,
         columns: &mut Vec<(G::Vector, G::Vector)>,
@@ -127,7 +130,7 @@ impl<G: LieGroup, A> Tangent<G, A> {
         for at in 0..columns.len() {
             let (known, rest) = columns.split_at_mut(at);
             let Some((attitude, momentum)) = rest.first_mut() else { break };
-            // Once more, as the first time leaves what rounding makes of nearly parallel columns.
+            // The projection is repeated, as the first leaves the rounding of nearly parallel columns.
             for _ in 0..2 {
                 for other in &*known {
                     let shadow = other.0.dot(attitude) + other.1.dot(momentum);
@@ -142,7 +145,7 @@ impl<G: LieGroup, A> Tangent<G, A> {
         self.set_columns(columns);
     }
 
-    /// Remembers the columns.
+    /// Saves the columns.
     #[hot]
     pub(super) fn keep(&mut self) {
         for (kept, four) in self.kept.iter_mut().zip(&self.columns) {
@@ -150,13 +153,13 @@ impl<G: LieGroup, A> Tangent<G, A> {
         }
     }
 
-    /// To the columns that are remembered.
+    /// Restores the saved columns.
     #[cold]
     pub(super) fn go_back(&mut self) {
         self.columns.clone_from(&self.kept);
     }
 
-    /// Whether all entries are numbers.
+    /// Whether all entries are finite.
     #[hot]
     pub(super) fn is_finite(&self) -> bool {
         let zero = G::Vector::zero();
@@ -169,8 +172,8 @@ impl<G: LieGroup, A> Tangent<G, A> {
         is_finite(total)
     }
 
-    /// The shares of the parameters in four columns, at the start and at the end of the stage; nothing where there are
-    /// none.
+    /// The derivatives by the parameters of four columns, at the start and at the end of the stage; `None` if none of
+    /// the columns has a parameter.
     #[hot]
     fn shares_of(&self, four: usize) -> Option<(Four<G>, Four<G>)> {
         let (start, zero) = (2 * G::DIMENSION, G::Vector::zero());
@@ -209,9 +212,9 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
             });
         }
         match stage.kind {
-            // Without a step nothing moves.
+            // A step of zero length changes nothing.
             Kind::Step(h) if h == real(0.0) => {}
-            // `∂μ/∂ε ε = δμ − ∂μ/∂ζ ζ`, `ζ⁺ = Ad_{F⁻¹}(ζ + ε)`, `δμ⁺ = ∂μ⁺/∂ε ε + ∂μ⁺/∂ζ ζ`.
+            // The solve is `∂μ/∂ε ε = δμ − ∂μ/∂ζ ζ`; then `ζ⁺ = Ad_{F⁻¹}(ζ + ε)`, `δμ⁺ = ∂μ⁺/∂ε ε + ∂μ⁺/∂ζ ζ`.
             Kind::Step(h) => {
                 let blocks = stage.blocks(h);
                 let (factors, determinant) = Vector::<E>::factorise_with(&blocks.start_by_turn, pattern_of_type::<E>());

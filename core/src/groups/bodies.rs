@@ -1,4 +1,4 @@
-//! Arrays of equal groups: many bodies.
+//! Arrays of equal groups, for many bodies.
 
 use alloc::format;
 use alloc::string::String;
@@ -9,13 +9,13 @@ use super::{Advected, CayleyRetraction, ExponentialRetraction, Factor, LieGroup,
 use crate::numbers::{BlockDiagonal, Blocks, Bodies, Coordinates, Join, Mask, Twice, filled, nowhere};
 use nalgebra::SimdBool as _;
 
-/// Increments of nothing.
+/// Zero increments of all bodies.
 #[hot]
 fn zero<G: LieGroup, const N: usize>() -> [G::Matrix; N] {
     [crate::numbers::zero::<G::Scalar, G::Matrix>(); N]
 }
 
-/// Body by body; the [pattern](LieGroup::FACTORS) is that of one.
+/// The functions act body by body; the [pattern](LieGroup::FACTORS) is that of one body.
 #[hot]
 impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
     type Scalar = G::Scalar;
@@ -111,7 +111,7 @@ impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
         G::turning_components().repeat(N)
     }
 
-    /// The sum of those of the bodies.
+    /// The sum of the bodies' defects.
     fn defect(&self) -> G::Scalar {
         self.iter().fold(nalgebra::zero(), |sum, body| sum + body.defect())
     }
@@ -129,13 +129,13 @@ impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
     }
 }
 
-/// The names of all bodies, each with the place of its body behind it, from one: `x_1`, `x_2`.
+/// The names of all bodies, each followed by the number of its body, from one: `x_1`, `x_2`.
 fn of_bodies<U: Copy, const N: usize>(names: &[(String, U)]) -> Vec<(String, U)> {
     let of_body = |place: usize| names.iter().map(move |(name, unit)| (format!("{name}_{place}"), *unit));
     (1..=N).flat_map(of_body).collect()
 }
 
-/// Body by body.
+/// Implements a retraction body by body.
 macro_rules! retraction_of_bodies {
     ($retraction:ident) => {
         impl<G: LieGroup, const N: usize> Retraction<[G; N]> for $retraction
@@ -200,7 +200,7 @@ impl<G: LieGroup, const K: usize, const N: usize> Factor<K> for [G; N] {
     }
 }
 
-/// What each body sees.
+/// Parameters of each body, in its own frame.
 #[hot]
 impl<G: LieGroup, W: Advected<G>, const N: usize> Advected<[G; N]> for [W; N] {
     fn seen_from(&self, attitude: &[G; N]) -> Self {
@@ -224,8 +224,8 @@ impl<G: LieGroup, W: Advected<G>, const N: usize> Advected<[G; N]> for [W; N] {
     }
 }
 
-/// The product of two equal groups as a declaration on two bodies has it: `(G, G)`, or `(A, B, A, B)` where each body is
-/// the product `(A, B)`.
+/// The product of two equal groups for a declaration on two bodies: `(G, G)`, or `(A, B, A, B)` if each body is the
+/// product `(A, B)`.
 #[diagnostic::on_unimplemented(
     message = "a term on `{Self}` isn't one on two bodies",
     label = "not declared on two bodies",
@@ -236,19 +236,19 @@ pub trait Pair: LieGroup {
     /// The group of one body.
     type Body: LieGroup<Scalar = Self::Scalar>;
 
-    /// Two bodies together.
+    /// The element for two bodies.
     fn pair(first: &Self::Body, second: &Self::Body) -> Self;
 
-    /// Their matrices together.
+    /// The matrix for two bodies.
     fn matrices(first: &<Self::Body as LieGroup>::Matrix, second: &<Self::Body as LieGroup>::Matrix) -> Self::Matrix;
 
-    /// The components of each.
+    /// The components of each body.
     fn parts(joined: &Self::Vector) -> [<Self::Body as LieGroup>::Vector; 2];
 
-    /// The components of both.
+    /// The components of both bodies.
     fn joined(first: &<Self::Body as LieGroup>::Vector, second: &<Self::Body as LieGroup>::Vector) -> Self::Vector;
 
-    /// The blocks of a matrix of both, row by row.
+    /// The four blocks of a matrix of both bodies, row by row.
     fn blocks(matrix: &SquareOf<Self>) -> [[SquareOf<Self::Body>; 2]; 2];
 }
 
@@ -281,7 +281,7 @@ where
     }
 }
 
-/// The components of two.
+/// The components of two bodies.
 type JoinedVector<G> = <<G as LieGroup>::Vector as Join<<G as LieGroup>::Scalar, <G as LieGroup>::Vector>>::Joined;
 
 #[hot]
@@ -329,7 +329,7 @@ mod tests {
 
     type Body = (SO3, R3);
 
-    /// What a declaration on two bodies calls its components is what a system of them has.
+    /// The components in a declaration on two bodies have the order of those in a system of them.
     #[test]
     fn two_bodies_are_put_together_and_taken_apart() {
         let joined = SVector::<f64, 12>::from_fn(|k, _| f64::from(u8::try_from(k).unwrap()));

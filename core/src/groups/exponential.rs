@@ -1,17 +1,17 @@
-//! The exponential of a matrix, what its derivative is made of, and the logarithm.
+//! The exponential of a matrix, the series of its derivative, and the logarithm.
 
 use nalgebra::{RealField, SMatrix};
 
 use super::generators::inverse;
 use crate::numbers::real;
 
-/// Beyond `2⁶⁴` a matrix is scaled no further; its exponential overflows or means nothing.
+/// Limit of the halvings. The exponential of a matrix beyond `2⁶⁴` overflows or has no digits.
 const MAX_HALVINGS: u32 = 64;
 
-/// `(e^X − I, Σ X^k/(k + 1)!)`, neither formed by a subtraction of `I`.
+/// The pair `(e^X − I, Σ X^k/(k + 1)!)`, neither computed by subtracting `I`.
 ///
-/// The series are summed for `X` of a norm up to ½ and doubled by `e^{2X} − I = 2D + D²`, and with
-/// `P(X) = X⁻¹(e^X − I)` by `P(2X) = ½ (e^X + I) P(X) = P + ½ D P`.
+/// The series are summed for `X` of a norm up to ½ and doubled: `e^{2X} − I = 2D + D²`, and
+/// `P(2X) = ½ (e^X + I) P(X) = P + ½ D P` for `P(X) = X⁻¹(e^X − I)`.
 pub(crate) fn exponential<T: RealField + Copy, const N: usize>(
     x: &SMatrix<T, N, N>,
 ) -> (SMatrix<T, N, N>, SMatrix<T, N, N>) {
@@ -21,7 +21,7 @@ pub(crate) fn exponential<T: RealField + Copy, const N: usize>(
         scaled *= half;
         halvings += 1;
     }
-    // `½¹⁵/16!` is below half a rounding of one.
+    // The first omitted term, `½¹⁵/16!`, is below half a rounding.
     let mut mean = SMatrix::identity();
     for k in (2..=15).rev() {
         mean = SMatrix::identity() + scaled * mean / real::<T>(f64::from(k));
@@ -34,9 +34,9 @@ pub(crate) fn exponential<T: RealField + Copy, const N: usize>(
     (increment, mean)
 }
 
-/// `log(I + D)`, or what isn't one where the principal logarithm doesn't exist.
+/// The logarithm `log(I + D)`, meaningless if the principal one doesn't exist.
 ///
-/// Square roots bring `D` down to a norm of ¼; then `log F = 2 artanh Z` with `Z = (F + I)⁻¹ (F − I)`.
+/// Square roots reduce `D` to a norm of ¼; then `log F = 2 artanh Z` with `Z = (F + I)⁻¹ (F − I)`.
 pub(crate) fn logarithm<T: RealField + Copy, const N: usize>(increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
     let identity = SMatrix::<T, N, N>::identity();
     let (mut root, mut factor) = (*increment, real::<T>(2.0));
@@ -49,7 +49,7 @@ pub(crate) fn logarithm<T: RealField + Copy, const N: usize>(increment: &SMatrix
     }
     let z = inverse(&(root + identity + identity)) * root;
     let squared = z * z;
-    // `‖Z‖ ≤ 1/7`: `7⁻²⁰/21` is below half a rounding of one.
+    // The first omitted term, `7⁻²⁰/21` for `‖Z‖ ≤ 1/7`, is below half a rounding.
     let mut series = SMatrix::zeros();
     for k in (0..10).rev() {
         series = identity / real::<T>(f64::from(2 * k + 1)) + squared * series;
@@ -61,7 +61,7 @@ pub(crate) fn logarithm<T: RealField + Copy, const N: usize>(increment: &SMatrix
 fn square_root<T: RealField + Copy, const N: usize>(matrix: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
     let half = real::<T>(0.5);
     let (mut root, mut inverse_root) = (*matrix, SMatrix::identity());
-    // It converges quadratically, after one iteration for each halving of the angle to the negative axis.
+    // The iteration converges quadratically, after one step for each halving of the angle to the negative axis.
     for _ in 0..30 {
         let next = (root + inverse(&inverse_root)) * half;
         inverse_root = (inverse_root + inverse(&root)) * half;

@@ -1,4 +1,4 @@
-//! What declares a matrix group, and what is computed of it when the user's crate is compiled.
+//! The declaration of a matrix group, and its constants, computed when the user's crate is compiled.
 
 use core::fmt::Debug;
 
@@ -41,8 +41,8 @@ use crate::numbers::{Real, real};
 /// assert_eq!(map.matrix(), Matrix2::new(3.0, 2.0, 0.0, 1.0));
 /// ```
 ///
-/// Generators that aren't orthogonal, or a Cayley map that leaves the group, are errors when a program is built. Here
-/// `diag(1, 2)³` isn't a multiple of `diag(1, 2)`:
+/// Generators that aren't orthogonal don't compile, nor does a Cayley map that leaves the group. Here `diag(1, 2)³`
+/// isn't a multiple of `diag(1, 2)`:
 ///
 /// ```compile_fail,E0080
 /// # use liestep::groups::matrix;
@@ -63,25 +63,26 @@ pub trait Generators<const N: usize, const D: usize>: Copy + Debug + PartialEq +
     /// The basis `E_k`, each matrix by rows; [`matrix`] writes one by its entries.
     const GENERATORS: [[[f64; N]; N]; D];
 
-    /// Of translations the names of what the last column has; else nothing.
+    /// The names of a translation's coordinates, in the last column; empty for other groups.
     #[doc(hidden)]
     const COORDINATES: &'static [&'static str] = &[];
 
-    /// How far a matrix is from the relation of the group; zero on it, and not elsewhere.
+    /// The residual of the group's relation; zero for elements of the group only.
     fn relation<T: RealField + Copy>(matrix: &SMatrix<T, N, N>) -> T;
 
-    /// The inverse of an element; where there is none, not finite.
+    /// The inverse of an element; not finite if there is none.
     ///
-    /// To be overridden where the relation gives it in closed form.
+    /// Override it if the relation yields the inverse in closed form.
     #[must_use]
     fn inverse<T: RealField + Copy>(matrix: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
         inverse(matrix)
     }
 
-    /// Whether an increment with the coordinates `ξ̂` is so small that a solution there surely continues the identity.
+    /// Whether an increment with the coordinates `ξ̂` is so small that a solution there is surely on the branch of the
+    /// identity.
     ///
-    /// Unless overridden, `‖ξ̂‖ < 1` in the Frobenius norm. No theorem like that of SO(3) stands behind it, so it errs
-    /// on the side of a closer look at the solution, which costs time and nothing else.
+    /// The default is `‖ξ̂‖ < 1` in the Frobenius norm. No theorem like that of SO(3) supports it, so it errs on the
+    /// side of another check of the solution, which costs only time.
     #[must_use]
     fn is_near_identity<T: RealField + Copy>(algebra: &SMatrix<T, N, N>) -> bool {
         algebra.norm_squared() < T::one()
@@ -101,20 +102,20 @@ pub const fn matrix<const N: usize>(entries: &[(usize, usize, f64)]) -> [[f64; N
     matrix
 }
 
-/// `A⁻¹`, or infinities.
+/// The inverse `A⁻¹`, or infinities.
 pub(crate) fn inverse<T: RealField + Copy, const N: usize>(matrix: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
     matrix.try_inverse().unwrap_or_else(|| SMatrix::repeat(T::one() / T::zero()))
 }
 
-/// `A` as a matrix of the scalar.
+/// The matrix `A` with entries of the scalar type.
 pub(crate) fn dynamic<T: Real, const N: usize>(matrix: &[[f64; N]; N]) -> SMatrix<T, N, N> {
     SMatrix::from_fn(|row, column| real(matrix[row][column]))
 }
 
-/// Rounding of products of written-out generators, squared.
+/// Square of the rounding in products of written-out generators.
 const ROUNDING_SQUARED: f64 = 1e-24;
 
-/// `tr(AᵀB)`.
+/// The pairing `tr(AᵀB)`.
 const fn pairing<const N: usize>(a: &[[f64; N]; N], b: &[[f64; N]; N]) -> f64 {
     let (mut sum, mut i) = (0.0, 0);
     while i < N {
@@ -128,7 +129,7 @@ const fn pairing<const N: usize>(a: &[[f64; N]; N], b: &[[f64; N]; N]) -> f64 {
     sum
 }
 
-/// `C + s A B`.
+/// The sum `C + s A B`.
 const fn add_product<const N: usize>(c: &[[f64; N]; N], s: f64, a: &[[f64; N]; N], b: &[[f64; N]; N]) -> [[f64; N]; N] {
     let (mut result, mut i) = (*c, 0);
     while i < N {
@@ -146,7 +147,7 @@ const fn add_product<const N: usize>(c: &[[f64; N]; N], s: f64, a: &[[f64; N]; N
     result
 }
 
-/// `tr(E_kᵀ E_k)`, checked to be orthogonal.
+/// The squared lengths `tr(E_kᵀ E_k)` of the basis, which is checked to be orthogonal.
 pub(super) const fn squared_lengths<const N: usize, const D: usize>(basis: &[[[f64; N]; N]; D]) -> [f64; D] {
     let (mut lengths, mut i) = ([0.0; D], 0);
     while i < D {
@@ -166,7 +167,7 @@ pub(super) const fn squared_lengths<const N: usize, const D: usize>(basis: &[[[f
     lengths
 }
 
-/// The components of `A` in the basis, and whether nothing is left of it, measured by `scale`.
+/// The components of `A` in the basis, and whether `A` is in its span, by a residual relative to `scale`.
 const fn components<const N: usize, const D: usize>(
     basis: &[[[f64; N]; N]; D],
     a: &[[f64; N]; N],
@@ -179,12 +180,13 @@ const fn components<const N: usize, const D: usize>(
         covered += result[k] * result[k] * lengths[k];
         k += 1;
     }
-    // By Pythagoras: the square of what is left.
+    // The squared norm of the residual, by Pythagoras.
     let left = pairing(a, a) - covered;
     (result, left.abs() <= 1e-12 * scale)
 }
 
-/// `c[i][j][k]` with `[E_i, E_j] = Σ c[i][j][k] E_k`, checked to be an algebra.
+/// The structure constants `c[i][j][k]` with `[E_i, E_j] = Σ c[i][j][k] E_k`, after a check that the span is an
+/// algebra.
 pub(super) const fn structure_constants<const N: usize, const D: usize>(
     basis: &[[[f64; N]; N]; D],
 ) -> [[[f64; D]; D]; D] {
@@ -205,11 +207,11 @@ pub(super) const fn structure_constants<const N: usize, const D: usize>(
     constants
 }
 
-/// The entries of a matrix that aren't zero, each with its row and column, and how many they are; what is behind them isn't
-/// meant. A loop over so few is written out by the compiler, and one that asks all entries isn't.
+/// The nonzero entries of a matrix, each with its row and column, and their count; the array is padded behind them. The
+/// compiler unrolls a loop over so few, but not one that tests all entries.
 pub(crate) type NonZero<const N: usize> = ([[(usize, usize, f64); N]; N], usize);
 
-/// Those of all generators, row by row.
+/// The nonzero entries of all generators, row by row.
 pub(crate) const fn nonzero_entries<const N: usize, const D: usize>(basis: &[[[f64; N]; N]; D]) -> [NonZero<N>; D] {
     let mut all = [([[(0, 0, 0.0); N]; N], 0); D];
     let mut k = 0;
@@ -229,7 +231,7 @@ pub(crate) const fn nonzero_entries<const N: usize, const D: usize>(basis: &[[[f
     all
 }
 
-/// Whether the product of any two generators vanishes, as those of translations do: then `(I + X)(I + Y) = I + X + Y`.
+/// Whether the product of any two generators vanishes, as for translations: then `(I + X)(I + Y) = I + X + Y`.
 pub(crate) const fn products_vanish<const N: usize, const D: usize>(basis: &[[[f64; N]; N]; D]) -> bool {
     let mut place = 0;
     while place < D * D {
@@ -248,8 +250,8 @@ pub(crate) const fn products_vanish<const N: usize, const D: usize>(basis: &[[[f
 
 /// Whether the symmetrised products of any three generators lie in their span.
 ///
-/// With them all odd powers of `ξ̂` do, and then `(d/dt cay(tξ)) cay(tξ)⁻¹ = ξ̂ (I − t²ξ̂²/4)⁻¹`, so that the Cayley map
-/// stays in the group.
+/// If they do, so do all odd powers of `ξ̂`, and then `(d/dt cay(tξ)) cay(tξ)⁻¹ = ξ̂ (I − t²ξ̂²/4)⁻¹`, so that the
+/// Cayley map stays in the group.
 pub(crate) const fn is_closed_under_cayley<const N: usize, const D: usize>(basis: &[[[f64; N]; N]; D]) -> bool {
     let lengths = squared_lengths(basis);
     let zero = [[0.0; N]; N];

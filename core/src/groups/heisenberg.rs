@@ -26,7 +26,7 @@ use super::matrix_group::MatrixGroup;
 /// ```
 pub type Heisenberg<T = f64> = MatrixGroup<HeisenbergGenerators, T, 3, 3>;
 
-/// Declares [`Heisenberg`].
+/// The generators of [`Heisenberg`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct HeisenbergGenerators;

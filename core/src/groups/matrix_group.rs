@@ -1,4 +1,4 @@
-//! The group of matrices that a set of generators declares.
+//! The group of matrices for a set of generators.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -13,7 +13,7 @@ use super::generators::{
 };
 use crate::numbers::{Lanes, Real, real, reported};
 
-/// An element of the matrix group that `K` declares by its [`Generators`].
+/// An element of the matrix group with the [`Generators`] `K`.
 ///
 /// Tangent space: `ξ̂ = Σ ξ_k E_k`; `ad_ξ η` by the structure constants, which are computed when the user's crate is
 /// compiled. Covector components are `μ_k = ⟨μ, E_k⟩`; as a matrix a covector is `Σ μ_k E_k / tr(E_kᵀ E_k)`, paired by
@@ -21,15 +21,15 @@ use crate::numbers::{Lanes, Real, real, reported};
 ///
 /// # Shape and units
 ///
-/// An `N` × `N` matrix; the units of its entries are those that the group's own page gives.
+/// An `N` × `N` matrix; the units of its entries are those on the group's own page.
 #[derive(Clone, Copy, PartialEq, Lanes)]
 pub struct MatrixGroup<K, T, const N: usize, const D: usize>(SMatrix<T, N, N>, #[shared] PhantomData<K>);
 
-/// A matrix that isn't in the group was given as an element.
+/// The error for a matrix that isn't in the group.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("the matrix is not in the group: it misses the group's relation by {defect:e}; project it first")]
 pub struct NotInGroup {
-    /// How far the matrix is from the relation of the group, or NaN.
+    /// Residual of the group's relation for the matrix, or NaN.
     pub defect: f64,
 }
 
@@ -40,7 +40,8 @@ impl<K: fmt::Debug, T: Real, const N: usize, const D: usize> fmt::Debug for Matr
 }
 
 impl<K, T, const N: usize, const D: usize> MatrixGroup<K, T, N, D> {
-    /// Takes the matrix as it is; what depends on the relation of the group is then only as right as the matrix.
+    /// The element with this matrix, without a check; functions that use the group's relation are only as right as the
+    /// matrix.
     #[must_use]
     pub const fn from_matrix_unchecked(matrix: SMatrix<T, N, N>) -> Self {
         Self(matrix, PhantomData)
@@ -74,22 +75,23 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> MatrixGroup<K
     const SQUARED_LENGTHS: [f64; D] = squared_lengths(&K::GENERATORS);
     const ENTRIES: [NonZero<N>; D] = nonzero_entries(&K::GENERATORS);
     const STRUCTURE: [[[f64; D]; D]; D] = structure_constants(&K::GENERATORS);
-    /// Elements are multiplied by adding what they have beside `I`.
+    /// Whether elements are multiplied by adding their differences from `I`.
     const IS_ADDED: bool = products_vanish(&K::GENERATORS);
 
-    /// The inverse of an element, lane by lane: what the group's own formula asks of its entries differs between lanes.
+    /// The inverse of an element, lane by lane: the group's own formula branches on entries, which differ between
+    /// lanes.
     #[inline]
     fn inverse_of(matrix: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
         lane_by_lane(matrix, K::inverse::<T::Element>)
     }
 
-    /// How far the element is from the relation, likewise.
+    /// The residual of the relation, lane by lane.
     #[inline]
     fn relation(&self) -> T {
         lane_by_lane::<T, Vector1<T>, N>(&self.0, |lane| Vector1::new(K::relation(lane))).x
     }
 
-    /// `tr(E_kᵀ M)` for all `k`.
+    /// The pairings `tr(E_kᵀ M)` for all `k`.
     #[inline]
     fn pairings(matrix: &SMatrix<T, N, N>) -> SVector<T, D> {
         SVector::from_fn(|k, _| {
@@ -106,7 +108,7 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> MatrixGroup<K
     }
 }
 
-/// What a function makes of the matrix in each lane.
+/// The values of a function of the matrix in each lane.
 #[inline]
 pub(crate) fn lane_by_lane<T: Real, V: Lanes, const N: usize>(
     matrix: &SMatrix<T, N, N>,
@@ -114,13 +116,13 @@ pub(crate) fn lane_by_lane<T: Real, V: Lanes, const N: usize>(
 ) -> V {
     let mut all = V::splat(&of(&Lanes::lane(matrix, 0)));
     for lane in 1..T::LANES {
-        // Numbers alone, which any lane can have.
+        // Plain numbers fit into any lane.
         let _ = all.set_lane(lane, &of(&Lanes::lane(matrix, lane)));
     }
     all
 }
 
-/// The entries that aren't zero, with their places.
+/// The nonzero entries with their places.
 #[inline]
 fn nonzero<const N: usize>(matrix: &[[f64; N]; N]) -> impl Iterator<Item = (usize, usize, f64)> {
     (0..N * N).map(|place| (place / N, place % N, matrix[place / N][place % N])).filter(|entry| entry.2 != 0.0)
@@ -165,7 +167,7 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
         algebra
     }
 
-    /// Of a matrix that isn't in the algebra, the components of its orthogonal projection.
+    /// The components of the orthogonal projection, for a matrix that isn't in the algebra.
     fn vee(matrix: &SMatrix<T, N, N>) -> SVector<T, D> {
         let pairings = Self::pairings(matrix);
         SVector::from_fn(|k, _| pairings[k] * real(1.0 / Self::SQUARED_LENGTHS[k]))
@@ -175,7 +177,7 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
         Self::vee(&(self.0 * Self::hat(velocity) * Self::inverse_of(&self.0)))
     }
 
-    /// Components `⟨μ, F E_k F⁻¹⟩`.
+    /// The components `⟨μ, F E_k F⁻¹⟩`.
     fn adjoint_transpose(&self, momentum: &SVector<T, D>) -> SVector<T, D> {
         Self::pairings(&(self.0.transpose() * Self::dual_hat(momentum) * Self::inverse_of(&self.0).transpose()))
     }
@@ -222,7 +224,7 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
         self.0 * increment
     }
 
-    /// With `F⁻¹ = I + E`, `E = −F⁻¹D`: components `⟨DᵀM + (M + DᵀM) Eᵀ, E_k⟩` for the covector's matrix `M`.
+    /// The components `⟨DᵀM + (M + DᵀM) Eᵀ, E_k⟩` for the covector's matrix `M`, with `F⁻¹ = I + E`, `E = −F⁻¹D`.
     fn adjoint_transpose_increment(increment: &SMatrix<T, N, N>, momentum: &SVector<T, D>) -> SVector<T, D> {
         if const { Self::IS_ADDED } {
             return SVector::zeros();
@@ -233,7 +235,7 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
         Self::pairings(&(moved + (covector + moved) * inverse_increment.transpose()))
     }
 
-    /// Those whose generators are skew.
+    /// The components whose generators are skew.
     #[inline]
     fn turning_components() -> Vec<bool> {
         let is_skew =
@@ -241,7 +243,7 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
         K::GENERATORS.iter().map(is_skew).collect()
     }
 
-    /// NaN where an entry isn't finite, whether or not the relation depends on it.
+    /// The residual of the relation, or NaN if an entry isn't finite, whether or not the relation depends on it.
     fn defect(&self) -> T {
         self.relation() + self.0.sum() * T::zero()
     }

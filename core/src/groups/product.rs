@@ -1,4 +1,4 @@
-//! Products of groups: several bodies.
+//! Products of groups, for several bodies.
 
 use alloc::format;
 use alloc::string::String;
@@ -23,7 +23,7 @@ use nalgebra::SimdBool as _;
 /// assert_eq!(Bodies::DIMENSION, 6);
 /// ```
 pub trait Factor<const K: usize>: LieGroup {
-    /// The group.
+    /// The group of the factor.
     type Of: LieGroup<Scalar = Self::Scalar>;
 
     /// The factor of an element.
@@ -36,10 +36,10 @@ pub trait Factor<const K: usize>: LieGroup {
     fn components(joined: &Self::Vector) -> <Self::Of as LieGroup>::Vector;
 }
 
-/// What stands side by side.
+/// The components of two groups, one after the other.
 type Joined<A, B, T> = <A as Join<T, B>>::Joined;
 
-/// The names of all factors, each with the place of its factor behind it: `x_1`, `x_2`.
+/// The names of all factors, each followed by the number of its factor: `x_1`, `x_2`.
 fn of_factors<U, const N: usize>(factors: [Vec<(String, U)>; N]) -> Vec<(String, U)> {
     let named = (1..).zip(factors).map(|(place, names)| {
         let place: u32 = place;
@@ -48,8 +48,8 @@ fn of_factors<U, const N: usize>(factors: [Vec<(String, U)>; N]) -> Vec<(String,
     named.flatten().collect()
 }
 
-/// For each factor its type, its place, and a name for its part; then how their components are joined, and how they are
-/// taken apart again into these names.
+/// Implements a product from the type of each factor, its place, and a name for its part; then an expression that joins
+/// the parts' components, and one that splits them into these names.
 macro_rules! product {
     (
         $($group:ident $place:tt $part:ident),+;
@@ -186,7 +186,7 @@ macro_rules! product {
                 [$($group::turning_components()),+].concat()
             }
 
-            /// The sum of those of the factors.
+            /// The sum of the factors' defects.
             fn defect(&self) -> $scalar {
                 $scalar::zero() $(+ self.$place.defect())+
             }
@@ -209,7 +209,7 @@ macro_rules! product {
         @retraction $retraction:ident [$($group:ident $place:tt $part:ident),+]
         $scalar:ident $joined:ident $split:block $join:expr, $squares:expr, [$($bound:tt)*]
     ) => {
-        /// Factor by factor.
+        /// Retraction factor by factor.
         #[hot]
         impl<$($group: LieGroup<Scalar = $scalar>,)+ $scalar: crate::numbers::Real> Retraction<($($group,)+)> for $retraction
         where

@@ -1,4 +1,4 @@
-//! Rotations with columns beside them, `[R, X; 0, I]`: what SE(2), SE(3) and SE₂(3) have in common.
+//! Rotations with columns beside them, `[R, X; 0, I]`: the common parts of SE(2), SE(3) and SE₂(3).
 
 use nalgebra::{RealField, SMatrix};
 
@@ -6,7 +6,7 @@ use nalgebra::{RealField, SMatrix};
 pub(super) const fn generators<const K: usize, const N: usize, const D: usize>() -> [[[f64; N]; N]; D] {
     let mut all = [[[0.0; N]; N]; D];
     let mut next = 0;
-    // In the plane the only one, in space the `ê_k` of SO(3).
+    // The one rotation of the plane, or in space the `ê_k` of SO(3).
     while next < K * (K - 1) / 2 {
         let (row, column) = if K == 2 { (1, 0) } else { ((next + 2) % K, (next + 1) % K) };
         all[next][row][column] = 1.0;
@@ -26,7 +26,7 @@ pub(super) fn rows_defect_squared<const K: usize, T: RealField + Copy, const N: 
     (m - SMatrix::identity()).rows(K, N - K).norm_squared()
 }
 
-/// `[Rᵀ, −Rᵀx; 0, I]`, of a rotation of size `K`.
+/// The inverse `[Rᵀ, −Rᵀx; 0, I]`, for a rotation of size `K`.
 pub(super) fn inverse<const K: usize, T: RealField + Copy, const N: usize>(m: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
     SMatrix::from_fn(|i, j| match (i < K, j < K) {
         (true, true) => m[(j, i)],
@@ -36,16 +36,16 @@ pub(super) fn inverse<const K: usize, T: RealField + Copy, const N: usize>(m: &S
     })
 }
 
-/// Whether the rotation part is below one radian, whatever the translations are.
+/// Whether the rotation is below one radian, for any translation.
 ///
-/// The momentum of a translation is linear in it, so that it can't lead to another branch.
+/// The momentum is linear in a translation, so that a translation can't lead to another branch.
 pub(super) fn rotates_little<const K: usize, T: RealField + Copy, const N: usize>(algebra: &SMatrix<T, N, N>) -> bool {
-    // In a skew matrix each component stands twice.
+    // A skew matrix has each component twice.
     algebra.columns(0, K).norm_squared() < T::one() + T::one()
 }
 
-/// Declares a group of rotations of size `K` with columns beside them, by its `Generators<N, D>`: how an element is made of
-/// its parts, and the parts.
+/// Declares a group of rotations of size `K` with columns beside them, by its `Generators<N, D>`, with a constructor of
+/// an element from its parts, and functions that return the parts.
 macro_rules! rigid_group {
     (
         $Group:ident, $Generators:ident<$k:literal, $n:literal, $d:literal>, $Rotation:ident by $Matrix:ident, $Column:ident;

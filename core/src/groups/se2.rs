@@ -31,7 +31,7 @@ pub type SE2<T = f64> = MatrixGroup<SE2Generators, T, 3, 3>;
 
 rigid_group! {
     SE2, SE2Generators<2, 3, 3>, UnitComplex by Rotation2, Vector2;
-    /// `p ↦ R p + x`, from the rotation `R` and the translation `x`.
+    /// The motion `p ↦ R p + x`, from the rotation `R` and the translation `x`.
     from_rotation_and_translation(
         /// The rotation `R`.
         rotation,

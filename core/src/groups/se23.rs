@@ -36,7 +36,7 @@ pub type SE23<T = f64> = MatrixGroup<SE23Generators, T, 5, 9>;
 
 rigid_group! {
     SE23, SE23Generators<3, 5, 9>, UnitQuaternion by Rotation3, Vector3;
-    /// From the attitude `R`, the velocity `v` and the place `x`.
+    /// The pose with the attitude `R`, the velocity `v` and the place `x`.
     from_parts(
         /// The attitude `R`.
         attitude,

@@ -34,7 +34,7 @@ pub type SE3<T = f64> = MatrixGroup<SE3Generators, T, 4, 6>;
 
 rigid_group! {
     SE3, SE3Generators<3, 4, 6>, UnitQuaternion by Rotation3, Vector3;
-    /// `p ↦ R p + x`, from the rotation `R` and the translation `x`.
+    /// The motion `p ↦ R p + x`, from the rotation `R` and the translation `x`.
     from_rotation_and_translation(
         /// The rotation `R`.
         rotation,

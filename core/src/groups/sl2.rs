@@ -17,8 +17,8 @@ use super::matrix_group::MatrixGroup;
 /// | relation | `det F = 1` |
 /// | units | none |
 ///
-/// Neither the exponential nor the Cayley map reaches all of it: not a matrix with eigenvalues `−λ`, `−1/λ`, or not
-/// one with the eigenvalue −1.
+/// Neither retraction reaches the whole group: the exponential misses matrices with eigenvalues `−λ`, `−1/λ`, the
+/// Cayley map those with the eigenvalue −1.
 ///
 /// # Examples
 ///
@@ -30,7 +30,7 @@ use super::matrix_group::MatrixGroup;
 /// ```
 pub type SL2<T = f64> = MatrixGroup<SL2Generators, T, 2, 3>;
 
-/// Declares [`SL2`].
+/// The generators of [`SL2`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct SL2Generators;

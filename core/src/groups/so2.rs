@@ -26,7 +26,7 @@ use super::matrix_group::MatrixGroup;
 /// ```
 pub type SO2<T = f64> = MatrixGroup<SO2Generators, T, 2, 1>;
 
-/// Declares [`SO2`].
+/// The generators of [`SO2`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct SO2Generators;

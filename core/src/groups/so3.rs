@@ -15,7 +15,7 @@ use crate::numbers::{Mask, Real, real};
 /// The rotation group SO(3): `F Fᵀ = I`, `det F = 1`.
 ///
 /// Tangent space: `ξ̂ v = ξ × v`, basis `E_k = ê_k`; `ad_ξ η = ξ × η`. Covector components are those of the physical
-/// angular momentum. As an attitude it maps body to space components.
+/// angular momentum. An attitude maps body to space components.
 ///
 /// # Shape and units
 ///
@@ -33,20 +33,20 @@ use crate::numbers::{Mask, Real, real};
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct SO3<T = f64>(Matrix3<T>);
 
-/// A matrix that isn't a rotation was given as one.
+/// The error for a matrix that isn't a rotation.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error(
     "the matrix is not a rotation: ‖RᵀR − I‖ = {defect:e}, det R = {determinant}; pass a UnitQuaternion or an orthogonal matrix"
 )]
 pub struct NotARotation {
-    /// `‖RᵀR − I‖` in the Frobenius norm, or NaN.
+    /// The departure `‖RᵀR − I‖` in the Frobenius norm, or NaN.
     pub defect: f64,
     /// The determinant, 1 for a rotation.
     pub determinant: f64,
 }
 
 impl<T: Real> SO3<T> {
-    /// Takes the matrix as it is; what depends on `RᵀR = I` is then only as right as the matrix.
+    /// The element with this matrix, without a check; functions that use `RᵀR = I` are only as right as the matrix.
     #[must_use]
     pub fn from_matrix_unchecked(matrix: Matrix3<T>) -> Self {
         Self(matrix)
@@ -60,7 +60,7 @@ impl<T: Real> SO3<T> {
 }
 
 impl<T: Real> SO3<T> {
-    /// No rotation.
+    /// The identity.
     #[must_use]
     pub fn identity() -> Self {
         Self(Matrix3::identity())
@@ -68,21 +68,21 @@ impl<T: Real> SO3<T> {
 
     /// The rotation `exp ξ̂` by a rotation vector `ξ`, rad.
     ///
-    /// Numbers that carry derivatives keep them at `ξ = 0`, too. `UnitQuaternion::from_scaled_axis` has the same values,
-    /// but takes the identity for zero whatever the number carries.
+    /// Dual numbers have the right derivatives at `ξ = 0`, too. `UnitQuaternion::from_scaled_axis` has the same values,
+    /// but returns the identity without derivatives at zero.
     #[must_use]
     pub fn exp(rotation_vector: Vector3<T>) -> Self {
         Self(rotation_exp(rotation_vector))
     }
 
-    /// The rotation back.
+    /// The inverse rotation.
     #[must_use]
     #[inline]
     pub fn inverse(&self) -> Self {
         Self(self.0.transpose())
     }
 
-    /// `R S`: first `S`, then this.
+    /// The product `R S`: first `S`, then this.
     #[must_use]
     #[inline]
     pub fn compose(&self, other: &Self) -> Self {
@@ -102,10 +102,11 @@ impl<T: RealField + Copy> SO3<T> {
         Self((tilted * Rotation3::from_axis_angle(&z, spin)).into_inner())
     }
 
-    /// Precession, nutation (0 to π) and spin of this attitude, as [`from_euler_angles`](Self::from_euler_angles) takes
-    /// them, rad.
+    /// The precession, nutation (0 to π) and spin of this attitude, the arguments of
+    /// [`from_euler_angles`](Self::from_euler_angles), rad.
     ///
-    /// Upright or hanging, only the sum or the difference of precession and spin is defined; the spin is zero then.
+    /// In an upright or hanging attitude only the sum or the difference of precession and spin is defined; the spin is
+    /// zero then.
     #[must_use]
     pub fn euler_angles(&self) -> [T; 3] {
         let r = &self.0;
@@ -117,7 +118,7 @@ impl<T: RealField + Copy> SO3<T> {
         [r.m13.atan2(-r.m23), nutation, r.m31.atan2(r.m32)]
     }
 
-    /// The rotation as a unit quaternion: up to its sign what a table has.
+    /// The rotation as a unit quaternion: the one in a table, up to its sign.
     #[must_use]
     pub fn to_quaternion(&self) -> UnitQuaternion<T> {
         let [w, x, y, z] = quaternion(&self.0);
@@ -126,11 +127,11 @@ impl<T: RealField + Copy> SO3<T> {
 
     /// The rotation vector `ξ` of the smallest angle with `exp ξ̂ = F`.
     ///
-    /// At 180° the axis has two signs, of which one is returned. Numbers that carry derivatives keep them at the identity,
-    /// too, as with [`exp`](Self::exp).
+    /// The axis at 180° has two signs, of which one is returned. Dual numbers have the right derivatives at the
+    /// identity, too, as with [`exp`](Self::exp).
     #[must_use]
     pub fn log(&self) -> Vector3<T> {
-        // Below 90° the formula that is smooth at the identity has all its digits; near 180° it has none.
+        // The formula that is smooth at the identity has all its digits below 90°; near 180° it has none.
         if self.0.trace() > T::one() { rotation_log(self.0) } else { self.to_quaternion().scaled_axis() }
     }
 }
@@ -215,7 +216,7 @@ impl<T: Real> LieGroup for SO3<T> {
         Matrix3::new(zero, -v.z, v.y, v.z, zero, -v.x, -v.y, v.x, zero)
     }
 
-    /// Of a matrix that isn't skew, the components of its skew part.
+    /// The components of the skew part of any matrix.
     fn vee(m: &Matrix3<T>) -> Vector3<T> {
         skew_components(m)
     }
@@ -236,7 +237,7 @@ impl<T: Real> LieGroup for SO3<T> {
         xi.cross(eta)
     }
 
-    /// `μ × ξ`.
+    /// The vector `μ × ξ`.
     fn lie_bracket_transpose(xi: &Vector3<T>, momentum: &Vector3<T>) -> Vector3<T> {
         momentum.cross(xi)
     }
@@ -249,13 +250,14 @@ impl<T: Real> LieGroup for SO3<T> {
         self.0 - Matrix3::identity()
     }
 
-    /// `Dᵀ`.
+    /// The increment `Dᵀ`.
     fn inverse_increment(increment: &Matrix3<T>) -> Matrix3<T> {
         increment.transpose()
     }
 
     fn change(&self, increment: &Matrix3<T>) -> Matrix3<T> {
-        // Of the product of matrices, which isn't always inlined, lanes would have the target's common instructions.
+        // The product is unrolled: nalgebra's isn't always inlined, and would then have the target's common
+        // instructions in lanes.
         let mut product = Matrix3::zeros();
         for column in 0..3 {
             for row in 0..3 {
@@ -278,7 +280,7 @@ impl<T: Real> LieGroup for SO3<T> {
         ["q_w", "q_x", "q_y", "q_z"].map(|name| (name.to_owned(), "1")).into()
     }
 
-    // Inlined, so that nothing checks a length that the caller's array has.
+    // Inlined, so that the length of the caller's array needs no check.
     fn write_numbers<'a>(&self, numbers: &'a mut [T]) -> &'a mut [T] {
         let quaternion = quaternion(&self.0);
         let Some((own, behind)) = numbers.split_first_chunk_mut::<4>() else { return &mut [] };
@@ -297,14 +299,14 @@ impl<T: Real> LieGroup for SO3<T> {
         vec![true; 3]
     }
 
-    /// `‖RᵀR − I‖` in the Frobenius norm; of a reflection, which is orthogonal too, `|det R − 1|` more.
+    /// The defect `‖RᵀR − I‖` in the Frobenius norm; for a reflection, which is orthogonal too, plus `|det R − 1|`.
     fn defect(&self) -> T {
         let determinant = self.0.column(0).cross(&self.0.column(1)).dot(&self.0.column(2));
         self.departure() + (T::one() - determinant).select(determinant.simd_lt(T::zero()), T::zero())
     }
 
-    /// By one Newton step of the polar decomposition, `½ R (3 I − RᵀR)`, which squares the defect.
-    // Inlined, as the optimiser otherwise decides by the rest of the program.
+    /// The projection by one Newton step of the polar decomposition, `½ R (3 I − RᵀR)`, which squares the defect.
+    // Inlined, as the optimiser's own choice depends on the rest of the program.
     fn restored(&self, beyond: f64) -> Option<(Self, Mask<T>)> {
         let far = self.departure().simd_gt(T::simd_default_epsilon() * real(beyond));
         far.any().then(|| (self.nearer(far), far))
@@ -312,8 +314,8 @@ impl<T: Real> LieGroup for SO3<T> {
 }
 
 impl<T: Real> SO3<T> {
-    /// `‖RᵀR − I‖` in the Frobenius norm.
-    // Inlined into `restored`, which every step asks.
+    /// The departure `‖RᵀR − I‖` in the Frobenius norm.
+    // Inlined into `restored`, which every step calls.
     #[hot]
     fn departure(&self) -> T {
         let entry = |i: usize, j: usize| self.0.column(i).dot(&self.0.column(j));
@@ -323,18 +325,18 @@ impl<T: Real> SO3<T> {
         (square(on) + square(off) * real(2.0)).simd_sqrt()
     }
 
-    /// Nearer to the group in these lanes.
+    /// The projection in these lanes.
     #[cold]
     #[inline(never)]
     fn nearer(&self, far: Mask<T>) -> Self {
-        // The change is small, and so is its rounding.
+        // The correction is small, and so is its rounding.
         let off = Matrix3::identity() - self.0.transpose() * self.0;
         let nearest = self.0 + self.0 * off * real::<T>(0.5);
         Self(nearest.zip_map(&self.0, |nearest, entry| nearest.select(far, entry)))
     }
 }
 
-/// `Aᵀ v`, unrolled.
+/// The product `Aᵀ v`, unrolled.
 #[hot]
 pub(crate) fn transpose_mul<T: Real>(a: &Matrix3<T>, v: &Vector3<T>) -> Vector3<T> {
     Vector3::new(
@@ -359,7 +361,7 @@ mod tests {
         assert!((back.as_matrix() - SO3::identity().as_matrix()).norm() < 1e-15);
     }
 
-    /// The matrix of a top's Euler angles, typed from its three factors.
+    /// The matrix of a top's Euler angles agrees with the product of its three factors.
     #[test]
     fn euler_angles_are_precession_nutation_and_spin() {
         let about_z = |a: f64| Matrix3::new(a.cos(), -a.sin(), 0.0, a.sin(), a.cos(), 0.0, 0.0, 0.0, 1.0);
@@ -372,7 +374,7 @@ mod tests {
             let error = Vector3::from(found) - Vector3::new(precession, nutation, spin);
             assert!(error.norm() < 1e-6 * (1.0 + 1e-9 / nutation), "{found:?}");
         }
-        // At the poles one angle is left, and the attitude is the same all the same.
+        // One angle is left at the poles, and it yields the same attitude.
         for nutation in [0.0, core::f64::consts::PI] {
             let attitude = SO3::from_euler_angles(0.4, nutation, 0.3);
             let [precession, nutation, spin] = attitude.euler_angles();

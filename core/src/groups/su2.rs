@@ -17,7 +17,8 @@ use super::matrix_group::MatrixGroup;
 /// | relation | `F = L(q)` for its first column `q`, `‖q‖ = 1` |
 /// | units | the entries have none; coordinates in rad |
 ///
-/// It covers SO(3) twice: `q` and `−q` are one rotation. Covector components are those of the same body on SO(3).
+/// The group covers SO(3) twice: `q` and `−q` are one rotation. Covector components are those of the same body on
+/// SO(3).
 ///
 /// # Examples
 ///
@@ -30,7 +31,7 @@ use super::matrix_group::MatrixGroup;
 /// ```
 pub type SU2<T = f64> = MatrixGroup<SU2Generators, T, 4, 3>;
 
-/// Declares [`SU2`].
+/// The generators of [`SU2`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct SU2Generators;
@@ -53,7 +54,7 @@ impl Generators<4, 3> for SU2Generators {
     }
 }
 
-/// `L(q)` for the components `(w, x, y, z)`.
+/// The matrix `L(q)` for the components `(w, x, y, z)`.
 fn left_multiplication<T: RealField + Copy>(q: &Vector4<T>) -> SMatrix<T, 4, 4> {
     let (w, x, y, z) = (q[0], q[1], q[2], q[3]);
     SMatrix::from_columns(&[

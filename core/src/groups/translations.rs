@@ -23,7 +23,7 @@ pub type R2<T = f64> = MatrixGroup<TranslationGenerators, T, 3, 2>;
 /// | relation | all but `x` as in the identity |
 /// | units | `x` and coordinates m; covectors kg m/s |
 ///
-/// On it a reduced discrete Lagrangian is that of a particle.
+/// A reduced discrete Lagrangian on translations is that of a particle.
 ///
 /// # Examples
 ///
@@ -36,7 +36,7 @@ pub type R2<T = f64> = MatrixGroup<TranslationGenerators, T, 3, 2>;
 /// ```
 pub type R3<T = f64> = MatrixGroup<TranslationGenerators, T, 4, 3>;
 
-/// Declares [`R1`], [`R2`] and [`R3`].
+/// The generators of [`R1`], [`R2`] and [`R3`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct TranslationGenerators;
@@ -97,7 +97,7 @@ translations!(2, 1, [0]);
 translations!(3, 2, [0, 1]);
 translations!(4, 3, [0, 1, 2]);
 
-/// `[I, x; 0, 1]`.
+/// The matrix `[I, x; 0, 1]`.
 fn translation<T: Real, const N: usize, const D: usize>(x: &SVector<T, D>) -> SMatrix<T, N, N> {
     let mut matrix = SMatrix::identity();
     for k in 0..D {

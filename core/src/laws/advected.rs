@@ -12,7 +12,8 @@ use crate::numbers::Entries;
 
 roots!();
 
-/// `e · w = w`, `(gf)⁻¹ · w = f⁻¹ · (g⁻¹ · w)`, linear in `w`, and `−ξ·w` is the rate along `exp(tξ)`.
+/// The laws of an action: `e · w = w`, `(gf)⁻¹ · w = f⁻¹ · (g⁻¹ · w)`, linear in `w`, and `−ξ·w` is the rate along
+/// `exp(tξ)`.
 pub fn parameter_is_acted_on<G, A, const N: usize, const D: usize>()
 where
     G: MatrixLieGroup<N, D>,
@@ -22,7 +23,7 @@ where
     for f in random.elements::<G, N, D>() {
         let g = random.element::<G, N, D>();
         let w: A = random.sample();
-        // A tensor meets each element twice.
+        // A tensor is multiplied by each element twice.
         let allowed = ROUNDING * (condition(&f) * condition(&g)).powi(2);
         assert_same(&w.seen_from(&G::identity()), &w, 0.0, "e · w = w");
         assert_same(&w.advect(&SMatrix::zeros()), &w, 0.0, "e⁻¹ · w = w");
@@ -40,7 +41,7 @@ where
             assert_small(rate - derivative(|t| entries_at(t)[place]), DIFFERENCE, "the rate is −ξ·w");
         }
 
-        // ⟨b, f⁻¹ · v⟩ = ⟨b pulled back, v⟩, in what is linear in v.
+        // ⟨b, f⁻¹ · v⟩ = ⟨b pulled back, v⟩ for the part that is linear in v.
         let (v, by): (A, A) = (random.sample(), random.sample());
         let paired = |a: &A, b: &A| entries(a).iter().zip(entries(b)).map(|(a, b)| a * b).sum::<f64>();
         let nothing = A::from_entries(&mut || 0.0);
@@ -64,7 +65,7 @@ pub fn kinds_act<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     parameter_is_acted_on::<G, MixedTensor<f64, N>, N, D>();
 }
 
-/// Each kind by the product that defines it.
+/// The action on each of the five kinds is the product that defines it.
 pub fn kinds_move_as_declared<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     let mut random = Random::new(22);
     for f in random.elements::<G, N, D>() {
@@ -88,7 +89,7 @@ where
     assert_same(&parameter.advect(&f.increment()), expected, allowed, law);
 }
 
-/// `2 w + v`.
+/// The combination `2 w + v`.
 fn combined<A: Entries<f64>>(w: &A, v: &A) -> A {
     w.zip(v, &mut |w, v| 2.0 * w + v)
 }

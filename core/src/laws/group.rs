@@ -9,7 +9,7 @@ use super::samples::{
 
 roots!();
 
-/// Closure, associativity, neutral and inverse elements.
+/// The axioms of a group: closure, associativity, neutral and inverse elements.
 pub fn group_axioms<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     let mut random = Random::new(1);
     let identity = SMatrix::<f64, N, N>::identity();
@@ -29,7 +29,7 @@ pub fn group_axioms<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     }
 }
 
-/// `ξ̂^∨ = ξ`, and the hat is linear.
+/// The linear hat and its inverse, `ξ̂^∨ = ξ`.
 pub fn hat_and_vee<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     let mut random = Random::new(2);
     assert_small(f64::from(u8::from(G::DIMENSION != D)), 0.0, "the dimension is that of the vectors");
@@ -41,7 +41,7 @@ pub fn hat_and_vee<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     }
 }
 
-/// `ad_ξ η = (ξ̂η̂ − η̂ξ̂)^∨`.
+/// The bracket is the commutator, `ad_ξ η = (ξ̂η̂ − η̂ξ̂)^∨`.
 pub fn brackets<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     let mut random = Random::new(3);
     for _ in 0..20 {
@@ -57,7 +57,7 @@ pub fn brackets<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     }
 }
 
-/// `Ad_F ξ = (F ξ̂ F⁻¹)^∨`.
+/// The adjoint action is the conjugation, `Ad_F ξ = (F ξ̂ F⁻¹)^∨`.
 pub fn adjoint_action<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     let mut random = Random::new(4);
     for f in random.elements::<G, N, D>() {
@@ -75,7 +75,7 @@ pub fn adjoint_action<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>()
     }
 }
 
-/// `Ad*` and `ad*` are transposes.
+/// `Ad*` and `ad*` are the transposes of `Ad` and `ad`.
 pub fn pairings<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     let mut random = Random::new(5);
     for f in random.elements::<G, N, D>() {
@@ -89,7 +89,7 @@ pub fn pairings<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     }
 }
 
-/// The derivatives of `Ad_{exp tξ}` and `Ad*_{exp tξ}` at `t = 0`.
+/// `ad` and `ad*` are the derivatives of `Ad_{exp tξ}` and `Ad*_{exp tξ}` at `t = 0`.
 pub fn brackets_are_derivatives<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     let mut random = Random::new(6);
     for _ in 0..20 {
@@ -101,13 +101,13 @@ pub fn brackets_are_derivatives<G: MatrixLieGroup<N, D>, const N: usize, const D
     }
 }
 
-/// `δξ = η' + ad_ξ η` for `g(ε, t) = g(t) exp(ε η(t))`, \[RDAE, (1.3), (1.6)\].
+/// The velocity's variation `δξ = η' + ad_ξ η` for `g(ε, t) = g(t) exp(ε η(t))`, \[RDAE, (1.3), (1.6)\].
 pub fn variations<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     let mut random = Random::new(9);
     for _ in 0..20 {
         let (xi, rate): (SVector<f64, D>, SVector<f64, D>) = (random.sample(), random.sample());
         let (eta, eta_rate): (SVector<f64, D>, SVector<f64, D>) = (random.sample(), random.sample());
-        // Its velocity at t = 0 is ξ.
+        // The velocity of this path at t = 0 is ξ.
         let path = |t: f64| along::<G, N, D>(&(xi + rate * (0.5 * t)), t).matrix();
         let varied = |epsilon: f64, t: f64| path(t) * along::<G, N, D>(&(eta + eta_rate * t), epsilon).matrix();
         let velocity = |epsilon: f64| {
@@ -120,7 +120,7 @@ pub fn variations<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     }
 }
 
-/// `{f, k}(μ) = −⟨μ, ad_{δf/δμ} δk/δμ⟩`, \[RDAE, (1.11)\], is a Poisson bracket, and `Ad*_F` keeps it.
+/// The bracket `{f, k}(μ) = −⟨μ, ad_{δf/δμ} δk/δμ⟩`, \[RDAE, (1.11)\], is a Poisson bracket, and `Ad*_F` preserves it.
 pub fn lie_poisson_brackets<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     let mut random = Random::new(10);
     for f in random.elements::<G, N, D>() {
@@ -140,7 +140,7 @@ pub fn lie_poisson_brackets<G: MatrixLieGroup<N, D>, const N: usize, const D: us
         assert_small((bracket(&momentum, 0, 1) - by_rate).abs(), ROUNDING, "{f, h} = ⟨δf/δμ, ad*_{δh/δμ} μ⟩, (1.12)");
 
         let jacobi = |i: usize, j: usize, k: usize| {
-            // Cubic in μ, so that six points leave rounding alone.
+            // The bracket is cubic in μ, so that six points leave rounding alone.
             let inner = SVector::from_fn(|axis, _| derivative(|t| bracket(&(momentum + unit(axis) * t), j, k)));
             G::lie_poisson_bracket(&momentum, &slope(i, &momentum), &inner)
         };
@@ -161,7 +161,7 @@ fn unit<const D: usize>(axis: usize) -> SVector<f64, D> {
     SVector::from_fn(|i, _| if i == axis { 1.0 } else { 0.0 })
 }
 
-/// `D` stands for `F = I + D`.
+/// Increments `D` act as the elements `F = I + D`.
 pub fn increments<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     let mut random = Random::new(7);
     for f in random.elements::<G, N, D>() {
@@ -176,7 +176,7 @@ pub fn increments<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
         let inverse = G::from_increment(&G::inverse_increment(&d));
         assert_close(&inverse.matrix(), &f.inverse().matrix(), allowed, "I + E = F⁻¹");
     }
-    // With `‖D‖ = 10⁻¹²` the second order is 10⁻²⁴, and a subtraction of one would leave 10⁻¹⁶.
+    // The second order is 10⁻²⁴ for `‖D‖ = 10⁻¹²`, and a subtraction of one would leave 10⁻¹⁶.
     for _ in 0..20 {
         let (xi, momentum): (SVector<f64, D>, SVector<f64, D>) =
             (random.sample::<SVector<f64, D>>() * 1e-12, random.sample());
@@ -186,7 +186,7 @@ pub fn increments<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     }
 }
 
-/// Zero is the defect of elements only.
+/// The defect of the relation is zero for elements only.
 pub fn the_relation_tells<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     let mut random = Random::new(8);
     if D == N * N {
@@ -196,7 +196,7 @@ pub fn the_relation_tells<G: MatrixLieGroup<N, D>, const N: usize, const D: usiz
         let matrix: SMatrix<f64, N, N> = random.sample();
         let off = (matrix - G::hat(&G::vee(&matrix))).normalize() * 1e-3;
         let defect = G::from_increment(&(f.increment() + f.matrix() * off)).defect();
-        // What is off by 10⁻³ across the group misses the relation by about as much.
+        // An element moved by 10⁻³ across the group violates the relation by about as much.
         assert_small(1e-6 / defect.abs(), 1.0, "a matrix off the group has a defect");
     }
 }

@@ -1,8 +1,8 @@
-//! The laws of groups, retractions and advected parameters, as tests that can be generated for any of them.
+//! Tests of the laws of groups, retractions and advected parameters, which macros generate for any type.
 //!
-//! They are run at the identity, next to it and at random places, with a fixed seed, so that a failure repeats.
+//! The laws are tested at the identity, next to it and at random places, with a fixed seed, so that a failure repeats.
 
-// Named by what the macros expand to.
+// Public for the macros' expansions.
 #[doc(hidden)]
 pub mod advected;
 #[doc(hidden)]
@@ -84,15 +84,15 @@ macro_rules! retraction_laws {
 
 /// Generates the tests of the laws of [`Advected`](crate::groups::Advected) for a group over `f64`.
 ///
-/// With a group alone they are those of the five kinds of parameters that its matrices move:
+/// For a group alone the tests cover the five kinds of parameters that its matrices act on:
 ///
 /// | test | laws |
 /// |---|---|
 /// | `kinds_move_as_declared` | the product that each kind is defined by |
 /// | `kinds_act` | the laws of an action, below |
 ///
-/// With a type of parameters as well, which must implement [`Entries`](crate::numbers::Entries), they are the
-/// laws of an action for that type: `e · w = w`, `(gf)⁻¹ · w = f⁻¹ · (g⁻¹ · w)`, linear in `w`.
+/// For a group and a type of parameters, which must implement [`Entries`](crate::numbers::Entries), they are the laws
+/// of an action on that type: `e · w = w`, `(gf)⁻¹ · w = f⁻¹ · (g⁻¹ · w)`, linear in `w`.
 ///
 /// Invoke it in a test module of its own.
 ///

@@ -7,7 +7,7 @@ use super::samples::{
 };
 use crate::groups::Retraction;
 
-/// `τ(0) = e` with the identity as its derivative.
+/// A retraction at zero: `τ(0) = e` with the identity as its derivative.
 pub fn retraction_at_zero<G: MatrixLieGroup<N, D>, R: Retraction<G>, const N: usize, const D: usize>() {
     let zero = SVector::<f64, D>::zeros();
     assert_close(&R::increment(&zero), &SMatrix::zeros(), 0.0, "τ(0) = e");
@@ -16,7 +16,7 @@ pub fn retraction_at_zero<G: MatrixLieGroup<N, D>, R: Retraction<G>, const N: us
     assert_small(f64::from(u8::from(!R::is_near_identity(&zero))), 0.0, "zero is near the identity");
 }
 
-/// `τ(ξ)` is in the group.
+/// A retraction maps into the group.
 pub fn retraction_stays_in_the_group<G: MatrixLieGroup<N, D>, R: Retraction<G>, const N: usize, const D: usize>() {
     for xi in Random::new(11).coordinates() {
         let f = R::retract(&xi);
@@ -26,7 +26,7 @@ pub fn retraction_stays_in_the_group<G: MatrixLieGroup<N, D>, R: Retraction<G>, 
     }
 }
 
-/// `τ⁻¹(τ(ξ)) = ξ` and `τ(τ⁻¹(F)) = F`.
+/// Local coordinates invert a retraction: `τ⁻¹(τ(ξ)) = ξ` and `τ(τ⁻¹(F)) = F`.
 pub fn retraction_round_trips<G: MatrixLieGroup<N, D>, R: Retraction<G>, const N: usize, const D: usize>() {
     let mut random = Random::new(12);
     for xi in random.coordinates() {
@@ -37,7 +37,7 @@ pub fn retraction_round_trips<G: MatrixLieGroup<N, D>, R: Retraction<G>, const N
         assert_close(&R::retract(&returned).matrix(), &f.matrix(), allowed, "τ(τ⁻¹(F)) = F");
     }
     for f in random.elements::<G, N, D>() {
-        // Not every element need be within reach.
+        // Some elements may be out of the retraction's reach.
         if let Some(xi) = R::local_coordinates(&f) {
             let allowed = ROUNDING * condition(&f) * (1.0 + xi.norm_squared());
             assert_close(&R::retract(&xi).matrix(), &f.matrix(), allowed, "τ(τ⁻¹(F)) = F");
@@ -45,7 +45,7 @@ pub fn retraction_round_trips<G: MatrixLieGroup<N, D>, R: Retraction<G>, const N
     }
 }
 
-/// `dF F⁻¹ = (T dξ)^`.
+/// The tangent of a retraction: `dF F⁻¹ = (T dξ)^`.
 pub fn retraction_tangent<G: MatrixLieGroup<N, D>, R: Retraction<G>, const N: usize, const D: usize>() {
     for xi in Random::new(13).coordinates() {
         let f: G = R::retract(&xi);
@@ -59,7 +59,7 @@ pub fn retraction_tangent<G: MatrixLieGroup<N, D>, R: Retraction<G>, const N: us
     }
 }
 
-/// A small `ξ` isn't drowned by `I`.
+/// The increment has all digits of a small `ξ`.
 pub fn retraction_keeps_digits<G: MatrixLieGroup<N, D>, R: Retraction<G>, const N: usize, const D: usize>() {
     let mut random = Random::new(14);
     for _ in 0..20 {
@@ -67,13 +67,13 @@ pub fn retraction_keeps_digits<G: MatrixLieGroup<N, D>, R: Retraction<G>, const 
         // The second order is 10⁻²⁴; a subtraction of `I` would leave 10⁻¹⁶ on the diagonal.
         let tiny = xi * 1e-12;
         assert_close(&R::increment(&tiny), &G::hat(&tiny), 1e-22, "τ(ξ) − I = ξ̂ to first order");
-        // Where the diagonal has no first order, as for rotations, the even part tells: it is quadratic up to 10⁻²¹.
+        // The even part tests diagonals without a first order, as those of rotations: it is quadratic up to 10⁻²¹.
         let even = |scale: f64| R::increment(&(xi * scale)) + R::increment(&(xi * -scale));
         assert_close(&even(4e-6), &(even(2e-6) * 4.0), 1e-19, "the second order of τ(ξ) − I keeps its digits");
     }
 }
 
-/// NaN where there are none, which fails every comparison.
+/// The local coordinates, or NaN out of their reach, which fails every comparison.
 fn coordinates_of<G: MatrixLieGroup<N, D>, R: Retraction<G>, const N: usize, const D: usize>(f: &G) -> SVector<f64, D> {
     R::local_coordinates(f).unwrap_or_else(|| SVector::repeat(f64::NAN))
 }

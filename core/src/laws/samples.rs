@@ -1,4 +1,4 @@
-//! Where the laws are tried, and how two sides are compared.
+//! Samples of groups at which the laws are tested, and comparisons of two sides.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -33,7 +33,7 @@ impl Random {
         Self(seed)
     }
 
-    /// Uniform in `[−1, 1)`.
+    /// A uniform number in `[−1, 1)`.
     #[allow(clippy::cast_precision_loss)] // 53 bits are left
     pub fn signed(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -43,7 +43,7 @@ impl Random {
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    /// Of the normal distribution with the mean 0 and the deviation 1.
+    /// A number of the normal distribution with the mean 0 and the deviation 1.
     pub fn normal(&mut self) -> f64 {
         let radius = 0.5 * (1.0 + self.signed());
         normal([radius, 0.5 * self.signed()])
@@ -54,7 +54,7 @@ impl Random {
         A::from_entries(&mut || self.signed())
     }
 
-    /// Coordinates of the identity, next to it, and anywhere within reach.
+    /// Coordinates of the identity, of elements next to it, and random ones of the size of one.
     pub fn coordinates<const D: usize>(&mut self) -> Vec<SVector<f64, D>> {
         let mut coordinates = vec![SVector::zeros()];
         for _ in 0..20 {
@@ -64,7 +64,7 @@ impl Random {
         coordinates
     }
 
-    /// A product of two exponentials: not on a one-parameter subgroup that is sampled elsewhere.
+    /// A product of two exponentials, which lies on none of the one-parameter subgroups sampled elsewhere.
     pub fn element<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>(&mut self) -> G {
         let (first, second) = (self.sample(), self.sample());
         along::<G, N, D>(&first, 1.0).compose(&along::<G, N, D>(&second, 1.0))
@@ -80,36 +80,36 @@ impl Random {
     }
 }
 
-/// A number of the normal distribution with the mean 0 and the deviation 1, of two that are uniform on an interval of
+/// A number of the normal distribution with the mean 0 and the deviation 1, from two that are uniform on an interval of
 /// length one, by the transform of Box and Muller.
 ///
-/// The first is of `[0, 1)`: at 1 the number is infinite, and beyond it is NaN. The second is an angle in turns, of which
-/// any whole number may be taken off, so that `[−½, ½)` does as well as `[0, 1)`.
+/// The first lies in `[0, 1)`: at 1 the result is infinite, and beyond it is NaN. The second is an angle in turns,
+/// modulo whole turns, so that `[−½, ½)` does as well as `[0, 1)`.
 #[must_use]
 pub fn normal([radius, angle]: [f64; 2]) -> f64 {
-    // The first is below one, and so its rest above zero.
+    // The radius is below one, so that the logarithm is finite.
     (-2.0 * (1.0 - radius).ln()).sqrt() * (core::f64::consts::TAU * angle).cos()
 }
 
-/// `exp(t ξ̂)`, by the group's basis and nothing else of it.
+/// `exp(t ξ̂)`, computed from the group's basis alone.
 #[must_use]
 pub fn along<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>(xi: &SVector<f64, D>, t: f64) -> G {
     G::from_increment(&exponential(&(G::hat(xi) * t)).0)
 }
 
-/// `F⁻¹` by elimination, whatever the group does.
+/// `F⁻¹` by elimination, independent of the group's own inverse.
 #[must_use]
 pub fn eliminated_inverse<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>(f: &G) -> SMatrix<f64, N, N> {
     crate::groups::inverse(&f.matrix())
 }
 
-/// `‖F‖ ‖F⁻¹‖`: what rounding is multiplied by when `F` conjugates.
+/// The condition number `‖F‖ ‖F⁻¹‖`, by which a conjugation with `F` magnifies rounding.
 #[must_use]
 pub fn condition<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>(f: &G) -> f64 {
     f.matrix().norm() * eliminated_inverse(f).norm()
 }
 
-/// `f'(0)` from six values at a spacing of 10⁻³.
+/// The derivative `f'(0)`, from six values at a spacing of 10⁻³.
 ///
 /// The remainder is of the order of 10⁻¹⁸ by the seventh derivative, rounding of 10⁻¹³ by the size of `f`.
 pub fn derivative<V: Add<Output = V> + Sub<Output = V> + Mul<f64, Output = V>>(f: impl Fn(f64) -> V) -> V {
@@ -118,18 +118,18 @@ pub fn derivative<V: Add<Output = V> + Sub<Output = V> + Mul<f64, Output = V>>(f
     (odd(1.0) * 45.0 - odd(2.0) * 9.0 + odd(3.0)) * (1.0 / (60.0 * d))
 }
 
-/// What some products of small matrices leave, for a scale of one.
+/// Rounding of some products of small matrices, for a scale of one.
 pub const ROUNDING: f64 = 2e-14;
-/// What [`derivative`] leaves, for a scale of one.
+/// Error of [`derivative`], for a scale of one.
 pub const DIFFERENCE: f64 = 1e-11;
-/// What a [`derivative`] of a [`derivative`] leaves, for a scale of one.
+/// Error of a [`derivative`] of a [`derivative`], for a scale of one.
 pub const NESTED_DIFFERENCE: f64 = 1e-8;
 
-/// `‖a − b‖ ≤ allowed`; a NaN fails it.
+/// Asserts `‖a − b‖ ≤ allowed`; a NaN fails.
 ///
 /// # Panics
 ///
-/// Where it doesn't hold.
+/// If the inequality doesn't hold.
 #[track_caller]
 pub fn assert_close<const R: usize, const C: usize>(
     a: &SMatrix<f64, R, C>,
@@ -140,11 +140,11 @@ pub fn assert_close<const R: usize, const C: usize>(
     assert_small((a - b).norm(), allowed, law);
 }
 
-/// `size ≤ allowed`; a NaN fails it.
+/// Asserts `size ≤ allowed`; a NaN fails.
 ///
 /// # Panics
 ///
-/// Where it doesn't hold.
+/// If the inequality doesn't hold.
 #[track_caller]
 pub fn assert_small(size: f64, allowed: f64, law: &str) {
     assert!(size <= allowed, "{law}: off by {size:e}, allowed are {allowed:e}");

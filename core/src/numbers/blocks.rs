@@ -1,24 +1,24 @@
-//! Where the blocks of a matrix of several bodies end, and which unknowns solve together.
+//! Block structure of a matrix of several bodies, and the unknowns that are solved together.
 
-/// Where the blocks on the diagonal of a matrix end: the unknowns of a body are in one block. Of at most
+/// The ends of the blocks on the diagonal of a matrix, in which the unknowns of a body are in one block. It has at most
 /// [`MOST`](Self::MOST) unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Blocks(u64);
 
 impl Blocks {
-    /// The most unknowns that several blocks may have. A product of groups with more doesn't compile.
+    /// Limit of the unknowns in several blocks. A product of groups with more doesn't compile.
     pub const MOST: usize = 64;
 
-    /// One block.
+    /// All unknowns in one block.
     pub const WHOLE: Self = Self(0);
 
-    /// Blocks of `size` unknowns, and behind them others.
+    /// The blocks of the first `size` unknowns, followed by other blocks.
     #[must_use]
     pub const fn then(self, size: usize, behind: Self) -> Self {
         Self(self.0 | 1 << size | behind.0 << size)
     }
 
-    /// The finest blocks that have no end within a block of either: those of a sum of two matrices.
+    /// The finest blocks that contain both: those of a sum of two matrices.
     #[must_use]
     pub const fn or(self, other: Self) -> Self {
         Self(self.0 & other.0)
@@ -41,7 +41,7 @@ impl Blocks {
         self.end(start, end) == end
     }
 
-    /// Where the block that begins with the unknown `start` ends, of `dimension` in all.
+    /// End of the block that begins with the unknown `start`, in a matrix of `dimension` unknowns.
     pub(super) const fn end(self, start: usize, dimension: usize) -> usize {
         let mut end = start + 1;
         while end < dimension && !self.end_at(end) {
@@ -51,16 +51,16 @@ impl Blocks {
     }
 }
 
-/// What is known of a Newton matrix before it is computed.
+/// The sparsity of a Newton matrix, known before its entries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pattern {
     /// The unknowns of each factor of the group.
     pub factors: Blocks,
-    /// The unknowns that solve together; between these blocks the matrix is zero. They end where factors end.
+    /// The independent groups of unknowns: between these blocks the matrix is zero. They end where factors end.
     pub apart: Blocks,
 }
 
 impl Pattern {
-    /// Nothing is known: all unknowns are one block.
+    /// A full matrix: all unknowns are one block.
     pub const WHOLE: Self = Self { factors: Blocks::WHOLE, apart: Blocks::WHOLE };
 }

@@ -1,4 +1,4 @@
-//! Components of many equal bodies, and the matrices that map each body's components by themselves.
+//! Components of many equal bodies, and the block-diagonal matrices that act on them.
 
 use core::array::from_fn;
 use core::ops::{Add, Mul, Neg, Sub};
@@ -12,13 +12,13 @@ use super::scalar::{Mask, Real, real};
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Bodies<V, const N: usize>(pub [V; N]);
 
-/// A linear map of [`Bodies`] that maps each by itself: a matrix that is zero but for the blocks on its diagonal.
+/// A linear map that acts on each of the [`Bodies`] separately: a block-diagonal matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BlockDiagonal<S, const N: usize>(pub [S; N]);
 
-/// An array with an entry for each body, made of one that is full already. A macro, as what isn't inlined has no vector
-/// instructions of the machine: the compiler doesn't always inline `core::array::from_fn`, which copies besides, nor the
-/// closure that a function would take.
+/// An array with a new entry for each body, written over an array that is full already. It is a macro because code that
+/// isn't inlined can't use the machine's vector instructions: the compiler doesn't always inline
+/// `core::array::from_fn`, which copies besides, nor the closure that a function would take.
 macro_rules! filled {
     ($array:expr, |$k:ident| $of:expr $(,)?) => {{
         let mut array = $array;
@@ -92,7 +92,7 @@ impl<T: Real, E: Entries<T>, const N: usize> Entries<T> for [E; N] {
 
 entries_of_value!([E: Entries<S>, const N: usize] Bodies<E, N>);
 
-/// How many components there are.
+/// Number of components.
 #[hot]
 fn dimension<T: Real, V: Coordinates<T>>() -> usize {
     let mut dimension = 0;
@@ -100,26 +100,27 @@ fn dimension<T: Real, V: Coordinates<T>>() -> usize {
     dimension
 }
 
-/// The lesser of two numbers; what isn't a number stays.
+/// The lesser of two numbers; a NaN in either is returned.
 #[hot]
 pub(crate) fn least<T: Real>(a: T, b: T) -> T {
     b.select(b.simd_lt(a) | b.simd_ne(b), a)
 }
 
-/// Infinity: what every least value is less than.
+/// Infinity, the initial value of a minimum.
 #[hot]
 pub(crate) fn most<T: Real>() -> T {
     real(f64::INFINITY)
 }
 
-/// Everything is done body by body. A determinant is the least of those of the bodies, each relative to the product of
-/// its diagonal: the product of a hundred of them would be out of range, and two negative ones would hide each other.
+/// Bodies are independent: each operation acts body by body. A determinant is the least of those of the bodies, each
+/// relative to the product of its diagonal: the product of a hundred would be out of range, and two negative ones would
+/// cancel.
 ///
-/// `a bᵀ` has none of the blocks that would join bodies, so it is that map only where the rest isn't asked for.
+/// `a bᵀ` lacks the blocks that couple bodies, so it is the outer product only where they aren't needed.
 #[hot]
 impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N> {
     type Square = BlockDiagonal<V::Square, N>;
-    /// For each body but the last its block with the next, and that of the next with it.
+    /// For each body but the last, the block of its rows and the next body's columns, and the block below the diagonal.
     type Links = [[V::Square; 2]; N];
     type Four = Bodies<V::Four, N>;
 
@@ -213,7 +214,7 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         [[zero.outer(&zero); 2]; N]
     }
 
-    /// By elimination from the first body to the last, `A_{k+1} ← A_{k+1} − L_k A_k⁻¹ U_k`.
+    /// Solves by elimination from the first body to the last, `A_{k+1} ← A_{k+1} − L_k A_k⁻¹ U_k`.
     fn solve_linked(matrix: &mut Self::Square, links: &Self::Links, pattern: Pattern, right_side: &mut Self) -> T {
         let pattern = Pattern { apart: Blocks::WHOLE, ..pattern };
         let (BlockDiagonal(own), Bodies(solution), mut smallest) = (matrix, right_side, most());
@@ -225,7 +226,7 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
                 break;
             }
             let [upper, lower] = &links[k];
-            // `A_k⁻¹ U_k` is all of it that is asked for later.
+            // The back substitution needs `A_k⁻¹ U_k` alone.
             let eliminated = V::square(
                 #[cfg_attr(not(debug_assertions), inline(always))]
                 |column| V::solve_apart(&factors, pattern, &V::column(upper, column)),
@@ -283,10 +284,11 @@ mod tests {
     use super::{BlockDiagonal, Blocks, Bodies, Coordinates as _, Pattern};
     use crate::laws::samples::Random;
 
-    /// A body that turns and is translated.
+    /// Factors of a body with three rotations and three translations.
     const PATTERN: Pattern = Pattern { factors: Blocks::WHOLE.then(3, Blocks::WHOLE), apart: Blocks::WHOLE };
 
-    /// The first body has no inertia in the first lane, and in the second the second one's is small, and right.
+    /// The least pivot in a batch whose first lane has a zero inertia in the first body, and whose second lane a small,
+    /// regular one in the second body.
     #[test]
     fn the_least_pivot_is_that_of_a_fault() {
         let lanes = |first: f64, second: f64| WideF64x4::from([first, second, second, second]);
@@ -309,7 +311,7 @@ mod tests {
         for (k, own) in matrix.iter().enumerate() {
             dense.fixed_view_mut::<6, 6>(6 * k, 6 * k).copy_from(own);
         }
-        // The last have nobody behind them.
+        // The last body has no successor.
         for (k, [upper, lower]) in links.iter().enumerate().take(2) {
             dense.fixed_view_mut::<6, 6>(6 * k, 6 * k + 6).copy_from(upper);
             dense.fixed_view_mut::<6, 6>(6 * k + 6, 6 * k).copy_from(lower);
@@ -325,7 +327,7 @@ mod tests {
         assert!(det > 0.0);
     }
 
-    /// A negative determinant of turning and one of shifting don't hide each other.
+    /// A negative determinant of the rotations and one of the translations don't cancel.
     #[test]
     fn two_negative_factors_of_a_body_show() {
         let negative = Matrix6::from_diagonal(&Vector6::new(1.0, 2.0, -1.0, 1.0, -3.0, 1.0));

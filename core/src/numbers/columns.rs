@@ -1,4 +1,4 @@
-//! Four vectors of components side by side, so that one vector instruction does the same to all of them.
+//! Four component vectors side by side, so that one vector instruction acts on all of them.
 
 use core::ops::{Add, Sub};
 
@@ -7,13 +7,13 @@ use nalgebra::SMatrix;
 use super::entries::Entries;
 use super::scalar::Real;
 
-/// Four vectors with `D` components: for each component the four numbers.
+/// Four vectors with `D` components, stored component by component.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct FourVectors<T, const D: usize>(pub(super) [[T; 4]; D]);
 
 impl<T: Real, const D: usize> FourVectors<T, D> {
-    /// Each mapped by the matrix.
+    /// Each vector mapped by the matrix.
     #[hot]
     pub(super) fn mapped(&self, matrix: &SMatrix<T, D, D>) -> Self {
         let mut mapped = [[T::zero(); 4]; D];

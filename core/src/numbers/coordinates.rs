@@ -24,76 +24,76 @@ pub trait Coordinates<T: Real>:
         + Mul<T, Output = Self::Square>
         + Mul<Self, Output = Self>;
 
-    /// The blocks of a matrix that join neighbours in a row of bodies; `()` of a body alone.
+    /// The blocks of a matrix that couple neighbours in a row of bodies; `()` for a single body.
     type Links: Copy;
 
-    /// Four of them side by side.
+    /// Four vectors side by side.
     type Four: Entries<T> + Debug + PartialEq + Add<Output = Self::Four> + Sub<Output = Self::Four>;
 
-    /// Put side by side.
+    /// Stores four vectors side by side.
     fn beside(columns: &[Self; 4]) -> Self::Four;
 
-    /// The one at place `k` of four.
+    /// Vector `k` of four.
     ///
     /// # Panics
     ///
-    /// Where `k` is above three.
+    /// If `k` is above three.
     #[must_use]
     fn of_four(four: &Self::Four, k: usize) -> Self;
 
-    /// Four, each mapped by the matrix.
+    /// Four vectors, each mapped by the matrix.
     fn map_four(matrix: &Self::Square, four: &Self::Four) -> Self::Four;
 
-    /// The matrix with these columns, numbered from zero; of several bodies its blocks.
+    /// The matrix with these columns, numbered from zero; for several bodies its diagonal blocks.
     fn square(column: impl Fn(usize) -> Self) -> Self::Square;
 
-    /// A column of a matrix, numbered from zero; of several bodies that of its block.
+    /// A column of a matrix, numbered from zero; for several bodies the column of its diagonal block.
     ///
     /// # Panics
     ///
-    /// Where there is no column `k`.
+    /// If there is no column `k`.
     #[must_use]
     fn column(matrix: &Self::Square, k: usize) -> Self;
 
-    /// All components zero.
+    /// The vector with all components zero.
     fn zero() -> Self;
 
-    /// Component `k` one, the others zero.
+    /// The vector with component `k` one, and the others zero.
     ///
     /// # Panics
     ///
-    /// Where there is no component `k`.
+    /// If there is no component `k`.
     fn axis(k: usize) -> Self;
 
     /// The pairing `Σ a_k b_k`.
     fn dot(&self, other: &Self) -> T;
 
-    /// `a bᵀ`: the map `x ↦ a (b·x)`.
+    /// The outer product `a bᵀ`: the map `x ↦ a (b·x)`.
     fn outer(&self, other: &Self) -> Self::Square;
 
     /// Whether all components are finite.
     fn is_finite(&self) -> bool;
 
-    /// In each lane `self` where the mask is set, and `other` where it isn't.
+    /// Selects by lanes: `self` where the mask is set, and `other` elsewhere.
     #[must_use]
     fn select(self, mask: Mask<T>, other: Self) -> Self;
 
-    /// What [`solve_again`](Self::solve_again) solves `A z = b` from, and `det A`.
+    /// The factors from which [`solve_again`](Self::solve_again) solves `A z = b`, and `det A`.
     ///
     /// There is no pivoting and no branch, so that SIMD lanes stay together, and so that another unit of length, which
-    /// scales rows and columns, changes no digit. Where `A` is singular, `z` isn't finite and `det A` is zero or not
+    /// scales rows and columns, changes no digit. If `A` is singular, `z` isn't finite and `det A` is zero or not
     /// finite.
     ///
-    /// Up to three dimensions this is Cramer's rule, and the adjugate is returned. Beyond, it is elimination in the
-    /// order of the basis, and both triangles are returned: as accurate as any for a matrix whose symmetric part is
-    /// positive definite, like the Jacobian of a kinetic energy near the identity, and not finite where a leading minor
-    /// is zero.
+    /// Up to three dimensions this is Cramer's rule, and the adjugate is returned. Beyond, it is Gaussian elimination
+    /// in the order of the basis, and both triangles are returned. That is as accurate as any elimination if the
+    /// symmetric part of the matrix is positive definite, like the Jacobian of a kinetic energy near the identity, and
+    /// not finite if a leading minor is zero.
     #[must_use]
     fn factorise(matrix: &Self::Square) -> (Self::Square, T) {
         Self::factorise_with(matrix, Pattern::WHOLE)
     }
 
-    /// The solution `z` of `A z = b` from what [`factorise`](Self::factorise) has made of `A`.
+    /// The solution `z` of `A z = b` from the factors by [`factorise`](Self::factorise).
     #[must_use]
     fn solve_again(factors: &Self::Square, det: T, right_side: &Self) -> Self {
         Self::solve_again_with(factors, det, Pattern::WHOLE, right_side)
@@ -106,39 +106,40 @@ pub trait Coordinates<T: Real>:
         (Self::solve_again(&factors, det, right_side), det)
     }
 
-    /// As [`factorise`](Self::factorise), of a matrix with this pattern. What is apart is solved apart. Of a
-    /// product of groups `det A` is relative to the product of the diagonal, and negative where the determinant is that
-    /// belongs to one of the factors, once those before it are eliminated: two of them don't hide each other.
+    /// The factors and the determinant of a matrix with this pattern, as by [`factorise`](Self::factorise). Independent
+    /// blocks are solved separately. For a product of groups `det A` is relative to the product of the diagonal. It is
+    /// negative if the determinant of any factor is, once the factors before it are eliminated: two negative ones don't
+    /// cancel.
     fn factorise_with(matrix: &Self::Square, pattern: Pattern) -> (Self::Square, T);
 
-    /// The solution from what [`factorise_with`](Self::factorise_with) has made.
+    /// The solution from the factors by [`factorise_with`](Self::factorise_with).
     fn solve_again_with(factors: &Self::Square, det: T, pattern: Pattern, right_side: &Self) -> Self;
 
-    /// `A⁻¹` from what [`factorise_with`](Self::factorise_with) has made, where many right sides are to come; mapped by it,
-    /// they are the solutions of [`solve_again_with`](Self::solve_again_with) to rounding. Of several bodies it has a block
-    /// for each. Where `A` is singular, not all entries are finite.
+    /// `A⁻¹` from the factors by [`factorise_with`](Self::factorise_with), for many right-hand sides; its products are
+    /// the solutions of [`solve_again_with`](Self::solve_again_with) to rounding. For several bodies it has a block for
+    /// each. If `A` is singular, not all entries are finite.
     fn inverse_with(factors: &Self::Square, det: T, pattern: Pattern) -> Self::Square;
 
-    /// As [`factorise_with`](Self::factorise_with) of a product, where there may be one block: the determinant is relative
-    /// to the product of the diagonal.
+    /// The factors as by [`factorise_with`](Self::factorise_with) for a product of groups, also if it has one block:
+    /// the determinant is relative to the product of the diagonal.
     fn factorise_apart(matrix: &Self::Square, pattern: Pattern) -> (Self::Square, T);
 
-    /// The solution from what [`factorise_apart`](Self::factorise_apart) has made.
+    /// The solution from the factors by [`factorise_apart`](Self::factorise_apart).
     fn solve_apart(factors: &Self::Square, pattern: Pattern, right_side: &Self) -> Self;
 
-    /// Nothing that joins neighbours.
+    /// Zero blocks between neighbours.
     fn no_links() -> Self::Links;
 
-    /// Solves `A z = b` in place, for a matrix with the blocks `links` beside its diagonal: `right_side` becomes `z`, and
-    /// the matrix is used up. Returns the determinant, as [`factorise_with`](Self::factorise_with) does. Of the pattern only
-    /// the factors count: the links join what is apart without them.
+    /// Solves `A z = b` in place, for a matrix with the blocks `links` beside its diagonal: `right_side` becomes `z`,
+    /// and the matrix is overwritten. Returns the determinant, as [`factorise_with`](Self::factorise_with) does. Only
+    /// the factors of the pattern are used: the links couple unknowns that are independent without them.
     fn solve_linked(matrix: &mut Self::Square, links: &Self::Links, pattern: Pattern, right_side: &mut Self) -> T;
 
-    /// The least of the traces of the blocks.
+    /// The least of the traces of the diagonal blocks.
     fn least_trace(matrix: &Self::Square, blocks: Blocks) -> T;
 
-    /// `Dᵏ r` and its derivative, for `D = 1 + |y|²` of half the coordinates `y` and a residual `r` with its derivative;
-    /// of several bodies each with its own `D`.
+    /// `Dᵏ r` and its derivative, for `D = 1 + |y|²` of half the coordinates `y` and a residual `r` with its
+    /// derivative; each of several bodies has its own `D`.
     #[must_use]
     fn raised(residual: &Self, jacobian: &Self::Square, power: u32, half: &Self) -> (Self, Self::Square) {
         if power == 0 {
@@ -158,10 +159,10 @@ pub trait Coordinates<T: Real>:
     #[must_use]
     fn transpose(matrix: &Self::Square) -> Self::Square;
 
-    /// The smallest pivot of a symmetric matrix in the order of the basis, relative to its entry of the diagonal, up to
-    /// the first that isn't positive: above zero where the matrix is positive definite, below where it is negative along
-    /// some direction, and there of the order of rounding, or NaN, where it is singular. Beside it the component that it is
-    /// of, from zero; of several lanes in one of them.
+    /// The smallest pivot of a symmetric matrix in the order of the basis, relative to its entry of the diagonal, and
+    /// its component, from zero. Pivots after the first that isn't positive are ignored. The smallest is above zero if
+    /// the matrix is positive definite, below zero if it is negative along a direction, and of the order of rounding,
+    /// or NaN, if it is singular. In a batch the component is that of one of the lanes.
     fn least_pivot(matrix: &Self::Square) -> (T, usize);
 }
 
@@ -218,7 +219,7 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     }
 
     fn is_finite(&self) -> bool {
-        // Zero times an infinity or a NaN is NaN; the sum itself could overflow.
+        // Zero times an infinity or a NaN is NaN; the plain sum could overflow.
         sum::<T, D>(|k| self[k] * T::zero()).simd_eq(T::zero()).all()
     }
 
@@ -230,7 +231,7 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         if !pattern.factors.is_whole() {
             return Self::factorise_apart(matrix, pattern);
         }
-        // `D` is a constant, so that one of these is left.
+        // The match is resolved at compile time, as `D` is a constant.
         match D {
             1 => (SMatrix::from_element(T::one()), matrix[(0, 0)]),
             2 => adjugate_2(matrix),
@@ -255,7 +256,7 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
 
     fn inverse_with(factors: &SMatrix<T, D, D>, det: T, pattern: Pattern) -> SMatrix<T, D, D> {
         if pattern.factors.is_whole() && D <= 3 {
-            // For these the factors are the adjugate.
+            // The factors are the adjugate up to three dimensions.
             return factors * (T::one() / det);
         }
         Self::square(|k| Self::solve_again_with(factors, det, pattern, &Self::axis(k)))
@@ -297,19 +298,19 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     }
 }
 
-/// The lesser of two pivots, each with its component: NaN, which a zero divided by itself is, is less than any. Behind one
-/// that isn't positive the others tell nothing; the component of one that is positive is of no use, and left behind, so
-/// that of several lanes it is that of a fault.
+/// The lesser of two pivots, each with its component. NaN, the quotient of two zeros, is less than any number. Pivots
+/// after one that isn't positive are ignored. The component changes only to that of a pivot that isn't positive, so
+/// that in a batch it names a fault.
 pub(super) fn lesser_pivot<T: Real>((pivot, place): (T, usize), (next, behind): (T, usize)) -> (T, usize) {
     let is_less = pivot.simd_gt(T::zero()) & !next.simd_ge(pivot);
     let is_fault = is_less & !next.simd_gt(T::zero());
     (next.select(is_less, pivot), if is_fault.any() { behind } else { place })
 }
 
-// The compiler doesn't always inline `fold` and `from_fn` for lanes, and what isn't inlined has no vector instructions
-// of the machine. With loops, on the other hand, steps of single bodies are up to a sixth slower.
+// Loops in lanes: the compiler doesn't always inline `fold` and `from_fn` there, and code that isn't inlined can't use
+// the machine's vector instructions. For single bodies loops make a step slower by up to a sixth.
 
-/// `term(0) + term(1) + …`, in that order.
+/// The sum `term(0) + term(1) + …`, in that order.
 #[hot]
 fn sum<T: Real, const D: usize>(term: impl Fn(usize) -> T) -> T {
     if D == 0 {
@@ -325,7 +326,7 @@ fn sum<T: Real, const D: usize>(term: impl Fn(usize) -> T) -> T {
     sum
 }
 
-/// `entry(0), entry(1), …`.
+/// The vector of `entry(0), entry(1), …`.
 #[hot]
 fn entries<T: Real, const D: usize>(entry: impl Fn(usize) -> T) -> SVector<T, D> {
     if T::LANES == 1 {

@@ -1,9 +1,9 @@
-//! What tells files apart.
+//! Hashes by which files are compared.
 
 use core::fmt;
 
-/// A hash by FNV-1a, 64 bits, of Fowler, Noll and Vo. Every changed byte changes it, as each step is one to one; it isn't
-/// made against forgers.
+/// A hash by FNV-1a, 64 bits, of Fowler, Noll and Vo. A change of one byte always changes it, as each step is a
+/// bijection. It is no protection against forgery.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Digest(u64);
 
@@ -21,7 +21,7 @@ impl From<u64> for Digest {
 }
 
 impl Digest {
-    /// The hash of these bytes alone.
+    /// The hash of a sequence of bytes.
     #[must_use]
     pub fn of(bytes: &[u8]) -> u64 {
         let mut digest = Self::default();
@@ -29,8 +29,8 @@ impl Digest {
         digest.0
     }
 
-    /// Of a whole file, eight bytes at a time, so that it costs less than to read it. Each step is one to one here, too, and
-    /// its high bits reach the low ones.
+    /// The hash of a whole file, eight bytes at a time, so that it costs less than reading the file. Each step is a
+    /// bijection here, too, and mixes the high bits into the low ones.
     #[must_use]
     pub fn of_file(bytes: &[u8]) -> u64 {
         let (words, rest) = bytes.as_chunks::<8>();
@@ -55,7 +55,7 @@ impl Digest {
         self.bytes(&number.to_le_bytes());
     }
 
-    /// Adds a text. Its length goes first, so that two texts don't run into each other.
+    /// Adds a text after its length, so that the border of two texts counts.
     pub fn text(&mut self, text: &str) {
         self.number(text.len() as u64);
         self.bytes(text.as_bytes());

@@ -1,14 +1,13 @@
-//! Numbers with their derivatives along three directions, for what is computed in closed form.
+//! Numbers with their derivatives along three directions, for functions in closed form.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::numbers::scalar::{Mask, Real, real};
 use nalgebra::SimdBool;
 
-/// What a closed form is computed with: a scalar, or one with its derivatives.
+/// The scalar of a closed form: a real, or one with its derivatives.
 ///
-/// It is less than a [`Real`], whose fifty functions a derivative would need to know, and has the names of that one's
-/// functions.
+/// It has fewer functions than a [`Real`], whose fifty would each need a derivative, and gives them the same names.
 #[hot]
 pub(crate) trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
@@ -24,7 +23,7 @@ pub(crate) trait Number:
     fn simd_le(self, other: Self) -> Self::Mask;
     fn select(self, mask: Self::Mask, other: Self) -> Self;
 
-    /// Zero in these lanes, where it is zero but for a rounding. A derivative stays.
+    /// Zero in the lanes in which the value is rounding only. The derivative stays.
     fn vanishing(self, mask: Self::Mask) -> Self;
 
     fn zero() -> Self {
@@ -85,7 +84,7 @@ impl<T: Real> Number for T {
     }
 }
 
-/// A number and its derivatives. It is compared by its value.
+/// A number and its derivatives. Comparisons use the value.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Dual<T> {
     pub(crate) value: T,
@@ -94,17 +93,17 @@ pub(crate) struct Dual<T> {
 
 #[hot]
 impl<T: Real> Dual<T> {
-    /// What doesn't vary.
+    /// A constant.
     pub(crate) fn constant(value: T) -> Self {
         Self { value, slopes: [T::zero(); 3] }
     }
 
-    /// What varies along one of the directions.
+    /// A variable along one of the directions.
     pub(crate) fn along(value: T, direction: usize) -> Self {
         Self { value, slopes: core::array::from_fn(|k| if k == direction { T::one() } else { T::zero() }) }
     }
 
-    /// A function with this value, and this derivative by the number.
+    /// The chain rule: a function of the number, from its value and its derivative.
     fn chained(self, value: T, slope: T) -> Self {
         Self { value, slopes: self.slopes.map(|own| own * slope) }
     }
@@ -116,7 +115,7 @@ impl<T: Real> Dual<T> {
 
 operation!([T: Real] Dual<T>, Add add |a, b| a.zip(b, a.value + b.value, |a, b| a + b));
 operation!([T: Real] Dual<T>, Sub sub |a, b| a.zip(b, a.value - b.value, |a, b| a - b));
-// The rule for products has a sum.
+// Clippy suspects the sum in the product rule.
 operation!([T: Real] #[allow(clippy::suspicious_arithmetic_impl)] Dual<T>, Mul mul |a, b| {
     a.zip(b, a.value * b.value, |of_a, of_b| of_a * b.value + a.value * of_b)
 });
@@ -181,7 +180,7 @@ impl<T: Real> Number for Dual<T> {
 mod tests {
     use super::{Dual, Number};
 
-    /// Every operation, in both branches of those that have two.
+    /// A function with every operation, in both branches of those that have two.
     fn function<N: Number>([x, y, z]: [N; 3]) -> N {
         let root = (x * y / z + N::number(0.3)).simd_sqrt();
         let sizes = (x - y).simd_abs() * (y - x).simd_abs() + (y - z).simd_max(x) * (x - z).simd_max(y);
@@ -203,7 +202,7 @@ mod tests {
         }
     }
 
-    /// What is zero but for a rounding still varies.
+    /// A value that is zero but for rounding keeps its derivative.
     #[test]
     fn what_vanishes_keeps_its_derivative() {
         let varied = Dual::along(1e-20_f64, 1).vanishing(true);

@@ -1,5 +1,5 @@
-//! Linear systems of a Newton step: by Cramer's rule up to three unknowns, by elimination beyond, block by block where
-//! blocks are known to be apart.
+//! Linear systems of a Newton step: by Cramer's rule up to three unknowns, by elimination beyond, and block by block
+//! for independent blocks.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -17,7 +17,7 @@ pub(super) fn adjugate_2<T: Real, const D: usize>(m: &SMatrix<T, D, D>) -> (SMat
     (adjugate, det)
 }
 
-/// Its rows are cross products of columns.
+/// The adjugate and the determinant; its rows are cross products of columns.
 #[hot]
 pub(crate) fn adjugate_3<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
     let m = |row: usize, column: usize| matrix[(row - 1, column - 1)];
@@ -30,15 +30,15 @@ pub(crate) fn adjugate_3<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>) -> 
     let c13 = m(1, 2) * m(2, 3) - m(1, 3) * m(2, 2);
     let c23 = m(1, 3) * m(2, 1) - m(1, 1) * m(2, 3);
     let c33 = m(1, 1) * m(2, 2) - m(1, 2) * m(2, 1);
-    // By the first column: that is the shorter code.
+    // Expansion along the first column gives the shorter code.
     let det = m(1, 1) * c11 + m(2, 1) * c12 + m(3, 1) * c13;
     let rows = [[c11, c12, c13], [c21, c22, c23], [c31, c32, c33]];
     (SMatrix::from_fn(|i, j| rows[i][j]), det)
 }
 
-/// Gaussian elimination in the given order: the upper triangle that is left, and below it the factors of the rows.
+/// Gaussian elimination without pivoting: returns the upper triangle, and below it the factors of the rows.
 ///
-/// A zero pivot divides its own component, which then can't be finite; nothing has to be tested.
+/// A zero pivot makes its component of a solution infinite or NaN, so that nothing needs a test.
 #[inline]
 pub(super) fn eliminate<T: Real, const D: usize>(mut a: SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
     let mut det = T::one();
@@ -56,7 +56,7 @@ pub(super) fn eliminate<T: Real, const D: usize>(mut a: SMatrix<T, D, D>) -> (SM
     (a, det)
 }
 
-/// Through both triangles of [`eliminate`].
+/// Forward and back substitution with both triangles of [`eliminate`].
 #[inline]
 pub(super) fn substitute<T: Real, const D: usize>(a: &SMatrix<T, D, D>, mut z: SVector<T, D>) -> SVector<T, D> {
     for k in 0..D {
@@ -75,8 +75,8 @@ pub(super) fn substitute<T: Real, const D: usize>(a: &SMatrix<T, D, D>, mut z: S
     z
 }
 
-/// The product of the determinants of blocks, each relative to the product of the diagonal entries, so that the units of
-/// many unknowns don't multiply; negative where one of them is.
+/// A product of the determinants of blocks, each relative to the product of its diagonal entries, so that the units of
+/// many unknowns don't accumulate; negative if any factor is.
 struct Product<T: Real> {
     value: T,
     is_negative: Mask<T>,
@@ -98,7 +98,7 @@ impl<T: Real> Product<T> {
     }
 }
 
-/// [`Coordinates::factorise_with`] for matrices of numbers.
+/// [`Coordinates::factorise_with`] for dense matrices.
 #[hot]
 pub(super) fn factorise<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>, pattern: Pattern) -> (SMatrix<T, D, D>, T) {
     let (mut factors, mut product) = (*matrix, Product::one());
@@ -122,7 +122,7 @@ pub(super) fn factorise<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>, patt
     (factors, product.signed())
 }
 
-/// Puts the inverse of a block of at most three unknowns in its place.
+/// Replaces a block of at most three unknowns by its inverse.
 #[hot]
 fn invert<T: Real, const D: usize, const B: usize>(
     matrix: &mut SMatrix<T, D, D>,
@@ -148,8 +148,8 @@ fn invert<T: Real, const D: usize, const B: usize>(
     }
 }
 
-/// Gaussian elimination of a block in the order of the basis; its pivots between two ends of factors, multiplied, are the
-/// determinant of a factor's block once those before are eliminated.
+/// Gaussian elimination of a block in the order of the basis. The product of the pivots of a factor is the determinant
+/// of its block once the factors before it are eliminated.
 #[hot]
 fn eliminate_block<T: Real, const D: usize>(
     a: &mut SMatrix<T, D, D>,
@@ -176,12 +176,12 @@ fn eliminate_block<T: Real, const D: usize>(
                 a[(i, j)] -= change;
             }
         }
-        // A zero pivot leaves an infinity here, and no solution is finite.
+        // A zero pivot leaves an infinity here, so that no solution is finite.
         a[(k, k)] = inverse;
     }
 }
 
-/// [`Coordinates::solve_again_with`] for matrices of numbers.
+/// [`Coordinates::solve_again_with`] for dense matrices.
 #[hot]
 pub(super) fn solve_again<T: Real, const D: usize>(
     factors: &SMatrix<T, D, D>,
@@ -220,13 +220,13 @@ pub(super) fn solve_again<T: Real, const D: usize>(
     z
 }
 
-/// The least of the traces of the blocks.
+/// The least of the traces of the diagonal blocks.
 pub(super) fn least_trace<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>, blocks: Blocks) -> T {
     let (mut least, mut start) = (None, 0);
     while start < D {
         let end = blocks.end(start, D);
         let trace = (start + 1..end).fold(matrix[(start, start)], |sum, k| sum + matrix[(k, k)]);
-        // What isn't a number stays.
+        // A NaN is returned.
         least = Some(least.map_or(trace, |least: T| trace.select(trace.simd_lt(least) | trace.simd_ne(trace), least)));
         start = end;
     }
@@ -239,7 +239,7 @@ mod tests {
     use crate::numbers::Coordinates as _;
     use nalgebra::{SMatrix, Vector2, Vector6};
 
-    /// 3 + 1 + 2 unknowns.
+    /// Factors of 3 + 1 + 2 unknowns.
     const FACTORS: Blocks = Blocks::WHOLE.then(3, Blocks::WHOLE.then(1, Blocks::WHOLE));
 
     fn matrix(pattern: Pattern) -> SMatrix<f64, 6, 6> {
@@ -265,7 +265,7 @@ mod tests {
         }
     }
 
-    /// Two of them make a positive determinant.
+    /// Two factors with negative determinants don't cancel to a positive one.
     #[test]
     fn a_block_with_a_negative_determinant_shows() {
         let diagonal = Vector6::<f64>::new(1.0, 2.0, -1.0, -3.0, 1.0, 2.0);

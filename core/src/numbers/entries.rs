@@ -1,4 +1,4 @@
-//! What states are made of, scalar by scalar: what a sum with a carry, a checkpoint and the laws' samples need.
+//! The scalars of a state, visited in order: used by compensated sums, checkpoints and samples of the laws.
 
 use alloc::vec::Vec;
 
@@ -8,13 +8,13 @@ use crate::numbers::scalar::{Real, count, counted};
 
 /// A fixed number of scalars in a fixed order.
 pub trait Entries<T>: Copy {
-    /// Made of the next scalars of a stream, in the order in which [`each`](Self::each) visits them.
+    /// The value from the next scalars of a stream, in the order in which [`each`](Self::each) visits them.
     fn from_entries(next: &mut impl FnMut() -> T) -> Self;
 
     /// Visits the scalars.
     fn each(&self, visit: &mut impl FnMut(T));
 
-    /// The scalars, where they stand in this order in memory.
+    /// The scalars as a slice, if they lie in this order in memory.
     #[hot]
     fn in_place(&self) -> Option<&[T]> {
         None
@@ -25,11 +25,11 @@ pub trait Entries<T>: Copy {
     fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self;
 }
 
-/// Row by row.
+/// Entries of a matrix, row by row.
 #[hot]
 impl<T: Real, const R: usize, const C: usize> Entries<T> for SMatrix<T, R, C> {
     fn from_entries(next: &mut impl FnMut() -> T) -> Self {
-        // nalgebra goes by columns.
+        // nalgebra fills a matrix column by column.
         SMatrix::<T, C, R>::from_fn(|_, _| next()).transpose()
     }
 
@@ -49,8 +49,8 @@ impl<T: Real, const R: usize, const C: usize> Entries<T> for SMatrix<T, R, C> {
         if T::LANES == 1 {
             return self.zip_map(other, combine);
         }
-        // The compiler doesn't inline `zip_map` for lanes, and what isn't inlined has no vector instructions of the
-        // machine.
+        // The compiler doesn't inline `zip_map` for lanes, and code that isn't inlined can't use the machine's vector
+        // instructions.
         let mut combined = *self;
         for column in 0..C {
             for row in 0..R {
@@ -97,7 +97,7 @@ pub(crate) use of_tuples;
 
 of_tuples!(tuple);
 
-/// The entries of what holds one value, which are those of the value; the scalar is `S`.
+/// Implements `Entries` for a wrapper of one value; the scalar is `S`.
 macro_rules! entries_of_value {
     ([$($parameters:tt)*] $type:ty $(, $marker:expr)?) => {
         #[hot]
@@ -119,8 +119,7 @@ macro_rules! entries_of_value {
 
 pub(crate) use entries_of_value;
 
-/// A value with other scalars: `scalar` is called with each of these, in the order of [`each`](Entries::each), and returns
-/// the one that takes its place.
+/// A copy of a value with other scalars: `scalar` maps each of them, in the order of [`each`](Entries::each).
 pub(crate) fn replaced<T: Real, E: Entries<T>>(entries: &E, scalar: &mut dyn FnMut(T) -> T) -> E {
     let mut others = Vec::new();
     entries.each(&mut |entry| others.push(scalar(entry)));
@@ -128,18 +127,18 @@ pub(crate) fn replaced<T: Real, E: Entries<T>>(entries: &E, scalar: &mut dyn FnM
     E::from_entries(&mut || others.next().unwrap_or_else(T::zero))
 }
 
-/// A flag that is kept as zero or one; `None` if the number in its place is neither.
+/// A flag stored as zero or one; `None` if the number in its place is neither.
 pub(crate) fn flag<T: Real>(is_set: bool, number: &mut dyn FnMut(T) -> T) -> Option<bool> {
     counted(number(count(usize::from(is_set)))).filter(|&flag| flag <= 1).map(|flag| flag == 1)
 }
 
-/// `a + b`, place by place.
+/// The sum `a + b`, place by place.
 #[hot]
 pub(crate) fn sum<T: Real, E: Entries<T>>(a: &E, b: &E) -> E {
     a.zip(b, &mut |a, b| a + b)
 }
 
-/// All scalars zero.
+/// The value with all scalars zero.
 pub(crate) fn zero<T: Real, E: Entries<T>>() -> E {
     E::from_entries(&mut T::zero)
 }

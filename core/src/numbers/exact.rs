@@ -1,10 +1,10 @@
-//! Sums and products with what their rounding leaves behind.
+//! Error-free sums and products: the rounded result and its rounding error.
 
 use crate::numbers::entries::Entries;
 use crate::numbers::scalar::{Real, real};
 use nalgebra::SimdBool as _;
 
-/// `a + b` rounded and what the rounding left behind, by Knuth's sum, which asks for no order of the sizes.
+/// `a + b` rounded and its rounding error, by Knuth's sum, which works for any order of the sizes.
 #[hot]
 pub(crate) fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
     let sum = a + b;
@@ -12,9 +12,9 @@ pub(crate) fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
     (sum, (a - (sum - of_b)) + (b - of_b))
 }
 
-/// `a + (b + carry)` rounded, and what the rounding left behind, place by place.
+/// `a + (b + carry)` rounded and its rounding error, place by place.
 ///
-/// A stage at a time, as all places go through each side by side.
+/// Each stage runs over all places, so that one vector instruction acts on many.
 #[hot]
 pub(crate) fn carried_sum<T: Real, E: Entries<T>>(a: &E, b: &E, carry: &E) -> (E, E) {
     let b = b.zip(carry, &mut |b, carry| b + carry);
@@ -25,10 +25,10 @@ pub(crate) fn carried_sum<T: Real, E: Entries<T>>(a: &E, b: &E, carry: &E) -> (E
     (sum, lost_of_a.zip(&lost_of_b, &mut |a, b| a + b))
 }
 
-/// `a²` rounded and what the rounding left behind, by Dekker's product.
+/// `a²` rounded and its rounding error, by Dekker's product.
 #[hot]
 pub(crate) fn two_square<T: Real>(a: T) -> (T, T) {
-    // Half of the digits: of 53 or of 24.
+    // Dekker's splitting constant, for 53 digits or for 24.
     let single = T::simd_default_epsilon().simd_gt(real(1e-10)).any();
     let split = a * real(if single { 4_097.0 } else { 134_217_729.0 });
     let high = split - (split - a);

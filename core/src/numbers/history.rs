@@ -1,34 +1,36 @@
-//! Values at equal times, continued to the next one.
+//! Extrapolation of values at equal times to the next one.
 
 use core::fmt::Debug;
 
 use crate::numbers::{Coordinates, Real, count, counted, flag, replaced};
 
-/// What is remembered of values at equal times to guess the next one.
+/// The memory of an extrapolation from values at equal times.
 pub trait History<T: Real, V: Coordinates<T>>: Copy + Debug + PartialEq {
-    /// Before the first value. [`Either`] is the polynomial if an iteration is expensive, and the parabola otherwise.
+    /// The history before the first value. [`Either`] is the polynomial if an iteration is expensive, and the parabola
+    /// otherwise.
     fn none(is_expensive: bool) -> Self;
 
-    /// Takes notice of the value `y` after `last`, and returns where the next one is expected.
+    /// Records the value `y` after `last`, and returns the extrapolated next one.
     fn next(&mut self, last: V, y: V) -> V;
 
-    /// Called after the first value. The value before it was an estimate, so the difference of the two is forgotten.
+    /// Discards the first difference. Called after the first value, as the value before it was an estimate.
     fn forget_the_estimate(&mut self);
 
-    /// A history with other numbers, as [`Kept::with_numbers`](crate::motion::Kept::with_numbers) makes a memory.
+    /// The history with other numbers, as [`Kept::with_numbers`](crate::motion::Kept::with_numbers) replaces those of a
+    /// memory.
     fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self>;
 
-    /// The history of the values times this.
+    /// The history of the values multiplied by `ratio`.
     fn scaled(&self, ratio: T) -> Self;
 }
 
-/// The parabola through three values `y`, kept as `∇ y`.
+/// The parabola through three values `y`, stored as `∇ y`.
 ///
-/// Increments change by `O(h²)` from step to step, and their second differences by `O(h⁴)`: for (3.13) at common steps
-/// Newton's iteration is left with an error that a second one, with the Jacobian of the first, brings to rounding.
+/// Increments change by `O(h²)` from step to step, and their second differences by `O(h⁴)`. For (3.13) at common steps
+/// Newton's first iteration leaves an error that a second one, with the Jacobian of the first, reduces to rounding.
 ///
-/// The first increment of all has no difference to the one before, which counts as zero; the guess after the second is
-/// that much worse.
+/// The first increment has no earlier difference, which is taken as zero; the guess after the second increment is less
+/// accurate for it.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Parabola<V> {
     difference: V,
@@ -39,7 +41,7 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Parabola<V> {
         Self { difference: V::zero() }
     }
 
-    /// `y + ∇ y + ∇² y`.
+    /// The value `y + ∇ y + ∇² y`.
     #[hot]
     fn next(&mut self, last: V, y: V) -> V {
         let difference = y - last;
@@ -47,7 +49,7 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Parabola<V> {
         y + (difference + (difference - before))
     }
 
-    /// Otherwise the parabola would go through the estimate.
+    /// The parabola would pass through the estimate.
     fn forget_the_estimate(&mut self) {
         *self = Self { difference: V::zero() };
     }
@@ -61,16 +63,17 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Parabola<V> {
     }
 }
 
-/// Of increments at equal times eight tell the next to some `(h ω)⁸` for the fastest frequency `ω` in them. Each more
-/// would double the roundings in the guess, and gains little where `h ω` is near one.
+/// Limit of the backward differences. Eight increments at equal times predict the next to some `(h ω)⁸` for their
+/// fastest frequency `ω`. Each further one would double the rounding in the guess, and gains little if `h ω` is near
+/// one.
 const DIFFERENCES: usize = 7;
 
-/// The polynomial through as many values `y` as are known, kept as the backward differences `∇ y, ∇² y, …`: where an
-/// iteration is expensive.
+/// The polynomial through all known values `y`, stored as the backward differences `∇ y, ∇² y, …`, for expensive
+/// iterations.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Polynomial<V> {
     differences: [V; DIFFERENCES],
-    /// The number of values that were seen, at most one more than there are differences.
+    /// The number of recorded values, at most one more than there are differences.
     #[shared]
     values: usize,
 }
@@ -80,7 +83,7 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Polynomial<V> {
         Self { differences: [V::zero(); DIFFERENCES], values: 0 }
     }
 
-    /// `y + ∇ y + ∇² y + …`.
+    /// The value `y + ∇ y + ∇² y + …`.
     #[hot]
     fn next(&mut self, last: V, y: V) -> V {
         let (mut difference, mut guess) = (y - last, y);
@@ -93,7 +96,7 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Polynomial<V> {
         guess
     }
 
-    /// The first value has been compared with nothing.
+    /// The first value has no difference.
     fn forget_the_estimate(&mut self) {}
 
     fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self> {
@@ -106,7 +109,7 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Polynomial<V> {
     }
 }
 
-/// One of both, as the program knows only when it runs.
+/// The parabola or the polynomial, chosen at run time.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Either<V> {
     #[shared]
@@ -127,7 +130,7 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Either<V> {
     }
 
     fn forget_the_estimate(&mut self) {
-        // The polynomial has never used the estimate.
+        // The polynomial hasn't used the estimate.
         self.parabola = Parabola::none(self.is_long);
     }
 
@@ -148,7 +151,7 @@ mod tests {
     use alloc::vec::Vec;
     use nalgebra::Vector1;
 
-    /// A polynomial of as high a degree as there are differences goes on as it was; one of a higher degree doesn't.
+    /// A polynomial of a degree up to the number of differences is extrapolated exactly; one of a higher degree isn't.
     #[test]
     fn a_polynomial_is_continued() {
         let errors = [DIFFERENCES, DIFFERENCES + 1].map(|degree| {
@@ -164,7 +167,7 @@ mod tests {
         assert!(errors[0] < 1e-12 && errors[1] > 1e-9, "{errors:?}");
     }
 
-    /// The parabola through three values goes on as it was; a cubic doesn't, by its third difference.
+    /// A parabola is extrapolated exactly; a cubic is off by its third difference.
     #[test]
     fn a_parabola_is_continued() {
         for (cubic, missing) in [(0.0, 0.0), (1.0, 6.0)] {
@@ -180,7 +183,7 @@ mod tests {
         }
     }
 
-    /// At the beginning there is one point, then a line, a parabola and so on.
+    /// The extrapolation begins with a constant, then a line, a parabola and so on.
     #[test]
     fn it_starts_with_what_there_is() {
         let mut history = Polynomial::none(true);

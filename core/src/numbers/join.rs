@@ -5,21 +5,22 @@ use nalgebra::{Const, DimAdd, SMatrix, SVector};
 use super::coordinates::Coordinates;
 use super::scalar::Real;
 
-/// Components side by side: those of a product of groups are those of its factors, one after the other.
+/// Components of two algebras in one vector: those of a product of groups are those of its factors, one after the
+/// other.
 #[doc(hidden)]
 pub trait Join<T: Real, Other: Coordinates<T>>: Coordinates<T> {
-    /// Both.
+    /// The components of both.
     type Joined: Coordinates<T> + 'static;
 
-    /// One after the other.
+    /// The components of both, one after the other.
     #[must_use]
     fn join(&self, other: &Other) -> Self::Joined;
 
-    /// Taken apart.
+    /// The two vectors of components.
     #[must_use]
     fn split(joined: &Self::Joined) -> (Self, Other);
 
-    /// The map that maps each by itself.
+    /// The block-diagonal map that acts on each separately.
     #[must_use]
     fn join_squares(first: &Self::Square, second: &Other::Square) -> <Self::Joined as Coordinates<T>>::Square;
 }
@@ -63,9 +64,9 @@ where
     }
 }
 
-/// Components of which those of two equal bodies are put side by side.
+/// Components that can be joined with those of an equal body.
 pub trait Twice<T: Real>: Join<T, Self> {
-    /// The blocks of a matrix of both, row by row.
+    /// The four blocks of a matrix of both bodies, row by row.
     #[must_use]
     fn blocks(joined: &<Self::Joined as Coordinates<T>>::Square) -> [[Self::Square; 2]; 2];
 }

@@ -1,4 +1,4 @@
-//! Values of several lanes, put together of one for each and taken apart again.
+//! Values of SIMD lanes, gathered from one value for each lane and separated again.
 
 use alloc::vec::Vec;
 use core::marker::PhantomData;
@@ -10,11 +10,11 @@ use crate::numbers::scalar::Real;
 
 /// A value made of scalars with several [lanes](crate::numbers::Real#lanes), each lane of which is a value of its own.
 ///
-/// A declaration that is generic over its scalar has it derived, with [`InLanes`]; sums, steppers and
-/// [states](crate::State) of such scenes have it, too. A scalar of one lane is as good as any.
+/// A declaration that is generic over its scalar derives it, together with [`InLanes`]; sums, steppers and
+/// [states](crate::State) of such scenes implement it, too. A scalar with one lane is allowed.
 ///
-/// A stepper's constants are gathered and not folded again, and a state has the guess and the history of its method: each
-/// lane goes on with the bits that it would have had alone.
+/// The constants of a stepper are gathered and not computed anew, and a state includes the guess and the history of its
+/// method: each lane continues with the bits that it would have alone.
 ///
 /// # Examples
 ///
@@ -31,35 +31,35 @@ use crate::numbers::scalar::Real;
 /// assert_eq!(wide.torque.z, AutoF64x4::new(1.0, 2.0, 1.0, 4.0));
 /// ```
 pub trait Lanes: Sized {
-    /// What is in one of the lanes.
+    /// The type of one lane's value.
     type Lane;
 
-    /// One value in all lanes.
+    /// One value, repeated in all lanes.
     fn splat(lane: &Self::Lane) -> Self;
 
-    /// What is in lane `k`.
+    /// The value in lane `k`.
     ///
     /// # Panics
     ///
-    /// Where there is no lane `k`.
+    /// If there is no lane `k`.
     #[must_use]
     fn lane(&self, k: usize) -> Self::Lane;
 
-    /// Puts it into lane `k`, and says whether that could be done: what lanes share, as the number of steps made or the
-    /// scheme of a method, has to agree. Where it doesn't, what is left is of no use.
+    /// Writes a value into lane `k`, and returns whether it fits: data that lanes share, as the number of steps made or
+    /// the scheme of a method, has to agree. If it doesn't, the result is useless.
     ///
     /// # Panics
     ///
-    /// Where there is no lane `k`.
+    /// If there is no lane `k`.
     #[must_use]
     fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool;
 
-    /// One in each lane, and the first in all that are left over; `None` where there is none, or where they don't agree
-    /// in what lanes share.
+    /// One value in each lane, and the first in all lanes left over; `None` if the list is empty, or if shared data
+    /// doesn't agree.
     ///
     /// # Panics
     ///
-    /// Where they are more than there are lanes.
+    /// If there are more values than lanes.
     #[must_use]
     fn gathered(lanes: &[Self::Lane]) -> Option<Self> {
         let mut together = Self::splat(lanes.first()?);
@@ -68,23 +68,23 @@ pub trait Lanes: Sized {
     }
 }
 
-/// What can be put into lanes of the scalar `W`, and what it is there.
+/// A type with values that can be put into lanes of the scalar `W`.
 ///
-/// Scenes that are generic over their scalar can: of one body, of several that are declared together, and
-/// [systems](crate::mechanics::Placement) of bodies with terms at their places. So can the methods [`Stepper::new`](crate::Stepper::new),
-/// [`composed`](crate::Stepper::composed), [`split`](crate::Stepper::split) and [`processed`](crate::Stepper::processed), and
-/// all of them [`compensated`](crate::Stepper::compensated).
+/// Scenes that are generic over their scalar can: scenes of one body, of several that are declared together, and
+/// [systems](crate::mechanics::Placement) of bodies with terms at their places. So can the methods
+/// [`Stepper::new`](crate::Stepper::new), [`composed`](crate::Stepper::composed), [`split`](crate::Stepper::split) and
+/// [`processed`](crate::Stepper::processed), and all of them [`compensated`](crate::Stepper::compensated).
 ///
-/// With the others bodies take their turns, each of these for a reason of its own:
+/// Other methods step the bodies one after the other, each for a reason of its own:
 ///
-/// - Collocation has the stages of one body side by side in the registers already, with its matrices as tables of `f64`.
-///   With bodies side by side its sums would have another order, and a body other bits than alone.
-/// - A remedy does something else in the steps that it finds amiss, a body at a time. The other lanes would have to wait
-///   for it.
-/// - Bodies in joints are solved along a graph: pivots, the joint that is named, and how often a step is begun anew are
-///   those of one system, and would have to be found for all lanes at once.
-/// - [Links](crate::methods::LinkedBodies) are solved with branches that a chain takes alone: shortened updates, Jacobians that
-///   are used again.
+/// - Collocation has the stages of one body side by side in the registers already, with its matrices as tables of
+///   `f64`. With bodies side by side its sums would have another order, and a body other bits than alone.
+/// - A remedy repeats single steps that fail a check in another way, for one body at a time. The other lanes would have
+///   to wait for it.
+/// - Bodies in joints are solved along a graph: the pivots, the joint in an error and the number of restarts of a step
+///   belong to one system, and would have to be found for all lanes at once.
+/// - [Links](crate::methods::LinkedBodies) are solved with branches that each chain takes by itself: shortened updates,
+///   reused Jacobians.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` can't be put into lanes of `{W}`",
     label = "can't be put into lanes",
@@ -92,7 +92,7 @@ pub trait Lanes: Sized {
     note = "of methods the declared step can, compositions of it and splittings, with compensated sums too; others go one by one"
 )]
 pub trait InLanes<W>: Sized {
-    /// Several of them.
+    /// The type of several values in lanes.
     type Together: Lanes<Lane = Self>;
 }
 
@@ -129,7 +129,7 @@ impl<T: Real, const D: usize> Lanes for Point<T, D> {
     }
 }
 
-/// Scalars in a row. Lanes of a plain array are those of its entries, and a scalar has none by itself.
+/// An array of scalars in lanes. The entries of a plain array implement [`Lanes`], and scalars don't.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Numbers<T, const N: usize>(pub [T; N]);
 
@@ -150,7 +150,7 @@ impl<T: Real, const N: usize> Lanes for Numbers<T, N> {
     }
 }
 
-/// One for each.
+/// An array in lanes, entry by entry.
 impl<V: Lanes, const N: usize> Lanes for [V; N] {
     type Lane = [V::Lane; N];
 
@@ -167,7 +167,7 @@ impl<V: Lanes, const N: usize> Lanes for [V; N] {
     }
 }
 
-/// A list of one length in all lanes.
+/// A list in lanes, of the same length in all of them.
 impl<V: Lanes> Lanes for Vec<V> {
     type Lane = Vec<V::Lane>;
 
@@ -184,7 +184,7 @@ impl<V: Lanes> Lanes for Vec<V> {
     }
 }
 
-/// In all lanes or in none.
+/// An optional value, in all lanes or in none.
 impl<V: Lanes> Lanes for Option<V> {
     type Lane = Option<V::Lane>;
 
@@ -205,7 +205,7 @@ impl<V: Lanes> Lanes for Option<V> {
     }
 }
 
-/// What a type stands for, in the lane.
+/// A marker of a type, for the lane's type.
 impl<V: Lanes> Lanes for PhantomData<V> {
     type Lane = PhantomData<V::Lane>;
 

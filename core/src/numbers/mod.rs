@@ -1,8 +1,8 @@
-//! Numbers: the scalars that a motion is computed with, several of them in SIMD lanes, vectors and lists of them.
+//! Numbers: the scalars of a motion, several of them in SIMD lanes, vectors and lists of them.
 //!
-//! Nothing here knows of groups or of mechanics.
+//! This room has no groups and no mechanics.
 
-/// An operator of two numbers of one kind, inlined: its trait, its function, and what it makes of both.
+/// An inlined operator of two equal types: its type, trait, function and result.
 macro_rules! operation {
     ([$($parameter:tt)*] $(#[$attribute:meta])? $kind:ty, $operation:ident $function:ident |$a:ident, $b:ident| $made:expr) => {
         impl<$($parameter)*> $operation for $kind {

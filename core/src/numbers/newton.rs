@@ -1,36 +1,37 @@
-//! Newton's iteration for `f(x) = y` with steps that are halved until they help.
+//! Newton's iteration for `f(x) = y` with steps that are halved until the residual falls.
 
 use crate::numbers::{Coordinates, Mask, Real, nowhere, real};
 use nalgebra::SimdBool as _;
 
-/// More than any regular Lagrangian needs: Newton's iteration doubles the digits, and a halved step is a lost one.
+/// Limit of the iterations. No regular Lagrangian needs as many: Newton's iteration doubles the digits, and a halved
+/// step gains none.
 const MOST_ITERATIONS: u32 = 50;
-/// A step of `2⁻²⁰` of Newton's is no longer one that the linear model speaks of.
+/// Limit of the halvings of a step: `2⁻²⁰` of Newton's step is too short for the linear model to predict.
 const MOST_HALVINGS: u32 = 20;
-/// What rounding leaves of the equation, in units of the scalar's epsilon and of the size of its terms.
+/// Rounding of the residual, in units of the scalar's epsilon and of the size of its terms.
 const ROUNDINGS: f64 = 1e4;
-/// Where the derivative is large, the rounding of the solution itself leaves more of the equation than that. It is solved
-/// then, too, if the next step is below this many roundings of the solution.
+/// Second criterion of convergence: the next step is below this many roundings of the solution. If the derivative is
+/// large, the rounding of the solution leaves a residual above the first criterion.
 const ROUNDINGS_OF_SOLUTION: f64 = 4.0;
-/// As far as that is believed: this many times what rounding leaves elsewhere. A derivative that has no bound makes steps
-/// short wherever the equation is missed.
+/// Limit of the second criterion: the residual is at most this many times the first one. A derivative without a bound
+/// makes steps short wherever the equation is violated.
 const AT_MOST: f64 = 1e4;
 
-/// Where [`newton_halving`] ends; of several lanes each goes as it would alone.
+/// The end of [`newton_halving`]; each of several lanes ends as it would alone.
 pub(crate) struct NewtonEnd<T: Real, V> {
     pub(crate) solution: V,
     /// Whether the equation holds, to rounding.
     pub(crate) is_settled: Mask<T>,
-    /// Whether the solution is on the side of the derivative's singularities that zero is on: of two with one value that
-    /// one is meant.
+    /// Whether the solution is on the same side of the derivative's singularities as zero. If two solutions have the
+    /// same value, that one is wanted.
     pub(crate) is_regular: Mask<T>,
     pub(crate) iterations: u32,
-    /// By how much the equation is missed, relative to its terms.
+    /// The residual of the equation, relative to its terms.
     pub(crate) residual: T,
 }
 
-/// Solves `f(x) = y` from a first solution. The iteration ends where no step helps. `value_of` is `f`, and `derivative_of`
-/// its derivative, which is symmetric.
+/// Solves `f(x) = y` from an initial guess. The iteration ends if no step reduces the residual. `value_of` is `f`, and
+/// `derivative_of` its derivative, which is symmetric.
 pub(crate) fn newton_halving<T: Real, V: Coordinates<T>>(
     target: &V,
     mut solution: V,
@@ -39,12 +40,12 @@ pub(crate) fn newton_halving<T: Real, V: Coordinates<T>>(
 ) -> NewtonEnd<T, V> {
     let defect_at = |solution: &V| *target - value_of(solution);
     let (zero, first) = (V::zero(), defect_at(&V::zero()));
-    // Where the first step leaves the domain of `f`, the iteration begins at zero.
+    // Begins at zero if the guess has the larger residual, or is outside of the domain of `f`.
     let mut defect = defect_at(&solution);
     let starts = defect.dot(&defect).simd_le(first.dot(&first));
     solution = solution.select(starts, zero);
     defect = defect.select(starts, first);
-    // The terms that cancel: the target, and what there is of it at zero and at the first solution.
+    // The terms that cancel: the target, and its parts at zero and at the initial guess.
     let bias = *target - first;
     let terms = target.dot(target) + bias.dot(&bias) + (*target - defect).dot(&(*target - defect));
     let allowed = T::simd_default_epsilon() * real(ROUNDINGS);
@@ -53,7 +54,7 @@ pub(crate) fn newton_halving<T: Real, V: Coordinates<T>>(
     let mut iterations = 0;
     while iterations < MOST_ITERATIONS {
         let size = defect.dot(&defect);
-        // Near rounding a step that doesn't help ends it; farther away it is too long.
+        // Near rounding a step that doesn't help ends the iteration; farther away it is too long.
         let is_near = size.simd_le(bound);
         let step = V::solve(&derivative_of(&solution), &defect).0;
         let (mut fraction, mut next, mut next_defect) = (real::<T>(1.0), solution, defect);

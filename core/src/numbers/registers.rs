@@ -1,20 +1,20 @@
-//! Three numbers in one vector register, where the machine has registers of four `f64`, and small matrices by columns.
+//! Three numbers in one vector register, if the machine has registers of four `f64`, and small matrices by columns.
 
 use core::ops::{Add, Div, Mul, Sub};
 
 use nalgebra::{Matrix3, Vector3};
 
-/// Three numbers; operations are those of each. It has the same digits whatever it is made of.
+/// A vector of three numbers with operations entry by entry. Its digits don't depend on the type of register.
 pub(crate) trait Register:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
-    /// Another of its kind. The fourth entry fills a register, and tells nothing.
+    /// Another register of the same type. The fourth entry fills the register, and has no meaning.
     fn of(self, entries: [f64; 4]) -> Self;
 
     fn entries(self) -> [f64; 4];
 }
 
-/// Numbers in what the program was compiled for.
+/// A register of the target that the program was compiled for.
 #[derive(Clone, Copy)]
 pub(crate) struct Plain(Vector3<f64>);
 
@@ -38,16 +38,17 @@ impl Register for Plain {
     }
 }
 
-/// What is done with registers.
+/// A computation on registers.
 pub(crate) trait OnRegisters {
     type Output;
 
-    /// Does it with those of the kind of `zero`; marked `#[hot]`, as all that it calls. Closures in it would be compiled
-    /// without their instructions.
+    /// Runs with registers of the type of `zero`; marked `#[hot]`, as all that it calls. Closures in it would be
+    /// compiled without the vector instructions.
     fn run<R: Register>(self, zero: R) -> Self::Output;
 }
 
-/// Does it with the registers that the machine has. With debug assertions, where nothing is inlined, those are plain.
+/// Runs a computation on the registers that the machine has. With debug assertions, where nothing is inlined, these are
+/// the plain ones.
 #[hot]
 pub(crate) fn on_registers<K: OnRegisters>(kernel: K) -> K::Output {
     #[cfg(all(feature = "dispatch", target_arch = "x86_64", not(debug_assertions)))]
@@ -98,7 +99,7 @@ mod avx2 {
     }
 }
 
-/// A vector as a register loads it.
+/// The entries of a register that holds a vector.
 #[hot]
 pub(crate) fn padded(v: &Vector3<f64>) -> [f64; 4] {
     [v.x, v.y, v.z, 0.0]
@@ -110,7 +111,7 @@ pub(crate) fn vector<R: Register>(v: R) -> Vector3<f64> {
     Vector3::new(x, y, z)
 }
 
-/// An entry in all places.
+/// Entry `K` in all places.
 #[hot]
 fn spread<const K: usize, R: Register>(v: R) -> R {
     v.of([v.entries()[K]; 4])
@@ -127,7 +128,7 @@ fn turned<R: Register>(v: R) -> R {
     v.of([y, z, x, w])
 }
 
-/// In all places.
+/// The dot product in all places.
 #[hot]
 pub(crate) fn dot<R: Register>(a: R, b: R) -> R {
     let products = a * b;
@@ -153,23 +154,23 @@ impl<R: Register> Columns<R> {
         Self([0, 1, 2].map(|k| zero.of([m[(0, k)], m[(1, k)], m[(2, k)], 0.0])))
     }
 
-    /// `â`.
+    /// The skew matrix `â`.
     pub(crate) fn hat(a: R) -> Self {
         let [x, y, z, _] = a.entries();
         Self([a.of([0.0, z, -y, 0.0]), a.of([-z, 0.0, x, 0.0]), a.of([y, -x, 0.0, 0.0])])
     }
 
-    /// `s I`.
+    /// The matrix `s I`.
     pub(crate) fn multiple(zero: R, s: f64) -> Self {
         Self([zero.of([s, 0.0, 0.0, 0.0]), zero.of([0.0, s, 0.0, 0.0]), zero.of([0.0, 0.0, s, 0.0])])
     }
 
-    /// `M v`.
+    /// The product `M v`.
     pub(crate) fn map(&self, v: R) -> R {
         self.0[0] * spread::<0, R>(v) + self.0[1] * spread::<1, R>(v) + self.0[2] * spread::<2, R>(v)
     }
 
-    /// By a number in all places.
+    /// The product with a number in all places.
     pub(crate) fn scaled(&self, s: R) -> Self {
         Self([self.0[0] * s, self.0[1] * s, self.0[2] * s])
     }
@@ -179,7 +180,7 @@ impl<R: Register> Columns<R> {
         Self([0, 1, 2].map(|k| self.0[0].of([a[k], b[k], c[k], 0.0])))
     }
 
-    /// `M â`: each row times `a`.
+    /// The product `M â`: each row times `a`.
     pub(crate) fn cross_rows(&self, a: R) -> Self {
         let (x, y, z) = (spread::<0, R>(a), spread::<1, R>(a), spread::<2, R>(a));
         let m = &self.0;

@@ -1,40 +1,41 @@
-//! The vector instructions of the machine that the program runs on, whatever it was compiled for.
+//! Vector instructions that the machine has at run time, beyond those of the compilation's target.
 
-/// How wide the vector registers are that a step is worth compiling for.
+/// Width of the vector registers for which a step is compiled.
 ///
-/// Which of them there are is found out when the program runs, with the feature `dispatch`; without it, all is as
-/// compiled. With debug assertions, too: their builds are to be done soon, and what vector instructions are for is
-/// called there, not inlined. No digit depends on it.
+/// The machine's registers are detected at run time with the feature `dispatch`; without it, the step uses those of the
+/// target. So it does with debug assertions, whose builds are to compile fast, and call functions instead of inlining
+/// them. No digit depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Vectors {
-    /// Those of the target that the program was compiled for: two `f64` by default.
+    /// The registers of the target that the program was compiled for: two `f64` by default.
     AsCompiled,
     /// Up to four `f64`: AVX2.
     Four,
-    /// Up to eight `f64`: AVX-512, and AVX2 where there is but that.
+    /// Up to eight `f64`: AVX-512, or AVX2 on a machine without it.
     Eight,
 }
 
-/// What is worth compiling for several instruction sets.
+/// A computation that is compiled for several instruction sets.
 ///
-/// All that [`run`](Self::run) calls has to be inlined into it, or is compiled for the target's common instructions
-/// only. No instruction set changes a digit: the compiler neither fuses nor reorders operations on floating-point
-/// numbers.
+/// Every function that [`run`](Self::run) calls has to be inlined into it, or is compiled for the target's common
+/// instructions only. No instruction set changes a digit: the compiler neither fuses nor reorders floating-point
+/// operations.
 pub(crate) trait Kernel {
     type Output;
 
-    /// The registers that it is worth compiling for. As a value of [`dispatch`], and not a constant, it would be compiled
-    /// for all of them.
+    /// The registers to compile for. As an argument of [`dispatch`] instead of a constant, it would be compiled for all
+    /// of them.
     const VECTORS: Vectors;
 
-    /// Whether its numbers are lanes, whose vectors are put in memory and taken from there all the time.
+    /// Whether its numbers are lanes, whose vectors are stored and loaded all the time.
     const IS_IN_LANES: bool = false;
 
-    /// Does it; marked `#[inline(always)]` but for builds with debug assertions.
+    /// Runs the computation; marked `#[inline(always)]` except in builds with debug assertions.
     fn run(self) -> Self::Output;
 }
 
-/// Does it with the best instructions that the machine has, up to those asked for, if the feature `dispatch` is on.
+/// Runs a computation with the best instructions that the machine has, up to the requested ones, if the feature
+/// `dispatch` is on.
 #[cfg(feature = "dispatch")]
 #[hot]
 pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
@@ -52,9 +53,9 @@ pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
 
         #[hot]
         fn with_simd<S: Simd>(self, _: S) -> K::Output {
-            // The frame that the kernel is inlined into begins at a multiple of 64 bytes for it. Its vectors stand at
-            // multiples of 32 bytes from there; elsewhere every other one would lie across two cache lines, and one of
-            // them across two pages, whose stores take up to a third of a step.
+            // A cache line on the stack aligns the frame into which the kernel is inlined to 64 bytes. Its vectors lie
+            // at multiples of 32 bytes from there; otherwise every other one would lie across two cache lines, and one
+            // of them across two pages, whose stores take up to a third of a step.
             if const { K::IS_IN_LANES } {
                 let line = core::mem::MaybeUninit::<CacheLine>::uninit();
                 core::hint::black_box(&line);
@@ -63,7 +64,7 @@ pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
         }
     }
 
-    // A branch on a constant leaves the others uncompiled; a `match` doesn't.
+    // A branch on a constant isn't compiled if it isn't taken; an arm of a `match` is.
     if const { cfg!(debug_assertions) || matches!(K::VECTORS, Vectors::AsCompiled) } {
         return kernel.run();
     }
@@ -77,7 +78,7 @@ pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
     Arch::new().dispatch(Dispatch(kernel))
 }
 
-/// Does it with the instructions that it was compiled for.
+/// Runs a computation with the instructions of the target.
 #[cfg(not(feature = "dispatch"))]
 #[hot]
 pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {

@@ -6,18 +6,18 @@ use std::thread::{JoinHandle, spawn};
 
 use super::recorder::{Column, RecordError, Sink, SinkError};
 
-/// A sink that writes in a thread of its own, so that a run waits only where it makes rows faster than they are written.
+/// A sink that writes in a thread of its own, so that a run waits only if it makes rows faster than they are written.
 ///
-/// Blocks that wait to be written are four at most, so memory doesn't grow. An error of the sink is reported with a
-/// later block, or at the end. If this is dropped before its end the sink gets none either.
+/// At most four blocks wait to be written, so memory doesn't grow. An error of the sink is reported with a later block,
+/// or at the end. If this is dropped before its end the sink isn't ended either.
 #[derive(Debug)]
 pub struct Background<S> {
-    /// Gone when the table is finished.
+    /// The channel to the thread, until the table is finished.
     work: Option<SyncSender<Work>>,
-    /// Blocks that have been written, to be filled again.
+    /// Written blocks, whose memory is reused.
     written: Receiver<Vec<f64>>,
     thread: Option<JoinHandle<(S, Result<(), SinkError>)>>,
-    /// What the thread has returned.
+    /// The sink, returned by the thread.
     sink: Option<S>,
 }
 
@@ -27,11 +27,11 @@ enum Work {
     End,
 }
 
-/// Blocks that wait.
+/// Limit of the waiting blocks.
 const MOST_WAITING: usize = 4;
 
 impl<S: Sink + Send + 'static> Background<S> {
-    /// Starts the thread.
+    /// Starts a thread that writes to the sink.
     pub fn new(mut sink: S) -> Self {
         let (work, waiting) = sync_channel(MOST_WAITING);
         let (back, written) = sync_channel(MOST_WAITING + 1);
@@ -42,11 +42,11 @@ impl<S: Sink + Send + 'static> Background<S> {
         Self { work: Some(work), written, thread: Some(thread), sink: None }
     }
 
-    /// What was written to.
+    /// Returns the sink.
     ///
     /// # Errors
     ///
-    /// Where the table isn't finished.
+    /// If the table isn't finished.
     pub fn into_inner(self) -> Result<S, RecordError> {
         self.sink.ok_or_else(|| RecordError::Sink { cause: "the table isn't finished".into() })
     }
@@ -54,7 +54,7 @@ impl<S: Sink + Send + 'static> Background<S> {
     fn send(&mut self, work: Work) -> Result<(), SinkError> {
         match &self.work {
             Some(sender) if sender.send(work).is_ok() => Ok(()),
-            // The thread has ended, and says why.
+            // The thread's result has the reason.
             _ => self.join(),
         }
     }
@@ -74,13 +74,13 @@ fn write_all(sink: &mut impl Sink, waiting: &Receiver<Work>, back: &SyncSender<V
             Work::Begin(columns) => sink.begin(&columns)?,
             Work::Write(rows) => {
                 sink.write(&rows)?;
-                // Where it isn't taken it is freed.
+                // A full channel refuses the block.
                 let _ = back.try_send(rows);
             }
             Work::End => return sink.end(),
         }
     }
-    // Dropped before its end: what isn't whole isn't to look so.
+    // Dropped before its end: the sink isn't ended, so that the table doesn't look complete.
     Ok(())
 }
 
@@ -98,7 +98,7 @@ impl<S: Sink + Send + 'static> Sink for Background<S> {
 
     fn end(&mut self) -> Result<(), SinkError> {
         if let Some(work) = &self.work {
-            // A thread that has ended says why.
+            // The thread's result has the reason.
             let _ = work.send(Work::End);
         }
         self.join()

@@ -3,25 +3,25 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// What is known of the function, and how closely it is looked at.
+/// Known data of the function, and the accuracy of the search.
 #[derive(Clone, Copy)]
 pub(super) struct Looks {
-    /// Its values at 0 and 1.
+    /// The function's values at 0 and 1.
     pub(super) ends: [f64; 2],
-    /// Whether it was above zero when last it wasn't zero.
+    /// Whether the function was above zero when it last wasn't zero.
     pub(super) above: Option<bool>,
-    /// A bound of its second derivative.
+    /// A bound on the function's second derivative.
     pub(super) bound: Option<f64>,
-    /// Zeros are located to this.
+    /// The accuracy of a zero.
     pub(super) rounding: f64,
 }
 
-/// The shortest interval in which two zeros are told apart, in parts of the step.
+/// The shortest interval in which two zeros are separated, in parts of the step.
 const SHORTEST: f64 = 1.0 / 16_777_216.0;
-/// More looks than any sensible bound takes.
+/// Limit of the evaluations.
 const MOST_LOOKS: u32 = 10_000;
 
-/// A part of the interval: its ends, and the function there.
+/// A part of the interval: its ends, and the function's values there.
 #[derive(Clone, Copy)]
 struct Part {
     begin: (f64, f64),
@@ -33,14 +33,15 @@ impl Part {
         self.end.0 - self.begin.0
     }
 
-    /// At most one zero, by the signs at the ends: the slope of the chord is that of the function somewhere in the part,
-    /// and changes by no more than the bound times the length.
+    /// Whether the part has at most one zero, by the signs at its ends: the slope of the chord is that of the function
+    /// somewhere in the part, and changes by no more than the bound times the length.
     fn is_monotone(&self, bound: f64) -> bool {
         (self.end.1 - self.begin.1).abs() >= bound * self.length() * self.length()
     }
 
-    /// No zero: where both ends are on one side and the chord isn't so steep, the function is no nearer to zero than the
-    /// parabola of this second derivative through the ends, whose vertex is this far from zero.
+    /// Whether the part has no zero: if both ends are on one side and the chord isn't so steep, the function is no
+    /// nearer to zero than the parabola with this second derivative through the ends, whose vertex has this distance
+    /// from zero.
     fn is_clear(&self, bound: f64) -> bool {
         let (a, b) = (self.begin.1, self.end.1);
         let sag = bound * self.length() * self.length();
@@ -48,7 +49,8 @@ impl Part {
     }
 }
 
-/// The zeros from left to right, and whether the function rises there. `None` where too many looks are needed to tell.
+/// The zeros from left to right, and whether the function rises there. `None` if the search exceeds its limit of
+/// evaluations.
 pub(super) fn zeros<E>(
     looks: Looks,
     function: &mut impl FnMut(f64) -> Result<f64, E>,
@@ -79,11 +81,11 @@ pub(super) fn zeros<E>(
     Ok(Some(found))
 }
 
-/// Bisections alone make every bracket shorter than a rounding.
+/// Limit of the iterations, in which bisections alone reach rounding.
 const MOST_ITERATIONS: u32 = 120;
 
-/// The zero in a part at whose ends the signs differ, or that begins with a zero, by inverse quadratic interpolation
-/// where that is sure to converge and bisection elsewhere.
+/// The zero in a part whose ends have different signs, or that begins with a zero, by inverse quadratic interpolation
+/// if that is sure to converge and bisection otherwise.
 ///
 /// # Source
 ///
@@ -128,14 +130,14 @@ fn located<E>(
         } else {
             0.5
         };
-        // No nearer to either end than what is looked for, so that in the end the other side comes as near.
+        // The next point keeps a distance of the accuracy from both ends, so that in the end both sides are that near.
         let least = (nearest / length).min(0.5);
         share = if share.is_nan() { 0.5 } else { share.clamp(least, 1.0 - least) };
     }
     Ok(if a.1.abs() <= b.1.abs() { a.0 } else { b.0 })
 }
 
-/// Whether a value is above zero; nothing where it is zero.
+/// Whether a value is above zero; none for zero.
 pub(super) fn side(value: f64) -> Option<bool> {
     if value == 0.0 { None } else { Some(value > 0.0) }
 }
@@ -147,7 +149,7 @@ mod tests {
     use core::convert::Infallible;
     use std::cell::Cell;
 
-    /// The zeros of a function with this bound, and how often it was looked at.
+    /// The zeros of a function with this bound, and the number of evaluations.
     fn found(bound: Option<f64>, function: impl Fn(f64) -> f64) -> (Vec<(f64, bool)>, u32) {
         let count = Cell::new(0);
         let mut look = |x: f64| -> Result<f64, Infallible> {
@@ -176,7 +178,7 @@ mod tests {
         }
     }
 
-    /// Pairs down to 10⁻⁷ of a step, twice in some; and nothing where the function just misses zero.
+    /// Pairs down to a distance of 10⁻⁷ of a step, some functions with two, and functions that just miss zero.
     #[test]
     fn no_pair_is_missed_where_a_bound_is_known() {
         for k in 0..200 {

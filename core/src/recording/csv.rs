@@ -10,9 +10,9 @@ use super::recorder::{Column, RecordError, Sink, SinkError};
 
 /// A table as comma-separated values (RFC 4180, with line feeds): a line of names, then a line for each row.
 ///
-/// Numbers have as few digits as tell them from all others, so that they are read back to the bit. What isn't a number is
-/// `NaN`, `inf` and `-inf`, as Python, Julia and MATLAB read them. Units aren't written: they are in the documentation of
-/// [`Recorder`](super::Recorder).
+/// Numbers have the fewest digits that identify them, so that they are read back to the bit. Infinities and NaN are
+/// `NaN`, `inf` and `-inf`, as Python, Julia and MATLAB read them. Units aren't written: they are in the documentation
+/// of [`Recorder`](super::Recorder).
 #[derive(Debug)]
 pub struct Csv<W: Write> {
     writer: W,
@@ -21,27 +21,27 @@ pub struct Csv<W: Write> {
 }
 
 impl Csv<File> {
-    /// Writes to this file, in the place of what was there.
+    /// Writes to this file, and replaces its content.
     ///
     /// # Errors
     ///
-    /// Where the file can't be made.
+    /// If the file can't be created.
     pub fn create(path: impl AsRef<Path>) -> io::Result<Self> {
         File::create(path).map(Self::new)
     }
 }
 
 impl<W: Write> Csv<W> {
-    /// Writes to anything; a block of rows is written at once, so that it needn't be buffered.
+    /// Writes to any writer, one call for each block of rows, so that it needn't be buffered.
     pub fn new(writer: W) -> Self {
         Self { writer, columns: 1, text: String::new() }
     }
 
-    /// What was written to.
+    /// Returns the writer.
     ///
     /// # Errors
     ///
-    /// Where it doesn't take what was written.
+    /// If the writer can't be flushed.
     pub fn into_inner(mut self) -> Result<W, RecordError> {
         self.writer.flush().map_err(|cause| RecordError::Sink { cause: cause.into() })?;
         Ok(self.writer)
@@ -92,7 +92,8 @@ impl<W: Write> Sink for Csv<W> {
     }
 }
 
-/// Whether the faster way writes a number in the form in which the standard library does: elsewhere its exponent is another.
+/// Whether the faster formatter has the same notation as the standard library; elsewhere its exponent is written
+/// differently.
 #[inline]
 fn is_written_alike(number: f64) -> bool {
     let size = number.abs();
@@ -106,7 +107,8 @@ mod tests {
     use alloc::string::String;
     use alloc::vec::Vec;
 
-    /// In the same form and to the bit, whichever way it takes: at both ends of each, at numbers of all sizes, and at what isn't a number.
+    /// Both formatters write the standard library's form to the bit: at the ends of their ranges, for numbers of all
+    /// sizes, for infinities and NaN.
     #[test]
     fn numbers_are_written_as_debug_writes_them() {
         let ends = [0.0, 1e-5, 1e-4, 1e16].map(|end: f64| [end.next_down(), end, end.next_up()]);
@@ -129,7 +131,8 @@ mod tests {
         assert_eq!(text.lines().count(), numbers.len() + 1);
         for (written, number) in text.lines().skip(1).zip(&numbers) {
             let debug = format!("{number:?}");
-            // Half-way between two of the same length either is as near: `1.0000076293945313` is 1 + 2⁻¹⁷, and so is …312.
+            // Either of two texts of one length is right if both are as near: `1.0000076293945313` is 1 + 2⁻¹⁷, and so
+            // is …312.
             let is_other = written.len() == debug.len() && written.parse() == Ok(*number);
             assert!(
                 written == debug || is_other && written[..written.len() - 3] == debug[..debug.len() - 3],

@@ -9,14 +9,14 @@ use super::observer::{Observer, show};
 use crate::motion::{Integrator, Moment, Motion, ScalarIn};
 use crate::numbers::{real, reported};
 
-/// What counts as an event: in which direction a function of the motion crosses zero, whether that ends the run, and how
-/// closely it is looked for between the steps. [`Run::event`](super::Run::event) takes it.
+/// The kind of an event: the direction in which a function of the motion crosses zero, whether that ends the run, and a
+/// bound for the search between steps. [`Run::event`](super::Run::event) takes it.
 ///
-/// # What isn't missed
+/// # Guarantees
 ///
-/// A function that has one sign at the beginning of a step and the other at its end has a zero between, which is found.
-/// Of three zeros in one step one is found, and of two none, unless a bound is known: with
-/// [`curvature`](Self::curvature) every crossing is found.
+/// A function with different signs at the beginning and the end of a step has a zero between, which is found. Of three
+/// zeros in one step one is found, and of two none, unless a bound is known: with [`curvature`](Self::curvature) every
+/// crossing is found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Event {
     rising: bool,
@@ -26,51 +26,51 @@ pub struct Event {
 }
 
 impl Event {
-    /// The function goes from below zero to above.
+    /// An event at which the function rises through zero.
     #[must_use]
     pub const fn rising() -> Self {
         Self { rising: true, falling: false, terminal: false, curvature: None }
     }
 
-    /// The function goes from above zero to below.
+    /// An event at which the function falls through zero.
     #[must_use]
     pub const fn falling() -> Self {
         Self { rising: false, falling: true, terminal: false, curvature: None }
     }
 
-    /// Either.
+    /// An event at which the function crosses zero either way.
     #[must_use]
     pub const fn crossing() -> Self {
         Self { rising: true, falling: true, terminal: false, curvature: None }
     }
 
-    /// The run ends with the step in which this happens for the first time, and nothing later in that step is shown.
+    /// Ends the run in the step with the first such event; nothing later in that step is observed.
     #[must_use]
     pub const fn terminal(self) -> Self {
         Self { terminal: true, ..self }
     }
 
-    /// A bound of the function's second derivative in time, `|g̈| ≤ bound`, all along the run: no crossing is missed then,
-    /// save pairs that are nearer to each other than `2⁻²⁴` of a step.
+    /// Sets a bound of the function's second derivative in time, `|g̈| ≤ bound`, for the whole run: no crossing is
+    /// missed then, except pairs that are nearer to each other than `2⁻²⁴` of a step.
     ///
-    /// An interval in which the chord is steeper than the bound times its length has one zero or none, by the signs at its
-    /// ends; one in which the parabola of that curvature under the chord stays above zero has none; what is neither is
-    /// halved. So a step far from zero takes no look between its ends, and the nearer the function comes to touching zero
-    /// the more it takes. The bound is that of the motion between two steps, which differs from the exact one's by the
-    /// method's error: leave a margin for that. A bound that is too large takes more looks, and no more than
-    /// 10,000 a step, after which the run is an error.
+    /// An interval in which the chord is steeper than the bound times its length has one zero or none, by the signs at
+    /// its ends; one in which the parabola of that curvature under the chord stays above zero has none; any other
+    /// interval is halved. So a step far from zero needs no evaluation between its ends, and the nearer the function
+    /// comes to touching zero the more it needs. The bound is that of the motion between two steps, which differs from
+    /// the exact one's by the method's error: add a margin for that. A bound that is too large takes more evaluations,
+    /// and no more than 10,000 a step, after which the run is an error.
     #[must_use]
     pub const fn curvature(self, bound: f64) -> Self {
         Self { curvature: Some(bound), ..self }
     }
 
-    /// Whether the run ends with it.
+    /// Whether the event ends the run.
     #[must_use]
     pub const fn is_terminal(&self) -> bool {
         self.terminal
     }
 
-    /// The bound of the second derivative, if one is known.
+    /// The bound of the second derivative, if there is one.
     #[must_use]
     pub const fn bound(&self) -> Option<f64> {
         self.curvature
@@ -79,20 +79,20 @@ impl Event {
 
 pub(super) type Function<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> f64 + 'a>;
 
-/// An event, and what is done when it happens.
+/// An event with its function and its observer.
 pub(super) struct Watch<'a, I: Integrator> {
     event: Event,
     function: Function<'a, I>,
     then: Observer<'a, I>,
-    /// At the end of the last step.
+    /// The function at the end of the last step.
     value: f64,
-    /// Whether the function was above zero when last it wasn't zero.
+    /// Whether the function was above zero when it last wasn't zero.
     above: Option<bool>,
 }
 
-/// A zero that was found.
+/// A located zero.
 pub(super) struct Crossing<I: Integrator> {
-    /// Which event.
+    /// Number of the event.
     event: usize,
     fraction: f64,
     pub(super) time: f64,
@@ -105,14 +105,14 @@ impl<'a, I: Integrator> Watch<'a, I> {
         Self { event, function, then, value: 0.0, above: None }
     }
 
-    /// The function, if it has a value.
+    /// The function's value, or an error for NaN.
     fn look(&mut self, now: &Moment<'_, I>, event: usize) -> Result<f64, RunError> {
         let value = (self.function)(now);
         if value.is_nan() { Err(RunError::NotANumber { event, time: reported(now.time()) }) } else { Ok(value) }
     }
 }
 
-/// The functions at the start of the run.
+/// Evaluates the functions at the start of the run.
 pub(super) fn look_first<I: Integrator>(watches: &mut [Watch<'_, I>], now: &Moment<'_, I>) -> Result<(), RunError> {
     for (event, watched) in watches.iter_mut().enumerate() {
         watched.value = watched.look(now, event)?;
@@ -166,7 +166,7 @@ pub(super) fn crossings<I: Integrator>(
     Ok(found)
 }
 
-/// Shows an event; returns whether the run ends.
+/// Calls the observer of an event; returns whether the run ends.
 pub(super) fn happen<I: Integrator>(
     watches: &mut [Watch<'_, I>],
     integrator: &I,

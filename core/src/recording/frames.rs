@@ -1,4 +1,4 @@
-//! Motion at the times of a renderer: whole steps are made as time goes by, and what is left of it is a part of one.
+//! Motion at the times of a renderer: whole steps, and a part of a step for the remaining time.
 
 use core::fmt;
 
@@ -9,12 +9,12 @@ use crate::numbers::real;
 
 roots!();
 
-/// A motion that is shown at times of its viewer's: frames of a game, samples of a loudspeaker, slow motion.
+/// A motion at the times of its viewer: frames of a game, samples of a loudspeaker, slow motion.
 ///
-/// The steps have their fixed length whatever the frames', so the motion is the same at all rates, to the bit. What of the
-/// time isn't a whole step goes on counting, and the frame shows the motion then: a [`part`](Integrator::part) of a step
-/// ahead of the last one made, neither behind it nor interpolated, so that nothing lags, attitudes are rotations, and
-/// momentum maps are kept.
+/// The steps have their fixed length whatever the frames', so the motion is the same at all rates, to the bit. The
+/// remainder of the time in whole steps counts for the next frame, and this frame has the motion at its own time: a
+/// [`part`](Integrator::part) of a step ahead of the last one made, neither behind it nor interpolated, so that nothing
+/// lags, attitudes are rotations, and momentum maps are conserved.
 ///
 /// # Examples
 ///
@@ -45,38 +45,38 @@ roots!();
 pub struct Frames<I: Integrator> {
     integrator: I,
     state: I::State,
-    /// What of the time isn't a whole step, in steps.
+    /// The remainder of the time, in steps.
     left: f64,
     most_steps: u64,
 }
 
-/// The most steps that are made up for in one frame after a pause, unless another number is asked for.
+/// Default limit of the steps in one frame, for a frame after a pause.
 const MOST_STEPS: u64 = 1000;
 
 impl<I: Integrator> Frames<I>
 where
     ScalarIn<I>: Into<f64>,
 {
-    /// The motion from this state.
+    /// The frames of the motion from this state.
     pub fn new(integrator: I, state: I::State) -> Self {
         Self { integrator, state, left: 0.0, most_steps: MOST_STEPS }
     }
 
-    /// Makes at most `steps` steps in one frame, by default 1000; time beyond that isn't made up for, as after a
-    /// debugger has held the program.
+    /// Limits the steps in one frame, by default 1000; time beyond that is dropped, for example after a debugger has
+    /// halted the program.
     #[must_use]
     pub fn with_at_most(mut self, steps: u64) -> Self {
         self.most_steps = steps;
         self
     }
 
-    /// Goes on by the time of a frame, s, and returns the motion then.
+    /// Advances by the time of a frame, s, and returns the motion then.
     ///
-    /// A time that isn't positive, or isn't a number, is none.
+    /// A time that isn't positive, or is NaN, counts as zero.
     ///
     /// # Errors
     ///
-    /// [`StepError`] where there is no step. The state is then the last that there is, and the time of the frame is lost.
+    /// [`StepError`] if a step fails. The state is then the last one before it, and the time of the frame is lost.
     #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)] // bounded
     pub fn advance(&mut self, elapsed: f64) -> Result<Motion<I::Group, I::Advected>, StepError> {
         if self.integrator.length(&self.state).is_some() {
@@ -84,7 +84,8 @@ where
         }
         let h: f64 = self.integrator.step_size().into();
         let due = self.left + elapsed.max(0.0) / h.abs();
-        // A time without end makes the most there are, and so does any time where steps are zero: they change nothing.
+        // An infinite time makes as many steps as allowed, and so does any time with steps of zero, which change
+        // nothing.
         let due = if due.is_finite() { due } else { self.most_steps as f64 };
         let whole = due.floor().min(self.most_steps as f64);
         self.left = 0.0;
@@ -95,7 +96,7 @@ where
         self.integrator.part(&self.state, real(self.left))
     }
 
-    /// [`advance`](Self::advance) where steps vary.
+    /// [`advance`](Self::advance) for steps of varying length.
     fn advance_by_lengths(&mut self, mut elapsed: f64) -> Result<Motion<I::Group, I::Advected>, StepError> {
         let (mut left, mut made) = (core::mem::replace(&mut self.left, 0.0), 0);
         loop {
@@ -112,17 +113,17 @@ where
         }
     }
 
-    /// The time that is shown, s.
+    /// The time of the last frame, s.
     pub fn time(&self) -> f64 {
         self.integrator.time(&self.state).into() + self.left * next_length(&self.integrator, &self.state).into()
     }
 
-    /// The last step that was made.
+    /// The state after the last whole step.
     pub fn state(&self) -> &I::State {
         &self.state
     }
 
-    /// What steps the motion.
+    /// The integrator of the motion.
     pub fn integrator(&self) -> &I {
         &self.integrator
     }

@@ -1,10 +1,10 @@
-//! Runs that are observed, recorded and stopped, and the events in them.
+//! Observed runs: recording, stopping, and events.
 //!
-//! A [`Run`] shows the motion to observers: every `n` steps, at given times, at events. A [`Recorder`] is such an
-//! observer, whose rows go to a [`Sink`]. [`Frames`] shows it at the times of a renderer. All of it is written for an
-//! [`Integrator`](crate::motion::Integrator), and so goes with every method.
+//! A [`Run`] calls observers with the motion: every `n` steps, at requested times, at events. A [`Recorder`] is such an
+//! observer, whose rows go to a [`Sink`]. [`Frames`] has the motion at the times of a renderer. All of it takes any
+//! [`Integrator`](crate::motion::Integrator), and so any method.
 
-// First, as on its page in the documentation.
+// The first module is the first on the documentation's page.
 mod run;
 
 #[cfg(feature = "std")]

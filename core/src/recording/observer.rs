@@ -1,4 +1,4 @@
-//! What an observer is, and what it answers.
+//! Observers, and their verdicts.
 
 use alloc::boxed::Box;
 use core::ops::ControlFlow;
@@ -7,12 +7,12 @@ use super::error::{Reason, RunError, RunReport};
 use crate::motion::{Answer, Integrator, Moment};
 use crate::numbers::reported;
 
-/// What an observer answers.
+/// The verdict of an observer.
 pub(super) type Verdict = Result<ControlFlow<()>, Box<dyn core::error::Error + Send + Sync>>;
-/// `None` means go on: it comes back in a register, and a whole answer in memory.
+/// An observer. `None`, which is returned in a register, means that the run goes on.
 pub(super) type Observer<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> Option<Box<Verdict>> + 'a>;
 
-/// An answer, but for that to go on.
+/// The verdict of an answer, or none to go on.
 #[hot]
 pub(super) fn unless_it_goes_on(answer: impl Answer) -> Option<Box<Verdict>> {
     match answer.verdict() {
@@ -21,7 +21,7 @@ pub(super) fn unless_it_goes_on(answer: impl Answer) -> Option<Box<Verdict>> {
     }
 }
 
-/// Shows a moment; returns whether the observer stops the run.
+/// Calls an observer with a moment; returns whether it stops the run.
 pub(super) fn show<I: Integrator>(
     observer: &mut Observer<'_, I>,
     now: &Moment<'_, I>,
@@ -32,7 +32,7 @@ pub(super) fn show<I: Integrator>(
 
 #[cold]
 #[inline(never)]
-#[allow(clippy::boxed_local)] // so that its memory is freed here, too
+#[allow(clippy::boxed_local)] // takes the box to free its memory here, in cold code
 pub(super) fn stopped(verdict: Box<Verdict>, time: f64, ended: &mut RunReport) -> Result<bool, RunError> {
     let _ = verdict.map_err(|cause| RunError::Observer { time, cause })?;
     ended.reason = Reason::Stopped { time };

@@ -1,4 +1,4 @@
-//! A table of a run: a row for each moment that is recorded, handed on in blocks to a file or to memory.
+//! A table of a run: a row for each recorded moment, written in blocks to a file or to memory.
 
 use alloc::borrow::ToOwned as _;
 use alloc::boxed::Box;
@@ -17,36 +17,36 @@ use crate::numbers::{Entries as _, real};
 /// A column of a table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Column {
-    /// Its name; no two of a table have the same.
+    /// Name of the column; no two columns of a table have the same.
     pub name: String,
-    /// The unit of its numbers, and nothing where there is none or it depends on what was declared.
+    /// Unit of the numbers; empty if there is none or if it depends on the declaration.
     pub unit: String,
 }
 
-/// What can't be written.
+/// An error of a sink.
 pub type SinkError = Box<dyn core::error::Error + Send + Sync>;
 
-/// Where the rows of a [`Recorder`] go.
+/// A destination for the rows of a [`Recorder`].
 pub trait Sink {
-    /// The columns, once and before all rows.
+    /// Takes the columns, once and before all rows.
     ///
     /// # Errors
     ///
-    /// The sink's own.
+    /// Errors of the sink.
     fn begin(&mut self, columns: &[Column]) -> Result<(), SinkError>;
 
-    /// Some rows, one after the other.
+    /// Takes some rows, one after the other.
     ///
     /// # Errors
     ///
-    /// The sink's own.
+    /// Errors of the sink.
     fn write(&mut self, rows: &[f64]) -> Result<(), SinkError>;
 
-    /// After the last row.
+    /// Ends the table after the last row.
     ///
     /// # Errors
     ///
-    /// The sink's own.
+    /// Errors of the sink.
     fn end(&mut self) -> Result<(), SinkError>;
 }
 
@@ -64,26 +64,26 @@ impl<S: Sink + ?Sized> Sink for &mut S {
     }
 }
 
-/// Why a table couldn't be written.
+/// An error of writing a table.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RecordError {
     /// Two columns have one name.
     #[error("two columns are called `{name}`; give one of them another name")]
     SameName {
-        /// The name.
+        /// The name of both columns.
         name: String,
     },
-    /// A column was added behind the first row. The rows before it are in the table, which has ended with them.
+    /// A column was added after the first row. The table has ended with the rows before it.
     #[error("the column `{name}` was added behind the first row; add all columns before that")]
     Late {
-        /// Its name.
+        /// Name of the column.
         name: String,
     },
-    /// What the rows are written to has failed.
+    /// The sink has failed.
     #[error("the table can't be written: {cause}")]
     Sink {
-        /// Its error.
+        /// The error of the sink.
         #[source]
         cause: SinkError,
     },
@@ -91,10 +91,10 @@ pub enum RecordError {
 
 type Quantity<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> f64 + 'a>;
 
-/// Rows that are handed on at once, unless another number is asked for.
+/// Default number of rows in a block.
 const ROWS_IN_A_BLOCK: usize = 1024;
 
-/// Makes a row of each moment that it is shown, of named columns, and hands the rows on in blocks.
+/// Records moments as rows of named columns, and writes the rows to a sink in blocks.
 ///
 /// | columns | | unit on SO(3) and products of it |
 /// |---|---|---|
@@ -103,14 +103,14 @@ const ROWS_IN_A_BLOCK: usize = 1024;
 /// | `velocity_x`, … | the body velocity; on other groups `velocity_1`, … | rad/s |
 /// | `momentum_x`, … | the body momentum | kg m²/s |
 /// | `energy` | the energy | J |
-/// | `defect` | how far the attitude has left the group | 1 |
+/// | `defect` | the distance of the attitude from the group | 1 |
 ///
-/// On a product of groups a name has the place of its factor behind it: `q_w_1`, …, `velocity_x_1`, …, `velocity_x_2`.
-/// Of the two quaternions of an attitude the one nearer to the row before is written. Other columns are
-/// the user's [quantities](Self::quantity). [`Run`](crate::recording::Run) has an example.
+/// On a product of groups a name ends with the place of its factor: `q_w_1`, …, `velocity_x_1`, …, `velocity_x_2`. An
+/// attitude has two quaternions; the one nearer to the row before is written. Other columns are the user's
+/// [quantities](Self::quantity). [`Run`](crate::recording::Run) has an example.
 ///
-/// Rows that are left when the recorder is dropped are written then, but an error is lost:
-/// [`finish`](Self::finish) reports it. After an error the sink gets nothing more, and no end.
+/// Rows that are left when the recorder is dropped are written then, but an error is lost: [`finish`](Self::finish)
+/// reports it. After an error nothing more is written to the sink, and it isn't ended.
 pub struct Recorder<'a, I: Integrator, S: Sink> {
     columns: Vec<Column>,
     shows_motion: bool,
@@ -118,27 +118,27 @@ pub struct Recorder<'a, I: Integrator, S: Sink> {
     attitude: Vec<ScalarIn<I>>,
     inertia: Option<FactoredInertia<I::Group>>,
     quantities: Vec<Quantity<'a, I>>,
-    /// Rows, and how many of their numbers are there.
+    /// The current block, of which `filled` numbers are recorded.
     block: Vec<f64>,
     filled: usize,
     rows_in_a_block: usize,
-    /// The numbers of a full block.
+    /// Length of a full block.
     full: usize,
     stage: Stage,
-    /// Gone when the table has ended.
+    /// The sink; none when the table has ended.
     sink: Option<S>,
 }
 
-/// How far a table is.
+/// The state of a table.
 #[derive(Clone, Copy, PartialEq)]
 enum Stage {
-    /// The sink doesn't know the columns yet.
+    /// The columns haven't been written.
     Before,
-    /// It has them.
+    /// The columns have been written.
     Begun,
-    /// A column came after that, of this place, which it doesn't know.
+    /// A column with this number was added after the columns had been written.
     Late(usize),
-    /// It has failed, and gets nothing more: rows behind a gap would look like a whole table.
+    /// The sink has failed, and nothing more is written: rows after a gap would look like a complete table.
     Failed,
 }
 
@@ -148,7 +148,7 @@ where
     ScalarIn<I>: Into<f64>,
     S: Sink,
 {
-    /// A table of all columns above, of motions that this integrator steps.
+    /// A recorder of all columns above, for motions of this integrator.
     pub fn new(integrator: &I, sink: S) -> Self {
         let mut recorder = Self::bare(integrator, sink);
         let (attitude, components) = (I::Group::named_numbers(), I::Group::named_components());
@@ -158,7 +158,7 @@ where
         let named = |quantity: &'static str, which: usize| {
             components.iter().map(move |(name, units)| (format!("{quantity}_{name}"), units[which]))
         };
-        // A product of a velocity and a momentum.
+        // The unit of a velocity times a momentum.
         let energy = if components.iter().all(|(_, units)| *units == ["rad/s", "kg m²/s"]) { "J" } else { "" };
         let columns = attitude.into_iter().chain(named("velocity", 0)).chain(named("momentum", 1));
         let columns = columns.chain([("energy".to_owned(), energy), ("defect".to_owned(), "1")]);
@@ -166,7 +166,7 @@ where
         recorder
     }
 
-    /// A table of the time, and of what else is added to it.
+    /// A recorder of the time and of added quantities.
     pub fn bare(_: &I, sink: S) -> Self {
         Self {
             columns: vec![Column { name: "t".to_owned(), unit: "s".to_owned() }],
@@ -183,8 +183,8 @@ where
         }
     }
 
-    /// A further column, with its unit; before the first row. Later it ends the table with the rows that there are, and
-    /// each further row is an error.
+    /// Adds a column, with its unit; before the first row. Later it ends the table with the rows before, and each
+    /// further row is an error.
     #[must_use]
     pub fn quantity<T: Into<f64>>(
         mut self,
@@ -201,7 +201,7 @@ where
         self
     }
 
-    /// Hands on `rows` rows at once, by default 1024: with one, each row is written when it is recorded.
+    /// Writes blocks of `rows` rows, by default 1024: with one, each row is written when it is recorded.
     #[must_use]
     pub fn in_blocks_of(mut self, rows: usize) -> Self {
         self.rows_in_a_block = rows.max(1);
@@ -221,11 +221,12 @@ where
     ///
     /// # Errors
     ///
-    /// [`RecordError`] with the first row where two columns have one name or the table can't be begun, and later where a
-    /// column was added or a full block of rows can't be written. After an error of the sink each further row is one, too.
+    /// [`RecordError`] with the first row if two columns have one name or the sink refuses the columns, and later if a
+    /// column was added or a full block of rows can't be written. After an error of the sink each further row is an
+    /// error, too.
     pub fn record(&mut self, now: &Moment<'_, I>) -> Result<(), RecordError> {
         let end = self.filled + self.columns.len();
-        // The block is empty before the table has begun, and after it has failed.
+        // The block is empty before the first row, and after a failure.
         if self.block.len() < end {
             self.make_room(end)?;
         }
@@ -233,7 +234,7 @@ where
         *time = now.time().into();
         if self.shows_motion {
             let behind = match (<&mut [_; 4]>::try_from(self.attitude.as_mut_slice()), own.split_first_chunk_mut()) {
-                // Quickly where the compiler knows the length: of four numbers, as a quaternion has.
+                // The compiler knows the length of four numbers, those of a quaternion, which makes this faster.
                 (Ok(numbers), Some((places, behind))) => {
                     now.attitude.write_numbers(numbers);
                     *places = numbers.map(Into::into);
@@ -256,7 +257,7 @@ where
         Ok(())
     }
 
-    /// What stands last in a row that ends here, and what comes after the last of a block.
+    /// Records the quantities at the end of a row, and writes a full block.
     #[inline(never)]
     fn end_row(&mut self, now: &Moment<'_, I>, end: usize) -> Result<(), RecordError> {
         let places = &mut self.block[end - self.quantities.len()..end];
@@ -265,8 +266,8 @@ where
         if end >= self.full { self.flush() } else { Ok(()) }
     }
 
-    /// A block as long as this, and longer as more rows come: of very many rows that are asked for there may be few. The
-    /// table begins with the first.
+    /// Enlarges the block to at least this length: it grows with the rows, as a block of very many rows may never be
+    /// full. The first row begins the table.
     #[cold]
     #[inline(never)]
     fn make_room(&mut self, end: usize) -> Result<(), RecordError> {
@@ -277,11 +278,11 @@ where
         Ok(())
     }
 
-    /// Writes what is left, and returns what was written to.
+    /// Writes the remaining rows, ends the table, and returns the sink.
     ///
     /// # Errors
     ///
-    /// [`RecordError`] where it can't be written.
+    /// [`RecordError`] if the rows can't be written.
     pub fn finish(mut self) -> Result<S, RecordError> {
         self.flush()?;
         let mut sink = self.sink.take().ok_or_else(unreachable)?;
@@ -291,11 +292,11 @@ where
 }
 
 impl<I: Integrator, S: Sink> Recorder<'_, I, S> {
-    /// Hands on the rows that there are.
+    /// Writes the recorded rows.
     ///
     /// # Errors
     ///
-    /// [`RecordError`] where they can't be written.
+    /// [`RecordError`] if the rows can't be written.
     pub fn flush(&mut self) -> Result<(), RecordError> {
         self.begin()?;
         let sink = self.sink.as_mut().ok_or_else(unreachable)?;
@@ -304,13 +305,13 @@ impl<I: Integrator, S: Sink> Recorder<'_, I, S> {
         written.map_err(|cause| self.failed(cause))
     }
 
-    /// Hands on the columns, if that hasn't been done.
+    /// Writes the columns, once.
     fn begin(&mut self) -> Result<(), RecordError> {
         match self.stage {
             Stage::Begun => return Ok(()),
             Stage::Failed => return Err(RecordError::Sink { cause: "it has failed before".into() }),
             Stage::Late(column) => {
-                // The rows have the columns that the sink knows, and no more come.
+                // The rows so far have the columns that were written, and the table ends with them.
                 let block = core::mem::take(&mut self.block);
                 if let Some(mut sink) = self.sink.take() {
                     let rows = &block[..core::mem::take(&mut self.filled)];
@@ -344,7 +345,7 @@ impl<I: Integrator, S: Sink> Recorder<'_, I, S> {
     }
 }
 
-/// Writes the numbers of an attitude over those of the row before and into a row; returns what is behind them there.
+/// Writes the numbers of an attitude over those of the row before and into a row; returns the rest of the row.
 #[inline(never)]
 fn write_attitude<'a, G: LieGroup<Scalar: Into<f64>>>(
     attitude: &G,
@@ -357,14 +358,14 @@ fn write_attitude<'a, G: LieGroup<Scalar: Into<f64>>>(
     behind
 }
 
-/// The sink is there until the recorder is gone, and a row has the time at least.
+/// An error that can't occur: the sink lives as long as the recorder, and a row has at least the time.
 fn unreachable() -> RecordError {
     RecordError::Sink { cause: "the table is finished".into() }
 }
 
 impl<I: Integrator, S: Sink> Drop for Recorder<'_, I, S> {
     fn drop(&mut self) {
-        // An error can't be reported from here.
+        // An error in `drop` can't be reported.
         if self.sink.is_some()
             && self.flush().is_ok()
             && let Some(sink) = &mut self.sink

@@ -1,4 +1,4 @@
-//! A run that is observed: by functions that are called every `n` steps or at given times, and that may stop it.
+//! A run with observers: functions that are called every `n` steps or at requested times, and that may stop it.
 
 use alloc::boxed::Box;
 use alloc::rc::Rc;
@@ -20,10 +20,10 @@ roots!();
 
 type Condition<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> Result<bool, RunError> + 'a>;
 
-/// A run that is to be observed, by [`Stepper::observed`]; generic code makes it by [`Run::new`].
+/// A run with observers, by [`Stepper::observed`]; generic code constructs it by [`Run::new`].
 ///
-/// Observers are closures that are shown a [`Moment`]. They return nothing, a [`ControlFlow`](core::ops::ControlFlow) that may stop the run, or a
-/// `Result` whose error ends it:
+/// Observers are closures of a [`Moment`]. They return nothing, a [`ControlFlow`](core::ops::ControlFlow) that may stop
+/// the run, or a `Result` whose error ends it:
 ///
 /// ```
 /// use liestep::effects::{Drag, RigidBody};
@@ -52,12 +52,12 @@ type Condition<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> Result<bool, RunError> 
 ///
 /// # Contract
 ///
-/// - The steps between two that are observed are made in place, without a copy; of a splitting as [`Stepper::run`] makes
-///   them. A run with a condition, with events or with given times makes each step by itself. Only of splittings does
-///   that change digits, which `run` says.
+/// - The steps between two observed ones are made in place, without a copy; those of a splitting as by
+///   [`Stepper::run`]. A run with a condition, with events or with requested times makes each step by itself. That
+///   changes digits for splittings only, as documented at `run`.
 /// - Observers change nothing: for other methods the steps are those of an unobserved run, bit for bit.
 /// - Memory doesn't grow with the run.
-/// - After an error, and when an observer stops the run, the state is that of the last step that was made.
+/// - After an error, and when an observer stops the run, the state is that after the last step.
 #[must_use = "a run is made by `until` or `steps`"]
 pub struct Run<'a, I: Integrator> {
     integrator: &'a I,
@@ -67,46 +67,46 @@ pub struct Run<'a, I: Integrator> {
     watches: Vec<Watch<'a, I>>,
 }
 
-/// Who looks at the ends of steps only.
+/// The observers of whole steps.
 struct Observers<'a, I: Integrator> {
     regular: Vec<RegularObserver<'a, I>>,
     conditions: Vec<Condition<'a, I>>,
     progress: Option<Box<dyn FnMut(f64) + 'a>>,
-    /// The steps from which and up to which the run goes.
+    /// The steps at which the run begins and ends.
     start: u64,
     end: u64,
-    /// The next step after which progress is told.
+    /// The next step at which progress is reported.
     told: u64,
-    /// The next step after which conditions, the progress or the end of the run are looked at.
+    /// The next step at which conditions, progress or the end of the run are checked.
     seldom: u64,
 }
 
-/// An observer that is shown every `every` steps.
+/// An observer of every `every`-th step.
 struct RegularObserver<'a, I: Integrator> {
     every: u64,
-    /// The next of its steps.
+    /// The next step that it observes.
     due: u64,
     observer: Observer<'a, I>,
 }
 
-/// An observer that is shown given times.
+/// An observer at requested times.
 struct TimedObserver<'a, I: Integrator> {
     times: Peekable<Box<dyn Iterator<Item = f64> + 'a>>,
-    /// The last that was shown.
+    /// The last of its times.
     shown: Option<f64>,
     observer: Observer<'a, I>,
 }
 
-/// # Wrap: a run that is observed
+/// # Wrap: a run with observers
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
-    /// A run from this state that is observed, recorded or stopped; see [`Run`].
+    /// A run from this state with observers; see [`Run`].
     pub fn observed<'a>(&'a self, state: &'a mut StateOf<S, P>) -> Run<'a, Self> {
         Run::new(self, state)
     }
 }
 
 impl<G: LieGroup, A: Advected<G>> AnyStepper<G, A> {
-    /// As [`Stepper::observed`].
+    /// A run with observers, as by [`Stepper::observed`].
     pub fn observed<'a>(&'a self, state: &'a mut AnyState<G, A>) -> Run<'a, Self> {
         Run::new(self, state)
     }
@@ -116,7 +116,7 @@ impl<L: crate::mechanics::ContinuousLagrangian, const PAIRS: usize, const N: usi
 where
     Self: Integrator,
 {
-    /// As [`Stepper::observed`].
+    /// A run with observers, as by [`Stepper::observed`].
     pub fn observed<'a>(&'a self, state: &'a mut <Self as Integrator>::State) -> Run<'a, Self> {
         Run::new(self, state)
     }
@@ -142,10 +142,10 @@ impl<'a, I: Integrator> Run<'a, I> {
         }
     }
 
-    /// Shows the motion after every `steps` steps, counted from its start, and at step zero. A run that goes on doesn't show
-    /// its first state again: it was the last of the run before.
+    /// Observes the motion after every `steps` steps, counted from its start, and at step zero. A run that continues
+    /// another doesn't observe its first state again: it was the last of the run before.
     ///
-    /// Zero is never.
+    /// Zero means never.
     pub fn every<R: Answer>(mut self, steps: u64, mut observer: impl FnMut(&Moment<'_, I>) -> R + 'a) -> Self {
         if steps > 0 {
             let observer = Box::new(move |now: &Moment<'_, I>| unless_it_goes_on(observer(now)));
@@ -154,19 +154,19 @@ impl<'a, I: Integrator> Run<'a, I> {
         self
     }
 
-    /// Stops the run at its start, or after the first step, where this is so. A run that goes on from there makes no step
-    /// while it is.
+    /// Stops the run at its start, or after the first step, if the condition holds. A run that continues from there
+    /// makes no step while it holds.
     pub fn stop_when(mut self, mut condition: impl FnMut(&Moment<'_, I>) -> bool + 'a) -> Self {
         self.observers.conditions.push(Box::new(move |now| Ok(condition(now))));
         self
     }
 
-    /// Ends the run by [`RunError::Energy`] after a step that has changed the energy by more than this bound, J, or to no
-    /// number.
+    /// Ends the run by [`RunError::Energy`] after a step that has changed the energy by more than this bound, J, or to
+    /// NaN.
     ///
-    /// Two bodies that pass each other closely within one step aren't seen to have met: the step has a solution, but it
-    /// continues another motion. Only the jump of the energy shows it. What a step changes otherwise is of the order of its error, and of the work of
-    /// forces.
+    /// A step doesn't resolve a close encounter of two bodies within it: it has a solution, but continues another
+    /// motion. Only the jump of the energy reveals that. Other changes of the energy in a step are of the order of its
+    /// error, and of the work of forces.
     pub fn energy_within(mut self, bound: f64) -> Self {
         let mut last = None;
         self.observers.conditions.push(Box::new(move |now| {
@@ -178,7 +178,7 @@ impl<'a, I: Integrator> Run<'a, I> {
         self
     }
 
-    /// Tells what share of the run is made, from 0 to 1, at most a hundred times.
+    /// Reports the share of the run that is made, from 0 to 1, at most a hundred times.
     pub fn progress(mut self, progress: impl FnMut(f64) + 'a) -> Self {
         self.observers.progress = Some(Box::new(progress));
         self
@@ -233,7 +233,7 @@ impl<'a, I: Integrator> Run<'a, I> {
         RunError::Step { time: reported(self.integrator.time(self.state)), cause }
     }
 
-    /// Shows what there is within a step.
+    /// Calls the observers within a step.
     fn show_between(&mut self, before: &I::State, ended: &mut RunReport) -> Result<bool, RunError> {
         for found in crossings(&mut self.watches, before, &Moment::of_step(self.integrator, self.state))? {
             if self.show_timed(Some(before), found.time, ended)?
@@ -245,7 +245,7 @@ impl<'a, I: Integrator> Run<'a, I> {
         self.show_timed(Some(before), reported(self.integrator.time(self.state)), ended)
     }
 
-    /// Shows the times from the state before up to this time.
+    /// Calls the observers at requested times from the state before up to this time.
     fn show_timed(&mut self, before: Option<&I::State>, up_to: f64, ended: &mut RunReport) -> Result<bool, RunError> {
         let time = self.integrator.time(self.state);
         let now = reported(time);
@@ -253,7 +253,7 @@ impl<'a, I: Integrator> Run<'a, I> {
         let h = reported(before.map_or(self.integrator.step_size(), |before| next_length(self.integrator, before)));
         let mut stops = false;
         for TimedObserver { times, shown, observer } in &mut self.timed {
-            // Backwards where the step is negative.
+            // The order of times is reversed if the step is negative.
             let is_after = |asked: f64, time: f64| (asked - time) * h.signum() > 0.0;
             while let Some(asked) = times.next_if(|asked| !is_after(*asked, up_to)) {
                 let earliest = shown.replace(asked).unwrap_or(begun);
@@ -278,7 +278,7 @@ impl<'a, I: Integrator> Run<'a, I> {
 }
 
 impl<I: Integrator> Observers<'_, I> {
-    /// Looks for what is due from one step to another.
+    /// Initialises the counters of a run from one step to another.
     fn begin(&mut self, start: u64, end: u64) {
         (self.start, self.end, self.told, self.seldom) = (start, end, start, start);
         for RegularObserver { every, due, .. } in &mut self.regular {
@@ -286,15 +286,15 @@ impl<I: Integrator> Observers<'_, I> {
         }
     }
 
-    /// Shows a step to those whose turn it is; returns how many there are to the next that somebody wants to see, and none
-    /// at the end of the run, which an observer or a condition may be.
+    /// Calls the observers of a step; returns the number of steps to the next observed one, and zero at the end of the
+    /// run, by an observer or a condition too.
     #[hot]
     fn show(&mut self, now: &Moment<'_, I>, ended: &mut RunReport) -> Result<u64, RunError> {
         let (made, mut next, mut stops) = (now.steps(), self.seldom, false);
         for RegularObserver { every, due, observer } in &mut self.regular {
             if *due == made {
                 *due = due.saturating_add(*every);
-                // As `show` does; by that a row of every tenth step costs 23 instructions more.
+                // Repeats `show` inline: a call would make a row of every tenth step cost 23 instructions more.
                 if let Some(verdict) = observer(now) {
                     stops |= stopped(verdict, reported(now.time()), ended)?;
                 }
@@ -310,7 +310,7 @@ impl<I: Integrator> Observers<'_, I> {
         Ok(next - made)
     }
 
-    /// Conditions, progress and the end; returns as [`show`](Self::show).
+    /// Checks conditions, progress and the end; returns the same as [`show`](Self::show).
     #[cold]
     #[allow(clippy::cast_precision_loss)] // a share
     fn look_seldom(&mut self, now: &Moment<'_, I>, ended: &mut RunReport) -> Result<u64, RunError> {
@@ -328,7 +328,7 @@ impl<I: Integrator> Observers<'_, I> {
             progress((made - self.start) as f64 / (self.end - self.start) as f64);
         }
         if made == self.told {
-            // At most a hundred times.
+            // At most a hundred reports.
             self.told = made.saturating_add((self.end - self.start).div_ceil(100).max(1));
         }
         self.seldom = if !self.conditions.is_empty() {
@@ -346,10 +346,10 @@ impl<'a, I: Integrator> Run<'a, I>
 where
     ScalarIn<I>: Into<f64>,
 {
-    /// Shows the motion at these times, s, between the steps too: as [`Integrator::part`] of one. A time that is the end of
-    /// a step, to the bit, shows that step.
+    /// Observes the motion at these times, s, also between the steps: as [`Integrator::part`] of one. A time that is
+    /// the end of a step, to the bit, has the state after that step.
     ///
-    /// The times are in the order of the motion, and none lies before it; those after the end of the run aren't shown.
+    /// The times are in the order of the motion, and none lies before it; those after the end of the run are ignored.
     pub fn at<R: Answer>(
         mut self,
         times: impl IntoIterator<Item = f64, IntoIter: 'a>,
@@ -361,20 +361,20 @@ where
         self
     }
 
-    /// Finds the zeros of a function of the motion, and shows each with its time: events of one step in their order,
-    /// whichever function they are of.
+    /// Finds the zeros of a function of the motion, and observes each at its time: events in one step in their order,
+    /// whatever their functions.
     ///
     /// Between two steps the motion is [`Integrator::part`] of one, and a zero is located on it until its time has no
-    /// further digit. The time is right to two of its roundings, or to the time in which the function changes by four of
-    /// its own, whichever is longer. The moment that is shown has that time and the motion then, and [`Moment::rising`] the
-    /// direction. The steps stay what they are. [`sections`](crate::recording::sections) has functions that are ready made.
+    /// further digit. The time is right to two of its roundings, or to the time in which the function changes by four
+    /// of its own, whichever is longer. The observed moment has that time and the motion then, and [`Moment::rising`]
+    /// the direction. The steps aren't changed. [`sections`](crate::recording::sections) has common functions.
     ///
-    /// A function that is zero at the end of a step, to the bit, is crossed there if its signs before and after differ; one
-    /// that is zero at the start of the run isn't crossed then.
+    /// A function that is zero at the end of a step, to the bit, crosses zero there if its signs before and after
+    /// differ; one that is zero at the start of the run doesn't cross then.
     ///
     /// # Examples
     ///
-    /// When does a body that flips about its middle axis change sign?
+    /// A flipping body's momentum about its middle axis changes sign at these times:
     ///
     /// ```
     /// use liestep::effects::RigidBody;
@@ -405,18 +405,18 @@ where
         self
     }
 
-    /// Makes steps up to the first that ends at this time or after it, s, unless an observer stops the run; none where the
+    /// Makes steps up to the first that ends at this time or after it, s, unless an observer stops the run; none if the
     /// motion is there already.
     ///
-    /// A time that is a whole number of steps but for rounding is the end of the last of these. Where steps vary, nobody
-    /// knows how many there will be, and progress is that of the time.
+    /// A time that is a whole number of steps except for rounding is the end of the last of these. With steps of
+    /// varying length their number isn't known beforehand, and progress is that of the time.
     ///
     /// # Errors
     ///
     /// [`RunError`].
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // checked
     pub fn until(mut self, time: f64) -> Result<RunReport, RunError> {
-        /// More are no number of steps that a run can make.
+        /// Limit of the number of steps.
         const MOST: f64 = 9e15;
         let h: f64 = self.integrator.step_size().into();
         let steps = time / h;
@@ -424,7 +424,7 @@ where
         if !can_be_counted {
             return Err(RunError::End { asked: time });
         }
-        // What rounding makes of a whole number when times are multiples of the step.
+        // The rounding of a whole number of steps in a time that is a multiple of the step.
         let rounded = 1.0 - 4.0 * f64::EPSILON;
         if self.integrator.length(self.state).is_some() {
             let is_there = Rc::new(Cell::new(false));
@@ -432,12 +432,12 @@ where
             let (begun, mut progress) =
                 (reported(self.integrator.time(self.state)) / h, self.observers.progress.take());
             let mut told = 0.0;
-            // After those of others, which are told of first.
+            // This condition comes after the user's, which are checked first.
             self.observers.conditions.push(Box::new(move |now| {
                 let now = reported(now.time()) / h;
                 seen.set(now >= end);
                 let share = ((now - begun) / (steps - begun)).min(1.0);
-                // At most a hundred times.
+                // At most a hundred reports.
                 if let Some(progress) = &mut progress
                     && (now > begun && share >= told || seen.get())
                 {

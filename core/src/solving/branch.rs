@@ -1,4 +1,4 @@
-//! Where the Jacobian is near that of the free body.
+//! The ball of increments in which the Jacobian is near that of the free body.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -9,19 +9,18 @@ use crate::mechanics::{Effect, Group, Scalar, Square, Vector};
 use crate::numbers::{Coordinates as _, Mask, nowhere, real};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdValue as _};
 
-/// In radians, from the inside out.
+/// Radii of the sampled balls in radians, in ascending order.
 const RADII: [f64; 3] = [0.25, 0.5, 1.0];
-/// The largest `‖I − B⁻¹A‖_F` at a sample. One would be enough for the sign of the determinant; the rest is for what
-/// lies between the samples.
+/// Limit of `‖I − B⁻¹A‖_F` at a sample. One would be enough for the sign of the determinant; the margin is for the
+/// points between the samples.
 const DEPARTURE: f64 = 0.5;
 
-/// The largest of some radii up to which the model `B` is near the Jacobian `A`, whatever the direction of `ξ` and
-/// however the body stands: zero if it isn't up to the smallest.
+/// The largest of some radii up to which the model `B` is near the Jacobian `A` in every direction of `ξ` and at every
+/// attitude of the body; zero if it isn't up to the smallest.
 ///
-/// It is looked at with the advected parameters as they are seen after quarter turns about the axes of the basis, and
-/// `ξ` along these axes and the diagonals between them. That is no proof for what lies between; but `A` and `B` are
-/// smooth on the scale of a radian, apart from potentials with features narrower than that, and nothing rests on this
-/// alone.
+/// The samples are the advected parameters after quarter turns about the axes of the basis, and `ξ` along these axes
+/// and the diagonals between them. That proves nothing between the samples; but `A` and `B` are smooth on the scale of
+/// a radian, apart from potentials with narrower features, and the check of the branch doesn't rest on this alone.
 pub(crate) fn trusted_radius<L: Effect>(lagrangian: &L, constants: &L::Constants) -> Scalar<L> {
     let standing: Vec<(Square<L>, L::StepTerms)> = elements::<L>()
         .map(|g| {
@@ -49,7 +48,7 @@ pub(crate) fn trusted_radius<L: Effect>(lagrangian: &L, constants: &L::Constants
     trusted
 }
 
-/// Whether `‖I − B⁻¹A‖_F` is small.
+/// Whether the model is near the Jacobian, by `‖I − B⁻¹A‖_F`.
 fn is_nearly<L: Effect>(model: &Square<L>, jacobian: &Square<L>) -> Mask<Scalar<L>> {
     let departure = axes::<L>().map(|axis| {
         let column = axis - Vector::<L>::solve(model, &(*jacobian * axis)).0;
@@ -62,7 +61,7 @@ fn axes<L: Effect>() -> impl Iterator<Item = Vector<L>> {
     (0..Group::<L>::DIMENSION).map(Vector::<L>::axis)
 }
 
-/// The axes and the diagonals, both ways, of length one.
+/// Sampled directions of length one: the axes and the diagonals, both ways.
 fn directions<L: Effect>() -> Vec<Vector<L>> {
     let mut sums = vec![Vector::<L>::zero()];
     for axis in axes::<L>() {
@@ -72,7 +71,7 @@ fn directions<L: Effect>() -> Vec<Vector<L>> {
     axes::<L>().flat_map(|axis| [axis, -axis]).chain(diagonals).collect()
 }
 
-/// The identity, and its quarter, half and three-quarter turns about each axis.
+/// Sampled attitudes: the identity, and quarter, half and three-quarter turns about each axis.
 fn elements<L: Effect>() -> impl Iterator<Item = Group<L>> {
     let turned = axes::<L>().flat_map(|axis| {
         let quarter = L::Retraction::retract(&(axis * real::<Scalar<L>>(2.0)));

@@ -1,7 +1,7 @@
-//! The solve with all its fallbacks, for what is seldom asked.
+//! The solve with all its fallbacks, for steps that the usual solve doesn't settle.
 //!
-//! It sees a scene through a table of functions, and so is compiled once for a group and its scalars: what a build
-//! compiles for each scene is its own equation.
+//! It calls a scene through a table of functions, and so is compiled once for a group and its scalars: a build compiles
+//! only the equation for each scene.
 
 use core::marker::PhantomData;
 
@@ -16,7 +16,7 @@ use crate::numbers::{Coordinates as _, Mask, Pattern, nowhere, real, reported};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
 
 impl<L: Effect> Problem<'_, L> {
-    /// From the guess; where that fails from the identity; where that fails, once more with shortened steps.
+    /// Solves from the guess; if that fails, from the identity; if that fails, once more with shortened updates.
     pub(crate) fn solve(&self, guess: &Vector<L>) -> Result<Root<Group<L>>, StepError> {
         if !self.a.is_finite() {
             return Err(StepError::NonFinite { what: "momentum" });
@@ -26,8 +26,8 @@ impl<L: Effect> Problem<'_, L> {
         equation.careful().solve(start, spent)
     }
 
-    /// Starts all lanes at the guess, but keeps those that [`solve_directly`](Self::solve_directly) has solved without the
-    /// Jacobian while another lane has failed.
+    /// Initial iterates: the guess in all lanes, except those that [`solve_directly`](Self::solve_directly) has solved
+    /// without the Jacobian while another lane has failed.
     fn start(&self, terms: &L::StepTerms, guess: &Vector<L>) -> (Lanes<Group<L>>, u32) {
         if const { !L::JACOBIAN_IS_EXPENSIVE } || !self.goes_by_secants() {
             return (Lanes::starting_at(guess), 0);
@@ -37,22 +37,22 @@ impl<L: Effect> Problem<'_, L> {
         (lanes.keeping(settled, guess), iterations)
     }
 
-    /// Newton's iteration from one guess, refused where it settles on another branch.
+    /// Newton's iteration from one guess; a solution on another branch is an error.
     pub(crate) fn attempt(&self, guess: &Vector<L>) -> Result<Root<Group<L>>, StepError> {
         CalledEquation::new(self).careful().attempt(guess)
     }
 }
 
-/// What a momentum equation answers where a solution is doubtful.
+/// The residuals and Jacobians of a momentum equation that check a doubtful solution.
 trait Equation<G: LieGroup>: System<G> {
     /// The residual and the Jacobian.
     fn newton_system(&self, half: &G::Vector) -> (G::Vector, SquareOf<G>);
 
-    /// Residual and Jacobian with zero on the right side.
+    /// The residual and the Jacobian for a right-hand side of zero.
     fn unforced_system(&self, half: &G::Vector) -> (G::Vector, SquareOf<G>);
 
-    /// `h` times the [right-trivialised Jacobian](Effect::momentum_jacobian). None where neighbours are joined: it lacks the
-    /// blocks between them.
+    /// `h` times the [right-trivialised Jacobian](Effect::momentum_jacobian). None if neighbours are coupled: it lacks
+    /// the blocks between them.
     fn momentum_jacobian(&self, half: &G::Vector) -> Option<SquareOf<G>>;
 }
 
@@ -110,17 +110,17 @@ impl<L: Effect> Equation<Group<L>> for CalledEquation<'_, L> {
     }
 }
 
-/// A solve of this equation.
+/// A solve of one equation with fallbacks.
 struct CarefulSolve<'a, G: LieGroup, R> {
     equation: &'a dyn Equation<G>,
-    /// See [`Problem::safe`].
+    /// The safe determinant, [`Problem::safe`].
     safe: G::Scalar,
     retraction: PhantomData<R>,
 }
 
 impl<G: LieGroup, R: Retraction<G>> CarefulSolve<'_, G, R> {
-    /// From this start; where that fails from the identity; where that fails, once more with shortened steps. With the
-    /// iterations that the start has taken.
+    /// Solves from this start; if that fails, from the identity; if that fails, once more with shortened updates.
+    /// `spent` is the number of iterations before the start.
     fn solve(&self, start: Lanes<G>, spent: u32) -> Result<Root<G>, StepError> {
         let (warm, iterations) = self.iterate(start);
         let accepted = self.accepted(&warm);
@@ -140,8 +140,8 @@ impl<G: LieGroup, R: Retraction<G>> CarefulSolve<'_, G, R> {
         })
     }
 
-    /// Newton's iteration from one guess, refused where it settles on another branch; with shortened steps where it leaves
-    /// what the Lagrangian is defined on.
+    /// Newton's iteration from one guess; a solution on another branch is an error. If the iterates leave the domain of
+    /// the Lagrangian, it starts again with shortened updates.
     fn attempt(&self, guess: &G::Vector) -> Result<Root<G>, StepError> {
         let (mut lanes, mut iterations) = self.iterate(Lanes::starting_at(guess));
         if !lanes.half.is_finite() {
@@ -151,14 +151,14 @@ impl<G: LieGroup, R: Retraction<G>> CarefulSolve<'_, G, R> {
         self.conclude(&lanes, iterations)
     }
 
-    /// Until all lanes have settled or the iterations are used up; how many there were.
+    /// Iterates until all lanes have converged, or the iterations are used up; returns their number.
     fn iterate(&self, mut lanes: Lanes<G>) -> (Lanes<G>, u32) {
         let made = lanes.iterate(MAX_ITERATIONS, |lanes| lanes.iterate_once::<true>(self.equation, self.safe));
         (lanes, made.unwrap_or(MAX_ITERATIONS))
     }
 
-    /// As [`iterate`](Self::iterate), with no update longer than [`LONGEST_DAMPED`], and with half of an update as long as
-    /// the whole of it leaves what the Lagrangian is defined on, such as velocities below that of light.
+    /// Iterates as [`iterate`](Self::iterate) with no update longer than [`LONGEST_DAMPED`], and halves an update while
+    /// it leaves the domain of the Lagrangian, such as velocities below that of light.
     fn iterate_damped(&self, mut lanes: Lanes<G>) -> (Lanes<G>, u32) {
         let made = lanes.iterate(MAX_DAMPED_ITERATIONS, |lanes| {
             let (update, det) = self.update(&lanes.half);
@@ -168,7 +168,7 @@ impl<G: LieGroup, R: Retraction<G>> CarefulSolve<'_, G, R> {
             for _ in 0..MOST_HALVINGS {
                 let residual = self.equation.residual(&(lanes.half - update * factor));
                 let size = residual.dot(&residual);
-                // NaN is below nothing.
+                // A comparison with NaN is false.
                 let is_defined = size.simd_lt(real(f64::INFINITY)) | lanes.settled;
                 if is_defined.all() {
                     break;
@@ -186,15 +186,15 @@ impl<G: LieGroup, R: Retraction<G>> CarefulSolve<'_, G, R> {
         (update, det)
     }
 
-    /// The lanes that have settled on the branch of the identity.
+    /// The lanes that have converged on the branch of the identity.
     fn accepted(&self, lanes: &Lanes<G>) -> Mask<G::Scalar> {
         let candidates = lanes.settled & is_positive(lanes.det) & self.is_solved(&lanes.half);
         let near = R::is_half_near_identity(&lanes.half);
         if near.all() { candidates } else { candidates & (near | self.look_closer(&lanes.half)) }
     }
 
-    /// Far from the identity the trace of the right-trivialised Jacobian must have kept its sign too, that of each body's
-    /// part where there are several. Where the whole of it isn't at hand, nothing is accepted.
+    /// The second check of the branch, far from the identity: the trace of the right-trivialised Jacobian must be
+    /// positive too, for several bodies that of each body's part. Without the whole Jacobian no lane is accepted.
     fn look_closer(&self, half: &G::Vector) -> Mask<G::Scalar> {
         let Some(jacobian) = self.equation.momentum_jacobian(half) else { return nowhere::<G::Scalar>() };
         let pattern = self.equation.pattern();
@@ -202,9 +202,9 @@ impl<G: LieGroup, R: Retraction<G>> CarefulSolve<'_, G, R> {
         is_positive(det) & is_positive(G::Vector::least_trace(&jacobian, pattern.factors))
     }
 
-    /// Whether the momentum equation holds; a vanishing update alone doesn't say so.
+    /// Whether the momentum equation holds, which a vanishing update doesn't imply.
     ///
-    /// The bound is far above rounding, and far below the right side where rounding has swallowed the Jacobian.
+    /// The bound is far above rounding, and far below the right-hand side when rounding has swallowed the Jacobian.
     fn is_solved(&self, half: &G::Vector) -> Mask<G::Scalar> {
         let (residual, _) = self.equation.newton_system(half);
         let (unknown, jacobian) = self.equation.unforced_system(half);
@@ -213,7 +213,7 @@ impl<G: LieGroup, R: Retraction<G>> CarefulSolve<'_, G, R> {
         size(&residual).simd_le(scale * G::Scalar::simd_default_epsilon().simd_sqrt())
     }
 
-    /// The root if all lanes have one, otherwise the reason why a lane has none.
+    /// The root if all lanes have one, otherwise the error of a lane without one.
     fn conclude(&self, lanes: &Lanes<G>, iterations: u32) -> Result<Root<G>, StepError> {
         let accepted = self.accepted(lanes);
         if accepted.all() {

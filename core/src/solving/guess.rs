@@ -1,4 +1,4 @@
-//! The guess of the next increment, by continuing the last ones.
+//! The guess of the next increment, extrapolated from the last ones.
 
 use nalgebra::SimdBool as _;
 
@@ -12,23 +12,23 @@ pub struct Guess<V> {
 }
 
 impl<V: Copy> Guess<V> {
-    /// Before the first step, of an estimate.
+    /// The guess before the first step, from an estimate.
     pub(crate) fn of(half: V) -> Self {
         Self { half, next: half }
     }
 }
 
-/// The guess, but where the last increment is `far`: there it is that increment.
+/// The guess, or in lanes with a `far` last increment that increment.
 ///
-/// Those are the lanes in which coordinates are no longer near the identity at 3/2 of their length. Near the fold they
-/// change too fast for a guess by what has been; a factor of 3/2 keeps well away from it. A selection without the branch
-/// would lie on the way to the next iteration, and cost a tenth of a step.
+/// Far lanes are those in which coordinates are no longer near the identity at 3/2 of their length. Near the fold they
+/// change too fast for an extrapolation; a factor of 3/2 keeps well away from it. A selection without the branch would
+/// lie on the way to the next iteration, and cost a tenth of a step.
 #[hot]
 fn near_of<T: Real, V: Coordinates<T>>(half: V, guess: V, far: Mask<T>) -> V {
     if far.any() { half.select(far, guess) } else { guess }
 }
 
-/// What a declared Lagrangian's step keeps for the next solve: a guess, and the history of increments that it is made of.
+/// The memory of a declared Lagrangian's step for the next solve: a guess, and the history of increments behind it.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct WarmStart<V, H = Parabola<V>> {
     pub(crate) guess: Guess<V>,
@@ -36,7 +36,7 @@ pub struct WarmStart<V, H = Parabola<V>> {
 }
 
 impl<V: Copy, H> WarmStart<V, H> {
-    /// Before the first step, of an estimate of half its coordinates, for a solve that is expensive or isn't.
+    /// The memory before the first step, from an estimate of half its coordinates, for an expensive or a cheap solve.
     pub(crate) fn of<T: Real>(half: V, is_expensive: bool) -> Self
     where
         V: Coordinates<T>,
@@ -45,7 +45,7 @@ impl<V: Copy, H> WarmStart<V, H> {
         Self { guess: Guess::of(half), history: H::none(is_expensive) }
     }
 
-    /// Guesses the next increment by continuing the last ones, the latest of which has half these coordinates.
+    /// Extrapolates the guess from the last increments, the latest of which has half these coordinates.
     #[hot]
     pub(crate) fn follow<T: Real>(&mut self, half: V, far: Mask<T>)
     where
@@ -56,7 +56,7 @@ impl<V: Copy, H> WarmStart<V, H> {
         self.guess.next = near_of(half, self.history.next(last, half), far);
     }
 
-    /// After the first step: before it there was no increment but an estimate.
+    /// Discards the estimate after the first step: no increment was before it.
     pub(crate) fn forget_the_estimate<T: Real>(&mut self)
     where
         V: Coordinates<T>,
@@ -66,7 +66,7 @@ impl<V: Copy, H> WarmStart<V, H> {
         self.history.forget_the_estimate();
     }
 
-    /// The guess for the next solve, as a solve had better read it.
+    /// The guess for the next solve, in a form that is loaded fast.
     ///
     /// A processor hands on what has just been stored to a load of the same place, but a load of two components that
     /// were stored apart waits until both stores are done. The compiler stores them and loads them in pairs, and in

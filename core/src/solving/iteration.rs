@@ -1,42 +1,42 @@
-//! Newton's iteration, of the lanes that haven't settled.
+//! Newton's iteration, for the lanes that haven't converged.
 
 use crate::groups::{LieGroup, Retraction, SquareOf};
 use crate::mechanics::NewtonUpdate;
 use crate::numbers::{Coordinates as _, Mask, Pattern, Real, nowhere, real};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue as _};
 
-/// Quadratic convergence needs at most nine up to 0.999 of the fold; more means that there is no solution.
+/// Limit of the iterations. Quadratic convergence needs at most nine up to 0.999 of the fold.
 pub(crate) const MAX_ITERATIONS: u32 = 20;
-/// Newton's iteration with shortened updates needs more of them.
+/// Limit of the iterations with shortened updates, which converge more slowly.
 pub(crate) const MAX_DAMPED_ITERATIONS: u32 = 60;
-/// The longest update then, of half the coordinates: half a radian.
+/// Length of the longest shortened update, in half the coordinates: half a radian.
 pub(crate) const LONGEST_DAMPED: f64 = 0.25;
-/// Of an update that leaves what the Lagrangian is defined on.
+/// Limit of the halvings of an update that leaves the domain of the Lagrangian.
 pub(crate) const MOST_HALVINGS: u32 = 40;
-/// The square of the last update relative to the unknown's, in roundings.
+/// Criterion of convergence: the square of the last update relative to the unknown's, in roundings.
 ///
 /// Convergence is quadratic: a relative update of `√ε/8` is followed by one of the order of `ε/64`. Stopping earlier
 /// would make the energy drift; the residual can't be used, as it stagnates at its rounding floor.
 pub(crate) const SETTLED: f64 = 1.0 / 64.0;
 
-/// A Newton iteration: its update, and its Jacobian in factors, for another update.
+/// The result of a Newton iteration: its update, and the factors of its Jacobian for another update.
 pub(super) type Iteration<G> = NewtonUpdate<<G as LieGroup>::Vector, SquareOf<G>, <G as LieGroup>::Scalar>;
 
-/// A momentum equation as Newton's iteration sees it.
+/// The functions of a momentum equation that Newton's iteration calls.
 pub(super) trait System<G: LieGroup> {
-    /// What is known of the Jacobian.
+    /// The sparsity of the Jacobian.
     fn pattern(&self) -> Pattern;
 
-    /// One of Newton's iterations from half the coordinates.
+    /// The update of Newton's iteration at half the coordinates.
     fn newton_update(&self, half: &G::Vector) -> Iteration<G>;
 
-    /// The update at `half` by the Jacobian of another place, which is given in factors.
+    /// The update at `half` with the Jacobian of another iterate, by its factors.
     #[hot]
     fn simplified(&self, factors: &SquareOf<G>, det: G::Scalar, half: &G::Vector) -> G::Vector {
         G::Vector::solve_again_with(factors, det, self.pattern(), &self.residual(half))
     }
 
-    /// The residual alone.
+    /// The residual of the momentum equation alone.
     fn residual(&self, half: &G::Vector) -> G::Vector;
 }
 
@@ -45,20 +45,20 @@ pub(super) trait System<G: LieGroup> {
 pub(crate) struct Root<G: LieGroup> {
     /// Half the coordinates of `F`, `y = ξ/2`.
     pub(crate) half: G::Vector,
-    /// `F − I`.
+    /// The increment `F − I`.
     pub(crate) increment: G::Matrix,
-    /// Iterations, those of abandoned attempts included.
+    /// Number of iterations, including those of abandoned attempts.
     pub(crate) iterations: u32,
-    /// The lanes that 3/2 of `half` would take out of where a solution is surely the wanted one.
+    /// The lanes in which `3/2 half` lies outside of the ball where a solution is surely the wanted one.
     pub(crate) far: Mask<G::Scalar>,
     pub(crate) kick: Kick<G>,
 }
 
-/// The [`moving_kick`](crate::mechanics::Residual::moving_kick) that a solve has come by.
+/// The [`moving_kick`](crate::mechanics::Residual::moving_kick) that a solve evaluates on its way.
 #[derive(Clone, Copy)]
 pub(crate) struct Kick<G: LieGroup> {
     pub(crate) value: G::Vector,
-    /// The lanes in which it is that of the solution, to its rounding.
+    /// The lanes in which the kick is that of the solution, to its rounding.
     pub(crate) found: Mask<G::Scalar>,
 }
 
@@ -74,7 +74,7 @@ impl<G: LieGroup> Root<G> {
         Self { far: far::<R, G>(half), ..Self::of(half, R::increment_of_half(half), iterations) }
     }
 
-    /// With no lane far from the identity, and no kick.
+    /// A root with no lane far from the identity, and without a kick.
     #[hot]
     pub(super) fn of(half: &G::Vector, increment: G::Matrix, iterations: u32) -> Self {
         Self { half: *half, increment, iterations, far: nowhere::<G::Scalar>(), kick: Kick::none() }
@@ -84,7 +84,8 @@ impl<G: LieGroup> Root<G> {
 /// The iterates of all lanes.
 pub(super) struct Lanes<G: LieGroup> {
     pub(super) half: G::Vector,
-    /// The determinant of the last Jacobian: at the iterate before `half`, or before two [short updates](super::reused_jacobian).
+    /// The determinant of the last Jacobian: at the iterate before `half`, or before two [short
+    /// updates](super::reused_jacobian).
     pub(super) det: G::Scalar,
     pub(super) settled: Mask<G::Scalar>,
     pub(super) kick: Kick<G>,
@@ -96,9 +97,9 @@ impl<G: LieGroup> Lanes<G> {
         Self { half: *half, det: real(0.0), settled: nowhere::<G::Scalar>(), kick: Kick::none() }
     }
 
-    /// Iterates until all lanes have settled, at most `most` times. `once` makes an iteration, and returns whether a lane
-    /// has settled by a [second one](super::reused_jacobian) in it. Returns how many there were; `None` where some lane
-    /// hasn't settled.
+    /// Iterates until all lanes have converged, at most `most` times. `once` makes an iteration, and returns whether a
+    /// lane has converged by a [second update](super::reused_jacobian) in it. Returns the number of iterations; `None`
+    /// if some lane hasn't converged.
     #[hot]
     pub(super) fn iterate(&mut self, most: u32, mut once: impl FnMut(&mut Self) -> bool) -> Option<u32> {
         for iteration in 1..=most {
@@ -110,7 +111,7 @@ impl<G: LieGroup> Lanes<G> {
         None
     }
 
-    /// Takes `part` of the update in the lanes that haven't settled.
+    /// Adds `part` of the update in the lanes that haven't converged.
     #[hot]
     pub(super) fn advance(&mut self, update: &G::Vector, det: G::Scalar, part: &G::Vector) {
         let next = self.half - *part;
@@ -120,7 +121,7 @@ impl<G: LieGroup> Lanes<G> {
         self.settled = self.settled | settled;
     }
 
-    /// Keeps the lanes of the mask, and puts the others at `start`.
+    /// Retains the iterates in the lanes of the mask, and moves the others to `start`.
     pub(super) fn keeping(mut self, accepted: Mask<G::Scalar>, start: &G::Vector) -> Self {
         self.half = self.half.select(accepted, *start);
         self.settled = accepted;
@@ -146,7 +147,7 @@ pub(super) fn far<R: Retraction<G>, G: LieGroup>(half: &G::Vector) -> Mask<G::Sc
     !R::is_half_well_near_identity(half)
 }
 
-/// The sign that the Jacobian's determinant has at the identity, where it is that of the inertia.
+/// Whether a determinant has its sign at the identity, that of the inertia.
 #[hot]
 pub(super) fn is_positive<T: Real>(value: T) -> Mask<T> {
     value.simd_gt(real(0.0))

@@ -1,10 +1,10 @@
-//! A solve of SIMD lanes that all take the same way.
+//! A solve of SIMD lanes that all need the same iterations.
 //!
-//! They nearly always do: bodies of one kind at one step need as many iterations. Then no lane has to be kept from what
-//! the others do, and nothing is selected. That matters most for lanes which are arrays: a mask of theirs is a truth
-//! value for each lane, and selecting by it takes vectors apart and puts them together again.
+//! They nearly always do: bodies of one kind at one step need as many iterations. Then no lane has to be protected from
+//! updates of the others, and nothing is selected by masks. That matters most for lanes which are arrays: their mask is
+//! a truth value for each lane, and selecting by it takes vectors apart and puts them together again.
 //!
-//! Where the lanes part, they go on by masks from where they are.
+//! If the lanes part, they continue with masks from the current iterate.
 
 use core::hint::black_box;
 
@@ -32,7 +32,7 @@ impl<L: Effect> Problem<'_, L> {
             return self.usual(&half, made.det, 1, largest);
         }
         let mut started = None;
-        // As in `reuse_jacobian`: with one function for both, lanes were a quarter slower.
+        // Repeats `reuse_jacobian`: with one function for both, lanes were a quarter slower.
         if REUSE
             && has_no_derivatives::<Scalar<L>>()
             && let Some(factors) = &made.factors
@@ -45,8 +45,8 @@ impl<L: Effect> Problem<'_, L> {
                 if settled.all() {
                     return self.usual(&half, made.det, 2, largest);
                 }
-                // Through memory: what is made of lanes by masks would otherwise be mixed with the code above, which
-                // takes half as long again.
+                // The iterates pass through memory. Otherwise the compiler mixes the code with masks into the code
+                // above, which takes half as long again.
                 let (half, det, settled) = black_box((half, made.det, settled));
                 started = Some(Lanes { half, det, settled, kick: Kick::none() });
             }

@@ -1,16 +1,16 @@
-//! The largest fraction of a step that will do.
+//! The largest fraction of a step that can be solved.
 
 roots!();
 
-/// The largest fraction of one that passes, to six digits: one itself if that does, `None` if nothing above 10⁻³⁰⁰
-/// does.
+/// The largest fraction up to one that passes, to six digits; `None` if no fraction above 10⁻³⁰⁰ passes.
 ///
-/// What is returned passes. Where larger fractions pass again beyond one that fails, any of these bounds may be found.
+/// The returned fraction passes. If larger fractions pass again beyond one that fails, any of these bounds may be
+/// found.
 pub(crate) fn largest_fraction(passes: impl Fn(f64) -> bool) -> Option<f64> {
     if passes(1.0) {
         return Some(1.0);
     }
-    // Halving down to a fraction that passes first keeps the digits where only a tiny one does.
+    // Halving until a fraction passes retains the digits of a tiny one.
     let mut low = 1.0;
     while !passes(low) {
         low *= 0.5;
@@ -26,9 +26,9 @@ pub(crate) fn largest_fraction(passes: impl Fn(f64) -> bool) -> Option<f64> {
     Some(low)
 }
 
-/// Rounded towards zero, as a step a little larger than the largest wouldn't do.
+/// A step rounded towards zero, as a step slightly above the largest can't be solved.
 pub(crate) fn six_digits(step: f64) -> f64 {
     let unit = 10.0_f64.powf(5.0 - step.abs().log10().floor());
-    // Not for zero and what is next to it.
+    // The unit isn't finite for zero and its neighbours.
     if unit.is_finite() { (step * unit).trunc() / unit } else { step }
 }

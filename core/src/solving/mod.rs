@@ -1,8 +1,8 @@
-//! Solving the momentum equation (2.7) for the increment `F`, and what is known of its solutions.
+//! Solving the momentum equation (2.7) for the increment `F`, and bounds on its solutions.
 //!
 //! [`problem`] is the solve that a step usually makes, by Newton's [`iteration`]; [`reused_jacobian`], [`secants`] and
-//! [`lanes`] are its cheaper and its wider forms, [`careful`] has the fallbacks, and [`branch`] the check that the solution
-//! is the one that continues `F = I`. Nothing here knows of states or of time.
+//! [`lanes`] are its cheaper and its wider forms, [`careful`] has the fallbacks, and [`branch`] the check that the
+//! solution is on the branch of `F = I`. This room has neither states nor time.
 
 mod branch;
 mod careful;

@@ -1,12 +1,14 @@
 //! Newton's iteration for the momentum equation (2.7), with a check of the branch.
 //!
-//! The equation has several solutions; the wanted one continues `F = I` as the right side grows from zero. On the way the
-//! determinant of the Jacobian never vanishes, so its sign at a solution tells. For (3.13) with a physical body
-//! `det = tr(P) tr(Fᵀ adj J_d)/h² − det J_d/h³` with `P = F J_d/h` and `det J_d ≥ 0` keeps `tr P` from zero while
-//! `det > 0`, so both together single out the component of the identity; below 90° the determinant alone does.
+//! The equation has several solutions; the wanted one continues `F = I` as the right-hand side grows from zero. On the
+//! way the determinant of the Jacobian never vanishes, so its sign at a solution is a necessary condition. For (3.13)
+//! with a physical body `det = tr(P) tr(Fᵀ adj J_d)/h² − det J_d/h³` with `P = F J_d/h` and `det J_d ≥ 0` keeps `tr P`
+//! from zero while `det > 0`, so both signs together single out the component of the identity; below 90° the
+//! determinant alone does.
 //!
-//! What this can't solve at once is solved [with care](super::careful). SIMD lanes iterate [together](super::lanes), each
-//! with the bits of a scalar, but for the series of logarithms and exponentials, which all share.
+//! Problems that this solve refuses go to the one [with fallbacks](super::careful). SIMD lanes iterate
+//! [together](super::lanes), each with the bits of a scalar, except for the series of logarithms and exponentials,
+//! which all lanes share.
 
 use super::iteration::{Iteration, Lanes, MAX_ITERATIONS, Root, System, far, is_positive};
 use crate::groups::Retraction;
@@ -14,20 +16,20 @@ use crate::mechanics::{Effect, Group, Scalar, Square, Vector, pattern};
 use crate::numbers::{Coordinates as _, Pattern};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue as _};
 
-/// One momentum equation to be solved.
+/// A momentum equation with its right-hand side.
 pub(crate) struct Problem<'a, L: Effect> {
     pub(crate) scene: &'a L,
     pub(crate) constants: &'a L::Constants,
     pub(crate) a: Vector<L>,
     pub(crate) w: &'a L::Advected,
     pub(crate) h: Scalar<L>,
-    /// [`trusted_radius`](super::trusted_radius), or zero.
+    /// The radius for secants, [`trusted_radius`](super::trusted_radius), or zero.
     pub(crate) trusted: Scalar<L>,
-    /// A [`safe`](super::safe) determinant.
+    /// A [`safe`](super::safe) determinant for a reused Jacobian.
     pub(crate) safe: Scalar<L>,
 }
 
-/// The equation where steps are made: inlined, so that all of a solve can stay in registers.
+/// The inlined equation of a step, so that the data of a solve can stay in registers.
 pub(super) struct InlinedEquation<'a, L: Effect> {
     pub(super) constants: &'a L::Constants,
     pub(super) terms: &'a L::StepTerms,
@@ -50,12 +52,13 @@ impl<L: Effect> System<Group<L>> for InlinedEquation<'_, L> {
 
 #[hot]
 impl<L: Effect> Problem<'_, L> {
-    /// The solution from the guess, if it is near the identity and nothing is doubtful.
+    /// The solution from the guess, if it is near the identity and passes all checks.
     ///
-    /// What it returns is what [`solve`](Self::solve) returns. A right side whose square is above `largest` is
+    /// It is the solution that [`solve`](Self::solve) returns. A right-hand side whose square is above `largest` is
     /// doubtful: the Jacobian is lost in its rounding, and an update may vanish far from any solution.
     ///
-    /// `REUSE` says whether a Jacobian may be [reused](super::reused_jacobian). Nothing here is lent to a function that isn't inlined; that is a sixth of the time of a step.
+    /// `REUSE` says whether a Jacobian may be [reused](super::reused_jacobian). No reference is passed to a function
+    /// that isn't inlined; that saves a sixth of the time of a step.
     pub(crate) fn solve_directly<const REUSE: bool>(
         &self,
         guess: &Vector<L>,
@@ -79,7 +82,7 @@ impl<L: Effect> Problem<'_, L> {
         self.usual(&lanes.half, lanes.det, iterations, largest)
     }
 
-    /// What an iteration has settled on, if nothing about it is doubtful.
+    /// The root at the end of an iteration, if it passes all checks.
     pub(super) fn usual(
         &self,
         half: &Vector<L>,
@@ -88,7 +91,7 @@ impl<L: Effect> Problem<'_, L> {
         largest: Scalar<L>,
     ) -> Option<Root<Group<L>>> {
         let usual = is_positive(det) & self.a.dot(&self.a).simd_lt(largest);
-        // Most are nearer than they have to be.
+        // The bound with a margin is tested first: most solutions satisfy it.
         let far = far::<L::Retraction, _>(half);
         if !usual.all() || far.any() && !L::Retraction::is_half_near_identity(half).all() {
             return None;
@@ -98,8 +101,8 @@ impl<L: Effect> Problem<'_, L> {
     }
 }
 
-/// [`Effect::newton_system`] for what is seldom asked. A scene has it inlined where steps are made and here, and no
-/// third time: its derived code is most of what a user's build compiles.
+/// [`Effect::newton_system`] for rare calls. A scene's derived code is most of a user's build, so it is compiled twice
+/// only: inlined in a step, and here.
 #[inline(never)]
 pub(crate) fn newton_system<L: Effect>(
     constants: &L::Constants,
@@ -109,7 +112,7 @@ pub(crate) fn newton_system<L: Effect>(
     L::newton_system(constants, terms, half)
 }
 
-/// [`Effect::step_terms`] for what is seldom asked, as [`newton_system`].
+/// [`Effect::step_terms`] for rare calls, as [`newton_system`].
 #[inline(never)]
 pub(crate) fn step_terms<L: Effect>(constants: &L::Constants, a: &Vector<L>, w: &L::Advected) -> L::StepTerms {
     L::step_terms(constants, a, w)

@@ -25,24 +25,23 @@ use crate::groups::LieGroup;
 use crate::numbers::{Coordinates as _, Mask, Real, real};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue};
 
-/// How much of `y` may be missing at the end, in its roundings. It is less than the rounding of the residual that the
-/// last update was made of.
+/// Error of `y` allowed at the end, in its roundings. It is less than the rounding of the residual in the last update.
 const REST: f64 = 1.0 / 16.0;
-/// Its square, of `f64`, as lengths are given by their squares.
+/// The square of the allowed error for `f64`, as lengths are passed as squares.
 const REST_OF_SIZE: f64 = (REST * f64::EPSILON) * (REST * f64::EPSILON);
-/// The part of the determinant at rest above which a determinant is safe.
+/// A determinant is safe above this part of the determinant at rest.
 const SAFE: f64 = 1.0 / 16.0;
-/// The `C` that a first update is judged by: that of the heavy tops of the thesis at common steps. A top with a larger
-/// one wastes a residual in a narrow range of updates.
+/// The `C` that is assumed for a first update: that of the heavy tops of the thesis at common steps. A top with a
+/// larger one wastes a residual in a narrow range of updates.
 const TYPICAL_CURVATURE: f64 = 1.0 / 16.0;
 
-/// The determinant that [`Problem::safe`](super::Problem::safe) is, from that of the Jacobian at rest.
+/// The determinant [`Problem::safe`](super::Problem::safe), from that of the Jacobian at rest.
 pub(crate) fn safe<T: Real>(at_rest: T) -> T {
     at_rest * real(SAFE)
 }
 
-/// Whether iterations that converge at a rate will do: only with plain floating-point numbers. The derivatives that a
-/// dual number carries converge with the quadratic iteration as its values do, but lag behind them in others.
+/// Whether linearly converging iterations will do: only with plain floating-point numbers. The derivatives of a dual
+/// number converge with its values in the quadratic iteration, but lag behind them in others.
 #[hot]
 pub(super) fn has_no_derivatives<T: Real>() -> bool {
     let element = TypeId::of::<<T as SimdValue>::Element>();
@@ -51,9 +50,9 @@ pub(super) fn has_no_derivatives<T: Real>() -> bool {
 
 #[hot]
 impl<G: LieGroup> Lanes<G> {
-    /// An iteration of the lanes that haven't settled. With `REUSE`, the lanes that it has brought near enough make one
-    /// more with the same Jacobian. Where steps are so long that they seldom can, asking costs more than it saves.
-    /// Returns whether a lane has settled by that.
+    /// An iteration of the lanes that haven't converged. With `REUSE`, lanes that are near enough after it make one
+    /// more with the same Jacobian. If steps are so long that they seldom are, the test costs more than it saves.
+    /// Returns whether a lane has converged by the second update.
     pub(super) fn iterate_once<const REUSE: bool>(
         &mut self,
         equation: &(impl System<G> + ?Sized),
@@ -64,7 +63,7 @@ impl<G: LieGroup> Lanes<G> {
         self.reuse_jacobian::<REUSE>(equation, &made, safe)
     }
 
-    /// The second part of [`iterate_once`](Self::iterate_once).
+    /// The second part of [`iterate_once`](Self::iterate_once), with the same Jacobian.
     pub(super) fn reuse_jacobian<const REUSE: bool>(
         &mut self,
         equation: &(impl System<G> + ?Sized),
@@ -89,43 +88,44 @@ impl<G: LieGroup> Lanes<G> {
     }
 }
 
-/// Whether an update will be enough after one with the square `first` that has led to one with the square `size`:
-/// `2C|u₁|³ ≤ REST ε|y|`, which is what is missing after an update `|u₂| = C|u₁|²` if `C` is one elsewhere.
+/// Whether a second update will be the last, after a first with the square `first` that has led to `|y|² = size`:
+/// `2C|u₁|³ ≤ REST ε|y|` bounds the error after `|u₂| = C|u₁|²` if `C` is one in other directions.
 #[hot]
 pub(crate) fn may_suffice<T: Real>(first: T, size: T) -> Mask<T> {
     let tolerance = T::simd_default_epsilon() * real(0.5 * REST / TYPICAL_CURVATURE);
     (first * first * first).simd_le(size * (tolerance * tolerance))
 }
 
-/// Whether it was: `2|u₁||u₂| max(|u₂|/|u₁|², 1) ≤ REST ε|y|`. All are squares.
+/// Whether it was the last: `2|u₁||u₂| max(|u₂|/|u₁|², 1) ≤ REST ε|y|`. Arguments are squares.
 #[hot]
 pub(crate) fn has_sufficed<T: Real>(first: T, second: T, size: T) -> Mask<T> {
     let tolerance = T::simd_default_epsilon() * real(0.5 * REST);
     (second * first.simd_max(second / first)).simd_le(size * (tolerance * tolerance))
 }
 
-/// The square of `C`, once two updates of Newton's iteration have told it along the first, and at least one.
+/// The square of `C`, estimated from two updates of Newton's iteration along the first, and at least one.
 #[derive(Clone, Copy)]
 pub(crate) struct Curvature(Option<f64>);
 
-// Lengths are given by their squares.
+// All lengths are passed as squares.
 #[hot]
 impl Curvature {
-    /// By an update of Newton's iteration and the one before, if that was another.
+    /// The estimate from an update of Newton's iteration and the one before, if there was one.
     pub(crate) fn told(before: Option<f64>, update: f64) -> Self {
         Self(before.map(|before| (update / (before * before)).max(1.0)))
     }
 
-    /// Whether an update of Newton's iteration was enough: [`SETTLED`], or `C|u|² ≤ REST ε|y|`.
+    /// Whether an update of Newton's iteration was the last: by [`SETTLED`], or by `C|u|² ≤ REST ε|y|`.
     ///
-    /// `C` is told along the update before. Along this one it may be larger, by the ratio of inertias, by which roundings
-    /// are magnified, too. Of chains with slim or heavy links no more is missing then than where [`SETTLED`] is asked for.
+    /// `C` is estimated along the update before. Along this one it may be larger, by the ratio of inertias, by which
+    /// roundings are magnified, too. For chains with slim or heavy links the error is then no larger than with
+    /// [`SETTLED`].
     pub(crate) fn has_settled(self, update: f64, size: f64) -> bool {
         let by_curvature = |square| square * update * update <= size * REST_OF_SIZE;
         update <= size * (f64::EPSILON * SETTLED) || self.0.is_some_and(by_curvature)
     }
 
-    /// Whether another with the same Jacobian will be: `2C²|u₁|³ ≤ REST ε|y|`, or [`may_suffice`].
+    /// Whether a second update with the same Jacobian will be the last: `2C²|u₁|³ ≤ REST ε|y|`, or [`may_suffice`].
     pub(crate) fn may_suffice(self, first: f64, size: f64) -> bool {
         match self.0 {
             Some(square) => 4.0 * square * square * (first * first * first) <= size * REST_OF_SIZE,
@@ -133,10 +133,10 @@ impl Curvature {
         }
     }
 
-    /// Whether it was: [`has_sufficed`], with what the updates before have told of `C` where that is more.
+    /// Whether it was: [`has_sufficed`] with the larger of both estimates of `C`.
     ///
-    /// Where `u₂` is all rounding it tells too large a `C`, `|u₂|/|u₁|²`. But an update `u₁` that hasn't settled is longer
-    /// than `√ε|y|/8`, and with that `2|u₂|²/|u₁| ≤ ε|y|/16` for roundings of up to `512 ε|y|`.
+    /// If `u₂` is all rounding, the estimate `C = |u₂|/|u₁|²` is too large. But an update `u₁` that hasn't converged is
+    /// longer than `√ε|y|/8`, and with that `2|u₂|²/|u₁| ≤ ε|y|/16` for roundings of up to `512 ε|y|`.
     pub(crate) fn has_sufficed(self, first: f64, second: f64, size: f64) -> bool {
         let along = (self.0.unwrap_or(1.0) * first).max(second / first);
         4.0 * along * second <= size * REST_OF_SIZE
@@ -149,7 +149,8 @@ mod tests {
 
     const EPSILON: f64 = f64::EPSILON;
 
-    /// With `C = 1/16`, at the length of the first update after which a second is just enough: `|u₁|³ = ε|y|/2`.
+    /// The two criteria agree for `C = 1/16`, at the first update after which a second is just enough:
+    /// `|u₁|³ = ε|y|/2`.
     #[test]
     fn what_is_expected_is_what_is_asked_for() {
         for size in [1e-80_f64, 1e-8, 0.06, 1.0] {
@@ -163,7 +164,7 @@ mod tests {
         }
     }
 
-    /// A larger `C` than one is taken from the updates; with a smaller one it is one.
+    /// The estimate of `C` counts if it is above one; below, it counts as one.
     #[test]
     fn a_curvature_that_the_updates_tell_counts() {
         let (first, size) = (1e-6_f64, 0.06_f64);
@@ -178,8 +179,8 @@ mod tests {
         assert!(!enough(1.0, f64::NAN) && !has_sufficed(0.0, f64::NAN, size));
     }
 
-    /// The iterates of `y' = C y²`, whose solution is zero, are their own errors, and the next is below a sixteenth of a
-    /// rounding of `y = 1e-4` where, and only where, the curvature that two of them tell says so.
+    /// The iterates of `y' = C y²`, whose solution is zero, are their own errors, and the next is below a sixteenth of
+    /// a rounding of `y = 1e-4` if and only if the estimate of two updates implies it.
     #[test]
     fn a_curvature_of_two_updates_tells_what_is_missing() {
         let (size, rest) = (1e-4_f64, EPSILON * 1e-4 / 16.0);
@@ -188,7 +189,7 @@ mod tests {
             for exponent in 30..90 {
                 let before = 1.2_f64.powi(-exponent) * 0.1;
                 let update = curvature * before * before;
-                // What SETTLED allows is asked for elsewhere.
+                // Updates that SETTLED accepts are tested elsewhere.
                 if update < 4e-9 * size {
                     break;
                 }
@@ -204,7 +205,8 @@ mod tests {
         }
     }
 
-    /// A `C` below one counts as one. Nothing is told by one update, nor by one after none: then it is as [`SETTLED`] says.
+    /// An estimate of `C` below one counts as one. One update gives no estimate, nor does one after zero: [`SETTLED`]
+    /// decides.
     #[test]
     fn a_curvature_is_one_at_least() {
         let size = 1e-4_f64;
@@ -221,7 +223,7 @@ mod tests {
         assert!(settles(Curvature::told(Some(0.0), 0.0), 0.0));
     }
 
-    /// What is missing after another update is judged by the larger of what was told of `C` before and what it tells itself.
+    /// The larger of the two estimates of `C` bounds the error after the second update.
     #[test]
     fn the_larger_of_two_curvatures_counts() {
         let first = 1e-6_f64;
@@ -229,7 +231,7 @@ mod tests {
             let told = Curvature::told(Some(1e-10), (before * 1e-10_f64).powi(2));
             let second = along * first * first;
             let enough = |size: f64| told.has_sufficed(first * first, second * second, size * size);
-            // `2C|u₁||u₂| = ε|y|/16`.
+            // The limit has `2C|u₁||u₂| = ε|y|/16`.
             let limit = 32.0 * f64::max(before, along).max(1.0) * first * second / EPSILON;
             assert!(enough(limit * 1.001) && !enough(limit * 0.999), "{before} {along}");
         }
@@ -238,7 +240,8 @@ mod tests {
         assert!(told.has_sufficed(0.0, 0.0, 1.0));
     }
 
-    /// A second update that is all rounding is enough after one that just hasn't settled, up to 512 roundings.
+    /// A second update that is all rounding, up to 512 roundings, is the last after a first that hasn't quite
+    /// converged.
     #[test]
     fn roundings_suffice() {
         let told = Curvature::told(Some(1e-10), 1e-20);

@@ -1,40 +1,39 @@
 //! The solve without the Jacobian, for Lagrangians to which it costs more than several residuals.
 //!
-//! In its place stands that of the free body with the same inertia,
-//! [`free_momentum_tangent`](Retraction::free_momentum_tangent), made once a solve at the guess, and Broyden's
-//! good updates correct it along the steps made (in the form that keeps the steps and no matrix; C. T. Kelley,
-//! *Iterative Methods for Linear and Nonlinear Equations*, SIAM 1995, section 7.3). For a Lagrangian of order four or
-//! more the first step already gains a factor of `h²|ξ|²` and `h²` times the curvature of the potential.
+//! The free body's Jacobian with the same inertia, [`free_momentum_tangent`](Retraction::free_momentum_tangent),
+//! replaces it. It is computed once a solve at the guess, and Broyden's good updates correct it along the updates made
+//! (in the form that stores the updates and no matrix; C. T. Kelley, *Iterative Methods for Linear and Nonlinear
+//! Equations*, SIAM 1995, section 7.3). For a Lagrangian of order four or more the first update already gains a factor
+//! of `h²|ξ|²` and `h²` times the curvature of the potential.
 //!
-//! # When to stop
+//! # Convergence
 //!
-//! Newton's updates tell by their size, as they square. Here they shrink by a factor that has to be watched: `θ`, the
-//! largest ratio of an update to the one before in this solve. What is missing after the update `s` is
-//! `θ|s| + θ²|s| + …`, so the iteration ends when `θ|s| ≤ ε|ξ|/16`, the residual of that being below its own rounding.
-//! Broyden's iteration is faster than linear, but not evenly: a ratio can be small by chance, as when an update happens
-//! to lie where the model is good. So the largest of them counts, and no solve ends with one update.
+//! Newton's updates square from one to the next, so that the size of one suffices. Secant updates shrink by a factor
+//! that has to be measured: `θ`, the largest ratio of an update to the one before in this solve. The error after the
+//! update `s` is `θ|s| + θ²|s| + …`, so the iteration ends when `θ|s| ≤ ε|ξ|/16`: that moves the residual by less than
+//! its rounding. Broyden's iteration is faster than linear, but not evenly: a ratio can be small by chance, as when an
+//! update happens to lie where the model is good. So the largest of them counts, and no solve ends with one update.
 //!
-//! Updates of some roundings of `ξ` are made of roundings, and their ratios mean nothing; after two such there is
-//! nothing more to gain.
+//! Updates of some roundings of `ξ` consist of rounding, and their ratios mean nothing; two such updates end the solve.
 //!
 //! # The kick
 //!
-//! The last gradient, before the last update, also gives the diamond. Where that update would change it by less than a
-//! part of the momentum's rounding, at the rate of the update before, no gradient is evaluated for the diamond alone.
+//! The last gradient, before the last update, also gives the diamond. If that update would change the diamond by less
+//! than a part of the momentum's rounding, at the rate of the update before, no gradient is evaluated for the diamond
+//! alone.
 //!
 //! # The branch
 //!
-//! Without a Jacobian there is no determinant to look at. In its place stand two findings, and where one is missing the
-//! solve starts again with Newton's iteration:
+//! There is no Jacobian, and so no determinant to check. Two criteria replace it; if one of them fails, the solve
+//! starts again with Newton's iteration:
 //!
-//! - `ξ` lies in a ball where, as has been looked at when the flow was made, the model is near the Jacobian in all
-//!   directions, see [`trusted_radius`](super::branch::trusted_radius). Where `‖I − B⁻¹A‖ < 1` for the model `B` and
-//!   the Jacobian `A`, `det A` has the sign of `det B`, which on that ball is that at the identity. A ball that
-//!   contains the identity has no fold to cross, then, and a solution in it is the one that Newton's iteration would
-//!   have accepted.
-//! - Each update has been shorter than a quarter of the last. Updates alone couldn't tell: those of a
-//!   motion with a symmetry, such as a planar pendulum's, lie in one plane, and say nothing about the directions across
-//!   it. But what the samples of the ball have missed is seen by these.
+//! - `ξ` lies in the ball where, by samples taken when the flow was constructed, the model is near the Jacobian in all
+//!   directions, see [`trusted_radius`](super::branch::trusted_radius). If `‖I − B⁻¹A‖ < 1` for the model `B` and the
+//!   Jacobian `A`, `det A` has the sign of `det B`, which on that ball is that at the identity. So a ball that contains
+//!   the identity has no fold to cross, and a solution in it is the one that Newton's iteration would have accepted.
+//! - Each update is shorter than a quarter of the last. Updates alone aren't enough: those of a motion with a symmetry,
+//!   such as a planar pendulum's, lie in one plane, and don't test the directions across it. But they test what lies
+//!   between the samples of the ball.
 
 use super::iteration::Lanes;
 use super::problem::Problem;
@@ -44,29 +43,29 @@ use crate::mechanics::{Effect, Group, Residual, Scalar, Vector};
 use crate::numbers::{Coordinates as _, Mask, nowhere, real};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
 
-/// Contraction by a quarter may need more, but then Newton's iteration is cheaper.
+/// Limit of the updates. Beyond, Newton's iteration is cheaper.
 const MAX_UPDATES: usize = 8;
-/// Updates must shrink at least by this.
+/// Ratio by which updates must shrink at least.
 const CONTRACTION: f64 = 0.25;
-/// What may be missing at the end, in roundings of `ξ`.
+/// Error allowed at the end, in roundings of `ξ`.
 const REST: f64 = 1.0 / 16.0;
-/// Updates below this many roundings of `ξ` may consist of them.
+/// Updates below this many roundings of `ξ` may consist of rounding.
 const FLOOR: f64 = 32.0;
 
-/// The updates made, and how they have shrunk. Lengths are squared.
+/// The updates of a solve, and their contraction. Lengths are squared.
 struct Updates<L: Effect> {
     made: [Vector<L>; MAX_UPDATES],
     lengths: [Scalar<L>; MAX_UPDATES],
     count: usize,
-    /// `θ²`.
+    /// The square `θ²`.
     contraction: Scalar<L>,
-    /// The square of the most that an update has changed the kick by, for its length.
+    /// The square of the largest change of the kick by an update, relative to the update's length.
     kick_slope: Scalar<L>,
-    /// Whether the last was at the level of rounding.
+    /// Whether the last update was at the level of rounding.
     at_floor: Mask<Scalar<L>>,
 }
 
-/// What an update says of each lane.
+/// The verdict on an update in each lane.
 struct Verdict<L: Effect> {
     settled: Mask<Scalar<L>>,
     doubtful: Mask<Scalar<L>>,
@@ -85,7 +84,7 @@ impl<L: Effect> Updates<L> {
         }
     }
 
-    /// The update that the corrected model makes of `plain`, that of the model itself.
+    /// The update of the corrected model, from that of the model itself, `plain`.
     fn corrected(&self, plain: Vector<L>) -> Vector<L> {
         let Some(last) = self.count.checked_sub(1) else { return plain };
         let along = |k: usize, update: &Vector<L>| self.made[k].dot(update) / self.lengths[k];
@@ -97,7 +96,7 @@ impl<L: Effect> Updates<L> {
         update * (one / (one - along(last, &update)))
     }
 
-    /// Takes notice of the update that has led to `half`.
+    /// Records the update that has led to `half`.
     fn record(&mut self, update: Vector<L>, half: &Vector<L>) -> Verdict<L> {
         let rounding = Scalar::<L>::simd_default_epsilon();
         let (length, size) = (update.dot(&update), half.dot(half));
@@ -111,7 +110,7 @@ impl<L: Effect> Updates<L> {
         if let Some(last) = self.count.checked_sub(1) {
             let ratio = length / self.lengths[last];
             let shrinks = ratio.simd_le(limit);
-            // At the floor a larger ratio is one of roundings.
+            // At the floor a larger ratio consists of rounding.
             self.contraction = self.contraction.simd_max(ratio.select(shrinks, limit));
             let is_enough = (length * self.contraction).simd_le(within(REST));
             verdict.settled = verdict.settled | is_enough | (at_floor & self.at_floor);
@@ -132,8 +131,8 @@ impl<L: Effect> Problem<'_, L> {
         L::jacobian_is_expensive(self.constants) && has_no_derivatives::<Scalar<L>>()
     }
 
-    /// From the guess until no lane goes on; `settled` are those whose solution is beyond doubt. With the number of
-    /// residuals.
+    /// Iterates from the guess until no lane continues; in the lanes `settled` the solution passes both checks. Returns
+    /// the number of residuals, too.
     pub(super) fn iterate_by_secants(&self, terms: &L::StepTerms, guess: &Vector<L>) -> (Lanes<Group<L>>, u32) {
         let model = L::Retraction::free_momentum_tangent(&self.scene.inertia(self.w), &(*guess + *guess));
         let mut lanes = Lanes::<Group<L>>::starting_at(guess);
@@ -163,8 +162,8 @@ impl<L: Effect> Problem<'_, L> {
         (lanes, iterations)
     }
 
-    /// Whether this update changes the kick by less than its rounding, judged by what those before have changed; the
-    /// last of them has made the change that is given.
+    /// Whether this update changes the kick by less than its rounding, by the largest change per length so far.
+    /// `change` is that of the last recorded update.
     fn kick_has_settled(&self, change: &Vector<L>, update: &Vector<L>, updates: &mut Updates<L>) -> Mask<Scalar<L>> {
         let Some(last) = updates.count.checked_sub(1) else { return nowhere::<Scalar<L>>() };
         updates.kick_slope = updates.kick_slope.simd_max(change.dot(change) / updates.lengths[last]);

@@ -1,4 +1,4 @@
-//! Lengths of steps that are known beforehand.
+//! Clocks: lengths of steps that are prescribed beforehand.
 
 use alloc::vec::Vec;
 use core::f64::consts::TAU;
@@ -9,10 +9,10 @@ use crate::error::SetupError;
 use crate::mechanics::{Effect, SceneVisitor, Vector};
 use crate::motion::{ElapsedTime, MotionOf, Plan, Steerable, Stepper, Variable};
 
-/// Lengths of steps that are known beforehand, `h_k = h c_k`: the `c_k`, one after the other or in rounds.
+/// Prescribed lengths of steps, `h_k = h c_k`: the `c_k`, one after the other or in rounds.
 ///
-/// Each step is variational with its own length, so that momentum maps are kept, and the Poisson structure. The time of a
-/// step is known from its number.
+/// Each step is variational with its own length, so that momentum maps and the Poisson structure are conserved. The
+/// time of a step follows from its number.
 ///
 /// # Source
 ///
@@ -20,17 +20,17 @@ use crate::motion::{ElapsedTime, MotionOf, Plan, Steerable, Stepper, Variable};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clock {
     lengths: Vec<f64>,
-    /// The sums of the lengths, from zero to that of all.
+    /// The partial sums of the lengths, from zero to the sum of all.
     times: Vec<f64>,
     is_repeated: bool,
 }
 
 impl Clock {
-    /// The lengths of steps in units of the stepper's `h`, and no more steps after the last.
+    /// A clock of lengths in units of the stepper's `h`, which ends after the last.
     ///
     /// # Errors
     ///
-    /// [`SetupError::Parameter`] where there is none, or one isn't positive and finite.
+    /// [`SetupError::Parameter`] if there is no length, or one isn't positive and finite.
     pub fn of_lengths(lengths: impl IntoIterator<Item = f64>) -> Result<Self, SetupError> {
         let lengths: Vec<f64> = lengths.into_iter().collect();
         let (mut sum, mut times) = (ElapsedTime::nothing(), [0.0].to_vec());
@@ -46,28 +46,28 @@ impl Clock {
         Ok(Self { lengths, times, is_repeated: false })
     }
 
-    /// The same lengths over and over again.
+    /// The clock with its lengths repeated round after round.
     #[must_use]
     pub fn repeated(self) -> Self {
         Self { is_repeated: true, ..self }
     }
 
-    /// The steps along a Kepler orbit, `dt ∝ r^{3/2}`, from pericentre on and round after round: of a stepper with
-    /// `h = 1`, in the unit of the period. They are symmetric about both apsides.
+    /// A clock for a Kepler orbit, `dt ∝ r^{3/2}`, from pericentre on and round after round: for a stepper with
+    /// `h = 1`, in the unit of the period. Its steps are symmetric about both apsides.
     ///
     /// # Errors
     ///
-    /// [`SetupError::Parameter`] where the eccentricity isn't from 0 to 1, 1 itself not among them, the period isn't positive
-    /// and finite, or there is no step.
+    /// [`SetupError::Parameter`] if the eccentricity isn't at least 0 and below 1, the period isn't positive and
+    /// finite, or there is no step.
     pub fn orbit(eccentricity: f64, period: f64, steps: u32) -> Result<Self, SetupError> {
         Self::orbit_from(0.0, eccentricity, period, steps)
     }
 
-    /// As [`orbit`](Self::orbit), from a place with this mean anomaly, rad, on.
+    /// A clock like [`orbit`](Self::orbit) that begins at a mean anomaly, rad.
     ///
     /// # Errors
     ///
-    /// As [`orbit`](Self::orbit), and where the anomaly isn't finite.
+    /// The errors of [`orbit`](Self::orbit), and [`SetupError::Parameter`] if the anomaly isn't finite.
     pub fn orbit_from(anomaly: f64, eccentricity: f64, period: f64, steps: u32) -> Result<Self, SetupError> {
         let refused = |field, cause| Err(SetupError::Parameter { field, cause });
         if !anomaly.is_finite() {
@@ -85,8 +85,8 @@ impl Clock {
         Self::of_lengths(orbit(anomaly % TAU, eccentricity, period, steps)).map(Self::repeated)
     }
 
-    /// The lengths back from this step to the first, which retrace a motion: of a stepper with `−h`, from a state that it has
-    /// adopted. `None` where the clock doesn't go so far.
+    /// The lengths back from this step to the first, which retrace a motion: for a stepper with `−h`, from a state that
+    /// it has adopted. `None` if the clock ends before this step.
     #[must_use]
     pub fn reversed(&self, step: u64) -> Option<Self> {
         let round = self.lengths.len() as u64;
@@ -99,7 +99,7 @@ impl Clock {
         Self::of_lengths(lengths).map(Self::repeated).ok()
     }
 
-    /// The number of a round, and the place in it.
+    /// The number of a step's round, and its place in the round.
     fn place(&self, step: u64) -> (u64, usize) {
         let round = self.lengths.len() as u64;
         let rounds = if self.is_repeated { step / round } else { 0 };
@@ -107,20 +107,20 @@ impl Clock {
     }
 }
 
-/// # Wrap: lengths known beforehand
+/// # Wrap: prescribed lengths
 impl<S: Effect<Scalar = f64>, P: Plan<S>> Stepper<S, P> {
-    /// The same method with the lengths of a clock, in units of its `h`.
+    /// Steps with the lengths of a clock, in units of the method's `h`.
     ///
-    /// A clock that follows what is known of the motion, as `dt ∝ r^{3/2}` along an orbit, is worth many steps; [the
-    /// chapter](crate::guide::varying) says how many, and where it is worth nothing. The energy isn't nearly conserved where a
-    /// clock resonates with the motion. After the last length of a clock that isn't repeated a step is
+    /// A clock that is adapted to the motion, as `dt ∝ r^{3/2}` along an orbit, saves many steps; [the
+    /// chapter](crate::guide::varying) has measurements, and cases in which it saves none. The energy isn't nearly
+    /// conserved if a clock resonates with the motion. After the last length of a clock that isn't repeated a step is
     /// [`StepError::NoLength`](crate::StepError::NoLength).
     ///
-    /// Recordings, events, checkpoints and [given values](Self::driven) go with it. A body in lanes and derivatives of a motion
-    /// have equal steps, and are refused; so is [`inverse`](Self::inverse), in whose place a [reversed](Clock::reversed) clock
-    /// stands, and a time before a state's.
+    /// Recordings, events, checkpoints and [prescribed values](Self::driven) work with it. A body in lanes and
+    /// derivatives of a motion need equal steps, and are refused; so are [`inverse`](Self::inverse), which a
+    /// [reversed](Clock::reversed) clock replaces, and a time before a state's.
     ///
-    /// A processed splitting is refused, too:
+    /// A processed splitting doesn't compile with it:
     ///
     /// ```compile_fail,E0277
     /// use liestep::effects::RigidBody;

@@ -1,9 +1,9 @@
-//! Compensated summation: what rounding takes from a state's sums is kept and added to the next.
+//! Compensated summation: the rounding error of each sum in a state is stored and added to the next summand.
 //!
 //! A step adds small changes to the attitude, the momentum and the advected parameters: `R + R D`, `w + Dᵀ w`,
-//! `p + (Dᵀ a + kicks)`. Each sum loses some `ε` of the state, and these losses walk at random; the changes themselves
-//! are wrong by some `ε` of a change only. With the losses kept, what is left is the walk of the changes, smaller by
-//! the angle of a step: at `h = 10⁻⁴` nothing is seen of it in 10⁷ steps, near a radian a step nothing is gained.
+//! `p + (Dᵀ a + kicks)`. Each sum loses some `ε` of the state, and these errors walk at random; the changes themselves
+//! are wrong by some `ε` of a change only. With compensation only the walk of the changes is left, smaller by the angle
+//! of a step: at `h = 10⁻⁴` it can't be measured in 10⁷ steps, near a radian a step nothing is gained.
 
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
@@ -19,7 +19,7 @@ use nalgebra::SimdValue as _;
 
 /// A plan whose sums are compensated, by [`Stepper::compensated`].
 ///
-/// The step is the same map; only its rounding differs. `cargo bench` shows what it costs.
+/// The step is the same map; only its rounding differs. `cargo bench` measures its cost.
 ///
 /// # Examples
 ///
@@ -42,7 +42,7 @@ use nalgebra::SimdValue as _;
 #[derive(Clone, Debug, Lanes, InLanes)]
 pub struct CompensatedSums<P>(P);
 
-/// The exact sums less the rounded ones, which are kept beside what the plan keeps.
+/// The exact sums less the rounded ones, stored beside the plan's memory.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Carry<G: LieGroup, A> {
     attitude: G::Matrix,
@@ -56,7 +56,7 @@ impl<G: LieGroup, A: Advected<G>> Carry<G, A> {
     }
 }
 
-/// A plan that leaves the sums of its steps to others, so that they can be compensated.
+/// A plan that leaves the sums of its steps to its caller, which can compensate them.
 ///
 /// Collocation isn't one: its sums are compensated already, in quaternion and momentum.
 #[diagnostic::on_unimplemented(
@@ -84,10 +84,10 @@ impl<P: Variable> Variable for CompensatedSums<P> {}
 
 /// # Wrap: compensated sums
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
-    /// The same step with compensated sums: what rounding takes from attitude, momentum and advected parameters is kept
-    /// and added to the next step's changes.
+    /// Compensates the sums of a step: the rounding errors of attitude, momentum and advected parameters are stored and
+    /// added to the next step's changes.
     ///
-    /// Collocation compensates its sums anyway, and is refused when a program is built.
+    /// Collocation always compensates its sums, and doesn't compile with this.
     #[must_use]
     pub fn compensated(self) -> Stepper<S, CompensatedSums<P>>
     where
@@ -166,7 +166,7 @@ impl<G: LieGroup, A: Advected<G>> Kept<G::Scalar> for Carry<G, A> {
     }
 }
 
-/// A motion and what the rounding of its sums has left behind.
+/// A motion and the rounding errors of its sums.
 #[derive(Clone, Copy)]
 struct Sums<G: LieGroup, A> {
     motion: Motion<G, A>,
@@ -208,7 +208,7 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Sums<G, A> {
         self.motion.steps = steps;
     }
 
-    /// What is carried belongs to the attitude before.
+    /// Clears the carry, which belongs to the attitude before.
     #[cold]
     fn restore(&mut self, spatial: &A) {
         let Some(far) = restored(&mut self.motion, spatial, TOLERATED) else { return };

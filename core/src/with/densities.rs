@@ -1,4 +1,4 @@
-//! Rates of densities of steps, ready made: [`Stepper::with_density`](crate::Stepper::with_density) takes them.
+//! Rates of common densities of steps, for [`Stepper::with_density`](crate::Stepper::with_density).
 
 use nalgebra::{Matrix3, Vector3, Vector6};
 
@@ -7,9 +7,9 @@ use crate::mechanics::DiscreteLagrangian;
 use crate::motion::Motion;
 use crate::numbers::{Bodies, Coordinates as _};
 
-/// Steps proportional to the power `p` of the distance between two of several bodies, counted from zero:
-/// `G = −p r·ṙ/|r|²`, 1/s. Of two bodies that attract each other by gravity 3/2 is Kepler's own.
-#[allow(clippy::type_complexity)] // what `with_density` asks for
+/// The rate `G = −p r·ṙ/|r|²`, 1/s, for steps proportional to the power `p` of the distance between two of several
+/// bodies, counted from zero. For two bodies that attract each other by gravity Kepler's own power is 3/2.
+#[allow(clippy::type_complexity)] // the type that `with_density` requires
 pub fn distance<const N: usize, A>(
     bodies: [usize; 2],
     power: f64,
@@ -23,13 +23,14 @@ pub fn distance<const N: usize, A>(
     }
 }
 
-/// Steps in which a body turns by about as much, `h ∝ (|Ω|² + ω²)^{-1/2}` with `ω` in rad/s, below which they don't get
-/// longer: `G = Ω·Ω̇/(|Ω|² + ω²)`, 1/s, with `J Ω̇ = μ × Ω + τ` and the torque `τ` of the scene at rest, without forces. Where
-/// the inertia depends on the attitude `Ω̇` is about that, which a density may be.
+/// The rate `G = Ω·Ω̇/(|Ω|² + ω²)`, 1/s, for steps in which a body turns by about the same angle,
+/// `h ∝ (|Ω|² + ω²)^{-1/2}`, with a `floor` `ω`, rad/s, of the velocity that limits the length of a step.
+/// `J Ω̇ = μ × Ω + τ` has the torque `τ` of the scene at rest, without forces. If the inertia depends on the attitude
+/// `Ω̇` is approximate, which a density may be.
 ///
 /// # Source
 ///
-/// \[RDAE, (1.12)\]; as `l_d(I, w) = −h V(w)`, its diamond there is `h τ`.
+/// \[RDAE, (1.12)\]; the diamond of `l_d(I, w) = −h V(w)` is `h τ`.
 #[allow(clippy::type_complexity)] // as above
 pub fn turn<L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Clone>(
     scene: L,

@@ -1,4 +1,4 @@
-//! Lengths of steps that follow the motion, and come back where the motion does.
+//! Densities: lengths of steps that depend on the motion, and are reversed with it.
 
 use super::varied::{Lengths, VariedSteps};
 use crate::mechanics::{Effect, SceneVisitor, Vector};
@@ -17,21 +17,21 @@ pub struct DensityMemory {
 
 /// # Wrap: lengths that follow the motion
 impl<S: Effect<Scalar = f64>, P: Plan<S>> Stepper<S, P> {
-    /// The same method with steps of `h/ρ`, the first about `h`: `rate` is `G = d/dt ln ρ` of the density of steps that is
-    /// wanted, 1/s, as a function of motion and body velocity. [`densities`](super::densities) has some that are ready made.
+    /// Steps of `h/ρ`, the first about `h`. The argument `rate` is `G = d/dt ln ρ` of the desired density of steps,
+    /// 1/s, as a function of motion and body velocity. [`densities`](super::densities) has some rates.
     ///
-    /// `ρ_{k+1/2} = ρ_k + ½ h G(state_k)`, a step of `h/ρ_{k+1/2}`, `ρ_{k+1} = ρ_{k+1/2} + ½ h G(state_{k+1})`. The density
-    /// isn't that of the state alone but a number beside it. So [`inverse`](Self::inverse) retraces all steps, and the method is
-    /// reversible where the motion is: its actions don't drift. It isn't symplectic. Momentum maps are kept. Where `G` depends
-    /// on the velocity it has to be odd in it, as the rate of a function of the attitude is.
+    /// `ρ_{k+1/2} = ρ_k + ½ h G(state_k)`, a step of `h/ρ_{k+1/2}`, `ρ_{k+1} = ρ_{k+1/2} + ½ h G(state_{k+1})`. The
+    /// density isn't a function of the state but a number beside it. So [`inverse`](Self::inverse) retraces all steps,
+    /// and the method is reversible if the motion is: its actions don't drift. It isn't symplectic. Momentum maps are
+    /// conserved. If `G` depends on the velocity it has to be odd in it, as the rate of a function of the attitude is.
     ///
-    /// Recordings, events and checkpoints go with it; two different rates aren't told apart by a checkpoint. Not with it
-    /// go lanes, derivatives, values that are given, control forces, and a time before a state's: these are refused.
+    /// Recordings, events and checkpoints work with it; a checkpoint doesn't distinguish two rates. Lanes, derivatives,
+    /// prescribed values, control forces, and a time before a state's don't: these are refused.
     ///
     /// # Source
     ///
-    /// E. Hairer and G. Söderlind, *Explicit, time reversible, adaptive step size control*, SIAM J. Sci. Comput. 26 (2005),
-    /// (3.5), with the density kept at the states and not between them.
+    /// E. Hairer and G. Söderlind, *Explicit, time reversible, adaptive step size control*, SIAM J. Sci. Comput. 26
+    /// (2005), (3.5), with the density stored at the states and not between them.
     #[must_use]
     pub fn with_density<D>(self, rate: D) -> Stepper<S, VariedSteps<P, Density<D>>>
     where

@@ -1,4 +1,4 @@
-//! Steps that are given values which are known beforehand: a field that turns, a direction along an orbit.
+//! Steps with prescribed values: a field that turns, a direction along an orbit.
 
 use crate::error::{SetupError, StepError};
 use crate::groups::Advected as _;
@@ -7,7 +7,7 @@ use crate::motion::{MotionOf, Plan, Steerable, StepReport, Stepper, SumsOf};
 use crate::numbers::real;
 use nalgebra::{SimdPartialOrd as _, SimdValue as _};
 
-/// A plan whose steps are given the values of their middles, by [`Stepper::driven`].
+/// A plan whose steps have prescribed values in their middles, by [`Stepper::driven`].
 #[derive(Clone, Copy, Debug)]
 #[doc(hidden)]
 pub struct Driven<P, V> {
@@ -15,17 +15,18 @@ pub struct Driven<P, V> {
     values: V,
 }
 
-/// # Wrap: given values
+/// # Wrap: prescribed values
 impl<S: Effect, P: Plan<S> + Steerable> Stepper<S, P> {
-    /// A stepper each of whose steps is the one [with](Self::step_with) the values in its middle: `values` is a function of
-    /// the time since the start, s, and returns what is advected as it is in space, as `scene.advected()` does.
+    /// A stepper whose steps have prescribed parameters, each [with](Self::step_with) those in its middle. The function
+    /// `values` of the time since the start, s, returns the advected parameters in space, as `scene.advected()` does.
     ///
-    /// It is recorded, watched for events and read between its steps as any other. A part of a step is made with the values
-    /// of the whole step, so that its parts join it to the next. A state sees the values of its own time, and so do its
-    /// energy and velocity. The scheme is of second order in values that change smoothly, whatever the order of the method.
+    /// It is recorded, watched for events and evaluated between its steps as any other. A part of a step takes the
+    /// values of the whole step, so that its parts join it to the next. A state has the values of its own time, and so
+    /// do its energy and velocity. The scheme is of second order in values that change smoothly, whatever the order of
+    /// the method.
     ///
-    /// Substeps are to be asked for before, and sums compensated: `stepper.or_substeps(8).driven(…)`. Two steppers with
-    /// different functions aren't told apart by a checkpoint.
+    /// Substeps and compensated sums have to be added before: `stepper.or_substeps(8).driven(…)`. A checkpoint doesn't
+    /// distinguish two functions.
     ///
     /// # Examples
     ///
@@ -102,7 +103,7 @@ where
         Ok(report)
     }
 
-    /// With the values of the middle of the whole step, so that all parts join it to the next.
+    /// Takes the values in the middle of the whole step, so that all parts join it to the next.
     fn part(
         &self,
         scene: &S,
@@ -127,7 +128,7 @@ where
 }
 
 impl<P, V> Driven<P, V> {
-    /// Shows a plan the values after this time, and returns those after that one.
+    /// Sets a plan's advected parameters to the values at the middle, and returns those at the end.
     fn see_middle<S: Effect>(
         &self,
         (motion, kept): (&mut MotionOf<S>, &mut P::Kept),

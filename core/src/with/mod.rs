@@ -1,7 +1,7 @@
-//! What is put around a method: compensated sums, values given to each step, lengths of its own for each, remedies for steps
-//! without a solution, checkpoints.
+//! Wrappers of a method: compensated sums, prescribed values, steps of varying length, remedies for steps without a
+//! solution, checkpoints.
 //!
-//! Each goes with every method for which it makes sense, and with each other.
+//! Each can be combined with every method for which it makes sense, and with the others.
 
 #[cfg(feature = "serde")]
 mod checkpoint;

@@ -5,19 +5,19 @@ use core::f64::consts::TAU;
 
 roots!();
 
-/// Of an integral over a round, which converges as fast as a power with their number.
+/// Number of rectangles for an integral over a round, whose error falls exponentially with it.
 const RECTANGLES: u32 = 65_536;
-/// Of a step of the clock, by the classical Runge–Kutta method.
+/// Number of parts of a step of the clock, for the classical Runge–Kutta method.
 const PARTS: u32 = 8;
 
 /// The lengths of a round from this mean anomaly, rad, `dt ∝ r^{3/2}`; from pericentre symmetric about both apsides.
 pub(super) fn orbit(start: f64, eccentricity: f64, period: f64, steps: u32) -> Vec<f64> {
-    // With the eccentric anomaly `E`, `r = 1 − e cos E` and `dt = r dE`: steps are equal in `s`, `ds = r^{-1/2} dE`.
+    // For the eccentric anomaly `E`, `r = 1 − e cos E` and `dt = r dE`: steps are equal in `s`, `ds = r^{-1/2} dE`.
     let rate = |anomaly: f64| (1.0 - eccentricity * anomaly.cos()).sqrt();
     let width = TAU / f64::from(RECTANGLES);
     let all: f64 = (0..RECTANGLES).map(|k| width / rate(width * f64::from(k))).sum();
     let part = all / (f64::from(steps) * f64::from(PARTS));
-    // By halves of where the eccentric anomaly is: a step's beginning, which no digit of a length depends on.
+    // Bisection for the eccentric anomaly of the start. Its rounding moves the start and no length of a step.
     let halved = |(low, high): (f64, f64), _| {
         let middle = 0.5 * (low + high);
         if middle - eccentricity * middle.sin() > start { (low, middle) } else { (middle, high) }

@@ -1,4 +1,4 @@
-//! Steps of a transformed time, whose pace is declared.
+//! Steps of a transformed time with a declared pace.
 
 use super::compensated::CompensatedSums;
 use super::density::DensityMemory;
@@ -12,7 +12,7 @@ use crate::numbers::Vectors;
 #[doc(hidden)]
 pub struct PacedStep<P>(P);
 
-/// A plan whose step is one of `l_d`, which has the pace in it.
+/// A plan whose step is one of `l_d`, which includes the pace.
 #[diagnostic::on_unimplemented(
     message = "the steps of `{Self}` have no pace",
     note = "a pace is in the declaration's own step: `Stepper::new(…)?.paced()`, with sums compensated before"
@@ -22,21 +22,22 @@ pub trait Pacable {}
 impl<S: Effect> Pacable for OwnStep<S> {}
 impl<P: Pacable> Pacable for CompensatedSums<P> {}
 
-/// Beside this energy, J, all others vanish. It is a power of two, so that digits stay.
+/// An energy, J, in whose rounding all others vanish. It is a power of two, so that dividing by it is exact.
 const VAST: f64 = f64::from_bits((1023 + 500) << 52);
 
 /// # Wrap: steps of a transformed time
 impl<S: Effect<Scalar = f64>, P: Plan<S> + Pacable> Stepper<S, P> {
-    /// Steps of `dt = s dτ` with the `pace = s(w)` that was declared: what is read and given is that of the time `t`.
+    /// Steps of `dt = s dτ` with the declared `pace = s(w)`. The times of all arguments and results are times `t`.
     ///
     /// The stepper's `h` is one of `τ`. The energy of a start becomes the number `E_0` of its state. A step takes
-    /// `h (s(w) + s(w⁺))/2`, s, which is known when it is made; the [time](Self::time) is their compensated sum. The map of
-    /// attitude, momentum, `t` and `−E_0` is symplectic, and momentum maps are kept. [The chapter](crate::guide::varying) says
-    /// what it is worth, and what goes with it.
+    /// `h (s(w) + s(w⁺))/2`, s, which is known when it has been made; the [time](Self::time) is their compensated sum.
+    /// The map of attitude, momentum, `t` and `−E_0` is symplectic, and momentum maps are conserved. [The
+    /// chapter](crate::guide::varying) measures the gain, and lists what can be combined with it.
     ///
     /// # Errors
     ///
-    /// [`SetupError::Parameter`] where the scene has no pace: none was declared, or it is a sum, whose terms have one time.
+    /// [`SetupError::Parameter`] if the scene has no pace: none was declared, or it is a sum, whose terms have one
+    /// time.
     ///
     /// # Source
     ///
@@ -50,14 +51,14 @@ impl<S: Effect<Scalar = f64>, P: Plan<S> + Pacable> Stepper<S, P> {
     }
 }
 
-/// The pace `s(w)`, as the potential is `s (V − E_0)`.
+/// The pace `s(w)`, from the potential `s (V − E_0)` with a vast `E_0`.
 #[hot]
 fn pace<S: Effect<Scalar = f64>>(scene: &S, w: &S::Advected) -> f64 {
     scene.with_energy(w, VAST).map_or(f64::NAN, |(w, _)| -scene.potential(&w) / VAST)
 }
 
 impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for PacedStep<P> {
-    /// The pace is kept in the place of a density.
+    /// The pace takes the place of a density.
     type Kept = (P::Kept, DensityMemory);
 
     const VECTORS: Vectors = P::VECTORS;
@@ -90,7 +91,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for PacedStep<P> {
         self.0.velocity(scene, motion) * pace(scene, &motion.advected).recip()
     }
 
-    /// That of `s (H − E_0)` with zero for `E_0`, over `s`.
+    /// The energy `H`: that of `s (H − E_0)` for `E_0 = 0`, divided by `s`.
     fn energy(&self, scene: &S, motion: &MotionOf<S>) -> f64 {
         let w = scene.with_energy(&motion.advected, 0.0).map_or(motion.advected, |(w, _)| w);
         energy(scene, &motion.momentum, &w) / pace(scene, &w)
@@ -100,7 +101,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for PacedStep<P> {
         kept.1.time.sum
     }
 
-    /// By making the step.
+    /// The length of a step is known by making the step.
     fn length(&self, scene: &S, motion: &MotionOf<S>, kept: &Self::Kept, is_ahead: bool) -> f64 {
         let part = self.0.part(scene, motion, &kept.0, if is_ahead { 1.0 } else { -1.0 });
         part.map_or(f64::NAN, |part| self.step_size() * 0.5 * (kept.1.density + pace(scene, &part.advected)))
@@ -110,7 +111,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for PacedStep<P> {
     fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         let energy = scene.with_energy(&motion.now().advected, 0.0);
         let report = self.0.step(scene, motion, &mut kept.0)?;
-        // Now and then what is advected is seen anew, and given as in the scene.
+        // A step may recompute the advected parameters from the scene, without the energy of the start.
         let own = energy.and_then(|(_, energy)| scene.with_energy(&motion.now().advected, energy));
         if let Some((advected, _)) = own {
             motion.show(Motion { advected, ..*motion.now() });
@@ -120,7 +121,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for PacedStep<P> {
         Ok(report)
     }
 
-    /// The part of `τ` whose time is that of `t`, by Newton's iterations with `dt/dτ = s`.
+    /// The part of `τ` that takes the time `t`, by Newton's iterations with `dt/dτ = s`.
     fn part(
         &self,
         scene: &S,
@@ -149,5 +150,5 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for PacedStep<P> {
     }
 }
 
-/// Of a part of a step, which take a few.
+/// Limit of the iterations for a part of a step.
 const MOST_ITERATIONS: u32 = 30;

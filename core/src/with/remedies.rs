@@ -1,14 +1,14 @@
-//! What to do about a step that has no solution, for those who would rather go on than stop.
+//! Remedies for a step that has no solution.
 //!
-//! A [`Stepper`] refuses such a step and leaves the state alone. Substeps go on in its place, and the report says so.
-//! They give up a constant step; a motion that needs them often wants a smaller one.
+//! A [`Stepper`] refuses such a step and leaves the state alone. Substeps replace it, and the report says so. They give
+//! up a constant step; a motion that needs them often needs a smaller one.
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor};
 use crate::motion::{Plan, Remedy, Steerable, StepReport, Stepper, Summation, SumsOf, Variable};
 use crate::numbers::real;
 
-/// A plan that takes a step without a solution in equal parts, by [`Stepper::or_substeps`].
+/// A plan that divides a step without a solution into equal parts, by [`Stepper::or_substeps`].
 #[derive(Clone, Copy, Debug)]
 #[doc(hidden)]
 pub struct Substeps<P> {
@@ -18,14 +18,13 @@ pub struct Substeps<P> {
 
 /// # Wrap: remedies
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
-    /// The same steps, and where there is none that step in 2, 4, 8, … equal parts, as few as will do and no more than
-    /// these.
+    /// Divides a step without a solution into 2, 4, 8, … equal parts, as few as can be solved and at most `at_most`.
     ///
-    /// The motion through such a step is as good as any other, but the step isn't constant then: the energy keeps to its
-    /// bound between two such steps and may change by the order of `h²` at each, so that over many it can drift. What a
-    /// step conserves whatever its size is kept: the group, the momentum maps, the Casimirs.
+    /// The motion through such a step is as good as any other, but the step isn't constant: the energy stays within its
+    /// bound between two such steps and may change by the order of `h²` at each, so that over many it can drift. The
+    /// group, the momentum maps and the Casimirs are conserved, as by a step of any size.
     ///
-    /// The constants of the parts are folded anew each time, which takes far longer than a step.
+    /// The constants of the parts are computed anew each time, which takes far longer than a step.
     ///
     /// # Examples
     ///
@@ -46,7 +45,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// ```
     #[must_use]
     pub fn or_substeps(self, at_most: u32) -> Stepper<S, Substeps<P>> {
-        // The parts of a step are counted for themselves.
+        // The parts of a step have a count of their own.
         const {
             assert!(!P::COUNTS_TIME, "ask for substeps before the values: `.or_substeps(…).driven(…)`");
             assert!(!P::VARIES, "ask for substeps before the lengths: `.or_substeps(…).with_clock(…)`");
@@ -58,7 +57,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
 impl<S: Effect, P: Plan<S>> Plan<S> for Substeps<P> {
     type Kept = P::Kept;
 
-    // The largest step is that of the plan itself: a step that only its parts make is none of its own.
+    // The largest step is that of the plan itself, which excludes steps that are solved only in parts.
     delegate_plan!(plan, |kept| *kept; constants step_size keep admits momentum velocity is_in_step explained max_step cost push see);
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
@@ -83,7 +82,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Substeps<P> {
 impl<P: Steerable> Steerable for Substeps<P> {}
 impl<P: Variable> Variable for Substeps<P> {}
 
-/// Makes the step in equal parts, or leaves everything as it was and returns the error.
+/// Makes the step in equal parts, or leaves the motion unchanged and returns the error.
 #[cold]
 #[inline(never)]
 fn in_parts<S: Effect, P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
@@ -100,7 +99,7 @@ fn in_parts<S: Effect, P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
     while parts <= at_most {
         if let Some((mut moved, iterations)) = substepped(plan, scene, *motion, parts) {
             moved.recount(steps + 1);
-            // What isn't a step of the whole tells nothing of the next one's increment.
+            // The memory starts anew: the increment of a part doesn't predict that of a whole step.
             *kept = plan.keep(scene, moved.now());
             *motion = moved;
             return Ok(StepReport { iterations, remedy: Some(Remedy::Substeps(parts)) });
@@ -111,7 +110,7 @@ fn in_parts<S: Effect, P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
     Err(error)
 }
 
-/// The motion after `parts` steps of an equal part of `h`, and all their iterations.
+/// The motion after `parts` steps of an equal part of `h`, and the sum of their iterations.
 #[cold]
 #[inline(never)]
 fn substepped<S: Effect, P: Plan<S>, M: Summation<Group<S>, S::Advected>>(

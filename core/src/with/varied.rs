@@ -1,18 +1,18 @@
-//! Steps of different lengths, one after the other by the same method.
+//! Steps of varying length by one method.
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, SceneVisitor, Vector};
 use crate::motion::{Kept, MotionOf, Plan, StepReport, Stepper, SumsOf, Variable};
 use crate::numbers::Vectors;
 
-/// What gives each step its length.
+/// A rule for the length of each step.
 pub trait Lengths<S: Effect>: Clone {
-    /// What it keeps from step to step.
+    /// The rule's memory from step to step.
     type Memory: Kept<f64>;
-    /// Whether the lengths depend on how many steps there were before, and on nothing else.
+    /// Whether the lengths depend on the number of steps before, and on nothing else.
     const COUNTED: bool;
 
-    /// At the beginning of a motion.
+    /// The memory at the beginning of a motion.
     fn begin(&self) -> Self::Memory;
 
     /// The length ahead of this motion, or behind it, s, in steps of this unit.
@@ -24,7 +24,7 @@ pub trait Lengths<S: Effect>: Clone {
         way: (&Self::Memory, bool),
     ) -> f64;
 
-    /// What is kept after a step of this unit and length, s, that has led to this motion.
+    /// The memory after a step of this unit and length, s, that has led to this motion.
     fn after(
         &self,
         lengths: [f64; 2],
@@ -36,11 +36,11 @@ pub trait Lengths<S: Effect>: Clone {
     /// The time, s, after this number of steps of this unit.
     fn time(&self, steps: u64, unit: f64, memory: &Self::Memory) -> f64;
 
-    /// As [`Plan::describe`](crate::motion::Plan::describe).
+    /// Describes the rule, as [`Plan::describe`](crate::motion::Plan::describe).
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>);
 }
 
-/// A plan each of whose steps has a length of its own, by [`Stepper::with_clock`] and [`Stepper::with_density`].
+/// A plan whose steps have varying lengths, by [`Stepper::with_clock`] and [`Stepper::with_density`].
 #[derive(Clone, Debug)]
 pub struct VariedSteps<P, L> {
     plan: P,
@@ -55,7 +55,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S> + Variable> Stepper<S, P> {
 }
 
 impl<P, L> VariedSteps<P, L> {
-    /// The length of a step, if it is one: of the sign of the unit, and long enough that time goes on.
+    /// The length of a step, if it is valid: of the sign of the unit, and long enough to change the rounded time.
     fn checked<S>(
         &self,
         scene: &S,
@@ -84,7 +84,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for VariedSteps
     const COUNTS_TIME: bool = L::COUNTED;
     const VARIES: bool = true;
 
-    // A step of another length is beside those that are counted.
+    // A step of another length isn't one of the counted steps.
     delegate_plan!(plan, |kept| kept.0; step_size admits momentum velocity is_in_step cost push see step_of);
 
     fn refolded(&self, scene: &S, h: f64) -> Result<Self, SetupError> {
@@ -132,7 +132,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for VariedSteps
         self.plan.part(scene, motion, &kept.0, fraction * (length / self.plan.step_size()))
     }
 
-    /// That of the next length.
+    /// The largest step at the next length.
     fn max_step(&self, scene: &S, motion: &MotionOf<S>, kept: &Self::Kept) -> f64 {
         let whole = self.checked(scene, motion, kept, true);
         let whole = whole.ok().and_then(|length| self.plan.refolded(scene, length).ok());

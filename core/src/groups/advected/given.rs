@@ -1,4 +1,4 @@
-//! Values of a step, which the group doesn't move.
+//! Prescribed values of a step, on which the group acts trivially.
 
 use nalgebra::{SMatrix, Vector1};
 
@@ -6,16 +6,16 @@ use super::Advected;
 use crate::groups::LieGroup;
 use crate::numbers::{Real, entries_of_value};
 
-/// A value that a step may be [given](crate::Stepper::step_with) anew: what `given(u = torque)` makes of the field
-/// `torque`, a scalar as a 1 × 1 matrix, a vector or a matrix.
+/// A value that may be [prescribed](crate::Stepper::step_with) in each step: the type for the field `torque` in
+/// `given(u = torque)`, which may be a scalar as a 1 × 1 matrix, a vector or a matrix.
 ///
-/// It is a parameter in the trivial representation: `f⁻¹ · x = x`, and its diamond is zero. What is given as it is seen
-/// from the body, as most torques are, has components in the body's axes; units are those of the field.
+/// It is a parameter in the trivial representation: `f⁻¹ · x = x`, and its diamond is zero. A value in the body frame,
+/// as most torques are, has components in the body's axes; units are those of the field.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Given<T, const R: usize = 1, const C: usize = 1>(pub SMatrix<T, R, C>);
 
 impl<T: Real> Given<T> {
-    /// A scalar.
+    /// A prescribed scalar.
     #[hot]
     pub const fn scalar(value: T) -> Self {
         Self(Vector1::new(value))

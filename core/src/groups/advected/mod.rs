@@ -1,8 +1,8 @@
-//! Advected parameters: what the group carries along, seen from the body.
+//! Advected parameters: constants in space, on which the group acts, in the body frame.
 //!
-//! The spatial value `a_0` is constant; the body sees `w_i = g_i⁻¹ · a_0`. A parameter in `V*` moves by the
+//! The spatial value `a_0` is constant; in the body frame it is `w_i = g_i⁻¹ · a_0`. A parameter in `V*` moves by the
 //! contragredient action, in columns `w_{i+1} = ρ(f)ᵀ w_i`; on SO(3) that is the rotation `Fᵀ w`. The product `F⁻¹ w`,
-//! which is the same there, belongs to `V` and is another parameter on a group that isn't orthogonal.
+//! which is the same on SO(3), belongs to `V` and is another parameter on a group that isn't orthogonal.
 //!
 //! | parameter in | type | `f⁻¹ · w` | for example |
 //! |---|---|---|---|
@@ -12,14 +12,14 @@
 //! | `V ⊗ V` | [`ContravariantTensor`] | `F⁻¹ S F⁻ᵀ` | a conductivity |
 //! | `V* ⊗ V*` | [`CovariantTensor`] | `Fᵀ S F` | a metric, a strain, the gradient of a field of force |
 //! | `V ⊗ V*` | [`MixedTensor`] | `F⁻¹ S F` | a velocity gradient |
-//! | a trivial representation | [`Given`] | `x` | a torque or a field's strength that each step is given anew |
+//! | a trivial representation | [`Given`] | `x` | a torque or a field's strength that is prescribed in each step |
 //!
-//! Of several bodies, on a product of groups, each parameter is [seen from one](SeenFrom), or is a body as [another
-//! sees it](Relative) or as it [is in space](Configuration).
+//! On a product of groups, for several bodies, each parameter is [in the frame of one](SeenFrom), or is the
+//! configuration of a body [relative to another](Relative) or [in space](Configuration).
 //!
-//! `V` is the space that the group's matrices act on, `F` the matrix itself. Points are moved by groups of affine maps,
-//! as SE(2) and SE(3) are, and written in homogeneous coordinates; vectors with another last coordinate move by the
-//! same matrices, but keep no distances.
+//! `V` is the space on which the group's matrices act, `F` the matrix itself. Groups of affine maps, as SE(2) and
+//! SE(3), act on points in homogeneous coordinates; vectors with another last coordinate move by the same matrices, but
+//! their distances aren't conserved.
 
 use core::fmt::Debug;
 
@@ -40,34 +40,35 @@ use crate::numbers::{Coordinates, Entries, Real, of_tuples, real, sum, zero};
 
 /// The advected parameters of a Lagrangian: `()` for none, a vector for one, a tuple for several.
 pub trait Advected<G: LieGroup>: Entries<G::Scalar> + Debug + PartialEq {
-    /// `g⁻¹ · a_0`: the spatial value as the body with attitude `g` sees it.
+    /// The spatial value in the frame of a body with the attitude `g`, `g⁻¹ · a_0`.
     #[must_use]
     fn seen_from(&self, attitude: &G) -> Self;
 
-    /// `f⁻¹ · w − w` for `f = I + D`, formed without subtracting `w`.
+    /// The change `f⁻¹ · w − w` for `f = I + D`, computed without subtracting `w`.
     #[must_use]
     fn change(&self, increment: &G::Matrix) -> Self;
 
-    /// `f⁻¹ · w` for `f = I + D`, \[RDAE, (2.4)\].
+    /// The value after an increment, `f⁻¹ · w` for `f = I + D`, \[RDAE, (2.4)\].
     #[hot]
     #[must_use]
     fn advect(&self, increment: &G::Matrix) -> Self {
         sum(self, &self.change(increment))
     }
 
-    /// `−ξ·w`, the rate `ẇ` at which the body with velocity `ξ` sees it change, for the matrix `ξ̂`, \[RDAE, (2.2)\].
+    /// The rate `ẇ = −ξ·w` of the value in the frame of a body with the velocity `ξ`, for the matrix `ξ̂`, \[RDAE,
+    /// (2.2)\].
     #[must_use]
     fn rate(&self, velocity: &G::Matrix) -> Self;
 
-    /// The spatial value moved by the inverse of any invertible matrix, given with it: what [`seen_from`](Self::seen_from)
-    /// is for an element of the group.
+    /// The action of the inverse of any invertible matrix on the spatial value, as [`seen_from`](Self::seen_from) for
+    /// an element of the group.
     #[must_use]
     fn seen_through(&self, matrix: &G::Matrix, inverse: &G::Matrix) -> Self;
 
-    /// Of a number's gradient by what is seen, scalar by scalar, the gradient by the spatial value: the transpose of what is
-    /// linear in [`seen_from`](Self::seen_from).
+    /// The gradient of a scalar by the spatial value, from its gradient by the value in the body frame: the transpose
+    /// of the linear part of [`seen_from`](Self::seen_from).
     ///
-    /// By default it is made of what is seen of each unit, which takes as many turns as there are scalars.
+    /// The default acts on the unit of each scalar in turn, which takes as many actions as there are scalars.
     #[inline]
     #[must_use]
     fn pulled_back(&self, attitude: &G) -> Self {
@@ -87,47 +88,47 @@ pub trait Advected<G: LieGroup>: Entries<G::Scalar> + Debug + PartialEq {
     #[hot]
     #[must_use]
     fn is_finite(&self) -> bool {
-        // Zero times an infinity or a NaN is NaN; the sum itself could overflow.
+        // Zero times an infinity or a NaN is NaN; the plain sum could overflow.
         let (zero, mut sum) = (real::<G::Scalar>(0.0), real::<G::Scalar>(0.0));
         self.each(&mut |entry| sum += entry * zero);
         sum.simd_eq(zero).all()
     }
 }
 
-/// How the value that the body sees changes with the scalar of this number of the value in space.
+/// The derivative of the value in the body frame by the scalar of this number of the spatial value.
 pub(crate) fn seen_of_unit<G: LieGroup, A: Advected<G>>(number: usize, attitude: &G) -> A {
     let mut place = 0;
     let unit = A::from_entries(&mut || {
         place += 1;
         if place == number + 1 { real(1.0) } else { real(0.0) }
     });
-    // What is seen of a point is affine in it.
+    // The action on a point is affine.
     unit.seen_from(attitude).zip(&zero::<G::Scalar, A>().seen_from(attitude), &mut |a, b| a - b)
 }
 
-/// An element of `V*`.
+/// A covector, an element of `V*`.
 #[hot]
 impl<G, T: Real, const N: usize> Advected<G> for SVector<T, N>
 where
     G: LieGroup<Scalar = T, Matrix = SMatrix<T, N, N>>,
 {
-    /// `ρ(g)ᵀ a_0`.
+    /// The image `ρ(g)ᵀ a_0`.
     #[inline]
     fn seen_from(&self, attitude: &G) -> Self {
         transpose_mul(&attitude.matrix(), self)
     }
 
-    /// `ρ(g)` times the gradient.
+    /// The image `ρ(g)` of the gradient.
     fn pulled_back(&self, attitude: &G) -> Self {
         mul(&attitude.matrix(), self)
     }
 
-    /// `Dᵀ w`.
+    /// The change `Dᵀ w`.
     fn change(&self, increment: &SMatrix<T, N, N>) -> Self {
         transpose_mul(increment, self)
     }
 
-    /// `ξ̂ᵀ w`.
+    /// The rate `ξ̂ᵀ w`.
     fn rate(&self, velocity: &SMatrix<T, N, N>) -> Self {
         transpose_mul(velocity, self)
     }
@@ -141,7 +142,7 @@ where
     }
 }
 
-/// `Aᵀ v`, unrolled.
+/// The product `Aᵀ v`, unrolled.
 #[hot]
 fn transpose_mul<T: Real, const N: usize>(a: &SMatrix<T, N, N>, v: &SVector<T, N>) -> SVector<T, N> {
     let mut product = SVector::zeros();
@@ -155,7 +156,7 @@ fn transpose_mul<T: Real, const N: usize>(a: &SMatrix<T, N, N>, v: &SVector<T, N
     product
 }
 
-/// `A v`, unrolled.
+/// The product `A v`, unrolled.
 #[hot]
 fn mul<T: Real, const N: usize>(a: &SMatrix<T, N, N>, v: &SVector<T, N>) -> SVector<T, N> {
     let mut product = SVector::zeros();

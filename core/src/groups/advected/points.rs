@@ -1,7 +1,7 @@
-//! Points, which a group of affine maps moves.
+//! Points as advected parameters of a group of affine maps.
 //!
-//! Its matrices act on homogeneous coordinates `(p, 1)`, and their last row is that of the identity. The last
-//! coordinate isn't stored: that it is one is what the type promises.
+//! The group's matrices act on homogeneous coordinates `(p, 1)`, and their last row is that of the identity. The last
+//! coordinate isn't stored: the type implies that it is one.
 
 use nalgebra::{Point, SMatrix, SVector};
 
@@ -9,7 +9,7 @@ use super::Advected;
 use crate::groups::LieGroup;
 use crate::numbers::{Entries, Real};
 
-/// `(p, 1)`.
+/// The homogeneous coordinates `(p, 1)`.
 #[hot]
 pub(crate) fn homogeneous<T: Real, const N: usize, const M: usize>(point: &Point<T, N>) -> SVector<T, M> {
     const { assert!(M == N + 1) };
@@ -42,13 +42,13 @@ macro_rules! points {
             }
 
             fn change(&self, increment: &SMatrix<T, $size, $size>) -> Self {
-                // F⁻¹(p, 1) − (p, 1) = −F⁻¹D(p, 1).
+                // The change is F⁻¹(p, 1) − (p, 1) = −F⁻¹D(p, 1).
                 let inverse = G::from_increment(increment).inverse().matrix();
                 let change: SVector<T, $size> = -(inverse * (increment * homogeneous(self)));
                 Self::from(change.fixed_rows::<$dimension>(0).into_owned())
             }
 
-            /// `−ξ̂(p, 1)`.
+            /// The rate `−ξ̂(p, 1)`.
             fn rate(&self, velocity: &SMatrix<T, $size, $size>) -> Self {
                 let rate: SVector<T, $size> = -(velocity * homogeneous(self));
                 Self::from(rate.fixed_rows::<$dimension>(0).into_owned())

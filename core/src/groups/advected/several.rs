@@ -1,4 +1,4 @@
-//! What is advected where there are several bodies: seen from one of them, or one of them itself.
+//! Advected parameters of several bodies: in the frame of one of them, or its configuration.
 //!
 //! | parameter | spatial value | `f⁻¹ · w` |
 //! |---|---|---|
@@ -12,18 +12,18 @@ use super::Advected;
 use crate::groups::{Factor, LieGroup};
 use crate::numbers::{Entries, Real, entries_of_value};
 
-/// What the body that is the factor `A` of a product sees; the others don't move it.
+/// A parameter in the frame of the factor `A` of a product; the other factors don't act on it.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct SeenFrom<const A: usize, W>(pub W);
 
-/// The configuration `Q = g_A⁻¹ g_B` of the body `B` as the body `A` sees it: of two bodies that turn, the matrix that
-/// brings a vector from `B` to `A`. Its spatial value is the identity.
+/// The configuration `Q = g_A⁻¹ g_B` of the body `B` relative to the body `A`: for two bodies that turn, the matrix
+/// that maps components in `B` to those in `A`. Its spatial value is the identity.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Relative<const A: usize, const B: usize, M>(pub M);
 
-/// The configuration `g_B` of the body `B` itself, seen from space. Its spatial value is the identity.
+/// The configuration `g_B` of the body `B` in space. Its spatial value is the identity.
 ///
-/// What depends on it isn't the same for a whole that is turned or moved in space.
+/// A Lagrangian that depends on it isn't invariant under rotations or translations of the whole in space.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Configuration<const B: usize, M>(pub M);
 
@@ -83,21 +83,21 @@ where
         Self(product(&product(&from.inverse().matrix(), &self.0), &to.matrix()))
     }
 
-    /// `g_A⁻ᵀ` times the gradient times `g_Bᵀ`.
+    /// The image `g_A⁻ᵀ M g_Bᵀ` of the gradient `M`.
     #[inline]
     fn pulled_back(&self, attitude: &G) -> Self {
         let (from, to) = (Factor::<A>::factor(attitude), Factor::<B>::factor(attitude));
         Self(product(&product(&from.inverse().matrix().transpose(), &self.0), &to.matrix().transpose()))
     }
 
-    /// `E Q + (Q + E Q) D_B` with `E = F_A⁻¹ − I`.
+    /// The change `E Q + (Q + E Q) D_B` with `E = F_A⁻¹ − I`.
     fn change(&self, increment: &G::Matrix) -> Self {
         let (from, to) = (<G as Factor<A>>::of_matrix(increment), <G as Factor<B>>::of_matrix(increment));
         let turned = product(&<G as Factor<A>>::Of::inverse_increment(&from), &self.0);
         Self(turned + product(&(self.0 + turned), &to))
     }
 
-    /// `Q ξ̂_B − ξ̂_A Q`.
+    /// The rate `Q ξ̂_B − ξ̂_A Q`.
     fn rate(&self, velocity: &G::Matrix) -> Self {
         let (from, to) = (<G as Factor<A>>::of_matrix(velocity), <G as Factor<B>>::of_matrix(velocity));
         Self(product(&self.0, &to) - product(&from, &self.0))
@@ -119,18 +119,18 @@ where
         Self(product(&self.0, &attitude.factor().matrix()))
     }
 
-    /// The gradient times `g_Bᵀ`.
+    /// The image `M g_Bᵀ` of the gradient `M`.
     #[inline]
     fn pulled_back(&self, attitude: &G) -> Self {
         Self(product(&self.0, &attitude.factor().matrix().transpose()))
     }
 
-    /// `R D`.
+    /// The change `R D`.
     fn change(&self, increment: &G::Matrix) -> Self {
         Self(product(&self.0, &G::of_matrix(increment)))
     }
 
-    /// `R ξ̂`.
+    /// The rate `R ξ̂`.
     fn rate(&self, velocity: &G::Matrix) -> Self {
         Self(product(&self.0, &G::of_matrix(velocity)))
     }
@@ -140,7 +140,8 @@ where
     }
 }
 
-/// `A B`, unrolled; of nalgebra's product, which isn't always inlined, lanes would have the target's common instructions.
+/// The product `A B`, unrolled. nalgebra's product isn't always inlined, and would then have the target's common
+/// instructions in lanes.
 #[hot]
 fn product<T: Real, const N: usize>(a: &SMatrix<T, N, N>, b: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
     let mut product = SMatrix::zeros();

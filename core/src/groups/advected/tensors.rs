@@ -1,6 +1,6 @@
-//! The kinds of advected parameters other than covectors.
+//! Advected parameters other than covectors: vectors and tensors.
 //!
-//! With `F = I + D` and `F⁻¹ = I + E`, `E = −F⁻¹D`, each product becomes the old value and a small change, so that a
+//! With `F = I + D` and `F⁻¹ = I + E`, `E = −F⁻¹D`, each product becomes the old value plus a small change, so that a
 //! small step loses no digit.
 
 use nalgebra::{SMatrix, SVector};
@@ -9,21 +9,21 @@ use super::Advected;
 use crate::groups::LieGroup;
 use crate::numbers::{Real, entries_of_value};
 
-/// An element of `V`, moved by `ρ(f)⁻¹`: what is fixed in space, as the body sees it.
+/// A vector, an element of `V`, on which `ρ(f)⁻¹` acts: a vector fixed in space, in the body frame.
 ///
-/// On SE(3) with `N = 4` for example a direction `(d, 0)`. A point is better declared as one, by nalgebra's `Point3`.
+/// An example on SE(3) with `N = 4` is a direction `(d, 0)`. A point is better declared as nalgebra's `Point3`.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct ContravariantVector<T, const N: usize>(pub SVector<T, N>);
 
-/// An element of `V ⊗ V`, moved by `ρ(f)⁻¹ S ρ(f)⁻ᵀ`.
+/// A contravariant tensor, an element of `V ⊗ V`, with the action `ρ(f)⁻¹ S ρ(f)⁻ᵀ`.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct ContravariantTensor<T, const N: usize>(pub SMatrix<T, N, N>);
 
-/// An element of `V* ⊗ V*`, a bilinear form, moved by `ρ(f)ᵀ S ρ(f)`.
+/// A bilinear form, an element of `V* ⊗ V*`, with the action `ρ(f)ᵀ S ρ(f)`.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct CovariantTensor<T, const N: usize>(pub SMatrix<T, N, N>);
 
-/// An element of `V ⊗ V*`, a linear map, moved by `ρ(f)⁻¹ S ρ(f)`.
+/// A linear map, an element of `V ⊗ V*`, with the action `ρ(f)⁻¹ S ρ(f)`.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct MixedTensor<T, const N: usize>(pub SMatrix<T, N, N>);
 

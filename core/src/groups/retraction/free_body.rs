@@ -1,11 +1,11 @@
-//! The free body in Cayley coordinates: what the derivative of any kinetic part's momentum is near.
+//! The Jacobian of a free body in Cayley coordinates, an approximation of that of any kinetic part.
 
 use nalgebra::{Matrix3, Vector3};
 
 use crate::groups::rotation_functions::inverse;
 use crate::numbers::{Real, real};
 
-/// `h ∂p/∂y` for the momentum `p` that turns a free body of the inertia `J` by `cay(y)` within `h`.
+/// The Jacobian `h ∂p/∂y` of the momentum `p` that turns a free body with the inertia `J` by `cay(y)` within `h`.
 ///
 /// The exact discrete Lagrangian of the free body is, in the logarithm `x`,
 ///
@@ -24,11 +24,11 @@ pub(super) fn momentum_tangent<T: Real>(inertia: &Matrix3<T>, y: &Vector3<T>) ->
     let inverse = inverse(*inertia);
     let b = inverse * unbent.cross(&x);
     let g = unbent - (inertia * x.cross(&b) + b.cross(&unbent)) * twelfth;
-    // ∂u/∂x, and with it the symmetric ∂g/∂x.
+    // The derivative ∂u/∂x, and from it the symmetric ∂g/∂x.
     let bend = unbent.cross_matrix() - x.cross_matrix() * inertia;
     let twist = b.cross_matrix() * inertia;
     let hessian = inertia - (bend.transpose() * (inverse * bend) + twist + twist.transpose()) * twelfth;
-    // Along x only; what g adds is ∂(x × g)/∂x = −ĝ and ∂(x × (x × g))/∂x = x·g I + x gᵀ − 2 g xᵀ.
+    // The derivative along x alone; g adds ∂(x × g)/∂x = −ĝ and ∂(x × (x × g))/∂x = x·g I + x gᵀ − 2 g xᵀ.
     let through = |m: &Matrix3<T>| {
         let turned = x.cross_matrix() * m;
         m + turned * real::<T>(0.5) + x.cross_matrix() * turned * twelfth
@@ -37,7 +37,7 @@ pub(super) fn momentum_tangent<T: Real>(inertia: &Matrix3<T>, y: &Vector3<T>) ->
     let along = through(&hessian) - g.cross_matrix() * real::<T>(0.5)
         + outer
         + Matrix3::from_diagonal_element(x.dot(&g) * twelfth);
-    // ∂x/∂y = φ I + 2φ' y yᵀ.
+    // The derivative ∂x/∂y = φ I + 2φ' y yᵀ.
     let scale = T::one() - n * (twelfth - n * real(1.0 / 80.0));
     let slope = n * real(1.0 / 20.0) - real(1.0 / 6.0);
     along * scale + (along * y * slope) * y.transpose()

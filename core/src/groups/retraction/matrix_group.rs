@@ -1,4 +1,4 @@
-//! The two retractions of a group that is declared by generators.
+//! The two retractions of a group with generators.
 
 use nalgebra::{RealField, SMatrix, SVector, Vector1, one, zero};
 
@@ -9,7 +9,7 @@ use crate::groups::{
 };
 use crate::numbers::{Coordinates as _, Mask, Real, real};
 
-/// Fails to compile for a group that the Cayley map leaves.
+/// A check that fails to compile for a group that the Cayley map leaves.
 struct Closure<K, const N: usize, const D: usize>(K);
 
 impl<K: Generators<N, D>, const N: usize, const D: usize> Closure<K, N, D> {
@@ -23,35 +23,35 @@ fn factors<T: Real, const N: usize>(hat: &SMatrix<T, N, N>) -> (SMatrix<T, N, N>
     (SMatrix::identity() - half, SMatrix::identity() + half)
 }
 
-/// The inverse of a matrix, lane by lane: it takes other pivots in each.
+/// The inverse of a matrix, lane by lane, as pivots differ between lanes.
 fn inverse_of<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
     lane_by_lane(matrix, inverse::<T::Element, N>)
 }
 
-/// Compiles for the groups that the Cayley map doesn't leave; it is an error for others, like SL(3).
+/// The Cayley map compiles for groups that it doesn't leave; it is an error for others, like SL(3).
 impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> Retraction<MatrixGroup<K, T, N, D>>
     for CayleyRetraction
 {
-    /// `D = (I − ξ̂/2)⁻¹ ξ̂`.
+    /// The increment `D = (I − ξ̂/2)⁻¹ ξ̂`.
     #[hot]
     fn increment(xi: &SVector<T, D>) -> SMatrix<T, N, N> {
         let () = Closure::<K, N, D>::CHECKED;
         let hat = MatrixGroup::<K, T, N, D>::hat(xi);
-        // There `I − ξ̂/2` moves nothing that ξ̂ has.
+        // If products vanish, `(I − ξ̂/2)⁻¹` acts on ξ̂ as the identity.
         if const { products_vanish(&K::GENERATORS) } {
             return hat;
         }
         inverse_of(&factors(&hat).0) * hat
     }
 
-    /// `2 ((F + I)⁻¹ (F − I))^∨`.
+    /// The coordinates `2 ((F + I)⁻¹ (F − I))^∨`.
     fn local_coordinates(element: &MatrixGroup<K, T, N, D>) -> Option<SVector<T, D>> {
         let sum = element.matrix() + SMatrix::identity();
         let xi = MatrixGroup::<K, T, N, D>::vee(&(inverse_of(&sum) * element.increment())) * real::<T>(2.0);
         xi.is_finite().then_some(xi)
     }
 
-    /// Columns `((I − ξ̂/2)⁻¹ E_j (I + ξ̂/2)⁻¹)^∨`.
+    /// The tangent with the columns `((I − ξ̂/2)⁻¹ E_j (I + ξ̂/2)⁻¹)^∨`.
     fn tangent(xi: &SVector<T, D>) -> SMatrix<T, D, D> {
         if const { products_vanish(&K::GENERATORS) } {
             return SMatrix::identity();
@@ -66,7 +66,7 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> Retraction<Ma
         tangent
     }
 
-    /// Lane by lane, as the group's own answer is.
+    /// The group's own criterion takes one lane at a time.
     #[hot]
     fn is_near(xi: &SVector<T, D>, times: f64) -> Mask<T> {
         let far = lane_by_lane::<T, Vector1<T>, N>(&MatrixGroup::<K, T, N, D>::hat(&(xi * real::<T>(times))), |lane| {
@@ -87,11 +87,11 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> R
     fn local_coordinates(element: &MatrixGroup<K, T, N, D>) -> Option<SVector<T, D>> {
         let xi = MatrixGroup::<K, T, N, D>::vee(&logarithm(&element.increment()));
         let missed = <Self as Retraction<MatrixGroup<K, T, N, D>>>::increment(&xi) - element.increment();
-        // Half of the digits tell a logarithm from what the series gives where there is none.
+        // Half of the digits distinguish a logarithm from a divergent series.
         (missed.norm() <= T::default_epsilon().sqrt() * element.matrix().norm()).then_some(xi)
     }
 
-    /// `T = Σ ad_ξ^k / (k + 1)!`.
+    /// The tangent `T = Σ ad_ξ^k / (k + 1)!`.
     fn tangent(xi: &SVector<T, D>) -> SMatrix<T, D, D> {
         let mut bracket = SMatrix::<T, D, D>::zeros();
         for j in 0..D {

@@ -15,40 +15,40 @@ use crate::numbers::{Mask, Real, real};
 /// Coordinates `ξ ↦ τ(ξ)` of a group about its identity.
 #[hot]
 pub trait Retraction<G: LieGroup> {
-    /// `D = τ(ξ) − I`, formed without subtracting `I`, so that a small `ξ` keeps all its digits.
+    /// The increment `D = τ(ξ) − I`, computed without subtracting `I`, so that no digit of a small `ξ` is lost.
     fn increment(xi: &G::Vector) -> G::Matrix;
 
-    /// `D` for half the coordinates, `y = ξ/2`, which are what Newton's iteration solves for: on SO(3) in Cayley
-    /// coordinates `tan(θ/2) n`, in which formulas are shortest.
+    /// The increment for half the coordinates, `y = ξ/2`, which are the unknowns of Newton's iteration: on SO(3) in
+    /// Cayley coordinates `tan(θ/2) n`, in which formulas are shortest.
     #[must_use]
     fn increment_of_half(half: &G::Vector) -> G::Matrix {
         Self::increment(&(*half + *half))
     }
 
-    /// `τ(ξ)`.
+    /// The element `τ(ξ)`.
     #[must_use]
     fn retract(xi: &G::Vector) -> G {
         G::from_increment(&Self::increment(xi))
     }
 
-    /// `ξ` with `τ(ξ) = F`, or `None` where the coordinates don't reach `F`.
+    /// The coordinates `ξ` with `τ(ξ) = F`, or `None` if `F` is out of their reach.
     fn local_coordinates(element: &G) -> Option<G::Vector>;
 
     /// The right-trivialised tangent `T` at `ξ`: `dF F⁻¹ = (T dξ)^`.
     fn tangent(xi: &G::Vector) -> <G::Vector as crate::numbers::Coordinates<G::Scalar>>::Square;
 
-    /// The same for half the coordinates, `y = ξ/2`: `dF F⁻¹ = (T dy)^`.
+    /// The tangent for half the coordinates, `y = ξ/2`: `dF F⁻¹ = (T dy)^`.
     #[must_use]
     fn tangent_of_half(half: &G::Vector) -> <G::Vector as crate::numbers::Coordinates<G::Scalar>>::Square {
         Self::tangent(&(*half + *half)) * real::<G::Scalar>(2.0)
     }
 
-    /// `h ∂p/∂ξ` for the momentum `p` that a free motion with the kinetic energy `½ η·Jη` needs to reach `τ(ξ)` within
-    /// `h`, with the given `J`.
+    /// The Jacobian `h ∂p/∂ξ` of the momentum `p` that takes a free motion with the kinetic energy `½ η·Jη` to `τ(ξ)`
+    /// within `h`.
     ///
-    /// An approximation will do: a solver takes it for the Jacobian of a momentum equation where the exact one is
+    /// An approximation suffices: a solver uses it as the Jacobian of a momentum equation if the exact one is
     /// expensive, see [`Effect::JACOBIAN_IS_EXPENSIVE`](crate::mechanics::Effect::JACOBIAN_IS_EXPENSIVE), and corrects
-    /// it as it goes. This default is its value at the identity, `J`.
+    /// it during the iteration. The default is its value at the identity, `J`.
     #[must_use]
     #[inline]
     fn free_momentum_tangent(
@@ -58,15 +58,16 @@ pub trait Retraction<G: LieGroup> {
         *inertia
     }
 
-    /// Whether `times ξ` is so near to the identity that a solution there is the one that continues the identity.
+    /// Whether `times ξ` is so near to the identity that a solution there is on the branch of the identity.
     ///
-    /// `times` is a positive number: a solver that has half the coordinates asks with 2. On SO(3) near is an angle below 90°: for a body whose `J_d` is positive semidefinite there is at most one
-    /// such solution. On a [`MatrixGroup`](crate::groups::MatrixGroup) it is what the
-    /// [`Generators`](crate::groups::Generators::is_near_identity) say. Farther out a solver looks closer. Each lane has its
-    /// own answer.
+    /// `times` is a positive number: 2 for a solver with half the coordinates. On SO(3) the bound is an angle of 90°:
+    /// for a body whose `J_d` is positive semidefinite there is at most one such solution. On a
+    /// [`MatrixGroup`](crate::groups::MatrixGroup) it is that of the
+    /// [`Generators`](crate::groups::Generators::is_near_identity). Beyond it a solver makes another check. The result
+    /// is per lane.
     fn is_near(xi: &G::Vector, times: f64) -> Mask<G::Scalar>;
 
-    /// Whether `ξ` is near to the identity, as [`is_near`](Self::is_near) says it.
+    /// Whether `ξ` is near to the identity, by [`is_near`](Self::is_near).
     #[must_use]
     fn is_near_identity(xi: &G::Vector) -> Mask<G::Scalar> {
         Self::is_near(xi, 1.0)
@@ -78,8 +79,8 @@ pub trait Retraction<G: LieGroup> {
         Self::is_near(half, 2.0)
     }
 
-    /// Whether `3/2 ξ` is near to the identity, for `half = ξ/2`. Such a `ξ` keeps well away from where increments change
-    /// fast from step to step.
+    /// Whether `3/2 ξ` is near to the identity, for `half = ξ/2`. Such a `ξ` is far from the region where increments
+    /// change fast from step to step.
     #[must_use]
     fn is_half_well_near_identity(half: &G::Vector) -> Mask<G::Scalar> {
         Self::is_near(half, 3.0)
@@ -89,15 +90,14 @@ pub trait Retraction<G: LieGroup> {
 /// The Cayley map `cay(ξ) = (I − ξ̂/2)⁻¹ (I + ξ̂/2)`.
 ///
 /// No transcendental function is evaluated, so a step in these coordinates gives the same bits on every IEEE machine.
-/// On SO(3) `ξ = 2 tan(θ/2) n` for the rotation by `θ` about `n`, and only half turns are out of reach; elsewhere it is
-/// the elements with the eigenvalue −1. A group that the map leaves, like SL(3), is an error when the user's crate is
-/// built.
+/// On SO(3) `ξ = 2 tan(θ/2) n` for the rotation by `θ` about `n`, and only half turns are out of reach; on other groups
+/// the elements with the eigenvalue −1 are. A group that the map leaves, like SL(3), doesn't compile.
 #[derive(Clone, Copy, Debug)]
 pub struct CayleyRetraction;
 
 #[hot]
 impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
-    /// `D = (ξ̂ + ξ̂²/2) · 4/(4 + |ξ|²)`.
+    /// The increment `D = (ξ̂ + ξ̂²/2) · 4/(4 + |ξ|²)`.
     fn increment(xi: &Vector3<T>) -> Matrix3<T> {
         let squared = xi.x * xi.x + xi.y * xi.y + xi.z * xi.z;
         let four = real::<T>(4.0);
@@ -105,14 +105,14 @@ impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
         quadratic_increment(xi, scale, scale * real(0.5))
     }
 
-    /// `D = (ŷ + ŷ²) · 2/(1 + |y|²)`: the same bits.
+    /// The increment `(ŷ + ŷ²) · 2/(1 + |y|²)`, with the same bits.
     fn increment_of_half(half: &Vector3<T>) -> Matrix3<T> {
         let squared = half.x * half.x + half.y * half.y + half.z * half.z;
         let scale = real::<T>(2.0) / (T::one() + squared);
         quadratic_increment(half, scale, scale)
     }
 
-    /// `2 (F − Fᵀ)^∨ / (1 + tr F)`.
+    /// The coordinates `2 (F − Fᵀ)^∨ / (1 + tr F)`.
     #[inline]
     fn local_coordinates(element: &SO3<T>) -> Option<Vector3<T>> {
         let f = element.as_matrix();
@@ -121,7 +121,7 @@ impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
         crate::numbers::Coordinates::is_finite(&xi).then_some(xi)
     }
 
-    /// `T = (I + ξ̂/2) · 4/(4 + |ξ|²)`.
+    /// The tangent `T = (I + ξ̂/2) · 4/(4 + |ξ|²)`.
     #[inline]
     fn tangent(xi: &Vector3<T>) -> Matrix3<T> {
         let four = real::<T>(4.0);
@@ -129,7 +129,7 @@ impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
         (Matrix3::identity() + SO3::hat(xi) * real::<T>(0.5)) * scale
     }
 
-    /// To the relative order of `|ξ|⁴`.
+    /// The Jacobian to the relative order of `|ξ|⁴`.
     fn free_momentum_tangent(inertia: &Matrix3<T>, xi: &Vector3<T>) -> Matrix3<T> {
         free_body::momentum_tangent(inertia, xi)
     }
@@ -141,8 +141,8 @@ impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
 
 /// The exponential map; on SO(3) `ξ = θ n`.
 ///
-/// For a group declared by [`Generators`](crate::groups::Generators) it is a series with scaling and squaring, exact to some
-/// roundings for `‖ξ̂‖` up to a few; coordinates are the principal logarithm, `None` where an eigenvalue is negative.
+/// For a group with [`Generators`](crate::groups::Generators) it is a series with scaling and squaring, exact to some
+/// roundings for `‖ξ̂‖` up to a few; coordinates are the principal logarithm, `None` if an eigenvalue is negative.
 #[derive(Clone, Copy, Debug)]
 pub struct ExponentialRetraction;
 
@@ -159,11 +159,11 @@ impl<T: RealField + Copy> Retraction<SO3<T>> for ExponentialRetraction {
         crate::numbers::Coordinates::is_finite(&xi).then_some(xi)
     }
 
-    /// `T = I + (1 − cos θ)/θ² ξ̂ + (θ − sin θ)/θ³ ξ̂²`.
+    /// The tangent `T = I + (1 − cos θ)/θ² ξ̂ + (θ − sin θ)/θ³ ξ̂²`.
     fn tangent(xi: &Vector3<T>) -> Matrix3<T> {
         let angle_squared = xi.norm_squared();
         let half = sinc(angle_squared * real(0.25));
-        // (θ − sin θ)/θ³ cancels for small θ; below this its Taylor polynomial is exact to a rounding.
+        // Digits of (θ − sin θ)/θ³ cancel at small θ; below this bound its Taylor polynomial is exact to a rounding.
         let third = if angle_squared < real(0.04) {
             let t = angle_squared;
             let [a, b, c, d, e] =
@@ -180,7 +180,7 @@ impl<T: RealField + Copy> Retraction<SO3<T>> for ExponentialRetraction {
     }
 }
 
-/// `a ξ̂ + b ξ̂²`.
+/// The matrix `a ξ̂ + b ξ̂²`.
 #[hot]
 fn quadratic_increment<T: Real>(xi: &Vector3<T>, a: T, b: T) -> Matrix3<T> {
     let (x, y, z) = (xi.x, xi.y, xi.z);
@@ -191,10 +191,10 @@ fn quadratic_increment<T: Real>(xi: &Vector3<T>, a: T, b: T) -> Matrix3<T> {
     Matrix3::new(-(yy + zz), xy - az, xz + ay, xy + az, -(xx + zz), yz - ax, xz - ay, yz + ax, -(xx + yy))
 }
 
-/// `sin θ / θ` as a function of `θ²`.
+/// The function `sin θ / θ` of `θ²`.
 ///
-/// Below `θ² = 0.01` the Taylor polynomial to `θ¹⁰` is exact to a rounding; there is no square root at zero, whose
-/// derivative a dual number couldn't carry.
+/// The Taylor polynomial to `θ¹⁰` is exact to a rounding below `θ² = 0.01`. It has no square root at zero, whose
+/// derivative doesn't exist in a dual number.
 fn sinc<T: RealField + Copy>(angle_squared: T) -> T {
     if angle_squared < real(0.01) {
         let t = angle_squared;

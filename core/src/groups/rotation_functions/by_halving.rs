@@ -1,27 +1,27 @@
-//! Rotations by large and small angles without a library function, so that they are the same on every machine.
+//! Coefficients of rotations by small and large angles without a library function, for the same bits on every machine.
 //!
-//! The functions beside it take sines from the library where an angle is large: they are asked for by declarations with
-//! `log` and `exp`, and for single elements. This one is for steps.
+//! The functions beside it use the library's sines at large angles: they serve declarations with `log` and `exp`, and
+//! single elements. This one serves steps.
 
 use nalgebra::SimdBool as _;
 
 use crate::numbers::Number;
 
-/// Up to here the polynomials are exact to a rounding.
+/// Bound of `q` up to which the polynomials are exact to a rounding.
 const SMALL: f64 = 0.5;
 
-/// Enough for any angle of a double that has a digit of its direction left.
+/// Limit of the doublings, enough for any angle of a double with a digit left for its direction.
 const MOST_DOUBLINGS: u32 = 53;
 
-/// Beyond this square of an angle the roundings of the doublings show in `sin² + cos² = 1`.
+/// Bound of the squared angle beyond which the rounding of the doublings is visible in `sin² + cos² = 1`.
 const FAR: f64 = 100.0;
 
-/// `sin θ/θ` and `(1 − cos θ)/θ²` as functions of `q = θ²`.
+/// The coefficients `sin θ/θ` and `(1 − cos θ)/θ²` as functions of `q = θ²`.
 ///
-/// Up to `q = 0.5` these are Taylor polynomials. A larger angle is halved until it is that small; doubling it again is
-/// two products and doesn't cancel: with `S` and `V` at `q/4`, `S(q) = S (1 − q V/4)` and `V(q) = S²/2`. Each doubles
-/// the absolute error, as the angle's own rounding does. What that adds to the length of `(cos θ, sin θ)` is taken out
-/// again, so that large angles are those of rotations, too; one without a digit left gives NaN.
+/// Up to `q = 0.5` these are Taylor polynomials. A larger angle is halved until it is that small; doubling it again
+/// takes two products and no cancellation: with `S` and `V` at `q/4`, `S(q) = S (1 − q V/4)` and `V(q) = S²/2`. Each
+/// doubling doubles the absolute error, as the angle's own rounding does. The error in the length of `(cos θ, sin θ)`
+/// is normalised away, so that large angles are those of rotations, too; an angle without a digit left gives NaN.
 #[hot]
 pub(crate) fn rotation_coefficients<T: Number>(q: T) -> (T, T) {
     if q.simd_le(T::number(SMALL)).all() { small(q) } else { large(q) }
@@ -39,7 +39,7 @@ fn large<T: Number>(q: T) -> (T, T) {
     let quarter = T::number(0.25);
     let mut reduced = q;
     let mut doublings = 0;
-    // Lanes that are small already wait. A NaN never becomes small.
+    // Lanes that are already small wait. A NaN never becomes small.
     while doublings < MOST_DOUBLINGS && reduced.simd_gt(T::number(SMALL)).any() {
         reduced = (reduced * quarter).select(reduced.simd_gt(T::number(SMALL)), reduced);
         doublings += 1;
@@ -66,16 +66,16 @@ fn large<T: Number>(q: T) -> (T, T) {
     (sinc, versine)
 }
 
-/// `Σ a_k q^k` in pairs, which don't wait for each other; the small ones first, or what is less than half of
-/// a rounding would be lost each time.
+/// The polynomial `Σ a_k q^k` in pairs, independent of each other; small terms are added first, as a large sum would
+/// round each of them off.
 #[hot]
 fn polynomial<T: Number>(a: &[f64; 8], q: T, q2: T, q4: T) -> T {
     let pair = |k: usize| T::number(a[k]) + q * T::number(a[k + 1]);
     pair(0) + (q2 * pair(2) + q4 * (pair(4) + q2 * pair(6)))
 }
 
-/// `(−1)^k/(2k + first)!`.
-#[allow(clippy::cast_precision_loss)] // a handful
+/// The coefficients `(−1)^k/(2k + first)!`.
+#[allow(clippy::cast_precision_loss)] // small integers
 const fn coefficients(first: usize) -> [f64; 8] {
     let (mut coefficients, mut k) = ([0.0; 8], 0);
     let mut coefficient = if first == 1 { 1.0 } else { 0.5 };
@@ -91,7 +91,7 @@ const fn coefficients(first: usize) -> [f64; 8] {
 mod tests {
     use super::{rotation_coefficients, small};
 
-    /// Both sides of each place where the number of doublings changes, and some angles beyond a turn.
+    /// Angles on both sides of each change of the number of doublings, and some beyond a turn.
     #[test]
     fn they_are_sine_and_cosine() {
         for q in [1e-20, 0.3, 0.5, 0.500_001, 1.999_999, 2.000_001, 8.0, 9.8, 30.0, 200.0] {
@@ -104,7 +104,7 @@ mod tests {
         assert_eq!(rotation_coefficients(0.0), (1.0, 0.5));
     }
 
-    /// To the rounding of the angle, and on the unit circle.
+    /// Large angles are exact to the rounding of the angle, and on the unit circle.
     #[test]
     fn large_angles_are_angles() {
         for angle in [11.0, 1e2, 1.3e3, 1e4, 7e5, 1e6, 1e9, 3e9, 1e12, 1e15_f64] {

@@ -19,15 +19,15 @@ pub(super) use quaternion::quaternion;
 use crate::numbers::{Real, real};
 use nalgebra::{Matrix3, SMatrix, SimdBool as _, Vector3};
 
-/// Terms of the series next to zero, which is where nearly all steps are.
+/// Terms of the series near zero, the usual case of a step.
 const FEW: usize = 9;
-/// Terms of the logarithm's series at large steps, up to 0.7 rad: with them all, the series would take as long as the
-/// rest of a residual.
+/// Terms of the logarithm's series at large steps, up to 0.7 rad: the full series would take as long as the rest of a
+/// residual.
 const SOME: usize = 20;
-/// Terms of the series up to where the closed forms are as exact.
+/// Terms of the series up to the bound beyond which the closed forms are as exact.
 const MANY: usize = 34;
 
-/// `c_K(q)` for `q ≥ 0`.
+/// The Stumpff function `c_K(q)` for `q ≥ 0`.
 #[inline]
 pub fn stumpff<T: Real, const K: usize>(q: T) -> T {
     const { assert!(K > 0, "c₀ is the cosine") };
@@ -39,13 +39,13 @@ pub fn stumpff<T: Real, const K: usize>(q: T) -> T {
     if near.all() {
         return series;
     }
-    // Upwards by c_{k+2} = (1/k! − c_k)/q, which gains digits where q is large.
+    // The recurrence c_{k+2} = (1/k! − c_k)/q gains digits upwards at large q.
     let root = q.simd_sqrt();
     let (mut even, mut odd) = (root.simd_cos(), root.simd_sin() / root);
     let mut reciprocal_factorial = 1.0;
     for k in 0..K.saturating_sub(1) {
         if k > 0 {
-            #[allow(clippy::cast_precision_loss)] // a handful
+            #[allow(clippy::cast_precision_loss)] // a small integer
             let next = k as f64;
             reciprocal_factorial /= next;
         }
@@ -77,7 +77,7 @@ pub fn log_ratio<T: Real, const K: usize>(n: T) -> T {
     }
     let mut value = (one - slope * lower) / twice;
     for k in 1..K {
-        #[allow(clippy::cast_precision_loss)] // a handful
+        #[allow(clippy::cast_precision_loss)] // a small integer
         let k = k as f64;
         let next = (real::<T>(2.0 * k * k) * lower - real::<T>(2.0 * k + 1.0) * slope * value) / twice;
         (lower, value) = (value, next);
@@ -98,18 +98,18 @@ pub(super) fn skew_components<T: Real>(m: &Matrix3<T>) -> Vector3<T> {
     Vector3::new(m.m32 - m.m23, m.m13 - m.m31, m.m21 - m.m12) * real::<T>(0.5)
 }
 
-/// `exp(v̂)`.
+/// The rotation `exp(v̂)`.
 #[inline]
 pub fn rotation_exp<T: Real>(v: Vector3<T>) -> Matrix3<T> {
     let (q, hat) = (v.norm_squared(), v.cross_matrix());
     Matrix3::identity() + hat * stumpff::<T, 1>(q) + hat * hat * stumpff::<T, 2>(q)
 }
 
-/// `A⁻¹` of a matrix of up to three rows by Cramer's rule, not finite where `A` is singular.
+/// The inverse `A⁻¹` of a matrix of up to three rows by Cramer's rule, not finite if `A` is singular.
 #[inline]
 pub fn inverse<T: Real, const N: usize>(matrix: SMatrix<T, N, N>) -> SMatrix<T, N, N> {
     const { assert!(N <= 3) };
-    // Minors with rows and columns in cyclic order carry their sign, but for 2 × 2.
+    // Minors with rows and columns in cyclic order include their sign, except for 2 × 2.
     let adjugate = SMatrix::<T, N, N>::from_fn(|column, row| {
         let at = |i: usize, j: usize| matrix[((row + i) % N, (column + j) % N)];
         match N {
@@ -164,8 +164,8 @@ impl<const N: usize> Series<N> {
     }
 }
 
-/// By Horner's rule in `x⁴`: four chains that the processor runs side by side. A single one's latency would be that of
-/// the step.
+/// A polynomial by Horner's rule in `x⁴`: four chains that the processor runs side by side. The latency of a single one
+/// would be that of the step.
 #[hot]
 fn polynomial<T: Real, const N: usize>(coefficients: &[f64; N], x: T) -> T {
     let square = x * x;
@@ -183,7 +183,7 @@ mod tests {
     use super::{inverse, log_ratio, rotation_exp, rotation_log, stumpff};
     use nalgebra::{Matrix1, Matrix2, Matrix3, Vector3};
 
-    /// Each side of every threshold, the thresholds themselves, and the ends of the range.
+    /// Both sides of every threshold, the thresholds themselves, and the ends of the range.
     const STUMPFF: [f64; 9] = [0.0, 1e-9, 0.3, 0.5, 0.500_001, 4.0, 11.999, 12.001, 60.0];
     const LOG: [f64; 11] = [0.0, 1e-9, 0.01, 0.015, 0.015_001, 0.1, 0.12, 0.120_001, 0.249_999, 0.250_001, 0.95];
 

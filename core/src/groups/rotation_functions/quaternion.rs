@@ -3,15 +3,15 @@
 use crate::numbers::{Mask, Real, real};
 use nalgebra::{Matrix3, SimdBool as _};
 
-/// The unit quaternion of a rotation, real part first, from a part whose square is a quarter at least. Every lane has its
-/// own.
+/// The unit quaternion of a rotation, real part first, computed from a part whose square is a quarter at least. Each
+/// lane chooses its own part.
 #[hot]
 pub(in super::super) fn quaternion<T: Real>(r: &Matrix3<T>) -> [T; 4] {
     let one = T::one();
     let (wx, wy, wz) = (r.m32 - r.m23, r.m13 - r.m31, r.m21 - r.m12);
-    // Four times the square of a part, and that part times all. The four squares have the sum four.
+    // The square of a part, times four, and the products of that part with all. The four squares have the sum four.
     let ww = one + r.m11 + r.m22 + r.m33;
-    // Within 120° of the identity no other part need be asked. Beyond, the largest of the others is large enough.
+    // Within 120° of the identity the real part is large enough. Beyond, the largest of the others is.
     let from_another = || {
         let (xy, xz, yz) = (r.m21 + r.m12, r.m13 + r.m31, r.m32 + r.m23);
         let xx = one + r.m11 - r.m22 - r.m33;
@@ -27,7 +27,7 @@ pub(in super::super) fn quaternion<T: Real>(r: &Matrix3<T>) -> [T; 4] {
     either(ww.simd_ge(one), || scaled(ww, [ww, wx, wy, wz]), from_another)
 }
 
-/// One or the other in each lane; both are found only where lanes differ.
+/// The first or the second quaternion in each lane; both are computed only if lanes differ.
 #[hot]
 fn either<T: Real>(is_one: Mask<T>, one: impl FnOnce() -> [T; 4], other: impl FnOnce() -> [T; 4]) -> [T; 4] {
     if is_one.all() {
@@ -52,7 +52,7 @@ mod tests {
     use crate::groups::{LieGroup as _, SO3};
     use nalgebra::{UnitQuaternion, Vector3};
 
-    /// Near every half turn and far from it, and with the sign of the one before.
+    /// Rotations near every half turn and far from it, with the sign of the one before.
     #[test]
     fn a_rotation_is_shown_by_its_quaternion() {
         let mut numbers = [0.0; 4];
@@ -74,12 +74,12 @@ mod tests {
         }
     }
 
-    /// Lanes with a largest part each, and lanes that agree, have the bits of each alone.
+    /// Lanes with different largest parts, and lanes with the same, have the bits of each alone.
     #[test]
     fn each_lane_has_its_own_quaternion() {
         use crate::numbers::Lanes as _;
         use simba::simd::{SimdValue as _, WideF64x4};
-        // The fifth has a real part that is enough, though another is larger.
+        // The fifth has a real part that is large enough, though another is larger.
         let quaternions = [[2.0, 0.3, -0.2, 0.5], [0.3, 2.0, 0.5, -0.2], [-0.2, 0.5, 2.0, 0.3], [0.5, -0.2, 0.3, 2.0]]
             .into_iter()
             .chain([[0.6, 0.0, 0.8, 0.0]])

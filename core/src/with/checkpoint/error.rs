@@ -1,9 +1,9 @@
-//! Why a checkpoint isn't taken.
+//! Errors of resuming a checkpoint.
 
 use alloc::string::String;
 use thiserror::Error;
 
-/// Why a checkpoint can't be resumed.
+/// An error of resuming a checkpoint.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CheckpointError {
@@ -12,12 +12,12 @@ pub enum CheckpointError {
         "the checkpoint has the format {found}, this version reads {known}; resume it with the version that wrote it"
     )]
     AnotherFormat {
-        /// The number in the file.
+        /// The format's number in the file.
         found: u32,
-        /// The one that is understood.
+        /// The format's number in this version.
         known: u32,
     },
-    /// The checkpoint is of another scene: another Lagrangian, other fields, or another scalar.
+    /// The checkpoint belongs to another scene: another Lagrangian, other fields, or another scalar.
     #[error(
         "the checkpoint is of another scene (another Lagrangian or scalar); resume it with the stepper that it was made by"
     )]
@@ -29,7 +29,7 @@ pub enum CheckpointError {
     AnotherParameter {
         /// The field of the Lagrangian.
         field: &'static str,
-        /// A scalar of it in the checkpoint.
+        /// A scalar of the field in the checkpoint.
         stored: f64,
         /// That scalar in the stepper.
         own: f64,
@@ -39,9 +39,9 @@ pub enum CheckpointError {
         "the step is {stored:e} s in the checkpoint and {own:e} s here; build the stepper with the checkpoint's step"
     )]
     AnotherStep {
-        /// In the checkpoint, s.
+        /// The step in the checkpoint, s.
         stored: f64,
-        /// Here, s.
+        /// The step of the stepper, s.
         own: f64,
     },
     /// The checkpoint was made by another method, or one with other coefficients.
@@ -49,27 +49,27 @@ pub enum CheckpointError {
         "the checkpoint was made by the method \"{stored}\", this stepper's is \"{own}\"; resume it with the checkpoint's method and let the stepper `adopt` the state"
     )]
     AnotherMethod {
-        /// The name of the checkpoint's.
+        /// The name of the checkpoint's method.
         stored: String,
-        /// The name of the stepper's.
+        /// The name of the stepper's method.
         own: String,
     },
-    /// A list doesn't have the length that it has in this scene.
+    /// A list has another length than in this scene.
     #[error(
         "the checkpoint's {what} has {found} numbers instead of {expected}; take another file, this one is damaged"
     )]
     WrongSize {
-        /// Which one.
+        /// Name of the list.
         what: &'static str,
-        /// Its length.
+        /// Length of the list.
         found: usize,
-        /// The one expected.
+        /// Length of the list in this scene.
         expected: usize,
     },
     /// A number is NaN or infinite.
     #[error("the checkpoint's {what} has a number that is not finite; take another file, this one is damaged")]
     NonFinite {
-        /// The list that has it.
+        /// Name of the list with this number.
         what: &'static str,
     },
     /// The attitude isn't in the group.
@@ -77,18 +77,18 @@ pub enum CheckpointError {
         "the checkpoint's attitude is not in the group (defect {defect:e}); take another file, this one is damaged"
     )]
     NotInGroup {
-        /// How far the matrix is from the relation of the group.
+        /// Residual of the relation of the group for this matrix.
         defect: f64,
     },
-    /// The advected parameters aren't those that the attitude sees.
+    /// The advected parameters don't belong to the attitude.
     #[error(
         "the checkpoint's advected parameters differ by {distance:e} from what its attitude sees; take another file, this one is damaged"
     )]
     NotAdvected {
-        /// How far they are.
+        /// Distance from the parameters at this attitude.
         distance: f64,
     },
-    /// What the method keeps from step to step can't be this.
+    /// The method's memory has numbers that no such memory can have.
     #[error(
         "the checkpoint's numbers that the method keeps from step to step can't be such; take another file, this one is damaged"
     )]

@@ -1,4 +1,4 @@
-//! What a checkpoint is compared by.
+//! Fingerprints by which a checkpoint is compared with a stepper.
 
 use alloc::format;
 use alloc::string::String;
@@ -11,7 +11,7 @@ use crate::mechanics::{Effect, SceneVisitor};
 use crate::motion::Plan;
 use crate::numbers::{Digest, Real};
 
-// In files it is text, as not every format has numbers of 64 bits.
+// A digest is stored as text, as not every format has numbers of 64 bits.
 impl Serialize for Digest {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(&format_args!("{self:?}"))
@@ -30,7 +30,7 @@ impl<'de> Deserialize<'de> for Digest {
 
 /// A scalar that is stored by its bits: `f64` or `f32`.
 pub trait Storable: Real + PartialOrd + Serialize + for<'de> Deserialize<'de> {
-    /// The bits, of `f32` in the lower half.
+    /// The bits; those of `f32` are in the lower half.
     fn bits(self) -> u64;
 }
 
@@ -46,7 +46,7 @@ impl Storable for f32 {
     }
 }
 
-/// A scene or a method by its terms and its parameters.
+/// The terms and parameters of a scene or a method.
 pub(super) struct Parameters<T> {
     /// The fingerprint of the terms and the names of the parameters.
     pub(super) fingerprint: Digest,
@@ -72,13 +72,13 @@ impl<T: Storable> Parameters<T> {
         parameters
     }
 
-    /// The terms that are names; that of a declared kinetic flow is its derivation.
+    /// The terms without a line break, which are names; the term of a declared kinetic flow is its derivation.
     pub(super) fn name(&self) -> String {
         let names: Vec<_> = self.names.iter().copied().filter(|name| !name.contains('\n')).collect();
         names.join(", ")
     }
 
-    /// The fingerprint of the values, too.
+    /// The fingerprint of terms, names and values.
     pub(super) fn of_all(&self) -> Digest {
         let mut fingerprint = self.fingerprint;
         self.values.iter().for_each(|(_, value)| fingerprint.number(value.bits()));

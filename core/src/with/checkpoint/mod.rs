@@ -1,8 +1,8 @@
-//! Checkpoints: a state as it is written to a file, with what is needed to go on with the same bits.
+//! Checkpoints: states for a file, with all that a stepper needs to continue with the same bits.
 //!
-//! Only with the feature `serde`. A [`Checkpoint`] holds numbers and nothing of this crate's types, so that any format
-//! of serde takes it that keeps the bits of a float. [`State`] itself can't be read from a file: what is read counts as
-//! a state once the stepper that is to go on has looked at it.
+//! They need the feature `serde`. A [`Checkpoint`] holds numbers and none of this crate's types, so that it suits any
+//! format of serde that preserves the bits of a float. [`State`] itself isn't deserialised: a checkpoint becomes a
+//! state once the stepper that is to continue has checked it.
 
 mod error;
 mod fingerprint;
@@ -22,16 +22,16 @@ use crate::motion::{ElapsedTime, Kept, Motion, Plan, State, StateOf, Stepper};
 use crate::numbers::{Digest, Entries, Real, real, reported};
 use fingerprint::Parameters;
 
-/// What the numbers below mean; another layout has another number.
+/// The number of this layout; another layout has another number.
 const FORMAT: u32 = 4;
 
-/// A state in a file, by [`Stepper::checkpoint`]; [`Stepper::resume`] makes a state of it.
+/// A state for a file, by [`Stepper::checkpoint`]; [`Stepper::resume`] converts it back.
 ///
 /// # Format
 ///
 /// A map of names to numbers and lists of numbers, matrices row by row; units are those of the [`State`]. The lists
-/// have the length that the scene and the method call for. A text format must read floats to the last bit, as
-/// `serde_json` does with its feature `float_roundtrip`; one that doesn't is found out by the digest.
+/// have the length that the scene and the method require. A text format must read floats to the last bit, as
+/// `serde_json` does with its feature `float_roundtrip`; the digest detects one that doesn't.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Checkpoint<T> {
@@ -39,7 +39,7 @@ pub struct Checkpoint<T> {
     /// The fingerprint of the terms' derivations and the scalar.
     scene: Digest,
     parameters: Vec<T>,
-    /// The method's name, and all its constants.
+    /// The method's name, and the fingerprint of its constants.
     method: String,
     coefficients: Digest,
     step_size: T,
@@ -47,9 +47,9 @@ pub struct Checkpoint<T> {
     attitude: Vec<T>,
     momentum: Vec<T>,
     advected: Vec<T>,
-    /// What the method keeps from step to step, and the time of steps of another length.
+    /// The method's memory, and the time of steps of other lengths.
     kept: Vec<T>,
-    /// The digest of everything above.
+    /// The digest of all other fields.
     digest: Digest,
 }
 
@@ -90,7 +90,7 @@ impl<T: Storable> Checkpoint<T> {
 
 /// # Wrap: checkpoints
 impl<S: Effect<Scalar: Storable>, P: Plan<S>> Stepper<S, P> {
-    /// The state for a file, with all that its method keeps.
+    /// The state for a file, with the whole memory of its method.
     #[must_use]
     pub fn checkpoint(&self, state: &StateOf<S, P>) -> Checkpoint<Scalar<S>> {
         let State { motion, kept, elapsed } = state;
@@ -115,13 +115,13 @@ impl<S: Effect<Scalar: Storable>, P: Plan<S>> Stepper<S, P> {
         checkpoint
     }
 
-    /// The state of a checkpoint, which goes on with the same bits as the one that was written. An inertia that depends on
-    /// what is advected isn't checked again, as the digest shows that a stepper like this one wrote it.
+    /// The state of a checkpoint, which continues with the same bits as the written one. An inertia that depends on
+    /// advected parameters isn't checked again, as the digest implies that a stepper like this one wrote it.
     ///
     /// # Errors
     ///
-    /// [`CheckpointError`] where the checkpoint is of another scene or method, has other parameters or another step;
-    /// where it isn't a state of this scene; and where a digit of it has changed.
+    /// [`CheckpointError`] if the checkpoint belongs to another scene or method, or has other parameters or another
+    /// step; if it isn't a state of this scene; and if a digit of it has changed.
     pub fn resume(&self, checkpoint: &Checkpoint<Scalar<S>>) -> Result<StateOf<S, P>, CheckpointError> {
         self.belongs(checkpoint)?;
         let attitude = Group::<S>::from_matrix_unchecked(unlisted("attitude", &checkpoint.attitude)?);
@@ -132,14 +132,14 @@ impl<S: Effect<Scalar: Storable>, P: Plan<S>> Stepper<S, P> {
             steps: checkpoint.steps,
         };
         let kept = remembered(&checkpoint.kept, &(self.plan.keep(&self.scene, &motion), ElapsedTime::nothing()))?;
-        // Far more than rounding makes in any number of steps, far less than what isn't an attitude.
+        // Tolerance far above the rounding of any run, and far below the defect of other matrices.
         let allowed = Scalar::<S>::simd_default_epsilon().simd_sqrt();
         let defect = attitude.defect();
         let is_in_group = defect < allowed;
         if !is_in_group {
             return Err(CheckpointError::NotInGroup { defect: reported(defect) });
         }
-        // The energy of a start is the motion's own.
+        // The energy of a start belongs to the motion, not to the scene.
         let without = |w: S::Advected| self.scene.with_energy(&w, real(0.0)).map_or(w, |(w, _)| w);
         let [found, expected] = [motion.advected, self.scene.advected().seen_from(&attitude)].map(without);
         let (mut squared, mut size) = (real::<Scalar<S>>(0.0), real::<Scalar<S>>(0.0));
@@ -151,7 +151,7 @@ impl<S: Effect<Scalar: Storable>, P: Plan<S>> Stepper<S, P> {
         if !is_seen {
             return Err(CheckpointError::NotAdvected { distance: reported(squared.simd_sqrt()) });
         }
-        // Last, as every other error says more.
+        // The digest is last, as every other error is more specific.
         if checkpoint.digest != checkpoint.digested() {
             return Err(CheckpointError::Altered);
         }
@@ -159,7 +159,7 @@ impl<S: Effect<Scalar: Storable>, P: Plan<S>> Stepper<S, P> {
         Ok(State { motion, kept, elapsed })
     }
 
-    /// The checkpoint is of this scene, with these parameters, this method and this step.
+    /// Checks that the checkpoint has this scene, these parameters, this method and this step.
     fn belongs(&self, checkpoint: &Checkpoint<Scalar<S>>) -> Result<(), CheckpointError> {
         if checkpoint.format != FORMAT {
             return Err(CheckpointError::AnotherFormat { found: checkpoint.format, known: FORMAT });
@@ -186,8 +186,8 @@ impl<S: Effect<Scalar: Storable>, P: Plan<S>> Stepper<S, P> {
     }
 }
 
-/// A memory made of the numbers of a checkpoint; `None` if they can't be those of such a memory. `like` is any memory of
-/// the same method: it says how many numbers there are.
+/// A memory with the numbers of a checkpoint; `None` if no such memory can have them. `like` is any memory of the same
+/// method, which fixes the count of numbers.
 fn remembered<T: Storable, K: Kept<T>>(list: &[T], like: &K) -> Result<Option<K>, CheckpointError> {
     let mut expected = 0;
     like.each(&mut |_| expected += 1);
