@@ -328,7 +328,7 @@ impl VisitMut for Rewrite<'_> {
 
     fn visit_expr_call_mut(&mut self, call: &mut syn::ExprCall) {
         visit_mut::visit_expr_call_mut(self, call);
-        // A path, as one closure can't be for matrices of several sizes.
+        // A generic function by its path: a closure has one type, while matrices have several sizes.
         if matches!(&*call.func, Expr::Path(path) if path.path.is_ident("inverse")) {
             let private = &self.header.private;
             // Among several bodies `F` isn't an element of the whole group.
