@@ -1,10 +1,10 @@
 //! The conserved momenta of several bodies.
 //!
 //! Let `η = (η_1, …, η_n)` be constant in space, with `η·a_0 = 0` for the spatial values of all advected parameters.
-//! The transport form changes `Σ ⟨Ad*_{g_a⁻¹} μ_a, η_a⟩` by the diamond along `g⁻¹·η`, which is `−⟨δl_d/δw,
-//! g⁻¹·(η·a_0)⟩ = 0`: the sum is constant at any tolerance of the solve. A relative attitude has the identity for its
-//! spatial value, so both bodies have the same `η`; a vector in the axes of a body restricts `η` to rotations about it;
-//! the attitude of a body in space allows no `η` for that body.
+//! The transport form changes `Σ ⟨Ad*_{g_a⁻¹} μ_a, η_a⟩` by the diamond along `g⁻¹·η`, which is
+//! `−⟨δl_d/δw, g⁻¹·(η·a_0)⟩ = 0`: the sum is constant at any tolerance of the solve. A relative attitude has the
+//! identity for its spatial value, so both bodies have the same `η`; a vector in the axes of a body restricts `η` to
+//! rotations about it; the attitude of a body in space allows no `η` for that body.
 
 use crate::declared::{Declaration, FieldKind};
 use crate::mathematics::derive::Seen;

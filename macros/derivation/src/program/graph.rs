@@ -178,7 +178,7 @@ impl Graph {
         }
     }
 
-    /// `f(a)`. Of a family with a recurrence only the highest members are called: the recurrence downwards loses no
+    /// `f(a)`. In a family with a recurrence only the highest members are called: the recurrence downwards loses no
     /// digits, and its operations are shared.
     pub(crate) fn apply(&mut self, function: Function, a: NodeId) -> NodeId {
         match function {

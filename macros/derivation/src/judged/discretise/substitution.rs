@@ -84,8 +84,8 @@ impl Substitution<'_> {
         }
     }
 
-    /// On SO(3), `(Aξ)·(Bξ)` as `tr(ξ̂ S_d ξ̂ᵀ)` with `S = AᵀB` and `S_d = ½ tr(S) I − S`, and `a·ξ` as `a·vee(ξ̂)`.
-    /// Both are equal on the algebra; for the matrix `(F − I)/h` they are the terms of (3.13).
+    /// Products on SO(3): `(Aξ)·(Bξ)` as `tr(ξ̂ S_d ξ̂ᵀ)` with `S = AᵀB` and `S_d = ½ tr(S) I − S`, and `a·ξ` as
+    /// `a·vee(ξ̂)`. Both are equal on the algebra; for the matrix `(F − I)/h` they are the terms of (3.13).
     fn form(&mut self, a: &Rc<Tree>, b: &Rc<Tree>) -> Result<Option<Rc<Tree>>, Misfit> {
         match (self.linear(a), self.linear(b)) {
             // The velocities of two bodies don't form a trace of one matrix.

@@ -1,8 +1,8 @@
 //! The identities of a derivation, in numbers of any kind.
 //!
 //! A covector is compared along one random direction `v`, and a Jacobian by its product with `v`: both are linear in
-//! it, so an identity in `v` holds for every component. First derivatives use dual numbers `x + ε x′`, where `(I + ε
-//! v̂) F` is an element of the group to first order; second derivatives are first derivatives of terms already
+//! it, so an identity in `v` holds for every component. First derivatives use dual numbers `x + ε x′`, where
+//! `(I + ε v̂) F` is an element of the group to first order; second derivatives are first derivatives of terms already
 //! compared.
 
 use std::collections::BTreeMap;
@@ -329,8 +329,8 @@ impl<'a> Identities<'a> {
         inputs
     }
 
-    /// Compares the derivatives of the momenta at both ends, along a left variation of the increment, along `δw =
-    /// −v̂·w`, and along a random change of all numbers; and the gradient of a kick, along the last two.
+    /// Compares the derivatives of the momenta at both ends, along a left variation of the increment, along
+    /// `δw = −v̂·w`, and along a random change of all numbers; and the gradient of a kick, along the last two.
     fn derivatives_hold<T: Number>(
         &self,
         point: &Point<T>,

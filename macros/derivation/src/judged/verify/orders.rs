@@ -65,7 +65,7 @@ pub(crate) fn term_mistakes(declaration: &Declaration, tree: &Rc<Tree>) -> Vec<(
     let is_too_large = search.too_large(tree).is_some();
     match search.role {
         Role::Force if whole.along.is_zero() => return vec![(tree.clone(), TermMistake::NoWork)],
-        // This work isn't linear in the displacements, as twice the displacements show.
+        // Work that isn't linear in the displacements is reported by the derivation.
         Role::Force if !(whole.value - whole.at_rest).is_zero() => {}
         _ if is_too_large => search.report_too_large(tree),
         _ => search.report_vanishing(tree, &whole),

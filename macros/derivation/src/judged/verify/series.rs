@@ -98,7 +98,7 @@ impl Series {
         if end > 1 {
             let x = self.until(end - 1);
             let derivative = match function {
-                // So that `y²/x` stays as it is, although the square of a stand-in isn't its argument.
+                // The form y/(2x) keeps `y²/x` constant, although the square of a stand-in isn't its argument.
                 Function::Sqrt => Self::of(Rational::new(1, 2)) * x.apply(function) / x,
                 _ => number::derivative(function, x, || x.apply(function)),
             };

@@ -16,7 +16,7 @@ use crate::mathematics::symbolic::{Expression, Rational, SymbolId};
 /// The reason why the virtual work defines no force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ForceError {
-    /// It isn't linear in the displacements.
+    /// The work isn't linear in the displacements.
     NotLinear,
 }
 
@@ -42,8 +42,8 @@ pub(super) fn force(declared: &Declared, Displacements(displacements): &Displace
         context.substituted(&declared.expression, &map)
     };
     let (before, after) = (work(1, 0), work(0, 1));
-    // A cubic in `t` that vanishes at four values of `t` is zero: no higher power and no product of displacements is
-    // left.
+    // The work of `t` times both displacements is `t` times the sum of their single works: powers and products of
+    // displacements fail.
     let is_linear = |factor: i128| {
         let both = before.clone().plus(after.clone()).scaled(Rational::integer(factor));
         work(factor, factor).minus(both).is_zero()

@@ -1,9 +1,9 @@
 //! The continuous Lagrangian that `l_d` discretises, `l_d(exp hξ, w) = h l(ξ, w) + O(h²)`.
 //!
-//! An expansion in powers of `h` at a fixed `F` is `l_d = h⁻¹ K(F) + S(F, w) + h U(F, w) + …`. Then `l = ½ ξ·Jξ + s·ξ −
-//! V`, where `J` is the second derivative of `K` at `F = I`, `s` the momentum of `S` there, and `V = −U(I, w)`. A
-//! nonzero first derivative of `K` at the identity would let momenta grow without bound as `h → 0`. If `h` is under
-//! functions or has lower powers, `l` follows from a series along a motion.
+//! An expansion in powers of `h` at a fixed `F` is `l_d = h⁻¹ K(F) + S(F, w) + h U(F, w) + …`. Then
+//! `l = ½ ξ·Jξ + s·ξ − V`, where `J` is the second derivative of `K` at `F = I`, `s` the momentum of `S` there, and
+//! `V = −U(I, w)`. A nonzero first derivative of `K` at the identity would let momenta grow without bound as `h → 0`.
+//! If `h` is under functions or has lower powers, `l` follows from a series along a motion.
 
 use std::collections::BTreeMap;
 

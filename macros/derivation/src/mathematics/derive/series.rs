@@ -11,11 +11,11 @@ use crate::mathematics::symbolic::{
 /// The reason why `l_d` has no continuous limit `l`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LimitError {
-    /// `h` stands under a function that has no value as `h → 0`.
+    /// `h` is under a function that has no value as `h → 0`.
     StepInsideFunction,
     /// A power of `h` below −1.
     TooSingular(i32),
-    /// There is no `l(ξ, w)`.
+    /// The limit `l(ξ, w)` doesn't exist.
     NotALagrangian,
     /// The limit has too many terms.
     TooLarge,

@@ -1,8 +1,8 @@
 //! The step in the transport form `μ⁺ = Ad*_F (μ + δl_d/δw ⋄ w)`, which conserves the Casimirs at any Newton tolerance.
 //!
 //! The parts of the diamond and of `μ` that don't depend on `F`, and aren't of the order of `1/h`, are computed once a
-//! step: with `diamond = k_0(w) + k_1(F, w)` and `μ = U − k_0` with all of `F` in `U`, one solves `U(F, w) = a` for `a
-//! = μ + k_0(w)`, and
+//! step: with `diamond = k_0(w) + k_1(F, w)` and `μ = U − k_0` with all of `F` in `U`, one solves `U(F, w) = a` for
+//! `a = μ + k_0(w)`, and
 //!
 //! ```text
 //! μ⁺ = Ad*_F a + Ad*_F k_1,      ⟨Ad*_F k_1, E⟩ = ⟨k_1, F E F⁻¹⟩,     w = F·w⁺
