@@ -120,7 +120,7 @@ fn covectors(derived: &Derived, expression: &crate::mathematics::symbolic::Expre
     }
 }
 
-/// The limit on the length of a flow on increments; a longer one is the equation of two terms that are in print.
+/// The limit on the length of the inertia matrix and of the flow on increments, which have other forms if longer.
 const LONGEST: usize = 1_500;
 
 /// The source of `J`, `s` and `V`.
@@ -208,7 +208,7 @@ pub(super) fn derivation(
 /// The operations of each stage, one a line.
 pub(super) fn costs(kernel: &Kernel) -> String {
     let before = [kernel.kick_before.as_slice(), &kernel.residual, &kernel.jacobian].concat();
-    // The sum a = μ + k₀ is part of the solve.
+    // The sum a = μ + k₀ takes an addition for each component.
     let mut before_the_solve = count(&kernel.graph, &before, Some(Stage::Step));
     before_the_solve.arithmetic += kernel.residual.len();
     let alone = if kernel.jacobian_is_expensive() {
@@ -337,7 +337,7 @@ pub(super) fn candidates(kernel: &Kernel) -> String {
     kernel.candidates.iter().enumerate().map(line).fold(unknown.to_owned(), |text, line| text + &line)
 }
 
-/// The bound on a wrong derivation, as text.
+/// The bound on the probability of a wrong derivation, as text.
 pub(super) fn certified(what: &str, sureness: Sureness) -> String {
     match sureness {
         Sureness::Certified(exponent) => format!("{what} are identities; {}", wrong(exponent)),

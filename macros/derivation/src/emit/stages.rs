@@ -132,9 +132,9 @@ fn inverse(emitter: &Emitter, kernel: &Kernel) -> Option<TokenStream> {
     })
 }
 
-/// The increment in front of the Newton system, and its Jacobian in the coordinates.
+/// The statements for the increment, and the Jacobian of the Newton system in the coordinates.
 ///
-/// Off SO(3) the system is written in `F`, and the retraction's tangent transforms its Jacobian to the coordinates.
+/// If the system is written in `F`, the retraction's tangent transforms its Jacobian to the coordinates.
 fn in_coordinates(
     emitter: &Emitter,
     kernel: &Kernel,

@@ -342,7 +342,7 @@ fn not_stationary(asymmetric: &[usize], declaration: &Declaration) -> String {
     )
 }
 
-/// The search for an `h` inside a function, a root or a sum in a divisor, which has no limit in closed form.
+/// The search for an `h` inside a function or inside a divisor with a sum, where the limit can't be found by powers.
 #[derive(Default)]
 struct Search {
     /// The subtrees already searched, so that the value of a `let` is searched once.

@@ -37,7 +37,7 @@ pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Ch
     let operations = operations(lowered);
     let mut used = Vec::new();
     if declaration.group.factors().iter().any(|factor| factor.orthogonal) {
-        // The derivation has translations as the components of `F`.
+        // The factors' increments are called components of `F`.
         let each = match declaration.group.is_product() {
             true if declaration.group.orthogonal => " of each component",
             true => " of each component that turns",

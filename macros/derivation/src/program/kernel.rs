@@ -36,8 +36,8 @@ pub(crate) struct Kernel {
     /// The part of the diamond that depends on `F`, if the system is one in `F` rebuilt from `y`; `kick_after` is
     /// `Ad*_F` of it.
     pub(crate) moved: Vec<NodeId>,
-    /// Whether the Newton system is written in `D = F − I`, with a right-trivialised Jacobian; on SO(3) it is written
-    /// in Cayley coordinates.
+    /// Whether the Newton system is written in `D = F − I`, with a right-trivialised Jacobian. On products of SO(3)
+    /// and translations it is written in Cayley coordinates.
     pub(crate) in_increment: bool,
     /// The power of `1 + |y|²` that the Newton system is multiplied by.
     pub(crate) denominators: u32,
@@ -59,7 +59,7 @@ impl Kernel {
         !self.moved.is_empty() && taken.denominators == 0 && jacobian > 3 * residual && jacobian > 2 * FREE_BODY
     }
 
-    /// The factors of the group before which no factor couples to later ones: there the Jacobian falls into blocks.
+    /// The factors at which the Jacobian falls into blocks: no earlier factor couples to them or to later ones.
     pub(crate) fn ends(&self, group: &Group) -> Vec<usize> {
         let dimension = group.dimension();
         let is_zero = |row: usize, column: usize| {
@@ -130,8 +130,8 @@ pub(crate) fn along_unit_vectors(
     places.map(entry).collect()
 }
 
-/// The values of a continuous term: a scalar of rank 0, the components of a covector of rank 1, or the entries of a
-/// bilinear form of rank 2, by rows.
+/// The values of a continuous term: a scalar for rank 0, the components of a covector for rank 1, and the entries of a
+/// bilinear form by rows for rank 2.
 pub(crate) fn along_directions(graph: &mut Graph, derived: &Continuous, rank: usize, term: &Expression) -> Vec<NodeId> {
     let dimension = derived.group.dimension();
     let along = [1, 2].map(|least| if rank >= least { dimension } else { 1 });

@@ -53,8 +53,8 @@ pub(crate) enum Row {
     Constant,
 }
 
-/// Checks the slopes of both bodies; returns a bound on a wrong result, and each function's dependence on those before
-/// it.
+/// Checks the slopes of both bodies; returns a bound on the probability of a wrong result, and each function's
+/// dependence on those before it.
 pub(crate) fn constraint(declaration: &Declaration, held: &Held) -> Result<(Sureness, Vec<Row>), Unconfirmed> {
     let has_value = |seed| {
         let point = Point::new(declaration, stream(seed));

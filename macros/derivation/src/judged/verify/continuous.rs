@@ -153,7 +153,7 @@ impl<'a> Motion<'a> {
         values
     }
 
-    /// Checks all equations, and returns a bound on a wrong result.
+    /// Checks all equations, and returns a bound on the probability of a wrong result.
     pub(crate) fn holds(&self) -> Result<Sureness, Unconfirmed> {
         let degrees = |same: &mut Same<Degree>| {
             let mut number = Degree::stream();
@@ -204,7 +204,7 @@ impl<'a> Motion<'a> {
     }
 
     /// Checks that `J`, `s` and `V` of the limit of a discrete Lagrangian are the derivatives of `l` at rest, and
-    /// returns a bound on a wrong result.
+    /// returns a bound on the probability of a wrong result.
     pub(crate) fn rest_holds(
         &self,
         names: &BTreeMap<Name, SymbolId>,

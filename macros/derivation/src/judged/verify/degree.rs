@@ -260,8 +260,9 @@ impl Largest {
         self.argument = self.argument.max(difference.argument);
     }
 
-    /// The probability that different values coincide at a random point, in units of `1/p`: those of a comparison, or
-    /// two arguments of that many functions, each of which may be replaced by its negative or reciprocal.
+    /// A bound on the probability that different values coincide at a random point, in units of `1/p`: those of a
+    /// comparison, or two arguments of that many functions, each of which may be replaced by its negative or
+    /// reciprocal.
     pub(super) fn coincidences(self, functions: u64) -> u64 {
         let pairs = functions.saturating_mul(4).saturating_pow(2);
         self.numerator.saturating_add(pairs.saturating_mul(self.argument))

@@ -13,8 +13,8 @@ use crate::declared::Role;
 pub(super) const POINTS: u32 = 3;
 
 impl Identities<'_> {
-    /// The bound on a wrong result, and whether the Lagrangian is its own adjoint at all points, as defined by
-    /// [`reversal`].
+    /// The bound on the probability of a wrong result, and whether the Lagrangian is its own adjoint at all points, as
+    /// defined by [`reversal`].
     pub(super) fn confirmed(&self) -> Result<(Sureness, [bool; 3]), Unconfirmed> {
         let (group, mut reversed) = (&self.of.declaration.group, [true; 3]);
         let of_field = |seed: u64| {
@@ -77,7 +77,7 @@ pub(super) fn same<T: Number>(term: &'static str, found: T, expected: T) -> Resu
     }
 }
 
-/// Compares at as many points as the degrees require, and returns the bound on a wrong result.
+/// Compares at as many points as the degrees require, and returns the bound on the probability of a wrong result.
 pub(super) fn certified(
     content: Content,
     degrees: impl FnOnce(&mut Same<Degree>) -> Result<(), Unconfirmed>,

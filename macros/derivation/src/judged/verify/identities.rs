@@ -248,7 +248,7 @@ impl<'a> Identities<'a> {
         let (before, after) = (kick(&kernel.kick_before), kick(&kernel.kick_after));
         let change = kernel.kick_derivative.as_ref().map_or_else(Vec::new, |change| kick(change));
         let jacobian = iteration(&self.stages.system[dimension..]);
-        // The gradient is emitted with the residual alone, if there is such a function.
+        // The moved part of the diamond is emitted with the residual alone, if the Jacobian is expensive.
         let moved = if kernel.jacobian_is_expensive() {
             iteration(&kernel.moved)
         } else {
@@ -264,7 +264,7 @@ impl<'a> Identities<'a> {
             same("Newton residual", found.value, factor * (a[k] - point.target[k]))?;
         }
         point.are_slopes("Newton Jacobian of the step", &jacobian, &residual, same)?;
-        // μ⁺ = Ad*_F a + k₁⁺. The gradient part that isn't in the residual is k₁⁺ before Ad*_F.
+        // μ⁺ = Ad*_F a + k₁⁺. The moved part of the diamond is k₁⁺ before Ad*_F.
         let turned = components_of(group, &products(&products(matrices, &point.element), inverses));
         let after = dot(&after, &point.direction);
         same("transported momentum", dot(&a, &turned) + after, declared.left)?;
