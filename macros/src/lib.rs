@@ -136,7 +136,7 @@ pub fn lagrangian(arguments: proc_macro::TokenStream, item: proc_macro::TokenStr
 ///     work = …,                       the virtual work f⁻·eta + f⁺·eta_next, linear in the displacements
 ///     displacement(eta_1, s),         the names of displacements of several bodies
 ///     gradients,                      as for a Lagrangian
-///     crate = path,                   where liestep is found, if not at `::liestep`
+///     crate = path,                   the path of liestep, if not `::liestep`
 /// )]
 /// struct Name { … }                   the parameters
 /// ```

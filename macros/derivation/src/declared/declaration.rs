@@ -1,4 +1,4 @@
-//! A declaration after parsing: the struct, the attribute's arguments, and what the fields' types promise.
+//! A declaration after parsing: the struct, the attribute's arguments, and the properties that the fields' types imply.
 
 use proc_macro2::Span;
 use syn::ext::IdentExt as _;

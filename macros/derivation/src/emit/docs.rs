@@ -33,7 +33,7 @@ pub(super) fn lets(derived: &Derived) -> String {
     if derived.closed.is_empty() {
         return String::new();
     }
-    // A number with many digits has itself for a name.
+    // A number with many digits is its own name.
     let named = || derived.closed.iter().filter(|one| name(one.symbol).parse::<f64>().is_err());
     let values = named().map(|one| format!("\n    {} = {}", name(one.symbol), text(&one.value, symbols)));
     let pairings = named().rev().map(|one| {

@@ -6,8 +6,8 @@
 //!
 //! # Why that is enough
 //!
-//! 1. *Points.* `F`, and each attitude that is seen, is a product of Cayley transforms with random numbers for coordinates
-//!    ([`Element::by_cayley`]), a symmetric matrix is `Z Zᵀ`, and all else is random. So each relation that may be used,
+//! 1. *Points.* `F`, and each attitude among the parameters, is a product of Cayley transforms with random numbers for
+//!    coordinates ([`Element::by_cayley`]), a symmetric matrix is `Z Zᵀ`, and all else is random. So each relation that may be used,
 //!    `FᵀF = I`, `det F = 1`, `Jᵀ = J`, a last coordinate of one, holds at the point. Where `E³ = c E` the transform of `tE`
 //!    is in the one-parameter group of `E`, and `(t_1, …, t_n) ↦ cay(t_1 E_1) ⋯ cay(t_n E_n)` has the derivative `2 E_k` at
 //!    zero. So the points fill a neighbourhood of the identity, and are dense in the closure, in Zariski's sense, of the
@@ -30,16 +30,16 @@
 //!    having no value.
 //! 5. *What runs.* The graph of the [`Kernel`] is compared, stage by stage as a stepper calls it, with the derivatives of the
 //!    terms that were compared before. A step needs `U(F) = μ + k₀` and `μ⁺ = Ad*_F (μ + k₀) + k₁⁺`: any `k₀` will do that
-//!    doesn't depend on `F`, and that it doesn't is asked of the graph. The derivatives of a step are compared as the graph that
-//!    is emitted; by the entries of an attitude that is seen, with those of its momenta and not of the declaration, as
-//!    `RᵀR = I` may have been used. Tokens are written from these graphs, and those of the momentum's Jacobian from the graph
-//!    that was compared. Those of other single terms are written from graphs that the same code builds again.
+//!    doesn't depend on `F`, which is checked on the graph. The derivatives of a step are compared as the graph that is
+//!    emitted; by the entries of an attitude among the parameters, with those of its momenta and not of the declaration,
+//!    as `RᵀR = I` may have been used. Tokens are written from these graphs, and those of the momentum's Jacobian from
+//!    the graph that was compared. Those of other single terms are written from graphs that the same code builds again.
 //!
-//! # What is taken for right
+//! # Assumptions
 //!
-//! That the tree is what the tokens mean, which a test asks of random declarations whose text it evaluates apart; how a
-//! group moves what is advected, which is written here a second time; the library's own Cayley map, transport and solves;
-//! and the writing of tokens.
+//! The tree has the meaning of the tokens, which a test checks on random declarations by evaluating their text
+//! separately. The action of a group on advected parameters, which is written here a second time, the library's own
+//! Cayley map, transport and solves, and the writing of tokens are right.
 //!
 //! A group whose generators' multiples have no Cayley transforms in it has points that are power series instead,
 //! `exp(t v̂_1) ⋯ exp(t v̂_n)`. There all is compared to the order to which series are known, without rounding, and without a

@@ -14,15 +14,15 @@
 //!
 //! ```text
 //! seen from a           as above, with E_a and F_a
-//! b as a sees it        E_a Q − Q E_b           F_a Q⁺ F_b⁻¹
-//! b as it is in space   −R E_b                  R⁺ F_b⁻¹
+//! b relative to a       E_a Q − Q E_b           F_a Q⁺ F_b⁻¹
+//! b in space            −R E_b                  R⁺ F_b⁻¹
 //! ```
 //!
 //! Translations `d` are added. With elements `e` of their algebra:
 //!
 //! ```text
-//! b as a sees it        e_a − e_b               r⁺ + d_a − d_b
-//! b as it is in space   −e_b                    x⁺ − d_b
+//! b relative to a       e_a − e_b               r⁺ + d_a − d_b
+//! b in space            −e_b                    x⁺ − d_b
 //! ```
 
 use super::Context;

@@ -1,4 +1,4 @@
-//! The first variation of an expression: all derivatives are computed here.
+//! The first variation of an expression; all derivatives of expressions are computed here.
 //!
 //! Given `δs` for some symbols `s`, the variation is linear in them and follows from four rules:
 //!
