@@ -7,11 +7,11 @@
 //! # Why that is enough
 //!
 //! 1. *Points.* `F`, and each attitude among the parameters, is a product of Cayley transforms with random numbers for
-//!    coordinates ([`Element::by_cayley`]), a symmetric matrix is `Z Zᵀ`, and all else is random. So each relation that may be used,
-//!    `FᵀF = I`, `det F = 1`, `Jᵀ = J`, a last coordinate of one, holds at the point. Where `E³ = c E` the transform of `tE`
-//!    is in the one-parameter group of `E`, and `(t_1, …, t_n) ↦ cay(t_1 E_1) ⋯ cay(t_n E_n)` has the derivative `2 E_k` at
-//!    zero. So the points fill a neighbourhood of the identity, and are dense in the closure, in Zariski's sense, of the
-//!    connected group: a rational function that vanishes at all of them vanishes on it.
+//!    coordinates ([`Element::by_cayley`]), a symmetric matrix is `Z Zᵀ`, and all else is random. So each relation that
+//!    may be used, `FᵀF = I`, `det F = 1`, `Jᵀ = J`, a last coordinate of one, holds at the point. Where `E³ = c E` the
+//!    transform of `tE` is in the one-parameter group of `E`, and `(t_1, …, t_n) ↦ cay(t_1 E_1) ⋯ cay(t_n E_n)` has the
+//!    derivative `2 E_k` at zero. So the points fill a neighbourhood of the identity, and are dense in the closure, in
+//!    Zariski's sense, of the connected group: a rational function that vanishes at all of them vanishes on it.
 //! 2. *Directions.* `(I + ε v̂) F` with `ε² = 0` is an element of the group to the order that counts. Dual numbers are exact,
 //!    so a slope is the derivative along the group.
 //! 3. *Functions.* Let each call `f(u)` stand for a new variable, one for each `f` and each value of `u`, with the relations of
