@@ -1,14 +1,14 @@
-//! The derivation of liestep: what a declaration means, whether it is right, and the code that it becomes.
+//! The derivation of liestep: the meaning of a declaration, its verification, and its generated code.
 //!
 //! Its rooms depend on each other in one direction:
 //!
 //! `lib → staged → expand → emit → judged → {declared, program} → mathematics`
 //!
-//! Tokens are quoted in `emit` alone. Syntax is known in `declared`, where it is read, and in `emit`, where it is
-//! written; `mathematics` and `program` know no span either. A test reads this page and holds all sources to it.
+//! Tokens are quoted in `emit` alone. Syntax is known in `declared`, which reads it, and in `emit`, which writes it;
+//! `mathematics` and `program` know no span either. A test reads this page and holds all sources to it.
 //!
-//! The macros of `liestep-macros` hand their tokens to [`expand`] and its neighbours; [`staged`] is for what derives a
-//! text while it runs.
+//! The macros of `liestep-macros` pass their tokens to [`expand`] and its neighbours; [`staged`] derives texts at run
+//! time.
 
 mod declared;
 mod emit;
