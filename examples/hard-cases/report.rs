@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use crate::row::Row;
+use crate::row::{Effort, Row};
+use crate::rows;
 
 /// For the terminal: a line for each row, and below it what the others do.
 pub fn text(rows: &[Row]) -> String {
@@ -37,4 +38,13 @@ pub fn markdown(rows: &[Row]) -> String {
         let _ = writeln!(text, "| {} | {verdict} |", cells.join(" | "));
     }
     text
+}
+
+/// Measures a row by its id, prints it, and panics where its criterion is missed.
+pub fn assert_met(id: &str, effort: Effort) {
+    let (_, measure) = rows::ALL.into_iter().find(|row| row.0 == id).expect("an id of the table");
+    let row = measure(effort).unwrap_or_else(|failure| panic!("{id}: {failure}"));
+    let (is_met, text) = (row.is_met, text(&[row]));
+    println!("{text}");
+    assert!(is_met, "{text}");
 }

@@ -5,6 +5,7 @@
 
 mod chain;
 mod compensated;
+mod compensated_collocation;
 mod composition;
 mod conditions;
 mod events;

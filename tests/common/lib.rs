@@ -6,9 +6,13 @@
 
 pub mod affine;
 pub mod any_scalar;
+pub mod continuous;
 pub mod drift;
 pub mod examples;
+pub mod free_body;
+pub mod limit;
 pub mod order;
 pub mod random;
+pub mod samples;
 pub mod solvers;
 pub mod structure;

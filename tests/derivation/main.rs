@@ -1,7 +1,6 @@
 //! What the macro derives, against what shares no code with it: duals, finite differences, formulas by hand, data.
 
 mod continuous;
-mod continuous_bodies;
 mod discretised;
 mod dual_numbers;
 mod equations;

@@ -5,7 +5,6 @@ mod laws;
 mod laws_can_fail;
 mod points;
 mod products;
-mod reduction;
 mod retraction_laws;
 mod so3_laws;
 mod user_group;

@@ -2,15 +2,12 @@
 
 mod any_method;
 mod checkpoints;
-mod command_lines;
 mod long_drifts;
 mod observed;
 mod one_top;
 mod policies;
-mod random_inputs;
 mod recorded;
 mod secants;
-mod secants_long_run;
 mod setup;
 mod simplified;
 mod solvability;

@@ -3,7 +3,7 @@
 use checks::structure::System;
 use liestep::Stepper;
 
-use crate::samples::{self, Start};
+use checks::samples::{self, Start};
 
 const STEP: f64 = 0.02;
 

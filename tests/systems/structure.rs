@@ -6,7 +6,7 @@ use checks::structure::{System, momenta, reversal, stages, two_flows};
 use liestep::SO3;
 use nalgebra::DMatrix;
 
-use crate::samples::every_system;
+use checks::samples::every_system;
 
 fn assert_structure<L: System + Clone>(system: &L, name: &str) {
     p1(system, name);

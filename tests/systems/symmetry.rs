@@ -8,7 +8,7 @@ use liestep::motion::DiscreteLiePoisson;
 use liestep::prelude::*;
 use nalgebra::{Matrix2, Matrix3, Matrix4, Point3, Vector3, Vector4};
 
-use crate::samples::{self, Start};
+use checks::samples::{self, Start};
 
 const STEP: f64 = 0.02;
 const STEPS: u32 = 2000;

@@ -8,7 +8,7 @@ use liestep::laws::samples::{Random, derivative};
 use liestep::motion::DiscreteLiePoisson;
 use liestep::numbers::Coordinates as _;
 
-use crate::samples::every_system;
+use checks::samples::every_system;
 
 const H: f64 = 0.05;
 

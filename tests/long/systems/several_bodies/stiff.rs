@@ -12,7 +12,7 @@ use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
 use nalgebra::{Matrix4, Vector3, Vector4, Vector6};
 
 use super::{Body, six, started, whole};
-use crate::limit::assert_limit;
+use checks::limit::assert_limit;
 
 const N: usize = 6;
 type Rod = Sum<Placement<Each<N>, FloatingBody, 1>, Placement<Coupling<N>, RodElement, 1>>;

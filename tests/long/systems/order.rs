@@ -13,8 +13,8 @@ use nalgebra::{Matrix3, Matrix4, Point3, SMatrix, SVector, Vector3, Vector6};
 use workbench::measure::{four_halvings, order, relative, steps_in};
 use workbench::runge_kutta;
 
-use crate::continuous::{Body, Phase};
-use crate::samples::{self, Start};
+use checks::continuous::{Body, Phase};
+use checks::samples::{self, Start};
 
 /// Above what a thousand steps of the Runge–Kutta method leave of systems with rates of a few per second.
 pub(crate) const PLATEAU: f64 = 1e-9;

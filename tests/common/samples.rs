@@ -1,7 +1,5 @@
 //! One body for each declaration, without any symmetry that the declaration doesn't have.
 
-#![allow(unreachable_pub)]
-
 use declarations::{
     CayleyTop, ElasticFlow, FourthOrderBody, FourthOrderTop, FreeBody, FullTop, HeavyTop, LogTop, LogTraceTop, Magnet,
     OrbitingBody, Satellite, SixthOrderTop, SlidingTop, Spring, TetheredPlate, Top, UnderwaterBody,
@@ -16,23 +14,24 @@ use nalgebra::{
 pub type Start<G> = (G, <G as LieGroup>::Vector);
 
 /// Calls `$check` in a test of its own for each declaration.
+#[macro_export]
 macro_rules! every_system {
     ($check:ident: $($name:ident)+) => {
         $(
             #[test]
             fn $name() {
-                $check(&crate::samples::$name(), stringify!($name));
+                $check(&$crate::samples::$name(), stringify!($name));
             }
         )+
     };
     ($check:ident) => {
-        every_system! {
+        $crate::every_system! {
             $check: heavy_top full_top free_body log_trace_top cayley_top log_top fourth_order_top sixth_order_top
             fourth_order_body satellite orbiting_body spring sliding_top magnet underwater_body tethered_plate elastic_flow
         }
     };
 }
-pub(crate) use every_system;
+pub use every_system;
 
 pub const MOMENTS: Vector3<f64> = Vector3::new(2.0, 3.0, 4.5);
 

@@ -27,7 +27,7 @@ use nalgebra::{SVector, Vector3, Vector6};
 use serde_json::Value;
 use workbench::runge_kutta;
 
-use crate::limit::assert_limit;
+use checks::limit::assert_limit;
 use declarations::motions::{matrix, number, read, vector};
 
 /// A body that is translated, too.

@@ -6,20 +6,21 @@
 //!
 //! Nothing of the derivation is used: no advected parameter, no diamond, and inertia and potential are written by hand.
 
-use checks::structure::axis;
 use liestep::laws::samples::derivative;
 use liestep::laws::samples::{MatrixLieGroup, along};
 use nalgebra::{SMatrix, SVector};
 use workbench::runge_kutta;
 
+use crate::structure::axis;
+
 /// A body on a group: its inertia in the basis of the algebra, and its potential at a place, in J.
-pub(crate) struct Body<'a, const N: usize, const D: usize> {
-    pub(crate) inertia: SMatrix<f64, D, D>,
-    pub(crate) potential: &'a dyn Fn(&SMatrix<f64, N, N>) -> f64,
+pub struct Body<'a, const N: usize, const D: usize> {
+    pub inertia: SMatrix<f64, D, D>,
+    pub potential: &'a dyn Fn(&SMatrix<f64, N, N>) -> f64,
 }
 
 /// Place and body momentum.
-pub(crate) type Phase<const N: usize, const D: usize> = (SMatrix<f64, N, N>, SVector<f64, D>);
+pub type Phase<const N: usize, const D: usize> = (SMatrix<f64, N, N>, SVector<f64, D>);
 
 impl<const N: usize, const D: usize> Body<'_, N, D> {
     fn rate<G: MatrixLieGroup<N, D>>(&self, inverse: &SMatrix<f64, D, D>, (g, momentum): &Phase<N, D>) -> Phase<N, D> {
@@ -31,7 +32,7 @@ impl<const N: usize, const D: usize> Body<'_, N, D> {
     }
 
     /// The solution after the time `t`, by the classical Runge–Kutta method.
-    pub(crate) fn solution<G: MatrixLieGroup<N, D>>(&self, start: Phase<N, D>, t: f64, steps: u32) -> Phase<N, D> {
+    pub fn solution<G: MatrixLieGroup<N, D>>(&self, start: Phase<N, D>, t: f64, steps: u32) -> Phase<N, D> {
         let inverse = self.inertia.try_inverse().expect("an inertia");
         let numbers = |(g, momentum): Phase<N, D>| g.iter().chain(&momentum).copied().collect::<Vec<_>>();
         let phase = |y: &[f64]| (SMatrix::from_column_slice(&y[..N * N]), SVector::from_column_slice(&y[N * N..]));

@@ -8,9 +8,9 @@ use liestep::mechanics::DiscreteLagrangian;
 use nalgebra::{Matrix2, Matrix3, Matrix4, Point3, Vector3, Vector4};
 use workbench::measure::order;
 
-use crate::continuous::Body;
 use crate::order::{PLATEAU, errors, kirchhoff, unshifted};
-use crate::samples;
+use checks::continuous::Body;
+use checks::samples;
 
 /// [`UnderwaterBody`](declarations::UnderwaterBody) with its displacement in the frame before the step alone.
 #[lagrangian(

@@ -1,2 +1,0 @@
-mod damping;
-mod steady_turns;
