@@ -1,4 +1,4 @@
-//! What accuracy costs in time: structure-preserving methods beside explicit Runge–Kutta methods on seven scenes.
+//! The time to an accuracy: structure-preserving methods compared with explicit Runge–Kutta methods on seven scenes.
 //!
 //! ```text
 //! cargo run --release --example accuracy-cost
