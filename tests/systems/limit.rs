@@ -10,7 +10,7 @@ use liestep::numbers::Coordinates as _;
 
 use crate::samples::{self, every_system};
 
-/// What is left of the limit, and the same over a spacing of 10⁻³.
+/// The error of the limit, and that of its differences over a spacing of 10⁻³.
 const LIMIT: f64 = 1e-9;
 const DIFFERENCES: f64 = 1e-6;
 
@@ -47,7 +47,7 @@ pub(crate) fn assert_limit<L: System + Clone>(system: &L, name: &str) {
 
 every_system!(assert_limit);
 
-/// A momentum that isn't zero at rest.
+/// The momentum isn't zero at rest.
 #[test]
 fn body_with_a_rotor() {
     let J_d = samples::free_body().J_d;

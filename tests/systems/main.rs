@@ -1,6 +1,6 @@
-//! The declared systems of `examples/declarations`: the order of each, what each conserves, and its structure.
+//! The declared systems of `examples/declarations`: their orders, invariants, and structure.
 //!
-//! One crate, so that the declarations on SE(3) are expanded once.
+//! All tests are in one crate, so that the declarations on SE(3) are expanded once.
 
 mod continuous;
 mod energy;
