@@ -14,7 +14,7 @@ pub struct Effort {
 }
 
 impl Effort {
-    /// This number of steps for rows without a criterion, or zero.
+    /// This number of steps for measurements without a criterion; zero if only the verdict is computed.
     pub fn beside(self, steps: u64) -> u64 {
         if self.verdict_only { 0 } else { steps }
     }

@@ -228,8 +228,8 @@ fn laws_of_retractions() {
     assert!(refused_retraction::<SUBTRACTED>().contains(&"keeps_digits"));
 }
 
-/// A vector that is acted on by the inverse transpose of the right matrix, `F w`: a left action in place of a right
-/// one.
+/// A vector that is advected by `F w` in place of the covector's `Fᵀ w` or the vector's `F⁻¹ w`: an action from the
+/// wrong side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Backwards(Vector3<f64>);
 

@@ -17,7 +17,6 @@ use super::super::scheme::{Flow, SplittingScheme};
 /// processor removes. So a kernel has fewer conditions to satisfy, 3 in place of 6 for order 6, and with as many drifts
 /// and kicks its error is smaller. Both consist of drifts and kicks, some with [force gradients](SplittingScheme), so
 /// the whole is a Poisson map and conserves the momentum maps.
-/// it is Poisson and keeps the momentum maps.
 ///
 /// # Examples
 ///
