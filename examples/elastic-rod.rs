@@ -123,8 +123,8 @@ fn kept() -> Result<(), Failure> {
     Ok(())
 }
 
-/// The number of timed runs, and the steps of each. As many steps come before, because the first step differs from
-/// later ones.
+/// The number of timed runs, and the steps of each. The same number of steps comes before the timing, because the first
+/// step differs from later ones.
 const RUNS: usize = 30;
 const STEPS: u32 = 100;
 

@@ -11,8 +11,8 @@
 //! for twenty seeds.
 //!
 //! The tests assert that the rank is ten, and that the direction outside of the fit's range is a symmetry of the
-//! physics up to `10⁻⁶`. Of the errors over twenty seeds, in the standard deviations of the fit's covariance, they
-//! assert that the root mean square is within 0.2 of one, that at most one of the hundred is above three, and none
+//! physics up to `10⁻⁶`. They measure the errors over twenty seeds in the standard deviations of the fit's covariance,
+//! and assert that the root mean square is within 0.2 of one, that at most one of the hundred is above three, and none
 //! above 3.5. The tests don't assert that all are below three: among a hundred normal numbers 0.27 on average are
 //! larger. The seeds are fixed, so the tests are reproducible.
 

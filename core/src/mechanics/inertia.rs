@@ -100,7 +100,7 @@ pub struct NonstandardInertia<T = f64>(Matrix3<T>);
 
 /// A [`NonstandardInertia`] in principal axes: a diagonal `J_d`.
 ///
-/// By this type the macro knows that six entries are zero, and derives a smaller step.
+/// The type guarantees that six entries are zero, so the macro derives a smaller step.
 ///
 /// # Shape and units
 ///

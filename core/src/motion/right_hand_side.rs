@@ -132,8 +132,8 @@ impl<L: ContinuousLagrangian> RightHandSide<L> {
         left_symmetries(&self.lagrangian)
     }
 
-    /// A basis of the symmetries in the body, found at sample points to rounding: for a symmetric top its axis. Those
-    /// that hold for all values of the parameters are listed in
+    /// A basis of the symmetries in the body, found at sample points to rounding: for a symmetric top its axis. The
+    /// symmetries for all values of the parameters are listed in
     /// [`CONTINUOUS_DERIVATION`](ContinuousLagrangian::CONTINUOUS_DERIVATION).
     pub fn right_symmetries(&self) -> Vec<Velocity<L>> {
         right_symmetries(&self.lagrangian)

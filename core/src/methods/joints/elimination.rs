@@ -6,8 +6,8 @@
 //! A_b y_b + Σ_j E_jbᵀ p_j = −r_b           Σ_b C_jb y_b = −g_j
 //! ```
 //!
-//! with the sums over the joints of a body, and over the two bodies of a joint. A body at an end of a tree, child `c`
-//! of `b` by the joint `j`, is eliminated, and then its joint; what is left is an addition to the matrix of its
+//! The sums extend over the joints of a body, and over the two bodies of a joint. A body at an end of a tree, child `c`
+//! of `b` by the joint `j`, is eliminated, and then its joint; the Schur complement is added to the matrix of its
 //! parent:
 //!
 //! ```text
