@@ -3,8 +3,8 @@
 use liestep::prelude::*;
 use nalgebra::Vector3;
 
-/// The heavy top with the Cayley kinetic term: in `x = tan(θ/2) n` its Legendre transform is `h p = 2 (J x + x × J x +
-/// (x·J x) x)`, which is solvable for every `h`.
+/// The heavy top with the Cayley kinetic term: in `x = tan(θ/2) n` its Legendre transform is
+/// `h p = 2 (J x + x × J x + (x·J x) x)`, which is solvable for every `h`.
 #[lagrangian(
     group = SO3,
     advected(w = up),

@@ -22,8 +22,8 @@ pub(crate) fn flip_period(moments: &Vector3<f64>, velocity: &Vector3<f64>) -> f6
     4.0 * complete_integral(complement.sqrt()) / rate
 }
 
-/// The velocity on the separatrix, from a rotation about the middle axis to the opposite one in infinite time: `Ω_2 =
-/// Ω̄ tanh λt`, with `Ω_1` and `Ω_3` proportional to `1/cosh λt`, for moments `J_1 < J_2 < J_3`.
+/// The velocity on the separatrix, from a rotation about the middle axis to the opposite one in infinite time:
+/// `Ω_2 = Ω̄ tanh λt`, with `Ω_1` and `Ω_3` proportional to `1/cosh λt`, for moments `J_1 < J_2 < J_3`.
 ///
 /// `λ² = Ω̄² (J_2 − J_1)(J_3 − J_2)/(J_1 J_3)`; `Ω̄` is the rate about the middle axis at either end, rad/s.
 pub(crate) fn on_separatrix(moments: &Vector3<f64>, rate: f64, t: f64) -> Vector3<f64> {

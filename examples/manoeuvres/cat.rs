@@ -44,8 +44,8 @@ fn wheels(plan: &Turn) -> Vec<(f64, f64)> {
 /// enclose.
 ///
 /// Without angular momentum the body has the velocity `−a_k ṫ_k` about the axes of the wheels, `a = J_w/(J + J_w)`. A
-/// loop around an area `A` of the plane of `t_1` and `t_2`, from the first to the second, results in the turn `½ ∮ [ξ,
-/// dξ] = a_1 a_2 A`.
+/// loop around an area `A` of the plane of `t_1` and `t_2`, from the first to the second, results in the turn
+/// `½ ∮ [ξ, dξ] = a_1 a_2 A`.
 fn turn(angle: f64) -> Result<(Turn, f64), Failure> {
     let (steps, seconds) = (200, 4.0);
     let J_d = NonstandardInertia::from_principal_moments(Vector3::from(MOMENTS))?;

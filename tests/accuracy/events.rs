@@ -12,8 +12,8 @@ use nalgebra::Vector3;
 
 use crate::many_digits::{DoubleDouble, Vector, long};
 
-/// The steady rotation of a free symmetric body's axis about its momentum in space: `n·R(t) e₃ − c = a + ρ cos(λ t −
-/// φ)` with `λ = |Π|/J₁`.
+/// The steady rotation of a free symmetric body's axis about its momentum in space:
+/// `n·R(t) e₃ − c = a + ρ cos(λ t − φ)` with `λ = |Π|/J₁`.
 struct Precession {
     /// The constant part `a`, from the axis' component along the momentum.
     mean: f64,

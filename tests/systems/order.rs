@@ -156,8 +156,8 @@ fn orbiting_body() {
     assert_orders(&body, orbit(&body), samples::in_orbit(), 0.1);
 }
 
-/// The inertia for rotation and translation of a body with the first moment `s = ∫ X dm`: `½ Ω·𝕀Ω + Ω·(s × v) + ½ m
-/// v²`.
+/// The inertia for rotation and translation of a body with the first moment `s = ∫ X dm`:
+/// `½ Ω·𝕀Ω + Ω·(s × v) + ½ m v²`.
 fn orbit(body: &OrbitingBody) -> (SMatrix<f64, 6, 6>, impl Fn(&Matrix4<f64>) -> f64 + use<'_>) {
     let first: Vector3<f64> = body.J.fixed_view::<3, 1>(0, 3).into_owned();
     let mut inertia = SMatrix::<f64, 6, 6>::identity() * body.J[(3, 3)];

@@ -15,8 +15,8 @@ pub(crate) fn momentum_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, 
     }
 }
 
-/// The body velocity of the momentum `μ`: `ξ = J⁻¹(μ − s(w))` if `l` is quadratic, otherwise the solution of `∂l/∂ξ =
-/// μ`. Lanes whose momentum is that of no velocity are NaN.
+/// The body velocity of the momentum `μ`: `ξ = J⁻¹(μ − s(w))` if `l` is quadratic, otherwise the solution of
+/// `∂l/∂ξ = μ`. Lanes whose momentum is that of no velocity are NaN.
 pub(crate) fn velocity_of_momentum<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
     let near_rest = velocity_near_rest(effect, momentum, w);
     if effect.is_quadratic() {

@@ -139,8 +139,8 @@ impl<L: ContinuousLagrangian> RightHandSide<L> {
         right_symmetries(&self.lagrangian)
     }
 
-    /// The conserved momenta: `⟨Ad*_{g⁻¹} μ, η⟩` in space for each [left symmetry](Self::left_symmetries), then `⟨μ,
-    /// ζ⟩` in the body for each [right one](Self::right_symmetries). The [energy](Self::energy) is conserved, too.
+    /// The conserved momenta: `⟨Ad*_{g⁻¹} μ, η⟩` in space for each [left symmetry](Self::left_symmetries), then
+    /// `⟨μ, ζ⟩` in the body for each [right one](Self::right_symmetries). The [energy](Self::energy) is conserved, too.
     pub fn conserved(&self, attitude: &L::Group, momentum: &Velocity<L>) -> Vec<L::Scalar> {
         let spatial = attitude.inverse().adjoint_transpose(momentum);
         let left = self.left_symmetries().into_iter().map(|eta| spatial.dot(&eta));

@@ -137,8 +137,8 @@ impl<W, const D: usize> Orbit<'_, W, D> {
 }
 
 /// The invariants on (SO(3) × SO(3)) ⋉ V with `w_1`, `w_2` and `Q`, 21 numbers in all. The orbit of `w` is `QᵀQ = I`,
-/// `|w_1|` and `w_1 = Q w_2`. Turns of both about the vertical leave it unchanged, `η = (w_1, w_2)`, so `μ_1·w_1 +
-/// μ_2·w_2` is conserved.
+/// `|w_1|` and `w_1 = Q w_2`. Turns of both about the vertical leave it unchanged, `η = (w_1, w_2)`, so
+/// `μ_1·w_1 + μ_2·w_2` is conserved.
 #[test]
 fn casimirs_of_a_double_pendulum() {
     let random = &mut Random::new(7);

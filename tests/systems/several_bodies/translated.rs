@@ -24,8 +24,8 @@ fn attitude(body: &Value) -> SO3 {
     attitudes_of(&Value::Array(vec![body["R"].clone()]))[0]
 }
 
-/// The top on a cart of the reference: the nonstandard inertia about the pivot is that about the centre of mass plus `m
-/// c cᵀ`.
+/// The top on a cart of the reference: the nonstandard inertia about the pivot is that about the centre of mass plus
+/// `m c cᵀ`.
 fn top_on_cart(parameters: &Value) -> TopOnCart {
     let (top, c) = (&parameters["top"], moments(&parameters["top"]["c"]));
     let m = top["m"].as_f64().unwrap();

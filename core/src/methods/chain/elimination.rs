@@ -18,8 +18,8 @@
 //! z = B⁻¹(G v + t)                     Π' = Q (Π + m I + H B⁻¹ G) Qᵀ               q' = Q (q + H B⁻¹ t)
 //! ```
 //!
-//! Matrices are columns in registers, and the duration of a step is the longest chain of dependent operations. So `ρ̂
-//! Q` is computed before `Π'` is known, and `H adj(B) G` during the division by `det B`.
+//! Matrices are columns in registers, and the duration of a step is the longest chain of dependent operations. So
+//! `ρ̂ Q` is computed before `Π'` is known, and `H adj(B) G` during the division by `det B`.
 //!
 //! `B` is the pivot block of the link in the Newton matrix, once all links beyond are eliminated. At the identity `Π`
 //! is symmetric: the articulated-body algorithm's mass at the joint.

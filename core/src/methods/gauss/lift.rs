@@ -12,8 +12,8 @@ pub(super) type PhasePoint = [f64; 8];
 /// The Hamiltonian `H(q, p) = ½ (Π − s)·J⁻¹(Π − s) + V(R(q)ᵀ·a_0)` with `Π = ½ Im(q̄ p)` and the rotation `R` of
 /// `q/|q|`.
 ///
-/// `Π` is the momentum map of the right multiplication by unit quaternions, and that multiplication advects `w =
-/// R(q)ᵀ·a_0`. So `(q, p) ↦ (Π, w)` is a Poisson map to the dual of the semidirect product. The equations are
+/// `Π` is the momentum map of the right multiplication by unit quaternions, and that multiplication advects
+/// `w = R(q)ᵀ·a_0`. So `(q, p) ↦ (Π, w)` is a Poisson map to the dual of the semidirect product. The equations are
 ///
 /// ```text
 /// q' = ½ q Ω        p' = ½ p Ω + 2 q τ(w)/|q|²        Ω = J⁻¹(Π − s)

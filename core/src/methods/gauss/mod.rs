@@ -33,11 +33,11 @@ use nalgebra::Vector3;
 ///
 /// Gauss collocation is symplectic, commutes with linear maps, and preserves quadratic invariants. Body momentum and
 /// advected parameters are functions of quaternion and momentum with the Poisson brackets of the semidirect product.
-/// The other coordinates change under linear symmetries: rotations about a symmetry axis of the parameters, and `p ↦ p
-/// + λq`. So the step is a Poisson map of `(Π, w)`. Momentum maps are quadratic, hence conserved to rounding: the
-/// momentum about the vertical, and that of a symmetric top about its axis. Attitudes are rotations and the parameters
-/// stay on their orbit by construction. The energy isn't quadratic: its error is of the order of the method and doesn't
-/// drift. A step of `−h` undoes one of `h`.
+/// The other coordinates change under linear symmetries: rotations about a symmetry axis of the parameters, and
+/// `p ↦ p + λq`. So the step is a Poisson map of `(Π, w)`. Momentum maps are quadratic, hence conserved to rounding:
+/// the momentum about the vertical, and that of a symmetric top about its axis. Attitudes are rotations and the
+/// parameters stay on their orbit by construction. The energy isn't quadratic: its error is of the order of the method
+/// and doesn't drift. A step of `−h` undoes one of `h`.
 ///
 /// # Cost
 ///

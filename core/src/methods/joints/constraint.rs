@@ -29,8 +29,8 @@ impl Place {
     }
 }
 
-/// The derivatives of a constraint by the place of one body, in the axes of space: one row per function, along `δR = η̂
-/// R` and `δx = ξ`.
+/// The derivatives of a constraint by the place of one body, in the axes of space: one row per function, along
+/// `δR = η̂ R` and `δx = ξ`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slope<const K: usize> {
     /// The derivatives along `η`.

@@ -1,5 +1,5 @@
-//! Systems of rigid bodies with joints, by multipliers. A step of `N` bodies with `L` loops takes time `O(N + N L +
-//! L³)`.
+//! Systems of rigid bodies with joints, by multipliers. A step of `N` bodies with `L` loops takes time
+//! `O(N + N L + L³)`.
 //!
 //! The configurations of the bodies are `q = (R_a, x_a)` on (SO(3) × R³)ᴺ, and joints are constraints `g(q) = 0`. With
 //! the matrix `G` of the constraints' derivatives along `δR = R ẑ`, `δx`, a step is that of the scene with the joints'

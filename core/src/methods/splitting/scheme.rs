@@ -17,9 +17,9 @@ pub enum Flow {
 /// The coefficients of a symmetric splitting: the shares of the step for alternating drifts and kicks.
 ///
 /// The Nyström schemes rely on a kinetic energy that is quadratic in the momentum: some commutators of kicks then
-/// vanish. The near-integrable schemes are for a potential that is small beside the kinetic energy. The error of `(8,
-/// 6, 4)` is a sum of terms of the orders `ε h⁸`, `ε² h⁶`, `ε³ h⁴` with the ratio `ε` of the two energies. So the order
-/// in `h` alone is the last of the numbers, while at usual steps the first is observed.
+/// vanish. The near-integrable schemes are for a potential that is small beside the kinetic energy. The error of
+/// `(8, 6, 4)` is a sum of terms of the orders `ε h⁸`, `ε² h⁶`, `ε³ h⁴` with the ratio `ε` of the two energies. So the
+/// order in `h` alone is the last of the numbers, while at usual steps the first is observed.
 ///
 /// Kicks may include the *force gradient*: besides `b_i h τ` the kick of `g_i h³ U`, where `U = −½ τ·J⁻¹τ` is the
 /// potential's commutator with the kinetic energy. Like the potential it is a function of the attitude, so the kick

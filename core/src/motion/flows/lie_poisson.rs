@@ -97,8 +97,8 @@ impl<L: Effect> DiscreteLiePoisson<L> {
     }
 
     /// Whether the step from `(μ, w)` surely has a solution or surely has none, if bounds are known: for the kinetic
-    /// part of (3.13) and potentials of the positions, with `a = μ + (h/2) τ`, these are `h|a| < J_min` and `h|a| >
-    /// J_max`.
+    /// part of (3.13) and potentials of the positions, with `a = μ + (h/2) τ`, these are `h|a| < J_min` and
+    /// `h|a| > J_max`.
     ///
     /// A step evaluates the bounds only if its solve doesn't succeed at once, so successful steps cost nothing more.
     #[must_use]
