@@ -320,9 +320,9 @@ pub trait Effect: Term {
     fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> Vector<Self>;
 
     /// The derivative of [`kick_before`](Self::kick_before) as the body turns with this velocity: `d/dt` of it at
-    /// `exp(−t v̂)·w`. `None` if it isn't known.
+    /// `exp(−t v̂)·w`. `None` where it isn't known.
     ///
-    /// A [`SplittingScheme`](crate::methods::SplittingScheme) with force gradients uses it in its kicks.
+    /// The kicks of a [`SplittingScheme`](crate::methods::SplittingScheme) with force gradients are made with it.
     #[must_use]
     fn kick_derivative(_: &Self::Constants, _: &Self::Advected, _: &Vector<Self>) -> Option<Vector<Self>> {
         None

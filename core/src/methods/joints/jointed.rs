@@ -18,8 +18,8 @@ pub(super) type Body = (SO3, R3);
 ///
 /// - Gaps of joints stay at rounding, some units in the last place of the distances from the origin.
 /// - Velocities satisfy the constraints as well: energies and momenta of a state are those of the jointed system.
-/// - A step satisfies its equations to rounding, or is an error, which mostly names a body or a joint, and leaves the
-///   state unchanged.
+/// - A step satisfies its equations to rounding, or is an error, mostly of a body or a joint, and leaves the state as it
+///   was.
 /// - Nothing is allocated.
 ///
 /// # Source

@@ -34,7 +34,7 @@ pub type StateOf<S, P = OwnStep<S>> = State<Group<S>, <S as Term>::Advected, <P 
 /// # Contract
 ///
 /// - A step satisfies its momentum equation to rounding on the branch of the identity, or returns an error and leaves
-///   the state unchanged.
+///   the state as it was.
 /// - With a scalar of several [lanes](crate::numbers::Real#lanes) all of them move or none does, each as it would alone.
 /// - The same state gives the same next state, bit for bit. In Cayley coordinates no library function is called, so
 ///   that holds from machine to machine.
