@@ -1,4 +1,4 @@
-//! The structure of every declared system, at random states: its momenta, the Poisson tensor, both flows, and its reversal.
+//! The structure of every declared system, at random states: its momenta, Poisson tensor, both flows, and reversal.
 
 use checks::random::Random;
 use checks::structure::poisson::{self, tensor};
