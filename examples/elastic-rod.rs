@@ -1,8 +1,8 @@
-//! An elastic rod as a row of bodies whose stiffness is taken in the middle of a step, beside the same rod with halves of
-//! its potential at both ends.
+//! An elastic rod as a row of bodies whose potential is evaluated in the middle of a step, compared with the same rod
+//! with halves of its potential at both ends.
 //!
 //! ```text
-//! cargo run --release --example elastic-rod            what either keeps of the energy, by the length of the step
+//! cargo run --release --example elastic-rod            the energy errors of both, by the length of the step
 //! cargo run --release --example elastic-rod -- times   µs a step, and ns a body, of rows of 10 to 100 bodies
 //! ```
 
@@ -17,16 +17,16 @@ use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::{Vector3, Vector6};
 use rods::{FloatingBody, RodElement};
 
-// The package of all declarations would be built for every example then, also for the first that README runs.
-#[allow(dead_code, unreachable_pub)] // others take the rest
+// A dependency on the package of all declarations would be built for every example, even for the first of README.
+#[allow(dead_code, unreachable_pub)] // the other examples use the rest
 #[path = "declarations/rods.rs"]
 mod rods;
 
 type Failure = Box<dyn Error>;
 type Body = (SO3, R3);
 
-/// What a [`RodElement`] is, but for what is of higher order in the bending, by the means of the potentials at both ends
-/// of a step.
+/// The potential of a [`RodElement`], up to terms of higher order in the bending, by the mean of the potentials at both
+/// ends of a step.
 #[lagrangian(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
     advected(
@@ -47,13 +47,13 @@ struct Ends {
     b: Vector3<f64>, // of the next, likewise
 }
 
-/// N/m, and N m.
+/// The stiffnesses against shifts, N/m, and against turns, N m.
 const STIFF: (f64, f64) = (1e6, 20.0);
-/// Half of a piece of one metre and one kilogram, m.
+/// Half the length of a piece of one metre and one kilogram, m.
 const HALF: Vector3<f64> = Vector3::new(0.5, 0.0, 0.0);
 
-/// The longest step with the potential at both ends, `2/ω`: a wave `exp(iqn)` of shifts across the rod and of turns has
-/// `ω² = 4 (k/m)(sin²(q/2) + 3 cos²(q/2))` with an inertia of `m l²/12`, and one of turns along it has less.
+/// The longest stable step with the potential at both ends, `2/ω`. A wave `exp(iqn)` of shifts across the rod and of
+/// turns has `ω² = 4 (k/m)(sin²(q/2) + 3 cos²(q/2))` with an inertia of `m l²/12`; one of turns along it has less.
 fn bound() -> f64 {
     2.0 / (12.0 * STIFF.0).sqrt()
 }
@@ -77,7 +77,7 @@ trait Rod<const N: usize>: Regular<Scalar = f64, Group = [Body; N]> {}
 
 impl<L: Regular<Scalar = f64, Group = [Body; N]>, const N: usize> Rod<N> for L {}
 
-/// A coil, each piece turned against the one before, that turns about an axis across.
+/// A coil, each piece turned against the one before, that rotates about a perpendicular axis.
 fn coil<const N: usize>() -> ([Body; N], Bodies<Vector6<f64>, N>) {
     let (mut corner, omega) = (Vector3::zeros(), Vector3::new(0.3, 0.2, 1.0));
     #[allow(clippy::cast_precision_loss)] // small counts
@@ -94,7 +94,7 @@ fn coil<const N: usize>() -> ([Body; N], Bodies<Vector6<f64>, N>) {
     (pieces, Bodies(moving))
 }
 
-/// How far the energy goes from where it was, relative to it; where a step can't be made, until when, and why.
+/// The largest relative energy error; if a step fails, its time and its error.
 fn energy_off<const N: usize>(rod: impl Rod<N>, h: f64) -> Result<String, Failure> {
     const DURATION: f64 = 1.0; // s
     let stepper = Stepper::new(rod, h)?;
@@ -123,7 +123,8 @@ fn kept() -> Result<(), Failure> {
     Ok(())
 }
 
-/// How often a run is timed, and its steps. As many come before it, as the first step is another than those that continue.
+/// The number of timed runs, and the steps of each. The same number of steps comes before the timing, because the first
+/// step differs from later ones.
 const RUNS: usize = 30;
 const STEPS: u32 = 100;
 
@@ -143,7 +144,7 @@ fn time<const N: usize>(rod: impl Rod<N>, h: f64) -> Result<(f64, f64), Failure>
     Ok((least * 1e6 / f64::from(STEPS), iterations as f64 / f64::from(STEPS)))
 }
 
-/// Prints what a step takes: in the middle at ten times the longest step of the other, and that at half of it.
+/// Prints the times of a step: in the middle at ten times the longest step of the other, and of that at half of it.
 fn times<const N: usize>() -> Result<(), Failure> {
     let [middle, ends] = [time(middle::<N>()?, 10.0 * bound())?, time(ends::<N>()?, 0.5 * bound())?];
     #[allow(clippy::cast_precision_loss)] // a small count

@@ -1,12 +1,12 @@
-//! A toy top in the loop of a game: shown at the times of the frames, stepped at times of its own.
+//! A toy top in a game's loop: drawn at the times of the frames, stepped at times of its own.
 //!
 //! ```text
 //! cargo run --release --example frame-times
 //! ```
 //!
-//! It is the toy of the guide's chapter on recording, which says why its steps are divided and why no frame changes its
-//! motion. What is shown is a part of a step ahead of the last one made. An engine would call `advance` with the time of
-//! its frame, and give the quaternion to what it draws.
+//! It is the toy of the guide's chapter on recording, which explains why its steps are divided and why the frames don't
+//! change its motion. The displayed state is a part of a step ahead of the last full one. An engine would call
+//! `advance` with the time of its frame, and draw the body with the quaternion.
 
 use std::error::Error;
 use std::thread::sleep;
@@ -18,15 +18,15 @@ use liestep::nalgebra::{UnitQuaternion, Vector3};
 use liestep::recording::Frames;
 use liestep::{NonstandardInertia, SO3, Stepper};
 
-/// In single precision, as games have it; of one type, whatever acts on it.
+/// A toy in single precision, as in games; its type doesn't depend on the forces.
 type Toy = Frames<AnyStepper<SO3<f32>, ()>>;
 
 /// The length of a step, s.
 const STEP: f32 = 1.0 / 60.0;
 
-/// 50 g, its centre of mass 3 cm above the tip, tilted by 0.2 rad.
+/// A toy of 50 g, with its centre of mass 3 cm above the tip, tilted by 0.2 rad.
 fn toy() -> Result<Toy, Box<dyn Error>> {
-    // J_d about the tip, kg m².
+    // The nonstandard inertia J_d about the tip, kg m².
     let inertia = NonstandardInertia::from_diagonal(Vector3::new(1e-5, 1e-5, 5.5e-5))?;
     let gravity = Gravity { m: 0.05, g: 9.81, rho: Vector3::new(0.0, 0.0, 0.03), up: Vector3::z() };
     let stepper =
@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut toy = toy()?;
     let mut last = Instant::now();
     for frame in 0_u64..180 {
-        // What a game does until its next frame; now and then it does more.
+        // The duration of a game's other work in a frame, which is sometimes longer.
         sleep(Duration::from_millis(if frame % 50 == 49 { 120 } else { 7 + frame % 7 }));
         let elapsed = last.elapsed();
         last += elapsed;
@@ -61,7 +61,7 @@ mod tests {
     use liestep::motion::Integrator as _;
     use liestep::nalgebra::{UnitQuaternion, Vector3};
 
-    /// At three rates, one of them uneven, with late frames, slow motion and pauses.
+    /// The frames have three rates, one of them uneven, with late frames, slow motion and pauses.
     #[test]
     fn no_frame_changes_the_motion() {
         let uneven = |frame: u32| match frame % 40 {
@@ -79,7 +79,7 @@ mod tests {
             for frame in 0..count {
                 time += elapsed(frame);
                 let shown: UnitQuaternion<f32> = frames.advance(elapsed(frame)).unwrap().attitude().into();
-                // Less than a step ahead of the last that was made, but for rounding.
+                // The displayed time is less than a step ahead of the last full one, up to rounding.
                 let ahead = frames.time() - f64::from(integrator.time(frames.state()));
                 assert!((frames.time() - time).abs() < 1e-5 && (-1e-5..f64::from(STEP) + 1e-5).contains(&ahead));
                 while reference.steps() < frames.state().steps() {
@@ -90,7 +90,7 @@ mod tests {
                 let tilt = axis.z.acos();
                 assert!((0.15..0.35).contains(&tilt), "{tilt}");
                 largest = largest.max(axis.x.atan2(-axis.y).abs());
-                // It doesn't jump.
+                // The displayed motion is continuous.
                 if let Some((earlier, position)) = before {
                     let way = f64::from((axis - position).norm());
                     assert!(way < 3.0 * (time - earlier) + 1e-4, "frame {frame}: {way}");

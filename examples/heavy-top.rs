@@ -5,14 +5,15 @@
 //! cargo run --release --example heavy-top -- --case cuspidal --reading b --step 0.02 --out top --csv
 //! ```
 //!
-//! It prints what each method conserves and what a step costs, and draws figures 3.4 to 3.10 again: rigidity, vertical
-//! momentum, energy, body rates, and the path of the tip on the sphere. One rival keeps the attitude in a quaternion
-//! that it normalises, as a careful user would; the other in the nine entries of `R`, as the thesis did.
+//! It prints the conservation errors of each method and the time of a step, and draws figures 3.4 to 3.10 again:
+//! rigidity, vertical momentum, energy, body rates, and the path of the tip on the sphere. One rival represents the
+//! attitude by a quaternion that it normalises, as a careful user would; the other by the nine entries of `R`, as in
+//! the thesis.
 //!
-//! At a small step the rivals, of order 4, have the smaller energy error: look at how it grows, at the momentum and,
-//! for the nine entries, at the rigidity; or take `--step 0.05`.
+//! At a small step the rivals, of order 4, have the smaller energy error. The growth of that error, the momentum and,
+//! for the nine entries, the rigidity show the difference; so does `--step 0.05`.
 //!
-//! Every figure names its reading of the thesis' `diag(2, 2, 1)`: as `J_d` (A, which (3.13) says) or as `J` (B).
+//! Every figure names its reading of the thesis' `diag(2, 2, 1)`: as `J_d` (A, as in (3.13)) or as `J` (B).
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -44,9 +45,9 @@ Options:
 struct Arguments {
     case: Case,
     reading: Reading,
-    /// s
+    /// The step, s.
     step: f64,
-    /// s
+    /// The duration, s.
     time: f64,
     out: PathBuf,
     csv: bool,
@@ -83,7 +84,7 @@ fn simulate(arguments: &Arguments) -> Result<(), Failure> {
     for other in Case::NAMED.map(|(_, case)| case).into_iter().filter(|other| *other != case) {
         match all_methods(other, reading, &schedule) {
             Ok(series) => Figures { case: other, reading, schedule, series: &series }.write_tip(&mut output)?,
-            // The case that was asked for is done; another may turn too fast for the step.
+            // The requested case succeeded; another may turn too fast for the step.
             Err(cause) => eprintln!("note: no path of the tip for the case {other}: {cause}"),
         }
     }
@@ -102,7 +103,7 @@ fn simulate(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The greatest deviations over the run, and what a step costs.
+/// The greatest deviations over the run, and the time of a step.
 fn summary(series: &[Series]) -> String {
     let mut rows = vec![
         ["method", "‖RᵀR − I‖", "Δ e₃·RΠ, rel.", "Δ energy, rel.", "growing", "Newton its/step", "ns/step"]

@@ -16,13 +16,13 @@ liestep::groups::matrix_group! {
     /// Matrices `[a, b; 0, 1]` with `a > 0`: `E_1` stretches, `E_2` shifts.
     pub type Affine = [[[1.0, 0.0], [0.0, 0.0]], [[0.0, 1.0], [0.0, 0.0]]];
 
-    /// Zero on the group: how far a matrix is from it.
+    /// The defect of a matrix, which is zero on the group.
     fn relation<T: RealField + Copy>(m: &SMatrix<T, 2, 2>) -> T {
         m[(1, 0)].abs() + (m[(1, 1)] - T::one()).abs()
     }
 }
 
-/// The laws of a group, of the retraction that a step uses, and of what the group carries. Each is a test.
+/// The laws of a group, of the retraction of its steps, and of its advected parameters. Each is a test.
 #[cfg(test)]
 mod laws {
     use super::Affine;
@@ -39,7 +39,7 @@ mod laws {
     }
 }
 
-/// A line that stretches and shifts by its inertia: `Affine!` finds the generators that were declared above.
+/// A line that stretches and shifts by its inertia: `Affine!` passes the generators declared above.
 #[lagrangian(group = Affine!, l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h))]
 #[derive(Clone, Copy, Debug)]
 struct Line {
@@ -47,7 +47,7 @@ struct Line {
     J: Matrix2<f64>,
 }
 
-/// A spring that holds one point of it; half of the action belongs to either end of a step.
+/// A spring at one point of the line; half of the action belongs to either end of a step.
 #[lagrangian(group = Affine!, advected(w = covector), l_d = -0.25 * h * k * (w.dot(&r).powi(2) + w.dot(&(F * r)).powi(2)))]
 #[derive(Clone, Copy, Debug)]
 struct Spring {
@@ -55,22 +55,22 @@ struct Spring {
     k: f64,
     /// The point, in the line's own coordinates: `(x, 1)`.
     r: Vector2<f64>,
-    /// What measures the point in space; the line sees it as `w`.
+    /// The covector in space that measures the point's position; in the line's frame it is `w`.
     covector: Vector2<f64>,
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // Elements are checked.
+    // Construction checks that a matrix is in the group.
     let (f, g) = (Affine::<f64>::try_from(Matrix2::new(2.0, 1.0, 0.0, 1.0))?, Matrix2::new(3.0, 5.0, 0.0, 1.0));
     assert_eq!(f.compose(&g.try_into()?).matrix(), Matrix2::new(6.0, 11.0, 0.0, 1.0)); // 2 (3 x + 5) + 1
     assert!(Affine::<f64>::try_from(Matrix2::new(2.0, 1.0, 0.25, 1.0)).is_err());
-    // [E_1, E_2] = E_2, computed of the generators.
+    // The bracket [E_1, E_2] = E_2 is computed from the generators.
     assert_eq!(Affine::<f64>::lie_bracket(&Vector2::x(), &Vector2::y()), Vector2::y());
 
     println!("{}\n\n{}\n", Line::DERIVATION, Spring::DERIVATION);
     let (line, velocity) = (Line { J: Matrix2::new(1.0, 0.2, 0.2, 2.0) }, Vector2::new(0.1, 0.2));
 
-    // Alone, the line conserves its momentum in space.
+    // Without the spring, the line conserves its momentum in space.
     let free = Stepper::new(line, 0.01)?;
     let mut state = free.start(Affine::identity(), velocity)?;
     let momentum = free.spatial_momentum(&state);
@@ -79,7 +79,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("after 10 s: momentum within {lost:.1e}, {:.1e} from the group", state.orthogonality_defect());
     assert!(lost < 1e-12 && state.orthogonality_defect() < 1e-12);
 
-    // With the spring the energy is off by an amount of order h: on this group the kinetic term isn't self-adjoint.
+    // The energy error with the spring is of order h: on this group the kinetic term isn't self-adjoint.
     let held = line + Spring { k: 1.0, r: Vector2::new(1.0, 1.0), covector: Vector2::new(1.0, -0.5) };
     let error = |h, steps| -> Result<f64, Box<dyn Error>> {
         let stepper = Stepper::new(held, h)?;

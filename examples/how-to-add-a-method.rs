@@ -1,4 +1,4 @@
-//! How to add a method: a Störmer–Verlet step on SO(3), with which everything that goes around a step works at once.
+//! How to add a method: a Störmer–Verlet step on SO(3), which works at once with all functions around a step.
 //!
 //! ```text
 //! cargo run --release --example how-to-add-a-method
@@ -16,10 +16,11 @@ use liestep::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use liestep::with::Compensable;
 use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper};
 
-/// Half a kick of the potential, turns about the body's principal axes, half a kick: order 2, and nothing is solved.
+/// Half a kick of the potential, turns about the body's principal axes, half a kick: order 2, without an equation to
+/// solve.
 ///
-/// Each turn is the exact motion for the energy `p_k²/(2 J_k)`. All parts are Poisson maps that keep the momentum about
-/// the vertical, so their product is. It is for scenes of a body in its principal axes and potentials.
+/// Each turn is the exact motion for the energy `p_k²/(2 J_k)`. All parts are Poisson maps that conserve the momentum
+/// about the vertical, so their product is. It is for scenes of a body in its principal axes and potentials.
 struct Verlet<S: DiscreteLagrangian> {
     h: f64,
     moments: Vector3<f64>,
@@ -28,10 +29,10 @@ struct Verlet<S: DiscreteLagrangian> {
 
 /// The axes and their shares of the step, the same forwards and backwards.
 const TURNS: [(usize, f64); 5] = [(0, 0.5), (1, 0.5), (2, 1.0), (1, 0.5), (0, 0.5)];
-/// Nothing forbids larger turns, but they tell little of the motion.
+/// Larger turns would be possible, but a poor approximation.
 const LARGEST_TURN: f64 = FRAC_PI_2;
 
-/// All sums are made by [`Summation`], so they may be compensated.
+/// [`Summation`] performs all sums, so they may be compensated.
 impl<S: DiscreteLagrangian> Compensable for Verlet<S> {}
 
 impl<S: DiscreteLagrangian<Scalar = f64, Group = SO3>> Verlet<S> {
@@ -45,7 +46,7 @@ impl<S: DiscreteLagrangian<Scalar = f64, Group = SO3>> Verlet<S> {
 }
 
 impl<S: DiscreteLagrangian<Scalar = f64, Group = SO3>> Plan<S> for Verlet<S> {
-    /// A step needs nothing of the one before.
+    /// A step needs no memory of the one before.
     type Kept = ();
 
     fn step_size(&self) -> f64 {
@@ -65,9 +66,9 @@ impl<S: DiscreteLagrangian<Scalar = f64, Group = SO3>> Plan<S> for Verlet<S> {
         motion: &mut M,
         (): &mut (),
     ) -> Result<StepReport, StepError> {
-        // A copy: after an error the motion has to be where it was.
+        // A copy, because an error must leave the motion unchanged.
         let mut next = *motion;
-        // It has the torque of the potential over half of the step.
+        // The kick of the scene is that of half the step.
         next.push(&S::kick_before(&self.constants, &next.now().advected()));
         for (axis, share) in TURNS {
             let momentum = next.now().momentum();
@@ -96,7 +97,7 @@ impl<S: DiscreteLagrangian<Scalar = f64, Group = SO3>> Plan<S> for Verlet<S> {
     }
 
     fn cost(&self) -> Cost {
-        // Two sines and about as much besides.
+        // A turn costs two sines and about as many other operations.
         Cost::of_stages(Operations { step: 80, iteration: 0 }, 5)
     }
 }
@@ -107,7 +108,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let verlet = |h| Stepper::with_plan(scene, Verlet::new(&scene, h)?);
     let (attitude, velocity) = (UnitQuaternion::from_scaled_axis(Vector3::x() * 0.8), Vector3::new(0.5, 1.0, 3.0));
 
-    // It is of order 2: half the step, a quarter of the error.
+    // The order is 2: half the step, a quarter of the error.
     let exact = Stepper::composed(scene, 0.01, CompositionScheme::KAHAN_LI_8)?;
     let mut there = exact.start(attitude, velocity)?;
     exact.run(&mut there, 200)?;
@@ -121,7 +122,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("with half the step the error is smaller by {ratio:.3}");
     assert!((ratio - 4.0).abs() < 0.1);
 
-    // Its sums, compensated: what rounding takes of the vertical momentum in 10⁵ steps.
+    // Compensated sums: the rounding error of the vertical momentum in 10⁵ steps.
     let (plain, compensated) = (verlet(1e-3)?, verlet(1e-3)?.compensated());
     let (mut a, mut b) = (plain.start(attitude, velocity)?, compensated.start(attitude, velocity)?);
     let vertical = a.momentum_along(&Vector3::z());
@@ -131,7 +132,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("of the vertical momentum rounding takes {:.1e}, compensated {:.1e} kg m²/s", losses[0], losses[1]);
     assert!(losses[0] < 1e-11 && losses[1] < 0.1 * losses[0]);
 
-    // A step that turns the body too far is made of parts.
+    // A step that would turn the body too far is replaced by substeps.
     let careful = verlet(0.1)?.or_substeps(16);
     let mut state = careful.start(attitude, Vector3::new(0.0, 0.0, 30.0))?;
     let report = careful.step(&mut state)?;

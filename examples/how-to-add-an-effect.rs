@@ -13,8 +13,8 @@ use liestep::{NonstandardInertia, Stepper, force, lagrangian};
 
 /// A wire along the vertical that resists being bent: `V = ½ k (1 − axis·w)²`.
 ///
-/// Half of `−h V` belongs to either end of a step: at its start the body sees `w`, at its end `F⁻¹·w`, and
-/// `axis·(F⁻¹·w)` is `w·(F axis)`.
+/// Half of `−h V` belongs to either end of a step. The vertical in the body frame is `w` at its start and `F⁻¹·w` at
+/// its end, and `axis·(F⁻¹·w)` is `w·(F axis)`.
 #[lagrangian(
     group = liestep::SO3,
     advected(w = up),
@@ -24,21 +24,21 @@ use liestep::{NonstandardInertia, Stepper, force, lagrangian};
 struct Wire {
     /// Stiffness, N m.
     k: f64,
-    /// Where the wire leaves the body, a unit vector in the body frame.
+    /// The direction of the wire at the body, a unit vector in the body frame.
     axis: Vector3<f64>,
     /// The vertical, in space.
     up: Vector3<f64>,
 }
 
-/// A motor that drives the body about an axis of its own, by its virtual work in a step.
+/// A motor that drives the body about a body-fixed axis, by its virtual work in a step.
 ///
-/// `eta` and `eta_next` are the virtual rotations of the body at either end; each gets half of the impulse.
+/// `eta` and `eta_next` are the virtual rotations of the body at either end; each end receives half of the impulse.
 #[force(group = liestep::SO3, work = 0.5 * h * torque * axis.dot(&(eta + eta_next)))]
 #[derive(Clone, Copy, Debug)]
 struct Motor {
-    /// N m.
+    /// The torque, N m.
     torque: f64,
-    /// A unit vector in the body frame.
+    /// The axis, a unit vector in the body frame.
     axis: Vector3<f64>,
 }
 
@@ -50,10 +50,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
     let velocity = Vector3::new(0.5, 0.0, 1.0);
 
-    // What was derived, as text. `cargo doc` shows the same in the documentation of the struct.
+    // The derived equations, as text. `cargo doc` lists them in the documentation of the struct.
     println!("{}\n\n{}\n", Wire::DERIVATION, Motor::DERIVATION);
 
-    // Two effects that advect `up` each carry a copy of it.
+    // Two effects that advect `up` have a copy of it each.
     let stepper = Stepper::new(body + gravity + wire, 0.01)?;
     let mut state = stepper.start(attitude, velocity)?;
     let (energy, vertical) = (stepper.energy(&state), state.momentum_along(&up));
@@ -64,7 +64,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     assert!(drift < 1e-2 * energy.abs());
     assert!(lost < 1e-10);
 
-    // A force does work: 0.5 N m for 2 s, about an axis of symmetry that nothing else turns the body about.
+    // A force does work: 0.5 N m for 2 s, about an axis of symmetry without any other torque.
     let motor = Motor { torque: 0.5, axis: Vector3::z() };
     let driven = Stepper::new(body + gravity + wire + motor, 0.01)?;
     let mut state = driven.start(attitude, velocity)?;

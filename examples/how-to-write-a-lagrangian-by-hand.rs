@@ -17,16 +17,16 @@ struct Body {
     inertia: NonstandardInertia,
 }
 
-/// `(M − Mᵀ)^∨`.
+/// The vector `(M − Mᵀ)^∨`.
 fn skew(m: Matrix3<f64>) -> Vector3<f64> {
     Vector3::new(m.m32 - m.m23, m.m13 - m.m31, m.m21 - m.m12)
 }
 
-/// What a step is derived from, and what its properties are tested with.
+/// The Lagrangian and its momenta, from which a step is derived and by which its properties are tested.
 impl DiscreteLagrangian for Body {
     const SELF_ADJOINT: bool = true;
 
-    /// `tr((F − I) J_d (F − I)ᵀ)/(2h)`.
+    /// The Lagrangian `tr((F − I) J_d (F − I)ᵀ)/(2h)`.
     fn l_d(&self, f: &Matrix3<f64>, (): &(), h: f64) -> f64 {
         let d = f - Matrix3::identity();
         (d * self.inertia.as_matrix() * d.transpose()).trace() / (2.0 * h)
@@ -42,12 +42,12 @@ impl DiscreteLagrangian for Body {
         skew(self.inertia.as_matrix() * f) / h
     }
 
-    /// Nothing is advected.
+    /// There are no advected parameters.
     fn diamond(&self, _: &Matrix3<f64>, (): &(), _: f64) -> Vector3<f64> {
         Vector3::zeros()
     }
 
-    /// `−∂l_d/∂h`.
+    /// The energy `−∂l_d/∂h`.
     fn discrete_energy(&self, f: &Matrix3<f64>, w: &(), h: f64) -> f64 {
         self.l_d(f, w, h) / h
     }
@@ -65,13 +65,13 @@ impl Term for Body {
     fn advected(&self) {}
 }
 
-/// The stages of a step; the documentation of the trait has the formulas that they are parts of.
+/// The stages of a step; the documentation of the trait has their formulas.
 impl Effect for Body {
     type Retraction = CayleyRetraction;
     type Kinetic = WithKinetic;
-    /// `J` and `h/2`.
+    /// The constants `J` and `h/2`.
     type Constants = (Matrix3<f64>, f64);
-    /// `(h/2) a`.
+    /// The right-hand side `(h/2) a`.
     type StepTerms = Vector3<f64>;
 
     const PARTS: Parts = Parts { unknown: true, kick_before: false, kick_after: false };
@@ -121,7 +121,7 @@ impl Effect for Body {
 fn main() -> Result<(), Box<dyn Error>> {
     let inertia = NonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.5))?;
     let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::new(0.3, 0.2, 0.4), up: Vector3::z() };
-    // It adds with what is declared, and is the body that the macro derives.
+    // The hand-written body adds with declared effects, and agrees with the body that the macro derives.
     let by_hand = Stepper::new(gravity + Body { inertia }, 0.01)?;
     let derived = Stepper::new(gravity + RigidBody { J_d: inertia }, 0.01)?;
     let (attitude, velocity) = (UnitQuaternion::from_scaled_axis(Vector3::x() * 0.8), Vector3::new(0.5, 1.0, 3.0));

@@ -1,11 +1,11 @@
-//! The moving picture of README: a heavy top that comes back to where it started.
+//! The animated picture of README: a heavy top with a periodic motion.
 //!
 //! ```text
 //! cargo run --release --example moving-top -- examples/figures/moving-top.svg
 //! ```
 //!
-//! A top nods while it goes round. How fast it is pushed and spun is chosen so that after a whole number of nods it has
-//! gone round once and its pattern has turned into itself: then the picture can be played over and over.
+//! A top nods while it precesses. Its initial rates are chosen so that after a whole number of nods it has gone round
+//! once, and its pattern is mapped to itself: then the picture can be repeated without a jump.
 
 use std::error::Error;
 use std::f64::consts::TAU;
@@ -16,29 +16,29 @@ use liestep::prelude::*;
 use workbench::heavy_top::declaration::HeavyTop;
 use workbench::heavy_top::euler_angles::EulerAngles;
 
-/// In one turn about the vertical.
+/// The number of nods in one turn about the vertical.
 const NODS: u32 = 12;
-/// The disc looks the same after this turn.
+/// The turn after which the disc looks the same.
 const PATTERN: f64 = TAU / 4.0;
 /// The tilt at the top of a nod, rad.
 const TILT: f64 = 0.5;
-/// A guess of the rates of precession and spin there, rad/s: pushed back, the axis makes loops.
+/// A guess of the initial rates of precession and spin, rad/s: pushed back, the axis makes loops.
 const RATES: [f64; 2] = [-1.2, 6.0];
-/// s.
+/// The step, s.
 const STEP: f64 = 1e-3;
 const FRAMES: u32 = 180;
-/// Of the tip's way, in a frame.
+/// The number of points of the tip's path per frame.
 const POINTS: u32 = 4;
-/// What a README has room for.
+/// The size that is acceptable in a README.
 const MOST_BYTES: usize = 100_000;
 
 type StateOfTop = State<SO3, <HeavyTop as Term>::Advected>;
 
-/// The top let go at the top of a nod, until the next.
+/// A nod: the motion between two least tilts.
 struct Nod {
-    /// s.
+    /// The period, s.
     period: f64,
-    /// How far the axis goes round and the top turns about it, rad.
+    /// The turns of the axis about the vertical, and of the top about its axis, rad.
     turns: [f64; 2],
 }
 
@@ -59,7 +59,7 @@ fn nod(rates: [f64; 2]) -> Result<Nod, Box<dyn Error>> {
         stepper.step(&mut state)?;
         let now = angles(&state);
         let rises = |angles: &EulerAngles| angles.rates.y > 0.0 || state.steps() == 1;
-        // Where the nutation stands still between the two.
+        // The end of the nod, by linear interpolation of the nutation's rate between steps.
         let ends = !rises(&before) && rises(&now);
         let part = if ends { before.rates.y / (before.rates.y - now.rates.y) } else { 1.0 };
         for (turn, k) in turns.iter_mut().zip([0, 2]) {
@@ -73,7 +73,7 @@ fn nod(rates: [f64; 2]) -> Result<Nod, Box<dyn Error>> {
     }
 }
 
-/// The rates near the guess with which the picture ends as it begins, by Newton's method with differences.
+/// The rates near the guess for which the picture is periodic, by Newton's method with differences.
 fn closed() -> Result<[f64; 2], Box<dyn Error>> {
     let patterns = (nod(RATES)?.turns[1] * f64::from(NODS) / PATTERN).round();
     let misses = |rates| -> Result<[f64; 2], Box<dyn Error>> {
@@ -93,18 +93,18 @@ fn closed() -> Result<[f64; 2], Box<dyn Error>> {
     Ok(rates)
 }
 
-/// The picture, px, where the pivot is in it, and the radius of the sphere on which the tip moves.
+/// The size of the picture, px, the pivot in it, and the radius of the sphere of the tip.
 const PICTURE: [f64; 2] = [520.0, 335.0];
 const PIVOT: [f64; 2] = [260.0, 247.0];
 const SIZE: f64 = 230.0;
-/// How high the eye is, rad.
+/// The elevation of the eye, rad.
 const ELEVATION: f64 = 0.6;
-/// The disc from the pivot, and its radius, in units of the sphere's.
+/// The distance of the disc from the pivot, and its radius, in units of the sphere's.
 const DISC: [f64; 2] = [0.6, 0.3];
-/// How much of its way the tip leaves behind it.
+/// The visible fraction of the tip's path.
 const TAIL: f64 = 0.35;
 
-/// Right, up and towards the eye.
+/// The directions right, up and towards the eye.
 struct View([Vector3<f64>; 3]);
 
 impl View {
@@ -119,19 +119,19 @@ impl View {
     }
 }
 
-/// What changes from frame to frame, as lists of values.
+/// The animated attributes, as lists of values.
 #[derive(Default)]
 struct Lists {
-    /// Of the disc: where it is, how its longer axis lies, how far it is seen from above, how far it has turned.
+    /// The disc's position, the direction of its longer axis, its foreshortening, and its turn.
     middle: Vec<String>,
     lies: Vec<String>,
     flat: Vec<String>,
     turned: Vec<String>,
-    /// Corners of the cone, the stem, the tip.
+    /// The corners of the cone, the tip, and the stem.
     cone: Vec<String>,
     tip: Vec<String>,
     stem: Vec<String>,
-    /// Whether the disc is seen from above, in front of the cone.
+    /// Whether the disc is visible from above, in front of the cone.
     above: Vec<String>,
     tail: Vec<String>,
 }
@@ -145,7 +145,7 @@ fn unwrapped(angle: f64, before: &mut Option<f64>) -> f64 {
 
 fn lists(view: &View, motion: &[[Vector3<f64>; 2]]) -> Lists {
     let (mut lists, mut lies, mut turned) = (Lists::default(), None, None);
-    // As they are drawn: the dashes of a path are measured there.
+    // The positions in the picture, because the dashes of a path are measured there.
     let places: Vec<_> = motion.iter().map(|[axis, _]| view.place(axis)).collect();
     let ways: Vec<f64> =
         places.windows(2).map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1])).collect();
@@ -176,7 +176,7 @@ fn lists(view: &View, motion: &[[Vector3<f64>; 2]]) -> Lists {
     lists
 }
 
-/// How often and how fast the lists are gone through.
+/// The duration and the repetition of the animation.
 struct Timing(String);
 
 impl Timing {
@@ -184,7 +184,7 @@ impl Timing {
         format!("<animate attributeName=\"{name}\" values=\"{}\" {}/>", values.join(";"), self.0)
     }
 
-    /// From one value to the next without what is between.
+    /// An animation that switches between values without interpolation.
     fn switch(&self, name: &str, values: &[String]) -> String {
         self.attribute(name, values).replacen("<animate", "<animate calcMode=\"discrete\"", 1)
     }
@@ -195,7 +195,7 @@ impl Timing {
     }
 }
 
-/// The picture of these axes and marks at equal times, of a motion that takes this number of seconds.
+/// The picture for these axes and marks at equal times, of a motion of this duration in seconds.
 fn drawn(motion: &[[Vector3<f64>; 2]], duration: f64) -> String {
     let (sine, cosine) = ELEVATION.sin_cos();
     let view = View([Vector3::y(), Vector3::new(-sine, 0.0, cosine), Vector3::new(cosine, 0.0, sine)]);
@@ -230,7 +230,7 @@ fn space(view: &View, sine: f64) -> String {
     )
 }
 
-/// The way of the tip and the top: behind its disc where that is seen from below, before it otherwise, the stem.
+/// The path of the tip, and the top. The stem is behind the disc while that is visible from below, otherwise before it.
 fn moving(lists: &Lists, path: &str, timing: &Timing) -> String {
     let radius = DISC[1] * SIZE;
     let sector = |k: u32| {
@@ -267,7 +267,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let file = std::env::args_os().nth(1).ok_or("a file to write is required, as in moving-top.svg")?;
     let rates = closed()?;
     let duration = nod(rates)?.period * f64::from(NODS);
-    // Steps near those by which the rates were found, a whole number of them from point to point.
+    // The steps are near those for which the rates were found, with a whole number between two points.
     let points = f64::from(FRAMES) * f64::from(POINTS);
     let between = (duration / STEP / points).round();
     let (_, start) = start(rates)?;

@@ -1,4 +1,4 @@
-//! A ring of rods on ball joints, hung up at one joint and let go: a closed loop.
+//! A ring of rods on ball joints, suspended at one joint and released: a closed loop.
 //!
 //! ```text
 //! cargo run --release --example ring-of-links
@@ -16,8 +16,8 @@ use liestep::{NonstandardInertia, SO3, Stepper};
 use nalgebra::{Vector3, Vector6};
 use rods::FallingBody;
 
-// The package of all declarations would be built for every example then, also for the first that README runs.
-#[allow(dead_code, unreachable_pub)] // others take the rest
+// A dependency on the package of all declarations would be built for every example, even for the first of README.
+#[allow(dead_code, unreachable_pub)] // the other examples use the rest
 #[path = "declarations/rods.rs"]
 mod rods;
 
@@ -27,7 +27,7 @@ fn rod() -> Result<FallingBody, Box<dyn Error>> {
     Ok(FallingBody { m: 1.0, J_d, g: 9.81, up: Vector3::z() })
 }
 
-/// Between the ends of two rods, and at the beginning of the first, which hangs at the origin.
+/// A joint between the ends of two rods, or at the beginning of the first, which hangs at the origin.
 fn joint(below: usize) -> PlacedJoint<BallJoint> {
     let [left, right] = [-0.5, 0.5].map(|x| Vector3::x() * x);
     match below.checked_sub(1) {
@@ -36,7 +36,7 @@ fn joint(below: usize) -> PlacedJoint<BallJoint> {
     }
 }
 
-/// It is let go from a circle on its edge.
+/// The ring is released from a vertical circle.
 fn main() -> Result<(), Box<dyn Error>> {
     const N: usize = 16;
     let closing = PlacedJoint { above: Some(N - 1), below: 0, ..joint(1) };

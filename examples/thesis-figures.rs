@@ -4,7 +4,7 @@
 //! cargo run --release --example thesis-figures -- --out examples/figures/thesis
 //! ```
 //!
-//! `examples/figures/thesis/README.md` shows them, with what the thesis says of each and why ours differs.
+//! `examples/figures/thesis/README.md` displays them, with the thesis' text on each and the reasons for differences.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -29,10 +29,10 @@ Options:
 const STEP: f64 = 0.01;
 const TIME: f64 = 200.0;
 
-/// At this step Runge–Kutta in nine entries loses its path within the thesis' 200 s; at 0.01 s it doesn't.
+/// A step by which Runge–Kutta in nine entries loses its path within the thesis' 200 s; by 0.01 s it doesn't.
 const COARSE: f64 = 0.05;
 
-/// About once round, s.
+/// The duration of about one revolution, s.
 const ROUND: f64 = 25.0;
 
 fn main() -> ExitCode {

@@ -1,4 +1,4 @@
-//! What the asked choice takes, beside the best of all fixed ones.
+//! The automatic choice for an accuracy, compared with the best of all fixed methods.
 
 use std::time::Duration;
 
@@ -13,7 +13,7 @@ use crate::methods::{self, Prepared};
 use crate::report::microseconds;
 use crate::scenes::{Kind, Scene, error};
 
-/// The tolerances asked for.
+/// The requested tolerances.
 const TOLERANCES: [f64; 3] = [1e-3, 1e-6, 1e-9];
 
 /// The table, and whether all choices are within their tolerance and twice the best time.
@@ -28,10 +28,10 @@ pub fn compare(scenes: &[Scene], effort: impl Fn(f64) -> (Effort, f64)) -> Strin
     aligned(&rows)
 }
 
-/// Makes a choice.
+/// A choice for an accuracy.
 type Ask = dyn Fn(Accuracy) -> Result<Answer, AccuracyError>;
 
-/// A choice ready to run.
+/// A chosen method, ready to run.
 struct Answer {
     name: String,
     step: f64,
@@ -55,7 +55,7 @@ impl Answer {
     }
 }
 
-/// How a scene is asked for.
+/// The function that chooses a method for a scene.
 fn question(scene: &Scene) -> Box<Ask> {
     match scene.kind {
         Kind::Sprung => asking(scene, scene.sprung()),

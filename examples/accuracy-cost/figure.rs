@@ -1,4 +1,4 @@
-//! Error against time, a panel for each scene.
+//! Figures of error against time, a panel for each scene.
 
 use plotters::prelude::*;
 use workbench::plot::{Area, BLUE, GREEN, ORANGE, PURPLE, PlotResult, heading, legend, px, render};
@@ -12,13 +12,13 @@ pub struct Panel<'a> {
     pub methods: &'a [Measured],
 }
 
-/// What has no colour of its own.
+/// The colour of methods without one of their own.
 const GREY: RGBColor = RGBColor(150, 150, 150);
 
 const ABOUT: &str = "error of attitude and rate against time of one processor; grey lies to the right: each stage solves an \
                      equation, and errs in the whole motion, not in the potential's share alone";
 
-/// What is drawn as one line, by the names of [`liestep::Stepper`]'s functions.
+/// The lines of a panel: kinds of methods, by the names of [`liestep::Stepper`]'s functions.
 const KINDS: [(Kind, &str, RGBColor); 6] = [
     (Kind::Rival, "Runge–Kutta", ORANGE),
     (Kind::Steps, "Stepper::new, composed", GREY),
@@ -51,7 +51,7 @@ fn kind(method: &Measured) -> Kind {
     }
 }
 
-/// Of each kind of method the lower envelope: what a user can have of it.
+/// The lower envelope of each kind of method: the best that a user can choose.
 pub fn figure(panels: &[Panel<'_>]) -> PlotResult<String> {
     const COLUMNS: usize = 2;
     let rows = panels.len().div_ceil(COLUMNS);
@@ -98,7 +98,7 @@ impl Panel<'_> {
     }
 }
 
-/// The runs that no other run of the family beats in both respects, by cost.
+/// The runs of a family that no other of its runs beats both in error and in cost, by cost.
 fn envelope<'a>(methods: impl Iterator<Item = &'a Measured>) -> Vec<(f64, f64)> {
     let mut runs: Vec<_> = methods.flat_map(costs).collect();
     runs.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -111,7 +111,7 @@ fn envelope<'a>(methods: impl Iterator<Item = &'a Measured>) -> Vec<(f64, f64)> 
     runs
 }
 
-/// Time in µs and error of each run.
+/// The time in µs and the error of each run.
 fn costs(method: &Measured) -> impl Iterator<Item = (f64, f64)> + '_ {
     method.runs.rows().iter().filter_map(|run| Some((run.seconds? * 1e6, run.error)))
 }

@@ -1,4 +1,4 @@
-//! What accuracy costs in time: structure-preserving methods beside explicit Runge–Kutta methods on seven scenes.
+//! The time to an accuracy: structure-preserving methods compared with explicit Runge–Kutta methods on seven scenes.
 //!
 //! ```text
 //! cargo run --release --example accuracy-cost
@@ -9,12 +9,12 @@
 //!
 //! Each method integrates each scene for 10 s and for 100 s with shorter and shorter steps. The error is that of the
 //! attitude and the body velocity at the end, against references to 25 digits and more; the cost is the time of one
-//! processor for the run, constants folded and nothing printed. The tables say which of our methods is the cheapest for
-//! an error, and how its time compares with that of the fastest rival. The rivals integrate unit quaternion and momentum.
+//! processor for the run, without the folding of constants and without output. The tables list our cheapest method for
+//! each error, and compare its time with that of the fastest rival. The rivals integrate unit quaternion and momentum.
 //! All runs are written as CSV. `with_heyoka.py` runs a Taylor integrator on the same scenes.
 //!
-//! With `--asked` an accuracy is asked for, and the time of the method that is chosen compared with that of the fastest
-//! fixed choice; the column `trials` says how many such runs the choice itself took.
+//! With `--asked` the library chooses the method for an accuracy, and its time is compared with that of the fastest
+//! fixed choice; the column `trials` is the cost of the choice itself, in such runs.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -78,7 +78,7 @@ fn main() -> ExitCode {
     })
 }
 
-/// What the script prints, or why it doesn't run.
+/// The output of the script, or the reason why it doesn't run.
 fn with_heyoka(arguments: &Arguments) -> String {
     let mut python = Command::new("python3");
     python.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/with_heyoka.py")).arg("--out").arg(&arguments.out);
@@ -91,11 +91,11 @@ fn with_heyoka(arguments: &Arguments) -> String {
     }
 }
 
-/// How long each scene is integrated, s.
+/// The durations of the integration of each scene, s.
 const TIMES: [f64; 2] = [10.0, 100.0];
 
 fn compare(arguments: &Arguments) -> Result<(), Failure> {
-    // The effort, and by what each step is shorter than the one before.
+    // The effort, and the ratio between two successive steps.
     let effort = |t: f64| {
         if arguments.quick {
             (Effort { longest: 2e-4 * t, repeated: Duration::from_millis(2) }, 1.6)

@@ -1,4 +1,4 @@
-//! The methods, ours and others', behind one way to run them.
+//! The library's methods and others, with one interface to run them.
 
 use declarations::motions::End;
 use liestep::mechanics::{DiscreteLagrangian, Regular};
@@ -14,14 +14,14 @@ use crate::rivals::tsitouras::Tsitouras5;
 use crate::rivals::verner::Verner9;
 use crate::scenes::{Kind, Scene};
 
-/// A run made ready, from its start to its end each time it is called; `None` where a step failed.
+/// A prepared run, from its start to its end each time it is called; `None` if a step failed.
 pub type Prepared = Box<dyn Fn() -> Option<End>>;
 
-/// Makes the run of a scene over a time with a step (or a tolerance) ready: all that doesn't depend on the state is
-/// done here.
+/// Prepares the run of a scene over a time with a step or a tolerance. Everything independent of the state is computed
+/// here.
 type Prepare = Box<dyn Fn(&Scene, f64, f64) -> Option<Prepared>>;
 
-/// A way to integrate.
+/// A method of integration.
 pub struct Method {
     pub name: String,
     pub family: Family,
@@ -29,21 +29,21 @@ pub struct Method {
     pub prepare: Prepare,
 }
 
-/// What a method keeps.
+/// The family of a method, by the structure that it preserves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Family {
     /// The Poisson structure and the momentum maps.
     Poisson,
-    /// Nothing: an explicit Runge–Kutta method.
+    /// No structure: an explicit Runge–Kutta method.
     Rival,
 }
 
-/// What is varied.
+/// The parameter that is varied.
 #[derive(Clone, Copy)]
 enum Control {
-    /// Steps of equal length, from this on, s.
+    /// Steps of equal length, with this longest step, s.
     Step(f64),
-    /// That of an error that falls by this power of the step.
+    /// A tolerance, for an error that falls by this power of the step.
     Tolerance(i32),
 }
 
@@ -57,7 +57,7 @@ impl Method {
         Self { name: name.into(), family, control, prepare: Box::new(prepare) }
     }
 
-    /// Whether the method's steps are all of one length, which is what is varied.
+    /// Whether the varied parameter is the length of equal steps.
     pub fn steps_are_equal(&self) -> bool {
         matches!(self.control, Control::Step(_))
     }
@@ -66,7 +66,7 @@ impl Method {
     pub fn parameters(&self, t: f64, ratio: f64) -> impl Iterator<Item = f64> + use<> {
         let (first, next, last) = match self.control {
             Control::Step(longest) => (longest, 1.0 / ratio, 1e-5),
-            // With a tolerance of one, a motion that has grown without bound is accepted, and takes ever shorter steps.
+            // At a tolerance of one a diverged motion would be accepted, with ever shorter steps.
             Control::Tolerance(power) => (0.1, ratio.powi(-power), 1e-15),
         };
         let whole = self.steps_are_equal();
@@ -76,13 +76,13 @@ impl Method {
     }
 }
 
-/// The whole number of steps in a time.
+/// The number of steps in a time.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // the step divides the time
 fn count(t: f64, h: f64) -> u64 {
     (t / h).round() as u64
 }
 
-/// All the methods that a scene allows.
+/// All methods that apply to a scene.
 pub fn all(scene: &Scene) -> Vec<Method> {
     let rivals = match scene.kind {
         Kind::Sprung => rivals(Scene::sprung_equations),
@@ -92,7 +92,7 @@ pub fn all(scene: &Scene) -> Vec<Method> {
     ours(scene).into_iter().chain(rivals).collect()
 }
 
-/// Of these, those that keep the structure.
+/// The methods of these that preserve the structure.
 pub fn ours(scene: &Scene) -> Vec<Method> {
     let exact = |scene: &Scene| Some(ExactBody::new(&scene.inertia()));
     let tops = || {
@@ -115,7 +115,7 @@ pub fn ours(scene: &Scene) -> Vec<Method> {
             vec![exact_alone()],
             gauss(Scene::free_body),
         ],
-        // Of these potentials only (3.13) is declared.
+        // These potentials are declared only with (3.13).
         Kind::Sprung => {
             vec![declared("(3.13)", Scene::sprung, 2), splittings("exact", Scene::sprung, exact), gauss(Scene::sprung)]
         }
@@ -149,7 +149,7 @@ where
     stepped(name, 2.0, move |scene, h| Stepper::collocated::<PAIRS>(lagrangian(scene), h).ok())
 }
 
-/// The exact motion of the free body: its kicks are none, so that any splitting is it.
+/// The exact motion of the free body: it has no kicks, so every splitting with this flow is exact.
 fn exact_alone() -> Method {
     stepped("exact", 100.0, |scene, h| {
         let flow = ExactBody::new(&scene.inertia());
@@ -234,7 +234,7 @@ fn rivals<E: Rates>(equations: impl Fn(&Scene) -> E + Copy + 'static) -> Vec<Met
     rivals
 }
 
-/// With a fixed step, and with its own control.
+/// An embedded method, with a fixed step and with its own step control.
 fn embedded<M: Embedded, E: Rates>(equations: impl Fn(&Scene) -> E + Copy + 'static) -> [Method; 2] {
     [
         Method::new(format!("{}, fixed step", M::NAME), Family::Rival, Control::Step(1.0), move |scene, t, h| {

@@ -1,4 +1,4 @@
-//! Tables of what an accuracy costs.
+//! Tables of the cost of an accuracy.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -8,10 +8,10 @@ use workbench::table::aligned;
 
 use crate::methods::{Family, Method};
 
-/// The errors asked for.
+/// The errors in the tables.
 pub const ERRORS: [f64; 6] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
 
-/// A method and what was measured of it.
+/// A method and its measured runs.
 pub struct Measured {
     pub name: String,
     pub family: Family,
@@ -84,11 +84,11 @@ pub fn ratios(results: &[(String, Vec<Measured>)]) -> String {
     text
 }
 
-/// Puts the table of ratios in the place of that of the examples' page, and the figure in that of README's.
+/// Replaces the table of ratios in the examples' page, and README's figure.
 ///
 /// # Errors
 ///
-/// Where the page has no such table, or can't be read or written.
+/// A page without such a table, or one that can't be read or written.
 pub fn put_into_readme(table: &str, figure: &str) -> Result<(), std::io::Error> {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let place = examples.join("README.md");
@@ -102,12 +102,12 @@ pub fn put_into_readme(table: &str, figure: &str) -> Result<(), std::io::Error> 
     std::fs::write(examples.join("figures/accuracy-cost.svg"), figure)
 }
 
-/// All runs of all methods, for programs to read.
+/// All runs of all methods in a machine-readable form.
 #[derive(Default)]
 pub struct Data(String);
 
 impl Data {
-    /// Of a scene over a time, s.
+    /// Adds the runs of a scene over a time, s.
     pub fn add(&mut self, scene: &str, t: f64, methods: &[Measured]) {
         for Measured { name, runs, .. } in methods {
             let name = name.replace(',', " +");
@@ -118,7 +118,7 @@ impl Data {
         }
     }
 
-    /// A line for each run.
+    /// One line for each run.
     pub fn to_csv(&self) -> String {
         let columns = Refinement::default().to_csv();
         format!("scene,time,method,{columns}{}", self.0)

@@ -1,6 +1,7 @@
 //! The seven scenes, with their exact states.
 //!
-//! The references are those of the tests, to 25 digits and more; `tests/data/README.md` says how each was validated.
+//! The references are those of the tests, to 25 digits and more; `tests/data/README.md` describes the validation of
+//! each.
 
 use declarations::motions::End;
 use declarations::{
@@ -15,24 +16,24 @@ use workbench::top_equations::{Equations, State};
 
 use crate::rivals::rates::{Orbiting, Sprung};
 
-/// A body, its start, and where it is later.
+/// A body, its initial state, and its exact later states.
 pub struct Scene {
     pub name: &'static str,
-    /// For names of files and columns.
+    /// The short name in files and columns.
     pub short: &'static str,
     pub kind: Kind,
-    /// Its body under gravity, which other potentials are added to or take the place of.
+    /// The body under gravity. Other potentials are added to gravity or replace it.
     pub motion: Motion,
 }
 
-/// What methods a scene allows.
+/// The kind of a scene, which determines its methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A symmetric body under gravity along its axis.
     SymmetricTop,
     /// Any body under gravity.
     Top,
-    /// Nothing acts on it.
+    /// A body without forces.
     Free,
     /// Any body under gravity and on a spring.
     Sprung,
@@ -40,12 +41,12 @@ pub enum Kind {
     Satellite,
 }
 
-/// The spring of the file.
+/// The spring in the reference's file.
 const SPRING: Spring =
     Spring { k: 20.0, length: 0.5, at: Vector3::new(0.5, 0.0, 0.25), anchor: Vector3::new(1.0, 0.5, 1.0) };
 
 impl Scene {
-    /// All seven.
+    /// All seven scenes.
     pub fn all() -> [Self; 7] {
         [
             ("looping top", "looping", Kind::SymmetricTop, "looping A"),
@@ -89,13 +90,13 @@ impl Scene {
         Orbiting { moments: moments.into(), inverse_moments: moments.map(f64::recip).into(), gradient: 3.0 }
     }
 
-    /// In the variables of the rivals.
+    /// The equations in the variables of the rivals.
     pub fn equations(&self) -> Equations {
         let HeavyTop { m, g, rho, .. } = self.motion.top;
         Equations::new(self.motion.top.moments().into(), (rho * (m * g)).into())
     }
 
-    /// Where the rivals start.
+    /// The initial state in the variables of the rivals.
     pub fn start(&self) -> State {
         let q = self.motion.attitude.to_quaternion();
         let p = self.motion.top.moments().component_mul(&self.motion.velocity);

@@ -1,19 +1,20 @@
-//! The inertia of a top from the readings of a gyroscope in it.
+//! Estimation of a top's inertia from the readings of a gyroscope in it.
 //!
 //! ```text
 //! cargo run --release --example calibrate
 //! cargo run --release --example calibrate -- --quick         three sets of readings in place of twenty
 //! ```
 //!
-//! A gyroscope is read a hundred times a second for ten seconds. Twelve numbers determine what it reads: three moments,
-//! the centre of mass, attitude and momentum at the start. The rank of the fit's covariance says how many of them can be
-//! found out, and a direction which can't. The others are fitted, for readings with noise of twenty seeds.
+//! A gyroscope is read a hundred times a second for ten seconds. Twelve numbers determine the readings: three moments,
+//! the centre of mass, attitude and momentum at the start. The rank of the fit's covariance is the number of
+//! identifiable directions, and its null space the others. The identifiable numbers are fitted to readings with noise,
+//! for twenty seeds.
 //!
-//! The tests assert that the rank is ten, that the direction which the fit doesn't see is one of two that physics hides but for
-//! `10⁻⁶` of it, and of the errors over twenty seeds, in the standard deviations of the fit's covariance: the root of
-//! their mean square is within 0.2 of one, at most one of the hundred is above three, and none above 3.5. They don't
-//! assert that all are below three, which isn't so: of a hundred normal numbers that far off there are 0.27 on average.
-//! The seeds are fixed, so the test isn't one of luck.
+//! The tests assert that the rank is ten, and that the direction outside of the fit's range is a symmetry of the
+//! physics up to `10⁻⁶`. They measure the errors over twenty seeds in the standard deviations of the fit's covariance,
+//! and assert that the root mean square is within 0.2 of one, that at most one of the hundred is above three, and none
+//! above 3.5. The tests don't assert that all are below three: among a hundred normal numbers 0.27 on average are
+//! larger. The seeds are fixed, so the tests are reproducible.
 
 #![allow(clippy::cast_precision_loss)] // a thousand readings
 
@@ -34,11 +35,11 @@ use workbench::args::{Failure, example};
 use workbench::output::{Output, print};
 
 const READINGS: usize = 1000;
-/// Between two readings, s.
+/// The time between two readings, s.
 const STEP: f64 = 0.01;
-/// Standard deviation of a reading, rad/s.
+/// The standard deviation of a reading, rad/s.
 const NOISE: f64 = 0.01;
-/// How many readings are fitted first: on the whole record the first guess would turn too far.
+/// The lengths of the first fits, in readings: for the whole record the error of the initial guess would be too large.
 const BEGINNINGS: [usize; 3] = [100, 250, 500];
 
 /// A scene with a body in its principal axes.
@@ -53,17 +54,17 @@ Options:
   -h, --help            Print this
 ";
 
-/// A top, and where it starts.
+/// A top, and its initial state.
 #[derive(Clone, Copy)]
 struct Reference {
-    /// Of `J_d`, and the centre of mass.
+    /// The principal values of `J_d`, and the centre of mass.
     moments: Vector3<f64>,
     rho: Vector3<f64>,
     attitude: SO3,
     momentum: Vector3<f64>,
 }
 
-/// The top that the readings are of.
+/// The true top, which produces the readings.
 fn truth() -> Reference {
     let moments = Vector3::new(2.75, 1.75, 0.25);
     let velocity = Vector3::new(0.5, 2.0, 6.0);
@@ -72,7 +73,7 @@ fn truth() -> Reference {
     Reference { moments, rho: Vector3::new(0.3, 0.2, 0.4), attitude, momentum }
 }
 
-/// The principal moments of inertia, kg m², of those of `J_d`.
+/// The principal moments of inertia, kg m², for those of `J_d`.
 fn inertia(moments: &Vector3<f64>) -> Vector3<f64> {
     Vector3::repeat(moments.sum()) - moments
 }
@@ -84,7 +85,7 @@ impl Reference {
         Ok(Stepper::composed(body + gravity, STEP, scheme)?)
     }
 
-    /// What a gyroscope without noise reads, rad/s.
+    /// The readings of a gyroscope without noise, rad/s.
     fn readings(&self, count: usize) -> Result<Vec<Vector3<f64>>, Failure> {
         let stepper = self.stepper(CompositionScheme::KAHAN_LI_8)?;
         let mut state = stepper.start_with_momentum(self.attitude, self.momentum)?;
@@ -96,8 +97,9 @@ impl Reference {
         Ok(readings)
     }
 
-    /// The fit of readings from here: of the logarithms of `J_d`, of the first coordinates of the centre of mass, as many as
-    /// that, and of the start. All three would have no scale; the last is measured with a ruler.
+    /// The fit of readings from this guess: of the logarithms of `J_d`, of the first `coordinates` coordinates of the
+    /// centre of mass, and of the initial state. With all three coordinates the scale would be undetermined; the last
+    /// is measured with a ruler.
     fn fit(&self, readings: &[Vector3<f64>], coordinates: usize) -> Result<Fitted, Failure> {
         let of = |numbers: &[f64]| Self {
             moments: self.moments.component_mul(&Vector3::from_fn(|k, _| numbers[k].exp())),
@@ -118,7 +120,7 @@ impl Reference {
         Ok(task.steppers(stepper_of).until(1e-4, 100).solve()?)
     }
 
-    /// With what was found.
+    /// The top with the fitted values.
     fn with(&self, fit: &Fitted) -> Self {
         let first = &fit.states[0];
         let rho = Vector3::from_fn(|k, _| fit.constants.get(3 + k).copied().unwrap_or(self.rho[k]));
@@ -126,8 +128,8 @@ impl Reference {
         Self { moments, rho, attitude: first.attitude(), momentum: first.momentum() }
     }
 
-    /// What physics hides: a turn about the vertical, and inertia, weight and momentum that all grow in one proportion. In
-    /// the order of the fit: turn, momentum, logarithms, centre of mass.
+    /// The symmetries of the readings: a turn about the vertical, and a common factor of inertia, weight and momentum.
+    /// The components are in the order of the fit: turn, momentum, logarithms, centre of mass.
     fn hidden(&self) -> DMatrix<f64> {
         let (zero, vertical) = (Vector3::zeros(), self.attitude.as_matrix().transpose() * Vector3::z());
         let column =
@@ -139,7 +141,7 @@ impl Reference {
     }
 }
 
-/// Readings with noise.
+/// The readings with noise.
 fn measured(count: usize, seed: u64) -> Result<Vec<Vector3<f64>>, Failure> {
     let mut random = Random::new(seed);
     let mut noisy = truth().readings(count)?;
@@ -149,8 +151,8 @@ fn measured(count: usize, seed: u64) -> Result<Vec<Vector3<f64>>, Failure> {
     Ok(noisy)
 }
 
-/// The fit of all readings, from a guess that is off by 15 % in every moment and in the centre of mass, and by some degrees;
-/// the momentum is what the first reading makes of it.
+/// The fit of all readings, from a guess with errors of 15 % in every moment and in the centre of mass, and of some
+/// degrees in the attitude; the guess of the momentum comes from the first reading.
 fn fitted(readings: &[Vector3<f64>]) -> Result<(Reference, Fitted), Failure> {
     let truth = truth();
     let moments = truth.moments.component_mul(&Vector3::new(0.15, -0.15, 0.15).map(f64::exp));
@@ -171,12 +173,12 @@ fn fitted(readings: &[Vector3<f64>]) -> Result<(Reference, Fitted), Failure> {
     Ok((reference.with(&fit), fit))
 }
 
-/// Standard deviations of three logarithms and of two coordinates of the centre of mass.
+/// The standard deviations of three logarithms and of two coordinates of the centre of mass.
 fn deviations(fit: &Fitted) -> [f64; 5] {
     core::array::from_fn(|k| fit.covariance[(6 + k, 6 + k)].sqrt())
 }
 
-/// How far these are from the truth, in their standard deviations.
+/// The errors of a fit, in its standard deviations.
 fn errors((found, fit): &(Reference, Fitted)) -> [f64; 5] {
     let (truth, deviations) = (truth(), deviations(fit));
     let moments = found.moments.component_div(&truth.moments).map(f64::ln);
@@ -185,14 +187,15 @@ fn errors((found, fit): &(Reference, Fitted)) -> [f64; 5] {
     core::array::from_fn(|k| errors[k] / deviations[k])
 }
 
-/// The root of the mean square of these, the largest, how many are above three, and how many there are.
+/// The root mean square of the errors, the largest, the number above three, and the number of all.
 fn spread(fits: &[(Reference, Fitted)]) -> (f64, f64, usize, usize) {
     let all: Vec<f64> = fits.iter().flat_map(errors).map(f64::abs).collect();
     let spread = (all.iter().map(|error| error * error).sum::<f64>() / all.len() as f64).sqrt();
     (spread, all.iter().copied().fold(0.0, f64::max), all.iter().filter(|error| **error > 3.0).count(), all.len())
 }
 
-/// How many of the twelve numbers the readings show, and the part of what a fit doesn't see that physics doesn't hide.
+/// The number of identifiable directions among the twelve, and the part of the others that isn't a symmetry of the
+/// physics.
 fn seen() -> Result<(usize, f64), Failure> {
     let truth = truth();
     let fit = truth.fit(&truth.readings(READINGS)?, 3)?;
@@ -248,7 +251,7 @@ fn table(fits: &[(Reference, Fitted)]) -> Result<String, Failure> {
     Ok(text)
 }
 
-/// Root of the mean square of what is left, rad/s.
+/// The root mean square of the residuals, rad/s.
 fn rms(fit: &Fitted) -> f64 {
     NOISE * (fit.squares / (3.0 * fit.states.len() as f64)).sqrt()
 }
@@ -257,8 +260,8 @@ fn rms(fit: &Fitted) -> f64 {
 mod tests {
     use super::*;
 
-    /// The errors over twenty seeds are those that the covariance says: of a hundred normal numbers one in four sets has
-    /// one above three standard deviations.
+    /// The errors over twenty seeds agree with the covariance: one in four sets of a hundred normal numbers has a
+    /// number above three standard deviations.
     #[test]
     fn the_inertia_is_found() {
         let fits: Vec<_> =

@@ -1,4 +1,4 @@
-//! The readings with their fit, and how a longer record tells more.
+//! The picture: readings with their fit, and the accuracy for longer records.
 
 use nalgebra::Vector3;
 use workbench::args::Failure;
@@ -8,7 +8,7 @@ use workbench::plot::{
 
 use crate::{Fitted, READINGS, Reference, STEP, deviations, measured, truth};
 
-/// So much of the record, s: more would cover itself.
+/// The part of the record in the picture, s: more would overlap.
 const SHOWN: f64 = 4.0;
 
 pub(crate) fn picture(fits: &[(Reference, Fitted)]) -> Result<String, Failure> {
@@ -20,7 +20,7 @@ pub(crate) fn picture(fits: &[(Reference, Fitted)]) -> Result<String, Failure> {
     };
     let mut lines: Vec<Line> = Vec::new();
     for component in 0..2 {
-        // The readings are pale and wide, so that both are seen.
+        // The readings are pale and wide, so that both are visible.
         lines.push(Line { colour: [SKY, YELLOW][component], width: 9, points: rates(&read, component) });
         lines.push(Line { colour: [BLUE, GREEN][component], width: 2, points: rates(&fitted, component) });
     }

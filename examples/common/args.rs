@@ -1,4 +1,4 @@
-//! Command lines, checked before anything is computed.
+//! Command lines, which are checked before any computation.
 
 use std::error::Error;
 use std::ffi::OsString;
@@ -10,10 +10,10 @@ use lexopt::Arg;
 
 use crate::output::print;
 
-/// What is wrong, in words.
+/// An error as a message for the user.
 pub type Failure = Box<dyn Error>;
 
-/// Runs an example on its command line, and says what went wrong.
+/// Runs an example with its command line, and reports its error.
 pub fn example(help: &str, run: impl FnOnce(&mut Words) -> Result<(), Failure>) -> ExitCode {
     let asked = std::env::args_os().skip(1).any(|word| word == "--help" || word == "-h");
     let outcome = if asked {
@@ -33,18 +33,18 @@ pub fn example(help: &str, run: impl FnOnce(&mut Words) -> Result<(), Failure>) 
 /// The words of a command line, from the first on.
 pub struct Words {
     parser: lexopt::Parser,
-    /// That which a value is wanted for.
+    /// The option that a value is expected for.
     option: String,
 }
 
-/// An option without its dashes, or what belongs to none.
+/// An option without its dashes, or a word that isn't an option.
 pub enum Word {
     Option(String),
     Plain(OsString),
 }
 
 impl Words {
-    /// The next one.
+    /// The next word.
     pub fn word(&mut self) -> Result<Option<Word>, Failure> {
         let word = match self.parser.next().map_err(|error| told(&error))? {
             None => return Ok(None),
@@ -58,7 +58,7 @@ impl Words {
         Ok(Some(word))
     }
 
-    /// The next option, where there is nothing else.
+    /// The next option, for programs with options only.
     pub fn option(&mut self) -> Result<Option<String>, Failure> {
         match self.word()? {
             None => Ok(None),
@@ -67,18 +67,18 @@ impl Words {
         }
     }
 
-    /// Says that there is no such option.
+    /// The error of an unknown option.
     pub fn unknown(&self) -> Failure {
         format!("unexpected argument '--{}'; see --help", self.option).into()
     }
 
-    /// The text that the option is given, which may be empty.
+    /// The value of the option as a text, which may be empty.
     pub fn text(&mut self) -> Result<String, Failure> {
         let text = self.parser.value().map_err(|error| told(&error))?;
         text.into_string().map_err(|text| self.invalid(&text.display(), "isn't a text in UTF-8"))
     }
 
-    /// A number above zero, s.
+    /// The value as a number above zero, s.
     pub fn seconds(&mut self) -> Result<f64, Failure> {
         let text = self.text()?;
         let value: f64 = text.parse().map_err(|_| self.invalid(&text, "is not a number; write seconds, as in 0.01"))?;
@@ -89,7 +89,7 @@ impl Words {
         }
     }
 
-    /// A folder, which has a name.
+    /// The value as the path of a folder, not empty.
     pub fn folder(&mut self) -> Result<PathBuf, Failure> {
         let folder = self.parser.value().map_err(|error| told(&error))?;
         if folder.is_empty() {
@@ -98,7 +98,7 @@ impl Words {
         Ok(folder.into())
     }
 
-    /// One of these, by its name.
+    /// The value as one of these names.
     pub fn one_of<T: Copy>(&mut self, all: &[(&str, T)]) -> Result<T, Failure> {
         let text = self.text()?;
         let found = all.iter().find(|(name, _)| name.eq_ignore_ascii_case(&text));

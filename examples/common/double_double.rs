@@ -1,4 +1,4 @@
-//! Unevaluated sums of two doubles: the larger is the sum rounded, the smaller what the rounding left behind.
+//! Unevaluated sums of two doubles: the larger is the rounded sum, the smaller its rounding error.
 //!
 //! The sums and products are those of Knuth, Dekker and Møller, exact to some `2⁻¹⁰²`.
 
@@ -13,14 +13,14 @@ pub struct DoubleDouble {
     low: f64,
 }
 
-/// `a + b` rounded and the rest, where `|a| ≥ |b|`.
+/// The rounded sum `a + b` and its rounding error, for `|a| ≥ |b|`.
 #[inline]
 fn quick_sum(a: f64, b: f64) -> DoubleDouble {
     let high = a + b;
     DoubleDouble { high, low: b - (high - a) }
 }
 
-/// `a + b` rounded and the rest.
+/// The rounded sum `a + b` and its rounding error.
 #[inline]
 fn exact_sum(a: f64, b: f64) -> DoubleDouble {
     let high = a + b;
@@ -28,7 +28,7 @@ fn exact_sum(a: f64, b: f64) -> DoubleDouble {
     DoubleDouble { high, low: (a - (high - of_b)) + (b - of_b) }
 }
 
-/// `a b` rounded and the rest.
+/// The rounded product `a b` and its rounding error.
 #[inline]
 fn exact_product(a: f64, b: f64) -> DoubleDouble {
     let high = a * b;
@@ -36,7 +36,7 @@ fn exact_product(a: f64, b: f64) -> DoubleDouble {
 }
 
 impl DoubleDouble {
-    /// From decimal digits, all of them.
+    /// The number from decimal digits, with all of them.
     pub fn parse(text: &str) -> Self {
         let (digits, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
         let (sign, digits) = digits.strip_prefix('-').map_or((1.0, digits), |digits| (-1.0, digits));
@@ -65,7 +65,7 @@ impl DoubleDouble {
     }
 }
 
-/// The number itself.
+/// The double as a number of 32 digits.
 #[inline]
 pub fn long(number: f64) -> DoubleDouble {
     number.into()

@@ -1,9 +1,9 @@
-//! What the examples share with each other, with the tests and with the benchmarks: the heavy top and what is compared
-//! with it, arguments, timed runs, tables, files and figures.
+//! Code that examples, tests and benchmarks share: the heavy top and its rivals, arguments, timed runs, tables, files
+//! and figures.
 //!
-//! What only the longer examples and the tests need is in packages of its own, so that the first example is built soon.
+//! Code for the longer examples and the tests alone is in other packages, so that the first example builds fast.
 
-// A library of this repository alone.
+// This library is for this repository alone.
 #![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc)]
 #![allow(clippy::must_use_candidate, clippy::return_self_not_must_use)]
 

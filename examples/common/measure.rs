@@ -1,4 +1,4 @@
-//! Distances, orders, and what is left of a run.
+//! Distances, orders, and drifts of a run.
 
 use liestep_refinement::Refinement;
 use nalgebra::{Dim, Matrix, RawStorage};
@@ -19,12 +19,13 @@ pub fn four_halvings(coarsest: f64) -> [f64; 5] {
     [1.0, 0.5, 0.25, 0.125, 0.0625].map(|fraction| coarsest * fraction)
 }
 
-/// [`Refinement::order_above`] of steps and errors: NaN, which no bound holds for, if too few errors are above the plateau.
+/// The order by [`Refinement::order_above`] of steps and errors. It is NaN, which fails every bound, if too few errors
+/// are above the plateau.
 pub fn order(errors: &[(f64, f64)], plateau: f64) -> f64 {
     Refinement::of(errors.iter().copied()).order_above(plateau).unwrap_or(f64::NAN)
 }
 
-/// The whole number of steps `h` in the time `t`.
+/// The number of steps `h` in the time `t`.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // small positive numbers
 pub fn steps_in(t: f64, h: f64) -> u64 {
     (t / h).round() as u64

@@ -1,7 +1,7 @@
-//! The step with a Newton iteration that stops where it is told to, and what that costs.
+//! The step with a Newton iteration of adjustable tolerance, and the effect of the tolerance.
 //!
-//! The library's own stops at rounding and has no such option; here its equations, derived by the macro, are solved by
-//! a loop of a few lines.
+//! The library's own iteration ends at rounding and has no such option; here the equations derived by the macro are
+//! solved by a loop of a few lines.
 
 use liestep::groups::{Advected, LieGroup as _, Retraction as _};
 use liestep::mechanics::{DiscreteLagrangian, Effect};
@@ -14,41 +14,41 @@ use crate::tenths::{Tenths, float, greater};
 /// The tolerances of the table, as powers of ten.
 pub const EXPONENTS: [i32; 8] = [-12, -10, -8, -6, -4, -2, -1, 0];
 
-/// Where the iteration starts.
+/// The initial guess of the iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Guess {
     /// The increment of the last step.
     Last,
-    /// The straight line through the last two.
+    /// The linear extrapolation of the last two increments.
     Extrapolated,
 }
 
-/// How the new momentum is written.
+/// The form of the momentum update.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Form {
-    /// `μ⁺ = Ad*_F (μ + diamond)`, from the old momentum; (2.9).
+    /// The transport form `μ⁺ = Ad*_F (μ + diamond)`, from the old momentum; (2.9).
     Transport,
-    /// `μ⁺ = 𝔽l_d⁺(F, w)`, from `F` alone, as (3.18) reads.
+    /// The form `μ⁺ = 𝔽l_d⁺(F, w)`, from `F` alone, as printed in (3.18).
     Printed,
 }
 
-/// What is left of a run.
+/// The drifts of a run.
 #[derive(Default)]
 pub struct Left {
-    /// Of the energy's mean, between the first and the last tenth of the run, relative.
+    /// The relative drift of the energy's mean, between the first and the last tenth of the run.
     pub energy: f64,
-    /// Of `p·w` and of `p_3`, relative.
+    /// The relative drifts of `p·w` and of `p_3`.
     pub vertical: f64,
     pub axial: f64,
     /// Newton iterations a step.
     pub iterations: f64,
 }
 
-/// No solvable step needs more.
+/// The limit on iterations; every solvable step converges earlier.
 const MOST: u64 = 20;
 
-/// So many steps `h` from a momentum and a vertical; an iteration ends after an update below the tolerance, relative to
-/// the unknown.
+/// A run of `steps` steps `h` from a momentum and a vertical. An iteration ends after an update below the tolerance,
+/// relative to the unknown.
 pub fn run<L>(
     lagrangian: &L,
     h: f64,
@@ -99,7 +99,7 @@ where
     left
 }
 
-/// So many steps of the library's own.
+/// A run of as many of the library's own steps.
 pub fn by_the_library<L>(stepper: &Stepper<L>, mut state: StateOf<L>, steps: u64) -> Result<Left, StepError>
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,

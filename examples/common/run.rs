@@ -1,8 +1,8 @@
-//! A run of a method: its samples, and what a step costs.
+//! A run of a method: its samples, and the cost of a step.
 //!
-//! Recording and timing don't mix: each block of steps is first made without any output, and that is timed; then the
-//! same block is made again from its start, with samples kept. A method is a pure function of its state, so both end
-//! in the same place; a debug build checks that.
+//! Recording would disturb the timing. So each block of steps is run twice from the same state: first without output,
+//! for the time, then with samples. A method is a pure function of its state, so both end in the same state; a debug
+//! build checks this.
 
 use std::fmt;
 use std::time::Instant;
@@ -20,29 +20,29 @@ use crate::tenths::float;
 pub struct Schedule {
     /// The step, s.
     pub step: f64,
-    /// How many.
+    /// The number of steps.
     pub steps: u64,
 }
 
-/// A stretch of a run whose samples are equally far apart.
+/// A part of a run with equidistant samples.
 #[derive(Clone, Copy, Debug)]
 pub struct Stretch {
-    /// Where it ends, in steps from the start.
+    /// The end, in steps from the start.
     pub end: u64,
     /// The number of steps between two samples.
     pub stride: u64,
 }
 
-/// About an hour of stepping.
+/// The limit on steps: about an hour of computation.
 const MOST_STEPS: f64 = 1e10;
 
-/// More samples than a figure has room for, few enough for any memory.
+/// The limit on samples of a part: more than a figure can resolve, few enough for any memory.
 const MOST_SAMPLES: u64 = 20_000;
 
-/// The beginning that is kept in detail, s.
+/// The duration of the first part, which is recorded in detail, s.
 const BEGINNING: f64 = 20.0;
 
-/// The end that is kept in detail, s: from 100 s to 200 s in the thesis.
+/// The duration of the last part, which is recorded in detail, s: from 100 s to 200 s in the thesis.
 pub const ENDING: f64 = 100.0;
 
 impl Schedule {
@@ -70,7 +70,7 @@ impl Schedule {
         self.time_after(self.steps)
     }
 
-    /// The beginning, the middle and the end, each with as many samples as can be drawn.
+    /// The beginning, the middle and the end, each with as many samples as a figure can resolve.
     pub fn stretches(&self) -> [Stretch; 3] {
         let beginning = whole(BEGINNING / self.step).min(self.steps);
         let ending = self.steps.saturating_sub(whole(ENDING / self.step)).max(beginning);
@@ -83,7 +83,7 @@ impl Schedule {
     }
 }
 
-/// The nearest whole number of steps; beyond the most that are allowed, that.
+/// The nearest whole number of steps, clamped to the limit.
 fn whole(steps: f64) -> u64 {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // clamped
     let whole = steps.round().clamp(0.0, MOST_STEPS) as u64;
@@ -97,12 +97,12 @@ pub struct Sample {
     pub momentum: Vector3<f64>,
 }
 
-/// Something that steps.
+/// A method of integration.
 pub trait Method: Clone {
-    /// Makes this number of steps, and returns the number of Newton iterations; none for an explicit method.
+    /// Makes this number of steps, and returns the number of Newton iterations; zero for an explicit method.
     fn advance(&mut self, steps: u64) -> Result<u64, Stopped>;
 
-    /// The state as every method can give it.
+    /// The state as a sample, the same for all methods.
     fn sample(&self) -> Sample;
 }
 
@@ -111,7 +111,7 @@ pub trait Method: Clone {
 pub struct Stopped {
     /// The last time that was reached, s.
     pub time: f64,
-    /// Why it wasn't passed.
+    /// The error of the next step.
     pub cause: StepError,
 }
 
@@ -127,7 +127,7 @@ impl std::error::Error for Stopped {
     }
 }
 
-/// What a run has left.
+/// The result of a run.
 pub struct Record {
     /// Times in s, and the state at each.
     pub samples: Vec<(f64, Sample)>,
@@ -137,7 +137,7 @@ pub struct Record {
     pub nanoseconds: f64,
 }
 
-/// Long enough that reading the clock costs nothing beside it.
+/// The number of steps in a block: reading the clock is then negligible.
 const BLOCK: u64 = 1000;
 
 /// Runs a method to the end of the schedule.
@@ -168,7 +168,7 @@ pub fn run<M: Method>(name: &str, mut method: M, schedule: &Schedule) -> Result<
     Ok(Record { samples, iterations: float(iterations) / float(schedule.steps), nanoseconds })
 }
 
-/// Bit for bit, where it is finite: an explicit method may have blown up, and NaN isn't equal to itself.
+/// Equality bit for bit if finite: an explicit method may have diverged, and NaN isn't equal to itself.
 fn same(a: &Sample, b: &Sample) -> bool {
     a == b || !(a.momentum + a.attitude.column(0)).iter().all(|x| x.is_finite())
 }

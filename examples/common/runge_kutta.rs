@@ -4,7 +4,7 @@ use std::ops::{Add, Mul};
 
 use nalgebra::DVector;
 
-/// What a step of `h` from `y` adds to it.
+/// The increment of a step of `h` from `y`.
 #[inline]
 pub fn change<V: Clone + Add<Output = V> + Mul<f64, Output = V>>(y: V, h: f64, f: impl Fn(V) -> V) -> V {
     let k1 = f(y.clone());
@@ -14,7 +14,7 @@ pub fn change<V: Clone + Add<Output = V> + Mul<f64, Output = V>>(y: V, h: f64, f
     (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0)
 }
 
-/// A step in numbers, whose rates are written to the second argument.
+/// A step on a slice of numbers, whose rates are written to the second argument.
 pub fn step(rate: impl Fn(&[f64], &mut [f64]), state: &mut [f64], h: f64) {
     let y = DVector::from_column_slice(state);
     let change = change(y, h, |y| {
@@ -25,7 +25,7 @@ pub fn step(rate: impl Fn(&[f64], &mut [f64]), state: &mut [f64], h: f64) {
     state.iter_mut().zip(&change).for_each(|(y, change)| *y += change);
 }
 
-/// As many steps, which take the time together.
+/// A run of as many equal steps over a total time.
 pub fn run(rate: impl Fn(&[f64], &mut [f64]), state: &mut [f64], time: f64, steps: u32) {
     for _ in 0..steps {
         step(&rate, state, time / f64::from(steps));

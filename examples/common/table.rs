@@ -1,6 +1,6 @@
 //! Aligned columns for the terminal.
 
-/// The rows below each other, the first column left and the others right aligned, a rule below the first row.
+/// The rows below each other, the first column left and the others right aligned, with a rule below the first row.
 pub fn aligned(rows: &[Vec<String>]) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| {
@@ -20,14 +20,14 @@ pub fn aligned(rows: &[Vec<String>]) -> String {
     lines.join("\n")
 }
 
-/// A measured number, short; what isn't finite is said in words.
+/// A measured number with two digits, or the words "not finite".
 pub fn number(value: f64) -> String {
     if value.is_finite() { format!("{value:.1e}") } else { "not finite".to_owned() }
 }
 
-/// A number as a person would write it, without the rounding errors of the last digits.
+/// A number in its usual notation, without the rounding errors of the last digits.
 pub fn short(value: f64) -> String {
-    // Debug has an exponent where there would be many zeros, and a point where there needn't be one.
+    // Debug has an exponent in place of many zeros, but also appends `.0` to integers.
     let text = format!("{:?}", format!("{value:.9e}").parse::<f64>().unwrap_or(value));
     text.strip_suffix(".0").map(str::to_owned).unwrap_or(text)
 }

@@ -11,9 +11,9 @@ pub fn float(count: u64) -> f64 {
     count as f64
 }
 
-/// Mean and extremes of an oscillating quantity over a window of steps.
+/// The mean and the extremes of an oscillating quantity over a window of steps.
 ///
-/// The mean is weighted by `sin²`: with equal weights the oscillations that the two ends cut would make up most of it.
+/// The mean is weighted by `sin²`: with equal weights the incomplete oscillations at both ends would dominate it.
 #[derive(Clone, Copy)]
 pub struct Window {
     length: u64,
@@ -56,7 +56,7 @@ impl Tenths {
         Self { steps, first: Window::new(steps / 10), last: Window::new(steps / 10) }
     }
 
-    /// The quantity after the step of this number, from one; computed only where it counts.
+    /// Adds the quantity after the step of this number, from one; it is evaluated only inside of the two windows.
     pub fn after(&mut self, step: u64, value: impl FnOnce() -> f64) {
         if step <= self.steps / 10 {
             self.first.add(value());
@@ -65,12 +65,12 @@ impl Tenths {
         }
     }
 
-    /// How far the mean has moved.
+    /// The drift of the mean between the two tenths.
     pub fn drift(&self) -> f64 {
         (self.last.mean() - self.first.mean()).abs()
     }
 
-    /// How much the extremes have moved, relative to the distance between them.
+    /// The drift of the extremes, relative to the distance between them.
     pub fn extremes(&self) -> f64 {
         let moved = (self.last.lowest - self.first.lowest).abs().max((self.last.highest - self.first.highest).abs());
         moved / (self.first.highest - self.first.lowest)

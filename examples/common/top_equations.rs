@@ -1,28 +1,28 @@
 //! The heavy top in unit quaternion and body momentum, `q' = ½ q Ω`, `p' = p × Ω + m g w × ρ`, and the classical
 //! Runge–Kutta method of order 4 for it.
 //!
-//! These variables are an explicit method's best: seven numbers, products only, and nothing to solve.
+//! These variables suit an explicit method best: seven numbers, products only, and no equation to solve.
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-/// Quaternion `(q_0, q)`, then body momentum.
+/// The quaternion `(q_0, q)`, then the body momentum.
 pub type State = [f64; 7];
 
-/// The body and the force, in the form that the right-hand side uses.
+/// The constants of the body and the force in the right-hand side.
 #[derive(Clone, Copy)]
 pub struct Equations {
     inverse_moments: [f64; 3],
-    /// `m g ρ`.
+    /// The lever `m g ρ`.
     lever: [f64; 3],
 }
 
 impl Equations {
-    /// Of a body with these principal moments, kg m², and `m g ρ`, N m.
+    /// The equations of a body with these principal moments, kg m², and `m g ρ`, N m.
     pub fn new(moments: [f64; 3], lever: [f64; 3]) -> Self {
         Self::of(moments.map(f64::recip), lever)
     }
 
-    /// The same by the inverses of the moments.
+    /// The equations with these inverse moments.
     pub fn of(inverse_moments: [f64; 3], lever: [f64; 3]) -> Self {
         Self { inverse_moments, lever }
     }
@@ -34,10 +34,10 @@ impl Equations {
         [i1 * p1, i2 * p2, i3 * p3]
     }
 
-    /// Attitude and body velocity.
+    /// The attitude and the body velocity.
     pub fn end(&self, state: &State) -> (Matrix3<f64>, Vector3<f64>) {
         let [a, b, c, d, ..] = *state;
-        // As it is: a rival that has lost the length of its quaternion shall show it.
+        // The quaternion isn't normalised, so that a rival's loss of its length is visible.
         let attitude = UnitQuaternion::new_unchecked(Quaternion::new(a, b, c, d)).to_rotation_matrix().into_inner();
         (attitude, self.velocity(state).into())
     }
@@ -66,7 +66,7 @@ impl Equations {
     }
 }
 
-/// A step of the classical Runge–Kutta method, with the quaternion brought back to unit length.
+/// A step of the classical Runge–Kutta method, with the quaternion normalised.
 #[inline(always)]
 pub fn rk4_step(rate: impl Fn(&State) -> State, h: f64, y: &State) -> State {
     let plus = |h: f64, k: &State| -> State { core::array::from_fn(|i| y[i] + h * k[i]) };
@@ -77,7 +77,7 @@ pub fn rk4_step(rate: impl Fn(&State) -> State, h: f64, y: &State) -> State {
     normalised(core::array::from_fn(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i])))
 }
 
-/// The quaternion brought back to unit length.
+/// The state with the quaternion normalised.
 #[inline(always)]
 fn normalised([a, b, c, d, p1, p2, p3]: State) -> State {
     let scale = 1.0 / (a * a + b * b + c * c + d * d).sqrt();

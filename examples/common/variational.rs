@@ -1,11 +1,11 @@
-//! The integrator that a declared Lagrangian gives, as a method to run.
+//! The integrator of a declared Lagrangian, as a method to run.
 
 use liestep::mechanics::DiscreteLagrangian;
 use liestep::{SO3, StateOf, Stepper};
 
 use super::run::{Method, Sample, Stopped};
 
-/// A motion, with the stepper that moves it.
+/// A motion with its stepper.
 pub struct Variational<'a, L: DiscreteLagrangian<Scalar = f64, Group = SO3>> {
     pub stepper: &'a Stepper<L>,
     pub state: StateOf<L>,

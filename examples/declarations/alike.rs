@@ -1,8 +1,8 @@
-//! What two bodies of many have, that is put at pairs of them.
+//! A potential on two bodies of many, which is placed at pairs of them.
 
 use liestep::{SO3, lagrangian};
 
-/// Two bodies that would like to stand alike: a potential at both ends of a step.
+/// An alignment potential of two bodies, evaluated at both ends of a step.
 #[lagrangian(
     group(F_1 = SO3, F_2 = SO3),
     advected(Q = F_2.seen_from(F_1)),
@@ -10,6 +10,6 @@ use liestep::{SO3, lagrangian};
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Alike<T = f64> {
-    /// How much they would, J.
+    /// The strength of the alignment, J.
     pub kappa: T,
 }

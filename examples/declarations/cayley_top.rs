@@ -3,7 +3,7 @@
 use liestep::prelude::*;
 use nalgebra::Vector3;
 
-/// The heavy top with the Cayley kinetic term: `x = tan(θ/2) n` has the Legendre transform
+/// The heavy top with the Cayley kinetic term: in `x = tan(θ/2) n` its Legendre transform is
 /// `h p = 2 (J x + x × J x + (x·J x) x)`, which is solvable for every `h`.
 #[lagrangian(
     group = SO3,

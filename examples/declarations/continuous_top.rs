@@ -6,8 +6,8 @@ use nalgebra::Vector3;
 
 /// The heavy top of section 3.2: `l(Ω, w) = ½ tr(Ω̂ J_d Ω̂ᵀ) − m g ⟨w, ρ⟩`.
 ///
-/// `discretise = trapezoid` puts `(F − I)/h` in the place of `Ω̂` and takes the potential at both ends of a step, which
-/// makes (3.13): the steps are those of [`HeavyTop`](crate::HeavyTop), to the bit.
+/// `discretise = trapezoid` replaces `Ω̂` by `(F − I)/h` and evaluates the potential at both ends of a step. The result
+/// is (3.13): the steps are those of [`HeavyTop`](crate::HeavyTop), to the bit.
 #[lagrangian(
     group = SO3,
     velocity = Omega,

@@ -5,8 +5,8 @@
 //! cargo run --example derive -- heavy-top    all equations of one
 //! ```
 //!
-//! The same text stands in the documentation of the constant `DERIVATION` and, equation by equation, of each generated
-//! method.
+//! The documentation of the constant `DERIVATION` contains the same text, and that of each generated method its
+//! equation.
 
 use std::process::ExitCode;
 
@@ -14,12 +14,12 @@ use liestep::mechanics::{ContinuousLagrangian, DiscreteLagrangian};
 use workbench::args::{Failure, Word, example};
 use workbench::output::print;
 
-/// A declaration that is shown.
+/// A declaration in the list.
 struct Shown {
     name: &'static str,
     about: &'static str,
     derivation: &'static str,
-    /// Of one with steps, whether it is its own adjoint.
+    /// Whether the Lagrangian is self-adjoint, if it is discrete.
     is_self_adjoint: Option<bool>,
 }
 
@@ -31,7 +31,7 @@ const fn continuous<L: ContinuousLagrangian>(name: &'static str, about: &'static
     Shown { name, about, derivation: L::CONTINUOUS_DERIVATION, is_self_adjoint: None }
 }
 
-/// All of them; a new one is one line.
+/// All declarations; a new one is one line.
 const LAGRANGIANS: [Shown; 21] = [
     shown::<declarations::HeavyTop>("heavy-top", "(3.13) in principal axes: μ is (3.17), (L_F)* δl_d/δF is (3.18)"),
     shown::<declarations::ContinuousTop>("continuous-top", "l(Ω, w) of section 3.2, of which (3.13) is made"),

@@ -1,15 +1,15 @@
-//! Scenes that are driven: each step is given values, and forces act on SE(3).
+//! Driven scenes: parameters prescribed for each step, and forces on SE(3).
 //!
 //! ```text
 //! cargo run --release --example driven
 //! cargo run --release --example driven -- --out driven
 //! ```
 //!
-//! 1. A satellite in a circular orbit. The direction of its planet goes round, and the gravity gradient makes the
-//!    satellite librate. In the orbit's frame nothing depends on time, so the Jacobi integral is kept.
+//! 1. A satellite in a circular orbit. The direction of its planet rotates, and the gravity gradient makes the
+//!    satellite librate. In the orbit's frame nothing depends on time, so the Jacobi integral is conserved.
 //! 2. A thruster beside the axis of a body, in a fluid. It burns for a while, and the body draws a spiral and stops.
-//! 3. Coils of a satellite, switched by the B-dot law: each is on in the direction against the change of the field that
-//!    it sees. The satellite stops tumbling, down to a turn with the field.
+//! 3. Coils of a satellite, switched by the B-dot law: each generates a field against the change of the external field
+//!    in the body frame. The satellite stops tumbling, down to a rotation with the field.
 
 use std::process::ExitCode;
 
@@ -90,7 +90,7 @@ fn orbit(output: &mut Output) -> Result<String, Failure> {
         let kinetic = 0.5 * stepper.velocity(&state).dot(&state.momentum());
         let jacobi = kinetic + stepper.scene().potential(&((), seen)) - RATE * state.spatial_momentum().z;
         let turns = RATE * t / core::f64::consts::TAU;
-        // The body's first axis against the vertical, in the plane of the orbit.
+        // The angle of the body's first axis from the vertical, in the plane of the orbit.
         pitch.push((turns, seen.y.atan2(-seen.x).to_degrees()));
         integral.push((turns, jacobi));
         stepper.step_with(&mut state, &((), planet(t + 0.5 * h)))?;
@@ -123,7 +123,7 @@ fn orbit(output: &mut Output) -> Result<String, Failure> {
 
 fn thruster(output: &mut Output) -> Result<String, Failure> {
     let (h, steps, burns) = (0.02, 2_000_u32, 1_000_u32);
-    // Two kilograms with J_z = 2 kg m², in a fluid that damps the turn and the flight.
+    // A body of two kilograms with J_z = 2 kg m², in a fluid that damps rotation and translation.
     let flyer = Flyer { J: Matrix4::from_diagonal(&Vector4::new(0.75, 1.25, 1.0, 2.0)) };
     let drag = FluidDrag { C: Matrix4::from_diagonal(&Vector4::new(0.1, 0.1, 0.1, 0.25)) };
     let nozzle = Thruster { at: Point3::new(-1.0, -0.05, 0.0), thrust: Vector4::zeros() };
@@ -159,7 +159,7 @@ fn thruster(output: &mut Output) -> Result<String, Failure> {
 fn torquers(output: &mut Output) -> Result<String, Failure> {
     let (h, steps, strength) = (0.5, 8_000_u32, 0.4);
     let J_d = NonstandardInertia::from_principal_moments(Vector3::new(0.05, 0.06, 0.08))?;
-    // A dipole field over the poles goes round twice an orbit.
+    // A dipole field over the poles rotates twice an orbit.
     let field = |t: f64| {
         let angle = 0.002 * t;
         Vector3::new(angle.sin(), 0.2, angle.cos()) * 3e-5

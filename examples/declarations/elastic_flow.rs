@@ -6,10 +6,10 @@ use nalgebra::Matrix2;
 
 /// The area-preserving deformations of the plane with a left-invariant kinetic energy and an elastic potential.
 ///
-/// The kinetic energy is `½ tr(ξ M ξᵀ)` in the body velocity `ξ = g⁻¹ġ`, so that without the potential the motion is
-/// a geodesic flow. The metric of space is advected: seen from the body it is the Cauchy–Green tensor `C = gᵀg`, and
-/// the potential is `½ k tr C`. On SL(2) `F − ½ tr(F) I` is half of `F − F⁻¹`, which changes its sign when the step
-/// is reversed; `F − I` doesn't, and would make a scheme of first order.
+/// The kinetic energy is `½ tr(ξ M ξᵀ)` in the body velocity `ξ = g⁻¹ġ`, so that without the potential the motion is a
+/// geodesic flow. The metric of space is advected: in the body frame it is the Cauchy–Green tensor `C = gᵀg`, and the
+/// potential is `½ k tr C`. On SL(2) `F − ½ tr(F) I` is half of `F − F⁻¹`, which changes its sign if the step is
+/// reversed; `F − I` doesn't, and would lead to a scheme of first order.
 #[lagrangian(
     group = SL2,
     advected(C = metric),

@@ -1,10 +1,10 @@
-//! A body that flies by a thruster, in a fluid: its kinetic part, and two forces on SE(3).
+//! A body with a thruster in a fluid: its kinetic part, and two forces on SE(3).
 
 use liestep::groups::SE3;
 use liestep::{force, lagrangian};
 use nalgebra::{Matrix4, Point3, Vector4};
 
-/// A free rigid body with its place: `F` is the change of attitude and place in a step.
+/// A free rigid body with its position: `F` is the change of attitude and position in a step.
 #[lagrangian(group = SE3, l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h))]
 #[derive(Clone, Copy, Debug)]
 pub struct Flyer {
@@ -12,9 +12,9 @@ pub struct Flyer {
     pub J: Matrix4<f64>,
 }
 
-/// A follower force: its direction is fixed in the body, and it is given anew for each step.
+/// A follower force: its direction is fixed in the body, and its value is prescribed for each step.
 ///
-/// `hat(eta)` moves the points of the body, so that `hat(eta) * at` is how far the nozzle goes.
+/// `hat(eta)` is the displacement of the body's points, so `hat(eta) * at` is that of the nozzle.
 #[force(
     group = SE3,
     given(f = thrust),
@@ -28,8 +28,8 @@ pub struct Thruster {
     pub thrust: Vector4<f64>,
 }
 
-/// Drag against the velocities of the body's points, as of a density of dampers: the dissipation is
-/// `½ tr(ξ̂ C ξ̂ᵀ)`, built like a kinetic energy.
+/// Drag against the velocities of the body's points, as of a density of dampers: the dissipation is `½ tr(ξ̂ C ξ̂ᵀ)`,
+/// of the form of a kinetic energy.
 ///
 /// The velocity of a step is `(F − I)/h` in the frame at its beginning and `(I − F⁻¹)/h` in that at its end.
 #[force(

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 
 /// The heavy top to the fourth order in one solve: the action of a path that satisfies the equations of motion to first
 /// order, with the correction of the trapezoidal rule by the torque `f` and the change of the potential. In the small
-/// terms `x = 2 sin(θ/2) n` stands for the rotation vector: to their order it is the same.
+/// terms `x = 2 sin(θ/2) n` replaces the rotation vector, with which it agrees to their order.
 #[lagrangian(
     group = SO3,
     advected(w = up),

@@ -11,7 +11,7 @@ pub struct FreeBody {
 }
 
 impl FreeBody {
-    /// From the principal moments of the ordinary inertia.
+    /// The body with these principal moments of the ordinary inertia.
     pub fn with_moments(moments: [f64; 3]) -> Self {
         Self { J_d: NonstandardInertia::from_principal_moments(moments.into()).unwrap() }
     }

@@ -4,8 +4,7 @@ use liestep::groups::R1;
 use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::Vector3;
 
-/// A spacecraft with three reaction wheels: what the wheels have beside the body's own motion is their turn about their
-/// axes.
+/// A spacecraft with three reaction wheels: the angles of the wheels are relative to the body, about the wheels' axes.
 #[lagrangian(
     group(F = SO3, t_1 = R1, t_2 = R1, t_3 = R1),
     l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
@@ -20,8 +19,8 @@ pub struct Gyrostat {
     pub J_w: f64,
     /// The first wheel's axis, a unit vector in the body.
     pub a_1: Vector3<f64>,
-    /// That of the second.
+    /// The second wheel's axis, a unit vector in the body.
     pub a_2: Vector3<f64>,
-    /// That of the third.
+    /// The third wheel's axis, a unit vector in the body.
     pub a_3: Vector3<f64>,
 }

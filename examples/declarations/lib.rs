@@ -1,6 +1,6 @@
-//! Declared systems, one to a file: what the derivation is shown on, and what the tests integrate.
+//! Declared systems, one per file, for examples of the derivation and for the tests.
 
-// A library of this repository alone.
+// This library is for this repository alone.
 #![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc)]
 #![allow(clippy::must_use_candidate, clippy::return_self_not_must_use)]
 
@@ -66,8 +66,8 @@ pub use torquer::Torquer;
 pub use two_bodies::TwoBodies;
 pub use underwater_body::UnderwaterBody;
 
-// The first example declares this.
+// The first example declares this top.
 pub use workbench::heavy_top::declaration::HeavyTop;
 
-// The library declares these itself.
+// The library itself declares these bodies.
 pub use liestep::effects::{FourthOrderBody, SixthOrderBody};

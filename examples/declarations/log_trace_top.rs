@@ -3,10 +3,10 @@
 use liestep::{SO3, lagrangian};
 use nalgebra::Vector3;
 
-/// The discrete Lagrange top of Bobenko and Suris (1999), with the spin about the axis left to `p₃`.
+/// The discrete Lagrange top of Bobenko and Suris (1999); the spin about the axis enters only through `p₃`.
 ///
-/// Its potential stands at one end of the step, so that it isn't self-adjoint and its momentum is of first order;
-/// `p + (h/2) m g w × ρ` is of second.
+/// Its potential is evaluated at one end of the step, so it isn't self-adjoint and its momentum is of first order;
+/// `p + (h/2) m g w × ρ` is of second order.
 #[lagrangian(
     group = SO3,
     advected(w = up),

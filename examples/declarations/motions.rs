@@ -1,4 +1,4 @@
-//! Motions with exact states: `tests/data/README.md` says how each was validated.
+//! Motions with exact states: `tests/data/README.md` describes the validation of each.
 
 use std::array::from_fn;
 
@@ -10,21 +10,21 @@ use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 use workbench::heavy_top::declaration::HeavyTop;
 
-/// A top or a free body, its start, and where it is later.
+/// A top or a free body, its initial state, and its exact later states.
 #[derive(Clone)]
 pub struct Motion {
     pub name: &'static str,
     pub top: HeavyTop,
     pub attitude: SO3,
-    /// Body frame, rad/s.
+    /// The body velocity in the body frame, rad/s.
     pub velocity: Vector3<f64>,
     states: Vec<(f64, End)>,
 }
 
-/// Attitude (body to space) and body velocity.
+/// The attitude (body to space) and the body velocity.
 pub type End = (Matrix3<f64>, Vector3<f64>);
 
-/// The files of `tests/data`, under the names that tables have room for.
+/// The files of `tests/data`, under short names for tables.
 macro_rules! files {
     ($($name:literal: $file:literal),+ $(,)?) => {
         const FILES: &[(&str, &str)] = &[$(($name, include_str!(concat!("../../tests/data/", $file, ".json")))),+];
@@ -50,7 +50,7 @@ files! {
     "closed loop": "closed_loop",
 }
 
-/// A file as it stands, by its name above.
+/// The content of a file, by its name above.
 pub fn read(name: &str) -> Value {
     serde_json::from_str(file(name).1).expect(name)
 }
@@ -59,12 +59,12 @@ fn file(name: &str) -> (&'static str, &'static str) {
     *FILES.iter().find(|file| file.0 == name).expect(name)
 }
 
-/// A number that was written as a text, to have all its digits.
+/// A number that is stored as a text, to have all its digits.
 pub fn number(value: &Value) -> f64 {
     value.as_str().unwrap().parse().unwrap()
 }
 
-/// A time, s; the round ones that are asked for are numbers in some files and strings in others.
+/// A time, s; round times are numbers in some files and strings in others.
 fn time(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| number(value))
 }
@@ -73,16 +73,16 @@ pub fn vector(value: &Value) -> Vector3<f64> {
     Vector3::from_fn(|i, _| number(&value[i]))
 }
 
-/// A matrix given by rows, or as nine numbers row by row.
+/// A matrix from its rows, or from nine numbers row by row.
 pub fn matrix(value: &Value) -> Matrix3<f64> {
     Matrix3::from_fn(|i, j| number(if value[0].is_array() { &value[i][j] } else { &value[3 * i + j] }))
 }
 
 impl Motion {
-    /// By the name above.
+    /// The motion of the file with the name above.
     pub fn read(name: &str) -> Self {
         let (name, data) = (file(name).0, read(name));
-        // The thesis' cases give their initial values apart, in angles too; elsewhere these are the state at zero.
+        // The thesis' cases have separate initial values, in angles too; in other files these are the state at zero.
         let apart = !data["initial"].is_null();
         let (m, g) = if apart { (number(&data["m"]), number(&data["g"])) } else { (number(&data["mg"]), 1.0) };
         let J_d = DiagonalNonstandardInertia::from_diagonal(vector(&data["J_d"])).unwrap();
@@ -117,18 +117,18 @@ impl Motion {
         ["looping A", "cuspidal A", "third A", "looping B", "cuspidal B", "third B"].map(Self::read)
     }
 
-    /// Attitude and body velocity at the time `t`, which must be one of the file's.
+    /// The attitude and body velocity at the time `t`, which must be one of the file's.
     pub fn at(&self, t: f64) -> End {
         self.states.iter().find(|(time, _)| (time - t).abs() < 1e-9).expect("a time of the file").1
     }
 
-    /// All of its states, with their times in s.
+    /// All states of the file, with their times in s.
     pub fn states(&self) -> &[(f64, End)] {
         &self.states
     }
 }
 
-/// A link, with its inertia about its centre of mass.
+/// A link with this inertia about its centre of mass.
 pub fn link(central: &Matrix3<f64>, m: f64, c: Vector3<f64>, rho: Vector3<f64>) -> Link {
     Link { J_d: NonstandardInertia::new(central + c * c.transpose() * m).unwrap(), m, c, rho }
 }
@@ -146,7 +146,7 @@ pub fn chain3() -> Chain<3> {
     Chain { links, g: data["g"].as_f64().unwrap(), up: Vector3::z() }
 }
 
-/// The attitudes and body velocities from which the reference of [`chain3`] starts.
+/// The initial attitudes and body velocities of the reference of [`chain3`].
 pub fn start3() -> ([SO3; 3], Bodies<Vector3<f64>, 3>) {
     let start = &read("several bodies")["chain3"]["states"][0]["bodies"];
     let attitudes = from_fn(|k| SO3::try_from(matrix(&start[k]["R"])).unwrap());

@@ -1,4 +1,4 @@
-//! A pace, and the same body without.
+//! A body with a pace, and the same body without.
 
 use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::Vector3;
@@ -42,7 +42,7 @@ impl Needle {
         Self { J_d, a: Vector3::new(0.0, 0.6, 0.8), rho: Vector3::z(), delta, energy: 0.0 }
     }
 
-    /// In plain Rust.
+    /// The gap and the pace in plain Rust.
     pub fn gap(&self, w: &Vector3<f64>) -> f64 {
         ((w - self.rho).norm_squared() + self.delta * self.delta).sqrt()
     }

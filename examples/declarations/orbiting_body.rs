@@ -6,8 +6,8 @@ use nalgebra::{Matrix4, Point3};
 
 /// A rigid body in the 1/r field of a centre fixed in space, attracted at two of its points.
 ///
-/// Orbit and attitude act on each other. Points are written in homogeneous coordinates, `(x, y, z, 1)`; the centre is
-/// a point of space that the body sees move. As `F` keeps their distances, `‖F⁻¹c − p‖ = ‖c − F p‖`.
+/// Orbit and attitude are coupled. Points are written in homogeneous coordinates, `(x, y, z, 1)`; the centre is a point
+/// of space, which is advected. As `F` preserves their distances, `‖F⁻¹c − p‖ = ‖c − F p‖`.
 #[lagrangian(
     group = SE3,
     advected(c = centre),

@@ -5,7 +5,7 @@ use liestep::lagrangian;
 use nalgebra::Vector4;
 
 /// A fast particle in a uniform field, `l(v, w) = −m c² √(1 − |v|²/c²) + q w₄`, where `w₄` is the value of an affine
-/// function of space at the particle: its momentum `m v/√(1 − |v|²/c²)` is inverted by Newton's iteration.
+/// function of space at the particle. Newton's iteration inverts the momentum `m v/√(1 − |v|²/c²)`.
 ///
 /// Without `discretise` there is no step: an ODE solver integrates [`RightHandSide`](liestep::motion::RightHandSide).
 #[lagrangian(
@@ -22,6 +22,6 @@ pub struct RelativisticParticle {
     pub c: f64,
     /// Charge, C.
     pub q: f64,
-    /// The field as an affine function of the place, `⟨field, (x, 1)⟩` in V.
+    /// The field as an affine function of the position, `⟨field, (x, 1)⟩` in V.
     pub field: Vector4<f64>,
 }

@@ -1,10 +1,10 @@
-//! Bodies that turn and are translated, and what holds neighbours in an elastic rod.
+//! Bodies with rotation and translation, and the elements of an elastic rod between neighbours.
 
 use liestep::groups::R3;
 use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::Vector3;
 
-/// A body on which nothing acts.
+/// A body without forces.
 #[lagrangian(
     group(F = SO3, d = R3),
     l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h),
@@ -36,8 +36,7 @@ pub struct FallingBody<T = f64> {
     pub up: Vector3<T>,
 }
 
-/// A spring between points of two bodies, without a length of its own, by the mean of its potentials at both ends
-/// of a step.
+/// A spring of zero length at rest between points of two bodies, by the mean of its potentials at both ends of a step.
 #[lagrangian(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
     advected(R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space), r = d_2.seen_from(d_1)),
@@ -50,12 +49,12 @@ pub struct PointSpring<T = f64> {
     pub k: T,
     /// The point of the first body, from its centre of mass, body frame, m.
     pub a: Vector3<T>,
-    /// That of the second.
+    /// The point of the second body, from its centre of mass, body frame, m.
     pub b: Vector3<T>,
 }
 
-/// An element of an elastic rod: the end `a` of one body is held at the end `b` of the next, and bent against it. Strains
-/// are the means of those at both ends of a step.
+/// An element of an elastic rod between the end `a` of one body and the end `b` of the next, which resists shift and
+/// bending. Strains are the means of those at both ends of a step.
 #[lagrangian(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
     advected(R = F_1.seen_from(space), Q = F_2.seen_from(F_1), r = d_2.seen_from(d_1)),
@@ -69,10 +68,10 @@ pub struct PointSpring<T = f64> {
 pub struct RodElement<T = f64> {
     /// Stiffness against shifts, N/m.
     pub k: T,
-    /// That against turns, N m.
+    /// Stiffness against turns, N m.
     pub c: T,
-    /// The end of the one, from its centre of mass, body frame, m.
+    /// The end of the first body, from its centre of mass, body frame, m.
     pub a: Vector3<T>,
-    /// That of the next.
+    /// The end of the next body, from its centre of mass, body frame, m.
     pub b: Vector3<T>,
 }

@@ -3,12 +3,12 @@
 use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::Vector3;
 
-/// A satellite held at its centre of mass, at a fixed place in the 1/r field of an attracting centre.
+/// A satellite with its centre of mass at a fixed position in the 1/r field of an attracting centre.
 ///
 /// It is a hub and two equal masses at the ends of a boom through the hub. The hub is heavy but small: the field acts
-/// on its centre alone, and so has no moment there. With the distance to the centre large against the boom this is
-/// the gravity gradient of textbooks; here the potential of the two masses is the full one. The orbit isn't part of
-/// it: the centre keeps its direction in space. [`OrbitingBody`](super::OrbitingBody) moves along its orbit.
+/// on its centre alone, without a moment. If the distance to the centre is large against the boom, this is the gravity
+/// gradient of textbooks; here the potential of the two masses is the full one. The orbit isn't modelled: the centre
+/// has a constant direction in space. [`OrbitingBody`](super::OrbitingBody) moves along its orbit.
 #[lagrangian(
     group = SO3,
     advected(c = centre),

@@ -1,13 +1,13 @@
-//! Several bodies that are declared together, or put at places.
+//! Several bodies that are declared together, or placed.
 //!
 //! ```text
 //! cargo run --release --example several-bodies
 //! cargo run --release --example several-bodies -- --out several-bodies
 //! ```
 //!
-//! 1. Two double pendulums whose lower rods start a nanoradian apart: they part as chaos does.
-//! 2. Two asteroids that attract each other, and turn each other by their shapes: the full two-body problem.
-//! 3. A quadrotor that carries a load on a cable to another place. Rotors push as a controller says, anew in each step.
+//! 1. Two double pendulums whose lower rods start a nanoradian apart: they separate exponentially, by chaos.
+//! 2. Two asteroids that attract each other, with torques by their shapes: the full two-body problem.
+//! 3. A quadrotor that moves a load on a cable. A controller prescribes the rotors' forces for each step.
 //!
 //! A chain of twenty rods is drawn by `hanging-chain`.
 
@@ -46,7 +46,7 @@ fn main() -> ExitCode {
     })
 }
 
-/// An error where this isn't below its bound, or isn't a number.
+/// Checks that a number is below its bound; NaN is an error, too.
 fn check(what: &str, found: f64, bound: f64) -> Result<(), Failure> {
     if found < bound { Ok(()) } else { Err(format!("{what}: {found:.1e}, at most {bound:.0e} is expected").into()) }
 }
@@ -57,7 +57,7 @@ fn line(colour: RGBColor, points: Points) -> Line {
     Line { colour, width: 2, points }
 }
 
-/// A path in a plane.
+/// A panel of paths in a plane.
 fn path<'a>(title: &'a str, [across, up]: [&'a str; 2], lines: Vec<Line>) -> Panel<'a> {
     Panel { title, across, up, vertical: Vertical::Linear, function: false, lines }
 }
@@ -105,7 +105,8 @@ fn pendulums(output: &mut Output) -> Result<String, Failure> {
         stepper.step(&mut second)?;
     }
     let apart = parting.iter().map(|point| point.1).fold(0.0, f64::max);
-    // Of second order: `(hω)²`, with rods that turn at some 10 rad/s, of the 39 J between hanging and standing.
+    // The error is of second order, `(hω)²` with rods that turn at some 10 rad/s, relative to the 39 J between hanging
+    // and standing.
     check("energy of a double pendulum, J", worst, 2e-2)?;
     let [one, other] = ways;
     let panels = [
@@ -157,7 +158,7 @@ fn asteroids(output: &mut Output) -> Result<String, Failure> {
     }
     let worst = off.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
     let momentum = state.momentum_of::<1>() + state.momentum_of::<3>();
-    // Of second order: `(hω)²` at 0.95 rad/s. The momentum isn't touched but by one rounding for each step.
+    // The error is of second order, `(hω)²` at 0.95 rad/s. The momentum changes only by one rounding per step.
     check("energy of the asteroids, relative", worst, 1e-4)?;
     check("momentum of the asteroids", momentum.amax(), 1e-12)?;
     let [one, other] = ways;
@@ -171,18 +172,18 @@ fn asteroids(output: &mut Output) -> Result<String, Failure> {
     Ok(format!("Asteroids: the energy is kept to {worst:.1e}, the momentum to {:.1e}.\n", momentum.amax()))
 }
 
-/// Where the quadrotor is wanted, m.
+/// The target of the quadrotor, m.
 const WANTED: [f64; 3] = [3.0, 0.0, 1.0];
 
-/// Torque and thrust, by the proportional and derivative terms of the geometric tracking control on SE(3) of Lee, Leok and
-/// McClamroch (2010), without those that feed forward: the thrust is along the third axis, which is turned to where it is
-/// wanted. Gains are 2 N/m, 3 N s/m, 0.8 N m and 0.16 N m s.
+/// Torque and thrust, by the proportional and derivative terms of the geometric tracking control on SE(3) of Lee, Leok
+/// and McClamroch (2010), without their feed-forward terms. The thrust is along the third axis, and the torque turns
+/// that axis to the desired direction. Gains are 2 N/m, 3 N s/m, 0.8 N m and 0.16 N m s.
 #[allow(clippy::doc_markdown)] // a name
 fn pushed(load: &SuspendedLoad, attitude: &SO3, x: Vector3<f64>, velocity: &SVector<f64, 9>) -> SVector<f64, 9> {
     let (turning, v) = (velocity.fixed_rows::<3>(0).into_owned(), velocity.fixed_rows::<3>(3).into_owned());
     let weight = (load.m + load.m_load) * load.g;
     let free = (Vector3::from(WANTED) - x) * 2.0 - v * 3.0 + load.up * weight;
-    // A fifth of the weight is always lifted: so it is neither zero nor along the first axis of space.
+    // The force carries at least a fifth of the weight, so it is neither zero nor along the first axis of space.
     let wanted = free + load.up * (0.2 * weight - free.dot(&load.up)).max(0.0);
     let third = wanted.normalize();
     let second = third.cross(&Vector3::x()).normalize();
@@ -231,8 +232,9 @@ fn load(output: &mut Output) -> Result<String, Failure> {
     let missed = (x.translation() - Vector3::from(WANTED)).norm();
     let unaccounted = (stepper.energy(&state) - energy - work).abs();
     let largest = swing.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
-    // The gains alone bring it there as `exp(-1.07 t)`, to some 1e-5 m; the load takes longer to hang still. It rests before
-    // and after, where the energy has no error of second order: a ten-millionth of the 14 J by which it is lifted is left.
+    // The gains alone lead to the target as `exp(-1.07 t)`, to some 1e-5 m; the load takes longer to settle. The system
+    // is at rest before and after, where the energy has no error of second order: the error is a ten-millionth of the
+    // lifting work of 14 J.
     check("way from the wanted place, m", missed, 1e-2)?;
     check("energy beside the rotors' work, J", unaccounted, 1e-6)?;
     let [flyer, load] = ways;

@@ -7,8 +7,8 @@ use nalgebra::Vector3;
 /// second order beyond the geodesic, by three-point Gauss quadrature.
 ///
 /// In units of the step, from its middle, the path is `g(s) = g_m exp(ξ s) exp(η(s))` with
-/// `η = (a/2)(s² − 1/4) + (b/6)(s³ − s/4)`, where `a` and `b` are the angular acceleration and its rate that the
-/// equations of motion give at the middle. Velocity and attitude are taken to the third order in `η`,
+/// `η = (a/2)(s² − 1/4) + (b/6)(s³ − s/4)`, where `a` and `b` are the angular acceleration and its rate at the middle,
+/// by the equations of motion. Velocity and attitude are expanded to the third order in `η`,
 ///
 /// ```text
 /// exp(−η) v ≈ v − η × v + η × (η × v)/2 − η × (η × (η × v))/6 = d v − c η × v + η (η·v)/2

@@ -1,10 +1,11 @@
-//! A top whose inertia depends on how it stands.
+//! A top whose inertia depends on its attitude.
 
 use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::Vector3;
 
 /// A top on a smooth horizontal plane. Its tip slides without friction, so its centre of mass moves along a vertical,
-/// with the velocity `(w·(F − I) ρ)/h`: the mass adds to the inertia where the top leans, and not where it stands upright.
+/// with the velocity `(w·(F − I) ρ)/h`: the mass adds to the inertia of a tilted top, and not to that of an upright
+/// one.
 #[lagrangian(
     group = SO3,
     advected(w = up),

@@ -3,7 +3,7 @@
 use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::Vector3;
 
-/// A body about a pivot, one of whose points is tied by a spring to a point of space.
+/// A body about a pivot, with a spring between one of its points and a point of space.
 #[lagrangian(
     group = SO3,
     advected(a = anchor),
@@ -22,8 +22,8 @@ pub struct Spring {
     pub k: f64,
     /// Length of the spring at rest, m.
     pub length: f64,
-    /// Where it is tied to the body, from the pivot, body frame, m.
+    /// The spring's end on the body, from the pivot, body frame, m.
     pub rho: Vector3<f64>,
-    /// Where it is tied to space, from the pivot, m.
+    /// The spring's end in space, from the pivot, m.
     pub anchor: Vector3<f64>,
 }

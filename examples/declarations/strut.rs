@@ -1,19 +1,19 @@
-//! A joint that the library doesn't have.
+//! A joint of the user's own.
 
 use liestep::SetupError;
 use liestep::methods::{Constraint, Place, Slope};
 use nalgebra::{Vector1, Vector3};
 
-/// A rod without mass between a point of one body and a point of the other, or what is called by another name.
+/// A massless rod between a point of one body and a point of the other, under a name of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Strut {
-    /// Its name.
+    /// The name of the joint.
     pub called: &'static str,
-    /// In the axes of the body above, m.
+    /// The point of the body above, in that body's axes, m.
     pub above: Vector3<f64>,
-    /// In the axes of the body below, m.
+    /// The point of the body below, in that body's axes, m.
     pub below: Vector3<f64>,
-    /// m.
+    /// The length of the rod, m.
     pub length: f64,
 }
 

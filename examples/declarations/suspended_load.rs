@@ -4,8 +4,9 @@ use liestep::groups::R3;
 use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::Vector3;
 
-/// A flyer, as a quadrotor, with a load on a cable that is always taut. The load is fixed to the cable and turns with it;
-/// its spin about the cable is kept where `K` is symmetric about it. Rotors push in [`step_forced`](liestep::Stepper::step_forced).
+/// A flyer, as a quadrotor, with a load on a cable that is always taut. The load is fixed to the cable and turns with
+/// it; its spin about the cable is conserved if `K` is symmetric about it. Rotors are forces of
+/// [`step_forced`](liestep::Stepper::step_forced).
 #[lagrangian(
     group(F = SO3, d = R3, C = SO3),
     advected(x = d.seen_from(space), R = C.seen_from(space)),
@@ -21,11 +22,11 @@ use nalgebra::Vector3;
 pub struct SuspendedLoad {
     /// Nonstandard inertia of the flyer about its centre of mass, kg m².
     pub J_d: NonstandardInertia,
-    /// Its mass, kg.
+    /// Mass of the flyer, kg.
     pub m: f64,
     /// Nonstandard inertia of the load about its centre of mass, kg m²; not zero about the cable.
     pub K: NonstandardInertia,
-    /// Its mass, kg.
+    /// Mass of the load, kg.
     pub m_load: f64,
     /// From the flyer's centre of mass to the load's, in the axes of the load, m.
     pub cable: Vector3<f64>,

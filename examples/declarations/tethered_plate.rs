@@ -4,9 +4,9 @@ use liestep::groups::SE2;
 use liestep::lagrangian;
 use nalgebra::{Matrix3, Point2};
 
-/// A rigid body in the plane, one of whose points is tied by an elastic tether to a point of the plane.
+/// A rigid body in the plane, with an elastic tether between one of its points and a point of the plane.
 ///
-/// Points are written in homogeneous coordinates, `(x, y, 1)`. The anchor is one of space that the body sees move.
+/// Points are written in homogeneous coordinates, `(x, y, 1)`. The anchor is a point of space, which is advected.
 #[lagrangian(
     group = SE2,
     advected(a = anchor),
@@ -25,8 +25,8 @@ pub struct TetheredPlate {
     pub k: f64,
     /// Length of the tether at rest, m.
     pub length: f64,
-    /// Where it is tied to the body, body frame.
+    /// The tether's end on the body, body frame.
     pub p: Point2<f64>,
-    /// Where it is tied to the plane.
+    /// The tether's end in the plane.
     pub anchor: Point2<f64>,
 }

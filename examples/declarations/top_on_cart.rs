@@ -4,8 +4,8 @@ use liestep::groups::R2;
 use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::Vector3;
 
-/// A top whose pivot is a cart that slides without friction in the plane: the cart's displacement couples to what the
-/// top's centre of mass moves beyond it.
+/// A top whose pivot is a cart that slides without friction in the plane: the cart's displacement is coupled to that of
+/// the top's centre of mass relative to the cart.
 #[lagrangian(
     group(F = SO3, d = R2),
     advected(R = F.seen_from(space)),
@@ -21,9 +21,10 @@ use nalgebra::Vector3;
 pub struct TopOnCart<T = f64> {
     /// Nonstandard inertia of the top about its pivot, in its frame, kg m².
     pub J_d: NonstandardInertia<T>,
-    /// First moment of the top about its pivot, its mass times the place of its centre of mass in the top's frame, kg m.
+    /// First moment of the top about its pivot, its mass times the position of its centre of mass in the top's frame,
+    /// kg m.
     pub s: Vector3<T>,
-    /// Mass of the cart and of the top, kg.
+    /// Mass of the cart and the top together, kg.
     pub M: T,
     /// Gravitational acceleration, m/s².
     pub g: T,

@@ -1,4 +1,4 @@
-//! The tops that differ by their kinetic term or order alone: one body, one weight, one constructor.
+//! Tops that differ only in their kinetic term or order, with a common constructor.
 
 use liestep::mechanics::Inertia;
 use nalgebra::Vector3;
@@ -12,7 +12,7 @@ pub trait Top: Sized {
     /// The top with these parameters.
     fn new(J: Inertia, weight: f64, rho: Vector3<f64>, up: Vector3<f64>) -> Self;
 
-    /// The same body under the same gravity.
+    /// The body of the declared top, under the same gravity.
     fn of(top: &HeavyTop) -> Self {
         Self::new(top.ordinary_inertia(), top.m * top.g, top.rho, top.up)
     }

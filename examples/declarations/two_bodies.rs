@@ -6,12 +6,12 @@ use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::{Matrix3, Vector3};
 
 /// Two rigid bodies that attract each other, as two asteroids do: the full two-body problem. Their potential is that of
-/// two points, and its correction of second order for their shapes.
+/// two points, with the second-order correction for their shapes.
 #[lagrangian(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
     advected(R = F_1.seen_from(space), Q = F_2.seen_from(F_1), r = d_2.seen_from(d_1)),
     l_d = {
-        // From the first body to the second, as the first sees it.
+        // The vector from the first body to the second, in the first body's frame.
         let U = |Q: Matrix3<T>, y: Vector3<T>| {
             let s = y.norm_squared();
             let moments = m_2 * J_1.trace() + m_1 * J_2.trace();
@@ -29,15 +29,15 @@ use nalgebra::{Matrix3, Vector3};
 pub struct TwoBodies<T = f64> {
     /// Mass of the first body, kg.
     pub m_1: T,
-    /// That of the second.
+    /// Mass of the second body, kg.
     pub m_2: T,
     /// Nonstandard inertia of the first body about its centre of mass, kg m².
     pub K_1: NonstandardInertia<T>,
-    /// That of the second.
+    /// Nonstandard inertia of the second body about its centre of mass, kg m².
     pub K_2: NonstandardInertia<T>,
     /// The inertia of the first body, kg m².
     pub J_1: Inertia<T>,
-    /// That of the second.
+    /// The inertia of the second body, kg m².
     pub J_2: Inertia<T>,
     /// Gravitational constant, m³/(kg s²).
     pub G: T,

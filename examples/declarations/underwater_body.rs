@@ -6,11 +6,11 @@ use nalgebra::{Matrix4, Point3, Vector4};
 
 /// A rigid body in an ideal fluid at rest, after Kirchhoff, with weight and buoyancy.
 ///
-/// The mass that the fluid adds depends on the direction. A displacement has different components in the frames
-/// before and after the step, and either alone would make a scheme of first order; half of each is self-adjoint.
+/// The added mass of the fluid depends on the direction. A displacement has different components in the frames before
+/// and after the step, and either alone would lead to a scheme of first order; half of each is self-adjoint.
 ///
-/// Matrices and points are homogeneous, with the fourth row and column for the place. What is advected is the height as
-/// a function of the place, `(n, c)` for `n·x + c`, an element of `V*`.
+/// Matrices and points are homogeneous, with the fourth row and column for the position. The advected parameter is the
+/// height as a function of the position, `(n, c)` for `n·x + c`, an element of `V*`.
 #[lagrangian(
     group = SE3,
     advected(w = height),
@@ -29,9 +29,9 @@ pub struct UnderwaterBody {
     pub J: Matrix4<f64>,
     /// Mass of body and added mass in the upper left block, kg; zero elsewhere.
     pub M: Matrix4<f64>,
-    /// The centre that both are about, body frame.
+    /// The centre of both tensors, body frame.
     pub origin: Point3<f64>,
-    /// Weight times its place less buoyancy times its place, N m, and below it weight less buoyancy, N.
+    /// Weight times its position minus buoyancy times its position, N m, and below it weight minus buoyancy, N.
     pub weight: Vector4<f64>,
     /// The height, in space: `(0, 0, 1, 0)`.
     pub height: Vector4<f64>,

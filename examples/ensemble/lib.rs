@@ -6,5 +6,5 @@ pub mod map;
 pub mod satellite;
 pub mod section;
 
-/// What went wrong, in words.
+/// An error as a message for the user.
 pub type Mistake = Box<dyn std::error::Error>;

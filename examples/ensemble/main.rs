@@ -1,12 +1,13 @@
-//! Three ensembles: how soon a tumbling satellite is lost, where a heavy top is chaotic, and a Poincaré section of it.
+//! Three ensembles: the loss of a tumbling satellite's attitude, a map of the chaos of a heavy top, and a Poincaré
+//! section of it.
 //!
 //! ```text
 //! cargo run --release --example ensemble
 //! cargo run --release --example ensemble -- --quick
-//! cargo run --release --example ensemble -- --shard 2/8 --out shared     of a job array: the last to end draws
+//! cargo run --release --example ensemble -- --shard 2/8 --out shared     one task of an array; the last draws
 //! ```
 //!
-//! Stopped at any moment, the next run goes on where it was. The folders `satellite`, `map` and `section` have the files; polars
+//! An interrupted run is resumed by the next one. The folders `satellite`, `map` and `section` have the files; polars
 //! and pandas read them.
 
 use std::path::PathBuf;
@@ -105,7 +106,7 @@ fn run(arguments: &Arguments) -> Result<(), Mistake> {
     Ok(())
 }
 
-/// Well above `ln(T)/T`, which a regular motion has.
+/// A limit well above `ln(T)/T`, the exponent of a regular motion.
 const CHAOTIC: f64 = 0.4;
 
 fn made<M: Integrator>(ensemble: &Ensemble<M>, arguments: &Arguments, name: &str) -> Result<(Store, Report), Mistake> {
@@ -168,7 +169,7 @@ fn of_section_points(crossings: &[section::Orbit]) -> PlotResult<String> {
         )?;
         let (width, height) = body.dim_in_pixel();
         let margin = f64::from(px(16));
-        #[allow(clippy::cast_possible_truncation)] // in the picture
+        #[allow(clippy::cast_possible_truncation)] // inside of the picture
         let place = |part: f64, room: u32| (margin + part * (f64::from(room) - 2.0 * margin)) as i32;
         for (orbit, colour) in crossings.iter().zip(COLOURS.iter().cycle()) {
             for [nutation, across] in &orbit.points {
@@ -181,7 +182,7 @@ fn of_section_points(crossings: &[section::Orbit]) -> PlotResult<String> {
     })
 }
 
-/// A square for each point of the grid, the darker the larger its value; grey where there is none.
+/// A square for each point of the grid, the darker the larger its value; grey if there is no value.
 fn squares(area: &Area<'_>, grid: Grid, value: impl Fn(usize) -> Option<f64>) -> PlotResult {
     let (width, height) = area.dim_in_pixel();
     let margin = px(16);
@@ -199,7 +200,7 @@ fn squares(area: &Area<'_>, grid: Grid, value: impl Fn(usize) -> Option<f64>) ->
     Ok(())
 }
 
-/// From white to the blue of the figures.
+/// A colour between white and the blue of the figures.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // between two bytes
 fn shade(value: f64) -> RGBColor {
     let mixed = |end: u8| (255.0 + (f64::from(end) - 255.0) * value).round() as u8;

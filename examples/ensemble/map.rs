@@ -1,10 +1,10 @@
-//! Where an asymmetric heavy top is chaotic: exponents of Lyapunov over a grid of tilts and spins.
+//! A map of the chaos of an asymmetric heavy top: Lyapunov exponents over a grid of tilts and spins.
 //!
-//! Each point of the grid is a pair of members, a hair's breadth apart at the start. What is drawn is the exponent over
-//! a finite time, `ln(d(T)/d(0))/T`: of a regular motion it falls with `T` like `ln T/T`, of a chaotic one it stays.
+//! Each point of the grid is a pair of members with almost the same initial state. The map shows the exponent over a
+//! finite time, `ln(d(T)/d(0))/T`: for a regular motion it falls with `T` like `ln T/T`, for a chaotic one it stays.
 //!
-//! All exponents of one motion are given by `Linearisation::lyapunov_exponents`. Its tangent maps are of one motion alone,
-//! whereas pairs are members like any, in lanes; and the map shows the largest exponent only.
+//! `Linearisation::lyapunov_exponents` computes all exponents of one motion. Its tangent maps belong to single motions,
+//! whereas pairs are ordinary members, in lanes; and the map shows only the largest exponent.
 
 use liestep::effects::{Gravity, PrincipalBody};
 use liestep::mechanics::{DiagonalNonstandardInertia, Sum};
@@ -16,7 +16,7 @@ use crate::Mistake;
 
 const STEP: f64 = 0.01; // s
 const STEPS: u64 = 2_000;
-/// Of the tilts of a pair, rad: `exp(λT)` of it is still small for the largest exponents here.
+/// The initial distance of the tilts of a pair, rad: `exp(λT)` of it is still small for the largest exponents here.
 const APART: f64 = 1e-9;
 
 type Top = Stepper<Sum<PrincipalBody, Gravity>>;
@@ -24,9 +24,9 @@ type Top = Stepper<Sum<PrincipalBody, Gravity>>;
 /// A grid of tilts (0.1 to 3 rad) across and spins (0 to 8 rad/s) upwards.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid {
-    /// Points across.
+    /// The number of points across.
     pub tilts: u64,
-    /// Points upwards.
+    /// The number of points upwards.
     pub spins: u64,
 }
 
@@ -39,7 +39,7 @@ impl Grid {
         (0.1 + 2.9 * across as f64 / (self.tilts - 1) as f64, 8.0 * up as f64 / (self.spins - 1) as f64)
     }
 
-    /// Two members for each point.
+    /// The ensemble with two members per point.
     #[must_use]
     pub fn ensemble(self) -> Ensemble<Top> {
         let make = move |member: &Member<'_>| {
@@ -58,11 +58,11 @@ impl Grid {
             .keep(["w1", "w2", "w3"], |run| run.state.advected().1.into())
     }
 
-    /// The exponent of each point, 1/s, where both of its tops came to their ends.
+    /// The exponent of each point, 1/s, if neither of its tops failed.
     ///
     /// # Errors
     ///
-    /// Where a file can't be read.
+    /// A file that can't be read.
     #[allow(clippy::cast_precision_loss)] // steps
     pub fn exponents(&self, ensemble: &Ensemble<Top>, store: &Store) -> Result<Vec<Option<f64>>, Mistake> {
         let ends = usize::try_from(2 * self.tilts * self.spins)?;

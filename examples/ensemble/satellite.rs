@@ -1,5 +1,5 @@
-//! A satellite that tumbles about its middle axis, of which moments and rates are known to a part in a hundred: how long
-//! does one know where it points?
+//! A satellite that tumbles about its middle axis, with moments and rates known to one per cent: the time until its
+//! attitude is unknown.
 
 use liestep::effects::RigidBody;
 use liestep::motion::Motion;
@@ -26,12 +26,12 @@ fn satellite(
     Ok((stepper, state))
 }
 
-/// Where the first axis points.
+/// The direction of the first axis in space.
 fn pointing(motion: &Motion<SO3, ()>) -> [f64; 3] {
     (motion.attitude().as_matrix() * Vector3::x()).into()
 }
 
-/// So many of them.
+/// The ensemble of this number of satellites.
 #[must_use]
 pub fn ensemble(members: u64) -> Ensemble<Satellite> {
     let make = |member: &liestep_ensemble::Member<'_>| {
@@ -47,12 +47,12 @@ pub fn ensemble(members: u64) -> Ensemble<Satellite> {
         .reduce("energy", Reduction::Moments, |run| run.stepper.energy(run.state))
 }
 
-/// At each kept time, s, the angles from where the nominal satellite points, degrees: what a tenth, a half and nine
-/// tenths of the members are below.
+/// The angles from the nominal satellite's direction at each recorded time, s, in degrees: the deciles 0.1, 0.5 and 0.9
+/// of the members.
 ///
 /// # Errors
 ///
-/// Where the nominal satellite can't be stepped, or a file can't be read.
+/// A nominal satellite that can't be stepped, or a file that can't be read.
 pub fn spread(ensemble: &Ensemble<Satellite>, store: &Store) -> Result<Vec<(f64, [f64; 3])>, Mistake> {
     let (stepper, mut nominal) = satellite([Vector3::repeat(1.0); 2])?;
     let mut angles: Vec<Vec<f64>> = Vec::new();

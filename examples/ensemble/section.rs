@@ -1,9 +1,9 @@
-//! A Poincaré section of an asymmetric heavy top, of motions with one energy and one momentum about the vertical.
+//! A Poincaré section of an asymmetric heavy top, for motions with one energy and one momentum about the vertical.
 //!
-//! By that momentum the top is a system of two degrees of freedom, and its energy leaves a surface of three dimensions.
-//! Where the second body axis rises through the horizontal plane, the nutation, the angle of the vertical from the
-//! third axis towards the first, and the momentum `p_2` along with it are two coordinates on it: regular motions draw
-//! curves there, chaotic ones fill areas.
+//! By that momentum the top is a system of two degrees of freedom, and its energy surface has three dimensions. The
+//! section is the passage of the second body axis upwards through the horizontal plane. Its coordinates are the
+//! nutation, which is the angle of the vertical from the third axis towards the first, and the momentum `p_2`: regular
+//! motions draw curves there, chaotic ones fill areas.
 
 use liestep::effects::{Gravity, PrincipalBody};
 use liestep::mechanics::{DiagonalNonstandardInertia, Sum};
@@ -17,11 +17,11 @@ use crate::Mistake;
 
 const STEP: f64 = 0.01; // s
 const MOMENTS: Vector3<f64> = Vector3::new(2.0, 3.0, 4.0); // kg m²
-const WEIGHT: f64 = 9.81; // N, at:
+const WEIGHT: f64 = 9.81; // N, at the centre of mass:
 const CENTRE: Vector3<f64> = Vector3::new(0.2, 0.0, 0.9); // m
 const ENERGY: f64 = 13.0; // J
 const VERTICAL: f64 = 3.0; // kg m²/s
-/// Of `p_2`, kg m²/s: there is no more at this energy.
+/// The largest possible `p_2` at this energy, kg m²/s.
 pub const LARGEST: f64 = 12.5;
 
 type Top = Stepper<Sum<PrincipalBody, Gravity>>;
@@ -42,7 +42,7 @@ pub fn ensemble(members: u64, steps: u64) -> Ensemble<Top> {
         .section(section)
 }
 
-/// On the section, somewhere.
+/// A top at a random point of the section.
 fn top(member: &Member<'_>) -> Result<(Top, <Top as liestep::motion::Integrator>::State), Failure> {
     let J_d = DiagonalNonstandardInertia::from_principal_moments(MOMENTS)?;
     let gravity = Gravity { m: 1.0, g: WEIGHT, rho: CENTRE, up: Vector3::z() };
@@ -59,14 +59,15 @@ fn top(member: &Member<'_>) -> Result<(Top, <Top as liestep::motion::Integrator>
     Err(Failure::Other("no motion of this energy was drawn".to_owned()))
 }
 
-/// The momentum with which a motion of the energy rises through the section here, if there is one.
+/// The momentum of a motion with the energy that passes upwards through the section at this point, if there is one.
 fn momentum(nutation: f64, across: f64) -> Option<Vector3<f64>> {
     let (sine, cosine) = nutation.sin_cos();
     let (w, u) = (Vector3::new(sine, 0.0, cosine), Vector3::new(cosine, 0.0, -sine));
     let mobility = MOMENTS.map(f64::recip);
     let kinetic = |a: &Vector3<f64>, b: &Vector3<f64>| a.dot(&b.component_mul(&mobility));
     let left = ENERGY - WEIGHT * CENTRE.dot(&w) - 0.5 * across * across / MOMENTS.y;
-    // p = c w + a u + p_2 E_2, of which ½ p·J⁻¹p is known: A a² + 2B a + C = 0. The section is passed with A a + B.
+    // In p = c w + a u + p_2 E_2 the value of ½ p·J⁻¹p is known: A a² + 2B a + C = 0. The rate through the section is A
+    // a + B.
     let (quadratic, half) = (kinetic(&u, &u), VERTICAL * kinetic(&u, &w));
     let square = half * half - quadratic * (VERTICAL * VERTICAL * kinetic(&w, &w) - 2.0 * left);
     (square > 0.0).then(|| w * VERTICAL + u * ((square.sqrt() - half) / quadratic) + Vector3::y() * across)
@@ -75,24 +76,24 @@ fn momentum(nutation: f64, across: f64) -> Option<Vector3<f64>> {
 /// A motion by its crossings.
 #[derive(Clone, Debug)]
 pub struct Orbit {
-    /// By how much its energy is off at the end, J.
+    /// The energy error at the end, J.
     pub off: f64,
     /// Nutation (rad) and `p_2` (kg m²/s) of each crossing.
     pub points: Vec<[f64; 2]>,
 }
 
-/// Of each member what is drawn.
+/// The crossings and the energy error of each member.
 ///
 /// # Errors
 ///
-/// Where a file can't be read.
+/// A file that can't be read.
 pub fn crossings(ensemble: &Ensemble<Top>, store: &Store) -> Result<Vec<Orbit>, Mistake> {
     let mut found = Vec::new();
     for shard in store.shards(ensemble.fingerprint())? {
         let rows = shard.map_err(|fault| fault.to_string())?.rows;
         let first = found.len();
         found.extend(rows.columns[0].iter().map(|energy| Orbit { off: energy - ENERGY, points: Vec::new() }));
-        // A row for each member.
+        // Each member has one row.
         for (place, row) in rows.crossings[0].row.iter().enumerate() {
             let [nutation, across] = [1, 2].map(|column| rows.crossings[0].columns[column][place]);
             found[first + row].points.push([nutation, across]);

@@ -1,4 +1,4 @@
-//! A chain of rods on ball joints that is let go: a picture of it, and what a step takes.
+//! A falling chain of rods on ball joints: a picture of it, and the time of a step.
 //!
 //! ```text
 //! cargo run --release --example hanging-chain -- examples/figures/hanging-chain.svg
@@ -6,9 +6,9 @@
 //! python examples/hanging-chain/with_mujoco.py           the same chains in MuJoCo, beside these
 //! ```
 //!
-//! Rods of one metre and one kilogram, from horizontal. The picture shows them every tenth of a second, and the way of the
-//! end. Times are the least of many runs of a thousand steps, as what a step takes depends on how the chain swings by then;
-//! `times 20` has those of one length alone.
+//! The rods of one metre and one kilogram start horizontally. The picture displays them every tenth of a second, and
+//! the path of the end. Times are the least of many runs of a thousand steps, as the time of a step depends on the
+//! state of the swing; `times 20` times a chain of that length alone.
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -21,13 +21,13 @@ use nalgebra::{Matrix3, Vector3};
 
 type Failure = Box<dyn Error>;
 
-/// s.
+/// The step, s.
 const STEP: f64 = 0.002;
 const LINKS: usize = 20;
-/// From one picture of the chain to the next, in steps, and how many there are.
+/// The steps between two pictures of the chain, and the number of pictures.
 const APART: u64 = 50;
 const PICTURES: u64 = 26;
-/// Pixels for a metre, and where the pivot is.
+/// Pixels per metre, and the position of the pivot in the picture.
 const SCALE: f64 = 14.0;
 const PIVOT: [f64; 2] = [300.0, 40.0];
 const PICTURE: [u32; 2] = [600, 360];
@@ -41,7 +41,7 @@ fn rods<const N: usize>() -> Result<Chain<N>, Failure> {
     Ok(Chain { links: [link; N], g: 9.81, up: e })
 }
 
-/// The picture of one chain every few steps, and how far the energy was off.
+/// The picture of one chain every few steps, and the largest energy error.
 fn picture() -> Result<(String, f64), Failure> {
     let chain = rods::<LINKS>()?;
     let stepper = chain.stepper(STEP)?;
@@ -71,14 +71,14 @@ fn picture() -> Result<(String, f64), Failure> {
                 let [x, y] = place(joint);
                 write!(points, " {x:.1} {y:.1}")?;
             }
-            // From light to dark as time goes on.
+            // Later pictures are darker.
             let shade = 220 - step / APART * 170 / (PICTURES - 1);
             writeln!(svg, "<path d=\"M{points}\" stroke=\"rgb({shade},{shade},235)\" stroke-width=\"1.6\"/>")?;
         }
     }
     writeln!(svg, "<path d=\"M{}\" stroke=\"#d9730d\" stroke-width=\"1\"/>", way.trim_start())?;
     writeln!(svg, "<circle cx=\"{}\" cy=\"{}\" r=\"3\" fill=\"#333\"/>\n</svg>", PIVOT[0], PIVOT[1])?;
-    // What the fall turns over: the weight of all, from the height of the pivot to hanging down.
+    // The energy of the fall: the weight of all links, from the height of the pivot to hanging down.
     let (mut fall, mut length) = (0.0, 0.0);
     for link in &chain.links {
         fall += chain.g * link.m * (length - link.c.z);
@@ -87,11 +87,11 @@ fn picture() -> Result<(String, f64), Failure> {
     Ok((svg, off / fall))
 }
 
-/// Steps of a run that is timed, and how often it is.
+/// The steps of a timed run, and the number of runs.
 const TIMED: u64 = 1000;
 const RUNS: usize = 40;
 
-/// Prints what a step of this chain takes, unless another length is asked for.
+/// Prints the time of a step of this chain, unless another length is requested.
 fn time<const N: usize>(h: f64, asked: Option<usize>) -> Result<(), Failure> {
     if asked.is_some_and(|links| links != N) {
         return Ok(());

@@ -1,14 +1,14 @@
-//! Motions of a free body that are known in closed form.
+//! Motions of a free body in closed form.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use workbench::heavy_top::precession::complete_integral;
 
-/// The time of two flips, `4 K(k)/λ`, for moments `J_1 < J_2 < J_3` and a body velocity.
+/// The duration of two flips, `4 K(k)/λ`, for moments `J_1 < J_2 < J_3` and a body velocity.
 ///
 /// The middle rate is a Jacobi elliptic function of the modulus `k` in `λ t`, [Landau and Lifshitz, Mechanics, § 37].
 pub(crate) fn flip_period(moments: &Vector3<f64>, velocity: &Vector3<f64>) -> f64 {
     let [a, b, c] = [moments.x, moments.y, moments.z];
-    // p² − 2E J_1 and 2E J_3 − p², both positive, without subtracting large numbers.
+    // p² − 2E J_1 and 2E J_3 − p², both positive, without a difference of large numbers.
     let above = velocity.y.powi(2) * b * (b - a) + velocity.z.powi(2) * c * (c - a);
     let below = velocity.x.powi(2) * a * (c - a) + velocity.y.powi(2) * b * (c - b);
     // p² − 2E J_2 has either sign.
@@ -22,8 +22,8 @@ pub(crate) fn flip_period(moments: &Vector3<f64>, velocity: &Vector3<f64>) -> f6
     4.0 * complete_integral(complement.sqrt()) / rate
 }
 
-/// The velocity on the separatrix, from one turn about the middle axis to the opposite one in infinite time:
-/// `Ω_2 = Ω̄ tanh λt`, with `Ω_1` and `Ω_3` in proportion to `1/cosh λt`, for moments `J_1 < J_2 < J_3`.
+/// The velocity on the separatrix, from a rotation about the middle axis to the opposite one in infinite time:
+/// `Ω_2 = Ω̄ tanh λt`, with `Ω_1` and `Ω_3` proportional to `1/cosh λt`, for moments `J_1 < J_2 < J_3`.
 ///
 /// `λ² = Ω̄² (J_2 − J_1)(J_3 − J_2)/(J_1 J_3)`; `Ω̄` is the rate about the middle axis at either end, rad/s.
 pub(crate) fn on_separatrix(moments: &Vector3<f64>, rate: f64, t: f64) -> Vector3<f64> {

@@ -1,7 +1,7 @@
-//! How physics engines spin a body: body rates first, by one of three updates, then the quaternion with the new rates.
+//! The updates of physics engines: body rates first, by one of three formulas, then the quaternion with the new rates.
 //!
-//! All work on `J Ω' = JΩ × Ω` in the body frame. The quaternion turns by the exact rotation through `hΩ` and is
-//! normalised, so that what differs between them is the gyroscopic term alone.
+//! All integrate `J Ω' = JΩ × Ω` in the body frame. The quaternion turns by the exact rotation through `hΩ` and is
+//! normalised, so they differ only in the gyroscopic term.
 
 use liestep::effects::PrincipalBody;
 use liestep::mechanics::{Effect as _, Term as _};
@@ -16,24 +16,24 @@ pub(crate) struct Moments {
 }
 
 impl Moments {
-    /// The same body as the declared one.
+    /// The moments of the declared body.
     pub(crate) fn of(body: &PrincipalBody) -> Self {
         let moments = body.inertia(&body.advected()).diagonal();
         Self { moments, inverses: moments.map(f64::recip) }
     }
 
-    /// `JΩ`
+    /// The momentum `JΩ`.
     pub(crate) fn momentum(&self, rates: &Vector3<f64>) -> Vector3<f64> {
         self.moments.component_mul(rates)
     }
 
-    /// `J⁻¹Π`
+    /// The rates `J⁻¹Π`.
     pub(crate) fn rates(&self, momentum: &Vector3<f64>) -> Vector3<f64> {
         self.inverses.component_mul(momentum)
     }
 }
 
-/// `Ω + h J⁻¹(JΩ × Ω)`: the torque of the old rates.
+/// The explicit update `Ω + h J⁻¹(JΩ × Ω)`, with the torque of the old rates.
 pub(crate) fn explicit(body: &Moments, rates: &Vector3<f64>, h: f64) -> Vector3<f64> {
     rates + body.rates(&body.momentum(rates).cross(rates)) * h
 }
@@ -44,17 +44,18 @@ pub(crate) fn implicit(body: &Moments, rates: &Vector3<f64>, h: f64) -> Vector3<
     let j = Matrix3::from_diagonal(&body.moments);
     let jacobian = j + (rates.cross_matrix() * j - momentum.cross_matrix()) * h;
     let residual = rates.cross(&momentum) * h;
-    // Symmetric part J, which is positive definite, at the rates of a sane step; otherwise the rates stay.
+    // The symmetric part of the Jacobian is J, which is positive definite, at the rates of a reasonable step; if the
+    // Jacobian is singular, the rates stay.
     jacobian.try_inverse().map_or(*rates, |inverse| rates - inverse * residual)
 }
 
-/// The explicit update, with the momentum brought back to its length: energy may still drift, but not without bound.
+/// The explicit update, with the momentum rescaled to its length: energy may still drift, but is bounded.
 pub(crate) fn rescaled(body: &Moments, rates: &Vector3<f64>, h: f64) -> Vector3<f64> {
     let next = explicit(body, rates, h);
     next * (body.momentum(rates).norm() / body.momentum(&next).norm())
 }
 
-/// A body with an update for its rates.
+/// A body with an update of its rates.
 #[derive(Clone)]
 pub(crate) struct Engine<U> {
     pub(crate) body: Moments,

@@ -1,6 +1,6 @@
-//! The hard cases: what is measured for each, and the bound that it must keep.
+//! The hard cases: for each a measurement, and its bound.
 
-// A library of this repository alone.
+// This library is for this repository alone.
 #![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc)]
 #![allow(clippy::must_use_candidate, clippy::return_self_not_must_use)]
 

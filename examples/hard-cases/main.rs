@@ -1,15 +1,16 @@
-//! Cases on which integrators of rigid bodies break: what is left of each after these steps, of ours and of others'.
+//! Cases on which integrators of rigid bodies break: the errors of each after many steps, for our method and for
+//! others.
 //!
 //! ```text
 //! cargo run --release --example hard-cases
 //! cargo run --release --example hard-cases -- --row T3 --long --out hard
 //! ```
 //!
-//! Each row is a claim with a criterion that a program decides. The others are what physics engines do (the explicit
-//! gyroscopic update, one implicit Newton step, the explicit update rescaled), the classical Runge–Kutta method, and
-//! careless versions of this integrator; each gets the same body and the same step, and is printed as it comes. A row
-//! that misses its criterion says so. Rows S to P are those of `tests/hard_cases`, R is what rounding does where it is
-//! always the same.
+//! Each row is a claim with a criterion that a program decides. The others are the updates of physics engines (the
+//! explicit gyroscopic update, one implicit Newton step, the explicit update rescaled), the classical Runge–Kutta
+//! method, and careless versions of this integrator; each has the same body and the same step, and its results aren't
+//! judged. A row that misses its criterion is marked. Rows S to P are those of `tests/hard_cases`; R are rounding
+//! errors that repeat at each step.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

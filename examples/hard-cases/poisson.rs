@@ -1,12 +1,12 @@
-//! How far a map of momentum and vertical is from a Poisson map of the semidirect product.
+//! The distance of a map of momentum and vertical from a Poisson map of the semidirect product.
 //!
-//! With the closed form of the tensor on SO(3), where the tests take it from the brackets of any group.
+//! The tensor is in closed form on SO(3); the tests compute it from the brackets of any group.
 
 use liestep::laws::samples::derivative;
 use nalgebra::{Matrix6, Vector3, Vector6};
 use workbench::heavy_top::continuous::phase;
 
-/// Momentum and vertical.
+/// The momentum and the vertical.
 pub(crate) type Phase = (Vector3<f64>, Vector3<f64>);
 
 fn joined((momentum, w): &Phase) -> Vector6<f64> {
@@ -17,7 +17,7 @@ fn apart(z: &Vector6<f64>) -> Phase {
     (z.fixed_rows::<3>(0).into_owned(), z.fixed_rows::<3>(3).into_owned())
 }
 
-/// `B = [[μ̂, ŵ], [ŵ, 0]]`
+/// The Poisson tensor `B = [[μ̂, ŵ], [ŵ, 0]]`.
 fn tensor((momentum, w): &Phase) -> Matrix6<f64> {
     let mut tensor = Matrix6::zeros();
     tensor.fixed_view_mut::<3, 3>(0, 0).copy_from(&momentum.cross_matrix());
@@ -32,6 +32,6 @@ pub(crate) fn defect(map: impl Fn(&Phase) -> Option<Phase>, z: &Phase) -> f64 {
     let columns: Vec<_> = (0..6).map(|k| derivative(|t| value(&(joined(z) + Vector6::ith(k, t))))).collect();
     let tangent = Matrix6::from_columns(&columns);
     let defect = tangent * tensor(z) * tangent.transpose() - tensor(&apart(&value(&joined(z))));
-    // `amax` passes over NaN.
+    // `amax` would ignore NaN.
     defect.iter().map(|entry| entry.abs()).fold(0.0, workbench::measure::greater)
 }

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use crate::row::{Effort, Row};
 use crate::rows;
 
-/// For the terminal: a line for each row, and below it what the others do.
+/// The table for the terminal: a line for each row, and below it the results of the others.
 pub fn text(rows: &[Row]) -> String {
     let mut text = String::new();
     for row in rows {
@@ -28,7 +28,7 @@ pub fn text(rows: &[Row]) -> String {
     text
 }
 
-/// As a table in Markdown.
+/// The table in Markdown.
 pub fn markdown(rows: &[Row]) -> String {
     let mut text = "| | case | criterion | measured | others | |\n|---|---|---|---|---|---|\n".to_owned();
     for row in rows {

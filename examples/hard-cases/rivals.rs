@@ -10,17 +10,17 @@ use workbench::variational::Variational;
 use crate::engines::{Engine, Moments, explicit, implicit, rescaled};
 use crate::row::Failure;
 
-/// A free body, its start and its step.
+/// A free body, its initial velocity and its step.
 #[derive(Clone, Copy)]
 pub(crate) struct Spin {
     pub(crate) inertia: DiagonalNonstandardInertia,
-    /// Body frame, rad/s.
+    /// The body velocity in the body frame, rad/s.
     pub(crate) velocity: Vector3<f64>,
-    /// s
+    /// The step, s.
     pub(crate) h: f64,
 }
 
-/// What is conserved of a free body, at one time.
+/// The conserved quantities of a free body, at one time.
 #[derive(Clone, Copy)]
 pub(crate) struct Kept {
     pub(crate) energy: f64,
@@ -39,13 +39,13 @@ impl Spin {
         PrincipalBody { J_d: self.inertia }
     }
 
-    /// Principal moments, kg m².
+    /// The principal moments, kg m².
     pub(crate) fn moments(&self) -> Vector3<f64> {
         let d = self.inertia.diagonal();
         Vector3::new(d.y + d.z, d.z + d.x, d.x + d.y)
     }
 
-    /// The derived integrator first, then the engines' updates and Runge–Kutta.
+    /// The traces of the derived integrator, then of the engines' updates and of Runge–Kutta.
     pub(crate) fn traces(&self, steps: u64) -> Result<Vec<Trace>, Failure> {
         let (attitude, rates, h) = (UnitQuaternion::identity(), self.velocity, self.h);
         let stepper = Stepper::new(self.body(), h)?;
@@ -63,7 +63,7 @@ impl Spin {
         ])
     }
 
-    /// The same body with a full tensor of inertia.
+    /// The trace of the same body with a full tensor of inertia.
     pub(crate) fn full(&self, steps: u64) -> Result<Trace, Failure> {
         let stepper = Stepper::new(FreeBody { J_d: self.inertia.into() }, self.h)?;
         let state = stepper.start(UnitQuaternion::identity(), self.velocity)?;
@@ -85,7 +85,7 @@ impl Spin {
     }
 }
 
-/// The rates after a step from those before it.
+/// An update: the rates after a step from those before it.
 pub(crate) type Update = fn(&Moments, &Vector3<f64>, f64) -> Vector3<f64>;
 
 impl Trace {
@@ -101,7 +101,7 @@ impl Trace {
         self.worst(|kept| (kept.spatial - start).norm() / start.norm())
     }
 
-    /// `E/E(0)` at the end.
+    /// The ratio `E/E(0)` at the end.
     pub(crate) fn final_energy(&self) -> f64 {
         self.kept[self.kept.len() - 1].energy / self.kept[0].energy
     }
@@ -111,14 +111,14 @@ impl Trace {
     }
 }
 
-/// The step (3.13) of a motion's top, and the start.
+/// The stepper (3.13) of a motion's top, and its initial state.
 pub(crate) fn started(motion: &Motion, h: f64) -> Result<(Stepper<HeavyTop>, StateOf<HeavyTop>), Failure> {
     let stepper = Stepper::new(motion.top.clone(), h)?;
     let state = stepper.start(motion.attitude, motion.velocity)?;
     Ok((stepper, state))
 }
 
-/// Runge–Kutta on a motion, with the quaternion brought back to unit length after every step.
+/// Runge–Kutta on a motion, with the quaternion normalised after every step.
 pub(crate) fn on_quaternion(motion: &Motion, h: f64) -> OnQuaternion {
     let body = Body::of(&motion.top);
     let momentum = motion.velocity.component_div(&body.inverse_moments);

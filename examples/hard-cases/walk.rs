@@ -1,4 +1,4 @@
-//! Long runs: defects of the group and of the Casimirs while they grow.
+//! Long runs: the growth of the defects of the group and of the Casimirs.
 
 use declarations::{HeavyTop, Motion};
 use liestep::groups::LieGroup as _;
@@ -13,7 +13,7 @@ use crate::row::Failure;
 /// A motion with one advected vector.
 pub(crate) type TopMotion = liestep::motion::Motion<SO3, Vector3<f64>>;
 
-/// `‖RᵀR − I‖`.
+/// The distance from the rotations, `‖RᵀR − I‖`.
 pub(crate) fn orthogonality(attitude: &Matrix3<f64>) -> f64 {
     (attitude.transpose() * attitude - Matrix3::identity()).norm()
 }
@@ -22,18 +22,18 @@ pub(crate) fn orthogonality(attitude: &Matrix3<f64>) -> f64 {
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Defects {
     pub(crate) orthogonality: f64,
-    /// `|w| − 1`.
+    /// The defect of `|w|`, `|w| − 1`.
     pub(crate) length: f64,
-    /// `p·w`, relative.
+    /// The relative change of `p·w`.
     pub(crate) vertical: f64,
-    /// `p_3`, relative.
+    /// The relative change of `p_3`.
     pub(crate) axial: f64,
 }
 
-/// Whether what grows walks or drifts: its largest size over that of a walk with the same steps.
+/// A test for whether a growth is a walk or a drift: its largest size relative to that of a walk with the same steps.
 ///
-/// Looked at `n` times, a walk gets to some four standard deviations at most, and what always grows alike to `√n`. What
-/// is followed are the six entries of `RRᵀ − I` (those of `RᵀR − I` turn with the body), `|w|²` and `p·w`.
+/// Sampled `n` times, a walk reaches some four standard deviations at most, and a constant growth `√n`. The quantities
+/// are the six entries of `RRᵀ − I` (those of `RᵀR − I` turn with the body), `|w|²` and `p·w`.
 struct Followed {
     last: SVector<f64, 8>,
     squares: SVector<f64, 8>,
@@ -51,37 +51,37 @@ impl Followed {
         self.last = now;
     }
 
-    /// In standard deviations, of the places `from` to `to`; nothing has gone nowhere.
+    /// The largest growth among the quantities `from` to `to`, in standard deviations; zero if nothing changed.
     fn deviations(&self, from: usize, to: usize) -> f64 {
         let ratio = |k: usize| if self.squares[k] > 0.0 { self.farthest[k] / self.squares[k].sqrt() } else { 0.0 };
         (from..to).map(ratio).fold(0.0, greater)
     }
 }
 
-/// How often a run is looked at to tell a walk from a drift: a drift then gets to thirty standard deviations.
+/// The number of samples of a run: a drift then reaches thirty standard deviations.
 const LOOKS: u64 = 1000;
 
-/// The defects of a run, and how they grew.
+/// The defects of a run, and their growth.
 pub(crate) struct Walk {
     start: (f64, f64),
     followed: Followed,
-    /// Steps from one look to the next.
+    /// The steps between two samples.
     stride: u64,
     pub(crate) worst: Defects,
 }
 
-/// Looking at every step would cost more than the step.
+/// The step between evaluations of the defects: evaluating them at every step would cost more than the step.
 const SAMPLE: u64 = 100;
 
 impl Walk {
-    /// A run of this number of steps.
+    /// The defects of a run of this number of steps.
     pub(crate) fn from(momentum: &Vector3<f64>, w: &Vector3<f64>, steps: u64) -> Self {
         let start = (momentum.dot(w), momentum.z);
         let stride = (steps / LOOKS).next_multiple_of(SAMPLE);
         Self { start, followed: Followed::new(), stride, worst: Defects::default() }
     }
 
-    /// Looks at the state after the step of this number now and then.
+    /// Evaluates the defects after the step of this number, if it is one of the sampled steps.
     pub(crate) fn after(&mut self, step: u64, state: impl FnOnce() -> (Matrix3<f64>, Vector3<f64>, Vector3<f64>)) {
         if step.is_multiple_of(SAMPLE) {
             self.look(step, &state());
@@ -110,32 +110,32 @@ impl Walk {
         }
     }
 
-    /// How far the attitude has left the rotations, in standard deviations of a walk.
+    /// The growth of the attitude's distance from the rotations, in standard deviations of a walk.
     pub(crate) fn attitude_deviations(&self) -> f64 {
         self.followed.deviations(0, 6)
     }
 
-    /// The same for `|w|²` and `p·w`.
+    /// The growth of the errors of `|w|²` and `p·w`, in standard deviations of a walk.
     pub(crate) fn casimir_deviations(&self) -> f64 {
         self.followed.deviations(6, 8)
     }
 }
 
-/// Farther than this no walk goes.
+/// The largest growth of a walk.
 pub(crate) const FARTHEST: f64 = 4.0;
 
-/// What is left of a long run of ours.
+/// The result of a long run of our method.
 pub(crate) struct Run {
     pub(crate) walk: Walk,
-    /// J, at the start.
+    /// The energy at the start, J.
     pub(crate) energy: f64,
-    /// How far it is from that.
+    /// The means of the energy's change.
     pub(crate) energies: Tenths,
-    /// The steps that changed `p_3`.
+    /// The number of steps that changed `p_3`.
     pub(crate) axial: u64,
 }
 
-/// How often the attitude is brought back to the rotations, in steps, where it is to.
+/// The period of corrections of the attitude, in steps, in runs with polar steps.
 const PERIOD: u64 = 1000;
 
 /// The attitude after a step towards its polar factor.
@@ -145,7 +145,7 @@ fn orthogonal(state: &TopMotion) -> SO3 {
 }
 
 impl Run {
-    /// This number of steps.
+    /// A run of this number of steps.
     pub(crate) fn of<P: Plan<HeavyTop>>(
         stepper: &Stepper<HeavyTop, P>,
         start: &StateOf<HeavyTop, P>,
@@ -167,7 +167,7 @@ impl Run {
         Ok(run)
     }
 
-    /// Steps of (3.13) along a motion.
+    /// A run of (3.13) along a motion.
     pub(crate) fn along(motion: &Motion, h: f64, steps: u64, is_compensated: bool) -> Result<Self, Failure> {
         let (stepper, start) = started(motion, h)?;
         if is_compensated {

@@ -1,4 +1,4 @@
-//! A body that turns by shape alone, as a cat does.
+//! A body that turns by changing its shape, as a cat does.
 
 use std::f64::consts::TAU;
 
@@ -13,7 +13,7 @@ use workbench::plot::{BLUE, Line, ORANGE, Panel, Vertical};
 
 use crate::{Drawn, Part, found, given, picture};
 
-/// A body with two wheels, whose turns about the body's first and second axis are `t_1` and `t_2`.
+/// A body with two wheels, whose angles about the body's first and second axis are `t_1` and `t_2`.
 #[lagrangian(
     group(F = SO3, t_1 = R1, t_2 = R1),
     gradients,
@@ -34,16 +34,18 @@ type Turn = ControlPlan<Cat, OwnStep<Cat>>;
 const MOMENTS: [f64; 3] = [0.7, 0.5, 0.9];
 const WHEEL: f64 = 0.3;
 
-/// The wheels' turns on the way, rad.
+/// The wheels' angles during the manoeuvre, rad.
 fn wheels(plan: &Turn) -> Vec<(f64, f64)> {
     let turns = |attitude: Attitude| (attitude.1.translation().x, attitude.2.translation().x);
     plan.states.iter().map(|state| turns(state.attitude())).collect()
 }
 
-/// The plan of a turn about the third axis, and the turn that the area enclosed by the wheels' makes to second order.
+/// The plan of a turn about the third axis, and the turn predicted to second order by the area that the wheels' angles
+/// enclose.
 ///
-/// Without angular momentum the body has the velocity `−a_k ṫ_k` about the axes of the wheels, `a = J_w/(J + J_w)`. Once
-/// round an area `A` of the plane of `t_1` and `t_2`, from the first to the second, that makes `½ ∮ [ξ, dξ] = a_1 a_2 A`.
+/// Without angular momentum the body has the velocity `−a_k ṫ_k` about the axes of the wheels, `a = J_w/(J + J_w)`. A
+/// loop around an area `A` of the plane of `t_1` and `t_2`, from the first to the second, results in the turn
+/// `½ ∮ [ξ, dξ] = a_1 a_2 A`.
 fn turn(angle: f64) -> Result<(Turn, f64), Failure> {
     let (steps, seconds) = (200, 4.0);
     let J_d = NonstandardInertia::from_principal_moments(Vector3::from(MOMENTS))?;
@@ -52,8 +54,8 @@ fn turn(angle: f64) -> Result<(Turn, f64), Failure> {
     let turned: SO3 = UnitQuaternion::from_scaled_axis(Vector3::z() * angle).into();
     let end: Attitude = (turned, R1::identity(), R1::identity());
     let shares = [0, 1].map(|k| WHEEL / (MOMENTS[k] + WHEEL));
-    // Once round that area, from rest to rest: without one the gradient vanishes by symmetry. With the phase φ,
-    // t_1 = r (1 − cos φ)/2 and t_2 = r (½ sin 2φ − sin φ) go round π r²/2.
+    // The guess is one loop around that area, from rest to rest; at no loop the gradient vanishes by symmetry. With the
+    // phase φ, t_1 = r (1 − cos φ)/2 and t_2 = r (½ sin 2φ − sin φ) enclose π r²/2.
     let radius = (angle / (shares[0] * shares[1] * TAU / 4.0)).sqrt();
     let guess = |step: usize, wheel: usize| {
         let phase = TAU * step as f64 / f64::from(steps);
@@ -69,7 +71,7 @@ fn turn(angle: f64) -> Result<(Turn, f64), Failure> {
     Ok((plan, shares[0] * shares[1] * area))
 }
 
-/// A turn by wheels that end where they began.
+/// A turn by wheels whose final angles are the initial ones.
 pub(crate) fn cat() -> Drawn {
     let (plan, foretold) = turn(0.5)?;
     let momentum = |state: &liestep::StateOf<Cat>| {
@@ -101,8 +103,9 @@ pub(crate) fn cat() -> Drawn {
 mod tests {
     use super::*;
 
-    /// What the area says is right in sign, and in size to second order in the wheels' turns, which is first in the angle.
-    /// For smaller ones the loop may lie in any direction at nearly the same effort, and the search is slow.
+    /// The turn predicted by the area has the right sign, and the right size to second order in the wheels' angles,
+    /// which is first order in the turn. For smaller turns the loop may have any orientation at nearly the same effort,
+    /// and the search is slow.
     #[test]
     fn the_turn_is_that_of_the_area() {
         let off = |angle: f64| {

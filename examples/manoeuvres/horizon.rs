@@ -1,4 +1,5 @@
-//! Attitude, momentum and a gyroscope's bias from readings as they come: by the last two seconds, and by a Kalman filter.
+//! Online estimation of attitude, momentum and a gyroscope's bias from readings: by the last two seconds, and by a
+//! Kalman filter.
 
 use std::fmt::Write as _;
 
@@ -14,16 +15,16 @@ use workbench::plot::{BLUE, Line, Panel, VERMILION, Vertical};
 
 use crate::{Drawn, Part, picture};
 
-/// Between two readings, s.
+/// The time between two readings, s.
 const STEP: f64 = 0.1;
 const STEPS: usize = 200;
-/// How many steps an estimate goes back.
+/// The number of steps in the horizon of an estimate.
 const HORIZON: usize = 20;
-/// Standard deviations: of the gyroscope, rad/s, of the vector's components, and of a torque held over a step, N m.
+/// Standard deviations: of the gyroscope, rad/s, of the vector's components, and of a constant torque over a step, N m.
 const GYROSCOPE: f64 = 0.01;
 const VECTOR: f64 = 0.02;
 const TORQUE: f64 = 0.02;
-/// Of the start: rad, kg m²/s, rad/s.
+/// Standard deviations of the initial state: rad, kg m²/s, rad/s.
 const START: [f64; 3] = [0.5, 1.0, 0.1];
 const MOMENTS: [f64; 3] = [2.0, 3.0, 4.0];
 
@@ -33,16 +34,16 @@ type Motions = (Vec<State>, Vector3<f64>, Vec<Reading>);
 type Nine = SVector<f64, 9>;
 type Square = SMatrix<f64, 9, 9>;
 
-/// A gyroscope's reading, and where a vector of space is seen.
+/// A gyroscope's reading, and that of a vector of space in the body frame.
 #[derive(Clone, Copy)]
 struct Reading([Vector3<f64>; 2]);
 
-/// What is thought of a state and of the bias.
+/// An estimate of the state and of the bias.
 #[derive(Clone, Copy)]
 struct Belief {
     state: State,
     bias: Vector3<f64>,
-    /// Of a displacement, of the momentum and of the bias.
+    /// The covariance of displacement, momentum and bias.
     covariance: Square,
 }
 
@@ -55,15 +56,15 @@ fn inverse_inertia() -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector3::from(MOMENTS).map(f64::recip))
 }
 
-/// What is read without noise. The vector goes round as the Earth's field does along an orbit, if faster: of one that is
-/// fixed, a free body never shows a turn about it.
+/// The readings without noise. The vector rotates as the Earth's field does along an orbit, but faster: with a constant
+/// vector, a rotation about it would be unobservable for a free body.
 fn read(motion: &Motion<SO3, ()>, bias: &Vector3<f64>, step: usize) -> Reading {
     let (sin, cos) = (0.1 * STEP * step as f64).sin_cos();
     let seen = motion.attitude().as_matrix().transpose() * Vector3::new(cos, 0.0, sin);
     Reading([inverse_inertia() * motion.momentum() + bias, seen])
 }
 
-/// A motion and what is read along it.
+/// A motion and its readings.
 fn motion(seed: u64) -> Result<Motions, Failure> {
     let (stepper, mut random) = (stepper()?, Random::new(seed));
     let mut normal = |size: f64| Vector3::from_fn(|_, _| size * random.normal());
@@ -88,7 +89,7 @@ impl Belief {
         Ok(Self { state, bias: Vector3::zeros(), covariance: Square::from_diagonal(&variances) })
     }
 
-    /// Displaced by this.
+    /// The estimate displaced by these numbers.
     fn moved(&self, by: &Nine) -> Result<Self, Failure> {
         let part = |first: usize| by.fixed_rows::<3>(first).into_owned();
         let turned: SO3 = UnitQuaternion::from_scaled_axis(part(0)).into();
@@ -97,7 +98,7 @@ impl Belief {
         Ok(Self { state, bias: self.bias + part(6), ..*self })
     }
 
-    /// From another one: the turn in the body's axes, the momentum and the bias.
+    /// The difference from another estimate: the turn in the body's axes, the momentum and the bias.
     fn off_from(&self, other: &Self) -> Nine {
         let [from, to] = [other, self].map(|belief| UnitQuaternion::from(belief.state.attitude()));
         let parts = [
@@ -108,7 +109,7 @@ impl Belief {
         Nine::from_iterator(parts.iter().flatten().copied())
     }
 
-    /// With a reading, which is linear about this motion and bias.
+    /// The estimate after a reading, linearised about this motion and bias.
     fn updated(&self, (step, reading): (usize, &Reading), about: &Self) -> Result<Self, Failure> {
         let off = self.off_from(about);
         let Reading([rate, vector]) = read(&about.state, &about.bias, step);
@@ -127,7 +128,7 @@ impl Belief {
         Self { covariance, ..*about }.moved(&(off + gain * (left - slope * off)))
     }
 
-    /// A step later, which is linear about this motion and torque.
+    /// The estimate after a step, linearised about this motion and torque.
     fn stepped(&self, about: &Self, torque: &Vector3<f64>) -> Result<Self, Failure> {
         let (stepper, mut end) = (stepper()?, about.state);
         let transition = stepper.linearised()?.transition(&mut end, &Input::Force(*torque))?;
@@ -148,14 +149,14 @@ impl Belief {
         later.moved(&(by_state * off - by_torque * torque))
     }
 
-    /// How far off it is: rad, and rad/s.
+    /// The errors of the estimate: rad, and rad/s.
     fn errors(&self, state: &State, bias: &Vector3<f64>) -> [f64; 2] {
         let [found, right] = [self.state.attitude(), state.attitude()].map(UnitQuaternion::from);
         [found.angle_to(&right), (self.bias - bias).norm()]
     }
 }
 
-/// The multiplicative extended Kalman filter: each reading and each step are linear about what is thought then.
+/// The multiplicative extended Kalman filter: each reading and each step is linearised about the current estimate.
 fn filtered(readings: &[Reading]) -> Result<Vec<Belief>, Failure> {
     let (mut belief, mut all) = (Belief::first()?, Vec::new());
     for reading in readings.iter().enumerate() {
@@ -166,7 +167,7 @@ fn filtered(readings: &[Reading]) -> Result<Vec<Belief>, Failure> {
     Ok(all)
 }
 
-/// The estimates of a moving horizon: what is known of its start is linear about the estimate of then.
+/// The estimates of a moving horizon: the prior of its first state is linearised about the estimate at that time.
 fn of_horizon(readings: &[Reading]) -> Result<Vec<Belief>, Failure> {
     let (stepper, mut known, mut first, mut all) = (stepper()?, Belief::first()?, 0, Vec::new());
     for last in 1..readings.len() {
@@ -202,8 +203,8 @@ fn of_horizon(readings: &[Reading]) -> Result<Vec<Belief>, Failure> {
     Ok(all)
 }
 
-/// The roots of the mean squares over some seeds, after each number of steps: filter and horizon, each with attitude, rad,
-/// and bias, rad/s.
+/// The root mean squares of the errors over some seeds, after each number of steps: filter and horizon, each with
+/// attitude, rad, and bias, rad/s.
 fn compared(seeds: u64) -> Result<Vec<[[f64; 2]; 2]>, Failure> {
     let mut squares = vec![[[0.0; 2]; 2]; STEPS + 1];
     for seed in 1..=seeds {
@@ -253,7 +254,8 @@ pub(crate) fn horizon() -> Drawn {
 mod tests {
     use super::*;
 
-    /// Where readings tell much at once the filter is linear about a wrong state, and the horizon is nearer from then on.
+    /// The filter is linearised about a wrong state when the first readings arrive, so the horizon is more accurate
+    /// from then on.
     #[test]
     fn the_horizon_is_nearer() {
         let errors = compared(6).expect("estimates");

@@ -11,7 +11,7 @@ use workbench::plot::{BLUE, Line, ORANGE, PURPLE, Panel, Vertical};
 
 use crate::{Drawn, Part, found, given, picture};
 
-/// A flyer of mass `m`, and a load of mass `m_load` on a cable that is always taut, which turns with it.
+/// A flyer of mass `m`, and a load of mass `m_load` on a cable that is always taut and turns with the load.
 #[lagrangian(
     group(F = SO3, d = R3, C = SO3),
     advected(x = d.seen_from(space), R = C.seen_from(space)),
@@ -34,8 +34,9 @@ pub(crate) struct Suspended {
     g: f64,
 }
 
-/// Rotors, held over a step: a thrust along the flyer's third axis, N, and a torque in its axes by the angular acceleration,
-/// rad/s², that it gives to `inertia`: so both have numbers of one size, and a share in the effort.
+/// Rotors with constant forces over a step: a thrust along the flyer's third axis, N, and a torque in its axes, as the
+/// angular acceleration, rad/s², of the moment `inertia`. So both numbers are of one size, and both count in the
+/// effort.
 #[force(
     group(F = SO3, d = R3, C = SO3),
     advected(S = F.seen_from(space)),
@@ -52,7 +53,7 @@ pub(crate) struct Rotors {
     axis: Vector3<f64>,
 }
 
-/// A load is brought two metres to the side and one up, from rest to rest.
+/// The plan that moves a load by two metres to the side and one up, from rest to rest.
 pub(crate) fn load() -> Drawn {
     let (steps, seconds) = (100, 2.0);
     let body = |moments: [f64; 3]| NonstandardInertia::from_principal_moments(Vector3::from(moments));
@@ -82,7 +83,7 @@ pub(crate) fn load() -> Drawn {
         Line { colour: BLUE, width: 4, points: places(false) },
         Line { colour: ORANGE, width: 4, points: places(true) },
     ];
-    // The cable, ten times.
+    // The cable at ten times.
     for (flyer, load) in places(false).into_iter().zip(places(true)).step_by(10) {
         lines.push(Line { colour: PURPLE, width: 1, points: vec![flyer, load] });
     }

@@ -1,4 +1,4 @@
-//! Motions that are planned, and one that is found again from its readings.
+//! Planned motions, and one that is estimated from its readings.
 //!
 //! ```text
 //! cargo run --release --example manoeuvres                       all of them
@@ -7,14 +7,14 @@
 //!
 //! | | |
 //! |---|---|
-//! | `slew` | the shortest half turn of a sphere with a bounded torque about each axis, beside that about one axis |
-//! | `sun` | the least effort of a turn on which an instrument mustn't look into the sun |
-//! | `top` | a top that hangs is brought to stand on its tip, by a torque that couldn't hold it level |
-//! | `cat` | a body without angular momentum turns by two wheels alone, which end where they began |
-//! | `load` | a flyer brings a load on a cable from rest to rest |
-//! | `horizon` | attitude and a gyroscope's bias from the last two seconds, beside a Kalman filter |
+//! | `slew` | the shortest half turn of a sphere with a bounded torque about each axis, and that about one axis |
+//! | `sun` | the least effort of a turn during which an instrument must not look into the sun |
+//! | `top` | a hanging top is swung up to stand on its tip, by a torque that couldn't hold it level |
+//! | `cat` | a body without angular momentum turns by two wheels alone, whose final angles are the initial ones |
+//! | `load` | a flyer moves a load on a cable from rest to rest |
+//! | `horizon` | attitude and a gyroscope's bias from the last two seconds, compared with a Kalman filter |
 //!
-//! Each writes its picture into the folder, and its numbers.
+//! Each example writes its picture into the folder, and its numbers.
 
 #![allow(clippy::cast_precision_loss)] // hundreds of steps
 
@@ -42,7 +42,7 @@ Options:
 
 /// A report, and a picture.
 type Drawn = Result<(String, String), Failure>;
-/// A manoeuvre, by its name.
+/// A manoeuvre with its name.
 type Manoeuvre = (&'static str, fn() -> Drawn);
 const ALL: [Manoeuvre; 6] = [
     ("slew", slew::half_turn),
@@ -76,7 +76,7 @@ fn main() -> ExitCode {
     })
 }
 
-/// How a plan was found, or why there is none.
+/// A summary of a plan's search, or the reason for its failure.
 fn found<S, P>(plan: &ControlPlan<S, P>) -> Result<String, Failure>
 where
     S: liestep::mechanics::SecondDerivatives,
@@ -93,13 +93,13 @@ where
     }
 }
 
-/// A part of a picture: a way on the sphere, or lines with their names.
+/// A part of a picture: a path on the sphere, or lines with their names.
 enum Part<'a> {
     Way(Path<'a>),
     Lines(Panel<'a>, &'a [(&'a str, Colour)]),
 }
 
-/// Parts side by side.
+/// Parts of a picture side by side.
 fn picture(title: &str, below: &str, parts: &[Part<'_>]) -> Result<String, Failure> {
     let drawn: PlotResult<String> = render((900, 420), |area| {
         heading(area, title, below)?;
@@ -118,7 +118,7 @@ fn picture(title: &str, below: &str, parts: &[Part<'_>]) -> Result<String, Failu
     drawn
 }
 
-/// What is given over time, one line for each component: the value of a step is held over it.
+/// Inputs over time, one line for each component: they are constant over a step.
 fn given<'a, const N: usize>(
     (title, up, names): (&'a str, &'a str, &'a [(&'a str, Colour)]),
     step: f64,

@@ -30,7 +30,7 @@ where
     plan.inputs.iter().map(scalars).collect()
 }
 
-/// Where a vector of the body points on the way.
+/// The directions of a body vector during the manoeuvre.
 fn pointed<S, P>(plan: &ControlPlan<S, P>, vector: Vector3<f64>) -> Vec<Vector3<f64>>
 where
     S: SecondDerivatives<Scalar = f64, Group = SO3>,
@@ -44,13 +44,13 @@ fn panel(step: f64, torques: &[[f64; 3]]) -> Part<'static> {
     given(("Torque about the body's axes", "N m", &[("1", BLUE), ("2", ORANGE), ("3", GREEN)]), step, torques)
 }
 
-/// The shortest half turn, beside that about its axis.
+/// The shortest half turn, compared with that about its axis.
 pub(crate) fn half_turn() -> Drawn {
     let steps = 200;
     let J_d = NonstandardInertia::from_principal_moments(Vector3::repeat(1.0))?;
     let stepper = Stepper::new(RigidBody { J_d }, 3.5 / f64::from(steps))?;
     let start = stepper.start(SO3::identity(), Vector3::zeros())?;
-    // Beside the way about the axis, where the gradient vanishes by symmetry.
+    // The guess differs from the turn about the axis, where the gradient vanishes by symmetry.
     let guess = |step: usize, axis: usize| {
         let share = step as f64 / f64::from(steps);
         let spin = if share < 0.5 { 0.9 } else { -0.9 };

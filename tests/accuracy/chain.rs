@@ -3,9 +3,9 @@
 use checks::drift::tenths;
 use declarations::motions::{chain3, start3};
 
-/// Over a hundred thousand stretches of `stretch` steps the energy is within its bounds, its means over the first half and
-/// the second are this far apart at most, and the momentum is moved by roundings. The motion is chaotic, and how large the
-/// largest swing of the energy is in it depends on roundings, so its bound has a margin.
+/// Checks a hundred thousand stretches of `stretch` steps: the energy stays within its bounds, its means over the two
+/// halves differ by at most `of_halves`, and the momentum changes only by rounding. The motion is chaotic, and its
+/// largest energy error depends on rounding, so that bound has a margin.
 fn assert_bounded(stretch: u64, [of_momentum, of_halves]: [f64; 2]) {
     let (attitudes, velocities) = start3();
     let stepper = chain3().stepper(0.01).unwrap();
@@ -24,13 +24,13 @@ fn assert_bounded(stretch: u64, [of_momentum, of_halves]: [f64; 2]) {
     assert!(moved < of_momentum, "{moved:e}");
 }
 
-/// Three hours of motion.
+/// The duration is three hours of motion.
 #[test]
 fn energy_and_momentum_of_a_million_steps() {
     assert_bounded(10, [1e-12, 7e-4]);
 }
 
-/// Eight hours and twenty minutes.
+/// The duration is eight hours and twenty minutes.
 #[test]
 #[ignore = "takes a minute: `cargo test -p liestep-accuracy-tests three_million_steps -- --ignored --nocapture`"]
 fn three_million_steps() {

@@ -1,4 +1,5 @@
-//! Rounding grows like `√N`, and with compensated sums it grows from the changes of a step instead of from the state.
+//! Growth of rounding errors like `√N`; with compensated sums they scale with the changes of a step instead of the
+//! state.
 
 use std::sync::OnceLock;
 
@@ -40,13 +41,13 @@ fn sizes(defects: &[SVector<f64, 8>]) -> [f64; 3] {
 
 const DECADES: [u64; 5] = [100, 1_000, 10_000, 100_000, 1_000_000];
 
-/// Of 24 motions at a step of .01 with plain sums, which two tests look at.
+/// The growth for 24 motions at a step of .01 with plain sums, which two tests use.
 fn plain_growth() -> &'static [[f64; 3]] {
     static GROWTH: OnceLock<Vec<[f64; 3]>> = OnceLock::new();
     GROWTH.get_or_init(|| growth(0.01, 24, false))
 }
 
-/// For each decade of steps the sizes of the defects over a number of motions.
+/// The sizes of the defects over a number of motions, for each decade of steps.
 fn growth(h: f64, motions: u64, compensated: bool) -> Vec<[f64; 3]> {
     let mut random = Random::new(6);
     let stepper = Stepper::new(HeavyTop::asymmetric(), h).unwrap();
@@ -72,7 +73,7 @@ fn growth(h: f64, motions: u64, compensated: bool) -> Vec<[f64; 3]> {
     found.iter().map(|defects| sizes(defects)).collect()
 }
 
-/// The exponent of the growth of each size; NaN, which no bound holds for, unless each decade has a size above zero.
+/// The exponent of the growth of each size; NaN, which fails every bound, unless each decade has a size above zero.
 #[allow(clippy::cast_precision_loss)] // a million
 fn exponents(growth: &[[f64; 3]]) -> [f64; 3] {
     [0, 1, 2].map(|k| {
@@ -89,8 +90,8 @@ fn print(title: &str, growth: &[[f64; 3]]) {
     }
 }
 
-/// A walk of independent roundings has the exponent ½, a systematic one has 1. Of 24 motions a root mean square is
-/// known to a seventh, and so the exponent over four decades to some hundredths.
+/// A walk of independent roundings has the exponent ½, a systematic error has 1. The root mean square of 24 motions has
+/// an uncertainty of a seventh, and so the exponent over four decades one of some hundredths.
 #[test]
 fn t3_rounding_grows_like_the_square_root_of_the_steps() {
     let plain = plain_growth();
@@ -100,7 +101,7 @@ fn t3_rounding_grows_like_the_square_root_of_the_steps() {
     }
 }
 
-/// The angle of a step is .04 here: what is added is that much smaller than what it is added to.
+/// The angle of a step is .04 here: increments are by that factor smaller than the sums.
 #[test]
 fn t3_compensated_sums_lose_a_tenth_at_common_steps() {
     let (plain, compensated) = (plain_growth(), growth(0.01, 24, true));
@@ -111,7 +112,7 @@ fn t3_compensated_sums_lose_a_tenth_at_common_steps() {
     }
 }
 
-/// At a small step there is no growth: after 10⁶ steps the defects are those of a matrix rounded to `f64`.
+/// At a small step the defects don't grow: after 10⁶ steps they are those of a matrix rounded to `f64`.
 #[test]
 fn t3_compensated_sums_lose_nothing_at_small_steps() {
     let (plain, compensated) = (growth(1e-4, 8, false), growth(1e-4, 8, true));
@@ -121,7 +122,7 @@ fn t3_compensated_sums_lose_nothing_at_small_steps() {
     assert!(plain[4].iter().zip(compensated[4]).all(|(plain, compensated)| compensated < 0.02 * plain));
 }
 
-/// `h = 10⁻⁸` and a million steps: the momentum against a thousand steps of `10⁻⁵`, whose own error is below
+/// A million steps of `h = 10⁻⁸`: the momentum is compared with a thousand steps of `10⁻⁵`, whose own error is below
 /// `10⁻¹¹ h²`.
 #[test]
 fn t4_tiny_steps() {

@@ -16,7 +16,7 @@ const SCHEMES: [CompositionScheme; 4] = [
     CompositionScheme::SOFRONIOU_SPALETTA_10,
 ];
 
-/// In a double the errors fall faster than their order until rounding shows.
+/// The order is measured in long numbers: in doubles errors fall faster than their order until rounding dominates.
 #[test]
 fn sofroniou_spaletta_10_is_of_order_10() {
     let scheme = CompositionScheme::SOFRONIOU_SPALETTA_10;
@@ -82,7 +82,7 @@ fn compositions_keep_the_energy_of_the_free_body() {
     assert!((composed.energy(&state) - energy).abs() < 1e-12 * energy);
 }
 
-/// The longest substep meets the limit first; what is reported is a whole step, and that one can be made.
+/// The longest substep reaches its limit first; the error reports a whole step, and that step is solvable.
 #[test]
 fn a_substep_that_is_too_long_is_an_error() {
     let motion = Motion::looping();
@@ -103,7 +103,7 @@ fn a_substep_that_is_too_long_is_an_error() {
     }
 }
 
-/// What the extrapolated guesses are for: without them a stage takes four iterations.
+/// The extrapolated guesses save iterations: without them a stage takes four.
 #[test]
 fn a_stage_takes_few_iterations() {
     let motion = Motion::looping();

@@ -1,14 +1,14 @@
 //! The coefficients satisfy all the order conditions, and not those of the next order.
 //!
 //! The step of a self-adjoint method is `exp(h A_1 + h³ A_3 + h⁵ A_5 + …)` with operators `A_k` that don't commute. A
-//! composition has the order `p` where the product of these at `γ_i h` agrees with `exp(h A_1)` in all words of the
-//! letters `A_k` whose indices add up to `p` or less; a method of order `2q` lacks `A_3, …, A_{2q−1}`. So the words'
-//! coefficients are multiplied out: that is all the conditions at once, without a list of them.
+//! composition has the order `p` if the product of these at `γ_i h` agrees with `exp(h A_1)` in all words of the
+//! letters `A_k` whose indices add up to `p` or less; a method of order `2q` lacks `A_3, …, A_{2q−1}`. So the test
+//! multiplies out the coefficients of words, which covers all conditions at once, without a list of them.
 //!
-//! The same with the letters `A` and `B` for the kinetic flow and the kicks gives the conditions of a splitting. One
-//! for a small potential, `(8, 6, 4)`, must agree with `exp(A + B)` in words of up to eight letters with one `B`, of up
-//! to six with two, of up to four with more. (The Nyström schemes ask for less than agreement, as some words don't
-//! matter.) A share `g` of the force gradient is one of `½ [B, [A, B]]` beside the kick.
+//! The letters `A` and `B` for the kinetic flow and the kicks give the conditions of a splitting. One for a small
+//! potential, `(8, 6, 4)`, must agree with `exp(A + B)` in words of up to eight letters with one `B`, of up to six with
+//! two, of up to four with more. (Nyström schemes satisfy fewer conditions, as some words don't matter.) A share `g` of
+//! the force gradient is a term `½ g [B, [A, B]]` in the exponent of the kick.
 
 use core::ops::{Add, Div, Mul, Sub};
 use std::collections::BTreeMap;
@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use liestep::methods::{CompositionScheme, Flow, ProcessedScheme, SplittingScheme};
 use nalgebra::{DMatrix, DVector};
 
-/// What coefficients are computed in.
+/// The numbers of the coefficients.
 pub(crate) trait Number:
     Copy + From<f64> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
@@ -24,14 +24,14 @@ pub(crate) trait Number:
 
 impl<T> Number for T where T: Copy + From<f64> + Add<Output = T> + Sub<Output = T> + Mul<Output = T> + Div<Output = T> {}
 
-/// Coefficients of words; with a word there are all its parts.
+/// The coefficients of words; the words of a series include all subwords of each.
 type Series<T> = BTreeMap<Vec<u32>, T>;
 
 fn degree(word: &[u32]) -> u32 {
     word.iter().sum()
 }
 
-/// The words of these letters that are looked at, with their coefficients in one.
+/// The series `1` on the selected words of these letters.
 fn one<T: Number>(letters: &[u32], is_looked_at: impl Fn(&[u32]) -> bool) -> Series<T> {
     let mut all = Series::from([(Vec::new(), T::from(1.0))]);
     let mut last: Vec<Vec<u32>> = vec![Vec::new()];
@@ -79,7 +79,7 @@ fn power<T: Number>(x: T, n: u32) -> T {
     (0..n).fold(T::from(1.0), |product, _| product * x)
 }
 
-/// How a composition of a method of the order `base` deviates from `exp(A_1)`, word by word up to a degree.
+/// The deviation of a composition of a method of the order `base` from `exp(A_1)`, for each word up to a degree.
 pub(crate) fn deviations<T: Number>(stages: &[T], base: u32, highest: u32) -> Series<T> {
     let letters: Vec<u32> = (1..=highest).filter(|k| *k == 1 || (k % 2 == 1 && *k > base)).collect();
     let one = one(&letters, |word| degree(word) <= highest);
@@ -104,7 +104,7 @@ fn compositions_satisfy_their_order_conditions() {
         let (beyond, within) = deviations.split_last().unwrap();
         let worst = within.iter().fold(0.0_f64, |worst, deviation| worst.max(*deviation));
         println!("{}: {worst:.1e}, then {beyond:.1e}", scheme.name());
-        // Sums of tens of products of numbers below one; the next order is missed by far more.
+        // The bound is for sums of tens of products of numbers below one; the error at the next order is far larger.
         assert!(worst < 1e-14, "{}: {worst:e}", scheme.name());
         assert!(*beyond > 1e-7, "{}: {beyond:e}", scheme.name());
     }
@@ -127,7 +127,7 @@ fn shares(scheme: &SplittingScheme) -> impl Iterator<Item = Part> {
     scheme.shares().zip(scheme.gradients()).map(|((flow, share), gradient)| (flow, share, gradient))
 }
 
-/// The series times the exponentials of these.
+/// The series times the exponentials of these parts.
 fn times_shares(series: &Series<f64>, shares: impl Iterator<Item = Part>) -> Series<f64> {
     shares.fold(series.clone(), |composed, (flow, part, gradient)| {
         let of_flow = if flow == Flow::Drift { A } else { B };
@@ -141,7 +141,8 @@ fn times_shares(series: &Series<f64>, shares: impl Iterator<Item = Part>) -> Ser
     })
 }
 
-/// How far a splitting is from `exp(A + B)` in the words of so many letters at most, by their number of `B`.
+/// The distance of a splitting from `exp(A + B)` in the words of at most these numbers of letters, by their number of
+/// `B`.
 fn splitting_deviation(scheme: &SplittingScheme, longest: [usize; 3]) -> f64 {
     let one: Series<f64> = one(&[A, B], |word| match word.iter().filter(|letter| **letter == B).count() {
         0 => word.len() <= longest[0],
@@ -165,7 +166,7 @@ fn near_integrable_splittings_satisfy_their_order_conditions() {
         let within = splitting_deviation(&scheme, longest);
         println!("{}: {within:.1e}", scheme.name());
         assert!(within < 1e-14, "{}: {within:e}", scheme.name());
-        // A letter more is too many, of the words with one `B` and with two.
+        // One more letter is too many, for the words with one `B` and for those with two.
         let [one, two, more] = longest;
         for longer in [[one + 1, two, more], [one.max(two + 1), two + 1, more]] {
             let beyond = splitting_deviation(&scheme, longer);
@@ -185,7 +186,7 @@ fn nystrom_splittings_satisfy_the_common_order_conditions() {
     ] {
         let within = splitting_deviation(&scheme, longest);
         println!("{}: {within:.1e}", scheme.name());
-        // Fifteen digits were published.
+        // The published coefficients have fifteen digits.
         assert!(within < 1e-13, "{}: {within:e}", scheme.name());
     }
 }
@@ -213,8 +214,8 @@ fn logarithm(series: &Series<f64>) -> Series<f64> {
     sum
 }
 
-/// What vanishes because the kinetic energy is quadratic in the momentum, in words of this length: `[B, [B, [B, A]]]`
-/// and all commutators with it. A column each.
+/// The words of this length that vanish because the kinetic energy is quadratic in the momentum: `[B, [B, [B, A]]]` and
+/// all its commutators, one column each.
 fn vanishing(length: usize) -> DMatrix<f64> {
     let commutator = |letter: u32, series: &Series<f64>| {
         let mut sum = Series::new();
@@ -239,8 +240,8 @@ fn words(length: usize) -> impl Iterator<Item = Vec<u32>> {
     (0_u32..1 << length).map(move |bits| (0..length).map(|place| (bits >> place) & 1).collect())
 }
 
-/// How far the logarithm of a product of flows is from `A + B`, in the words of each length from 1 on, but for what
-/// vanishes.
+/// The distance of the logarithm of a product of flows from `A + B`, in the words of each length from 1 on, up to
+/// vanishing words.
 fn by_length(parts: &[Part], longest: usize) -> Vec<f64> {
     let one: Series<f64> = one(&[A, B], |word| word.len() <= longest);
     let logarithm = logarithm(&times_shares(&one, parts.iter().copied()));
@@ -257,14 +258,15 @@ fn by_length(parts: &[Part], longest: usize) -> Vec<f64> {
     (1..=longest).map(of_length).collect()
 }
 
-/// Out of the processor, through the kernel, and back.
+/// The inverse processor, the kernel, and the processor.
 fn processed(scheme: &ProcessedScheme) -> Vec<Part> {
     let out: Vec<Part> = scheme.processor().collect();
     let back = out.iter().rev().map(|&(flow, share, gradient)| (flow, -share, -gradient));
     back.chain(shares(&scheme.kernel())).chain(out.iter().copied()).collect()
 }
 
-/// Those of the order of the whole, and that the kernel alone has 2; the next order is missed.
+/// The whole satisfies the conditions of its order and the kernel alone those of order 2; the next order's conditions
+/// fail.
 #[test]
 fn processed_splittings_satisfy_their_order_conditions() {
     for scheme in ProcessedScheme::ALL {
@@ -287,7 +289,7 @@ fn a_wrong_digit_of_a_processor_is_found() {
     assert!(by_length(&parts, 6).into_iter().fold(0.0, f64::max) > 1e-10);
 }
 
-/// All conditions of the schemes that use that the kinetic energy is quadratic.
+/// All conditions of the schemes that rely on a quadratic kinetic energy.
 #[test]
 fn nystrom_splittings_satisfy_all_their_order_conditions() {
     use SplittingScheme as Scheme;
@@ -297,7 +299,7 @@ fn nystrom_splittings_satisfy_all_their_order_conditions() {
         let (beyond, within) = missed.split_last().unwrap();
         let worst = within.iter().copied().fold(0.0, f64::max);
         println!("{}: {worst:.1e}, then {beyond:.1e}", scheme.name());
-        // Fifteen digits were published.
+        // The published coefficients have fifteen digits.
         assert!(worst < 1e-13 && *beyond > 1e-8, "{}: {worst:e}, {beyond:e}", scheme.name());
     }
 }

@@ -12,10 +12,10 @@ use nalgebra::Vector3;
 
 use crate::many_digits::{DoubleDouble, Vector, long};
 
-/// A free symmetric body turns steadily about its momentum in space, and so does its axis:
+/// The steady rotation of a free symmetric body's axis about its momentum in space:
 /// `n·R(t) e₃ − c = a + ρ cos(λ t − φ)` with `λ = |Π|/J₁`.
 struct Precession {
-    /// What the axis keeps along the momentum.
+    /// The constant part `a`, from the axis' component along the momentum.
     mean: f64,
     amplitude: f64,
     phase: f64,
@@ -33,7 +33,7 @@ impl Precession {
         Self { mean, amplitude: cosine.hypot(sine), phase: sine.atan2(cosine), rate }
     }
 
-    /// When it is zero, and whether it rises, up to a time.
+    /// The zeros and their directions up to a time.
     fn zeros(&self, end: f64) -> Vec<(f64, bool)> {
         let angle = (-self.mean / self.amplitude).acos();
         if angle.is_nan() {
@@ -48,7 +48,7 @@ impl Precession {
     }
 }
 
-/// `n·R(t) e₃` to 30 digits: in the body its axis turns about the momentum there.
+/// The value `n·R(t) e₃` to 30 digits: in the body frame, the axis rotates about the momentum.
 fn exact_value(
     attitude: SO3,
     momentum: Vector3<f64>,
@@ -66,7 +66,7 @@ fn exact_value(
     (attitude.as_matrix().map(long) * turned).dot(&normal.map(long))
 }
 
-/// By their series at a thousandth of the angle, doubled ten times.
+/// Sine and cosine by their series at a thousandth of the angle, doubled ten times.
 fn sine_and_cosine(angle: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     let small = angle / long(1024.0);
     let (mut term, mut sine, mut less) = (long(1.0), long(0.0), long(0.0));
@@ -79,25 +79,26 @@ fn sine_and_cosine(angle: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
             _ => less -= term,
         }
     }
-    // With 1 − cos instead of cos nothing cancels.
+    // The function 1 − cos in place of cos avoids cancellation.
     for _ in 0..10 {
         (sine, less) = (long(2.0) * sine * (long(1.0) - less), long(2.0) * sine * sine);
     }
     (sine, long(1.0) - less)
 }
 
-/// Ten thousand crossings of random cones by the axes of random bodies, up to a dozen in one step: all are found, in order.
+/// Ten thousand crossings of random cones by the axes of random bodies, up to a dozen in one step: all are found, in
+/// order.
 ///
-/// The exact motion from the beginning of a step is known to 30 digits. A crossing is within two ulp of the time of its
-/// zero wherever the function changes by more than its own roundings in that time. Elsewhere, in the first seconds, in
-/// which time has more digits than the function, it is within the time in which the function changes by these. Where that
-/// is more than two ulp the function, as it is evaluated, is zero there but for two roundings, so nobody who asks only the
-/// function could be nearer. From the beginning of the run the steps' own roundings have moved it by no more than their
-/// number.
+/// The exact motion from the beginning of a step is known to 30 digits. A crossing is within two ulp of its exact time
+/// if the function changes by more than its rounding error in that time. Otherwise, in the first seconds, in which time
+/// has more digits than the function, it is within the time in which the function changes by its rounding error. If
+/// that is more than two ulp, the evaluated function is zero at the crossing up to two roundings, so no method that
+/// evaluates only the function could be more accurate. Since the start of the run the rounding errors of steps have
+/// moved the crossing by at most their number.
 #[test]
 fn crossings_are_where_closed_forms_have_them() {
-    /// To which `n·R b − c` is evaluated, in those of one. It is measured and not derived: the most that is found is printed,
-    /// and has to be less.
+    /// The error of an evaluation of `n·R b − c`, in units of rounding. It is measured and not derived: the largest
+    /// error is printed, and must be less.
     const ROUNDINGS: f64 = 4.0;
     let mut random = Random::new(181);
     let (mut found, mut in_one_step, mut sharp, mut within, mut at_zero) = (0, 0, 0, 0, 0);
@@ -176,7 +177,7 @@ fn a_top_turns_where_its_quadrature_has_it() {
     let moments = top.ordinary_inertia().as_matrix().diagonal();
     let weight = 2.0 * top.m * top.g * top.rho.norm() / moments.x;
     for (precession, spin) in [(1.9, 12.0), (0.0, 9.0), (-0.7, 15.0)] {
-        // At the start the axis doesn't rise or fall, so its cosine there is a root of `u̇² = f(u)`.
+        // At the start the axis neither rises nor falls, so its cosine is a root of `u̇² = f(u)`.
         let (nutation, u) = (0.8_f64, 0.8_f64.cos());
         let velocity = Vector3::new(0.0, precession * nutation.sin(), spin + precession * u);
         let (a, b) =
@@ -228,7 +229,7 @@ fn between_steps_the_order_is_that_of_the_method() {
         let end = stepper.part(&state, PART).unwrap();
         (end.attitude(), stepper.velocity(&end))
     }
-    /// Of the last step.
+    /// The part of the last step.
     const PART: f64 = 0.63;
     let length = |h: f64, steps: u32| h * f64::from(steps) / (f64::from(steps) - 1.0 + PART);
     for top in ["looping A", "third A"] {

@@ -1,4 +1,4 @@
-//! What every method has: its order, steps of `−h` that undo those of `h`, and the momenta.
+//! Properties of every method: its order, the inverse map by steps of `−h`, and conserved momenta.
 
 use checks::order::{TOPS, assert_order, counts};
 use checks::random::Random;
@@ -9,7 +9,7 @@ use liestep::prelude::*;
 use nalgebra::Vector3;
 use workbench::measure::relative;
 
-/// Steppers of a top by each method, with its name.
+/// Steppers of a top by each method, with their names.
 pub(crate) fn all(top: &HeavyTop, h: f64) -> Vec<(String, AnyStepper<SO3, Vector3<f64>>)> {
     let (top, flow) = (|| top.clone(), ExactBody::new(&top.ordinary_inertia()));
     let own = ("its own step".to_owned(), Stepper::new(top(), h).unwrap().into_any());
@@ -50,15 +50,15 @@ fn s5_a_step_of_the_negative_length_is_the_inverse_map() {
                 let seen = relative(&state.advected(), &before.advected());
                 worst = worst.max(attitude).max(seen).max(relative(&state.momentum(), &before.momentum()));
             }
-            // Some roundings a stage.
+            // The bound is some roundings per stage.
             println!("{name}, h = {h}: {worst:.1e}");
             assert!(worst < 2e-14, "{name}, h = {h}: {worst:e}");
         }
     }
 }
 
-/// On the tops of the thesis, and where there is a fourth number on the one without symmetry: by steps from the coarsest on
-/// to ones that many times shorter. The others' orders show in long numbers alone, or where they are measured in another way.
+/// The orders on the tops of the thesis, and with a fourth number on the asymmetric one: by steps from the coarsest to
+/// some times shorter ones. The other orders are measured in long numbers, or in other ways.
 #[test]
 fn methods_have_their_orders() {
     let table: [(&str, u32, f64, &[u32]); 14] = [
@@ -89,8 +89,8 @@ fn methods_have_their_orders() {
     }
 }
 
-/// Two hundred thousand steps: the momentum about the vertical, that along the axis of symmetry, the length of what is
-/// carried, and rotations that stay rotations.
+/// The invariants over two hundred thousand steps: the momentum about the vertical, that along the axis of symmetry,
+/// the length of the advected vector, and the orthogonality of attitudes.
 #[test]
 fn methods_keep_the_momenta() {
     let motion = Motion::looping();

@@ -1,4 +1,4 @@
-//! The exact flow of a free body, against a solution that knows no elliptic functions, to 32 digits.
+//! The exact flow of a free body, compared with a solution without elliptic functions, to 32 digits.
 
 use checks::order::{end, error};
 use checks::random::Random;
@@ -43,12 +43,12 @@ const SHAPES: [(&str, [f64; 3]); 16] = [
     ("large", [1.6e9, 2.6e9, 3e9]),
 ];
 
-/// Spins about each axis, next to each, on the separatrix of some shapes, next to it and anywhere.
+/// Spins about and near each axis, on and near the separatrix of some shapes, and in general position.
 fn starts(moments: [f64; 3], random: &mut Random) -> Vec<Vector3<f64>> {
     let mut sorted = [0, 1, 2];
     sorted.sort_by(|&i, &j| moments[i].total_cmp(&moments[j]));
     let [low, middle, high] = sorted.map(|k| moments[k]);
-    // 2 E = |p|²/J_c
+    // The separatrix has 2 E = |p|²/J_c.
     let mut separatrix = Vector3::zeros();
     separatrix[sorted[0]] = (1.0 / middle - 1.0 / high).max(0.0).sqrt();
     separatrix[sorted[2]] = (1.0 / low - 1.0 / middle).max(0.0).sqrt();
@@ -62,12 +62,12 @@ fn starts(moments: [f64; 3], random: &mut Random) -> Vec<Vector3<f64>> {
     starts
 }
 
-/// Within so many units in the last place of the largest entry, and as many times what the motion itself makes of such
-/// an error of the momentum.
+/// The tolerance in units in the last place of the largest entry; it is multiplied by the motion's own amplification of
+/// such an error of the momentum.
 const WITHIN: f64 = 8.0;
 
-/// How much a change of the momentum, relative to it, grows to on the way: about the angle, and near the separatrix
-/// exponentially.
+/// The amplification of a relative change of the momentum during the motion: about the angle, and exponential near the
+/// separatrix.
 fn growth(turn: impl Fn(&Vector3<f64>, f64) -> (Matrix, Vector), p: &Vector3<f64>) -> f64 {
     let size = p.norm();
     let grown = |part: f64| {
@@ -103,7 +103,7 @@ fn it_is_the_solution_to_the_last_digits() {
                     let grown = if angle > 1.0 { growth(reference, &p) } else { angle };
                     let apart = |a: f64, b: DoubleDouble| (long(a) - b).rounded().abs() / f64::EPSILON;
                     let of_f = found.increment.zip_map(&increment, apart).amax();
-                    // Of F − I, or of F where it isn't near one.
+                    // The error is relative to F − I, or to F if that isn't near the identity.
                     let of_f = of_f / if angle > 1.0 { 1.0 } else { increment.map(DoubleDouble::rounded).amax() };
                     let of_p = found.change.zip_map(&change, apart).amax() / p.amax();
                     let off = of_f.max(of_p);
@@ -118,7 +118,7 @@ fn it_is_the_solution_to_the_last_digits() {
     println!("{near:.1} units in the last place up to a radian, {far:.1} times the growth beyond");
 }
 
-/// Each body is moved to the same place by steps and by one step.
+/// Several steps and one long step lead to the same end.
 #[test]
 fn it_is_a_group() {
     let mut random = Random::new(62);
@@ -158,14 +158,14 @@ fn s5_a_drift_back_undoes_a_drift() {
     assert_eq!((none.increment, none.change), (Matrix3::zeros(), Vector3::zeros()));
 }
 
-/// A million steps: `|Π|`, the energy, `R Π` and `RᵀR`.
+/// The invariants `|Π|`, energy, `R Π` and `RᵀR` over a million steps.
 #[test]
 fn what_a_free_body_keeps_is_kept() {
     for (name, moments) in SHAPES {
         let J_d = NonstandardInertia::from_principal_moments(moments.into()).unwrap();
         let velocity = Vector3::new(0.3, 0.7, -0.5).component_div(&Vector3::from(moments)).normalize();
-        // In steps of three radians the changes are as large as what they are added to; where each is the same turn, its
-        // roundings are the same, too, one for each step.
+        // In steps of three radians the increments are as large as the sums; if each is the same turn, the rounding
+        // errors are the same, too, one for each step.
         let mut sorted = moments;
         sorted.sort_by(f64::total_cmp);
         let [low, middle, high] = sorted;
@@ -188,7 +188,7 @@ fn what_a_free_body_keeps_is_kept() {
     }
 }
 
-/// The middle axis, for any time, from where a motion on the separatrix ends up, too.
+/// The middle axis is an equilibrium for any time, also as the limit of a motion on the separatrix.
 #[test]
 fn it_stays_where_it_is_at_rest() {
     let exact = exact([1.6, 2.6, 3.0]);
@@ -209,7 +209,7 @@ fn it_stays_where_it_is_at_rest() {
     }
 }
 
-/// A body whose axes aren't the principal ones moves as it does in these.
+/// A body described in other axes than the principal ones has the same motion.
 #[test]
 fn any_axes_will_do() {
     let mut random = Random::new(65);
@@ -251,7 +251,7 @@ fn single_precision_is_as_good_as_it_can_be() {
     let mut random = Random::new(67);
     for (name, moments) in SHAPES {
         let single = body(moments).as_matrix().map(nalgebra::convert::<f64, f32>);
-        // A single has no room for the thinnest of them.
+        // The thinnest shapes are singular in single precision.
         let Ok(single) = Inertia::new(single) else { continue };
         let rounded = single.as_matrix().diagonal().map(f64::from);
         let Ok(double) = Inertia::from_principal_moments(rounded) else { continue };
@@ -305,7 +305,7 @@ fn each_lane_moves_as_alone() {
     assert_independent::<WideF32x8, 8>();
 }
 
-/// Lanes whose middle moments are those of different axes.
+/// Lanes whose middle moments belong to different axes.
 #[test]
 fn lanes_may_have_their_moments_in_any_order() {
     let moments = [[1.6, 2.6, 3.0], [2.6, 1.6, 3.0], [3.0, 1.6, 2.6], [2.0, 2.0, 2.0]];

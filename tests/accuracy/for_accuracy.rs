@@ -1,4 +1,4 @@
-//! Asking by accuracy: what is reached, what is refused, and that the choice is the same every time.
+//! The choice by accuracy: its error, its refusals, and its determinism.
 
 mod trials;
 mod varying_inertia;
@@ -25,7 +25,7 @@ const TOLERANCES: [f64; 3] = [1e-3, 1e-6, 1e-9];
 
 type End = (Matrix3<f64>, Vector3<f64>);
 
-/// As `Accuracy` defines it.
+/// The error as `Accuracy` defines it.
 fn error((attitude, velocity): &End, exact: &End, at_start: &Vector3<f64>, horizon: f64) -> f64 {
     let scale = exact.1.norm().max(at_start.norm()).max(1.0 / horizon);
     ((attitude - exact.0).norm() / exact.0.norm()).hypot((velocity - exact.1).norm() / scale)
@@ -44,13 +44,13 @@ fn ask(motion: &Motion, accuracy: Accuracy) -> Answer {
     Stepper::for_accuracy(motion.top.clone(), accuracy, motion.attitude, motion.velocity)
 }
 
-/// The same body, which nothing but its own steps is made for: it can't be split.
+/// A choice for the same body by a Lagrangian that can't be split: it only has its own steps and their compositions.
 fn ask_coupled(motion: &Motion, accuracy: Accuracy) -> Answer {
     Stepper::for_accuracy(FourthOrderTop::of(&motion.top), accuracy, motion.attitude, motion.velocity)
 }
 
-/// The worst ratio of error to tolerance, over the motions and tolerances that can be reached. To refuse the others takes
-/// at most so many operations.
+/// The worst ratio of error to tolerance, over the motions and tolerances that can be reached. A refusal takes at most
+/// `most_operations` operations.
 fn worst_ratio(ask: impl Fn(&Motion, Accuracy) -> Answer, most_operations: f64) -> f64 {
     let mut worst = 0.0_f64;
     for (name, horizon) in MOTIONS.iter().flat_map(|name| [(name, 10.0), (name, 100.0)]) {
@@ -90,8 +90,8 @@ fn the_tolerance_is_reached_by_compositions_alone() {
     assert!(worst <= 1.0 && worst > 0.5, "{worst}");
 }
 
-/// Of so short a motion runs of one and two steps may agree by chance, on what isn't the motion. Four of these 600
-/// choices rest on that.
+/// For so short a motion, runs of one and two steps may agree by chance although both are wrong. Four of these 600
+/// choices are of this kind.
 #[test]
 fn the_tolerance_is_seldom_missed_by_a_few_long_steps() {
     let (mut few, mut missed) = (0, Vec::new());
@@ -116,7 +116,7 @@ fn the_tolerance_is_seldom_missed_by_a_few_long_steps() {
     assert!(few > 250 && missed.len() <= 4, "{few}; missed {missed:#?}");
 }
 
-/// A control: with the step taken twice as long the tolerance is missed, by as much as the order says.
+/// A control: steps twice as long miss the tolerance, by the factor of the order.
 #[test]
 #[allow(clippy::cast_precision_loss)] // few steps
 fn a_step_twice_as_long_misses_the_tolerance() {
@@ -139,7 +139,7 @@ fn body(moments: [f64; 3]) -> PrincipalBody {
     PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(moments.into()).unwrap() }
 }
 
-/// Compares what is asked for with a run by far shorter steps.
+/// Compares the chosen run with a run by far shorter steps.
 fn reaches<L>(scene: &L, turn: [f64; 3], velocity: [f64; 3])
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected: 'static> + Regular + Clone + 'static,
@@ -174,7 +174,7 @@ fn the_tolerance_is_reached_on_a_spring() {
     reaches(&(body([0.4, 0.4, 0.02]) + gravity + spring), [0.3, 1.2, 0.0], [0.5, 1.0, 2.0]);
 }
 
-/// From rest, so that no velocity is there to compare with at the start.
+/// The body starts at rest, so the initial velocity gives no scale.
 #[test]
 fn the_tolerance_is_reached_in_a_magnetic_field_from_rest() {
     let dipole = Dipole { moment: Vector3::new(0.3, 0.0, 2.0), field: Vector3::new(1.0, 0.0, 1.0) };
@@ -227,7 +227,7 @@ fn the_same_question_has_the_same_answer() {
     let [one, other] = [ask(), ask()];
     assert_eq!(one.choice(), other.choice());
     assert_eq!(end(&one), end(&other));
-    // By single steps it is the same motion, to rounding.
+    // Single steps give the same motion, to rounding.
     let mut state = one.start();
     while state.steps() < one.choice().steps {
         one.step(&mut state).unwrap();
@@ -235,18 +235,18 @@ fn the_same_question_has_the_same_answer() {
     assert!((state.attitude().as_matrix() - end(&one).0).norm() < 1e-12);
 }
 
-/// Where no flow of the free body is exact and much is asked for, collocation has the cheapest steps.
+/// If no flow of the free body is exact and the accuracy is high, collocation is the cheapest method.
 #[test]
 fn gauss_collocation_is_chosen_for_the_chaotic_top() {
     let motion = Motion::read("chaotic");
-    // Eight stages reach 1e-11 with the longest step that can be solved, so less can't be asked in earnest.
+    // Eight stages reach 1e-11 with the longest solvable step, so a larger tolerance would be no test.
     let accuracy = Accuracy { tolerance: 1e-11, horizon: 10.0 };
     let stepper = ask(&motion, accuracy).unwrap();
     let choice = stepper.choice();
     assert!(choice.chosen().name.starts_with("Gauss, "), "{choice}");
     let reached = error(&end(&stepper), &motion.at(10.0), &motion.velocity, 10.0);
     assert!(reached <= 1e-11 && reached > 1e-13, "{reached:e}\n{choice}");
-    // Its state can be stepped by hand, and what is read off it is that of the scene.
+    // The state can be stepped singly, and its properties are those of the scene.
     let mut state = stepper.start();
     let (energy, vertical) = (stepper.energy(&state), state.momentum_along(&motion.top.up));
     while state.steps() < choice.steps {
@@ -290,7 +290,7 @@ fn questions_without_an_answer() {
     assert_eq!(refusal, AccuracyError::Setup(SetupError::NonFinite { what: "velocity" }));
 }
 
-/// The floor is named, and what is named can be had.
+/// The error names the smallest reachable tolerance, which is reachable.
 #[test]
 fn a_tolerance_below_rounding_is_refused_with_the_floor() {
     let motion = Motion::read("looping A");
@@ -305,7 +305,7 @@ fn a_tolerance_below_rounding_is_refused_with_the_floor() {
     assert!(error(&end(&stepper), &motion.at(10.0), &motion.velocity, 10.0) <= 4.0 * floor);
 }
 
-/// The free body has a flow without error: that is one step, however long.
+/// The free body has a flow without error: any motion is one step.
 #[test]
 fn the_exact_motion_of_a_free_body_is_one_step() {
     let scene = body([1.0, 2.0, 2.5]);
@@ -318,14 +318,14 @@ fn the_exact_motion_of_a_free_body_is_one_step() {
         assert!(choice.trials <= 60.0 && choice.error <= tolerance, "{choice}");
         assert_eq!(choice.nearby.map(f64::to_bits), [1.0_f64.to_bits(); 2], "{choice}");
     }
-    // What rounding leaves over so long is no error of the method.
+    // Rounding over so long a motion isn't an error of the method.
     let accuracy = Accuracy { tolerance: 1e-17, horizon: 10.0 };
     let refusal = Stepper::for_accuracy(scene, accuracy, SO3::identity(), velocity).unwrap_err();
     let AccuracyError::Unreachable { floor, .. } = refusal else { panic!("{refusal}") };
     assert!(floor > 1e-16 && floor < 1e-12, "{floor}");
 }
 
-/// Where the potential or the bias stands in the way of other methods, the scene's own remain.
+/// If the potential or the bias excludes other methods, the scene's own steps remain.
 #[test]
 fn a_scene_that_cannot_be_split_has_its_own_steps() {
     let motion = Motion::read("looping A");

@@ -18,8 +18,8 @@ fn end<const PAIRS: usize>(motion: &Motion, h: f64, steps: u32) -> End {
     order::end(&Stepper::collocated::<PAIRS>(motion.top.clone(), h).unwrap(), motion, steps)
 }
 
-/// In long numbers: in a double orders as high as these go from the first step that can be solved to rounding before
-/// the error falls by its first power alone.
+/// The order is measured in long numbers: in doubles, orders as high as these reach rounding before the leading error
+/// term dominates, even from the first solvable step.
 fn assert_order_of_long_collocation<const PAIRS: usize>(numbers: [(u32, u32); 4]) {
     let tableau = Tableau::new(2 * PAIRS);
     let order = u32::try_from(4 * PAIRS).unwrap();
@@ -44,7 +44,7 @@ fn eight_stages_are_of_order_16() {
     assert_order_of_long_collocation::<4>([(50, 110), (36, 80), (50, 110), (32, 70)]);
 }
 
-/// What remains at a step of some 50°.
+/// The error at a step of some 50°.
 #[test]
 fn eight_stages_reach_rounding_in_long_steps() {
     for (motion, steps) in TOPS.into_iter().zip([90, 70, 90, 44]) {
@@ -54,8 +54,8 @@ fn eight_stages_reach_rounding_in_long_steps() {
     }
 }
 
-/// The map of momentum and parameters. A parameter off the orbit of the declared one is that of another top, whose
-/// vertical it is.
+/// The defect of the map of momentum and parameters. A parameter off the orbit of the declared one is the vertical of
+/// another top.
 fn poisson_defect<const PAIRS: usize>(top: &HeavyTop, h: f64, momentum: &Vector3<f64>, w: &Vector3<f64>) -> f64 {
     let step = |momentum: &Vector3<f64>, w: &Vector3<f64>| {
         let gauss = Stepper::collocated::<PAIRS>(HeavyTop { up: *w, ..top.clone() }, h).unwrap();
@@ -65,8 +65,8 @@ fn poisson_defect<const PAIRS: usize>(top: &HeavyTop, h: f64, momentum: &Vector3
     defect_of::<SO3, _>(step, momentum, w, &|f| derivative(f)).0
 }
 
-/// The same collocation of `Π' = Π × Ω + τ`, `w' = w × Ω` itself has the same order and isn't Poisson: the test above
-/// can tell the two apart.
+/// A control: collocation of the reduced equations `Π' = Π × Ω + τ`, `w' = w × Ω` has the same order and isn't Poisson,
+/// and the test above detects this.
 #[test]
 fn p1_collocation_of_the_reduced_equations_is_not_poisson() {
     let top = HeavyTop::asymmetric();
@@ -77,7 +77,7 @@ fn p1_collocation_of_the_reduced_equations_is_not_poisson() {
             let velocity = inverse * momentum;
             (momentum.cross(&velocity) + w.cross(&top.rho) * (top.m * top.g), w.cross(&velocity))
         };
-        // Two stages, by fixed-point iteration.
+        // The two stages of the collocation, by fixed-point iteration.
         let off = 3.0_f64.sqrt() / 6.0;
         let a = [[0.25, 0.25 - off], [0.25 + off, 0.25]];
         let mut k = [rate((*momentum, *w)); 2];
@@ -95,7 +95,7 @@ fn p1_collocation_of_the_reduced_equations_is_not_poisson() {
     assert!(reduced > 1e-6 && lifted < TOLERANCE, "{reduced:e}, {lifted:e}");
 }
 
-/// A million steps.
+/// The invariants over a million steps.
 fn assert_kept<const PAIRS: usize>(motion: &Motion, h: f64) {
     let gauss = Stepper::collocated::<PAIRS>(motion.top.clone(), h).unwrap();
     let start = gauss.start(motion.attitude, motion.velocity).unwrap();
@@ -127,7 +127,7 @@ fn steps_of_few_stages_keep_the_momenta() {
     assert_kept::<2>(&Motion::read(TOPS[3]), 0.05);
 }
 
-/// The largest error of the energy in the first and the second half of so many steps, relative.
+/// The largest relative error of the energy in the first and the second half of these steps.
 fn energy_errors<const PAIRS: usize>(motion: &Motion, h: f64, steps: u32) -> [f64; 2] {
     let gauss = Stepper::collocated::<PAIRS>(motion.top.clone(), h).unwrap();
     let mut state = gauss.start(motion.attitude, motion.velocity).unwrap();
@@ -140,8 +140,7 @@ fn energy_errors<const PAIRS: usize>(motion: &Motion, h: f64, steps: u32) -> [f6
     })
 }
 
-/// The energy isn't quadratic: at a long step it comes and goes, and its error is no larger in the second half of the
-/// time.
+/// The energy isn't quadratic: at a long step it oscillates, and its error is no larger in the second half of the time.
 #[test]
 fn the_energy_does_not_drift() {
     let [first, second] = energy_errors::<2>(&Motion::looping(), 0.15, 200_000);
@@ -149,7 +148,7 @@ fn the_energy_does_not_drift() {
     assert!(first > 1e-9 && second < 1.1 * first && second < 1e-5, "{first:e}, {second:e}");
 }
 
-/// At a step that describes the motion to rounding the energy is kept to rounding, on a chaotic motion too.
+/// At a step that is accurate to rounding, the energy is conserved to rounding, on a chaotic motion too.
 #[test]
 fn the_energy_is_kept_at_shorter_steps() {
     for (name, h) in [(TOPS[0], 0.1), (TOPS[3], 0.1)] {
@@ -159,8 +158,8 @@ fn the_energy_is_kept_at_shorter_steps() {
     }
 }
 
-/// Gravity along a general direction, a full inertia tensor, a rotor and a spring: against the fourth order of two
-/// stages with steps a fiftieth as long.
+/// Gravity along a general direction, a full inertia tensor, a rotor and a spring, compared with two stages of order
+/// four at steps a fiftieth as long.
 #[test]
 fn scenes_of_several_effects_are_integrated() {
     let J_d = NonstandardInertia::new(Matrix3::new(2.0, 0.2, -0.1, 0.2, 1.5, 0.3, -0.1, 0.3, 1.0)).unwrap();
@@ -179,7 +178,7 @@ fn scenes_of_several_effects_are_integrated() {
     assert!((coarse.energy(&few) - coarse.energy(&start)).abs() < 1e-11);
 }
 
-/// The macro's kinetic part is replaced, and axes are free to choose.
+/// The macro's kinetic part is replaced, so its form and its axes don't matter.
 #[test]
 fn only_the_continuous_limit_matters() {
     let motion = Motion::looping();
@@ -210,8 +209,8 @@ fn a_body_at_rest_begins_to_move_and_one_that_nothing_moves_stays() {
     assert_eq!(run(&free, start, 3).attitude(), start.attitude());
 }
 
-/// Torques of a top that hangs nearly at rest are small differences of large terms, and their rounding is large beside its
-/// momentum. A quarter of the step is solved from other guesses.
+/// The torques of a top that hangs nearly at rest are small differences of large terms, whose rounding is large beside
+/// the momentum. The reference takes quarter steps, from other guesses.
 #[test]
 fn a_top_that_hangs_nearly_at_rest_is_stepped() {
     let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(2.0, 2.5, 3.333)).unwrap();
@@ -227,7 +226,7 @@ fn a_top_that_hangs_nearly_at_rest_is_stepped() {
             let first = run(&gauss, start, 1);
             let parts = run(&finer, finer.start(hanging, velocity).unwrap(), 4);
             let off = (first.momentum() - parts.momentum()).norm();
-            // Four roundings of the weight's torque over the step.
+            // The bound is four roundings of the weight's torque over the step.
             let rounding = 4.0 * f64::EPSILON * h * gravity.m * gravity.g * gravity.rho.norm();
             assert!(off <= rounding + 1e-12 * first.momentum().norm(), "{size:e} {h}: {off:e} {rounding:e}");
             run(&gauss, first, 200);
@@ -235,7 +234,7 @@ fn a_top_that_hangs_nearly_at_rest_is_stepped() {
     }
 }
 
-/// Its square has no inverse.
+/// The square of the momentum has no finite inverse.
 #[test]
 fn a_momentum_of_the_smallest_numbers_is_stepped() {
     let free = Stepper::collocated::<4>(FreeBody::with_moments([1.0, 2.0, 2.5]), 0.05).unwrap();

@@ -1,4 +1,4 @@
-//! Declared Lagrangians of higher order: one solve a step, and the order that is claimed for them.
+//! Declared Lagrangians of higher order: one solve a step, and the claimed order.
 
 use checks::order::{TOPS, assert_own_order};
 use declarations::{FourthOrderBody, FourthOrderTop, LogTop, SixthOrderTop, Top as _};

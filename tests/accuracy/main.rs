@@ -1,7 +1,7 @@
-//! Methods of higher order: their coefficients, the order of each measured, and what each conserves; and what a million
-//! steps lose by rounding.
+//! Methods of higher order: their coefficients, measured orders and invariants; and rounding errors over a million
+//! steps.
 //!
-//! One crate, so that the declarations are expanded once, and a fast one.
+//! All tests are in one optimised crate, so that the declarations are expanded once.
 
 mod chain;
 mod compensated;

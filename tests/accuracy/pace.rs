@@ -1,4 +1,4 @@
-//! A pace that is declared: steps of a transformed time.
+//! A declared pace: steps of a transformed time.
 
 use checks::order::TOPS;
 use declarations::{EqualNeedle, Needle};
@@ -14,7 +14,7 @@ use crate::many_digits::motion::Motion;
 use crate::many_digits::poisson::{self, defect, derivative, phase};
 use crate::many_digits::{DoubleDouble, Matrix, Vector, long};
 
-/// `l_d(F, w, h s̄) + h s̄ E_0`.
+/// The rewritten Lagrangian `l_d(F, w, h s̄) + h s̄ E_0`.
 fn rewritten(body: &Needle, F: &Matrix3<f64>, w: &Vector3<f64>, h: f64) -> f64 {
     let next = F.transpose() * w;
     let step = h * 0.5 * (body.pace(w) + body.pace(&next));
@@ -23,7 +23,7 @@ fn rewritten(body: &Needle, F: &Matrix3<f64>, w: &Vector3<f64>, h: f64) -> f64 {
     kinetic + 0.5 * step * (1.0 / body.gap(w) + 1.0 / body.gap(&next)) + step * body.energy
 }
 
-/// The derived terms are the derivatives of the rewriting.
+/// The derived terms are the derivatives of the rewritten Lagrangian.
 #[test]
 fn the_rewriting() {
     let body = Needle { energy: -1.3, ..Needle::new(0.8) };
@@ -34,7 +34,7 @@ fn the_rewriting() {
     assert!((body.l_d(&F, &seen, h) - rewritten(&body, &F, &w, h)).abs() < 1e-14);
     for k in 0..3 {
         let turn = |t: f64| *SO3::exp(Vector3::ith(k, t)).as_matrix();
-        // At both ends of the step: `(R_F)* ∂/∂F + ∂/∂w ⋄ w`, and `(L_F)* ∂/∂F`.
+        // The momenta at both ends of the step: `(R_F)* ∂/∂F + ∂/∂w ⋄ w`, and `(L_F)* ∂/∂F`.
         let before = slope(&|t| rewritten(&body, &(turn(t) * F), &(turn(t) * w), h));
         let after = slope(&|t| rewritten(&body, &(F * turn(t)), &w, h));
         assert!((before - body.legendre_minus(&F, &seen, h)[k]).abs() < 1e-12, "{k}");
@@ -44,11 +44,11 @@ fn the_rewriting() {
     assert!((energy - body.discrete_energy(&F, &seen, h)).abs() < 1e-11);
 }
 
-/// In doubles, for what is smooth on the scale of one.
+/// The distance of points in doubles, for functions that are smooth on the scale of one.
 const APART: f64 = 0.02;
 
-/// `DΦ B DΦᵀ = B` on momentum, `w`, time and `E_0`: of a step of the library, and with 32 digits of one that is written down
-/// from its equations, as [`many_digits`](crate::many_digits) does it.
+/// The extended map satisfies `DΦ B DΦᵀ = B` on momentum, `w`, time and `E_0`: for a step of the library, and with 32
+/// digits for one that is written down from its equations, as in [`many_digits`](crate::many_digits).
 #[test]
 fn the_extended_map_is_poisson() {
     let (body, h) = (Needle::new(0.8), 0.2);
@@ -69,7 +69,7 @@ fn the_extended_map_is_poisson() {
     assert!(few < 1e-12 && many < 1e-26 && apart < 1e-14, "{few:e}, {many:e}, {apart:e}");
 }
 
-/// A step of momentum, `w`, time and `E_0`, from its equations: `p` is what each end of it is pushed by,
+/// A step of momentum, `w`, time and `E_0`, from its equations, with the kick `p` at each end:
 ///
 /// ```text
 /// (F J_d − J_d Fᵀ)^∨ = H (μ + p)      μ⁺ = Fᵀ(μ + p) + p⁺      H = h s̄
@@ -100,7 +100,7 @@ fn long_step(needle: &Needle, z: &SVector<DoubleDouble, 8>, h: f64) -> SVector<D
     phase(&end, &next, &[z[6] + step, z[7]])
 }
 
-/// What is read is of the time `t`, and steps back undo steps.
+/// Outputs are functions of the time `t`, and steps back undo steps.
 #[test]
 fn what_is_read_is_of_the_time() {
     let (body, h, velocity) = (Needle::new(0.05), 0.012, Vector3::new(0.9, 0.1, 0.15));
@@ -138,13 +138,13 @@ fn what_is_read_is_of_the_time() {
     assert!((state.momentum() - momentum).norm() < 1e-10 && paced.time(&state).abs() < 1e-10);
     let compensated = Stepper::new(body, h).unwrap().compensated().paced().unwrap();
     assert_eq!(compensated.adopt(&start).advected(), start.advected());
-    // Where there is none, or it isn't of the whole scene.
+    // A pace must exist, and must be that of the whole scene.
     let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
     assert!(Stepper::new(body + gravity, h).unwrap().paced().is_err());
     assert!(Stepper::new(RigidBody { J_d: body.J_d }, h).unwrap().paced().is_err());
 }
 
-/// The largest error of the energy in so many steps, and the time that they take.
+/// The largest error of the energy in this number of steps, and their duration.
 fn worst<S, P>(stepper: &Stepper<S, P>, steps: u32) -> (f64, f64)
 where
     S: Effect<Scalar = f64, Group = SO3>,
@@ -162,7 +162,7 @@ where
 fn what_a_pace_is_worth() {
     let needle @ Needle { J_d, a, rho, delta, .. } = Needle::new(0.05);
     let paced = |n: u32, h: f64| worst(&Stepper::new(needle, h).unwrap().paced().unwrap(), n);
-    // So that the steps end at 12 s.
+    // The step for which the steps end at 12 s.
     let tau = (0..6).fold(12.0, |tau, _| tau * 12.0 / paced(2000, tau / 2000.0).1);
     let rows = [500, 1000, 2000, 4000].map(|n| {
         let equal = Stepper::new(EqualNeedle { J_d, a, rho, delta }, 12.0 / f64::from(n)).unwrap().or_substeps(64);
@@ -193,7 +193,7 @@ fn what_a_pace_is_worth() {
 )]
 #[derive(Clone, Copy, Debug)]
 struct Pair {
-    /// With which there is a step where both are in one place.
+    /// The softening length, with which a step exists even if both points coincide.
     delta: f64,
     energy: f64,
 }

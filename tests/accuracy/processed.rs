@@ -1,4 +1,4 @@
-//! Processed splittings: orders, what they keep, and that looking at a motion doesn't disturb it.
+//! Processed splittings: their orders and invariants, and outputs that don't disturb the motion.
 
 use checks::order::{TOPS, counts, end, measured};
 use declarations::{FreeBody, HeavyTop, Motion};
@@ -13,8 +13,8 @@ fn exact(top: &HeavyTop) -> ExactBody {
     ExactBody::new(&top.ordinary_inertia())
 }
 
-/// On tops with and without symmetry. What the ends leave is as large as the kernel's error, and on the chaotic top they
-/// cancel in part.
+/// The orders on tops with and without symmetry. The processor's error is as large as the kernel's, and on the chaotic
+/// top they cancel in part.
 #[test]
 fn processed_splittings_have_their_orders() {
     for (scheme, coarsest) in [
@@ -33,7 +33,7 @@ fn processed_splittings_have_their_orders() {
     }
 }
 
-/// Read after each step, some or none: the same bits.
+/// Outputs after each step, after some or none give the same bits.
 #[test]
 fn looking_does_not_disturb() {
     let motion = Motion::chaotic();
@@ -53,8 +53,8 @@ fn looking_does_not_disturb() {
     }
 }
 
-/// A million steps of the chaotic top: the momentum about the vertical, lengths, and rotations that stay rotations. The
-/// energy stays within the bound that it has at first.
+/// The invariants over a million steps of the chaotic top: the momentum about the vertical, lengths, and orthogonality.
+/// The energy stays within its initial bound.
 #[test]
 fn processed_splittings_keep_the_momenta() {
     let motion = Motion::chaotic();
@@ -80,7 +80,7 @@ fn processed_splittings_keep_the_momenta() {
     }
 }
 
-/// A symmetric top by its own flow, to what any other has.
+/// A symmetric top by its own flow has the motion of any other exact flow.
 #[test]
 fn other_flows_will_do() {
     let (motion, scheme) = (Motion::looping(), ProcessedScheme::SIX_A);
@@ -90,7 +90,7 @@ fn other_flows_will_do() {
     assert!(relative(own.0.as_matrix(), exact.0.as_matrix()) < 1e-12);
 }
 
-/// A push acts on what is read: the torque of a step is that of a splitting to the order of both.
+/// A push acts on the output: the torque of a step is that of a splitting to the order of both.
 #[test]
 fn a_push_acts_on_what_is_read() {
     let motion = Motion::chaotic();
@@ -107,7 +107,7 @@ fn a_push_acts_on_what_is_read() {
     assert!(relative(&states.0.momentum(), &states.1.momentum()) < 1e-10);
 }
 
-/// A processed free body moves as by one exact drift: kicks and their gradients are none.
+/// A processed free body moves as by one exact drift: kicks and their gradients are zero.
 #[test]
 fn a_free_body_is_processed_exactly() {
     let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.6, 2.6, 3.0)).unwrap();

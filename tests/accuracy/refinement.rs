@@ -1,4 +1,4 @@
-//! The public harness: `convergence`, `work_precision`, and the tables that they make.
+//! The public functions `convergence` and `work_precision`, and their tables.
 
 use std::time::Duration;
 
@@ -25,7 +25,7 @@ fn known(t: f64) -> Reference<SO3> {
     Reference::End(End { attitude: SO3::try_from(attitude).unwrap(), velocity })
 }
 
-/// The errors of the table, by a loop that shares nothing with it.
+/// The errors of the table, by an independent loop.
 #[test]
 fn errors_are_those_of_a_loop_by_hand() {
     let motion = Motion::looping();
@@ -48,11 +48,11 @@ fn errors_are_those_of_a_loop_by_hand() {
     }
     assert_eq!(steps.next(), None);
     assert!(table.orders().all(|order| (order - 2.0).abs() < 0.01), "{table}");
-    // Three points are no line.
+    // Three points are too few for a fit.
     assert_eq!(table.order_above(0.0), None);
 }
 
-/// With the finest run for a reference the errors are those against the truth, but for the part that is left of it.
+/// The errors relative to the finest run are those against the truth, up to the error of that run.
 #[test]
 fn the_finest_run_serves_as_a_reference() {
     let truth = convergence(looping(), 1.0, [100, 200], known(1.0)).unwrap();
@@ -72,11 +72,11 @@ fn what_has_no_answer_is_a_typed_error() {
     for (counts, reference) in [(vec![], known(1.0)), (vec![0, 10], known(1.0)), (vec![10], Reference::Finest)] {
         assert_eq!(convergence(looping(), 1.0, counts, reference).unwrap_err(), RefinementError::NoSteps);
     }
-    // A closure that doesn't listen.
+    // This closure ignores its step.
     let deaf = |_| looping()(0.01);
     let refused = convergence(deaf, 1.0, [100, 200], known(1.0)).unwrap_err();
     assert_eq!(refused, RefinementError::OtherStep { asked: 0.005, found: 0.01 });
-    // A step beyond the quarter turn.
+    // This step is beyond the quarter turn.
     let refused = convergence(looping(), 1.0, [2, 100], known(1.0)).unwrap_err();
     let RefinementError::Step { step: 0.5, cause: StepError::BeyondSolvable { .. } } = refused else {
         panic!("{refused}")
@@ -87,7 +87,7 @@ fn what_has_no_answer_is_a_typed_error() {
     let nothing = |h| Stepper::new(HeavyTop { m: f64::NAN, ..Motion::looping().top }, h).and_then(|_| looping()(h));
     let refused = convergence(nothing, 1.0, [100], known(1.0)).unwrap_err();
     assert!(matches!(refused, RefinementError::Setup { step: 0.01, .. }), "{refused}");
-    // Backwards is a direction like any other.
+    // A negative duration is valid.
     let back = convergence(looping(), -1.0, [100, 200, 400, 800, 6400], Reference::Finest).unwrap();
     assert!((back.order_above(0.0).unwrap() - 2.0).abs() < 0.05, "{back}");
 }
@@ -103,7 +103,7 @@ fn work_leaves_out_what_fails_and_says_why_all_did() {
     assert!(table.rows().iter().all(|row| row.seconds > Some(0.0)));
     let refused = work_precision(looping(), 1.0, [1, 2], known(1.0), BRIEF).unwrap_err();
     assert!(matches!(refused, RefinementError::Step { step: 0.5, .. }), "{refused}");
-    // Longer than nothing is the first run already.
+    // The limit of zero admits only the first run.
     let short = Effort { longest: 0.0, ..BRIEF };
     assert_eq!(work_precision(looping(), 1.0, [100, 200, 400], known(1.0), short).unwrap().rows().len(), 1);
 }
@@ -114,10 +114,10 @@ fn shorter_steps_end_where_errors_stop_falling() {
     let error = |h: f64| h.powi(4).max(2e-13);
     let steps = || (0..40).map(|k| 0.5_f64.powi(k));
     let table = Refinement::timed(steps(), BRIEF, |h| Some(move || Some(error(h))), |error: &f64| *error);
-    // Of h = 1 the error is 1, which is another motion; the floor begins at the twelfth, and three are no better.
+    // At h = 1 the error is 1, which is another motion; the floor begins at the twelfth, and three more confirm it.
     assert_eq!(table.rows().first().map(|row| row.step), Some(0.5));
     assert_eq!(table.rows().len(), 11 + 3);
-    // A run in two fails.
+    // Every second run fails.
     let mut fails = false;
     let half = Refinement::timed(
         steps().take(9),
@@ -131,7 +131,7 @@ fn shorter_steps_end_where_errors_stop_falling() {
     assert_eq!(half.rows().len(), 4);
 }
 
-/// A first run that ends in NaN is no best one: the curve behind it isn't cut.
+/// A first run that ends in NaN isn't the best one: later runs stay in the curve.
 #[test]
 fn runs_that_end_in_nan_are_no_plateau() {
     let errors = [f64::NAN, 4e-11, 3e-11, 2e-11, 1e-11, 9e-12];
@@ -145,7 +145,7 @@ fn runs_that_end_in_nan_are_no_plateau() {
     assert_eq!(table.rows().iter().map(|row| row.error).collect::<Vec<_>>(), errors[1..]);
 }
 
-/// However long repetitions are asked for, there is an end, and after a failure at once.
+/// The number of repetitions is bounded for every request, and a failure ends them at once.
 #[test]
 fn repetitions_are_bounded_and_end_with_a_failure() {
     let endless = Effort { repeated: Duration::MAX, ..BRIEF };
@@ -163,7 +163,8 @@ fn repetitions_are_bounded_and_end_with_a_failure() {
     assert_eq!(failed.unwrap_err(), 3);
 }
 
-/// A coarse run that can't be built or ends in NaN leaves the others in the table; if none is left the error says why.
+/// A coarse run that can't be constructed or ends in NaN is left out of the table; if no run remains, the error says
+/// why.
 #[test]
 fn work_leaves_out_steps_that_are_refused_and_ends_that_are_not_finite() {
     let refuses = |h: f64| {
@@ -176,21 +177,21 @@ fn work_leaves_out_steps_that_are_refused_and_ends_that_are_not_finite() {
     let nowhere = Reference::End(End { attitude: SO3::identity(), velocity: Vector3::new(f64::NAN, 0.0, 0.0) });
     let refused = work_precision(looping(), 1.0, [100, 200], nowhere, BRIEF).unwrap_err();
     assert_eq!(refused, RefinementError::NonFinite { step: 0.005 });
-    // Another motion.
+    // The reference is another motion.
     let spun = Reference::End(End { attitude: SO3::identity(), velocity: Vector3::new(1e3, 0.0, 0.0) });
     let refused = work_precision(looping(), 1.0, [100, 200], spun, BRIEF).unwrap_err();
     assert!(matches!(refused, RefinementError::OtherMotion { least } if least >= 0.5), "{refused}");
-    // A closure that doesn't listen is no coarse step.
+    // A closure that ignores its step isn't a coarse step.
     let refused = work_precision(|_| looping()(0.01), 1.0, [100, 200], known(1.0), BRIEF).unwrap_err();
     assert_eq!(refused, RefinementError::OtherStep { asked: 0.005, found: 0.01 });
 }
 
-/// On a power law the time to any error is known.
+/// For a power law the time to any error is known.
 #[test]
 fn the_time_to_an_error_is_read_off_straight_lines() {
     let row = |h: f64| Measurement { step: h, error: 1e-3 * h * h, iterations: None, seconds: Some(2e-3 / h) };
     let table: Refinement = [1.0, 0.5, 0.25].map(row).into_iter().collect();
-    // At the runs, half way between two of them in both logarithms, and where nothing is known.
+    // At the runs, half way between two of them in both logarithms, and beyond the table.
     assert_eq!(table.seconds_to(1e-3), Some(2e-3));
     assert_eq!(table.seconds_to(1.0), Some(2e-3));
     let between = table.seconds_to(1e-3 / 2.0).unwrap();
@@ -199,14 +200,14 @@ fn the_time_to_an_error_is_read_off_straight_lines() {
     assert_eq!(Refinement::of([(0.1, 1e-9)]).seconds_to(1e-3), None);
 }
 
-/// A slope is a finite number or there is none.
+/// A slope is a finite number or `None`.
 #[test]
 fn the_order_is_read_off_finite_errors_above_zero() {
     let halvings = [0.4, 0.2, 0.1, 0.05];
     let squares = Refinement::of(halvings.map(|h| (h, h * h)));
     assert!((squares.order_above(0.0).unwrap() - 2.0).abs() < 1e-12);
     for odd in [f64::INFINITY, f64::NAN, 0.0] {
-        // Beside four others it doesn't count, instead of one of them it leaves too few.
+        // Beside four others such a row doesn't count; in place of one it leaves too few.
         let with = |first| Refinement::of([first].into_iter().chain(halvings.map(|h| (h, h * h))));
         assert_eq!(with((0.8, odd)).order_above(-1.0), squares.order_above(0.0));
         assert_eq!(with((odd, 0.7)).order_above(-1.0), squares.order_above(0.0));
@@ -230,7 +231,7 @@ fn the_texts_have_the_numbers_to_the_bit() {
         );
     }
     assert_eq!(csv.lines().count(), 4);
-    // The first run has none before it.
+    // The first run has no row before it.
     assert_eq!(csv.lines().nth(1).unwrap().split(',').skip(2).take(2).collect::<Vec<_>>(), ["", ""]);
 
     let json: serde_json::Value = serde_json::from_str(&table.to_json()).unwrap();
@@ -239,7 +240,7 @@ fn the_texts_have_the_numbers_to_the_bit() {
     assert_eq!(json[2]["order"].as_f64(), table.orders().nth(1));
     assert!(json[0]["order"].is_null());
 
-    // An error of zero has an order without end.
+    // An error of zero has an infinite order.
     let odd = Refinement::of([(0.1, 1.0), (0.05, 0.0), (0.025, f64::NAN)]);
     let json: serde_json::Value = serde_json::from_str(&odd.to_json()).unwrap();
     assert!(json[1]["ratio"].is_null() && json[2]["error"].is_null() && json[0]["seconds"].is_null());
@@ -259,7 +260,7 @@ fn a_table_shows_the_columns_that_there_are() {
         "  5.000e-2   1.00e-2      4.00      2.00",
     ];
     assert_eq!(plain.lines().collect::<Vec<_>>(), expected);
-    // Columns stay apart where numbers fill them.
+    // Columns stay separate even for long numbers.
     let full = Refinement::of([(1e-100, 1e100), (1e-101, 1e-100)]).to_string();
     assert_eq!(full.lines().nth(2).unwrap().split_whitespace().count(), 4, "{full}");
     assert_eq!(Refinement::default().to_string(), "      h, s     error");

@@ -22,7 +22,7 @@ fn split<K: KineticFlow<f64>>(kinetic: K, scheme: SplittingScheme, motion: &Moti
     end(&Stepper::split(motion.top.clone(), h, kinetic, scheme).unwrap(), motion, steps)
 }
 
-/// In a double an exact kinetic flow leaves nothing but rounding while the steps are long.
+/// The order is measured in long numbers: in doubles an exact kinetic flow reaches rounding at long steps.
 #[test]
 fn sofroniou_spaletta_10_of_strang_is_of_order_10() {
     let scheme = SplittingScheme::SOFRONIOU_SPALETTA_10;
@@ -48,7 +48,7 @@ fn sofroniou_spaletta_10_of_strang_is_of_order_10() {
     }
 }
 
-/// On a top whose potential isn't small: on the others what is seen at common steps is an order between 8 and 4.
+/// The top has a potential that isn't small: on the others the measured order at usual steps is between 8 and 4.
 #[test]
 fn near_integrable_8_6_4_and_10_6_4_are_of_order_4() {
     for scheme in [SplittingScheme::NEAR_INTEGRABLE_8_6_4, SplittingScheme::NEAR_INTEGRABLE_10_6_4] {
@@ -58,14 +58,14 @@ fn near_integrable_8_6_4_and_10_6_4_are_of_order_4() {
     }
 }
 
-/// The gradients of potentials that aren't linear in what is advected, which their sum adds up: against shorter steps.
+/// The gradients of nonlinear potentials and their sum, compared with shorter steps.
 #[test]
 fn force_gradients_of_any_potential() {
     let top = HeavyTop::thesis();
     let scene = || {
         let spring =
             Spring { k: 40.0, length: 0.5, at: Vector3::new(0.2, 0.3, 0.9), anchor: Vector3::new(1.5, 0.5, 1.0) };
-        // Like a satellite's mass, of another shape than the body that turns.
+        // The shape of the gravity gradient differs from the body's, as for a satellite's mass.
         let J = Inertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.0)).unwrap();
         let gradient = GravityGradient { GM: 20.0, r: 1.5, J, direction: Vector3::new(0.0, 0.6, 0.8) };
         top.clone() + spring + gradient
@@ -92,7 +92,7 @@ fn force_gradients_of_any_potential() {
     }
 }
 
-/// On the top that has no exact one.
+/// The top has no closed exact flow.
 #[test]
 fn declared_kinetic_flows_keep_the_order() {
     let chaotic = (TOPS[3], 10.0);
@@ -107,7 +107,7 @@ fn declared_kinetic_flows_keep_the_order() {
     });
 }
 
-/// The flow that needs no equation is that of the free body: against the closed form to thirty digits.
+/// The flow without an equation is that of the free body: compared with the closed form to thirty digits.
 #[test]
 fn the_symmetric_body_moves_exactly() {
     let motion = Motion::read("free symmetric");
@@ -144,7 +144,7 @@ fn a_body_without_symmetry_has_no_exact_flow() {
     }
 }
 
-/// The fourth-order top has `F` and `w` in one term; a half-step kick is all that a splitting may have.
+/// The fourth-order top couples `F` and `w` in one term; a splitting admits only half-step kicks.
 #[test]
 fn a_lagrangian_that_cannot_be_split_is_refused() {
     let top = HeavyTop::thesis();
@@ -153,21 +153,21 @@ fn a_lagrangian_that_cannot_be_split_is_refused() {
     assert!(matches!(error, SetupError::NotSeparable { defect } if defect > 1e-3), "{error:?}");
 }
 
-/// What a kick's derivative isn't written for can be split, but not with force gradients.
+/// A scene without the derivative of its kick can be split, but not with force gradients.
 #[test]
 fn a_force_gradient_has_to_be_written() {
     let top = WithJacobian(HeavyTop::thesis());
     let split = |scheme| Stepper::split(top.clone(), 0.01, symmetric(&top.0), scheme).map(|_| ());
     assert_eq!(split(SplittingScheme::NYSTROM_6), Ok(()));
     assert_eq!(split(SplittingScheme::FORCE_GRADIENT_2), Err(SetupError::NoForceGradient));
-    // Nor is it chosen.
+    // The choice by accuracy avoids such schemes.
     let accuracy = Accuracy { tolerance: 1e-4, horizon: 1.0 };
     let stepper = Stepper::for_accuracy(top, accuracy, SO3::identity(), Vector3::new(0.5, 2.0, 12.0)).unwrap();
     assert!(!stepper.choice().to_string().contains("force gradient"));
 }
 
-/// `p_3` is constant, but its square isn't rounded in the same way at each step: that would change `|w|²` by 9e-14
-/// here.
+/// `p_3` is constant, but the rounding of its square varies from step to step: a constant rounding error would change
+/// `|w|²` by 9e-14 here.
 #[test]
 fn the_exact_flow_keeps_lengths() {
     let motion = Motion::looping();
@@ -180,7 +180,7 @@ fn the_exact_flow_keeps_lengths() {
     assert!(change < 6e-14, "{change:e}");
 }
 
-/// Nothing of a rotor is in the flow of a body without one.
+/// The flow of a body without a rotor doesn't agree with a scene that has one.
 #[test]
 fn a_rotor_that_the_flow_does_not_have_is_refused() {
     let top = HeavyTop::thesis();

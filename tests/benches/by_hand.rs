@@ -1,4 +1,4 @@
-//! The heavy top (3.13) with a diagonal `J_d`, written by hand for speed: what the derived stepper is measured against.
+//! The heavy top (3.13) with a diagonal `J_d`, written by hand for speed: the standard for the derived stepper.
 //!
 //! Straight-line scalar code in Cayley coordinates `y = tan(θ/2) n`, with `t = (h/2)(p + (h/2) τ(w))`,
 //!
@@ -8,25 +8,25 @@
 //! R⁺    = R + R D,    w⁺ = w + Dᵀ w,    p⁺ = p + Dᵀ a + the two half kicks
 //! ```
 //!
-//! The guess is the library's, and so is Newton's iteration, with its last update by the Jacobian before. It stops
-//! where the library stops and refuses what the library refuses, but it knows one body and one force only, and has no
-//! second attempt.
+//! The initial guess is the library's, and so is Newton's iteration, with a reused Jacobian in its last update. The
+//! convergence test and the refusals are the library's, too, but there is only one body and one force, and no second
+//! attempt.
 
-/// A heavy top with its step folded in.
+/// A heavy top with the constants of its step.
 pub(crate) struct Top {
     /// Principal moments `J_1, J_2, J_3`.
     moments: [f64; 3],
-    /// `J_3 − J_2`, `J_1 − J_3`, `J_2 − J_1`.
+    /// The differences `J_3 − J_2`, `J_1 − J_3`, `J_2 − J_1`.
     differences: [f64; 3],
-    /// `(h/2) m g ρ`.
+    /// The lever `(h/2) m g ρ`.
     lever: [f64; 3],
     half_step: f64,
     /// A sixteenth of the Jacobian's determinant at rest.
     safe: f64,
 }
 
-/// Attitude by rows, body momentum, vertical in the body, the last Cayley vector, its last change and the guess of the
-/// next.
+/// Attitude by rows, body momentum, vertical in the body frame, the last Cayley vector, its last change and the next
+/// guess.
 #[derive(Clone, Debug)]
 pub(crate) struct State {
     pub(crate) attitude: [[f64; 3]; 3],
@@ -37,11 +37,11 @@ pub(crate) struct State {
     pub(crate) guess: [f64; 3],
 }
 
-/// As in the library, where it is explained.
+/// The limit of the library, which documents it.
 const MAX_ITERATIONS: u32 = 20;
 
 impl Top {
-    /// `weight` is `m g`.
+    /// The top with these parameters; `weight` is `m g`.
     pub(crate) fn new(moments: [f64; 3], weight: f64, rho: [f64; 3], h: f64) -> Self {
         let [a, b, c] = moments;
         Self {
@@ -53,7 +53,7 @@ impl Top {
         }
     }
 
-    /// One step; `false`, with the state as it was, where Newton's iteration fails.
+    /// Makes one step; returns `false`, with the state unchanged, if Newton's iteration fails.
     #[inline]
     pub(crate) fn step(&self, state: &mut State) -> bool {
         let kick = cross(&state.vertical, &self.lever);
@@ -130,10 +130,10 @@ impl Top {
             let squared = x * x + y * y + z * z;
             let first = dx * dx + dy * dy + dz * dz;
             if first <= squared * (f64::EPSILON / 64.0) {
-                // Beyond a quarter turn the sign of the determinant alone doesn't tell the branch.
+                // Beyond a quarter turn the sign of the determinant alone doesn't determine the branch.
                 return (det > 0.0 && squared < 1.0).then_some([x, y, z]);
             }
-            // Once more with the same Jacobian, where that will be enough.
+            // One simplified iteration with the same Jacobian, if that suffices.
             if first * first * first > squared * (f64::EPSILON * f64::EPSILON / 4.0) || det <= self.safe {
                 continue;
             }

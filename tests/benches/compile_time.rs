@@ -1,14 +1,14 @@
-//! How long a user waits after an edit: the incremental build of a crate with one declaration.
+//! The time that a user waits after an edit: the incremental build of a crate with one declaration.
 //!
 //! ```text
 //! cargo bench --bench compile-time
 //! ```
 //!
 //! Each source is the `main.rs` of a crate that depends on liestep: a file in `compile_time/`, or a declaration of the
-//! examples with a `main` of its own. A number in it is changed, then the crate is checked or built
-//! without optimisation, as `cargo check` and `cargo build` do for the user; the whole command is timed, cargo and
-//! linker included. The crate `none` declares nothing: what a declaration costs is the difference. The first run
-//! compiles the dependencies. A new declaration is its line in [`DECLARATIONS`].
+//! examples with a `main` of its own. A number in it is changed, then the crate is checked or built without
+//! optimisation, as by a user's `cargo check` and `cargo build`; the time is that of the whole command, including cargo
+//! and the linker. The crate `none` declares nothing: the cost of a declaration is the difference. The first run
+//! compiles the dependencies. For a new declaration add a line to [`DECLARATIONS`].
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -17,7 +17,7 @@ use std::{env, fs, io};
 
 const ROUNDS: u32 = 7;
 
-/// Name and source.
+/// The names and sources.
 const DECLARATIONS: [(&str, &str); 5] = [
     ("none", include_str!("compile_time/none.rs")),
     ("(3.13)", include_str!("compile_time/heavy_top.rs")),
@@ -57,7 +57,7 @@ impl Crate {
         let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("compile-time");
         fs::create_dir_all(directory.join("src"))?;
         let workspace = Path::new(env!("CARGO_MANIFEST_DIR"));
-        // One name for all crates and one set of versions: the dependencies are then compiled once.
+        // All crates have one name and one set of versions, so the dependencies are compiled once.
         let manifest = format!(
             "[package]\nname = \"user\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n\
              [dependencies]\nliestep = {{ path = {:?} }}\nnalgebra = {{ version = \"0.35\", default-features = false }}\n\n\
@@ -69,7 +69,7 @@ impl Crate {
         Ok(Self { directory, source })
     }
 
-    /// Runs cargo after an edit that no earlier build has seen; in seconds.
+    /// The duration of a cargo command after an edit that no earlier build contains, in seconds.
     fn time(&self, command: &str, edit: u32) -> io::Result<f64> {
         let edited = self.source.replacen("EDIT: u32 = 0", &format!("EDIT: u32 = {edit}"), 1);
         assert_ne!(edited, self.source, "there is a number to edit");
@@ -87,7 +87,7 @@ impl Crate {
 
     /// The median of some edits after one that fills the cache, in milliseconds.
     fn median(&self, command: &str) -> io::Result<f64> {
-        // Not a number that an earlier run has used: the build would be found in the cache.
+        // The number must be new: a build from an earlier run would be in the cache.
         let first = std::process::id() % 1_000_000 * 1_000 + 1;
         self.time(command, first)?;
         let mut times = (1..=ROUNDS).map(|round| self.time(command, first + round)).collect::<io::Result<Vec<_>>>()?;

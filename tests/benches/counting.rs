@@ -1,9 +1,9 @@
-//! Instructions a step, by valgrind: the count of `2N` steps less that of `N`.
+//! Instructions a step, by valgrind: the count of `2N` steps minus that of `N`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Why nothing was counted.
+/// The reason why counting failed.
 pub(crate) type Uncounted = Box<dyn std::error::Error>;
 
 /// Instructions a step of a program whose last argument is a number of steps, from a run and one twice as long.
@@ -24,7 +24,7 @@ fn count(program: &Path, arguments: &[&str], steps: u32) -> Result<u64, Uncounte
     Ok(number.trim().parse()?)
 }
 
-/// Builds another benchmark and tells where it is.
+/// Builds another benchmark and returns its path.
 #[allow(dead_code)] // one bench of two builds another
 pub(crate) fn built(bench: &str) -> Result<PathBuf, Uncounted> {
     let mut cargo = Command::new(env!("CARGO"));

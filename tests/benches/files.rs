@@ -1,4 +1,4 @@
-//! The same scenes from files: a compiled body, and beside it a program that is interpreted, or machine code.
+//! Scenes from files: a compiled body with an interpreted program or machine code.
 
 use std::time::Instant;
 
@@ -8,7 +8,7 @@ use simba::simd::AutoF64x8;
 
 use crate::counting::Uncounted;
 
-/// The tables of a file beside the body.
+/// The tables of a file besides the body.
 pub(crate) const FILES: [(&str, &str); 11] = [
     ("body", ""),
     ("body + gravity", "[gravity]\nm = 1\ng = 9.81\nrho = [0.3, 0.2, 0.4]\nup = [0, 0, 1]"),
@@ -23,7 +23,7 @@ pub(crate) const FILES: [(&str, &str); 11] = [
     ("Cayley body", "[body]\nmoments = [2, 3, 4.5]\nkinetic = \"cayley\""),
 ];
 
-/// Makes steps of a file's scene, and keeps no state between.
+/// Makes steps of a file's scene, without storing states.
 pub(crate) fn run(tables: &str, steps: u32) -> Result<(), Mistake> {
     liestep_scene::parse("bench.toml", &text(tables))?.first(steps).map(|_| ())
 }
@@ -38,8 +38,8 @@ fn text(tables: &str) -> String {
 
 const MEMBERS: u32 = 8_000;
 
-/// What a member of a file's ensemble of (3.13) costs before its first step, and what a core makes of their steps in lanes:
-/// the fastest of some rounds.
+/// Prints the time of a member of a file's ensemble of (3.13) before its first step, and the rate of its steps in lanes
+/// on one core: the fastest of some rounds.
 pub(crate) fn members() -> Result<(), Uncounted> {
     let draws = "[ensemble]\nmembers = 8000\ndraw.gravity.m = { mean = 1.0, deviation = 0.01 }\n\
                  draw.start.velocity = [0.5, 2, { from = 8.0, to = 12.0 }]\n";

@@ -1,4 +1,4 @@
-//! A free body in a program that has no other effect; what its steps cost is to be what they cost beside all others.
+//! A free body in a program without other effects; its steps must cost as much as in a program with all effects.
 //!
 //! ```text
 //! cargo bench --bench free-body-alone                  times a step

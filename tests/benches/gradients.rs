@@ -1,4 +1,4 @@
-//! What derivatives of the steps of a heavy top cost, in plain steps of the same method.
+//! The cost of the derivatives of a heavy top's steps, in plain steps of the same method.
 //!
 //! ```text
 //! cargo bench --bench gradients                               times, side by side
@@ -6,11 +6,11 @@
 //! cargo bench --bench gradients -- count METHOD NAME 1000     runs 1000 steps with one and nothing else
 //! ```
 //!
-//! The methods are (3.13), a splitting with force gradients and a processed one, which is read after each step; both of any
-//! body and of a symmetric one. The numbers are the three of the attitude and of the momentum at the start, three moments,
-//! `m g` and three of the centre of mass, and with them what else there is: `up`, and of the exact flow the turns of its
-//! axes. An `adjoint` has a cost at the end of the run, `costs` has one at each step. All take turns within one run, and the
-//! fastest batch of each counts.
+//! The methods are (3.13), a splitting with force gradients and a processed one with outputs after each step, each for
+//! a general body and for a symmetric one. The parameters are the three of the attitude and of the momentum at the
+//! start, three moments, `m g` and three of the centre of mass, together with `up` and, for the exact flow, the turns
+//! of its axes. An `adjoint` has a cost at the end of the run, `costs` has one at each step. All take turns within one
+//! run, and the fastest batch of each counts.
 
 mod counting;
 
@@ -46,10 +46,10 @@ const NAMES: [&str; 7] = ["step", "transition", "columns", "adjoint", "costs", "
 const BATCH: u64 = 1_000;
 const ROUNDS: usize = 100;
 
-/// Runs this number of steps, and the derivatives that a name stands for.
+/// Runs this number of steps, with the derivatives of this name.
 type Run = Box<dyn Fn(&str, u64) -> Result<(), Uncounted>>;
 
-/// A method with its start, ready to be run.
+/// A method with its initial state, ready to be run.
 fn method(name: &str) -> Result<Run, Uncounted> {
     let is_symmetric = name.starts_with("symmetric");
     let moments = if is_symmetric { Vector3::new(2.0, 2.0, 3.5) } else { Vector3::new(2.0, 3.0, 4.5) };
@@ -87,7 +87,8 @@ fn ready<P: Linearisable<Top> + 'static>(stepper: Stepper<Top, P>) -> Result<Run
                 }
             }
             "transition" | "columns" => {
-                // Those of the flow, where there is one, or else on the diagonal; and weight and centre of mass.
+                // The moments are those of the flow, if there is one, otherwise the diagonal; then weight and centre of
+                // mass.
                 let moments = linear.numbers(1, "moment").map_or(vec![0, 4, 8], Iterator::collect);
                 let all: Vec<_> = moments.into_iter().chain(9..13).collect();
                 let mut tangent = linear.tangent(if name == "columns" { &all } else { &[] });
@@ -110,7 +111,7 @@ fn ready<P: Linearisable<Top> + 'static>(stepper: Stepper<Top, P>) -> Result<Run
     }))
 }
 
-/// A line for each method and name, by a number for a step.
+/// Prints a line for each method and name, with a number per step.
 fn table(unit: &str, of: impl Fn(usize, usize) -> f64) {
     for (i, method) in METHODS.iter().enumerate() {
         for (j, name) in NAMES.iter().enumerate() {

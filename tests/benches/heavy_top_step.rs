@@ -1,12 +1,12 @@
-//! What a step of the heavy top (3.13) costs: derived, against written by hand for speed, against Runge–Kutta.
+//! The cost of a step of the heavy top (3.13): derived, written by hand for speed, and by Runge–Kutta.
 //!
 //! ```text
 //! cargo bench                                 times a step, and the ratio of derived to by hand
 //! cargo bench -- count derived 1000           runs 1000 steps of one kernel and nothing else
 //! ```
 //!
-//! The kernels take turns within one run, so that what else the machine does meets all of them alike. Instructions a
-//! step, which don't depend on that, are a difference of two counts:
+//! The kernels take turns within one run, so that other load of the machine affects all of them alike. Instructions a
+//! step, which don't depend on it, are a difference of two counts:
 //!
 //! ```text
 //! cargo bench --no-run                        prints the path of the executable
@@ -103,7 +103,8 @@ fn run_runge_kutta(top: &Equations, state: &mut workbench::top_equations::State,
     }
 }
 
-/// The largest difference of derived and hand-written after a thousand steps, relative to the size of each part.
+/// The largest difference between the derived and the hand-written kernel after a thousand steps, relative to the size
+/// of each part.
 fn disagreement() -> f64 {
     let (stepper, mut state) = derived();
     let (top, mut other) = written_by_hand(&state);

@@ -1,4 +1,4 @@
-//! What a step of the heavy top costs with each declared Lagrangian, as a multiple of a step of (3.13).
+//! The cost of a step of the heavy top with each declared Lagrangian, as a multiple of a step of (3.13).
 //!
 //! ```text
 //! cargo bench --bench kinetic-terms
@@ -17,7 +17,7 @@ use liestep::{SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
 const STEPS: [f64; 2] = [0.01, 0.05];
-/// Short enough that some batches meet no other process.
+/// Short enough that some batches aren't disturbed by other processes.
 const BATCH: u32 = 500;
 const ROUNDS: usize = 200;
 

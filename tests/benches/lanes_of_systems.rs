@@ -4,8 +4,8 @@
 //! cargo bench --bench lanes-of-systems
 //! ```
 //!
-//! The eight start each from another state. They make the same steps alone and in lanes, which is asserted before they are
-//! timed, and take turns within one run; the fastest batch of each counts, as in `lanes`.
+//! Each of the eight has its own initial state. Their steps alone and in lanes agree, which is asserted before the
+//! timing; they take turns within one run, and the fastest batch of each counts, as in `lanes`.
 
 use core::array::from_fn;
 use core::fmt::Debug;
@@ -25,7 +25,7 @@ use simba::simd::AutoF64x8;
 const SCENES: usize = 8;
 const STEP: f64 = 0.01;
 
-/// A small turn that is another for each scene and body.
+/// A small turn, different for each scene and body.
 fn turn(scene: usize, body: usize) -> SO3 {
     #[allow(clippy::cast_precision_loss)] // small counts
     let (a, b) = (scene as f64, body as f64);
@@ -42,11 +42,11 @@ fn body() -> NonstandardInertia {
     NonstandardInertia::from_principal_moments(Vector3::new(0.5, 0.4, 1.0 / 3.0)).expect("a body")
 }
 
-/// Steps of each scene in a batch, and how often batches take turns.
+/// Steps of each scene in a batch, and the number of batches.
 const BATCH: u64 = 500;
 const ROUNDS: usize = 200;
 
-/// Eight scenes one after another, and in lanes.
+/// Times eight scenes one after another, and in lanes.
 fn compare<M>(name: &str, scenes: [(M, M::State); SCENES])
 where
     M: Batchable<AutoF64x8> + Integrator<State: PartialEq + Debug>,
@@ -79,7 +79,7 @@ fn seconds(run: impl FnOnce()) -> f64 {
     start.elapsed().as_secs_f64()
 }
 
-/// A row of bodies, neighbours of which are drawn to the same attitude.
+/// A row of bodies with alignment potentials between neighbours.
 fn row<const N: usize>() {
     let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.0)).expect("a body");
     let scene = Each::<N>::of([PrincipalBody { J_d }]) + Along::<N>::of([Alike { kappa: 2.0 }]);
@@ -120,7 +120,7 @@ fn main() {
             let scene = TwoBodies { m_1: 1.0, m_2: 0.4, K_1, K_2, J_1, J_2, G: 1.0 };
             let stepper = Stepper::new(scene, STEP).expect("a usable step");
             let [near, far] = [0.0, 4.0].map(|x| R3::from(Vector3::x() * x));
-            // They run beside each other.
+            // The two bodies move side by side.
             let turning = velocity::<3>(number);
             let moving: SVector<f64, 12> =
                 from_fn::<_, 12, _>(|k| if k % 6 < 3 { turning[k % 3] } else { 0.1 * turning[k % 3] }).into();

@@ -1,4 +1,4 @@
-//! What a step of every method costs that `accuracy-cost` compares: nanoseconds and instructions.
+//! The cost of a step of every method in `accuracy-cost`: nanoseconds and instructions.
 //!
 //! ```text
 //! cargo bench --bench methods                                  times a step of each, in three scenes
@@ -7,8 +7,8 @@
 //! cargo bench --bench methods -- count chaotic NAME 1000       runs 1000 steps of one method and nothing else
 //! ```
 //!
-//! The steps are of `h = 0.01 s`. Valgrind has AVX2 where the machine has, and Gauss collocation takes it: its stages lie
-//! in vector registers, so that eight cost less than six under gravity. Should they ever fall apart, they will cost twice
+//! The steps are of `h = 0.01 s`. Valgrind supports AVX2 if the machine does, and Gauss collocation uses it: its stages
+//! are in vector registers, so that eight cost less than six under gravity. Without vectorisation they would cost twice
 //! as much.
 
 mod counting;
@@ -23,10 +23,10 @@ use accuracy_cost::scenes::Scene;
 use counting::instructions;
 
 const STEP: f64 = 0.01;
-/// Long enough to hide the clock, short enough that some batches meet no other process.
+/// Long enough to hide the clock, short enough that some batches aren't disturbed by other processes.
 const BATCH: u32 = 500;
 const ROUNDS: u32 = 40;
-/// Enough to count, and of the most expensive method no more than takes a second.
+/// Enough for a count, and at most a second of the most expensive method.
 const COUNTED: u32 = 500;
 
 /// A run of this number of steps.
@@ -47,12 +47,12 @@ fn time(method: &Method, scene: &Scene) -> Result<f64, Box<dyn Error>> {
     Ok(best * 1e9 / f64::from(BATCH))
 }
 
-/// Those whose steps are of one length.
+/// The methods whose steps are of one length.
 fn methods(scene: &Scene) -> impl Iterator<Item = Method> {
     methods::all(scene).into_iter().filter(Method::steps_are_equal)
 }
 
-/// A line for each method: its cost, and that as a multiple of the first one's.
+/// Prints a line for each method: its cost, and the ratio to the first one's.
 fn compare(
     scene: &Scene,
     unit: &str,

@@ -1,4 +1,4 @@
-//! What it costs to record a run, and how much memory it takes.
+//! The cost of recording a run, in time and memory.
 //!
 //! ```text
 //! cargo bench --bench recording                       times a step of a run that is recorded at every tenth
@@ -6,8 +6,8 @@
 //! cargo bench --bench recording -- memory 100000000   makes 100000000 steps, recorded as a file, and prints the most memory
 //! ```
 //!
-//! `columns` hands rows to a sink that does nothing, and is what the run itself pays; a sink in a thread of its own adds
-//! what it takes to hand a block over. Valgrind counts the instructions of all threads.
+//! `columns` passes rows to a sink that does nothing, which measures the run's own cost; a sink in a thread of its own
+//! adds the transfer of a block. Valgrind counts the instructions of all threads.
 
 mod counting;
 
@@ -27,7 +27,7 @@ const ROUNDS: u32 = 100;
 const COUNTED: u32 = 20_480;
 const WAYS: [&str; 6] = ["unobserved", "observed", "columns", "csv", "csv in a thread", "events"];
 
-/// Takes rows and does nothing with them.
+/// A sink that discards rows.
 struct Nowhere;
 
 impl Sink for Nowhere {
@@ -45,7 +45,7 @@ impl Sink for Nowhere {
     }
 }
 
-/// A top, run for this number of steps.
+/// Runs a top for this number of steps.
 fn run(way: &str, steps: u32) -> Result<(), Box<dyn Error>> {
     let body = RigidBody { J_d: NonstandardInertia::from_diagonal(Vector3::new(2.0, 1.5, 1.0))? };
     let top = body + Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
@@ -74,7 +74,7 @@ fn run(way: &str, steps: u32) -> Result<(), Box<dyn Error>> {
         "csv" => recorded!(Csv::new(std::io::sink())),
         "csv in a thread" => recorded!(Background::new(Csv::new(std::io::sink()))),
         "events" => {
-            // One that never happens.
+            // The event never happens.
             let event = liestep::recording::Event::crossing();
             stepper.observed(&mut state).event(event, |now| now.momentum().x + 1e3, |_| ()).steps(steps)?;
         }
@@ -84,7 +84,7 @@ fn run(way: &str, steps: u32) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The best of many rounds of each way, one after the other, so that what else the machine does falls on all of them.
+/// The best of many rounds of each way, one after the other, so that other load of the machine affects all of them.
 fn nanoseconds() -> Result<[f64; WAYS.len()], Box<dyn Error>> {
     let mut best = [f64::INFINITY; WAYS.len()];
     for _ in 0..ROUNDS {
@@ -103,7 +103,7 @@ fn compare(unit: &str, costs: &[f64]) {
     }
 }
 
-/// The most memory that this process has had, as Linux tells.
+/// The peak memory of this process, as Linux reports it.
 fn most_memory() -> Result<String, Box<dyn Error>> {
     let status = std::fs::read_to_string("/proc/self/status")?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

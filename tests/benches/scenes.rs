@@ -1,4 +1,4 @@
-//! What an effect adds to a step: instructions and nanoseconds of scenes, sums against declarations in one piece.
+//! The cost of an effect in a step: instructions and nanoseconds of scenes, for sums and for single declarations.
 //!
 //! ```text
 //! cargo bench --bench scenes                       times a step of every scene
@@ -9,7 +9,7 @@
 //! cargo bench --bench scenes -- count NAME 1000    runs 1000 steps of one scene and nothing else
 //! ```
 //!
-//! A scene with gravity is there three times: without it, with the coefficient zero, and with it.
+//! A scene with gravity occurs three times: without it, with the coefficient zero, and with it.
 
 mod counting;
 mod files;
@@ -28,7 +28,7 @@ use nalgebra::Vector3;
 use counting::{Uncounted, built, instructions};
 use stepping::{Count, Ready, Time, Visit};
 
-/// Body and rotor in one piece.
+/// A body with a rotor in a single declaration.
 #[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + spin.dot(&vee(F)))]
 struct Gyrostat {
     J_d: DiagonalNonstandardInertia,
@@ -63,7 +63,7 @@ fn visit_all(visit: &mut impl Visit) {
     visit.visit("double pendulum", double_pendulum());
     let needle @ Needle { J_d, a, rho, delta, .. } = Needle::new(0.05);
     let momentum = Vector3::new(0.9, 0.15, 0.3);
-    // As many steps of either in 12 s.
+    // Both take the same number of steps in 12 s.
     let equal = Stepper::new(EqualNeedle { J_d, a, rho, delta }, 0.006).expect("a usable step");
     let start = equal.start_with_momentum(SO3::identity(), momentum).expect("a usable start");
     visit.visit_from("needle", (equal, start));
@@ -91,7 +91,8 @@ fn double_pendulum() -> DoublePendulum {
 }
 
 const COUNTED: u32 = 10_000;
-/// A run of a file samples its motion for a picture, as often in a run as in one twice as long.
+/// The number of steps in counts of files: a file's run samples its motion for a picture, as often in a run as in one
+/// twice as long.
 const COUNTED_OF_FILES: u32 = 40_000;
 
 /// Counts the instructions of every scene, each in a process of its own.
@@ -119,13 +120,13 @@ fn from_files() -> Result<(), Uncounted> {
     Ok(())
 }
 
-/// The free body beside all other effects and in a program without them.
+/// Counts the free body in this program and in a program without other effects.
 fn zero_cost() -> Result<(), Uncounted> {
     let beside = instructions(&std::env::current_exe()?, &["count", "body"], COUNTED)?;
     let alone = instructions(&built("free-body-alone")?, &["count", "body"], COUNTED)?;
     println!("free body beside the other effects{beside:>10.1} instructions a step");
     println!("free body alone                   {alone:>10.1} instructions a step");
-    // Counts of whole programs, and not estimates: they are the same or they aren't.
+    // The counts are exact, so they must be equal.
     if beside.to_bits() == alone.to_bits() { Ok(()) } else { Err("what isn't in the scene costs something".into()) }
 }
 

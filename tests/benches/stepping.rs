@@ -1,4 +1,4 @@
-//! Scenes and what is done with them, compiled alike into every program that counts their steps.
+//! Scenes and their visitors, compiled identically into every program that counts their steps.
 
 use core::hint::black_box;
 use std::time::Instant;
@@ -14,10 +14,10 @@ const STEP: f64 = 0.01;
 const BATCH: u32 = 20_000;
 const ROUNDS: usize = 100;
 
-/// A stepper and a start.
+/// A stepper and an initial state.
 pub(crate) type Ready<L, P> = (Stepper<L, P>, StateOf<L, P>);
 
-/// What is done with each scene.
+/// A visitor of scenes.
 pub(crate) trait Visit {
     fn visit<L: Regular<Scalar = f64, Group: Begin>>(&mut self, name: &'static str, scene: L) {
         let stepper = Stepper::new(scene, STEP).expect("a usable step");
@@ -26,7 +26,7 @@ pub(crate) trait Visit {
         self.visit_from(name, (stepper, state));
     }
 
-    /// By any plan, from a state.
+    /// Visits a scene with any plan, from a state.
     fn visit_from<L: Regular<Scalar = f64>, P: Plan<L>>(&mut self, name: &'static str, ready: Ready<L, P>);
 }
 
@@ -37,7 +37,7 @@ fn run<L: Regular<Scalar = f64>, P: Plan<L>>(stepper: &Stepper<L, P>, state: &mu
     }
 }
 
-/// Where the scenes of a group begin.
+/// The initial state of a group's scenes.
 pub(crate) trait Begin: LieGroup<Scalar = f64> {
     fn begin() -> (Self, Self::Vector);
 }
@@ -65,7 +65,7 @@ impl Visit for Time {
     fn visit_from<L: Regular<Scalar = f64>, P: Plan<L>>(&mut self, name: &'static str, (by, from): Ready<L, P>) {
         let mut times: Vec<f64> = (0..ROUNDS)
             .map(|_| {
-                // From the beginning: a torque would wind the body up until no step can be made.
+                // Each batch starts anew: a torque would accelerate the body until no step is solvable.
                 let mut state = from;
                 let start = Instant::now();
                 run(black_box(&by), black_box(&mut state), BATCH);
@@ -77,11 +77,11 @@ impl Visit for Time {
     }
 }
 
-/// Runs one scene.
+/// The visitor that runs one scene.
 pub(crate) struct Count<'a> {
     wanted: &'a str,
     steps: u32,
-    /// Whether there was such a scene.
+    /// Whether the scene exists.
     pub(crate) found: bool,
 }
 

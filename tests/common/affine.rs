@@ -1,9 +1,9 @@
-//! A group that the library doesn't have: the affine maps `x ↦ a x + b` of the line, `a > 0`.
+//! A group outside of the library: the affine maps `x ↦ a x + b` of the line, `a > 0`.
 
 use liestep::groups::{Generators, MatrixGroup};
 use nalgebra::{RealField, SMatrix};
 
-/// Its scalings and its shifts.
+/// The generators of scalings and of shifts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AffineGenerators;
 

@@ -1,4 +1,4 @@
-//! A top of any scalar: of SIMD lanes, dual numbers or plain ones.
+//! A top with any scalar: SIMD lanes, dual numbers or plain ones.
 
 use liestep::numbers::Real;
 use liestep::prelude::*;

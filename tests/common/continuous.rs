@@ -1,10 +1,11 @@
-//! The continuous systems, from their inertia and their potential as a function of the place in space.
+//! The continuous systems, by their inertia and their potential as a function of the configuration in space.
 //!
 //! ```text
 //! ġ = g ξ̂,     μ = J ξ,     μ̇ = ad*_ξ μ − dU(g exp(s E_k))/ds
 //! ```
 //!
-//! Nothing of the derivation is used: no advected parameter, no diamond, and inertia and potential are written by hand.
+//! The derivation isn't used: there is no advected parameter and no diamond, and inertia and potential are written by
+//! hand.
 
 use liestep::laws::samples::derivative;
 use liestep::laws::samples::{MatrixLieGroup, along};
@@ -13,13 +14,13 @@ use workbench::runge_kutta;
 
 use crate::structure::axis;
 
-/// A body on a group: its inertia in the basis of the algebra, and its potential at a place, in J.
+/// A body on a group: its inertia in the basis of the algebra, and its potential at a configuration, in J.
 pub struct Body<'a, const N: usize, const D: usize> {
     pub inertia: SMatrix<f64, D, D>,
     pub potential: &'a dyn Fn(&SMatrix<f64, N, N>) -> f64,
 }
 
-/// Place and body momentum.
+/// The configuration and the body momentum.
 pub type Phase<const N: usize, const D: usize> = (SMatrix<f64, N, N>, SVector<f64, D>);
 
 impl<const N: usize, const D: usize> Body<'_, N, D> {

@@ -1,6 +1,6 @@
-//! Whether a quantity that oscillates drifts.
+//! A test for the drift of an oscillating quantity.
 
-/// The means of each tenth of a hundred thousand numbers, and the largest of their sizes.
+/// The means of each tenth of a hundred thousand numbers, and the largest absolute value.
 pub fn tenths(mut next: impl FnMut() -> f64) -> ([f64; 10], f64) {
     let mut most = 0.0_f64;
     let means = [(); 10].map(|()| {

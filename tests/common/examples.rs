@@ -6,14 +6,15 @@ use std::process::{Command, Stdio};
 
 use serde_json::Value;
 
-/// That of `cargo test` or `cargo test --release`, by the only sign of it that a test has: what it has built is used.
+/// The profile of `cargo test` or `cargo test --release`, detected by debug assertions, so that its build results are
+/// reused.
 const PROFILE: &str = if cfg!(debug_assertions) { "dev" } else { "release" };
 
-/// The executables of these examples, built where they aren't yet.
+/// The executables of these examples, built if necessary.
 ///
-/// Where a build puts them depends on its target, its profile and the settings of cargo, which is therefore asked. The
-/// program is built beside them: with it the macros' packages are also packages of a program, as in the tests' build, and
-/// cargo takes what that has built. Without it, it builds the library and the macros a second time.
+/// Their paths depend on the target, the profile and cargo's settings, so cargo reports them. The option `--workspace`
+/// also builds the program: then the macros' packages are also packages of a program, as in the tests' build, and cargo
+/// reuses its results. Without that option it would build the library and the macros a second time.
 pub fn built(names: &[&str]) -> HashMap<String, PathBuf> {
     let mut build = Command::new(env!("CARGO"));
     build.args(["build", "--workspace", "--quiet", "--message-format=json-render-diagnostics", "--profile", PROFILE]);

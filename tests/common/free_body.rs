@@ -3,7 +3,8 @@
 use nalgebra::{Matrix3, Vector3};
 use workbench::runge_kutta;
 
-/// How `F`, as `δF = ε̂ F`, and the momentum after a time change with the momentum before it and with the inertia:
+/// The derivatives of `F`, as `δF = ε̂ F`, and of the momentum after a time with respect to the initial momentum and
+/// the inertia:
 ///
 /// ```text
 /// Ḟ = F Ω̂        μ̇ = μ × Ω        ε̇ = F δΩ        δμ̇ = δμ × Ω + μ × δΩ        J δΩ = δμ − δJ Ω

@@ -1,4 +1,4 @@
-//! What the tests share: declared Lagrangians, reference data, random states, order estimates.
+//! Code that the tests share: declared Lagrangians, reference data, random states, order estimates.
 
 // A library of this repository alone.
 #![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc)]

@@ -8,7 +8,7 @@ use liestep::numbers::Coordinates as _;
 
 use crate::structure::{Group as _, System, Vector, axis, gradient, norm, norm_of_map};
 
-/// What is left of the limit, and the same over a spacing of 10⁻³.
+/// The error of the limit, and that of its differences over a spacing of 10⁻³.
 const LIMIT: f64 = 1e-9;
 const DIFFERENCES: f64 = 1e-6;
 

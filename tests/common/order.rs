@@ -11,10 +11,10 @@ use workbench::measure::{relative, steps_in};
 /// The tops whose equations are nonlinear in every variable: three of the thesis, and one without any symmetry.
 pub const TOPS: [&str; 4] = ["looping A", "cuspidal B", "third A", "chaotic"];
 
-/// Above what some thousand stages lose to rounding in attitude and velocity.
+/// The plateau: errors of attitude and velocity above the rounding of some thousand stages.
 const PLATEAU: f64 = 2e-13;
 
-/// A motion at its end: attitude and body velocity.
+/// The end of a motion: attitude and body velocity.
 pub type End = (SO3, Vector3<f64>);
 
 /// The state after a number of steps.
@@ -27,7 +27,7 @@ where
     state
 }
 
-/// Where a motion is after a number of steps.
+/// The end of a motion after a number of steps.
 pub fn end<S, P>(stepper: &Stepper<S, P>, motion: &Motion, steps: u32) -> End
 where
     S: Regular<Scalar = f64, Group = SO3>,
@@ -44,7 +44,7 @@ pub fn error(end: &End, (attitude, velocity): &(Matrix3<f64>, Vector3<f64>)) -> 
 
 /// The order of a method from its errors at the time `t` after these numbers of steps.
 ///
-/// `run` makes so many steps of the length given and returns where they end.
+/// `run` makes that number of steps of a length and returns their end.
 pub fn measured(name: &str, (motion, t): (&str, f64), counts: &[u32], run: impl Fn(&Motion, f64, u32) -> End) -> f64 {
     let read = Motion::read(motion);
     let reference = read.at(t);
@@ -57,7 +57,7 @@ pub fn measured(name: &str, (motion, t): (&str, f64), counts: &[u32], run: impl 
     order
 }
 
-/// Asserts this order.
+/// Asserts the order of a method.
 pub fn assert_order(
     (name, expected): (&str, u32),
     (motion, t): (&str, f64),
@@ -68,7 +68,7 @@ pub fn assert_order(
     assert!((order - f64::from(expected)).abs() < 0.1, "{name}, {motion}: order {order}");
 }
 
-/// That of a scene's own step, for a coarsest step and its halvings.
+/// Asserts the order of a scene's own step, for a coarsest step and its halvings.
 pub fn assert_own_order<L: Regular<Scalar = f64, Group = SO3>>(
     motion: &str,
     expected: u32,
@@ -82,7 +82,7 @@ pub fn assert_own_order<L: Regular<Scalar = f64, Group = SO3>>(
     });
 }
 
-/// `count` numbers of steps, each about a `ratio` more than the one before.
+/// A list of `count` numbers of steps, each about `ratio` times the one before.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // small positive numbers
 pub fn counts(first: u32, ratio: f64, count: i32) -> Vec<u32> {
     (0..count).map(|k| (f64::from(first) * ratio.powi(k)).round() as u32).collect()

@@ -19,13 +19,13 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// Uniform in `[−1, 1)`.
+    /// A number uniform in `[−1, 1)`.
     #[allow(clippy::cast_precision_loss)] // 53 bits are left
     pub fn signed(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    /// Components uniform in `[−1, 1)`.
+    /// A vector with components uniform in `[−1, 1)`.
     pub fn vector(&mut self) -> Vector3<f64> {
         Vector3::new(self.signed(), self.signed(), self.signed())
     }
@@ -49,7 +49,7 @@ impl Random {
         UnitQuaternion::from_scaled_axis(self.direction() * angle).into()
     }
 
-    /// The places where formulas for rotations go wrong: the identity, next to it, anywhere, next to a half turn.
+    /// Rotations at which formulas may fail: the identity, near it, in general position, and near a half turn.
     pub fn hard_rotations(&mut self) -> Vec<SO3> {
         let mut rotations = vec![SO3::identity()];
         for _ in 0..20 {

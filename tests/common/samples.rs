@@ -10,7 +10,7 @@ use nalgebra::{
     Matrix2, Matrix3, Matrix4, Point2, Point3, UnitComplex, UnitQuaternion, Vector2, Vector3, Vector4, Vector6,
 };
 
-/// Where a motion starts.
+/// The initial attitude and velocity of a motion.
 pub type Start<G> = (G, <G as LieGroup>::Vector);
 
 /// Calls `$check` in a test of its own for each declaration.
@@ -59,7 +59,7 @@ pub fn on_se3() -> Start<SE3> {
     (motion, Vector6::new(0.5, 1.0, -0.8, 0.3, 0.9, -0.4))
 }
 
-/// Near a circular orbit of [`orbiting_body`], spinning so fast that the motion is regular.
+/// A start near a circular orbit of [`orbiting_body`], with a spin so fast that the motion is regular.
 pub fn in_orbit() -> Start<SE3> {
     let motion = SE3::from_rotation_and_translation(rotation(), Vector3::zeros());
     let velocity = rotation().inverse_transform_vector(&Vector3::new(-0.4, 0.9, 0.0));
@@ -113,7 +113,7 @@ pub fn fourth_order_body() -> FourthOrderBody {
     FourthOrderBody { J: Inertia::from_principal_moments(MOMENTS).unwrap() }
 }
 
-/// So near to the centre that the potential is far from its expansion.
+/// A satellite so near to the centre that the potential is far from its expansion.
 pub fn satellite() -> Satellite {
     let (tip, centre) = (Vector3::new(0.4, 0.3, 1.0), Vector3::new(2.0, 1.0, -1.5));
     Satellite { J_d: turned_inertia(), m: 0.5, tip, GM: 20.0, centre }
@@ -122,7 +122,7 @@ pub fn satellite() -> Satellite {
 pub fn orbiting_body() -> OrbitingBody {
     let (m1, m2) = (0.8, 0.5);
     let (p1, p2) = (Point3::new(0.2, 0.1, 0.3), Point3::new(-0.25, 0.1, -0.35));
-    // Both masses, and a light frame about the origin.
+    // The inertia of both masses, and of a light frame about the origin.
     let own = Matrix4::from_diagonal(&Vector4::new(0.3, 0.2, 0.1, 0.3));
     let moment = |p: Point3<f64>| p.to_homogeneous() * p.to_homogeneous().transpose();
     let J = own + m1 * moment(p1) + m2 * moment(p2);

@@ -1,4 +1,4 @@
-//! A Lagrangian whose momentum equation is solved in the other way, with the Jacobian or without; or badly.
+//! Lagrangians whose momentum equation is solved by another algorithm, with or without the Jacobian, or wrongly.
 
 use core::cell::Cell;
 use core::fmt::Debug;
@@ -12,14 +12,14 @@ use liestep::numbers::Real;
 use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 
-/// Functions of the Lagrangian that is wrapped.
+/// Functions that call the wrapped Lagrangian.
 macro_rules! of_inner {
     ($(fn $name:ident($($argument:ident: $type:ty),*) $(-> $result:ty)?;)*) => {
         $(fn $name(&self, $($argument: $type),*) $(-> $result)? { self.0.$name($($argument),*) })*
     };
 }
 
-/// Its own parameters.
+/// The wrapped Lagrangian's parameters.
 macro_rules! term_as {
     ($inner:ty) => {
         type Scalar = Scalar<$inner>;
@@ -33,7 +33,7 @@ macro_rules! term_as {
     };
 }
 
-/// The terms that don't know stages.
+/// The derived terms outside of the stages.
 macro_rules! declared_as {
     ($inner:ty) => {
         const SELF_ADJOINT: bool = <$inner>::SELF_ADJOINT;
@@ -48,7 +48,7 @@ macro_rules! declared_as {
     };
 }
 
-/// What doesn't depend on how the equation is solved.
+/// The stages that don't depend on the solver.
 macro_rules! staged_as {
     ($inner:ty) => {
         type Retraction = <$inner as Effect>::Retraction;
@@ -70,7 +70,7 @@ macro_rules! staged_as {
     };
 }
 
-/// Its own stages and constants, so that only its Newton system is another.
+/// The wrapped Lagrangian's stages and constants, so that only the Newton system differs.
 macro_rules! solved_as {
     ($L:ident) => {
         type Constants = $L::Constants;
@@ -100,7 +100,7 @@ macro_rules! solved_as {
     };
 }
 
-/// Newton's iteration, whatever the Jacobian costs.
+/// A Lagrangian solved by Newton's iteration, whatever the Jacobian costs.
 #[derive(Clone, Debug)]
 pub struct WithJacobian<L>(pub L);
 
@@ -137,7 +137,7 @@ std::thread_local! {
     static SYSTEMS: Cell<u32> = const { Cell::new(0) };
 }
 
-/// How many Jacobians of a [`WithJacobian`] or a [`WithoutJacobian`] `run` evaluates.
+/// The number of Jacobians of a [`WithJacobian`] or a [`WithoutJacobian`] that `run` evaluates.
 pub fn jacobians<T>(run: impl FnOnce() -> T) -> (T, u32) {
     let before = SYSTEMS.get();
     let outcome = run();
@@ -150,7 +150,7 @@ pub fn needs_jacobian<T>(run: impl FnOnce() -> T) -> (T, bool) {
     (outcome, jacobians > 0)
 }
 
-/// As if the Jacobian were expensive. The second field is the inertia that the limit is said to have.
+/// A Lagrangian solved as if its Jacobian were expensive. The second field is the inertia that its limit claims.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WithoutJacobian<L, T: Real>(pub L, pub Matrix3<T>);
 
@@ -233,7 +233,7 @@ where
     }
 }
 
-/// The momentum equation is solved for another body, that is badly: a root of it is off by some thousandths.
+/// A Lagrangian whose momentum equation is solved for another body: its roots have errors of some thousandths.
 #[derive(Clone, Debug)]
 pub struct Badly<L>(pub L);
 
@@ -266,7 +266,7 @@ impl<L: Effect> Effect for Badly<L> {
     }
 }
 
-/// Newton's iteration, with the derivatives of steps but for those of the kick.
+/// A Lagrangian with the derivatives of steps except those of the kick, solved by Newton's iteration.
 #[derive(Clone, Debug)]
 pub struct WithoutKickGradient<L>(pub L);
 

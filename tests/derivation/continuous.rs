@@ -1,4 +1,4 @@
-//! Continuous Lagrangians: what `discretise` makes of them, and their equations against those by hand.
+//! Continuous Lagrangians: the discretisations by `discretise`, and their equations compared with those by hand.
 
 use checks::random::Random;
 use checks::structure::System;
@@ -21,7 +21,7 @@ fn moments() -> DiagonalNonstandardInertia {
     DiagonalNonstandardInertia::from_diagonal(Vector3::new(2.0, 1.7, 1.0)).unwrap()
 }
 
-/// A thousand steps of what is made of `l` and of (3.13), which are the same bits.
+/// A thousand steps of the discretised `l` and of (3.13) have the same bits.
 #[test]
 fn the_trapezoidal_rule_makes_the_steps_of_the_heavy_top() {
     let (J_d, m, g, rho, up) = (moments(), 1.1, 9.81, Vector3::new(0.1, -0.2, 1.0), Vector3::z());
@@ -72,7 +72,7 @@ discretised! {
     MidpointExp: midpoint(exp), Chord: chord, ChordCayley: chord(Cayley), ChordExp: chord(exp)
 }
 
-/// `l_d` and its derived terms as made by hand, and a step back undoes a step.
+/// The discrete `l_d` and its derived terms agree with those by hand, and a step back undoes a step.
 fn assert_discretised<L: System<Group = SO3, Advected = Vector3<f64>>>(rule: &str, system: &L) {
     let Trapezoid { J, s, k, rho, .. } = Trapezoid::new();
     let [s, rho] = [s, rho].map(|vector| vector.map(HyperDual64::from));
@@ -81,7 +81,7 @@ fn assert_discretised<L: System<Group = SO3, Advected = Vector3<f64>>>(rule: &st
         q * 0.5 + s.dot(xi) - (height + height * height) * k
     };
     let h = 0.05;
-    // Of the matrix (F − I)/h, `ξ·Jξ` is a difference of traces.
+    // In terms of the matrix (F − I)/h, `ξ·Jξ` is a difference of traces.
     let cancelling = if rule.contains('(') { 0.0 } else { J.to_nonstandard().as_matrix().trace() / h };
     assert_terms::<_, SO3<HyperDual64>, _>(
         rule,
@@ -103,7 +103,7 @@ fn every_discretisation_is_what_it_says() {
     assert_discretised("chord(exp)", &ChordExp::new());
 }
 
-/// Steps of each discretisation converge, at order two, to what a solver makes of the continuous equations.
+/// Steps of each discretisation converge, at order two, to a solver's solution of the continuous equations.
 #[test]
 fn discretisations_converge_to_the_continuous_motion() {
     fn check<L>(make: impl Fn() -> L, name: &str)
@@ -138,7 +138,7 @@ fn discretisations_converge_to_the_continuous_motion() {
     check(ChordExp::new, "chord(exp)");
 }
 
-/// A sum has the sum of the terms, and the bias of a rotor: by hand, `μ̇ = μ × Ω + m g w × ρ` with `μ = JΩ + s`.
+/// A sum is the sum of the terms, and a rotor adds its bias: by hand, `μ̇ = μ × Ω + m g w × ρ` with `μ = JΩ + s`.
 #[test]
 fn sums_have_continuous_equations() {
     let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 1.7, 1.0)).unwrap();
@@ -158,7 +158,7 @@ fn sums_have_continuous_equations() {
     assert!((scene.hamiltonian(&momentum, &parameters).unwrap() - energy).abs() < 1e-12);
 }
 
-/// Without steps: a body, and a pull on it.
+/// A body without steps, and a pull on it.
 #[lagrangian(group = SO3, velocity = Omega, l = 0.5 * Omega.dot(&(J * Omega)))]
 #[derive(Clone, Copy)]
 struct Turning {
@@ -173,7 +173,7 @@ struct Pull {
     up: Vector3<f64>,
 }
 
-/// What the scene turns by.
+/// The torque of the scene.
 fn torque<L>(scene: &L, velocity: &Vector3<f64>, w: &L::Advected) -> Vector3<f64>
 where
     L: ContinuousLagrangian<Scalar = f64, Group = SO3>,
@@ -182,7 +182,7 @@ where
     scene.lie_poisson(&scene.momentum(velocity, w), w).unwrap().0
 }
 
-/// Terms with steps and without add in any order, and are what both of them are.
+/// Terms with and without steps add in any order; the sum has the common properties of both.
 #[test]
 fn terms_with_steps_and_without_add() {
     let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 1.7, 1.0)).unwrap();
@@ -191,7 +191,7 @@ fn terms_with_steps_and_without_add() {
     let gravity = Gravity { m: 1.1, g: 9.81, rho: Vector3::new(0.3, 0.1, 0.5), up: Vector3::z() };
     let (velocity, w) = (Vector3::new(0.5, 2.0, -1.0), Vector3::new(0.1, 0.6, 0.7));
     let momentum = turning.J.as_matrix() * velocity + w;
-    // By hand: μ × Ω and w × (−∂l/∂w).
+    // The equations by hand: μ × Ω and w × (−∂l/∂w).
     let slope = pull.rho * (-2.0 * pull.k * w.dot(&pull.rho)) + velocity - gravity.rho * (gravity.m * gravity.g);
     let expected = momentum.cross(&velocity) - w.cross(&slope);
     let all = [
@@ -213,7 +213,7 @@ fn terms_with_steps_and_without_add() {
     assert!((gauss.energy(&attitude, &momentum).unwrap() - energy).abs() < 1e-9 * energy.abs());
 }
 
-/// A pull by a uniform field: the momentum grows evenly, and the velocity stays below that of light.
+/// A particle in a uniform field: the momentum grows linearly, and the velocity stays below that of light.
 #[test]
 fn a_fast_particle() {
     let (m, c, q) = (2.0, 3.0, 0.5);
@@ -224,7 +224,7 @@ fn a_fast_particle() {
     let (place, momentum) = system.parts(&state);
     let pull = Vector3::new(0.4, -1.0, 0.2) * q;
     assert!((momentum - pull * 40.0).norm() < 1e-11);
-    // h = √(m²c⁴ + p²c²), and the place by integrating v = p c²/h.
+    // The energy is h = √(m²c⁴ + p²c²), and the position the integral of v = p c²/h.
     let energy = |p: f64| (m * m * c.powi(4) + p * p * c * c).sqrt();
     let distance = (energy(momentum.norm()) - m * c * c) / pull.norm();
     let place = place.as_matrix().fixed_view::<3, 1>(0, 3).into_owned();
@@ -244,7 +244,7 @@ impl Place for R3 {
     }
 }
 
-/// The kinetic energy `c² (√(1 + ξ²/c²) − 1)` has momenta below `c` alone: others are an error.
+/// The kinetic energy `c² (√(1 + ξ²/c²) − 1)` has momenta below `c` alone: larger ones are an error.
 #[lagrangian(group = R3, velocity = v, l = (c * c) * (1.0 + v.norm_squared() / (c * c)).sqrt())]
 struct Bounded {
     c: f64,
@@ -259,7 +259,7 @@ fn a_momentum_without_a_velocity_is_an_error() {
     assert!(matches!(error, StepError::NotConverged { .. } | StepError::Singular), "{error}");
 }
 
-/// The momentum `v (1 + 10 v² − 20 v⁴)` falls again beyond `v = 0.575`.
+/// The momentum `v (1 + 10 v² − 20 v⁴)` decreases beyond `v = 0.575`.
 #[lagrangian(
     group = R3,
     velocity = v,
@@ -269,7 +269,7 @@ struct Falling {
     m: f64,
 }
 
-/// Newton's iteration finds `v = 0.7056` for it, where rest isn't continued to.
+/// Newton's iteration converges to `v = 0.7056` for this momentum, which isn't on the branch of rest.
 #[test]
 fn a_velocity_beyond_a_singularity_is_an_error() {
     let falling = Falling { m: 1.0 };
@@ -279,7 +279,7 @@ fn a_velocity_beyond_a_singularity_is_an_error() {
     assert!(matches!(error, StepError::Singular), "{error}");
 }
 
-/// `Bounded` with a momentum at rest, as of a charge in a vector potential.
+/// The Lagrangian `Bounded` with a momentum at rest, as of a charge in a vector potential.
 #[lagrangian(group = R3, velocity = v, l = (c * c) * (1.0 + v.norm_squared() / (c * c)).sqrt() + s.dot(&v))]
 #[derive(Clone)]
 struct Charged {
@@ -287,7 +287,7 @@ struct Charged {
     s: Vector3<f64>,
 }
 
-/// What cancels is as large as the momentum at rest, however small the momentum itself.
+/// The cancelling terms are as large as the momentum at rest, however small the momentum itself.
 #[test]
 fn a_momentum_that_is_small_beside_that_at_rest() {
     let charged = Charged { c: 2.0, s: Vector3::new(0.7, -30.0, 1.3) };
@@ -296,7 +296,7 @@ fn a_momentum_that_is_small_beside_that_at_rest() {
         let expected = (momentum - charged.s) / (1.0 - size * size / 4.0_f64).sqrt();
         let velocity = charged.velocity(&momentum, &()).unwrap();
         assert!((velocity - expected).norm() < 1e-14 * charged.s.norm(), "{size}: {velocity}");
-        // As much below c as the momentum at rest lets it be.
+        // The momentum is as far below c as the momentum at rest allows.
         let standing = Charged { c: 40.0, ..charged.clone() };
         let velocity = standing.velocity(&(momentum - charged.s), &()).unwrap();
         let kinetic = momentum - charged.s * 2.0;
@@ -305,7 +305,7 @@ fn a_momentum_that_is_small_beside_that_at_rest() {
     }
 }
 
-/// The kinetic part of a top whose tip slides, and a momentum at rest that depends on how it stands.
+/// The kinetic part of a top whose tip slides, and a momentum at rest that depends on the attitude.
 #[lagrangian(
     group = SO3,
     velocity = Omega,
@@ -323,7 +323,7 @@ struct Sliding {
     up: Vector3<f64>,
 }
 
-/// `μ = M(w) ξ + A w`, and what follows of it.
+/// Checks `μ = M(w) ξ + A w` and its consequences.
 fn assert_sliding<L>(
     name: &str,
     system: &L,
@@ -349,22 +349,22 @@ fn assert_sliding<L>(
         let (rate, turn) = system.lie_poisson(&momentum, &w).unwrap();
         near("Lie–Poisson", rate, torque);
         near("ẇ", turn, w.cross(&xi));
-        // d/dt of M(w) ξ + A w.
+        // The time derivative of M(w) ξ + A w.
         let (acceleration, turn) = system.euler_poincare(&xi, &w).unwrap();
         let carried = rho.cross(&turn);
         let change = (carried * lever.dot(&xi) + lever * carried.dot(&xi)) * m + A * turn;
         near("Euler–Poincaré", inertia * acceleration + change, torque);
         let energy = 0.5 * xi.dot(&(inertia * xi)) + m * g * w.dot(&rho);
         assert!((system.hamiltonian(&momentum, &w).unwrap() - energy).abs() <= 1e-13 * (1.0 + energy.abs()));
-        // A body that is turned back by the attitude sees what stands in space.
+        // The right-hand side takes w from the attitude, here that of a fixed vector.
         let numbers = RightHandSide::new(system.clone()).unwrap();
         let (_, rate) = numbers.rates(&SO3::identity(), &momentum).unwrap();
         near("for a solver", rate, system.lie_poisson(&momentum, &Vector3::z()).unwrap().0);
     }
 }
 
-/// By hand `M(w) = J + m (ρ × w)(ρ × w)ᵀ` and `s(w) = A w`: momentum, its closed inverse, the rates of velocity and
-/// momentum, the energy; the same of the limit of a declared `l_d`, and for a solver.
+/// The equations by hand with `M(w) = J + m (ρ × w)(ρ × w)ᵀ` and `s(w) = A w`: momentum, its closed inverse, the rates
+/// of velocity and momentum, the energy; for a declared `l`, for the limit of a declared `l_d`, and for a solver.
 #[test]
 fn an_inertia_that_depends_on_what_is_advected() {
     let J = Matrix3::new(3.0, 0.2, -0.1, 0.2, 2.5, 0.3, -0.1, 0.3, 4.0);
@@ -378,14 +378,14 @@ fn an_inertia_that_depends_on_what_is_advected() {
     assert_sliding("declared", &sliding(A, m), (J, A), (m, g, rho));
     assert_sliding("limit", &limit, (J, Matrix3::zeros()), (m, g, rho));
 
-    // Where the inertia is singular no momentum has one velocity.
+    // For a singular inertia no momentum has a unique velocity.
     let unit = Sliding { J: Inertia::new(Matrix3::identity()).unwrap(), rho: Vector3::x(), ..sliding(A, -1.0) };
     let error = unit.velocity(&Vector3::new(1.0, 2.0, 3.0), &Vector3::z()).unwrap_err();
     assert!(matches!(error, StepError::Singular), "{error}");
     assert!(matches!(RightHandSide::new(unit), Err(SetupError::SingularKinetic { .. })));
 }
 
-/// A body and a sliding top are a sliding top with the inertias of both, whichever is first.
+/// The sum of a body and a sliding top is a sliding top with the inertias of both, in either order.
 #[test]
 fn a_sum_carries_the_momenta_of_both_terms() {
     let (m, g, rho, up, A) = (1.1, 9.81, Vector3::new(0.5, -0.2, 1.0), Vector3::z(), Matrix3::identity() * 0.4);
@@ -399,8 +399,8 @@ fn a_sum_carries_the_momenta_of_both_terms() {
     assert!((first - expected).norm() < 1e-13 && (second - expected).norm() < 1e-13, "{first} {second} {expected}");
 }
 
-/// Of a symmetric top the momenta about the vertical and about its axis, of an asymmetric one the first, of a free body
-/// all in space, of a free sphere all in the body too; a solver keeps them to its error.
+/// The conserved momenta: for a symmetric top those about the vertical and about its axis, for an asymmetric one the
+/// first, for a free body all in space, for a free sphere all in the body too; a solver conserves them to its error.
 #[test]
 fn conserved_momenta() {
     let top = |J_d: Vector3<f64>, rho: Vector3<f64>| {
@@ -437,7 +437,7 @@ fn conserved_momenta() {
     }
 }
 
-/// On SO(3) collocation on all matrices makes the motion that collocation on quaternions makes.
+/// On SO(3) collocation on all matrices gives the same motion as collocation on quaternions.
 #[test]
 fn two_collocations_agree() {
     let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 1.7, 1.0)).unwrap();
@@ -455,7 +455,7 @@ fn two_collocations_agree() {
     }
     assert!((state.momentum() - momentum).norm() < 1e-11);
     assert!((state.attitude().as_matrix() - attitude.as_matrix()).norm() < 1e-11);
-    // Beyond its limit, where an iterate has no numbers, it isn't one that didn't settle.
+    // Beyond the solvable range an iterate isn't finite, and the error isn't one of slow convergence.
     for h in [2.0, 50.0, 1e160] {
         let error = CotangentGauss::<_, 2, 3>::new(scene, h).unwrap().step(&attitude, &momentum).unwrap_err();
         assert!(matches!(error, StepError::NotConverged { .. } | StepError::Singular), "{error}");

@@ -1,5 +1,5 @@
-//! What `discretise` makes of an `l` that isn't quadratic in the velocity, on groups with and without a bi-invariant
-//! metric: the derived terms against hyper-dual numbers, order two against collocation, the coadjoint orbit, and a step
+//! Discretisations of an `l` that isn't quadratic in the velocity, on groups with and without a bi-invariant metric:
+//! the derived terms compared with hyper-dual numbers, order two with collocation, the coadjoint orbit, and a step
 //! back.
 
 use checks::affine::Affine;
@@ -66,7 +66,7 @@ quartic!(
     generators = [[[1.0, 0.0], [0.0, 0.0]], [[0.0, 1.0], [0.0, 0.0]]],
 );
 
-/// In the ambient matrix, and with a term of the library beside it.
+/// A Lagrangian in the ambient matrix, and its sum with a term of the library.
 #[lagrangian(
     group = SO3,
     velocity = Omega,
@@ -89,7 +89,7 @@ impl Ambient {
     }
 }
 
-/// All claims about a discretisation but those about its terms.
+/// Checks all claims about a discretisation except those about its terms.
 fn assert_discretised<L, const N: usize, const D: usize>(system: &L, name: &str)
 where
     L: System<Group: MatrixLieGroup<N, D>> + ContinuousLagrangian + Clone,
@@ -123,7 +123,7 @@ where
     let quarter = swings[0] / swings[1];
     println!("{name}: energy {energy}, swings {swings:?}, {quarter:.3} times");
     assert!((quarter - 4.0).abs() < 0.2, "{name}: the energy's swings {swings:?}");
-    // Twice the largest, that of the sum, whose gravity makes 7 rad/s of a small body within the second.
+    // The bound is twice the largest error, that of the sum, whose gravity accelerates a small body to 7 rad/s.
     assert!(swings[0] < 4e-3 * (1.0 + energy.abs()), "{name}: the energy's swing {swings:?} of {energy}");
 
     let time = 0.5;
@@ -149,7 +149,7 @@ where
     assert!((there.momentum() - expected).norm() < 1e-11 * expected.norm(), "{name}: back");
 }
 
-/// A top that is nearly as fast as light, typed as an `l_d`: the limit is `−√(1 − ξ·Jξ) − k w·r`.
+/// A top with nearly the velocity of light, declared as an `l_d`: the limit is `−√(1 − ξ·Jξ) − k w·r`.
 #[lagrangian(
     group = SO3,
     advected(w = covector),
@@ -164,7 +164,7 @@ struct Relativistic {
     covector: Vector3<f64>,
 }
 
-/// Its momentum is `Jξ/√(1 − ξ·Jξ)`.
+/// The momentum is `Jξ/√(1 − ξ·Jξ)`.
 #[test]
 fn of_any_degree_as_typed() {
     let J_d = NonstandardInertia::from_diagonal(Vector3::new(0.1, 0.12, 0.08)).unwrap();
@@ -186,7 +186,8 @@ fn of_any_degree_as_typed() {
     let energy = stepper.energy(&state);
     stepper.run(&mut state, 500).unwrap();
     assert!((stepper.energy(&state) - energy).abs() < 1e-2 * energy.abs());
-    // The velocity that the inertia at rest has for the momentum is beyond the root: what a solve begins with has no value.
+    // The estimate by the inertia at rest is beyond the singularity of the root, so the initial guess of a solve isn't
+    // finite.
     let axis = Vector3::new(0.0, 1.0, 0.0);
     let fastest = 1.0 / axis.dot(&(J * axis)).sqrt();
     for share in [0.7, 0.72, 0.9, 0.99] {
@@ -194,14 +195,14 @@ fn of_any_degree_as_typed() {
         assert!(stepper.max_step(&state) > 0.009_999, "{share}: {}", stepper.max_step(&state));
         stepper.step(&mut state).unwrap();
     }
-    // By rounding the velocity is 1e4 times less sure than the momentum.
+    // The velocity is by a factor of 1e4 more sensitive to rounding than the momentum.
     let state = stepper.start_with_momentum(SO3::identity(), axis * 30.0).unwrap();
     let speed = stepper.velocity(&state).y;
     let momentum = J[(1, 1)] * speed / (1.0 - J[(1, 1)] * speed * speed).sqrt();
     assert!((momentum / 30.0 - 1.0).abs() < 1e-9, "{momentum}");
 }
 
-/// The declared `l`, as a function of `ξ̂` and `w`.
+/// The declared `l` as a function of `ξ̂` and `w`.
 fn quartic<T: RealField + Copy, const N: usize>(
     (J, k, r): (SMatrix<T, N, N>, T, SVector<T, N>),
 ) -> impl Fn(&SMatrix<T, N, N>, &SVector<T, N>) -> T {
@@ -264,7 +265,7 @@ fn on_sl2() {
     assert_discretised(&OnSl2::new(), "SL(2), trapezoid(Cayley)");
 }
 
-/// A bilinear form, which goes over to `Fᵀ B F`.
+/// A bilinear form, which is advected to `Fᵀ B F`.
 #[lagrangian(
     group = SL2,
     velocity = xi,
@@ -315,7 +316,7 @@ fn on_affine_maps() {
     assert_discretised(&OnAffine::new(), "affine maps, trapezoid(Cayley)");
 }
 
-/// What has the motion of one free body in it needs one inertia for all velocities.
+/// Methods that contain the motion of one free body require a constant inertia.
 #[test]
 fn methods_for_a_quadratic_kinetic_energy_refuse_another() {
     let body = ExactBody::new(&Ambient::new().J);
@@ -341,7 +342,7 @@ struct Fast {
     field: Vector4<f64>,
 }
 
-/// A uniform pull: the discrete momentum is exact, and each step goes as far as its middle momentum says.
+/// In a uniform field the discrete momentum is exact, and each displacement is that of the middle momentum.
 #[test]
 fn a_fast_particle() {
     let (m, c, q, h) = (2.0, 3.0, 0.5, 0.1);
@@ -365,7 +366,7 @@ fn a_fast_particle() {
     assert!(matches!(error, SetupError::AmbiguousVelocity { difference } if difference.is_nan()), "{error}");
 }
 
-/// A momentum with a fold, `∂l/∂ξ = (1 − k |ξ|²) ξ`: it falls again beyond `|ξ| = 1/√(3k)`.
+/// A momentum with a fold, `∂l/∂ξ = (1 − k |ξ|²) ξ`: it decreases beyond `|ξ| = 1/√(3k)`.
 #[lagrangian(
     group = SO3,
     velocity = xi,
@@ -377,7 +378,7 @@ struct Folded<T: Real> {
     k: T,
 }
 
-/// Beyond the fold, and where the momentum is that of a velocity in the opposite direction, a start would be with another.
+/// Beyond the fold, and for a momentum of a velocity in the opposite direction, a start would have another velocity.
 #[test]
 fn a_velocity_beyond_the_fold_of_its_momentum() {
     let folded = Folded { k: 1.0 };
@@ -405,13 +406,13 @@ fn a_velocity_beyond_the_fold_of_its_momentum() {
     assert_eq!(error, SetupError::NonFinite { what: "velocity" });
 }
 
-/// Of a momentum beyond the fold the scene says as an error that no velocity has it; a control force and an event that are
-/// made of it are refused, and the state stays. A step needs no velocity.
+/// For a momentum beyond the fold the scene returns the error that no velocity has it. A control force and an event
+/// that depend on the velocity are refused, and the state stays. A step needs no velocity.
 #[test]
 fn a_momentum_that_no_velocity_has() {
     let (near, beyond) =
         (Stepper::new(Folded { k: 0.01_f64 }, 1.0).unwrap(), Stepper::new(Folded { k: 1.0_f64 }, 1.0).unwrap());
-    // The largest of a velocity is 0.3849; the discrete one, `(1 + h²ξ²/4) (1 − ξ²) ξ`, goes up to 0.418.
+    // The largest momentum of a velocity is 0.3849; the discrete one, `(1 + h²ξ²/4) (1 − ξ²) ξ`, reaches 0.418.
     let momentum = Vector3::new(0.6, 0.0, -0.8) * 0.395;
     let mut state = beyond.adopt(&near.start_with_momentum(SO3::identity(), momentum).unwrap());
     assert!(beyond.velocity(&state).iter().all(|entry| entry.is_nan()) && beyond.energy(&state).is_nan());
@@ -432,14 +433,14 @@ fn a_momentum_that_no_velocity_has() {
     assert!((xi * (1.0 - xi * xi) * (1.0 + 0.25 * xi * xi) - 0.395).abs() < 1e-13, "{xi}");
 }
 
-/// Each lane has the velocity that it has alone, to the bit; of one whose momentum has none it is NaN.
+/// Each lane has the velocity of a single body, to the bit; a lane whose momentum is that of no velocity is NaN.
 #[test]
 fn a_lane_without_a_velocity_spoils_no_other() {
     type Four = WideF64x4;
     let momenta: [Vector3<f64>; 4] = [0.0, 0.3, 0.5, 0.38].map(|size| Vector3::new(0.6, 0.0, -0.8) * size);
     let four = |k: f64| Stepper::new(Folded { k: Four::from([k; 4]) }, Four::from([0.01; 4])).unwrap();
     let one = |k: f64| Stepper::new(Folded { k }, 0.01).unwrap();
-    // With a fold that is far away all of them may start.
+    // The fold of this Lagrangian is far away, so all lanes may start.
     let (stepper, alone, place) = (four(1.0), one(1.0), SO3::<Four>::identity());
     let gathered = Vector3::gathered(&momenta).unwrap();
     let together = stepper.adopt(&four(0.01).start_with_momentum(place, gathered).unwrap());

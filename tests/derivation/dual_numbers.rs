@@ -1,5 +1,5 @@
-//! The derived terms of a discrete Lagrangian against hyper-dual numbers of it, on any matrix group; and what the rules of
-//! `discretise` make, by hand.
+//! The derived terms of a discrete Lagrangian compared with its hyper-dual numbers, on any matrix group; and the rules
+//! of `discretise` by hand.
 
 use std::collections::BTreeMap;
 
@@ -12,15 +12,16 @@ use liestep::numbers::{Coordinates as _, Entries};
 use nalgebra::{Matrix3, RealField, SMatrix, SVector, Vector3, convert};
 use num_dual::HyperDual64;
 
-/// Some dozens of roundings of what is compared, and of what a rounding of the increment changes in it.
+/// The bound is some dozens of roundings of the compared numbers, and the effect of a rounding of the increment on
+/// them.
 const ROUNDING: f64 = 1e-14;
 
-/// `l_d` itself and every derived term, at the identity, next to it and at random increments; and what hangs together of
-/// the momenta, `(L_F)* δl_d/δF = Ad*_F (R_F)* δl_d/δF` and `μ⁺ = Ad*_F (μ + δl_d/δw ⋄ w)`.
+/// Checks `l_d` and every derived term, at the identity, near it and at random increments; and the relations of the
+/// momenta, `(L_F)* δl_d/δF = Ad*_F (R_F)* δl_d/δF` and `μ⁺ = Ad*_F (μ + δl_d/δw ⋄ w)`.
 ///
-/// Each is compared relative to its own size, and to that of terms of `l_d` that cancel, `cancelling`, J s.
+/// Each error is relative to the term's own size, and to that of cancelling terms of `l_d`, `cancelling`, J s.
 ///
-/// `H` is the group of the hyper-dual numbers, and `far` how large the coordinates of an increment get.
+/// `H` is the group of the hyper-dual numbers, and `far` the largest size of an increment's coordinates.
 pub(crate) fn assert_terms<L, H, W>(
     name: &str,
     (system, h, cancelling): (&L, f64, f64),
@@ -39,7 +40,7 @@ pub(crate) fn assert_terms<L, H, W>(
         a.compose(&b).matrix()
     };
     let hat = |k: usize, s: f64| L::Group::hat(&axis(k, s));
-    // exp(ε E_k), as ε² = 0.
+    // exp(ε E_k) is exact here, as ε² = 0.
     let turned =
         |k: usize, unit: HyperDual64| -> H::Matrix { varied(&L::Group::identity().matrix(), &hat(k, 1.0), unit) };
     let mut worst = BTreeMap::<&str, f64>::new();
@@ -79,7 +80,7 @@ pub(crate) fn assert_terms<L, H, W>(
             }
         }
         let energy = -l_d(&long, &still, step + units[0]).eps1;
-        // The terms that cancel have at most h³ in the denominator.
+        // The cancelling terms have at most h³ in the denominator.
         let of_energy = energy.abs() + of_value / h;
         close("energy", system.discrete_energy(&f, &w, h), energy, of_energy, 3.0 * cancelling / h);
         let moved = element.adjoint_transpose(&(momentum + diamond));
@@ -92,8 +93,8 @@ pub(crate) fn assert_terms<L, H, W>(
     println!("{name}, h = {h}: off by at most {}", worst.join(", "));
 }
 
-/// What `trapezoid(Cayley)` and `chord(Cayley)` make of an `l` on any group of matrices, as a function of `ξ̂` and of a
-/// covector.
+/// The discretisations `trapezoid(Cayley)` and `chord(Cayley)` of an `l` on any group of matrices, as a function of
+/// `ξ̂` and of a covector.
 pub(crate) fn by_cayley<T: RealField + Copy, const N: usize>(
     rule: &str,
     l: impl Fn(&SMatrix<T, N, N>, &SVector<T, N>) -> T,
@@ -110,7 +111,7 @@ pub(crate) fn by_cayley<T: RealField + Copy, const N: usize>(
     }
 }
 
-/// What a rule of `discretise` makes of an `l` on SO(3), as a function of `ξ·Jξ`, `ξ` and `w`.
+/// The discretisation by a rule of `discretise` of an `l` on SO(3), as a function of `ξ·Jξ`, `ξ` and `w`.
 pub(crate) fn by_hand<T: RealField + Copy>(
     rule: &str,
     J: &Matrix3<f64>,
@@ -120,7 +121,7 @@ pub(crate) fn by_hand<T: RealField + Copy>(
     let (J, half, one) = (J.map(convert::<f64, T>), convert::<f64, T>(0.5), T::one());
     let skew = |x: &Matrix3<T>| Vector3::new(x.m32 - x.m23, x.m13 - x.m31, x.m21 - x.m12) * half;
     let quadratic = |xi: &Vector3<T>| xi.dot(&(J * xi));
-    // tan(θ/2) and sin(θ/2) along the axis.
+    // The vectors tan(θ/2) and sin(θ/2) along the axis.
     let tangent = skew(f) * (convert::<f64, T>(2.0) / (one + f.trace()));
     let sine = skew(f) / (one + f.trace()).sqrt();
     let (q, xi) = if rule.ends_with("(Cayley)") {
@@ -139,7 +140,7 @@ pub(crate) fn by_hand<T: RealField + Copy>(
     } else if rule.starts_with("chord") {
         l(q, &xi, &((w + next) * half)) * h
     } else {
-        // exp(−hξ/2) w.
+        // The middle value exp(−hξ/2) w.
         let (mut middle, mut term) = (*w, *w);
         for n in 1..40 {
             term = term.cross(&xi) * (half * h / convert(f64::from(n)));
@@ -149,7 +150,7 @@ pub(crate) fn by_hand<T: RealField + Copy>(
     }
 }
 
-/// `arcsin(s)/s` of `s²`, by its series `Σ (2n)!/(4ⁿ n!² (2n + 1)) s²ⁿ`.
+/// The function `arcsin(s)/s` of `s²`, by its series `Σ (2n)!/(4ⁿ n!² (2n + 1)) s²ⁿ`.
 fn arcsine_ratio<T: RealField + Copy>(square: T) -> T {
     let (mut sum, mut term) = (T::one(), T::one());
     for n in 1..300 {

@@ -1,4 +1,4 @@
-//! The page that says where each equation of the thesis is: every number has a row, and every file and test is there.
+//! Tests of the page that locates each equation of the thesis: every number has a row, and every file and test exists.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -6,7 +6,7 @@ use std::path::Path;
 
 const PAGE: &str = include_str!("../../core/src/conventions/equations.md");
 
-/// How many numbered equations each chapter has.
+/// The number of numbered equations in each chapter.
 const NUMBERED: [(u32, u32); 3] = [(1, 32), (2, 10), (3, 20)];
 
 fn rows() -> impl Iterator<Item = Vec<&'static str>> {
@@ -14,7 +14,7 @@ fn rows() -> impl Iterator<Item = Vec<&'static str>> {
     lines.map(|row| row.split('|').map(str::trim).collect())
 }
 
-/// The numbers in a cell, those between the ends of a range among them.
+/// The numbers in a cell, including those within a range.
 fn numbers(cell: &str) -> Vec<(u32, u32)> {
     let parts: Vec<&str> = cell.split(['(', ')']).collect();
     let number = |part: &str| {
@@ -34,12 +34,12 @@ fn numbers(cell: &str) -> Vec<(u32, u32)> {
 #[test]
 fn every_numbered_equation_has_a_row() {
     assert_eq!(numbers("(1.7)–(1.9), x; (1.11)"), [(1, 7), (1, 8), (1, 9), (1, 11)]);
-    // Of the tables that have a column of tests.
+    // The rows of tables that have a column of tests.
     let found: BTreeSet<_> = rows().filter(|row| row.len() == 4).flat_map(|row| numbers(row[0])).collect();
     let expected: BTreeSet<_> =
         NUMBERED.iter().flat_map(|&(chapter, last)| (1..=last).map(move |equation| (chapter, equation))).collect();
     assert_eq!(found, expected);
-    // One click from the number to where it is, or the rule that makes it.
+    // Each row links to the equation's place, or to the rule that derives it.
     let linked = |row: &[&str]| links(row[2]).next().is_some();
     let unlinked: Vec<_> = rows().filter(|row| row.len() == 4 && !numbers(row[0]).is_empty() && !linked(row)).collect();
     assert!(unlinked.is_empty(), "{unlinked:?}");
@@ -49,26 +49,26 @@ fn every_numbered_equation_has_a_row() {
     }
 }
 
-/// What a cell links to, by the labels of the definitions at the end of the page.
+/// The links of a cell, by the labels of the definitions at the end of the page.
 fn links(cell: &str) -> impl Iterator<Item = &str> {
     let mut parts = cell.split('[').skip(1).peekable();
     core::iter::from_fn(move || {
         let (label, after) = parts.next()?.split_once(']')?;
-        // Of `[text][label]` the label.
+        // In `[text][label]` the label counts.
         let is_text = after.is_empty() && parts.peek().is_some();
         Some((label, is_text))
     })
     .filter_map(|(label, is_text)| (!is_text).then_some(label))
 }
 
-/// `# A title` as rustdoc names it in addresses.
+/// The anchor of the heading `# A title` in rustdoc's addresses.
 fn anchor(heading: &str) -> String {
     let letters = heading.trim_start_matches('#').trim().to_lowercase().replace(' ', "-");
     letters.chars().filter(|c| c.is_alphanumeric() || *c == '-' || *c == '_').collect()
 }
 
-/// Each link has its definition; one into a chapter of the guide leads to a heading, under which the equations of its row are
-/// printed.
+/// Each link has its definition; a link into a chapter of the guide leads to a heading, under which the equations of
+/// its row are printed.
 #[test]
 fn links_lead_to_equations() {
     let guide = include_str!("../../core/src/guide/thesis.md");
@@ -116,7 +116,7 @@ fn files_and_tests_exist() {
                 source = fs::read_to_string(root.join(word)).ok();
             } else if row.len() >= 3 && !file.is_empty() {
                 let text = source.as_deref().unwrap_or_default();
-                // A function, or an entry of a list that a macro makes tests of.
+                // A function, or an entry of a list from which a macro generates tests.
                 let forms = [format!("fn {word}("), format!("fn {word}<"), format!("{word} \""), format!("{word} on_")];
                 assert!(forms.iter().any(|form| text.contains(form)), "{file} has no test {word}");
                 tests += 1;
@@ -129,7 +129,7 @@ fn files_and_tests_exist() {
     assert!(tests > 60, "{tests} tests are named");
 }
 
-/// The pages that show figures show those that are there, and all that are there.
+/// Every figure of the pages exists, and every figure is on a page.
 #[test]
 fn figures_are_shown() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();

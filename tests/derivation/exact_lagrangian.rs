@@ -1,4 +1,4 @@
-//! (1.18) and property 3 of section 1.4: how far `l_d` is from the action of a step, and what follows where it isn't.
+//! (1.18) and property 3 of section 1.4: the distance of `l_d` from the action of a step, and its consequences.
 
 use declarations::{FourthOrderTop, HeavyTop, LogTop, SixthOrderTop, Top};
 use liestep::mechanics::{DiscreteLagrangian, Inertia};
@@ -13,7 +13,7 @@ fn exact(top: &HeavyTop, velocity: Vector3<f64>, w: Vector3<f64>, h: f64) -> (f6
     const STEPS: u32 = 64;
     let moments = top.moments();
     let seen = |f: &Matrix3<f64>| f.transpose() * w;
-    // Attitude and velocity, side by side.
+    // The attitude and the velocity side by side.
     let joined = |f: Matrix3<f64>, o: Vector3<f64>| Matrix3x4::from_fn(|i, j| if j < 3 { f[(i, j)] } else { o[i] });
     let apart = |z: &Matrix3x4<f64>| (z.fixed_columns::<3>(0).into_owned(), z.column(3).into_owned());
     let l = |z: &Matrix3x4<f64>| {
@@ -34,7 +34,7 @@ fn exact(top: &HeavyTop, velocity: Vector3<f64>, w: Vector3<f64>, h: f64) -> (f6
     ((action + l(&z)) * t / 3.0, apart(&z).0)
 }
 
-/// A Lagrangian of order `r` misses the action of a step by `O(h^{r+1})`: [MW01], theorem 2.3.1.
+/// A Lagrangian of order `r` differs from the action of a step by `O(h^{r+1})`: [MW01], theorem 2.3.1.
 #[test]
 fn order_of_the_action() {
     let top = HeavyTop::asymmetric();
@@ -56,8 +56,8 @@ fn order_of_the_action() {
     assert!((sixth - 7.0).abs() < 0.2, "{sixth}");
 }
 
-/// `ξ·Jξ/(2h)` with `ξ = log F` is the action of a free sphere, so the points of its path are those of the motion,
-/// however long the step.
+/// `ξ·Jξ/(2h)` with `ξ = log F` is the action of a free sphere, so the points of its path are those of the motion, for
+/// any step.
 #[test]
 fn a_free_sphere_turns_exactly() {
     let sphere = Inertia::from_principal_moments(Vector3::repeat(0.7)).unwrap();
@@ -75,7 +75,7 @@ fn a_free_sphere_turns_exactly() {
             assert!(error < 1e-13 * f64::from(i), "h = {h}: off by {error:e} after {i} steps");
         }
     }
-    // (3.13) isn't that action: its phase is off by (hΩ)²/6 of itself.
+    // (3.13) isn't that action: its phase has a relative error of (hΩ)²/6.
     let J_d = DiagonalNonstandardInertia::from_diagonal(Vector3::repeat(0.35)).unwrap();
     let stepper = Stepper::new(PrincipalBody { J_d }, 0.3).unwrap();
     let mut state = stepper.start(start, velocity).unwrap();

@@ -1,5 +1,5 @@
-//! One step and ten of each kinetic term against values computed in binary128: the momentum equation (2.7), its solution, and
-//! the update (2.9) in the physical normalisation of the momentum.
+//! One step and ten of each kinetic term compared with values in binary128: the momentum equation (2.7), its solution,
+//! and the update (2.9) in the physical normalisation of the momentum.
 
 use declarations::motions::{matrix, number, read, vector};
 use declarations::{CayleyTop, FourthOrderTop, HeavyTop, LogTop, SixthOrderTop, Top};
@@ -10,10 +10,10 @@ use nalgebra::Vector3;
 use serde_json::Value;
 use workbench::measure::relative;
 
-/// Ten steps lose a few roundings each; the reference itself is exact to 30 digits.
+/// The tolerance admits a few roundings of each of ten steps; the reference itself is exact to 30 digits.
 const TOLERANCE: f64 = 1e-13;
 
-/// Ten steps of the top of each entry, to this tolerance.
+/// Checks ten steps of the top of each entry, to this tolerance.
 fn assert_golden<L>(name: &str, tolerance: f64, top: impl Fn(&Value) -> L)
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Regular,
@@ -60,7 +60,7 @@ fn body<L: Top>(entry: &Value) -> L {
     L::new(J, number(&entry["mg"]), vector(&entry["rho"]), Vector3::z())
 }
 
-/// Those that stand in the literature.
+/// The kinetic terms from the literature.
 #[test]
 fn golden_entries_of_other_kinetic_terms_are_reproduced() {
     assert_golden("cayley_trapezoid", 10.0 * TOLERANCE, body::<CayleyTop>);

@@ -9,7 +9,7 @@ use liestep::prelude::*;
 use nalgebra::{Matrix3, RealField, SimdValue, UnitQuaternion, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
 
-/// One lane: a body, where it starts and how fast it turns.
+/// One lane: a body, its attitude and its initial velocity.
 #[derive(Clone)]
 struct Lane<E: Real> {
     top: Top<E>,
@@ -57,7 +57,7 @@ trait Wide: Real<Element: Real + RealField> {}
 
 impl<T: Real<Element: Real + RealField>> Wide for T {}
 
-/// Each lane against a scalar run of its own, after every step; how often the lanes' iteration counts differed.
+/// Compares each lane with a scalar run after every step; returns how often the lanes' iteration counts differed.
 fn assert_independent<T: Wide>(lanes: &[Lane<T::Element>], h: f64, steps: u32) -> u32 {
     let (stepper, mut state) = together::<T>(lanes, h);
     let mut singles = alone::<T>(lanes, h);
@@ -75,7 +75,7 @@ fn assert_independent<T: Wide>(lanes: &[Lane<T::Element>], h: f64, steps: u32) -
     unequal
 }
 
-/// From slow to fast, so that the lanes need unequal numbers of iterations.
+/// Lanes from slow to fast, so that they need unequal numbers of iterations.
 #[allow(clippy::cast_precision_loss)] // a lane's number
 fn spread<E: Real + RealField, const N: usize>(seed: u64, fastest: f64) -> [Lane<E>; N] {
     let mut random = Random::new(seed);
@@ -124,7 +124,7 @@ fn composed_and_compensated_lanes_move_as_alone() {
     }
 }
 
-/// Upright tops, one in each lane, that lean each so many times as much as the one before.
+/// Upright tops, one in each lane, each tilted `times` as much as the one before.
 fn spinning(times: f64) -> [Lane<f64>; 8] {
     let mut random = Random::new(10);
     let mut tilt = 1e-12;
@@ -139,8 +139,8 @@ fn spinning(times: f64) -> [Lane<f64>; 8] {
     })
 }
 
-/// One iteration is enough for tops that nearly sleep: they wait while others take their second, or in another ensemble
-/// their third too.
+/// One iteration suffices for tops that nearly sleep: they wait while others take their second, or in another ensemble
+/// also their third.
 #[test]
 fn lanes_that_have_settled_wait_for_others() {
     for (times, h, most) in [(20.0, 0.02, 2), (40.0, 0.06, 3)] {
@@ -156,7 +156,7 @@ fn lanes_that_have_settled_wait_for_others() {
     }
 }
 
-/// A lane that turns by some 70° a step extrapolates no more; the others still do.
+/// A lane that turns by some 70° a step doesn't extrapolate; the others still do.
 #[test]
 fn a_lane_near_a_quarter_turn_changes_no_other() {
     let mut lanes: [Lane<f64>; 4] = spread(8, 4.0);
@@ -166,7 +166,7 @@ fn a_lane_near_a_quarter_turn_changes_no_other() {
     assert_independent::<WideF64x4>(&lanes, 0.1, 200);
 }
 
-/// A guess on another branch makes its lane start anew from the identity, and no other.
+/// A guess on another branch restarts only its own lane from the identity.
 #[test]
 fn a_lane_with_a_bad_guess_changes_no_other() {
     let lanes: [Lane<f64>; 4] = spread(4, 32.0);
@@ -191,7 +191,7 @@ fn a_lane_with_a_bad_guess_changes_no_other() {
     assert!(anew >= 10, "{anew}");
 }
 
-/// One lane without a solution: no lane moves.
+/// If one lane has no solution, no lane moves.
 #[test]
 fn an_unsolvable_lane_leaves_all_as_they_were() {
     let mut lanes: [Lane<f64>; 4] = spread(6, 32.0);
@@ -204,12 +204,12 @@ fn an_unsolvable_lane_leaves_all_as_they_were() {
         "{refused:?}"
     );
     assert_eq!(state, before);
-    // Without it the others move.
+    // Without that lane the others move.
     lanes[1].velocity = Vector3::x();
     assert_independent::<WideF64x4>(&lanes, 0.01, 10);
 }
 
-/// What one lane can't use is refused for all.
+/// Input that is invalid in one lane is refused for all.
 #[test]
 fn a_lane_that_is_not_finite_is_refused() {
     let lanes: [Lane<f64>; 4] = spread(7, 32.0);
@@ -226,7 +226,7 @@ fn a_lane_that_is_not_finite_is_refused() {
     }
 }
 
-/// Steppers and states that are made one by one, put together, taken apart again, and one of them through a file.
+/// Steppers and states that are constructed singly, gathered, and separated again, one of them through a file.
 #[test]
 fn lanes_are_put_together_and_taken_apart_on_the_way() {
     let lanes: [Lane<f64>; 8] = spread(13, 32.0);
@@ -254,12 +254,12 @@ fn lanes_are_put_together_and_taken_apart_on_the_way() {
     for (k, (_, single)) in singles.iter().enumerate() {
         assert_eq!(state.lane(k), *single, "lane {k}");
     }
-    // Lanes count their steps together.
+    // All lanes have the same number of steps.
     run(&mut singles[..1], 1);
     assert!(!state.set_lane(0, &singles[0].1));
 }
 
-/// Bodies that stop, each at its own step: they and the others are what they are alone, to the bit.
+/// Bodies that stop, each at its own step: all have the same bits as alone.
 fn assert_stops<M>(bodies: &[(M, M::State)], pieces: [u64; 3], stopped: &[usize])
 where
     M: Batchable<WideF64x4, State: PartialEq + core::fmt::Debug>,
@@ -314,7 +314,7 @@ fn a_lane_that_fails_stops_and_the_others_go_on() {
         (composed, state)
     });
     assert_stops(&composed, [5, 40, 300], &[1, 3]);
-    // Fewer bodies than lanes, one body, and those that all stop.
+    // Batches with fewer bodies than lanes, with one body, and with bodies that all stop.
     assert_stops(&declared[..3], [5, 40, 300], &[1]);
     assert_stops(&declared[2..3], [5, 40, 300], &[]);
     assert_stops(&declared[1..2], [5, 40, 300], &[0]);
@@ -362,7 +362,7 @@ fn smooth_functions_in_lanes() {
     let wide = smooth(WideF64x4::from(k), Vector3::gathered(&rho).unwrap(), Vector3::gathered(&velocity).unwrap());
     for lane in 0..4 {
         let (attitude, momentum) = smooth(k[lane], rho[lane], velocity[lane]);
-        // A hundred steps' roundings.
+        // The bound is the rounding of a hundred steps.
         assert!((wide.0.lane(lane) - attitude).norm() < 1e-13, "lane {lane}");
         assert!((wide.1.lane(lane) - momentum).norm() < 1e-13 * momentum.norm(), "lane {lane}");
     }

@@ -1,4 +1,4 @@
-//! What the macro derives, against what shares no code with it: duals, finite differences, formulas by hand, data.
+//! The macro's derivations compared with independent results: dual numbers, finite differences, formulas by hand, data.
 
 mod continuous;
 mod discretised;

@@ -1,5 +1,6 @@
-//! Lagrangians on groups other than SO(3): on the largest, and with all kinds of advected parameters, every derived term
-//! against central differences of the declared `l_d` and the staged step against the unstaged terms; and which steps reverse.
+//! Lagrangians on groups other than SO(3): on the largest, and with all kinds of advected parameters, every derived
+//! term compared with central differences of the declared `l_d` and the staged step with the unstaged terms; and
+//! reversible steps.
 
 use checks::random::Random;
 use checks::structure::{System, momenta, reversal, stages};
@@ -22,7 +23,7 @@ struct Pendulum {
     up: Vector2<f64>,
 }
 
-/// An extended pose, in fields of the size that nalgebra has no names for beyond six.
+/// An extended pose, with matrices of a size for which nalgebra has no names.
 #[lagrangian(
     group = SE23,
     advected(w = covector),
@@ -36,7 +37,7 @@ struct ExtendedPose {
     covector: SVector<f64, 5>,
 }
 
-/// A top in unit quaternions, with a potential that a rotation by 2π would change.
+/// A top in unit quaternions, with a potential that changes under a rotation by 2π.
 #[lagrangian(
     group = SU2,
     advected(w = up),
@@ -64,7 +65,7 @@ struct Particle {
     up: Vector3<f64>,
 }
 
-/// Every kind of advected parameter on SL(2), whose representation isn't orthogonal.
+/// A system with every kind of advected parameter on SL(2), whose representation isn't orthogonal.
 #[lagrangian(
     group = SL2,
     advected(w = covector, v = vector, S = tensor, B = form, A = map),
@@ -127,7 +128,7 @@ fn particle() -> Particle {
     Particle { m: 2.0, g: 9.81, origin: Vector3::z(), up: Vector3::y() }
 }
 
-/// The derived terms against the declared `l_d`, and the step in stages against these.
+/// Compares the derived terms with the declared `l_d`, and the step in stages with the terms.
 fn derived_terms(system: &impl System) {
     momenta::assert_momenta(system, 3);
     stages::assert_stages(system, 4);
@@ -145,8 +146,8 @@ fn kinds_of_advected_parameters() {
     derived_terms(&kinds());
 }
 
-/// Where `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`, a step of `−h` undoes one of `h`; `tests/systems/structure.rs` has other groups, and
-/// `one_sided.rs` there what doesn't.
+/// If `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`, a step of `−h` undoes one of `h`; `tests/systems/structure.rs` has other
+/// groups, and `one_sided.rs` there the counterexamples.
 #[test]
 fn self_adjoint_declarations_reverse() {
     let ours = [

@@ -1,6 +1,6 @@
-//! Which declarations are their own adjoint, as the macro has found out.
+//! Self-adjointness of declarations, as the macro determines it.
 
-#![allow(dead_code)] // nothing here is stepped
+#![allow(dead_code)] // no declaration here is stepped
 
 use declarations::{CayleyTop, FullTop, OrbitingBody, TetheredPlate};
 use liestep::groups::{ContravariantVector, LieGroup as _, SE3};
@@ -34,14 +34,14 @@ struct LogTrace {
     up: Vector3<f64>,
 }
 
-/// A rigid body by `J = ∫ X Xᵀ dm` in homogeneous coordinates: isometries leave it alone, which the normal form doesn't
-/// know.
+/// A rigid body by `J = ∫ X Xᵀ dm` in homogeneous coordinates: isometries preserve its terms, which the normal form
+/// can't use.
 #[lagrangian(group = SE3, l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h))]
 struct Body {
     J: Matrix4<f64>,
 }
 
-/// Added mass `a` along the first axis, for the translation as the body sees it at the beginning of the step only.
+/// Added mass `a` along the first axis, for the translation in the body frame at the beginning of the step only.
 #[lagrangian(group = SE3, l_d = (((F - I) * J * (F - I).transpose()).trace() + a * F[(0, 3)].powi(2)) / (2.0 * h))]
 struct AddedMass {
     J: Matrix4<f64>,
@@ -62,7 +62,7 @@ struct Attracted {
     centre: Point3<f64>,
 }
 
-/// The same with vectors, which don't promise to be points: `F` keeps no distance of vectors.
+/// The attracted body with vectors in place of points: `F` doesn't preserve distances of vectors.
 #[lagrangian(
     group = SE3,
     advected(c = centre),
@@ -76,7 +76,7 @@ struct AttractedVector {
     centre: ContravariantVector<f64, 4>,
 }
 
-/// The same at the beginning and at the end, in equal parts.
+/// The added mass at the beginning and at the end, in equal parts.
 #[lagrangian(
     group = SE3,
     l_d = {
@@ -90,10 +90,10 @@ struct SymmetricAddedMass {
     a: f64,
 }
 
-// A constant: a composition that needs it can ask at compile time.
+// The constant is available at compile time, as a composition requires.
 const _: () = assert!(FullTop::SELF_ADJOINT && !OneEnd::SELF_ADJOINT);
 
-/// What the constant says, if the text says it with this sign, and how it was found with these words.
+/// The constant, after checks that the text states it with this sign and with these words on how it was found.
 fn found<L: DiscreteLagrangian>(sign: &str, how: &str) -> Option<bool> {
     let (sign, how) = (format!(" {sign} −l_d(F⁻¹, "), format!(" −h)    [{how}"));
     let mut lines = L::DERIVATION.lines().filter(|line| line.contains(&sign) && line.contains(&how));
@@ -122,14 +122,14 @@ fn it_is_missing() {
     assert_eq!(found::<AttractedVector>("≠", how), Some(false));
 }
 
-/// The promise is among the hypotheses, where it is used: of the four coordinates three are left.
+/// The declaration as a point is used as a hypothesis: of the four coordinates three remain.
 #[test]
 fn points_are_a_hypothesis() {
     assert!(Attracted::DERIVATION.contains("p₄ = 1, c₄ = 1"), "{}", Attracted::DERIVATION);
     assert!(!AttractedVector::DERIVATION.contains("₄ = 1"));
 }
 
-/// The value of a point is that of the vector of its homogeneous coordinates.
+/// The value for a point is that for the vector of its homogeneous coordinates.
 #[test]
 fn points_are_homogeneous_vectors() {
     let J = Matrix4::from_diagonal(&Vector4::new(1.0, 2.0, 3.0, 1.5));
@@ -151,7 +151,7 @@ fn points_are_homogeneous_vectors() {
     }
 }
 
-/// The words are those of the declared function.
+/// The text contains the declared function.
 #[test]
 fn values_agree_with_the_words() {
     let (rho, up) = (Vector3::new(0.3, -0.2, 0.5), Vector3::z());

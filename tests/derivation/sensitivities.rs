@@ -9,10 +9,10 @@ use num_dual::Dual64;
 const STEPS: usize = 1000;
 const STEP: f64 = 0.01;
 
-/// The quantities differentiated: attitude, momentum and vertical.
+/// The differentiated quantities: attitude, momentum and vertical.
 type Outcome<T> = [T; 15];
 
-/// What a parameter `s` of value one scales.
+/// The quantity that a parameter `s` of value one scales.
 #[derive(Clone, Copy, Debug)]
 enum Scaled {
     Weight,
@@ -22,7 +22,7 @@ enum Scaled {
 
 type Running<T> = (Stepper<Top<T>>, State<SO3<T>, Vector3<T>>);
 
-/// The asymmetric top with a parameter scaled, at its start.
+/// The asymmetric top with a scaled parameter, in its initial state.
 fn start<T: Real + RealField>(scaled: Scaled, s: T) -> Running<T> {
     let vector = |x: f64, y: f64, z: f64| Vector3::new(x, y, z).map(nalgebra::convert::<f64, T>);
     let mut moments = vector(2.0, 3.0, 4.5);
@@ -41,7 +41,7 @@ fn start<T: Real + RealField>(scaled: Scaled, s: T) -> Running<T> {
     (stepper, state)
 }
 
-/// After [`STEPS`] steps.
+/// The quantities after [`STEPS`] steps.
 fn outcome<T: Real + RealField>(scaled: Scaled, s: T) -> Outcome<T> {
     let (stepper, mut state) = start(scaled, s);
     for _ in 0..STEPS {
@@ -74,20 +74,20 @@ fn of_a_trajectory() {
         for k in 0..15 {
             let (value, derivative) = (dual[k].re, dual[k].eps);
             assert!((value - plain[k]).abs() < 1e-12, "{scaled:?}, entry {k}: {value} against {}", plain[k]);
-            // What the differences lose to rounding, in a motion that magnifies what it starts with.
+            // The bound is the rounding error of the differences, in a motion that amplifies initial errors.
             let error = (derivative - expected[k]).abs();
             assert!(error < 1e-10 * size, "{scaled:?}, entry {k}: {derivative} against {}", expected[k]);
         }
     }
 }
 
-/// Newton's iteration stops by the values, but the derivative of the momentum equation is solved to rounding too.
+/// Newton's iteration converges by the values, but the derivative of the momentum equation is solved to rounding too.
 #[test]
 fn of_one_solve() {
     for scaled in ALL {
         let (stepper, mut state) = start(scaled, Dual64::from(1.0).derivative());
         for _ in 0..STEPS {
-            // From no guess at all, and from one that carries no derivative.
+            // The guesses are zero, and one without a derivative.
             let (momentum, vertical) = (state.momentum(), state.advected());
             let cold = stepper.flow().step(&momentum, &vertical, &Vector3::zeros()).unwrap();
             let constant = cold.coordinates.map(|entry| Dual64::from(entry.re * (1.0 + 1e-4)));

@@ -1,4 +1,4 @@
-//! Two bodies that feel each other's velocities and attitudes: what is derived, against dual numbers of the declared
+//! Two bodies with coupled velocities and attitudes: the derived terms, compared with dual numbers of the declared
 //! `l_d`, up to large turns of either.
 
 use checks::random::Random;
@@ -20,7 +20,7 @@ use crate::dual_numbers::assert_terms;
         R = F_1.seen_from(space),
     ),
     l_d = {
-        // Called with the inverse of a field, and with another matrix.
+        // A function of a field's inverse, and of another matrix.
         let U = |Q: Matrix3<T>, y: Vector3<T>| { let r = Q * y; (r + y).dot(&r) * y.z };
         let turns = (vee(F_1) - vee(F_2)).norm_squared() / h
             + h * vee(Q - Q.transpose()).dot(&s) + h * ((Q - Q.transpose()) * A * (Q * Q)).trace();
@@ -44,7 +44,7 @@ struct Pair<T: Real> {
     field: Vector3<T>,
 }
 
-/// Of a seed.
+/// The pair of bodies of a seed.
 fn pair<T: RealField + Copy + Real>(seed: u64) -> Pair<T> {
     let mut r = Random::new(seed);
     let mut tensor = || {
@@ -64,7 +64,7 @@ fn two_bodies() {
         let h = 0.01 + 0.005 * f64::from(seed);
         let seed = u64::from(seed);
         let (system, long) = (pair::<f64>(seed), pair::<HyperDual64>(seed));
-        // Squares of differences of matrices.
+        // The cancelling terms are squares of differences of matrices.
         let cancelling = (system.J_1.as_matrix().trace() + system.J_2.as_matrix().trace()) / h;
         assert_terms::<_, Long, _>("two bodies", (&system, h, cancelling), |f, w, h| long.l_d(f, w, h), (seed, 3.0));
         assert_stages(&system, seed);

@@ -1,5 +1,5 @@
-//! What the macro derives, against truths that share none of its code: dual numbers of the declared `l_d`, and differences of
-//! the staged step.
+//! The derived terms compared with independent results: dual numbers of the declared `l_d`, and differences of the
+//! staged step.
 
 use checks::any_scalar;
 use checks::random::Random;
@@ -27,7 +27,7 @@ struct Top<T: Real> {
     up: Vector3<T>,
 }
 
-/// No advected parameter.
+/// A Lagrangian without advected parameters.
 #[lagrangian(group = SO3, l_d = (J_d.trace() - (F * J_d).trace()) / h)]
 struct FreeBody<T: Real> {
     J_d: NonstandardInertia<T>,
@@ -58,8 +58,8 @@ struct Everything<T: Real> {
     field: Vector3<T>,
 }
 
-/// Smooth functions: the logarithmic kinetic term of Bobenko and Suris, a spring, an oscillating field, a turn by what is
-/// advected.
+/// Smooth functions: the logarithmic kinetic term of Bobenko and Suris, a spring, an oscillating field, and a turn that
+/// depends on an advected parameter.
 #[lagrangian(
     group = SO3,
     advected(w = up),
@@ -115,7 +115,7 @@ fn smooth<T: RealField + Copy>(seed: u64) -> Smooth<T> {
     Smooth { k: real(1.7), rho: vector(&mut r), up: vector(&mut r) }
 }
 
-/// All derived terms and the stages; traces that cancel in `l_d` are `cancelling` over `h`.
+/// Checks all derived terms and the stages; cancelling traces in `l_d` are `cancelling` over `h`.
 fn compare<L, H>(name: &str, build: fn(u64) -> L, hyper: fn(u64) -> H, cancelling: fn(&L) -> f64)
 where
     L: System<Group = SO3>,

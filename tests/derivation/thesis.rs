@@ -1,7 +1,7 @@
-//! The printed equations of the thesis for the free body and the heavy top, typed by hand, against what is derived and
-//! stepped; and its errata: each equation that is corrected fails as it is printed.
+//! The printed equations of the thesis for the free body and the heavy top, written by hand, compared with the derived
+//! terms and the steps; and its errata: each corrected equation fails as printed.
 //!
-//! The body has a full `J_d` and its centre of mass off all axes, so that nothing vanishes by symmetry.
+//! The body has a full `J_d` and its centre of mass off all axes, so that no term vanishes by symmetry.
 
 use checks::random::Random;
 use declarations::{FreeBody, FullTop};
@@ -11,7 +11,7 @@ use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 
 const H: f64 = 0.02;
-/// Some products of matrices, relative to `J_d/h`.
+/// The bound is some products of matrices, relative to `J_d/h`.
 const ROUNDING: f64 = 1e-13;
 
 type Vector = Vector3<f64>;
@@ -31,7 +31,7 @@ fn top() -> (FullTop, Printed) {
     (top, Printed { J_d, mg: m * g, rho })
 }
 
-/// `M^∨` of the skew part of a matrix.
+/// The vector `M^∨` of the skew part of a matrix.
 fn vee(m: &Matrix) -> Vector {
     Vector::new(m.m32 - m.m23, m.m13 - m.m31, m.m21 - m.m12) * 0.5
 }
@@ -41,23 +41,23 @@ fn hat(v: &Vector) -> Matrix {
 }
 
 impl Printed {
-    /// `mg w × ρ`.
+    /// The moment `mg w × ρ`.
     fn moment(&self, w: &Vector) -> Vector {
         w.cross(&self.rho) * self.mg
     }
 
-    /// Section 3.2, `L(R, RΩ̂, w) = ½ tr(Ω̂ J_d Ω̂ᵀ) − mg⟨w, Rρ⟩`.
+    /// The Lagrangian of section 3.2, `L(R, RΩ̂, w) = ½ tr(Ω̂ J_d Ω̂ᵀ) − mg⟨w, Rρ⟩`.
     fn continuous(&self, r: &Matrix, velocity: &Matrix, w: &Vector) -> f64 {
         0.5 * (velocity * self.J_d * velocity.transpose()).trace() - self.mg * w.dot(&(r * self.rho))
     }
 
-    /// (3.17), with the factor ½ of the thesis.
+    /// The momentum (3.17), with the factor ½ of the thesis.
     fn momentum_before(&self, f: &Matrix, w: &Vector) -> Matrix {
         let kinetic = (f * self.J_d - self.J_d * f.transpose()) / H;
         (kinetic - (self.rho * w.transpose() - w * self.rho.transpose()) * (0.5 * H * self.mg)) * 0.5
     }
 
-    /// (3.18).
+    /// The momentum (3.18).
     fn momentum_after(&self, f: &Matrix, w: &Vector) -> Matrix {
         let kinetic = (self.J_d * f - f.transpose() * self.J_d) / H;
         let weight = f.transpose() * w * self.rho.transpose() - self.rho * w.transpose() * f;
@@ -69,7 +69,7 @@ impl Printed {
     }
 }
 
-/// Increments of some tenths of a radian, with what is seen.
+/// Increments of some tenths of a radian, with advected vectors.
 fn steps() -> Vec<(Matrix, Vector)> {
     let mut random = Random::new(316);
     (0..20).map(|_| (*random.rotation_by(0.3).as_matrix(), random.vector())).collect()
@@ -97,14 +97,14 @@ fn derived_terms_as_printed() {
         close("item 3", top.diamond(&f, &w, H), vee(&diamond) * 2.0, allowed);
         close("(3.17)", top.legendre_minus(&f, &w, H), vee(&printed.momentum_before(&f, &w)) * 2.0, allowed);
         close("(3.18)", top.legendre_plus(&f, &w, H), vee(&printed.momentum_after(&f, &w)) * 2.0, allowed);
-        // (1.31), for the same body without gravity.
+        // Equation (1.31), for the same body without gravity.
         let free = FreeBody { J_d: top.J_d };
         let momentum = (f * J_d - J_d * f_t) / (2.0 * H);
         close("(1.31)", free.legendre_minus(&f, &(), H), vee(&momentum) * 2.0, allowed);
     }
 }
 
-/// The trapezoidal rule with `Ω̂_i = R_iᵀ(R_{i+1} − R_i)/h` makes (3.13) of `L`, with the spatial `e₃` in it.
+/// The trapezoidal rule with `Ω̂_i = R_iᵀ(R_{i+1} − R_i)/h` discretises `L` to (3.13), with the spatial `e₃` in it.
 #[test]
 fn trapezoidal_rule_gives_3_13() {
     let (top, printed) = top();
@@ -117,7 +117,7 @@ fn trapezoidal_rule_gives_3_13() {
             |w: &Vector| 0.5 * H * (printed.continuous(&r, &velocity, w) + printed.continuous(&next, &velocity, w));
         let l_d = top.l_d(&f, &w, H);
         assert!((rule(&e3) - l_d).abs() <= ROUNDING * printed.scale(), "{:e}", rule(&e3) - l_d);
-        // Erratum: with the `w_i` that is printed as an argument it is another number.
+        // Erratum: the printed argument `w_i` gives another number.
         assert!((rule(&w) - l_d).abs() > 1e-4, "{:e}", rule(&w) - l_d);
         // The Lagrangian of [LML05] differs off the group only.
         let potential = printed.mg * (w.dot(&printed.rho) + w.dot(&(f * printed.rho)));
@@ -126,7 +126,7 @@ fn trapezoidal_rule_gives_3_13() {
     }
 }
 
-/// (3.14) to (3.16) as printed, from the flow on increments.
+/// Equations (3.14) to (3.16) as printed, from the flow on increments.
 #[test]
 fn flow_on_increments_as_printed() {
     let (top, Printed { J_d, mg, rho }) = top();
@@ -150,7 +150,7 @@ fn flow_on_increments_as_printed() {
     }
 }
 
-/// Momentum and attitude: [LML05] in its Hamiltonian form, (3.19) and (3.20).
+/// The momentum and the attitude: [LML05] in its Hamiltonian form, (3.19) and (3.20).
 #[test]
 fn momentum_in_space_as_printed() {
     let (top, printed) = top();
@@ -178,7 +178,7 @@ fn momentum_in_space_as_printed() {
         let halves = next * vee(&after_hat) - r * vee(&before_hat);
         close("(3.19) with h/4", halves, change * 0.5, allowed);
         assert!((halves - change).norm() > 0.4 * change.norm(), "one letter for two momenta");
-        // Erratum: a matrix goes to space by conjugation, and not as the line before (3.19) has it.
+        // Erratum: a matrix is transformed to space by conjugation, and not as in the line before (3.19).
         let conjugated = next * after_hat * next.transpose() - r * before_hat * r.transpose();
         close("the line before (3.19)", vee(&conjugated), change * 0.5, allowed);
         let line = next.transpose() * after_hat - r.transpose() * before_hat;
@@ -188,7 +188,7 @@ fn momentum_in_space_as_printed() {
     assert!(missed > 0.01, "the printed line: {missed:e}");
 }
 
-/// Erratum: the matrix in the trace is `J_d`, of which the inertia is `tr(J_d) I − J_d`.
+/// Erratum: the matrix in the trace is `J_d`, and the inertia is `tr(J_d) I − J_d`.
 #[test]
 fn matrix_in_the_trace() {
     let (_, Printed { J_d, .. }) = top();
@@ -212,7 +212,7 @@ fn third_line_of_the_diamond() {
         };
         let diamond = top.diamond(&f, &w, H);
         close("exp(sξ)ρ + exp(sξ)Fρ", diamond, line(1.0), 1e-15);
-        // As it is printed, exp(sρ)Fρ has no derivative along ξ at all; with that mended, the sign is left.
+        // The printed exp(sρ)Fρ has no derivative along ξ at all; with that corrected, the sign is still wrong.
         for sign in [-1.0, 0.0] {
             assert!((diamond - line(sign)).norm() > 1e-4, "{sign}: {:e}", (diamond - line(sign)).norm());
         }

@@ -1,5 +1,5 @@
-//! Bodies that turn and are translated: what is derived, against dual numbers of the declared `l_d`, up to large turns and
-//! translations. Which terms there are is random.
+//! Bodies with rotation and translation: the derived terms, compared with dual numbers of the declared `l_d`, up to
+//! large turns and translations. The selection of the terms is random.
 
 use checks::random::Random;
 use checks::structure::stages::assert_stages;
@@ -11,7 +11,7 @@ use num_dual::HyperDual64;
 
 use crate::dual_numbers::assert_terms;
 
-// With functions: what both ends of a step have, one of them calling another.
+// The functions are used at both ends of a step, and one of them calls another.
 #[lagrangian(
     group(F = SO3, d_1 = R3, t = R1, d_2 = R3),
     advected(
@@ -47,7 +47,7 @@ struct Carried<T: RealField + Copy> {
     up_there: Vector3<T>,
 }
 
-/// Of a seed.
+/// The bodies of a seed.
 fn carried<T: RealField + Copy>(seed: u64) -> Carried<T> {
     let mut r = Random::new(seed);
     let root = r.matrix();

@@ -1,5 +1,5 @@
-//! What the laws don't say about each group: its basis, its constructors, what it refuses, and where its retractions
-//! end.
+//! Properties of each group beside the laws: its basis, its constructors, its refusals, and the domains of its
+//! retractions.
 
 use core::f64::consts::PI;
 
@@ -10,14 +10,14 @@ use nalgebra::{
     Isometry2, Isometry3, Matrix2, Matrix3, Matrix4, SVector, UnitComplex, UnitQuaternion, Vector1, Vector2, Vector3,
 };
 
-/// Some products of small matrices.
+/// The bound is some products of small matrices.
 const ROUNDING: f64 = 4e-15;
 
 fn rotation(random: &mut Random) -> UnitQuaternion<f64> {
     UnitQuaternion::from_scaled_axis(random.sample::<Vector3<f64>>())
 }
 
-/// `[(ω, v), (ω', v')] = (ω × ω', ω × v' − ω' × v)`.
+/// The bracket `[(ω, v), (ω', v')] = (ω × ω', ω × v' − ω' × v)`.
 #[test]
 fn rigid_motions_of_space() {
     let mut random = Random::new(71);
@@ -45,7 +45,7 @@ fn rigid_motions_of_space() {
     assert!(SE3::<f64>::try_from(motion.matrix() * f64::NAN).unwrap_err().defect.is_nan());
 }
 
-/// `[(ω, v), (ω', v')] = (0, ω × v' − ω' × v)`.
+/// The bracket `[(ω, v), (ω', v')] = (0, ω × v' − ω' × v)`.
 #[test]
 fn rigid_motions_of_the_plane() {
     let bracket = SE2::<f64>::lie_bracket(&Vector3::new(2.0, 3.0, 5.0), &Vector3::new(7.0, 11.0, 13.0));
@@ -55,11 +55,11 @@ fn rigid_motions_of_the_plane() {
     assert_eq!(SE2::from(Isometry2::new(Vector2::new(1.0, 2.0), 2.5)), motion);
     assert!((Isometry2::from(motion).to_homogeneous() - motion.matrix()).norm() < ROUNDING);
     let scaled = SE2::<f64>::try_from(Matrix3::from_diagonal(&Vector3::new(1.1, 1.1, 1.0)));
-    // Of both entries of the Gram matrix, and of the determinant.
+    // The defect contains both entries of the Gram matrix, and the determinant.
     assert!((scaled.unwrap_err().defect - 0.21 * 3.0_f64.sqrt()).abs() < ROUNDING);
 }
 
-/// The same rotations, brackets and components as on SO(3), twice covered.
+/// The rotations, brackets and components are those of SO(3), which is covered twice.
 #[test]
 fn unit_quaternions() {
     let mut random = Random::new(72);
@@ -74,7 +74,7 @@ fn unit_quaternions() {
     }
     let minus = SU2::<f64>::try_from(-Matrix4::identity()).unwrap();
     assert_eq!(minus.to_quaternion().scaled_axis(), Vector3::zeros());
-    // A rotation of four dimensions that multiplies from the right isn't one.
+    // A rotation of four dimensions that multiplies from the right isn't in the group.
     let mut right = SU2::<f64>::hat(&Vector3::new(2.0, 0.0, 0.0));
     right.fixed_view_mut::<2, 2>(2, 2).neg_mut();
     assert!(SU2::<f64>::try_from(right).is_err());
@@ -86,7 +86,7 @@ fn rotations_of_the_plane() {
         let turn = SO2::from(UnitComplex::new(angle));
         assert!((turn.angle() - angle).abs() < ROUNDING);
         let xi = ExponentialRetraction::local_coordinates(&turn).unwrap();
-        // Next to a half turn the root of a matrix loses as many digits as the angle is near to it.
+        // Near a half turn the root of a matrix loses as many digits as the angle is close to it.
         assert!((xi - Vector1::new(angle)).norm() < 1e-12, "{angle}: {xi}");
         let xi: Vector1<f64> = CayleyRetraction::local_coordinates(&turn).unwrap();
         assert!((xi.x - 2.0 * (angle / 2.0).tan()).abs() < 1e-12 * (1.0 + xi.x * xi.x), "{angle}");
@@ -94,7 +94,7 @@ fn rotations_of_the_plane() {
     assert!(SO2::<f64>::try_from(Matrix2::new(1.0, 0.0, 0.0, -1.0)).is_err());
 }
 
-/// Where an eigenvalue is −1 there are no Cayley coordinates, where one is negative there is no real logarithm.
+/// An eigenvalue of −1 excludes Cayley coordinates, a negative one a real logarithm.
 #[test]
 fn coordinates_end_where_they_must() {
     let negative = SL2::<f64>::try_from(Matrix2::new(-2.0, 0.0, 0.0, -0.5)).unwrap();
@@ -108,12 +108,12 @@ fn coordinates_end_where_they_must() {
     let unusable = SE3::<f64>::from_matrix_unchecked(Matrix4::identity() * f64::NAN);
     assert_eq!(CayleyRetraction::local_coordinates(&unusable), None);
     assert_eq!(ExponentialRetraction::local_coordinates(&unusable), None);
-    // Out of range, neither loops for ever nor panics.
+    // Out of range, neither function loops for ever or panics.
     let huge: SO2 = ExponentialRetraction::retract(&Vector1::new(1e300));
     assert!(!huge.defect().is_finite() || huge.defect() >= 0.0);
 }
 
-/// `exp` up to some turns, on both sides of each number of halvings.
+/// The exponential up to some turns, on both sides of each number of halvings.
 #[test]
 fn exponential_by_its_closed_form() {
     for angle in [1e-160, 1e-8, 0.35, 0.36, 0.7, 0.71, 1.4, 1.5, 2.8, 2.9, 3.1, 6.0, 12.0] {
@@ -126,7 +126,7 @@ fn exponential_by_its_closed_form() {
     }
 }
 
-/// The rotation decides, the translation doesn't.
+/// The rotation alone decides, not the translation.
 #[test]
 fn near_the_identity() {
     let near = |angle: f64, shift: f64| {
@@ -136,7 +136,7 @@ fn near_the_identity() {
     assert!(near(1.0 - 1e-12, 1e9) && near(1e-12 - 1.0, 0.0) && !near(1.0 + 1e-12, 0.0));
     assert!(<CayleyRetraction as Retraction<R3>>::is_near_identity(&Vector3::repeat(1e9)));
     let stretched = |size: f64| <CayleyRetraction as Retraction<SL2>>::is_near_identity(&(Vector3::x() * size));
-    // `‖½ diag(1, −1)‖ = 1/√2`.
+    // The size is `‖½ diag(1, −1)‖ = 1/√2`.
     assert!(stretched(2.0_f64.sqrt() - 1e-12) && !stretched(2.0_f64.sqrt() + 1e-12));
 }
 
@@ -147,7 +147,7 @@ fn a_refusal_says_by_how_much() {
     assert!(error.to_string().contains("misses the group's relation by 1e0"));
 }
 
-/// In single precision a rounding is larger, and nothing else is different.
+/// In single precision only the rounding is larger.
 #[test]
 fn single_precision() {
     let mut random = Random::new(73);
@@ -162,7 +162,7 @@ fn single_precision() {
     }
 }
 
-/// Angles, metres and stretches told apart.
+/// Components in angles, metres and stretches are distinguished.
 #[test]
 fn components_that_turn() {
     let turning = |components: &[usize], of: Vec<bool>| {

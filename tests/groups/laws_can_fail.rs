@@ -1,4 +1,4 @@
-//! Each law refuses a group, a retraction or a parameter that breaks it: the controls of `group_laws.rs`.
+//! Controls of `group_laws.rs`: each law refuses a group, a retraction or a parameter that violates it.
 
 use liestep::groups::{Advected, CayleyRetraction, ExponentialRetraction, LieGroup, Retraction, SE2};
 use liestep::laws::{advected, group, retraction};
@@ -6,7 +6,7 @@ use liestep::numbers::{Coordinates, Entries};
 use nalgebra::{Matrix3, Vector3};
 use std::panic::catch_unwind;
 
-/// SE(2) with one thing wrong.
+/// The group SE(2) with one defect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Broken<const WHAT: usize>(SE2);
 
@@ -27,7 +27,7 @@ const POISSON: usize = 13;
 const INVERSE_INCREMENT: usize = 14;
 const ADJOINT_MATRIX: usize = 15;
 
-/// Another sign of the last component, for one of the defects.
+/// The vector with the opposite sign of its last component, for one of the defects.
 fn turned<const WHAT: usize>(v: Vector3<f64>, what: usize) -> Vector3<f64> {
     if WHAT == what { Vector3::new(v.x, v.y, -v.z) } else { v }
 }
@@ -123,7 +123,7 @@ impl<const WHAT: usize> LieGroup for Broken<WHAT> {
     }
 }
 
-/// The laws of groups that refuse what is broken.
+/// The laws of groups refuse each defect.
 fn refused<const WHAT: usize>() -> Vec<&'static str> {
     type G<const WHAT: usize> = Broken<WHAT>;
     let laws: [(&str, fn()); 10] = [
@@ -167,7 +167,7 @@ fn laws_of_groups() {
     assert_eq!(refused::<DEFECT>(), ["the_relation_tells"]);
 }
 
-/// A retraction of SE(2) with one thing wrong.
+/// A retraction of SE(2) with one defect.
 struct Wrong<const WHAT: usize>;
 
 const HALF: usize = 0;
@@ -228,7 +228,8 @@ fn laws_of_retractions() {
     assert!(refused_retraction::<SUBTRACTED>().contains(&"keeps_digits"));
 }
 
-/// A vector moved by the transpose that belongs to `Fᵀ`'s inverse, `F w`: an action on the other side.
+/// A vector that is advected by `F w` in place of the covector's `Fᵀ w` or the vector's `F⁻¹ w`: an action from the
+/// wrong side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Backwards(Vector3<f64>);
 
@@ -268,7 +269,7 @@ impl Entries<f64> for Backwards {
     }
 }
 
-/// A covector with one thing wrong.
+/// A covector with one defect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Covector<const WHAT: usize>(Vector3<f64>);
 
@@ -322,7 +323,7 @@ fn laws_of_advected_parameters() {
     assert!(catch_unwind(advected::parameter_is_acted_on::<SE2, Covector<TURNED_RATE>, _, _>).is_err());
     assert!(catch_unwind(advected::parameter_is_acted_on::<SE2, Covector<UNTRANSPOSED>, _, _>).is_err());
     assert!(catch_unwind(advected::parameter_is_acted_on::<SE2, Backwards, _, _>).is_err());
-    // With a wrong inverse the contravariant kinds are wrong; the group's own laws alone would blame `inverse`.
+    // A wrong inverse makes the contravariant kinds wrong; the group's own laws alone would blame `inverse`.
     assert!(catch_unwind(advected::kinds_move_as_declared::<Broken<INVERSE>, _, _>).is_err());
     assert!(catch_unwind(advected::kinds_act::<Broken<PRODUCT>, _, _>).is_err());
 }

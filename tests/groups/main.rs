@@ -1,4 +1,4 @@
-//! The laws of the groups, of their retractions and of what they move; the groups of the crate and a user's own.
+//! The laws of groups, of their retractions and of advected parameters, for the groups of the crate and a user's own.
 
 mod built_in_groups;
 mod laws;

@@ -4,7 +4,7 @@ use liestep::groups::{Advected, Heisenberg, LieGroup as _, R1, R2, R3, SE2, SE3}
 use liestep::laws::samples::{MatrixLieGroup, ROUNDING, Random};
 use nalgebra::{Isometry2, Isometry3, Point, Point2, Point3, SMatrix, Translation3, UnitComplex, UnitQuaternion};
 
-/// A point of `N − 1` coordinates is acted on, and stays where it was for the identity.
+/// The action on a point of `N − 1` coordinates is an action, and the identity leaves it unchanged.
 macro_rules! points_are_acted_on {
     ($($name:ident: $group:ty, $size:literal, $coordinates:literal;)+) => {$(
         #[test]
@@ -27,7 +27,7 @@ macro_rules! points_are_acted_on {
     )+};
 }
 
-/// Relative to how far the elements move points.
+/// The distance of two points, relative to the elements' displacements.
 fn distance<G, const N: usize, const M: usize, const D: usize>(
     p: &Point<f64, N>,
     q: &Point<f64, N>,
@@ -53,7 +53,7 @@ points_are_acted_on! {
     of_the_plane_by_shears: Heisenberg, 3, 2;
 }
 
-/// As nalgebra's isometries move them.
+/// The action agrees with nalgebra's isometries.
 #[test]
 fn motions_are_isometries() {
     let (angle, shift) = (0.7, nalgebra::Vector2::new(0.3, -1.2));
@@ -70,7 +70,7 @@ fn motions_are_isometries() {
     assert!((advected - space.inverse_transform_point(&p)).norm() < 1e-14);
 }
 
-/// The change of a small step keeps its digits: it isn't a difference of places.
+/// The change of a small step has all its digits: it isn't a difference of positions.
 #[test]
 fn small_changes_are_exact() {
     let (rotation, shift) = (UnitQuaternion::identity(), nalgebra::Vector3::new(1e-12, 0.0, 0.0));

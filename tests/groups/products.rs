@@ -1,5 +1,5 @@
-//! The laws of a product of groups, of its retraction and of what several bodies see, on the same group as matrices: a
-//! product is the group of block-diagonal ones.
+//! The laws of a product of groups, of its retraction and of the parameters of several bodies. The reference is the
+//! same group as block-diagonal matrices.
 
 use core::array::from_fn;
 
@@ -152,7 +152,7 @@ mod retraction {
     liestep::retraction_laws!(super::Embedded, super::ByFactors);
 }
 
-/// Each body is near on its own.
+/// Each body is tested separately for nearness to the identity.
 #[test]
 fn a_product_is_near_where_all_its_factors_are() {
     let near = |x: f64, y: f64| {
@@ -173,7 +173,7 @@ fn a_product_is_near_where_all_its_factors_are() {
     assert!(of_many(1.9, 1.9) && !of_many(2.1, 0.0) && !of_many(0.0, 2.1));
 }
 
-/// Where roundings have taken one of them from the group, the other stays as it is.
+/// If rounding has moved one factor off the group, the other factor stays unchanged.
 #[test]
 fn what_is_far_is_restored_by_itself() {
     let good = SO3::from(nalgebra::UnitQuaternion::from_scaled_axis(Vector3::new(0.3, -0.4, 0.9)));
@@ -186,7 +186,7 @@ fn what_is_far_is_restored_by_itself() {
 
 type Four = (SO3, SE2, SO3, SE2);
 
-/// Three and four factors are in the order of the tuple, and their components too.
+/// Three and four factors are in the order of the tuple, and so are their components.
 #[test]
 fn components_are_in_the_order_of_the_factors() {
     type Three = (SO3, SE2, SO3);
@@ -204,7 +204,7 @@ fn components_are_in_the_order_of_the_factors() {
     assert!((back - xi * 0.05).norm() < 1e-14);
 }
 
-/// Of translations a table has what they add.
+/// The columns of translations in a table are their vectors.
 #[test]
 fn numbers_of_translations() {
     let names: Vec<_> =
@@ -218,7 +218,7 @@ fn numbers_of_translations() {
     assert_eq!(read.to_bits(), 5.0_f64.to_bits());
 }
 
-/// In a table, one factor after the other.
+/// In a table the factors follow each other.
 #[test]
 fn numbers_of_a_product_are_those_of_its_factors() {
     let names: Vec<_> = Product::named_numbers().into_iter().map(|(name, unit)| format!("{name} {unit}")).collect();
@@ -230,7 +230,7 @@ fn numbers_of_a_product_are_those_of_its_factors() {
     assert_eq!(components, expected.map(|(name, unit)| (name.to_owned(), unit)));
 
     let second = SE2::from_matrix_unchecked(Matrix3::new(0.6, -0.8, 3.0, 0.8, 0.6, 4.0, 0.0, 0.0, 1.0));
-    // The quaternion before was the other one.
+    // The quaternion of the previous row had the opposite sign.
     let mut numbers = [0.0; 14];
     numbers[0] = -1.0;
     assert_eq!((SO3::identity(), second).write_numbers(&mut numbers).len(), 1);
@@ -244,10 +244,10 @@ fn entries(of: &impl Entries<f64>) -> Vec<f64> {
     entries
 }
 
-/// The value that matrices of this number and their inverses make of that in space.
+/// The value in the frame of matrices with this number of factors and their inverses, from that in space.
 type Typed<'a, const K: usize> = dyn Fn(&[f64], &[Matrix3<f64>; K], &[Matrix3<f64>; K]) -> Vec<f64> + 'a;
 
-/// All that a parameter can do, against `typed`: its value in space as it is seen through these matrices and these inverses.
+/// Compares all functions of a parameter with `typed`, its value in the frame of these matrices and inverses.
 fn assert_seen<G, A, const K: usize>(
     together: fn([Matrix3<f64>; K]) -> G::Matrix,
     element: fn(&mut Random) -> [Matrix3<f64>; K],
@@ -258,8 +258,8 @@ fn assert_seen<G, A, const K: usize>(
 {
     let random = &mut Random::new(51);
     for _ in 0..5 {
-        // Of numbers of the size of ten, and of inverses of random matrices, some thousand roundings; slopes by differences lose
-        // two digits more.
+        // The bound is some thousand roundings, for numbers of the size of ten and inverses of random matrices; slopes
+        // by differences lose two more digits.
         let close = |what: &str, found: &A, expected: &[f64], allowed: f64| {
             let off = entries(found).iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             assert!(entries(found).len() == expected.len() && off < allowed, "{what}: off by {off:e}");
@@ -278,7 +278,7 @@ fn assert_seen<G, A, const K: usize>(
         close("advected", &seen.advect(&increment), &at(&both), 1e-12);
         close("change", &seen.change(&increment), &change, 1e-12);
 
-        // Of any matrices, of which no transpose is an inverse, and none the inverse of another.
+        // The matrices are arbitrary: no transpose is an inverse, and none is the inverse of another.
         let mut any = || [(); K].map(|()| random.sample::<Matrix3<f64>>());
         let [m, n, x] = [any(), any(), any()];
         close("through", &spatial.seen_through(&together(m), &together(n)), &typed(&numbers, &m, &n), 1e-12);
@@ -308,7 +308,7 @@ fn written(matrices: impl IntoIterator<Item = Matrix3<f64>>) -> Vec<f64> {
     matrices.into_iter().flat_map(|matrix| matrix.transpose().as_slice().to_vec()).collect()
 }
 
-/// Of four bodies, of which two are moved by matrices that aren't orthogonal, in either order.
+/// The parameters of four bodies, two of them with matrices that aren't orthogonal, in either order.
 #[test]
 fn what_bodies_of_a_product_see() {
     fn of_four<A: Advected<Four>>(typed: &Typed<'_, 4>) {
@@ -334,7 +334,7 @@ fn what_bodies_of_a_product_see() {
     });
 }
 
-/// Of three equal bodies: each, one, and at the places of two.
+/// The parameters of three equal bodies: of each, of one, and at the places of two.
 #[test]
 fn what_bodies_of_an_array_see() {
     type At<P> = <P as Places<Alike>>::Advected;
@@ -343,7 +343,7 @@ fn what_bodies_of_an_array_see() {
         assert_seen::<[SO3; 3], A, 3>(|all| all, element, typed);
     }
     of_three::<At<Along<3>>>(&|w, m, n| {
-        // Behind the two neighbours is one that stays.
+        // The entry after the two neighbours is padding.
         written([n[0] * read(w, 0) * m[1], n[1] * read(w, 1) * m[2], read(w, 2)])
     });
     of_three::<At<Between<2, 0, 3>>>(&|w, m, n| written([n[2] * read(w, 0) * m[0]]));
@@ -365,7 +365,7 @@ fn what_bodies_of_an_array_see() {
 
 type NotOrthogonal = (SE2, SE3, SL2, Heisenberg);
 
-/// P3: of each factor the pairing with a vector is kept by `Fᵀ w`, and not by `F⁻¹ w`.
+/// P3: for each factor `Fᵀ w` preserves the pairing with a vector, and `F⁻¹ w` doesn't.
 #[test]
 fn p3_covectors_of_each_factor() {
     fn p3<const K: usize, const N: usize, const D: usize>()
@@ -386,7 +386,7 @@ fn p3_covectors_of_each_factor() {
             right = right.max((seen.dot(&moved) - w.dot(&v)).abs());
             naive = naive.max(((inverse * w).dot(&moved) - w.dot(&v)).abs());
         }
-        // Some products of matrices with entries below ten.
+        // The bound is some products of matrices with entries below ten.
         println!("factor {K}: {right:.1e}, by F⁻¹ w {naive:.1e}");
         assert!(right < 1e-13 && naive > 0.1, "factor {K}: {right:e} {naive:e}");
     }

@@ -8,11 +8,11 @@ use liestep::SO3;
 use liestep::groups::{CayleyRetraction, ExponentialRetraction, LieGroup as _, Retraction};
 use nalgebra::{Matrix3, Vector3};
 
-/// On both sides of the places where a formula changes: `θ² = 0.01` and `0.04`, the latter also by way of `θ/2`.
+/// Angles on both sides of the limits of formulas: `θ² = 0.01` and `0.04`, the latter also by way of `θ/2`.
 const ANGLES: [f64; 14] =
     [0.0, 1e-300, 1e-160, 1e-12, 1e-8, 1e-4, 0.099_999, 0.100_001, 0.199_999, 0.200_001, 0.7, 1.5, 2.5, 3.1];
 
-/// Some products of 3 × 3 matrices.
+/// The bound is some products of 3 × 3 matrices.
 const ROUNDING: f64 = 4e-15;
 
 fn samples(seed: u64) -> Vec<(f64, Vector3<f64>)> {
@@ -20,7 +20,7 @@ fn samples(seed: u64) -> Vec<(f64, Vector3<f64>)> {
     ANGLES.iter().flat_map(|&angle| [angle; 10]).map(|angle| (angle, random.direction() * angle)).collect()
 }
 
-/// `Σ ξ̂ᵏ/(k + offset)!`: the exponential for zero, its right-trivialised tangent for one.
+/// The series `Σ ξ̂ᵏ/(k + offset)!`: the exponential for zero, its right-trivialised tangent for one.
 fn series(xi: &Vector3<f64>, offset: u32) -> Matrix3<f64> {
     let (hat, mut sum, mut term) = (SO3::hat(xi), Matrix3::zeros(), Matrix3::identity());
     for k in 0..40 {
@@ -35,14 +35,14 @@ fn assert_round_trips<R: Retraction<SO3>>() {
     assert_eq!(R::local_coordinates(&SO3::identity()), Some(Vector3::zeros()));
     for f in random.hard_rotations() {
         let xi = R::local_coordinates(&f).unwrap();
-        // Cayley coordinates of a turn by `π − δ` are `4/δ`, and the relative rounding `ε/δ` of `1 + tr F`, which is
-        // `δ²/2`, is `4ε/δ²`: it moves the angle by a `δ`-th part of that.
+        // The Cayley coordinates of a turn by `π − δ` are `4/δ`. The relative rounding `ε/δ` of `1 + tr F`, which is
+        // `δ²/2`, changes them by `4ε/δ²`, and the angle by a `δ`-th part of that.
         let distance = R::retract(&xi).inverse().compose(&f).log().norm();
         let allowed = ROUNDING / (PI - f.log().norm()).min(1.0);
         assert!(distance < allowed, "{}: {distance:e}", f.log().norm());
     }
     for (angle, xi) in samples(63) {
-        // Roundings of `F` are absolute: coordinates come back to a rounding of one.
+        // The rounding of `F` is absolute, so coordinates are recovered to a rounding of one.
         let returned = R::local_coordinates(&R::retract(&xi)).unwrap();
         let back = R::retract(&returned).inverse().compose(&R::retract(&xi)).log().norm();
         assert!(back < ROUNDING / (PI - angle).min(1.0), "{angle}: {back:e}");
@@ -52,7 +52,7 @@ fn assert_round_trips<R: Retraction<SO3>>() {
     }
 }
 
-/// `is_near_identity` is the angle below 90°.
+/// The function `is_near_identity` tests for an angle below 90°.
 fn assert_knows_a_quarter_turn<R: Retraction<SO3>>() {
     let mut random = Random::new(64);
     for _ in 0..20 {
@@ -77,7 +77,7 @@ fn exponential() {
     assert_knows_a_quarter_turn::<ExponentialRetraction>();
 }
 
-/// `cay(ξ) = (I − ξ̂/2)⁻¹ (I + ξ̂/2)`, with an inverse from elsewhere; the angle is `2 atan(|ξ|/2)`.
+/// The Cayley map is `cay(ξ) = (I − ξ̂/2)⁻¹ (I + ξ̂/2)`, with nalgebra's inverse; the angle is `2 atan(|ξ|/2)`.
 #[test]
 fn cayley_map_by_its_definition() {
     for (angle, xi) in samples(65) {
@@ -89,7 +89,7 @@ fn cayley_map_by_its_definition() {
     }
 }
 
-/// Only half turns are out of reach.
+/// Only half turns are out of range.
 #[test]
 fn cayley_map_does_not_reach_half_turns() {
     let half_turn: SO3 = SO3::try_from(Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0))).unwrap();
@@ -103,7 +103,7 @@ fn exponential_and_its_tangent_by_their_series() {
     for (angle, xi) in samples(66) {
         let f: SO3 = ExponentialRetraction::retract(&xi);
         let tangent = <ExponentialRetraction as Retraction<SO3>>::tangent(&xi);
-        // The series loses what its largest term exceeds one, some units.
+        // The series loses the digits by which its largest term exceeds one, some units.
         assert!((f.matrix() - series(&xi, 0)).norm() < ROUNDING, "{angle}");
         assert!((tangent - series(&xi, 1)).norm() < ROUNDING, "{angle}");
     }

@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use num_dual::Dual64;
 use workbench::measure::relative;
 
-/// A product of three 3 × 3 matrices of size one.
+/// The bound is a product of three 3 × 3 matrices of size one.
 const ROUNDING: f64 = 4e-15;
 
 /// The basis element `E_k`, written out.
@@ -20,7 +20,7 @@ fn basis(k: usize) -> Matrix3<f64> {
     ][k]
 }
 
-/// On SO(3) among the groups that the exponential is defined on.
+/// The exponential of the library, through the general trait.
 fn exponential(xi: &Vector3<f64>) -> SO3 {
     ExponentialRetraction::retract(xi)
 }
@@ -55,8 +55,8 @@ fn logarithm_inverts_the_exponential() {
         for _ in 0..20 {
             let xi = random.direction() * angle;
             let log = SO3::from(UnitQuaternion::from_scaled_axis(xi)).log();
-            // The entries of a matrix carry a small angle to a rounding of the angle, of a larger one to a rounding of
-            // one.
+            // The entries of a matrix determine a small angle to a rounding of the angle, and a larger one to a
+            // rounding of one.
             assert!((log - xi).norm() < ROUNDING * angle.max(1e-1), "{angle}: {:e}", (log - xi).norm());
         }
     }
@@ -72,15 +72,15 @@ fn what_is_not_a_rotation_is_refused() {
         // A reflection is orthogonal, too.
         let reflected = SO3::try_from(-matrix).unwrap_err();
         assert!((reflected.determinant + 1.0).abs() < ROUNDING && reflected.defect < ROUNDING);
-        // `‖(1 + 10⁻⁹)² I − I‖ = 2√3 10⁻⁹`.
+        // The defect is `‖(1 + 10⁻⁹)² I − I‖ = 2√3 10⁻⁹`.
         let scaled = SO3::try_from(matrix * (1.0 + 1e-9)).unwrap_err();
         assert!((scaled.defect / (2.0 * 3.0_f64.sqrt() * 1e-9) - 1.0).abs() < 1e-5);
         assert!(SO3::try_from(matrix * f64::NAN).is_err());
     }
 }
 
-/// Dual numbers keep their derivatives at the identity: `exp` has the basis there, `log` undoes it, and a velocity at
-/// rest moves the attitude.
+/// Dual numbers have correct derivatives at the identity: that of `exp` is the basis, `log` inverts it, and a velocity
+/// at rest changes the attitude.
 #[test]
 fn derivatives_are_kept_at_zero() {
     for k in 0..3 {
@@ -88,7 +88,7 @@ fn derivatives_are_kept_at_zero() {
         let turned = SO3::exp(along);
         assert_eq!(turned.as_matrix().map(|x| x.eps), basis(k));
         assert_eq!(turned.log().map(|x| x.eps), Vector3::ith(k, 1.0));
-        // The trap that the documentation of `exp` names; if it is gone, so may be the sentence.
+        // The pitfall in the documentation of `exp`; if it is gone, the sentence can go, too.
         let lost = SO3::from(UnitQuaternion::from_scaled_axis(along));
         assert_eq!(lost.as_matrix().map(|x| x.eps), Matrix3::zeros());
     }

@@ -1,5 +1,5 @@
-//! A user's kind of parameter, and what is computed for a user's group, the affine maps `x ↦ a x + b`. How to
-//! declare it, with its laws as tests, is `examples/how-to-add-a-group.rs`.
+//! A user's kind of parameter, and the computed properties of a user's group, the affine maps `x ↦ a x + b`. Its
+//! declaration, with its laws as tests, is in `examples/how-to-add-a-group.rs`.
 
 use checks::affine::Affine;
 use liestep::groups::{Advected, CayleyRetraction, ExponentialRetraction, LieGroup as _, NotInGroup, Retraction as _};
@@ -10,12 +10,12 @@ mod density {
     liestep::advected_laws!(super::Affine, super::Density);
 }
 
-/// A user's parameter: a mass per length, which a map that stretches the line by `a` divides by `a`.
+/// A user's parameter: a mass per length, which is divided by `a` when a map stretches the line by `a`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Density(f64);
 
 impl Advected<Affine> for Density {
-    /// `f⁻¹` stretches by `1/a`.
+    /// The map `f⁻¹` stretches by `1/a`.
     fn seen_from(&self, attitude: &Affine) -> Self {
         Self(self.0 * attitude.matrix().m11)
     }
@@ -58,11 +58,11 @@ fn what_is_not_affine_is_refused() {
     let error = Affine::try_from(Matrix2::new(2.0, 1.0, 0.25, 1.0)).unwrap_err();
     assert_eq!(error, NotInGroup { defect: 0.25 });
     assert!(error.to_string().contains("2.5e-1"));
-    // The relation is about the second row only.
+    // The relation concerns the second row only.
     assert!(element(f64::NAN, 0.0).is_err() && element(1.0, f64::INFINITY).is_err());
 }
 
-/// `[E_1, E_2] = E_2`, so that `ad*` moves the second component into the first.
+/// The bracket `[E_1, E_2] = E_2`, so that `ad*` maps the second component to the first.
 #[test]
 fn the_bracket_is_computed_from_the_generators() {
     let (x, y) = (Vector2::<f64>::x(), Vector2::y());
@@ -71,7 +71,7 @@ fn the_bracket_is_computed_from_the_generators() {
     assert_eq!(Affine::lie_bracket_transpose(&y, &y), -x);
 }
 
-/// `exp` of `(s, t)` is `(eˢ, t (eˢ − 1)/s)`; the Cayley map has `(1 + s/2)/(1 − s/2)` for `eˢ`.
+/// The map `exp` of `(s, t)` is `(eˢ, t (eˢ − 1)/s)`; the Cayley map has `(1 + s/2)/(1 − s/2)` in place of `eˢ`.
 #[test]
 fn the_retractions_in_closed_form() {
     let (s, t) = (0.7_f64, -1.3);

@@ -1,6 +1,6 @@
 //! Eight heavy tops (3.13), one after another or in SIMD lanes.
 //!
-//! They differ in body, tilt and spin about the looping case of \[RDAE, figure 3.8\].
+//! Their bodies, tilts and spins vary about the looping case of \[RDAE, figure 3.8\].
 
 use liestep::numbers::{Lanes, Real};
 use liestep::prelude::*;

@@ -1,24 +1,25 @@
-//! Steps a second of eight heavy tops (3.13) on one core: one after another, and in SIMD lanes. `lanes_of_systems.rs` has
-//! those of several bodies.
+//! Steps a second of eight heavy tops (3.13) on one core: one after another, and in SIMD lanes. `lanes_of_systems.rs`
+//! measures several bodies.
 //!
 //! ```text
 //! cargo bench --bench lanes                                    scalars by the target's common instructions
-//! RUSTFLAGS="-C target-cpu=native" cargo bench --bench lanes   by those of this machine
-//! cargo bench --bench lanes -- instructions                    fails where a step in lanes takes more than it may
+//! RUSTFLAGS="-C target-cpu=native" cargo bench --bench lanes   scalars by the instructions of this machine
+//! cargo bench --bench lanes -- instructions                    fails if a step in lanes exceeds its limit
 //! cargo bench --bench lanes -- count f64-lanes 1000            1000 steps of all tops by one kernel, nothing else
 //! ```
 //!
-//! The kernels of the last are `f64`, `f64-lanes`, `f32`, `f32-lanes` and `chain`, one of ten links; valgrind counts their
-//! instructions. A step of lanes takes the instructions of the machine, whatever it was compiled for, but types of lanes
-//! differ in what they make of that. Those of simba that are arrays leave it to the compiler, which makes registers of
-//! four `f64` of most of `AutoF64x8` where there is AVX2, and of less of narrower ones. `WideF64x4` and `WideF32x8` are
-//! pairs of registers of x86-64's common instructions, two `f64` or four `f32` each, unless the program is compiled for
-//! more; AVX then only saves them moves between registers. `vectors.rs` measures what each of the registers gains.
+//! The kernels for `count` are `f64`, `f64-lanes`, `f32`, `f32-lanes` and `chain`, a chain of ten links; valgrind
+//! counts their instructions. A step of lanes is dispatched to the machine's instructions, whatever it was compiled
+//! for, but types of lanes differ in their use. Types of simba that are arrays depend on the compiler, which puts most
+//! of `AutoF64x8` into registers of four `f64` if there is AVX2, and less of narrower types. `WideF64x4` and
+//! `WideF32x8` are pairs of registers of x86-64's common instructions, two `f64` or four `f32` each, unless the program
+//! is compiled for more; AVX then only saves moves between registers. `vectors.rs` measures the gain of each kind of
+//! registers.
 //!
-//! The tops differ in body, tilt and spin about the looping case of \[RDAE, figure 3.8\], `h = 0.01 s`. All kernels
-//! make the same steps, which is asserted before they are timed, and take turns within one run. The fastest batch of
-//! each counts: what else the machine does only slows, and slows the longer batches more often, so that medians would
-//! flatter the lanes.
+//! The bodies, tilts and spins of the tops vary about the looping case of \[RDAE, figure 3.8\], `h = 0.01 s`. All
+//! kernels make the same steps, which is asserted before the timing, and take turns within one run. The fastest batch
+//! of each counts: other load of the machine only slows, and affects longer batches more often, so that medians would
+//! favour the lanes.
 
 #[path = "../benches/counting.rs"]
 mod counting;
@@ -36,8 +37,8 @@ use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
 use counting::{Uncounted, instructions};
 use eight_tops::{TOPS, Top, top};
 
-/// Steps of each top in a batch: well below a slice of the scheduler's time, so that some batches of each kernel meet
-/// no other process.
+/// Steps of each top in a batch: well below a slice of the scheduler's time, so that some batches of each kernel aren't
+/// interrupted.
 const BATCH: u32 = 500;
 const ROUNDS: usize = 4_000;
 
@@ -67,7 +68,7 @@ fn run<T: Real, const N: usize>(ensemble: &mut [Running<T>; N], steps: u32) {
     }
 }
 
-/// Steps each top a thousand times and compares with the scalars, whose digits the lanes must have.
+/// Steps each top a thousand times and compares with the scalars, whose bits the lanes must have.
 fn assert_same<T, const LANES: usize, const N: usize>(
     mut wide: [Running<T>; N],
     mut scalars: [Running<T::Element>; TOPS],
@@ -91,7 +92,7 @@ fn rate<T: Real, const N: usize>(ensemble: &mut [Running<T>; N]) -> f64 {
     f64::from(BATCH) * TOPS as f64 / start.elapsed().as_secs_f64() / 1e6
 }
 
-/// Scalars against one kind of lanes.
+/// Times scalars and one kind of lanes.
 fn compare<T, const LANES: usize, const N: usize>(
     name: &str,
     mut wide: [Running<T>; N],
@@ -119,7 +120,7 @@ fn count(kernel: &str, steps: u32) {
     }
 }
 
-/// Ten rods on ball joints, in vector instructions of their own.
+/// Ten rods on ball joints, which dispatch to vector instructions themselves.
 fn swing(steps: u64) -> Result<(), Uncounted> {
     let J_d = NonstandardInertia::from_diagonal(Vector3::new(0.005, 0.005, 1.0 / 3.0))?;
     let rod = Link { J_d, m: 1.0, c: -Vector3::z() * 0.5, rho: -Vector3::z() };
@@ -130,11 +131,11 @@ fn swing(steps: u64) -> Result<(), Uncounted> {
     Ok(())
 }
 
-/// Kernels, steps to count them by, and the most instructions of a step with AVX2. A function of the step that is called
-/// and not inlined leaves the vector instructions, and takes a third more.
+/// Kernels, the number of steps in their counts, and the most instructions of a step with AVX2. A function of the step
+/// that isn't inlined isn't compiled for the vector instructions, and takes a third more.
 const MOST_INSTRUCTIONS: [(&str, u32, f64); 2] = [("f64-lanes", 2_000, 1_550.0), ("chain", 1_000, 22_000.0)];
 
-/// Whether a step in lanes is still one straight line.
+/// Checks that a step in lanes is still inlined completely.
 fn instructions_in_lanes() -> Result<(), Uncounted> {
     #[cfg(target_arch = "x86_64")]
     let has_avx2 = std::arch::is_x86_feature_detected!("avx2");

@@ -1,19 +1,18 @@
-//! What wider vector registers gain: the same steps with those of the target, of AVX2 and of AVX-512.
+//! The gain of wider vector registers: the same steps with those of the target, of AVX2 and of AVX-512.
 //!
 //! ```text
-//! cargo bench --bench vectors              fails where a gain is lost
-//! cargo bench --bench vectors -- native    builds itself for this machine, too, and fails where that is slower;
-//!                                          further words are given to the compiler, as -C target-feature=-avx512f
+//! cargo bench --bench vectors              fails if a gain is lost
+//! cargo bench --bench vectors -- native    builds itself for this machine, too, and fails if that is slower;
+//!                                          further words are options for the compiler, as -C target-feature=-avx512f
 //! cargo bench --bench vectors -- time      nothing but the nanoseconds that the others compare
 //! ```
 //!
-//! A loop of collocation that the compiler doesn't make lanes of any more, a kernel that isn't inlined into what is
-//! dispatched: either shows here as a ratio near one. Kernels take turns within one run, and the fastest batch of each
-//! counts.
+//! A loop of collocation that the compiler no longer vectorises, or a kernel that isn't inlined into the dispatched
+//! function, leads to a ratio near one. Kernels take turns within one run, and the fastest batch of each counts.
 //!
-//! One top is the fourth of `lanes.rs`, moved by splittings with the exact motion of its asymmetric body. Eight tops in
-//! lanes are all of them, for a step of (3.13), a splitting, a composition, and such splittings. Eight alone are eight
-//! steps of one.
+//! The single top is the fourth of `lanes.rs`, stepped by splittings with the exact motion of its asymmetric body.
+//! Eight tops in lanes are all of them, for a step of (3.13), a splitting, a composition, and such splittings. Eight
+//! alone are eight steps of one.
 
 mod eight_tops;
 
@@ -37,7 +36,7 @@ use eight_tops::{TOPS, Top, lanes, top};
 const BATCH: u64 = 100;
 const ROUNDS: usize = 1000;
 
-/// A plan with the registers given: those of the target, four or eight.
+/// A plan with other registers: those of the target, four or eight.
 #[derive(Clone)]
 struct With<P, const LEVEL: usize>(P);
 
@@ -94,7 +93,7 @@ where
     })
 }
 
-/// The batches of a stepper with each of the registers.
+/// The batches of a stepper with each kind of registers.
 fn levels<S, P>(stepper: &Stepper<S, P>, attitude: Group<S>, velocity: liestep::mechanics::Vector<S>) -> [Batch; 3]
 where
     S: Effect + Clone + 'static,
@@ -109,7 +108,7 @@ where
     ]
 }
 
-/// Kernels with each of the registers, and by what each has to gain on the one before.
+/// The kernels with each kind of registers, and the least gain of each over the one before.
 struct Row {
     name: String,
     batches: [Batch; 3],
@@ -122,8 +121,8 @@ fn collocation<const PAIRS: usize>(least: [f64; 2]) -> Row {
     Row { name: format!("Gauss, {} stages", 2 * PAIRS), batches: levels(&stepper, attitude, velocity), least }
 }
 
-/// One top by splittings: four registers gain, 1.07 to 1.17 where this was written; with eight, which aren't asked for, it
-/// took up to 14 percent longer on a machine whose 512-bit operations take two passes.
+/// One top by splittings: registers of four gain, by 1.07 to 1.17 where this was written. Registers of eight, which
+/// aren't requested, took up to 14 percent longer on a machine whose 512-bit operations take two passes.
 fn one() -> Vec<Row> {
     let (scene, attitude, velocity) = top::<f64>(3);
     let body = ExactBody::new(&NonstandardInertia::from(scene.J_d).to_inertia());
@@ -136,7 +135,7 @@ fn one() -> Vec<Row> {
     ]
 }
 
-/// Eight tops in lanes of this type, stepped in these ways.
+/// Eight tops in lanes of this type, by these methods.
 fn in_lanes<T>(name: &str, gain: f64) -> Vec<Row>
 where
     T: Real<Element: Real + nalgebra::RealField> + 'static,
@@ -182,7 +181,7 @@ fn rows() -> Vec<Row> {
     rows
 }
 
-/// Whether a machine has more than the registers before.
+/// Whether the machine has the registers of this level.
 fn has(level: usize) -> bool {
     #[cfg(target_arch = "x86_64")]
     return [is_x86_feature_detected!("avx2"), is_x86_feature_detected!("avx512f")][level];
@@ -190,7 +189,7 @@ fn has(level: usize) -> bool {
     return level > 1;
 }
 
-/// A table of the gains; fails where one is lost.
+/// Prints a table of the gains; fails if one is lost.
 fn gains() -> Result<(), Box<dyn Error>> {
     println!("{:<40}{:>12}{:>12}{:>12}{:>8}{:>8}", "ns a step", "as compiled", "four", "eight", "gain", "gain");
     let mut lost = Vec::new();
@@ -198,7 +197,7 @@ fn gains() -> Result<(), Box<dyn Error>> {
         let [two, four, eight] = fastest(&mut batches);
         let gains = [two / four, four / eight];
         println!("{name:<40}{two:>12.1}{four:>12.1}{eight:>12.1}{:>8.2}{:>8.2}", gains[0], gains[1]);
-        // What the program is compiled for has no more to gain.
+        // A program that is compiled for wider registers has no gain.
         let is_compiled = [cfg!(target_feature = "avx2"), cfg!(target_feature = "avx512f")];
         for level in 0..2 {
             if has(level) && !is_compiled[level] && gains[level] < least[level] {
@@ -210,7 +209,7 @@ fn gains() -> Result<(), Box<dyn Error>> {
     if lost.is_empty() { Ok(()) } else { Err(lost.join("; ").into()) }
 }
 
-/// The exact motion of a body in eight lanes, against eight alone.
+/// The exact motion of a body in eight lanes, compared with eight single bodies.
 fn alone() {
     let wide = lanes::<AutoF64x8>(0);
     let scheme = SplittingScheme::FORCE_GRADIENT_5;
@@ -229,7 +228,7 @@ fn alone() {
     println!("exact motion, eight alone {apart:.1}, in lanes {together:.1}: {:.2}", apart / together);
 }
 
-/// Nanoseconds a step of each kernel with the registers that it chooses by itself, a line each.
+/// Prints the nanoseconds a step of each kernel with its own choice of registers, a line each.
 fn times() {
     for Row { name, batches, .. } in rows() {
         let [_, four, eight] = batches;
@@ -239,7 +238,7 @@ fn times() {
     }
 }
 
-/// The times of the program at this place.
+/// The times of the program at this path.
 fn times_of(program: &Path) -> Result<Vec<(f64, String)>, Box<dyn Error>> {
     let output = Command::new(program).arg("time").output()?;
     let lines = String::from_utf8(output.stdout)?;
@@ -250,7 +249,7 @@ fn times_of(program: &Path) -> Result<Vec<(f64, String)>, Box<dyn Error>> {
     Ok(lines.lines().filter_map(line).collect())
 }
 
-/// This program compiled for this machine, against itself; fails where that is slower.
+/// Compares this program with itself compiled for this machine; fails if that is slower.
 fn native(flags: &[String]) -> Result<(), Box<dyn Error>> {
     let flags = format!("-C target-cpu=native {}", flags.join(" "));
     let mut cargo = Command::new(env!("CARGO"));
@@ -287,7 +286,7 @@ fn native(flags: &[String]) -> Result<(), Box<dyn Error>> {
     }
 }
 
-/// Up to this is noise.
+/// A ratio up to this is noise.
 const SLOWER: f64 = 1.1;
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -1,4 +1,4 @@
-//! Declarations of what the library's own effects haven't got: a field under two names, points, closed `let`s.
+//! Declarations with features that the library's effects don't have: a field under two names, points, closed `let`s.
 
 use liestep::groups::SE2;
 use liestep::mechanics::Effect as _;
@@ -39,7 +39,7 @@ fn two_names<T: RealField + Copy>(varied: Option<(usize, T)>) -> TwoNames<T> {
     }
 }
 
-/// Both shares count.
+/// The derivatives of both uses are summed.
 #[test]
 fn a_field_under_two_names() {
     let stepper = Stepper::new(two_names::<f64>(None), STEP).expect("a stepper");
@@ -47,7 +47,7 @@ fn a_field_under_two_names() {
     assert_linearised(&stepper, dual);
 }
 
-/// Attracted by a point of the plane, by a potential that isn't multiplied out.
+/// A body attracted by a point of the plane, by a potential that isn't expanded.
 #[lagrangian(
     group = SE2,
     gradients,

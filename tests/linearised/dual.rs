@@ -1,4 +1,4 @@
-//! Tangent maps and adjoints against dual numbers through the steps themselves, or differences of them.
+//! Tangent maps and adjoints compared with dual numbers through the steps themselves, or with differences of them.
 
 use liestep::gradients::{Input, InputOf, Linearisable};
 use liestep::groups::LieGroup;
@@ -13,17 +13,18 @@ use super::inputs::{assert_columns, some_inputs};
 
 pub(crate) const STEPS: u64 = 12;
 pub(crate) const STEP: f64 = 0.02;
-/// Of the largest entry, and of the largest of each column. Small columns are what is left of larger terms.
+/// The bounds relative to the largest entry, and to the largest of each column. Small columns are differences of larger
+/// terms.
 pub(crate) const BOUNDS: (f64, f64) = (1e-13, 1e-11);
-/// What may be found where nothing is expected, of the largest entry.
+/// The bound for entries that should be zero, relative to the largest entry.
 pub(crate) const ROUNDING: f64 = 1e-17;
 pub(crate) const SEEDS: std::ops::Range<u64> = 0..2;
 
-/// How attitude and momentum change, for each number that is varied.
+/// The changes of attitude and momentum, for each varied number.
 pub(crate) type Columns<const D: usize> = Vec<(SVector<f64, D>, SVector<f64, D>)>;
 
-/// The derivatives of the last state by dual numbers: along displacements at the start, by its momentum, by parameters, and
-/// by the scalars of what each step is given.
+/// The derivatives of the last state by dual numbers: along displacements at the start, with respect to its momentum,
+/// to parameters, and to the scalars of each step's input.
 fn by_dual_numbers<M, P, A: Entries<f64>, const N: usize, const D: usize>(
     stepper: impl Fn(Option<usize>) -> Stepper<M, P>,
     parameters: usize,
@@ -75,7 +76,7 @@ where
     of_attitude.chain(of_momentum).chain(of_parameters).chain(of_inputs).collect()
 }
 
-/// Tangent map and adjoints at random starts, without inputs and with some.
+/// Checks tangent map and adjoints at random starts, without inputs and with some.
 pub(crate) fn assert_linearised<L, M, P, Q, const N: usize, const D: usize>(
     stepper: &Stepper<L, P>,
     dual: impl Fn(Option<usize>) -> Stepper<M, Q>,
@@ -93,7 +94,7 @@ pub(crate) fn assert_linearised<L, M, P, Q, const N: usize, const D: usize>(
         let mut random = Random::new(seed);
         let (attitude, momentum) = (along::<L::Group, N, D>(&random.sample(), 1.0), random.sample());
         let inputs = some_inputs(stepper, seed, usize::MAX);
-        // Of inputs a column need only be right to its own size.
+        // The column of an input must only be accurate relative to the largest entry.
         for (inputs, bounds) in [(&[][..], BOUNDS), (&inputs, (BOUNDS.0, 1.0))] {
             let expected = by_dual_numbers(&dual, parameters, (attitude.matrix(), momentum), inputs);
             assert_columns(stepper, (attitude, momentum), inputs, &expected, bounds, seed);

@@ -1,4 +1,4 @@
-//! Lyapunov exponents, against two trajectories that are brought near each other again and again.
+//! Lyapunov exponents, compared with two trajectories whose distance is rescaled repeatedly.
 
 use declarations::Motion;
 use liestep::effects::{Gravity, PrincipalBody};
@@ -19,7 +19,7 @@ fn of_a_chaotic_top() {
     let start = stepper.start(attitude, velocity).expect("a start");
     let exponents = linear.lyapunov_exponents(&mut { start }, STEPS.into(), BETWEEN.into()).expect("exponents");
 
-    // The other one is turned about the first axis of the body: the direction that the first exponent begins with.
+    // The second trajectory is turned about the first axis of the body: the initial direction of the first exponent.
     let distance = 1e-8;
     let turned = |attitude: &SO3, by: &Vector3<f64>| {
         SO3::from_matrix_unchecked(attitude.matrix() * Rotation3::new(*by).matrix())
@@ -43,7 +43,7 @@ fn of_a_chaotic_top() {
     println!("{exponents:?}, by two trajectories {expected}");
     assert!((exponents[0] - expected).abs() < 2e-3, "{} and {expected}", exponents[0]);
     assert!(exponents[0] > 0.1, "chaotic: {}", exponents[0]);
-    // Of a Poisson map they come in pairs, and their sum is zero exactly.
+    // The exponents of a Poisson map are in pairs of opposite sign, and their sum is exactly zero.
     assert!(exponents.iter().sum::<f64>().abs() < 1e-10);
     assert!((exponents[0] + exponents[5]).abs() < 0.02, "{exponents:?}");
 }

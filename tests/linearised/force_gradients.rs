@@ -1,4 +1,4 @@
-//! Kicks with force gradients, and processed splittings, which have them.
+//! Kicks with force gradients, and processed splittings, which contain them.
 
 use liestep::effects::{Dipole, PrincipalBody, RigidBody};
 use liestep::groups::{Advected, LieGroup as _};
@@ -20,7 +20,7 @@ type Several<T> = Sum<Held<T>, Dipole<T>>;
 /// The parameters of the scene below; those of the body are the first nine.
 const PARAMETERS: usize = 45;
 
-/// Potentials that are linear in what is advected, quadratic, and of a root.
+/// Potentials that are linear in the advected parameters, quadratic, and a root.
 fn several<T: RealField + Copy>(varied: Option<(usize, T)>) -> Several<T> {
     let mut n = Numbers::new(varied);
     let held = held(&mut n);
@@ -32,8 +32,8 @@ fn body<T: RealField + Copy>(scene: Several<T>) -> RigidBody<T> {
     scene.first.first.first.first
 }
 
-/// `⟨u, D_v τ⟩ + ⟨r, τ − J u⟩` by the declared Lagrangians themselves, as `−V` is what is left of `l_d` where nothing turns,
-/// and `J` its second derivative there: along a displacement `ζ`, or by a parameter.
+/// The number `⟨u, D_v τ⟩ + ⟨r, τ − J u⟩` by the declared Lagrangians, because `l_d` without a turn is `−V`, and `J`
+/// its second derivative there: along a displacement `ζ`, or with respect to a parameter.
 fn by_dual_numbers(
     attitude: &Matrix3<f64>,
     [u, v, r]: [&Vector3<f64>; 3],
@@ -49,7 +49,7 @@ fn by_dual_numbers(
     let still = |matrix| scene.l_d(&Matrix3::identity(), &seen(matrix), one);
     let change = still(start * turned(v, 1) * turned(u, 0)).eps1eps2eps3;
     let torque = still(start * turned(r, 0)).eps1eps3;
-    // exp(ε₁ r̂ + ε₂ û)
+    // The increment exp(ε₁ r̂ + ε₂ û).
     let [r, u] = [r, u].map(|v| lift(&v.cross_matrix()));
     let second = (r * u + u * r) * (units[0] * units[1] * HyperHyperDual64::from(0.5));
     let f = Matrix3::identity() + r * units[0] + u * units[1] + second;
@@ -60,7 +60,7 @@ fn ones(k: usize, place: usize) -> f64 {
     if k == place { 1.0 } else { 0.0 }
 }
 
-/// Along displacements of the body and by each parameter; of those that are advected by way of what the body sees.
+/// The derivatives along displacements of the body and with respect to each parameter, including advected ones.
 #[test]
 fn the_gradient_of_a_kick() {
     let scene = several::<f64>(None);
@@ -87,7 +87,7 @@ fn the_gradient_of_a_kick() {
     }
 }
 
-/// With a declared flow, behind whose kicks are all of these potentials.
+/// Splittings with a declared flow, whose kicks contain all of these potentials.
 #[test]
 fn a_splitting_with_force_gradients() {
     for scheme in [SplittingScheme::FORCE_GRADIENT_2, SplittingScheme::FORCE_GRADIENT_5] {
@@ -102,7 +102,7 @@ fn a_splitting_with_force_gradients() {
     }
 }
 
-/// From a kick to a kick and from a drift to a drift; forwards and back in time.
+/// Schemes that begin with a kick or a drift; forwards and back in time.
 #[test]
 fn a_processed_splitting() {
     let axes = Rotation3::new(Vector3::new(0.4, -0.3, 0.7)).into_inner();
@@ -120,7 +120,7 @@ fn a_processed_splitting() {
     }
 }
 
-/// A kinetic term of fourth order, behind `let`s that stay closed.
+/// A kinetic term of fourth order, after `let`s that stay closed.
 #[lagrangian(
     group = SO3,
     gradients,
@@ -137,7 +137,7 @@ struct Bent {
 
 const OF_BENT: Vector3<f64> = Vector3::new(2.5, 3.0, 3.5);
 
-/// All that it has in a kick is its inertia: `−⟨r, J u⟩`.
+/// The term contributes only its inertia to a kick: `−⟨r, J u⟩`.
 #[test]
 fn the_kick_of_a_closed_kinetic_term() {
     let J = Inertia::from_principal_moments(OF_BENT).expect("a body");
@@ -147,7 +147,7 @@ fn the_kick_of_a_closed_kinetic_term() {
     let (by_place, ()) =
         body.kick_gradient(&(), &v, [&u, &r], &mut |number, share| by_inertia[number] += share).expect("it is zero");
     assert_eq!(by_place, Vector3::zeros());
-    // Of a symmetric change; an entry beside the diagonal may have it all, or each of the two half.
+    // For a symmetric change, an off-diagonal derivative may be in one entry, or half in each of the two.
     for row in 0..3 {
         for column in 0..3 {
             let found = by_inertia[3 * row + column] + by_inertia[3 * column + row];
@@ -157,7 +157,7 @@ fn the_kick_of_a_closed_kinetic_term() {
     }
 }
 
-/// A splitting takes only the potential and the inertia from the scene, so that which kinetic term it has is the same.
+/// A splitting takes only the potential and the inertia from the scene, so the form of the kinetic term doesn't matter.
 #[test]
 fn a_splitting_of_a_closed_kinetic_term() {
     let J = Inertia::from_principal_moments(OF_BENT).expect("a body");

@@ -1,4 +1,4 @@
-//! Exact flows against the variational equations of the free body, which share nothing with the closed form.
+//! Exact flows compared with the variational equations of the free body, which are independent of the closed form.
 
 use checks::free_body::variational;
 use liestep::effects::{Gravity, RigidBody};
@@ -11,11 +11,12 @@ use super::scenes::{MOMENTS, exact_flow, heavy};
 
 type Free = Stepper<Sum<RigidBody, Gravity>, Splitting<Sum<RigidBody, Gravity>, ExactBody>>;
 
-/// Where the library doubles the closed form; below, a drift has polynomials or a curve of at most two doublings.
+/// The limit above which the library doubles the closed form; below it uses polynomials or up to two doublings of a
+/// curve.
 const IS_DOUBLED: f64 = 0.8;
 
-/// The larger of the constants `K_a` and `K_b` of a drift, which tells how long it is, for the momentum along the axes of
-/// the moments.
+/// The larger of the constants `K_a` and `K_b` of a drift, which measures its length, for the momentum along the axes
+/// of the moments.
 fn size([of_a, of_b, of_c]: [f64; 3], along: &Vector3<f64>, time: f64) -> f64 {
     let (a, b) = (of_c / of_a - 1.0, of_c / of_b - 1.0);
     let u = along * (0.5 * time / of_c);
@@ -23,16 +24,16 @@ fn size([of_a, of_b, of_c]: [f64; 3], along: &Vector3<f64>, time: f64) -> f64 {
     (of_middle + a * (a - b) * u.x * u.x).max(of_middle + b * (b - a) * u.y * u.y)
 }
 
-/// Of each column.
+/// The bound relative to each column.
 const BOUND: f64 = 1e-11;
 
-/// A drift for the whole of a step of this length.
+/// A stepper whose whole step is one drift of this length.
 fn free(moments: [f64; 3], axes: &Matrix3<f64>, time: f64) -> Free {
     Stepper::split(heavy(moments, axes, 0.0, None), time, exact_flow(moments, axes, None), SplittingScheme::STRANG)
         .expect("a stepper")
 }
 
-/// The columns of one drift, from a momentum along the axes of the moments.
+/// Checks the columns of one drift, from a momentum along the axes of the moments.
 fn assert_variational(moments: [f64; 3], axes: &Matrix3<f64>, along: &Vector3<f64>, time: f64) {
     let stepper = free(moments, axes, time);
     let linear = stepper.linearised().expect("derivatives");
@@ -53,7 +54,7 @@ fn assert_variational(moments: [f64; 3], axes: &Matrix3<f64>, along: &Vector3<f6
     let found: Vec<_> = tangent.columns().collect();
     let mut worst = 0.0_f64;
     for (k, (turn, change)) in found.iter().take(3).enumerate() {
-        // A body that is turned at the start stays turned.
+        // A turn of the body at the start is the same turn in the body's axes later.
         let error = (turn - F.transpose().column(k)).amax().max(change.amax());
         worst = worst.max(error);
     }
@@ -72,7 +73,7 @@ fn turned() -> Matrix3<f64> {
     Rotation3::new(Vector3::new(0.4, -0.3, 0.7)).into_inner()
 }
 
-/// By both polynomials, by one and by two doublings of the curve, and doubled.
+/// Drifts by both polynomials, by one and by two doublings of the curve, and doubled ones.
 #[test]
 fn a_drift_of_a_generic_body() {
     let along = Vector3::new(0.9, -0.7, 1.2);
@@ -87,8 +88,8 @@ fn a_drift_of_a_generic_body() {
     }
 }
 
-/// Where a motion comes to the middle axis, the closed form divides least and momenta part: beside the separatrix on either
-/// side, and on it. With `A = −B` that is where both momenta are the same, to the last bit along the body's axes.
+/// Near the middle axis the closed form has its smallest divisors and neighbouring momenta separate: beside the
+/// separatrix on either side, and on it. With `A = −B` the separatrix is exact in the body's axes.
 #[test]
 fn a_drift_at_the_separatrix() {
     let moments = [3.75, 2.5, 3.0];

@@ -1,4 +1,5 @@
-//! Derivatives by what each step is given: blocks of a step, and adjoints of a run, against dual numbers and differences.
+//! Derivatives with respect to each step's input: blocks of a step, and adjoints of a run, compared with dual numbers
+//! and differences.
 
 use liestep::Stepper;
 use liestep::gradients::{Cotangent, Input, InputOf, Linearisable, Tape, Transition};
@@ -10,7 +11,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::dual::{BOUNDS, Columns, ROUNDING, STEPS};
 
-/// Nothing, a force, and other values than the scene's, in turn; of the values the first of this number differ.
+/// Inputs in rotation: none, a force, and other values than the scene's; only the first `varied` of the values differ.
 pub(crate) fn some_inputs<L, P, const D: usize>(stepper: &Stepper<L, P>, seed: u64, varied: usize) -> Vec<InputOf<L>>
 where
     L: SecondDerivatives<Scalar = f64>,
@@ -39,7 +40,7 @@ where
 
 type Column<const D: usize> = (SVector<f64, D>, SVector<f64, D>);
 
-/// `A x`
+/// The product `A x`.
 fn carried<const D: usize>(transition: &Transition<SVector<f64, D>>, x: &Column<D>) -> Column<D> {
     let factors = x.0.iter().chain(x.1.iter());
     let zero = (SVector::zeros(), SVector::zeros());
@@ -50,7 +51,7 @@ fn carried<const D: usize>(transition: &Transition<SVector<f64, D>>, x: &Column<
         .fold(zero, |sum, (by, factor)| (sum.0 + by.0 * *factor, sum.1 + by.1 * *factor))
 }
 
-/// What is read of the states of a run; of some it is nothing.
+/// The cotangents of a cost at the states of a run; some are zero.
 fn cotangents<const D: usize>(random: &mut Random, steps: usize) -> Vec<Cotangent<SVector<f64, D>>> {
     let mut read = |n: usize| match n % 3 {
         1 => Cotangent::zero::<f64>(),
@@ -59,7 +60,7 @@ fn cotangents<const D: usize>(random: &mut Random, steps: usize) -> Vec<Cotangen
     (0..=steps).map(&mut read).collect()
 }
 
-/// What each of the columns adds to that.
+/// The contribution of each column to the cost.
 fn paired<const D: usize>(columns: &[Column<D>], cotangent: &Cotangent<SVector<f64, D>>) -> Vec<f64> {
     columns.iter().map(|(a, m)| a.dot(&cotangent.attitude) + m.dot(&cotangent.momentum)).collect()
 }
@@ -69,10 +70,10 @@ fn add(sums: &mut Vec<f64>, shares: Vec<f64>) {
     sums.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share);
 }
 
-/// Whether the columns by the start, the parameters and the inputs are as expected, and the adjoints their transposes, with
-/// either tape. Steps behind the last input are free.
+/// Checks that the columns with respect to the start, the parameters and the inputs are as expected, and that the
+/// adjoints are their transposes, with either tape. Steps after the last input are free.
 ///
-/// The first bound is of the largest entry, which that of the adjoint is as well, the second of each column's own.
+/// The first bound is relative to the largest entry, also for the adjoint, the second to each column.
 pub(crate) fn assert_columns<L, P, const D: usize>(
     stepper: &Stepper<L, P>,
     start: (L::Group, SVector<f64, D>),
@@ -97,7 +98,7 @@ pub(crate) fn assert_columns<L, P, const D: usize>(
         .collect();
     let cotangents = cotangents(&mut Random::new(seed + 300), inputs.len());
 
-    // By start and parameters the tangent, and by the inputs the blocks of the steps.
+    // The tangent has the columns of start and parameters, and the blocks of the steps those of the inputs.
     let (mut state, mut plain, mut blocks) = (start, start, start);
     let mut tangent = linear.tangent(&numbers);
     let mut of_inputs: Vec<Column<D>> = Vec::new();
@@ -136,7 +137,7 @@ pub(crate) fn assert_columns<L, P, const D: usize>(
             })
             .expect("a gradient");
         assert_eq!(plain, state);
-        // The states are those between the steps, and not what a step has made of its input.
+        // The states are those between the steps, and not those after an input.
         assert_eq!(shown.last(), Some(&*start));
         let kinds = |inputs: &[InputOf<L>]| inputs.iter().map(std::mem::discriminant).collect::<Vec<_>>();
         assert_eq!(kinds(&by_inputs), kinds(&inputs));
@@ -153,8 +154,8 @@ pub(crate) fn assert_columns<L, P, const D: usize>(
     assert_eq!(gradients[0], gradients[1], "checkpoints change a bit");
 }
 
-/// The blocks of one step against differences of fourth order. Of the values the first of this number vary: others may be
-/// those of a rotation, which a derivation takes them for.
+/// The blocks of one step compared with differences of fourth order. Only the first values vary: others may be entries
+/// of a rotation, and derivations assume that they are.
 pub(crate) fn assert_blocks<L, P, const D: usize>(
     stepper: &Stepper<L, P>,
     start: (L::Group, SVector<f64, D>),

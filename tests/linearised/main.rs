@@ -1,4 +1,4 @@
-//! Tangent maps, adjoints and what is made of them.
+//! Tangent maps, adjoints, and their applications.
 
 mod declared;
 mod dual;

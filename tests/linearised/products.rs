@@ -1,4 +1,4 @@
-//! Products of groups, with a relative configuration and with translations, against differences of the stepper.
+//! Products of groups, with a relative configuration and with translations, compared with differences of the stepper.
 
 use liestep::groups::{CayleyRetraction, LieGroup, R1, R3, Retraction};
 use liestep::laws::samples::Random;
@@ -49,7 +49,7 @@ fn links(varied: Option<(usize, f64)>) -> Links {
     }
 }
 
-/// A body with a wheel that hangs at a place that is translated: matrices of a turn, a line and space together.
+/// A body with a wheel on a translated support: matrices of a rotation, a line and space together.
 #[lagrangian(
     group(F = SO3, t = R1, d = R3),
     gradients,
@@ -84,7 +84,7 @@ fn carried(varied: Option<(usize, f64)>) -> Carried {
     Carried {
         J: n.symmetric(&(J_D * 2.0)),
         m: n.number(0.8),
-        // What is smaller has larger fifth derivatives: at 0.3 the differences are off by 4e-10.
+        // A smaller moment has larger fifth derivatives: at 0.3 the differences have errors of 4e-10.
         J_w: n.number(0.9),
         rho: n.vector(0.2, -0.1, 0.5),
         g: n.number(2.81),
@@ -93,8 +93,8 @@ fn carried(varied: Option<(usize, f64)>) -> Carried {
     }
 }
 
-/// By differences of the fourth order: off by some `10⁻¹²` times the fifth derivative, and by some `10⁻¹²` of rounding, of
-/// which a small column has a large part.
+/// Derivatives by differences of the fourth order: their errors are some `10⁻¹²` times the fifth derivative, and some
+/// `10⁻¹²` of rounding, which is a large part of a small column.
 fn by_differences<L, const D: usize>(
     scene: impl Fn(Option<(usize, f64)>) -> L,
     parameters: usize,
@@ -121,7 +121,7 @@ where
     let column = |outcome: &dyn Fn(f64) -> (L::Group, SVector<f64, D>)| {
         let [a, b, c, d] = [2.0, 1.0, -1.0, -2.0].map(|step| {
             let (attitude, momentum) = outcome(step * SMALL);
-            // Odd in a turn, and the same to the first order.
+            // The function is odd in a turn, and agrees with it to first order.
             (L::Group::vee(&middle.inverse().compose(&attitude).matrix()), momentum)
         });
         let slope = |a, b, c, d| ((b - c) * 8.0 - (a - d)) / (12.0 * SMALL);
@@ -144,7 +144,7 @@ fn a_body_with_a_wheel_that_is_translated() {
         let start = (attitude, random.sample());
         let expected = by_differences(carried, parameters, start);
         assert_columns(&stepper, start, &[], &expected, (1e-10, 1e-7), seed);
-        // The direction up: a derivation uses that the others are a rotation and a place.
+        // Only the direction up varies: a derivation assumes that the others are a rotation and a position.
         assert_blocks(&stepper, start, seed, 3);
     }
 }

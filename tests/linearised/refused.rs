@@ -1,4 +1,4 @@
-//! What can't be differentiated: force gradients of a term whose derivatives were written without those of its kick.
+//! A scene that can't be differentiated: force gradients of a term without the derivatives of its kick.
 
 use checks::solvers::WithoutKickGradient;
 use liestep::mechanics::Inertia;
@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 
 use super::scenes::top;
 
-/// By name, and without force gradients it is differentiated all the same.
+/// The error is typed, and without force gradients the scene is differentiable.
 #[test]
 fn force_gradients_without_the_gradient_of_a_kick() {
     let flow = ExactBody::new(&Inertia::from_principal_moments(Vector3::new(2.5, 3.0, 3.5)).expect("a body"));

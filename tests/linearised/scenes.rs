@@ -1,4 +1,4 @@
-//! Sums of the library's effects, with a force, and the methods that are made of their steps.
+//! Sums of the library's effects, with a force, and methods composed of their steps.
 
 use liestep::Stepper;
 use liestep::effects::{CayleyBody, Dipole, Drag, GeodesicBody, Gravity, GravityGradient, MagneticDamping};
@@ -10,7 +10,7 @@ use num_dual::Dual64;
 
 use super::dual::{STEP, assert_linearised};
 
-/// The values, one of which may have a unit of its own; the entries of a matrix that is symmetric vary together.
+/// The parameters, one of which may have a derivative; the entries of a symmetric matrix vary together.
 pub(crate) struct Numbers<T> {
     next: usize,
     varied: Option<(usize, T)>,
@@ -108,7 +108,7 @@ fn a_damped_scene() {
 
 type Magnetic<T> = Sum<Sum<Sum<GeodesicBody<T>, CayleyBody<T>>, Dipole<T>>, MagneticDamping<T>>;
 
-/// A body of both kinetic terms: their derivatives go through a logarithm, and through a quotient.
+/// A body with both kinetic terms: their derivatives contain a logarithm, and a quotient.
 fn magnetic<T: RealField + Copy>(varied: Option<(usize, T)>) -> Magnetic<T> {
     let mut n = Numbers::new(varied);
     let J = Matrix3::identity() * J_D.trace() - J_D;
@@ -135,10 +135,10 @@ fn a_composition() {
     assert_linearised(&stepper, dual);
 }
 
-/// The flow's inertia is a parameter of its own, behind those of the scene: where both are varied, both derivatives add.
+/// The flow's inertia is a parameter of its own, after those of the scene: if both vary, both derivatives add.
 #[test]
 fn a_splitting() {
-    // Of three shares, and of more, from a kick to a kick and from a drift to a drift.
+    // Schemes of three shares, and of more, that begin with a kick or with a drift.
     assert_split(SplittingScheme::STRANG);
     assert_split(SplittingScheme::NYSTROM_6);
     assert_split(SplittingScheme::NEAR_INTEGRABLE_8_6_4);
@@ -147,7 +147,7 @@ fn a_splitting() {
 
 fn assert_split(scheme: SplittingScheme) {
     let split = |number: Option<usize>| {
-        // The scene's own inertia has to be the flow's to its rounding, which a dual number's value is.
+        // The scene's own inertia must equal the flow's to rounding, as a dual number's value does.
         let of_flow = number.filter(|&number| number >= 17).map(|number| number - 17);
         let scene = top(unit(number.filter(|&number| number < 17)));
         Stepper::split(scene, STEP.into(), top(unit(of_flow)).first, scheme).expect("a stepper")
@@ -157,9 +157,9 @@ fn assert_split(scheme: SplittingScheme) {
     assert_linearised(&stepper, split);
 }
 
-/// Weights on the third axis of a symmetric body, where its spin is made apart, and beside it; short and long drifts. The
-/// dual numbers' weight is always beside, by less than a rounding: they would else be those of the spin that is made apart,
-/// and that is no derivative towards a weight beside the axis.
+/// Weights on the third axis of a symmetric body, where its spin is merged, and beside it; short and long drifts. The
+/// dual numbers' weight is always beside the axis, by less than a rounding: otherwise they would differentiate the
+/// merged spin, which isn't the derivative towards a weight beside the axis.
 #[test]
 fn a_splitting_with_the_flow_of_a_symmetric_body() {
     for (scheme, h) in [
@@ -201,7 +201,7 @@ fn assert_symmetric(beside: f64, h: f64, scheme: SplittingScheme) {
     assert_linearised(&stepper, split);
 }
 
-/// The axes of the moments, and how they turn for a unit of each of the flow's last three parameters.
+/// The principal axes, and their turn per unit of each of the flow's last three parameters.
 pub(crate) fn exact_flow<T: RealField + Copy>(
     moments: [f64; 3],
     axes: &Matrix3<f64>,
@@ -209,7 +209,7 @@ pub(crate) fn exact_flow<T: RealField + Copy>(
 ) -> ExactBody<T> {
     let lift = |value: f64| nalgebra::convert::<f64, T>(value);
     let mut n = Numbers::new(varied);
-    // Beside the diagonal less than a rounding, as what is zero there isn't looked at.
+    // The off-diagonal entries are less than a rounding but not zero, because zeros aren't evaluated.
     let (moments, zero) = (moments.map(|moment| n.number(moment)), varied.map_or(T::zero(), |_| lift(1e-100)));
     let turn = [0, 1, 2].map(|_| n.number(0.0));
     let axes = axes.map(lift);
@@ -221,7 +221,7 @@ pub(crate) fn exact_flow<T: RealField + Copy>(
     ExactBody::new(&Inertia::new(inertia + beside).expect("a body"))
 }
 
-/// The largest, the least, the middle one.
+/// The largest, the least and the middle moment.
 pub(crate) const MOMENTS: [f64; 3] = [3.5, 2.5, 3.0];
 
 pub(crate) fn heavy<T: RealField + Copy>(
@@ -242,7 +242,7 @@ pub(crate) fn heavy<T: RealField + Copy>(
 #[test]
 fn a_splitting_with_the_flow_of_any_body() {
     let turned = nalgebra::Rotation3::new(Vector3::new(0.4, -0.3, 0.7)).into_inner();
-    // The middle moment about the first axis, so that the moments have other places.
+    // The middle moment is about the first axis, so that the moments are in another order.
     let cyclic = Matrix3::new(0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
     let (own, other) = ([0, 1, 2, 3, 4, 5], [2, 0, 1, 3, 4, 5]);
     let cases = [
@@ -250,7 +250,7 @@ fn a_splitting_with_the_flow_of_any_body() {
         (cyclic, STEP, other, 9.81),
         (turned, STEP, own, 9.81),
         (turned, 0.7, own, 9.81),
-        // Up to drifts of the longer polynomials; `free_body` has those that are doubled.
+        // Drifts up to the longer polynomials; `free_body` has those that are doubled.
         (turned, 6.0, own, 1e-3),
     ];
     for (axes, h, places, g) in cases {
@@ -290,7 +290,7 @@ fn the_tangent_of_another_plan_is_refused() {
     let _ = split.linearised().expect("derivatives").step(&mut state, &mut tangent);
 }
 
-/// Of a stepper of no step nothing changes, whatever the parameters.
+/// For a step of zero all derivatives with respect to parameters are zero.
 #[test]
 fn without_a_step_nothing_moves() {
     let stepper = Stepper::new(top::<f64>(None), 0.0).expect("a stepper");

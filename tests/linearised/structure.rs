@@ -1,4 +1,4 @@
-//! What structure-preserving steps alone have: symplectic transition matrices, and adjoints by steps of `−h`.
+//! Properties of structure-preserving steps: symplectic transition matrices, and adjoints by steps of `−h`.
 
 use liestep::effects::{Gravity, PrincipalBody};
 use liestep::gradients::{Cotangent, Gradient, Linearisable, Tape};
@@ -25,7 +25,7 @@ fn start() -> (SO3, Vector3<f64>) {
     )
 }
 
-/// `Ω(μ)` on `(ζ, δμ)`: `⟨δμ', ζ⟩ − ⟨δμ, ζ'⟩ + ⟨μ, [ζ, ζ']⟩`, up to a sign for all of it.
+/// The form `Ω(μ)` on `(ζ, δμ)`: `⟨δμ', ζ⟩ − ⟨δμ, ζ'⟩ + ⟨μ, [ζ, ζ']⟩`, up to a common sign.
 fn form(momentum: &Vector3<f64>) -> Matrix6 {
     let mut form = Matrix6::zeros();
     form.fixed_view_mut::<3, 3>(0, 0).copy_from(&momentum.cross_matrix());
@@ -47,7 +47,7 @@ fn the_transition_matrix_keeps_the_symplectic_form() {
     assert_symplectic(&processed(ProcessedScheme::FOUR_C, 0.01), 10.0);
 }
 
-/// A splitting with an exact flow; on the axis, its spin is made apart.
+/// A splitting with an exact flow; with the weight on the axis, its spin is merged.
 fn symmetric(beside: f64) -> Stepper<Top, Splitting<Top, SymmetricBody>> {
     let moments = Vector3::new(3.0, 3.0, 4.5);
     let body = PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(moments).expect("a body") };
@@ -69,14 +69,14 @@ fn exact_body(scene: &Top) -> ExactBody {
     ExactBody::new(&Inertia::new(Effect::inertia(scene, &scene.advected())).expect("a body"))
 }
 
-/// Both are the motion of a symmetric body, in formulas that share nothing.
+/// Both flows are the motion of a symmetric body, by independent formulas.
 #[test]
 fn exact_flows_of_a_symmetric_body_agree() {
     let symmetric = symmetric(0.2);
     let exact = exact(*symmetric.scene(), symmetric.step_size(), SplittingScheme::NYSTROM_6);
     let (linear, other) = (symmetric.linearised().expect("derivatives"), exact.linearised().expect("derivatives"));
     let scene: Vec<usize> = (0..17).collect();
-    // By both transverse moments, and by the axial one.
+    // The derivatives with respect to both transverse moments, and to the axial one.
     let mut tangent = linear.tangent(&[&scene[..], &[17, 18]].concat());
     let mut by_exact = other.tangent(&[&scene[..], &[17, 18, 19]].concat());
     let (attitude, momentum) = start();
@@ -96,7 +96,7 @@ fn exact_flows_of_a_symmetric_body_agree() {
     }
 }
 
-/// At entries of this size.
+/// Checks a transition matrix with entries of this size.
 fn assert_symplectic<P: Linearisable<Top>>(stepper: &Stepper<Top, P>, size: f64) {
     let linear = stepper.linearised().expect("derivatives");
     let (attitude, momentum) = start();
@@ -157,7 +157,7 @@ fn steps_back_of_a_splitting() {
     assert!(parting(&exact(top(), 0.01, SplittingScheme::FORCE_GRADIENT_5), 1_000) < 1e-12);
 }
 
-/// Whose processor is that of steps of either sign.
+/// The processor of both directions is that of `|h|`.
 #[test]
 fn steps_back_of_a_processed_splitting() {
     for scheme in ProcessedScheme::ALL {
@@ -173,8 +173,8 @@ fn steps_back_of_a_composition() {
     assert!(parting(&stepper, 1_000) < 1e-12);
 }
 
-/// Good steps, the last of them with a push after which the next has no solution: state, what is kept, and tangent are as
-/// they were, though of a composition the first stages could be made.
+/// After some good steps and a push the next step has no solution: state, memory, and tangent stay unchanged, although
+/// the first stages of a composition are solvable.
 #[test]
 fn a_step_without_a_solution_changes_nothing() {
     assert_unchanged(&Stepper::new(top(), 0.05).expect("a stepper"), 150.0);
@@ -188,7 +188,7 @@ fn assert_unchanged<P: Linearisable<Top>>(stepper: &Stepper<Top, P>, impulse: f6
     for _ in 0..3 {
         linear.step(&mut state, &mut tangent).expect("a step");
     }
-    // Half of it comes before the step.
+    // Half of the impulse comes before the step.
     stepper.step_forced(&mut state, &(Vector3::z() * (impulse / stepper.step_size()))).expect("a step");
     let (before, columns) = (state, tangent.columns().collect::<Vec<_>>());
     let error = linear.step(&mut state, &mut tangent).expect_err("it is too fast");

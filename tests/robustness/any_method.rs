@@ -1,6 +1,6 @@
-//! Whatever is put around a step goes with every method: the table of methods and additions, walked through.
+//! All functions around a step work with every method: the table of methods and additions, one by one.
 //!
-//! What makes no sense doesn't compile: `tests/ui/fail/calls.rs`.
+//! Combinations without a meaning don't compile: `tests/ui/fail/calls.rs`.
 
 use checks::random::Random;
 use declarations::{HeavyTop, Motion};
@@ -31,7 +31,7 @@ where
     stepper.start(attitude(), VELOCITY).unwrap()
 }
 
-/// One copy of a step for all that is asserted of it: they are most of what this file compiles to.
+/// One compiled copy of a step for all assertions, which are most of this file's code.
 #[inline(never)]
 fn step<S, P>(stepper: &Stepper<S, P>, state: &mut State<S, P>) -> Result<StepReport, StepError>
 where
@@ -41,7 +41,7 @@ where
     stepper.step(state)
 }
 
-/// How far two motions are from each other.
+/// The distance of two motions.
 fn apart<S, P, K>(a: &State<S, P>, b: &liestep::State<SO3, S::Advected, K>) -> f64
 where
     S: Effect<Scalar = f64, Group = SO3>,
@@ -50,7 +50,7 @@ where
     relative(&a.momentum(), &b.momentum()).max((a.attitude().as_matrix() - b.attitude().as_matrix()).norm())
 }
 
-/// `run`, `steps` and `step` make the same steps, a copy goes on with the same bits, and time is counted.
+/// Checks that `run`, `steps` and `step` make the same steps, that a copy has identical bits, and that time is counted.
 fn assert_runs<S, P>(name: &str, stepper: &Stepper<S, P>)
 where
     S: Effect<Scalar = f64, Group = SO3>,
@@ -62,7 +62,7 @@ where
         step(stepper, &mut stepped).unwrap();
     }
     stepper.run(&mut run, 20).unwrap();
-    // Splittings join the flows at the ends of two steps.
+    // Splittings merge the flows at the ends of two steps.
     assert!(apart::<S, P, _>(&stepped, &run) < 1e-9, "{name}: run");
     let last = stepper.steps(start).take(20).last().unwrap().unwrap();
     assert_eq!(format!("{last:?}"), format!("{stepped:?}"), "{name}: steps");
@@ -70,7 +70,8 @@ where
     assert_eq!(run.steps(), 20, "{name}");
 }
 
-/// Without a force nothing changes, to the bit; a torque in space turns the momentum by its impulse.
+/// Checks that a force of zero changes nothing, to the bit, and that a torque in space changes the momentum by its
+/// impulse.
 fn assert_is_forced<S, P>(name: &str, stepper: &Stepper<S, P>)
 where
     S: Effect<Scalar = f64, Group = SO3>,
@@ -89,10 +90,10 @@ where
     stepper.step_forced(&mut forced, &torque).unwrap();
     let impulse = torque * stepper.step_size();
     let gained = forced.momentum() - plain.momentum();
-    // To first order in the step; the rest is how the body turns meanwhile.
+    // The bound is of first order in the step, by which the body turns meanwhile.
     let allowed = 2.0 * impulse.norm() * VELOCITY.norm() * stepper.step_size();
     assert!((gained - impulse).norm() < allowed, "{name}: {gained} for {impulse}, from {before}");
-    // The next step goes on from what was pushed.
+    // The next step starts from the pushed momentum.
     step(stepper, &mut forced).unwrap();
     assert!((forced.momentum() - plain.momentum()).norm() > 0.5 * impulse.norm(), "{name}: the push is lost");
     assert!(matches!(
@@ -101,7 +102,7 @@ where
     ));
 }
 
-/// A motion is taken over by the step of another method, and back.
+/// Checks that the step of another method adopts a motion, and back.
 fn assert_adopts<S, P>(name: &str, stepper: &Stepper<S, P>)
 where
     S: Effect<Scalar = f64, Group = SO3> + Clone + liestep::mechanics::Regular,
@@ -120,7 +121,7 @@ where
     assert!(apart::<S, P, _>(&back, &state) < 1e-4, "{name}: adopt");
 }
 
-/// The step of this state is solvable, so the largest is the step; a step of `−h` undoes it.
+/// Checks that the largest solvable step is the step, and that a step of `−h` undoes it.
 fn assert_has_limits_and_an_inverse<S, P>(name: &str, stepper: &Stepper<S, P>)
 where
     S: DiscreteLagrangian<Scalar = f64, Group = SO3> + Clone,
@@ -140,7 +141,7 @@ where
     assert!(apart::<S, P, _>(&start, &state) < 1e-12, "{name}: inverse");
 }
 
-/// Saved at random steps, a motion goes on with the same bits; another method refuses the file.
+/// Checks that a motion saved at random steps continues with identical bits, and that another method refuses the file.
 fn assert_is_saved<S, P>(name: &str, stepper: &Stepper<S, P>, own: &mut Vec<Checkpoint<f64>>)
 where
     S: Effect<Scalar = f64, Group = SO3>,
@@ -173,8 +174,8 @@ where
     own.push(stepper.checkpoint(&state));
 }
 
-/// A recorder is shown the steps of `run`, to the bit; between two steps there is a path from the one to the other that
-/// stays in the group and keeps the vertical momentum.
+/// Checks that a recorder receives the steps of `run`, to the bit, and that between two steps there is a path from the
+/// one to the other in the group, with the vertical momentum conserved.
 fn assert_is_observed<A: Advected<SO3>>(name: &str, stepper: &AnyStepper<SO3, A>) {
     let start = stepper.start(attitude(), VELOCITY).unwrap();
     let (mut observed, mut stepped) = (start.clone(), start.clone());
@@ -203,7 +204,7 @@ fn assert_is_observed<A: Advected<SO3>>(name: &str, stepper: &AnyStepper<SO3, A>
         let between = at(fraction);
         assert!(between.orthogonality_defect() < 4e-15, "{name}: at {fraction}");
         assert!((between.momentum_along(&Vector3::z()) - vertical).abs() < 2e-14, "{name}: at {fraction}");
-        // A path of the motion's velocity.
+        // The path has the velocity of the motion.
         let turned = distance(between.attitude(), start.attitude()) / std::f64::consts::SQRT_2;
         let expected = VELOCITY.norm() * 0.01 * f64::abs(fraction);
         assert!((turned - expected).abs() < 0.1 * expected + 1e-15, "{name}: turned by {turned} at {fraction}");
@@ -211,13 +212,13 @@ fn assert_is_observed<A: Advected<SO3>>(name: &str, stepper: &AnyStepper<SO3, A>
     let later = stepper.state_at(&start, 0.107).unwrap();
     stepper.run(&mut next, 9).unwrap();
     let part = stepper.part(&next, 0.7).unwrap();
-    // Runs of a splitting join the flows at the ends of two steps.
+    // Runs of a splitting merge the flows at the ends of two steps.
     assert!(distance(later.attitude(), part.attitude()) < 1e-9, "{name}: later");
     let back = stepper.state_at(&stepper.adopt(&next), -0.1).unwrap();
     assert!(distance(back.attitude(), start.attitude()) < 1e-9, "{name}: back");
 }
 
-/// All that goes with every plan.
+/// Checks all functions that every plan has.
 fn assert_all<S, P>(name: &str, stepper: &Stepper<S, P>, own: &mut Vec<Checkpoint<f64>>)
 where
     S: DiscreteLagrangian<Scalar = f64, Group = SO3> + liestep::mechanics::Regular + Clone,
@@ -230,7 +231,7 @@ where
     assert_is_saved(name, stepper, own);
 }
 
-/// A plan, and the same or substeps, which change nothing where there is a step.
+/// Checks a plan, alone and with substeps as a remedy, which change nothing if there is a step.
 fn assert_with_remedies<S, P>(name: &str, stepper: &Stepper<S, P>, own: &mut Vec<Checkpoint<f64>>)
 where
     S: DiscreteLagrangian<Scalar = f64, Group = SO3> + liestep::mechanics::Regular + Clone + 'static,
@@ -248,7 +249,7 @@ where
     assert_eq!(format!("{plain:?}"), format!("{other:?}"), "{name}");
 }
 
-/// And compensated, before and after.
+/// Checks it also with compensation, inside and outside of the remedy.
 fn assert_everything<S, P>(name: &str, stepper: &Stepper<S, P>, own: &mut Vec<Checkpoint<f64>>)
 where
     S: DiscreteLagrangian<Scalar = f64, Group = SO3> + liestep::mechanics::Regular + Clone + 'static,
@@ -258,7 +259,7 @@ where
     let compensated = stepper.clone().compensated();
     assert_with_remedies(&format!("{name}, compensated"), &compensated, own);
     assert_all(&format!("{name}, or substeps, compensated"), &stepper.clone().or_substeps(8).compensated(), own);
-    // The same map but for roundings.
+    // The map is the same up to rounding.
     let (mut plain, mut carrying) = (started(stepper), started(&compensated));
     stepper.run(&mut plain, 50).unwrap();
     compensated.run(&mut carrying, 50).unwrap();
@@ -287,14 +288,14 @@ fn every_method_goes_with_every_addition() {
     // Collocation compensates its own sums.
     assert_with_remedies("2 stages", &Stepper::collocated::<1>(top.clone(), h).unwrap(), &mut own);
     assert_with_remedies("8 stages", &Stepper::collocated::<4>(top, h).unwrap(), &mut own);
-    // A body alone.
+    // A single body.
     let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5)).unwrap();
     let body = Stepper::new(PrincipalBody { J_d }, h).unwrap();
     assert_everything("a free body", &body, &mut own);
 }
 
-/// The thesis' published step has no solution for (3.13), nor for its compositions: every way around it says so, and
-/// keeps what every step keeps.
+/// The thesis' published step has no solution for (3.13), nor for its compositions: every remedy reports itself, and
+/// conserves the invariants of every step.
 #[test]
 fn every_remedy_is_taken_where_there_is_no_step() {
     let Motion { top, attitude, velocity, .. } = Motion::looping();

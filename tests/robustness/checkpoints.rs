@@ -1,5 +1,4 @@
-//! A motion goes on from a checkpoint as if it had never stopped, in whatever format it was kept; and goes on from
-//! nothing else than its own.
+//! A motion continues from a checkpoint as if it had never stopped, in every format; and only from its own checkpoints.
 
 use checks::random::Random;
 use declarations::{FreeBody, HeavyTop, Motion, SixthOrderTop, Top as _};
@@ -10,7 +9,7 @@ use liestep::{SO3, StateOf, Stepper};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
-/// As it comes back from each of the formats.
+/// The checkpoint as it is read back from each of the formats.
 fn round_trips<T: Storable>(checkpoint: &Checkpoint<T>) -> [Checkpoint<T>; 3] {
     let json = serde_json::to_string_pretty(checkpoint).unwrap();
     let toml = toml::to_string(checkpoint).unwrap();
@@ -18,7 +17,7 @@ fn round_trips<T: Storable>(checkpoint: &Checkpoint<T>) -> [Checkpoint<T>; 3] {
     [serde_json::from_str(&json).unwrap(), toml::from_str(&toml).unwrap(), postcard::from_bytes(&binary).unwrap()]
 }
 
-/// Saved after each of some random numbers of steps, the motion goes on with the same bits.
+/// A motion that is saved after random numbers of steps continues with identical bits.
 fn assert_resumes<L, P>(stepper: &Stepper<L, P>, start: StateOf<L, P>, seed: u64)
 where
     L: Effect<Scalar: Storable, Group = SO3<Scalar<L>>>,
@@ -64,7 +63,7 @@ fn p7_compensation_terms_are_kept() {
     let stepper = plain.clone().compensated();
     let state = stepper.start(motion.attitude, motion.velocity).unwrap();
     assert_resumes(&stepper, state, 10);
-    // Neither is taken for the other.
+    // Neither stepper accepts the other's checkpoint.
     let refused = plain.resume(&stepper.checkpoint(&state)).unwrap_err();
     assert!(
         refused.to_string().contains("\"compensated, its own step\", this stepper's is \"its own step\""),
@@ -98,7 +97,7 @@ fn p7_other_parameters_are_refused_by_name() {
     let (stepper, stored) = checkpoint();
     let top = stepper.scene();
     let refused = |top: HeavyTop, h: f64| Stepper::new(top, h).unwrap().resume(&stored).unwrap_err();
-    // `m g` alone is in the equations; the field is another all the same.
+    // Only `m g` enters the equations; a different field is refused all the same.
     let error = refused(HeavyTop { m: 2.0, g: top.g / 2.0, ..top.clone() }, 0.01);
     assert_eq!(error, CheckpointError::AnotherParameter { field: "m", stored: 1.0, own: 2.0 });
     assert!(error.to_string().starts_with("parameter `m` is 1e0 in the checkpoint and 2e0 here"), "{error}");
@@ -117,7 +116,7 @@ fn p7_other_parameters_are_refused_by_name() {
     assert!(error.to_string().contains("1e-2 s in the checkpoint and 2e-2 s here"), "{error}");
 }
 
-/// The checkpoint with something replaced.
+/// The checkpoint with an edited value.
 fn edited(stored: &Checkpoint<f64>, edit: impl FnOnce(&mut Value)) -> Checkpoint<f64> {
     let mut value = serde_json::to_value(stored).unwrap();
     edit(&mut value);
@@ -153,13 +152,13 @@ fn p7_what_is_no_state_of_the_scene_is_refused() {
         refused(|value| value["kept"] = json!([1.0, 2.0])),
         CheckpointError::WrongSize { what: "kept", found: 2, expected: 11 }
     );
-    // How many increments the guess is made of, a number in the file.
+    // The number of increments in the guess, which is a number in the file.
     assert_eq!(refused(|value| value["kept"][6] = json!(2.5)), CheckpointError::Altered);
     let scaled = refused(|value| value["attitude"][4] = json!(0.5));
     assert!(matches!(scaled, CheckpointError::NotInGroup { defect } if defect > 1e-3), "{scaled}");
     let elsewhere = refused(|value| value["advected"] = json!([0.0, 0.0, 1.0]));
     assert!(matches!(elsewhere, CheckpointError::NotAdvected { distance } if distance > 1e-3), "{elsewhere}");
-    // One digit of what nothing else could tell from the right one.
+    // One changed digit that only the digest can detect.
     for name in ["momentum", "kept"] {
         let mut value = serde_json::to_value(&stored).unwrap();
         value[name][0] = json!(f64::from_bits(value[name][0].as_f64().unwrap().to_bits() ^ 1));
@@ -182,7 +181,7 @@ fn p7_what_is_not_finite_is_refused() {
     }
 }
 
-/// Every file that is cut short, and every one with a byte changed, is an error of the parser or of the stepper.
+/// Every truncated file, and every file with a changed byte, is an error of the parser or of the stepper.
 #[test]
 fn p7_damaged_files_are_refused() {
     let (stepper, stored) = checkpoint();
@@ -194,7 +193,7 @@ fn p7_damaged_files_are_refused() {
     for end in 0..binary.len() {
         assert!(postcard::from_bytes::<Checkpoint<f64>>(&binary[..end]).is_err(), "binary up to {end}");
     }
-    // A text cut within its last line may still be one; its digest isn't then.
+    // A text truncated within its last line may still be valid; then its digest isn't.
     for end in 0..toml.trim_end().len() {
         let read = toml::from_str::<Checkpoint<f64>>(&toml[..end]);
         assert!(read.is_err() || stepper.resume(&read.unwrap()).is_err(), "TOML up to {end}");

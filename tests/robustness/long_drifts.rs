@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 
 const SCHEMES: [SplittingScheme; 2] = [SplittingScheme::NYSTROM_14, SplittingScheme::KAHAN_LI_8];
 
-/// Steps of a second in gravity, at rates up to where no digit of the angle is left.
+/// Steps of a second in gravity, at rates up to those at which the angle has no significant digit.
 fn assert_rotations<K: KineticFlow<f64>>(moments: Vector3<f64>, flow: &K) {
     let body = RigidBody { J_d: NonstandardInertia::from_principal_moments(moments).unwrap() };
     let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
@@ -22,7 +22,7 @@ fn assert_rotations<K: KineticFlow<f64>>(moments: Vector3<f64>, flow: &K) {
                     let defect = state.orthogonality_defect();
                     assert!(defect < 1e-13, "{}, {rate:e}: {defect:e}", scheme.name());
                     let length = state.momentum().norm() / before.momentum().norm();
-                    // All that gravity can do in a second.
+                    // The bound is the largest effect of gravity in a second.
                     assert!((length - 1.0).abs() < 10.0 / rate + 1e-12, "{}, {rate:e}: {length:e}", scheme.name());
                 }
                 Err(error) => {
@@ -43,7 +43,7 @@ fn of_a_symmetric_body() {
 
 #[test]
 fn of_any_body_exactly() {
-    // The last is a needle.
+    // The last body is a needle.
     for moments in [Vector3::new(2.0, 2.0, 3.0), Vector3::new(2.0, 2.5, 3.0), Vector3::new(1e-6, 1.0, 1.0)] {
         assert_rotations(moments, &ExactBody::new(&Inertia::from_principal_moments(moments).unwrap()));
     }

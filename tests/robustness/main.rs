@@ -1,4 +1,4 @@
-//! Any input gets an answer or a typed error: solving, limits of a step, policies, checkpoints, random inputs.
+//! Every input leads to a result or a typed error: solving, limits of a step, policies, checkpoints, random inputs.
 
 mod any_method;
 mod checkpoints;

@@ -14,7 +14,7 @@ use crate::one_top::{VELOCITY, top};
 #[test]
 fn a_run_ends_when_it_is_told_to() {
     let (stepper, start) = top(0.01);
-    // Whole numbers of steps, but for rounding, and what lies between.
+    // The times are whole numbers of steps up to rounding, and times between.
     for (until, steps) in [(0.0, 0), (-1.0, 0), (0.3, 30), (0.07, 7), (0.7, 70), (0.701, 71), (1e-9, 1)] {
         let ended = stepper.observed(&mut start.clone()).until(until).unwrap();
         assert_eq!((ended.steps, ended.reason), (steps, Reason::Done), "until {until}");
@@ -29,7 +29,7 @@ fn a_run_ends_when_it_is_told_to() {
     let RunReport { steps, reason: Reason::Stopped { time }, iterations } = ended else { panic!("{ended:?}") };
     assert!(state.momentum().x < -0.5 && iterations >= steps);
     assert_eq!((state.steps(), time), (steps, stepper.time(&state)));
-    // Where it is so at the start, no step is made, of a run that goes on neither.
+    // If the condition holds at the start, no step is made, also in a run that continues.
     for _ in 0..2 {
         let ended = stepper.observed(&mut state).stop_when(|now| now.momentum().x < -0.5).steps(1000).unwrap();
         assert_eq!((ended.steps, ended.reason, state.steps()), (0, Reason::Stopped { time }, steps));
@@ -37,13 +37,13 @@ fn a_run_ends_when_it_is_told_to() {
     let ended = stepper.observed(&mut start.clone()).stop_when(|_| true).steps(1000).unwrap();
     assert_eq!((ended.steps, ended.reason), (0, Reason::Stopped { time: 0.0 }));
 
-    // Backwards.
+    // A run backwards.
     let (back, mut state) = top(-0.01);
     let ended = back.observed(&mut state).at([0.0, -0.005, -0.015], |_| ()).until(-0.02).unwrap();
     assert_eq!((ended.steps, back.time(&state)), (2, -0.02));
 }
 
-/// Several who look at the ends of steps are shown each its own, of a run that goes on from step 5.
+/// Several observers of the ends of steps each receive their own, in a run that continues from step 5.
 #[test]
 fn each_observer_sees_its_steps() {
     let (stepper, mut state) = top(0.01);
@@ -64,7 +64,7 @@ fn each_observer_sees_its_steps() {
     assert_eq!(shares.into_inner(), (1..=100).map(|share| f64::from(share) / 100.0).collect::<Vec<_>>());
 }
 
-/// What observers see has no influence, and is seen in order.
+/// Observers have no influence on the motion, and are called in order.
 #[test]
 fn given_times_are_shown_in_order() {
     let (stepper, start) = top(0.01);
@@ -99,7 +99,7 @@ fn given_times_are_shown_in_order() {
     }
 }
 
-/// What happens in one step is shown in its order, given times among it, and the steps stay what they are.
+/// Events within one step are reported in order, prescribed times included, and the steps stay unchanged.
 #[test]
 fn events_happen_in_their_order() {
     let (stepper, start) = top(0.05);
@@ -151,7 +151,7 @@ fn an_event_may_end_the_run() {
     assert!((time - 0.103).abs() < 1e-17 && state.steps() == 11, "{time}");
     let expected = liestep::motion::Integrator::state_at(&stepper, &start, 0.103).unwrap();
     assert!((at[0].momentum() - expected.momentum()).norm() < 1e-13);
-    // And goes on behind it.
+    // The run then continues without a second report.
     let ended =
         stepper.observed(&mut state).event(Event::crossing(), |now| now.time() - 0.103, |_| -> () { panic!("again") });
     assert_eq!(ended.steps(5).unwrap().reason, Reason::Done);
@@ -175,8 +175,8 @@ fn an_event_may_end_the_run() {
     let run = stepper.observed(&mut state).event(Event::rising(), |now| (0.055 - now.time()).sqrt(), |_| ());
     let error = run.until(1.0).unwrap_err();
     assert!(matches!(error, RunError::NotANumber { event: 0, time } if (0.055..0.061).contains(&time)), "{error}");
-    // Of a zero at a step nothing tells what comes behind it: without a sign there it is no crossing, and the error names
-    // what isn't a number, looked at closely or not.
+    // A zero at a step before a NaN isn't a crossing, because the sign after it is unknown; the error names the NaN,
+    // with a close inspection or without.
     for event in [Event::crossing(), Event::crossing().curvature(1.0)] {
         let mut state = start.clone();
         let seventh = stepper.step_size() * 7.0;
@@ -199,7 +199,7 @@ fn an_event_may_end_the_run() {
     assert_eq!(flat(0.0).unwrap().steps, 10);
 }
 
-/// An integrator of which only the methods are known that each has to have.
+/// An integrator that implements only the required methods.
 struct Bare<'a, I>(&'a I);
 
 impl<I: Integrator> Integrator for Bare<'_, I> {
@@ -236,7 +236,7 @@ impl<I: Integrator> Integrator for Bare<'_, I> {
     }
 }
 
-/// The end of a run that is shown, its iterations or its error, and at which steps it was.
+/// The end of a run in stretches, its iterations or its error, and the steps at which it was interrupted.
 type Shown<M> = (M, Result<u64, StepError>, Vec<u64>);
 
 fn shown<I: Integrator>(integrator: &I, start: &I::State, plan: &[u64]) -> Shown<Motion<I::Group, I::Advected>> {
@@ -249,14 +249,14 @@ fn shown<I: Integrator>(integrator: &I, start: &I::State, plan: &[u64]) -> Shown
     (*state, made, calls)
 }
 
-/// Shown from within or call by call: the same bits, iterations, errors and calls, and none where there is nothing to do.
+/// Stretches inside of the run or call by call: the same bits, iterations, errors and calls, and none without steps.
 #[test]
 fn runs_are_shown_alike_whatever_steps() {
     let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(1e-3, 0.0, 0.0));
     for h in [0.01, 0.35] {
         let (any, _) = top(h);
         let stepper = Stepper::new(HeavyTop::thesis(), h).unwrap();
-        // At the longer step it falls until it is too fast.
+        // At the longer step the body falls until it is too fast.
         let velocity = if h < 0.1 { VELOCITY } else { Vector3::zeros() };
         let start = stepper.start(attitude, velocity).unwrap();
         let any_start = any.start(attitude, velocity).unwrap();

@@ -1,4 +1,4 @@
-//! A top of one type, for nearly all of what is asked of runs that are observed and recorded.
+//! A top of one type, for nearly all tests of observed and recorded runs.
 
 use declarations::HeavyTop;
 use liestep::motion::{AnyState, AnyStepper};

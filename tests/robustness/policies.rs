@@ -1,4 +1,4 @@
-//! What a stepper with a policy does where there is no step, and that it says so.
+//! The replacements by a stepper with a policy if there is no step, and their reports.
 
 use declarations::{HeavyTop, Motion};
 use liestep::motion::Remedy;
@@ -15,7 +15,7 @@ fn published() -> (Stepper<HeavyTop>, TopState) {
     (stepper, state)
 }
 
-/// What every step keeps: the group, `|w|` and the momentum about the vertical.
+/// Checks the invariants of every step: the group, `|w|` and the momentum about the vertical.
 fn assert_kept(state: &TopState, start: &TopState) {
     assert!(state.orthogonality_defect() < 1e-14);
     assert!((state.advected().norm() - 1.0).abs() < 1e-14);
@@ -32,7 +32,7 @@ fn s2_substeps_in_the_place_of_the_published_step() {
     assert_eq!(report.remedy, Some(Remedy::Substeps(2)));
     assert_eq!(state.steps(), 1);
 
-    // Two steps of half the size, to the bit.
+    // The replacement is two steps of half the size, to the bit.
     let half = Stepper::new(stepper.scene().clone(), 0.05).unwrap();
     let mut expected = half.start(Motion::looping().attitude, Motion::looping().velocity).unwrap();
     let iterations: u32 = (0..2).map(|_| half.step(&mut expected).unwrap().iterations).sum();
@@ -49,7 +49,7 @@ fn s2_substeps_in_the_place_of_the_published_step() {
     assert_kept(&state, &start);
 }
 
-/// Nothing helps: the first error, and the state to the bit.
+/// If no remedy helps, the first error is returned, and the state is unchanged to the bit.
 #[test]
 fn s2_without_a_remedy_the_state_is_left_alone() {
     let (stepper, start) = published();

@@ -1,4 +1,4 @@
-//! Tables of runs: what is in them, where they go, and what happens where they can't be written.
+//! Tables of runs: their contents, their sinks, and failures of writing.
 
 use std::cell::RefCell;
 use std::io::{self, Write};
@@ -51,7 +51,7 @@ fn a_file_has_every_bit() {
     assert_eq!((text.lines().count(), state.steps()), (12, 110));
 }
 
-/// A run in two parts writes what one run does, and so does a thread of its own.
+/// A run in two parts writes the same as one run, and so does a separate thread.
 #[test]
 fn a_run_may_be_made_in_parts() {
     let (stepper, mut state) = top(0.01);
@@ -65,8 +65,8 @@ fn a_run_may_be_made_in_parts() {
     assert_eq!(String::from_utf8(sink.into_inner().unwrap()).unwrap(), whole);
 }
 
-/// A pendulum that falls until it is too fast for its steps: rows up to there are written, and the state is the last that
-/// there is.
+/// A pendulum that falls until it is too fast for its steps: rows up to then are written, and the state is the last
+/// one.
 #[test]
 fn a_run_that_fails_keeps_what_it_has() {
     let (stepper, _) = top(0.35);
@@ -98,7 +98,7 @@ impl Write for Shared {
     }
 }
 
-/// A disk that is full.
+/// A full disk.
 struct Full;
 
 impl Write for Full {
@@ -111,7 +111,7 @@ impl Write for Full {
     }
 }
 
-/// Counts the rows of each block, and how often the table has ended.
+/// Counts the rows of each block, and the ends of the table.
 #[derive(Debug, Default)]
 struct Calls {
     columns: usize,
@@ -153,7 +153,7 @@ fn what_cannot_be_recorded_ends_the_run() {
     assert!(error.to_string().contains("no storage space"), "{error}");
     drop(recorder);
 
-    // In a thread it is found out with a later block.
+    // A separate thread reports the error with a later block.
     let mut recorder = Recorder::new(&stepper, Background::new(Csv::new(Full))).in_blocks_of(1);
     let error = stepper.observed(&mut start.clone()).every(1, |now| recorder.record(now)).steps(1000).unwrap_err();
     assert!(error.to_string().contains("no storage space"), "{error}");
@@ -165,7 +165,7 @@ fn what_cannot_be_recorded_ends_the_run() {
     assert!(error.to_string().contains("two columns are called `energy`") && state.steps() == 0, "{error}");
     assert!(matches!(recorder.finish(), Err(RecordError::SameName { .. })));
 
-    // Rows of two lengths would run into each other.
+    // Rows of different lengths would be ambiguous.
     let mut calls = Calls::default();
     let mut recorder = Recorder::new(&stepper, &mut calls);
     recorder.record(&Moment::of_step(&stepper, &start)).unwrap();
@@ -174,7 +174,7 @@ fn what_cannot_be_recorded_ends_the_run() {
     let error = stepper.observed(&mut start.clone()).every(1, |now| recorder.record(now)).steps(10).unwrap_err();
     assert!(error.to_string().contains("the column `late` was added behind the first row"), "{error}");
     assert!(matches!(recorder.finish(), Err(RecordError::Late { .. })));
-    // Those that came before are there, and the table has ended, once; also where nobody asks for more.
+    // The previous rows are written, and the table has ended once, even if the user doesn't finish it.
     assert_eq!(calls.seen(), (&[2][..], 1));
     let mut calls = Calls::default();
     let mut recorder = Recorder::bare(&stepper, &mut calls);
@@ -193,7 +193,7 @@ fn what_cannot_be_recorded_ends_the_run() {
     recorder.finish().unwrap();
     assert_eq!(calls.seen(), (&[3, 3, 2, 1, 1][..], 1));
 
-    // An observer that a user writes.
+    // An observer of the user's own.
     let error = stepper.observed(&mut start.clone()).every(3, |_| Err::<(), _>("enough")).steps(10).unwrap_err();
     assert!(matches!(error, RunError::Observer { time: 0.0, .. }) && error.to_string().ends_with("enough"));
     let mut state = start;
@@ -202,7 +202,7 @@ fn what_cannot_be_recorded_ends_the_run() {
     assert_eq!(ended.steps, 6);
 }
 
-/// Says that it has come to its end, and that it is gone.
+/// A sink that reports its end, and its drop.
 struct Ends(std::sync::mpsc::Sender<&'static str>);
 
 impl Sink for Ends {
@@ -225,7 +225,7 @@ impl Drop for Ends {
     }
 }
 
-/// A file that isn't whole doesn't look so.
+/// An incomplete file isn't marked as complete.
 #[test]
 fn a_table_in_a_thread_has_an_end_only_if_it_is_given_one() {
     for (is_ended, expected) in [(true, ["ended", "gone"].as_slice()), (false, &["gone"])] {
@@ -241,7 +241,7 @@ fn a_table_in_a_thread_has_an_end_only_if_it_is_given_one() {
     }
 }
 
-/// Fails once, and writes down what it is asked.
+/// A sink that fails once, and logs its calls.
 struct Once {
     fails: &'static str,
     asked: Rc<RefCell<Vec<&'static str>>>,
@@ -270,7 +270,8 @@ impl Sink for Once {
     }
 }
 
-/// Rows below no header or behind a gap, or the mark of the end behind them, would make a broken table look whole.
+/// After a failed header, a missing block or a failed end no further rows are written, so that a broken table can't
+/// look complete.
 #[test]
 fn a_sink_that_has_failed_gets_nothing_more() {
     let (stepper, start) = top(0.01);
@@ -285,7 +286,7 @@ fn a_sink_that_has_failed_gets_nothing_more() {
             let mut recorder = Recorder::bare(&stepper, sink).in_blocks_of(2);
             let run = stepper.observed(&mut start.clone()).every(1, |now| recorder.record(now)).steps(3);
             assert_eq!(run.is_ok(), fails == "end");
-            // Who goes on all the same is told each time.
+            // A caller who continues receives the error each time.
             let run = stepper.observed(&mut start.clone()).every(1, |now| recorder.record(now)).steps(0);
             assert_eq!(run.is_ok(), fails == "end");
             if finishes {
@@ -298,7 +299,7 @@ fn a_sink_that_has_failed_gets_nothing_more() {
     }
 }
 
-/// Names with commas and quotes, numbers that aren't any, quantities in their order, and a table without rows.
+/// Names with commas and quotes, numbers that aren't finite, quantities in their order, and a table without rows.
 #[test]
 fn a_table_is_well_formed() {
     let (stepper, mut state) = top(0.01);
@@ -328,7 +329,7 @@ fn a_table_is_well_formed() {
     assert!(table.column("x").is_none());
 }
 
-/// Other scalars, other groups, another kind of integrator.
+/// Other scalars, other groups, and another kind of integrator.
 #[test]
 fn whatever_steps_is_recorded() {
     let J = Inertia::from_principal_moments(Vector3::new(1.0_f32, 2.0, 2.5)).unwrap();
@@ -361,13 +362,13 @@ fn whatever_steps_is_recorded() {
     }
     assert_eq!(state, single);
     assert_eq!(recorder.finish().unwrap().column("momentum_y").unwrap().last(), Some(single.momentum().y));
-    // The sums of a run are compensated, and those of the map itself aren't.
+    // The sums of a run are compensated, those of the map itself aren't.
     let apart = (state.attitude().matrix() - attitude.matrix()).norm();
     assert!(apart < 1e-14 && (state.momentum() - momentum).norm() < 1e-13, "{apart:e}");
     assert!(gauss.start(SO3::from_matrix_unchecked(nalgebra::Matrix3::zeros()), VELOCITY).is_err());
 }
 
-/// Rows have the same bits with an inertia in factors and without.
+/// Rows have the same bits with a factorised inertia and without.
 fn assert_row_is_both<I>(integrator: &I, motion: &Motion<I::Group, I::Advected>)
 where
     I: Integrator<Group: LieGroup<Scalar = f64>>,
@@ -394,7 +395,7 @@ fn a_row_has_the_bits_of_velocity_and_energy() {
     let tilted = Stepper::new(RigidBody { J_d: whole.to_nonstandard() } + Drag { c: 0.1, J: whole }, 0.01).unwrap();
     let rotor = liestep::effects::Rotor { spin: Vector3::new(0.3, -0.2, 0.5) };
     let gyrostat = Stepper::new(RigidBody { J_d } + rotor, 0.01).unwrap();
-    // Of an inertia that varies there are no factors.
+    // An inertia that varies has no factors.
     let sliding = SlidingTop { J_d, m: 1.2, g: 9.81, rho: Vector3::new(0.3, 0.2, 0.9), up: Vector3::z() };
     let sliding = Stepper::new(sliding, 0.01).unwrap();
     assert!(sliding.factored_inertia().is_none() && tilted.factored_inertia().is_some());

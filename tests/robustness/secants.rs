@@ -1,5 +1,5 @@
-//! Where the Jacobian is expensive a step is solved without it: to the same root, to rounding, and where that is in
-//! doubt by Newton's iteration.
+//! If the Jacobian is expensive, a step is solved without it: for the same root, to rounding, and with a fallback to
+//! Newton's iteration if convergence is in doubt.
 
 use checks::any_scalar::Top;
 use checks::random::Random;
@@ -66,7 +66,7 @@ fn the_model_is_right_to_the_fourth_power_of_the_angle() {
     assert!((order(&points, 0.0) - 4.0).abs() < 0.2, "{errors:?}");
 }
 
-/// A residual emitted alone is that of the system.
+/// The residual that is emitted alone equals that of the system.
 #[test]
 fn the_residual_alone_is_the_systems() {
     let (top, h) = (sixth(), 0.02);
@@ -89,7 +89,7 @@ fn the_residual_alone_is_the_systems() {
     }
 }
 
-/// How far a step's root is from what Newton's iteration from there on makes of it, in roundings of `ξ`, and
+/// The distance of a step's root from the limit of Newton's iteration from there, in roundings of `ξ`, and the
 /// iterations.
 fn missing<L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Regular + Clone>(
     lagrangian: &L,
@@ -123,8 +123,7 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / f64::from(u32::try_from(values.len()).unwrap())
 }
 
-/// The residual's own rounding is all that is missing, as it is with the Jacobian; from the last coordinates for a
-/// guess.
+/// The error is the residual's own rounding, as with the Jacobian; the guess is the last coordinates.
 #[test]
 fn solves_end_at_the_level_of_rounding() {
     for (h, speed) in [(0.01, 8.0), (0.02, 8.0), (0.05, 8.0), (0.05, 2.0), (1e-4, 8.0)] {
@@ -140,8 +139,8 @@ fn solves_end_at_the_level_of_rounding() {
     }
 }
 
-/// What `steps` random momenta of each size come to with both solvers: the largest difference relative to `ξ`, and how
-/// many were solved without the Jacobian, with it after all, and not at all.
+/// The result of `steps` random momenta of each size with both solvers: the largest difference relative to `ξ`, and the
+/// numbers that were solved without the Jacobian, with it after all, and not at all.
 fn compared<L>(without: &WithoutJacobian<L, f64>, h: f64, angle: f64) -> (f64, [u32; 3])
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>
@@ -174,7 +173,7 @@ where
     (largest, counts)
 }
 
-/// From slow turns to beyond the fold, where a root is as ill-conditioned as the Jacobian.
+/// The turns range from slow ones to those beyond the fold, where a root is as ill-conditioned as the Jacobian.
 #[test]
 fn the_same_root_or_the_same_refusal_up_to_the_fold() {
     let without = WithoutJacobian::new(asymmetric());
@@ -190,7 +189,7 @@ fn the_same_root_or_the_same_refusal_up_to_the_fold() {
     assert!(counts[8][2] > 50, "beyond there is nothing: {counts:?}");
 }
 
-/// With three times the inertia for a model no ball is trusted, and the steps are those of Newton's iteration.
+/// A model with three times the inertia has no trusted ball, and the steps are those of Newton's iteration.
 #[test]
 fn a_wrong_model_is_not_used() {
     let mut wrong = WithoutJacobian::new(asymmetric());
@@ -199,7 +198,7 @@ fn a_wrong_model_is_not_used() {
     assert!(difference < 4e-15 && counts == [0, 200, 0], "{difference:e} {counts:?}");
 }
 
-/// Each lane is what it is alone, also where one of them needs the Jacobian.
+/// Each lane agrees with a single body, also if one of the lanes needs the Jacobian.
 #[test]
 fn lanes_are_independent() {
     let h = 0.02;
@@ -232,7 +231,7 @@ fn gathered(lanes: &[Vector3<f64>; 4]) -> Vector3<WideF64x4> {
     Lanes::gathered(lanes).unwrap()
 }
 
-/// Derivatives that a dual number carries are solved to rounding too, as Newton's iteration solves them.
+/// The derivatives of dual numbers are solved to rounding too, as Newton's iteration solves them.
 #[test]
 fn dual_numbers_are_solved_with_the_jacobian() {
     let dual = |v: Vector3<f64>| v.map(Dual64::from);
@@ -250,7 +249,7 @@ fn dual_numbers_are_solved_with_the_jacobian() {
     assert!(difference.norm() < 1e-15 * with.coordinates.map(|component| component.re).norm(), "{difference}");
 }
 
-/// With a term that resists, or helps, to turn across `w` and knows nothing of turns about it.
+/// A body with a term that resists or assists turns across `w`, independent of turns about it.
 #[lagrangian(
     group = SO3,
     advected(w = up),
@@ -263,7 +262,7 @@ struct Stiff {
     up: Vector3<f64>,
 }
 
-/// Turning about `w`, updates lie along it, and tell nothing of the directions across.
+/// For a turn about `w` updates are along it, and carry no information on the directions across.
 #[test]
 fn updates_along_a_symmetry_do_not_decide_the_branch() {
     let mut refused = 0;

@@ -1,17 +1,17 @@
-//! Scenes that no stepper is built for, each with the words that say why.
+//! Scenes that a stepper refuses, each with its message.
 
 use liestep::effects::{Gravity, RigidBody};
 use liestep::groups::{R2, SE2};
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper, lagrangian};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-/// A body whose type says nothing of its inertia.
+/// A body whose type doesn't guarantee a valid inertia.
 #[lagrangian(group = SO3, l_d = ((F - I) * A * (F - I).transpose()).trace() / (2.0 * h))]
 struct Body {
     A: nalgebra::Matrix3<f64>,
 }
 
-/// The same on SE(2) with a symmetric matrix.
+/// Such a body on SE(2) with a symmetric matrix.
 #[lagrangian(group = SE2, l_d = ((F - I) * (A + A.transpose()) * (F - I).transpose()).trace() / (2.0 * h))]
 struct Planar {
     A: Matrix3<f64>,
@@ -36,7 +36,7 @@ struct Divided {
     up: Vector3<f64>,
 }
 
-/// The message, or nothing.
+/// The message, or an empty text.
 macro_rules! refusal {
     ($scene:expr) => {
         Stepper::new($scene, 0.01).err().map(|error| error.to_string()).unwrap_or_default()
@@ -46,7 +46,7 @@ macro_rules! refusal {
 #[test]
 fn a_negative_kinetic_part() {
     let body = |x, y, z| Body { A: Matrix3::from_diagonal(&Vector3::new(x, y, z)) };
-    // J = tr(A) I − A: (2, 2, 2), (−2, 2, −2), (−2, −2, −2), (2, 0, 2), (1, 5, −2).
+    // The inertia is J = tr(A) I − A: (2, 2, 2), (−2, 2, −2), (−2, −2, −2), (2, 0, 2), (1, 5, −2).
     assert_eq!(refusal!(body(1.0, 1.0, 1.0)), "");
     assert!(refusal!(body(1.0, -3.0, 1.0)).contains("negative"));
     assert!(refusal!(body(-1.0, -1.0, -1.0)).contains("negative"));
@@ -75,7 +75,7 @@ fn a_constant_that_is_not_finite() {
     assert!(refusal!(divided(1.0)).contains("constant"), "{}", refusal!(divided(1.0)));
 }
 
-/// What is orthogonal and no rotation, and finite numbers that leave the scalar's range once a start is made of them.
+/// An orthogonal matrix that isn't a rotation, and finite numbers that leave the scalar's range in a start.
 #[test]
 fn a_start_is_looked_at_once_it_is_made() {
     let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5)).unwrap();
@@ -91,10 +91,10 @@ fn a_start_is_looked_at_once_it_is_made() {
     assert!(refused(stepper.start(reflected, velocity).map(drop)).contains("not in the group (defect 2e0"));
     assert!(refused(distant.start(SO3::identity(), velocity).map(drop)).is_empty());
     assert!(refused(distant.start(turned, velocity).map(drop)).contains("view of what is advected"));
-    // Collocation asks more of a scene.
+    // Collocation has further requirements.
     let error = Stepper::collocated::<1>(far, 0.01).map(drop).unwrap_err();
     assert!(matches!(error, SetupError::NotSeparable { .. }), "{error}");
-    // And it keeps twice the momentum.
+    // The memory of collocation contains twice the momentum.
     let collocated = Stepper::collocated::<1>(scene, 0.01).unwrap();
     assert!(refused(collocated.start(reflected, velocity).map(drop)).contains("not in the group (defect 2e0"));
     let refused = collocated.start_with_momentum(turned, Vector3::repeat(1.7e308)).unwrap_err();

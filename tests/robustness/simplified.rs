@@ -1,5 +1,5 @@
-//! A last iteration with the Jacobian of the one before ends where Newton's iteration does, and is made only where it
-//! will.
+//! A last iteration with the previous Jacobian ends at the same root as Newton's iteration, and is used only if it
+//! suffices.
 
 use checks::any_scalar::Top;
 use checks::solvers::{WithJacobian, jacobians};
@@ -18,9 +18,9 @@ fn top<T: RealField + Copy>(moments: [f64; 3]) -> Top<T> {
     Top { J_d, weight: convert(9.81), rho: any(Vector3::new(0.3, 0.2, 0.4)), up: any(Vector3::z()) }
 }
 
-/// How far the roots of a thousand steps are from what Newton's iteration from there on makes of them, in roundings of
-/// `ξ`: those of `f64`, and those of numbers with a derivative, which are solved by Newton's iteration alone. In how
-/// many steps one Jacobian was enough.
+/// The distances of the roots of a thousand steps from the limit of Newton's iteration from there, in roundings of `ξ`:
+/// for `f64`, and for numbers with a derivative, which are solved by Newton's iteration alone. Also the number of steps
+/// for which one Jacobian was enough.
 fn missing(moments: [f64; 3], h: f64, speed: f64) -> ([f64; 2], u32) {
     let plain = DiscreteLiePoisson::new(WithJacobian(top::<f64>(moments)), h).unwrap();
     let dual = DiscreteLiePoisson::new(top::<Dual64>(moments), h.into()).unwrap();
@@ -63,18 +63,18 @@ fn solves_end_at_the_level_of_rounding() {
             with_one.push(single);
         }
     }
-    // Slow turns by a parabola need no second one, fast ones do.
+    // Slow turns with an extrapolated guess need no second Jacobian, fast ones do.
     assert!(with_one.chunks(7).all(|single| single[1] > 900 && single[6] == 0), "{with_one:?}");
 }
 
-/// The determinant falls to zero at a right angle. Where it is less than a sixteenth of that at rest each iteration has
-/// its own Jacobian, however good the guess.
+/// The determinant vanishes at a right angle. If it is less than a sixteenth of that at rest, each iteration has its
+/// own Jacobian, however good the guess.
 #[test]
 fn near_the_fold_every_iteration_has_its_jacobian() {
     let body = Top { weight: 0.0, ..top::<f64>([3.0, 3.0, 4.0]) };
     let flow = DiscreteLiePoisson::new(WithJacobian(body), 1.0).unwrap();
     for (angle, expected) in [(0.5_f64, 1), (1.0, 1), (1.49, 1), (1.52, 2), (1.55, 2)] {
-        // `p = J sin θ` for a step of one second.
+        // The momentum is `p = J sin θ` for a step of one second.
         let momentum = Vector3::z() * (4.0 * angle.sin());
         let root = Vector3::z() * (2.0 * (0.5 * angle).tan());
         let guess = root * (1.0 + 1e-7);

@@ -1,4 +1,4 @@
-//! What is proved about a step before it is solved agrees with what the solver finds.
+//! The bounds on a step's solvability agree with the solver.
 
 use checks::random::Random;
 use declarations::{CayleyTop, FreeBody, FullTop, HeavyTop, Motion, Top as _};
@@ -7,7 +7,7 @@ use liestep::motion::{DiscreteLiePoisson, Solvability};
 use liestep::prelude::*;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-/// Steps and directions all around the two bounds: the sure ones have a solution under 90°, the impossible ones none.
+/// Steps and directions around the two bounds: the sure ones have a solution under 90°, the impossible ones none.
 fn assert_bounds_hold<L>(lagrangian: &L, seed: u64)
 where
     L: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Clone + core::fmt::Debug,
@@ -19,7 +19,7 @@ where
         let h = 10.0_f64.powf(random.signed() * 3.0);
         let flow = DiscreteLiePoisson::new(lagrangian.clone(), h).unwrap();
         let w = random.direction();
-        // `h|a|` from a third of the smallest moment to twice the largest.
+        // The size `h|a|` ranges from a third of the smallest moment to twice the largest.
         let size = inertia.min() / 3.0 * (6.0 * inertia.max() / inertia.min()).powf(0.5 + 0.5 * random.signed());
         let momentum = random.direction() * (size / h) - L::kick_before(&lagrangian.constants(h), &w);
         let step = flow.step(&momentum, &w, &Vector3::zeros());
@@ -69,7 +69,7 @@ fn s1_bounds_of_the_looping_top() {
     assert_eq!((at(-0.061), at(-0.083)), (Solvability::Certain, Solvability::Impossible));
 }
 
-/// Without an advected parameter, and for a sphere, where nothing is open.
+/// Bodies without an advected parameter; for a sphere no case is open.
 #[test]
 fn s1_bounds_of_free_bodies() {
     for (inertia, open) in [([1.0, 2.0, 2.5], true), ([2.0, 2.0, 2.0], false)] {
@@ -90,7 +90,7 @@ fn s6_nothing_is_said_of_other_lagrangians() {
     assert_eq!(flow.solvability(&Vector3::new(1e6, 0.0, 0.0), &Vector3::z()), Solvability::Open);
 }
 
-/// A scene is known by its body: potentials of the positions only move the right side.
+/// The bounds depend on the scene's body: potentials of the positions only change the right-hand side.
 #[test]
 fn s1_bounds_of_a_scene() {
     let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5)).unwrap();
@@ -100,7 +100,7 @@ fn s1_bounds_of_a_scene() {
     assert_eq!((at(1.0), at(1e3)), (Solvability::Certain, Solvability::Impossible));
 }
 
-/// Momenta far beyond any that could be stepped with: the bounds answer at once, and name a step that would do.
+/// For momenta far beyond any solvable step the bounds decide at once, and the error names a solvable step.
 #[test]
 fn s1_the_largest_step_of_extreme_momenta() {
     let top = HeavyTop::thesis();
@@ -118,7 +118,7 @@ fn s1_the_largest_step_of_extreme_momenta() {
 }
 
 /// A weight so large that the Jacobian is lost in its rounding, with numbers whose products cancel to the last digit:
-/// an update then vanishes far from any solution, and the determinant looks like any other.
+/// an update then vanishes far from any solution, and the determinant looks normal.
 #[test]
 fn s1_a_lost_jacobian_is_no_solution() {
     let size = 7.477_080_264_543_605e20;
@@ -126,7 +126,7 @@ fn s1_a_lost_jacobian_is_no_solution() {
     let (weight, rho) = (3.033_333_333_333_333, Vector3::repeat(size));
     let top = HeavyTop { J_d, m: weight, g: 3.689_588_068_472_114e19, rho, up: rho };
     let stepper = Stepper::new(top, 1.0).unwrap();
-    // Half a turn about the first axis, but for rounding.
+    // The attitude is half a turn about the first axis, up to rounding.
     let attitude = UnitQuaternion::from_quaternion(Quaternion::new(
         2.0,
         -5.467_417_454_560_923e120,
@@ -139,7 +139,7 @@ fn s1_a_lost_jacobian_is_no_solution() {
     assert!(matches!(stepper.step(&mut state), Err(StepError::BeyondSolvable { .. })));
 }
 
-/// Repelled from the plane across `n`, by the reciprocal of how far a direction is from it.
+/// A body repelled from the plane across `n`, by the reciprocal of a direction's distance from it.
 #[lagrangian(
     group = SO3,
     advected(w = up),
@@ -153,11 +153,11 @@ struct Repelled {
     up: Vector3<f64>,
 }
 
-/// Where the torque is infinite no smaller step would do, and no bound is asked.
+/// If the torque is infinite, no smaller step is solvable, and the bounds aren't evaluated.
 #[test]
 fn an_infinite_torque_is_said() {
     let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5)).unwrap();
-    // At right angles to the last digit, with no component of their product zero.
+    // The vectors are at right angles to the last digit, and no component of their product is zero.
     let scene = Repelled { J_d, k: 1.0, n: Vector3::new(1.0, -1.0, 1.0), up: Vector3::new(1.0, 1.0, 0.0) };
     let kick = Repelled::kick_before(&scene.constants(0.01), &scene.up);
     assert!(kick.iter().all(|torque| torque.is_infinite()), "{kick}");

@@ -1,11 +1,11 @@
-//! `Coordinates` in all dimensions that a group may have: the solution of a linear system, and what a singular one
-//! gives.
+//! `Coordinates` in all dimensions of groups: the solution of a linear system, and the result for a singular one.
 
 use liestep::laws::samples::Random;
 use liestep::numbers::{BlockDiagonal, Blocks, Bodies, Coordinates, Pattern};
 use nalgebra::{SMatrix, SVector};
 
-/// A symmetric positive definite matrix and a smaller one without symmetry, like a Jacobian at a finite step.
+/// The sum of a symmetric positive definite matrix and a smaller one without symmetry, like a Jacobian at a finite
+/// step.
 fn jacobian<const D: usize>(random: &mut Random) -> SMatrix<f64, D, D> {
     let root: SMatrix<f64, D, D> = random.sample();
     let rest: SMatrix<f64, D, D> = random.sample();
@@ -17,7 +17,7 @@ fn assert_solves<const D: usize>() {
     for _ in 0..50 {
         let (a, b): (SMatrix<f64, D, D>, SVector<f64, D>) = (jacobian(&mut random), random.sample());
         let (z, _) = SVector::<f64, D>::solve(&a, &b);
-        // Backward stability: the residual is a rounding of the products in it, whatever the condition of `A` is.
+        // Backward stability: the residual is a rounding of its products, whatever the condition of `A`.
         assert!((a * z - b).norm() <= 2e-14 * (a.norm() * z.norm() + b.norm()), "{D}");
         assert!((SVector::<f64, D>::trace(&a) - a.trace()).abs() < 1e-14);
         assert!(z.is_finite() && !Coordinates::is_finite(&(z * f64::NAN)) && !Coordinates::is_finite(&(z / 0.0)));
@@ -25,7 +25,7 @@ fn assert_solves<const D: usize>() {
     }
 }
 
-/// Singular without rounding: small integers, the last row half of the first, or all zero.
+/// Matrices that are singular without rounding: small integers, with the last row half of the first, or all zero.
 fn assert_refuses<const D: usize>() {
     let mut random = Random::new(42);
     let (mut dependent, b): (SMatrix<f64, D, D>, SVector<f64, D>) = (jacobian(&mut random) * 16.0, random.sample());
@@ -39,7 +39,7 @@ fn assert_refuses<const D: usize>() {
     }
 }
 
-/// The determinant against that of a triangular factorisation known beforehand.
+/// The determinant compared with that of a known triangular factorisation.
 fn assert_determinant<const D: usize>() {
     let mut random = Random::new(43);
     let (mut lower, mut upper) = (SMatrix::<f64, D, D>::identity(), SMatrix::<f64, D, D>::identity());
@@ -55,8 +55,8 @@ fn assert_determinant<const D: usize>() {
     assert!((det / expected - 1.0).abs() < 1e-12, "{D}: {det} against {expected}");
 }
 
-/// With factors that end at each choice of places, solved apart or together: the inverse maps a right side to its solution,
-/// and isn't finite where the matrix is singular.
+/// Factors with every choice of block ends, solved separately or together: the inverse maps a right-hand side to its
+/// solution, and isn't finite for a singular matrix.
 fn assert_inverse_solves<const D: usize>() {
     type V<const D: usize> = SVector<f64, D>;
     type Three<const D: usize> = Bodies<V<D>, 3>;
@@ -111,7 +111,7 @@ macro_rules! dimensions {
 
 dimensions! { one 1 two 2 three 3 four 4 five 5 six 6 eight 8 }
 
-/// Another unit of length scales some rows and columns; by a power of two that changes no digit of the solution.
+/// Another unit of length scales some rows and columns; a power of two doesn't change a digit of the solution.
 #[test]
 fn units_change_no_digit() {
     let mut random = Random::new(44);

@@ -7,7 +7,7 @@ use checks::samples::{self, Start};
 
 const STEP: f64 = 0.02;
 
-/// The largest distances of the energy from that at the start, one for each so many steps of a motion.
+/// The largest distances of the energy from that at the start, one for each of several stretches of a motion.
 fn deviations<L: System + Clone, const COUNT: usize>(
     system: &L,
     (attitude, velocity): Start<L::Group>,
@@ -26,13 +26,13 @@ fn deviations<L: System + Clone, const COUNT: usize>(
 }
 
 fn assert_bounded<L: System + Clone>(system: &L, start: Start<L::Group>) {
-    // So short that irregular motions are still the same at both steps.
+    // The run is so short that irregular motions still agree for both steps.
     let [coarse] = deviations(system, start, STEP, [500]);
     let [fine] = deviations(system, start, 0.5 * STEP, [1000]);
     let [early, late] = deviations(system, start, STEP, [10_000, 10_000]);
     println!("{early:.3e} then {late:.3e}; at half the step less by the factor {:.3}", coarse / fine);
     assert!((coarse / fine - 4.0).abs() < 0.05, "{coarse:e} becomes {fine:e} at half the step");
-    // A steady drift would double it. Irregular motions come by new places in the second half.
+    // A steady drift would double the error. Irregular motions reach new configurations in the second half.
     assert!(late < 1.5 * early, "{early:e} in the first half and {late:e} in the second");
 }
 
@@ -50,7 +50,7 @@ bounded! {
     sliding_top on_so3 magnet on_so3 tethered_plate on_se2 elastic_flow on_sl2
 }
 
-/// Floating in balance, as a heavier body sinks faster and faster, up to where the step has no solution.
+/// The body floats in balance, as a heavier one sinks faster and faster, until a step has no solution.
 #[test]
 fn underwater_body() {
     let mut body = samples::underwater_body();

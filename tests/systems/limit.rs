@@ -6,7 +6,7 @@ use liestep::effects::{RigidBody, Rotor};
 
 every_system!(assert_limit);
 
-/// A momentum that isn't zero at rest.
+/// The momentum isn't zero at rest.
 #[test]
 fn body_with_a_rotor() {
     let J_d = samples::free_body().J_d;

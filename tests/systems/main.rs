@@ -1,6 +1,6 @@
 //! The declared systems of `examples/declarations`: conserved quantities, structure and limit.
 //!
-//! One crate, so that the declarations on SE(3) are expanded once.
+//! All tests are in one crate, so that the declarations on SE(3) are expanded once.
 
 mod energy;
 mod limit;

@@ -1,5 +1,5 @@
-//! What every declared system conserves: the momenta along the symmetries of what is advected, the parameters' orbit,
-//! and, where the body has a symmetry too, the momentum along that.
+//! The invariants of every declared system: the momenta along the symmetries of the advected parameters, the
+//! parameters' orbit, and, if the body has a symmetry too, the momentum along that.
 
 use checks::structure::System;
 use checks::structure::numbers::numbers;
@@ -13,10 +13,10 @@ use checks::samples::{self, Start};
 const STEP: f64 = 0.02;
 const STEPS: u32 = 2000;
 
-/// Some thousands of roundings, which add up like a random walk.
+/// The bound is some thousands of roundings, which accumulate like a random walk.
 const ROUNDING: f64 = 1e-12;
 
-/// `count` is the dimension of the symmetry of the spatial parameters.
+/// Checks the invariants; `count` is the dimension of the symmetry of the spatial parameters.
 fn assert_conserved<L: System + Clone>(system: &L, start: Start<L::Group>, count: usize) {
     assert_eq!(symmetries(system).len(), count);
     let flow = DiscreteLiePoisson::new(system.clone(), STEP).unwrap();
@@ -46,7 +46,7 @@ conserved! {
     "The rotations of space, which keep its metric.": elastic_flow on_sl2 = 1;
 }
 
-/// None in general, the turns about the field where its gradient has them too.
+/// The magnet has no symmetry in general, and turns about the field if its gradient is invariant under them, too.
 #[test]
 fn magnet() {
     let mut magnet = samples::magnet();
@@ -56,7 +56,7 @@ fn magnet() {
     assert_conserved(&magnet, samples::on_so3(), 1);
 }
 
-/// Where the body looks the same from all sides of an axis, the component of its momentum along that is constant.
+/// If the body is symmetric about an axis, the component of its momentum along that is constant.
 fn assert_component<L: System>(system: L, (attitude, velocity): Start<L::Group>, component: usize) {
     let stepper = Stepper::new(system, STEP).unwrap();
     let mut state = stepper.start(attitude, velocity).unwrap();

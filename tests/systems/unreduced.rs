@@ -1,5 +1,5 @@
 //! The unreduced discrete system of every declaration: theorems 1.4.1 and 2.2.1 with their properties 1 and 2 of
-//! section 1.4, from `L̃_d(g_1, g_2) = l_d(g_1⁻¹g_2, g_1⁻¹·a_0)` and nothing else that is derived.
+//! section 1.4, from `L̃_d(g_1, g_2) = l_d(g_1⁻¹g_2, g_1⁻¹·a_0)` and without any other derived term.
 
 use checks::structure::symmetry::symmetries;
 use checks::structure::{Group as _, System, Vector, gradient, norm, norm_of_map, symplectic};
@@ -12,15 +12,15 @@ use checks::samples::every_system;
 
 const H: f64 = 0.05;
 
-/// What six-point differences leave of momenta, relative to `J/h`.
+/// The error of six-point differences of momenta, relative to `J/h`.
 const DIFFERENCES: f64 = 1e-10;
 
-/// `L̃_d`.
+/// The unreduced Lagrangian `L̃_d`.
 fn unreduced<L: System>(l: &L, first: &L::Group, second: &L::Group) -> f64 {
     l.l_d(&first.inverse().compose(second).matrix(), &l.advected().seen_from(first), H)
 }
 
-/// `−D₁L̃_d` and `D₂L̃_d`, (1.19), pulled back to the identity from the left.
+/// The momenta `−D₁L̃_d` and `D₂L̃_d`, (1.19), pulled back to the identity from the left.
 fn legendre_transforms<L: System>(l: &L, first: &L::Group, second: &L::Group) -> [Vector<L>; 2] {
     let moved = |g: &L::Group, k, s| g.compose(&L::Group::turn(k, s));
     [
@@ -50,7 +50,7 @@ fn assert_variational<L: System + Clone>(l: &L, name: &str) {
         let [minus, plus] = legendre_transforms(l, first, second);
         close("(1.19), −D₁L̃_d is the momentum before", minus, *before);
         close("(1.19), D₂L̃_d is the momentum after", plus, *after);
-        // (1.21): both give the momentum along a symmetry `g ↦ exp(sη) g`, which is that of the start.
+        // Both give the momentum (1.21) along a symmetry `g ↦ exp(sη) g`, which is that of the start.
         for eta in symmetries(l) {
             let carried = |g: &L::Group, s: f64| L::Group::along(&eta, s).compose(g);
             let by_first = -derivative(|s| unreduced(l, &carried(first, s), second));
@@ -61,7 +61,7 @@ fn assert_variational<L: System + Clone>(l: &L, name: &str) {
         }
     }
 
-    // The action, by its points one after the other; the ends aren't stationary.
+    // The stationarity of the action, point by point; the ends aren't stationary.
     let action = |i: usize, k, s| {
         let mut points: Vec<L::Group> = path.iter().map(|(g, _)| *g).collect();
         points[i] = points[i].compose(&L::Group::turn(k, s));

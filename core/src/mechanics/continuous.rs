@@ -1,4 +1,4 @@
-//! The trait of reduced continuous Lagrangians: what the thesis' first two chapters make of `l(ξ, w)`.
+//! The trait of reduced continuous Lagrangians `l(ξ, w)`, by the first two chapters of the thesis.
 
 use crate::error::StepError;
 use crate::groups::{Advected as _, LieGroup};
@@ -12,19 +12,19 @@ type Covector<L> = Velocity<L>;
 type Matrix<L> = <<L as Term>::Group as LieGroup>::Matrix;
 type Hessian<L> = <Velocity<L> as Coordinates<<L as Term>::Scalar>>::Square;
 
-/// What is known of the Legendre transform `ξ ↦ μ = ∂l/∂ξ`, and with it of its inverse.
+/// The form of the Legendre transform `ξ ↦ μ = ∂l/∂ξ`, which determines the computation of its inverse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Legendre {
     /// `l` is quadratic in `ξ`, and its second derivative is the same for all `w`: `ξ = M⁻¹ (μ − s(w))`.
     Constant,
     /// `l` is quadratic in `ξ`: `ξ = M(w)⁻¹ (μ − s(w))`.
     Varying,
-    /// The equation `∂l/∂ξ = μ` is solved by Newton's iteration.
+    /// `l` isn't quadratic in `ξ`: Newton's iteration solves `∂l/∂ξ = μ`.
     Nonlinear,
 }
 
 impl Legendre {
-    /// The transform of a sum of two Lagrangians.
+    /// The form of the transform of a sum of two Lagrangians.
     #[must_use]
     pub const fn or(self, other: Self) -> Self {
         match (self, other) {
@@ -37,16 +37,15 @@ impl Legendre {
 
 /// A reduced Lagrangian `l(ξ, w)` with its momentum, its diamond term and its equations of motion.
 ///
-/// `ξ = g⁻¹ġ` is the body velocity, in components of the declared basis `E_k` (on SO(3) in rad/s), `w = g⁻¹·a_0` the
-/// advected parameters as the body sees them. Covectors are components `μ_k = ⟨μ, E_k⟩`; on SO(3) these are body-frame
-/// angular momenta in kg m²/s. Of several bodies, on a product of groups, velocities and covectors have the components of
-/// all, one body after the other: of what is translated in the axes of space, in m/s and kg m/s, of what turns about a
-/// fixed axis, by `R1`, in rad/s and kg m²/s.
+/// `ξ = g⁻¹ġ` is the body velocity, in components of the declared basis `E_k` (on SO(3) in rad/s), and `w = g⁻¹·a_0`
+/// are the advected parameters in the body frame. Covectors are components `μ_k = ⟨μ, E_k⟩`; on SO(3) these are
+/// body-frame angular momenta in kg m²/s. For several bodies, on a product of groups, velocities and covectors have the
+/// components of all, one body after the other: for translations in the axes of space, in m/s and kg m/s, for rotations
+/// about a fixed axis, by `R1`, in rad/s and kg m²/s.
 ///
-/// [`lagrangian`](crate::lagrangian) implements it: of a declared `l` with its terms derived, and of a declared `l_d`
-/// with those of its limit `h → 0`, `l = ½ ξ·Jξ + s(w)·ξ − V(w)`. They add by `+`, with each other and with effects. What an
-/// ODE solver integrates is made of it by
-/// [`RightHandSide`](crate::motion::RightHandSide).
+/// [`lagrangian`](crate::lagrangian) implements it: for a declared `l` with derived terms, and for a declared `l_d`
+/// with those of its limit `h → 0`, `l = ½ ξ·Jξ + s(w)·ξ − V(w)`. They add by `+`, with each other and with effects.
+/// [`RightHandSide`](crate::motion::RightHandSide) prepares it for an ODE solver.
 ///
 /// # Source
 ///
@@ -90,13 +89,13 @@ impl Legendre {
     note = "declare it by `#[lagrangian(… l = …)]` or `#[lagrangian(… l_d = …)]`; a force has none, nor has a system of many bodies, which `Each`, `On`, `Along`, `Between` and `Pairs` put together"
 )]
 pub trait ContinuousLagrangian: Term {
-    /// What is known of the inverse Legendre transform.
+    /// The form of the Legendre transform.
     const LEGENDRE: Legendre;
 
-    /// What was declared, and the continuous equations that are derived from it, as text.
+    /// The declaration, and the continuous equations derived from it, as text.
     const CONTINUOUS_DERIVATION: &'static str;
 
-    /// `l(ξ, w)`, in J; of a declared `l` the expression as it stands.
+    /// The Lagrangian `l(ξ, w)`, in J; for a declared `l` the expression itself.
     fn l(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Self::Scalar;
 
     /// The momentum `μ = ∂l/∂ξ`, \[RDAE, (1.14)\].
@@ -105,26 +104,26 @@ pub trait ContinuousLagrangian: Term {
     /// The second derivative `M = ∂²l/∂ξ²`.
     fn velocity_hessian(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Hessian<Self>;
 
-    /// `∂l/∂w ⋄ w`: components `−⟨∂l/∂w, E_k·w⟩`, \[RDAE, (2.1)\].
+    /// The diamond `∂l/∂w ⋄ w`: components `−⟨∂l/∂w, E_k·w⟩`, \[RDAE, (2.1)\].
     fn diamond_rate(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Covector<Self>;
 
-    /// The diamond along all matrices: entries `−⟨∂l/∂w, e_ij·w⟩`, where the matrix `e_ij` has a one at `(i, j)`; paired with
-    /// `E_k`, entry by entry, it is [`diamond_rate`](Self::diamond_rate). Of a product each factor has its own; where it is
-    /// translated, the last column of its matrix counts. Where an attitude is seen, `RᵀR = I` may be used: there nothing but
-    /// the pairing is meant.
+    /// The diamond along all matrices: entries `−⟨∂l/∂w, e_ij·w⟩`, where the matrix `e_ij` has a one at `(i, j)`;
+    /// paired with `E_k`, entry by entry, it is [`diamond_rate`](Self::diamond_rate). On a product each factor has its
+    /// own matrix; for a translation only the last column counts. If attitudes are advected, the derivation may use
+    /// `RᵀR = I`, and only the pairing is meaningful.
     fn diamond_matrix(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Matrix<Self>;
 
-    /// `(∂²l/∂w∂ξ)(ξ·w)`: by how much the momentum of a fixed velocity falls as `w` is carried along. Zero where `l` is
-    /// a kinetic energy of `ξ` alone and a potential of `w`.
+    /// The momentum's change by advection, `(∂²l/∂w∂ξ)(ξ·w)`: the rate at which the momentum of a constant velocity
+    /// decreases while `w` is advected. Zero if `l` is a kinetic energy of `ξ` alone and a potential of `w`.
     fn momentum_advection(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Covector<Self>;
 
-    /// `μ̇ = ad*_ξ μ + ∂l/∂w ⋄ w`, \[RDAE, (1.4) and (2.2)\].
+    /// The rate of the momentum, `μ̇ = ad*_ξ μ + ∂l/∂w ⋄ w`, \[RDAE, (1.4) and (2.2)\].
     fn momentum_rate(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Covector<Self> {
         let momentum = self.momentum(velocity, w);
         Self::Group::lie_bracket_transpose(velocity, &momentum) + self.diamond_rate(velocity, w)
     }
 
-    /// `ẇ = −ξ·w`, \[RDAE, (2.2)\].
+    /// The rate of the advected parameters, `ẇ = −ξ·w`, \[RDAE, (2.2)\].
     fn advected_rate(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Self::Advected {
         w.rate(&Self::Group::hat(velocity))
     }
@@ -133,8 +132,8 @@ pub trait ContinuousLagrangian: Term {
     ///
     /// # Errors
     ///
-    /// [`StepError::Singular`] where `M` is singular. Where `l` isn't quadratic in the velocity also where `M` has lost the
-    /// sign that it has at rest, and [`StepError::NotConverged`] where Newton's iteration finds no velocity.
+    /// [`StepError::Singular`] if `M` is singular. If `l` isn't quadratic in the velocity, also if `M` has a sign other
+    /// than at rest, and [`StepError::NotConverged`] if Newton's iteration finds no velocity.
     fn velocity(&self, momentum: &Covector<Self>, w: &Self::Advected) -> Result<Velocity<Self>, StepError> {
         let rest = Velocity::<Self>::zero();
         let defect = *momentum - self.momentum(&rest, w);
@@ -152,7 +151,7 @@ pub trait ContinuousLagrangian: Term {
     ///
     /// # Errors
     ///
-    /// As [`velocity`](Self::velocity).
+    /// The errors of [`velocity`](Self::velocity).
     fn hamiltonian(&self, momentum: &Covector<Self>, w: &Self::Advected) -> Result<Self::Scalar, StepError> {
         let velocity = self.velocity(momentum, w)?;
         Ok(momentum.dot(&velocity) - self.l(&velocity, w))
@@ -163,7 +162,7 @@ pub trait ContinuousLagrangian: Term {
     ///
     /// # Errors
     ///
-    /// [`StepError::Singular`] where `M` is singular.
+    /// [`StepError::Singular`] if `M` is singular.
     fn euler_poincare(
         &self,
         velocity: &Velocity<Self>,
@@ -179,25 +178,25 @@ pub trait ContinuousLagrangian: Term {
     ///
     /// # Errors
     ///
-    /// As [`velocity`](Self::velocity).
+    /// The errors of [`velocity`](Self::velocity).
     fn lie_poisson(
         &self,
         momentum: &Covector<Self>,
         w: &Self::Advected,
     ) -> Result<(Covector<Self>, Self::Advected), StepError> {
         let velocity = self.velocity(momentum, w)?;
-        // ∂h/∂w = −∂l/∂w at the velocity of the momentum.
+        // The derivative ∂h/∂w = −∂l/∂w, at the velocity of this momentum.
         let rate = Self::Group::lie_bracket_transpose(&velocity, momentum) + self.diamond_rate(&velocity, w);
         Ok((rate, self.advected_rate(&velocity, w)))
     }
 }
 
-/// The value, if it is one.
+/// The value, if it is finite.
 fn finite<T: Real, V: Coordinates<T>>(value: V) -> Result<V, StepError> {
     if value.is_finite() { Ok(value) } else { Err(StepError::Singular) }
 }
 
-/// The velocity that Newton's iteration has ended at, if it is one in all lanes.
+/// The velocity at the end of Newton's iteration, if the iteration converged in all lanes.
 fn velocity<T: Real, V: Coordinates<T>>(end: &NewtonEnd<T, V>) -> Result<V, StepError> {
     let NewtonEnd { solution, is_settled, is_regular, iterations, residual } = *end;
     if !is_settled.all() {

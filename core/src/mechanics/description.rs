@@ -1,10 +1,10 @@
-//! What tells one scene from another.
+//! Descriptions of scenes, by which they are distinguished.
 
-/// Is shown what a scene is made of, by [`Effect::describe`](crate::mechanics::Effect::describe).
+/// The visitor of a scene's description, for [`Effect::describe`](crate::mechanics::Effect::describe).
 pub trait SceneVisitor<T> {
-    /// A term begins, with this [`DERIVATION`](crate::mechanics::Effect::DERIVATION).
+    /// The beginning of a term with this [`DERIVATION`](crate::mechanics::Effect::DERIVATION).
     fn term(&mut self, derivation: &'static str);
 
-    /// One scalar of a field of the last term.
+    /// A scalar of a field of the latest term.
     fn parameter(&mut self, field: &'static str, value: T);
 }

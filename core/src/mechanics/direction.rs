@@ -7,21 +7,22 @@ use crate::error::SetupError;
 use crate::groups::SO3;
 use crate::numbers::{Real, is_finite, real, reported};
 
-/// What a number printed to a dozen digits leaves, and, in a scalar that hasn't as many, rounding.
+/// The tolerance for numbers printed to a dozen digits; in scalars with fewer digits, for rounding.
 fn printed<T: RealField + Copy + Real>() -> T {
     (T::default_epsilon() * real(64.0)).max(real(2e-12))
 }
 
 impl<T: RealField + Copy> NonstandardInertia<T> {
-    /// Of a mass `m`, in kg, at the end `l` of a thin rod without mass, about its other end; `l` is in the body's frame, in m.
+    /// The inertia of a mass `m`, in kg, at the end `l` of a thin massless rod, about the rod's other end; `l` is in
+    /// the body's frame, in m.
     ///
-    /// Across the rod the moment is `m |l|²`. A uniform rod of length `l` has that of a third of its mass at its end.
-    /// About itself a thin rod has no moment, and a spin would have no momentum. This one has a quarter of the other
-    /// moment, on which motions that [start without spin](Self::pointing) don't depend.
+    /// The moment across the rod is `m |l|²`. A uniform rod of length `l` has that of a third of its mass at its end. A
+    /// thin rod has no moment about its own axis, and a spin would have no momentum. Here that moment is a quarter of
+    /// the other. Motions that [start without spin](Self::pointing) don't depend on it.
     ///
     /// # Errors
     ///
-    /// [`InertiaError::NotPositive`] where the mass or the length isn't positive, [`InertiaError::NotFinite`], and
+    /// [`InertiaError::NotPositive`] for a mass or a length that isn't positive, [`InertiaError::NotFinite`], and
     /// [`InertiaError::OutOfRange`].
     pub fn of_rod(m: T, l: &Vector3<T>) -> Result<Self, InertiaError> {
         for (what, value) in [("m", m), ("length of l", l.norm())] {
@@ -32,33 +33,35 @@ impl<T: RealField + Copy> NonstandardInertia<T> {
                 return Err(InertiaError::NotPositive { what, value: reported(value) });
             }
         }
-        // `J_d` has m|l|²/8 across the rod, either way, and 7m|l|²/8 along it. Of J = tr(J_d) I − J_d these are m|l|² and
-        // m|l|²/4.
+        // `J_d` is m|l|²/8 in both directions across the rod, and 7m|l|²/8 along it; then J = tr(J_d) I − J_d is m|l|²
+        // across and m|l|²/4 along it.
         let across = Matrix3::from_diagonal_element(l.norm_squared());
         Self::new((across + l * l.transpose() * real::<T>(6.0)) * (m * real(0.125)))
     }
 }
 
 impl<T: RealField + Copy + Real> NonstandardInertia<T> {
-    /// The attitude and the body velocity, in rad/s, of a body symmetric about `axis` that points to `direction` and doesn't
-    /// spin.
+    /// The attitude and the body velocity, in rad/s, of a body symmetric about `axis` that points to `direction` and
+    /// doesn't spin.
     ///
-    /// `axis` is a unit vector of the body, and `direction` one of space, `q`, which moves by `q̇ = ω × q` with the velocity
-    /// `ω ⟂ q` in space, in rad/s. Of all attitudes with that direction it is the one that the shortest turn leads to.
+    /// `axis` is a unit vector of the body, and `direction` one of space, `q`, which moves by `q̇ = ω × q` with the
+    /// velocity `ω ⟂ q` in space, in rad/s. Among the attitudes with that direction, the result is the shortest turn of
+    /// the axis to it.
     ///
-    /// What starts so moves on the sphere S² of directions. Where a scene is symmetric about the axis, too, with centres of
-    /// mass, joints and springs on it, nothing turns the body about it: `Π·axis` stays zero, and steps don't depend on the
-    /// moment about it, in exact arithmetic. That is so for one body, for each of a product and for each of a system.
+    /// A motion that starts so is a motion on the sphere S² of directions. If the scene is symmetric about the axis,
+    /// too, with centres of mass, joints and springs on it, there is no torque about it: `Π·axis` stays zero, and in
+    /// exact arithmetic steps don't depend on the moment about it. This holds for one body, and for each body of a
+    /// product or of a system.
     ///
     /// # Errors
     ///
-    /// [`SetupError::NotUnit`] where `axis` or `direction` isn't of length one, [`SetupError::NotAxisymmetric`] where the
-    /// body isn't symmetric about the axis, [`SetupError::Spin`] where `ω` isn't at right angles to the direction, and
+    /// [`SetupError::NotUnit`] if `axis` or `direction` isn't of length one, [`SetupError::NotAxisymmetric`] if the
+    /// body isn't symmetric about the axis, [`SetupError::Spin`] if `ω` isn't at right angles to the direction, and
     /// [`SetupError::NonFinite`].
     ///
     /// # Examples
     ///
-    /// A conical pendulum: its direction goes round the vertical at `ω² = g/(l cos θ)`.
+    /// A conical pendulum's direction rotates about the vertical at `ω² = g/(l cos θ)`.
     ///
     /// ```
     /// use liestep::effects::{Gravity, RigidBody};
@@ -100,7 +103,7 @@ impl<T: RealField + Copy + Real> NonstandardInertia<T> {
         Ok((SO3::from(attitude), turning - axis * axis.dot(&turning)))
     }
 
-    /// `J_d = a I + (b − a) e eᵀ`.
+    /// Checks that the inertia has the form `J_d = a I + (b − a) e eᵀ`.
     fn check_symmetry(&self, axis: &Vector3<T>) -> Result<(), SetupError> {
         let inertia = self.as_matrix();
         let along = axis.dot(&(inertia * axis));
@@ -118,7 +121,7 @@ fn check_finite<T: RealField + Copy>(what: &'static str, vector: &Vector3<T>) ->
     if vector.iter().all(|&entry| is_finite(entry)) { Ok(()) } else { Err(SetupError::NonFinite { what }) }
 }
 
-/// The vector without what printing it has left of its length.
+/// The vector normalised, if its length is one up to printing.
 fn unit<T: RealField + Copy + Real>(what: &'static str, vector: &Vector3<T>) -> Result<Vector3<T>, SetupError> {
     check_finite(what, vector)?;
     let length = vector.norm();
@@ -128,13 +131,13 @@ fn unit<T: RealField + Copy + Real>(what: &'static str, vector: &Vector3<T>) -> 
     Ok(vector / length)
 }
 
-/// The shortest turn that takes one unit vector to another; between opposite ones it is half a turn about any axis across.
+/// The shortest rotation of one unit vector to another; for opposite ones half a turn about any perpendicular axis.
 fn shortest_turn<T: RealField + Copy>(from: &Vector3<T>, to: &Vector3<T>) -> UnitQuaternion<T> {
     let cosine = from.dot(to);
     if cosine >= T::zero() {
         return UnitQuaternion::from_quaternion(Quaternion::from_parts(T::one() + cosine, from.cross(to)));
     }
-    // Next to the opposite the axis is across a small difference, of which digits are lost along `from` alone.
+    // Near the opposite direction the axis is perpendicular to the small sum, whose error is only along `from`.
     let sum = from + to;
     let beside = (sum - from * from.dot(&sum)).try_normalize(T::default_epsilon());
     let beside = beside.unwrap_or_else(|| from.cross(&Vector3::ith(from.iamin(), T::one())).normalize());
@@ -168,7 +171,7 @@ mod tests {
         assert!(matches!(NonstandardInertia::of_rod(f64::NAN, &along), Err(InertiaError::NotFinite)));
     }
 
-    /// Any direction, the opposite one and those next to it.
+    /// Directions in general position, the opposite one, and some near it.
     #[test]
     fn a_body_points_where_it_is_to() {
         let mut random = Random::new(4);
@@ -186,7 +189,7 @@ mod tests {
             assert!(attitude.defect() < 1e-15 * 8.0 && r.determinant() > 0.0);
             assert!((r * axis - direction).amax() < 1e-15 && (r * velocity - omega).amax() < 1e-15 * 8.0);
             assert!(velocity.dot(&axis).abs() < 1e-16 * 8.0);
-            // The shortest turn is about an axis across both.
+            // The axis of the shortest turn is perpendicular to both.
             assert!((r.trace() - 1.0 - 2.0 * axis.dot(&direction)).abs() < 1e-15 * 8.0);
         }
         let (attitude, _) = rod.pointing(&axis, &axis, &Vector3::zeros()).unwrap();
@@ -206,14 +209,14 @@ mod tests {
         assert_eq!(refused(z, x, z * f64::INFINITY), SetupError::NonFinite { what: "velocity" });
         assert_eq!(refused(z, x, x * 0.5 + z), SetupError::Spin { spin: 0.5 });
         assert!(matches!(refused(x, z, zero), SetupError::NotAxisymmetric { difference } if difference > 0.1));
-        // What printing to a dozen digits leaves is no mistake.
+        // The error of a dozen printed digits is accepted.
         let printed = Vector3::new(0.577_350_269_190, 0.577_350_269_190, 0.577_350_269_190);
         let across = Vector3::new(1.0, -0.5, -0.500_000_000_000_1);
         let (_, velocity) = rod.pointing(&z, &printed, &across).unwrap();
         assert!(velocity.z == 0.0);
     }
 
-    /// In single precision rounding is no mistake either, and a thousandth is one.
+    /// In single precision rounding is accepted, and an error of a thousandth isn't.
     #[test]
     fn directions_of_single_precision() {
         let rod = NonstandardInertia::of_rod(1.0_f32, &Vector3::z()).unwrap();

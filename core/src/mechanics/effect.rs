@@ -15,32 +15,32 @@ use crate::numbers::{Blocks, Coordinates, Pattern, Real, real};
 pub type Scalar<E> = <E as Term>::Scalar;
 /// The group of an effect.
 pub type Group<E> = <E as Term>::Group;
-/// The matrices of its group.
+/// The matrices of an effect's group.
 pub type Matrix<E> = <Group<E> as LieGroup>::Matrix;
 /// Components of covectors and algebra elements.
 pub type Vector<E> = <Group<E> as LieGroup>::Vector;
 /// Linear maps of components.
 pub type Square<E> = <Vector<E> as Coordinates<Scalar<E>>>::Square;
 
-/// The blocks of its Newton matrix that join neighbours in a row of bodies.
+/// The blocks of an effect's Newton matrix that couple neighbours in a row of bodies.
 pub(crate) type Links<E> = <Vector<E> as Coordinates<Scalar<E>>>::Links;
 
-/// Which parts of a step an effect has a share in; the other shares are zero, whatever the parameters.
+/// The parts of a step to which an effect contributes; the other contributions are zero for all parameters.
 ///
-/// It is known when the crate is built, so a sum adds no zeros and asks no questions at run time.
+/// They are known at compile time, so a sum adds no zeros and has no branches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Parts {
-    /// `U(F, w)`, what is solved for `F`. A potential of the positions at both ends of a step has none: moving `F` and
-    /// `w` together from the left leaves `F⁻¹·w` where it is.
+    /// The unknown part `U(F, w)` of the equation for `F`. A potential of the positions at both ends of a step has
+    /// none: moving `F` and `w` together from the left leaves `F⁻¹·w` unchanged.
     pub unknown: bool,
-    /// `kick_before(w)`.
+    /// The kick `kick_before(w)`.
     pub kick_before: bool,
-    /// `kick_after(F, w⁺)`.
+    /// The kick `kick_after(F, w⁺)`.
     pub kick_after: bool,
 }
 
 impl Parts {
-    /// A share in everything.
+    /// All parts.
     pub const ALL: Self = Self { unknown: true, kick_before: true, kick_after: true };
 
     /// The parts that at least one of two effects has.
@@ -54,30 +54,30 @@ impl Parts {
     }
 }
 
-/// What an effect says of an increment without a Jacobian, by [`Effect::newton_residual`].
+/// The residual of an effect at an increment, without a Jacobian, by [`Effect::newton_residual`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Residual<V> {
-    /// The residual of [`newton_system`](Effect::newton_system), by how much the momentum equation (2.7) is missed.
+    /// The residual of [`newton_system`](Effect::newton_system), the error of the momentum equation (2.7).
     pub momentum_defect: V,
-    /// Where one gradient of `l_d` gives both, the part `k` of the diamond that depends on `F`. It stands for
-    /// [`kick_after`](Effect::kick_after) then: `Ad*_F k = kick_after(F, w⁺)`.
+    /// The part `k` of the diamond that depends on `F`, if the gradient of `l_d` for the residual yields it, too. It
+    /// then replaces [`kick_after`](Effect::kick_after): `Ad*_F k = kick_after(F, w⁺)`.
     pub moving_kick: Option<V>,
 }
 
-/// What one of Newton's iterations finds.
+/// The result of one Newton iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct NewtonUpdate<V, S, T> {
-    /// What is to be subtracted from half the coordinates.
+    /// The update, to be subtracted from half the coordinates.
     pub update: V,
-    /// The Jacobian in factors, by which another update is solved; none are kept where neighbours are joined.
+    /// The factors of the Jacobian, for simplified iterations; `None` if neighbours are coupled.
     pub factors: Option<S>,
-    /// Its determinant, of several bodies relative to the diagonal.
+    /// The determinant of the Jacobian, for several bodies relative to the diagonal.
     pub det: T,
 }
 
 impl<T: Real, V: Coordinates<T>> NewtonUpdate<V, V::Square, T> {
-    /// The update by a residual and its Jacobian.
+    /// The update for a residual and its Jacobian.
     #[hot]
     #[must_use]
     pub fn of(residual: &V, jacobian: &V::Square, pattern: Pattern) -> Self {
@@ -86,9 +86,10 @@ impl<T: Real, V: Coordinates<T>> NewtonUpdate<V, V::Square, T> {
     }
 }
 
-/// One of Newton's iterations, by residual and Jacobian unless neighbours are joined.
+/// One Newton iteration by residual and Jacobian; if neighbours are coupled, by their blocks, too.
 ///
-/// It names the function: one that is given would be called, without the machine's vector instructions.
+/// The functions are named here and not passed as closures, which wouldn't be inlined nor compiled for the machine's
+/// vector instructions.
 #[hot]
 pub(crate) fn update_of<E: Effect + ?Sized>(
     constants: &E::Constants,
@@ -105,13 +106,13 @@ pub(crate) fn update_of<E: Effect + ?Sized>(
     NewtonUpdate { update, factors: None, det }
 }
 
-/// What is known of the Newton matrix of an effect.
+/// The known structure of an effect's Newton matrix.
 #[hot]
 pub(crate) fn pattern<E: Effect + ?Sized>(constants: &E::Constants) -> Pattern {
     Pattern { apart: E::apart(constants), ..pattern_of_type::<E>() }
 }
 
-/// The same, as far as the type knows it.
+/// The structure of the Newton matrix that is known from the type.
 #[hot]
 pub(crate) const fn pattern_of_type<E: Effect + ?Sized>() -> Pattern {
     Pattern { factors: <Group<E> as LieGroup>::FACTORS, apart: E::APART }
@@ -120,16 +121,16 @@ pub(crate) const fn pattern_of_type<E: Effect + ?Sized>() -> Pattern {
 /// The continuous Lagrangian `l(ξ, w)` that an effect discretises, with its derivatives at a velocity.
 #[derive(Clone, Copy, Debug)]
 pub struct Limit<E: Effect + ?Sized> {
-    /// `l`, in J.
+    /// The Lagrangian `l`, in J.
     pub l: Scalar<E>,
-    /// `∂l/∂ξ`.
+    /// The momentum `∂l/∂ξ`.
     pub momentum: Vector<E>,
-    /// `∂²l/∂ξ²`.
+    /// The second derivative `∂²l/∂ξ²`.
     pub hessian: Square<E>,
 }
 
 impl<E: Effect + ?Sized> Limit<E> {
-    /// Of `l = ½ ξ·Jξ + s·ξ − V` with `J`, `s` and `V`, at the velocity `ξ` or at rest.
+    /// The limit `l = ½ ξ·Jξ + s·ξ − V` for these `J`, `s` and `V`, at the velocity `ξ` or at rest.
     #[hot]
     #[must_use]
     pub fn quadratic(velocity: Option<&Vector<E>>, inertia: Square<E>, bias: Vector<E>, potential: E::Scalar) -> Self {
@@ -140,12 +141,12 @@ impl<E: Effect + ?Sized> Limit<E> {
     }
 }
 
-/// One term of a scene, with all that a stepper needs of it: a [`DiscreteLagrangian`](crate::mechanics::DiscreteLagrangian), or a
-/// sum.
+/// One term of a scene, with everything that a stepper needs: a
+/// [`DiscreteLagrangian`](crate::mechanics::DiscreteLagrangian), a force, or a sum.
 ///
-/// The equations are those of `DiscreteLagrangian` in stages: what depends on the parameters and `h` is computed once
-/// ([`constants`](Self::constants)), what depends on the state once a step, and only what depends on the unknown once a
-/// Newton iteration. A step is
+/// The equations are those of `DiscreteLagrangian` in stages. Quantities that depend on the parameters and `h` are
+/// computed once ([`constants`](Self::constants)), those that depend on the state once a step, and those that depend on
+/// the unknown once a Newton iteration. A step is
 ///
 /// ```text
 /// a  = μ + kick_before(w)                      the part of (2.7) without F moves to the other side
@@ -155,7 +156,7 @@ impl<E: Effect + ?Sized> Limit<E> {
 /// g⁺ = g F                                     (2.10)
 /// ```
 ///
-/// Everything in it is additive, so effects of one group add: see [`Sum`](crate::mechanics::Sum). An effect that isn't the
+/// All parts are additive, so effects on one group add: see [`Sum`](crate::mechanics::Sum). An effect that isn't the
 /// gradient of a Lagrangian fits as well: a discrete force `(f⁻, f⁺)` of the Lagrange–d'Alembert principle has the
 /// unknown part `−f⁻(F, w)` and the kick after the step `Ad*_F f⁻ + f⁺`.
 ///
@@ -173,15 +174,15 @@ impl<E: Effect + ?Sized> Limit<E> {
 pub trait Effect: Term {
     /// The coordinates of the Newton unknown.
     type Retraction: Retraction<Self::Group>;
-    /// Whether there is a kinetic part: [`WithKinetic`], [`WithEitherKinetic`](crate::mechanics::WithEitherKinetic) or
+    /// The kind of kinetic part: [`WithKinetic`], [`WithEitherKinetic`](crate::mechanics::WithEitherKinetic) or
     /// [`WithoutKinetic`](crate::mechanics::WithoutKinetic); the macros write further kinds.
     type Kinetic: KineticPart;
-    /// What the parameters and `h` determine.
+    /// The quantities that depend on the parameters and `h`.
     type Constants: Clone + Debug + PartialEq;
-    /// What `a` and `w` determine.
+    /// The quantities that depend on `a` and `w`.
     type StepTerms: Copy;
 
-    /// Which parts aren't zero.
+    /// The parts that aren't zero.
     const PARTS: Parts = Parts::ALL;
 
     /// The power of the Cayley denominator in the factor of [`newton_system`](Self::newton_system).
@@ -189,104 +190,104 @@ pub trait Effect: Term {
 
     /// Whether the Jacobian of [`newton_system`](Self::newton_system) may cost more than several residuals.
     ///
-    /// Then a solve starts with the [residual](Self::newton_residual) alone and the Jacobian of the free body with the
-    /// same [`inertia`](Self::inertia), [`Retraction::free_momentum_tangent`], with which
-    /// [`DENOMINATORS`](Self::DENOMINATORS) must be zero. The macro decides it by counting operations, and says it by
-    /// [`Kinetic`](Self::Kinetic): of it a state keeps a longer history.
+    /// If so, a solve starts with the [residual](Self::newton_residual) alone and the Jacobian of the free body with
+    /// the same [`inertia`](Self::inertia), [`Retraction::free_momentum_tangent`]; [`DENOMINATORS`](Self::DENOMINATORS)
+    /// must then be zero. The macro decides it by counting operations, and writes it as [`Kinetic`](Self::Kinetic), by
+    /// which a state also stores a longer history.
     const JACOBIAN_IS_EXPENSIVE: bool = Self::Kinetic::JACOBIAN_IS_EXPENSIVE;
 
-    /// Whether [`inertia`](Self::inertia) is the same for all `w`. Then it is checked once, when a stepper is built, and
-    /// methods that have the motion of one free body in them may be used.
+    /// Whether [`inertia`](Self::inertia) is the same for all `w`. If so, it is checked once, when a stepper is
+    /// constructed, and methods that contain the motion of one free body are available.
     const INERTIA_IS_CONSTANT: bool;
 
-    /// Whether the continuous limit is quadratic in the velocity. Where it isn't, [`inertia`](Self::inertia) and
-    /// [`momentum_bias`](Self::momentum_bias) are those at rest, and [`limit`](Self::limit) says what is elsewhere.
+    /// Whether the continuous limit is quadratic in the velocity. If it isn't, [`inertia`](Self::inertia) and
+    /// [`momentum_bias`](Self::momentum_bias) are those at rest, and [`limit`](Self::limit) has the values elsewhere.
     const IS_QUADRATIC: bool;
 
-    /// Unknowns between which the Jacobian of [`newton_system`](Self::newton_system) is zero for all values: where nothing
-    /// but potentials of the ends of a step couples bodies, each is solved for itself. The blocks end where factors of the
-    /// group end; one block is always right.
+    /// The blocks of unknowns between which the Jacobian of [`newton_system`](Self::newton_system) is zero for all
+    /// values. If bodies are coupled only by potentials of the ends of a step, each body is solved separately. Blocks
+    /// end where factors of the group end; a single block is always valid.
     const APART: Blocks = Blocks::WHOLE;
 
-    /// Whether the Jacobian of [`newton_system`](Self::newton_system) joins neighbours in a row of bodies: then
-    /// [`newton_linked`](Self::newton_linked) has all of it.
+    /// Whether the Jacobian of [`newton_system`](Self::newton_system) couples neighbours in a row of bodies; the whole
+    /// Jacobian is then that of [`newton_linked`](Self::newton_linked).
     const LINKS_NEIGHBOURS: bool = false;
 
-    /// How much arithmetic its share of a step is; the macro counts it.
+    /// The number of operations of the effect in a step, as the macro counts them.
     const OPERATIONS: Operations = Operations::UNCOUNTED;
 
-    /// What was declared and everything derived from it, as text.
+    /// The declaration and everything derived from it, as text.
     const DERIVATION: &'static str;
 
-    /// The text of a declaration, which `liestep-late` derives anew; empty of a sum, and of what is written by hand.
+    /// The text of the declaration, which `liestep-late` derives at run time; empty for sums and hand-written effects.
     const DECLARATION: &'static str = "";
 
-    /// The [`DERIVATION`](Self::DERIVATION) of an effect, and of a sum those of all its terms: a constant can't be put
-    /// together from others, and what is declared when a program runs has none.
+    /// The [`DERIVATION`](Self::DERIVATION) of an effect, and for a sum those of all its terms: constants can't be
+    /// concatenated, and an effect that is declared at run time has none.
     #[must_use]
     fn derivation(&self) -> String {
         Self::DERIVATION.to_owned()
     }
 
-    /// [`INERTIA_IS_CONSTANT`](Self::INERTIA_IS_CONSTANT), asked of a value: an effect that is declared when a program
-    /// runs doesn't know it in its type.
+    /// [`INERTIA_IS_CONSTANT`](Self::INERTIA_IS_CONSTANT) of a value: the type of an effect that is declared at run
+    /// time doesn't determine it.
     #[must_use]
     fn has_constant_inertia(&self) -> bool {
         Self::INERTIA_IS_CONSTANT
     }
 
-    /// [`IS_QUADRATIC`](Self::IS_QUADRATIC), asked of a value.
+    /// [`IS_QUADRATIC`](Self::IS_QUADRATIC) of a value.
     #[must_use]
     fn is_quadratic(&self) -> bool {
         Self::IS_QUADRATIC
     }
 
-    /// [`DENOMINATORS`](Self::DENOMINATORS), asked of a value.
+    /// [`DENOMINATORS`](Self::DENOMINATORS) of a value.
     #[must_use]
     fn denominators(_: &Self::Constants) -> u32 {
         Self::DENOMINATORS
     }
 
-    /// [`PARTS`](Self::PARTS), asked of a value: of those that the type has, it may lack some.
+    /// [`PARTS`](Self::PARTS) of a value, which may lack parts that its type has.
     #[must_use]
     fn parts(_: &Self::Constants) -> Parts {
         Self::PARTS
     }
 
-    /// [`APART`](Self::APART), asked of a value: it may have more blocks than the type.
+    /// [`APART`](Self::APART) of a value, which may have more blocks than its type.
     #[must_use]
     fn apart(_: &Self::Constants) -> Blocks {
         Self::APART
     }
 
-    /// [`JACOBIAN_IS_EXPENSIVE`](Self::JACOBIAN_IS_EXPENSIVE), asked of a value where the type has it.
+    /// [`JACOBIAN_IS_EXPENSIVE`](Self::JACOBIAN_IS_EXPENSIVE) of a value, if its type may be expensive.
     #[must_use]
     fn jacobian_is_expensive(_: &Self::Constants) -> bool {
         Self::JACOBIAN_IS_EXPENSIVE
     }
 
-    /// Shows the derivations and, field by field in the order of the declaration, every scalar of the parameters.
+    /// Visits the derivations and, field by field in the order of the declaration, every scalar of the parameters.
     ///
-    /// Two scenes that show the same make the same steps.
+    /// Two scenes with the same description make the same steps.
     fn describe(&self, visitor: &mut dyn SceneVisitor<Self::Scalar>);
 
     /// The exact right-trivialised Newton Jacobian: entry `(k, j)` is the derivative of component `k` of the momentum
     /// equation (2.7), [`legendre_minus`](crate::mechanics::DiscreteLagrangian::legendre_minus), along `F ↦ exp(t E_j) F`.
     ///
-    /// Of several bodies it has the block of each. Where the equation [joins neighbours](Self::LINKS_NEIGHBOURS), those
-    /// between two are missing.
+    /// For several bodies it has the block of each. If the equation [couples neighbours](Self::LINKS_NEIGHBOURS), the
+    /// blocks between two bodies are missing.
     fn momentum_jacobian(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Square<Self>;
 
-    /// The continuous limit `l(ξ, w)`, `l_d(exp hξ, w) = h l(ξ, w) + O(h²)`, at a velocity, or with `None` at rest: then
-    /// nothing is multiplied by zeros. Where it is `½ ξ·Jξ + s·ξ − V`, it is [`Limit::quadratic`].
+    /// The continuous limit `l(ξ, w)`, `l_d(exp hξ, w) = h l(ξ, w) + O(h²)`, at a velocity; `None` is rest, which saves
+    /// products with zeros. If the limit is `½ ξ·Jξ + s·ξ − V`, this is [`Limit::quadratic`].
     fn limit(&self, velocity: Option<&Vector<Self>>, w: &Self::Advected) -> Limit<Self>;
 
-    /// The matrix `J(w)` of the [limit](Self::limit) at rest; of a body alone it is the same for all `w`.
+    /// The matrix `J(w)` of the [limit](Self::limit) at rest; for a single body it is the same for all `w`.
     fn inertia(&self, w: &Self::Advected) -> Square<Self> {
         self.limit(None, w).hessian
     }
 
-    /// The covector `s` of the [limit](Self::limit): what is linear in the velocity.
+    /// The covector `s` of the [limit](Self::limit), the coefficient of the velocity.
     fn momentum_bias(&self, w: &Self::Advected) -> Vector<Self> {
         self.limit(None, w).momentum
     }
@@ -296,9 +297,10 @@ pub trait Effect: Term {
         -self.limit(None, w).l
     }
 
-    /// What is advected or given with another energy `E_0`, J, and that before it; `None` where no `pace` was declared.
+    /// The advected and prescribed parameters with another energy `E_0`, J, and the previous `E_0`; `None` if no `pace`
+    /// was declared.
     ///
-    /// The [potential](Self::potential) is `s (V − E_0)` then, of which [`paced`](crate::Stepper::paced) has the pace `s`.
+    /// The [potential](Self::potential) is then `s (V − E_0)` with the pace `s` of [`paced`](crate::Stepper::paced).
     #[must_use]
     fn with_energy(&self, _: &Self::Advected, _energy: Self::Scalar) -> Option<(Self::Advected, Self::Scalar)> {
         None
@@ -307,8 +309,8 @@ pub trait Effect: Term {
     /// Folds the parameters and the step into the constants of the stages below.
     fn constants(&self, h: Self::Scalar) -> Self::Constants;
 
-    /// Whether all constants are numbers, as a stepper needs them. What is derived looks at each; an effect that is
-    /// written by hand may leave it.
+    /// Whether all constants are finite, as a stepper requires. Derived effects check each constant; a hand-written one
+    /// may omit this.
     #[must_use]
     fn are_finite(_: &Self::Constants) -> bool {
         true
@@ -340,8 +342,8 @@ pub trait Effect: Term {
         half: &Vector<Self>,
     ) -> (Vector<Self>, Square<Self>);
 
-    /// One of Newton's iterations: the update that is to be subtracted, and what it was solved from, as
-    /// [`Coordinates::factorise_with`] gives it. A system of many bodies makes it body by body.
+    /// One Newton iteration: the update to be subtracted, and the factors of [`Coordinates::factorise_with`]. A system
+    /// of many bodies computes it body by body.
     #[must_use]
     fn newton_update(
         constants: &Self::Constants,
@@ -351,8 +353,8 @@ pub trait Effect: Term {
         update_of::<Self>(constants, terms, half)
     }
 
-    /// [`newton_system`](Self::newton_system), with the blocks that join neighbours in a row of bodies added to those that
-    /// are given.
+    /// [`newton_system`](Self::newton_system), with the blocks that couple neighbours in a row of bodies added to the
+    /// last argument.
     fn newton_linked(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -371,27 +373,27 @@ pub trait Effect: Term {
         Residual { momentum_defect: Self::newton_system(constants, terms, half).0, moving_kick: None }
     }
 
-    /// What of [`kick_after`](Self::kick_after) isn't in the [`moving_kick`](Residual::moving_kick) of
+    /// The part of [`kick_after`](Self::kick_after) that isn't in the [`moving_kick`](Residual::moving_kick) of
     /// [`newton_residual`](Self::newton_residual): that of the other terms of a sum.
     #[must_use]
     fn kick_beside(_: &Self::Constants, _: &Matrix<Self>, _: &Self::Advected) -> Option<Vector<Self>> {
         None
     }
 
-    /// `Ad*_F` of the part of the diamond that depends on `F`, written in the new `w⁺`; `increment` is `F − I`.
+    /// `Ad*_F` of the part of the diamond that depends on `F`, as a function of the new `w⁺`; `increment` is `F − I`.
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self>;
 }
 
 /// An effect with a kinetic part, so that it can be stepped; every such [`Effect`] is.
 ///
-/// This is the first half of what the literature calls a regular Lagrangian. The other half, that the inertia isn't
-/// singular, depends on the parameters and is checked by [`Stepper::new`](crate::motion::Stepper::new); where it depends
-/// on `w`, by [`Stepper::start`](crate::motion::Stepper::start).
+/// This is the first condition for a regular Lagrangian in the literature's sense. The second, an inertia that isn't
+/// singular, depends on the parameters. [`Stepper::new`](crate::motion::Stepper::new) checks it; if the inertia depends
+/// on `w`, [`Stepper::start`](crate::motion::Stepper::start) does.
 pub trait Regular: Effect {}
 
 impl<E: Effect> Regular for E where <E::Kinetic as KineticPart>::ByNewton: Moves<E> {}
 
-/// The kinetic part of the effect `E`; names it in the message where there is none.
+/// The kinetic part of the effect `E`, as a trait whose error message names `E` if there is none.
 #[diagnostic::on_unimplemented(
     message = "`{E}` has no kinetic part, so it can't move by itself",
     label = "has no kinetic part",

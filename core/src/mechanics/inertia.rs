@@ -1,7 +1,7 @@
 //! The two inertia tensors of a rigid body.
 //!
-//! Both are symmetric 3 × 3 matrices in the body frame, in kg m², and each is a valid value of the other's matrix,
-//! which is why they are two types. With `X` the place of a mass element relative to the pivot,
+//! Both are symmetric 3 × 3 matrices in the body frame, in kg m². Every value of the one is a possible value of the
+//! other, so they have two types. With the position `X` of a mass element relative to the pivot,
 //!
 //! ```text
 //! nonstandard   J_d = ∫ X Xᵀ dm            = ½ tr(J) I − J
@@ -9,7 +9,7 @@
 //! ```
 //!
 //! A real body has a positive semidefinite `J_d` (equivalently, its moments satisfy the triangle inequality) and a
-//! positive definite `J`. The solvability of a step rests on both, so the constructors insist on them.
+//! positive definite `J`. The solvability of a step requires both, so the constructors check them.
 
 use nalgebra::{Matrix3, RealField, Vector3};
 use thiserror::Error;
@@ -17,7 +17,7 @@ use thiserror::Error;
 use crate::error::Text;
 use crate::numbers::{Real, real, reported};
 
-/// Why a matrix isn't the inertia of a body.
+/// The reason why a matrix isn't the inertia of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[cfg_attr(all(feature = "serde", feature = "std"), derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -25,13 +25,13 @@ pub enum InertiaError {
     /// An entry is NaN or infinite.
     #[error("the inertia has an entry that is not finite; give finite numbers")]
     NotFinite,
-    /// A mass or a length that an inertia is made of isn't positive.
+    /// A mass or a length isn't positive.
     #[error("the {what} of the inertia is {value:e}, not above zero; give a positive one")]
     NotPositive {
-        /// Which.
+        /// The name of the mass or length.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "crate::error::kept"))]
         what: Text,
-        /// Its value, kg or m.
+        /// The value, kg or m.
         value: f64,
     },
     /// The matrix differs from its transpose by more than rounding.
@@ -40,12 +40,12 @@ pub enum InertiaError {
         /// The largest `|A_ij − A_ji|`, kg m².
         defect: f64,
     },
-    /// An entry off the diagonal is larger than rounding, where a diagonal matrix is asked for.
+    /// An entry off the diagonal is larger than rounding, although the type is diagonal.
     #[error(
         "the inertia is not diagonal: an entry off the diagonal is {largest:e}; take `NonstandardInertia`, or the principal axes as the body's"
     )]
     NotDiagonal {
-        /// The largest of them, kg m².
+        /// The largest of these entries, kg m².
         largest: f64,
     },
     /// `J_d` has a negative eigenvalue, so the principal moments violate the triangle inequality.
@@ -56,7 +56,7 @@ pub enum InertiaError {
         /// The smallest eigenvalue of `J_d`, kg m².
         smallest: f64,
     },
-    /// `J` isn't positive definite: a rod, a point mass, or nothing at all.
+    /// `J` isn't positive definite: a rod, a point mass, or zero.
     #[error(
         "the inertia is singular: its smallest principal moment is {smallest:e}; give a rod or a point a small thickness"
     )]
@@ -64,7 +64,7 @@ pub enum InertiaError {
         /// The smallest eigenvalue of `J`, kg m².
         smallest: f64,
     },
-    /// So large or small that products of three entries leave the range of the scalar.
+    /// The inertia is so large or small that products of three entries leave the range of the scalar.
     #[error("the inertia has the trace {trace:e}, out of range; choose units in which it is nearer to one")]
     OutOfRange {
         /// The trace, kg m².
@@ -74,8 +74,8 @@ pub enum InertiaError {
 
 /// The nonstandard moment of inertia `J_d = ∫ X Xᵀ dm` of a body about its pivot.
 ///
-/// The reduced discrete Lagrangian (3.13) is written with it rather than with the ordinary [`Inertia`]. Passing one
-/// where the other is meant would still give a structure-preserving step, of a different body.
+/// The reduced discrete Lagrangian (3.13) is written with it and not with the ordinary [`Inertia`]. The ordinary one in
+/// its place would still give a structure-preserving step, but that of another body.
 ///
 /// # Shape and units
 ///
@@ -100,7 +100,7 @@ pub struct NonstandardInertia<T = f64>(Matrix3<T>);
 
 /// A [`NonstandardInertia`] in principal axes: a diagonal `J_d`.
 ///
-/// The type tells the macro that six entries are zero, and the derived step is smaller for it.
+/// The type guarantees that six entries are zero, so the macro derives a smaller step.
 ///
 /// # Shape and units
 ///
@@ -119,29 +119,29 @@ pub struct DiagonalNonstandardInertia<T = f64>(Vector3<T>);
 pub struct Inertia<T = f64>(Matrix3<T>);
 
 impl<T: RealField + Copy> NonstandardInertia<T> {
-    /// From the symmetric matrix `J_d`, kg m².
+    /// The inertia with the symmetric matrix `J_d`, kg m².
     ///
     /// # Errors
     ///
-    /// [`InertiaError`], where the matrix isn't that of a body.
+    /// [`InertiaError`], if the matrix isn't that of a body.
     pub fn new(matrix: Matrix3<T>) -> Result<Self, InertiaError> {
         check(&matrix).map(Self)
     }
 
-    /// From the diagonal of `J_d` in principal axes, kg m²; not the principal moments.
+    /// The inertia with this diagonal of `J_d` in principal axes, kg m²; these aren't the principal moments.
     ///
     /// # Errors
     ///
-    /// [`InertiaError`], where the matrix isn't that of a body.
+    /// [`InertiaError`], if the matrix isn't that of a body.
     pub fn from_diagonal(diagonal: Vector3<T>) -> Result<Self, InertiaError> {
         Self::new(Matrix3::from_diagonal(&diagonal))
     }
 
-    /// From the principal moments of the ordinary inertia `J`, kg m².
+    /// The inertia with these principal moments of the ordinary inertia `J`, kg m².
     ///
     /// # Errors
     ///
-    /// [`InertiaError`], where no body has these moments.
+    /// [`InertiaError`], if no body has these moments.
     pub fn from_principal_moments(moments: Vector3<T>) -> Result<Self, InertiaError> {
         Self::from_diagonal(nonstandard_diagonal(&moments))
     }
@@ -168,11 +168,11 @@ impl<T: Real> NonstandardInertia<T> {
 }
 
 impl<T: RealField + Copy> DiagonalNonstandardInertia<T> {
-    /// From the diagonal matrix `J_d`, kg m².
+    /// The inertia with the diagonal matrix `J_d`, kg m².
     ///
     /// # Errors
     ///
-    /// [`InertiaError`], where the matrix isn't that of a body, or isn't diagonal to rounding.
+    /// [`InertiaError`], if the matrix isn't that of a body, or isn't diagonal to rounding.
     pub fn new(matrix: Matrix3<T>) -> Result<Self, InertiaError> {
         let checked = check(&matrix)?;
         let beside = (checked - Matrix3::from_diagonal(&checked.diagonal())).amax();
@@ -182,20 +182,20 @@ impl<T: RealField + Copy> DiagonalNonstandardInertia<T> {
         Ok(Self(checked.diagonal()))
     }
 
-    /// From the diagonal of `J_d` in principal axes, kg m²; not the principal moments.
+    /// The inertia with this diagonal of `J_d` in principal axes, kg m²; these aren't the principal moments.
     ///
     /// # Errors
     ///
-    /// [`InertiaError`], where the matrix isn't that of a body.
+    /// [`InertiaError`], if the matrix isn't that of a body.
     pub fn from_diagonal(diagonal: Vector3<T>) -> Result<Self, InertiaError> {
         check(&Matrix3::from_diagonal(&diagonal)).map(|_| Self(diagonal))
     }
 
-    /// From the principal moments of the ordinary inertia `J`, kg m².
+    /// The inertia with these principal moments of the ordinary inertia `J`, kg m².
     ///
     /// # Errors
     ///
-    /// [`InertiaError`], where no body has these moments.
+    /// [`InertiaError`], if no body has these moments.
     pub fn from_principal_moments(moments: Vector3<T>) -> Result<Self, InertiaError> {
         Self::from_diagonal(nonstandard_diagonal(&moments))
     }
@@ -223,30 +223,30 @@ impl<T: Real> DiagonalNonstandardInertia<T> {
 }
 
 impl<T: RealField + Copy> Inertia<T> {
-    /// From the symmetric matrix `J`, kg m².
+    /// The inertia with the symmetric matrix `J`, kg m².
     ///
     /// # Errors
     ///
-    /// [`InertiaError`], where the matrix isn't that of a body.
+    /// [`InertiaError`], if the matrix isn't that of a body.
     pub fn new(matrix: Matrix3<T>) -> Result<Self, InertiaError> {
         check(&(Matrix3::from_diagonal_element(matrix.trace() * real(0.5)) - matrix))?;
         Ok(Self(symmetric_part(&matrix)))
     }
 
-    /// From the diagonal of `J` in principal axes, kg m²: the principal moments.
+    /// The inertia with this diagonal of `J` in principal axes, kg m²: the principal moments.
     ///
     /// # Errors
     ///
-    /// [`InertiaError`], where no body has these moments.
+    /// [`InertiaError`], if no body has these moments.
     pub fn from_diagonal(diagonal: Vector3<T>) -> Result<Self, InertiaError> {
         Self::new(Matrix3::from_diagonal(&diagonal))
     }
 
-    /// From the principal moments, kg m².
+    /// The inertia with these principal moments, kg m².
     ///
     /// # Errors
     ///
-    /// [`InertiaError`], where no body has these moments.
+    /// [`InertiaError`], if no body has these moments.
     pub fn from_principal_moments(moments: Vector3<T>) -> Result<Self, InertiaError> {
         Self::from_diagonal(moments)
     }
@@ -288,19 +288,20 @@ fn symmetric_part<T: RealField + Copy>(matrix: &Matrix3<T>) -> Matrix3<T> {
     (matrix + matrix.transpose()) * real::<T>(0.5)
 }
 
-/// The exactly symmetric `J_d`, if it is that of a body.
+/// The symmetrised `J_d`, if it is that of a body.
 fn check<T: RealField + Copy>(nonstandard: &Matrix3<T>) -> Result<Matrix3<T>, InertiaError> {
     if !nonstandard.iter().all(|&entry| crate::numbers::is_finite(entry)) {
         return Err(InertiaError::NotFinite);
     }
     let trace = nonstandard.trace();
-    // Products of three entries and of inverse step lengths must stay within range: a quarter of the exponents does.
+    // Products of three entries and of inverse step lengths must stay within range: a quarter of the exponents
+    // suffices.
     let largest = T::max_value().map_or(real(1e75), |max| max.sqrt().sqrt());
     let size = nonstandard.amax().max(trace.abs());
     if size > largest || (size > T::zero() && size * largest < T::one()) {
         return Err(InertiaError::OutOfRange { trace: reported(trace) });
     }
-    // What forming, rotating or printing a tensor to 15 digits leaves.
+    // The tolerance for a tensor that is computed, rotated or printed to 15 digits.
     let rounding = T::default_epsilon() * size * real(64.0);
     let defect = (nonstandard - nonstandard.transpose()).amax();
     if defect > rounding {

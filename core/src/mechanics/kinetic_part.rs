@@ -1,29 +1,31 @@
-//! Whether a scene has a kinetic part, as types: without one a momentum determines no velocity, and nothing moves.
+//! The kinds of kinetic parts, as types: without one a momentum determines no velocity, and a scene can't be stepped.
 
 use crate::numbers::{Coordinates, Either, History, Parabola, Polynomial, Real};
 
-/// [`WithKinetic`], [`WithPace`], [`WithExpensiveKinetic`], [`WithEitherKinetic`], [`WithoutKinetic`] or [`OnlyKicks`].
+/// A kind of kinetic part: [`WithKinetic`], [`WithPace`], [`WithExpensiveKinetic`], [`WithEitherKinetic`],
+/// [`WithoutKinetic`] or [`OnlyKicks`].
 pub trait KineticPart {
-    /// Whether there is one.
+    /// Whether there is a kinetic part.
     const IS_THERE: bool;
 
-    /// See [`Effect::JACOBIAN_IS_EXPENSIVE`](crate::mechanics::Effect::JACOBIAN_IS_EXPENSIVE).
+    /// The value of [`Effect::JACOBIAN_IS_EXPENSIVE`](crate::mechanics::Effect::JACOBIAN_IS_EXPENSIVE).
     const JACOBIAN_IS_EXPENSIVE: bool;
 
-    /// Whether an effect of this kind may be expensive or not.
+    /// Whether values of one type may differ in whether their Jacobian is expensive.
     const IS_EITHER: bool = false;
 
-    /// Whether an effect of this kind may be solved for: see [`Parts::unknown`](crate::mechanics::Parts::unknown).
+    /// Whether an effect of this kind may have an unknown part: see
+    /// [`Parts::unknown`](crate::mechanics::Parts::unknown).
     const MAY_BE_UNKNOWN: bool = true;
 
-    /// What a state keeps of the last increments to guess the next one. It is copied with each state, so it is no longer
-    /// than the solve pays for.
+    /// The history of increments in a state, from which the next one is guessed. It is copied with each state, so it is
+    /// only as long as is worthwhile for the solve.
     type History<T: Real, V: Coordinates<T>>: History<T, V>;
 
-    /// The kinetic part of a sum: there is one if one of the two terms has it.
+    /// The kinetic part of a sum: a sum has one if one of its terms has.
     type Or<Other: KineticPart>: KineticPart;
 
-    /// The part where the solve takes the Jacobian, whatever that costs.
+    /// The kind for solves that always use the Jacobian, whatever it costs.
     type ByNewton: KineticPart;
 }
 
@@ -47,22 +49,23 @@ macro_rules! kinds {
 }
 
 kinds! {
-    /// There is a term in `1/h`.
+    /// A term in `1/h`.
     WithKinetic: true, false, Parabola, Self, Self;
 
-    /// In a time in which motion is smooth: its history guesses an increment that one iteration brings to rounding.
+    /// A term in `1/h`, in a rescaled time in which motions are smooth: extrapolation of the history predicts an
+    /// increment so well that one iteration converges to rounding.
     WithPace: true, false, Polynomial, Self, WithKinetic;
 
-    /// There is a term in `1/h`, whose Jacobian costs more than several residuals.
+    /// A term in `1/h`, whose Jacobian costs more than several residuals.
     WithExpensiveKinetic: true, true, Polynomial, Self, WithKinetic;
 
-    /// There is a term in `1/h`, and the effect says as a value whether its Jacobian is expensive: see
+    /// A term in `1/h`, and only the value of the effect determines whether its Jacobian is expensive: see
     /// [`jacobian_is_expensive`](crate::mechanics::Effect::jacobian_is_expensive).
     WithEitherKinetic: true, true, Either, Self, WithKinetic, IS_EITHER = true;
 
-    /// There is none, as in a potential.
+    /// No kinetic part, as in a potential.
     WithoutKinetic: false, false, Parabola, Other, Self;
 
-    /// There is none, and nothing to solve for: kicks at both ends of a step alone, as of a weight or a constant torque.
+    /// No kinetic part and no unknown part: only kicks at both ends of a step, as of a weight or a constant torque.
     OnlyKicks: false, false, Parabola, Other, Self, MAY_BE_UNKNOWN = false;
 }

@@ -5,15 +5,15 @@ use crate::mechanics::effect::Regular;
 use crate::mechanics::effect::{Effect, Matrix, Vector};
 use crate::mechanics::term::Term;
 
-/// A reduced discrete Lagrangian `l_d(F, w)` with all that an integrator needs of it.
+/// A reduced discrete Lagrangian `l_d(F, w)` with everything that an integrator needs.
 ///
-/// `F = g_i⁻¹ g_{i+1}` is the increment of a step, `w` the advected parameters as the body sees them, `h` the step in
-/// seconds. Covectors are components `μ_k = ⟨μ, E_k⟩`; on SO(3) these are body-frame angular momenta in kg m²/s.
-/// The derived terms use the relation of the group (`FᵀF = I`), so they mean nothing at a matrix off it; `l_d` itself
-/// is the declared expression and accepts any matrix.
+/// `F = g_i⁻¹ g_{i+1}` is the increment of a step, `w` are the advected parameters in the body frame, and `h` is the
+/// step in seconds. Covectors are components `μ_k = ⟨μ, E_k⟩`; on SO(3) these are body-frame angular momenta in kg
+/// m²/s. The derived terms use the relation of the group (`FᵀF = I`), so they are meaningless at a matrix off it; `l_d`
+/// itself is the declared expression and accepts any matrix.
 ///
-/// How a step is made of it is said in [`Effect`]. An effect that is a Lagrangian is conservative: its flow is Poisson,
-/// its energy doesn't drift.
+/// [`Effect`] describes its step. An effect that is a Lagrangian is conservative: its flow is Poisson, and its energy
+/// doesn't drift.
 ///
 /// # Source
 ///
@@ -26,13 +26,14 @@ use crate::mechanics::term::Term;
 pub trait DiscreteLagrangian: Effect {
     /// Whether `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)` for all values of the parameters.
     ///
-    /// Then a step of `−h` is the exact inverse of a step of `h`, the order is even (2 at least), and symmetric
-    /// compositions raise it; otherwise it is 1 in general. The macro finds it out, by its normal forms or by the
-    /// values at random points of a finite field, and says in [`DERIVATION`](Effect::DERIVATION) how, and whether it
-    /// would hold if vectors were declared as points; who implements the trait by hand states it.
+    /// If so, a step of `−h` is the exact inverse of a step of `h`, the order is even (2 at least), and symmetric
+    /// compositions raise it; otherwise the order is 1 in general. The macro determines it, by normal forms or by
+    /// values at random points of a finite field. [`DERIVATION`](Effect::DERIVATION) states how, and whether it would
+    /// hold if vectors were declared as points. In an implementation by hand it is the author's claim.
     const SELF_ADJOINT: bool;
 
-    /// [`SELF_ADJOINT`](Self::SELF_ADJOINT), asked of a value: what is declared when a program runs isn't known in its type.
+    /// [`SELF_ADJOINT`](Self::SELF_ADJOINT) of a value: the type of a Lagrangian declared at run time doesn't determine
+    /// it.
     fn is_self_adjoint(&self) -> bool {
         Self::SELF_ADJOINT
     }
@@ -40,13 +41,13 @@ pub trait DiscreteLagrangian: Effect {
     /// The declared `l_d(F, w)`, in J s.
     fn l_d(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar;
 
-    /// `(R_F)* δl_d/δF`: components `d/ds l_d(exp(s E_k) F, w)` at `s = 0`.
+    /// The right momentum `(R_F)* δl_d/δF`: components `d/ds l_d(exp(s E_k) F, w)` at `s = 0`.
     fn right_momentum(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self>;
 
-    /// `(L_F)* δl_d/δF`: components `d/ds l_d(F exp(s E_k), w)` at `s = 0`.
+    /// The left momentum `(L_F)* δl_d/δF`: components `d/ds l_d(F exp(s E_k), w)` at `s = 0`.
     fn left_momentum(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self>;
 
-    /// `δl_d/δw ⋄ w`: components `−d/ds l_d(F, exp(s E_k) · w)` at `s = 0`, \[RDAE, (2.1)\].
+    /// The diamond `δl_d/δw ⋄ w`: components `−d/ds l_d(F, exp(s E_k) · w)` at `s = 0`, \[RDAE, (2.1)\].
     fn diamond(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self>;
 
     /// The momentum component of `𝔽l_d⁻`: `μ = (R_F)* δl_d/δF − δl_d/δw ⋄ w`, \[RDAE, (2.7)\].
@@ -63,12 +64,12 @@ pub trait DiscreteLagrangian: Effect {
     fn discrete_energy(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar;
 }
 
-/// A scene on SO(3) that can be stepped: a body with a fixed point, or one whose motion about its centre is looked at.
+/// A scene on SO(3) that can be stepped: a body with a fixed point, or a body's rotation about its centre of mass.
 pub trait RigidScene: DiscreteLagrangian + Regular + Effect<Group = SO3<<Self as Term>::Scalar>> {}
 
 impl<S> RigidScene for S where S: DiscreteLagrangian + Regular + Effect<Group = SO3<<S as Term>::Scalar>> {}
 
-/// A scene that can be stepped, and that a chooser among methods may keep and copy.
+/// A scene that can be stepped, and that a search among methods may store and copy.
 pub trait Scene: DiscreteLagrangian<Advected: 'static> + Regular + Clone + 'static {}
 
 impl<S> Scene for S where S: DiscreteLagrangian<Advected: 'static> + Regular + Clone + 'static {}

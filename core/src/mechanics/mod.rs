@@ -1,9 +1,9 @@
-//! Mechanics: what a scene is made of, as the macro declares it or a user writes it by hand.
+//! Mechanics: the terms of a scene, declared by the macro or written by hand.
 //!
-//! An [`Effect`] is one term with all that a step needs of it; a [`DiscreteLagrangian`] is one with `l_d(F, w)`
-//! itself, a [`Force`] one with virtual work; a [`Sum`] of two is one again, and so is a [`Placement`] of terms on bodies of a
-//! system. A [`ContinuousLagrangian`] is `l(ξ, w)`
-//! with the continuous equations. Nothing here solves an equation but that of the inverse Legendre transform.
+//! An [`Effect`] is one term with everything that a step needs; a [`DiscreteLagrangian`] is an effect with `l_d(F, w)`
+//! itself, a [`Force`] one with virtual work. A [`Sum`] of two effects is an effect, and so is a [`Placement`] of terms
+//! on bodies of a system. A [`ContinuousLagrangian`] is `l(ξ, w)` with the continuous equations. No equation is solved
+//! here except that of the inverse Legendre transform.
 
 mod continuous;
 mod description;

@@ -1,4 +1,4 @@
-//! Symmetries of a continuous Lagrangian at given parameters, and what they conserve (Noether).
+//! Symmetries of a continuous Lagrangian at its parameters, and the conserved momenta (Noether).
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -12,11 +12,11 @@ roots!();
 
 type Vector<L> = <<L as Term>::Group as LieGroup>::Vector;
 
-/// What rounding leaves of a row that is a combination of others, relative to what the rows are made of.
+/// The rounding error of a row that depends linearly on others, relative to the size of the terms of the rows.
 const ROUNDING: f64 = 1e-10;
 
-/// The directions in space along which a scene is the same: a basis of `η` with `η·a_0 = 0`. Along them the spatial
-/// momentum, `⟨Ad*_{g⁻¹} μ, η⟩`, is conserved.
+/// The symmetries of a scene in space: a basis of the `η` with `η·a_0 = 0`. The spatial momentum along them,
+/// `⟨Ad*_{g⁻¹} μ, η⟩`, is conserved.
 pub(crate) fn left_symmetries<L: ContinuousLagrangian>(lagrangian: &L) -> Vec<Vector<L>> {
     let spatial = lagrangian.advected();
     let columns = (0..L::Group::DIMENSION).map(|k| {
@@ -32,8 +32,8 @@ pub(crate) fn left_symmetries<L: ContinuousLagrangian>(lagrangian: &L) -> Vec<Ve
     combined::<L>(null_space(rows.collect(), L::Group::DIMENSION, scale))
 }
 
-/// The directions in the body along which its Lagrangian is the same: a basis of `ζ` with `⟨μ̇, ζ⟩ = 0` at all
-/// velocities and advected parameters. Along them the body momentum, `⟨μ, ζ⟩`, is conserved.
+/// The symmetries of a Lagrangian in the body: a basis of the `ζ` with `⟨μ̇, ζ⟩ = 0` at all velocities and advected
+/// parameters. The body momentum along them, `⟨μ, ζ⟩`, is conserved.
 pub(crate) fn right_symmetries<L: ContinuousLagrangian>(lagrangian: &L) -> Vec<Vector<L>> {
     // A linear congruence (Knuth's MMIX constants) is random enough for sample points.
     let mut state = 1_u64;
@@ -68,8 +68,8 @@ fn combined<L: ContinuousLagrangian>(basis: Vec<Vec<f64>>) -> Vec<Vector<L>> {
     basis.into_iter().map(vector).collect()
 }
 
-/// A basis of the vectors on which all rows, of terms of this size, vanish, by elimination with row pivots; none where a
-/// row has no value.
+/// A basis of the null space of these rows, whose terms have the size `scale`, by elimination with row pivots; empty if
+/// a row isn't finite.
 fn null_space(mut rows: Vec<Vec<f64>>, dimension: usize, scale: f64) -> Vec<Vec<f64>> {
     if rows.iter().flatten().any(|entry| !entry.is_finite()) {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! The trait of effects whose steps can be differentiated.
+//! The trait of effects with derivatives of their steps.
 
 use core::ops::Add;
 
@@ -8,20 +8,21 @@ use crate::mechanics::sum::Sum;
 use crate::mechanics::term::Term;
 use crate::numbers::{Entries, Real, zero};
 
-/// An effect with the derivatives of its shares in the momenta at both ends of a step: what the tangent map and the
-/// adjoint of a step are made of, see [`Stepper::linearised`](crate::Stepper::linearised).
+/// An effect with the derivatives of its parts of the momenta at both ends of a step. The tangent map and the adjoint
+/// of a step consist of these, see [`Stepper::linearised`](crate::Stepper::linearised).
 ///
-/// They are those of the share `μ(F, w)` in the momentum equation (2.7) and of the share `μ⁺(F, w)` in (2.6), the one before
-/// the step and the other after it, along a turn `ε` of the increment and a displacement `ζ` of the body, `g ← g exp ζ̂`:
+/// They are the derivatives of the part `μ(F, w)` in the momentum equation (2.7), before the step, and of `μ⁺(F, w)` in
+/// (2.6), after it, along a turn `ε` of the increment and a displacement `ζ` of the body, `g ← g exp ζ̂`:
 ///
 /// ```text
 /// δF = ε̂ F        δw = −ζ·w
 /// ```
 ///
-/// Of a Lagrangian these are second derivatives of `l_d`. A force has `−f⁻` for `μ` and `f⁺` for `μ⁺`. All are additive.
+/// For a Lagrangian these are second derivatives of `l_d`. A force has `−f⁻` for `μ` and `f⁺` for `μ⁺`. All are
+/// additive.
 ///
-/// `#[lagrangian(…, gradients)]` and `#[force(…, gradients)]` implement it, the effects of the library are declared so, and
-/// a sum has it if both terms have. Where nothing asks for it, nothing of it is in the program.
+/// `#[lagrangian(…, gradients)]` and `#[force(…, gradients)]` implement it, the effects of the library are declared so,
+/// and a sum has it if both terms have. Code for unused derivatives isn't part of the program.
 ///
 /// # Source
 ///
@@ -33,11 +34,10 @@ use crate::numbers::{Entries, Real, zero};
             sum need it"
 )]
 pub trait SecondDerivatives: Effect {
-    /// How many scalars [`describe`](Effect::describe) shows.
+    /// The number of scalars that [`describe`](Effect::describe) visits.
     const PARAMETERS: usize;
 
-    /// Whether the derivatives are there, asked of a value: a text that is read while a program runs may be without
-    /// `gradients`.
+    /// Whether a value has the derivatives: a text that is read at run time may be without `gradients`.
     fn are_derived(&self) -> bool {
         true
     }
@@ -45,42 +45,45 @@ pub trait SecondDerivatives: Effect {
     /// The derivatives along turns and displacements.
     fn step_derivatives(&self, at: PointOf<'_, Self>) -> StepDerivatives<Square<Self>>;
 
-    /// The derivatives of `μ` and `μ⁺` by the scalars of the parameters, as [`describe`](Effect::describe) numbers them,
-    /// at fixed `w`; what isn't visited is zero.
+    /// The derivatives of `μ` and `μ⁺` with respect to the scalars of the parameters, in the numbering of
+    /// [`describe`](Effect::describe), at fixed `w`; derivatives that aren't visited are zero.
     ///
-    /// A symmetric matrix has all nine scalars: for a symmetric change `δ` of it, the sum over them of derivative times
-    /// change is the change of the momentum.
+    /// A symmetric matrix has all nine scalars: for a symmetric change `δ` of it, the change of the momentum is the sum
+    /// over them of derivative times change.
     fn by_parameters(&self, at: PointOf<'_, Self>, visit: &mut impl FnMut(usize, Vector<Self>, Vector<Self>));
 
-    /// The same by the scalars of `w`, as [`Entries`](crate::numbers::Entries) numbers them.
+    /// The derivatives of `μ` and `μ⁺` with respect to the scalars of `w`, in the numbering of
+    /// [`Entries`](crate::numbers::Entries).
     fn by_advected(&self, at: PointOf<'_, Self>, visit: &mut impl FnMut(usize, Vector<Self>, Vector<Self>));
 
-    /// Visits each scalar of [`advected`](crate::mechanics::Term::advected) that is a parameter: its number there, and that among the
-    /// parameters. A field that is advected under two names is visited for each.
+    /// Visits each scalar of [`advected`](crate::mechanics::Term::advected) that is a parameter: its number there, and
+    /// its number among the parameters. A field that is advected under two names is visited for each.
     fn carried_parameters(visit: &mut impl FnMut(usize, usize));
 
-    /// The share in the linear system of a step's adjoint: `∂μ/∂ε`, entry `(k, j)` that of component `k` along `E_j`, and
-    /// the covector `(∂μ⁺/∂ε)ᵀ p`. With `at_end`, the derivative `p` of a number by `μ⁺`, and that by the place after the
-    /// step, the covector `a`, the system is
+    /// The effect's part of the linear system of a step's adjoint: `∂μ/∂ε`, whose entry `(k, j)` is the derivative of
+    /// component `k` along `E_j`, and the covector `(∂μ⁺/∂ε)ᵀ p`. Let `p`, passed as `at_end`, be the derivative of a
+    /// number with respect to `μ⁺`, and the covector `a` that with respect to the configuration after the step. The
+    /// system is
     ///
     /// ```text
     /// (∂μ/∂ε)ᵀ u = Ad*_{F⁻¹} a + (∂μ⁺/∂ε)ᵀ p
     /// ```
     ///
-    /// Its solution `u` is the derivative of that number by `μ`. Both `u` and `p` are in the algebra: of a number without a
-    /// unit, on SO(3) in 1/(kg m²/s). The matrix is in units of a momentum for each of `ε`, on SO(3) kg m²/s per rad.
+    /// Its solution `u` is the derivative of that number with respect to `μ`. Both `u` and `p` are in the algebra: for
+    /// a number without a unit, on SO(3) in 1/(kg m²/s). The matrix has the unit of a momentum per `ε`, on SO(3) kg
+    /// m²/s per rad.
     ///
-    /// This and [`adjoint_gradient`](Self::adjoint_gradient) go from the momenta back, so that they take a few times the
-    /// operations of the momenta themselves, and not as many as all derivatives.
+    /// This function and [`adjoint_gradient`](Self::adjoint_gradient) are in reverse mode, so they cost a few times the
+    /// operations of the momenta, and not as much as all derivatives.
     fn adjoint_system(&self, at: PointOf<'_, Self>, at_end: &Vector<Self>) -> (Square<Self>, Vector<Self>);
 
     /// The gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment, for `ends = [u, p]`: `u` pairs with the momentum `μ` at the
     /// start and solves the system of [`adjoint_system`](Self::adjoint_system), `p` pairs with `μ⁺` at the end.
     ///
-    /// Returned are the covector along displacements `ζ` of the body before the step, by component `k` along `E_k`, and the
-    /// derivatives by the scalars of `w`, each in the place of its scalar. Those by the parameters, at fixed `w`, are
-    /// visited by their numbers, as [`by_parameters`](Self::by_parameters) does; a number that is visited twice is added.
-    /// Each is in the unit of the number per that of what it is by.
+    /// Returns the covector along displacements `ζ` of the body before the step, with component `k` along `E_k`, and
+    /// the derivatives with respect to the scalars of `w`, each in the place of its scalar. The derivatives with
+    /// respect to the parameters, at fixed `w`, are visited by number, as in [`by_parameters`](Self::by_parameters); a
+    /// number that is visited twice is summed. Each has the unit of the number per unit of the variable.
     fn adjoint_gradient(
         &self,
         at: PointOf<'_, Self>,
@@ -88,21 +91,20 @@ pub trait SecondDerivatives: Effect {
         visit: &mut impl FnMut(usize, Scalar<Self>),
     ) -> (Vector<Self>, Self::Advected);
 
-    /// The gradient of `⟨u, D_v τ⟩ + ⟨r, τ − J u⟩` for `weights = [u, r]`, where `τ` is the torque, the
-    /// [`kick_before`](Effect::kick_before) of a step of two seconds, `D_v τ` its
-    /// [derivative](Effect::kick_derivative) along the velocity `v`, and `J` the [inertia](Effect::inertia). `None` where
-    /// `D_v τ` isn't known, or its derivative.
+    /// The gradient of `⟨u, D_v τ⟩ + ⟨r, τ − J u⟩` for `weights = [u, r]`. Here `τ` is the torque, the
+    /// [`kick_before`](Effect::kick_before) of a step of two seconds, `D_v τ` its [derivative](Effect::kick_derivative)
+    /// along the velocity `v`, and `J` the [inertia](Effect::inertia). `None` if `D_v τ` or its derivative isn't known.
     ///
-    /// What is returned and visited is as by [`adjoint_gradient`](Self::adjoint_gradient). It is all that the derivatives
-    /// of a force gradient ask of a term: with `J u = τ` and `J r = D_v τ` it is the gradient of `⟨J⁻¹τ, D_v τ⟩`, which is
-    /// `⟨v, f⟩` for the torque `f` of the potential `−½ τ·J⁻¹τ`.
+    /// Results are returned and visited as by [`adjoint_gradient`](Self::adjoint_gradient). The derivatives of a force
+    /// gradient need no more from a term: with `J u = τ` and `J r = D_v τ` this is the gradient of `⟨J⁻¹τ, D_v τ⟩`,
+    /// which is `⟨v, f⟩` for the torque `f` of the potential `−½ τ·J⁻¹τ`.
     ///
     /// On SO(3), for a number with the unit N:
     ///
     /// - `u` in rad/s²
     /// - `v` in N per unit of `f`, N/(kg m²/s⁴)
     /// - `r` in N per unit of `τ`, N/(kg m²/s²)
-    /// - the covector that is returned in N/rad, the other derivatives in N per unit of what they are by
+    /// - the returned covector in N/rad, the other derivatives in N per unit of their variable
     fn kick_gradient(
         &self,
         w: &Self::Advected,
@@ -120,7 +122,7 @@ pub trait SecondDerivatives: Effect {
 pub struct StepPoint<'a, G: LieGroup, A> {
     /// The increment less the identity, `F − I`, as a matrix of the group.
     pub increment: &'a G::Matrix,
-    /// What the body sees before the step, `w`.
+    /// The advected parameters `w` in the body frame before the step.
     pub w: &'a A,
     /// The length `h` of the step, s.
     pub h: G::Scalar,
@@ -130,7 +132,7 @@ pub struct StepPoint<'a, G: LieGroup, A> {
 pub(crate) type PointOf<'a, E> = StepPoint<'a, Group<E>, <E as Term>::Advected>;
 
 impl<'a, G: LieGroup, A, B> StepPoint<'a, G, (A, B)> {
-    /// For each of two terms.
+    /// The points for each of two terms.
     #[hot]
     fn of_terms(self) -> (StepPoint<'a, G, A>, StepPoint<'a, G, B>) {
         let Self { increment, w: (first, second), h } = self;
@@ -138,17 +140,17 @@ impl<'a, G: LieGroup, A, B> StepPoint<'a, G, (A, B)> {
     }
 }
 
-/// The derivatives of the momenta `μ` and `μ⁺` along turns `ε` and displacements `ζ`: entry `(k, j)` of each is that of
-/// component `k` along `E_j`.
+/// The derivatives of the momenta `μ` and `μ⁺` along turns `ε` and displacements `ζ`: the entry `(k, j)` of each is the
+/// derivative of component `k` along `E_j`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepDerivatives<M> {
-    /// `∂μ/∂ε`, the exact Newton Jacobian [`momentum_jacobian`](Effect::momentum_jacobian).
+    /// The derivative `∂μ/∂ε`, the exact Newton Jacobian [`momentum_jacobian`](Effect::momentum_jacobian).
     pub start_by_turn: M,
-    /// `∂μ⁺/∂ε`.
+    /// The derivative `∂μ⁺/∂ε`.
     pub end_by_turn: M,
-    /// `∂μ/∂ζ`, at fixed `F`.
+    /// The derivative `∂μ/∂ζ`, at fixed `F`.
     pub start_by_place: M,
-    /// `∂μ⁺/∂ζ`, at fixed `F`.
+    /// The derivative `∂μ⁺/∂ζ`, at fixed `F`.
     pub end_by_place: M,
 }
 
@@ -237,7 +239,7 @@ where
     }
 }
 
-/// How many there are.
+/// The number of scalars of these parameters.
 #[hot]
 fn scalars<T: Real, A: Entries<T>>() -> usize {
     let mut count = 0;

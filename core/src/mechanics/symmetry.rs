@@ -1,4 +1,5 @@
-//! The symmetries that a scene's momentum is conserved by, as types: what a scene hasn't, can't be asked of it.
+//! The symmetries behind conserved momenta, as types: a scene without a symmetry hasn't got the function for its
+//! momentum.
 
 use nalgebra::SVector;
 
@@ -7,11 +8,11 @@ use crate::mechanics::lagrangian::DiscreteLagrangian;
 use crate::mechanics::sum::Sum;
 use crate::numbers::Real;
 
-/// A Lagrangian that advects nothing, whatever it is given: it is the same for all attitudes, and the spatial momentum is
-/// conserved exactly.
+/// A Lagrangian without advected parameters (prescribed ones are allowed): it is invariant under all rotations of
+/// space, and the spatial momentum is conserved exactly.
 ///
-/// A sum is left-invariant if both terms are. The attribute implements it; so does a hand-written Lagrangian without
-/// advected parameters, with an empty body.
+/// A sum is left-invariant if both terms are. The attribute implements the trait; for a hand-written Lagrangian without
+/// advected parameters write the empty `impl`.
 #[diagnostic::on_unimplemented(
     message = "the spatial momentum isn't conserved in a scene with `{Self}`",
     label = "`{Self}` singles out a direction in space, or is a force",
@@ -27,7 +28,7 @@ where
 {
 }
 
-/// Advected parameters that are one vector of space, and no other parameter: rotations about it are a symmetry.
+/// Advected parameters that consist of exactly one vector of space: rotations about it are a symmetry.
 #[diagnostic::on_unimplemented(
     message = "no momentum along a direction is conserved, as this scene doesn't advect exactly one vector",
     label = "advects none or several",
@@ -39,7 +40,7 @@ pub trait OneVector {
     /// The scalar of its components.
     type Scalar: Real;
 
-    /// The vector, as the body sees it.
+    /// The vector in the body frame.
     fn vector(&self) -> SVector<Self::Scalar, 3>;
 }
 
@@ -67,10 +68,10 @@ impl<B: OneVector> OneVector for ((), B) {
     }
 }
 
-/// A Lagrangian on SO(3) that advects one vector: it is the same for attitudes that differ by a rotation about it, and
-/// the momentum along it is conserved exactly, (3.20).
+/// A Lagrangian on SO(3) with one advected vector: it is invariant under rotations about that vector, and the momentum
+/// along it is conserved exactly, (3.20).
 pub trait AxiallyInvariant: DiscreteLagrangian {
-    /// The vector in these advected parameters.
+    /// The vector among these advected parameters.
     fn axis(w: &Self::Advected) -> SVector<Self::Scalar, 3>;
 }
 

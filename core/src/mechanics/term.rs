@@ -1,4 +1,4 @@
-//! What every term of a scene or of a sum has, whether it makes steps or says a continuous Lagrangian.
+//! The trait of all terms of scenes and sums, effects and continuous Lagrangians alike.
 
 use crate::error::SetupError;
 use crate::groups::{Advected, LieGroup};
@@ -7,8 +7,8 @@ use crate::numbers::Real;
 /// A term on a group with its parameters, which adds with others by `+`: an [`Effect`](crate::mechanics::Effect), a
 /// [`ContinuousLagrangian`](crate::mechanics::ContinuousLagrangian), or both.
 ///
-/// Of two terms the [`Sum`](crate::mechanics::Sum) is what both of them are: an effect where both are effects, a continuous
-/// Lagrangian where both are.
+/// The [`Sum`](crate::mechanics::Sum) of two effects is an effect, that of two continuous Lagrangians a continuous
+/// Lagrangian, and that of two terms which are both is both.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no term of a scene",
     label = "neither an effect nor a continuous Lagrangian",
@@ -26,7 +26,7 @@ pub trait Term {
     ///
     /// # Errors
     ///
-    /// [`SetupError::Parameter`] naming the first field whose value can't be used.
+    /// [`SetupError::Parameter`] names the first field with an invalid value.
     fn validate(&self) -> Result<(), SetupError>;
 
     /// The spatial values `a_0` of the advected parameters.

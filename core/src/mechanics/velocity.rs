@@ -1,4 +1,4 @@
-//! Momenta and the velocities that have them: the Legendre transform of the continuous limit, and the energy.
+//! Momenta and their velocities: the Legendre transform of the continuous limit, and the energy.
 
 use crate::error::SetupError;
 use crate::groups::{LieGroup, SquareOf, body_of};
@@ -6,7 +6,7 @@ use crate::mechanics::effect::{Effect, Group, Limit, Scalar, Square, Vector};
 use crate::numbers::{Coordinates, Real, newton_halving, real, reported};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField};
 
-/// `μ = ∂l/∂ξ`, `Jξ + s(w)` where `l` is quadratic: the momentum of the body velocity `ξ`.
+/// The momentum of the body velocity `ξ`: `μ = ∂l/∂ξ`, which is `Jξ + s(w)` if `l` is quadratic.
 pub(crate) fn momentum_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advected) -> Vector<E> {
     if effect.is_quadratic() {
         effect.inertia(w) * *velocity + effect.momentum_bias(w)
@@ -15,8 +15,8 @@ pub(crate) fn momentum_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, 
     }
 }
 
-/// `ξ = J⁻¹(μ − s(w))`: the body velocity of the momentum `μ`. Where `l` isn't quadratic, it is solved for; NaN where no
-/// velocity has this momentum, of several lanes in those alone.
+/// The body velocity of the momentum `μ`: `ξ = J⁻¹(μ − s(w))` if `l` is quadratic, otherwise the solution of
+/// `∂l/∂ξ = μ`. Lanes whose momentum is that of no velocity are NaN.
 pub(crate) fn velocity_of_momentum<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
     let near_rest = velocity_near_rest(effect, momentum, w);
     if effect.is_quadratic() {
@@ -28,8 +28,7 @@ pub(crate) fn velocity_of_momentum<E: Effect>(effect: &E, momentum: &Vector<E>, 
     found.solution.select(found.is_settled & found.is_regular, Vector::<E>::zero() * real(f64::NAN))
 }
 
-/// An inertia that is the same wherever a body is, with the factors by which the velocities of many momenta are solved
-/// for.
+/// A constant inertia, and its factors, by which the velocities of many momenta are computed.
 #[derive(Clone, Copy, Debug)]
 pub struct FactoredInertia<G: LieGroup> {
     matrix: <G::Vector as Coordinates<G::Scalar>>::Square,
@@ -37,14 +36,14 @@ pub struct FactoredInertia<G: LieGroup> {
     det: G::Scalar,
 }
 
-/// The inertia in factors, if it is known once for all.
+/// The factorised inertia, if it is constant.
 pub(crate) fn factored_inertia<E: Effect>(effect: &E) -> Option<FactoredInertia<Group<E>>> {
     let matrix = constant_inertia(effect).ok()?;
     let (factors, det) = Vector::<E>::factorise(&matrix);
     Some(FactoredInertia { matrix, factors, det })
 }
 
-/// The body velocity of the momentum `μ` and the energy, by the inertia in factors if there is one: the same, to the bit.
+/// The body velocity of the momentum `μ` and the energy; with a factorised inertia they have the same bits as without.
 #[hot]
 pub(crate) fn velocity_and_energy<E: Effect>(
     effect: &E,
@@ -60,24 +59,24 @@ pub(crate) fn velocity_and_energy<E: Effect>(
     (velocity, energy_of_velocity(effect, &velocity, w))
 }
 
-/// The velocity by the inertia at rest: right where `l` is quadratic, elsewhere an estimate.
+/// The velocity by the inertia at rest: exact if `l` is quadratic, otherwise an estimate.
 fn velocity_near_rest<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
     Vector::<E>::solve(&effect.inertia(w), &(*momentum - effect.momentum_bias(w))).0
 }
 
-/// The body velocity of the momentum `μ`, or what is near it: a guess.
+/// An estimate of the body velocity of the momentum `μ`, which is finite even if no velocity has this momentum.
 pub(crate) fn estimated_velocity<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
     let velocity = velocity_of_momentum(effect, momentum, w);
     if effect.is_quadratic() || velocity.is_finite() {
         return velocity;
     }
-    // NaN isn't equal to itself.
+    // NaN isn't equal to itself, so lanes with NaN are replaced.
     let size = velocity.dot(&velocity);
     velocity.select(size.simd_eq(size), velocity_near_rest(effect, momentum, w))
 }
 
-/// Whether the velocity that was given is the one found of its momentum `μ`, to what rounding leaves of it where `l` is
-/// regular; `inertia` is that at rest, which makes the components of both commensurable.
+/// Checks that the inverse Legendre transform of the momentum `μ` is the velocity that the user gave, up to rounding.
+/// The inertia at rest makes the components of both commensurable.
 pub(crate) fn check_velocity<T: Real, V: Coordinates<T>>(
     given: &V,
     found: &V,
@@ -86,7 +85,7 @@ pub(crate) fn check_velocity<T: Real, V: Coordinates<T>>(
 ) -> Result<(), SetupError> {
     let (image, difference) = (*inertia * *given, *inertia * (*found - *given));
     let epsilon = T::simd_default_epsilon();
-    // At a fold of the momentum half of the digits of a velocity are lost. What cancels in the momentum is lost anyway.
+    // At a fold of the momentum, half of the digits of a velocity are lost. Cancellation in the momentum adds to that.
     let of_fold = image.dot(&image) * epsilon * real(256.0);
     let of_sum = momentum.dot(momentum) * epsilon * epsilon * real(1e8);
     let missed = difference.dot(&difference);
@@ -96,12 +95,12 @@ pub(crate) fn check_velocity<T: Real, V: Coordinates<T>>(
     Err(SetupError::AmbiguousVelocity { difference: reported((missed / image.dot(&image)).simd_sqrt()) })
 }
 
-/// `ξ·∂l/∂ξ − l`, the energy of the continuous limit: `½ ξ·Jξ + V(w)` where it is quadratic.
+/// The energy `ξ·∂l/∂ξ − l` of the continuous limit: `½ ξ·Jξ + V(w)` if it is quadratic.
 pub(crate) fn energy<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Scalar<E> {
     energy_of_velocity(effect, &velocity_of_momentum(effect, momentum, w), w)
 }
 
-/// The energy of a velocity that is known.
+/// The energy at a known velocity.
 fn energy_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advected) -> Scalar<E> {
     if !effect.is_quadratic() {
         let Limit { l, momentum, .. } = effect.limit(Some(velocity), w);
@@ -115,7 +114,7 @@ fn quadratic_energy<E: Effect>(effect: &E, velocity: &Vector<E>, inertia: &Squar
     velocity.dot(&(*inertia * *velocity)) * real(0.5) + effect.potential(w)
 }
 
-/// The inertia, if it is the same wherever the body is.
+/// The inertia, if it is the same for all configurations.
 pub(crate) fn constant_inertia<E: Effect>(effect: &E) -> Result<Square<E>, SetupError> {
     if effect.has_constant_inertia() && effect.is_quadratic() {
         Ok(effect.inertia(&effect.advected()))
@@ -124,17 +123,17 @@ pub(crate) fn constant_inertia<E: Effect>(effect: &E) -> Result<Square<E>, Setup
     }
 }
 
-/// Whether a momentum determines a velocity, and the kinetic energy is positive along every direction.
+/// Checks that a momentum determines a velocity, and that the kinetic energy is positive along every direction.
 pub(crate) fn check_inertia<G: LieGroup>(inertia: &SquareOf<G>) -> Result<(), SetupError> {
     let (unit, determinant) = G::Vector::solve(inertia, &G::Vector::zero());
     let (pivot, component) = G::Vector::least_pivot(inertia);
-    // Less than this is what rounding leaves of a zero.
+    // A smaller absolute value may be the rounding error of zero.
     if pivot.simd_lt(real::<G::Scalar>(-1e6) * <G::Scalar as SimdRealField>::simd_default_epsilon()).any() {
         return Err(SetupError::NegativeKinetic { pivot: reported(pivot), body: body_of::<G>(component) });
     }
     let is_positive = pivot.simd_gt(real(0.0));
     if !unit.is_finite() || !(determinant.simd_gt(real(0.0)) & is_positive).all() {
-        // Where each pivot is positive, and their product is out of range, it is nobody's.
+        // If each pivot is positive and only their product is out of range, no single body is the cause.
         let body = if is_positive.all() { None } else { body_of::<G>(component) };
         return Err(SetupError::SingularKinetic { determinant: reported(determinant), body });
     }

@@ -1,13 +1,14 @@
-//! Methods: plans of higher order, made of a scene's own step, of its kinetic flow and kicks, or of its continuous limit.
+//! Methods: plans of higher order, composed of a scene's own step, of its kinetic flow and kicks, or from its
+//! continuous limit.
 //!
-//! | method | order | needs | keeps exactly |
+//! | method | order | requires | preserves exactly |
 //! |---|---|---|---|
 //! | [`OwnStep`](crate::motion::OwnStep), by [`Stepper::new`](crate::Stepper::new) | the declaration's, mostly 2 | a kinetic part | Poisson structure, momentum maps |
-//! | [`Composition`], by [`Stepper::composed`](crate::Stepper::composed) | 4 to 10 | a self-adjoint Lagrangian | the same |
-//! | [`Splitting`], by [`Stepper::split`](crate::Stepper::split) | 2 to 10 | SO(3), a potential apart | the same; nothing is solved with a closed [`KineticFlow`] |
-//! | [`ProcessedSplitting`], by [`Stepper::processed`](crate::Stepper::processed) | 4, 6 | the same, and kick derivatives | the same |
-//! | [`Gauss`], by [`Stepper::collocated`](crate::Stepper::collocated) | `4 PAIRS` | SO(3), a potential apart, `f64` | the same |
-//! | [`CotangentGauss`], a map of its own | `4 PAIRS` | any `l(ξ, w)` on any one group, `f64` | the same |
+//! | [`Composition`], by [`Stepper::composed`](crate::Stepper::composed) | 4 to 10 | a self-adjoint Lagrangian | as above |
+//! | [`Splitting`], by [`Stepper::split`](crate::Stepper::split) | 2 to 10 | SO(3), a separate potential | as above; no equation is solved with a closed [`KineticFlow`] |
+//! | [`ProcessedSplitting`], by [`Stepper::processed`](crate::Stepper::processed) | 4, 6 | as above, and derivatives of kicks | as above |
+//! | [`Gauss`], by [`Stepper::collocated`](crate::Stepper::collocated) | `4 PAIRS` | SO(3), a separate potential, `f64` | as above |
+//! | [`CotangentGauss`], a map of its own | `4 PAIRS` | any `l(ξ, w)` on a single group, `f64` | as above |
 //! | [`LinkedBodies`], by [`Stepper::linked`](crate::Stepper::linked) | 2 | links on ball joints, potentials, `f64` | Poisson structure, momentum maps |
 //! | [`JointedBodies`], by [`Stepper::jointed`](crate::Stepper::jointed) | the declaration's, mostly 2 | bodies `(SO3, R3)` and joints, `f64` | Poisson structure, momentum maps |
 

@@ -1,6 +1,6 @@
-//! What holds of all methods.
+//! Tests that hold for all methods.
 
-// Builds with debug assertions ask for no vector instructions.
+// Builds with debug assertions don't use wider vector instructions.
 #![cfg(not(debug_assertions))]
 
 use super::{ExactBody, ProcessedScheme, SplittingScheme};
@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 type Top = Sum<PrincipalBody, Gravity>;
 type Running<P> = State<SO3, ((), Vector3<f64>), <P as Plan<Top>>::Kept>;
 
-/// A step with registers of this length.
+/// A step compiled for vector registers of `WIDE` doubles.
 struct Step<'a, P: Plan<Top>, const WIDE: usize>(&'a Stepper<Top, P>, &'a mut Running<P>);
 
 impl<P: Plan<Top>, const WIDE: usize> Kernel for Step<'_, P, WIDE> {
@@ -47,7 +47,7 @@ fn assert_same_digits<P: Plan<Top>>(stepper: &Stepper<Top, P>) {
     }
 }
 
-/// Where the machine has more than the target's common instructions; elsewhere these are the same.
+/// The test compares different code only if the machine has wider vectors than the target's baseline.
 #[test]
 fn the_instructions_of_the_machine_change_no_digit() {
     let moments = Vector3::new(1.6, 2.6, 3.0);
@@ -59,7 +59,7 @@ fn the_instructions_of_the_machine_change_no_digit() {
     assert_same_digits(&Stepper::collocated::<4>(top, h).unwrap());
     assert_same_digits(&Stepper::collocated::<8>(top, h).unwrap());
     let flow = ExactBody::new(&Inertia::from_principal_moments(moments).unwrap());
-    // Of the second the drifts are longer than polynomials reach.
+    // At the second step size drifts are longer than the range of the polynomials.
     for h in [h, 0.8] {
         assert_same_digits(&Stepper::split(top, h, flow, SplittingScheme::NYSTROM_14).unwrap());
         assert_same_digits(&Stepper::processed(top, h, flow, ProcessedScheme::SIX_A).unwrap());

@@ -1,4 +1,4 @@
-//! A stepper whose scene and method aren't in its type.
+//! A stepper without its scene and method in the type.
 
 use alloc::boxed::Box;
 use alloc::rc::Rc;
@@ -16,20 +16,20 @@ use crate::motion::state::State;
 use crate::motion::stepper::Stepper;
 use crate::motion::summation::Motion;
 
-/// A [`Stepper`] of any scene and any method on the group `G`, by [`Stepper::into_any`]: for programs that find out when
-/// they run what they step.
+/// A [`Stepper`] of any scene and any method on the group `G`, by [`Stepper::into_any`]: for programs that choose scene
+/// and method at run time.
 ///
-/// It steps, runs and is read as an [`Integrator`]. A step costs an indirect call more. A state of another stepper on this
-/// group goes on from its attitude and momentum.
+/// It steps, runs and is read as an [`Integrator`]. A step costs one more indirect call. A state of another stepper on
+/// this group continues from its attitude and momentum.
 ///
-/// A copy is the same stepper, and costs nothing.
+/// A clone is the same stepper, and costs nothing.
 pub struct AnyStepper<G: LieGroup, A> {
     stepper: Rc<dyn Integrator<Group = G, Advected = A, State = AnyState<G, A>>>,
     start: Rc<Start<G, A>>,
     cost: Cost,
 }
 
-/// Starts a motion from an attitude and a velocity.
+/// The function that constructs a state from an attitude and a velocity.
 type Start<G, A> = dyn Fn(G, <G as LieGroup>::Vector) -> Result<AnyState<G, A>, SetupError>;
 
 impl<G: LieGroup, A> Clone for AnyStepper<G, A> {
@@ -41,7 +41,7 @@ impl<G: LieGroup, A> Clone for AnyStepper<G, A> {
 /// The state of an [`AnyStepper`].
 pub type AnyState<G, A> = State<G, A, AnyHistory>;
 
-/// What a method keeps, whichever it is.
+/// The memory of any method.
 #[doc(hidden)]
 pub struct AnyHistory(Box<dyn AnyMemory>);
 
@@ -68,7 +68,7 @@ impl AnyHistory {
 
 impl Clone for AnyHistory {
     fn clone(&self) -> Self {
-        // Through the box: that is such a memory, too.
+        // Dereferenced explicitly, because the box implements `AnyMemory`, too.
         Self(self.0.as_ref().copied())
     }
 }
@@ -85,8 +85,8 @@ impl Debug for AnyHistory {
     }
 }
 
-/// How a wrapper steps and is read. Its `change` steps what it wraps, which reads a state as `own` and a motion as `seen`,
-/// and calls `shown` after each stretch.
+/// The functions of an integrator around another. Its `change` steps the inner integrator, which reads a state as `own`
+/// and a motion as `seen`, and calls `shown` after each stretch.
 macro_rules! wraps {
     ($self:ident, $inner:expr, $state:ident => $own:expr, $motion:ident: $type:ty, $seen:expr, $next:ident => $shown:expr) => {
         fn step(&$self, state: &mut Self::State) -> Result<StepReport, StepError> {
@@ -148,7 +148,7 @@ macro_rules! wraps {
     };
 }
 
-/// An integrator that leaves out the type of its state.
+/// An integrator that erases the type of its state's memory.
 struct Erasure<I>(I);
 
 impl<I, G, A, K> Erasure<I>
@@ -158,7 +158,7 @@ where
     A: Advected<G>,
     K: AnyMemory + Clone,
 {
-    /// The state that the integrator needs: what another has kept is of no use, and it begins anew.
+    /// The inner integrator's state. A memory of another method is useless to it, and a new one is initialised.
     fn own(&self, state: &AnyState<G, A>) -> I::State {
         if let Some(kept) = (state.kept.0.as_ref() as &dyn Any).downcast_ref::<K>() {
             return State { motion: state.motion, kept: kept.clone(), elapsed: state.elapsed };
@@ -169,7 +169,7 @@ where
         own
     }
 
-    /// Makes steps. After an error, too, the state is that after the last of them.
+    /// Applies `steps` to the inner state. The state is updated to the last step even after an error.
     fn change<R>(&self, state: &mut AnyState<G, A>, steps: impl FnOnce(&mut I::State) -> R) -> R {
         let mut own = self.own(state);
         let made = steps(&mut own);
@@ -216,7 +216,7 @@ where
 
 /// # Wrap: a stepper of any type
 impl<S: Effect + 'static, P: Plan<S, Kept: 'static> + 'static> Stepper<S, P> {
-    /// This stepper without its scene and method in the type.
+    /// Erases the scene and the method from the type.
     #[must_use]
     pub fn into_any(self) -> AnyStepper<Group<S>, S::Advected> {
         let (cost, stepper) = (self.plan.cost(), Rc::new(Erasure(self)));
@@ -227,16 +227,16 @@ impl<S: Effect + 'static, P: Plan<S, Kept: 'static> + 'static> Stepper<S, P> {
 }
 
 impl<G: LieGroup, A> AnyStepper<G, A> {
-    /// As [`Stepper::start`].
+    /// A state from an attitude and a velocity, as by [`Stepper::start`].
     ///
     /// # Errors
     ///
-    /// As [`Stepper::start`].
+    /// The errors of [`Stepper::start`].
     pub fn start(&self, attitude: impl Into<G>, velocity: G::Vector) -> Result<AnyState<G, A>, SetupError> {
         (self.start)(attitude.into(), velocity)
     }
 
-    /// As [`Plan::cost`].
+    /// The cost of a step, as by [`Plan::cost`].
     #[must_use]
     pub fn cost(&self) -> Cost {
         self.cost
@@ -268,7 +268,7 @@ impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
     wraps!(self, *self.stepper, state => state, motion: &Motion<G, A>, motion, next => next);
 }
 
-/// A stepper that hides what is advected: it is kept with what the method keeps.
+/// A stepper that hides the advected parameters: its memory contains them.
 struct WithoutAdvected<G: LieGroup, A>(AnyStepper<G, A>);
 
 #[derive(Clone, Debug, PartialEq)]
@@ -317,10 +317,11 @@ impl<G: LieGroup, A: Advected<G>> Integrator for WithoutAdvected<G, A> {
 }
 
 impl<G: LieGroup, A: Advected<G> + 'static> AnyStepper<G, A> {
-    /// The same without what is advected in its type: for programs that keep steppers of different scenes side by side.
+    /// Erases the advected parameters from the type: for programs with steppers of different scenes in one collection.
     ///
-    /// The steps are the same to the bit. Of a motion alone what is advected is as its attitude sees it, so that a
-    /// [velocity](Integrator::velocity) and an [energy](Integrator::energy) that depend on it are the same to rounding.
+    /// The steps are the same to the bit. The advected parameters of a motion without a memory are computed from its
+    /// attitude. So a [velocity](Integrator::velocity) and an [energy](Integrator::energy) that depend on them are the
+    /// same to rounding.
     #[must_use]
     pub fn hiding_advected(self) -> AnyStepper<G, ()> {
         let (start, cost) = (Rc::clone(&self.start), self.cost);

@@ -1,4 +1,4 @@
-//! Bodies in lanes, of which each may stop by itself.
+//! Bodies in lanes, each of which may stop independently.
 
 use alloc::vec::Vec;
 
@@ -6,8 +6,8 @@ use crate::error::{SetupError, StepError};
 use crate::motion::integrator::{Integrator, Moment};
 use crate::numbers::{InLanes, Lanes};
 
-/// A stepper that can be one of several in [lanes](crate::numbers::Real#lanes) of the scalar `W`: every one whose scene and
-/// method [can](InLanes).
+/// A stepper that can take a [lane](crate::numbers::Real#lanes) of the scalar `W`: every one whose scene and method
+/// [can](InLanes).
 #[diagnostic::on_unimplemented(
     message = "bodies stepped by `{Self}` can't be in lanes of `{W}`",
     label = "can't be put into lanes",
@@ -24,11 +24,11 @@ impl<W, M> Batchable<W> for M where
 {
 }
 
-/// Several bodies that are moved together in [lanes](crate::numbers::Real#lanes) of the scalar `W`, each with the bits that it
-/// has alone and until its own end: one whose step has no solution stops there with its error and its state, and the
-/// others go on.
+/// Several bodies that are stepped together in [lanes](crate::numbers::Real#lanes) of the scalar `W`. Each has the same
+/// bits as alone, and its own end: a body whose step has no solution stops with its error and its last state, and the
+/// others continue.
 ///
-/// `M` is the stepper of one of them. They share a method, and may differ in parameters, step and start.
+/// `M` is the stepper of a single body. All share a method, and may differ in parameters, step and start.
 ///
 /// # Examples
 ///
@@ -59,37 +59,37 @@ impl<W, M> Batchable<W> for M where
 pub struct Batch<W, M: Batchable<W>> {
     stepper: M::Together,
     state: <M::Together as Integrator>::State,
-    /// A lane whose body has stopped, or that never had one, follows another, body and all, so that nothing in it fails.
+    /// A lane without a running body duplicates another body, so that no step of it fails alone.
     seats: Vec<Seat<M::State>>,
 }
 
-/// What has become of the body in the lane of this number.
+/// The status of the body in the lane of this number.
 enum Seat<S> {
     Running,
     Stopped(S, StepError),
 }
 
 impl<W, M: Batchable<W>> Batch<W, M> {
-    /// These bodies, from the states given.
+    /// A batch of these bodies in these states.
     ///
     /// # Errors
     ///
-    /// [`SetupError::Unlike`] names the first that can't be in a lane beside those before it; of no bodies at all that
-    /// is the lane 0.
+    /// [`SetupError::Unlike`] names the first body that can't share lanes with those before it; without bodies it names
+    /// lane 0.
     ///
     /// # Panics
     ///
-    /// Where there are more bodies than lanes.
+    /// More bodies than lanes.
     pub fn new(bodies: &[(M, M::State)]) -> Result<Self, SetupError> {
         Self::joined(bodies).map_err(|lane| SetupError::Unlike { lane })
     }
 
-    /// As [`new`](Self::new), of as many of these bodies, from the first on, as can be beside each other; with their number.
-    /// `None` where there are no bodies.
+    /// A batch of the longest leading part of these bodies that can share lanes, and its number of bodies. `None` if
+    /// there are no bodies.
     ///
     /// # Panics
     ///
-    /// Where there are more bodies than lanes.
+    /// More bodies than lanes.
     #[must_use]
     pub fn of_first(mut bodies: &[(M, M::State)]) -> Option<(Self, usize)> {
         while !bodies.is_empty() {
@@ -101,7 +101,7 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         None
     }
 
-    /// All of them, or the number of the first that is unlike those before it.
+    /// A batch of all bodies, or the number of the first one that differs from those before it.
     fn joined(bodies: &[(M, M::State)]) -> Result<Self, usize> {
         let ((stepper, state), others) = bodies.split_first().ok_or(0_usize)?;
         let mut batch = Self {
@@ -121,7 +121,7 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         self.stepper.set_lane(lane, stepper) && self.state.set_lane(lane, state) && self.stepper.is_in_step(&self.state)
     }
 
-    /// Makes `steps` steps of every body that hasn't stopped, as by [`run_stretches`](Integrator::run_stretches) of its own.
+    /// Steps every running body `steps` times, as its own [`run_stretches`](Integrator::run_stretches) would.
     pub fn run(&mut self, steps: u64) {
         if self.running().next().is_none() {
             return;
@@ -139,8 +139,8 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         }
     }
 
-    /// Stops the body whose step fails first within these, and has another in its lane; whether there is such a one. The
-    /// others can be moved together then.
+    /// Stops the body whose step is the first to fail, and fills its lane with another. Returns whether there was such
+    /// a body, so that the others can be stepped together.
     #[cold]
     fn stop_one(&mut self, steps: u64) -> bool {
         let mut state = self.state.clone();
@@ -157,7 +157,7 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         other.is_none_or(|other| self.set(lane, &self.stepper.lane(other), &self.state.lane(other)))
     }
 
-    /// Each body alone, one after another; then those that have moved are together again.
+    /// Steps each body alone, and then collects those that haven't stopped into lanes again.
     #[cold]
     fn run_alone(&mut self, steps: u64) {
         let running: Vec<usize> = self.running().collect();
@@ -174,31 +174,31 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         for (lane, stepper, state) in others {
             assert!(self.set(*lane, stepper, state), "what lanes share doesn't depend on where a body is");
         }
-        // The first is in all lanes, so in its own, too.
+        // The first body was splatted into all lanes, its own included.
     }
 
-    /// The states in all lanes; the lane of a body that has stopped has another's.
+    /// The states in all lanes; the lane of a body that has stopped contains another's.
     #[must_use]
     pub fn states(&self) -> &<M::Together as Integrator>::State {
         &self.state
     }
 
-    /// All lanes at the end of their last step. The lane of a body that has stopped shows another.
+    /// All lanes at the end of their last step. The lane of a body that has stopped contains another's state.
     #[must_use]
     pub fn together(&self) -> Moment<'_, M::Together> {
         Moment::of_step(&self.stepper, &self.state)
     }
 
-    /// The bodies that haven't stopped, by their numbers.
+    /// The numbers of the bodies that haven't stopped.
     pub fn running(&self) -> impl Iterator<Item = usize> {
         self.seats.iter().enumerate().filter(|(_, seat)| matches!(seat, Seat::Running)).map(|(lane, _)| lane)
     }
 
-    /// The state of a body, if it has stopped that before the step that failed.
+    /// The state of a body; if it has stopped, the state before the step that failed.
     ///
     /// # Panics
     ///
-    /// Where there is no such body.
+    /// A number without a body.
     #[must_use]
     pub fn state(&self, body: usize) -> M::State {
         match &self.seats[body] {
@@ -207,11 +207,11 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         }
     }
 
-    /// Why a body has stopped, if it has.
+    /// The error that stopped a body, if it has stopped.
     ///
     /// # Panics
     ///
-    /// Where there is no such body.
+    /// A number without a body.
     #[must_use]
     pub fn error(&self, body: usize) -> Option<&StepError> {
         match &self.seats[body] {

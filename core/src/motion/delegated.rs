@@ -1,7 +1,7 @@
-//! Plans around another plan: what they hand on to it.
+//! Delegation of a wrapping plan's functions to the inner plan.
 
-/// Writes functions of a plan that wraps another, as `delegate_plan!(plan, |kept| *kept; keep cost)`: the field of the other
-/// plan, and the place of its memory in that of this one.
+/// Generates functions of a plan that wraps another, as in `delegate_plan!(plan, |kept| *kept; keep cost)`: the field
+/// of the inner plan, the inner memory as a place in the wrapper's, and the names of the functions.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! delegate_plan {

@@ -1,4 +1,4 @@
-//! What one application of a flow makes.
+//! The result of one application of a flow.
 
 use core::fmt;
 
@@ -6,34 +6,34 @@ use crate::groups::LieGroup;
 use crate::mechanics::{Effect, Group, Scalar, Vector};
 use crate::numbers::{Entries as _, Mask, real};
 
-/// One application of a flow.
+/// The increment `F_i` of one application of a flow, and the momentum and advected parameters after it.
 #[derive(Clone, Copy)]
 pub struct Increment<L: Effect> {
-    /// The coordinates `ξ` of `F_i = τ(ξ)`: a guess for the next solve.
+    /// The coordinates `ξ` of `F_i = τ(ξ)`: an initial guess for the next solve.
     pub coordinates: Vector<L>,
-    /// `F_i − I`.
+    /// The matrix `F_i − I`.
     pub increment: <Group<L> as LieGroup>::Matrix,
-    /// `μ_{i+1}`.
+    /// The momentum `μ_{i+1}`.
     pub momentum: Vector<L>,
-    /// `w_{i+1}`.
+    /// The advected parameters `w_{i+1}`.
     pub advected: L::Advected,
     /// Newton iterations, counted as in [`StepReport`](crate::motion::StepReport).
     pub iterations: u32,
-    /// `μ_{i+1} − μ_i`, before it was rounded to the digits of `μ_i`.
+    /// The change `μ_{i+1} − μ_i`, before it was rounded to the digits of `μ_i`.
     pub(crate) change: Vector<L>,
-    /// `ξ/2` and whether it is far from zero, as the solve has found them.
+    /// Half the coordinates, `ξ/2`, and whether they are far from zero.
     pub(crate) half: Vector<L>,
     pub(crate) far: Mask<Scalar<L>>,
 }
 
 impl<L: Effect> Increment<L> {
-    /// `F_i`.
+    /// The group element `F_i`.
     #[must_use]
     pub fn element(&self) -> Group<L> {
         Group::<L>::from_increment(&self.increment)
     }
 
-    /// The sum of all that the step has made.
+    /// The sum of all components after the step, which isn't finite if one of them isn't.
     #[hot]
     pub(crate) fn total(&self) -> Scalar<L> {
         let mut total = real(0.0);

@@ -1,4 +1,4 @@
-//! What all that steps has in common: what is written for it goes with every method.
+//! The common interface of all integrators, for tools that work with every method.
 
 use alloc::boxed::Box;
 use core::ops::{ControlFlow, Deref};
@@ -13,52 +13,52 @@ use crate::numbers::{Entries as _, real};
 
 roots!();
 
-/// Something that steps a motion: a [`Stepper`](crate::Stepper) with any plan, an [`AnyStepper`](crate::motion::AnyStepper), a
-/// [`CotangentGauss`](crate::methods::CotangentGauss).
+/// An integrator of a motion: a [`Stepper`](crate::Stepper) with any plan, an
+/// [`AnyStepper`](crate::motion::AnyStepper), a [`CotangentGauss`](crate::methods::CotangentGauss).
 ///
-/// Recording, events and frames are written for this trait, and so go with every method. Its methods are those of
-/// [`Stepper`](crate::Stepper), but for two, which are the dense output: [`part`](Self::part) and [`state_at`](Self::state_at).
+/// Recording, events and frames are written for this trait, and so work with every method. Its methods are those of
+/// [`Stepper`](crate::Stepper), and two more for dense output: [`part`](Self::part) and [`state_at`](Self::state_at).
 pub trait Integrator {
     /// The group.
     type Group: LieGroup;
     /// The advected parameters.
     type Advected: Advected<Self::Group>;
-    /// Its state: a motion, and what is kept from step to step.
+    /// The state: a motion, and the method's memory from step to step.
     type State: Clone + Deref<Target = Motion<Self::Group, Self::Advected>>;
 
-    /// One step; on an error the state is unchanged.
+    /// Makes one step; on an error the state is unchanged.
     ///
     /// # Errors
     ///
-    /// As [`Stepper::step`](crate::Stepper::step).
+    /// The errors of [`Stepper::step`](crate::Stepper::step).
     fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError>;
 
     /// Makes `steps` steps; returns the sum of their iterations. On an error the state is unchanged.
     ///
     /// # Errors
     ///
-    /// As [`Stepper::run`](crate::Stepper::run).
+    /// The errors of [`Stepper::run`](crate::Stepper::run).
     fn run(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError>;
 
-    /// As [`run`](Self::run), without a copy to go back to: on an error the state may be anywhere, and the error doesn't
-    /// say which step would have a solution.
+    /// A [`run`](Self::run) without a copy of the state: on an error the state is unspecified, and the error doesn't
+    /// name a step that would have a solution.
     ///
     /// # Errors
     ///
-    /// [`StepError`] where one of the steps has no solution.
+    /// [`StepError`] if one of the steps has no solution.
     fn attempt(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
         self.run(state, steps)
     }
 
-    /// A run in stretches: `steps` steps first, then each time as many as `next` returns for the motion reached, until it
-    /// returns 0. Returns all iterations. Where `steps` is 0, no step is made and `next` isn't called.
+    /// A run in stretches: `steps` steps first, then each time as many as `next` returns for the motion reached, until
+    /// it returns 0. Returns the number of all iterations. If `steps` is 0, no step is made and `next` isn't called.
     ///
-    /// Where there are fewer steps it makes those: on an error the state is that of the last. Where a run has an error
-    /// and none of its single steps has, which digits of a splitting may do, it is made of these.
+    /// If a step fails, the run ends with the error, and the state is that before the failed step. If a run fails but
+    /// none of its single steps does, which rounding in a splitting can cause, the run consists of the single steps.
     ///
     /// # Errors
     ///
-    /// Of the step that has no solution, as [`Stepper::step`](crate::Stepper::step).
+    /// The errors of [`Stepper::step`](crate::Stepper::step), for the step that has no solution.
     fn run_stretches(
         &self,
         state: &mut Self::State,
@@ -68,66 +68,68 @@ pub trait Integrator {
         run_or_step(self, state, steps, next)
     }
 
-    /// Whether the lanes of a state go on in one way, as they have to in a [`Batch`](crate::motion::Batch); one of a body
-    /// alone always does.
+    /// Whether the lanes of a state can be stepped together in a [`Batch`](crate::motion::Batch); always true for a
+    /// single body.
     #[must_use]
     fn is_in_step(&self, _state: &Self::State) -> bool {
         true
     }
 
-    /// The motion a fraction of a step after this state, which stays where it is.
+    /// The motion a fraction of a step after this state, which stays unchanged.
     ///
-    /// It is a step of the same method with that fraction of `h`. So it has the method's order and keeps what its steps
-    /// keep, to rounding: the group, the momentum maps, and for a given fraction the Poisson structure. It costs one step,
-    /// and the folding of its constants. All fractions from 0 to 1 are a path that joins this state to the next, to
-    /// rounding; where a remedy made the step it may jump, by as much as the two steps differ. A negative fraction is a
-    /// step back. The count of steps is that of the state.
+    /// It is a step of the same method with that fraction of `h`. So it has the method's order and, to rounding, its
+    /// invariants: the group, the momentum maps, and for a constant fraction the Poisson structure. It costs one step,
+    /// and the folding of its constants. The fractions from 0 to 1 are a path from this state to the next, to rounding;
+    /// if a remedy replaced the step, the path may jump by the difference of the two results. A negative fraction is a
+    /// step back. The number of steps is that of the state.
     ///
     /// # Errors
     ///
-    /// As [`Stepper::step`](crate::Stepper::step).
+    /// The errors of [`Stepper::step`](crate::Stepper::step).
     fn part(
         &self,
         state: &Self::State,
         fraction: ScalarIn<Self>,
     ) -> Result<Motion<Self::Group, Self::Advected>, StepError>;
 
-    /// The state of another motion, to go on from its attitude and momentum; see [`Stepper::adopt`](crate::Stepper::adopt).
+    /// A state with the attitude and momentum of another motion; see [`Stepper::adopt`](crate::Stepper::adopt).
     fn adopt(&self, motion: &Motion<Self::Group, Self::Advected>) -> Self::State;
 
-    /// A motion whose advected values aren't known, with those that are seen from its attitude after its steps.
+    /// The motion with its advected parameters, computed from its attitude and its number of steps.
     fn seen(&self, motion: &Motion<Self::Group, ()>) -> Motion<Self::Group, Self::Advected> {
         let mut seen = *self.adopt(&seeing(motion, Self::Advected::from_entries(&mut || real(0.0))));
         seen.steps = motion.steps;
         seen
     }
 
-    /// How much arithmetic a step is, about; nothing where it isn't known.
+    /// The approximate number of operations of a step; `None` if it isn't known.
     fn cost(&self) -> Option<Cost> {
         None
     }
 
-    /// The step `h`, s; where steps vary, their unit.
+    /// The step `h`, s; if steps vary, their unit.
     fn step_size(&self) -> ScalarIn<Self>;
 
-    /// The body velocity, on SO(3) in rad/s; NaN where a momentum has none, see [`Stepper::velocity`](crate::Stepper::velocity).
+    /// The body velocity, on SO(3) in rad/s; NaN if no velocity has this momentum, see
+    /// [`Stepper::velocity`](crate::Stepper::velocity).
     fn velocity(&self, motion: &Motion<Self::Group, Self::Advected>) -> <Self::Group as LieGroup>::Vector;
 
-    /// The energy, J; NaN where a momentum has none.
+    /// The energy, J; NaN if no velocity has this momentum.
     fn energy(&self, motion: &Motion<Self::Group, Self::Advected>) -> ScalarIn<Self>;
 
-    /// The inertia in factors, on SO(3) of kg m², where it is the same for all motions, so that
-    /// [`velocity_and_energy`](Self::velocity_and_energy) of many needn't factorise it again; `None` where it isn't, or
-    /// isn't known.
+    /// The factorised inertia, on SO(3) of kg m², if it is the same for all motions, so that
+    /// [`velocity_and_energy`](Self::velocity_and_energy) of many motions needn't factorise it again; `None` if it
+    /// varies or isn't known.
     fn factored_inertia(&self) -> Option<FactoredInertia<Self::Group>> {
         None
     }
 
-    /// The [velocity](Self::velocity), on SO(3) in rad/s, and the [energy](Self::energy), J, to the bit, with what they
-    /// share computed once.
+    /// The [velocity](Self::velocity), on SO(3) in rad/s, and the [energy](Self::energy), J, to the bit, without
+    /// computing common terms twice.
     ///
-    /// `inertia` is this integrator's own [`factored_inertia`](Self::factored_inertia), which may be made once for many
-    /// motions; that of another gives the numbers of neither. With `None` it is solved for each motion anew.
+    /// `inertia` is this integrator's [`factored_inertia`](Self::factored_inertia), which may be computed once for many
+    /// motions; with that of another integrator the results are wrong. `None` solves with the inertia for each motion
+    /// anew.
     fn velocity_and_energy(
         &self,
         motion: &Motion<Self::Group, Self::Advected>,
@@ -137,25 +139,26 @@ pub trait Integrator {
         (self.velocity(motion), self.energy(motion))
     }
 
-    /// The time since the start, s; `n h` where all steps are of `h`.
+    /// The time since the start, s: `n h` if all steps have the length `h`.
     #[allow(clippy::cast_precision_loss)] // 2⁵³ steps take longer than a career
     fn time(&self, state: &Self::State) -> ScalarIn<Self> {
         self.step_size() * real(state.steps as f64)
     }
 
-    /// The length of the next step, s, not finite where there is none; nothing where all steps are of
+    /// The length of the next step, s, not finite if there is none; `None` if all steps have the length
     /// [`step_size`](Self::step_size).
     fn length(&self, _state: &Self::State) -> Option<ScalarIn<Self>> {
         None
     }
 
-    /// The motion at any time, s, from a state that stays where it is: whole steps, of `h` or back of `−h`, and a
-    /// [`part`](Self::part) of one.
+    /// The motion at any time, s, from a state that stays unchanged: whole steps of `h`, or of `−h` backwards, and a
+    /// [`part`](Self::part) of a step.
     ///
     /// # Errors
     ///
-    /// [`StepError::NonFinite`] for a time that isn't finite, or so far away that its steps can't be counted; where steps
-    /// vary, [`StepError::Past`] for one before the state; otherwise as [`Stepper::step`](crate::Stepper::step).
+    /// [`StepError::NonFinite`] for a time that isn't finite, or that takes too many steps to count; if steps vary,
+    /// [`StepError::Past`] for a time before the state; otherwise the errors of
+    /// [`Stepper::step`](crate::Stepper::step).
     ///
     /// # Examples
     ///
@@ -177,7 +180,7 @@ pub trait Integrator {
     where
         ScalarIn<Self>: Into<f64>,
     {
-        /// More are no number of steps that a run can make.
+        /// A larger number of steps isn't exact in a double, and no run is that long.
         const MOST: f64 = 9e15;
         let h: f64 = self.step_size().into();
         if h == 0.0 && time.is_finite() {
@@ -206,12 +209,12 @@ pub trait Integrator {
     }
 }
 
-/// The same motion with these advected values.
+/// The motion with other advected parameters.
 pub(super) fn seeing<G: LieGroup, A, B>(motion: &Motion<G, A>, advected: B) -> Motion<G, B> {
     Motion { attitude: motion.attitude, momentum: motion.momentum, advected, steps: motion.steps }
 }
 
-/// [`Integrator::run_stretches`] by runs, or by single steps where a run has an error.
+/// [`Integrator::run_stretches`] by runs, and by single steps if a run fails.
 pub(super) fn run_or_step<I: Integrator + ?Sized>(
     integrator: &I,
     state: &mut I::State,
@@ -233,7 +236,7 @@ pub(super) fn run_or_step<I: Integrator + ?Sized>(
     Ok(iterations)
 }
 
-/// [`Integrator::state_at`] where steps vary.
+/// [`Integrator::state_at`] for steps of varying length.
 fn ahead<I>(integrator: &I, mut state: I::State, time: f64) -> Result<Motion<I::Group, I::Advected>, StepError>
 where
     I: Integrator<Group: LieGroup<Scalar: Into<f64>>> + ?Sized,
@@ -259,9 +262,9 @@ where
 /// The scalar of an integrator.
 pub type ScalarIn<I> = <<I as Integrator>::Group as LieGroup>::Scalar;
 
-/// A motion at a time, at the end of a step or between two, with what steps it.
+/// A motion at a time, at the end of a step or between two, with its integrator.
 ///
-/// It is read as a [`Motion`], to which it derefs.
+/// The motion's methods are available by `Deref` to [`Motion`].
 #[derive(Debug)]
 pub struct Moment<'a, I: Integrator + ?Sized> {
     integrator: &'a I,
@@ -271,13 +274,13 @@ pub struct Moment<'a, I: Integrator + ?Sized> {
 }
 
 impl<'a, I: Integrator + ?Sized> Moment<'a, I> {
-    /// At the end of a step.
+    /// The moment at the end of a step.
     #[must_use]
     pub fn of_step(integrator: &'a I, state: &'a I::State) -> Self {
         Self { integrator, motion: state, time: integrator.time(state), rising: None }
     }
 
-    /// At any time, s.
+    /// The moment of a motion at any time, s.
     pub(crate) fn at(
         integrator: &'a I,
         motion: &'a Motion<I::Group, I::Advected>,
@@ -305,13 +308,13 @@ impl<'a, I: Integrator + ?Sized> Moment<'a, I> {
         self.integrator.energy(self.motion)
     }
 
-    /// What steps the motion.
+    /// The integrator of the motion.
     #[must_use]
     pub fn integrator(&self) -> &'a I {
         self.integrator
     }
 
-    /// At a crossing of an event, whether its function rises there.
+    /// Whether the event's function rises, at a crossing of an event.
     #[must_use]
     pub fn rising(&self) -> Option<bool> {
         self.rising
@@ -326,15 +329,15 @@ impl<I: Integrator + ?Sized> Deref for Moment<'_, I> {
     }
 }
 
-/// What an observer says to the run that it observes: nothing, whether to go on, or that it failed.
+/// An observer's answer to the run: to continue, to stop, or its own error.
 ///
-/// Closures return `()`, a [`ControlFlow`], or a `Result` of one of these.
+/// Closures return `()`, which continues, a [`ControlFlow`], or a `Result` of one of these.
 pub trait Answer {
-    /// To go on or not, or the error.
+    /// Whether the run continues, or the observer's error.
     ///
     /// # Errors
     ///
-    /// The observer's own.
+    /// The observer's own error.
     fn verdict(self) -> Result<ControlFlow<()>, Box<dyn core::error::Error + Send + Sync>>;
 }
 

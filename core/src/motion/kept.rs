@@ -1,4 +1,4 @@
-//! What a method remembers from step to step, number by number.
+//! The memory of a method from step to step, as numbers.
 
 use core::fmt::Debug;
 
@@ -6,12 +6,12 @@ use crate::motion::state::ElapsedTime;
 use crate::numbers::{Coordinates, History, Real, replaced};
 use crate::solving::{Guess, WarmStart};
 
-/// What a [`Plan`](crate::motion::Plan) keeps from step to step, as numbers that a checkpoint stores.
+/// The memory of a [`Plan`](crate::motion::Plan) from step to step, as numbers for a checkpoint.
 pub trait Kept<T: Real>: Copy + Debug + PartialEq {
-    /// A memory of the same kind with other numbers.
+    /// A memory of the same type with other numbers.
     ///
-    /// `number` is called with each number of this memory, in a fixed order, and returns the one that takes its place. How
-    /// often it is called doesn't depend on the numbers. `None` if the new ones can't be those of such a memory.
+    /// `number` is called with each number of this memory, in a fixed order, and returns its replacement. The number of
+    /// calls doesn't depend on the numbers. Returns `None` if the replacements aren't valid for this type.
     fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self>;
 
     /// Visits all numbers, in the order of [`with_numbers`](Self::with_numbers).
@@ -22,7 +22,7 @@ pub trait Kept<T: Real>: Copy + Debug + PartialEq {
         });
     }
 
-    /// As kept for a next step that is longer by this ratio: increments are proportional to its length.
+    /// The memory for a next step that is longer by this ratio: increments are proportional to the step.
     #[must_use]
     fn scaled(&self, _ratio: T) -> Self {
         *self
@@ -41,10 +41,10 @@ impl<T: Real> Kept<T> for ElapsedTime<T> {
     }
 }
 
-/// Of a plan around another: what that keeps, and what it keeps besides.
+/// The memory of a plan around another: that of the inner plan, and its own.
 impl<T: Real, A: Kept<T>, B: Kept<T>> Kept<T> for (A, B) {
     fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self> {
-        // Both are visited even if the first can't be: how many numbers there are doesn't depend on their values.
+        // Both are visited even if the first is invalid: the number of calls doesn't depend on the values.
         let (first, second) = (self.0.with_numbers(number), self.1.with_numbers(number));
         Some((first?, second?))
     }
@@ -84,7 +84,7 @@ mod tests {
 
     type Memory = WarmStart<Vector2<f64>, Polynomial<Vector2<f64>>>;
 
-    /// Half the increment, a guess, how many increments there were, and their differences.
+    /// A memory from half the increment, a guess, the number of increments, and their differences.
     fn read(increments: f64) -> Option<Memory> {
         let mut numbers = [1.0, 2.0, 3.0, 4.0, increments].into_iter().chain((0..14).map(f64::from));
         Memory::of(Vector2::zeros(), true).with_numbers(&mut |_| numbers.next().unwrap())

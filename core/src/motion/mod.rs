@@ -1,12 +1,12 @@
-//! Motion: the state of a body, the stepper that carries it along, and the flows of the thesis, (2.5) and (2.8).
+//! Motion: the state of a body, the stepper that advances it, and the flows of the thesis, (2.5) and (2.8).
 //!
-//! A [`Stepper`] is a scene and a [`Plan`], the method with its constants folded; a [`State`] is a [`Motion`] and what
-//! the plan keeps from step to step. [`OwnStep`] is the plan of the scene's own step; the others are in
-//! [`methods`](crate::methods), and what is put around a plan in [`with`](crate::with). A [`RightHandSide`] is the
-//! continuous motion, for an ODE solver of another library. What steps is an [`Integrator`], whatever its method: with
-//! it a motion is read between its steps, and [recorded and stopped](crate::recording).
+//! A [`Stepper`] is a scene and a [`Plan`], the method with its constants folded; a [`State`] is a [`Motion`] and the
+//! plan's memory from step to step. [`OwnStep`] is the plan of the scene's own step; other plans are in
+//! [`methods`](crate::methods), and wrappers of plans in [`with`](crate::with). A [`RightHandSide`] is the continuous
+//! motion, for an ODE solver of another library. Every method is an [`Integrator`], by which a motion is read between
+//! its steps, and [recorded and stopped](crate::recording).
 
-// First, as on its page in the documentation.
+// The first module, because its page comes first in the documentation.
 mod stepper;
 
 mod any;

@@ -12,23 +12,24 @@ use crate::numbers::{Coordinates as _, Kernel, Vectors, dispatch, is_finite, rea
 use crate::solving::largest_fraction;
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue};
 
-/// A method with its constants folded for a scene and a step: what a [`Stepper`](crate::Stepper) steps by.
+/// A method with its constants folded for a scene and a step: the part of a [`Stepper`](crate::Stepper) that makes its
+/// steps.
 ///
-/// All that is put around a step (`start`, `run`, `step_forced`, `adopt`, `max_step`, `inverse`, compensation, remedies,
-/// checkpoints) works with any plan. `examples/how-to-add-a-method.rs` has one of a user's own.
+/// All functions around a step (`start`, `run`, `step_forced`, `adopt`, `max_step`, `inverse`, compensation, remedies,
+/// checkpoints) work with any plan. `examples/how-to-add-a-method.rs` has a user's own plan.
 ///
 /// # Contract
 ///
-/// - [`step`](Self::step) makes one step of `h` and counts it, or returns an error and leaves motion and memory as they
-///   were.
-/// - It changes the motion by [`Summation`]'s functions only, and depends on nothing but its arguments: the same
-///   arguments give the same bits.
+/// - [`step`](Self::step) makes one step of `h` and counts it, or returns an error and leaves motion and memory
+///   unchanged.
+/// - It changes the motion only by the functions of [`Summation`], and depends on nothing but its arguments: equal
+///   arguments give identical bits.
 pub trait Plan<S: Effect>: Sized {
-    /// What one step leaves for the next: guesses, stages. `()` where there is nothing.
+    /// The memory of one step for the next: guesses, stages. `()` if there is none.
     type Kept: Kept<Scalar<S>>;
 
-    /// Which vector instructions a step takes where the machine is found to have them. A declared step of a body alone
-    /// gains nothing by them, several bodies in [lanes](crate::numbers::Real#lanes) or in an array do.
+    /// The vector instructions of a step, if the machine has them. A declared step of a single body doesn't become
+    /// faster by them; several bodies in [lanes](crate::numbers::Real#lanes) or in an array do.
     const VECTORS: Vectors = if <Scalar<S> as SimdValue>::LANES > 1 || <Group<S> as LieGroup>::BODIES > 1 {
         Vectors::Four
     } else {
@@ -38,37 +39,37 @@ pub trait Plan<S: Effect>: Sized {
     /// The step `h`, s.
     fn step_size(&self) -> Scalar<S>;
 
-    /// The same method for another step.
+    /// The method with another step.
     ///
     /// # Errors
     ///
-    /// [`SetupError`] where the scene can't be stepped by it.
+    /// [`SetupError`] if the method can't step the scene.
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError>;
 
-    /// A motion as it begins: what is advected or given may have to do with the rest.
+    /// The initial motion, for plans whose advected or prescribed parameters depend on the rest of it.
     fn begun(&self, _scene: &S, motion: MotionOf<S>) -> MotionOf<S> {
         motion
     }
 
-    /// What is kept at the beginning of a motion.
+    /// The memory at the beginning of a motion.
     fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept;
 
-    /// Whether a motion may start here. Of a method that holds bodies in joints: whether these are closed.
+    /// Checks that a motion may start here. A plan of jointed bodies checks that the joints are closed.
     ///
     /// # Errors
     ///
-    /// [`SetupError`] where it may not.
+    /// [`SetupError`] if it may not.
     fn admits(&self, _scene: &S, _motion: &MotionOf<S>) -> Result<(), SetupError> {
         Ok(())
     }
 
-    /// Whether the steps depend on how many there were before.
+    /// Whether a step depends on the number of steps before it.
     const COUNTS_TIME: bool = false;
 
-    /// Whether the steps have different lengths, of which [`step_size`](Self::step_size) is the unit.
+    /// Whether the steps have different lengths, in units of [`step_size`](Self::step_size).
     const VARIES: bool = false;
 
-    /// The time after this many steps, `n h`, s; where nothing else is to be known for it.
+    /// The time after this many steps, `n h`, s, if it depends on nothing else.
     #[allow(clippy::cast_precision_loss)] // 2⁵³ steps take longer than a career
     fn counted(&self, steps: u64) -> Scalar<S> {
         self.step_size() * real(steps as f64)
@@ -79,51 +80,53 @@ pub trait Plan<S: Effect>: Sized {
         self.counted(motion.steps)
     }
 
-    /// The length of the step ahead of a motion, or of that behind it, s; not finite where there is none. A step back is a
-    /// step of its negative.
+    /// The length of the next step of a motion, or of the previous one, s; not finite if there is none. A step back is
+    /// a step of the negative length.
     fn length(&self, _scene: &S, _motion: &MotionOf<S>, _kept: &Self::Kept, _is_ahead: bool) -> Scalar<S> {
         self.step_size()
     }
 
-    /// What is advected, as it is in space after this many steps; the scene's own, unless each step is given its values.
+    /// The advected parameters in space after this many steps; the scene's own, unless values are prescribed for each
+    /// step.
     fn advected(&self, scene: &S, _steps: u64) -> S::Advected {
         scene.advected()
     }
 
-    /// Whether the plan has the inertia, and not the scene: that of bodies whose coordinates couple their velocities. The
-    /// scene is of potentials alone then.
+    /// Whether the plan defines the inertia instead of the scene: that of bodies whose coordinates couple their
+    /// velocities. The scene then consists of potentials alone.
     const HAS_OWN_INERTIA: bool = false;
 
-    /// The momentum of a body velocity.
+    /// The momentum at a body velocity.
     fn momentum(&self, scene: &S, _attitude: &Group<S>, velocity: &Vector<S>, w: &S::Advected) -> Vector<S> {
         momentum_of_velocity(scene, velocity, w)
     }
 
-    /// The body velocity, as [`Stepper::velocity`](crate::Stepper::velocity) says it.
+    /// The body velocity, as documented at [`Stepper::velocity`](crate::Stepper::velocity).
     fn velocity(&self, scene: &S, motion: &MotionOf<S>) -> Vector<S> {
         velocity_of_momentum(scene, &motion.momentum, &motion.advected)
     }
 
-    /// The energy, J, where the plan has the inertia.
+    /// The energy, J, if the plan defines the inertia.
     fn energy(&self, scene: &S, motion: &MotionOf<S>) -> Scalar<S> {
         self.velocity(scene, motion).dot(&motion.momentum) * real(0.5) + scene.potential(&motion.advected)
     }
 
-    /// Whether the lanes of what is kept go on in one way. A body alone has no other beside it.
+    /// Whether the lanes of a memory can be stepped together. A memory of a single body always can.
     fn is_in_step(&self, _kept: &Self::Kept) -> bool {
         true
     }
 
-    /// One step. A plan writes it, or it writes [`run`](Self::run) and sets [`STEPS_BY_RUNS`](Self::STEPS_BY_RUNS); then a
-    /// step is a run of one.
+    /// Makes one step. A plan implements this, or it implements [`run`](Self::run) and sets
+    /// [`STEPS_BY_RUNS`](Self::STEPS_BY_RUNS); then a step is a run of one.
     ///
-    /// Mark your own `#[inline(always)]`: a function that is called isn't kept in registers and has no vector instructions
-    /// of the machine. The library's own are called in builds with debug assertions, which are to be built soon.
+    /// Mark your own `#[inline(always)]`: a function that isn't inlined doesn't stay in registers and isn't compiled
+    /// for the machine's vector instructions. The library's own aren't inlined in builds with debug assertions, to
+    /// reduce build time.
     ///
     /// # Errors
     ///
-    /// [`StepError`] where there is no such step, or a value isn't finite. `motion` and `kept` are then as before: callers
-    /// make no copy of `kept` to go back to.
+    /// [`StepError`] if there is no such step, or a value isn't finite. `motion` and `kept` must then be unchanged:
+    /// callers make no copy of `kept`.
     #[hot]
     fn step<M: Summation<Group<S>, S::Advected>>(
         &self,
@@ -135,11 +138,11 @@ pub trait Plan<S: Effect>: Sized {
         self.run(scene, motion, kept, 1).map(StepReport::of_run)
     }
 
-    /// One step of another length, s, which isn't counted.
+    /// Makes one step of another length, s, without counting it.
     ///
     /// # Errors
     ///
-    /// As [`step`](Self::step), and [`StepError::NonFinite`] where the constants of such a step aren't finite.
+    /// The errors of [`step`](Self::step), and [`StepError::NonFinite`] if the constants of such a step aren't finite.
     fn step_of<M: Summation<Group<S>, S::Advected>>(
         &self,
         scene: &S,
@@ -164,11 +167,11 @@ pub trait Plan<S: Effect>: Sized {
         Ok(report)
     }
 
-    /// The motion a fraction of the step after this one; a negative one is back.
+    /// The motion a fraction of the step after this one; a negative fraction is a step back.
     ///
     /// # Errors
     ///
-    /// As [`step`](Self::step).
+    /// The errors of [`step`](Self::step).
     fn part(
         &self,
         scene: &S,
@@ -176,7 +179,8 @@ pub trait Plan<S: Effect>: Sized {
         _kept: &Self::Kept,
         fraction: Scalar<S>,
     ) -> Result<MotionOf<S>, StepError> {
-        // Nothing of a change so small would be seen, and of a step so small constants may leave the scalar's range.
+        // So small a change would be lost in rounding, and the constants of so short a step may leave the scalar's
+        // range.
         let least = Scalar::<S>::simd_default_epsilon() * Scalar::<S>::simd_default_epsilon();
         if fraction.simd_abs().simd_lt(least).all() {
             return Ok(*motion);
@@ -191,12 +195,12 @@ pub trait Plan<S: Effect>: Sized {
         Ok(next)
     }
 
-    /// Makes `steps` steps without showing the states between; returns the sum of their iterations. After an error motion and
-    /// memory may be anywhere.
+    /// Makes `steps` steps without access to the states between; returns the sum of their iterations. After an error
+    /// motion and memory are unspecified.
     ///
     /// # Errors
     ///
-    /// As [`step`](Self::step).
+    /// The errors of [`step`](Self::step).
     #[hot]
     fn run<M: Summation<Group<S>, S::Advected>>(
         &self,
@@ -213,19 +217,20 @@ pub trait Plan<S: Effect>: Sized {
         Ok(iterations)
     }
 
-    /// Whether a step is a [`run`](Self::run) of one, to the bit and in what an error leaves: then only that is compiled.
+    /// Whether a step is a [`run`](Self::run) of one, to the bit and in its state after an error: only the run is
+    /// compiled then.
     const STEPS_BY_RUNS: bool = false;
 
-    /// Whether a [`run`](Self::run) is its steps one after the other, so that an error leaves what the last of them made,
-    /// and these report nothing but their iterations.
+    /// Whether a [`run`](Self::run) is a sequence of single steps: after an error the state is that of the last
+    /// successful one, and reports contain only iterations.
     const RUNS_BY_STEPS: bool = false;
 
-    /// Adds an impulse to the momentum between two steps, and to what is kept of it. A method that holds bodies in joints
-    /// adds what these let through.
+    /// Adds an impulse to the momentum between two steps, and to its copies in the memory. A plan of jointed bodies
+    /// adds only the part that satisfies the constraints.
     ///
     /// # Errors
     ///
-    /// [`StepError::SingularJoint`] where that isn't determined.
+    /// [`StepError::SingularJoint`] if that part isn't determined.
     #[hot]
     fn push<M: Summation<Group<S>, S::Advected>>(
         &self,
@@ -238,23 +243,23 @@ pub trait Plan<S: Effect>: Sized {
         Ok(())
     }
 
-    /// Replaces the advected values that the body sees, and forgets what the memory has derived from the old ones.
+    /// Replaces the body's advected parameters, and clears the part of the memory that depends on the old ones.
     #[hot]
     fn see(&self, motion: &mut MotionOf<S>, _kept: &mut Self::Kept, advected: S::Advected) {
         motion.advected = advected;
     }
 
-    /// Whether the errors of [`step`](Self::step) are those of a stage, and [`explained`](Self::explained) only when they
-    /// are shown.
+    /// Whether the errors of [`step`](Self::step) are those of a stage, so that [`explained`](Self::explained) must
+    /// convert them before they are returned.
     const EXPLAINS: bool = false;
 
-    /// The error of a step as it is shown: where a stage has none, the largest step that would do is that of the whole.
+    /// The error of the whole step for that of a stage: it names the largest solvable step.
     #[cold]
     fn explained(&self, error: StepError, _scene: &S, _motion: &MotionOf<S>, _kept: &Self::Kept) -> StepError {
         error
     }
 
-    /// The largest fraction of the step, in seconds to six digits, that can be made from here.
+    /// The largest solvable part of the step from here, in seconds to six digits.
     fn max_step(&self, scene: &S, motion: &MotionOf<S>, _kept: &Self::Kept) -> Scalar<S> {
         let solvable = |fraction: f64| {
             self.refolded(scene, self.step_size() * real(fraction)).is_ok_and(|part| {
@@ -265,20 +270,20 @@ pub trait Plan<S: Effect>: Sized {
         largest_fraction(solvable).map_or(real(0.0), |fraction| self.step_size() * real(fraction))
     }
 
-    /// Shows the method's name and every constant but the scene's and the step: two plans that show the same make the
-    /// same steps.
+    /// Visits the method's name and every constant except the scene's and the step: two plans with the same description
+    /// make the same steps.
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>);
 
-    /// How much arithmetic a step is, about.
+    /// The approximate number of operations of a step.
     fn cost(&self) -> Cost;
 }
 
-/// Returns how many more steps to make, from the motion reached so far and its time, s; 0 ends the run.
+/// A function of the motion reached so far and its time, s, that returns the number of further steps; 0 ends the run.
 pub type NextSteps<'a, G, A> = dyn FnMut(&Motion<G, A>, <G as LieGroup>::Scalar) -> u64 + 'a;
 
 pub(crate) type Next<'a, G, A> = Option<&'a mut NextSteps<'a, G, A>>;
 
-/// A run: the number of steps, and what comes after them.
+/// A run: the number of steps, and the function that continues it.
 struct Run<'a, 'n, S: Effect, P: Plan<S>>(
     &'a P,
     &'a S,
@@ -292,7 +297,7 @@ impl<S: Effect, P: Plan<S>> Kernel for Run<'_, '_, S, P> {
     const VECTORS: Vectors = P::VECTORS;
     const IS_IN_LANES: bool = <Scalar<S> as SimdValue>::LANES > 1;
 
-    /// Those who look at the motion are called from here, so that constants needn't be loaded again after them.
+    /// The function that continues the run is called inside of this one, so that constants stay in registers.
     #[hot]
     fn run(self) -> Self::Output {
         let Self(plan, scene, motion, kept, (mut steps, mut next)) = self;
@@ -305,8 +310,8 @@ impl<S: Effect, P: Plan<S>> Kernel for Run<'_, '_, S, P> {
     }
 }
 
-/// [`Plan::run`] with the vector instructions of the machine, and as [`Integrator::run_stretches`] goes on; called, so that
-/// there is one copy of a method's steps for all that runs them.
+/// [`Plan::run`] with the machine's vector instructions, continued as by [`Integrator::run_stretches`]. It isn't
+/// inlined, so that a method's steps are compiled once for all callers.
 ///
 /// [`Integrator::run_stretches`]: crate::motion::Integrator::run_stretches
 #[inline(never)]
@@ -320,8 +325,8 @@ pub(crate) fn run_plan<S: Effect, P: Plan<S>>(
     dispatch(Run(plan, scene, motion, kept, steps))
 }
 
-/// A plan whose steps see what is advected in the motion and nowhere else, so that each can be
-/// [given](crate::Stepper::step_with) other values.
+/// A plan whose steps use advected parameters only from the motion, so that other values can be
+/// [prescribed](crate::Stepper::step_with) for each step.
 #[diagnostic::on_unimplemented(
     message = "a step of `{Self}` can't be given values",
     label = "not with this method",
@@ -329,10 +334,10 @@ pub(crate) fn run_plan<S: Effect, P: Plan<S>>(
 )]
 pub trait Steerable {}
 
-/// A plan that makes steps of any length one after the other, each with constants of its own.
+/// A plan whose successive steps may have different lengths, each with its own constants.
 ///
-/// A plan whose inputs are indexed by the step isn't one, nor is a processed splitting: its processor belongs to one length
-/// of the steps.
+/// Excluded are plans whose inputs are indexed by the step, and processed splittings, whose processor belongs to one
+/// length of the steps.
 #[diagnostic::on_unimplemented(
     message = "the steps of `{Self}` can't have different lengths",
     label = "not with this method",
@@ -341,23 +346,23 @@ pub trait Steerable {}
 )]
 pub trait Variable {}
 
-/// How many operations a step makes, about: what methods are ranked by, the same on every machine.
+/// The approximate number of operations of a step, by which methods are ranked; it is the same on every machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
-    /// Besides the iterations.
+    /// The operations of a step besides its iterations.
     pub step: f64,
-    /// One iteration, as [`StepReport`] counts them.
+    /// The operations of one iteration, in the count of [`StepReport`].
     pub iteration: f64,
-    /// The fewest iterations that a step can take, but where nothing changes from step to step.
+    /// The fewest iterations of a step, unless nothing changes from step to step.
     pub fewest: u32,
-    /// Of a run besides its steps, whatever their number: the processor's.
+    /// The operations of a run besides its steps, whatever their number: those of a processor.
     pub once: f64,
 }
 
-/// Besides what an effect counts, the operations of a solve and its reconstruction on SO(3).
+/// Operations of a solve and its reconstruction on SO(3), besides those that an effect counts.
 const OF_A_STAGE: f64 = 150.0;
-/// Besides the Newton system, an iteration solves it and looks whether it has settled. These wait for each other, as
-/// the products of matrices don't.
+/// Operations of an iteration besides the Newton system: its solution and the test of convergence. They form a chain of
+/// dependent operations, unlike products of matrices.
 const OF_AN_ITERATION: f64 = 90.0;
 
 impl Cost {
@@ -367,13 +372,13 @@ impl Cost {
         Self {
             step: f64::from(stages) * (OF_A_STAGE + f64::from(operations.step)),
             iteration: OF_AN_ITERATION + f64::from(operations.iteration),
-            // With one iteration none is known to have settled.
+            // One iteration alone can't show convergence.
             fewest: if operations.iteration > 0 { 2 * stages } else { 0 },
             once: 0.0,
         }
     }
 
-    /// What a step makes at least.
+    /// The least number of operations of a step.
     #[must_use]
     pub fn least(&self) -> f64 {
         self.step + f64::from(self.fewest) * self.iteration

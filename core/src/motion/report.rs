@@ -1,16 +1,15 @@
-//! What a step tells of itself.
+//! The report of a step.
 
-/// What a step did.
+/// The report of a step: its iterations, and its remedy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StepReport {
-    /// A measure of the work: Newton iterations, of several lanes those of the slowest, and of several stages those of
-    /// all of them.
+    /// A measure of the work: Newton iterations, those of the slowest lane, summed over all stages.
     ///
-    /// Where the [Jacobian is expensive](crate::mechanics::Effect::JACOBIAN_IS_EXPENSIVE) residuals count, too: up to
-    /// eight, and the iterations with the Jacobian where these weren't enough. A solve whose first guess had to be
-    /// given up counts more than 20.
+    /// If the [Jacobian is expensive](crate::mechanics::Effect::JACOBIAN_IS_EXPENSIVE), evaluations of the residual
+    /// count, too: up to eight, and the iterations with the Jacobian if these weren't enough. A solve whose first guess
+    /// failed counts more than 20.
     pub iterations: u32,
-    /// What was done in the place of this step; only with [`or_substeps`](crate::Stepper::or_substeps).
+    /// The remedy that replaced this step; only with [`or_substeps`](crate::Stepper::or_substeps).
     pub remedy: Option<Remedy>,
 }
 
@@ -22,13 +21,13 @@ impl StepReport {
         Self { iterations, remedy: None }
     }
 
-    /// The report of a step that was made as a run of one.
+    /// The report of a run of one step.
     pub(crate) fn of_run(iterations: u64) -> Self {
         Self::of(u32::try_from(iterations).unwrap_or(u32::MAX))
     }
 }
 
-/// What was done in the place of a step that has no solution.
+/// The replacement of a step that has no solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Remedy {

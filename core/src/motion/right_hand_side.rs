@@ -12,10 +12,10 @@ type Matrix<L> = <<L as Term>::Group as LieGroup>::Matrix;
 type Square<L> = <Velocity<L> as Coordinates<<L as Term>::Scalar>>::Square;
 
 /// The right-hand side of `ġ = g ξ̂`, `μ̇ = ad*_ξ μ + ∂l/∂w ⋄ w` with `w = g⁻¹·a_0`, \[RDAE, (1.5), (1.12) and (2.2)\],
-/// its parameters checked and its inertia factorised once.
+/// with parameters checked and the inertia factorised once.
 ///
-/// As numbers a state is the attitude's matrix row by row, then the body momentum. An explicit method keeps neither the
-/// relation of the group nor a momentum: it is for references, and for comparison.
+/// A state as numbers is the attitude's matrix row by row, then the body momentum. An explicit method conserves neither
+/// the relation of the group nor a momentum: it is for references, and for comparison.
 ///
 /// # Examples
 ///
@@ -39,20 +39,20 @@ type Square<L> = <Velocity<L> as Coordinates<<L as Term>::Scalar>>::Square;
 pub struct RightHandSide<L: Term> {
     lagrangian: L,
     spatial: L::Advected,
-    /// `M` factorised, and its determinant, where it is the same for all `ξ` and `w`.
+    /// The factors of `M` and its determinant, if it is the same for all `ξ` and `w`.
     inertia: Option<(Square<L>, L::Scalar)>,
 }
 
 impl<L: ContinuousLagrangian> RightHandSide<L> {
-    /// Checks the parameters, and folds what doesn't change.
+    /// Checks the parameters, and factorises a constant inertia.
     ///
     /// # Errors
     ///
-    /// [`SetupError::Parameter`] for a parameter that can't be used, [`SetupError::NonFinite`] for an advected one,
-    /// [`SetupError::SingularKinetic`] or [`SetupError::NegativeKinetic`] where a momentum doesn't determine a velocity
-    /// at rest.
+    /// [`SetupError::Parameter`] for an invalid parameter, [`SetupError::NonFinite`] for an advected parameter that
+    /// isn't finite, [`SetupError::SingularKinetic`] or [`SetupError::NegativeKinetic`] if a momentum doesn't determine
+    /// a velocity at rest.
     ///
-    /// Generators of a declaration that aren't those of its group are an error when a program is built:
+    /// Declared generators that differ from those of the group are an error at compile time:
     ///
     /// ```compile_fail,E0080
     /// use liestep::groups::R1;
@@ -89,11 +89,11 @@ impl<L: ContinuousLagrangian> RightHandSide<L> {
         &self.lagrangian
     }
 
-    /// The body velocity of a body momentum, \[RDAE, (1.14)\] solved.
+    /// The body velocity at a body momentum, the solution of \[RDAE, (1.14)\].
     ///
     /// # Errors
     ///
-    /// As [`ContinuousLagrangian::velocity`].
+    /// The errors of [`ContinuousLagrangian::velocity`].
     #[inline]
     pub fn velocity(&self, momentum: &Velocity<L>, w: &L::Advected) -> Result<Velocity<L>, StepError> {
         let Some((factors, determinant)) = &self.inertia else { return self.lagrangian.velocity(momentum, w) };
@@ -101,15 +101,15 @@ impl<L: ContinuousLagrangian> RightHandSide<L> {
         Ok(Velocity::<L>::solve_again(factors, *determinant, &(*momentum - bias)))
     }
 
-    /// `ġ = g ξ̂`, a matrix in 1/s, and `μ̇` in the body frame, on SO(3) in N m, \[RDAE, (1.5), (1.12) and (2.2)\].
+    /// The rates `ġ = g ξ̂`, a matrix in 1/s, and `μ̇` in the body frame, on SO(3) in N m, \[RDAE, (1.5), (1.12) and
+    /// (2.2)\].
     ///
-    /// Of several bodies a tuple of matrices, and of all bodies the rate of the momentum, one after the other. What is
-    /// translated has its velocity in the last column of its matrix, in m/s, and its rate in N; both are in the axes of
-    /// space.
+    /// For several bodies, a tuple of matrices, and the rates of all momenta, one after the other. A translation has
+    /// its velocity in the last column of its matrix, in m/s, and its rate in N; both are in the axes of space.
     ///
     /// # Errors
     ///
-    /// As [`ContinuousLagrangian::velocity`].
+    /// The errors of [`ContinuousLagrangian::velocity`].
     #[inline]
     pub fn rates(&self, attitude: &L::Group, momentum: &Velocity<L>) -> Result<(Matrix<L>, Velocity<L>), StepError> {
         let w = self.spatial.seen_from(attitude);
@@ -122,26 +122,25 @@ impl<L: ContinuousLagrangian> RightHandSide<L> {
     ///
     /// # Errors
     ///
-    /// As [`ContinuousLagrangian::velocity`].
+    /// The errors of [`ContinuousLagrangian::velocity`].
     pub fn energy(&self, attitude: &L::Group, momentum: &Velocity<L>) -> Result<L::Scalar, StepError> {
         self.lagrangian.hamiltonian(momentum, &self.spatial.seen_from(attitude))
     }
 
-    /// A basis of the directions in space along which the scene is the same, `η·a_0 = 0`.
+    /// A basis of the symmetries in space, the directions `η` with `η·a_0 = 0`.
     pub fn left_symmetries(&self) -> Vec<Velocity<L>> {
         left_symmetries(&self.lagrangian)
     }
 
-    /// A basis of the directions in the body along which its Lagrangian is the same, found at sample points to rounding:
-    /// of a symmetric top its axis. What is found for all values of the parameters stands in
+    /// A basis of the symmetries in the body, found at sample points to rounding: for a symmetric top its axis. The
+    /// symmetries for all values of the parameters are listed in
     /// [`CONTINUOUS_DERIVATION`](ContinuousLagrangian::CONTINUOUS_DERIVATION).
     pub fn right_symmetries(&self) -> Vec<Velocity<L>> {
         right_symmetries(&self.lagrangian)
     }
 
-    /// The conserved momenta: that in space along each [left symmetry](Self::left_symmetries), `⟨Ad*_{g⁻¹} μ, η⟩`, then
-    /// that in the body along each [right one](Self::right_symmetries), `⟨μ, ζ⟩`. The [energy](Self::energy) is conserved,
-    /// too.
+    /// The conserved momenta: `⟨Ad*_{g⁻¹} μ, η⟩` in space for each [left symmetry](Self::left_symmetries), then
+    /// `⟨μ, ζ⟩` in the body for each [right one](Self::right_symmetries). The [energy](Self::energy) is conserved, too.
     pub fn conserved(&self, attitude: &L::Group, momentum: &Velocity<L>) -> Vec<L::Scalar> {
         let spatial = attitude.inverse().adjoint_transpose(momentum);
         let left = self.left_symmetries().into_iter().map(|eta| spatial.dot(&eta));
@@ -149,9 +148,9 @@ impl<L: ContinuousLagrangian> RightHandSide<L> {
         left.chain(right).collect()
     }
 
-    /// A state as numbers: the attitude's matrix row by row, then the momentum. Of several bodies the matrices come first,
-    /// one after the other, then the momenta. Of what is translated the last column of the matrix is its place in space, m,
-    /// and the momentum is in the axes of space, kg m/s.
+    /// A state as numbers: the attitude's matrix row by row, then the momentum. For several bodies all matrices come
+    /// first, then the momenta. For a translation, the last column of the matrix is the position in space, m, and the
+    /// momentum is in the axes of space, kg m/s.
     pub fn state(&self, attitude: &L::Group, momentum: &Velocity<L>) -> Vec<L::Scalar> {
         let mut numbers = Vec::new();
         attitude.matrix().each(&mut |entry| numbers.push(entry));
@@ -159,7 +158,7 @@ impl<L: ContinuousLagrangian> RightHandSide<L> {
         numbers
     }
 
-    /// The attitude and the momentum of a [`state`](Self::state), the matrix as it is; numbers that are missing are NaN.
+    /// The attitude and the momentum of a [`state`](Self::state), with an unchecked matrix; missing numbers are NaN.
     pub fn parts(&self, state: &[L::Scalar]) -> (L::Group, Velocity<L>) {
         let mut numbers = state.iter().copied();
         let mut next = || numbers.next().unwrap_or_else(|| real(f64::NAN));
@@ -167,12 +166,12 @@ impl<L: ContinuousLagrangian> RightHandSide<L> {
         (L::Group::from_matrix_unchecked(matrix), Velocity::<L>::from_entries(&mut next))
     }
 
-    /// Writes the rate of a [`state`](Self::state), in the same order, into as many numbers: of a shorter slice all are
-    /// written, of a longer one those behind stay as they are.
+    /// Writes the rate of a [`state`](Self::state), in the same order, into a slice. A shorter slice is filled; in a
+    /// longer one the rest stays unchanged.
     ///
     /// # Errors
     ///
-    /// As [`ContinuousLagrangian::velocity`].
+    /// The errors of [`ContinuousLagrangian::velocity`].
     pub fn rate(&self, state: &[L::Scalar], rate: &mut [L::Scalar]) -> Result<(), StepError> {
         let (attitude, momentum) = self.parts(state);
         let (of_attitude, of_momentum) = self.rates(&attitude, &momentum)?;

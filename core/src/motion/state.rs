@@ -1,4 +1,4 @@
-//! The state of a motion, and what can be read off it.
+//! The state of a motion.
 
 use core::ops::Deref;
 
@@ -7,22 +7,22 @@ use crate::motion::summation::Motion;
 use crate::numbers::{Real, real, two_sum};
 use crate::solving::WarmStart;
 
-/// A [`Motion`], that is attitude, momentum and advected parameters at one time, and what the method keeps for its next
+/// A [`Motion`], that is attitude, momentum and advected parameters at one time, and the method's memory for its next
 /// step.
 ///
-/// It is made by [`Stepper::start`](crate::Stepper::start), read by the methods of [`Motion`], and moved by
-/// [`Stepper::step`](crate::Stepper::step). A copy goes on with the same bits. What is kept, `K`, is the method's own:
-/// [`Stepper::adopt`](crate::Stepper::adopt) takes a motion over to another. [`StateOf`](crate::StateOf) names the state by
-/// scene and method.
+/// [`Stepper::start`](crate::Stepper::start) constructs it, the methods of [`Motion`] read it, and
+/// [`Stepper::step`](crate::Stepper::step) advances it. A copy continues with identical bits. The memory, `K`, is the
+/// method's own: [`Stepper::adopt`](crate::Stepper::adopt) converts a motion to a state of another method.
+/// [`StateOf`](crate::StateOf) names the state by scene and method.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct State<G: LieGroup, A, K = WarmStart<<G as LieGroup>::Vector>> {
     pub(crate) motion: Motion<G, A>,
     pub(crate) kept: K,
-    /// What steps of another length have added to the time of those that are counted.
+    /// The summed lengths of steps that aren't counted.
     pub(crate) elapsed: ElapsedTime<G::Scalar>,
 }
 
-/// A time that is summed, and what rounding has left behind of the sum.
+/// A compensated sum of times: the sum, and its rounding error.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 #[doc(hidden)]
 pub struct ElapsedTime<T> {

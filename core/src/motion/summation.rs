@@ -1,4 +1,4 @@
-//! Where a body is, and how the changes of a step are added to that.
+//! The motion of a body, and the addition of a step's changes to it.
 
 use nalgebra::Vector3;
 
@@ -6,27 +6,28 @@ use crate::groups::{Advected, Factor, LieGroup, SO3};
 use crate::mechanics::{Group, Term};
 use crate::numbers::Real;
 
-/// How many steps go by between two looks at what roundings have done to the attitude.
+/// The number of steps between two corrections of the attitude's rounding errors.
 ///
-/// The worst of them, the same in every step, make no more in a thousand steps than [`TOLERATED`].
+/// Even constant rounding errors of the largest size stay below [`TOLERATED`] over a thousand steps.
 pub(crate) const STEPS_BETWEEN_CHECKS: u32 = 1024;
 
-/// How many go by with several bodies. What these do to each other cancels in the whole as far as their attitudes are
-/// rotations, and what they see is what is between these: else the whole momentum drifts in proportion to the steps.
+/// The number for several bodies. Their internal forces cancel only as far as attitudes are rotations and relative
+/// attitudes agree with them; otherwise the total momentum drifts in proportion to the steps.
 const STEPS_BETWEEN_SEVERAL: u32 = 64;
 
-/// How far from its group an attitude may be, in units of rounding. A random walk gets there in some ten million steps.
+/// The tolerated distance of an attitude from its group, in units of rounding. A random walk reaches it in some ten
+/// million steps.
 pub(crate) const TOLERATED: f64 = 2048.0;
 
-/// Whether several bodies turn.
+/// Whether the group has several attitudes.
 #[hot]
 const fn has_several<G: LieGroup>() -> bool {
     G::ATTITUDES > 1
 }
 
-/// Attitude, momentum and advected parameters at one time, and the number of steps up to it.
+/// The attitude, momentum and advected parameters at one time, and the number of steps up to it.
 ///
-/// A [`State`](crate::State) is this and what its method remembers.
+/// A [`State`](crate::State) is a motion and the memory of its method.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Motion<G: LieGroup, A> {
     pub(crate) attitude: G,
@@ -40,19 +41,19 @@ pub struct Motion<G: LieGroup, A> {
 pub(crate) type MotionOf<S> = Motion<Group<S>, <S as Term>::Advected>;
 
 impl<G: LieGroup, A: Advected<G>> Motion<G, A> {
-    /// The attitude `g_i`, body to space.
+    /// The attitude `g_i`, from body to space.
     #[must_use]
     pub fn attitude(&self) -> G {
         self.attitude
     }
 
-    /// The momentum `μ_i`, body frame; on SO(3) the physical angular momentum, kg m²/s.
+    /// The momentum `μ_i` in the body frame; on SO(3) the physical angular momentum, kg m²/s.
     #[must_use]
     pub fn momentum(&self) -> G::Vector {
         self.momentum
     }
 
-    /// The momentum of the body that is the factor `K` of a product, in its frame.
+    /// The momentum of the factor `K` of a product of groups, in that body's frame.
     #[must_use]
     pub fn momentum_of<const K: usize>(&self) -> <G::Of as LieGroup>::Vector
     where
@@ -67,19 +68,19 @@ impl<G: LieGroup, A: Advected<G>> Motion<G, A> {
         self.advected
     }
 
-    /// The number of steps made.
+    /// The number of steps since the start.
     #[must_use]
     pub fn steps(&self) -> u64 {
         self.steps
     }
 
-    /// The momentum in space, `Ad*_{g⁻¹} μ` (`R Π` on SO(3)); constant where nothing is advected.
+    /// The momentum in space, `Ad*_{g⁻¹} μ` (`R Π` on SO(3)); constant if there are no advected parameters.
     #[must_use]
     pub fn spatial_momentum(&self) -> G::Vector {
         self.attitude.inverse().adjoint_transpose(&self.momentum)
     }
 
-    /// How far the attitude has left the group, `‖RᵀR − I‖` on SO(3).
+    /// The distance of the attitude from the group, `‖RᵀR − I‖` on SO(3).
     #[must_use]
     pub fn orthogonality_defect(&self) -> G::Scalar {
         self.attitude.defect()
@@ -87,42 +88,43 @@ impl<G: LieGroup, A: Advected<G>> Motion<G, A> {
 }
 
 impl<T: Real, A: Advected<SO3<T>>> Motion<SO3<T>, A> {
-    /// The spatial momentum's component along a direction given in space, `e₃ · R Π` for the vertical, (3.20).
+    /// The spatial momentum's component along a direction in space, `e₃ · R Π` for the vertical, (3.20).
     #[must_use]
     pub fn momentum_along(&self, direction: &Vector3<T>) -> T {
         self.spatial_momentum().dot(direction)
     }
 }
 
-/// How the changes of a step are added to a motion: rounded, as by [`Motion`] itself, or with what rounding leaves behind
+/// The addition of a step's changes to a motion: rounded, as by [`Motion`] itself, or compensated, with rounding errors
 /// carried to the next step.
 ///
-/// A [`Plan`](crate::motion::Plan) makes all its changes by these functions, and so works with any summation.
+/// A [`Plan`](crate::motion::Plan) applies all its changes by these functions, and so works with any summation.
 #[hot]
 pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
-    /// Whether what rounding leaves behind is kept.
+    /// Whether rounding errors are carried.
     const CARRIES: bool;
 
     /// The motion, rounded.
     fn now(&self) -> &Motion<G, A>;
 
-    /// Turns the body by `F = I + D`: the attitude to `g F`, \[RDAE, (2.10)\], and what is advected to `F⁻¹·w`. The
-    /// momentum stays.
+    /// Turns the body by `F = I + D`: the attitude becomes `g F`, \[RDAE, (2.10)\], and the advected parameters
+    /// `F⁻¹·w`. The momentum stays.
     fn turn(&mut self, increment: &G::Matrix);
 
-    /// What is advected, after that turn.
+    /// The advected parameters after that turn.
     fn turned(&self, increment: &G::Matrix) -> A;
 
-    /// Adds to the momentum.
+    /// Adds a change to the momentum.
     fn push(&mut self, change: &G::Vector);
 
-    /// One after the other: a turn that carries the momentum along.
+    /// Turns the body, and then adds the change of the momentum.
     fn turn_and_push(&mut self, increment: &G::Matrix, change: &G::Vector) {
         self.turn(increment);
         self.push(change);
     }
 
-    /// As [`turn_and_push`](Self::turn_and_push), where the rounded sums `(μ⁺, w⁺)` are there already.
+    /// Turns the body and changes its momentum, as [`turn_and_push`](Self::turn_and_push), if the sums `(μ⁺, w⁺)` are
+    /// known.
     fn proceed(&mut self, increment: &G::Matrix, change: &G::Vector, end: (G::Vector, A));
 
     /// Counts a step.
@@ -130,20 +132,20 @@ pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
         self.recount(self.now().steps + 1);
     }
 
-    /// Counts anew from here.
+    /// Sets the number of steps.
     fn recount(&mut self, steps: u64);
 
-    /// Puts the attitude back into the group, and what is advected to what it sees, where roundings have taken it far;
-    /// `spatial` is the value `a_0` of what is advected.
+    /// Projects the attitude onto the group, and recomputes the advected parameters from it, if rounding errors are
+    /// large; `spatial` is the value `a_0` of the parameters.
     fn restore(&mut self, spatial: &A);
 
-    /// Another motion in the place of this one; nothing is carried over.
+    /// Replaces the motion; carried rounding errors are dropped.
     fn replace(&mut self, motion: Motion<G, A>);
 
-    /// Another motion in the place of this one, as rounded as it is; what is carried stays.
+    /// Replaces the rounded motion; carried rounding errors stay.
     fn show(&mut self, motion: Motion<G, A>);
 
-    /// Counts a step, and now and then [restores](Self::restore).
+    /// Counts a step, and from time to time [restores](Self::restore) the attitude.
     fn finish(&mut self, spatial: impl FnOnce() -> A) {
         self.count();
         if is_due::<G>(self.now().steps) {
@@ -152,10 +154,10 @@ pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
     }
 }
 
-/// A change that is seldom made, by a function that is called.
+/// A rare change, by a function that isn't inlined.
 ///
-/// What such a function is shown stays in memory in all the steps between, too. There the next step reads what the last
-/// one has just written, often in other pieces than it was written in, and waits for it. A copy leaves the motion in
+/// A reference to such a function would force the motion to memory in all other steps, too. There the next step would
+/// load what the last one has just stored, often in other pieces, and wait for the stores. A copy leaves the motion in
 /// registers.
 #[hot]
 fn by_copy<M: Copy>(motion: &mut M, change: impl FnOnce(&mut M)) {
@@ -164,7 +166,7 @@ fn by_copy<M: Copy>(motion: &mut M, change: impl FnOnce(&mut M)) {
     *motion = changed;
 }
 
-/// Whether it is time to look how far roundings have gone.
+/// Whether a correction of rounding errors is due.
 #[hot]
 pub(crate) fn is_due<G: LieGroup>(steps: u64) -> bool {
     steps.is_multiple_of(u64::from(if has_several::<G>() { STEPS_BETWEEN_SEVERAL } else { STEPS_BETWEEN_CHECKS }))
@@ -220,7 +222,8 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Motion<G, A> {
     }
 }
 
-/// Restores the motion from so many units of rounding on; returns the lanes in which that was necessary, if there is one.
+/// Restores attitudes with errors above this number of units of rounding; returns the lanes with such errors, if there
+/// are any.
 pub(crate) fn restored<G: LieGroup, A: Advected<G>>(
     motion: &mut Motion<G, A>,
     spatial: &A,

@@ -3,7 +3,7 @@
 //! Coefficients and error estimate are those of Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, 2nd
 //! edition, II.5 and II.10.
 
-// The digits are those of the source, whatever a double keeps of them.
+// The digits are those of the source, although a double has fewer.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
 
 use workbench::top_equations::State;
@@ -130,7 +130,7 @@ const ERROR_5: Row<8> = [
     (10, 0.8192320648511571246570742613e-1),
     (11, -0.2235530786388629525884427845e-1),
 ];
-/// What the estimate of order 3 has beside the weights of the step itself.
+/// The difference between the weights of the estimate of order 3 and those of the step.
 const ERROR_3: Row<3> = [
     (0, -0.244094488188976377952755905512),
     (8, -0.733846688281611857341361741547),

@@ -1,35 +1,35 @@
-//! Explicit Runge–Kutta methods of which a step and its error are estimated, unrolled for the seven numbers of a top.
+//! Embedded explicit Runge–Kutta methods, unrolled for the seven numbers of a top.
 //!
-//! There is no dense output. With a fixed step the error isn't estimated, which saves what that costs. The controller and
-//! the first step are those of Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, 2nd edition, II.4: each
-//! step's length is made of the error of the one before alone. Its constants are the defaults of these authors' program
-//! DOP853, for all methods.
+//! There is no dense output. With a fixed step the error isn't estimated, which saves that cost. The controller and the
+//! first step are those of Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, 2nd edition, II.4: the
+//! length of a step depends only on the error of the one before. All methods have the default constants of these
+//! authors' program DOP853.
 
 use workbench::top_equations::State;
 
 use super::rates::Rates;
 
-/// Coefficients that aren't zero, each with the stage that it belongs to.
+/// The coefficients that aren't zero, each with its stage.
 pub type Row<const N: usize> = [(usize, f64); N];
 
-/// A method, by its coefficients.
+/// An embedded method, by its coefficients.
 pub trait Embedded: 'static {
     const NAME: &'static str;
-    /// The error that is estimated falls by this power of the step.
+    /// The power of the step by which the estimated error falls.
     const POWER: i32;
     /// The rates at the stages of a step and of its estimate.
     type Stages: Copy;
 
-    /// Those of the step from `y`, of which `first` is the first; others are zero.
+    /// The stages of the step from `y`, with the first stage `first`; the estimate's further stages are zero.
     fn stages(equations: &impl Rates, h: f64, y: &State, first: State) -> Self::Stages;
 
     /// The mean rate over the step.
     fn mean(k: &Self::Stages) -> State;
 
-    /// The stages that the estimate has besides, after a step to `next`. Returns the rate there, where that is one.
+    /// The further stages of the estimate, after a step to `next`. Returns the rate at `next` if it is one of them.
     fn complete(equations: &impl Rates, h: f64, y: &State, next: &State, k: &mut Self::Stages) -> Option<State>;
 
-    /// The error over the step, as a part of it, in units of these scales.
+    /// The error of the step relative to the step, in units of these scales.
     fn error(k: &Self::Stages, mean: &State, scales: &State) -> f64;
 }
 
@@ -52,7 +52,7 @@ pub fn mean_square(values: &State, scales: &State) -> f64 {
     (0..7).map(|i| (values[i] / scales[i]).powi(2)).sum::<f64>() / 7.0
 }
 
-/// Stages by their rows, each at its place.
+/// Computes stages by their rows, each with its number.
 macro_rules! stages {
     ($k:ident, $equations:ident, $h:ident, $y:ident: $($place:literal $row:ident)+) => {$(
         $k[$place] = $equations.rate(&plus($y, $h, &combination(&$k, &$row)));
@@ -66,7 +66,7 @@ pub fn step<M: Embedded>(equations: &impl Rates, h: f64, y: &State) -> State {
     plus(y, h, &M::mean(&M::stages(equations, h, y, equations.rate(y))))
 }
 
-/// From `y` over the time `t` with the method's own step control; `None` where it gives up.
+/// Integrates from `y` over the time `t` with the method's own step control; `None` if it fails.
 ///
 /// The tolerance is relative and absolute at once, as all seven numbers are of the order of one or of the momentum.
 pub fn integrate<M: Embedded>(equations: &impl Rates, t: f64, tolerance: f64, mut y: State) -> Option<State> {
@@ -106,7 +106,7 @@ pub fn integrate<M: Embedded>(equations: &impl Rates, t: f64, tolerance: f64, mu
     None
 }
 
-/// Far more than any of the scenes takes.
+/// Far more steps than any of the scenes takes.
 const MOST_STEPS: u32 = 10_000_000;
 const SAFETY: f64 = 0.9;
 const SMALLEST_GROWTH: f64 = 0.333;

@@ -7,7 +7,7 @@ use workbench::top_equations::{Equations, State};
 pub trait Rates: Copy + 'static {
     fn rate(&self, state: &State) -> State;
 
-    /// Attitude and body velocity.
+    /// The attitude and the body velocity.
     fn end(&self, state: &State) -> End;
 }
 
@@ -22,13 +22,13 @@ impl Rates for Equations {
     }
 }
 
-/// A top that a spring pulls, too: `p' = p × Ω + w × m g ρ + k (1 − l/|d|) a × b`, where `b = Rᵀs` is the anchor as the
-/// body sees it and `d = a − b`.
+/// A top with a spring: `p' = p × Ω + w × m g ρ + k (1 − l/|d|) a × b`, where `b = Rᵀs` is the anchor in the body frame
+/// and `d = a − b`.
 #[derive(Clone, Copy)]
 pub struct Sprung {
     pub top: Equations,
     pub k: f64,
-    /// Length at rest, m.
+    /// The length at rest, m.
     pub length: f64,
     /// The end on the body, body frame, and the anchor, in space.
     pub at: [f64; 3],

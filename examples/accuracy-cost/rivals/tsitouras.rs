@@ -3,7 +3,7 @@
 //! Coefficients are those of Ch. Tsitouras, *Runge–Kutta pairs of order 5(4) satisfying only the first column simplifying
 //! assumption*, Comput. Math. Appl. 62 (2011); `accuracy-cost.csv` has the order of each run.
 
-// The digits are those of the source, whatever a double keeps of them.
+// The digits are those of the source, although a double has fewer.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
 
 use workbench::top_equations::State;
@@ -64,7 +64,7 @@ const B: Row<6> = [
     (4, -3.290069515436081),
     (5, 2.324710524099774),
 ];
-/// The weights of order 4 less those of the step.
+/// The weights of order 4 minus those of the step.
 const ERROR: Row<7> = [
     (0, -0.00178001105222577714),
     (1, -0.0008164344596567469),

@@ -2,7 +2,7 @@
 //!
 //! Coefficients are those of J. H. Verner, *Refuge for Runge–Kutta pairs*; `accuracy-cost.csv` has the order of each run.
 
-// The digits are those of the source, whatever a double keeps of them.
+// The digits are those of the source, although a double has fewer.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
 
 use workbench::top_equations::State;
@@ -131,7 +131,7 @@ const B: Row<9> = [
     (13, 0.13861963193662938),
     (14, 0.030800101683194355),
 ];
-/// The weights of the step less those of order 8.
+/// The weights of the step minus those of order 8.
 const ERROR: Row<10> = [
     (0, -0.003965415175013767),
     (7, -4.463291307295875),

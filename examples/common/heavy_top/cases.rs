@@ -18,12 +18,12 @@ pub enum Case {
     Unidirectional,
 }
 
-/// What `diag(2, 2, 1)` stands for.
+/// The meaning of `diag(2, 2, 1)` in the thesis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reading {
     /// The nonstandard inertia `J_d`, as in (3.13).
     A,
-    /// The ordinary inertia `J`, as the figures of the thesis need it.
+    /// The ordinary inertia `J`, which reproduces the figures of the thesis.
     B,
 }
 
@@ -43,11 +43,11 @@ impl fmt::Display for Reading {
 }
 
 impl Case {
-    /// With their names on the command line.
+    /// The cases with their names on the command line.
     pub const NAMED: [(&str, Self); 3] =
         [("looping", Self::Looping), ("cuspidal", Self::Cuspidal), ("unidirectional", Self::Unidirectional)];
 
-    /// The figure of the thesis that shows it.
+    /// The figure of the thesis that displays the case.
     pub fn figure(self) -> &'static str {
         match self {
             Self::Looping => "3.8",
@@ -68,7 +68,7 @@ impl Case {
         (UnitQuaternion::from_axis_angle(&Vector3::x_axis(), tilt), velocity)
     }
 
-    /// Where the thesis' name for a case and its motion part.
+    /// A note on the case whose motion differs from its name in the thesis.
     pub fn caveat(self, reading: Reading) -> Option<&'static str> {
         (self == Self::Unidirectional && reading == Reading::A).then_some(
             "Note: with J_d = diag(2, 2, 1) in (3.13) this third case of the thesis is looping: φ' runs from −0.60 to\n\
@@ -78,7 +78,7 @@ impl Case {
 }
 
 impl Reading {
-    /// With their names on the command line.
+    /// The readings with their names on the command line.
     pub const NAMED: [(&str, Self); 2] = [("a", Self::A), ("b", Self::B)];
 
     /// The top of the thesis, m = 1 kg, ρ = e₃, g = 9.81 m/s².

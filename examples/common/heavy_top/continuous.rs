@@ -1,4 +1,4 @@
-//! The continuous heavy top, for references that no file holds.
+//! The continuous heavy top, for references that aren't in files.
 
 use liestep::mechanics::ContinuousLagrangian as _;
 use nalgebra::{SVector, Vector3};
@@ -6,7 +6,7 @@ use nalgebra::{SVector, Vector3};
 use super::declaration::HeavyTop;
 use crate::runge_kutta::change;
 
-/// Body momentum and `w`, one below the other.
+/// The body momentum and `w`, one below the other.
 pub type Phase = SVector<f64, 6>;
 
 pub fn phase(momentum: &Vector3<f64>, w: &Vector3<f64>) -> Phase {

@@ -8,7 +8,7 @@ use crate::plot::{BLUE, GREEN, INK, ORANGE, PURPLE, PlotResult, Sketch, arc, hea
 const LIGHT: RGBColor = RGBColor(200, 205, 210);
 const PALE: RGBColor = RGBColor(226, 238, 246);
 
-/// `φ`, `θ`, `ψ` of the drawings, rad.
+/// The angles `φ`, `θ`, `ψ` of the drawings, rad.
 const ANGLES: [f64; 3] = [0.9, 0.75, 0.8];
 const CIRCLE: (f64, f64) = (0.0, 2.0 * core::f64::consts::PI);
 
@@ -26,7 +26,7 @@ fn axis(sketch: &Sketch<'_, '_>, direction: &Vector3<f64>, name: &str, colour: R
     sketch.name(name, &(direction * 1.09), (0, 0), colour)
 }
 
-/// Figure 3.1.
+/// Figure 3.1 of the thesis.
 pub fn euler_angles() -> PlotResult<String> {
     let [x, y, z, body] = axes();
     let [precession, nutation, spin] = ANGLES;
@@ -64,7 +64,7 @@ pub fn euler_angles() -> PlotResult<String> {
     })
 }
 
-/// Figure 3.2.
+/// Figure 3.2 of the thesis.
 pub fn top() -> PlotResult<String> {
     let [x, y, z, _] = axes();
     let (origin, ez) = (Vector3::zeros(), Vector3::z());

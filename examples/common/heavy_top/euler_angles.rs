@@ -1,4 +1,4 @@
-//! The symmetric top in Euler angles, \[RDAE, section 3.1\]: the rival that fails where the axis passes the vertical.
+//! The symmetric top in Euler angles, \[RDAE, section 3.1\]: a rival with a singularity where the axis is vertical.
 
 use liestep::mechanics::{Effect as _, Term as _};
 use nalgebra::{Matrix3, Rotation3, Vector3, Vector6};
@@ -10,15 +10,15 @@ use crate::runge_kutta::change;
 /// Angles and their rates: precession `φ`, nutation `θ`, spin `ψ`, applied about `z`, `x'` and `z''`.
 #[derive(Clone, Copy, Debug)]
 pub struct EulerAngles {
-    /// rad
+    /// The angles, rad.
     pub angles: Vector3<f64>,
-    /// rad/s
+    /// The rates, rad/s.
     pub rates: Vector3<f64>,
 }
 
 impl EulerAngles {
-    /// Of an attitude and a body velocity. Where the axis is vertical only the sum of the first and the last is
-    /// determined, and the rates aren't finite.
+    /// The angles and rates for an attitude and a body velocity. If the axis is vertical only the sum of the first and
+    /// the last is determined, and the rates aren't finite.
     pub fn of(attitude: &Matrix3<f64>, velocity: &Vector3<f64>) -> Self {
         let (w, axis) = (attitude.row(2), attitude.column(2));
         let sine = w[0].hypot(w[1]);
@@ -28,14 +28,14 @@ impl EulerAngles {
         Self { angles, rates: Vector3::new(precession, nutation, velocity.z - precession * w[2]) }
     }
 
-    /// `R_z(φ) R_x(θ) R_z(ψ)`: (3.1) and the spin.
+    /// The attitude `R_z(φ) R_x(θ) R_z(ψ)`: (3.1) and the spin.
     pub fn attitude(&self) -> Matrix3<f64> {
         let about = |axis, angle| Rotation3::from_axis_angle(&axis, angle).into_inner();
         let [z, x] = [Vector3::z_axis(), Vector3::x_axis()];
         about(z, self.angles.x) * about(x, self.angles.y) * about(z, self.angles.z)
     }
 
-    /// (3.2) to (3.4), in the frame that doesn't take part in the spin.
+    /// The velocity by (3.2) to (3.4), in the frame that doesn't take part in the spin.
     pub fn velocity_without_spin(&self) -> Vector3<f64> {
         let ((sine, cosine), rates) = (self.angles.y.sin_cos(), self.rates);
         Vector3::new(rates.y, rates.x * sine, rates.z + rates.x * cosine)
@@ -47,7 +47,7 @@ impl EulerAngles {
     }
 }
 
-/// `I_0`, `I` in kg m² and `m g ρ` in N m, of (3.5) and (3.9).
+/// The moments `I_0` and `I` in kg m² and the weight `m g ρ` in N m, of (3.5) and (3.9).
 #[derive(Clone, Copy, Debug)]
 pub struct SymmetricTop {
     pub across: f64,
@@ -56,13 +56,13 @@ pub struct SymmetricTop {
 }
 
 impl SymmetricTop {
-    /// Of a top whose first two moments are equal, with its centre of mass on the third axis.
+    /// The constants of a top with equal first two moments and its centre of mass on the third axis.
     pub fn of(top: &HeavyTop) -> Self {
         let moments = top.inertia(&top.advected()).diagonal();
         Self { across: moments.x, along: moments.z, weight: top.m * top.g * top.rho.z }
     }
 
-    /// `φ''`, `θ''`, `ψ''` of (3.10) to (3.12).
+    /// The accelerations `φ''`, `θ''`, `ψ''` by (3.10) to (3.12).
     pub fn accelerations(&self, EulerAngles { angles, rates }: &EulerAngles) -> Vector3<f64> {
         let Self { across, along, weight } = *self;
         let (sine, cosine) = angles.y.sin_cos();
@@ -82,7 +82,7 @@ impl SymmetricTop {
 pub struct OnEulerAngles {
     top: SymmetricTop,
     h: f64,
-    /// Angles, then rates.
+    /// The angles, then the rates.
     state: Vector6<f64>,
 }
 

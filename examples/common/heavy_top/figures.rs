@@ -1,4 +1,4 @@
-//! Figures 3.4 to 3.10 of the thesis, done again.
+//! Figures 3.4 to 3.10 of the thesis, reproduced.
 
 use nalgebra::Vector3;
 
@@ -10,7 +10,7 @@ use crate::plot::{render, sphere};
 use crate::run::{ENDING, Schedule};
 use crate::table::short;
 
-/// What the figures are of: the variational run first, then its rivals.
+/// The content of the figures: the variational run first, then its rivals.
 pub struct Figures<'a> {
     pub case: Case,
     pub reading: Reading,
@@ -18,14 +18,14 @@ pub struct Figures<'a> {
     pub series: &'a [Series],
 }
 
-/// What is drawn in close-up, s: ten nutations.
+/// The duration of close-ups, s: ten nutations.
 const SHORT: f64 = 4.0;
 
-/// A figure's part below its heading.
+/// The height of a figure's heading, px.
 const HEADER: u32 = 62;
 
 impl Figures<'_> {
-    /// Writes all but the overview.
+    /// Writes all figures except the overview.
     pub fn write(&self, output: &mut Output) -> PlotResult {
         output.write("geometry.svg", &self.rigidity()?)?;
         output.write("vertical-momentum.svg", &self.momentum()?)?;
@@ -40,7 +40,7 @@ impl Figures<'_> {
         Ok(())
     }
 
-    /// The case, the reading and the step: beside every figure.
+    /// The case, the reading and the step, as printed beside every figure.
     pub fn setting(&self) -> String {
         let in_fact = if self.case.caveat(self.reading).is_some() { " (here looping)" } else { "" };
         format!("{}{in_fact}, {}, h = {} s", self.case, self.reading, self.schedule.step)
@@ -70,15 +70,15 @@ impl Figures<'_> {
         Panel::over_time(title, "E − E(0), J", Vertical::Linear, lines)
     }
 
-    /// Whether it stays an oscillation.
+    /// The absolute energy error over the whole run, where an oscillation differs from a drift.
     pub fn energy_long<'a>(&self, title: &'a str) -> Panel<'a> {
         let mut lines = self.lines(self.schedule.end(), |q, start| (q.energy - start.energy).abs());
-        // The oscillation would hide the rivals' drift.
+        // The oscillation would cover the rivals' drift.
         lines.reverse();
         Panel::over_time(title, "|E − E(0)|, J", Vertical::Logarithmic, lines)
     }
 
-    /// The last seconds of the tip's path, in angles: where loops and cusps can be seen one by one.
+    /// The last seconds of the tip's path, in angles, where single loops and cusps are visible.
     pub fn close_up<'a>(&self, title: &'a str, series: &Series) -> Panel<'a> {
         let end = self.schedule.end();
         let points = unwound(series.between((end - SHORT).max(0.0), end));
@@ -96,13 +96,13 @@ impl Figures<'_> {
         format!("Its last {} s", short(SHORT.min(self.schedule.end())))
     }
 
-    /// The second half of the run, as the thesis' 100 to 200 s, but no more than is kept in detail.
+    /// The second half of the run, as the thesis' 100 to 200 s, but only the part that is recorded in detail.
     pub fn late(&self) -> (f64, f64) {
         let end = self.schedule.end();
         ((end / 2.0).max(end - ENDING), end)
     }
 
-    /// A line for every method, of a quantity at each time and at the start.
+    /// A line for every method, of a quantity as a function of its current and its initial state.
     fn lines(&self, end: f64, height: impl Fn(&Quantities, &Quantities) -> f64) -> Vec<Line> {
         // The variational line comes first in the legend and last, on top, in the drawing.
         let lines = self.series.iter().rev().map(|s| Line {
@@ -113,17 +113,17 @@ impl Figures<'_> {
         lines.collect()
     }
 
-    /// Figure 3.4.
+    /// Figure 3.4: the distance of `R` from the rotations.
     pub fn rigidity(&self) -> PlotResult<String> {
         self.single(&[self.geometry("")], "3.4", "How far R leaves the rotations")
     }
 
-    /// Figure 3.5.
+    /// Figure 3.5: the momentum about the vertical.
     pub fn momentum(&self) -> PlotResult<String> {
         self.single(&[self.vertical_momentum("")], "3.5", "Angular momentum about the vertical")
     }
 
-    /// Figure 3.6, (a) and (b).
+    /// Figure 3.6, (a) and (b): the energy.
     pub fn energy(&self) -> PlotResult<String> {
         let end = self.schedule.end();
         let [short, long] = [format!("(a) the first {} s", short(SHORT.min(end))), format!("(b) all {} s", short(end))];
@@ -143,7 +143,7 @@ impl Figures<'_> {
         })
     }
 
-    /// Figure 3.7.
+    /// Figure 3.7: the body rates.
     pub fn body_rates(&self) -> PlotResult<String> {
         let end = SHORT.min(self.schedule.end());
         let axes = [("Ω_X, rad/s", BLUE), ("Ω_Y, rad/s", PURPLE), ("Ω_Z, rad/s", GREEN)];
@@ -184,7 +184,7 @@ impl Figures<'_> {
     }
 }
 
-/// The path of a run's tip on the sphere from one time to another, with a title and a width of line.
+/// The path of a run's tip on the sphere between two times, with a title and a line width.
 pub fn tip_path(area: &Area<'_>, (title, width): (&str, u32), series: &Series, (start, end): (f64, f64)) -> PlotResult {
     let points: Vec<_> = series.between(start, end).iter().map(|q| q.tip).collect();
     sphere(area, &Path { title, colour: series.colour, width, points: &points, axis: (Vector3::z(), "e₃") })

@@ -1,10 +1,10 @@
-//! One figure with all of it, for a front page.
+//! The overview: one figure for a front page.
 
 use super::figures::{Figures, tip_path};
 use crate::plot::{PlotResult, heading, px, render};
 use crate::table::short;
 
-/// The path on the sphere, its last seconds, and what is conserved.
+/// The path on the sphere, its last seconds, and the conserved quantities.
 pub fn overview(figures: &Figures<'_>) -> PlotResult<String> {
     let (start, end) = figures.late();
     let Some(ours) = figures.series.first() else {

@@ -1,7 +1,7 @@
-//! What the first integrals of a symmetric top say of its nutation and precession, in closed form.
+//! Nutation and precession of a symmetric top by its first integrals, in closed form.
 //!
-//! With `u = cos θ` and the constants `Π_3` and `e₃·RΠ` the energy is `u'² = f(u)`, a cubic: `u` goes to and fro between
-//! its two roots below one, with a period that is an elliptic integral \[AS64, 17.6\].
+//! With `u = cos θ` and the constants `Π_3` and `e₃·RΠ` the energy is `u'² = f(u)` with a cubic `f`: `u` oscillates
+//! between the two roots of `f` below one, with a period that is an elliptic integral \[AS64, 17.6\].
 
 use core::f64::consts::PI;
 
@@ -17,29 +17,29 @@ pub struct Precession {
     pub tilt: (f64, f64),
     /// The least and the greatest rate `φ'`, rad/s.
     pub rate: (f64, f64),
-    /// Of the nutation, s.
+    /// The period of the nutation, s.
     pub period: f64,
 }
 
-/// The three of \[RDAE, figure 3.3\].
+/// The three kinds of precession, \[RDAE, figure 3.3\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// The rate changes its sign.
     Looping,
-    /// It comes to zero, where the tilt is least.
+    /// The rate has a zero at the least tilt, without a change of sign.
     Cuspidal,
-    /// It doesn't come to zero.
+    /// The rate has no zero.
     Unidirectional,
 }
 
 impl Precession {
-    /// From the momentum in the body's frame and the vertical as the body sees it.
+    /// Nutation and precession for a momentum in the body frame and the vertical in the body frame.
     pub fn of(top: &HeavyTop, momentum: &Vector3<f64>, w: &Vector3<f64>) -> Self {
         let SymmetricTop { across, weight, .. } = SymmetricTop::of(top);
         let (a, b) = (momentum.z / across, momentum.dot(w) / across);
         let energy = 0.5 * momentum.xy().norm_squared() / across + weight * w.z;
         let (alpha, beta) = (2.0 * energy / across, 2.0 * weight / across);
-        // f(u) = (α − βu)(1 − u²) − (b − au)².
+        // The cubic f(u) = (α − βu)(1 − u²) − (b − au)².
         let [low, high, beyond] = roots(-(alpha + a * a) / beta, (2.0 * a * b - beta) / beta, (alpha - b * b) / beta);
         let rate = |u: f64| (b - a * u) / (1.0 - u * u);
         let rates = (0..=1000).map(|i| rate(low + (high - low) * f64::from(i) / 1000.0));
@@ -49,7 +49,7 @@ impl Precession {
         Self { tilt: (high.acos(), low.acos()), rate, period }
     }
 
-    /// As the sign of the rate has it, where less than `zero` rad/s is none.
+    /// The kind of precession by the sign of the rate; rates below `zero` rad/s count as zero.
     pub fn kind(&self, zero: f64) -> Kind {
         let (least, most) = self.rate;
         match least * most {
@@ -71,7 +71,8 @@ fn roots(a: f64, b: f64, c: f64) -> [f64; 3] {
     roots
 }
 
-/// `K` of the complementary modulus `k'`, by the arithmetic–geometric mean, which converges quadratically.
+/// The complete elliptic integral `K` for the complementary modulus `k'`, by the arithmetic–geometric mean, which
+/// converges quadratically.
 pub fn complete_integral(complement: f64) -> f64 {
     let (mut one, mut other) = (1.0, complement);
     for _ in 0..40 {

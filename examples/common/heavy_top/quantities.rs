@@ -1,4 +1,4 @@
-//! What the figures show, computed in the same way from the samples of every method.
+//! The quantities in the figures, computed in the same way from the samples of every method.
 
 use nalgebra::{Matrix3, Vector3};
 use plotters::style::RGBColor;
@@ -6,24 +6,24 @@ use plotters::style::RGBColor;
 use super::rk4::Body;
 use crate::run::{Record, Sample};
 
-/// A state's invariants and what else is drawn of it.
+/// The invariants of a state, and the other quantities of the figures.
 #[derive(Clone, Copy)]
 pub struct Quantities {
-    /// s
+    /// The time, s.
     pub time: f64,
-    /// `‖RᵀR − I‖`, Frobenius
+    /// The distance from the rotations, `‖RᵀR − I‖` in the Frobenius norm.
     pub defect: f64,
-    /// `e₃·RΠ`, kg m²/s
+    /// The momentum about the vertical, `e₃·RΠ`, kg m²/s.
     pub vertical: f64,
-    /// J
+    /// The energy, J.
     pub energy: f64,
-    /// Body frame, rad/s
+    /// The body velocity in the body frame, rad/s.
     pub rates: Vector3<f64>,
-    /// `R e₃`, of the length that the method's `R` gives it
+    /// The tip `R e₃`, whose length depends on the method's `R`.
     pub tip: Vector3<f64>,
 }
 
-/// A method's run, ready to be drawn.
+/// A method's run for the figures.
 pub struct Series {
     pub name: &'static str,
     pub file: &'static str,
@@ -53,32 +53,32 @@ impl Series {
         Self { name, file, colour, values, iterations: record.iterations, nanoseconds: record.nanoseconds }
     }
 
-    /// At the start.
+    /// The quantities at the start.
     pub fn first(&self) -> Quantities {
         self.values[0]
     }
 
-    /// Those from one time to another.
+    /// The quantities between two times.
     pub fn between(&self, start: f64, end: f64) -> &[Quantities] {
         let from = self.values.partition_point(|q| q.time < start);
         let to = self.values.partition_point(|q| q.time <= end);
         &self.values[from..to]
     }
 
-    /// The largest of a quantity; NaN if it is NaN anywhere, which `f64::max` would hide.
+    /// The largest value of a quantity; NaN if it is NaN anywhere, which `f64::max` would ignore.
     pub fn largest(&self, quantity: impl Fn(&Quantities) -> f64) -> f64 {
         self.values.iter().map(quantity).fold(0.0, |most: f64, x| if most.is_nan() || x <= most { most } else { x })
     }
 
-    /// The largest of a quantity in the last tenth of the run, over that in the first: about 1 for an oscillation, 10
-    /// for what grows in proportion to time.
+    /// The largest value of a quantity in the last tenth of the run, relative to that in the first: about 1 for an
+    /// oscillation, 10 for a linear growth.
     pub fn growth(&self, quantity: impl Fn(&Quantities) -> f64) -> f64 {
         let end = self.values.last().map_or(0.0, |q| q.time);
         let largest = |values: &[Quantities]| values.iter().map(&quantity).fold(0.0, f64::max);
         largest(self.between(0.9 * end, end)) / largest(self.between(0.0, 0.1 * end))
     }
 
-    /// As comma-separated values: a line of names, then numbers to their last digit.
+    /// The series as comma-separated values: a line of names, then numbers to their last digit.
     pub fn csv(&self) -> String {
         let names = [
             "time_s",

@@ -1,7 +1,7 @@
 //! The classical Runge–Kutta method of order 4 on the equations of the top, in two sets of variables.
 //!
-//! Both integrate `Π' = Π × Ω + m g w × ρ` with `w = Rᵀ e₃`; they differ in how the attitude is kept, and in who wrote
-//! the equations: those in quaternions are by hand.
+//! Both integrate `Π' = Π × Ω + m g w × ρ` with `w = Rᵀ e₃`. They differ in the representation of the attitude, and in
+//! the origin of the equations: those in quaternions are written by hand, the others derived.
 
 use liestep::SO3;
 use liestep::mechanics::{Effect as _, Term as _};
@@ -13,24 +13,24 @@ use crate::run::{Method, Sample, Stopped};
 use crate::runge_kutta::change;
 use crate::top_equations::{Equations, State};
 
-/// The body, in the form that the right-hand sides use.
+/// The body's constants in the right-hand side.
 #[derive(Clone, Copy)]
 pub struct Body {
     /// The inverses of the principal moments, 1/(kg m²).
     pub inverse_moments: Vector3<f64>,
-    /// `m g ρ`, J.
+    /// The lever `m g ρ`, J.
     pub lever: Vector3<f64>,
 }
 
 impl Body {
-    /// The same body and the same weight as the declared top's.
+    /// The body and the weight of the declared top.
     pub fn of(top: &HeavyTop) -> Self {
         let inverse_moments = top.inertia(&top.advected()).diagonal().map(f64::recip);
         Self { inverse_moments, lever: top.rho * (top.m * top.g) }
     }
 }
 
-/// In a unit quaternion, brought back to unit length after every step: how a careful user would do it.
+/// The method on a unit quaternion, normalised after every step, as a careful user would do it.
 #[derive(Clone)]
 pub struct OnQuaternion {
     equations: Equations,
@@ -38,9 +38,9 @@ pub struct OnQuaternion {
     state: State,
 }
 
-/// In the nine entries of `R`, which nothing keeps orthogonal: how the thesis did it. The momentum is beside them.
+/// The method on the nine entries of `R`, whose orthogonality isn't enforced, as in the thesis, and on the momentum.
 ///
-/// The equations are those that are derived of the declared top.
+/// The equations are derived from the declared top.
 #[derive(Clone)]
 pub struct OnMatrix {
     system: RightHandSide<HeavyTop>,

@@ -1,4 +1,4 @@
-//! B1, B2: a box, in the way that a physics engine tests itself.
+//! B1, B2: a box, as in the tests of a physics engine.
 
 use liestep::mechanics::DiagonalNonstandardInertia;
 use nalgebra::Vector3;
@@ -12,7 +12,7 @@ pub(crate) fn box_of_engines(velocity: [f64; 3], h: f64) -> Result<Spin, Failure
     Ok(Spin { inertia, velocity: velocity.into(), h })
 }
 
-/// Energy and spatial momentum within the bound.
+/// Judges energy and spatial momentum by the bound.
 pub(crate) fn kept(row: Row, name: &str, trace: &Trace, bound: f64) -> Row {
     row.at_most(&format!("{name}energy"), trace.energy_error(), bound).at_most(
         &format!("{name}spatial momentum"),
@@ -21,7 +21,7 @@ pub(crate) fn kept(row: Row, name: &str, trace: &Trace, bound: f64) -> Row {
     )
 }
 
-/// Ours against the bound, the others as they are.
+/// Judges our method by the bound, and lists the others.
 fn judged(mut row: Row, name: &str, traces: &[Trace], full: &Trace, bound: f64) -> Row {
     let [ours, others @ ..] = traces else { return row };
     row = kept(row, name, ours, bound);
@@ -52,7 +52,7 @@ pub(crate) fn b2(_: Effort) -> Result<Row, Failure> {
     );
     row = judged(row, "middle axis: ", &middle, &full[0], 1e-13);
     row = judged(row, "fast spin: ", &fast, &full[1], 1e-13);
-    // The first axis has the largest moment: the spin is stable, and stays within the angle of its start.
+    // The first axis has the largest moment: the spin is stable, and the angle to the axis doesn't grow.
     for trace in [&fast[0], &full[1]] {
         let slowest = -trace.worst(|kept| 20.0 - kept.velocity.x) + 20.0;
         row = row.holds(&format!("fast spin: {} turns by {slowest:.3} rad/s at least", trace.name), slowest > 19.99);

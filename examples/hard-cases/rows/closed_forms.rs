@@ -9,14 +9,15 @@ use workbench::run::Method as _;
 use crate::closed::{on_separatrix, symmetric_body};
 use crate::row::{Effort, Failure, Row, short};
 
-/// What is left of the invariants, and the error at the end.
+/// The errors of the invariants, and the error at the end.
 struct End {
     error: f64,
     energy: f64,
     momentum: f64,
 }
 
-/// Steps a body from a velocity, and compares attitude and velocity at the time `t`; no attitude, no comparison of it.
+/// Steps a body from a velocity, and compares attitude and velocity at the time `t`; without an expected attitude, only
+/// the velocity.
 fn end(
     moments: &Vector3<f64>,
     velocity: &Vector3<f64>,

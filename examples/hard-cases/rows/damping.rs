@@ -7,21 +7,21 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::row::{Effort, Failure, Row};
 
-/// A torque `−c Ω` that acts at the beginning of the step alone: of first order, and implicit in the momentum.
+/// A torque `−c Ω` that acts only at the beginning of the step: of first order, and implicit in the momentum.
 #[force(group = SO3, work = -c * vee(F).dot(&eta))]
 #[derive(Clone, Copy, Debug)]
 struct OneSidedDrag {
-    /// Coefficient, N m s.
+    /// The coefficient, N m s.
     c: f64,
 }
 
 const H: f64 = 0.05;
 
-/// Below, in J, squares of Newton's unknown are no longer numbers.
+/// An energy, in J, below which the squares of Newton's unknown underflow.
 const NOTHING: f64 = 1e-280;
 
-/// Whether the energy falls in every step until nothing is left, and how often a component of the velocity changes
-/// sign.
+/// Whether the energy decreases in every step until it underflows, and the number of sign changes of a component of the
+/// velocity.
 fn decay<L>(scene: L) -> Result<(bool, u32), Failure>
 where
     L: Effect<Scalar = f64, Group = SO3> + Regular,
@@ -37,7 +37,7 @@ where
             break;
         }
         falls &= after < energy;
-        // The middle one is the largest, and no precession turns it round.
+        // The middle component is the largest, and precession doesn't reverse it.
         flips += u32::from(stepper.velocity(&state).y * velocity.y < 0.0);
     }
     Ok((falls, flips))

@@ -12,27 +12,27 @@ use crate::rivals::{energy_of, started};
 use crate::row::{Effort, Failure, Row};
 use crate::rows::passage;
 
-/// s; the angles stay away from the poles in all of the thesis' motions.
+/// The duration, s; all motions of the thesis are far from the poles until then.
 const TIME: f64 = 2.0;
-/// A step so short that its own error doesn't count beside what the angles leave, s.
+/// A step whose own error is negligible beside that of the angles, s.
 const FINE: f64 = 1.0 / 4096.0;
 
-/// Attitude and momentum by the angles.
+/// The attitude and momentum by the angles.
 fn by_angles(motion: &Motion, t: f64, h: f64) -> Result<Sample, Failure> {
     let mut method = OnEulerAngles::new(&motion.top, h, &motion.attitude.matrix(), &motion.velocity);
     method.advance(steps_in(t, h))?;
     Ok(method.sample())
 }
 
-/// How far our steps of `h` end from the angles' end.
+/// The distance of our end after steps of `h` from the angles' end.
 fn error(motion: &Motion, end: &Sample, h: f64) -> Result<f64, Failure> {
     let (stepper, mut state) = started(motion, h)?;
     stepper.run(&mut state, steps_in(TIME, h))?;
     Ok(relative(&state.attitude().matrix(), &end.attitude).hypot(relative(&state.momentum(), &end.momentum)))
 }
 
-/// The change of the energy and of the vertical momentum, relative, from a second before the nearest place to most of one after
-/// by steps of `h`, of the angles and of ours.
+/// The relative changes of the energy and of the vertical momentum by steps of `h`, for the angles and for our method,
+/// from a second before the nearest approach to the pole to most of a second after it.
 fn through_the_pole(h: f64, miss: f64) -> Result<[(f64, f64); 2], Failure> {
     let top = HeavyTop::thesis();
     let stepper = Stepper::new(top.clone(), h)?;
@@ -40,7 +40,7 @@ fn through_the_pole(h: f64, miss: f64) -> Result<[(f64, f64); 2], Failure> {
     let velocity: Vector3<f64> = stepper.velocity(&state);
     let start = Sample { attitude: state.attitude().matrix(), momentum: state.momentum() };
     let mut method = OnEulerAngles::new(&top, h, &start.attitude, &velocity);
-    // Not to the mirror image of the start, where the energy is the same for any method that can be reversed.
+    // The end isn't the mirror image of the start, where every reversible method has the initial energy.
     let steps = steps_in(1.75, h);
     method.advance(steps)?;
     stepper.run(&mut state, steps)?;
@@ -85,7 +85,7 @@ pub(crate) fn t10(_: Effort) -> Result<Row, Failure> {
             .at_most(&format!("h = {h}: our vertical momentum by"), ours.1, 1e-12)
             .holds(&format!("h = {h}: the angles' energy changes by {:.1e}", theirs.0), theirs.0 > 1.0);
     }
-    // How near is too near.
+    // The distance from the pole is varied.
     for miss in [0.1, 0.01, 0.001] {
         let [theirs, _] = through_the_pole(0.001, miss)?;
         row = row.other(format!("RK4 on the angles, h = 0.001, within {miss} rad: energy changes by {:.1e}", theirs.0));

@@ -1,4 +1,4 @@
-//! B7: a body that flips about its middle axis, and when.
+//! B7: the times of a body's flips about its middle axis.
 
 use declarations::SixthOrderBody;
 use liestep::mechanics::Effect;
@@ -15,14 +15,14 @@ use crate::engines::{Moments, explicit, implicit, rescaled};
 use crate::rivals::Update;
 use crate::row::{Effort, Failure, Row};
 
-/// What a step of this length does to the body momentum.
+/// The map of the body momentum by a step.
 type Map<'a> = Box<dyn Fn(&Vector3<f64>) -> Result<Vector3<f64>, Failure> + 'a>;
-/// The method for each step.
+/// The method for a step of this length.
 type Steps<'a> = dyn Fn(f64) -> Result<Map<'a>, Failure> + 'a;
 
-/// The time of two flips: from the first to the third change of sign of the middle momentum.
+/// The duration of two flips: from the first to the third change of sign of the middle momentum.
 ///
-/// Each is found by a shorter step of the same method, so that nothing is interpolated.
+/// Each is found by a shorter step of the same method, so there is no interpolation error.
 fn period(method: &Steps<'_>, start: Vector3<f64>, h: f64) -> Result<f64, Failure> {
     let step = method(h)?;
     let (mut momentum, mut time, mut first, mut flips) = (start, 0.0, 0.0, 0);
@@ -43,7 +43,7 @@ fn period(method: &Steps<'_>, start: Vector3<f64>, h: f64) -> Result<f64, Failur
     Ok(if flips == 3 { time - first } else { f64::NAN })
 }
 
-/// The step after which the middle momentum is zero, by false position.
+/// The length of a step after which the middle momentum is zero, by false position.
 fn share(method: &Steps<'_>, momentum: &Vector3<f64>, h: f64) -> Result<f64, Failure> {
     let after = |t: f64| -> Result<f64, Failure> { Ok(method(t)?(momentum)?.y) };
     let (mut low, mut high) = ((0.0, momentum.y), (h, after(h)?));
@@ -53,7 +53,7 @@ fn share(method: &Steps<'_>, momentum: &Vector3<f64>, h: f64) -> Result<f64, Fai
         if value == 0.0 || (high.0 - low.0).abs() < 1e-15 {
             return Ok(t);
         }
-        // The side that stays is halved, or it would stay for good.
+        // The retained side is halved, or it might be retained for ever (Illinois).
         if value * high.1 < 0.0 {
             low = high;
         } else {
@@ -64,7 +64,7 @@ fn share(method: &Steps<'_>, momentum: &Vector3<f64>, h: f64) -> Result<f64, Fai
     Ok(high.0)
 }
 
-/// A step of it from the identity.
+/// One step of a stepper from the identity.
 fn one<'a, S, P>(stepper: Result<Stepper<S, P>, SetupError>) -> Result<Map<'a>, Failure>
 where
     S: Effect<Scalar = f64, Group = SO3, Advected = ()> + 'a,
@@ -111,8 +111,9 @@ pub(crate) fn b7(_: Effort) -> Result<Row, Failure> {
     for (name, method, h) in high {
         row = row.at_most(name, off(method, h)?.abs(), 1e-12);
     }
-    // Near the intermediate axis roundings grow: those of some 30 000 stages to 2e-12, a half of the time to more than
-    // 1.4e-12. One step would say little, so it is a mean of neighbouring ones that is right to 1e-12.
+    // Near the middle axis rounding errors grow: those of some 30 000 stages to 2e-12, half of the time to more than
+    // 1.4e-12. A single step size says little, so the test is for the mean over neighbouring ones, which is correct to
+    // 1e-12.
     let sofroniou_spaletta = |h: f64| one(Stepper::composed(body, h, CompositionScheme::SOFRONIOU_SPALETTA_10));
     let errors: Result<Vec<f64>, Failure> =
         (0..27).map(|k| off(&sofroniou_spaletta, 0.02 * (1.0 - 0.001 * f64::from(k)))).collect();

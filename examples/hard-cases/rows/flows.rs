@@ -1,4 +1,4 @@
-//! P5: two ways to write the flow, and two ways to write the scene.
+//! P5: two forms of the flow, and two forms of the scene.
 
 use declarations::{FreeBody, FullTop, Motion};
 use liestep::mechanics::{DiscreteLagrangian, Regular};
@@ -12,14 +12,15 @@ use crate::row::{Effort, Failure, Row};
 
 const STEPS: u32 = 1000;
 
-/// The flow on increments takes `μ` from `F` itself and so rounds it to `ε J/h`, relatively `ε/(hΩ)`, in every step.
-/// Such errors walk to `√n ε/(hΩ)` in the rate and to `n^{3/2} ε` in the angle after `n` steps, for any `h`.
+/// The bound for rounding errors. The flow on increments computes `μ` from `F` and so rounds it to `ε J/h`, relatively
+/// `ε/(hΩ)`, in every step. Such errors walk to `√n ε/(hΩ)` in the rate and to `n^{3/2} ε` in the angle after `n`
+/// steps, for any `h`.
 fn rounding_after(steps: u32) -> f64 {
     4.0 * f64::from(steps).powf(1.5) * f64::EPSILON
 }
 
-/// How far the flows (2.5) and (2.8) part along a motion, in roundings: `F`, the attitudes by (2.10), the momenta and
-/// the parameters.
+/// The distances of the flows (2.5) and (2.8) along a motion, in units of rounding: of `F`, of the attitudes by (2.10),
+/// of the momenta and of the parameters.
 fn flows<L>(lagrangian: &L, motion: &Motion, h: f64) -> Result<f64, Failure>
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + Clone,
@@ -55,7 +56,7 @@ where
     Ok(worst)
 }
 
-/// The same for the sum of the effects and (3.13).
+/// The distances between the sum of the effects and (3.13).
 fn sums(motion: &Motion, h: f64) -> Result<f64, Failure> {
     let top = &motion.top;
     let scene = PrincipalBody { J_d: top.J_d } + Gravity { m: top.m, g: top.g, rho: top.rho, up: top.up };

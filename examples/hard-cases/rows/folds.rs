@@ -25,7 +25,7 @@ fn fold_of_symmetric_top(motion: &Motion) -> Result<f64, Failure> {
     })
 }
 
-/// The first step of a motion: its iterations and its angle in degrees; `None` where there is no solution.
+/// The first step of a motion: its iterations and its angle in degrees; an error if there is no solution.
 fn first_step(motion: &Motion, h: f64) -> Result<Result<(u32, f64), StepError>, Failure> {
     let (stepper, mut state) = started(motion, h)?;
     let before = state.attitude();

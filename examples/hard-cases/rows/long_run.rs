@@ -15,7 +15,7 @@ fn theirs<M: Method>(motion: &Motion, mut method: M, steps: u64) -> Result<(Walk
     let start = method.sample();
     let mut walk = Walk::from(&start.momentum, &vertical(&start), steps);
     let energy = energy_of(&motion.top, &start);
-    // They are looked at every hundred steps.
+    // Samples are taken every hundred steps.
     for step in (100..=steps).step_by(100) {
         method.advance(100)?;
         let sample = method.sample();
@@ -31,7 +31,7 @@ pub(crate) fn t3(effort: Effort) -> Result<Row, Failure> {
     let plain = Run::along(&motion, STEP, steps, false)?;
     let compensated = effort.steps(1_000_000, 100_000_000);
     let kept = Run::along(&motion, STEP, compensated, true)?;
-    // The nine entries leave the rotations soon, and a million steps show it.
+    // The nine entries leave the rotations soon, so a million steps suffice.
     let (quaternion, change) = theirs(&motion, on_quaternion(&motion, STEP), effort.beside(compensated))?;
     let (matrix, _) = theirs(&motion, on_matrix(&motion, STEP), effort.beside(steps.min(1_000_000)))?;
 
@@ -52,7 +52,7 @@ pub(crate) fn t3(effort: Effort) -> Result<Row, Failure> {
     .at_most("RRᵀ − I, in deviations of a walk", plain.walk.attitude_deviations(), FARTHEST)
     .at_most("|w|² and p·w, in deviations of a walk", plain.walk.casimir_deviations(), FARTHEST);
     let kept_worst = kept.walk.worst;
-    // Of independent changes, each wrong by an ε of the angle of a step.
+    // The expected walk of independent increments, each with an error of one ε of the angle of a step.
     let walked = 1e-16 * float(compensated).sqrt();
     row = row
         .shows(format!("compensated, {:.0e} steps", float(compensated)))

@@ -1,4 +1,4 @@
-//! The rows, those of a kind in a file.
+//! The rows of the table, one file for each kind.
 
 mod boxes;
 mod chaos;
@@ -32,13 +32,13 @@ mod weightless;
 
 use crate::row::{Effort, Failure, Row};
 
-/// Measures a row.
+/// A function that measures a row.
 pub type Measure = fn(Effort) -> Result<Row, Failure>;
 
 /// Rows that take more than a second, whose tests are in `tests/long`.
 pub const LONG: [&str; 10] = ["S5", "T1", "T3", "T4", "T7", "P8", "R1", "R2", "R3", "R4"];
 
-/// All of them in the order of the table: where a step has no solution or several, bodies, tops, structure, round-off.
+/// All rows in the order of the table: folds and branches of the step, bodies, tops, structure, round-off.
 pub const ALL: [(&str, Measure); 38] = [
     ("S1", folds::s1),
     ("S2", folds::s2),

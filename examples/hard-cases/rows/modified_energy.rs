@@ -7,7 +7,7 @@ use workbench::measure::{four_halvings, order, steps_in};
 use crate::rivals::started;
 use crate::row::{Effort, Failure, Row};
 
-/// What the step conserves is `H` and `h²` times this, up to an oscillation of fourth order:
+/// The correction of the energy: a step conserves `H` plus `h²` times this, up to an oscillation of fourth order:
 ///
 /// ```text
 /// ((Ω·JΩ)|Ω|² − γ·J⁻¹γ)/24 + V̈/12 − τ·J⁻¹τ/24        γ = Ω × JΩ,  τ = m g w × ρ
@@ -23,7 +23,7 @@ fn correction(top: &HeavyTop, velocity: &Vector3<f64>, w: &Vector3<f64>) -> f64 
     kinetic / 24.0 + weight * acceleration.dot(&top.rho) / 12.0 - torque.dot(&torque.component_div(&j)) / 24.0
 }
 
-/// How far `H`, and `H` with its correction, move along ten seconds.
+/// The ranges of `H`, and of `H` with its correction, along ten seconds.
 fn oscillations(motion: &Motion, h: f64) -> Result<(f64, f64), Failure> {
     let (stepper, mut state) = started(motion, h)?;
     let mut range = [(f64::INFINITY, f64::NEG_INFINITY); 2];
@@ -45,7 +45,7 @@ pub(crate) fn t2(_: Effort) -> Result<Row, Failure> {
         for h in four_halvings(0.01) {
             let (energy, corrected) = oscillations(&motion, h)?;
             plain.push((h, energy));
-            // Rounding of a sum of hundreds of J over thousands of steps.
+            // The limit is the rounding error of a sum of hundreds of J over thousands of steps.
             if corrected > 1e-11 {
                 modified.push((h, corrected));
             }

@@ -1,4 +1,4 @@
-//! P2, P3: momentum maps, Casimirs, and how a covector is advected.
+//! P2, P3: momentum maps, Casimirs, and the advection of a covector.
 
 use declarations::{CayleyTop, FourthOrderTop, LogTop, LogTraceTop, Motion, SixthOrderTop, Top as _};
 use liestep::SO3;
@@ -11,8 +11,7 @@ use workbench::measure::{greater, relative};
 
 use crate::row::{Effort, Failure, Row};
 
-/// How far `left = Ad* right` and `μ⁺ = Ad*(μ + diamond)` are from holding, relative, and the Casimirs `|w|²` and
-/// `μ·w`.
+/// The relative errors of `left = Ad* right` and of `μ⁺ = Ad*(μ + diamond)`, and of the Casimirs `|w|²` and `μ·w`.
 fn laws<L>(lagrangian: &L, steps: &[(f64, f64)]) -> Result<[f64; 4], Failure>
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Regular + Clone,
@@ -38,7 +37,7 @@ where
 
 pub(crate) fn p2(_: Effort) -> Result<Row, Failure> {
     let top = Motion::chaotic().top;
-    // Steps, and momenta that they can turn by.
+    // Pairs of steps and of momenta for which they are solvable.
     let usual = &[(0.05, 10.0)];
     let declared = [
         ("(3.13)", laws(&top, &[(1e-3, 10.0), (0.05, 10.0), (0.1, 3.0), (0.3, 3.0)])?),
@@ -77,7 +76,7 @@ fn changes<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() -> (f64, f
     (right, naive)
 }
 
-#[allow(clippy::unnecessary_wraps)] // as all rows
+#[allow(clippy::unnecessary_wraps)] // as for all rows
 pub(crate) fn p3(_: Effort) -> Result<Row, Failure> {
     let groups = [
         ("SE(2)", changes::<SE2, _, _>()),

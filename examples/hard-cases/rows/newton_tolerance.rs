@@ -1,4 +1,4 @@
-//! P4: what stopping Newton's iteration early costs.
+//! P4: the effect of stopping Newton's iteration early.
 
 use declarations::Motion;
 use workbench::newton_tolerance::{EXPONENTS, Form, Guess, Left, by_the_library, run};
@@ -33,12 +33,12 @@ pub(crate) fn p4(effort: Effort) -> Result<Row, Failure> {
     .at_most("default: p₃", axial, 0.0)
     .at_most("default: p·w", vertical, 1e-12);
     for (name, guess) in [("from the last increment", Guess::Last), ("extrapolated", Guess::Extrapolated)] {
-        // The criterion asks for one of them.
+        // The criterion is for one combination.
         let judged = |exponent: i32| (guess, exponent) == (Guess::Last, -1);
         for exponent in EXPONENTS.into_iter().filter(|exponent| judged(*exponent) || !effort.verdict_only) {
             let left = run(&motion.top, H, start, (guess, 10.0_f64.powi(exponent)), Form::Transport, steps);
             if judged(exponent) {
-                // One iteration a step: the drift is there, and the Casimirs hide it.
+                // One iteration a step leads to a drift, which the Casimirs don't show.
                 row = row
                     .holds("from the last increment, 1e-1: E and p₃ drift", left.energy > 1e-7 && left.axial > 1e-7)
                     .at_most("from the last increment, 1e-1: p·w", left.vertical, 1e-12);

@@ -9,7 +9,7 @@ use workbench::run::Method as _;
 use crate::rivals::{on_quaternion, started};
 use crate::row::{Effort, Failure, Row};
 
-/// Below, roundings of the longest run count.
+/// The level of errors below which the rounding of the longest run counts.
 const PLATEAU: f64 = 1e-11;
 
 fn error(motion: &Motion, t: f64, h: f64) -> Result<f64, Failure> {
@@ -46,10 +46,10 @@ pub(crate) fn t1(effort: Effort) -> Result<Row, Failure> {
         "order 2.00 ± 0.05 over four halvings",
     );
     let motions = Motion::of_the_thesis();
-    // The error of the phase grows with time, so that the last time asks for the smallest steps.
+    // The phase error grows with time, so the last time needs the smallest steps.
     for (t, coarsest) in [(1.0, 1.0 / 200.0), (10.0, 1.0 / 1600.0), (100.0, 1.0 / 3200.0)] {
         let (mut off, mut orders) = (0.0, Vec::new());
-        // At the last time each has ten million steps.
+        // At the last time each motion has ten million steps.
         let few = if effort.verdict_only && t > 50.0 { 1 } else { motions.len() };
         for motion in motions.iter().take(few) {
             let (order, _) = measured(|h| error(motion, t, h), coarsest)?;

@@ -8,38 +8,39 @@ use workbench::measure::{four_halvings, greater, order, relative, steps_in};
 
 use crate::row::{Effort, Failure, Row};
 
-/// How near to the vertical the axis comes, rad.
+/// The least distance of the axis from the vertical, rad.
 pub(super) const MISS: f64 = 5e-7;
 const VELOCITY: Vector3<f64> = Vector3::new(1.0, 0.3, 2.0);
 
-/// What is left of a passage at `t = 0`, from `t = −1` to `t = 1`.
+/// The errors of a passage at `t = 0`, from `t = −1` to `t = 1`.
 struct Passage {
     /// The distance from the vertical, rad.
     nearest: f64,
-    /// The most iterations, and the largest change of the energy in a step: elsewhere, and within three steps of it.
+    /// The most iterations, and the largest change of the energy in a step: elsewhere, and within three steps of the
+    /// passage.
     iterations: [u32; 2],
     jumps: [f64; 2],
-    /// Of `|w|`, of `p·w` and of `RᵀR − I`.
+    /// The errors of `|w|`, of `p·w` and of `RᵀR − I`.
     defects: [f64; 3],
-    /// Of momentum and vertical at the end.
+    /// The error of momentum and vertical at the end.
     error: f64,
 }
 
-/// Where the passage is nearest: turned from straight up by `down`, and off by `miss` across the motion, rad.
+/// The state at the nearest approach: turned from straight up by `down`, and off by `miss` across the motion, rad.
 fn nearest(stepper: &Stepper<HeavyTop>, down: f64, miss: f64) -> Result<State<SO3, Vector3<f64>>, Failure> {
     let across = VELOCITY.xy().normalize();
     let miss = UnitQuaternion::from_scaled_axis(Vector3::new(-across.y, across.x, 0.0) * miss);
     Ok(stepper.start(UnitQuaternion::from_scaled_axis(Vector3::x() * down) * miss, VELOCITY)?)
 }
 
-/// The state from which steps come there in a second.
+/// The state a second before the nearest approach.
 pub(super) fn before(stepper: &Stepper<HeavyTop>, down: f64, miss: f64) -> Result<State<SO3, Vector3<f64>>, Failure> {
     let mut state = nearest(stepper, down, miss)?;
     stepper.inverse()?.run(&mut state, steps_in(1.0, stepper.step_size()))?;
     Ok(state)
 }
 
-/// By steps of `h`, past straight up or straight down.
+/// A passage by steps of `h`, past straight up or straight down.
 fn pass(down: f64, h: f64) -> Result<Passage, Failure> {
     let top = HeavyTop::thesis();
     let forth = Stepper::new(top.clone(), h)?;
@@ -51,7 +52,7 @@ fn pass(down: f64, h: f64) -> Result<Passage, Failure> {
         back.step(&mut state)?;
     }
     let casimir = state.momentum().dot(&state.advected());
-    // The first step starts from the guess of a step back.
+    // The first step has the guess of a step back.
     forth.step(&mut state)?;
     let mut passage =
         Passage { nearest: f64::INFINITY, iterations: [0; 2], jumps: [0.0; 2], defects: [0.0; 3], error: 0.0 };

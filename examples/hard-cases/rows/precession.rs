@@ -1,5 +1,5 @@
-//! T11 and T12: what the thesis says of its figures 3.7 to 3.10. Which precession each case is, how long a nutation
-//! takes, and when Runge–Kutta loses them.
+//! T11 and T12: the claims of the thesis on its figures 3.7 to 3.10: the kind of precession of each case, the period of
+//! nutation, and the time after which Runge–Kutta loses them.
 
 use declarations::Motion;
 use liestep::groups::LieGroup as _;
@@ -15,7 +15,7 @@ use crate::rivals::{on_matrix, on_quaternion, started};
 use crate::row::{Effort, Failure, Row};
 use crate::walk::orthogonality;
 
-/// The least and the greatest of two quantities, and the times at which the first begins to grow.
+/// The ranges of two quantities, and the times of the minima of the first.
 struct Seen {
     tilt: (f64, f64),
     rate: (f64, f64),
@@ -26,7 +26,7 @@ fn extended((least, most): (f64, f64), value: f64) -> (f64, f64) {
     (least.min(value), most.max(value))
 }
 
-/// The tilt and the rate of precession from one time to another, by a method's steps of `h`.
+/// The tilt and the rate of precession between two times, by a method's steps of `h`.
 fn seen(body: &Body, method: &mut impl Method, h: f64, from: f64, to: f64) -> Result<Seen, Failure> {
     method.advance(steps_in(from, h))?;
     let nothing = (f64::INFINITY, f64::NEG_INFINITY);
@@ -36,7 +36,7 @@ fn seen(body: &Body, method: &mut impl Method, h: f64, from: f64, to: f64) -> Re
         let Sample { attitude, momentum } = method.sample();
         let angles = EulerAngles::of(&attitude, &body.inverse_moments.component_mul(&momentum));
         (seen.tilt, seen.rate) = (extended(seen.tilt, angles.angles.y), extended(seen.rate, angles.rates.x));
-        // Where θ' passes zero upwards, between the steps on a straight line.
+        // The zeros of θ' upwards, by linear interpolation between steps.
         let nutation = angles.rates.y;
         if let Some(before) = before.filter(|before| *before < 0.0 && nutation >= 0.0) {
             seen.minima.push(h * (float(step) - nutation / (nutation - before)));
@@ -57,12 +57,12 @@ fn closed(motion: &Motion) -> Precession {
     Precession::of(&motion.top, &momentum, &motion.attitude.matrix().row(2).transpose())
 }
 
-/// Farthest of the ends of two ranges.
+/// The larger distance between the ends of two ranges.
 fn apart(a: (f64, f64), b: (f64, f64)) -> f64 {
     greater((a.0 - b.0).abs(), (a.1 - b.1).abs())
 }
 
-/// In the order of [`Motion::of_the_thesis`]; the third by reading A is what the thesis calls unidirectional.
+/// The kinds in the order of [`Motion::of_the_thesis`]; the thesis calls the third by reading A unidirectional.
 const KINDS: [Kind; 6] =
     [Kind::Looping, Kind::Cuspidal, Kind::Looping, Kind::Looping, Kind::Cuspidal, Kind::Unidirectional];
 
@@ -102,7 +102,7 @@ pub(crate) fn t11(_: Effort) -> Result<Row, Failure> {
     Ok(row)
 }
 
-/// s, and a step at which the classical method of order 4 has lost the motion by then.
+/// The duration, s, and a step by which the classical method of order 4 has lost the motion by then.
 const END: f64 = 200.0;
 const COARSE: f64 = 0.05;
 
@@ -146,13 +146,13 @@ pub(crate) fn t12(_: Effort) -> Result<Row, Failure> {
     Ok(row.other(format!("RK4 in a quaternion, h = {COARSE}: {}", drawn(&path))))
 }
 
-/// What is seen of the tip `R e₃` in the last 20 s.
+/// The path of the tip `R e₃` in the last 20 s.
 struct Path {
     /// The least and the greatest tilt, rad.
     tilt: (f64, f64),
-    /// The least and the greatest length, which is one.
+    /// The least and the greatest length, which should be one.
     length: (f64, f64),
-    /// How often the azimuth begins to fall: once a loop.
+    /// The number of times that the azimuth begins to decrease: once a loop.
     turns_back: u32,
 }
 
@@ -167,7 +167,7 @@ fn late_path(method: &mut impl Method) -> Result<Path, Failure> {
         let next: Vector3<f64> = method.sample().attitude.column(2).into();
         path.tilt = extended(path.tilt, next.xy().norm().atan2(next.z));
         path.length = extended(path.length, next.norm());
-        // Across a turn too.
+        // The sine also serves jumps of the azimuth by a full turn.
         let goes_forwards = (azimuth(&next) - azimuth(&tip)).sin() > 0.0;
         path.turns_back += u32::from(forwards && !goes_forwards);
         (tip, forwards) = (next, goes_forwards);

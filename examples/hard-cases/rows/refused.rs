@@ -1,4 +1,4 @@
-//! B6: what isn't the inertia of a body is refused when it is built.
+//! B6: a matrix that isn't the inertia of a body is refused at construction.
 
 use liestep::NonstandardInertia;
 use liestep::mechanics::{Inertia, InertiaError};
@@ -6,10 +6,10 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::row::{Effort, Failure, Row};
 
-/// Whether an error is of the right kind.
+/// A test for the expected kind of error.
 type IsRight = fn(&InertiaError) -> bool;
 
-#[allow(clippy::unnecessary_wraps)] // as all rows
+#[allow(clippy::unnecessary_wraps)] // as for all rows
 pub(crate) fn b6(_: Effort) -> Result<Row, Failure> {
     let diagonal = |x, y, z| Matrix3::from_diagonal(&Vector3::new(x, y, z));
     let mut askew = diagonal(2.0, 2.0, 1.0);

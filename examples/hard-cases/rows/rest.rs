@@ -1,4 +1,4 @@
-//! S4: where nothing acts nothing happens.
+//! S4: rest in equilibria.
 
 use declarations::{FreeBody, HeavyTop, Motion};
 use liestep::mechanics::{DiscreteLagrangian, Regular};
@@ -37,7 +37,7 @@ pub(crate) fn s4(_: Effort) -> Result<Row, Failure> {
         ("m = 0", HeavyTop { m: 0.0, ..top.clone() }, tilted),
         ("ρ = 0", HeavyTop { rho: Vector3::zeros(), ..top.clone() }, tilted),
         ("w = 0", HeavyTop { up: Vector3::zeros(), ..top.clone() }, tilted),
-        // Twice the same digits, so that the torque is zero to the last bit.
+        // Both vectors have proportional digits, so that the torque is zero to the bit.
         ("inverted, ρ = e₃", HeavyTop { rho: Vector3::z(), up: Vector3::z() * 2.0, ..top.clone() }, level),
         ("hanging, ρ = e₃", HeavyTop { rho: Vector3::z(), up: Vector3::z() * -2.0, ..top.clone() }, level),
         ("inverted", HeavyTop { rho, up: rho * 2.0, ..top.clone() }, level),
@@ -46,7 +46,7 @@ pub(crate) fn s4(_: Effort) -> Result<Row, Failure> {
     let mut row = Row::new("S4", "at rest: no momentum, no torque", "exact");
     let mut still = 0;
     for (name, scene, attitude) in scenes {
-        // A vertical that isn't e₃ is no scene of the Runge–Kutta program.
+        // The Runge–Kutta program has e₃ as its vertical.
         if scene.up == Vector3::z() {
             let mut rk4 = OnQuaternion::new(Body::of(&scene), 0.01, &attitude, Vector3::zeros());
             let before = rk4.sample();

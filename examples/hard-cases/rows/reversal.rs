@@ -11,7 +11,7 @@ use crate::row::{Effort, Failure, Row, short};
 
 const STEPS: u64 = 1_000_000;
 
-/// The relative error of attitude, momentum and `w` after steps there and back.
+/// The relative error of attitude, momentum and `w` after steps forwards and back.
 fn error_on_return(motion: &Motion, h: f64, steps: u64) -> Result<f64, Failure> {
     let (there, mut state) = started(motion, h)?;
     let (back, before) = (there.inverse()?, state);

@@ -1,10 +1,10 @@
-//! R1 to R4: where roundings would add up instead of walking at random.
+//! R1 to R4: rounding errors that would accumulate instead of walking at random.
 //!
-//! `D = F − I` is formed from rounded coefficients, and `D + Dᵀ + DᵀD`, zero but for that, is of the size `ε θ²` for a
-//! turn by `θ`. Where the turn is always the same, so is this, and would grow in proportion to `N`; the roundings of
-//! the sum `R + R D` walk, like `ε √N`, and hide it up to about `θ⁻⁴` steps. Compensated sums take the walk away, not
-//! this. The library takes one step towards the polar factor, `R (3I − RᵀR)/2`, once an attitude is 2¹¹ ε away; a step
-//! in every thousand, beside it, is what more of that would give.
+//! `D = F − I` is computed from rounded coefficients, so `D + Dᵀ + DᵀD` isn't zero but has the size `ε θ²` for a turn
+//! by `θ`. If the turn is constant, so is this error, and it would grow in proportion to `N`; the rounding errors of
+//! the sum `R + R D` walk, like `ε √N`, and dominate up to about `θ⁻⁴` steps. Compensated sums remove the walk, but not
+//! the constant error. The library takes one step towards the polar factor, `R (3I − RᵀR)/2`, once an attitude is 2¹¹ ε
+//! away; the variant with such a step in every thousand shows the effect of taking more.
 
 use declarations::{HeavyTop, Motion};
 use liestep::methods::{CompositionScheme, SplittingScheme, SymmetricBody};
@@ -17,7 +17,7 @@ use workbench::measure::float;
 use crate::row::{Effort, Failure, Row, short};
 use crate::walk::{FARTHEST, Run};
 
-/// What is left of a run: the criterion is for the library's step as it is.
+/// Adds the errors of a run: the criterion is for the library's unmodified step.
 fn told(row: Row, name: &str, run: &Run, is_judged: bool) -> Row {
     let (worst, deviations) = (run.walk.worst, run.walk.attitude_deviations());
     let defect = format!("{name}: ‖RᵀR − I‖");
@@ -86,7 +86,7 @@ pub(crate) fn r2(effort: Effort) -> Result<Row, Failure> {
 pub(crate) fn r3(effort: Effort) -> Result<Row, Failure> {
     let steps = effort.steps(10_000_000, 100_000_000);
     let row = Row::new("R3", "upright spin, a turn of 0.05 in every step, 1e7 steps (1e8 with --long)", CRITERION);
-    // Upright: neither momentum nor `w` changes, and each step adds the same `D`.
+    // In the upright spin neither momentum nor `w` changes, and each step adds the same `D`.
     let (stepper, start) = (Stepper::new(Motion::looping().top, 0.05)?, (SO3::identity(), Vector3::z()));
     let (row, kept) = walked(row, stepper, start, (steps, effort.beside(steps)))?;
     let angle = 0.05_f64.asin();
@@ -99,7 +99,7 @@ pub(crate) fn r3(effort: Effort) -> Result<Row, Failure> {
 pub(crate) fn r4(effort: Effort) -> Result<Row, Failure> {
     let steps = effort.steps(10_000_000, 100_000_000);
     let row = Row::new("R4", "free precession of a symmetric body, h = 0.05, 1e7 steps (1e8 with --long)", CRITERION);
-    // Without weight the symmetric body precesses regularly: the angle of a step is always the same, its axis turns.
+    // Without weight the symmetric body precesses regularly: the angle of a step is constant, and its axis rotates.
     let weightless = Stepper::new(HeavyTop { g: 0.0, ..Motion::looping().top }, 0.05)?;
     let start = (SO3::identity(), Vector3::new(1.0, 0.5, 2.0));
     Ok(walked(row, weightless, start, (steps, effort.beside(steps)))?.0)

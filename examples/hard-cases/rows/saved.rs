@@ -1,14 +1,13 @@
-//! P7: a fixed run has fixed bytes: from one build to the next, from debug to release, from the generic to the native
-//! target.
+//! P7: a fixed run has the same bits in each build, in debug and release, for the generic and the native target.
 //!
 //! ```text
 //! cargo run --example hard-cases -- --row P7
 //! RUSTFLAGS="-C target-cpu=native" cargo run --release --target-dir target/native --example hard-cases -- --row P7
 //! ```
 //!
-//! A Cayley step has additions, multiplications, divisions and square roots only, each rounded as IEEE 754 says and in
-//! the order that the expansion wrote; nothing is fused or reordered. A change of the derivation that changes roundings
-//! changes the digest, and belongs in the history with it.
+//! A Cayley step consists of additions, multiplications, divisions and square roots, each rounded by IEEE 754 and in
+//! the order of the expansion; nothing is fused or reordered. A change of the derivation that changes rounding changes
+//! the digest, which belongs in the same commit.
 
 use declarations::{FreeBody, HeavyTop, Motion};
 use liestep::mechanics::DiscreteLagrangian;
@@ -19,7 +18,7 @@ use nalgebra::Vector3;
 
 use crate::row::{Effort, Failure, Row};
 
-/// Of the states of a thousand steps.
+/// The digest of the states of a thousand steps.
 fn digest<L, P>(stepper: &Stepper<L, P>, attitude: SO3, velocity: Vector3<f64>) -> Result<u64, Failure>
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3>,
@@ -35,7 +34,7 @@ where
     Ok(digest.value())
 }
 
-/// The starts are read from files and multiplied, so no library function has a part in them.
+/// The initial values are read from files and multiplied, so they don't depend on library functions.
 pub(crate) fn p7(_: Effort) -> Result<Row, Failure> {
     let motion = Motion::looping();
     let stepper = Stepper::new(motion.top.clone(), 0.01)?;

@@ -1,4 +1,4 @@
-//! B3 to B5: thin, flat, round, and in other axes.
+//! B3 to B5: slender, flat and round bodies, and a body in rotated axes.
 
 use declarations::FreeBody;
 use liestep::mechanics::{DiscreteLagrangian, Regular};
@@ -50,7 +50,7 @@ where
     let stepper = Stepper::new(body, spin.h)?;
     let mut state = stepper.start(SO3::identity(), spin.velocity)?;
     let energy = stepper.energy(&state);
-    // The first step has no increment to start from.
+    // The first step has no previous increment as its guess.
     stepper.step(&mut state)?;
     let (mut iterations, mut error) = (0, 0.0);
     for _ in 0..10_000 {
@@ -76,11 +76,11 @@ pub(crate) fn b4(_: Effort) -> Result<Row, Failure> {
 pub(crate) fn b5(_: Effort) -> Result<Row, Failure> {
     const STEPS: u32 = 500;
     let spin = box_of_engines([1.0, 2.0, 3.0], 0.01)?;
-    // Attitude and momentum at the end, in the axes of the box, whatever the axes of the computation.
+    // The attitude and momentum at the end, transformed to the axes of the box.
     let moved = |axes: &Matrix3<f64>| -> Result<(Matrix3<f64>, Vector3<f64>, f64), Failure> {
         let inertia = NonstandardInertia::new(axes * spin.inertia.to_matrix() * axes.transpose())?;
         let stepper = Stepper::new(FreeBody { J_d: inertia }, spin.h)?;
-        // A reflection turns the sense of rotations.
+        // A reflection reverses rotations.
         let mut state = stepper.start(SO3::identity(), axes * spin.velocity * axes.determinant())?;
         let (energy, mut error) = (stepper.energy(&state), 0.0);
         for _ in 0..STEPS {

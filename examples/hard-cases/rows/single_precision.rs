@@ -1,6 +1,6 @@
-//! P8: the same in `f32`.
+//! P8: the rows in single precision.
 //!
-//! The thresholds are those of `f64` in units of epsilon: what is 10⁻¹⁴ there is 45 ε, 10⁻¹³ is 450 ε.
+//! The thresholds are those of `f64` in units of epsilon: 10⁻¹⁴ is 45 ε, 10⁻¹³ is 450 ε.
 
 use declarations::Motion;
 use liestep::mechanics::{DiscreteLagrangian, InertiaError, Regular, Sum};
@@ -12,12 +12,12 @@ use crate::row::{Effort, Failure, Row};
 
 const EPSILON: f64 = f32::EPSILON as f64;
 
-/// What a bound for `f64` is in units of its epsilon.
+/// A bound for `f64` in units of its epsilon.
 fn units(bound: f64) -> f64 {
     bound / f64::EPSILON
 }
 
-#[allow(clippy::cast_possible_truncation)] // that is what it is for
+#[allow(clippy::cast_possible_truncation)] // rounding is the purpose
 fn single(value: f64) -> f32 {
     value as f32
 }
@@ -27,8 +27,8 @@ fn free<L>(body: L, velocity: [f64; 3], h: f64, steps: u32) -> Result<[f64; 2], 
 where
     L: DiscreteLagrangian<Scalar = f32, Group = SO3<f32>, Advected = ()> + Regular,
 {
-    // Those that the program has, not those it was to have; and in double precision, so that what is measured isn't the
-    // rounding of the measurement.
+    // The inertia is that of the program after rounding, and the measurement is in double precision, whose rounding is
+    // negligible.
     let inverse = body.inertia(&body.advected()).cast::<f64>().try_inverse().ok_or("a singular inertia")?;
     let stepper = Stepper::new(body, single(h))?;
     let mut state = stepper.start(SO3::identity(), Vector3::from(velocity).cast::<f32>())?;
@@ -48,7 +48,7 @@ where
 
 /// B1 to B4, in principal axes and with a full tensor.
 fn bodies(mut row: Row) -> Result<Row, Failure> {
-    // Half-extents 0.1, 0.2, 0.3 and 1 kg.
+    // The box has half-extents 0.1, 0.2, 0.3 and 1 kg.
     let of_box = [0.01 / 3.0, 0.04 / 3.0, 0.09 / 3.0];
     let [thick, thin] = [1e-4 / 16.0, 1e-5 / 16.0].map(|across| [across, across, 1.0 / 12.0]);
     let (rod, plate) = ([1.0, 0.5, 3.0], [1.0, 0.5, 0.3]);
@@ -75,16 +75,16 @@ fn bodies(mut row: Row) -> Result<Row, Failure> {
     }
     let sphere = RigidBody { J_d: NonstandardInertia::from_diagonal(Vector3::repeat(0.2_f32))? };
     row = row.at_most("B4 sphere: energy, ε", free(sphere, [1.0, 2.0, 3.0], 0.01, 10_000)?[0], 0.0);
-    // A ratio of the moments that `f32` doesn't tell from zero.
+    // The smaller moment is zero to the rounding of `f32`.
     let needle = NonstandardInertia::<f32>::from_diagonal([1e-8 / 16.0, 1e-8 / 16.0, 1.0 / 12.0].into());
     Ok(row.holds("B3 rod 10⁴:1 is refused", matches!(needle, Err(InertiaError::Singular { .. }))))
 }
 
 type Scene = Sum<PrincipalBody<f32>, Gravity<f32>>;
-/// Nothing is advected for the body, the vertical for gravity.
+/// The state of a scene in which gravity advects the vertical.
 type Turning = State<SO3<f32>, ((), Vector3<f32>)>;
 
-/// The top of a motion, and where it starts.
+/// The top of a motion, and its initial state.
 fn started(motion: &Motion, h: f64) -> Result<(Stepper<Scene>, Turning), Failure> {
     let top = &motion.top;
     let body = PrincipalBody { J_d: DiagonalNonstandardInertia::from_diagonal(top.J_d.diagonal().cast::<f32>())? };
@@ -95,7 +95,7 @@ fn started(motion: &Motion, h: f64) -> Result<(Stepper<Scene>, Turning), Failure
     Ok((stepper, state))
 }
 
-/// T1: the errors of attitude and velocity after a second, above what `f32` loses by then.
+/// T1: the errors of attitude and velocity after a second, above the rounding level of `f32`.
 fn orders(mut row: Row) -> Result<Row, Failure> {
     for motion in Motion::of_the_thesis().iter().take(3) {
         let (attitude, velocity) = motion.at(1.0);
@@ -109,14 +109,14 @@ fn orders(mut row: Row) -> Result<Row, Failure> {
             let velocities = relative(&stepper.velocity(&state).cast::<f64>(), &velocity);
             errors.push((h, relative(&found, &attitude).hypot(velocities)));
         }
-        // A thousand roundings and their twist, well below the smallest error.
+        // The plateau is that of a thousand roundings and their effect on the attitude, well below the smallest error.
         row = row.near(&format!("T1 {}: order", motion.name), order(&errors, 200.0 * EPSILON), 2.0, 0.05);
     }
     Ok(row)
 }
 
 /// S1, S2: up to 0.999 of the fold a step is solved, in as many iterations as in `f64`; above it is refused, and the
-/// error names a step that would do.
+/// error names a solvable step.
 fn folds(mut row: Row, motion: &Motion) -> Result<Row, Failure> {
     let (wide, state) = started(motion, 1.0)?;
     let fold = f64::from(wide.max_step(&state));
@@ -146,7 +146,7 @@ fn folds(mut row: Row, motion: &Motion) -> Result<Row, Failure> {
         .holds("S2 refused, state unchanged", refused))
 }
 
-/// S4: from rest, without gravity and hanging.
+/// S4: rest without gravity, and hanging.
 fn at_rest(motion: &Motion) -> Result<bool, Failure> {
     let (stepper, _) = started(motion, 0.01)?;
     let Sum { first: body, second: gravity } = *stepper.scene();
@@ -166,7 +166,7 @@ fn at_rest(motion: &Motion) -> Result<bool, Failure> {
     Ok(stays)
 }
 
-/// S5: how far from its start a motion is after a million steps there and back: attitude, momentum and vertical, in ε.
+/// S5: the distances from the start after a million steps forwards and back: attitude, momentum and vertical, in ε.
 fn there_and_back(motion: &Motion, h: f64) -> Result<[f64; 3], Failure> {
     let (there, mut state) = started(motion, h)?;
     let ((back, _), before) = (started(motion, -h)?, state);
@@ -183,8 +183,8 @@ fn there_and_back(motion: &Motion, h: f64) -> Result<[f64; 3], Failure> {
     Ok(errors.map(|error| error / EPSILON))
 }
 
-/// It is a walk of roundings, and of neighbouring step sizes one comes back ten times nearer than another: so the
-/// largest of three medians over an octave.
+/// The largest of three medians over an octave. The distance is a walk of roundings, and neighbouring step sizes differ
+/// by a factor of ten.
 fn median(motion: &Motion, h: f64) -> Result<f64, Failure> {
     let runs: Result<Vec<_>, Failure> =
         (0..9).map(|k| there_and_back(motion, h / 2_f64.powf(f64::from(k) / 8.0))).collect();
@@ -202,7 +202,7 @@ fn million(row: Row, motion: &Motion) -> Result<Row, Failure> {
     const STEPS: u64 = 1_000_000;
     let (stepper, mut state) = started(motion, 0.01)?;
     let (axial, vertical) = (state.momentum().z, state.momentum().dot(&state.advected().1));
-    // In double precision, so that what is measured isn't the rounding of the measurement.
+    // The measurement is in double precision, whose rounding is negligible.
     let (moments, weight) = (motion.top.moments(), f64::from(single(motion.top.m * motion.top.g)));
     let energy = |state: &Turning| {
         let (p, w) = (state.momentum().cast::<f64>(), state.advected().1.cast::<f64>());
@@ -218,7 +218,7 @@ fn million(row: Row, motion: &Motion) -> Result<Row, Failure> {
         casimirs = greater(greater(casimirs, relative), f64::from(state.advected().1.norm() - 1.0).abs());
         orthogonality = greater(orthogonality, f64::from(state.orthogonality_defect()));
     }
-    // A walk of 10⁶ roundings, as in `f64`, where 10⁻¹⁰ is allowed for ten times as many.
+    // The bound is for a walk of 10⁶ roundings; in `f64` it is 10⁻¹⁰ for ten times as many.
     Ok(row
         .at_most("T3, 10⁶ steps: steps that changed p₃", f64::from(changed), 0.0)
         .at_most("T3: energy window means, ε", energies.drift() / start / EPSILON, 450.0)

@@ -11,7 +11,7 @@ use crate::row::{Effort, Failure, Row, short};
 
 const H: f64 = 0.01;
 
-/// `√(4 m g l J_1)/J_3`
+/// The critical speed `√(4 m g l J_1)/J_3`.
 fn critical_speed() -> f64 {
     (4.0 * 9.81 * 3.0_f64).sqrt() / 4.0
 }
@@ -33,7 +33,7 @@ fn tilts(fraction: f64, steps: usize) -> Result<Vec<f64>, Failure> {
     Ok(tilts)
 }
 
-/// The same with Runge–Kutta.
+/// The tilts by Runge–Kutta.
 fn rk4_tilts(fraction: f64, steps: usize) -> Result<Vec<f64>, Failure> {
     let body = Body::of(&HeavyTop::thesis());
     let (attitude, velocity) = start(fraction);
@@ -46,8 +46,7 @@ fn rk4_tilts(fraction: f64, steps: usize) -> Result<Vec<f64>, Failure> {
     Ok(tilts)
 }
 
-/// The rate at which the tilt grows from 1e-6 to 1e-4 rad, between which the decaying mode is gone and the motion
-/// linear.
+/// The growth rate of the tilt from 1e-6 to 1e-4 rad, where the decaying mode is negligible and the motion is linear.
 fn growth_rate(tilts: &[f64]) -> f64 {
     let reached = |tilt: f64| tilts.iter().position(|&t| t > tilt);
     let (Some(start), Some(end)) = (reached(1e-6), reached(1e-4)) else { return f64::NAN };
@@ -80,8 +79,8 @@ pub(crate) fn t5(effort: Effort) -> Result<Row, Failure> {
     }
     let steps: u32 = if effort.long { 10_000_000 } else { 200_000 };
     let largest = |tilts: &[f64]| tilts.iter().copied().fold(0.0, f64::max);
-    // The two frequencies beat, and near the threshold they all but agree: the largest tilt is the first by their mean
-    // over half their difference.
+    // The two frequencies beat, and near the threshold they nearly agree: the largest tilt is the initial one times
+    // their mean over half their difference.
     for fraction in [1.01, 1.1, 2.0] {
         let tilts = tilts(fraction, steps as usize)?;
         let (first, second) = tilts.split_at(tilts.len() / 2);

@@ -57,8 +57,7 @@ pub(crate) fn p1(_: Effort) -> Result<Row, Failure> {
 
     let mut theirs = 0.0;
     for z in &phases {
-        // Runge–Kutta moves the attitude; the vertical of a nearby `w` is reached by turning `R`, of any length by
-        // scaling.
+        // Runge–Kutta integrates the attitude; a nearby `w` is reached by rotating `R`, and its length by scaling.
         let map = |(momentum, w): &Phase| {
             let length = w.norm();
             let body = Body::of(&HeavyTop { m: top.m * length, ..top.clone() });

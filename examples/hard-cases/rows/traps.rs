@@ -16,10 +16,11 @@ fn rotation(axis: &Vector3<f64>, degrees: f64) -> SO3 {
     UnitQuaternion::from_scaled_axis(axis * degrees.to_radians()).into()
 }
 
-/// What became of all guesses.
+/// The results of all guesses.
 struct Seen {
     refused: u32,
-    /// Of these, where the determinant that is named is below zero; about a middle axis it may be above, and the trace tells.
+    /// The number of these whose reported determinant is negative; about a middle axis it may be positive, and the
+    /// trace decides.
     negative: u32,
     traps: u32,
     wrong: u32,
@@ -44,7 +45,7 @@ impl Seen {
                 self.refused += 1;
                 self.negative += u32::from(determinant < 0.0);
             }
-            // From elsewhere Newton's iteration may reach either root, but the wrong one never comes out.
+            // Newton's iteration from elsewhere may converge to either root, but the wrong one must never be returned.
             for degrees in (0..=175).step_by(5) {
                 match flow.invert_legendre_minus(&momentum, w, &guess(f64::from(degrees))?) {
                     Ok(found) if off(&found) < 1e-6 => self.error = greater(self.error, off(&found)),
@@ -52,7 +53,7 @@ impl Seen {
                     Err(_) => self.from_below &= degrees > 90,
                 }
             }
-            // A step isn't left without an answer: it starts again at the identity.
+            // A full step starts again at the identity, so it always finds the right root.
             self.error = greater(self.error, off(&flow.step(&momentum, w, &guess(150.0)?)?.element()));
         }
         Ok(())
@@ -64,7 +65,7 @@ pub(crate) fn s3(_: Effort) -> Result<Row, Failure> {
     for moments in [[3.0, 3.0, 4.0], [2.0, 3.0, 4.5], [1.0, 2.0, 3.0], [1.0, 1.0, 1.0]] {
         seen.trap(&FreeBody::with_moments(moments), &())?;
     }
-    // Without weight, so that the half kick doesn't move the root.
+    // There is no weight, so the half kick doesn't move the root.
     for top in [HeavyTop::thesis(), HeavyTop::asymmetric()] {
         seen.trap(&HeavyTop { g: 0.0, ..top }, &Vector3::z())?;
     }

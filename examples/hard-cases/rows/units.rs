@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::row::{Effort, Failure, Row};
 
-/// Attitude, momentum and the vertical as the body sees it.
+/// The attitude, the momentum and the vertical in the body frame.
 type End = (Matrix3<f64>, Vector3<f64>, Vector3<f64>);
 
 /// The end of a motion with masses and times multiplied, in the old units.

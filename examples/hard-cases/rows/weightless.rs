@@ -1,4 +1,4 @@
-//! T8: no gravity.
+//! T8: the top without gravity.
 
 use declarations::{FullTop, HeavyTop, Motion};
 use liestep::mechanics::{DiscreteLagrangian, Regular};
@@ -8,7 +8,7 @@ use workbench::measure::{greater, relative};
 
 use crate::row::{Effort, Failure, Row};
 
-/// Attitude and momentum after a thousand steps, about twenty turns, and how far `R p` has gone.
+/// The attitude and momentum after a thousand steps, about twenty turns, and the change of `R p`.
 fn moved<L>(lagrangian: L, motion: &Motion) -> Result<(Matrix3<f64>, Vector3<f64>, f64), Failure>
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular,
@@ -46,7 +46,7 @@ pub(crate) fn t8(_: Effort) -> Result<Row, Failure> {
         let (attitude, momentum, _) = moved(scene, &motion)?;
         apart = greater(apart, relative(&attitude, &free.0).max(relative(&momentum, &free.1)));
     }
-    // Two sums may round differently; a thousand steps and their twist make 1000^{3/2} ε of it.
+    // Two sums may round differently; over a thousand steps the attitude amplifies this to 1000^{3/2} ε.
     let row = Row::new("T8", "no gravity, 1000 steps", "the free body to round-off")
         .at_most("g, m or ρ zero, against the free body", apart, 7e-12)
         .at_most("spatial momentum", kept, 5e-14);

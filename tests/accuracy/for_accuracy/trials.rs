@@ -1,15 +1,15 @@
-//! What the trials of a choice cost, and where they end.
+//! The cost of the trials of a choice, and their end.
 
 use core::ops::Add;
 
 use super::*;
 
-/// With a slow rotor, so that the body can't be split and its own steps are all there is.
+/// A body with a slow rotor, which can't be split, so that only its own steps are available.
 fn spun<B: Add<Rotor>>(body: B) -> B::Output {
     body + Rotor { spin: Vector3::x() * 1e-3 }
 }
 
-/// Trials are counted in operations, so the bound holds on any machine. Runs are of one step and of thousands.
+/// Trials are counted in operations, so the bound holds on any machine. Runs have one step to thousands.
 #[test]
 fn trials_cost_at_most_sixty_runs_and_half_of_them_twenty() {
     let mut all = Vec::new();
@@ -36,18 +36,18 @@ fn trials_cost_at_most_sixty_runs_and_half_of_them_twenty() {
     }
 }
 
-/// A run whose error leaves room for longer steps, which have no solution, is chosen as it is.
+/// If longer steps would be accurate enough but have no solution, the longest solvable step is chosen.
 #[test]
 fn steps_too_long_to_be_solved_end_the_search_for_longer_ones() {
     let motion = Motion::read("chaotic");
     let accuracy = Accuracy { tolerance: 0.05, horizon: 30.0 };
     let stepper = ask(&motion, accuracy).unwrap();
-    // A search that goes on to a finer reference takes thousands of runs.
+    // A search that continued to a finer reference would take thousands of runs.
     assert!(stepper.choice().trials <= 60.0, "{}", stepper.choice());
 }
 
-/// A spin of more than a turn in the shortest step that is tried, each of which has a solution: no two trials agree,
-/// and rounding has no part in that.
+/// A spin of more than a turn in the shortest tried step, each of which has a solution: no two trials agree, and
+/// rounding isn't the cause.
 #[test]
 fn steps_too_long_for_the_motion_are_not_taken_for_rounding() {
     let body = CayleyBody { J: Inertia::from_principal_moments(Vector3::new(1.0, 1.0, 1.0)).unwrap() };
@@ -58,8 +58,8 @@ fn steps_too_long_for_the_motion_are_not_taken_for_rounding() {
     assert!(refusal.to_string().starts_with("about "), "{refusal}");
 }
 
-/// The same of a body whose long steps have no solution: that they fail isn't why. Of the shortest part's trials only
-/// the last has one.
+/// The spin of a body whose long steps have no solution, which isn't the cause of the refusal. Among the trials of the
+/// shortest part only the last is solvable.
 #[test]
 fn long_steps_without_a_solution_are_not_the_cause() {
     let body = RigidBody { J_d: NonstandardInertia::from_diagonal(Vector3::new(1.0, 1.5, 2.0)).unwrap() };
@@ -71,7 +71,7 @@ fn long_steps_without_a_solution_are_not_the_cause() {
     assert!(refusal.to_string().starts_with("at least 1e18 steps of the method `its own step`"), "{refusal}");
 }
 
-/// In so short a time the steps that order 2 takes are too short for a double; a composition takes longer ones.
+/// In so short a time the steps of order 2 underflow a double; a composition takes longer ones.
 #[test]
 fn a_set_up_that_fails_for_shorter_steps_is_not_the_end() {
     let body = CayleyBody { J: Inertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5)).unwrap() };
@@ -82,7 +82,7 @@ fn a_set_up_that_fails_for_shorter_steps_is_not_the_end() {
     assert!(stepper.choice().error <= 1e-12, "{}", stepper.choice());
 }
 
-/// Trials end after so many operations, some seconds, whatever is asked, and an error says how many were made.
+/// Trials end after a bounded number of operations, some seconds, for every request, and an error reports their number.
 #[test]
 fn hostile_scenes_are_refused_soon() {
     let motion = Motion::read("chaotic");

@@ -1,4 +1,4 @@
-//! Scenes whose inertia depends on what is seen.
+//! Scenes whose inertia depends on advected parameters.
 
 use liestep::accuracy::Steppable;
 use liestep::numbers::Entries;
@@ -19,8 +19,8 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
     norm(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>())
 }
 
-/// What is claimed of a scene, where its inertia depends on what is seen: order 2, of a composition that of its scheme,
-/// and the tolerance. The reference solves the continuous equations and knows nothing of steps.
+/// The claims for a scene with varying inertia: order 2, for a composition the order of its scheme, and the tolerance.
+/// The reference solves the continuous equations, independently of steps.
 fn assert_claims_of_varying_inertia<S, G>(scene: &S, attitude: G, momentum: G::Vector)
 where
     S: Scene<Scalar = f64, Group = G> + ContinuousLagrangian<Scalar = f64, Group = G>,
@@ -62,7 +62,7 @@ where
         let mut state = stepper.start();
         stepper.run(&mut state).unwrap();
         assert!(stepper.choice().trials <= 60.0, "{}", stepper.choice());
-        // As `Accuracy` defines it.
+        // The error as `Accuracy` defines it.
         let attitudes = apart(&entries(&state.attitude().matrix()), &exact_attitude) / norm(&exact_attitude);
         let error = attitudes.hypot(apart(&entries(&stepper.velocity(&state)), &exact_velocity) / scale);
         assert!(error <= tolerance, "{error:e}\n{}", stepper.choice());

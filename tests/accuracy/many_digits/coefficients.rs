@@ -8,8 +8,8 @@ use crate::conditions::deviations;
 
 /// The solution of the order conditions nearest to a scheme's coefficients, all stages in order.
 ///
-/// Where there are fewer conditions than coefficients that isn't the published solution in its further digits, but one
-/// whose rounding it is as well: it may differ by roundings of the coefficients only.
+/// If there are fewer conditions than coefficients, the further digits differ from the published solution's, but the
+/// scheme's coefficients are a rounding of both: they may differ by roundings of the coefficients only.
 pub(crate) fn refined(scheme: &CompositionScheme) -> Vec<DoubleDouble> {
     let stages: Vec<_> = scheme.stages().collect();
     let count = stages.len().div_ceil(2);
@@ -20,7 +20,7 @@ pub(crate) fn refined(scheme: &CompositionScheme) -> Vec<DoubleDouble> {
         deviations(&all(half), scheme.base(), scheme.order()).into_values().collect()
     };
     let mut half: Vec<DoubleDouble> = stages[..count].iter().map(|gamma| (*gamma).into()).collect();
-    // Central differences: their error slows the iteration, and doesn't change where it ends.
+    // The error of central differences slows the iteration, and doesn't change its limit.
     let columns: Vec<_> = (0..count)
         .map(|k| {
             let [plus, minus] = [1e-6, -1e-6].map(|change: f64| {
@@ -31,7 +31,7 @@ pub(crate) fn refined(scheme: &CompositionScheme) -> Vec<DoubleDouble> {
             DVector::from_iterator(plus.len(), plus.iter().zip(&minus).map(|(a, b)| (*a - *b).rounded() / 2e-6))
         })
         .collect();
-    // Words depend on each other: below the singular values of the conditions, 1e-7 and more, are those of rounding.
+    // The words' conditions are dependent: singular values below those of the conditions, 1e-7 and more, are rounding.
     let inverse = DMatrix::from_columns(&columns).pseudo_inverse(1e-9).expect("a Jacobian");
     for _ in 0..20 {
         let residual = missed(&half);

@@ -1,7 +1,7 @@
 //! Gauss collocation in the plain form of its tableau.
 //!
-//! The library has it in sums and differences over pairs of stages, solved from the stages of the step before; here the
-//! nodes, weights and `a_ij` are those of the definition and the stages are found from nothing.
+//! The library computes in sums and differences over pairs of stages, from the stages of the step before; here the
+//! nodes, weights and `a_ij` are those of the definition and the stages are solved without a guess.
 
 use nalgebra::Vector3;
 use num_traits::{One as _, Zero as _};
@@ -49,12 +49,12 @@ impl Tableau {
             one / ((one - x * x) * slope * slope)
         };
         let weights: Vec<_> = nodes.iter().map(|node| weight(*node)).collect();
-        // The polynomial that is one at a node and zero at the others.
+        // The Lagrange polynomial, which is one at a node and zero at the others.
         let lagrange = |j: usize, x: DoubleDouble| {
             let others = (0..stages).filter(|k| *k != j);
             others.fold(one, |product, k| product * (x - nodes[k]) / (nodes[j] - nodes[k]))
         };
-        // ∫₀ᶜ of it, which the rule itself integrates exactly: multiplied out, it would lose digits.
+        // The integral ∫₀ᶜ is exact by the quadrature rule; expanded powers would lose digits.
         let integral = |c: DoubleDouble, j: usize| {
             let sum = nodes.iter().zip(&weights).map(|(node, weight)| *weight * lagrange(j, c * *node));
             c * sum.fold(DoubleDouble::zero(), |sum, term| sum + term)
@@ -64,19 +64,19 @@ impl Tableau {
     }
 }
 
-/// Quaternion and conjugate momentum, each a real and an imaginary part.
+/// The quaternion and the conjugate momentum, each as a real and an imaginary part.
 type Place = [(DoubleDouble, Vector); 2];
 
 fn sum(a: &Place, b: &Place, factor: DoubleDouble) -> Place {
     core::array::from_fn(|k| (a[k].0 + b[k].0 * factor, a[k].1 + b[k].1 * factor))
 }
 
-/// The product of a quaternion and an imaginary one.
+/// The product of a quaternion and an imaginary quaternion.
 fn times((real, imaginary): &(DoubleDouble, Vector), v: &Vector) -> (DoubleDouble, Vector) {
     (-imaginary.dot(v), v * *real + imaginary.cross(v))
 }
 
-/// `Π = ½ Im(q̄ p)`
+/// The momentum `Π = ½ Im(q̄ p)`.
 fn momentum([q, p]: &Place) -> Vector {
     (p.1 * q.0 - q.1 * p.0 - q.1.cross(&p.1)) * long(0.5)
 }
@@ -91,7 +91,7 @@ fn attitude(q: &(DoubleDouble, Vector)) -> Matrix {
     of_quaternion(q.0 / length, &q.1.map(|component| component / length))
 }
 
-/// `q' = ½ q Ω`, `p' = ½ p Ω + 2 q τ(w)/|q|²` with `Ω = J⁻¹ Π` and `w = R(q)ᵀ a_0`.
+/// The rates `q' = ½ q Ω`, `p' = ½ p Ω + 2 q τ(w)/|q|²` with `Ω = J⁻¹ Π` and `w = R(q)ᵀ a_0`.
 fn rate(motion: &Motion, place: &Place) -> Place {
     let [q, p] = place;
     let half: Vector = motion.velocity_of(&momentum(place)) * long(0.5);
@@ -101,7 +101,7 @@ fn rate(motion: &Motion, place: &Place) -> Place {
     [times(q, &half), (real + kick.0, imaginary + kick.1)]
 }
 
-/// Attitude and body velocity after so many steps.
+/// The attitude and body velocity after this number of steps.
 pub(crate) fn end(tableau: &Tableau, motion: &Motion, h: DoubleDouble, steps: u32) -> (Matrix, Vector) {
     let q = quaternion(&motion.attitude);
     let mut place = [q, times(&q, &(motion.momentum() * long(2.0)))];
@@ -111,7 +111,7 @@ pub(crate) fn end(tableau: &Tableau, motion: &Motion, h: DoubleDouble, steps: u3
     (attitude(&place[0]), motion.velocity_of(&momentum(&place)))
 }
 
-/// Fixed-point iteration until the last digit.
+/// One step by fixed-point iteration until the last digit.
 fn step(tableau: &Tableau, motion: &Motion, h: DoubleDouble, place: &Place) -> Place {
     let mut rates = vec![rate(motion, place); tableau.weights.len()];
     for _ in 0..200 {

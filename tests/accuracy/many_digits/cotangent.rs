@@ -1,6 +1,6 @@
 //! Gauss collocation on the cotangent bundle of all matrices, in the plain form of its tableau: its order with five to
-//! eight stages, and its Poisson property to twenty digits, on groups that aren't compact. The Lagrangian's momentum,
-//! Hessian and diamond are by hand,
+//! eight stages, and its Poisson property to twenty digits, on noncompact groups. The Lagrangian's momentum, Hessian
+//! and diamond are written by hand,
 //!
 //! ```text
 //! l = ½ q(ξ) (1 + (w·r)²) + c w·(ξ̂ r) − k (w·r)²,     q = tr(ξ̂ J ξ̂ᵀ),     w = gᵀ a_0
@@ -96,7 +96,7 @@ fn times(a: &Long, factor: DoubleDouble) -> Long {
     a.map(|entry| entry * factor)
 }
 
-/// `(g, p)`.
+/// The phase-space point `(g, p)`.
 type Place = [Long; 2];
 
 impl System {
@@ -125,7 +125,7 @@ impl System {
         self.basis.iter().zip(xi.iter()).fold(zero, |sum, (generator, x)| sum + times(generator, *x))
     }
 
-    /// `μ_k = tr(pᵀ g E_k)`.
+    /// The momentum `μ_k = tr(pᵀ g E_k)`.
     fn momentum(&self, [g, p]: &Place) -> Long {
         let own = g.transpose() * p;
         Long::from_fn(self.basis.len(), 1, |k, _| paired(&own, &self.basis[k]))
@@ -138,7 +138,7 @@ impl System {
         })
     }
 
-    /// `ġ = g ξ̂`, `ṗ = −p ξ̂ᵀ + g⁻ᵀ Γ` with `Γ = w (∂l/∂w)ᵀ`.
+    /// The rates `ġ = g ξ̂`, `ṗ = −p ξ̂ᵀ + g⁻ᵀ Γ` with `Γ = w (∂l/∂w)ᵀ`.
     fn rate(&self, spatial: &Long, place: &Place) -> Place {
         let [g, p] = place;
         let w = g.transpose() * spatial;
@@ -155,7 +155,7 @@ impl System {
         [g * &x, force - p * x.transpose()]
     }
 
-    /// From the identity with this momentum: attitude and momentum after so many steps.
+    /// The attitude and momentum after this number of steps, from the identity with this momentum.
     fn end(&self, tableau: &Tableau, spatial: &Long, momentum: &Long, h: DoubleDouble, steps: u32) -> (Long, Long) {
         let n = self.J.nrows();
         let unit = |k: usize| paired(&self.basis[k], &self.basis[k]);
@@ -189,7 +189,7 @@ impl System {
         (g, momentum)
     }
 
-    /// `{μ_k, μ_l} = −⟨μ, [E_k, E_l]⟩`, `{μ_k, w} = E_k·w = −E_kᵀ w`.
+    /// The Poisson tensor `{μ_k, μ_l} = −⟨μ, [E_k, E_l]⟩`, `{μ_k, w} = E_k·w = −E_kᵀ w`.
     fn tensor(&self, z: &Long) -> Long {
         let dimension = self.basis.len();
         let (momentum, w) = (z.rows(0, dimension).into_owned(), z.rows(dimension, self.J.nrows()).into_owned());
@@ -206,7 +206,7 @@ impl System {
         })
     }
 
-    /// The largest entry of `DΦ B(z) DΦᵀ − B(Φ(z))`, by differences of six points that leave some 10⁻²⁶.
+    /// The largest entry of `DΦ B(z) DΦᵀ − B(Φ(z))`, by differences of six points with an error of some 10⁻²⁶.
     fn poisson_defect(&self, tableau: &Tableau, z: &Long, h: f64) -> f64 {
         let dimension = self.basis.len();
         let map = |z: &Long| {
@@ -232,7 +232,7 @@ impl System {
     }
 }
 
-/// Momentum and what is advected at random.
+/// A random momentum and random advected parameters.
 fn start<const N: usize, const D: usize>(seed: u64) -> (SVector<f64, D>, SVector<f64, N>) {
     let mut random = Random::new(seed);
     (random.sample(), random.sample())
@@ -242,18 +242,18 @@ fn column<const R: usize>(vector: &SVector<f64, R>) -> Long {
     Long::from_iterator(R, 1, vector.iter().map(|&entry| long(entry)))
 }
 
-/// How far numbers are from the long ones, relative to these.
+/// The relative distance of doubles from the long numbers.
 fn relative<'a>(expected: &Long, found: impl Iterator<Item = &'a f64>) -> f64 {
     let rounded = expected.map(DoubleDouble::rounded);
     let apart: f64 = rounded.iter().zip(found).map(|(a, b)| (a - b).powi(2)).sum();
     apart.sqrt() / rounded.norm()
 }
 
-/// How far the library is followed.
+/// The step and the number of steps in the comparison with the library.
 const STEP: f64 = 0.2;
 const STEPS: u32 = 5;
 
-/// Where the library's motion is then, from the identity.
+/// The end of the library's motion from the identity.
 fn library<L, const PAIRS: usize, const N: usize, const D: usize>(
     declared: &L,
     momentum: &SVector<f64, D>,
@@ -268,7 +268,7 @@ where
     (attitude.matrix(), momentum)
 }
 
-/// Orders from five stages to eight, the Poisson property, and the library's step.
+/// Checks orders from five stages to eight, the Poisson property, and the library's step.
 macro_rules! assert_collocation {
     ($declared:ident: $group:ident, $n:literal, $d:literal, $time:literal) => {
         let name = stringify!($group);
@@ -288,7 +288,7 @@ macro_rules! assert_collocation {
                 (end.0 - &exact.0).map(DoubleDouble::rounded).norm()
                     + (end.1 - &exact.1).map(DoubleDouble::rounded).norm()
             };
-            // By half as many steps the leading term isn't alone yet; by twice as many the error is rounding.
+            // Higher terms still contribute with half as many steps; with twice as many the error is rounding.
             let errors = [20, 28].map(error);
             let order = (errors[0] / errors[1]).ln() / 1.4_f64.ln();
             println!("{name}, {stages} stages: order {order:.2}, errors {errors:?}");

@@ -1,6 +1,6 @@
 //! The motion of a free body by the Taylor series of its equations: `p' = p × Ω`, `q' = ½ q Ω`, `Ω = J⁻¹ p`.
 //!
-//! Nothing here knows that they can be solved by elliptic functions.
+//! This solution doesn't use elliptic functions.
 
 use nalgebra::Vector3;
 use num_traits::{One as _, Zero as _};
@@ -8,13 +8,13 @@ use num_traits::{One as _, Zero as _};
 use super::heavy_top::of_quaternion;
 use super::{DoubleDouble, Matrix, Vector, long};
 
-/// Terms of the series, with steps that turn the body by a tenth of a radian: the last is some 10⁻³⁵.
+/// The terms of the series; a step turns the body by a tenth of a radian, so the last term is some 10⁻³⁵.
 const TERMS: usize = 24;
 const ANGLE: f64 = 0.1;
 
-/// `F − I` and `p⁺ − p` over the time, by a momentum whose inverse moments are these.
+/// The increments `F − I` and `p⁺ − p` over the time, for a momentum and inverse moments.
 pub(crate) fn turn(inverse_moments: &Vector, momentum: &Vector, time: DoubleDouble) -> (Matrix, Vector) {
-    // What turns the body, and what its momentum is turned by in the body: for a rod that is far less than the fastest
+    // The body's rate and the rate of its momentum in the body frame: for a rod both are far less than the fastest
     // rotation with this momentum.
     let [i, p] = [inverse_moments, momentum].map(|v| v.map(DoubleDouble::rounded));
     let across = Vector3::from_fn(|k, _| p[k] * p[k] * ((i[(k + 1) % 3] - i[k]) * (i[(k + 2) % 3] - i[k])).abs());
@@ -33,7 +33,7 @@ pub(crate) fn turn(inverse_moments: &Vector, momentum: &Vector, time: DoubleDoub
 
 type State = (Vector, DoubleDouble, Vector);
 
-/// The coefficients one by one, each from all before.
+/// A step by its Taylor coefficients one by one, each from all before.
 fn step(inverse_moments: &Vector, h: DoubleDouble, (p, real, imaginary): State) -> State {
     let (mut ps, mut omegas, mut reals, mut imaginaries) = (vec![p], Vec::new(), vec![real], vec![imaginary]);
     let half = long(0.5);

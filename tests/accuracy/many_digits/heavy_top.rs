@@ -1,4 +1,4 @@
-//! The steps and flows of a heavy top that compositions and splittings are made of.
+//! The steps and flows of a heavy top, of which compositions and splittings consist.
 
 use nalgebra::{Matrix3, Vector3};
 use num_traits::{One as _, Zero as _};
@@ -6,18 +6,18 @@ use num_traits::{One as _, Zero as _};
 use super::motion::Motion;
 use super::{DoubleDouble, Matrix, Vector, free_body, hat, long};
 
-/// A top on its way.
+/// The state of a top.
 #[derive(Clone)]
 pub(crate) struct Top<'a> {
     motion: &'a Motion,
     pub(crate) attitude: Matrix,
     pub(crate) momentum: Vector,
-    /// The vertical as the body sees it.
+    /// The vertical in the body frame.
     pub(crate) w: Vector,
 }
 
 impl<'a> Top<'a> {
-    /// At the start of a motion.
+    /// The state at the start of a motion.
     pub(crate) fn at_start_of(motion: &'a Motion) -> Self {
         let w = motion.attitude.transpose() * motion.up;
         Self { motion, attitude: motion.attitude, momentum: motion.momentum(), w }
@@ -45,7 +45,7 @@ impl<'a> Top<'a> {
         self.momentum += self.motion.torque(&self.w) * time;
     }
 
-    /// With the flow of `U = −½ τ·J⁻¹τ`: as `τ = w × l`, its gradient is `J⁻¹τ × l`, and its torque `w ×` that.
+    /// A kick with the flow of `U = −½ τ·J⁻¹τ`: as `τ = w × l`, its gradient is `J⁻¹τ × l`, and its torque `w ×` that.
     pub(crate) fn kick_with_gradient(&mut self, time: DoubleDouble, gradient: DoubleDouble) {
         let velocity = self.motion.velocity_of(&self.motion.torque(&self.w));
         self.momentum += self.w.cross(&velocity.cross(&self.motion.lever)) * gradient;
@@ -59,7 +59,7 @@ impl<'a> Top<'a> {
         self.move_by(&(increment + Matrix::identity()));
     }
 
-    /// The free body's flow where it is symmetric, `F = exp(h p/J_1) exp(−h (1/J_1 − 1/J_3) p_3 E_3)`.
+    /// The free flow of a symmetric body, `F = exp(h p/J_1) exp(−h (1/J_1 − 1/J_3) p_3 E_3)`.
     pub(crate) fn drift(&mut self, time: DoubleDouble) {
         let (j1, j3) = (self.motion.moments.x, self.motion.moments.z);
         assert_eq!(j1, self.motion.moments.y, "the body isn't symmetric");
@@ -74,7 +74,7 @@ impl<'a> Top<'a> {
         let moments = &self.motion.moments;
         let mut xi = self.velocity() * h;
         for _ in 0..100 {
-            // Of six points it is the gradient itself, however far apart these are.
+            // Differences of six points are exact for these degrees, at any distance.
             let apart = 0.125;
             let gradient = Vector3::from_fn(|k, _| {
                 let at = |x: f64| kinetic(moments, &(xi + Vector::ith(k, long(x * apart))));
@@ -98,9 +98,9 @@ impl<'a> Top<'a> {
         self.w = turn.transpose() * self.w;
     }
 
-    /// `F` with `(F J_d − J_d Fᵀ)^∨ = b`, by Newton's iteration for the imaginary part of its quaternion.
+    /// The rotation `F` with `(F J_d − J_d Fᵀ)^∨ = b`, by Newton's iteration for the imaginary part of its quaternion.
     ///
-    /// Its Jacobian is a double's, so an iteration gains sixteen digits at most.
+    /// The Jacobian is in doubles, so an iteration gains sixteen digits at most.
     pub(crate) fn turn(&self, b: &Vector) -> Matrix {
         let nonstandard = Matrix::from_diagonal(&self.motion.nonstandard);
         let inertia = Matrix3::from_diagonal(&self.motion.moments.map(DoubleDouble::rounded));

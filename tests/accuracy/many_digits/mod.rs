@@ -1,12 +1,12 @@
-//! The methods of high order once more, in plain arithmetic of 32 digits.
+//! The methods of high order in plain arithmetic of 32 digits.
 //!
-//! In a double the error of a method of order 10 and more falls by its first power alone only where rounding already
-//! shows. Here the same maps are written down from their equations in unevaluated sums of two doubles, where there are
-//! sixteen digits more, and each is compared with the library's at the steps that a double has the digits for. So what
-//! is measured here is the order of what the library does, and none of its code is in it.
+//! In doubles the error of a method of order 10 and more reaches rounding before its leading term dominates. Here the
+//! same maps are written down from their equations in unevaluated sums of two doubles, which have sixteen more digits,
+//! and each is compared with the library's at steps for which doubles suffice. So the measured order is that of the
+//! library's map, without any of its code.
 //!
-//! The library itself can't run on such a scalar in these tests: nalgebra's real fields have unsafe functions to be
-//! implemented, and there is no unsafe code here.
+//! The library itself can't run on such a scalar in these tests: nalgebra's real fields require unsafe functions, and
+//! there is no unsafe code here.
 
 pub(crate) mod coefficients;
 pub(crate) mod collocation;
@@ -26,12 +26,12 @@ use workbench::measure::order;
 
 use motion::Motion;
 
-/// Three of them.
+/// A vector of long numbers.
 pub(crate) type Vector = Vector3<DoubleDouble>;
-/// Three by three of them.
+/// A matrix of long numbers.
 pub(crate) type Matrix = Matrix3<DoubleDouble>;
 
-/// `v̂`, which nalgebra has for fields only.
+/// The matrix `v̂`; nalgebra's is for fields only.
 fn hat<T: nalgebra::Scalar + Copy + Zero + Sub<Output = T>>(v: &Vector3<T>) -> Matrix3<T> {
     Matrix3::from_fn(|i, j| match (i + 3 - j) % 3 {
         0 => T::zero(),
@@ -40,14 +40,14 @@ fn hat<T: nalgebra::Scalar + Copy + Zero + Sub<Output = T>>(v: &Vector3<T>) -> M
     })
 }
 
-/// Attitude and body velocity.
+/// The attitude and the body velocity.
 pub(crate) type LongEnd = (Matrix, Vector);
 
-/// Above what some ten thousand stages lose to rounding here.
+/// The plateau is above the rounding of some ten thousand stages.
 const PLATEAU: f64 = 1e-24;
 
-/// As [`checks::order::assert_order`]; and after fewer steps, `compared`, so few that what they miss is more than
-/// rounding, the library has come to the same place.
+/// Checks the order as [`checks::order::assert_order`] does. It also checks that after `compared` steps, for which the
+/// method's error exceeds rounding, the library has the same end.
 pub(crate) fn assert_order(
     (name, expected): (&str, u32),
     (motion, t): (&str, f64),
@@ -72,7 +72,7 @@ pub(crate) fn assert_order(
     assert!(apart < 0.2 * missed, "{name}, {motion}: the library is {apart:e} apart, the error {missed:e}");
 }
 
-/// The digits of a few numbers that others have computed.
+/// The digits of some numbers from other sources.
 #[test]
 fn numbers_have_32_digits() {
     let number = DoubleDouble::parse;

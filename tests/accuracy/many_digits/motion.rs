@@ -6,13 +6,13 @@ use serde_json::Value;
 
 use super::{DoubleDouble, Matrix, Vector, long};
 
-/// A heavy top in principal axes, its start and where it must come to.
+/// A heavy top in principal axes, its initial state and its exact later states.
 pub(crate) struct Motion {
     /// The nonstandard moments `J_d`, kg m².
     pub(crate) nonstandard: Vector,
     /// The moments of the ordinary inertia, kg m².
     pub(crate) moments: Vector,
-    /// `m g ρ`, N m.
+    /// The lever `m g ρ`, N m.
     pub(crate) lever: Vector,
     /// The vertical, in space.
     pub(crate) up: Vector,
@@ -38,11 +38,11 @@ fn time(value: &Value) -> f64 {
 }
 
 impl Motion {
-    /// As [`declarations::Motion::read`], which keeps what fits into doubles.
+    /// The motion of a file, as by [`declarations::Motion::read`] but with all digits.
     pub(crate) fn read(name: &str) -> Self {
         let data = read(name);
         let apart = !data["initial"].is_null();
-        // The others were computed with moments and a lever that are doubles.
+        // The other files were computed with moments and a lever that are doubles.
         let parameter = |number: DoubleDouble| if apart { number } else { long(number.rounded()) };
         let weight = if apart { number(&data["m"]) * number(&data["g"]) } else { parameter(number(&data["mg"])) };
         let d = vector(&data["J_d"]).map(parameter);
@@ -66,7 +66,7 @@ impl Motion {
         self.moments.component_mul(&self.velocity)
     }
 
-    /// Body velocity of a momentum.
+    /// The body velocity of a momentum.
     pub(crate) fn velocity_of(&self, momentum: &Vector) -> Vector {
         momentum.zip_map(&self.moments, |momentum, moment| momentum / moment)
     }
@@ -80,7 +80,7 @@ impl Motion {
     pub(crate) fn error(&self, t: f64, attitude: &Matrix, velocity: &Vector) -> f64 {
         let (_, exact, exact_velocity) =
             self.states.iter().find(|state| (state.0 - t).abs() < 1e-9).expect("a time of the file");
-        // Differences are taken with all digits; of what is left a few will do.
+        // Differences are computed with all digits; doubles suffice for the result.
         let rounded = |difference: Matrix| difference.map(DoubleDouble::rounded).norm();
         let attitude = rounded(attitude - exact) / rounded(*exact);
         let of_velocity = (velocity - exact_velocity).map(DoubleDouble::rounded).norm();

@@ -1,6 +1,6 @@
-//! P1 with more digits than a double has: the maps are Poisson maps not to the order of some method or tolerance, but
-//! beyond all doubt of rounding. The maps are those of this folder; a step of the library is compared with each, one of
-//! collocation where its order is measured.
+//! P1 with more digits than a double has: the maps are Poisson maps far below the order of any method and any rounding.
+//! The maps are those of this folder; a step of the library is compared with each, one of collocation where its order
+//! is measured.
 
 use core::ops::Div;
 
@@ -17,10 +17,10 @@ use liestep::methods::{CompositionScheme, ExactBody, Flow, KineticFlow, Processe
 use liestep::motion::Plan;
 use liestep::{SO3, Stepper};
 
-/// Momentum and vertical.
+/// The momentum and the vertical.
 type Phase = Vector6<DoubleDouble>;
 
-/// Momentum, what is advected, and what else there is.
+/// The momentum, the advected vector, and further variables.
 pub(crate) fn phase<T: Digits, const N: usize>(momentum: &Vector3<T>, w: &Vector3<T>, rest: &[T]) -> SVector<T, N> {
     SVector::from_fn(|i, _| [momentum.as_slice(), w.as_slice(), rest].concat()[i])
 }
@@ -34,7 +34,7 @@ pub(crate) trait Digits:
 impl Digits for f64 {}
 impl Digits for DoubleDouble {}
 
-/// `B = [[μ̂, ŵ], [ŵ, 0]]`, and where time and energy go with these `{t, −E_0} = 1`.
+/// The tensor `B = [[μ̂, ŵ], [ŵ, 0]]`, with `{t, −E_0} = 1` if time and energy follow.
 fn tensor<T: Digits, const N: usize>(z: &SVector<T, N>) -> SMatrix<T, N, N> {
     let [momentum, w] = [0, 3].map(|at| hat(&Vector3::new(z[at], z[at + 1], z[at + 2])));
     SMatrix::from_fn(|i, j| match (i / 3, j / 3) {
@@ -46,10 +46,10 @@ fn tensor<T: Digits, const N: usize>(z: &SVector<T, N>) -> SMatrix<T, N, N> {
     })
 }
 
-/// Of 32 digits: some 10⁻²⁷ is left of what is smooth on the scale of one.
+/// The distance of points for 32 digits: the error is some 10⁻²⁷ for functions that are smooth on the scale of one.
 pub(crate) const APART: f64 = 1e-4;
 
-/// The derivative at zero, of ten points so far apart: what is missing has the eleventh derivative in it.
+/// The derivative at zero by ten points at this distance; its error is of the eleventh derivative.
 pub(crate) fn derivative<T: Digits, const N: usize>(f: impl Fn(T) -> SVector<T, N>, apart: f64) -> SVector<T, N> {
     let odd = |(k, weight): (f64, f64)| {
         let at = T::from(k) * T::from(apart);
@@ -60,7 +60,7 @@ pub(crate) fn derivative<T: Digits, const N: usize>(f: impl Fn(T) -> SVector<T, 
     sum.map(|change| change / (T::from(2520.0) * T::from(apart)))
 }
 
-/// `DΦ B(z) DΦᵀ − B(Φ(z))`, with [derivatives](derivative) by points so far apart.
+/// The defect `DΦ B(z) DΦᵀ − B(Φ(z))`, with [derivatives](derivative) by points at this distance.
 pub(crate) fn defect<T: Digits, const N: usize>(
     map: impl Fn(&SVector<T, N>) -> SVector<T, N>,
     z: &SVector<T, N>,
@@ -72,7 +72,7 @@ pub(crate) fn defect<T: Digits, const N: usize>(
     tangent * tensor(z) * tangent.transpose() - tensor(&map(z))
 }
 
-/// A parameter off the orbit of the vertical is that of another top, whose vertical it is.
+/// The top of these variables. A parameter off the orbit of the vertical is the vertical of another top.
 fn top_at(z: &Phase) -> Motion {
     let mut motion = Motion::read(TOPS[3]);
     let momentum = Vector3::new(z[0], z[1], z[2]);
@@ -86,10 +86,10 @@ fn start() -> Phase {
     phase(&Vector3::new(2.0, -1.0, 1.5).map(long), &Vector3::new(0.6, 0.1, 0.8).map(long), &[])
 }
 
-/// Of all steps here, s.
+/// The length of all steps here, s.
 const H: f64 = 0.1;
 
-/// What is done to a top, as a map of its momentum and vertical.
+/// An operation on a top as a map of its momentum and vertical.
 fn moved(z: &Phase, act: impl Fn(&mut Top<'_>)) -> Phase {
     let motion = top_at(z);
     let mut top = Top::at_start_of(&motion);
@@ -97,7 +97,7 @@ fn moved(z: &Phase, act: impl Fn(&mut Top<'_>)) -> Phase {
     phase(&top.momentum, &top.w, &[])
 }
 
-/// What is done to a top is a Poisson map, and a step of the library does just that.
+/// Checks that an operation on a top is a Poisson map, and that a step of the library agrees with it.
 fn assert_poisson<P, E>(
     name: &str,
     act: impl Fn(&mut Top<'_>),
@@ -117,14 +117,14 @@ fn assert_poisson<P, E>(
     let apart = (found - end).norm();
     println!("{name}: {defect:.1e}, the library {apart:.1e} apart");
     assert!(defect < 1e-20, "{name}: {defect:e}");
-    // Roundings of a step of numbers near one: five times what the longest of these has.
+    // The bound is the rounding of a step of numbers near one: five times the largest error.
     assert!(apart < 1e-14, "{name}: {apart:e}");
 }
 
-/// Drift or kick, and the shares of the step and of the force gradient.
+/// A drift or a kick, with its shares of the step and of the force gradient.
 type Part = (Flow, f64, f64);
 
-/// Parts of a step one by one, with the drift given.
+/// Applies the parts of a step one by one, with this drift.
 fn make<'a>(parts: impl IntoIterator<Item = Part>, top: &mut Top<'a>, drift: impl Fn(&mut Top<'a>, DoubleDouble)) {
     for (flow, share, gradient) in parts {
         match flow {
@@ -162,7 +162,7 @@ fn p1_collocation_is_a_poisson_map_to_twenty_digits() {
     }
 }
 
-/// With the exact motion of an asymmetric body, all of them.
+/// All splittings with the exact motion of an asymmetric body.
 #[test]
 fn p1_splittings_are_poisson_maps_to_twenty_digits() {
     for scheme in SplittingScheme::ALL {
@@ -174,7 +174,7 @@ fn p1_splittings_are_poisson_maps_to_twenty_digits() {
     }
 }
 
-/// A splitting with a motion of the free body that isn't exact.
+/// Checks a splitting whose motion of the free body isn't exact.
 fn assert_poisson_with<K: KineticFlow<f64>>(
     name: &str,
     drift: impl Fn(&mut Top<'_>, DoubleDouble),
@@ -198,7 +198,7 @@ fn p1_splittings_with_declared_flows_are_poisson_maps_to_twenty_digits() {
     assert_poisson_with("K6", sixth, |top| SixthOrderBody { J: top.ordinary_inertia() });
 }
 
-/// `κ(ξ)` of the kinetic energies of orders 4 and 6.
+/// The kinetic energies `κ(ξ)` of orders 4 and 6.
 fn polynomial(moments: &Vector, xi: &Vector, order: u32) -> DoubleDouble {
     let momentum = moments.component_mul(xi);
     let divided = |v: &Vector| v.zip_map(moments, |component, moment| component / moment);
@@ -213,7 +213,7 @@ fn polynomial(moments: &Vector, xi: &Vector, order: u32) -> DoubleDouble {
     fourth + (of(&c) + momentum.dot(&a.cross(&c))) / long(240.0) - of(&divided(&b)) / long(1440.0)
 }
 
-/// Out of the processor, a step of the kernel and back.
+/// The inverse processor, a step of the kernel and the processor.
 #[test]
 fn p1_processed_splittings_are_poisson_maps_to_twenty_digits() {
     for scheme in ProcessedScheme::ALL {

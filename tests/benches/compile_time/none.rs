@@ -1,4 +1,4 @@
-//! No declaration: what the other crates' times are to be compared with.
+//! A crate without a declaration, for comparison with the other crates' times.
 
 use liestep::SO3;
 

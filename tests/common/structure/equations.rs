@@ -1,7 +1,7 @@
-//! The continuous equations of a Lagrangian, against dual numbers of the declared `l`.
+//! The continuous equations of a Lagrangian, compared with dual numbers of the declared `l`.
 //!
-//! The gradient of `l` is that of dual numbers, its change along a motion that of hyper-dual ones; the brackets and the
-//! rates of what is advected are those of the library, which its laws test.
+//! The gradient of `l` is by dual numbers, its change along a motion by hyper-dual ones; the brackets and the rates of
+//! advected parameters are those of the library, which its laws test.
 
 use liestep::groups::{Advected as _, LieGroup as _};
 use liestep::laws::samples::Random;
@@ -13,11 +13,11 @@ use num_dual::{Dual64, HyperDual64};
 use super::numbers::{from_numbers, lifted, numbers, varied};
 use super::{Group, Vector, axis, norm, norm_of_map, random_advected};
 
-/// Some dozens of roundings, relative to the size of the terms. The worst of each Lagrangian is printed by
-/// `cargo test -p liestep-tests --test random_lagrangians continuous -- --nocapture`.
+/// The bound is some dozens of roundings, relative to the size of the terms. The worst error of each Lagrangian is
+/// printed by `cargo test -p liestep-tests --test random_lagrangians continuous -- --nocapture`.
 const BOUND: f64 = 1e-14;
 
-/// Momentum, diamond, Euler–Poincaré, Lie–Poisson and their inverse, at a random velocity.
+/// Checks momentum, diamond, Euler–Poincaré and Lie–Poisson equations and their inverse, at a random velocity.
 pub fn assert_equations<L, D1, D2>(system: &L, dual: &D1, hyper: &D2, seed: u64)
 where
     L: ContinuousLagrangian<Scalar = f64, Group: Group> + Clone,
@@ -35,7 +35,7 @@ where
     let along_each = |value: &dyn Fn(Vector<L>) -> f64| -> Vector<L> {
         from_numbers((0..L::Group::DIMENSION).map(|k| value(axis(k, 1.0))))
     };
-    // δw along an element of the algebra, by the library's action.
+    // The variation δw along an element of the algebra, by the library's action.
     let carried = |eta: Vector<L>| w.rate(&L::Group::hat(&-eta));
     let none = carried(Vector::<L>::zero());
     let slope = |eta: Vector<L>, delta: L::Advected| {
@@ -50,7 +50,7 @@ where
     let rate = L::Group::lie_bracket_transpose(&xi, &momentum) + diamond;
     near("rate of the momentum", system.momentum_rate(&xi, &w), rate, scale);
 
-    // Along the motion, ẇ = −ξ·w, the momentum changes as (1.4) and (2.2) say.
+    // Along the motion, ẇ = −ξ·w, the momentum changes by (1.4) and (2.2).
     let (acceleration, turn) = system.euler_poincare(&xi, &w).expect("regular");
     let (first, second) = (HyperDual64::new(0.0, 1.0, 0.0, 0.0), HyperDual64::new(0.0, 0.0, 1.0, 0.0));
     let change = along_each(&|unit| {
@@ -61,7 +61,7 @@ where
     let condition = norm_of_map::<L>(&system.velocity_hessian(&xi, &w));
     near("Euler–Poincaré", change, rate, scale + condition * norm(&acceleration));
 
-    // Solved for the velocity again, and with the Hamiltonian's equations in (μ, w).
+    // The inverse Legendre transform, and Hamilton's equations in (μ, w).
     let found = system.velocity(&momentum, &w).expect("a convex kinetic energy");
     near("velocity of the momentum", found, xi, (1.0 + condition) * (1.0 + norm(&xi)));
     let (torque, again) = system.lie_poisson(&momentum, &w).expect("a convex kinetic energy");
@@ -74,7 +74,7 @@ where
     let hamiltonian = system.hamiltonian(&momentum, &w).expect("a convex kinetic energy");
     assert!((hamiltonian - energy).abs() <= 10.0 * BOUND * (scale + energy.abs() + (momentum.dot(&xi)).abs()));
 
-    // For a solver it is the same in numbers.
+    // The right-hand side for a solver has the same numbers.
     let right_side = RightHandSide::new(system.clone()).expect("regular at rest");
     let expected = system.lie_poisson(&momentum, &system.advected()).expect("a convex kinetic energy").0;
     let state = right_side.state(&L::Group::identity(), &momentum);

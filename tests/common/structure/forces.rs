@@ -1,4 +1,4 @@
-//! What is derived from the virtual work of a force.
+//! The terms derived from the virtual work of a force.
 
 use liestep::groups::{Advected as _, LieGroup as _, Retraction as _};
 use liestep::laws::samples::{Random, derivative};
@@ -8,13 +8,13 @@ use liestep::numbers::Coordinates as _;
 use super::numbers::from_numbers;
 use super::{Group, Vector, axis, norm};
 
-/// The stages against the declared virtual work, at a random increment.
+/// Compares the stages with the declared virtual work, at a random increment.
 pub fn assert_stages<E: Force<Scalar = f64, Group: Group>>(force: &E, random: &mut Random) {
     let (h, half) = (0.1, random.sample::<Vector<E>>() * 0.4);
     let element = E::Retraction::retract(&(half * 2.0));
     let f = element.matrix();
     let w = force.advected().seen_from(&E::Group::along(&random.sample(), 1.0));
-    // `f⁻` and `f⁺` by their components.
+    // The components of `f⁻` and `f⁺`.
     let forces = |f: &_| {
         [[1.0, 0.0], [0.0, 1.0]].map(|[before, after]| -> Vector<E> {
             let work = |k| force.virtual_work(f, &w, h, &axis(k, before), &axis(k, after));
@@ -24,7 +24,7 @@ pub fn assert_stages<E: Force<Scalar = f64, Group: Group>>(force: &E, random: &m
     let constants = force.constants(h);
     let [before, after] = forces(&f);
     let kick = E::kick_before(&constants, &w);
-    // U = −(f⁻ − kick_before), and newton_system is a multiple of U − a.
+    // The unknown part is U = −(f⁻ − kick_before), and newton_system is a multiple of U − a.
     let a: Vector<E> = random.sample();
     let terms = E::step_terms(&constants, &a, &w);
     let (residual, jacobian) = E::newton_system(&constants, &terms, &half);

@@ -19,12 +19,12 @@ use liestep::numbers::Coordinates;
 
 use numbers::{from_numbers, numbers};
 
-/// A group over `f64` whose exponential is known.
+/// A group over `f64` with an exponential.
 pub trait Group: LieGroup<Scalar = f64> {
-    /// `exp(t ξ̂)`.
+    /// The element `exp(t ξ̂)`.
     fn along(xi: &Self::Vector, t: f64) -> Self;
 
-    /// `exp(s E_k)`.
+    /// The element `exp(s E_k)`.
     fn turn(k: usize, s: f64) -> Self {
         Self::along(&axis(k, s), 1.0)
     }
@@ -47,7 +47,7 @@ impl<L: DiscreteLagrangian<Scalar = f64, Group: Group> + Regular> System for L {
 /// Components of velocities and of momenta.
 pub type Vector<L> = <<L as Term>::Group as LieGroup>::Vector;
 
-/// `s` along the `k`th axis.
+/// The vector `s` along the `k`th axis.
 pub fn axis<V: Coordinates<f64>>(k: usize, s: f64) -> V {
     V::axis(k) * s
 }
@@ -57,7 +57,7 @@ pub fn norm<V: Coordinates<f64>>(components: &V) -> f64 {
     components.dot(components).sqrt()
 }
 
-/// The Frobenius norm of a map of components; of several bodies that of its blocks.
+/// The Frobenius norm of a map of components; for several bodies that of its blocks.
 pub fn norm_of_map<L: Term<Scalar = f64>>(map: &<Vector<L> as Coordinates<f64>>::Square) -> f64 {
     (0..L::Group::DIMENSION).map(|k| norm(&Vector::<L>::column(map, k))).fold(0.0, f64::hypot)
 }
@@ -67,17 +67,17 @@ pub fn gradient<L: Term<Scalar = f64>>(value: &dyn Fn(usize, f64) -> f64) -> Vec
     from_numbers((0..L::Group::DIMENSION).map(|k| derivative(|s| value(k, s))))
 }
 
-/// The declared parameters seen from a random attitude.
+/// The declared parameters in the frame of a random attitude.
 ///
-/// It is within half a unit of each coordinate: where the group stretches, larger parameters make functions of them so
-/// steep that differences at a spacing of 10⁻³ miss their derivatives by more than rounding.
+/// The attitude is within half a unit of each coordinate: on a group that stretches, larger parameters lead to
+/// functions so steep that differences at a spacing of 10⁻³ have errors above rounding.
 pub fn seen_at_random<L: Term<Scalar = f64, Group: Group>>(lagrangian: &L, random: &mut Random) -> L::Advected {
     lagrangian.advected().seen_from(&L::Group::along(&random.sample(), 0.5))
 }
 
-/// The same, each number off by up to a tenth: not on the orbit of the declared value, and not near a singularity of
-/// the potential that this keeps away from. Of several bodies they are on it, as derivations use that an attitude that
-/// another body sees is a rotation.
+/// Parameters near those of a random attitude, each number changed by up to a tenth: off the orbit of the declared
+/// value, but away from singularities of the potential. For several bodies they are on the orbit, because derivations
+/// assume that relative attitudes are rotations.
 pub fn random_advected<L: Term<Scalar = f64, Group: Group>>(lagrangian: &L, random: &mut Random) -> L::Advected {
     let seen = seen_at_random(lagrangian, random);
     if L::Group::BODIES > 1 || !L::Group::FACTORS.is_whole() {
@@ -86,9 +86,9 @@ pub fn random_advected<L: Term<Scalar = f64, Group: Group>>(lagrangian: &L, rand
     from_numbers(numbers(&seen).iter().map(|number| number + 0.1 * random.signed()))
 }
 
-/// A step from the cold guess.
+/// A step from a guess of zero.
 ///
-/// The flow's own is inlined wherever it is called, with all of the generated code: this is one copy for all claims.
+/// The flow's own function is inlined at each call, with all of the generated code; this is one copy for all claims.
 #[inline(never)]
 pub fn step<L: System>(flow: &DiscreteLiePoisson<L>, momentum: &Vector<L>, w: &L::Advected) -> Increment<L> {
     flow.step(momentum, w, &Vector::<L>::zero()).unwrap_or_else(|error| panic!("{error}: {momentum:?} {w:?}"))

@@ -1,4 +1,4 @@
-//! P2: the momenta are derivatives of the declared `l_d`, and hang together as the theory says.
+//! P2: the momenta are derivatives of the declared `l_d`, and satisfy the relations of the theory.
 //!
 //! ```text
 //! (L_F)* δl_d/δF = Ad*_F (R_F)* δl_d/δF,     μ⁺ = Ad*_F (μ + δl_d/δw ⋄ w)
@@ -12,13 +12,15 @@ use liestep::numbers::Coordinates as _;
 use super::numbers::{from_numbers, numbers};
 use super::{Group, Vector, gradient, norm, norm_of_map, random_advected};
 
-/// Two products of small matrices, relative to the entries of the momenta.
+/// The bound for two products of small matrices, relative to the entries of the momenta.
 const ROUNDING: f64 = 1e-13;
 
-/// The six-point differences leave 10⁻¹³ of what they differentiate, which exceeds its derivatives some ten times.
+/// The six-point differences have an error of 10⁻¹³ relative to the function, which exceeds its derivatives some ten
+/// times.
 const DIFFERENCES: f64 = 1e-11;
 
-/// Every derived term against differences of the declared `l_d`, at the identity, next to it and at random increments.
+/// Compares every derived term with differences of the declared `l_d`, at the identity, near it and at random
+/// increments.
 pub fn assert_momenta<L: DiscreteLagrangian<Scalar = f64, Group: Group>>(l: &L, seed: u64) {
     let dimension = L::Group::DIMENSION;
     let mut random = Random::new(seed);
@@ -28,7 +30,7 @@ pub fn assert_momenta<L: DiscreteLagrangian<Scalar = f64, Group: Group>>(l: &L, 
         let (f, w) = (element.matrix(), random_advected(l, &mut random));
         let before = |k, s| L::Group::turn(k, s).compose(&element).matrix();
         let behind = |k, s| element.compose(&L::Group::turn(k, s)).matrix();
-        // What an attitude g sees is g⁻¹ · w.
+        // In the frame of an attitude g the parameters are g⁻¹ · w.
         let carried = |k, s: f64| w.seen_from(&L::Group::turn(k, -s));
 
         let (right, left) = (l.right_momentum(&f, &w, h), l.left_momentum(&f, &w, h));
@@ -46,7 +48,7 @@ pub fn assert_momenta<L: DiscreteLagrangian<Scalar = f64, Group: Group>>(l: &L, 
         close("momentum", momentum, joint, DIFFERENCES);
         for j in 0..dimension {
             let column = numbers(&derivative(|s| l.legendre_minus(&before(j, s), &w, h)));
-            // Of several bodies a Jacobian has the blocks on the diagonal.
+            // For several bodies a Jacobian has only the blocks on the diagonal.
             let body = |k| k * L::Group::BODIES / dimension;
             let of_body = (0..dimension).map(|k| if body(k) == body(j) { column[k] } else { 0.0 });
             close("Jacobian", Vector::<L>::column(&jacobian, j), from_numbers(of_body), DIFFERENCES);

@@ -8,10 +8,10 @@ use nalgebra::{DMatrix, DVector};
 use super::numbers::{from_numbers, numbers};
 use super::{Group, System, Vector, axis, random_advected, step};
 
-/// What takes the derivative at zero of a curve.
+/// A function that differentiates a curve at zero.
 type Derivative<'a> = &'a dyn Fn(&dyn Fn(f64) -> DVector<f64>) -> DVector<f64>;
 
-/// `B(z)`, from the brackets of the group and the action on the parameters:
+/// The Poisson tensor `B(z)`, from the brackets of the group and the action on the parameters:
 ///
 /// ```text
 /// {μ_k, μ_l} = −⟨μ, [E_k, E_l]⟩,     {μ_k, w} = E_k · w,     {w, w} = 0
@@ -23,7 +23,7 @@ pub fn tensor<G: Group, A: Advected<G>>(momentum: &G::Vector, w: &A) -> DMatrix<
         for l in 0..dimension {
             tensor[(k, l)] = G::lie_poisson_bracket(momentum, &axis(k, 1.0), &axis(l, 1.0));
         }
-        // What an attitude g sees is g⁻¹ · w.
+        // In the frame of an attitude g the parameters are g⁻¹ · w.
         let moved = derivative(|s| numbers(&w.seen_from(&G::turn(k, -s))));
         for (j, rate) in moved.iter().enumerate() {
             tensor[(k, dimension + j)] = *rate;
@@ -42,8 +42,8 @@ pub fn defect<L: System>(flow: &DiscreteLiePoisson<L>, momentum: &Vector<L>, w: 
     defect_of::<L::Group, L::Advected>(map, momentum, w, &|f| derivative(f))
 }
 
-/// The derivative at zero of a function that is smooth on the scale of one, by ten values at a spacing of 1/50: rounding
-/// is a twentieth of what it is at the spacing of [`derivative`], and the remainder that of the eleventh derivative.
+/// The derivative at zero of a function that is smooth on the scale of one, by ten values at a spacing of 1/50: its
+/// rounding error is a twentieth of that of [`derivative`], and its remainder has the eleventh derivative.
 pub fn smooth_derivative(f: &dyn Fn(f64) -> DVector<f64>) -> DVector<f64> {
     let weights = [5.0 / 6.0, -5.0 / 21.0, 5.0 / 84.0, -5.0 / 504.0, 1.0 / 1260.0];
     let spacing = 0.02;
@@ -52,8 +52,9 @@ pub fn smooth_derivative(f: &dyn Fn(f64) -> DVector<f64>) -> DVector<f64> {
     terms.reduce(|sum, term| sum + term).expect("five terms")
 }
 
-/// The largest entry of `DΦ B(z) DΦᵀ − B(Φ(z))` for a map of momentum and parameters, by these differences, and that of
-/// `Φ(z)` times those of `B(z)` and `DΦ`, or one if that is less: the differences are off by rounding of `Φ`.
+/// The largest entry of `DΦ B(z) DΦᵀ − B(Φ(z))` for a map of momentum and parameters, by these differences, and its
+/// scale: the largest entry of `Φ(z)` times those of `B(z)` and `DΦ`, at least one, because the differences have errors
+/// of the rounding of `Φ`.
 pub fn defect_of<G: Group, A: Advected<G>>(
     map: impl Fn(&G::Vector, &A) -> (G::Vector, A),
     momentum: &G::Vector,
@@ -97,10 +98,10 @@ pub fn worst<L: System + Clone>(lagrangian: &L, steps: &[f64], seed: u64) -> (f6
     (absolute, relative)
 }
 
-/// For systems whose numbers are near one: the six-point differences then leave 10⁻¹².
+/// The bound for systems whose numbers are near one: the six-point differences then have errors of 10⁻¹².
 pub const TOLERANCE: f64 = 1e-10;
 
-/// For such systems.
+/// Asserts the property for such systems.
 pub fn assert_poisson<L: System + Clone>(lagrangian: &L, steps: &[f64], seed: u64) {
     let (defect, _) = worst(lagrangian, steps, seed);
     assert!(defect < TOLERANCE, "{defect:e}");

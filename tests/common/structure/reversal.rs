@@ -1,5 +1,5 @@
-//! The step of `−h` undoes that of `h` where `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`, for parameters off the orbit of the
-//! declared ones too.
+//! A step of `−h` undoes one of `h` if `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`, also for parameters off the orbit of the
+//! declared ones.
 
 use liestep::groups::LieGroup as _;
 use liestep::laws::samples::Random;
@@ -8,7 +8,7 @@ use liestep::motion::DiscreteLiePoisson;
 use super::numbers::numbers;
 use super::{Group as _, System, norm, norm_of_map, random_advected, step};
 
-/// How far a step of `h` and one of `−h` end from where they started, at random states, relative to these.
+/// The relative distance from the start after a step of `h` and one of `−h`, at random states.
 pub fn error_of_return<L: System + Clone>(lagrangian: &L, h: f64, seed: u64) -> f64 {
     let mut random = Random::new(seed);
     let forth = DiscreteLiePoisson::new(lagrangian.clone(), h).unwrap();
@@ -21,7 +21,7 @@ pub fn error_of_return<L: System + Clone>(lagrangian: &L, h: f64, seed: u64) -> 
         let momentum = lagrangian.legendre_minus(&f, &w, h);
         let there = step(&forth, &momentum, &w);
         let returned = step(&back, &there.momentum, &there.advected);
-        // Rounding is that of the parts of `μ`, which are of the order of `J/h` times the increment.
+        // The rounding error is that of the terms of `μ`, which are of the order of `J/h` times the increment.
         let inertia = norm_of_map::<L>(&lagrangian.inertia(&lagrangian.advected()));
         let size = inertia * norm(&velocity) + norm(&momentum);
         let before = numbers(&w);

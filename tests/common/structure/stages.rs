@@ -1,5 +1,5 @@
-//! P2: the step in stages says the same as the equations: the Newton system vanishes where `𝔽l_d⁻ = μ`, its Jacobian is
-//! its derivative, and a step ends at `𝔽l_d⁺`.
+//! P2: the step in stages agrees with the equations: the Newton system vanishes if `𝔽l_d⁻ = μ`, its Jacobian is its
+//! derivative, and a step ends at `𝔽l_d⁺`.
 
 use liestep::groups::{Advected, LieGroup as _, Retraction as _};
 use liestep::laws::samples::{Random, derivative};
@@ -12,7 +12,7 @@ use super::{Group, System, Vector, axis, norm, norm_of_map, random_advected, ste
 
 /// Products of small matrices that cancel in part, relative to the entries of the momenta.
 const ROUNDING: f64 = 1e-13;
-/// What six-point differences leave of a system that is curved on the scale of one.
+/// The error of six-point differences for a system that is curved on the scale of one.
 const DIFFERENCES: f64 = 1e-10;
 
 pub fn assert_stages<L: DiscreteLagrangian<Scalar = f64, Group: Group>>(l: &L, seed: u64) {

@@ -1,8 +1,8 @@
-//! P2, the part about Casimirs: what moves on a coadjoint orbit of the semidirect product keeps its momentum along all
-//! symmetries of the spatial parameters, and the parameters stay on the orbit of the group.
+//! P2, the part about Casimirs: a motion on a coadjoint orbit of the semidirect product conserves its momentum along
+//! all symmetries of the spatial parameters, and the parameters stay on the orbit of the group.
 //!
-//! `η` is a symmetry of the spatial value `a_0` where `η · a_0 = 0`. The momentum map of these, `⟨Ad*_{g⁻¹} μ, η⟩`, is
-//! exact for every `l_d` (Noether). On SO(3) with one vector that is `μ·w`; where nothing is advected it is all of the
+//! `η` is a symmetry of the spatial value `a_0` if `η · a_0 = 0`. The momentum map of these, `⟨Ad*_{g⁻¹} μ, η⟩`, is
+//! exact for every `l_d` (Noether). On SO(3) with one vector it is `μ·w`; without advected parameters it is the whole
 //! spatial momentum.
 
 use liestep::groups::{Advected as _, LieGroup as _};
@@ -14,14 +14,14 @@ use nalgebra::DMatrix;
 use super::numbers::{from_numbers, numbers};
 use super::{Group as _, System, Vector, norm, step};
 
-/// What the six-point differences leave of numbers near one.
+/// The error of six-point differences of numbers near one.
 const DIFFERENCES: f64 = 1e-11;
 
-/// An orthonormal basis of the algebra elements that leave the spatial parameters as they are.
+/// An orthonormal basis of the symmetries of the spatial parameters.
 pub fn symmetries<L: System>(lagrangian: &L) -> Vec<Vector<L>> {
     let spatial = lagrangian.advected();
     let (count, dimension) = (numbers(&spatial).len(), L::Group::DIMENSION);
-    // Rows of zeros, so that the decomposition has all directions of the algebra.
+    // Rows of zeros are appended, so that the decomposition contains all directions of the algebra.
     let mut action = DMatrix::zeros(count.max(dimension), dimension);
     for k in 0..dimension {
         let moved = derivative(|s| numbers(&spatial.seen_from(&L::Group::turn(k, -s))));
@@ -34,9 +34,9 @@ pub fn symmetries<L: System>(lagrangian: &L) -> Vec<Vector<L>> {
     values.filter(|(value, _)| **value < allowed).map(|(_, row)| from_numbers(row.iter().copied())).collect()
 }
 
-/// The largest change of a momentum along a symmetry, and of a parameter from what the attitude sees, over a motion.
+/// The largest change over a motion of a momentum along a symmetry, and of a parameter from its value by the attitude.
 ///
-/// Both are relative to the sizes that rounding is relative to.
+/// Both are relative to the scale of their rounding errors.
 pub fn drift<L: System>(
     flow: &DiscreteLiePoisson<L>,
     (mut attitude, mut momentum): (L::Group, Vector<L>),

@@ -1,4 +1,4 @@
-//! Property 1 of section 1.4: a step keeps the symplectic form of attitudes and momenta.
+//! Property 1 of section 1.4: a step preserves the symplectic form of attitudes and momenta.
 
 use liestep::groups::{Advected as _, LieGroup as _};
 use liestep::laws::samples::derivative;
@@ -14,8 +14,8 @@ pub fn map<L: System>(flow: &DiscreteLiePoisson<L>, g: &L::Group, momentum: &Vec
     (g.advance(&step.increment), step.momentum)
 }
 
-/// The largest entry of `Φ*ω − ω` for `ω((η, ν), (η', ν')) = ⟨ν', η⟩ − ⟨ν, η'⟩ + ⟨μ, [η, η']⟩`, and with the other sign of
-/// the bracket; both relative to the square of the largest entry of the tangent map, or to one.
+/// The largest entry of `Φ*ω − ω` for `ω((η, ν), (η', ν')) = ⟨ν', η⟩ − ⟨ν, η'⟩ + ⟨μ, [η, η']⟩`, and with the opposite
+/// sign of the bracket; both relative to the square of the largest entry of the tangent map, or to one.
 pub fn defects<L: System>(flow: &DiscreteLiePoisson<L>, g: &L::Group, momentum: &Vector<L>) -> [f64; 2] {
     let dimension = L::Group::DIMENSION;
     let (next, after) = map(flow, g, momentum);

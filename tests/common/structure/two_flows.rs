@@ -1,4 +1,4 @@
-//! P5: the flow (2.5) on increments and the flow (2.8) on momenta are one motion, put together by (2.10).
+//! P5: the flow (2.5) on increments and the flow (2.8) on momenta are one motion, related by (2.10).
 
 use liestep::groups::LieGroup as _;
 use liestep::laws::samples::Random;
@@ -7,15 +7,15 @@ use liestep::motion::{DiscreteEulerPoincare, DiscreteLiePoisson, reconstruct};
 use super::numbers::{from_numbers, numbers};
 use super::{Group as _, System, Vector, norm, norm_of_map, seen_at_random, step};
 
-/// The most by which momenta, parameters and places part in so many steps, relative to their sizes.
+/// The largest relative distances of momenta, parameters and configurations over this number of steps.
 ///
-/// Each step of (2.5) reads the momentum off the increment, and so rounds it to `ε J/h`.
+/// Each step of (2.5) computes the momentum from the increment, and so rounds it to `ε J/h`.
 pub fn parting<L: System + Clone>(l: &L, h: f64, steps: u32, seed: u64) -> f64 {
     let mut random = Random::new(seed);
     let on_momenta = DiscreteLiePoisson::new(l.clone(), h).unwrap();
     let on_increments = DiscreteEulerPoincare::new(l.clone(), h).unwrap();
     let place = L::Group::along(&random.sample(), 0.5);
-    // Not at rest.
+    // The motion doesn't start at rest.
     let velocity: Vector<L> = from_numbers((0..L::Group::DIMENSION).map(|_| 0.4 * random.signed() + 0.6));
     let mut f = L::Group::along(&velocity, h);
     let (mut by_momenta, mut by_increments) = (place, place);

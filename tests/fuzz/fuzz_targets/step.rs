@@ -1,15 +1,15 @@
-//! Any bytes are a top, a state and a step: what comes of them is a state that satisfies its equation, or a typed error
-//! that leaves the state as it was. Run with `cargo fuzz run step`.
+//! Any bytes as a top, a state and a step: the result is a state that satisfies its equation, or a typed error that
+//! leaves the state unchanged. Run with `cargo fuzz run step`.
 
 #![no_main]
-// The letters of the field.
+// The names of the fields are those of the equations.
 #![allow(non_snake_case)]
 
 use libfuzzer_sys::fuzz_target;
 use liestep::prelude::*;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-/// (3.13).
+/// The heavy top (3.13).
 #[lagrangian(
     group = SO3,
     advected(w = up),
@@ -25,7 +25,7 @@ struct Top {
     up: Vector3<f64>,
 }
 
-/// Numbers of the bytes, eight to each; zero when they are used up.
+/// Numbers from the bytes, eight bytes each; zero after the last.
 struct Numbers<'a>(&'a [u8]);
 
 impl Numbers<'_> {
@@ -45,7 +45,7 @@ fn is_finite(state: &State<SO3, Vector3<f64>>) -> bool {
     vectors.iter().flatten().chain(state.attitude().as_matrix()).all(|entry| entry.is_finite())
 }
 
-/// `𝔽l_d⁻(F, w) = μ` and `𝔽l_d⁺(F, w) = μ⁺`, to the roundings of `F = RᵀR⁺` and of terms that cancel.
+/// Checks `𝔽l_d⁻(F, w) = μ` and `𝔽l_d⁺(F, w) = μ⁺`, to the rounding of `F = RᵀR⁺` and of cancelling terms.
 fn assert_solved(stepper: &Stepper<Top>, before: &State<SO3, Vector3<f64>>, after: &State<SO3, Vector3<f64>>) {
     let (top, h) = (stepper.scene(), stepper.step_size());
     let f = before.attitude().inverse().compose(&after.attitude()).matrix();

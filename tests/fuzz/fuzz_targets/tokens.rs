@@ -1,5 +1,5 @@
-//! Any text is the declaration of a Lagrangian or of a force: what comes of it is items or an error to show, no panic and
-//! no hang. Run with `cargo fuzz run tokens`.
+//! Any text as the declaration of a Lagrangian or of a force: the result is items or an error message, without a panic
+//! or an endless loop. Run with `cargo fuzz run tokens`.
 
 #![no_main]
 
@@ -7,13 +7,13 @@ use libfuzzer_sys::fuzz_target;
 use liestep_derivation::{self as derivation, Role};
 use proc_macro2::TokenStream;
 
-/// Fields of every kind of declaration, so that names in the text mean something.
+/// Fields of every kind of declaration, so that names in the text exist.
 const ITEM: &str = "struct Top { J_d: NonstandardInertia, A: Matrix3<f64>, m: f64, g: f64, rho: Vector3<f64>, up: Vector3<f64> }";
 
 fuzz_target!(|bytes: &[u8]| {
     let Some((kind, text)) = bytes.split_first() else { return };
     let Ok(text) = std::str::from_utf8(text) else { return };
-    // What no lexer accepts never reaches a macro.
+    // A text that isn't a sequence of tokens never reaches a macro.
     let Ok(written) = text.parse::<TokenStream>() else { return };
     let item: TokenStream = ITEM.parse().expect("tokens");
     let expansion = match kind % 5 {

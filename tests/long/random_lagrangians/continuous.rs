@@ -9,7 +9,7 @@ use liestep::motion::RightHandSide;
 use nalgebra::{SMatrix, SVector};
 use workbench::runge_kutta;
 
-/// Where a motion ends after the time, in so many steps; `None` where one is too long for the iteration.
+/// The end of a motion after the time, in this number of steps; `None` if a step is too long for the iteration.
 fn end<L, const PAIRS: usize, const N: usize, const D: usize>(
     system: &L,
     (mut attitude, mut momentum): (L::Group, SVector<f64, D>),
@@ -25,15 +25,15 @@ where
     Some((attitude.matrix(), momentum))
 }
 
-/// The orders that the errors of ever more steps show, as long as they are above rounding.
+/// The orders between successive numbers of steps, as long as errors are above rounding.
 fn orders(errors: impl Iterator<Item = (u32, Option<f64>)>, rounding: f64) -> Vec<f64> {
     let told: Vec<(u32, f64)> = errors.filter_map(|(n, error)| Some((n, error?))).collect();
     let pairs = told.windows(2).filter(|pair| pair[1].1 > rounding);
     pairs.map(|pair| (pair[0].1 / pair[1].1).ln() / (f64::from(pair[1].0) / f64::from(pair[0].0)).ln()).collect()
 }
 
-/// Collocation in attitude and conjugate momentum: on the group, of its order, reversible, Poisson, with the momenta along
-/// symmetries.
+/// Checks collocation in attitude and conjugate momentum: relation of the group, order, reversibility, Poisson
+/// property, and momenta along symmetries.
 pub(crate) fn assert_collocation<L, const N: usize, const D: usize>(with: impl Fn(&L::Advected) -> L, seed: u64)
 where
     L: ContinuousLagrangian<Scalar = f64, Group: Group + MatrixLieGroup<N, D>> + Clone,
@@ -43,7 +43,7 @@ where
     let system = with(&w);
     let momentum = system.momentum(&xi, &w);
     let identity = L::Group::identity();
-    // Fast, so that errors of high order are above rounding.
+    // The motion is fast, so that errors of high order are above rounding.
     let start = (identity, system.momentum(&(xi * 3.0), &w));
 
     let distance = |a: &(SMatrix<f64, N, N>, SVector<f64, D>), b: &(SMatrix<f64, N, N>, SVector<f64, D>)| {
@@ -62,12 +62,12 @@ where
     let eight = orders(steps().map(|n| (n, missed(end::<L, 4, N, D>(&system, start, (time, n))))), 1e-11 * size);
     println!("orders {fourth:.2?}, {six:.1?}, {eight:.1?}");
     assert!(fourth.iter().all(|order| (3.7..4.3).contains(order)), "two stages: {fourth:?}");
-    // Of coarse steps the order is less, and near rounding it is anything; with several the best is between.
+    // Coarse steps have a lower order, and near rounding it is arbitrary; among several, the best is between.
     let reaches = |orders: &[f64], order: f64| orders.len() < 2 || orders.iter().any(|&found| found > order);
     assert!(reaches(&six, 10.5), "six stages: {six:?}");
     assert!(reaches(&eight, 13.0), "eight stages: {eight:?}");
 
-    // The same motion as by a Runge–Kutta method on the right-hand side, which knows nothing of the matrices off the group.
+    // The motion by a Runge–Kutta method on the right-hand side, which is independent of matrices off the group.
     let numbers = RightHandSide::new(system.clone()).expect("regular at rest");
     let mut state = numbers.state(&identity, &momentum);
     let rate = |y: &[f64], rate: &mut [f64]| numbers.rate(y, rate).expect("a convex kinetic energy");
@@ -77,7 +77,7 @@ where
     let apart = distance(&found, &(there.matrix(), after));
     assert!(apart <= 1e-9 * size, "Runge–Kutta: {apart:e}");
 
-    // Back again, and Poisson, by a step that isn't small.
+    // Reversibility and Poisson property, by a step that isn't small.
     let (there, back) =
         [0.3, -0.3].map(|h| CotangentGauss::<L, 2, N>::new(system.clone(), h).expect("regular at rest")).into();
     let (attitude, after) = there.step(&identity, &momentum).expect("a short step");

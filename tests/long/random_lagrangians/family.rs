@@ -1,6 +1,6 @@
 //! A family of Lagrangians on each group with vectors, and one with tensors.
 
-// All of it is seen by this crate alone.
+// All items are visible in this crate alone.
 #![allow(unreachable_pub)]
 
 use checks::affine::Affine;
@@ -10,12 +10,12 @@ use liestep::laws::samples::Random;
 use liestep::{SO3, lagrangian};
 use nalgebra::{Matrix2, Matrix3, Matrix4, RealField, SMatrix, Vector2, Vector3, Vector4};
 
-/// Four coefficients, of which about a third are zero: which terms there are is random too.
+/// Four coefficients, of which about a third are zero, so that the selection of terms is random too.
 fn coefficients(random: &mut Random) -> Vector4<f64> {
     Vector4::from_fn(|_, _| if random.signed() < -0.3 { 0.0 } else { random.signed() })
 }
 
-/// Symmetric, with eigenvalues from one to a few.
+/// A symmetric matrix with eigenvalues from one to a few.
 fn metric<const N: usize>(random: &mut Random) -> SMatrix<f64, N, N> {
     let root: SMatrix<f64, N, N> = random.sample();
     SMatrix::identity() + root * root.transpose()
@@ -23,7 +23,7 @@ fn metric<const N: usize>(random: &mut Random) -> SMatrix<f64, N, N> {
 
 macro_rules! family {
     ($group:ident, $n:literal, $vector:ident, $matrix:ident, [$($own:tt)*]) => {
-        // A kinetic energy that depends on what is advected, and one that isn't quadratic.
+        // A kinetic energy that depends on advected parameters, and one that isn't quadratic.
         #[lagrangian(
             group = $group,
             $($own)*

@@ -1,7 +1,7 @@
 //! P1 to P3, and P5, for random Lagrangians on every group, with every kind of advected parameter.
 //!
-//! A Lagrangian is known when this is compiled, its terms are not: each is multiplied by a random coefficient, which is
-//! zero for about a third of them.
+//! The form of a Lagrangian is fixed at compile time, its terms are not: each has a random coefficient, which is zero
+//! for about a third of them.
 
 mod continuous;
 mod family;
@@ -14,13 +14,13 @@ use liestep::laws::samples::Random;
 use proptest::prelude::any;
 use proptest::test_runner::{Config, TestRunner};
 
-/// Some dozens of roundings of what grows on a group that isn't compact.
+/// The bound is some dozens of roundings, amplified on groups that aren't compact.
 const ROUNDING: f64 = 1e-12;
 
-/// Small, as nothing says how large a step a random Lagrangian admits.
+/// The steps are small, because the limit for a random Lagrangian isn't known.
 const STEPS: [f64; 2] = [0.001, 0.02];
 
-/// All claims about one Lagrangian.
+/// Checks all claims about one Lagrangian.
 fn assert_structure<L: System + Clone>(lagrangian: &L, seed: u64) {
     momenta::assert_momenta(lagrangian, seed);
     stages::assert_stages(lagrangian, seed);
@@ -38,8 +38,8 @@ fn assert_structure<L: System + Clone>(lagrangian: &L, seed: u64) {
     assert!(parameters < ROUNDING, "parameters: {parameters:e}");
 }
 
-/// Asserts a claim for eight random seeds; a failure names its seed. All tests share this one runner: one for each would be
-/// a twentieth of what is compiled here.
+/// Asserts a claim for eight random seeds; a failure names its seed. All tests share this one runner: separate runners
+/// would be a twentieth of the compiled code.
 fn for_seeds(claim: &dyn Fn(u64)) {
     let config = Config { cases: 8, failure_persistence: None, max_shrink_iters: 0, ..Config::default() };
     let run = TestRunner::new(config).run(&any::<u64>(), |seed| {
@@ -69,7 +69,7 @@ macro_rules! on_every_group {
                 }
             }
 
-            /// Read and interpreted they make the same steps, to the bit.
+            /// The interpreted Lagrangians make the same steps, to the bit.
             #[test]
             fn late() {
                 for seed in 0..15 {

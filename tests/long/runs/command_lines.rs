@@ -1,4 +1,4 @@
-//! Command lines that can't be meant, of examples: a message and an exit code, before anything is computed.
+//! Invalid command lines of examples: a message and an exit code, before any computation.
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 use checks::examples;
 
-/// Runs an example in a folder where it may leave nothing behind.
+/// Runs an example in a folder for temporary files.
 fn run(example: &str, arguments: &[&str]) -> Output {
     static EXAMPLES: OnceLock<HashMap<String, PathBuf>> = OnceLock::new();
     let names = ["accuracy-cost", "derive", "hard-cases", "heavy-top"];
@@ -15,7 +15,7 @@ fn run(example: &str, arguments: &[&str]) -> Output {
     Command::new(program).current_dir(env!("CARGO_TARGET_TMPDIR")).args(arguments).output().unwrap()
 }
 
-/// It is refused with this in its message, and neither with a panic nor after a report.
+/// Checks that it is refused with this message, without a panic and before a report.
 #[track_caller]
 fn refused(example: &str, arguments: &[&str], message: &str) {
     let output = run(example, arguments);
@@ -41,7 +41,7 @@ fn steps_and_times() {
     for (value, message) in nonsense {
         refused("heavy-top", &[&format!("--step={value}")], message);
         refused("heavy-top", &[&format!("--time={value}")], message);
-        // Behind a space, too: no number looks like an option.
+        // The value may also follow a space: no number looks like an option.
         refused("heavy-top", &["--step", value], message);
     }
     refused("heavy-top", &["--step", "1e-300", "--time", "1"], "take a larger step");
@@ -51,11 +51,11 @@ fn steps_and_times() {
         "--time 1 is shorter than one --step 10; nothing would happen",
     );
     refused("heavy-top", &["--step", "1e300"], "--time 200 is shorter than one --step 1e300;");
-    // No body turns by so much in a step.
+    // No body can turn by so much in a step.
     refused("heavy-top", &["--step", "5", "--time", "10", "--out", "steps"], "no solution at the step");
 }
 
-/// A folder that is a file, below a file, or without a name.
+/// A folder that is a file, is below a file, or has no name.
 #[test]
 fn folders() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
@@ -69,7 +69,7 @@ fn folders() {
     }
 }
 
-/// What can't be printed is a message and an exit code.
+/// Output that can't be printed leads to a message and an exit code.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_full_disk() {

@@ -1,5 +1,5 @@
-//! Continuous Lagrangians of several bodies: their equations against dual numbers of the declared `l`, with what moves the
-//! bodies typed by hand, and the motion of two links against that of the limit of a declared `l_d`.
+//! Continuous Lagrangians of several bodies: their equations compared with dual numbers of the declared `l`, with the
+//! advection written by hand, and the motion of two links compared with the limit of a declared `l_d`.
 
 use checks::random::Random;
 use checks::structure::equations::assert_equations;
@@ -14,8 +14,8 @@ use nalgebra::{Matrix2, Matrix3, Matrix4, RealField, SVector, Vector3, Vector6, 
 use num_dual::Dual64;
 use workbench::runge_kutta;
 
-/// Two bodies that turn, one that is translated in space and one on a line. The kinetic energy depends on all that is
-/// seen, and isn't quadratic.
+/// Two rotating bodies, one that is translated in space and one on a line. The kinetic energy depends on all advected
+/// parameters, and isn't quadratic.
 #[lagrangian(
     group(F_1 = SO3, d = R3, F_2 = SO3, t = R1),
     velocity(Omega_1, v, Omega_2, u),
@@ -51,10 +51,10 @@ struct Bodies<T: RealField + Copy> {
 /// Components of the velocities of all bodies.
 const D: usize = 10;
 type Components<T> = SVector<T, D>;
-/// `w`, `Q`, `R`, `r` and `x`.
+/// The parameters `w`, `Q`, `R`, `r` and `x`.
 type Values = (Vector3<f64>, Matrix3<f64>, Matrix3<f64>, Vector3<f64>, f64);
 
-/// Of a seed; what couples the bodies is small, so that the kinetic energy is convex.
+/// The bodies of a seed; the coupling is small, so that the kinetic energy is convex.
 fn bodies<T: RealField + Copy + Real>(seed: u64) -> Bodies<T> {
     let mut random = Random::new(seed);
     let mut inertia = || {
@@ -67,8 +67,8 @@ fn bodies<T: RealField + Copy + Real>(seed: u64) -> Bodies<T> {
     Bodies { J_1, J_2, A, k: convert(0.1), rho: vector(), s: vector(), up: vector() }
 }
 
-/// What is seen, moved to first order along any matrices of the bodies that turn, and changes of the places of those that
-/// are translated: `w + η·w`.
+/// The parameters advected to first order, `w + η·w`, along any matrices for the rotating bodies and changes of the
+/// positions of the translated ones.
 fn seen_along<T: RealField + Copy + Real>(
     (w, q, r, place, x): &Values,
     [first, second]: [Matrix3<T>; 2],
@@ -87,7 +87,7 @@ fn seen_along<T: RealField + Copy + Real>(
     )
 }
 
-/// Momentum, diamond, (1.4) with (2.2), (1.12), the inverse of (1.14), and (1.16).
+/// Checks momentum, diamond, (1.4) with (2.2), (1.12), the inverse of (1.14), and (1.16).
 #[test]
 fn bodies_that_feel_each_other() {
     const { assert!(matches!(<Bodies<f64> as ContinuousLagrangian>::LEGENDRE, Legendre::Nonlinear)) };
@@ -96,7 +96,7 @@ fn bodies_that_feel_each_other() {
     }
 }
 
-/// The diamond along all matrices of each body, `−⟨∂l/∂w, e_ij·w⟩`: of what turns all nine entries, of what is translated
+/// The diamond along all matrices of each body, `−⟨∂l/∂w, e_ij·w⟩`: for rotations all nine entries, for translations
 /// the last column.
 #[test]
 fn the_diamond_along_all_matrices_of_each_body() {
@@ -125,12 +125,12 @@ fn the_diamond_along_all_matrices_of_each_body() {
         assert!((moved.fixed_view::<3, 1>(0, 3) - of_place).norm() < tiny, "{moved} and {of_place}");
         assert!((turned[(0, 1)] - on_line).abs() < tiny, "{turned} and {on_line}");
         assert!(of_first.norm() > 0.1 && of_second.norm() > 0.1 && of_place.norm() > 0.1);
-        // The parts that a rotation doesn't have are there.
+        // The parts that vanish for rotations are tested, too.
         assert!((of_first + of_first.transpose()).norm() > 0.1);
     }
 }
 
-/// What is made of their `l` converges, at order two, to what a solver makes of the continuous equations.
+/// The discretisation of their `l` converges, at order two, to a solver's solution of the continuous equations.
 #[test]
 fn steps_of_bodies_that_feel_each_other() {
     let system = bodies::<f64>(3);
@@ -183,8 +183,8 @@ impl Links {
     }
 }
 
-/// What is derived of the declared `l` is what is derived of the limit of the declared `l_d`, and the formula by hand,
-/// `μ_1 = J_1 Ω_1 + ρ × Q (Ω_2 × s_2)` and `μ_2 = J_2 Ω_2 + s_2 × Qᵀ(Ω_1 × ρ)`.
+/// The terms derived from the declared `l` agree with those of the limit of the declared `l_d`, and with the formula by
+/// hand, `μ_1 = J_1 Ω_1 + ρ × Q (Ω_2 × s_2)` and `μ_2 = J_2 Ω_2 + s_2 × Qᵀ(Ω_1 × ρ)`.
 #[test]
 fn two_links_are_the_limit_of_their_steps() {
     let pendulum = DoublePendulum::asymmetric();
@@ -218,7 +218,7 @@ fn two_links_are_the_limit_of_their_steps() {
         near("Lie–Poisson", here, there);
         let energy = 0.5 * momentum.dot(&xi) + pendulum.g * (w_1.dot(&pendulum.s_1) + w_2.dot(&pendulum.s_2));
         assert!((links.hamiltonian(&momentum, &w).unwrap() - energy).abs() <= 1e-13 * (scale + energy.abs()));
-        // By hand: in space, the force that turns both about the pivot is the weight alone.
+        // The equation by hand, in space: the only torque on both about the pivot is that of the weight.
         let spatial = first * here.fixed_rows::<3>(0) + second * here.fixed_rows::<3>(3);
         let turned = first * o_1.cross(&mu_1) + second * o_2.cross(&mu_2);
         let weight = Vector3::z().cross(&(first * pendulum.s_1 + second * pendulum.s_2)) * pendulum.g;
@@ -226,9 +226,9 @@ fn two_links_are_the_limit_of_their_steps() {
     }
 }
 
-/// Two point masses on rods, whose reference knows directions alone. A solver of the continuous equations ends at its
-/// directions, and keeps the energy and the momentum along the vertical. Steps of what is made of `l` come to them at order
-/// two.
+/// Two point masses on rods, whose reference contains only directions. A solver of the continuous equations ends at
+/// these directions, and conserves the energy and the momentum along the vertical. Steps of the discretised `l`
+/// converge to them at order two.
 #[test]
 fn two_links_move_as_a_double_spherical_pendulum() {
     let data = &read("several bodies")["double_spherical_pendulum"];

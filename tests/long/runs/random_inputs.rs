@@ -1,5 +1,5 @@
-//! Random inputs, valid and invalid, a million of them by `LIESTEP_CASES=1000000`: none panics, none gives a state that
-//! isn't finite, every error's type has the cause that it names, and every step that is made satisfies its equation.
+//! Random inputs, valid and invalid, a million of them by `LIESTEP_CASES=1000000`: none panics, none leads to a state
+//! that isn't finite, every error's cause is the one that it names, and every step satisfies its equation.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use liestep::motion::Solvability;
 use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 
-/// How many; the environment may ask for another number.
+/// The number of cases; the environment may set another number.
 fn inputs() -> u32 {
     let asked = std::env::var("LIESTEP_CASES").ok();
     asked.map_or(100_000, |count| count.parse().expect("LIESTEP_CASES is the number of cases"))
@@ -18,7 +18,7 @@ fn inputs() -> u32 {
 
 const STEPS: u32 = 3;
 
-/// How often each outcome came.
+/// The number of occurrences of each outcome.
 type Tally = BTreeMap<String, u32>;
 
 struct Inputs {
@@ -26,13 +26,13 @@ struct Inputs {
 }
 
 impl Inputs {
-    /// One of `count`.
+    /// A random number below `count`.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // small positive numbers
     fn choice(&mut self, count: u32) -> u32 {
         ((self.random.signed() * 0.5 + 0.5) * f64::from(count)) as u32
     }
 
-    /// What no one expects.
+    /// An unusual number.
     fn odd(&mut self) -> f64 {
         let size = 1.0 + self.random.signed().abs();
         match self.choice(12) {
@@ -51,7 +51,7 @@ impl Inputs {
         }
     }
 
-    /// The number, or now and then an odd one.
+    /// The usual number, or occasionally an unusual one.
     fn number(&mut self, usual: f64) -> f64 {
         if self.choice(60) == 0 { self.odd() } else { usual }
     }
@@ -61,7 +61,7 @@ impl Inputs {
         usual.map(|entry| self.number(entry))
     }
 
-    /// Uniform in the logarithm.
+    /// A number uniform in the logarithm.
     fn between(&mut self, low: f64, high: f64) -> f64 {
         low * (high / low).powf(0.5 + 0.5 * self.random.signed())
     }
@@ -102,7 +102,7 @@ fn finite(entries: &[f64]) -> bool {
     entries.iter().all(|entry| entry.is_finite())
 }
 
-/// The largest and the smallest size of what isn't zero.
+/// The largest and the smallest absolute value of the nonzero numbers.
 fn extremes(numbers: &[f64]) -> (f64, f64) {
     let sizes = numbers.iter().map(|number| number.abs()).filter(|size| *size > 0.0);
     sizes.fold((0.0, f64::INFINITY), |(largest, smallest), size| (largest.max(size), smallest.min(size)))
@@ -153,13 +153,13 @@ fn check_setup_error(top: &HeavyTop, h: f64, error: &SetupError) -> &'static str
         }
         SetupError::InvalidStep { step } => {
             assert!(step.to_bits() == h.to_bits() || h.is_nan());
-            // The determinant of the Newton system has the third power of `J/h`.
+            // The determinant of the Newton system is of the third power of `J/h`.
             let size = top.J_d.diagonal().amax() / h.abs();
             assert!(!h.is_finite() || !(1e-90..1e90).contains(&size), "{h:e} for {top:?}");
             "setup: invalid step"
         }
         SetupError::NonFiniteConstant => {
-            // A product of all of them is a constant.
+            // The product of all of them is a constant.
             let numbers = [&[top.m, top.g], top.rho.as_slice()].concat();
             assert!(extremes(&numbers).0 > 1e90, "{top:?}");
             "setup: constant not finite"
@@ -180,7 +180,7 @@ fn check_start_error(attitude: &SO3, [momentum, up]: [&Vector3<f64>; 2], error: 
             "start: momentum not finite"
         }
         SetupError::NonFinite { what: "velocity of the momentum" } => {
-            // Products of two of its parts, or of one and of moments, are on the way to a velocity.
+            // Products of two of its components, or of one and of moments, occur in the computation of a velocity.
             assert!(finite(momentum.as_slice()) && extremes(momentum.as_slice()).0 > 1e90, "{momentum}");
             "start: velocity not finite"
         }
@@ -192,7 +192,7 @@ fn check_start_error(attitude: &SO3, [momentum, up]: [&Vector3<f64>; 2], error: 
     }
 }
 
-/// `𝔽l_d⁻(F, w) = μ` and `𝔽l_d⁺(F, w) = μ⁺`, to the roundings of `F = RᵀR⁺` and of terms that cancel.
+/// Checks `𝔽l_d⁻(F, w) = μ` and `𝔽l_d⁺(F, w) = μ⁺`, to the rounding of `F = RᵀR⁺` and of cancelling terms.
 fn check_equations(stepper: &Stepper<HeavyTop>, before: &State<SO3, Vector3<f64>>, after: &State<SO3, Vector3<f64>>) {
     let (top, h) = (stepper.scene(), stepper.step_size());
     assert!(finite(after.attitude().as_matrix().as_slice()), "{after:?}");
@@ -229,7 +229,7 @@ fn check_step_error(
             assert_ne!(stepper.solvability(state), Solvability::Certain);
             "step: beyond solvable"
         }
-        // Sizes whose products leave the range of the scalar.
+        // The sizes are those whose products leave the range of the scalar.
         StepError::NonFinite { .. }
         | StepError::Singular
         | StepError::NotConverged { .. }
@@ -243,7 +243,7 @@ fn check_step_error(
     }
 }
 
-/// One input, and what came of it.
+/// One input, and its outcome.
 fn outcome(inputs: &mut Inputs) -> &'static str {
     let diagonal = inputs.diagonal();
     let J_d = match DiagonalNonstandardInertia::from_diagonal(diagonal) {
@@ -262,7 +262,7 @@ fn outcome(inputs: &mut Inputs) -> &'static str {
 
     let inertia = top.inertia(&top.advected());
     let attitude = inputs.attitude();
-    // Turns of a thousandth to ten of the largest that can be solved.
+    // The turns are a thousandth to ten times the largest solvable one.
     let size = inertia.amax() / h.abs().max(1e-6) * inputs.between(1e-3, 10.0);
     let momentum = inputs.vector(size);
     let mut state = match stepper.start_with_momentum(attitude, momentum) {
@@ -292,7 +292,7 @@ fn b6_random_inputs_give_a_motion_or_the_error_of_their_cause() {
     for (name, found) in &tally {
         println!("{found:>8} {name}");
     }
-    // Each kind has been met; most inputs are usual ones.
+    // Each outcome has occurred; most inputs are usual ones.
     for name in [
         "inertia: not finite",
         "setup: parameter",

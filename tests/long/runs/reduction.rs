@@ -1,8 +1,9 @@
-//! Chapter 1 of the thesis and section 2.1, on every group: the unreduced statements in a chart against the reduced ones.
+//! Chapter 1 of the thesis and section 2.1, on every group: the unreduced statements in a chart compared with the
+//! reduced ones.
 //!
-//! The chart is `q ↦ g_0 exp(q̂)`. Its tangent is a series of matrix commutators, so neither the bracket of the group nor
-//! anything that is derived has a part in the unreduced side. The Lagrangian has a term of fourth order in the velocity
-//! and one that couples it to the parameter:
+//! The chart is `q ↦ g_0 exp(q̂)`. Its tangent is a series of matrix commutators, so the unreduced side doesn't use the
+//! bracket of the group or any derived term. The Lagrangian has a term of fourth order in the velocity and one that
+//! couples it to the parameter:
 //!
 //! ```text
 //! l(ξ, a) = ½ ξ·Mξ + ¼ κ (ξ·ξ)² + (b·a)(n·ξ) − u·a − ½ (v·a)²,     a = g⁻¹·a_0 in V*
@@ -14,10 +15,10 @@ use liestep::groups::Advected as _;
 use liestep::laws::samples::{MatrixLieGroup, Random, along, assert_close, assert_small, derivative};
 use nalgebra::{SMatrix, SVector};
 
-/// What [`derivative`] leaves of functions of some products.
+/// The error of [`derivative`] for functions of some products.
 const DIFFERENCE: f64 = 1e-9;
 
-/// A reduced Lagrangian on `𝔤 × V*`, a place in the group and the spatial value `a_0`.
+/// A reduced Lagrangian on `𝔤 × V*`, a configuration in the group and the spatial value `a_0`.
 struct Body<G, const N: usize, const D: usize> {
     inertia: SMatrix<f64, D, D>,
     fourth: f64,
@@ -28,7 +29,7 @@ struct Body<G, const N: usize, const D: usize> {
     spatial: SVector<f64, N>,
 }
 
-/// Velocity and parameter, or momentum and parameter.
+/// The velocity and the parameter, or the momentum and the parameter.
 type Pair<const N: usize, const D: usize> = (SVector<f64, D>, SVector<f64, N>);
 
 impl<G: MatrixLieGroup<N, D>, const N: usize, const D: usize> Body<G, N, D> {
@@ -51,18 +52,18 @@ impl<G: MatrixLieGroup<N, D>, const N: usize, const D: usize> Body<G, N, D> {
         kinetic + coupled - self.weight.dot(a) - 0.5 * self.spring.dot(a).powi(2)
     }
 
-    /// `δl/δξ`, (1.14).
+    /// The momentum `δl/δξ`, (1.14).
     fn momentum(&self, (xi, a): &Pair<N, D>) -> SVector<f64, D> {
         self.inertia * xi + xi * (self.fourth * xi.norm_squared()) + self.coupled.1 * self.coupled.0.dot(a)
     }
 
-    /// `δ²l/δξ²`.
+    /// The mass matrix `δ²l/δξ²`.
     fn mass(&self, xi: &SVector<f64, D>) -> SMatrix<f64, D, D> {
         let fourth = SMatrix::<f64, D, D>::identity() * xi.norm_squared() + xi * xi.transpose() * 2.0;
         self.inertia + fourth * self.fourth
     }
 
-    /// `δl/δa`, in `V`.
+    /// The force `δl/δa`, in `V`.
     fn force(&self, (xi, a): &Pair<N, D>) -> SVector<f64, N> {
         self.coupled.0 * self.coupled.1.dot(xi) - self.weight - self.spring * self.spring.dot(a)
     }
@@ -77,47 +78,47 @@ impl<G: MatrixLieGroup<N, D>, const N: usize, const D: usize> Body<G, N, D> {
         xi
     }
 
-    /// `h(μ, a) = μ·ξ − l(ξ, a)`, (1.16).
+    /// The Hamiltonian `h(μ, a) = μ·ξ − l(ξ, a)`, (1.16).
     fn h(&self, state: &Pair<N, D>) -> f64 {
         let xi = self.velocity(state);
         state.0.dot(&xi) - self.l(&(xi, state.1))
     }
 
-    /// The first two lines of (2.2), as rates of velocity and parameter; (1.4) where nothing depends on `a`.
+    /// The first two lines of (2.2), as rates of velocity and parameter; (1.4) if `l` doesn't depend on `a`.
     fn euler_poincare(&self, state: &Pair<N, D>) -> Pair<N, D> {
         let (xi, a) = state;
-        // `ȧ = −ξ·a`: what an attitude sees as it moves on along ξ.
+        // The rate `ȧ = −ξ·a` of the parameter in the frame of an attitude that moves along ξ.
         let a_rate = G::hat(xi).transpose() * a;
         let force = self.force(state);
-        // `⟨δl/δa ⋄ a, E_k⟩ = ⟨a, E_k·δl/δa⟩`, (2.1).
+        // The diamond `⟨δl/δa ⋄ a, E_k⟩ = ⟨a, E_k·δl/δa⟩`, (2.1).
         let diamond = SVector::<f64, D>::from_fn(|k, _| a.dot(&(G::hat(&axis(k)) * force)));
         let momentum_rate = G::lie_bracket_transpose(xi, &self.momentum(state)) + diamond;
         let explicit = momentum_rate - self.coupled.1 * self.coupled.0.dot(&a_rate);
         (self.mass(xi).try_inverse().unwrap() * explicit, a_rate)
     }
 
-    /// What is seen from `g_0 exp(q̂)`.
+    /// The parameter in the frame of `g_0 exp(q̂)`.
     fn seen(&self, q: &SVector<f64, D>) -> SVector<f64, N> {
         self.spatial.seen_from(&self.place.compose(&along::<G, N, D>(q, 1.0)))
     }
 
-    /// `L(q, q')` of the chart.
+    /// The Lagrangian `L(q, q')` of the chart.
     fn unreduced(&self, q: &SVector<f64, D>, rate: &SVector<f64, D>) -> f64 {
         self.l(&(tangent::<G, N, D>(q) * rate, self.seen(q)))
     }
 
-    /// `∂L/∂q'`, (1.13).
+    /// The momentum `∂L/∂q'`, (1.13).
     fn covector(&self, q: &SVector<f64, D>, rate: &SVector<f64, D>) -> SVector<f64, D> {
         let tangent = tangent::<G, N, D>(q);
         tangent.transpose() * self.momentum(&(tangent * rate, self.seen(q)))
     }
 
-    /// `H(q, p)` of the chart, (1.15), with `r(q, p) = T⁻ᵀ p` for the momentum.
+    /// The Hamiltonian `H(q, p)` of the chart, (1.15), with the momentum `r(q, p) = T⁻ᵀ p`.
     fn hamiltonian(&self, q: &SVector<f64, D>, p: &SVector<f64, D>) -> f64 {
         self.h(&(reduced::<G, N, D>(q, p), self.seen(q)))
     }
 
-    /// `q''` of the Euler–Lagrange equations, the second statement of theorem 1.1.1.
+    /// The acceleration `q''` by the Euler–Lagrange equations, the second statement of theorem 1.1.1.
     fn euler_lagrange(&self, q: &SVector<f64, D>, rate: &SVector<f64, D>) -> SVector<f64, D> {
         let tangent = tangent::<G, N, D>(q);
         let force = SVector::<f64, D>::from_fn(|k, _| derivative(|t| self.unreduced(&(q + axis::<D>(k) * t), rate)));
@@ -131,7 +132,7 @@ fn axis<const D: usize>(k: usize) -> SVector<f64, D> {
     SVector::from_fn(|i, _| if i == k { 1.0 } else { 0.0 })
 }
 
-/// `T(q) = Σ (−ad_q)ⁿ/(n+1)!`, so that `g⁻¹ġ = T(q) q'` for `g = exp(q̂)`.
+/// The tangent `T(q) = Σ (−ad_q)ⁿ/(n+1)!`, so that `g⁻¹ġ = T(q) q'` for `g = exp(q̂)`.
 fn tangent<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>(q: &SVector<f64, D>) -> SMatrix<f64, D, D> {
     let q = G::hat(q);
     let columns: [SVector<f64, D>; D] = core::array::from_fn(|k| {
@@ -146,7 +147,7 @@ fn tangent<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>(q: &SVector<
     SMatrix::from_columns(&columns)
 }
 
-/// `r(q, p)`, the momentum of what is canonical in the chart.
+/// The momentum `r(q, p)` of canonical variables in the chart.
 fn reduced<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>(
     q: &SVector<f64, D>,
     p: &SVector<f64, D>,
@@ -175,7 +176,7 @@ fn solved<S: Clone>(
     nodes
 }
 
-/// `∫ f dt` by Simpson's rule over an even number of intervals.
+/// The integral `∫ f dt` by Simpson's rule over an even number of intervals.
 fn integral(time: f64, values: &[f64]) -> f64 {
     let weight =
         |i: usize| if i == 0 || i + 1 == values.len() { 1.0 } else { 2.0 + 2.0 * f64::from(u8::from(i % 2 == 1)) };
@@ -185,10 +186,11 @@ fn integral(time: f64, values: &[f64]) -> f64 {
 
 const TIME: f64 = 0.4;
 const STEPS: u32 = 100;
-/// What the classical method and Simpson's rule leave with so many steps.
+/// The error of the classical method and of Simpson's rule with this number of steps.
 const FOURTH_ORDER: f64 = 1e-7;
 
-/// A path in the group: place, velocity and parameter at the nodes. With `sense = 1` it is the solution of (2.2).
+/// A path in the group: configuration, velocity and parameter at the nodes. With `sense = 1` it is the solution of
+/// (2.2).
 fn path<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>(
     body: &Body<G, N, D>,
     velocity: SVector<f64, D>,
@@ -210,7 +212,7 @@ fn euler_poincare_reduction<G: MatrixLieGroup<N, D>, const N: usize, const D: us
         let velocity: SVector<f64, D> = random.sample();
         let solution = path(&body, velocity, 1.0);
 
-        // 2: the Euler–Lagrange equations in the chart end at the same place, with the same velocity.
+        // Statement 2: the Euler–Lagrange equations in the chart have the same final configuration and velocity.
         let plus = |z: &(_, _), k: &(_, _), h: f64| (z.0 + k.0 * h, z.1 + k.1 * h);
         let chart = solved(
             (SVector::zeros(), velocity),
@@ -224,7 +226,7 @@ fn euler_poincare_reduction<G: MatrixLieGroup<N, D>, const N: usize, const D: us
         assert_close(&(tangent::<G, N, D>(q) * rate), xi, FOURTH_ORDER, "Euler–Lagrange and (2.2)");
         assert_close(&body.seen(q), a, FOURTH_ORDER * a.norm().max(1.0), "a = g⁻¹·a_0");
 
-        // 1 and 3: variations that vanish at both ends.
+        // Statements 1 and 3: variations that vanish at both ends.
         let (eta, times): (SVector<f64, D>, Vec<f64>) =
             (random.sample(), (0..=STEPS).map(|i| f64::from(i) / f64::from(STEPS)).collect());
         let variation = |t: f64| {
@@ -237,7 +239,7 @@ fn euler_poincare_reduction<G: MatrixLieGroup<N, D>, const N: usize, const D: us
                     .iter()
                     .zip(&times)
                     .map(|((_, (xi, a)), &t)| {
-                        // Of g exp(εη): the velocity Ad_{exp(−εη)} ξ + T(εη) εη'.
+                        // The velocity of g exp(εη) is Ad_{exp(−εη)} ξ + T(εη) εη'.
                         let (eta, eta_rate) = variation(t);
                         let back = along::<G, N, D>(&eta, -epsilon);
                         let moved = back.matrix() * G::hat(xi) * along::<G, N, D>(&eta, epsilon).matrix();
@@ -253,7 +255,7 @@ fn euler_poincare_reduction<G: MatrixLieGroup<N, D>, const N: usize, const D: us
                 .map(|((_, z), &t)| {
                     let (eta, eta_rate) = variation(t);
                     let xi = eta_rate + G::lie_bracket(&z.0, &eta);
-                    // `δa = −η·a`.
+                    // The variation of the parameter is `δa = −η·a`.
                     let a = G::hat(&eta).transpose() * z.1;
                     body.momentum(z).dot(&xi) + body.force(z).dot(&a)
                 })
@@ -263,14 +265,14 @@ fn euler_poincare_reduction<G: MatrixLieGroup<N, D>, const N: usize, const D: us
         let (first, third) = statements(&solution);
         assert_small(first.abs(), FOURTH_ORDER, "1: δ∫L dt = 0 on TG");
         assert_small(third.abs(), FOURTH_ORDER, "3: δ∫l dt = 0 for (1.3)");
-        // The same velocity at the start, and the opposite acceleration.
+        // The other path has the same initial velocity, and the opposite acceleration.
         let (first, third) = statements(&path(&body, velocity, -1.0));
         assert_small((first - third).abs(), FOURTH_ORDER, "1 and 3 agree on any path");
         assert_small(1e-4 / first.abs(), 1.0, "another path isn't stationary");
     }
 }
 
-/// (1.10), lemma 1.2.1: the canonical bracket of what is invariant is the Lie–Poisson bracket.
+/// (1.10), lemma 1.2.1: the canonical bracket of invariant functions is the Lie–Poisson bracket.
 fn reduction_of_the_bracket<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     let mut random = Random::new(110);
     for _ in 0..10 {
@@ -283,7 +285,7 @@ fn reduction_of_the_bracket<G: MatrixLieGroup<N, D>, const N: usize, const D: us
         };
         let by_place = |i| SVector::<f64, D>::from_fn(|k, _| derivative(|t| value(i, &(q + axis::<D>(k) * t), &p)));
         let by_covector = |i| SVector::<f64, D>::from_fn(|k, _| derivative(|t| value(i, &q, &(p + axis::<D>(k) * t))));
-        // (1.7).
+        // The canonical bracket (1.7).
         let canonical = by_place(0).dot(&by_covector(1)) - by_place(1).dot(&by_covector(0));
         let momentum = reduced::<G, N, D>(&q, &p);
         let slope = |i: usize| (functions[i].0 + functions[i].0.transpose()) * momentum * 0.5 + functions[i].1;
@@ -293,8 +295,8 @@ fn reduction_of_the_bracket<G: MatrixLieGroup<N, D>, const N: usize, const D: us
     }
 }
 
-/// Theorem 1.2.2 and lemma 1.3.1: Hamilton's equations (1.9) in the chart reduce to (1.12), of which (1.4) is the
-/// pull-back by (1.14).
+/// Theorem 1.2.2 and lemma 1.3.1: Hamilton's equations (1.9) in the chart reduce to (1.12), and (1.4) is the pull-back
+/// of (1.12) by (1.14).
 fn legendre_transform<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     let mut random = Random::new(131);
     for _ in 0..5 {
@@ -302,7 +304,7 @@ fn legendre_transform<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>()
         let (q, xi): (SVector<f64, D>, SVector<f64, D>) = (random.sample::<SVector<f64, D>>() * 0.5, random.sample());
         let a = body.seen(&q);
         let momentum = body.momentum(&(xi, a));
-        // 𝔽L and 𝔽l are one map: `∂L/∂q' = Tᵀ δl/δξ`.
+        // The Legendre transforms 𝔽L and 𝔽l agree: `∂L/∂q' = Tᵀ δl/δξ`.
         let rate = tangent::<G, N, D>(&q).try_inverse().unwrap() * xi;
         let p = SVector::<f64, D>::from_fn(|k, _| derivative(|t| body.unreduced(&q, &(rate + axis::<D>(k) * t))));
         let allowed = DIFFERENCE * (1.0 + p.norm());

@@ -1,5 +1,5 @@
-//! What many steps without the Jacobian keep: energy without drift, Casimirs and momenta, and the way back, no worse
-//! than Newton's iteration does.
+//! Invariants of many steps without the Jacobian: energy without drift, Casimirs and momenta, and reversibility, no
+//! worse than with Newton's iteration.
 
 use checks::solvers::WithJacobian;
 use declarations::{self, FourthOrderTop, SixthOrderTop};

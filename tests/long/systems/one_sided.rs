@@ -1,5 +1,5 @@
-//! Controls: kinetic terms that aren't self-adjoint, where the ones of the declarations are. The scheme is of first
-//! order and a step of `−h` doesn't undo one of `h`.
+//! Controls: kinetic terms that aren't self-adjoint, as counterparts of those in the declarations. The scheme is of
+//! first order and a step of `−h` doesn't undo one of `h`.
 
 use checks::structure::reversal;
 use liestep::groups::{CovariantTensor, LieGroup as _, SE3, SL2};
@@ -46,7 +46,7 @@ struct OneSidedElasticFlow {
     metric: CovariantTensor<f64, 2>,
 }
 
-// What a composition asks for when it is compiled: these have none.
+// A composition requires these constants at compile time: here they are false.
 const _: () = assert!(!OneSidedUnderwaterBody::SELF_ADJOINT && !OneSidedElasticFlow::SELF_ADJOINT);
 
 fn assert_first_order(errors: &[(f64, f64)]) {

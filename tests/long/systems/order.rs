@@ -16,15 +16,16 @@ use workbench::runge_kutta;
 use checks::continuous::{Body, Phase};
 use checks::samples::{self, Start};
 
-/// Above what a thousand steps of the Runge–Kutta method leave of systems with rates of a few per second.
+/// The plateau is above the error of a thousand steps of the Runge–Kutta method, for systems with rates of a few per
+/// second.
 pub(crate) const PLATEAU: f64 = 1e-9;
 const TIME: f64 = 1.0;
 const COARSEST: f64 = 1.0 / 25.0;
-/// `1/(2 − 2^⅓)` and what three stages leave for the middle one.
+/// The outer stages `1/(2 − 2^⅓)`, and the middle one that makes the sum one.
 const TRIPLE_JUMP: CompositionScheme =
     CompositionScheme::new("triple jump", 2, 4, &[1.351_207_191_959_657_8, -1.702_414_383_919_315_3]);
 
-/// The inertia of the ordinary kind, `∫ (|X|² I − X Xᵀ) dm`, from the nonstandard one.
+/// The ordinary inertia, `∫ (|X|² I − X Xᵀ) dm`, from the nonstandard one.
 fn ordinary(nonstandard: &Matrix3<f64>) -> Matrix3<f64> {
     Matrix3::identity() * nonstandard.trace() - nonstandard
 }
@@ -33,8 +34,8 @@ fn rotation(g: &Matrix4<f64>) -> Matrix3<f64> {
     g.fixed_view::<3, 3>(0, 0).into_owned()
 }
 
-/// The errors of place and momentum together over four halvings of a method's step, where `shift` is what the momentum of
-/// the flow lacks of the one that converges.
+/// The errors of configuration and momentum together over four halvings of a method's step; `shift` is the difference
+/// between the flow's momentum and the convergent one.
 fn errors_of<L, P, const N: usize, const D: usize>(
     method: impl Fn(f64) -> Stepper<L, P>,
     coarsest: f64,
@@ -60,7 +61,7 @@ where
     })
 }
 
-/// Those of the declared step.
+/// Checks the order of the declared step.
 pub(crate) fn errors<L, const N: usize, const D: usize>(
     system: &L,
     body: &Body<N, D>,
@@ -90,7 +91,7 @@ fn assert_second_order<L: System<Group: MatrixLieGroup<N, D>> + Clone, const N: 
     assert!((order - 2.0).abs() < 0.05, "order {order}, errors {errors:?}");
 }
 
-/// And two compositions of the step, on other groups than SO(3).
+/// Checks the orders of the declared step and of two compositions, on other groups than SO(3).
 fn assert_orders<L: System<Group: MatrixLieGroup<N, D>> + Clone, const N: usize, const D: usize>(
     system: &L,
     (inertia, potential): (SMatrix<f64, D, D>, impl Fn(&SMatrix<f64, N, N>) -> f64),
@@ -123,8 +124,8 @@ fn free_body() {
     assert_second_order(&body, ordinary(body.J_d.as_matrix()), samples::on_so3(), |_| 0.0);
 }
 
-/// The kick before the step is the sum of two halves: from between them the scheme is of second order, and from
-/// where it stands of first.
+/// The kick before the step is the sum of two halves: between them the momentum is of second order, and at the declared
+/// point of first order.
 #[test]
 fn log_trace_top() {
     let top = samples::log_trace_top();
@@ -155,7 +156,8 @@ fn orbiting_body() {
     assert_orders(&body, orbit(&body), samples::in_orbit(), 0.1);
 }
 
-/// Rotation and translation of a body with the first moment `s = ∫ X dm`: `½ Ω·𝕀Ω + Ω·(s × v) + ½ m v²`.
+/// The inertia for rotation and translation of a body with the first moment `s = ∫ X dm`:
+/// `½ Ω·𝕀Ω + Ω·(s × v) + ½ m v²`.
 fn orbit(body: &OrbitingBody) -> (SMatrix<f64, 6, 6>, impl Fn(&Matrix4<f64>) -> f64 + use<'_>) {
     let first: Vector3<f64> = body.J.fixed_view::<3, 1>(0, 3).into_owned();
     let mut inertia = SMatrix::<f64, 6, 6>::identity() * body.J[(3, 3)];
@@ -176,7 +178,7 @@ fn spring() {
     });
 }
 
-/// Against the equations of motion with `J(w) = J + m (ρ × w)(ρ × w)ᵀ`, typed by hand.
+/// The reference is the equations of motion with `J(w) = J + m (ρ × w)(ρ × w)ᵀ`, written by hand.
 #[test]
 fn sliding_top() {
     let top = samples::sliding_top();
@@ -246,7 +248,7 @@ fn tethered_plate() {
     assert_orders(&body, tether(&body), samples::on_se2(), 0.1);
 }
 
-/// A planar body with the first moment `s`: the velocity of `X` is `v + ω (−X_2, X_1)`.
+/// The inertia of a planar body with the first moment `s`: the velocity of `X` is `v + ω (−X_2, X_1)`.
 fn tether(body: &TetheredPlate) -> (Matrix3<f64>, impl Fn(&Matrix3<f64>) -> f64 + use<'_>) {
     let (J, m) = (body.J, body.J[(2, 2)]);
     let (first, second) = (J[(0, 2)], J[(1, 2)]);

@@ -1,6 +1,6 @@
-//! A program's half of a target without a standard library: `cargo check` of it fails where something brings that along.
+//! A program for a target without a standard library: `cargo check` fails if a dependency brings that along.
 //!
-//! Two panic handlers are an error of the compiler's, and the standard library has one.
+//! Two panic handlers are a compiler error, and the standard library has one.
 
 #![no_std]
 
@@ -17,7 +17,7 @@ fn panicked(_: &PanicInfo<'_>) -> ! {
     }
 }
 
-/// A declaration, as what it expands to has to do without, too.
+/// A declaration, whose expansion must not use the standard library, either.
 #[lagrangian(
     group = SO3,
     advected(w = up),
@@ -33,7 +33,7 @@ pub struct HeavyTop {
     up: Vector3<f64>,
 }
 
-/// A force, likewise.
+/// A force, for the same test.
 #[force(group = SO3, given(u = torque), work = 0.5 * h * u * (eta + eta_next)[2])]
 #[derive(Clone, Copy, Debug)]
 pub struct Wheel {
@@ -44,7 +44,7 @@ pub struct Wheel {
 ///
 /// # Errors
 ///
-/// Where there is no top with this step, or no next step.
+/// A step that the top doesn't have, or a next step without a solution.
 pub fn frame(top: HeavyTop, elapsed: f64) -> Result<Result<f64, StepError>, SetupError> {
     let stepper = Stepper::new(top + Wheel { torque: 0.1 }, 0.01)?;
     let state = stepper.start(UnitQuaternion::identity(), Vector3::new(0.0, 0.1, 20.0))?;
@@ -52,11 +52,11 @@ pub fn frame(top: HeavyTop, elapsed: f64) -> Result<Result<f64, StepError>, Setu
     Ok(frames.advance(elapsed).map(|now| now.attitude().as_matrix().m33))
 }
 
-/// A run, kept as a table.
+/// A run, recorded as a table.
 ///
 /// # Errors
 ///
-/// Where a row can't be written.
+/// A row that can't be written.
 pub fn recorded(top: HeavyTop) -> Result<Table, RecordError> {
     let failed = |_| RecordError::Sink { cause: "there is no such top".into() };
     let stepper = Stepper::new(top, 0.01).map_err(failed)?;

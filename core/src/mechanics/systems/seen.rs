@@ -1,22 +1,22 @@
-//! What the places of a system at two bodies see.
+//! Advected parameters of the places at two bodies of a system.
 
 use core::marker::PhantomData;
 
 use crate::groups::{Advected, LieGroup, Pair};
 use crate::numbers::{Entries, entries_of_value, filled, zero};
 
-/// What each two neighbours see, as a group `P` of two bodies moves it. Behind it there is one more, which never changes:
-/// stable Rust has no arrays of `N − 1`.
+/// The parameters of each two neighbours, which a group `P` of two bodies advects. The last of the `N` entries is
+/// padding and never changes: stable Rust has no arrays of `N − 1`.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 #[doc(hidden)]
 pub struct Neighbours<P, W, const N: usize>(pub [W; N], pub(super) PhantomData<P>);
 
-/// What the bodies `A` and `B` see, as a group `P` of two bodies moves it.
+/// The parameters of the bodies `A` and `B`, which a group `P` of two bodies advects.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 #[doc(hidden)]
 pub struct SeenBetween<P, W, const A: usize, const B: usize>(pub W, pub(super) PhantomData<P>);
 
-/// The configurations of all bodies in space, of which what each pair sees is formed.
+/// The configurations of all bodies in space, from which the parameters of each pair are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct WhereAllAre<G: LieGroup, const N: usize>(pub [G::Matrix; N]);
 
@@ -31,7 +31,7 @@ entries_of_value!([P: Copy, W: Entries<S>, const A: usize, const B: usize] SeenB
 entries_of_value!([G: LieGroup<Scalar = S>, const N: usize] WhereAllAre<G, N>);
 
 impl<P, W: Copy, const N: usize> Neighbours<P, W, N> {
-    /// Something of each two neighbours in the place of what is there; the one behind stays.
+    /// Replaces the parameters of each two neighbours; the padding stays.
     #[hot]
     fn with(mut self, each: impl Fn(usize) -> W) -> Self {
         for k in 1..N {
@@ -107,13 +107,13 @@ impl<G: LieGroup, const N: usize> Advected<[G; N]> for WhereAllAre<G, N> {
         self.seen_through(&attitude.map(|body| body.matrix()), &[G::identity().matrix(); N])
     }
 
-    /// `R D`.
+    /// The change `R D`.
     #[hot]
     fn change(&self, increment: &[G::Matrix; N]) -> Self {
         Self(filled!(self.0, |k| G::from_matrix_unchecked(self.0[k]).change(&increment[k])))
     }
 
-    /// `R ξ̂`.
+    /// The rate `R ξ̂`.
     fn rate(&self, velocity: &[G::Matrix; N]) -> Self {
         self.change(velocity)
     }

@@ -1,37 +1,37 @@
-//! What a step of a chain solves, link by link: outwards where the joints go, inwards what hangs on each link and its
-//! elimination, outwards the update.
+//! Newton's iteration for a step of a chain, in three sweeps: outwards for the displacements of the joints, inwards for
+//! the forces and the elimination of each link, outwards for the update.
 //!
-//! All is in the axes of each link: what pulls along one then doesn't round what turns it. With `D = F − I` and the
-//! nonstandard inertia `J` about the upper joint, what is carried outwards is the way `u` of that joint, and inwards the
-//! momentum `P` beyond the lower one, times `h`:
+//! All vectors are in the axes of each link: a large pull along a slim link then doesn't round its small moment. With
+//! `D = F − I` and the nonstandard inertia `J` about the upper joint, the outward sweep carries the displacement `u` of
+//! that joint, and the inward one the momentum `P` beyond the lower joint, times `h`:
 //!
 //! ```text
 //! u' = Qᵀ(u + D ρ)        P' = Q (P + m (u + D c))        Q = R_aᵀ R_{a+1}
 //! h r = (D J − J Dᵀ)^∨ + m c × u + ρ × P − h a            a = μ + (h/2) w × g s
 //! ```
 //!
-//! For `δF = −ẑ F`, as an update is taken away, with the variation `v` of `u`, and that of the momentum beyond the lower
-//! joint as a linear function `Π v + q` of the joint's,
+//! The update `z` is a variation `δF = −ẑ F`. With the variation `v` of `u`, the variation of the momentum beyond the
+//! lower joint is an affine function `Π v + q` of that joint's variation:
 //!
 //! ```text
 //! B = tr(F J) I − F J − ρ̂ Π (Fρ)^     G = m ĉ + ρ̂ Π     H = Π (Fρ)^ + m (Fc)^     t = ρ × q + h r
 //! z = B⁻¹(G v + t)                     Π' = Q (Π + m I + H B⁻¹ G) Qᵀ               q' = Q (q + H B⁻¹ t)
 //! ```
 //!
-//! Matrices are columns in registers, and a step takes as long as what waits for each other: `ρ̂ Q` is there before `Π'` is,
-//! and `H adj(B) G` is made while `det B` divides one.
+//! Matrices are columns in registers, and the duration of a step is the longest chain of dependent operations. So
+//! `ρ̂ Q` is computed before `Π'` is known, and `H adj(B) G` during the division by `det B`.
 //!
-//! `B` is what of the Newton matrix is left of the link once all that hangs on it is eliminated. At the identity `Π` is the
-//! mass at the joint that the articulated-body algorithm has, and symmetric.
+//! `B` is the pivot block of the link in the Newton matrix, once all links beyond are eliminated. At the identity `Π`
+//! is symmetric: the articulated-body algorithm's mass at the joint.
 //!
-//! Nothing here depends on the number of links but the length of slices, so it is compiled once.
+//! The number of links enters only as the length of slices, so this is compiled once for all chains.
 
 roots!();
 
 use super::link::Link;
 use crate::numbers::{Columns, Register, cross, dot, padded, square};
 
-/// What a link is, as a step takes it: vectors as registers load them.
+/// The parameters of a link in a step: vectors as registers load them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LinkConstants {
     /// `J` by columns, `m`, `m c` and `ρ` of the [`Link`].
@@ -49,39 +49,39 @@ impl From<&Link> for LinkConstants {
     }
 }
 
-/// What is known of a link while a step is solved.
+/// The unknowns and intermediate results of a link during a solution.
 #[derive(Clone, Copy)]
 pub(super) struct Work<R> {
-    /// `Q`, from the axes of the next link to these; zero where there is none. `Qᵀ`, and `ρ̂ Q`.
+    /// `Q`, from the axes of the next link to these, zero for the last link; then `Qᵀ` and `ρ̂ Q`.
     pub(super) next: Columns<R>,
     back: Columns<R>,
     arm: Columns<R>,
-    /// `h a`.
+    /// The target `h a` of the momentum equation.
     pub(super) target: R,
-    /// Half the Cayley coordinates of `F`, and what they were before an update that may be shortened.
+    /// Half the Cayley coordinates of `F`, and their value before an update that may be shortened.
     pub(super) half: R,
     before: R,
-    /// The last update, which was taken from `half`, or a part of it.
+    /// The last whole update; `half` has been reduced by this, or by a part of it.
     pub(super) update: R,
-    /// `D`, and `D ρ`, `D m c`.
+    /// The increment `D`, and its images `D ρ` and `D m c`.
     pub(super) increment: Columns<R>,
     pub(super) of_rho: R,
     pub(super) of_mc: R,
-    /// `u`, m.
+    /// The displacement `u` of the upper joint, m.
     pub(super) u: R,
-    /// `B⁻¹ t`.
+    /// The part `B⁻¹ t` of the update.
     t: R,
-    /// `B⁻¹`, `B⁻¹ G` and `H` where they were last computed.
+    /// `B⁻¹`, `B⁻¹ G` and `H` of the last Jacobian.
     inverse: Columns<R>,
     g: Columns<R>,
     h: Columns<R>,
-    /// `det B`.
+    /// The determinant `det B`.
     pub(super) determinant: f64,
 }
 
 #[hot]
 impl<R: Register> Work<R> {
-    /// Of a link without a neighbour, at rest.
+    /// A link at rest without neighbours.
     pub(super) fn none(zero: R) -> Self {
         let none = Columns([zero; 3]);
         Self {
@@ -104,13 +104,13 @@ impl<R: Register> Work<R> {
         }
     }
 
-    /// Puts the next link, whose attitude is this one's times `next`.
+    /// Sets the relative attitude `next` of the next link.
     pub(super) fn place(&mut self, link: &LinkConstants, next: Columns<R>) {
         self.arm = Columns::hat(self.u.of(link.rho)) * next;
         (self.next, self.back) = (next, next.transposed());
     }
 
-    /// Whether the link turns by less than 90° and its determinant has the sign that it has at rest.
+    /// Whether the link turns by less than 90° and its determinant has the same sign as at rest.
     pub(super) fn is_wanted(&self) -> bool {
         self.determinant > 0.0 && square(self.half) < 1.0
     }
@@ -120,7 +120,8 @@ impl<R: Register> Work<R> {
         self.u * self.u.of([link.m; 4]) + self.of_mc
     }
 
-    /// Turns it, where the way of its upper joint is `u`; returns that of the lower one, as the next link sees it.
+    /// Computes the increment from `half` and the displacement `u` of the upper joint; returns that of the lower joint,
+    /// in the axes of the next link.
     fn turn(&mut self, link: &LinkConstants, u: R) -> R {
         // D = s (ŷ + y yᵀ − |y|² I), s = 2/(1 + |y|²).
         let (half, squared) = (self.half, dot(self.half, self.half));
@@ -135,7 +136,7 @@ impl<R: Register> Work<R> {
         self.back.map(u + self.of_rho)
     }
 
-    /// `t = ρ × q + h r` with `D J`, and `P` beyond.
+    /// The right-hand side `t = ρ × q + h r`, from `dj = D J` and the momentum `P` beyond.
     fn residual(&self, link: &LinkConstants, dj: &Columns<R>, beyond: R, q: R) -> R {
         let (mc, rho) = (q.of(link.mc), q.of(link.rho));
         let [[_, m21, m31, _], [m12, _, m32, _], [m13, m23, ..]] = dj.entries();
@@ -143,7 +144,8 @@ impl<R: Register> Work<R> {
     }
 }
 
-/// The squares of the lengths of an update, before it was shortened, and of the unknowns after it; whether it is whole.
+/// The squared lengths of an update before it was shortened and of the unknowns after it, and whether it was applied
+/// whole.
 #[derive(Clone, Copy)]
 pub(super) struct Update {
     pub(super) length: f64,
@@ -151,7 +153,7 @@ pub(super) struct Update {
     pub(super) is_whole: bool,
 }
 
-/// Where the joints go.
+/// The outward sweep: increments and displacements of all joints.
 #[hot]
 pub(super) fn outwards<R: Register>(zero: R, links: &[LinkConstants], work: &mut [Work<R>]) {
     let mut u = zero;
@@ -160,13 +162,13 @@ pub(super) fn outwards<R: Register>(zero: R, links: &[LinkConstants], work: &mut
     }
 }
 
-/// One of Newton's iterations, from where the joints go to where they go by it; where a link's update is longer than
-/// `longest`, all are shortened.
+/// One Newton iteration and the outward sweep after it. If a link's update is longer than `longest`, all updates are
+/// scaled down.
 #[hot]
 pub(super) fn newton<R: Register>(zero: R, links: &[LinkConstants], work: &mut [Work<R>], longest: f64) -> Update {
     let (mut beyond, mut mass, mut q) = (zero, Columns([zero; 3]), zero);
     for (link, work) in links.iter().zip(&mut *work).rev() {
-        // From the axes of the next link; at the end all are zero.
+        // The quantities of the next link are transformed to these axes; at the end of the chain they are zero.
         beyond = work.next.map(beyond);
         q = work.next.map(q);
         let turned = mass * work.back;
@@ -179,7 +181,7 @@ pub(super) fn newton<R: Register>(zero: R, links: &[LinkConstants], work: &mut [
         let g = work.arm * turned;
         let b = inertia(zero, dj + nonstandard) - g.cross_rows(turned_rho);
         let h = mass.cross_rows(turned_rho) + Columns::hat(turned_mc);
-        // By Cramer's rule; where the determinant is zero nothing is finite.
+        // Cramer's rule; a determinant of zero leads to numbers that aren't finite.
         let [x, y, z] = b.0;
         let rows = [cross(y, z), cross(z, x), cross(x, y)];
         let (adjugate, determinant) = (Columns(rows).transposed(), dot(x, rows[0]));
@@ -196,7 +198,7 @@ pub(super) fn newton<R: Register>(zero: R, links: &[LinkConstants], work: &mut [
     solved(zero, links, work, longest)
 }
 
-/// Another with the matrix of the last.
+/// One simplified iteration, with the last Jacobian.
 #[hot]
 pub(super) fn simplified<R: Register>(zero: R, links: &[LinkConstants], work: &mut [Work<R>]) -> Update {
     let (mut beyond, mut q) = (zero, zero);
@@ -211,19 +213,18 @@ pub(super) fn simplified<R: Register>(zero: R, links: &[LinkConstants], work: &m
     solved(zero, links, work, f64::INFINITY)
 }
 
-/// Outwards the update, and where the joints go by it.
+/// The outward sweep of the update, and the displacements of the joints after it.
 #[hot]
 fn solved<R: Register>(zero: R, links: &[LinkConstants], work: &mut [Work<R>], longest: f64) -> Update {
     let (mut u, mut v) = (zero, zero);
-    // What isn't a number makes the size none either.
+    // A NaN in any unknown makes `size` NaN.
     let (mut length, mut size, mut largest) = (0.0, 0.0, 0.0_f64);
     for (link, work) in links.iter().zip(&mut *work) {
         let (y, z) = (work.half, work.g.map(v) + work.t);
         v = work.back.map(v - cross(z, zero.of(link.rho) + work.of_rho));
         // dF F⁻¹ = (2 (I + ŷ) dy/(1 + |y|²))^ = −ẑ, solved for `−dy`.
         work.update = (z - cross(y, z) + y * dot(y, z)) * zero.of([0.5; 4]);
-        // What has taken a whole update doesn't tell what it was: of that a rounding of the update is lost, which has no
-        // bound.
+        // `half + update` wouldn't restore the old value: its rounding error is relative to the update, however long.
         (work.before, work.half) = (y, y - work.update);
         u = work.turn(link, u);
         let squared = square(work.update);
@@ -244,7 +245,7 @@ fn solved<R: Register>(zero: R, links: &[LinkConstants], work: &mut [Work<R>], l
     Update { length, size, is_whole }
 }
 
-/// The momenta `target` of the velocities `half`.
+/// Computes `target` for the velocities in `half`: their momenta, by the inertia of the chain.
 pub(super) fn momenta_of_velocities<R: Register>(zero: R, links: &[LinkConstants], work: &mut [Work<R>]) {
     let (mut u, mut beyond) = (zero, zero);
     for (link, work) in links.iter().zip(&mut *work) {
@@ -261,7 +262,7 @@ pub(super) fn momenta_of_velocities<R: Register>(zero: R, links: &[LinkConstants
     }
 }
 
-/// The ordinary inertia about a joint, `tr(J) I − J`.
+/// The inertia `tr(J) I − J` about a joint.
 #[hot]
 fn inertia<R: Register>(zero: R, nonstandard: Columns<R>) -> Columns<R> {
     let [[m11, ..], [_, m22, ..], [_, _, m33, _]] = nonstandard.entries();

@@ -5,21 +5,21 @@ use nalgebra::Vector3;
 use crate::error::SetupError;
 use crate::mechanics::NonstandardInertia;
 
-/// A link of a [`Chain`](super::Chain), in its own axes, with the joint it hangs on as the origin.
+/// A link of a [`Chain`](super::Chain), in its own axes, whose origin is the link's upper joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Link {
-    /// Nonstandard inertia about the joint, kg m².
+    /// The nonstandard inertia about the upper joint, kg m².
     pub J_d: NonstandardInertia,
-    /// Mass, kg.
+    /// The mass, kg.
     pub m: f64,
-    /// Centre of mass, m.
+    /// The centre of mass, m.
     pub c: Vector3<f64>,
-    /// The joint of the next link, m.
+    /// The lower joint, which carries the next link, m.
     pub rho: Vector3<f64>,
 }
 
 impl Link {
-    /// Checks the parameters of the link with this number.
+    /// Checks the parameters of link number `body`.
     pub(super) fn validate(&self, body: usize) -> Result<(), SetupError> {
         let refused = |field, cause| Err(SetupError::BodyParameter { body, field, cause });
         if !self.m.is_finite() || self.m < 0.0 {
@@ -32,7 +32,7 @@ impl Link {
         }
         let about_joint = *self.J_d.as_matrix();
         let central = about_joint - self.c * self.c.transpose() * self.m;
-        // What rounding leaves of a point at the end of a rod.
+        // The tolerance admits the rounding error of a point mass at the end of a rod.
         let is_possible = central.symmetric_eigenvalues().min() >= -1e-12 * about_joint.trace();
         if !is_possible {
             return refused("J_d", "is less than the mass at the centre of mass has about the joint");

@@ -1,15 +1,15 @@
 //! Chains of rigid links on ball joints, in the minimal form on SO(3)ᴺ, each step in time proportional to `N`.
 //!
-//! The links' attitudes are the only unknowns, so joints don't open. All velocities feel each other,
+//! The links' attitudes are the only unknowns, so joints can't open. All velocities are coupled,
 //!
 //! ```text
 //! l_d = Σ tr((F_a − I) K_a (F_a − I)ᵀ)/2h + Σ_a m_a |u_a + (F_a − I) c_a|²/2h − (h/2) g Σ w_a·(s_a + F_a s_a)
 //! ```
 //!
-//! where `K_a` is the nonstandard inertia about the centre of mass, `J_a − m_a c_a c_aᵀ`, `u_a` the way of the upper joint
-//! in the step, which the links above have made, and `s_a = m_a c_a + M_a ρ_a` with the mass `M_a` of all that hangs below.
-//! The Newton matrix is full, but what a link feels of all that hangs on it is a mass at its lower joint; so it is
-//! eliminated from the end of the chain to the pivot, as in the articulated-body algorithm.
+//! Here `K_a = J_a − m_a c_a c_aᵀ` is the nonstandard inertia about the centre of mass, `u_a` the displacement of the
+//! upper joint over the step, which depends on the links above, and `s_a = m_a c_a + M_a ρ_a` with the mass `M_a` of
+//! all links beyond. The Newton matrix is full. But all links beyond act on a link like a mass at its lower joint, so
+//! links are eliminated from the end of the chain to the pivot, as in the articulated-body algorithm.
 
 mod elimination;
 mod link;
@@ -29,33 +29,33 @@ use crate::mechanics::{Each, Placement, Term as _};
 use crate::motion::{Motion, Stepper};
 use crate::numbers::{Bodies, Coordinates as _};
 
-/// How far from one what should be of length one may be: what a unit quaternion or a matrix printed to a dozen digits leaves.
+/// The tolerance for a vector to be of length one: twelve printed digits pass.
 const ROUNDED: f64 = f64::EPSILON * 1e4;
 
-/// The weight of each link and of what it carries.
+/// The gravity term of each link, with the mass of the links beyond included.
 pub type Weights<const N: usize> = Placement<Each<N>, Gravity, N>;
 
-/// What [`Chain::stepper`] makes: an integrator of links under gravity alone.
+/// The integrator of [`Chain::stepper`]: links under gravity alone.
 pub type ChainStepper<const N: usize> = Stepper<Weights<N>, LinkedBodies<Weights<N>, N>>;
 
 /// Links on ball joints, the first on a fixed pivot, under uniform gravity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chain<const N: usize> {
-    /// From the pivot on.
+    /// The links in order, from the pivot on.
     pub links: [Link; N],
     /// Gravitational acceleration, m/s².
     pub g: f64,
-    /// The vertical, in space; of length one.
+    /// The unit vector upwards, in space.
     pub up: Vector3<f64>,
 }
 
 impl<const N: usize> Chain<N> {
-    /// An integrator of these links with a fixed step, s; of second order, symmetric and symplectic. A negative step is the
-    /// inverse map; `h = 0` is the identity. [`LinkedBodies`] says how steps are made, and what they cost.
+    /// An integrator of these links with a fixed step, s; of second order, symmetric and symplectic. A negative step is
+    /// the inverse map; `h = 0` is the identity. [`LinkedBodies`] describes the method and its cost.
     ///
     /// # Errors
     ///
-    /// As [`Stepper::linked`].
+    /// The errors of [`Stepper::linked`].
     ///
     /// # Examples
     ///
@@ -90,7 +90,7 @@ impl<const N: usize> Chain<N> {
         Stepper::linked(self.weights(), self.links, h)
     }
 
-    /// The weight of each link, and at its lower joint that of all that hangs there: what gravity adds to the scene of
+    /// The weight of each link, with the mass of all links beyond at its lower joint: the gravity of a scene for
     /// [`Stepper::linked`].
     #[must_use]
     pub fn weights(&self) -> Weights<N> {

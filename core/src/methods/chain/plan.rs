@@ -16,7 +16,7 @@ use crate::numbers::{
 };
 use crate::solving::{Curvature, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, WarmStart};
 
-/// Operations of a link beside those of its potentials, in a step and in an iteration: of its products with matrices.
+/// Operations of a link's matrix products in a step and in an iteration; those of potentials are counted apart.
 const OF_A_LINK: Operations = Operations { step: 150, iteration: 600 };
 
 type Components<const N: usize> = Bodies<Vector3<f64>, N>;
@@ -26,10 +26,10 @@ type Components<const N: usize> = Bodies<Vector3<f64>, N>;
 ///
 /// # Contract
 ///
-/// - Joints don't open: attitudes are all there is.
-/// - The momentum about the vertical is kept to rounding where there is nothing but weight.
-/// - A step satisfies its momentum equations to rounding, or is an error that leaves the state as it was; it names a link
-///   where one is to blame.
+/// - Joints don't open: attitudes are the only unknowns.
+/// - The momentum about the vertical is conserved to rounding if the only load is weight.
+/// - A step satisfies its momentum equations to rounding, or is an error that leaves the state unchanged; it names the
+///   link that caused it, if there is one.
 /// - Nothing is allocated. A chain of `N` links takes about `2 N` kB of stack.
 ///
 /// # Source
@@ -45,15 +45,16 @@ pub struct LinkedBodies<S: Effect, const N: usize> {
 
 /// # Make: links on ball joints
 impl<S: Effect> Stepper<S> {
-    /// Links on ball joints, the first on a fixed pivot; the scene is what acts on them: potentials of where each is, put
-    /// at their [places](crate::mechanics::Each). [`Chain::stepper`](crate::methods::Chain::stepper) has those of gravity, and a listing.
+    /// Links on ball joints, the first on a fixed pivot. The scene contains the loads: potentials of the links'
+    /// attitudes, at their [places](crate::mechanics::Each). [`Chain::stepper`](crate::methods::Chain::stepper) has
+    /// gravity as its load, and an example.
     ///
-    /// Momenta are conjugate to the turns of the links: what each has to do with it that those beyond it move, too.
+    /// Momenta are conjugate to the turns of the links, so each includes the motion of the links beyond.
     ///
     /// # Errors
     ///
-    /// [`SetupError::BodyParameter`] names the link whose parameters can't be used; [`SetupError::Parameter`] for those
-    /// of the scene, [`SetupError::InvalidStep`] for a step that isn't finite or whose inverse isn't.
+    /// [`SetupError::BodyParameter`] names a link with an invalid parameter; [`SetupError::Parameter`] an invalid
+    /// parameter of the scene; [`SetupError::InvalidStep`] is for a step that isn't finite or whose inverse isn't.
     pub fn linked<const N: usize>(
         scene: S,
         links: [Link; N],
@@ -71,7 +72,7 @@ impl<S: Effect> Stepper<S> {
 }
 
 impl<S: Effect<Group = [SO3; N]>, const N: usize> Stepper<S, LinkedBodies<S, N>> {
-    /// Where each link's lower joint is in space, m from the pivot.
+    /// The position of each link's lower joint in space, m from the pivot.
     #[must_use]
     pub fn joints(&self, motion: &Motion<[SO3; N], S::Advected>) -> [Vector3<f64>; N] {
         let mut place = Vector3::zeros();
@@ -104,7 +105,7 @@ where
         Ok(Self { h, constants: scene.constants(h), links })
     }
 
-    /// The attitude of each link relative to that before.
+    /// Sets the attitude of each link relative to the previous one.
     fn place<R: Register>(&self, zero: R, attitudes: &[SO3; N], work: &mut [Work<R>; N]) {
         for ((pair, work), link) in attitudes.windows(2).zip(work).zip(&self.links) {
             let (before, next) = (pair[0].as_matrix(), pair[1].as_matrix());
@@ -112,7 +113,7 @@ where
         }
     }
 
-    /// What the increments are to satisfy; returns what the scene gives before the step.
+    /// Sets the targets of the momentum equations; returns the scene's kick before the step.
     pub(super) fn prepare<R: Register>(
         &self,
         zero: R,
@@ -127,8 +128,8 @@ where
         kick
     }
 
-    /// From the guess; where that fails from rest, and then with shortened updates. Returns the iterations, those of
-    /// abandoned attempts included, and whether they have led to a solution.
+    /// Solves from the guess; if that fails from rest, and then with shortened updates. Returns the number of
+    /// iterations, failed attempts included, and whether there is a solution.
     pub(super) fn solve<R: Register>(&self, zero: R, work: &mut [Work<R>; N], guess: &Components<N>) -> (u32, bool) {
         const ATTEMPTS: [(bool, u32, f64); 3] = [
             (true, MAX_ITERATIONS, f64::INFINITY),
@@ -136,7 +137,7 @@ where
             (false, MAX_DAMPED_ITERATIONS, LONGEST_DAMPED),
         ];
         let mut spent = 0;
-        // A loop, as `iterate` is inlined where it is called, and is to be compiled once.
+        // A loop has one call of `iterate`, which is inlined and so compiled only once.
         for (is_guessed, most, longest) in ATTEMPTS {
             for (work, guess) in work.iter_mut().zip(&guess.0) {
                 work.half = if is_guessed { zero.of(padded(guess)) } else { zero };
@@ -150,11 +151,11 @@ where
         (spent, false)
     }
 
-    /// The end of a step with these increments, whose links the scene has given this kick before it.
+    /// Completes the step with these increments; `kick` is the scene's kick before it.
     ///
     /// # Errors
     ///
-    /// [`StepError::NonFinite`] where a momentum after it isn't finite.
+    /// [`StepError::NonFinite`] if a momentum after the step isn't finite.
     pub(super) fn proceed<R: Register, M: Summation<[SO3; N], S::Advected>>(
         &self,
         scene: &S,
@@ -171,11 +172,11 @@ where
         let (mut beyond, inverse_step) = (zero, zero.of([inverse_step; 4]));
         for (k, work) in work.iter().enumerate().rev() {
             beyond = work.next.map(beyond);
-            // The diamond: what moves the links, and what the scene gives them.
+            // The diamond of the coupled inertia, added to the scene's kick.
             let of_joints = cross(work.of_mc, work.u) + cross(work.of_rho, beyond);
             let kick = zero.of(padded(&kick.0[k])) + of_joints * inverse_step;
             beyond = beyond + work.momentum(&self.links[k]);
-            // μ⁺ = Fᵀ(μ + κ), (2.9): the change.
+            // The change of the momentum by μ⁺ = Fᵀ(μ + κ), (2.9).
             let pushed = zero.of(padded(&momentum.0[k])) + kick;
             change.0[k] += vector(kick + work.increment.transposed().map(pushed));
             momentum.0[k] += change.0[k];
@@ -188,8 +189,8 @@ where
         Ok(())
     }
 
-    /// Which link is to blame, by where the iteration has ended, and by how far each would turn at its velocity; where it
-    /// has no values, the one that turns farthest.
+    /// The error of a failed step. It blames the link where the iteration ended; if the last iterate isn't finite, the
+    /// link that would turn farthest at its velocity.
     #[cold]
     fn reason<R: Register>(
         &self,
@@ -212,7 +213,8 @@ where
         StepError::NotConverged { iterations, residual: (update / size).sqrt() }
     }
 
-    /// Near rest the momenta times `h` are linear in `y`: those of the velocities `2 y`, which one iteration solves for.
+    /// The velocities. Near rest, the momenta times `h` are linear in `y`, namely those of the velocities `2 y`, so one
+    /// Newton iteration inverts them.
     #[inline(never)]
     fn velocities(&self, motion: &Motion<[SO3; N], S::Advected>) -> Components<N> {
         let zero = Plain::ZERO;
@@ -227,12 +229,12 @@ where
     }
 }
 
-/// Makes at most `most` of Newton's iterations and the updates with their Jacobians. Returns the number of both, and whether
-/// the iteration has settled near the identity with all determinants positive.
+/// At most `most` Newton iterations, and the simplified ones. Returns the number of both, and whether they have
+/// converged near the identity with all determinants positive.
 ///
-/// The determinants are those before the last updates. Near a fold that needs no guard: two updates suffice where
-/// `2C²|u₁|³ ≤ ε|y|/16`, and the first is longer than `√ε|y|/8`, so `C|u₁| < 1e-4`. The Jacobian changes by twice that of
-/// itself, and for another sign it would have to change by all.
+/// The determinants are those before the last updates. Near a fold that needs no guard: two updates suffice if
+/// `2C²|u₁|³ ≤ ε|y|/16`, and the first is longer than `√ε|y|/8`, so `C|u₁| < 1e-4`. The Jacobian changes by twice that,
+/// relative to itself; a change of sign would be a change by all of itself.
 #[hot]
 fn iterate<R: Register>(
     zero: R,
@@ -242,8 +244,8 @@ fn iterate<R: Register>(
     longest: f64,
 ) -> (u32, bool) {
     outwards(zero, links, work);
-    // The last update, if Newton's next is of its second order: of one that was shortened too much is left, and after one
-    // with a Jacobian used again what is left is that Jacobian's.
+    // `before` is the length of the last update if the next Newton update is quadratic in it. After a shortened update
+    // the error is larger, and after a simplified one it depends on the reused Jacobian.
     let (mut made, mut before) = (0, None);
     for _ in 0..most {
         made += 1;
@@ -291,7 +293,7 @@ where
 {
     type Kept = WarmStart<Components<N>>;
 
-    /// Each step finds them.
+    /// Each step chooses its vector instructions itself.
     const VECTORS: Vectors = Vectors::AsCompiled;
     const RUNS_BY_STEPS: bool = true;
     const HAS_OWN_INERTIA: bool = true;
@@ -347,7 +349,7 @@ where
     }
 }
 
-/// A step.
+/// A step, compiled for the machine's registers.
 pub(super) struct Step<'a, S, P, M, K>(pub(super) &'a P, pub(super) &'a S, pub(super) &'a mut M, pub(super) &'a mut K);
 
 impl<S, M, const N: usize> OnRegisters for Step<'_, S, LinkedBodies<S, N>, M, WarmStart<Components<N>>>
@@ -377,7 +379,7 @@ where
     }
 }
 
-/// Guesses the next increments by these.
+/// Updates the initial guess of the next step by these increments.
 #[hot]
 pub(super) fn follow<R: Register, const N: usize>(
     kept: &mut WarmStart<Components<N>>,

@@ -1,5 +1,5 @@
-//! What is seen of a step from inside: that it keeps momenta without solving its equations, how well it solves them,
-//! and that vector instructions don't change it.
+//! Tests of a step's internals: momenta are conserved by unsolved increments, equations are solved to rounding, and
+//! vector instructions don't change a digit.
 
 use std::println;
 
@@ -14,7 +14,7 @@ use crate::numbers::{Bodies, Plain, Register, padded, vector};
 
 const ZERO: Plain = Plain::ZERO;
 
-/// What is done in the place of a solution.
+/// A substitute for the solver.
 type Solve<'a> = &'a dyn Fn(&[LinkConstants], &mut [Work<Plain>]);
 
 fn link(central: Matrix3<f64>, m: f64, c: [f64; 3], rho: [f64; 3]) -> Link {
@@ -22,7 +22,7 @@ fn link(central: Matrix3<f64>, m: f64, c: [f64; 3], rho: [f64; 3]) -> Link {
     Link { J_d: NonstandardInertia::new(central + c * c.transpose() * m).unwrap(), m, c, rho }
 }
 
-/// Links, their attitudes and their velocities.
+/// A chain, its initial attitudes and its initial velocities.
 type Started = (Chain<3>, [SO3; 3], [Vector3<f64>; 3]);
 
 /// Links without any symmetry, under an oblique vertical.
@@ -54,9 +54,9 @@ fn reference() -> Started {
     (Chain { links, g: 9.81, up: Vector3::z() }, attitudes, velocities)
 }
 
-/// The momentum about the vertical is kept by increments that solve nothing: the kicks of a step are moments of forces
-/// between links, and of weights. Energy isn't kept by them, and momenta grow with it, to a thousand times what they were in
-/// the first case; so what rounding may move is relative to the largest.
+/// The momentum about the vertical is conserved even by increments that don't solve the equations: the kicks of a step
+/// are moments of internal forces and of weights. Energy isn't conserved by them, and momenta grow with it, in the
+/// first case a thousandfold; so the tolerance for rounding is relative to the largest momentum.
 #[test]
 fn momentum_of_badly_solved_steps() {
     let unsolved = |links: &[LinkConstants], work: &mut [Work<Plain>]| {
@@ -83,7 +83,7 @@ fn momentum_of_badly_solved_steps() {
             outwards(ZERO, &plan.links, &mut work);
             newton(ZERO, &plan.links, &mut work, f64::INFINITY);
             solve(&plan.links, &mut work);
-            // How far one of Newton's iterations would move them, which isn't made.
+            // The length of the next Newton update, which isn't applied.
             let update = newton(ZERO, &plan.links, &mut work.clone(), f64::INFINITY);
             least = least.min((update.length / update.size).sqrt());
             plan.proceed(stepper.scene(), &mut state.motion, &work, kick).unwrap();
@@ -95,8 +95,8 @@ fn momentum_of_badly_solved_steps() {
     }
 }
 
-/// Five bent links that are slim: of inertias in the ratio `slimness`, and joined this far off their long axes.
-/// The last has `last` times the mass of the others, and all move across those axes and spin about them.
+/// Five bent, slim links: their inertias have the ratio `slimness`, and their joints lie `off` from their long axes.
+/// The mass of the last is `last` times that of the others. All move across their long axes and spin about them.
 fn slim(slimness: f64, off: f64, last: f64, spin: f64) -> (Chain<5>, [SO3; 5], [Vector3<f64>; 5]) {
     let turns = [0.2, 1.1, -0.7, 0.5, -1.3];
     let links = turns.map(|x: f64| {
@@ -111,9 +111,9 @@ fn slim(slimness: f64, off: f64, last: f64, spin: f64) -> (Chain<5>, [SO3; 5], [
     (chain, attitudes, velocities)
 }
 
-/// No more is missing of a solution than roundings leave: another of Newton's iterations moves it no farther than those
-/// after that do, but for a factor that their scatter has. So it is where inertias or masses are in a ratio of 1e4, by which
-/// the Jacobian could change more along an update than the ones before it have told.
+/// A solution is accurate to rounding: another Newton iteration moves it no farther than later iterations do, up to a
+/// factor for their scatter. This holds for ratios of inertias or masses of 1e4, for which the Jacobian might change
+/// more along an update than earlier updates indicate.
 #[test]
 fn nothing_but_roundings_is_missing() {
     for (slimness, off, last, spin, h) in [
@@ -141,7 +141,7 @@ fn nothing_but_roundings_is_missing() {
             assert!(is_solved, "{slimness:e} {off} {last:e} {spin} {h}: no step {step}");
             iterations += made;
             let mut more = work;
-            // In roundings of all unknowns.
+            // The unit is the rounding error of all unknowns.
             let mut further = || {
                 let updated = newton(ZERO, &plan.links, &mut more, f64::INFINITY);
                 (updated.length / updated.size).sqrt() / f64::EPSILON
@@ -159,7 +159,7 @@ fn nothing_but_roundings_is_missing() {
     }
 }
 
-/// A shortened update is of the length asked for, however long the whole one: from anywhere, and in its direction.
+/// A shortened update has the requested length and the direction of the whole one, however long that is.
 #[test]
 fn a_shortened_update_is_a_part_of_the_whole() {
     let (chain, ..) = oblique();
@@ -181,7 +181,7 @@ fn a_shortened_update_is_a_part_of_the_whole() {
     }
 }
 
-/// With the vector instructions of the machine a step has the digits that it has without.
+/// A step has identical digits with the machine's vector instructions and without.
 #[cfg(all(feature = "dispatch", not(debug_assertions)))]
 #[test]
 fn vector_instructions_change_no_digit() {

@@ -1,4 +1,4 @@
-//! Symmetric compositions: a step of higher order from several of the declared Lagrangian's.
+//! Symmetric compositions: a step of higher order from several steps of the declared Lagrangian.
 
 mod scheme;
 
@@ -18,17 +18,17 @@ use nalgebra::SimdBool as _;
 
 /// The plan of [`Stepper::composed`](crate::Stepper::composed): a step is `Φ_{γ_s h} ∘ … ∘ Φ_{γ_1 h}`, where `Φ_h` is the step of a self-adjoint Lagrangian.
 ///
-/// With the coefficients of a [`CompositionScheme`] it has that one's order and keeps what `Φ_h` keeps: the Poisson
+/// The order is that of the [`CompositionScheme`]. A composition preserves the invariants of `Φ_h`: the Poisson
 /// structure, the momentum maps and the Casimirs exactly, the energy nearly. A step of `−h` undoes one of `h`.
 ///
 /// # Contract
 ///
-/// As [`Stepper`](crate::Stepper)'s, for the step as a whole. Each substep has constants of its own, folded at construction, so that a
-/// step costs its stages and nothing else. Substeps are longer than the step where `|γ_i| > 1`, and some are negative;
-/// all of them must be solvable, so the limit on `h` is nearly that of the own step over
-/// [the largest `|γ_i|`](CompositionScheme::largest).
+/// The contract is that of [`Stepper`](crate::Stepper), for the step as a whole. Each substep has constants of its own,
+/// folded at construction, so that a step costs its stages and nothing else. A substep with `|γ_i| > 1` is longer than
+/// the step, and some substeps are negative. All of them must be solvable, so the limit on `h` is nearly that of the
+/// own step divided by [the largest `|γ_i|`](CompositionScheme::largest).
 ///
-/// A Lagrangian that isn't self-adjoint is refused when the user's crate is built:
+/// A Lagrangian that isn't self-adjoint is refused at compile time:
 ///
 /// ```compile_fail,E0080
 /// use liestep::methods::CompositionScheme;
@@ -78,21 +78,21 @@ pub struct Composition<S: Effect> {
     #[shared]
     scheme: CompositionScheme,
     h: Scalar<S>,
-    /// One for each of the distinct substeps, that of the first stage first.
+    /// One plan per distinct substep; that of the first stage comes first.
     substeps: Vec<OwnStep<S>>,
     stages: Vec<Stage<Scalar<S>>>,
 }
 
-/// A stage, and how the guess for the next one is made of its coordinates and of those of the stage before.
+/// A stage, and the linear extrapolation of its coordinates and of the previous stage's to the next stage's guess.
 #[derive(Clone, Copy, Debug, Lanes)]
 struct Stage<T> {
     #[shared]
     substep: usize,
-    /// The factor of this stage's coordinates, when only these are to be trusted.
+    /// The factor of this stage's coordinates in a guess without the previous stage.
     scale: T,
-    /// The factor of this stage's coordinates.
+    /// The factor of this stage's coordinates in the linear extrapolation.
     last: T,
-    /// The factor of the coordinates of the stage before.
+    /// The factor of the previous stage's coordinates in the linear extrapolation.
     earlier: T,
 }
 
@@ -102,7 +102,7 @@ impl<S: Effect> Stepper<S> {
     ///
     /// # Errors
     ///
-    /// As [`Stepper::new`], for a substep.
+    /// The errors of [`Stepper::new`], for a substep.
     pub fn composed(scene: S, h: Scalar<S>, scheme: CompositionScheme) -> Result<Stepper<S, Composition<S>>, SetupError>
     where
         S: DiscreteLagrangian + Regular,
@@ -157,7 +157,7 @@ impl<S: Effect> Plan<S> for Composition<S> {
         Guess::of(half_coordinates(scene, motion, self.substeps[0].step_size()))
     }
 
-    /// The iterations of the report are those of all stages.
+    /// The report's iterations are the sum over all stages.
     #[hot]
     fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         let (mut next, mut guess) = (*motion, *kept);
@@ -174,7 +174,7 @@ impl<S: Effect> Plan<S> for Composition<S> {
         Ok(StepReport::of(iterations))
     }
 
-    /// [`StepError::BeyondSolvable`] speaks of the whole step.
+    /// [`StepError::BeyondSolvable`] reports the limit of the whole step, not of a substep.
     const EXPLAINS: bool = true;
     const RUNS_BY_STEPS: bool = true;
 
@@ -211,15 +211,15 @@ impl<S: SecondDerivatives> Linearisable<S> for Composition<S> {
     }
 }
 
-/// Beyond this the extrapolation would magnify what it is to foresee.
+/// Larger extrapolation ratios would amplify the error of the guess.
 const FARTHEST_EXTRAPOLATION: f64 = 3.0;
 
 impl<T: Real> Stage<T> {
-    /// The stage of `γ = this` between those of `before` and `next`.
+    /// The stage with coefficient `γ = this` between stages with `before` and `next`.
     ///
-    /// The coordinates of a stage over its `γ` are the mean velocity over it, to second order that in its middle. Two
-    /// of them give that of the next stage by a straight line, whose middle lies `(this + next)/2` away from this
-    /// one's, where that of the stage before lies `(before + this)/2` back.
+    /// The coordinates of a stage over its `γ` are its mean velocity, which to second order is the velocity at the
+    /// middle of the stage. A straight line through two of these velocities gives the next stage's. The next middle
+    /// lies `(this + next)/2` ahead of this stage's middle, the previous one `(before + this)/2` behind it.
     fn between(substep: usize, before: f64, this: f64, next: f64) -> Self {
         let ratio = (this + next) / (before + this);
         let ratio = if ratio.abs() <= FARTHEST_EXTRAPOLATION { ratio } else { 0.0 };
@@ -230,7 +230,7 @@ impl<T: Real> Stage<T> {
     #[hot]
     fn half_guess<V: Coordinates<T>>(&self, last: V, far: Mask<T>, earlier: V) -> V {
         let guess = last * self.last + earlier * self.earlier;
-        // Near the fold coordinates change too fast for a straight line.
+        // Near the fold the coordinates change too fast for linear extrapolation.
         if far.any() { (last * self.scale).select(far, guess) } else { guess }
     }
 }

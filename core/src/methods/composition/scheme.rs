@@ -59,12 +59,12 @@ impl CompositionScheme {
             -0.43833859739996901045]);
     }
 
-    /// Other coefficients: the first half of them and the middle one, the order that they have, and the (even) order
-    /// that the composed method must have for that.
+    /// Coefficients of the user's: `half` lists the first half and the middle one; the composition has the order
+    /// `order` if the composed method has the even order `base`.
     ///
     /// # Panics
     ///
-    /// Where there is no coefficient; in a constant, that is when the crate is compiled.
+    /// An empty list panics; in a constant, at compile time.
     #[must_use]
     pub const fn new(name: &'static str, base: u32, order: u32, half: &'static [f64]) -> Self {
         assert!(!half.is_empty(), "a composition has at least one stage");
@@ -75,8 +75,8 @@ impl CompositionScheme {
         self.half
     }
 
-    /// The order of the method that the coefficients are for. Of a method of a lower order the composition has a lower
-    /// [`order`](Self::order), too.
+    /// The order of the composed method that the coefficients were derived for. If the composed method has a lower
+    /// order, so has the composition.
     #[must_use]
     pub fn base(&self) -> u32 {
         self.base
@@ -88,7 +88,7 @@ impl CompositionScheme {
         half.iter().chain(half.iter().rev().skip(1)).copied()
     }
 
-    /// The coefficients without their repetitions, and where in them each stage is found.
+    /// The distinct coefficients, and for each stage the index of its coefficient among them.
     pub(super) fn distinct(&self) -> (Vec<f64>, Vec<usize>) {
         let mut distinct: Vec<f64> = Vec::new();
         let places = self.stages().map(|gamma| {
@@ -101,7 +101,7 @@ impl CompositionScheme {
         (distinct, places)
     }
 
-    /// The largest `|γ_i|`: of a limit on the step it leaves this fraction's inverse.
+    /// The largest `|γ_i|`: the limit on the step is that of the composed method divided by this number.
     #[must_use]
     pub fn largest(&self) -> f64 {
         self.half.iter().fold(0.0, |largest, gamma| gamma.abs().max(largest))

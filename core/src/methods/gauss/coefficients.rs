@@ -1,11 +1,11 @@
-//! Gauss's coefficients, by pairs of stages that mirror each other.
+//! Coefficients of Gauss collocation, by pairs of stages that mirror each other.
 
 roots!();
 
-/// A number for each stage: for those of the first half of the step, then for their mirror images.
+/// One number per stage: first the stages of the first half of the step, then their mirror images.
 pub(super) type OfStages<const PAIRS: usize> = [[f64; PAIRS]; 2];
 
-/// A matrix over the stages, by columns.
+/// A square matrix over the stages, stored by columns.
 pub(super) type Columns<const PAIRS: usize> = [[OfStages<PAIRS>; PAIRS]; 2];
 
 /// Coefficients of a collocation with `2 PAIRS` stages on the unit interval.
@@ -17,8 +17,8 @@ pub(super) type Columns<const PAIRS: usize> = [[OfStages<PAIRS>; PAIRS]; 2];
 /// Y_i = y + Σ_j (1/2 + σ_ij) L_j      y⁺ = y + Σ_j L_j
 /// ```
 ///
-/// where `σ` is skew and changes its sign when both stages are mirrored. In this form the method is symplectic and
-/// symmetric for any such `σ`, hence for a rounded one, if `1/2 + σ_ij` and `1/2 − σ_ij` are rounded together: the
+/// Here `σ` is antisymmetric, and changes sign if both stages are mirrored. In this form the method is symplectic and
+/// symmetric for every such `σ`, hence for a rounded one, if `1/2 + σ_ij` and `1/2 − σ_ij` are rounded together: the
 /// conditions `b_i a_ij + b_j a_ji = b_i b_j` and `a_ij + a_īj̄ = b_j` hold exactly.
 ///
 /// # Source
@@ -28,11 +28,12 @@ pub(super) type Columns<const PAIRS: usize> = [[OfStages<PAIRS>; PAIRS]; 2];
 /// \[AMM17\].
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Coefficients<const PAIRS: usize> {
-    /// `b_k`, of both stages of a pair.
+    /// The weight `b_k` of both stages of a pair.
     pub(super) weights: [f64; PAIRS],
-    /// `1/2 + σ`.
+    /// The matrix `1/2 + σ`.
     pub(super) places: Columns<PAIRS>,
-    /// From the `L` of a step to the values at the next step's nodes of the polynomial through them.
+    /// The extrapolation matrix: from the `L` of a step to the values of their interpolating polynomial at the next
+    /// step's nodes.
     pub(super) continuation: Columns<PAIRS>,
 }
 
@@ -46,7 +47,8 @@ impl<const PAIRS: usize> Coefficients<PAIRS> {
             let slope = index(stages) * (before - x * value);
             (1.0 - x * x) / (slope * slope)
         });
-        // With β, of an odd polynomial of the one node and an even one of the other, σ_ij = ±β_ij ∓ β_ji by the stages' sides.
+        // β pairs an odd polynomial at one node with an even one at the other; σ_ij = ±β_ij ∓ β_ji by the sides of the
+        // stages.
         let beta = |i: usize, k: usize| -> f64 {
             let terms = (1..stages).map(|m| {
                 let (odd, even) = if m % 2 == 1 { (m, m - 1) } else { (m - 1, m) };
@@ -57,7 +59,7 @@ impl<const PAIRS: usize> Coefficients<PAIRS> {
         };
         let place = |(side_i, i): (f64, usize), (side_j, j): (f64, usize)| {
             let sigma = side_i * beta(i, j) - side_j * beta(j, i);
-            // Between 1/2 and 2, so that its difference from one is exact.
+            // The larger number is between 1/2 and 2, so its difference from one is exact.
             let larger = 0.5 + sigma.abs();
             if sigma < 0.0 { 1.0 - larger } else { larger }
         };
@@ -70,7 +72,7 @@ impl<const PAIRS: usize> Coefficients<PAIRS> {
     }
 }
 
-/// The columns of a matrix, by its entry in a row and a column, each given by the side of the step that its stage is on and the number there.
+/// A matrix by columns from a function of its row and column; each index is the side (±1) and the number of a stage.
 fn columns<const PAIRS: usize>(entry: impl Fn((f64, usize), (f64, usize)) -> f64) -> Columns<PAIRS> {
     let stages = |of: &dyn Fn((f64, usize)) -> f64| [1.0, -1.0].map(|side| core::array::from_fn(|k| of((side, k))));
     [1.0, -1.0].map(|side| core::array::from_fn(|k| stages(&|row| entry(row, (side, k)))))
@@ -86,7 +88,7 @@ fn legendre(n: usize, x: f64) -> f64 {
     legendre_pair(n, x).0
 }
 
-/// `P_n(x)` and `P_{n−1}(x)`, by Bonnet's recurrence; zero for the one before the first.
+/// `P_n(x)` and `P_{n−1}(x)`, by Bonnet's recurrence, which starts with `P_{−1} = 0`.
 fn legendre_pair(n: usize, x: f64) -> (f64, f64) {
     (0..n).fold((1.0, 0.0), |(value, before), m| {
         ((index(2 * m + 1) * x * value - index(m) * before) / index(m + 1), value)
@@ -96,7 +98,7 @@ fn legendre_pair(n: usize, x: f64) -> (f64, f64) {
 /// The `k`th root of `P_n` from the left, in `(−1, 0)`, by Newton's iteration from Tricomi's estimate.
 fn root(n: usize, k: usize) -> f64 {
     let mut x = -(core::f64::consts::PI * (index(k) + 0.75) / (index(n) + 0.5)).cos();
-    // It is right to three digits at the start, so four iterations are one more than needed.
+    // The estimate has three correct digits, so the fourth iteration is a reserve.
     for _ in 0..4 {
         let (value, before) = legendre_pair(n, x);
         x -= value * (1.0 - x * x) / (index(n) * (before - x * value));
@@ -109,8 +111,8 @@ mod tests {
     use super::Coefficients;
     use alloc::vec::Vec;
 
-    /// Butcher's simplifying assumptions `B(2s)` and `C(s)`, from which order `2s` follows for a symplectic method; in
-    /// powers of `x = 2c − 1`, which are well conditioned, on `[−1, 1]`.
+    /// Butcher's simplifying assumptions `B(2s)` and `C(s)`, which imply order `2s` for a symplectic method. They are
+    /// tested for powers of `x = 2c − 1` on `[−1, 1]`, which are well conditioned.
     fn assert_order_conditions<const PAIRS: usize>() {
         let coefficients = Coefficients::<PAIRS>::new();
         let stages = 2 * PAIRS;
@@ -157,7 +159,7 @@ mod tests {
         assert_order_conditions::<8>();
     }
 
-    /// A polynomial of the degree that they determine is continued exactly.
+    /// A polynomial of degree three is determined by four stages, so it is continued exactly.
     #[test]
     fn stages_are_continued_by_their_polynomial() {
         let coefficients = Coefficients::<2>::new();

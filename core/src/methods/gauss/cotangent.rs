@@ -22,17 +22,17 @@ roots!();
 /// ġ = g ξ̂        ṗ = −p ξ̂ᵀ + g⁻ᵀ Γ        ξ = ∂h/∂μ,    Γ_ij = −⟨∂l/∂w, e_ij·w⟩
 /// ```
 ///
-/// # What is kept
+/// # Invariants
 ///
-/// Gauss collocation keeps what is quadratic or linear. So attitudes stay in groups that are cut out by such relations:
-/// rotations (`g gᵀ = I`), rigid motions, unit quaternions, `SL(2)`, the Heisenberg group, translations. Functions of `g`
-/// commute, so the step, which is symplectic and maps the group to itself, maps the leaves of what differs in the
-/// momentum off the group to such leaves: what it makes of `(g, μ)` doesn't depend on them, and is symplectic on `T*G`.
-/// As it commutes with multiplications from the left, it is a Poisson map of `(μ, w)`. Momentum maps are quadratic, hence
-/// kept to rounding, which a run adds up with compensation; a step of `−h` undoes one of `h`. The energy's error is of the
-/// order of the method, and doesn't drift.
+/// Gauss collocation preserves linear and quadratic invariants. So attitudes stay in groups that are defined by such
+/// relations: rotations (`g gᵀ = I`), rigid motions, unit quaternions, `SL(2)`, the Heisenberg group, translations.
+/// Momenta `p` that differ only in directions normal to the group have the same `μ`. Functions of `g` commute, so the
+/// step, which is symplectic and maps the group to itself, maps each leaf of such momenta to a leaf. The induced map of
+/// `(g, μ)` is therefore well defined, and symplectic on `T*G`. The step commutes with multiplications from the left,
+/// so it is a Poisson map of `(μ, w)`. Momentum maps are quadratic, hence conserved to rounding, and a run sums with
+/// compensation. A step of `−h` undoes one of `h`. The energy error is of the order of the method, and doesn't drift.
 ///
-/// # What it costs
+/// # Cost
 ///
 /// The stages are solved to rounding by fixed-point iteration, each of `2 PAIRS` right-hand sides. For a body on SO(3)
 /// under a potential [`Stepper::collocated`](crate::Stepper::collocated) is several times cheaper: it integrates eight
@@ -69,7 +69,7 @@ pub struct CotangentGauss<L: Term, const PAIRS: usize, const N: usize> {
     coefficients: Coefficients<PAIRS>,
 }
 
-/// What rounding has left behind of the sums of attitude and momentum, which the next step adds.
+/// Rounding errors of the sums of attitude and momentum, which the next step adds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct CotangentCarry<const N: usize, const D: usize> {
@@ -83,7 +83,7 @@ impl<const N: usize, const D: usize> CotangentCarry<N, D> {
     }
 }
 
-/// What a step adds to attitude and momentum.
+/// The increments of attitude and momentum over a step, and the iterations that they took.
 struct Change<const N: usize, const D: usize> {
     attitude: SMatrix<f64, N, N>,
     momentum: SVector<f64, D>,
@@ -91,7 +91,7 @@ struct Change<const N: usize, const D: usize> {
 }
 
 impl<const N: usize, const D: usize> Change<N, D> {
-    /// The sums, and what rounding leaves behind of them.
+    /// The sums, and their rounding errors.
     fn added<G>(
         &self,
         attitude: &G,
@@ -111,13 +111,13 @@ impl<const N: usize, const D: usize> Change<N, D> {
     }
 }
 
-/// A place `(g, p)`, or its change.
+/// A phase-space point `(g, p)`, or an increment of it.
 type Phase<const N: usize> = [SMatrix<f64, N, N>; 2];
 
-/// The changes `L_j = h b_j f(Y_j)` at the stages of the first half and at their mirror images.
+/// The increments `L_j = h b_j f(Y_j)` at the stages of the first half and at their mirror images.
 type Stages<const PAIRS: usize, const N: usize> = [[Phase<N>; PAIRS]; 2];
 
-/// What several bodies, whose matrices are a tuple, don't have.
+/// Matrices of a single group, of size `N`; products of groups have tuples of matrices instead.
 #[diagnostic::on_unimplemented(
     message = "`CotangentGauss` integrates on one group, of {N} × {N} matrices",
     label = "this Lagrangian is of several bodies, or of matrices of another size",
@@ -127,15 +127,16 @@ pub trait MatrixOfOneGroup<const N: usize> {}
 
 impl<const N: usize> MatrixOfOneGroup<N> for SMatrix<f64, N, N> {}
 
-// Apart, so that what has no continuous limit gets one message, not another about its matrices.
+// This bound stands in a separate block, so that a Lagrangian without a continuous limit gets one error message and not
+// a second one about its matrices.
 impl<L: ContinuousLagrangian<Scalar = f64>, const PAIRS: usize, const N: usize> CotangentGauss<L, PAIRS, N> {
-    /// Checks the parameters and the step.
+    /// A collocation with checked parameters and step.
     ///
     /// # Errors
     ///
-    /// [`SetupError::Parameter`] for a parameter that can't be used, [`SetupError::NonFinite`] for an advected one,
-    /// [`SetupError::SingularKinetic`] or [`SetupError::NegativeKinetic`] where a momentum doesn't determine a velocity
-    /// at rest, [`SetupError::InvalidStep`] for a step that isn't finite.
+    /// [`SetupError::Parameter`] for an invalid parameter, [`SetupError::NonFinite`] for an advected parameter that
+    /// isn't finite, [`SetupError::SingularKinetic`] or [`SetupError::NegativeKinetic`] if a momentum doesn't determine
+    /// a velocity at rest, [`SetupError::InvalidStep`] for a step that isn't finite.
     pub fn new(lagrangian: L, h: f64) -> Result<Self, SetupError>
     where
         Matrix<L>: MatrixOfOneGroup<N>,
@@ -174,7 +175,7 @@ where
         self.h
     }
 
-    /// What is advected, as a body with this attitude sees it.
+    /// The advected parameters in the body frame, at this attitude.
     pub fn advected(&self, attitude: &L::Group) -> L::Advected {
         self.spatial.seen_from(attitude)
     }
@@ -183,18 +184,18 @@ where
     ///
     /// # Errors
     ///
-    /// As [`ContinuousLagrangian::velocity`].
+    /// The errors of [`ContinuousLagrangian::velocity`].
     pub fn energy(&self, attitude: &L::Group, momentum: &SVector<f64, D>) -> Result<f64, StepError> {
         self.lagrangian.hamiltonian(momentum, &self.advected(attitude))
     }
 
-    /// Attitude and body momentum after a step. Over many steps a [motion](Self::start) has less rounding: what a sum
-    /// loses is added to the next.
+    /// Attitude and body momentum after a step. A [motion](Self::start) of many steps has less rounding error, because
+    /// it compensates its sums.
     ///
     /// # Errors
     ///
-    /// [`StepError::NotConverged`] where the step is too long for the iteration, [`StepError::NonFinite`] where the
-    /// result has no value, and as [`ContinuousLagrangian::velocity`].
+    /// [`StepError::NotConverged`] if the step is too long for the iteration, [`StepError::NonFinite`] if the result
+    /// isn't finite, and the errors of [`ContinuousLagrangian::velocity`].
     pub fn step(
         &self,
         attitude: &L::Group,
@@ -208,8 +209,8 @@ where
     ///
     /// # Errors
     ///
-    /// [`SetupError`] where the attitude isn't in the group or the velocity isn't finite, and
-    /// [`SetupError::AmbiguousVelocity`] where its momentum doesn't lead back to it.
+    /// [`SetupError`] if the attitude isn't in the group or the velocity isn't finite, and
+    /// [`SetupError::AmbiguousVelocity`] if the inverse Legendre transform of its momentum is another velocity.
     pub fn start(
         &self,
         attitude: impl Into<L::Group>,
@@ -217,7 +218,7 @@ where
     ) -> Result<State<L::Group, L::Advected, CotangentCarry<N, D>>, SetupError> {
         let attitude = attitude.into();
         let defect = attitude.defect();
-        // As `Stepper::start_with_momentum`.
+        // The tolerance is that of `Stepper::start_with_momentum`.
         let is_in_group = defect <= f64::EPSILON * 1e4;
         if !is_in_group {
             return Err(SetupError::NotInGroup { defect });
@@ -240,7 +241,7 @@ where
         Ok(State { motion, kept: CotangentCarry::nothing(), elapsed: ElapsedTime::nothing() })
     }
 
-    /// What a step of any length changes.
+    /// The increments of a step of any length.
     fn change(&self, h: f64, attitude: &L::Group, momentum: &SVector<f64, D>) -> Result<Change<N, D>, StepError> {
         let start = [attitude.matrix(), lifted::<L::Group, N, D>(attitude, momentum)];
         let rate = self.rate(&start)?;
@@ -267,7 +268,7 @@ where
         }
         let zero = [SMatrix::zeros(); 2];
         let [attitude, conjugate] = combined(&zero, stages.as_flattened().iter().map(|stage| (1.0, stage)));
-        // Of the differences, so that what is small stays small: (g + Δg)ᵀ(p + Δp) − gᵀp.
+        // Differences stay small without cancellation: (g + Δg)ᵀ(p + Δp) − gᵀp = (g + Δg)ᵀΔp + Δgᵀp.
         let [g, p] = start;
         let momentum =
             momentum_of::<L::Group, N, D>(&[g + attitude, conjugate]) + momentum_of::<L::Group, N, D>(&[attitude, p]);
@@ -293,7 +294,7 @@ where
         Ok(next)
     }
 
-    /// `ġ` and `ṗ`.
+    /// The rates `ġ` and `ṗ`.
     fn rate(&self, place: &Phase<N>) -> Result<Phase<N>, StepError> {
         let [g, p] = place;
         let inverse = g.try_inverse().ok_or(StepError::Singular)?;
@@ -305,7 +306,7 @@ where
     }
 }
 
-/// The sums of a run are compensated.
+/// The sums of a run are compensated, and a run that fails leaves the state unchanged.
 impl<L, const PAIRS: usize, const N: usize, const D: usize> Integrator for CotangentGauss<L, PAIRS, N>
 where
     L: ContinuousLagrangian<Scalar = f64>,
@@ -360,7 +361,7 @@ where
     }
 }
 
-/// `μ_k = tr(pᵀ g E_k)`.
+/// The body momentum `μ_k = tr(pᵀ g E_k)`.
 fn momentum_of<G, const N: usize, const D: usize>([g, p]: &Phase<N>) -> SVector<f64, D>
 where
     G: LieGroup<Scalar = f64, Vector = SVector<f64, D>, Matrix = SMatrix<f64, N, N>>,
@@ -369,7 +370,7 @@ where
     SVector::from_fn(|k, _| paired.dot(&G::hat(&Coordinates::axis(k))))
 }
 
-/// The least momentum with these components; the basis is orthogonal.
+/// The conjugate momentum of least norm with these components; the basis is orthogonal.
 fn lifted<G, const N: usize, const D: usize>(attitude: &G, momentum: &SVector<f64, D>) -> SMatrix<f64, N, N>
 where
     G: LieGroup<Scalar = f64, Vector = SVector<f64, D>, Matrix = SMatrix<f64, N, N>>,
@@ -378,12 +379,12 @@ where
     attitude.inverse().matrix().transpose() * G::hat(&scaled)
 }
 
-/// `y + Σ c L`.
+/// The linear combination `y + Σ c L`.
 fn combined<'a, const N: usize>(y: &Phase<N>, terms: impl Iterator<Item = (f64, &'a Phase<N>)>) -> Phase<N> {
     terms.fold(*y, |sum, (factor, term)| [0, 1].map(|part| sum[part] + term[part] * factor))
 }
 
-/// By how much two iterates differ, relative to the place, of both parts and squared.
+/// Squared changes between two iterates of attitude and of momentum, relative to the phase-space point.
 fn relative_changes<const PAIRS: usize, const N: usize>(
     place: &Phase<N>,
     before: &Stages<PAIRS, N>,

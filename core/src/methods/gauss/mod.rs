@@ -1,6 +1,6 @@
 //! Gauss collocation in the quaternion and its momentum: the cheapest Poisson map for high accuracy.
 //!
-//! [`Stepper::for_accuracy`](crate::Stepper::for_accuracy) has it among its methods, and finds the step.
+//! [`Stepper::for_accuracy`](crate::Stepper::for_accuracy) considers it among its methods, and finds the step.
 
 mod coefficients;
 mod cotangent;
@@ -26,35 +26,33 @@ use nalgebra::Vector3;
 
 /// The plan of [`Stepper::collocated`](crate::Stepper::collocated), of order `4 PAIRS`, for a body on SO(3) under a potential, by Gauss collocation with `2 PAIRS` stages.
 ///
-/// The continuous Lagrangian `½ Ω·JΩ + s·Ω − V(w)` of the declared one, which must be `K(F) − (h/2) (V(w) + V(F⁻¹·w))`,
-/// is integrated in the quaternion and its conjugate momentum. Of the declared `K` only the inertia `J` and the bias
-/// `s` remain.
+/// The declared Lagrangian must be `K(F) − (h/2) (V(w) + V(F⁻¹·w))`. Its continuous limit `½ Ω·JΩ + s·Ω − V(w)` is
+/// integrated in the quaternion and its conjugate momentum; only the inertia `J` and the bias `s` of `K` enter.
 ///
-/// # What is kept
+/// # Invariants
 ///
-/// Gauss collocation is symplectic, commutes with linear maps, and keeps what is quadratic. Body momentum and advected
-/// parameters are functions of quaternion and momentum with the Poisson brackets of the semidirect product, and what
-/// else is in these, a turn about a symmetry of the parameters and `p ↦ p + λq`, is a linear symmetry. So the step is a
-/// Poisson map of `(Π, w)`. Momentum maps are quadratic, hence kept to rounding: the momentum about the vertical, that
-/// of a symmetric top about its axis. Attitudes are rotations and the parameters stay on their orbit by construction.
-/// The energy isn't quadratic: its error is of the order of the method and doesn't drift. A step of `−h` undoes one of
-/// `h`.
+/// Gauss collocation is symplectic, commutes with linear maps, and preserves quadratic invariants. Body momentum and
+/// advected parameters are functions of quaternion and momentum with the Poisson brackets of the semidirect product.
+/// The other coordinates change under linear symmetries: rotations about a symmetry axis of the parameters, and
+/// `p ↦ p + λq`. So the step is a Poisson map of `(Π, w)`. Momentum maps are quadratic, hence conserved to rounding:
+/// the momentum about the vertical, and that of a symmetric top about its axis. Attitudes are rotations and the
+/// parameters stay on their orbit by construction. The energy isn't quadratic: its error is of the order of the method
+/// and doesn't drift. A step of `−h` undoes one of `h`.
 ///
-/// # What it costs
+/// # Cost
 ///
-/// The stages are solved to rounding by fixed-point iteration, from the polynomial of the step before; each iteration
-/// is `2 PAIRS` right-hand sides, computed several at once in SIMD lanes, by the instructions that the machine is found
-/// to have: with AVX2 four at once, with AVX-512 eight where there are more than four stages. That makes 4 and 8 stages
-/// cheaper than others. That takes some 13 iterations
-/// where a step turns the body by three quarters of a radian, 20 at one and a half, and doesn't converge much beyond.
-/// So a coarse result isn't cheap, and a better one costs little more: it is the cheapest Poisson map for an asymmetric
-/// top under gravity from an error of 10⁻⁴ on, over long times from the coarsest.
-/// `cargo run --release --example accuracy-cost` measures it.
+/// The stages are solved to rounding by fixed-point iteration, with the previous step's polynomial as the initial
+/// guess. Each iteration evaluates `2 PAIRS` right-hand sides in SIMD lanes, with the instructions detected on the
+/// machine: four at once with AVX2, eight with AVX-512 if there are more than four stages. So 4 and 8 stages are
+/// cheaper than other numbers. A step that turns the body by three quarters of a radian takes some 13 iterations, by
+/// one and a half radians 20; a step much longer doesn't converge. So a coarse result isn't cheap, and a better one
+/// costs little more. For an asymmetric top under gravity it is the cheapest Poisson map for errors of 10⁻⁴ and less,
+/// over long times for all errors. `cargo run --release --example accuracy-cost` measures it.
 ///
 /// # Contract
 ///
-/// As [`Stepper`](crate::Stepper)'s, for one `f64`. The sums over steps are compensated. The stages of the last step are part of the
-/// state, so a copy goes on with the same bits.
+/// The contract is that of [`Stepper`](crate::Stepper), for one `f64`. The sums over steps are compensated. The stages
+/// of the last step are part of the state, so a copy continues with identical bits.
 ///
 /// # Examples
 ///
@@ -85,7 +83,7 @@ pub struct Gauss<S: Effect, const PAIRS: usize> {
     h: f64,
     lift: Lift<S>,
     coefficients: Coefficients<PAIRS>,
-    /// `h b_k`, of the first half of the stages and of their mirror images.
+    /// The products `h b_k` for the first half of the stages and for their mirror images.
     weights: [[f64; PAIRS]; 2],
 }
 
@@ -95,7 +93,7 @@ impl<S: Effect> Stepper<S> {
     ///
     /// # Errors
     ///
-    /// [`SetupError::NotSeparable`] where the Lagrangian has no potential apart from its kinetic part; otherwise as
+    /// [`SetupError::NotSeparable`] if the potential can't be separated from the kinetic part; otherwise the errors of
     /// [`Stepper::new`].
     pub fn collocated<const PAIRS: usize>(scene: S, h: f64) -> Result<Stepper<S, Gauss<S, PAIRS>>, SetupError>
     where
@@ -107,7 +105,7 @@ impl<S: Effect> Stepper<S> {
                 "collocation needs a pair of stages, and doubles have no use for more than 8"
             );
         }
-        // For its checks of the scene and the step.
+        // This plan is constructed only to check the scene and the step.
         OwnStep::new(&scene, h)?;
         let plan = Gauss::new(&scene, h)?;
         Ok(Stepper { scene, plan })
@@ -118,7 +116,7 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Gauss<S, PAIRS> {
     pub(crate) const COST: Cost = {
         #[allow(clippy::cast_precision_loss)] // at most eight
         let pairs = PAIRS as f64;
-        // The operations of both kicks, fitted as below.
+        // The operations of both kicks, with fitted factors (see below).
         let torque = if S::PARTS.kick_before { OF_PARAMETERS + 0.125 * (S::OPERATIONS.step as f64) } else { 0.0 };
         let iteration = 2.0 * pairs * (OF_RATES + torque + OF_A_SUM * pairs);
         Cost { step: OF_AN_UPDATE + OF_A_GUESS * pairs * pairs, iteration, fewest: 3, once: 0.0 }
@@ -163,7 +161,7 @@ impl<S: Effect, const PAIRS: usize> Variable for Gauss<S, PAIRS> {}
 impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS> {
     type Kept = CollocationMemory<PAIRS>;
 
-    // Four stages fill four lanes; in eight they would be moved about.
+    // Four stages fill four lanes; registers of eight would require shuffles.
     const VECTORS: Vectors = if PAIRS > 2 { Vectors::Eight } else { Vectors::Four };
 
     fn step_size(&self) -> f64 {
@@ -180,8 +178,8 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS
 
     const STEPS_BY_RUNS: bool = true;
 
-    /// Attitude and momentum are read off at the end. [`StepError::NotConverged`] where the step is too long for the
-    /// iteration.
+    /// Attitude and momentum are computed from the quaternion only after the last step. The step fails with
+    /// [`StepError::NotConverged`] if it is too long for the iteration.
     #[inline(always)]
     fn run<M: SumsOf<S>>(&self, _: &S, motion: &mut M, kept: &mut Self::Kept, steps: u64) -> Result<u64, StepError> {
         let mut iterations = 0;
@@ -216,13 +214,13 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS
     }
 }
 
-/// What an iteration takes at each of its stages: for the rates of quaternion and momentum, for the parameters that a
-/// torque depends on, and for each pair of stages that is summed over. The unit is an operation of (3.13). The numbers
-/// are fitted to times with AVX-512, of which `accuracy-cost -- --asked` shows whether choices by them are the fastest.
+/// Operations of an iteration at each of its stages: for the rates of quaternion and momentum, for the parameters that
+/// a torque depends on, and for each pair of stages in a sum. The unit is an operation of (3.13). The numbers are
+/// fitted to times with AVX-512; `accuracy-cost -- --asked` reports whether they lead to the fastest choice.
 const OF_RATES: f64 = 36.0;
 const OF_PARAMETERS: f64 = 16.0;
 const OF_A_SUM: f64 = 5.0;
-/// Operations of a step besides its iterations, and those for each pair of pairs in its guess.
+/// Operations of a step besides its iterations, and those per pair of pairs in the initial guess.
 const OF_AN_UPDATE: f64 = 33.0;
 const OF_A_GUESS: f64 = 21.0;
 
@@ -233,12 +231,12 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> WeightedRates for Gauss<S,
     }
 }
 
-/// `y + (change + carry)` rounded, and what the rounding left behind.
+/// The rounded sum `y + (change + carry)`, and its rounding error.
 ///
-/// The last change of the iteration, of the order of rounding, is an error of a sign of its own, which lengthens
-/// quaternion and momentum by the same factor; in a million steps momentum maps would lose three digits to it. The
-/// length of the quaternion is known, so both are brought back to it, by as little as rounding. With exact stages that
-/// is no change.
+/// The last change of the iteration has an error of the order of rounding and of constant sign. The error scales
+/// quaternion and momentum by the same factor, and over a million steps would cost momentum maps three digits. The
+/// quaternion has length one, so both are rescaled to that, by a factor within rounding of one. Exact stages need no
+/// correction.
 #[inline(always)]
 fn compensated(y: &PhasePoint, change: &PhasePoint, carry: &PhasePoint) -> (PhasePoint, PhasePoint) {
     let (mut next, mut left) = (*y, *carry);

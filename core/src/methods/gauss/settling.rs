@@ -1,41 +1,42 @@
-//! When a fixed-point iteration has settled.
+//! Convergence test of a fixed-point iteration.
 
-/// What an iteration is to do after a change.
+/// The decision after an iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Next {
-    /// The unknowns aren't known to rounding yet.
+    /// The iteration goes on: the unknowns aren't known to rounding yet.
     Further,
-    /// The next change is rounding, and is still made.
+    /// One more iteration follows, whose change is rounding.
     Once,
-    /// What changes is rounding.
+    /// The iteration ends: the last change was rounding.
     Nothing,
 }
 
-/// The changes of the last two iterations, relative to the unknowns and squared; NaN where there was none.
+/// The squared relative changes of the last two iterations; NaN before there are any.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Changes {
     before: f64,
     earlier: f64,
 }
 
-/// Changes as small as these, relative to the unknowns, may be rounding.
+/// Relative changes up to this size may be rounding.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Where each iteration takes at least a factor of two, which is at the edge of convergence, they are enough.
+/// This limit suffices if each iteration gains at least a factor of two, as it does up to the edge of convergence.
 pub(super) const MOST_ITERATIONS: u32 = 60;
 
 impl Changes {
-    /// Near an equilibrium attitude and momentum change in alternation where some unknowns are known much better than
-    /// others, so that it takes three changes to see how they fall.
+    /// Near an equilibrium, attitude and momentum change alternately if some unknowns are known much better than
+    /// others, so three changes are needed for an estimate of the rate of convergence.
     pub(super) const fn none() -> Self {
         Self { before: f64::NAN, earlier: f64::NAN }
     }
 
-    /// After a change, and that of the attitude alone.
+    /// Judges the latest change of all unknowns, and that of the attitude alone.
     ///
-    /// Changes fall by nearly the same factor each time, so that two factors tell whether the next change is rounding.
-    /// A change that doesn't fall any more is rounding where it is small. Near an equilibrium the momentum is smaller than
-    /// the terms of the torque, whose rounding is a larger part of it: there it is rounding where the attitude's is.
+    /// Convergence is nearly linear, so the ratios of two successive pairs predict whether the next change is rounding.
+    /// A small change that is no smaller than the one before is rounding. Near an equilibrium the momentum is smaller
+    /// than the terms of the torque, whose rounding then is a large part of the momentum. There the change counts as
+    /// rounding if the attitude's change does.
     #[inline(always)]
     pub(super) fn judge(&mut self, change: f64, of_attitude: f64) -> Next {
         let Self { before, earlier } = *self;

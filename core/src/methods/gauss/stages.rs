@@ -1,6 +1,6 @@
-//! The stages of a step: fixed-point iteration.
+//! The stages of a step, by fixed-point iteration.
 //!
-//! Numbers of one component at all stages lie side by side, so that the compiler puts stages into SIMD lanes.
+//! A component's values at all stages are contiguous, so that the compiler vectorises over stages.
 
 use super::coefficients::{Coefficients, Columns, OfStages};
 use super::lift::PhasePoint;
@@ -8,29 +8,29 @@ use super::settling::{Changes, MOST_ITERATIONS, Next};
 use crate::error::StepError;
 roots!();
 
-/// A number for each component and each stage.
+/// One number per component and stage.
 pub(super) type Numbers<const PAIRS: usize> = [OfStages<PAIRS>; 8];
 
-/// A value for each component; no loop, which would be taken for the one to make lanes of.
+/// One value per component, without a loop: the compiler would vectorise that loop instead of the one over stages.
 #[inline(always)]
 fn each<T>(value: impl Fn(usize) -> T) -> [T; 8] {
     [value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7)]
 }
 
-/// The `L_j = h b_j f(Y_j)` of a step.
+/// The increments `L_j = h b_j f(Y_j)` of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stages<const PAIRS: usize>(pub(super) Numbers<PAIRS>);
 
-/// The equations of motion, as the iteration needs them.
+/// The equations of motion that the iteration evaluates.
 ///
-/// A trait and not a closure, which wouldn't always be inlined, and then has no lanes.
+/// A trait is inlined where a closure isn't always, and code that isn't inlined isn't vectorised.
 pub(super) trait WeightedRates {
-    /// `h b_j f(Y_j)` of the stage `j` at the place `Y_j`; marked `#[inline(always)]`.
+    /// The increment `h b_j f(Y_j)` of the stage `j` at the point `Y_j`; marked `#[inline(always)]`.
     fn weighted_rate(&self, stage: usize, place: &PhasePoint) -> PhasePoint;
 }
 
 impl<const PAIRS: usize> Stages<PAIRS> {
-    /// Stages at one place.
+    /// Increments with all stages at one point.
     pub(super) fn constant(place: &PhasePoint, equations: &impl WeightedRates) -> Self {
         let mut stages = [[[0.0; PAIRS]; 2]; 8];
         for stage in 0..2 * PAIRS {
@@ -39,7 +39,7 @@ impl<const PAIRS: usize> Stages<PAIRS> {
         Self(stages)
     }
 
-    /// The polynomial through these, continued to the stages of the next step.
+    /// The interpolating polynomial of these stages, extrapolated to the stages of the next step.
     #[inline(always)]
     pub(super) fn continued(&self, coefficients: &Coefficients<PAIRS>) -> Self {
         let mut next = [[[0.0; PAIRS]; 2]; 8];
@@ -49,13 +49,13 @@ impl<const PAIRS: usize> Stages<PAIRS> {
         Self(next)
     }
 
-    /// `Σ L`, component by component.
+    /// The increment `Σ L` of the step.
     #[inline(always)]
     pub(super) fn change(&self) -> PhasePoint {
         each(|component| total(&self.0[component]))
     }
 
-    /// Iterates from these until they are the stages from `y + carry`; returns how often.
+    /// Iterates from these stages to those of a step from `y + carry`; returns the number of iterations.
     ///
     /// # Errors
     ///
@@ -67,7 +67,7 @@ impl<const PAIRS: usize> Stages<PAIRS> {
         (y, carry): (&PhasePoint, &PhasePoint),
         equations: &impl WeightedRates,
     ) -> Result<u32, StepError> {
-        // A body at rest has no momentum before the step. One so small that it has no inverse isn't looked at.
+        // A body at rest has no momentum before the step. A size too small to invert is ignored.
         let size: f64 = (4..8).map(|k| y[k] * y[k] + self.0[k][0][0] * self.0[k][0][0]).sum();
         let over_size = if (1.0 / size).is_finite() { 1.0 / size } else { 0.0 };
         let (mut changes, mut last, mut residual) = (Changes::none(), false, f64::INFINITY);
@@ -87,9 +87,10 @@ impl<const PAIRS: usize> Stages<PAIRS> {
         Err(StepError::NotConverged { iterations: MOST_ITERATIONS, residual })
     }
 
-    /// The next iterate, and two squared changes: that of the quaternion's stages, relative to one, and the sum of this and
-    /// that of the momentum's stages, relative to the momentum. They are NaN where anything is. They are made here, as a
-    /// reference to the iterate would put it in memory, and each iteration would wait for a copy from there.
+    /// The next iterate, and two squared changes: that of the quaternion's stages, relative to one, and the sum of this
+    /// and that of the momentum's stages, relative to the momentum. They are NaN if any number is. They are computed
+    /// here, because a function that takes a reference to the iterate would force it to memory, and each iteration
+    /// would wait for it.
     #[inline(always)]
     fn iterated(
         &self,
@@ -100,7 +101,7 @@ impl<const PAIRS: usize> Stages<PAIRS> {
     ) -> (Self, [f64; 2]) {
         let mut next = [[[0.0; PAIRS]; 2]; 8];
         let mut changes = [[[0.0; PAIRS]; 2]; 2];
-        // One loop over all stages, of which the compiler makes lanes.
+        // The one loop over stages, which the compiler vectorises.
         for stage in 0..2 * PAIRS {
             let places = each(|component| {
                 y[component] + (carry[component] + entry(&coefficients.places, stage, &self.0[component]))
@@ -120,7 +121,7 @@ impl<const PAIRS: usize> Stages<PAIRS> {
     }
 }
 
-/// Puts all components of a stage into their places.
+/// Stores all components of a stage.
 #[inline(always)]
 fn put<const PAIRS: usize>(numbers: &mut Numbers<PAIRS>, stage: usize, values: &PhasePoint) {
     numbers[0].as_flattened_mut()[stage] = values[0];
@@ -133,7 +134,7 @@ fn put<const PAIRS: usize>(numbers: &mut Numbers<PAIRS>, stage: usize, values: &
     numbers[7].as_flattened_mut()[stage] = values[7];
 }
 
-/// An entry of the product of a matrix and `x`.
+/// An entry of the product of a matrix and the vector `x`.
 #[inline(always)]
 fn entry<const PAIRS: usize>(columns: &Columns<PAIRS>, row: usize, x: &OfStages<PAIRS>) -> f64 {
     let half = |side: usize| {

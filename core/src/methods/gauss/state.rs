@@ -1,4 +1,4 @@
-//! What collocation keeps: quaternion and momentum, of which attitude and body momentum are functions.
+//! The state of a collocation: quaternion and momentum, which determine attitude and body momentum.
 
 use nalgebra::Vector3;
 
@@ -10,8 +10,8 @@ use crate::numbers::flag;
 
 roots!();
 
-/// The motion as [`Gauss`](super::Gauss) integrates it: the unit quaternion and its momentum, what rounding has left
-/// behind of their sums, and the stages of the last step, from which the next ones are guessed.
+/// The motion as [`Gauss`](super::Gauss) integrates it: the unit quaternion and its momentum, the rounding errors of
+/// their sums, and the stages of the last step, which give the next initial guess.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CollocationMemory<const PAIRS: usize> {
     pub(super) lifted: PhasePoint,
@@ -32,13 +32,13 @@ impl<const PAIRS: usize> CollocationMemory<PAIRS> {
         SO3::from_matrix_unchecked(rotation(&[a, b, c, d], 2.0 / length_squared(&self.lifted)))
     }
 
-    /// `Π`, body frame.
+    /// The angular momentum `Π` in the body frame.
     #[inline(always)]
     pub(super) fn momentum(&self) -> Vector3<f64> {
         twice_momentum(&self.lifted) * 0.5
     }
 
-    /// Adds to `Π`.
+    /// Adds an impulse to `Π`.
     pub(super) fn push(&mut self, impulse: &Vector3<f64>) {
         let [q @ .., _, _, _, _] = self.lifted;
         let change = times(&q, &(impulse * 2.0));
@@ -52,7 +52,7 @@ impl<const PAIRS: usize> Kept<f64> for CollocationMemory<PAIRS> {
         let has_stages = flag(self.stages.is_some(), number)?;
         let mut stages = self.stages.map_or([[[0.0; PAIRS]; 2]; 8], |stages| stages.0);
         stages.as_flattened_mut().as_flattened_mut().iter_mut().for_each(|entry| *entry = number(*entry));
-        // A unit quaternion, to some roundings.
+        // A damaged state is refused: the quaternion must be a unit one, to some roundings.
         let is_unit = (length_squared(&lifted) - 1.0).abs() < f64::EPSILON.sqrt();
         is_unit.then_some(Self { lifted, carry, stages: has_stages.then_some(Stages(stages)) })
     }

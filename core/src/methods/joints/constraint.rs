@@ -6,10 +6,10 @@ use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 use crate::error::SetupError;
 
-/// Where a body is; of space itself the identity and the origin.
+/// The place of a body: attitude and position. The place of space is the identity and the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// From the body's axes to those of space.
+    /// The rotation from the body's axes to those of space.
     pub attitude: Matrix3<f64>,
     /// The origin of the body's axes in space, m.
     pub position: Vector3<f64>,
@@ -22,35 +22,35 @@ impl Place {
         position: Vector3::new(0.0, 0.0, 0.0),
     };
 
-    /// A point of the body, in space.
+    /// The position in space of a point of the body.
     #[must_use]
     pub fn of(&self, point: &Vector3<f64>) -> Vector3<f64> {
         self.position + self.attitude * point
     }
 }
 
-/// The derivatives of a constraint by the place of one body, in the axes of space: row by row along `δR = η̂ R` and
-/// `δx = ξ`.
+/// The derivatives of a constraint by the place of one body, in the axes of space: one row per function, along
+/// `δR = η̂ R` and `δx = ξ`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slope<const K: usize> {
-    /// By `η`.
+    /// The derivatives along `η`.
     pub turn: SMatrix<f64, K, 3>,
-    /// By `ξ`.
+    /// The derivatives along `ξ`.
     pub shift: SMatrix<f64, K, 3>,
 }
 
-/// A holonomic constraint on two bodies, or on a body and space: `K` functions of where they are, which are zero.
+/// A holonomic constraint on two bodies, or on a body and space: `K` functions of their places, which vanish.
 ///
-/// [`BallJoint`], [`PinJoint`] and [`Joint`] are such. [`constraint`](macro@crate::constraint) declares one of your own by
-/// its functions, and derives its [`slope`](Self::slope). By hand, as in `examples/declarations/strut.rs`, that this is the
-/// derivative of the [`gap`](Self::gap) is up to you.
+/// [`BallJoint`], [`PinJoint`] and [`Joint`] are constraints. [`constraint`](macro@crate::constraint) declares another
+/// by its functions, and derives its [`slope`](Self::slope). In an implementation by hand, as in
+/// `examples/declarations/strut.rs`, nothing checks that the slope is the derivative of the [`gap`](Self::gap).
 ///
-/// A stepper takes one type of joint. Joints of several kinds are an enum of your own that implements this, as [`Joint`]
-/// does, with the largest `K` and the number that each has in [`rows`](Self::rows); an `Option` of a joint may hold nothing.
+/// A stepper takes one type of joint. For several kinds implement this trait for an enum, as [`Joint`] does, with the
+/// largest `K`, and with each kind's number of functions in [`rows`](Self::rows). An `Option` may hold no joint.
 ///
 /// # Examples
 ///
-/// A strut, a rod without mass between two points: one function. A body that hangs on it, thrown sideways:
+/// A strut, a rod without mass between two points, is one function. A body hangs on it and is thrown sideways:
 ///
 /// ```
 /// use liestep::groups::R3;
@@ -119,41 +119,41 @@ pub trait Constraint<const K: usize>: Copy + Debug + PartialEq {
     ///
     /// # Errors
     ///
-    /// [`SetupError::Parameter`] naming the first field whose value can't be used.
+    /// [`SetupError::Parameter`] names the first field with an invalid value.
     fn validate(&self) -> Result<(), SetupError>;
 
-    /// How many of the functions there are; those behind them are zero everywhere.
+    /// The number of functions; the rows after it are zero everywhere.
     #[must_use]
     fn rows(&self) -> usize {
         K
     }
 
-    /// What it is called, by which checkpoints tell two kinds with the same parameters apart.
+    /// The name, by which checkpoints distinguish two kinds with the same parameters.
     fn name(&self) -> &'static str;
 
     /// The functions, each in a unit of its own: m for lengths, 1 for cosines.
     fn gap(&self, above: &Place, below: &Place) -> SVector<f64, K>;
 
-    /// Their derivatives by the place of the body above, and of that below: each row in the unit of its function per
-    /// radian and per m.
+    /// The derivatives of the functions by the place of the body above, and of the body below: each row in the unit of
+    /// its function per radian and per m.
     fn slope(&self, above: &Place, below: &Place) -> [Slope<K>; 2];
 
-    /// Shows its parameters.
+    /// Visits the parameters.
     fn describe(&self, visit: &mut dyn FnMut(&'static str, f64));
 }
 
-/// A point of one body is a point of another: three functions, m.
+/// The coincidence of a point of one body with a point of another: three functions, m.
 ///
 /// ```text
 /// x_b + R_b ρ_b − x_a − R_a ρ_a = 0
 /// ```
 ///
-/// A pivot is the same with space as the body above.
+/// For a pivot, space takes the place of the body above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallJoint {
-    /// `ρ_a`, in the axes of the body above, m; of a pivot in space.
+    /// The joint `ρ_a`, in the axes of the body above, or of space for a pivot, m.
     pub above: Vector3<f64>,
-    /// `ρ_b`, in the axes of the body below, m.
+    /// The joint `ρ_b`, in the axes of the body below, m.
     pub below: Vector3<f64>,
 }
 
@@ -163,30 +163,30 @@ pub struct BallJoint {
 /// x_b + R_b ρ_b − x_a − R_a ρ_a = 0          R_a e_1 · R_b n_b = R_a e_2 · R_b n_b = 0
 /// ```
 ///
-/// with `e_1` and `e_2` at right angles to the axis `n_a`. Which of its two ways an axis points doesn't matter: it
-/// stays as it starts.
+/// Here `e_1` and `e_2` are at right angles to the axis `n_a`. The sign of an axis doesn't matter: axes that start
+/// parallel stay parallel, and opposite ones opposite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PinJoint {
-    /// `ρ_a`, in the axes of the body above, m; of a pivot in space.
+    /// The joint `ρ_a`, in the axes of the body above, or of space for a pivot, m.
     pub above: Vector3<f64>,
-    /// `ρ_b`, in the axes of the body below, m.
+    /// The joint `ρ_b`, in the axes of the body below, m.
     pub below: Vector3<f64>,
-    /// `n_a`, the axis in the axes of the body above, of any length.
+    /// The axis `n_a`, in the axes of the body above, of any length.
     pub axis_above: Vector3<f64>,
-    /// `n_b`, the axis in the axes of the body below, of any length.
+    /// The axis `n_b`, in the axes of the body below, of any length.
     pub axis_below: Vector3<f64>,
 }
 
-/// Where joints of one system aren't of one kind.
+/// A joint of either kind, for systems with both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Joint {
-    /// Three functions.
+    /// A ball joint: three functions.
     Ball(BallJoint),
-    /// Five.
+    /// A pin joint: five functions.
     Pin(PinJoint),
 }
 
-/// Whether these are numbers.
+/// Checks that these vectors are finite.
 fn check<const C: usize>(fields: [(&'static str, &Vector3<f64>); C]) -> Result<(), SetupError> {
     match fields.iter().find(|(_, vector)| !vector.iter().all(|entry| entry.is_finite())) {
         Some((field, _)) => Err(SetupError::Parameter { field, cause: "is not finite" }),
@@ -233,10 +233,10 @@ impl PinJoint {
         BallJoint { above: self.above, below: self.below }
     }
 
-    /// `R_a e_1`, `R_a e_2` and `R_b n_b`, of length one.
+    /// The unit vectors `R_a e_1`, `R_a e_2` and `R_b n_b`.
     fn directions(&self, above: &Place, below: &Place) -> ([Vector3<f64>; 2], Vector3<f64>) {
         let axis = self.axis_above.normalize();
-        // The one of the three axes that is farthest from it.
+        // The coordinate axis that is farthest from the pin's axis.
         let far = Vector3::ith(axis.iamin(), 1.0);
         let first = axis.cross(&far).normalize();
         let normals = [first, axis.cross(&first)].map(|normal| above.attitude * normal);
@@ -272,7 +272,7 @@ impl Constraint<5> for PinJoint {
         let (normals, axis) = self.directions(above, below);
         let [mut above, mut below] = ball;
         for (row, normal) in normals.iter().enumerate() {
-            // η_a × e · n = η_a · (e × n), and with the body below the other way round.
+            // η_a × e · n = η_a · (e × n); the body below has the opposite sign.
             let turn = normal.cross(&axis);
             above.turn.set_row(3 + row, &turn.transpose());
             below.turn.set_row(3 + row, &-turn.transpose());
@@ -286,7 +286,7 @@ impl Constraint<5> for PinJoint {
     }
 }
 
-/// With rows of zeros.
+/// The slope of a ball joint, padded with rows of zeros.
 fn lengthened(slope: &Slope<3>) -> Slope<5> {
     let zero = SMatrix::<f64, 5, 3>::zeros();
     let mut all = Slope { turn: zero, shift: zero };
@@ -342,8 +342,8 @@ impl Constraint<5> for Joint {
     }
 }
 
-/// A place where there may be a joint: `None` holds nothing. With it [`JointedBodies`](crate::methods::JointedBodies) has a joint less
-/// than its type says.
+/// An optional joint: `None` constrains nothing, so that [`JointedBodies`](crate::methods::JointedBodies) has a joint
+/// less than its type says.
 impl<C: Constraint<K>, const K: usize> Constraint<K> for Option<C> {
     fn name(&self) -> &'static str {
         self.as_ref().map_or("nothing", C::name)

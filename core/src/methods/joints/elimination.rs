@@ -6,8 +6,8 @@
 //! A_b y_b + Σ_j E_jbᵀ p_j = −r_b           Σ_b C_jb y_b = −g_j
 //! ```
 //!
-//! with the sums over the joints of a body, and over the two bodies of a joint. A body at an end of a tree, child `c`
-//! of `b` by the joint `j`, is eliminated, and then its joint; what is left is an addition to the matrix of its
+//! The sums extend over the joints of a body, and over the two bodies of a joint. A body at an end of a tree, child `c`
+//! of `b` by the joint `j`, is eliminated, and then its joint; the Schur complement is added to the matrix of its
 //! parent:
 //!
 //! ```text
@@ -29,20 +29,21 @@ use crate::numbers::{Coordinates as _, Pattern};
 
 type Matrix6 = SMatrix<f64, 6, 6>;
 
-/// The equations of a body, and what elimination makes of them.
+/// The equations of a body, and their factors after elimination.
 #[derive(Clone, Copy)]
 pub(super) struct Body<const K: usize> {
-    /// `A_b`; eliminated, its factors.
+    /// The matrix `A_b`; after elimination, its factors.
     pub(super) matrix: Matrix6,
-    /// The determinant, relative to the product of the diagonal, once all that hangs on the body is eliminated.
+    /// The determinant relative to the product of the diagonal, once all descendants are eliminated.
     pub(super) determinant: f64,
-    /// `E` and `C` of the joint towards the root, with this body and with its parent.
+    /// The maps `E` and `C` of the joint towards the root, for this body and for its parent.
     pub(super) slopes: Slopes<K>,
-    /// How many functions that joint has.
+    /// The number of functions of that joint.
     pub(super) rows: usize,
-    /// The least pivot of that joint, relative to the diagonal; one where there is none.
+    /// The least pivot of that joint, relative to the diagonal; one if there is no joint.
     pub(super) pivot: f64,
-    /// The determinant of that joint's matrix `S`, relative to the size of its diagonal; one where there is none.
+    /// The determinant of that joint's matrix `S`, relative to the absolute values of its diagonal; one if there is no
+    /// joint.
     pub(super) of_joint: f64,
     x: SMatrix<f64, 6, K>,
     inverse: SMatrix<f64, K, K>,
@@ -66,24 +67,24 @@ impl<const K: usize> Body<K> {
     }
 }
 
-/// The equations of a joint that closes a loop, and what elimination makes of them.
+/// The equations of a joint that closes a loop, and their factors after elimination.
 #[derive(Clone, Copy)]
 pub(super) struct Closing<const K: usize, const N: usize, const L: usize> {
     /// The bodies below and above; `None` is space.
     pub(super) bodies: [Option<usize>; 2],
     pub(super) slopes: Slopes<K>,
-    /// How many functions the joint has.
+    /// The number of functions of the joint.
     rows: usize,
-    /// `Y`, and its multipliers of the trees' joints.
+    /// The bodies' part `Y` of the solution for the joint's columns, and its multipliers at the trees' joints.
     columns: [SMatrix<f64, 6, K>; N],
     multipliers: [SMatrix<f64, K, K>; N],
-    /// A row of `S_L` in factors: on the diagonal the inverses of what is left there.
+    /// A row of the factors of `S_L`, with the inverse pivots on the diagonal.
     row: [SMatrix<f64, K, K>; L],
-    /// What the diagonal of `S_L` would be if both bodies were free.
+    /// The diagonal of `S_L` if both bodies were free.
     free: SVector<f64, K>,
-    /// The least pivot, relative to that.
+    /// The least pivot, relative to `free`.
     pub(super) pivot: f64,
-    /// The determinant of what is left on the diagonal, relative to the size of that.
+    /// The determinant of the pivot block, relative to the absolute values of `free`.
     pub(super) of_joint: f64,
 }
 
@@ -102,18 +103,18 @@ impl<const K: usize, const N: usize, const L: usize> Closing<K, N, L> {
         }
     }
 
-    /// Its ends at bodies.
+    /// The ends of the joint that are at bodies, not at space.
     pub(super) fn ends(&self) -> impl Iterator<Item = (usize, &Ends<K>)> {
         let both = self.bodies.into_iter().zip(&self.slopes.0);
         both.filter_map(|(body, ends)| Some((body?, ends)))
     }
 }
 
-/// Unknowns: in the place of the right sides `r` and `g` the solution `y` and `p`.
+/// The right-hand sides `r` and `g`, which the solution overwrites by `y` and `p`.
 #[derive(Clone, Copy)]
 pub(super) struct Unknowns<const K: usize, const N: usize, const L: usize> {
     pub(super) bodies: [Vector6<f64>; N],
-    /// The forces in the joint of each body towards the root.
+    /// The multipliers of each body's joint towards the root.
     pub(super) joints: [SVector<f64, K>; N],
     pub(super) loops: [SVector<f64, K>; L],
 }
@@ -124,7 +125,7 @@ impl<const K: usize, const N: usize, const L: usize> Unknowns<K, N, L> {
     }
 }
 
-/// Makes factors of all matrices.
+/// Factorises all matrices.
 pub(super) fn factorise<const K: usize, const N: usize, const L: usize>(
     tree: &Tree<N>,
     bodies: &mut [Body<K>; N],
@@ -157,7 +158,7 @@ pub(super) fn factorise<const K: usize, const N: usize, const L: usize>(
     }
 }
 
-/// The columns of the border, and the factors of their equations.
+/// The border's columns `Y`, and the factors of `S_L`.
 fn close<const K: usize, const N: usize, const L: usize>(
     tree: &Tree<N>,
     bodies: &[Body<K>; N],
@@ -191,8 +192,8 @@ fn close<const K: usize, const N: usize, const L: usize>(
     }
 }
 
-/// Solves for right sides by the factors; returns the sums of the squares of the `w`, of turns and of shifts: the
-/// solution is a small difference of these where joints hold bodies fast.
+/// Solves for these right-hand sides by the factors. Returns the summed squares of the `w`, of turns and of shifts: in
+/// a stiffly constrained system the solution is a small difference of large `w`, which sets its rounding error.
 pub(super) fn solve<const K: usize, const N: usize, const L: usize>(
     tree: &Tree<N>,
     bodies: &[Body<K>; N],
@@ -201,7 +202,7 @@ pub(super) fn solve<const K: usize, const N: usize, const L: usize>(
 ) -> Vector2<f64> {
     let size = substitute(tree, bodies, &mut unknowns.bodies, &mut unknowns.joints);
     for (k, closing) in loops.iter().enumerate() {
-        // `C_L x + g`, and then the rows above.
+        // The right-hand sides `C_L x + g`, reduced by the rows above.
         let mut right = unknowns.loops[k];
         for (body, ends) in closing.ends() {
             right += ends.after * unknowns.bodies[body];
@@ -227,7 +228,7 @@ pub(super) fn solve<const K: usize, const N: usize, const L: usize>(
     size
 }
 
-/// Without loops: for each column of the right sides.
+/// Solves the trees alone, without loops, for each column of the right-hand sides.
 fn substitute<const K: usize, const N: usize, const C: usize>(
     tree: &Tree<N>,
     bodies: &[Body<K>; N],
@@ -264,7 +265,7 @@ fn substitute<const K: usize, const N: usize, const C: usize>(
     size
 }
 
-/// By the factors of a body's matrix, column by column.
+/// The solution by a body's factors, column by column.
 #[hot]
 fn solved<const C: usize>(factors: &Matrix6, right: &SMatrix<f64, 6, C>) -> SMatrix<f64, 6, C> {
     let mut solved = *right;
@@ -275,8 +276,8 @@ fn solved<const C: usize>(factors: &Matrix6, right: &SMatrix<f64, 6, C>) -> SMat
     solved
 }
 
-/// The inverse, by elimination in the order of the rows, the least pivot relative to `sizes`, and the determinant relative
-/// to their absolute values; both are zero where a size is. Behind the first `rows` there are no functions.
+/// The inverse by elimination in the order of the rows, the least pivot relative to `sizes`, and the determinant
+/// relative to their absolute values; a size of zero makes both zero. Rows after the first `rows` hold no functions.
 #[hot]
 fn inverted<const K: usize>(
     matrix: &SMatrix<f64, K, K>,
@@ -286,7 +287,7 @@ fn inverted<const K: usize>(
     let (mut a, mut least, mut determinant) = (*matrix, f64::INFINITY, 1.0);
     for k in 0..rows.min(K) {
         let pivot = a[(k, k)];
-        // Behind a pivot that isn't positive the others tell nothing.
+        // After a pivot that isn't positive, later pivots carry no information.
         let relative = if sizes[k] == 0.0 { 0.0 } else { pivot / sizes[k] };
         least = if least > 0.0 && (relative < least || relative.is_nan()) { relative } else { least };
         determinant *= relative * sizes[k].signum();

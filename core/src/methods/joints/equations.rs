@@ -1,4 +1,4 @@
-//! The equations of a system whose bodies are joined, at one place.
+//! The equations of jointed bodies, at one configuration.
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector2, Vector6};
 
@@ -9,25 +9,26 @@ use super::graph::{Joints, PlacedJoint, Tree};
 use super::places::{Ends, Places, Slopes, after, before, parts};
 use super::{Constraint, Slope};
 
-/// The least pivot of a joint that has something to do, relative to that between free bodies. What rounding leaves of
-/// a zero is some `1e-14`; towards a singular position a pivot goes as the square of the way to it, so this is some 3
-/// µrad from there. It goes as the ratio of the bodies' masses, too: ratios of 1e11 are refused.
+/// The least pivot of a joint that closes a loop and isn't redundant, relative to that between free bodies. The
+/// rounding error of a zero is some `1e-14`. Near a singular configuration a pivot is quadratic in the distance to it,
+/// so this limit is some 3 µrad away. It is also proportional to the ratio of the bodies' masses: ratios of 1e11 are
+/// refused.
 const REDUNDANT: f64 = 1e-11;
 
-/// The joint that is open farthest, or opens fastest.
+/// The joint with the widest gap, or with the fastest opening one.
 pub(super) struct Widest {
     pub(super) joint: usize,
-    /// By how much, in the units of its functions.
+    /// The norm of its gap, in the units of its functions.
     pub(super) by: f64,
     /// The largest value of a function, relative to the size of its terms.
     pub(super) relative: f64,
 }
 
-/// The least pivot of a joint whose functions don't depend on each other: what rounding leaves of a zero in a tree,
-/// where a joint's pivots are relative to its own matrix. A point mass on an arm of ten million radii is at it.
+/// The least pivot of a joint with independent functions: the rounding error of a zero in a tree, whose pivots are
+/// relative to the joint's own matrix. A point mass on an arm of ten million radii is at the limit.
 const DEPENDENT: f64 = 1e-14;
 
-/// Matrices, slopes and right sides; solved, the unknowns.
+/// Matrices, slopes and right-hand sides; after a solution the unknowns.
 pub(super) struct Equations<'a, C, const K: usize, const N: usize, const T: usize, const L: usize> {
     joints: &'a Joints<C, T, L>,
     tree: &'a Tree<N>,
@@ -39,8 +40,8 @@ pub(super) struct Equations<'a, C, const K: usize, const N: usize, const T: usiz
 impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const L: usize>
     Equations<'a, C, K, N, T, L>
 {
-    /// Without slopes and matrices.
-    // Written where it is used, so that it isn't copied there.
+    /// Equations whose slopes and matrices aren't set yet.
+    // Inlined, so that the result is written in place and not copied.
     #[hot]
     pub(super) fn new(joints: &'a Joints<C, T, L>, tree: &'a Tree<N>) -> Self {
         let loops =
@@ -53,13 +54,13 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         equations
     }
 
-    /// What `of` makes of the slopes of all joints at these places.
+    /// Applies `of` to the slopes of all joints at these places.
     #[hot]
     fn each(&mut self, places: &Places<N>, of: impl Fn(&mut Ends<K>, usize, &Slope<K>)) {
         for (k, (body, member)) in self.bodies.iter_mut().zip(&self.tree.members).enumerate() {
             let Some(joined) = member.joint.and_then(|joint| self.joints.tree.get(joint)) else { continue };
             let [below, above] = places.slope(joined);
-            // The end at the body itself comes first.
+            // The body's own end comes first.
             let [own, other] = if member.is_below { [below, above] } else { [above, below] };
             let [of_own, of_other] = &mut body.slopes.0;
             of(of_own, k, &own);
@@ -77,17 +78,17 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         }
     }
 
-    /// `E` of these places.
+    /// Sets `E` at these places.
     pub(super) fn set_before(&mut self, places: &Places<N>) {
         self.each(places, |ends, body, slope| ends.before = before(slope, &places.0[body].attitude));
     }
 
-    /// `C` of these places, for unknowns that turn the bodies by these maps.
+    /// Sets `C` at these places, for unknowns that turn the bodies by these maps.
     pub(super) fn set_after(&mut self, places: &Places<N>, turns: &[Matrix3<f64>; N]) {
         self.each(places, |ends, body, slope| ends.after = after(slope, &turns[body]));
     }
 
-    /// For velocities at these places, `C = E`, with the inertias of the bodies.
+    /// Sets the equations of velocities at these places, with `C = E`, by the inertias of the bodies.
     pub(super) fn set_velocities(&mut self, places: &Places<N>, inertias: &[SMatrix<f64, 6, 6>; N]) {
         self.each(places, |ends, body, slope| {
             ends.before = before(slope, &places.0[body].attitude);
@@ -96,7 +97,7 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         self.factorise(inertias);
     }
 
-    /// Makes factors of these matrices of the bodies.
+    /// Factorises these matrices of the bodies.
     pub(super) fn factorise(&mut self, matrices: &[SMatrix<f64, 6, 6>; N]) {
         for (body, matrix) in self.bodies.iter_mut().zip(matrices) {
             body.matrix = *matrix;
@@ -104,7 +105,7 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         factorise(self.tree, &mut self.bodies, &mut self.loops);
     }
 
-    /// Solves with these residuals of the bodies, and these gaps of the joints; what [`solve`] returns.
+    /// Solves for these residuals of the bodies and gaps of the joints; returns the result of [`solve`].
     pub(super) fn solve(
         &mut self,
         residuals: &[Vector6<f64>; N],
@@ -121,7 +122,7 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         solve(self.tree, &self.bodies, &self.loops, &mut self.unknowns)
     }
 
-    /// `Σ Eᵀ p` of each body: what the multipliers take from its momentum.
+    /// The reactions `Σ Eᵀ p` of each body: the momentum that the multipliers take.
     pub(super) fn reactions(&self) -> [Vector6<f64>; N] {
         let mut reactions = [Vector6::zeros(); N];
         for (k, (body, member)) in self.bodies.iter().zip(&self.tree.members).enumerate() {
@@ -140,7 +141,7 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         reactions
     }
 
-    /// The joint that is open farthest; `lengths` are those of the bodies themselves, m.
+    /// The joint with the widest gap; `lengths` are the bodies' radii of gyration, m.
     pub(super) fn widest_gap(&self, places: &Places<N>, lengths: &[f64; N]) -> Widest {
         let shift = |body: usize| lengths[body].max(places.0[body].position.norm());
         self.widest(1.0, shift, |joint, _| {
@@ -149,7 +150,7 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         })
     }
 
-    /// The joint that these velocities open fastest, by `E y`; turns slower than `least`, rad/s, are as good as none.
+    /// The joint that these velocities open fastest, by `E y`; turns slower than `least`, rad/s, count as zero.
     pub(super) fn widest_parting(&self, velocities: &[Vector6<f64>; N], lengths: &[f64; N], least: f64) -> Widest {
         let largest = |of: fn(&Vector6<f64>) -> f64| velocities.iter().map(of).fold(0.0, f64::max);
         let turn = largest(|velocity| parts(velocity).0.norm()).max(least);
@@ -163,7 +164,7 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         )
     }
 
-    /// The widest opening by these values of the functions, each compared with the sizes of its own terms.
+    /// The widest gap among these values of the functions, each relative to the size of its own terms.
     fn widest(
         &self,
         turn: f64,
@@ -187,7 +188,7 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
             };
             for (value, size) in values.iter().zip(&sizes) {
                 let relative = if *value == 0.0 { 0.0 } else { value.abs() / size };
-                // What isn't a number is the widest.
+                // A NaN counts as the widest gap.
                 if !(relative <= widest.relative || widest.relative.is_nan()) {
                     widest = Widest { joint, by: values.norm(), relative };
                 }
@@ -204,8 +205,8 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         widest
     }
 
-    /// The largest distance of a body from the origin, or of what a joint compares from its body, m: what roundings of
-    /// places are units in the last place of.
+    /// The largest distance of a body from the origin, or of a joint's points from their body, m. The rounding errors
+    /// of positions are relative to this length.
     pub(super) fn extent(&self, places: &Places<N>) -> f64 {
         let of_bodies = self.bodies.iter().map(|body| &body.slopes);
         let slopes = of_bodies.chain(self.loops.iter().map(|closing| &closing.slopes));
@@ -213,9 +214,9 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         places.0.iter().map(|place| place.position.norm_squared()).chain(arms).fold(0.0, f64::max).sqrt()
     }
 
-    /// The first body whose part of the matrix has a determinant of the wrong sign, and that.
+    /// The first body whose pivot block has a determinant of the wrong sign, and that determinant.
     pub(super) fn wrong_body(&self) -> Option<(usize, f64)> {
-        // What isn't a number is wrong, too.
+        // A NaN counts as the wrong sign.
         let is_right = |body: &Body<K>| body.determinant > 0.0;
         let wrong = self.bodies.iter().position(|body| !is_right(body))?;
         Some((wrong, self.bodies[wrong].determinant))
@@ -225,26 +226,25 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         self.bodies[body].determinant
     }
 
-    /// The determinant of the whole system, relative to its diagonal, where its sign is wrong with those of bodies being
-    /// positive. Along the branch that continues rest it never vanishes, so a solution where its sign has changed is on
-    /// another branch: a strut closes on either side. Signs of single joints may change, and which do depends on the joints
-    /// that are given apart; the sign of the whole doesn't.
+    /// The determinant of the whole system, relative to its diagonal, if its sign is wrong while those of the bodies
+    /// are positive. Along the branch that continues rest it never vanishes, so a solution with a changed sign is on
+    /// another branch; a strut, for example, has a solution on either side. The signs of single joints may change, and
+    /// which ones do depends on the choice of the joints that close loops; the sign of the whole doesn't.
     pub(super) fn reversed(&self) -> Option<f64> {
         let of_trees = self.bodies.iter().map(|body| body.of_joint);
         let of_joints = of_trees.chain(self.loops.iter().map(|closing| closing.of_joint));
-        // Apart from the sizes, of which a product may be too small for a number.
+        // The product of signs can't underflow as the product of the determinants could.
         let sign = |determinant: f64| if determinant == 0.0 { 0.0 } else { determinant.signum() };
-        // What isn't a number is wrong, too.
+        // A NaN counts as the wrong sign.
         let is_right = of_joints.clone().map(sign).product::<f64>() > 0.0;
         let of_bodies = self.bodies.iter().map(|body| body.determinant);
         if is_right { None } else { Some(of_bodies.chain(of_joints).product()) }
     }
 
-    /// The first joint that leaves itself or that the others leave nothing to do, by its number, and its pivot relative
-    /// to that between free bodies.
+    /// The first joint with dependent functions, or that is redundant beside the others: its number, and its pivot
+    /// relative to that between free bodies.
     pub(super) fn redundant(&self) -> Option<(usize, f64)> {
-        // Far from rest a pivot of the tree may be negative, as the matrix isn't symmetric; what isn't a number is as
-        // good as zero.
+        // Far from rest a pivot of the tree may be negative, as the matrix isn't symmetric. A NaN counts as zero.
         let has_rank = |body: &Body<K>| body.pivot.abs() > DEPENDENT;
         for (body, member) in self.bodies.iter().zip(&self.tree.members) {
             if let (Some(joint), false) = (member.joint, has_rank(body)) {

@@ -1,4 +1,4 @@
-//! Which bodies are joined, and the order in which they are eliminated.
+//! The graph of joints, and the order of elimination of the bodies.
 
 use super::Constraint;
 use crate::error::SetupError;
@@ -15,28 +15,28 @@ pub struct PlacedJoint<C> {
 }
 
 impl<C> PlacedJoint<C> {
-    /// Between two bodies.
+    /// A joint between two bodies.
     #[must_use]
     pub const fn between(joint: C, above: usize, below: usize) -> Self {
         Self { joint, above: Some(above), below }
     }
 
-    /// Between space and a body: a pivot.
+    /// A joint between space and a body: a pivot.
     #[must_use]
     pub const fn to_space(joint: C, below: usize) -> Self {
         Self { joint, above: None, below }
     }
 }
 
-/// The joints of a system: `T` without loops, and `L` that close one each.
+/// The joints of a system: `T` that form trees, and `L` that close one loop each.
 ///
-/// A chain, a tree or several of them have no loop, whether they are joined to space or not. Of each loop one joint is
-/// given apart; which one doesn't matter to the motion. An error counts the joints of the tree first and then those
+/// A chain, a tree or several of them have no loop, whether they are joined to space or not. Each loop has one joint in
+/// the second list; the choice doesn't change the motion. An error counts the joints of the tree first and then those
 /// that close loops, from zero.
 ///
 /// # Examples
 ///
-/// Ten links in a row on a pivot, and the same with its end on a pivot, too.
+/// Ten links in a row on a pivot, and the same links with their end on a second pivot.
 ///
 /// ```
 /// use core::array::from_fn;
@@ -61,13 +61,13 @@ pub struct Joints<C, const T: usize, const L: usize> {
 }
 
 impl<C, const T: usize> Joints<C, T, 0> {
-    /// Without loops.
+    /// Joints without loops.
     #[must_use]
     pub const fn tree(tree: [PlacedJoint<C>; T]) -> Self {
         Self { tree, loops: [] }
     }
 
-    /// With joints that close a loop each.
+    /// Adds joints that close a loop each.
     #[must_use]
     pub fn closed_by<const L: usize>(self, loops: [PlacedJoint<C>; L]) -> Joints<C, T, L> {
         Joints { tree: self.tree, loops }
@@ -75,12 +75,12 @@ impl<C, const T: usize> Joints<C, T, 0> {
 }
 
 impl<C, const T: usize, const L: usize> Joints<C, T, L> {
-    /// Each with its number, those of the tree first.
+    /// All joints with their numbers, those of the tree first.
     pub(super) fn all(&self) -> impl Iterator<Item = (usize, &PlacedJoint<C>)> {
         self.tree.iter().chain(&self.loops).enumerate()
     }
 
-    /// Checks the bodies and the parameters, and plants the tree.
+    /// Checks the bodies and the parameters, and constructs the trees.
     pub(super) fn planted<const K: usize, const N: usize>(&self) -> Result<Tree<N>, SetupError>
     where
         C: Constraint<K>,
@@ -104,34 +104,34 @@ impl<C, const T: usize, const L: usize> Joints<C, T, L> {
     }
 }
 
-/// How a body hangs on the one before it.
+/// A body's connection to its parent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Member {
-    /// The joint towards space, or towards the root of its tree; a root has none.
+    /// The joint towards space, or towards the root of its tree; `None` for a root.
     pub(super) joint: Option<usize>,
-    /// The body at its other end; `None` where that is space.
+    /// The body at the joint's other end; `None` is space.
     pub(super) parent: Option<usize>,
-    /// Whether the joint calls this body that below.
+    /// Whether this body is the joint's body below.
     pub(super) is_below: bool,
 }
 
 /// The trees of all bodies.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tree<const N: usize> {
-    /// From the roots on: each behind its parent.
+    /// The bodies from the roots on: each after its parent.
     pub(super) order: [usize; N],
     pub(super) members: [Member; N],
 }
 
 impl<const N: usize> Tree<N> {
-    /// From the ends of the joints.
+    /// Constructs the trees from the ends of the joints.
     fn planted(ends: &[[Option<usize>; 2]]) -> Result<Self, SetupError> {
         let root = Member { joint: None, parent: None, is_below: false };
         let (mut order, mut members) = ([0; N], [root; N]);
         let (mut is_known, mut known) = ([false; N], 0);
         let is_there = |is_known: &[bool; N], end: Option<usize>| end.is_none_or(|body| is_known[body]);
         loop {
-            // The joints of a body that is known: they lead to another that isn't, or close a loop.
+            // A joint from a body that has been reached either leads to a new body, or closes a loop.
             let mut has_grown = false;
             for (joint, &[above, below]) in ends.iter().enumerate() {
                 let (body, parent, is_below) = match (is_there(&is_known, above), is_there(&is_known, below)) {
@@ -147,7 +147,7 @@ impl<const N: usize> Tree<N> {
             if has_grown {
                 continue;
             }
-            // A body that floats is the root of a tree of its own.
+            // A body without a path to space is the root of a tree of its own.
             let Some(body) = is_known.iter().position(|is_known| !is_known) else { break };
             (is_known[body], order[known]) = (true, body);
             known += 1;
@@ -167,7 +167,7 @@ mod tests {
 
     #[test]
     fn trees_are_planted_whatever_the_order_and_the_direction_of_their_joints() {
-        // 2 hangs on space, 0 and 4 on 2, 1 on 4; 3 floats, with 5 on it.
+        // Body 2 hangs on space, 0 and 4 on 2, 1 on 4; 3 floats, with 5 on it.
         let ends = [[Some(1), Some(4)], [Some(0), Some(2)], [Some(2), Some(4)], [None, Some(2)], [Some(3), Some(5)]];
         let tree = Tree::<6>::planted(&ends).unwrap();
         let of = |body: usize| (tree.members[body].joint, tree.members[body].parent, tree.members[body].is_below);

@@ -1,4 +1,4 @@
-//! A system of joined bodies.
+//! The plan of jointed bodies, and its construction.
 
 roots!();
 
@@ -9,15 +9,15 @@ use crate::groups::{CayleyRetraction, R3, SO3};
 use crate::mechanics::{Effect, Regular};
 use crate::motion::Stepper;
 
-/// The group of a body: it turns, and is translated in the axes of space.
+/// The group of a body: a rotation, and a translation in the axes of space.
 pub(super) type Body = (SO3, R3);
 
-/// A system of rigid bodies held together by joints: the plan of [`Stepper::jointed`].
+/// A system of rigid bodies with joints: the plan of [`Stepper::jointed`].
 ///
 /// # Contract
 ///
-/// - Gaps of joints are those of rounding, some units in the last place of the distances from the origin.
-/// - Velocities keep to the joints as well: energies and momenta of a state are those of the joined system.
+/// - Gaps of joints stay at rounding, some units in the last place of the distances from the origin.
+/// - Velocities satisfy the constraints as well: energies and momenta of a state are those of the jointed system.
 /// - A step satisfies its equations to rounding, or is an error, mostly of a body or a joint, and leaves the state as it
 ///   was.
 /// - Nothing is allocated.
@@ -32,24 +32,24 @@ pub struct JointedBodies<S: Effect, C, const K: usize, const N: usize, const T: 
     pub(super) constants: S::Constants,
     pub(super) joints: Joints<C, T, L>,
     pub(super) tree: Tree<N>,
-    /// The radius of gyration of each body, m: a turn by 1 rad is compared with a shift by it.
+    /// The radius of gyration of each body, m, by which rotations are compared with translations.
     pub(super) lengths: [f64; N],
 }
 
 /// # Make: bodies in joints
 impl<S: Effect> Stepper<S> {
-    /// Bodies that are held together by joints; the scene is that of the bodies without them.
+    /// Bodies with joints; the scene is that of the bodies without joints.
     ///
-    /// Each body is translated too: `(SO3, R3)`, with its centre of mass as origin, or any other point. Of joints that
-    /// form loops one of each loop is [given apart](Joints::closed_by). [`JointedBodies`] says how steps are made, and what
-    /// they cost.
+    /// The group of each body is `(SO3, R3)`: it is translated too, with its centre of mass or any other point as
+    /// origin. One joint of each loop is [specified apart](Joints::closed_by). [`JointedBodies`] describes the method
+    /// and its cost.
     ///
     /// # Errors
     ///
-    /// As [`Stepper::new`]; [`SetupError::Joint`] and [`SetupError::JointParameter`] name a joint that can't be.
-    /// [`Stepper::start`] has [`SetupError::OffConstraint`] where a joint is open, [`SetupError::OffVelocity`] where
-    /// the velocities would open it, and [`SetupError::RedundantJoint`] where the others leave it nothing to do, be it
-    /// only at this place; [`start_nearest`](Stepper::start_nearest) closes joints.
+    /// The errors of [`Stepper::new`]; [`SetupError::Joint`] and [`SetupError::JointParameter`] name an invalid joint.
+    /// [`Stepper::start`] has [`SetupError::OffConstraint`] for a joint that is open, [`SetupError::OffVelocity`] for
+    /// velocities that would open it, and [`SetupError::RedundantJoint`] for a joint that is redundant beside the
+    /// others, even if only in this configuration; [`start_nearest`](Stepper::start_nearest) closes joints.
     ///
     /// # Examples
     ///
@@ -134,7 +134,7 @@ where
             );
             assert!(S::IS_QUADRATIC, "joints hold bodies whose continuous limit is quadratic in the velocity");
         }
-        // The scene without joints has to be one that can be stepped.
+        // The scene without joints must be a valid one.
         crate::motion::OwnStep::<S>::folded(scene, h)?;
         let tree = joints.planted()?;
         let lengths = scene.inertia(&scene.advected()).0.map(|inertia| {

@@ -1,4 +1,4 @@
-//! Where bodies are, and what joints feel of that.
+//! The places of bodies, and the constraints' values and derivatives at them.
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
@@ -8,23 +8,22 @@ use super::graph::PlacedJoint;
 use super::{Constraint, Place, Slope};
 use crate::groups::{R3, SO3};
 
-/// The two maps of one end of a joint.
+/// The two derivative maps at one end of a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ends<const K: usize> {
-    /// `Eᵀ`: from multipliers to the body's momentum, torque in its axes first.
+    /// The matrix `Eᵀ` from multipliers to the body's momentum, torque in its axes first.
     pub(super) before: SMatrix<f64, 6, K>,
-    /// `C`: from the body's unknowns to the functions.
+    /// The matrix `C` from the body's unknowns to the functions.
     pub(super) after: SMatrix<f64, K, 6>,
 }
 
 impl<const K: usize> Ends<K> {
-    /// The squares of how much a function changes as the body turns by one, and as it is shifted by one.
+    /// The squared rates of a function per unit of the body's turn, and of its shift.
     fn rates(&self, row: usize) -> [f64; 2] {
         [0, 3].map(|first| self.before.fixed_view::<3, 1>(first, row).norm_squared())
     }
 
-    /// The square of the longest arm at which a turn shifts what the functions compare, m²; zero where they compare
-    /// directions alone.
+    /// The square of the longest lever arm of the functions, m²; zero if they compare only directions.
     pub(super) fn squared_arm(&self) -> f64 {
         (0..K).fold(0.0, |longest: f64, row| {
             let [turns, shifts] = self.rates(row);
@@ -32,8 +31,8 @@ impl<const K: usize> Ends<K> {
         })
     }
 
-    /// How much each function changes by terms of these sizes: `turn` in rad or rad/s, and `shift` in m or m/s, or what
-    /// the turn makes of the arm, where that is more.
+    /// The size of each function's terms for a `turn` in rad or rad/s and a `shift` in m or m/s; the shift counts at
+    /// least as the lever arm times the turn.
     pub(super) fn sizes(&self, turn: f64, shift: f64) -> SVector<f64, K> {
         let shift = shift.max(self.squared_arm().sqrt() * turn);
         SVector::from_fn(|row, _| {
@@ -43,8 +42,8 @@ impl<const K: usize> Ends<K> {
     }
 }
 
-/// The slopes at both ends: of a tree's joint that of the body and that of its parent, of one that closes a loop that of the body
-/// below and that of the body above.
+/// The slopes at both ends. For a tree's joint: the body, then its parent. For one that closes a loop: the body below,
+/// then the body above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Slopes<const K: usize>(pub(super) [Ends<K>; 2]);
 
@@ -54,7 +53,7 @@ impl<const K: usize> Slopes<K> {
     }
 }
 
-/// All bodies.
+/// The places of all bodies.
 pub(super) struct Places<const N: usize>(pub(super) [Place; N]);
 
 impl<const N: usize> Places<N> {
@@ -72,7 +71,7 @@ impl<const N: usize> Places<N> {
         joined.joint.gap(self.get(joined.above), &self.0[joined.below])
     }
 
-    /// Their derivatives, that of the body below first.
+    /// The derivatives of the functions, by the body below first.
     #[hot]
     pub(super) fn slope<C: Constraint<K>, const K: usize>(&self, joined: &PlacedJoint<C>) -> [Slope<K>; 2] {
         let [above, below] = joined.joint.slope(self.get(joined.above), &self.0[joined.below]);
@@ -80,7 +79,7 @@ impl<const N: usize> Places<N> {
     }
 }
 
-/// `Eᵀ` of a body with this attitude.
+/// The matrix `Eᵀ` of a body with this attitude.
 #[hot]
 pub(super) fn before<const K: usize>(slope: &Slope<K>, attitude: &Matrix3<f64>) -> SMatrix<f64, 6, K> {
     let mut before = SMatrix::<f64, 6, K>::zeros();
@@ -89,7 +88,7 @@ pub(super) fn before<const K: usize>(slope: &Slope<K>, attitude: &Matrix3<f64>) 
     before
 }
 
-/// `C` of a body whose unknowns turn it by this map, in the axes of space, and shift it by themselves.
+/// The matrix `C` of a body; `turn` maps its unknowns to a rotation in the axes of space, and the shift is unchanged.
 #[hot]
 pub(super) fn after<const K: usize>(slope: &Slope<K>, turn: &Matrix3<f64>) -> SMatrix<f64, K, 6> {
     let mut after = SMatrix::<f64, K, 6>::zeros();

@@ -1,4 +1,4 @@
-//! The plan of a system of joined bodies.
+//! The step of jointed bodies.
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -22,7 +22,7 @@ use crate::solving::{
 
 type Components<const N: usize> = Bodies<Vector6<f64>, N>;
 
-/// The update that roundings of places and of opposed forces leave, in them.
+/// The relative rounding error of an update, by places and by opposed forces.
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
 /// The squared lengths of the turn and of the shift.
@@ -31,24 +31,24 @@ fn squares(of: &Vector6<f64>) -> Vector2<f64> {
     Vector2::new(turn.norm_squared(), shift.norm_squared())
 }
 
-/// What is solved for a step.
+/// The nonlinear equations of a step.
 struct Problem<'a, 'b, S: Effect, C, const K: usize, const N: usize, const T: usize, const L: usize> {
     plan: &'a JointedBodies<S, C, K, N, T, L>,
     terms: S::StepTerms,
     attitude: &'a [Body; N],
     places: Places<N>,
     equations: &'a mut Equations<'b, C, K, N, T, L>,
-    /// A turn of 1 rad is compared with a shift by the shortest of the bodies' lengths: `1/length²`, 1/m².
+    /// The weight `1/length²`, 1/m², of squared shifts against squared turns, with the shortest of the bodies' lengths.
     weight: f64,
-    /// The square of what roundings of places are units in the last place of, in turns.
+    /// The squared scale of the rounding errors of places, in rad².
     extent: f64,
     half: Components<N>,
-    /// The joint that the last iterate leaves nothing to do, and its pivot.
+    /// A joint that was redundant at the last iterate, and its pivot.
     met: Option<(usize, f64)>,
 }
 
-/// The squares of the lengths of an update and of the unknowns after it, that of the largest turn in it, and that of
-/// what rounding leaves of it. All are in rad, with shifts over the shortest of the bodies' lengths.
+/// The squared lengths of an update and of the unknowns after it, of its largest turn, and of its rounding error. All
+/// are in rad, with shifts divided by the shortest of the bodies' lengths.
 struct Update {
     length: f64,
     size: f64,
@@ -61,7 +61,7 @@ where
     S: Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,
     C: Constraint<K>,
 {
-    /// Where the increments lead, to the bit.
+    /// The places after these increments, to the bit.
     fn next(&self) -> Places<N> {
         Places(filled!([Place::SPACE; N], |k| {
             let (turn, shift) = parts(&self.half.0[k]);
@@ -71,11 +71,11 @@ where
         }))
     }
 
-    /// One of Newton's iterations.
+    /// One Newton iteration.
     fn newton(&mut self, longest: f64) -> Update {
         let (residuals, matrices) = &newton_system::<S>(&self.plan.constants, &self.terms, &self.half);
         let next = self.next();
-        // With half of each gap, as with half the coordinates a shift is twice its unknown.
+        // Gaps are halved: the unknowns are half the coordinates, so a shift is twice its unknown.
         let turns = filled!([Matrix3::zeros(); N], |k| {
             let tangent = <CayleyRetraction as Retraction<SO3>>::tangent_of_half(&parts(&self.half.0[k]).0);
             self.places.0[k].attitude * tangent * 0.5
@@ -86,14 +86,14 @@ where
         self.update(residuals, &next, longest)
     }
 
-    /// Another with the matrix of the last.
+    /// One simplified iteration, with the last Jacobian.
     fn simplified(&mut self) -> Update {
         let residuals = S::newton_residual(&self.plan.constants, &self.terms, &self.half).momentum_defect;
         let next = self.next();
         self.update(&residuals, &next, f64::INFINITY)
     }
 
-    /// Where a body would turn by more than `longest`, all updates are shortened.
+    /// Solves for the update and applies it. If a body would turn by more than `longest`, all updates are scaled down.
     fn update(&mut self, residuals: &Components<N>, next: &Places<N>, longest: f64) -> Update {
         let opposed = self.equations.solve(&residuals.0, |joined| next.gap(joined) * 0.5);
         let (mut update, mut largest, mut size) = (0.0, 0.0_f64, 0.0);
@@ -115,7 +115,7 @@ where
         Vector2::new(1.0, self.weight)
     }
 
-    /// How many iterations were made, and whether they have settled near the identity, with all determinants positive.
+    /// The number of iterations, and whether they converged near the identity with all determinants positive.
     fn attempt(&mut self, most: u32, longest: f64) -> (u32, bool) {
         let mut made = 0;
         for _ in 0..most {
@@ -150,7 +150,7 @@ where
         self.half.0.iter().position(|half| !is_near(half))
     }
 
-    /// From the guess; where that fails from the velocity, and then from rest with shortened updates.
+    /// Solves from the guess; if that fails from the velocity, and then from rest with shortened updates.
     fn solve(&mut self, guess: Components<N>, slow: impl Fn() -> Components<N>) -> Result<u32, StepError> {
         self.half = guess;
         let (mut spent, is_solved) = self.attempt(MAX_ITERATIONS, f64::INFINITY);
@@ -170,8 +170,8 @@ where
         Err(self.reason(&slow, spent))
     }
 
-    /// Which joint or which body is to blame: a body that is too fast, a joint whose singular position the iteration
-    /// has met, or a body by where it has ended.
+    /// The error of a failed step. It blames a body that is too fast, a joint with a singular position at the last
+    /// iterate, or the body where the iteration ended.
     #[cold]
     fn reason(&self, slow: &Components<N>, iterations: u32) -> StepError {
         let turn = |body: usize| 2.0 * parts(&slow.0[body]).0.norm();
@@ -198,13 +198,13 @@ where
         }
         let square = |of: &[Vector6<f64>; N]| of.iter().map(|part| squares(part).dot(&self.weights())).sum::<f64>();
         let (update, size) = (square(&self.equations.unknowns.bodies), square(&self.half.0));
-        // At rest there is nothing that an update is relative to.
+        // At rest there is no size that an update is relative to.
         StepError::NotConverged { iterations, residual: (update / if size > 0.0 { size } else { 1.0 }).sqrt() }
     }
 }
 
-/// Puts attitudes back among the rotations where that is due; whether it was necessary. It is done before a step, so that
-/// joints are closed behind it. What the step has been given stays until then.
+/// Projects attitudes onto the rotations if that is due; returns whether they changed. A projection before the step
+/// leaves the joints closed after it. Advected parameters stay unchanged until the step's end.
 fn restore<S, M, const N: usize>(scene: &S, motion: &mut M) -> bool
 where
     S: Effect<Group = [Body; N]>,
@@ -235,7 +235,7 @@ where
 {
     type Kept = WarmStart<Components<N>, Polynomial<Components<N>>>;
 
-    // Most of a step is called, so that it is compiled once.
+    // Most of a step is in functions that aren't inlined, so that it is compiled once.
     const VECTORS: Vectors = Vectors::AsCompiled;
     const RUNS_BY_STEPS: bool = true;
 
@@ -256,7 +256,7 @@ where
     }
 
     fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
-        // A copy: after an error the motion has to be where it was.
+        // A copy, because an error must leave the motion unchanged.
         let mut next = *motion;
         if self.h == 0.0 {
             motion.count();
@@ -286,7 +286,7 @@ where
             attitude: &now.attitude,
             equations: &mut equations,
             weight: 1.0 / (length * length),
-            // Attitudes are rounded as numbers of the size of one.
+            // Attitudes have entries of size one and their rounding errors.
             extent: 1.0 + extent * extent,
             places,
             half: Bodies::zero(),
@@ -303,7 +303,7 @@ where
         if S::PARTS.kick_after {
             change = change + S::kick_after(&self.constants, &increment, &advected);
         }
-        // The iteration has seen the matrix on its way, and not at the end of it.
+        // The Jacobian was checked along the iteration, but not at its end; the projection checks it there.
         let taken = Self::projection(&mut equations, scene, &places, &advected, &(now.momentum + change));
         change = change - taken.map_err(|(joint, pivot)| StepError::SingularJoint { joint, pivot })?;
         let momentum = now.momentum + change;
@@ -325,7 +325,7 @@ where
         Ok(StepReport::of(iterations))
     }
 
-    /// Joints take their part of the impulse, so that velocities keep to them.
+    /// Joints take up part of the impulse, so that velocities satisfy the constraints.
     fn push<M: Summation<[Body; N], S::Advected>>(
         &self,
         scene: &S,
@@ -333,7 +333,7 @@ where
         _kept: &mut Self::Kept,
         impulse: &Components<N>,
     ) -> Result<(), StepError> {
-        // A copy: after an error the motion has to be where it was.
+        // A copy, because an error must leave the motion unchanged.
         let mut pushed = *motion;
         pushed.push(impulse);
         let now = *pushed.now();
@@ -367,21 +367,21 @@ where
     }
 }
 
-/// Operations of a body and its joint with `k` functions, beside those of the scene: in a step, which ends with a
-/// projection, and in an iteration. Those of loops aren't counted, nor is what a constraint computes.
+/// Operations of a body and its joint with `k` functions, in a step, which ends with a projection, and in an iteration.
+/// The scene's are counted apart; those of loops and of a constraint's functions aren't counted.
 const fn of_a_body(k: u32) -> (u32, u32) {
     const fn product(rows: u32, inner: u32, columns: u32) -> u32 {
         rows * columns * (2 * inner - 1)
     }
-    // Factors of `A`: of its six rows the inverse pivots, the fifteen entries below, and what these change. A column by them
-    // costs as much as by an inverse.
+    // The factors of `A`: six inverse pivots, fifteen entries below, and the updates of the remaining rows. Solving for
+    // a column costs as much as a product with an inverse.
     let (factors, column) = (6 + 15 + 2 * (25 + 16 + 9 + 4 + 1), product(6, 6, 1));
     let (x, s, inverse) = (k * column, product(k, 6, k), 2 * k * k * k);
     let (p, added) = (product(k, k, 6), product(6, k, 6) + 36);
-    // `w`, `s`, what the parent gets, `p` and `y`.
+    // The operations for `w`, `s`, the parent's part, `p` and `y`.
     let solution =
         column + (product(k, 6, 1) + k) + product(k, k, 1) + 2 * (product(6, k, 1) + 6) + product(k, 6, 1) + k;
-    // Turns of both ends' slopes; of the place the increment and the tangent, and both times the attitude.
+    // The turns of both ends' slopes; for the place, increment and tangent, each multiplied by the attitude.
     let (slopes, place) = (2 * product(k, 3, 3), 2 * 25 + 2 * product(3, 3, 3));
     let once = slopes + factors + x + s + inverse + p + added + solution;
     (slopes + once, once + place)

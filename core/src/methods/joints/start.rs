@@ -1,4 +1,4 @@
-//! Motions start where joints are closed, with velocities that keep them so.
+//! Initial states of jointed bodies: closed joints, and velocities that satisfy the constraints.
 
 use nalgebra::{SVector, Vector6};
 
@@ -13,15 +13,15 @@ use crate::motion::{Motion, State, Stepper, check_attitude};
 use crate::numbers::{Bodies, Coordinates as _, Polynomial};
 use crate::solving::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, WarmStart};
 
-/// How far joints may be open, relative to the terms of their functions, and velocities may part them, relative to
-/// theirs: what is left of values that are printed to a dozen digits.
+/// The tolerance for gaps at the start, relative to the terms of the functions, and for velocities that open a joint,
+/// relative to theirs: twelve printed digits pass.
 const PRINTED: f64 = f64::EPSILON * 1e5;
-/// How far joints of a start that is sought may be open to be closed: roundings, as steps leave them.
+/// The tolerance for gaps in the search for a start: rounding, as after steps.
 const CLOSED: f64 = 2.0 * f64::EPSILON;
-/// The longest turn in one update of a start that is sought, rad: that of half coordinates.
+/// The longest turn in one update of the search for a start, rad; half coordinates have half of it.
 const LONGEST: f64 = 2.0 * LONGEST_DAMPED;
 
-/// What a state of joined bodies is.
+/// The state of a system of jointed bodies.
 type StateOf<A, const N: usize> =
     State<[Body; N], A, WarmStart<Bodies<Vector6<f64>, N>, Polynomial<Bodies<Vector6<f64>, N>>>>;
 
@@ -33,11 +33,11 @@ where
     /// The joint with the largest gap, in the units of its functions.
     fn largest_gap(&self, places: &Places<N>) -> (usize, f64) {
         let gaps = self.joints.all().map(|(joint, joined)| (joint, places.gap(joined).norm()));
-        // What isn't a number is the widest.
+        // A NaN counts as the widest gap.
         gaps.fold((0, 0.0), |widest, gap| if gap.1 <= widest.1 { widest } else { gap })
     }
 
-    /// Without slopes and matrices.
+    /// Equations whose slopes and matrices aren't set yet.
     #[hot]
     pub(super) fn equations(&self) -> Equations<'_, C, K, N, T, L> {
         Equations::new(&self.joints, &self.tree)
@@ -50,10 +50,10 @@ where
         equations
     }
 
-    /// What joints take from momenta whose velocities `J⁻¹(μ − s)` would part them: the impulses that leave the
-    /// velocities nearest to these. Where these aren't determined, a joint to blame and its pivot.
+    /// The impulses of the joints that project velocities `J⁻¹(μ − s)` onto those that satisfy the constraints, at the
+    /// least distance in the metric of the inertia. If these aren't unique, the joint that is redundant, and its pivot.
     ///
-    /// What the equations were of doesn't matter.
+    /// All contents of `equations` are overwritten.
     pub(super) fn projection(
         equations: &mut Equations<'_, C, K, N, T, L>,
         scene: &S,
@@ -70,12 +70,12 @@ where
         Ok(Bodies(equations.reactions()))
     }
 
-    /// Whether joints are closed, velocities keep them so, and each of them has something to do.
+    /// Checks that joints are closed, that velocities satisfy the constraints, and that no joint is redundant.
     pub(super) fn check_start(&self, scene: &S, motion: &Motion<[Body; N], S::Advected>) -> Result<(), SetupError> {
         let places = Places::of(&motion.attitude);
         let equations = self.of_velocities(scene, &places, &motion.advected);
         let Widest { joint, by, relative } = equations.widest_gap(&places, &self.lengths);
-        // What isn't a number isn't closed either.
+        // A NaN fails this test.
         let is_closed = relative <= PRINTED;
         if !is_closed {
             return Err(SetupError::OffConstraint { joint, by });
@@ -83,16 +83,17 @@ where
         check_redundance(&equations)?;
         let momentum = motion.momentum - scene.momentum_bias(&motion.advected);
         let velocities = Bodies::solve(&scene.inertia(&motion.advected), &momentum).0;
-        // What roundings of attitudes in a step leave of rest.
+        // The turning rate that rounding errors of attitudes produce in a step at rest.
         let least = if self.h == 0.0 { 0.0 } else { CLOSED / (PRINTED * self.h.abs()) };
         let Widest { joint, by, relative } = equations.widest_parting(&velocities.0, &self.lengths, least);
         if relative <= PRINTED { Ok(()) } else { Err(SetupError::OffVelocity { joint, by }) }
     }
 
-    /// Places next to these where joints are closed, by corrections that are least as the inertia measures it.
+    /// A configuration with closed joints near this one, by corrections that are least in the metric of the inertia.
     fn closed(&self, scene: &S, attitude: &[Body; N]) -> Result<[Body; N], SetupError> {
         let (mut attitude, mut last) = (*attitude, f64::INFINITY);
-        // Where joints were nearest to being closed: towards a place that can't be reached they come near a singular one.
+        // The joint with the least widest gap so far. An iteration towards an unreachable configuration ends near a
+        // singular one.
         let mut nearest = (0, f64::INFINITY);
         for iteration in 0..MAX_DAMPED_ITERATIONS {
             let places = Places::of(&attitude);
@@ -135,13 +136,14 @@ where
     S: Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,
     C: Constraint<K>,
 {
-    /// A motion from a place next to these where joints are closed, by corrections that are least as the inertia measures
-    /// it, with those velocities nearest to these, measured so, that keep them closed.
+    /// A motion from a configuration near this one with closed joints, by corrections that are least in the metric of
+    /// the inertia; its velocities are the nearest in that metric that satisfy the constraints.
     ///
     /// # Errors
     ///
-    /// [`SetupError::OffConstraint`] where no such place is found, with the gap that is left where joints are nearest to
-    /// being closed; [`SetupError::RedundantJoint`] where a joint has nothing to do here or there; otherwise as [`start`](Stepper::start).
+    /// [`SetupError::OffConstraint`] if no such configuration is found, with the least gap of the search;
+    /// [`SetupError::RedundantJoint`] if a joint is redundant here or there; otherwise the errors of
+    /// [`start`](Stepper::start).
     pub fn start_nearest(
         &self,
         attitude: [Body; N],
@@ -156,7 +158,7 @@ where
         let mut momentum = self.scene.inertia(&advected) * velocity + self.scene.momentum_bias(&advected);
         let places = Places::of(&attitude);
         let mut equations = self.plan.equations();
-        // The second time for what roundings of the first leave, where bodies are of unlike masses.
+        // The second projection removes the rounding errors of the first, for bodies of very different masses.
         for _ in 0..2 {
             let taken = JointedBodies::projection(&mut equations, &self.scene, &places, &advected, &momentum);
             momentum = momentum - taken.map_err(|(joint, pivot)| SetupError::RedundantJoint { joint, pivot })?;
@@ -164,8 +166,7 @@ where
         self.start_with_momentum(attitude, momentum)
     }
 
-    /// How far the joint that is open farthest is open, m; of a [`PinJoint`](super::PinJoint) with the cosines of its
-    /// axes.
+    /// The widest gap of a joint, m; for a [`PinJoint`](super::PinJoint) the norm includes the cosines of its axes.
     #[must_use]
     pub fn widest_gap(&self, motion: &Motion<[Body; N], S::Advected>) -> f64 {
         self.plan.largest_gap(&Places::of(&motion.attitude)).1

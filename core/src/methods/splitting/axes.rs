@@ -1,10 +1,10 @@
-//! Which body axis is which.
+//! Cyclic permutations of the body axes.
 
 use nalgebra::Vector3;
 
 use crate::numbers::Real;
 
-/// The body axes, in an order that keeps them right-handed.
+/// A right-handed order of the body axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Axes {
     Xyz,
@@ -14,7 +14,7 @@ pub(super) enum Axes {
 
 #[hot]
 impl Axes {
-    /// The components of a vector along these axes, which are right-handed.
+    /// The components of a vector along the axes in this order.
     pub(super) fn of<T: Real>(self, v: &Vector3<T>) -> [T; 3] {
         let (x, y, z) = (v.x, v.y, v.z);
         match self {
@@ -24,7 +24,7 @@ impl Axes {
         }
     }
 
-    /// A quaternion from those components of its vector to the body's.
+    /// A quaternion in the body's axes, from one with its vector part in this order.
     pub(super) fn back<T: Real>(self, [w, a, b, c]: [T; 4]) -> [T; 4] {
         match self {
             Self::Xyz => [w, a, b, c],
@@ -40,7 +40,7 @@ mod tests {
 
     use super::Axes;
 
-    /// Cross products are those of right-handed axes in all three, and what is taken there comes back.
+    /// Each order is right-handed, and `back` inverts `of`.
     #[test]
     fn components_are_right_handed() {
         let (u, v) = (Vector3::new(0.3, -1.2, 0.7), Vector3::new(-0.4, 0.5, 1.1));

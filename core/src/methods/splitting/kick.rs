@@ -1,4 +1,5 @@
-//! The kicks of a declared Lagrangian's potential, and the checks that it has one and that the rest is the kinetic flow's.
+//! The kicks of a declared Lagrangian's potential, and the checks that the Lagrangian is separable and that its kinetic
+//! part agrees with the kinetic flow.
 
 use nalgebra::{Matrix3, SimdBool as _, Vector3};
 
@@ -8,12 +9,12 @@ use crate::groups::{Advected as _, CayleyRetraction, LieGroup as _, Retraction a
 use crate::mechanics::{DiscreteLagrangian, Term};
 use crate::numbers::{Coordinates, Real, real, reported};
 
-/// The constants with which [`DiscreteLagrangian::kick_before`] is the torque `τ(w)` itself: those of a step of two
-/// seconds, whose half kick it is.
+/// The constants for which [`DiscreteLagrangian::kick_before`] is the torque `τ(w)` itself: those of a step of two
+/// seconds, as a half kick is `(h/2) τ`.
 ///
 /// # Errors
 ///
-/// [`SetupError::NotSeparable`] where the Lagrangian isn't `K(F) − (h/2) (V(w) + V(F⁻¹·w))`.
+/// [`SetupError::NotSeparable`] if the Lagrangian isn't `K(F) − (h/2) (V(w) + V(F⁻¹·w))`.
 pub(crate) fn torque<T, L>(lagrangian: &L) -> Result<L::Constants, SetupError>
 where
     T: Real,
@@ -28,7 +29,7 @@ where
     for xi in [Vector3::new(0.2, -0.1, 0.3), Vector3::new(-0.5, 0.4, 0.1)] {
         let element: SO3<T> = CayleyRetraction::retract(&xi.map(real::<T>));
         let (f, increment) = (element.matrix(), element.increment());
-        // What is left of the momenta without the half kicks is the kinetic part's, and knows nothing of `w`.
+        // Without the half kicks, the momenta are those of the kinetic part, which doesn't depend on `w`.
         let parts = |w: &L::Advected| -> [Vector3<T>; 3] {
             let next = w.advect(&increment);
             let h = real(1.0);
@@ -50,19 +51,19 @@ where
     }
 }
 
-/// The torque of the potential's commutator with the kinetic energy, `U = −½ τ·J⁻¹τ`, or for a multiple of `J⁻¹` as
-/// many times that; `None` where the derivative of the torque isn't known.
+/// The torque of the potential's commutator with the kinetic energy, `U = −½ τ·J⁻¹τ`; a multiple of `J⁻¹` gives the
+/// same multiple of it. `None` if the derivative of the torque isn't known.
 ///
-/// With the velocity `v = J⁻¹τ`, held fixed, and a turn `η` of the body,
+/// Let the velocity `v = J⁻¹τ` be constant, and `η` a turn of the body. Then
 ///
 /// ```text
 /// −dU·η = v·∂_η τ = η·∂_v τ + τ·(η × v) = η·(∂_v τ + v × τ)
 /// ```
 ///
-/// since the second derivatives `η·∂_v τ` of the potential along left-invariant fields commute but for their bracket;
-/// the commutator itself is that of \[Ch97\]. Body frame; kg m²/s⁴, so that `h³` makes it a momentum.
+/// because the second derivatives `η·∂_v τ` of the potential along left-invariant fields commute up to their bracket.
+/// The commutator itself is that of \[Ch97\]. Body frame; kg m²/s⁴, so that `h³` times it is a momentum.
 ///
-/// Of an inertia that is `DIAGONAL` the other entries aren't looked at.
+/// If `DIAGONAL`, only the diagonal of the inverse inertia is used.
 #[hot]
 pub(super) fn force_gradient<L, const DIAGONAL: bool>(
     torque: &L::Constants,
@@ -76,8 +77,8 @@ where
     let m = inverse_inertia;
     let velocity = if DIAGONAL { Vector3::new(m.m11 * tau.x, m.m22 * tau.y, m.m33 * tau.z) } else { m * tau };
     let change = L::kick_derivative(torque, w, &velocity)?;
-    // A multiple of the torque makes no difference, and without it a body that is symmetric about its third axis gets
-    // exactly nothing there.
+    // A multiple of the torque in `v` has no effect. With this multiple, the third component is exactly zero for a body
+    // that is symmetric about its third axis.
     let across = velocity - tau * m.m11;
     Some(change + across.cross(&tau))
 }
@@ -91,8 +92,8 @@ where
     L::kick_derivative(&lagrangian.constants(T::one()), &lagrangian.advected(), &Vector3::zeros()).is_some()
 }
 
-/// Whether the flow has the rotors of the Lagrangian whose kinetic part it replaces: `s` in `p = JΩ + s`, compared at two
-/// attitudes, as a declared one may depend on what is advected.
+/// Whether the flow has the same momentum bias `s` as the Lagrangian, in `p = JΩ + s`, due to rotors. A declared bias
+/// may depend on advected parameters, so two attitudes are compared.
 pub(super) fn has_bias_of_flow<T, L, K>(lagrangian: &L, kinetic: &K) -> bool
 where
     T: Real,

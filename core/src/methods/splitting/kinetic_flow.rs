@@ -9,24 +9,24 @@ use crate::mechanics::{DiscreteLagrangian, Effect, Inertia, Operations, Regular,
 use crate::motion::DiscreteLiePoisson;
 use crate::numbers::{Coordinates as _, Real, real, reported};
 
-/// A flow, or a structure-preserving approximation of it, of the free body's motion.
+/// The free body's flow, or a structure-preserving approximation of it.
 ///
-/// What it says of the body are associated functions. A declared Lagrangian is a flow, too, and has a method
-/// [`inertia`](Effect::inertia) already.
+/// The body's properties are associated functions and not methods, because a declared Lagrangian is a flow, too, and
+/// has a method [`inertia`](Effect::inertia) already.
 pub trait KineticFlow<T: Real>: Clone {
-    /// The flow over one share of the step, its constants folded.
+    /// The flow over one share of the step, with its constants folded.
     type Drift: Clone;
 
-    /// How much arithmetic the flow over one share is.
+    /// The operations of the flow over one share.
     const OPERATIONS: Operations = Operations::UNCOUNTED;
 
-    /// Whether it is the motion itself, but for rounding, whatever the time.
+    /// Whether the flow is exact to rounding for all times.
     const EXACT: bool = false;
 
-    /// How much of that its [`spin`](Self::spin) is. Where it is zero, the spin stays in the drifts.
+    /// The part of the operations that is the [`spin`](Self::spin)'s. If it is zero, the spin stays in the drifts.
     const OPERATIONS_OF_SPIN: u32 = 0;
 
-    /// Shows its name and every constant: two flows that show the same move a body in the same way.
+    /// Visits the name and every constant: two flows with the same description move a body in the same way.
     fn describe(flow: &Self, visitor: &mut dyn SceneVisitor<T>);
 
     /// The inertia `J` of the body, kg m².
@@ -38,7 +38,7 @@ pub trait KineticFlow<T: Real>: Clone {
         false
     }
 
-    /// The momentum `s` at rest, `p = JΩ + s`, kg m²/s: that of rotors in the body, which most bodies haven't got.
+    /// The momentum bias `s` in `p = JΩ + s`, kg m²/s: that of rotors in the body; zero for most bodies.
     fn momentum_bias(_flow: &Self) -> Vector3<T> {
         Vector3::repeat(T::zero())
     }
@@ -47,32 +47,33 @@ pub trait KineticFlow<T: Real>: Clone {
     ///
     /// # Errors
     ///
-    /// [`SetupError`] for a body or a time that can't be used.
+    /// [`SetupError`] for an invalid body or time.
     fn drift(&self, h: T) -> Result<Self::Drift, SetupError>;
 
-    /// The `s` of the rotation `exp(−s p_3 E_3)` about the third body axis that the drift ends with, 1/(kg m²/s), where it
-    /// is one that commutes with all else about that axis.
+    /// The `s` of the rotation `exp(−s p_3 E_3)` about the third body axis at the end of the drift, 1/(kg m²/s), if the
+    /// drift ends with such a rotation and the rest of the drift commutes with rotations about that axis.
     ///
-    /// Under a potential that is symmetric about the axis, too, those of all drifts are made at once. A flow that has it
-    /// says its [operations](Self::OPERATIONS_OF_SPIN), and what is [left](Self::advance_without_spin) of the drift.
+    /// If the potential is symmetric about the axis, too, the spins of all drifts of a step are applied at once. A flow
+    /// with spin defines its [operations](Self::OPERATIONS_OF_SPIN), and the [rest](Self::advance_without_spin) of the
+    /// drift.
     #[must_use]
     fn spin(_drift: &Self::Drift) -> Option<T> {
         None
     }
 
-    /// Moves the body.
+    /// Computes the body's motion over the drift.
     ///
     /// # Errors
     ///
-    /// [`StepError`] where an equation has no solution.
+    /// [`StepError`] if an equation has no solution.
     fn advance(drift: &Self::Drift, momentum: &Vector3<T>) -> Result<Turn<T>, StepError>;
 
-    /// The flow without its [`spin`](Self::spin), so that `exp(−s p_3 E_3)` after it makes the whole. A flow with
-    /// [operations of a spin](Self::OPERATIONS_OF_SPIN) has to write it, or else doesn't compile.
+    /// The flow without its [`spin`](Self::spin): followed by `exp(−s p_3 E_3)` it is the whole flow. A flow with
+    /// [operations of a spin](Self::OPERATIONS_OF_SPIN) doesn't compile without its own definition.
     ///
     /// # Errors
     ///
-    /// As [`advance`](Self::advance).
+    /// The errors of [`advance`](Self::advance).
     #[hot]
     fn advance_without_spin(drift: &Self::Drift, momentum: &Vector3<T>) -> Result<Turn<T>, StepError> {
         const { assert!(Self::OPERATIONS_OF_SPIN == 0, "a flow with a spin needs an `advance_without_spin`") };
@@ -80,14 +81,14 @@ pub trait KineticFlow<T: Real>: Clone {
     }
 }
 
-/// What a body did.
+/// The motion of a body over a drift.
 #[derive(Clone, Copy, Debug)]
 pub struct Turn<T> {
-    /// `F − I`.
+    /// The increment of the attitude, `F − I`.
     pub increment: Matrix3<T>,
-    /// `Fᵀ p − p`.
+    /// The change of the momentum, `Fᵀ p − p`.
     pub change: Vector3<T>,
-    /// Newton iterations; none for a closed form.
+    /// Newton iterations; zero for a closed form.
     pub iterations: u32,
 }
 
@@ -97,7 +98,7 @@ pub struct Turn<T> {
 /// F = exp(h p/J_1) exp(−h (1/J_1 − 1/J_3) p_3 E_3)        p⁺ = Fᵀ p
 /// ```
 ///
-/// It is exact, there is nothing to solve, and `p_3` isn't even computed anew.
+/// The flow is exact, no equation is solved, and `p_3` stays constant to the bit.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes, InLanes)]
 pub struct SymmetricBody<T = f64> {
     transverse: T,
@@ -109,7 +110,7 @@ impl<T: Real> SymmetricBody<T> {
     ///
     /// # Errors
     ///
-    /// [`SetupError::Parameter`] where that isn't symmetric about the third body axis.
+    /// [`SetupError::Parameter`] if the inertia isn't symmetric about the third body axis.
     pub fn new(inertia: &Inertia<T>) -> Result<Self, SetupError> {
         let j = inertia.as_matrix();
         let expected = Matrix3::from_diagonal(&Vector3::new(j.m11, j.m11, j.m33));
@@ -123,13 +124,13 @@ impl<T: Real> SymmetricBody<T> {
         Ok(Self { transverse: j.m11, axial: j.m33 })
     }
 
-    /// `J_1` and `J_3`.
+    /// The moments `J_1` and `J_3`.
     pub(super) fn moments(flow: &Self) -> (T, T) {
         (flow.transverse, flow.axial)
     }
 }
 
-/// `h/J_1` and `h (1/J_1 − 1/J_3)`.
+/// The factors `h/J_1` and `h (1/J_1 − 1/J_3)`.
 #[derive(Clone, Copy, Debug, Lanes)]
 pub struct SymmetricDrift<T> {
     about_momentum: T,
@@ -141,9 +142,9 @@ impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
 
     const EXACT: bool = true;
 
-    // A rotation is 62, 30 of them for its two coefficients; nothing is solved.
+    // A rotation is 62, 30 of them for its two coefficients; no equation is solved.
     const OPERATIONS: Operations = Operations { step: 131, iteration: 0 };
-    // The other rotation's sine and cosine, its product with the first and what it does to the momentum.
+    // The second rotation's sine and cosine, its product with the first, and the change of the momentum.
     const OPERATIONS_OF_SPIN: u32 = 69;
 
     fn describe(flow: &Self, visitor: &mut dyn SceneVisitor<T>) {
@@ -173,7 +174,7 @@ impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
     fn advance_without_spin(drift: &Self::Drift, p: &Vector3<T>) -> Result<Turn<T>, StepError> {
         let [(a11, a21, a31), (a12, a22, a32), (a13, a23, a33)] = rotation(p, drift.about_momentum);
         let increment = Matrix3::new(a11, a12, a13, a21, a22, a23, a31, a32, a33);
-        // Not a number where the angle has no digit left.
+        // NaN if the angle has no significant digit.
         Ok(Turn { increment, change: Vector3::repeat(a33 * T::zero()), iterations: 0 })
     }
 
@@ -184,7 +185,7 @@ impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
         // sin θ and cos θ − 1, without cancellation.
         let (s, v) = (angle * sinc, -(angle * angle * versine));
         let [a1, a2, a3] = rotation(p, drift.about_momentum);
-        // The last is zero, or not a number where the angle has no digit left.
+        // The last component is zero, or NaN if the angle has no significant digit.
         let change = Vector3::new(v * p.x - s * p.y, v * p.y + s * p.x, a3.2 * T::zero());
         // D = A + B + A B, where B turns by −θ about the third axis: B_11 = B_22 = v, B_12 = −B_21 = s.
         let turned_1 = (a1.0 * v - a2.0 * s, a1.1 * v - a2.1 * s, a1.2 * v - a2.2 * s);
@@ -199,13 +200,13 @@ impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
     }
 }
 
-/// `exp(t p̂) − I` by Rodrigues' formula, column by column.
+/// The increment `exp(t p̂) − I` by Rodrigues' formula, column by column.
 #[hot]
 fn rotation<T: Real>(p: &Vector3<T>, t: T) -> [(T, T, T); 3] {
     let (x, y, z) = (p.x * t, p.y * t, p.z * t);
     let (xx, yy) = (x * x, y * y);
-    // Where `p_3` is constant the rounding of its square is the same at each step, and would make turns that lengthen
-    // or shorten in proportion to the number of steps; z² − x² is rounded anew each time.
+    // If `p_3` is constant, so is the rounding error of its square, and the turns' lengths would drift in proportion to
+    // the number of steps; z² − x² has a new rounding error at each step.
     let difference = (z - x) * (z + x);
     let (both, zz) = (difference + (xx + xx), difference + xx);
     let (first, second) = rotation_coefficients(both + yy);
@@ -215,14 +216,14 @@ fn rotation<T: Real>(p: &Vector3<T>, t: T) -> [(T, T, T); 3] {
     [(-d1, xy + az, xz - ay), (xy - az, -d2, yz + ax), (xz + ay, yz - ax, -d3)]
 }
 
-/// The flow of a declared Lagrangian without potential: any of its structure, to its order.
+/// The flow of a declared Lagrangian without potential: any Lagrangian of this structure, to its order.
 impl<T: Real, L> KineticFlow<T> for L
 where
     L: DiscreteLagrangian<Scalar = T, Group = SO3<T>, Advected = ()> + Regular + Clone,
 {
     type Drift = DeclaredDrift<L>;
 
-    // The guess takes 49 more, and the difference of the momenta 3.
+    // The initial guess has 49 more operations, and the difference of the momenta 3.
     const OPERATIONS: Operations =
         Operations { step: L::OPERATIONS.step.saturating_add(52), iteration: L::OPERATIONS.iteration };
 
@@ -246,7 +247,7 @@ where
 
     #[hot]
     fn advance(drift: &Self::Drift, momentum: &Vector3<T>) -> Result<Turn<T>, StepError> {
-        // Half an explicit step ahead is the velocity in the middle, to second order that of the whole.
+        // Half an explicit step ahead is the velocity at the middle, which is the mean velocity to second order.
         let h = drift.flow.step_size();
         let velocity = drift.inverse * momentum;
         let half_guess = (velocity + drift.inverse * momentum.cross(&velocity) * (h * real(0.5))) * (h * real(0.5));
@@ -255,7 +256,7 @@ where
     }
 }
 
-/// `J⁻¹` of a constant inertia, symmetric but for the rounding of its columns.
+/// The inverse `J⁻¹` of a constant inertia, symmetric up to the rounding of its columns.
 pub(crate) fn inverse_inertia<T: Real, L: DiscreteLagrangian<Scalar = T, Group = SO3<T>>>(
     lagrangian: &L,
 ) -> Matrix3<T> {
@@ -264,7 +265,7 @@ pub(crate) fn inverse_inertia<T: Real, L: DiscreteLagrangian<Scalar = T, Group =
     Matrix3::from_columns(&[column(0), column(1), column(2)])
 }
 
-/// A declared flow, and the inverse inertia that its guesses are made with.
+/// A declared flow, and the inverse inertia for its initial guesses.
 #[derive(Clone, Debug, Lanes)]
 pub struct DeclaredDrift<L: DiscreteLagrangian<Group = SO3<T>, Scalar = T>, T: Real = crate::mechanics::Scalar<L>> {
     flow: DiscreteLiePoisson<L>,

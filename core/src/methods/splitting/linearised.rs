@@ -1,6 +1,7 @@
-//! The derivatives of a splitting: those of its kicks are the scene's, those of its drifts the flow's.
+//! The derivatives of a splitting: those of kicks come from the scene, those of drifts from the flow.
 //!
-//! The kick of a force gradient has the scene's `J⁻¹` in it, so the scene's inertia is a parameter of that, too.
+//! The kick of a force gradient contains the scene's `J⁻¹`, so it has derivatives with respect to the scene's inertia,
+//! too.
 
 use alloc::vec::Vec;
 use core::fmt::Debug;
@@ -21,13 +22,14 @@ use crate::mechanics::{
 use crate::motion::{Plan, StepReport, Summation};
 use crate::numbers::{Real, real};
 
-/// A kinetic flow that can be differentiated: [`SymmetricBody`], [`ExactBody`](super::ExactBody), and every one that is
-/// declared with `gradients`.
+/// A kinetic flow with derivatives: [`SymmetricBody`], [`ExactBody`](super::ExactBody), and every flow that is declared
+/// with `gradients`.
 ///
-/// A flow implemented by hand elsewhere can't be one, as only the library makes what is shown to a [`Pass`].
+/// A flow that is implemented by hand outside of the library can't have derivatives, as only the library constructs the
+/// arguments of a [`Pass`].
 ///
-/// Its parameters are behind those of the scene, as a term of their own: in a splitting the body moves by the flow's
-/// inertia, not by the scene's. What depends on both, as an inertia that the two share, sums both derivatives.
+/// The flow's parameters come after those of the scene, as a term of their own: in a splitting the body moves by the
+/// flow's inertia, not by the scene's. If the two share an inertia, its derivative is the sum of both.
 #[diagnostic::on_unimplemented(
     message = "the derivatives of the flow `{Self}` aren't known",
     label = "neither declared with `gradients` nor exact",
@@ -35,23 +37,23 @@ use crate::numbers::{Real, real};
 )]
 #[doc(hidden)]
 pub trait DifferentiableFlow<T: Real>: KineticFlow<T> {
-    /// How many scalars its parameters have.
+    /// The number of scalar parameters.
     const PARAMETERS: usize;
 
-    /// Shows them.
+    /// Visits the parameters.
     fn describe_parameters(flow: &Self, visitor: &mut dyn SceneVisitor<T>);
 
-    /// What the derivatives of all motions of one length have in common.
+    /// The part of the derivatives that all motions of one duration share.
     type Slopes: Clone + Debug;
 
-    /// Those of this length, s.
+    /// The shared part of the derivatives for this duration, s.
     fn slopes(flow: &Self, time: T) -> Self::Slopes;
 
-    /// Shows it to a pass.
+    /// Passes the derivatives of a drift to `pass`.
     fn visit<A>(flow: &Self, drift: &Drifted<'_, T, Self::Slopes, A>, pass: &mut impl Pass<SO3<T>>);
 }
 
-/// What a flow did in a time, s. Its parameters are numbered from `first` on, among those of the splitting.
+/// A drift of this duration, s. Its parameters are numbered from `first` on, among those of the splitting.
 #[doc(hidden)]
 pub struct Drifted<'a, T: Real, D, A> {
     pub(super) time: T,
@@ -80,7 +82,7 @@ where
     }
 }
 
-/// With `F = exp(t p̂) exp(−s p_3 E_3)`, where `t = h/J_1` and `s = h (1/J_1 − 1/J_3)`,
+/// For `F = exp(t p̂) exp(−s p_3 E_3)` with `t = h/J_1` and `s = h (1/J_1 − 1/J_3)`, the variation is
 ///
 /// ```text
 /// ε = dexp(t p̂) δ(t p) − δ(s p_3) F e_3        dexp(x̂) = I + c₂(|x|²) x̂ + c₃(|x|²) x̂²
@@ -102,7 +104,7 @@ impl<T: Real> DifferentiableFlow<T> for SymmetricBody<T> {
         let (momentum, increment) = (event.before.momentum, event.increment);
         let t = time / transverse;
         let s = t * ((axial - transverse) / axial);
-        // The second factor turns about the third axis.
+        // The axis of the second factor in space.
         let axis: Vector3<T> = increment.column(2) + Vector3::z();
         let x = momentum * t;
         let q = x.norm_squared();
@@ -119,7 +121,7 @@ impl<T: Real> DifferentiableFlow<T> for SymmetricBody<T> {
         let hat = x.cross_matrix();
         let of_direction = (Matrix3::identity() + hat * stumpff::<T, 2>(q) + hat * hat * stumpff::<T, 3>(q)) * t;
         let turn_by_momentum = of_direction - Matrix3::from_columns(&[Vector3::zeros(), Vector3::zeros(), axis * s]);
-        // Along p itself dexp is one.
+        // Along p itself dexp is the identity.
         let spin = axis * momentum.z;
         let by_transverse = (spin - momentum) * (t / transverse);
         let by_axial = spin * -(time / (axial * axial));
@@ -128,8 +130,8 @@ impl<T: Real> DifferentiableFlow<T> for SymmetricBody<T> {
     }
 }
 
-/// The gradient before a turn, `F z` and `F p`, but for what the turn itself has in it, and that by the turn,
-/// `F z − μ × F p`; the turn is one by `F = I + D` of a body with the momentum `μ` before it.
+/// The cotangent before a turn, `F z` and `F p`, without the turn's own dependence on the momentum, and the derivative
+/// with respect to the turn, `F z − μ × F p`. The turn is `F = I + D`, and `μ` the body's momentum before it.
 #[hot]
 pub(super) fn before_turn<T: Real>(
     increment: &Matrix3<T>,
@@ -140,7 +142,7 @@ pub(super) fn before_turn<T: Real>(
     (Cotangent { attitude, momentum: carried }, attitude - momentum.cross(&carried))
 }
 
-/// A turn by `F`, whose increment this is, of a body with this momentum before it.
+/// The derivatives of a turn by `F` with this increment, of a body with this momentum before it.
 #[hot]
 pub(super) fn flown<'a, T: Real>(
     turn_by_momentum: Matrix3<T>,
@@ -182,8 +184,8 @@ where
         self.scheme.shares().count()
     }
 
-    /// A step that turns about the axis once, after all drifts, is the same only for potentials that are symmetric about
-    /// it. The derivative with respect to the potential leaves those, so the drifts are made again with their own turns.
+    /// Applying all spins once after the drifts is equivalent only for symmetric potentials. The derivative with
+    /// respect to the potential also has asymmetric directions, so the recorded drifts include their own spins.
     #[hot]
     fn record<M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
@@ -224,20 +226,20 @@ where
     S: RigidScene + SecondDerivatives,
     K: DifferentiableFlow<Scalar<S>>,
 {
-    /// Whether the derivatives of force gradients are known.
+    /// Checks that the derivatives of force gradients are known.
     pub(super) fn check_gradients(scene: &S) -> Result<(), SetupError> {
         let (w, zero) = (scene.advected(), Vector3::repeat(real(0.0)));
         let known = scene.kick_gradient(&w, &zero, [&zero; 2], &mut |_, _| {});
         known.map(|_| ()).ok_or(SetupError::NoSecondDerivatives)
     }
 
-    /// The table of these shares.
+    /// The table for shares of these lengths.
     pub(super) fn table_of(&self, lengths: impl Iterator<Item = Length<Scalar<S>>>) -> Table<Scalar<S>, K::Slopes> {
         let slopes = |time| K::slopes(&self.kinetic, time);
         Table(lengths.map(|length| (length, (length.flow == Flow::Drift).then(|| slopes(length.time)))).collect())
     }
 }
 
-/// The lengths of all shares of a step, those of drifts with what their derivatives have in common.
+/// The lengths of all shares of a step, and for drifts the shared part of the derivatives.
 #[derive(Clone, Debug)]
 pub struct Table<T, D>(Vec<(Length<T>, Option<D>)>);

@@ -35,17 +35,17 @@ use nalgebra::{
 
 /// The plan of [`Stepper::split`](crate::Stepper::split), for a body on SO(3) under a potential: `l_d = K(F) − (h/2) (V(w) + V(F⁻¹·w))` with its step in shares.
 ///
-/// The shares `a_i` and `b_i` of a [`SplittingScheme`] go to the kinetic flow over `a_i h` and to kicks
-/// `p ← p + b_i h τ(w)` in alternation. The kinetic part of the declared Lagrangian is replaced by a [`KineticFlow`], exact
-/// for a symmetric body or declared with a higher order; that part makes nearly all of the error of (3.13). Every stage
-/// is a Poisson map that keeps the momentum maps, so the step is. Schemes with force gradients add to a kick a share of
-/// `−½ τ·J⁻¹τ`, the potential's commutator with the kinetic energy, whose torque is derived as `τ` is; with them two to
-/// five flows reach an order that takes six to fourteen without.
+/// The shares `a_i` and `b_i` of a [`SplittingScheme`] are the durations of the kinetic flow over `a_i h` and of kicks
+/// `p ← p + b_i h τ(w)` in alternation. A [`KineticFlow`] replaces the kinetic part of the declared Lagrangian: it is
+/// exact, or declared with a higher order. That part causes nearly all of the error of (3.13). Every stage is a Poisson
+/// map that conserves the momentum maps, so the step is, too. A scheme with force gradients adds to a kick a share of
+/// `−½ τ·J⁻¹τ`, the potential's commutator with the kinetic energy, whose torque is derived as `τ` is. With force
+/// gradients two to five flows reach an order that takes six to fourteen without.
 ///
 /// # Contract
 ///
-/// As [`Stepper`](crate::Stepper)'s. Neighbouring flows of one kind are one flow: over many steps ([`Stepper::run`](crate::Stepper::run)) the last
-/// of a step and the first of the next are made together.
+/// The contract is that of [`Stepper`](crate::Stepper). Over many steps ([`Stepper::run`](crate::Stepper::run)) the
+/// last flow of a step and the first of the next, being of one kind, are merged.
 ///
 /// # Examples
 ///
@@ -76,17 +76,17 @@ pub struct Splitting<S: Effect, K: KineticFlow<Scalar<S>>> {
     #[shared]
     scheme: SplittingScheme,
     torque: S::Constants,
-    /// `J⁻¹`, for force gradients.
+    /// The inverse inertia `J⁻¹`, for force gradients.
     inverse_inertia: Matrix3<Scalar<S>>,
     kinetic: K,
     h: Scalar<S>,
     /// The first share of a run.
     first: Stages<K::Drift, Scalar<S>>,
-    /// A step without its first share, to the end of the next one's, which is made together with the last.
+    /// A step from the end of its first share to the end of the next step's first share, which is merged with the last.
     step: Stages<K::Drift, Scalar<S>>,
     /// The stages from there to the end of a run.
     last: Stages<K::Drift, Scalar<S>>,
-    /// The [spins](KineticFlow::spin) of all the drifts of a step, where they can be made at once.
+    /// The sum of the [spins](KineticFlow::spin) of a step's drifts, if they commute with all its stages.
     spin: Option<Spin<Scalar<S>>>,
 }
 
@@ -96,23 +96,23 @@ struct Spin<T> {
     angle: T,
 }
 
-/// A share of the step, its constants folded.
+/// A share of the step, with its constants folded.
 #[derive(Clone)]
 enum Share<D, T> {
     Drift(D),
     Kick(Kick<T>),
 }
 
-/// Alternating shares, in pairs: a kick is a straight line with the drift before it, so that the motion needn't be put away
-/// between the two.
+/// Alternating shares in pairs: a drift and the kick after it compile to code without branches, in which the motion
+/// stays in registers.
 #[derive(Clone, Debug, Lanes)]
 struct Stages<D, T> {
-    /// Before the first drift.
+    /// A kick before the first drift.
     lead: Option<Kick<T>>,
     stages: Vec<Stage<D, T>>,
 }
 
-/// A drift, and the kick after it, if that isn't the end.
+/// A drift, and the kick after it unless the drift is the last share.
 #[derive(Clone, Debug, Lanes)]
 struct Stage<D, T> {
     drift: D,
@@ -128,7 +128,7 @@ impl<D, T> FromIterator<Share<D, T>> for Stages<D, T> {
 }
 
 impl<D, T> Stages<D, T> {
-    /// These, and then a share.
+    /// Appends a share.
     fn and(mut self, share: Share<D, T>) -> Self {
         match share {
             Share::Drift(drift) => self.stages.push(Stage { drift, kick: None }),
@@ -144,7 +144,7 @@ impl<D, T> Stages<D, T> {
 
 #[derive(Clone, Copy, Debug, Lanes)]
 struct Kick<T> {
-    /// The time for which the torque acts, s.
+    /// The duration of the torque, s.
     time: T,
     /// The inverse inertia times the share of the force gradient, s³/(kg m²).
     mobility: Option<Matrix3<T>>,
@@ -157,9 +157,9 @@ impl<S: Effect> Stepper<S> {
     /// # Errors
     ///
     /// [`SetupError::NotSeparable`], [`SetupError::VaryingInertia`], [`SetupError::InertiaMismatch`] and
-    /// [`SetupError::BiasMismatch`] where the Lagrangian can't be split or the flow isn't that of its body;
-    /// [`SetupError::NoForceGradient`] where the scheme asks for one and the scene was written without; otherwise as
-    /// [`Stepper::new`].
+    /// [`SetupError::BiasMismatch`] if the Lagrangian can't be split or the flow isn't that of its body;
+    /// [`SetupError::NoForceGradient`] if the scheme has force gradients and the scene was declared without; otherwise
+    /// the errors of [`Stepper::new`].
     pub fn split<K>(
         scene: S,
         h: Scalar<S>,
@@ -170,7 +170,7 @@ impl<S: Effect> Stepper<S> {
         S: DiscreteLagrangian<Group = SO3<<S as Term>::Scalar>> + Regular,
         K: KineticFlow<Scalar<S>>,
     {
-        // For its checks of the scene and the step.
+        // This plan is constructed only to check the scene and the step.
         OwnStep::new(&scene, h)?;
         let plan = Splitting::new(&scene, h, flow, scheme)?;
         Ok(Stepper { scene, plan })
@@ -180,7 +180,7 @@ impl<S: Effect> Stepper<S> {
 impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Splitting<S, K> {
     fn new(scene: &S, h: Scalar<S>, kinetic: K, scheme: SplittingScheme) -> Result<Self, SetupError> {
         let mut splitting = Self::folded(scene, h, kinetic, scheme)?;
-        // A turn for itself costs about what three others save.
+        // A separate spin costs about as much as three drifts save.
         let drifts = scheme.shares().filter(|(flow, _)| *flow == Flow::Drift).count();
         if drifts > 3 && splitting.is_without_torque(scene) {
             splitting.spin = splitting.spin_of_a_step();
@@ -188,7 +188,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Splitting<S, K> {
         Ok(splitting)
     }
 
-    /// The splitting as its scheme lists it, with no share joined to its neighbour.
+    /// The splitting with the shares of its scheme; unlike `new`, without merged spins.
     fn folded(scene: &S, h: Scalar<S>, kinetic: K, scheme: SplittingScheme) -> Result<Self, SetupError> {
         let inertia = constant_inertia(scene)?;
         let differences = (inertia - K::inertia(&kinetic)).map(nalgebra::SimdComplexField::simd_abs);
@@ -213,8 +213,8 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Splitting<S, K> {
         Ok(Self { scheme, torque, inverse_inertia, kinetic, h, first, step, last, spin: None })
     }
 
-    /// Whether no kick has a third component, to the last bit: then a rotation about the third axis doesn't change the
-    /// potential.
+    /// Whether the third component of every kick is zero to the bit, so that a rotation about the third axis doesn't
+    /// change the potential.
     fn is_without_torque(&self, scene: &S) -> bool {
         spin::all_samples(scene, |w| {
             let torque: Vector3<Scalar<S>> = S::kick_before(&self.torque, w);
@@ -224,8 +224,8 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Splitting<S, K> {
         })
     }
 
-    /// A potential that is symmetric about the third body axis commutes with rotations about it, and so does what else
-    /// a symmetric body does; `p_3` is constant.
+    /// The sum of a step's spins. A potential that is symmetric about the third body axis, and the rest of a symmetric
+    /// body's drift, commute with rotations about that axis, and `p_3` is constant.
     fn spin_of_a_step(&self) -> Option<Spin<Scalar<S>>> {
         if K::OPERATIONS_OF_SPIN == 0 {
             return None;
@@ -235,10 +235,10 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Splitting<S, K> {
         angle.map(|angle| Spin { angle })
     }
 
-    /// Why a step that began with this momentum didn't end with one.
+    /// The reason why a step from this momentum has a result that isn't finite.
     #[cold]
     fn why_not_finite(&self, momentum: &Vector3<Scalar<S>>) -> StepError {
-        // A drift in it may be longer than the step, or have met more momentum.
+        // A drift may be longer than the step, or start with a larger momentum.
         const LEAST: f64 = 0.01;
         let velocity = self.inverse_inertia * momentum;
         let turn = largest_lane(Coordinates::dot(&velocity, &velocity).simd_sqrt() * self.h.simd_abs());
@@ -248,7 +248,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Splitting<S, K> {
         StepError::NonFinite { what: "momentum after the step" }
     }
 
-    /// The operations of shares that no other joins, besides their iterations.
+    /// The operations of shares that aren't merged, besides their iterations.
     fn operations(shares: &StagesOf<S, K>) -> f64 {
         let kick = 0.5 * f64::from(S::OPERATIONS.step);
         let kicks = shares.stages.iter().map(|stage| &stage.kick).chain([&shares.lead]).flatten();
@@ -276,7 +276,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Splitting<S, K> {
         motion: &mut M,
         iterations: &mut u32,
     ) -> Result<(), StepError> {
-        // No closure: one wouldn't be compiled for the instructions of the machine.
+        // No closure, because it wouldn't be compiled for the detected vector instructions.
         if let Some(kick) = &shares.lead {
             self.kick(kick, motion);
         }
@@ -289,8 +289,9 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Splitting<S, K> {
         Ok(())
     }
 
-    /// The steps of a run with these shares at its beginning, if it has any, and at the end of its last step, and the number
-    /// of iterations. The spin is that of each drift, or of a step.
+    /// The steps of a run, and their iterations. The run begins with the first shares, if there are any, and its last
+    /// step ends with the last ones. `WITH_SPIN` includes spins in the drifts; otherwise a step has one spin at its
+    /// end.
     #[hot]
     fn make_steps<const WITH_SPIN: bool, M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
@@ -300,7 +301,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Splitting<S, K> {
         steps: u64,
     ) -> Result<u64, StepError> {
         let (mut all, mut iterations, mut made) = (0, 0, 0);
-        // One loop with the beginning in it, so that there is one copy of the code.
+        // The beginning is inside of the loop, so that the code is compiled once.
         while made < steps {
             let shares = if made + 1 < steps { &self.step } else { last };
             self.make_all::<WITH_SPIN, M>(first.unwrap_or(shares), motion, &mut iterations)?;
@@ -338,7 +339,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Splitting<S, K> {
         let advected = motion.now().advected;
         let torque: Vector3<Scalar<S>> = S::kick_before(&self.torque, &advected);
         let of_torque = torque * kick.time;
-        // There is a gradient: the step is refused without one when it is set up.
+        // The gradient exists, because construction refuses a scene without it.
         let change = match &kick.mobility {
             Some(mobility) => {
                 let gradient = if K::has_principal_axes(&self.kinetic) {
@@ -357,25 +358,25 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Splitting<S, K> {
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Steerable for Splitting<S, K> {}
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Variable for Splitting<S, K> {}
 
-/// How long a share is.
+/// The length of a share.
 #[derive(Clone, Copy, Debug)]
 struct Length<T> {
     flow: Flow,
-    /// s
+    /// The duration, s.
     time: T,
     /// The share of the force gradient in a kick that has one, s³.
     gradient: Option<T>,
 }
 
 impl<T: Real> Length<T> {
-    /// So many times a share of a step, and of the force gradient.
+    /// A share of a step, and of the force gradient, multiplied by `times`.
     fn of(h: T, times: f64, ((flow, share), gradient): ((Flow, f64), f64)) -> Self {
         let gradient = (gradient != 0.0).then(|| h * h * h * real(times * gradient));
         Self { flow, time: h * real(times * share), gradient }
     }
 }
 
-/// A share of this length.
+/// A drift or a kick of this length.
 fn share_of<T: Real, K: KineticFlow<T>>(
     kinetic: &K,
     inverse_inertia: &Matrix3<T>,
@@ -390,10 +391,10 @@ fn share_of<T: Real, K: KineticFlow<T>>(
 impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Splitting<S, K> {
     type Kept = ();
 
-    /// A body alone gains by instructions with three operands, which save copies, and a symmetric one, whose turn is short, by
-    /// more registers. Another doesn't fill the widest: an increment's entries are moved together in them and apart again,
-    /// for which the next kick waits. Lanes that are arrays are slower with the widest, too. `cargo bench --bench vectors`
-    /// shows all three.
+    /// A single body is faster by instructions with three operands, which save copies. A symmetric one, whose turn is
+    /// short, is faster by more registers, too. For other bodies the widest registers are slower: the entries of an
+    /// increment are packed and unpacked, and the next kick waits for that. Lanes in arrays are slower with the widest,
+    /// too. `cargo bench --bench vectors` compares all three.
     const VECTORS: Vectors =
         if <Scalar<S> as SimdValue>::LANES == 1 && K::OPERATIONS_OF_SPIN > 0 { Vectors::Eight } else { Vectors::Four };
 
@@ -409,7 +410,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Splitting<S, K> {
 
     const STEPS_BY_RUNS: bool = true;
 
-    /// The last drift of a step and the first of the next are made as one.
+    /// The last drift of a step and the first of the next are merged.
     #[hot]
     fn run<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, (): &mut (), steps: u64) -> Result<u64, StepError> {
         let (mut next, ends) = (*motion, (Some(&self.first), &self.last));
@@ -450,7 +451,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Splitting<S, K> {
     }
 }
 
-/// What a force gradient takes besides another kick: products with `J⁻¹`, and that the torque is waited for.
+/// Operations of a force gradient besides those of a second kick: products with `J⁻¹`, and the wait for the torque.
 const OF_A_FORCE_GRADIENT: f64 = 120.0;
-/// What a rotation that is made apart takes, besides its own operations.
+/// Cost of a separate rotation besides its own operations.
 const OF_A_TURN: f64 = 150.0;

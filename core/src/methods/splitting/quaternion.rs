@@ -4,10 +4,10 @@ use nalgebra::Matrix3;
 
 use crate::numbers::{Number, Real, real};
 
-/// A real part and the parts along three axes.
+/// A quaternion: its real part, and its components along three axes.
 pub(super) type Quaternion<T> = [T; 4];
 
-/// The product: first the right one.
+/// The product, as a composition of rotations: the right factor acts first.
 #[hot]
 pub(super) fn product<T: Number>([s, a, b, c]: Quaternion<T>, [w, x, y, z]: Quaternion<T>) -> Quaternion<T> {
     [
@@ -18,16 +18,16 @@ pub(super) fn product<T: Number>([s, a, b, c]: Quaternion<T>, [w, x, y, z]: Quat
     ]
 }
 
-/// The product with one that has no part along the third axis.
+/// The product with a quaternion whose third component is zero.
 #[hot]
 pub(super) fn product_across<T: Number>([s, a, b, c]: Quaternion<T>, [w, x, y]: [T; 3]) -> Quaternion<T> {
     [s * w - (a * x + b * y), (s * x + a * w) - c * y, (s * y + b * w) + c * x, c * w + (a * y - b * x)]
 }
 
-/// `F − I` of a quaternion of any length.
+/// The increment `F − I` of a quaternion of any length.
 ///
-/// That is taken from the very products of the matrix: roundings of a factor that is the same in each step, or of its
-/// length, would be made in each step, too.
+/// The diagonal and the length are sums of the products that the matrix consists of. Otherwise constant rounding
+/// errors, of a factor or of the length, would accumulate over the steps.
 #[hot]
 pub(super) fn increment<T: Real>([w, x, y, z]: Quaternion<T>) -> Matrix3<T> {
     let (wx, wy, wz) = (w * x, w * y, w * z);

@@ -1,30 +1,30 @@
 //! The published coefficients of kinetic-potential splittings.
 
-// The digits are those of the papers, whatever a double keeps of them.
+// The digits are those of the papers, although a double has fewer.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
 
 use crate::methods::composition::CompositionScheme;
 
-/// What a splitting begins and, being symmetric, ends with.
+/// The first and, by symmetry, last flow of a splitting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flow {
-    /// The kinetic flow: the free body moves.
+    /// The kinetic flow: free motion of the body.
     Drift,
     /// The potential's flow: the momentum changes, the attitude doesn't.
     Kick,
 }
 
-/// The coefficients of a symmetric splitting: the shares of the step that the alternating drifts and kicks have.
+/// The coefficients of a symmetric splitting: the shares of the step for alternating drifts and kicks.
 ///
-/// The Nyström schemes use that the kinetic energy is quadratic in the momentum, so that kicks change their own effect
-/// on it only linearly. The near-integrable ones are for a potential that is small beside the kinetic energy: of
-/// `(8, 6, 4)` the error is of the orders `ε h⁸`, `ε² h⁶`, `ε³ h⁴` where `ε` is the ratio of the two, so the order in
-/// `h` alone is the last of the numbers, while what is seen at common steps is the first.
+/// The Nyström schemes rely on a kinetic energy that is quadratic in the momentum: some commutators of kicks then
+/// vanish. The near-integrable schemes are for a potential that is small beside the kinetic energy. The error of
+/// `(8, 6, 4)` is a sum of terms of the orders `ε h⁸`, `ε² h⁶`, `ε³ h⁴` with the ratio `ε` of the two energies. So the
+/// order in `h` alone is the last of the numbers, while at usual steps the first is observed.
 ///
-/// Kicks may have a share of the *force gradient*, too: beside `b_i h τ` that of `g_i h³ U`, the potential's own
-/// commutator with the kinetic energy, `U = −½ τ·J⁻¹τ`. That is a function of the attitude like the potential, so the
-/// kick is as explicit and as symplectic as without it; it costs one [derivative](crate::mechanics::Effect::kick_derivative) of
-/// the torque, and takes away an error that is otherwise paid for with more kinetic flows, and with negative ones.
+/// Kicks may include the *force gradient*: besides `b_i h τ` the kick of `g_i h³ U`, where `U = −½ τ·J⁻¹τ` is the
+/// potential's commutator with the kinetic energy. Like the potential it is a function of the attitude, so the kick
+/// stays explicit and symplectic. It costs one [derivative](crate::mechanics::Effect::kick_derivative) of the torque,
+/// and removes an error that otherwise takes more kinetic flows, some of them negative.
 ///
 /// # Examples
 ///
@@ -39,13 +39,13 @@ pub struct SplittingScheme {
     order: u32,
     first: Flow,
     half: &'static [f64],
-    /// Of each share of `half`; those of drifts are zero, and so are all beyond the last.
+    /// The force gradients of the shares of `half`; zero for drifts, and for all shares after the last entry.
     gradients: &'static [f64],
 }
 
 impl SplittingScheme {
     schemes! {
-        /// Order 2: half a kick, the kinetic flow, half a kick. With the kinetic term of (3.13) that is (3.13).
+        /// Order 2: half a kick, the kinetic flow, half a kick. With the kinetic term of (3.13) this is (3.13).
         STRANG = Self::new("Strang", 2, Flow::Kick, &[0.5, 1.0]);
 
         /// `(4, 2)` in two stages, for a small potential. \[ML95\]
@@ -97,7 +97,7 @@ impl SplittingScheme {
             0.0111645496846301127696897357705886513774]);
 
         /// Order 4 in four stages, `(8, 4)` for a small potential: Gauss's nodes and weights, \[LR01\], with force
-        /// gradients in the inner two kicks, as many as their commutator asks for.
+        /// gradients in the inner two kicks that cancel the commutator.
         FORCE_GRADIENT_4 = Self::new("force gradient 4-4", 4, Flow::Drift,
             &[0.0694318442029737123880267555535952474521, 0.1739274225687269286865319746109997036177,
             0.2605776340045981552106403648947824089476, 0.3260725774312730713134680253890002963823,
@@ -110,19 +110,19 @@ impl SplittingScheme {
             0.0017284322679412332, 0.0, 0.0, 0.0, -0.02649277286832104]);
     }
 
-    /// Other coefficients: those of alternating drifts and kicks, from the first to the middle one.
+    /// Coefficients of the user's: those of alternating drifts and kicks, from the first to the middle one.
     ///
     /// # Panics
     ///
-    /// Where there are fewer than two; in a constant, that is when the crate is compiled.
+    /// Fewer than two coefficients panic; in a constant, at compile time.
     #[must_use]
     pub const fn new(name: &'static str, order: u32, first: Flow, half: &'static [f64]) -> Self {
         assert!(half.len() >= 2, "a splitting has a drift and a kick at least");
         Self { name, order, first, half, gradients: &[] }
     }
 
-    /// With these shares `g_i` of the force gradient: one for each drift and kick, from the first on as far as there
-    /// are any; those of drifts count for nothing.
+    /// Adds shares `g_i` of the force gradient: one for each drift and kick, from the first on; missing ones are zero,
+    /// and those of drifts are ignored.
     #[must_use]
     pub const fn with_gradients(self, gradients: &'static [f64]) -> Self {
         Self { gradients, ..self }
@@ -152,20 +152,21 @@ impl SplittingScheme {
         self.gradients().any(|share| share != 0.0)
     }
 
-    /// Kicks with a share of the force gradient in a step of many.
+    /// The number of kicks with a force gradient per step of a long run.
     #[must_use]
     pub fn gradient_kicks(&self) -> usize {
         let joined = self.gradients().next().is_some_and(|share| share != 0.0);
         self.gradients().filter(|share| *share != 0.0).count() - usize::from(joined)
     }
 
-    /// Kinetic flows in a step of many: the last of a step and the first of the next are one.
+    /// The number of kinetic flows per step of a long run, in which the last of a step and the first of the next are
+    /// merged.
     #[must_use]
     pub fn drifts(&self) -> usize {
         self.in_a_step_of_many(Flow::Drift)
     }
 
-    /// Kicks in a step of many.
+    /// The number of kicks per step of a long run.
     #[must_use]
     pub fn kicks(&self) -> usize {
         self.in_a_step_of_many(Flow::Kick)
@@ -176,8 +177,8 @@ impl SplittingScheme {
     }
 }
 
-/// The shares of half a kick, the kinetic flow and half a kick for each `γ`, neighbouring kicks joined: `N` of them
-/// from the first to the middle one, twice as many as there are `γ`.
+/// The shares of half a kick, the kinetic flow and half a kick for each `γ`, with neighbouring kicks merged: `N` of
+/// them from the first to the middle one, twice as many as there are `γ`.
 const fn composed_strang<const N: usize>(gammas: &[f64]) -> [f64; N] {
     let (mut shares, mut stage, mut before) = ([0.0; N], 0, 0.0);
     while 2 * stage < N {

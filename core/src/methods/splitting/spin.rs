@@ -1,8 +1,8 @@
-//! The rotation of a symmetric body about its own axis, once a step.
+//! The rotation of a symmetric body about its own axis, applied once a step.
 //!
 //! Under a potential that is symmetric about that axis too, `p_3` is constant and so is the angle. The sine and cosine
-//! of one and the same angle are rounded in the same way at each step, and what they miss of `s² + c² = 1` would
-//! lengthen or shorten `w`, `p` and the attitude in proportion to the number of steps. So that, too, is made good.
+//! of a constant angle have constant rounding errors, and their error in `s² + c² = 1` would lengthen or shorten `w`,
+//! `p` and the attitude in proportion to the number of steps. This drift is corrected from time to time.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -12,10 +12,10 @@ use crate::mechanics::DiscreteLagrangian;
 use crate::motion::Summation;
 use crate::numbers::{Entries as _, Real, real, two_square, two_sum};
 
-/// Attitudes without anything special about them.
+/// Attitudes in general position.
 const SAMPLES: [[f64; 3]; 4] = [[0.7, -0.4, 1.1], [-0.3, 0.9, 0.5], [1.3, 0.8, -0.2], [-0.6, -1.2, 0.9]];
 
-/// Whether something is so from wherever the scene is seen, and whatever values a step is given for what is advected.
+/// Whether a property holds for advected parameters at all sample attitudes, and for arbitrary values of them.
 pub(super) fn all_samples<T, L>(lagrangian: &L, is_so: impl Fn(&L::Advected) -> bool) -> bool
 where
     T: Real,
@@ -23,7 +23,7 @@ where
 {
     SAMPLES.iter().all(|xi| {
         let attitude = CayleyRetraction::retract(&Vector3::from(*xi).map(real::<T>));
-        // No two of the values are parallel.
+        // No two of the arbitrary values are parallel.
         let mut entries = xi.iter().cycle().scan(1.0, |factor, entry| {
             *factor += 0.37;
             Some(*factor * entry)
@@ -40,20 +40,20 @@ pub(super) fn turn<T: Real, A: Advected<SO3<T>>>(angle: T, motion: &mut impl Sum
     move_by(&diagonal_block(v, s), motion);
 }
 
-/// `sin θ` and `cos θ − 1`, without cancellation.
+/// The numbers `sin θ` and `cos θ − 1`, without cancellation.
 #[hot]
 fn sine_and_versine<T: Real>(angle: T) -> (T, T) {
     let (sinc, versine) = rotation_coefficients(angle * angle);
     (angle * sinc, -(angle * angle * versine))
 }
 
-/// Corrects the lengths across the axis for what `turns` turns by one angle have added to them, or taken from them.
+/// Corrects the lengths across the axis for the rounding error of `turns` turns by one angle.
 #[cold]
 #[inline(never)]
 pub(super) fn make_good<T: Real, A: Advected<SO3<T>>>(angle: T, turns: u32, motion: &mut impl Summation<SO3<T>, A>) {
     let (s, v) = sine_and_versine(angle);
     let ((ss, ss_rest), (vv, vv_rest)) = (two_square(s), two_square(v));
-    // s² + (1 + v)² − 1, of which the large parts cancel.
+    // s² + (1 + v)² − 1, in which the large terms cancel.
     let (twice, lost) = two_sum(ss, v + v);
     let (small, lost_again) = two_sum(twice, vv);
     let excess = small + ((lost + lost_again) + (ss_rest + vv_rest));
@@ -64,7 +64,7 @@ pub(super) fn make_good<T: Real, A: Advected<SO3<T>>>(angle: T, turns: u32, moti
 fn move_by<T: Real, A: Advected<SO3<T>>>(increment: &Matrix3<T>, motion: &mut impl Summation<SO3<T>, A>) {
     motion.turn(increment);
     let change = SO3::adjoint_transpose_increment(increment, &motion.now().momentum);
-    // The third component isn't even added to.
+    // The third component stays the same to the bit.
     motion.push(&Vector3::new(change.x, change.y, T::zero()));
 }
 

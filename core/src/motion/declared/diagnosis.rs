@@ -1,4 +1,4 @@
-//! Why a step has no solution, what is proved about that before it is solved, and which step would have one.
+//! Diagnosis of steps without a solution: bounds that decide before a solve, and the largest solvable step.
 
 use alloc::vec::Vec;
 
@@ -23,7 +23,7 @@ impl<S: Effect> OwnStep<S> {
         advected: &S::Advected,
         half_guess: &Vector<S>,
     ) -> Result<Root<Group<S>>, StepError> {
-        // No bound says anything of an infinite kick, which `explain` finds.
+        // The bounds don't apply to an infinite kick, which `explain` reports.
         let is_finite = kicked::<S>(&self.constants, momentum, advected).is_finite() && advected.is_finite();
         if is_finite && self.solvability(scene, momentum, advected) == Solvability::Impossible {
             let largest = self.largest_solvable(scene, momentum, advected);
@@ -34,7 +34,7 @@ impl<S: Effect> OwnStep<S> {
             .map_err(|error| self.explain(error, scene, momentum, advected))
     }
 
-    /// Finds out whether a smaller step would do, which turns a failed solve into the error that says so.
+    /// Replaces the error of a failed solve by one that names the largest solvable step, if there is one.
     fn explain(&self, error: StepError, scene: &S, momentum: &Vector<S>, advected: &S::Advected) -> StepError {
         if !momentum.is_finite() {
             return StepError::NonFinite { what: "momentum" };
@@ -42,7 +42,7 @@ impl<S: Effect> OwnStep<S> {
         if !advected.is_finite() {
             return StepError::NonFinite { what: "advected parameter" };
         }
-        // An attraction between bodies at one place is an example.
+        // An example is an attraction between bodies at one position.
         let terms = step_terms::<S>(&self.constants, &kicked::<S>(&self.constants, momentum, advected), advected);
         if !newton_system::<S>(&self.constants, &terms, &Vector::<S>::zero()).0.is_finite() {
             return StepError::NonFinite { what: "momentum equation" };
@@ -54,7 +54,8 @@ impl<S: Effect> OwnStep<S> {
         beyond_solvable(scene, self.h, momentum, advected, largest)
     }
 
-    /// As [`DiscreteLiePoisson::solvability`](crate::motion::DiscreteLiePoisson::solvability).
+    /// The bounds on solvability, as in
+    /// [`DiscreteLiePoisson::solvability`](crate::motion::DiscreteLiePoisson::solvability).
     pub(in crate::motion) fn solvability(
         &self,
         scene: &S,
@@ -65,14 +66,14 @@ impl<S: Effect> OwnStep<S> {
         self.turning_limits(scene, advected).map_or(Solvability::Open, decide)
     }
 
-    /// `|h a|`.
+    /// The size `|h a|` of the right-hand side.
     fn size(h: Scalar<S>, constants: &S::Constants, momentum: &Vector<S>, advected: &S::Advected) -> f64 {
         let turn = kicked::<S>(constants, momentum, advected) * h;
         reported(turn.dot(&turn).simd_sqrt())
     }
 
-    /// The bounds for this `w`, at this step and at half of it: a kinetic part that depends on `h` in another way isn't
-    /// the one that they are proved for.
+    /// The bounds for this `w`, at this step and at half of it: they are proved only for one dependence of the kinetic
+    /// part on `h`.
     fn turning_limits(&self, scene: &S, advected: &S::Advected) -> Option<TurningLimits> {
         let at = |h: Scalar<S>| {
             let constants = scene.constants(h);
@@ -89,7 +90,7 @@ impl<S: Effect> OwnStep<S> {
         at(self.h * real(0.5)).and(at(self.h))
     }
 
-    /// As [`DiscreteLiePoisson::max_step`](crate::motion::DiscreteLiePoisson::max_step).
+    /// The largest solvable step, as in [`DiscreteLiePoisson::max_step`](crate::motion::DiscreteLiePoisson::max_step).
     pub(in crate::motion) fn largest_solvable(
         &self,
         scene: &S,
@@ -114,7 +115,7 @@ impl<S: Effect> OwnStep<S> {
     }
 }
 
-/// The error that names the largest step and how far the body would turn.
+/// The error that names the largest step, and the turn that the whole step would take.
 pub(crate) fn beyond_solvable<S: Effect>(
     scene: &S,
     h: Scalar<S>,
@@ -122,14 +123,14 @@ pub(crate) fn beyond_solvable<S: Effect>(
     advected: &S::Advected,
     largest: Scalar<S>,
 ) -> StepError {
-    // With the kick at the beginning of the step.
+    // The turn is estimated with the kick at the beginning of the step.
     let kicked = kicked::<S>(&scene.constants(h), momentum, advected);
     let (turn, body) = farthest::<Group<S>>(&(estimated_velocity(scene, &kicked, advected) * h));
     StepError::BeyondSolvable { step: reported(h), largest: six_digits(reported(largest)), turn, body }
 }
 
-/// How far the body turns that turns farthest, of several lanes the largest, and of a system which it is. What doesn't
-/// turn, as translations, doesn't count: a metre isn't a radian.
+/// The largest turn of a body, over all lanes, and for a system the number of that body. Translations are ignored: a
+/// metre isn't a radian.
 fn farthest<G: LieGroup>(change: &G::Vector) -> (f64, Option<usize>) {
     let mut squares = Vec::new();
     change.each(&mut |component| squares.push(component * component));

@@ -23,14 +23,14 @@ use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 pub struct OwnStep<S: Effect> {
     h: Scalar<S>,
     constants: S::Constants,
-    /// The square of a right side far beyond those of steps that have a solution.
+    /// The square of a right-hand side far beyond those of steps that have a solution.
     largest_target: Scalar<S>,
     trusted: Scalar<S>,
-    /// What the Jacobian's determinant has to exceed for a solve to do without a second one.
+    /// The determinant of the Jacobian above which a solve needs no second Jacobian.
     safe: Scalar<S>,
 }
 
-/// What a step keeps for the next: as much history as its solve makes use of.
+/// The memory of a step: as much history as its solve uses.
 type Memory<S> = WarmStart<Vector<S>, <<S as Effect>::Kinetic as KineticPart>::History<Scalar<S>, Vector<S>>>;
 
 impl<S: Effect> OwnStep<S> {
@@ -38,7 +38,7 @@ impl<S: Effect> OwnStep<S> {
     ///
     /// # Errors
     ///
-    /// As [`Stepper::new`](crate::Stepper::new).
+    /// The errors of [`Stepper::new`](crate::Stepper::new).
     pub(crate) fn new(scene: &S, h: Scalar<S>) -> Result<Self, SetupError>
     where
         S: Regular,
@@ -46,10 +46,10 @@ impl<S: Effect> OwnStep<S> {
         Self::folded(scene, h)
     }
 
-    /// As [`new`](Self::new), of a scene that is known to have a kinetic part.
+    /// The plan, as by [`new`](Self::new), for a scene that is known to have a kinetic part.
     pub(crate) fn folded(scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
         scene.validate()?;
-        // 1/h and the constants made with it must be finite, unless there is no step at all.
+        // 1/h and the constants that depend on it must be finite, unless h is zero.
         if !is_finite(h) || !(h == real(0.0) || is_finite(real::<Scalar<S>>(1.0) / h)) {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
@@ -62,9 +62,9 @@ impl<S: Effect> OwnStep<S> {
         }
         let (at_rest, trace) = jacobian_at_rest(scene, &constants);
         let safe = safe(at_rest);
-        // With an extreme `h` the momentum equation and its derivatives leave the range of this scalar.
+        // An extreme `h` takes the momentum equation and its derivatives out of this scalar's range.
         let at_rest = (0..<Group<S> as LieGroup>::DIMENSION).fold(at_rest, |product, _| product / h);
-        // One that depends on where the bodies are may be singular here, and not where they start.
+        // An inertia that varies with the configuration may be singular here, but not at the start.
         let is_product = !<Group<S> as LieGroup>::FACTORS.is_whole() || <Group<S> as LieGroup>::BODIES > 1;
         let is_in_range = if scene.has_constant_inertia() && !is_product {
             is_finite(at_rest) && !at_rest.simd_eq(real(0.0)).any()
@@ -74,7 +74,7 @@ impl<S: Effect> OwnStep<S> {
         if h != real(0.0) && !is_in_range {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
-        // Without a step there is nothing to solve, which the careful solve sees to.
+        // A step of zero is left to the careful solve, as there is no equation.
         let largest = trace / h * real(2.0 * RATIO) / Scalar::<S>::simd_default_epsilon();
         let largest_target = if h == real(0.0) { h } else { largest * largest };
         let is_expensive = const { S::JACOBIAN_IS_EXPENSIVE } && S::jacobian_is_expensive(&constants) && h != real(0.0);
@@ -82,7 +82,7 @@ impl<S: Effect> OwnStep<S> {
         Ok(Self { h, constants, largest_target, trusted, safe })
     }
 
-    /// `F` that solves the momentum equation (2.7), from the coordinates `guess` and no other start.
+    /// The solution `F` of the momentum equation (2.7) from the coordinates `guess`, without another start.
     pub(super) fn invert(
         &self,
         scene: &S,
@@ -97,7 +97,7 @@ impl<S: Effect> OwnStep<S> {
         problem.attempt(&(*guess * real(0.5))).map(|root| Group::<S>::from_increment(&root.increment))
     }
 
-    /// One step from a motion and a guess of half the coordinates of `F`.
+    /// One step from a motion, with a guess of half the coordinates of `F`.
     #[hot]
     pub(crate) fn increment_from<M: Summation<Group<S>, S::Advected>>(
         &self,
@@ -111,18 +111,18 @@ impl<S: Effect> OwnStep<S> {
         }
     }
 
-    /// The step, if nothing about it is doubtful.
+    /// The step by the fast path; `None` if anything about it is doubtful.
     #[hot]
     fn increment_directly<M: SumsOf<S>>(&self, scene: &S, motion: &M, half_guess: &Vector<S>) -> Option<Increment<S>> {
         let now = motion.now();
         let problem = self.problem(scene, &now.momentum, &now.advected);
         let root = problem.solve_directly::<true>(half_guess, self.largest_target)?;
         let made = self.moved(motion, &problem.a, &root);
-        // A finite sum has finite terms. Where it isn't, it may have overflowed.
+        // A finite sum has finite terms. A sum that isn't finite may have overflowed.
         is_finite(made.total()).then_some(made)
     }
 
-    /// The step, or why there is none.
+    /// The step by the careful path, or its error.
     #[cold]
     #[inline(never)]
     fn increment_carefully<M: Summation<Group<S>, S::Advected>>(
@@ -144,16 +144,18 @@ impl<S: Effect> OwnStep<S> {
         }
     }
 
-    /// By `F` from a motion, with `a = μ + kick_before(w)`.
+    /// The increment for the solution `F`, with `a = μ + kick_before(w)`.
     #[hot]
     fn moved<M: SumsOf<S>>(&self, motion: &M, a: &Vector<S>, root: &Root<Group<S>>) -> Increment<S> {
         let Root { half, increment, iterations, far, ref kick } = *root;
         let Motion { momentum, advected, .. } = motion.now();
-        // Another order of these moves some scenes by two hundredths, up and down.
+        // The order of these operations matters: another one changes the times of some scenes by two hundredths, up or
+        // down.
         let next = motion.turned(&increment);
         let mut change = Group::<S>::adjoint_transpose_increment(&increment, a);
         if const { M::CARRIES } {
-            // In `a` the kick is rounded to the digits of the momentum, which is what a carry is to make good.
+            // In `a` the kick is rounded to the digits of the momentum; the carry should compensate that, so the kick
+            // is computed anew.
             let mut kicks = None;
             if const { S::PARTS.kick_before } && S::parts(&self.constants).kick_before {
                 kicks = Some(S::kick_before(&self.constants, advected));
@@ -175,7 +177,7 @@ impl<S: Effect> OwnStep<S> {
         Increment { coordinates: half + half, increment, momentum, advected: next, iterations, change, half, far }
     }
 
-    /// `kick_after(F, w⁺)`, in the lanes that have come by it from what the solve has found.
+    /// `kick_after(F, w⁺)`; lanes whose solve has computed it reuse the result.
     #[hot]
     fn kick_after(&self, increment: &Matrix<S>, next: &S::Advected, kick: &Kick<Group<S>>) -> Vector<S> {
         let direct = || S::kick_after(&self.constants, increment, next);
@@ -258,8 +260,7 @@ impl<S: Effect> Plan<S> for OwnStep<S> {
 }
 
 impl<S: Effect> OwnStep<S> {
-    /// A rare step, to its end: if it came back to the common way, that would have to keep in memory what it has in
-    /// registers.
+    /// A rare step, complete: if it returned to the fast path, that would have to store its registers in memory.
     #[cold]
     #[inline(never)]
     fn step_rare<M: Summation<Group<S>, S::Advected>>(
@@ -285,7 +286,7 @@ fn taken<S: Effect, M: SumsOf<S>>(scene: &S, motion: &mut M, kept: &mut Memory<S
     StepReport::of(made.iterations)
 }
 
-/// What is done after the first step, and after many more.
+/// The rare work after the first step, and after a fixed number of further ones.
 #[cold]
 #[inline(never)]
 fn look<S: Effect, M: Summation<Group<S>, S::Advected>>(scene: &S, motion: &mut M, kept: &mut Memory<S>) {
@@ -295,12 +296,13 @@ fn look<S: Effect, M: Summation<Group<S>, S::Advected>>(scene: &S, motion: &mut 
     motion.restore(&scene.advected());
 }
 
-/// Half the coordinates of the first increment, about: every retraction has the identity as its derivative at zero.
+/// Approximately half the coordinates of the first increment: every retraction has the identity as its derivative at
+/// zero.
 pub(crate) fn half_coordinates<S: Effect>(scene: &S, motion: &MotionOf<S>, h: Scalar<S>) -> Vector<S> {
     estimated_velocity(scene, &motion.momentum, &motion.advected) * (h * real(0.5))
 }
 
-/// `a = μ + kick_before(w)`.
+/// The right-hand side `a = μ + kick_before(w)`.
 #[hot]
 fn kicked<S: Effect>(constants: &S::Constants, momentum: &Vector<S>, w: &S::Advected) -> Vector<S> {
     if const { S::PARTS.kick_before } && S::parts(constants).kick_before {
@@ -310,11 +312,12 @@ fn kicked<S: Effect>(constants: &S::Constants, momentum: &Vector<S>, w: &S::Adve
     }
 }
 
-/// The Newton Jacobian is that at rest and, from the right side, a matrix of rank one. Up to this part of `1/ε` times
-/// the former, `10¹²` times in `f64`, the rounding of the latter doesn't reach it.
+/// The Newton Jacobian is that at rest plus a matrix of rank one that is proportional to the right-hand side. If the
+/// latter is less than `1/ε` times this fraction of the former, `10¹²` times in `f64`, its rounding doesn't affect the
+/// former.
 const RATIO: f64 = 1.0 / 4096.0;
 
-/// Determinant and trace of the Newton system for a body at rest.
+/// The determinant and the trace of the Newton Jacobian for a body at rest.
 fn jacobian_at_rest<S: Effect>(scene: &S, constants: &S::Constants) -> (Scalar<S>, Scalar<S>) {
     let zero = Vector::<S>::zero();
     let terms = step_terms::<S>(constants, &zero, &scene.advected());

@@ -17,7 +17,7 @@ impl<L: DiscreteLagrangian> DiscreteEulerPoincare<L> {
     ///
     /// # Errors
     ///
-    /// As [`DiscreteLiePoisson::new`].
+    /// The errors of [`DiscreteLiePoisson::new`].
     pub fn new(lagrangian: L, h: Scalar<L>) -> Result<Self, SetupError>
     where
         L: Regular,
@@ -29,7 +29,7 @@ impl<L: DiscreteLagrangian> DiscreteEulerPoincare<L> {
     ///
     /// # Errors
     ///
-    /// [`StepError`] where that equation has no solution on the branch of the identity.
+    /// [`StepError`] if that equation has no solution on the branch of the identity.
     pub fn step(&self, f: &Group<L>, w: &L::Advected) -> Result<(Group<L>, L::Advected), StepError> {
         let momentum = self.flow.scene().legendre_plus(&f.matrix(), w, self.flow.step_size());
         let next = w.advect(&f.increment());

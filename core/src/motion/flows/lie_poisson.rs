@@ -13,7 +13,7 @@ use crate::solving::Solvability;
 /// The discrete advected Lie–Poisson flow `(μ_i, w_i) ↦ (μ_{i+1}, w_{i+1})`, \[RDAE, (2.8), (2.9)\].
 ///
 /// It is `𝔽l_d⁺ ∘ (𝔽l_d⁻)⁻¹`: Newton's iteration inverts the momentum equation (2.7). A [`Stepper`](crate::Stepper)
-/// makes it a motion, with the attitude and with guesses.
+/// adds the attitude, and initial guesses.
 #[derive(Clone, Debug, Lanes)]
 pub struct DiscreteLiePoisson<L: Effect> {
     scene: L,
@@ -23,12 +23,12 @@ pub struct DiscreteLiePoisson<L: Effect> {
 impl<L: Effect> DiscreteLiePoisson<L> {
     /// Checks the parameters and folds the constants for the step `h`, in seconds.
     ///
-    /// A negative `h` is the inverse map of `−h` where `l_d` is self-adjoint; `h = 0` is the identity. An inertia that
-    /// depends on what is advected or given isn't checked, here or in a step.
+    /// A negative `h` is the inverse map of `−h` if `l_d` is self-adjoint; `h = 0` is the identity. An inertia that
+    /// depends on advected or prescribed parameters isn't checked, here or in a step.
     ///
     /// # Errors
     ///
-    /// [`SetupError`] for a parameter or a step that can't be used, and for a degenerate kinetic part.
+    /// [`SetupError`] for an invalid parameter or step, and for a degenerate kinetic part.
     pub fn new(scene: L, h: Scalar<L>) -> Result<Self, SetupError>
     where
         L: Regular,
@@ -53,12 +53,12 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         self.declared.step_size()
     }
 
-    /// Solves the momentum equation (2.7) for `F`, starting at the coordinates `guess`, without falling back on
-    /// another start: where the iteration settles on another branch, that is the error.
+    /// Solves the momentum equation (2.7) for `F`, starting at the coordinates `guess`, without another start as a
+    /// fallback: convergence to another branch is an error.
     ///
     /// # Errors
     ///
-    /// [`StepError`] where there is no solution from this guess on the branch of the identity.
+    /// [`StepError`] if there is no solution from this guess on the branch of the identity.
     pub fn invert_legendre_minus(
         &self,
         momentum: &Vector<L>,
@@ -72,8 +72,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
     ///
     /// # Errors
     ///
-    /// [`StepError`] where the momentum equation has no solution on the branch of the identity, or a value isn't
-    /// finite.
+    /// [`StepError`] if the momentum equation has no solution on the branch of the identity, or a value isn't finite.
     #[hot]
     pub fn step(
         &self,
@@ -84,7 +83,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         self.increment_from(momentum, advected, &(*guess * real(0.5)))
     }
 
-    /// As [`step`](Self::step), from half the guess.
+    /// One [`step`](Self::step) from half the guess.
     #[hot]
     pub(crate) fn increment_from(
         &self,
@@ -92,15 +91,16 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         advected: &L::Advected,
         half_guess: &Vector<L>,
     ) -> Result<Increment<L>, StepError> {
-        // No attitude goes into a step.
+        // A step doesn't depend on the attitude.
         let motion = Motion { attitude: Group::<L>::identity(), momentum: *momentum, advected: *advected, steps: 0 };
         self.declared.increment_from(&self.scene, &motion, half_guess)
     }
 
-    /// Whether the step from `(μ, w)` surely has a solution or surely has none, where bounds are known: for the kinetic
-    /// part of (3.13) and potentials of the positions, with `a = μ + (h/2) τ`, below `h|a| = J_min` and above `J_max`.
+    /// Whether the step from `(μ, w)` surely has a solution or surely has none, if bounds are known: for the kinetic
+    /// part of (3.13) and potentials of the positions, with `a = μ + (h/2) τ`, these are `h|a| < J_min` and
+    /// `h|a| > J_max`.
     ///
-    /// A step asks only when its solve hasn't succeeded at once, so that the steps that do cost nothing more.
+    /// A step evaluates the bounds only if its solve doesn't succeed at once, so successful steps cost nothing more.
     #[must_use]
     pub fn solvability(&self, momentum: &Vector<L>, advected: &L::Advected) -> Solvability {
         self.declared.solvability(&self.scene, momentum, advected)
@@ -108,8 +108,8 @@ impl<L: Effect> DiscreteLiePoisson<L> {
 
     /// The largest fraction of this step, in seconds, whose momentum equation has a solution, to six digits.
     ///
-    /// It is found by bisection between zero and `h`, so it costs up to some dozens of solves, fewer where the bounds
-    /// of [`solvability`](Self::solvability) decide.
+    /// Bisection between zero and `h` costs up to some dozens of solves, fewer if the bounds of
+    /// [`solvability`](Self::solvability) decide.
     #[must_use]
     pub fn max_step(&self, momentum: &Vector<L>, advected: &L::Advected) -> Scalar<L> {
         self.declared.largest_solvable(&self.scene, momentum, advected)

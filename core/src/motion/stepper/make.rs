@@ -1,4 +1,4 @@
-//! How a stepper is made.
+//! Construction of steppers.
 
 use super::Stepper;
 use crate::error::SetupError;
@@ -8,16 +8,16 @@ use crate::motion::plan::Plan;
 
 /// # Make
 ///
-/// A scene and a step; other methods below.
+/// A stepper from a scene and a step; other methods follow below.
 impl<S: Effect> Stepper<S> {
     /// Checks the parameters and folds the constants for the step `h`, in seconds.
     ///
-    /// A negative `h` is the inverse map of `−h` where `l_d` is self-adjoint; `h = 0` is the identity.
+    /// A negative `h` is the inverse map of `−h` if `l_d` is self-adjoint; `h = 0` is the identity.
     ///
     /// # Errors
     ///
-    /// [`SetupError`] for a parameter or a step that can't be used, and for a degenerate kinetic part. Of several lanes
-    /// it doesn't tell which: steppers that are made one by one and [gathered](crate::numbers::Lanes::gathered) do.
+    /// [`SetupError`] for an invalid parameter or step, and for a degenerate kinetic part. It doesn't name the lane;
+    /// construct single steppers and [gather](crate::numbers::Lanes::gathered) them for that.
     pub fn new(scene: S, h: Scalar<S>) -> Result<Self, SetupError>
     where
         S: Regular,
@@ -28,11 +28,11 @@ impl<S: Effect> Stepper<S> {
 }
 
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
-    /// A user's scene and plan, folded for each other; `examples/how-to-add-a-method.rs` has one.
+    /// A stepper of a user's scene and plan, folded for each other; `examples/how-to-add-a-method.rs` has one.
     ///
     /// # Errors
     ///
-    /// [`SetupError::Parameter`] for a parameter of the scene that can't be used.
+    /// [`SetupError::Parameter`] for an invalid parameter of the scene.
     pub fn with_plan(scene: S, plan: P) -> Result<Self, SetupError> {
         scene.validate()?;
         Ok(Self { scene, plan })

@@ -1,6 +1,6 @@
-//! The stepper: a scene, a method, and all that is put around a step.
+//! The stepper: a scene, a method, and all functions around a step.
 
-// In the order of its page.
+// The order is that of the stepper's page in the documentation.
 mod make;
 mod read;
 mod start;
@@ -14,7 +14,7 @@ use crate::motion::declared::OwnStep;
 use crate::motion::plan::Plan;
 use crate::motion::state::State;
 
-/// The state of a scene `S` that is stepped by the plan `P`, its own step unless another is named.
+/// The state of a scene `S` with the plan `P`, by default its own step.
 pub type StateOf<S, P = OwnStep<S>> = State<Group<S>, <S as Term>::Advected, <P as Plan<S>>::Kept>;
 
 /// An integrator with a fixed step: a scene, and a method whose constants are folded for it.
@@ -28,8 +28,8 @@ pub type StateOf<S, P = OwnStep<S>> = State<Group<S>, <S as Term>::Advected, <P 
 /// Stepper::for_accuracy(scene, accuracy, …)       the cheapest of all these
 /// ```
 ///
-/// Whatever the method `P`, a motion is [started](Self::start), [stepped](Self::step) and read in the same way, and
-/// [compensated](Self::compensated) sums, [substeps](Self::or_substeps), control forces and checkpoints go with it.
+/// With every method `P`, a motion is [started](Self::start), [stepped](Self::step) and read in the same way, and
+/// [compensated](Self::compensated) sums, [substeps](Self::or_substeps), control forces and checkpoints are available.
 ///
 /// # Contract
 ///
@@ -38,8 +38,8 @@ pub type StateOf<S, P = OwnStep<S>> = State<Group<S>, <S as Term>::Advected, <P 
 /// - With a scalar of several [lanes](crate::numbers::Real#lanes) all of them move or none does, each as it would alone.
 /// - The same state gives the same next state, bit for bit. In Cayley coordinates no library function is called, so
 ///   that holds from machine to machine.
-/// - An inertia that depends on what is advected or given is checked where a motion starts, and nowhere after that: a
-///   scene in which it can become degenerate has to look itself.
+/// - An inertia that depends on advected or prescribed parameters is checked only at the start of a motion: a
+///   scene in which it can become degenerate has to check it itself.
 /// - Nothing is allocated, and no loop is unbounded.
 ///
 /// # Examples

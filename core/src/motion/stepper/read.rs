@@ -1,4 +1,4 @@
-//! What is read of a motion and of its stepper.
+//! Read access to a motion and its stepper.
 
 use alloc::string::String;
 
@@ -11,7 +11,7 @@ use crate::solving::Solvability;
 
 /// # Read
 ///
-/// What a motion is like, and what the stepper is made of.
+/// Properties of a motion, and the parts of the stepper.
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// The scene.
     #[must_use]
@@ -19,7 +19,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         &self.scene
     }
 
-    /// What was declared of each term of the scene, and everything derived from it, as text.
+    /// The declaration of each term of the scene and all derived equations, as text.
     #[must_use]
     pub fn derivation(&self) -> String {
         self.scene.derivation()
@@ -31,14 +31,14 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         &self.plan
     }
 
-    /// The step `h`, s; where steps vary, their unit.
+    /// The step `h`, s; if steps vary, their unit.
     #[must_use]
     pub fn step_size(&self) -> Scalar<S> {
         self.plan.step_size()
     }
 
-    /// The time since the start, s: `n h`, never accumulated, where all steps are of `h`. What
-    /// [`step_of`](Self::step_of) has added is added to it.
+    /// The time since the start, s: `n h`, never accumulated, if all steps have the length `h`. The lengths of
+    /// [`step_of`](Self::step_of) are added to it.
     #[must_use]
     pub fn time(&self, state: &StateOf<S, P>) -> Scalar<S> {
         self.plan.time(&state.motion, &state.kept) + state.elapsed.sum
@@ -46,20 +46,20 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
 
     /// The body velocity, on SO(3) in rad/s.
     ///
-    /// Where the continuous limit isn't quadratic in the velocity, a discrete momentum may be one that no velocity has,
-    /// though the next step has a solution: the velocity is NaN then, of several lanes in those alone.
-    /// Where the [scene](Self::scene) is a [`ContinuousLagrangian`](crate::mechanics::ContinuousLagrangian), its `velocity`
-    /// says why, as an error. A [control force](Self::step_forced) and an event that are made of NaN are refused.
+    /// If the continuous limit isn't quadratic in the velocity, a discrete momentum may be that of no velocity,
+    /// although the next step has a solution: the velocity is NaN then, in the lanes concerned only. If the
+    /// [scene](Self::scene) is a [`ContinuousLagrangian`](crate::mechanics::ContinuousLagrangian), its `velocity`
+    /// returns the reason as an error. A [control force](Self::step_forced) and an event that are NaN are refused.
     #[must_use]
     pub fn velocity(&self, motion: &MotionOf<S>) -> Vector<S> {
         self.plan.velocity(&self.scene, motion)
     }
 
-    /// The energy of the continuous system, `½ Ω·JΩ + V(w)` where it is quadratic in the velocity, J; where there is no
-    /// [`velocity`](Self::velocity) it is NaN, too.
+    /// The energy of the continuous system, `½ Ω·JΩ + V(w)` if it is quadratic in the velocity, J; NaN if the
+    /// [`velocity`](Self::velocity) is.
     ///
-    /// Where the scene is a [`DiscreteLagrangian`](crate::mechanics::DiscreteLagrangian) it oscillates about its initial value, at the order of the scheme, and
-    /// doesn't drift.
+    /// For a [`DiscreteLagrangian`](crate::mechanics::DiscreteLagrangian) it oscillates about its initial value, at the
+    /// order of the scheme, and doesn't drift.
     #[must_use]
     pub fn energy(&self, motion: &MotionOf<S>) -> Scalar<S> {
         if const { P::HAS_OWN_INERTIA } {
@@ -68,14 +68,15 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         energy(&self.scene, &motion.momentum, &motion.advected)
     }
 
-    /// The largest step from this state up to the stepper's own, s, to six digits: that fraction of it whose equations
-    /// all have solutions. It is found by bisection, which takes some dozens of steps.
+    /// The largest step from this state up to the stepper's own, s, to six digits, for which all equations have
+    /// solutions. Bisection finds it in some dozens of steps.
     #[must_use]
     pub fn max_step(&self, state: &StateOf<S, P>) -> Scalar<S> {
         self.plan.max_step(&self.scene, &state.motion, &state.kept)
     }
 
-    /// The spatial momentum, `R Π` on SO(3), in a scene that conserves it: nothing is advected, though values may be given.
+    /// The spatial momentum, `R Π` on SO(3), in a scene that conserves it: one without advected parameters; prescribed
+    /// ones are allowed.
     #[must_use]
     pub fn spatial_momentum(&self, motion: &MotionOf<S>) -> Vector<S>
     where
@@ -85,7 +86,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     }
 
     /// The momentum along the advected vector, `Π·w` (`e₃·R Π` for the vertical), in a scene that conserves it: one
-    /// vector is advected, (3.20).
+    /// with a single advected vector, (3.20).
     #[must_use]
     pub fn momentum_along_advected(&self, motion: &MotionOf<S>) -> Scalar<S>
     where
@@ -96,8 +97,8 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
 }
 
 impl<S: Effect> Stepper<S> {
-    /// What is proved about the next step: whether it surely has a solution or surely has none, where bounds are known;
-    /// see [`DiscreteLiePoisson::solvability`](crate::motion::DiscreteLiePoisson::solvability).
+    /// Whether the next step surely has a solution or surely has none, if bounds are known; see
+    /// [`DiscreteLiePoisson::solvability`](crate::motion::DiscreteLiePoisson::solvability).
     #[must_use]
     pub fn solvability(&self, motion: &MotionOf<S>) -> Solvability {
         self.plan.solvability(&self.scene, &motion.momentum, &motion.advected)

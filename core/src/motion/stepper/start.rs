@@ -1,4 +1,4 @@
-//! How a motion is started.
+//! Initial states of a motion.
 
 use super::{StateOf, Stepper};
 use crate::error::SetupError;
@@ -13,7 +13,7 @@ use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 
 /// # Start
 ///
-/// From an attitude and a velocity or a momentum, or from a motion of another stepper.
+/// A state from an attitude and a velocity or a momentum, or from a motion of another stepper.
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// A motion from an attitude (body to space) and a body velocity, on SO(3) in rad/s.
     ///
@@ -22,9 +22,9 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// # Errors
     ///
-    /// [`SetupError`] where the attitude isn't in the group, something isn't finite, or an inertia that depends on what
-    /// is advected or given is degenerate there; [`SetupError::AmbiguousVelocity`] where the continuous limit isn't
-    /// quadratic in the velocity, and the momentum doesn't lead back to this one.
+    /// [`SetupError`] if the attitude isn't in the group, a number isn't finite, or an inertia that depends on advected
+    /// or prescribed parameters is degenerate there; [`SetupError::AmbiguousVelocity`] if the continuous limit isn't
+    /// quadratic in the velocity, and the inverse Legendre transform of the momentum is another velocity.
     pub fn start(&self, attitude: impl Into<Group<S>>, velocity: Vector<S>) -> Result<StateOf<S, P>, SetupError> {
         if !velocity.is_finite() {
             return Err(SetupError::NonFinite { what: "velocity" });
@@ -44,8 +44,8 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// # Errors
     ///
-    /// [`SetupError`] where the attitude isn't in the group, something isn't finite, or an inertia that depends on what
-    /// is advected or given is degenerate there; [`SetupError::NoVelocity`] where no velocity has this momentum.
+    /// [`SetupError`] if the attitude isn't in the group, a number isn't finite, or an inertia that depends on advected
+    /// or prescribed parameters is degenerate there; [`SetupError::NoVelocity`] if no velocity has this momentum.
     pub fn start_with_momentum(
         &self,
         attitude: impl Into<Group<S>>,
@@ -69,16 +69,16 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         Ok(state)
     }
 
-    /// The state of another scene or of another method on the same group, to go on in this one: its attitude and momentum
-    /// are kept to the bit, and time counts from here.
+    /// A state with the attitude and momentum, to the bit, of a motion of another scene or another method on the same
+    /// group. Its time counts from here.
     ///
-    /// What both scenes conserve goes on being conserved, as the discrete momentum belongs to a time, not to a step. As
-    /// there is no error to return, an inertia of this scene that depends on what is advected isn't checked;
+    /// Quantities that both scenes conserve stay conserved, because the discrete momentum belongs to a time, not to a
+    /// step. As no error is returned, an inertia of this scene that depends on advected parameters isn't checked;
     /// [`start_with_momentum`](Self::start_with_momentum) does that.
     ///
     /// # Examples
     ///
-    /// A top is let go: it falls freely from here on.
+    /// A top is released: it falls freely from here on.
     ///
     /// ```
     /// use liestep::effects::{Gravity, RigidBody};
@@ -102,7 +102,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         self.begin(motion.attitude, motion.momentum)
     }
 
-    /// The motion that begins with this attitude and momentum.
+    /// The initial state at this attitude and momentum.
     fn begin(&self, attitude: Group<S>, momentum: Vector<S>) -> StateOf<S, P> {
         let advected = self.plan.advected(&self.scene, 0).seen_from(&attitude);
         let motion = self.plan.begun(&self.scene, Motion { attitude, momentum, advected, steps: 0 });
@@ -110,16 +110,16 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     }
 }
 
-/// Whether a motion may start here.
+/// Checks that the attitude is in the group.
 pub(crate) fn check_attitude<G: LieGroup>(attitude: &G) -> Result<(), SetupError> {
-    // What a unit quaternion or a matrix printed to a dozen digits leaves; NaN fails it too.
+    // A unit quaternion or a matrix with twelve printed digits passes; NaN fails.
     let allowed = G::Scalar::simd_default_epsilon() * real(1e4);
     let defect = attitude.defect();
     if defect.simd_le(allowed).all() { Ok(()) } else { Err(SetupError::NotInGroup { defect: reported(defect) }) }
 }
 
-/// Whether what was made of finite numbers is finite, too: a turned vector may leave the scalar's range, and so may a
-/// velocity.
+/// Checks that numbers computed from finite ones are finite, too: a rotated vector or a velocity may leave the scalar's
+/// range.
 fn check_range<T: Real, G: LieGroup<Scalar = T>, A: Advected<G>, K: Kept<T>>(
     state: &State<G, A, K>,
 ) -> Result<(), SetupError> {

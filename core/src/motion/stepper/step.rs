@@ -1,4 +1,4 @@
-//! How a stepper steps and runs.
+//! Steps and runs of a stepper.
 
 use super::{StateOf, Stepper};
 use crate::error::StepError;
@@ -13,14 +13,14 @@ use crate::numbers::{Coordinates as _, Kernel, Vectors, dispatch, is_finite, rea
 
 /// # Step
 ///
-/// One step or many, with a control force or with other values.
+/// One step or many, with a control force or with prescribed parameters.
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
-    /// One step. On an error the state is unchanged.
+    /// Makes one step. On an error the state is unchanged.
     ///
     /// # Errors
     ///
-    /// [`StepError`] where an equation of the method has no solution, for a scene's own step (2.7) on the branch of the
-    /// identity, or a value isn't finite. [`StepError::BeyondSolvable`] names the largest step that would do.
+    /// [`StepError`] if an equation of the method has no solution, for a scene's own step (2.7) on the branch of the
+    /// identity, or if a value isn't finite. [`StepError::BeyondSolvable`] names the largest solvable step.
     #[hot]
     pub fn step(&self, state: &mut StateOf<S, P>) -> Result<StepReport, StepError> {
         let made = if const { P::STEPS_BY_RUNS } {
@@ -34,16 +34,16 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         }
     }
 
-    /// Makes `steps` steps without showing the states between; returns the sum of their iterations. On an error the state
-    /// is unchanged.
+    /// Makes `steps` steps without access to the states between; returns the sum of their iterations. On an error the
+    /// state is unchanged.
     ///
-    /// A [splitting](Self::split) makes the last flow of a step and the first of the next as one: where its kinetic flow
-    /// is exact the result is that of as many [steps](Self::step) to rounding; elsewhere they differ by some of its
-    /// error.
+    /// A [splitting](Self::split) merges the last flow of a step and the first of the next. If its kinetic flow is
+    /// exact, the result is that of as many [steps](Self::step) to rounding; otherwise the two differ by a part of the
+    /// flow's error.
     ///
     /// # Errors
     ///
-    /// As [`step`](Self::step).
+    /// The errors of [`step`](Self::step).
     pub fn run(&self, state: &mut StateOf<S, P>, steps: u64) -> Result<u64, StepError> {
         let mut next = *state;
         let iterations = self.run_without_copy(&mut next, steps, None)?;
@@ -51,7 +51,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         Ok(iterations)
     }
 
-    /// [`run`](Self::run) without a copy to go back to: after an error the state may be anywhere. It goes on as
+    /// A [`run`](Self::run) without a copy of the state: after an error the state is unspecified. It continues as
     /// [`Integrator::run_stretches`] does.
     fn run_without_copy(
         &self,
@@ -63,7 +63,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         made.map_err(|error| self.plan.explained(error, &self.scene, &state.motion, &state.kept))
     }
 
-    /// The states after each step from here on; after an error, nothing more.
+    /// The states after each step from here on; an error is the last item.
     pub fn steps(&self, state: StateOf<S, P>) -> impl Iterator<Item = Result<StateOf<S, P>, StepError>> {
         let mut current = Some(state);
         core::iter::from_fn(move || {
@@ -75,16 +75,17 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         })
     }
 
-    /// One step under a control force, which is held over the step; on an error the state is unchanged.
+    /// Makes one step under a control force that is constant over the step; on an error the state is unchanged.
     ///
-    /// It is a covector in the body's axes: on SO(3) a torque in N m. By the discrete Lagrange–d'Alembert principle
-    /// half of its impulse `h f` is added to the momentum at either end of the step, as by
-    /// [`Torque`](crate::effects::Torque), so the scheme stays of second order for inputs that are smooth in time and
-    /// taken in the middle of each step. Without a force the momentum is that of [`step`](Self::step), bit for bit.
+    /// The force is a covector in the body's axes: on SO(3) a torque in N m. By the discrete Lagrange–d'Alembert
+    /// principle half of its impulse `h f` is added to the momentum at either end of the step, as by
+    /// [`Torque`](crate::effects::Torque). So the scheme stays of second order for smooth functions of time that are
+    /// evaluated in the middle of each step. With a force of zero the momentum is that of [`step`](Self::step), bit for
+    /// bit.
     ///
     /// # Errors
     ///
-    /// [`StepError`] where the force isn't finite, and as [`step`](Self::step); the largest step that an error names is
+    /// [`StepError`] if the force isn't finite, and the errors of [`step`](Self::step); the largest step in an error is
     /// that for the momentum with half of the impulse.
     ///
     /// # Examples
@@ -128,18 +129,18 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         Ok(report)
     }
 
-    /// One step of the length `h`, s, by the same method; on an error the state is unchanged.
+    /// Makes one step of the length `h`, s, by the same method; on an error the state is unchanged.
     ///
-    /// It is for what doesn't fall on the end of a step: an impulse at an event, a time at which a motion is to end. It keeps
-    /// what a step keeps, and counts for none: the [time](Self::time) is that of the steps counted and these lengths, as
-    /// recordings, events and checkpoints have it. Steps whose lengths follow the state at random lose the long-time
-    /// behaviour; [`with_clock`](Self::with_clock) and [`with_density`](Self::with_density) keep it.
+    /// It serves times that don't coincide with the end of a step: an impulse at an event, or the end of a motion. It
+    /// has the invariants of a step, but isn't counted: the [time](Self::time) is that of the counted steps and these
+    /// lengths, also in recordings, events and checkpoints. Steps whose lengths depend irregularly on the state lose
+    /// the long-time behaviour; [`with_clock`](Self::with_clock) and [`with_density`](Self::with_density) preserve it.
     ///
-    /// Constants are folded for the length, which takes longer than a step.
+    /// The constants are folded for the length, which takes longer than a step.
     ///
     /// # Errors
     ///
-    /// [`StepError::NonFinite`] for a length that isn't finite, or one whose constants aren't; otherwise as
+    /// [`StepError::NonFinite`] for a length that isn't finite, or one whose constants aren't; otherwise the errors of
     /// [`step`](Self::step).
     ///
     /// # Examples
@@ -172,22 +173,22 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         Ok(report)
     }
 
-    /// One step in which what is advected has these values in space, in the place of the scene's own; on an error the
+    /// Makes one step with these values of the advected parameters in space instead of the scene's own; on an error the
     /// state is unchanged.
     ///
-    /// It is how a scene is driven: a field that is switched, a direction that goes round with the orbit, and what the
-    /// declaration names in `given(…)`, a torque for example. The values are those of `scene.advected()`, in a sum a pair,
-    /// and are held over the step: taken in the middle of it, the scheme stays of second order. Each step is variational
-    /// by itself. Between the steps the state sees the scene's own values again, which
-    /// [`energy`](Self::energy) is computed with. An inertia that depends on the values isn't checked with these.
+    /// So a scene is driven: by a field that is switched, a direction that rotates with the orbit, or a parameter that
+    /// the declaration names in `given(…)`, such as a torque. The values are those of `scene.advected()`, a pair in a
+    /// sum, and are constant over the step: evaluated in the middle of it, they leave the scheme of second order. Each
+    /// step is variational by itself. Between the steps the state has the scene's own values again, which
+    /// [`energy`](Self::energy) uses. An inertia that depends on the values isn't checked for these.
     ///
     /// # Errors
     ///
-    /// [`StepError`] where a value isn't finite, and as [`step`](Self::step).
+    /// [`StepError`] if a value isn't finite, and the errors of [`step`](Self::step).
     ///
     /// # Examples
     ///
-    /// A wheel's torque that grows with time.
+    /// A wheel's torque grows with time.
     ///
     /// ```
     /// use liestep::effects::RigidBody;
@@ -233,7 +234,7 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
     type Advected = S::Advected;
     type State = StateOf<S, P>;
 
-    /// By one copy of a step, that of a run where this is the same, for all that is put around steps.
+    /// All wrappers of steps use one compiled copy of a step, that of a run if it is the same.
     #[inline(never)]
     fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
         if const { P::STEPS_BY_RUNS || P::RUNS_BY_STEPS } {
@@ -259,7 +260,7 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
         next: &mut NextSteps<'_, Group<S>, S::Advected>,
     ) -> Result<u64, StepError> {
         if const { P::RUNS_BY_STEPS } {
-            // It stops where they do, and nothing need be copied.
+            // A run stops at the same state as single steps, and no copy is needed.
             let elapsed = state.elapsed.sum;
             self.run_without_copy(state, steps, Some(&mut |motion, time| next(motion, time + elapsed)))
         } else {
@@ -324,7 +325,7 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
     }
 }
 
-/// A step of this state.
+/// A step of this state, as a kernel.
 struct Step<'a, S: Effect, P: Plan<S>>(&'a Stepper<S, P>, &'a mut StateOf<S, P>);
 
 impl<S: Effect, P: Plan<S>> Kernel for Step<'_, S, P> {

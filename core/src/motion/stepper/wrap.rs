@@ -1,4 +1,4 @@
-//! What is made of a stepper.
+//! Steppers and flows derived from a stepper.
 
 use super::Stepper;
 use crate::error::SetupError;
@@ -8,12 +8,12 @@ use crate::motion::plan::Plan;
 
 /// # Wrap
 ///
-/// The scene backwards, or on momenta alone; and below what is put around a step.
+/// The inverse stepper, and the flow on momenta alone; wrappers of steps follow below.
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// The stepper of `−h`, which undoes the steps of this one exactly.
     ///
-    /// For that `l_d` has to be [self-adjoint](DiscreteLagrangian::SELF_ADJOINT); another is refused when the user's
-    /// crate is built:
+    /// The Lagrangian `l_d` must be [self-adjoint](DiscreteLagrangian::SELF_ADJOINT); any other is refused at compile
+    /// time:
     ///
     /// ```compile_fail,E0080
     /// use liestep::effects::RigidBody;
@@ -35,7 +35,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// # Errors
     ///
-    /// [`SetupError`] where the scene has no step of `−h`.
+    /// [`SetupError`] if the scene has no step of `−h`.
     pub fn inverse(&self) -> Result<Self, SetupError>
     where
         S: DiscreteLagrangian + Clone,

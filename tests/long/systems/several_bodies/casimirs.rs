@@ -1,8 +1,9 @@
-//! What is kept at any tolerance on `(Π G_a) ⋉ V`: the Casimirs, and P3, how a covector moves that one of several bodies sees.
+//! Invariants on `(Π G_a) ⋉ V` at any tolerance: the Casimirs; and P3, the advection of a covector by one of several
+//! bodies.
 //!
-//! A step moves `z = (μ, w)` along a coadjoint orbit of the semidirect product, whatever increment it has found. `w` stays
-//! on its orbit of the group. Of the momentum, what is along the `η` with `η·w = 0` moves as on the subgroup of these, so
-//! that the subgroup's own Casimirs of it are kept. That is all: as many functions as `B(z)` lacks of its full rank.
+//! A step moves `z = (μ, w)` along a coadjoint orbit of the semidirect product, for every increment. `w` stays on its
+//! orbit of the group. The momentum along the `η` with `η·w = 0` moves as on the subgroup of these, so the subgroup's
+//! Casimirs of it are conserved. There are no others: their number is the corank of `B(z)`.
 
 use checks::solvers::Badly;
 use declarations::{DoublePendulum, TwoBodies};
@@ -19,18 +20,18 @@ use super::{element, started};
 
 const STEPS: u32 = 20_000;
 
-/// Functions of momentum and numbers.
+/// Functions of the momentum and of the parameters' numbers.
 type OfState<'a, const D: usize> = dyn Fn(&SVector<f64, D>, &[f64]) -> Vec<f64> + 'a;
 
-/// What of a state is said to be kept, with numbers and actions typed by hand.
+/// The claimed invariants of a state, with numbers and actions written by hand.
 struct Orbit<'a, W, const D: usize> {
-    /// Where the components of bodies that turn begin.
+    /// The first components of the rotating bodies.
     turning: &'a [usize],
-    /// The numbers of what is advected.
+    /// The numbers of the advected parameters.
     numbers: &'a dyn Fn(&W) -> Vec<f64>,
-    /// `E_k·w`, in these numbers.
+    /// The action `E_k·w`, in these numbers.
     moved: &'a dyn Fn(usize, &[f64]) -> Vec<f64>,
-    /// The functions that are kept.
+    /// The conserved functions.
     kept: &'a OfState<'a, D>,
 }
 
@@ -42,12 +43,12 @@ fn vector(numbers: &[f64]) -> Vector3<f64> {
     Vector3::from_column_slice(&numbers[..3])
 }
 
-/// The matrix of the `k`th turn.
+/// The matrix of the `k`th rotation generator.
 fn hat(k: usize) -> Matrix3<f64> {
     Vector3::ith(k % 3, 1.0).cross_matrix()
 }
 
-/// The six numbers of a product that should be the identity.
+/// The six distinct numbers of a product that should be the identity.
 fn gram(q: &Matrix3<f64>) -> Vec<f64> {
     let product = q.transpose() * q;
     (0..3).flat_map(|row| (row..3).map(move |column| product[(row, column)])).collect()
@@ -62,7 +63,7 @@ impl<W, const D: usize> Orbit<'_, W, D> {
         DVector::from_vec((self.kept)(&z.fixed_rows::<D>(0).into_owned(), &z.as_slice()[D..]))
     }
 
-    /// `{μ_k, μ_l} = −⟨μ, [E_k, E_l]⟩`, of each body that turns `μ̂`, and `{μ_k, w} = E_k·w`.
+    /// The tensor `{μ_k, μ_l} = −⟨μ, [E_k, E_l]⟩`, which is `μ̂` for each rotating body, and `{μ_k, w} = E_k·w`.
     fn tensor(&self, z: &DVector<f64>) -> DMatrix<f64> {
         let mut tensor = DMatrix::zeros(z.len(), z.len());
         for &body in self.turning {
@@ -76,7 +77,7 @@ impl<W, const D: usize> Orbit<'_, W, D> {
         tensor
     }
 
-    /// The functions commute with all others here, and with the rank of `B(z)` they are all that do.
+    /// Checks that the functions commute with all others at this state, and that their number is the corank of `B(z)`.
     fn assert_complete(&self, z: &DVector<f64>) {
         let tensor = self.tensor(z);
         let mut gradients = DMatrix::zeros(self.kept(z).len(), z.len());
@@ -85,14 +86,14 @@ impl<W, const D: usize> Orbit<'_, W, D> {
             gradients.set_column(k, &derivative(along));
         }
         let commuted = (&gradients * &tensor).amax();
-        // Gradients are differences, right to some 1e-11, and a product sums up to 33 of their entries.
+        // Gradients by differences have errors of some 1e-11, and a product sums up to 33 of their entries.
         assert!(commuted < 1e-10 * gradients.amax() * tensor.amax(), "{commuted:e}");
-        // What isn't zero but for these differences is far above them.
+        // Nonzero numbers are far above the error of the differences.
         let ranks = [gradients.rank(1e-8), tensor.rank(1e-8)];
         assert_eq!(ranks, [gradients.nrows(), z.len() - gradients.nrows()]);
     }
 
-    /// By how much they are off at most in many steps, and by how much (2.7) is missed at least.
+    /// The largest error of the functions over many steps, and the least error of (2.7).
     fn run<S>(&self, scene: &S, h: f64, attitude: S::Group, velocity: &SVector<f64, D>) -> (f64, f64)
     where
         S: DiscreteLagrangian<Scalar = f64, Group: LieGroup<Scalar = f64, Vector = SVector<f64, D>>, Advected = W>
@@ -117,7 +118,7 @@ impl<W, const D: usize> Orbit<'_, W, D> {
         (off / first.norm_squared().max(1.0), least)
     }
 
-    /// Whether the equation of the step is solved or not.
+    /// Checks that the functions are conserved whether the equation of the step is solved or not.
     fn assert_kept<L>(&self, l: &L, h: f64, attitude: L::Group, velocity: &SVector<f64, D>)
     where
         L: DiscreteLagrangian<Scalar = f64, Group: LieGroup<Scalar = f64, Vector = SVector<f64, D>>, Advected = W>
@@ -129,13 +130,15 @@ impl<W, const D: usize> Orbit<'_, W, D> {
         let (off, _) = self.run(l, h, attitude, velocity);
         let (badly, least) = self.run(&Badly(l.clone()), h, attitude, velocity);
         println!("off by {off:.1e}; where (2.7) is missed by {least:.1e} at least, by {badly:.1e}");
-        // Roundings of so many steps, at random: √STEPS ε is 3e-14, and a step has some. `Badly` is off by some thousandths.
+        // The bound is a walk of roundings: √STEPS ε is 3e-14, and a step has several. `Badly` has errors of some
+        // thousandths.
         assert!(off < 3e-13 && badly < 3e-13 && least > 1e-4, "{off:e} {badly:e} {least:e}");
     }
 }
 
-/// On (SO(3) × SO(3)) ⋉ V with `w_1`, `w_2` and `Q`, 21 numbers in all. Of `w` the orbit is `QᵀQ = I`, `|w_1|` and
-/// `w_1 = Q w_2`. Turns of both about the vertical leave it where it is, `η = (w_1, w_2)`, so `μ_1·w_1 + μ_2·w_2` is kept.
+/// The invariants on (SO(3) × SO(3)) ⋉ V with `w_1`, `w_2` and `Q`, 21 numbers in all. The orbit of `w` is `QᵀQ = I`,
+/// `|w_1|` and `w_1 = Q w_2`. Turns of both about the vertical leave it unchanged, `η = (w_1, w_2)`, so
+/// `μ_1·w_1 + μ_2·w_2` is conserved.
 #[test]
 fn casimirs_of_a_double_pendulum() {
     let random = &mut Random::new(7);
@@ -162,8 +165,8 @@ fn casimirs_of_a_double_pendulum() {
     orbit.assert_kept(&DoublePendulum::asymmetric(), 0.01, element(&xi), &velocity);
 }
 
-/// On SO(3)⁴ ⋉ V with the attitude of each body as that before it sees it. Turns of all bodies leave these where they are: a
-/// subgroup SO(3), of whose momentum `μ_1 + Q μ_2 + Q R μ_3 + Q R S μ_4` the length is kept.
+/// The invariants on SO(3)⁴ ⋉ V with the attitudes relative to the body before. Turns of all bodies together leave
+/// these unchanged: a subgroup SO(3), whose momentum `μ_1 + Q μ_2 + Q R μ_3 + Q R S μ_4` has a conserved length.
 #[test]
 fn casimirs_of_coupled_attitudes() {
     let random = &mut Random::new(8);
@@ -201,8 +204,8 @@ fn casimirs_of_coupled_attitudes() {
     orbit.assert_kept(&bodies, 0.02, element(&xi), &velocity);
 }
 
-/// On (SO(3) × R³ × SO(3) × R³) ⋉ V with `R`, `Q` and `r`. The translations of both by the same leave these where they are:
-/// all of `p_1 + p_2` is kept, as that subgroup is commutative. Any `r` comes from any other.
+/// The invariants on (SO(3) × R³ × SO(3) × R³) ⋉ V with `R`, `Q` and `r`. A common translation leaves these unchanged:
+/// all of `p_1 + p_2` is conserved, because that subgroup is commutative. Every `r` is on the orbit of every other.
 #[test]
 fn casimirs_of_two_bodies_that_attract_each_other() {
     let random = &mut Random::new(9);
@@ -249,7 +252,7 @@ struct Plate {
     field: Vector3<f64>,
 }
 
-/// A spring to a place.
+/// A spring between a point of the body and one of space.
 #[lagrangian(
     group = SE2,
     advected(a = anchor),
@@ -263,11 +266,11 @@ struct Tether {
 }
 
 type Seen = ([Vector3<f64>; 2], liestep::groups::SeenFrom<1, Point2<f64>>);
-/// Velocities or momenta.
+/// Velocities or momenta of both bodies.
 type OfBoth = Bodies<Vector3<f64>, 2>;
 
-/// Each body sees what is in space by its own place, and what is kept is kept. By how much (2.7) is missed at least and at
-/// most.
+/// Checks that each body's parameters are advected by its own configuration, and that the functions are conserved.
+/// Returns the least and the largest error of (2.7).
 fn assert_p3<S>(scene: S, start: [SE2; 2], velocity: OfBoth, kept: impl Fn(&Seen, &OfBoth) -> [f64; 4]) -> [f64; 2]
 where
     S: DiscreteLagrangian<Scalar = f64, Group = [SE2; 2], Advected = Seen> + Regular,
@@ -300,14 +303,16 @@ where
         "w is off by {parted:.1e}, by {naive:.1e} of F⁻¹ w; Casimirs {off:.1e}; (2.7) by {:.1e} to {:.1e}",
         misses[0], misses[1]
     );
-    // Roundings of a thousand steps: of a product of matrices in each, and of the size of a force that all of them turn.
+    // The bound is the rounding of a thousand steps: of a product of matrices in each, and of a force that all of them
+    // rotate.
     assert!(parted < 1e-13 && off < 1e-12 && naive > 0.1, "{parted:e} {off:e} {naive:e}");
     misses
 }
 
-/// P3 on SE(2) × SE(2), of which each factor moves what its body sees: `w⁺ = Fᵀ w`, and not `F⁻¹ w`. For each body the
-/// force is turned, so that its size is kept. Of a body with nothing else the translation across the force is a symmetry, and
-/// its momentum `p × w` is kept; of the one that is tied to a place, the potential of that.
+/// P3 on SE(2) × SE(2), each factor of which advects its body's parameters: `w⁺ = Fᵀ w`, and not `F⁻¹ w`. The force in
+/// each body's frame is rotated, so its size is conserved. For the body without a spring the translation across the
+/// force is a symmetry, and its momentum `p × w` is conserved; for the body with the spring, the potential of the
+/// anchor is.
 #[test]
 fn p3_plates_in_a_field() {
     let J = |m: f64| Matrix3::new(0.4, 0.05, 0.1, 0.05, 0.3, -0.1, 0.1, -0.1, 1.0) * m;
@@ -325,6 +330,6 @@ fn p3_plates_in_a_field() {
     };
     let [_, most] = assert_p3(scene, start, velocity, kept);
     let [least, _] = assert_p3(Badly(scene), start, velocity, kept);
-    // A solve ends at roundings, and `Badly` is off by some thousandths.
+    // A solve ends at rounding, and `Badly` has errors of some thousandths.
     assert!(most < 1e-12 && least > 1e-4, "{most:e} {least:e}");
 }

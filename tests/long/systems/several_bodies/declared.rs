@@ -1,4 +1,4 @@
-//! The double pendulum as it is declared.
+//! The declared double pendulum.
 
 use declarations::DoublePendulum;
 use liestep::laws::samples::Random;
@@ -25,14 +25,14 @@ fn a_step_is_symplectic() {
     }
 }
 
-/// Along the vertical the momentum of both.
+/// The momentum of both links about the vertical.
 fn vertical(motion: &liestep::motion::Motion<Group, <DoublePendulum as Term>::Advected>) -> f64 {
     let spatial = motion.spatial_momentum();
     part(&spatial, 0).z + part(&spatial, 1).z
 }
 
-/// Along the vertical the momentum of both is kept; a step back undoes a step, and sums are compensated and checkpoints
-/// go on as on a group.
+/// The momentum of both about the vertical is conserved; a step back undoes a step; and compensated sums and
+/// checkpoints work as on a single group.
 #[test]
 fn vertical_momentum_and_energy() {
     let stepper = Stepper::new(DoublePendulum::asymmetric(), 0.01).unwrap();
@@ -66,7 +66,7 @@ fn vertical_momentum_and_energy() {
     assert!((returned.momentum() - there.momentum()).norm() < 1e-11);
 }
 
-/// A table has the columns of each body, with its place behind their names.
+/// A table has the columns of each body, whose names end with the body's number.
 #[test]
 fn a_record_has_the_columns_of_each_body() {
     let stepper = Stepper::new(DoublePendulum::asymmetric(), 0.01).unwrap();

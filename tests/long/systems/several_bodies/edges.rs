@@ -1,5 +1,4 @@
-//! Several bodies at the edges of what a step can do: steps up to the longest that has a solution, and bodies that nearly
-//! touch.
+//! Several bodies at the limits of a step: steps up to the longest solvable one, and bodies that nearly touch.
 
 use core::f64::consts::{FRAC_PI_2, PI};
 use core::fmt::Debug;
@@ -17,17 +16,17 @@ use super::translated::whole;
 use super::{assert_same, started};
 use liestep::laws::samples::Random;
 
-/// What ends the steps that have a solution.
+/// The reason why longer steps have no solution.
 #[derive(Debug, PartialEq)]
 enum End {
     /// Two solutions meet.
     Fold,
-    /// Behind it a link's part of the Jacobian has another sign, where a solution isn't known to be the wanted one.
+    /// A link's part of the Jacobian changes its sign, after which a solution may be on another branch.
     Turned,
 }
 
-/// Steps of every length up to the longest are solved, with increments that go on from one length to the next and turn no
-/// body by much more than a right angle; a longer one is an error, and leaves the state.
+/// Steps of every length up to the longest are solved, with increments that are continuous in the length and turn no
+/// body by much more than a right angle; a longer step is an error, and leaves the state unchanged.
 fn scanned<I>(
     started: impl Fn(f64) -> (I, I::State),
     bodies: impl Fn(&I::State) -> Vec<SO3>,
@@ -41,7 +40,7 @@ fn scanned<I>(
         let mut state = first.clone();
         match stepper.step(&mut state) {
             Ok(report) => {
-                // Twenty from the velocity, and up to sixty shortened ones from rest: these settle before they are used up.
+                // The bound allows twenty iterations from the velocity, and up to sixty shortened ones from rest.
                 assert!(report.iterations < 80, "{h}: {report:?}");
                 let turn = |(from, to): (SO3, SO3)| (from.inverse().compose(&to)).log();
                 Ok(bodies(&first).into_iter().zip(bodies(&state)).map(turn).collect())
@@ -53,7 +52,7 @@ fn scanned<I>(
             }
         }
     };
-    // Twice as long until there is none, then by halves.
+    // The length is doubled until there is no solution, then bisected.
     let mut longest = [1e-3, 2e-3];
     while turns(longest[1]).is_ok() {
         longest = [longest[1], 2.0 * longest[1]];
@@ -64,12 +63,13 @@ fn scanned<I>(
         longest[usize::from(turns(middle).is_err())] = middle;
     }
     let longest = longest[0];
-    // At a fold `h*` increments change as `√(h* − h)`; so steps are denser there, and increments change evenly. They go on
-    // without a jump where steps twice as dense halve the largest change: a jump would stay as it is.
+    // At a fold `h*` increments change as `√(h* − h)`; so steps are denser there, and increments change evenly. They
+    // are continuous if doubling the density halves the largest change: a jump would stay the same.
     let changes = |parts: u32| -> Vec<f64> {
         let share = |k: u32| 1.0 - (f64::from(k) / f64::from(parts)).powi(2);
         let found: Vec<_> = (0..parts).map(|k| turns(share(k) * longest).unwrap()).collect();
-        // A body alone is solved up to a right angle. For links there is no theorem, and one turns 1.60 rad here, 2 % more.
+        // A single body is solvable up to a right angle. For links there is no theorem, and one turns 1.60 rad here, 2
+        // % more.
         assert!(found.iter().flatten().all(|turn| turn.norm() < 1.05 * FRAC_PI_2), "{found:?}");
         let change =
             |pair: &[Vec<Vector3<f64>>]| pair[0].iter().zip(&pair[1]).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
@@ -78,17 +78,17 @@ fn scanned<I>(
     let [coarse, fine] = [200, 400].map(changes);
     let [largest, then] = [&coarse, &fine].map(|changes| changes.iter().copied().fold(0.0, f64::max));
     assert!(then < 0.6 * largest, "{then} after {largest}");
-    // Behind a fold the iteration ends anywhere, and now and then on the other side, too.
+    // Beyond a fold the iteration may end anywhere, occasionally also beyond the sign change.
     let behind = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10].map(|k| turns(longest * (1.0 + 1e-6 * f64::from(k))).unwrap_err());
     println!("{longest:.4} s, where changes are {:.1e} and then {:.1e}; {}", fine[0], fine[20], behind[9]);
     let is_turned =
         behind.iter().all(|error| matches!(error, StepError::UnsolvedBody { determinant, .. } if *determinant < 0.0));
     let end = if is_turned { End::Turned } else { End::Fold };
     assert_eq!(end, *expected, "{behind:?}");
-    // At a fold the first change is as large as that twenty behind it. Without one it would be 1/41 of that, as lengths change
-    // by `2k + 1` parts there.
+    // At a fold the first change is as large as that twenty steps after it. Without a fold it would be 1/41 of that, as
+    // the lengths differ by `2k + 1` parts there.
     assert!(end == End::Turned || fine[0] > 0.5 * fine[20], "{:?}", &fine[..20]);
-    // No other solution is taken for the one that has ended there.
+    // Beyond the longest step no solution on another branch is accepted.
     for k in 0..300 {
         let more = 1.0001 * 1.02_f64.powi(k);
         assert!(turns(more * longest).is_err(), "{more}");
@@ -130,8 +130,8 @@ fn steps_of_a_chain_up_to_the_longest() {
     }
 }
 
-/// Two bodies that pass each other a hundredth of their distance apart: by steps short enough for that they come out with
-/// the energy and the momenta that they had. Where they are at one place there is no step, and that is said.
+/// Two bodies that pass each other at a hundredth of their distance: with short enough steps, the energy and the
+/// momenta afterwards are those before. If the bodies coincide there is no step, and the error says so.
 #[test]
 fn bodies_that_nearly_touch() {
     let (size, G) = (1e-3, 1.0);
@@ -139,16 +139,17 @@ fn bodies_that_nearly_touch() {
         |m: f64| NonstandardInertia::from_principal_moments(Vector3::new(1.0, 0.8, 0.5) * (m * size * size)).unwrap();
     let [K_1, K_2] = [1.0, 0.4].map(K);
     let scene = TwoBodies { m_1: 1.0, m_2: 0.4, K_1, K_2, J_1: K_1.to_inertia(), J_2: K_2.to_inertia(), G };
-    // About their centre of mass.
+    // The configuration about the centre of mass.
     let at = |apart: f64| {
         let [first, second] = [-0.4, 1.0].map(|share| R3::from(Vector3::x() * (share / 1.4 * apart)));
         (SO3::identity(), first, SO3::identity(), second)
     };
-    // Across the line between them, so slowly that as points they fall to `(1 − e)/(1 + e)` of their distance, 1/101.
+    // The velocity across the line between them, such that points would approach to `(1 − e)/(1 + e)` of their
+    // distance, 1/101.
     let speed = (G * 1.4 * 2.0 / 101.0).sqrt();
     let mut velocity = SVector::<f64, 12>::zeros();
     (velocity[4], velocity[10]) = (-speed * 0.4 / 1.4, speed / 1.4);
-    // Kepler's period, of the semi-major axis 51/101.
+    // The Kepler period for the semi-major axis 51/101.
     let period = 2.0 * PI * ((51.0_f64 / 101.0).powi(3) / (G * 1.4)).sqrt();
     let errors = [2e-5, 1e-5].map(|h| {
         let (stepper, mut state) = started(scene.clone(), h, (at(1.0), velocity));
@@ -167,17 +168,18 @@ fn bodies_that_nearly_touch() {
         println!(
             "{h:e}: as near as {nearest:.5}, energy {energy:.3} off by {most:.2e}, in the end {off:.1e}, {moved:.1?}"
         );
-        // At that distance their shapes add 0.7 (size/nearest)² to the potential of points, and take about as much of the
-        // angular momentum.
+        // At that distance the bodies' shapes add 0.7 (size/nearest)² to the potential of points, and take about the
+        // same fraction of the angular momentum.
         assert!((nearest * 101.0 - 1.0).abs() < 2.0 * (size * 101.0).powi(2), "{nearest}");
-        // A rounding of each step, of the potential where they are nearest, and of the momenta of one body at the start.
+        // The bound is a rounding in each step, of the potential at the nearest approach, and of the initial momenta of
+        // one body.
         let rounding = f64::EPSILON * period / h;
         assert!(off < rounding * G * 0.4 / nearest, "{off:e}");
         let [linear, angular] = [0.4 * velocity[10], momenta.1.norm()];
         assert!(moved[0] < rounding * linear && moved[1] < rounding * angular, "{moved:?}");
         most
     });
-    // Of second order; what is of fourth is by `(h v/r)²` smaller, 1e-3 of it where they are nearest.
+    // The order is two; the fourth-order term is smaller by `(h v/r)²`, 1e-3 at the nearest approach.
     let order = (errors[0] / errors[1]).log2();
     assert!((order - 2.0).abs() < 0.05, "{order}");
 

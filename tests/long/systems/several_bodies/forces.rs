@@ -1,4 +1,4 @@
-//! Forces on several bodies: what is derived of their virtual work, and what a motor does to a wheel.
+//! Forces on several bodies: the terms derived from their virtual work, and the effect of a motor on a wheel.
 
 use checks::structure::forces::assert_stages;
 use liestep::groups::{Given, LieGroup as _, R1, R3};
@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, SVector, Vector3};
 use super::part;
 use super::translated::gyrostat;
 
-/// Of no physics: different at both ends, with terms of all kinds.
+/// A force without a physical meaning: different at both ends, with terms of all kinds.
 #[force(
     group(F_1 = SO3, d = R3, F_2 = SO3),
     advected(w = up.seen_from(F_1), Q = F_2.seen_from(F_1), x = d.seen_from(space)),
@@ -31,7 +31,7 @@ struct Push {
     wind: Vector3<f64>,
 }
 
-/// The stages against the declared virtual work, at random increments.
+/// Compares the stages with the declared virtual work, at random increments.
 #[test]
 fn stages_follow_from_the_virtual_work() {
     let mut r = Random::new(17);
@@ -51,11 +51,12 @@ fn stages_follow_from_the_virtual_work() {
 )]
 #[derive(Clone, Debug)]
 struct Motor {
-    /// On the wheel, N m.
+    /// The torque on the wheel, N m.
     torque: f64,
 }
 
-/// A motor gives its wheel what it takes from the body: `R Π` is kept, and the wheel's momentum grows by `h u` a step.
+/// A motor transfers momentum from the body to its wheel: `R Π` is conserved, and the wheel's momentum grows by `h u` a
+/// step.
 #[test]
 fn a_motor_turns_a_wheel() {
     let (h, steps) = (0.01, 500_u32);
@@ -66,7 +67,7 @@ fn a_motor_turns_a_wheel() {
     let spatial = |attitude: &SO3, momentum: &SVector<f64, 6>| attitude.as_matrix() * part(momentum, 0);
     let (before, start) = (state.momentum(), spatial(&state.attitude().0, &state.momentum()));
     for step in 0..steps {
-        // For a while braked.
+        // The motor brakes in the last part.
         let torque = if step < 300 { 0.3 } else { -0.2 };
         stepper.step_with(&mut state, &((), Given::scalar(torque))).unwrap();
     }

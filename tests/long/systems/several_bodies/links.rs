@@ -1,5 +1,5 @@
-//! Chains of links on ball joints, solved link by link: against steps of 30 digits, against the same chain with a full
-//! Newton matrix, and against derivatives of the action in terms of where all masses are.
+//! Chains of links on ball joints, solved link by link: compared with steps of 30 digits, with the same chain and a
+//! full Newton matrix, and with derivatives of the action as a function of the positions of all masses.
 
 use declarations::DoublePendulum;
 use declarations::motions::{chain3, link, matrix, number, read, start3, vector};
@@ -19,7 +19,7 @@ fn farthest<const N: usize>(a: &Bodies<Vector3<f64>, N>, b: &[Vector3<f64>]) -> 
     a.0.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
 }
 
-/// The reference's chain as one declaration: `J` of a link with what hangs on it, and `s` the moment of all that.
+/// The reference's chain as one declaration: `J` includes the masses beyond a link, and `s` is their moment.
 #[liestep::lagrangian(
     group(F_1 = SO3, F_2 = SO3, F_3 = SO3),
     advected(
@@ -62,8 +62,8 @@ impl From<Chain<3>> for Chain3 {
     }
 }
 
-/// Golden steps, link by link and with all of the declared chain's Newton matrix; and small ones, in which what goes like
-/// 1/h in the diamond loses no digit.
+/// Golden steps, link by link and with the whole Newton matrix of the declared chain; and small steps, for which the
+/// diamond's terms in 1/h lose no digit.
 #[test]
 fn golden_steps() {
     let golden = &read("several bodies")["golden steps"]["chain3"];
@@ -88,7 +88,7 @@ fn golden_steps() {
     }
 }
 
-/// The order, and the errors of unreduced steps; the energy at the start is the reference's.
+/// The order, and the errors relative to unreduced steps; the energy at the start is the reference's.
 #[test]
 fn trajectory() {
     let states = &read("several bodies")["chain3"]["states"];
@@ -108,7 +108,7 @@ fn trajectory() {
     assert_reference(&errors);
 }
 
-/// Two links are the double pendulum, as it is declared and solved with all of its Newton matrix.
+/// Two links are the double pendulum, declared and solved with its whole Newton matrix.
 #[test]
 fn two_links_are_the_declared_double_pendulum() {
     let central = Matrix3::new(0.3, 0.02, -0.03, 0.02, 0.2, 0.01, -0.03, 0.01, 0.4);
@@ -121,7 +121,7 @@ fn two_links_are_the_declared_double_pendulum() {
     let chain = Chain { links: [upper, lower], g: 9.81, up };
     let attitudes = [SO3::from_euler_angles(0.3, 1.0, -0.2), SO3::from_euler_angles(-0.5, 0.4, 0.1)];
     let velocity = Vector6::new(0.5, -1.0, 2.0, 1.0, 0.3, -0.5);
-    // What goes like 1/h in the diamond loses no digit where the step is small.
+    // The diamond's terms in 1/h lose no digit if the step is small.
     for (h, steps) in [(0.01, &[1, 99][..]), (1e-4, &[1]), (1e-5, &[1])] {
         let (declared, stepper) = (Stepper::new(declared.clone(), h).unwrap(), chain.stepper(h).unwrap());
         let mut whole = declared.start((attitudes[0], attitudes[1]), velocity).unwrap();
@@ -155,7 +155,8 @@ pub(super) fn irregular<const N: usize>(random: &mut Random) -> Chain<N> {
     Chain { links, g: 9.81, up: vector(1.0).normalize() }
 }
 
-/// `L_d` of the attitudes before and after a step, in terms of where all masses are: nothing of it is reduced.
+/// The discrete action `L_d` of the attitudes before and after a step, as a function of the positions of all masses,
+/// without reduction.
 fn action<const N: usize>(chain: &Chain<N>, h: f64, before: &[SO3; N], after: &[SO3; N]) -> f64 {
     let (mut action, mut joints) = (0.0, [Vector3::zeros(); 2]);
     for (k, link) in chain.links.iter().enumerate() {
@@ -171,7 +172,7 @@ fn action<const N: usize>(chain: &Chain<N>, h: f64, before: &[SO3; N], after: &[
     action
 }
 
-/// What a step begins and ends with are the derivatives of the action with respect to the attitudes before and after.
+/// The momenta before and after a step are the derivatives of the action with respect to the attitudes.
 #[test]
 fn a_step_is_that_of_the_action() {
     const N: usize = 5;
@@ -204,8 +205,8 @@ fn a_step_is_that_of_the_action() {
     }
 }
 
-/// What is put around a step goes with links as with any method: a checkpoint goes on to the bit, a torque does its work, a
-/// remedy and compensated sums leave the inertia to the links.
+/// The functions around a step work with links as with any method: a checkpoint continues with identical bits, a torque
+/// does its work, and remedies and compensated sums use the links' inertia.
 #[test]
 fn what_goes_with_every_stepper() {
     let (attitudes, velocities) = start3();
@@ -239,7 +240,7 @@ fn what_goes_with_every_stepper() {
     assert!(off < 1e-11 && carried.orthogonality_defect() < 1e-15, "{off:e}");
 }
 
-/// Other potentials add to the weight: a spring holds the last link, and the energy is kept with its own.
+/// Other potentials add to the weight: a spring acts on the last link, and the energy with its own is conserved.
 #[test]
 fn links_in_a_scene() {
     let (attitudes, velocities) = start3();
@@ -291,7 +292,7 @@ pub(super) fn rods<const N: usize>(last: f64) -> Chain<N> {
     Chain { links, g: 9.81, up: e }
 }
 
-/// The link that can't be, and the one that would turn too far, are named; the state is what it was.
+/// The errors name an invalid link, and one that would turn too far; the state stays unchanged.
 #[test]
 fn errors_name_the_link() {
     let mut chain = rods::<4>(1.0);
@@ -332,8 +333,8 @@ fn errors_name_the_link() {
     assert_eq!(state, before);
 }
 
-/// Rods that start without spin move as directions: none gets a momentum about its axis, and how large the moments about
-/// them are doesn't matter.
+/// Rods that start without spin move as directions: none gains a momentum about its axis, and their moments about these
+/// axes don't matter.
 #[test]
 fn rods_move_as_directions() {
     let (e, l) = (-Vector3::z(), 1.2);

@@ -1,4 +1,4 @@
-//! Systems of many bodies: terms on one body and on two, put at places.
+//! Systems of many bodies: terms on one body and on two, at their places.
 
 use checks::drift::tenths;
 use checks::structure::momenta::assert_momenta;
@@ -23,14 +23,14 @@ fn principal(J: [f64; 3]) -> PrincipalBody {
     PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(J.into()).unwrap() }
 }
 
-/// Four bodies of the reference, and what couples neighbours.
+/// Four bodies of the reference, and the coupling of neighbours.
 fn parts() -> ([PrincipalBody; 4], f64) {
     let data = &read("several bodies")["coupled_attitudes4"]["parameters"];
     let body = |a: usize| principal([0, 1, 2].map(|k| data["J"][a][k].as_f64().unwrap()));
     ([0, 1, 2, 3].map(body), data["kappa"].as_f64().unwrap())
 }
 
-/// In a row.
+/// The bodies in a row.
 fn row() -> impl DiscreteLagrangian<Scalar = f64, Group = [SO3; 4], Advected: 'static> + Regular + Clone {
     let (bodies, kappa) = parts();
     Each::<4>::of(bodies) + Along::<4>::of([Alike { kappa }])
@@ -40,7 +40,8 @@ fn whole<A: liestep::groups::Advected<[SO3; N]>, const N: usize>(state: &Motion<
     state.spatial_momentum().0.iter().sum()
 }
 
-/// To rounding, against a step of 30 digits: as a system, and as one declaration, in which each body is solved for itself.
+/// A step agrees to rounding with one of 30 digits: as a system, and as one declaration, in which each body is solved
+/// separately.
 #[test]
 fn golden_step() {
     let golden = &read("several bodies")["golden steps"]["coupled_attitudes4"];
@@ -65,7 +66,7 @@ fn golden_step() {
     assert_eq!(CoupledAttitudes::APART, <(SO3, SO3, SO3, SO3) as LieGroup>::FACTORS);
 }
 
-/// The order, and the whole momentum in space; compositions go as with one body.
+/// The order, and the total momentum in space; compositions work as with one body.
 #[test]
 fn trajectory() {
     let states = &read("several bodies")["coupled_attitudes4"]["states"];
@@ -89,7 +90,7 @@ fn trajectory() {
     assert!(error(&state.attitude(), &composed.velocity(&state)) < 1e-8);
 }
 
-/// A body that nothing joins to the others moves as it would alone.
+/// A body without a coupling moves as it would alone.
 #[test]
 fn bodies_that_are_not_coupled_move_as_alone() {
     let (m, g, up) = (1.3, 9.81, Vector3::z());
@@ -111,7 +112,7 @@ fn bodies_that_are_not_coupled_move_as_alone() {
     }
 }
 
-/// Each two of three bodies: along the row and between its ends, or at all pairs.
+/// The pairs of three bodies: along the row and between its ends, or at all pairs.
 #[test]
 fn pairs_are_what_is_between_each_two() {
     let bodies = Each::<3>::of([principal([2.0, 3.0, 4.0]), principal([1.0, 1.5, 2.0]), principal([5.0, 4.0, 3.0])]);
@@ -133,7 +134,7 @@ fn pairs_are_what_is_between_each_two() {
     assert!(apart(&first.attitude(), &free.attitude()) > 1e-2, "the bodies don't feel each other");
 }
 
-/// What is written for any number of bodies is right for one, too: there is no pair.
+/// A system for any number of bodies is valid for one, too: there is no pair.
 #[test]
 fn one_body_has_no_pair() {
     let body = Each::<1>::of([principal([2.0, 3.0, 4.0])]);
@@ -151,8 +152,8 @@ fn one_body_has_no_pair() {
     assert_eq!(one, other);
 }
 
-/// Terms whose momentum equations are multiplied by different powers of `1 + |y|²` are brought to one power body by body,
-/// each with its own `y`.
+/// Terms whose momentum equations have different powers of `1 + |y|²` are raised to one power body by body, each with
+/// its own `y`.
 #[test]
 fn unlike_denominators() {
     const { assert!(CayleyBody::<f64>::DENOMINATORS != PrincipalBody::<f64>::DENOMINATORS) };
@@ -174,7 +175,7 @@ fn unlike_denominators() {
     }
 }
 
-/// Momentum maps, diamond and momentum equation are derivatives of the sum of what was declared.
+/// Momentum maps, diamond and momentum equation are derivatives of the sum of the declared terms.
 #[test]
 fn what_is_put_at_places_is_derived_there() {
     let bodies = Each::<3>::of([principal([2.0, 3.0, 4.0]), principal([1.0, 1.5, 2.0]), principal([5.0, 4.0, 3.0])]);
@@ -183,7 +184,8 @@ fn what_is_put_at_places_is_derived_there() {
     assert_momenta(&l, 9);
 }
 
-/// In a million steps the energy stays within its bounds and doesn't drift, and the whole momentum is kept to rounding.
+/// Over a million steps the energy stays within its bounds and doesn't drift, and the total momentum is conserved to
+/// rounding.
 #[test]
 fn energy_and_momentum_of_a_million_steps() {
     let states = &read("several bodies")["coupled_attitudes4"]["states"];
@@ -202,7 +204,7 @@ fn energy_and_momentum_of_a_million_steps() {
     assert!(momentum < 2e-13);
 }
 
-/// What can't be a start is an error, and so is a step too long; the state stays.
+/// An invalid start is an error, and so is a step too long; the state stays.
 #[test]
 fn errors() {
     let bodies = Each::<2>::of([principal([2.0, 3.0, 4.0]), principal([1.0, 1.5, 2.0])]);
@@ -210,13 +212,13 @@ fn errors() {
     assert!(matches!(Stepper::new(scene, f64::NAN), Err(SetupError::InvalidStep { .. })));
     let broken = bodies + Along::<2>::of([Alike { kappa: f64::NAN }]);
     assert!(matches!(Stepper::new(broken, 0.01), Err(SetupError::Parameter { field: "kappa", .. })));
-    // A parameter of one of several is that of its body.
+    // An invalid parameter of one of several terms names its body.
     let weight = |m: f64| Gravity { m, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
     let of_second = |result: Result<(), SetupError>| matches!(result, Err(SetupError::BodyParameter { body: 1, .. }));
     assert!(of_second(Each::<2>::of([weight(1.0), weight(f64::NAN)]).validate()));
     assert!(of_second(On::<1, 2>::of([weight(f64::NAN)]).validate()));
     assert!(matches!(Each::<2>::of([weight(f64::NAN)]).validate(), Err(SetupError::Parameter { .. })));
-    // Where a velocity isn't determined the body is named.
+    // If a velocity isn't determined, the error names the body.
     let alone = On::<0, 2>::of([principal([2.0, 3.0, 4.0])]) + Along::<2>::of([Alike { kappa: 1.0 }]);
     let error = Stepper::new(alone, 0.01).map(|_| ()).unwrap_err();
     assert!(matches!(error, SetupError::SingularKinetic { body: Some(1), .. }), "{error}");
@@ -227,7 +229,7 @@ fn errors() {
     let error = stepper.step(&mut state).unwrap_err();
     assert!(matches!(error, liestep::StepError::BeyondSolvable { .. }), "{error:?}");
     assert_eq!(state, before);
-    // Two bodies whose blocks have negative determinants don't hide each other.
+    // Two bodies whose blocks have negative determinants don't compensate each other.
     let both = Bodies([Vector3::new(0.0, 0.0, 100.0); 2]);
     assert!(stepper.step(&mut stepper.start([SO3::identity(); 2], both).unwrap()).is_err());
 }

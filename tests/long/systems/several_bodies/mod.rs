@@ -1,6 +1,5 @@
-//! Several bodies on a product of groups, as they are declared: links that feel each other's velocities, bodies that feel
-//! each other's attitudes alone, and bodies that are translated too; systems of many, chains of many links, and bodies held
-//! together by joints.
+//! Several declared bodies on a product of groups: links with coupled velocities, bodies with coupled attitudes, and
+//! bodies with translations; systems of many bodies, chains of many links, and bodies with joints.
 
 mod casimirs;
 mod declared;
@@ -30,15 +29,15 @@ use workbench::runge_kutta;
 use checks::limit::assert_limit;
 use declarations::motions::{matrix, number, read, vector};
 
-/// A body that is translated, too.
+/// A body with rotation and translation.
 type Body = (SO3, R3);
 
-/// The turning part, and the other.
+/// The six components from those of the rotation and of the translation.
 fn six(turning: &Vector3<f64>, velocity: &Vector3<f64>) -> Vector6<f64> {
     Vector6::from_fn(|k, _| if k < 3 { turning[k] } else { velocity[k - 3] })
 }
 
-/// The momentum of all, and their angular momentum about the origin.
+/// The momentum of all bodies, and their angular momentum about the origin.
 fn whole<const N: usize>(bodies: &[Body; N], momenta: &Bodies<Vector6<f64>, N>) -> [Vector3<f64>; 2] {
     bodies.iter().zip(&momenta.0).fold([Vector3::zeros(); 2], |[p, l], (body, momentum)| {
         let [turning, linear] = [0, 1].map(|half| part(momentum, half));
@@ -51,17 +50,17 @@ fn stacked<const D: usize>(parts: &[Vector3<f64>]) -> SVector<f64, D> {
     SVector::from_fn(|k, _| parts[k / 3][k % 3])
 }
 
-/// Those of one body.
+/// The three components of one body.
 fn part<const D: usize>(of: &SVector<f64, D>, body: usize) -> Vector3<f64> {
     of.fixed_rows::<3>(3 * body).into_owned()
 }
 
-/// What a file has, as many as the system has bodies.
+/// The values of a file as an array, one per body of the system.
 fn array<R, const N: usize>(values: Vec<R>) -> [R; N] {
     values.try_into().unwrap_or_else(|_| panic!("another number of bodies"))
 }
 
-/// What a file has of all bodies.
+/// The values of all bodies in a file.
 fn all<R>(values: &Value, read: impl Fn(&Value) -> R) -> Vec<R> {
     values.as_array().unwrap().iter().map(read).collect()
 }
@@ -74,13 +73,13 @@ fn momentum<const D: usize>(values: &Value) -> SVector<f64, D> {
     stacked(&all(values, vector))
 }
 
-/// The largest difference of an entry.
+/// The largest difference between two entries.
 fn apart(attitudes: &[SO3], expected: &[SO3]) -> f64 {
     let differences = attitudes.iter().zip(expected).map(|(a, b)| (a.as_matrix() - b.as_matrix()).amax());
     differences.fold(0.0, f64::max)
 }
 
-/// Each error is a quarter of the one before.
+/// Checks order two: each error is a quarter of the one before.
 fn order(errors: &[f64]) {
     println!("{errors:?}");
     for pair in errors.windows(2) {
@@ -89,22 +88,22 @@ fn order(errors: &[f64]) {
     }
 }
 
-/// Errors of the first link's attitude and of the last one's velocity in the reference's chain after two seconds, at steps
-/// of 0.02, 0.01, 0.005 and 0.0025 s: the order, and those of `tests/data/chain_steps.py`, which reduces and eliminates
-/// nothing.
+/// Checks the errors of the first link's attitude and of the last one's velocity in the reference's chain after two
+/// seconds, at steps of 0.02, 0.01, 0.005 and 0.0025 s: the order, and agreement with `tests/data/chain_steps.py`,
+/// which reduces and eliminates nothing.
 fn assert_reference(errors: &[(f64, f64); 4]) {
     let expected = all(&read("chain steps")["errors"], |of| [&of["attitude"], &of["velocity"]].map(number));
     assert_eq!(expected.len(), errors.len());
     for (found, expected) in errors.iter().zip(expected) {
         let off = [found.0 / expected[0] - 1.0, found.1 / expected[1] - 1.0];
-        // Seven digits are written.
+        // The file has seven digits.
         assert!(off.iter().all(|off| off.abs() < 1e-6), "{found:?} {off:?}");
     }
     order(&errors.map(|error| error.0));
     order(&errors.map(|error| error.1));
 }
 
-/// To the bit where they are numbers: as texts, zeros of different signs differ.
+/// Equality to the bit for numbers: as texts, zeros of different signs differ.
 fn assert_same<S: PartialEq + Debug>(found: &S, expected: &S) {
     assert_eq!(found, expected);
     assert_eq!(format!("{found:?}"), format!("{expected:?}"));
@@ -118,7 +117,7 @@ where
     <CayleyRetraction as Retraction<G>>::retract(xi)
 }
 
-/// Every term that is derived from the declared expression, and the limit of small steps.
+/// Checks every term derived from the declared expression, and the limit of small steps.
 fn check_derived<L: System + Clone>(l: &L, seed: u64) {
     const { assert!(L::SELF_ADJOINT) };
     assert_momenta(l, seed);
@@ -126,8 +125,8 @@ fn check_derived<L: System + Clone>(l: &L, seed: u64) {
     assert_limit(l, "several bodies");
 }
 
-/// Where a solver of the continuous equations, which are those of the limit of `l_d`, comes from a start: attitude and
-/// velocity after the time.
+/// The attitude and velocity after the time by a solver of the continuous equations, which are those of the limit of
+/// `l_d`.
 fn solved<L, const D: usize>(
     l: &L,
     (attitude, velocity): (L::Group, SVector<f64, D>),
@@ -145,7 +144,7 @@ where
     (attitude, continuous.velocity(&momentum, &w).unwrap())
 }
 
-/// A stepper of a system, and where it starts.
+/// A stepper of a system, and its initial state.
 fn started<L: Regular<Scalar = f64>>(
     system: L,
     h: f64,
@@ -156,7 +155,7 @@ fn started<L: Regular<Scalar = f64>>(
     (stepper, state)
 }
 
-/// P1.
+/// P1: checks that a step is symplectic.
 fn check_symplectic<L: System + Clone>(l: L, h: f64, attitude: L::Group, velocity: Vector<L>) {
     let (stepper, start) = started(l, h, (attitude, velocity));
     let [defect, of_other_sign] = symplectic::defects(&stepper.flow(), &attitude, &start.momentum());

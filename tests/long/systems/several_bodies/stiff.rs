@@ -1,4 +1,4 @@
-//! Elastic rods whose stiffness is taken in the middle of a step: the bodies of a row are solved together.
+//! Elastic rods whose potential is evaluated in the middle of a step: the bodies of a row are solved together.
 
 use core::array::from_fn;
 
@@ -18,10 +18,10 @@ const N: usize = 6;
 type Rod = Sum<Placement<Each<N>, FloatingBody, 1>, Placement<Coupling<N>, RodElement, 1>>;
 type Start = ([Body; N], Bodies<Vector6<f64>, N>);
 
-/// Half of a body, m.
+/// Half the length of a body, m.
 const HALF: Vector3<f64> = Vector3::new(0.5, 0.0, 0.0);
 
-/// Of uniform bodies of one metre and one kilogram.
+/// A row of uniform bodies of one metre and one kilogram.
 fn bodies() -> Placement<Each<N>, FloatingBody, 1> {
     let J_d = NonstandardInertia::from_diagonal(Vector3::new(1.0 / 12.0, 1e-3, 1e-3)).unwrap();
     Each::<N>::of([FloatingBody { m: 1.0, J_d }])
@@ -31,7 +31,7 @@ fn rod(k: f64, c: f64) -> Rod {
     bodies() + Coupling::<N>::of([RodElement { k, c, a: HALF, b: -HALF }])
 }
 
-/// An arc, each body turned against the one before, that turns about itself and about an axis across.
+/// An arc, each body turned against the one before, that rotates about itself and about a perpendicular axis.
 fn arc() -> Start {
     let (mut corner, omega) = (Vector3::zeros(), Vector3::new(0.3, 0.2, 1.0));
     let bodies = from_fn(|k| {
@@ -54,7 +54,7 @@ fn what_is_derived_of_an_element() {
     assert_limit(&rod(40.0, 3.0), "a rod");
 }
 
-/// A step begins and ends with the momenta that the Lagrangian has there, along the whole row.
+/// The momenta before and after a step are those of the Lagrangian, along the whole row.
 #[test]
 fn a_step_of_a_rod_is_that_of_the_momentum_maps() {
     let (l, h) = (rod(40.0, 3.0), 0.1);
@@ -71,12 +71,12 @@ fn a_step_of_a_rod_is_that_of_the_momentum_maps() {
         [missed(l.legendre_minus(&f, &w, h), before.momentum()), missed(l.legendre_plus(&f, &w, h), state.momentum())];
     println!("{errors:?}, {} iterations", report.iterations);
     assert!(errors.iter().all(|&error| error < 2e-13) && report.iterations < 8, "{errors:?}");
-    // What is seen is that of the new places.
+    // The advected parameters are those of the new configuration.
     let seen = l.advected().seen_from(&state.attitude());
     assert!((state.advected().1.0[4].2.0 - seen.1.0[4].2.0).amax() < 1e-13);
 }
 
-/// Richardson's ratio of a rod whose oscillations are resolved.
+/// Richardson's ratio for a rod whose oscillations are resolved.
 #[test]
 fn steps_of_a_rod_are_of_order_two() {
     let ends = [400_u32, 800, 1600].map(|steps| {
@@ -92,13 +92,13 @@ fn steps_of_a_rod_are_of_order_two() {
     assert!((ratio - 4.0).abs() < 0.1, "{ratio}");
 }
 
-/// At ten times the step up to which the row's fastest oscillation could be stepped over by halves of its potential at
-/// both ends. With these the energy grows without bound; with the means it stays where it was.
+/// The step is ten times the stability limit for halves of the potential at both ends, with which the energy grows
+/// without bound; with the means it stays bounded.
 #[test]
 fn a_stiff_rod_is_stepped_over_its_fast_oscillations() {
     let (k, c) = (1e6, 20.0);
-    // In a wave exp(iqn) of shifts u across the row and turns θ, springs are stretched by 2i sin(q/2) u − l cos(q/2) θ. With
-    // J = m l²/12 that is ω² = 4 (k/m) (sin²(q/2) + 3 cos²(q/2)), 12 k/m at most; along the row it is 4 k/m.
+    // In a wave exp(iqn) of shifts u across the row and turns θ, springs are stretched by 2i sin(q/2) u − l cos(q/2) θ.
+    // With J = m l²/12 this leads to ω² = 4 (k/m) (sin²(q/2) + 3 cos²(q/2)), 12 k/m at most; along the row it is 4 k/m.
     let omega = (12.0_f64 * k).sqrt();
     let h = 10.0 * 2.0 / omega;
     let (stepper, mut state) = started(rod(k, c), h, arc());
@@ -137,7 +137,7 @@ struct Mass {
     m: f64,
 }
 
-/// Ties two of them in the middle of a step.
+/// A spring between two of them, evaluated in the middle of a step.
 #[lagrangian(
     group(d_1 = R3, d_2 = R3),
     advected(r = d_2.seen_from(d_1)),
@@ -148,8 +148,8 @@ struct Spring {
     k: f64,
 }
 
-/// A row of masses moves by the implicit midpoint rule, mode by mode: a phase of `2 atan(ω h/2)` a step. The order of the
-/// terms makes no difference.
+/// A row of masses moves by the implicit midpoint rule, mode by mode: a phase of `2 atan(ω h/2)` a step. The order of
+/// the terms doesn't matter.
 #[test]
 fn a_row_of_masses_moves_in_its_modes() {
     const M: usize = 4;
@@ -184,7 +184,7 @@ where
     state.attitude()
 }
 
-/// Holds a body in space, the harder the farther it is turned, and bends the next against it.
+/// A potential in space that grows with a body's turn, and bends the next body against it.
 #[lagrangian(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
     advected(R = F_1.seen_from(space), Q = F_2.seen_from(F_1), r = d_2.seen_from(d_1)),
@@ -197,8 +197,8 @@ struct Held {
     c: f64,
 }
 
-/// Beyond a right angle the whole Jacobian would have to be looked at, which a row hasn't at hand: such steps are refused,
-/// though its determinant is positive there.
+/// Beyond a right angle a test would need the whole Jacobian, which isn't available for a row: such steps are refused,
+/// although the determinant is positive there.
 #[test]
 fn steps_of_a_row_beyond_a_right_angle_are_refused() {
     let J_d = NonstandardInertia::from_diagonal(Vector3::new(1.0, 1.0, 1.0)).unwrap();
@@ -226,8 +226,8 @@ fn steps_of_a_row_beyond_a_right_angle_are_refused() {
     }
 }
 
-/// Springs that push their ends apart, so that beyond `2/ω` of the fastest mode no step continues the identity. Metres
-/// aren't told as an angle.
+/// Springs that push their ends apart, so that beyond `2/ω` of the fastest mode no step is on the branch of the
+/// identity. The error doesn't report metres as an angle.
 #[test]
 fn masses_that_cannot_turn_are_not_said_to() {
     const M: usize = 4;
@@ -252,7 +252,7 @@ struct Floating {
     K: Matrix4<f64>,
 }
 
-/// Of bodies on SE(3) the one that turns is named, by its angle, not the one that is shifted farther than that.
+/// For bodies on SE(3) the error names the one that turns, by its angle, not the one with the larger shift.
 #[test]
 fn bodies_that_are_only_shifted_are_not_blamed() {
     let K = Matrix4::from_diagonal(&Vector4::new(0.5, 0.5, 0.5, 2.0));
@@ -263,7 +263,7 @@ fn bodies_that_are_only_shifted_are_not_blamed() {
     let error = stepper.step(&mut state).unwrap_err();
     println!("{error}");
     let StepError::BeyondSolvable { largest, turn, body, .. } = error else { panic!("{error:?}") };
-    // Of a sphere `sin θ = h ω`.
+    // A sphere has `sin θ = h ω`.
     assert!((3.0 * largest - 1.0).abs() < 1e-5 && (turn - 3.0).abs() < 1e-12, "{largest:e}, {turn:e}");
     assert_eq!(body, Some(1));
 }

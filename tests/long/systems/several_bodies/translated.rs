@@ -1,4 +1,4 @@
-//! Bodies that are translated too: a top on a cart, two bodies that attract each other, a spacecraft with wheels.
+//! Bodies with translations: a top on a cart, two bodies that attract each other, a spacecraft with wheels.
 
 use checks::drift::tenths;
 use checks::solvers::Badly;
@@ -24,7 +24,8 @@ fn attitude(body: &Value) -> SO3 {
     attitudes_of(&Value::Array(vec![body["R"].clone()]))[0]
 }
 
-/// Of the reference: the body's nonstandard inertia about its pivot is that about its centre of mass, and `m c cᵀ`.
+/// The top on a cart of the reference: the nonstandard inertia about the pivot is that about the centre of mass plus
+/// `m c cᵀ`.
 fn top_on_cart(parameters: &Value) -> TopOnCart {
     let (top, c) = (&parameters["top"], moments(&parameters["top"]["c"]));
     let m = top["m"].as_f64().unwrap();
@@ -55,7 +56,7 @@ fn a_top_on_a_cart() {
     let error = |g: &OnCart| apart(&[g.0], &[end.0]).max((g.1.translation() - end.1.translation()).amax());
     let errors = [(0.005, 400_u64), (0.0025, 800), (0.00125, 1600)].map(|(h, steps)| {
         let (stepper, mut state) = started(system.clone(), h, (start, velocity));
-        // The reference counts heights from the plane of the pivot.
+        // Heights in the reference are relative to the plane of the pivot.
         assert!((stepper.energy(&state) - number(&data["states"][0]["energy"])).abs() < 1e-13 * 20.0);
         stepper.run(&mut state, steps).unwrap();
         error(&state.attitude())
@@ -69,8 +70,8 @@ fn a_top_on_a_cart() {
     assert!(error(&state.attitude()) < 1e-8 && (composed.velocity(&state) - end_velocity).amax() < 1e-6);
 }
 
-/// A cart so light that no body could be that top: along a level axis across the top the energy is negative, and that axis
-/// depends on how the top stands.
+/// A cart so light that no body could be that top: along a horizontal axis across the top the kinetic energy is
+/// negative, and that axis depends on the attitude.
 #[test]
 fn a_coupling_that_is_too_strong_names_the_factor() {
     let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 1.0, 0.5)).unwrap();
@@ -88,7 +89,7 @@ fn a_coupling_that_is_too_strong_names_the_factor() {
     }
 }
 
-/// Sideways the momentum is kept by steps that are solved badly; that about the vertical by steps that are solved.
+/// The horizontal momentum is conserved by wrongly solved steps; that about the vertical by solved ones.
 #[test]
 fn momenta_of_a_top_on_a_cart() {
     let data = &read("several bodies")["top_on_cart"];
@@ -113,7 +114,7 @@ fn momenta_of_a_top_on_a_cart() {
     assert!((turning(&state) - before).abs() < 1e-10 && most < 0.1 && (means[9] - means[0]).abs() < 0.1);
 }
 
-/// How far a step is from (2.7), relative to the momentum.
+/// The error of a step in (2.7), relative to the momentum.
 pub(super) fn missed<L: DiscreteLagrangian<Scalar = f64>>(
     system: &L,
     before: &liestep::motion::Motion<L::Group, L::Advected>,
@@ -129,7 +130,7 @@ pub(super) fn missed<L: DiscreteLagrangian<Scalar = f64>>(
     size(system.legendre_minus(&f, &before.advected(), h) - before.momentum()) / size(before.momentum())
 }
 
-/// Before and after a thousand steps that are solved badly: (2.7) is missed by each.
+/// The states before and after a thousand wrongly solved steps, each with an error in (2.7).
 fn solved_badly<L, const D: usize>(
     system: &L,
     start: L::Group,
@@ -176,7 +177,7 @@ fn pair(state: &Value) -> (Pair, SVector<f64, 12>) {
     ((a, x, b, y), SVector::from_fn(|k, _| all[k / 3][k % 3]))
 }
 
-/// The momentum of both, and their whole angular momentum about the origin.
+/// The momentum of both bodies, and their total angular momentum about the origin.
 pub(super) fn whole<W>(state: &liestep::motion::Motion<Pair, W>) -> (Vector3<f64>, Vector3<f64>)
 where
     W: liestep::groups::Advected<Pair> + Copy,
@@ -186,7 +187,7 @@ where
     super::whole(&[(g.0, g.1), (g.2, g.3)], &Bodies(momenta)).into()
 }
 
-/// Against a reference in inertial coordinates with quaternions, which shares nothing with reduced equations.
+/// The reference is in inertial coordinates with quaternions, independent of reduced equations.
 #[test]
 fn two_bodies_that_attract_each_other() {
     let data = &read("several bodies")["two_bodies"];
@@ -211,12 +212,12 @@ fn two_bodies_that_attract_each_other() {
     let mut state = composed.start(start, velocity).unwrap();
     composed.run(&mut state, 100).unwrap();
     assert!(error(&state.attitude()) < 1e-9 && (composed.velocity(&state) - end_velocity).amax() < 1e-8);
-    // Potentials are at the ends of steps, so that each body, and each translation, is solved by itself.
+    // Potentials are at the ends of steps, so each body, and each translation, is solved separately.
     assert_eq!(TwoBodies::<f64>::APART, <Pair as liestep::groups::LieGroup>::FACTORS);
 }
 
-/// On an orbit that doesn't come close, of which the centre of mass rests or moves on: how far the momentum of both and
-/// their angular momentum get, relative to that.
+/// The relative changes of both bodies' momentum and angular momentum on an orbit without a close approach, with the
+/// centre of mass at rest or moving.
 fn drift(steps: u64, rests: bool) -> [f64; 2] {
     let data = &read("several bodies")["two_bodies"];
     let system = two_bodies(&data["parameters"]);
@@ -237,14 +238,14 @@ fn drift(steps: u64, rests: bool) -> [f64; 2] {
     most
 }
 
-/// As a random walk: 2.9e-15, 1.4e-14 and 8.5e-14 of the angular momentum after 1e4, 1e5 and 1e6 steps.
+/// The change is a random walk: 2.9e-15, 1.4e-14 and 8.5e-14 of the angular momentum after 1e4, 1e5 and 1e6 steps.
 #[test]
 fn momenta_of_two_bodies() {
     let [p, l] = drift(100_000, true);
     assert!(p < 1e-15 && l < 5e-14, "{p:e} {l:e}");
 }
 
-/// Where the centre of mass goes 280 m a place is rounded to 6e-14 m, which is 1.8e-12 of the angular momentum.
+/// If the centre of mass moves 280 m, a position is rounded to 6e-14 m, which is 1.8e-12 of the angular momentum.
 #[test]
 #[ignore = "twenty seconds: `cargo test -p liestep-tests --test systems momenta_of_two_bodies -- --ignored`"]
 fn momenta_of_two_bodies_after_a_million_steps() {
@@ -254,7 +255,7 @@ fn momenta_of_two_bodies_after_a_million_steps() {
     }
 }
 
-/// As a system, of bodies and of what is between them, they move as the oscillator that they are, and turn freely.
+/// The system of two bodies and a coupling moves as the harmonic oscillator, and its bodies rotate freely.
 #[test]
 fn a_system_of_bodies_that_are_translated() {
     let ([m_1, m_2], k, h) = ([1.5, 0.6], 2.0, 0.01);
@@ -281,7 +282,7 @@ fn a_system_of_bodies_that_are_translated() {
     assert!((found - expected).amax() < 1e-13, "{found} and {expected}");
     assert!((state.attitude()[0].0.matrix() - turning.attitude().0.matrix()).amax() < 1e-13);
 
-    // Tied away from their centres they turn each other, and keep all of their momentum.
+    // Tied away from their centres they rotate each other, and conserve all of their momentum.
     let system = tied(Vector3::new(0.3, 0.0, 0.1), Vector3::new(0.0, -0.2, 0.1));
     let mut state = system.start(start, Bodies([velocity, velocity * 0.5])).unwrap();
     let (energy, [p, l]) = (system.energy(&state), super::whole(&state.attitude(), &state.momentum()));
@@ -292,13 +293,13 @@ fn a_system_of_bodies_that_are_translated() {
     assert!((state.attitude()[0].0.matrix() - turning.attitude().0.matrix()).amax() > 0.1);
 }
 
-/// A kinetic part that is singular, or negative, is that of a body, or of a factor of one.
+/// A singular or negative kinetic part belongs to a body, or to a factor of its group.
 #[test]
 fn a_body_without_inertia_is_named() {
     fn whose<S: liestep::mechanics::Regular<Scalar = f64>>(scene: S) -> Option<usize> {
         match Stepper::new(scene, 0.01).map(|_| ()) {
             Err(SetupError::SingularKinetic { determinant, body }) => {
-                // Where a zero was divided by.
+                // The elimination divides by zero.
                 assert!(determinant == 0.0 || determinant.is_nan());
                 body
             }
@@ -315,7 +316,7 @@ fn a_body_without_inertia_is_named() {
         assert_eq!(whose(Each::<3>::of(masses(0.0))), Some(light));
         assert_eq!(Stepper::new(Each::<3>::of(masses(-2.0)), 0.01).map(|_| ()), negative(Some(light)));
     }
-    // The first, where there are more.
+    // The first body is named if there are several.
     assert_eq!(whose(Each::<3>::of([free(1.0), free(0.0), free(0.0)])), Some(1));
     assert_eq!(whose(Gyrostat { J_w: 0.0, ..gyrostat() }), Some(1));
     let data = read("several bodies");
@@ -324,7 +325,7 @@ fn a_body_without_inertia_is_named() {
     assert_eq!(whose(TwoBodies { m_1: 1e-120, m_2: 1e-120, ..two_bodies(&data["two_bodies"]["parameters"]) }), None);
 }
 
-/// A step that goes over a close pass has a solution, and its energy tells.
+/// A step across a close approach has a solution, and the energy reveals the error.
 #[test]
 fn a_close_pass_that_is_stepped_over_is_an_error() {
     let [J, K] = [Vector3::new(0.01, 0.012, 0.015); 2];
@@ -338,7 +339,8 @@ fn a_close_pass_that_is_stepped_over_is_an_error() {
         G: 1.0,
     };
     let stepper = Stepper::new(system, 1e-3).unwrap();
-    // Towards each other from afar, with an energy near −¼; by how far they would miss each other.
+    // The bodies approach each other from afar, with an energy near −¼; `aside` is the distance by which they would
+    // miss.
     let passed = |aside: f64| {
         let place = |x: f64, y: f64| R3::from(Vector3::new(x, y, 0.0));
         let start = (SO3::identity(), place(-1.0, 0.0), SO3::identity(), place(1.0, aside));
@@ -381,7 +383,7 @@ pub(super) fn gyrostat() -> Gyrostat {
     }
 }
 
-/// Against Euler's equations with the wheels' momenta as constants, by Runge and Kutta's steps.
+/// The reference is Euler's equations with constant momenta of the wheels, by Runge and Kutta's steps.
 #[test]
 fn a_spacecraft_with_wheels() {
     let system = gyrostat();
@@ -389,7 +391,7 @@ fn a_spacecraft_with_wheels() {
     let stepper = Stepper::new(system.clone(), 0.01).unwrap();
     let momentum = stepper.start(at_rest(), velocity).unwrap().momentum();
     let axes = Matrix3::from_columns(&[system.a_1, system.a_2, system.a_3]);
-    // J_w(θ̇ + a·Ω), and JΩ + Σ a J_w(θ̇ + a·Ω).
+    // The momenta J_w(θ̇ + a·Ω) of the wheels, and JΩ + Σ a J_w(θ̇ + a·Ω) of the whole.
     let (omega, turning): (Vector3<f64>, Vector3<f64>) = (part(&velocity, 0), part(&velocity, 1));
     let of_wheels = (turning + axes.transpose() * omega) * 0.2;
     let whole = Vector3::new(2.0, 2.5, 3.0).component_mul(&omega) + axes * of_wheels;
@@ -415,13 +417,13 @@ fn a_spacecraft_with_wheels() {
     order(&errors);
     let (there, _) = solved(&system, (at_rest(), velocity), (2.0, 4000));
     assert!((there.0.as_matrix() - exact.0).amax() < 1e-9, "by a solver: {:e}", (there.0.as_matrix() - exact.0).amax());
-    // Nothing is advected: what is badly solved keeps all momenta.
+    // There are no advected parameters, so wrongly solved steps conserve all momenta.
     let [before, after] = solved_badly(&system, at_rest(), &velocity);
     assert!((after.spatial_momentum() - before.spatial_momentum()).amax() < 1e-13);
     assert_eq!(part::<6>(&after.momentum(), 1), part::<6>(&momentum, 1));
 }
 
-/// What is derived of each is what is declared, at random places.
+/// The derived terms of each agree with the declared ones, in random configurations.
 #[test]
 fn what_is_derived_of_translated_bodies() {
     let data = read("several bodies");

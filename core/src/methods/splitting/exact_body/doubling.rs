@@ -1,20 +1,21 @@
-//! Drifts of any length: the functions over a short part of them, doubled.
+//! Drifts of any length: the functions over a short part of the drift, doubled repeatedly.
 //!
-//! With `s = 1/√n`, `c = √(1 − K_b s²)` and `d = √(1 − K_a s²)`, which change their signs as sine and cosine do,
+//! Let `s = 1/√n`, `c = √(1 − K_b s²)` and `d = √(1 − K_a s²)`, with signs that change as those of sine and cosine do.
+//! Then
 //!
 //! ```text
 //! Q = 1 − K_a K_b s⁴      s⁺ = 2 s c d/Q      c⁺ = (c² − K_b s² d²)/Q      d⁺ = (d² − K_a s² c²)/Q
 //! ```
 //!
-//! are those of twice the time, of which `N`, `C`, `D` and `μ` at half of it are multiples. The turn about the momentum
-//! is twice that of half the time and once more, by the tangent to the curve at the point,
+//! are the values at twice the time, and `N`, `C`, `D` and `μ` at half of it are multiples of them. The turn about the
+//! momentum is twice that at half the time, followed by one from the tangent to the curve at the point,
 //!
 //! ```text
 //! (1 − K_a K_b s⁴ − ν s² (3 − 2 (K_a + K_b) s² + K_a K_b s⁴),  2 AB (A a² + B b²) s³ c d u)        ν = −AB |u|²
 //! ```
 //!
-//! as a quaternion of any length. Written with `K_a − ν = B (A a² + B b²)` and `K_b − ν = A (A a² + B b²)`, so that
-//! nothing cancels where a motion passes the middle axis and all are small.
+//! a quaternion of any length. It is evaluated with `K_a − ν = B (A a² + B b²)` and `K_b − ν = A (A a² + B b²)`, so
+//! that nothing cancels near the middle axis, where all are small.
 
 use nalgebra::SimdBool as _;
 
@@ -23,10 +24,10 @@ use super::series::{Functions, Invariants, LONG, long};
 use super::{About, Form};
 use crate::numbers::Number;
 
-/// Enough for any angle of a double that has a digit of its direction left.
+/// The limit suffices for every angle that has a significant digit.
 const MOST_DOUBLINGS: u32 = 60;
 
-/// The functions at a time, `s` in units of half the drift.
+/// The values of the functions at a time; `s` is in units of half the drift.
 #[derive(Clone, Copy, Debug)]
 struct Point<T> {
     s: T,
@@ -34,37 +35,38 @@ struct Point<T> {
     d: T,
 }
 
-/// What is doubled with.
+/// The constants of the doubling formulas.
 struct Curve<T: Number> {
     a: T,
     b: T,
     ka: T,
     kb: T,
-    /// `A a² + B b²`, zero if that is less than what is clamped to.
+    /// The sum `A a² + B b²`, set to zero where it is less than the clamping limit.
     h: T,
-    /// `AB (A a² + B b²)`.
+    /// The product `AB (A a² + B b²)`.
     bend: T,
-    /// `|u|²`
+    /// The square `|u|²`.
     square: T,
-    /// The roots `K_a ≥ K_b`, where `c` can't be less than zero.
+    /// The mask of `K_a ≥ K_b`, for which `c` can't be less than zero.
     c_is_larger: T::Mask,
-    /// On the separatrix `c = d`, and both go to zero.
+    /// The mask of the separatrix, where `c = d`, and both tend to zero.
     is_separatrix: T::Mask,
 }
 
 impl<T: Number> Form<T> {
-    /// By the functions over a part of the drift that is short enough, doubled as often as it takes.
+    /// The drift, from the functions over a part that is short enough, by as many doublings as it takes.
     pub(super) fn doubled(&self, u: [T; 3], invariants: &Invariants<T>) -> Quaternion<T> {
         let (one, half, quarter) = (T::one(), T::number(0.5), T::number(0.25));
         let (size, [a, b, c]) = (invariants.size(), u);
-        // The half of the drift, and its square; lanes that are short enough wait.
+        // The ratio of the part's duration to the drift's, and its square; lanes that are short enough aren't halved
+        // further.
         let (mut root, mut part, mut doublings) = (half, quarter, 1);
         while doublings < MOST_DOUBLINGS && (size * part).simd_gt(T::number(LONG)).any() {
             let is_far = (size * part).simd_gt(T::number(LONG));
             (root, part) = ((root * half).select(is_far, root), (part * quarter).select(is_far, part));
             doublings += 1;
         }
-        // An angle without a digit left is none.
+        // An angle without a significant digit is NaN.
         let epsilon = T::simd_default_epsilon();
         let part = part.select((size * epsilon * epsilon).simd_lt(one), T::number(f64::NAN));
         let reduced = invariants.scaled(part);
@@ -83,7 +85,7 @@ impl<T: Number> Form<T> {
         }
         let end = curve.doubled(&point);
         let (ss, sc, sd, cd) = (end.s * end.s, end.s * end.c, end.s * end.d, end.c * end.d);
-        // 1 + AB c² s², of two terms of one sign.
+        // 1 + AB c² s², as a sum of two terms of one sign.
         let of_c = end.c * end.c + self.a_squared * (a * a) * ss;
         let of_d = end.d * end.d + self.b_squared * (b * b) * ss;
         let den = of_c.select(curve.c_is_larger, of_d);
@@ -111,14 +113,14 @@ impl<T: Number> Form<T> {
     }
 }
 
-/// What `c` and `d` are clamped to on the separatrix, where they go to zero and their ratio doesn't: the square of a
-/// rounding, whose square a single has, too.
+/// The lower limit of `c` and `d` on the separatrix, where they tend to zero and their ratio doesn't: a squared
+/// rounding error, whose square is representable in single precision, too.
 fn least<T: Number>() -> T {
     T::simd_default_epsilon() * T::simd_default_epsilon()
 }
 
 impl<T: Number> Curve<T> {
-    /// `1 − K_a K_b s⁴`.
+    /// The denominator `1 − K_a K_b s⁴`.
     fn base(&self, Point { s, c, d }: &Point<T>) -> T {
         let (ss, cc, dd) = (*s * *s, *c * *c, *d * *d);
         (cc + self.kb * ss * dd).select(self.c_is_larger, dd + self.ka * ss * cc)
@@ -126,7 +128,7 @@ impl<T: Number> Curve<T> {
 
     fn doubled(&self, point: &Point<T>) -> Point<T> {
         let (Point { s, c, d }, base) = (*point, self.base(point));
-        // c² − K_b s² d² = c² d² + (K_a − K_b) s², and the other with the other sign.
+        // c² − K_b s² d² = c² d² + (K_a − K_b) s²; for d the sign of the second term is the opposite.
         let (both, apart) = ((c * d) * (c * d), (self.b - self.a) * self.h * (s * s));
         let (of_c, of_d) = ((both + apart) / base, (both - apart) / base);
         let clamped = |x: T, is_clamped: T::Mask| x.simd_max(least()).select(is_clamped, x);
@@ -138,11 +140,11 @@ impl<T: Number> Curve<T> {
         }
     }
 
-    /// Twice the rotation, and that by the tangent.
+    /// Twice the rotation, followed by that of the tangent.
     fn turned_on(&self, about: &About<T>, point: &Point<T>) -> About<T> {
         let (Point { s, c, d }, square) = (*point, self.square);
         let (ss, cc, dd) = (s * s, c * c, d * d);
-        // 1 − ν s², of two terms of one sign.
+        // 1 − ν s², as a sum of two terms of one sign.
         let (of_a, of_b) = (self.a * self.h, self.b * self.h);
         let from_pole = (cc + of_a * ss).select(of_a.simd_ge(T::zero()), dd + of_b * ss);
         let tangent = About {
@@ -151,7 +153,7 @@ impl<T: Number> Curve<T> {
         };
         let next = about.and(about, square).and(&tangent, square);
         let length = (next.w * next.w + next.f * next.f * square).simd_sqrt();
-        // Where both vanish the body stays at its middle axis.
+        // If both vanish, the body stays at its middle axis.
         let next = About { w: next.w / length, f: next.f / length };
         next.select(length.simd_gt(T::zero()), &About { w: T::one(), f: T::zero() })
     }

@@ -6,17 +6,17 @@ use super::super::axes::Axes;
 use super::super::quaternion::Quaternion;
 use crate::numbers::{Lanes, Real};
 
-/// How the principal axes lie in the body.
+/// The orientation of the principal axes in the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Frame<T> {
-    /// They are the body's.
+    /// The principal axes are the body's axes.
     Along(Axes),
-    /// They are the columns of a rotation.
+    /// The principal axes are the columns of a rotation.
     Turned(Matrix3<T>),
 }
 
 impl<T: Real> Frame<T> {
-    /// The moments about three right-handed axes, the last the middle one, and these.
+    /// The moments about three right-handed principal axes, with the middle moment last, and these axes.
     pub(super) fn of(inertia: &Matrix3<T>) -> ([T; 3], Self) {
         let diagonal = inertia.diagonal();
         let beside = inertia - Matrix3::from_diagonal(&diagonal);
@@ -33,7 +33,8 @@ impl<T: Real> Frame<T> {
         (moments, Self::Turned(axes))
     }
 
-    /// In which place among the body's axes each of these is; those of other bodies are in their own order.
+    /// The index among the body's axes of each principal axis. If they aren't the body's axes, the numbers are in
+    /// order.
     pub(super) fn places(&self) -> [usize; 3] {
         match self {
             Self::Along(Axes::Yzx) => [1, 2, 0],
@@ -42,7 +43,7 @@ impl<T: Real> Frame<T> {
         }
     }
 
-    /// The components of a body's vector along the axes.
+    /// The components of a body vector along the principal axes.
     #[hot]
     pub(super) fn within(&self, v: &Vector3<T>) -> [T; 3] {
         match self {
@@ -54,7 +55,7 @@ impl<T: Real> Frame<T> {
         }
     }
 
-    /// A quaternion with those components in the body's.
+    /// A quaternion in the body's axes, from one in the principal axes.
     #[hot]
     pub(super) fn back(&self, quaternion: Quaternion<T>) -> Quaternion<T> {
         match self {
@@ -68,7 +69,7 @@ impl<T: Real> Frame<T> {
     }
 }
 
-/// All lanes have frames of one kind.
+/// The lanes of a vector must have frames of one variant.
 impl<T: Real> Lanes for Frame<T> {
     type Lane = Frame<T::Element>;
 
@@ -95,12 +96,12 @@ impl<T: Real> Lanes for Frame<T> {
     }
 }
 
-/// Sweeps of Jacobi's iteration: it converges quadratically, and four or five leave nothing beside the diagonal.
+/// Sweeps of Jacobi's iteration: it converges quadratically, and four or five sweeps leave zero beside the diagonal.
 const SWEEPS: usize = 6;
 
 /// The principal moments and axes of a symmetric matrix, the middle moment last and the axes right-handed.
 ///
-/// By Jacobi's iteration, which needs no pivots and keeps lanes together.
+/// Jacobi's iteration needs no pivots, so all lanes have the same control flow.
 fn principal_axes<T: Real>(inertia: &Matrix3<T>) -> ([T; 3], Matrix3<T>) {
     let (mut a, mut axes) = (*inertia, Matrix3::<T>::identity());
     for _ in 0..SWEEPS {
@@ -125,8 +126,7 @@ fn principal_axes<T: Real>(inertia: &Matrix3<T>) -> ([T; 3], Matrix3<T>) {
         }
     }
     let mut moments = [a[(0, 0)], a[(1, 1)], a[(2, 2)]];
-    // Into the order of their sizes. An axis that changes places changes its direction, too, so that they stay
-    // right-handed.
+    // Sorting by size. An axis that is swapped also changes its sign, so that the axes stay right-handed.
     for (p, q) in [(0, 1), (1, 2), (0, 1)] {
         let is_swapped = moments[p].simd_gt(moments[q]);
         let (x, y) = (moments[p], moments[q]);

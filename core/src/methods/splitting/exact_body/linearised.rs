@@ -1,12 +1,12 @@
-//! How the exact motion of a body depends on its momentum and on its inertia: forwards, and over long drifts, by dual
-//! numbers through the closed form, and backwards [in reverse](super::reverse).
+//! The derivatives of a body's exact motion with respect to its momentum and its inertia. The forward mode and long
+//! drifts use dual numbers in the closed form, the reverse mode [its adjoint](super::reverse).
 //!
-//! The derivatives of elliptic functions by their invariants are quotients that vanish above and below for symmetric
-//! bodies and at the separatrix. The closed form has no such place, and its derivative hasn't either.
+//! The derivatives of elliptic functions with respect to their invariants are quotients whose numerator and denominator
+//! vanish for symmetric bodies and at the separatrix. The closed form and its derivative have no such singularity.
 //!
-//! On the separatrix, where `K_a = K_b = K`, [`doubling`](super::doubling) clamps the functions `c = d` to the square of a
-//! rounding `ε`, behind which their slopes are zero: from `2√K = ln(2/ε²)` on, which is 73 of a double's. There the motion
-//! has made `ε⁻²` of a deviation, and its derivative tells nothing of the next double.
+//! On the separatrix, where `K_a = K_b = K`, [`doubling`](super::doubling) clamps the functions `c = d` to the square
+//! of a rounding error `ε`, and after that their slopes are zero: from `2√K = ln(2/ε²)` on, which is 73 for doubles.
+//! There the motion has amplified a deviation by `ε⁻²`, and its derivative doesn't predict the next double.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -18,11 +18,11 @@ use crate::groups::SO3;
 use crate::mechanics::SceneVisitor;
 use crate::numbers::{Dual, Real, real};
 
-/// The closed form of a motion of one length; with derivatives, at fixed moments and along each of them.
+/// The closed form of a motion of one duration; with derivatives, at fixed moments and along each of them.
 #[derive(Clone, Debug)]
 pub struct Forms<T>(Form<T>, [Form<Dual<T>>; 2]);
 
-/// The parameters are those of the docs of [`ExactBody`], under "Derivatives".
+/// The parameters are documented at [`ExactBody`], under "Derivatives".
 impl<T: Real> DifferentiableFlow<T> for ExactBody<T> {
     const PARAMETERS: usize = 6;
 
@@ -76,7 +76,8 @@ impl<T: Real> DifferentiableFlow<T> for ExactBody<T> {
 
 #[hot]
 impl<T: Real> ExactBody<T> {
-    /// The gradient before a drift by that behind it, and the parameters' shares; none of a longer drift.
+    /// The cotangent before a drift from that after it, and the derivatives with respect to the parameters; `None` if
+    /// the drift is too long for the polynomials.
     fn pulled(
         &self,
         form: &Form<T>,
@@ -104,7 +105,7 @@ impl<T: Real> ExactBody<T> {
         let [w, x, y, z] = turned.map(|part| part.value);
         let scale = real::<T>(2.0) / ((w * w + x * x) + (y * y + z * z));
         core::array::from_fn(|k| {
-            // ½ ε̂ is the change of the quaternion over itself.
+            // ½ ε̂ is the change of the quaternion divided by the quaternion.
             let [_, a, b, c] = product(turned.map(|part| part.slopes[k]), [w, -x, -y, -z]);
             let [_, x, y, z] = self.frame.back([T::zero(), a, b, c]);
             Vector3::new(x, y, z) * scale

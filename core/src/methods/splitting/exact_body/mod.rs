@@ -7,7 +7,7 @@
 //! K_b = −AB c² + A(A − B) a²              K_a = −AB c² + B(B − A) b²              neither negative, and constant
 //! ```
 //!
-//! and `℘` the elliptic function of Weierstrass whose roots are `0`, `K_b`, `K_a` but for their mean. In units of half
+//! and `℘` the elliptic function of Weierstrass whose roots are `0`, `K_b`, `K_a` up to their mean. In units of half
 //! the drift, `n = ℘ − e_c` and `μ = −℘′`, where `μ² = 4 n (n − K_b)(n − K_a)`. With
 //!
 //! ```text
@@ -18,17 +18,18 @@
 //! n M − AB c · M c⁺ = N (n N + AB c (c (C + D + N) − (B − A) μ a b))
 //! ```
 //!
-//! `F_a p⁺ = p`, and what is left of the motion is a turn about the momentum,
+//! Here `F_a p⁺ = p`, and the rest of the motion is a turn about the momentum,
 //!
 //! ```text
 //! F = exp(2 (1 + I) û) F_a            I = AB (A a² + B b²) ∫₀¹ dz/(℘(z) − e_c + AB |u|²)
 //! ```
 //!
-//! All of it is even or polynomial in what may vanish: symmetric and spherical bodies, the separatrix and spins about an
-//! axis are no cases of their own, and with the middle moment third no sum but `A a² + B b²` has terms of two signs.
+//! All expressions are even or polynomial in the quantities that may vanish: symmetric and spherical bodies, the
+//! separatrix and spins about an axis are no special cases. As the middle moment is the third, `A a² + B b²` is the
+//! only sum with terms of both signs.
 //!
-//! [`series`] has the functions where the drift is short; up to four times that length they are doubled as points of the
-//! curve that `n` and `μ` are on, and [`doubling`] takes them to any length.
+//! [`series`] has the functions for short drifts. Up to four times that length they are doubled as points of the curve
+//! of `n` and `μ`, and [`doubling`] extends them to any length.
 
 mod doubling;
 mod frame;
@@ -49,31 +50,31 @@ use crate::groups::{LieGroup as _, SO3};
 use crate::mechanics::{Inertia, Operations, SceneVisitor};
 use crate::numbers::{Kernel, Number, Numbers, Real, Vectors, dispatch, is_finite, reported};
 
-/// The free motion of a body with any three moments, exactly: to rounding, over any time.
+/// The free motion of a body with any three moments, exact to rounding over any time.
 ///
-/// There is nothing to solve. Up to a radian it takes no square root, and the sine and cosine of one rotation, the same
-/// for symmetric and asymmetric bodies. Between kicks it leaves no error but that of the scheme; with a scene that has no potential a step of any
-/// length is the motion itself, and a longer one costs no more than the logarithm of its length.
+/// No equation is solved. A drift of up to a radian takes no square root, and only one sine and cosine, for symmetric
+/// and asymmetric bodies alike. Between kicks it leaves no error but that of the scheme. In a scene without potential a
+/// step of any length is the exact motion, at a cost that grows only logarithmically with its length.
 ///
 /// # Rounding
 ///
-/// Over an angle `θ` of up to a radian `F − I` and the momentum are within `8 (1 + θ)` units in the last place of their
-/// largest entry. Beyond, the units are multiplied by what the motion itself makes of a change of the momentum: some `θ`,
-/// and near the separatrix, where a motion stays at the middle axis for a time, exponentially more.
+/// Over an angle `θ` of up to a radian, `F − I` and the momentum are within `8 (1 + θ)` units in the last place of
+/// their largest entry. Beyond, the motion itself amplifies a change of the momentum, and the units by the same factor:
+/// some `θ`, and exponentially more near the separatrix, where a motion stays at the middle axis for a time.
 ///
 /// # Frame and units
 ///
-/// Body axes, which needn't be the principal ones; the inertia in kg m², momenta in kg m²/s.
+/// Body axes, which may differ from the principal ones; the inertia in kg m², momenta in kg m²/s.
 ///
 /// # Derivatives
 ///
-/// By six [parameters](crate::gradients::Linearisation::parameters), not by the six entries of the inertia: where two
-/// moments are the same, the axes have no derivative by an entry beside the diagonal.
+/// There are six [parameters](crate::gradients::Linearisation::parameters). The six entries of the inertia don't serve:
+/// if two moments are equal, the axes have no derivative with respect to an off-diagonal entry.
 ///
-/// - Three with the name `moment`, kg m². Where the body's axes are the principal ones they are in the order of these;
+/// - Three with the name `moment`, kg m². If the body's axes are the principal ones, they are in the order of these;
 ///   otherwise the largest is the first and the middle one the last.
 /// - Three with the name `turn`, rad: a small turn `t` of the principal axes about the body's three, `δJ = t̂ J − J t̂`.
-///   Their values are zero, as the axes are where they are.
+///   Their values are zero.
 ///
 /// # Examples
 ///
@@ -100,12 +101,12 @@ use crate::numbers::{Kernel, Number, Numbers, Real, Vectors, dispatch, is_finite
 ///
 /// # Source
 ///
-/// The equations are those of the page of this flow in the sources; the coefficients of `℘` are in \[AS64, 18.5\]. See
+/// The equations stand at the head of this type's source file; the coefficients of `℘` are in \[AS64, 18.5\]. See
 /// [`conventions`](crate::conventions).
 #[derive(Clone, Copy, Debug, PartialEq, Lanes, InLanes)]
 pub struct ExactBody<T = f64> {
     inertia: Matrix3<T>,
-    /// About the three axes, the last the middle one.
+    /// The moments about the three principal axes, the middle moment last.
     moments: Numbers<T, 3>,
     frame: Frame<T>,
 }
@@ -127,15 +128,15 @@ pub struct ExactDrift<T> {
     form: Form<T>,
 }
 
-/// Its constants about the principal axes.
+/// The constants of a drift in the principal axes.
 #[derive(Clone, Copy, Debug, Lanes)]
 struct Form<T> {
-    /// `h/(2 J_c)`, which makes `u` of the momentum.
+    /// The factor `h/(2 J_c)` from the momentum to `u`.
     scale: T,
     a: T,
     b: T,
     b_less_a: T,
-    /// `−AB`, `A (A − B)` and `B (B − A)`, none negative.
+    /// The products `−AB`, `A (A − B)` and `B (B − A)`; none is negative.
     c_squared: T,
     a_squared: T,
     b_squared: T,
@@ -146,7 +147,7 @@ impl<T: Real> KineticFlow<T> for ExactBody<T> {
 
     const EXACT: bool = true;
 
-    // With the shorter polynomials.
+    // The count is for the shorter polynomials.
     const OPERATIONS: Operations = Operations { step: 232, iteration: 0 };
 
     fn describe(flow: &Self, visitor: &mut dyn SceneVisitor<T>) {
@@ -173,8 +174,8 @@ impl<T: Real> KineticFlow<T> for ExactBody<T> {
         Ok(ExactDrift { frame: self.frame, form })
     }
 
-    /// Which axis is which is decided once: a straight line of code for each case is faster than one that parts and meets
-    /// again twice.
+    /// The order of the axes is selected once: code without branches for each order is faster than code that branches
+    /// twice.
     #[hot]
     fn advance(drift: &Self::Drift, momentum: &Vector3<T>) -> Result<Turn<T>, StepError> {
         use Axes::{Xyz, Yzx, Zxy};
@@ -187,12 +188,12 @@ impl<T: Real> KineticFlow<T> for ExactBody<T> {
     }
 }
 
-/// What is known of half a drift.
+/// The functions at half a drift.
 #[derive(Clone, Copy, Debug)]
 struct Half<T> {
     n: T,
     mu: T,
-    /// The turn about the momentum, of the whole drift.
+    /// The turn about the momentum over the whole drift.
     about: About<T>,
 }
 
@@ -213,18 +214,19 @@ struct About<T> {
 
 #[hot]
 impl<T: Number> About<T> {
-    /// `exp(2û)`, where `|u|² = q`.
+    /// The turn `exp(2û)`, for `|u|² = q`.
     fn turn(q: T) -> Self {
         let (sinc, versine) = rotation_coefficients(q);
         Self { w: T::one() - q * versine, f: sinc }
     }
 
-    /// Both, one after the other.
+    /// The composition of both turns.
     fn and(&self, other: &Self, q: T) -> Self {
         Self { w: self.w * other.w - self.f * other.f * q, f: self.w * other.f + self.f * other.w }
     }
 
-    /// The quaternion of this turn after one across the middle axis, of any length.
+    /// The quaternion of this turn applied after `across`, a quaternion of any length without a part along the middle
+    /// axis.
     fn by(&self, [a, b, c]: [T; 3], across: [T; 3]) -> Quaternion<T> {
         product_across([self.w, self.f * a, self.f * b, self.f * c], across)
     }
@@ -245,10 +247,10 @@ impl<T: Real> ExactDrift<T> {
 
 #[hot]
 impl<T: Number> Form<T> {
-    /// The form for the moments about the three axes, the last the middle one, and the time, s.
+    /// The form for the moments about the three axes, the middle one last, and the duration, s.
     #[inline]
     fn of([of_a, of_b, of_c]: [T; 3], h: T) -> Self {
-        // Without cancellation.
+        // The differences come first, without cancellation.
         let (a, b) = ((of_c - of_a) / of_a, (of_c - of_b) / of_b);
         let (scale, b_less_a) = (h * T::number(0.5) / of_c, b - a);
         let (a_squared, b_squared) = (-(a * b_less_a), b * b_less_a);
@@ -262,12 +264,12 @@ impl<T: Number> Form<T> {
         Invariants { kb: of_c + of_a, ka: of_c + of_b, apart: of_a - of_b, pole: self.c_squared * (cc + (aa + bb)) }
     }
 
-    /// `A a² + B b²`: zero on the separatrix and for spherical bodies.
+    /// The sum `A a² + B b²`: zero on the separatrix and for spherical bodies.
     fn difference(&self, [a, b, _]: [T; 3]) -> T {
         self.a * (a * a) + self.b * (b * b)
     }
 
-    /// The quaternion of the drift, of any length, for the momentum in units of half of it.
+    /// The quaternion of the drift, of any length, for `u`.
     fn turned(&self, u: [T; 3]) -> Quaternion<T> {
         let invariants = self.invariants(u);
         let size = invariants.size();
@@ -277,14 +279,14 @@ impl<T: Number> Form<T> {
         } else if !is_short.any() && is_long.all() {
             self.whole(u, &invariants, &self.near::<false>(u, &invariants))
         } else {
-            // By values, so that no other drift puts in memory what one of these reads and writes there.
+            // Arguments and result are passed by value, so that the other branches can stay in registers.
             let [a, b, c] = u;
             let [w, x, y, z] = self.beyond(a, b, c);
             [w, x, y, z]
         }
     }
 
-    /// Where the functions are those of half the drift.
+    /// Half the drift by the polynomials, for durations in their range.
     fn near<const IS_SHORT: bool>(&self, u: [T; 3], invariants: &Invariants<T>) -> Half<T> {
         let start = invariants.start();
         let Functions { n, mu, integral } = if IS_SHORT { short(&start) } else { long(&start) };
@@ -292,10 +294,10 @@ impl<T: Number> Form<T> {
         Half { n, mu, about: turn_and_less::<IS_SHORT, T>(dot(u), less) }
     }
 
-    /// The drift, by what is known of half of it.
+    /// The whole drift from the functions at half of it.
     ///
-    /// What takes the time is the chain from the momentum to the increment, so nothing is divided before the end of it,
-    /// and sums are ordered by what is there first.
+    /// The duration is that of the chain of operations from the momentum to the increment. So there is no division
+    /// before its end, and sums begin with the terms that are known first.
     fn whole(&self, u: [T; 3], invariants: &Invariants<T>, half: &Half<T>) -> Quaternion<T> {
         let ([a, b, c], Invariants { kb, ka, .. }, Half { n, mu, about }) = (u, *invariants, *half);
         let (nn, kk, twice) = (n * n, kb * ka, n + n);
@@ -309,10 +311,11 @@ impl<T: Number> Form<T> {
         about.by(u, [real_part, along_a, along_b])
     }
 
-    /// Half a drift that is `2^DOUBLINGS` times as long as the polynomials are for.
+    /// Half a drift that is `2^DOUBLINGS` times as long as the range of the polynomials.
     ///
-    /// By the points of the curve `μ² = 4 n (n − K_a)(n − K_b)`, whose doubling is rational. The turn about the momentum is
-    /// twice that of half the time and once more, by the tangent to the curve at the point; see [`doubling`].
+    /// The points of the curve `μ² = 4 n (n − K_a)(n − K_b)` have rational doubling formulas. The turn about the
+    /// momentum is twice that at half the time, followed by one from the tangent to the curve at the point; see
+    /// [`doubling`].
     fn farther<const DOUBLINGS: usize>(&self, u: [T; 3], invariants: &Invariants<T>) -> Half<T> {
         let k = T::number;
         let (difference, q) = (self.difference(u), dot(u));
@@ -346,8 +349,8 @@ impl<T: Number> Form<T> {
     }
 }
 
-/// A drift where a lane is beyond the polynomials, or some need the longer ones and some don't. It is called, and so has
-/// to ask for the machine's instructions itself; the longest drifts do without, as all that they take is a loop.
+/// A drift of lanes beyond the polynomials' range, or in different ranges. It isn't inlined, so it dispatches to the
+/// machine's vector instructions itself; the longest drifts, which are a single loop, do without.
 struct Beyond<'a, T> {
     form: &'a Form<T>,
     u: [T; 3],
@@ -387,12 +390,13 @@ impl<T: Number> Kernel for Beyond<'_, T> {
     }
 }
 
-/// Up to here the drift is one doubling away from what the polynomials are for, and two.
+/// Limits up to which one and two doublings of the polynomials suffice.
 const FAR: f64 = 4.0 * LONG;
 const FARTHER: f64 = 16.0 * LONG;
 
-/// `exp(2 (1 + I) û)` times a number, of `|u|² = q` and `−I`, which is small: the turn by `u` needn't wait for it, and that by
-/// `I u` is made by its tangent. `I |u|` is less than 0.006, in a short drift less than 10⁻⁴, so that few terms do.
+/// A multiple of `exp(2 (1 + I) û)`, for `|u|² = q` and a small `less = −I`. The turn by `u` needn't wait for `I`, and
+/// the turn by `I u` is computed from its tangent. `I |u|` is less than 0.006, in a short drift less than 10⁻⁴, so few
+/// terms suffice.
 #[hot]
 fn turn_and_less<const IS_SHORT: bool, T: Number>(q: T, less: T) -> About<T> {
     let About { w, f } = About::turn(q);
@@ -403,7 +407,7 @@ fn turn_and_less<const IS_SHORT: bool, T: Number>(q: T, less: T) -> About<T> {
     About { w: w + (f * q) * tangent, f: f - w * tangent }
 }
 
-/// `|u|²`
+/// The square `|u|²`.
 #[hot]
 fn dot<T: Number>([a, b, c]: [T; 3]) -> T {
     (a * a + b * b) + c * c

@@ -1,15 +1,16 @@
-//! The derivative of a drift that the polynomials are for, along one covector, in reverse.
+//! The derivative of a drift in the polynomials' range, along one covector, in reverse mode.
 //!
-//! An adjoint asks for `c · ε` alone of the turn `ε` of the increment, `δF = ε̂ F`, but by the momentum and the moments at
-//! once: each line of the closed form is taken back, from the last to the first, and only the functions have slopes of their
-//! own. With `F = exp(2v̂) F_a`, where `v = (1 + I) u`, and with the quaternion `Q` of `F_a`,
+//! An adjoint needs only `c · ε` of the turn `ε` of the increment, `δF = ε̂ F`, but its derivatives with respect to
+//! momentum and moments at once. Each line of the closed form is differentiated in reverse, from the last to the first;
+//! only the functions have forward slopes. Let `F = exp(2v̂) F_a`, with `v = (1 + I) u` and the quaternion `Q` of
+//! `F_a`:
 //!
 //! ```text
 //! c · ε = c · dexp(2v̂) 2δv + 2 ⟨g Q, δQ⟩/|Q|²        g = exp(−2v̂) c        dexp(x̂) = I + c₂(|x|²) x̂ + c₃(|x|²) x̂²
 //! ```
 //!
-//! As `2 c₂(4q)` is the square of `sin √q/√q` and `4 c₃(4q) = c₂(q) + c₃(q) cos √q`, the functions of the half angle do.
-//! Here `by_x` is the derivative of `c · ε` by `x`.
+//! As `2 c₂(4q)` is the square of `sin √q/√q` and `4 c₃(4q) = c₂(q) + c₃(q) cos √q`, the functions of the half angle
+//! suffice. In this file `by_x` is the derivative of `c · ε` with respect to `x`.
 
 use nalgebra::{SimdBool as _, Vector3};
 
@@ -19,7 +20,7 @@ use crate::groups::rotation_coefficients;
 use crate::groups::rotation_functions::stumpff;
 use crate::numbers::{Dual, Real, real};
 
-/// The derivatives by `u`, by `A`, `B`, `B − A` and `−AB`, and by `K_b`, `K_a`, `n` and `μ`.
+/// The derivatives with respect to `u`; to `A`, `B`, `B − A` and `−AB`; and to `K_b`, `K_a`, `n` and `μ`.
 type By<T> = ([T; 3], [T; 4], [T; 4]);
 
 #[hot]
@@ -29,8 +30,8 @@ fn twice<T: Real>(x: T) -> T {
 
 #[hot]
 impl<T: Real> Form<T> {
-    /// The derivatives of `c · ε` by `u`, and by `A` and `B`; none where the drift is longer than the polynomials are for,
-    /// or where some lanes need the longer ones and some don't.
+    /// The derivatives of `c · ε` with respect to `u`, and to `A` and `B`; `None` if the drift is too long for the
+    /// polynomials, or if lanes need different polynomials.
     pub(super) fn reversed(&self, u: [T; 3], c: [T; 3]) -> Option<([T; 3], [T; 2])> {
         let invariants = self.invariants(u);
         let (Start { e, x, y, c: pole }, size) = (invariants.start(), invariants.size());
@@ -61,7 +62,8 @@ impl<T: Real> Form<T> {
         Some(self.functions_back(by, u, (&invariants, &functions), by_integral))
     }
 
-    /// Behind [`whole`](Self::whole), by the covector `g` of the turn `F_a`, whose quaternion is taken `N` times here.
+    /// The adjoint of [`whole`](Self::whole), for the covector `g` of the turn `F_a`, whose quaternion is scaled by `N`
+    /// here.
     fn whole_back(&self, u: [T; 3], invariants: &Invariants<T>, [n, mu]: [T; 2], g: [T; 3]) -> By<T> {
         let ([a, b, c], [ga, gb, gc], Invariants { kb, ka, .. }) = (u, g, *invariants);
         let (nn, kk) = (n * n, kb * ka);
@@ -111,8 +113,8 @@ impl<T: Real> Form<T> {
         (by_u, [by_a, by_b, of_ab * (a * b), by_c_squared], [by_roots[0], by_roots[1], by_n, by_mu])
     }
 
-    /// Behind the functions, the invariants and the constants of the form; the slopes of the functions are those by `x`,
-    /// `y` and `c` of their [start](Start).
+    /// The adjoint of the functions, the invariants and the constants of the form; the functions' slopes are those with
+    /// respect to `x`, `y` and `c` of their [start](Start).
     fn functions_back(
         &self,
         (by_u, [by_a, by_b, by_b_less_a, by_c_squared], [by_kb, by_ka, by_n, by_mu]): By<T>,
@@ -153,7 +155,7 @@ mod tests {
     use nalgebra::SimdBool as _;
     use simba::simd::WideF64x4;
 
-    /// The derivatives of `c · ε` by `u`, and by `A` and `B`, by dual numbers through the drift itself.
+    /// The derivatives of `c · ε` with respect to `u`, and to `A` and `B`, by dual numbers through the drift itself.
     fn by_dual_numbers<T: Real>(form: &Form<T>, u: [T; 3], c: [T; 3]) -> [T; 5] {
         let of = |[a, b]: [Dual<T>; 2], u| {
             let (scale, b_less_a) = (Dual::constant(form.scale), b - a);
@@ -171,7 +173,8 @@ mod tests {
         [x, y, z, a, b]
     }
 
-    /// Whether the polynomials are the longer ones, if there are derivatives; these differ by less than this, of the largest.
+    /// Whether the longer polynomials are used, if there are derivatives; asserts that their relative error is below
+    /// `bound`.
     fn check<T: Real>(moments: [T; 3], u: [T; 3], bound: f64) -> Option<bool> {
         let (form, c) = (Form::of(moments, real(0.1)), [0.7, -0.4, 1.1].map(real));
         let ([x, y, z], [a, b]) = form.reversed(u, c)?;
@@ -184,8 +187,9 @@ mod tests {
         Some(form.invariants(u).size().simd_gt(real(SHORT)).all())
     }
 
-    /// Momenta from rest to beyond the polynomials, about no axis, about each, and near the separatrix, alone, as singles
-    /// and in lanes; of a body, a flat one, a long one, symmetric ones and a sphere, the middle moment last.
+    /// Momenta from rest to beyond the polynomials' range, in general position, about each axis, and near the
+    /// separatrix; in doubles, singles and lanes; for a general, a flat and a long body, symmetric ones and a sphere,
+    /// with the middle moment last.
     #[test]
     fn it_is_that_of_dual_numbers() {
         let bodies =

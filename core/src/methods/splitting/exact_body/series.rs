@@ -2,25 +2,26 @@
 
 use crate::numbers::Number;
 
-/// What a motion keeps, in units of half the drift: none is negative, and all are zero where the drift is.
+/// The invariants of a motion, in units of half the drift: `K_b`, `K_a` and `ν` aren't negative, and all vanish with
+/// the drift.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Invariants<T> {
     pub(super) kb: T,
     pub(super) ka: T,
-    /// `K_b − K_a`
+    /// The difference `K_b − K_a`.
     pub(super) apart: T,
-    /// `ν = −AB |u|²`, where the integral has its pole; it lies between the two.
+    /// The pole `ν = −AB |u|²` of the integrand, which lies between the two.
     pub(super) pole: T,
 }
 
 #[hot]
 impl<T: Number> Invariants<T> {
-    /// What tells how short the drift is.
+    /// The measure of the drift's length that selects the polynomials.
     pub(super) fn size(&self) -> T {
         self.kb.simd_max(self.ka)
     }
 
-    /// What the polynomials are in.
+    /// The variables of the polynomials.
     pub(super) fn start(&self) -> Start<T> {
         let Self { kb, ka, apart, pole } = *self;
         let (k, sum) = (T::number, kb + ka);
@@ -31,13 +32,13 @@ impl<T: Number> Invariants<T> {
         Start { e, x, y, c: e - pole }
     }
 
-    /// Over another time, by the square of the ratio.
+    /// The invariants for another duration, by the square of the ratio.
     pub(super) fn scaled(&self, part: T) -> Self {
         Self { kb: self.kb * part, ka: self.ka * part, apart: self.apart * part, pole: self.pole * part }
     }
 }
 
-/// `n`, `μ` and the integral at half the drift.
+/// The functions `n`, `μ` and the integral at half the drift.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Functions<T> {
     pub(super) n: T,
@@ -45,17 +46,18 @@ pub(super) struct Functions<T> {
     pub(super) integral: T,
 }
 
-/// Up to this size the polynomials of [`short`] are exact to a rounding.
+/// The size up to which the polynomials of [`short`] are exact to a rounding.
 ///
-/// What they leave out is the largest for a symmetric body's spin, where `n = K/sin² √K`, with the next coefficient of
-/// `μ` `220 K⁶/π¹²`, and the integral that of `tan² √K/K`, with `10 (4/π²)⁶ K⁶ · K/15`: both below 10⁻¹⁶.
+/// The truncation error is the largest for a symmetric body's spin, where `n = K/sin² √K` and the next coefficient of
+/// `μ` is `220 K⁶/π¹²`, and where the integral is that of `tan² √K/K`, with `10 (4/π²)⁶ K⁶ · K/15`: both are below
+/// 10⁻¹⁶.
 pub(super) const SHORT: f64 = 0.0075;
 
-/// And up to here those of [`long`], whose next ones are `38 · 18 K¹⁰/π²⁰` and `13 (4/π²)⁹ K⁹ · K/21`.
+/// The size up to which those of [`long`] are, whose next terms are `38 · 18 K¹⁰/π²⁰` and `13 (4/π²)⁹ K⁹ · K/21`.
 pub(super) const LONG: f64 = 0.05;
 
-/// With `℘` to its fifth coefficient and the integral to its fifth; terms that together are below half a rounding of the angle
-/// are left out.
+/// The polynomials with `℘` to its fifth coefficient and the integral to its fifth, without terms that together are
+/// below half a rounding of the angle.
 #[hot]
 pub(super) fn short<T: Number>(start: &Start<T>) -> Functions<T> {
     let k = T::number;
@@ -70,7 +72,7 @@ pub(super) fn short<T: Number>(start: &Start<T>) -> Functions<T> {
     Functions { n, mu: mu + mu, integral }
 }
 
-/// With `℘` to its ninth coefficient and the integral to its eighth, likewise.
+/// The polynomials with `℘` to its ninth coefficient and the integral to its eighth, with the same omissions.
 #[hot]
 pub(super) fn long<T: Number>(start: &Start<T>) -> Functions<T> {
     let k = T::number;
@@ -102,8 +104,8 @@ pub(super) fn long<T: Number>(start: &Start<T>) -> Functions<T> {
     Functions { n, mu: mu + mu, integral: integral + k(1.0 / 3.0) }
 }
 
-/// What the polynomials are in: the mean `e` of the three roots, and the first coefficients `x` and `y` of `℘` and `c` of
-/// the integral.
+/// The variables of the polynomials: the mean `e` of the three roots, the first coefficients `x` and `y` of `℘`, and
+/// `c` of the integral.
 #[derive(Clone, Copy)]
 pub(super) struct Start<T> {
     pub(super) e: T,

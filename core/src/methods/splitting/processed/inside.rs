@@ -1,23 +1,23 @@
-//! What a processed splitting keeps: the motion that is stepped, which isn't the one that is read.
+//! The memory of a processed splitting: the kernel's motion, which differs from the processed one.
 
 use crate::groups::{Advected, LieGroup as _, SO3};
 use crate::motion::{Kept, Motion};
 use crate::numbers::{Real, flag, real, replaced, zero};
 use nalgebra::SimdBool as _;
 
-/// Where a run is inside of its processor, by [`ProcessedSplitting`](super::ProcessedSplitting), and by which step; or that it isn't there:
-/// at the start, after a push and after another method's steps.
+/// The kernel's motion of a run of [`ProcessedSplitting`](super::ProcessedSplitting), and its step. `None` at the
+/// start, after a push and after another method's steps.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 #[doc(hidden)]
 pub struct Inside<T: Real, A>(pub(super) Option<InsideMotion<T, A>>);
 
-/// Without the number of steps, which is that of the motion that is read.
+/// The kernel's motion without the number of steps, which is that of the processed motion.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub(super) struct InsideMotion<T: Real, A> {
     attitude: SO3<T>,
     momentum: nalgebra::Vector3<T>,
     advected: A,
-    /// The step whose processor it is inside of.
+    /// The step that the processor belongs to.
     pub(super) h: T,
 }
 
@@ -59,7 +59,7 @@ mod tests {
     use alloc::vec::Vec;
     use nalgebra::Vector3;
 
-    /// Whether it is inside, an attitude, a momentum, a vector and the step.
+    /// A memory from its numbers: the flag, an attitude, a momentum, a vector and the step.
     fn read(flag: f64, corner: f64) -> Option<Inside<f64, Vector3<f64>>> {
         let attitude = [corner, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0];
         let mut numbers = [flag].into_iter().chain(attitude).chain([1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 0.1]);

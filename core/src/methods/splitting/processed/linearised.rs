@@ -1,8 +1,9 @@
-//! The derivatives of a processed splitting's steps: those of the way in, of the kernel's step and of the way out.
+//! The derivatives of a processed splitting's steps: those of the inverse processor, of the kernel and of the
+//! processor.
 //!
-//! A run is `χ Kⁿ χ⁻¹`. The tangent map, which is read after each step, is that of `χ K χ⁻¹` for each: the inside is where
-//! the run has it, the way to there is made from what is read, and parts from it by a rounding. The adjoint goes back
-//! through all `K` inside, and through `χ` only from states that a cost is read from.
+//! A run is `χ Kⁿ χ⁻¹`. The tangent map is output after each step, so it is that of `χ K χ⁻¹` for each: the kernel's
+//! motion continues from step to step, while `χ⁻¹` is recomputed from the output, which differs by a rounding. The
+//! adjoint goes back through all `K`, and through `χ` only from states that a cost depends on.
 
 use super::super::Length;
 use super::super::linearised::{DifferentiableFlow, Table};
@@ -25,7 +26,7 @@ where
         self.kernel.table_of(self.lengths(self.kernel.h.simd_abs()))
     }
 
-    /// The processor is that of `|h|` in a step of `−h` too, and so isn't undone by itself.
+    /// The processor depends on `|h|`, also for a step of `−h`, so a step of `−h` doesn't undo the processor.
     fn table_undone(&self) -> Self::Table {
         self.kernel.table_of(self.lengths(-self.kernel.h.simd_abs()))
     }
@@ -53,7 +54,7 @@ where
         self.parts.len()
     }
 
-    /// Between two steps the way in is made for its derivatives alone, and so is that out again.
+    /// Between two steps, `χ` and its inverse are computed for their derivatives alone.
     #[hot]
     fn record<M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
@@ -90,12 +91,12 @@ where
 }
 
 impl<S: RigidScene, K: DifferentiableFlow<Scalar<S>>> ProcessedSplitting<S, K> {
-    /// The first share of the kernel is joined to the last.
+    /// The number of shares per step: the kernel's first share is merged with the last.
     fn changes_of_kernel(&self) -> usize {
         self.scheme.kernel().shares().count() - 1
     }
 
-    /// The lengths of all changes in a step with a processor of this length.
+    /// The lengths of all shares in a step with a processor of this length.
     fn lengths(&self, processor: Scalar<S>) -> impl Iterator<Item = Length<Scalar<S>>> {
         let (h, kernel, joint) = (self.kernel.h, self.scheme.kernel(), self.changes_of_kernel());
         let part = move |times| move |part: &Part| part.length([h, processor], times);

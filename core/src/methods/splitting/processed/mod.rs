@@ -1,4 +1,4 @@
-//! Processed splittings: a kernel step by step, between the two ends of a processor.
+//! Processed splittings: the steps of a kernel, conjugated by a processor.
 
 mod inside;
 mod linearised;
@@ -28,20 +28,21 @@ use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector
 /// χ_h K_hⁿ χ_h⁻¹
 /// ```
 ///
-/// The kernel's steps go on from one to the next inside; what is read is made of a copy, by `χ_h`, and what is inside
-/// isn't changed by that. So a run of many steps ([`Stepper::run`](crate::Stepper::run)) costs the kernel's, and the
-/// processor once; single steps make the end of the processor each time, which costs as much as one to two steps.
+/// The kernel's motion continues from step to step. Each output applies `χ_h` to a copy and leaves the kernel's motion
+/// unchanged. So a run of many steps ([`Stepper::run`](crate::Stepper::run)) costs the kernel's steps, and the
+/// processor once; single steps apply `χ_h` each time, which costs as much as one to two steps.
 ///
-/// # What is kept
+/// # Invariants
 ///
-/// The same as by [`Splitting`]: every stage is a Poisson map that keeps the momentum maps, those of the processor, too. A
-/// step of `−h` undoes one of `h`: the processor of both is that of `|h|`.
+/// The invariants are those of [`Splitting`]: every stage, including the processor's, is a Poisson map that conserves
+/// the momentum maps. A step of `−h` undoes one of `h`, because both have the processor of `|h|`.
 ///
 /// # Contract
 ///
-/// As [`Stepper`](crate::Stepper)'s. Steps one by one and at once give the same bits. A control force acts on what is
-/// read, and the next step goes inside from there; of several lanes all do, where one was pushed. A body that was stepped
-/// by another `h` is in no [`Batch`](crate::motion::Batch) with those that are inside already.
+/// The contract is that of [`Stepper`](crate::Stepper). Single steps and runs have identical bits. A control force acts
+/// on the output, and the next step applies the inverse processor to it; after a push of one lane it does so for all
+/// lanes. A body that was stepped by another `h` can't share a [`Batch`](crate::motion::Batch) with bodies whose
+/// kernel's motion is known.
 ///
 /// # Examples
 ///
@@ -72,13 +73,13 @@ use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector
 pub struct ProcessedSplitting<S: Effect, K: KineticFlow<Scalar<S>>> {
     #[shared]
     scheme: ProcessedScheme,
-    /// [`leave`](Self::leave)'s; reversed and with the other sign, [`enter`](Self::enter)'s.
+    /// The shares of [`leave`](Self::leave); in reverse and with opposite signs those of [`enter`](Self::enter).
     #[shared]
     parts: Vec<Part>,
     kernel: Splitting<S, K>,
-    /// From what is read to the end of the first share of the kernel, from which its steps are all the same.
+    /// From the output to the end of the kernel's first share, from which all its steps are the same.
     enter: Stages<K::Drift, Scalar<S>>,
-    /// From there to what is read.
+    /// From there to the output.
     leave: Stages<K::Drift, Scalar<S>>,
 }
 
@@ -88,7 +89,7 @@ impl<S: Effect> Stepper<S> {
     ///
     /// # Errors
     ///
-    /// As [`Stepper::split`].
+    /// The errors of [`Stepper::split`].
     pub fn processed<K>(
         scene: S,
         h: Scalar<S>,
@@ -99,14 +100,15 @@ impl<S: Effect> Stepper<S> {
         S: DiscreteLagrangian<Group = SO3<<S as Term>::Scalar>> + Regular,
         K: KineticFlow<Scalar<S>>,
     {
-        // For its checks of the scene and the step.
+        // This plan is constructed only to check the scene and the step.
         OwnStep::new(&scene, h)?;
         let plan = ProcessedSplitting::new(&scene, h, flow, scheme)?;
         Ok(Stepper { scene, plan })
     }
 }
 
-/// A drift or a kick, as a part of the kernel's step and of the processor's, which has no sign, and so the gradient.
+/// A drift or a kick as a multiple of the kernel's step and of the processor's, which has no sign; its force gradient
+/// likewise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Part {
     flow: Flow,
@@ -119,7 +121,7 @@ impl Part {
         self.gradient.iter().any(|gradient| gradient.abs() > 0.0)
     }
 
-    /// The lengths of a step and a processor, `times` times.
+    /// The length for a step and a processor, multiplied by `times`.
     fn length<T: Real>(&self, [step, processor]: [T; 2], times: f64) -> Length<T> {
         let time = step * real(times * self.time[0]) + processor * real(times * self.time[1]);
         let cubes = [step, processor].map(|h| h * h * h);
@@ -128,7 +130,8 @@ impl Part {
     }
 }
 
-/// The way out: to the end of the kernel's step, and on through the processor. Neighbours of one kind are one.
+/// The shares from the kernel's motion to the output: the end of the kernel's step, then the processor. Neighbours of
+/// one kind are merged.
 fn way_out(scheme: &ProcessedScheme) -> Vec<Part> {
     let kernel = scheme.kernel();
     let back = kernel.shares().zip(kernel.gradients()).take(1).map(|((flow, share), gradient)| Part {
@@ -159,7 +162,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> ProcessedSplitting<S, K> {
     fn new(scene: &S, h: Scalar<S>, kinetic: K, scheme: ProcessedScheme) -> Result<Self, SetupError> {
         let kernel = Splitting::folded(scene, h, kinetic, scheme.kernel())?;
         let parts = way_out(&scheme);
-        // The kernel's own were asked for with the kernel.
+        // The kernel's own force gradients were checked with the kernel.
         if parts.iter().any(Part::has_gradient) && !has_force_gradient(scene) {
             return Err(SetupError::NoForceGradient);
         }
@@ -177,14 +180,14 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> ProcessedSplitting<S, K> {
         &self.scheme
     }
 
-    /// What a step goes on from, if that was left there by steps of its own length.
+    /// The kernel's motion, if it was left by steps of this length.
     #[hot]
     fn inside(&self, kept: &Inside<Scalar<S>, S::Advected>) -> Option<InsideMotion<Scalar<S>, S::Advected>> {
         kept.0.filter(|inside| inside.h.simd_eq(self.kernel.h).all())
     }
 }
 
-/// A step that is given values goes in and out of the processor with them.
+/// A step with prescribed parameters applies the processor and its inverse with them.
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Steerable for ProcessedSplitting<S, K> {}
 
 impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for ProcessedSplitting<S, K> {
@@ -200,12 +203,13 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for ProcessedSplitting<S,
         Self::new(scene, h, self.kernel.kinetic.clone(), self.scheme)
     }
 
-    /// Nothing is known of the inside before the first step.
+    /// The kernel's motion isn't known before the first step.
     fn keep(&self, _: &S, _: &Motion<SO3<Scalar<S>>, S::Advected>) -> Self::Kept {
         Inside(None)
     }
 
-    /// A lane that comes from a step of another length has to enter, and those beside it that don't would lose digits.
+    /// A lane from a step of another length needs the inverse processor, which would round the lanes that don't need
+    /// it.
     fn is_in_step(&self, kept: &Self::Kept) -> bool {
         kept.0.is_none_or(|inside| {
             let is_there = inside.h.simd_eq(self.kernel.h);
@@ -233,7 +237,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for ProcessedSplitting<S,
             next.show(inside.after(next.now().steps));
         }
         let all = self.kernel.make_steps::<true, M>(scene, &mut next, (enter, &self.kernel.step), steps)?;
-        // A copy, without what is carried: that is of the sums inside.
+        // A copy without the compensation of the sums, which belongs to the kernel's motion.
         let inside = *next.now();
         let mut read = inside;
         self.kernel.make_all::<true, _>(&self.leave, &mut read, &mut iterations)?;
@@ -245,8 +249,8 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for ProcessedSplitting<S,
         Ok(all + u64::from(iterations))
     }
 
-    /// What is inside belongs to the momentum before. Without an impulse nothing is added: what is carried is that of the
-    /// sums inside.
+    /// After a push the kernel's motion is obsolete. An impulse of zero isn't added, because the compensation belongs
+    /// to the kernel's sums.
     fn push<M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
         _scene: &S,
@@ -261,7 +265,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for ProcessedSplitting<S,
         Ok(())
     }
 
-    /// What is inside has seen the values before.
+    /// The kernel's motion was computed with the old values, so it is discarded.
     fn see(&self, motion: &mut Motion<SO3<Scalar<S>>, S::Advected>, kept: &mut Self::Kept, advected: S::Advected) {
         *kept = Inside(None);
         motion.advected = advected;

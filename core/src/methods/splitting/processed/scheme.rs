@@ -1,22 +1,22 @@
 //! The coefficients of processed splittings.
 //!
-//! All were found for this library: kernels and processors by Levenberg and Marquardt's method on the conditions in the
-//! Lie algebra with `[B, [B, [B, A]]] = 0`, from random starts, what is left at the next order made small, and polished
-//! to 30 digits. `tests/accuracy/conditions.rs` has the conditions.
+//! All were found for this library: kernels and processors by Levenberg and Marquardt's method on the order conditions
+//! in the Lie algebra with `[B, [B, [B, A]]] = 0`, from random starts, with small errors at the next order, and
+//! polished to 30 digits. `tests/accuracy/conditions.rs` has the conditions.
 
-// All digits that were found, whatever a double keeps of them.
+// All digits that were found, although a double has fewer.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
 
 use super::super::scheme::{Flow, SplittingScheme};
 
-/// The coefficients of a processed splitting: a kernel that is stepped, and a processor that is made at both ends of a
-/// run only.
+/// The coefficients of a processed splitting: a kernel for the steps, and a processor that is applied only at both ends
+/// of a run.
 ///
-/// With the kernel `K_h` and the processor `χ_h` a run of `n` steps is `χ_h ∘ K_hⁿ ∘ χ_h⁻¹`, which has the order of the
-/// scheme though the kernel alone has but 2: its error is mostly that of coordinates, which the processor makes good.
-/// So a kernel of the same number of drifts and kicks has fewer conditions to satisfy, 3 in place of 6 for order 6, and
-/// its error is smaller. Both are made of drifts and kicks, some with [force gradients](SplittingScheme), so that all of
-/// it is Poisson and keeps the momentum maps.
+/// With the kernel `K_h` and the processor `χ_h` a run of `n` steps is `χ_h ∘ K_hⁿ ∘ χ_h⁻¹`. It has the order of the
+/// scheme although the kernel alone has order 2: most of the kernel's error is a change of coordinates, which the
+/// processor removes. So a kernel has fewer conditions to satisfy, 3 in place of 6 for order 6, and with as many drifts
+/// and kicks its error is smaller. Both consist of drifts and kicks, some with [force gradients](SplittingScheme), so
+/// the whole is a Poisson map and conserves the momentum maps.
 ///
 /// # Examples
 ///
@@ -35,7 +35,7 @@ pub struct ProcessedScheme {
     name: &'static str,
     order: u32,
     kernel: SplittingScheme,
-    /// Drift, kick and force gradient of each stage.
+    /// The drift, kick and force gradient of each stage.
     processor: &'static [[f64; 3]],
     /// The last drift.
     last: f64,
@@ -45,9 +45,9 @@ impl ProcessedScheme {
     schemes! {
         /// Order 6 with three drifts and one force gradient a step.
         ///
-        /// Its error is a sum of two terms of opposite signs. Where these are of one size, halving the step gains 17 to 56
-        /// times and not 64: the order that is measured between two steps is 4.1 to 5.8 then, up to where roundings are as
-        /// large. The error is less than one term alone would be: its size at a step is what counts, and not its slope.
+        /// Its error is a sum of two terms of opposite signs. If they are of one size, halving the step reduces the
+        /// error 17 to 56 times and not 64: the order measured between two steps is 4.1 to 5.8 then, down to the level
+        /// of rounding. The error is less than one term alone would be: its size at a step counts, not its slope.
         SIX_A = Self::new("processed 3-6 a", 6, THREE_DRIFTS, &[
             [-0.0703026373535961342390651631159, 0.20665604926098297350745841313, 0.0286456827611767065874012365132],
             [-0.111704528879860710158274407152, -0.034640489261471661869693869713, -0.0118430410009511916400804816644],
@@ -56,7 +56,7 @@ impl ProcessedScheme {
             [0.321382297940377449531439929904, 0.092738754781874447784048152174, -0.0328529951970588503886503665355],
         ], 0.217876896053600086424265002259);
 
-        /// The same steps with another processor.
+        /// Order 6 with the kernel of `SIX_A` and another processor.
         SIX_B = Self::new("processed 3-6 b", 6, THREE_DRIFTS, &[
             [0.0, -0.0753837272678498780127182547603, -0.024616012733644205316884684561],
             [-0.480437027036673811053472743691, -0.280916135925670772797257748164, 0.137598234836117268532228451324],
@@ -65,30 +65,30 @@ impl ProcessedScheme {
             [-0.0964081844136876834211755873155, -0.00309426120493107782719806408365, -0.0267192366951326938516235246487],
         ], 0.326738727944971417247646984815);
 
-        /// Order 4 with two drifts and two force gradients a step, for few digits.
+        /// Order 4 with two drifts and two force gradients a step, for low accuracy.
         FOUR_A = Self::new("processed 2-4 a", 4, TWO_DRIFTS, &[
             [0.0, 0.1037567817473591791555719186, -0.00119642846777136052003310969941],
             [-0.277154059845793467558282630705, 0.00202243534277590415038351679294, 0.00539013931637204767996689030059],
             [0.32760645783074108212932442421, -0.210221055067421363064861438076, -0.00482158382246573022003310969941],
         ], -0.154894235962233894329947796187);
 
-        /// The same with another kernel.
+        /// Order 4, as `FOUR_A`, with another kernel.
         FOUR_B = Self::new("processed 2-4 b", 4, OTHER_TWO_DRIFTS, &[
             [0.108747341864335639838158465321, -0.212769547452841184020360402899, 0.00271191666087527843437997569787],
             [0.160853475914733953407698986988, 0.14153890479160099979925851758, 0.0182482077750180722343799756979],
             [-0.264705925479093689235625081075, 0.357012349828013705227340805194, 0.000139103223083609794379975697874],
         ], 0.280886814866797616996006548641);
 
-        /// Order 4 with the shortest processor, for the fewest digits: each kick has the twelfth of the force gradient that is
-        /// all that order 4 asks of a kernel of one drift and one kick, of which this is two.
+        /// Order 4 with the shortest processor, for the lowest accuracy. Effective order 4 asks of a kernel of one
+        /// drift and one kick only a twelfth of the force gradient in its kick; this kernel is two such steps.
         FOUR_C = Self::new("processed 2-4 c", 4, TWICE_ONE_DRIFT, &[
             [0.054864149511049415639146885511, 0.094931451225437736688605888439, -0.000053717973010598082549787894],
             [-0.109728299022098367694014751199, -0.094931451225439340968587073141, -0.000935151310587703304089004259],
         ], 0.054864149511047347774886680987);
     }
 
-    /// Other coefficients: of the processor `χ`, by which a run ends, drift, kick and force gradient of each stage, and the
-    /// last drift. The order is that of the whole.
+    /// Coefficients of the user's: the order is that of the whole method; `processor` is `χ` at the end of a run, by
+    /// drift, kick and force gradient of each stage, and `last` its last drift.
     #[must_use]
     pub const fn new(
         name: &'static str,
@@ -100,20 +100,20 @@ impl ProcessedScheme {
         Self { name, order, kernel, processor, last }
     }
 
-    /// What is stepped.
+    /// The splitting whose steps are processed.
     #[must_use]
     pub fn kernel(&self) -> SplittingScheme {
         self.kernel
     }
 
-    /// The shares of the processor `χ` by which a run ends, each of the step and of the force gradient.
+    /// The shares of the processor `χ` at the end of a run, each with its share of the force gradient.
     pub fn processor(&self) -> impl Iterator<Item = (Flow, f64, f64)> + use<> {
         let stage = |&[drift, kick, gradient]: &[f64; 3]| [(Flow::Drift, drift, 0.0), (Flow::Kick, kick, gradient)];
         self.processor.iter().flat_map(stage).chain([(Flow::Drift, self.last, 0.0)])
     }
 }
 
-/// Three conditions of effective order 6, three drifts, the gradient in one kick.
+/// The kernel with three drifts and the gradient in one kick, for the three conditions of effective order 6.
 const THREE_DRIFTS: SplittingScheme = SplittingScheme::new(
     "kernel 3-6",
     2,
@@ -127,7 +127,7 @@ const THREE_DRIFTS: SplittingScheme = SplittingScheme::new(
 )
 .with_gradients(&[0.0164011128160783278247123891002, 0.0, 0.0, 0.0]);
 
-/// One condition of effective order 4, and the least of what is left at order 5.
+/// The kernel for the one condition of effective order 4, with the least error at order 5.
 const TWO_DRIFTS: SplittingScheme = SplittingScheme::new(
     "kernel 2-4",
     2,
@@ -145,6 +145,6 @@ const OTHER_TWO_DRIFTS: SplittingScheme = SplittingScheme::new(
 )
 .with_gradients(&[-0.00195607940665287845748730058811, 0.0, 0.0249128156824726384850253966564]);
 
-/// The one condition of effective order 4, by one kick in the middle of each half.
+/// The kernel with one kick in the middle of each half, for the one condition of effective order 4.
 const TWICE_ONE_DRIFT: SplittingScheme =
     SplittingScheme::new("kernel 2-4", 2, Flow::Drift, &[0.25, 0.5, 0.5]).with_gradients(&[0.0, 1.0 / 96.0, 0.0]);

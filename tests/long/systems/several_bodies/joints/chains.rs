@@ -13,7 +13,7 @@ use super::super::links::{irregular, rods};
 use super::super::{apart, part};
 use super::{Body, Components, EPSILON, Free, Held, row, scene, six, watched, whole};
 
-/// The same chain with a joint for each link, its bodies about their centres of mass.
+/// The bodies and joints of a chain, with coordinates about the centres of mass.
 fn with_joints<const N: usize>(chain: &Chain<N>, h: f64) -> Held<BallJoint, 3, N, N, 0> {
     let bodies = chain.links.map(|link| {
         let central = link.J_d.as_matrix() - link.c * link.c.transpose() * link.m;
@@ -30,7 +30,7 @@ fn with_joints<const N: usize>(chain: &Chain<N>, h: f64) -> Held<BallJoint, 3, N
     Stepper::jointed(scene(bodies, chain.g, chain.up), joints, h).unwrap()
 }
 
-/// Where the links' centres of mass are, and how they move.
+/// The positions and velocities of the links' centres of mass.
 fn placed<const N: usize>(
     chain: &Chain<N>,
     attitudes: &[SO3; N],
@@ -48,7 +48,7 @@ fn placed<const N: usize>(
     (all.map(|(body, _)| body), Bodies(all.map(|(_, velocity)| velocity)))
 }
 
-/// Joints with multipliers and the minimal form are one integrator: they part by rounding alone.
+/// Joints with multipliers and the minimal form are one integrator: they differ by rounding only.
 #[test]
 fn a_chain_moves_as_in_its_minimal_form() {
     const N: usize = 5;
@@ -83,8 +83,8 @@ fn a_chain_moves_as_in_its_minimal_form() {
     }
 }
 
-/// A hundred links are let go horizontally, and the last has up to ten thousand times the mass of the others: as in
-/// their minimal form, which goes on for longer, and with the energy that they had, to the error of the method.
+/// A hundred links fall from the horizontal; the last has up to ten thousand times the mass of the others. The motion
+/// is that of the minimal form, which is run for longer, and the energy is conserved to the error of the method.
 #[test]
 fn a_hundred_links_let_go_horizontally() {
     for (last, h, tens, allowed) in [
@@ -114,7 +114,7 @@ fn a_hundred_links_let_go_horizontally() {
         for _ in 0..tens[1] {
             run(&mut expected);
         }
-        // What falls has the energy of its weight.
+        // The scale of the energy is that of the weight.
         let scale = 9.81 * 50.0 * (99.0 + 2.0 * last);
         let energy = [(stepper.energy(&state) - energies[0]).abs(), most].map(|of| of / scale);
         println!("{last}: {off:.1e} from the minimal form, energy {energy:?}, gap {gap:.1e}");
@@ -124,8 +124,8 @@ fn a_hundred_links_let_go_horizontally() {
     }
 }
 
-/// A body on a pivot with three on it, one of which carries another: energy, the momentum about the vertical, and the
-/// joints. The order of the joints and which of its bodies a joint calls the one above make no difference.
+/// A body on a pivot with three bodies on it, one of which carries another: energy, the momentum about the vertical,
+/// and the joints. The order of the joints and the choice of each joint's body above don't matter.
 #[test]
 fn a_tree() {
     const N: usize = 5;
@@ -169,7 +169,7 @@ fn a_tree() {
     assert!(apart(&ends[0], &ends[1]) < 1e-11, "{:e}", apart(&ends[0], &ends[1]));
 }
 
-/// What can't be started is refused, and says which joint.
+/// An invalid start is refused, and the error names the joint.
 #[test]
 fn errors_name_the_joint() {
     let chain = rods::<4>(1.0);
@@ -187,7 +187,7 @@ fn errors_name_the_joint() {
     let error = stepper.start(places, opening).unwrap_err();
     println!("{error}");
     assert!(matches!(error, SetupError::OffVelocity { joint: 1 | 2, by } if (by - 1e-6).abs() < 1e-12));
-    // Both are put right, and what is right stays.
+    // Configuration and velocities are corrected, and valid ones stay the same.
     let state = stepper.start_nearest(open, opening).unwrap();
     let off = (state.attitude()[2].1.translation() - places[2].1.translation()).norm();
     assert!(off < 1e-6 && off > 1e-9 && stepper.widest_gap(&state) < 4.0 * EPSILON * 4.0, "{off:e}");
@@ -229,7 +229,7 @@ fn with_joints_checked(chain: &Chain<4>, h: f64) -> Result<(), SetupError> {
     Stepper::jointed(*stepper.scene(), *stepper.plan().joints(), h).map(|_| ())
 }
 
-/// Systems of any size, at rest and as good as at rest: what roundings leave is compared with what there is.
+/// Systems of all sizes, at rest and nearly at rest: rounding errors are compared with the system's own scales.
 #[test]
 fn small_and_slow() {
     for size in [1.0, 1e-3, 1e-6] {

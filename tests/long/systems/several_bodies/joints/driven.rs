@@ -1,4 +1,4 @@
-//! What is given to steps anew, and terms between bodies that joints hold.
+//! Prescribed parameters of steps, and potentials between jointed bodies.
 
 use core::array::from_fn;
 
@@ -16,8 +16,8 @@ use super::super::{all, apart};
 use super::loops::{closed_loop, state_of};
 use super::{EPSILON, Free, LEFT, RIGHT, assert_no_work, ball, chained, plain, rod, row, scene, six};
 
-/// A force that is given to each step anew: with the weight of the bodies it is their step under gravity, and
-/// velocities keep to the joints.
+/// A force that is prescribed for each step: if it is the weight of the bodies, the step is that under gravity, and
+/// velocities satisfy the constraints.
 #[test]
 fn a_control_force() {
     let (start, velocity) = state_of(&read("closed loop")["states"][0]);
@@ -81,7 +81,7 @@ fn a_loop_that_a_pin_closes_is_driven() {
     assert!(gap < 4.0 * EPSILON * 3.0, "{gap:e}");
 }
 
-/// A spring between points of two bodies; how stiff it is may be given to each step.
+/// A spring between points of two bodies; its stiffness may be prescribed for each step.
 #[lagrangian(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
     advected(R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space), r = d_2.seen_from(d_1)),
@@ -96,8 +96,8 @@ struct Cord {
     at_2: Vector3<f64>,
 }
 
-/// Springs across the joints of a chain: joints do no work, the energy that is kept is the springs', too, and steps to
-/// which another stiffness is given are those of springs that have it.
+/// Springs across the joints of a chain: joints do no work, and the conserved energy includes the springs'. Steps with
+/// a prescribed stiffness are those of springs with this stiffness.
 #[test]
 fn bodies_that_joints_and_springs_hold() {
     const N: usize = 3;
@@ -149,8 +149,8 @@ fn bodies_that_joints_and_springs_hold() {
     assert!(apart(&turned[0], &turned[1]) < 1e-12);
 }
 
-/// A load on a cable, declared with the cable's attitude as coordinate, moves as two bodies on a ball joint do, whose
-/// places are coordinates, too: under forces that change with each step, to rounding.
+/// A load on a cable, declared with the cable's attitude as a coordinate, has to rounding the motion of two bodies on a
+/// ball joint whose positions are coordinates, too: under forces that change with each step.
 #[test]
 fn a_load_under_a_quadrotor() {
     let [J_d, K] = [[0.02, 0.03, 0.04], [0.002, 0.0015, 0.001]]

@@ -1,4 +1,4 @@
-//! Kinds of joints, and some that a user writes.
+//! The library's joints, and some of a user's own.
 
 use core::array::from_fn;
 
@@ -13,7 +13,7 @@ use nalgebra::{Matrix3, SVector, Vector3, Vector6};
 use super::super::apart;
 use super::{Body, EPSILON, Free, assert_no_work, place, rod, scene, six, watched};
 
-/// Slopes are the derivatives of gaps, for turns and shifts of either body.
+/// Checks that slopes are the derivatives of gaps, for turns and shifts of either body.
 fn check_slopes<C: Constraint<K>, const K: usize>(joint: &C, random: &mut Random) {
     let places: [Body; 2] = from_fn(|_| {
         let (xi, x): (Vector3<f64>, Vector3<f64>) = (random.sample(), random.sample());
@@ -56,7 +56,7 @@ fn slopes_are_derivatives_of_gaps() {
     }
 }
 
-/// The library's ball joint, declared.
+/// The library's ball joint as a declaration.
 #[constraint(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
     advected(R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space), r = d_2.seen_from(d_1)),
@@ -68,12 +68,12 @@ struct DeclaredBall {
     below: Vector3<f64>,
 }
 
-/// The strut of `examples/declarations`, declared.
+/// The strut of `examples/declarations` as a declaration.
 #[constraint(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
     advected(R_1 = F_1.seen_from(space), Q = F_2.seen_from(F_1), r = d_2.seen_from(d_1)),
     zero = {
-        // As the body above sees it.
+        // The vector of the rod in the frame of the body above.
         let along = R_1.transpose() * r + Q * below - above;
         0.5 * (along.norm_squared() / length - length)
     },
@@ -85,7 +85,7 @@ struct DeclaredStrut {
     length: f64,
 }
 
-/// A sleeve on a rail: a point of the body below stays on a line of the body above, along which it also points.
+/// A sleeve on a rail: a point of the body below stays on a line of the body above, and an axis stays parallel to it.
 #[constraint(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
     advected(R = F_1.seen_from(space), Q = F_2.seen_from(F_1), x = d_1.seen_from(space), y = d_2.seen_from(space)),
@@ -97,14 +97,14 @@ struct DeclaredStrut {
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Sleeve {
-    /// Across the rail, in the axes of the body above.
+    /// Directions across the rail, in the axes of the body above.
     first: Vector3<f64>,
     second: Vector3<f64>,
-    /// Along it, in those of the body below.
+    /// The direction along the rail, in the axes of the body below.
     axis: Vector3<f64>,
 }
 
-/// Functions, fields that either body sees, and inverses; it holds nothing that one would build.
+/// A constraint without a physical meaning, with functions, fields in either body's frame, and inverses.
 #[constraint(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
     advected(w = up.seen_from(F_2), v = up.seen_from(F_1), Q = F_2.seen_from(F_1), r = d_2.seen_from(d_1)),
@@ -122,8 +122,8 @@ struct Anything {
     up: Vector3<f64>,
 }
 
-/// What is derived of a declared constraint are the derivatives of what is declared; of the library's ball joint and of a
-/// strut by hand it is what they have, to rounding.
+/// The derived slopes of a declared constraint are its derivatives; they agree to rounding with those of the library's
+/// ball joint and of a strut by hand.
 #[test]
 fn declared_constraints() {
     let mut random = Random::new(15);
@@ -161,14 +161,14 @@ fn declared_constraints() {
     assert_eq!(refused, Err(SetupError::Parameter { field: "length", cause: "is not finite" }));
 }
 
-/// On a sleeve on a rail that is tilted a body falls as on an inclined plane, and goes on turning about the rail. Of the
-/// parabola a step has no error.
+/// On a sleeve on a tilted rail a body falls as on an inclined plane, and continues to rotate about the rail. The
+/// discrete parabola is exact.
 #[test]
 fn a_sleeve_on_a_rail() {
     let (h, g, steps) = (0.01, 9.81, 400_u32);
     let along = Vector3::new(2.0, 1.0, -2.0) / 3.0;
     let [first, second] = [Vector3::new(1.0, -2.0, 0.0), Vector3::new(2.0, 1.0, 2.5)];
-    // The body's z axis, about which it is symmetric in no way, along the rail.
+    // The body's z axis is along the rail; the body isn't symmetric about it.
     let attitude = SO3::from(nalgebra::UnitQuaternion::rotation_between(&Vector3::z(), &along).unwrap());
     let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.03, 0.04)).unwrap();
     let joints = Joints::tree([PlacedJoint::to_space(Sleeve { first, second, axis: Vector3::z() }, 0)]);
@@ -180,7 +180,7 @@ fn a_sleeve_on_a_rail() {
     let time = h * f64::from(steps);
     let fallen = along * (0.2 + speed * time - 0.5 * g * along.z * time * time);
     let [(turned, place)] = state.attitude();
-    // About a principal axis the turn of a step has the sine of h Ω.
+    // About a principal axis the turn of a step has the sine h Ω.
     let angle = f64::from(steps) * (h * rate).asin();
     let expected = attitude.as_matrix() * SO3::exp(Vector3::z() * angle).as_matrix();
     let errors = [(place.translation() - fallen).norm() / fallen.norm(), (turned.as_matrix() - expected).norm()];
@@ -188,7 +188,7 @@ fn a_sleeve_on_a_rail() {
     assert!(errors.iter().all(|&error| error < 1e-12), "{errors:?}");
 }
 
-/// Gaps and slopes are the same but for rounding.
+/// Checks that gaps and slopes agree up to rounding.
 fn are_alike<A: Constraint<K>, B: Constraint<K>, const K: usize>(a: &A, b: &B, [above, below]: &[Place; 2]) {
     let gaps = [a.gap(above, below), b.gap(above, below)];
     assert!((gaps[0] - gaps[1]).amax() < 8.0 * EPSILON * (1.0 + gaps[0].amax()), "{a:?}: {gaps:?}");
@@ -198,7 +198,7 @@ fn are_alike<A: Constraint<K>, B: Constraint<K>, const K: usize>(a: &A, b: &B, [
     }
 }
 
-/// On a pin a body is a pendulum of one angle: `I (sin δ_k − sin δ_{k−1}) = −h² V'(θ_k)`, with the moment about the
+/// A body on a pin is a pendulum of one angle: `I (sin δ_k − sin δ_{k−1}) = −h² V'(θ_k)`, with the moment about the
 /// pin.
 #[test]
 fn a_pendulum_on_a_pin() {
@@ -245,8 +245,8 @@ fn a_pendulum_on_a_pin() {
     assert!(errors[..3].iter().all(|&error| error < 1e-11) && errors[3] < 4.0 * EPSILON * 2.0, "{errors:?}");
 }
 
-/// A wheel that is pinned at its centre, at the origin and far from it: cosines are compared with one, and places with
-/// what the wheel and its place are long.
+/// A wheel that is pinned at its centre, at the origin and far from it: cosines are compared with one, and positions
+/// with the sizes of the wheel and of its distance.
 #[test]
 fn a_wheel_on_its_axle() {
     let moments = Vector3::new(0.1, 0.1, 0.2);
@@ -267,10 +267,10 @@ fn a_wheel_on_its_axle() {
                 moved.amax() < 1e-12 * (rate + 1.0)
                     && stepper.widest_gap(&state) < 8.0 * EPSILON * centre.norm().max(1.0)
             );
-            // What steps leave may be started from.
+            // A motion may start from the state after a step.
             stepper.start_with_momentum(state.attitude(), state.momentum()).unwrap();
         }
-        // It is open by more than roundings.
+        // The joint is open by more than rounding.
         let mut open = about;
         open[0].1 = R3::from(centre + Vector3::y() * 1e-10 * centre.norm().max(1.0));
         let error = stepper.start(open, Bodies([Vector6::zeros()])).unwrap_err();
@@ -280,10 +280,10 @@ fn a_wheel_on_its_axle() {
     }
 }
 
-/// A joint whose functions repeat each other is named where it starts; what isn't in the group isn't a start either.
+/// A joint with dependent functions is named at the start; an attitude off the group is refused, too.
 #[test]
 fn a_joint_that_repeats_itself() {
-    /// The height of a point, twice over, and then perhaps a function whose slope is zero.
+    /// The height of a point, twice, and then perhaps a function whose slope is zero.
     #[derive(Clone, Copy, Debug, PartialEq)]
     struct Heights([f64; 2]);
     impl Constraint<2> for Heights {
@@ -320,9 +320,9 @@ fn a_joint_that_repeats_itself() {
     }
 }
 
-/// A kind that a user writes: two bodies on struts. Their ends whip so fast that a step meets places where a strut is as long on
-/// its other side; taken there, the energy would be sixty times what it is. Its parameters are checked, and a kind that has
-/// another name and the same numbers doesn't go on from its checkpoints.
+/// A user's kind of joint: two bodies on struts. Their ends whip so fast that a step could end with a strut on its
+/// other side; the energy would then be sixty times as large. The parameters are checked, and a kind with another name
+/// and the same numbers refuses its checkpoints.
 #[test]
 fn a_joint_of_ones_own() {
     let strut = |called, length| Strut { called, above: Vector3::new(0.1, 0.3, -0.2), below: -Vector3::x(), length };
@@ -356,8 +356,8 @@ fn a_joint_of_ones_own() {
     assert!(of("strut", 0.9).unwrap().resume(&saved).is_err());
 }
 
-/// A loop of struts that whips: two bodies on three struts. Whichever is given apart, no step is taken to where one is as
-/// long on its other side.
+/// A loop of struts that whips: two bodies on three struts. Whichever joint closes the loop, no step ends with a strut
+/// on its other side.
 #[test]
 fn a_loop_of_struts_that_whips() {
     let strut = |above: Vector3<f64>, below, length| Strut { called: "strut", above, below, length };

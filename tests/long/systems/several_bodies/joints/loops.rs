@@ -19,7 +19,7 @@ use super::{
     watched, whole,
 };
 
-/// Of the reference.
+/// The closed loop of the reference.
 pub(super) fn closed_loop(h: f64) -> Held<BallJoint, 3, 3, 3, 1> {
     let data = &read("closed loop")["parameters"];
     let bodies = all(&data["bodies"], |body| Free {
@@ -46,8 +46,8 @@ pub(super) fn state_of(value: &Value) -> ([Body; 3], Components<3>) {
     (from_fn(of), Bodies(from_fn(|k| six(&vector(&bodies[k]["Omega_body"]), &vector(&bodies[k]["v"])))))
 }
 
-/// Against Newton's and Euler's equations in inertial coordinates, which share nothing with reduced equations: order
-/// 2, in attitudes, places and velocities.
+/// The reference is Newton's and Euler's equations in inertial coordinates, independent of reduced equations: order 2,
+/// in attitudes, positions and velocities.
 #[test]
 fn a_closed_loop() {
     let states = &read("closed loop")["states"];
@@ -70,7 +70,7 @@ fn a_closed_loop() {
     }
 }
 
-/// Over a hundred thousand stretches of so many steps the energy comes back and the joints stay closed.
+/// Checks over a hundred thousand stretches that the energy is bounded and the joints stay closed.
 fn assert_bounded(stretch: u64) {
     let (start, velocity) = state_of(&read("closed loop")["states"][0]);
     let stepper = closed_loop(0.01);
@@ -87,8 +87,8 @@ fn assert_bounded(stretch: u64) {
     assert!(state.orthogonality_defect() < 1e-12);
 }
 
-/// The energy of a loop is bounded over a hundred thousand steps, its joints stay closed, and what is put around steps
-/// goes around these.
+/// The energy of a loop is bounded over a hundred thousand steps, its joints stay closed, and the functions around a
+/// step work with it.
 #[test]
 fn energy_of_a_closed_loop() {
     assert_bounded(1);
@@ -114,15 +114,15 @@ fn energy_of_a_closed_loop() {
     assert_eq!(resumed, there);
 }
 
-/// The same for a million steps, some three hours of motion.
+/// The bounds over a million steps, some three hours of motion.
 #[test]
 #[ignore = "takes a minute: `cargo test -p liestep-tests --test systems a_million_steps_of_a_closed_loop -- --ignored --nocapture`"]
 fn a_million_steps_of_a_closed_loop() {
     assert_bounded(10);
 }
 
-/// A ring of six that nothing pulls keeps its momentum and its angular momentum; hung up at one point and pulled down,
-/// the part of the latter about the vertical.
+/// A free ring of six conserves its momentum and its angular momentum; hung up at one point under gravity, the angular
+/// momentum about the vertical.
 #[test]
 fn momenta_of_a_ring() {
     const N: usize = 6;
@@ -142,7 +142,7 @@ fn momenta_of_a_ring() {
     let ([p, l], energy) = (whole(&state), free.energy(&state));
     let [off, gap] = watched(&free, &mut state, energy, 5000);
     let [dp, dl] = whole(&state);
-    // It has flown away by its velocity, and roundings of places with it.
+    // The ring has flown away, and the rounding of positions has grown with its distance.
     let far = state.attitude()[0].1.translation().norm();
     let moved = [(dp - p).amax(), (dl - l).amax()];
     println!("free: {moved:?}, energy within {off:.1e}, gap {gap:.1e} at {far:.0} m");
@@ -157,13 +157,13 @@ fn momenta_of_a_ring() {
     assert!((whole(&state)[1].z - vertical).abs() < 1e-11 && (hanging.energy(&state) - energy).abs() < 0.1);
 }
 
-/// Three links of one metre with these masses between pivots so far apart, under gravity.
+/// Three links of one metre with these masses between pivots at this distance, under gravity.
 fn garland(masses: [f64; 3], apart: f64) -> Held<BallJoint, 3, 3, 3, 1> {
     let joints = Joints::tree(chained()).closed_by([PlacedJoint::to_space(ball(Vector3::x() * apart, RIGHT), 2)]);
     Stepper::jointed(scene(masses.map(rod), 9.81, Vector3::z()), joints, 0.002).unwrap()
 }
 
-/// A loop whose bodies differ by ten thousand in mass: energy and joints as ever. It can't be stretched.
+/// A loop whose bodies differ by ten thousand in mass conserves energy and joints. It can't be stretched.
 #[test]
 fn a_loop_of_unlike_masses() {
     for masses in [[1e4, 1.0, 1.0], [1.0, 1e4, 1.0], [1.0, 1e-4, 1.0]] {
@@ -178,8 +178,8 @@ fn a_loop_of_unlike_masses() {
     }
 }
 
-/// A heavy body stretches the light ones that hold it until the loop is at its singular position, like a blow: up to
-/// there energy and joints are kept, and then the joint is named, and the state stays.
+/// A heavy body stretches the light ones of its loop until the loop is at its singular position, like a blow: until
+/// then energy and joints are conserved, and then the error names the joint, and the state stays.
 #[test]
 fn a_loop_that_is_stretched_names_the_joint() {
     let stepper = garland([1e4, 1.0, 1.0], 2.0);
@@ -199,8 +199,7 @@ fn a_loop_that_is_stretched_names_the_joint() {
     panic!("it is never stretched");
 }
 
-/// Two links between pivots so far apart that they are stretched: the joint that closes the loop is named, and the
-/// state stays.
+/// Two stretched links between pivots: the error names the joint that closes the loop, and the state stays.
 #[test]
 fn a_singular_position_names_the_joint() {
     let joints = |apart: f64| {
@@ -215,7 +214,7 @@ fn a_singular_position_names_the_joint() {
     println!("{refused}");
     assert!(matches!(refused, SetupError::RedundantJoint { joint: 2, .. }));
     assert!(matches!(stepper.start_nearest(straight, still), Err(SetupError::RedundantJoint { joint: 2, .. })));
-    // Started elsewhere and taken there.
+    // The state starts elsewhere and is adopted.
     let bent = Stepper::jointed(scene, joints(1.9), 0.01).unwrap();
     let tilt = 0.95_f64.acos();
     let about = [1.0, -1.0].map(|side| {
@@ -230,12 +229,12 @@ fn a_singular_position_names_the_joint() {
     let error = stepper.step(&mut taken).unwrap_err();
     println!("{error}");
     assert!(matches!(error, StepError::SingularJoint { joint: 2, .. }) && taken == before);
-    // Nor can an impulse be shared out there.
+    // An impulse can't be distributed there, either.
     let error = stepper.step_forced(&mut taken, &Bodies([Vector6::ith(5, 1.0); 2])).unwrap_err();
     assert!(matches!(error, StepError::SingularJoint { joint: 2, .. }) && taken == before);
 }
 
-/// Three rods of 1 m between pivots that are farther apart stay open, and the error says by how much.
+/// Three rods of 1 m between pivots that are farther apart stay open, and the error reports the gap.
 #[test]
 fn joints_that_cannot_close_stay_open() {
     for (apart, missing) in [(3.001, 1e-3), (3.1, 0.1), (4.0, 1.0)] {
@@ -243,12 +242,12 @@ fn joints_that_cannot_close_stay_open() {
         let error = stepper.start_nearest(row([0.9, 0.0, -0.9]).0, Bodies([Vector6::zeros(); 3])).unwrap_err();
         println!("{error}");
         let SetupError::OffConstraint { by, .. } = error else { panic!("{error}") };
-        // Of four joints.
+        // The gap is distributed over four joints.
         assert!(by > 0.25 * missing && by < 2.0 * missing, "{by:e} of {missing}");
     }
 }
 
-/// A planar linkage of pins alone: the others do a part of what the last is to do.
+/// A planar linkage of pins alone: the last one is redundant in part.
 #[test]
 fn redundant_pins_are_named() {
     let pin = |above, below| Joint::Pin(PinJoint { above, below, axis_above: Vector3::y(), axis_below: Vector3::y() });
@@ -265,26 +264,26 @@ fn redundant_pins_are_named() {
     let error = redundant.start(places, still).unwrap_err();
     println!("{error}");
     assert!(matches!(error, SetupError::RedundantJoint { joint: 3, .. }));
-    // With balls at both ends of the last body it is a linkage that turns one way, and that body about itself.
+    // A last body with balls at both ends makes it a linkage with one degree of freedom, plus that body's spin.
     let last = PlacedJoint::to_space(Joint::Ball(ball(corner, RIGHT)), 2);
     let joints = tree(Joint::Ball(ball(RIGHT, LEFT))).closed_by([last]);
     let linkage = Stepper::jointed(scene, joints, 0.005).unwrap();
     let mut state = linkage.start(places, still).unwrap();
     let energy = linkage.energy(&state);
     let [off, gap] = watched(&linkage, &mut state, energy, 2000);
-    // Pins and an even start keep it in its plane.
+    // The pins and the planar start keep the motion in its plane.
     let sideways = state.attitude().iter().map(|body| body.1.translation().y.abs()).fold(0.0, f64::max);
     println!("energy {off:.1e}, gap {gap:.1e}, sideways {sideways:.1e}");
     assert!(off < 2e-2 && gap < 4.0 * EPSILON * 2.0 && sideways < 1e-12);
 }
 
-/// A garland of three from whose middle body a fourth goes to a third pivot: two loops that have that body in common.
-/// Whichever joints are given apart, joints do no work, and the motion is the same.
+/// A garland of three bodies whose middle one is connected by a fourth to a third pivot: two loops with that body in
+/// common. For each choice of the joints that close loops, joints do no work, and the motion is the same.
 #[test]
 fn two_loops() {
     let bodies = scene([1.0, 1.3, 0.8, 0.6].map(rod), 9.81, Vector3::z());
     let (places, corner) = row([0.9, 0.1, -0.7]);
-    // At right angles to the garland, from a point of the middle body that isn't its centre.
+    // The fourth body is at right angles to the garland, from a point of the middle body that isn't its centre.
     let knot = ball(Vector3::new(0.1, 0.0, 0.05), LEFT);
     let start = super::place(&places[1]).of(&knot.above);
     let fourth = SO3::exp(Vector3::z() * 1.1);

@@ -1,6 +1,6 @@
-//! Bodies held together by joints: chains against the minimal form, a closed loop against Newton's and Euler's
-//! equations, a pendulum on a pin against its recursion, and all of them against the principle that joints do no work;
-//! what is conserved, and what can go wrong.
+//! Bodies with joints: chains compared with the minimal form, a closed loop with Newton's and Euler's equations, a
+//! pendulum on a pin with its recursion, and all of them with the principle that joints do no work; invariants and
+//! errors.
 
 mod chains;
 mod driven;
@@ -31,7 +31,7 @@ type Components<const N: usize> = Bodies<Vector6<f64>, N>;
 
 const EPSILON: f64 = f64::EPSILON;
 
-/// Mass and inertia of a body.
+/// The mass and the inertia of a body.
 #[derive(Clone, Copy, Debug)]
 struct Free {
     m: f64,
@@ -42,7 +42,7 @@ fn scene<const N: usize>(bodies: [Free; N], g: f64, up: Vector3<f64>) -> Scene<N
     Each::<N>::of(bodies.map(|Free { m, K }| FallingBody { m, J_d: K, g, up }))
 }
 
-/// Where a rod of one metre begins and ends, from its centre.
+/// The ends of a rod of one metre, from its centre.
 const LEFT: Vector3<f64> = Vector3::new(-0.5, 0.0, 0.0);
 const RIGHT: Vector3<f64> = Vector3::new(0.5, 0.0, 0.0);
 
@@ -62,7 +62,7 @@ fn chained<const N: usize>() -> [PlacedJoint<BallJoint>; N] {
     })
 }
 
-/// Makes steps: how far the energy is at most off this one, J, and how far a joint is at most open, m.
+/// Makes steps; returns the largest distance of the energy from this one, J, and the widest gap of a joint, m.
 fn watched<C: Constraint<K>, const K: usize, const N: usize, const T: usize, const L: usize>(
     stepper: &Held<C, K, N, T, L>,
     state: &mut <Held<C, K, N, T, L> as Integrator>::State,
@@ -79,7 +79,7 @@ fn place(body: &Body) -> Place {
     Place { attitude: *body.0.as_matrix(), position: body.1.translation() }
 }
 
-/// The momentum of all, and their angular momentum about the origin.
+/// The momentum of all bodies, and their angular momentum about the origin.
 fn whole<A, const N: usize>(motion: &Motion<[Body; N], A>) -> [Vector3<f64>; 2]
 where
     A: liestep::groups::Advected<[Body; N]>,
@@ -87,7 +87,7 @@ where
     super::whole(&motion.attitude(), &motion.momentum())
 }
 
-/// Links of one metre in a row from the origin, each turned about the y axis by so much, and where the last ends.
+/// Links of one metre in a row from the origin, each tilted about the y axis by its angle, and the end of the last.
 fn row<const N: usize>(tilts: [f64; N]) -> ([Body; N], Vector3<f64>) {
     let mut corner = Vector3::zeros();
     let places = tilts.map(|tilt| {
@@ -103,7 +103,7 @@ fn plain(value: &Value) -> Vector3<f64> {
     Vector3::from_fn(|k, _| number(&value[k]))
 }
 
-/// The place, turned or shifted along one of six axes: in its own, in those of space.
+/// The configuration turned or shifted along one of six axes: turned in its own axes, shifted in those of space.
 fn moved(body: &Body, k: usize, s: f64) -> Body {
     let axis = Vector3::ith(k % 3, s);
     if k < 3 {
@@ -113,8 +113,8 @@ fn moved(body: &Body, k: usize, s: f64) -> Body {
     }
 }
 
-/// How much of an impulse on bodies at these places does work while the joints stay closed: what of it isn't in the span
-/// of their slopes, by differences of what they compare.
+/// The part of an impulse on bodies in this configuration that isn't in the span of the joints' slopes, by differences
+/// of the constraints: it does work on motions that leave the joints closed.
 fn working<C: Constraint<K>, const K: usize, const N: usize>(
     joints: &[PlacedJoint<C>],
     bodies: &[Body; N],
@@ -139,8 +139,8 @@ fn working<C: Constraint<K>, const K: usize, const N: usize>(
     (impulse - slopes * multipliers).amax()
 }
 
-/// D'Alembert's principle: what joints take from the momenta before and after a step does no work while they stay closed.
-/// Half of what is given to the step is given at either end.
+/// Checks D'Alembert's principle: the joints' impulses before and after a step do no work on motions that leave the
+/// joints closed. Half of the step's force is applied at either end.
 fn assert_no_work<S, C, const K: usize, const N: usize>(
     stepper: (&S, f64),
     joints: &[PlacedJoint<C>],

@@ -1,4 +1,5 @@
-//! Bodies that are declared together, and systems of bodies, in SIMD lanes: each lane is, bit for bit, a scene of its own.
+//! Bodies that are declared together, and systems of bodies, in SIMD lanes: each lane has the bits of a scene of its
+//! own.
 
 mod rows;
 
@@ -18,7 +19,7 @@ use simba::simd::AutoF64x4;
 
 use super::{assert_same, started};
 
-/// Two bodies that would like to stand alike: each is solved for itself.
+/// Two bodies with an alignment potential: each is solved separately.
 #[lagrangian(
     group(F_1 = SO3, F_2 = SO3),
     advected(R = F_1.seen_from(space), Q = F_2.seen_from(F_1)),
@@ -67,7 +68,7 @@ fn start(random: &mut Random, speed: f64) -> (Group, Vector6<f64>) {
     ((turned[0], turned[1]), velocity * speed)
 }
 
-/// Four in the lanes of one stepper: where a batch would go on with one after another, this is an error.
+/// Gathers four steppers into lanes; bodies that a batch would step one after another are an error here.
 fn together<M: Batchable<AutoF64x4>>(bodies: &[(M, M::State)]) -> (M::Together, InLanesOf<M>) {
     let mut all = (M::Together::splat(&bodies[0].0), InLanesOf::<M>::splat(&bodies[0].1));
     for (lane, (stepper, state)) in bodies.iter().enumerate() {
@@ -76,7 +77,7 @@ fn together<M: Batchable<AutoF64x4>>(bodies: &[(M, M::State)]) -> (M::Together, 
     all
 }
 
-/// With its sums compensated.
+/// The stepper with compensated sums.
 fn compensated<L: Regular<Scalar = f64>>((stepper, state): (Stepper<L>, StateOf<L>)) -> Carrying<L> {
     let stepper = stepper.compensated();
     let state = stepper.adopt(&state);
@@ -87,7 +88,7 @@ type Carrying<L> = (Stepper<L, CompensatedSums<OwnStep<L>>>, StateOf<L, Compensa
 
 type InLanesOf<M> = <<M as InLanes<AutoF64x4>>::Together as Integrator>::State;
 
-/// Four together, against each alone.
+/// Compares four bodies in lanes with each alone.
 fn assert_each_is_alone<M>(bodies: &[(M, M::State)], steps: u64)
 where
     M: Batchable<AutoF64x4> + Integrator<State: PartialEq + Debug>,
@@ -110,8 +111,8 @@ where
     }
 }
 
-/// One body that comes to a step without solution stops there, with the error that it has alone, and the others go on as
-/// alone.
+/// Checks that a body whose step has no solution stops with the error that it has alone, and that the others continue
+/// as alone.
 fn stopped<M>(bodies: &[(M, M::State)], stopped: usize, steps: u64) -> StepError
 where
     M: Batchable<AutoF64x4> + Integrator<State: PartialEq + Debug>,
@@ -121,7 +122,7 @@ where
     assert!(batch.running().eq((0..bodies.len()).filter(|&lane| lane != stopped)));
     for (lane, (stepper, state)) in bodies.iter().enumerate() {
         let mut alone = state.clone();
-        // Step by step, so that it is where it stops.
+        // Single steps end at the state before the failed one.
         let error = (0..steps).find_map(|_| stepper.step(&mut alone).err());
         assert_eq!(batch.error(lane), error.as_ref(), "{lane}");
         assert_same(&batch.state(lane), &alone);
@@ -135,12 +136,12 @@ fn each_lane_of_a_double_pendulum_is_one() {
     let mut bodies = [0, 1, 2, 3].map(|_| started(links(random), 0.01, start(random, 1.0)));
     assert_each_is_alone(&bodies, 200);
 
-    // One that turns too far stops by itself.
+    // A body that turns too far stops alone.
     let fast = bodies[2].0.start(start(random, 1.0).0, Vector6::z() * 500.0).unwrap();
     bodies[2].1 = fast;
     let error = stopped(&bodies, 2, 50);
     assert!(matches!(error, StepError::BeyondSolvable { .. }), "{error:?}");
-    // At a speed of which a first step has a solution, and one of those behind it none.
+    // The speed is such that the first step has a solution, and a later one has none.
     let (attitude, velocity) = start(random, 1.0);
     let turning = |speed: f64| bodies[2].0.start(attitude, velocity * speed).unwrap();
     let made = |speed: f64| {
@@ -201,7 +202,7 @@ fn each_lane_of_a_top_on_a_cart_is_one() {
         started(cart, 0.01, (place, velocity))
     });
     assert_each_is_alone(&bodies, 200);
-    // One that turns too far stops by itself.
+    // A body that turns too far stops alone.
     let fast = bodies[1].0.start(bodies[1].1.attitude(), Vector6::z() * 500.0).unwrap();
     bodies[1].1 = fast;
     let error = stopped(&bodies, 1, 20);
@@ -224,7 +225,7 @@ fn each_lane_of_two_bodies_that_attract_each_other_is_one() {
     assert_each_is_alone(&started, 200);
 }
 
-/// A rigid body on SE(3), which is inverted lane by lane.
+/// A rigid body on SE(3), whose matrix is inverted lane by lane.
 #[lagrangian(group = SE3, l_d = ((F - I) * K * (F - I).transpose()).trace() / (2.0 * h))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Floating<T> {
@@ -245,32 +246,32 @@ fn each_lane_of_a_group_that_is_inverted_is_one() {
         let state = stepper.start(moved(&place), velocity).unwrap();
         (stepper, state)
     });
-    // One is far from the identity, and so are its increments: it turns by half a radian in a step.
+    // One body is far from the identity, and so are its increments: it turns by half a radian in a step.
     let far = moved(&Vector6::new(1.8, -2.0, 1.0, 50.0, -30.0, 10.0));
     bodies[1].1 = bodies[1].0.start(far, Vector6::new(30.0, 20.0, -35.0, 100.0, 0.0, 50.0)).unwrap();
     assert_each_is_alone(&bodies, 200);
 
-    // About its third axis a body turns by `sin θ = h μ/(K_1 + K_2)`: the Jacobian is singular at a right angle, and beyond
-    // there is no solution.
+    // About its third axis a body turns by `sin θ = h μ/(K_1 + K_2)`: the Jacobian is singular at a right angle, and
+    // beyond there is no solution.
     let momentum = Vector6::z() * (1.001 * (0.3 + 0.4) / 0.01);
     bodies[2].1 = bodies[2].0.start_with_momentum(bodies[2].1.attitude(), momentum).unwrap();
     let error = stopped(&bodies, 2, 20);
     let StepError::BeyondSolvable { largest, .. } = error else { panic!("{error:?}") };
-    // To six digits.
+    // The reported step has six digits.
     assert!((largest * 1.001 / 0.01 - 1.0).abs() < 1e-5, "{largest}");
-    // One without mass has a singular Jacobian everywhere, and isn't one of the lanes.
+    // A body without mass has a singular Jacobian everywhere, and is refused at construction.
     let K = nalgebra::Matrix4::from_diagonal(&nalgebra::Vector4::new(0.3, 0.4, 0.5, 0.0));
     assert!(matches!(Stepper::new(Floating { K }, 0.01), Err(SetupError::SingularKinetic { body: None, .. })));
 }
 
-/// A body that turns.
+/// A rotating body.
 #[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Turning<T> {
     J_d: NonstandardInertia<T>,
 }
 
-/// Its weight.
+/// The weight of a body.
 #[lagrangian(group = SO3, advected(w = up), l_d = -0.5 * h * weight * w.dot(&(rho + F * rho)))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Heavy<T> {
@@ -279,7 +280,7 @@ struct Heavy<T> {
     up: Vector3<T>,
 }
 
-/// Terms at all kinds of places whose potentials are of the ends of a step.
+/// Terms at all kinds of places with potentials of the ends of a step.
 #[test]
 fn each_lane_of_a_row_of_bodies_is_one() {
     const N: usize = 4;
@@ -307,7 +308,7 @@ fn each_lane_of_a_row_of_bodies_is_one() {
     assert!(matches!(error, StepError::BeyondSolvable { body: Some(3), .. }), "{error:?}");
 }
 
-/// A spring between points of two bodies, by what it is in the middle of a step.
+/// A spring between points of two bodies, evaluated in the middle of a step.
 #[lagrangian(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
     advected(R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space), r = d_2.seen_from(d_1)),

@@ -1,4 +1,4 @@
-//! Lanes that part: of a row of bodies some settle later, turn farther, or are off the group.
+//! Lanes with different control flow: bodies of a row converge later, turn farther, or are off the group.
 
 use core::fmt::Debug;
 
@@ -17,14 +17,14 @@ use crate::several_bodies::{assert_same, started};
 
 type Row = Sum<Placement<Each<4>, Turning<f64>, 4>, Placement<Along<4>, Alike<f64>, 1>>;
 
-/// Four that would like to stand alike.
+/// Four bodies with alignment potentials.
 fn row(random: &mut Random) -> Row {
     Each::<4>::of([0, 1, 2, 3].map(|_| Turning { J_d: inertia::<f64>(random) }))
         + Along::<4>::of([Alike { kappa: 2.0 + vector(random).x }])
 }
 
-/// One step of each lane, from a thousandth to nearly all of the longest that it has. One after the other settles, the last
-/// after more than so many iterations, and what has come to its end before stays as it is.
+/// Compares one step of each lane, from a thousandth to nearly all of its longest one. The lanes converge one after the
+/// other, the last after more than `most` iterations, and a converged lane stays as it is.
 fn part_in_a_solve<M>(
     started: impl Fn(&mut Random, f64) -> (M, M::State),
     longest: fn(&(M, M::State)) -> f64,
@@ -60,18 +60,18 @@ fn part_in_a_solve<M>(
 #[test]
 fn lanes_that_part_in_a_solve() {
     let pendulum = |random: &mut Random, h: f64| started(links(random), h, start(random, 1.0));
-    // One needs another start than the velocity: from one start there are at most twenty.
+    // One lane needs another start than the velocity: from one start there are at most twenty iterations.
     part_in_a_solve(pendulum, |(stepper, state)| stepper.max_step(state), 20);
     let in_a_row = |random: &mut Random, h: f64| {
         let (row, attitudes) = (row(random), [0, 1, 2, 3].map(|_| SO3::exp(vector(random))));
         started(row, h, (attitudes, Bodies([0, 1, 2, 3].map(|_| vector(random) * 5.0))))
     };
-    // Bodies of a row have one start, and one is near its end.
+    // Bodies of a row have only one start, and one lane is near its limit.
     part_in_a_solve(in_a_row, |(stepper, state)| stepper.max_step(state), 10);
 }
 
-/// After an increment far from the identity the next guess is that, in its lane alone: the other lanes go on by the line
-/// through their last two.
+/// After an increment far from the identity the next guess is that increment, in its lane alone: the other lanes use
+/// the line through their last two.
 #[test]
 fn lanes_that_are_far_guess_by_themselves() {
     let random = &mut Random::new(37);
@@ -79,7 +79,7 @@ fn lanes_that_are_far_guess_by_themselves() {
         let row = row(random);
         let mut velocities = [0, 1, 2, 3].map(|_| vector(random) * 3.0);
         if lane == 2 {
-            // By 75° a step, about an axis of inertia.
+            // The body turns by 75° a step, about a principal axis.
             velocities[1] = Vector3::z() * (75.0_f64.to_radians().sin() / 0.02);
         }
         started(row, 0.02, ([0, 1, 2, 3].map(|_| SO3::exp(vector(random))), Bodies(velocities)))
@@ -90,12 +90,13 @@ fn lanes_that_are_far_guess_by_themselves() {
     assert!(bodies[2].1.attitude()[1].inverse().compose(&state.attitude()[1]).log().norm() > 1.2);
 }
 
-/// As far from the group as a start may be, and farther than a motion is left: `RᵀR − I` is `2√3` times this, 1.4e-12.
+/// An attitude as far from the group as a start may be, and farther than the limit of corrections: `RᵀR − I` is `2√3`
+/// times this, 1.4e-12.
 fn off(attitude: SO3) -> SO3 {
     SO3::from_matrix_unchecked(attitude.matrix() * (1.0 + 4e-13))
 }
 
-/// Of each lane the body that is off the group is brought back to it, and what is seen there with it; all others stay as they
+/// In each lane only the body off the group is restored, and its relative parameters with it; all others stay as they
 /// are.
 #[test]
 fn what_is_off_the_group_is_restored_lane_by_lane() {
@@ -131,8 +132,7 @@ fn what_is_off_the_group_is_restored_lane_by_lane() {
     assert_each_is_alone(&pendulums, 1100);
 }
 
-/// Of lanes whose step has no solution the error is said of the one that would turn farthest, and of the body there that
-/// would.
+/// If several lanes have no solution, the error names the lane that would turn farthest, and the body in it that would.
 #[test]
 fn the_farthest_body_of_all_lanes_is_named() {
     let h = 0.02;
@@ -152,7 +152,7 @@ fn the_farthest_body_of_all_lanes_is_named() {
         let error = stepper.step(&mut state).unwrap_err();
         let StepError::BeyondSolvable { turn, body, .. } = error else { panic!("{error:?}") };
         assert_eq!(body, Some(bodies_of[1]), "{error:?}");
-        // But for the kick, which changes the velocity by `h κ/J`, a ten-thousandth.
+        // The kick changes the velocity only by `h κ/J`, a ten-thousandth.
         assert!((turn / (700.0 * h) - 1.0).abs() < 1e-2, "{turn}");
         for (lane, (_, start)) in bodies.iter().enumerate() {
             assert_same(&state.lane(lane), start);
