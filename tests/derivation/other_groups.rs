@@ -134,7 +134,7 @@ fn derived_terms(system: &impl System) {
     stages::assert_stages(system, 4);
 }
 
-/// The largest group; `tests/random_lagrangians` has the others.
+/// The largest group; `tests/long/random_lagrangians` has the others.
 #[test]
 fn se23() {
     derived_terms(&extended_pose());

@@ -59,7 +59,7 @@ pub(crate) fn p2(_: Effort) -> Result<Row, Failure> {
             .at_most(&format!("{name}: |w|²"), length, 2e-15)
             .at_most(&format!("{name}: μ·w"), vertical, 2e-15);
     }
-    Ok(row.shows("other groups and parameters: tests/systems, tests/random_lagrangians"))
+    Ok(row.shows("other groups and parameters: tests/systems, tests/long/random_lagrangians"))
 }
 
 /// The largest changes of `⟨w, v⟩` over some elements: with `Fᵀ w`, and with the product `F⁻¹ w` in its place.

@@ -14,7 +14,7 @@ use super::numbers::{from_numbers, lifted, numbers, varied};
 use super::{Group, Vector, axis, norm, norm_of_map, random_advected};
 
 /// The bound is some dozens of roundings, relative to the size of the terms. The worst error of each Lagrangian is
-/// printed by `cargo test -p liestep-tests --test random_lagrangians continuous -- --nocapture`.
+/// printed by `cargo test -p liestep-long-tests --test random_lagrangians continuous -- --nocapture`.
 const BOUND: f64 = 1e-14;
 
 /// Checks momentum, diamond, Euler–Poincaré and Lie–Poisson equations and their inverse, at a random velocity.

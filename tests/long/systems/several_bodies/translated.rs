@@ -247,7 +247,7 @@ fn momenta_of_two_bodies() {
 
 /// If the centre of mass moves 280 m, a position is rounded to 6e-14 m, which is 1.8e-12 of the angular momentum.
 #[test]
-#[ignore = "twenty seconds: `cargo test -p liestep-tests --test systems momenta_of_two_bodies -- --ignored`"]
+#[ignore = "twenty seconds: `cargo test -p liestep-long-tests --test systems momenta_of_two_bodies -- --ignored`"]
 fn momenta_of_two_bodies_after_a_million_steps() {
     for (rests, most) in [(true, 2e-13), (false, 5e-12)] {
         let [p, l] = drift(1_000_000, rests);

@@ -116,7 +116,7 @@ fn energy_of_a_closed_loop() {
 
 /// The bounds over a million steps, some three hours of motion.
 #[test]
-#[ignore = "takes a minute: `cargo test -p liestep-tests --test systems a_million_steps_of_a_closed_loop -- --ignored --nocapture`"]
+#[ignore = "takes a minute: `cargo test -p liestep-long-tests --test systems a_million_steps_of_a_closed_loop -- --ignored --nocapture`"]
 fn a_million_steps_of_a_closed_loop() {
     assert_bounded(10);
 }

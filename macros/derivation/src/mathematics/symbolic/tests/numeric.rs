@@ -126,7 +126,7 @@ fn factor_value(factor: &Factor, values: &Values) -> Matrix {
     match factor {
         Factor::Symbol { id, transposed } => turned(values[id].clone(), *transposed),
         Factor::Inverse { .. } => {
-            unreachable!("only off the orthogonal groups, where tests/random_lagrangians looks")
+            unreachable!("only off the orthogonal groups, where tests/long/random_lagrangians looks")
         }
         Factor::Unit { index, size, transposed } => turned(Matrix::unit(*index, *size), *transposed),
         Factor::Hat(word) => product(word, values).hat(),
