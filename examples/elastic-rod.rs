@@ -2,8 +2,8 @@
 //! with halves of its potential at both ends.
 //!
 //! ```text
-//! cargo run --release --example elastic-rod            the energy errors of both, by the length of the step
-//! cargo run --release --example elastic-rod -- times   µs a step, and ns a body, of rows of 10 to 100 bodies
+//! cargo run --release -p liestep-examples --example elastic-rod            the energy errors of both, by the length of the step
+//! cargo run --release -p liestep-examples --example elastic-rod -- times   µs a step, and ns a body, of rows of 10 to 100 bodies
 //! ```
 
 use core::array::from_fn;

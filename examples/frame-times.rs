@@ -1,7 +1,7 @@
 //! A toy top in a game's loop: drawn at the times of the frames, stepped at times of its own.
 //!
 //! ```text
-//! cargo run --release --example frame-times
+//! cargo run --release -p liestep-examples --example frame-times
 //! ```
 //!
 //! It is the toy of the guide's chapter on recording, which explains why its steps are divided and why the frames don't

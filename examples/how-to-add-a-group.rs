@@ -1,7 +1,7 @@
 //! How to add a group: the affine maps `x ↦ a x + b` of the line, by generators, with its laws as tests and a Lagrangian.
 //!
 //! ```text
-//! cargo run --example how-to-add-a-group
+//! cargo run -p liestep-examples --example how-to-add-a-group
 //! cargo test --example how-to-add-a-group         runs the laws, too
 //! ```
 

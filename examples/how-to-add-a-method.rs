@@ -1,7 +1,7 @@
 //! How to add a method: a Störmer–Verlet step on SO(3), which works at once with all functions around a step.
 //!
 //! ```text
-//! cargo run --release --example how-to-add-a-method
+//! cargo run --release -p liestep-examples --example how-to-add-a-method
 //! ```
 
 use std::error::Error;

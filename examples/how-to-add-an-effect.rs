@@ -1,7 +1,7 @@
 //! How to add an effect: a potential and a force of your own, in a sum with those of the library.
 //!
 //! ```text
-//! cargo run --example how-to-add-an-effect
+//! cargo run -p liestep-examples --example how-to-add-an-effect
 //! ```
 
 use std::error::Error;

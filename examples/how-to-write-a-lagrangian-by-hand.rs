@@ -1,7 +1,7 @@
 //! How to write a Lagrangian by hand, without the macro: the free rigid body (3.13), in Cayley form.
 //!
 //! ```text
-//! cargo run --example how-to-write-a-lagrangian-by-hand
+//! cargo run -p liestep-examples --example how-to-write-a-lagrangian-by-hand
 //! ```
 
 use std::error::Error;

@@ -1,7 +1,7 @@
 //! The animated picture of README: a heavy top with a periodic motion.
 //!
 //! ```text
-//! cargo run --release --example moving-top -- examples/figures/moving-top.svg
+//! cargo run --release -p liestep-examples --example moving-top -- examples/figures/moving-top.svg
 //! ```
 //!
 //! A top nods while it precesses. Its initial rates are chosen so that after a whole number of nods it has gone round

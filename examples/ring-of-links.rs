@@ -1,7 +1,7 @@
 //! A ring of rods on ball joints, suspended at one joint and released: a closed loop.
 //!
 //! ```text
-//! cargo run --release --example ring-of-links
+//! cargo run --release -p liestep-examples --example ring-of-links
 //! ```
 
 use core::array::from_fn;

@@ -1,7 +1,7 @@
 //! Figures 3.1 to 3.10 of the thesis, one by one.
 //!
 //! ```text
-//! cargo run --release --example thesis-figures -- --out examples/figures/thesis
+//! cargo run --release -p liestep-examples --example thesis-figures -- --out examples/figures/thesis
 //! ```
 //!
 //! `examples/figures/thesis/README.md` displays them, with the thesis' text on each and the reasons for differences.

@@ -1,10 +1,10 @@
 //! The time to an accuracy: structure-preserving methods compared with explicit Runge–Kutta methods on seven scenes.
 //!
 //! ```text
-//! cargo run --release --example accuracy-cost
-//! cargo run --release --example accuracy-cost -- --quick --out costs
-//! cargo run --release --example accuracy-cost -- --quick --asked
-//! cargo run --release --example accuracy-cost -- --readme
+//! cargo run --release -p liestep-accuracy-cost --example accuracy-cost
+//! cargo run --release -p liestep-accuracy-cost --example accuracy-cost -- --quick --out costs
+//! cargo run --release -p liestep-accuracy-cost --example accuracy-cost -- --quick --asked
+//! cargo run --release -p liestep-accuracy-cost --example accuracy-cost -- --readme
 //! ```
 //!
 //! Each method integrates each scene for 10 s and for 100 s with shorter and shorter steps. The error is that of the

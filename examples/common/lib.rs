@@ -22,7 +22,3 @@ pub mod variational;
 
 pub use liestep_plot as plot;
 pub use liestep_plot::output;
-
-#[cfg(doctest)]
-#[doc = include_str!("../../README.md")]
-struct Readme;

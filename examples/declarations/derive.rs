@@ -1,8 +1,8 @@
 //! The derived equations of declared Lagrangians, to read beside the paper.
 //!
 //! ```text
-//! cargo run --example derive                 what there is
-//! cargo run --example derive -- heavy-top    all equations of one
+//! cargo run -p liestep-declarations --example derive                 what there is
+//! cargo run -p liestep-declarations --example derive -- heavy-top    all equations of one
 //! ```
 //!
 //! The documentation of the constant `DERIVATION` contains the same text, and that of each generated method its

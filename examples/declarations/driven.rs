@@ -1,8 +1,8 @@
 //! Driven scenes: parameters prescribed for each step, and forces on SE(3).
 //!
 //! ```text
-//! cargo run --release --example driven
-//! cargo run --release --example driven -- --out driven
+//! cargo run --release -p liestep-declarations --example driven
+//! cargo run --release -p liestep-declarations --example driven -- --out driven
 //! ```
 //!
 //! 1. A satellite in a circular orbit. The direction of its planet rotates, and the gravity gradient makes the

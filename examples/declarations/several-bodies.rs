@@ -1,8 +1,8 @@
 //! Several bodies that are declared together, or placed.
 //!
 //! ```text
-//! cargo run --release --example several-bodies
-//! cargo run --release --example several-bodies -- --out several-bodies
+//! cargo run --release -p liestep-declarations --example several-bodies
+//! cargo run --release -p liestep-declarations --example several-bodies -- --out several-bodies
 //! ```
 //!
 //! 1. Two double pendulums whose lower rods start a nanoradian apart: they separate exponentially, by chaos.

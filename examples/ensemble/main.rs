@@ -2,9 +2,9 @@
 //! section of it.
 //!
 //! ```text
-//! cargo run --release --example ensemble
-//! cargo run --release --example ensemble -- --quick
-//! cargo run --release --example ensemble -- --shard 2/8 --out shared     one task of an array; the last draws
+//! cargo run --release -p liestep-ensemble-example --example ensemble
+//! cargo run --release -p liestep-ensemble-example --example ensemble -- --quick
+//! cargo run --release -p liestep-ensemble-example --example ensemble -- --shard 2/8 --out shared     one task of an array; the last draws
 //! ```
 //!
 //! An interrupted run is resumed by the next one. The folders `satellite`, `map` and `section` have the files; polars

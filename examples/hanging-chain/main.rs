@@ -1,8 +1,8 @@
 //! A falling chain of rods on ball joints: a picture of it, and the time of a step.
 //!
 //! ```text
-//! cargo run --release --example hanging-chain -- examples/figures/hanging-chain.svg
-//! cargo run --release --example hanging-chain -- times
+//! cargo run --release -p liestep-examples --example hanging-chain -- examples/figures/hanging-chain.svg
+//! cargo run --release -p liestep-examples --example hanging-chain -- times
 //! python examples/hanging-chain/with_mujoco.py           the same chains in MuJoCo, beside these
 //! ```
 //!

@@ -2,8 +2,8 @@
 //! others.
 //!
 //! ```text
-//! cargo run --release --example hard-cases
-//! cargo run --release --example hard-cases -- --row T3 --long --out hard
+//! cargo run --release -p liestep-hard-cases --example hard-cases
+//! cargo run --release -p liestep-hard-cases --example hard-cases -- --row T3 --long --out hard
 //! ```
 //!
 //! Each row is a claim with a criterion that a program decides. The others are the updates of physics engines (the

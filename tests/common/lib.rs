@@ -16,3 +16,7 @@ pub mod random;
 pub mod samples;
 pub mod solvers;
 pub mod structure;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;

@@ -1,7 +1,7 @@
 //! Scene files from a program: each is read, simulated and drawn, and a page made that plays it.
 //!
 //! ```text
-//! cargo run --release --example scene -- examples/scenes/sleeping-top.toml
+//! cargo run --release -p liestep-scene --example scene -- examples/scenes/sleeping-top.toml
 //! ```
 //!
 //! The program `liestep` does the same, and more: `cargo install --path core/cli`.

@@ -1,7 +1,7 @@
 //! P7: a fixed run has the same bits in each build, in debug and release, for the generic and the native target.
 //!
 //! ```text
-//! cargo run --example hard-cases -- --row P7
+//! cargo run -p liestep-hard-cases --example hard-cases -- --row P7
 //! RUSTFLAGS="-C target-cpu=native" cargo run --release --target-dir target/native --example hard-cases -- --row P7
 //! ```
 //!

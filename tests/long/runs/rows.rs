@@ -1,4 +1,4 @@
-//! The rows of the table that take more than a second: what is measured and every bound are those of `cargo run --example hard-cases`, which prints
+//! The rows of the table that take more than a second: what is measured and every bound are those of `cargo run -p liestep-hard-cases --example hard-cases`, which prints
 //! them beside what other methods do.
 
 use cases::report::assert_met;

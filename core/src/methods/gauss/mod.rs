@@ -47,7 +47,7 @@ use nalgebra::Vector3;
 /// cheaper than other numbers. A step that turns the body by three quarters of a radian takes some 13 iterations, by
 /// one and a half radians 20; a step much longer doesn't converge. So a coarse result isn't cheap, and a better one
 /// costs little more. For an asymmetric top under gravity it is the cheapest Poisson map for errors of 10⁻⁴ and less,
-/// over long times for all errors. `cargo run --release --example accuracy-cost` measures it.
+/// over long times for all errors. `cargo run --release -p liestep-accuracy-cost --example accuracy-cost` measures it.
 ///
 /// # Contract
 ///

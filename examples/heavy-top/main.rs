@@ -1,8 +1,8 @@
 //! The heavy top of the thesis, for 200 s, beside two Runge–Kutta methods of order 4 at the same step.
 //!
 //! ```text
-//! cargo run --release --example heavy-top
-//! cargo run --release --example heavy-top -- --case cuspidal --reading b --step 0.02 --out top --csv
+//! cargo heavy-top
+//! cargo heavy-top --case cuspidal --reading b --step 0.02 --out top --csv
 //! ```
 //!
 //! It prints the conservation errors of each method and the time of a step, and draws figures 3.4 to 3.10 again:
