@@ -91,7 +91,8 @@ fn run_body(given: &ArgMatches, path: &Path, scene: &SceneFile, output: &mut Out
     if given.get_flag("html") {
         output.write(&name(path, "html"), &scene.page(&run))?;
     }
-    print(&scene.summary(&run))?;
+    notes(&run);
+    print(&(scene.summary(&run) + &scene.end_error(&run)))?;
     if let Some(sweep) = scene.sweep() {
         eprintln!("note: `liestep sweep` runs the {} scenes of the file's sweep", sweep.points.len());
     }
@@ -106,7 +107,13 @@ fn run_system(given: &ArgMatches, path: &Path, system: &System, output: &mut Out
     let picture = system.picture(&run).map_err(|cause| Failure::Output(cause.to_string()))?;
     output.write(&name(path, "svg"), &picture)?;
     tables_have_grown(given, path, output)?;
-    print(&system.summary(&run))
+    notes(&run);
+    print(&(system.summary(&run) + &system.end_error(&run)))
+}
+
+/// What of a file could be better.
+fn notes(run: &Run) {
+    run.notes().iter().for_each(|note| eprintln!("note: {}", visible(&note.to_string())));
 }
 
 /// The endings of the tables that are asked for.
@@ -160,7 +167,7 @@ fn check(given: &ArgMatches) -> Result<(), Failure> {
     let mut wrong: Option<Failure> = None;
     for path in files(given) {
         match checked(path) {
-            Ok(about) => print(&format!("{}: {about}\n", path.display()))?,
+            Ok(about) => print(&format!("{}: {about}", path.display()))?,
             Err(failure) => {
                 if let Some(before) = wrong.replace(failure) {
                     eprintln!("error: {}", visible(&before.to_string()));
@@ -176,18 +183,20 @@ fn checked(path: &Path) -> Result<String, Failure> {
     let scene = match Scene::read(path)? {
         Scene::Body(scene) => scene,
         Scene::System(system) => {
-            system.first(1)?;
-            return Ok(system.about());
+            let first = system.first(1)?;
+            notes(&first);
+            let changes = system.changes(&first);
+            return Ok(format!("{}\n{changes}", system.about()));
         }
     };
     // A search for an accuracy takes as long as a run, and begins with the first step.
     if !scene.asks_for_accuracy() {
-        scene.first(1)?;
+        notes(&scene.first(1)?);
         for (_, point) in scene.sweep().map(|sweep| sweep.points.as_slice()).unwrap_or_default() {
             point.first(1)?;
         }
     }
-    Ok(scene.about())
+    Ok(scene.about() + "\n")
 }
 
 fn derive(given: &ArgMatches) -> Result<(), Failure> {

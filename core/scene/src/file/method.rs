@@ -75,6 +75,15 @@ pub(crate) enum Stages {
     Eight,
 }
 
+impl Stages {
+    pub(crate) fn order(self) -> u32 {
+        match self {
+            Self::Four => 8,
+            Self::Eight => 16,
+        }
+    }
+}
+
 impl TryFrom<i64> for Stages {
     type Error = &'static str;
 

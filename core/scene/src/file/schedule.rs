@@ -50,6 +50,8 @@ struct ScheduleTable {
     method: Method,
 }
 
+/// Of a run that says nothing of steps: at the end an attitude is about 1e-6 rad off.
+const DEFAULT_ACCURACY: f64 = 1e-6;
 /// A few minutes of stepping.
 const MOST_STEPS: f64 = 1e8;
 
@@ -63,7 +65,7 @@ impl TryFrom<ScheduleTable> for Schedule {
             _ if table.steps_per_orbit.is_some() => Pace::Step { step: duration, steps: 1 },
             (Some(step), _) => Pace::Step { step: step.value, steps: equal_steps(step.value, duration)? },
             (None, Some(accuracy)) => Pace::Accuracy(accuracy.value),
-            (None, None) => return Err("a run has a `step`, `steps_per_orbit` or an `accuracy`".to_owned()),
+            (None, None) => Pace::Accuracy(DEFAULT_ACCURACY),
         };
         let ScheduleTable { method, steps_per_orbit, density, .. } = table;
         Ok(Self { duration, pace, method, steps_per_orbit, density })

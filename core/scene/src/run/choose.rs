@@ -113,7 +113,7 @@ where
 /// No effect that asks for an inertia is beside a Lagrangian.
 fn inertia(file: &SceneFile) -> Result<Inertia, Stop> {
     match file.body {
-        Some(body) => Ok(body.inertia()),
+        Some(body) => Ok(body.J),
         None => Inertia::from_principal_moments(V::repeat(1.0)).map_err(|error| Stop::Other(error.to_string())),
     }
 }
@@ -288,7 +288,7 @@ fn potential(file: &SceneFile, J: &Inertia) -> Result<Rest, Stop> {
 /// Makes the steps that an accuracy takes.
 fn ask(file: &SceneFile, tolerance: f64, listeners: Listeners<'_>) -> Result<Run, Stop> {
     let accuracy = Accuracy { tolerance, horizon: file.run.duration };
-    let J = file.body.ok_or_else(nothing)?.inertia();
+    let J = file.body.ok_or_else(nothing)?.J;
     let scene = RigidBody { J_d: J.to_nonstandard() } + potential(file, &J)?;
     let stepper = Stepper::for_accuracy(scene, accuracy, file.start.attitude, file.start.velocity);
     let stepper = stepper.map_err(Stop::Accuracy)?;

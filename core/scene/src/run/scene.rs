@@ -9,15 +9,17 @@ use liestep::recording::{self, Csv, Sink};
 use liestep::{SO3, SetupError, StepError};
 use liestep_late::Slots;
 
+use crate::file::body::Kinetic;
 use crate::file::column::Column;
 use crate::file::event::Event;
+use crate::file::method::Method;
 use crate::file::mistake::Mistake;
 use crate::file::quantity::short;
 use crate::file::scene::{Origin, SceneFile};
 use crate::file::schedule::Pace;
 use crate::run::choose::{self, MemberInLanes, Whole};
 use crate::run::course::{MemberStart, sample};
-use crate::run::make::{Listeners, Run, Stop};
+use crate::run::make::{Listeners, Run, Stop, fast_turn};
 
 impl SceneFile {
     /// Simulates the scene.
@@ -50,7 +52,20 @@ impl SceneFile {
         progress: &'a mut dyn FnMut(f64),
         table: Option<&'a mut dyn Sink>,
     ) -> Result<Run, Mistake> {
-        choose::run(self, Listeners { progress, table }).map_err(|stop| self.mistake(stop))
+        let of_spring = self.check_spring().map_err(|stop| self.mistake(stop))?;
+        let mut run = choose::run(self, Listeners { progress, table }).map_err(|stop| self.mistake(stop))?;
+        let Origin { path, places } = &self.origin;
+        let notes = of_spring.map(|why| (places.spring, why)).into_iter();
+        let notes = notes.chain(self.fast_turn().map(|why| (places.body, why)));
+        run.notes = notes.map(|(place, why)| Mistake::of_run(path, place, why)).collect();
+        Ok(run)
+    }
+
+    /// What is to be said of a body that turns too far in a step of (3.13).
+    fn fast_turn(&self) -> Option<String> {
+        let is_own_step = matches!(self.run.method, Method::Step) && !self.has_steps_of_its_own();
+        let by_steps = self.body.is_some() && is_own_step && self.kinetic() == Kinetic::Rigid;
+        fast_turn(self.turn_of_a_step().filter(|_| by_steps)?)
     }
 
     /// Simulates the scene up to a number of steps; all of one that asks for an accuracy, as its step isn't known before.
@@ -134,6 +149,7 @@ impl SceneFile {
                 | SetupError::NoForceGradient,
             ) => places.method,
             Stop::Setup(_) => places.body,
+            Stop::Spring(..) => places.spring,
             Stop::Start(_) => places.start,
         };
         Mistake::of_run(path, place, message)
