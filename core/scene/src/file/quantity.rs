@@ -137,7 +137,10 @@ impl<'de> Deserialize<'de> for Direction {
             return Ok(Self(unit));
         }
         let [x, y, z] = [unit.x, unit.y, unit.z].map(|part| short((part * 1e6).round() / 1e6));
-        Err(D::Error::custom(format!("a direction has the length 1, and this {}: write [{x}, {y}, {z}]", short(length))))
+        Err(D::Error::custom(format!(
+            "a direction has the length 1, and this {}: write [{x}, {y}, {z}]",
+            short(length)
+        )))
     }
 }
 

@@ -14,6 +14,7 @@ use nalgebra::{Vector3, Vector6};
 use crate::file::arrangement::Arrangement;
 use crate::file::body::Kinetic;
 use crate::file::system::{Between, System, SystemBody};
+use crate::run::nearest::Moving;
 use crate::run::springs::Springs;
 
 /// A body and its weight. Of the three kinetic terms one has the factor one, the others zero.
@@ -84,7 +85,7 @@ impl System {
     }
 
     /// The bodies as the file has them, and their velocities.
-    fn given(&self) -> Vec<((SO3, R3), Vector6<f64>)> {
+    fn given(&self) -> Vec<Moving> {
         let of = |body: &SystemBody| {
             let (turn, shift) = (body.start.velocity, body.moving);
             let velocity = Vector6::new(turn.x, turn.y, turn.z, shift.x, shift.y, shift.z);
@@ -98,7 +99,7 @@ impl System {
         &self,
         stepper: &SystemStepper<N, L>,
     ) -> Result<StateOf<N, L>, SetupError> {
-        let padded = |bodies: &[((SO3, R3), Vector6<f64>)]| {
+        let padded = |bodies: &[Moving]| {
             let resting = ((SO3::identity(), R3::identity()), Vector6::zeros());
             let all: [_; N] = from_fn(|place| bodies.get(place).copied().unwrap_or(resting));
             (all.map(|(body, _)| body), Bodies(all.map(|(_, velocity)| velocity)))

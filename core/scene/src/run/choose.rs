@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use liestep::accuracy::Accuracy;
+use liestep::accuracy::{Accuracy, Choice};
 use liestep::effects::{CayleyBody, Dipole, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::groups::Advected;
 use liestep::mechanics::{
@@ -285,6 +285,21 @@ fn potential(file: &SceneFile, J: &Inertia) -> Result<Rest, Stop> {
     rest(file, J)?.map_or_else(nothing, Ok).map_err(late_error)
 }
 
+/// As few would be drawn as a polygon.
+const FEWEST: u64 = 1000;
+
+/// The scene with the method of a choice and a whole number of steps in each of its own, where it is left open how many
+/// there are and these are few.
+fn refined(file: &SceneFile, choice: &Choice) -> Option<(SceneFile, f64, u32)> {
+    let is_coarse = file.run.is_left_open && choice.steps < FEWEST;
+    let method = Method::of_offer(&choice.chosen().name).filter(|_| is_coarse)?;
+    let steps = u32::try_from(choice.steps * FEWEST.div_ceil(choice.steps)).ok()?;
+    let step = file.run.duration / f64::from(steps);
+    let mut refined = file.clone();
+    (refined.run.method, refined.run.pace) = (method, Pace::Step { step, steps });
+    Some((refined, step, steps))
+}
+
 /// Makes the steps that an accuracy takes.
 fn ask(file: &SceneFile, tolerance: f64, listeners: Listeners<'_>) -> Result<Run, Stop> {
     let accuracy = Accuracy { tolerance, horizon: file.run.duration };
@@ -293,8 +308,11 @@ fn ask(file: &SceneFile, tolerance: f64, listeners: Listeners<'_>) -> Result<Run
     let stepper = Stepper::for_accuracy(scene, accuracy, file.start.attitude, file.start.velocity);
     let stepper = stepper.map_err(Stop::Accuracy)?;
     let choice = stepper.choice().clone();
-    let course = course(file, choice.steps);
-    let mut run = make(&*stepper, stepper.start(), course, sample, watches(file), listeners)?;
+    let mut run = if let Some((file, step, steps)) = refined(file, &choice) {
+        by_steps(&file, step)?.run(&file, steps, listeners)?
+    } else {
+        make(&*stepper, stepper.start(), course(file, choice.steps), sample, watches(file), listeners)?
+    };
     run.choice = Some(choice);
     Ok(run)
 }

@@ -179,7 +179,16 @@ pub(crate) fn make<I: Integrator<Group: LieGroup<Scalar: Into<f64>>>>(
         Some(_) => (samples.last().map_or(0.0, |last| last.time) / end.steps.max(1) as f64, " on the average"),
         None => (stepper.step_size().into(), ""),
     };
-    Ok(Run { samples, happenings: happenings.into_inner(), step, average, steps: end.steps, ending, choice: None, notes: Vec::new() })
+    Ok(Run {
+        samples,
+        happenings: happenings.into_inner(),
+        step,
+        average,
+        steps: end.steps,
+        ending,
+        choice: None,
+        notes: Vec::new(),
+    })
 }
 
 fn keep(samples: &mut Vec<Sample>, mut now: Sample) {

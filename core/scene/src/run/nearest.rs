@@ -2,92 +2,68 @@
 
 use liestep::SO3;
 use liestep::groups::R3;
-use liestep::methods::Joint;
-use nalgebra::{Vector3, Vector6};
+use nalgebra::{DMatrix, MatrixXx3, SymmetricEigen, Vector3, Vector6};
 
 use crate::file::system::{System, ends_and_axes};
 
 /// A body's attitude and place, and its velocities, turning in its own axes.
-type Moving = ((SO3, R3), Vector6<f64>);
+pub(crate) type Moving = ((SO3, R3), Vector6<f64>);
 
 impl System {
-    /// Each body where the joints of trees put it, with the velocity that keeps them closed: from space on, and of trees
-    /// that aren't tied to space with their centre of mass and its velocity as they were. Of a pin the angular velocity
-    /// across its axis is that of the body before. Attitudes stay, and loops may be open.
+    /// Bodies that are shifted as little as can be, as their masses measure it, to where the points of joints meet, with the
+    /// velocities next to theirs that keep them together. How bodies turn stays; where joints form loops points may stay
+    /// apart, by as little as can be.
+    ///
+    /// For bodies whose turns stay both are linear: with `b` the gaps `R_a ρ_a − R_b ρ_b − (x_b − x_a)` and `A` the
+    /// differences `x_b − x_a`, the shifts are `M⁻¹ Aᵀ (A M⁻¹ Aᵀ)⁺ b`.
     pub(crate) fn shifted(&self, mut bodies: Vec<Moving>) -> Vec<Moving> {
-        let given = bodies.clone();
-        // The body from which a tree goes on; `None` until it is reached.
-        let mut root: Vec<Option<Option<usize>>> = vec![None; bodies.len()];
-        for &body in &self.arrangement.free {
-            if let Some(root) = root.get_mut(body) {
-                *root = Some(Some(body));
+        let mut differences = DMatrix::zeros(self.joints.len(), bodies.len());
+        let mut gaps = MatrixXx3::zeros(self.joints.len());
+        let mut partings = MatrixXx3::zeros(self.joints.len());
+        for (row, joint) in self.joints.iter().enumerate() {
+            let (ends, _) = ends_and_axes(&joint.of);
+            for (side, sign) in [(0, -1.0), (1, 1.0)] {
+                let (place, velocity) = point(joint.bodies[side].map(|body| bodies[body]), &ends[side]);
+                for column in 0..3 {
+                    gaps[(row, column)] -= sign * place[column];
+                    partings[(row, column)] -= sign * velocity[column];
+                }
+                if let Some(body) = joint.bodies[side] {
+                    differences[(row, body)] = sign;
+                }
             }
         }
-        while let Some((joint, from, to)) = self.next_joint(&root) {
-            root[to] = from.map_or(Some(None), |from| root[from]);
-            let before = from.map(|from| bodies[from]);
-            bodies[to] = joined(&self.joints[joint].of, before, bodies[to], self.joints[joint].bodies[1] == Some(to));
-        }
-        for &first in &self.arrangement.free {
-            let tree: Vec<_> = (0..bodies.len()).filter(|&body| root[body] == Some(Some(first))).collect();
-            let mass: f64 = tree.iter().map(|&body| self.bodies[body].m).sum();
-            let mean = |of: &dyn Fn(&Moving) -> Vector3<f64>| -> Vector3<f64> {
-                let moved = |&body: &usize| (of(&given[body]) - of(&bodies[body])) * (self.bodies[body].m / mass);
-                tree.iter().map(moved).sum()
-            };
-            let (shift, drift) = (mean(&|body| body.0.1.translation().into_owned()), mean(&|body| linear(body)));
-            for &body in &tree {
-                let ((attitude, place), velocity) = bodies[body];
-                let turning = velocity.fixed_rows::<3>(0).into_owned();
-                let place = R3::from(place.translation() + shift);
-                bodies[body] = ((attitude, place), both(&turning, &(linear(&bodies[body]) + drift)));
+        let by_masses = DMatrix::from_fn(bodies.len(), self.joints.len(), |body, joint| {
+            differences[(joint, body)] / self.bodies[body].m
+        });
+        let inverse = pseudo_inverse(&differences * &by_masses);
+        let [shifts, drifts] = [gaps, partings].map(|apart| &by_masses * &inverse * apart);
+        for (body, ((_, place), velocity)) in bodies.iter_mut().enumerate() {
+            *place = R3::from(place.translation() + Vector3::from_fn(|column, _| shifts[(body, column)]));
+            for column in 0..3 {
+                velocity[3 + column] += drifts[(body, column)];
             }
         }
         bodies
     }
-
-    /// A joint of a tree from what is reached, `None` being space, to a body that isn't.
-    fn next_joint(&self, root: &[Option<Option<usize>>]) -> Option<(usize, Option<usize>, usize)> {
-        let is_reached = |body: Option<usize>| body.is_none_or(|body| root[body].is_some());
-        self.arrangement.tree.iter().find_map(|&joint| {
-            let [above, below] = self.joints[joint].bodies;
-            match (is_reached(above), is_reached(below)) {
-                (true, false) => Some((joint, above, below?)),
-                (false, true) => Some((joint, below, above?)),
-                _ => None,
-            }
-        })
-    }
 }
 
-fn linear((_, velocity): &Moving) -> Vector3<f64> {
-    velocity.fixed_rows::<3>(3).into_owned()
-}
-
-fn both(turning: &Vector3<f64>, moving: &Vector3<f64>) -> Vector6<f64> {
-    Vector6::new(turning.x, turning.y, turning.z, moving.x, moving.y, moving.z)
-}
-
-/// A body that is joined to the one before, or to space; `is_below` is whether it is the second of the joint.
-fn joined(joint: &Joint, before: Option<Moving>, body: Moving, is_below: bool) -> Moving {
-    let (ends, axes) = ends_and_axes(joint);
-    let order = |pair: [Vector3<f64>; 2]| if is_below { pair } else { [pair[1], pair[0]] };
-    let [point, own] = order(ends);
-    // Where the point of the body before is, how it moves, and how that body turns, in space.
-    let (place, moves, turns) = before.map_or((point, Vector3::zeros(), Vector3::zeros()), |before| {
-        let ((attitude, place), velocity) = before;
+/// Where a point of a body, or of space, is, and how fast it moves there.
+fn point(body: Option<Moving>, point: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
+    body.map_or((*point, Vector3::zeros()), |((attitude, place), velocity)| {
         let R = attitude.as_matrix();
-        let turns = R * velocity.fixed_rows::<3>(0);
-        (place.translation() + R * point, linear(&before) + turns.cross(&(R * point)), turns)
-    });
-    let ((attitude, _), velocity) = body;
-    let R = attitude.as_matrix();
-    let mut turning = velocity.fixed_rows::<3>(0).into_owned();
-    if let Some(axis) = axes.map(|axes| order(axes)[1]) {
-        let across = R.tr_mul(&turns) - turning;
-        turning += across - axis * across.dot(&axis);
+        let turns = velocity.fixed_rows::<3>(0).cross(point);
+        (place.translation() + R * point, velocity.fixed_rows::<3>(3) + R * turns)
+    })
+}
+
+/// Of a symmetric matrix without negative eigenvalues.
+fn pseudo_inverse(matrix: DMatrix<f64>) -> DMatrix<f64> {
+    if matrix.is_empty() {
+        return matrix;
     }
-    let arm = R * own;
-    let moving = moves - (R * turning).cross(&arm);
-    ((attitude, R3::from(place - arm)), both(&turning, &moving))
+    let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(matrix);
+    let limit = 1e-12 * eigenvalues.max();
+    let inverse = eigenvalues.map(|value| if value > limit { value.recip() } else { 0.0 });
+    &eigenvectors * DMatrix::from_diagonal(&inverse) * eigenvectors.transpose()
 }

@@ -138,6 +138,12 @@ impl SceneFile {
                 }
                 places.pace
             }
+            Stop::Accuracy(_) if self.run.is_left_open => {
+                message.push_str(
+                    "; a run without a `step` is one for an accuracy of 1e-6: give a `step`, or an `accuracy`",
+                );
+                places.pace
+            }
             Stop::Setup(SetupError::InvalidStep { .. }) | Stop::Accuracy(_) | Stop::Step { .. } | Stop::Other(_) => {
                 places.pace
             }
@@ -205,7 +211,16 @@ impl SceneFile {
             let [before, after] = [first, last].map(|sample| sample.angular_momentum.norm());
             format!(", momentum {before:.6} → {after:.6} kg m²/s{events}")
         });
-        let choice = run.choice.as_ref().map(ToString::to_string).unwrap_or_default();
+        let choice = run.choice.as_ref().map(|choice| match self.run.is_left_open {
+            true => format!(
+                "  the end is off by at most about {:.0e}, by a method for {:e}: {}\n",
+                choice.error,
+                choice.accuracy.tolerance,
+                choice.chosen().name
+            ),
+            false => choice.to_string(),
+        });
+        let choice = choice.unwrap_or_default();
         format!("{ends}{choice}")
     }
 }

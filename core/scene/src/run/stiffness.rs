@@ -22,7 +22,8 @@ const UNSTABLE: f64 = 2.0;
 /// What is said of a spring, by its number in the file.
 pub(crate) type OfSpring = (usize, String);
 
-const NO_DIRECTION: &str = "the ends of this spring are at one place, where its force has no direction: move one of them";
+const NO_DIRECTION: &str =
+    "the ends of this spring are at one place, where its force has no direction: move one of them";
 
 /// Whether the ends of a spring of this length are too near to each other for its force to have a direction.
 fn has_no_direction(apart: f64, length: f64) -> bool {

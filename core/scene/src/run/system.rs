@@ -131,18 +131,16 @@ impl System {
         let line = |(given, now): (&SystemBody, &BodySample)| {
             let turned = SO3::from(given.start.attitude).as_matrix() - now.attitude.as_matrix();
             let turned = 2.0 * (turned.norm() / 8.0_f64.sqrt()).min(1.0).asin();
-            let [moved, faster, quicker] = [
-                given.position - now.position,
-                given.moving - now.moving,
-                given.start.velocity - now.velocity,
-            ]
-            .map(|change| change.norm());
+            let [moved, faster, quicker] =
+                [given.position - now.position, given.moving - now.moving, given.start.velocity - now.velocity]
+                    .map(|change| change.norm());
             // But for roundings, and for digits that aren't typed.
             let is_changed = moved.max(faster).max(quicker).max(turned) > 1e-9;
-            let [moved, turned, faster, quicker] = [moved, turned, faster, quicker].map(|change| {
-                if change > 1e-9 { round(change) } else { "0".to_owned() }
-            });
-            let changes = format!("moved by {moved} m, turned by {turned} rad, its velocity by {faster} m/s, its angular velocity by {quicker} rad/s");
+            let [moved, turned, faster, quicker] = [moved, turned, faster, quicker]
+                .map(|change| if change > 1e-9 { round(change) } else { "0".to_owned() });
+            let changes = format!(
+                "moved by {moved} m, turned by {turned} rad, its velocity by {faster} m/s, its angular velocity by {quicker} rad/s"
+            );
             is_changed.then(|| format!("  `{}` doesn't start as the file says: {changes}\n", given.name))
         };
         self.bodies.iter().zip(&start.bodies).filter_map(line).collect()
