@@ -340,3 +340,26 @@ fn what_files_of_several_bodies_are_not_for() {
     assert!(output.status.success() && folder.join("top.csv").exists());
     assert!(fs::read_to_string(folder.join("held.svg")).unwrap().contains("Ways of the centres of mass"));
 }
+
+/// The ways of bodies are seen in the plane of their motion, and what stays where it is has room around it.
+#[test]
+fn the_plane_of_the_motion() {
+    let readme = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../README.md")).unwrap();
+    let rod = readme.split("```toml\n").find(|block| block.contains("[[body]]")).unwrap().split("```").next().unwrap();
+    let picture = |text: &str| {
+        let system = system(text);
+        system.picture(&system.run().unwrap()).unwrap()
+    };
+    let shows = |picture: &str, across: &str, up: &str| {
+        let title = |name: &str| picture.contains(&format!("\n{name}\n"));
+        assert!(title(across) && title(up) && !picture.contains("e−154"), "{picture}");
+    };
+    shows(&picture(rod), "y, m", "z, m");
+    let plane = |plane: &str| rod.replace("[run]", &format!("[picture]\nplane = \"{plane}\"\n[run]"));
+    shows(&picture(&plane("xz")), "x, m", "z, m");
+    let across = rod.replace("moving = [0, 0.5, 0]", "moving = [-0.5, 0, 0]").replace("[1, 0, 0]", "[0, 1, 0]");
+    shows(&picture(&across), "x, m", "z, m");
+    let still = "start.velocity = [0, 0, 0]\nmoving = [1, 2, 0]";
+    let free = format!("title = \"free\"\n{}[run]\nstep = 0.1\nduration = 1\n", free("a", [0.0; 3], still));
+    shows(&picture(&free), "x, m", "y, m");
+}

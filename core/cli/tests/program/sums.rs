@@ -117,7 +117,7 @@ fn sums(count: usize) {
 
 #[test]
 fn random_sums() {
-    sums(40);
+    sums(100);
 }
 
 #[test]
