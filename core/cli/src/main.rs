@@ -111,7 +111,7 @@ fn run_system(given: &ArgMatches, path: &Path, system: &System, output: &mut Out
     print(&(system.summary(&run) + &system.end_error(&run)))
 }
 
-/// What of a file could be better.
+/// Prints remarks about the file.
 fn notes(run: &Run) {
     run.notes().iter().for_each(|note| eprintln!("note: {}", visible(&note.to_string())));
 }

@@ -23,7 +23,7 @@ fn last(run: &Run) -> &Sample {
 }
 
 fn notes(run: &Run) -> String {
-    run.notes().iter().map(|note| format!("{note}\n")).collect()
+    run.notes().iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
 }
 
 /// Masses of 0.1 kg on a line.
@@ -284,7 +284,7 @@ const ROD: [f64; 4] =
     [-0.935_539_411_984_150_5, -0.233_301_800_853_360_36, -0.041_715_420_294_214_68, -0.261_908_575_752_314_6];
 
 /// The first listing of README, without a step: after 20 s, as Euler's equations with a quaternion have it in 30 digits by
-/// extrapolation, where 100 and 200 steps agree in 20; SciPy's DOP853 at 1e-13 has 11 of them.
+/// extrapolation, where 100 and 200 steps agree in 20; `DOP853` at 1e-13 has 11 of them.
 #[test]
 fn the_top_of_readme() {
     let readme = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../README.md")).unwrap();
@@ -294,7 +294,7 @@ fn the_top_of_readme() {
     let run = scene.run().unwrap();
     let attitude =
         [0.775_938_954_280_921_4, 0.097_707_248_954_974_64, 0.266_854_249_438_441_64, 0.563_170_349_261_861_2];
-    let velocity = Vector3::new(-0.212_202_399_107_379_03, 0.367_545_336_741_989_05, std::f64::consts::TAU);
+    let velocity = Vector3::new(-0.212_202_399_107_379_03, 0.367_545_336_741_989, std::f64::consts::TAU);
     let off = [off(&run, attitude), (last(&run).bodies[0].velocity - velocity).norm()];
     assert!(off.iter().all(|off| *off < 1e-5), "{off:?}");
     // As many as a picture needs, though few are needed for the end.

@@ -91,10 +91,8 @@ fn lengths_of_directions() {
         assert!(pairs.into_iter().all(|(a, b)| (a - b).abs() <= 1e-12 * (1.0 + b.abs())), "{scale}");
     }
     let up = |up: &str| TOP.replace("up = [0, 0, 1]", &format!("up = {up}"));
-    assert_eq!(
-        apart(&self::rows(&folder, &up("[0.6, 0, 0.8005]")), &self::rows(&folder, &up("[0.6, 0, 0.8]"))) < 1e-2,
-        true
-    );
+    let [typed, rounded] = ["[0.6, 0, 0.8005]", "[0.6, 0, 0.8]"].map(|given| self::rows(&folder, &up(given)));
+    assert!(apart(&typed, &rounded) < 1e-2);
     for (given, length, better) in [
         ("[0, 0, 2]", "2", "[0, 0, 1]"),
         ("[3, 0, 4]", "5", "[0.6, 0, 0.8]"),

@@ -15,7 +15,7 @@ use crate::file::quantity::{Triple, short};
 /// A body by one of its inertias, and how its kinetic energy is discretised.
 #[derive(Clone, Copy)]
 pub(crate) struct Body {
-    /// As it is written, unless the file has the nonstandard one.
+    /// The inertia as it is written, unless the file has the nonstandard one.
     pub(crate) J: Inertia,
     pub(crate) mass: Distribution,
     pub(crate) kinetic: Kinetic,

@@ -20,7 +20,7 @@ pub(crate) enum Method {
 }
 
 impl Method {
-    /// That of the offer of this name, for an accuracy.
+    /// The method of an offer for an accuracy, by the offer's name.
     pub(crate) fn of_offer(name: &str) -> Option<Self> {
         fn named<S: Scheme>(name: &str) -> Option<Named<S>> {
             S::ALL.iter().find(|scheme| scheme.called() == name).copied().map(Named)

@@ -59,7 +59,7 @@ impl Default for SpherePicture {
 #[derive(Clone, Deserialize, Default)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct PlanePicture {
-    /// That of the motion, if it isn't given.
+    /// The plane of the motion, if it isn't given.
     pub(crate) plane: Option<Plane>,
 }
 

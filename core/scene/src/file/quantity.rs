@@ -41,7 +41,7 @@ macro_rules! quantities {
 }
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
-/// A whole turn as it is typed, rad.
+/// The largest angle without a unit: a whole turn as it is typed, rad.
 const TURN: f64 = 6.3;
 
 quantities! {
@@ -148,7 +148,7 @@ fn finite<E: Error>(value: f64) -> Result<f64, E> {
     if value.is_finite() { Ok(value) } else { Err(E::custom("must be finite")) }
 }
 
-/// How far the length of a direction may be from one: what three digits of its parts leave.
+/// Largest difference of a direction's length from one: parts with three digits leave that.
 const OFF_UNIT: f64 = 1e-3;
 
 struct NumberOrText<Q>(PhantomData<Q>);
@@ -197,7 +197,7 @@ impl<Q: Quantity> Visitor<'_> for NumberOrText<Q> {
     }
 }
 
-/// With three digits.
+/// A number with three digits.
 pub(crate) fn round(value: f64) -> String {
     short(format!("{value:.2e}").parse().unwrap_or(value))
 }

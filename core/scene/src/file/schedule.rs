@@ -52,7 +52,7 @@ struct ScheduleTable {
     method: Method,
 }
 
-/// Of a run that says nothing of steps: at the end an attitude is about 1e-6 rad off.
+/// Accuracy of a run that says nothing of steps: at the end an attitude is about 1e-6 rad off.
 const DEFAULT_ACCURACY: f64 = 1e-6;
 /// A few minutes of stepping.
 const MOST_STEPS: f64 = 1e8;

@@ -34,7 +34,7 @@ enum Key {
 #[derive(Clone, Copy)]
 enum Attitude {
     Euler(Vector3<f64>),
-    /// By a quaternion, or by other angles.
+    /// An attitude by a quaternion or by other angles.
     Other(UnitQuaternion<f64>),
 }
 

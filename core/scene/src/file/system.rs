@@ -72,7 +72,7 @@ pub(crate) struct SystemBody {
     pub(crate) name: String,
     pub(crate) m: f64,
     pub(crate) J: Inertia,
-    /// One of second order.
+    /// A kinetic term of second order.
     pub(crate) kinetic: Kinetic,
     pub(crate) position: Vector3<f64>,
     pub(crate) moving: Vector3<f64>,

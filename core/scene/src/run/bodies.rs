@@ -84,7 +84,7 @@ impl System {
         Stepper::jointed(parts, self.arrangement.joints(&self.joints), self.step)
     }
 
-    /// The bodies as the file has them, and their velocities.
+    /// Bodies and velocities of the file.
     fn given(&self) -> Vec<Moving> {
         let of = |body: &SystemBody| {
             let (turn, shift) = (body.start.velocity, body.moving);

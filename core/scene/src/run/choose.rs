@@ -285,7 +285,7 @@ fn potential(file: &SceneFile, J: &Inertia) -> Result<Rest, Stop> {
     rest(file, J)?.map_or_else(nothing, Ok).map_err(late_error)
 }
 
-/// As few would be drawn as a polygon.
+/// Fewest steps of a run that leaves their number open: fewer would be drawn as a polygon.
 const FEWEST: u64 = 1000;
 
 /// The scene with the method of a choice and a whole number of steps in each of its own, where it is left open how many

@@ -28,7 +28,7 @@ pub struct Run {
     pub(crate) ending: Option<usize>,
     /// Where an accuracy was asked for.
     pub(crate) choice: Option<Choice>,
-    /// With the places in the file that they are of.
+    /// Remarks about the file, with their places.
     pub(crate) notes: Vec<Mistake>,
 }
 
@@ -53,7 +53,7 @@ pub(crate) enum Stop {
     Setup(SetupError),
     Start(SetupError),
     Accuracy(AccuracyError),
-    /// What is wrong with a spring, by its number in the file.
+    /// A spring that is wrong, by its number in the file.
     Spring(usize, String),
     Step {
         time: f64,
@@ -90,7 +90,7 @@ pub(crate) fn told(cause: &StepError) -> String {
 /// A step of (3.13) that turns a body so far, rad, has its spins wrong by more than a hundredth.
 const FAST_TURN: f64 = 0.25;
 
-/// What is to be said of a body that turns about so far in a step of (3.13), rad: a spin turns by `asin(hΩ)`.
+/// A note about a body that turns about so far in a step of (3.13), rad: a spin turns by `asin(hΩ)`.
 pub(crate) fn fast_turn(turn: f64) -> Option<String> {
     (turn > FAST_TURN).then(|| {
         let share = 100.0 * (turn.min(1.0).asin() / turn.min(1.0) - 1.0);
@@ -265,7 +265,7 @@ impl Run {
         self.steps
     }
 
-    /// What of the file could be better, though it runs.
+    /// Remarks about what in the file could be better, though it runs.
     #[must_use]
     pub fn notes(&self) -> &[Mistake] {
         &self.notes

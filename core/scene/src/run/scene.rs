@@ -61,7 +61,7 @@ impl SceneFile {
         Ok(run)
     }
 
-    /// What is to be said of a body that turns too far in a step of (3.13).
+    /// A note about a body that turns too far in a step of (3.13).
     fn fast_turn(&self) -> Option<String> {
         let is_own_step = matches!(self.run.method, Method::Step) && !self.has_steps_of_its_own();
         let by_steps = self.body.is_some() && is_own_step && self.kinetic() == Kinetic::Rigid;
@@ -211,14 +211,13 @@ impl SceneFile {
             let [before, after] = [first, last].map(|sample| sample.angular_momentum.norm());
             format!(", momentum {before:.6} → {after:.6} kg m²/s{events}")
         });
-        let choice = run.choice.as_ref().map(|choice| match self.run.is_left_open {
-            true => format!(
-                "  the end is off by at most about {:.0e}, by a method for {:e}: {}\n",
-                choice.error,
-                choice.accuracy.tolerance,
-                choice.chosen().name
-            ),
-            false => choice.to_string(),
+        let choice = run.choice.as_ref().map(|choice| {
+            let (error, accuracy, method) = (choice.error, choice.accuracy.tolerance, &choice.chosen().name);
+            if self.run.is_left_open {
+                format!("  the end is off by at most about {error:.0e}, by a method for {accuracy:e}: {method}\n")
+            } else {
+                choice.to_string()
+            }
         });
         let choice = choice.unwrap_or_default();
         format!("{ends}{choice}")

@@ -1,4 +1,4 @@
-//! How far the end of a run is off, by a second run with other steps (Richardson).
+//! Error of a run's end, estimated by a second run with other steps (Richardson).
 
 use nalgebra::Vector3;
 
@@ -16,7 +16,7 @@ const ANOTHER: f64 = 1.0;
 /// A velocity that is wrong by this share of the largest is of another motion.
 const SHARE: f64 = 0.5;
 
-/// How two states differ, the most of all bodies: rad, rad/s, m and m/s.
+/// Differences of two states, the largest of all bodies: rad, rad/s, m and m/s.
 struct Apart([f64; 4]);
 
 impl Apart {
@@ -53,7 +53,7 @@ fn largest(run: &Run) -> [f64; 3] {
 /// The line about the end of a run by a method of this order. `again` makes a run of so many steps of this length, s.
 fn line(run: &Run, order: u32, again: impl Fn(u32, f64) -> Result<Run, Stop>) -> Option<String> {
     let steps = u32::try_from(run.steps()).ok().filter(|steps| *steps > 0)?;
-    // Half as many steps; or twice as many, where that isn't a number or can't be stepped.
+    // The second run has half as many steps; twice as many, where that isn't a whole number or can't be stepped.
     let longer = (steps % 2 == 0).then(|| again(steps / 2, 2.0 * run.step()).ok()).flatten();
     let (second, is_longer) = match longer {
         Some(second) => (second, true),
@@ -62,7 +62,7 @@ fn line(run: &Run, order: u32, again: impl Fn(u32, f64) -> Result<Run, Stop>) ->
     let share = f64::from(2_u32.saturating_pow(order));
     let factor = if is_longer { 1.0 / (share - 1.0) } else { share / (share - 1.0) };
     let [turning, moving, way] = largest(run);
-    // What moves less isn't looked at.
+    // A motion slower than this is rounding.
     let floor = 1e-6 / (f64::from(steps) * run.step());
     let others = |apart: &Apart| {
         let Apart([turn, rate, place, speed]) = apart;
@@ -125,11 +125,11 @@ impl SceneFile {
 }
 
 impl System {
-    /// As [`SceneFile::end_error`].
+    /// A line about the end of a run, as [`SceneFile::end_error`].
     #[must_use]
     pub fn end_error(&self, run: &Run) -> String {
         let again = |steps, step| {
-            let second = Self { steps, step, ..self.clone() };
+            let second = Self { step, steps, ..self.clone() };
             second.simulate(u64::from(steps), Listeners { progress: &mut |_| (), table: None })
         };
         line(run, 2, again).unwrap_or_default()

@@ -12,14 +12,14 @@ use crate::file::schedule::Pace;
 use crate::file::system::{System, ends_and_axes};
 use crate::run::make::Stop;
 
-/// How near the ends of a spring may be, in its lengths at rest: within it the direction is that of roundings.
+/// Least distance of a spring's ends, in its lengths at rest: below it the direction is that of roundings.
 const NEAREST_ENDS: f64 = 1e-9;
-/// From here on a vibration is said to be stepped badly: it is a twentieth too fast.
+/// Product `hω` beyond which a note is due: the vibration is a twentieth too fast.
 const COARSE: f64 = 1.0;
-/// Beyond it a vibration grows.
+/// Product `hω` beyond which a vibration grows.
 const UNSTABLE: f64 = 2.0;
 
-/// What is said of a spring, by its number in the file.
+/// A spring's number in the file, and a message about it.
 pub(crate) type OfSpring = (usize, String);
 
 const NO_DIRECTION: &str =
@@ -30,7 +30,7 @@ fn has_no_direction(apart: f64, length: f64) -> bool {
     apart <= NEAREST_ENDS * length.abs()
 }
 
-/// Why a step can't be made where the springs vibrate at this rate, rad/s.
+/// Message about a step that is unstable at this rate, rad/s.
 fn unstable(rate: f64, step: f64) -> String {
     let [rate, most, good] = [rate, UNSTABLE / rate, 0.2 / rate].map(round);
     format!(
@@ -40,7 +40,7 @@ fn unstable(rate: f64, step: f64) -> String {
     )
 }
 
-/// What is to be said of a vibration at this rate now, and at that at most.
+/// Note about a step that is long for a vibration at this rate now, and at that at most, rad/s.
 fn coarse(now: f64, most: f64, step: f64) -> Option<String> {
     let good = round(0.2 / now.max(most));
     if step * now > COARSE {
@@ -73,8 +73,8 @@ fn largest(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
 }
 
 impl System {
-    /// An error where a spring has no direction at these places, or vibrates too fast for the step; or what is to be said
-    /// of the step.
+    /// A note about a step that is long for the springs at these places, if there is one; an error where it is unstable, and
+    /// where a spring has no direction.
     pub(crate) fn check_springs(&self, places: &[(SO3, R3)]) -> Result<Option<OfSpring>, Stop> {
         for (number, spring) in self.springs.iter().enumerate() {
             if spring.of.length != 0.0 && has_no_direction(spring.along_of(places).norm(), spring.of.length) {
@@ -99,7 +99,7 @@ impl System {
             let along = spring.along_of(places);
             let direction = along / along.norm();
             let is_along = !in_any && direction.iter().all(|part| part.is_finite());
-            // Along it `k`, and across `k (1 − l/|y|)`.
+            // The stiffness is `k` along the spring, and `k (1 − l/|y|)` across it.
             let stiffness = if is_along {
                 let across = (1.0 - spring.of.length / along.norm()).max(0.0).sqrt();
                 let projector = direction * direction.transpose();
@@ -121,7 +121,7 @@ impl System {
         Some((spring, square.max(0.0).sqrt()))
     }
 
-    /// How a point of a body, or of space, moves with all bodies, in the units in which each has a mass of one.
+    /// Derivative of a point of a body, or of space, by all bodies' motions, in the units in which each has a mass of one.
     fn moved(&self, places: &[(SO3, R3)], body: Option<usize>, point: &Vector3<f64>) -> Matrix3xX<f64> {
         let mut moved = Matrix3xX::zeros(6 * self.bodies.len());
         if let Some(body) = body {
@@ -133,7 +133,7 @@ impl System {
         moved
     }
 
-    /// What joints leave, as columns; none where there are no joints.
+    /// Motions that the joints allow, as columns; none where there are no joints.
     fn free_motions(&self, places: &[(SO3, R3)]) -> Option<DMatrix<f64>> {
         let mut held: Vec<Matrix3xX<f64>> = Vec::new();
         for joint in &self.joints {
@@ -159,8 +159,8 @@ impl System {
 }
 
 impl SceneFile {
-    /// An error where the spring has no direction at the start, or vibrates too fast for the step of a scene that is
-    /// kicked; or what is to be said of the step.
+    /// A note about a step that is long for the spring, if there is one; an error where the spring has no direction at the
+    /// start, and where the step of a scene that is kicked is unstable.
     pub(crate) fn check_spring(&self) -> Result<Option<String>, Stop> {
         let (Some(spring), Some(body)) = (self.spring, self.body) else { return Ok(None) };
         let (k, length, arm) = (spring.k.value, spring.length.value, spring.at.value);
@@ -177,7 +177,7 @@ impl SceneFile {
         }
         let (root, turn) = (inverse_root(&body.J), -arm.cross_matrix());
         let direction = along / apart;
-        // The second derivatives by a turn of the body: along the spring, across it, and of the arm that shortens.
+        // Second derivatives by a turn of the body: along the spring, across it, and of the arm that shortens.
         let projector = direction * direction.transpose();
         let stiffness = projector + (Matrix3::identity() - projector) * (1.0 - length / apart);
         let tilt = direction * arm.transpose();
@@ -189,7 +189,7 @@ impl SceneFile {
             squares.map(|square| square.max(0.0).sqrt())
         };
         let [.., now] = rates(second);
-        // Where it pulls across the arm, about the heavier and the lighter of two axes.
+        // Rates of a spring across its arm, about the heavier and the lighter of two axes.
         let [_, heavy, light] = rates(turn.tr_mul(&turn) * k);
         let across = self.farthest_across(&body.J, 0.5 * k * (apart - length).powi(2));
         if step * now.max(heavy * across) >= UNSTABLE {

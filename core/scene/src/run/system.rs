@@ -118,13 +118,13 @@ impl System {
         Ok(run)
     }
 
-    /// What is to be said of bodies that turn too far in a step of (3.13).
+    /// Notes about bodies that turn too far in a step of (3.13).
     fn fast_turns(&self) -> impl Iterator<Item = ((usize, usize), String)> {
         let rigid = self.bodies.iter().zip(&self.places.bodies).filter(|(body, _)| body.kinetic == Kinetic::Rigid);
         rigid.filter_map(|(body, place)| Some((*place, fast_turn(self.step * body.start.velocity.norm())?)))
     }
 
-    /// How far the nearest start is from what the file says, a line for each body that is elsewhere.
+    /// Differences of the nearest start from the file, a line for each body that is elsewhere.
     #[must_use]
     pub fn changes(&self, run: &Run) -> String {
         let Some(start) = run.samples().first().filter(|_| self.nearest) else { return String::new() };
@@ -134,7 +134,7 @@ impl System {
             let [moved, faster, quicker] =
                 [given.position - now.position, given.moving - now.moving, given.start.velocity - now.velocity]
                     .map(|change| change.norm());
-            // But for roundings, and for digits that aren't typed.
+            // Smaller changes are roundings, and digits that aren't typed.
             let is_changed = moved.max(faster).max(quicker).max(turned) > 1e-9;
             let [moved, turned, faster, quicker] = [moved, turned, faster, quicker]
                 .map(|change| if change > 1e-9 { round(change) } else { "0".to_owned() });

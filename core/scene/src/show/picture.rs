@@ -78,7 +78,7 @@ impl System {
     }
 }
 
-/// Without the direction in which places are spread the least; of several without y or x.
+/// The plane across the direction in which places are spread the least; of several directions y comes first, then x.
 fn plane_of(samples: &[Sample]) -> Plane {
     let spread = |axis: usize| {
         let places = samples.iter().flat_map(|sample| &sample.bodies).map(|body| body.position[axis]);
@@ -86,7 +86,7 @@ fn plane_of(samples: &[Sample]) -> Plane {
         high - low
     };
     let [x, y, z] = [0, 1, 2].map(spread);
-    // But for rounding.
+    // Spreads that differ by rounding are equal.
     let least = x.min(y).min(z) + 1e-9 * x.max(y).max(z);
     match (y <= least, x <= least) {
         (true, _) => Plane::Xz,
