@@ -118,6 +118,17 @@ fn a_stiff_spring_of_one_body() {
     assert!(notes(&run).contains("where this spring pulls across its arm"), "{}", notes(&run));
 }
 
+/// Members of an ensemble whose spring is too stiff can't exist, instead of ending somewhere.
+#[test]
+fn stiff_springs_of_members() {
+    let folder = folder("stiff_springs_of_members");
+    let drawn = "[ensemble]\nmembers = 8\ndraw.spring.k = { from = 1e3, to = 1e6 }\n";
+    fs::write(folder.join("tied.toml"), TIED.to_owned() + drawn).unwrap();
+    let output = called(&folder, &["ensemble", "tied.toml", "--out", "."]);
+    let notes = String::from_utf8(output.stderr).unwrap();
+    assert!(notes.contains("can't exist; the first of them is member") && notes.contains("makes it grow"), "{notes}");
+}
+
 /// Ends at one place give the force no direction: it would be zero for ever, with 40 J in the spring.
 #[test]
 fn springs_without_a_direction() {
@@ -215,7 +226,9 @@ fn a_fast_wheel() {
         said.starts_with("several.toml:2:1: hΩ = 0.5 rad: by `kinetic = \"rigid\"`") && said.contains("5 % too far")
     );
     assert!(
-        rigid.end_error(&run).starts_with("  the end isn't determined: by steps of 0.002 s the motion is another from")
+        rigid
+            .end_error(&run)
+            .starts_with("  the end isn't determined: by steps of 0.002 s the attitude is another from")
     );
 }
 

@@ -64,12 +64,10 @@ fn line(run: &Run, order: u32, again: impl Fn(u32, f64) -> Result<Run, Stop>) ->
     let [turning, moving, way] = largest(run);
     // A motion slower than this is rounding.
     let floor = 1e-6 / (f64::from(steps) * run.step());
-    let others = |apart: &Apart| {
-        let Apart([turn, rate, place, speed]) = apart;
-        *turn > ANOTHER
-            || *rate > SHARE * turning.max(floor)
-            || *place > SHARE * way.max(1e-6)
-            || *speed > SHARE * moving.max(floor)
+    let limits = [ANOTHER, SHARE * turning.max(floor), SHARE * way.max(1e-6), SHARE * moving.max(floor)];
+    let another = |Apart(apart): &Apart| {
+        let names = ["attitude", "angular velocity", "position", "velocity"].into_iter();
+        names.zip(apart.iter().zip(&limits)).find_map(|(name, (apart, limit))| (apart > limit).then_some(name))
     };
     let mut seconds = second.samples().iter().peekable();
     let mut end = None;
@@ -78,9 +76,9 @@ fn line(run: &Run, order: u32, again: impl Fn(u32, f64) -> Result<Run, Stop>) ->
         while seconds.next_if(|other| early(&other)).is_some() {}
         let Some(other) = seconds.peek().filter(|other| other.time < sample.time + 0.25 * run.step()) else { continue };
         let apart = Apart::of(sample, other);
-        if others(&apart) {
+        if let Some(name) = another(&apart) {
             return Some(format!(
-                "  the end isn't determined: by steps of {} s the motion is another from t = {} s on\n",
+                "  the end isn't determined: by steps of {} s the {name} is another from t = {} s on\n",
                 round(second.step()),
                 round(sample.time)
             ));
