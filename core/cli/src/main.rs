@@ -61,11 +61,6 @@ const ARROW_STREAM: &str = "arrows";
 fn run(given: &ArgMatches) -> Result<(), Failure> {
     let paths = different_files(given)?;
     let scenes: Vec<Scene> = paths.iter().map(Scene::read).collect::<Result<_, _>>()?;
-    let several = paths.iter().zip(&scenes).find(|(_, scene)| matches!(scene, Scene::System(_)));
-    if let Some((path, _)) = several.filter(|_| given.get_flag("html")) {
-        let message = format!("a page plays one body, and {} has several; leave --html out", path.display());
-        return Err(Failure::Command(message));
-    }
     let mut output = folder(given)?;
     for (number, (path, scene)) in (1..).zip(paths.iter().zip(&scenes)) {
         if paths.len() > 1 {
@@ -108,6 +103,10 @@ fn run_system(given: &ArgMatches, path: &Path, system: &System, output: &mut Out
     output.write(&name(path, "svg"), &picture)?;
     tables_have_grown(given, path, output)?;
     notes(&run);
+    if given.get_flag("html") {
+        let path = visible(&path.display().to_string());
+        eprintln!("note: a page plays one body, and {path} has several: there is none of it");
+    }
     print(&(system.summary(&run) + &system.end_error(&run)))
 }
 

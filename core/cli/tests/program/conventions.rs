@@ -6,7 +6,7 @@ use liestep::SO3;
 use liestep::effects::{CayleyBody, RigidBody};
 use liestep::mechanics::Inertia;
 use liestep::prelude::*;
-use liestep_scene::{Form, Sample, parse};
+use liestep_scene::{Form, Sample, Scene, parse};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 /// A body with a line for its attitude.
@@ -164,4 +164,33 @@ fn names_change_no_bit() {
         (end, text[text.find("static void constants").unwrap()..].to_owned())
     });
     assert!(all.iter().all(|one| *one == all[0]));
+}
+
+/// Words of other programs have the name of this one behind them.
+#[test]
+fn words_of_other_programs() {
+    for (line, advice) in [
+        ("rpy = [0, 0, 0]", "; roll, pitch and yaw are `yaw_pitch_roll`, yaw first"),
+        ("omega = [0, 0, 0]", "; the angular velocity is `velocity`, in the body"),
+    ] {
+        assert!(refused(line).ends_with(advice), "{}", refused(line));
+    }
+    for (table, advice) in
+        [("wheel", "; a wheel in the body is a `rotor`"), ("damping", "; damping against turning is `drag`")]
+    {
+        let own = text("euler = [0, 0, 0]") + &format!("[{table}]\nc = 1\n");
+        let message = parse("a.toml", &own).err().unwrap().to_string();
+        assert!(message.ends_with(advice), "{message}");
+    }
+    let joint = |kind: &str, body: &str| {
+        let text = format!(
+            "title = \"a\"\n[[body]]\nname = \"a\"\nm = 2\nmoments = [1, 2, 2.5]\nposition = [0, 0, 0]\nstart.euler = [0, 0, 0]\n\
+             start.velocity = [1, 2, 1.5]\n[[joint]]\nkind = \"{kind}\"\nbodies = [\"{body}\", \"a\"]\nat = [[0, 0, 0], [0, 0, 0]]\n\
+             [run]\nstep = 0.02\nduration = 2\n"
+        );
+        Scene::parse("a.toml", &text).err().unwrap().to_string()
+    };
+    assert!(joint("hinge", "space").ends_with("; a hinge is a `pin`"));
+    assert!(joint("weld", "space").contains("are one body: add their masses"));
+    assert!(joint("ball", "world").ends_with("; the world is `space`"));
 }

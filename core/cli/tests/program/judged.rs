@@ -118,6 +118,18 @@ fn a_stiff_spring_of_one_body() {
     assert!(notes(&run).contains("where this spring pulls across its arm"), "{}", notes(&run));
 }
 
+/// Numbers that overflow in an estimate end it, and no loop goes on for ever.
+#[test]
+fn springs_out_of_range() {
+    for (k, arm) in [(1e308, 1e150), (1e-308, 1e-150), (1e308, 1.0), (1e200, 1e200)] {
+        let spring = spring(["space", "b0"], [[0.0, 0.0, 1.0], [arm, 0.0, 0.0]], k, 1.0);
+        let system = several(&format!("{}{spring}[run]\nstep = 0.01\nduration = 0.02\n", masses(&[0.0])));
+        let _ = system.run();
+        let _ =
+            one(&TIED.replace("k = 1e6", &format!("k = {k:?}")).replace("at = [0,", &format!("at = [{arm:?},"))).run();
+    }
+}
+
 /// Members of an ensemble whose spring is too stiff can't exist, instead of ending somewhere.
 #[test]
 fn stiff_springs_of_members() {
@@ -353,6 +365,16 @@ fn runs_without_a_step() {
     refuses(&folder, &["run", "long.toml"], 3, "a run without a `step` is one for an accuracy of 1e-6: give a `step`");
     let output = called(&folder, &["check", "long.toml"]);
     assert!(output.status.success());
+}
+
+/// Energies of small bodies have digits, and times of steps no rounding.
+#[test]
+fn digits_of_a_report() {
+    let text = "title = \"grain\"\n[body]\nmoments = [1e-12, 1e-12, 1e-12]\n[start]\neuler = [0, 0, 0]\n\
+                velocity = [0, 0, 2]\n[run]\nstep = 0.1\nduration = 1\n";
+    let scene = one(text);
+    let report = scene.summary(&scene.run().unwrap());
+    assert!(report.contains("energy 2e-12 J → 2e-12 J, momentum 2e-12 → 2e-12 kg m²/s"), "{report}");
 }
 
 /// No run is of no time, and none goes back.

@@ -70,7 +70,7 @@ impl fmt::Display for Stop {
             Self::Setup(cause) | Self::Start(cause) => cause.fmt(f),
             Self::Accuracy(cause) => cause.fmt(f),
             Self::Spring(_, cause) | Self::Table(cause) | Self::Other(cause) => f.write_str(cause),
-            Self::Step { time, cause } => write!(f, "stopped at t = {time} s: {}", told(cause)),
+            Self::Step { time, cause } => write!(f, "stopped at t = {} s: {}", short(*time), told(cause)),
         }
     }
 }
@@ -281,7 +281,7 @@ impl Run {
     pub(crate) fn summary(&self, title: &str, sum: &str, rest: impl FnOnce(&Sample, &Sample) -> String) -> String {
         let (Some(first), Some(last)) = (self.samples.first(), self.samples.last()) else { return String::new() };
         let (Self { steps, average, .. }, step, rest) = (self, short(self.step), rest(first, last));
-        let [before, after] = [first.energy, last.energy];
-        format!("{title}\n  {sum}, {steps} steps of {step} s{average}\n  energy {before:.6} J → {after:.6} J{rest}\n")
+        let [before, after] = [first.energy, last.energy].map(short);
+        format!("{title}\n  {sum}, {steps} steps of {step} s{average}\n  energy {before} J → {after} J{rest}\n")
     }
 }

@@ -5,6 +5,7 @@ use liestep::groups::R3;
 use nalgebra::{DMatrix, MatrixXx3, SymmetricEigen, Vector3, Vector6};
 
 use crate::file::system::{System, ends_and_axes};
+use crate::run::stiffness::eigen;
 
 /// A body's attitude and place, and its velocities, turning in its own axes.
 pub(crate) type Moving = ((SO3, R3), Vector6<f64>);
@@ -57,12 +58,12 @@ fn point(body: Option<Moving>, point: &Vector3<f64>) -> (Vector3<f64>, Vector3<f
     })
 }
 
-/// Of a symmetric matrix without negative eigenvalues.
+/// Pseudo-inverse of a symmetric matrix without negative eigenvalues; zero of one that isn't finite.
 fn pseudo_inverse(matrix: DMatrix<f64>) -> DMatrix<f64> {
-    if matrix.is_empty() {
-        return matrix;
-    }
-    let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(matrix);
+    let (rows, columns) = matrix.shape();
+    let Some(SymmetricEigen { eigenvectors, eigenvalues }) = eigen(matrix) else {
+        return DMatrix::zeros(rows, columns);
+    };
     let limit = 1e-12 * eigenvalues.max();
     let inverse = eigenvalues.map(|value| if value > limit { value.recip() } else { 0.0 });
     &eigenvectors * DMatrix::from_diagonal(&inverse) * eigenvectors.transpose()

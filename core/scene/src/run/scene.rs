@@ -127,8 +127,8 @@ impl SceneFile {
         let place = match stop {
             Stop::Table(message) => return Mistake::of_table(path, message),
             Stop::Step { cause: StepError::BeyondSolvable { .. }, .. } => {
-                if self.body.is_some() {
-                    message.push_str(", or `kinetic = \"cayley\"` of the body, which has no such limit");
+                if self.body.is_some() && self.kinetic() == Kinetic::Rigid {
+                    message.push_str(", or `kinetic = \"geodesic\"` of the body, which may turn further");
                 }
                 let fastest = short(self.start.velocity.amax());
                 // As a person writes degrees.
@@ -208,8 +208,8 @@ impl SceneFile {
         };
         let events: String = self.event.iter().enumerate().map(line).collect();
         let ends = run.summary(&self.title, &self.sum(), |first, last| {
-            let [before, after] = [first, last].map(|sample| sample.angular_momentum.norm());
-            format!(", momentum {before:.6} → {after:.6} kg m²/s{events}")
+            let [before, after] = [first, last].map(|sample| short(sample.angular_momentum.norm()));
+            format!(", momentum {before} → {after} kg m²/s{events}")
         });
         let choice = run.choice.as_ref().map(|choice| {
             let (error, accuracy, method) = (choice.error, choice.accuracy.tolerance, &choice.chosen().name);

@@ -3,7 +3,7 @@
 use liestep::SO3;
 use liestep::groups::R3;
 use liestep::mechanics::Inertia;
-use nalgebra::{DMatrix, Matrix3, Matrix3xX, SymmetricEigen, Vector3};
+use nalgebra::{DMatrix, Dyn, Matrix3, Matrix3xX, SymmetricEigen, Vector3};
 
 use crate::file::method::Method;
 use crate::file::quantity::{round, short};
@@ -61,6 +61,14 @@ fn coarse(now: f64, most: f64, step: f64) -> Option<String> {
     })
 }
 
+/// Eigenvalues of a symmetric matrix, and its eigenvectors; none where it isn't finite.
+pub(crate) fn eigen(matrix: DMatrix<f64>) -> Option<SymmetricEigen<f64, Dyn>> {
+    /// Sweeps that no finite matrix takes.
+    const MOST: usize = 10_000;
+    let is_finite = !matrix.is_empty() && matrix.iter().all(|entry| entry.is_finite());
+    is_finite.then(|| SymmetricEigen::try_new(matrix, f64::EPSILON, MOST)).flatten()
+}
+
 /// `J^{-1/2}`.
 fn inverse_root(J: &Inertia) -> Matrix3<f64> {
     let SymmetricEigen { eigenvectors, eigenvalues } = J.as_matrix().symmetric_eigen();
@@ -111,10 +119,7 @@ impl System {
             all.rows_mut(3 * number, 3).copy_from(&(stiffness * (other - one) * spring.of.k.sqrt()));
         }
         let all = free.map_or_else(|| all.clone(), |free| &all * free);
-        if all.is_empty() {
-            return None;
-        }
-        let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(all.tr_mul(&all));
+        let SymmetricEigen { eigenvectors, eigenvalues } = eigen(all.tr_mul(&all))?;
         let (mode, square) = largest(eigenvalues.iter().copied())?;
         let parts = all * eigenvectors.column(mode);
         let (spring, _) = largest((0..self.springs.len()).map(|number| parts.rows(3 * number, 3).norm_squared()))?;
@@ -150,7 +155,7 @@ impl System {
             }));
         }
         let squares = held.iter().map(|held| held.tr_mul(held)).reduce(|sum, one| sum + one)?;
-        let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(squares);
+        let SymmetricEigen { eigenvectors, eigenvalues } = eigen(squares)?;
         let limit = 1e-9 * eigenvalues.max();
         let free = eigenvectors.column_iter().zip(eigenvalues.iter()).filter(|(_, square)| **square <= limit);
         let free: Vec<_> = free.map(|(column, _)| column.into_owned()).collect();
@@ -184,13 +189,16 @@ impl SceneFile {
         let second = turn.tr_mul(&(stiffness * turn)) * k
             + ((tilt + tilt.transpose()) * 0.5 - Matrix3::identity() * tilt.trace()) * (k * (apart - length));
         let rates = |second: Matrix3<f64>| {
-            let mut squares: [f64; 3] = (root * second * root).symmetric_eigenvalues().into();
+            let matrix = root * second * root;
+            let mut squares: [f64; 3] =
+                matrix.iter().all(|entry| entry.is_finite()).then(|| matrix.symmetric_eigenvalues().into())?;
             squares.sort_by(f64::total_cmp);
-            squares.map(|square| square.max(0.0).sqrt())
+            Some(squares.map(|square| square.max(0.0).sqrt()))
         };
-        let [.., now] = rates(second);
-        // Rates of a spring across its arm, about the heavier and the lighter of two axes.
-        let [_, heavy, light] = rates(turn.tr_mul(&turn) * k);
+        // Rates of a spring across its arm are about the heavier and the lighter of two axes.
+        let (Some([.., now]), Some([_, heavy, light])) = (rates(second), rates(turn.tr_mul(&turn) * k)) else {
+            return Ok(None);
+        };
         let across = self.farthest_across(&body.J, 0.5 * k * (apart - length).powi(2));
         if step * now.max(heavy * across) >= UNSTABLE {
             return Err(Stop::Spring(0, unstable(now.max(heavy * across), step)));

@@ -8,7 +8,7 @@ use nalgebra::{Vector3, Vector6};
 use crate::file::arrangement::{BODIES, LOOPS};
 use crate::file::body::Kinetic;
 use crate::file::mistake::Mistake;
-use crate::file::quantity::round;
+use crate::file::quantity::{round, short};
 use crate::file::sample::{BodySample, Sample};
 use crate::file::system::{System, SystemBody};
 use crate::run::bodies::SystemStepper;
@@ -174,7 +174,7 @@ impl System {
             Stop::Setup(error) | Stop::Start(error) => self.obstacle(error),
             Stop::Step { time, cause } => {
                 let (place, why) = self.end_of_steps(&cause);
-                (place, format!("stopped at t = {time} s: {why}"))
+                (place, format!("stopped at t = {} s: {why}", short(time)))
             }
             Stop::Spring(spring, why) => (self.places.springs[spring], why),
             stop => (self.places.pace, stop.to_string()),
