@@ -323,7 +323,7 @@ fn the_top_of_readme() {
     let off = [off(&run, attitude), (last(&run).bodies[0].velocity - velocity).norm()];
     assert!(off.iter().all(|off| *off < 1e-5), "{off:?}");
     // As many as a picture needs, though few are needed for the end.
-    assert!(run.samples().len() > 1000 && (last(&run).time - 20.0).abs() < 1e-12);
+    assert!(run.samples().len() == 1001 && (last(&run).time - 20.0).abs() < 1e-12);
     // By steps of 10 ms it is 0.08 rad off, and the program says so.
     let stepped = one(&readme_with_a_step(&readme));
     let run = stepped.run().unwrap();

@@ -288,18 +288,17 @@ fn potential(file: &SceneFile, J: &Inertia) -> Result<Rest, Stop> {
 }
 
 /// Fewest steps of a run that leaves their number open: fewer would be drawn as a polygon.
-const FEWEST: u64 = 1000;
+const FEWEST: u32 = 1000;
 
-/// The scene with the method of a choice and a whole number of steps in each of its own, where it is left open how many
-/// there are and these are few.
-fn refined(file: &SceneFile, choice: &Choice) -> Option<(SceneFile, f64, u32)> {
-    let is_coarse = file.run.is_left_open && choice.steps < FEWEST;
+/// The scene by the method of a choice and the fewest steps, where the file leaves their number open and the choice has
+/// less.
+fn refined(file: &SceneFile, choice: &Choice) -> Option<(SceneFile, f64)> {
+    let is_coarse = file.run.is_left_open && choice.steps < u64::from(FEWEST);
     let method = Method::of_offer(&choice.chosen().name).filter(|_| is_coarse)?;
-    let steps = u32::try_from(choice.steps * FEWEST.div_ceil(choice.steps)).ok()?;
-    let step = file.run.duration / f64::from(steps);
+    let step = file.run.duration / f64::from(FEWEST);
     let mut refined = file.clone();
-    (refined.run.method, refined.run.pace) = (method, Pace::Step { step, steps });
-    Some((refined, step, steps))
+    (refined.run.method, refined.run.pace) = (method, Pace::Step { step, steps: FEWEST });
+    Some((refined, step))
 }
 
 /// Makes the steps that an accuracy takes.
@@ -310,8 +309,8 @@ fn ask(file: &SceneFile, tolerance: f64, listeners: Listeners<'_>) -> Result<Run
     let stepper = Stepper::for_accuracy(scene, accuracy, file.start.attitude, file.start.velocity);
     let stepper = stepper.map_err(Stop::Accuracy)?;
     let choice = stepper.choice().clone();
-    let mut run = if let Some((file, step, steps)) = refined(file, &choice) {
-        by_steps(&file, step)?.run(&file, steps, listeners)?
+    let mut run = if let Some((file, step)) = refined(file, &choice) {
+        by_steps(&file, step)?.run(&file, FEWEST, listeners)?
     } else {
         make(&*stepper, stepper.start(), course(file, choice.steps), sample, watches(file), listeners)?
     };

@@ -49,7 +49,7 @@ impl System {
     }
 }
 
-/// Where a point of a body, or of space, is, and how fast it moves there.
+/// Position and velocity of a point of a body, or of space.
 fn point(body: Option<Moving>, point: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
     body.map_or((*point, Vector3::zeros()), |((attitude, place), velocity)| {
         let R = attitude.as_matrix();
