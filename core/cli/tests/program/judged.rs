@@ -118,6 +118,40 @@ fn a_stiff_spring_of_one_body() {
     assert!(notes(&run).contains("where this spring pulls across its arm"), "{}", notes(&run));
 }
 
+/// Other potentials are kicks, too: `ω² = |c||w|/J` of gravity and of a dipole, `3 GM/r³ (J₃ − J₁)/J₂` of a gradient.
+#[test]
+fn stiff_potentials_of_one_body() {
+    let text = |effect: &str, step: &str| {
+        format!(
+            "title = \"a\"\n[body]\nmoments = [1, 1.1, 1.2]\nkinetic = \"cayley\"\n{effect}\n[start]\neuler = [0, 0.5, 0]\n\
+             velocity = [0, 0.1, 0]\n[run]\nstep = {step}\nduration = 2\n"
+        )
+    };
+    for (effect, rate, stable) in [
+        (
+            "[gravity]\nm = 1e5\ng = 9.81\nrho = [0, 0, -1]\nup = [0, 0, 1]",
+            "by gravity the body swings at up to 990 rad/s",
+            "5e-4",
+        ),
+        (
+            "[dipole]\nmoment = [0, 0, 1e6]\nfield = [0, 0, 1]",
+            "by the dipole's field the body swings at up to 1000 rad/s",
+            "5e-4",
+        ),
+        (
+            "[gravity_gradient]\nGM = 1e6\nr = 1\ndirection = [1, 0, 0]",
+            "by the gravity gradient the body swings at up to 739 rad/s",
+            "5e-4",
+        ),
+    ] {
+        let message = one(&text(effect, "0.01")).run().unwrap_err().to_string();
+        assert!(message.contains(rate) && message.contains("makes that grow: take a `step` below"), "{message}");
+        let run = one(&text(effect, stable)).run().unwrap();
+        let [first, end] = [&run.samples()[0], last(&run)].map(|sample| sample.energy);
+        assert!((end / first - 1.0).abs() < 0.1, "{effect}: {first} {end}");
+    }
+}
+
 /// Numbers that overflow in an estimate end it, and no loop goes on for ever.
 #[test]
 fn springs_out_of_range() {

@@ -102,7 +102,7 @@ where
     Whole<K, W>: Regular<Scalar = f64, Group = SO3>,
 {
     let Pace::Step { step, .. } = file.run.pace else { return Err(nothing()) };
-    file.check_spring()?;
+    file.check_kicks()?;
     let J = inertia(file)?;
     let numbers = numbers(file, &J, Some(&Moving::of(file, J)?), 0.0);
     let stepper = whole.clone().with_all(&numbers).map_err(late_error)?;
@@ -173,7 +173,7 @@ pub(crate) fn stepper(file: &SceneFile) -> Result<MemberStart, Stop> {
     let Pace::Step { step, .. } = file.run.pace else {
         return Err(Stop::Other("the step is chosen for an accuracy by trial runs".to_owned()));
     };
-    file.check_spring()?;
+    file.check_kicks()?;
     let stepper = by_steps(file, step)?.hiding_advected();
     let state = stepper.start(file.start.attitude, file.start.velocity).map_err(Stop::Start)?;
     Ok((stepper, state))

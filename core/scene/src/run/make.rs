@@ -103,6 +103,9 @@ pub(crate) fn fast_turn(turn: f64) -> Option<String> {
     })
 }
 
+/// A remark about a file, behind its line and column.
+pub(crate) type Note = ((usize, usize), String);
+
 /// Who learns of a run while it is made.
 pub(crate) struct Listeners<'a> {
     /// The share that is made, from 0 to 1, at most a hundred times.

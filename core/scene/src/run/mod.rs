@@ -10,4 +10,5 @@ mod scene;
 mod second;
 pub(crate) mod springs;
 mod stiffness;
+mod swings;
 mod system;

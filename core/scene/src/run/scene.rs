@@ -52,11 +52,10 @@ impl SceneFile {
         progress: &'a mut dyn FnMut(f64),
         table: Option<&'a mut dyn Sink>,
     ) -> Result<Run, Mistake> {
-        let of_spring = self.check_spring().map_err(|stop| self.mistake(stop))?;
+        let of_kicks = self.check_kicks().map_err(|stop| self.mistake(stop))?;
         let mut run = choose::run(self, Listeners { progress, table }).map_err(|stop| self.mistake(stop))?;
         let Origin { path, places } = &self.origin;
-        let notes = of_spring.map(|why| (places.spring, why)).into_iter();
-        let notes = notes.chain(self.fast_turn().map(|why| (places.body, why)));
+        let notes = of_kicks.into_iter().chain(self.fast_turn().map(|why| (places.body, why)));
         run.notes = notes.map(|(place, why)| Mistake::of_run(path, place, why)).collect();
         Ok(run)
     }

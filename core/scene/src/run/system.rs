@@ -12,7 +12,7 @@ use crate::file::quantity::{round, short};
 use crate::file::sample::{BodySample, Sample};
 use crate::file::system::{System, SystemBody};
 use crate::run::bodies::SystemStepper;
-use crate::run::make::{Course, Listeners, Run, Stop, fast_turn, make, told};
+use crate::run::make::{Course, Listeners, Note, Run, Stop, fast_turn, make, told};
 
 /// The systems that there are, the smallest first. With loops there is the largest only: each is code of its own.
 const SIZES: [Size; 4] = [Size::of::<2, 0>(), Size::of::<4, 0>(), Size::of::<BODIES, 0>(), Size::of::<BODIES, LOOPS>()];
@@ -119,7 +119,7 @@ impl System {
     }
 
     /// Notes about bodies that turn too far in a step of (3.13).
-    fn fast_turns(&self) -> impl Iterator<Item = ((usize, usize), String)> {
+    fn fast_turns(&self) -> impl Iterator<Item = Note> {
         let rigid = self.bodies.iter().zip(&self.places.bodies).filter(|(body, _)| body.kinetic == Kinetic::Rigid);
         rigid.filter_map(|(body, place)| Some((*place, fast_turn(self.step * body.start.velocity.norm())?)))
     }
