@@ -61,11 +61,6 @@ const ARROW_STREAM: &str = "arrows";
 fn run(given: &ArgMatches) -> Result<(), Failure> {
     let paths = different_files(given)?;
     let scenes: Vec<Scene> = paths.iter().map(Scene::read).collect::<Result<_, _>>()?;
-    let several = paths.iter().zip(&scenes).find(|(_, scene)| matches!(scene, Scene::System(_)));
-    if let Some((path, _)) = several.filter(|_| given.get_flag("html")) {
-        let message = format!("a page plays one body, and {} has several; leave --html out", path.display());
-        return Err(Failure::Command(message));
-    }
     let mut output = folder(given)?;
     for (number, (path, scene)) in (1..).zip(paths.iter().zip(&scenes)) {
         if paths.len() > 1 {
@@ -91,7 +86,8 @@ fn run_body(given: &ArgMatches, path: &Path, scene: &SceneFile, output: &mut Out
     if given.get_flag("html") {
         output.write(&name(path, "html"), &scene.page(&run))?;
     }
-    print(&scene.summary(&run))?;
+    notes(&run);
+    print(&(scene.summary(&run) + &scene.end_error(&run)))?;
     if let Some(sweep) = scene.sweep() {
         eprintln!("note: `liestep sweep` runs the {} scenes of the file's sweep", sweep.points.len());
     }
@@ -106,7 +102,17 @@ fn run_system(given: &ArgMatches, path: &Path, system: &System, output: &mut Out
     let picture = system.picture(&run).map_err(|cause| Failure::Output(cause.to_string()))?;
     output.write(&name(path, "svg"), &picture)?;
     tables_have_grown(given, path, output)?;
-    print(&system.summary(&run))
+    notes(&run);
+    if given.get_flag("html") {
+        let path = visible(&path.display().to_string());
+        eprintln!("note: a page plays one body, and {path} has several: there is none of it");
+    }
+    print(&(system.summary(&run) + &system.end_error(&run)))
+}
+
+/// Prints remarks about the file.
+fn notes(run: &Run) {
+    run.notes().iter().for_each(|note| eprintln!("note: {}", visible(&note.to_string())));
 }
 
 /// The endings of the tables that are asked for.
@@ -160,7 +166,7 @@ fn check(given: &ArgMatches) -> Result<(), Failure> {
     let mut wrong: Option<Failure> = None;
     for path in files(given) {
         match checked(path) {
-            Ok(about) => print(&format!("{}: {about}\n", path.display()))?,
+            Ok(about) => print(&format!("{}: {about}", path.display()))?,
             Err(failure) => {
                 if let Some(before) = wrong.replace(failure) {
                     eprintln!("error: {}", visible(&before.to_string()));
@@ -176,18 +182,20 @@ fn checked(path: &Path) -> Result<String, Failure> {
     let scene = match Scene::read(path)? {
         Scene::Body(scene) => scene,
         Scene::System(system) => {
-            system.first(1)?;
-            return Ok(system.about());
+            let first = system.first(1)?;
+            notes(&first);
+            let changes = system.changes(&first);
+            return Ok(format!("{}\n{changes}", system.about()));
         }
     };
     // A search for an accuracy takes as long as a run, and begins with the first step.
     if !scene.asks_for_accuracy() {
-        scene.first(1)?;
+        notes(&scene.first(1)?);
         for (_, point) in scene.sweep().map(|sweep| sweep.points.as_slice()).unwrap_or_default() {
             point.first(1)?;
         }
     }
-    Ok(scene.about())
+    Ok(scene.about() + "\n")
 }
 
 fn derive(given: &ArgMatches) -> Result<(), Failure> {

@@ -141,7 +141,11 @@ fn range(values: impl Iterator<Item = f64>, margin: f64) -> Range<f64> {
     // A constant is drawn in the middle, not magnified to its rounding errors.
     let size = low.abs().max(high.abs());
     let constant = high - low <= 1e-9 * size;
-    let room = if constant { (0.1 * size).max(f64::MIN_POSITIVE.sqrt()) } else { margin * (high - low) };
+    let room = match (constant, size > 0.0) {
+        (true, true) => (0.1 * size).max(f64::MIN_POSITIVE.sqrt()),
+        (true, false) => 1.0,
+        (false, _) => margin * (high - low),
+    };
     low - room..high + room
 }
 

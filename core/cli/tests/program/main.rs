@@ -1,7 +1,9 @@
 //! The program `liestep`, and through it the library of scenes.
 
 mod called;
+mod conventions;
 mod ensembles;
+mod judged;
 mod lagrangian;
 mod mutated;
 mod orbits;
@@ -9,4 +11,5 @@ mod page;
 mod readme;
 mod runs;
 mod several;
+mod sums;
 mod wrong_files;

@@ -39,12 +39,12 @@ fn seeds() -> Vec<String> {
                draw.start.velocity = [{ from = -1, to = 1 }, 0, { mean = 1, deviation = 0.5 }]\n\
                [sweep]\ngravity.m = [1, 2]\nspring.k = { from = 1, to = 2, count = 3 }\n";
     let split = "title = \"split\"\n[body]\nmoments = [1, 2, 2.5]\n[dipole]\nmoment = [0, 0.1, 1]\nfield = [0.2, 0, 1]\n\
-                 [start]\neuler = [0, 0, 0]\neuler_rates = [0, 1, 0]\n[run]\nstep = 0.01\nduration = 1\n\
+                 [start]\nyaw_pitch_roll = [0, 0, 0]\nvelocity = [0, 1, 0]\n[run]\nstep = 0.01\nduration = 1\n\
                  method = { splitting = \"Nyström 6-4\" }\n";
     let held = "title = \"held\"\n[gravity]\ng = 9.81\nup = [0, 0, 1]\n\
                 [[body]]\nname = \"a\"\nm = 1\nmoments = [1, 2, 2.5]\nposition = [0, 0, 0.5]\nmoving = [0, -0.5, 0]\n\
                 start.euler = [0, 0, 0]\nstart.velocity = [1, 0, 0]\n[[body]]\nname = \"b\"\nm = 2\n\
-                J = [[3, 0.1, 0], [0.1, 4, 0], [0, 0, 5]]\nposition = [0, 0, 2]\nstart.quaternion = [1, 0, 0, 0]\n\
+                J = [[3, 0.1, 0], [0.1, 4, 0], [0, 0, 5]]\nposition = [0, 0, 2]\nstart.quaternion = { w = 1, x = 0, y = 0, z = 0 }\nkinetic = \"cayley\"\n\
                 start.velocity = [0, 0, 0]\n[[joint]]\nkind = \"pin\"\nbodies = [\"space\", \"a\"]\n\
                 at = [[0, 0, 0], [0, 0, -0.5]]\naxes = [[1, 0, 0], [1, 0, 0]]\n[[spring]]\nbodies = [\"a\", \"b\"]\n\
                 at = [[0, 0, 0.5], [0, 0.1, -0.5]]\nk = 30\nlength = 0.4\n[[joint]]\nkind = \"ball\"\n\

@@ -195,7 +195,7 @@ fn steps_follow_an_orbit() {
     let [coarse, short] =
         ["steps_per_orbit = 400", "steps_per_orbit = 800"].map(|steps| (0.5 * (end(steps) - fine)).sin().abs());
     assert!(short < 1e-3 && (3.8..4.2).contains(&(coarse / short)), "{coarse:e} {short:e}");
-    let orbit = text[text.rfind("orbit = ").unwrap()..].replace("100 min", "6000 s").replace("1.0]", "2]");
+    let orbit = text[text.rfind("orbit = ").unwrap()..].replace("100 min", "6000 s").replace("1.0]", "1]");
     let both = text.replace("step = 7800.0", "steps_per_orbit = 400") + DAMPING + &orbit;
     fs::write(folder.join("both.toml"), both).unwrap();
     let told = [&["check", "both.toml"][..], &["run", "both.toml", "--html"]].map(|words| printed(&folder, words));

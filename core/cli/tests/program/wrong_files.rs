@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 
 use expect_test::expect;
 
-use crate::called::{PROGRAM, TOP, called, folder, mistakes, printed, refused, refuses, rows, simulate};
+use crate::called::{PROGRAM, TOP, apart, called, folder, mistakes, printed, refused, refuses, rows, simulate};
 
 /// A terminal isn't told to do anything, and the picture stays XML.
 #[test]
@@ -76,19 +76,35 @@ fn a_file_with_a_mark_of_the_byte_order() {
     assert_eq!(rows(&folder("mark"), &text).len(), 201);
 }
 
-/// Directions and quaternions of any length are brought to length one.
+/// Quaternions of any length are brought to length one, and directions of what is one to the digits that are typed. A
+/// direction of another length would be another weight to a Lagrangian and to a program, and is refused.
 #[test]
-fn directions_of_any_length() {
+fn lengths_of_directions() {
     let folder = folder("lengths");
     let plain = rows(&folder, &TOP.replace("euler = [0, \"45 deg\", 0]", "quaternion = [3, 4, 0, 0]"));
     for scale in ["e250", "e-250"] {
         let quaternion = format!("quaternion = [3{scale}, 4{scale}, 0, 0]");
         let text = TOP.replace("euler = [0, \"45 deg\", 0]", &quaternion);
-        let text = text.replace("up = [0, 0, 1]", &format!("up = [0, 0, 7{scale}]"));
         let rows = rows(&folder, &text);
         assert_eq!(rows.len(), plain.len());
         let pairs = rows.iter().flatten().zip(plain.iter().flatten());
         assert!(pairs.into_iter().all(|(a, b)| (a - b).abs() <= 1e-12 * (1.0 + b.abs())), "{scale}");
+    }
+    let up = |up: &str| TOP.replace("up = [0, 0, 1]", &format!("up = {up}"));
+    let [typed, rounded] = ["[0.6, 0, 0.8005]", "[0.6, 0, 0.8]"].map(|given| self::rows(&folder, &up(given)));
+    assert!(apart(&typed, &rounded) < 1e-2);
+    for (given, length, better) in [
+        ("[0, 0, 2]", "2", "[0, 0, 1]"),
+        ("[3, 0, 4]", "5", "[0.6, 0, 0.8]"),
+        ("[0, 0, -7e250]", "7e250", "[0, 0, -1]"),
+        ("[1, 1, 0]", "1.414213562", "[0.707107, 0.707107, 0]"),
+        ("[0, 0, 0.998]", "0.998", "[0, 0, 1]"),
+    ] {
+        let message = refused(&folder, &up(given));
+        let expected = format!("top.toml:10:6: a direction has the length 1, and this {length}: write {better}\n");
+        assert_eq!(message, format!("error: {expected}"));
+        // What is advised is taken.
+        assert_eq!(self::rows(&folder, &up(better)).len(), 201, "{better}");
     }
 }
 
@@ -169,7 +185,10 @@ fn a_killed_table_has_no_name() {
 fn what_is_printed() {
     let folder = folder("printed");
     fs::write(folder.join("top.toml"), TOP).unwrap();
-    assert_eq!(printed(&folder, &["check", "top.toml"]), "top.toml: body + gravity + drag, 200 steps of 0.01 s\n");
+    assert_eq!(
+        printed(&folder, &["check", "top.toml"]),
+        "top.toml: body + gravity + drag, 200 steps of 0.01 s, hΩ = 0.0628 rad\n"
+    );
     assert!(!folder.join("out").exists());
     // All files are looked at.
     fs::write(folder.join("fast.toml"), TOP.replace("60 rpm", "60000 rpm")).unwrap();
@@ -198,7 +217,7 @@ fn a_duration_is_a_whole_number_of_steps() {
     let folder = folder("durations");
     let text = TOP.replace("step = \"10 ms\"\nduration = 2\n", "step = \"0.1 ms\"\nduration = 0.001\n");
     fs::write(folder.join("top.toml"), text).unwrap();
-    assert!(printed(&folder, &["check", "top.toml"]).ends_with("10 steps of 0.0001 s\n"));
+    assert!(printed(&folder, &["check", "top.toml"]).contains("10 steps of 0.0001 s,"));
 }
 
 /// A terminal would obey what a file has in its keys and units, and what a file is called.

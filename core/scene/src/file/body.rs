@@ -15,6 +15,8 @@ use crate::file::quantity::{Triple, short};
 /// A body by one of its inertias, and how its kinetic energy is discretised.
 #[derive(Clone, Copy)]
 pub(crate) struct Body {
+    /// The inertia as it is written, unless the file has the nonstandard one.
+    pub(crate) J: Inertia,
     pub(crate) mass: Distribution,
     pub(crate) kinetic: Kinetic,
 }
@@ -46,15 +48,6 @@ impl Kinetic {
             Self::Rigid | Self::Cayley | Self::Geodesic => 2,
             Self::FourthOrder => 4,
             Self::SixthOrder => 6,
-        }
-    }
-}
-
-impl Body {
-    pub(crate) fn inertia(&self) -> Inertia {
-        match self.mass {
-            Distribution::Principal(J_d) => NonstandardInertia::from(J_d).to_inertia(),
-            Distribution::Full(J_d) => J_d.to_inertia(),
         }
     }
 }
@@ -92,18 +85,27 @@ impl<'de> Visitor<'de> for BodyTable {
     }
 
     fn visit_map<M: MapAccess<'de>>(self, mut table: M) -> Result<Body, M::Error> {
-        let (mut mass, mut kinetic) = (None, Kinetic::default());
+        let (mut inertia, mut kinetic) = (None, Kinetic::default());
         while let Some(key) = table.next_key()? {
             match key {
                 Key::Kinetic => kinetic = table.next_value()?,
-                _ if mass.is_some() => return refuse(&mut table, INERTIA),
-                Key::Moments => mass = Some(Distribution::Principal(table.next_value::<Moments>()?.0)),
-                Key::Nonstandard => mass = Some(Distribution::Principal(table.next_value::<Nonstandard>()?.0)),
-                Key::Full => mass = Some(Distribution::Full(table.next_value::<Full>()?.0)),
+                _ if inertia.is_some() => return refuse(&mut table, INERTIA),
+                Key::Moments => {
+                    let Moments { J, J_d } = table.next_value()?;
+                    inertia = Some((J, Distribution::Principal(J_d)));
+                }
+                Key::Nonstandard => {
+                    let Nonstandard(J_d) = table.next_value()?;
+                    inertia = Some((NonstandardInertia::from(J_d).to_inertia(), Distribution::Principal(J_d)));
+                }
+                Key::Full => {
+                    let Full(J) = table.next_value()?;
+                    inertia = Some((J, Distribution::Full(J.to_nonstandard())));
+                }
             }
         }
-        let mass = mass.ok_or_else(|| M::Error::custom(INERTIA))?;
-        Ok(Body { mass, kinetic })
+        let (J, mass) = inertia.ok_or_else(|| M::Error::custom(INERTIA))?;
+        Ok(Body { J, mass, kinetic })
     }
 }
 
@@ -124,14 +126,18 @@ fn impossible(moments: &Vector3<f64>) -> Option<String> {
 /// Moments of inertia that a body can have.
 #[derive(Deserialize)]
 #[serde(try_from = "Triple<quantity::Inertia>")]
-pub(crate) struct Moments(pub(crate) DiagonalNonstandardInertia);
+pub(crate) struct Moments {
+    pub(crate) J: Inertia,
+    pub(crate) J_d: DiagonalNonstandardInertia,
+}
 
 impl TryFrom<Triple<quantity::Inertia>> for Moments {
     type Error = String;
 
     fn try_from(moments: Triple<quantity::Inertia>) -> Result<Self, String> {
-        let made = DiagonalNonstandardInertia::from_principal_moments(moments.value);
-        made.map(Self).map_err(|error| impossible(&moments.value).unwrap_or_else(|| error.to_string()))
+        let J_d = DiagonalNonstandardInertia::from_principal_moments(moments.value);
+        let made = J_d.and_then(|J_d| Ok(Self { J: Inertia::from_principal_moments(moments.value)?, J_d }));
+        made.map_err(|error| impossible(&moments.value).unwrap_or_else(|| error.to_string()))
     }
 }
 
@@ -151,7 +157,7 @@ impl TryFrom<Triple<quantity::Inertia>> for Nonstandard {
 /// The tensor of inertia in any axes, by its rows.
 #[derive(Deserialize)]
 #[serde(try_from = "Vec<Triple<quantity::Inertia>>")]
-pub(crate) struct Full(pub(crate) NonstandardInertia);
+pub(crate) struct Full(pub(crate) Inertia);
 
 impl TryFrom<Vec<Triple<quantity::Inertia>>> for Full {
     type Error = String;
@@ -165,7 +171,6 @@ impl TryFrom<Vec<Triple<quantity::Inertia>>> for Full {
             .map_err(|_| format!("`J` has three rows of three components, found {} rows", rows.len()))?;
         let matrix = Matrix3::from_rows(&[x, y, z].map(|row| row.transpose()));
         let principal = || (matrix == matrix.transpose()).then(|| impossible(&matrix.symmetric_eigenvalues()));
-        let J = Inertia::new(matrix).map_err(|error| principal().flatten().unwrap_or_else(|| error.to_string()))?;
-        Ok(Self(J.to_nonstandard()))
+        Inertia::new(matrix).map(Self).map_err(|error| principal().flatten().unwrap_or_else(|| error.to_string()))
     }
 }

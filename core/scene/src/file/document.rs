@@ -47,8 +47,13 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     let keys = ["accuracy", "steps_per_orbit"];
     let pace = keys.into_iter().find(|key| has(document, "run", key)).unwrap_or("step");
     let body = if file.lagrangian.is_some() { "lagrangian" } else { "body" };
-    let places =
-        Places { body: at(&[body]), start: at(&["start"]), pace: at(&["run", pace]), method: at(&["run", "method"]) };
+    let places = Places {
+        body: at(&[body]),
+        start: at(&["start"]),
+        pace: at(&["run", pace]),
+        method: at(&["run", "method"]),
+        spring: at(&["spring"]),
+    };
     file.origin = Origin { path: path.to_owned(), places };
     Ok(file)
 }
@@ -92,11 +97,13 @@ fn of_pace(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
             return wrong(&["run", "accuracy"], message);
         }
         if has(document, "run", "method") {
-            let message = "an `accuracy` chooses the method; give a `step` to choose it";
+            let message =
+                "an `accuracy`, which a run without a `step` has, chooses the method; give a `step` to choose it";
             return wrong(&["run", "method"], message.to_owned());
         }
         if file.kinetic() != Kinetic::Rigid {
-            let message = "an `accuracy` chooses the method for the kinetic term `rigid`";
+            let message = "an `accuracy`, which a run without a `step` has, chooses the method for the kinetic term \
+                           `rigid`; leave `kinetic` out, or give a `step`";
             return wrong(&["body", "kinetic"], message.to_owned());
         }
     }

@@ -132,9 +132,11 @@ fn read(table: &DeTable<'_>, place: &Range<usize>, role: Role) -> Result<Declare
         Role::Force => &["group", "work", "advected"],
         _ => &["group", "l_d", "l", "velocity", "discretise", "pace", "advected"],
     };
-    let parameters = table.iter().filter(|(key, _)| !known.contains(&key.get_ref().as_ref()));
+    let mut parameters: Vec<_> = table.iter().filter(|(key, _)| !known.contains(&key.get_ref().as_ref())).collect();
+    // A table's own order is that of the alphabet, and rounding is that of the file.
+    parameters.sort_by_key(|(key, _)| key.span().start);
     let mut parameters =
-        parameters.map(|(key, value)| parameter(key.get_ref(), value)).collect::<Result<Vec<_>, _>>()?;
+        parameters.into_iter().map(|(key, value)| parameter(key.get_ref(), value)).collect::<Result<Vec<_>, _>>()?;
     let has_a_pace = !pace.is_empty();
     if has_a_pace {
         parameters.push(Parameter { name: ENERGY.to_owned(), kind: "f64", numbers: vec![0.0] });
@@ -168,9 +170,11 @@ fn read(table: &DeTable<'_>, place: &Range<usize>, role: Role) -> Result<Declare
 /// `advected(w = up), `, if something is.
 fn advected(table: &DeTable<'_>) -> Result<String, Wrong> {
     let Some(value) = table.get("advected") else { return Ok(String::new()) };
-    let all = BTreeMap::<String, String>::deserialize(ValueDeserializer::from(value.clone()))
+    let all = BTreeMap::<String, Spanned<String>>::deserialize(ValueDeserializer::from(value.clone()))
         .map_err(|error| in_value(value, &error))?;
-    let pairs: Vec<String> = all.into_iter().map(|(name, field)| format!("{name} = {field}")).collect();
+    let mut all: Vec<_> = all.into_iter().collect();
+    all.sort_by_key(|(_, field)| field.span().start);
+    let pairs: Vec<String> = all.into_iter().map(|(name, field)| format!("{name} = {}", field.get_ref())).collect();
     Ok(format!("advected({}), ", pairs.join(", ")))
 }
 
@@ -235,8 +239,8 @@ struct OfInertia {
 impl OfInertia {
     fn inertia(self) -> Result<Inertia, String> {
         match (self.moments, self.tensor) {
-            (Some(moments), None) => Ok(liestep::NonstandardInertia::from(moments.0).to_inertia()),
-            (None, Some(tensor)) => Ok(tensor.0.to_inertia()),
+            (Some(moments), None) => Ok(moments.J),
+            (None, Some(tensor)) => Ok(tensor.0),
             _ => Err("an inertia is `{ moments = [x, y, z] }`, or `{ tensor = [[…], […], […]] }`".to_owned()),
         }
     }

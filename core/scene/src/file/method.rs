@@ -20,6 +20,21 @@ pub(crate) enum Method {
 }
 
 impl Method {
+    /// The method of an offer for an accuracy, by the offer's name.
+    pub(crate) fn of_offer(name: &str) -> Option<Self> {
+        fn named<S: Scheme>(name: &str) -> Option<Named<S>> {
+            S::ALL.iter().find(|scheme| scheme.called() == name).copied().map(Named)
+        }
+        match (name, name.strip_prefix("exact, ")) {
+            ("its own step", _) => Some(Self::Step),
+            ("exact", _) => Some(Self::Splitting(Named(SplittingScheme::STRANG))),
+            ("Gauss, 4 stages", _) => Some(Self::Collocation(Stages::Four)),
+            ("Gauss, 8 stages", _) => Some(Self::Collocation(Stages::Eight)),
+            (_, Some(split)) => named(split).map(Self::Splitting).or_else(|| named(split).map(Self::Processed)),
+            _ => named(name).map(Self::Composition),
+        }
+    }
+
     /// In words, behind an article.
     pub(crate) fn name(&self) -> &'static str {
         match self {
@@ -73,6 +88,15 @@ schemes! { CompositionScheme SplittingScheme ProcessedScheme }
 pub(crate) enum Stages {
     Four,
     Eight,
+}
+
+impl Stages {
+    pub(crate) fn order(self) -> u32 {
+        match self {
+            Self::Four => 8,
+            Self::Eight => 16,
+        }
+    }
 }
 
 impl TryFrom<i64> for Stages {

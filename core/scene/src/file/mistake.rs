@@ -87,12 +87,36 @@ impl Mistake {
     }
 }
 
+/// Words of other programs, each with a name that is expected where it has a meaning, and advice.
+const OTHER_WORDS: [(&str, &str, &str); 15] = [
+    ("hinge", "pin", "a hinge is a `pin`"),
+    ("revolute", "pin", "a revolute joint is a `pin`"),
+    ("spherical", "ball", "a spherical joint is a `ball`"),
+    ("prismatic", "pin", "there is no joint that slides"),
+    ("fixed", "pin", "bodies that don't move against each other are one body: add their masses and inertias"),
+    ("weld", "pin", "bodies that don't move against each other are one body: add their masses and inertias"),
+    ("world", "space", "the world is `space`"),
+    ("ground", "space", "the ground is `space`"),
+    ("gravitation", "gravity", "a weight is `gravity`, and a planet's pull that turns a body is `gravity_gradient`"),
+    ("wheel", "rotor", "a wheel in the body is a `rotor`"),
+    ("damping", "drag", "damping against turning is `drag`"),
+    ("rpy", "yaw_pitch_roll", "roll, pitch and yaw are `yaw_pitch_roll`, yaw first"),
+    ("omega", "velocity", "the angular velocity is `velocity`, in the body"),
+    ("mass", "m", "the mass is `m`"),
+    ("inertia", "J", "a tensor of inertia is `J`, principal moments are `moments`"),
+];
+
 /// A message of the reader's with what could have been meant.
 pub(crate) fn advised(message: &str) -> String {
     // `unknown field `x`, expected one of `y`, `z``
     let mut names = message.split('`').skip(1).step_by(2);
     match names.next() {
-        Some(unknown) if message.starts_with("unknown ") => format!("{message}{}", suggestion(unknown, names)),
+        Some(unknown) if message.starts_with("unknown ") => {
+            let names: Vec<&str> = names.collect();
+            let other = OTHER_WORDS.iter().find(|(word, name, _)| unknown == *word && names.contains(name));
+            let advice = other.map(|(_, _, advice)| format!("; {advice}"));
+            format!("{message}{}", advice.unwrap_or_else(|| suggestion(unknown, names.into_iter())))
+        }
         _ if message.contains("expected `nan`") => {
             "isn't a value: a number, a text in quotation marks, a list in brackets; what isn't there is left out"
                 .to_owned()

@@ -59,15 +59,15 @@ impl Default for SpherePicture {
 #[derive(Clone, Deserialize, Default)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct PlanePicture {
-    pub(crate) plane: Plane,
+    /// The plane of the motion, if it isn't given.
+    pub(crate) plane: Option<Plane>,
 }
 
 /// What the paths of the bodies are seen in.
-#[derive(Clone, Copy, Deserialize, Default)]
+#[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Plane {
     Xy,
-    #[default]
     Xz,
     Yz,
 }

@@ -13,16 +13,19 @@ pub(crate) trait Quantity {
     const NAME: &'static str;
     /// Its units, each with its size in the first, which is that of SI.
     const UNITS: &'static [(&'static str, f64)];
+    /// The largest number without a unit: beyond it another unit than that of SI is likelier to be meant.
+    const LARGEST_BARE: f64 = f64::INFINITY;
 }
 
 macro_rules! quantities {
-    ($($quantity:ident: $name:literal in $($unit:literal $size:expr),+;)+) => {$(
+    ($($quantity:ident: $name:literal $(up to $most:ident)? in $($unit:literal $size:expr),+;)+) => {$(
         #[derive(Clone, Copy)]
         pub(crate) struct $quantity;
 
         impl Quantity for $quantity {
             const NAME: &'static str = $name;
             const UNITS: &'static [(&'static str, f64)] = &[$(($unit, $size)),+];
+            $(const LARGEST_BARE: f64 = $most;)?
         }
     )+
 
@@ -38,10 +41,12 @@ macro_rules! quantities {
 }
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
+/// The largest angle without a unit: a whole turn as it is typed, rad.
+const TURN: f64 = 6.3;
 
 quantities! {
     Acceleration: "an acceleration" in "m/s²" 1.0;
-    Angle: "an angle" in "rad" 1.0, "deg" DEGREE, "°" DEGREE;
+    Angle: "an angle" up to TURN in "rad" 1.0, "deg" DEGREE, "°" DEGREE;
     Damping: "a damping coefficient" in "N m s" 1.0;
     Duration: "a time" in "s" 1.0, "ms" 1e-3, "min" 60.0, "h" 3600.0;
     FluxDensity: "a magnetic flux density" in "T" 1.0, "mT" 1e-3, "µT" 1e-6, "nT" 1e-9;
@@ -93,7 +98,7 @@ pub(crate) struct Triple<Q> {
     quantity: PhantomData<Q>,
 }
 
-/// Three numbers that aren't all zero, brought to length one.
+/// Three numbers of length one to the digits that are typed, brought to it.
 #[derive(Clone, Copy)]
 pub(crate) struct Direction(pub(crate) Vector3<f64>);
 
@@ -126,9 +131,25 @@ impl<'de> Deserialize<'de> for Direction {
         let vector = Triple::<Number>::deserialize(source)?.value;
         // By the largest first, as squares may be too large or too small for a number.
         let unit = (vector / vector.amax()).try_normalize(0.5).filter(|unit| unit.iter().all(|x| x.is_finite()));
-        unit.map(Self).ok_or_else(|| D::Error::custom("a direction can't be zero"))
+        let unit = unit.ok_or_else(|| D::Error::custom("a direction can't be zero"))?;
+        let length = vector.dot(&unit);
+        if (length - 1.0).abs() <= OFF_UNIT {
+            return Ok(Self(unit));
+        }
+        let [x, y, z] = [unit.x, unit.y, unit.z].map(|part| short((part * 1e6).round() / 1e6));
+        Err(D::Error::custom(format!(
+            "a direction has the length 1, and this {}: write [{x}, {y}, {z}]",
+            short(length)
+        )))
     }
 }
+
+fn finite<E: Error>(value: f64) -> Result<f64, E> {
+    if value.is_finite() { Ok(value) } else { Err(E::custom("must be finite")) }
+}
+
+/// Largest difference of a direction's length from one: parts with three digits leave that.
+const OFF_UNIT: f64 = 1e-3;
 
 struct NumberOrText<Q>(PhantomData<Q>);
 
@@ -143,12 +164,17 @@ impl<Q: Quantity> Visitor<'_> for NumberOrText<Q> {
     }
 
     fn visit_f64<E: Error>(self, value: f64) -> Result<f64, E> {
-        if value.is_finite() { Ok(value) } else { Err(E::custom("must be finite")) }
+        let value = finite(value)?;
+        if value.abs() <= Q::LARGEST_BARE {
+            return Ok(value);
+        }
+        let units: Vec<_> = Q::UNITS.iter().map(|(unit, _)| format!("\"{} {unit}\"", short(value))).take(2).collect();
+        Err(E::custom(format!("{} has no unit: write {}", short(value), units.join(" or "))))
     }
 
     #[allow(clippy::cast_precision_loss)] // as if it had been written with a point
     fn visit_i64<E: Error>(self, value: i64) -> Result<f64, E> {
-        Ok(value as f64)
+        self.visit_f64(value as f64)
     }
 
     fn visit_str<E: Error>(self, text: &str) -> Result<f64, E> {
@@ -158,7 +184,7 @@ impl<Q: Quantity> Visitor<'_> for NumberOrText<Q> {
         })?;
         let written = unit.trim().replace("^2", "²").replace("^3", "³");
         match size::<Q>(&written) {
-            Some(size) => self.visit_f64(value * size),
+            Some(size) => finite(value * size),
             // Where the quantity is any, they would be all that there are.
             None if Q::UNITS.len() > 8 => {
                 Err(E::custom(format!("`{unit}` isn't a unit that is known here: take one of SI, or leave it out")))
@@ -169,6 +195,11 @@ impl<Q: Quantity> Visitor<'_> for NumberOrText<Q> {
             }
         }
     }
+}
+
+/// A number with three digits.
+pub(crate) fn round(value: f64) -> String {
+    short(format!("{value:.2e}").parse().unwrap_or(value))
 }
 
 /// A number as a person would write it, without the rounding errors of the last digits.

@@ -15,7 +15,7 @@ use crate::file::event::Event;
 use crate::file::lagrangian::{Declared, taken};
 use crate::file::orbit::{Orbit, put};
 use crate::file::picture::SpherePicture;
-use crate::file::quantity::{Rate, in_si, short};
+use crate::file::quantity::{Rate, in_si, round, short};
 use crate::file::schedule::{Pace, Schedule};
 use crate::file::start::Start;
 use crate::file::text::title;
@@ -117,6 +117,7 @@ pub(crate) struct Places {
     /// Of the step or the accuracy.
     pub(crate) pace: (usize, usize),
     pub(crate) method: (usize, usize),
+    pub(crate) spring: (usize, usize),
 }
 
 impl SceneFile {
@@ -175,6 +176,14 @@ impl SceneFile {
         }
     }
 
+    /// About how far the body turns in an equal step at the start, rad.
+    pub(crate) fn turn_of_a_step(&self) -> Option<f64> {
+        match self.run.pace {
+            Pace::Step { step, .. } if !self.has_steps_of_its_own() => Some(step * self.start.velocity.norm()),
+            _ => None,
+        }
+    }
+
     /// The sum, and how it is stepped, in words.
     #[must_use]
     pub fn about(&self) -> String {
@@ -187,7 +196,8 @@ impl SceneFile {
         };
         let sweep = self.sweep.as_ref().map(|sweep| format!(", a sweep of {}", sweep.points.len()));
         let ensemble = self.ensemble.as_ref().map(|ensemble| format!(", an ensemble of {}", ensemble.members));
-        format!("{}, {pace}{}{}", self.sum(), sweep.unwrap_or_default(), ensemble.unwrap_or_default())
+        let turn = self.turn_of_a_step().map(|turn| format!(", hΩ = {} rad", round(turn))).unwrap_or_default();
+        format!("{}, {pace}{turn}{}{}", self.sum(), sweep.unwrap_or_default(), ensemble.unwrap_or_default())
     }
 
     /// The sum, in words.
@@ -218,7 +228,7 @@ impl SceneFile {
     /// Where the body is not turned; none of a Lagrangian that no body has.
     pub(crate) fn inertia(&self) -> Option<Matrix3<f64>> {
         let of_lagrangian = || self.lagrangian.as_ref().and_then(Declared::inertia);
-        self.body.map(|body| *body.inertia().as_matrix()).or_else(of_lagrangian)
+        self.body.map(|body| *body.J.as_matrix()).or_else(of_lagrangian)
     }
 
     /// Of the scene's own step: other effects are kicks of order two.

@@ -14,6 +14,8 @@ pub(crate) struct Schedule {
     /// s.
     pub(crate) duration: f64,
     pub(crate) pace: Pace,
+    /// Whether the file says nothing of the steps, so that there are as many as are worth looking at.
+    pub(crate) is_left_open: bool,
     pub(crate) method: Method,
     /// Along an orbit, in the place of equal ones.
     pub(crate) steps_per_orbit: Option<NonZeroU32>,
@@ -50,6 +52,8 @@ struct ScheduleTable {
     method: Method,
 }
 
+/// Accuracy of a run that says nothing of steps: at the end an attitude is about 1e-6 rad off.
+const DEFAULT_ACCURACY: f64 = 1e-6;
 /// A few minutes of stepping.
 const MOST_STEPS: f64 = 1e8;
 
@@ -58,15 +62,16 @@ impl TryFrom<ScheduleTable> for Schedule {
 
     fn try_from(table: ScheduleTable) -> Result<Self, String> {
         let duration = table.duration.value;
+        let is_left_open = table.step.is_none() && table.accuracy.is_none() && table.steps_per_orbit.is_none();
         let pace = match (table.step, table.accuracy) {
             // Set when the orbit is known.
             _ if table.steps_per_orbit.is_some() => Pace::Step { step: duration, steps: 1 },
             (Some(step), _) => Pace::Step { step: step.value, steps: equal_steps(step.value, duration)? },
             (None, Some(accuracy)) => Pace::Accuracy(accuracy.value),
-            (None, None) => return Err("a run has a `step`, `steps_per_orbit` or an `accuracy`".to_owned()),
+            (None, None) => Pace::Accuracy(DEFAULT_ACCURACY),
         };
         let ScheduleTable { method, steps_per_orbit, density, .. } = table;
-        Ok(Self { duration, pace, method, steps_per_orbit, density })
+        Ok(Self { duration, pace, is_left_open, method, steps_per_orbit, density })
     }
 }
 

@@ -21,8 +21,10 @@ pub(crate) struct Start {
 enum Key {
     /// Precession, nutation and spin: the attitude `R_z(φ) R_x(θ) R_z(ψ)`.
     Euler,
-    /// `[w, x, y, z]`, brought to length one.
+    /// `[w, x, y, z]`, or these by their names, brought to length one.
     Quaternion,
+    /// `R_z(yaw) R_y(pitch) R_x(roll)`.
+    YawPitchRoll,
     /// Body frame.
     Velocity,
     /// Rates of the Euler angles.
@@ -32,7 +34,8 @@ enum Key {
 #[derive(Clone, Copy)]
 enum Attitude {
     Euler(Vector3<f64>),
-    Quaternion(UnitQuaternion<f64>),
+    /// An attitude by a quaternion or by other angles.
+    Other(UnitQuaternion<f64>),
 }
 
 #[derive(Clone, Copy)]
@@ -41,7 +44,7 @@ enum Velocity {
     EulerRates(Vector3<f64>),
 }
 
-const ATTITUDE: &str = "an attitude is given by either `euler` or `quaternion`";
+const ATTITUDE: &str = "an attitude is given by one of `euler`, `quaternion`, `yaw_pitch_roll`";
 const VELOCITY: &str = "a velocity is given by either `velocity` or `euler_rates`";
 const RATES: &str = "`euler_rates` need the attitude by `euler`";
 
@@ -65,12 +68,17 @@ impl<'de> Visitor<'de> for StartTable {
         let (mut attitude, mut velocity) = (None, None);
         while let Some(key) = table.next_key()? {
             match (key, attitude, velocity) {
-                (Key::Euler | Key::Quaternion, Some(_), _) => return refuse(&mut table, ATTITUDE),
+                (Key::Euler | Key::Quaternion | Key::YawPitchRoll, Some(_), _) => return refuse(&mut table, ATTITUDE),
                 (Key::Velocity | Key::EulerRates, _, Some(_)) => return refuse(&mut table, VELOCITY),
-                (Key::Quaternion, _, Some(Velocity::EulerRates(_)))
-                | (Key::EulerRates, Some(Attitude::Quaternion(_)), _) => return refuse(&mut table, RATES),
+                (Key::Quaternion | Key::YawPitchRoll, _, Some(Velocity::EulerRates(_)))
+                | (Key::EulerRates, Some(Attitude::Other(_)), _) => return refuse(&mut table, RATES),
                 (Key::Euler, ..) => attitude = Some(Attitude::Euler(table.next_value::<Triple<Angle>>()?.value)),
-                (Key::Quaternion, ..) => attitude = Some(Attitude::Quaternion(table.next_value::<Components>()?.0)),
+                (Key::Quaternion, ..) => attitude = Some(Attitude::Other(table.next_value::<Components>()?.0)),
+                (Key::YawPitchRoll, ..) => {
+                    let angles = table.next_value::<Triple<Angle>>()?.value;
+                    // By the angles about x, y and z.
+                    attitude = Some(Attitude::Other(UnitQuaternion::from_euler_angles(angles.z, angles.y, angles.x)));
+                }
                 (Key::Velocity, ..) => velocity = Some(Velocity::Body(table.next_value::<Triple<Rate>>()?.value)),
                 (Key::EulerRates, ..) => {
                     velocity = Some(Velocity::EulerRates(table.next_value::<Triple<Rate>>()?.value));
@@ -81,31 +89,66 @@ impl<'de> Visitor<'de> for StartTable {
         let velocity = match (velocity.ok_or_else(|| M::Error::custom(VELOCITY))?, attitude) {
             (Velocity::Body(velocity), _) => velocity,
             (Velocity::EulerRates(rates), Attitude::Euler(angles)) => body_velocity(&angles, &rates),
-            (Velocity::EulerRates(_), Attitude::Quaternion(_)) => return Err(M::Error::custom(RATES)),
+            (Velocity::EulerRates(_), Attitude::Other(_)) => return Err(M::Error::custom(RATES)),
         };
         let attitude = match attitude {
             Attitude::Euler(angles) => from_euler(&angles),
-            Attitude::Quaternion(quaternion) => quaternion,
+            Attitude::Other(attitude) => attitude,
         };
         Ok(Start { attitude, velocity })
     }
 }
 
 /// A quaternion of any length.
+#[derive(Deserialize)]
+#[serde(try_from = "QuaternionValue")]
 struct Components(UnitQuaternion<f64>);
 
-impl<'de> Deserialize<'de> for Components {
-    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
-        let components = Vec::<Scalar<Number>>::deserialize(source)?;
-        let [w, x, y, z] = components.as_slice() else {
-            let message = format!("`quaternion` has the four components w, x, y, z, found {}", components.len());
-            return Err(D::Error::custom(message));
+/// Components in the order w, x, y, z, or by their names.
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    expecting = "a quaternion is `[w, x, y, z]` or `{ w = …, x = …, y = …, z = … }`, four finite numbers"
+)]
+enum QuaternionValue {
+    List(Vec<Scalar<Number>>),
+    Named(Named),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Named {
+    w: Scalar<Number>,
+    x: Scalar<Number>,
+    y: Scalar<Number>,
+    z: Scalar<Number>,
+}
+
+/// The identity of programs that write the scalar part last, and a half turn here.
+const SCALAR_LAST: &str = "`quaternion` begins with w, so this is half a turn about z: write [1, 0, 0, 0] for no turn, \
+                           or { w = 0, x = 0, y = 0, z = 1 } for that one";
+
+impl TryFrom<QuaternionValue> for Components {
+    type Error = String;
+
+    fn try_from(value: QuaternionValue) -> Result<Self, String> {
+        let [w, x, y, z] = match value {
+            QuaternionValue::List(components) => match components.as_slice() {
+                [w, x, y, z] if [w, x, y].iter().all(|part| part.value == 0.0) && z.value != 0.0 => {
+                    return Err(SCALAR_LAST.to_owned());
+                }
+                &[w, x, y, z] => [w, x, y, z],
+                other => {
+                    return Err(format!("`quaternion` has the four components w, x, y, z, found {}", other.len()));
+                }
+            },
+            QuaternionValue::Named(Named { w, x, y, z }) => [w, x, y, z],
         };
         // By the largest first, as squares may be too large or too small for a number.
         let quaternion = Quaternion::new(w.value, x.value, y.value, z.value);
         let scaled = quaternion / quaternion.coords.amax();
         let unit = UnitQuaternion::try_new(scaled, 0.5).filter(|unit| unit.coords.iter().all(|x| x.is_finite()));
-        unit.map(Self).ok_or_else(|| D::Error::custom("`quaternion` can't be zero"))
+        unit.map(Self).ok_or_else(|| "`quaternion` can't be zero".to_owned())
     }
 }
 

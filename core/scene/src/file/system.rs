@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use liestep::NonstandardInertia;
+use liestep::mechanics::Inertia;
 use liestep::methods::{BallJoint, Joint, PinJoint};
 use liestep::recording;
 use nalgebra::Vector3;
@@ -11,12 +12,12 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use crate::file::arrangement::{Arrangement, BODIES, LOOPS};
-use crate::file::body::{Full, INERTIA, Moments, Nonstandard};
+use crate::file::body::{Full, INERTIA, Kinetic, Moments, Nonstandard};
 use crate::file::column::{Column, Output};
 use crate::file::mistake::{Mistake, Wrong, advised, place_of};
 use crate::file::picture::PlanePicture;
 use crate::file::quantity::{
-    Acceleration, Direction, Duration, Length, Mass, Positive, Scalar, Speed, Stiffness, Triple, short,
+    Acceleration, Direction, Duration, Length, Mass, Positive, Scalar, Speed, Stiffness, Triple, round, short,
 };
 use crate::file::schedule::{equal_steps, fraction};
 use crate::file::start::Start;
@@ -30,12 +31,12 @@ pub(crate) const SPRINGS: usize = 16;
 /// | table | keys |
 /// |---|---|
 /// | | `title` |
-/// | `[[body]]`, up to eight | `name`; `m`, kg; one of `moments`, `J_d`, `J`, kg m², about the centre of mass, in the body's frame; `position` of that in space, m, and how fast it is `moving` there, m/s; `start` as of [one body](crate::SceneFile) |
+/// | `[[body]]`, up to eight | `name`; `m`, kg; one of `moments`, `J_d`, `J`, kg m², about the centre of mass, in the body's frame; `kinetic`: `geodesic`, which it is without, `rigid`, which is (3.13), `cayley`; `position` of that in space, m, and how fast it is `moving` there, m/s; `start` as of [one body](crate::SceneFile) |
 /// | `gravity` | `g`, m/s²; `up`, in space |
 /// | `[[joint]]`, up to four more than make a tree | `kind`: `ball` or `pin`; `bodies`: two names, of which one may be `space`; `at`: the point of each, m, from its centre of mass in its own frame, of `space` from the origin; `axes` of a pin: that of each, in the same frames |
 /// | `[[spring]]`, up to sixteen | `bodies`, `at` as of joints; `k`, N/m, and `length`, m, at rest |
-/// | `run` | `duration`; `step`, of which that is a whole number; `nearest`: whether joints that are open at the start are closed, with the velocities that keep them so |
-/// | `picture` | `plane`: `xy`, `xz`, `yz` |
+/// | `run` | `duration`; `step`, of which that is a whole number; `nearest`: whether joints that are open at the start are closed: positions and their velocities are mended first, then attitudes and angular velocities by as little as can be |
+/// | `picture` | `plane`: `xy`, `xz`, `yz`; without, that in which the motion is the widest |
 /// | `output` | `columns` of a table behind the time, see [`Column`]; `every`: the number of steps from row to row |
 ///
 /// Joints may form loops, up to four of them. Everything else that several bodies can have is for programs: [`liestep::Stepper::jointed`].
@@ -62,6 +63,7 @@ pub struct System {
 pub(crate) struct SystemPlaces {
     pub(crate) bodies: Vec<(usize, usize)>,
     pub(crate) joints: Vec<(usize, usize)>,
+    pub(crate) springs: Vec<(usize, usize)>,
     pub(crate) pace: (usize, usize),
 }
 
@@ -69,7 +71,9 @@ pub(crate) struct SystemPlaces {
 pub(crate) struct SystemBody {
     pub(crate) name: String,
     pub(crate) m: f64,
-    pub(crate) J_d: NonstandardInertia,
+    pub(crate) J: Inertia,
+    /// A kinetic term of second order.
+    pub(crate) kinetic: Kinetic,
     pub(crate) position: Vector3<f64>,
     pub(crate) moving: Vector3<f64>,
     pub(crate) start: Start,
@@ -80,6 +84,14 @@ pub(crate) struct SystemBody {
 pub(crate) struct Between<T> {
     pub(crate) bodies: [Option<usize>; 2],
     pub(crate) of: T,
+}
+
+/// The points of a joint, and the axes of a pin, of both bodies in their own frames.
+pub(crate) fn ends_and_axes(joint: &Joint) -> ([Vector3<f64>; 2], Option<[Vector3<f64>; 2]>) {
+    match joint {
+        Joint::Ball(ball) => ([ball.above, ball.below], None),
+        Joint::Pin(pin) => ([pin.above, pin.below], Some([pin.axis_above, pin.axis_below])),
+    }
 }
 
 /// Between a point of each, from its centre of mass.
@@ -116,6 +128,7 @@ struct BodyTable {
     moments: Option<Moments>,
     J_d: Option<Nonstandard>,
     J: Option<Full>,
+    kinetic: Option<Spanned<Kinetic>>,
     position: Triple<Length>,
     moving: Option<Triple<Speed>>,
     start: Start,
@@ -177,6 +190,7 @@ impl System {
         let places = SystemPlaces {
             bodies: table.body.iter().map(|body| place(&body.span())).collect(),
             joints: table.joint.iter().map(|joint| place(&joint.span())).collect(),
+            springs: table.spring.iter().map(|spring| place(&spring.span())).collect(),
             pace: place(&table.run.step.span()),
         };
         of_table(table, path, places).map_err(|(span, message)| Mistake::at(path, place(&span), message))
@@ -208,7 +222,10 @@ impl System {
     /// What there is, and how it is stepped, in words.
     #[must_use]
     pub fn about(&self) -> String {
-        format!("{}, {} steps of {} s", self.sum(), self.steps, short(self.step))
+        let turn = |body: &SystemBody| format!("{} ({})", round(self.step * body.start.velocity.norm()), body.name);
+        let turns: Vec<_> = self.bodies.iter().map(turn).collect();
+        let (sum, steps, step) = (self.sum(), self.steps, short(self.step));
+        format!("{sum}, {steps} steps of {step} s, hΩ in rad: {}", turns.join(", "))
     }
 
     pub(crate) fn has_pins(&self) -> bool {
@@ -306,7 +323,7 @@ fn name_twice(columns: &[Column], bodies: &[&str]) -> Option<(usize, String)> {
 /// A body, and where its name is.
 fn body_of(body: Spanned<BodyTable>) -> Result<(SystemBody, Range<usize>), Wrong> {
     let span = body.span();
-    let BodyTable { name, m, moments, J_d, J, position, moving, start } = body.into_inner();
+    let BodyTable { name, m, moments, J_d, J, kinetic, position, moving, start } = body.into_inner();
     // It begins the names of columns.
     let is_plain = |letter: char| letter.is_alphanumeric() || "_-".contains(letter);
     if name.get_ref().is_empty() || !name.get_ref().chars().all(is_plain) {
@@ -315,15 +332,20 @@ fn body_of(body: Spanned<BodyTable>) -> Result<(SystemBody, Range<usize>), Wrong
     if name.get_ref() == SPACE {
         return Err((name.span(), "`space` is what bodies move in; give the body another name".to_owned()));
     }
-    let principal = |J_d| NonstandardInertia::from(J_d);
-    let J_d = match (moments, J_d, J) {
-        (Some(Moments(J_d)), None, None) | (None, Some(Nonstandard(J_d)), None) => principal(J_d),
-        (None, None, Some(Full(J_d))) => J_d,
+    let J = match (moments, J_d, J) {
+        (Some(Moments { J, .. }), None, None) | (None, None, Some(Full(J))) => J,
+        (None, Some(Nonstandard(J_d)), None) => NonstandardInertia::from(J_d).to_inertia(),
         _ => return Err((span, INERTIA.to_owned())),
     };
+    if let Some(kinetic) = kinetic.as_ref().filter(|kinetic| kinetic.get_ref().order() != 2) {
+        let message = "a body among several is `geodesic`, `rigid` or `cayley`: joints and springs are of second order";
+        return Err((kinetic.span(), message.to_owned()));
+    }
+    let kinetic = kinetic.map_or(Kinetic::Geodesic, Spanned::into_inner);
     let moving = moving.map_or_else(Vector3::zeros, |moving| moving.value);
     let place = name.span();
-    Ok((SystemBody { name: name.into_inner(), m: m.value, J_d, position: position.value, moving, start }, place))
+    let body = SystemBody { name: name.into_inner(), m: m.value, J, kinetic, position: position.value, moving, start };
+    Ok((body, place))
 }
 
 /// What isn't a body.

@@ -4,27 +4,41 @@
 use std::array::from_fn;
 
 use liestep::groups::{LieGroup as _, R3};
-use liestep::mechanics::{Each, Placement, Sum};
+use liestep::mechanics::{Each, Inertia, Placement, Sum};
 use liestep::methods::{Joint, JointedBodies, Joints, PlacedJoint};
+use liestep::motion::Integrator;
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper, lagrangian};
 use nalgebra::{Vector3, Vector6};
 
 use crate::file::arrangement::Arrangement;
-use crate::file::system::{Between, System};
+use crate::file::body::Kinetic;
+use crate::file::system::{Between, System, SystemBody};
+use crate::run::nearest::Moving;
 use crate::run::springs::Springs;
 
-/// A body and its weight.
+/// A body and its weight. Of the three kinetic terms one has the factor one, the others zero.
 #[lagrangian(
     group(F = SO3, d = R3),
     advected(x = d.seen_from(space)),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h)
-        - 0.5 * h * m * g * (x + x + d).dot(&up),
+    l_d = {
+        let xi = log(F);
+        let tangent = vee(F - F.transpose()) / (1.0 + F.trace());
+        (rigid * ((F - I) * J_d * (F - I).transpose()).trace()
+            + geodesic * xi.dot(&(J * xi))
+            + cayley * 4.0 * tangent.dot(&(J * tangent))
+            + m * d.norm_squared()) / (2.0 * h)
+            - 0.5 * h * m * g * (x + x + d).dot(&up)
+    },
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Heavy {
     /// About the centre of mass, kg m².
+    pub(crate) J: Inertia,
     pub(crate) J_d: NonstandardInertia,
+    pub(crate) rigid: f64,
+    pub(crate) geodesic: f64,
+    pub(crate) cayley: f64,
     /// kg.
     pub(crate) m: f64,
     /// m/s².
@@ -35,6 +49,8 @@ pub(crate) struct Heavy {
 type Parts<const N: usize> = Sum<Placement<Each<N>, Heavy, N>, Springs<N>>;
 pub(crate) type SystemStepper<const N: usize, const L: usize> =
     Stepper<Parts<N>, JointedBodies<Parts<N>, Link, 5, N, N, L>>;
+
+type StateOf<const N: usize, const L: usize> = <SystemStepper<N, L> as Integrator>::State;
 
 /// A joint, or the place of one.
 type Link = Option<Joint>;
@@ -60,22 +76,41 @@ impl System {
         // What is behind the bodies is like the first without gravity, and rests.
         let heavy = |place: usize| {
             let (body, g) = self.bodies.get(place).map_or((&self.bodies[0], 0.0), |body| (body, g));
-            Heavy { J_d: body.J_d, m: body.m, g, up }
+            let is = |kinetic| f64::from(u8::from(body.kinetic == kinetic));
+            let [rigid, geodesic, cayley] = [Kinetic::Rigid, Kinetic::Geodesic, Kinetic::Cayley].map(is);
+            Heavy { J: body.J, J_d: body.J.to_nonstandard(), rigid, geodesic, cayley, m: body.m, g, up }
         };
         let parts = Each::<N>::of(from_fn::<_, N, _>(heavy)) + Springs::of(&self.springs);
         Stepper::jointed(parts, self.arrangement.joints(&self.joints), self.step)
     }
 
-    pub(crate) fn start<const N: usize>(&self) -> ([(SO3, R3); N], Bodies<Vector6<f64>, N>) {
-        let at = |place: usize| {
-            let Some(body) = self.bodies.get(place) else {
-                return ((SO3::identity(), R3::identity()), Vector6::zeros());
-            };
+    /// Bodies and velocities of the file.
+    fn given(&self) -> Vec<Moving> {
+        let of = |body: &SystemBody| {
             let (turn, shift) = (body.start.velocity, body.moving);
             let velocity = Vector6::new(turn.x, turn.y, turn.z, shift.x, shift.y, shift.z);
             ((SO3::from(body.start.attitude), R3::from(body.position)), velocity)
         };
-        let all: [_; N] = from_fn(at);
-        (all.map(|(body, _)| body), Bodies(all.map(|(_, velocity)| velocity)))
+        self.bodies.iter().map(of).collect()
+    }
+
+    /// The start of the file; where it asks for the nearest one, that from which joints are closed.
+    pub(crate) fn start<const N: usize, const L: usize>(
+        &self,
+        stepper: &SystemStepper<N, L>,
+    ) -> Result<StateOf<N, L>, SetupError> {
+        let padded = |bodies: &[Moving]| {
+            let resting = ((SO3::identity(), R3::identity()), Vector6::zeros());
+            let all: [_; N] = from_fn(|place| bodies.get(place).copied().unwrap_or(resting));
+            (all.map(|(body, _)| body), Bodies(all.map(|(_, velocity)| velocity)))
+        };
+        let given = self.given();
+        let (bodies, velocities) = padded(&given);
+        let started = stepper.start(bodies, velocities);
+        if !self.nearest {
+            return started;
+        }
+        let (bodies, velocities) = if started.is_ok() { (bodies, velocities) } else { padded(&self.shifted(given)) };
+        stepper.start_nearest(bodies, velocities)
     }
 }

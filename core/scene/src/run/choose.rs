@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use liestep::accuracy::Accuracy;
+use liestep::accuracy::{Accuracy, Choice};
 use liestep::effects::{CayleyBody, Dipole, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::groups::Advected;
 use liestep::mechanics::{
@@ -102,6 +102,7 @@ where
     Whole<K, W>: Regular<Scalar = f64, Group = SO3>,
 {
     let Pace::Step { step, .. } = file.run.pace else { return Err(nothing()) };
+    file.check_kicks()?;
     let J = inertia(file)?;
     let numbers = numbers(file, &J, Some(&Moving::of(file, J)?), 0.0);
     let stepper = whole.clone().with_all(&numbers).map_err(late_error)?;
@@ -113,7 +114,7 @@ where
 /// No effect that asks for an inertia is beside a Lagrangian.
 fn inertia(file: &SceneFile) -> Result<Inertia, Stop> {
     match file.body {
-        Some(body) => Ok(body.inertia()),
+        Some(body) => Ok(body.J),
         None => Inertia::from_principal_moments(V::repeat(1.0)).map_err(|error| Stop::Other(error.to_string())),
     }
 }
@@ -172,6 +173,7 @@ pub(crate) fn stepper(file: &SceneFile) -> Result<MemberStart, Stop> {
     let Pace::Step { step, .. } = file.run.pace else {
         return Err(Stop::Other("the step is chosen for an accuracy by trial runs".to_owned()));
     };
+    file.check_kicks()?;
     let stepper = by_steps(file, step)?.hiding_advected();
     let state = stepper.start(file.start.attitude, file.start.velocity).map_err(Stop::Start)?;
     Ok((stepper, state))
@@ -285,16 +287,33 @@ fn potential(file: &SceneFile, J: &Inertia) -> Result<Rest, Stop> {
     rest(file, J)?.map_or_else(nothing, Ok).map_err(late_error)
 }
 
+/// Fewest steps of a run that leaves their number open: fewer would be drawn as a polygon.
+const FEWEST: u32 = 1000;
+
+/// The scene by the method of a choice and the fewest steps, where the file leaves their number open and the choice has
+/// less.
+fn refined(file: &SceneFile, choice: &Choice) -> Option<(SceneFile, f64)> {
+    let is_coarse = file.run.is_left_open && choice.steps < u64::from(FEWEST);
+    let method = Method::of_offer(&choice.chosen().name).filter(|_| is_coarse)?;
+    let step = file.run.duration / f64::from(FEWEST);
+    let mut refined = file.clone();
+    (refined.run.method, refined.run.pace) = (method, Pace::Step { step, steps: FEWEST });
+    Some((refined, step))
+}
+
 /// Makes the steps that an accuracy takes.
 fn ask(file: &SceneFile, tolerance: f64, listeners: Listeners<'_>) -> Result<Run, Stop> {
     let accuracy = Accuracy { tolerance, horizon: file.run.duration };
-    let J = file.body.ok_or_else(nothing)?.inertia();
+    let J = file.body.ok_or_else(nothing)?.J;
     let scene = RigidBody { J_d: J.to_nonstandard() } + potential(file, &J)?;
     let stepper = Stepper::for_accuracy(scene, accuracy, file.start.attitude, file.start.velocity);
     let stepper = stepper.map_err(Stop::Accuracy)?;
     let choice = stepper.choice().clone();
-    let course = course(file, choice.steps);
-    let mut run = make(&*stepper, stepper.start(), course, sample, watches(file), listeners)?;
+    let mut run = if let Some((file, step)) = refined(file, &choice) {
+        by_steps(&file, step)?.run(&file, FEWEST, listeners)?
+    } else {
+        make(&*stepper, stepper.start(), course(file, choice.steps), sample, watches(file), listeners)?
+    };
     run.choice = Some(choice);
     Ok(run)
 }

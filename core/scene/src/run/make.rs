@@ -10,7 +10,8 @@ use liestep::recording::{self, Reason, RecordError, Recorder, RunError, Sink};
 use liestep::{SetupError, StepError};
 
 use crate::file::column::{Column, picture_stride};
-use crate::file::quantity::short;
+use crate::file::mistake::Mistake;
+use crate::file::quantity::{round, short};
 use crate::file::sample::Sample;
 
 /// A run that came to its end.
@@ -27,6 +28,8 @@ pub struct Run {
     pub(crate) ending: Option<usize>,
     /// Where an accuracy was asked for.
     pub(crate) choice: Option<Choice>,
+    /// Remarks about the file, with their places.
+    pub(crate) notes: Vec<Mistake>,
 }
 
 /// An event that has happened.
@@ -50,6 +53,8 @@ pub(crate) enum Stop {
     Setup(SetupError),
     Start(SetupError),
     Accuracy(AccuracyError),
+    /// A spring that is wrong, by its number in the file.
+    Spring(usize, String),
     Step {
         time: f64,
         cause: StepError,
@@ -64,8 +69,8 @@ impl fmt::Display for Stop {
         match self {
             Self::Setup(cause) | Self::Start(cause) => cause.fmt(f),
             Self::Accuracy(cause) => cause.fmt(f),
-            Self::Table(cause) | Self::Other(cause) => f.write_str(cause),
-            Self::Step { time, cause } => write!(f, "stopped at t = {time} s: {}", told(cause)),
+            Self::Spring(_, cause) | Self::Table(cause) | Self::Other(cause) => f.write_str(cause),
+            Self::Step { time, cause } => write!(f, "stopped at t = {} s: {}", short(*time), told(cause)),
         }
     }
 }
@@ -81,6 +86,25 @@ pub(crate) fn told(cause: &StepError) -> String {
         ref cause => cause.to_string(),
     }
 }
+
+/// A step of (3.13) that turns a body so far, rad, has its spins wrong by more than a hundredth.
+const FAST_TURN: f64 = 0.25;
+
+/// A note about a body that turns about so far in a step of (3.13), rad: a spin turns by `asin(hΩ)`.
+pub(crate) fn fast_turn(turn: f64) -> Option<String> {
+    (turn > FAST_TURN).then(|| {
+        let share = 100.0 * (turn.min(1.0).asin() / turn.min(1.0) - 1.0);
+        let more = if turn > 1.0 { "at least " } else { "" };
+        format!(
+            "hΩ = {} rad: by `kinetic = \"rigid\"` a body that spins so turns {more}{share:.0} % too far; take a smaller \
+             `step`, or `kinetic = \"geodesic\"`",
+            round(turn)
+        )
+    })
+}
+
+/// A remark about a file, behind its line and column.
+pub(crate) type Note = ((usize, usize), String);
 
 /// Who learns of a run while it is made.
 pub(crate) struct Listeners<'a> {
@@ -158,7 +182,16 @@ pub(crate) fn make<I: Integrator<Group: LieGroup<Scalar: Into<f64>>>>(
         Some(_) => (samples.last().map_or(0.0, |last| last.time) / end.steps.max(1) as f64, " on the average"),
         None => (stepper.step_size().into(), ""),
     };
-    Ok(Run { samples, happenings: happenings.into_inner(), step, average, steps: end.steps, ending, choice: None })
+    Ok(Run {
+        samples,
+        happenings: happenings.into_inner(),
+        step,
+        average,
+        steps: end.steps,
+        ending,
+        choice: None,
+        notes: Vec::new(),
+    })
 }
 
 fn keep(samples: &mut Vec<Sample>, mut now: Sample) {
@@ -235,6 +268,12 @@ impl Run {
         self.steps
     }
 
+    /// Remarks about what in the file could be better, though it runs.
+    #[must_use]
+    pub fn notes(&self) -> &[Mistake] {
+        &self.notes
+    }
+
     /// What was chosen where an accuracy was asked for.
     #[must_use]
     pub fn choice(&self) -> Option<&Choice> {
@@ -245,7 +284,7 @@ impl Run {
     pub(crate) fn summary(&self, title: &str, sum: &str, rest: impl FnOnce(&Sample, &Sample) -> String) -> String {
         let (Some(first), Some(last)) = (self.samples.first(), self.samples.last()) else { return String::new() };
         let (Self { steps, average, .. }, step, rest) = (self, short(self.step), rest(first, last));
-        let [before, after] = [first.energy, last.energy];
-        format!("{title}\n  {sum}, {steps} steps of {step} s{average}\n  energy {before:.6} J → {after:.6} J{rest}\n")
+        let [before, after] = [first.energy, last.energy].map(short);
+        format!("{title}\n  {sum}, {steps} steps of {step} s{average}\n  energy {before} J → {after} J{rest}\n")
     }
 }

@@ -9,15 +9,17 @@ use liestep::recording::{self, Csv, Sink};
 use liestep::{SO3, SetupError, StepError};
 use liestep_late::Slots;
 
+use crate::file::body::Kinetic;
 use crate::file::column::Column;
 use crate::file::event::Event;
+use crate::file::method::Method;
 use crate::file::mistake::Mistake;
 use crate::file::quantity::short;
 use crate::file::scene::{Origin, SceneFile};
 use crate::file::schedule::Pace;
 use crate::run::choose::{self, MemberInLanes, Whole};
 use crate::run::course::{MemberStart, sample};
-use crate::run::make::{Listeners, Run, Stop};
+use crate::run::make::{Listeners, Run, Stop, fast_turn};
 
 impl SceneFile {
     /// Simulates the scene.
@@ -50,7 +52,19 @@ impl SceneFile {
         progress: &'a mut dyn FnMut(f64),
         table: Option<&'a mut dyn Sink>,
     ) -> Result<Run, Mistake> {
-        choose::run(self, Listeners { progress, table }).map_err(|stop| self.mistake(stop))
+        let of_kicks = self.check_kicks().map_err(|stop| self.mistake(stop))?;
+        let mut run = choose::run(self, Listeners { progress, table }).map_err(|stop| self.mistake(stop))?;
+        let Origin { path, places } = &self.origin;
+        let notes = of_kicks.into_iter().chain(self.fast_turn().map(|why| (places.body, why)));
+        run.notes = notes.map(|(place, why)| Mistake::of_run(path, place, why)).collect();
+        Ok(run)
+    }
+
+    /// A note about a body that turns too far in a step of (3.13).
+    fn fast_turn(&self) -> Option<String> {
+        let is_own_step = matches!(self.run.method, Method::Step) && !self.has_steps_of_its_own();
+        let by_steps = self.body.is_some() && is_own_step && self.kinetic() == Kinetic::Rigid;
+        fast_turn(self.turn_of_a_step().filter(|_| by_steps)?)
     }
 
     /// Simulates the scene up to a number of steps; all of one that asks for an accuracy, as its step isn't known before.
@@ -112,8 +126,8 @@ impl SceneFile {
         let place = match stop {
             Stop::Table(message) => return Mistake::of_table(path, message),
             Stop::Step { cause: StepError::BeyondSolvable { .. }, .. } => {
-                if self.body.is_some() {
-                    message.push_str(", or `kinetic = \"cayley\"` of the body, which has no such limit");
+                if self.body.is_some() && self.kinetic() == Kinetic::Rigid {
+                    message.push_str(", or `kinetic = \"geodesic\"` of the body, which may turn further");
                 }
                 let fastest = short(self.start.velocity.amax());
                 // As a person writes degrees.
@@ -121,6 +135,12 @@ impl SceneFile {
                     let hint = format!("; numbers alone are in rad/s: were degrees meant, write \"{fastest} deg/s\"");
                     message.push_str(&hint);
                 }
+                places.pace
+            }
+            Stop::Accuracy(_) if self.run.is_left_open => {
+                message.push_str(
+                    "; a run without a `step` is one for an accuracy of 1e-6: give a `step`, or an `accuracy`",
+                );
                 places.pace
             }
             Stop::Setup(SetupError::InvalidStep { .. }) | Stop::Accuracy(_) | Stop::Step { .. } | Stop::Other(_) => {
@@ -134,6 +154,7 @@ impl SceneFile {
                 | SetupError::NoForceGradient,
             ) => places.method,
             Stop::Setup(_) => places.body,
+            Stop::Spring(..) => places.spring,
             Stop::Start(_) => places.start,
         };
         Mistake::of_run(path, place, message)
@@ -186,10 +207,18 @@ impl SceneFile {
         };
         let events: String = self.event.iter().enumerate().map(line).collect();
         let ends = run.summary(&self.title, &self.sum(), |first, last| {
-            let [before, after] = [first, last].map(|sample| sample.angular_momentum.norm());
-            format!(", momentum {before:.6} → {after:.6} kg m²/s{events}")
+            let [before, after] = [first, last].map(|sample| short(sample.angular_momentum.norm()));
+            format!(", momentum {before} → {after} kg m²/s{events}")
         });
-        let choice = run.choice.as_ref().map(ToString::to_string).unwrap_or_default();
+        let choice = run.choice.as_ref().map(|choice| {
+            let (error, accuracy, method) = (choice.error, choice.accuracy.tolerance, &choice.chosen().name);
+            if self.run.is_left_open {
+                format!("  the end is off by at most about {error:.0e}, by a method for {accuracy:e}: {method}\n")
+            } else {
+                choice.to_string()
+            }
+        });
+        let choice = choice.unwrap_or_default();
         format!("{ends}{choice}")
     }
 }

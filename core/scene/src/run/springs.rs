@@ -49,10 +49,19 @@ impl<const N: usize> Springs<N> {
 impl Between<Spring> {
     /// From one point to the other, in space.
     fn along<const N: usize>(&self, places: &Places<N>) -> Vector3<f64> {
+        self.along_by(|body| FreeBody::from_matrix_unchecked(places.0[body]))
+    }
+
+    /// From one point to the other, in space, of bodies at these places.
+    pub(crate) fn along_of(&self, places: &[FreeBody]) -> Vector3<f64> {
+        self.along_by(|body| places[body])
+    }
+
+    fn along_by(&self, place: impl Fn(usize) -> FreeBody) -> Vector3<f64> {
         let [one, other] = [0, 1].map(|side| {
             let point = self.of.at[side];
             self.bodies[side].map_or(point, |body| {
-                let (attitude, place) = FreeBody::from_matrix_unchecked(places.0[body]);
+                let (attitude, place) = place(body);
                 attitude.as_matrix() * point + place.translation()
             })
         });

@@ -2,15 +2,17 @@
 
 use liestep::motion::Moment;
 use liestep::recording::Sink;
-use liestep::{SetupError, StepError};
+use liestep::{SO3, SetupError, StepError};
 use nalgebra::{Vector3, Vector6};
 
 use crate::file::arrangement::{BODIES, LOOPS};
+use crate::file::body::Kinetic;
 use crate::file::mistake::Mistake;
+use crate::file::quantity::{round, short};
 use crate::file::sample::{BodySample, Sample};
-use crate::file::system::System;
+use crate::file::system::{System, SystemBody};
 use crate::run::bodies::SystemStepper;
-use crate::run::make::{Course, Listeners, Run, Stop, make, told};
+use crate::run::make::{Course, Listeners, Note, Run, Stop, fast_turn, make, told};
 
 /// The systems that there are, the smallest first. With loops there is the largest only: each is code of its own.
 const SIZES: [Size; 4] = [Size::of::<2, 0>(), Size::of::<4, 0>(), Size::of::<BODIES, 0>(), Size::of::<BODIES, LOOPS>()];
@@ -78,7 +80,7 @@ impl System {
         progress: &'a mut dyn FnMut(f64),
         table: Option<&'a mut dyn Sink>,
     ) -> Result<Run, Mistake> {
-        self.simulate(u64::from(self.steps), Listeners { progress, table })
+        self.simulate(u64::from(self.steps), Listeners { progress, table }).map_err(|stop| self.mistake(stop))
     }
 
     /// Simulates the system up to a number of steps.
@@ -87,11 +89,12 @@ impl System {
     ///
     /// As [`run`](Self::run).
     pub fn first(&self, most: u32) -> Result<Run, Mistake> {
-        self.simulate(u64::from(most.min(self.steps)), Listeners { progress: &mut |_| (), table: None })
+        let first = self.simulate(u64::from(most.min(self.steps)), Listeners { progress: &mut |_| (), table: None });
+        first.map_err(|stop| self.mistake(stop))
     }
 
-    fn simulate(&self, steps: u64, listeners: Listeners<'_>) -> Result<Run, Mistake> {
-        (self.size().simulate)(self, steps, listeners).map_err(|stop| self.mistake(stop))
+    pub(crate) fn simulate(&self, steps: u64, listeners: Listeners<'_>) -> Result<Run, Stop> {
+        (self.size().simulate)(self, steps, listeners)
     }
 
     /// The smallest that has room for the bodies and the loops.
@@ -103,27 +106,58 @@ impl System {
 
     fn simulate_in<const N: usize, const L: usize>(&self, steps: u64, listeners: Listeners<'_>) -> Result<Run, Stop> {
         let stepper = self.stepper::<N, L>().map_err(Stop::Setup)?;
-        let (bodies, velocities) = self.start();
-        let started =
-            if self.nearest { stepper.start_nearest(bodies, velocities) } else { stepper.start(bodies, velocities) };
-        let state = started.map_err(Stop::Start)?;
+        let state = self.start(&stepper).map_err(Stop::Start)?;
+        let of_springs = self.check_springs(&state.attitude()[..self.bodies.len()])?;
         let (stride, columns) = (self.output.stride(steps), self.columns.as_slice());
         let course = Course { steps, end: f64::INFINITY, stride, columns, listed: self.columns() };
         let sample = |now: &Moment<'_, _>| sample(&stepper, self.bodies.len(), now);
-        make(&stepper, state, course, sample, Vec::new(), listeners)
+        let mut run = make(&stepper, state, course, sample, Vec::new(), listeners)?;
+        let of_springs = of_springs.map(|(spring, why)| (self.places.springs[spring], why));
+        let notes = of_springs.into_iter().chain(self.fast_turns());
+        run.notes = notes.map(|(place, why)| Mistake::of_run(&self.path, place, why)).collect();
+        Ok(run)
+    }
+
+    /// Notes about bodies that turn too far in a step of (3.13).
+    fn fast_turns(&self) -> impl Iterator<Item = Note> {
+        let rigid = self.bodies.iter().zip(&self.places.bodies).filter(|(body, _)| body.kinetic == Kinetic::Rigid);
+        rigid.filter_map(|(body, place)| Some((*place, fast_turn(self.step * body.start.velocity.norm())?)))
+    }
+
+    /// Differences of the nearest start from the file, a line for each body that is elsewhere.
+    #[must_use]
+    pub fn changes(&self, run: &Run) -> String {
+        let Some(start) = run.samples().first().filter(|_| self.nearest) else { return String::new() };
+        let line = |(given, now): (&SystemBody, &BodySample)| {
+            let turned = SO3::from(given.start.attitude).as_matrix() - now.attitude.as_matrix();
+            let turned = 2.0 * (turned.norm() / 8.0_f64.sqrt()).min(1.0).asin();
+            let [moved, faster, quicker] =
+                [given.position - now.position, given.moving - now.moving, given.start.velocity - now.velocity]
+                    .map(|change| change.norm());
+            // Smaller changes are roundings, and digits that aren't typed.
+            let is_changed = moved.max(faster).max(quicker).max(turned) > 1e-9;
+            let [moved, turned, faster, quicker] = [moved, turned, faster, quicker]
+                .map(|change| if change > 1e-9 { round(change) } else { "0".to_owned() });
+            let changes = format!(
+                "moved by {moved} m, turned by {turned} rad, its velocity by {faster} m/s, its angular velocity by {quicker} rad/s"
+            );
+            is_changed.then(|| format!("  `{}` doesn't start as the file says: {changes}\n", given.name))
+        };
+        self.bodies.iter().zip(&start.bodies).filter_map(line).collect()
     }
 
     /// Lines about the beginning and the end of a run.
     #[must_use]
     pub fn summary(&self, run: &Run) -> String {
-        run.summary(&self.title, &self.sum(), |_, _| {
+        let ends = run.summary(&self.title, &self.sum(), |_, _| {
             if self.joints.is_empty() {
                 return String::new();
             }
             let widest = run.samples().iter().map(|sample| sample.gap).fold(0.0, f64::max);
             let unit = if self.has_pins() { "(m and cosines)" } else { "m" };
             format!(", joints open by {widest:.1e} {unit} at most")
-        })
+        });
+        ends + &self.changes(run)
     }
 
     /// Where the joint is that the library gives this number.
@@ -140,8 +174,9 @@ impl System {
             Stop::Setup(error) | Stop::Start(error) => self.obstacle(error),
             Stop::Step { time, cause } => {
                 let (place, why) = self.end_of_steps(&cause);
-                (place, format!("stopped at t = {time} s: {why}"))
+                (place, format!("stopped at t = {} s: {why}", short(time)))
             }
+            Stop::Spring(spring, why) => (self.places.springs[spring], why),
             stop => (self.places.pace, stop.to_string()),
         };
         Mistake::of_run(&self.path, place, message)

@@ -45,7 +45,7 @@ impl System {
     pub fn picture(&self, run: &Run) -> PlotResult<String> {
         let samples = run.samples();
         let Some(start) = samples.first() else { return Err("a run has a state".into()) };
-        let ([across, up], axes) = match self.picture.plane {
+        let ([across, up], axes) = match self.picture.plane.unwrap_or_else(|| plane_of(samples)) {
             Plane::Xy => (["x, m", "y, m"], [0, 1]),
             Plane::Xz => (["x, m", "z, m"], [0, 2]),
             Plane::Yz => (["y, m", "z, m"], [1, 2]),
@@ -75,6 +75,23 @@ impl System {
         });
         let subtitle = format!("{}, h = {} s", self.sum(), self.step);
         draw((&self.title, &subtitle), &names, path, &[turns, energy], Panel::draw)
+    }
+}
+
+/// The plane across the direction in which places are spread the least; of several directions y comes first, then x.
+fn plane_of(samples: &[Sample]) -> Plane {
+    let spread = |axis: usize| {
+        let places = samples.iter().flat_map(|sample| &sample.bodies).map(|body| body.position[axis]);
+        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        high - low
+    };
+    let [x, y, z] = [0, 1, 2].map(spread);
+    // Spreads that differ by rounding are equal.
+    let least = x.min(y).min(z) + 1e-9 * x.max(y).max(z);
+    match (y <= least, x <= least) {
+        (true, _) => Plane::Xz,
+        (_, true) => Plane::Yz,
+        _ => Plane::Xy,
     }
 }
 

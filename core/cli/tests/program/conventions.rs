@@ -1,0 +1,196 @@
+//! What numbers of a file mean: attitudes, directions, tensors, and the order of parameters.
+
+use std::f64::consts::PI;
+
+use liestep::SO3;
+use liestep::effects::{CayleyBody, RigidBody};
+use liestep::mechanics::Inertia;
+use liestep::prelude::*;
+use liestep_scene::{Form, Sample, Scene, parse};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+
+/// A body with a line for its attitude.
+fn text(attitude: &str) -> String {
+    format!(
+        "title = \"a\"\n[body]\nmoments = [3, 3, 4]\n[start]\n{attitude}\nvelocity = [0.1, 0.2, 0.3]\n[run]\nstep = 0.1\n\
+         duration = 1\n"
+    )
+}
+
+fn start(text: &str) -> Sample {
+    parse("a.toml", text).unwrap().first(1).unwrap().samples()[0].clone()
+}
+
+/// Body to space.
+fn attitude(line: &str) -> Matrix3<f64> {
+    *start(&text(line)).bodies[0].attitude.as_matrix()
+}
+
+fn refused(line: &str) -> String {
+    parse("a.toml", &text(line)).err().unwrap().to_string()
+}
+
+fn about(axis: usize, angle: f64) -> Matrix3<f64> {
+    let axes = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()];
+    *UnitQuaternion::from_axis_angle(&axes[axis], angle).to_rotation_matrix().matrix()
+}
+
+fn same(one: Matrix3<f64>, other: Matrix3<f64>) -> bool {
+    (one - other).amax() < 1e-15
+}
+
+/// Euler's angles are z-x-z, yaw, pitch and roll z-y-x, both about axes that turn with the body; a column of an attitude is an axis of the body in
+/// space.
+#[test]
+fn attitudes() {
+    let zxz = about(2, 0.3) * about(0, 0.5) * about(2, 0.7);
+    assert!(same(attitude("euler = [0.3, 0.5, 0.7]"), zxz));
+    let zyx = about(2, 0.3) * about(1, 0.5) * about(0, 0.7);
+    assert!(same(attitude("yaw_pitch_roll = [0.3, 0.5, 0.7]"), zyx));
+    assert!(same(attitude("yaw_pitch_roll = [0, \"30 deg\", 0]"), about(1, PI / 6.0)));
+    let (s, c) = (0.25_f64.sin(), 0.25_f64.cos());
+    let quaternion = attitude(&format!("quaternion = [{c}, 0, {s}, 0]"));
+    assert!(same(quaternion, about(1, 0.5)));
+    assert!(same(attitude(&format!("quaternion = {{ w = {c}, x = 0, y = {s}, z = 0 }}")), quaternion));
+    let velocity = start(&text("euler = [0.3, 0.5, 0.7]")).bodies[0].velocity;
+    assert!((velocity - Vector3::new(0.1, 0.2, 0.3)).amax() < 1e-15);
+}
+
+/// Degrees without a unit are thirty radians, and a quaternion with the scalar last is half a turn: neither is taken.
+#[test]
+fn what_is_ambiguous_is_refused() {
+    let degrees = "a.toml:5:13: 30 has no unit: write \"30 rad\" or \"30 deg\"";
+    assert_eq!(refused("euler = [0, 30, 0]"), degrees);
+    assert_eq!(refused("euler = [0, 30.0, 0]"), degrees);
+    assert_eq!(
+        refused("yaw_pitch_roll = [0, 0, -90]"),
+        "a.toml:5:25: -90 has no unit: write \"-90 rad\" or \"-90 deg\""
+    );
+    assert!(same(attitude("euler = [0, \"30 rad\", 0]"), about(0, 30.0)));
+    assert!((attitude("euler = [0, -6.28318530718, 0]") - about(0, -2.0 * PI)).amax() < 1e-11);
+    let event = text("euler = [0, 0, 0]") + "[[event]]\nname = \"low\"\ntilt = 60\n";
+    assert!(
+        parse("a.toml", &event).err().unwrap().to_string().ends_with("60 has no unit: write \"60 rad\" or \"60 deg\"")
+    );
+    for last in ["[0, 0, 0, 1]", "[0.0, 0.0, 0.0, -1.0]", "[0, 0, 0, 2]"] {
+        let message = refused(&format!("quaternion = {last}"));
+        assert!(
+            message.starts_with("a.toml:5:14: `quaternion` begins with w, so this is half a turn about z:"),
+            "{message}"
+        );
+    }
+    assert!(same(attitude("quaternion = { w = 0, x = 0, y = 0, z = 1 }"), about(2, PI)));
+    assert!((attitude("quaternion = [0, 0, 1e-9, 1]") - about(2, PI)).amax() < 1e-8);
+    assert!(refused("quaternion = { w = 1, x = 0, y = 0 }").contains("a quaternion is `[w, x, y, z]` or"));
+    assert!(refused("quaternion = [0, 0, 0, 0]").ends_with("can't be zero"));
+    assert!(
+        refused("euler = [0, 0, 0]\nyaw_pitch_roll = [0, 0, 0]")
+            .contains("one of `euler`, `quaternion`, `yaw_pitch_roll`")
+    );
+    let rates = text("yaw_pitch_roll = [0, 0, 0]").replace("velocity", "euler_rates");
+    assert!(parse("a.toml", &rates).err().unwrap().to_string().ends_with("`euler_rates` need the attitude by `euler`"));
+}
+
+/// Marsaglia's xorshift, from −1 to 1.
+struct Random(u64);
+
+impl Random {
+    fn number(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        f64::from(u32::try_from(self.0 >> 32).unwrap()) / f64::from(u32::MAX) * 2.0 - 1.0
+    }
+}
+
+/// Inertias as they are written: bodies of files and of programs start with the same momentum, to the bit.
+#[test]
+fn inertias_as_they_are_written() {
+    let mut random = Random(1);
+    for _ in 0..30 {
+        let turn =
+            UnitQuaternion::from_scaled_axis(Vector3::from_fn(|_, _| random.number()) * 2.0).to_rotation_matrix();
+        let moments = Vector3::new(1.0, 1.3, 1.5) + Vector3::from_fn(|_, _| random.number()) * 0.2;
+        let full = turn.matrix() * Matrix3::from_diagonal(&moments) * turn.matrix().transpose();
+        let full = (full + full.transpose()) * 0.5;
+        let rows = [0, 1, 2].map(|row| format!("{:?}", full.row(row).iter().collect::<Vec<_>>())).join(", ");
+        let body =
+            |line: &str| start(&text("euler = [0, 0, 0]").replace("moments = [3, 3, 4]", line)).bodies[0].momentum;
+        let (J, velocity) = (Inertia::new(full).unwrap(), Vector3::new(0.1, 0.2, 0.3));
+        let cayley = Stepper::new(CayleyBody { J }, 0.1).unwrap().start(SO3::identity(), velocity).unwrap();
+        assert_eq!(body(&format!("J = [{rows}]\nkinetic = \"cayley\"")), cayley.momentum());
+        let rigid = Stepper::new(RigidBody { J_d: J.to_nonstandard() }, 0.1).unwrap();
+        let rigid = rigid.start(SO3::identity(), velocity).unwrap();
+        assert_eq!(body(&format!("J = [{rows}]")), rigid.momentum());
+        let [x, y, z] = [moments.x, moments.y, moments.z];
+        let J = Inertia::from_principal_moments(moments).unwrap();
+        let cayley = Stepper::new(CayleyBody { J }, 0.1).unwrap().start(SO3::identity(), velocity).unwrap();
+        let found = body(&format!("moments = [{x:?}, {y:?}, {z:?}]\nkinetic = \"cayley\""));
+        assert_eq!(found, cayley.momentum());
+    }
+}
+
+/// A tensor's entries off its diagonal are `−∫ x y dm`: of two masses at ±(1, 1, 0), `J_xy = −2`.
+#[test]
+fn the_sign_of_products_of_inertia() {
+    let body = "J = [[2, -2, 0], [-2, 2, 0], [0, 0, 4]]";
+    let J = Matrix3::new(2.0, -2.0, 0.0, -2.0, 2.0, 0.0, 0.0, 0.0, 4.0) + Matrix3::identity() * 0.1;
+    let body = body.replace("2, -2, 0]", "2.1, -2, 0]").replace("-2, 2, 0]", "-2, 2.1, 0]").replace("0, 4]", "0, 4.1]");
+    let momentum = start(&text("euler = [0, 0, 0]").replace("moments = [3, 3, 4]", &body)).bodies[0].momentum;
+    assert!((momentum - J * Vector3::new(0.1, 0.2, 0.3)).norm() < 1e-15, "{momentum}");
+}
+
+/// Parameters are in the order of the file, whatever their names: no operation of the C text and no bit depends on the
+/// alphabet.
+#[test]
+fn names_change_no_bit() {
+    let own = |[a, b, c, d]: [&str; 4]| {
+        format!(
+            "title = \"own\"\n[lagrangian]\nl_d = \"((F - I) * {a}_d * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * {b} * {c} * \
+             {b}{d} * (s.dot({d}) + (F.transpose() * s).dot({d})) - 0.5 * h * {c} * (w.dot({d}) + (F.transpose() * w).dot({d}))\"\n\
+             advected = {{ w = \"{a}p\", s = \"{d}p\" }}\n{a}_d = {{ moments = [3, 3.3, 4.1] }}\n{b} = 1.1\n{b}{d} = 0.37\n\
+             {c} = 9.81\n{d} = [0.1, 0.7, 1.3]\n{a}p = [0, 0.6, 0.8]\n{d}p = [0.3, 0.1, 0.2]\n[start]\n\
+             euler = [0.1, 0.4, 0.2]\nvelocity = [0.3, 0.2, 5.1]\n[run]\nstep = 0.01\nduration = 0.5\n"
+        )
+    };
+    let all = [["j", "m", "g", "r"], ["z", "y", "x", "q"], ["p", "b", "m", "a"], ["a", "b", "c", "d"]].map(|names| {
+        let scene = parse("own.toml", &own(names)).unwrap();
+        let end = scene.run().unwrap().samples().last().unwrap().clone();
+        let text = scene.written(Form::C).unwrap();
+        let [a, b, c, d] = names;
+        let listed = format!("[9..10]: {b}\n   parameters[10..11]: {b}{d}\n   parameters[11..12]: {c}\n");
+        assert!(text.contains(&format!("[0..9]: {a}_d\n   parameters{listed}")), "{text}");
+        // The names are in the comment that lists them.
+        (end, text[text.find("static void constants").unwrap()..].to_owned())
+    });
+    assert!(all.iter().all(|one| *one == all[0]));
+}
+
+/// Words of other programs have the name of this one behind them.
+#[test]
+fn words_of_other_programs() {
+    for (line, advice) in [
+        ("rpy = [0, 0, 0]", "; roll, pitch and yaw are `yaw_pitch_roll`, yaw first"),
+        ("omega = [0, 0, 0]", "; the angular velocity is `velocity`, in the body"),
+    ] {
+        assert!(refused(line).ends_with(advice), "{}", refused(line));
+    }
+    for (table, advice) in
+        [("wheel", "; a wheel in the body is a `rotor`"), ("damping", "; damping against turning is `drag`")]
+    {
+        let own = text("euler = [0, 0, 0]") + &format!("[{table}]\nc = 1\n");
+        let message = parse("a.toml", &own).err().unwrap().to_string();
+        assert!(message.ends_with(advice), "{message}");
+    }
+    let joint = |kind: &str, body: &str| {
+        let text = format!(
+            "title = \"a\"\n[[body]]\nname = \"a\"\nm = 2\nmoments = [1, 2, 2.5]\nposition = [0, 0, 0]\nstart.euler = [0, 0, 0]\n\
+             start.velocity = [1, 2, 1.5]\n[[joint]]\nkind = \"{kind}\"\nbodies = [\"{body}\", \"a\"]\nat = [[0, 0, 0], [0, 0, 0]]\n\
+             [run]\nstep = 0.02\nduration = 2\n"
+        );
+        Scene::parse("a.toml", &text).err().unwrap().to_string()
+    };
+    assert!(joint("hinge", "space").ends_with("; a hinge is a `pin`"));
+    assert!(joint("weld", "space").contains("are one body: add their masses"));
+    assert!(joint("ball", "world").ends_with("; the world is `space`"));
+}

@@ -1,0 +1,70 @@
+//! Bodies of a file put where their joints are closed: positions and their velocities are mended, not how bodies turn.
+
+use liestep::SO3;
+use liestep::groups::R3;
+use nalgebra::{DMatrix, MatrixXx3, SymmetricEigen, Vector3, Vector6};
+
+use crate::file::system::{System, ends_and_axes};
+use crate::run::stiffness::eigen;
+
+/// A body's attitude and place, and its velocities, turning in its own axes.
+pub(crate) type Moving = ((SO3, R3), Vector6<f64>);
+
+impl System {
+    /// Bodies that are shifted as little as can be, as their masses measure it, to where the points of joints meet, with the
+    /// velocities next to theirs that keep them together. How bodies turn stays; where joints form loops points may stay
+    /// apart, by as little as can be.
+    ///
+    /// For bodies whose turns stay both are linear: with `b` the gaps `R_a ρ_a − R_b ρ_b − (x_b − x_a)` and `A` the
+    /// differences `x_b − x_a`, the shifts are `M⁻¹ Aᵀ (A M⁻¹ Aᵀ)⁺ b`.
+    pub(crate) fn shifted(&self, mut bodies: Vec<Moving>) -> Vec<Moving> {
+        let mut differences = DMatrix::zeros(self.joints.len(), bodies.len());
+        let mut gaps = MatrixXx3::zeros(self.joints.len());
+        let mut partings = MatrixXx3::zeros(self.joints.len());
+        for (row, joint) in self.joints.iter().enumerate() {
+            let (ends, _) = ends_and_axes(&joint.of);
+            for (side, sign) in [(0, -1.0), (1, 1.0)] {
+                let (place, velocity) = point(joint.bodies[side].map(|body| bodies[body]), &ends[side]);
+                for column in 0..3 {
+                    gaps[(row, column)] -= sign * place[column];
+                    partings[(row, column)] -= sign * velocity[column];
+                }
+                if let Some(body) = joint.bodies[side] {
+                    differences[(row, body)] = sign;
+                }
+            }
+        }
+        let by_masses = DMatrix::from_fn(bodies.len(), self.joints.len(), |body, joint| {
+            differences[(joint, body)] / self.bodies[body].m
+        });
+        let inverse = pseudo_inverse(&differences * &by_masses);
+        let [shifts, drifts] = [gaps, partings].map(|apart| &by_masses * &inverse * apart);
+        for (body, ((_, place), velocity)) in bodies.iter_mut().enumerate() {
+            *place = R3::from(place.translation() + Vector3::from_fn(|column, _| shifts[(body, column)]));
+            for column in 0..3 {
+                velocity[3 + column] += drifts[(body, column)];
+            }
+        }
+        bodies
+    }
+}
+
+/// Position and velocity of a point of a body, or of space.
+fn point(body: Option<Moving>, point: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
+    body.map_or((*point, Vector3::zeros()), |((attitude, place), velocity)| {
+        let R = attitude.as_matrix();
+        let turns = velocity.fixed_rows::<3>(0).cross(point);
+        (place.translation() + R * point, velocity.fixed_rows::<3>(3) + R * turns)
+    })
+}
+
+/// Pseudo-inverse of a symmetric matrix without negative eigenvalues; zero of one that isn't finite.
+fn pseudo_inverse(matrix: DMatrix<f64>) -> DMatrix<f64> {
+    let (rows, columns) = matrix.shape();
+    let Some(SymmetricEigen { eigenvectors, eigenvalues }) = eigen(matrix) else {
+        return DMatrix::zeros(rows, columns);
+    };
+    let limit = 1e-12 * eigenvalues.max();
+    let inverse = eigenvalues.map(|value| if value > limit { value.recip() } else { 0.0 });
+    &eigenvectors * DMatrix::from_diagonal(&inverse) * eigenvectors.transpose()
+}

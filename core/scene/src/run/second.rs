@@ -1,0 +1,135 @@
+//! Error of a run's end, estimated by a second run with other steps (Richardson).
+
+use nalgebra::Vector3;
+
+use crate::file::method::Method;
+use crate::file::quantity::round;
+use crate::file::sample::Sample;
+use crate::file::scene::SceneFile;
+use crate::file::schedule::Pace;
+use crate::file::system::System;
+use crate::run::choose;
+use crate::run::make::{Listeners, Run, Stop};
+
+/// Attitudes that are this far from each other, rad, are of two motions.
+const ANOTHER: f64 = 1.0;
+/// A velocity that is wrong by this share of the largest is of another motion.
+const SHARE: f64 = 0.5;
+
+/// Differences of two states, the largest of all bodies: rad, rad/s, m and m/s.
+struct Apart([f64; 4]);
+
+impl Apart {
+    fn of(one: &Sample, other: &Sample) -> Self {
+        let mut most = [0.0_f64; 4];
+        for (one, other) in one.bodies.iter().zip(&other.bodies) {
+            // |R − R'| = √8 sin(θ/2)
+            let sine = (one.matrix() - other.matrix()).norm() / 8.0_f64.sqrt();
+            let apart = [
+                2.0 * sine.min(1.0).asin(),
+                (one.velocity - other.velocity).norm(),
+                (one.position - other.position).norm(),
+                (one.moving - other.moving).norm(),
+            ];
+            most.iter_mut().zip(apart).for_each(|(most, apart)| *most = most.max(apart));
+        }
+        Self(most)
+    }
+}
+
+/// The largest velocities of a run, rad/s and m/s, and how far its bodies go from their starts, m.
+fn largest(run: &Run) -> [f64; 3] {
+    let Some(first) = run.samples().first() else { return [0.0; 3] };
+    let mut most = [0.0_f64; 3];
+    for body in run.samples().iter().flat_map(|sample| sample.bodies.iter().zip(&first.bodies)) {
+        let (now, start) = body;
+        let size = |of: &Vector3<f64>| of.norm();
+        let all = [size(&now.velocity), size(&now.moving), (now.position - start.position).norm()];
+        most.iter_mut().zip(all).for_each(|(most, one)| *most = most.max(one));
+    }
+    most
+}
+
+/// The line about the end of a run by a method of this order. `again` makes a run of so many steps of this length, s.
+fn line(run: &Run, order: u32, again: impl Fn(u32, f64) -> Result<Run, Stop>) -> Option<String> {
+    let steps = u32::try_from(run.steps()).ok().filter(|steps| *steps > 0)?;
+    // The second run has half as many steps; twice as many, where that isn't a whole number or can't be stepped.
+    let longer = (steps % 2 == 0).then(|| again(steps / 2, 2.0 * run.step()).ok()).flatten();
+    let (second, is_longer) = match longer {
+        Some(second) => (second, true),
+        None => (again(steps.checked_mul(2)?, 0.5 * run.step()).ok()?, false),
+    };
+    let share = f64::from(2_u32.saturating_pow(order));
+    let factor = if is_longer { 1.0 / (share - 1.0) } else { share / (share - 1.0) };
+    let [turning, moving, way] = largest(run);
+    // A motion slower than this is rounding.
+    let floor = 1e-6 / (f64::from(steps) * run.step());
+    let limits = [ANOTHER, SHARE * turning.max(floor), SHARE * way.max(1e-6), SHARE * moving.max(floor)];
+    let another = |Apart(apart): &Apart| {
+        let names = ["attitude", "angular velocity", "position", "velocity"].into_iter();
+        names.zip(apart.iter().zip(&limits)).find_map(|(name, (apart, limit))| (apart > limit).then_some(name))
+    };
+    let mut seconds = second.samples().iter().peekable();
+    let mut end = None;
+    for sample in run.samples() {
+        let early = |other: &&&Sample| other.time < sample.time - 0.25 * run.step();
+        while seconds.next_if(|other| early(&other)).is_some() {}
+        let Some(other) = seconds.peek().filter(|other| other.time < sample.time + 0.25 * run.step()) else { continue };
+        let apart = Apart::of(sample, other);
+        if let Some(name) = another(&apart) {
+            return Some(format!(
+                "  the end isn't determined: by steps of {} s the {name} is another from t = {} s on\n",
+                round(second.step()),
+                round(sample.time)
+            ));
+        }
+        end = Some(apart);
+    }
+    let [turn, rate, place, speed] = end?.0.map(|apart| apart * factor);
+    let shifted = if run.samples().first()?.bodies.len() > 1 || place + speed > 0.0 {
+        format!(", {place:.0e} m and {speed:.0e} m/s")
+    } else {
+        String::new()
+    };
+    Some(format!(
+        "  the end is off by about {turn:.0e} rad and {rate:.0e} rad/s{shifted}, as steps of {} s show\n",
+        round(second.step())
+    ))
+}
+
+impl SceneFile {
+    /// A line about how far the end of a run is off, as a second run of half as many steps shows, or of twice as many;
+    /// empty where steps aren't equal or are of an accuracy.
+    #[must_use]
+    pub fn end_error(&self, run: &Run) -> String {
+        if self.has_steps_of_its_own() || run.choice.is_some() {
+            return String::new();
+        }
+        let order = match self.run.method {
+            Method::Step => self.order(),
+            Method::Composition(scheme) => scheme.0.order(),
+            Method::Splitting(scheme) => scheme.0.order(),
+            Method::Processed(scheme) => scheme.0.order(),
+            Method::Collocation(stages) => stages.order(),
+        };
+        let again = |steps, step| {
+            let mut second = self.clone();
+            second.run.pace = Pace::Step { step, steps };
+            second.event.clear();
+            choose::run(&second, Listeners { progress: &mut |_| (), table: None })
+        };
+        line(run, order, again).unwrap_or_default()
+    }
+}
+
+impl System {
+    /// A line about the end of a run, as [`SceneFile::end_error`].
+    #[must_use]
+    pub fn end_error(&self, run: &Run) -> String {
+        let again = |steps, step| {
+            let second = Self { step, steps, ..self.clone() };
+            second.simulate(u64::from(steps), Listeners { progress: &mut |_| (), table: None })
+        };
+        line(run, 2, again).unwrap_or_default()
+    }
+}

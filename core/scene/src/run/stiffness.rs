@@ -1,0 +1,161 @@
+//! The fastest vibration of springs against the step: half a kick, a drift and half a kick are unstable beyond `hω = 2`.
+
+use liestep::SO3;
+use liestep::groups::R3;
+use liestep::mechanics::Inertia;
+use nalgebra::{DMatrix, Dyn, Matrix3, Matrix3xX, SymmetricEigen, Vector3};
+
+use crate::file::quantity::{round, short};
+use crate::file::system::{System, ends_and_axes};
+use crate::run::make::Stop;
+
+/// Least distance of a spring's ends, in its lengths at rest: below it the direction is that of roundings.
+const NEAREST_ENDS: f64 = 1e-9;
+/// Product `hω` beyond which a note is due: the vibration is a twentieth too fast.
+const COARSE: f64 = 1.0;
+/// Product `hω` beyond which a vibration grows.
+pub(crate) const UNSTABLE: f64 = 2.0;
+
+/// A spring's number in the file, and a message about it.
+pub(crate) type OfSpring = (usize, String);
+
+pub(crate) const NO_DIRECTION: &str =
+    "the ends of this spring are at one place, where its force has no direction: move one of them";
+
+/// Whether the ends of a spring of this length are too near to each other for its force to have a direction.
+pub(crate) fn has_no_direction(apart: f64, length: f64) -> bool {
+    apart <= NEAREST_ENDS * length.abs()
+}
+
+/// Message about a step that is unstable at this rate, rad/s.
+pub(crate) fn unstable(rate: f64, step: f64) -> String {
+    let [rate, most, good] = [rate, UNSTABLE / rate, 0.2 / rate].map(round);
+    format!(
+        "the fastest vibration, in which this spring has the largest part, is at {rate} rad/s, and a step of {} s makes \
+         it grow: take a `step` below {most} s, better {good} s, or a smaller `k`",
+        short(step)
+    )
+}
+
+/// Note about a step that is long for a vibration at this rate now, and at that at most, rad/s.
+pub(crate) fn coarse(now: f64, most: f64, step: f64) -> Option<String> {
+    let good = round(0.2 / now.max(most));
+    if step * now > COARSE {
+        let (rate, share) = (round(now), 100.0 * (2.0 * (0.5 * step * now).asin() / (step * now) - 1.0));
+        return Some(format!(
+            "the fastest vibration, in which this spring has the largest part, is at {rate} rad/s, and a step of {} s \
+             makes it {share:.0} % faster: take a `step` of {good} s",
+            short(step)
+        ));
+    }
+    (step * most >= UNSTABLE).then(|| {
+        format!(
+            "where this spring pulls across its arm it vibrates at up to {} rad/s, and a step of {} s would make that \
+             grow: take a `step` of {good} s",
+            round(most),
+            short(step)
+        )
+    })
+}
+
+/// Eigenvalues of a symmetric matrix, and its eigenvectors; none where it isn't finite.
+pub(crate) fn eigen(matrix: DMatrix<f64>) -> Option<SymmetricEigen<f64, Dyn>> {
+    /// Sweeps that no finite matrix takes.
+    const MOST: usize = 10_000;
+    let is_finite = !matrix.is_empty() && matrix.iter().all(|entry| entry.is_finite());
+    is_finite.then(|| SymmetricEigen::try_new(matrix, f64::EPSILON, MOST)).flatten()
+}
+
+/// `J^{-1/2}`.
+pub(crate) fn inverse_root(J: &Inertia) -> Matrix3<f64> {
+    let SymmetricEigen { eigenvectors, eigenvalues } = J.as_matrix().symmetric_eigen();
+    eigenvectors * Matrix3::from_diagonal(&eigenvalues.map(|moment| moment.sqrt().recip())) * eigenvectors.transpose()
+}
+
+/// The largest entry and its place.
+fn largest(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
+    values.enumerate().max_by(|(_, a), (_, b)| a.total_cmp(b))
+}
+
+impl System {
+    /// A note about a step that is long for the springs at these places, if there is one; an error where it is unstable, and
+    /// where a spring has no direction.
+    pub(crate) fn check_springs(&self, places: &[(SO3, R3)]) -> Result<Option<OfSpring>, Stop> {
+        for (number, spring) in self.springs.iter().enumerate() {
+            if spring.of.length != 0.0 && has_no_direction(spring.along_of(places).norm(), spring.of.length) {
+                return Err(Stop::Spring(number, NO_DIRECTION.to_owned()));
+            }
+        }
+        let free = self.free_motions(places);
+        let Some((number, now)) = self.fastest(places, free.as_ref(), false) else { return Ok(None) };
+        if self.step * now >= UNSTABLE {
+            return Err(Stop::Spring(number, unstable(now, self.step)));
+        }
+        let (any, most) = self.fastest(places, free.as_ref(), true).unwrap_or((number, now));
+        let number = if self.step * now > COARSE { number } else { any };
+        Ok(coarse(now, most, self.step).map(|why| (number, why)))
+    }
+
+    /// The spring with the largest part in the fastest vibration, and its rate, rad/s: in the directions that springs have
+    /// now, or in any.
+    fn fastest(&self, places: &[(SO3, R3)], free: Option<&DMatrix<f64>>, in_any: bool) -> Option<(usize, f64)> {
+        let mut all = DMatrix::zeros(3 * self.springs.len(), 6 * self.bodies.len());
+        for (number, spring) in self.springs.iter().enumerate() {
+            let along = spring.along_of(places);
+            let direction = along / along.norm();
+            let is_along = !in_any && direction.iter().all(|part| part.is_finite());
+            // The stiffness is `k` along the spring, and `k (1 − l/|y|)` across it.
+            let stiffness = if is_along {
+                let across = (1.0 - spring.of.length / along.norm()).max(0.0).sqrt();
+                let projector = direction * direction.transpose();
+                projector + (Matrix3::identity() - projector) * across
+            } else {
+                Matrix3::identity()
+            };
+            let [one, other] = [0, 1].map(|side| self.moved(places, spring.bodies[side], &spring.of.at[side]));
+            all.rows_mut(3 * number, 3).copy_from(&(stiffness * (other - one) * spring.of.k.sqrt()));
+        }
+        let all = free.map_or_else(|| all.clone(), |free| &all * free);
+        let SymmetricEigen { eigenvectors, eigenvalues } = eigen(all.tr_mul(&all))?;
+        let (mode, square) = largest(eigenvalues.iter().copied())?;
+        let parts = all * eigenvectors.column(mode);
+        let (spring, _) = largest((0..self.springs.len()).map(|number| parts.rows(3 * number, 3).norm_squared()))?;
+        Some((spring, square.max(0.0).sqrt()))
+    }
+
+    /// Derivative of a point of a body, or of space, by all bodies' motions, in the units in which each has a mass of one.
+    fn moved(&self, places: &[(SO3, R3)], body: Option<usize>, point: &Vector3<f64>) -> Matrix3xX<f64> {
+        let mut moved = Matrix3xX::zeros(6 * self.bodies.len());
+        if let Some(body) = body {
+            let turned = places[body].0.as_matrix() * -point.cross_matrix() * inverse_root(&self.bodies[body].J);
+            moved.fixed_columns_mut::<3>(6 * body).copy_from(&turned);
+            let shifted = Matrix3::identity() / self.bodies[body].m.sqrt();
+            moved.fixed_columns_mut::<3>(6 * body + 3).copy_from(&shifted);
+        }
+        moved
+    }
+
+    /// Motions that the joints allow, as columns; none where there are no joints.
+    fn free_motions(&self, places: &[(SO3, R3)]) -> Option<DMatrix<f64>> {
+        let mut held: Vec<Matrix3xX<f64>> = Vec::new();
+        for joint in &self.joints {
+            let (ends, axes) = ends_and_axes(&joint.of);
+            let apart = |of: &dyn Fn(usize) -> Matrix3xX<f64>| of(1) - of(0);
+            held.push(apart(&|side| self.moved(places, joint.bodies[side], &ends[side])));
+            // Axes turn with their bodies and aren't shifted.
+            held.extend(axes.map(|axes| {
+                apart(&|side| {
+                    let mut turned = self.moved(places, joint.bodies[side], &axes[side]);
+                    (0..self.bodies.len()).for_each(|body| turned.fixed_columns_mut::<3>(6 * body + 3).fill(0.0));
+                    turned
+                })
+            }));
+        }
+        let squares = held.iter().map(|held| held.tr_mul(held)).reduce(|sum, one| sum + one)?;
+        let SymmetricEigen { eigenvectors, eigenvalues } = eigen(squares)?;
+        let limit = 1e-9 * eigenvalues.max();
+        let free = eigenvectors.column_iter().zip(eigenvalues.iter()).filter(|(_, square)| **square <= limit);
+        let free: Vec<_> = free.map(|(column, _)| column.into_owned()).collect();
+        Some(if free.is_empty() { DMatrix::zeros(6 * self.bodies.len(), 0) } else { DMatrix::from_columns(&free) })
+    }
+}
