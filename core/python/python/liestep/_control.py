@@ -8,7 +8,8 @@ from math import cos, inf
 from typing import TYPE_CHECKING, Any
 
 from . import _native
-from ._declared import Term, _summed
+from ._arrays import floats
+from ._declared import Sum
 from ._run import Columns, Run
 from ._stepper import _numbers, _Start, _start
 from .errors import SetupError
@@ -138,7 +139,7 @@ class Control:
 
     def __init__(
         self,
-        term: Term,
+        term: Sum,
         *,
         step: float,
         steps: int,
@@ -154,7 +155,7 @@ class Control:
     ) -> None:
         import numpy as np
 
-        if term.group != "group = SO3" or term.role != "lagrangian" or term.head.startswith("pace = "):
+        if term.group != "SO3" or term.role != "lagrangian" or term.has_pace:
             raise SetupError(f"a plan is one of a Lagrangian on SO3 without a pace, and not of {term!r:.80}")
         if isinstance(steps, bool) or not isinstance(steps, int) or not 0 < steps <= 10**6:
             raise SetupError(f"`steps` is a whole number from one to a million, not {steps!r:.80}")
@@ -163,8 +164,8 @@ class Control:
 
         def spread(name: str, value: Any) -> Array:
             try:
-                return np.broadcast_to(np.asarray(value, dtype=float), (steps, len(axes)))
-            except (TypeError, ValueError, OverflowError) as error:
+                return np.broadcast_to(floats(name, value, SetupError), (steps, len(axes)))
+            except ValueError as error:
                 shape = f"a number, {len(axes)} of them, or {steps} rows of {len(axes)}"
                 raise SetupError(f"`{name}` is {shape}, not of the shape {np.shape(value)}") from error
 
@@ -223,9 +224,7 @@ class Control:
 
         if isinstance(iterations, bool) or not isinstance(iterations, int) or not 0 <= iterations < 2**31:
             raise SetupError(f"`iterations` is a whole number, not {iterations!r:.80}")
-        parts = [replace(self.term, forces=()), *([_summed(self.term.forces)] if self.term.forces else [])]
-        terms = [(part._derived(gradients=True), part._values()) for part in parts]
-        made = _native.plan(terms, replace(self._task, tolerance=float(tolerance), most=iterations, progress=progress))
+        made = _native.plan(self.term._terms(gradients=True), replace(self._task, tolerance=float(tolerance), most=iterations, progress=progress))
         plan = Plan(self.term.name, made)
         if made["failure"] is not None:
             made["failure"].run = plan

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from . import _native
-from ._declared import Term
+from ._arrays import floats
+from ._declared import Sum
 from ._run import Columns
 from ._stepper import Stepper, _numbers, _Start, _start
 from .errors import SetupError
@@ -27,7 +28,7 @@ class Spread:
 def _spread(kind: str, first: Any, second: Any) -> Spread:
     import numpy as np
 
-    one, two = np.broadcast_arrays(np.asarray(first, dtype=float), np.asarray(second, dtype=float))
+    one, two = np.broadcast_arrays(*(floats("what is drawn", value, SetupError) for value in (first, second)))
     if not (np.isfinite(one).all() and np.isfinite(two).all()):
         raise SetupError("what is drawn is drawn from finite numbers")
     return Spread(kind, tuple(one.ravel().tolist()), tuple(two.ravel().tolist()))
@@ -65,6 +66,7 @@ def rotation() -> Spread:
 class _Draw:
     of: str
     place: int
+    at: list[int]
     kind: str
     first: float
     second: float
@@ -124,7 +126,7 @@ class Ensemble:
     seed : int
         The same seed draws the same members, on every machine.
     **drawn
-        Parameters of the declaration by their names, and what they are drawn from.
+        Parameters by their names, as `liestep.Term` has them, and what they are drawn from.
 
     Examples
     --------
@@ -139,7 +141,7 @@ class Ensemble:
 
     def __init__(
         self,
-        term: Term,
+        term: Sum,
         members: int,
         *,
         step: float = 0.01,
@@ -160,18 +162,25 @@ class Ensemble:
         start = {"velocity": velocity, "attitude": attitude}
         for name, spread in {**start, **drawn}.items():
             if isinstance(spread, Spread) and spread.kind != "rotation":
+                at = [] if name in start else self._numbers_of(name, spread)
                 pairs = enumerate(zip(spread.first, spread.second, strict=True))
-                self._draws += [_Draw(name, place, spread.kind, *pair) for place, pair in pairs]
+                self._draws += [_Draw(name, place, at, spread.kind, *pair) for place, pair in pairs]
                 start[name] = list(spread.first)
             elif name in drawn:
                 raise SetupError(f"`{name}` is drawn from `ls.normal(…)` or `ls.uniform(…)`, not from {spread!r:.80}")
-        for name, spread in drawn.items():
-            known = term.numbers.get(name)
-            if known is None:
-                raise SetupError(f"there is no parameter `{name}` to be drawn: there are {', '.join(term.numbers)}")
-            if len(known[1]) != len(spread.first):
-                raise SetupError(f"`{name}` has {len(known[1])} numbers, and {len(spread.first)} are drawn")
         self._start: _Start = _start(None if self._turns else start["attitude"], start["velocity"])
+
+    def _numbers_of(self, name: str, spread: Spread) -> list[int]:
+        """Where the numbers begin that are drawn for a parameter, among those of all."""
+        term = self.stepper.term
+        places = term._found(name)
+        for place in places:
+            own, (_, numbers) = term.summands[place[0]].numbers[place[1]]
+            if len(numbers) != len(spread.first):
+                raise SetupError(f"`{name}` has {len(numbers)} numbers, and {len(spread.first)} are drawn")
+            if own in term.summands[place[0]].directions:
+                raise SetupError(f"`{name}` is a direction, of length one, and isn't drawn: draw the attitude instead")
+        return [term._first_number(place) for place in places]
 
     def run(
         self,
@@ -191,7 +200,7 @@ class Ensemble:
         folder : path
             Where the files are, one for each chunk of members; a run that was ended goes on there.
         until : float
-            The time that each member comes to, s.
+            The time that each member comes to, s, a whole number of steps; zero keeps the starts.
         every : int, optional
             Steps from row to row of a member; the ends only, if it isn't given.
         threads : int
@@ -201,7 +210,7 @@ class Ensemble:
         chunk : int, optional
             The members of a file.
         progress : bool or callable
-            Whether to print how far it is, or what to tell it: the chunks that are there, and all.
+            Whether a terminal shows how far it is, or what to tell it: the chunks that are there, and all.
 
         Returns
         -------
@@ -211,8 +220,7 @@ class Ensemble:
         shown = _bar if progress is True else None if progress is False else progress
         term, (kind, scheme, *rest) = self.stepper.term, self.stepper.method
         # One plan is told from another by all that it is made of.
-        name = repr((term.declaration, term.numbers, term.forces, kind, scheme, rest, self.stepper.step, self._draws,
-                     self._start, self._turns))
+        name = repr((term.summands, kind, scheme, rest, self.stepper.step, self._draws, self._start, self._turns))
         plan = _Members(name, self.members, self.seed, float(until), every, chunk, str(folder), threads,
                         _native.share(share), self._turns, shown)
         made = self.stepper._native.members(self.stepper.step, self.stepper.method, self._start, self._draws, plan)
@@ -232,7 +240,9 @@ def _again(state: dict[str, Any]) -> Ensemble:
 
 
 def _bar(done: int, chunks: int) -> None:
-    """A line that fills."""
+    """A line that fills, in a terminal alone."""
+    if not sys.stderr.isatty():
+        return
     filled = 30 * done // max(chunks, 1)
     end = "\n" if done == chunks else ""
     sys.stderr.write(f"\r[{'#' * filled}{'.' * (30 - filled)}] {done} of {chunks} chunks{end}")

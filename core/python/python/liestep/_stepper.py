@@ -5,22 +5,18 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import inf
+from math import ceil, hypot, inf, isfinite
 from typing import Any
 
 from . import _native
-from ._declared import Term
+from ._arrays import floats
+from ._declared import Sum
 from ._run import Run
-from .errors import SetupError
+from .errors import Error, SetupError
 
 
 def _numbers(name: str, value: Any, shapes: tuple[tuple[int, ...], ...] = ()) -> list[float]:
-    import numpy as np
-
-    try:
-        array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise SetupError(f"`{name}` is an array of numbers, not {value!r:.80}") from error
+    array = floats(name, value, SetupError)
     if shapes and array.shape not in shapes:
         known = " or ".join(map(str, shapes))
         raise SetupError(f"`{name}` has the shape {array.shape}: give {known}")
@@ -47,7 +43,10 @@ def _attitude(value: Any) -> tuple[list[float], bool]:
 
 
 def euler(precession: float, nutation: float, spin: float = 0.0, *, degrees: bool = False) -> list[float]:
-    """The attitude ``R_z(φ) R_x(θ) R_z(ψ)`` as a quaternion ``[w, x, y, z]``.
+    """The attitude ``R_z(φ) R_x(θ) R_z(ψ)``, body to space, as a quaternion ``[w, x, y, z]``.
+
+    The angles are precession, nutation and spin, z-x-z about axes that turn with the body, rad; those of a 3-2-1 sequence are
+    others: SciPy's ``Rotation.from_euler("ZYX", …)`` is taken as an attitude.
 
     Examples
     --------
@@ -55,8 +54,11 @@ def euler(precession: float, nutation: float, spin: float = 0.0, *, degrees: boo
     >>> [round(part, 3) for part in ls.euler(0, 60, degrees=True)]
     [0.866, 0.5, 0.0, 0.0]
     """
-    from math import cos, radians, sin
+    from math import cos, pi, radians, sin
 
+    if not degrees and max(abs(precession), abs(nutation), abs(spin)) > 2 * pi:
+        angles = f"{precession:g}, {nutation:g}, {spin:g}"
+        raise SetupError(f"these angles are in rad, and beyond a whole turn: write `ls.euler({angles}, degrees=True)`")
     phi, theta, psi = (radians(a) if degrees else a for a in (precession, nutation, spin))
     return [
         cos(theta / 2) * cos((phi + psi) / 2),
@@ -119,29 +121,46 @@ def _watch(text: Any) -> _Watch:
     return _Watch(found["of"], float(found["value"]) * _UNITS[found["unit"]], direction, bool(found["stop"]))
 
 
-def _course(until: Any, every: Any, times: Any, events: Mapping[str, str] | None) -> _Course:
+def _end(until: Any, times: list[float] | None, step: float | None) -> float:
+    """The time that a run comes to; by its last row, if it isn't given."""
+    if until is None:
+        if not times:
+            raise SetupError("a run has an end: give `until`, s, or `times`")
+        whole = max(1, ceil(times[-1] / step - 1e-9)) if step and isfinite(times[-1] / step) else 0
+        return whole * step if step and whole else times[-1]
     try:
         end = float(until)
     except (TypeError, ValueError, OverflowError) as error:
         raise SetupError(f"`until` is a time, s, not {until!r:.80}") from error
+    if end == 0:
+        raise SetupError("a run of no steps: `until` is behind the start, or before it where the step is below zero")
+    if times and max(map(abs, times)) > abs(end) * (1 + 1e-12):
+        raise SetupError(f"`times` go beyond the end of the run at {end:g} s: leave `until` out")
+    return end
+
+
+def _course(until: Any, every: Any, times: Any, events: Mapping[str, str] | None, step: float | None) -> _Course:
     if isinstance(every, bool) or not isinstance(every, int) or not 0 < every < 2**63:
         raise SetupError(f"`every` is a whole number of steps above zero, not {every!r:.80}")
+    if events is not None and not isinstance(events, Mapping):
+        raise SetupError(f'`events` are texts by names, as {{"low": "tilt > 60 deg"}}, not {events!r:.80}')
+    watched = [_watch(text) for text in (events or {}).values()]
     if times is None:
-        return _Course(end, every, None, [_watch(text) for text in (events or {}).values()])
-    import numpy as np
-
-    try:
-        asked = np.asarray(times, dtype=float)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise SetupError("`times` are numbers, s") from error
+        return _Course(_end(until, None, step), every, None, watched)
+    asked = floats("times", times, SetupError)
     if asked.ndim != 1:
         raise SetupError(f"`times` is a list of times, not an array of shape {asked.shape}")
-    return _Course(end, 0, asked.tolist(), [_watch(text) for text in (events or {}).values()])
+    return _Course(_end(until, asked.tolist(), step), 0, asked.tolist(), watched)
 
 
 def _start(attitude: Any, velocity: Any) -> _Start:
+    import numpy as np
+
     numbers, is_quaternion = _attitude(attitude)
-    return _Start(numbers, is_quaternion, _numbers("velocity", velocity))
+    flat = _numbers("velocity", velocity)
+    if np.ndim(velocity) > 1:
+        raise SetupError(f"`velocity` is a list of numbers, and has the shape {np.shape(velocity)}")
+    return _Start(numbers, is_quaternion, flat)
 
 
 class Stepper:
@@ -176,7 +195,7 @@ class Stepper:
 
     def __init__(
         self,
-        term: Term,
+        term: Sum,
         step: float,
         *,
         composition: str | None = None,
@@ -214,8 +233,8 @@ class Stepper:
         *,
         velocity: Any,
         attitude: Any = None,
-        until: float,
-        every: int = 1,
+        until: float | None = None,
+        every: int | None = None,
         times: Any = None,
         events: Mapping[str, str] | None = None,
     ) -> Run:
@@ -224,16 +243,16 @@ class Stepper:
         Parameters
         ----------
         velocity : array_like
-            Body velocity at the start, on SO(3) in rad/s.
+            Body velocity at the start, in the axes of the body and not of space; on SO(3) in rad/s.
         attitude : array_like, optional
-            Body to space: a quaternion ``[w, x, y, z]``, a matrix, SciPy's ``Rotation``, on a product a list of matrices;
-            the identity, if none is given.
+            Body to space, ``x_space = R x_body``: a quaternion ``[w, x, y, z]`` with its scalar first, a matrix, SciPy's
+            ``Rotation``, on a product a list of matrices; the identity, if none is given.
         until : float
-            The time, s.
+            The time, s, a whole number of steps. A step below zero goes back, to a time below zero.
         every : int
-            Steps from row to row.
+            Steps from row to row: one, if nothing else is said.
         times : array_like, optional
-            The times of the rows instead, s, between the steps too.
+            The times of the rows instead, s, between the steps too; without `until` the last of them is the end.
         events : mapping, optional
             Names, and what is looked for: ``"tilt > 60 deg"``, ``"velocity_x = 0"``; with ``", stop"`` it ends the run.
 
@@ -256,11 +275,16 @@ class Stepper:
         >>> run.events["low"].rising.all()
         np.True_
         """
-        return self._made(_start(attitude, velocity), _course(until, every, times, events), list(events or {}))
+        course = self._course(until, every, times, events)
+        return self._made(_start(attitude, velocity), course, list(events or {}))
+
+    def _course(self, until: Any, every: Any, times: Any, events: Any) -> _Course:
+        are_equal = self.method[0] != "density" and not self.term.has_pace
+        return _course(until, 1 if every is None else every, times, events, self.step if are_equal else None)
 
     def _made(self, start: _Start, course: _Course, names: list[str]) -> Run:
         made = self._native.run(self.step, self.method, start, course)
-        return _finished(self.term, self.step, made, names, self._about())
+        return _finished(self.term, self.step, made, names, self._about(), _Estimate(self, start, course.until))
 
     def _about(self) -> str:
         kind, scheme, compensated, substeps = self.method
@@ -275,26 +299,93 @@ class Stepper:
         return f"<Stepper of {self.term.name}: {self._about()}>"
 
 
-def _again(term: Term, step: float, method: tuple[str, str, bool, int]) -> Stepper:
+def _again(term: Sum, step: float, method: tuple[str, str, bool, int]) -> Stepper:
     kind, scheme, compensated, substeps = method
     given: dict[str, Any] = {} if kind == "step" else {kind: {"turn": float(scheme)} if kind == "density" else scheme}
     return Stepper(term, step, **given, compensated=compensated, substeps=substeps)
 
 
-def _finished(term: Term, step: float, made: dict[str, Any], names: list[str], about: str) -> Run:
-    run = Run(term.name, about, step, made, names)
+@dataclass
+class _Estimate:
+    """How far the end of a run is off: two more runs of other steps say it, where they agree as those of a method do."""
+
+    stepper: Stepper
+    start: _Start
+    until: float
+
+    def __call__(self, run: Run) -> float | None:
+        method, steps = self.stepper.method, run.steps
+        if run.ended_by is not None or method[0] == "density" or self.stepper.term.has_pace or steps == 0:
+            return None
+        # Of twice and four times the step, where they come to the same time, and else of a half and a quarter.
+        counts = (steps, steps // 2, steps // 4) if steps % 4 == 0 and steps >= 16 else (4 * steps, 2 * steps, steps)
+        try:
+            finest, middle, coarsest = (self._last(count) for count in counts)
+        except Error:
+            return None
+        near, far = _apart(finest, middle, self.until), _apart(middle, coarsest, self.until)
+        # The error falls by this with half the step: by no more than the order of the method promises.
+        falls = min(far / near, 2.0 ** _native.order(method)) if near > 0 else inf
+        error = near / (falls - 1) if falls > LEAST_FALL else inf
+        if counts[-1] == steps:
+            error *= falls**2
+        rounding = max(near, far, 2.0**-52)
+        return rounding if rounding < ROUNDED else error if error < LARGEST else None
+
+    def _last(self, count: int) -> Run:
+        course = _Course(self.until, count, None, [])
+        step = self.until / count
+        made = self.stepper._native.run(step, self.stepper.method, self.start, course)
+        return _finished(self.stepper.term, step, made, [], "")
+
+
+#: Where an error falls by less with half the step, the runs don't agree.
+LEAST_FALL = 1.6
+#: Beyond it an estimate says nothing.
+LARGEST = 0.3
+#: Below it differences are those of rounding.
+ROUNDED = 1e-10
+
+
+def _apart(one: Run, other: Run, time: float) -> float:
+    """The distance of two last states, as `for_accuracy` measures it."""
+    import numpy as np
+
+    matrices = [run.matrix[-1] if "q_w" in run.names else run.attitude[-1] for run in (one, other)]
+    first, last, velocity = (np.linalg.norm(run) for run in (one.velocity[0], one.velocity[-1], one.velocity[-1] - other.velocity[-1]))
+    size = np.linalg.norm(matrices[0])
+    return hypot(np.linalg.norm(matrices[0] - matrices[1]) / max(size, 1.0), velocity / max(first, last, 1 / abs(time)))
+
+
+def _finished(
+    term: Sum, step: float, made: dict[str, Any], names: list[str], about: str, estimate: _Estimate | None = None
+) -> Run:
+    run = Run(term.name, about, step, made, names, estimate)
     failure = made["failure"]
     if failure is not None:
+        run._estimate = None
         failure.run = run
         raise failure
     return run
 
 
+#: Of a run whose steps nobody has chosen.
+ROWS = 1001
+
+
 class _Search(Stepper):
     """A stepper whose method and step are found by trial runs, for the motion that it is to make."""
 
-    def __init__(self, term: Term, tolerance: float) -> None:
+    def __init__(self, term: Sum, tolerance: float) -> None:
         self.term, self.tolerance = term, float(tolerance)
+
+    def _course(self, until: Any, every: Any, times: Any, events: Any) -> _Course:
+        import numpy as np
+
+        course = _course(until, 1 if every is None else every, times, events, None)
+        if every is None and times is None and isfinite(course.until):
+            course.every, course.times = 0, np.linspace(0.0, course.until, ROWS).tolist()
+        return course
 
     def _made(self, start: _Start, course: _Course, names: list[str]) -> Run:
         made = self.term._scene().ask(self.tolerance, start, course)
@@ -304,7 +395,7 @@ class _Search(Stepper):
         return run
 
 
-def accurate(term: Term, tolerance: float, **run: Any) -> Run:
+def accurate(term: Sum, tolerance: float, **run: Any) -> Run:
     """As `Stepper.run`, by the method and the step that trial runs have found; `Run.choice` has them all."""
     return _Search(term, tolerance).run(**run)
 
