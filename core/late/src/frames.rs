@@ -99,7 +99,8 @@ impl Carriage {
             let before: usize = staged.parameters[..field].iter().map(|parameter| parameter.kind.len()).sum();
             let weight = |at: usize| Some([numbers + before + at, self.constants + self.weights.len() + at]);
             let frame = self.places(&Carried { field: None, ..*one });
-            let entry = |number: usize| frame.iter().enumerate().map(|(at, first)| (weight(at), first + number)).collect();
+            let entry =
+                |number: usize| frame.iter().enumerate().map(|(at, first)| (weight(at), first + number)).collect();
             combined.extend((0..length(one)).map(entry));
             self.weights.extend((0..frame.len()).map(|at| numbers + before + at));
         }

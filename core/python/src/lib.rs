@@ -104,6 +104,11 @@ impl Scene {
         Ok(Self(py.detach(|| scene::scene(&terms, &numbers))?))
     }
 
+    #[getter]
+    fn is_self_adjoint(&self) -> bool {
+        self.0.is_self_adjoint()
+    }
+
     #[allow(clippy::needless_pass_by_value)]
     fn check(&self, h: f64, how: How) -> PyResult<()> {
         Ok(self.0.check((method(&how)?, h))?)

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use liestep::SO3;
+use liestep::Stepper;
 use liestep::accuracy::{Accuracy, Choice};
 use liestep::groups::{
     Advected, CayleyRetraction, Configuration, Heisenberg, LieGroup, R1, R2, R3, Retraction, SE2, SE3, SL2, SO2, SU2,
@@ -10,7 +11,6 @@ use liestep::groups::{
 };
 use liestep::mechanics::{Scene as Stepped, WithEitherKinetic};
 use liestep::motion::AnyStepper;
-use liestep::Stepper;
 use liestep_late::{Declaration, LateError, Role, Slots};
 use nalgebra::{Matrix4, Point2, Point3};
 
@@ -35,6 +35,9 @@ pub(crate) trait Scene: Send + Sync {
     fn check(&self, method: (Method, f64)) -> Result<(), Failure>;
 
     fn run(&self, method: (Method, f64), start: &Start, course: &Course) -> Result<Recorded, Failure>;
+
+    /// Whether a step of `−h` undoes one of `h`, as methods of a higher order ask for.
+    fn is_self_adjoint(&self) -> bool;
 
     /// By the method and the step that are the cheapest for a tolerance.
     fn ask(&self, tolerance: f64, start: &Start, course: &Course) -> Result<(Recorded, Choice), Failure>;
@@ -80,6 +83,10 @@ where
     fn run(&self, method: (Method, f64), start: &Start, course: &Course) -> Result<Recorded, Failure> {
         let stepper = self.stepper(method)?;
         record(&stepper, started(&stepper, start)?, course)
+    }
+
+    fn is_self_adjoint(&self) -> bool {
+        self.sum.declaration().is_self_adjoint
     }
 
     fn ask(&self, tolerance: f64, start: &Start, course: &Course) -> Result<(Recorded, Choice), Failure> {

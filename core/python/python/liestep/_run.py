@@ -98,8 +98,8 @@ class Happenings(Columns):
         return np.array(self._rising, dtype=bool)
 
 
-#: A run of so many steps is made in a blink.
-QUICK = 100_000
+#: Runs beside one of so many steps are made in a blink.
+QUICK = 20_000
 
 
 class Motion(Columns):
@@ -173,9 +173,9 @@ class Run(Motion):
         """About how far the last state is off, as a share: attitude and velocity together, each by its own size.
 
         An attitude on SO(3) that is off by an angle has about 0.8 times as much, in rad. Where an accuracy was asked for it was
-        measured. Of given steps it is estimated when it is first read, by two runs of twice and four times the step; it is
-        ``None`` where these don't agree with each other as the runs of a method do, where steps have lengths of their own,
-        and where an event has ended the run.
+        measured. Of given steps it is estimated when it is first read: by two runs of twice and four times the step, and
+        where these say nothing by two of a half and a quarter. It is ``None`` where runs don't agree with each other as those
+        of a method do, where steps have lengths of their own, and where an event has ended the run.
         """
         if self._estimate is not None:
             self._error, self._estimate = self._estimate(self), None

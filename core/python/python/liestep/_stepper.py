@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import ceil, hypot, inf, isfinite
 from typing import Any
 
@@ -12,7 +12,7 @@ from . import _native
 from ._arrays import floats
 from ._declared import Sum
 from ._run import Run
-from .errors import Error, SetupError
+from .errors import Error, SetupError, StepError
 
 
 def _numbers(name: str, value: Any, shapes: tuple[tuple[int, ...], ...] = ()) -> list[float]:
@@ -307,42 +307,49 @@ def _again(term: Sum, step: float, method: tuple[str, str, bool, int]) -> Steppe
 
 @dataclass
 class _Estimate:
-    """How far the end of a run is off: two more runs of other steps say it, where they agree as those of a method do."""
+    """How far the end of a run is off: runs of other steps say it, where they agree as those of a method do."""
 
     stepper: Stepper
     start: _Start
     until: float
+    ends: dict[int, Run] = field(default_factory=dict)
 
     def __call__(self, run: Run) -> float | None:
-        method, steps = self.stepper.method, run.steps
-        if run.ended_by is not None or method[0] == "density" or self.stepper.term.has_pace or steps == 0:
+        steps = run.steps
+        if run.ended_by is not None or self.stepper.method[0] == "density" or self.stepper.term.has_pace or steps == 0:
             return None
-        # Of twice and four times the step, where they come to the same time, and else of a half and a quarter.
-        counts = (steps, steps // 2, steps // 4) if steps % 4 == 0 and steps >= 16 else (4 * steps, 2 * steps, steps)
         try:
-            finest, middle, coarsest = (self._last(count) for count in counts)
+            if steps % 4 == 0 and steps >= 16 and (error := self.left(steps)) < SURE:
+                return max(error, steps * 2.0**-52)
+        except Error:
+            pass
+        try:
+            error = self.left(4 * steps)
+            away = _apart(self._last(steps), self._last(4 * steps), self.until)
         except Error:
             return None
+        return max(away + error, steps * 2.0**-52) if error < max(away, ROUNDED) else None
+
+    def left(self, count: int) -> float:
+        """The error of a run of so many steps, by those of half and of a quarter as many."""
+        finest, middle, coarsest = (self._last(steps) for steps in (count, count // 2, count // 4))
         near, far = _apart(finest, middle, self.until), _apart(middle, coarsest, self.until)
-        # The error falls by this with half the step: by no more than the order of the method promises.
-        falls = min(far / near, 2.0 ** _native.order(method)) if near > 0 else inf
-        error = near / (falls - 1) if falls > LEAST_FALL else inf
-        if counts[-1] == steps:
-            error *= falls**2
-        rounding = max(near, far, 2.0**-52)
-        return rounding if rounding < ROUNDED else error if error < LARGEST else None
+        # The error falls by this where the steps are halved: by no more than the order of the method promises.
+        falls = min(far / near, 2.0 ** _native.order(self.stepper.method)) if near > 0 else inf
+        return near if near < ROUNDED else near / (falls - 1) if falls > LEAST_FALL else inf
 
     def _last(self, count: int) -> Run:
-        course = _Course(self.until, count, None, [])
-        step = self.until / count
-        made = self.stepper._native.run(step, self.stepper.method, self.start, course)
-        return _finished(self.stepper.term, step, made, [], "")
+        if count not in self.ends:
+            course, step = _Course(self.until, count, None, []), self.until / count
+            made = self.stepper._native.run(step, self.stepper.method, self.start, course)
+            self.ends[count] = _finished(self.stepper.term, step, made, [], "")
+        return self.ends[count]
 
 
 #: Where an error falls by less with half the step, the runs don't agree.
 LEAST_FALL = 1.6
-#: Beyond it an estimate says nothing.
-LARGEST = 0.3
+#: A larger one by longer steps may be chance, and is measured by shorter ones.
+SURE = 0.02
 #: Below it differences are those of rounding.
 ROUNDED = 1e-10
 
@@ -351,10 +358,12 @@ def _apart(one: Run, other: Run, time: float) -> float:
     """The distance of two last states, as `for_accuracy` measures it."""
     import numpy as np
 
-    matrices = [run.matrix[-1] if "q_w" in run.names else run.attitude[-1] for run in (one, other)]
-    first, last, velocity = (np.linalg.norm(run) for run in (one.velocity[0], one.velocity[-1], one.velocity[-1] - other.velocity[-1]))
-    size = np.linalg.norm(matrices[0])
-    return hypot(np.linalg.norm(matrices[0] - matrices[1]) / max(size, 1.0), velocity / max(first, last, 1 / abs(time)))
+    def norm(vector: Any) -> float:
+        return float(np.linalg.norm(vector))
+
+    here, there = (run.matrix[-1] if "q_w" in run.names else run.attitude[-1] for run in (one, other))
+    speed = max(norm(one.velocity[0]), norm(one.velocity[-1]), 1 / abs(time))
+    return hypot(norm(here - there) / max(norm(here), 1.0), norm(one.velocity[-1] - other.velocity[-1]) / speed)
 
 
 def _finished(
@@ -369,6 +378,8 @@ def _finished(
     return run
 
 
+#: More steps take minutes.
+MOST = 10**7
 #: Of a run whose steps nobody has chosen.
 ROWS = 1001
 
@@ -388,11 +399,34 @@ class _Search(Stepper):
         return course
 
     def _made(self, start: _Start, course: _Course, names: list[str]) -> Run:
-        made = self.term._scene().ask(self.tolerance, start, course)
+        scene = self.term._scene()
+        if not scene.is_self_adjoint:
+            return self._by_own_steps(start, course, names)
+        made = scene.ask(self.tolerance, start, course)
         about = f"steps of {made['step']:.4g} s by {made['method']}"
         run = _finished(self.term, made["step"], made, names, about)
         run.method = _method(made["method"])
         return run
+
+
+    def _by_own_steps(self, start: _Start, course: _Course, names: list[str]) -> Run:
+        """Of what has no method but its own step: ever more of them, until their error is small enough."""
+        if not 0 < self.tolerance < 1:
+            raise SetupError(f"an accuracy is between zero and one, not {self.tolerance:g}")
+        count, until = 16, course.until
+        while isfinite(until) and count <= MOST:
+            stepper = Stepper(self.term, until / count)
+            try:
+                error = _Estimate(stepper, start, until).left(count)
+            except StepError:
+                error = inf
+            if error < self.tolerance:
+                run = stepper._made(start, course, names)
+                run._error, run._estimate, run.method = error, None, {}
+                return run
+            # As of order 2, but no farther than the runs so far can say.
+            count *= min(8, max(2, int((2 * error / self.tolerance) ** 0.5))) if error < SURE else 2
+        raise SetupError(f"the step of {self.term.name} doesn't come to {self.tolerance:g} in {MOST} steps: give a step, `stepper(h)`")
 
 
 def accurate(term: Sum, tolerance: float, **run: Any) -> Run:
