@@ -18,8 +18,8 @@ use liestep::groups::{CayleyRetraction, CovariantTensor, LieGroup as _, Retracti
 use liestep::lagrangian;
 use liestep::laws::samples::Random;
 use liestep::mechanics::{
-    DiagonalNonstandardInertia, Effect, Inertia, OnlyKicks, SecondDerivatives, StepPoint, Vector, WithEitherKinetic,
-    WithoutKinetic,
+    DiagonalNonstandardInertia, Effect, Inertia, OnlyKicks, SecondDerivatives, StepPoint, Term as _, Vector,
+    WithEitherKinetic, WithoutKinetic,
 };
 use liestep::motion::Batch;
 use liestep::numbers::{Coordinates as _, Entries as _};

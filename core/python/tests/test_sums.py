@@ -139,6 +139,14 @@ def test_sums_on_other_groups():
     assert abs(run["x"][-1] - (3 - 1)) < 1e-13 and abs(run["y"][-1] - (4 - 9.81 / 2)) < 1e-13
 
 
+def test_terms_of_both_forms_add():
+    # The potential has no velocity, and is a text of the other form.
+    weight = ls.lagrangian("SO3", l="-m * w.dot(rho)", discretise="trapezoid(Cayley)", advected={"w": "up"}, m=2, rho=[0.1, 0, 1],
+                           up=[0, 0, 1])
+    gravity = ls.gravity(m=2, g=1, rho=[0.1, 0, 1])
+    assert abs(ends(ls.body(J) + weight, 20) - ends(gravity + ls.body(J), 20)).max() < 1e-12
+
+
 def test_names_of_several_parameters():
     one, other = (ls.spring(k=k, length=1, at=[0, 0, 1], anchor=[0, k, 3]) for k in (3, 4))
     term = ls.body(J) + one + (other + ls.drag(c=0.1, J=J))

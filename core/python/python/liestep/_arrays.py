@@ -1,10 +1,10 @@
-"""Numbers that are given."""
+"""Numbers and texts that are given."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from .errors import Error
+from .errors import DeclarationError, Error, SetupError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -26,3 +26,25 @@ def floats(name: str, value: Any, error: type[Error]) -> Array:
         if isinstance(cause, Error):
             raise
         raise error(f"`{name}` is a number, a vector or a matrix of numbers, not {value!r:.80}") from cause
+
+
+def number(name: str, value: Any) -> float:
+    """One real number."""
+    array = floats(name, value, SetupError)
+    if array.shape != ():
+        raise SetupError(f"`{name}` is a number, not an array of the shape {array.shape}")
+    return float(array)
+
+
+def whole(name: str, value: Any, least: int, most: int) -> int:
+    """A whole number between two."""
+    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+        raise SetupError(f"`{name}` is a whole number from {least} to {most:g}, not {value!r:.80}")
+    return value
+
+
+def text(name: str, value: Any) -> str:
+    """A text."""
+    if not isinstance(value, str):
+        raise DeclarationError(f"`{name}` is a text, not {value!r:.80}")
+    return value

@@ -8,7 +8,7 @@ from math import cos, inf
 from typing import TYPE_CHECKING, Any
 
 from . import _native
-from ._arrays import floats
+from ._arrays import floats, number, whole
 from ._declared import Sum
 from ._run import Columns, Run
 from ._stepper import _numbers, _Start, _start
@@ -157,8 +157,7 @@ class Control:
 
         if term.group != "SO3" or term.role != "lagrangian" or term.has_pace:
             raise SetupError(f"a plan is one of a Lagrangian on SO3 without a pace, and not of {term!r:.80}")
-        if isinstance(steps, bool) or not isinstance(steps, int) or not 0 < steps <= 10**6:
-            raise SetupError(f"`steps` is a whole number from one to a million, not {steps!r:.80}")
+        whole("steps", steps, 1, 10**6)
         if not isinstance(axes, str) or not axes or any(axis not in "xyz" for axis in axes):
             raise SetupError(f'`axes` are some of "xyz", not {axes!r:.80}')
 
@@ -173,13 +172,19 @@ class Control:
         first = spread("guess", 0.0 if guess is None else guess)
         torques = np.stack([-largest, largest, first], axis=2).reshape(-1, 3)
         cones = []
-        for axis, direction, angle in keep_out:
+        try:
+            kept_out = [(axis, direction, number("keep_out", angle)) for axis, direction, angle in keep_out]
+        except (TypeError, ValueError) as error:
+            if isinstance(error, SetupError):
+                raise
+            raise SetupError("`keep_out` is a list of axes, directions and angles: `[(axis, direction, angle)]`") from error
+        for axis, direction, angle in kept_out:
             units = [np.array(_numbers("keep_out", vector, ((3,),))) for vector in (axis, direction)]
             if min(np.linalg.norm(vector) for vector in units) == 0:
                 raise SetupError("an axis and a direction that are kept apart aren't zero")
             one, other = ((vector / np.linalg.norm(vector)).tolist() for vector in units)
             cones.append((one, other, cos(angle)))
-        (length,) = _numbers("step", step, ((),))
+        length = number("step", step)
         if not 0 < length < inf:
             raise SetupError(f"`step` is a length above zero, s, not {step!r:.80}")
         self.term, self.steps, self.step = term, steps, length
@@ -222,9 +227,8 @@ class Control:
         """
         from dataclasses import replace
 
-        if isinstance(iterations, bool) or not isinstance(iterations, int) or not 0 <= iterations < 2**31:
-            raise SetupError(f"`iterations` is a whole number, not {iterations!r:.80}")
-        made = _native.plan(self.term._terms(gradients=True), replace(self._task, tolerance=float(tolerance), most=iterations, progress=progress))
+        whole("iterations", iterations, 0, 2**31 - 1)
+        made = _native.plan(self.term._terms(gradients=True), replace(self._task, tolerance=number("tolerance", tolerance), most=iterations, progress=progress))
         plan = Plan(self.term.name, made)
         if made["failure"] is not None:
             made["failure"].run = plan

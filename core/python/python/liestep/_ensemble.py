@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from . import _native
-from ._arrays import floats
+from ._arrays import floats, number, whole
 from ._declared import Sum
 from ._run import Columns
-from ._stepper import Stepper, _numbers, _Start, _start
+from ._stepper import Stepper, _Start, _start
 from .errors import SetupError
 
 
@@ -28,7 +28,11 @@ class Spread:
 def _spread(kind: str, first: Any, second: Any) -> Spread:
     import numpy as np
 
-    one, two = np.broadcast_arrays(*(floats("what is drawn", value, SetupError) for value in (first, second)))
+    one, two = (floats("what is drawn", value, SetupError) for value in (first, second))
+    try:
+        one, two = np.broadcast_arrays(one, two)
+    except ValueError as error:
+        raise SetupError(f"what is drawn has the shapes {one.shape} and {two.shape}: give one for both") from error
     if not (np.isfinite(one).all() and np.isfinite(two).all()):
         raise SetupError("what is drawn is drawn from finite numbers")
     return Spread(kind, tuple(one.ravel().tolist()), tuple(two.ravel().tolist()))
@@ -151,10 +155,10 @@ class Ensemble:
         method: dict[str, Any] | None = None,
         **drawn: Spread,
     ) -> None:
-        if isinstance(members, bool) or not isinstance(members, int) or not 0 < members <= 10**9:
-            raise SetupError(f"an ensemble has from one to a billion members, not {members!r:.80}")
-        if not isinstance(seed, int) or not 0 <= seed < 2**63:
-            raise SetupError(f"a seed is a whole number from zero, not {seed!r:.80}")
+        whole("members", members, 1, 10**9)
+        whole("seed", seed, 0, 2**63 - 1)
+        if method is not None and not isinstance(method, dict):
+            raise SetupError(f'a method is one of `liestep.Stepper`, as {{"composition": "Suzuki 4"}}, not {method!r:.80}')
         self.stepper = Stepper(term, step, **(method or {}))
         self.members, self.seed = members, seed
         self._draws: list[_Draw] = []
@@ -216,12 +220,18 @@ class Ensemble:
         -------
         Many
         """
-        _numbers("until", until, ((),))
+        end = number("until", until)
+        whole("threads", threads, 0, 2**16)
+        for name, steps in {"every": every, "chunk": chunk}.items():
+            if steps is not None:
+                whole(name, steps, 1, 2**63 - 1)
+        if not isinstance(share, str):
+            raise SetupError(f'a share is a text, as "1/4", not {share!r:.80}')
         shown = _bar if progress is True else None if progress is False else progress
         term, (kind, scheme, *rest) = self.stepper.term, self.stepper.method
         # One plan is told from another by all that it is made of.
-        name = repr((term.summands, kind, scheme, rest, self.stepper.step, self._draws, self._start, self._turns))
-        plan = _Members(name, self.members, self.seed, float(until), every, chunk, str(folder), threads,
+        plan_name = repr((term.summands, kind, scheme, rest, self.stepper.step, self._draws, self._start, self._turns))
+        plan = _Members(plan_name, self.members, self.seed, end, every, chunk, str(folder), threads,
                         _native.share(share), self._turns, shown)
         made = self.stepper._native.members(self.stepper.step, self.stepper.method, self._start, self._draws, plan)
         return Many(made)

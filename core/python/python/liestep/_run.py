@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import _native
+from . import _arrays, _native
 from .errors import ColumnError
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class Columns:
         """The columns that begin with this, a row for each row; none of them is copied where they stand side by side."""
         import numpy as np
 
-        places = [place for place, name in enumerate(self._names) if name.startswith(start)]
+        places = [place for place, name in enumerate(self._names) if name.startswith(str(start))]
         if not places:
             raise ColumnError(f"no column begins with {start!r}: there are {', '.join(self._names)}")
         if places[-1] - places[0] >= len(places):
@@ -252,7 +252,7 @@ class Run(Motion):
         axes[0].plot(self.time, self.velocity, label=[name for name in self._names if name.startswith("velocity_")])
         axes[0].set(ylabel="velocity", title=self.title)
         axes[0].legend(loc="upper right")
-        axes[1].semilogy(self.time, abs(self.energy - self.energy[0]) + 1e-17)
+        axes[1].semilogy(self.time, abs(self.energy - self.energy[0]).clip(min=2.0**-52 * abs(self.energy[0])))
         axes[1].set(xlabel="time, s", ylabel="energy from its start")
         return axes
 
@@ -320,7 +320,7 @@ class Scene:
     """A scene's file; see `liestep.scene`."""
 
     def __init__(self, path: str | Path, text: str | None = None) -> None:
-        self._path, self._text = str(path), text
+        self._path, self._text = str(path), None if text is None else _arrays.text("text", text)
         self._file = _native.File(self._path, text)
 
     @property

@@ -9,7 +9,7 @@ from math import ceil, hypot, inf, isfinite
 from typing import Any
 
 from . import _native
-from ._arrays import floats
+from ._arrays import floats, number, whole
 from ._declared import Sum
 from ._run import Run
 from .errors import Error, SetupError, StepError
@@ -56,10 +56,11 @@ def euler(precession: float, nutation: float, spin: float = 0.0, *, degrees: boo
     """
     from math import cos, pi, radians, sin
 
-    if not degrees and max(abs(precession), abs(nutation), abs(spin)) > 2 * pi:
-        angles = f"{precession:g}, {nutation:g}, {spin:g}"
-        raise SetupError(f"these angles are in rad, and beyond a whole turn: write `ls.euler({angles}, degrees=True)`")
-    phi, theta, psi = (radians(a) if degrees else a for a in (precession, nutation, spin))
+    angles = [number("angle", angle) for angle in (precession, nutation, spin)]
+    if not degrees and max(map(abs, angles)) > 2 * pi:
+        listed = ", ".join(f"{angle:g}" for angle in angles)
+        raise SetupError(f"these angles are in rad, and beyond a whole turn: write `ls.euler({listed}, degrees=True)`")
+    phi, theta, psi = (radians(angle) if degrees else angle for angle in angles)
     return [
         cos(theta / 2) * cos((phi + psi) / 2),
         sin(theta / 2) * cos((phi - psi) / 2),
@@ -79,8 +80,11 @@ def translation(shift: Any) -> Any:
     """
     import numpy as np
 
-    matrix = np.eye(len(shift) + 1)
-    matrix[:-1, -1] = shift
+    column = floats("shift", shift, SetupError)
+    if column.ndim != 1:
+        raise SetupError(f"`shift` is a list of numbers, not an array of the shape {column.shape}")
+    matrix = np.eye(len(column) + 1)
+    matrix[:-1, -1] = column
     return matrix
 
 
@@ -126,12 +130,9 @@ def _end(until: Any, times: list[float] | None, step: float | None) -> float:
     if until is None:
         if not times:
             raise SetupError("a run has an end: give `until`, s, or `times`")
-        whole = max(1, ceil(times[-1] / step - 1e-9)) if step and isfinite(times[-1] / step) else 0
-        return whole * step if step and whole else times[-1]
-    try:
-        end = float(until)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise SetupError(f"`until` is a time, s, not {until!r:.80}") from error
+        steps = max(1, ceil(times[-1] / step - 1e-9)) if step and isfinite(times[-1] / step) else 0
+        return steps * step if step and steps else times[-1]
+    end = number("until", until)
     if end == 0:
         raise SetupError("a run of no steps: `until` is behind the start, or before it where the step is below zero")
     if times and max(map(abs, times)) > abs(end) * (1 + 1e-12):
@@ -140,8 +141,7 @@ def _end(until: Any, times: list[float] | None, step: float | None) -> float:
 
 
 def _course(until: Any, every: Any, times: Any, events: Mapping[str, str] | None, step: float | None) -> _Course:
-    if isinstance(every, bool) or not isinstance(every, int) or not 0 < every < 2**63:
-        raise SetupError(f"`every` is a whole number of steps above zero, not {every!r:.80}")
+    whole("every", every, 1, 2**63 - 1)
     if events is not None and not isinstance(events, Mapping):
         raise SetupError(f'`events` are texts by names, as {{"low": "tilt > 60 deg"}}, not {events!r:.80}')
     watched = [_watch(text) for text in (events or {}).values()]
@@ -211,18 +211,17 @@ class Stepper:
         }
         if density is not None:
             is_turn = isinstance(density, Mapping) and list(density) == ["turn"]
-            (floor,) = _numbers("density", density["turn"], ((),)) if is_turn else (0.0,)
+            floor = number("density", density["turn"]) if is_turn else 0.0
             if not 0 < floor < inf:
                 raise SetupError(f'a density is `{{"turn": velocity}}`, rad/s, above zero, not {density!r:.80}')
             given["density"] = repr(floor)
         named = [(kind, str(scheme)) for kind, scheme in given.items() if scheme is not None]
         if len(named) > 1:
             raise SetupError(f"one method at a time: {' and '.join(kind for kind, _ in named)} are two")
-        if not isinstance(substeps, int) or not 0 < substeps < 2**16:
-            raise SetupError(f"`substeps` is a whole number above zero, not {substeps!r:.80}")
+        whole("substeps", substeps, 1, 2**16 - 1)
         kind, scheme = named[0] if named else ("step", "")
         self.term = term
-        self.step = float(step)
+        self.step = number("step", step)
         self.method = (kind, scheme, bool(compensated), substeps)
         self._native = term._scene()
         # What is wrong with the method is said here, and not where it runs.
@@ -388,7 +387,7 @@ class _Search(Stepper):
     """A stepper whose method and step are found by trial runs, for the motion that it is to make."""
 
     def __init__(self, term: Sum, tolerance: float) -> None:
-        self.term, self.tolerance = term, float(tolerance)
+        self.term, self.tolerance = term, number("tolerance", tolerance)
 
     def _course(self, until: Any, every: Any, times: Any, events: Any) -> _Course:
         import numpy as np

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from ._arrays import text
 from ._control import Control
 from ._declared import Group, Sum, Summand, Value, _value
 from ._ensemble import Ensemble
@@ -85,21 +86,25 @@ class Term(Sum):
 
 
 def _declared(
-    role: str, group: Group, head: str, text: str, advected: Mapping[str, str] | None, numbers: Mapping[str, Value]
+    role: str, group: Group, head: str, given: Any, advected: Mapping[str, str] | None, numbers: Mapping[str, Value]
 ) -> Term:
     """A term of a text, whose mistakes have their lines."""
+    own_text = text(head.rpartition(" ")[2], given)
+    for name, names in {"group": group, "advected": advected or {}}.items():
+        if not isinstance(names, Mapping) and not (name == "group" and isinstance(names, str)):
+            raise DeclarationError(f"`{name}` are texts by names, as {{\"w\": \"up\"}}, not {names!r:.80}")
     on = f"group = {group}" if isinstance(group, str) else f"group({', '.join(f'{n} = {g}' for n, g in group.items())})"
     sources = ", ".join(f"{name} = {source}" for name, source in (advected or {}).items())
     carried = f"advected({sources}), " if sources else ""
     if head.startswith("pace = "):
         carried = "given(E_0 = E_0_of_the_start), " + carried
     fields = ", ".join(f"{name}: {kind}" for name, (kind, _) in numbers.items())
-    whole = f"#[{role}({on}, {carried}{head} =\n{text}\n)]\nstruct Declared {{ {fields} }}"
+    whole = f"#[{role}({on}, {carried}{head} =\n{own_text}\n)]\nstruct Declared {{ {fields} }}"
     try:
         return Term.of(*Summand.of(whole, numbers, role.capitalize() if role == "lagrangian" else role))
     except DeclarationError as error:
         # The text is the second line of the declaration.
-        lines = text.count("\n") + 1
+        lines = own_text.count("\n") + 1
         own = [
             (message, line - 1, column) if 1 < line <= 1 + lines else (message, 0, 0)
             for message, line, column in error.mistakes
@@ -162,15 +167,17 @@ def lagrangian(
     if (l_d is None) == (l is None) or (l is None) != (discretise is None):
         raise DeclarationError("a Lagrangian has `l_d`, or `l` with `discretise`")
     numbers = {name: _value(name, value) for name, value in parameters.items()}
-    head, text = "l_d", l_d or ""
+    head = "l_d"
     if l is not None:
-        names = [name.strip() for name in velocity.split(",")]
-        named = f"velocity = {names[0]}" if len(names) == 1 else f"velocity({', '.join(names)})"
-        head, text = f"{named}, discretise = {discretise}, l", l
+        names = [name.strip() for name in text("velocity", velocity).split(",")]
+        named = f"velocity = {names[0]}, " if len(names) == 1 else f"velocity({', '.join(names)}), "
+        # A potential has none.
+        is_used = velocity != "Omega" or "Omega" in text("l", l)
+        head = f"{named if is_used else ''}discretise = {discretise}, l"
     if pace is not None:
         head = f"pace = {{ {pace} }}, {head}"
         numbers["E_0_of_the_start"] = ("f64", (0.0,))
-    return _declared("lagrangian", group, head, text, advected, numbers)
+    return _declared("lagrangian", group, head, l_d if l is None else l, advected, numbers)
 
 
 def force(
