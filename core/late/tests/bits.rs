@@ -297,8 +297,7 @@ fn a_sum_in_frames() {
         (random!(1, RigidBody { J_d }), random!(2, Gravity { m g rho up }), random!(3, Dipole { moment field }));
     let [one, other] = [4, 5].map(|seed| random!(seed, Spring { k length at anchor }));
     let sum = body + gravity + one + dipole + other;
-    let terms =
-        [declared(&body), declared(&gravity), declared(&one), declared(&dipole), declared(&other)];
+    let terms = [declared(&body), declared(&gravity), declared(&one), declared(&dipole), declared(&other)];
     let declaration = Declaration::sum_in_frames(&terms).expect("a sum");
     assert_eq!(declaration.carried.len(), 3);
     let late = Late::<SO3, Frame, WithEitherKinetic>::of(declaration).and_then(|late| late.with_all(&numbers(&sum)));
@@ -315,7 +314,8 @@ fn a_sum_in_frames() {
     // By each vector, and by the directions that it is made of: it is `Σ_i u_i e_i`.
     let increment = SO3::exp(velocity * 0.1).matrix() - Matrix3::identity();
     let (seen, frame) = (sum.advected(), late.advected());
-    let (own, framed) = (StepPoint { increment: &increment, w: &seen, h: 0.1 }, StepPoint { increment: &increment, w: &frame, h: 0.1 });
+    let (own, framed) =
+        (StepPoint { increment: &increment, w: &seen, h: 0.1 }, StepPoint { increment: &increment, w: &frame, h: 0.1 });
     let (u, p) = (Vector3::new(0.4, 0.1, -0.7), Vector3::new(-0.2, 0.9, 0.3));
     let by_own = sum.adjoint_gradient(own, [&u, &p], &mut |_, _| {}).1;
     let (mut vectors, mut by_vectors, mut by_frame) = (Vec::new(), Vec::new(), Vec::new());
@@ -326,19 +326,20 @@ fn a_sum_in_frames() {
         let chain: f64 = vectors.chunks(3).zip(by_vectors.chunks(3)).map(|(u, by)| u[direction] * by[place]).sum();
         assert!((chain - by_frame[3 * direction + place]).abs() < 1e-11, "{direction} {place}");
     }
-    let mut by_number = vec![[Vector3::zeros(); 2]; 15];
+    let mut by_number = vec![[Vector3::zeros(); 2]; 12];
     sum.by_advected(own, &mut |number, start, end| by_number[number] = [start, end]);
     late.by_advected(framed, &mut |number, start, end| {
         for (which, found) in [start, end].into_iter().enumerate() {
             let chain: Vector3<f64> =
-                (0..5).map(|one| by_number[3 * one + number % 3][which] * vectors[3 * one + number / 3]).sum();
+                (0..4).map(|one| by_number[3 * one + number % 3][which] * vectors[3 * one + number / 3]).sum();
             assert!((chain - found).norm() < 1e-11, "{number}");
         }
     });
     // A sum of such a sum, and the C of its step.
     let twice = Declaration::sum_in_frames(&[declaration, terms[1]]).expect("a sum");
     let values = [numbers(&sum), numbers(&gravity)].concat();
-    let twice = Late::<SO3, Frame, WithEitherKinetic>::of(twice).and_then(|late| late.with_all(&values)).expect("numbers");
+    let twice =
+        Late::<SO3, Frame, WithEitherKinetic>::of(twice).and_then(|late| late.with_all(&values)).expect("numbers");
     let by_hand = sum + gravity;
     let limits = (twice.limit(None, &twice.advected()).l, by_hand.limit(None, &by_hand.advected()).l);
     assert!((limits.0 - limits.1).abs() < 1e-12, "{limits:?}");
