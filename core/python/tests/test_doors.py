@@ -15,6 +15,7 @@ from conftest import heavy_top
 import liestep as ls
 
 PAGE = (Path(__file__).resolve().parents[1] / "README.md").read_text(encoding="utf-8")
+SCENES = Path(__file__).resolve().parents[3] / "examples" / "scenes"
 J = np.array([3.0, 3, 4])
 
 
@@ -138,14 +139,16 @@ def test_directions_are_of_length_one():
 
 
 def test_columns_that_arent_side_by_side_are_copied(top):
-    run = top.stepper(0.01).run(velocity=[0.5, 2, 12], until=0.1)
-    # `t`, then what begins with m and so on: any letter that columns share.
-    for start in {name[0] for name in run.names}:
-        group = run.group(start)
-        expected = np.stack([run[name] for name in run.names if name.startswith(start)], axis=1)
-        assert (group == expected).all(), start
-    mixed = ls.Columns(ls._native.Table([(name, "", [float(at)] * 2) for at, name in enumerate(["a_x", "b", "a_y"])]))
-    assert mixed.group("a_").tolist() == [[0, 2], [0, 2]]
+    text = (SCENES / "double-pendulum.toml").read_text(encoding="utf-8").replace("duration = 5", "duration = 0.02")
+    pendulum = ls.scene(SCENES / "double-pendulum.toml", text).run()
+    assert pendulum.group("upper_").shape == (11, 7)
+    again = pickle.loads(pickle.dumps(pendulum))
+    assert repr(again) == repr(pendulum) and again.svg() == pendulum.svg() and again.steps == pendulum.steps
+    for run in (pendulum, top.stepper(0.01).run(velocity=[0.5, 2, 12], until=0.1)):
+        # By any letters that columns share.
+        for start in {name[:length] for name in run.names for length in range(1, 7)}:
+            expected = np.stack([run[name] for name in run.names if name.startswith(start)], axis=1)
+            assert (run.group(start) == expected).all(), start
 
 
 def test_errors_are_of_the_family(top):

@@ -284,14 +284,33 @@ class Happening:
     rising: bool
 
 
+@dataclass(frozen=True)
+class _Pickled:
+    """What a run of a file has to say, as far as it is text."""
+
+    summary: str
+    svg: str
+    html: str | None
+
+    def picture(self) -> str:
+        return self.svg
+
+    def page(self) -> str | None:
+        return self.html
+
+
 class SceneRun(Motion):
     """The run of a scene's file, with the columns of its table."""
 
     def __init__(self, run: _native.FileRun) -> None:
         super().__init__(run.table)
-        self._run = run
+        self._run: _native.FileRun | _Pickled = run
         self.steps = run.steps
         self.events = [Happening(*one) for one in run.events]
+
+    def __getstate__(self) -> dict[str, Any]:
+        run = self._run
+        return {**self.__dict__, "_run": _Pickled(run.summary, run.picture(), run.page())}
 
     @property
     def summary(self) -> str:

@@ -43,7 +43,8 @@ class Term(Sum):
     def run(self, **run: Any) -> Run:
         """The run to an accuracy of 1e-6; see `liestep.Stepper.run`. Method and step are those of `for_accuracy`.
 
-        Without `every` and `times` it has 1001 rows, as far from each other in time.
+        Without `every` and `times` it has 1001 rows, as far from each other in time. With a force that isn't the same
+        backwards there is no method but the declared step, which is made ever shorter.
 
         Examples
         --------
