@@ -56,8 +56,8 @@ def ends(term, steps=3):
 
 
 def bracketed(terms, random):
-    """Their sum in any order and with any brackets."""
-    terms = [terms[at] for at in random.permutation(len(terms))]
+    """Their sum with any brackets."""
+    terms = list(terms)
     while len(terms) > 1:
         at = random.integers(len(terms) - 1)
         terms[at:at + 2] = [terms[at] + terms[at + 1]]
@@ -67,9 +67,11 @@ def bracketed(terms, random):
 def test_any_order_and_any_brackets_are_one_motion():
     random, all_terms, body = np.random.default_rng(7), pool(), ls.body(J)
     for number in range(500):
-        chosen = random.choice(len(all_terms), size=random.integers(2, 6), replace=number % 3 == 0)
+        chosen = random.choice(len(all_terms), size=random.integers(2, 5), replace=number % 3 == 0)
         terms = [body, *(all_terms[at] for at in chosen)]
-        one, other = ends(reduce(add, terms)), ends(bracketed(terms, random))
+        # Of every second one the order is another, too.
+        order = random.permutation(len(terms)) if number % 2 else range(len(terms))
+        one, other = ends(reduce(add, terms)), ends(bracketed([terms[at] for at in order], random))
         assert abs(one - other).max() < 1e-12 * (1 + abs(one).max()), [term.name for term in terms]
 
 
@@ -137,6 +139,35 @@ def test_sums_on_other_groups():
     particle = ls.lagrangian("R2", l_d="m * (F - I).norm_squared() / (2 * h)", m=1)
     run = (spring + particle + weight).stepper(0.1).run(velocity=[3, 4], until=1)
     assert abs(run["x"][-1] - (3 - 1)) < 1e-13 and abs(run["y"][-1] - (4 - 9.81 / 2)) < 1e-13
+
+
+def test_sums_on_products():
+    # Two bodies that know nothing of each other move as each does alone.
+    pair = {"F_1": "SO3", "F_2": "SO3"}
+    kinetic = "((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2 * h) + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2 * h)"
+    both = ls.lagrangian(pair, l_d=kinetic, J_1=J_D, J_2=2 * J_D)
+    alone = [ls.body(J), ls.body(2 * np.array(J))]
+    for up, m in (([0, 0, 1], 1), ([0, 1, 0], 2), ([1, 0, 0], 3)):
+        text = "-h/2 * m * (u.dot(rho + F_1 * rho) + 2 * v.dot(rho + F_2 * rho))"
+        seen = {"u": "up.seen_from(F_1)", "v": "up.seen_from(F_2)"}
+        both = ls.lagrangian(pair, advected=seen, l_d=text, m=m, rho=[0.1, 0, 1], up=up) + both
+        alone = [one + ls.gravity(m=k * m, g=1, rho=[0.1, 0, 1], up=up) for k, one in enumerate(alone, 1)]
+    run = both.stepper(0.01).run(velocity=[0.3, 1, 2, 1, 0.2, 0.3], until=1)
+    ends_of = [term.stepper(0.01).run(velocity=v, until=1) for term, v in zip(alone, ([0.3, 1, 2], [1, 0.2, 0.3]), strict=True)]
+    assert abs(run.velocity - np.hstack([one.velocity for one in ends_of])).max() < 1e-11
+    # A body and its place: a weight of the place, and two of the body.
+    free = {"F": "SO3", "d": "R3"}
+    body = ls.lagrangian(free, l_d="((F - I) * J_d * (F - I).transpose()).trace() / (2 * h) + m * d.norm_squared() / (2 * h)", J_d=J_D, m=2)
+    turned = [
+        ls.lagrangian(free, advected={"w": "up.seen_from(F)", "x": "d.seen_from(space)"}, m=m, rho=[0.1, 0, 1], up=up, f=1.5,
+                      l_d="-h/2 * (m * w.dot(rho + F * rho) + f * (x[2] + (x + d)[2]))")
+        for m, up in ((1, [0, 0, 1]), (2, [0, 1, 0]))
+    ]
+    run = (turned[0] + body + turned[1]).stepper(0.01).run(velocity=[0.3, 1, 2, 0, 0, 1], until=1)
+    weights = ls.gravity(m=1, g=1, rho=[0.1, 0, 1]) + ls.gravity(m=2, g=1, rho=[0.1, 0, 1], up=[0, 1, 0])
+    alone = (ls.body(J) + weights).stepper(0.01).run(velocity=[0.3, 1, 2], until=1)
+    assert abs(run.velocity[:, :3] - alone.velocity).max() < 1e-11
+    assert abs(run.velocity[-1, 3:] - [0, 0, 1 - 1.5]).max() < 1e-12
 
 
 def test_terms_of_both_forms_add():
