@@ -96,8 +96,8 @@ const MOST: usize = 10_000;
 /// The declarations of the program, by their texts.
 static KEPT: LazyLock<Mutex<BTreeMap<String, &'static Declaration>>> = LazyLock::new(Mutex::default);
 
-/// How many declarations are kept. A text is derived and kept once, however often it is declared; a program may keep
-/// 10,000. One of a body keeps 43 kB, which the ignored test in `core/late/tests/hostile.rs` measures.
+/// How many declarations are kept, sums among them. A text is derived and kept once, however often it is declared, and a sum
+/// once for each order of its terms; a program may keep 10,000. One of a body keeps 43 kB, which the ignored test in `core/late/tests/hostile.rs` measures.
 #[must_use]
 pub fn kept() -> usize {
     KEPT.lock().unwrap_or_else(PoisonError::into_inner).len()

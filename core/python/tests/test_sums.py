@@ -124,7 +124,7 @@ def test_vectors_are_as_many_as_the_terms_have():
     # Eight springs, each with an anchor of its own; the velocity at 2 s is that of DOP853.
     springs = [ls.spring(k=10, length=0.5, at=[np.cos(t), np.sin(t), 0.1 * t], anchor=[2 * np.sin(t), 2 * np.cos(t), 1])
                for t in range(1, 9)]
-    term = reduce(add, springs, ls.body([1, 2, 2.5]))
+    term = sum(springs) + ls.body([1, 2, 2.5])
     run = term.for_accuracy(1e-7, velocity=[0.1, 0.2, 0.3], until=2)
     assert abs(run.velocity[-1] - [-1.74747, -5.98525, -2.85234]).max() < 1e-5
     plan = term.control(step=0.05, steps=10, goal=ls.euler(0, 0.3)).solve()
@@ -144,7 +144,7 @@ def test_sums_on_other_groups():
 def test_sums_on_products():
     # Two bodies that know nothing of each other move as each does alone.
     pair = {"F_1": "SO3", "F_2": "SO3"}
-    kinetic = "((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2 * h) + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2 * h)"
+    kinetic = " + ".join(f"((F_{k} - I) * J_{k} * (F_{k} - I).transpose()).trace() / (2 * h)" for k in (1, 2))
     both = ls.lagrangian(pair, l_d=kinetic, J_1=J_D, J_2=2 * J_D)
     alone = [ls.body(J), ls.body(2 * np.array(J))]
     for up, m in (([0, 0, 1], 1), ([0, 1, 0], 2), ([1, 0, 0], 3)):
@@ -157,7 +157,7 @@ def test_sums_on_products():
     assert abs(run.velocity - np.hstack([one.velocity for one in ends_of])).max() < 1e-11
     # A body and its place: a weight of the place, and two of the body.
     free = {"F": "SO3", "d": "R3"}
-    body = ls.lagrangian(free, l_d="((F - I) * J_d * (F - I).transpose()).trace() / (2 * h) + m * d.norm_squared() / (2 * h)", J_d=J_D, m=2)
+    body = ls.lagrangian(free, l_d=f"{KINETIC} + m * d.norm_squared() / (2 * h)", J_d=J_D, m=2)
     turned = [
         ls.lagrangian(free, advected={"w": "up.seen_from(F)", "x": "d.seen_from(space)"}, m=m, rho=[0.1, 0, 1], up=up, f=1.5,
                       l_d="-h/2 * (m * w.dot(rho + F * rho) + f * (x[2] + (x + d)[2]))")

@@ -23,7 +23,8 @@ from .errors import ColumnError, DeclarationError, Error, SceneError, SetupError
 
 __version__ = "0.1.0"
 __all__ = [
-    "ColumnError", "Columns", "Control", "DeclarationError", "Ensemble", "Error", "Happenings", "Many", "Plan", "Run", "Scene", "SceneError", "SceneRun",
+    "ColumnError", "Columns", "Control", "DeclarationError", "Ensemble", "Error", "Happenings", "Many", "Plan", "Run", "Scene",
+    "SceneError", "SceneRun",
     "SetupError", "Spread", "StepError", "Stepper", "StoreError", "Term", "body", "dipole", "drag", "errors", "euler",
     "force", "gravity", "gravity_gradient", "lagrangian", "magnetic_damping", "nonstandard", "normal", "point", "rotation",
     "rotor", "scene", "schemes", "spring", "thrust", "torque", "translation", "uniform",

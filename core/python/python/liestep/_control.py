@@ -228,7 +228,8 @@ class Control:
         from dataclasses import replace
 
         whole("iterations", iterations, 0, 2**31 - 1)
-        made = _native.plan(self.term._terms(gradients=True), replace(self._task, tolerance=number("tolerance", tolerance), most=iterations, progress=progress))
+        task = replace(self._task, tolerance=number("tolerance", tolerance), most=iterations, progress=progress)
+        made = _native.plan(self.term._terms(gradients=True), task)
         plan = Plan(self.term.name, made)
         if made["failure"] is not None:
             made["failure"].run = plan

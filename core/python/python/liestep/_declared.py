@@ -144,6 +144,10 @@ class Sum:
         role = self.role if self.role == other.role else "lagrangian"
         return replace(self, summands=self.summands + other.summands, role=role, has_pace=self.has_pace or other.has_pace)
 
+    def __radd__(self: AnySum, other: object) -> AnySum:
+        # As the sum of a list begins.
+        return self if other == 0 else NotImplemented
+
     @property
     def name(self) -> str:
         """The names of the summands."""
@@ -235,7 +239,7 @@ class Sum:
 
         Of two springs each has a stiffness: they are set together while they are equal, and one by one.
 
-        >>> two = ls.spring(k=3, length=1, at=[0, 0, 1], anchor=[0, 0, 3]) + ls.spring(k=3, length=1, at=[1, 0, 0], anchor=[2, 0, 0])
+        >>> two = sum(ls.spring(k=3, length=1, at=at, anchor=[0, 0, 3]) for at in ([0, 0, 1], [1, 0, 0]))
         >>> two.with_(k=5).parameters["k"], two.with_(k_2=7).parameters["k_2"]
         (5.0, 7.0)
         """

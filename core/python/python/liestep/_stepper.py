@@ -287,7 +287,11 @@ class Stepper:
 
     def _about(self) -> str:
         kind, scheme, compensated, substeps = self.method
-        by = {"step": "", "density": f" at first, of a density by the turn from {scheme} rad/s on", "collocation": f" by {scheme} stages"}.get(kind, f" by the {kind} {scheme}")
+        known = {
+            "step": "", "collocation": f" by {scheme} stages",
+            "density": f" at first, of a density by the turn from {scheme} rad/s on",
+        }
+        by = known.get(kind, f" by the {kind} {scheme}")
         rest = (", compensated" if compensated else "") + (f", or {substeps} parts" if substeps > 1 else "")
         return f"steps of {self.step:g} s{by}{rest}"
 
@@ -425,7 +429,8 @@ class _Search(Stepper):
                 return run
             # As of order 2, but no farther than the runs so far can say.
             count *= min(8, max(2, int((2 * error / self.tolerance) ** 0.5))) if error < SURE else 2
-        raise SetupError(f"the step of {self.term.name} doesn't come to {self.tolerance:g} in {MOST} steps: give a step, `stepper(h)`")
+        found = f"the step of {self.term.name} doesn't come to {self.tolerance:g} in {MOST} steps"
+        raise SetupError(f"{found}: take a larger tolerance, or a step, `stepper(h)`")
 
 
 def accurate(term: Sum, tolerance: float, **run: Any) -> Run:
