@@ -133,12 +133,11 @@ impl Declaration {
     }
 
     /// The [`sum`](Self::sum) that carries the directions of space, `g^T e_i` of each factor, and each configuration once:
-    /// all vectors are made of them, so that it carries the same, however many there are. It differs from the other by
-    /// roundings.
+    /// all vectors are made of them, so that the sum carries the same, however many there are. Both sums differ by roundings.
     ///
     /// # Errors
     ///
-    /// As of [`sum`](Self::sum).
+    /// Those of [`sum`](Self::sum).
     pub fn sum_in_frames(terms: &[&'static Self]) -> Result<&'static Self, LateError> {
         Self::summed(terms, true)
     }
@@ -242,7 +241,7 @@ impl Declaration {
         (lengths().take(index).sum(), lengths().nth(index).unwrap_or(0))
     }
 
-    /// What is carried, by the value that it has in space: that of a parameter, or one of the directions, or the identity.
+    /// All advected parameters, each with its value in space.
     pub(crate) fn in_space(&self) -> impl Iterator<Item = (&Carried, InSpace)> {
         let carried = &self.carried;
         carried.iter().enumerate().map(|(at, one)| {

@@ -19,7 +19,7 @@ struct Part<'a> {
     has_target: bool,
 }
 
-/// Where a program finds the numbers of parameters: among the constants of a step, or as they are.
+/// The array in which a program finds the numbers of parameters.
 #[derive(Clone, Copy)]
 enum Weights {
     Constants,

@@ -311,7 +311,7 @@ fn a_sum_in_frames() {
     compiled.run(&mut a, 200).expect("steps");
     framed.run(&mut b, 200).expect("steps");
     assert!((a.momentum() - b.momentum()).norm() < 1e-11, "{} {}", a.momentum(), b.momentum());
-    // By each vector, and by the directions that it is made of: it is `Σ_i u_i e_i`.
+    // A vector is `Σ_i u_i e_i`: the gradients by the directions are sums of those by the vectors.
     let increment = SO3::exp(velocity * 0.1).matrix() - Matrix3::identity();
     let (seen, frame) = (sum.advected(), late.advected());
     let (own, framed) =

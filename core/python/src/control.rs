@@ -51,7 +51,7 @@ type Found = (ControlPlan<Scene, OwnStep<Scene>>, Option<PyErr>);
 
 impl Task {
     fn solve(&self, terms: &[&'static Declaration], numbers: &[f64]) -> Result<Found, Failure> {
-        // Beyond four vectors all are made of the directions of space.
+        // More vectors than four are made of the directions of space.
         let scene = match Scene::of(Declaration::sum(terms)?) {
             Err(LateError::Advected { .. }) => Scene::of(Declaration::sum_in_frames(terms)?)?,
             other => other?,

@@ -17,12 +17,12 @@ use crate::run::steps_to;
 use crate::start::{Start, started};
 use crate::table::Columns;
 
-/// What is drawn: by which name, `velocity` and `attitude` among them, which number, and from what.
+/// A number that is drawn, by the name of the parameter, of `velocity` or of `attitude`, and its distribution.
 #[derive(Clone, FromPyObject)]
 pub(crate) struct Draw {
     of: String,
     place: usize,
-    /// Of a parameter where the numbers stand that it is drawn for, each from its first.
+    /// The first numbers of the parameters that are drawn so, among those of all terms.
     at: Vec<usize>,
     /// `normal` with mean and deviation, `uniform` from the first to below the second.
     kind: String,

@@ -79,7 +79,7 @@ impl Derived {
 /// A term, and all its numbers.
 type Term<'py> = (Bound<'py, Derived>, Vec<f64>);
 
-/// What the terms declare, and the numbers of all.
+/// The declarations of terms, and the numbers of all.
 fn apart(terms: Vec<Term<'_>>) -> (Vec<&'static Declaration>, Vec<f64>) {
     let (terms, numbers): (Vec<_>, Vec<_>) = terms.into_iter().map(|(term, numbers)| (term.get().0, numbers)).unzip();
     (terms, numbers.concat())

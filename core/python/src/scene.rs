@@ -152,7 +152,7 @@ pub(crate) fn scene(terms: &[&'static Declaration], numbers: &[f64]) -> Result<A
             }
         )+)+};
     }
-    // Where the vectors are more than the types carry, all are made of the directions of space.
+    // More vectors than the types carry are made of the directions of space.
     for in_frames in [false, true] {
         let sum = if in_frames && sum.energy.is_none() { Declaration::sum_in_frames(terms)? } else { sum };
         first_that_fits! {

@@ -126,7 +126,7 @@ type Pickled = (String, String, Vec<f64>);
 
 #[pymethods]
 impl Table {
-    /// Of columns of one length.
+    /// A table of columns of one length.
     #[new]
     fn new(columns: Vec<Pickled>) -> PyResult<Self> {
         let length = columns.first().map_or(0, |(.., numbers)| numbers.len());

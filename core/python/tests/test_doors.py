@@ -1,4 +1,4 @@
-"""What a newcomer types: the listing of the page, ends of runs, conventions, errors of the family."""
+"""A newcomer's first lines: the listing of the page, ends of runs, conventions, errors of the family."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def exact(start, until):
 
 
 def away(run, attitude, velocity):
-    """As `Run.error` is meant."""
+    """The distance that `Run.error` means."""
     size = max(np.linalg.norm(run.velocity[0]), np.linalg.norm(velocity))
     return np.hypot(np.linalg.norm(run.matrix[-1] - attitude) / 3**0.5, np.linalg.norm(run.velocity[-1] - velocity) / size)
 
@@ -145,7 +145,7 @@ def test_columns_that_arent_side_by_side_are_copied(top):
     again = pickle.loads(pickle.dumps(pendulum))
     assert repr(again) == repr(pendulum) and again.svg() == pendulum.svg() and again.steps == pendulum.steps
     for run in (pendulum, top.stepper(0.01).run(velocity=[0.5, 2, 12], until=0.1)):
-        # By any letters that columns share.
+        # Any letters that columns share begin a group.
         for start in {name[:length] for name in run.names for length in range(1, 7)}:
             expected = np.stack([run[name] for name in run.names if name.startswith(start)], axis=1)
             assert (run.group(start) == expected).all(), start

@@ -69,7 +69,7 @@ def test_any_order_and_any_brackets_are_one_motion():
     for number in range(500):
         chosen = random.choice(len(all_terms), size=random.integers(2, 5), replace=number % 3 == 0)
         terms = [body, *(all_terms[at] for at in chosen)]
-        # Of every second one the order is another, too.
+        # Every second sum has another order, too.
         order = random.permutation(len(terms)) if number % 2 else range(len(terms))
         one, other = ends(reduce(add, terms)), ends(bracketed([terms[at] for at in order], random))
         assert abs(one - other).max() < 1e-12 * (1 + abs(one).max()), [term.name for term in terms]

@@ -100,13 +100,13 @@ class Summand:
         return cls(text, tuple(given.items()), name, tuple(directions)), derived
 
     def with_value(self, name: str, value: Value) -> Summand:
-        """The same with another value of a parameter."""
+        """A summand with another value of a parameter."""
         if name in self.directions:
             value = _direction(name, value)
         return replace(self, numbers=tuple((own, value if own == name else old) for own, old in self.numbers))
 
     def derived(self, gradients: bool = False) -> _native.Derived:
-        """What was derived of the text, which is derived once."""
+        """The derivation of the text, which is made once."""
         is_there = not gradients or "gradients" in self.text.partition(",")[2].partition("=")[0]
         return _native.Derived(self.text if is_there else self.text.replace("(", "(gradients, ", 1))
 
@@ -133,7 +133,7 @@ class Sum:
 
     @classmethod
     def of(cls: type[AnySum], summand: Summand, derived: _native.Derived) -> AnySum:
-        """Of one."""
+        """A sum of one summand."""
         return cls((summand,), derived.group, "force" if derived.is_force else "lagrangian", derived.has_pace)
 
     def __add__(self: AnySum, other: Sum) -> AnySum:
@@ -145,7 +145,7 @@ class Sum:
         return replace(self, summands=self.summands + other.summands, role=role, has_pace=self.has_pace or other.has_pace)
 
     def __radd__(self: AnySum, other: object) -> AnySum:
-        # As the sum of a list begins.
+        # Python begins the sum of a list with zero.
         return self if other == 0 else NotImplemented
 
     @property
@@ -188,7 +188,7 @@ class Sum:
                 named.setdefault(name, []).append((at, which))
         several = {name: places for name, places in named.items() if len(places) > 1}
         for name, places in several.items():
-            # Where a text has such a name itself, it is another.
+            # A text may have a parameter of such a name itself.
             mark = "_"
             while any(f"{name}{mark}{number}" in named for number in range(1, len(places) + 1)):
                 mark += "_"
@@ -199,7 +199,7 @@ class Sum:
         return len({self._value(place)[1] for place in places}) == 1
 
     def _found(self, name: str) -> list[Place]:
-        """Where the parameters are that a name stands for."""
+        """The places of the parameters that a name stands for."""
         named = self._places()
         if name not in named:
             raise DeclarationError(f"there is no parameter `{name}`: there are {', '.join(self.parameters)}")
@@ -209,7 +209,7 @@ class Sum:
         return named[name]
 
     def _first_number(self, place: Place) -> int:
-        """Of a parameter, among the numbers of all."""
+        """The place of a parameter's first number among those of all summands."""
         before = [numbers for summand in self.summands[: place[0]] for numbers in summand.numbers]
         before += self.summands[place[0]].numbers[: place[1]]
         return sum(len(value) for _, (_, value) in before)
@@ -237,7 +237,7 @@ class Sum:
         >>> top.with_(m=2.0).parameters["m"]
         2.0
 
-        Of two springs each has a stiffness: they are set together while they are equal, and one by one.
+        The stiffnesses of two springs are set together while they are equal, and one by one.
 
         >>> two = sum(ls.spring(k=3, length=1, at=at, anchor=[0, 0, 3]) for at in ([0, 0, 1], [1, 0, 0]))
         >>> two.with_(k=5).parameters["k"], two.with_(k_2=7).parameters["k_2"]

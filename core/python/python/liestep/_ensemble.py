@@ -175,7 +175,7 @@ class Ensemble:
         self._start: _Start = _start(None if self._turns else start["attitude"], start["velocity"])
 
     def _numbers_of(self, name: str, spread: Spread) -> list[int]:
-        """Where the numbers begin that are drawn for a parameter, among those of all."""
+        """The places of the first numbers that a draw replaces, among those of all summands."""
         term = self.stepper.term
         places = term._found(name)
         for place in places:

@@ -140,8 +140,8 @@ class Run(Motion):
     ended_by : str or None
         The event that stopped it.
     choice, method : str and dict, or None
-        Where an accuracy was asked for: the table of all methods, and the arguments of `liestep.Stepper` that make the
-        same steps.
+        The table of all methods that were compared for an accuracy, and the arguments of `liestep.Stepper` that make the same
+        steps.
     """
 
     def __init__(
@@ -172,10 +172,10 @@ class Run(Motion):
     def error(self) -> float | None:
         """About how far the last state is off, as a share: attitude and velocity together, each by its own size.
 
-        An attitude on SO(3) that is off by an angle has about 0.8 times as much, in rad. Where an accuracy was asked for it was
-        measured. Of given steps it is estimated when it is first read: by two runs of twice and four times the step, and
-        where these say nothing by two of a half and a quarter. It is ``None`` where runs don't agree with each other as those
-        of a method do, where steps have lengths of their own, and where an event has ended the run.
+        An attitude on SO(3) that is off by an angle has about 0.8 times as much, in rad. A run to an accuracy has measured it.
+        The error of another run is estimated when it is first read: by two runs of twice and four times the step, or, where
+        these say nothing, by two of a half and a quarter. There is none where the runs don't agree with each other as those of a
+        method do, where steps have lengths of their own, and where an event has ended the run.
         """
         if self._estimate is not None:
             self._error, self._estimate = self._estimate(self), None
@@ -286,7 +286,7 @@ class Happening:
 
 @dataclass(frozen=True)
 class _Pickled:
-    """What a run of a file has to say, as far as it is text."""
+    """The texts of a file's run: its summary, its picture and its page."""
 
     summary: str
     svg: str

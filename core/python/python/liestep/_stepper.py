@@ -391,6 +391,8 @@ class _Search(Stepper):
     """A stepper whose method and step are found by trial runs, for the motion that it is to make."""
 
     def __init__(self, term: Sum, tolerance: float) -> None:
+        if term.has_pace:
+            raise SetupError("a pace is that of the declared step, whose length is given: take `stepper(h)`")
         self.term, self.tolerance = term, number("tolerance", tolerance)
 
     def _course(self, until: Any, every: Any, times: Any, events: Any) -> _Course:
@@ -413,7 +415,7 @@ class _Search(Stepper):
 
 
     def _by_own_steps(self, start: _Start, course: _Course, names: list[str]) -> Run:
-        """Of what has no method but its own step: ever more of them, until their error is small enough."""
+        """Ever more of the declared steps, until their error is small enough."""
         if not 0 < self.tolerance < 1:
             raise SetupError(f"an accuracy is between zero and one, not {self.tolerance:g}")
         count, until = 16, course.until
@@ -427,7 +429,7 @@ class _Search(Stepper):
                 run = stepper._made(start, course, names)
                 run._error, run._estimate, run.method = error, None, {}
                 return run
-            # As of order 2, but no farther than the runs so far can say.
+            # The next number is that of order 2, but no farther than these runs can say.
             count *= min(8, max(2, int((2 * error / self.tolerance) ** 0.5))) if error < SURE else 2
         found = f"the step of {self.term.name} doesn't come to {self.tolerance:g} in {MOST} steps"
         raise SetupError(f"{found}: take a larger tolerance, or a step, `stepper(h)`")

@@ -21,15 +21,15 @@ class Term(Sum):
     the programs of its summands: any of them on one group add, in any order.
 
     Parameters of one name are one parameter as long as they have one value: `with_`, the draws of an `ensemble` and
-    `parameters` know them by this name. Where a sum has several ``m``, those of the summands that have one are ``m_1``,
-    ``m_2`` and so on, in the order of the sum.
+    `parameters` know them by this name. Several ``m`` of a sum are ``m_1``, ``m_2`` and so on, in the order of the summands
+    that have one.
 
     Attributes
     ----------
     summands : tuple
         The declarations, each with its numbers.
     group : str
-        What it is on, as ``SO3``.
+        The group, as ``SO3``.
     role : str
         ``"lagrangian"``, or ``"force"`` where there are forces alone.
     has_pace : bool
@@ -43,8 +43,8 @@ class Term(Sum):
     def run(self, **run: Any) -> Run:
         """The run to an accuracy of 1e-6; see `liestep.Stepper.run`. Method and step are those of `for_accuracy`.
 
-        Without `every` and `times` it has 1001 rows, as far from each other in time. With a force that isn't the same
-        backwards there is no method but the declared step, which is made ever shorter.
+        Without `every` and `times` it has 1001 rows, as far from each other in time. A force that isn't the same
+        backwards leaves no method but the declared step, which is made ever shorter.
 
         Examples
         --------
