@@ -239,7 +239,8 @@ fn commands_of_readme_are_run_or_said_to_be_long() {
     let lock = fs::read_to_string(root.join("Cargo.lock")).unwrap();
     // What the script calls `built` is an example of the workspace, which is built and run.
     let script = fs::read_to_string(root.join(".ci/run")).unwrap();
-    let script: Vec<String> = script.lines().map(|line| line.replacen("built ", "cargo run --workspace --example ", 1)).collect();
+    let script: Vec<String> =
+        script.lines().map(|line| line.replacen("built ", "cargo run --workspace --example ", 1)).collect();
     let are_run: Vec<Cargo<'_>> = script.iter().filter_map(|line| Cargo::read(line)).collect();
     let (_, list) = examples.split_once("`.ci/run` runs these commands and those").unwrap();
     let list = list.split("\n\n").next().unwrap();

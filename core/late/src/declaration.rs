@@ -7,7 +7,7 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 use liestep::mechanics::Parts;
 use liestep::numbers::{Blocks, Real};
-use liestep_derivation::{Action, Array, MOST_WORK, Program, Refusal, StagedDeclaration, Stages, staged};
+use liestep_derivation::{Action, Array, Carried, MOST_WORK, Program, Refusal, StagedDeclaration, Stages, staged};
 use proc_macro2::{LexError, TokenStream};
 
 use crate::code::Backend;
@@ -31,6 +31,16 @@ impl Deref for Declaration {
     fn deref(&self) -> &StagedDeclaration {
         &self.staged
     }
+}
+
+/// A value in space.
+#[derive(Clone, Copy)]
+pub(crate) enum InSpace {
+    /// That of the parameter with this number.
+    Parameter(usize),
+    /// The unit vector with this number.
+    Direction(usize),
+    Identity,
 }
 
 #[derive(Debug)]
@@ -85,8 +95,9 @@ const MOST: usize = 10_000;
 /// The declarations of the process, by their texts.
 static KEPT: LazyLock<Mutex<BTreeMap<String, &'static Declaration>>> = LazyLock::new(Mutex::default);
 
-/// The number of stored declarations. A text is derived and stored once, however often it is declared; a process may
-/// store 10,000. One of a body takes 43 kB, which the ignored test in `core/late/tests/hostile.rs` measures.
+/// The number of stored declarations, sums among them. A text is derived and stored once, however often it is declared, and
+/// a sum once for each order of its terms; a process may store 10,000. One of a body takes 43 kB, which the ignored test in
+/// `core/late/tests/hostile.rs` measures.
 #[must_use]
 pub fn kept() -> usize {
     KEPT.lock().unwrap_or_else(PoisonError::into_inner).len()
@@ -119,9 +130,24 @@ impl Declaration {
         if let [only] = terms {
             return Ok(only);
         }
+        Self::summed(terms, false)
+    }
+
+    /// The [`sum`](Self::sum) that carries the directions of space, `g^T e_i` of each factor, and each configuration once:
+    /// all vectors are made of them, so that the sum carries the same, however many there are. Both sums differ by roundings.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`sum`](Self::sum).
+    pub fn sum_in_frames(terms: &[&'static Self]) -> Result<&'static Self, LateError> {
+        Self::summed(terms, true)
+    }
+
+    fn summed(terms: &[&'static Self], in_frames: bool) -> Result<&'static Self, LateError> {
         // Addresses identify declarations.
         let places: Vec<*const Self> = terms.iter().map(|&term| &raw const *term).collect();
-        Self::kept(&format!("{places:?}"), || summed(&terms.iter().map(|term| &term.staged).collect::<Vec<_>>()))
+        let terms: Vec<&StagedDeclaration> = terms.iter().map(|term| &term.staged).collect();
+        Self::kept(&format!("{places:?}, {in_frames}"), || summed(&terms, in_frames))
     }
 
     /// The stored declaration of this name, or a new one.
@@ -214,6 +240,21 @@ impl Declaration {
     pub(crate) fn place(&self, index: usize) -> (usize, usize) {
         let lengths = || self.parameters.iter().map(|parameter| parameter.kind.len());
         (lengths().take(index).sum(), lengths().nth(index).unwrap_or(0))
+    }
+
+    /// All advected parameters, each with its value in space.
+    pub(crate) fn in_space(&self) -> impl Iterator<Item = (&Carried, InSpace)> {
+        let carried = &self.carried;
+        carried.iter().enumerate().map(|(at, one)| {
+            let value = match (one.field, one.action) {
+                (Some(field), _) => InSpace::Parameter(field),
+                (None, Action::Covector(_)) => {
+                    InSpace::Direction(carried[..at].iter().filter(|other| *other == one).count() % one.shape.0)
+                }
+                (None, _) => InSpace::Identity,
+            };
+            (one, value)
+        })
     }
 
     /// The actions with shapes, as a type of advected parameters lists them.

@@ -100,6 +100,10 @@ fn word(name: &str) -> String {
         _ if KNOWN.contains(&head) => format!("\\{head} "),
         "tr" => "\\operatorname{tr}".to_owned(),
         _ if head.chars().count() == 1 => head.to_owned(),
+        // The change of a letter, as `dOmega`.
+        _ if head.strip_prefix('d').is_some_and(|letter| KNOWN.contains(&letter)) => {
+            format!("\\mathrm{{d}}\\{} ", &head[1..])
+        }
         _ => format!("\\mathrm{{{head}}}"),
     };
     let below = below.map(|below| format!("_{{{}}}", below.replace('_', "\\_")));

@@ -2,7 +2,7 @@
 //!
 //! # Inside
 //!
-//! `{lanes, gradients} → effect → term → declaration → sum → specialised → code → error`, and
+//! `{lanes, gradients} → effect → term → declaration → sum → {frames, specialised → code} → error`, and
 //! `{latex, written} → declaration`: a [`Declaration`] is the derivation of a text, with its stages as straight-line
 //! programs, or the `sum` of several; a [`Late`] is one with numbers, and an [`Effect`](liestep::mechanics::Effect) as
 //! any other. A [`Backend`] runs the programs: [`Interpreter`] here, machine code in `liestep-machine`. `carried`
@@ -14,6 +14,7 @@ mod code;
 mod declaration;
 mod effect;
 mod error;
+mod frames;
 mod gradients;
 mod lanes;
 mod latex;
@@ -29,7 +30,7 @@ pub use effect::{Constants, StepTerms};
 pub use error::{LateError, Mistake};
 pub use lanes::Wider;
 pub use latex::latex;
-pub use liestep_derivation::{Array, Function, Operation, Program, Source, Stages};
+pub use liestep_derivation::{Array, Function, Operation, Program, Role, Source, Stages};
 pub use specialised::specialised;
 pub use term::{Late, numbers};
 pub use written::{c, rust};

@@ -1,43 +1,82 @@
 //! Several declarations in one: programs that add what theirs compute.
 
-use liestep_derivation::{Array, Carried, Operation, Parameter, Program, Role, Source, StagedDeclaration, Stages};
+use std::collections::HashMap;
+
+use liestep_derivation::{Array, Operation, Parameter, Program, Role, Source, StagedDeclaration, Stages};
 
 use crate::error::LateError;
+use crate::frames::{Carriage, Combined};
 use crate::specialised::{Fold, Value};
 
 /// A term, and where its numbers begin among those of all.
-#[derive(Clone, Copy)]
 struct Part<'a> {
     staged: &'a StagedDeclaration,
     parameters: usize,
     constants: usize,
-    carried: usize,
+    /// Each number that it carries, by those that the sum does.
+    carried: Vec<Combined>,
     /// The right side is that of one term, and zero that of the others.
     has_target: bool,
 }
 
+/// The array in which a program finds the numbers of parameters.
+#[derive(Clone, Copy)]
+enum Weights {
+    Constants,
+    Parameters,
+}
+
+impl Weights {
+    fn times(self, fold: &mut Fold, (weight, _): (Option<[usize; 2]>, usize), value: Value) -> Value {
+        let Some([parameter, constant]) = weight else { return value };
+        let weight = match self {
+            Self::Constants => Source::new(Array::Constants, constant),
+            Self::Parameters => Source::new(Array::Parameters, parameter),
+        };
+        fold.kept(Operation::Multiply(0, 0), [Value::Input(weight), value])
+    }
+}
+
 impl Part<'_> {
-    fn moved(&self, source: Source) -> Value {
+    fn moved(&self, source: Source, has_target: bool) -> Value {
         let first = match source.array {
-            Array::Target if !self.has_target => return Value::of(0.0),
+            Array::Target if !has_target => return Value::of(0.0),
             Array::Parameters => self.parameters,
             Array::Constants => self.constants,
-            Array::Advected | Array::Next => self.carried,
             _ => 0,
         };
         Value::Input(Source::new(source.array, first + source.at))
     }
 
+    /// A program of a step, which reads its constants.
     fn append(&self, fold: &mut Fold, program: &Program) -> Vec<Value> {
-        fold.append(program, |source| self.moved(source), Fold::kept)
+        self.append_by(fold, program, Weights::Constants, self.has_target)
+    }
+
+    /// A program that reads the parameters.
+    fn append_alone(&self, fold: &mut Fold, program: &Program) -> Vec<Value> {
+        self.append_by(fold, program, Weights::Parameters, self.has_target)
+    }
+
+    fn append_by(&self, fold: &mut Fold, program: &Program, weights: Weights, has_target: bool) -> Vec<Value> {
+        let mut carried = HashMap::new();
+        for &source in program.inputs.iter().filter(|source| matches!(source.array, Array::Advected | Array::Next)) {
+            let sum = self.carried[source.at].iter().fold(Value::of(0.0), |sum, &one| {
+                let product = weights.times(fold, one, Value::Input(Source::new(source.array, one.1)));
+                fold.kept(Operation::Add(0, 0), [sum, product])
+            });
+            carried.insert(source, sum);
+        }
+        let moved = |source| carried.get(&source).copied().unwrap_or_else(|| self.moved(source, has_target));
+        fold.append(program, moved, Fold::kept)
     }
 
     /// `l`, momentum and Hessian at a velocity: those of `½ ξ·Jξ + s·ξ − V` where it is quadratic.
     fn at_velocity(&self, fold: &mut Fold) -> [Vec<Value>; 3] {
         if let Some(programs) = &self.staged.programs.at_velocity {
-            return programs.each_ref().map(|program| self.append(fold, program));
+            return programs.each_ref().map(|program| self.append_alone(fold, program));
         }
-        let at_rest = self.append(fold, &self.staged.programs.at_rest);
+        let at_rest = self.append_alone(fold, &self.staged.programs.at_rest);
         let size = dimension(self.staged);
         let velocity = inputs(Array::Velocity, size);
         let (hessian, rest) = at_rest.split_at(size * size);
@@ -123,13 +162,17 @@ fn system(solved: &[&Part<'_>], outputs: usize) -> Program {
     fold.program(&sum)
 }
 
-fn programs(parts: &[Part<'_>]) -> Stages<Program> {
+fn programs(parts: &[Part<'_>], weights: &[usize]) -> Stages<Program> {
     let stage = |program: fn(&Stages<Program>) -> &Program| {
         sum_of(parts, |part, fold| part.append(fold, program(&part.staged.programs)))
     };
+    let alone = |program: fn(&Stages<Program>) -> &Program| {
+        sum_of(parts, |part, fold| part.append_alone(fold, program(&part.staged.programs)))
+    };
     let mut constants = Fold::default();
-    let of_all: Vec<Value> =
-        parts.iter().flat_map(|part| part.append(&mut constants, &part.staged.programs.constants)).collect();
+    let of_terms = parts.iter().flat_map(|part| part.append(&mut constants, &part.staged.programs.constants));
+    let of_weights = weights.iter().map(|&number| Value::Input(Source::new(Array::Parameters, number)));
+    let of_all: Vec<Value> = of_terms.chain(of_weights).collect();
     let solved: Vec<&Part<'_>> = parts.iter().filter(|part| part.has_target || part.staged.parts[0]).collect();
     let size = parts.first().map_or(0, |part| dimension(part.staged));
     let kicked = parts.iter().filter(|part| part.staged.parts[1]);
@@ -138,7 +181,7 @@ fn programs(parts: &[Part<'_>]) -> Stages<Program> {
     let derivatives = derivatives.filter(|derivatives| !derivatives.is_empty());
     let of_lagrangian = |at: usize| {
         let programs = parts.iter().filter_map(|part| Some((part, &part.staged.programs.lagrangian.as_ref()?[at])));
-        sum_of(programs, |(part, program), fold| part.append(fold, program))
+        sum_of(programs, |(part, program), fold| part.append_alone(fold, program))
     };
     let at_velocity = |at: usize| sum_of(parts, |part, fold| std::mem::take(&mut part.at_velocity(fold)[at]));
     let mut all = parts.iter().map(|part| part.staged);
@@ -150,8 +193,8 @@ fn programs(parts: &[Part<'_>]) -> Stages<Program> {
         kick_after: stage(|programs| &programs.kick_after),
         kick_derivative: derivatives
             .map(|derivatives| sum_of(derivatives, |(part, program), fold| part.append(fold, program))),
-        momentum_jacobian: stage(|programs| &programs.momentum_jacobian),
-        at_rest: stage(|programs| &programs.at_rest),
+        momentum_jacobian: alone(|programs| &programs.momentum_jacobian),
+        at_rest: alone(|programs| &programs.at_rest),
         at_velocity: all.clone().any(|staged| !staged.is_quadratic).then(|| [0, 1, 2].map(at_velocity)),
         lagrangian: all
             .any(|staged| staged.programs.lagrangian.is_some())
@@ -159,25 +202,35 @@ fn programs(parts: &[Part<'_>]) -> Stages<Program> {
     }
 }
 
-/// What is of the place is added, and what is of the numbers that are carried stands in the order of the terms.
-fn derivatives(parts: &[Part<'_>]) -> Option<[Program; 4]> {
+/// The derivatives by the place, added; behind them those by the numbers that the sum carries, of which there are so many.
+fn derivatives(parts: &[Part<'_>], carried: usize) -> Option<[Program; 4]> {
     let all = parts.iter().map(|part| Some((part, part.staged.derivatives.as_ref()?)));
     let all = all.collect::<Option<Vec<_>>>()?;
-    let of = |at: usize, of_place: usize| {
-        let (mut fold, mut sum, mut behind) = (Fold::default(), Vec::new(), Vec::new());
+    let size = dimension(parts.first()?.staged);
+    let of = |at: usize, of_place: usize, of_number: usize| {
+        let (mut fold, mut sum) = (Fold::default(), Vec::new());
+        let mut behind = vec![Value::of(0.0); carried * of_number];
         for (part, programs) in &all {
             // The weights are those of all terms.
-            let mut one = Part { has_target: true, ..**part }.append(&mut fold, &programs[at]);
-            behind.extend(one.split_off(of_place.min(one.len())));
+            let mut one = part.append_by(&mut fold, &programs[at], Weights::Parameters, true);
+            let numbers = one.split_off(of_place.min(one.len()));
+            for (own, combined) in numbers.chunks(of_number.max(1)).zip(&part.carried) {
+                for &entry in combined {
+                    for (derivative, to) in own.iter().zip(&mut behind[entry.1 * of_number..]) {
+                        let product = Weights::Parameters.times(&mut fold, entry, *derivative);
+                        *to = fold.kept(Operation::Add(0, 0), [*to, product]);
+                    }
+                }
+            }
             sum = if sum.is_empty() { one } else { added(&mut fold, &sum, &one) };
         }
         fold.program(&[sum, behind].concat())
     };
-    Some([of(0, usize::MAX), of(1, usize::MAX), of(2, dimension(parts.first()?.staged)), of(3, 0)])
+    Some([of(0, usize::MAX, 0), of(1, usize::MAX, 0), of(2, size, 1), of(3, 0, 2 * size)])
 }
 
-/// The sum of several.
-pub(crate) fn summed(terms: &[&StagedDeclaration]) -> Result<StagedDeclaration, LateError> {
+/// The sum of several, which carries the directions of space once where this is wished.
+pub(crate) fn summed(terms: &[&StagedDeclaration], in_frames: bool) -> Result<StagedDeclaration, LateError> {
     let first = *terms.first().ok_or(LateError::Nothing)?;
     if let Some(other) = terms.iter().find(|staged| staged.factors != first.factors) {
         let names: Vec<&str> = other.factors.iter().map(|factor| factor.name.as_str()).collect();
@@ -187,20 +240,22 @@ pub(crate) fn summed(terms: &[&StagedDeclaration]) -> Result<StagedDeclaration, 
         return Err(LateError::Pace);
     }
     let with_target = terms.iter().position(|staged| staged.parts[0]).unwrap_or(0);
-    let (mut parts, mut parameters, mut carried) = (Vec::<Part<'_>>::new(), Vec::new(), Vec::<Carried>::new());
+    let constants = |terms: &[&StagedDeclaration]| -> usize {
+        terms.iter().map(|staged| staged.programs.constants.outputs.len()).sum()
+    };
+    let mut carriage = Carriage::of(terms, in_frames, constants(terms));
+    let (mut parts, mut parameters) = (Vec::<Part<'_>>::new(), Vec::<Parameter>::new());
     for (at, &staged) in terms.iter().enumerate() {
         let alike = terms[..at].iter().filter(|other| other.name == staged.name).count();
         let name = if alike == 0 { staged.name.clone() } else { format!("{}{}", staged.name, alike + 1) };
+        let before: usize = parameters.iter().map(|parameter| parameter.kind.len()).sum();
         parts.push(Part {
             staged,
-            parameters: parameters.iter().map(|parameter: &Parameter| parameter.kind.len()).sum(),
-            constants: terms[..at].iter().map(|staged| staged.programs.constants.outputs.len()).sum(),
-            carried: carried.iter().map(|carried| carried.shape.0 * carried.shape.1).sum(),
+            parameters: before,
+            constants: constants(&terms[..at]),
+            carried: carriage.take(staged, parameters.len(), before),
             has_target: at == with_target,
         });
-        let first = parameters.len();
-        carried
-            .extend(staged.carried.iter().map(|one| Carried { field: one.field.map(|field| first + field), ..*one }));
         let named = |one: &Parameter| Parameter { name: format!("{name}.{}", one.name), kind: one.kind };
         parameters.extend(staged.parameters.iter().map(named));
     }
@@ -224,9 +279,9 @@ pub(crate) fn summed(terms: &[&StagedDeclaration]) -> Result<StagedDeclaration, 
         in_increment: first.in_increment,
         energy: None,
         blocks: solved().next().map_or_else(Vec::new, |one| one.blocks.iter().copied().filter(in_all).collect()),
-        programs: programs(&parts),
-        derivatives: derivatives(&parts),
+        programs: programs(&parts, &carriage.weights),
+        derivatives: derivatives(&parts, carriage.numbers()),
         parameters,
-        carried,
+        carried: carriage.carried,
     })
 }

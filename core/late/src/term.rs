@@ -14,7 +14,7 @@ use nalgebra::Vector1;
 
 use crate::carried::Slots;
 use crate::code::{Backend, Interpreter};
-use crate::declaration::{All, Declaration, Derivatives};
+use crate::declaration::{All, Declaration, Derivatives, InSpace};
 use crate::error::LateError;
 use crate::specialised::specialised;
 
@@ -282,12 +282,14 @@ where
     }
 
     fn advected(&self) -> W {
-        let mut numbers = self.declaration.carried.iter().flat_map(|carried| {
+        let mut numbers = self.declaration.in_space().flat_map(|(carried, value)| {
             let (rows, columns) = carried.shape;
-            let given = carried.field.map(|field| self.of_parameter(field));
-            // A configuration is the identity in space.
-            let one = move |at| real(f64::from(u8::from(at / rows == at % rows)));
-            (0..rows * columns).map(move |at| given.map_or_else(|| one(at), |given| given[at]))
+            let unit = |is_one| real(f64::from(u8::from(is_one)));
+            (0..rows * columns).map(move |at| match value {
+                InSpace::Parameter(field) => self.of_parameter(field)[at],
+                InSpace::Direction(number) => unit(at == number),
+                InSpace::Identity => unit(at / rows == at % rows),
+            })
         });
         W::from_entries(&mut || numbers.next().unwrap_or_else(|| real(0.0)))
     }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use liestep_derivation::{Action, Array, Function, Operation, Program};
 
-use crate::declaration::Declaration;
+use crate::declaration::{Declaration, InSpace};
 use crate::error::LateError;
 
 /// A language, as far as its straight-line code differs from another's.
@@ -176,11 +176,14 @@ pub fn c(declaration: &Declaration) -> Result<String, LateError> {
     }
     let mut places = (String::new(), String::new());
     let mut at = 0;
-    for carried in &declaration.carried {
+    for (carried, value) in declaration.in_space() {
         let length = carried.shape.0 * carried.shape.1;
-        let from = carried.field.map_or(0, |field| declaration.place(field).0);
-        let _ =
-            writeln!(places.0, "    for (int i = 0; i < {length}; i++) spatial[{at} + i] = parameters[{from} + i];");
+        let value = match value {
+            InSpace::Parameter(field) => format!("parameters[{} + i]", declaration.place(field).0),
+            InSpace::Direction(number) => format!("i == {number}"),
+            InSpace::Identity => format!("i / {0} == i % {0}", carried.shape.0),
+        };
+        let _ = writeln!(places.0, "    for (int i = 0; i < {length}; i++) spatial[{at} + i] = {value};");
         if matches!(carried.action, Action::Covector(_)) {
             let _ = writeln!(places.1, "    turned(matrix, from + {at}, to + {at}, is_change);");
         } else {

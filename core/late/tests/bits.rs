@@ -18,8 +18,8 @@ use liestep::groups::{CayleyRetraction, CovariantTensor, LieGroup as _, Retracti
 use liestep::lagrangian;
 use liestep::laws::samples::Random;
 use liestep::mechanics::{
-    DiagonalNonstandardInertia, Effect, Inertia, OnlyKicks, SecondDerivatives, StepPoint, Vector, WithEitherKinetic,
-    WithoutKinetic,
+    DiagonalNonstandardInertia, Effect, Inertia, OnlyKicks, SecondDerivatives, StepPoint, Term as _, Vector,
+    WithEitherKinetic, WithoutKinetic,
 };
 use liestep::motion::Batch;
 use liestep::numbers::{Coordinates as _, Entries as _};
@@ -287,6 +287,64 @@ fn sums_in_one_program() {
     assert!(
         two.parameters[4].name == "Gravity2.m" && std::ptr::eq(two, Declaration::sum(&[gravity; 2]).expect("kept"))
     );
+}
+
+/// All vectors are made of the three directions of space: the same steps, and the same derivatives by those.
+#[test]
+fn a_sum_in_frames() {
+    type Frame = (Vector3<f64>, Vector3<f64>, Vector3<f64>);
+    let (body, gravity, dipole) =
+        (random!(1, RigidBody { J_d }), random!(2, Gravity { m g rho up }), random!(3, Dipole { moment field }));
+    let [one, other] = [4, 5].map(|seed| random!(seed, Spring { k length at anchor }));
+    let sum = body + gravity + one + dipole + other;
+    let terms = [declared(&body), declared(&gravity), declared(&one), declared(&dipole), declared(&other)];
+    let declaration = Declaration::sum_in_frames(&terms).expect("a sum");
+    assert_eq!(declaration.carried.len(), 3);
+    let late = Late::<SO3, Frame, WithEitherKinetic>::of(declaration).and_then(|late| late.with_all(&numbers(&sum)));
+    let late = late.and_then(Late::differentiable).expect("numbers");
+    let (start, velocity) = (SO3::exp(Vector3::new(0.3, -0.2, 0.5)), Vector3::new(0.3, 1.0, 5.0));
+    let compiled = Stepper::new(sum, 0.01).expect("a stepper");
+    let framed = Stepper::new(late.clone(), 0.01).expect("a stepper");
+    let mut a = compiled.start(start, velocity).expect("a start");
+    let mut b = framed.start(start, velocity).expect("a start");
+    assert!((compiled.energy(&a) - framed.energy(&b)).abs() < 1e-12);
+    compiled.run(&mut a, 200).expect("steps");
+    framed.run(&mut b, 200).expect("steps");
+    assert!((a.momentum() - b.momentum()).norm() < 1e-11, "{} {}", a.momentum(), b.momentum());
+    // A vector is `Σ_i u_i e_i`: the gradients by the directions are sums of those by the vectors.
+    let increment = SO3::exp(velocity * 0.1).matrix() - Matrix3::identity();
+    let (seen, frame) = (sum.advected(), late.advected());
+    let (own, framed) =
+        (StepPoint { increment: &increment, w: &seen, h: 0.1 }, StepPoint { increment: &increment, w: &frame, h: 0.1 });
+    let (u, p) = (Vector3::new(0.4, 0.1, -0.7), Vector3::new(-0.2, 0.9, 0.3));
+    let by_own = sum.adjoint_gradient(own, [&u, &p], &mut |_, _| {}).1;
+    let (mut vectors, mut by_vectors, mut by_frame) = (Vec::new(), Vec::new(), Vec::new());
+    seen.each(&mut |entry| vectors.push(entry));
+    by_own.each(&mut |entry| by_vectors.push(entry));
+    late.adjoint_gradient(framed, [&u, &p], &mut |_, _| {}).1.each(&mut |entry| by_frame.push(entry));
+    for (direction, place) in (0..3).flat_map(|direction| (0..3).map(move |place| (direction, place))) {
+        let chain: f64 = vectors.chunks(3).zip(by_vectors.chunks(3)).map(|(u, by)| u[direction] * by[place]).sum();
+        assert!((chain - by_frame[3 * direction + place]).abs() < 1e-11, "{direction} {place}");
+    }
+    let mut by_number = vec![[Vector3::zeros(); 2]; 12];
+    sum.by_advected(own, &mut |number, start, end| by_number[number] = [start, end]);
+    late.by_advected(framed, &mut |number, start, end| {
+        for (which, found) in [start, end].into_iter().enumerate() {
+            let chain: Vector3<f64> =
+                (0..4).map(|one| by_number[3 * one + number % 3][which] * vectors[3 * one + number / 3]).sum();
+            assert!((chain - found).norm() < 1e-11, "{number}");
+        }
+    });
+    // A sum of such a sum, and the C of its step.
+    let twice = Declaration::sum_in_frames(&[declaration, terms[1]]).expect("a sum");
+    let values = [numbers(&sum), numbers(&gravity)].concat();
+    let twice =
+        Late::<SO3, Frame, WithEitherKinetic>::of(twice).and_then(|late| late.with_all(&values)).expect("numbers");
+    let by_hand = sum + gravity;
+    let limits = (twice.limit(None, &twice.advected()).l, by_hand.limit(None, &by_hand.advected()).l);
+    assert!((limits.0 - limits.1).abs() < 1e-12, "{limits:?}");
+    let written = liestep_late::c(declaration).expect("a step in C");
+    assert!(written.contains("spatial[3 + i] = i == 1;"), "{written}");
 }
 
 /// Numbers of all derivatives of a step, at a random one.

@@ -9,7 +9,7 @@ use liestep::motion::OwnStep;
 use liestep::recording::{Column, Sink as _};
 use liestep::{SO3, Stepper};
 use liestep_control::{Control, ControlError, ControlPlan, Cost, Residual, Target, Verdict};
-use liestep_late::Declaration;
+use liestep_late::{Declaration, LateError};
 use nalgebra::Vector3;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -17,8 +17,9 @@ use pyo3::types::PyDict;
 use crate::ensemble::kept;
 use crate::failure::Failure;
 use crate::method::Four;
-use crate::run::{Start, listed};
+use crate::run::listed;
 use crate::scene::Late;
+use crate::start::Start;
 use crate::table::Columns;
 
 /// One type for all scenes on SO(3).
@@ -50,7 +51,12 @@ type Found = (ControlPlan<Scene, OwnStep<Scene>>, Option<PyErr>);
 
 impl Task {
     fn solve(&self, terms: &[&'static Declaration], numbers: &[f64]) -> Result<Found, Failure> {
-        let scene = Scene::of(Declaration::sum(terms)?)?.with_all(numbers)?.differentiable()?;
+        // More vectors than four are made of the directions of space.
+        let scene = match Scene::of(Declaration::sum(terms)?) {
+            Err(LateError::Advected { .. }) => Scene::of(Declaration::sum_in_frames(terms)?)?,
+            other => other?,
+        };
+        let scene = scene.with_all(numbers)?.differentiable()?;
         let stepper = Stepper::new(scene, self.step).map_err(|error| Failure::setup(&error))?;
         let at = |place: &Start| {
             let state = stepper.start(place.attitude::<SO3>()?, place.velocity::<SO3>()?);

@@ -13,14 +13,17 @@ use liestep_ensemble::{Ensemble, Local, Member, MemberFailure, Progress, Report,
 use pyo3::prelude::*;
 
 use crate::failure::Failure;
-use crate::run::{Start, steps_to};
+use crate::run::steps_to;
+use crate::start::{Start, started};
 use crate::table::Columns;
 
-/// What is drawn: of which parameter, `velocity` or `attitude` among them, which number, and from what.
+/// A number that is drawn, by the name of the parameter, of `velocity` or of `attitude`, and its distribution.
 #[derive(Clone, FromPyObject)]
 pub(crate) struct Draw {
-    pub(crate) of: String,
+    of: String,
     place: usize,
+    /// The first numbers of the parameters that are drawn so, among those of all terms.
+    at: Vec<usize>,
     /// `normal` with mean and deviation, `uniform` from the first to below the second.
     kind: String,
     first: f64,
@@ -71,7 +74,7 @@ pub(crate) fn run_members<G>(
     plan: Members,
     start: &Start,
     draws: Draws,
-    make: impl Fn(&mut dyn FnMut(&str, &mut [f64])) -> Result<AnyStepper<G, ()>, Failure> + Send + Sync + 'static,
+    make: impl Fn(&dyn Fn(&mut [f64])) -> Result<AnyStepper<G, ()>, Failure> + Send + Sync + 'static,
     h: f64,
 ) -> Result<Outcome, Failure>
 where
@@ -86,7 +89,15 @@ where
                 }
             }
         };
-        let stepper = make(&mut |name, numbers| draw_of(name, numbers)).map_err(other)?;
+        let draw_all = |numbers: &mut [f64]| {
+            for draw in &draws {
+                let drawn = draw.number(member);
+                for first in &draw.at {
+                    numbers.get_mut(first + draw.place).into_iter().for_each(|number| *number = drawn);
+                }
+            }
+        };
+        let stepper = make(&draw_all).map_err(other)?;
         let mut own = start.clone();
         draw_of("velocity", &mut own.velocity);
         draw_of("attitude", &mut own.attitude);
@@ -94,10 +105,10 @@ where
             let drawn = member.rotation("attitude");
             (own.attitude, own.is_quaternion) = (vec![drawn.w, drawn.i, drawn.j, drawn.k], true);
         }
-        let state = crate::scene::started(&stepper, &own).map_err(other)?;
+        let state = started(&stepper, &own).map_err(other)?;
         Ok((stepper, state))
     };
-    let steps = steps_to(plan.until, h)?;
+    let steps = steps_to(plan.until, h, true)?;
     let mut ensemble = Ensemble::<AnyStepper<G, ()>>::one_by_one(&plan.name, plan.members, steps, made).seed(plan.seed);
     if let Some(every) = plan.every {
         ensemble = ensemble.every(every.max(1));

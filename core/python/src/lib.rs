@@ -1,6 +1,6 @@
 //! liestep in Python: the part that is written in Rust, and that the package `liestep` is made of.
 //!
-//! `lib → {control, file, picture} → scene → ensemble → {run, method} → {table, failure}`: a text is derived by `liestep-late`; what it
+//! `lib → {control, file, picture} → scene → ensemble → {run, method} → start → table → failure`: a text is derived by `liestep-late`; what it
 //! declares is stepped by any method, recorded into columns that `NumPy` and Arrow look at where they are, or drawn at random.
 //! Whatever takes long leaves the interpreter to others, and asks it now and then whether it is to stop.
 #![forbid(unsafe_code)]
@@ -13,12 +13,13 @@ mod method;
 mod picture;
 mod run;
 mod scene;
+mod start;
 mod table;
 
 use std::sync::Arc;
 
 use liestep_ensemble::share_of;
-use liestep_late::Declaration;
+use liestep_late::{Declaration, Role};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -26,8 +27,8 @@ use crate::control::Task;
 use crate::ensemble::{Draws, Members};
 use crate::failure::Failure;
 use crate::method::Method;
-use crate::run::{Course, Recorded, Start};
-use crate::scene::Numbers;
+use crate::run::{Course, Recorded};
+use crate::start::Start;
 use crate::table::{Table, View};
 
 /// What a text declares.
@@ -59,17 +60,32 @@ impl Derived {
     }
 
     #[getter]
-    fn has_kinetic(&self) -> bool {
-        self.0.has_kinetic
+    fn is_force(&self) -> bool {
+        self.0.role == Role::Force
     }
 
     #[getter]
-    fn is_self_adjoint(&self) -> bool {
-        self.0.is_self_adjoint
+    fn has_pace(&self) -> bool {
+        self.0.energy.is_some()
+    }
+
+    /// The names of the parameters, and how many numbers each has.
+    #[getter]
+    fn parameters(&self) -> Vec<(&'static str, usize)> {
+        self.0.parameters.iter().map(|parameter| (parameter.name.as_str(), parameter.kind.len())).collect()
     }
 }
 
-/// A Lagrangian with numbers, and the sum of forces.
+/// A term, and all its numbers.
+type Term<'py> = (Bound<'py, Derived>, Vec<f64>);
+
+/// The declarations of terms, and the numbers of all.
+fn apart(terms: Vec<Term<'_>>) -> (Vec<&'static Declaration>, Vec<f64>) {
+    let (terms, numbers): (Vec<_>, Vec<_>) = terms.into_iter().map(|(term, numbers)| (term.get().0, numbers)).unzip();
+    (terms, numbers.concat())
+}
+
+/// The sum of terms with their numbers.
 #[pyclass(frozen, module = "liestep._native")]
 struct Scene(Arc<dyn scene::Scene>);
 
@@ -83,17 +99,14 @@ fn method((kind, scheme, is_compensated, substeps): &How) -> Result<Method, Fail
 #[pymethods]
 impl Scene {
     #[new]
-    #[pyo3(signature = (lagrangian, numbers, force = None, of_force = None))]
-    #[allow(clippy::needless_pass_by_value)] // as Python gives them
-    fn new(
-        lagrangian: &Derived,
-        numbers: Numbers,
-        force: Option<&Derived>,
-        of_force: Option<Numbers>,
-    ) -> PyResult<Self> {
-        let of_force = of_force.unwrap_or_default();
-        let force = force.map(|force| (force.0, &of_force));
-        Ok(Self(scene::scene((lagrangian.0, &numbers), force)?))
+    fn new(py: Python<'_>, terms: Vec<Term<'_>>) -> PyResult<Self> {
+        let (terms, numbers) = apart(terms);
+        Ok(Self(py.detach(|| scene::scene(&terms, &numbers))?))
+    }
+
+    #[getter]
+    fn is_self_adjoint(&self) -> bool {
+        self.0.is_self_adjoint()
     }
 
     #[allow(clippy::needless_pass_by_value)]
@@ -169,16 +182,21 @@ fn shown(py: Python<'_>, recorded: Recorded) -> PyResult<Bound<'_, PyDict>> {
 
 /// A plan of the sum of these terms.
 #[pyfunction]
-fn plan<'py>(py: Python<'py>, terms: Vec<(Bound<'py, Derived>, Numbers)>, task: Task) -> PyResult<Bound<'py, PyDict>> {
-    let declared: Vec<_> = terms.iter().map(|(term, _)| term.get().0).collect();
-    let numbers: Vec<f64> = terms.into_iter().flat_map(|(_, numbers)| numbers).flat_map(|(_, value)| value).collect();
-    control::plan(py, &declared, &numbers, &task)
+fn plan<'py>(py: Python<'py>, terms: Vec<Term<'py>>, task: Task) -> PyResult<Bound<'py, PyDict>> {
+    let (terms, numbers) = apart(terms);
+    control::plan(py, &terms, &numbers, &task)
 }
 
 /// The names of all schemes, by the kind of the method.
 #[pyfunction]
 fn schemes() -> Vec<(&'static str, Vec<&'static str>)> {
     method::schemes().into()
+}
+
+/// The order of a method, which that of a declared step may exceed.
+#[pyfunction]
+fn order(how: How) -> PyResult<u32> {
+    Ok(method(&how)?.order())
 }
 
 /// `1/4` as the share 1 of 4.
@@ -190,7 +208,7 @@ fn share(text: &str) -> PyResult<(u64, u64)> {
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use super::{Derived, Scene, Table, View, plan, schemes, share};
+    use super::{Derived, Scene, Table, View, order, plan, schemes, share};
     #[pymodule_export]
     use crate::file::{File, FileRun, library};
     #[pymodule_export]

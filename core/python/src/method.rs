@@ -50,6 +50,22 @@ impl Method {
         matches!(self.kind, Kind::Density(_))
     }
 
+    /// Whether it is the declared step, without more around it.
+    pub(crate) const fn is_plain(self) -> bool {
+        matches!(self, Self { kind: Kind::Step, is_compensated: false, substeps: 1 })
+    }
+
+    /// That of the errors; of a declared step the one that all have.
+    pub(crate) fn order(self) -> u32 {
+        match self.kind {
+            Kind::Step | Kind::Density(_) => 2,
+            Kind::Composition(scheme) => scheme.order(),
+            Kind::Splitting(scheme) => scheme.order(),
+            Kind::Processed(scheme) => scheme.order(),
+            Kind::Collocation(stages) => u32::try_from(2 * stages).unwrap_or(2),
+        }
+    }
+
     /// `step`, or what one of the schemes is called, or the stages of a collocation.
     pub(crate) fn new(kind: &str, scheme: &str, is_compensated: bool, substeps: u32) -> Result<Self, Failure> {
         let unknown = || {
@@ -82,16 +98,6 @@ impl Method {
             _ => return Err(unknown()),
         };
         Ok(Self { kind, is_compensated, substeps: substeps.max(1) })
-    }
-
-    /// Of a scene with a force, which has its own step only.
-    pub(crate) fn of_forced<S: Scene<Scalar = f64>>(self, scene: S, h: f64) -> Made<S> {
-        match self {
-            Self { kind: Kind::Step, is_compensated: false, substeps: 1 } => {
-                Ok(Stepper::new(scene, h).map_err(|error| Failure::setup(&error))?.into_any())
-            }
-            _ => refused("a scene with a force is made by its own step alone: leave the method out"),
-        }
     }
 
     fn compensated<S, P>(self, stepper: Stepper<S, P>) -> Made<S>

@@ -38,7 +38,8 @@ fn drawn(table: &Table, title: &str, subtitle: &str) -> PlotResult<String> {
     let rates = Panel::over_time("Velocity of the body", "", Vertical::Linear, lines);
     let energy = table.named("energy").ok_or("a run has an energy")?;
     let first = energy.first().copied().unwrap_or_default();
-    let away = vec![line(&energy, BLUE, &|number| (number - first).abs())];
+    // A rounding is the least that there is: a zero would stretch the axis.
+    let away = vec![line(&energy, BLUE, &|number| (number - first).abs().max(f64::EPSILON * first.abs()))];
     let energy = Panel::over_time("Energy: how far from its start", "", Vertical::Logarithmic, away);
     let panels = |area: &Area<'_>| {
         area.split_evenly((2, 1)).iter().zip([&rates, &energy]).try_for_each(|(place, panel)| panel.draw(place))

@@ -21,14 +21,6 @@ pub(crate) struct Watch {
     stops: bool,
 }
 
-/// How a motion starts: the attitude as a quaternion, as the entries of a matrix row by row, or none at all; and a velocity.
-#[derive(Clone, FromPyObject)]
-pub(crate) struct Start {
-    pub(crate) attitude: Vec<f64>,
-    pub(crate) is_quaternion: bool,
-    pub(crate) velocity: Vec<f64>,
-}
-
 /// How long a run is and what is recorded of it.
 #[derive(FromPyObject)]
 pub(crate) struct Course {
@@ -82,15 +74,32 @@ impl Signals {
 /// Looks at least this often, in steps.
 const LOOK: u64 = 4096;
 
-/// How many steps there are to a time, as [`Run::until`] counts them.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // checked
-pub(crate) fn steps_to(time: f64, h: f64) -> Result<u64, Failure> {
+/// How far a time may be from a whole number of steps, as a share: as in a scene's file.
+const ROUNDING: f64 = 1e-9;
+
+/// How many steps there are to a time; where they have lengths of their own about how many.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked
+pub(crate) fn steps_to(time: f64, h: f64, are_equal: bool) -> Result<u64, Failure> {
     let steps = time / h;
     let can_be_counted = steps.abs() < 9e15;
     if !can_be_counted {
         return Err(Failure::setup(&RunError::End { asked: time }));
     }
-    Ok((steps * (1.0 - 4.0 * f64::EPSILON)).ceil().max(0.0) as u64)
+    let refused = |message: String| Err(Failure::Of("SetupError", message));
+    if steps < 0.0 {
+        return refused(format!("steps of {h} s lead away from {time} s: take steps of {} s", -h));
+    }
+    let whole = steps.round();
+    if are_equal && (steps - whole).abs() > ROUNDING * steps {
+        let [before, behind] = [steps.floor(), steps.ceil()].map(|steps| short(steps * h));
+        return refused(format!("{time} s isn't a whole number of steps of {h} s: take {before} or {behind} s"));
+    }
+    Ok(if are_equal { whole } else { steps.ceil() } as u64)
+}
+
+/// Without the digits of roundings.
+fn short(number: f64) -> f64 {
+    format!("{number:.11e}").parse().unwrap_or(number)
 }
 
 /// Makes the steps, and rows of all columns that [`Recorder`] has.
@@ -98,7 +107,8 @@ pub(crate) fn record<I>(stepper: &I, mut state: I::State, course: &Course) -> Re
 where
     I: Integrator<Group: LieGroup<Scalar = f64>>,
 {
-    let steps = steps_to(course.until, stepper.step_size())?.saturating_sub(state.steps());
+    let is_varied = stepper.length(&state).is_some();
+    let steps = steps_to(course.until, stepper.step_size(), !is_varied)?.saturating_sub(state.steps());
     let rows = match &course.times {
         Some(times) => times.len(),
         None => usize::try_from(steps / course.every.max(1)).unwrap_or(usize::MAX).saturating_add(2),
@@ -112,7 +122,6 @@ where
     };
     let tables = course.events.iter().map(|_| RefCell::new((Recorder::new(stepper, Columns::new(0)), Vec::new())));
     let tables: Vec<_> = tables.collect();
-    let is_varied = stepper.length(&state).is_some();
     let look = course.every.max(1) * LOOK.div_ceil(course.every.max(1));
     let mut observed = Run::new(stepper, &mut state).every(course.every, row).every(look, |_| signals.look());
     if let Some(times) = &course.times {

@@ -10,7 +10,9 @@ use arrow_schema::{ArrowError, DataType, Field, Schema};
 use liestep::recording::{Column, Sink, SinkError};
 use pyo3::exceptions::{PyIndexError, PyMemoryError};
 use pyo3::prelude::*;
-use pyo3::types::{PyCapsule, PyDict, PyTuple};
+use pyo3::types::{PyCapsule, PyDict, PyTuple, PyType};
+
+use crate::failure::Failure;
 
 /// A table that is being filled, column by column in one block of memory: each column has room for all rows.
 pub(crate) struct Columns {
@@ -119,8 +121,31 @@ impl Table {
     }
 }
 
+/// A column as it is pickled: its name, its unit and its numbers.
+type Pickled = (String, String, Vec<f64>);
+
 #[pymethods]
 impl Table {
+    /// A table of columns of one length.
+    #[new]
+    fn new(columns: Vec<Pickled>) -> PyResult<Self> {
+        let length = columns.first().map_or(0, |(.., numbers)| numbers.len());
+        if columns.iter().any(|(.., numbers)| numbers.len() != length) {
+            return Err(Failure::Of("ColumnError", "the columns of a table are of one length".to_owned()).into());
+        }
+        let of = |(name, unit, numbers)| (Column { name, unit }, numbers);
+        Ok(Columns::of(columns.into_iter().map(of).collect()).into_table())
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, (Vec<Pickled>,)) {
+        let table = slf.get();
+        let columns = table.columns.iter().enumerate();
+        let of = |(place, column): (usize, &Column)| {
+            (column.name.clone(), column.unit.clone(), table.column(place).to_vec())
+        };
+        (slf.get_type(), (columns.map(of).collect(),))
+    }
+
     /// Names and units of the columns.
     #[getter]
     fn columns(&self) -> Vec<(String, String)> {

@@ -163,3 +163,41 @@ def test_names_that_are_keywords_of_python():
     term = ls.lagrangian("SO3", l_d="lambda * ((F - I) * J_d * (F - I).transpose()).trace() / (2 * h)", J_d=[2, 2, 1],
                          **{"lambda": 2.0})
     assert term.stepper(0.01).run(velocity=[0, 0, 1], until=1).steps == 100
+
+
+WRONG = ["a", None, [1, 2], nan, -1, inf, 1j, object(), {}, [[1]], True, 2**70, b"x", np.ma.masked, [None]]
+BODY, TURN = ls.body([1, 2, 3]), {"velocity": [0, 0, 1]}
+CALLS = [
+    lambda v: BODY.stepper(v), lambda v: BODY.for_accuracy(v, **TURN, until=1), lambda v: BODY.run(**TURN, until=v),
+    lambda v: BODY.stepper(0.1).run(**TURN, until=v), lambda v: BODY.stepper(0.1).run(**TURN, times=v),
+    lambda v: BODY.stepper(0.1).run(**TURN, until=1, every=v), lambda v: BODY.stepper(0.1).run(**TURN, until=1, events=v),
+    lambda v: BODY.stepper(0.1).run(**TURN, until=1, attitude=v), lambda v: BODY.stepper(0.1).run(velocity=v, until=1),
+    lambda v: BODY.stepper(0.1, composition=v), lambda v: BODY.stepper(0.1, substeps=v), lambda v: BODY.stepper(0.1, density=v),
+    lambda v: BODY.ensemble(v, **TURN), lambda v: BODY.ensemble(2, **TURN, seed=v), lambda v: BODY.ensemble(2, **TURN, J_d=v),
+    lambda v: BODY.ensemble(2, **TURN, method=v), lambda v: ls.normal(v, [1, 2, 3]), lambda v: ls.uniform([1, 2, 3], v),
+    lambda v: ls.translation(v), lambda v: ls.euler(v, 0), lambda v: ls.point(v), lambda v: ls.body(v),
+    lambda v: ls.body([1, 2, 3], kinetic=v), lambda v: ls.gravity(m=1, rho=v), lambda v: ls.gravity(m=1, rho=[0, 0, 1], up=v),
+    lambda v: BODY.with_(J_d=v), lambda v: BODY.control(step=v, steps=3), lambda v: BODY.control(step=0.1, steps=v),
+    lambda v: BODY.control(step=0.1, steps=3, goal=v), lambda v: BODY.control(step=0.1, steps=3, keep_out=v),
+    lambda v: BODY.control(step=0.1, steps=3).solve(tolerance=v, iterations=0), lambda v: ls.scene("x.toml", v),
+    lambda v: ls.lagrangian(v, l_d="h"), lambda v: ls.lagrangian("SO3", l_d=v), lambda v: ls.force("SO3", work=v),
+    lambda v: ls.lagrangian("SO3", l_d="h", advected=v), lambda v: ls.lagrangian("SO3", l="h", velocity=v, discretise="a"),
+]
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("call", CALLS)
+def test_wrong_kinds_are_errors_of_the_family(call):
+    for wrong in WRONG:
+        try:
+            call(wrong)
+        except ls.Error as error:
+            assert str(error)
+
+
+@pytest.mark.parametrize("wrong", [
+    {"threads": "a"}, {"threads": -1}, {"every": 0}, {"every": 1.5}, {"chunk": 2**70}, {"share": 2}, {"share": "a"}, {"until": None},
+])
+def test_hostile_runs_of_an_ensemble(wrong, tmp_path):
+    with pytest.raises(ls.Error):
+        BODY.ensemble(2, **TURN).run(tmp_path, **{"until": 0.1, "progress": False, **wrong})

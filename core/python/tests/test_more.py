@@ -136,6 +136,12 @@ def test_what_a_notebook_shows(top):
     assert repr(top).startswith("<lagrangian Lagrangian on SO3: J_d=")
 
 
+def test_the_rate_of_a_letter_is_one_in_latex():
+    text = "{ let U = |x: Vector3<f64>| x.norm_squared(); U(Omega) / 2 + Omega.dot(J * Omega) / 2 }"
+    term = ls.lagrangian("SO3", l=text, discretise="trapezoid(Cayley)", J=[3, 3, 4])
+    assert "dOmega/dt" in term.derivation and r"\mathrm{d}\Omega" in term.latex
+
+
 def test_matplotlib_scipy_and_pandas_where_they_are(top):
     run = top.stepper(0.01).run(velocity=[0.5, 2, 12], until=5, attitude=ls.euler(0.1, 0.4))
     scipy = pytest.importorskip("scipy.spatial.transform", reason="SciPy isn't there")

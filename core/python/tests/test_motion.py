@@ -169,5 +169,8 @@ def test_a_pace():
     assert abs(run["energy"] - run["energy"][0]).max() < 0.02
     with pytest.raises(ls.SetupError):
         needle.stepper(0.01, composition="Suzuki 4")
+    # An accuracy took steps without the pace, of another motion.
+    with pytest.raises(ls.SetupError, match="pace"):
+        needle.for_accuracy(1e-6, velocity=[0.9, 0.1, 0.15], until=3)
     with pytest.raises(ls.SetupError):
         (needle + ls.force("SO3", work="-c * vee(F).dot(eta)", c=0.1)).stepper(0.01)

@@ -11,18 +11,20 @@ True
 
 from . import errors
 from ._control import Control, Plan
-from ._declared import Term, force, lagrangian, point
+from ._declared import point
 from ._ensemble import Ensemble, Many, Spread, normal, rotation, uniform
 from ._library import (
     body, dipole, drag, gravity, gravity_gradient, magnetic_damping, nonstandard, rotor, spring, thrust, torque,
 )
 from ._run import Columns, Happenings, Run, Scene, SceneRun, scene
 from ._stepper import Stepper, euler, schemes, translation
-from .errors import DeclarationError, Error, SceneError, SetupError, StepError, StoreError
+from ._term import Term, force, lagrangian
+from .errors import ColumnError, DeclarationError, Error, SceneError, SetupError, StepError, StoreError
 
 __version__ = "0.1.0"
 __all__ = [
-    "Columns", "Control", "DeclarationError", "Ensemble", "Error", "Happenings", "Many", "Plan", "Run", "Scene", "SceneError", "SceneRun",
+    "ColumnError", "Columns", "Control", "DeclarationError", "Ensemble", "Error", "Happenings", "Many", "Plan", "Run", "Scene",
+    "SceneError", "SceneRun",
     "SetupError", "Spread", "StepError", "Stepper", "StoreError", "Term", "body", "dipole", "drag", "errors", "euler",
     "force", "gravity", "gravity_gradient", "lagrangian", "magnetic_damping", "nonstandard", "normal", "point", "rotation",
     "rotor", "scene", "schemes", "spring", "thrust", "torque", "translation", "uniform",

@@ -8,7 +8,8 @@ from math import cos, inf
 from typing import TYPE_CHECKING, Any
 
 from . import _native
-from ._declared import Term, _summed
+from ._arrays import floats, number, whole
+from ._declared import Sum
 from ._run import Columns, Run
 from ._stepper import _numbers, _Start, _start
 from .errors import SetupError
@@ -138,7 +139,7 @@ class Control:
 
     def __init__(
         self,
-        term: Term,
+        term: Sum,
         *,
         step: float,
         steps: int,
@@ -154,17 +155,16 @@ class Control:
     ) -> None:
         import numpy as np
 
-        if term.group != "group = SO3" or term.role != "lagrangian" or term.head.startswith("pace = "):
+        if term.group != "SO3" or term.role != "lagrangian" or term.has_pace:
             raise SetupError(f"a plan is one of a Lagrangian on SO3 without a pace, and not of {term!r:.80}")
-        if isinstance(steps, bool) or not isinstance(steps, int) or not 0 < steps <= 10**6:
-            raise SetupError(f"`steps` is a whole number from one to a million, not {steps!r:.80}")
+        whole("steps", steps, 1, 10**6)
         if not isinstance(axes, str) or not axes or any(axis not in "xyz" for axis in axes):
             raise SetupError(f'`axes` are some of "xyz", not {axes!r:.80}')
 
         def spread(name: str, value: Any) -> Array:
             try:
-                return np.broadcast_to(np.asarray(value, dtype=float), (steps, len(axes)))
-            except (TypeError, ValueError, OverflowError) as error:
+                return np.broadcast_to(floats(name, value, SetupError), (steps, len(axes)))
+            except ValueError as error:
                 shape = f"a number, {len(axes)} of them, or {steps} rows of {len(axes)}"
                 raise SetupError(f"`{name}` is {shape}, not of the shape {np.shape(value)}") from error
 
@@ -172,13 +172,19 @@ class Control:
         first = spread("guess", 0.0 if guess is None else guess)
         torques = np.stack([-largest, largest, first], axis=2).reshape(-1, 3)
         cones = []
-        for axis, direction, angle in keep_out:
+        try:
+            kept_out = [(axis, direction, number("keep_out", angle)) for axis, direction, angle in keep_out]
+        except (TypeError, ValueError) as error:
+            if isinstance(error, SetupError):
+                raise
+            raise SetupError("`keep_out` is a list of axes, directions and angles: `[(axis, direction, angle)]`") from error
+        for axis, direction, angle in kept_out:
             units = [np.array(_numbers("keep_out", vector, ((3,),))) for vector in (axis, direction)]
             if min(np.linalg.norm(vector) for vector in units) == 0:
                 raise SetupError("an axis and a direction that are kept apart aren't zero")
             one, other = ((vector / np.linalg.norm(vector)).tolist() for vector in units)
             cones.append((one, other, cos(angle)))
-        (length,) = _numbers("step", step, ((),))
+        length = number("step", step)
         if not 0 < length < inf:
             raise SetupError(f"`step` is a length above zero, s, not {step!r:.80}")
         self.term, self.steps, self.step = term, steps, length
@@ -221,11 +227,9 @@ class Control:
         """
         from dataclasses import replace
 
-        if isinstance(iterations, bool) or not isinstance(iterations, int) or not 0 <= iterations < 2**31:
-            raise SetupError(f"`iterations` is a whole number, not {iterations!r:.80}")
-        parts = [replace(self.term, forces=()), *([_summed(self.term.forces)] if self.term.forces else [])]
-        terms = [(part._derived(gradients=True), part._values()) for part in parts]
-        made = _native.plan(terms, replace(self._task, tolerance=float(tolerance), most=iterations, progress=progress))
+        whole("iterations", iterations, 0, 2**31 - 1)
+        task = replace(self._task, tolerance=number("tolerance", tolerance), most=iterations, progress=progress)
+        made = _native.plan(self.term._terms(gradients=True), task)
         plan = Plan(self.term.name, made)
         if made["failure"] is not None:
             made["failure"].run = plan

@@ -1,19 +1,14 @@
-"""Lagrangians and forces: texts with numbers."""
+"""Declared texts with their numbers, and sums of them."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, TypeVar
 
 from . import _native
+from ._arrays import floats
 from .errors import DeclarationError
-
-if TYPE_CHECKING:
-    from ._control import Control
-    from ._ensemble import Ensemble
-    from ._stepper import Stepper
 
 #: A parameter: its type in the text, and its numbers, those of a matrix row by row.
 Value = tuple[str, tuple[float, ...]]
@@ -36,9 +31,7 @@ def point(coordinates: Any) -> Point:
     >>> ls.point([1, 2, 3]).coordinates
     (1.0, 2.0, 3.0)
     """
-    import numpy as np
-
-    array = np.asarray(coordinates, dtype=float)
+    array = floats("coordinates", coordinates, DeclarationError)
     if array.ndim != 1 or not 0 < array.size < 4:
         raise DeclarationError(f"a point has one to three coordinates, not the shape {array.shape}")
     return Point(tuple(array.tolist()))
@@ -49,11 +42,7 @@ def _value(name: str, value: Any) -> Value:
 
     if isinstance(value, Point):
         return f"Point{len(value.coordinates)}<f64>", value.coordinates
-    try:
-        array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError, OverflowError) as error:
-        message = f"`{name}` is a number, a vector or a matrix of numbers, not {value!r}"
-        raise DeclarationError(message) from error
+    array = floats(name, value, DeclarationError)
     numbers = tuple(array.ravel().tolist())
     # As the letters of the field have it.
     if name.startswith("J") and array.shape in ((3,), (3, 3)):
@@ -70,103 +59,175 @@ def _value(name: str, value: Any) -> Value:
     raise DeclarationError(f"`{name}` has the shape {array.shape}: give a number, a vector or a square matrix")
 
 
-def _group(group: Group) -> str:
-    if isinstance(group, str):
-        return f"group = {group}"
-    return "group(" + ", ".join(f"{name} = {one}" for name, one in group.items()) + ")"
+#: More is no rounding of a length of one.
+NEAR_ONE = 1e-3
 
 
-def _renamed(text: str, names: Mapping[str, str]) -> str:
-    if not names:
-        return text
-    pattern = r"(?<![\w.])(" + "|".join(map(re.escape, names)) + r")(?!\w)"
-    return re.sub(pattern, lambda found: names[found[1]], text)
+def _direction(name: str, value: Value) -> Value:
+    kind, numbers = value
+    length = sum(number * number for number in numbers) ** 0.5
+    if not abs(length - 1) <= NEAR_ONE:
+        unit = ", ".join(f"{number / length:.6g}" for number in numbers) if 0 < length < float("inf") else "0, 0, 1"
+        raise DeclarationError(f"`{name}` is a direction, and isn't of length one but of {length:.6g}: write [{unit}]")
+    return kind, tuple(number / length for number in numbers)
 
 
 @dataclass(frozen=True)
-class Term:
-    """A text with numbers; what `liestep.lagrangian` and `liestep.force` return, and sums of them.
+class Summand:
+    """A declaration as Rust has it, with numbers for its parameters."""
 
-    It is data: it pickles, compares and adds. What it declares is derived where it is made, and proved there.
+    text: str
+    numbers: tuple[tuple[str, Value], ...]
+    #: The library's name, or what it is.
+    name: str
+    #: Those of the parameters that are of length one.
+    directions: tuple[str, ...] = ()
+
+    @classmethod
+    def of(
+        cls, text: str, numbers: Mapping[str, Value], name: str, directions: Iterable[str] = ()
+    ) -> tuple[Summand, _native.Derived]:
+        """Derives and proves the text, and compares its parameters with what is given."""
+        derived, lengths = _native.Derived(text), {}
+        for field, length in derived.parameters:
+            lengths[field] = length
+            if field not in numbers:
+                raise DeclarationError(f"`{name}` has parameters {', '.join(dict(derived.parameters))}: give {field}")
+            if len(numbers[field][1]) != length:
+                raise DeclarationError(f"`{field}` has {length} numbers, and {len(numbers[field][1])} were given")
+        given = {field: numbers[field] for field in lengths}
+        given |= {field: _direction(field, given[field]) for field in directions}
+        return cls(text, tuple(given.items()), name, tuple(directions)), derived
+
+    def with_value(self, name: str, value: Value) -> Summand:
+        """A summand with another value of a parameter."""
+        if name in self.directions:
+            value = _direction(name, value)
+        return replace(self, numbers=tuple((own, value if own == name else old) for own, old in self.numbers))
+
+    def derived(self, gradients: bool = False) -> _native.Derived:
+        """The derivation of the text, which is made once."""
+        is_there = not gradients or "gradients" in self.text.partition(",")[2].partition("=")[0]
+        return _native.Derived(self.text if is_there else self.text.replace("(", "(gradients, ", 1))
+
+
+#: Summands and parameters by their numbers.
+Place = tuple[int, int]
+AnySum = TypeVar("AnySum", bound="Sum")
+
+
+@dataclass(frozen=True)
+class Sum:
+    """Declarations on one group, whose programs are added: no text is changed, and the order doesn't matter.
+
+    Summands may have parameters of one name. ``m`` is that of all of them as long as they are equal; ``m_1`` and ``m_2``
+    are those of the first and of the second summand that has an ``m``.
     """
 
+    summands: tuple[Summand, ...]
+    #: As it is written: ``SO3``, ``(SO3, R3)``.
     group: str
+    #: ``"lagrangian"``, or ``"force"`` where there are forces alone.
     role: str
-    head: str
-    text: str
-    advected: Mapping[str, str]
-    numbers: Mapping[str, Value]
-    #: The library's name, or what it is a sum of.
-    name: str = "Lagrangian"
-    forces: tuple[Term, ...] = field(default=())
+    has_pace: bool
 
-    def __hash__(self) -> int:
-        return hash((self.declaration, tuple(self.numbers.items()), self.forces))
+    @classmethod
+    def of(cls: type[AnySum], summand: Summand, derived: _native.Derived) -> AnySum:
+        """A sum of one summand."""
+        return cls((summand,), derived.group, "force" if derived.is_force else "lagrangian", derived.has_pace)
+
+    def __add__(self: AnySum, other: Sum) -> AnySum:
+        if not isinstance(other, Sum):
+            return NotImplemented
+        if self.group != other.group:
+            raise DeclarationError(f"terms of one group add: these are on `{self.group}` and `{other.group}`")
+        role = self.role if self.role == other.role else "lagrangian"
+        return replace(self, summands=self.summands + other.summands, role=role, has_pace=self.has_pace or other.has_pace)
+
+    def __radd__(self: AnySum, other: object) -> AnySum:
+        # Python begins the sum of a list with zero.
+        return self if other == 0 else NotImplemented
+
+    @property
+    def name(self) -> str:
+        """The names of the summands."""
+        return " + ".join(summand.name for summand in self.summands)
 
     @property
     def declaration(self) -> str:
-        """The declaration as Rust has it."""
-        return self._declared("")
-
-    def _declared(self, words: str) -> str:
-        advected = "".join(f"{name} = {source}, " for name, source in self.advected.items())
-        carried = f"advected({advected.rstrip(', ')}), " if advected else ""
-        if self.head.startswith("pace = "):
-            carried = "given(E_0 = E_0_of_the_start), " + carried
-        fields = ", ".join(f"{name}: {kind}" for name, (kind, _) in self.numbers.items())
-        return f"#[{self.role}({self.group}, {words}{carried}{self.head} =\n{self.text}\n)]\nstruct Declared {{ {fields} }}"
-
-    def _derived(self, gradients: bool = False) -> _native.Derived:
-        try:
-            return _native.Derived(self._declared("gradients, " if gradients else ""))
-        except DeclarationError as error:
-            raise self._placed(error) from None
-
-    def _placed(self, error: DeclarationError) -> DeclarationError:
-        """With lines of the text that was given, which is the second of the declaration."""
-        lines = self.text.count("\n") + 1
-        own = [
-            (message, line - 1, column) if 1 < line <= 1 + lines else (message, 0, 0)
-            for message, line, column in error.mistakes
-        ]
-        return DeclarationError.of(own) if own else error
-
-    def _values(self) -> list[tuple[str, list[float]]]:
-        return [(name, list(value)) for name, (_, value) in self.numbers.items()]
-
-    def _scene(self) -> _native.Scene:
-        if not self.forces:
-            return _native.Scene(self._derived(), self._values())
-        force = _summed(self.forces)
-        return _native.Scene(self._derived(), self._values(), force._derived(), force._values())
+        """The declarations as Rust has them."""
+        return "\n\n".join(summand.text for summand in self.summands)
 
     @property
     def derivation(self) -> str:
         """What was derived, as text: the momentum, the equation of a step, its Jacobian, and how it was proved."""
-        own = self._derived().derivation
-        return "\n".join([own, *(force.derivation for force in self.forces)])
+        return "\n".join(summand.derived().derivation for summand in self.summands)
 
     @property
     def latex(self) -> str:
-        """The equations as LaTeX, an ``align*`` for each term."""
-        own = self._derived().latex
-        return "\n".join([own, *(force.latex for force in self.forces)])
+        """The equations as LaTeX, an ``align*`` for each summand."""
+        return "\n".join(summand.derived().latex for summand in self.summands)
+
+    def _terms(self, gradients: bool = False) -> list[tuple[_native.Derived, list[float]]]:
+        return [
+            (summand.derived(gradients), [number for _, (_, value) in summand.numbers for number in value])
+            for summand in self.summands
+        ]
+
+    def _scene(self) -> _native.Scene:
+        return _native.Scene(self._terms())
+
+    def _value(self, place: Place) -> Value:
+        return self.summands[place[0]].numbers[place[1]][1]
+
+    def _places(self) -> dict[str, list[Place]]:
+        """All names, and where the parameters are that they stand for."""
+        named: dict[str, list[Place]] = {}
+        for at, summand in enumerate(self.summands):
+            for which, (name, _) in enumerate(summand.numbers):
+                named.setdefault(name, []).append((at, which))
+        several = {name: places for name, places in named.items() if len(places) > 1}
+        for name, places in several.items():
+            # A text may have a parameter of such a name itself.
+            mark = "_"
+            while any(f"{name}{mark}{number}" in named for number in range(1, len(places) + 1)):
+                mark += "_"
+            named |= {f"{name}{mark}{number}": [place] for number, place in enumerate(places, 1)}
+        return named
+
+    def _are_equal(self, places: list[Place]) -> bool:
+        return len({self._value(place)[1] for place in places}) == 1
+
+    def _found(self, name: str) -> list[Place]:
+        """The places of the parameters that a name stands for."""
+        named = self._places()
+        if name not in named:
+            raise DeclarationError(f"there is no parameter `{name}`: there are {', '.join(self.parameters)}")
+        if not self._are_equal(named[name]):
+            own = [one for one, places in named.items() if len(places) == 1 and places[0] in named[name]]
+            raise DeclarationError(f"`{name}` has several values: write {' or '.join(own)}")
+        return named[name]
+
+    def _first_number(self, place: Place) -> int:
+        """The place of a parameter's first number among those of all summands."""
+        before = [numbers for summand in self.summands[: place[0]] for numbers in summand.numbers]
+        before += self.summands[place[0]].numbers[: place[1]]
+        return sum(len(value) for _, (_, value) in before)
 
     @property
     def parameters(self) -> dict[str, Any]:
         """The parameters by their names."""
-        import numpy as np
+        named = self._places()
+        several = {name for name, places in named.items() if not self._are_equal(places)}
+        shared = {place for name, places in named.items() if len(places) > 1 and name not in several for place in places}
+        shown = {
+            name: places[0] for name, places in named.items()
+            if name not in several and (len(places) > 1 or places[0] not in shared)
+        }
+        ordered = sorted(shown, key=lambda name: shown[name])
+        return {name: _shaped(*self._value(shown[name])) for name in ordered}
 
-        def shaped(kind: str, numbers: tuple[float, ...]) -> Any:
-            if kind == "f64":
-                return numbers[0]
-            rows = round(len(numbers) ** 0.5)
-            is_matrix = "Matrix" in kind or "Inertia" in kind
-            return np.array(numbers).reshape((rows, rows) if is_matrix else (len(numbers),))
-
-        return {name: shaped(*value) for name, value in self.numbers.items()}
-
-    def with_(self, **parameters: Any) -> Term:
+    def with_(self: AnySum, **parameters: Any) -> AnySum:
         """The same with other values of parameters.
 
         Examples
@@ -175,72 +236,26 @@ class Term:
         >>> top = ls.body([3, 3, 4]) + ls.gravity(m=1.0, rho=[0, 0, 1])
         >>> top.with_(m=2.0).parameters["m"]
         2.0
+
+        The stiffnesses of two springs are set together while they are equal, and one by one.
+
+        >>> two = sum(ls.spring(k=3, length=1, at=at, anchor=[0, 0, 3]) for at in ([0, 0, 1], [1, 0, 0]))
+        >>> two.with_(k=5).parameters["k"], two.with_(k_2=7).parameters["k_2"]
+        (5.0, 7.0)
         """
-        numbers = dict(self.numbers)
+        summands = list(self.summands)
         for name, value in parameters.items():
-            if name not in numbers:
-                raise DeclarationError(f"there is no parameter `{name}`: there are {', '.join(numbers)}")
-            kind, found = _value(name, value)
-            if len(found) != len(numbers[name][1]):
-                raise DeclarationError(f"`{name}` has {len(numbers[name][1])} numbers, not {len(found)}")
-            numbers[name] = (numbers[name][0], found)
-        return replace(self, numbers=numbers)
-
-    def __add__(self, other: Term) -> Term:
-        if not isinstance(other, Term):
-            return NotImplemented
-        if self.group != other.group:
-            raise DeclarationError(f"terms of one group add: these are on `{self.group}` and `{other.group}`")
-        if other.role == "force":
-            return replace(self, forces=(*self.forces, other), name=f"{self.name} + {other.name}")
-        if self.role == "force":
-            return other + self
-        summed = _summed((replace(self, forces=()), replace(other, forces=())))
-        return replace(summed, forces=self.forces + other.forces)
-
-    def stepper(self, step: float, **method: Any) -> Stepper:
-        """What makes steps of this length, s; see `liestep.Stepper`."""
-        from ._stepper import Stepper
-
-        return Stepper(self, step, **method)
-
-    def for_accuracy(self, tolerance: float, **run: Any) -> Any:
-        """The run by the method and the step that are the cheapest for a tolerance; see `liestep.Stepper.run`.
-
-        Examples
-        --------
-        >>> import liestep as ls
-        >>> run = ls.body([1, 2, 2.5]).for_accuracy(1e-8, velocity=[0.01, 2, 0.02], until=5)
-        >>> run.error < 1e-8
-        True
-        """
-        from ._stepper import accurate
-
-        return accurate(self, tolerance, **run)
-
-    def control(self, *, step: float, steps: int, **task: Any) -> Control:
-        """A motion from here to there by torques, in the shortest time or by the least effort; see `liestep.Control`.
-
-        Examples
-        --------
-        >>> import liestep as ls
-        >>> plan = ls.body([4, 3, 2]).control(step=0.02, steps=50, goal=ls.euler(0, 1.5), bound=30).solve()
-        >>> plan.converged, bool(abs(plan.torque).max() <= 30)
-        (True, True)
-        """
-        from ._control import Control
-
-        return Control(self, step=step, steps=steps, **task)
-
-    def ensemble(self, members: int, *, step: float = 0.01, **rest: Any) -> Ensemble:
-        """Many motions drawn at random; see `liestep.Ensemble`."""
-        from ._ensemble import Ensemble
-
-        return Ensemble(self, members, step=step, **rest)
+            for at, which in self._found(name):
+                own, (kind, old) = self.summands[at].numbers[which]
+                found = _value(own, value)[1]
+                if len(found) != len(old):
+                    raise DeclarationError(f"`{name}` has {len(old)} numbers, not {len(found)}")
+                summands[at] = summands[at].with_value(own, (kind, found))
+        return replace(self, summands=tuple(summands))
 
     def __repr__(self) -> str:
         numbers = ", ".join(f"{name}={value}" for name, value in self.parameters.items())
-        return f"<{self.role} {self.name} on {self.group.removeprefix('group = ')}: {numbers}>".replace("\n", "")
+        return f"<{self.role} {self.name} on {self.group}: {numbers}>".replace("\n", "")
 
     def _repr_latex_(self) -> str:
         return self.latex
@@ -251,134 +266,11 @@ class Term:
         return f"**{self.name}**\n\n{self.latex}\n\n<details><summary>as text</summary>\n\n```text\n{text}\n```\n</details>"
 
 
-def _summed(terms: tuple[Term, ...]) -> Term:
-    """One declaration of several, parameters of one name and other values called anew."""
-    first, *others = terms
-    for other in others:
-        if other.head != first.head:
-            message = f"texts of one form add, and these are `{first.head}` and `{other.head}`"
-            raise DeclarationError(f"{message}: write both as `l_d`, or both as `l` with one `discretise`")
-        names: dict[str, str] = {}
-        taken = {**first.numbers, **dict.fromkeys(first.advected)}
-        for name in [*other.numbers, *other.advected]:
-            # What is the same in both is written once.
-            same = first.numbers.get(name) == other.numbers.get(name) if name in other.numbers else (
-                first.advected.get(name) == other.advected[name] and other.advected[name] not in names
-            )
-            if name in taken and not same:
-                count = next(n for n in range(2, 1000) if f"{name}_{n}" not in {**taken, **other.numbers})
-                names[name] = f"{name}_{count}"
-        numbers = {names.get(name, name): value for name, value in other.numbers.items()}
-        advected = {names.get(name, name): _renamed(source, names) for name, source in other.advected.items()}
-        first = replace(
-            first,
-            text=f"({first.text})\n + ({_renamed(other.text, names)})",
-            numbers={**first.numbers, **numbers},
-            advected={**first.advected, **advected},
-            name=f"{first.name} + {other.name}",
-        )
-    return first
+def _shaped(kind: str, numbers: tuple[float, ...]) -> Any:
+    import numpy as np
 
-
-def lagrangian(
-    group: Group,
-    *,
-    advected: Mapping[str, str] | None = None,
-    l_d: str | None = None,
-    l: str | None = None,  # noqa: E741
-    discretise: str | None = None,
-    velocity: str = "Omega",
-    pace: str | None = None,
-    **parameters: Any,
-) -> Term:
-    """A Lagrangian from its text: derived, and proved, in milliseconds.
-
-    Parameters
-    ----------
-    group : str or mapping
-        ``"SO3"``, ``"SE3"``, …; of several bodies a name for each increment: ``{"F_1": "SO3", "F_2": "R3"}``.
-    advected : mapping, optional
-        What is carried along: the name that the body sees it by, and the parameter that it is in space.
-    l_d : str
-        The Lagrangian of one step, by the increment ``F``, the step ``h`` and the identity ``I``; or instead
-    l, discretise : str
-        the continuous Lagrangian, and how it is discretised: ``"trapezoid(Cayley)"``.
-    velocity : str
-        What the velocity is called in `l`; of several bodies names with commas.
-    pace : str, optional
-        On SO(3) the pace ``s`` of a transformed time, ``dt = s dτ``, a function of what is advected, three vectors at most:
-        the step is one of ``τ``, and runs are in seconds.
-    **parameters
-        Numbers, vectors, square matrices and points (`liestep.point`) by their names. Names that begin with ``J`` are inertias, kg m², given by a
-        matrix or by three moments; those that end in ``_d`` nonstandard ones.
-
-    Returns
-    -------
-    Term
-        What adds to others, and is stepped by ``stepper(step)``.
-
-    Raises
-    ------
-    DeclarationError
-        With line and column of the text.
-
-    Examples
-    --------
-    >>> import liestep as ls
-    >>> top = ls.lagrangian("SO3", advected={"w": "up"}, discretise="trapezoid(Cayley)",
-    ...     l="1/2 * Omega.dot(J * Omega) - m * g * w.dot(rho)",
-    ...     J=[3, 3, 4], m=1, g=9.81, rho=[0, 0, 1], up=[0, 0, 1])
-    >>> run = top.stepper(0.01).run(velocity=[0.5, 2, 12], until=10)
-    >>> bool(abs(run["energy"] - run["energy"][0]).max() < 1e-2)
-    True
-    """
-    if (l_d is None) == (l is None) or (l is None) != (discretise is None):
-        raise DeclarationError("a Lagrangian has `l_d`, or `l` with `discretise`")
-    numbers = {name: _value(name, value) for name, value in parameters.items()}
-    head, text = "l_d", l_d or ""
-    if l is not None:
-        names = [name.strip() for name in velocity.split(",")]
-        named = f"velocity = {names[0]}" if len(names) == 1 else f"velocity({', '.join(names)})"
-        head, text = f"{named}, discretise = {discretise}, l", l
-    if pace is not None:
-        head = f"pace = {{ {pace} }}, {head}"
-        numbers["E_0_of_the_start"] = ("f64", (0.0,))
-    term = Term(_group(group), "lagrangian", head, text, dict(advected or {}), numbers)
-    term._derived()
-    return term
-
-
-def force(
-    group: Group,
-    *,
-    work: str,
-    advected: Mapping[str, str] | None = None,
-    displacement: str | None = None,
-    **parameters: Any,
-) -> Term:
-    """A force from the virtual work of one step, by the displacements ``eta`` and ``eta_next`` at its ends.
-
-    Parameters
-    ----------
-    group, advected, **parameters
-        As of `lagrangian`.
-    work : str
-        Linear in ``eta`` and ``eta_next``.
-    displacement : str, optional
-        Of several bodies the names of the displacements, with commas.
-
-    Examples
-    --------
-    >>> import liestep as ls
-    >>> damping = ls.force("SO3", work="-c * vee(F - F.transpose()).dot(eta) / 2", c=0.1)
-    >>> run = (ls.body([1, 2, 2.5]) + damping).stepper(0.01).run(velocity=[0, 1, 0], until=1)
-    >>> bool(run["energy"][-1] < run["energy"][0])
-    True
-    """
-    numbers = {name: _value(name, value) for name, value in parameters.items()}
-    head = "work"
-    if displacement:
-        head = f"displacement({displacement}), work"
-    term = Term(_group(group), "force", head, work, dict(advected or {}), numbers, name="force")
-    term._derived()
-    return term
+    if kind == "f64":
+        return numbers[0]
+    rows = round(len(numbers) ** 0.5)
+    is_matrix = "Matrix" in kind or "Inertia" in kind
+    return np.array(numbers).reshape((rows, rows) if is_matrix else (len(numbers),))

@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from . import _native
-from ._declared import Term
+from ._arrays import floats, number, whole
+from ._declared import Sum
 from ._run import Columns
-from ._stepper import Stepper, _numbers, _Start, _start
+from ._stepper import Stepper, _Start, _start
 from .errors import SetupError
 
 
@@ -27,7 +28,11 @@ class Spread:
 def _spread(kind: str, first: Any, second: Any) -> Spread:
     import numpy as np
 
-    one, two = np.broadcast_arrays(np.asarray(first, dtype=float), np.asarray(second, dtype=float))
+    one, two = (floats("what is drawn", value, SetupError) for value in (first, second))
+    try:
+        one, two = np.broadcast_arrays(one, two)
+    except ValueError as error:
+        raise SetupError(f"what is drawn has the shapes {one.shape} and {two.shape}: give one for both") from error
     if not (np.isfinite(one).all() and np.isfinite(two).all()):
         raise SetupError("what is drawn is drawn from finite numbers")
     return Spread(kind, tuple(one.ravel().tolist()), tuple(two.ravel().tolist()))
@@ -65,6 +70,7 @@ def rotation() -> Spread:
 class _Draw:
     of: str
     place: int
+    at: list[int]
     kind: str
     first: float
     second: float
@@ -124,7 +130,7 @@ class Ensemble:
     seed : int
         The same seed draws the same members, on every machine.
     **drawn
-        Parameters of the declaration by their names, and what they are drawn from.
+        Parameters by their names, as `liestep.Term` has them, and what they are drawn from.
 
     Examples
     --------
@@ -139,7 +145,7 @@ class Ensemble:
 
     def __init__(
         self,
-        term: Term,
+        term: Sum,
         members: int,
         *,
         step: float = 0.01,
@@ -149,10 +155,10 @@ class Ensemble:
         method: dict[str, Any] | None = None,
         **drawn: Spread,
     ) -> None:
-        if isinstance(members, bool) or not isinstance(members, int) or not 0 < members <= 10**9:
-            raise SetupError(f"an ensemble has from one to a billion members, not {members!r:.80}")
-        if not isinstance(seed, int) or not 0 <= seed < 2**63:
-            raise SetupError(f"a seed is a whole number from zero, not {seed!r:.80}")
+        whole("members", members, 1, 10**9)
+        whole("seed", seed, 0, 2**63 - 1)
+        if method is not None and not isinstance(method, dict):
+            raise SetupError(f'a method is one of `liestep.Stepper`, as {{"composition": "Suzuki 4"}}, not {method!r:.80}')
         self.stepper = Stepper(term, step, **(method or {}))
         self.members, self.seed = members, seed
         self._draws: list[_Draw] = []
@@ -160,18 +166,25 @@ class Ensemble:
         start = {"velocity": velocity, "attitude": attitude}
         for name, spread in {**start, **drawn}.items():
             if isinstance(spread, Spread) and spread.kind != "rotation":
+                at = [] if name in start else self._numbers_of(name, spread)
                 pairs = enumerate(zip(spread.first, spread.second, strict=True))
-                self._draws += [_Draw(name, place, spread.kind, *pair) for place, pair in pairs]
+                self._draws += [_Draw(name, place, at, spread.kind, *pair) for place, pair in pairs]
                 start[name] = list(spread.first)
             elif name in drawn:
                 raise SetupError(f"`{name}` is drawn from `ls.normal(…)` or `ls.uniform(…)`, not from {spread!r:.80}")
-        for name, spread in drawn.items():
-            known = term.numbers.get(name)
-            if known is None:
-                raise SetupError(f"there is no parameter `{name}` to be drawn: there are {', '.join(term.numbers)}")
-            if len(known[1]) != len(spread.first):
-                raise SetupError(f"`{name}` has {len(known[1])} numbers, and {len(spread.first)} are drawn")
         self._start: _Start = _start(None if self._turns else start["attitude"], start["velocity"])
+
+    def _numbers_of(self, name: str, spread: Spread) -> list[int]:
+        """The places of the first numbers that a draw replaces, among those of all summands."""
+        term = self.stepper.term
+        places = term._found(name)
+        for place in places:
+            own, (_, numbers) = term.summands[place[0]].numbers[place[1]]
+            if len(numbers) != len(spread.first):
+                raise SetupError(f"`{name}` has {len(numbers)} numbers, and {len(spread.first)} are drawn")
+            if own in term.summands[place[0]].directions:
+                raise SetupError(f"`{name}` is a direction, of length one, and isn't drawn: draw the attitude instead")
+        return [term._first_number(place) for place in places]
 
     def run(
         self,
@@ -191,7 +204,7 @@ class Ensemble:
         folder : path
             Where the files are, one for each chunk of members; a run that was ended goes on there.
         until : float
-            The time that each member comes to, s.
+            The time that each member comes to, s, a whole number of steps; zero keeps the starts.
         every : int, optional
             Steps from row to row of a member; the ends only, if it isn't given.
         threads : int
@@ -201,19 +214,24 @@ class Ensemble:
         chunk : int, optional
             The members of a file.
         progress : bool or callable
-            Whether to print how far it is, or what to tell it: the chunks that are there, and all.
+            Whether a terminal shows how far it is, or what to tell it: the chunks that are there, and all.
 
         Returns
         -------
         Many
         """
-        _numbers("until", until, ((),))
+        end = number("until", until)
+        whole("threads", threads, 0, 2**16)
+        for name, steps in {"every": every, "chunk": chunk}.items():
+            if steps is not None:
+                whole(name, steps, 1, 2**63 - 1)
+        if not isinstance(share, str):
+            raise SetupError(f'a share is a text, as "1/4", not {share!r:.80}')
         shown = _bar if progress is True else None if progress is False else progress
         term, (kind, scheme, *rest) = self.stepper.term, self.stepper.method
         # One plan is told from another by all that it is made of.
-        name = repr((term.declaration, term.numbers, term.forces, kind, scheme, rest, self.stepper.step, self._draws,
-                     self._start, self._turns))
-        plan = _Members(name, self.members, self.seed, float(until), every, chunk, str(folder), threads,
+        plan_name = repr((term.summands, kind, scheme, rest, self.stepper.step, self._draws, self._start, self._turns))
+        plan = _Members(plan_name, self.members, self.seed, end, every, chunk, str(folder), threads,
                         _native.share(share), self._turns, shown)
         made = self.stepper._native.members(self.stepper.step, self.stepper.method, self._start, self._draws, plan)
         return Many(made)
@@ -232,7 +250,9 @@ def _again(state: dict[str, Any]) -> Ensemble:
 
 
 def _bar(done: int, chunks: int) -> None:
-    """A line that fills."""
+    """A line that fills, in a terminal alone."""
+    if not sys.stderr.isatty():
+        return
     filled = 30 * done // max(chunks, 1)
     end = "\n" if done == chunks else ""
     sys.stderr.write(f"\r[{'#' * filled}{'.' * (30 - filled)}] {done} of {chunks} chunks{end}")

@@ -2,32 +2,21 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
 from . import _native
-from ._declared import Term, _value
+from ._arrays import floats
+from ._declared import Summand, _value
+from ._term import Term
 from .errors import DeclarationError
 
-_FORM = re.compile(
-    r"#\s*\[\s*(?P<role>\w+)\s*\(\s*group\s*=\s*SO3\s*,\s*(?:gradients\s*,\s*)?"
-    r"(?:advected\s*\(\s*(?P<seen>\w+)\s*=\s*(?P<field>\w+)\s*\)\s*,\s*)?"
-    r"(?P<head>l_d|work)\s*=\s*(?P<text>.*?),?\s*\)\s*\]\s*struct\b[^{]*\{(?P<fields>[^}]*)\}",
-    re.DOTALL,
-)
 
-
-def _term(name: str, **parameters: Any) -> Term:
-    source = _native.library(name)
-    found = _FORM.match(source or "")
-    if source is None or found is None:
+def _term(name: str, *directions: str, **parameters: Any) -> Term:
+    text = _native.library(name)
+    if text is None:
         raise DeclarationError(f"the library has no `{name}`")
-    fields = re.findall(r"(\w+)\s*:", found["fields"])
-    if missing := [field for field in fields if field not in parameters]:
-        raise DeclarationError(f"`{name}` has parameters {', '.join(fields)}: give {', '.join(missing)}")
-    numbers = {field: _value(field, parameters[field]) for field in fields}
-    advected = {found["seen"]: found["field"]} if found["seen"] else {}
-    return Term("group = SO3", found["role"], found["head"], found["text"], advected, numbers, name=name)
+    numbers = {field: _value(field, value) for field, value in parameters.items()}
+    return Term.of(*Summand.of(text, numbers, name, directions))
 
 
 def nonstandard(J: Any) -> Any:
@@ -41,7 +30,7 @@ def nonstandard(J: Any) -> Any:
     """
     import numpy as np
 
-    matrix = np.asarray(J, dtype=float)
+    matrix = floats("J", J, DeclarationError)
     if matrix.shape == (3,):
         matrix = np.diag(matrix)
     if matrix.shape != (3, 3):
@@ -55,7 +44,8 @@ def body(J: Any, *, kinetic: str = "rigid") -> Term:
     Parameters
     ----------
     J : array_like
-        Inertia, kg m²: three principal moments, or a matrix.
+        Inertia, kg m²: three principal moments, or the matrix ``∫ (|x|² I − x xᵀ) dm`` in the axes of the body. Off the
+        diagonal it has products of inertia with a minus: ``J_xy = −∫ x y dm``.
     kinetic : {"rigid", "cayley", "geodesic", "fourth_order", "sixth_order"}
         How its energy is discretised: (3.13) of the thesis, or as the library's body of that name.
 
@@ -74,13 +64,19 @@ def body(J: Any, *, kinetic: str = "rigid") -> Term:
 
 
 def gravity(*, m: float, rho: Any, g: float = 9.81, up: Any = (0, 0, 1)) -> Term:
-    """The weight of a body that turns about a fixed point: mass, kg, and centre of mass, m, in the body."""
-    return _term("gravity", m=m, g=g, rho=rho, up=up)
+    """The weight of a body that turns about a fixed point: mass, kg, and centre of mass, m, in the body.
+
+    ``up`` is a direction of space, of length one.
+    """
+    return _term("gravity", "up", m=m, g=g, rho=rho, up=up)
 
 
 def gravity_gradient(*, GM: float, r: float, J: Any, direction: Any) -> Term:
-    """The torque of a far mass ``GM``, m³/s², at the distance `r`, m, in a direction of space, on a body of inertia `J`."""
-    return _term("gravity_gradient", GM=GM, r=r, J=J, direction=direction)
+    """The torque of a far mass ``GM``, m³/s², at the distance `r`, m, on a body of inertia `J`.
+
+    ``direction`` is one of space, of length one.
+    """
+    return _term("gravity_gradient", "direction", GM=GM, r=r, J=J, direction=direction)
 
 
 def dipole(*, moment: Any, field: Any) -> Term:

@@ -4,23 +4,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
-from math import inf
+from dataclasses import dataclass, field
+from math import ceil, hypot, inf, isfinite
 from typing import Any
 
 from . import _native
-from ._declared import Term
+from ._arrays import floats, number, whole
+from ._declared import Sum
 from ._run import Run
-from .errors import SetupError
+from .errors import Error, SetupError, StepError
 
 
 def _numbers(name: str, value: Any, shapes: tuple[tuple[int, ...], ...] = ()) -> list[float]:
-    import numpy as np
-
-    try:
-        array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise SetupError(f"`{name}` is an array of numbers, not {value!r:.80}") from error
+    array = floats(name, value, SetupError)
     if shapes and array.shape not in shapes:
         known = " or ".join(map(str, shapes))
         raise SetupError(f"`{name}` has the shape {array.shape}: give {known}")
@@ -47,7 +43,10 @@ def _attitude(value: Any) -> tuple[list[float], bool]:
 
 
 def euler(precession: float, nutation: float, spin: float = 0.0, *, degrees: bool = False) -> list[float]:
-    """The attitude ``R_z(φ) R_x(θ) R_z(ψ)`` as a quaternion ``[w, x, y, z]``.
+    """The attitude ``R_z(φ) R_x(θ) R_z(ψ)``, body to space, as a quaternion ``[w, x, y, z]``.
+
+    The angles are precession, nutation and spin, z-x-z about axes that turn with the body, rad; those of a 3-2-1 sequence are
+    others: SciPy's ``Rotation.from_euler("ZYX", …)`` is taken as an attitude.
 
     Examples
     --------
@@ -55,9 +54,13 @@ def euler(precession: float, nutation: float, spin: float = 0.0, *, degrees: boo
     >>> [round(part, 3) for part in ls.euler(0, 60, degrees=True)]
     [0.866, 0.5, 0.0, 0.0]
     """
-    from math import cos, radians, sin
+    from math import cos, pi, radians, sin
 
-    phi, theta, psi = (radians(a) if degrees else a for a in (precession, nutation, spin))
+    angles = [number("angle", angle) for angle in (precession, nutation, spin)]
+    if not degrees and max(map(abs, angles)) > 2 * pi:
+        listed = ", ".join(f"{angle:g}" for angle in angles)
+        raise SetupError(f"these angles are in rad, and beyond a whole turn: write `ls.euler({listed}, degrees=True)`")
+    phi, theta, psi = (radians(angle) if degrees else angle for angle in angles)
     return [
         cos(theta / 2) * cos((phi + psi) / 2),
         sin(theta / 2) * cos((phi - psi) / 2),
@@ -77,8 +80,11 @@ def translation(shift: Any) -> Any:
     """
     import numpy as np
 
-    matrix = np.eye(len(shift) + 1)
-    matrix[:-1, -1] = shift
+    column = floats("shift", shift, SetupError)
+    if column.ndim != 1:
+        raise SetupError(f"`shift` is a list of numbers, not an array of the shape {column.shape}")
+    matrix = np.eye(len(column) + 1)
+    matrix[:-1, -1] = column
     return matrix
 
 
@@ -119,29 +125,42 @@ def _watch(text: Any) -> _Watch:
     return _Watch(found["of"], float(found["value"]) * _UNITS[found["unit"]], direction, bool(found["stop"]))
 
 
-def _course(until: Any, every: Any, times: Any, events: Mapping[str, str] | None) -> _Course:
-    try:
-        end = float(until)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise SetupError(f"`until` is a time, s, not {until!r:.80}") from error
-    if isinstance(every, bool) or not isinstance(every, int) or not 0 < every < 2**63:
-        raise SetupError(f"`every` is a whole number of steps above zero, not {every!r:.80}")
-    if times is None:
-        return _Course(end, every, None, [_watch(text) for text in (events or {}).values()])
-    import numpy as np
+def _end(until: Any, times: list[float] | None, step: float | None) -> float:
+    """The time that a run comes to; by its last row, if it isn't given."""
+    if until is None:
+        if not times:
+            raise SetupError("a run has an end: give `until`, s, or `times`")
+        steps = max(1, ceil(times[-1] / step - 1e-9)) if step and isfinite(times[-1] / step) else 0
+        return steps * step if step and steps else times[-1]
+    end = number("until", until)
+    if end == 0:
+        raise SetupError("a run of no steps: `until` is behind the start, or before it where the step is below zero")
+    if times and max(map(abs, times)) > abs(end) * (1 + 1e-12):
+        raise SetupError(f"`times` go beyond the end of the run at {end:g} s: leave `until` out")
+    return end
 
-    try:
-        asked = np.asarray(times, dtype=float)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise SetupError("`times` are numbers, s") from error
+
+def _course(until: Any, every: Any, times: Any, events: Mapping[str, str] | None, step: float | None) -> _Course:
+    whole("every", every, 1, 2**63 - 1)
+    if events is not None and not isinstance(events, Mapping):
+        raise SetupError(f'`events` are texts by names, as {{"low": "tilt > 60 deg"}}, not {events!r:.80}')
+    watched = [_watch(text) for text in (events or {}).values()]
+    if times is None:
+        return _Course(_end(until, None, step), every, None, watched)
+    asked = floats("times", times, SetupError)
     if asked.ndim != 1:
         raise SetupError(f"`times` is a list of times, not an array of shape {asked.shape}")
-    return _Course(end, 0, asked.tolist(), [_watch(text) for text in (events or {}).values()])
+    return _Course(_end(until, asked.tolist(), step), 0, asked.tolist(), watched)
 
 
 def _start(attitude: Any, velocity: Any) -> _Start:
+    import numpy as np
+
     numbers, is_quaternion = _attitude(attitude)
-    return _Start(numbers, is_quaternion, _numbers("velocity", velocity))
+    flat = _numbers("velocity", velocity)
+    if np.ndim(velocity) > 1:
+        raise SetupError(f"`velocity` is a list of numbers, and has the shape {np.shape(velocity)}")
+    return _Start(numbers, is_quaternion, flat)
 
 
 class Stepper:
@@ -176,7 +195,7 @@ class Stepper:
 
     def __init__(
         self,
-        term: Term,
+        term: Sum,
         step: float,
         *,
         composition: str | None = None,
@@ -192,18 +211,17 @@ class Stepper:
         }
         if density is not None:
             is_turn = isinstance(density, Mapping) and list(density) == ["turn"]
-            (floor,) = _numbers("density", density["turn"], ((),)) if is_turn else (0.0,)
+            floor = number("density", density["turn"]) if is_turn else 0.0
             if not 0 < floor < inf:
                 raise SetupError(f'a density is `{{"turn": velocity}}`, rad/s, above zero, not {density!r:.80}')
             given["density"] = repr(floor)
         named = [(kind, str(scheme)) for kind, scheme in given.items() if scheme is not None]
         if len(named) > 1:
             raise SetupError(f"one method at a time: {' and '.join(kind for kind, _ in named)} are two")
-        if not isinstance(substeps, int) or not 0 < substeps < 2**16:
-            raise SetupError(f"`substeps` is a whole number above zero, not {substeps!r:.80}")
+        whole("substeps", substeps, 1, 2**16 - 1)
         kind, scheme = named[0] if named else ("step", "")
         self.term = term
-        self.step = float(step)
+        self.step = number("step", step)
         self.method = (kind, scheme, bool(compensated), substeps)
         self._native = term._scene()
         # What is wrong with the method is said here, and not where it runs.
@@ -214,8 +232,8 @@ class Stepper:
         *,
         velocity: Any,
         attitude: Any = None,
-        until: float,
-        every: int = 1,
+        until: float | None = None,
+        every: int | None = None,
         times: Any = None,
         events: Mapping[str, str] | None = None,
     ) -> Run:
@@ -224,16 +242,16 @@ class Stepper:
         Parameters
         ----------
         velocity : array_like
-            Body velocity at the start, on SO(3) in rad/s.
+            Body velocity at the start, in the axes of the body and not of space; on SO(3) in rad/s.
         attitude : array_like, optional
-            Body to space: a quaternion ``[w, x, y, z]``, a matrix, SciPy's ``Rotation``, on a product a list of matrices;
-            the identity, if none is given.
+            Body to space, ``x_space = R x_body``: a quaternion ``[w, x, y, z]`` with its scalar first, a matrix, SciPy's
+            ``Rotation``, on a product a list of matrices; the identity, if none is given.
         until : float
-            The time, s.
+            The time, s, a whole number of steps. A step below zero goes back, to a time below zero.
         every : int
-            Steps from row to row.
+            Steps from row to row: one, if nothing else is said.
         times : array_like, optional
-            The times of the rows instead, s, between the steps too.
+            The times of the rows instead, s, between the steps too; without `until` the last of them is the end.
         events : mapping, optional
             Names, and what is looked for: ``"tilt > 60 deg"``, ``"velocity_x = 0"``; with ``", stop"`` it ends the run.
 
@@ -256,15 +274,24 @@ class Stepper:
         >>> run.events["low"].rising.all()
         np.True_
         """
-        return self._made(_start(attitude, velocity), _course(until, every, times, events), list(events or {}))
+        course = self._course(until, every, times, events)
+        return self._made(_start(attitude, velocity), course, list(events or {}))
+
+    def _course(self, until: Any, every: Any, times: Any, events: Any) -> _Course:
+        are_equal = self.method[0] != "density" and not self.term.has_pace
+        return _course(until, 1 if every is None else every, times, events, self.step if are_equal else None)
 
     def _made(self, start: _Start, course: _Course, names: list[str]) -> Run:
         made = self._native.run(self.step, self.method, start, course)
-        return _finished(self.term, self.step, made, names, self._about())
+        return _finished(self.term, self.step, made, names, self._about(), _Estimate(self, start, course.until))
 
     def _about(self) -> str:
         kind, scheme, compensated, substeps = self.method
-        by = {"step": "", "density": f" at first, of a density by the turn from {scheme} rad/s on", "collocation": f" by {scheme} stages"}.get(kind, f" by the {kind} {scheme}")
+        known = {
+            "step": "", "collocation": f" by {scheme} stages",
+            "density": f" at first, of a density by the turn from {scheme} rad/s on",
+        }
+        by = known.get(kind, f" by the {kind} {scheme}")
         rest = (", compensated" if compensated else "") + (f", or {substeps} parts" if substeps > 1 else "")
         return f"steps of {self.step:g} s{by}{rest}"
 
@@ -275,36 +302,140 @@ class Stepper:
         return f"<Stepper of {self.term.name}: {self._about()}>"
 
 
-def _again(term: Term, step: float, method: tuple[str, str, bool, int]) -> Stepper:
+def _again(term: Sum, step: float, method: tuple[str, str, bool, int]) -> Stepper:
     kind, scheme, compensated, substeps = method
     given: dict[str, Any] = {} if kind == "step" else {kind: {"turn": float(scheme)} if kind == "density" else scheme}
     return Stepper(term, step, **given, compensated=compensated, substeps=substeps)
 
 
-def _finished(term: Term, step: float, made: dict[str, Any], names: list[str], about: str) -> Run:
-    run = Run(term.name, about, step, made, names)
+@dataclass
+class _Estimate:
+    """How far the end of a run is off: runs of other steps say it, where they agree as those of a method do."""
+
+    stepper: Stepper
+    start: _Start
+    until: float
+    ends: dict[int, Run] = field(default_factory=dict)
+
+    def __call__(self, run: Run) -> float | None:
+        steps = run.steps
+        if run.ended_by is not None or self.stepper.method[0] == "density" or self.stepper.term.has_pace or steps == 0:
+            return None
+        try:
+            if steps % 4 == 0 and steps >= 16 and (error := self.left(steps)) < SURE:
+                return max(error, steps * 2.0**-52)
+        except Error:
+            pass
+        try:
+            error = self.left(4 * steps)
+            away = _apart(self._last(steps), self._last(4 * steps), self.until)
+        except Error:
+            return None
+        return max(away + error, steps * 2.0**-52) if error < max(away, ROUNDED) else None
+
+    def left(self, count: int) -> float:
+        """The error of a run of so many steps, by those of half and of a quarter as many."""
+        finest, middle, coarsest = (self._last(steps) for steps in (count, count // 2, count // 4))
+        near, far = _apart(finest, middle, self.until), _apart(middle, coarsest, self.until)
+        # The error falls by this where the steps are halved: by no more than the order of the method promises.
+        falls = min(far / near, 2.0 ** _native.order(self.stepper.method)) if near > 0 else inf
+        return near if near < ROUNDED else near / (falls - 1) if falls > LEAST_FALL else inf
+
+    def _last(self, count: int) -> Run:
+        if count not in self.ends:
+            course, step = _Course(self.until, count, None, []), self.until / count
+            made = self.stepper._native.run(step, self.stepper.method, self.start, course)
+            self.ends[count] = _finished(self.stepper.term, step, made, [], "")
+        return self.ends[count]
+
+
+#: Where an error falls by less with half the step, the runs don't agree.
+LEAST_FALL = 1.6
+#: A larger one by longer steps may be chance, and is measured by shorter ones.
+SURE = 0.02
+#: Below it differences are those of rounding.
+ROUNDED = 1e-10
+
+
+def _apart(one: Run, other: Run, time: float) -> float:
+    """The distance of two last states, as `for_accuracy` measures it."""
+    import numpy as np
+
+    def norm(vector: Any) -> float:
+        return float(np.linalg.norm(vector))
+
+    here, there = (run.matrix[-1] if "q_w" in run.names else run.attitude[-1] for run in (one, other))
+    speed = max(norm(one.velocity[0]), norm(one.velocity[-1]), 1 / abs(time))
+    return hypot(norm(here - there) / max(norm(here), 1.0), norm(one.velocity[-1] - other.velocity[-1]) / speed)
+
+
+def _finished(
+    term: Sum, step: float, made: dict[str, Any], names: list[str], about: str, estimate: _Estimate | None = None
+) -> Run:
+    run = Run(term.name, about, step, made, names, estimate)
     failure = made["failure"]
     if failure is not None:
+        run._estimate = None
         failure.run = run
         raise failure
     return run
 
 
+#: More steps take minutes.
+MOST = 10**7
+#: Of a run whose steps nobody has chosen.
+ROWS = 1001
+
+
 class _Search(Stepper):
     """A stepper whose method and step are found by trial runs, for the motion that it is to make."""
 
-    def __init__(self, term: Term, tolerance: float) -> None:
-        self.term, self.tolerance = term, float(tolerance)
+    def __init__(self, term: Sum, tolerance: float) -> None:
+        if term.has_pace:
+            raise SetupError("a pace is that of the declared step, whose length is given: take `stepper(h)`")
+        self.term, self.tolerance = term, number("tolerance", tolerance)
+
+    def _course(self, until: Any, every: Any, times: Any, events: Any) -> _Course:
+        import numpy as np
+
+        course = _course(until, 1 if every is None else every, times, events, None)
+        if every is None and times is None and isfinite(course.until):
+            course.every, course.times = 0, np.linspace(0.0, course.until, ROWS).tolist()
+        return course
 
     def _made(self, start: _Start, course: _Course, names: list[str]) -> Run:
-        made = self.term._scene().ask(self.tolerance, start, course)
+        scene = self.term._scene()
+        if not scene.is_self_adjoint:
+            return self._by_own_steps(start, course, names)
+        made = scene.ask(self.tolerance, start, course)
         about = f"steps of {made['step']:.4g} s by {made['method']}"
         run = _finished(self.term, made["step"], made, names, about)
         run.method = _method(made["method"])
         return run
 
 
-def accurate(term: Term, tolerance: float, **run: Any) -> Run:
+    def _by_own_steps(self, start: _Start, course: _Course, names: list[str]) -> Run:
+        """Ever more of the declared steps, until their error is small enough."""
+        if not 0 < self.tolerance < 1:
+            raise SetupError(f"an accuracy is between zero and one, not {self.tolerance:g}")
+        count, until = 16, course.until
+        while isfinite(until) and count <= MOST:
+            stepper = Stepper(self.term, until / count)
+            try:
+                error = _Estimate(stepper, start, until).left(count)
+            except StepError:
+                error = inf
+            if error < self.tolerance:
+                run = stepper._made(start, course, names)
+                run._error, run._estimate, run.method = error, None, {}
+                return run
+            # The next number is that of order 2, but no farther than these runs can say.
+            count *= min(8, max(2, int((2 * error / self.tolerance) ** 0.5))) if error < SURE else 2
+        found = f"the step of {self.term.name} doesn't come to {self.tolerance:g} in {MOST} steps"
+        raise SetupError(f"{found}: take a larger tolerance, or a step, `stepper(h)`")
+
+
+def accurate(term: Sum, tolerance: float, **run: Any) -> Run:
     """As `Stepper.run`, by the method and the step that trial runs have found; `Run.choice` has them all."""
     return _Search(term, tolerance).run(**run)
 

@@ -67,6 +67,10 @@ class StepError(Error, ArithmeticError):
     """A step that has no solution; what was recorded before is the attribute `run`."""
 
 
+class ColumnError(Error, KeyError):
+    """A column or a quantity that a run doesn't have."""
+
+
 class SceneError(Error, ValueError):
     """A mistake in a scene's file, or in its run."""
 

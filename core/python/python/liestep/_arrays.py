@@ -1,0 +1,50 @@
+"""Numbers and texts that are given."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from .errors import DeclarationError, Error, SetupError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+
+def floats(name: str, value: Any, error: type[Error]) -> Array:
+    """An array of real numbers, none of them hidden: neither complex nor masked ones are taken for real ones."""
+    import numpy as np
+
+    try:
+        array = np.asanyarray(value)
+        if np.iscomplexobj(array) or isinstance(array, np.ma.MaskedArray):
+            raise error(f"`{name}` is an array of real numbers, neither complex nor masked")
+        return np.asarray(array, dtype=float)
+    except (TypeError, ValueError, OverflowError) as cause:
+        if isinstance(cause, Error):
+            raise
+        raise error(f"`{name}` is a number, a vector or a matrix of numbers, not {value!r:.80}") from cause
+
+
+def number(name: str, value: Any) -> float:
+    """One real number."""
+    array = floats(name, value, SetupError)
+    if array.shape != ():
+        raise SetupError(f"`{name}` is a number, not an array of the shape {array.shape}")
+    return float(array)
+
+
+def whole(name: str, value: Any, least: int, most: int) -> int:
+    """A whole number between two."""
+    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+        raise SetupError(f"`{name}` is a whole number from {least} to {most:g}, not {value!r:.80}")
+    return value
+
+
+def text(name: str, value: Any) -> str:
+    """A text."""
+    if not isinstance(value, str):
+        raise DeclarationError(f"`{name}` is a text, not {value!r:.80}")
+    return value

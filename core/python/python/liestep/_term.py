@@ -1,0 +1,215 @@
+"""Lagrangians and forces: texts with numbers, and the ways of moving them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from ._arrays import text
+from ._control import Control
+from ._declared import Group, Sum, Summand, Value, _value
+from ._ensemble import Ensemble
+from ._run import Run
+from ._stepper import Stepper, accurate
+from .errors import DeclarationError
+
+
+class Term(Sum):
+    """A text with numbers; what `liestep.lagrangian` and `liestep.force` return, and sums of them.
+
+    It is data: it pickles, compares and adds. What it declares is derived where it is made, and proved there. A sum has
+    the programs of its summands: any of them on one group add, in any order.
+
+    Parameters of one name are one parameter as long as they have one value: `with_`, the draws of an `ensemble` and
+    `parameters` know them by this name. Several ``m`` of a sum are ``m_1``, ``m_2`` and so on, in the order of the summands
+    that have one.
+
+    Attributes
+    ----------
+    summands : tuple
+        The declarations, each with its numbers.
+    group : str
+        The group, as ``SO3``.
+    role : str
+        ``"lagrangian"``, or ``"force"`` where there are forces alone.
+    has_pace : bool
+        Whether it is stepped in a time of its own.
+    """
+
+    def stepper(self, step: float, **method: Any) -> Stepper:
+        """What makes steps of this length, s; see `liestep.Stepper`."""
+        return Stepper(self, step, **method)
+
+    def run(self, **run: Any) -> Run:
+        """The run to an accuracy of 1e-6; see `liestep.Stepper.run`. Method and step are those of `for_accuracy`.
+
+        Without `every` and `times` it has 1001 rows, as far from each other in time. A force that isn't the same
+        backwards leaves no method but the declared step, which is made ever shorter.
+
+        Examples
+        --------
+        >>> import liestep as ls
+        >>> run = ls.body([1, 2, 2.5]).run(velocity=[0.01, 2, 0.02], until=5)
+        >>> run.error < 1e-6, len(run)
+        (True, 1001)
+        """
+        return self.for_accuracy(1e-6, **run)
+
+    def for_accuracy(self, tolerance: float, **run: Any) -> Run:
+        """The run by the method and the step that are the cheapest for a tolerance; see `liestep.Stepper.run`.
+
+        The tolerance is one of `liestep.Run.error`: what the state at the end is off.
+
+        Examples
+        --------
+        >>> import liestep as ls
+        >>> run = ls.body([1, 2, 2.5]).for_accuracy(1e-8, velocity=[0.01, 2, 0.02], until=5)
+        >>> run.error < 1e-8
+        True
+        """
+        return accurate(self, tolerance, **run)
+
+    def control(self, *, step: float, steps: int, **task: Any) -> Control:
+        """A motion from here to there by torques, in the shortest time or by the least effort; see `liestep.Control`.
+
+        Examples
+        --------
+        >>> import liestep as ls
+        >>> plan = ls.body([4, 3, 2]).control(step=0.02, steps=50, goal=ls.euler(0, 1.5), bound=30).solve()
+        >>> plan.converged, bool(abs(plan.torque).max() <= 30)
+        (True, True)
+        """
+        return Control(self, step=step, steps=steps, **task)
+
+    def ensemble(self, members: int, *, step: float = 0.01, **rest: Any) -> Ensemble:
+        """Many motions drawn at random; see `liestep.Ensemble`."""
+        return Ensemble(self, members, step=step, **rest)
+
+
+def _declared(
+    role: str, group: Group, head: str, given: Any, advected: Mapping[str, str] | None, numbers: Mapping[str, Value]
+) -> Term:
+    """A term of a text, whose mistakes have their lines."""
+    own_text = text(head.rpartition(" ")[2], given)
+    for name, names in {"group": group, "advected": advected or {}}.items():
+        if not isinstance(names, Mapping) and not (name == "group" and isinstance(names, str)):
+            raise DeclarationError(f"`{name}` are texts by names, as {{\"w\": \"up\"}}, not {names!r:.80}")
+    on = f"group = {group}" if isinstance(group, str) else f"group({', '.join(f'{n} = {g}' for n, g in group.items())})"
+    sources = ", ".join(f"{name} = {source}" for name, source in (advected or {}).items())
+    carried = f"advected({sources}), " if sources else ""
+    if head.startswith("pace = "):
+        carried = "given(E_0 = E_0_of_the_start), " + carried
+    fields = ", ".join(f"{name}: {kind}" for name, (kind, _) in numbers.items())
+    whole = f"#[{role}({on}, {carried}{head} =\n{own_text}\n)]\nstruct Declared {{ {fields} }}"
+    try:
+        return Term.of(*Summand.of(whole, numbers, role.capitalize() if role == "lagrangian" else role))
+    except DeclarationError as error:
+        # The text is the second line of the declaration.
+        lines = own_text.count("\n") + 1
+        own = [
+            (message, line - 1, column) if 1 < line <= 1 + lines else (message, 0, 0)
+            for message, line, column in error.mistakes
+        ]
+        raise (DeclarationError.of(own) if own else error) from None
+
+
+def lagrangian(
+    group: Group,
+    *,
+    advected: Mapping[str, str] | None = None,
+    l_d: str | None = None,
+    l: str | None = None,  # noqa: E741
+    discretise: str | None = None,
+    velocity: str = "Omega",
+    pace: str | None = None,
+    **parameters: Any,
+) -> Term:
+    """A Lagrangian from its text: derived, and proved, in milliseconds.
+
+    Parameters
+    ----------
+    group : str or mapping
+        ``"SO3"``, ``"SE3"``, …; of several bodies a name for each increment: ``{"F_1": "SO3", "F_2": "R3"}``.
+    advected : mapping, optional
+        What is carried along: the name that the body sees it by, and the parameter that it is in space.
+    l_d : str
+        The Lagrangian of one step, by the increment ``F``, the step ``h`` and the identity ``I``; or instead
+    l, discretise : str
+        the continuous Lagrangian, and how it is discretised: ``"trapezoid(Cayley)"``.
+    velocity : str
+        What the velocity is called in `l`; of several bodies names with commas.
+    pace : str, optional
+        On SO(3) the pace ``s`` of a transformed time, ``dt = s dτ``, a function of what is advected, three vectors at most:
+        the step is one of ``τ``, and runs are in seconds.
+    **parameters
+        Numbers, vectors, square matrices and points (`liestep.point`) by their names. Names that begin with ``J`` are inertias, kg m², given by a
+        matrix or by three moments; those that end in ``_d`` nonstandard ones.
+
+    Returns
+    -------
+    Term
+        What adds to others, and is stepped by ``stepper(step)``.
+
+    Raises
+    ------
+    DeclarationError
+        With line and column of the text.
+
+    Examples
+    --------
+    >>> import liestep as ls
+    >>> top = ls.lagrangian("SO3", advected={"w": "up"}, discretise="trapezoid(Cayley)",
+    ...     l="1/2 * Omega.dot(J * Omega) - m * g * w.dot(rho)",
+    ...     J=[3, 3, 4], m=1, g=9.81, rho=[0, 0, 1], up=[0, 0, 1])
+    >>> run = top.stepper(0.01).run(velocity=[0.5, 2, 12], until=10)
+    >>> bool(abs(run["energy"] - run["energy"][0]).max() < 1e-2)
+    True
+    """
+    if (l_d is None) == (l is None) or (l is None) != (discretise is None):
+        raise DeclarationError("a Lagrangian has `l_d`, or `l` with `discretise`")
+    numbers = {name: _value(name, value) for name, value in parameters.items()}
+    head = "l_d"
+    if l is not None:
+        names = [name.strip() for name in text("velocity", velocity).split(",")]
+        named = f"velocity = {names[0]}, " if len(names) == 1 else f"velocity({', '.join(names)}), "
+        # A potential has none.
+        is_used = velocity != "Omega" or "Omega" in text("l", l)
+        head = f"{named if is_used else ''}discretise = {discretise}, l"
+    if pace is not None:
+        head = f"pace = {{ {pace} }}, {head}"
+        numbers["E_0_of_the_start"] = ("f64", (0.0,))
+    return _declared("lagrangian", group, head, l_d if l is None else l, advected, numbers)
+
+
+def force(
+    group: Group,
+    *,
+    work: str,
+    advected: Mapping[str, str] | None = None,
+    displacement: str | None = None,
+    **parameters: Any,
+) -> Term:
+    """A force from the virtual work of one step, by the displacements ``eta`` and ``eta_next`` at its ends.
+
+    Parameters
+    ----------
+    group, advected, **parameters
+        As of `lagrangian`.
+    work : str
+        Linear in ``eta`` and ``eta_next``.
+    displacement : str, optional
+        Of several bodies the names of the displacements, with commas.
+
+    Examples
+    --------
+    >>> import liestep as ls
+    >>> damping = ls.force("SO3", work="-c * vee(F - F.transpose()).dot(eta) / 2", c=0.1)
+    >>> run = (ls.body([1, 2, 2.5]) + damping).stepper(0.01).run(velocity=[0, 1, 0], until=1)
+    >>> bool(run["energy"][-1] < run["energy"][0])
+    True
+    """
+    numbers = {name: _value(name, value) for name, value in parameters.items()}
+    head = "work"
+    if displacement:
+        head = f"displacement({displacement}), work"
+    return _declared("force", group, head, work, advected, numbers)
