@@ -129,6 +129,9 @@ pub trait Coordinates<T: Real>:
     /// Nothing that joins neighbours.
     fn no_links() -> Self::Links;
 
+    /// Adds other blocks beside the diagonal, each of a row of a residual that is [`raised`](Self::raised) to this power.
+    fn add_links(links: &mut Self::Links, others: &Self::Links, power: u32, half: &Self);
+
     /// Solves `A z = b` in place, for a matrix with the blocks `links` beside its diagonal: `right_side` becomes `z`, and
     /// the matrix is used up. Returns the determinant, as [`factorise_with`](Self::factorise_with) does. Of the pattern only
     /// the factors count: the links join what is apart without them.
@@ -270,6 +273,8 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     }
 
     fn no_links() {}
+
+    fn add_links((): &mut (), (): &(), _: u32, _: &Self) {}
 
     fn solve_linked(matrix: &mut SMatrix<T, D, D>, (): &(), pattern: Pattern, right_side: &mut Self) -> T {
         let (factors, det) = Self::factorise_with(matrix, pattern);

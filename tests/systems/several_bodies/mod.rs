@@ -10,6 +10,7 @@ mod joints;
 mod lanes;
 mod links;
 mod many;
+mod placed;
 mod stiff;
 mod translated;
 

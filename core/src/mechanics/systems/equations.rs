@@ -35,17 +35,20 @@ where
         &self.terms[term_at::<M>(at.place)]
     }
 
-    /// Residual and Jacobian at each place.
+    /// Residual and Jacobian at each place, all with the factor of the most [denominators](Effect::denominators).
     #[hot]
     fn systems(
         constants: &TermConstants<E, M>,
         terms: &P::Of<E::StepTerms>,
         half: &Vector<Self>,
     ) -> impl Fn(At) -> (Vector<E>, Square<E>) {
+        let most = Self::denominators(constants);
         #[cfg_attr(not(debug_assertions), inline(always))]
         move |at| {
             let (constants, _) = &constants[term_at::<M>(at.place)];
-            E::newton_system(constants, &terms.as_ref()[at.place], &P::components(half, at))
+            let half = P::components(half, at);
+            let (residual, jacobian) = E::newton_system(constants, &terms.as_ref()[at.place], &half);
+            Vector::<E>::raised(&residual, &jacobian, most - E::denominators(constants), &half)
         }
     }
 }
@@ -167,8 +170,18 @@ where
             #[cfg_attr(not(debug_assertions), inline(always))]
             |at| {
                 let (constants, spatial) = &constants[term_at::<M>(at.place)];
-                E::step_terms(constants, &P::components(a, at), &P::seen(w, spatial, at))
+                // The momenta of two bodies are balanced by the kinetic parts of each.
+                let a = if P::AT_ONE_BODY { P::components(a, at) } else { Vector::<E>::zero() };
+                E::step_terms(constants, &a, &P::seen(w, spatial, at))
             },
+        )
+    }
+
+    fn remainder(constants: &Self::Constants, a: &Vector<Self>) -> Vector<Self> {
+        P::replaced(
+            a,
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            |at| E::remainder(&constants[term_at::<M>(at.place)].0, &P::components(a, at)),
         )
     }
 
@@ -202,11 +215,15 @@ where
         terms: &Self::StepTerms,
         half: &Vector<Self>,
     ) -> Residual<Vector<Self>> {
+        let most = Self::denominators(constants);
         let momentum_defect = P::sum(
             #[cfg_attr(not(debug_assertions), inline(always))]
             |at| {
                 let (constants, _) = &constants[term_at::<M>(at.place)];
-                E::newton_residual(constants, &terms.as_ref()[at.place], &P::components(half, at)).momentum_defect
+                let half = P::components(half, at);
+                let residual = E::newton_residual(constants, &terms.as_ref()[at.place], &half).momentum_defect;
+                let zero = Vector::<E>::zero();
+                Vector::<E>::raised(&residual, &zero.outer(&zero), most - E::denominators(constants), &half).0
             },
         );
         Residual { momentum_defect, moving_kick: None }
