@@ -9,6 +9,7 @@ pub mod any_scalar;
 pub mod drift;
 pub mod examples;
 pub mod order;
+pub mod orders;
 pub mod random;
 pub mod solvers;
 pub mod structure;

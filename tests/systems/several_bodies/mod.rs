@@ -10,7 +10,6 @@ mod joints;
 mod lanes;
 mod links;
 mod many;
-mod placed;
 mod stiff;
 mod translated;
 
