@@ -269,7 +269,8 @@ pub enum StepError {
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         what: Text,
     },
-    /// The momentum equation (2.7) has no solution that continues the identity at this step, but has one at a smaller.
+    /// The momentum equation (2.7) has no solution that continues the identity at this step, but has one at a smaller. Near the
+    /// largest step the phase of (3.13) is off by half a turn in each; [`effects`](crate::effects) has kinetic parts that bear more.
     #[error("no solution at the step {step:e} s{}", beyond_solvable([*.step, *.largest, *.turn], *.body))]
     BeyondSolvable {
         /// The step that was asked for, s.
@@ -380,7 +381,11 @@ fn beyond_solvable([step, largest, turn]: [f64; 3], body: Option<usize>) -> Stri
         } else {
             "which is too far".to_owned()
         };
-        let without = if is_known { ". On SO(3) the kinetic part of `CayleyBody` has no such limit" } else { "" };
+        let without = if is_known {
+            ". On SO(3) the kinetic part of `GeodesicBody` turns a spin exactly, up to 2.5 rad, and that of `CayleyBody` has no such limit"
+        } else {
+            ""
+        };
         format!(": the body{body} would turn by about {turn:.2e} rad, {most}{advice}{without}")
     } else {
         advice

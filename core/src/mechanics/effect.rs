@@ -318,12 +318,12 @@ pub trait Effect: Term {
     fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> Vector<Self>;
 
     /// The derivative of [`kick_before`](Self::kick_before) as the body turns with this velocity: `d/dt` of it at
-    /// `exp(−t v̂)·w`. `None` where it isn't known.
+    /// `exp(−t v̂)·w`. `None` where it isn't known; without a kick it is zero.
     ///
     /// The kicks of a [`SplittingScheme`](crate::methods::SplittingScheme) with force gradients are made with it.
     #[must_use]
-    fn kick_derivative(_: &Self::Constants, _: &Self::Advected, _: &Vector<Self>) -> Option<Vector<Self>> {
-        None
+    fn kick_derivative(constants: &Self::Constants, _: &Self::Advected, _: &Vector<Self>) -> Option<Vector<Self>> {
+        (!Self::parts(constants).kick_before).then(Vector::<Self>::zero)
     }
 
     /// What one solve needs of `a = μ + kick_before(w)` and `w`.
