@@ -1,7 +1,7 @@
 //! Sums of three terms, in all orders and bracketings.
 
-/// What a generic function makes of each sum of three terms, with these arguments behind it: in all six orders, first
-/// with the first two of the terms in brackets and then with the last two.
+/// The results of a generic function of each sum of three terms, and of these arguments behind it: the terms are in all six
+/// orders, first with the first two of them in brackets and then with the last two.
 #[macro_export]
 macro_rules! in_all_orders {
     ($of:ident($a:expr, $b:expr, $c:expr $(; $argument:expr)*)) => {{

@@ -171,7 +171,7 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
     (&a - &b).amax() / (1.0 + a.amax().max(b.amax()))
 }
 
-/// All of them are the first.
+/// All lists are alike to rounding.
 fn assert_alike(seed: u64, all: &[Vec<f64>]) {
     for (place, other) in all.iter().enumerate() {
         let distance = apart(&all[0], other);

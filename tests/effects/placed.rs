@@ -23,7 +23,7 @@ fn inertia(moments: [f64; 3]) -> Inertia {
     Inertia::from_principal_moments(moments.into()).unwrap()
 }
 
-/// By how much each of two bodies turns in a second of a thousand steps about its third axis, rad.
+/// The angles, rad, by which two bodies turn about their third axes in a second of a thousand steps.
 fn turned<L: Regular<Scalar = f64, Group = [SO3; 2]>>(scene: L, rate: f64) -> [f64; 2] {
     let stepper = Stepper::new(scene, 1e-3).unwrap();
     let mut state = stepper.start([SO3::identity(); 2], Bodies([Vector3::z() * rate; 2])).unwrap();
@@ -202,7 +202,7 @@ struct Cayley {
 type Body = (SO3, R3);
 
 /// Energy, J, linear momentum and angular momentum about the origin of two bodies.
-fn kept<S: Effect<Scalar = f64, Group = [Body; 2]>, P: Plan<S>>(
+fn conserved<S: Effect<Scalar = f64, Group = [Body; 2]>, P: Plan<S>>(
     stepper: &Stepper<S, P>,
     motion: &Motion<[Body; 2], S::Advected>,
 ) -> Vec<f64> {
@@ -228,10 +228,10 @@ where
     let start = [Vector3::zeros(), Vector3::new(0.8, 0.0, 0.0)].map(|place| (SO3::identity(), R3::from(place)));
     let velocity = [Vector6::new(0.3, 0.2, 1.0, 0.0, 0.0, 0.0), Vector6::new(0.4, -0.6, 0.5, 0.0, 0.55, 0.0)];
     let mut state = stepper.start_nearest(start, Bodies(velocity)).unwrap();
-    let before = kept(&stepper, &state);
+    let before = conserved(&stepper, &state);
     stepper.run(&mut state, 2000).unwrap();
     let off: Vec<f64> =
-        kept(&stepper, &state).iter().zip(&before).map(|(after, before)| (after - before).abs()).collect();
+        conserved(&stepper, &state).iter().zip(&before).map(|(after, before)| (after - before).abs()).collect();
     (state.attitude(), [off[0], off[1..].iter().copied().fold(0.0, f64::max)])
 }
 

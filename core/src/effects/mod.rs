@@ -25,16 +25,16 @@
 //! | [`SixthOrderBody`] | 6 | oscillates | 2 rad, 115° | exact |
 //!
 //! The last three angles were measured on the bodies that bear the least, rods that spin end over end. A spin is one about a
-//! principal axis. By (3.13) it turns by `asin hΩ` a step, so that its phase is ahead by the part `(hΩ)²/6 + 3(hΩ)⁴/40 + …`: by
-//! 0.6° in each turn at `hΩ` = 0.1, and by 205° at the limit of solvability, `hΩ` = 1. In Cayley coordinates it lags behind by
-//! the part `(hΩ)²/3 − …`. What spins fast takes a geodesic term, or a shorter step:
+//! principal axis. A step of (3.13) turns it by `asin hΩ`, so that the phase is ahead by the part `(hΩ)²/6 + 3(hΩ)⁴/40 + …`: by
+//! 0.6° in each turn at `hΩ` = 0.1, and by 205° at the limit of solvability, `hΩ` = 1. In Cayley coordinates the phase lags
+//! behind by the part `(hΩ)²/3 − …`. A fast spin takes a geodesic term, or a shorter step:
 //!
 //! ```
 //! use liestep::effects::{CayleyBody, GeodesicBody};
 //! use liestep::mechanics::Regular;
 //! use liestep::prelude::*;
 //!
-//! /// By how much a body with this `hΩ` turns too far, for each radian.
+//! /// The excess of the turn of a body with this `hΩ`, relative to it.
 //! fn excess<B: Regular<Scalar = f64, Group = SO3>>(body: B, turn: f64) -> Result<f64, Box<dyn std::error::Error>> {
 //!     let stepper = Stepper::new(body, 1.0)?;
 //!     let mut state = stepper.start(SO3::identity(), Vector3::z() * turn)?;

@@ -129,7 +129,7 @@ pub trait Coordinates<T: Real>:
     /// Nothing that joins neighbours.
     fn no_links() -> Self::Links;
 
-    /// Adds other blocks beside the diagonal, each of a row of a residual that is [`raised`](Self::raised) to this power.
+    /// Adds blocks beside the diagonal, each multiplied as the residual of its row is where that is [`raised`](Self::raised).
     fn add_links(links: &mut Self::Links, others: &Self::Links, power: u32, half: &Self);
 
     /// Solves `A z = b` in place, for a matrix with the blocks `links` beside its diagonal: `right_side` becomes `z`, and

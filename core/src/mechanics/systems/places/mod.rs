@@ -64,7 +64,7 @@ pub trait Places<E: Effect> {
     /// The sum of what is at the places, each with components of its bodies.
     fn sum(of: impl FnMut(At) -> Vector<E>) -> <Self::Group as LieGroup>::Vector;
 
-    /// These components, with others in the places of those of the bodies at a place; between two bodies they stay.
+    /// The components of all bodies, with those of each body at these places replaced. Places between two bodies replace none.
     fn replaced(
         all: &<Self::Group as LieGroup>::Vector,
         _: impl FnMut(At) -> Vector<E>,
