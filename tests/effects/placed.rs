@@ -9,7 +9,7 @@ use liestep::mechanics::{Between, Coupling, Each, Effect, Inertia, On, Regular, 
 use liestep::methods::{BallJoint, Joints, PinJoint, PlacedJoint};
 use liestep::motion::{Motion, Plan};
 use liestep::numbers::Bodies;
-use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
 use liestep_late::Late;
 use nalgebra::{Vector3, Vector6};
 
@@ -61,8 +61,9 @@ fn a_fast_wheel_turns_as_its_kinetic_term_says() {
         turned(On::<0, 2>::of([wheel]) + On::<1, 2>::of([GeodesicBody { J }]), 500.0),
         turned(On::<1, 2>::of([SixthOrderBody { J }]) + On::<0, 2>::of([CayleyBody { J }]), 500.0),
         turned(Each::<2>::of([FourthOrderBody { J }]), 500.0),
+        turned(Each::<2>::of([FourthOrderBody { J }]), 2000.0), // by more than a right angle a step
     ];
-    let expected = [[by_sine, 500.0], [by_tangent, 500.0], [500.0, 500.0]];
+    let expected = [[by_sine, 500.0], [by_tangent, 500.0], [500.0; 2], [2000.0; 2]];
     for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
         assert!((found - expected).abs() < 1e-9, "{found} {expected}");
     }
@@ -283,4 +284,7 @@ fn a_fast_wheel_on_a_pin_turns_by_geodesics() {
     }
     assert!((turned - 500.0).abs() < 1e-9, "{turned}");
     assert!((state.attitude()[0].0.as_matrix() - nalgebra::Matrix3::identity()).norm() < 1e-12);
+    // In joints no body turns by a right angle a step.
+    let mut faster = stepper.start(start, Bodies([still, Vector6::z() * 1600.0])).unwrap();
+    assert!(matches!(stepper.step(&mut faster), Err(StepError::UnsolvedBody { body: 1, .. })));
 }
