@@ -232,7 +232,7 @@ pub enum SetupError {
     },
 }
 
-/// Whose a kinetic part is, if there are several.
+/// The body that the kinetic part belongs to, if there are several.
 fn of_body(body: Option<usize>) -> String {
     body.map_or_else(String::new, |body| format!(" of the body or factor {body} (from zero)"))
 }

@@ -117,7 +117,7 @@ macro_rules! of_those_with {
             (false, _) => $second,
         }
     };
-    // Of what the types have, the values may lack some. Without it in both types, that code isn't there.
+    // The value of a term may lack a part that its type allows. If neither type has it, no code is generated.
     ($constants:ident, $part:ident: $both:expr, $first:expr, $second:expr $(,)?) => {
         if const { A::PARTS.$part && B::PARTS.$part } {
             match (A::parts(&$constants.0).$part, B::parts(&$constants.1).$part) {

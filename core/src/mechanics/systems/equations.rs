@@ -69,7 +69,7 @@ where
     const DENOMINATORS: u32 = E::DENOMINATORS;
     const INERTIA_IS_CONSTANT: bool = E::INERTIA_IS_CONSTANT;
     const IS_QUADRATIC: bool = E::IS_QUADRATIC;
-    // What lies between neighbours isn't in the blocks of bodies, which elimination fills.
+    // Elimination fills the blocks of bodies by those between neighbours.
     const APART: Blocks = if P::LINKS_NEIGHBOURS { Blocks::WHOLE } else { E::APART };
     const LINKS_NEIGHBOURS: bool = P::LINKS_NEIGHBOURS;
     const OPERATIONS: Operations = Operations {
@@ -94,7 +94,7 @@ where
         constants.iter().map(|(constants, _)| E::denominators(constants)).max().unwrap_or(0)
     }
 
-    // Of several values it is what the type says.
+    // Several values have the parts of their type.
     fn parts(constants: &Self::Constants) -> Parts {
         if M == 1 { E::parts(&constants[0].0) } else { Self::PARTS }
     }
