@@ -232,7 +232,7 @@ pub enum SetupError {
     },
 }
 
-/// The words for the faulty body or factor, if there are several.
+/// The body that the kinetic part belongs to, if there are several.
 fn of_body(body: Option<usize>) -> String {
     body.map_or_else(String::new, |body| format!(" of the body or factor {body} (from zero)"))
 }
@@ -270,7 +270,7 @@ pub enum StepError {
         what: Text,
     },
     /// The momentum equation (2.7) has no solution on the branch of the identity at this step, but has one at a smaller
-    /// step.
+    /// step. Near the largest step the phase of (3.13) is off by half a turn in each; [`effects`](crate::effects) has kinetic parts that bear more.
     #[error("no solution at the step {step:e} s{}", beyond_solvable([*.step, *.largest, *.turn], *.body))]
     BeyondSolvable {
         /// The attempted step, s.
@@ -381,7 +381,11 @@ fn beyond_solvable([step, largest, turn]: [f64; 3], body: Option<usize>) -> Stri
         } else {
             "which is too far".to_owned()
         };
-        let without = if is_known { ". On SO(3) the kinetic part of `CayleyBody` has no such limit" } else { "" };
+        let without = if is_known {
+            ". On SO(3) the kinetic part of `GeodesicBody` turns a spin exactly, up to 2.5 rad, and that of `CayleyBody` has no such limit"
+        } else {
+            ""
+        };
         format!(": the body{body} would turn by about {turn:.2e} rad, {most}{advice}{without}")
     } else {
         advice

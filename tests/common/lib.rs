@@ -12,6 +12,7 @@ pub mod examples;
 pub mod free_body;
 pub mod limit;
 pub mod order;
+pub mod orders;
 pub mod random;
 pub mod samples;
 pub mod solvers;

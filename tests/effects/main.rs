@@ -1,11 +1,13 @@
 //! Scenes: sums of Lagrangians and forces, the effects of the library, what changes during a run.
 
+mod all_orders;
 mod changing_scenes;
 mod control;
 mod driven;
 mod forces;
 mod kinetic_terms;
 mod library;
+mod placed;
 mod sums;
 
 use liestep::effects::{Gravity, RigidBody};

@@ -2,13 +2,19 @@
 
 use checks::random::Random;
 use checks::structure::poisson::{self, tensor};
-use checks::structure::{System, momenta, reversal, stages, two_flows};
+use checks::structure::{System, momenta, placed, reversal, stages, two_flows};
 use liestep::SO3;
+use liestep::groups::Retraction;
+use liestep::mechanics::Group;
 use nalgebra::DMatrix;
 
 use checks::samples::every_system;
 
-fn assert_structure<L: System + Clone>(system: &L, name: &str) {
+fn assert_structure<L: System + Clone>(system: &L, name: &str)
+where
+    L::Retraction: Retraction<[Group<L>; 2]>,
+{
+    placed::assert_placed(system, 49);
     p1(system, name);
     p2(system);
     p5(system, name);

@@ -7,8 +7,8 @@ use liestep_macros::lagrangian;
 /// A rigid body with the geodesic kinetic term `ξ·Jξ/(2h)`, `F = exp(ξ̂)`: of second order, and exact for a sphere and
 /// for a spin about a principal axis.
 ///
-/// The error is several times below that of [`RigidBody`](super::RigidBody), and a spin may turn by more than a
-/// quarter a step; the energy of a free body oscillates.
+/// The error is several times below that of [`RigidBody`](super::RigidBody), whose phase is off by the part `(hΩ)²/6`, and a
+/// step may turn by more than a right angle; the energy of a free body oscillates.
 #[lagrangian(
     group = SO3,
     gradients,

@@ -79,7 +79,7 @@ errors_say!(step_errors: StepError {
     NonFinite { what: "momentum" } => ["momentum", "not finite", "choose units"];
     NonFinite { what: "momentum equation" } => ["a force or a potential has no value here"];
     BeyondSolvable { step: 0.125, largest: 0.0815, turn: 2.5, body: None }
-        => ["no solution", "1.25e-1 s", "2.50e0 rad", "1.63e0 rad", "at most 8.15e-2 s", "or_substeps", "CayleyBody"];
+        => ["no solution", "1.25e-1 s", "2.50e0 rad", "1.63e0 rad", "at most 8.15e-2 s", "or_substeps", "GeodesicBody", "CayleyBody"];
     BeyondSolvable { step: 0.125, largest: 0.0815, turn: 2.5, body: Some(7) }
         => ["the body 7 (from zero) would", "2.50e0 rad"];
     BeyondSolvable { step: 0.125, largest: f64::NAN, turn: 2.5, body: Some(7) }

@@ -320,16 +320,25 @@ pub trait Effect: Term {
     fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> Vector<Self>;
 
     /// The derivative of [`kick_before`](Self::kick_before) as the body turns with this velocity: `d/dt` of it at
-    /// `exp(−t v̂)·w`. `None` where it isn't known.
+    /// `exp(−t v̂)·w`. `None` where it isn't known; without a kick it is zero.
     ///
     /// The kicks of a [`SplittingScheme`](crate::methods::SplittingScheme) with force gradients are made with it.
     #[must_use]
-    fn kick_derivative(_: &Self::Constants, _: &Self::Advected, _: &Vector<Self>) -> Option<Vector<Self>> {
-        None
+    fn kick_derivative(constants: &Self::Constants, _: &Self::Advected, _: &Vector<Self>) -> Option<Vector<Self>> {
+        (!Self::parts(constants).kick_before).then(Vector::<Self>::zero)
     }
 
     /// What one solve needs of `a = μ + kick_before(w)` and `w`.
     fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &Self::Advected) -> Self::StepTerms;
+
+    /// The remainder of the right side `a` that the [step terms](Self::step_terms) of this effect leave to the other terms of
+    /// a sum. Each component of the momentum equation (2.7) has `a` once: an effect with an
+    /// [unknown part](Parts::unknown) takes all of it, one at [places](crate::mechanics::Each) of a system that of the bodies
+    /// there, and one without leaves it.
+    #[must_use]
+    fn remainder(constants: &Self::Constants, a: &Vector<Self>) -> Vector<Self> {
+        if Self::parts(constants).unknown { Vector::<Self>::zero() } else { *a }
+    }
 
     /// `(h/2) (1 + |y|²)ⁿ (U(τ(2y), w) − a)` with `n` = [`DENOMINATORS`](Self::DENOMINATORS), and its derivative with
     /// respect to `y`, half the coordinates of `F`.

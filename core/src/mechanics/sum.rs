@@ -117,7 +117,7 @@ macro_rules! of_those_with {
             (false, _) => $second,
         }
     };
-    // Of what the types have, the values may lack some. Without it in both types, that code isn't there.
+    // The value of a term may lack a part that its type allows. If neither type has it, no code is generated.
     ($constants:ident, $part:ident: $both:expr, $first:expr, $second:expr $(,)?) => {
         if const { A::PARTS.$part && B::PARTS.$part } {
             match (A::parts(&$constants.0).$part, B::parts(&$constants.1).$part) {
@@ -151,14 +151,7 @@ where
         B::DENOMINATORS,
     );
     const APART: Blocks = of_those_with!(unknown: A::APART.or(B::APART), A::APART, B::APART);
-    const LINKS_NEIGHBOURS: bool = {
-        let links = A::LINKS_NEIGHBOURS || B::LINKS_NEIGHBOURS;
-        assert!(
-            !links || Self::DENOMINATORS == 0,
-            "a term with cleared denominators has another residual than what joins neighbours is added to"
-        );
-        links
-    };
+    const LINKS_NEIGHBOURS: bool = A::LINKS_NEIGHBOURS || B::LINKS_NEIGHBOURS;
     // The one unknown part's own kernel is run; two are added with their Jacobians, which the value says.
     const JACOBIAN_IS_EXPENSIVE: bool = of_those_with!(
         unknown: A::JACOBIAN_IS_EXPENSIVE || B::JACOBIAN_IS_EXPENSIVE,
@@ -254,14 +247,14 @@ where
         of_those_with!(constants, kick_before: Some(first()? + second()?), first(), second())
     }
 
-    /// The right side `a` belongs to one unknown part, zero to the other.
+    /// The first term takes its part of the right side `a`, the second the remainder.
     fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &Self::Advected) -> Self::StepTerms {
-        let zero = Vector::<Self>::zero();
-        // What only joins bodies would take it twice.
-        let unknown = (A::parts(&constants.0).unknown, B::parts(&constants.1).unknown);
-        let only_joins = A::LINKS_NEIGHBOURS && !A::Kinetic::IS_THERE && unknown.1;
-        let (first, second) = if unknown.0 && !only_joins { (a, &zero) } else { (&zero, a) };
-        (A::step_terms(&constants.0, first, &w.0), B::step_terms(&constants.1, second, &w.1))
+        let remainder = A::remainder(&constants.0, a);
+        (A::step_terms(&constants.0, a, &w.0), B::step_terms(&constants.1, &remainder, &w.1))
+    }
+
+    fn remainder(constants: &Self::Constants, a: &Vector<Self>) -> Vector<Self> {
+        B::remainder(&constants.1, &A::remainder(&constants.0, a))
     }
 
     fn newton_system(
@@ -304,8 +297,9 @@ where
     ) -> (Vector<Self>, Square<Self>) {
         of_those_with!(
             constants, unknown: {
-                let first = A::newton_linked(&constants.0, &terms.0, half, links);
-                let second = B::newton_linked(&constants.1, &terms.1, half, links);
+                let both = Self::denominators(constants);
+                let first = linked::<A>(&constants.0, &terms.0, (half, both), links);
+                let second = linked::<B>(&constants.1, &terms.1, (half, both), links);
                 (first.0 + second.0, first.1 + second.1)
             },
             A::newton_linked(&constants.0, &terms.0, half, links),
@@ -350,6 +344,24 @@ where
             B::kick_after(&constants.1, increment, &next.1),
         )
     }
+}
+
+/// [`Effect::newton_linked`] of a term of a sum with this power of the Cayley denominator in its factor.
+#[hot]
+fn linked<E: Effect>(
+    constants: &E::Constants,
+    terms: &E::StepTerms,
+    (half, denominators): (&Vector<E>, u32),
+    links: &mut Links<E>,
+) -> (Vector<E>, Square<E>) {
+    let power = denominators - E::denominators(constants);
+    if power == 0 {
+        return E::newton_linked(constants, terms, half, links);
+    }
+    let mut own = Vector::<E>::no_links();
+    let (residual, jacobian) = E::newton_linked(constants, terms, half, &mut own);
+    Vector::<E>::add_links(links, &own, power, half);
+    Vector::<E>::raised(&residual, &jacobian, power, half)
 }
 
 impl<A, B> DiscreteLagrangian for Sum<A, B>

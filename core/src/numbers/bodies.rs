@@ -214,6 +214,15 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         [[zero.outer(&zero); 2]; N]
     }
 
+    fn add_links(links: &mut Self::Links, others: &Self::Links, power: u32, half: &Self) {
+        let zero = V::zero();
+        // The first of two is of the row of this body, the second of that of the next.
+        let raised = |block: &V::Square, body: usize| V::raised(&zero, block, power, &half.0[body]).1;
+        for (k, (links, [upper, lower])) in links.iter_mut().zip(others).enumerate().take(N.saturating_sub(1)) {
+            *links = [links[0] + raised(upper, k), links[1] + raised(lower, k + 1)];
+        }
+    }
+
     /// Solves by elimination from the first body to the last, `A_{k+1} ← A_{k+1} − L_k A_k⁻¹ U_k`.
     fn solve_linked(matrix: &mut Self::Square, links: &Self::Links, pattern: Pattern, right_side: &mut Self) -> T {
         let pattern = Pattern { apart: Blocks::WHOLE, ..pattern };

@@ -130,9 +130,12 @@ pub trait Coordinates<T: Real>:
     /// Zero blocks between neighbours.
     fn no_links() -> Self::Links;
 
-    /// Solves `A z = b` in place, for a matrix with the blocks `links` beside its diagonal: `right_side` becomes `z`,
-    /// and the matrix is overwritten. Returns the determinant, as [`factorise_with`](Self::factorise_with) does. Only
-    /// the factors of the pattern are used: the links couple unknowns that are independent without them.
+    /// Adds blocks beside the diagonal, each multiplied as the residual of its row is where that is [`raised`](Self::raised).
+    fn add_links(links: &mut Self::Links, others: &Self::Links, power: u32, half: &Self);
+
+    /// Solves `A z = b` in place, for a matrix with the blocks `links` beside its diagonal: `right_side` becomes `z`, and
+    /// the matrix is overwritten. Returns the determinant, as [`factorise_with`](Self::factorise_with) does. Only the factors
+    /// of the pattern are used: the links couple unknowns that are independent without them.
     fn solve_linked(matrix: &mut Self::Square, links: &Self::Links, pattern: Pattern, right_side: &mut Self) -> T;
 
     /// The least of the traces of the diagonal blocks.
@@ -271,6 +274,8 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     }
 
     fn no_links() {}
+
+    fn add_links((): &mut (), (): &(), _: u32, _: &Self) {}
 
     fn solve_linked(matrix: &mut SMatrix<T, D, D>, (): &(), pattern: Pattern, right_side: &mut Self) -> T {
         let (factors, det) = Self::factorise_with(matrix, pattern);

@@ -4,6 +4,7 @@ pub mod equations;
 pub mod forces;
 pub mod momenta;
 pub mod numbers;
+pub mod placed;
 pub mod poisson;
 pub mod reversal;
 pub mod stages;

@@ -7,7 +7,7 @@ use liestep::mechanics::DiscreteLagrangian;
 use liestep::motion::DiscreteLiePoisson;
 use liestep::numbers::Coordinates as _;
 
-use super::numbers::numbers;
+use super::numbers::{from_numbers, numbers};
 use super::{Group, System, Vector, axis, norm, norm_of_map, random_advected, step};
 
 /// Products of small matrices that cancel in part, relative to the entries of the momenta.
@@ -35,9 +35,9 @@ pub fn assert_stages<L: DiscreteLagrangian<Scalar = f64, Group: Group>>(l: &L, s
         let half = xi * 0.5;
         let (residual, jacobian) = system(half);
         // The system is that multiple of `U(F, w) − a`, and here that is `−offset`, which may be small by chance.
-        let factor = 0.5 * h * (1.0 + half.dot(&half)).powi(L::DENOMINATORS.cast_signed());
-        let missed = norm(&(residual + offset * factor));
-        assert!(missed <= ROUNDING * factor * scale.max(norm(&offset)), "{residual:?} along {offset:?} of {scale:e}");
+        let (target, most) = multiplied::<L>(&offset, &half, h);
+        let missed = norm(&(residual + target));
+        assert!(missed <= ROUNDING * most * scale.max(norm(&offset)), "{residual:?} along {offset:?} of {scale:e}");
         for j in 0..dimension {
             let column = derivative(|s| system(half + axis(j, s)).0);
             let error = norm(&(Vector::<L>::column(&jacobian, j) - column));
@@ -50,6 +50,26 @@ pub fn assert_stages<L: DiscreteLagrangian<Scalar = f64, Group: Group>>(l: &L, s
         let error = norm(&(after - l.legendre_plus(&f, &w, h)));
         assert!(error <= ROUNDING * (scale + norm(&after)), "after: off by {error:e}");
     }
+}
+
+/// `(h/2) (1 + |y|²)ⁿ` times these components, each with the `y` of its own body, and the largest of these factors.
+fn multiplied<L: DiscreteLagrangian<Scalar = f64, Group: Group>>(
+    components: &Vector<L>,
+    half: &Vector<L>,
+    h: f64,
+) -> (Vector<L>, f64) {
+    let of_body = L::Group::DIMENSION / L::Group::BODIES.max(1);
+    let (components, half) = (numbers(components), numbers(half));
+    let factors: Vec<f64> = half
+        .as_slice()
+        .chunks(of_body)
+        .flat_map(|y| {
+            let denominator = 1.0 + y.iter().map(|y| y * y).sum::<f64>();
+            std::iter::repeat_n(0.5 * h * denominator.powi(L::DENOMINATORS.cast_signed()), of_body)
+        })
+        .collect();
+    let most = factors.iter().copied().fold(0.0, f64::max);
+    (from_numbers(components.iter().zip(factors).map(|(component, factor)| component * factor)), most)
 }
 
 /// A step solves `𝔽l_d⁻(F, w) = μ` and ends at `μ⁺ = 𝔽l_d⁺(F, w)`, `w⁺ = F⁻¹ · w`, for an `F` of the group.

@@ -35,17 +35,20 @@ where
         &self.terms[term_at::<M>(at.place)]
     }
 
-    /// Residual and Jacobian at each place.
+    /// Residual and Jacobian at each place, all with the factor of the most [denominators](Effect::denominators).
     #[hot]
     fn systems(
         constants: &TermConstants<E, M>,
         terms: &P::Of<E::StepTerms>,
         half: &Vector<Self>,
     ) -> impl Fn(At) -> (Vector<E>, Square<E>) {
+        let most = Self::denominators(constants);
         #[cfg_attr(not(debug_assertions), inline(always))]
         move |at| {
             let (constants, _) = &constants[term_at::<M>(at.place)];
-            E::newton_system(constants, &terms.as_ref()[at.place], &P::components(half, at))
+            let half = P::components(half, at);
+            let (residual, jacobian) = E::newton_system(constants, &terms.as_ref()[at.place], &half);
+            Vector::<E>::raised(&residual, &jacobian, most - E::denominators(constants), &half)
         }
     }
 }
@@ -66,7 +69,7 @@ where
     const DENOMINATORS: u32 = E::DENOMINATORS;
     const INERTIA_IS_CONSTANT: bool = E::INERTIA_IS_CONSTANT;
     const IS_QUADRATIC: bool = E::IS_QUADRATIC;
-    // What lies between neighbours isn't in the blocks of bodies, which elimination fills.
+    // Elimination fills the blocks of bodies by those between neighbours.
     const APART: Blocks = if P::LINKS_NEIGHBOURS { Blocks::WHOLE } else { E::APART };
     const LINKS_NEIGHBOURS: bool = P::LINKS_NEIGHBOURS;
     const OPERATIONS: Operations = Operations {
@@ -91,7 +94,7 @@ where
         constants.iter().map(|(constants, _)| E::denominators(constants)).max().unwrap_or(0)
     }
 
-    // Of several values it is what the type says.
+    // Several values have the parts of their type.
     fn parts(constants: &Self::Constants) -> Parts {
         if M == 1 { E::parts(&constants[0].0) } else { Self::PARTS }
     }
@@ -167,8 +170,18 @@ where
             #[cfg_attr(not(debug_assertions), inline(always))]
             |at| {
                 let (constants, spatial) = &constants[term_at::<M>(at.place)];
-                E::step_terms(constants, &P::components(a, at), &P::seen(w, spatial, at))
+                // The momenta of two bodies are balanced by the kinetic parts of each.
+                let a = if P::AT_ONE_BODY { P::components(a, at) } else { Vector::<E>::zero() };
+                E::step_terms(constants, &a, &P::seen(w, spatial, at))
             },
+        )
+    }
+
+    fn remainder(constants: &Self::Constants, a: &Vector<Self>) -> Vector<Self> {
+        P::replaced(
+            a,
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            |at| E::remainder(&constants[term_at::<M>(at.place)].0, &P::components(a, at)),
         )
     }
 
@@ -202,11 +215,15 @@ where
         terms: &Self::StepTerms,
         half: &Vector<Self>,
     ) -> Residual<Vector<Self>> {
+        let most = Self::denominators(constants);
         let momentum_defect = P::sum(
             #[cfg_attr(not(debug_assertions), inline(always))]
             |at| {
                 let (constants, _) = &constants[term_at::<M>(at.place)];
-                E::newton_residual(constants, &terms.as_ref()[at.place], &P::components(half, at)).momentum_defect
+                let half = P::components(half, at);
+                let residual = E::newton_residual(constants, &terms.as_ref()[at.place], &half).momentum_defect;
+                let zero = Vector::<E>::zero();
+                Vector::<E>::raised(&residual, &zero.outer(&zero), most - E::denominators(constants), &half).0
             },
         );
         Residual { momentum_defect, moving_kick: None }

@@ -15,7 +15,7 @@
 //! Between bodies potentials of the ends of a step leave the Newton matrix block diagonal, and each body's equation is
 //! solved by its own block. A potential of the middle of a step, as of a stiff rod, is put at [`Coupling`] places, and the
 //! equations of the row are solved together, in time proportional to `N`. A term on two bodies that couples velocities
-//! doesn't compile here; a chain of links on ball joints has a [plan of its own](crate::methods::Linked).
+//! doesn't compile here; a chain of links on ball joints has a [plan of its own](crate::Stepper::linked).
 
 mod equations;
 mod places;

@@ -20,6 +20,8 @@ pub(super) type Body = (SO3, R3);
 /// - Velocities satisfy the constraints as well: energies and momenta of a state are those of the jointed system.
 /// - A step satisfies its equations to rounding, or is an error, mostly of a body or a joint, and leaves the state as it
 ///   was.
+/// - A step turns each body by less than a right angle, whatever its kinetic term; one that would turn a body farther is
+///   [`StepError::UnsolvedBody`](crate::StepError::UnsolvedBody).
 /// - Nothing is allocated.
 ///
 /// # Source

@@ -35,6 +35,8 @@ pub type StateOf<S, P = OwnStep<S>> = State<Group<S>, <S as Term>::Advected, <P 
 ///
 /// - A step satisfies its momentum equation to rounding on the branch of the identity, or returns an error and leaves
 ///   the state as it was.
+///   The step of (3.13) exists up to `hΩ` = 1 rad about a principal axis, and the phase of a spin is off by the part `(hΩ)²/6`: a
+///   fast spin takes a shorter step or [another kinetic term](crate::effects), `GeodesicBody` or `CayleyBody`.
 /// - With a scalar of several [lanes](crate::numbers::Real#lanes) all of them move or none does, each as it would alone.
 /// - The same state gives the same next state, bit for bit. In Cayley coordinates no library function is called, so
 ///   that holds from machine to machine.

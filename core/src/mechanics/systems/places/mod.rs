@@ -64,6 +64,14 @@ pub trait Places<E: Effect> {
     /// The sum of what is at the places, each with components of its bodies.
     fn sum(of: impl FnMut(At) -> Vector<E>) -> <Self::Group as LieGroup>::Vector;
 
+    /// The components of all bodies, with those of each body at these places replaced. Places between two bodies replace none.
+    fn replaced(
+        all: &<Self::Group as LieGroup>::Vector,
+        _: impl FnMut(At) -> Vector<E>,
+    ) -> <Self::Group as LieGroup>::Vector {
+        *all
+    }
+
     /// A matrix for all, from one for each place at one body; zero where there is no place.
     fn squares(of: impl FnMut(At) -> Square<E>) -> SquareOf<Self::Group>;
 

@@ -31,6 +31,16 @@ macro_rules! at_one_body {
         fn components(all: &Bodies<Vector<E>, N>, at: At) -> Vector<E> {
             all.0[at.bodies[0]]
         }
+
+        #[hot]
+        fn replaced(all: &Bodies<Vector<E>, N>, mut by: impl FnMut(At) -> Vector<E>) -> Bodies<Vector<E>, N> {
+            let mut replaced = *all;
+            <Self as Places<E>>::visit(
+                #[cfg_attr(not(debug_assertions), inline(always))]
+                |at| replaced.0[at.bodies[0]] = by(at),
+            );
+            replaced
+        }
     };
 }
 
