@@ -1,5 +1,7 @@
 //! The rooms of the sources import each other in one direction; and what the guide and README name is there.
 
+#[path = "rooms/circles.rs"]
+mod circles;
 #[path = "rooms/scale.rs"]
 mod scale;
 
@@ -104,6 +106,21 @@ fn root() -> Option<&'static Path> {
     }
     println!("skipped: there is no repository around this package");
     None
+}
+
+/// The files of a folder and of those below it that aren't made, by their paths from the root.
+fn files(root: &Path, folder: &str, extension: &str) -> Vec<String> {
+    let (mut open, mut files) = (vec![root.join(folder)], Vec::new());
+    while let Some(path) = open.pop() {
+        if path.is_dir() {
+            let paths = fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path());
+            open.extend(paths.filter(|path| !path.ends_with("target") && !path.ends_with(".git")));
+        } else if path.extension().is_some_and(|own| own == extension) {
+            files.push(path.strip_prefix(root).unwrap().to_str().unwrap().replace('\\', "/"));
+        }
+    }
+    files.sort();
+    files
 }
 
 /// What stands between backquotes.
