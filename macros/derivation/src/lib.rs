@@ -7,8 +7,8 @@
 //! Tokens are quoted in `emit` alone. Syntax is known in `declared`, where it is read, and in `emit`, where it is
 //! written; `mathematics` and `program` know no span either. A test reads this page and holds all sources to it.
 //!
-//! The macros of `liestep-macros` hand their tokens to [`expand`] and its neighbours; [`staged`] is for what derives a
-//! text while it runs.
+//! The macros of `liestep-macros` hand their tokens to [`expand()`] and its neighbours; [`staged()`] derives a text while a
+//! program runs.
 
 mod declared;
 mod emit;

@@ -8,20 +8,20 @@ use proc_macro2::Span;
 use super::verify::{self, KineticPart, Row, TermMistake, Unconfirmed};
 use crate::declared::check;
 use crate::declared::errors::Errors;
-use crate::declared::{Coordinates, Declaration, Discretisation, Kind, Name, Quadrature, Tree};
+use crate::declared::{Coordinates, Declaration, Discretisation, Kind, Name, Quadrature, Role, Tree};
 use crate::mathematics::derive::{ForceError, LimitError, Refusal};
 
 /// Reports the terms that can't be meant; `None` where there are some.
 pub(crate) fn terms(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<()> {
     let mistakes = verify::term_mistakes(declaration, tree);
     for (place, mistake) in &mistakes {
-        errors.push_between([place.span, place.end], term(*mistake));
+        errors.push_between([place.span, place.end], term(*mistake, declaration));
     }
     mistakes.is_empty().then_some(())
 }
 
 /// What is wrong with a term, and what to write.
-fn term(mistake: TermMistake) -> String {
+fn term(mistake: TermMistake, declaration: &Declaration) -> String {
     let by_a_power = |least: i32| format!("; if it is a correction, write its power as `h.powi({least})` or higher");
     match mistake {
         TermMistake::ZeroDivisor => {
@@ -58,6 +58,7 @@ fn term(mistake: TermMistake) -> String {
         TermMistake::Constant => {
             "this is the same for all `F`, so it does nothing: leave it out, or write `F - I` for `F`".to_owned()
         }
+        TermMistake::Zero | TermMistake::Cancelling | TermMistake::NoMotion => idle(mistake, declaration),
         TermMistake::Work(order @ 2..) => format!(
             "this vanishes like {} as h → 0: virtual work goes like `h`, and `F - I` and `vee(F)` count as `h`{}",
             power_of_step(order),
@@ -67,6 +68,29 @@ fn term(mistake: TermMistake) -> String {
             "this goes like {} as h → 0: virtual work goes like `h`, as in `0.5 * h * …`; `F - I` and `vee(F)` count as \
              `h`",
             power_of_step(order)
+        ),
+    }
+}
+
+/// Of a term that no equation of motion has.
+fn idle(mistake: TermMistake, declaration: &Declaration) -> String {
+    let motion = match declaration.role {
+        Role::Force => "displacement",
+        _ if declaration.continuous.is_some() => "velocity",
+        _ if declaration.group.is_product() => "increment",
+        _ => "`F`",
+    };
+    match mistake {
+        TermMistake::Zero => format!(
+            "this term is zero for every {motion}, whatever the parameters: leave it out, or check its signs and what is \
+             transposed"
+        ),
+        TermMistake::Cancelling => {
+            format!("all terms with {motion} alone add up to a constant, so there is no kinetic part: check their signs")
+        }
+        _ => format!(
+            "this is the same for every {motion} and all that is advected, so nothing follows from it: a kinetic part \
+             is a square of a velocity or of `F - I`, and a potential depends on what is advected"
         ),
     }
 }

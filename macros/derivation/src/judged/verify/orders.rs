@@ -39,6 +39,12 @@ pub(crate) enum TermMistake {
     TooSingular(i32),
     /// It is the same for all `F`.
     Constant,
+    /// It is zero for all `F` and all parameters.
+    Zero,
+    /// The terms with `F` alone are together the same for all `F`.
+    Cancelling,
+    /// The whole Lagrangian is the same for all `F`, velocities and advected parameters.
+    NoMotion,
     /// Virtual work goes like that power of `h`, not like the first.
     Work(i32),
     /// There is no work, whatever the parameters.
@@ -55,20 +61,35 @@ pub(crate) fn term_mistakes(declaration: &Declaration, tree: &Rc<Tree>) -> Vec<(
     if let Some(found) = singular(tree, turned).or_else(|| function_of_step(tree, moving)) {
         return vec![found];
     }
-    // What is made of an `l` goes as it should; a share of it needn't.
-    if declaration.continuous.is_some() {
+    let is_continuous = declaration.continuous.is_some();
+    // An `l_d` that a rule makes of an `l` goes as it should; a share of it needn't.
+    if is_continuous && has(tree, |kind| IS_INCREMENT(kind) || IS_STEP(kind)) {
         return Vec::new();
     }
     let at = points.each_ref().map(Evaluation::new);
     let mut search = Search { role: declaration.role, at, splits: MOST_SPLITS, found: Vec::new() };
     let whole = search.behaviour(tree);
+    let terms = search.terms(tree);
+    search.report_zero(&terms);
+    let is_idle = search.role == Role::Lagrangian && whole.is_idle() && search.found.is_empty();
+    if is_idle && !search.has_written_zero(tree) {
+        let is_one = terms.len() == 1 && has(tree, IS_INCREMENT);
+        return vec![(tree.clone(), if is_one { TermMistake::Constant } else { TermMistake::NoMotion })];
+    }
+    if is_continuous {
+        return search.found;
+    }
+    search.splits = MOST_SPLITS;
     let is_too_large = search.too_large(tree).is_some();
     match search.role {
         Role::Force if whole.along.is_zero() => return vec![(tree.clone(), TermMistake::NoWork)],
         // Virtual work isn't linear in the displacements, as far as twice of them tell.
         Role::Force if !(whole.value - whole.at_rest).is_zero() => {}
         _ if is_too_large => search.report_too_large(tree),
-        _ => search.report_vanishing(tree, &whole),
+        _ => search.report_vanishing(&terms, &whole),
+    }
+    if search.found.is_empty() {
+        search.report_cancelling(&terms);
     }
     search.found
 }
@@ -91,7 +112,7 @@ pub(crate) fn without_value(declaration: &Declaration, tree: &Rc<Tree>) -> Optio
 type Values = super::Values<Series>;
 
 /// Numbers for all names, with `h` as it is: at some `F`, at another, at `F = exp(h ξ̂)`, at `F = I`, and there with other
-/// advected parameters, or of a force with twice the displacements.
+/// velocities and advected parameters, or of a force with twice the displacements.
 fn points(declaration: &Declaration) -> [Values; 5] {
     let (group, mut number) = (&declaration.group, Residue::stream(1));
     let [turned, turned_further] = [(); 2].map(|()| {
@@ -111,6 +132,8 @@ fn points(declaration: &Declaration) -> [Values; 5] {
     let others = parameters(declaration, &mut number).into_iter();
     let is_moved = |name: Name| declaration.role != Role::Force && matches!(name, Name::Advected(_));
     elsewhere.extend(others.filter(|(name, _)| is_moved(*name)));
+    let others: Vec<Series> = group.generators.iter().map(|_| number()).collect();
+    elsewhere.extend(velocities(group, &others));
     for (name, value) in &mut elsewhere {
         if matches!(name, Name::DisplacementBefore(_) | Name::DisplacementAfter(_)) {
             *value = value.plus(value);
@@ -129,13 +152,26 @@ fn points(declaration: &Declaration) -> [Values; 5] {
 struct Behaviour {
     /// With `F = exp(h ξ̂)`; of a Lagrangian, the difference to `F = I`.
     along: Series,
-    /// At `F = I`; of a Lagrangian, the difference to other advected parameters, and of a force that of twice the
-    /// displacements to these.
+    /// At `F = I`; of a Lagrangian, the difference to other velocities and advected parameters, and of a force that of
+    /// twice the displacements to these.
     at_rest: Series,
     /// At `F = I`.
     value: Series,
     /// Between two fixed `F`.
     fixed: Series,
+    /// At a fixed `F`.
+    turned: Series,
+}
+
+impl Behaviour {
+    /// Whether it is the same for all `F`, velocities and advected parameters, or of a force for all displacements.
+    fn is_idle(&self) -> bool {
+        [self.along, self.at_rest, self.fixed].into_iter().all(Series::is_zero)
+    }
+
+    fn is_zero(&self) -> bool {
+        self.is_idle() && self.value.is_zero() && self.turned.is_zero()
+    }
 }
 
 struct Search<'a> {
@@ -157,9 +193,9 @@ impl Search<'_> {
     fn behaviour(&mut self, tree: &Rc<Tree>) -> Behaviour {
         let [turned, further, moving, value, elsewhere] = self.at.each_mut().map(|at| at.of(tree).first());
         if self.role == Role::Force {
-            return Behaviour { along: moving, at_rest: elsewhere - value, value, fixed: value };
+            return Behaviour { along: moving, at_rest: elsewhere - value, value, fixed: value, turned };
         }
-        Behaviour { along: moving - value, at_rest: value - elsewhere, value, fixed: turned - further }
+        Behaviour { along: moving - value, at_rest: value - elsewhere, value, fixed: turned - further, turned }
     }
 
     /// What keeps the limit `h → 0` from existing, if anything does. A first derivative of the kinetic part isn't meant.
@@ -189,24 +225,65 @@ impl Search<'_> {
         }
     }
 
-    /// At the terms that a smaller step makes ever less important, or that never do anything.
-    fn report_vanishing(&mut self, tree: &Rc<Tree>, whole: &Behaviour) {
-        if let Some(parts) = self.split(tree) {
-            for part in &parts {
-                self.report_vanishing(part, whole);
-            }
-            return;
+    /// The terms of a sum.
+    fn terms(&mut self, tree: &Rc<Tree>) -> Vec<Rc<Tree>> {
+        match self.split(tree) {
+            Some(parts) => parts.iter().flat_map(|part| self.terms(part)).collect(),
+            None => vec![tree.clone()],
         }
-        let Behaviour { along, at_rest, value, fixed } = self.behaviour(tree);
+    }
+
+    /// Whether a number in it, or what is computed from numbers alone, is zero: a macro may have written it.
+    fn has_written_zero(&mut self, tree: &Rc<Tree>) -> bool {
+        let [at, ..] = &mut self.at;
+        let is_number =
+            |part: &Rc<Tree>| part.shape == Shape::Scalar && !has(part, |kind| matches!(kind, Kind::Name(_)));
+        parts(tree).into_iter().any(|part| is_number(part) && at.of(part).first().is_zero())
+    }
+
+    /// At the terms that are zero on the whole group.
+    fn report_zero(&mut self, terms: &[Rc<Tree>]) {
+        for term in terms {
+            if self.behaviour(term).is_zero() && !self.has_written_zero(term) {
+                self.found.push((term.clone(), TermMistake::Zero));
+            }
+        }
+    }
+
+    /// At the first of the terms with `F` alone, where their sum is constant.
+    fn report_cancelling(&mut self, terms: &[Rc<Tree>]) {
+        let is_meant = |term: &&Rc<Tree>| has(term, IS_INCREMENT) && !has(term, IS_ADVECTED);
+        let mut with_increment = terms.iter().filter(is_meant).peekable();
+        let Some(first) = with_increment.peek().filter(|_| self.role == Role::Lagrangian).copied() else { return };
+        let mut sum = [Series::ZERO; 2];
+        for term in with_increment {
+            let Behaviour { along, fixed, .. } = self.behaviour(term);
+            sum = [sum[0] + along, sum[1] + fixed];
+        }
+        if sum.into_iter().all(Series::is_zero) && !terms.iter().any(|term| self.has_written_zero(term)) {
+            self.found.push((first.clone(), TermMistake::Cancelling));
+        }
+    }
+
+    /// At the terms that a smaller step makes ever less important, or that never do anything.
+    fn report_vanishing(&mut self, terms: &[Rc<Tree>], whole: &Behaviour) {
+        for term in terms {
+            let mistake = self.vanishing(term, whole);
+            self.found.extend(mistake.map(|mistake| (term.clone(), mistake)));
+        }
+    }
+
+    fn vanishing(&mut self, term: &Rc<Tree>, whole: &Behaviour) -> Option<TermMistake> {
+        let Behaviour { along, at_rest, value, fixed, .. } = self.behaviour(term);
         if ![along, at_rest, value].iter().all(|series| series.is_defined()) {
-            return;
+            return None;
         }
         let second = |series: Series| series.order().filter(|&order| order == 2);
-        let mistake = if has(tree, IS_POWER) {
+        let mistake = if has(term, IS_POWER) {
             None
         } else if self.role == Role::Force {
-            second(if has(tree, IS_ADVECTED) { at_rest } else { along }).map(TermMistake::Work)
-        } else if has(tree, IS_ADVECTED) {
+            second(if has(term, IS_ADVECTED) { at_rest } else { along }).map(TermMistake::Work)
+        } else if has(term, IS_ADVECTED) {
             // What is zero at F = I is a correction, as the difference of a potential at both ends is.
             second(at_rest).map(TermMistake::Potential)
         } else {
@@ -216,10 +293,9 @@ impl Search<'_> {
             along.order().zip(fixed.order()).filter(is_square).map(|(order, _)| TermMistake::Vanishing(order))
         };
         // Unless it is there to be cancelled.
-        let is_idle = || along.is_zero() && at_rest.is_zero() && has(tree, IS_INCREMENT) && !has(tree, IS_POWER);
+        let is_idle = || along.is_zero() && at_rest.is_zero() && has(term, IS_INCREMENT) && !has(term, IS_POWER);
         let is_constant = || self.role != Role::Force && is_idle() && low(value).and(low(whole.value)).is_some();
-        let mistake = mistake.or_else(|| is_constant().then_some(TermMistake::Constant));
-        self.found.extend(mistake.map(|mistake| (tree.clone(), mistake)));
+        mistake.or_else(|| is_constant().then_some(TermMistake::Constant))
     }
 }
 

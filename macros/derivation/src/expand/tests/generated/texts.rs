@@ -172,7 +172,11 @@ fn scalar(random: &mut Random, kind: &Kind, depth: usize) -> String {
         0 => ["k", "m"][random.below(2)].to_owned(),
         1 => format!("{}.dot(&{})", vector(random, kind, depth), vector(random, kind, depth)),
         2 => kind.scalars[random.below(kind.scalars.len())].to_owned(),
-        3 => format!("({} {} {})", deeper(random), ["+", "-", "*"][random.below(3)], deeper(random)),
+        // A difference that isn't zero.
+        3 => match [deeper(random), ["+", "-", "*"][random.below(3)].to_owned(), deeper(random)] {
+            [one, minus, other] if minus == "-" && one == other => format!("({one} + {other})"),
+            [one, operator, other] => format!("({one} {operator} {other})"),
+        },
         4 => format!("({}).{}()", deeper(random), ["sin", "cos"][random.below(2)]),
         5 => format!("(1.0 + {}.norm_squared()).{}()", vector(random, kind, 1), ["sqrt", "ln"][random.below(2)]),
         6 => format!("({}).powi({})", deeper(random), 2 + random.below(2)),
@@ -188,7 +192,7 @@ pub(super) fn right(random: &mut Random, kind: &Kind) -> String {
         let (scalar, one, other) = (scalar(random, kind, 2), vector(random, kind, 1), vector(random, kind, 2));
         terms.push(match kind.role {
             Role::Force => format!(" - h * {scalar} * ({one} + w).dot(&eta)"),
-            _ => format!(" - {weight}({scalar} * {moving}.dot(&a) + {moving}.dot(&{other}).sin())"),
+            _ => format!(" - {weight}({scalar} * {moving}.dot(&a) + {moving}.dot(&({other} + b)).sin())"),
         });
     }
     let sum = terms.concat();
