@@ -98,6 +98,3 @@ pub(crate) fn judged(declaration: &Declaration, errors: &mut Errors) -> Option<J
     };
     Some(Judged::Steps(Box::new(Steps { chosen, equations, findings })))
 }
-
-#[cfg(test)]
-pub(crate) mod tests;

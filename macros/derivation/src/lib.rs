@@ -8,14 +8,21 @@
 //! written; `mathematics` and `program` know no span either. A test reads this page and holds all sources to it.
 //!
 //! The macros of `liestep-macros` hand their tokens to [`expand()`] and its neighbours; [`staged()`] derives a text while a
-//! program runs.
+//! program runs. The rooms that are public and hidden are so for the tests.
 
-mod declared;
+// Marks for callers outside of the crate, which the functions of these rooms don't have.
+#![allow(clippy::len_without_is_empty, clippy::must_use_candidate, clippy::return_self_not_must_use)]
+
+#[doc(hidden)]
+pub mod declared;
 mod emit;
 mod expand;
-mod judged;
-mod mathematics;
-mod program;
+#[doc(hidden)]
+pub mod judged;
+#[doc(hidden)]
+pub mod mathematics;
+#[doc(hidden)]
+pub mod program;
 mod staged;
 
 pub use declared::Role;

@@ -22,7 +22,7 @@ pub enum Role {
 
 impl Role {
     /// The argument that holds the expression.
-    pub(crate) fn key(self) -> &'static str {
+    pub fn key(self) -> &'static str {
         match self {
             Self::Lagrangian => "l_d",
             Self::Force => "work",
@@ -31,7 +31,7 @@ impl Role {
     }
 
     /// What the expression is, in a sentence.
-    pub(crate) fn noun(self) -> &'static str {
+    pub fn noun(self) -> &'static str {
         match self {
             Self::Lagrangian => "a Lagrangian",
             Self::Force => "virtual work",
@@ -40,7 +40,7 @@ impl Role {
     }
 
     /// The expression of one declaration, in a sentence.
-    pub(crate) fn definite(self) -> &'static str {
+    pub fn definite(self) -> &'static str {
         match self {
             Self::Lagrangian => "the Lagrangian",
             Self::Force => "the virtual work",
@@ -50,7 +50,7 @@ impl Role {
 
     /// The names that mean something in each expression, on one body or on several, and can't be those of parameters, of `let`s
     /// or of what a function is called with: what is compiled finds the one that was declared, whatever else has its name.
-    pub(crate) fn reserved(self, is_product: bool) -> &'static [&'static str] {
+    pub fn reserved(self, is_product: bool) -> &'static [&'static str] {
         match self {
             Self::Force if !is_product => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse", "eta", "eta_next"],
             Self::Lagrangian | Self::Force => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse"],
@@ -60,7 +60,7 @@ impl Role {
     }
 
     /// The name of the attribute.
-    pub(crate) fn attribute(self) -> &'static str {
+    pub fn attribute(self) -> &'static str {
         match self {
             Self::Lagrangian => "lagrangian",
             Self::Force => "force",
@@ -70,44 +70,44 @@ impl Role {
 }
 
 /// `#[lagrangian(group = …, advected(…), l_d = …, crate = …)]` on a struct.
-pub(crate) struct Declaration {
-    pub(crate) role: Role,
-    pub(crate) item: ItemStruct,
+pub struct Declaration {
+    pub role: Role,
+    pub item: ItemStruct,
     /// Where liestep is found, if not at `::liestep`.
-    pub(crate) root: Option<Path>,
-    pub(crate) group: Group,
+    pub root: Option<Path>,
+    pub group: Group,
     /// The increments, one for each factor of the group.
-    pub(crate) factors: Vec<Factor>,
-    pub(crate) advected: Vec<AdvectedParameter>,
+    pub factors: Vec<Factor>,
+    pub advected: Vec<AdvectedParameter>,
     /// The Lagrangian, or the virtual work of a force; `None` where a mistake elsewhere hides what it means.
-    pub(crate) expression: Option<Expr>,
+    pub expression: Option<Expr>,
     /// Of a continuous Lagrangian `l`, what it is written and discretised with.
-    pub(crate) continuous: Option<Continuous>,
+    pub continuous: Option<Continuous>,
     /// Where there is a pace, which the expression has been rewritten by, the place of `E_0` in what is advected or given.
-    pub(crate) energy: Option<usize>,
+    pub energy: Option<usize>,
     /// Of a force on several bodies the names of the displacements, one for each factor of the group.
-    pub(crate) displacements: Vec<Ident>,
+    pub displacements: Vec<Ident>,
     /// Where the derivatives of a step are asked for.
-    pub(crate) gradients: Option<Span>,
-    pub(crate) fields: Vec<Field>,
+    pub gradients: Option<Span>,
+    pub fields: Vec<Field>,
     /// The fields whose type has no meaning.
-    pub(crate) unreadable: Vec<String>,
-    pub(crate) scalar: Scalar,
+    pub unreadable: Vec<String>,
+    pub scalar: Scalar,
     /// Whether it is read while a program runs: no compiler will ask for the `&` of an argument or the point of a number.
-    pub(crate) is_text: bool,
+    pub is_text: bool,
 }
 
 /// An increment: `F`, or one of those that `group(F_1 = SO3, …)` names.
-pub(crate) struct Factor {
+pub struct Factor {
     /// Without `r#`.
-    pub(crate) name: String,
-    pub(crate) place: Span,
+    pub name: String,
+    pub place: Span,
     /// The group's name as written; `None` after a mistake.
-    pub(crate) path: Option<Path>,
+    pub path: Option<Path>,
 }
 
 /// How velocities of these factors may be named: `velocity = Omega`, or `velocity(Omega_1, v)`.
-pub(crate) fn named_velocities(factors: &[Factor]) -> String {
+pub fn named_velocities(factors: &[Factor]) -> String {
     match factors {
         [] | [_] => "velocity = Omega".to_owned(),
         several => format!("velocity({})", named(several, ["Omega", "v"])),
@@ -115,7 +115,7 @@ pub(crate) fn named_velocities(factors: &[Factor]) -> String {
 }
 
 /// How displacements of these factors may be named: `displacement(eta_1, s)`.
-pub(crate) fn named_displacements(factors: &[Factor]) -> String {
+pub fn named_displacements(factors: &[Factor]) -> String {
     format!("displacement({})", named(factors, ["eta", "s"]))
 }
 
@@ -135,32 +135,32 @@ fn named(factors: &[Factor], [turn, shift]: [&'static str; 2]) -> String {
 
 impl Factor {
     /// The group's name without what it is found in.
-    pub(crate) fn group_name(&self) -> String {
+    pub fn group_name(&self) -> String {
         let segment = self.path.as_ref().and_then(|path| path.segments.last());
         segment.map(|segment| segment.ident.to_string()).unwrap_or_default()
     }
 }
 
 /// What belongs to `l = …`.
-pub(crate) struct Continuous {
+pub struct Continuous {
     /// The names of `ξ`, one for each factor of the group; a term without a velocity may leave them out.
-    pub(crate) velocities: Vec<Ident>,
+    pub velocities: Vec<Ident>,
     /// How `l_d` is made of it; left out where only the continuous equations are wanted.
-    pub(crate) discretisation: Option<Discretisation>,
+    pub discretisation: Option<Discretisation>,
 }
 
 /// `discretise = trapezoid(Cayley)`.
 #[derive(Clone, Copy)]
-pub(crate) struct Discretisation {
-    pub(crate) quadrature: Quadrature,
-    pub(crate) coordinates: Coordinates,
+pub struct Discretisation {
+    pub quadrature: Quadrature,
+    pub coordinates: Coordinates,
     /// From the first token to the last.
-    pub(crate) place: [Span; 2],
+    pub place: [Span; 2],
 }
 
 /// Where in a step `l` is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Quadrature {
+pub enum Quadrature {
     /// At both ends, `(h/2) (l(ξ, w) + l(ξ, F⁻¹·w))`.
     Trapezoid,
     /// In the middle of the curve, `h l(ξ, τ(hξ/2)⁻¹·w)`.
@@ -171,7 +171,7 @@ pub(crate) enum Quadrature {
 
 /// What the velocity of a step is, as a function of `F`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Coordinates {
+pub enum Coordinates {
     /// The matrix `ξ̂ = (F − I)/h`, near the algebra and not in it.
     Ambient,
     /// `hξ = cay⁻¹(F)`.
@@ -181,31 +181,31 @@ pub(crate) enum Coordinates {
 }
 
 /// `w = up`: `w` in the expression is the field `up`, carried by the group, or given for each step.
-pub(crate) struct AdvectedParameter {
-    pub(crate) name: Ident,
+pub struct AdvectedParameter {
+    pub name: Ident,
     /// The index of the field; `None` where there is no such field of a known type.
-    pub(crate) field: Option<usize>,
+    pub field: Option<usize>,
     /// Whether it is a value of the step, which the group doesn't move: `given(…)`.
-    pub(crate) is_given: bool,
+    pub is_given: bool,
     /// Which bodies move it.
-    pub(crate) seen: Seen,
+    pub seen: Seen,
 }
 
 impl AdvectedParameter {
     /// The name without `r#`.
-    pub(crate) fn plain_name(&self) -> String {
+    pub fn plain_name(&self) -> String {
         self.name.unraw().to_string()
     }
 }
 
 impl Declaration {
     /// The names of the velocities in `l`.
-    pub(crate) fn velocities(&self) -> &[Ident] {
+    pub fn velocities(&self) -> &[Ident] {
         self.continuous.as_ref().map_or(&[], |continuous| &continuous.velocities)
     }
 
     /// Of a force, what a factor's displacements at both ends of a step are called; `None` where that is left out.
-    pub(crate) fn displacement(&self, factor: usize) -> Option<[String; 2]> {
+    pub fn displacement(&self, factor: usize) -> Option<[String; 2]> {
         let name = match self.displacements.get(factor) {
             Some(name) => name.unraw().to_string(),
             None if self.role == Role::Force && !self.group.is_product() => "eta".to_owned(),
@@ -216,17 +216,17 @@ impl Declaration {
     }
 
     /// The name of the velocity of a factor in `l`.
-    pub(crate) fn velocity(&self, factor: usize) -> Option<&Ident> {
+    pub fn velocity(&self, factor: usize) -> Option<&Ident> {
         self.velocities().get(factor)
     }
 
     /// The same for messages, which show one where none is named.
-    pub(crate) fn velocity_or_omega(&self, factor: usize) -> String {
+    pub fn velocity_or_omega(&self, factor: usize) -> String {
         self.velocity(factor).map_or_else(|| "Omega".to_owned(), ToString::to_string)
     }
 
     /// The name of the velocity of a factor in print.
-    pub(crate) fn name_of_velocity(&self, factor: usize) -> String {
+    pub fn name_of_velocity(&self, factor: usize) -> String {
         match self.velocities().get(factor) {
             Some(name) => name.unraw().to_string(),
             None if self.group.is_product() => format!("ξ_{}", factor + 1),
@@ -235,12 +235,12 @@ impl Declaration {
     }
 
     /// How `l` is discretised.
-    pub(crate) fn discretisation(&self) -> Option<Discretisation> {
+    pub fn discretisation(&self) -> Option<Discretisation> {
         self.continuous.as_ref()?.discretisation
     }
 
     /// What an advected parameter's field promises; a plain vector after a mistake.
-    pub(crate) fn advected_kind(&self, index: usize) -> FieldKind {
+    pub fn advected_kind(&self, index: usize) -> FieldKind {
         let parameter = self.advected.get(index);
         let size = match parameter.map(|w| w.seen) {
             Some(Seen::Relative { of, .. } | Seen::Configuration(of)) => {
@@ -265,23 +265,23 @@ impl Declaration {
 }
 
 /// A field of the struct.
-pub(crate) struct Field {
-    pub(crate) name: Ident,
-    pub(crate) kind: FieldKind,
+pub struct Field {
+    pub name: Ident,
+    pub kind: FieldKind,
     /// The place of its type.
-    pub(crate) at: Span,
+    pub at: Span,
 }
 
 impl Field {
     /// The name without `r#`.
-    pub(crate) fn plain_name(&self) -> String {
+    pub fn plain_name(&self) -> String {
         self.name.unraw().to_string()
     }
 }
 
 /// What a field's type promises.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum FieldKind {
+pub enum FieldKind {
     Scalar,
     /// Rows.
     Vector(usize),
@@ -305,7 +305,7 @@ pub(crate) enum FieldKind {
 
 impl FieldKind {
     /// How the group moves it: a plain vector is a covector.
-    pub(crate) fn variance(self) -> Variance {
+    pub fn variance(self) -> Variance {
         match self {
             Self::Advected(variance, _) => variance,
             Self::Point(_) => Variance::Vector,
@@ -315,21 +315,21 @@ impl FieldKind {
     }
 
     /// Whether a group of matrices of this size can move it.
-    pub(crate) fn is_carried_by(self, size: usize) -> bool {
+    pub fn is_carried_by(self, size: usize) -> bool {
         matches!(self, Self::Vector(rows) | Self::Point(rows) | Self::Advected(_, rows) if rows == size)
     }
 
     /// Whether its value is wrapped in a type that says how the group moves it.
-    pub(crate) fn is_wrapped(self) -> bool {
+    pub fn is_wrapped(self) -> bool {
         matches!(self, Self::Advected(..))
     }
 
     /// Whether a step can be given such a value.
-    pub(crate) fn can_be_given(self) -> bool {
+    pub fn can_be_given(self) -> bool {
         matches!(self, Self::Scalar | Self::Vector(_) | Self::Matrix(_))
     }
 
-    pub(crate) fn shape(self) -> Shape {
+    pub fn shape(self) -> Shape {
         match self {
             Self::Scalar | Self::Place(1) => Shape::Scalar,
             Self::Given(shape) => shape,
@@ -343,7 +343,7 @@ impl FieldKind {
 
 /// The scalar that all fields share.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Scalar {
+pub enum Scalar {
     /// `f64` or `f32`.
     Primitive(Ident),
     /// A type parameter of the struct.

@@ -23,19 +23,19 @@ const MOST_LETS: usize = 150;
 const MANY_DIGITS: u128 = 10_000;
 
 /// The declared Lagrangian in symbols; the names say which symbol stands for what.
-pub(crate) struct Lowered {
-    pub(crate) declared: Declared,
-    pub(crate) names: BTreeMap<Name, SymbolId>,
+pub struct Lowered {
+    pub declared: Declared,
+    pub names: BTreeMap<Name, SymbolId>,
 }
 
 /// The readings of the tree, multiplied out and with its `let`s closed, and of a pace with these closed and matrices
 /// multiplied out; `None` where all are too large, which has been reported.
-pub(crate) fn readings(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Vec<Lowered>> {
+pub fn readings(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Vec<Lowered>> {
     readings_without(declaration, tree, &|_, structure| structure, errors)
 }
 
 /// The same with less known of some symbols.
-pub(crate) fn readings_without(
+pub fn readings_without(
     declaration: &Declaration,
     tree: &Rc<Tree>,
     weaker: &dyn Fn(Name, Structure) -> Structure,
@@ -104,13 +104,13 @@ pub(crate) fn readings_without(
 }
 
 /// A continuous Lagrangian in symbols.
-pub(crate) struct LoweredContinuous {
-    pub(crate) declared: DeclaredContinuous,
-    pub(crate) names: BTreeMap<Name, SymbolId>,
+pub struct LoweredContinuous {
+    pub declared: DeclaredContinuous,
+    pub names: BTreeMap<Name, SymbolId>,
 }
 
 /// The reading of a declared `l`, multiplied out; `None` where it is too large, which has been reported.
-pub(crate) fn continuous(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<LoweredContinuous> {
+pub fn continuous(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<LoweredContinuous> {
     let (mut symbols, mut names) = (Symbols::default(), BTreeMap::new());
     let advected = parameters(declaration, &|_, structure| structure, &mut symbols, &mut names);
     let group = declaration.group.clone();
@@ -136,18 +136,14 @@ pub(crate) fn continuous(declaration: &Declaration, tree: &Rc<Tree>, errors: &mu
 }
 
 /// A constraint in symbols.
-pub(crate) struct LoweredConstraint {
-    pub(crate) declared: DeclaredConstraint,
-    pub(crate) names: BTreeMap<Name, SymbolId>,
+pub struct LoweredConstraint {
+    pub declared: DeclaredConstraint,
+    pub names: BTreeMap<Name, SymbolId>,
 }
 
 /// The reading of a constraint, multiplied out, in the places of both bodies; `None` where it is too large, which has been
 /// reported.
-pub(crate) fn constraint(
-    declaration: &Declaration,
-    functions: &[Rc<Tree>],
-    errors: &mut Errors,
-) -> Option<LoweredConstraint> {
+pub fn constraint(declaration: &Declaration, functions: &[Rc<Tree>], errors: &mut Errors) -> Option<LoweredConstraint> {
     let (mut symbols, mut names) = (Symbols::default(), BTreeMap::new());
     let carried = parameters(declaration, &|_, structure| structure, &mut symbols, &mut names);
     let bodies = ["a", "b"].map(|body| Body::new(body, &mut symbols));

@@ -388,14 +388,3 @@ fn adjoint(findings: &Findings, w: &[String]) -> String {
     let [here, there] = ["", "F⁻¹·"].map(|turned| w.iter().fold(String::new(), |all, w| all + turned + w + ", "));
     format!("l_d(F, {here}h) {sign} −l_d(F⁻¹, {there}−h)    [{how}: {consequence}]")
 }
-
-#[cfg(test)]
-mod tests {
-    use super::with_names;
-
-    #[test]
-    fn names_have_letters_of_each_other() {
-        assert_eq!(with_names("Fᵀ w F", "F_down", "F_w"), "F_downᵀ F_w F_down");
-        assert_eq!(with_names("F⁻¹ w F⁻ᵀ", "F", "up"), "F⁻¹ up F⁻ᵀ");
-    }
-}

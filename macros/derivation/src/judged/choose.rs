@@ -13,10 +13,10 @@ use crate::mathematics::derive::{Declared, Derived, Refusal};
 use crate::program::{self, Kernel};
 
 /// What is emitted.
-pub(crate) struct Chosen {
-    pub(crate) lowered: Lowered,
-    pub(crate) derived: Derived,
-    pub(crate) kernel: Kernel,
+pub struct Chosen {
+    pub lowered: Lowered,
+    pub derived: Derived,
+    pub kernel: Kernel,
 }
 
 /// What derives a reading.
@@ -25,7 +25,7 @@ type Derive = fn(&Declared) -> Result<Derived, Refusal>;
 /// The reading with the least operations a step; the first, which is simpler to read, if it is nearly as cheap.
 ///
 /// `None` where nothing can be derived, which has been explained.
-pub(crate) fn cheapest(
+pub fn cheapest(
     readings: Vec<Lowered>,
     derive: Derive,
     declaration: &Declaration,

@@ -12,7 +12,7 @@ use crate::mathematics::symbolic::Expression;
 use crate::program::{Graph, along_unit_vectors};
 
 /// `None` where something is wrong with it, which has been reported.
-pub(crate) fn held(declaration: &Declaration, functions: Vec<Rc<Tree>>, errors: &mut Errors) -> Option<Held> {
+pub fn held(declaration: &Declaration, functions: Vec<Rc<Tree>>, errors: &mut Errors) -> Option<Held> {
     let lowered = lower::constraint(declaration, &functions, errors)?;
     let first = functions.first()?;
     let slopes = lowered.declared.slopes();

@@ -13,17 +13,17 @@ use crate::mathematics::derive::{self, Continuous, Discretised, Inverse};
 use crate::mathematics::symbolic::{Rational, SymbolId};
 
 /// The continuous equations of a declaration.
-pub(crate) struct Equations {
-    pub(crate) names: BTreeMap<Name, SymbolId>,
-    pub(crate) derived: Continuous,
+pub struct Equations {
+    pub names: BTreeMap<Name, SymbolId>,
+    pub derived: Continuous,
     /// A basis of the directions along which the body momentum is conserved for all values of the parameters.
-    pub(crate) right_symmetries: Vec<Vec<Rational>>,
-    pub(crate) sureness: Sureness,
+    pub right_symmetries: Vec<Vec<Rational>>,
+    pub sureness: Sureness,
 }
 
 impl Equations {
     /// With what was discretised.
-    pub(crate) fn behind(&self, reading: Lowered) -> Lowered {
+    pub fn behind(&self, reading: Lowered) -> Lowered {
         let symbols = self.names.iter().filter_map(|(name, &from)| Some((from, *reading.names.get(name)?))).collect();
         let discretised = Some(Discretised { continuous: self.derived.clone(), symbols });
         Lowered { declared: derive::Declared { discretised, ..reading.declared }, ..reading }
@@ -31,7 +31,7 @@ impl Equations {
 }
 
 /// Those of a declared `l`; `None` where something is wrong with it, which has been reported.
-pub(crate) fn of_declared(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Equations> {
+pub fn of_declared(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Equations> {
     let lowered = lower::continuous(declaration, tree, errors)?;
     let derived = derive::continuous(lowered.declared);
     let derived = derived.map_err(|refusal| explain::refusal(refusal, declaration, tree, errors)).ok()?;
@@ -39,7 +39,7 @@ pub(crate) fn of_declared(declaration: &Declaration, tree: &Rc<Tree>, errors: &m
 }
 
 /// Those of a discrete Lagrangian: of the `l` that it was made of, which its limit has to be, or of the limit.
-pub(crate) fn continuous(
+pub fn continuous(
     declared: Option<Equations>,
     declaration: &Declaration,
     [tree, discrete]: [&Rc<Tree>; 2],

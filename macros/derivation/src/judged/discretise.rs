@@ -24,7 +24,7 @@ use crate::declared::{Declaration, Discretisation, Kind, Name, Quadrature, Tree}
 use crate::mathematics::symbolic::Rational;
 
 /// The discrete Lagrangian that is made of `l`; `None` where it doesn't fit, which has been reported.
-pub(crate) fn discretised(
+pub fn discretised(
     declaration: &Declaration,
     tree: &Rc<Tree>,
     asked: Discretisation,

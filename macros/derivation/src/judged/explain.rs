@@ -12,7 +12,7 @@ use crate::declared::{Coordinates, Declaration, Discretisation, Kind, Name, Quad
 use crate::mathematics::derive::{ForceError, LimitError, Refusal};
 
 /// Reports the terms that can't be meant; `None` where there are some.
-pub(crate) fn terms(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<()> {
+pub fn terms(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<()> {
     let mistakes = verify::term_mistakes(declaration, tree);
     for (place, mistake) in &mistakes {
         errors.push_between([place.span, place.end], term(*mistake, declaration));
@@ -86,7 +86,9 @@ fn idle(mistake: TermMistake, declaration: &Declaration) -> String {
              transposed"
         ),
         TermMistake::Cancelling => {
-            format!("all terms with {motion} alone add up to a constant, so there is no kinetic part: check their signs")
+            format!(
+                "all terms with {motion} alone add up to a constant, so there is no kinetic part: check their signs"
+            )
         }
         _ => format!(
             "this is the same for every {motion} and all that is advected, so nothing follows from it: a kinetic part \

@@ -11,12 +11,7 @@ use crate::mathematics::derive::SelfAdjointness;
 
 /// Checks all that was derived; `None` where something is wrong with the Lagrangian, or with the derivation, which has
 /// been reported.
-pub(crate) fn findings(
-    declaration: &Declaration,
-    tree: &Rc<Tree>,
-    chosen: &Chosen,
-    errors: &mut Errors,
-) -> Option<Findings> {
+pub fn findings(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Chosen, errors: &mut Errors) -> Option<Findings> {
     let Chosen { lowered, derived, kernel } = chosen;
     let of = Subject { declaration, tree, lowered, derived };
     // What has no kinetic part at all is a term of a scene.

@@ -11,13 +11,13 @@ use crate::mathematics::symbolic::Variance;
 
 /// The sum of the spatial momenta of some bodies, or its component along a field.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Conserved {
-    pub(crate) bodies: Vec<usize>,
-    pub(crate) along: Option<usize>,
+pub struct Conserved {
+    pub bodies: Vec<usize>,
+    pub along: Option<usize>,
 }
 
 /// Those of bodies that turn; each group of bodies that see each other has one, or none.
-pub(crate) fn conserved(declaration: &Declaration) -> Vec<Conserved> {
+pub fn conserved(declaration: &Declaration) -> Vec<Conserved> {
     // For each body the first of those that it is joined with.
     let mut first: Vec<usize> = (0..declaration.factors.len()).collect();
     for w in &declaration.advected {

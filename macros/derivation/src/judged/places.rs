@@ -7,7 +7,7 @@ use crate::mathematics::symbolic::SymbolId;
 use crate::program::Place;
 
 /// The names of the parameters and of what is advected, with their kinds.
-pub(crate) fn variables(declaration: &Declaration) -> [Vec<(Name, FieldKind)>; 2] {
+pub fn variables(declaration: &Declaration) -> [Vec<(Name, FieldKind)>; 2] {
     let fields = declaration.fields.iter().enumerate().map(|(index, field)| (Name::Field(index), field.kind));
     let advected =
         (0..declaration.advected.len()).map(|index| (Name::Advected(index), declaration.advected_kind(index)));
@@ -15,7 +15,7 @@ pub(crate) fn variables(declaration: &Declaration) -> [Vec<(Name, FieldKind)>; 2
 }
 
 /// Those of the parameters that can change, and of what is advected; either are numbered one after the other.
-pub(crate) fn places(declaration: &Declaration, names: &BTreeMap<Name, SymbolId>) -> [Vec<Place>; 2] {
+pub(super) fn places(declaration: &Declaration, names: &BTreeMap<Name, SymbolId>) -> [Vec<Place>; 2] {
     variables(declaration).map(|each| {
         let (mut found, mut first) = (Vec::new(), 0);
         for (name, kind) in each {
@@ -27,13 +27,13 @@ pub(crate) fn places(declaration: &Declaration, names: &BTreeMap<Name, SymbolId>
 }
 
 /// How many numbers `describe` shows of a field.
-pub(crate) fn count(kind: FieldKind) -> usize {
+pub fn count(kind: FieldKind) -> usize {
     let (rows, columns) = shape(kind);
     rows * columns
 }
 
 /// The shape of what is shown, row by row.
-pub(crate) fn shape(kind: FieldKind) -> (usize, usize) {
+pub(super) fn shape(kind: FieldKind) -> (usize, usize) {
     match (kind.shape(), kind) {
         (Shape::Scalar, _) => (1, 1),
         // The last homogeneous coordinate is a constant.

@@ -7,13 +7,13 @@ use super::scalarise::{Entries, Scalariser};
 use crate::mathematics::derive::Derived;
 use crate::mathematics::symbolic::{Expression, Factor, SymbolId, Symbols};
 
-pub(crate) type Given = BTreeMap<SymbolId, Entries>;
+pub type Given = BTreeMap<SymbolId, Entries>;
 
 /// What each derived term begins with: the values of all `let`s and multipliers where `F` and `w` are any.
 #[derive(Clone, Debug)]
-pub(crate) struct Beginning {
-    pub(crate) graph: Graph,
-    pub(crate) given: Given,
+pub struct Beginning {
+    pub graph: Graph,
+    pub given: Given,
 }
 
 impl Beginning {
@@ -25,7 +25,7 @@ impl Beginning {
 }
 
 /// With the values of all `let`s where `F` and `w` are as given.
-pub(crate) fn with_values<'a>(
+pub fn with_values<'a>(
     graph: &mut Graph,
     symbols: &Symbols,
     lets: impl Iterator<Item = (SymbolId, &'a Expression)>,
@@ -39,7 +39,7 @@ pub(crate) fn with_values<'a>(
 }
 
 /// With the values of all `let`s and multipliers where `F` and `w` are as given.
-pub(crate) fn with_lets(graph: &mut Graph, derived: &Derived, given: Given) -> Given {
+pub(super) fn with_lets(graph: &mut Graph, derived: &Derived, given: Given) -> Given {
     let lets = derived.closed.iter().map(|closed| (closed.symbol, &closed.value));
     let mut given = with_values(graph, &derived.symbols, lets, given);
     let has_increment = derived.directions.factors.iter().any(|one| given.contains_key(&one.small));
@@ -53,7 +53,7 @@ pub(crate) fn with_lets(graph: &mut Graph, derived: &Derived, given: Given) -> G
 }
 
 /// With their derivatives along the direction that is given.
-pub(crate) fn with_tangents(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
+pub(super) fn with_tangents(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
     let tangents = derived.closed.iter().map(|closed| (closed.tangent.0, &closed.tangent.1));
     given = with_values(graph, &derived.symbols, tangents, given);
     for closed in derived.closed.iter().rev() {

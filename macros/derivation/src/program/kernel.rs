@@ -14,35 +14,35 @@ use crate::mathematics::symbolic::{Expression, Rational, Stage, SymbolId, Symbol
 
 /// A way to write the Newton system, with its operations an iteration.
 #[derive(Clone, Debug)]
-pub(crate) struct Candidate {
-    pub(crate) name: &'static str,
-    pub(crate) operations: Operations,
+pub struct Candidate {
+    pub name: &'static str,
+    pub operations: Operations,
     /// The power of `1 + |y|²` that the system is multiplied by.
     denominators: u32,
 }
 
 /// The outputs of the stages, in one graph.
 #[derive(Clone, Debug)]
-pub(crate) struct Kernel {
+pub struct Kernel {
     /// What the graph below begins with, and those of single terms.
-    pub(crate) beginning: Beginning,
-    pub(crate) graph: Graph,
-    pub(crate) kick_before: Vec<NodeId>,
+    pub beginning: Beginning,
+    pub graph: Graph,
+    pub kick_before: Vec<NodeId>,
     /// The derivative of `kick_before` along a body velocity, where it is derived.
-    pub(crate) kick_derivative: Option<Vec<NodeId>>,
-    pub(crate) residual: Vec<NodeId>,
-    pub(crate) jacobian: Vec<NodeId>,
-    pub(crate) kick_after: Vec<NodeId>,
+    pub kick_derivative: Option<Vec<NodeId>>,
+    pub residual: Vec<NodeId>,
+    pub jacobian: Vec<NodeId>,
+    pub kick_after: Vec<NodeId>,
     /// The part of the diamond with `F`, where the system is that in `F` rebuilt from `y`; `kick_after` is `Ad*_F` of
     /// it.
-    pub(crate) moved: Vec<NodeId>,
+    pub moved: Vec<NodeId>,
     /// Whether the Newton system is written in `D = F − I`, its Jacobian right-trivialised: on SO(3) it is written in
     /// Cayley coordinates.
-    pub(crate) in_increment: bool,
+    pub in_increment: bool,
     /// The power of `1 + |y|²` that the Newton system is multiplied by.
-    pub(crate) denominators: u32,
+    pub denominators: u32,
     /// The first is the one that was taken.
-    pub(crate) candidates: Vec<Candidate>,
+    pub candidates: Vec<Candidate>,
 }
 
 /// What the Jacobian of the free body costs beside a residual, [`Operations::cost`], with the solves for the updates.
@@ -52,7 +52,7 @@ impl Kernel {
     /// Whether the Jacobian costs so much more than the residual that a solve does better with the free body's.
     ///
     /// At common steps it takes two to five residuals then, instead of two or three systems.
-    pub(crate) fn jacobian_is_expensive(&self) -> bool {
+    pub fn jacobian_is_expensive(&self) -> bool {
         let Some(taken) = self.candidates.first() else { return false };
         let residual = count(&self.graph, &self.residual, Some(Stage::Iteration)).cost();
         let jacobian = taken.operations.cost().saturating_sub(residual);
@@ -60,7 +60,7 @@ impl Kernel {
     }
 
     /// The factors of the group before which nothing couples to what comes later: there the Jacobian falls into blocks.
-    pub(crate) fn ends(&self, group: &Group) -> Vec<usize> {
+    pub fn ends(&self, group: &Group) -> Vec<usize> {
         let dimension = group.dimension();
         let is_zero = |row: usize, column: usize| {
             self.jacobian.get(dimension * row + column).is_none_or(|&entry| self.graph.is_zero(entry))
@@ -73,7 +73,7 @@ impl Kernel {
     }
 
     /// Of a step without the solve and of an iteration, as `Effect::OPERATIONS` has them.
-    pub(crate) fn operations(&self) -> [u32; 2] {
+    pub fn operations(&self) -> [u32; 2] {
         let before = [self.kick_before.as_slice(), &self.residual, &self.jacobian].concat();
         let mut step = count(&self.graph, &before, Some(Stage::Step));
         let mut outputs = before;
@@ -89,19 +89,19 @@ impl Kernel {
     }
 
     /// The residual and the moved part of the diamond.
-    pub(crate) fn gradient(&self) -> Vec<NodeId> {
+    pub fn gradient(&self) -> Vec<NodeId> {
         [self.residual.as_slice(), &self.moved].concat()
     }
 
     /// What a step of two Newton iterations costs.
-    pub(crate) fn cost(&self) -> usize {
+    pub fn cost(&self) -> usize {
         let iteration = self.candidates.first().map_or(0, |candidate| candidate.operations.cost());
         2 * iteration + count(&self.graph, &self.kick_after, None).cost()
     }
 }
 
 /// `tr(E_k W)` and the like for each generator: the components of a covector.
-pub(crate) fn components(graph: &mut Graph, derived: &Derived, given: &Given, covector: &Expression) -> Vec<NodeId> {
+pub fn components(graph: &mut Graph, derived: &Derived, given: &Given, covector: &Expression) -> Vec<NodeId> {
     let mut given = given.clone();
     let mut of = |k| {
         for (factor, one) in derived.directions.factors.iter().enumerate() {
@@ -113,7 +113,7 @@ pub(crate) fn components(graph: &mut Graph, derived: &Derived, given: &Given, co
 }
 
 /// The matrix of a column that is linear in a direction of three components, row by row.
-pub(crate) fn along_unit_vectors(
+pub fn along_unit_vectors(
     graph: &mut Graph,
     symbols: &Symbols,
     direction: SymbolId,
@@ -132,7 +132,7 @@ pub(crate) fn along_unit_vectors(
 
 /// The values of a continuous term: of rank 0 a scalar, of rank 1 the components of a covector, of rank 2 the entries of
 /// a bilinear form, row by row.
-pub(crate) fn along_directions(graph: &mut Graph, derived: &Continuous, rank: usize, term: &Expression) -> Vec<NodeId> {
+pub fn along_directions(graph: &mut Graph, derived: &Continuous, rank: usize, term: &Expression) -> Vec<NodeId> {
     let dimension = derived.group.dimension();
     let along = [1, 2].map(|least| if rank >= least { dimension } else { 1 });
     let places = (0..along[0]).flat_map(|k| (0..along[1]).map(move |j| [k, j]));
@@ -163,7 +163,7 @@ fn with_velocities(graph: &mut Graph, derived: &Continuous) -> Given {
 
 /// The entries, row by row, of the matrix that the diamond along any matrix pairs with; of each factor of the group its
 /// own. Where increments are added, all that counts is the last column of the matrix.
-pub(crate) fn diamond_matrices(graph: &mut Graph, derived: &Continuous) -> Vec<Vec<NodeId>> {
+pub fn diamond_matrices(graph: &mut Graph, derived: &Continuous) -> Vec<Vec<NodeId>> {
     let factors = derived.group.factors().iter().enumerate();
     let of_factor = |(factor, own): (usize, &Group)| {
         let places = (0..own.size).flat_map(|row| (0..own.size).map(move |column| (row, column)));
@@ -221,7 +221,7 @@ fn matrix_of(graph: &mut Graph, group: &Group, symbol: SymbolId) -> Entries {
 }
 
 /// A Jacobian, linear in `E_k` and `E_j`, row by row.
-pub(crate) fn square(graph: &mut Graph, derived: &Derived, given: &Given, bilinear: &Expression) -> Vec<NodeId> {
+pub fn square(graph: &mut Graph, derived: &Derived, given: &Given, bilinear: &Expression) -> Vec<NodeId> {
     let dimension = derived.group.dimension();
     let varies = derived
         .closed
@@ -244,7 +244,7 @@ fn by_rows(dimension: usize, columns: &[Vec<NodeId>]) -> Vec<NodeId> {
     (0..dimension).flat_map(|k| columns.iter().filter_map(move |column| column.get(k).copied())).collect()
 }
 
-pub(crate) fn kernel(derived: &Derived) -> Kernel {
+pub fn kernel(derived: &Derived) -> Kernel {
     let beginning = Beginning::new(derived);
     let mut graph = beginning.graph.clone();
     let kick_before = components(&mut graph, derived, &beginning.given, &derived.kick_before);

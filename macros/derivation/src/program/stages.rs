@@ -7,20 +7,20 @@ use super::kernel::Kernel;
 use crate::mathematics::symbolic::Stage;
 
 /// Values that one stage computes and a later one uses, with their places in an array.
-pub(crate) type Handed = BTreeMap<NodeId, usize>;
+pub type Handed = BTreeMap<NodeId, usize>;
 
 /// The outputs of a step, and what its stages hand on.
-pub(crate) struct Stages {
+pub struct Stages {
     /// The residual, then the Jacobian row by row.
-    pub(crate) system: Vec<NodeId>,
+    pub system: Vec<NodeId>,
     /// What is computed once.
-    pub(crate) constants: Handed,
+    pub constants: Handed,
     /// What is computed once a step.
-    pub(crate) terms: Handed,
+    pub terms: Handed,
 }
 
 impl Kernel {
-    pub(crate) fn stages(&self) -> Stages {
+    pub fn stages(&self) -> Stages {
         let system: Vec<NodeId> = [self.residual.as_slice(), &self.jacobian].concat();
         // The moved part of the diamond is computed only with a residual alone.
         let moved: &[NodeId] = if self.jacobian_is_expensive() { &self.moved } else { &[] };
@@ -51,7 +51,7 @@ fn handed(graph: &Graph, outputs: &[NodeId], stage: Stage) -> Handed {
 /// The nodes to visit, each after its operands and as late as it can be; what is given needs no operands.
 ///
 /// In this order the compiler makes a hundredth fewer instructions of a step than in that of the nodes' making.
-pub(crate) fn needed(graph: &Graph, outputs: &[NodeId], is_given: &dyn Fn(NodeId) -> bool) -> Vec<NodeId> {
+pub fn needed(graph: &Graph, outputs: &[NodeId], is_given: &dyn Fn(NodeId) -> bool) -> Vec<NodeId> {
     let end = outputs.iter().map(|output| output.0 + 1).max().unwrap_or(0);
     let (mut order, mut met) = (Vec::new(), vec![false; end]);
     // Nodes to open, and nodes whose operands are all in order.

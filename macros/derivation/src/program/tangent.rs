@@ -24,50 +24,50 @@ use crate::mathematics::symbolic::{Rational, Stage, SymbolId};
 
 /// A number of the parameters, or of what is advected, with the entry that stands for it.
 #[derive(Clone, Copy)]
-pub(crate) struct Place {
-    pub(crate) number: usize,
-    pub(crate) symbol: SymbolId,
-    pub(crate) row: usize,
-    pub(crate) column: usize,
+pub struct Place {
+    pub number: usize,
+    pub symbol: SymbolId,
+    pub row: usize,
+    pub column: usize,
     /// An entry beside the diagonal of a symmetric matrix is there twice.
-    pub(crate) is_half: bool,
+    pub is_half: bool,
 }
 
 /// The derivatives of some outputs by those numbers of the parameters that they depend on, then by those of what is
 /// advected.
-pub(crate) type ByNumbers = [Vec<(usize, Vec<NodeId>)>; 2];
+pub type ByNumbers = [Vec<(usize, Vec<NodeId>)>; 2];
 
 /// The gradient of a weighted sum.
-pub(crate) struct WeightedGradient {
+pub struct WeightedGradient {
     /// Along each displacement `ζ = E_j`.
-    pub(crate) by_place: Vec<NodeId>,
+    pub by_place: Vec<NodeId>,
     /// Each with one output.
-    pub(crate) by_numbers: ByNumbers,
+    pub by_numbers: ByNumbers,
 }
 
 /// The derivatives of a step where they are asked for, as they are emitted.
 ///
 /// Weights are symbols that what is differentiated is free of: `u` is the target of a step, `p` its velocity, and `r` the
 /// coordinates of its increment.
-pub(crate) struct Derivatives {
-    pub(crate) graph: Graph,
+pub struct Derivatives {
+    pub graph: Graph,
     /// The components of `μ`, then those of `μ⁺`.
-    pub(crate) momenta: Vec<NodeId>,
+    pub momenta: Vec<NodeId>,
     /// Of `μ` and of `μ⁺` along each `ε = E_j`, then along each `ζ = E_j`; matrices row by row.
-    pub(crate) blocks: [[Vec<NodeId>; 2]; 2],
+    pub blocks: [[Vec<NodeId>; 2]; 2],
     /// Of the components of both.
-    pub(crate) by_numbers: ByNumbers,
+    pub by_numbers: ByNumbers,
     /// `(∂μ⁺/∂ε)ᵀ p`, which the adjoint of a step begins with.
-    pub(crate) by_turn: Vec<NodeId>,
+    pub by_turn: Vec<NodeId>,
     /// Of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment, which it ends with.
-    pub(crate) gradient: WeightedGradient,
+    pub gradient: WeightedGradient,
     /// Of `⟨u, D_v k⟩ + ⟨r, k − J u⟩` for the kick `k`, its derivative `D_v k` and the inertia `J`: what the derivatives
     /// of a force gradient are made of. `None` where `D_v k` isn't derived.
-    pub(crate) of_kick: Option<WeightedGradient>,
+    pub of_kick: Option<WeightedGradient>,
 }
 
 impl Derivatives {
-    pub(crate) fn new(derived: &Derived, ends: &Ends, numbers: &[Vec<Place>; 2]) -> Self {
+    pub fn new(derived: &Derived, ends: &Ends, numbers: &[Vec<Place>; 2]) -> Self {
         let mut linearisation = Linearisation::new(derived, ends);
         let blocks = linearisation.blocks();
         let by_numbers = numbers.each_ref().map(|places| linearisation.by_numbers(places));

@@ -9,7 +9,7 @@ use crate::mathematics::symbolic::Expression;
 
 /// What the outputs make together.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Form {
+pub enum Form {
     Scalar,
     /// The components of a covector.
     Vector,
@@ -18,18 +18,18 @@ pub(crate) enum Form {
 }
 
 /// A graph with outputs.
-pub(crate) type Outputs<T = Vec<NodeId>> = (Graph, T);
+pub type Outputs<T = Vec<NodeId>> = (Graph, T);
 
 impl Beginning {
     /// The outputs of one derived term.
-    pub(crate) fn term(&self, derived: &Derived, form: Form, expression: &Expression) -> Outputs {
+    pub fn term(&self, derived: &Derived, form: Form, expression: &Expression) -> Outputs {
         let mut graph = self.graph.clone();
         let outputs = self.in_form(&mut graph, derived, form, expression);
         (graph, outputs)
     }
 
     /// Inertia, bias and potential of the limit at rest.
-    pub(crate) fn limit(&self, derived: &Derived) -> Outputs<[Vec<NodeId>; 3]> {
+    pub fn limit(&self, derived: &Derived) -> Outputs<[Vec<NodeId>; 3]> {
         let (mut graph, limit) = (self.graph.clone(), &derived.limit);
         let parts = [(Form::Square, &limit.inertia), (Form::Vector, &limit.bias), (Form::Scalar, &limit.potential)];
         let outputs = parts.map(|(form, part)| self.in_form(&mut graph, derived, form, part));

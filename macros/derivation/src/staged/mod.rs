@@ -363,6 +363,3 @@ fn of_text(text: &TokenStream, errors: &mut Errors) -> Option<StagedDeclaration>
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -25,11 +25,11 @@ use arguments::{Arguments, Source, arguments_from};
 use fields::{points, scalar, vector_type};
 use names::{check_names, displacements, velocities};
 
-pub(crate) use fields::{field_kind, scalar_of};
-pub(crate) use own_group::{Asked, OwnGroup, asked, name_of_own_group, own_group};
+pub use fields::{field_kind, scalar_of};
+pub use own_group::{Asked, OwnGroup, asked, name_of_own_group, own_group};
 
 /// The declaration, with its mistakes reported; `None` where nothing of it can be read.
-pub(crate) fn declaration(
+pub fn declaration(
     role: Role,
     arguments: &TokenStream,
     item: &TokenStream,
@@ -41,7 +41,7 @@ pub(crate) fn declaration(
 }
 
 /// The role, the arguments and the struct of a text that has both, `#[lagrangian(…)] struct Top { … }`.
-pub(crate) fn attribute_and_item(text: &TokenStream, errors: &mut Errors) -> Option<(Role, TokenStream, TokenStream)> {
+pub fn attribute_and_item(text: &TokenStream, errors: &mut Errors) -> Option<(Role, TokenStream, TokenStream)> {
     size::check("the declaration", text, errors)?;
     let mut item: ItemStruct = syn::parse2(text.clone()).map_err(|error| errors.extend(error)).ok()?;
     let role = |attribute: &syn::Attribute| match attribute.path().segments.last()?.ident.to_string().as_str() {
@@ -85,7 +85,7 @@ fn annotated(role: Role, item: &TokenStream, errors: &mut Errors) -> Option<Item
 }
 
 /// A second attribute of ours, by the name that it is written with.
-pub(crate) fn declared_again(item: &ItemStruct) -> Option<&Path> {
+pub fn declared_again(item: &ItemStruct) -> Option<&Path> {
     item.attrs.iter().map(syn::Attribute::path).find(|path| {
         let is_ours = path.segments.len() == 1 || path.segments.first().is_some_and(|first| first.ident == "liestep");
         is_ours
@@ -97,12 +97,7 @@ pub(crate) fn declared_again(item: &ItemStruct) -> Option<&Path> {
 }
 
 /// The declaration as far as it can be read.
-pub(crate) fn as_far_as_readable(
-    role: Role,
-    arguments: TokenStream,
-    item: ItemStruct,
-    errors: &mut Errors,
-) -> Declaration {
+pub fn as_far_as_readable(role: Role, arguments: TokenStream, item: ItemStruct, errors: &mut Errors) -> Declaration {
     let mut arguments = read_arguments(role, arguments, errors);
     // What seems to be missing may stand in an argument that couldn't be read.
     let is_readable = errors.is_empty();

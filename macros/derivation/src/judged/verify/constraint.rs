@@ -20,21 +20,21 @@ use crate::mathematics::symbolic::{Expression, SymbolId};
 use crate::program::{Graph, NodeId};
 
 /// What is emitted of a constraint.
-pub(crate) struct Held {
+pub struct Held {
     /// Scalars and vectors one below the other.
-    pub(crate) functions: Vec<Rc<Tree>>,
-    pub(crate) lowered: LoweredConstraint,
+    pub functions: Vec<Rc<Tree>>,
+    pub lowered: LoweredConstraint,
     /// Of either body by its turn and by its shift, linear in the directions.
-    pub(crate) slopes: [[Vec<Expression>; 2]; 2],
-    pub(crate) graph: Graph,
+    pub slopes: [[Vec<Expression>; 2]; 2],
+    pub graph: Graph,
     /// The same as matrices with a row for each function, row by row.
-    pub(crate) entries: [[Vec<NodeId>; 2]; 2],
-    pub(crate) sureness: Sureness,
+    pub entries: [[Vec<NodeId>; 2]; 2],
+    pub sureness: Sureness,
 }
 
 impl Held {
     /// How many functions there are.
-    pub(crate) fn rows(&self) -> usize {
+    pub fn rows(&self) -> usize {
         self.functions.iter().map(|tree| tree.shape.rows()).sum()
     }
 }
@@ -44,7 +44,7 @@ type Place<T> = [Value<T>; 2];
 
 /// What a function holds, wherever the bodies are and whatever the parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Row {
+pub enum Row {
     /// What those before it don't.
     New,
     /// Nothing more than those before it.
@@ -54,7 +54,7 @@ pub(crate) enum Row {
 }
 
 /// Checks the slopes of both bodies, and finds how sure that is, and what each function adds to those before it.
-pub(crate) fn constraint(declaration: &Declaration, held: &Held) -> Result<(Sureness, Vec<Row>), Unconfirmed> {
+pub fn constraint(declaration: &Declaration, held: &Held) -> Result<(Sureness, Vec<Row>), Unconfirmed> {
     let has_value = |seed| {
         let point = Point::new(declaration, stream(seed));
         let value = point.value(held, &point.places.each_ref().map(lifted));

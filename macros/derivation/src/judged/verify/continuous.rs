@@ -29,7 +29,7 @@ use crate::mathematics::symbolic::{Rational, SymbolId};
 use crate::program::{Graph, NodeId, Outputs, along_directions, diamond_matrices};
 
 /// The continuous equations of a declaration as operations.
-pub(crate) struct Motion<'a> {
+pub struct Motion<'a> {
     declaration: &'a Declaration,
     /// The declared `l`, where it is one.
     tree: Option<&'a Rc<Tree>>,
@@ -51,7 +51,7 @@ fn inputs<T: Number>(names: &BTreeMap<Name, SymbolId>, at: &Values<T>) -> BTreeM
 }
 
 impl<'a> Motion<'a> {
-    pub(crate) fn new(
+    pub fn new(
         declaration: &'a Declaration,
         tree: Option<&'a Rc<Tree>>,
         names: &'a BTreeMap<Name, SymbolId>,
@@ -154,7 +154,7 @@ impl<'a> Motion<'a> {
     }
 
     /// How sure it is that all equations hold.
-    pub(crate) fn holds(&self) -> Result<Sureness, Unconfirmed> {
+    pub fn holds(&self) -> Result<Sureness, Unconfirmed> {
         let degrees = |same: &mut Same<Degree>| {
             let mut number = Degree::stream();
             self.holds_at(&self.point_of_degrees(&mut number), number, same)
@@ -205,7 +205,7 @@ impl<'a> Motion<'a> {
 
     /// How sure it is that `J`, `s` and `V` of the limit of a discrete Lagrangian are what the derivatives of `l` are at
     /// rest.
-    pub(crate) fn rest_holds(
+    pub fn rest_holds(
         &self,
         names: &BTreeMap<Name, SymbolId>,
         (graph, limit): Outputs<[Vec<NodeId>; 3]>,
@@ -238,7 +238,7 @@ impl<'a> Motion<'a> {
     ///
     /// The field has roots of all numbers, so this says nothing of where `l` has a value. Where a constant is zero in it
     /// alone, nothing is refused.
-    pub(crate) fn has_limit(&self, discrete: &Rc<Tree>) -> Option<bool> {
+    pub fn has_limit(&self, discrete: &Rc<Tree>) -> Option<bool> {
         if Content::of_tree(discrete).has_multiple {
             return Some(true);
         }
@@ -259,7 +259,7 @@ impl<'a> Motion<'a> {
 
     /// A basis of the directions `ζ` with `⟨μ̇, ζ⟩ = 0` for all values of the parameters: `⟨μ, ζ⟩` is conserved. None where
     /// a constant is zero in the field alone.
-    pub(crate) fn right_symmetries(&self) -> Vec<Vec<Rational>> {
+    pub fn right_symmetries(&self) -> Vec<Vec<Rational>> {
         let (dimension, mut rates) = (self.group().dimension(), Subspace::default());
         let has_multiple = Content::of_graph(&self.graph).has_multiple;
         for seed in 1..=2 * u64::try_from(dimension).unwrap_or(0) + 2 {
@@ -277,7 +277,7 @@ impl<'a> Motion<'a> {
     }
 
     /// What sample values of the parameters show of the second derivative at rest.
-    pub(crate) fn kinetic_part(&self) -> KineticPart {
+    pub fn kinetic_part(&self) -> KineticPart {
         if Content::of_graph(&self.graph).has_multiple {
             return KineticPart::Regular;
         }

@@ -22,12 +22,12 @@ const ENOUGH: u32 = 100;
 /// With more points than these it takes too long.
 const MOST_POINTS: u32 = 16;
 /// So many more may be tried, as one may have no value.
-pub(super) const SPARE: u32 = 5;
+pub const SPARE: u32 = 5;
 
 /// Of a numerator, and of a denominator `Δᵐ Dⁿ r` with the denominator `Δ` that the entries of group elements share, and
 /// one divisor `D`, as sums of quotients by one number have one denominator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Degree {
+pub struct Degree {
     is_zero: bool,
     numerator: u64,
     /// Of `Δᵐ`.
@@ -43,7 +43,7 @@ pub(super) struct Degree {
 
 impl Degree {
     /// Random numbers.
-    pub(super) fn stream() -> impl FnMut() -> Self {
+    pub fn stream() -> impl FnMut() -> Self {
         let mut number = 0;
         move || {
             number += 1;
@@ -52,7 +52,7 @@ impl Degree {
     }
 
     /// The same, as an entry of a group element.
-    pub(super) fn of_element(self, degree: u64) -> Self {
+    pub fn of_element(self, degree: u64) -> Self {
         Self { numerator: degree, common: degree, ..self }
     }
 
@@ -159,7 +159,7 @@ impl Number for Degree {
 
 /// The degrees of an element by Cayley transforms and of its coordinates; `Δ` is the product of all of their denominators
 /// and of those of as many attitudes that are seen.
-pub(super) fn element(group: &Group, attitudes: usize, number: &mut impl FnMut() -> Degree) -> (Element<Degree>, u64) {
+pub fn element(group: &Group, attitudes: usize, number: &mut impl FnMut() -> Degree) -> (Element<Degree>, u64) {
     let of_factor = |own: &Group| match own {
         _ if own.is_added => 0,
         _ if own.is_so3 => 1,
@@ -183,7 +183,7 @@ pub(super) fn element(group: &Group, attitudes: usize, number: &mut impl FnMut()
 }
 
 /// The attitudes that are seen, as entries of Cayley transforms.
-pub(super) fn set_attitudes(
+pub fn set_attitudes(
     declaration: &Declaration,
     values: &mut Values<Degree>,
     degree: u64,
@@ -197,18 +197,18 @@ pub(super) fn set_attitudes(
 }
 
 /// Which of what is advected are attitudes.
-pub(super) fn attitudes(declaration: &Declaration) -> impl Iterator<Item = usize> {
+pub fn attitudes(declaration: &Declaration) -> impl Iterator<Item = usize> {
     let all = 0..declaration.advected.len();
     all.filter(|&index| matches!(declaration.advected_kind(index), FieldKind::Configuration(_)))
 }
 
 /// What is counted of a tree, or of a graph, beside its degrees.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Content {
+pub struct Content {
     /// How many functions are called.
-    pub(super) functions: u64,
+    pub functions: u64,
     /// Whether a constant that isn't zero is zero in the field, or has no value there.
-    pub(super) has_multiple: bool,
+    pub has_multiple: bool,
 }
 
 impl Content {
@@ -217,7 +217,7 @@ impl Content {
         Self { functions: 0, has_multiple: !value.is_zero() && (residue.is_zero() || !residue.is_defined()) }
     }
 
-    pub(super) fn of_tree(tree: &Rc<Tree>) -> Self {
+    pub fn of_tree(tree: &Rc<Tree>) -> Self {
         parts(tree).into_iter().fold(Self::default(), |content, part| match part.kind {
             Kind::Apply(..) => content + Self { functions: 1, ..Self::default() },
             Kind::Number(value) => content + Self::of_constant(value),
@@ -225,7 +225,7 @@ impl Content {
         })
     }
 
-    pub(super) fn of_graph(graph: &Graph) -> Self {
+    pub fn of_graph(graph: &Graph) -> Self {
         graph.nodes().fold(Self::default(), |content, node| match node {
             Node::Apply(..) => content + Self { functions: 1, ..Self::default() },
             Node::Constant(value) => content + Self::of_constant(*value),
@@ -247,13 +247,13 @@ impl Add for Content {
 
 /// The largest degrees of all that is compared.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Largest {
+pub struct Largest {
     numerator: u64,
     argument: u64,
 }
 
 impl Largest {
-    pub(super) fn compared(&mut self, found: Degree, expected: Degree) {
+    pub fn compared(&mut self, found: Degree, expected: Degree) {
         let difference = found - expected;
         self.numerator = self.numerator.max(if difference.is_zero { 0 } else { difference.numerator });
         self.argument = self.argument.max(difference.argument);
@@ -261,7 +261,7 @@ impl Largest {
 
     /// How often what differs coincides at a random point, in units of `1/p`: a value, or two of the arguments of that
     /// many functions, each of which stands for its negative or reciprocal as well.
-    pub(super) fn coincidences(self, functions: u64) -> u64 {
+    pub fn coincidences(self, functions: u64) -> u64 {
         let pairs = functions.saturating_mul(4).saturating_pow(2);
         self.numerator.saturating_add(pairs.saturating_mul(self.argument))
     }
@@ -271,7 +271,7 @@ impl Largest {
     /// What is wrong passes if at some `n` of the `n + SPARE` points that may be tried it has a value, and that coincides.
     /// For given ones this has the `n`-th power of the probability for one: of the field's `2⁶¹ − 1` elements none is drawn
     /// more than 9/8 times as often as another, and `9/8 · 1/(2⁶¹ − 1) < 2⁻⁶⁰`. Of such choices there are `ways`.
-    pub(super) fn points(self, functions: u64) -> Option<(u32, u32)> {
+    pub fn points(self, functions: u64) -> Option<(u32, u32)> {
         let of_point = 60_u32.saturating_sub(u64::BITS - self.coincidences(functions).leading_zeros());
         let mut ways = 1_u64;
         (1..=MOST_POINTS).find_map(|points| {

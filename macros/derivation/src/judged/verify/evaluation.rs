@@ -8,18 +8,18 @@ use super::value::Value;
 use crate::declared::{Kind, Name, Shape, Tree};
 
 /// The values of names, and of what a `let` has bound.
-pub(super) struct Evaluation<'a, T = f64> {
+pub struct Evaluation<'a, T = f64> {
     values: &'a BTreeMap<Name, Value<T>>,
     /// By where they are, which they keep as long as this does.
     known: BTreeMap<*const Tree, (Rc<Tree>, Value<T>)>,
 }
 
 impl<'a, T: Number> Evaluation<'a, T> {
-    pub(super) fn new(values: &'a BTreeMap<Name, Value<T>>) -> Self {
+    pub fn new(values: &'a BTreeMap<Name, Value<T>>) -> Self {
         Self { values, known: BTreeMap::new() }
     }
 
-    pub(super) fn of(&mut self, tree: &Rc<Tree>) -> Value<T> {
+    pub fn of(&mut self, tree: &Rc<Tree>) -> Value<T> {
         if let Some((_, known)) = self.known.get(&Rc::as_ptr(tree)) {
             return known.clone();
         }

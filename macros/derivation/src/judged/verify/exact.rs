@@ -14,7 +14,7 @@ pub(super) const POINTS: u32 = 3;
 
 impl Identities<'_> {
     /// How sure the check is, and whether the Lagrangian is its own adjoint at all points, as [`reversal`] has it.
-    pub(super) fn confirmed(&self) -> Result<(Sureness, [bool; 3]), Unconfirmed> {
+    pub fn confirmed(&self) -> Result<(Sureness, [bool; 3]), Unconfirmed> {
         let (group, mut reversed) = (&self.of.declaration.group, [true; 3]);
         let of_field = |seed: u64| {
             let mut number = Residue::stream(seed);

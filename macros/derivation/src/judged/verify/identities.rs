@@ -28,19 +28,19 @@ use crate::program::{
 type Inputs<T> = BTreeMap<SymbolId, Value<T>>;
 
 /// Compares what was found with what is expected, of a term.
-pub(super) type Same<'a, T> = dyn FnMut(&'static str, T, T) -> Result<(), Unconfirmed> + 'a;
+pub type Same<'a, T> = dyn FnMut(&'static str, T, T) -> Result<(), Unconfirmed> + 'a;
 
 /// The derived terms as operations.
-pub(super) struct Terms {
-    pub(super) graph: Graph,
+pub struct Terms {
+    pub graph: Graph,
     /// Made first, so that it is as it would be alone in the graph.
-    pub(super) jacobian: Vec<NodeId>,
-    momentum: Vec<NodeId>,
+    pub jacobian: Vec<NodeId>,
+    pub momentum: Vec<NodeId>,
     /// Of a Lagrangian alone.
-    right: Vec<NodeId>,
-    left: Vec<NodeId>,
-    diamond: Vec<NodeId>,
-    energy: Option<NodeId>,
+    pub right: Vec<NodeId>,
+    pub left: Vec<NodeId>,
+    pub diamond: Vec<NodeId>,
+    pub energy: Option<NodeId>,
 }
 
 impl Terms {
@@ -60,12 +60,12 @@ impl Terms {
 }
 
 /// A declaration with all that was derived of it.
-pub(super) struct Identities<'a> {
-    pub(super) of: Subject<'a>,
-    kernel: &'a Kernel,
-    pub(super) stages: Stages,
-    pub(super) terms: Terms,
-    pub(super) derivatives: Option<Derivatives>,
+pub struct Identities<'a> {
+    pub of: Subject<'a>,
+    pub kernel: &'a Kernel,
+    pub stages: Stages,
+    pub terms: Terms,
+    pub derivatives: Option<Derivatives>,
     /// `J`, `s` and `V` of the limit, where they have derivatives.
     limit: Option<Outputs<[Vec<NodeId>; 3]>>,
 }
@@ -107,7 +107,7 @@ struct Declared<T> {
 }
 
 impl<'a> Identities<'a> {
-    pub(super) fn new(of: Subject<'a>, kernel: &'a Kernel) -> Self {
+    pub fn new(of: Subject<'a>, kernel: &'a Kernel) -> Self {
         let Subject { declaration, lowered, derived, .. } = of;
         let derivatives =
             derived.ends.as_ref().map(|ends| Derivatives::new(derived, ends, &places(declaration, &lowered.names)));
@@ -118,7 +118,7 @@ impl<'a> Identities<'a> {
     }
 
     /// Of the declaration and of what was derived.
-    pub(super) fn content(&self) -> Content {
+    pub fn content(&self) -> Content {
         let derivatives = self.derivatives.iter().map(|all| &all.graph);
         let limit = self.limit.iter().map(|(graph, _)| graph);
         let graphs = [&self.terms.graph, &self.kernel.graph].into_iter().chain(derivatives).chain(limit);
@@ -127,7 +127,7 @@ impl<'a> Identities<'a> {
 
     /// Whether the momentum and its Jacobian have values where a step begins: in the field nothing but a division by zero
     /// and a root or a logarithm of zero hasn't.
-    pub(super) fn are_smooth(&self) -> bool {
+    pub fn are_smooth(&self) -> bool {
         let identity = Element::identity(&self.of.declaration.group);
         let sample: Sample<Residue> = Sample::at(self.of, identity, &mut Residue::stream(1));
         let outputs = [self.terms.momentum.as_slice(), &self.terms.jacobian].concat();
@@ -135,7 +135,7 @@ impl<'a> Identities<'a> {
     }
 
     /// Compares everything at one point, along a direction of these numbers.
-    pub(super) fn hold<T: Number>(
+    pub fn hold<T: Number>(
         &self,
         sample: &Sample<T>,
         mut number: impl FnMut() -> T,
@@ -300,7 +300,7 @@ impl<'a> Identities<'a> {
     }
 
     /// With what is carried along, a covector for that of the solution and a velocity.
-    fn inputs_of_stages<T: Number>(&self, sample: &Sample<T>, [target, along]: [&[T]; 2]) -> Inputs<T> {
+    pub fn inputs_of_stages<T: Number>(&self, sample: &Sample<T>, [target, along]: [&[T]; 2]) -> Inputs<T> {
         let (mut inputs, directions) = (sample.inputs(), &self.of.derived.directions);
         let carried = sample.moved([&sample.element.inverses, &sample.element.matrices]);
         for (index, &next) in directions.next.iter().enumerate() {
@@ -430,25 +430,5 @@ impl<T: Number> Changes<T> {
             sums.iter_mut().zip(derivatives).for_each(|(sum, &one)| *sum = *sum + change * one);
         }
         sums
-    }
-}
-
-#[cfg(test)]
-impl Identities<'_> {
-    /// All that is emitted, at a point.
-    pub(super) fn emitted<T: Number>(&self, sample: &Sample<T>, mut number: impl FnMut() -> T) -> Vec<T> {
-        let mut vector = || self.of.derived.group.generators.iter().map(|_| number()).collect::<Vec<T>>();
-        let inputs = self.inputs_of_stages(sample, [&vector(), &vector()]);
-        let Terms { graph, momentum, jacobian, right, left, diamond, energy } = &self.terms;
-        let terms = [momentum.as_slice(), jacobian, right, left, diamond, energy.as_slice()].concat();
-        let kernel = self.kernel;
-        let stages = [&kernel.kick_before, &kernel.residual, &kernel.jacobian, &kernel.kick_after, &kernel.moved];
-        let change = kernel.kick_derivative.clone().unwrap_or_default();
-        let stages = stages.into_iter().chain([&change]).flatten().copied().collect::<Vec<_>>();
-        let mut all = [evaluated(graph, &terms, &inputs), evaluated(&kernel.graph, &stages, &inputs)].concat();
-        if let Some(Derivatives { graph, blocks, momenta, .. }) = &self.derivatives {
-            all.extend(evaluated(graph, &[blocks.as_flattened().concat(), momenta.clone()].concat(), &inputs));
-        }
-        all
     }
 }

@@ -49,22 +49,20 @@
 mod cayley;
 mod constraint;
 mod continuous;
-mod degree;
-mod dual;
-mod evaluation;
+pub mod degree;
+pub mod dual;
+pub mod evaluation;
 mod exact;
-mod identities;
+pub mod identities;
 mod inertia;
 mod linear;
-mod number;
+pub mod number;
 mod orders;
-mod residue;
+pub mod residue;
 mod reversal;
-mod sample;
-mod series;
-#[cfg(test)]
-mod tests;
-mod value;
+pub mod sample;
+pub mod series;
+pub mod value;
 
 use std::collections::BTreeMap;
 
@@ -75,16 +73,16 @@ use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId};
 use crate::program::{Derivatives, Graph, Input, Kernel, Node, NodeId, Outputs, Stages};
 
-pub(super) use cayley::{is_cayley_coordinates, nilpotency};
-pub(crate) use constraint::Held;
-pub(super) use constraint::{Row, constraint};
-pub(crate) use continuous::Motion;
+pub use cayley::{is_cayley_coordinates, nilpotency};
+pub use constraint::Held;
+pub use constraint::{Row, constraint};
+pub use continuous::Motion;
 use evaluation::Evaluation;
 use identities::{Identities, Terms};
-pub(super) use inertia::{KineticPart, kinetic_part};
+pub use inertia::{KineticPart, kinetic_part};
 use number::Number;
-pub(super) use orders::{TermMistake, not_smooth_at_identity, term_mistakes, without_value};
-pub(crate) use sample::Subject;
+pub use orders::{TermMistake, not_smooth_at_identity, term_mistakes, without_value};
+pub use sample::Subject;
 use sample::{Element, Sample};
 use value::Value;
 
@@ -101,7 +99,7 @@ fn over<T: Number, U>(values: &Values<T>, of: impl Fn(T) -> U) -> Values<U> {
 
 /// What is wrong with a derivation, or with the expression that it is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Unconfirmed {
+pub enum Unconfirmed {
     /// A derived term disagrees with the declaration.
     Disagrees(&'static str),
     /// The declaration has no value at a point, or at any that was tried.
@@ -113,20 +111,20 @@ pub(crate) enum Unconfirmed {
 }
 
 /// What has been found of a declaration that the self-check confirms.
-pub(crate) struct Findings {
-    pub(crate) self_adjointness: SelfAdjointness,
-    pub(crate) sureness: Sureness,
+pub struct Findings {
+    pub self_adjointness: SelfAdjointness,
+    pub sureness: Sureness,
     /// What was compared, to be emitted; derivatives of a step where they are asked for.
-    pub(crate) stages: Stages,
-    pub(crate) jacobian: Outputs,
-    pub(crate) derivatives: Option<Derivatives>,
+    pub stages: Stages,
+    pub jacobian: Outputs,
+    pub derivatives: Option<Derivatives>,
     /// What the equations rest on, which is asked afterwards.
-    pub(crate) hypotheses: Vec<String>,
+    pub hypotheses: Vec<String>,
 }
 
 /// How sure it is that what was derived is right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Sureness {
+pub enum Sureness {
     /// What is wrong passes with a probability below `2⁻ⁿ`.
     Certified(u32),
     /// No bound is small enough, as degrees are too high.
@@ -139,7 +137,7 @@ pub(crate) enum Sureness {
 
 impl Sureness {
     /// Of both, the lesser.
-    pub(super) fn and(self, other: Self) -> Self {
+    pub fn and(self, other: Self) -> Self {
         match (self, other) {
             (Self::Certified(one), Self::Certified(other)) => Self::Certified(one.min(other)),
             (Self::Certified(_), lesser) | (lesser, _) => lesser,
@@ -148,7 +146,7 @@ impl Sureness {
 }
 
 /// Checks all that was derived. The error is the first term that disagrees.
-pub(super) fn verify(of: Subject, kernel: &Kernel) -> Result<Findings, Unconfirmed> {
+pub fn verify(of: Subject, kernel: &Kernel) -> Result<Findings, Unconfirmed> {
     // Whether it has a value is asked of real numbers: the field has roots of all.
     if Sample::draws(of).next().is_none() {
         return Err(Unconfirmed::NoValue);
@@ -170,7 +168,7 @@ pub(super) fn verify(of: Subject, kernel: &Kernel) -> Result<Findings, Unconfirm
 }
 
 /// The values of operations.
-fn evaluated<T: Number>(graph: &Graph, outputs: &[NodeId], inputs: &BTreeMap<SymbolId, Value<T>>) -> Vec<T> {
+pub fn evaluated<T: Number>(graph: &Graph, outputs: &[NodeId], inputs: &BTreeMap<SymbolId, Value<T>>) -> Vec<T> {
     evaluated_from(graph, outputs, inputs, &BTreeMap::new())
 }
 
@@ -263,7 +261,7 @@ fn cayley<T: Number>(x: &Value<T>, c: T) -> [Value<T>; 2] {
 }
 
 /// The increments of all factors, of their matrices.
-fn increments<T: Number>(group: &Group, matrices: &[Value<T>]) -> Values<T> {
+pub fn increments<T: Number>(group: &Group, matrices: &[Value<T>]) -> Values<T> {
     let value = |(own, matrix): (&Group, &Value<T>)| if own.is_added { translation(matrix) } else { matrix.clone() };
     let values = group.factors().iter().zip(matrices).map(value);
     values.enumerate().map(|(factor, value)| (Name::Increment(factor), value)).collect()

@@ -24,7 +24,7 @@ const MOST_FACTORS: usize = 10;
 
 /// What is wrong with a term.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum TermMistake {
+pub enum TermMistake {
     /// A divisor is zero, whatever the parameters.
     ZeroDivisor,
     /// A root or a logarithm of what is zero, whatever the parameters.
@@ -52,7 +52,7 @@ pub(crate) enum TermMistake {
 }
 
 /// The mistakes of the terms, at their places; none where a constant is zero in the field alone.
-pub(crate) fn term_mistakes(declaration: &Declaration, tree: &Rc<Tree>) -> Vec<(Rc<Tree>, TermMistake)> {
+pub fn term_mistakes(declaration: &Declaration, tree: &Rc<Tree>) -> Vec<(Rc<Tree>, TermMistake)> {
     if Content::of_tree(tree).has_multiple {
         return Vec::new();
     }
@@ -95,13 +95,13 @@ pub(crate) fn term_mistakes(declaration: &Declaration, tree: &Rc<Tree>) -> Vec<(
 }
 
 /// Where a value at `F = I` isn't smooth: what is divided by, or under a function, is zero there.
-pub(crate) fn not_smooth_at_identity(declaration: &Declaration, tree: &Rc<Tree>) -> Option<(Rc<Tree>, TermMistake)> {
+pub fn not_smooth_at_identity(declaration: &Declaration, tree: &Rc<Tree>) -> Option<(Rc<Tree>, TermMistake)> {
     let [.., at_rest, _] = &points(declaration);
     singular(tree, at_rest)
 }
 
 /// The first part that has no value for any of some parameters, if there is one.
-pub(crate) fn without_value(declaration: &Declaration, tree: &Rc<Tree>) -> Option<Rc<Tree>> {
+pub fn without_value(declaration: &Declaration, tree: &Rc<Tree>) -> Option<Rc<Tree>> {
     let points: Vec<super::Values<f64>> = draws(declaration).map(|(_, values)| values).collect();
     let mut at_points: Vec<Evaluation> = points.iter().map(Evaluation::new).collect();
     let mut is_defined =

@@ -31,15 +31,15 @@ use crate::mathematics::symbolic::{Expression, Rational, SymbolId, Symbols, Vari
 
 /// An advected parameter, and how it is moved.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Carried {
-    pub(crate) symbol: SymbolId,
-    pub(crate) variance: Variance,
-    pub(crate) seen: Seen,
+pub struct Carried {
+    pub symbol: SymbolId,
+    pub variance: Variance,
+    pub seen: Seen,
 }
 
 /// Which factors of the group move a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Seen {
+pub enum Seen {
     /// This one, by the variance.
     From(usize),
     /// The configuration of a factor, as another sees it.
@@ -50,7 +50,7 @@ pub(crate) enum Seen {
 
 impl Seen {
     /// Whether it is a body itself.
-    pub(crate) fn is_configuration(self) -> bool {
+    pub fn is_configuration(self) -> bool {
         matches!(self, Self::Relative { .. } | Self::Configuration(_))
     }
 }

@@ -11,11 +11,11 @@ use crate::mathematics::symbolic::{Expression, Rational, SymbolId, Variations, d
 
 /// `(h/2) Dⁿ (U − a)`, linear in `E_k`, and its variation along `δy`.
 #[derive(Clone, Debug)]
-pub(crate) struct Cleared {
-    pub(crate) residual: Expression,
-    pub(crate) jacobian: Expression,
+pub struct Cleared {
+    pub residual: Expression,
+    pub jacobian: Expression,
     /// `n`.
-    pub(crate) power: u32,
+    pub power: u32,
 }
 
 /// Beyond this many terms the retracted form is surely cheaper, and expanding would take long.

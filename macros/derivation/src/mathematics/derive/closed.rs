@@ -17,28 +17,28 @@ use crate::mathematics::symbolic::{Expression, Structure, SymbolId, Symbols, Var
 
 /// A `let` that isn't multiplied out.
 #[derive(Clone, Debug)]
-pub(crate) struct Let {
+pub struct Let {
     /// `v`.
-    pub(crate) symbol: SymbolId,
+    pub symbol: SymbolId,
     /// `d`.
-    pub(crate) value: Expression,
+    pub value: Expression,
 }
 
 /// A closed `let` with its derivatives.
 #[derive(Clone, Debug)]
-pub(crate) struct Closed {
-    pub(crate) symbol: SymbolId,
-    pub(crate) value: Expression,
+pub struct Closed {
+    pub symbol: SymbolId,
+    pub value: Expression,
     /// `δv`.
-    pub(crate) direction: SymbolId,
+    pub direction: SymbolId,
     /// `λ`, and `⟨λ, δv⟩`.
-    pub(crate) multiplier: SymbolId,
-    pub(crate) pairing: Expression,
+    pub multiplier: SymbolId,
+    pub pairing: Expression,
     /// The same by `D = F − I`, where its constants cancel then.
-    pub(crate) near: Expression,
+    pub near: Expression,
     /// `v` and `⟨λ, δv⟩` varied along `F ↦ exp(t E_j) F`.
-    pub(crate) tangent: (SymbolId, Expression),
-    pub(crate) multiplier_tangent: (SymbolId, Expression),
+    pub tangent: (SymbolId, Expression),
+    pub multiplier_tangent: (SymbolId, Expression),
 }
 
 /// The symbols that each `let` adds, and `L`.

@@ -9,16 +9,16 @@ use crate::mathematics::symbolic::{Expression, Stage, Structure, SymbolId, Symbo
 
 /// The symbols of where a body is.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Body {
+pub struct Body {
     /// From the body's axes to those of space.
-    pub(crate) attitude: SymbolId,
-    pub(crate) position: SymbolId,
+    pub attitude: SymbolId,
+    pub position: SymbolId,
     /// What its place is varied along: `η`, and `ξ`.
-    pub(crate) directions: [SymbolId; 2],
+    pub directions: [SymbolId; 2],
 }
 
 impl Body {
-    pub(crate) fn new(name: &str, symbols: &mut Symbols) -> Self {
+    pub fn new(name: &str, symbols: &mut Symbols) -> Self {
         let mut vector = |letter, stage| symbols.add(format!("{letter}_{name}"), (3, 1), Structure::General, stage);
         let (position, directions) = (vector("x", Stage::Step), ["η", "ξ"].map(|d| vector(d, Stage::Construction)));
         let attitude = symbols.add(format!("R_{name}"), (3, 3), Structure::Rotation, Stage::Step);
@@ -29,7 +29,7 @@ impl Body {
 impl Seen {
     /// What two bodies, each of which turns by its first factor and is shifted by its second, see at their places; of a
     /// field of the symbol. Nothing where the field is missing.
-    pub(crate) fn at(self, bodies: &[Body; 2], field: Option<SymbolId>, symbols: &Symbols) -> Option<Expression> {
+    pub fn at(self, bodies: &[Body; 2], field: Option<SymbolId>, symbols: &Symbols) -> Option<Expression> {
         let is_shift = |factor: usize| factor % 2 == 1;
         let place = |factor: usize| {
             let body = &bodies[factor / 2 % 2];
@@ -46,17 +46,17 @@ impl Seen {
 
 /// A constraint with the symbols that it is written in.
 #[derive(Clone, Debug)]
-pub(crate) struct DeclaredConstraint {
-    pub(crate) symbols: Symbols,
+pub struct DeclaredConstraint {
+    pub symbols: Symbols,
     /// `g`, scalars and columns one below the other.
-    pub(crate) functions: Vec<Expression>,
+    pub functions: Vec<Expression>,
     /// That above, and that below.
-    pub(crate) bodies: [Body; 2],
+    pub bodies: [Body; 2],
 }
 
 impl DeclaredConstraint {
     /// `G_R η` and `G_x ξ` of both bodies, for each of the functions.
-    pub(crate) fn slopes(&self) -> [[Vec<Expression>; 2]; 2] {
+    pub fn slopes(&self) -> [[Vec<Expression>; 2]; 2] {
         let symbols = &self.symbols;
         self.bodies.map(|body| {
             let [turn, shift] = body.directions.map(|direction| Expression::symbol(direction, symbols));

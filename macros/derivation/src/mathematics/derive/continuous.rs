@@ -19,23 +19,23 @@ use crate::mathematics::symbolic::{
 
 /// A continuous Lagrangian with the symbols that it is written in.
 #[derive(Clone, Debug)]
-pub(crate) struct DeclaredContinuous {
-    pub(crate) group: Group,
-    pub(crate) symbols: Symbols,
+pub struct DeclaredContinuous {
+    pub group: Group,
+    pub symbols: Symbols,
     /// `l(ξ, w)`.
-    pub(crate) expression: Expression,
+    pub expression: Expression,
     /// `ξ`, one for each factor of the group.
-    pub(crate) velocities: Vec<Element>,
+    pub velocities: Vec<Element>,
     /// The advected parameters `w`.
-    pub(crate) advected: Vec<Carried>,
+    pub advected: Vec<Carried>,
 }
 
 /// An element of the algebra of a factor: its velocity, or a direction along which the velocity is varied.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Element {
-    pub(crate) components: SymbolId,
+pub struct Element {
+    pub components: SymbolId,
     /// The matrix `ξ̂`; none on SO(3), where it is that of a cross product, and where increments are added.
-    pub(crate) matrix: Option<SymbolId>,
+    pub matrix: Option<SymbolId>,
 }
 
 impl Element {
@@ -51,7 +51,7 @@ impl Element {
     }
 
     /// The symbols of a velocity.
-    pub(crate) fn new(group: &Group, name: &str, symbols: &mut Symbols) -> Self {
+    pub fn new(group: &Group, name: &str, symbols: &mut Symbols) -> Self {
         let [velocity] = Self::several(group, [name], Stage::Step, symbols);
         velocity
     }
@@ -74,7 +74,7 @@ impl Element {
 
 /// How `ξ` follows from `μ`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Inverse {
+pub enum Inverse {
     /// `l` is quadratic in `ξ`, with the same second derivative for all `w`.
     Constant,
     /// `l` is quadratic in `ξ`.
@@ -85,43 +85,43 @@ pub(crate) enum Inverse {
 
 /// All that follows from `l`. Covectors are linear in `η`, the second derivative in `η` and `ζ`.
 #[derive(Clone, Debug)]
-pub(crate) struct Continuous {
-    pub(crate) group: Group,
-    pub(crate) symbols: Symbols,
+pub struct Continuous {
+    pub group: Group,
+    pub symbols: Symbols,
     /// One for each factor of the group, as all of these.
-    pub(crate) velocities: Vec<Element>,
-    pub(crate) advected: Vec<Carried>,
+    pub velocities: Vec<Element>,
+    pub advected: Vec<Carried>,
     /// `η` and `ζ`.
-    pub(crate) directions: Vec<[Element; 2]>,
-    pub(crate) lagrangian: Expression,
+    pub directions: Vec<[Element; 2]>,
+    pub lagrangian: Expression,
     /// `μ`.
-    pub(crate) momentum: Expression,
+    pub momentum: Expression,
     /// `M`.
-    pub(crate) hessian: Expression,
+    pub hessian: Expression,
     /// `∂l/∂w ⋄ w`.
-    pub(crate) diamond: Expression,
+    pub diamond: Expression,
     /// Any matrix of each factor; where increments are added, any vector.
-    pub(crate) any: Vec<SymbolId>,
+    pub any: Vec<SymbolId>,
     /// `∂l/∂w ⋄ w` along these.
-    pub(crate) diamond_of_any: Expression,
+    pub diamond_of_any: Expression,
     /// `(∂²l/∂w∂ξ)(ξ·w)`.
-    pub(crate) advection: Expression,
-    pub(crate) inverse: Inverse,
+    pub advection: Expression,
+    pub inverse: Inverse,
 }
 
 impl Continuous {
     /// Whether there is a kinetic part.
-    pub(crate) fn has_kinetic(&self) -> bool {
+    pub fn has_kinetic(&self) -> bool {
         !self.hessian.is_zero()
     }
 
     /// The momentum `s(w)` at rest.
-    pub(crate) fn bias(&self) -> Expression {
+    pub fn bias(&self) -> Expression {
         self.at_rest(&self.momentum)
     }
 
     /// `V(w) = −l(0, w)`.
-    pub(crate) fn potential(&self) -> Expression {
+    pub fn potential(&self) -> Expression {
         self.at_rest(&self.lagrangian).scaled(-Rational::ONE)
     }
 
@@ -136,7 +136,7 @@ impl Continuous {
 }
 
 /// Derives everything.
-pub(crate) fn continuous(declared: DeclaredContinuous) -> Result<Continuous, Refusal> {
+pub fn continuous(declared: DeclaredContinuous) -> Result<Continuous, Refusal> {
     let DeclaredContinuous { group, mut symbols, expression, velocities, advected } = declared;
     let is_crossed = group.rotates();
     let expression = if is_crossed { expression.with_hats_resolved(&symbols) } else { expression };
@@ -222,7 +222,7 @@ fn without_last(column: &Expression, symbols: &Symbols) -> Expression {
 }
 
 /// The limit of a discrete Lagrangian, `l = ½ ξ·Jξ + s(w)·ξ − V(w)` where it is quadratic in `ξ`.
-pub(crate) fn of_limit(declared: &Declared, derived: &Derived) -> DeclaredContinuous {
+pub fn of_limit(declared: &Declared, derived: &Derived) -> DeclaredContinuous {
     let (group, mut symbols) = (declared.group.clone(), derived.symbols.clone());
     let mut velocities = Vec::new();
     for (factor, own) in group.factors().iter().enumerate() {

@@ -15,14 +15,14 @@ use crate::mathematics::symbolic::{Expression, Rational, SymbolId};
 
 /// Why the virtual work defines no force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum ForceError {
+pub enum ForceError {
     /// It isn't linear in the displacements.
     NotLinear,
 }
 
 /// The displacements `η` and `η⁺` of each factor of the group.
 #[derive(Clone, Debug)]
-pub(crate) struct Displacements(pub(crate) Vec<[SymbolId; 2]>);
+pub struct Displacements(pub Vec<[SymbolId; 2]>);
 
 /// All that follows from the virtual work; what only a Lagrangian has is zero.
 pub(super) fn force(declared: &Declared, Displacements(displacements): &Displacements) -> Result<Derived, ForceError> {

@@ -15,24 +15,24 @@ use crate::mathematics::symbolic::{
 
 /// A continuous Lagrangian, and which of its symbols stand for which of the discrete one that is made of it.
 #[derive(Clone, Debug)]
-pub(crate) struct Discretised {
-    pub(crate) continuous: Continuous,
-    pub(crate) symbols: Vec<(SymbolId, SymbolId)>,
+pub struct Discretised {
+    pub continuous: Continuous,
+    pub symbols: Vec<(SymbolId, SymbolId)>,
 }
 
 /// `J` (linear in `E_k` and `E_j`), `s` (linear in `E_k`) and `V`.
 #[derive(Clone, Debug)]
-pub(crate) struct Limit {
+pub struct Limit {
     /// Whether there is a term in `1/h` that depends on `F`; a potential has none, and can't move by itself.
-    pub(crate) has_kinetic: bool,
+    pub has_kinetic: bool,
     /// The first derivative of `K` at the identity (linear in `E_k`): zero for all values of the parameters if there is
     /// a limit.
-    pub(crate) slope: Expression,
-    pub(crate) inertia: Expression,
-    pub(crate) bias: Expression,
-    pub(crate) potential: Expression,
+    pub slope: Expression,
+    pub inertia: Expression,
+    pub bias: Expression,
+    pub potential: Expression,
     /// `l(ξ, w)` itself where it was typed as an `l_d` and isn't quadratic in `ξ`: the others are its values at rest.
-    pub(crate) lagrangian: Option<Expression>,
+    pub lagrangian: Option<Expression>,
 }
 
 pub(super) fn limit(context: &Context, momentum: &Expression) -> Result<Limit, LimitError> {

@@ -22,43 +22,43 @@ use std::collections::BTreeMap;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Expression, Rational, Stage, Structure, SymbolId, Symbols};
 
-pub(crate) use action::{Carried, Seen};
-pub(crate) use algebra::{hat, linear_forms, unit};
-pub(crate) use cayley::Cleared;
-pub(crate) use closed::{Closed, Let};
-pub(crate) use constraint::{Body, DeclaredConstraint};
-pub(crate) use continuous::{Continuous, DeclaredContinuous, Element, Inverse, continuous, of_limit};
-pub(crate) use force::{Displacements, ForceError};
-pub(crate) use limit::{Discretised, Limit};
-pub(crate) use self_adjoint::SelfAdjointness;
-pub(crate) use series::LimitError;
+pub use action::{Carried, Seen};
+pub use algebra::{hat, linear_forms, unit};
+pub use cayley::Cleared;
+pub use closed::{Closed, Let};
+pub use constraint::{Body, DeclaredConstraint};
+pub use continuous::{Continuous, DeclaredContinuous, Element, Inverse, continuous, of_limit};
+pub use force::{Displacements, ForceError};
+pub use limit::{Discretised, Limit};
+pub use self_adjoint::SelfAdjointness;
+pub use series::LimitError;
 
 /// A declared Lagrangian with the symbols that it is written in.
 #[derive(Clone, Debug)]
-pub(crate) struct Declared {
-    pub(crate) group: Group,
-    pub(crate) symbols: Symbols,
+pub struct Declared {
+    pub group: Group,
+    pub symbols: Symbols,
     /// The `let`s that aren't multiplied out, in their order; none where the expression is small enough.
-    pub(crate) lets: Vec<Let>,
+    pub lets: Vec<Let>,
     /// The Lagrangian `l_d`, or the virtual work of a force.
-    pub(crate) expression: Expression,
+    pub expression: Expression,
     /// The increments `F`, one for each factor of the group.
-    pub(crate) increments: Vec<SymbolId>,
+    pub increments: Vec<SymbolId>,
     /// The step `h`.
-    pub(crate) step: SymbolId,
+    pub step: SymbolId,
     /// The advected parameters `w`.
-    pub(crate) advected: Vec<Carried>,
+    pub advected: Vec<Carried>,
     /// Those of a force's virtual work; a Lagrangian has none.
-    pub(crate) displacements: Option<Displacements>,
+    pub displacements: Option<Displacements>,
     /// Whether the derivatives of a step are asked for.
-    pub(crate) has_derivatives: bool,
+    pub has_derivatives: bool,
     /// The continuous Lagrangian that was discretised.
-    pub(crate) discretised: Option<Discretised>,
+    pub discretised: Option<Discretised>,
 }
 
 /// Why nothing can be derived.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Refusal {
+pub enum Refusal {
     Limit(LimitError),
     Force(ForceError),
     /// A coefficient left the range of exact arithmetic.
@@ -67,110 +67,110 @@ pub(crate) enum Refusal {
 
 /// The symbols that the derivation adds for each factor of the group.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct OfFactor {
+pub struct OfFactor {
     /// The increment `F` itself.
-    pub(crate) increment: SymbolId,
+    pub increment: SymbolId,
     /// The component `E_k` of a covector.
-    pub(crate) first: SymbolId,
+    pub first: SymbolId,
     /// The direction `E_j` of a Jacobian's column.
-    pub(crate) second: SymbolId,
+    pub second: SymbolId,
     /// `D = F − I`.
-    pub(crate) small: SymbolId,
+    pub small: SymbolId,
     /// `F⁻¹`.
-    pub(crate) inverse: SymbolId,
+    pub inverse: SymbolId,
     /// `D⁻ = F⁻¹ − I`.
-    pub(crate) small_inverse: SymbolId,
+    pub small_inverse: SymbolId,
     /// The increment `F⁺` of the next step, in print.
-    pub(crate) next_increment: SymbolId,
+    pub next_increment: SymbolId,
     /// `ξ̂` in the limit `F = exp(hξ̂)`.
     velocity: SymbolId,
 }
 
 /// The symbols that the derivation adds.
 #[derive(Clone, Debug)]
-pub(crate) struct Directions {
-    pub(crate) factors: Vec<OfFactor>,
+pub struct Directions {
+    pub factors: Vec<OfFactor>,
     /// The covector `a` that the unknown part of the momentum equation has to equal; in a Newton system `(h/2) a`.
-    pub(crate) target: SymbolId,
+    pub target: SymbolId,
     /// The Cayley vector `y` of `F = cay(2y)`.
-    pub(crate) coordinates: SymbolId,
+    pub coordinates: SymbolId,
     /// `1 + |y|²`, the denominator of the Cayley map.
-    pub(crate) denominator: SymbolId,
+    pub denominator: SymbolId,
     /// A variation `δy`.
-    pub(crate) coordinate_direction: SymbolId,
+    pub coordinate_direction: SymbolId,
     /// The new advected parameters `w⁺ = F⁻¹·w`.
-    pub(crate) next: Vec<SymbolId>,
+    pub next: Vec<SymbolId>,
     /// The body velocity `v` that a kick is differentiated along.
-    pub(crate) along: SymbolId,
+    pub along: SymbolId,
     /// A scalar to differentiate functions by.
     scratch: SymbolId,
 }
 
 /// All that follows from `l_d`. Covectors are linear in the direction `E_k`, Jacobians in `E_k` and `E_j`.
 #[derive(Clone, Debug)]
-pub(crate) struct Derived {
-    pub(crate) symbols: Symbols,
-    pub(crate) group: Group,
-    pub(crate) directions: Directions,
+pub struct Derived {
+    pub symbols: Symbols,
+    pub group: Group,
+    pub directions: Directions,
     /// The closed `let`s with their derivatives.
-    pub(crate) closed: Vec<Closed>,
+    pub closed: Vec<Closed>,
     /// `w = F·w⁺`.
-    pub(crate) previous: Vec<(SymbolId, Expression)>,
+    pub previous: Vec<(SymbolId, Expression)>,
     /// `(R_F)* δl_d/δF`.
-    pub(crate) right_momentum: Expression,
+    pub right_momentum: Expression,
     /// `(L_F)* δl_d/δF`.
-    pub(crate) left_momentum: Expression,
+    pub left_momentum: Expression,
     /// `δl_d/δw ⋄ w`.
-    pub(crate) diamond: Expression,
+    pub diamond: Expression,
     /// The share of each advected parameter, where there are several.
-    pub(crate) shares: Vec<Expression>,
+    pub shares: Vec<Expression>,
     /// `μ` of (2.7).
-    pub(crate) momentum: Expression,
+    pub momentum: Expression,
     /// `∂μ_k` along `F ↦ exp(t E_j) F`.
-    pub(crate) jacobian: Expression,
+    pub jacobian: Expression,
     /// `−∂l_d/∂h`.
-    pub(crate) energy: Expression,
+    pub energy: Expression,
     /// `l_d(F, w, h) + l_d(F⁻¹, F⁻¹·w, −h)`: zero where the Lagrangian is seen to be self-adjoint.
-    pub(crate) adjoint_defect: Expression,
+    pub adjoint_defect: Expression,
     /// The flow on increments (2.5): `μ(F⁺, w⁺)` and what it equals, `(L_F)* δl_d/δF` in `F` and `w⁺`; not where there
     /// are closed `let`s.
-    pub(crate) flow: Option<[Expression; 2]>,
+    pub flow: Option<[Expression; 2]>,
     /// The Lagrangian's limit as `h → 0`.
-    pub(crate) limit: Limit,
+    pub limit: Limit,
     /// The part of the diamond without `F`.
-    pub(crate) kick_before: Expression,
+    pub kick_before: Expression,
     /// Its derivative along `w ↦ exp(−t E_j)·w`, where kinetic-potential splittings may ask for it: on SO(3), of a
     /// Lagrangian without closed `let`s.
-    pub(crate) kick_derivative: Option<Expression>,
+    pub kick_derivative: Option<Expression>,
     /// The part of `μ` with `F`, written in `D = F − I`: its constants cancel exactly, so that a small step keeps its
     /// digits.
-    pub(crate) unknown: Expression,
+    pub unknown: Expression,
     /// The rest of the diamond, in `F` and `w`; of a force, which has more after the step, nothing.
-    pub(crate) moved: Option<Expression>,
+    pub moved: Option<Expression>,
     /// `Ad*_F` of the rest of the diamond, in `F` and `w⁺`; what goes like `1/h` in `D`.
-    pub(crate) kick_after: Expression,
+    pub kick_after: Expression,
     /// The same as it is printed, without `D`.
-    pub(crate) shown_kick_after: Expression,
+    pub shown_kick_after: Expression,
     /// `h/2`, by which the Newton system is multiplied: it has no `1/h` then.
-    pub(crate) half_step: Expression,
+    pub half_step: Expression,
     /// The momentum equation in Cayley coordinates without denominators, where it is polynomial in `F`.
-    pub(crate) cleared: Option<Cleared>,
+    pub cleared: Option<Cleared>,
     /// Where the derivatives of a step are asked for, the momenta that they are those of.
-    pub(crate) ends: Option<Ends>,
+    pub ends: Option<Ends>,
 }
 
 /// The shares in the momenta at both ends of a step, as functions of `D = F − I`, `w` and the parameters.
 #[derive(Clone, Debug)]
-pub(crate) struct Ends {
+pub struct Ends {
     /// `μ` of (2.7), and `μ⁺` of (2.6).
-    pub(crate) momenta: [Expression; 2],
+    pub momenta: [Expression; 2],
     /// `E·w` for each advected parameter.
-    pub(crate) moved: Vec<(SymbolId, Expression)>,
+    pub moved: Vec<(SymbolId, Expression)>,
 }
 
 impl Derived {
     /// Whether the inertia depends on what is advected or given.
-    pub(crate) fn inertia_varies(&self) -> bool {
+    pub fn inertia_varies(&self) -> bool {
         self.previous.iter().any(|(w, _)| self.limit.inertia.contains(*w))
     }
 
@@ -203,7 +203,7 @@ impl Derived {
 }
 
 /// Derives everything, of a Lagrangian or of a force.
-pub(crate) fn derive(declared: &Declared) -> Result<Derived, Refusal> {
+pub fn derive(declared: &Declared) -> Result<Derived, Refusal> {
     let derived = match &declared.displacements {
         None => lagrangian(declared).map_err(Refusal::Limit)?,
         Some(displacements) => force::force(declared, displacements).map_err(Refusal::Force)?,
@@ -264,7 +264,7 @@ fn lagrangian(declared: &Declared) -> Result<Derived, LimitError> {
 
 /// Whether a Lagrangian, of which less is known, has all that was derived by one variation, the kicks of the transport
 /// form, and the limit. What is quickly found is asked first.
-pub(crate) fn has_equations(declared: &Declared, known: &Declared, derived: &Derived) -> bool {
+pub fn has_equations(declared: &Declared, known: &Declared, derived: &Derived) -> bool {
     let values = |of: &[Let]| of.iter().map(|one| one.value.clone()).collect::<Vec<_>>();
     if declared.expression != known.expression || values(&declared.lets) != values(&known.lets) {
         return false;

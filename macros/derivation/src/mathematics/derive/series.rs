@@ -10,7 +10,7 @@ use crate::mathematics::symbolic::{
 
 /// Why there is no continuous Lagrangian behind `l_d`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum LimitError {
+pub enum LimitError {
     /// `h` stands under a function that has no value as `h → 0`.
     StepInsideFunction,
     /// A power of `h` below −1.

@@ -9,7 +9,7 @@ thread_local! {
 
 /// Counts products of terms, terms that are looked into, and operations. Where nothing is left, what would be computed is as well taken for zero: so
 /// all that follows is short, and what comes out is refused.
-pub(crate) fn spend(work: usize) -> bool {
+pub fn spend(work: usize) -> bool {
     let left = LEFT.get();
     if left == u64::MAX {
         return true;
@@ -20,7 +20,7 @@ pub(crate) fn spend(work: usize) -> bool {
 }
 
 /// What is done within a bound, and how much that was; `None` where it wasn't enough.
-pub(crate) fn within<R>(bound: u64, done: impl FnOnce() -> R) -> Option<(R, u64)> {
+pub fn within<R>(bound: u64, done: impl FnOnce() -> R) -> Option<(R, u64)> {
     LEFT.set(bound);
     let made = done();
     let left = LEFT.replace(u64::MAX);
