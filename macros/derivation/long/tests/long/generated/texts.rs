@@ -194,7 +194,7 @@ pub(super) fn right(random: &mut Random, kind: &Kind) -> String {
     }
     let sum = terms.concat();
     let with_name =
-        [sum.replace(&format!("{moving}.dot(&a)"), &format!("{moving}.dot(&q)")), sum.replace(" + w)", " + q)")];
+        [sum.replace(&format!("{moving}.dot(&a)"), &format!("{moving}.dot(&(a + q))")), sum.replace(" + w)", " + q)")];
     match random.below(3) {
         // A statement that begins with a block ends with it.
         0 => {
