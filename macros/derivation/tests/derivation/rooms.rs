@@ -1,12 +1,12 @@
 //! The rooms of `lib.rs`: who may know whom, and who may know tokens.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::common::{HEAVY_TOP, expanded, is_refused, tokens, top};
 use liestep_derivation::declared::Role;
 
-/// Every source but tests: its path from `src`, and its code without comments.
+/// Every source: its path from `src`, and its code without comments.
 fn sources() -> BTreeMap<String, String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let (mut open, mut sources) = (vec![root.clone()], BTreeMap::new());
@@ -14,7 +14,7 @@ fn sources() -> BTreeMap<String, String> {
         if path.is_dir() {
             let entries = std::fs::read_dir(path).expect("a directory");
             let paths = entries.map(|entry| entry.expect("an entry").path());
-            open.extend(paths.filter(|path: &PathBuf| !path.ends_with("tests") && !path.ends_with("tests.rs")));
+            open.extend(paths);
             continue;
         }
         let text = std::fs::read_to_string(&path).expect("text");
@@ -121,6 +121,34 @@ fn expansions_name_the_private_module_alone() {
         let mut named = text.split("liestep ::").skip(1);
         assert!(named.all(|rest| rest.starts_with(" __private ::")), "{text}");
     }
+}
+
+/// The rooms are public for these tests, so the compiler doesn't say where a function is used by tests alone.
+#[test]
+fn what_a_room_makes_public_is_used_in_the_crate() {
+    let is_letter = |letter: char| letter.is_alphanumeric() || letter == '_';
+    let without_exports = |code: &String| {
+        let statements = code.split_inclusive(';').map(|statement| match statement.find("pub use ") {
+            Some(place) => statement[..place].to_owned(),
+            None => statement.to_owned(),
+        });
+        statements.collect::<String>()
+    };
+    let codes: Vec<(String, String)> =
+        sources().into_iter().map(|(file, code)| (file, without_exports(&code))).collect();
+    let mut uses: BTreeMap<&str, usize> = BTreeMap::new();
+    for word in codes.iter().flat_map(|(_, code)| code.split(|letter| !is_letter(letter))) {
+        *uses.entry(word).or_default() += 1;
+    }
+    let items = ["fn ", "const ", "struct ", "enum ", "trait ", "type "].map(|item| format!("pub {item}"));
+    let hidden = |file: &str| ["declared", "judged", "mathematics", "program"].contains(&room(file));
+    let of_rooms = codes.iter().filter(|(file, _)| hidden(file));
+    let names = of_rooms.flat_map(|(_, code)| code.lines()).filter_map(|line| {
+        let rest = items.iter().find_map(|item| line.trim_start().strip_prefix(item.as_str()))?;
+        rest.trim_start_matches("fn ").split(|letter| !is_letter(letter)).next()
+    });
+    let unused: Vec<&str> = names.filter(|name| uses[name] < 2).collect();
+    assert_eq!(unused, Vec::<&str>::new());
 }
 
 /// Their order differs from run to run, which no repetition in one process shows for sure.
