@@ -101,6 +101,29 @@ fn of_unusual_orders() {
     }
 }
 
+/// A term that is zero at `F = I`, for some parameters or by a number is one, and so are two that cancel beside others.
+#[test]
+fn zero_here_and_there() {
+    assert_right(&[
+        "0.5 * h * (F - I).norm_squared() * w.dot(&rho)",
+        "h * w.cross(&rho).dot(&vee(F))",
+        "h * (w.norm_squared() - 1.0)",
+        "h * (m - 1.0) * w.dot(&rho)",
+        "(1.0 - 1.0) * (F - I).norm_squared() / h",
+        "{ let off = 0.0; off * h * w.dot(&(F * rho)) }",
+        "(F * J_d).trace() / h + (J_d * F.transpose()).trace() / h",
+    ]);
+    // Of another group, where no trace is zero, and of a plain matrix.
+    let item = "struct Planar { J: Matrix3<f64>, r: Vector3<f64>, up: Vector3<f64> }";
+    for term in ["((F - I) * J * (F + I).transpose()).trace() * h", "h * w.dot(&(F * r))"] {
+        let kinetic = "((F - I) * J * J.transpose() * (F - I).transpose()).trace() / h";
+        assert_eq!(
+            message(&format!("group = SE2, advected(w = up), l_d = {kinetic} - {term} - h * w.dot(&r)"), item),
+            None
+        );
+    }
+}
+
 /// Of a vector of one the entry has an index and no letter.
 #[test]
 fn a_vector_of_one() {

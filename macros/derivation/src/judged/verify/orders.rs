@@ -225,9 +225,10 @@ impl Search<'_> {
         }
     }
 
-    /// The terms of a sum.
+    /// The terms of a sum; a sum that is zero is one term.
     fn terms(&mut self, tree: &Rc<Tree>) -> Vec<Rc<Tree>> {
-        match self.split(tree) {
+        let is_zero = self.behaviour(tree).is_zero();
+        match (!is_zero).then(|| self.split(tree)).flatten() {
             Some(parts) => parts.iter().flat_map(|part| self.terms(part)).collect(),
             None => vec![tree.clone()],
         }
