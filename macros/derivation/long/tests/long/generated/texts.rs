@@ -181,7 +181,7 @@ fn scalar(random: &mut Random, kind: &Kind, depth: usize) -> String {
     }
 }
 
-/// With terms of which none is zero, whatever their parts are.
+/// A sum whose terms have summands that are no other's negative, so that few are zero.
 pub(super) fn right(random: &mut Random, kind: &Kind) -> String {
     let (weight, moving) = (kind.weight, kind.vectors[0]);
     let mut terms = vec![kind.beginnings[random.below(kind.beginnings.len())].to_owned()];
