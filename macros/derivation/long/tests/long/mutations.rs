@@ -7,7 +7,7 @@ use std::rc::Rc;
 use proc_macro2::TokenStream;
 
 use crate::common::bodies::{CART, LINKS, OF_CART, OF_LINKS};
-use crate::common::{HEAVY_TOP, checked_as, tokens, top};
+use crate::common::{HEAVY_TOP, checked_as, evaluated, tokens, top};
 use crate::generated::texts::on_a_product;
 use crate::refused::once_refused;
 use crate::time::declarations_in;
@@ -17,13 +17,11 @@ use liestep_derivation::judged::verify::identities::{Identities, Terms};
 use liestep_derivation::judged::verify::number::Number;
 use liestep_derivation::judged::verify::residue::Residue;
 use liestep_derivation::judged::verify::sample::{Element, Sample};
-use liestep_derivation::judged::verify::{
-    Findings, Row, Subject, Sureness, Unconfirmed, constraint, evaluated, verify,
-};
+use liestep_derivation::judged::verify::{Findings, Row, Subject, Sureness, Unconfirmed, constraint, verify};
 use liestep_derivation::judged::{self, Chosen, cheapest, held};
 use liestep_derivation::mathematics::derive::{Derived, Seen, derive};
 use liestep_derivation::mathematics::symbolic::{Expression, Rational, SymbolId, degree};
-use liestep_derivation::program::{ByNumbers, Derivatives, Kernel, NodeId, WeightedGradient, kernel};
+use liestep_derivation::program::{ByNumbers, Derivatives, Input, Kernel, NodeId, WeightedGradient, kernel};
 
 /// By how much a coefficient is too large.
 const ERRORS: [(i128, i128); 2] = [(1, 10_000_000), (1, 1 << 50)];
@@ -402,15 +400,17 @@ fn small_errors_everywhere() {
 fn emitted<T: Number>(identities: &Identities, sample: &Sample<T>, mut number: impl FnMut() -> T) -> Vec<T> {
     let mut vector = || identities.of.derived.group.generators.iter().map(|_| number()).collect::<Vec<T>>();
     let inputs = identities.inputs_of_stages(sample, [&vector(), &vector()]);
+    let input =
+        |input: Input| inputs.get(&input.symbol).map_or(T::UNDEFINED, |value| value.at(input.row, input.column));
     let Terms { graph, momentum, jacobian, right, left, diamond, energy } = &identities.terms;
     let terms = [momentum.as_slice(), jacobian, right, left, diamond, energy.as_slice()].concat();
     let kernel = identities.kernel;
     let stages = [&kernel.kick_before, &kernel.residual, &kernel.jacobian, &kernel.kick_after, &kernel.moved];
     let change = kernel.kick_derivative.clone().unwrap_or_default();
     let stages = stages.into_iter().chain([&change]).flatten().copied().collect::<Vec<_>>();
-    let mut all = [evaluated(graph, &terms, &inputs), evaluated(&kernel.graph, &stages, &inputs)].concat();
+    let mut all = [evaluated(graph, &terms, &input), evaluated(&kernel.graph, &stages, &input)].concat();
     if let Some(Derivatives { graph, blocks, momenta, .. }) = &identities.derivatives {
-        all.extend(evaluated(graph, &[blocks.as_flattened().concat(), momenta.clone()].concat(), &inputs));
+        all.extend(evaluated(graph, &[blocks.as_flattened().concat(), momenta.clone()].concat(), &input));
     }
     all
 }

@@ -168,7 +168,7 @@ pub fn verify(of: Subject, kernel: &Kernel) -> Result<Findings, Unconfirmed> {
 }
 
 /// The values of operations.
-pub fn evaluated<T: Number>(graph: &Graph, outputs: &[NodeId], inputs: &BTreeMap<SymbolId, Value<T>>) -> Vec<T> {
+fn evaluated<T: Number>(graph: &Graph, outputs: &[NodeId], inputs: &BTreeMap<SymbolId, Value<T>>) -> Vec<T> {
     evaluated_from(graph, outputs, inputs, &BTreeMap::new())
 }
 
@@ -261,7 +261,7 @@ fn cayley<T: Number>(x: &Value<T>, c: T) -> [Value<T>; 2] {
 }
 
 /// The increments of all factors, of their matrices.
-pub fn increments<T: Number>(group: &Group, matrices: &[Value<T>]) -> Values<T> {
+fn increments<T: Number>(group: &Group, matrices: &[Value<T>]) -> Values<T> {
     let value = |(own, matrix): (&Group, &Value<T>)| if own.is_added { translation(matrix) } else { matrix.clone() };
     let values = group.factors().iter().zip(matrices).map(value);
     values.enumerate().map(|(factor, value)| (Name::Increment(factor), value)).collect()

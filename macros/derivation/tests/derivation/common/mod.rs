@@ -10,6 +10,7 @@ use liestep_derivation::Role;
 use liestep_derivation::declared::errors::Errors;
 use liestep_derivation::declared::{Declaration, Tree, check, lower, parse};
 use liestep_derivation::judged::cheapest;
+use liestep_derivation::judged::verify::number::Number;
 use liestep_derivation::mathematics::derive::{Derived, derive};
 use liestep_derivation::program::{Graph, Input, Node, NodeId};
 use proc_macro2::TokenStream;
@@ -82,19 +83,19 @@ pub(crate) fn arguments_and_struct(file: &str) -> (&str, &str) {
 }
 
 /// The values of a graph's outputs for given inputs.
-pub(crate) fn evaluated(graph: &Graph, outputs: &[NodeId], input: &dyn Fn(Input) -> f64) -> Vec<f64> {
-    let mut values = vec![0.0; graph.nodes().count()];
+pub(crate) fn evaluated<T: Number>(graph: &Graph, outputs: &[NodeId], input: &dyn Fn(Input) -> T) -> Vec<T> {
+    let mut values = vec![T::UNDEFINED; graph.nodes().count()];
     for id in graph.reachable(outputs) {
         let at = |operand: NodeId| values[operand.0];
         values[id.0] = match graph.node(id) {
-            Node::Constant(value) => value.to_f64(),
+            Node::Constant(value) => T::of(value),
             Node::Input(entry) => input(entry),
             Node::Negate(a) => -at(a),
             Node::Add(a, b) => at(a) + at(b),
             Node::Subtract(a, b) => at(a) - at(b),
             Node::Multiply(a, b) => at(a) * at(b),
             Node::Divide(a, b) => at(a) / at(b),
-            Node::Apply(function, a) => function.apply(at(a)),
+            Node::Apply(function, a) => at(a).apply(function),
         };
     }
     outputs.iter().map(|output| values[output.0]).collect()

@@ -4,6 +4,7 @@ mod dual;
 mod residue;
 mod series;
 
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use crate::common::{HEAVY_TOP, checked_as, expanded, struct_of, top};
@@ -13,9 +14,7 @@ use liestep_derivation::declared::{Declaration, Name, Role, Tree};
 use liestep_derivation::judged::verify::degree::{Content, Degree, Largest};
 use liestep_derivation::judged::verify::evaluation::Evaluation;
 use liestep_derivation::judged::verify::value::Value;
-use liestep_derivation::judged::verify::{
-    KineticPart, Subject, Sureness, Unconfirmed, degree, increments, kinetic_part, verify,
-};
+use liestep_derivation::judged::verify::{KineticPart, Subject, Sureness, Unconfirmed, degree, kinetic_part, verify};
 use liestep_derivation::judged::{Chosen, cheapest, held};
 use liestep_derivation::mathematics::derive::{Derived, SelfAdjointness, derive};
 use liestep_derivation::mathematics::symbolic::{Expression, Rational};
@@ -259,7 +258,7 @@ fn degrees() {
         let (declaration, tree) = checked(&format!("group = R1, l_d = {l_d}"), "struct Body { k: f64 }");
         let mut number = Degree::stream();
         let (element, _) = degree::element(&declaration.group, 0, &mut number);
-        let mut values = increments(&declaration.group, &element.matrices);
+        let mut values = BTreeMap::from([(Name::Increment(0), element.matrices[0].clone())]);
         let mut variable = || Value::scalar(number());
         values.extend([(Name::Step, variable()), (Name::Field(0), variable())]);
         let (value, mut largest) = (Evaluation::new(&values).of(&tree).first(), Largest::default());
