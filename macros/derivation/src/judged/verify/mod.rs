@@ -58,6 +58,7 @@ mod inertia;
 mod linear;
 pub mod number;
 mod orders;
+mod outcome;
 pub mod residue;
 mod reversal;
 pub mod sample;
@@ -71,7 +72,7 @@ use crate::declared::{Declaration, FieldKind, Name, Role, Shape};
 use crate::mathematics::derive::SelfAdjointness;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId};
-use crate::program::{Derivatives, Graph, Input, Kernel, Node, NodeId, Outputs, Stages};
+use crate::program::{Graph, Input, Kernel, Node, NodeId};
 
 pub use cayley::{is_cayley_coordinates, nilpotency};
 pub use constraint::Held;
@@ -82,6 +83,7 @@ use identities::{Identities, Terms};
 pub use inertia::{KineticPart, kinetic_part};
 use number::Number;
 pub use orders::{TermMistake, not_smooth_at_identity, term_mistakes, without_value};
+pub use outcome::{Findings, Sureness, Unconfirmed};
 pub use sample::Subject;
 use sample::{Element, Sample};
 use value::Value;
@@ -95,54 +97,6 @@ type Values<T> = BTreeMap<Name, Value<T>>;
 /// The same in other numbers.
 fn over<T: Number, U>(values: &Values<T>, of: impl Fn(T) -> U) -> Values<U> {
     values.iter().map(|(name, value)| (*name, value.over(&of))).collect()
-}
-
-/// What is wrong with a derivation, or with the expression that it is of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unconfirmed {
-    /// A derived term disagrees with the declaration.
-    Disagrees(&'static str),
-    /// The declaration has no value at a point, or at any that was tried.
-    NoValue,
-    /// A derived term has none where the declaration has one.
-    Undefined(&'static str),
-    /// It isn't smooth where `F = I`.
-    NotSmooth,
-}
-
-/// What has been found of a declaration that the self-check confirms.
-pub struct Findings {
-    pub self_adjointness: SelfAdjointness,
-    pub sureness: Sureness,
-    /// What was compared, to be emitted; derivatives of a step where they are asked for.
-    pub stages: Stages,
-    pub jacobian: Outputs,
-    pub derivatives: Option<Derivatives>,
-    /// What the equations rest on, which is asked afterwards.
-    pub hypotheses: Vec<String>,
-}
-
-/// How sure it is that what was derived is right.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sureness {
-    /// What is wrong passes with a probability below `2⁻ⁿ`.
-    Certified(u32),
-    /// No bound is small enough, as degrees are too high.
-    TooHigh,
-    /// A constant is a multiple of `2⁶¹ − 1`, or has one for its denominator.
-    Multiple,
-    /// The group has no Cayley transforms: compared in power series.
-    Series,
-}
-
-impl Sureness {
-    /// Of both, the lesser.
-    pub fn and(self, other: Self) -> Self {
-        match (self, other) {
-            (Self::Certified(one), Self::Certified(other)) => Self::Certified(one.min(other)),
-            (Self::Certified(_), lesser) | (lesser, _) => lesser,
-        }
-    }
 }
 
 /// Checks all that was derived. The error is the first term that disagrees.
