@@ -5,7 +5,7 @@ use syn::ext::IdentExt as _;
 use syn::{Expr, Ident, ItemStruct, Path};
 
 use super::Shape;
-use crate::mathematics::derive::Seen;
+use crate::mathematics::derive::View;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::Variance;
 
@@ -188,7 +188,7 @@ pub struct AdvectedParameter {
     /// Whether it is a value of the step, which the group doesn't move: `given(…)`.
     pub is_given: bool,
     /// Which bodies move it.
-    pub seen: Seen,
+    pub seen: View,
 }
 
 impl AdvectedParameter {
@@ -243,7 +243,7 @@ impl Declaration {
     pub fn advected_kind(&self, index: usize) -> FieldKind {
         let parameter = self.advected.get(index);
         let size = match parameter.map(|w| w.seen) {
-            Some(Seen::Relative { of, .. } | Seen::Configuration(of)) => {
+            Some(View::Relative { of, .. } | View::Configuration(of)) => {
                 let factor = self.group.factor(of);
                 let is_place = factor.is_added;
                 return if is_place {
@@ -252,7 +252,7 @@ impl Declaration {
                     FieldKind::Configuration(factor.size)
                 };
             }
-            Some(Seen::From(factor)) => self.group.factor(factor).size,
+            Some(View::From(factor)) => self.group.factor(factor).size,
             None => self.group.size,
         };
         let field = parameter.and_then(|w| self.fields.get(w.field?));

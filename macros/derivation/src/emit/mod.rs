@@ -19,10 +19,10 @@ mod verbatim;
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{quote, quote_spanned};
 
-use crate::declared::lower::Lowered;
+use crate::declared::lower::Reading;
 use crate::declared::{Declaration, FieldKind, Role};
-use crate::judged::{Chosen, Equations, Findings};
-use crate::mathematics::derive::Derived;
+use crate::judged::{Choice, Equations, Findings};
+use crate::mathematics::derive::Derivation;
 use crate::program::{Form, Kernel, Outputs};
 
 use code::Code;
@@ -81,11 +81,11 @@ pub fn lanes(item: TokenStream, is_in_lanes: bool) -> TokenStream {
 pub(crate) fn implementation(
     [arguments, item]: [&TokenStream; 2],
     declaration: &Declaration,
-    chosen: &Chosen,
+    chosen: &Choice,
     equations: Option<&Equations>,
     findings: &Findings,
 ) -> TokenStream {
-    let (header, Chosen { lowered, derived, kernel }) = (Header::new(declaration), chosen);
+    let (header, Choice { lowered, derived, kernel }) = (Header::new(declaration), chosen);
     let (names, symbols) = (&lowered.names, &derived.symbols);
     let code = Code { declaration, header: &header, names, symbols, directions: Some(&derived.directions) };
     let emitter = Emitter { code, lowered, derived, kernel, equations };
@@ -154,7 +154,7 @@ pub(crate) fn implementation(
 }
 
 /// Whether there is a kinetic part, and what its solve costs.
-fn kinetic(declaration: &Declaration, chosen: &Chosen) -> &'static str {
+fn kinetic(declaration: &Declaration, chosen: &Choice) -> &'static str {
     match (chosen.derived.limit.has_kinetic, chosen.kernel.jacobian_is_expensive()) {
         (false, _) => "WithoutKinetic",
         (true, false) if declaration.energy.is_some() => "WithPace",
@@ -166,7 +166,7 @@ fn kinetic(declaration: &Declaration, chosen: &Chosen) -> &'static str {
 /// What was declared and everything derived from it, as text.
 pub(crate) fn text(
     declaration: &Declaration,
-    chosen: &Chosen,
+    chosen: &Choice,
     equations: Option<&Equations>,
     findings: &Findings,
 ) -> String {
@@ -176,7 +176,7 @@ pub(crate) fn text(
 
 fn derivation_of(
     declaration: &Declaration,
-    chosen: &Chosen,
+    chosen: &Choice,
     texts: &[docs::Equation],
     equations: Option<&Equations>,
     findings: &Findings,
@@ -186,8 +186,8 @@ fn derivation_of(
 }
 
 /// The equations of a step.
-fn equations_of(declaration: &Declaration, chosen: &Chosen, equations: Option<&Equations>) -> Vec<docs::Equation> {
-    let Chosen { lowered, derived, .. } = chosen;
+fn equations_of(declaration: &Declaration, chosen: &Choice, equations: Option<&Equations>) -> Vec<docs::Equation> {
+    let Choice { lowered, derived, .. } = chosen;
     if declaration.role == Role::Force {
         docs::equations_of_force(derived, &lowered.declared)
     } else {
@@ -234,8 +234,8 @@ fn invariance(declaration: &Declaration, header: &Header) -> Option<TokenStream>
 /// What the pieces of a step share.
 struct Emitter<'a> {
     code: Code<'a>,
-    lowered: &'a Lowered,
-    derived: &'a Derived,
+    lowered: &'a Reading,
+    derived: &'a Derivation,
     kernel: &'a Kernel,
     /// Of a Lagrangian, its continuous equations.
     equations: Option<&'a Equations>,

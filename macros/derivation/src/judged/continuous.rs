@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::choose::Chosen;
+use super::choose::Choice;
 use super::explain;
 use super::verify::{Motion, Sureness};
 use crate::declared::errors::Errors;
-use crate::declared::lower::Lowered;
+use crate::declared::lower::Reading;
 use crate::declared::{Declaration, Name, Tree, lower};
-use crate::mathematics::derive::{self, Continuous, Discretised, Inverse};
+use crate::mathematics::derive::{self, Continuous, ContinuousSource, Inverse};
 use crate::mathematics::symbolic::{Rational, SymbolId};
 
 /// The continuous equations of a declaration.
@@ -23,10 +23,10 @@ pub struct Equations {
 
 impl Equations {
     /// With what was discretised.
-    pub fn behind(&self, reading: Lowered) -> Lowered {
+    pub fn behind(&self, reading: Reading) -> Reading {
         let symbols = self.names.iter().filter_map(|(name, &from)| Some((from, *reading.names.get(name)?))).collect();
-        let discretised = Some(Discretised { continuous: self.derived.clone(), symbols });
-        Lowered { declared: derive::Declared { discretised, ..reading.declared }, ..reading }
+        let discretised = Some(ContinuousSource { continuous: self.derived.clone(), symbols });
+        Reading { declared: derive::DeclaredFunction { discretised, ..reading.declared }, ..reading }
     }
 }
 
@@ -43,7 +43,7 @@ pub fn continuous(
     declared: Option<Equations>,
     declaration: &Declaration,
     [tree, discrete]: [&Rc<Tree>; 2],
-    chosen: &Chosen,
+    chosen: &Choice,
     errors: &mut Errors,
 ) -> Option<Equations> {
     let Some(mut equations) = declared else { return of_limit(declaration, discrete, chosen, errors) };
@@ -57,7 +57,7 @@ pub fn continuous(
 fn limit_holds(
     motion: &Motion,
     may_have_limit: bool,
-    (declaration, discrete, chosen): (&Declaration, &Rc<Tree>, &Chosen),
+    (declaration, discrete, chosen): (&Declaration, &Rc<Tree>, &Choice),
     errors: &mut Errors,
 ) -> Option<Sureness> {
     let limit = || chosen.kernel.beginning.limit(&chosen.derived);
@@ -69,7 +69,7 @@ fn limit_holds(
     at_rest
 }
 
-fn of_limit(declaration: &Declaration, discrete: &Rc<Tree>, chosen: &Chosen, errors: &mut Errors) -> Option<Equations> {
+fn of_limit(declaration: &Declaration, discrete: &Rc<Tree>, chosen: &Choice, errors: &mut Errors) -> Option<Equations> {
     let declared = derive::of_limit(&chosen.lowered.declared, &chosen.derived);
     let mut names = chosen.lowered.names.clone();
     let velocities = declared.velocities.iter().enumerate();
@@ -84,7 +84,7 @@ fn of_limit(declaration: &Declaration, discrete: &Rc<Tree>, chosen: &Chosen, err
 /// The equations of this tree, checked, or of the limit of what was chosen for it.
 fn checked(
     declaration: &Declaration,
-    (tree, chosen): (&Rc<Tree>, Option<&Chosen>),
+    (tree, chosen): (&Rc<Tree>, Option<&Choice>),
     names: BTreeMap<Name, SymbolId>,
     derived: Continuous,
     errors: &mut Errors,

@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use proc_macro2::Span;
 
-use super::verify::{self, KineticPart, Row, TermMistake, Unconfirmed};
+use super::verify::{self, KineticPart, Objection, Row, TermMistake};
 use crate::declared::check;
 use crate::declared::errors::Errors;
 use crate::declared::{Coordinates, Declaration, Discretisation, Kind, Name, Quadrature, Role, Tree};
@@ -323,10 +323,10 @@ pub(super) fn follows(part: &Tree, rows: &[Row], errors: &mut Errors) {
 }
 
 /// Reports what the self-check doesn't confirm.
-pub(super) fn unconfirmed(unconfirmed: Unconfirmed, declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) {
+pub(super) fn unconfirmed(unconfirmed: Objection, declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) {
     match unconfirmed {
-        Unconfirmed::Disagrees(term) | Unconfirmed::Undefined(term) => unconfirmed_term(term, declaration, errors),
-        Unconfirmed::NoValue => {
+        Objection::Disagrees(term) | Objection::Undefined(term) => unconfirmed_term(term, declaration, errors),
+        Objection::NoValue => {
             let message = "this has no value at the points where it was tried: what is under a root or a logarithm has to be \
                            positive for parameters of some size and sign";
             match verify::without_value(declaration, tree) {
@@ -334,7 +334,7 @@ pub(super) fn unconfirmed(unconfirmed: Unconfirmed, declaration: &Declaration, t
                 None => errors.push_over(declaration.expression.as_ref().map(check::value), message),
             }
         }
-        Unconfirmed::NotSmooth => {
+        Objection::NotSmooth => {
             let (message, ends) = not_smooth(verify::not_smooth_at_identity(declaration, tree), tree);
             errors.push_between(ends, message);
         }

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use super::choose::Chosen;
+use super::choose::Choice;
 use super::verify::{self, Findings, Subject};
 use super::{explain, hypotheses};
 use crate::declared::errors::Errors;
@@ -11,8 +11,8 @@ use crate::mathematics::derive::SelfAdjointness;
 
 /// Checks all that was derived; `None` where something is wrong with the Lagrangian, or with the derivation, which has
 /// been reported.
-pub fn findings(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Chosen, errors: &mut Errors) -> Option<Findings> {
-    let Chosen { lowered, derived, kernel } = chosen;
+pub fn findings(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Choice, errors: &mut Errors) -> Option<Findings> {
+    let Choice { lowered, derived, kernel } = chosen;
     let of = Subject { declaration, tree, lowered, derived };
     // What has no kinetic part at all is a term of a scene.
     if derived.limit.has_kinetic {

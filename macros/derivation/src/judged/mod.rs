@@ -20,7 +20,7 @@ mod momenta;
 mod places;
 pub mod verify;
 
-pub use choose::{Chosen, cheapest};
+pub use choose::{Choice, cheapest};
 pub use constraint::held;
 pub use continuous::{Equations, continuous, of_declared};
 pub use discretise::discretised;
@@ -28,4 +28,4 @@ pub use explain::terms;
 pub use findings::findings;
 pub use momenta::conserved;
 pub use places::{count, variables};
-pub use verify::{Findings, Held, Sureness};
+pub use verify::{ConstraintSlopes, Findings, Sureness};

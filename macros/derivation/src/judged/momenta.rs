@@ -6,22 +6,22 @@
 //! the same `η` for both; a vector that is seen asks for turns about it; a body as it is in space for none.
 
 use crate::declared::{Declaration, FieldKind};
-use crate::mathematics::derive::Seen;
+use crate::mathematics::derive::View;
 use crate::mathematics::symbolic::Variance;
 
 /// The sum of the spatial momenta of some bodies, or its component along a field.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Conserved {
+pub struct Invariant {
     pub bodies: Vec<usize>,
     pub along: Option<usize>,
 }
 
 /// Those of bodies that turn; each group of bodies that see each other has one, or none.
-pub fn conserved(declaration: &Declaration) -> Vec<Conserved> {
+pub fn conserved(declaration: &Declaration) -> Vec<Invariant> {
     // For each body the first of those that it is joined with.
     let mut first: Vec<usize> = (0..declaration.factors.len()).collect();
     for w in &declaration.advected {
-        if let Seen::Relative { of, from } = w.seen {
+        if let View::Relative { of, from } = w.seen {
             let (a, b) = (first[of], first[from]);
             first.iter_mut().filter(|body| **body == a || **body == b).for_each(|body| *body = a.min(b));
         }
@@ -31,8 +31,8 @@ pub fn conserved(declaration: &Declaration) -> Vec<Conserved> {
         let mut along = None;
         for (index, w) in declaration.advected.iter().enumerate().filter(|(_, w)| !w.is_given) {
             match w.seen {
-                Seen::Configuration(of) if bodies.contains(&of) => return None,
-                Seen::From(body) if bodies.contains(&body) => {
+                View::Configuration(of) if bodies.contains(&of) => return None,
+                View::From(body) if bodies.contains(&body) => {
                     let is_vector = match declaration.advected_kind(index) {
                         FieldKind::Vector(_) => true,
                         FieldKind::Advected(variance, _) => {
@@ -49,7 +49,7 @@ pub fn conserved(declaration: &Declaration) -> Vec<Conserved> {
                 _ => {}
             }
         }
-        Some(Conserved { bodies, along })
+        Some(Invariant { bodies, along })
     };
     (0..first.len()).filter(|&root| first[root] == root).filter_map(group).collect()
 }

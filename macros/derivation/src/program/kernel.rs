@@ -2,13 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::closed::{Beginning, Given, entries, with_lets, with_tangents};
+use super::closed::{Beginning, KnownEntries, entries, with_lets, with_tangents};
 use super::count::{Operations, count};
 use super::expand::expanded;
 use super::graph::{Graph, Input, Node, NodeId};
 use super::retraction::{denominator, rotation, translation};
 use super::scalarise::{Entries, Scalariser};
-use crate::mathematics::derive::{Cleared, Continuous, Derived, OfFactor, unit};
+use crate::mathematics::derive::{ClearedSystem, Continuous, Derivation, OfFactor, unit};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Expression, Rational, Stage, SymbolId, Symbols};
 
@@ -101,7 +101,7 @@ impl Kernel {
 }
 
 /// `tr(E_k W)` and the like for each generator: the components of a covector.
-pub fn components(graph: &mut Graph, derived: &Derived, given: &Given, covector: &Expression) -> Vec<NodeId> {
+pub fn components(graph: &mut Graph, derived: &Derivation, given: &KnownEntries, covector: &Expression) -> Vec<NodeId> {
     let mut given = given.clone();
     let mut of = |k| {
         for (factor, one) in derived.directions.factors.iter().enumerate() {
@@ -125,7 +125,7 @@ pub fn along_unit_vectors(
         let (zero, one) = (graph.zero(), graph.one());
         let along = Entries::new(3, 1, |at, _| if at == k { one } else { zero });
         let of_row = unit(row, rows, true, symbols).times(column, symbols);
-        Scalariser::new(graph, symbols, &Given::from([(direction, along)])).scalar(&of_row)
+        Scalariser::new(graph, symbols, &KnownEntries::from([(direction, along)])).scalar(&of_row)
     };
     places.map(entry).collect()
 }
@@ -155,7 +155,7 @@ pub fn along_directions(graph: &mut Graph, derived: &Continuous, rank: usize, te
 }
 
 /// The matrices of the velocities, where they have symbols of their own.
-fn with_velocities(graph: &mut Graph, derived: &Continuous) -> Given {
+fn with_velocities(graph: &mut Graph, derived: &Continuous) -> KnownEntries {
     let velocities = derived.velocities.iter();
     let matrices = velocities.filter_map(|velocity| Some((velocity.matrix?, velocity.components)));
     matrices.map(|(matrix, components)| (matrix, matrix_of(graph, &derived.group, components))).collect()
@@ -201,7 +201,7 @@ pub(super) fn generator(graph: &mut Graph, group: &Group, factor: usize, k: usiz
 }
 
 /// `Σ v_j E_j`.
-pub(super) fn velocity(graph: &mut Graph, derived: &Derived) -> Entries {
+pub(super) fn velocity(graph: &mut Graph, derived: &Derivation) -> Entries {
     matrix_of(graph, &derived.group, derived.directions.along)
 }
 
@@ -221,7 +221,7 @@ fn matrix_of(graph: &mut Graph, group: &Group, symbol: SymbolId) -> Entries {
 }
 
 /// A Jacobian, linear in `E_k` and `E_j`, row by row.
-pub fn square(graph: &mut Graph, derived: &Derived, given: &Given, bilinear: &Expression) -> Vec<NodeId> {
+pub fn square(graph: &mut Graph, derived: &Derivation, given: &KnownEntries, bilinear: &Expression) -> Vec<NodeId> {
     let dimension = derived.group.dimension();
     let varies = derived
         .closed
@@ -244,7 +244,7 @@ fn by_rows(dimension: usize, columns: &[Vec<NodeId>]) -> Vec<NodeId> {
     (0..dimension).flat_map(|k| columns.iter().filter_map(move |column| column.get(k).copied())).collect()
 }
 
-pub fn kernel(derived: &Derived) -> Kernel {
+pub fn kernel(derived: &Derivation) -> Kernel {
     let beginning = Beginning::new(derived);
     let mut graph = beginning.graph.clone();
     let kick_before = components(&mut graph, derived, &beginning.given, &derived.kick_before);
@@ -308,7 +308,7 @@ pub fn kernel(derived: &Derived) -> Kernel {
 }
 
 /// With what closed `let`s are at `F` and `w = F·w⁺`.
-fn after(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
+fn after(graph: &mut Graph, derived: &Derivation, mut given: KnownEntries) -> KnownEntries {
     if derived.closed.is_empty() {
         return given;
     }
@@ -322,10 +322,10 @@ fn after(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
 /// `D` by its entries, and `F = I + D`, of each factor.
 pub(super) fn by_increment(
     graph: &mut Graph,
-    derived: &Derived,
+    derived: &Derivation,
     mut entry: impl FnMut(&mut Graph, &OfFactor, usize, usize) -> NodeId,
-) -> Given {
-    let mut given = Given::new();
+) -> KnownEntries {
+    let mut given = KnownEntries::new();
     for (one, group) in derived.directions.factors.iter().zip(derived.group.factors()) {
         let (rows, columns) = group.shape();
         let small = Entries::new(rows, columns, |row, column| entry(graph, one, row, column));
@@ -336,7 +336,7 @@ pub(super) fn by_increment(
 }
 
 /// With `D⁻` by its entries, and `F⁻¹ = I + D⁻`.
-pub(super) fn with_inverse(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
+pub(super) fn with_inverse(graph: &mut Graph, derived: &Derivation, mut given: KnownEntries) -> KnownEntries {
     let factors = derived.directions.factors.iter().zip(derived.group.factors());
     for (one, group) in factors.filter(|(_, group)| !group.is_added) {
         let small = Entries::new(group.size, group.size, |row, column| {
@@ -357,7 +357,7 @@ fn plus_identity(graph: &mut Graph, small: &Entries) -> Entries {
 }
 
 /// `(h/2) (U(F) − a)` and its derivatives along `E_j`, with `F`, `D` and the `let`s given.
-fn system(graph: &mut Graph, derived: &Derived, given: &Given) -> Vec<NodeId> {
+fn system(graph: &mut Graph, derived: &Derivation, given: &KnownEntries) -> Vec<NodeId> {
     let target = target(graph, derived);
     let (mut outputs, jacobian) = if derived.closed.is_empty() {
         let scaled = |expression: &Expression| derived.half_step.clone().times(expression, &derived.symbols);
@@ -380,12 +380,12 @@ fn system(graph: &mut Graph, derived: &Derived, given: &Given) -> Vec<NodeId> {
     outputs
 }
 
-fn half_step(graph: &mut Graph, derived: &Derived) -> NodeId {
-    Scalariser::new(graph, &derived.symbols, &Given::new()).scalar(&derived.half_step)
+fn half_step(graph: &mut Graph, derived: &Derivation) -> NodeId {
+    Scalariser::new(graph, &derived.symbols, &KnownEntries::new()).scalar(&derived.half_step)
 }
 
 /// `(h/2) a`, once a step.
-fn target(graph: &mut Graph, derived: &Derived) -> Entries {
+fn target(graph: &mut Graph, derived: &Derivation) -> Entries {
     let half_step = half_step(graph, derived);
     let symbol = derived.directions.target;
     Entries::new(derived.group.dimension(), 1, |row, column| {
@@ -394,14 +394,14 @@ fn target(graph: &mut Graph, derived: &Derived) -> Entries {
     })
 }
 
-fn coordinates(graph: &mut Graph, derived: &Derived) -> Vec<NodeId> {
+fn coordinates(graph: &mut Graph, derived: &Derivation) -> Vec<NodeId> {
     let symbol = derived.directions.coordinates;
     let dimension = derived.group.dimension();
     (0..dimension).map(|row| graph.input(Input { symbol, row, column: 0 }, Stage::Iteration)).collect()
 }
 
 /// Residual and Jacobian of the cleared equation, nine and three; the denominator's node.
-fn cleared_system(graph: &mut Graph, derived: &Derived, cleared: &Cleared) -> (Vec<NodeId>, NodeId) {
+fn cleared_system(graph: &mut Graph, derived: &Derivation, cleared: &ClearedSystem) -> (Vec<NodeId>, NodeId) {
     let directions = &derived.directions;
     let y = coordinates(graph, derived);
     let d = denominator(graph, &y);
@@ -424,9 +424,9 @@ fn cleared_system(graph: &mut Graph, derived: &Derived, cleared: &Cleared) -> (V
 ///
 /// With them the part of the diamond that depends on `F`, if it is asked for, and the nodes that are left as they are
 /// when the system is multiplied out.
-fn retracted(graph: &mut Graph, derived: &Derived) -> (Vec<NodeId>, Vec<NodeId>, BTreeSet<NodeId>) {
+fn retracted(graph: &mut Graph, derived: &Derivation) -> (Vec<NodeId>, Vec<NodeId>, BTreeSet<NodeId>) {
     let y = coordinates(graph, derived);
-    let (mut given, mut tangents) = (Given::new(), Vec::new());
+    let (mut given, mut tangents) = (KnownEntries::new(), Vec::new());
     for (factor, (one, group)) in derived.directions.factors.iter().zip(derived.group.factors()).enumerate() {
         let y = &y[component_range(&derived.group, factor)];
         let (small, tangent) = if group.is_added { translation(graph, y) } else { rotation(graph, y) };

@@ -21,13 +21,13 @@ mod stages;
 mod tangent;
 mod terms;
 
-pub use closed::{Beginning, Given, with_values};
+pub use closed::{Beginning, KnownEntries, with_values};
 pub use count::count;
 pub use graph::{Graph, Input, Node, NodeId};
 pub use kernel::{
     Candidate, Kernel, along_directions, along_unit_vectors, components, diamond_matrices, kernel, square,
 };
 pub use scalarise::Scalariser;
-pub use stages::{Handed, Stages, needed};
+pub use stages::{Handover, Stages, needed};
 pub use tangent::{ByNumbers, Derivatives, Place, WeightedGradient};
 pub use terms::{Form, Outputs};

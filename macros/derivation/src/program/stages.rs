@@ -7,16 +7,16 @@ use super::kernel::Kernel;
 use crate::mathematics::symbolic::Stage;
 
 /// Values that one stage computes and a later one uses, with their places in an array.
-pub type Handed = BTreeMap<NodeId, usize>;
+pub type Handover = BTreeMap<NodeId, usize>;
 
 /// The outputs of a step, and what its stages hand on.
 pub struct Stages {
     /// The residual, then the Jacobian row by row.
     pub system: Vec<NodeId>,
     /// What is computed once.
-    pub constants: Handed,
+    pub constants: Handover,
     /// What is computed once a step.
-    pub terms: Handed,
+    pub terms: Handover,
 }
 
 impl Kernel {
@@ -36,7 +36,7 @@ impl Kernel {
 }
 
 /// The nodes of one stage that a later stage uses, in order.
-fn handed(graph: &Graph, outputs: &[NodeId], stage: Stage) -> Handed {
+fn handed(graph: &Graph, outputs: &[NodeId], stage: Stage) -> Handover {
     let is_literal = |id: NodeId| matches!(graph.node(id), Node::Constant(_));
     let crosses = |id: NodeId| graph.stage(id) == stage && !is_literal(id);
     let mut found: BTreeSet<NodeId> = outputs.iter().copied().filter(|&id| crosses(id)).collect();

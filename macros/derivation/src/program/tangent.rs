@@ -14,12 +14,12 @@
 
 use std::collections::BTreeMap;
 
-use super::closed::{Given, entries, with_lets};
+use super::closed::{KnownEntries, entries, with_lets};
 use super::gradient::{Gradient, gradient, slope};
 use super::graph::{Graph, Input, Node, NodeId};
 use super::kernel::{by_increment, components, generator, square, velocity, with_inverse};
 use super::scalarise::Entries;
-use crate::mathematics::derive::{Derived, Ends};
+use crate::mathematics::derive::{Derivation, Ends};
 use crate::mathematics::symbolic::{Rational, Stage, SymbolId};
 
 /// A number of the parameters, or of what is advected, with the entry that stands for it.
@@ -67,7 +67,7 @@ pub struct Derivatives {
 }
 
 impl Derivatives {
-    pub fn new(derived: &Derived, ends: &Ends, numbers: &[Vec<Place>; 2]) -> Self {
+    pub fn new(derived: &Derivation, ends: &Ends, numbers: &[Vec<Place>; 2]) -> Self {
         let mut linearisation = Linearisation::new(derived, ends);
         let blocks = linearisation.blocks();
         let by_numbers = numbers.each_ref().map(|places| linearisation.by_numbers(places));
@@ -82,23 +82,23 @@ impl Derivatives {
 
 /// The momenta at both ends of a step, to be differentiated.
 struct Linearisation<'a> {
-    derived: &'a Derived,
+    derived: &'a Derivation,
     ends: &'a Ends,
     graph: Graph,
     /// The components of `μ`, then those of `μ⁺`.
     momenta: Vec<NodeId>,
     /// `F` and `F⁻¹` by their entries.
-    increments: Given,
+    increments: KnownEntries,
 }
 
 /// The change of each input that changes.
 pub(super) type Changes = BTreeMap<NodeId, NodeId>;
 
 /// Outputs with their weights.
-type Weighted = Vec<(NodeId, NodeId)>;
+type Pairings = Vec<(NodeId, NodeId)>;
 
 impl<'a> Linearisation<'a> {
-    fn new(derived: &'a Derived, ends: &'a Ends) -> Self {
+    fn new(derived: &'a Derivation, ends: &'a Ends) -> Self {
         let mut graph = Graph::default();
         let given = by_increment(&mut graph, derived, |graph, one, row, column| {
             graph.input(Input { symbol: one.small, row, column }, Stage::Iteration)
@@ -150,7 +150,7 @@ impl<'a> Linearisation<'a> {
         (0..dimension).map(turned).collect()
     }
 
-    fn momenta_of_adjoint(&mut self) -> Weighted {
+    fn momenta_of_adjoint(&mut self) -> Pairings {
         let mut weighted = self.weighted(0, self.derived.directions.target);
         for (_, weight) in &mut weighted {
             *weight = self.graph.negate(*weight);
@@ -159,13 +159,13 @@ impl<'a> Linearisation<'a> {
         weighted
     }
 
-    fn kick(&mut self) -> Option<Weighted> {
+    fn kick(&mut self) -> Option<Pairings> {
         let change = self.derived.kick_derivative.as_ref()?;
         let velocity = velocity(&mut self.graph, self.derived);
         let second = self.derived.directions.factors.first().map(|one| (one.second, velocity));
         let change = components(&mut self.graph, self.derived, &second.into_iter().collect(), change);
-        let kick = components(&mut self.graph, self.derived, &Given::new(), &self.derived.kick_before);
-        let inertia = square(&mut self.graph, self.derived, &Given::new(), &self.derived.limit.inertia);
+        let kick = components(&mut self.graph, self.derived, &KnownEntries::new(), &self.derived.kick_before);
+        let inertia = square(&mut self.graph, self.derived, &KnownEntries::new(), &self.derived.limit.inertia);
         let weights = [self.derived.directions.target, self.derived.directions.coordinates];
         let outputs = [change.as_slice(), &kick, &inertia].concat();
         debug_assert!(self.are_free(weights, &outputs), "the weights are symbols of the kick");
@@ -227,7 +227,7 @@ impl<'a> Linearisation<'a> {
     }
 
     /// The components of one of the momenta with their weights.
-    fn weighted(&mut self, momentum: usize, weights: SymbolId) -> Weighted {
+    fn weighted(&mut self, momentum: usize, weights: SymbolId) -> Pairings {
         let dimension = self.derived.group.dimension();
         let components = self.momenta.iter().skip(momentum * dimension).take(dimension).copied().collect::<Vec<_>>();
         let weight = |(row, component)| (component, self.entry(weights, row, 0));
@@ -257,7 +257,7 @@ impl<'a> Linearisation<'a> {
     }
 
     fn displaced(&mut self, j: usize) -> Changes {
-        let mut given = Given::new();
+        let mut given = KnownEntries::new();
         for (factor, one) in self.derived.directions.factors.iter().enumerate() {
             let e = generator(&mut self.graph, &self.derived.group, factor, j);
             given.insert(one.first, negated(&mut self.graph, &e));

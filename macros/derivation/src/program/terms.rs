@@ -4,7 +4,7 @@ use super::closed::Beginning;
 use super::graph::{Graph, NodeId};
 use super::kernel::{components, square};
 use super::scalarise::Scalariser;
-use crate::mathematics::derive::Derived;
+use crate::mathematics::derive::Derivation;
 use crate::mathematics::symbolic::Expression;
 
 /// What the outputs make together.
@@ -22,21 +22,21 @@ pub type Outputs<T = Vec<NodeId>> = (Graph, T);
 
 impl Beginning {
     /// The outputs of one derived term.
-    pub fn term(&self, derived: &Derived, form: Form, expression: &Expression) -> Outputs {
+    pub fn term(&self, derived: &Derivation, form: Form, expression: &Expression) -> Outputs {
         let mut graph = self.graph.clone();
         let outputs = self.in_form(&mut graph, derived, form, expression);
         (graph, outputs)
     }
 
     /// Inertia, bias and potential of the limit at rest.
-    pub fn limit(&self, derived: &Derived) -> Outputs<[Vec<NodeId>; 3]> {
+    pub fn limit(&self, derived: &Derivation) -> Outputs<[Vec<NodeId>; 3]> {
         let (mut graph, limit) = (self.graph.clone(), &derived.limit);
         let parts = [(Form::Square, &limit.inertia), (Form::Vector, &limit.bias), (Form::Scalar, &limit.potential)];
         let outputs = parts.map(|(form, part)| self.in_form(&mut graph, derived, form, part));
         (graph, outputs)
     }
 
-    fn in_form(&self, graph: &mut Graph, derived: &Derived, form: Form, expression: &Expression) -> Vec<NodeId> {
+    fn in_form(&self, graph: &mut Graph, derived: &Derivation, form: Form, expression: &Expression) -> Vec<NodeId> {
         match form {
             Form::Scalar => vec![Scalariser::new(graph, &derived.symbols, &self.given).scalar(expression)],
             Form::Vector => components(graph, derived, &self.given, expression),

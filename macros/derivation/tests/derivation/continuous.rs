@@ -9,9 +9,9 @@ use crate::common::{HEAVY_TOP, expanded, is_refused, tokens, top};
 use crate::printed::{continuous_derivation, derivation, page};
 use liestep_derivation::declared::errors::Errors;
 use liestep_derivation::declared::{Declaration, Role, Tree, check, lower, parse};
-use liestep_derivation::judged::verify::{Motion, Unconfirmed};
+use liestep_derivation::judged::verify::{Motion, Objection};
 use liestep_derivation::judged::{self, Equations};
-use liestep_derivation::mathematics::derive::{self, Derived, Inverse};
+use liestep_derivation::mathematics::derive::{self, Derivation, Inverse};
 use liestep_derivation::mathematics::symbolic::{Expression, Rational, substitute};
 
 /// Example 3 of the thesis.
@@ -153,7 +153,7 @@ fn a_turned_sign_is_seen() {
             let mut changed = derived.clone();
             change(&mut changed);
             match Motion::new(&declaration, Some(&tree), &names, &changed).holds() {
-                Err(Unconfirmed::Disagrees(term)) => Some(term),
+                Err(Objection::Disagrees(term)) => Some(term),
                 found => found.map_or_else(|other| panic!("{other:?}"), |_| None),
             }
         };
@@ -188,7 +188,7 @@ fn the_limit_is_what_was_discretised() {
         let readings = lower::readings(&declaration, &discrete, &mut errors).expect("small");
         let chosen = judged::cheapest(readings, derive::derive, &declaration, &discrete, &mut errors).expect("derived");
         let own = equations(&arguments, PARAMETERS);
-        let disagrees = |derived: &Derived| {
+        let disagrees = |derived: &Derivation| {
             let motion = Motion::new(&declaration, None, &own.names, &own.derived);
             motion.rest_holds(&chosen.lowered.names, chosen.kernel.beginning.limit(derived)).is_err()
         };

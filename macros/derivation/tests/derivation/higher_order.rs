@@ -2,7 +2,7 @@
 
 use crate::common::{arguments_and_struct, derived};
 use liestep_derivation::mathematics::symbolic::Stage;
-use liestep_derivation::program::{Given, Graph, NodeId, count, kernel, with_values};
+use liestep_derivation::program::{Graph, KnownEntries, NodeId, count, kernel, with_values};
 
 const GEODESIC: &str = include_str!("../../../../examples/declarations/log_top.rs");
 const FOURTH: &str = include_str!("../../../../examples/declarations/fourth_order_top.rs");
@@ -43,7 +43,7 @@ fn a_gradient_costs_less_than_three_values_of_the_sixth_order_top() {
     let derived = derived(arguments, item);
     let mut graph = Graph::default();
     let lets = derived.closed.iter().map(|one| (one.symbol, &one.value));
-    let values = with_values(&mut graph, &derived.symbols, lets, Given::new());
+    let values = with_values(&mut graph, &derived.symbols, lets, KnownEntries::new());
     let nodes: Vec<NodeId> = values.values().flat_map(|entries| entries.all().to_vec()).collect();
     let value = count(&graph, &nodes, None).arithmetic;
     let (iteration, residual) = operations(SIXTH);

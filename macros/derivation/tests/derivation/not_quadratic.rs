@@ -88,7 +88,7 @@ fn what_isnt_quadratic_at_rest() {
     let readings = lower::readings(&declaration, &discrete, &mut errors).expect("small");
     let readings = readings.into_iter().map(|reading| equations.behind(reading)).collect();
     let chosen = judged::cheapest(readings, derive::derive, &declaration, &discrete, &mut errors).expect("derived");
-    let disagrees = |derived: &derive::Derived| {
+    let disagrees = |derived: &derive::Derivation| {
         let motion = Motion::new(&declaration, None, &equations.names, &equations.derived);
         motion.rest_holds(&chosen.lowered.names, chosen.kernel.beginning.limit(derived)).is_err()
     };

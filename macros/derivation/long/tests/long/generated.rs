@@ -20,8 +20,8 @@ use crate::common::{evaluated, is_refused, tokens};
 use crate::fuzz::{Mutation, mutated};
 use liestep_derivation::declared::errors::Errors;
 use liestep_derivation::declared::{Declaration, Name, Quadrature, Role, check, lower, parse};
-use liestep_derivation::judged::{Chosen, Held, cheapest, discretised, held};
-use liestep_derivation::mathematics::derive::{Derived, Seen, derive};
+use liestep_derivation::judged::{Choice, ConstraintSlopes, cheapest, discretised, held};
+use liestep_derivation::mathematics::derive::{Derivation, View, derive};
 use liestep_derivation::program::{Beginning, Input, Scalariser, components};
 use liestep_derivation::{MOST_WORK, staged};
 
@@ -102,11 +102,11 @@ fn environment(random: &mut Random, declaration: &Declaration, size: f64) -> Env
     for w in &declaration.advected {
         let is_added = |factor: usize| declaration.group.factor(factor).is_added;
         let value = match w.seen {
-            Seen::Configuration(of) | Seen::Relative { of, .. } if is_added(of) => {
+            View::Configuration(of) | View::Relative { of, .. } if is_added(of) => {
                 random.matrix(declaration.group.factor(of).dimension(), 1)
             }
-            Seen::Configuration(_) | Seen::Relative { .. } => exponential(&random.matrix(3, 1)),
-            Seen::From(_) => random.matrix(3, 1).scaled(1.5 + random.signed()),
+            View::Configuration(_) | View::Relative { .. } => exponential(&random.matrix(3, 1)),
+            View::From(_) => random.matrix(3, 1).scaled(1.5 + random.signed()),
         };
         env.insert(w.plain_name(), value);
     }
@@ -121,9 +121,9 @@ fn found(declaration: &Declaration, env: &Env) -> Option<Vec<f64>> {
         tree = discretised(declaration, &tree, asked, &mut errors)?;
     }
     let readings = lower::readings(declaration, &tree, &mut errors)?;
-    let Chosen { derived, lowered, kernel } = cheapest(readings, derive, declaration, &tree, &mut errors)?;
+    let Choice { derived, lowered, kernel } = cheapest(readings, derive, declaration, &tree, &mut errors)?;
     let Beginning { mut graph, given } = kernel.beginning;
-    let Derived { right_momentum, left_momentum, diamond, momentum, symbols, energy, .. } = &derived;
+    let Derivation { right_momentum, left_momentum, diamond, momentum, symbols, energy, .. } = &derived;
     let terms = [right_momentum, left_momentum, diamond, momentum];
     let terms = terms.map(|term| components(&mut graph, &derived, &given, term));
     let mut outputs: Vec<_> = (0..terms[3].len()).flat_map(|k| terms.each_ref().map(|term| term[k])).collect();
@@ -162,10 +162,10 @@ fn seen(declaration: &Declaration, env: &Env, places: &[Matrix; 4]) -> Env {
     let mut env = env.clone();
     for w in &declaration.advected {
         let value = match w.seen {
-            Seen::Configuration(of) => places[of].clone(),
-            Seen::Relative { of, from } if of % 2 == 1 => places[of].minus(&places[from]),
-            Seen::Relative { of, from } => places[from].transpose().times(&places[of]),
-            Seen::From(_) => continue,
+            View::Configuration(of) => places[of].clone(),
+            View::Relative { of, from } if of % 2 == 1 => places[of].minus(&places[from]),
+            View::Relative { of, from } => places[from].transpose().times(&places[of]),
+            View::From(_) => continue,
         };
         env.insert(w.plain_name(), value);
     }
@@ -175,7 +175,7 @@ fn seen(declaration: &Declaration, env: &Env, places: &[Matrix; 4]) -> Env {
 /// The slopes of a constraint, and what they should be.
 fn slopes(random: &mut Random, declaration: &Declaration, text: &Expr, env: &Env) -> Option<[Vec<f64>; 2]> {
     let mut errors = Errors::default();
-    let Held { lowered, graph, entries, .. } =
+    let ConstraintSlopes { lowered, graph, entries, .. } =
         held(declaration, check::functions(declaration, &mut errors)?, &mut errors)?;
     let places: [Matrix; 4] = std::array::from_fn(|factor| {
         let any = random.matrix(3, 1);

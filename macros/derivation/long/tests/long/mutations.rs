@@ -17,9 +17,9 @@ use liestep_derivation::judged::verify::identities::{Identities, Terms};
 use liestep_derivation::judged::verify::number::Number;
 use liestep_derivation::judged::verify::residue::Residue;
 use liestep_derivation::judged::verify::sample::{Element, Sample};
-use liestep_derivation::judged::verify::{Findings, Row, Subject, Sureness, Unconfirmed, constraint, verify};
-use liestep_derivation::judged::{self, Chosen, cheapest, held};
-use liestep_derivation::mathematics::derive::{Derived, Seen, derive};
+use liestep_derivation::judged::verify::{Findings, Objection, Row, Subject, Sureness, constraint, verify};
+use liestep_derivation::judged::{self, Choice, cheapest, held};
+use liestep_derivation::mathematics::derive::{Derivation, View, derive};
 use liestep_derivation::mathematics::symbolic::{Expression, Rational, SymbolId, degree};
 use liestep_derivation::program::{ByNumbers, Derivatives, Input, Kernel, NodeId, WeightedGradient, kernel};
 
@@ -27,7 +27,7 @@ use liestep_derivation::program::{ByNumbers, Derivatives, Input, Kernel, NodeId,
 const ERRORS: [(i128, i128); 2] = [(1, 10_000_000), (1, 1 << 50)];
 
 /// What is derived, with each of its own.
-type Term = (&'static str, fn(&mut Derived) -> Option<&mut Expression>);
+type Term = (&'static str, fn(&mut Derivation) -> Option<&mut Expression>);
 
 const TERMS: [Term; 15] = [
     ("right momentum map", |d| Some(&mut d.right_momentum)),
@@ -74,13 +74,13 @@ fn assert_all_refused(table: &Table) {
     assert!(table.values().all(|[_, tried, refused]| tried == refused), "some pass");
 }
 
-struct Prepared {
+struct Case {
     declaration: Declaration,
     tree: Rc<Tree>,
-    chosen: Chosen,
+    chosen: Choice,
 }
 
-impl Prepared {
+impl Case {
     /// `None` of what has no step.
     fn new(role: Role, arguments: &TokenStream, item: &TokenStream) -> Option<Self> {
         let mut errors = Errors::default();
@@ -99,16 +99,16 @@ impl Prepared {
         Some(Self { declaration, tree, chosen })
     }
 
-    fn subject<'a>(&'a self, derived: &'a Derived) -> Subject<'a> {
+    fn subject<'a>(&'a self, derived: &'a Derivation) -> Subject<'a> {
         Subject { declaration: &self.declaration, tree: &self.tree, lowered: &self.chosen.lowered, derived }
     }
 
-    fn found(&self, derived: &Derived, kernel: &Kernel) -> Result<Findings, Unconfirmed> {
+    fn found(&self, derived: &Derivation, kernel: &Kernel) -> Result<Findings, Objection> {
         verify(self.subject(derived), kernel)
     }
 
     /// All that is emitted, at a point.
-    fn emitted(&self, derived: &Derived, kernel: &Kernel) -> Vec<Residue> {
+    fn emitted(&self, derived: &Derivation, kernel: &Kernel) -> Vec<Residue> {
         let (mut number, group) = (Residue::stream(9), &self.declaration.group);
         let element = Element::by_cayley(group, &mut number).expect("points");
         let sample: Sample<Residue> = Sample::at(self.subject(derived), element, &mut number);
@@ -116,11 +116,11 @@ impl Prepared {
     }
 
     /// Whether a wrong term is refused; nothing where nothing of it is emitted.
-    fn is_refused(&self, change: impl Fn(&mut Derived)) -> Option<bool> {
+    fn is_refused(&self, change: impl Fn(&mut Derivation)) -> Option<bool> {
         let mut derived = self.chosen.derived.clone();
         change(&mut derived);
         let kernel = kernel(&derived);
-        let is_refused = matches!(self.found(&derived, &kernel), Err(Unconfirmed::Disagrees(_)));
+        let is_refused = matches!(self.found(&derived, &kernel), Err(Objection::Disagrees(_)));
         let reaches = || self.emitted(&derived, &kernel) != self.emitted(&self.chosen.derived, &self.chosen.kernel);
         (is_refused || reaches()).then_some(is_refused)
     }
@@ -133,7 +133,7 @@ impl Prepared {
         }
         let bodies = self.declaration.advected.iter().zip(&self.chosen.lowered.declared.advected);
         for (w, carried) in bodies.filter(|(_, carried)| term.contains(carried.symbol)) {
-            if matches!(w.seen, Seen::Relative { .. } | Seen::Configuration(_)) {
+            if matches!(w.seen, View::Relative { .. } | View::Configuration(_)) {
                 let id = carried.symbol;
                 places.push((Some("what a body sees"), Box::new(move |_: usize, degree: Degrees| degree(id) > 0)));
             }
@@ -171,7 +171,7 @@ impl Prepared {
 
     /// Each entry of each stage.
     fn check_stages(&self) {
-        let Chosen { derived, kernel, .. } = &self.chosen;
+        let Choice { derived, kernel, .. } = &self.chosen;
         for (stage, of) in STAGES.into_iter().enumerate() {
             for at in 0..of(&mut kernel.clone()).len() {
                 let mut wrong = kernel.clone();
@@ -180,7 +180,7 @@ impl Prepared {
                 of(&mut wrong)[at] = wrong.graph.add(node, error);
                 let found = self.found(derived, &wrong).map(|verified| verified.sureness);
                 assert!(
-                    matches!(found, Err(Unconfirmed::Disagrees(_))),
+                    matches!(found, Err(Objection::Disagrees(_))),
                     "entry {at} of stage {stage} of {}: {found:?}",
                     self.declaration.item.ident
                 );
@@ -200,8 +200,8 @@ fn larger(term: &Expression, error: Rational, is_meant: &Place) -> Expression {
     sum
 }
 
-fn prepared(role: Role, arguments: &str, item: &str) -> Prepared {
-    Prepared::new(role, &tokens(arguments), &tokens(item)).expect("a step")
+fn prepared(role: Role, arguments: &str, item: &str) -> Case {
+    Case::new(role, &tokens(arguments), &tokens(item)).expect("a step")
 }
 
 #[test]
@@ -289,7 +289,7 @@ fn small_errors_of_gradients() {
         })
     };
     for (at, (term, place)) in DERIVATIVES.into_iter().enumerate() {
-        assert_eq!(by(Rational::new(1, 1 << 50), place), Err(Unconfirmed::Disagrees(term)), "{at}");
+        assert_eq!(by(Rational::new(1, 1 << 50), place), Err(Objection::Disagrees(term)), "{at}");
     }
     // Twice as much for either number of an entry beside the diagonal, and the inertia of a kick with the other sign.
     let at =
@@ -301,13 +301,13 @@ fn small_errors_of_gradients() {
             all.by_numbers[0][at].1 = all.by_numbers[0][at].1.iter().map(twice).collect();
         }
     });
-    assert_eq!(doubled, Err(Unconfirmed::Disagrees("derivative by the parameters")));
+    assert_eq!(doubled, Err(Objection::Disagrees("derivative by the parameters")));
     let turned = found(&|all| {
         let at = at(&of_kick(all).by_numbers, 4);
         let node = of_kick(all).by_numbers[0][at].1[0];
         of_kick(all).by_numbers[0][at].1[0] = all.graph.negate(node);
     });
-    assert_eq!(turned, Err(Unconfirmed::Disagrees("gradient of a kick")));
+    assert_eq!(turned, Err(Objection::Disagrees("gradient of a kick")));
     let right = found(&|_| ());
     assert!(matches!(right, Ok(Sureness::Certified(100..))), "{right:?}");
 }
@@ -336,7 +336,7 @@ fn check_slopes(declaration: &Declaration, trees: &[Rc<Tree>]) -> usize {
                 let entry = &mut held.entries[body][by][at];
                 *entry = held.graph.add(*entry, error);
                 let found = constraint(declaration, &held).map(|(sureness, _)| sureness);
-                assert_eq!(found, Err(Unconfirmed::Disagrees("slope")), "{body} {by} {at}");
+                assert_eq!(found, Err(Objection::Disagrees("slope")), "{body} {by} {at}");
             }
         }
     }
@@ -370,7 +370,7 @@ fn check_everywhere(share: usize, most: usize) -> usize {
             let tried = check_slopes(&declaration, &check::functions(&declaration, &mut errors).expect("functions"));
             let row = table.entry("slope of a constraint").or_default();
             *row = [row[0] + 1, row[1] + tried, row[2] + tried];
-        } else if let Some(prepared) = Prepared::new(role, &arguments, &item) {
+        } else if let Some(prepared) = Case::new(role, &arguments, &item) {
             let found = prepared.found(&prepared.chosen.derived, &prepared.chosen.kernel);
             assert!(found.is_ok(), "{name}: {:?}", found.err());
             if Element::by_cayley(&prepared.declaration.group, &mut Residue::stream(1)).is_some() {

@@ -65,14 +65,14 @@ pub fn name_of_own_group(tokens: &TokenStream) -> Option<Ident> {
 }
 
 /// `group = Name!`: the arguments, and what stands behind some keys.
-pub struct Asked {
+pub struct Request {
     pub group: Path,
     pub root: Option<Path>,
     pub arguments: TokenStream,
 }
 
 /// The group that is to be asked for its generators, if there is one, and if it hasn't answered.
-pub fn asked(arguments: &TokenStream) -> Option<Asked> {
+pub fn asked(arguments: &TokenStream) -> Option<Request> {
     let tokens: Vec<TokenTree> = arguments.clone().into_iter().collect();
     let is = |token: &TokenTree, mark: char| matches!(token, TokenTree::Punct(found) if found.as_char() == mark);
     let path = |tokens: &[TokenTree]| Path::parse_mod_style.parse2(tokens.iter().cloned().collect()).ok();
@@ -86,5 +86,5 @@ pub fn asked(arguments: &TokenStream) -> Option<Asked> {
             _ => {}
         }
     }
-    group.map(|group| Asked { group, root, arguments: arguments.clone() })
+    group.map(|group| Request { group, root, arguments: arguments.clone() })
 }

@@ -19,7 +19,7 @@ use super::sample::{along_motion, exponentials, moved};
 use super::series::Series;
 use super::value::Value;
 use super::{
-    SAMPLES, Sureness, Unconfirmed, Values, algebra, dot, evaluated, increments, over, parameter, parameters, shares,
+    Objection, SAMPLES, Sureness, Values, algebra, dot, evaluated, increments, over, parameter, parameters, shares,
     stream, velocities,
 };
 use crate::declared::{Declaration, FieldKind, Name, Tree};
@@ -154,7 +154,7 @@ impl<'a> Motion<'a> {
     }
 
     /// How sure it is that all equations hold.
-    pub fn holds(&self) -> Result<Sureness, Unconfirmed> {
+    pub fn holds(&self) -> Result<Sureness, Objection> {
         let degrees = |same: &mut Same<Degree>| {
             let mut number = Degree::stream();
             self.holds_at(&self.point_of_degrees(&mut number), number, same)
@@ -172,7 +172,7 @@ impl<'a> Motion<'a> {
         point: &Values<T>,
         mut number: impl FnMut() -> T,
         same: &mut Same<T>,
-    ) -> Result<(), Unconfirmed> {
+    ) -> Result<(), Objection> {
         let group = self.group();
         let eta: Vec<T> = group.generators.iter().map(|_| number()).collect();
         let at = |outputs: &[NodeId]| self.values(outputs, point);
@@ -209,7 +209,7 @@ impl<'a> Motion<'a> {
         &self,
         names: &BTreeMap<Name, SymbolId>,
         (graph, limit): Outputs<[Vec<NodeId>; 3]>,
-    ) -> Result<Sureness, Unconfirmed> {
+    ) -> Result<Sureness, Objection> {
         let limit = limit.concat();
         let degrees = |same: &mut Same<Degree>| {
             let point = self.point_of_degrees(&mut Degree::stream());
@@ -226,7 +226,7 @@ impl<'a> Motion<'a> {
         point: &Values<T>,
         (names, graph, limit): (&BTreeMap<Name, SymbolId>, &Graph, &[NodeId]),
         same: &mut Same<T>,
-    ) -> Result<(), Unconfirmed> {
+    ) -> Result<(), Objection> {
         let mut here = self.values(&[self.hessian.as_slice(), &self.momentum, &self.lagrangian].concat(), point);
         here.last_mut().into_iter().for_each(|l| *l = -*l);
         let mut pairs = here.into_iter().zip(evaluated(graph, limit, &inputs(names, point)));

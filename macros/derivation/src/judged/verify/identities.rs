@@ -14,13 +14,13 @@ use super::number::Number;
 use super::residue::Residue;
 use super::sample::{Element, Sample, Subject, exponentials, products};
 use super::value::Value;
-use super::{Unconfirmed, Values, algebra, components_of, dot, evaluated, evaluated_from, increments, shares};
+use super::{Objection, Values, algebra, components_of, dot, evaluated, evaluated_from, increments, shares};
 use crate::declared::{FieldKind, Name, Role};
 use crate::judged::places::{places, shape, variables};
-use crate::mathematics::derive::Derived;
+use crate::mathematics::derive::Derivation;
 use crate::mathematics::symbolic::{Rational, Stage, SymbolId};
 use crate::program::{
-    Beginning, ByNumbers, Derivatives, Graph, Handed, Kernel, NodeId, Outputs, Scalariser, Stages, WeightedGradient,
+    Beginning, ByNumbers, Derivatives, Graph, Handover, Kernel, NodeId, Outputs, Scalariser, Stages, WeightedGradient,
     components, square,
 };
 
@@ -28,7 +28,7 @@ use crate::program::{
 type Inputs<T> = BTreeMap<SymbolId, Value<T>>;
 
 /// Compares what was found with what is expected, of a term.
-pub type Same<'a, T> = dyn FnMut(&'static str, T, T) -> Result<(), Unconfirmed> + 'a;
+pub type Same<'a, T> = dyn FnMut(&'static str, T, T) -> Result<(), Objection> + 'a;
 
 /// The derived terms as operations.
 pub struct Terms {
@@ -44,7 +44,7 @@ pub struct Terms {
 }
 
 impl Terms {
-    fn new(derived: &Derived, role: Role, Beginning { mut graph, given }: Beginning) -> Self {
+    fn new(derived: &Derivation, role: Role, Beginning { mut graph, given }: Beginning) -> Self {
         let jacobian = square(&mut graph, derived, &given, &derived.jacobian);
         let momentum = components(&mut graph, derived, &given, &derived.momentum);
         let none = Self { momentum, jacobian, right: vec![], left: vec![], diamond: vec![], energy: None, graph };
@@ -93,14 +93,14 @@ impl<T: Number> Point<'_, T> {
         matrix: &[T],
         along: &[Dual<T>],
         same: &mut Same<T>,
-    ) -> Result<(), Unconfirmed> {
+    ) -> Result<(), Objection> {
         let mut rows = matrix.chunks(along.len()).zip(along);
         rows.try_for_each(|(row, one)| same(term, dot(row, &self.direction), one.slope))
     }
 }
 
 /// Along the direction of a point, what the declaration says.
-struct Declared<T> {
+struct DeclaredValues<T> {
     momentum: T,
     /// At the end of the step.
     left: T,
@@ -140,7 +140,7 @@ impl<'a> Identities<'a> {
         sample: &Sample<T>,
         mut number: impl FnMut() -> T,
         same: &mut Same<T>,
-    ) -> Result<(), Unconfirmed> {
+    ) -> Result<(), Objection> {
         let group = &self.of.derived.group;
         let mut vector = || group.generators.iter().map(|_| number()).collect::<Vec<T>>();
         let (direction, target, weights) = (vector(), vector(), [vector(), vector()]);
@@ -162,7 +162,7 @@ impl<'a> Identities<'a> {
     }
 
     /// The declared work along the direction, of displacements at either end alone, which is that of both.
-    fn declared_work<T: Number>(&self, point: &Point<T>, same: &mut Same<T>) -> Result<Declared<T>, Unconfirmed> {
+    fn declared_work<T: Number>(&self, point: &Point<T>, same: &mut Same<T>) -> Result<DeclaredValues<T>, Objection> {
         let group = &self.of.derived.group;
         let work = |before: T, after: T| {
             let mut values = point.sample.values.clone();
@@ -175,11 +175,15 @@ impl<'a> Identities<'a> {
         };
         let (before, after) = (work(T::ONE, T::ZERO), work(T::ZERO, T::ONE));
         same("force of both displacements", work(T::ONE, T::ONE), before + after)?;
-        Ok(Declared { momentum: -before, left: after })
+        Ok(DeclaredValues { momentum: -before, left: after })
     }
 
     /// Both momentum maps, the diamond and the energy are derivatives of the declared Lagrangian.
-    fn lagrangian_holds<T: Number>(&self, point: &Point<T>, same: &mut Same<T>) -> Result<Declared<T>, Unconfirmed> {
+    fn lagrangian_holds<T: Number>(
+        &self,
+        point: &Point<T>,
+        same: &mut Same<T>,
+    ) -> Result<DeclaredValues<T>, Objection> {
         let (group, dual) = (&self.of.derived.group, &point.dual);
         let [forwards, backwards] = &point.exponentials;
         let at_increment = |f: &[Value<Dual<T>>]| {
@@ -205,16 +209,16 @@ impl<'a> Identities<'a> {
         for &found in energy {
             same("discrete energy", found, -self.at(&at_step).slope)?;
         }
-        Ok(Declared { momentum: right + carried, left })
+        Ok(DeclaredValues { momentum: right + carried, left })
     }
 
     /// The momentum is what the declaration says, and the Jacobian its derivative; returns the momentum.
     fn momentum_holds<T: Number>(
         &self,
         point: &Point<T>,
-        declared: &Declared<T>,
+        declared: &DeclaredValues<T>,
         same: &mut Same<T>,
-    ) -> Result<Vec<T>, Unconfirmed> {
+    ) -> Result<Vec<T>, Objection> {
         let (graph, dual) = (&self.terms.graph, &point.dual);
         let along = evaluated(graph, &self.terms.momentum, &dual.inputs_at(&point.turned, &dual.values));
         let momentum: Vec<T> = along.iter().map(|one| one.value).collect();
@@ -230,13 +234,13 @@ impl<'a> Identities<'a> {
         &self,
         point: &Point<T>,
         momentum: &[T],
-        declared: &Declared<T>,
+        declared: &DeclaredValues<T>,
         same: &mut Same<T>,
-    ) -> Result<(), Unconfirmed> {
+    ) -> Result<(), Objection> {
         let (sample, kernel) = (point.sample, self.kernel);
         // The solve is for `F` in `U(F) = a` with `a = μ + k₀`, which mustn't have it.
         if kernel.kick_before.iter().any(|&kick| kernel.graph.stage(kick) > Stage::Step) {
-            return Err(Unconfirmed::Disagrees("kick before the solve"));
+            return Err(Objection::Disagrees("kick before the solve"));
         }
         let (dimension, group) = (momentum.len(), &self.of.derived.group);
         let Element { matrices, inverses, coordinates } = &sample.element;
@@ -287,7 +291,7 @@ impl<'a> Identities<'a> {
             let own = inputs.iter().filter(|(id, _)| is_meant(self.of.derived.symbols.get(**id).stage));
             own.map(|(id, value)| (*id, value.clone())).collect()
         };
-        let numbers = |handed: &Handed, inputs: Inputs<T>, given: &BTreeMap<NodeId, T>| -> BTreeMap<NodeId, T> {
+        let numbers = |handed: &Handover, inputs: Inputs<T>, given: &BTreeMap<NodeId, T>| -> BTreeMap<NodeId, T> {
             let nodes: Vec<NodeId> = handed.keys().copied().collect();
             let numbers = evaluated_from(graph, &nodes, &inputs, given);
             handed.iter().map(|(&id, &place)| (id, numbers[place])).collect()
@@ -332,10 +336,10 @@ impl<'a> Identities<'a> {
         &self,
         point: &Point<T>,
         momentum: &[T],
-        declared: &Declared<T>,
+        declared: &DeclaredValues<T>,
         number: &mut impl FnMut() -> T,
         same: &mut Same<T>,
-    ) -> Result<(), Unconfirmed> {
+    ) -> Result<(), Objection> {
         let Some(all) = &self.derivatives else { return Ok(()) };
         let (dual, direction, [u, p], [forwards, backwards]) =
             (&point.dual, &point.direction, &point.weights, &point.exponentials);

@@ -75,7 +75,7 @@ use crate::mathematics::symbolic::{Rational, SymbolId};
 use crate::program::{Graph, Input, Kernel, Node, NodeId};
 
 pub use cayley::{is_cayley_coordinates, nilpotency};
-pub use constraint::Held;
+pub use constraint::ConstraintSlopes;
 pub use constraint::{Row, constraint};
 pub use continuous::Motion;
 use evaluation::Evaluation;
@@ -83,7 +83,7 @@ use identities::{Identities, Terms};
 pub use inertia::{KineticPart, kinetic_part};
 use number::Number;
 pub use orders::{TermMistake, not_smooth_at_identity, term_mistakes, without_value};
-pub use outcome::{Findings, Sureness, Unconfirmed};
+pub use outcome::{Findings, Objection, Sureness};
 pub use sample::Subject;
 use sample::{Element, Sample};
 use value::Value;
@@ -100,21 +100,19 @@ fn over<T: Number, U>(values: &Values<T>, of: impl Fn(T) -> U) -> Values<U> {
 }
 
 /// Checks all that was derived. The error is the first term that disagrees.
-pub fn verify(of: Subject, kernel: &Kernel) -> Result<Findings, Unconfirmed> {
+pub fn verify(of: Subject, kernel: &Kernel) -> Result<Findings, Objection> {
     // Whether it has a value is asked of real numbers: the field has roots of all.
     if Sample::draws(of).next().is_none() {
-        return Err(Unconfirmed::NoValue);
+        return Err(Objection::NoValue);
     }
     let identities = Identities::new(of, kernel);
     let (sureness, reversed) = identities.confirmed()?;
     if sureness != Sureness::Multiple && !identities.are_smooth() {
-        return Err(Unconfirmed::NotSmooth);
+        return Err(Objection::NotSmooth);
     }
     let self_adjointness = match of.declaration.role {
         Role::Force => SelfAdjointness::No,
-        _ => {
-            reversal::self_adjointness(reversed, of.derived.adjoint_defect.is_zero()).map_err(Unconfirmed::Disagrees)?
-        }
+        _ => reversal::self_adjointness(reversed, of.derived.adjoint_defect.is_zero()).map_err(Objection::Disagrees)?,
     };
     let Identities { stages, terms: Terms { graph, jacobian, .. }, derivatives, .. } = identities;
     let (jacobian, hypotheses) = ((graph, jacobian), Vec::new());

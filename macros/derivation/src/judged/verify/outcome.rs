@@ -5,7 +5,7 @@ use crate::program::{Derivatives, Outputs, Stages};
 
 /// The reason why a derivation, or its expression, isn't confirmed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unconfirmed {
+pub enum Objection {
     /// A derived term disagrees with the declaration.
     Disagrees(&'static str),
     /// The declaration has no value at a point, or at any of the points drawn.

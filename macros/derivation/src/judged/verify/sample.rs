@@ -12,9 +12,9 @@ use super::{
     DRAWS, Values, algebra, cayley, displacements, exponential, increments, over, parameters, shares, stream,
     translation, velocities,
 };
-use crate::declared::lower::Lowered;
+use crate::declared::lower::Reading;
 use crate::declared::{Declaration, FieldKind, Name, Role, Tree};
-use crate::mathematics::derive::{Derived, Seen};
+use crate::mathematics::derive::{Derivation, View};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId, Variance};
 
@@ -121,8 +121,8 @@ fn cube<T: Number>(x: &Value<T>) -> Option<T> {
 pub struct Subject<'a> {
     pub declaration: &'a Declaration,
     pub tree: &'a Rc<Tree>,
-    pub lowered: &'a Lowered,
-    pub derived: &'a Derived,
+    pub lowered: &'a Reading,
+    pub derived: &'a Derivation,
 }
 
 /// Numbers for all names.
@@ -247,13 +247,13 @@ pub fn moved<T: Number>(declaration: &Declaration, values: &Values<T>, [g, inver
     for (index, advected) in declaration.advected.iter().enumerate() {
         let Some(w) = values.get_mut(&Name::Advected(index)) else { continue };
         *w = match advected.seen {
-            Seen::Relative { of, from } if group.factor(of).is_added => {
+            View::Relative { of, from } if group.factor(of).is_added => {
                 added(g, from).plus(w).plus(&added(inverse, of))
             }
-            Seen::Configuration(of) if group.factor(of).is_added => w.plus(&added(inverse, of)),
-            Seen::Relative { of, from } => g[from].times(w).times(&inverse[of]),
-            Seen::Configuration(of) => w.times(&inverse[of]),
-            Seen::From(factor) => {
+            View::Configuration(of) if group.factor(of).is_added => w.plus(&added(inverse, of)),
+            View::Relative { of, from } => g[from].times(w).times(&inverse[of]),
+            View::Configuration(of) => w.times(&inverse[of]),
+            View::From(factor) => {
                 let (g, inverse) = (&g[factor], &inverse[factor]);
                 match declaration.advected_kind(index).variance() {
                     Variance::Vector => g.times(w),

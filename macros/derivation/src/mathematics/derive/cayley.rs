@@ -11,7 +11,7 @@ use crate::mathematics::symbolic::{Expression, Rational, SymbolId, Variations, d
 
 /// `(h/2) Dⁿ (U − a)`, linear in `E_k`, and its variation along `δy`.
 #[derive(Clone, Debug)]
-pub struct Cleared {
+pub struct ClearedSystem {
     pub residual: Expression,
     pub jacobian: Expression,
     /// `n`.
@@ -21,7 +21,7 @@ pub struct Cleared {
 /// Beyond this many terms the retracted form is surely cheaper, and expanding would take long.
 const MOST_TERMS: usize = 100;
 
-pub(super) fn cleared(context: &Context, unknown: &Expression) -> Option<Cleared> {
+pub(super) fn cleared(context: &Context, unknown: &Expression) -> Option<ClearedSystem> {
     let directions = context.directions;
     let &[factor] = directions.factors.as_slice() else { return None };
     if !context.declared.group.is_so3
@@ -52,7 +52,7 @@ pub(super) fn cleared(context: &Context, unknown: &Expression) -> Option<Cleared
     let delta_d = context.product(&y.transpose(context.symbols), &delta).scaled(Rational::integer(2));
     let variations = Variations::from([(directions.coordinates, delta), (directions.denominator, delta_d)]);
     let jacobian = variation(&residual, &variations, context.symbols);
-    Some(Cleared { residual, jacobian, power: power.unsigned_abs() })
+    Some(ClearedSystem { residual, jacobian, power: power.unsigned_abs() })
 }
 
 /// Each `F` becomes the four terms of `(2/D − 1) I + (2 yyᵀ + 2 ŷ)/D`.

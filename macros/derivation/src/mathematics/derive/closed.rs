@@ -26,7 +26,7 @@ pub struct Let {
 
 /// A closed `let` with its derivatives.
 #[derive(Clone, Debug)]
-pub struct Closed {
+pub struct ClosedLet {
     pub symbol: SymbolId,
     pub value: Expression,
     /// `δv`.
@@ -42,7 +42,7 @@ pub struct Closed {
 }
 
 /// The symbols that each `let` adds, and `L`.
-pub(super) fn multipliers(lets: &[Let], l_d: &Expression, symbols: &mut Symbols) -> (Vec<Closed>, Expression) {
+pub(super) fn multipliers(lets: &[Let], l_d: &Expression, symbols: &mut Symbols) -> (Vec<ClosedLet>, Expression) {
     let mut closed = Vec::new();
     for Let { symbol, value } in lets {
         let (name, shape, stage) = {
@@ -53,7 +53,7 @@ pub(super) fn multipliers(lets: &[Let], l_d: &Expression, symbols: &mut Symbols)
         let (direction, multiplier) = (add("δ"), add("λ_"));
         let (tangent, multiplier_tangent) = (add("∂"), add("∂λ_"));
         let zero = || Expression::zero((1, 1));
-        closed.push(Closed {
+        closed.push(ClosedLet {
             symbol: *symbol,
             value: value.clone(),
             direction,
@@ -76,7 +76,7 @@ pub(super) fn multipliers(lets: &[Let], l_d: &Expression, symbols: &mut Symbols)
 }
 
 /// Fills in what varies along `E_j F`.
-pub(super) fn tangents(context: &Context, closed: &mut [Closed]) {
+pub(super) fn tangents(context: &Context, closed: &mut [ClosedLet]) {
     let mut varied = forwards(context, &[]);
     for one in closed.iter_mut() {
         one.tangent.1 = variation(&one.value, &varied, context.symbols);
@@ -95,7 +95,7 @@ pub(super) fn tangents(context: &Context, closed: &mut [Closed]) {
 }
 
 /// `δF = E_j F` with what follows for the `let`s and the multipliers.
-pub(super) fn forwards(context: &Context, closed: &[Closed]) -> Variations {
+pub(super) fn forwards(context: &Context, closed: &[ClosedLet]) -> Variations {
     let increments = context.declared.increments.iter().enumerate();
     let mut variations: Variations =
         increments.map(|(factor, &increment)| (increment, context.turned(factor, &context.second(factor)))).collect();

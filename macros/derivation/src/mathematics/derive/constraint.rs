@@ -4,7 +4,7 @@
 //! G_R η = d/ds g(…, exp(sη̂) R, …)          G_x ξ = d/ds g(…, x + sξ, …)
 //! ```
 
-use super::Seen;
+use super::View;
 use crate::mathematics::symbolic::{Expression, Stage, Structure, SymbolId, Symbols, Variations, variation};
 
 /// The symbols of where a body is.
@@ -26,7 +26,7 @@ impl Body {
     }
 }
 
-impl Seen {
+impl View {
     /// What two bodies, each of which turns by its first factor and is shifted by its second, see at their places; of a
     /// field of the symbol. Nothing where the field is missing.
     pub fn at(self, bodies: &[Body; 2], field: Option<SymbolId>, symbols: &Symbols) -> Option<Expression> {

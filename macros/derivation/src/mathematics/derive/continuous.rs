@@ -11,7 +11,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Carried, Declared, Derived, Refusal, Seen, action, unit};
+use super::{AdvectedSymbol, DeclaredFunction, Derivation, Refusal, View, action, unit};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{
     Expression, Rational, Stage, Structure, SymbolId, Symbols, Variations, substitute, variation,
@@ -19,7 +19,7 @@ use crate::mathematics::symbolic::{
 
 /// A continuous Lagrangian with the symbols that it is written in.
 #[derive(Clone, Debug)]
-pub struct DeclaredContinuous {
+pub struct ContinuousLagrangian {
     pub group: Group,
     pub symbols: Symbols,
     /// `l(ξ, w)`.
@@ -27,7 +27,7 @@ pub struct DeclaredContinuous {
     /// `ξ`, one for each factor of the group.
     pub velocities: Vec<Element>,
     /// The advected parameters `w`.
-    pub advected: Vec<Carried>,
+    pub advected: Vec<AdvectedSymbol>,
 }
 
 /// An element of the algebra of a factor: its velocity, or a direction along which the velocity is varied.
@@ -90,7 +90,7 @@ pub struct Continuous {
     pub symbols: Symbols,
     /// One for each factor of the group, as all of these.
     pub velocities: Vec<Element>,
-    pub advected: Vec<Carried>,
+    pub advected: Vec<AdvectedSymbol>,
     /// `η` and `ζ`.
     pub directions: Vec<[Element; 2]>,
     pub lagrangian: Expression,
@@ -136,8 +136,8 @@ impl Continuous {
 }
 
 /// Derives everything.
-pub fn continuous(declared: DeclaredContinuous) -> Result<Continuous, Refusal> {
-    let DeclaredContinuous { group, mut symbols, expression, velocities, advected } = declared;
+pub fn continuous(declared: ContinuousLagrangian) -> Result<Continuous, Refusal> {
+    let ContinuousLagrangian { group, mut symbols, expression, velocities, advected } = declared;
     let is_crossed = group.rotates();
     let expression = if is_crossed { expression.with_hats_resolved(&symbols) } else { expression };
     let numbered = |name: &str, factor: usize| {
@@ -176,7 +176,7 @@ pub fn continuous(declared: DeclaredContinuous) -> Result<Continuous, Refusal> {
         let e = |factor: usize| Expression::symbol(any[factor], &symbols);
         let moved = advected.iter().map(|&w| {
             let moved = action::along((&group, &symbols), w, &e);
-            let is_point = matches!(w.seen, Seen::From(_)) && symbols.get(w.symbol).structure == Structure::Point;
+            let is_point = matches!(w.seen, View::From(_)) && symbols.get(w.symbol).structure == Structure::Point;
             (w.symbol, if is_point { without_last(&moved, &symbols) } else { moved })
         });
         vary(of, &moved.collect())
@@ -222,7 +222,7 @@ fn without_last(column: &Expression, symbols: &Symbols) -> Expression {
 }
 
 /// The limit of a discrete Lagrangian, `l = ½ ξ·Jξ + s(w)·ξ − V(w)` where it is quadratic in `ξ`.
-pub fn of_limit(declared: &Declared, derived: &Derived) -> DeclaredContinuous {
+pub fn of_limit(declared: &DeclaredFunction, derived: &Derivation) -> ContinuousLagrangian {
     let (group, mut symbols) = (declared.group.clone(), derived.symbols.clone());
     let mut velocities = Vec::new();
     for (factor, own) in group.factors().iter().enumerate() {
@@ -245,5 +245,5 @@ pub fn of_limit(declared: &Declared, derived: &Derived) -> DeclaredContinuous {
     };
     let expression = limit.lagrangian.as_ref().map_or_else(quadratic, along);
     let advected = declared.advected.clone();
-    DeclaredContinuous { group, symbols, expression, velocities, advected }
+    ContinuousLagrangian { group, symbols, expression, velocities, advected }
 }

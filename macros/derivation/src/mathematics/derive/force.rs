@@ -10,7 +10,7 @@
 //!
 //! so it has the stages of any effect, and a share in the Newton Jacobian.
 
-use super::{Context, Declared, Derived, Limit, cayley, directions, momentum_equation, transport};
+use super::{Context, DeclaredFunction, Derivation, Limit, cayley, directions, momentum_equation, transport};
 use crate::mathematics::symbolic::{Expression, Rational, SymbolId};
 
 /// Why the virtual work defines no force.
@@ -25,7 +25,10 @@ pub enum ForceError {
 pub struct Displacements(pub Vec<[SymbolId; 2]>);
 
 /// All that follows from the virtual work; what only a Lagrangian has is zero.
-pub(super) fn force(declared: &Declared, Displacements(displacements): &Displacements) -> Result<Derived, ForceError> {
+pub(super) fn force(
+    declared: &DeclaredFunction,
+    Displacements(displacements): &Displacements,
+) -> Result<Derivation, ForceError> {
     let mut symbols = declared.symbols.clone();
     let directions = directions(declared, &mut symbols);
     let context = Context { declared, lagrangian: &declared.expression, symbols: &symbols, directions: &directions };
@@ -58,7 +61,7 @@ pub(super) fn force(declared: &Declared, Displacements(displacements): &Displace
     let after = context.substituted(&after, &transport::previous(&context).into_iter().collect());
     let kick_after = parts.kick_after.plus(after);
     let none = || Expression::zero((1, 1));
-    Ok(Derived {
+    Ok(Derivation {
         group: declared.group.clone(),
         right_momentum: none(),
         left_momentum: none(),

@@ -15,7 +15,7 @@ use crate::mathematics::symbolic::{
 
 /// A continuous Lagrangian, and which of its symbols stand for which of the discrete one that is made of it.
 #[derive(Clone, Debug)]
-pub struct Discretised {
+pub struct ContinuousSource {
     pub continuous: Continuous,
     pub symbols: Vec<(SymbolId, SymbolId)>,
 }
@@ -104,7 +104,7 @@ fn along_motion(context: &Context) -> Result<Limit, LimitError> {
 }
 
 /// What is left of `l` near rest: its Taylor polynomial of degree two in the velocity.
-fn at_rest(context: &Context, Discretised { continuous, symbols }: &Discretised) -> Limit {
+fn at_rest(context: &Context, ContinuousSource { continuous, symbols }: &ContinuousSource) -> Limit {
     let mut map: BTreeMap<SymbolId, Expression> =
         symbols.iter().map(|&(from, to)| (from, context.symbol(to))).collect();
     for (factor, directions) in continuous.directions.iter().enumerate() {

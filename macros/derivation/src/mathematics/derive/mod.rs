@@ -22,20 +22,20 @@ use std::collections::BTreeMap;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Expression, Rational, Stage, Structure, SymbolId, Symbols};
 
-pub use action::{Carried, Seen};
+pub use action::{AdvectedSymbol, View};
 pub use algebra::{hat, linear_forms, unit};
-pub use cayley::Cleared;
-pub use closed::{Closed, Let};
+pub use cayley::ClearedSystem;
+pub use closed::{ClosedLet, Let};
 pub use constraint::{Body, DeclaredConstraint};
-pub use continuous::{Continuous, DeclaredContinuous, Element, Inverse, continuous, of_limit};
+pub use continuous::{Continuous, ContinuousLagrangian, Element, Inverse, continuous, of_limit};
 pub use force::{Displacements, ForceError};
-pub use limit::{Discretised, Limit};
+pub use limit::{ContinuousSource, Limit};
 pub use self_adjoint::SelfAdjointness;
 pub use series::LimitError;
 
 /// A declared Lagrangian with the symbols that it is written in.
 #[derive(Clone, Debug)]
-pub struct Declared {
+pub struct DeclaredFunction {
     pub group: Group,
     pub symbols: Symbols,
     /// The `let`s that aren't multiplied out, in their order; none where the expression is small enough.
@@ -47,13 +47,13 @@ pub struct Declared {
     /// The step `h`.
     pub step: SymbolId,
     /// The advected parameters `w`.
-    pub advected: Vec<Carried>,
+    pub advected: Vec<AdvectedSymbol>,
     /// Those of a force's virtual work; a Lagrangian has none.
     pub displacements: Option<Displacements>,
     /// Whether the derivatives of a step are asked for.
     pub has_derivatives: bool,
     /// The continuous Lagrangian that was discretised.
-    pub discretised: Option<Discretised>,
+    pub discretised: Option<ContinuousSource>,
 }
 
 /// Why nothing can be derived.
@@ -108,12 +108,12 @@ pub struct Directions {
 
 /// All that follows from `l_d`. Covectors are linear in the direction `E_k`, Jacobians in `E_k` and `E_j`.
 #[derive(Clone, Debug)]
-pub struct Derived {
+pub struct Derivation {
     pub symbols: Symbols,
     pub group: Group,
     pub directions: Directions,
     /// The closed `let`s with their derivatives.
-    pub closed: Vec<Closed>,
+    pub closed: Vec<ClosedLet>,
     /// `w = F·w⁺`.
     pub previous: Vec<(SymbolId, Expression)>,
     /// `(R_F)* δl_d/δF`.
@@ -154,7 +154,7 @@ pub struct Derived {
     /// `h/2`, by which the Newton system is multiplied: it has no `1/h` then.
     pub half_step: Expression,
     /// The momentum equation in Cayley coordinates without denominators, where it is polynomial in `F`.
-    pub cleared: Option<Cleared>,
+    pub cleared: Option<ClearedSystem>,
     /// Where the derivatives of a step are asked for, the momenta that they are those of.
     pub ends: Option<Ends>,
 }
@@ -168,7 +168,7 @@ pub struct Ends {
     pub moved: Vec<(SymbolId, Expression)>,
 }
 
-impl Derived {
+impl Derivation {
     /// Whether the inertia depends on what is advected or given.
     pub fn inertia_varies(&self) -> bool {
         self.previous.iter().any(|(w, _)| self.limit.inertia.contains(*w))
@@ -203,7 +203,7 @@ impl Derived {
 }
 
 /// Derives everything, of a Lagrangian or of a force.
-pub fn derive(declared: &Declared) -> Result<Derived, Refusal> {
+pub fn derive(declared: &DeclaredFunction) -> Result<Derivation, Refusal> {
     let derived = match &declared.displacements {
         None => lagrangian(declared).map_err(Refusal::Limit)?,
         Some(displacements) => force::force(declared, displacements).map_err(Refusal::Force)?,
@@ -211,7 +211,7 @@ pub fn derive(declared: &Declared) -> Result<Derived, Refusal> {
     if derived.is_exact() { Ok(derived) } else { Err(Refusal::Overflow) }
 }
 
-fn lagrangian(declared: &Declared) -> Result<Derived, LimitError> {
+fn lagrangian(declared: &DeclaredFunction) -> Result<Derivation, LimitError> {
     let mut symbols = declared.symbols.clone();
     let directions = directions(declared, &mut symbols);
     let (mut closed, lagrangian) = closed::multipliers(&declared.lets, &declared.expression, &mut symbols);
@@ -234,7 +234,7 @@ fn lagrangian(declared: &Declared) -> Result<Derived, LimitError> {
     let ends = context.ends(&closed, [&momentum, &left_momentum]);
     let unknown =
         if closed.is_empty() { transport::in_small_increment(&context, &parts.unknown) } else { parts.unknown };
-    Ok(Derived {
+    Ok(Derivation {
         group: declared.group.clone(),
         right_momentum,
         left_momentum,
@@ -264,7 +264,7 @@ fn lagrangian(declared: &Declared) -> Result<Derived, LimitError> {
 
 /// Whether a Lagrangian, of which less is known, has all that was derived by one variation, the kicks of the transport
 /// form, and the limit. What is quickly found is asked first.
-pub fn has_equations(declared: &Declared, known: &Declared, derived: &Derived) -> bool {
+pub fn has_equations(declared: &DeclaredFunction, known: &DeclaredFunction, derived: &Derivation) -> bool {
     let values = |of: &[Let]| of.iter().map(|one| one.value.clone()).collect::<Vec<_>>();
     if declared.expression != known.expression || values(&declared.lets) != values(&known.lets) {
         return false;
@@ -291,7 +291,7 @@ pub fn has_equations(declared: &Declared, known: &Declared, derived: &Derived) -
 
 /// What every rule needs.
 struct Context<'a> {
-    declared: &'a Declared,
+    declared: &'a DeclaredFunction,
     /// What is varied: `l_d`, with its `let`s by multipliers.
     lagrangian: &'a Expression,
     symbols: &'a Symbols,
@@ -331,7 +331,7 @@ impl Context<'_> {
     }
 
     /// `E·w`, with an element of the algebra for each factor.
-    fn along(&self, w: Carried, e: &dyn Fn(usize) -> Expression) -> Expression {
+    fn along(&self, w: AdvectedSymbol, e: &dyn Fn(usize) -> Expression) -> Expression {
         action::along((&self.declared.group, self.symbols), w, e)
     }
 
@@ -350,7 +350,7 @@ impl Context<'_> {
     }
 
     /// Where the derivatives of a step are asked for; closed `let`s stay as they are.
-    fn ends(&self, closed: &[Closed], momenta: [&Expression; 2]) -> Option<Ends> {
+    fn ends(&self, closed: &[ClosedLet], momenta: [&Expression; 2]) -> Option<Ends> {
         let small = |momentum: &Expression| {
             if closed.is_empty() { transport::in_small_increment(self, momentum) } else { momentum.clone() }
         };
@@ -372,7 +372,7 @@ impl Context<'_> {
     }
 }
 
-fn directions(declared: &Declared, symbols: &mut Symbols) -> Directions {
+fn directions(declared: &DeclaredFunction, symbols: &mut Symbols) -> Directions {
     let dimension = declared.group.dimension();
     let is_product = declared.group.is_product();
     let factors: Vec<(usize, &Group, SymbolId)> = {

@@ -11,7 +11,7 @@ use liestep_derivation::declared::errors::Errors;
 use liestep_derivation::declared::{Declaration, Tree, check, lower, parse};
 use liestep_derivation::judged::cheapest;
 use liestep_derivation::judged::verify::number::Number;
-use liestep_derivation::mathematics::derive::{Derived, derive};
+use liestep_derivation::mathematics::derive::{Derivation, derive};
 use liestep_derivation::program::{Graph, Input, Node, NodeId};
 use proc_macro2::TokenStream;
 
@@ -45,7 +45,7 @@ pub(crate) fn expanded(arguments: &str, item: &str) -> TokenStream {
 }
 
 /// What is derived from a declaration, through all phases.
-pub(crate) fn derived(arguments: &str, item: &str) -> Derived {
+pub(crate) fn derived(arguments: &str, item: &str) -> Derivation {
     let mut errors = Errors::default();
     let declaration = parse::declaration(Role::Lagrangian, &tokens(arguments), &tokens(item), &mut errors);
     let declaration = declaration.expect("a declaration");

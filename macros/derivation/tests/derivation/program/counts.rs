@@ -3,17 +3,17 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::common::{HEAVY_TOP, derived, top};
-use liestep_derivation::mathematics::derive::Derived;
+use liestep_derivation::mathematics::derive::Derivation;
 use liestep_derivation::mathematics::symbolic::Stage;
 use liestep_derivation::program::count::Operations;
 use liestep_derivation::program::{Graph, Input, Kernel, NodeId, components, count, kernel, square};
 
-fn heavy_top(inertia: &str) -> Derived {
+fn heavy_top(inertia: &str) -> Derivation {
     derived(HEAVY_TOP, &top(inertia))
 }
 
 /// `U(F, w) − a` and its Jacobian with the entries of `F` as inputs, and `k₀`: what a step on matrices costs.
-fn on_matrices(derived: &Derived, stage: Stage) -> Operations {
+fn on_matrices(derived: &Derivation, stage: Stage) -> Operations {
     let mut graph = Graph::default();
     let (directions, none) = (&derived.directions, BTreeMap::new());
     let unknown = derived.momentum.clone().plus(derived.kick_before.clone());
@@ -45,7 +45,7 @@ fn before_the_solve(kernel: &Kernel) -> usize {
     3 + count(&kernel.graph, &outputs, Some(Stage::Step)).arithmetic
 }
 
-fn left_momentum(derived: &Derived) -> Operations {
+fn left_momentum(derived: &Derivation) -> Operations {
     let mut graph = Graph::default();
     let outputs = components(&mut graph, derived, &BTreeMap::new(), &derived.left_momentum);
     count(&graph, &outputs, None)

@@ -9,23 +9,23 @@ use std::rc::Rc;
 
 use crate::common::{HEAVY_TOP, checked_as, expanded, struct_of, top};
 use liestep_derivation::declared::errors::Errors;
-use liestep_derivation::declared::lower::{Lowered, readings};
+use liestep_derivation::declared::lower::{Reading, readings};
 use liestep_derivation::declared::{Declaration, Name, Role, Tree};
 use liestep_derivation::judged::verify::degree::{Content, Degree, Largest};
 use liestep_derivation::judged::verify::evaluation::Evaluation;
 use liestep_derivation::judged::verify::value::Value;
-use liestep_derivation::judged::verify::{KineticPart, Subject, Sureness, Unconfirmed, degree, kinetic_part, verify};
-use liestep_derivation::judged::{Chosen, cheapest, held};
-use liestep_derivation::mathematics::derive::{Derived, SelfAdjointness, derive};
+use liestep_derivation::judged::verify::{KineticPart, Objection, Subject, Sureness, degree, kinetic_part, verify};
+use liestep_derivation::judged::{Choice, cheapest, held};
+use liestep_derivation::mathematics::derive::{Derivation, SelfAdjointness, derive};
 use liestep_derivation::mathematics::symbolic::{Expression, Rational};
 use liestep_derivation::program::{Kernel, kernel};
 
 /// A declaration after all phases before the check.
-struct Declared {
+struct Case {
     declaration: Declaration,
     tree: Rc<Tree>,
-    lowered: Lowered,
-    derived: Derived,
+    lowered: Reading,
+    derived: Derivation,
 }
 
 fn checked(arguments: &str, item: &str) -> (Declaration, Rc<Tree>) {
@@ -33,13 +33,13 @@ fn checked(arguments: &str, item: &str) -> (Declaration, Rc<Tree>) {
     (declaration, trees[0].clone())
 }
 
-impl Declared {
+impl Case {
     fn new(arguments: &str, item: &str) -> Self {
         let (declaration, tree) = checked(arguments, item);
         let mut errors = Errors::default();
         let readings = readings(&declaration, &tree, &mut errors).expect("small");
         let chosen = cheapest(readings, derive, &declaration, &tree, &mut errors);
-        let Chosen { lowered, derived, .. } = chosen.unwrap_or_else(|| {
+        let Choice { lowered, derived, .. } = chosen.unwrap_or_else(|| {
             panic!("nothing to derive: {}", errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
         });
         Self { declaration, tree, lowered, derived }
@@ -50,10 +50,10 @@ impl Declared {
         Subject { declaration, tree, lowered, derived }
     }
 
-    fn found(&self, derived: &Derived, kernel: &Kernel) -> Result<SelfAdjointness, &'static str> {
+    fn found(&self, derived: &Derivation, kernel: &Kernel) -> Result<SelfAdjointness, &'static str> {
         let found = verify(Subject { derived, ..self.subject() }, kernel);
         found.map(|verified| verified.self_adjointness).map_err(|unconfirmed| match unconfirmed {
-            Unconfirmed::Disagrees(term) => term,
+            Objection::Disagrees(term) => term,
             other => panic!("{other:?}"),
         })
     }
@@ -67,7 +67,7 @@ impl Declared {
     }
 
     /// What is found after a change of the derived terms.
-    fn after(&self, change: impl Fn(&mut Derived)) -> Result<SelfAdjointness, &'static str> {
+    fn after(&self, change: impl Fn(&mut Derivation)) -> Result<SelfAdjointness, &'static str> {
         let mut derived = self.derived.clone();
         change(&mut derived);
         self.found(&derived, &kernel(&derived))
@@ -83,9 +83,9 @@ fn negate(expression: &mut Expression) {
 }
 
 /// A top on SO(3), whose step is in Cayley coordinates, and a planar body on SE(2), whose step is in `F`.
-fn both() -> [Declared; 2] {
-    let top = Declared::new(HEAVY_TOP, &top("NonstandardInertia"));
-    let planar = Declared::new(
+fn both() -> [Case; 2] {
+    let top = Case::new(HEAVY_TOP, &top("NonstandardInertia"));
+    let planar = Case::new(
         "group = SE2, advected(w = up),
         l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * g * w.dot(&(r + F * r))",
         "struct Planar { J: Matrix3<f64>, g: f64, r: Vector3<f64>, up: Vector3<f64> }",
@@ -93,7 +93,7 @@ fn both() -> [Declared; 2] {
     [top, planar]
 }
 
-type Of = fn(&mut Derived) -> &mut Expression;
+type Of = fn(&mut Derivation) -> &mut Expression;
 
 /// Whatever is wrong with any entry of these, the tables of small errors have.
 #[test]
@@ -179,7 +179,7 @@ fn adjoints() {
     let rho = "struct Top { I1: f64, k: f64, rho: Vector3<f64>, up: Vector3<f64> }";
     let log_trace = |kick: &str| {
         let l_d = format!("-(2.0 * I1 / h) * ((1.0 + F.trace()) / 4.0).ln() - h * k * w.dot(&({kick}))");
-        Declared::new(&format!("group = SO3, advected(w = up), l_d = {l_d}"), rho).verified()
+        Case::new(&format!("group = SO3, advected(w = up), l_d = {l_d}"), rho).verified()
     };
     assert_eq!(log_trace("0.5 * (rho + F * rho)"), Ok(SelfAdjointness::Symbolic));
     assert_eq!(log_trace("rho"), Ok(SelfAdjointness::No));
@@ -189,7 +189,7 @@ fn adjoints() {
     // Isometries leave |F − I|² alone, which a normal form without FᵀF = I can't see.
     assert_eq!(planar.verified(), Ok(SelfAdjointness::Exact));
     // A symbolic form that claims too much is an error.
-    let declared = Declared::new(
+    let declared = Case::new(
         "group = SO3, l_d = (J_d.trace() - (F * J_d).trace()) / h + h * F[(0, 1)]",
         "struct Body { J_d: NonstandardInertia }",
     );
@@ -204,7 +204,7 @@ fn tethers_between_points() {
         let l_d = format!("((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * {tether}");
         let arguments = format!("group = SE2, advected(a = anchor), l_d = {l_d}");
         let item = format!("struct Plate {{ J: Matrix3<f64>, p: {point}, anchor: {anchor} }}");
-        Declared::new(&arguments, &item).verified()
+        Case::new(&arguments, &item).verified()
     };
     let both = "((a - p).norm_squared() + (a - F * p).norm_squared())";
     let [points, vectors] = [["Point2<f64>"; 2], ["Vector3<f64>", "ContravariantVector<f64, 3>"]];
@@ -221,8 +221,7 @@ fn tethers_between_points() {
 fn added_mass_has_to_be_symmetrised() {
     let body = |translation: &str| {
         let l_d = format!("((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) + {translation} / (2.0 * h)");
-        Declared::new(&format!("group = SE3, l_d = {l_d}"), "struct Body { J: Matrix4<f64>, a: f64, b: f64 }")
-            .verified()
+        Case::new(&format!("group = SE3, l_d = {l_d}"), "struct Body { J: Matrix4<f64>, a: f64, b: f64 }").verified()
     };
     let inertial = "(a * F[(0, 3)].powi(2) + b * F[(1, 3)].powi(2))";
     let column = |k: usize| format!("(F[(0, {k})] * F[(0, 3)] + F[(1, {k})] * F[(1, 3)] + F[(2, {k})] * F[(2, 3)])");
@@ -238,7 +237,7 @@ fn inverses() {
     let body = |group: &str, size: usize, other: &str| {
         let square = |d: &str| format!("(({d}) * J * ({d}).transpose()).trace()");
         let l_d = format!("({} + {}) / h", square("F - I"), square(other));
-        Declared::new(&format!("group = {group}, l_d = {l_d}"), &format!("struct Body {{ J: Matrix{size}<f64> }}"))
+        Case::new(&format!("group = {group}, l_d = {l_d}"), &format!("struct Body {{ J: Matrix{size}<f64> }}"))
     };
     for (group, size) in [("SE2", 3), ("SL2", 2), ("Heisenberg", 3), ("SO3", 3), ("R1", 2)] {
         let both = body(group, size, "I - inverse(F)");
@@ -279,7 +278,7 @@ fn degrees() {
     // A tower of powers is too high for few points to decide.
     let tower = (1..13).map(|k| format!("let x{k} = x{}.powi(16);", k - 1)).collect::<Vec<_>>().concat();
     assert!(of(&format!("{{ let x0 = k * F[(0, 1)]; {tower} x12 }}")) > 1 << 48);
-    let declared = Declared::new("group = R1, l_d = k * F[(0, 1)].powi(2) / h", "struct Body { k: f64 }");
+    let declared = Case::new("group = R1, l_d = k * F[(0, 1)].powi(2) / h", "struct Body { k: f64 }");
     assert!(matches!(declared.sureness(), Sureness::Certified(100..)));
 }
 
@@ -289,13 +288,13 @@ fn constants_that_are_zero_in_the_field() {
     let l_d = |mass: &str| format!("group = R1, l_d = k * F[(0, 1)].powi(2) / h + {mass} * F[(0, 1)].powi(2) / h");
     let item = "struct Body { k: f64 }";
     for mass in ["2305843009213693951.0", "4611686018427387902.0", "(2305843009213693950.0 + 1.0)"] {
-        let declared = Declared::new(&l_d(mass), item);
+        let declared = Case::new(&l_d(mass), item);
         assert_eq!(declared.sureness(), Sureness::Multiple, "{mass}");
         assert!(declared.after(|d| d.energy = with_one_sign_changed(&d.energy)).is_ok(), "{mass}");
         let expansion = expanded(&l_d(mass), item).to_string();
         assert_eq!(expansion.matches("of a step are not certified: a constant is a multiple of 2⁶¹ − 1").count(), 3);
     }
-    let other = Declared::new(&l_d("2305843009213693950.0"), item);
+    let other = Case::new(&l_d("2305843009213693950.0"), item);
     assert!(matches!(other.sureness(), Sureness::Certified(100..)));
     assert_eq!(other.after(|d| d.energy = with_one_sign_changed(&d.energy)), Err("discrete energy"));
 }
@@ -336,7 +335,7 @@ fn constants_that_are_zero_in_the_field_refuse_nothing() {
 fn groups_without_points() {
     let squeezes = "group = Mine, generators = [[[1.0, 0.0], [0.0, -2.0]]]";
     let l_d = "k * (F[(0, 0)] + 1.0 / F[(0, 0)]) / h";
-    let declared = Declared::new(&format!("{squeezes}, l_d = {l_d}"), "struct Body { k: f64 }");
+    let declared = Case::new(&format!("{squeezes}, l_d = {l_d}"), "struct Body { k: f64 }");
     assert_eq!(declared.sureness(), Sureness::Series);
     assert_eq!(declared.after(|d| negate(&mut d.right_momentum)), Err("right momentum map"));
     let nearly = Rational::new(10_000_001, 10_000_000);
@@ -344,7 +343,7 @@ fn groups_without_points() {
     assert_eq!(declared.after(|d| negate(&mut d.kick_after)), Ok(SelfAdjointness::Exact));
     assert_eq!(declared.after(|d| negate(&mut d.jacobian)), Err("Newton Jacobian"));
     let other =
-        Declared::new(&format!("{squeezes}, l_d = k * (F[(0, 0)] + 1.0 / F[(1, 1)]) / h"), "struct Body { k: f64 }");
+        Case::new(&format!("{squeezes}, l_d = k * (F[(0, 0)] + 1.0 / F[(1, 1)]) / h"), "struct Body { k: f64 }");
     assert_eq!(other.verified(), Ok(SelfAdjointness::No));
 }
 
@@ -353,7 +352,7 @@ fn groups_without_points() {
 fn adjoints_with_functions() {
     let body = |kick: &str| {
         let l_d = format!("((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) + h * F[(0, 3)] * ({kick})");
-        Declared::new(&format!("group = SE3, l_d = {l_d}"), "struct Body { J: Matrix4<f64>, k: f64 }").verified()
+        Case::new(&format!("group = SE3, l_d = {l_d}"), "struct Body { J: Matrix4<f64>, k: f64 }").verified()
     };
     assert_eq!(body("k.ln() + (1.0 / k).ln()"), Ok(SelfAdjointness::Exact));
     assert_eq!(body("k.powi(2).ln() - 2.0 * k.ln()"), Ok(SelfAdjointness::No));
@@ -367,7 +366,7 @@ fn singular_kinetic_parts() {
     }
     let kinetic_part = |group: &str, l_d: &str| {
         let arguments = format!("group = {group}, l_d = {l_d}");
-        Declared::new(&arguments, &struct_of(&["k: f64", "J: Matrix4<f64>", "v: Vector3<f64>"], l_d)).kinetic_part()
+        Case::new(&arguments, &struct_of(&["k: f64", "J: Matrix4<f64>", "v: Vector3<f64>"], l_d)).kinetic_part()
     };
     let rotation = "k * (4.0 - F.trace()) / h + 0.0 * h * (F * J).trace()";
     assert_eq!(kinetic_part("SE3", rotation), KineticPart::Singular(vec![3, 4, 5]));
@@ -381,7 +380,7 @@ fn singular_kinetic_parts() {
 fn kinetic_parts_that_are_not_stationary() {
     let kinetic_part = |group: &str, l_d: &str| {
         let arguments = format!("group = {group}, l_d = {l_d}");
-        Declared::new(&arguments, &struct_of(&["k: f64", "A: Matrix3<f64>", "B: Matrix3<f64>"], l_d)).kinetic_part()
+        Case::new(&arguments, &struct_of(&["k: f64", "A: Matrix3<f64>", "B: Matrix3<f64>"], l_d)).kinetic_part()
     };
     assert_eq!(kinetic_part("SO3", "k * (F * A).trace() / h"), KineticPart::NotStationary(vec![1]));
     assert_eq!(kinetic_part("SO3", "(F * (k * A + B)).trace() / h"), KineticPart::NotStationary(vec![1, 2]));

@@ -8,7 +8,7 @@ use syn::{BinOp, Expr, Local, Pat, Stmt};
 use crate::common::numeric::Matrix;
 use crate::common::random::exponential;
 use liestep_derivation::declared::Declaration;
-use liestep_derivation::mathematics::derive::Seen;
+use liestep_derivation::mathematics::derive::View;
 
 /// Values of names; the inverse of each increment is named after it.
 pub(super) type Env = BTreeMap<String, Matrix>;
@@ -184,11 +184,11 @@ pub(super) fn carried(declaration: &Declaration, factor: usize, [g, inverse]: [&
         let name = w.plain_name();
         let value = &env[&name];
         let value = match w.seen {
-            Seen::Configuration(of) | Seen::Relative { of, .. } if of == factor && is_added => value.plus(inverse),
-            Seen::Configuration(of) | Seen::Relative { of, .. } if of == factor => value.times(inverse),
-            Seen::Relative { from, .. } if from == factor && is_added => value.plus(g),
-            Seen::Relative { from, .. } if from == factor => g.times(value),
-            Seen::From(of) if of == factor && !is_added => inverse.transpose().times(value),
+            View::Configuration(of) | View::Relative { of, .. } if of == factor && is_added => value.plus(inverse),
+            View::Configuration(of) | View::Relative { of, .. } if of == factor => value.times(inverse),
+            View::Relative { from, .. } if from == factor && is_added => value.plus(g),
+            View::Relative { from, .. } if from == factor => g.times(value),
+            View::From(of) if of == factor && !is_added => inverse.transpose().times(value),
             _ => continue,
         };
         moved.insert(name, value);
