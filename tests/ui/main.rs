@@ -1,9 +1,9 @@
-//! Mistakes as the compiler shows them. The unusual settings in which a declaration still has to compile and run are tests of
-//! their own: trybuild compiles all mistakes at once only if nothing that must run is among them.
+//! Mistakes and their messages in the compiler. Unusual settings in which a declaration has to compile and run are
+//! separate tests: trybuild compiles all mistakes at once only if no program that must run is among them.
 
 use std::process::Command;
 
-/// The compiler whose messages `fail/*.stderr` were made with.
+/// The compiler that generated the messages in `fail/*.stderr`.
 fn pinned() -> &'static str {
     let toolchain = include_str!("../../rust-toolchain.toml");
     let channel = toolchain.lines().find_map(|line| line.strip_prefix("channel = "));

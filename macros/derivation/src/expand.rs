@@ -1,4 +1,4 @@
-//! The flow of one expansion.
+//! The sequence of phases in one expansion.
 
 use proc_macro2::TokenStream;
 
@@ -8,7 +8,7 @@ use crate::emit;
 use crate::judged::{self, Choice, ConstraintSlopes, Equations, Findings};
 use crate::mathematics::derive;
 
-/// The item with its integrator, or with all mistakes and a stand-in.
+/// The item with its integrator, or with all its mistakes and a stand-in for the integrator.
 #[must_use]
 pub fn expand(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStream {
     if let Some(asked) = parse::asked(&arguments) {
@@ -30,18 +30,18 @@ pub fn matrix_group(tokens: TokenStream) -> TokenStream {
     emit::own_group(group.as_ref(), name.as_ref(), &errors)
 }
 
-/// A declaration with all that was found out about it.
+/// The results of checking and deriving a declaration.
 pub(crate) enum Judgement {
     Constraint(ConstraintSlopes),
-    /// A continuous Lagrangian that no steps are asked of.
+    /// A continuous Lagrangian without a discretisation.
     Continuous(Equations),
     Steps(Box<Steps>),
 }
 
-/// What makes steps: a discrete Lagrangian, or a force.
+/// The results for a declaration with steps: a discrete Lagrangian, or a force.
 pub(crate) struct Steps {
     pub(crate) chosen: Choice,
-    /// Of a Lagrangian, its continuous equations.
+    /// The continuous equations of a Lagrangian.
     pub(crate) equations: Option<Equations>,
     pub(crate) findings: Findings,
 }
@@ -58,7 +58,7 @@ fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, error
     })
 }
 
-/// Every phase adds its mistakes to `errors`, and gives nothing where the next one couldn't go on.
+/// Runs the phases up to the derivation. Each adds its mistakes to `errors`, and returns `None` if the next can't run.
 pub(crate) fn judged(declaration: &Declaration, errors: &mut Errors) -> Option<Judgement> {
     if declaration.role == Role::Constraint {
         let functions = check::functions(declaration, errors)?;
@@ -89,7 +89,7 @@ pub(crate) fn judged(declaration: &Declaration, errors: &mut Errors) -> Option<J
     if let Some(equations) = &declared {
         readings = readings.into_iter().map(|reading| equations.behind(reading)).collect();
     }
-    // Handed over, as a long reading is derived only if no short one can be.
+    // The function `derive` is passed on, as a long reading is derived only if no short one can be.
     let chosen = judged::cheapest(readings, derive::derive, declaration, &discrete, errors)?;
     let findings = judged::findings(declaration, &discrete, &chosen, errors)?;
     let equations = match declaration.role {

@@ -1,14 +1,14 @@
-//! The derivation of liestep: what a declaration means, whether it is right, and the code that it becomes.
+//! The derivation of liestep: the meaning of a declaration, its verification, and its generated code.
 //!
 //! Its rooms depend on each other in one direction:
 //!
 //! `lib → staged → expand → emit → judged → {declared, program} → mathematics`
 //!
-//! Tokens are quoted in `emit` alone. Syntax is known in `declared`, where it is read, and in `emit`, where it is
-//! written; `mathematics` and `program` know no span either. A test reads this page and holds all sources to it.
+//! Tokens are quoted in `emit` alone. Syntax is known in `declared`, which reads it, and in `emit`, which writes it;
+//! `mathematics` and `program` know no span either. A test reads this page and holds all sources to it.
 //!
-//! The macros of `liestep-macros` hand their tokens to [`expand()`] and its neighbours; [`staged()`] derives a text while a
-//! program runs. The rooms that are public and hidden are so for the tests.
+//! The macros of `liestep-macros` pass their tokens to [`expand()`] and its neighbours; [`staged()`] derives texts at run
+//! time. Four rooms are public for the tests alone, and hidden.
 
 // Marks for callers outside of the crate, which the functions of these rooms don't have.
 #![allow(clippy::len_without_is_empty, clippy::must_use_candidate, clippy::return_self_not_must_use)]

@@ -1,4 +1,4 @@
-//! How the compiler shows our messages: what they underline, and that who uses the struct reads no second one.
+//! Messages in the compiler: the tokens that they underline, and no second message where the struct is used.
 
 use liestep::groups::{R3, matrix_group};
 use liestep::mechanics::{Effect, Term as _};
@@ -75,7 +75,7 @@ struct SeveralMistakes {
 #[lagrangian(group = SO3, l_d = (F * J_d).trace() / h)]
 struct TupleStruct(NonstandardInertia);
 
-// What is asked for doesn't add a message to that of the mistake.
+// A mistake in a declaration with `gradients` gives no second message.
 #[lagrangian(group = SO3, gradients, l_d = ((F - I) * K * (F - I).transpose()).trace() / (2.0 * h))]
 struct Misspelt {
     J_d: NonstandardInertia,
@@ -158,7 +158,7 @@ struct VectorAddedToScalar {
     rho: Vector3<f64>,
 }
 
-// What isn't read doesn't add a message where it is used.
+// A declaration that can't be read gives no second message where it is used.
 #[lagrangian(group(I = SO3), l_d = ((I - I) * J_d * (I - I).transpose()).trace() / (2.0 * h))]
 struct IncrementCalledAsTheIdentity {
     J_d: NonstandardInertia,
@@ -208,7 +208,7 @@ fn held(joint: LengthNotDeclared) -> &'static str {
     Constraint::<1>::name(&joint)
 }
 
-// A group that is refused is said to be once, and not where a declaration names it.
+// A wrong group is reported once, and not again in a declaration with it.
 matrix_group! {
     pub type Crooked = [[[1.0, 2.0]]];
 }

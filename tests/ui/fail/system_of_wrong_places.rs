@@ -8,7 +8,7 @@ struct Mass {
     m: f64,
 }
 
-// Of the ends of a step, of its middle, and of velocities.
+// Potentials at the ends of a step and at its midpoint, and a coupling of velocities.
 #[lagrangian(
     group(d_1 = R3, d_2 = R3),
     advected(r = d_2.seen_from(d_1)),

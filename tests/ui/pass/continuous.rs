@@ -1,5 +1,5 @@
-//! Continuous Lagrangians where nothing is in scope but what is named by its full path, where names are keywords or come
-//! through a macro, and in other scalars.
+//! Continuous Lagrangians with full paths and no prelude, with names that are keywords or come through a macro, and in
+//! other scalars.
 
 #![no_implicit_prelude]
 #![deny(warnings, missing_docs)]

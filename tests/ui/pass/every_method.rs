@@ -1,4 +1,4 @@
-//! Everything in the list of the attribute's documentation, in a block whose `let`s hide each other and the fields.
+//! All methods and functions of the attribute's documentation, in a block whose `let`s hide each other and the fields.
 
 use liestep::mechanics::{DiscreteLagrangian as _, Inertia};
 use liestep::numbers::Real;

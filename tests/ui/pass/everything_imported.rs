@@ -1,4 +1,4 @@
-//! Every name of liestep at once: a scene's methods stay the only ones of their names.
+//! All names of liestep imported at once: a scene's methods stay the only ones of their names.
 
 #![allow(unused_imports)]
 

@@ -1,4 +1,4 @@
-//! Generic in the scalar, with bounds in either place, and with a constant that the Lagrangian doesn't know.
+//! A generic scalar, with bounds in either place, and with a constant that the Lagrangian doesn't use.
 
 use core::fmt::Debug;
 

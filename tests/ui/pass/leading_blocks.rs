@@ -1,4 +1,4 @@
-//! What begins with a block, which at the beginning of a statement would be one by itself.
+//! Expressions that begin with a block, which at the beginning of a statement would be a statement by itself.
 
 use liestep::mechanics::ContinuousLagrangian as _;
 use liestep::{NonstandardInertia, SO3, Stepper, force, lagrangian};

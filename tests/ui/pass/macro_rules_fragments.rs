@@ -1,4 +1,4 @@
-//! Declarations inside `macro_rules!`, with parts from either side.
+//! Declarations inside `macro_rules!`, with parts from the definition and from the call.
 
 use liestep::mechanics::{DiscreteLagrangian as _, Effect as _, Term as _};
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
@@ -68,7 +68,7 @@ macro_rules! of_scalar {
 of_scalar!(Single, f32);
 of_scalar!(Double, f64);
 
-/// Kinetic parts with a fragment of each kind in a place where its precedence or its name tells.
+/// Kinetic parts with a fragment of each kind, placed where its precedence or its name matters.
 macro_rules! with_fragment {
     ($name:ident, $l:expr) => {
         #[lagrangian(group = SO3, l_d = $l)]
@@ -145,7 +145,7 @@ macro_rules! hygienic_let {
 }
 hygienic_let!(HygienicLet, m * ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h));
 
-/// The same with names alone, which no invisible bracket surrounds: 5 K · 7.
+/// Names alone, without an invisible bracket around them: 5 K · 7.
 macro_rules! hygienic_name {
     ($name:ident, $m:ident) => {
         with_fragment!($name, {
@@ -177,7 +177,7 @@ with_fragment!(Nested, {
     (twice + m) * ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
 });
 
-/// Whether `l_d` and the inertia that was derived from it are that many times those of the plain kinetic part.
+/// Whether `l_d` and the inertia derived from it are a multiple of those of the plain kinetic part.
 macro_rules! is_times {
     ($name:ident, $m:expr, $factor:expr) => {{
         let j_d = Matrix3::from_diagonal(&Vector3::new(2.0, 3.0, 1.0));
@@ -213,7 +213,7 @@ fn values() {
     is_times!(Nested, 5.0, 18.0);
 }
 
-/// One value from each declaration that says the same.
+/// The momentum after a step, for each of the equivalent declarations.
 macro_rules! step {
     ($name:ident) => {{
         let inertia = NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap();

@@ -1,4 +1,4 @@
-//! Each module is a setting in which a declaration must compile, and a program that ends well.
+//! The settings in which a declaration must compile, a module each; the program runs them all.
 
 mod continuous;
 mod every_method;

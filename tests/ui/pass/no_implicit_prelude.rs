@@ -1,4 +1,4 @@
-//! Nothing is in scope but what is named by its full path.
+//! A declaration without a prelude, where all names need full paths.
 
 #![no_implicit_prelude]
 

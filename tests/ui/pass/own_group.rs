@@ -45,7 +45,7 @@ mod by_its_path {
     }
 }
 
-/// The name of a group of liestep's is free where that isn't imported.
+/// The name of a group of liestep's is free if that isn't imported.
 mod of_a_known_name {
     use nalgebra::{RealField, SMatrix};
 
@@ -58,7 +58,7 @@ mod of_a_known_name {
         }
     }
 
-    /// With its scalar.
+    /// A type of nalgebra's name with its scalar.
     type Vector2 = nalgebra::Vector2<f64>;
 
     #[liestep::lagrangian(group = R1!, l_d = m * (F - I).norm_squared() / h - h * (v.x + v.y) * (F * v).y)]

@@ -1,4 +1,4 @@
-//! liestep under another name, found through a module that passes it on.
+//! The crate liestep under another name, through a module that re-exports it.
 
 extern crate liestep as renamed;
 

@@ -1,7 +1,7 @@
-//! One scene of two bodies in unusual spellings, all of which move alike; and what is put at places, by numbers that are
-//! computed.
+//! One scene of two bodies in unusual spellings, all with one motion; and terms on bodies whose indices are computed
+//! constants.
 
-// The letters of the field, and more parentheses than it takes.
+// Names of fields have capital letters, and the expressions superfluous parentheses.
 #![allow(non_snake_case, unused_parens, unused_braces)]
 
 use core::fmt::Debug;
@@ -97,7 +97,7 @@ struct References {
     k: f64,
 }
 
-/// With a number that the Lagrangian doesn't know.
+/// A Lagrangian of a struct with a const parameter that it doesn't use.
 #[lagrangian(
     group(F_1 = SO3, F_2 = SO3),
     advected(Q = F_2.seen_from(F_1)),
@@ -114,11 +114,11 @@ where
     k: Scalar,
 }
 
-/// Documented.
+/// A documented declaration.
 #[derive(Clone, Copy)]
 #[allow(dead_code)]
 #[lagrangian(
-    // The last comes first.
+    // The last argument comes first.
     l_d = ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
         + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h)
         + 0.5 * h * k * (Q.trace() + (F_1.transpose() * Q * F_2).trace()),
@@ -129,7 +129,7 @@ where
 )]
 #[must_use]
 pub struct Adorned {
-    /// How stiff it is.
+    /// The stiffness.
     pub(crate) k: f64, // J
     #[cfg(not(any()))]
     #[doc(hidden)]
@@ -173,7 +173,7 @@ macro_rules! two {
 
 two!(FromAMacro: A, B, 0.25 * k + 0.25 * k, f64);
 
-/// What is left of both attitudes after some steps.
+/// The momenta of both bodies after ten steps.
 fn moved<S, T: RealField + Real>(scene: S) -> Vector6<T>
 where
     S: DiscreteLagrangian<Scalar = T, Group = (SO3<T>, SO3<T>)> + Regular,
@@ -222,7 +222,7 @@ struct Cardan {
     normal: Vector3<f64>,
 }
 
-/// Work of one body of two, with a displacement that is called as that of one alone.
+/// Work of one of two bodies, with the name of a displacement on a single body.
 #[force(group(F = SO3, d = R3), displacement(eta, r#mod), work = -(c) * (log(F).dot(&eta) + { d.dot(&r#mod) }))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Friction {
@@ -253,7 +253,7 @@ impl Row {
     const TIED: Placement<Along<{ Self::BODIES }>, Alike, 1> = Along::<{ Self::BODIES }>::of([Self::ALIKE]);
 }
 
-/// What all keep together, of so many bodies.
+/// The drift of the total momentum of `N` bodies.
 fn kept<const N: usize>(J: NonstandardInertia) -> f64 {
     let bodies = Each::<N>::of([Turning { J }; N]) + Pairs::<N>::of([Alike { k: -0.5 }]);
     let scene = bodies + (Between::<2, 0, N>::of([Row::ALIKE]) + On::<0, N>::of([Turning { J }]));

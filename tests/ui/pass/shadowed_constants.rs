@@ -1,4 +1,4 @@
-//! A unit struct and a constant with the names that the macro imposes: patterns would mistake them for themselves.
+//! A unit struct and a constant with the names that the macro binds: a pattern would compare with them.
 
 #![allow(dead_code)]
 

@@ -1,4 +1,4 @@
-//! The user's items have the names that an expansion would be tempted to use, and those of the declared syntax.
+//! Items with the names that an expansion might use, and with those of the declared syntax.
 
 #![allow(dead_code, non_camel_case_types, non_upper_case_globals)]
 
@@ -37,7 +37,7 @@ struct Top {
     up: ::nalgebra::Vector3<::core::primitive::f64>,
 }
 
-/// Displacements are those of forces, and in a Lagrangian names like others.
+/// The names of displacements have a meaning in forces; in a Lagrangian they are names like others.
 #[lagrangian(
     group = SO3,
     advected(eta = up),

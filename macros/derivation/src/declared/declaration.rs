@@ -1,4 +1,4 @@
-//! A declaration after parsing: the struct, the attribute's arguments, and what the fields' types promise.
+//! A declaration after parsing: the struct, the attribute's arguments, and the properties that the fields' types imply.
 
 use proc_macro2::Span;
 use syn::ext::IdentExt as _;
@@ -9,7 +9,7 @@ use crate::mathematics::derive::View;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::Variance;
 
-/// What an attribute declares.
+/// The kind of a declaration, one for each attribute.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// `#[lagrangian(… l_d = …)]`.
@@ -30,7 +30,7 @@ impl Role {
         }
     }
 
-    /// What the expression is, in a sentence.
+    /// The kind of the expression, in a sentence.
     pub fn noun(self) -> &'static str {
         match self {
             Self::Lagrangian => "a Lagrangian",
@@ -48,13 +48,13 @@ impl Role {
         }
     }
 
-    /// The names that mean something in each expression, on one body or on several, and can't be those of parameters, of `let`s
-    /// or of what a function is called with: what is compiled finds the one that was declared, whatever else has its name.
+    /// The reserved names of an expression, on one body or on several. No parameter, `let` or parameter of a function
+    /// may have one of them: the compiled code would find that declaration in its place.
     pub fn reserved(self, is_product: bool) -> &'static [&'static str] {
         match self {
             Self::Force if !is_product => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse", "eta", "eta_next"],
             Self::Lagrangian | Self::Force => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse"],
-            // There are no steps in it.
+            // A constraint has no steps.
             Self::Constraint => &["I", "hat", "vee", "log", "exp", "inverse"],
         }
     }
@@ -73,40 +73,42 @@ impl Role {
 pub struct Declaration {
     pub role: Role,
     pub item: ItemStruct,
-    /// Where liestep is found, if not at `::liestep`.
+    /// The path of liestep, if not `::liestep`.
     pub root: Option<Path>,
     pub group: Group,
     /// The increments, one for each factor of the group.
     pub factors: Vec<Factor>,
     pub advected: Vec<AdvectedParameter>,
-    /// The Lagrangian, or the virtual work of a force; `None` where a mistake elsewhere hides what it means.
+    /// The Lagrangian, the virtual work of a force, or the constraint; `None` where a mistake elsewhere hides its
+    /// meaning.
     pub expression: Option<Expr>,
-    /// Of a continuous Lagrangian `l`, what it is written and discretised with.
+    /// The velocities and the discretisation of a continuous Lagrangian `l`.
     pub continuous: Option<Continuous>,
-    /// Where there is a pace, which the expression has been rewritten by, the place of `E_0` in what is advected or given.
+    /// The index of `E_0` among the advected and given parameters, if a pace has rewritten the expression.
     pub energy: Option<usize>,
-    /// Of a force on several bodies the names of the displacements, one for each factor of the group.
+    /// The names of the displacements of a force on several bodies, one for each factor of the group.
     pub displacements: Vec<Ident>,
-    /// Where the derivatives of a step are asked for.
+    /// The argument `gradients`, if derivatives of a step are requested.
     pub gradients: Option<Span>,
     pub fields: Vec<Field>,
     /// The fields whose type has no meaning.
     pub unreadable: Vec<String>,
     pub scalar: Scalar,
-    /// Whether it is read while a program runs: no compiler will ask for the `&` of an argument or the point of a number.
+    /// Whether the declaration is read at run time, without a compiler that would report a missing `&` or decimal
+    /// point.
     pub is_text: bool,
 }
 
 /// An increment: `F`, or one of those that `group(F_1 = SO3, …)` names.
 pub struct Factor {
-    /// Without `r#`.
+    /// The name without `r#`.
     pub name: String,
     pub place: Span,
     /// The group's name as written; `None` after a mistake.
     pub path: Option<Path>,
 }
 
-/// How velocities of these factors may be named: `velocity = Omega`, or `velocity(Omega_1, v)`.
+/// An example of names for the velocities of these factors: `velocity = Omega`, or `velocity(Omega_1, v)`.
 pub fn named_velocities(factors: &[Factor]) -> String {
     match factors {
         [] | [_] => "velocity = Omega".to_owned(),
@@ -114,12 +116,12 @@ pub fn named_velocities(factors: &[Factor]) -> String {
     }
 }
 
-/// How displacements of these factors may be named: `displacement(eta_1, s)`.
+/// An example of names for the displacements of these factors: `displacement(eta_1, s)`.
 pub fn named_displacements(factors: &[Factor]) -> String {
     format!("displacement({})", named(factors, ["eta", "s"]))
 }
 
-/// A name for each factor, by what turns and by what is translated.
+/// A name for each factor, one word for rotations and one for translations.
 fn named(factors: &[Factor], [turn, shift]: [&'static str; 2]) -> String {
     let letters = |factor: &Factor| if factor.group_name() == "SO3" { turn } else { shift };
     let name = |(at, factor): (usize, &Factor)| {
@@ -134,18 +136,18 @@ fn named(factors: &[Factor], [turn, shift]: [&'static str; 2]) -> String {
 }
 
 impl Factor {
-    /// The group's name without what it is found in.
+    /// The group's name without its module path.
     pub fn group_name(&self) -> String {
         let segment = self.path.as_ref().and_then(|path| path.segments.last());
         segment.map(|segment| segment.ident.to_string()).unwrap_or_default()
     }
 }
 
-/// What belongs to `l = …`.
+/// The arguments that belong to `l = …`.
 pub struct Continuous {
     /// The names of `ξ`, one for each factor of the group; a term without a velocity may leave them out.
     pub velocities: Vec<Ident>,
-    /// How `l_d` is made of it; left out where only the continuous equations are wanted.
+    /// The discretisation of `l`; `None` if only the continuous equations are requested.
     pub discretisation: Option<Discretisation>,
 }
 
@@ -154,11 +156,11 @@ pub struct Continuous {
 pub struct Discretisation {
     pub quadrature: Quadrature,
     pub coordinates: Coordinates,
-    /// From the first token to the last.
+    /// The first and the last token.
     pub place: [Span; 2],
 }
 
-/// Where in a step `l` is taken.
+/// The points of a step at which `l` is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quadrature {
     /// At both ends, `(h/2) (l(ξ, w) + l(ξ, F⁻¹·w))`.
@@ -169,7 +171,7 @@ pub enum Quadrature {
     Chord,
 }
 
-/// What the velocity of a step is, as a function of `F`.
+/// The velocity of a step as a function of `F`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coordinates {
     /// The matrix `ξ̂ = (F − I)/h`, near the algebra and not in it.
@@ -180,14 +182,14 @@ pub enum Coordinates {
     Exponential,
 }
 
-/// `w = up`: `w` in the expression is the field `up`, carried by the group, or given for each step.
+/// `w = up`: in the expression `w` is the field `up`, moved by the group or prescribed for each step.
 pub struct AdvectedParameter {
     pub name: Ident,
     /// The index of the field; `None` where there is no such field of a known type.
     pub field: Option<usize>,
     /// Whether it is a value of the step, which the group doesn't move: `given(…)`.
     pub is_given: bool,
-    /// Which bodies move it.
+    /// The bodies that move it.
     pub seen: View,
 }
 
@@ -204,7 +206,7 @@ impl Declaration {
         self.continuous.as_ref().map_or(&[], |continuous| &continuous.velocities)
     }
 
-    /// Of a force, what a factor's displacements at both ends of a step are called; `None` where that is left out.
+    /// The names of a factor's displacements at both ends of a force's step; `None` where they have no names.
     pub fn displacement(&self, factor: usize) -> Option<[String; 2]> {
         let name = match self.displacements.get(factor) {
             Some(name) => name.unraw().to_string(),
@@ -220,12 +222,12 @@ impl Declaration {
         self.velocities().get(factor)
     }
 
-    /// The same for messages, which show one where none is named.
+    /// The name of the velocity of a factor for messages, `Omega` where it has none.
     pub fn velocity_or_omega(&self, factor: usize) -> String {
         self.velocity(factor).map_or_else(|| "Omega".to_owned(), ToString::to_string)
     }
 
-    /// The name of the velocity of a factor in print.
+    /// The name of the velocity of a factor in formulas.
     pub fn name_of_velocity(&self, factor: usize) -> String {
         match self.velocities().get(factor) {
             Some(name) => name.unraw().to_string(),
@@ -234,12 +236,12 @@ impl Declaration {
         }
     }
 
-    /// How `l` is discretised.
+    /// The discretisation of `l`, if one is requested.
     pub fn discretisation(&self) -> Option<Discretisation> {
         self.continuous.as_ref()?.discretisation
     }
 
-    /// What an advected parameter's field promises; a plain vector after a mistake.
+    /// The kind of an advected parameter's field; a plain vector after a mistake.
     pub fn advected_kind(&self, index: usize) -> FieldKind {
         let parameter = self.advected.get(index);
         let size = match parameter.map(|w| w.seen) {
@@ -268,7 +270,7 @@ impl Declaration {
 pub struct Field {
     pub name: Ident,
     pub kind: FieldKind,
-    /// The place of its type.
+    /// The span of its type.
     pub at: Span,
 }
 
@@ -279,23 +281,23 @@ impl Field {
     }
 }
 
-/// What a field's type promises.
+/// The properties that a field's type implies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FieldKind {
     Scalar,
-    /// Rows.
+    /// A vector with this number of rows.
     Vector(usize),
-    /// Rows of the homogeneous coordinates, the last of which is one.
+    /// A point with this number of homogeneous coordinates, the last of which is one.
     Point(usize),
-    /// Rows, as many columns.
+    /// A square matrix with this number of rows.
     Matrix(usize),
     /// An advected parameter with its kind in its type.
     Advected(Variance, usize),
-    /// A body as another sees it, or as it is in space; rows.
+    /// The attitude of a body relative to another or to space, with this number of rows.
     Configuration(usize),
-    /// The same of a body that is translated: its coordinates.
+    /// The position of a translated body, with this number of coordinates.
     Place(usize),
-    /// A value of the step: as a field it is a scalar, a vector or a matrix.
+    /// A parameter that is prescribed for each step: a scalar, a vector or a matrix.
     Given(Shape),
     /// `NonstandardInertia`, `Inertia`.
     SymmetricInertia,
@@ -304,7 +306,7 @@ pub enum FieldKind {
 }
 
 impl FieldKind {
-    /// How the group moves it: a plain vector is a covector.
+    /// The action of the group on it: a plain vector is a covector.
     pub fn variance(self) -> Variance {
         match self {
             Self::Advected(variance, _) => variance,
@@ -314,17 +316,17 @@ impl FieldKind {
         }
     }
 
-    /// Whether a group of matrices of this size can move it.
+    /// Whether a group with matrices of this size can move it.
     pub fn is_carried_by(self, size: usize) -> bool {
         matches!(self, Self::Vector(rows) | Self::Point(rows) | Self::Advected(_, rows) if rows == size)
     }
 
-    /// Whether its value is wrapped in a type that says how the group moves it.
+    /// Whether the type of its value names the action of the group.
     pub fn is_wrapped(self) -> bool {
         matches!(self, Self::Advected(..))
     }
 
-    /// Whether a step can be given such a value.
+    /// Whether it can be prescribed for each step.
     pub fn can_be_given(self) -> bool {
         matches!(self, Self::Scalar | Self::Vector(_) | Self::Matrix(_))
     }

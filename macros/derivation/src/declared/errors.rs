@@ -1,4 +1,4 @@
-//! Errors accumulate, so that one compilation reports all mistakes of a declaration.
+//! A list of errors, so that one compilation reports all mistakes of a declaration.
 
 use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use quote::ToTokens;
@@ -6,9 +6,9 @@ use quote::ToTokens;
 /// A mistake of a declaration, at its place in the text.
 #[derive(Clone, Debug)]
 pub struct Mistake {
-    /// What is wrong, then what to write.
+    /// The mistake, then the correction.
     pub message: String,
-    /// The first token that it is about.
+    /// The first token of the mistake.
     pub span: Span,
 }
 
@@ -16,29 +16,29 @@ pub struct Mistake {
 #[derive(Debug, Default)]
 pub struct Errors {
     list: Vec<syn::Error>,
-    /// Whether one of them is decisive.
+    /// Whether a mistake makes the expression meaningless.
     hides_the_rest: bool,
 }
 
 impl Errors {
-    /// A mistake at a token: what is wrong, then what to write.
+    /// Adds a mistake at a token; the message states the mistake, then the correction.
     pub fn push(&mut self, span: Span, message: impl std::fmt::Display) {
         self.list.push(syn::Error::new(span, message));
     }
 
-    /// A mistake that changes what the expression means: what would be found there follows from it.
+    /// Adds a mistake that changes the meaning of the expression: errors found there would only follow from it.
     pub fn push_decisive(&mut self, span: Span, message: impl std::fmt::Display) {
         self.push(span, message);
         self.hides_the_rest = true;
     }
 
-    /// A mistake from one token to another.
+    /// Adds a mistake that extends from one token to another.
     pub fn push_between(&mut self, [first, last]: [Span; 2], message: impl std::fmt::Display) {
         let ends = [first, last].map(|span| TokenTree::Ident(Ident::new("_", span)));
         self.push_over(TokenStream::from_iter(ends), message);
     }
 
-    /// A mistake that a whole expression or type makes.
+    /// Adds a mistake of a whole expression or type.
     pub fn push_over(&mut self, tokens: impl ToTokens, message: impl std::fmt::Display) {
         self.list.push(syn::Error::new_spanned(tokens, message));
     }
@@ -51,12 +51,12 @@ impl Errors {
         self.list.is_empty()
     }
 
-    /// Whether the expression is better left unread.
+    /// Whether the expression shouldn't be checked.
     pub fn hides_the_rest(&self) -> bool {
         self.hides_the_rest
     }
 
-    /// Each with its place; at least one.
+    /// All mistakes with their places, at least one.
     pub fn mistakes(&self) -> Vec<Mistake> {
         let single = self.list.iter().flat_map(|error| error.clone().into_iter().collect::<Vec<_>>());
         let mut mistakes: Vec<Mistake> =
@@ -73,10 +73,10 @@ impl Errors {
     }
 }
 
-/// `; did you mean …?` for the known name that an unknown one is a slip of the pen for, if there is one.
+/// `; did you mean …?` with the known name that an unknown one most likely misspells; empty if there is none.
 ///
-/// A slip changes one letter of three, and no digit, as `rho1` isn't `rho2`; but a zero is taken for the letter, as `S03` is
-/// `SO3`.
+/// A misspelling changes at most one letter of three, and no digit, as `rho1` isn't `rho2`. Only the digit zero may
+/// stand for the letter, as in `S03` for `SO3`.
 #[must_use]
 pub fn suggestion<'a>(unknown: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let length = unknown.chars().count();
@@ -95,14 +95,14 @@ pub fn suggestion<'a>(unknown: &str, known: impl IntoIterator<Item = &'a str>) -
     }
 }
 
-/// Whether the known name is one letter, with a number or without, and the unknown one isn't that letter in either case: `PI`
-/// isn't `I`, and `R_1` isn't `F_1`.
+/// Whether the known name is one letter, with a number or without, and the unknown one is another letter: `PI` isn't
+/// `I`, and `R_1` isn't `F_1`. Case is ignored.
 fn is_other_letter(unknown: &str, known: &str) -> bool {
     let stem = |name: &str| name.trim_end_matches(|last: char| last == '_' || last.is_ascii_digit()).to_lowercase();
     stem(known).chars().count() == 1 && stem(known) != stem(unknown)
 }
 
-/// Levenshtein's distance with swaps of neighbours, and a change of case for free.
+/// Levenshtein's distance with swaps of neighbours, and without regard to case.
 pub fn distance(a: &str, b: &str) -> usize {
     let [a, b] = [a, b].map(|name| name.to_lowercase().chars().collect::<Vec<char>>());
     let mut before: Vec<usize> = Vec::new();

@@ -12,29 +12,29 @@ use crate::mathematics::derive::{
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Expression, Rational, Stage, Structure, SymbolId, Symbols, stage_of, substitute};
 
-/// Products of more terms than this take too long; a Lagrangian that a person writes has a tenth of it.
+/// The limit on terms: larger products take too long, and a Lagrangian that a person writes has a tenth of it.
 const MOST_TERMS: usize = 2_000;
-/// The factors of all terms, and of one product of matrices; both multiply when they are differentiated twice.
+/// The limits on the factors of all terms, and of one product of matrices; both multiply when differentiated twice.
 const MOST_FACTORS: usize = 800;
 const LONGEST_PRODUCT: usize = 24;
-/// As for the factors: closed `let`s, those of sums included.
+/// The limit on closed `let`s, including those of sums.
 const MOST_LETS: usize = 150;
-/// The eighth power of a smaller number is in range.
+/// The limit on numerators and denominators: the eighth power of a smaller number is in range.
 const MANY_DIGITS: u128 = 10_000;
 
-/// The declared Lagrangian in symbols; the names say which symbol stands for what.
+/// The declared Lagrangian in symbols, and the symbol of each name.
 pub struct Reading {
     pub declared: DeclaredFunction,
     pub names: BTreeMap<Name, SymbolId>,
 }
 
-/// The readings of the tree, multiplied out and with its `let`s closed, and of a pace with these closed and matrices
-/// multiplied out; `None` where all are too large, which has been reported.
+/// The readings of the tree: one multiplied out, one with its `let`s closed, and with a pace one that has its `let`s
+/// closed and its matrices multiplied out. `None` if all are too large, which has been reported.
 pub fn readings(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Vec<Reading>> {
     readings_without(declaration, tree, &|_, structure| structure, errors)
 }
 
-/// The same with less known of some symbols.
+/// The readings of the tree, with fewer known properties of some symbols.
 pub fn readings_without(
     declaration: &Declaration,
     tree: &Rc<Tree>,
@@ -92,7 +92,7 @@ pub fn readings_without(
     // The work of a force is always multiplied out: it is linear in the displacements, and short.
     let may_close = displacements.is_none() && (multiplied_out.is_err() || has_let(tree));
     let closed = may_close.then(|| attempt(Some(Vec::new()), false));
-    // In `tr((F − I) J_d (F − I)ᵀ)` all but `F` cancels, and the pace is best left as it is.
+    // All but `F` cancels in `tr((F − I) J_d (F − I)ᵀ)`, while the pace is best left closed.
     let opened = declaration.energy.map(|_| attempt(Some(Vec::new()), true));
     let all = [Some(multiplied_out), closed, opened].into_iter().flatten();
     let (found, failures): (Vec<_>, Vec<_>) = all.partition(Result::is_ok);
@@ -109,7 +109,7 @@ pub struct ContinuousReading {
     pub names: BTreeMap<Name, SymbolId>,
 }
 
-/// The reading of a declared `l`, multiplied out; `None` where it is too large, which has been reported.
+/// The reading of a declared `l`, multiplied out; `None` if it is too large, which has been reported.
 pub fn continuous(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<ContinuousReading> {
     let (mut symbols, mut names) = (Symbols::default(), BTreeMap::new());
     let advected = parameters(declaration, &|_, structure| structure, &mut symbols, &mut names);
@@ -120,7 +120,7 @@ pub fn continuous(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Error
         names.insert(Name::Velocity(factor), velocity.components);
         velocities.push(velocity);
     }
-    // Of several bodies none has one.
+    // Velocities of several bodies have no matrix.
     let velocity_matrix = velocities.first().and_then(|velocity| velocity.matrix);
     let lowering = Lowering { velocity_matrix, ..Lowering::new(symbols, &names, None) };
     match lowering.whole(tree) {
@@ -141,8 +141,8 @@ pub struct ConstraintReading {
     pub names: BTreeMap<Name, SymbolId>,
 }
 
-/// The reading of a constraint, multiplied out, in the places of both bodies; `None` where it is too large, which has been
-/// reported.
+/// The reading of a constraint, multiplied out, in the positions of both bodies; `None` if it is too large, which has
+/// been reported.
 pub fn constraint(declaration: &Declaration, functions: &[Rc<Tree>], errors: &mut Errors) -> Option<ConstraintReading> {
     let (mut symbols, mut names) = (Symbols::default(), BTreeMap::new());
     let carried = parameters(declaration, &|_, structure| structure, &mut symbols, &mut names);
@@ -167,7 +167,7 @@ pub fn constraint(declaration: &Declaration, functions: &[Rc<Tree>], errors: &mu
     Some(ConstraintReading { declared: DeclaredConstraint { symbols, functions, bodies }, names })
 }
 
-/// The symbols of the fields and of the advected parameters, and how the latter are moved.
+/// The symbols of the fields and of the advected parameters, and the action of the group on the latter.
 fn parameters(
     declaration: &Declaration,
     weaker: &dyn Fn(Name, Structure) -> Structure,
@@ -216,7 +216,7 @@ fn is_orthogonal(group: &Group, seen: View) -> bool {
     }
 }
 
-/// Whether a `let` names anything but a name.
+/// Whether a `let` names more than another name or a number.
 fn has_let(tree: &Rc<Tree>) -> bool {
     let is_let = |part: &&Rc<Tree>| matches!(&part.kind, Kind::Bound(_, inner) if !matches!(inner.kind, Kind::Name(_) | Kind::Number(_)));
     parts(tree).iter().any(is_let)
@@ -246,13 +246,13 @@ fn report(failure: Failure, tree: &Tree, errors: &mut Errors) {
 struct Lowering<'a> {
     symbols: Symbols,
     names: &'a BTreeMap<Name, SymbolId>,
-    /// What a `let` has bound is lowered once, however often it is used.
+    /// The expressions of `let`s already lowered, so that each is lowered once.
     known: BTreeMap<*const Tree, Expression>,
-    /// The `let`s so far, where they stay closed.
+    /// The `let`s so far, if they stay closed.
     lets: Option<Vec<Let>>,
-    /// Whether sums of matrices are multiplied out all the same.
+    /// Whether sums of matrices are multiplied out even then.
     opens_matrices: bool,
-    /// What stands for the matrix of the velocity in a continuous Lagrangian.
+    /// The symbol of the velocity's matrix in a continuous Lagrangian.
     velocity_matrix: Option<SymbolId>,
 }
 
@@ -277,7 +277,7 @@ impl<'a> Lowering<'a> {
     fn bound(&mut self, name: &str, value: Expression) -> Expression {
         let is_small = value.len() <= 1 && value.size() <= 2;
         let Some(lets) = self.lets.as_mut().filter(|_| !is_small) else { return value };
-        // One symbol for equal values and for opposite ones, so that they share a multiplier too.
+        // Equal and opposite values share one symbol, and so one multiplier.
         let opposite = value.clone().scaled(-Rational::ONE);
         if let Some(known) = lets.iter().find(|one| one.value == value || one.value == opposite) {
             let sign = if known.value == value { Rational::ONE } else { -Rational::ONE };
@@ -295,7 +295,7 @@ impl<'a> Lowering<'a> {
         Expression::symbol(symbol, &self.symbols)
     }
 
-    /// A number. One with many digits stays closed: its powers would leave the range of exact arithmetic.
+    /// A number. If it has many digits it stays closed: its powers would leave the range of exact arithmetic.
     fn number(&mut self, value: Rational) -> Expression {
         let expression = Expression::rational(value);
         let (numerator, denominator) = value.parts();
@@ -318,27 +318,28 @@ impl<'a> Lowering<'a> {
         Ok((left, self.factor(b)?))
     }
 
-    /// A sum that is about to be multiplied: where `let`s stay closed, a product of sums isn't multiplied out either.
+    /// A factor of a product. If `let`s stay closed, a sum isn't multiplied out either.
     fn factor(&mut self, tree: &Rc<Tree>) -> Result<Expression, Failure> {
         let value = self.expression(tree)?;
         let is_open = value.len() < 2 || self.opens_matrices && value.shape().0.min(value.shape().1) > 1;
         Ok(if is_open { value } else { self.closed(tree, value) })
     }
 
-    /// A value that a derivative goes through as one.
+    /// A closed value, which derivatives pass through as one.
     fn closed(&mut self, tree: &Rc<Tree>, value: Expression) -> Expression {
         let closed = self.unnamed(value);
         self.known.insert(Rc::as_ptr(tree), closed.clone());
         closed
     }
 
-    /// The symbol of a `let` without a name, where `let`s stay closed.
+    /// The symbol of a value without a name, if `let`s stay closed.
     fn unnamed(&mut self, value: Expression) -> Expression {
         let number = self.lets.as_ref().map_or(0, |lets| lets.len() + 1);
         self.bound(&format!("t{number}"), value)
     }
 
-    /// A sum of matrices, such as `exp(v)`, applied to a vector: factor by factor, and each image stays closed.
+    /// The image of a vector under a sum of matrices, such as `exp(v)`: applied factor by factor, with each image
+    /// closed.
     ///
     /// Multiplied out first, a product of two matrices would give two products in the derivative for each of its terms.
     fn image(&mut self, matrix: &Rc<Tree>, vector: &Expression) -> Result<Expression, Failure> {
@@ -421,7 +422,7 @@ impl<'a> Lowering<'a> {
             }
             Kind::Power(a, exponent) => self.power(tree, a, *exponent)?,
             Kind::Apply(function, a) => {
-                // Alone, however small, as the derivative is a function of it too.
+                // The argument is closed however small it is, as the derivative is a function of it too.
                 let argument = self.expression(a)?;
                 let argument = self.closed(a, argument);
                 let value = Expression::function(*function, argument);
@@ -478,7 +479,7 @@ impl<'a> Lowering<'a> {
     }
 }
 
-/// Whether a product is that of a matrix and a vector.
+/// Whether a product is a matrix times a vector.
 fn acts(a: &Tree, b: &Tree) -> bool {
     matches!((a.shape, b.shape), (Shape::Matrix(_, 2..), Shape::Matrix(_, 1)))
 }

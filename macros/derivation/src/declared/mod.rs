@@ -1,11 +1,10 @@
-//! What was written: syntax, spans, and the tree of the declared expression.
+//! The declaration: syntax, spans, and the tree of the declared expression.
 //!
-//! Tokens come in at `parse`, shapes are settled in `check`, and spans end at `lower`, which hands an expression without
-//! any to the mathematics. Every mistake that a user can make in a declaration is found here, at the token that it is
-//! about, and gathered in [`errors::Errors`].
+//! `parse` reads tokens, `check` assigns shapes, and `lower` hands an expression without spans to the mathematics.
+//! Every mistake that a user can make in a declaration is found here, reported at its token, and collected in
+//! [`errors::Errors`].
 //!
-//! Deliberately not here: anything that is derived, and any code that is written. The room knows `mathematics`, and
-//! nothing above itself.
+//! Deliberately not here: derived terms and generated code. The room knows `mathematics`, and nothing above itself.
 
 pub mod check;
 mod declaration;

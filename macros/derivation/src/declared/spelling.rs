@@ -3,14 +3,14 @@
 use proc_macro2::Ident;
 use syn::ext::IdentExt as _;
 
-/// The name of a `let`, or one that may be meant by it.
+/// A spelling: the name of a `let`, or a name that may refer to it.
 ///
-/// A name that comes into a `macro_rules!` from outside isn't the same as one that is written within, though they are
-/// spelt alike: a `let` of the one can't hide the other.
+/// A name passed into a `macro_rules!` differs from the same letters written within it: a `let` of the one can't hide
+/// the other.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Spelling {
     pub letters: String,
-    /// What tells expansions apart, where it is known.
+    /// The number of the expansion, if known.
     site: Option<u32>,
 }
 
@@ -22,7 +22,7 @@ impl Spelling {
 
 /// The `7` of `#7 bytes(10..12)`.
 ///
-/// On a stable compiler nothing else tells. From another compiler, whose spans look otherwise, all names have one site.
+/// A stable compiler has no other source for it. If its spans look different, all names have one site.
 pub fn site(span: &str) -> Option<u32> {
     span.strip_prefix('#')?.split_once(' ')?.0.parse().ok()
 }

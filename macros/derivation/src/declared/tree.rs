@@ -1,4 +1,4 @@
-//! The declared expression as a tree with shapes, read as mathematics.
+//! The declared expression as a tree with shapes and a mathematical meaning.
 
 use std::collections::BTreeSet;
 use std::rc::Rc;
@@ -16,7 +16,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// How many rows it has.
+    /// The number of rows.
     pub fn rows(self) -> usize {
         match self {
             Self::Scalar => 1,
@@ -39,23 +39,23 @@ impl Shape {
     }
 }
 
-/// An expression with its shape, read as mathematics.
+/// An expression with its shape and its mathematical meaning.
 #[derive(Clone, Debug)]
 pub struct Tree {
-    /// Of its first token, and of its last one.
+    /// The span of its first token; `end` is that of its last one.
     pub span: Span,
     pub end: Span,
     pub shape: Shape,
     pub kind: Kind,
-    /// How deep the operations are nested, through `let`s too.
+    /// The depth of nested operations, including those of `let`s.
     pub depth: usize,
     pub frames: Frames,
-    /// Whether nothing but increments and relative configurations is in it, and numbers.
+    /// Whether it consists of increments, relative configurations and numbers alone.
     pub is_of_turns: bool,
 }
 
-/// Among several bodies, from which one a vector is seen, by the place of its factor: first what rows belong to, then
-/// what columns belong to, where that is known. A matrix brings vectors from its columns' frame to its rows'.
+/// The bodies, by the index of their factors, in whose axes a tensor is given: the frame of its rows, then that of its
+/// columns, if known. A matrix maps vectors from its columns' frame to its rows'.
 pub type Frames = [Option<usize>; 2];
 
 impl Tree {
@@ -66,18 +66,18 @@ impl Tree {
         Rc::new(Self { span, end: span, shape, kind, depth, frames, is_of_turns })
     }
 
-    /// What a name stands for, seen from bodies.
+    /// A name with its frames.
     pub fn seen(span: Span, shape: Shape, name: Name, (frames, is_turn): (Frames, bool)) -> Rc<Self> {
         let is_of_turns = is_turn || shape == Shape::Scalar;
         Rc::new(Self { span, end: span, shape, kind: Kind::Name(name), depth: 1, frames, is_of_turns })
     }
 
-    /// A scalar in the place of another one.
+    /// A scalar operation in the place of a part of the text.
     pub fn in_place_of(part: &Self, kind: Kind) -> Rc<Self> {
         Self::until(Self::new(part.span, Shape::Scalar, kind), part.end)
     }
 
-    /// Where nothing else knows it yet, the same with its last token.
+    /// The tree with its last token set, if it isn't shared yet.
     pub fn until(mut tree: Rc<Self>, end: Span) -> Rc<Self> {
         if let Some(tree) = Rc::get_mut(&mut tree) {
             tree.end = end;
@@ -102,7 +102,7 @@ pub fn parts(tree: &Rc<Tree>) -> Vec<&Rc<Tree>> {
 /// A name in scope.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Name {
-    /// `F`, of one factor of the group.
+    /// `F`, the increment of one factor of the group.
     Increment(usize),
     /// `h`.
     Step,
@@ -112,9 +112,9 @@ pub enum Name {
     DisplacementBefore(usize),
     /// `eta_next`, the one at its end.
     DisplacementAfter(usize),
-    /// An advected parameter, by its place in `advected(…)`.
+    /// An advected parameter, by its index in the list.
     Advected(usize),
-    /// A field, by its place in the struct.
+    /// A field, by its index in the struct.
     Field(usize),
 }
 
@@ -142,10 +142,10 @@ pub enum Kind {
     Hat(Rc<Tree>, Rc<[Vec<Rational>]>),
     /// `v` of `Σ v_k E_k`, by linear forms in its entries: the component, row, column and factor of each term.
     Components(Rc<Tree>, Rc<[(usize, usize, usize, Rational)]>),
-    /// Of a parameter or of `F`.
+    /// The inverse of a parameter or of `F`.
     Inverse(Rc<Tree>),
     Entry(Rc<Tree>, usize, usize),
-    /// What a `let` has named.
+    /// The value of a `let` by its name.
     Bound(String, Rc<Tree>),
 }
 
@@ -154,14 +154,14 @@ impl Kind {
         matches!(self, Self::Identity)
     }
 
-    /// From where the result is seen, if the operands fit.
+    /// The frames of the result, if the operands fit.
     fn frames(&self) -> Frames {
         match self {
             Self::Negate(a) | Self::Bound(_, a) | Self::Divide(a, _) => a.frames,
             Self::Transpose(a) | Self::Inverse(a) => [a.frames[1], a.frames[0]],
             Self::Add(a, b) | Self::Subtract(a, b) | Self::Cross(a, b) | Self::ComponentMultiply(a, b) => {
                 [0, 1].map(|side| match (a.frames[side], b.frames[side]) {
-                    // What compares two bodies in their own axes is seen from neither.
+                    // A comparison of two bodies, each in its own axes, is in the axes of neither.
                     (Some(first), Some(second)) if first != second => None,
                     (first, second) => first.or(second),
                 })
@@ -172,7 +172,7 @@ impl Kind {
                 (Some(from), Some(of)) if from != of => [None; 2],
                 _ => [a.frames[0], b.frames[1]],
             },
-            // Of a matrix from one body to another it is seen from neither.
+            // The vector of a matrix from one body to another is in the axes of neither.
             Self::Vee(a) => match a.frames {
                 [Some(row), Some(column)] if row != column => [None; 2],
                 [row, column] => [row.or(column), None],

@@ -1,4 +1,4 @@
-//! Straight-line code.
+//! Straight-line code from a graph of operations.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::mathematics::derive::Directions;
 use crate::mathematics::symbolic::{Function, Rational, SymbolId, Symbols};
 use crate::program::{Form, Graph, Node, NodeId, needed};
 
-/// What code is written with.
+/// The declaration, types and symbols that code is written for.
 pub(super) struct Code<'a> {
     pub(super) declaration: &'a Declaration,
     pub(super) header: &'a Header,
@@ -22,7 +22,7 @@ pub(super) struct Code<'a> {
     pub(super) directions: Option<&'a Directions>,
 }
 
-/// The token of a node that isn't computed here: an input, or what an earlier stage has left.
+/// The token of a node that needs no code here: an input, or a value of an earlier stage.
 pub(super) type KnownTokens<'a> = &'a dyn Fn(NodeId) -> Option<TokenStream>;
 
 impl Code<'_> {
@@ -53,7 +53,7 @@ impl Code<'_> {
         self.statements(graph, outputs, &given)
     }
 
-    /// One value from its entries, a square matrix row by row.
+    /// One value from its entries, a square matrix by rows.
     pub(super) fn assembled(&self, form: Form, values: &[TokenStream]) -> TokenStream {
         let (private, span) = (&self.header.private, Span::mixed_site());
         let dimension = self.declaration.group.dimension();
@@ -67,7 +67,7 @@ impl Code<'_> {
         }
     }
 
-    /// The `let`s that matrices need, and the matrices: of the group, of a product in a tuple.
+    /// The `let`s that matrices need, and the matrices of the group: one, or a tuple of those of the factors.
     pub(super) fn blocks(
         &self,
         graph: &Graph,
@@ -86,7 +86,7 @@ impl Code<'_> {
         }
     }
 
-    /// A square matrix from its entries, row by row.
+    /// A square matrix from its entries, by rows.
     fn matrix(&self, size: usize, values: &[TokenStream]) -> TokenStream {
         let column = |j: usize| values.iter().skip(j).step_by(size).cloned().collect();
         self.columns(size, &(0..size).map(column).collect::<Vec<_>>())
@@ -104,7 +104,7 @@ impl Code<'_> {
 
     /// Code for the outputs: the statements, and a token for each output.
     ///
-    /// A value that is used once is written where it is used. All others are bound by a `let`.
+    /// A value that is used once is written in place. All others are bound by a `let`.
     pub(super) fn statements(
         &self,
         graph: &Graph,
@@ -198,7 +198,7 @@ impl Code<'_> {
     }
 }
 
-/// A value in tokens, with the `let`s that it reads.
+/// The tokens of a value, and the `let`s that it reads.
 #[derive(Clone)]
 struct Value {
     tokens: TokenStream,
@@ -211,13 +211,14 @@ struct Binding {
     value: Value,
 }
 
-/// Deeper parentheses are hard to read.
+/// The limit on nested parentheses, for readers.
 const DEEPEST: usize = 4;
 
-/// Each `let` opens a scope inside the last one, and compilers walk them recursively: more in a row overflow the stack.
+/// The limit on consecutive `let`s: each opens a scope inside the last one, and compilers walk scopes recursively, so
+/// that more would overflow the stack.
 const LONGEST: usize = 200;
 
-/// The `let`s, in blocks that hand on what later ones read.
+/// The `let`s, in blocks that return the values read later.
 fn grouped(bound: &[Binding], read_last: &[usize]) -> TokenStream {
     let lets = |bindings: &[Binding]| -> TokenStream {
         let each = bindings.iter().map(|Binding { name, value }| {

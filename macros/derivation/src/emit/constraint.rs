@@ -51,7 +51,7 @@ pub(crate) fn constraint(item: &TokenStream, declaration: &Declaration, held: &C
     quote_spanned!(span=> #item #implementation)
 }
 
-/// The declared functions, one below the other; the compiler checks the shapes that the macro found.
+/// The declared functions in one column; the compiler checks the shapes that the macro found.
 fn gap(declaration: &Declaration, header: &Header, held: &ConstraintSlopes) -> TokenStream {
     let (span, private) = (Span::mixed_site(), &header.private);
     let expression = verbatim::declared(declaration, header);
@@ -87,7 +87,7 @@ fn gap(declaration: &Declaration, header: &Header, held: &ConstraintSlopes) -> T
 }
 
 impl Code<'_> {
-    /// Both slopes in straight-line code.
+    /// The slopes of both bodies in straight-line code.
     fn slope(&self, held: &ConstraintSlopes) -> TokenStream {
         let (span, private, functions) = (Span::mixed_site(), &self.header.private, held.rows());
         let bodies = &held.lowered.declared.bodies;
@@ -123,7 +123,7 @@ impl Code<'_> {
     }
 }
 
-/// An entry of where a body is.
+/// An entry of a body's attitude or position.
 fn entry_of_place(bodies: &[Body; 2], input: Input) -> Option<TokenStream> {
     let span = Span::mixed_site();
     BODIES.iter().zip(bodies).find_map(|(name, body)| {
@@ -137,7 +137,7 @@ fn entry_of_place(bodies: &[Body; 2], input: Input) -> Option<TokenStream> {
     })
 }
 
-/// What the struct's documentation says of it.
+/// The section on the constraint in the struct's documentation.
 fn documentation(held: &ConstraintSlopes) -> String {
     let symbols = &held.lowered.declared.symbols;
     let heading = match held.rows() {

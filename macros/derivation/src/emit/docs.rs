@@ -26,7 +26,7 @@ impl Equation {
     }
 }
 
-/// The closed `let`s and their multipliers, which the equations are written in.
+/// The closed `let`s and their multipliers, which occur in the equations.
 pub(super) fn lets(derived: &Derivation) -> String {
     let symbols = &derived.symbols;
     let name = |id| &symbols.get(id).name;
@@ -89,18 +89,18 @@ pub(super) fn equations(
     equations
 }
 
-/// The names of what is advected.
+/// The names of the advected parameters.
 pub(super) fn names(declaration: &Declaration) -> Vec<String> {
     declaration.advected.iter().map(AdvectedParameter::plain_name).collect()
 }
 
-/// `(w, v)`: where something is a function of what is advected.
+/// `(w, v)`, the arguments of a function of the advected parameters.
 pub(super) fn at(w: &[impl AsRef<str>]) -> String {
     let names = w.iter().map(AsRef::as_ref).collect::<Vec<_>>().join(", ");
     if names.is_empty() { names } else { format!("({names})") }
 }
 
-/// A formula in `w` with the name of what is advected, or with those of several together.
+/// A formula in `w` with the names of the advected parameters, in parentheses if there are several.
 pub(super) fn moved_by(formula: &str, w: &[impl AsRef<str>]) -> String {
     match w {
         [] => formula.to_owned(),
@@ -109,12 +109,12 @@ pub(super) fn moved_by(formula: &str, w: &[impl AsRef<str>]) -> String {
     }
 }
 
-/// A covector; of several bodies that of each.
+/// A covector, or those of several bodies.
 fn covectors(derived: &Derivation, expression: &crate::mathematics::symbolic::Expression) -> String {
     let (symbols, factors) = (&derived.symbols, &derived.directions.factors);
     let of_factor = |first| {
         let own = expression.filtered(|monomial| crate::mathematics::symbolic::monomial_contains(monomial, first));
-        // Of what is translated the direction is a vector.
+        // The direction of a translation is a vector.
         let vector = if symbols.get(first).shape.1 == 1 { vector_text(&own, first, symbols) } else { None };
         vector.unwrap_or_else(|| covector_text(&own, first, symbols))
     };
@@ -124,10 +124,10 @@ fn covectors(derived: &Derivation, expression: &crate::mathematics::symbolic::Ex
     }
 }
 
-/// A longer flow on increments is the equation of two terms that are in print.
+/// The limit on the length of the inertia matrix and of the flow on increments, which have other forms if longer.
 const LONGEST: usize = 1_500;
 
-/// Where `J`, `s` and `V` are from.
+/// The source of `J`, `s` and `V`.
 fn of_limit(continuous: Option<&Equations>) -> &'static str {
     match continuous.map(|equations| equations.derived.inverse) {
         Some(Inverse::Nonlinear) => "continuous limit at rest",
@@ -135,7 +135,7 @@ fn of_limit(continuous: Option<&Equations>) -> &'static str {
     }
 }
 
-/// `J` as a matrix, where it can be written as one.
+/// `J` as a matrix, if it has that form.
 fn inertia(derived: &Derivation, continuous: Option<&Equations>) -> Equation {
     let quadratic = continuous.filter(|equations| equations.derived.inverse != Inverse::Nonlinear);
     let as_matrix = quadratic.and_then(|equations| inertia_matrix(&equations.derived));
@@ -163,7 +163,7 @@ pub(super) fn equations_of_force(derived: &Derivation, declared: &DeclaredFuncti
     ]
 }
 
-/// The documentation of a method that has the equations of these, with the operations of its code.
+/// The documentation of a method: its equations, and the operations of its code.
 pub(super) fn of(equations: &[Equation], methods: &[&str], graph: &Graph, outputs: &[NodeId]) -> String {
     let operations = count(graph, outputs, None);
     let found = equations.iter().filter(|equation| methods.contains(&equation.method));
@@ -179,7 +179,7 @@ pub(super) fn stage(graph: &Graph, outputs: &[NodeId], stage: Stage, when: &str)
     format!("{} at {when}.", count(graph, outputs, Some(stage)))
 }
 
-/// The equations, what they rest on, and what they cost, as one text.
+/// The equations, their hypotheses and their cost, as one text.
 pub(super) fn derivation(
     declaration: &Declaration,
     chosen: &Choice,
@@ -212,7 +212,7 @@ pub(super) fn derivation(
 /// The operations of each stage, one a line.
 pub(super) fn costs(kernel: &Kernel) -> String {
     let before = [kernel.kick_before.as_slice(), &kernel.residual, &kernel.jacobian].concat();
-    // With a = μ + k₀.
+    // The sum a = μ + k₀ takes an addition for each component.
     let mut before_the_solve = count(&kernel.graph, &before, Some(Stage::Step));
     before_the_solve.arithmetic += kernel.residual.len();
     let alone = if kernel.jacobian_is_expensive() {
@@ -231,19 +231,19 @@ pub(super) fn costs(kernel: &Kernel) -> String {
     )
 }
 
-/// `∂²l/∂ξ²` as a matrix, where it can be written as one.
+/// `∂²l/∂ξ²` as a matrix, if it has that form.
 pub(super) fn inertia_matrix(derived: &Continuous) -> Option<String> {
     let [directions] = derived.directions.as_slice() else { return None };
     matrix_text(&derived.hessian, directions.map(|direction| direction.components), &derived.symbols)
 }
 
-/// The group, and how it moves the advected parameters.
+/// The group and its action on the advected parameters.
 pub(super) fn setting(declaration: &Declaration, is_discrete: bool) -> String {
     let names = declaration.factors.iter().map(Factor::group_name);
     let group = names.collect::<Vec<_>>().join(" × ");
     let is_product = declaration.group.is_product();
     let increment = |factor: usize| declaration.factors.get(factor).map_or("F", |factor| factor.name.as_str());
-    // In the continuous setting there are no increments, and their names stand for the bodies.
+    // The continuous setting has no increments, and their names stand for the bodies.
     let element = |factor: usize| if is_product { format!("g_{}", factor + 1) } else { "g".to_owned() };
     let advected = declaration.advected.iter().enumerate().map(|(index, w)| {
         let name = w.plain_name();
@@ -314,7 +314,7 @@ pub(super) fn setting(declaration: &Declaration, is_discrete: bool) -> String {
     format!("group\n    {whole} in {group}{bodies}\n{advected}{basis}")
 }
 
-/// `F⁻¹ w` with the names of an increment and of what it moves, which may have the letters of each other.
+/// `F⁻¹ w` with the names of an increment and of a parameter, either of which may contain the other's letter.
 fn with_names(formula: &str, increment: &str, moved: &str) -> String {
     let mut text = String::new();
     for letter in formula.chars() {
@@ -327,7 +327,7 @@ fn with_names(formula: &str, increment: &str, moved: &str) -> String {
     text
 }
 
-/// The unknown of the Newton system, how it is written, and how it might have been.
+/// The unknown of the Newton system, its form, and the other candidates for it.
 pub(super) fn candidates(kernel: &Kernel) -> String {
     let unknown = if kernel.in_increment {
         "U(F) = μ + k₀ along F ↦ exp(tE_j)F, right-trivialised"
@@ -341,7 +341,7 @@ pub(super) fn candidates(kernel: &Kernel) -> String {
     kernel.candidates.iter().enumerate().map(line).fold(unknown.to_owned(), |text, line| text + &line)
 }
 
-/// How sure it is that what was derived is that of the declaration.
+/// The bound on the probability of a wrong derivation, as text.
 pub(super) fn certified(what: &str, sureness: Sureness) -> String {
     match sureness {
         Sureness::Certified(exponent) => format!("{what} are identities; {}", wrong(exponent)),
@@ -362,7 +362,7 @@ fn wrong(exponent: u32) -> String {
     format!("a wrong one would pass with a probability below 2⁻{exponent}")
 }
 
-/// What is compared of a step.
+/// The parts of a step that are compared.
 pub(super) const OF_A_STEP: &str = "the terms and the stages of a step";
 
 fn superscript(digit: char) -> Option<char> {
@@ -370,7 +370,7 @@ fn superscript(digit: char) -> Option<char> {
     digits.get(usize::try_from(digit.to_digit(10)?).ok()?).copied()
 }
 
-/// Whether the Lagrangian is self-adjoint, how that was found, and what follows.
+/// The self-adjointness of the Lagrangian, its proof, and its consequence.
 fn adjoint(findings: &Findings, w: &[String]) -> String {
     let even = "even order; a step of −h undoes a step of h";
     let how_sure = match (findings.sureness, findings.self_adjointness) {

@@ -1,4 +1,4 @@
-//! What stands in for the implementation after a mistake, so that one mistake gives one error.
+//! The stand-in for the implementation after a mistake, so that one mistake gives one error.
 
 use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::{quote, quote_spanned};
@@ -9,14 +9,14 @@ use crate::declared::errors::Errors;
 use crate::declared::parse;
 use crate::declared::{Declaration, Role};
 
-/// The item with all mistakes, and with a stand-in.
+/// The item with all mistakes and a stand-in for its implementation.
 pub(crate) fn mistakes(role: Role, arguments: TokenStream, item: &TokenStream, errors: &Errors) -> TokenStream {
     let mistakes: TokenStream = errors.iter().map(syn::Error::to_compile_error).collect();
     let stand_in = stand_in(role, arguments, item);
     quote!(#item #mistakes #stand_in)
 }
 
-/// An implementation that type-checks wherever the real one would be used.
+/// An implementation with the types of the real one.
 fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStream {
     let Some(item) = as_struct(item).filter(|item| parse::declared_again(item).is_none()) else {
         return TokenStream::new();
@@ -30,7 +30,7 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
     }
 }
 
-/// That of what has a step.
+/// The stand-in of a Lagrangian or a force.
 fn of_effect(declaration: &Declaration, header: &Header) -> TokenStream {
     let (span, private) = (Span::mixed_site(), &header.private);
     let none = quote_spanned!(span=> ());
@@ -77,7 +77,7 @@ fn of_effect(declaration: &Declaration, header: &Header) -> TokenStream {
     header.enclosing(implementations)
 }
 
-/// What a Lagrangian or a force is besides an effect.
+/// The implementations of a Lagrangian or a force besides that of an effect.
 fn of_role(declaration: &Declaration, header: &Header) -> TokenStream {
     let (span, private) = (Span::mixed_site(), &header.private);
     let (vector, square, matrix, scalar) = (header.vector(), header.square(), header.matrix(), &header.scalar);
@@ -136,7 +136,7 @@ fn of_role(declaration: &Declaration, header: &Header) -> TokenStream {
     }
 }
 
-/// One function: how many there are can't be known.
+/// The stand-in of a constraint, with one function: their number isn't known.
 fn constraint(header: &Header) -> TokenStream {
     let (span, private) = (Span::mixed_site(), &header.private);
     let (core, implementation) =
@@ -156,7 +156,7 @@ fn constraint(header: &Header) -> TokenStream {
     header.enclosing(items)
 }
 
-/// Where the derivatives of a step are asked for.
+/// The stand-in of the derivatives of a step.
 fn gradients(header: &Header) -> TokenStream {
     let (span, private, implementation) =
         (Span::mixed_site(), &header.private, header.implementation("SecondDerivatives"));
@@ -193,7 +193,7 @@ fn gradients(header: &Header) -> TokenStream {
     }
 }
 
-/// The struct, or one of the same name in the place of an enum.
+/// The struct, or one of the same name for an enum.
 fn as_struct(item: &TokenStream) -> Option<ItemStruct> {
     match syn::parse2(item.clone()).ok()? {
         Item::Struct(item) => Some(item),
@@ -205,7 +205,7 @@ fn as_struct(item: &TokenStream) -> Option<ItemStruct> {
     }
 }
 
-/// The other arguments: the Lagrangian may be too large to be parsed.
+/// The arguments without the expression, which may be too large to be parsed.
 fn without_lagrangian(role: Role, arguments: TokenStream) -> TokenStream {
     let mut is_lagrangian = false;
     let other = arguments.into_iter().filter(|token| {

@@ -1,4 +1,4 @@
-//! The derivatives of a step, where they are asked for: `SecondDerivatives`.
+//! The derivatives of a step, if they are requested: `SecondDerivatives`.
 
 use proc_macro2::{Literal, Span, TokenStream};
 use quote::{ToTokens as _, quote_spanned};
@@ -10,7 +10,7 @@ use crate::judged::{count, variables};
 use crate::mathematics::symbolic::SymbolId;
 use crate::program::{Derivatives, Form, Node, NodeId, WeightedGradient};
 
-/// The implementation; nothing where it isn't asked for.
+/// The implementation; `None` if it isn't requested.
 pub(super) fn implementation(emitter: &Emitter, derivatives: Option<&Derivatives>) -> Option<TokenStream> {
     let derivatives = derivatives?;
     let (span, private) = (Span::mixed_site(), &emitter.header.private);
@@ -92,7 +92,7 @@ fn adjoint_gradient(emitter: &Emitter, derivatives: &Derivatives) -> TokenStream
     quote_spanned!(Span::mixed_site()=> #lets #found)
 }
 
-/// That of `⟨u, D_v k⟩ + ⟨r, k − J u⟩`, where `k` is the torque: the kick of a step of two seconds.
+/// The gradient of `⟨u, D_v k⟩ + ⟨r, k − J u⟩`, where `k` is the torque: the kick of a step of two seconds.
 fn kick_gradient(emitter: &Emitter, derivatives: &Derivatives) -> Option<TokenStream> {
     let directions = &emitter.derived.directions;
     let weights = [(directions.target, "acceleration"), (directions.coordinates, "multiplier")];
@@ -112,7 +112,7 @@ fn kick_gradient(emitter: &Emitter, derivatives: &Derivatives) -> Option<TokenSt
     })
 }
 
-/// Statements that visit a gradient by the parameters, and that by the place and by what is advected.
+/// Statements that visit a gradient by the parameters, and return that by the position and by the advected parameters.
 fn gradient_of(
     emitter: &Emitter,
     derivatives: &Derivatives,
@@ -161,7 +161,7 @@ fn step_derivatives(emitter: &Emitter, derivatives: &Derivatives) -> TokenStream
     quote_spanned!(span=> #lets #private::StepDerivatives { #(#fields),* })
 }
 
-/// The `let`s of these outputs, and what they are made of; some symbols stand for weights of these names.
+/// The `let`s and values of these outputs; some symbols are weights with these names.
 fn statements(
     emitter: &Emitter,
     Derivatives { graph, .. }: &Derivatives,
@@ -183,7 +183,7 @@ fn statements(
     (quote_spanned!(span=> #inverse #lets), values)
 }
 
-/// Visits of what isn't zero.
+/// Calls of `visit` for the derivatives that aren't zero.
 fn visits(emitter: &Emitter, derivatives: &Derivatives, found: &[(usize, Vec<NodeId>)]) -> TokenStream {
     let outputs: Vec<NodeId> = found.iter().flat_map(|(_, nodes)| nodes.iter().copied()).collect();
     let (lets, values) = statements(emitter, derivatives, &outputs, &[]);
@@ -197,7 +197,7 @@ fn visits(emitter: &Emitter, derivatives: &Derivatives, found: &[(usize, Vec<Nod
     quote_spanned!(Span::mixed_site()=> #lets #(#visits)*)
 }
 
-/// The numbers of the scalars of what is advected, with those that they have among the parameters.
+/// Calls of `visit` for each scalar of the advected parameters: its number, and its number among the parameters.
 fn carried_parameters(emitter: &Emitter) -> TokenStream {
     let [fields, advected] = variables(emitter.declaration);
     let before =

@@ -9,13 +9,13 @@ use crate::mathematics::derive::View;
 use crate::mathematics::symbolic::Variance;
 use crate::program::Form;
 
-/// What the signatures are written with.
+/// The types and generics of the signatures.
 pub(crate) struct Header {
-    /// The module of liestep that expansions name, and nothing beside it: where the rest of the library stands is free.
+    /// The module of liestep that expansions name; no other path of the library is used.
     pub(crate) private: Path,
-    /// Where liestep is found, if not at `::liestep`.
+    /// The path of liestep, if not `::liestep`.
     root: Option<Path>,
-    /// One for each factor.
+    /// The type of each factor of the group.
     group_paths: Vec<Path>,
     pub(crate) scalar: TokenStream,
     /// The type parameter, if the scalar is one.
@@ -41,7 +41,7 @@ impl Header {
             .map(|factor| factor.path.clone().unwrap_or_else(|| syn::parse_quote!(#private::SO3)));
         let group_paths = paths.collect();
         let (scalar, parameter) = match &declaration.scalar {
-            // The primitive type even where the name is shadowed.
+            // The path finds the primitive type even if its name is shadowed.
             Scalar::Primitive(name) => (quote_spanned!(Span::mixed_site()=> #private::core::primitive::#name), None),
             Scalar::Parameter(name) => (name.to_token_stream(), Some(name.clone())),
         };
@@ -63,7 +63,7 @@ impl Header {
         }
     }
 
-    /// `private`, and what is wrong with what it is given, at that place.
+    /// `private` with a span at this place, for errors of its arguments.
     pub(crate) fn private_at(&self, place: Span) -> TokenStream {
         let placed = |mut token: TokenTree| {
             token.set_span(place);
@@ -72,7 +72,7 @@ impl Header {
         self.private.to_token_stream().into_iter().map(placed).collect()
     }
 
-    /// The items where `private` is found: a path of the user's is written once, so that a wrong one is one mistake.
+    /// The items in the scope of `private`. A path of the user's is written once, so that a wrong one is one error.
     pub(crate) fn enclosing(&self, items: TokenStream) -> TokenStream {
         let Some(root) = &self.root else { return items };
         quote_spanned! {Span::mixed_site()=>
@@ -83,17 +83,17 @@ impl Header {
         }
     }
 
-    /// Components of covectors.
+    /// The type of the components of covectors.
     pub(crate) fn vector(&self) -> TokenStream {
         self.column(self.dimension)
     }
 
-    /// Linear maps of components.
+    /// The type of linear maps of components.
     pub(crate) fn square(&self) -> TokenStream {
         self.matrix_of(self.dimension)
     }
 
-    /// The type of what has this form.
+    /// The type of a value of this form.
     pub(crate) fn of(&self, form: Form) -> TokenStream {
         match form {
             Form::Scalar => self.scalar.clone(),
@@ -102,13 +102,13 @@ impl Header {
         }
     }
 
-    /// The matrices of the group.
+    /// The type of the group's matrices.
     pub(crate) fn matrix(&self) -> TokenStream {
         let matrices = self.sizes.iter().map(|&size| self.matrix_of(size));
         Self::of_factors(&matrices.collect::<Vec<_>>())
     }
 
-    /// One, or a tuple.
+    /// The single type, or a tuple.
     fn of_factors(each: &[TokenStream]) -> TokenStream {
         match each {
             [single] => single.clone(),
@@ -116,7 +116,7 @@ impl Header {
         }
     }
 
-    /// The matrices that `I` is one of: of a product those of what turns.
+    /// The type of `I`: a matrix of the group, or among several bodies a matrix of a rotation.
     pub(crate) fn matrix_of_factor(&self) -> TokenStream {
         self.matrix_of(if self.sizes.len() > 1 { 3 } else { self.size })
     }
@@ -203,7 +203,7 @@ impl Header {
     pub(crate) fn addition(&self) -> TokenStream {
         let (span, private, group) = (Span::mixed_site(), &self.private, self.group());
         let core = quote_spanned!(span=> #private::core);
-        // A name that no type of the user's has.
+        // No type of the user's has this name.
         let other = Ident::new("LiestepOtherTerm", span);
         let bounds = [
             syn::parse_quote_spanned!(span=> #other: #private::Term),
@@ -247,7 +247,7 @@ impl Header {
         quote_spanned!(Span::mixed_site()=> impl #before #implemented for #name #arguments #conditions)
     }
 
-    /// The advected parameters.
+    /// The types of the advected parameters.
     pub(crate) fn advected_types(&self) -> TokenStream {
         let values: Vec<TokenStream> = self.advected.iter().map(|&each| self.advected_type(each)).collect();
         match values.as_slice() {
@@ -256,12 +256,12 @@ impl Header {
         }
     }
 
-    /// The group.
+    /// The type of the group.
     pub(crate) fn group(&self) -> TokenStream {
         Self::of_factors(&self.groups().collect::<Vec<_>>())
     }
 
-    /// The group of each factor.
+    /// The type of each factor of the group.
     pub(crate) fn groups(&self) -> impl Iterator<Item = TokenStream> {
         let scalar = &self.scalar;
         self.group_paths.iter().map(move |group| quote_spanned!(Span::mixed_site()=> #group<#scalar>))

@@ -1,4 +1,4 @@
-//! Where the entries of a symbol are found in the generated methods.
+//! The places of a symbol's entries in the generated methods.
 
 use proc_macro2::{Literal, Span, TokenStream};
 use quote::quote_spanned;
@@ -21,7 +21,7 @@ impl Code<'_> {
             Some(Name::Increment(factor)) => self.increment_entry(&quote_spanned!(span=> f), factor, input),
             Some(Name::Advected(index)) => self.advected_entry(&quote_spanned!(span=> w), index, input),
             Some(Name::Field(index)) => self.field_entry(index, input),
-            // Displacements are replaced by directions before.
+            // Displacements have been replaced by directions.
             Some(Name::DisplacementBefore(_) | Name::DisplacementAfter(_)) | None => self.derived_input(input),
         }
     }
@@ -57,14 +57,14 @@ impl Code<'_> {
         self.no_input(input)
     }
 
-    /// Directions are replaced by their entries before; a leftover is a bug that the user's compiler then shows.
+    /// A compile error: directions have been replaced by their entries, so that a leftover is a bug of the derivation.
     fn no_input(&self, input: Input) -> TokenStream {
         let name = &self.symbols.get(input.symbol).name;
         let message = format!("liestep: no value for `{name}`; please report this declaration");
         quote_spanned!(Span::mixed_site()=> compile_error!(#message))
     }
 
-    /// An entry of the increment of a factor: of its matrix, of translations of the last column.
+    /// An entry of a factor's increment: of its matrix, or for a translation of the last column.
     fn increment_entry(&self, all: &TokenStream, factor: usize, input: Input) -> TokenStream {
         let own = self.declaration.group.factor(factor);
         let input = if own.is_added { Input { column: own.dimension(), ..input } } else { input };
@@ -94,7 +94,7 @@ impl Code<'_> {
         let part = if is_seen { quote_spanned!(span=> #part.0) } else { part };
         match kind {
             FieldKind::Advected(..) | FieldKind::Given(_) => entry(&quote_spanned!(span=> #part.0), input),
-            // The last coordinate is a constant before.
+            // The last coordinate of a point has been replaced by a constant.
             FieldKind::Point(_) => entry(&quote_spanned!(span=> #part.coords), input),
             FieldKind::Place(coordinates) => entry(&part, Input { column: coordinates, ..input }),
             _ => entry(&part, input),
@@ -103,7 +103,7 @@ impl Code<'_> {
 
     pub(super) fn field_entry(&self, index: usize, input: Input) -> TokenStream {
         let Some(field) = self.declaration.fields.get(index) else { return TokenStream::new() };
-        // Where a type of that name isn't the one that is meant, the compiler shows it.
+        // If the name is that of another type, the compiler reports it at the field.
         let (name, span) = (&field.name, field.at.resolved_at(Span::mixed_site()));
         let place = |value: TokenStream| entry_at(span, &value, input);
         match field.kind {
@@ -124,7 +124,7 @@ impl Code<'_> {
     }
 }
 
-/// Column-major storage: `[[_; rows]; columns]`.
+/// An entry in column-major storage, `[[_; rows]; columns]`.
 pub(super) fn entry(value: &TokenStream, input: Input) -> TokenStream {
     entry_at(Span::mixed_site(), value, input)
 }

@@ -11,17 +11,17 @@ use crate::declared::{Field, FieldKind};
 struct Struct<'a> {
     private: TokenStream,
     name: &'a Ident,
-    /// Those of the type of one lane.
+    /// The generics of the type with one lane.
     generics: &'a Generics,
-    /// The parameters that are others where several lanes are together.
+    /// The parameters that differ between one lane and several.
     parameters: Vec<Parameter>,
-    /// What has to hold of the fields.
+    /// The bounds on the fields.
     conditions: Vec<WherePredicate>,
-    /// Without them, after a mistake, there are bodies that never come to an end.
+    /// The fields; without them, after a mistake, the bodies are endless loops.
     parts: Option<Vec<Part>>,
 }
 
-/// A parameter of the type of one lane, and that of several together.
+/// A type parameter for one lane, and its counterpart for several.
 struct Parameter {
     one: Ident,
     several: Ident,
@@ -30,7 +30,7 @@ struct Parameter {
 
 /// A field.
 struct Part {
-    /// `private` at the place that is underlined.
+    /// `private` with the span for errors.
     private: TokenStream,
     member: Member,
     kind: Kind,
@@ -40,7 +40,7 @@ struct Part {
 enum Kind {
     Scalar,
     Lanes,
-    /// All lanes have the same.
+    /// All lanes have one value.
     Shared,
 }
 
@@ -53,11 +53,11 @@ pub(super) fn lanes(header: &Header, fields: Option<&[Field]>) -> TokenStream {
         member: field.name.clone().into(),
         kind: if field.kind == FieldKind::Scalar { Kind::Scalar } else { Kind::Lanes },
     };
-    // A `RealField` has one lane, and is its element. That it might have another would be a contradiction.
+    // A `RealField` has one lane, and is its own element; a second lane would contradict that.
     let is_single = [header.generics.to_token_stream(), header.generics.where_clause.to_token_stream()]
         .into_iter()
         .any(|bounds| names(bounds, &["RealField", "ComplexField"]));
-    // A name that no type of the user's has.
+    // No type of the user's has this name.
     let several = if is_single { scalar.clone() } else { Ident::new("LiestepLanes", span) };
     let target = Struct {
         private: header.private.to_token_stream(),
@@ -88,7 +88,7 @@ pub(crate) fn derived(item: &syn::ItemStruct, is_in_lanes: bool) -> TokenStream 
         }
         match kind(field) {
             Kind::Shared => Some(parse_quote!(#one: Clone + PartialEq)),
-            // Said of the parameter already.
+            // The bounds of the parameter include this one.
             _ if matches!(one, Type::Path(path) if path.path.get_ident().is_some()) => None,
             Kind::Scalar => Some(parse_quote!(#several: #private::nalgebra::SimdValue<Element = #one>)),
             Kind::Lanes => Some(parse_quote!(#several: #private::Lanes<Lane = #one>)),
@@ -173,7 +173,7 @@ impl Struct<'_> {
         }
     }
 
-    /// The parameters of one lane and those of several, and what holds of either and between them.
+    /// The parameters for one lane and for several, with their bounds and the relations between them.
     fn generics_of_both(&self) -> Generics {
         let (private, mut generics) = (&self.private, self.generics.clone());
         let asked = self.generics.where_clause.iter().flat_map(|clause| &clause.predicates);
@@ -205,7 +205,7 @@ impl Struct<'_> {
         generics
     }
 
-    /// Those of `splat`, `lane` and `set_lane`.
+    /// The bodies of `splat`, `lane` and `set_lane`.
     fn bodies(&self, parts: &[Part]) -> [TokenStream; 3] {
         let (span, name) = (Span::mixed_site(), self.name);
         let splat = parts.iter().map(|Part { private, member, kind }| match kind {
@@ -242,7 +242,7 @@ fn names(tokens: TokenStream, any: &[&str]) -> bool {
     })
 }
 
-/// The tokens with the parameters of several lanes in the place of those of one.
+/// The tokens with the parameters for several lanes in the place of those for one.
 fn renamed(tokens: TokenStream, parameters: &[Parameter]) -> TokenStream {
     let rename = |token| match token {
         TokenTree::Ident(ident) => {

@@ -1,6 +1,6 @@
 //! Tokens: the implementations of `Effect`, `DiscreteLagrangian` and `Add`, and their stand-in after a mistake.
 //!
-//! The only room that quotes tokens. Deliberately not here: any mathematical decision. The room knows all below itself.
+//! This room alone quotes tokens. Deliberately not here: any mathematical decision. The room knows all below itself.
 
 mod code;
 mod constraint;
@@ -32,7 +32,8 @@ pub(crate) use fallback::mistakes;
 use header::Header;
 pub(crate) use own_group::{ask, own_group};
 
-/// A function that is inlined but where it is to be built soon; of a block all those that say nothing else of themselves.
+/// A function marked as inlined except in builds with debug assertions; in a block, all functions without such an
+/// attribute.
 #[must_use]
 pub fn hot(item: TokenStream) -> TokenStream {
     let mark: syn::Attribute = syn::parse_quote!(#[cfg_attr(not(debug_assertions), inline(always))]);
@@ -70,7 +71,7 @@ pub fn hot(item: TokenStream) -> TokenStream {
     }
 }
 
-/// What the derive macros `Lanes` and `InLanes` make of a struct of liestep.
+/// The implementation of the derive macro `Lanes` or `InLanes` for a struct of liestep.
 #[must_use]
 pub fn lanes(item: TokenStream, is_in_lanes: bool) -> TokenStream {
     let item = syn::parse2(item);
@@ -153,7 +154,7 @@ pub(crate) fn implementation(
     quote_spanned!(span=> #item #implementations)
 }
 
-/// Whether there is a kinetic part, and what its solve costs.
+/// The kinetic part of an effect: its presence, and the cost of its solve.
 fn kinetic(declaration: &Declaration, chosen: &Choice) -> &'static str {
     match (chosen.derived.limit.has_kinetic, chosen.kernel.jacobian_is_expensive()) {
         (false, _) => "WithoutKinetic",
@@ -163,7 +164,7 @@ fn kinetic(declaration: &Declaration, chosen: &Choice) -> &'static str {
     }
 }
 
-/// What was declared and everything derived from it, as text.
+/// The declaration and everything derived from it, as text.
 pub(crate) fn text(
     declaration: &Declaration,
     chosen: &Choice,
@@ -201,14 +202,14 @@ fn derivation(header: &Header, text: &str) -> TokenStream {
     quote_spanned! {span=>
         #[doc = #documentation]
         const DERIVATION: &'static #private::core::primitive::str = {
-            // So that rustdoc shows no value: it would escape each letter that isn't ASCII.
+            // A block instead of the value: rustdoc would show it with each letter escaped that isn't ASCII.
             const TEXT: &#private::core::primitive::str = #text;
             TEXT
         };
     }
 }
 
-/// The text of the declaration, of which a program derives it anew.
+/// The text of the declaration, from which a program can derive it again.
 fn declared_text(header: &Header, declaration: &Declaration, arguments: &TokenStream) -> TokenStream {
     let private = &header.private;
     let attribute = Ident::new(declaration.role.attribute(), Span::call_site());
@@ -218,7 +219,7 @@ fn declared_text(header: &Header, declaration: &Declaration, arguments: &TokenSt
     quote_spanned!(Span::mixed_site()=> const DECLARATION: &'static #private::core::primitive::str = #text;)
 }
 
-/// What advects nothing is invariant under the whole group.
+/// The invariance of a Lagrangian without advected parameters under the whole group.
 fn invariance(declaration: &Declaration, header: &Header) -> Option<TokenStream> {
     let implementation = header.implementation("LeftInvariant");
     let is_invariant = declaration.role == Role::Lagrangian && declaration.advected.iter().all(|w| w.is_given);
@@ -231,13 +232,13 @@ fn invariance(declaration: &Declaration, header: &Header) -> Option<TokenStream>
     })
 }
 
-/// What the pieces of a step share.
+/// The data that all parts of a step share.
 struct Emitter<'a> {
     code: Code<'a>,
     lowered: &'a Reading,
     derived: &'a Derivation,
     kernel: &'a Kernel,
-    /// Of a Lagrangian, its continuous equations.
+    /// The continuous equations of a Lagrangian.
     equations: Option<&'a Equations>,
 }
 
@@ -250,7 +251,7 @@ impl<'a> std::ops::Deref for Emitter<'a> {
 }
 
 impl Emitter<'_> {
-    /// The derived terms that don't know stages: those of a Lagrangian, and those of any effect.
+    /// The derived terms without stages: those of a Lagrangian, and those of any effect.
     fn mathematics(&self, jacobian: &Outputs, equations: &[docs::Equation]) -> (TokenStream, TokenStream) {
         let d = self.derived;
         let method = |(name, form, expression)| {
@@ -268,7 +269,7 @@ impl Emitter<'_> {
         (of_lagrangian.map(method).into_iter().collect(), quote!(#jacobian #limit))
     }
 
-    /// The continuous limit, which the other limits of an effect are read from.
+    /// The continuous limit, which has the inertia, the momentum at rest and the potential.
     fn limit(&self, equations: &[docs::Equation]) -> TokenStream {
         let (span, d, private) = (Span::mixed_site(), self.derived, &self.header.private);
         let (graph, [inertia, bias, potential]) = self.kernel.beginning.limit(d);
@@ -336,7 +337,7 @@ impl Code<'_> {
         checks.collect()
     }
 
-    /// The implementation of `Term`; `before` stands before the checks.
+    /// The implementation of `Term`, with the statements `before` in front of the checks.
     fn term(&self, before: &TokenStream) -> TokenStream {
         let (private, checks, values) = (&self.header.private, self.checks(), self.advected_value());
         self.header.term(&quote_spanned! {Span::mixed_site()=>
@@ -373,7 +374,7 @@ impl Code<'_> {
         }
     }
 
-    /// The spatial values.
+    /// The spatial values of the advected parameters.
     fn advected_value(&self) -> TokenStream {
         let span = Span::mixed_site();
         let private = &self.header.private;

@@ -1,8 +1,8 @@
-//! A user's group: its type, its generators, and a `macro_rules!` macro of its name that hands them on.
+//! A user's group: its type, its generators, and a `macro_rules!` macro of its name that passes them on.
 //!
-//! What one attribute has read another can't know, whatever is written to a file or kept in memory between them: the
-//! compiler may run them in any order, or not at all. A macro of the group's name is found by the rules of names, and
-//! says the same each time.
+//! An attribute can't read the result of another one from a file or from memory: the compiler may run them in any
+//! order, or not at all. A macro of the group's name is found by the rules of names, and always expands to the same
+//! tokens.
 
 use proc_macro2::{Literal, Span, TokenStream};
 use quote::{format_ident, quote, quote_spanned};
@@ -29,7 +29,7 @@ pub(crate) fn own_group(group: Option<&OwnGroup>, name: Option<&Ident>, errors: 
     let (marker, asked) = (format_ident!("{name}Generators"), format_ident!("__liestep_{name}"));
     let [size, dimension] = [*size, generators.elems.len()].map(Literal::usize_unsuffixed);
     let about = format!("What declares [`{name}`].");
-    // Such a macro can't leave its crate by another path than the root's.
+    // Such a macro can leave its crate by a path from the root only.
     let reach = match visibility {
         Visibility::Public(_) => quote!(pub(crate)),
         other => quote!(#other),
@@ -63,7 +63,7 @@ pub(crate) fn own_group(group: Option<&OwnGroup>, name: Option<&Ident>, errors: 
     }
 }
 
-/// What keeps `group = Name!` from being one more mistake: it leaves the struct as it is.
+/// A macro for `group = Name!` after a mistake, so that it isn't one more: it leaves the struct unchanged.
 fn stand_in(name: Option<&Ident>) -> Option<TokenStream> {
     let name = name?;
     let asked = format_ident!("__liestep_{name}");
@@ -78,7 +78,7 @@ fn stand_in(name: Option<&Ident>) -> Option<TokenStream> {
     })
 }
 
-/// The declaration again, by way of the group's macro, which adds the generators.
+/// The declaration passed through the group's macro, which adds the generators.
 pub(crate) fn ask(role: Role, asked: &Request, item: &TokenStream) -> TokenStream {
     let Request { group, root, arguments } = asked;
     let (private, attribute) = (private(root.as_ref()), format_ident!("{}", role.attribute()));

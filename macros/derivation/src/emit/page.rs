@@ -1,4 +1,4 @@
-//! What is added to the user's struct: documentation of what is derived, where an editor shows it.
+//! The documentation of the derived integrator on the user's struct, for readers of its page and for editors.
 
 use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
 use quote::quote_spanned;
@@ -8,7 +8,7 @@ use crate::declared::{Declaration, Field, Role};
 use crate::judged::{self, Choice, Equations, Findings};
 use crate::mathematics::derive::SelfAdjointness;
 
-/// The item as it stands, with a page of documentation behind its own, and the letters of the field allowed.
+/// The item with a page of documentation behind its own, and with the lint against its field names allowed.
 pub(super) fn documented(item: &TokenStream, page: &str) -> TokenStream {
     let mut tokens = item.clone().into_iter().peekable();
     // An item that came through a `macro_rules!` fragment may stand in an invisible group.
@@ -24,7 +24,7 @@ pub(super) fn documented(item: &TokenStream, page: &str) -> TokenStream {
         attributes.extend(tokens.by_ref().take(2));
     }
     let rest: TokenStream = tokens.collect();
-    // As `///` writes it: in lines that begin with a space.
+    // Lines begin with a space, as `///` writes them.
     let page = page.lines().fold(String::new(), |page, line| page + if line.is_empty() { "\n" } else { "\n " } + line);
     quote_spanned! {Span::mixed_site()=>
         #attributes
@@ -34,10 +34,10 @@ pub(super) fn documented(item: &TokenStream, page: &str) -> TokenStream {
     }
 }
 
-/// A longer equation is read where the methods are documented.
+/// The limit on the length of an equation; longer ones are in the documentation of the methods.
 const LONGEST: usize = 1_200;
 
-/// The momentum equation, the order, what limits a step, and what a step costs.
+/// The page: the momentum equation, the order, the limit on the step, and the cost of a step.
 pub(super) fn page(
     declaration: &Declaration,
     chosen: &Choice,
@@ -87,7 +87,7 @@ pub(super) fn page(
     )
 }
 
-/// What several bodies conserve.
+/// The conserved momenta of several bodies.
 fn momenta(declaration: &Declaration) -> String {
     let name = |field: usize| declaration.fields.get(field).map(Field::plain_name).unwrap_or_default();
     let all = judged::conserved(declaration).into_iter().map(|one| {
@@ -113,7 +113,7 @@ fn momenta(declaration: &Declaration) -> String {
     format!("Conserved, however well a step is solved, with {names}: {}.", all.join("; "))
 }
 
-/// Which bodies a step solves together.
+/// The groups of bodies that a step solves together.
 fn together(declaration: &Declaration, chosen: &Choice) -> String {
     let ends = chosen.kernel.ends(&chosen.derived.group);
     let mut groups: Vec<Vec<&str>> = vec![Vec::new()];
@@ -131,7 +131,7 @@ fn together(declaration: &Declaration, chosen: &Choice) -> String {
     }
 }
 
-/// What self-adjointness says of the order.
+/// The order that follows from self-adjointness.
 fn order(found: SelfAdjointness) -> &'static str {
     match found {
         SelfAdjointness::Symbolic | SelfAdjointness::Exact | SelfAdjointness::WithoutBound => {
@@ -144,7 +144,7 @@ fn order(found: SelfAdjointness) -> &'static str {
     }
 }
 
-/// What stands between a large step and its solution.
+/// The reason why a large step may have no solution.
 fn limit(chosen: &Choice) -> &'static str {
     if chosen.derived.cleared.is_some() {
         "the part of `μ` with `F` is a polynomial in `F`, so it is bounded. Where the body turns too fast for the step, \

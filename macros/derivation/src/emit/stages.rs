@@ -1,4 +1,4 @@
-//! The staged step: what is computed once, once a step, and once a Newton iteration.
+//! The stages of a step: operations at construction, in each step, and in each Newton iteration.
 
 use proc_macro2::{Literal, Span, TokenStream};
 use quote::quote_spanned;
@@ -93,7 +93,7 @@ pub(super) fn stages(emitter: &Emitter, stages: &program::Stages, equations: &[s
     Stages { methods, constants_type: length(constants), step_terms_type: length(step_terms) }
 }
 
-/// The Newton system, and where that is worth it its residual alone; `given` has what the stages before leave.
+/// The Newton system, and the residual alone if that is worthwhile; `given` has the values of the stages before.
 fn newton_system(
     emitter: &Emitter,
     kernel: &Kernel,
@@ -126,7 +126,7 @@ fn newton_system(
     }
 }
 
-/// `F⁻¹`, where the kick after a step has it.
+/// `F⁻¹`, if the kick after a step needs it.
 fn inverse(emitter: &Emitter, kernel: &Kernel) -> Option<TokenStream> {
     let (span, private, graph) = (Span::mixed_site(), &emitter.header.private, &kernel.graph);
     emitter.derived.directions.factors.iter().any(|one| uses(graph, &kernel.kick_after, one.inverse)).then(|| {
@@ -137,9 +137,9 @@ fn inverse(emitter: &Emitter, kernel: &Kernel) -> Option<TokenStream> {
     })
 }
 
-/// What comes before the Newton system, and its Jacobian along the coordinates.
+/// The statements for the increment, and the Jacobian of the Newton system in the coordinates.
 ///
-/// Off SO(3) the system is written in `F`, and the retraction's tangent brings its Jacobian to the coordinates.
+/// If the system is written in `F`, the retraction's tangent transforms its Jacobian to the coordinates.
 fn in_coordinates(
     emitter: &Emitter,
     kernel: &Kernel,
@@ -161,7 +161,7 @@ fn in_coordinates(
     )
 }
 
-/// Which parts of a step aren't zero, and the factor of the Newton system.
+/// The parts of a step that aren't zero, and the factor of the Newton system.
 pub(super) fn parts(emitter: &Emitter, kernel: &Kernel) -> TokenStream {
     let (span, private, derived) = (Span::mixed_site(), &emitter.header.private, emitter.derived);
     let [unknown, before, after] =
@@ -173,7 +173,7 @@ pub(super) fn parts(emitter: &Emitter, kernel: &Kernel) -> TokenStream {
     let ends = kernel.ends(&derived.group);
     let apart = (!ends.is_empty()).then(|| {
         let whole = quote_spanned!(span=> #private::Blocks::WHOLE);
-        // Each end from the beginning.
+        // Each end is a number of components counted from the first.
         let blocks = ends.iter().fold(whole.clone(), |blocks, &factor| {
             let size = Literal::usize_unsuffixed(derived.group.component_of(factor));
             quote_spanned!(span=> #blocks.then(#size, #whole))
@@ -194,7 +194,7 @@ pub(super) fn parts(emitter: &Emitter, kernel: &Kernel) -> TokenStream {
     }
 }
 
-/// Puts an energy in the place of `E_0`, where there is a pace.
+/// Replaces `E_0` by an energy, if there is a pace.
 fn with_energy(emitter: &Emitter) -> Option<TokenStream> {
     let (span, header) = (Span::mixed_site(), emitter.header);
     let at = Literal::usize_unsuffixed(emitter.declaration.energy?);
@@ -214,7 +214,7 @@ fn with_energy(emitter: &Emitter) -> Option<TokenStream> {
     })
 }
 
-/// How a kick changes as the body turns.
+/// The derivative of a kick along a velocity.
 fn kick_derivative(emitter: &Emitter, documentation: &str, value: &TokenStream) -> TokenStream {
     let (span, private, vector) = (Span::mixed_site(), &emitter.header.private, emitter.header.vector());
     let option = quote_spanned!(span=> #private::core::option::Option);
@@ -231,7 +231,7 @@ fn kick_derivative(emitter: &Emitter, documentation: &str, value: &TokenStream) 
     }
 }
 
-/// The residual for itself, where the solve can do without the Jacobian.
+/// The residual alone, if the Jacobian is expensive.
 fn residual_alone(emitter: &Emitter, kernel: &Kernel, from_terms: super::code::KnownTokens) -> TokenStream {
     let (span, private, vector) = (Span::mixed_site(), &emitter.header.private, emitter.header.vector());
     let gradient = kernel.gradient();
@@ -254,7 +254,7 @@ fn residual_alone(emitter: &Emitter, kernel: &Kernel, from_terms: super::code::K
     }
 }
 
-/// The compiler's check that the generators that were derived with are those of the group that is run with.
+/// The compiler's check that the generators of the derivation are those of the group at run time.
 pub(super) fn same_generators(code: &Code) -> TokenStream {
     let groups = code.declaration.group.factors().iter().zip(code.header.groups());
     groups.filter(|(group, _)| !group.is_so3).map(|(group, own)| has_generators(code, group, &own)).collect()

@@ -1,9 +1,8 @@
-//! The declared expression as the method `l_d`, `l` or `virtual_work`, as it stands.
+//! The declared expression, unchanged, as the method `l_d`, `l` or `virtual_work`.
 //!
-//! Its names are bound to the values that the macro gave them, so that rustc checks the types that the macro assumed.
-//! Their spans keep the place but resolve where the bindings do, whatever `macro_rules!` they came through; the names of
-//! its own `let`s keep theirs. In a struct that is generic in its scalar, literals and scalar functions are written as
-//! the scalar's own.
+//! Its names are bound to values with the types that the macro assumed, so that rustc checks these. Their spans keep
+//! the place but resolve at the bindings, whatever `macro_rules!` they came through; the names of its own `let`s keep
+//! their spans. In a struct that is generic in its scalar, literals and scalar functions are those of the scalar.
 
 use proc_macro2::{Span, TokenStream};
 use quote::{quote, quote_spanned};
@@ -15,7 +14,7 @@ use super::Header;
 use crate::declared::{AdvectedParameter, Declaration, FieldKind, Role, Shape, Spelling};
 use crate::mathematics::derive::View;
 
-/// The bodies, as the methods call them.
+/// The names of the bodies in the methods of a constraint.
 pub(super) const BODIES: [&str; 2] = ["above", "below"];
 
 /// The Lagrangian's `l_d` or `l`, a force's `virtual_work`, or a constraint's `gap`.
@@ -27,17 +26,17 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
         Rewrite { header, is_product: declaration.group.is_product(), mentioned: Vec::new(), scopes: Vec::new() };
     rewrite.visit_expr_mut(&mut expression);
     let BoundNames { names, values, .. } = bound(declaration, header, rewrite.mentioned);
-    // In the user's scope `F` and `I` may be constants or unit structs, which a pattern would compare with instead of
-    // binding the name; the nearer functions can be hidden.
+    // `F` and `I` may be constants or unit structs in the user's scope, which a pattern would compare with instead of
+    // binding the name. The functions hide them, and the pattern may hide functions.
     let imposed = names.iter().filter(|name| *name == "F" || *name == "I");
     let hidden: TokenStream = imposed.map(|name| quote_spanned!(span=> #[allow(dead_code)] fn #name() {})).collect();
-    // As a statement it has parentheses around a block that it begins with.
+    // The expression is a statement, which has parentheses around a block that it begins with.
     let expression = syn::Stmt::Expr(expression, None);
     let traits = header.parameter.as_ref().map(|_| quote!(use #private::nalgebra::SimdComplexField as _;));
     let declared = quote_spanned! {span=>
         #traits
         #hidden
-        // In one pattern, so that no name hides a value that a later one needs.
+        // One pattern binds all names, so that none hides a value that a later one needs.
         let (#(#names,)*) = (#(#values,)*);
         #expression
     };
@@ -69,7 +68,7 @@ impl BoundNames {
 fn bound(declaration: &Declaration, header: &Header, mentioned: Vec<String>) -> BoundNames {
     let (span, private, scalar) = (Span::mixed_site(), &header.private, &header.scalar);
     let mut bound = BoundNames { mentioned, names: Vec::new(), values: Vec::new() };
-    // No increment may stand in a constraint.
+    // A constraint has no increments.
     if declaration.role != Role::Constraint {
         increments(declaration, header, &mut bound);
     }
@@ -149,7 +148,7 @@ fn maps(declaration: &Declaration, header: &Header, bound: &mut BoundNames) {
     }
 }
 
-/// What a name of `advected(…)` is, where both bodies are.
+/// The value of a name of `advected(…)`, at the positions of both bodies.
 fn seen(declaration: &Declaration, header: &Header, w: &AdvectedParameter) -> TokenStream {
     let (span, private) = (Span::mixed_site(), &header.private);
     let place = |factor: usize| {
@@ -177,7 +176,7 @@ fn seen(declaration: &Declaration, header: &Header, w: &AdvectedParameter) -> To
     }
 }
 
-/// The method that has the expression.
+/// The signature of the method with the expression.
 fn signature(declaration: &Declaration, header: &Header) -> TokenStream {
     let (span, scalar, square, vector) = (Span::mixed_site(), &header.scalar, header.matrix(), header.vector());
     match declaration.role {
@@ -203,7 +202,7 @@ fn signature(declaration: &Declaration, header: &Header) -> TokenStream {
     }
 }
 
-/// An advected parameter as it is written, of the part of `w` that it is.
+/// The value of an advected parameter in the expression, from its part of `w`.
 fn advected(declaration: &Declaration, header: &Header, index: usize, part: TokenStream) -> TokenStream {
     let (span, private) = (Span::mixed_site(), &header.private);
     let kind = declaration.advected_kind(index);
@@ -218,7 +217,7 @@ fn advected(declaration: &Declaration, header: &Header, index: usize, part: Toke
     }
 }
 
-/// Of components, given as a reference, those of a factor, on a line a scalar.
+/// The components of a factor among `components`, which is a reference; on a line a scalar.
 fn of_factor(declaration: &Declaration, header: &Header, components: &Ident, factor: usize) -> TokenStream {
     let (span, private, group) = (Span::mixed_site(), &header.private, &declaration.group);
     if !group.is_product() {
@@ -250,12 +249,12 @@ fn translation(header: &Header, matrix: &TokenStream, coordinates: usize) -> Tok
     quote_spanned!(span=> #private::nalgebra::#vector::new(#(#entries),*))
 }
 
-/// Resolves the names of the expression at the macro's site, and notes which there are.
+/// A visitor that resolves the names of the expression at the macro's site, and records them.
 struct Rewrite<'a> {
     header: &'a Header,
     is_product: bool,
     mentioned: Vec<String>,
-    /// The names that the `let`s of the blocks around have bound so far.
+    /// The names that `let`s of the enclosing blocks have declared so far.
     scopes: Vec<Vec<Spelling>>,
 }
 
@@ -275,7 +274,7 @@ impl VisitMut for Rewrite<'_> {
     }
 
     fn visit_local_mut(&mut self, local: &mut syn::Local) {
-        // A name is bound behind its value, which may use an earlier one of that name.
+        // A name is in scope behind its value, which may use an earlier one of that name.
         if let Some(init) = &mut local.init {
             self.visit_expr_mut(&mut init.expr);
         }
@@ -293,7 +292,7 @@ impl VisitMut for Rewrite<'_> {
             _ => None,
         });
         self.scopes.push(names.collect());
-        // The types are the user's own names.
+        // The types are names of the user's.
         self.visit_expr_mut(&mut closure.body);
         self.scopes.pop();
     }
@@ -303,7 +302,7 @@ impl VisitMut for Rewrite<'_> {
         for argument in &mut call.args {
             self.visit_expr_mut(argument);
         }
-        // Fields and methods have no hygiene; a scalar's functions are those of nalgebra's scalars.
+        // Fields and methods have no hygiene. Functions of a generic scalar are those of nalgebra's `SimdComplexField`.
         let name = call.method.to_string();
         if self.header.parameter.is_some() && ["sqrt", "ln", "exp", "sin", "cos", "powi"].contains(&name.as_str()) {
             call.method = Ident::new(&format!("simd_{name}"), call.method.span());
@@ -312,7 +311,7 @@ impl VisitMut for Rewrite<'_> {
 
     fn visit_expr_mut(&mut self, expression: &mut Expr) {
         visit_mut::visit_expr_mut(self, expression);
-        // The invisible brackets of a `macro_rules!` fragment don't reach the compiler.
+        // The compiler never receives the invisible brackets of a `macro_rules!` fragment.
         if let Expr::Group(fragment) = expression {
             let inner = std::mem::replace(&mut *fragment.expr, Expr::Verbatim(TokenStream::new()));
             let paren_token = syn::token::Paren(fragment.group_token.span);
@@ -329,10 +328,10 @@ impl VisitMut for Rewrite<'_> {
 
     fn visit_expr_call_mut(&mut self, call: &mut syn::ExprCall) {
         visit_mut::visit_expr_call_mut(self, call);
-        // A path, as one closure can't be for matrices of several sizes.
+        // A generic function by its path: a closure has one type, while matrices have several sizes.
         if matches!(&*call.func, Expr::Path(path) if path.path.is_ident("inverse")) {
             let private = &self.header.private;
-            // Of one body among several `F` isn't the group's.
+            // Among several bodies `F` isn't an element of the whole group.
             *call.func = if !self.is_product && call.args.first().is_some_and(is_increment) {
                 syn::parse_quote_spanned!(Span::mixed_site()=> #private::inverse_of::<<Self as #private::Term>::Group>)
             } else {
@@ -344,7 +343,7 @@ impl VisitMut for Rewrite<'_> {
     fn visit_member_mut(&mut self, _: &mut syn::Member) {}
 }
 
-/// Whether it is `F`.
+/// Whether the expression is `F`.
 fn is_increment(expression: &Expr) -> bool {
     match expression {
         Expr::Path(path) => path.path.is_ident("F"),

@@ -1,7 +1,7 @@
-//! Multiplied out or with closed `let`s: whichever costs less to run.
+//! The cheaper reading: multiplied out, or with closed `let`s.
 //!
-//! Multiplied out, what cancels is found; with closed `let`s, nothing is written twice. Both are derived where there
-//! are `let`s, and counted.
+//! Multiplied out, terms can cancel; with closed `let`s, nothing is computed twice. If there are `let`s, both readings
+//! are derived and their operations counted.
 
 use std::rc::Rc;
 
@@ -12,19 +12,19 @@ use crate::declared::{Declaration, Tree};
 use crate::mathematics::derive::{DeclaredFunction, Derivation, Refusal};
 use crate::program::{self, Kernel};
 
-/// What is emitted.
+/// The reading that is emitted.
 pub struct Choice {
     pub lowered: Reading,
     pub derived: Derivation,
     pub kernel: Kernel,
 }
 
-/// What derives a reading.
+/// The derivation of a reading.
 type Derive = fn(&DeclaredFunction) -> Result<Derivation, Refusal>;
 
-/// The reading with the least operations a step; the first, which is simpler to read, if it is nearly as cheap.
+/// The reading with the fewest operations a step, or the first, which is simpler, if it is nearly as cheap.
 ///
-/// `None` where nothing can be derived, which has been explained.
+/// `None` if nothing can be derived, which has been reported.
 pub fn cheapest(
     readings: Vec<Reading>,
     derive: Derive,
@@ -33,17 +33,17 @@ pub fn cheapest(
     errors: &mut Errors,
 ) -> Option<Choice> {
     let least = readings.iter().map(size).min().unwrap_or(0);
-    // A reading of twice the length is never the cheaper one, and takes long to derive: it is kept for when all else fails.
+    // A reading of twice the length is never cheaper and takes long to derive: it is the last resort.
     let (short, long): (Vec<Reading>, Vec<Reading>) =
         readings.into_iter().partition(|reading| size(reading) <= 2 * least);
     let chosen = cheapest_of(short, derive).or_else(|refusal| {
-        // The first refusal is of the reading that is the simpler one.
+        // The refusal of the simpler reading is reported.
         cheapest_of(long, derive).map_err(|other| refusal.or(other))
     });
     chosen.map_err(|refusal| explain::refusal(refusal.unwrap_or(Refusal::Overflow), declaration, tree, errors)).ok()
 }
 
-/// The error is the first refusal, if anything has been refused.
+/// The cheapest of these readings. The error is the first refusal, if there is one.
 fn cheapest_of(readings: Vec<Reading>, derive: Derive) -> Result<Choice, Option<Refusal>> {
     let mut chosen: Option<(usize, Choice)> = None;
     let mut first = None;

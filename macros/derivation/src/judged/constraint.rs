@@ -1,4 +1,4 @@
-//! A constraint with its derivatives, which are checked against the declared functions.
+//! A constraint with its derivatives, verified against the declared functions.
 
 use std::rc::Rc;
 
@@ -11,7 +11,7 @@ use crate::mathematics::derive::Refusal;
 use crate::mathematics::symbolic::Expression;
 use crate::program::{Graph, along_unit_vectors};
 
-/// `None` where something is wrong with it, which has been reported.
+/// The verified constraint; `None` after a mistake, which has been reported.
 pub fn held(declaration: &Declaration, functions: Vec<Rc<Tree>>, errors: &mut Errors) -> Option<ConstraintSlopes> {
     let lowered = lower::constraint(declaration, &functions, errors)?;
     let first = functions.first()?;
@@ -45,7 +45,7 @@ pub fn held(declaration: &Declaration, functions: Vec<Rc<Tree>>, errors: &mut Er
     None
 }
 
-/// Reports the scalars and vectors in which something adds nothing.
+/// Reports the scalars and vectors with components that constrain nothing new.
 fn report(held: &ConstraintSlopes, mut rows: &[Row], errors: &mut Errors) {
     for part in &held.functions {
         let (own, behind) = rows.split_at(part.shape.rows().min(rows.len()));

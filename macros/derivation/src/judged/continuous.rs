@@ -1,4 +1,4 @@
-//! The continuous equations: derived of a declared `l`, or of the limit of a declared `l_d`, and checked exactly.
+//! The continuous equations: derived from a declared `l`, or from the limit of a declared `l_d`, and verified exactly.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -22,7 +22,7 @@ pub struct Equations {
 }
 
 impl Equations {
-    /// With what was discretised.
+    /// The reading with the continuous equations that it discretises.
     pub fn behind(&self, reading: Reading) -> Reading {
         let symbols = self.names.iter().filter_map(|(name, &from)| Some((from, *reading.names.get(name)?))).collect();
         let discretised = Some(ContinuousSource { continuous: self.derived.clone(), symbols });
@@ -30,7 +30,7 @@ impl Equations {
     }
 }
 
-/// Those of a declared `l`; `None` where something is wrong with it, which has been reported.
+/// The equations of a declared `l`; `None` after a mistake, which has been reported.
 pub fn of_declared(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Equations> {
     let lowered = lower::continuous(declaration, tree, errors)?;
     let derived = derive::continuous(lowered.declared);
@@ -38,7 +38,8 @@ pub fn of_declared(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Erro
     checked(declaration, (tree, None), lowered.names, derived, errors)
 }
 
-/// Those of a discrete Lagrangian: of the `l` that it was made of, which its limit has to be, or of the limit.
+/// The equations of a discrete Lagrangian: those of the `l` that it discretises, which must be its limit, or else those
+/// of its limit.
 pub fn continuous(
     declared: Option<Equations>,
     declaration: &Declaration,
@@ -53,7 +54,8 @@ pub fn continuous(
     Some(equations)
 }
 
-/// Checks that this is the limit of the discrete Lagrangian. `may_have_limit` counts where the field doesn't tell.
+/// Checks that the equations are the limit of the discrete Lagrangian. `may_have_limit` decides if the field can't
+/// tell.
 fn limit_holds(
     motion: &Motion,
     may_have_limit: bool,
@@ -81,7 +83,7 @@ fn of_limit(declaration: &Declaration, discrete: &Rc<Tree>, chosen: &Choice, err
     checked(declaration, (discrete, Some(chosen)), names, derived, errors)
 }
 
-/// The equations of this tree, checked, or of the limit of what was chosen for it.
+/// The verified equations of this tree, or of the limit of the derivation chosen for it.
 fn checked(
     declaration: &Declaration,
     (tree, chosen): (&Rc<Tree>, Option<&Choice>),

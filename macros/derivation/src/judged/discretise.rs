@@ -6,8 +6,8 @@
 //! chord        h l(ξ, (w + F⁻¹·w)/2)
 //! ```
 //!
-//! with `hξ = τ⁻¹(F)` for the retraction `τ`, or with the matrix `ξ̂ = (F − I)/h` as it is, which isn't in the algebra.
-//! What is made is a declared `l_d` like any other, and goes through all that such a one goes through.
+//! with `hξ = τ⁻¹(F)` for the retraction `τ`, or with the matrix `ξ̂ = (F − I)/h`, which isn't in the algebra. The
+//! result is an `l_d` that is checked and derived like a declared one.
 
 mod build;
 mod substitution;
@@ -23,7 +23,7 @@ use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Discretisation, Kind, Name, Quadrature, Tree};
 use crate::mathematics::symbolic::Rational;
 
-/// The discrete Lagrangian that is made of `l`; `None` where it doesn't fit, which has been reported.
+/// The discretisation of `l`; `None` if it doesn't fit the group or `l`, which has been reported.
 pub fn discretised(
     declaration: &Declaration,
     tree: &Rc<Tree>,

@@ -1,4 +1,4 @@
-//! Why nothing could be derived, at the tokens of the declaration.
+//! Messages for declarations that can't be derived, at their tokens.
 
 use std::collections::BTreeSet;
 use std::rc::Rc;
@@ -11,7 +11,7 @@ use crate::declared::errors::Errors;
 use crate::declared::{Coordinates, Declaration, Discretisation, Kind, Name, Quadrature, Role, Tree};
 use crate::mathematics::derive::{ForceError, LimitError, Refusal};
 
-/// Reports the terms that can't be meant; `None` where there are some.
+/// Reports the terms that can't be intended; `None` if there are any.
 pub fn terms(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<()> {
     let mistakes = verify::term_mistakes(declaration, tree);
     for (place, mistake) in &mistakes {
@@ -20,7 +20,7 @@ pub fn terms(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) ->
     mistakes.is_empty().then_some(())
 }
 
-/// What is wrong with a term, and what to write.
+/// The message for a term: the mistake and the correction.
 fn term(mistake: TermMistake, declaration: &Declaration) -> String {
     let by_a_power = |least: i32| format!("; if it is a correction, write its power as `h.powi({least})` or higher");
     match mistake {
@@ -47,7 +47,7 @@ fn term(mistake: TermMistake, declaration: &Declaration) -> String {
              `… / (2.0 * h)`{}{}",
             power_of_step(order),
             by_a_power(2),
-            // A potential of what a step adds, `h` times its square.
+            // A potential in the displacement of the body, times `h`, vanishes like h^3.
             if order < 3 {
                 ""
             } else {
@@ -108,7 +108,7 @@ fn power_of_step(order: i32) -> String {
     }
 }
 
-/// Reports why nothing could be derived.
+/// Reports the reason why nothing can be derived.
 pub(super) fn refusal(refusal: Refusal, declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) {
     let error = match refusal {
         Refusal::Limit(error) => error,
@@ -200,7 +200,7 @@ pub(super) fn continuous_kinetic_part(
     None
 }
 
-/// Along which generators there is no kinetic energy; those of several bodies count from one in each.
+/// The generators without kinetic energy; those of several bodies are numbered from one in each.
 fn without_energy(idle: &[usize], declaration: &Declaration) -> String {
     if idle.is_empty() {
         return String::new();
@@ -216,14 +216,14 @@ fn without_energy(idle: &[usize], declaration: &Declaration) -> String {
     format!(": there is no kinetic energy along {}", names.join(", "))
 }
 
-/// Why a declared `l` can't be discretised as was asked.
+/// The reason why a declared `l` can't be discretised as requested.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Misfit {
     /// The group's logarithm isn't known in closed form.
     NoLogarithm,
     /// The group's matrices are too large for a Cayley transform in closed form.
     NoCayley,
-    /// The velocity of this factor stands where a matrix that isn't in the algebra can't.
+    /// The velocity of this factor is used where a matrix outside the algebra can't be.
     NotInMatrix(usize),
 }
 
@@ -283,7 +283,7 @@ pub(super) fn unconfirmed_term(term: &str, declaration: &Declaration, errors: &m
     errors.push_over(declaration.expression.as_ref().map(check::value), message);
 }
 
-/// Reports a constraint that leaves the body above free, or that below.
+/// Reports a constraint that doesn't depend on the position of one of its bodies.
 pub(super) fn not_held(body: usize, declaration: &Declaration, errors: &mut Errors) {
     let names: Vec<String> =
         declaration.factors.iter().skip(2 * body).take(2).map(|factor| format!("`{}`", factor.name)).collect();
@@ -292,7 +292,7 @@ pub(super) fn not_held(body: usize, declaration: &Declaration, errors: &mut Erro
     errors.push_over(declaration.expression.as_ref().map(check::value), message);
 }
 
-/// Reports a function of a constraint that is the same wherever the bodies are.
+/// Reports a function of a constraint that doesn't depend on the position of any body.
 pub(super) fn constant(function: &Tree, errors: &mut Errors) {
     errors.push_between(
         [function.span, function.end],
@@ -300,7 +300,7 @@ pub(super) fn constant(function: &Tree, errors: &mut Errors) {
     );
 }
 
-/// Reports a part of a constraint of which functions follow from those before them.
+/// Reports the functions in a part of a constraint that depend on those before them.
 pub(super) fn follows(part: &Tree, rows: &[Row], errors: &mut Errors) {
     let names = ["first", "second", "third", "fourth", "fifth", "sixth"];
     let following = names.iter().zip(rows).filter(|(_, row)| **row != Row::New);
@@ -322,7 +322,7 @@ pub(super) fn follows(part: &Tree, rows: &[Row], errors: &mut Errors) {
     errors.push_between([part.span, part.end], message);
 }
 
-/// Reports what the self-check doesn't confirm.
+/// Reports a derivation that the self-check doesn't confirm.
 pub(super) fn unconfirmed(unconfirmed: Objection, declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) {
     match unconfirmed {
         Objection::Disagrees(term) | Objection::Undefined(term) => unconfirmed_term(term, declaration, errors),
@@ -341,7 +341,7 @@ pub(super) fn unconfirmed(unconfirmed: Objection, declaration: &Declaration, tre
     }
 }
 
-/// What has no derivative where a step begins, and where that stands.
+/// The message for a part without a derivative at the identity, and the place of that part.
 fn not_smooth(place: Option<(Rc<Tree>, TermMistake)>, tree: &Tree) -> (String, [Span; 2]) {
     let what = match place {
         Some((_, TermMistake::ZeroDivisor)) => "this divisor is zero at `F = I`",
@@ -368,10 +368,10 @@ fn not_stationary(asymmetric: &[usize], declaration: &Declaration) -> String {
     )
 }
 
-/// Looks for an `h` that the limit can't follow.
+/// The search for an `h` inside a function or inside a divisor with a sum, where the limit can't be found by powers.
 #[derive(Default)]
 struct Search {
-    /// What a `let` has bound is searched once, however often it is used.
+    /// The subtrees already searched, so that the value of a `let` is searched once.
     known: BTreeSet<(*const Tree, bool)>,
 }
 
@@ -392,7 +392,7 @@ impl Search {
     }
 }
 
-/// Whether a sum is left, once factors are taken apart.
+/// Whether a sum remains once factors are split off.
 fn is_sum(tree: &Tree) -> bool {
     match &tree.kind {
         Kind::Add(..) | Kind::Subtract(..) => true,

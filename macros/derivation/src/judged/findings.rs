@@ -1,4 +1,4 @@
-//! What has been found out about a derivation, after it has been checked.
+//! The results of verifying a derivation.
 
 use std::rc::Rc;
 
@@ -9,12 +9,11 @@ use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Role, Tree};
 use crate::mathematics::derive::SelfAdjointness;
 
-/// Checks all that was derived; `None` where something is wrong with the Lagrangian, or with the derivation, which has
-/// been reported.
+/// Verifies the whole derivation; `None` if the Lagrangian or the derivation is wrong, which has been reported.
 pub fn findings(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Choice, errors: &mut Errors) -> Option<Findings> {
     let Choice { lowered, derived, kernel } = chosen;
     let of = Subject { declaration, tree, lowered, derived };
-    // What has no kinetic part at all is a term of a scene.
+    // A term without a kinetic part is a potential or a force, added to another term.
     if derived.limit.has_kinetic {
         explain::kinetic_part(&verify::kinetic_part(of), declaration, errors)?;
     }

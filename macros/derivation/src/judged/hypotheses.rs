@@ -1,7 +1,7 @@
-//! Which hypotheses the derived equations rest on.
+//! The hypotheses that the derived equations rest on.
 //!
-//! A relation of the group or a promise of a field's type counts as used if dropping it changes an equation, or the
-//! operations of one: that is found out by deriving without it.
+//! A relation of the group or a property of a field's type counts as used if the derivation without it has other
+//! equations or other operations.
 
 use std::rc::Rc;
 
@@ -17,7 +17,7 @@ use crate::program::{Graph, KnownEntries, Scalariser, count, with_values};
 pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Choice) -> Vec<String> {
     let Choice { lowered, derived, .. } = chosen;
     let without = |name: Name, weaker: Structure| {
-        // All increments at once.
+        // The relations are dropped for all increments together.
         let is_meant = |other: Name| match name {
             Name::Increment(_) => matches!(other, Name::Increment(_)),
             _ => other == name,
@@ -26,7 +26,7 @@ pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Ch
         let candidates = readings_without(declaration, tree, &weaker, &mut Errors::default())?;
         let mut found =
             candidates.into_iter().find(|other| other.declared.lets.is_empty() == lowered.declared.lets.is_empty())?;
-        // The same names are the same symbols.
+        // Equal names have equal symbols.
         found.declared.discretised.clone_from(&lowered.declared.discretised);
         Some(found)
     };
@@ -37,7 +37,7 @@ pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Ch
     let operations = operations(lowered);
     let mut used = Vec::new();
     if declaration.group.factors().iter().any(|factor| factor.orthogonal) {
-        // The derivation has them as the components of `F`.
+        // The factors' increments are called components of `F`.
         let each = match declaration.group.is_product() {
             true if declaration.group.orthogonal => " of each component",
             true => " of each component that turns",
@@ -82,7 +82,7 @@ pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Ch
     used
 }
 
-/// How many operations one value of `l_d` takes.
+/// The number of operations in one evaluation of `l_d`.
 fn operations(lowered: &Reading) -> usize {
     let (mut graph, declared) = (Graph::default(), &lowered.declared);
     let mut symbols = declared.symbols.clone();

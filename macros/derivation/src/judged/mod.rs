@@ -1,10 +1,10 @@
-//! Which of the derivations is taken, and whether it is right.
+//! The choice between derivations, and their verification.
 //!
-//! `discretise` makes `l_d` of a continuous `l`, `continuous` has the continuous equations, `choose` counts operations,
-//! `verify` evaluates the declared tree on exact numbers and compares, `hypotheses` finds what the equations rest on,
-//! `momenta` finds what several bodies conserve, `places` has the numbers that a step is differentiated by, `constraint`
-//! has what holds two of them, `findings` has what comes of both, and `explain` says at the tokens of the declaration why
-//! nothing could be derived.
+//! `discretise` derives `l_d` from a continuous `l`, `continuous` has the continuous equations, `choose` counts
+//! operations, `verify` evaluates the declared tree on exact numbers and compares, `hypotheses` finds the relations
+//! that the equations rest on, `momenta` the quantities that several bodies conserve, `places` has the numbers that a
+//! step is differentiated by, `constraint` the constraint between two bodies, `findings` the results of both, and
+//! `explain` reports the reason why nothing could be derived, at the tokens of the declaration.
 //!
 //! Deliberately not here: any derivation, which is mathematics, and any text of the generated documentation, which is
 //! emitted. The room knows `declared`, `program` and `mathematics`.

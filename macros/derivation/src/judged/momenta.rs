@@ -1,9 +1,10 @@
-//! Which momenta of several bodies are conserved.
+//! The conserved momenta of several bodies.
 //!
-//! Let `η = (η_1, …, η_n)` be constant in space, and `η·a_0 = 0` for the spatial value of all that is advected. The
-//! transport form changes `Σ ⟨Ad*_{g_a⁻¹} μ_a, η_a⟩` by the diamond along `g⁻¹·η`, which is `−⟨δl_d/δw, g⁻¹·(η·a_0)⟩ = 0`:
-//! it is constant at any tolerance of the solve. One body as another sees it is the identity at first, which asks for
-//! the same `η` for both; a vector that is seen asks for turns about it; a body as it is in space for none.
+//! Let `η = (η_1, …, η_n)` be constant in space, with `η·a_0 = 0` for the spatial values of all advected parameters.
+//! The transport form changes `Σ ⟨Ad*_{g_a⁻¹} μ_a, η_a⟩` by the diamond along `g⁻¹·η`, which is
+//! `−⟨δl_d/δw, g⁻¹·(η·a_0)⟩ = 0`: the sum is constant at any tolerance of the solve. A relative attitude has the
+//! identity for its spatial value, so both bodies have the same `η`; a vector in the axes of a body restricts `η` to
+//! rotations about it; the attitude of a body in space allows no `η` for that body.
 
 use crate::declared::{Declaration, FieldKind};
 use crate::mathematics::derive::View;
@@ -16,9 +17,9 @@ pub struct Invariant {
     pub along: Option<usize>,
 }
 
-/// Those of bodies that turn; each group of bodies that see each other has one, or none.
+/// The conserved momenta of rotating bodies; each group of coupled bodies has one, or none.
 pub fn conserved(declaration: &Declaration) -> Vec<Invariant> {
-    // For each body the first of those that it is joined with.
+    // The first of the bodies that each body is coupled with.
     let mut first: Vec<usize> = (0..declaration.factors.len()).collect();
     for w in &declaration.advected {
         if let View::Relative { of, from } = w.seen {

@@ -1,4 +1,4 @@
-//! The numbers that a step is differentiated by: as `describe` shows them, each with the entry that stands for it.
+//! The numbers that a step is differentiated by: those of `describe`, each with its entry of a symbol.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use crate::declared::{Declaration, FieldKind, Name, Shape};
 use crate::mathematics::symbolic::SymbolId;
 use crate::program::Place;
 
-/// The names of the parameters and of what is advected, with their kinds.
+/// The names of the fields and of the advected parameters, with their kinds.
 pub fn variables(declaration: &Declaration) -> [Vec<(Name, FieldKind)>; 2] {
     let fields = declaration.fields.iter().enumerate().map(|(index, field)| (Name::Field(index), field.kind));
     let advected =
@@ -14,7 +14,7 @@ pub fn variables(declaration: &Declaration) -> [Vec<(Name, FieldKind)>; 2] {
     [fields.collect(), advected.collect()]
 }
 
-/// Those of the parameters that can change, and of what is advected; either are numbered one after the other.
+/// The entries of the fields and of the advected parameters that can change; each of the two lists has its own numbers.
 pub(super) fn places(declaration: &Declaration, names: &BTreeMap<Name, SymbolId>) -> [Vec<Place>; 2] {
     variables(declaration).map(|each| {
         let (mut found, mut first) = (Vec::new(), 0);
@@ -26,13 +26,13 @@ pub(super) fn places(declaration: &Declaration, names: &BTreeMap<Name, SymbolId>
     })
 }
 
-/// How many numbers `describe` shows of a field.
+/// The number of entries of a field in `describe`.
 pub fn count(kind: FieldKind) -> usize {
     let (rows, columns) = shape(kind);
     rows * columns
 }
 
-/// The shape of what is shown, row by row.
+/// The shape of a field in `describe`, by rows.
 pub(super) fn shape(kind: FieldKind) -> (usize, usize) {
     match (kind.shape(), kind) {
         (Shape::Scalar, _) => (1, 1),
@@ -42,7 +42,7 @@ pub(super) fn shape(kind: FieldKind) -> (usize, usize) {
     }
 }
 
-/// Those of a field that can change.
+/// The entries of a field that can change.
 fn of_kind(kind: FieldKind, symbol: SymbolId, first: usize) -> impl Iterator<Item = Place> {
     let (rows, columns) = shape(kind);
     let all = (0..rows).flat_map(move |row| (0..columns).map(move |column| (row, column)));

@@ -1,23 +1,23 @@
 //! The groups that a declaration can name: matrix size and generators, in the order of the run-time half.
 //!
-//! The run-time half declares the same generators; every expansion makes the compiler compare the two.
+//! The run-time half declares the same generators; the compiler compares the two in every expansion.
 
 use crate::mathematics::symbolic::Rational;
 
 /// A matrix Lie group by its generators.
 #[derive(Clone, Debug)]
 pub struct Group {
-    /// Rows of the matrices.
+    /// The number of rows of the matrices.
     pub size: usize,
-    /// `E_k`, row by row.
+    /// `E_k`, by rows.
     pub generators: Vec<Vec<Rational>>,
-    /// `FᵀF = I` holds.
+    /// Whether `FᵀF = I` holds.
     pub orthogonal: bool,
-    /// Whether it is the group of rotations of space, with its own Cayley form and cross products.
+    /// Whether the group is SO(3), with its own Cayley form and cross products.
     pub is_so3: bool,
-    /// Whether it is a factor of a product whose increments are vectors that are added, and no matrices.
+    /// Whether the group is a factor of translations, whose increments are vectors that are added, and no matrices.
     pub is_added: bool,
-    /// Of a product its factors, whose matrices stand on the diagonal one after the other; elsewhere none.
+    /// The factors of a product, with block-diagonal matrices; empty for any other group.
     factors: Vec<Group>,
 }
 
@@ -44,7 +44,7 @@ impl Group {
         Self { size, generators, orthogonal, is_so3: false, is_added: false, factors }
     }
 
-    /// The factors; a group that isn't a product is its own.
+    /// The factors; a group that isn't a product is its only factor.
     pub fn factors(&self) -> &[Self] {
         if self.factors.is_empty() { std::slice::from_ref(self) } else { &self.factors }
     }
@@ -53,22 +53,22 @@ impl Group {
         !self.factors.is_empty()
     }
 
-    /// Whether all factors are that of the rotations of space, or are added: the Cayley map of these is written down.
+    /// Whether all factors are SO(3) or translations, whose Cayley map is implemented.
     pub fn rotates(&self) -> bool {
         self.factors().iter().all(|factor| factor.is_so3 || factor.is_added)
     }
 
-    /// The factor of that place; of a group that isn't a product itself.
+    /// The factor with this index; the group itself if it isn't a product.
     pub fn factor(&self, factor: usize) -> &Self {
         self.factors().get(factor).unwrap_or(self)
     }
 
-    /// The translations of a line, a plane or space as a factor of a product.
+    /// The group as translations of a line, a plane or space, a factor of a product.
     pub fn added(self) -> Self {
         Self { is_added: true, ..self }
     }
 
-    /// Rows and columns of an increment as it is written: a vector where increments are added, else a matrix.
+    /// The rows and columns of an increment in the expression: a vector for a translation, else a matrix.
     pub fn shape(&self) -> (usize, usize) {
         if self.is_added { (self.dimension(), 1) } else { (self.size, self.size) }
     }
@@ -83,7 +83,7 @@ impl Group {
         self.factors().iter().take(factor).map(Self::dimension).sum()
     }
 
-    /// The factor of a component, and which of its own it is.
+    /// The factor of a component, and the component's index in that factor.
     pub fn factor_of(&self, component: usize) -> (usize, usize) {
         let mut own = component;
         for (at, factor) in self.factors().iter().enumerate() {
@@ -102,7 +102,7 @@ impl Group {
     /// Linear forms that are the components of `Σ x_k E_k`, each a sum of terms `(k, row, column, factor)` in its entries.
     pub fn dual(&self) -> Vec<(usize, usize, usize, Rational)> {
         let (places, dimension) = (self.size * self.size, self.dimension());
-        // With a unit vector behind each generator, so that what is taken away of a matrix is counted there.
+        // Each generator is extended by a unit vector, which records the combination that elimination subtracts.
         let mut basis = Subspace::default();
         for (k, generator) in self.generators.iter().enumerate() {
             basis.extend([generator.clone(), unit(k, dimension)].concat());
@@ -115,7 +115,7 @@ impl Group {
         (0..places).flat_map(of_entry).collect()
     }
 
-    /// Whether its elements are affine maps in homogeneous coordinates: their last row is that of the identity.
+    /// Whether the elements are affine maps in homogeneous coordinates: their last row is that of the identity.
     pub fn is_affine(&self) -> bool {
         let last_row = self.size * self.size.saturating_sub(1);
         !self.is_product()
@@ -135,8 +135,8 @@ impl Group {
         Self { size, generators, orthogonal, is_so3: false, is_added: false, factors: Vec::new() }
     }
 
-    /// What keeps the generators from being a basis of a Lie algebra, in exact arithmetic; nothing where that doesn't
-    /// reach.
+    /// The defect of generators that aren't a basis of a Lie algebra, in exact arithmetic; `None` if its range is too
+    /// small.
     pub fn defect(&self) -> Option<Defect> {
         let mut basis = Subspace::default();
         for (k, generator) in self.generators.iter().enumerate() {
@@ -164,7 +164,7 @@ impl Group {
     }
 }
 
-/// Why matrices are no basis of a Lie algebra, by their places.
+/// The reason why matrices are no basis of a Lie algebra, by their indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Defect {
     /// A matrix is zero.
@@ -175,12 +175,12 @@ pub enum Defect {
     Open(usize, usize),
 }
 
-/// A vector space by a basis in echelon form: the place of each vector's first entry that isn't zero, which is one.
+/// A basis of a vector space in echelon form: each vector with the index of its first nonzero entry, which is one.
 #[derive(Default)]
 struct Subspace(Vec<(usize, Vec<Rational>)>);
 
 impl Subspace {
-    /// What is left of a vector once the basis is taken away.
+    /// The rest of a vector after elimination by the basis.
     fn rest(&self, mut vector: Vec<Rational>) -> Vec<Rational> {
         for (at, basis) in &self.0 {
             let factor = vector[*at];
@@ -191,13 +191,13 @@ impl Subspace {
         vector
     }
 
-    /// Whether it is in the space, or beyond exact arithmetic.
+    /// Whether the vector is in the space, or out of the range of exact arithmetic.
     fn contains(&self, vector: Vec<Rational>) -> bool {
         let rest = self.rest(vector);
         rest.iter().all(|entry| entry.is_zero()) || rest.iter().any(|entry| entry.is_overflow())
     }
 
-    /// Adds a vector; false where it is in the space.
+    /// Adds a vector; false if it is in the space already.
     fn extend(&mut self, vector: Vec<Rational>) -> bool {
         let rest = self.rest(vector);
         let Some(at) = rest.iter().position(|entry| !entry.is_zero()) else { return false };
@@ -212,7 +212,7 @@ fn unit(k: usize, dimension: usize) -> Vec<Rational> {
     (0..dimension).map(|j| if j == k { Rational::ONE } else { Rational::ZERO }).collect()
 }
 
-/// Entries that aren't zero: row, column, numerator, denominator.
+/// The nonzero entries of a matrix: row, column, numerator, denominator.
 type Sparse<'a> = &'a [(usize, usize, i128, i128)];
 
 /// The names that [`built_in`] knows.

@@ -1,4 +1,4 @@
-//! The entries of closed `let`s, of their multipliers and of how both vary.
+//! The entries of closed `let`s, of their multipliers, and of the derivatives of both.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::mathematics::symbolic::{Expression, Factor, SymbolId, Symbols};
 
 pub type KnownEntries = BTreeMap<SymbolId, Entries>;
 
-/// What each derived term begins with: the values of all `let`s and multipliers where `F` and `w` are any.
+/// The common beginning of all derived terms: the values of `let`s and multipliers at symbolic `F` and `w`.
 #[derive(Clone, Debug)]
 pub struct Beginning {
     pub graph: Graph,
@@ -24,7 +24,7 @@ impl Beginning {
     }
 }
 
-/// With the values of all `let`s where `F` and `w` are as given.
+/// Adds the values of all `let`s; `F` and `w` are those in `given`, if they are there.
 pub fn with_values<'a>(
     graph: &mut Graph,
     symbols: &Symbols,
@@ -38,7 +38,7 @@ pub fn with_values<'a>(
     given
 }
 
-/// With the values of all `let`s and multipliers where `F` and `w` are as given.
+/// Adds the values of all `let`s and multipliers; `F` and `w` are those in `given`, if they are there.
 pub(super) fn with_lets(graph: &mut Graph, derived: &Derivation, given: KnownEntries) -> KnownEntries {
     let lets = derived.closed.iter().map(|closed| (closed.symbol, &closed.value));
     let mut given = with_values(graph, &derived.symbols, lets, given);
@@ -52,7 +52,7 @@ pub(super) fn with_lets(graph: &mut Graph, derived: &Derivation, given: KnownEnt
     given
 }
 
-/// With their derivatives along the direction that is given.
+/// Adds the derivatives of all `let`s and multipliers along the direction in `given`.
 pub(super) fn with_tangents(graph: &mut Graph, derived: &Derivation, mut given: KnownEntries) -> KnownEntries {
     let tangents = derived.closed.iter().map(|closed| (closed.tangent.0, &closed.tangent.1));
     given = with_values(graph, &derived.symbols, tangents, given);
@@ -83,7 +83,7 @@ pub(super) fn entries(graph: &mut Graph, symbols: &Symbols, given: &KnownEntries
     })
 }
 
-/// `λ` from `⟨λ, δv⟩`: the values at the unit matrices.
+/// `λ` from `⟨λ, δv⟩`, evaluated at the unit matrices.
 fn dual(
     graph: &mut Graph,
     derived: &Derivation,
@@ -96,7 +96,7 @@ fn dual(
         given.insert(direction, unit);
         Scalariser::new(graph, &derived.symbols, given).scalar(pairing)
     });
-    // No term that is made later may take the last of them for what it varies by.
+    // The direction is a local variable: no later term may use its last value.
     given.remove(&direction);
     values
 }

@@ -5,7 +5,7 @@ use std::fmt;
 use super::graph::{Graph, Node, NodeId};
 use crate::mathematics::symbolic::Stage;
 
-/// How many operations a piece of code makes.
+/// The number of operations in a piece of code.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Operations {
     /// Additions, subtractions, multiplications and divisions.
@@ -17,7 +17,7 @@ pub struct Operations {
 }
 
 impl Operations {
-    /// One number to compare by: a library call costs about as much as twenty operations.
+    /// A single cost for comparisons: a library call costs about as much as twenty operations.
     pub fn cost(self) -> usize {
         2 * self.arithmetic + self.sign_flips + 40 * self.functions
     }
@@ -48,7 +48,7 @@ impl fmt::Display for Operations {
     }
 }
 
-/// The operations of one stage that the outputs need.
+/// The operations of one stage, or of all, that the outputs need.
 pub fn count(graph: &Graph, outputs: &[NodeId], stage: Option<Stage>) -> Operations {
     let mut operations = Operations::default();
     for id in graph.reachable(outputs) {

@@ -1,7 +1,7 @@
-//! Polynomials in the unknown, multiplied out, with coefficients that are known earlier.
+//! Polynomials in the unknown, multiplied out, with coefficients that are known before the iteration.
 //!
-//! Multiplying out collects what belongs to one monomial into one coefficient, which is then computed once a stepper or
-//! once a step. Afterwards pairs of factors that occur together most often are multiplied first, and shared.
+//! Terms with the same monomial are collected into one coefficient, which is then computed at construction or once a
+//! step. Afterwards the pair of factors that occurs most often is multiplied first, and shared.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,12 +11,12 @@ use crate::mathematics::symbolic::Stage;
 /// Monomials in iteration-stage nodes, with their coefficients.
 type Polynomial = BTreeMap<Vec<NodeId>, NodeId>;
 
-/// Beyond this many monomials in all, multiplying out can't pay.
+/// The limit on all monomials, beyond which multiplying out can't pay.
 const MOST_MONOMIALS: usize = 600;
-/// A product of two polynomials has fewer monomials than this after collecting, if it is worth it.
+/// The limit on the monomials of one product before they are collected.
 const MOST_PRODUCTS: usize = 2_000;
 
-/// The same outputs, multiplied out; `opaque` nodes count as variables. `None` where they grow too large.
+/// The outputs multiplied out, with `opaque` nodes as variables; `None` if they grow too large.
 pub fn expanded(graph: &mut Graph, outputs: &[NodeId], opaque: &BTreeSet<NodeId>) -> Option<Vec<NodeId>> {
     let mut known = BTreeMap::new();
     let mut polynomials = Vec::new();
@@ -140,7 +140,8 @@ fn share_pairs(graph: &mut Graph, products: &mut [Vec<Vec<NodeId>>]) {
                 *counts.entry(pair).or_insert(0) += 1;
             }
         }
-        // Of equally frequent pairs the first: the order of nodes is that of their making, the same on every machine.
+        // The first of equally frequent pairs is used: nodes are in the order of their construction, the same on every
+        // machine.
         let best =
             counts.into_iter().filter(|&(_, count)| count > 1).min_by_key(|&(pair, count)| (usize::MAX - count, pair));
         let Some(((a, b), _)) = best else { return };

@@ -1,6 +1,6 @@
-//! How a weighted sum of outputs changes with each input: the chain rule from the outputs back.
+//! The gradient of a weighted sum of outputs: the chain rule from the outputs back to the inputs.
 //!
-//! It takes as many operations as the outputs, times some three, however many inputs there are.
+//! It takes about three times the operations of the outputs, independently of the number of inputs.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::mathematics::symbolic::{Function, Rational};
 /// The derivative by each node that the sum depends on.
 pub(super) type Gradient = BTreeMap<NodeId, NodeId>;
 
-/// That of the sum of the outputs, each times its weight.
+/// The gradient of the sum of the outputs, each times its weight.
 pub(super) fn gradient(graph: &mut Graph, weighted: &[(NodeId, NodeId)]) -> Gradient {
     let mut found = Gradient::new();
     let outputs: Vec<NodeId> = weighted.iter().map(|(output, _)| *output).collect();
@@ -57,7 +57,7 @@ pub(super) fn gradient(graph: &mut Graph, weighted: &[(NodeId, NodeId)]) -> Grad
     found
 }
 
-/// Adds a share; what is constant has none.
+/// Adds a contribution to the derivative by a node; constants have none.
 fn give(graph: &mut Graph, found: &mut Gradient, node: NodeId, share: NodeId) {
     if graph.value(node).is_none() && !graph.is_zero(share) {
         let sum = found.get(&node).map_or(share, |&sum| graph.add(sum, share));
@@ -65,7 +65,7 @@ fn give(graph: &mut Graph, found: &mut Gradient, node: NodeId, share: NodeId) {
     }
 }
 
-/// `f'(a)`, where `f(a)` is a node already; the rules of [`variation`](crate::mathematics::symbolic::variation).
+/// `f'(a)`, where `value` is the node of `f(a)`; the rules of [`variation`](crate::mathematics::symbolic::variation).
 pub(super) fn slope(graph: &mut Graph, function: Function, a: NodeId, value: NodeId) -> NodeId {
     let half = graph.constant(Rational::new(1, 2));
     match function {

@@ -1,4 +1,4 @@
-//! Scalar operations with equal ones shared.
+//! Scalar operations, with equal ones shared.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -12,18 +12,18 @@ use crate::mathematics::symbolic::{Function, Rational, Stage, SymbolId, work};
 pub struct Graph {
     nodes: Vec<(Node, Stage)>,
     index: Index,
-    /// Zero and one, where they are nodes already: no other node is looked up so often.
+    /// Zero and one, if they are nodes already: they are looked up most often.
     units: [Option<NodeId>; 2],
-    /// The products of matrices so far, by the inner dimension and the entries of both. The components of a covector,
-    /// and more so the entries of a Jacobian, are made of the same ones.
+    /// The products of matrices so far, by the inner dimension and the entries of both. The components of a covector
+    /// share many of them, and the entries of a Jacobian more.
     pub(super) products: BTreeMap<(usize, Matrix, Matrix), Matrix>,
-    /// What each of such products costs, to be compared.
+    /// The costs of such products.
     pub(super) costs: BTreeMap<(usize, Matrix, Matrix), (bool, usize, usize)>,
-    /// The entries of symbols and, with `true`, of their transposes, once they have been asked for.
+    /// The entries of symbols and, with `true`, of their transposes, if they have been used.
     pub(super) symbols: BTreeMap<(SymbolId, bool), Matrix>,
 }
 
-/// The entries of a matrix, row by row.
+/// The entries of a matrix, by rows.
 pub(super) type Matrix = Rc<[NodeId]>;
 
 impl Graph {
@@ -59,7 +59,7 @@ impl Graph {
         self.insert(Node::Constant(value), Stage::Construction)
     }
 
-    /// The exact value of an operation on constants, or the operation where that isn't in range.
+    /// The exact value of an operation on constants, or the operation if the value is out of range.
     fn folded(&mut self, value: Rational, node: Node) -> NodeId {
         if value.is_overflow() { self.operation(node) } else { self.constant(value) }
     }
@@ -162,7 +162,7 @@ impl Graph {
         }
     }
 
-    /// `x (y b) = (x y) b` for constants `x` and `y`, as long as their product is exact.
+    /// `x (y b) = (x y) b` for constants `x` and `y`, if their product is exact.
     fn constants_together(&self, a: NodeId, b: NodeId) -> Option<(Rational, NodeId)> {
         let (Node::Constant(x), Node::Multiply(left, right)) = (self.node(a), self.node(b)) else { return None };
         let constant = |node, rest| self.value(node).map(|y| (x * y, rest));
@@ -178,8 +178,8 @@ impl Graph {
         }
     }
 
-    /// `f(a)`. Of a family whose members follow from each other only the highest are called: downwards no digit is
-    /// lost, and what one operation has computed another shares.
+    /// `f(a)`. In a family with a recurrence only the highest members are called: the recurrence downwards loses no
+    /// digits, and its operations are shared.
     pub fn apply(&mut self, function: Function, a: NodeId) -> NodeId {
         match function {
             // c_k = 1/k! − q c_{k+2}.
@@ -236,7 +236,7 @@ impl Graph {
         result
     }
 
-    /// A product in which what is known earlier is multiplied first.
+    /// A product in which factors of early stages are multiplied first.
     pub fn product(&mut self, mut factors: Vec<NodeId>) -> NodeId {
         factors.sort_by_key(|&id| (self.stage(id), id));
         let one = self.one();
@@ -274,7 +274,7 @@ impl Graph {
         total
     }
 
-    /// What all terms are multiplied by, if there are at least two.
+    /// The common factor of all terms, if there are at least two.
     fn common_factor(&self, terms: &[(NodeId, bool)]) -> Option<NodeId> {
         let (&(first, _), others) = terms.split_first()?;
         let Node::Multiply(a, b) = self.node(first) else { return None };
@@ -315,7 +315,7 @@ impl Graph {
         self.reachable_from(outputs, &|_| false)
     }
 
-    /// The same, where what is given needs no operands.
+    /// The nodes that the outputs need, operands first; given nodes need no operands.
     pub fn reachable_from(&self, outputs: &[NodeId], is_given: &dyn Fn(NodeId) -> bool) -> Vec<NodeId> {
         let end = outputs.iter().map(|output| output.0 + 1).max().unwrap_or(0);
         let mut needed = vec![false; end];

@@ -1,19 +1,19 @@
-//! Where a node stands in a graph, if it does.
+//! The index of the nodes in a graph.
 //!
-//! A hash table with a fixed rule in place of a seed, so that nothing depends on the run. It is asked some hundred
-//! thousand times in a long declaration; a tree took a fifth of an expansion, which runs unoptimised in most builds.
+//! A hash table with a fixed rule instead of a seed, so that results don't depend on the run. A long declaration looks
+//! up some hundred thousand nodes; a tree took a fifth of an expansion, which runs unoptimised in most builds.
 
 use super::node::{Node, NodeId};
 
-/// The places of nodes; their values are the graph's.
+/// The places of nodes, which are stored in the graph.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Index {
-    /// A power of two, at least half of them empty.
+    /// The slots: a power of two, at least half of them empty.
     slots: Vec<Option<NodeId>>,
 }
 
 impl Index {
-    /// The node's place, or the slot for it; `at` is the graph.
+    /// The node's place, or a free slot for it; `at` reads a node of the graph.
     pub(super) fn find(&self, node: &Node, at: impl Fn(NodeId) -> Node) -> Result<NodeId, usize> {
         let last = self.slots.len().wrapping_sub(1);
         let mut slot = hash(node) & last;
@@ -26,7 +26,7 @@ impl Index {
         Err(slot)
     }
 
-    /// Puts a new node, the last of the graph, into the slot that was found for it.
+    /// Puts a new node, the last of the graph, into the slot that `find` returned.
     pub(super) fn insert(&mut self, slot: usize, id: NodeId, at: impl Fn(NodeId) -> Node) {
         if let Some(free) = self.slots.get_mut(slot) {
             *free = Some(id);
@@ -42,7 +42,7 @@ impl Index {
     }
 }
 
-/// Numbers near each other, as those of operands are, go far apart.
+/// A hash that separates near numbers, such as those of operands.
 fn hash(node: &Node) -> usize {
     let small = |x: i128| usize::try_from(x.unsigned_abs() & 0xFFFF_FFFF).unwrap_or(0) ^ usize::from(x < 0);
     let (kind, a, b) = match node {
@@ -60,7 +60,7 @@ fn hash(node: &Node) -> usize {
     };
     let mut mixed: usize = kind;
     for part in [a, b] {
-        // Odd, and 2³² over the golden ratio: multiples of it are spread evenly.
+        // The multiplier is odd and 2³² over the golden ratio: its multiples are spread evenly.
         mixed = mixed.rotate_left(13).wrapping_add(part).wrapping_mul(0x9E37_79B1);
         mixed ^= mixed >> 15;
     }

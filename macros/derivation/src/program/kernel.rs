@@ -1,4 +1,4 @@
-//! The staged step: candidates for the Newton system, of which the cheapest is taken.
+//! The kernel of a step: the cheapest of several forms of the Newton system.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,7 +12,7 @@ use crate::mathematics::derive::{ClearedSystem, Continuous, Derivation, OfFactor
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Expression, Rational, Stage, SymbolId, Symbols};
 
-/// A way to write the Newton system, with its operations an iteration.
+/// A form of the Newton system, with its operations an iteration.
 #[derive(Clone, Debug)]
 pub struct Candidate {
     pub name: &'static str,
@@ -24,34 +24,34 @@ pub struct Candidate {
 /// The outputs of the stages, in one graph.
 #[derive(Clone, Debug)]
 pub struct Kernel {
-    /// What the graph below begins with, and those of single terms.
+    /// The beginning of the graph below, and of those of single terms.
     pub beginning: Beginning,
     pub graph: Graph,
     pub kick_before: Vec<NodeId>,
-    /// The derivative of `kick_before` along a body velocity, where it is derived.
+    /// The derivative of `kick_before` along a body velocity, if it is derived.
     pub kick_derivative: Option<Vec<NodeId>>,
     pub residual: Vec<NodeId>,
     pub jacobian: Vec<NodeId>,
     pub kick_after: Vec<NodeId>,
-    /// The part of the diamond with `F`, where the system is that in `F` rebuilt from `y`; `kick_after` is `Ad*_F` of
-    /// it.
+    /// The part of the diamond that depends on `F`, if the system is one in `F` rebuilt from `y`; `kick_after` is
+    /// `Ad*_F` of it.
     pub moved: Vec<NodeId>,
-    /// Whether the Newton system is written in `D = F − I`, its Jacobian right-trivialised: on SO(3) it is written in
-    /// Cayley coordinates.
+    /// Whether the Newton system is written in `D = F − I`, with a right-trivialised Jacobian. On products of SO(3)
+    /// and translations it is written in Cayley coordinates.
     pub in_increment: bool,
     /// The power of `1 + |y|²` that the Newton system is multiplied by.
     pub denominators: u32,
-    /// The first is the one that was taken.
+    /// The candidates, the chosen one first.
     pub candidates: Vec<Candidate>,
 }
 
-/// What the Jacobian of the free body costs beside a residual, [`Operations::cost`], with the solves for the updates.
+/// The cost of the free body's Jacobian beside a residual, as [`Operations::cost`], with the solves for the updates.
 const FREE_BODY: usize = 1_000;
 
 impl Kernel {
-    /// Whether the Jacobian costs so much more than the residual that a solve does better with the free body's.
+    /// Whether the Jacobian costs so much more than the residual that a solve is faster with the free body's Jacobian.
     ///
-    /// At common steps it takes two to five residuals then, instead of two or three systems.
+    /// At common steps such a solve takes two to five residuals, instead of two or three systems.
     pub fn jacobian_is_expensive(&self) -> bool {
         let Some(taken) = self.candidates.first() else { return false };
         let residual = count(&self.graph, &self.residual, Some(Stage::Iteration)).cost();
@@ -59,7 +59,7 @@ impl Kernel {
         !self.moved.is_empty() && taken.denominators == 0 && jacobian > 3 * residual && jacobian > 2 * FREE_BODY
     }
 
-    /// The factors of the group before which nothing couples to what comes later: there the Jacobian falls into blocks.
+    /// The factors at which the Jacobian falls into blocks: no earlier factor couples to them or to later ones.
     pub fn ends(&self, group: &Group) -> Vec<usize> {
         let dimension = group.dimension();
         let is_zero = |row: usize, column: usize| {
@@ -72,7 +72,7 @@ impl Kernel {
         (1..group.factors().len()).filter(is_end).collect()
     }
 
-    /// Of a step without the solve and of an iteration, as `Effect::OPERATIONS` has them.
+    /// The operations of a step without the solve and of an iteration, for `Effect::OPERATIONS`.
     pub fn operations(&self) -> [u32; 2] {
         let before = [self.kick_before.as_slice(), &self.residual, &self.jacobian].concat();
         let mut step = count(&self.graph, &before, Some(Stage::Step));
@@ -93,14 +93,14 @@ impl Kernel {
         [self.residual.as_slice(), &self.moved].concat()
     }
 
-    /// What a step of two Newton iterations costs.
+    /// The cost of a step with two Newton iterations.
     pub fn cost(&self) -> usize {
         let iteration = self.candidates.first().map_or(0, |candidate| candidate.operations.cost());
         2 * iteration + count(&self.graph, &self.kick_after, None).cost()
     }
 }
 
-/// `tr(E_k W)` and the like for each generator: the components of a covector.
+/// The components of a covector, `tr(E_k W)` and the like for each generator.
 pub fn components(graph: &mut Graph, derived: &Derivation, given: &KnownEntries, covector: &Expression) -> Vec<NodeId> {
     let mut given = given.clone();
     let mut of = |k| {
@@ -112,7 +112,7 @@ pub fn components(graph: &mut Graph, derived: &Derivation, given: &KnownEntries,
     (0..derived.group.dimension()).map(&mut of).collect()
 }
 
-/// The matrix of a column that is linear in a direction of three components, row by row.
+/// The matrix of a column that is linear in a direction of three components, by rows.
 pub fn along_unit_vectors(
     graph: &mut Graph,
     symbols: &Symbols,
@@ -130,8 +130,8 @@ pub fn along_unit_vectors(
     places.map(entry).collect()
 }
 
-/// The values of a continuous term: of rank 0 a scalar, of rank 1 the components of a covector, of rank 2 the entries of
-/// a bilinear form, row by row.
+/// The values of a continuous term: a scalar for rank 0, the components of a covector for rank 1, and the entries of a
+/// bilinear form by rows for rank 2.
 pub fn along_directions(graph: &mut Graph, derived: &Continuous, rank: usize, term: &Expression) -> Vec<NodeId> {
     let dimension = derived.group.dimension();
     let along = [1, 2].map(|least| if rank >= least { dimension } else { 1 });
@@ -154,15 +154,15 @@ pub fn along_directions(graph: &mut Graph, derived: &Continuous, rank: usize, te
     places.map(of_place).collect()
 }
 
-/// The matrices of the velocities, where they have symbols of their own.
+/// The matrices of the velocities, if they have symbols of their own.
 fn with_velocities(graph: &mut Graph, derived: &Continuous) -> KnownEntries {
     let velocities = derived.velocities.iter();
     let matrices = velocities.filter_map(|velocity| Some((velocity.matrix?, velocity.components)));
     matrices.map(|(matrix, components)| (matrix, matrix_of(graph, &derived.group, components))).collect()
 }
 
-/// The entries, row by row, of the matrix that the diamond along any matrix pairs with; of each factor of the group its
-/// own. Where increments are added, all that counts is the last column of the matrix.
+/// The matrices that the diamond along any matrix pairs with, one for each factor of the group, by rows. For a
+/// translation only the last column counts.
 pub fn diamond_matrices(graph: &mut Graph, derived: &Continuous) -> Vec<Vec<NodeId>> {
     let factors = derived.group.factors().iter().enumerate();
     let of_factor = |(factor, own): (usize, &Group)| {
@@ -184,8 +184,8 @@ pub fn diamond_matrices(graph: &mut Graph, derived: &Continuous) -> Vec<Vec<Node
     factors.map(of_factor).collect()
 }
 
-/// The block of the constant matrix `E_k` that belongs to a factor; of a group that isn't a product all of it. Of a factor
-/// whose increments are added it is a column.
+/// The block of the constant matrix `E_k` for a factor, which is all of it if the group isn't a product; a column for a
+/// translation.
 pub(super) fn generator(graph: &mut Graph, group: &Group, factor: usize, k: usize) -> Entries {
     let own = group.factor(factor);
     if own.is_added {
@@ -200,7 +200,7 @@ pub(super) fn generator(graph: &mut Graph, group: &Group, factor: usize, k: usiz
     })
 }
 
-/// `Σ v_j E_j`.
+/// The matrix `Σ v_j E_j` of the velocity.
 pub(super) fn velocity(graph: &mut Graph, derived: &Derivation) -> Entries {
     matrix_of(graph, &derived.group, derived.directions.along)
 }
@@ -220,7 +220,7 @@ fn matrix_of(graph: &mut Graph, group: &Group, symbol: SymbolId) -> Entries {
     })
 }
 
-/// A Jacobian, linear in `E_k` and `E_j`, row by row.
+/// A Jacobian, bilinear in `E_k` and `E_j`, by rows.
 pub fn square(graph: &mut Graph, derived: &Derivation, given: &KnownEntries, bilinear: &Expression) -> Vec<NodeId> {
     let dimension = derived.group.dimension();
     let varies = derived
@@ -307,7 +307,7 @@ pub fn kernel(derived: &Derivation) -> Kernel {
     }
 }
 
-/// With what closed `let`s are at `F` and `w = F·w⁺`.
+/// Adds the values of closed `let`s at `F` and `w = F·w⁺`.
 fn after(graph: &mut Graph, derived: &Derivation, mut given: KnownEntries) -> KnownEntries {
     if derived.closed.is_empty() {
         return given;
@@ -319,7 +319,7 @@ fn after(graph: &mut Graph, derived: &Derivation, mut given: KnownEntries) -> Kn
     with_lets(graph, derived, given)
 }
 
-/// `D` by its entries, and `F = I + D`, of each factor.
+/// The entries of `D`, and `F = I + D`, of each factor.
 pub(super) fn by_increment(
     graph: &mut Graph,
     derived: &Derivation,
@@ -335,7 +335,7 @@ pub(super) fn by_increment(
     given
 }
 
-/// With `D⁻` by its entries, and `F⁻¹ = I + D⁻`.
+/// Adds the entries of `D⁻`, and `F⁻¹ = I + D⁻`.
 pub(super) fn with_inverse(graph: &mut Graph, derived: &Derivation, mut given: KnownEntries) -> KnownEntries {
     let factors = derived.directions.factors.iter().zip(derived.group.factors());
     for (one, group) in factors.filter(|(_, group)| !group.is_added) {
@@ -356,7 +356,7 @@ fn plus_identity(graph: &mut Graph, small: &Entries) -> Entries {
     })
 }
 
-/// `(h/2) (U(F) − a)` and its derivatives along `E_j`, with `F`, `D` and the `let`s given.
+/// `(h/2) (U(F) − a)` and its derivatives along `E_j`, at the `F`, `D` and `let`s in `given`.
 fn system(graph: &mut Graph, derived: &Derivation, given: &KnownEntries) -> Vec<NodeId> {
     let target = target(graph, derived);
     let (mut outputs, jacobian) = if derived.closed.is_empty() {
@@ -364,7 +364,7 @@ fn system(graph: &mut Graph, derived: &Derivation, given: &KnownEntries) -> Vec<
         let unknown = components(graph, derived, given, &scaled(&derived.unknown));
         (unknown, square(graph, derived, given, &scaled(&derived.jacobian)))
     } else {
-        // In closed `let`s the factor finds nothing to cancel.
+        // The factor is applied to the results: closed `let`s leave nothing for it to cancel.
         let half_step = half_step(graph, derived);
         let unknown = components(graph, derived, given, &derived.unknown);
         let jacobian = square(graph, derived, given, &derived.jacobian);
@@ -384,7 +384,7 @@ fn half_step(graph: &mut Graph, derived: &Derivation) -> NodeId {
     Scalariser::new(graph, &derived.symbols, &KnownEntries::new()).scalar(&derived.half_step)
 }
 
-/// `(h/2) a`, once a step.
+/// `(h/2) a`, computed once a step.
 fn target(graph: &mut Graph, derived: &Derivation) -> Entries {
     let half_step = half_step(graph, derived);
     let symbol = derived.directions.target;
@@ -400,7 +400,7 @@ fn coordinates(graph: &mut Graph, derived: &Derivation) -> Vec<NodeId> {
     (0..dimension).map(|row| graph.input(Input { symbol, row, column: 0 }, Stage::Iteration)).collect()
 }
 
-/// Residual and Jacobian of the cleared equation, nine and three; the denominator's node.
+/// The residual and the Jacobian of the cleared equation, three and nine entries, and the node of the denominator.
 fn cleared_system(graph: &mut Graph, derived: &Derivation, cleared: &ClearedSystem) -> (Vec<NodeId>, NodeId) {
     let directions = &derived.directions;
     let y = coordinates(graph, derived);
@@ -422,7 +422,7 @@ fn cleared_system(graph: &mut Graph, derived: &Derivation, cleared: &ClearedSyst
 
 /// `(h/2) (U(F) − a)` with `F = cay(2y)`, and its Jacobian `(h/2) ∂U/∂E_j · T_j`, with the tangent `T` in `y`.
 ///
-/// With them the part of the diamond that depends on `F`, if it is asked for, and the nodes that are left as they are
+/// Returns also the part of the diamond that depends on `F`, if it is derived, and the nodes that count as variables
 /// when the system is multiplied out.
 fn retracted(graph: &mut Graph, derived: &Derivation) -> (Vec<NodeId>, Vec<NodeId>, BTreeSet<NodeId>) {
     let y = coordinates(graph, derived);

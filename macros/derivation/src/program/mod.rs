@@ -1,8 +1,9 @@
 //! Programs: matrix expressions as straight-line scalar code, with stages, shared subexpressions and counts.
 //!
-//! `scalarise` takes matrices to their entries, `graph` keeps equal operations once, each a `node`, `expand` multiplies out, `closed`
-//! has the `let`s that stay closed, `kernel` the step, in the coordinates of `retraction`, `stages` what its stages hand on, `terms` the derived
-//! terms that know no stages, `tangent` and `gradient` its derivatives, and `count` what it costs.
+//! `scalarise` reduces matrices to their entries, `graph` stores equal operations once, each a `node`, `expand`
+//! multiplies out, `closed` has the `let`s that stay closed, `kernel` the step, in the coordinates of `retraction`,
+//! `stages` the values passed between its stages, `terms` the derived terms without stages, `tangent` and `gradient`
+//! the derivatives of a step, and `count` its cost.
 //!
 //! Deliberately not here: tokens, the group of the user's declaration by any name, and the choice between two programs
 //! of different declarations. The room knows `mathematics`.

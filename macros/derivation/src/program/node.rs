@@ -1,4 +1,4 @@
-//! The operations of a graph, each alone.
+//! The single operations of a graph.
 
 use crate::mathematics::symbolic::{Function, Rational, SymbolId};
 

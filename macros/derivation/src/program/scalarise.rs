@@ -15,7 +15,7 @@ use crate::mathematics::symbolic::{Atom, Expression, Factor, Monomial, Stage, St
 pub struct Entries {
     pub rows: usize,
     pub columns: usize,
-    /// Shared, as factors are handed on far more often than made.
+    /// The nodes by rows; shared, as factors are copied far more often than constructed.
     nodes: Matrix,
 }
 
@@ -42,9 +42,9 @@ impl Entries {
 pub struct Scalariser<'a> {
     graph: &'a mut Graph,
     symbols: &'a Symbols,
-    /// Symbols whose entries aren't inputs: directions, or what is computed from other inputs.
+    /// Symbols whose entries aren't inputs: directions, and values computed from other inputs.
     given: &'a BTreeMap<SymbolId, Entries>,
-    /// The nodes of scalars so far: what a derivative has in each of its terms is looked into once.
+    /// The nodes of scalars so far: a scalar that occurs in every term of a derivative is converted once.
     known: BTreeMap<Atom, NodeId>,
 }
 
@@ -66,7 +66,7 @@ impl<'a> Scalariser<'a> {
         self.graph.sum(&terms)
     }
 
-    /// The scalars of a monomial: all but the latest known go into its word as one coefficient.
+    /// The product of a monomial's scalars. All but the trace of the latest stage become one coefficient of that trace.
     fn monomial(&mut self, monomial: &Monomial, coefficient: NodeId) -> NodeId {
         let mut factors = vec![coefficient];
         let mut carrier: Option<(Stage, &[Factor])> = None;
@@ -224,7 +224,7 @@ impl<'a> Scalariser<'a> {
 
     /// The trace of a closed word, or the value of a bilinear form, times a scale.
     fn trace(&mut self, word: &[Factor], scale: Option<NodeId>) -> NodeId {
-        // Products that are known make no operations, and which is to be the first is asked of all.
+        // Known products are free, and the search for the first one compares all pairs.
         if !work::spend(word.len().saturating_mul(word.len())) {
             return self.graph.zero();
         }
@@ -297,7 +297,7 @@ impl<'a> Scalariser<'a> {
         self.graph.sum(&terms)
     }
 
-    /// How many nodes there are of each stage, without constants.
+    /// The number of nodes of each stage, without constants.
     fn stages(&self, nodes: impl Iterator<Item = NodeId>) -> [usize; 3] {
         let mut counts = [0; 3];
         for node in nodes.filter(|&node| self.graph.value(node).is_none()) {
@@ -310,8 +310,8 @@ impl<'a> Scalariser<'a> {
         counts
     }
 
-    /// What a product of two factors costs, to be compared: whether it is one with a generator, which the other
-    /// components of a covector don't share; its multiplications, which count more at a later stage; the size of the
+    /// The cost of a product of two factors, for comparisons: whether one factor is a generator, so that the other
+    /// components of a covector don't share the product; its multiplications, weighted by their stage; the size of the
     /// result.
     fn pair_cost(&mut self, left: &Entries, right: &Entries) -> (bool, usize, usize) {
         let key = (left.columns, left.nodes.clone(), right.nodes.clone());
@@ -319,7 +319,7 @@ impl<'a> Scalariser<'a> {
             return cost;
         }
         let is_own = self.is_constant(left) != self.is_constant(right);
-        // For each inner index, how many entries of each stage meet.
+        // The nodes of each stage in column k of the left factor meet those in row k of the right one.
         let cost = (0..left.columns).map(|k| {
             let above = self.stages((0..left.rows).map(|row| left.at(row, k)));
             let below = self.stages((0..right.columns).map(|column| right.at(k, column)));
@@ -336,7 +336,7 @@ impl<'a> Scalariser<'a> {
     }
 }
 
-/// The place of the least, the first of equal ones.
+/// The index of the least cost, the first of equal ones.
 fn cheapest(costs: &[(bool, usize, usize)]) -> usize {
     (0..costs.len()).min_by_key(|&i| costs[i]).unwrap_or(0)
 }

@@ -1,4 +1,4 @@
-//! What each stage of a step hands to the next.
+//! The values that each stage of a step passes to the next.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,13 +9,13 @@ use crate::mathematics::symbolic::Stage;
 /// Values that one stage computes and a later one uses, with their places in an array.
 pub type Handover = BTreeMap<NodeId, usize>;
 
-/// The outputs of a step, and what its stages hand on.
+/// The outputs of a step, and the values passed between its stages.
 pub struct Stages {
-    /// The residual, then the Jacobian row by row.
+    /// The residual, then the Jacobian by rows.
     pub system: Vec<NodeId>,
-    /// What is computed once.
+    /// The values computed at construction.
     pub constants: Handover,
-    /// What is computed once a step.
+    /// The values computed once a step.
     pub terms: Handover,
 }
 
@@ -48,13 +48,13 @@ fn handed(graph: &Graph, outputs: &[NodeId], stage: Stage) -> Handover {
     found.into_iter().enumerate().map(|(index, id)| (id, index)).collect()
 }
 
-/// The nodes to visit, each after its operands and as late as it can be; what is given needs no operands.
+/// The nodes to visit, each after its operands and as late as possible; given nodes need no operands.
 ///
-/// In this order the compiler makes a hundredth fewer instructions of a step than in that of the nodes' making.
+/// In this order the compiler generates one per cent fewer instructions for a step than in the order of construction.
 pub fn needed(graph: &Graph, outputs: &[NodeId], is_given: &dyn Fn(NodeId) -> bool) -> Vec<NodeId> {
     let end = outputs.iter().map(|output| output.0 + 1).max().unwrap_or(0);
     let (mut order, mut met) = (Vec::new(), vec![false; end]);
-    // Nodes to open, and nodes whose operands are all in order.
+    // The stack has nodes to open, and nodes whose operands are all in order.
     let mut open: Vec<(NodeId, bool)> = outputs.iter().rev().map(|&id| (id, false)).collect();
     while let Some((id, is_ready)) = open.pop() {
         if is_ready {

@@ -1,7 +1,8 @@
-//! How the momenta at both ends of a step vary: derivatives of programs, operation by operation.
+//! The derivatives of the momenta at both ends of a step: derivatives of programs, operation by operation.
 //!
-//! `μ` of (2.7) and `μ⁺` of (2.6) are straight-line code in the entries of `D = F − I`, `w` and the parameters. A turn
-//! `ε` of the increment and a displacement `ζ` of the body at the beginning of the step move these entries by
+//! `μ` of (2.7) and `μ⁺` of (2.6) are straight-line code in the entries of `D = F − I`, `w` and the parameters. A left
+//! variation `ε` of the increment and a displacement `ζ` of the body at the beginning of the step change these entries
+//! by
 //!
 //! ```text
 //! δF = ε̂ F        δ(F⁻¹) = −F⁻¹ ε̂        δw = −ζ·w
@@ -9,8 +10,8 @@
 //!
 //! and a translation by `δd = ε`.
 //!
-//! The chain rule is applied to the code and not to the expressions: closed `let`s need no rule of their own, and what
-//! the momenta have computed their derivatives share.
+//! The chain rule is applied to the code and not to the expressions: closed `let`s need no rule of their own, and the
+//! derivatives share the values of the momenta.
 
 use std::collections::BTreeMap;
 
@@ -22,47 +23,47 @@ use super::scalarise::Entries;
 use crate::mathematics::derive::{Derivation, Ends};
 use crate::mathematics::symbolic::{Rational, Stage, SymbolId};
 
-/// A number of the parameters, or of what is advected, with the entry that stands for it.
+/// A number of the fields or of the advected parameters, and its entry of a symbol.
 #[derive(Clone, Copy)]
 pub struct Place {
     pub number: usize,
     pub symbol: SymbolId,
     pub row: usize,
     pub column: usize,
-    /// An entry beside the diagonal of a symmetric matrix is there twice.
+    /// Whether it is an off-diagonal entry of a symmetric matrix, which occurs twice.
     pub is_half: bool,
 }
 
-/// The derivatives of some outputs by those numbers of the parameters that they depend on, then by those of what is
-/// advected.
+/// The derivatives of some outputs by the numbers of the fields, then by those of the advected parameters; numbers
+/// without effect are left out.
 pub type ByNumbers = [Vec<(usize, Vec<NodeId>)>; 2];
 
 /// The gradient of a weighted sum.
 pub struct WeightedGradient {
     /// Along each displacement `ζ = E_j`.
     pub by_place: Vec<NodeId>,
-    /// Each with one output.
+    /// The derivative by each number, a single output.
     pub by_numbers: ByNumbers,
 }
 
-/// The derivatives of a step where they are asked for, as they are emitted.
+/// The derivatives of a step for the emitted code, if they are requested.
 ///
-/// Weights are symbols that what is differentiated is free of: `u` is the target of a step, `p` its velocity, and `r` the
-/// coordinates of its increment.
+/// Weights are symbols that the differentiated outputs don't contain: `u` is the target of a step, `p` its velocity,
+/// and `r` the coordinates of its increment.
 pub struct Derivatives {
     pub graph: Graph,
     /// The components of `μ`, then those of `μ⁺`.
     pub momenta: Vec<NodeId>,
-    /// Of `μ` and of `μ⁺` along each `ε = E_j`, then along each `ζ = E_j`; matrices row by row.
+    /// The derivatives of `μ` and of `μ⁺` along each `ε = E_j`, then along each `ζ = E_j`; matrices by rows.
     pub blocks: [[Vec<NodeId>; 2]; 2],
-    /// Of the components of both.
+    /// The derivatives of the components of both momenta.
     pub by_numbers: ByNumbers,
-    /// `(∂μ⁺/∂ε)ᵀ p`, which the adjoint of a step begins with.
+    /// `(∂μ⁺/∂ε)ᵀ p`, the right side of the adjoint equation of a step.
     pub by_turn: Vec<NodeId>,
-    /// Of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment, which it ends with.
+    /// The gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment, which follows the solution of the adjoint equation.
     pub gradient: WeightedGradient,
-    /// Of `⟨u, D_v k⟩ + ⟨r, k − J u⟩` for the kick `k`, its derivative `D_v k` and the inertia `J`: what the derivatives
-    /// of a force gradient are made of. `None` where `D_v k` isn't derived.
+    /// The gradient of `⟨u, D_v k⟩ + ⟨r, k − J u⟩` for the kick `k`, its derivative `D_v k` and the inertia `J`, for
+    /// the derivatives of a force gradient. `None` if `D_v k` isn't derived.
     pub of_kick: Option<WeightedGradient>,
 }
 
@@ -80,18 +81,18 @@ impl Derivatives {
     }
 }
 
-/// The momenta at both ends of a step, to be differentiated.
+/// The momenta at both ends of a step, and the inputs that they are differentiated by.
 struct Linearisation<'a> {
     derived: &'a Derivation,
     ends: &'a Ends,
     graph: Graph,
     /// The components of `μ`, then those of `μ⁺`.
     momenta: Vec<NodeId>,
-    /// `F` and `F⁻¹` by their entries.
+    /// The entries of `F` and `F⁻¹`.
     increments: KnownEntries,
 }
 
-/// The change of each input that changes.
+/// The changes of the inputs; others don't change.
 pub(super) type Changes = BTreeMap<NodeId, NodeId>;
 
 /// Outputs with their weights.
@@ -116,13 +117,13 @@ impl<'a> Linearisation<'a> {
         linearisation
     }
 
-    /// Whether none of these depends on the symbols that stand for weights.
+    /// Whether none of the outputs depends on the weights.
     fn are_free(&self, weights: [SymbolId; 2], outputs: &[NodeId]) -> bool {
         let is_weight = |id| matches!(self.graph.node(id), Node::Input(input) if weights.contains(&input.symbol));
         !self.graph.reachable(outputs).into_iter().any(is_weight)
     }
 
-    /// The derivatives of `μ` and of `μ⁺` along each `ε = E_j`, then those along each `ζ = E_j`; matrices row by row.
+    /// The derivatives of `μ` and of `μ⁺` along each `ε = E_j`, then along each `ζ = E_j`; matrices by rows.
     fn blocks(&mut self) -> [[Vec<NodeId>; 2]; 2] {
         let dimension = self.derived.group.dimension();
         [false, true].map(|is_displaced| {
@@ -202,7 +203,7 @@ impl<'a> Linearisation<'a> {
         })
     }
 
-    /// The derivatives by each number, of those by its entry; none where nothing depends on it.
+    /// The derivatives by each number, from those by its entry; numbers without effect are left out.
     fn of_places(
         &mut self,
         places: &[Place],
@@ -304,9 +305,9 @@ fn product(graph: &mut Graph, left: &Entries, right: &Entries) -> Entries {
     })
 }
 
-/// How the outputs change with the inputs.
+/// The changes of the outputs.
 pub(super) fn tangent(graph: &mut Graph, outputs: &[NodeId], changes: &Changes) -> Vec<NodeId> {
-    // What isn't here doesn't change.
+    // Nodes that aren't in this map don't change.
     let mut known = changes.clone();
     known.retain(|_, change| !graph.is_zero(*change));
     for id in graph.reachable(outputs) {

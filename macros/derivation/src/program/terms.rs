@@ -1,4 +1,4 @@
-//! The derived terms that know no stages, each as outputs of a graph.
+//! The derived terms without stages, each as outputs of a graph.
 
 use super::closed::Beginning;
 use super::graph::{Graph, NodeId};
@@ -7,13 +7,13 @@ use super::scalarise::Scalariser;
 use crate::mathematics::derive::Derivation;
 use crate::mathematics::symbolic::Expression;
 
-/// What the outputs make together.
+/// The form of the outputs together.
 #[derive(Clone, Copy, Debug)]
 pub enum Form {
     Scalar,
     /// The components of a covector.
     Vector,
-    /// A square matrix, row by row.
+    /// A square matrix, by rows.
     Square,
 }
 

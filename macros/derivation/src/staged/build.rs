@@ -80,7 +80,7 @@ fn derivatives(found: &Derivatives, sources: &Sources) -> [Program; 4] {
     let zero = graph.zero();
     let shapes = (0..sources.declaration.advected.len()).map(|index| carried(sources.declaration, index).shape);
     let count: usize = shapes.map(|(rows, columns)| rows * columns).sum();
-    // What nothing depends on isn't listed.
+    // Numbers without effect aren't listed.
     let all = |listed: &[(usize, Vec<NodeId>)], outputs: usize| -> Vec<NodeId> {
         let of = |number| listed.iter().find(|(known, _)| *known == number).map(|(_, nodes)| nodes.clone());
         (0..count).flat_map(|number| of(number).unwrap_or_else(|| vec![zero; outputs])).collect()
@@ -138,7 +138,7 @@ fn program(graph: &Graph, sources: &Sources, constants: &Handover, outputs: &[No
         Node::Multiply(a, b) => Some(Operation::Multiply(at(a), at(b))),
         Node::Divide(a, b) => Some(Operation::Divide(at(a), at(b))),
         Node::Apply(function, a) => Some(Operation::Apply(function, at(a))),
-        // They are leaves.
+        // Leaves are no operations.
         Node::Constant(_) | Node::Input(_) => None,
     };
     let operations = made.iter().filter_map(operation).collect();

@@ -1,10 +1,10 @@
-//! A declaration as programs: what a library runs that reads a Lagrangian while it runs itself.
+//! A declaration as programs, for a library that reads Lagrangians at run time.
 //!
-//! The stages are those that an expansion emits, made of the same kernel: whoever runs them operation by operation has
-//! the bits of the compiled step. Numbers come in arrays: those of a matrix row by row, of several things one after the
-//! other, in the order of the declaration.
+//! The stages are those that an expansion emits, from the same kernel: running them operation by operation gives the
+//! bits of the compiled step. Numbers are in arrays: those of a matrix by rows, and those of several parameters one
+//! after the other, in the order of the declaration.
 //!
-//! Deliberately not here: any mathematical decision, and how a program is run. The room knows all below itself.
+//! Deliberately not here: any mathematical decision, and the execution of a program. The room knows all below itself.
 
 mod build;
 mod sources;
@@ -20,11 +20,11 @@ use crate::mathematics::symbolic::work;
 /// Straight-line code on numbers. Registers hold the inputs, then the literals, then the result of each operation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
-    /// Where the inputs come from.
+    /// The places of the inputs.
     pub inputs: Vec<Source>,
-    /// The numbers of the declaration.
+    /// The constants of the declaration.
     pub literals: Vec<f64>,
-    /// In the order in which they are made.
+    /// The operations, in the order of execution.
     pub operations: Vec<Operation>,
     /// The registers of the results.
     pub outputs: Vec<u32>,
@@ -37,11 +37,11 @@ pub enum Array {
     Step,
     /// The numbers of the parameters.
     Parameters,
-    /// What the constants' program has computed.
+    /// The results of the constants' program.
     Constants,
-    /// What is advected or given, `w`.
+    /// The advected and given parameters, `w`.
     Advected,
-    /// The same after the step, `w⁺`.
+    /// The advected and given parameters after the step, `w⁺`.
     Next,
     /// The increment `F`.
     Element,
@@ -60,10 +60,10 @@ pub enum Array {
 }
 
 impl Array {
-    /// How many there are.
+    /// The number of arrays.
     pub const COUNT: usize = 12;
 
-    /// Each of them, in order.
+    /// All arrays, in order.
     #[rustfmt::skip]
     pub const ALL: [Self; Self::COUNT] = [
         Self::Step, Self::Parameters, Self::Constants, Self::Advected, Self::Next, Self::Element, Self::Increment,
@@ -76,7 +76,7 @@ impl Array {
 pub struct Source {
     /// The array.
     pub array: Array,
-    /// From zero.
+    /// The index, from zero.
     pub at: usize,
 }
 
@@ -88,7 +88,7 @@ impl Source {
     }
 }
 
-/// One operation: on registers, on values that stand for them, or, where its kind alone counts, on `()`.
+/// One operation: on registers, on values in their place, or on `()`, if only its kind counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[allow(missing_docs)] // their names say it
 pub enum Operation<R = u32> {
@@ -102,7 +102,7 @@ pub enum Operation<R = u32> {
 }
 
 impl<R: Copy> Operation<R> {
-    /// What it reads; the only one twice.
+    /// The operands; a single one twice.
     #[must_use]
     pub fn read(self) -> [R; 2] {
         match self {
@@ -111,7 +111,7 @@ impl<R: Copy> Operation<R> {
         }
     }
 
-    /// The same operation on others; on the first of them alone, if it reads one.
+    /// The operation on other operands, or on the first of them alone, if it has one.
     #[must_use]
     pub fn of<S>(self, [a, b]: [S; 2]) -> Operation<S> {
         match self {
@@ -126,7 +126,7 @@ impl<R: Copy> Operation<R> {
 }
 
 impl Operation {
-    /// The registers that it reads; the only one twice.
+    /// The registers of the operands; a single one twice.
     #[must_use]
     pub fn operands(self) -> [usize; 2] {
         self.read().map(|register| register as usize)
@@ -138,7 +138,7 @@ impl Operation {
 pub struct Parameter {
     /// Its name.
     pub name: String,
-    /// What its type promises.
+    /// The type of its value.
     pub kind: ParameterKind,
 }
 
@@ -158,7 +158,7 @@ pub enum ParameterKind {
 }
 
 impl ParameterKind {
-    /// Rows and columns of what is stored.
+    /// The rows and columns of the stored value.
     #[must_use]
     pub const fn shape(self) -> (usize, usize) {
         match self {
@@ -170,32 +170,33 @@ impl ParameterKind {
         }
     }
 
-    /// How many numbers are stored.
+    /// The number of stored entries.
     #[must_use]
     pub const fn len(self) -> usize {
         let (rows, columns) = self.shape();
         rows * columns
     }
 
-    /// Whether none are.
+    /// Whether no entries are stored.
     #[must_use]
     pub const fn is_empty(self) -> bool {
         self.len() == 0
     }
 }
 
-/// What is advected or given, by how increments move it.
+/// An advected or given parameter, by the action of increments on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Carried {
-    /// The field with its value in space; none of a configuration, which is the identity there.
+    /// The field with its value in space; `None` for a configuration, whose value there is the identity.
     pub field: Option<usize>,
-    /// How it is moved.
+    /// The action of an increment.
     pub action: Action,
-    /// Rows and columns of what is stored.
+    /// The rows and columns of the stored value.
     pub shape: (usize, usize),
 }
 
-/// How an increment moves a parameter. Factors of a product are counted from zero; a group that isn't one is its own.
+/// The action of an increment on a parameter. Factors of a product are counted from zero; any other group is one
+/// factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // as the types of liestep
 pub enum Action {
@@ -205,14 +206,14 @@ pub enum Action {
     ContravariantTensor(usize),
     CovariantTensor(usize),
     MixedTensor(usize),
-    /// The configuration of a factor as another sees it.
+    /// The configuration of a factor relative to another.
     Relative {
         of: usize,
         from: usize,
     },
     /// The configuration of a factor in space.
     Configuration(usize),
-    /// Not at all.
+    /// No action.
     Given,
 }
 
@@ -221,41 +222,43 @@ pub enum Action {
 pub struct Factor {
     /// Its name.
     pub name: String,
-    /// The generators, each row by row.
+    /// The generators, each by rows.
     pub generators: Vec<Vec<f64>>,
 }
 
-/// The programs of a declaration, or what is made of each.
+/// The programs of a declaration, or their images under a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stages<P> {
-    /// What the parameters and `h` determine.
+    /// The values that depend on the parameters and `h` alone.
     pub constants: P,
-    /// As the methods of `Effect`.
+    /// The kick before the solve, as in `Effect`.
     pub kick_before: P,
-    /// Residual, then Jacobian. What `a` and `w` determine is computed in each iteration: to hand it on would take as long.
+    /// The residual, then the Jacobian. Values of `a` and `w` are computed again in each iteration, which takes no
+    /// longer than passing them on.
     pub newton_system: P,
-    /// The residual; behind it the moving kick, where the solve does better without the Jacobian.
+    /// The residual; then the moving kick, if a solve is faster without the Jacobian.
     pub newton_residual: P,
     /// `Ad*_F` of the diamond with `F`.
     pub kick_after: P,
     /// The derivative of the kick before along a velocity.
     pub kick_derivative: Option<P>,
-    /// Along `exp(t E_j) F`.
+    /// The Jacobian of the momentum along `exp(t E_j) F`.
     pub momentum_jacobian: P,
-    /// Inertia, bias and potential.
+    /// The inertia, the bias and the potential at rest.
     pub at_rest: P,
-    /// The continuous limit at a velocity, where it isn't quadratic: `l`, momentum and Hessian.
+    /// The continuous limit at a velocity, if it isn't quadratic: `l`, momentum and Hessian.
     pub at_velocity: Option<[P; 3]>,
-    /// Of a Lagrangian, by `F`, `w` and `h`: `l_d`, right and left momentum, diamond, `legendre_minus` and discrete energy.
+    /// The terms of a Lagrangian by `F`, `w` and `h`: `l_d`, right and left momentum, diamond, `legendre_minus` and
+    /// discrete energy.
     pub lagrangian: Option<[P; 6]>,
 }
 
 impl<P> Stages<P> {
-    /// What is made of each.
+    /// Maps all programs.
     ///
     /// # Errors
     ///
-    /// The first.
+    /// The first error of the map.
     pub fn try_map<'a, Q, E>(&'a self, mut make: impl FnMut(&'a P) -> Result<Q, E>) -> Result<Stages<Q>, E> {
         Ok(Stages {
             constants: make(&self.constants)?,
@@ -286,62 +289,62 @@ impl<P> Stages<P> {
 pub struct StagedDeclaration {
     /// The name of the struct.
     pub name: String,
-    /// What was declared.
+    /// The kind of the declaration.
     pub role: Role,
     /// The factors of the group.
     pub factors: Vec<Factor>,
     /// The fields.
     pub parameters: Vec<Parameter>,
-    /// What is advected or given.
+    /// The advected and given parameters.
     pub carried: Vec<Carried>,
-    /// Where there is a pace, which of these is the energy `E_0`.
+    /// The index of the energy `E_0` among these, if there is a pace.
     pub energy: Option<usize>,
-    /// What was derived, as text.
+    /// The derivation as text.
     pub derivation: String,
     /// Whether there is a kinetic part.
     pub has_kinetic: bool,
-    /// Whether a solve does better without the Jacobian.
+    /// Whether a solve is faster without the Jacobian.
     pub is_expensive: bool,
-    /// Whether the unknown part, the kick before and that after aren't zero.
+    /// Whether the unknown part, the kick before the solve and the kick after it are nonzero.
     pub parts: [bool; 3],
     /// The power of `1 + |y|²` that the Newton system is multiplied by.
     pub denominators: u32,
-    /// Whether the inertia is the same everywhere.
+    /// Whether the inertia doesn't depend on the parameters `w`.
     pub has_constant_inertia: bool,
     /// Whether the continuous limit is quadratic in the velocity.
     pub is_quadratic: bool,
     /// Whether a step of `−h` undoes one of `h`.
     pub is_self_adjoint: bool,
-    /// Whether the Newton system is written in `F − I`, so that the retraction brings its Jacobian to coordinates.
+    /// Whether the Newton system is written in `F − I`, so that the retraction transforms its Jacobian to coordinates.
     pub in_increment: bool,
     /// The components at which the Jacobian falls into blocks.
     pub blocks: Vec<usize>,
     /// The programs.
     pub programs: Stages<Program>,
-    /// Where they are asked for, the derivatives of a step by `F − I`, `w` and `h`, as `SecondDerivatives` has them: the
-    /// blocks; matrix and right side of the adjoint's system, with `p` in the array of the velocity; its gradient by the
-    /// place and by `w`, with `u` in that of the target; and both momenta by each number of `w`.
+    /// The derivatives of a step by `F − I`, `w` and `h`, if they are requested, as in `SecondDerivatives`: the blocks;
+    /// matrix and right side of the adjoint's system, with `p` in the array of the velocity; its gradient by the place
+    /// and by `w`, with `u` in that of the target; and both momenta by each number of `w`.
     pub derivatives: Option<[Program; 4]>,
 }
 
-/// Why nothing was derived.
+/// The reason why nothing was derived.
 #[derive(Clone, Debug)]
 pub enum Refusal {
     /// All mistakes of the declaration.
     Mistakes(Vec<Mistake>),
-    /// It would take more work than it may.
+    /// The derivation exceeds the limit on work.
     TooMuchWork,
 }
 
-/// What a derivation may take that answers within a second: four times as much as the largest of the repository.
+/// The limit on work for an answer within a second: four times the largest derivation of the repository.
 pub const MOST_WORK: u64 = 1_000_000;
 
-/// Derives a struct with `#[lagrangian(…)]` or `#[force(…)]` and proves what was derived, as the macro does, but with no
-/// more than this work: products of terms, terms that become programs, and their operations. Beside it stands how much it took.
+/// Derives a struct with `#[lagrangian(…)]` or `#[force(…)]` and verifies the derivation, as the macro does, within a
+/// limit on work: products of terms, terms that become programs, and their operations. Returns also the work done.
 ///
 /// # Errors
 ///
-/// Its mistakes; or it takes more.
+/// The mistakes of the declaration, or an excess of work.
 pub fn staged(text: &TokenStream, most: u64) -> Result<(StagedDeclaration, u64), Refusal> {
     let mut errors = Errors::default();
     let (found, work) = work::within(most, || of_text(text, &mut errors)).ok_or(Refusal::TooMuchWork)?;

@@ -1,4 +1,4 @@
-//! Where the entries of a symbol are found among numbers in arrays.
+//! The places of a symbol's entries in arrays of numbers.
 
 use std::collections::BTreeMap;
 
@@ -8,10 +8,10 @@ use crate::mathematics::derive::{Directions, View};
 use crate::mathematics::symbolic::{SymbolId, Variance};
 use crate::program::Input;
 
-/// A symbol with the array that it is found in.
+/// A symbol and the array of its entries.
 type InArray = (SymbolId, Array);
 
-/// The symbols of a derivation.
+/// The symbols of a declaration and of its derivation.
 pub(super) struct Sources<'a> {
     pub(super) declaration: &'a Declaration,
     pub(super) names: &'a BTreeMap<Name, SymbolId>,
@@ -20,7 +20,7 @@ pub(super) struct Sources<'a> {
 }
 
 impl Sources<'_> {
-    /// `None` of a direction, which is replaced by its entries before.
+    /// The place of an entry; `None` for a direction, which has been replaced by its entries.
     pub(super) fn of(&self, input: Input) -> Option<Source> {
         let group = &self.declaration.group;
         let found = self.names.iter().find(|(_, id)| **id == input.symbol).map(|(name, _)| *name);
@@ -58,7 +58,7 @@ impl Sources<'_> {
         column.map(|(_, array)| Source::new(*array, input.row))
     }
 
-    /// Among the matrices of all factors. Of translations it is in the last column.
+    /// The index of an entry among the matrices of all factors; translations are in the last column.
     fn entry_of_factor(&self, factor: usize, input: Input) -> usize {
         let factors = self.declaration.group.factors();
         let before: usize = factors.iter().take(factor).map(|factor| factor.size * factor.size).sum();
@@ -85,7 +85,7 @@ impl Sources<'_> {
     }
 }
 
-/// What a field stores.
+/// The stored type of a field.
 pub(super) fn parameter_kind(kind: FieldKind) -> ParameterKind {
     match kind {
         FieldKind::Scalar => ParameterKind::Scalar,
@@ -99,7 +99,7 @@ pub(super) fn parameter_kind(kind: FieldKind) -> ParameterKind {
     }
 }
 
-/// How a parameter is moved, and what is stored of it.
+/// The action on a parameter, and its stored shape.
 pub(super) fn carried(declaration: &Declaration, index: usize) -> Carried {
     let (parameter, kind) = (declaration.advected.get(index), declaration.advected_kind(index));
     let factor = match parameter.map(|w| w.seen) {

@@ -1,6 +1,6 @@
-//! What to write in the place of a name that isn't known, by what it means elsewhere.
+//! Advice for unknown names, methods and functions, chosen by their usual meaning.
 //!
-//! Letters alone would lead astray: a tangent isn't `ln`, and a constant `PI` isn't `I`.
+//! Similar letters alone would mislead: a tangent isn't `ln`, and a constant `PI` isn't `I`.
 
 use quote::ToTokens as _;
 use syn::Expr;
@@ -14,7 +14,7 @@ use crate::declared::{AdvectedParameter, Field, Shape, named_velocities};
 use crate::mathematics::group::Group;
 
 impl Checker<'_> {
-    /// Behind `… isn't known here`, for a name.
+    /// The second half of the message `… isn't known here`, for a name.
     pub(super) fn advice_on_name(&self, name: &str) -> String {
         let known = self.known_names();
         let near = suggestion(name, known.iter().map(String::as_str));
@@ -24,7 +24,7 @@ impl Checker<'_> {
         let noun = self.declaration.role.noun();
         let mut constants = self.declaration.item.generics.const_params();
         let is_product = self.declaration.group.is_product();
-        // Of several bodies names have numbers.
+        // Names of several bodies end in numbers.
         let is_numeral = |letter: char| is_product && (letter == '_' || letter.is_ascii_digit());
         let stem = name.trim_end_matches(is_numeral);
         match (stem, self.turning(name)) {
@@ -70,7 +70,7 @@ impl Checker<'_> {
         }
     }
 
-    /// The advice for a name that may mean where something translated has come to: an increment is how far it goes in a
+    /// The advice for a name that may mean the position of a translated body: an increment is its displacement in a
     /// step.
     fn place_of_translated(&self, name: &str) -> String {
         let own = self.declaration.group.factors().iter().zip(&self.declaration.factors).find(|(own, _)| own.is_added);
@@ -80,7 +80,7 @@ impl Checker<'_> {
         own.filter(|_| !self.is_constraint()).map(|(_, factor)| place(&factor.name)).unwrap_or_default()
     }
 
-    /// The same for what is a velocity elsewhere.
+    /// The advice for a name that usually means a velocity.
     fn advice_on_velocity(&self, name: &str) -> String {
         let is_product = self.declaration.group.is_product();
         if self.declaration.continuous.is_some() {
@@ -120,8 +120,8 @@ impl Checker<'_> {
         self.declaration.factors.iter().map(|factor| factor.name.clone()).collect()
     }
 
-    /// The increments with their groups, those first that have the number of this name, as `F_2` has that of `Omega_2`, and of
-    /// these those that turn.
+    /// The increments with their groups. Those with the number of this name come first, as `F_2` for `Omega_2`, and
+    /// rotations come before translations.
     fn bodies(&self, name: &str) -> Vec<(&str, &Group)> {
         let number = |name: &str| name.chars().filter(char::is_ascii_digit).collect::<String>();
         let factors = self.declaration.factors.iter().enumerate();
@@ -131,18 +131,18 @@ impl Checker<'_> {
         bodies
     }
 
-    /// The first of these.
+    /// The body that the name most likely belongs to.
     fn body(&self, name: &str) -> (&str, &Group) {
         self.bodies(name).first().copied().unwrap_or(("F", &self.declaration.group))
     }
 
-    /// The first of several bodies that turns: a translation moves no vector, and has no attitude.
+    /// The first of several bodies that has a rotation: a translation moves no vector, and has no attitude.
     fn turning(&self, name: &str) -> Option<&str> {
         let turns = self.bodies(name).into_iter().find(|(_, group)| !group.is_added);
         turns.map(|(increment, _)| increment).filter(|_| self.declaration.group.is_product())
     }
 
-    /// What has a value.
+    /// All names in scope.
     fn known_names(&self) -> Vec<String> {
         let fields = self.declaration.fields.iter().map(Field::plain_name);
         let advected = self.declaration.advected.iter().map(AdvectedParameter::plain_name);
@@ -157,7 +157,7 @@ impl Checker<'_> {
         builtin.chain(velocity).chain(advected).chain(fields).chain(bound).collect()
     }
 
-    /// For a method that isn't known.
+    /// The message for a method that isn't known.
     pub(super) fn advice_on_method(&self, name: &str, receiver: &Expr, shape: Option<Shape>) -> String {
         let of = spelled(receiver);
         match name {
@@ -171,7 +171,7 @@ impl Checker<'_> {
         }
     }
 
-    /// For a function that isn't known.
+    /// The message for a function that isn't known.
     pub(super) fn advice_on_function(&self, function: &Expr) -> String {
         let Expr::Path(path) = function else { return NO_FUNCTION.to_owned() };
         let last = path.path.segments.last().map(|last| last.ident.unraw().to_string()).unwrap_or_default();
@@ -211,7 +211,7 @@ impl Checker<'_> {
     }
 }
 
-/// A method with what it is given: `.trace()`, `.dot(&v)`.
+/// A method call with placeholder arguments: `.trace()`, `.dot(&v)`.
 pub(super) fn called(method: &str) -> String {
     let arguments = match method {
         "dot" | "cross" | "component_mul" => "&v",
@@ -221,7 +221,7 @@ pub(super) fn called(method: &str) -> String {
     format!(".{method}({arguments})")
 }
 
-/// A plain name or a number as it is written; else dots.
+/// The text of a plain name or a number; dots for any other expression.
 pub(super) fn spelled(expression: &Expr) -> String {
     match expression {
         Expr::Lit(literal) => literal.to_token_stream().to_string(),
@@ -232,7 +232,7 @@ pub(super) fn spelled(expression: &Expr) -> String {
     }
 }
 
-/// The constants that all know by name.
+/// Mathematical constants by their usual names.
 pub(super) fn number_of(name: &str) -> Option<f64> {
     match name {
         "PI" | "pi" => Some(std::f64::consts::PI),
@@ -247,7 +247,7 @@ const NO_FUNCTION: &str = "this is a value and no function: a product is written
 
 const NOT_SMOOTH: [&str; 8] = ["abs", "max", "min", "signum", "floor", "ceil", "round", "clamp"];
 
-/// What is written for a function that other libraries have, with `x`, `v` and `A` for what it is of.
+/// The replacement for a function of other libraries, with the arguments `x`, `v` and `A`.
 fn instead_of(function: &str) -> Option<&'static str> {
     Some(match function {
         "tan" => "write the sine over the cosine, `x.sin() / x.cos()`",
@@ -274,7 +274,7 @@ fn instead_of(function: &str) -> Option<&'static str> {
     })
 }
 
-/// Whether it is the name of another function, and no slip of the pen.
+/// Whether the name is that of another function, and not a misspelling.
 fn is_of_others(name: &str) -> bool {
     let arc = name.strip_prefix('a').map(|name| name.strip_prefix("rc").unwrap_or(name));
     let arc = arc.map(|name| name.strip_suffix('h').unwrap_or(name));

@@ -1,4 +1,4 @@
-//! Functions that a `let` names: `let U = |y: Vector3<f64>| …;`. What they are called with is put into their place.
+//! Functions that a `let` names: `let U = |y: Vector3<f64>| …;`. A call is replaced by the body with its arguments.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -13,36 +13,36 @@ use crate::declared::parse::{field_kind, scalar_of};
 use crate::declared::{FieldKind, Kind, Scalar, Shape, Spelling, Tree};
 use crate::mathematics::symbolic::Rational;
 
-/// Each call is checked for itself, and functions that each call the one before twice make twice as many calls each. What
-/// a call is called with may be a `let` of its own, of which the derivation takes fewer.
+/// The limit on calls. Each is checked separately, so a chain of functions that each call the previous one twice
+/// doubles the calls at every step. Arguments may be `let`s of their own, of which the derivation allows fewer.
 const MOST_CALLS: usize = 200;
 
-/// What is known of a function.
+/// A function that a `let` declares.
 pub(super) struct Closure {
     parameters: Vec<(Ident, Shape)>,
     body: Expr,
-    /// What its body sees beside the parameters.
+    /// The names in scope of its body beside the parameters.
     scopes: Vec<BTreeMap<Spelling, Binding>>,
 }
 
-/// What stands before the brackets of a call.
+/// The function of a call.
 pub(super) enum Callee {
-    /// What a `let` has named a function.
+    /// A function declared by a `let`.
     Closure(Ident, Rc<Closure>),
-    /// A `let` with a mistake: nothing is known of its calls.
+    /// The name of a `let` with a mistake: its calls can't be checked.
     Mistaken,
     Other,
 }
 
 impl Closure {
-    /// The names of what it is called with.
+    /// The names of the parameters.
     pub(super) fn names(&self) -> String {
         self.parameters.iter().map(|(name, _)| name.unraw().to_string()).collect::<Vec<_>>().join(", ")
     }
 }
 
 impl Checker<'_> {
-    /// A function where it is declared; `None` after a mistake in it.
+    /// A function at its declaration; `None` after a mistake in it.
     pub(super) fn closure(&mut self, closure: &ExprClosure) -> Option<Closure> {
         let before = self.errors.iter().count();
         let words = [
@@ -62,7 +62,8 @@ impl Checker<'_> {
             self.errors.push(closure.inputs_begin.span, message);
         }
         let parameters = parameters.into_iter().collect::<Option<Vec<_>>>()?;
-        // Once here, so that a mistake is reported once, and what is used counts even if nothing calls it.
+        // The body is checked once here: a mistake is reported once, and the names in it count as used even without a
+        // call.
         let stand_in = |span: Span, shape| Some(Tree::new(span, shape, Kind::Number(Rational::ZERO)));
         let bound = parameters.iter().map(|(name, shape)| (name, stand_in(name.span(), *shape), Some(0)));
         let scope = bound.map(|(name, tree, references)| {
@@ -132,7 +133,7 @@ impl Checker<'_> {
         None
     }
 
-    /// What is called.
+    /// The function that a call names.
     pub(super) fn callee(&mut self, call: &ExprCall) -> Callee {
         let Expr::Path(path) = &*call.func else { return Callee::Other };
         let Some(name) = path.path.get_ident() else { return Callee::Other };
@@ -149,7 +150,7 @@ impl Checker<'_> {
         }
     }
 
-    /// The body of a function with what it is called with.
+    /// The body of a function with the arguments of a call.
     pub(super) fn called(&mut self, name: &Ident, closure: &Closure, call: &ExprCall) -> Option<Rc<Tree>> {
         let arguments: Vec<_> = call.args.iter().map(|argument| (argument, self.expression(argument))).collect();
         if arguments.len() != closure.parameters.len() {

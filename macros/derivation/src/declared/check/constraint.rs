@@ -1,4 +1,4 @@
-//! What a constraint is of, beside what any declaration is: scalars and vectors one below the other.
+//! Rules for constraints alone: functions are scalars and vectors, stacked into one column.
 
 use std::rc::Rc;
 
@@ -9,10 +9,10 @@ use super::Checker;
 use crate::declared::errors::Errors;
 use crate::declared::{Role, Shape, Tree};
 
-/// What holds two bodies has no more than these, as they have so many coordinates against each other.
+/// The number of coordinates of one body relative to another.
 const MOST_FUNCTIONS: usize = 6;
 
-/// A mistake where a constraint is of matrices, or of too many functions.
+/// Checks that the functions are scalars or vectors, and not more than the limit.
 pub(super) fn few(functions: &[Rc<Tree>], result: &Expr, errors: &mut Errors) -> Option<()> {
     let parts: Vec<&Expr> = match result {
         Expr::Tuple(tuple) => tuple.elems.iter().collect(),
@@ -45,13 +45,13 @@ impl Checker<'_> {
         self.declaration.role == Role::Constraint
     }
 
-    /// A constraint that is written as an equation.
+    /// Reports a constraint that is written as an equation.
     pub(super) fn has_to_be_zero(&mut self, token: impl ToTokens) -> Option<Rc<Tree>> {
         self.errors.push_over(token, "write what has to be zero: `a - b` in the place of an equation");
         None
     }
 
-    /// `(a, b)`: scalars and vectors one below the other; the last of them.
+    /// `(a, b)`: scalars and vectors stacked into one column. Stores all of them and returns the last.
     pub(super) fn stacked(&mut self, tuple: &ExprTuple) -> Option<Rc<Tree>> {
         let parts: Vec<Option<Rc<Tree>>> = tuple.elems.iter().map(|part| self.expression(part)).collect();
         if parts.is_empty() {

@@ -1,13 +1,13 @@
-//! From which body a vector is seen: the one mistake among several bodies that shapes don't show.
+//! The body in whose axes a vector is given: the one mistake among several bodies that shapes can't find.
 //!
-//! Of an increment, of a velocity and of a displacement it is known that its own body sees it, of what a body sees that this body does. A
-//! relative configuration is known to bring a vector from one body to another. Fields may belong to any body, and so may
-//! what is seen from space: where the attitude of one body is given relative to another, that is the other. Only two
-//! bodies that are known and differ are a mistake.
+//! Increments, velocities and displacements are in the axes of their own body, and so are fields `seen_from` a body. A
+//! relative configuration maps vectors from the axes of one body to those of another. Other fields may belong to any
+//! body, and so may vectors in the axes of space: the attitude of a body may be given relative to another body instead.
+//! Only two different known bodies are a mistake.
 //!
-//! Turns have an axis and an angle of their own, so they may be compared without a frame in common: how much two bodies
-//! turn, each in its axes, as in `vee(F_1) - vee(F_2)`, or a relative configuration with its transpose. For the same reason
-//! a relative configuration may be repeated, `Q * Q`.
+//! Rotations have an axis and an angle of their own, so they may be compared without a common frame: the rotations of
+//! two bodies, each in its own axes, as in `vee(F_1) - vee(F_2)`, or a relative configuration with its transpose. For
+//! the same reason a relative configuration may be repeated, `Q * Q`.
 
 use std::rc::Rc;
 
@@ -17,10 +17,10 @@ use super::Checker;
 use crate::declared::{AdvectedParameter, Declaration, Frames, Kind, Name, Role, Shape, Tree};
 use crate::mathematics::derive::View;
 
-/// Space, which is a body of a constraint; elsewhere the attitude of a body may be given relative to another.
+/// Space, which counts as a body in a constraint; elsewhere the attitude of a body may be relative to another.
 const SPACE: usize = usize::MAX;
 
-/// From where what a name stands for is seen.
+/// The frames that the value of a name is given in.
 pub(super) fn of(declaration: &Declaration, name: Name) -> Frames {
     let space = (declaration.role == Role::Constraint).then_some(SPACE);
     let turns = |factor: usize| declaration.group.is_product() && !declaration.group.factor(factor).is_added;
@@ -45,7 +45,7 @@ pub(super) fn of(declaration: &Declaration, name: Name) -> Frames {
     }
 }
 
-/// Whether what a name stands for is a turn: an increment, or a relative configuration.
+/// Whether a name is a rotation: an increment, or a relative configuration.
 pub(super) fn is_turn(declaration: &Declaration, name: Name) -> bool {
     match name {
         Name::Increment(_) => true,
@@ -56,7 +56,7 @@ pub(super) fn is_turn(declaration: &Declaration, name: Name) -> bool {
     }
 }
 
-/// Whether a displacement or a velocity, but for a factor, is a turn or a shift; nothing of anything else.
+/// Whether a multiple of a displacement or a velocity belongs to a rotation; `None` for any other expression.
 fn is_of_turn(declaration: &Declaration, tree: &Tree) -> Option<bool> {
     match &tree.kind {
         Kind::Name(Name::Velocity(factor) | Name::DisplacementBefore(factor) | Name::DisplacementAfter(factor)) => {
@@ -69,7 +69,7 @@ fn is_of_turn(declaration: &Declaration, tree: &Tree) -> Option<bool> {
     }
 }
 
-/// Whether both are turns between the same two bodies, in whatever direction.
+/// Whether both are rotations between the same two bodies, in either direction.
 fn are_relative_alike(a: &Tree, b: &Tree) -> bool {
     let [first, second] = [a, b].map(|tree| match tree.frames {
         [Some(to), Some(from)] if to != from => Some((to.min(from), to.max(from))),
@@ -79,14 +79,14 @@ fn are_relative_alike(a: &Tree, b: &Tree) -> bool {
 }
 
 impl Checker<'_> {
-    /// Whether the columns of the left factor of a product are seen from where the rows of the right one are.
+    /// Whether the columns of the left factor of a product have the frame of the rows of the right one.
     pub(super) fn meet(&mut self, whole: &Expr, (left, right): (&Expr, &Expr), trees: (&Tree, &Tree)) -> bool {
         let (Some(from), Some(of)) = (trees.0.frames[1], trees.1.frames[0]) else { return true };
         if from == of || are_relative_alike(trees.0, trees.1) {
             return true;
         }
         for (operand, tree, fits) in [(right, trees.1, 0), (left, trees.0, 1)] {
-            // The other way round it would fit.
+            // The transpose would fit.
             let turned = [tree.frames[1], tree.frames[0]];
             if tree.frames[0] != tree.frames[1] && turned[fits] == Some([from, of][fits]) && spelled(operand) != "…" {
                 let name = spelled(operand);
@@ -115,7 +115,7 @@ impl Checker<'_> {
         false
     }
 
-    /// Whether two vectors or matrices that are taken together are seen from one body.
+    /// Whether the two operands of a sum or of a method are in the axes of one body.
     pub(super) fn are_seen_alike(
         &mut self,
         how: How,
@@ -123,7 +123,7 @@ impl Checker<'_> {
         (left, right): (&Expr, &Expr),
         (a, b): (&Rc<Tree>, &Rc<Tree>),
     ) -> bool {
-        // Matrices that each stay with their body may be meant for a trace of both.
+        // Two matrices, each in the axes of its own body, may be summed inside a trace.
         let stays =
             |tree: &Tree| !tree.shape.is_vector() && tree.frames[0].is_some() && tree.frames[0] == tree.frames[1];
         if let [Some(first), Some(second)] = [a, b].map(|tree| is_of_turn(self.declaration, tree))
@@ -159,7 +159,8 @@ impl Checker<'_> {
         true
     }
 
-    /// What brings a vector from the body `of` to the body `from`, and how it is declared if it isn't.
+    /// The matrix that maps vectors from the axes of the body `of` to those of `from`, and its declaration if it is
+    /// missing.
     fn relative(&self, from: usize, of: usize) -> (String, String) {
         let declared = |of: usize, from: usize| {
             let mut advected = self.declaration.advected.iter();
@@ -181,12 +182,12 @@ impl Checker<'_> {
         (free, declare)
     }
 
-    /// What a body is called, or space.
+    /// The name of a body, or space.
     fn seer(&self, factor: usize) -> String {
         self.declaration.factors.get(factor).map_or_else(|| "space".to_owned(), |factor| factor.name.clone())
     }
 
-    /// A plain name as it is written, else where it is seen from.
+    /// The text of a plain name; for any other expression, the body that it is seen from.
     fn named(&self, expression: &Expr, factor: usize) -> String {
         let body = self.seer(factor);
         match spelled(expression).as_str() {
@@ -196,14 +197,14 @@ impl Checker<'_> {
     }
 }
 
-/// What takes two together.
+/// The operation that combines two operands.
 #[derive(Clone, Copy)]
 pub(super) enum How<'a> {
     Sum(char),
     Method(&'a str),
 }
 
-/// A plain name as it is written, or the transpose of one; else dots.
+/// The text of a plain name, or of the transpose of one; dots for any other expression.
 fn spelled(expression: &Expr) -> String {
     match expression {
         Expr::Path(path) => path.path.get_ident().map_or_else(|| "…".to_owned(), ToString::to_string),

@@ -45,7 +45,7 @@ impl Checker<'_> {
         match (function.as_str(), argument.shape) {
             ("hat", shape) if shape == Shape::Matrix(self.matrices.dimension(), 1) => {
                 let Group { size, generators, is_so3, .. } = &self.matrices;
-                // In cross products the relations of vectors are known.
+                // The simplifier knows the identities of cross products.
                 if *is_so3 && self.declaration.continuous.is_some() {
                     return Some(Tree::new(span, SQUARE, Kind::CrossMatrix(argument)));
                 }
@@ -87,7 +87,7 @@ impl Checker<'_> {
                 self.errors.push(at, format!("`{name}` is a translation, which is added: its inverse is `-{name}`"));
                 None
             }
-            // The group knows the inverses of its elements.
+            // The group has the inverses of its elements.
             (Kind::Name(Name::Increment(_)), _) => Some(Tree::new(span, shape, Kind::Inverse(argument))),
             (_, Shape::Matrix(rows, columns)) if rows != columns || rows > 3 => {
                 self.mismatch("inverse", "a matrix of up to 3 × 3", shape, at)
@@ -97,7 +97,7 @@ impl Checker<'_> {
                 None
             }
             (Kind::Name(Name::Field(_)), _) => Some(Tree::new(span, shape, Kind::Inverse(argument))),
-            // What stands for the parameter of a function.
+            // The stand-in for the parameter of a function.
             (Kind::Number(_), _) => {
                 let message = "`inverse` takes `F` or a field of the struct by its name: call this function with the \
                                inverse, as in `U(inverse(J))`";
@@ -112,7 +112,7 @@ impl Checker<'_> {
     }
 }
 
-/// `G(n) vee(A)` with `n = (3 − tr A)/4`.
+/// The logarithm of a rotation, `G(n) vee(A)` with `n = (3 − tr A)/4`.
 fn logarithm(span: proc_macro2::Span, rotation: Rc<Tree>) -> Rc<Tree> {
     let scalar = |kind| Tree::new(span, Shape::Scalar, kind);
     let three = scalar(Kind::Number(Rational::integer(3)));
@@ -125,7 +125,7 @@ fn logarithm(span: proc_macro2::Span, rotation: Rc<Tree>) -> Rc<Tree> {
     Tree::new(span, VECTOR, Kind::Multiply(ratio, vee))
 }
 
-/// `I + c₁(q) v̂ + c₂(q) v̂²` with `q = |v|²`.
+/// The rotation by a vector, `I + c₁(q) v̂ + c₂(q) v̂²` with `q = |v|²`.
 fn exponential(span: proc_macro2::Span, v: &Rc<Tree>) -> Rc<Tree> {
     let matrix = |kind| Tree::new(span, SQUARE, kind);
     let q = Tree::new(span, Shape::Scalar, Kind::Dot(v.clone(), v.clone()));

@@ -165,10 +165,10 @@ impl Checker<'_> {
         None
     }
 
-    /// What is given to an unknown function may have mistakes of its own.
+    /// Checks the arguments of an unknown function, which may have mistakes of their own.
     pub(super) fn arguments(&mut self, arguments: &Punctuated<Expr, Token![,]>) {
         for argument in arguments {
-            // A whole number may be what such a function takes.
+            // A whole number may be a valid argument of such a function.
             if integer(argument).is_none() {
                 self.expression(argument);
             }
@@ -176,7 +176,7 @@ impl Checker<'_> {
     }
 }
 
-/// What a norm is the root of.
+/// The square of a norm, if the tree is a norm.
 fn norm_squared(norm: &Rc<Tree>) -> Option<Rc<Tree>> {
     match &norm.kind {
         Kind::Bound(_, inner) => norm_squared(inner),

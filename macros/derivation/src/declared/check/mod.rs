@@ -25,15 +25,15 @@ use crate::mathematics::group::{Group, built_in};
 use crate::mathematics::symbolic::Rational;
 use closures::Closure;
 
-/// Deeper expressions than a person writes would overflow the stack of the compiler.
+/// The limit on nesting: deeper expressions, which no person writes, would overflow the compiler's stack.
 const DEEPEST: usize = 250;
 
-/// The declared expression as a tree; `None` after a mistake, be it one in the attribute or in the struct.
+/// The declared expression as a tree; `None` after a mistake in the expression, the attribute or the struct.
 pub fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc<Tree>> {
     functions(declaration, errors)?.into_iter().next()
 }
 
-/// The same; of a constraint what it has one below the other.
+/// All functions of a declaration: those of a constraint, or the one expression of a Lagrangian or a force.
 pub fn functions(declaration: &Declaration, errors: &mut Errors) -> Option<Vec<Rc<Tree>>> {
     let expression = declaration.expression.as_ref()?;
     let factors = || declaration.group.factors().iter();
@@ -69,14 +69,14 @@ pub fn functions(declaration: &Declaration, errors: &mut Errors) -> Option<Vec<R
         errors.push_over(value(expression), format!("{noun} is a scalar, but this is {shape}: {advice}"));
         return None;
     }
-    // After a mistake, names may be missing from `used`.
+    // The list `used` may be incomplete after a mistake.
     if errors.is_empty() {
         usage::check(declaration, &used, errors);
     }
     errors.is_empty().then_some(functions)
 }
 
-/// What a block ends with, or the expression itself.
+/// The last expression of a block, or the expression itself.
 pub fn value(expression: &Expr) -> &Expr {
     match expression {
         Expr::Group(inner) => value(&inner.expr),
@@ -106,19 +106,19 @@ fn end(expression: &Expr) -> Span {
     }
 }
 
-/// A `let`: its tree, or nothing if that had a mistake, and whether it has been used.
+/// A `let`: its tree, which is missing after a mistake, and whether its name has been used.
 #[derive(Clone)]
 struct Binding {
     tree: Option<Rc<Tree>>,
-    /// Of a function what it is called with; it has no tree.
+    /// The function, if the `let` declares one; then there is no tree.
     closure: Option<Rc<Closure>>,
     span: Span,
-    /// How many `&` its value has, where that is seen.
+    /// The number of `&` in front of its value, if known.
     references: Option<usize>,
     used: bool,
 }
 
-/// An expression that begins with the token that has no meaning.
+/// An expression whose first token has no meaning.
 struct FirstToken<'a>(&'a Expr);
 
 impl ToTokens for FirstToken<'_> {
@@ -134,22 +134,22 @@ struct Checker<'a> {
     used: Vec<Name>,
     unknown: BTreeSet<String>,
     depth: usize,
-    /// Both operands of an operation may be too deep, and one message says it.
+    /// Whether the nesting has been reported: both operands of an operation may be too deep.
     is_too_deep: bool,
-    /// The group that `I` and `hat(v)` belong to: of a product that of what turns.
+    /// The group that `I` and `hat(v)` belong to: among several bodies that of the first rotation.
     matrices: Group,
-    /// How many closures have been called, each of which may call others.
+    /// The number of calls so far; a function may call others.
     calls: usize,
-    /// The names that `let`s and the parameters of functions have in the derivation, where each is one value's alone.
+    /// The names of `let`s and of parameters in the derivation, where a name belongs to one value.
     derived: BTreeSet<String>,
-    /// What the whole expression comes to.
+    /// The expression without the block around it.
     result: &'a Expr,
-    /// Of a constraint of several parts each of them.
+    /// The functions of a constraint of several parts.
     parts: Vec<Rc<Tree>>,
 }
 
 impl Checker<'_> {
-    /// `None` where a mistake has been reported.
+    /// The tree of an expression; `None` where a mistake has been reported.
     fn expression(&mut self, expression: &Expr) -> Option<Rc<Tree>> {
         if self.depth > DEEPEST {
             if !self.is_too_deep {
@@ -229,7 +229,8 @@ impl Checker<'_> {
         }
     }
 
-    /// How many `&` the value of an expression has, where that is seen; parameters are values, and so is what is made.
+    /// The number of `&` in front of the value of an expression, if known; parameters and results of operations are
+    /// values.
     fn references(&self, expression: &Expr) -> Option<usize> {
         match expression {
             Expr::Reference(inner) => self.references(&inner.expr).map(|references| references + 1),
@@ -245,8 +246,8 @@ impl Checker<'_> {
         }
     }
 
-    /// Whether the compiler takes it as the argument of that method, a reference, or of that function, a value; if not,
-    /// says what to write. A reference to a reference is taken, too.
+    /// Whether the compiler accepts the argument: a method takes a reference, a function a value. If not, reports the
+    /// right form. A reference to a reference is accepted.
     fn is_passed_right(&mut self, function: &str, argument: &Expr, by_reference: bool) -> bool {
         if self.declaration.is_text {
             return true;
@@ -264,7 +265,7 @@ impl Checker<'_> {
         false
     }
 
-    /// The token, and not what it stands among, has no meaning.
+    /// Reports a token without a meaning; its surroundings are right.
     fn unknown(&mut self, token: impl ToTokens) -> Option<Rc<Tree>> {
         let noun = self.declaration.role.noun();
         self.errors.push_over(
@@ -280,7 +281,7 @@ impl Checker<'_> {
     fn block(&mut self, block: &Block) -> Option<Rc<Tree>> {
         self.scopes.push(BTreeMap::new());
         let result = self.statements(&block.stmts, block.brace_token.span.join());
-        // What couldn't be read may use any name.
+        // A statement with a mistake may use any name.
         let is_read = self.errors.is_empty();
         for binding in self.scopes.pop().into_iter().flat_map(BTreeMap::into_values) {
             if is_read && !binding.used {
@@ -300,7 +301,7 @@ impl Checker<'_> {
             match statement {
                 Stmt::Local(local) => self.binding(local),
                 other => {
-                    // It may have been meant to give a name.
+                    // The statement may have been meant to declare a name.
                     self.errors.push_over(other, format!("only `let name = …;` may stand before {the}"));
                     return None;
                 }
@@ -365,7 +366,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Whether a name means nothing else: what is compiled would find that, or hide it.
+    /// Whether a name has no other meaning, which the compiled code would use in its place, or which it would hide.
     fn is_free(&mut self, name: &syn::Ident) -> bool {
         let (letters, the) = (name.unraw().to_string(), self.declaration.role.definite());
         let is_increment = self.declaration.factors.iter().any(|factor| factor.name == letters);
@@ -378,7 +379,7 @@ impl Checker<'_> {
         true
     }
 
-    /// What a value is called in the derivation: as it is bound, and from the second one of that name on with a number.
+    /// The name of a value in the derivation: as written, with a number from the second value of that name on.
     fn in_derivation(&mut self, name: &syn::Ident) -> String {
         let name = name.unraw().to_string();
         let is_taken = |name: &String| self.derived.contains(name) || self.is_parameter(name);
@@ -396,7 +397,7 @@ impl Checker<'_> {
             || self.declaration.factors.iter().any(|factor| factor.name == name)
     }
 
-    /// That name, with a number if something has it already.
+    /// The name, with a number if another value has it already.
     fn free_name(&self, name: &str) -> String {
         let is_bound = |name: &str| self.scopes.iter().flat_map(BTreeMap::keys).any(|bound| bound.letters == name);
         let is_taken = |name: &str| self.is_parameter(name) || is_bound(name);
@@ -410,7 +411,7 @@ impl Checker<'_> {
         format!("{name}_{number}")
     }
 
-    /// The names of a `let` with a mistake are known, and have no tree.
+    /// Declares the names of a `let` with a mistake, without a tree.
     fn bind_nothing(&mut self, pattern: &Pat) {
         match pattern {
             Pat::Ident(name) => {

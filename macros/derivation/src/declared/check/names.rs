@@ -1,4 +1,4 @@
-//! Names: the macro's own, fields, and what is advected.
+//! Names in an expression: those of the macro, of fields, and of advected parameters.
 
 use std::rc::Rc;
 
@@ -69,7 +69,7 @@ impl Checker<'_> {
                         }
                         (self.declaration.fields[index].kind.shape(), Name::Field(index))
                     } else {
-                        // Once is enough, however often it is used.
+                        // An unknown name is reported once, however often it is used.
                         if !self.declaration.unreadable.contains(&name) && self.unknown.insert(name.clone()) {
                             let advice = self.advice_on_name(&name);
                             self.errors.push(span, format!("`{name}` isn't known here{advice}"));
@@ -84,7 +84,7 @@ impl Checker<'_> {
         Some(Tree::seen(span, shape, found, seen))
     }
 
-    /// A continuous Lagrangian knows no step, and a constraint none either: neither the increment of a factor, nor `h`.
+    /// Reports an increment or `h` in a continuous Lagrangian or a constraint, where there is no step.
     fn of_a_step(&mut self, name: &str, increment: Option<usize>, span: Span) -> Option<Rc<Tree>> {
         if !self.unknown.insert(name.to_owned()) {
             return None;
@@ -123,7 +123,7 @@ impl Checker<'_> {
         None
     }
 
-    /// A displacement of that name: a vector with a component for each generator of its factor, on a line a scalar.
+    /// The displacement of that name: a vector with a component for each generator of its factor, on a line a scalar.
     fn displacement(&self, name: &str) -> Option<(Shape, Name)> {
         let group = &self.declaration.group;
         (0..group.factors().len()).find_map(|factor| {

@@ -71,7 +71,7 @@ impl Checker<'_> {
         }
     }
 
-    /// A sum or a difference of two shapes.
+    /// Reports a sum or a difference of two different shapes.
     fn unlike(&mut self, operator: BinOp, left: Shape, right: Shape) -> Option<Rc<Tree>> {
         let (a, b) = (left.describe(), right.describe());
         let (a, verb, b) =
@@ -94,7 +94,7 @@ impl Checker<'_> {
         None
     }
 
-    /// A product of two shapes that have none.
+    /// Reports a product of two shapes that have none.
     fn no_product(&mut self, operator: BinOp, a: Shape, b: Shape) -> Option<Rc<Tree>> {
         let group = &self.declaration.group;
         let hint = match (a, b) {
@@ -112,7 +112,8 @@ impl Checker<'_> {
         None
     }
 
-    /// A product that the compiler has for `f64` and `f32` alone.
+    /// Reports a scalar in front of a vector or a matrix over a type parameter: nalgebra has that product for `f64` and
+    /// `f32` alone.
     fn is_number_in_front(&mut self, binary: &ExprBinary, left: &Tree, right: &Tree) -> bool {
         let (BinOp::Mul(star), Shape::Scalar, Shape::Matrix(..), Scalar::Parameter(scalar)) =
             (binary.op, left.shape, right.shape, &self.declaration.scalar)
@@ -128,7 +129,8 @@ impl Checker<'_> {
         true
     }
 
-    /// A translation isn't a matrix, so that its identity isn't one either.
+    /// Reports a sum of a translation's increment and `I`: a translation isn't a matrix, and its identity isn't one
+    /// either.
     fn is_with_identity(&mut self, binary: &ExprBinary, left: &Tree, right: &Tree) -> bool {
         let added = |tree: &Tree| match tree.kind {
             Kind::Name(Name::Increment(factor)) if self.declaration.group.factor(factor).is_added => Some(factor),

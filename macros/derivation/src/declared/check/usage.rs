@@ -42,7 +42,7 @@ pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Error
         check_names(declaration, used, errors);
         return;
     }
-    // A potential at the beginning of a step alone has no `F`, and still pushes.
+    // A potential at the beginning of a step has no `F`, and is a force all the same.
     if !used.iter().any(|name| matches!(name, Name::Increment(_) | Name::Advected(_))) {
         let name = declaration.factors.first().map_or("F", |factor| &factor.name);
         let message = format!("the Lagrangian doesn't depend on `{name}`, the increment of a step: nothing would move");
@@ -58,7 +58,7 @@ pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Error
     check_names(declaration, used, errors);
 }
 
-/// By the names that displacements have.
+/// The message for virtual work without a displacement.
 fn displacement_is_needed(declaration: &Declaration) -> String {
     let pairs: Vec<_> = (0..declaration.factors.len()).filter_map(|factor| declaration.displacement(factor)).collect();
     let [before, after] =
@@ -66,7 +66,7 @@ fn displacement_is_needed(declaration: &Declaration) -> String {
     format!("virtual work needs a displacement: {before} at the beginning of the step, {after} at its end")
 }
 
-/// Of an increment or a velocity among several.
+/// The message for an unused increment or velocity of several.
 fn forgotten(name: &str) -> String {
     format!("the Lagrangian doesn't depend on `{name}`: leave its factor out, or add its kinetic part")
 }

@@ -17,26 +17,26 @@ pub(super) struct Arguments {
     pub(super) group: Option<group::GroupName>,
     /// The factors of a product: the increment of each, and its group.
     pub(super) factors: Vec<(Ident, group::GroupName)>,
-    /// Name, where its value comes from, and whether it is given for each step.
+    /// The name, its source, and whether it is prescribed for each step.
     pub(super) advected: Vec<(Ident, Source, bool)>,
-    /// `l_d`, or the virtual work, with its key.
+    /// `l_d`, the virtual work or the constraint, with its key.
     pub(super) expression: Option<(Ident, Expr)>,
     /// `l`, with its key.
     pub(super) continuous: Option<(Ident, Expr)>,
     /// The names of the velocities, with their key.
     pub(super) velocity: Option<(Ident, Vec<Ident>)>,
-    /// With its key.
+    /// The discretisation, with its key.
     pub(super) discretisation: Option<(Ident, Discretisation)>,
-    /// With its key.
+    /// The pace, with its key.
     pub(super) pace: Option<(Ident, Expr)>,
     pub(super) root: Option<Path>,
-    /// With its key.
+    /// The generators, with their key.
     pub(super) generators: Option<(Ident, ExprArray)>,
     /// The names of a force's displacements, with their key.
     pub(super) displacement: Option<(Ident, Vec<Ident>)>,
-    /// Its key.
+    /// The key of the derivatives.
     pub(super) gradients: Option<Ident>,
-    /// Whether an argument has come without a name, which one message says.
+    /// Whether an argument without a name has been reported.
     has_nameless: bool,
 }
 
@@ -48,7 +48,7 @@ pub(super) enum Source {
     View { what: Ident, from: Ident },
 }
 
-/// Reads `key = value` pairs; after a syntax error it goes on behind the next comma.
+/// Reads `key = value` pairs; after a syntax error, reading continues behind the next comma.
 pub(super) fn arguments_from(role: Role, input: ParseStream, errors: &mut Errors) -> Arguments {
     let mut arguments = Arguments::default();
     while !input.is_empty() {
@@ -198,7 +198,7 @@ fn group_argument(key: &Ident, input: ParseStream, arguments: &mut Arguments, er
     equals(key, input)?;
     without_quotes(key, input)?;
     let named = group::named(input, errors)?;
-    // What begins with a name is the next argument, and a comma is missing.
+    // A name here begins the next argument: a comma is missing, not a part of the group.
     if !is_at_end(input) && !input.peek(Ident::peek_any) {
         return Err(syn::Error::new(input.span(), group::ONE_OR_SEVERAL));
     }
@@ -211,7 +211,7 @@ fn is_at_end(input: ParseStream) -> bool {
     input.is_empty() || input.peek(Token![,])
 }
 
-/// A mistake where a comma follows another.
+/// Reports a second comma in a row.
 fn one_comma(input: ParseStream) -> syn::Result<()> {
     if input.peek(Token![,]) { Err(input.error("there is one comma too many: remove it")) } else { Ok(()) }
 }
@@ -286,7 +286,7 @@ fn in_parentheses(input: ParseStream, message: &str) -> syn::Result<Vec<Ident>> 
     names.map(|names| names.into_iter().collect()).map_err(|error| syn::Error::new(error.span(), message))
 }
 
-/// The name of an argument, known or followed by what it would be given.
+/// The key of an argument: a known name, a misspelt one, or any name followed by a value.
 fn key(input: ParseStream, known: &[&str]) -> Option<Ident> {
     let ahead = input.fork();
     let key = ahead.call(Ident::parse_any).ok()?;
@@ -341,7 +341,7 @@ fn equals(key: &Ident, input: ParseStream) -> syn::Result<()> {
     input.parse::<Token![=]>().map(|_| ())
 }
 
-/// A mistake where there is text in the place of a name.
+/// Reports quotes around a name.
 fn without_quotes(key: &Ident, input: ParseStream) -> syn::Result<()> {
     match input.fork().parse::<syn::LitStr>() {
         Ok(text) => {
@@ -366,7 +366,7 @@ fn advected_pairs(
     let content;
     parenthesized!(content in input);
     let pairs = content.parse_terminated(advected_pair, Token![,]);
-    // What is left after a mistake would be reported as unexpected.
+    // The tokens behind a mistake would be reported as unexpected.
     content.parse::<TokenStream>()?;
     pairs
 }
@@ -396,7 +396,7 @@ fn advected_pair(input: ParseStream) -> syn::Result<(Ident, Source)> {
     if input.peek(Token![.]) {
         let seen = seen(field, input)?;
         no_semicolon(input)?;
-        // What begins with a name is the next one, and a comma is missing.
+        // A name here begins the next argument: a comma is missing.
         if let (Source::View { what, from }, false) = (&seen, is_at_end(input) || input.peek(Ident::peek_any)) {
             let message = format!(
                 "write `{name} = {what}.seen_from({from})` and nothing else: what is made of it stands in the expression"
@@ -424,7 +424,7 @@ fn seen(what: Ident, input: ParseStream) -> syn::Result<Source> {
     parenthesized!(content in input);
     let (first, from) = (content.span(), content.parse::<Ident>());
     let place = if from.is_ok() { content.span() } else { first };
-    // What is left after a mistake would be reported as unexpected.
+    // The tokens behind a mistake would be reported as unexpected.
     let rest: TokenStream = content.parse()?;
     match from {
         Ok(from) if rest.is_empty() => Ok(Source::View { what, from }),

@@ -1,4 +1,4 @@
-//! The struct's fields: what their types promise, and the scalar that they share.
+//! The struct's fields: the properties that their types imply, and their common scalar.
 
 use proc_macro2::Span;
 use syn::ext::IdentExt as _;
@@ -52,14 +52,14 @@ pub(super) fn fields(
 fn last_segment(ty: &Type) -> Option<&syn::PathSegment> {
     match ty {
         Type::Path(path) if path.qself.is_none() => path.path.segments.last(),
-        // A type that a `macro_rules!` fragment passed on comes in an invisible group.
+        // A type that a `macro_rules!` fragment passed on is in an invisible group.
         Type::Group(group) => last_segment(&group.elem),
         Type::Paren(paren) => last_segment(&paren.elem),
         _ => None,
     }
 }
 
-/// What a type promises, if it has a meaning.
+/// The properties that a type implies, if it has a meaning.
 pub fn field_kind(ty: &Type, item: &ItemStruct) -> Option<FieldKind> {
     let name = last_segment(ty)?.ident.to_string();
     Some(match name.as_str() {
@@ -80,7 +80,7 @@ pub fn field_kind(ty: &Type, item: &ItemStruct) -> Option<FieldKind> {
     })
 }
 
-/// A vector of that size, as nalgebra calls it.
+/// The nalgebra type of a vector of that size.
 pub(super) fn vector_type(size: usize) -> String {
     if size <= 6 { format!("Vector{size}<f64>") } else { format!("SVector<f64, {size}>") }
 }
@@ -102,7 +102,7 @@ fn digit(name: &str) -> Option<usize> {
     usize::try_from(name.chars().last()?.to_digit(10)?).ok()
 }
 
-/// The scalar that a type is made of; an inertia without arguments has `f64`.
+/// The scalar of a type; an inertia without arguments has `f64`.
 pub fn scalar_of(ty: &Type) -> Option<Ident> {
     let segment = last_segment(ty)?;
     match &segment.arguments {
@@ -124,7 +124,7 @@ pub(super) fn scalar(item: &ItemStruct, errors: &mut Errors) -> Scalar {
         let Some(scalar) = scalar_of(&field.ty) else { continue };
         let is_parameter = item.generics.type_params().any(|parameter| parameter.ident == scalar);
         if !is_parameter && scalar != "f64" && scalar != "f32" {
-            // A vector without a scalar is an alias, or the compiler tells what is missing.
+            // A vector without a scalar is an alias, or the compiler reports the missing argument.
             if last_segment(&field.ty).is_none_or(|segment| segment.ident != scalar) {
                 errors.push(scalar.span(), "a scalar is `f64`, `f32` or a type parameter of the struct");
             }
@@ -149,7 +149,8 @@ pub(super) fn scalar(item: &ItemStruct, errors: &mut Errors) -> Scalar {
     }
 }
 
-/// Points belong to the space that the group acts on; after a mistake they are taken for vectors of that space.
+/// Checks that points have the dimension of the space that the group acts on; after a mistake they count as its
+/// vectors.
 pub(super) fn points(fields: &mut [Field], group: &Group, errors: &mut Errors) {
     for field in fields {
         let FieldKind::Point(rows) = field.kind else { continue };

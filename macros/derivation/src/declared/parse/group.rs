@@ -1,4 +1,4 @@
-//! The group of a declaration: a built-in one by its name, or one that the user gives by its generators.
+//! The group of a declaration: a built-in one by its name, or a user's one by its generators.
 
 use proc_macro2::Span;
 use syn::ext::IdentExt as _;
@@ -11,10 +11,10 @@ use crate::declared::{Factor, Role};
 use crate::mathematics::group::{Defect, Group, NAMES, built_in};
 use crate::mathematics::symbolic::Rational;
 
-/// What stands behind `group =`.
+/// The name behind `group =`.
 pub(super) struct GroupName {
     path: Path,
-    /// `Name!`, a group that `matrix_group!` declares, whatever its name.
+    /// Whether it is `Name!`, a group that `matrix_group!` declares.
     is_own: bool,
 }
 
@@ -23,25 +23,25 @@ impl GroupName {
         self.path.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default()
     }
 
-    /// The group of liestep that it names, if it names one.
+    /// The group of liestep by that name, if there is one.
     pub(super) fn built_in(&self) -> Option<Group> {
         if self.is_own { None } else { built_in(&self.name()) }
     }
 
-    /// Whether it may be an increment that stands in the place of its group.
+    /// Whether the name may be an increment in the place of its group.
     pub(super) fn may_be_an_increment(&self) -> bool {
         let is_misspelled = !suggestion(&self.name(), NAMES).is_empty();
         self.path.get_ident().is_some() && !self.is_own && self.built_in().is_none() && !is_misspelled
     }
 
-    /// Whether the path can't lead to a group of the user's.
+    /// Whether the path can't belong to a group of the user's.
     fn is_ours(&self) -> bool {
         let segments = &self.path.segments;
         segments.len() == 1 || segments.first().is_some_and(|first| first.ident == "liestep")
     }
 }
 
-/// How a group is given.
+/// The advice for the value of `group`.
 pub(super) const ONE_OR_SEVERAL: &str =
     "write the name of a group, `group = SO3`, or those of several bodies, `group(F_1 = SO3, F_2 = SO3)`";
 
@@ -51,7 +51,7 @@ pub(super) fn named(input: ParseStream, errors: &mut Errors) -> syn::Result<Grou
     let mut path: Path = input.parse().map_err(|_| syn::Error::new(span, ONE_OR_SEVERAL))?;
     let is_own = input.parse::<Option<Token![!]>>()?.is_some();
     for segment in &mut path.segments {
-        // The scalar is given again where the type is written.
+        // The generated code writes the scalar itself wherever it needs the type.
         let arguments = std::mem::replace(&mut segment.arguments, PathArguments::None);
         if !arguments.is_empty() {
             let (name, mark) = (&segment.ident, if is_own { "!" } else { "" });
@@ -62,7 +62,7 @@ pub(super) fn named(input: ParseStream, errors: &mut Errors) -> syn::Result<Grou
     Ok(GroupName { path, is_own })
 }
 
-/// The path as written, and what is known of the group; after a mistake none, and SO(3), so that the rest can be
+/// The path as written, and the group. After a mistake the path is `None` and the group SO(3), so that the rest can be
 /// checked.
 pub(super) fn group(
     named: Option<GroupName>,
@@ -72,7 +72,7 @@ pub(super) fn group(
 ) -> (Option<Path>, Group) {
     let stand_in = || (None, built_in("SO3").unwrap_or_else(|| Group::declared(3, Vec::new())));
     let Some(named) = named else {
-        // What seems to be missing may stand in an argument that couldn't be read.
+        // The group may stand in an argument that couldn't be read.
         if is_readable {
             errors.push(Span::call_site(), "the group is missing: write `group = SO3`");
         }
@@ -149,22 +149,22 @@ pub(super) fn product(named: Vec<(Ident, GroupName)>, errors: &mut Errors) -> (V
             errors.push_over(&named.path, message);
         }
         let path = known.is_some().then_some(named.path);
-        // After a mistake, too, so that the rest can be checked.
+        // A stand-in after a mistake lets the rest be checked.
         groups.extend(known.or_else(|| built_in("SO3")));
         factors.push(Factor { name, place: increment.span(), path });
     }
     (factors, Group::product(groups))
 }
 
-/// The groups of what is declared together.
+/// The groups that may be factors of a product.
 const IN_PRODUCTS: [&str; 4] = ["SO3", "R1", "R2", "R3"];
 
-/// More would make the derived code grow without bound.
+/// The limit on factors: more would make the derived code grow without bound.
 const MOST_FACTORS: usize = 4;
 
-/// Mistakes where an increment, of one body or of several, has a name that means something else: it would hide that.
+/// Reports increments, of one body or of several, whose names mean something else, which they would hide.
 pub(super) fn check_increments(role: Role, factors: &[Factor], taken: &TakenNames, errors: &mut Errors) {
-    // One that isn't named is `F`, which no other can be.
+    // An increment without a name is `F`, which no other name can be.
     for Factor { name, place, .. } in factors.iter().filter(|factor| factor.name != "F") {
         let meaning = if Role::Lagrangian.reserved(true).contains(&name.as_str()) {
             &format!("already has a meaning in {}", role.definite())
@@ -183,14 +183,14 @@ pub(super) fn check_increments(role: Role, factors: &[Factor], taken: &TakenName
     }
 }
 
-/// Names that something else has.
+/// Names that other declarations have.
 pub(super) struct TakenNames {
     pub(super) fields: Vec<String>,
     pub(super) advected: Vec<String>,
     pub(super) velocities: Vec<String>,
 }
 
-/// The generators, to be read when the group is known.
+/// The array of generators, read when the group is known.
 pub(super) fn array(input: ParseStream) -> syn::Result<ExprArray> {
     let expression: Expr = input.parse()?;
     match plain(&expression) {
@@ -203,7 +203,7 @@ pub(super) fn array(input: ParseStream) -> syn::Result<ExprArray> {
     }
 }
 
-/// Without the brackets around it, and those that a `macro_rules!` fragment comes in.
+/// The expression without the parentheses around it, and without the invisible group of a `macro_rules!` fragment.
 fn plain(expression: &Expr) -> &Expr {
     match expression {
         Expr::Group(inner) => plain(&inner.expr),
@@ -212,7 +212,7 @@ fn plain(expression: &Expr) -> &Expr {
     }
 }
 
-/// `[[[0.0, -1.0], [1.0, 0.0]], …]`: for each generator its rows. They are a basis of a Lie algebra.
+/// The group of the generators `[[[0.0, -1.0], [1.0, 0.0]], …]`, each by rows, which are a basis of a Lie algebra.
 pub(super) fn generators(array: &ExprArray) -> syn::Result<Group> {
     let rows = |expression: &Expr| match plain(expression) {
         Expr::Array(array) => Ok(array.elems.clone()),
@@ -250,7 +250,7 @@ pub(super) fn generators(array: &ExprArray) -> syn::Result<Group> {
     }
 }
 
-/// At the generator that is too many, or at all of them where one is missing.
+/// The error at the superfluous generator, or at all of them if one is missing.
 fn explained(defect: Defect, array: &ExprArray) -> syn::Error {
     let at = |k: usize| array.elems.get(k).map_or_else(|| array.span(), syn::spanned::Spanned::span);
     match defect {
@@ -270,7 +270,7 @@ fn explained(defect: Defect, array: &ExprArray) -> syn::Error {
     }
 }
 
-/// Larger matrices would make the derived code grow without bound.
+/// The limit on the size of matrices: larger ones would make the derived code grow without bound.
 const MOST_ROWS: usize = 8;
 
 fn decimal(expression: &Expr) -> syn::Result<Rational> {

@@ -28,7 +28,7 @@ use names::{check_names, displacements, velocities};
 pub use fields::{field_kind, scalar_of};
 pub use own_group::{OwnGroup, Request, asked, name_of_own_group, own_group};
 
-/// The declaration, with its mistakes reported; `None` where nothing of it can be read.
+/// The declaration, with its mistakes reported; `None` if nothing of it can be read.
 pub fn declaration(
     role: Role,
     arguments: &TokenStream,
@@ -40,7 +40,7 @@ pub fn declaration(
     Some(as_far_as_readable(role, arguments.clone(), item, errors))
 }
 
-/// The role, the arguments and the struct of a text that has both, `#[lagrangian(…)] struct Top { … }`.
+/// The role, the arguments and the struct of a text with both, `#[lagrangian(…)] struct Top { … }`.
 pub fn attribute_and_item(text: &TokenStream, errors: &mut Errors) -> Option<(Role, TokenStream, TokenStream)> {
     size::check("the declaration", text, errors)?;
     let mut item: ItemStruct = syn::parse2(text.clone()).map_err(|error| errors.extend(error)).ok()?;
@@ -59,7 +59,7 @@ pub fn attribute_and_item(text: &TokenStream, errors: &mut Errors) -> Option<(Ro
     Some((role, arguments, item.to_token_stream()))
 }
 
-/// More would be a tuple that the run-time half knows nothing of.
+/// The limit on parameters: the tuples of the run-time half have no more entries.
 const MOST_ADVECTED: usize = 6;
 
 /// The annotated struct.
@@ -67,7 +67,7 @@ fn annotated(role: Role, item: &TokenStream, errors: &mut Errors) -> Option<Item
     let item: ItemStruct = match syn::parse2(item.clone()) {
         Ok(item) => item,
         Err(error) => {
-            // Of what is no item the compiler has told before.
+            // The compiler has already reported a text that is no item.
             if syn::parse2::<Item>(item.clone()).is_ok() {
                 errors.push(error.span(), format!("`{}` belongs on a struct with named fields", role.attribute()));
             }
@@ -84,7 +84,7 @@ fn annotated(role: Role, item: &TokenStream, errors: &mut Errors) -> Option<Item
     Some(item)
 }
 
-/// A second attribute of ours, by the name that it is written with.
+/// A second attribute of ours, by the path that it is written with.
 pub fn declared_again(item: &ItemStruct) -> Option<&Path> {
     item.attrs.iter().map(syn::Attribute::path).find(|path| {
         let is_ours = path.segments.len() == 1 || path.segments.first().is_some_and(|first| first.ident == "liestep");
@@ -99,7 +99,7 @@ pub fn declared_again(item: &ItemStruct) -> Option<&Path> {
 /// The declaration as far as it can be read.
 pub fn as_far_as_readable(role: Role, arguments: TokenStream, item: ItemStruct, errors: &mut Errors) -> Declaration {
     let mut arguments = read_arguments(role, arguments, errors);
-    // What seems to be missing may stand in an argument that couldn't be read.
+    // An argument that seems to be missing may be one that couldn't be read.
     let is_readable = errors.is_empty();
     let (group_path, group, factors) = groups(&mut arguments, is_readable, errors);
     if arguments.expression.is_none() && arguments.continuous.is_none() && is_readable {
@@ -136,7 +136,7 @@ pub fn as_far_as_readable(role: Role, arguments: TokenStream, item: ItemStruct, 
         Role::Force if errors.is_empty() => displacements(arguments.displacement.take(), &factors, errors),
         _ => Vec::new(),
     };
-    // Of a name that is given twice the end isn't said to be given twice, too.
+    // A repeated name is reported once, and not a second time for the end of the step.
     let is_first = |&(at, name): &(usize, &Ident)| !displacements[..at].contains(name);
     let next = |(_, name): (usize, &Ident)| Ident::new(&format!("{}_next", name.unraw()), name.span());
     let ends = displacements.iter().enumerate().filter(is_first).map(next);
@@ -166,7 +166,7 @@ pub fn as_far_as_readable(role: Role, arguments: TokenStream, item: ItemStruct, 
 }
 
 fn read_arguments(role: Role, arguments: TokenStream, errors: &mut Errors) -> Arguments {
-    // In braces that span the last token, so that what ends too early is reported there.
+    // The braces have the span of the last token, so that an unexpected end is reported there.
     let last = arguments.clone().into_iter().last().map_or(Span::call_site(), |token| token.span());
     let mut braces = proc_macro2::Group::new(Delimiter::Brace, arguments);
     braces.set_span(last);
@@ -176,7 +176,7 @@ fn read_arguments(role: Role, arguments: TokenStream, errors: &mut Errors) -> Ar
         Ok(arguments_from(role, &content, errors))
     };
     parser.parse2(TokenTree::Group(braces).into()).unwrap_or_else(|error| {
-        // What a mistake has left unread isn't another.
+        // The tokens behind a mistake aren't another one.
         if errors.is_empty() {
             errors.extend(error);
         }
@@ -184,7 +184,7 @@ fn read_arguments(role: Role, arguments: TokenStream, errors: &mut Errors) -> Ar
     })
 }
 
-/// The group, its factors, and how it is named, if it is known.
+/// The path of the group, if known, the group, and its factors.
 fn groups(arguments: &mut Arguments, is_readable: bool, errors: &mut Errors) -> (Option<Path>, Group, Vec<Factor>) {
     let named = std::mem::take(&mut arguments.factors);
     if named.len() > 1 {
@@ -203,7 +203,7 @@ fn groups(arguments: &mut Arguments, is_readable: bool, errors: &mut Errors) -> 
     }
 }
 
-/// What is said where the expression is missing.
+/// The message for a missing expression.
 fn missing(role: Role) -> &'static str {
     match role {
         Role::Lagrangian => {
@@ -215,7 +215,7 @@ fn missing(role: Role) -> &'static str {
     }
 }
 
-/// The expression, and what belongs to a continuous one.
+/// The expression, and the arguments of a continuous one.
 fn kind(
     role: Role,
     arguments: &mut Arguments,
@@ -278,7 +278,7 @@ fn advected(
         let field_names: Vec<String> = fields.iter().map(Field::plain_name).collect();
         let names: Vec<String> = field_names.iter().chain(unreadable).cloned().collect();
         let Some(moved) = seen((name, source), is_given, (&names, group), errors) else {
-            // After a mistake, so that the name isn't one more.
+            // The name is known even after a mistake, so that it isn't reported again.
             parameters.push(AdvectedParameter { name: name.clone(), field: None, is_given, seen: View::From(0) });
             continue;
         };
@@ -311,7 +311,7 @@ fn advected(
             let message = no_field(name, source, &field_names, group);
             match source {
                 Source::Field(_) => errors.push(field.span(), message),
-                // It may have been a body, and no vector.
+                // The source may have been meant as a body instead of a vector.
                 Source::View { .. } => errors.push_decisive(field.span(), message),
             }
         }
@@ -335,7 +335,7 @@ fn advected(
     parameters
 }
 
-/// What is wrong with a field of this kind, which a group with matrices of that size doesn't move.
+/// The message for a field of this kind, which a group with matrices of that size doesn't move.
 fn not_carried(wanted: &str, kind: FieldKind, group: &Group, size: usize) -> String {
     let shape = kind.shape().describe();
     if kind.is_wrapped() {
@@ -351,7 +351,7 @@ fn not_carried(wanted: &str, kind: FieldKind, group: &Group, size: usize) -> Str
     format!("`{wanted}` is {shape}, but the group carries a vector of {size}: use {vector}{point}")
 }
 
-/// What is wrong with the source of what is advected by this name, which is no field.
+/// The message for the source of an advected parameter that is no field.
 fn no_field(name: &Ident, source: &Source, fields: &[String], group: Option<(&Group, &[Factor])>) -> String {
     let (Source::Field(wanted) | Source::View { what: wanted, .. }) = source;
     let wanted = wanted.unraw().to_string();
@@ -379,7 +379,7 @@ fn no_field(name: &Ident, source: &Source, fields: &[String], group: Option<(&Gr
     }
 }
 
-/// Which bodies may see a field, and where what is translated has come to, which may be meant.
+/// The message with the bodies that may see a field, and with the position of a translated body, which may be meant.
 fn seers((name, field): (&Ident, &Ident), group: Option<&Group>, factors: &[Factor]) -> String {
     let is_added = |at: &usize| group.is_some_and(|group| group.factor(*at).is_added);
     let turning = (0..factors.len()).filter(|at| !is_added(at));
@@ -392,13 +392,13 @@ fn seers((name, field): (&Ident, &Ident), group: Option<&Group>, factors: &[Fact
     format!("who sees `{field}`? write {}{place}", seers.join(" or "))
 }
 
-/// What an advected parameter is, and which bodies move it.
+/// The source of an advected parameter, and the bodies that move it.
 enum MovedParameter<'a> {
     Field(&'a Ident, View),
     Body(View),
 }
 
-/// Nothing after a mistake.
+/// The checked source of an advected parameter; `None` after a mistake.
 fn seen<'a>(
     (name, source): (&Ident, &'a Source),
     is_given: bool,
@@ -417,7 +417,7 @@ fn seen<'a>(
             errors.push_decisive(what.span(), format!("what is given is seen as it is: write `{what}`"));
             None
         }
-        // Whose increments couldn't be read.
+        // The increments couldn't be read.
         Source::View { .. } if group.is_none() => None,
         Source::View { what, from } => {
             let seer = if *from == "space" { None } else { Some(place(from)) };
@@ -474,7 +474,7 @@ fn are_alike(group: Option<(&Group, &[Factor])>, a: usize, b: usize) -> bool {
     group.is_none_or(|(group, _)| group.factor(a).shape() == group.factor(b).shape())
 }
 
-/// A mistake where a parameter has a name that means something else.
+/// Reports a parameter whose name means something else.
 fn check_free((role, is_product): (Role, bool), name: &Ident, errors: &mut Errors) {
     let (unraw, the) = (name.unraw().to_string(), role.definite());
     if role.reserved(is_product).contains(&unraw.as_str()) {

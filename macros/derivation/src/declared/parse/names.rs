@@ -7,7 +7,7 @@ use super::check_free;
 use crate::declared::errors::Errors;
 use crate::declared::{AdvectedParameter, Factor, Field, Role, named_displacements, named_velocities};
 
-/// Mistakes where a name of this kind means something else.
+/// Reports names of this kind that mean something else.
 pub(super) fn check_names(
     role: (Role, bool),
     names: &[Ident],
@@ -28,7 +28,7 @@ pub(super) fn check_names(
     }
 }
 
-/// The names of a force's displacements, which several bodies need; none of one body, where they are `eta` and `eta_next`.
+/// The names of a force's displacements on several bodies; empty for one body, where they are `eta` and `eta_next`.
 pub(super) fn displacements(named: Option<(Ident, Vec<Ident>)>, factors: &[Factor], errors: &mut Errors) -> Vec<Ident> {
     let is_product = factors.len() > 1;
     let Some((key, names)) = named else {

@@ -1,4 +1,4 @@
-//! A user's group: its declaration by `matrix_group!`, and `group = Name!`, which asks it for its generators.
+//! A user's group: its declaration by `matrix_group!`, and `group = Name!`, which takes its generators from that.
 
 use proc_macro2::{TokenStream, TokenTree};
 use syn::parse::{Parse, ParseStream, Parser as _};
@@ -8,16 +8,16 @@ use super::group::generators;
 use super::size;
 use crate::declared::errors::Errors;
 
-/// What `matrix_group!` declares.
+/// The declaration in `matrix_group!`.
 pub struct OwnGroup {
-    /// Where liestep is found, if not at `::liestep`.
+    /// The path of liestep, if not `::liestep`.
     pub root: Option<Path>,
     pub attributes: Vec<Attribute>,
     pub visibility: Visibility,
     pub name: Ident,
-    /// As written, matrix by matrix and row by row.
+    /// The generators as written, each by rows.
     pub generators: ExprArray,
-    /// Rows of the matrices.
+    /// The number of rows of the matrices.
     pub size: usize,
     /// The functions of `Generators`.
     pub functions: Vec<ImplItem>,
@@ -64,14 +64,14 @@ pub fn name_of_own_group(tokens: &TokenStream) -> Option<Ident> {
     }
 }
 
-/// `group = Name!`: the arguments, and what stands behind some keys.
+/// The arguments of a declaration with `group = Name!`, and the values of some keys.
 pub struct Request {
     pub group: Path,
     pub root: Option<Path>,
     pub arguments: TokenStream,
 }
 
-/// The group that is to be asked for its generators, if there is one, and if it hasn't answered.
+/// The request for the generators of a group; `None` if no `group = Name!` is there, or if the generators have arrived.
 pub fn asked(arguments: &TokenStream) -> Option<Request> {
     let tokens: Vec<TokenTree> = arguments.clone().into_iter().collect();
     let is = |token: &TokenTree, mark: char| matches!(token, TokenTree::Punct(found) if found.as_char() == mark);

@@ -1,14 +1,14 @@
 //! Steps of a transformed time: `pace = s(w)`, with `dt = s dτ`.
 //!
-//! It is a rewriting of the declared expression, by `s̄ = (s(w) + s(F⁻¹·w))/2` and the energy `E_0` of the motion:
+//! The declared expression is rewritten by `s̄ = (s(w) + s(F⁻¹·w))/2` and the energy `E_0` of the motion:
 //!
 //! ```text
 //! l_d(F, w, h)    becomes    l_d(F, w, h s̄) + h s̄ E_0
 //! l(ξ, w)         becomes    s (l(ξ/s, w) + E_0)
 //! ```
 //!
-//! The second is Poincaré's `s (H − E_0)` as a Lagrangian, of which `discretise = trapezoid` makes steps. On the level zero of
-//! its energy the curves are those of `l`. What comes out is a declaration like any other.
+//! The second is Poincaré's `s (H − E_0)` as a Lagrangian, which `discretise = trapezoid` turns into steps. On the
+//! level zero of its energy the curves are those of `l`. The result is a declaration like any other.
 
 use proc_macro2::{Group, TokenStream, TokenTree};
 use quote::{ToTokens as _, quote_spanned};
@@ -21,7 +21,7 @@ use crate::declared::{AdvectedParameter, Discretisation, Factor, Field, FieldKin
 use crate::mathematics::derive::View;
 use crate::mathematics::group;
 
-/// Rewrites the expression by the pace, if there is one, and returns the place of `E_0` in what is advected or given.
+/// Rewrites the expression by the pace, if there is one, and returns the index of `E_0` among the parameters.
 pub(super) fn rewritten(
     arguments: &mut Arguments,
     (group, factors): (&group::Group, &[Factor]),
@@ -90,7 +90,7 @@ pub(super) fn rewritten(
     Some(energy)
 }
 
-/// `F⁻¹·w` of what isn't a tensor or a point. Among several bodies what turns does so by rotations.
+/// `F⁻¹·w`, unless `w` is a tensor or a point. Among several bodies only rotations move fields.
 fn moved(
     w: &AdvectedParameter,
     name: &Ident,
@@ -120,7 +120,7 @@ fn moved(
     })
 }
 
-/// The first name among the tokens that is one of these.
+/// The first name among the tokens that satisfies the condition.
 fn mention(tokens: &TokenStream, is_one: &dyn Fn(&Ident) -> bool) -> Option<Ident> {
     tokens.clone().into_iter().find_map(|token| match token {
         TokenTree::Ident(name) => is_one(&name).then_some(name),
@@ -129,7 +129,7 @@ fn mention(tokens: &TokenStream, is_one: &dyn Fn(&Ident) -> bool) -> Option<Iden
     })
 }
 
-/// The tokens with others in the place of some names.
+/// The tokens with some names replaced.
 fn renamed(tokens: TokenStream, other: &dyn Fn(&Ident) -> Option<TokenStream>) -> TokenStream {
     let one = |token| match token {
         TokenTree::Ident(name) => other(&name).unwrap_or_else(|| name.into_token_stream()),

@@ -1,30 +1,30 @@
-//! Bounds on what is parsed.
+//! Limits on the size of the text that is parsed.
 
 use proc_macro2::{TokenStream, TokenTree};
 
 use crate::declared::errors::Errors;
 
-/// More tokens than this, or deeper nesting, are no Lagrangian that a person wrote, and parsing them recursively could
-/// overflow a stack of 2 MB without optimisation.
+/// The limits on tokens and nesting: no person writes a larger Lagrangian, and parsing one recursively could overflow a
+/// stack of 2 MB without optimisation.
 const MOST_TOKENS: usize = 2_000;
 const DEEPEST: usize = 32;
 
-/// Words after which a part of an expression or of a type follows that may begin with such a word again.
+/// Words followed by a part of an expression or of a type, which may begin with such a word again.
 const NESTING_WORDS: [&str; 20] = [
     "as", "async", "await", "break", "const", "dyn", "else", "fn", "for", "if", "impl", "loop", "match", "move", "mut",
     "raw", "return", "unsafe", "while", "yield",
 ];
 
-/// A stream of tokens within brackets, half read.
+/// A stream of tokens within brackets, read up to some token.
 struct Open {
     tokens: proc_macro2::token_stream::IntoIter,
-    /// How many brackets are around it.
+    /// The number of brackets around it.
     depth: usize,
-    /// How many operators in a row were last.
+    /// The number of consecutive operators read last.
     operators: usize,
-    /// How many tokens since the last `;` or `,` may each nest what follows.
+    /// The number of tokens since the last `;` or `,` that may each nest the tokens behind them.
     nesting: usize,
-    /// Whether a group was last. An attribute that follows one doesn't nest.
+    /// Whether a group was read last. An attribute behind one doesn't nest.
     follows_group: bool,
 }
 
@@ -57,7 +57,7 @@ impl Open {
     }
 }
 
-/// `None` where the arguments are too large to be parsed, which has been reported.
+/// Checks the size of the arguments; `None` if they are too large, which has been reported.
 pub(super) fn check(the: &str, arguments: &TokenStream, errors: &mut Errors) -> Option<()> {
     let mut open = vec![Open::new(arguments.clone(), 0)];
     let mut count = 0;

@@ -1,14 +1,14 @@
-//! What a constraint is on: two bodies that turn and are translated, over `f64`.
+//! The bodies of a constraint: two, with rotations and translations, over `f64`.
 
 use syn::ItemStruct;
 
 use crate::declared::errors::Errors;
 use crate::declared::{Factor, Field, Scalar};
 
-/// The groups of the body above, and of that below.
+/// The groups of the body above, and of the body below.
 const GROUPS: [&str; 4] = ["SO3", "R3", "SO3", "R3"];
 
-/// Mistakes where it is on something else; whether the bodies are right.
+/// Whether the bodies of a constraint are right; reports their mistakes.
 pub(super) fn check(
     factors: &[Factor],
     fields: &[Field],

@@ -31,8 +31,8 @@ pub(crate) fn alone(item: &TokenStream, declaration: &Declaration, equations: &E
     quote_spanned!(Span::mixed_site()=> #item #implementations)
 }
 
-/// The continuous equations of a declared `l`, or of the limit of `l_d`; of what has a step the inertia is that of the
-/// effect.
+/// The continuous equations of a declared `l`, or of the limit of `l_d`. If there is a step, its effect has the
+/// inertia.
 pub(super) fn implementation(
     declaration: &Declaration,
     header: &Header,
@@ -78,7 +78,7 @@ pub(super) fn implementation(
 
             #[doc = #documentation]
             const CONTINUOUS_DERIVATION: &'static #private::core::primitive::str = {
-                // So that rustdoc shows no value: it would escape each letter that isn't ASCII.
+                // A block instead of the value: rustdoc would show it with each letter escaped that isn't ASCII.
                 const TEXT: &#private::core::primitive::str = #derivation;
                 TEXT
             };
@@ -89,7 +89,7 @@ pub(super) fn implementation(
     }
 }
 
-/// The second derivative by the velocity, which the step has as its inertia.
+/// The second derivative by the velocity, which is the inertia of the step.
 fn of_effect(header: &Header) -> TokenStream {
     let (private, vector, square) = (&header.private, header.vector(), header.square());
     quote_spanned! {Span::mixed_site()=>
@@ -114,17 +114,17 @@ pub(super) fn at_velocity(private: &syn::Path, equations: &Equations) -> Option<
     })
 }
 
-/// `l_d` as it is made of `l`.
+/// The method `l_d`, discretised from `l`.
 pub(super) fn discretised(emitter: &Emitter, discretisation: Discretisation) -> TokenStream {
     let (span, header) = (Span::mixed_site(), emitter.header);
     let (private, square, scalar) = (&header.private, header.matrix(), &header.scalar);
     let name = match discretisation.quadrature {
         Quadrature::Trapezoid => "trapezoid",
         Quadrature::Chord => "chord",
-        // By the derived expression.
+        // The midpoint rule uses the derived expression.
         Quadrature::Midpoint => "",
     };
-    // Of the Cayley map, what is made of the declared `l` shares nothing with the derivation.
+    // The discretisation at run time, with the Cayley map, shares nothing with the derivation.
     if discretisation.coordinates == Coordinates::Cayley && !name.is_empty() {
         let name = Ident::new(name, span);
         return quote_spanned! {span=>

@@ -1,4 +1,4 @@
-//! The continuous equations in print.
+//! The text of the continuous equations.
 
 use crate::declared::{Declaration, FieldKind};
 use crate::emit::docs::{Equation, at, certified, inertia_matrix, moved_by, names, setting};
@@ -7,7 +7,7 @@ use crate::mathematics::derive::{AdvectedSymbol, Continuous, Element, Inverse, V
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Expression, Rational, Variance, monomial_contains, text, vector_text};
 
-/// A longer equation is said in words.
+/// The limit on the length of an equation; longer ones are replaced by words.
 const LONGEST: usize = 1_500;
 
 /// The name of the velocity; `ξ` stands for those of several bodies together.
@@ -23,7 +23,7 @@ fn velocities(derived: &Continuous) -> Vec<&str> {
     derived.velocities.iter().map(|velocity| derived.symbols.get(velocity.components).name.as_str()).collect()
 }
 
-/// A covector as a vector, or as what it pairs with `η`; of several bodies there is one of each.
+/// A covector as a vector, if there is one body and the vector is short.
 fn covector(derived: &Continuous, expression: &Expression) -> Option<String> {
     let [directions] = derived.directions.as_slice() else { return None };
     vector_text(expression, directions[0].components, &derived.symbols).filter(|text| text.len() <= LONGEST)
@@ -105,12 +105,12 @@ fn sum(terms: &[String]) -> String {
     if sum.is_empty() { "0".to_owned() } else { sum }
 }
 
-/// Whether the group moves it.
+/// Whether the group moves the parameter.
 fn is_moved(w: &AdvectedSymbol) -> bool {
     w.variance != Variance::Fixed || w.seen.is_configuration()
 }
 
-/// `μ̇` of each body: on SO(3) with a cross product, and where increments are added the force alone.
+/// `μ̇` of each body: on SO(3) with a cross product, for a translation the force alone.
 fn momentum_rates(derived: &Continuous) -> String {
     let velocities = velocities(derived);
     let of_body = |(factor, own): (usize, &Group)| {
@@ -124,7 +124,7 @@ fn momentum_rates(derived: &Continuous) -> String {
     derived.group.factors().iter().enumerate().map(of_body).collect::<Vec<_>>().join(";  ")
 }
 
-/// (2.1).
+/// The diamond of (2.1).
 const DIAMOND: &str = "∂l/∂w ⋄ w";
 
 /// (1.4) with (2.2), on SO(3) in cross products.
@@ -192,12 +192,12 @@ fn advected_rates(declaration: &Declaration, derived: &Continuous) -> Vec<Equati
     names(declaration).into_iter().enumerate().filter_map(|(index, name)| rate(index, name)).collect()
 }
 
-/// The names of what is advected.
+/// The names of the advected parameters.
 fn seen(derived: &Continuous) -> Vec<&str> {
     derived.advected.iter().map(|w| derived.symbols.get(w.symbol).name.as_str()).collect()
 }
 
-/// `μ − s(w)`, of a momentum at rest that has a line of its own.
+/// `μ − s(w)`, if the momentum at rest `s` is written out elsewhere.
 fn unwritten(derived: &Continuous) -> String {
     format!("μ − s{}", at(&seen(derived)))
 }
@@ -238,13 +238,13 @@ fn hamiltonian(derived: &Continuous, name: &str) -> Equation {
     Equation::new("hamiltonian", name, right, "(1.16)")
 }
 
-/// `h(μ, w)` by the names of what is advected or given.
+/// `h(μ, w)` with the names of the advected and given parameters.
 fn hamiltonian_of(w: &[String]) -> String {
     let arguments: Vec<&str> = ["μ"].into_iter().chain(w.iter().map(String::as_str)).collect();
     format!("h({})", arguments.join(", "))
 }
 
-/// A component of the momentum, `μ_k`; of several bodies `(μ_a)_k`, or `μ_a` where body `a` has one component.
+/// The component `μ_k` of the momentum; of several bodies `(μ_a)_k`, or `μ_a` if body `a` has one component.
 fn component(group: &Group, k: usize) -> String {
     if !group.is_product() {
         return format!("μ_{}", k + 1);
@@ -256,7 +256,7 @@ fn component(group: &Group, k: usize) -> String {
     }
 }
 
-/// What the motion keeps.
+/// The conserved quantities of the motion.
 fn kept(declaration: &Declaration, equations: &Equations) -> Equation {
     let derived = &equations.derived;
     let names = names(declaration);
@@ -296,7 +296,7 @@ pub(super) fn derivation(declaration: &Declaration, equations: &Equations) -> St
     setting(declaration, false) + &section(declaration, equations)
 }
 
-/// Without the setting.
+/// The equations without the group and its action.
 pub(in crate::emit) fn section(declaration: &Declaration, equations: &Equations) -> String {
     let texts = self::equations(declaration, equations);
     let (xi, group) = (velocity(&equations.derived), &equations.derived.group);
@@ -321,7 +321,7 @@ pub(in crate::emit) fn section(declaration: &Declaration, equations: &Equations)
     format!("continuous\n    {named} = g⁻¹ dg/dt\n{limit}    pairing: {pairing}\n{lines}    certainty: {certainty}\n")
 }
 
-/// What the struct's own documentation says of the continuous equations.
+/// The section on the continuous equations in the struct's documentation.
 pub(in crate::emit) fn page(declaration: &Declaration, equations: &Equations) -> String {
     let shown = shown(declaration, equations);
     format!(

@@ -1,4 +1,4 @@
-//! Parts of a declared tree: increments, velocities, and what they carry.
+//! Parts of a declared tree: increments, velocities, and moved parameters.
 
 use std::rc::Rc;
 
@@ -9,12 +9,12 @@ use crate::mathematics::derive::View;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Function, Rational, Variance};
 
-/// Makes parts of a tree, all in the place of the declared one.
+/// A builder for parts of a tree, all with the span of the declared one.
 #[derive(Clone, Copy)]
 pub(super) struct Build<'a> {
     pub(super) declaration: &'a Declaration,
     pub(super) at: &'a Tree,
-    /// The factor of the group that it is about.
+    /// The factor of the group that the parts belong to.
     pub(super) factor: usize,
 }
 
@@ -39,7 +39,7 @@ impl Build<'_> {
         self.tree(a.shape, Kind::Subtract(a, b))
     }
 
-    /// Of scalars.
+    /// The product of two scalars.
     pub(super) fn product(&self, a: Rc<Tree>, b: Rc<Tree>) -> Rc<Tree> {
         self.scalar(Kind::Multiply(a, b))
     }
@@ -72,7 +72,7 @@ impl Build<'_> {
         self.tree(a.shape, Kind::Divide(a, b))
     }
 
-    /// The same about another factor of the group.
+    /// The builder for another factor of the group.
     pub(super) fn of(&self, factor: usize) -> Self {
         Self { factor, ..*self }
     }
@@ -81,7 +81,7 @@ impl Build<'_> {
         self.declaration.group.factor(self.factor)
     }
 
-    /// The velocity as a function of the increment; none where the matrix `(F − I)/h` stands for `ξ̂`.
+    /// The velocity as a function of the increment; `None` if `ξ̂` is the matrix `(F − I)/h`.
     pub(super) fn velocity(&self, coordinates: Coordinates) -> Result<Option<Rc<Tree>>, Misfit> {
         let velocity = match coordinates {
             _ if self.group().is_added => self.increment(),
@@ -90,7 +90,7 @@ impl Build<'_> {
             Coordinates::Exponential => self.logarithm()?,
         };
         let velocity = self.per_step(velocity);
-        // A name of its own, so that it is differentiated through as one.
+        // The velocity has a name of its own, so that the derivation differentiates through it as one value.
         let name = self.declaration.name_of_velocity(self.factor);
         Ok(Some(self.tree(velocity.shape, Kind::Bound(name, velocity))))
     }
@@ -103,7 +103,7 @@ impl Build<'_> {
         self.tree(self.square(), Kind::Identity)
     }
 
-    /// A matrix, where increments are added a vector, and on a line a scalar.
+    /// The increment: a matrix, or for a translation a vector, on a line a scalar.
     pub(super) fn increment(&self) -> Rc<Tree> {
         let shape = match self.group().shape() {
             (1, 1) => Shape::Scalar,
@@ -130,7 +130,7 @@ impl Build<'_> {
         self.tree(self.declaration.advected_kind(index).shape(), Kind::Name(Name::Advected(index)))
     }
 
-    /// `G⁻¹·w`, with the `G` of each factor and its inverse.
+    /// `G⁻¹·w`, where `element` returns `G` and `G⁻¹` of each factor.
     pub(super) fn carried(&self, index: usize, element: &dyn Fn(usize) -> [Rc<Tree>; 2]) -> Rc<Tree> {
         let w = self.advected(index);
         let seen = self.declaration.advected.get(index).map_or(View::From(0), |w| w.seen);
@@ -169,7 +169,7 @@ impl Build<'_> {
         self.tree(Shape::Matrix(self.group().dimension(), 1), Kind::Components(element, forms))
     }
 
-    /// With a name of its own where its entries are asked for one by one.
+    /// The element under a name of its own if its entries are used one by one.
     pub(super) fn named(&self, element: Rc<Tree>) -> Rc<Tree> {
         if self.group().is_so3 { element } else { self.tree(element.shape, Kind::Bound("X".to_owned(), element)) }
     }
@@ -178,7 +178,7 @@ impl Build<'_> {
         self.divided(coordinates, self.scalar(Kind::Name(Name::Step)))
     }
 
-    /// `ξ` with `cay(ξ̂) = F`, by the shortest of the formulas that are right on the group.
+    /// `ξ` with `cay(ξ̂) = F`, by the shortest of the formulas that hold on the group.
     pub(super) fn cayley_coordinates(&self) -> Result<Rc<Tree>, Misfit> {
         let element = self.cayley_candidates().into_iter().map(|candidate| self.named(candidate)).find(|candidate| {
             let components = self.components(candidate.clone());
@@ -187,7 +187,7 @@ impl Build<'_> {
         element.map(|element| self.components(element)).ok_or(Misfit::NoCayley)
     }
 
-    /// Matrices that are `ξ̂ = 2 (F − I)(F + I)⁻¹` on some groups.
+    /// Matrices that equal `ξ̂ = 2 (F − I)(F + I)⁻¹` on some groups.
     pub(super) fn cayley_candidates(&self) -> Vec<Rc<Tree>> {
         let number = |value| self.number(Rational::integer(value));
         let (f, one) = (self.increment(), self.identity());
@@ -213,7 +213,7 @@ impl Build<'_> {
             rigid(trace.clone()),
             rigid(plus(-1)),
         ];
-        // By Cayley and Hamilton, (F + I)⁻¹ = (1/c) Σ …, by the recursion of Faddeev and LeVerrier.
+        // (F + I)⁻¹ = (1/c) Σ … by Cayley and Hamilton, with the recursion of Faddeev and LeVerrier.
         if self.group().size <= 4 {
             let sum = self.add(f, self.identity());
             let size = i128::try_from(self.group().size).unwrap_or(1);
@@ -277,7 +277,7 @@ impl Build<'_> {
         Ok([self.add(self.identity(), forwards), self.add(self.identity(), back)])
     }
 
-    /// `Σ c_k Nᵏ`, which ends where all generators are strictly triangular.
+    /// `Σ c_k Nᵏ`, a finite sum if all generators are strictly triangular.
     pub(super) fn nilpotent_terms(
         &self,
         small: &Rc<Tree>,
@@ -291,7 +291,7 @@ impl Build<'_> {
             return Err(Misfit::NoLogarithm);
         }
         let (mut power, mut sum) = (small.clone(), self.scaled(self.number(coefficient(1)), small.clone()));
-        // A generator may have an earlier end, as those of translations have.
+        // The powers may vanish earlier, as for translations.
         for k in 2..i128::try_from(verify::nilpotency(self.group())).unwrap_or(1) {
             power = self.times(&power, small);
             sum = self.add(sum, self.scaled(self.number(coefficient(k)), power.clone()));

@@ -1,4 +1,4 @@
-//! A continuous Lagrangian with the values of a step in it.
+//! A continuous Lagrangian evaluated at the velocity and the parameters of a step.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -8,10 +8,10 @@ use crate::declared::{Kind, Name, Shape, Tree};
 use crate::judged::explain::Misfit;
 use crate::mathematics::symbolic::Rational;
 
-/// `l` with other values for the velocity and for what is advected.
+/// The substitution of the velocity and the advected parameters in `l`.
 pub(super) struct Substitution<'a> {
     pub(super) build: &'a Build<'a>,
-    /// Of each factor of the group; `None` where the matrix `(F − I)/h` stands for `ξ̂`.
+    /// The velocity of each factor of the group; `None` if `ξ̂` is the matrix `(F − I)/h`.
     pub(super) velocities: Vec<Option<Rc<Tree>>>,
     pub(super) carried: Vec<Rc<Tree>>,
     pub(super) known: BTreeMap<*const Tree, Rc<Tree>>,
@@ -61,7 +61,7 @@ impl Substitution<'_> {
             Kind::Inverse(a) => Kind::Inverse(self.of(a)?),
             Kind::Entry(a, row, column) => Kind::Entry(self.of(a)?, *row, *column),
             Kind::Bound(name, a) => {
-                // Where the matrix stands for the velocity, another name of the velocity is none.
+                // A matrix `ξ̂` that isn't in the algebra has no vector that a `let` could name.
                 if let Some(factor) = self.in_matrix(a) {
                     return Err(Misfit::NotInMatrix(factor));
                 }
@@ -71,12 +71,12 @@ impl Substitution<'_> {
         Ok(Tree::until(Tree::new(tree.span, tree.shape, kind), tree.end))
     }
 
-    /// The velocity of a factor; none where a matrix stands for it.
+    /// The velocity of a factor; `None` if `ξ̂` is a matrix outside the algebra.
     fn velocity(&self, factor: usize) -> Option<Rc<Tree>> {
         self.velocities.get(factor).cloned().flatten()
     }
 
-    /// The factor whose velocity this is, where a matrix stands for it.
+    /// The factor whose velocity this is, if its `ξ̂` is a matrix outside the algebra.
     fn in_matrix(&self, tree: &Tree) -> Option<usize> {
         match tree.kind {
             Kind::Name(Name::Velocity(factor)) if self.velocity(factor).is_none() => Some(factor),
@@ -84,11 +84,11 @@ impl Substitution<'_> {
         }
     }
 
-    /// On SO(3), `(Aξ)·(Bξ)` as `tr(ξ̂ S_d ξ̂ᵀ)` with `S = AᵀB` and `S_d = ½ tr(S) I − S`, and `a·ξ` as `a·vee(ξ̂)`, which
-    /// are the same in the algebra, and for the matrix `(F − I)/h` those of (3.13).
+    /// Products on SO(3): `(Aξ)·(Bξ)` as `tr(ξ̂ S_d ξ̂ᵀ)` with `S = AᵀB` and `S_d = ½ tr(S) I − S`, and `a·ξ` as
+    /// `a·vee(ξ̂)`. Both are equal on the algebra; for the matrix `(F − I)/h` they are the terms of (3.13).
     fn form(&mut self, a: &Rc<Tree>, b: &Rc<Tree>) -> Result<Option<Rc<Tree>>, Misfit> {
         match (self.linear(a), self.linear(b)) {
-            // Of two bodies their product is none of one matrix.
+            // The velocities of two bodies don't form a trace of one matrix.
             (Some((of_left, _)), Some((of_right, _))) if of_left != of_right => Ok(None),
             (Some((factor, left)), Some((_, right))) => {
                 let build = &self.build.of(factor);
@@ -113,8 +113,7 @@ impl Substitution<'_> {
         }
     }
 
-    /// The factor of the group, one of SO(3) whose velocity a matrix stands for, and the matrices `A_1, A_2, …` of
-    /// `A_1 A_2 … ξ`.
+    /// The factor SO(3) whose `ξ̂` is a matrix outside the algebra, and the matrices `A_1, A_2, …` of `A_1 A_2 … ξ`.
     fn linear(&self, tree: &Tree) -> Option<(usize, Vec<Rc<Tree>>)> {
         if let Some(factor) = self.in_matrix(tree) {
             return self.build.of(factor).group().is_so3.then(|| (factor, Vec::new()));

@@ -1,4 +1,4 @@
-//! Whether a formula is the inverse of the Cayley map on a group, at random points of a finite field.
+//! The check that a formula is the inverse of the Cayley map on a group, at random points of a finite field.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -10,7 +10,7 @@ use super::value::Value;
 use crate::declared::{Name, Tree};
 use crate::mathematics::group::Group;
 
-/// Independent points.
+/// The number of independent points.
 const POINTS: u64 = 3;
 
 /// Whether `tree` at `F = cay(ξ̂)` is `ξ`, for random `ξ`; `increment` is the name of `F`.
@@ -27,7 +27,7 @@ pub fn is_cayley_coordinates(group: &Group, increment: Name, tree: &Rc<Tree>) ->
     })
 }
 
-/// The least `n` with `Nⁿ = 0` for all elements `N` of the algebra, where they are strictly triangular.
+/// The least `n` with `Nⁿ = 0` for all elements `N` of a strictly triangular algebra.
 pub fn nilpotency(group: &Group) -> usize {
     let mut number = Residue::stream(1);
     let components: Vec<Residue> = group.generators.iter().map(|_| number()).collect();

@@ -1,5 +1,5 @@
-//! The self-check of a constraint: its derivatives against dual numbers of the declared functions, and what each of these
-//! adds to those before it, at random points of a finite field, where nothing is rounded.
+//! The self-check of a constraint at random points of a finite field, where nothing is rounded: its derivatives against
+//! dual numbers of the declared functions, and the rank of its functions, one after the other.
 
 use std::collections::BTreeMap;
 use std::ops::Add as _;
@@ -19,21 +19,21 @@ use crate::mathematics::derive::View;
 use crate::mathematics::symbolic::{Expression, SymbolId};
 use crate::program::{Graph, NodeId};
 
-/// What is emitted of a constraint.
+/// A constraint as it is emitted.
 pub struct ConstraintSlopes {
-    /// Scalars and vectors one below the other.
+    /// The scalars and vectors, stacked into one column.
     pub functions: Vec<Rc<Tree>>,
     pub lowered: ConstraintReading,
-    /// Of either body by its turn and by its shift, linear in the directions.
+    /// The derivatives of each body by its rotation and by its translation, linear in the directions.
     pub slopes: [[Vec<Expression>; 2]; 2],
     pub graph: Graph,
-    /// The same as matrices with a row for each function, row by row.
+    /// The derivatives as matrices with a row for each function, by rows.
     pub entries: [[Vec<NodeId>; 2]; 2],
     pub sureness: Sureness,
 }
 
 impl ConstraintSlopes {
-    /// How many functions there are.
+    /// The number of functions.
     pub fn rows(&self) -> usize {
         self.functions.iter().map(|tree| tree.shape.rows()).sum()
     }
@@ -42,18 +42,19 @@ impl ConstraintSlopes {
 /// Attitude and position of a body.
 type Place<T> = [Value<T>; 2];
 
-/// What a function holds, wherever the bodies are and whatever the parameters.
+/// The dependence of a function on those before it, at all positions of the bodies and for all parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Row {
-    /// What those before it don't.
+    /// The function is independent of them.
     New,
-    /// Nothing more than those before it.
+    /// The function depends on them.
     Follows,
-    /// Nothing at all, as it is the same everywhere.
+    /// The function is constant.
     Constant,
 }
 
-/// Checks the slopes of both bodies, and finds how sure that is, and what each function adds to those before it.
+/// Checks the slopes of both bodies; returns a bound on the probability of a wrong result, and each function's
+/// dependence on those before it.
 pub fn constraint(declaration: &Declaration, held: &ConstraintSlopes) -> Result<(Sureness, Vec<Row>), Objection> {
     let has_value = |seed| {
         let point = Point::new(declaration, stream(seed));
@@ -81,7 +82,7 @@ pub fn constraint(declaration: &Declaration, held: &ConstraintSlopes) -> Result<
     Ok((sureness, rows.unwrap_or_else(|| vec![Row::New; held.rows()])))
 }
 
-/// Where two bodies are, and the values of the fields.
+/// The positions of two bodies, and the values of the fields.
 struct Point<'a, T> {
     declaration: &'a Declaration,
     places: [Place<T>; 2],
@@ -105,7 +106,7 @@ impl<'a, T: Number> Point<'a, T> {
         Self { declaration, places, fields }
     }
 
-    /// The declared functions of bodies at these places.
+    /// The declared functions at these positions of the bodies.
     fn value(&self, held: &ConstraintSlopes, places: &[Place<Dual<T>>; 2]) -> Vec<Dual<T>> {
         let mut values = over(&self.fields, Dual::constant);
         let place = |factor: usize| &places[factor / 2 % 2][factor % 2];
@@ -123,7 +124,7 @@ impl<'a, T: Number> Point<'a, T> {
         held.functions.iter().flat_map(|tree| at.of(tree).entries).collect()
     }
 
-    /// Their slopes where a body turns about an axis, `by = 0`, or is shifted along it.
+    /// The slopes of the functions when a body rotates about an axis, `by = 0`, or moves along it.
     fn slopes(&self, held: &ConstraintSlopes, body: usize, by: usize, axis: &[T]) -> Vec<T> {
         let axis = Value::column(axis).over(|slope| Dual { value: T::ZERO, slope });
         let mut places = self.places.each_ref().map(lifted);
@@ -144,7 +145,7 @@ impl<'a, T: Number> Point<'a, T> {
         inputs
     }
 
-    /// Along a direction of these numbers.
+    /// Compares the slopes along a direction of these numbers.
     fn holds(
         &self,
         held: &ConstraintSlopes,
@@ -165,15 +166,15 @@ impl<'a, T: Number> Point<'a, T> {
 }
 
 impl Point<'_, Residue> {
-    /// What each function adds to those before it; nothing where the field doesn't say.
+    /// The dependence of each function on those before it; `None` where a slope has no value in the field.
     ///
-    /// At a random point slopes have the largest rank that they have anywhere, but for a chance of their degree in `2⁶¹`. A root
-    /// or a sine is replaced by a function that has no relations but its symmetry, so that the rank may be larger than among
-    /// real numbers and is never smaller. So no function is refused that holds something, and what follows by a relation like
-    /// `sin² + cos² = 1` alone isn't found here.
+    /// At a random point slopes have their largest rank, but for a probability of their degree over `2⁶¹`. A root or a
+    /// sine is replaced by a function that has no relations but its symmetry, so the rank may be larger than among real
+    /// numbers and is never smaller. So no independent function is refused, and a dependence that needs a relation like
+    /// `sin² + cos² = 1` isn't found here.
     ///
-    /// Nor is what follows on the constraint alone, where the point isn't: of `R_1 a − R_2 b` with vectors of one length two of
-    /// the three functions say all.
+    /// A dependence on the constraint alone isn't found either, as the point doesn't satisfy it: of `R_1 a − R_2 b`
+    /// with vectors of equal length two of the three functions are enough.
     fn rows(&self, held: &ConstraintSlopes) -> Option<Vec<Row>> {
         let ways: Vec<Vec<Residue>> = (0..12)
             .map(|way| {

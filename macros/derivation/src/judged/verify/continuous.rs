@@ -1,7 +1,7 @@
 //! The continuous equations at random points of a finite field, where nothing is rounded.
 //!
-//! Derivatives of the Lagrangian are those of dual numbers, so that the symbolic rules are compared with others: along a
-//! change of the velocity, and along a random `η` by which all that is advected is carried.
+//! Derivatives of the Lagrangian are computed with dual numbers, independently of the symbolic rules: along a change of
+//! the velocity, and along a random `η` that moves all advected parameters.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -31,7 +31,7 @@ use crate::program::{Graph, NodeId, Outputs, along_directions, diamond_matrices}
 /// The continuous equations of a declaration as operations.
 pub struct Motion<'a> {
     declaration: &'a Declaration,
-    /// The declared `l`, where it is one.
+    /// The declared `l`, if the declaration is continuous.
     tree: Option<&'a Rc<Tree>>,
     names: &'a BTreeMap<Name, SymbolId>,
     derived: &'a Continuous,
@@ -40,7 +40,7 @@ pub struct Motion<'a> {
     momentum: Vec<NodeId>,
     hessian: Vec<NodeId>,
     diamond: Vec<NodeId>,
-    /// Of each factor of the group.
+    /// The diamond of each factor of the group as a matrix.
     diamond_matrices: Vec<Vec<NodeId>>,
     advection: Vec<NodeId>,
 }
@@ -86,7 +86,7 @@ impl<'a> Motion<'a> {
         evaluated(&self.graph, outputs, &inputs(self.names, at))
     }
 
-    /// `l`, as it is declared where it is.
+    /// The declared `l`, or else the derived one.
     fn lagrangian<T: Number>(&self, at: &Values<T>) -> T {
         let derived = || self.values(&self.lagrangian, at).first().copied().unwrap_or(T::UNDEFINED);
         self.tree.map_or_else(derived, |tree| Evaluation::new(at).of(tree).first())
@@ -104,7 +104,7 @@ impl<'a> Motion<'a> {
         values
     }
 
-    /// The same, where attitudes are Cayley transforms.
+    /// The degrees of a point whose attitudes are Cayley transforms.
     fn point_of_degrees(&self, number: &mut impl FnMut() -> Degree) -> Values<Degree> {
         let mut values = self.point(&mut *number);
         let transforms = u64::try_from(degree::attitudes(self.declaration).count()).unwrap_or(u64::MAX / 2);
@@ -112,7 +112,7 @@ impl<'a> Motion<'a> {
         values
     }
 
-    /// At rest.
+    /// The values with zero velocity.
     fn stopped<T: Number>(&self, mut values: Values<T>) -> Values<T> {
         values.extend(velocities(self.group(), &vec![T::ZERO; self.group().dimension()]));
         values
@@ -124,7 +124,7 @@ impl<'a> Motion<'a> {
         (0..self.group().factors().len()).flat_map(of_factor).copied().collect()
     }
 
-    /// As dual numbers, whose velocity changes along `η`.
+    /// Dual numbers whose velocity changes along `η`.
     fn along_velocity<T: Number>(&self, values: &Values<T>, eta: &[T]) -> Values<Dual<T>> {
         let components = self.velocity(values).into_iter().zip(eta);
         let varied: Vec<Dual<T>> = components.map(|(value, &slope)| Dual { value, slope }).collect();
@@ -133,7 +133,7 @@ impl<'a> Motion<'a> {
         values
     }
 
-    /// As dual numbers, whose advected parameters change as a matrix carries them.
+    /// Dual numbers whose advected parameters change by the action of these matrices.
     fn carried_by<T: Number>(&self, values: &Values<T>, element: &[Value<T>]) -> Values<Dual<T>> {
         let [forwards, backwards] = exponentials(element);
         let mut values = moved(self.declaration, &over(values, Dual::constant), [&forwards, &backwards]);
@@ -145,7 +145,7 @@ impl<'a> Motion<'a> {
         values
     }
 
-    /// As power series in `h`, along `F = exp(h ξ̂)`.
+    /// Power series in `h`, along `F = exp(h ξ̂)`.
     fn moving(&self, seed: u64) -> Values<Series> {
         let mut values = over(&self.point(Residue::stream(seed)), Series::constant);
         values.extend(increments(self.group(), &along_motion(self.group(), &self.velocity(&values))));
@@ -153,7 +153,7 @@ impl<'a> Motion<'a> {
         values
     }
 
-    /// How sure it is that all equations hold.
+    /// Checks all equations, and returns a bound on the probability of a wrong result.
     pub fn holds(&self) -> Result<Sureness, Objection> {
         let degrees = |same: &mut Same<Degree>| {
             let mut number = Degree::stream();
@@ -166,7 +166,7 @@ impl<'a> Motion<'a> {
         })
     }
 
-    /// Along a direction of these numbers.
+    /// Compares all equations along a direction of these numbers.
     fn holds_at<T: Number>(
         &self,
         point: &Values<T>,
@@ -186,8 +186,8 @@ impl<'a> Motion<'a> {
         let along_group = algebra(group, &eta);
         let expected = carried(&along_group);
         same("diamond term ∂l/∂w ⋄ w", dot(&at(&self.diamond), &eta), expected)?;
-        // The diamond as a matrix, on the group; and where it is meant along all matrices: not of an attitude that is seen,
-        // of which `RᵀR = I` may have been used.
+        // The diamond is compared along the group; and along all matrices, unless the attitude of a body is a
+        // parameter, for which `RᵀR = I` may have been used.
         let along = |along: &[Value<T>]| {
             let of_factors = self.diamond_matrices.iter().zip(along);
             of_factors.fold(T::ZERO, |sum, (entries, along)| sum + dot(&at(entries), &along.entries))
@@ -203,8 +203,8 @@ impl<'a> Motion<'a> {
         pairs.try_for_each(|(found, varied)| same("change of the momentum with w", found, varied.slope))
     }
 
-    /// How sure it is that `J`, `s` and `V` of the limit of a discrete Lagrangian are what the derivatives of `l` are at
-    /// rest.
+    /// Checks that `J`, `s` and `V` of the limit of a discrete Lagrangian are the derivatives of `l` at rest, and
+    /// returns a bound on the probability of a wrong result.
     pub fn rest_holds(
         &self,
         names: &BTreeMap<Name, SymbolId>,
@@ -233,11 +233,11 @@ impl<'a> Motion<'a> {
         pairs.try_for_each(|(here, there)| same("continuous limit", there, here))
     }
 
-    /// Whether the discrete Lagrangian is `h l(ξ, w) + O(h²)` along `F = exp(h ξ̂)`, at all points that tell; nothing where
-    /// none does. Of lower orders only what depends on the motion counts.
+    /// Whether the discrete Lagrangian is `h l(ξ, w) + O(h²)` along `F = exp(h ξ̂)`, at all points where the series has
+    /// a value; `None` if there is no such point. Terms of lower order count only if they depend on the motion.
     ///
-    /// The field has roots of all numbers, so this says nothing of where `l` has a value. Where a constant is zero in it
-    /// alone, nothing is refused.
+    /// The field has roots of all numbers, so the domain of `l` isn't checked here. A constant that vanishes in the
+    /// field alone is no reason to refuse.
     pub fn has_limit(&self, discrete: &Rc<Tree>) -> Option<bool> {
         if Content::of_tree(discrete).has_multiple {
             return Some(true);
@@ -257,8 +257,8 @@ impl<'a> Motion<'a> {
         told.reduce(|all, one| all && one)
     }
 
-    /// A basis of the directions `ζ` with `⟨μ̇, ζ⟩ = 0` for all values of the parameters: `⟨μ, ζ⟩` is conserved. None where
-    /// a constant is zero in the field alone.
+    /// A basis of the directions `ζ` with `⟨μ̇, ζ⟩ = 0` for all values of the parameters: `⟨μ, ζ⟩` is conserved. Empty
+    /// if a constant vanishes in the field alone.
     pub fn right_symmetries(&self) -> Vec<Vec<Rational>> {
         let (dimension, mut rates) = (self.group().dimension(), Subspace::default());
         let has_multiple = Content::of_graph(&self.graph).has_multiple;
@@ -276,7 +276,7 @@ impl<'a> Motion<'a> {
         rates.null_space(dimension).into_iter().filter_map(small).collect()
     }
 
-    /// What sample values of the parameters show of the second derivative at rest.
+    /// The kinetic part by its second derivative at rest, at sample values of the parameters.
     pub fn kinetic_part(&self) -> KineticPart {
         if Content::of_graph(&self.graph).has_multiple {
             return KineticPart::Regular;

@@ -1,8 +1,8 @@
-//! A bound on the degree of whatever is computed, as a rational function of the numbers that are random.
+//! A bound on the degree of a computed value, as a rational function of the random numbers.
 //!
 //! Schwartz and Zippel: a polynomial that isn't zero vanishes at a random point of a field of `p` elements with a
-//! probability of at most its degree over `p`. Degrees are computed as numbers are, so the bound is that of the very
-//! operations that are compared.
+//! probability of at most its degree over `p`. Degrees are computed by the same operations as the values, so the bound
+//! belongs to the operations that are compared.
 
 use std::ops::Add;
 use std::rc::Rc;
@@ -17,32 +17,32 @@ use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Function, Rational};
 use crate::program::{Graph, Node};
 
-/// A wrong identity passes with a probability below `2⁻ⁿ` for this `n`.
+/// The exponent `n`: a wrong identity may pass with a probability below `2⁻ⁿ`.
 const ENOUGH: u32 = 100;
-/// With more points than these it takes too long.
+/// The limit on points, by the time that they take.
 const MOST_POINTS: u32 = 16;
-/// So many more may be tried, as one may have no value.
+/// The number of additional points, as some may have no value.
 pub const SPARE: u32 = 5;
 
-/// Of a numerator, and of a denominator `Δᵐ Dⁿ r` with the denominator `Δ` that the entries of group elements share, and
-/// one divisor `D`, as sums of quotients by one number have one denominator.
+/// The degrees of a numerator and of a denominator `Δᵐ Dⁿ r`. The denominator `Δ` is common to the entries of group
+/// elements; `D` is one divisor, as sums of quotients by one number have one denominator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Degree {
     is_zero: bool,
     numerator: u64,
-    /// Of `Δᵐ`.
+    /// The degree of `Δᵐ`.
     common: u64,
-    /// Of `Dⁿ`, and which number `D` is.
+    /// The degree of `Dⁿ`, and the name of `D`.
     divisor: (u64, u64),
     rest: u64,
-    /// The largest of the differences of arguments of functions.
+    /// The largest degree of a difference between two arguments of functions.
     argument: u64,
-    /// Of the operations that it comes from: of two numbers with one name one is the other.
+    /// A hash of the operations: two numbers with one name are equal.
     name: u64,
 }
 
 impl Degree {
-    /// Random numbers.
+    /// A stream of random numbers.
     pub fn stream() -> impl FnMut() -> Self {
         let mut number = 0;
         move || {
@@ -51,7 +51,7 @@ impl Degree {
         }
     }
 
-    /// The same, as an entry of a group element.
+    /// The degree of an entry of a group element.
     pub fn of_element(self, degree: u64) -> Self {
         Self { numerator: degree, common: degree, ..self }
     }
@@ -60,7 +60,7 @@ impl Degree {
         Self { name: mixed(mixed(operation ^ a).rotate_left(7) ^ b), ..self }
     }
 
-    /// Both with the divisor of the higher degree alone; the other becomes a part of the rest.
+    /// The pair with the divisor of higher degree alone; the other one is multiplied into the rest.
     fn with_one_divisor(self, other: Self) -> [Self; 2] {
         let (_, kept) = self.divisor.max(other.divisor);
         [self, other].map(|one| match one.divisor {
@@ -90,7 +90,7 @@ operator!(impl Add::add for Degree, |a, b| {
         return Self { argument, ..sum };
     }
     let names = [a.name.min(b.name), a.name.max(b.name)];
-    // Over a common denominator.
+    // The sum has a common denominator.
     let [a, b] = a.with_one_divisor(b);
     let (common, divisor) = (a.common.max(b.common), a.divisor.max(b.divisor));
     let over = |one: Self, rest: u64| {
@@ -137,7 +137,8 @@ impl Number for Degree {
         if exponent < 0 { Self::ONE / power } else { power }
     }
 
-    /// A number that is as good as random, of an exponential maybe its reciprocal, or what follows from these.
+    /// The value of a function: a random number, for an exponential maybe its reciprocal, or a member of a family
+    /// computed from lower ones.
     fn apply(self, function: Function) -> Self {
         let parts = [self.common, self.divisor.0, self.rest];
         let whole = parts.into_iter().fold(self.numerator, u64::saturating_add);
@@ -157,8 +158,8 @@ impl Number for Degree {
     }
 }
 
-/// The degrees of an element by Cayley transforms and of its coordinates; `Δ` is the product of all of their denominators
-/// and of those of as many attitudes that are seen.
+/// The degrees of a product of Cayley transforms and of its coordinates; `Δ` is the product of their denominators and
+/// of those of `attitudes` more transforms.
 pub fn element(group: &Group, attitudes: usize, number: &mut impl FnMut() -> Degree) -> (Element<Degree>, u64) {
     let of_factor = |own: &Group| match own {
         _ if own.is_added => 0,
@@ -182,7 +183,7 @@ pub fn element(group: &Group, attitudes: usize, number: &mut impl FnMut() -> Deg
     (Element { matrices, inverses, coordinates }, degree)
 }
 
-/// The attitudes that are seen, as entries of Cayley transforms.
+/// Replaces attitudes among the parameters by entries of Cayley transforms.
 pub fn set_attitudes(
     declaration: &Declaration,
     values: &mut Values<Degree>,
@@ -196,16 +197,16 @@ pub fn set_attitudes(
     }
 }
 
-/// Which of what is advected are attitudes.
+/// The indices of the advected parameters that are attitudes.
 pub fn attitudes(declaration: &Declaration) -> impl Iterator<Item = usize> {
     let all = 0..declaration.advected.len();
     all.filter(|&index| matches!(declaration.advected_kind(index), FieldKind::Configuration(_)))
 }
 
-/// What is counted of a tree, or of a graph, beside its degrees.
+/// The functions and constants of a tree or of a graph.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Content {
-    /// How many functions are called.
+    /// The number of function calls.
     pub functions: u64,
     /// Whether a constant that isn't zero is zero in the field, or has no value there.
     pub has_multiple: bool,
@@ -245,7 +246,7 @@ impl Add for Content {
     }
 }
 
-/// The largest degrees of all that is compared.
+/// The largest degrees of all comparisons.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Largest {
     numerator: u64,
@@ -259,18 +260,20 @@ impl Largest {
         self.argument = self.argument.max(difference.argument);
     }
 
-    /// How often what differs coincides at a random point, in units of `1/p`: a value, or two of the arguments of that
-    /// many functions, each of which stands for its negative or reciprocal as well.
+    /// A bound on the probability that different values coincide at a random point, in units of `1/p`: those of a
+    /// comparison, or two arguments of that many functions, each of which may be replaced by its negative or
+    /// reciprocal.
     pub fn coincidences(self, functions: u64) -> u64 {
         let pairs = functions.saturating_mul(4).saturating_pow(2);
         self.numerator.saturating_add(pairs.saturating_mul(self.argument))
     }
 
-    /// How many points are compared, and the `n` of how sure that is; `None` where no few points are enough.
+    /// The number of points to compare, and the `n` of the probability `2⁻ⁿ`; `None` if the limit on points is too low.
     ///
-    /// What is wrong passes if at some `n` of the `n + SPARE` points that may be tried it has a value, and that coincides.
-    /// For given ones this has the `n`-th power of the probability for one: of the field's `2⁶¹ − 1` elements none is drawn
-    /// more than 9/8 times as often as another, and `9/8 · 1/(2⁶¹ − 1) < 2⁻⁶⁰`. Of such choices there are `ways`.
+    /// A wrong identity passes if it has a value and coincides at some `n` of the `n + SPARE` points that may be drawn.
+    /// For `n` fixed points the probability is the `n`-th power of that for one: no element of the field's `2⁶¹ − 1` is
+    /// drawn more than 9/8 times as often as another, and `9/8 · 1/(2⁶¹ − 1) < 2⁻⁶⁰`. The number of such choices is
+    /// `ways`.
     pub fn points(self, functions: u64) -> Option<(u32, u32)> {
         let of_point = 60_u32.saturating_sub(u64::BITS - self.coincidences(functions).leading_zeros());
         let mut ways = 1_u64;

@@ -1,4 +1,4 @@
-//! Dual numbers `x + ε x'` over any numbers: exact derivatives of the declared tree, by none of the symbolic rules.
+//! Dual numbers `x + ε x'` over any numbers: exact derivatives of the declared tree, without the symbolic rules.
 
 use super::number::{self, Number, operator};
 use crate::mathematics::symbolic::{Function, Rational};
@@ -23,7 +23,7 @@ operator!(impl<T: Number> Mul::mul for Dual<T>, |a, b| Self {
     slope: a.slope * b.value + a.value * b.slope
 });
 operator!(impl<T: Number> Div::div for Dual<T>, |a, b| {
-    // Once, as in a finite field it is a hundred products.
+    // The reciprocal is computed once: in a finite field it takes a hundred products.
     let reciprocal = T::ONE / b.value;
     let value = a.value * reciprocal;
     Self { value, slope: (a.slope - value * b.slope) * reciprocal }

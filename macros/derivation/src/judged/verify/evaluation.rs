@@ -1,4 +1,4 @@
-//! The declared tree on numbers, without the symbolic form.
+//! The evaluation of the declared tree on numbers, without the symbolic form.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -7,10 +7,10 @@ use super::number::Number;
 use super::value::Value;
 use crate::declared::{Kind, Name, Shape, Tree};
 
-/// The values of names, and of what a `let` has bound.
+/// An evaluation with the values of names, and of parts already evaluated.
 pub struct Evaluation<'a, T = f64> {
     values: &'a BTreeMap<Name, Value<T>>,
-    /// By where they are, which they keep as long as this does.
+    /// The values by address; each entry owns its tree, so that the address stays valid.
     known: BTreeMap<*const Tree, (Rc<Tree>, Value<T>)>,
 }
 

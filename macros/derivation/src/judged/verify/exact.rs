@@ -1,4 +1,4 @@
-//! All identities at random points, as many as are needed.
+//! The comparison of all identities at as many random points as their degrees require.
 
 use super::degree::{self, Content, Degree, Largest, SPARE};
 use super::identities::{Identities, Same};
@@ -9,11 +9,12 @@ use super::series::Series;
 use super::{Objection, Sureness, reversal};
 use crate::declared::Role;
 
-/// Compared without a bound.
+/// The number of points if degrees give no bound.
 pub(super) const POINTS: u32 = 3;
 
 impl Identities<'_> {
-    /// How sure the check is, and whether the Lagrangian is its own adjoint at all points, as [`reversal`] has it.
+    /// The bound on the probability of a wrong result, and whether the Lagrangian is its own adjoint at all points, as
+    /// defined by [`reversal`].
     pub fn confirmed(&self) -> Result<(Sureness, [bool; 3]), Objection> {
         let (group, mut reversed) = (&self.of.declaration.group, [true; 3]);
         let of_field = |seed: u64| {
@@ -39,7 +40,7 @@ impl Identities<'_> {
         Ok((sureness, reversed))
     }
 
-    /// Reversal is asked while the stand-ins are those of the point.
+    /// Compares all identities and the reversal at one point, while the functions of its stream are set.
     fn holds_at<T: Number>(
         &self,
         element: Element<T>,
@@ -66,7 +67,7 @@ impl Identities<'_> {
     }
 }
 
-/// Whether both are one number.
+/// Compares two numbers.
 pub(super) fn same<T: Number>(term: &'static str, found: T, expected: T) -> Result<(), Objection> {
     match (found.is_defined(), expected.is_defined()) {
         (_, false) => Err(Objection::NoValue),
@@ -76,7 +77,7 @@ pub(super) fn same<T: Number>(term: &'static str, found: T, expected: T) -> Resu
     }
 }
 
-/// Compares at as many points as the degrees of what is compared ask for, and says how sure that is.
+/// Compares at as many points as the degrees require, and returns the bound on the probability of a wrong result.
 pub(super) fn certified(
     content: Content,
     degrees: impl FnOnce(&mut Same<Degree>) -> Result<(), Objection>,
@@ -88,7 +89,7 @@ pub(super) fn certified(
         Ok(())
     });
     let found = compared.ok().and_then(|()| largest.points(content.functions));
-    // Nothing may have a value where a divisor is zero in the field alone.
+    // All points may lack a value if a divisor vanishes in the field alone.
     confirmed(found.map_or(POINTS, |(points, _)| points), content.has_multiple, point)?;
     Ok(match found {
         _ if content.has_multiple => Sureness::Multiple,
@@ -97,8 +98,8 @@ pub(super) fn certified(
     })
 }
 
-/// Whether what was derived agrees with the declaration at that many points; a point without values is no agreement, unless
-/// there may be none.
+/// Whether the derivation agrees with the declaration at that many points. Points without values don't count, unless
+/// `may_be_none` allows that no point has one.
 fn confirmed(
     count: u32,
     may_be_none: bool,

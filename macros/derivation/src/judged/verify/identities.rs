@@ -1,8 +1,9 @@
-//! What has to hold of a derivation, in numbers of any kind.
+//! The identities of a derivation, in numbers of any kind.
 //!
-//! A covector is compared along one random direction `v` and a Jacobian times `v`: both are linear in it, so that an
-//! identity in `v` is one of every component. First derivatives are those of dual numbers `x + ε x′`, in which
-//! `(I + ε v̂) F` is an element of the group to the order that counts; second ones are those of what has been compared before.
+//! A covector is compared along one random direction `v`, and a Jacobian by its product with `v`: both are linear in
+//! it, so an identity in `v` holds for every component. First derivatives use dual numbers `x + ε x′`, where
+//! `(I + ε v̂) F` is an element of the group to first order; second derivatives are first derivatives of terms already
+//! compared.
 
 use std::collections::BTreeMap;
 use std::ops::Add as _;
@@ -24,19 +25,19 @@ use crate::program::{
     components, square,
 };
 
-/// Values of symbols.
+/// The values of symbols.
 type Inputs<T> = BTreeMap<SymbolId, Value<T>>;
 
-/// Compares what was found with what is expected, of a term.
+/// The comparison of a found value with an expected one, for a named term.
 pub type Same<'a, T> = dyn FnMut(&'static str, T, T) -> Result<(), Objection> + 'a;
 
 /// The derived terms as operations.
 pub struct Terms {
     pub graph: Graph,
-    /// Made first, so that it is as it would be alone in the graph.
+    /// The Jacobian, built first, so that its nodes are those of a graph with nothing else in it.
     pub jacobian: Vec<NodeId>,
     pub momentum: Vec<NodeId>,
-    /// Of a Lagrangian alone.
+    /// The term is empty for a force, like those below.
     pub right: Vec<NodeId>,
     pub left: Vec<NodeId>,
     pub diamond: Vec<NodeId>,
@@ -59,14 +60,14 @@ impl Terms {
     }
 }
 
-/// A declaration with all that was derived of it.
+/// A declaration with its derivation.
 pub struct Identities<'a> {
     pub of: Subject<'a>,
     pub kernel: &'a Kernel,
     pub stages: Stages,
     pub terms: Terms,
     pub derivatives: Option<Derivatives>,
-    /// `J`, `s` and `V` of the limit, where they have derivatives.
+    /// `J`, `s` and `V` of the limit, if derivatives of a step are requested.
     limit: Option<Outputs<[Vec<NodeId>; 3]>>,
 }
 
@@ -79,14 +80,14 @@ struct Point<'a, T> {
     element: Vec<Value<T>>,
     exponentials: [Vec<Value<Dual<T>>>; 2],
     turned: Element<Dual<T>>,
-    /// Another covector than that of the solution.
+    /// A random covector, different from that of the solution.
     target: Vec<T>,
     /// Weights of the momenta at both ends, `u` and `p`.
     weights: [Vec<T>; 2],
 }
 
 impl<T: Number> Point<'_, T> {
-    /// Whether the rows of a matrix, along the direction, are these slopes.
+    /// Whether the rows of a matrix, times the direction, are these slopes.
     fn are_slopes(
         &self,
         term: &'static str,
@@ -99,10 +100,10 @@ impl<T: Number> Point<'_, T> {
     }
 }
 
-/// Along the direction of a point, what the declaration says.
+/// The declared derivatives along the direction of a point.
 struct DeclaredValues<T> {
     momentum: T,
-    /// At the end of the step.
+    /// The momentum at the end of the step.
     left: T,
 }
 
@@ -117,7 +118,7 @@ impl<'a> Identities<'a> {
         Self { of, kernel, stages: kernel.stages(), terms, derivatives, limit }
     }
 
-    /// Of the declaration and of what was derived.
+    /// The functions and constants of the declaration and of all graphs.
     pub fn content(&self) -> Content {
         let derivatives = self.derivatives.iter().map(|all| &all.graph);
         let limit = self.limit.iter().map(|(graph, _)| graph);
@@ -125,8 +126,8 @@ impl<'a> Identities<'a> {
         graphs.map(Content::of_graph).fold(Content::of_tree(self.of.tree), Content::add)
     }
 
-    /// Whether the momentum and its Jacobian have values where a step begins: in the field nothing but a division by zero
-    /// and a root or a logarithm of zero hasn't.
+    /// Whether the momentum and its Jacobian have values at the identity, where a step begins: in the field only a
+    /// division by zero and a root or a logarithm of zero have none.
     pub fn are_smooth(&self) -> bool {
         let identity = Element::identity(&self.of.declaration.group);
         let sample: Sample<Residue> = Sample::at(self.of, identity, &mut Residue::stream(1));
@@ -161,7 +162,8 @@ impl<'a> Identities<'a> {
         Evaluation::new(values).of(self.of.tree).first()
     }
 
-    /// The declared work along the direction, of displacements at either end alone, which is that of both.
+    /// The declared work along the direction, of the displacement at each end alone; their sum must be the work of
+    /// both.
     fn declared_work<T: Number>(&self, point: &Point<T>, same: &mut Same<T>) -> Result<DeclaredValues<T>, Objection> {
         let group = &self.of.derived.group;
         let work = |before: T, after: T| {
@@ -178,7 +180,7 @@ impl<'a> Identities<'a> {
         Ok(DeclaredValues { momentum: -before, left: after })
     }
 
-    /// Both momentum maps, the diamond and the energy are derivatives of the declared Lagrangian.
+    /// Compares both momentum maps, the diamond and the energy with derivatives of the declared Lagrangian.
     fn lagrangian_holds<T: Number>(
         &self,
         point: &Point<T>,
@@ -212,7 +214,8 @@ impl<'a> Identities<'a> {
         Ok(DeclaredValues { momentum: right + carried, left })
     }
 
-    /// The momentum is what the declaration says, and the Jacobian its derivative; returns the momentum.
+    /// Compares the momentum with the declaration, and the Jacobian with the momentum's derivative; returns the
+    /// momentum.
     fn momentum_holds<T: Number>(
         &self,
         point: &Point<T>,
@@ -229,7 +232,7 @@ impl<'a> Identities<'a> {
         Ok(momentum)
     }
 
-    /// The stages of the step, as a stepper calls them.
+    /// Compares the stages of the step, evaluated in a stepper's order.
     fn step_holds<T: Number>(
         &self,
         point: &Point<T>,
@@ -238,7 +241,7 @@ impl<'a> Identities<'a> {
         same: &mut Same<T>,
     ) -> Result<(), Objection> {
         let (sample, kernel) = (point.sample, self.kernel);
-        // The solve is for `F` in `U(F) = a` with `a = μ + k₀`, which mustn't have it.
+        // The solve finds `F` in `U(F) = a` with `a = μ + k₀`, which mustn't depend on `F`.
         if kernel.kick_before.iter().any(|&kick| kernel.graph.stage(kick) > Stage::Step) {
             return Err(Objection::Disagrees("kick before the solve"));
         }
@@ -249,14 +252,14 @@ impl<'a> Identities<'a> {
         let (before, after) = (kick(&kernel.kick_before), kick(&kernel.kick_after));
         let change = kernel.kick_derivative.as_ref().map_or_else(Vec::new, |change| kick(change));
         let jacobian = iteration(&self.stages.system[dimension..]);
-        // Emitted with the residual alone, where there is one.
+        // The moved part of the diamond is emitted with the residual alone, if the Jacobian is expensive.
         let moved = if kernel.jacobian_is_expensive() {
             iteration(&kernel.moved)
         } else {
             evaluated(&kernel.graph, &kernel.moved, &inputs)
         };
         let a: Vec<T> = momentum.iter().zip(before).map(|(&momentum, kick)| momentum + kick).collect();
-        // (h/2) (1 + |y|²)ⁿ (U − a), whose factor is positive.
+        // The residual is (h/2) (1 + |y|²)ⁿ (U − a), whose factor is positive.
         let square = dot(coordinates, coordinates);
         let half = sample.values.get(&Name::Step).map_or(T::UNDEFINED, Value::first) * T::of(Rational::new(1, 2));
         let factor = (0..kernel.denominators).fold(half, |factor, _| factor * (T::ONE + square));
@@ -265,7 +268,7 @@ impl<'a> Identities<'a> {
             same("Newton residual", found.value, factor * (a[k] - point.target[k]))?;
         }
         point.are_slopes("Newton Jacobian of the step", &jacobian, &residual, same)?;
-        // μ⁺ = Ad*_F a + k₁⁺, and what the gradient gives beside the residual is k₁⁺ before Ad*_F.
+        // μ⁺ = Ad*_F a + k₁⁺. The moved part of the diamond is k₁⁺ before Ad*_F.
         let turned = components_of(group, &products(&products(matrices, &point.element), inverses));
         let after = dot(&after, &point.direction);
         same("transported momentum", dot(&a, &turned) + after, declared.left)?;
@@ -283,8 +286,8 @@ impl<'a> Identities<'a> {
         Ok(())
     }
 
-    /// A kick and an iteration as a stepper calls them: with their own arguments, and of all else what the stages before them
-    /// hand on.
+    /// A kick and an iteration as a stepper calls them: with their own arguments, and the values that the stages before
+    /// them pass on.
     fn called<T: Number>(&self, inputs: &Inputs<T>) -> [impl Fn(&[NodeId]) -> Vec<T>; 2] {
         let (graph, Stages { constants, terms, .. }) = (&self.kernel.graph, &self.stages);
         let of = |is_meant: fn(Stage) -> bool| -> Inputs<T> {
@@ -303,7 +306,7 @@ impl<'a> Identities<'a> {
             .map(|(inputs, given)| move |outputs: &[NodeId]| evaluated_from(graph, outputs, &inputs, &given))
     }
 
-    /// With what is carried along, a covector for that of the solution and a velocity.
+    /// The inputs of all stages: the sample, the moved parameters, a random covector and a velocity.
     pub fn inputs_of_stages<T: Number>(&self, sample: &Sample<T>, [target, along]: [&[T]; 2]) -> Inputs<T> {
         let (mut inputs, directions) = (sample.inputs(), &self.of.derived.directions);
         let carried = sample.moved([&sample.element.inverses, &sample.element.matrices]);
@@ -314,7 +317,7 @@ impl<'a> Identities<'a> {
         inputs
     }
 
-    /// In the coordinates of the Newton system: `y + ε v` or `exp(ε v̂) F`.
+    /// A displacement in the coordinates of the Newton system: `y + ε v` or `exp(ε v̂) F`.
     fn displaced<T: Number>(&self, point: &Point<T>) -> Inputs<Dual<T>> {
         let (dual, directions) = (&point.dual, &self.of.derived.directions);
         let mut inputs = if self.kernel.in_increment {
@@ -330,8 +333,8 @@ impl<'a> Identities<'a> {
         inputs
     }
 
-    /// The momenta at both ends with their derivatives, along a turn of the increment, along `δw = −v̂·w`, and along a random
-    /// change of all numbers; and the gradient of a kick, along the last two.
+    /// Compares the derivatives of the momenta at both ends, along a left variation of the increment, along
+    /// `δw = −v̂·w`, and along a random change of all numbers; and the gradient of a kick, along the last two.
     fn derivatives_hold<T: Number>(
         &self,
         point: &Point<T>,
@@ -376,7 +379,7 @@ impl<'a> Identities<'a> {
             [seen_slopes, varied_slopes].map(|slopes| dot(p, &slopes[u.len()..]) - dot(u, &slopes[..u.len()]));
         gradient_holds("gradient of a step", &all.gradient, &plain, adjoint)?;
         let (Some(of_kick), Some(limit)) = (&all.of_kick, &self.limit) else { return Ok(()) };
-        // ⟨u, D_v k⟩ + ⟨r, k − J u⟩, of what was compared before.
+        // ⟨u, D_v k⟩ + ⟨r, k − J u⟩ consists of terms already compared.
         let (r, directions) = (&point.target, &self.of.derived.directions);
         let mut inputs = plain.clone();
         inputs.insert(directions.coordinates, Value::column(r));
@@ -391,7 +394,7 @@ impl<'a> Identities<'a> {
         gradient_holds("gradient of a kick", of_kick, &inputs, kick)
     }
 
-    /// With a random change of all numbers that a step is differentiated by, as far as their kinds let them change.
+    /// A random change of all numbers that a step is differentiated by, within their kinds.
     fn varied<T: Number>(
         &self,
         dual: &Sample<Dual<T>>,
@@ -421,11 +424,11 @@ fn slopes<T>(values: Vec<Dual<T>>) -> Vec<T> {
     values.into_iter().map(|one| one.slope).collect()
 }
 
-/// Those of the numbers of the parameters, and of what is advected.
+/// The changes of the numbers of the parameters, and of the advected parameters.
 struct Changes<T>([Vec<T>; 2]);
 
 impl<T: Number> Changes<T> {
-    /// How as many outputs change, by their derivatives.
+    /// The changes of `outputs` values, by their derivatives.
     fn along(&self, by: &ByNumbers, outputs: usize, values: impl Fn(&[NodeId]) -> Vec<T>) -> Vec<T> {
         let nodes: Vec<NodeId> = by.iter().flatten().flat_map(|(_, nodes)| nodes).copied().collect();
         let changes = by.iter().zip(&self.0).flat_map(|(by, all)| by.iter().map(|(number, _)| all[*number]));

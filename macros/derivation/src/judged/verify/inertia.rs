@@ -1,4 +1,4 @@
-//! The kinetic part at the identity: stationary, smooth and not singular, in the finite field, and its sign at sample values
+//! The kinetic part at the identity: stationary, smooth and regular in the finite field, and its sign at sample values
 //! of the parameters.
 
 use std::collections::BTreeMap;
@@ -11,29 +11,29 @@ use crate::declared::{Declaration, FieldKind, Name};
 use crate::mathematics::symbolic::Rational;
 use crate::program::{Graph, NodeId, components, square};
 
-/// What sample values of the parameters show of `K(F)` in `l_d = K(F)/h + …`.
+/// Properties of `K(F)` in `l_d = K(F)/h + …` at sample values of the parameters.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum KineticPart {
-    /// Its first derivative vanishes, and the second, `J`, is invertible for some.
+    /// The first derivative vanishes, and the second, `J`, is invertible at some values.
     Regular,
-    /// Its first derivative doesn't vanish; it would if these fields were symmetric.
+    /// The first derivative doesn't vanish; it would if these fields were symmetric.
     NotStationary(Vec<usize>),
-    /// `J` is singular for all; the generators along which there is no kinetic energy at all.
+    /// `J` is singular at all values; the generators along which there is no kinetic energy.
     Singular(Vec<usize>),
-    /// `J` isn't a number for any: the kinetic part has no second derivative.
+    /// `J` has no value at any: the kinetic part has no second derivative.
     NotSmooth,
-    /// `J` is negative for all.
+    /// `J` is negative at all values.
     Negative,
 }
 
-/// Looks at the first and the second derivative at several values of the parameters.
+/// The kinetic part by its first and second derivatives at several values of the parameters.
 pub fn kinetic_part(of: Subject) -> KineticPart {
     let Subject { declaration, lowered, derived, .. } = of;
     let samples: Vec<Sample> = Sample::draws(of).take(SAMPLES).collect();
     let (mut graph, none) = (Graph::default(), BTreeMap::new());
     let slope = components(&mut graph, derived, &none, &derived.limit.slope);
     let inertia = square(&mut graph, derived, &none, &derived.limit.inertia);
-    // What has no value is said when the terms are checked, and of a multiple of the prime the field says nothing.
+    // Missing values are reported with the terms, and the field can't judge multiples of the prime.
     if samples.is_empty() || Content::of_graph(&graph).has_multiple {
         return KineticPart::Regular;
     }
@@ -56,8 +56,8 @@ pub fn kinetic_part(of: Subject) -> KineticPart {
     classified(declaration, &is_used, inertias.collect(), &exact)
 }
 
-/// What the second derivative in the field shows, and what its sign is at sample values; `is_used` says which names it
-/// depends on.
+/// The kinetic part by its second derivative in the field, and by its sign at sample values. `is_used` selects the
+/// names that it depends on.
 pub(super) fn classified(
     declaration: &Declaration,
     is_used: &dyn Fn(Name) -> bool,
@@ -78,7 +78,7 @@ pub(super) fn classified(
     }
 }
 
-/// Whether all that the kinetic part depends on is one field whose type promises a positive matrix.
+/// Whether the kinetic part depends on one field alone, whose type promises a positive matrix, or on none.
 fn has_a_sign(declaration: &Declaration, is_used: &dyn Fn(Name) -> bool) -> bool {
     let is_advected = (0..declaration.advected.len()).any(|index| is_used(Name::Advected(index)));
     let used: Vec<_> = (0..declaration.fields.len()).filter(|&index| is_used(Name::Field(index))).collect();
@@ -93,7 +93,7 @@ fn has_a_sign(declaration: &Declaration, is_used: &dyn Fn(Name) -> bool) -> bool
     }
 }
 
-/// Whether a symmetric matrix is positive definite: whether elimination meets positive pivots alone.
+/// Whether a symmetric matrix is positive definite: all pivots of elimination are positive.
 fn is_positive(matrix: &Value) -> bool {
     let (size, mut rest) = (matrix.rows, matrix.clone());
     (0..size).all(|k| {
@@ -107,13 +107,13 @@ fn at_identity<T: Number>(sample: &Sample<T>, graph: &Graph, outputs: &[NodeId])
     evaluated(graph, outputs, &sample.inputs_at(&Element::identity(&sample.of.derived.group), &sample.values))
 }
 
-/// Whether a field is a matrix of which nothing is known.
+/// Whether a field is a matrix without known symmetry.
 fn is_square(declaration: &Declaration, field: usize) -> bool {
     matches!(declaration.fields.get(field), Some(field) if matches!(field.kind, FieldKind::Matrix(_)))
 }
 
 impl Sample<'_, Residue> {
-    /// The same with some fields replaced by their symmetric parts.
+    /// The sample with some fields replaced by their symmetric parts.
     fn with_symmetric(&self, fields: &[usize]) -> Self {
         let (mut sample, half) = (self.clone(), Residue::of(Rational::new(1, 2)));
         for &field in fields {

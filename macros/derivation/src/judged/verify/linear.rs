@@ -1,9 +1,9 @@
-//! Linear equations in the field, where a pivot is zero or isn't.
+//! Linear equations in the field, where pivots are exactly zero or not.
 
 use super::number::Number as _;
 use super::residue::Residue;
 
-/// Rows with the places of their first entries, which are one, and zero in the others.
+/// A reduced echelon form: rows with the columns of their pivots, which are one, and zero in the other rows.
 #[derive(Default)]
 pub(super) struct Subspace(Vec<(usize, Vec<Residue>)>);
 
@@ -13,7 +13,7 @@ fn without(row: &mut [Residue], at: usize, unit: &[Residue]) {
 }
 
 impl Subspace {
-    /// Adds a row; false where it is in the space.
+    /// Adds a row; false if it depends on the rows before.
     pub(super) fn extend(&mut self, mut row: Vec<Residue>) -> bool {
         for (at, unit) in &self.0 {
             without(&mut row, *at, unit);
@@ -28,7 +28,7 @@ impl Subspace {
         true
     }
 
-    /// A basis of the vectors that all rows vanish on.
+    /// A basis of the null space of the rows.
     pub(super) fn null_space(&self, dimension: usize) -> Vec<Vec<Residue>> {
         let free = (0..dimension).filter(|column| self.0.iter().all(|(at, _)| at != column));
         let vector = |free: usize| {

@@ -6,12 +6,12 @@
 //!
 //! # Why that is enough
 //!
-//! 1. *Points.* `F`, and each attitude that is seen, is a product of Cayley transforms with random numbers for coordinates
-//!    ([`Element::by_cayley`]), a symmetric matrix is `Z Zᵀ`, and all else is random. So each relation that may be used,
-//!    `FᵀF = I`, `det F = 1`, `Jᵀ = J`, a last coordinate of one, holds at the point. Where `E³ = c E` the transform of `tE`
-//!    is in the one-parameter group of `E`, and `(t_1, …, t_n) ↦ cay(t_1 E_1) ⋯ cay(t_n E_n)` has the derivative `2 E_k` at
-//!    zero. So the points fill a neighbourhood of the identity, and are dense in the closure, in Zariski's sense, of the
-//!    connected group: a rational function that vanishes at all of them vanishes on it.
+//! 1. *Points.* `F`, and each attitude among the parameters, is a product of Cayley transforms with random numbers for
+//!    coordinates ([`Element::by_cayley`]), a symmetric matrix is `Z Zᵀ`, and all else is random. So each relation that
+//!    may be used, `FᵀF = I`, `det F = 1`, `Jᵀ = J`, a last coordinate of one, holds at the point. Where `E³ = c E` the
+//!    transform of `tE` is in the one-parameter group of `E`, and `(t_1, …, t_n) ↦ cay(t_1 E_1) ⋯ cay(t_n E_n)` has the
+//!    derivative `2 E_k` at zero. So the points fill a neighbourhood of the identity, and are dense in the closure, in
+//!    Zariski's sense, of the connected group: a rational function that vanishes at all of them vanishes on it.
 //! 2. *Directions.* `(I + ε v̂) F` with `ε² = 0` is an element of the group to the order that counts. Dual numbers are exact,
 //!    so a slope is the derivative along the group.
 //! 3. *Functions.* Let each call `f(u)` stand for a new variable, one for each `f` and each value of `u`, with the relations of
@@ -30,16 +30,16 @@
 //!    having no value.
 //! 5. *What runs.* The graph of the [`Kernel`] is compared, stage by stage as a stepper calls it, with the derivatives of the
 //!    terms that were compared before. A step needs `U(F) = μ + k₀` and `μ⁺ = Ad*_F (μ + k₀) + k₁⁺`: any `k₀` will do that
-//!    doesn't depend on `F`, and that it doesn't is asked of the graph. The derivatives of a step are compared as the graph that
-//!    is emitted; by the entries of an attitude that is seen, with those of its momenta and not of the declaration, as
-//!    `RᵀR = I` may have been used. Tokens are written from these graphs, and those of the momentum's Jacobian from the graph
-//!    that was compared. Those of other single terms are written from graphs that the same code builds again.
+//!    doesn't depend on `F`, which is checked on the graph. The derivatives of a step are compared as the graph that is
+//!    emitted; by the entries of an attitude among the parameters, with those of its momenta and not of the declaration,
+//!    as `RᵀR = I` may have been used. Tokens are written from these graphs, and those of the momentum's Jacobian from
+//!    the graph that was compared. Those of other single terms are written from graphs that the same code builds again.
 //!
-//! # What is taken for right
+//! # Assumptions
 //!
-//! That the tree is what the tokens mean, which a test asks of random declarations whose text it evaluates apart; how a
-//! group moves what is advected, which is written here a second time; the library's own Cayley map, transport and solves;
-//! and the writing of tokens.
+//! The tree has the meaning of the tokens, which a test checks on random declarations by evaluating their text
+//! separately. The action of a group on advected parameters, which is written here a second time, the library's own
+//! Cayley map, transport and solves, and the writing of tokens are right.
 //!
 //! A group whose generators' multiples have no Cayley transforms in it has points that are power series instead,
 //! `exp(t v̂_1) ⋯ exp(t v̂_n)`. There all is compared to the order to which series are known, without rounding, and without a
@@ -88,20 +88,20 @@ pub use sample::Subject;
 use sample::{Element, Sample};
 use value::Value;
 
-/// With real numbers so many points are looked at, of so many that are tried.
+/// The number of points with real numbers, and the number of draws that may be tried for them.
 const SAMPLES: usize = 3;
 const DRAWS: u64 = 60;
 
 type Values<T> = BTreeMap<Name, Value<T>>;
 
-/// The same in other numbers.
+/// The values in other numbers.
 fn over<T: Number, U>(values: &Values<T>, of: impl Fn(T) -> U) -> Values<U> {
     values.iter().map(|(name, value)| (*name, value.over(&of))).collect()
 }
 
-/// Checks all that was derived. The error is the first term that disagrees.
+/// Verifies the whole derivation. The error is the first term that disagrees.
 pub fn verify(of: Subject, kernel: &Kernel) -> Result<Findings, Objection> {
-    // Whether it has a value is asked of real numbers: the field has roots of all.
+    // Real numbers decide whether there is a value: the field has roots of all its elements.
     if Sample::draws(of).next().is_none() {
         return Err(Objection::NoValue);
     }
@@ -124,7 +124,7 @@ fn evaluated<T: Number>(graph: &Graph, outputs: &[NodeId], inputs: &BTreeMap<Sym
     evaluated_from(graph, outputs, inputs, &BTreeMap::new())
 }
 
-/// The same where some are known.
+/// The values of operations, some of which are known.
 fn evaluated_from<T: Number>(
     graph: &Graph,
     outputs: &[NodeId],
@@ -156,7 +156,7 @@ fn dot<T: Number>(a: &[T], b: &[T]) -> T {
     a.iter().zip(b).fold(T::ZERO, |sum, (&x, &y)| sum + x * y)
 }
 
-/// Of each factor its share of the components.
+/// The components of each factor.
 fn shares<'a, T>(group: &'a Group, mut components: &'a [T]) -> impl Iterator<Item = (&'a Group, &'a [T])> {
     group.factors().iter().map(move |own| {
         let (share, rest) = components.split_at(own.dimension());
@@ -182,7 +182,7 @@ fn components_of<T: Number>(group: &Group, elements: &[Value<T>]) -> Vec<T> {
     group.factors().iter().zip(elements).flat_map(of_factor).collect()
 }
 
-/// Numbers between zero and one.
+/// A stream of numbers between zero and one.
 fn stream(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed;
     // A linear congruence (Knuth's MMIX constants) is random enough for sample points.
@@ -193,7 +193,7 @@ fn stream(seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// The exponential, by its series, of an element of the algebra that is small or a power of `h`.
+/// The exponential series of an element of the algebra that is small or a power of `h`.
 fn exponential<T: Number>(x: &Value<T>) -> Value<T> {
     let one = Value::identity(x.rows);
     let next = |(power, sum): (Value<T>, Value<T>), order| {
@@ -205,21 +205,21 @@ fn exponential<T: Number>(x: &Value<T>) -> Value<T> {
     (1..20).fold((one.clone(), one), next).1
 }
 
-/// `cay(±x) = (I ∓ x)⁻¹ (I ± x) = I + 2 (x² ± x)/(1 − c)` of `x³ = c x`.
+/// `cay(±x) = (I ∓ x)⁻¹ (I ± x) = I + 2 (x² ± x)/(1 − c)` if `x³ = c x`.
 fn cayley<T: Number>(x: &Value<T>, c: T) -> [Value<T>; 2] {
     let (square, share) = (x.times(x), (T::ONE + T::ONE) / (T::ONE - c));
     let of = |x: &Value<T>| Value::identity(x.rows).plus(&square.plus(x).map(|entry| entry * share));
     [of(x), of(&x.map(|entry| -entry))]
 }
 
-/// The increments of all factors, of their matrices.
+/// The increments of all factors, from their matrices.
 fn increments<T: Number>(group: &Group, matrices: &[Value<T>]) -> Values<T> {
     let value = |(own, matrix): (&Group, &Value<T>)| if own.is_added { translation(matrix) } else { matrix.clone() };
     let values = group.factors().iter().zip(matrices).map(value);
     values.enumerate().map(|(factor, value)| (Name::Increment(factor), value)).collect()
 }
 
-/// All fields, and what is advected.
+/// Values of all fields and advected parameters.
 fn parameters<T: Number>(declaration: &Declaration, number: &mut impl FnMut() -> T) -> Values<T> {
     variables(declaration).concat().into_iter().map(|(name, kind)| (name, parameter(kind, number))).collect()
 }
@@ -234,7 +234,7 @@ fn displacements<T: Number>(group: &Group, number: &mut impl FnMut() -> T) -> Va
     of_factor.map(|(name, kind)| (name, parameter(kind, number))).collect()
 }
 
-/// The velocities of all factors, of the components of all.
+/// The velocities of all factors, from their components.
 fn velocities<T: Number>(group: &Group, components: &[T]) -> Values<T> {
     let each = shares(group, components).enumerate();
     each.map(|(factor, (_, own))| (Name::Velocity(factor), Value::column(own))).collect()
@@ -245,7 +245,7 @@ fn translation<T: Number>(matrix: &Value<T>) -> Value<T> {
     Value::new(matrix.rows - 1, 1, |row, _| matrix.at(row, matrix.rows - 1))
 }
 
-/// A value that has what a field's type promises.
+/// A random value with the properties of a field's type.
 fn parameter<T: Number>(kind: FieldKind, number: &mut impl FnMut() -> T) -> Value<T> {
     let Shape::Matrix(rows, columns) = kind.shape() else {
         return Value::scalar(T::of(Rational::new(1, 2)) + number());

@@ -1,4 +1,5 @@
-//! What a declared expression can be evaluated in: floating-point numbers, a finite field, and what is made of these.
+//! The numbers that a declared expression can be evaluated in: floating-point numbers, a finite field, and dual numbers
+//! and power series over these.
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -11,7 +12,7 @@ pub trait Number:
 {
     const ZERO: Self;
     const ONE: Self;
-    /// What an operation gives that has no value; what is computed with it has none either.
+    /// The result of an operation without a value; every operation on it is undefined too.
     const UNDEFINED: Self;
 
     fn of(value: Rational) -> Self;
@@ -22,7 +23,7 @@ pub trait Number:
 
     fn is_defined(self) -> bool;
 
-    /// Whether it is zero, or all that is known of it is.
+    /// Whether it is zero, as far as it is known.
     fn is_zero(self) -> bool;
 }
 
@@ -68,7 +69,7 @@ impl Number for f64 {
     }
 }
 
-/// By squaring.
+/// A power by repeated squaring.
 pub fn raised<T: Number>(x: T, exponent: u64) -> T {
     let (mut power, mut square) = (T::ONE, x);
     for bit in 0..u64::BITS - exponent.leading_zeros() {
@@ -80,7 +81,7 @@ pub fn raised<T: Number>(x: T, exponent: u64) -> T {
     power
 }
 
-/// `f′(x)`, with the value of `f` there.
+/// `f′(x)`, where `value` returns `f(x)`.
 pub fn derivative<T: Number>(function: Function, x: T, value: impl FnOnce() -> T) -> T {
     let of = |numerator, denominator| T::of(Rational::new(numerator, denominator));
     match function {
@@ -97,7 +98,7 @@ pub fn derivative<T: Number>(function: Function, x: T, value: impl FnOnce() -> T
     }
 }
 
-/// The members of a family that follow from its first ones, from these.
+/// A member of a family of functions, computed from lower members if it isn't one of the first two.
 ///
 /// ```text
 /// c_{k+2} = (1/k! − c_k)/q

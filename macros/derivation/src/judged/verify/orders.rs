@@ -1,7 +1,7 @@
-//! How each term of a declared expression goes as `h → 0`, with `F = exp(h ξ̂)` and numbers for all else.
+//! The order of each term of a declared expression as `h → 0`, with `F = exp(h ξ̂)` and numbers for all other names.
 //!
-//! Of a Lagrangian only differences count: what is the same for all `F` and `w` changes no equation. A potential is what
-//! depends on `w` where `F = I`, and goes like `h`, as does the work of a force.
+//! Only differences of a Lagrangian count: a term that is constant in `F` and `w` changes no equation. A potential is a
+//! term that depends on `w` at `F = I`, and is of the first order in `h`, as is the work of a force.
 
 use std::rc::Rc;
 
@@ -16,42 +16,42 @@ use super::{displacements, increments, parameters, velocities};
 use crate::declared::{Declaration, Kind, Name, Role, Shape, Tree, parts};
 use crate::mathematics::symbolic::Function;
 
-/// A sum may be taken apart as often; what is shared by `let`s is written down more often than a person would.
+/// The limit on splitting sums; `let`s can repeat shared terms more often than a person would.
 const MOST_SPLITS: usize = 200;
 
-/// A sum isn't looked for below more factors than these.
+/// The limit on factors around a sum.
 const MOST_FACTORS: usize = 10;
 
-/// What is wrong with a term.
+/// A mistake in a term.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TermMistake {
-    /// A divisor is zero, whatever the parameters.
+    /// A divisor is zero for all parameters.
     ZeroDivisor,
-    /// A root or a logarithm of what is zero, whatever the parameters.
+    /// The argument of a root or a logarithm is zero for all parameters.
     FunctionOfZero,
-    /// A root of an odd power of `h`, or a logarithm of any.
+    /// A root of an odd power of `h`, or a logarithm of any power.
     FunctionOfStep,
-    /// A potential goes like that power of `h`, not like the first.
+    /// A potential is of this order in `h`, not of the first.
     Potential(i32),
-    /// A part with `F` alone goes like that power of `h` along a motion, and vanishes.
+    /// A part with `F` alone is of this order in `h` along a motion, and vanishes.
     Vanishing(i32),
-    /// A part goes like that power of `h` with `F` held fixed, below −1.
+    /// A part is of this order in `h` for a fixed `F`, below −1.
     TooSingular(i32),
-    /// It is the same for all `F`.
+    /// The term doesn't depend on `F`.
     Constant,
-    /// It is zero for all `F` and all parameters.
+    /// The term is zero for all `F` and all parameters.
     Zero,
     /// The terms with `F` alone are together the same for all `F`.
     Cancelling,
     /// The whole Lagrangian is the same for all `F`, velocities and advected parameters.
     NoMotion,
-    /// Virtual work goes like that power of `h`, not like the first.
+    /// Virtual work is of this order in `h`, not of the first.
     Work(i32),
-    /// There is no work, whatever the parameters.
+    /// The work is zero for all parameters.
     NoWork,
 }
 
-/// The mistakes of the terms, at their places; none where a constant is zero in the field alone.
+/// The mistakes of the terms, at their places; empty if a constant vanishes in the field alone.
 pub fn term_mistakes(declaration: &Declaration, tree: &Rc<Tree>) -> Vec<(Rc<Tree>, TermMistake)> {
     if Content::of_tree(tree).has_multiple {
         return Vec::new();
@@ -62,7 +62,7 @@ pub fn term_mistakes(declaration: &Declaration, tree: &Rc<Tree>) -> Vec<(Rc<Tree
         return vec![found];
     }
     let is_continuous = declaration.continuous.is_some();
-    // An `l_d` that a rule makes of an `l` goes as it should; a share of it needn't.
+    // The discretisation of an `l` has the right order as a whole; its terms needn't.
     if is_continuous && has(tree, |kind| IS_INCREMENT(kind) || IS_STEP(kind)) {
         return Vec::new();
     }
@@ -83,7 +83,7 @@ pub fn term_mistakes(declaration: &Declaration, tree: &Rc<Tree>) -> Vec<(Rc<Tree
     let is_too_large = search.too_large(tree).is_some();
     match search.role {
         Role::Force if whole.along.is_zero() => return vec![(tree.clone(), TermMistake::NoWork)],
-        // Virtual work isn't linear in the displacements, as far as twice of them tell.
+        // Work that isn't linear in the displacements is reported by the derivation.
         Role::Force if !(whole.value - whole.at_rest).is_zero() => {}
         _ if is_too_large => search.report_too_large(tree),
         _ => search.report_vanishing(&terms, &whole),
@@ -94,13 +94,13 @@ pub fn term_mistakes(declaration: &Declaration, tree: &Rc<Tree>) -> Vec<(Rc<Tree
     search.found
 }
 
-/// Where a value at `F = I` isn't smooth: what is divided by, or under a function, is zero there.
+/// The part that isn't smooth at `F = I`: a divisor, or the argument of a function, is zero there.
 pub fn not_smooth_at_identity(declaration: &Declaration, tree: &Rc<Tree>) -> Option<(Rc<Tree>, TermMistake)> {
     let [.., at_rest, _] = &points(declaration);
     singular(tree, at_rest)
 }
 
-/// The first part that has no value for any of some parameters, if there is one.
+/// The first part without a value at all of the drawn parameters, if there is one.
 pub fn without_value(declaration: &Declaration, tree: &Rc<Tree>) -> Option<Rc<Tree>> {
     let points: Vec<super::Values<f64>> = draws(declaration).map(|(_, values)| values).collect();
     let mut at_points: Vec<Evaluation> = points.iter().map(Evaluation::new).collect();
@@ -111,13 +111,13 @@ pub fn without_value(declaration: &Declaration, tree: &Rc<Tree>) -> Option<Rc<Tr
 
 type Values = super::Values<Series>;
 
-/// Numbers for all names, with `h` as it is: at some `F`, at another, at `F = exp(h ξ̂)`, at `F = I`, and there with other
-/// velocities and advected parameters, or of a force with twice the displacements.
+/// Numbers for all names, with `h` itself: at some `F`, at another, at `F = exp(h ξ̂)`, at `F = I`, and there with
+/// other velocities and advected parameters, or for a force with twice the displacements.
 fn points(declaration: &Declaration) -> [Values; 5] {
     let (group, mut number) = (&declaration.group, Residue::stream(1));
     let [turned, turned_further] = [(); 2].map(|()| {
         let element = Element::by_cayley(group, &mut number);
-        // Of a group without such points any matrix will do.
+        // A group without Cayley transforms may use any matrix here.
         let element = element.unwrap_or_else(|| Element::by_exponentials(group, &mut number));
         element.matrices.iter().map(|matrix| matrix.over(Series::constant)).collect::<Vec<_>>()
     });
@@ -148,18 +148,18 @@ fn points(declaration: &Declaration) -> [Values; 5] {
     [with_increment(&turned), with_increment(&turned_further), moving, at_rest, elsewhere]
 }
 
-/// How a term goes.
+/// The orders of a term in `h`.
 struct Behaviour {
-    /// With `F = exp(h ξ̂)`; of a Lagrangian, the difference to `F = I`.
+    /// The term at `F = exp(h ξ̂)`; for a Lagrangian its difference to `F = I`.
     along: Series,
-    /// At `F = I`; of a Lagrangian, the difference to other velocities and advected parameters, and of a force that of
-    /// twice the displacements to these.
+    /// The term at `F = I`: for a Lagrangian its difference to other velocities and advected parameters, for a force
+    /// the difference to twice the displacements.
     at_rest: Series,
-    /// At `F = I`.
+    /// The value at `F = I`.
     value: Series,
-    /// Between two fixed `F`.
+    /// The difference between two fixed `F`.
     fixed: Series,
-    /// At a fixed `F`.
+    /// The value at a fixed `F`.
     turned: Series,
 }
 
@@ -176,15 +176,15 @@ impl Behaviour {
 
 struct Search<'a> {
     role: Role,
-    /// At the points.
+    /// The evaluations at the points.
     at: [Evaluation<'a, Series>; 5],
-    /// How many sums may still be taken apart.
+    /// The number of sums that may still be split.
     splits: usize,
     found: Vec<(Rc<Tree>, TermMistake)>,
 }
 
 impl Search<'_> {
-    /// As [`split_within`], while there aren't too many.
+    /// The two terms of [`split_within`], until the limit on splits.
     fn split(&mut self, tree: &Rc<Tree>) -> Option<[Rc<Tree>; 2]> {
         self.splits = self.splits.checked_sub(1)?;
         split_within(tree, MOST_FACTORS)
@@ -198,7 +198,8 @@ impl Search<'_> {
         Behaviour { along: moving - value, at_rest: value - elsewhere, value, fixed: turned - further, turned }
     }
 
-    /// What keeps the limit `h → 0` from existing, if anything does. A first derivative of the kinetic part isn't meant.
+    /// The mistake for which the limit `h → 0` doesn't exist, if there is one. The first derivative of the kinetic part
+    /// is checked elsewhere.
     fn too_large(&mut self, tree: &Rc<Tree>) -> Option<TermMistake> {
         let Behaviour { along, at_rest, fixed, .. } = self.behaviour(tree);
         if ![along, at_rest, fixed].iter().all(|series| series.is_defined()) {
@@ -213,7 +214,7 @@ impl Search<'_> {
         })
     }
 
-    /// At the terms that are too large; what cancels in a sum isn't one of them.
+    /// Reports the terms that are too large, unless they cancel in a sum.
     fn report_too_large(&mut self, tree: &Rc<Tree>) {
         let Some(mistake) = self.too_large(tree) else { return };
         let before = self.found.len();
@@ -266,7 +267,7 @@ impl Search<'_> {
         }
     }
 
-    /// At the terms that a smaller step makes ever less important, or that never do anything.
+    /// Reports the terms whose effect vanishes with the step, or that have none.
     fn report_vanishing(&mut self, terms: &[Rc<Tree>], whole: &Behaviour) {
         for term in terms {
             let mistake = self.vanishing(term, whole);
@@ -285,22 +286,23 @@ impl Search<'_> {
         } else if self.role == Role::Force {
             second(if has(term, IS_ADVECTED) { at_rest } else { along }).map(TermMistake::Work)
         } else if has(term, IS_ADVECTED) {
-            // What is zero at F = I is a correction, as the difference of a potential at both ends is.
+            // A term that is zero at F = I is a correction, as the difference of a potential at both ends is.
             second(at_rest).map(TermMistake::Potential)
         } else {
-            // Once too often, or a square of what is small that isn't over `h`; higher powers are corrections.
+            // The term has one factor too many, or is a square of a small quantity that isn't over `h`; higher powers
+            // are corrections.
             let is_square =
                 |&(order, power): &(i32, i32)| order - power == 2 && (power == 0 || power > 0 && value.is_zero());
             along.order().zip(fixed.order()).filter(is_square).map(|(order, _)| TermMistake::Vanishing(order))
         };
-        // Unless it is there to be cancelled.
+        // A constant that another term cancels is right.
         let is_idle = || along.is_zero() && at_rest.is_zero() && has(term, IS_INCREMENT) && !has(term, IS_POWER);
         let is_constant = || self.role != Role::Force && is_idle() && low(value).and(low(whole.value)).is_some();
         mistake.or_else(|| is_constant().then_some(TermMistake::Constant))
     }
 }
 
-/// A power below the first.
+/// The order in `h`, if it is below the first.
 fn low(series: Series) -> Option<i32> {
     series.order().filter(|&order| order < 1)
 }
@@ -310,10 +312,10 @@ type Is = fn(&Kind) -> bool;
 const IS_INCREMENT: Is = |kind| matches!(kind, Kind::Name(Name::Increment(_)));
 const IS_ADVECTED: Is = |kind| matches!(kind, Kind::Name(Name::Advected(_)));
 const IS_STEP: Is = |kind| matches!(kind, Kind::Name(Name::Step));
-/// `h.powi(n)` with a positive `n`: its author knows that it is small.
+/// `h.powi(n)` with a positive `n` marks a term that is intended to be small.
 const IS_POWER: Is = |kind| matches!(kind, Kind::Power(a, exponent) if *exponent > 1 && is_step(a));
 
-/// Whether a part of it is meant.
+/// Whether a part of the tree satisfies the condition.
 fn has(tree: &Rc<Tree>, is_meant: Is) -> bool {
     parts(tree).iter().any(|part| is_meant(&part.kind))
 }
@@ -325,7 +327,7 @@ fn is_step(tree: &Tree) -> bool {
     }
 }
 
-/// The two terms of a sum, with the scalars that the sum is multiplied or divided by; each has the place of its own.
+/// The two terms of a sum, with the scalar factors and divisors around it; each keeps its own place.
 fn split_within(tree: &Rc<Tree>, depth: usize) -> Option<[Rc<Tree>; 2]> {
     let depth = depth.checked_sub(1)?;
     let each = |parts: [Rc<Tree>; 2], kind: &dyn Fn(Rc<Tree>) -> Kind| {
@@ -337,7 +339,7 @@ fn split_within(tree: &Rc<Tree>, depth: usize) -> Option<[Rc<Tree>; 2]> {
         Kind::Subtract(a, b) => Some([a.clone(), Tree::in_place_of(b, Kind::Negate(b.clone()))]),
         Kind::Negate(a) => Some(each(split_within(a, depth)?, &Kind::Negate)),
         Kind::Divide(a, b) => Some(each(split_within(a, depth)?, &|part| Kind::Divide(part, b.clone()))),
-        // What moves on both sides is judged as one, as its square is.
+        // A product of two moving factors, such as a square, is judged as one term.
         Kind::Multiply(a, b) if tree.shape == Shape::Scalar && !(moves(a) && moves(b)) => {
             match split_within(a, depth) {
                 Some(parts) => Some(each(parts, &|part| Kind::Multiply(part, b.clone()))),
@@ -360,12 +362,12 @@ fn function_of_step(tree: &Rc<Tree>, values: &Values) -> Option<(Rc<Tree>, TermM
     Some((found.clone(), TermMistake::FunctionOfStep))
 }
 
-/// Whether it depends on `F` or on what is advected.
+/// Whether the tree depends on `F` or on an advected parameter.
 fn moves(tree: &Rc<Tree>) -> bool {
     has(tree, |kind| IS_INCREMENT(kind) || IS_ADVECTED(kind))
 }
 
-/// The first place where zero is divided by or is under a root or a logarithm.
+/// The first part that divides by zero, or has zero under a root or a logarithm.
 fn singular(tree: &Rc<Tree>, values: &Values) -> Option<(Rc<Tree>, TermMistake)> {
     let mut evaluation = Evaluation::new(values);
     let mut is_zero = |tree: &Rc<Tree>| evaluation.of(tree).first().is_zero();

@@ -10,21 +10,21 @@ use crate::mathematics::symbolic::{Function, Rational};
 const PRIME: u64 = (1 << 61) - 1;
 
 thread_local! {
-    /// Which stand-ins functions have: others with each stream, so that functions of numbers that are the same at all
-    /// points, as `2.0.sqrt()`, have another value at each of them.
+    /// The seed of the stand-ins for functions. Each stream has another one, so that functions of constants, as
+    /// `2.0.sqrt()`, have different values at different points.
     static STAND_INS: Cell<u64> = const { Cell::new(0) };
-    /// Arguments of which `c_0` and `c_1` are known.
+    /// Arguments with prescribed values of `c_0` and `c_1`.
     static KNOWN: RefCell<BTreeMap<u64, [Residue; 2]>> = const { RefCell::new(BTreeMap::new()) };
 }
 
-/// Numerators and denominators of what is recognised as a fraction.
+/// The limit on numerators and denominators that are recognised as a fraction.
 const LARGEST: i128 = 64;
 
-/// An element of the field; nothing where there is no value, as after a division by zero.
+/// An element of the field; `None` if there is no value, as after a division by zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Residue(Option<u64>);
 
-/// `x mod p`, as `2⁶¹ = 1` there: of what is below `2¹²²`.
+/// `x mod p` of an `x` below `2¹²²`, as `2⁶¹ = 1` in the field.
 fn folded(x: u128) -> u64 {
     let low = |x: u128| u64::try_from(x & u128::from(PRIME)).unwrap_or(0);
     let sum = low(x) + low(x >> 61);
@@ -32,14 +32,14 @@ fn folded(x: u128) -> u64 {
 }
 
 impl Residue {
-    /// Any whole number.
+    /// The residue of any whole number.
     fn reduced(value: i128) -> Self {
         let size = value.unsigned_abs();
         let size = Self(Some(if size >> 121 == 0 { folded(size) } else { folded(size % u128::from(PRIME)) }));
         if value < 0 { -size } else { size }
     }
 
-    /// A stream of numbers that no rational function knows, with functions that none knows.
+    /// A pseudorandom stream of elements; it also selects new stand-ins for functions.
     pub fn stream(seed: u64) -> impl FnMut() -> Self {
         let mut state = mixed(seed);
         STAND_INS.set(state);
@@ -50,12 +50,12 @@ impl Residue {
         }
     }
 
-    /// With these for `c_0` and `c_1`, until the next stream.
+    /// Prescribes `c_0` and `c_1` at this argument, until the next stream.
     pub fn remember(self, values: [Self; 2]) {
         KNOWN.with_borrow_mut(|known| self.0.map(|argument| known.insert(argument, values)));
     }
 
-    /// The fraction of small whole numbers that it is, if it is one.
+    /// The fraction of small whole numbers that this element represents, if there is one.
     pub fn small(self) -> Option<Rational> {
         let value = i128::from(self.0?);
         let centred = |value: i128| if 2 * value > i128::from(PRIME) { value - i128::from(PRIME) } else { value };
@@ -63,7 +63,7 @@ impl Residue {
         fractions.into_iter().find(|(p, _)| p.abs() <= LARGEST).map(|(p, q)| Rational::new(p, q))
     }
 
-    /// Of what is below `2¹²²` for any two elements.
+    /// The result of an operation that stays below `2¹²²` for any two elements.
     fn with(self, other: Self, operation: impl Fn(u64, u64) -> u128) -> Self {
         match (self.0, other.0) {
             (Some(a), Some(b)) => Self(Some(folded(operation(a, b)))),
@@ -71,7 +71,7 @@ impl Residue {
         }
     }
 
-    /// By Fermat, `a^(p − 2)`.
+    /// The inverse by Fermat's theorem, `a^(p − 2)`.
     fn reciprocal(self) -> Self {
         if self == Self::ZERO { Self::UNDEFINED } else { number::raised(self, PRIME - 2) }
     }
@@ -90,7 +90,7 @@ impl Number for Residue {
 
     fn of(value: Rational) -> Self {
         let (numerator, denominator) = value.parts();
-        // Most are of whole numbers and powers of two, and as 2⁶¹ = 1 a division by 2ⁿ is a product with 2⁶¹⁻ⁿ.
+        // Most denominators are powers of two, and as 2⁶¹ = 1 a division by 2ⁿ is a product with 2⁶¹⁻ⁿ.
         let halvings = denominator.trailing_zeros() % 61;
         let halved = Self(Some(folded(1 << (61 - halvings))));
         let (numerator, odd) = (Self::reduced(numerator) * halved, denominator >> denominator.trailing_zeros());
@@ -102,8 +102,9 @@ impl Number for Residue {
         if exponent < 0 { power.reciprocal() } else { power }
     }
 
-    /// The field has no sines or logarithms. Pseudorandom functions with the same symmetries and recurrences stand in for
-    /// them. What agrees with these agrees for all functions with these relations, wherever both sides have values.
+    /// The field has no sines or logarithms. Pseudorandom functions with the same symmetries and recurrences stand in
+    /// for them. An identity that holds for these holds for all functions with these relations, wherever both sides
+    /// have values.
     fn apply(self, function: Function) -> Self {
         let partner = match function {
             Function::Sin | Function::Cos | Function::Exp => -self,

@@ -1,4 +1,4 @@
-//! Self-adjointness by values: the normal form doesn't know every relation of a group.
+//! Self-adjointness by values, as the normal form doesn't contain every relation of a group.
 
 use super::number::Number;
 use super::residue::Residue;
@@ -8,8 +8,8 @@ use crate::declared::Name;
 use crate::mathematics::derive::SelfAdjointness;
 use crate::mathematics::symbolic::{Function, Rational, Variance};
 
-/// What all points say, as [`at`] and [`in_the_field`] have it; an error if the symbolic form, which may have found the
-/// opposite, is wrong.
+/// The self-adjointness by the results of [`at`] and [`in_the_field`] at all points; an error if the symbolic form is
+/// wrong, which may have found the opposite.
 pub(super) fn self_adjointness(found: [bool; 3], is_symbolic: bool) -> Result<SelfAdjointness, &'static str> {
     match (found, is_symbolic) {
         ([true, ..], true) => Ok(SelfAdjointness::Symbolic),
@@ -25,21 +25,21 @@ fn is_reversed<T: Number>(point: &Sample<T>) -> bool {
     (point.declared() - point.reversed()).is_zero()
 }
 
-/// Whether `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)` at a point, whether it is on a group of affine maps with one for the
-/// last coordinate of all vectors, and what is left to say of points of the field.
+/// Whether `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)` at a point, and whether it holds on a group of affine maps if the last
+/// coordinate of all vectors is one; the third entry is that of [`in_the_field`].
 pub(super) fn at<T: Number>(point: &Sample<T>) -> [bool; 3] {
     let is_here = is_reversed(point);
     [is_here, is_here || point.with_points().is_some_and(|point| is_reversed(&point)), is_here]
 }
 
-/// The same, and whether it is with the square of `F` for the increment, where `exp(½ log F²) = F` is known.
+/// The results of [`at`], and whether the identity holds for the increment `F²`, where `exp(½ log F²) = F` is known.
 pub(super) fn in_the_field(point: &Sample<Residue>) -> [bool; 3] {
     let [is_here, of_points, _] = at(point);
     [is_here, of_points, is_here || is_reversed(&point.squared())]
 }
 
 impl Sample<'_, Residue> {
-    /// `exp(½ log F²)` is `I + c_1(q) û + c_2(q) û²` with `u = ½ G vee(F²)` and `q = |u|²`.
+    /// The sample at `F²`. There `exp(½ log F²)` is `I + c_1(q) û + c_2(q) û²` with `u = ½ G vee(F²)` and `q = |u|²`.
     fn squared(&self) -> Self {
         let (mut squared, group, of) = (self.clone(), &self.of.derived.group, |n, m| Residue::of(Rational::new(n, m)));
         for matrices in [&mut squared.element.matrices, &mut squared.element.inverses] {
@@ -58,7 +58,7 @@ impl Sample<'_, Residue> {
 }
 
 impl<T: Number> Sample<'_, T> {
-    /// On a group of affine maps, the same with one for the last coordinate of all vectors.
+    /// The sample with one for the last coordinate of all vectors, on a group of affine maps.
     fn with_points(&self) -> Option<Self> {
         let group = &self.of.derived.group;
         if !group.is_affine() {

@@ -18,12 +18,13 @@ use crate::mathematics::derive::{Derivation, View};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId, Variance};
 
-/// An element of the group, of a product that of each factor.
+/// An element of the group; for a product, an element of each factor.
 #[derive(Clone, Debug)]
 pub struct Element<T = f64> {
     pub matrices: Vec<Value<T>>,
     pub inverses: Vec<Value<T>>,
-    /// `y` with `F = cay(2y)`, or `d = 2y` of what is translated, for groups of nothing else.
+    /// The coordinates `y` with `F = cay(2y)`, or `d = 2y` for a translation, on products of SO(3) and translations
+    /// alone.
     pub coordinates: Vec<T>,
 }
 
@@ -33,17 +34,17 @@ impl<T: Number> Element<T> {
         Self { inverses: matrices.clone(), matrices, coordinates: vec![T::ZERO; group.dimension()] }
     }
 
-    /// Times an element of a factor, which is given with its inverse.
+    /// Multiplies by an element of a factor, passed with its inverse.
     fn times(&mut self, factor: usize, [forwards, backwards]: [Value<T>; 2]) {
         self.matrices[factor] = self.matrices[factor].times(&forwards);
         self.inverses[factor] = backwards.times(&self.inverses[factor]);
     }
 
-    /// A product of Cayley transforms `cay(x) = (I − x)⁻¹(I + x)`: of a rotation of space the one of a random element, else
-    /// those of multiples of all generators; nothing where these aren't of the group.
+    /// A product of Cayley transforms `cay(x) = (I − x)⁻¹(I + x)`: on SO(3) that of one random element, else those of
+    /// multiples of all generators; `None` if these aren't in the group.
     ///
-    /// Where `E³ = c E`, `cay(tE)` is an element of the one-parameter group of `E`, rational in `t`: for all of the built-in
-    /// groups' generators. The products for all generators have elements near the identity for all that the group has there.
+    /// If `E³ = c E`, `cay(tE)` is an element of the one-parameter group of `E`, rational in `t`; this holds for all
+    /// generators of the built-in groups. The products over all generators fill a neighbourhood of the identity.
     pub fn by_cayley(group: &Group, number: &mut impl FnMut() -> T) -> Option<Self> {
         let mut element = Self::identity(group);
         element.coordinates.fill_with(number);
@@ -69,14 +70,14 @@ impl<T: Number> Element<T> {
         element
     }
 
-    /// As constants among dual numbers.
+    /// The element as constants among dual numbers.
     fn lifted(&self) -> Element<Dual<T>> {
         let [matrices, inverses] = [&self.matrices, &self.inverses]
             .map(|matrices| matrices.iter().map(|matrix| matrix.over(Dual::constant)).collect());
         Element { matrices, inverses, coordinates: self.coordinates.iter().map(|&y| Dual::constant(y)).collect() }
     }
 
-    /// `exp(ε v̂) F`; its coordinates aren't turned.
+    /// `exp(ε v̂) F`, with the coordinates of `F`.
     pub fn turned(&self, [forwards, backwards]: &[Vec<Value<Dual<T>>>; 2]) -> Element<Dual<T>> {
         let still = self.lifted();
         let [matrices, inverses] = [products(forwards, &still.matrices), products(&still.inverses, backwards)];
@@ -84,13 +85,13 @@ impl<T: Number> Element<T> {
     }
 }
 
-/// Of each generator that multiple.
+/// The multiples of the generators.
 fn multiples<T: Number>(group: &Group, shares: &[T]) -> impl Iterator<Item = Value<T>> {
     let each = group.generators.iter().zip(shares);
     each.map(|(entries, &t)| Value::square(group.size, entries).map(|entry: T| t * entry))
 }
 
-/// Of each factor.
+/// The products of the elements of each factor.
 pub fn products<T: Number>(a: &[Value<T>], b: &[Value<T>]) -> Vec<Value<T>> {
     a.iter().zip(b).map(|(a, b)| a.times(b)).collect()
 }
@@ -108,7 +109,7 @@ pub fn along_motion(group: &Group, velocity: &[Series]) -> Vec<Value<Series>> {
     algebra(group, velocity).iter().map(|x| exponential(&x.map(|entry| entry * Series::STEP))).collect()
 }
 
-/// The `c` with `x³ = c x`; nothing where there is none.
+/// The `c` with `x³ = c x`, if there is one.
 fn cube<T: Number>(x: &Value<T>) -> Option<T> {
     let cube = x.times(x).times(x);
     let (&first, &scale) = cube.entries.iter().zip(&x.entries).find(|(_, entry)| !entry.is_zero())?;
@@ -116,7 +117,7 @@ fn cube<T: Number>(x: &Value<T>) -> Option<T> {
     cube.entries.iter().zip(&x.entries).all(|(&a, &b)| (a - c * b).is_zero()).then_some(c)
 }
 
-/// A declaration, and what was derived of it.
+/// A declaration and its derivation.
 #[derive(Clone, Copy)]
 pub struct Subject<'a> {
     pub declaration: &'a Declaration,
@@ -133,13 +134,14 @@ pub struct Sample<'a, T = f64> {
     pub values: Values<T>,
 }
 
-/// Real numbers for all names. The later ones are farther away, and may be anywhere, with smaller increments.
+/// Real numbers for all names. Later draws have parameters of larger range, and smaller increments.
 pub fn draws(declaration: &Declaration) -> impl Iterator<Item = (Element, Values<f64>)> {
     (1..=DRAWS).map(|seed| {
         let mut number = stream(seed);
-        // From one draw in five on, another scale for each parameter, and another sign for scalars.
+        // The first fifth of the draws has parameters near one; later ones vary the scale of each, and the sign of
+        // scalars.
         let reach = f64::from(u32::try_from(seed / (DRAWS / 5)).unwrap_or(0));
-        // A relativistic root has values below the speed of light alone.
+        // Increments shrink, as a relativistic root has values below the speed of light alone.
         let size = (-2.0 * reach).exp2();
         let element = Element::by_exponentials(&declaration.group, || size * (0.6 * number() - 0.3));
         let mut values = numbers(declaration, &element, &mut number);
@@ -160,7 +162,7 @@ pub fn draws(declaration: &Declaration) -> impl Iterator<Item = (Element, Values
     })
 }
 
-/// At an element, of numbers that are taken to lie between zero and one.
+/// Values at an element, from numbers between zero and one.
 fn numbers<T: Number>(declaration: &Declaration, element: &Element<T>, number: &mut impl FnMut() -> T) -> Values<T> {
     let mut values = increments(&declaration.group, &element.matrices);
     let tenth = T::of(Rational::new(1, 10));
@@ -185,7 +187,7 @@ impl<'a> Sample<'a> {
 }
 
 impl<'a, T: Number> Sample<'a, T> {
-    /// At a group element, with numbers that are taken to lie between zero and one.
+    /// The sample at a group element, from numbers between zero and one.
     pub fn at(of: Subject<'a>, element: Element<T>, number: &mut impl FnMut() -> T) -> Self {
         Self { of, values: numbers(of.declaration, &element, number), element }
     }
@@ -199,7 +201,7 @@ impl<'a, T: Number> Sample<'a, T> {
         Evaluation::new(&self.values).of(self.of.tree).first()
     }
 
-    /// `−l_d` turned back: at `F⁻¹`, `F⁻¹·w` and `−h`.
+    /// `−l_d` of the reversed step: at `F⁻¹`, `F⁻¹·w` and `−h`.
     pub fn reversed(&self) -> T {
         let Element { matrices, inverses, .. } = &self.element;
         let mut values = self.moved([inverses, matrices]);
@@ -208,12 +210,12 @@ impl<'a, T: Number> Sample<'a, T> {
         -Evaluation::new(&values).of(self.of.tree).first()
     }
 
-    /// The values of all symbols: of the names, and of what the derivation adds.
+    /// The values of all symbols: of the names, and of the variables that the derivation adds.
     pub fn inputs(&self) -> BTreeMap<SymbolId, Value<T>> {
         self.inputs_at(&self.element, &self.values)
     }
 
-    /// The same at another increment, and at other values.
+    /// The values of all symbols at another increment, and at other values of names.
     pub fn inputs_at(&self, element: &Element<T>, values: &Values<T>) -> BTreeMap<SymbolId, Value<T>> {
         let (group, directions) = (&self.of.derived.group, &self.of.derived.directions);
         let names = self.of.lowered.names.iter();
@@ -234,13 +236,13 @@ impl<'a, T: Number> Sample<'a, T> {
         inputs
     }
 
-    /// The values with all that is advected moved by a group element, given with its inverse.
+    /// The values with all advected parameters moved by a group element, passed with its inverse.
     pub fn moved(&self, element: [&[Value<T>]; 2]) -> Values<T> {
         moved(self.of.declaration, &self.values, element)
     }
 }
 
-/// The values with all that is advected moved by a group element, given with its inverse.
+/// The values with all advected parameters moved by a group element, passed with its inverse.
 pub fn moved<T: Number>(declaration: &Declaration, values: &Values<T>, [g, inverse]: [&[Value<T>]; 2]) -> Values<T> {
     let (mut values, group) = (values.clone(), &declaration.group);
     let added = |moving: &[Value<T>], factor: usize| translation(&moving[factor]);

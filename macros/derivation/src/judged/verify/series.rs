@@ -1,24 +1,24 @@
-//! Power series in `h` with coefficients in the finite field, where nothing is rounded: how a declared expression goes as
-//! `h → 0`.
+//! Power series in `h` with coefficients in the finite field, where nothing is rounded: the order of a declared
+//! expression as `h → 0`.
 
 use super::number::{self, Number, operator};
 use super::residue::Residue;
 use crate::mathematics::symbolic::{Function, Rational};
 
-/// As many coefficients are known from the first on.
+/// The number of coefficients, from the first nonzero one on.
 const LENGTH: usize = 8;
 pub const LENGTH_I32: i32 = 8;
-/// From here on nothing is known of a number that is exact.
+/// The `end` of an exact number.
 const NEVER: i32 = 1_000;
 
 type Coefficients = [Residue; LENGTH];
 const NONE: Coefficients = [Residue::ZERO; LENGTH];
 
-/// `Σ c_i hⁱ + O(hᵉ)`, from the first power whose coefficient isn't zero; undefined where that is.
+/// `Σ c_i hⁱ + O(hᵉ)`, from the first power with a nonzero coefficient; undefined if a coefficient is.
 #[derive(Clone, Copy, Debug)]
 pub struct Series {
     first: i32,
-    /// The power `e` from which on nothing is known.
+    /// The order `e` of the remainder.
     end: i32,
     coefficients: Coefficients,
 }
@@ -37,7 +37,7 @@ impl Series {
         if value == Residue::ZERO { Self::ZERO } else { Self::from_one_coefficient(0, value) }
     }
 
-    /// With the coefficients from the power `first` on.
+    /// The series with these coefficients from the power `first` on.
     fn new(first: i32, end: i32, coefficients: Coefficients) -> Self {
         let end = end.min(first.saturating_add(LENGTH_I32));
         let known = usize::try_from(end.saturating_sub(first)).unwrap_or(0);
@@ -49,7 +49,7 @@ impl Series {
         Self { first: first + i32::try_from(zeros).unwrap_or(0), end, coefficients: shifted }
     }
 
-    /// The lowest power of `h`; none where all coefficients that are known are zero.
+    /// The lowest power of `h`; `None` if all known coefficients are zero.
     pub fn order(&self) -> Option<i32> {
         (!self.is_zero()).then_some(self.first)
     }
@@ -78,7 +78,7 @@ impl Series {
         Self::new(-self.first, length - self.first, coefficients)
     }
 
-    /// The same, known to a lower power.
+    /// The series with a remainder of lower order.
     fn until(self, end: i32) -> Self {
         Self::new(self.first, self.end.min(end), self.coefficients)
     }
@@ -98,7 +98,7 @@ impl Series {
         if end > 1 {
             let x = self.until(end - 1);
             let derivative = match function {
-                // So that `y²/x` stays as it is, although the square of a stand-in isn't its argument.
+                // The form y/(2x) keeps `y²/x` constant, although the square of a stand-in isn't its argument.
                 Function::Sqrt => Self::of(Rational::new(1, 2)) * x.apply(function) / x,
                 _ => number::derivative(function, x, || x.apply(function)),
             };
@@ -110,7 +110,7 @@ impl Series {
         Self::new(0, end, coefficients)
     }
 
-    /// Of an even power of `h` times a number.
+    /// The square root of an even power of `h` times a series with a nonzero constant.
     fn root(self) -> Self {
         if self.is_zero() {
             // The root of O(hᵉ) is O(h^(e/2)), that of an exact zero exactly zero.
@@ -147,7 +147,7 @@ operator!(impl Mul::mul for Series, |a, b| {
     let first = a.first.saturating_add(b.first).min(NEVER);
     let end = a.end.saturating_add(b.first).min(b.end.saturating_add(a.first)).min(NEVER);
     let mut coefficients = NONE;
-    // Most numbers have one coefficient.
+    // Most numbers have one nonzero coefficient.
     for (i, &x) in a.coefficients.iter().enumerate().filter(|(_, x)| !x.is_zero()) {
         for (&y, sum) in b.coefficients.iter().zip(&mut coefficients[i..]).filter(|(y, _)| !y.is_zero()) {
             *sum = *sum + x * y;
@@ -176,7 +176,7 @@ impl Number for Series {
             _ if !self.is_defined() => Self::UNDEFINED,
             Function::Sqrt => self.root(),
             _ if self.first < 0 => Self::UNDEFINED,
-            // A constant.
+            // The series is a constant.
             _ if self.first == NEVER || self.first == 0 && self.coefficients[1..].iter().all(|c| c.is_zero()) => {
                 let constant = Self::from_one_coefficient(0, self.at(0).apply(function));
                 Self::new(0, self.end, constant.coefficients)

@@ -3,7 +3,7 @@
 use super::number::Number;
 use crate::mathematics::symbolic::Rational;
 
-/// A matrix, row by row.
+/// A matrix, by rows.
 #[derive(Clone, Debug)]
 pub struct Value<T = f64> {
     pub rows: usize,
@@ -25,7 +25,7 @@ impl<T: Number> Value<T> {
         Self { rows: entries.len(), columns: 1, entries: entries.to_vec() }
     }
 
-    /// The same in other numbers.
+    /// The matrix in other numbers.
     pub fn over<U>(&self, of: impl Fn(T) -> U) -> Value<U> {
         Value { rows: self.rows, columns: self.columns, entries: self.entries.iter().map(|&entry| of(entry)).collect() }
     }
@@ -73,7 +73,7 @@ impl<T: Number> Value<T> {
         })
     }
 
-    /// By Cramer's rule.
+    /// The inverse by Cramer's rule.
     pub fn inverse(&self) -> Self {
         let reciprocal = T::ONE / self.determinant();
         Self::new(self.rows, self.rows, |row, column| {
@@ -85,7 +85,7 @@ impl<T: Number> Value<T> {
         (0..self.rows).fold(T::ZERO, |sum, i| sum + self.at(i, i))
     }
 
-    /// By Laplace, of each set of columns with as many of the first rows.
+    /// The determinant by Laplace's expansion: the minors of each set of columns with as many of the first rows.
     fn determinant(&self) -> T {
         let mut minors = vec![T::ONE];
         for set in 1_usize..1 << self.rows {
@@ -111,7 +111,7 @@ impl<T: Number> Value<T> {
         Self { rows: 3, columns: 3, entries }
     }
 
-    /// Of the skew part.
+    /// The vector of the skew part.
     pub fn vee(&self) -> Self {
         let half = T::of(Rational::new(1, 2));
         Self::new(3, 1, |row, _| {
@@ -129,7 +129,7 @@ impl<T: Number> Value<T> {
     }
 }
 
-/// With the sign `(−1)ⁿ`.
+/// The value times `(−1)ⁿ`.
 fn alternating<T: Number>(n: usize, value: T) -> T {
     if n.is_multiple_of(2) { value } else { -value }
 }

@@ -10,26 +10,26 @@
 //! given      0                 w⁺
 //! ```
 //!
-//! Of several bodies, `E_a` in the algebra of the factor `a`:
+//! Among several bodies, with `E_a` in the algebra of the factor `a`:
 //!
 //! ```text
 //! seen from a           as above, with E_a and F_a
-//! b as a sees it        E_a Q − Q E_b           F_a Q⁺ F_b⁻¹
-//! b as it is in space   −R E_b                  R⁺ F_b⁻¹
+//! b relative to a       E_a Q − Q E_b           F_a Q⁺ F_b⁻¹
+//! b in space            −R E_b                  R⁺ F_b⁻¹
 //! ```
 //!
-//! Translations `d` are added, with elements `e` of their algebra:
+//! Translations `d` are added. With elements `e` of their algebra:
 //!
 //! ```text
-//! b as a sees it        e_a − e_b               r⁺ + d_a − d_b
-//! b as it is in space   −e_b                    x⁺ − d_b
+//! b relative to a       e_a − e_b               r⁺ + d_a − d_b
+//! b in space            −e_b                    x⁺ − d_b
 //! ```
 
 use super::Context;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Expression, Rational, SymbolId, Symbols, Variance};
 
-/// An advected parameter, and how it is moved.
+/// An advected parameter, and the action of the group on it.
 #[derive(Clone, Copy, Debug)]
 pub struct AdvectedSymbol {
     pub symbol: SymbolId,
@@ -37,19 +37,19 @@ pub struct AdvectedSymbol {
     pub seen: View,
 }
 
-/// Which factors of the group move a parameter.
+/// The factors of the group that move a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum View {
-    /// This one, by the variance.
+    /// A single factor, by the variance.
     From(usize),
-    /// The configuration of a factor, as another sees it.
+    /// The configuration of a factor relative to another.
     Relative { of: usize, from: usize },
-    /// That of a factor, as it is in space.
+    /// The configuration of a factor in space.
     Configuration(usize),
 }
 
 impl View {
-    /// Whether it is a body itself.
+    /// Whether the parameter is a configuration.
     pub fn is_configuration(self) -> bool {
         matches!(self, Self::Relative { .. } | Self::Configuration(_))
     }
@@ -71,7 +71,7 @@ pub(super) fn along(
     }
 }
 
-/// `F·w⁺`, with an element and its inverse for each factor.
+/// `F·w⁺`, with an element of the group and its inverse for each factor.
 pub(super) fn back(
     context: &Context,
     carried: AdvectedSymbol,
@@ -90,7 +90,7 @@ pub(super) fn back(
     }
 }
 
-/// `E·w`.
+/// `E·w` in the defining representation.
 pub(super) fn infinitesimal(symbols: &Symbols, variance: Variance, e: &Expression, w: &Expression) -> Expression {
     let transposed = e.transpose(symbols);
     let from_left = |matrix: &Expression| matrix.times(w, symbols);
@@ -106,7 +106,7 @@ pub(super) fn infinitesimal(symbols: &Symbols, variance: Variance, e: &Expressio
     }
 }
 
-/// `F·w⁺`, with `F` and its inverse.
+/// `F·w⁺` in the defining representation, with `F` and its inverse.
 fn moved_back(
     symbols: &Symbols,
     variance: Variance,

@@ -25,7 +25,7 @@ pub(super) fn components(group: &Group, element: &Expression, symbols: &Symbols)
     linear_forms(&group.dual(), (group.size, group.dimension()), element, symbols)
 }
 
-/// The same by linear forms in the entries, each a sum of terms `(k, row, column, factor)`.
+/// The components by linear forms in the entries, each a sum of terms `(k, row, column, factor)`.
 pub fn linear_forms(
     forms: &[(usize, usize, usize, Rational)],
     (size, dimension): (usize, usize),

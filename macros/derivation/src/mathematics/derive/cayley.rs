@@ -1,8 +1,8 @@
 //! The momentum equation on SO(3) in Cayley coordinates with the denominators cleared.
 //!
-//! `F = cay(2y) = ((1 − |y|²) I + 2 yyᵀ + 2 ŷ) / (1 + |y|²)`. Where `U(F, w)` is polynomial in `F`, multiplying
-//! `U(F, w) − a` by a power of `D = 1 + |y|²` leaves a polynomial in `y`: for (3.13) a quadratic one. A factor `h/2`
-//! leaves the moments of inertia for its coefficients.
+//! `F = cay(2y) = ((1 − |y|²) I + 2 yyᵀ + 2 ŷ) / (1 + |y|²)`. If `U(F, w)` is polynomial in `F`, multiplying
+//! `U(F, w) − a` by a power of `D = 1 + |y|²` leaves a polynomial in `y`: for (3.13) a quadratic one. The factor `h/2`
+//! reduces its coefficients to the moments of inertia.
 
 use std::collections::BTreeMap;
 
@@ -14,11 +14,11 @@ use crate::mathematics::symbolic::{Expression, Rational, SymbolId, Variations, d
 pub struct ClearedSystem {
     pub residual: Expression,
     pub jacobian: Expression,
-    /// `n`.
+    /// The power `n` of `D`.
     pub power: u32,
 }
 
-/// Beyond this many terms the retracted form is surely cheaper, and expanding would take long.
+/// The limit on terms, beyond which the retracted form is surely cheaper and expanding would take long.
 const MOST_TERMS: usize = 100;
 
 pub(super) fn cleared(context: &Context, unknown: &Expression) -> Option<ClearedSystem> {
@@ -40,7 +40,7 @@ pub(super) fn cleared(context: &Context, unknown: &Expression) -> Option<Cleared
     let cayley = context.product(&d.clone().power(-1, context.symbols), &numerator);
     let map = BTreeMap::from([(factor.increment, cayley)]);
     let in_coordinates = context.product(&context.half_step(), &context.substituted(unknown, &map));
-    // ⟨a, E⟩ = −½ tr(E â), where `a` stands for (h/2) a.
+    // ⟨a, E⟩ = −½ tr(E â), where the symbol `a` is (h/2) a.
     let direction = context.symbol(factor.first);
     let target_hat = context.symbol(directions.target).hat(context.symbols);
     let target = context.product(&direction, &target_hat).trace(context.symbols).scaled(Rational::new(-1, 2));
@@ -55,7 +55,7 @@ pub(super) fn cleared(context: &Context, unknown: &Expression) -> Option<Cleared
     Some(ClearedSystem { residual, jacobian, power: power.unsigned_abs() })
 }
 
-/// Each `F` becomes the four terms of `(2/D − 1) I + (2 yyᵀ + 2 ŷ)/D`.
+/// The number of terms once each `F` becomes the four terms of `(2/D − 1) I + (2 yyᵀ + 2 ŷ)/D`.
 fn terms_in_coordinates(increment: SymbolId, unknown: &Expression) -> usize {
     let terms = unknown.terms().map(|(monomial, _)| {
         let factors = u32::try_from(degree(monomial, increment)).unwrap_or(u32::MAX);

@@ -1,4 +1,4 @@
-//! Derivatives through `let`s that are kept closed, by Lagrange multipliers.
+//! Derivatives through closed `let`s, by Lagrange multipliers.
 //!
 //! A Lagrangian that is too large when multiplied out is `l_d(v, F, w)` with `v_i = d_i(v_1 … v_{i−1}, F, w)` for its
 //! `let`s. With a multiplier for each,
@@ -7,9 +7,9 @@
 //! L = l_d + Σ ⟨λ_i, d_i⟩,      ⟨λ_i, δv_i⟩ = δL along δv_i,      from the last to the first
 //! ```
 //!
-//! the first variation of `l_d` is that of `L` with `v` and `λ` held fixed, so that all momentum maps come from the
-//! rules that they come from elsewhere. This is differentiation in the reverse mode: a gradient costs a few
-//! evaluations. The second variation goes through `v` and `λ` as well, forwards.
+//! the first variation of `l_d` is that of `L` with `v` and `λ` fixed, so that all momentum maps follow from the usual
+//! rules. This is differentiation in the reverse mode: a gradient costs a few evaluations. The second variation goes
+//! through `v` and `λ` as well, in the forward mode.
 
 use super::Context;
 use super::transport::in_small_increment;
@@ -34,14 +34,14 @@ pub struct ClosedLet {
     /// `λ`, and `⟨λ, δv⟩`.
     pub multiplier: SymbolId,
     pub pairing: Expression,
-    /// The same by `D = F − I`, where its constants cancel then.
+    /// The pairing by `D = F − I`, if its constants cancel in this form.
     pub near: Expression,
     /// `v` and `⟨λ, δv⟩` varied along `F ↦ exp(t E_j) F`.
     pub tangent: (SymbolId, Expression),
     pub multiplier_tangent: (SymbolId, Expression),
 }
 
-/// The symbols that each `let` adds, and `L`.
+/// The symbols that each `let` adds, and the Lagrangian `L` with multipliers.
 pub(super) fn multipliers(lets: &[Let], l_d: &Expression, symbols: &mut Symbols) -> (Vec<ClosedLet>, Expression) {
     let mut closed = Vec::new();
     for Let { symbol, value } in lets {
@@ -75,7 +75,7 @@ pub(super) fn multipliers(lets: &[Let], l_d: &Expression, symbols: &mut Symbols)
     (closed, lagrangian)
 }
 
-/// Fills in what varies along `E_j F`.
+/// Sets the variations of `let`s and multipliers along `E_j F`.
 pub(super) fn tangents(context: &Context, closed: &mut [ClosedLet]) {
     let mut varied = forwards(context, &[]);
     for one in closed.iter_mut() {
@@ -94,7 +94,7 @@ pub(super) fn tangents(context: &Context, closed: &mut [ClosedLet]) {
     }
 }
 
-/// `δF = E_j F` with what follows for the `let`s and the multipliers.
+/// The variation `δF = E_j F`, and those of `let`s and multipliers that follow.
 pub(super) fn forwards(context: &Context, closed: &[ClosedLet]) -> Variations {
     let increments = context.declared.increments.iter().enumerate();
     let mut variations: Variations =

@@ -1,4 +1,4 @@
-//! The derivatives of a holonomic constraint by the places of two bodies, in the axes of space.
+//! The derivatives of a holonomic constraint by the positions of two bodies, in the axes of space.
 //!
 //! ```text
 //! G_R η = d/ds g(…, exp(sη̂) R, …)          G_x ξ = d/ds g(…, x + sξ, …)
@@ -7,13 +7,13 @@
 use super::View;
 use crate::mathematics::symbolic::{Expression, Stage, Structure, SymbolId, Symbols, Variations, variation};
 
-/// The symbols of where a body is.
+/// The symbols of a body's position.
 #[derive(Clone, Copy, Debug)]
 pub struct Body {
-    /// From the body's axes to those of space.
+    /// The rotation from the body's axes to those of space.
     pub attitude: SymbolId,
     pub position: SymbolId,
-    /// What its place is varied along: `η`, and `ξ`.
+    /// The variations `η` of the attitude and `ξ` of the position.
     pub directions: [SymbolId; 2],
 }
 
@@ -27,8 +27,8 @@ impl Body {
 }
 
 impl View {
-    /// What two bodies, each of which turns by its first factor and is shifted by its second, see at their places; of a
-    /// field of the symbol. Nothing where the field is missing.
+    /// The value of a parameter at the positions of two bodies, each of which rotates by its first factor and is
+    /// translated by its second; `field` is the symbol of its spatial value. `None` if the field is missing.
     pub fn at(self, bodies: &[Body; 2], field: Option<SymbolId>, symbols: &Symbols) -> Option<Expression> {
         let is_shift = |factor: usize| factor % 2 == 1;
         let place = |factor: usize| {
@@ -44,13 +44,13 @@ impl View {
     }
 }
 
-/// A constraint with the symbols that it is written in.
+/// A constraint and its symbols.
 #[derive(Clone, Debug)]
 pub struct DeclaredConstraint {
     pub symbols: Symbols,
-    /// `g`, scalars and columns one below the other.
+    /// The functions `g`, scalars and columns.
     pub functions: Vec<Expression>,
-    /// That above, and that below.
+    /// The body above, and the body below.
     pub bodies: [Body; 2],
 }
 

@@ -17,7 +17,7 @@ use crate::mathematics::symbolic::{
     Expression, Rational, Stage, Structure, SymbolId, Symbols, Variations, substitute, variation,
 };
 
-/// A continuous Lagrangian with the symbols that it is written in.
+/// A continuous Lagrangian and its symbols.
 #[derive(Clone, Debug)]
 pub struct ContinuousLagrangian {
     pub group: Group,
@@ -34,7 +34,7 @@ pub struct ContinuousLagrangian {
 #[derive(Clone, Copy, Debug)]
 pub struct Element {
     pub components: SymbolId,
-    /// The matrix `ξ̂`; none on SO(3), where it is that of a cross product, and where increments are added.
+    /// The matrix `ξ̂`; `None` on SO(3), where it is that of a cross product, and for a translation.
     pub matrix: Option<SymbolId>,
 }
 
@@ -56,7 +56,7 @@ impl Element {
         velocity
     }
 
-    /// An element of the algebra: a matrix, where increments are added a vector.
+    /// An element of the algebra: a matrix, or for a translation a vector.
     fn element(self, group: &Group, symbols: &Symbols) -> Expression {
         let components = Expression::symbol(self.components, symbols);
         match self.matrix {
@@ -66,29 +66,29 @@ impl Element {
         }
     }
 
-    /// Whether an expression depends on it.
+    /// Whether an expression depends on the element.
     fn is_in(self, expression: &Expression) -> bool {
         expression.contains(self.components) || self.matrix.is_some_and(|matrix| expression.contains(matrix))
     }
 }
 
-/// How `ξ` follows from `μ`.
+/// The form of the map from `μ` to `ξ`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inverse {
     /// `l` is quadratic in `ξ`, with the same second derivative for all `w`.
     Constant,
     /// `l` is quadratic in `ξ`.
     Varying,
-    /// It isn't.
+    /// `l` isn't quadratic in `ξ`.
     Nonlinear,
 }
 
-/// All that follows from `l`. Covectors are linear in `η`, the second derivative in `η` and `ζ`.
+/// The terms derived from `l`. Covectors are linear in `η`, the second derivative in `η` and `ζ`.
 #[derive(Clone, Debug)]
 pub struct Continuous {
     pub group: Group,
     pub symbols: Symbols,
-    /// One for each factor of the group, as all of these.
+    /// The velocity of each factor of the group; other lists are by factors, too.
     pub velocities: Vec<Element>,
     pub advected: Vec<AdvectedSymbol>,
     /// `η` and `ζ`.
@@ -100,9 +100,9 @@ pub struct Continuous {
     pub hessian: Expression,
     /// `∂l/∂w ⋄ w`.
     pub diamond: Expression,
-    /// Any matrix of each factor; where increments are added, any vector.
+    /// Any matrix of each factor; for a translation, any vector.
     pub any: Vec<SymbolId>,
-    /// `∂l/∂w ⋄ w` along these.
+    /// `∂l/∂w ⋄ w` along these matrices.
     pub diamond_of_any: Expression,
     /// `(∂²l/∂w∂ξ)(ξ·w)`.
     pub advection: Expression,
@@ -135,7 +135,7 @@ impl Continuous {
     }
 }
 
-/// Derives everything.
+/// Derives the continuous equations.
 pub fn continuous(declared: ContinuousLagrangian) -> Result<Continuous, Refusal> {
     let ContinuousLagrangian { group, mut symbols, expression, velocities, advected } = declared;
     let is_crossed = group.rotates();
@@ -171,7 +171,7 @@ pub fn continuous(declared: ContinuousLagrangian) -> Result<Continuous, Refusal>
         let moved = advected.iter().map(|&w| (w.symbol, action::along((&group, &symbols), w, e)));
         vary(of, &moved.collect())
     };
-    // The last coordinate of a point stays one, whatever the matrix; the algebra leaves it.
+    // The last coordinate of a point stays one along every matrix, as it does along the algebra.
     let along_any = |of: &Expression| {
         let e = |factor: usize| Expression::symbol(any[factor], &symbols);
         let moved = advected.iter().map(|&w| {
@@ -214,14 +214,14 @@ pub fn continuous(declared: ContinuousLagrangian) -> Result<Continuous, Refusal>
     })
 }
 
-/// A column with zero for its last entry; the elements of a group of affine maps have it anyway.
+/// A column with its last entry set to zero, which elements of a group of affine maps leave zero anyway.
 fn without_last(column: &Expression, symbols: &Symbols) -> Expression {
     let (size, _) = column.shape();
     let [row, unit] = [true, false].map(|transposed| unit(size - 1, size, transposed, symbols));
     column.clone().minus(unit.times(&row.times(column, symbols), symbols))
 }
 
-/// The limit of a discrete Lagrangian, `l = ½ ξ·Jξ + s(w)·ξ − V(w)` where it is quadratic in `ξ`.
+/// The limit of a discrete Lagrangian: `l = ½ ξ·Jξ + s(w)·ξ − V(w)`, if it is quadratic in `ξ`.
 pub fn of_limit(declared: &DeclaredFunction, derived: &Derivation) -> ContinuousLagrangian {
     let (group, mut symbols) = (declared.group.clone(), derived.symbols.clone());
     let mut velocities = Vec::new();

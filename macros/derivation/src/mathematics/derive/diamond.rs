@@ -13,7 +13,7 @@ pub(super) fn diamond(context: &Context) -> Expression {
     of(context, &context.declared.advected)
 }
 
-/// The share of each parameter, where there are several.
+/// The share of each parameter, if there are several.
 pub(super) fn shares(context: &Context) -> Vec<Expression> {
     match context.declared.advected.as_slice() {
         [_] => Vec::new(),

@@ -8,15 +8,15 @@
 //! a = μ + f⁻_0(w)      U(F, w) − f⁻_1(F, w) = a      μ⁺ = Ad*_F a + Ad*_F f⁻_1(F, w) + f⁺(F, w),    w = F·w⁺
 //! ```
 //!
-//! so it has the stages of any effect, and a share in the Newton Jacobian.
+//! so it has the stages of any effect, and a part of the Newton Jacobian.
 
 use super::{Context, DeclaredFunction, Derivation, Limit, cayley, directions, momentum_equation, transport};
 use crate::mathematics::symbolic::{Expression, Rational, SymbolId};
 
-/// Why the virtual work defines no force.
+/// The reason why the virtual work defines no force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ForceError {
-    /// It isn't linear in the displacements.
+    /// The work isn't linear in the displacements.
     NotLinear,
 }
 
@@ -24,7 +24,7 @@ pub enum ForceError {
 #[derive(Clone, Debug)]
 pub struct Displacements(pub Vec<[SymbolId; 2]>);
 
-/// All that follows from the virtual work; what only a Lagrangian has is zero.
+/// The terms derived from the virtual work; those of a Lagrangian alone are zero.
 pub(super) fn force(
     declared: &DeclaredFunction,
     Displacements(displacements): &Displacements,
@@ -45,7 +45,8 @@ pub(super) fn force(
         context.substituted(&declared.expression, &map)
     };
     let (before, after) = (work(1, 0), work(0, 1));
-    // With three values along a line, and none at zero, no power but the first and no product of the two is left.
+    // The work of `t` times both displacements is `t` times the sum of their single works: powers and products of
+    // displacements fail.
     let is_linear = |factor: i128| {
         let both = before.clone().plus(after.clone()).scaled(Rational::integer(factor));
         work(factor, factor).minus(both).is_zero()

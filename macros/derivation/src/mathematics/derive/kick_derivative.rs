@@ -1,11 +1,11 @@
-//! How the kick `k₀(w)` changes as the body turns, for the force gradient of kinetic-potential splittings.
+//! The derivative of the kick `k₀(w)` along a motion, for the force gradient of kinetic-potential splittings.
 //!
 //! ```text
 //! d/dt k₀(exp(−tE)·w),      δw = −E·w
 //! ```
 //!
-//! is its derivative along the motion `R exp(tE)` of a body from which `w` is seen. For a potential's torque that is
-//! its second derivative but for a bracket, which the splittings add.
+//! is the derivative along the motion `R exp(tE)` of a body with `w` in its axes. For a potential's torque it is the
+//! second derivative of the potential but for a bracket, which the splittings add.
 
 use super::Context;
 use crate::mathematics::symbolic::{Expression, Rational, Variations, variation};

@@ -1,9 +1,9 @@
 //! The continuous Lagrangian that `l_d` discretises, `l_d(exp hξ, w) = h l(ξ, w) + O(h²)`.
 //!
-//! By powers of `h` with `F` held fixed: `l_d = h⁻¹ K(F) + S(F, w) + h U(F, w) + …`. Then `l = ½ ξ·Jξ + s·ξ − V`, where
-//! `J` is the second derivative of `K` at `F = I`, `s` the momentum of `S` there, and `V = −U(I, w)`. A first derivative
-//! of `K` at the identity would let momenta grow without bound as `h → 0`. Where `h` is under functions or has lower
-//! powers, a series along a motion has `l`.
+//! An expansion in powers of `h` at a fixed `F` is `l_d = h⁻¹ K(F) + S(F, w) + h U(F, w) + …`. Then
+//! `l = ½ ξ·Jξ + s·ξ − V`, where `J` is the second derivative of `K` at `F = I`, `s` the momentum of `S` there, and
+//! `V = −U(I, w)`. A nonzero first derivative of `K` at the identity would let momenta grow without bound as `h → 0`.
+//! If `h` is under functions or has lower powers, `l` follows from a series along a motion.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use crate::mathematics::symbolic::{
     Expression, Monomial, Rational, SymbolId, Variations, monomial_contains, substitute, variation,
 };
 
-/// A continuous Lagrangian, and which of its symbols stand for which of the discrete one that is made of it.
+/// The continuous Lagrangian of a discretisation, and pairs of its symbols with those of the discrete Lagrangian.
 #[derive(Clone, Debug)]
 pub struct ContinuousSource {
     pub continuous: Continuous,
@@ -31,7 +31,7 @@ pub struct Limit {
     pub inertia: Expression,
     pub bias: Expression,
     pub potential: Expression,
-    /// `l(ξ, w)` itself where it was typed as an `l_d` and isn't quadratic in `ξ`: the others are its values at rest.
+    /// `l(ξ, w)`, if an `l_d` was declared and it isn't quadratic in `ξ`: the other terms are its values at rest.
     pub lagrangian: Option<Expression>,
 }
 
@@ -44,7 +44,7 @@ pub(super) fn limit(context: &Context, momentum: &Expression) -> Result<Limit, L
     found.or_else(|error| discretised.map(|discretised| at_rest(context, discretised)).ok_or(error))
 }
 
-/// Where `h` stands in powers alone, of which −1 is the lowest.
+/// The limit by powers of `h`; `None` if `h` is under functions or its lowest power with `F` is below −1.
 fn by_powers(context: &Context, momentum: &Expression) -> Option<Limit> {
     let (l_d, h) = (&context.declared.expression, context.declared.step);
     let is_too_low = |(monomial, _): (&Monomial, _)| {
@@ -66,7 +66,7 @@ fn by_powers(context: &Context, momentum: &Expression) -> Option<Limit> {
     Some(Limit { has_kinetic: !kinetic.is_zero(), slope, inertia, bias, potential, lagrangian: None })
 }
 
-/// As a series in `h` along `F = exp(hξ̂)`: the coefficient of `h` is `l(ξ, w)`, whatever its degree in `ξ`.
+/// The limit by a series in `h` along `F = exp(hξ̂)`: its coefficient of `h` is `l(ξ, w)`, of any degree in `ξ`.
 fn along_motion(context: &Context) -> Result<Limit, LimitError> {
     let factors = &context.directions.factors;
     let series = Expansion::new(context, context.directions.scratch)?.of_lagrangian()?;
@@ -103,7 +103,7 @@ fn along_motion(context: &Context) -> Result<Limit, LimitError> {
     })
 }
 
-/// What is left of `l` near rest: its Taylor polynomial of degree two in the velocity.
+/// The limit near rest: the Taylor polynomial of `l` of degree two in the velocity.
 fn at_rest(context: &Context, ContinuousSource { continuous, symbols }: &ContinuousSource) -> Limit {
     let mut map: BTreeMap<SymbolId, Expression> =
         symbols.iter().map(|&(from, to)| (from, context.symbol(to))).collect();

@@ -1,4 +1,4 @@
-//! From `l_d` to all that an integrator needs, in the order of the thesis. Knows no token.
+//! The derivation of an integrator's terms from `l_d`, in the order of the thesis. Knows no token.
 
 mod action;
 mod algebra;
@@ -33,12 +33,12 @@ pub use limit::{ContinuousSource, Limit};
 pub use self_adjoint::SelfAdjointness;
 pub use series::LimitError;
 
-/// A declared Lagrangian with the symbols that it is written in.
+/// A declared Lagrangian and its symbols.
 #[derive(Clone, Debug)]
 pub struct DeclaredFunction {
     pub group: Group,
     pub symbols: Symbols,
-    /// The `let`s that aren't multiplied out, in their order; none where the expression is small enough.
+    /// The closed `let`s, in their order; empty if the expression is small enough to be multiplied out.
     pub lets: Vec<Let>,
     /// The Lagrangian `l_d`, or the virtual work of a force.
     pub expression: Expression,
@@ -48,15 +48,15 @@ pub struct DeclaredFunction {
     pub step: SymbolId,
     /// The advected parameters `w`.
     pub advected: Vec<AdvectedSymbol>,
-    /// Those of a force's virtual work; a Lagrangian has none.
+    /// The displacements of a force's virtual work; a Lagrangian has none.
     pub displacements: Option<Displacements>,
-    /// Whether the derivatives of a step are asked for.
+    /// Whether the derivatives of a step are requested.
     pub has_derivatives: bool,
     /// The continuous Lagrangian that was discretised.
     pub discretised: Option<ContinuousSource>,
 }
 
-/// Why nothing can be derived.
+/// The reason why nothing can be derived.
 #[derive(Clone, Copy, Debug)]
 pub enum Refusal {
     Limit(LimitError),
@@ -80,7 +80,7 @@ pub struct OfFactor {
     pub inverse: SymbolId,
     /// `D⁻ = F⁻¹ − I`.
     pub small_inverse: SymbolId,
-    /// The increment `F⁺` of the next step, in print.
+    /// The increment `F⁺` of the next step, for printed equations.
     pub next_increment: SymbolId,
     /// `ξ̂` in the limit `F = exp(hξ̂)`.
     velocity: SymbolId,
@@ -90,7 +90,7 @@ pub struct OfFactor {
 #[derive(Clone, Debug)]
 pub struct Directions {
     pub factors: Vec<OfFactor>,
-    /// The covector `a` that the unknown part of the momentum equation has to equal; in a Newton system `(h/2) a`.
+    /// The covector `a` on the right side of the momentum equation; in a Newton system `(h/2) a`.
     pub target: SymbolId,
     /// The Cayley vector `y` of `F = cay(2y)`.
     pub coordinates: SymbolId,
@@ -102,11 +102,11 @@ pub struct Directions {
     pub next: Vec<SymbolId>,
     /// The body velocity `v` that a kick is differentiated along.
     pub along: SymbolId,
-    /// A scalar to differentiate functions by.
+    /// A scalar variable for derivatives of functions.
     scratch: SymbolId,
 }
 
-/// All that follows from `l_d`. Covectors are linear in the direction `E_k`, Jacobians in `E_k` and `E_j`.
+/// The terms derived from `l_d`. Covectors are linear in the direction `E_k`, Jacobians in `E_k` and `E_j`.
 #[derive(Clone, Debug)]
 pub struct Derivation {
     pub symbols: Symbols,
@@ -122,7 +122,7 @@ pub struct Derivation {
     pub left_momentum: Expression,
     /// `δl_d/δw ⋄ w`.
     pub diamond: Expression,
-    /// The share of each advected parameter, where there are several.
+    /// The share of each advected parameter, if there are several.
     pub shares: Vec<Expression>,
     /// `μ` of (2.7).
     pub momentum: Expression,
@@ -130,32 +130,32 @@ pub struct Derivation {
     pub jacobian: Expression,
     /// `−∂l_d/∂h`.
     pub energy: Expression,
-    /// `l_d(F, w, h) + l_d(F⁻¹, F⁻¹·w, −h)`: zero where the Lagrangian is seen to be self-adjoint.
+    /// `l_d(F, w, h) + l_d(F⁻¹, F⁻¹·w, −h)`: zero if the Lagrangian is self-adjoint by its normal form.
     pub adjoint_defect: Expression,
-    /// The flow on increments (2.5): `μ(F⁺, w⁺)` and what it equals, `(L_F)* δl_d/δF` in `F` and `w⁺`; not where there
-    /// are closed `let`s.
+    /// The two sides of the flow on increments (2.5): `μ(F⁺, w⁺)`, and `(L_F)* δl_d/δF` in `F` and `w⁺`; `None` if
+    /// there are closed `let`s.
     pub flow: Option<[Expression; 2]>,
     /// The Lagrangian's limit as `h → 0`.
     pub limit: Limit,
     /// The part of the diamond without `F`.
     pub kick_before: Expression,
-    /// Its derivative along `w ↦ exp(−t E_j)·w`, where kinetic-potential splittings may ask for it: on SO(3), of a
+    /// The derivative of this kick along `w ↦ exp(−t E_j)·w`, for kinetic-potential splittings: on SO(3), for a
     /// Lagrangian without closed `let`s.
     pub kick_derivative: Option<Expression>,
-    /// The part of `μ` with `F`, written in `D = F − I`: its constants cancel exactly, so that a small step keeps its
-    /// digits.
+    /// The part of `μ` that depends on `F`, written in `D = F − I`: its constants cancel exactly, so that a small step
+    /// keeps its digits.
     pub unknown: Expression,
-    /// The rest of the diamond, in `F` and `w`; of a force, which has more after the step, nothing.
+    /// The rest of the diamond, in `F` and `w`; `None` for a force, which has another kick after the step.
     pub moved: Option<Expression>,
-    /// `Ad*_F` of the rest of the diamond, in `F` and `w⁺`; what goes like `1/h` in `D`.
+    /// `Ad*_F` of the rest of the diamond, in `F` and `w⁺`; its terms in `1/h` are written in `D`.
     pub kick_after: Expression,
-    /// The same as it is printed, without `D`.
+    /// The kick after the step in printed form, without `D`.
     pub shown_kick_after: Expression,
-    /// `h/2`, by which the Newton system is multiplied: it has no `1/h` then.
+    /// `h/2`, the factor of the Newton system, which removes its `1/h`.
     pub half_step: Expression,
-    /// The momentum equation in Cayley coordinates without denominators, where it is polynomial in `F`.
+    /// The momentum equation in Cayley coordinates without denominators, if it is polynomial in `F`.
     pub cleared: Option<ClearedSystem>,
-    /// Where the derivatives of a step are asked for, the momenta that they are those of.
+    /// The momenta to differentiate, if the derivatives of a step are requested.
     pub ends: Option<Ends>,
 }
 
@@ -169,7 +169,7 @@ pub struct Ends {
 }
 
 impl Derivation {
-    /// Whether the inertia depends on what is advected or given.
+    /// Whether the inertia depends on advected or given parameters.
     pub fn inertia_varies(&self) -> bool {
         self.previous.iter().any(|(w, _)| self.limit.inertia.contains(*w))
     }
@@ -202,7 +202,7 @@ impl Derivation {
     }
 }
 
-/// Derives everything, of a Lagrangian or of a force.
+/// Derives all terms of a Lagrangian or of a force.
 pub fn derive(declared: &DeclaredFunction) -> Result<Derivation, Refusal> {
     let derived = match &declared.displacements {
         None => lagrangian(declared).map_err(Refusal::Limit)?,
@@ -226,7 +226,7 @@ fn lagrangian(declared: &DeclaredFunction) -> Result<Derivation, LimitError> {
     let adjoint_defect = self_adjoint::defect(&context);
     let limit = limit::limit(&context, &momentum)?;
     let parts = transport::parts(&context, &momentum, &diamond);
-    // The multipliers of closed `let`s aren't varied; what has no kick has no derivative of it all the same.
+    // The derivative doesn't vary multipliers of closed `let`s; a zero kick has a zero derivative in any case.
     let kick_derivative = (declared.group.is_so3 && (closed.is_empty() || parts.kick_before.is_zero()))
         .then(|| kick_derivative::kick_derivative(&context, &parts.kick_before));
     let flow = closed.is_empty().then(|| transport::increments(&context, &momentum, &left_momentum));
@@ -262,8 +262,8 @@ fn lagrangian(declared: &DeclaredFunction) -> Result<Derivation, LimitError> {
     })
 }
 
-/// Whether a Lagrangian, of which less is known, has all that was derived by one variation, the kicks of the transport
-/// form, and the limit. What is quickly found is asked first.
+/// Whether a Lagrangian with fewer known properties has the same equations: the terms of one variation, the kicks of
+/// the transport form, and the limit. Fast comparisons come first.
 pub fn has_equations(declared: &DeclaredFunction, known: &DeclaredFunction, derived: &Derivation) -> bool {
     let values = |of: &[Let]| of.iter().map(|one| one.value.clone()).collect::<Vec<_>>();
     if declared.expression != known.expression || values(&declared.lets) != values(&known.lets) {
@@ -289,10 +289,10 @@ pub fn has_equations(declared: &DeclaredFunction, known: &DeclaredFunction, deri
         && limit::limit(&context, &derived.momentum).is_ok_and(has_limit)
 }
 
-/// What every rule needs.
+/// The inputs of every rule.
 struct Context<'a> {
     declared: &'a DeclaredFunction,
-    /// What is varied: `l_d`, with its `let`s by multipliers.
+    /// The Lagrangian that is varied: `l_d`, with multipliers for its closed `let`s.
     lagrangian: &'a Expression,
     symbols: &'a Symbols,
     directions: &'a Directions,
@@ -303,12 +303,12 @@ impl Context<'_> {
         Expression::symbol(id, self.symbols)
     }
 
-    /// `E_k` of each factor, in the place of all.
+    /// `E_k` of a factor.
     fn first(&self, factor: usize) -> Expression {
         self.directions.factors.get(factor).map_or_else(|| Expression::zero((1, 1)), |one| self.symbol(one.first))
     }
 
-    /// `E_j` of each factor.
+    /// `E_j` of a factor.
     fn second(&self, factor: usize) -> Expression {
         self.directions.factors.get(factor).map_or_else(|| Expression::zero((1, 1)), |one| self.symbol(one.second))
     }
@@ -340,7 +340,7 @@ impl Context<'_> {
         self.declared.group.factor(factor).is_added
     }
 
-    /// `E F`, the change of `F ↦ exp(sE) F`; of what is added `E`.
+    /// `E F`, the variation of `F ↦ exp(sE) F`; for a translation `E`.
     fn turned(&self, factor: usize, e: &Expression) -> Expression {
         if self.is_added(factor) { e.clone() } else { self.product(e, &self.increment(factor).0) }
     }
@@ -349,7 +349,7 @@ impl Context<'_> {
         self.symbol(self.declared.step).scaled(Rational::new(1, 2))
     }
 
-    /// Where the derivatives of a step are asked for; closed `let`s stay as they are.
+    /// The momenta to differentiate, if the derivatives of a step are requested; closed `let`s stay closed.
     fn ends(&self, closed: &[ClosedLet], momenta: [&Expression; 2]) -> Option<Ends> {
         let small = |momentum: &Expression| {
             if closed.is_empty() { transport::in_small_increment(self, momentum) } else { momentum.clone() }
@@ -379,7 +379,7 @@ fn directions(declared: &DeclaredFunction, symbols: &mut Symbols) -> Directions 
         let factors = declared.group.factors().iter().zip(&declared.increments).enumerate();
         factors.map(|(place, (group, &increment))| (place, group, increment)).collect()
     };
-    // With its number, where there are several.
+    // Names have the number of the factor, if there are several.
     let matrices = |symbols: &mut Symbols, name: &str, stage, structure: &dyn Fn(&Group) -> Structure| {
         let of_factor = |&(place, group, _): &(usize, &Group, SymbolId)| {
             let name = if is_product { format!("{name}_{}", place + 1) } else { name.to_owned() };

@@ -5,7 +5,7 @@
 //! ⟨(L_F)* δl_d/δF, E⟩ = d/ds l_d(F exp(sE), w)      δF = F E
 //! ```
 //!
-//! A translation `d` is added to: there both are `δd = E`.
+//! For a translation `d`, which is added, both are `δd = E`.
 
 use super::Context;
 use crate::mathematics::symbolic::{Expression, Variations, variation};
@@ -21,7 +21,7 @@ pub(super) fn left(context: &Context) -> Expression {
     })
 }
 
-/// With `δF` of each factor: of several bodies the covector is linear in all `E_k` together.
+/// The derivative along `δF` of each factor: the covector of several bodies is linear in all `E_k` together.
 fn along(context: &Context, delta_f: &dyn Fn(usize) -> Expression) -> Expression {
     let increments = context.declared.increments.iter().enumerate();
     let variations: Variations = increments.map(|(factor, &increment)| (increment, delta_f(factor))).collect();

@@ -6,17 +6,17 @@ use std::collections::BTreeMap;
 use super::{Context, action};
 use crate::mathematics::symbolic::{Expression, Rational};
 
-/// What has been found out.
+/// The self-adjointness of a Lagrangian, and its proof.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SelfAdjointness {
     /// The normal forms are equal.
     Symbolic,
     /// The values are equal at random points, where nothing is rounded.
     Exact,
-    /// They are with what is known of `exp` and `log` together, at squares of `F`.
+    /// The values are equal at squares of `F`, where the composition of `exp` and `log` is known.
     WithoutBound,
-    /// The values differ, but not where all vectors have one for their last coordinate, which the types of points
-    /// promise and theirs don't.
+    /// The values differ, but are equal if all vectors have one for their last coordinate, which is guaranteed by the
+    /// types of points, not by those of vectors.
     ForPoints,
     /// The values differ.
     No,
@@ -28,10 +28,10 @@ impl SelfAdjointness {
     }
 }
 
-/// `l_d(F, w, h) + l_d(F⁻¹, F⁻¹·w, −h)`; what rests on relations that the normal form doesn't know stays.
+/// `l_d(F, w, h) + l_d(F⁻¹, F⁻¹·w, −h)`; terms that cancel by relations beyond the normal form remain.
 pub(super) fn defect(context: &Context) -> Expression {
     let declared = context.declared;
-    // Closed `let`s aren't looked into.
+    // Closed `let`s aren't compared.
     if !declared.lets.is_empty() {
         return declared.expression.clone();
     }

@@ -1,4 +1,4 @@
-//! Power series in `h` along `F = exp(h ξ̂)`, truncated: how the limit `h → 0` is found through `let`s and functions.
+//! Truncated power series in `h` along `F = exp(h ξ̂)`: the limit `h → 0` through `let`s and functions.
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -8,26 +8,26 @@ use crate::mathematics::symbolic::{
     Atom, Expression, Factor, Function, Rational, SymbolId, Variations, substitute, variation,
 };
 
-/// Why there is no continuous Lagrangian behind `l_d`.
+/// The reason why `l_d` has no continuous limit `l`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitError {
-    /// `h` stands under a function that has no value as `h → 0`.
+    /// `h` is under a function that has no value as `h → 0`.
     StepInsideFunction,
     /// A power of `h` below −1.
     TooSingular(i32),
-    /// There is no `l(ξ, w)`.
+    /// The limit `l(ξ, w)` doesn't exist.
     NotALagrangian,
     /// The limit has too many terms.
     TooLarge,
 }
 
-/// Terms of this order and above are dropped, but for the first of a series. The limit needs `l_d` to the first order,
+/// The order from which on terms are dropped, except the first of a series. The limit needs `l_d` to the first order,
 /// and `l_d` may divide by `h`.
 const CUTOFF: i32 = 3;
-/// The end of what is known without end.
+/// The `end` of an exact series.
 const NEVER: i32 = 1_000;
-/// A limit that a person would write down has a hundredth of it; that of a Cayley transform has a tenth. What is larger
-/// ends a series, as the limit may not need it.
+/// The limit on factors: a limit that a person would write down has a hundredth of it, that of a Cayley transform a
+/// tenth. A larger coefficient ends a series, as the limit may not need it.
 const MOST_FACTORS: usize = 16_000;
 
 /// `Σ c_i hⁱ + O(hᵉ)`.
@@ -35,7 +35,7 @@ const MOST_FACTORS: usize = 16_000;
 pub(super) struct Series {
     shape: (usize, usize),
     coefficients: BTreeMap<i32, Expression>,
-    /// The order `e` from which on nothing is known.
+    /// The order `e` of the remainder.
     end: i32,
 }
 
@@ -50,7 +50,7 @@ impl Series {
         Self::constant(Expression::identity(1))
     }
 
-    /// The coefficient of that order of a scalar.
+    /// The coefficient of this order in a scalar series.
     pub(super) fn at(&self, order: i32) -> Expression {
         self.coefficients.get(&order).cloned().unwrap_or_else(|| Expression::zero((1, 1)))
     }
@@ -59,7 +59,7 @@ impl Series {
         self.coefficients.iter().map(|(order, coefficient)| (*order, coefficient))
     }
 
-    /// The lowest order with a coefficient; the end where there is none.
+    /// The lowest order with a coefficient; the end if there is none.
     fn lowest(&self) -> i32 {
         self.coefficients.keys().next().copied().unwrap_or(self.end)
     }
@@ -75,7 +75,7 @@ impl Series {
         self
     }
 
-    /// Whether there is nothing more.
+    /// Whether the series has no remainder.
     fn is_exact(&self) -> bool {
         self.end > NEVER / 2
     }
@@ -97,14 +97,14 @@ impl Series {
         Self { shape, coefficients, end: self.end }.cut(NEVER)
     }
 
-    /// Times `hⁿ`.
+    /// The series times `hⁿ`.
     fn shifted(self, n: i32) -> Self {
         let coefficients = self.coefficients.into_iter().map(|(order, value)| (order + n, value)).collect();
         Self { shape: self.shape, coefficients, end: self.end + n }.cut(NEVER)
     }
 }
 
-/// Where a series is cut.
+/// The order at which a series is cut.
 fn most(lowest: i32) -> i32 {
     CUTOFF.max(lowest + 1)
 }
@@ -112,10 +112,10 @@ fn most(lowest: i32) -> i32 {
 /// Evaluates expressions to series.
 pub(super) struct Expansion<'a> {
     context: &'a Context<'a>,
-    /// A scalar to differentiate functions by.
+    /// A scalar variable for derivatives of functions.
     scratch: SymbolId,
     known: BTreeMap<SymbolId, Series>,
-    /// Whether a coefficient was too large.
+    /// Whether a coefficient exceeded the limit on factors.
     is_too_large: Cell<bool>,
 }
 
@@ -155,7 +155,7 @@ impl<'a> Expansion<'a> {
         series.cut(CUTOFF)
     }
 
-    /// The series of `l_d`, which tells the coefficient of `h`.
+    /// The series of `l_d`, known at least to the first order in `h`.
     pub(super) fn of_lagrangian(&self) -> Result<Series, LimitError> {
         let found = self.of(&self.context.declared.expression);
         match found {
@@ -302,7 +302,7 @@ impl<'a> Expansion<'a> {
         self.times(&inverse, &sum.cut((CUTOFF + 1) * minus.lowest()))
     }
 
-    /// Taylor's series about the value at `h = 0`; a root is taken of what is left without a power of `h > 0`.
+    /// Taylor's series about the value at `h = 0`; for a root, the even leading power of `h` is taken out first.
     fn function(&self, function: Function, argument: Series) -> Result<Series, LimitError> {
         let lowest = argument.lowest();
         if function == Function::Sqrt && lowest != 0 && lowest < argument.end && lowest % 2 == 0 {

@@ -1,13 +1,14 @@
-//! The step in the transport form `μ⁺ = Ad*_F (μ + δl_d/δw ⋄ w)`, which keeps the Casimirs at any Newton tolerance.
+//! The step in the transport form `μ⁺ = Ad*_F (μ + δl_d/δw ⋄ w)`, which conserves the Casimirs at any Newton tolerance.
 //!
-//! What doesn't depend on `F`, and isn't of the size of `1/h`, is moved to where it is cheap: with
-//! `diamond = k_0(w) + k_1(F, w)` and `μ = U − k_0` with all of `F` in `U`, one solves `U(F, w) = a` for `a = μ + k_0(w)`, and
+//! The parts of the diamond and of `μ` that don't depend on `F`, and aren't of the order of `1/h`, are computed once a
+//! step: with `diamond = k_0(w) + k_1(F, w)` and `μ = U − k_0` with all of `F` in `U`, one solves `U(F, w) = a` for
+//! `a = μ + k_0(w)`, and
 //!
 //! ```text
 //! μ⁺ = Ad*_F a + Ad*_F k_1,      ⟨Ad*_F k_1, E⟩ = ⟨k_1, F E F⁻¹⟩,     w = F·w⁺
 //! ```
 //!
-//! The second part is written in `w⁺`. Of a potential of the new position it then has no `F`: `FᵀF = I` cancels it.
+//! The second part is written in `w⁺`. For a potential of the new position it has no `F` then: `FᵀF = I` cancels it.
 
 use std::collections::BTreeMap;
 
@@ -17,21 +18,21 @@ use crate::mathematics::symbolic::{Expression, Monomial, Stage, SymbolId, degree
 pub(super) struct Parts {
     pub(super) kick_before: Expression,
     pub(super) unknown: Expression,
-    /// The part of the diamond with `F`.
+    /// The part of the diamond that depends on `F`.
     pub(super) moved: Expression,
     pub(super) kick_after: Expression,
 }
 
 pub(super) fn parts(context: &Context, momentum: &Expression, diamond: &Expression) -> Parts {
-    // What goes like 1/h without `F` cancels what has `F`, where that is `I`: taken over to the other side, it would
-    // leave a rounding of the size of 1/h in the momentum.
+    // Terms in 1/h without `F` cancel those with `F` at the identity: in `a` they would leave a rounding error of the
+    // order of 1/h in the momentum.
     let unknown = momentum.filtered(|monomial| {
         stage_of_monomial(monomial, context.symbols) == Stage::Iteration || monomial.exponent(context.declared.step) < 0
     });
     let kick_before = unknown.clone().minus(momentum.clone());
     let moved = diamond.clone().minus(kick_before.clone());
     let mut map: BTreeMap<SymbolId, Expression> = previous(context).into_iter().collect();
-    // What is added commutes with all: there `F E F⁻¹` is `E`.
+    // A translation commutes with all others: there `F E F⁻¹` is `E`.
     let turning = context.directions.factors.iter().enumerate().filter(|(factor, _)| !context.is_added(*factor));
     for (factor, one) in turning {
         let (f, inverse) = context.increment(factor);
@@ -65,7 +66,8 @@ pub(super) fn increments(context: &Context, momentum: &Expression, left: &Expres
     [context.substituted(momentum, &map), after]
 }
 
-/// With what goes like `1/h` in `D`: it cancels where `F` is `I`, and would leave a rounding of that size.
+/// The kick with its terms in `1/h` written in `D`: they cancel at the identity, and would leave a rounding error of
+/// that order.
 pub(super) fn with_small_increment(context: &Context, kick: &Expression) -> Expression {
     let is_large = |monomial: &Monomial| monomial.exponent(context.declared.step) < 0;
     if !context.declared.group.rotates() {
@@ -74,11 +76,11 @@ pub(super) fn with_small_increment(context: &Context, kick: &Expression) -> Expr
     kick.filtered(|monomial| !is_large(monomial)).plus(in_small_increment(context, &kick.filtered(is_large)))
 }
 
-/// With `F = I + D` and `F⁻¹ = I + D⁻`; as it is where that would multiply the terms.
+/// The expression with `F = I + D` and `F⁻¹ = I + D⁻`; unchanged if that would multiply its terms.
 pub(super) fn in_small_increment(context: &Context, unknown: &Expression) -> Expression {
     let factors = context.directions.factors.iter().enumerate();
     let turning: Vec<_> = factors.filter(|(factor, _)| !context.is_added(*factor)).map(|(_, one)| one).collect();
-    // Each F becomes two terms.
+    // Each F becomes the two terms I + D.
     let factors = |monomial| {
         let degrees = turning.iter().map(|one| degree(monomial, one.increment));
         u32::try_from(degrees.sum::<usize>()).unwrap_or(u32::MAX)

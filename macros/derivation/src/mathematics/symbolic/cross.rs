@@ -29,7 +29,7 @@ impl Expression {
     }
 }
 
-/// `û` of a vector word: of a skew part it is that part, otherwise a factor of its own.
+/// `û` of a vector word; for the vector of a skew part, that part itself.
 fn hat(word: &[Factor], symbols: &Symbols) -> Expression {
     if let [Factor::Vee { word: inner, transposed: false }] = word {
         let matrix = Expression::from_word(inner.clone(), (3, 3), symbols);
@@ -57,7 +57,8 @@ fn vee(word: &[Factor], symbols: &Symbols) -> Expression {
 }
 
 impl Expression {
-    /// The same with products of cross matrices multiplied out, `û v̂ = v uᵀ − ⟨u, v⟩ I`, and `tr(W û) = −2 ⟨vee(W), u⟩`.
+    /// The expression with products of cross matrices multiplied out, `û v̂ = v uᵀ − ⟨u, v⟩ I`, and
+    /// `tr(W û) = −2 ⟨vee(W), u⟩`.
     pub fn with_hats_resolved(&self, symbols: &Symbols) -> Self {
         let mut result = Self::zero(self.shape());
         for (monomial, coefficient) in self.terms() {

@@ -1,11 +1,11 @@
-//! Expressions in print, as a paper would write them.
+//! Expressions as text, in the notation of a paper.
 
 use super::expression::{Atom, Expression, Monomial};
 use super::rational::Rational;
 use super::symbols::{SymbolId, Symbols};
 use super::word::{Factor, transpose};
 
-/// A scalar, vector or matrix expression.
+/// The text of a scalar, vector or matrix expression.
 pub fn text(expression: &Expression, symbols: &Symbols) -> String {
     let is_matrix = expression.shape() != (1, 1);
     join(expression.terms().map(|(monomial, coefficient)| {
@@ -19,8 +19,8 @@ pub fn text(expression: &Expression, symbols: &Symbols) -> String {
     }))
 }
 
-/// An expression that is linear in the algebra direction `E`, as the covector that it pairs with: `tr(E W)` is the
-/// `E` component of `−(W − Wᵀ)^∨`. What has one coefficient shares it.
+/// An expression that is linear in the algebra direction `E`, as the covector that it pairs with: `tr(E W)` is the `E`
+/// component of `−(W − Wᵀ)^∨`. Terms with equal coefficients are collected.
 pub fn covector_text(expression: &Expression, direction: SymbolId, symbols: &Symbols) -> String {
     let mut terms: Vec<Term> = Vec::new();
     for (monomial, coefficient) in expression.terms() {
@@ -88,7 +88,7 @@ fn opened(word: &[Factor], direction: SymbolId, symbols: &Symbols) -> Option<Vec
     .then_some(others)
 }
 
-/// Terms with their signs.
+/// The sum of terms with their signs.
 fn join(terms: impl Iterator<Item = (Rational, String, String)>) -> String {
     let mut sum = String::new();
     for (coefficient, prefix, body) in terms {
@@ -190,7 +190,7 @@ fn factor_text(factor: &Factor, symbols: &Symbols) -> String {
 }
 
 /// An expression that is linear in the components of a direction, as the vector that it pairs with; on SO(3) products
-/// of vectors are cross products. `None` where a term doesn't open.
+/// of vectors are cross products. `None` if a term doesn't have that form.
 pub fn vector_text(expression: &Expression, direction: SymbolId, symbols: &Symbols) -> Option<String> {
     let term = |(monomial, coefficient): (&Monomial, Rational)| {
         let (atom, sign, word) = opened_form(monomial, direction, symbols)?;
@@ -212,8 +212,8 @@ pub fn vector_text(expression: &Expression, direction: SymbolId, symbols: &Symbo
     terms.map(|terms| join(terms.into_iter()))
 }
 
-/// An expression that is linear in the components of two directions, as the matrix between them. `None` where a term
-/// doesn't open.
+/// An expression that is linear in the components of two directions, as the matrix between them. `None` if a term
+/// doesn't have that form.
 pub fn matrix_text(expression: &Expression, [left, right]: [SymbolId; 2], symbols: &Symbols) -> Option<String> {
     let term = |(monomial, coefficient): (&Monomial, Rational)| {
         let mut rest = monomial.clone();
@@ -259,7 +259,7 @@ fn opened_form<'a>(
         Atom::Function(_, inner) | Atom::Sum(inner) => inner.contains(direction),
     });
     let (Some((atom, 1)), None) = (found.next(), found.next()) else { return None };
-    // On a line components are scalars.
+    // Components on a line are scalars.
     let Atom::Trace(word) = atom else { return matches!(atom, Atom::Symbol(_)).then(|| (atom, 1, Vec::new())) };
     let is_direction = |factor: &Factor| matches!(factor, Factor::Symbol { id, .. } if *id == direction);
     let others = |factors: &[Factor]| !factors.iter().any(|factor| factor.contains(direction));
@@ -285,7 +285,7 @@ fn opened_form<'a>(
     }
 }
 
-/// A column, `û v` as `u × v`.
+/// The text of a column, with `û v` as `u × v`.
 fn column_text(word: &[Factor], symbols: &Symbols) -> String {
     let bracketed = |text: String| if text.contains(' ') { format!("({text})") } else { text };
     match word {

@@ -10,10 +10,10 @@ use super::symbols::{Stage, SymbolId, Symbols};
 use super::word::{self, Factor};
 use super::work;
 
-/// Larger ones are on their way to where exponents saturate.
+/// The limit on exponents: a larger one would soon saturate.
 const LARGEST_EXPONENT: u32 = 1 << 16;
 
-/// A scalar that isn't taken apart.
+/// A scalar that the normal form doesn't split.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Atom {
     /// A named scalar.
@@ -26,7 +26,7 @@ pub enum Atom {
     Sum(Rc<Expression>),
 }
 
-/// What a coefficient multiplies: powers of scalars and a word (empty: the identity, or one for a scalar).
+/// The factors of a coefficient: powers of scalars and a word (empty: the identity, or one for a scalar).
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Monomial {
     pub scalars: BTreeMap<Atom, i32>,
@@ -61,7 +61,8 @@ pub struct Expression {
 }
 
 impl Ord for Expression {
-    /// Those inside of scalars are shared, and compared with themselves more often than with others.
+    /// A comparison that begins with addresses: expressions inside of scalars are shared, and mostly compared with
+    /// themselves.
     fn cmp(&self, other: &Self) -> Ordering {
         if std::ptr::eq(self, other) {
             return Ordering::Equal;
@@ -123,7 +124,7 @@ impl Expression {
         Self { shape: (1, 1), terms: BTreeMap::from([(Monomial { scalars, word: Vec::new() }, Rational::ONE)]) }
     }
 
-    /// A product of factors, cut into scalars wherever its inner dimension is one.
+    /// A product of factors, split into scalars at every inner dimension of one.
     pub fn from_word(word: Vec<Factor>, shape: (usize, usize), symbols: &Symbols) -> Self {
         let word = word::reduce(word, symbols);
         let mut segments: Vec<Vec<Factor>> = vec![Vec::new()];
@@ -172,7 +173,7 @@ impl Expression {
         self.terms.is_empty()
     }
 
-    /// How many scalars and factors are written down. Those inside a function count twice: the variation of `f(u)` is
+    /// The number of scalars and factors in the text. Those inside a function count twice: the variation of `f(u)` is
     /// `f'(u) δu`, which has `u` twice.
     pub fn size(&self) -> usize {
         let terms = self.terms.keys().map(|monomial| {
@@ -186,7 +187,7 @@ impl Expression {
         terms.sum()
     }
 
-    /// The factors of the longest word.
+    /// The number of factors in the longest word.
     pub fn longest_word(&self) -> usize {
         let words = self.terms.keys().map(|monomial| {
             let scalars = monomial.scalars.keys().map(|atom| match atom {
@@ -250,7 +251,7 @@ impl Expression {
         self.plus(other.scaled(-Rational::ONE))
     }
 
-    /// The matrix product; with a scalar on either side, the multiple.
+    /// The matrix product; if one factor is a scalar, the multiple.
     pub fn times(&self, other: &Self, symbols: &Symbols) -> Self {
         let shape = match (self.shape, other.shape) {
             ((1, 1), shape) | (shape, (1, 1)) => shape,
@@ -274,7 +275,7 @@ impl Expression {
         product
     }
 
-    /// An integer power of a scalar; a negative one of a sum stays closed.
+    /// An integer power of a scalar; a negative power of a sum stays closed.
     pub fn power(self, exponent: i32, symbols: &Symbols) -> Self {
         if let Some((monomial, coefficient)) = self.terms().next()
             && self.len() == 1
@@ -357,7 +358,7 @@ pub fn monomial_contains(monomial: &Monomial, symbol: SymbolId) -> bool {
         })
 }
 
-/// When the value of a monomial is known: with the last of its symbols.
+/// The stage at which the value of a monomial is known: that of the last of its symbols.
 pub fn stage_of_monomial(monomial: &Monomial, symbols: &Symbols) -> Stage {
     symbols.ids().fold(Stage::Construction, |latest, id| {
         let stage = symbols.get(id).stage;
@@ -365,12 +366,12 @@ pub fn stage_of_monomial(monomial: &Monomial, symbols: &Symbols) -> Stage {
     })
 }
 
-/// When the value of an expression is known.
+/// The stage at which the value of an expression is known.
 pub fn stage_of(expression: &Expression, symbols: &Symbols) -> Stage {
     expression.terms.keys().map(|monomial| stage_of_monomial(monomial, symbols)).max().unwrap_or(Stage::Construction)
 }
 
-/// How often the symbol is multiplied with itself in a monomial, at most.
+/// A bound on the degree of a monomial in a symbol.
 pub fn degree(monomial: &Monomial, symbol: SymbolId) -> usize {
     let of_word = |word: &[Factor]| word.iter().map(|factor| factor.degree(symbol)).sum::<usize>();
     let scalars = monomial.scalars.iter().map(|(atom, exponent)| {

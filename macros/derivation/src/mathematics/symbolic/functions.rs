@@ -1,8 +1,8 @@
-//! Smooth functions of one scalar; their derivatives are expressions, and are with the rules of variation.
+//! Smooth functions of one scalar; the rules of variation have their derivatives, which are expressions.
 
 use super::rational::Rational;
 
-/// A function that a Lagrangian may apply to a scalar, or that `exp` and `log` are made of.
+/// A function that a Lagrangian may apply to a scalar, or that is a part of `exp` and `log`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[allow(missing_docs)] // their names say it
 pub enum Function {
@@ -17,14 +17,15 @@ pub enum Function {
     LogRatio(u8),
 }
 
-/// A series that needs more terms is at the edge of its radius of convergence, where it is no value to check with.
+/// The limit on terms of a series: one that needs more is at the edge of its radius of convergence, and useless for
+/// checks.
 const MOST_TERMS: u32 = 400;
 
 impl Function {
-    /// Those that are written as methods of a scalar.
+    /// The functions that are methods of a scalar.
     pub const METHODS: [Self; 5] = [Self::Sqrt, Self::Ln, Self::Exp, Self::Sin, Self::Cos];
 
-    /// A number of its own.
+    /// A number that identifies the function.
     pub fn number(self) -> usize {
         match self {
             Self::Sqrt => 0,
@@ -37,7 +38,7 @@ impl Function {
         }
     }
 
-    /// The method of a Rust float, and the name in print.
+    /// The method of a Rust float, and the name in equations.
     pub fn name(self) -> String {
         match self {
             Self::Sqrt => "sqrt".to_owned(),
@@ -50,7 +51,7 @@ impl Function {
         }
     }
 
-    /// The value, for the self-check and for tests: plain, not fast.
+    /// The value, for the self-check and for tests; simple and not fast.
     pub fn apply(self, argument: f64) -> f64 {
         match self {
             Self::Sqrt => argument.sqrt(),
@@ -70,7 +71,7 @@ impl Function {
         }
     }
 
-    /// The exact value at zero, where it is rational.
+    /// The exact value at zero, if it is rational.
     pub fn at_zero(self) -> Option<Rational> {
         let product = |factors: &mut dyn Iterator<Item = i128>| factors.product::<i128>();
         Some(match self {
@@ -87,7 +88,7 @@ impl Function {
     }
 }
 
-/// `Σ a_m xᵐ` with `a_{m+1}/a_m` given.
+/// `Σ a_m xᵐ`, where `ratio(m)` is `a_{m+1}/a_m`.
 fn series(x: f64, first: f64, ratio: impl Fn(f64) -> f64) -> f64 {
     let (mut sum, mut term) = (0.0, first);
     for m in 0..MOST_TERMS {

@@ -1,8 +1,8 @@
 //! Mathematics on small matrix expressions; knows no token and no span.
 //!
 //! Every expression is a sum of terms `rational · scalars · word`, a word being a product of matrices. The constructors
-//! keep this normal form, so that equal expressions are equal values and what cancels is gone: neighbours cancel by
-//! `FᵀF = I`, traces are taken up to rotation and transposition, declared symmetry is used.
+//! maintain this normal form, so that equal expressions are equal values and opposite terms cancel: neighbours cancel
+//! by `FᵀF = I`, traces are equal up to rotation and transposition, and declared symmetry is used.
 
 mod cross;
 mod display;

@@ -5,7 +5,8 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 /// A rational number in lowest terms with a positive denominator.
 ///
-/// A result that leaves 128 bits is the sticky [`OVERFLOW`](Self::OVERFLOW), so that a caller checks once at the end.
+/// A result out of the range of 128 bits is [`OVERFLOW`](Self::OVERFLOW), and so is every result from it: a caller
+/// checks once at the end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Rational {
     numerator: i128,

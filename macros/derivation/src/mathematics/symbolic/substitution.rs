@@ -1,4 +1,4 @@
-//! Replacing symbols by expressions.
+//! The substitution of expressions for symbols.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -7,8 +7,8 @@ use super::expression::{Atom, Expression, Monomial};
 use super::symbols::{SymbolId, Symbols};
 use super::word::Factor;
 
-/// The expression with every symbol of the map replaced, in normal form again. A matrix and its inverse are replaced
-/// each for itself, the inverse by what the map has for the [symbol](Symbols::inverse_of) of its entries.
+/// The expression with every symbol of the map replaced, in normal form. A matrix and its inverse are replaced
+/// separately: the inverse by the image of the [symbol](Symbols::inverse_of) of its entries.
 pub fn substitute(expression: &Expression, map: &BTreeMap<SymbolId, Expression>, symbols: &Symbols) -> Expression {
     let mut result = Expression::zero(expression.shape());
     for (monomial, coefficient) in expression.terms() {
@@ -39,7 +39,7 @@ fn atom_image(atom: &Atom, map: &BTreeMap<SymbolId, Expression>, symbols: &Symbo
     }
 }
 
-/// The product of the images of the factors; none for the empty word.
+/// The product of the images of the factors; `None` for the empty word.
 fn product_image(word: &[Factor], map: &BTreeMap<SymbolId, Expression>, symbols: &Symbols) -> Option<Expression> {
     let mut images = word.iter().map(|factor| factor_image(factor, map, symbols));
     let first = images.next()?;
@@ -56,7 +56,7 @@ fn factor_image(factor: &Factor, map: &BTreeMap<SymbolId, Expression>, symbols: 
             Some(image) => image.clone(),
             None => single(factor, symbols),
         },
-        // An inverse is replaced where its own symbol is.
+        // An inverse is replaced if the symbol of its entries is.
         Factor::Inverse { id, transposed } => match symbols.inverse_of(*id).and_then(|inverse| map.get(&inverse)) {
             Some(image) if *transposed => image.transpose(symbols),
             Some(image) => image.clone(),

@@ -4,10 +4,10 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SymbolId(pub usize);
 
-/// What is known of a matrix.
+/// The known structure of a matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Structure {
-    /// Nothing.
+    /// No known structure.
     General,
     /// `Sᵀ = S`.
     Symmetric,
@@ -19,7 +19,7 @@ pub enum Structure {
     Point,
     /// `FᵀF = FFᵀ = I`.
     Orthogonal,
-    /// The same with `det F = 1`.
+    /// `FᵀF = FFᵀ = I` and `det F = 1`.
     Rotation,
 }
 
@@ -34,14 +34,14 @@ impl Structure {
     }
 }
 
-/// When the value of a symbol is known.
+/// The stage at which the value of a symbol is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Stage {
-    /// With the parameters and the step: once for a stepper.
+    /// The stage of the parameters and the step: once for a stepper.
     Construction,
-    /// With the state: once a step.
+    /// The stage of the state: once a step.
     Step,
-    /// With the unknown: once a Newton iteration.
+    /// The stage of the unknown: once a Newton iteration.
     Iteration,
 }
 
@@ -55,7 +55,7 @@ pub struct Symbol {
 }
 
 impl Symbol {
-    /// Whether it stands for an element of so(3), which pairs with vectors.
+    /// Whether the symbol is an element of so(3), which pairs with vectors.
     pub fn is_rotation(&self) -> bool {
         self.structure == Structure::Skew && self.shape == (3, 3)
     }
@@ -65,7 +65,7 @@ impl Symbol {
 #[derive(Clone, Debug, Default)]
 pub struct Symbols {
     all: Vec<Symbol>,
-    /// Matrices, each with the symbol whose entries are those of its inverse.
+    /// Matrices, each with the symbol for the entries of its inverse.
     inverses: Vec<(SymbolId, SymbolId)>,
 }
 
@@ -98,7 +98,7 @@ impl Symbols {
         self.inverses.push((matrix, inverse));
     }
 
-    /// The symbol for the entries of the inverse, where one was set.
+    /// The symbol for the entries of the inverse, if one was set.
     pub fn inverse_of(&self, id: SymbolId) -> Option<SymbolId> {
         self.inverses.iter().find(|(matrix, _)| *matrix == id).map(|&(_, inverse)| inverse)
     }

@@ -1,4 +1,4 @@
-//! How the group moves an advected parameter.
+//! The representations of the group on advected parameters.
 
 /// Vectors, covectors, and the three kinds of second rank, in the defining representation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -13,12 +13,12 @@ pub enum Variance {
     Covariant,
     /// `V ⊗ V*`.
     Mixed,
-    /// Not at all: what is given for a step, in the trivial representation.
+    /// The trivial representation, for parameters that are prescribed for each step.
     Fixed,
 }
 
 impl Variance {
-    /// Whether it is a matrix.
+    /// Whether the parameter is a matrix.
     pub fn is_tensor(self) -> bool {
         matches!(self, Self::Contravariant | Self::Covariant | Self::Mixed)
     }

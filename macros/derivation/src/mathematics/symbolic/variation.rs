@@ -1,4 +1,4 @@
-//! The first variation of an expression: the one place where anything is differentiated.
+//! The first variation of an expression; all derivatives of expressions are computed here.
 //!
 //! Given `δs` for some symbols `s`, the variation is linear in them and follows from four rules:
 //!
@@ -10,8 +10,8 @@
 //! ```
 //!
 //! `û`, `diag(u)` and `W ↦ ½ (W − Wᵀ)^∨` are linear, so the variation goes inside. A variation along the group is
-//! `δF = Ê F` or `F Ê` with a symbol `Ê` for the direction; varying twice gives second derivatives, and since `δF` is
-//! itself varied through its `F`, no term is forgotten that an ambient Hessian would miss.
+//! `δF = Ê F` or `F Ê` with a symbol `Ê` for the direction. Varying twice gives second derivatives; as `δF` is itself
+//! varied through its `F`, they include the connection term that an ambient Hessian lacks.
 
 use std::collections::BTreeMap;
 
@@ -25,7 +25,7 @@ use super::word::Factor;
 /// `δs` for each symbol `s` that varies.
 pub type Variations = BTreeMap<SymbolId, Expression>;
 
-/// `δ` of the expression.
+/// The variation `δ` of an expression.
 pub fn variation(expression: &Expression, variations: &Variations, symbols: &Symbols) -> Expression {
     let mut result = Expression::zero(expression.shape());
     for (monomial, coefficient) in expression.terms() {

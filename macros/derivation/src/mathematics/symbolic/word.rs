@@ -42,7 +42,7 @@ impl Factor {
         }
     }
 
-    /// The transpose and its sign: declared symmetry takes the mark away, skewness turns it into a sign.
+    /// The transpose and its sign: a symmetric matrix is its own transpose, a skew one its negative.
     pub fn transpose(&self, symbols: &Symbols) -> (i8, Self) {
         match self {
             Self::Symbol { id, transposed } => match symbols.get(*id).structure {
@@ -78,7 +78,7 @@ impl Factor {
         self.degree(symbol) > 0
     }
 
-    /// How often the symbol occurs.
+    /// The number of occurrences of a symbol.
     pub fn degree(&self, symbol: SymbolId) -> usize {
         match self {
             Self::Symbol { id, .. } | Self::Inverse { id, .. } => usize::from(*id == symbol),
@@ -90,7 +90,7 @@ impl Factor {
     }
 }
 
-/// How many factors are written down, inside others too.
+/// The number of factors, including those inside others.
 pub(super) fn size(word: &[Factor]) -> usize {
     let sizes = word.iter().map(|factor| match factor {
         Factor::Symbol { .. } | Factor::Inverse { .. } | Factor::Unit { .. } => 1,
@@ -111,7 +111,7 @@ pub(super) fn transpose(word: &[Factor], symbols: &Symbols) -> (i8, Vec<Factor>)
     (sign, factors)
 }
 
-/// Applies `FᵀF = FFᵀ = I`, and `Fᵀ û F = (Fᵀu)^` where `det F = 1`, between neighbours until nothing changes.
+/// Applies `FᵀF = FFᵀ = I`, and `Fᵀ û F = (Fᵀu)^` if `det F = 1`, between neighbours until nothing changes.
 pub(super) fn reduce(word: Vec<Factor>, symbols: &Symbols) -> Vec<Factor> {
     let mut stack: Vec<Factor> = Vec::with_capacity(word.len());
     for factor in word {
@@ -159,7 +159,7 @@ pub fn canonical_trace(word: Vec<Factor>, symbols: &Symbols) -> (i8, Vec<Factor>
     if is_form { sort_triple_product(sign, word, symbols) } else { (sign, word) }
 }
 
-/// Cancels inverse neighbours across the ends of a trace too.
+/// Cancels inverse neighbours, including the two ends of a trace.
 fn reduce_cyclic(word: Vec<Factor>, symbols: &Symbols) -> Vec<Factor> {
     let mut word = reduce(word, symbols);
     while let [first, .., last] = word.as_slice()
@@ -171,7 +171,7 @@ fn reduce_cyclic(word: Vec<Factor>, symbols: &Symbols) -> Vec<Factor> {
     word
 }
 
-/// `u · (v × w)` changes sign with each exchange of two vectors, and is zero where two are equal.
+/// The sorted triple product `u · (v × w)`, which changes sign with each exchange and is zero if two vectors are equal.
 fn sort_triple_product(sign: i8, word: Vec<Factor>, symbols: &Symbols) -> (i8, Vec<Factor>) {
     let hats: Vec<usize> = (0..word.len()).filter(|&i| matches!(word.get(i), Some(Factor::Hat(_)))).collect();
     let &[at] = hats.as_slice() else { return (sign, word) };

@@ -1,14 +1,15 @@
-//! How much a derivation may do: counted, so that it ends as soon on a fast machine as on a slow one.
+//! A bound on the work of a derivation, counted in operations, so that its result doesn't depend on the machine's
+//! speed.
 
 use std::cell::Cell;
 
 thread_local! {
-    /// What is left of it; without a bound it doesn't become less.
+    /// The remaining work; the largest value means no bound.
     static LEFT: Cell<u64> = const { Cell::new(u64::MAX) };
 }
 
-/// Counts products of terms, terms that are looked into, and operations. Where nothing is left, what would be computed is as well taken for zero: so
-/// all that follows is short, and what comes out is refused.
+/// Counts products of terms, converted terms and operations; false if no work remains. The caller may then return zero:
+/// all that follows is short, and the result is refused.
 pub fn spend(work: usize) -> bool {
     let left = LEFT.get();
     if left == u64::MAX {
@@ -19,7 +20,7 @@ pub fn spend(work: usize) -> bool {
     rest > 0
 }
 
-/// What is done within a bound, and how much that was; `None` where it wasn't enough.
+/// The result of `done` within a bound, and the work that it took; `None` if the bound was too low.
 pub fn within<R>(bound: u64, done: impl FnOnce() -> R) -> Option<(R, u64)> {
     LEFT.set(bound);
     let made = done();
