@@ -85,8 +85,8 @@ impl Source {
         let (_, own) = path.rsplit_once("src/").unwrap_or(("", path));
         let own = own.trim_end_matches(".rs");
         let is_page = own.ends_with("/mod") || ["mod", "lib", "main"].contains(&own);
-        let module = own.trim_end_matches("mod").split('/').filter(|name| !name.is_empty());
-        let module: Names = module.filter(|name| !["lib", "main"].contains(name)).map(str::to_owned).collect();
+        let module = own.split('/').filter(|name| !["mod", "lib", "main"].contains(name));
+        let module: Names = module.map(str::to_owned).collect();
         let items =
             ["struct ", "enum ", "union ", "trait ", "type ", "fn ", "const ", "static ", "mod ", "macro_rules! "];
         let lines =
