@@ -1,5 +1,7 @@
 //! The rooms of the sources import each other in one direction; and what the guide and README name is there.
 
+#[path = "rooms/circles.rs"]
+mod circles;
 #[path = "rooms/scale.rs"]
 mod scale;
 
@@ -27,11 +29,28 @@ const MAY_IMPORT: [(&str, &[&str]); 16] = [
     ("prelude", &["error", "groups", "mechanics", "effects", "motion"]),
 ];
 
-/// The code of a file: neither comments nor tests.
+/// The code of a file: neither comments nor tests, which stand at its end or in files of their own.
 fn code(path: &Path) -> String {
-    let text = fs::read_to_string(path).unwrap();
-    let lines = text.lines().take_while(|line| !line.starts_with("#[cfg(test)]"));
-    lines.filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
+    without_tests(&fs::read_to_string(path).unwrap())
+}
+
+fn without_tests(text: &str) -> String {
+    let mut lines = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+    let mut code = Vec::new();
+    while let Some(line) = lines.next() {
+        if line != "#[cfg(test)]" {
+            code.push(line);
+        } else if !lines.find(|line| !line.starts_with("#[")).is_some_and(|item| item.ends_with(';')) {
+            break;
+        }
+    }
+    code.join("\n")
+}
+
+#[test]
+fn tests_are_no_code() {
+    let text = "mod one;\n#[cfg(test)]\n#[path = \"tests.rs\"]\nmod tests;\n// A comment.\nfn two() {}\n\n#[cfg(test)]\nmod of_two {\n}\n";
+    assert_eq!(without_tests(text), "mod one;\nfn two() {}\n");
 }
 
 /// The rooms that a text names behind `crate::`.
@@ -104,6 +123,21 @@ fn root() -> Option<&'static Path> {
     }
     println!("skipped: there is no repository around this package");
     None
+}
+
+/// The files of a folder and of those below it that aren't made, by their paths from the root.
+fn files(root: &Path, folder: &str, extension: &str) -> Vec<String> {
+    let (mut open, mut files) = (vec![root.join(folder)], Vec::new());
+    while let Some(path) = open.pop() {
+        if path.is_dir() {
+            let paths = fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path());
+            open.extend(paths.filter(|path| !path.ends_with("target") && !path.ends_with(".git")));
+        } else if path.extension().is_some_and(|own| own == extension) {
+            files.push(path.strip_prefix(root).unwrap().to_str().unwrap().replace('\\', "/"));
+        }
+    }
+    files.sort();
+    files
 }
 
 /// What stands between backquotes.

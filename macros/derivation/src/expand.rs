@@ -5,7 +5,7 @@ use proc_macro2::TokenStream;
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Role, check, lower, parse};
 use crate::emit;
-use crate::judged::{self, Chosen, Equations, Findings, Held};
+use crate::judged::{self, Choice, ConstraintSlopes, Equations, Findings};
 use crate::mathematics::derive;
 
 /// The item with its integrator, or with all its mistakes and a stand-in for the integrator.
@@ -31,8 +31,8 @@ pub fn matrix_group(tokens: TokenStream) -> TokenStream {
 }
 
 /// The results of checking and deriving a declaration.
-pub(crate) enum Judged {
-    Constraint(Held),
+pub(crate) enum Judgement {
+    Constraint(ConstraintSlopes),
     /// A continuous Lagrangian without a discretisation.
     Continuous(Equations),
     Steps(Box<Steps>),
@@ -40,7 +40,7 @@ pub(crate) enum Judged {
 
 /// The results for a declaration with steps: a discrete Lagrangian, or a force.
 pub(crate) struct Steps {
-    pub(crate) chosen: Chosen,
+    pub(crate) chosen: Choice,
     /// The continuous equations of a Lagrangian.
     pub(crate) equations: Option<Equations>,
     pub(crate) findings: Findings,
@@ -49,9 +49,9 @@ pub(crate) struct Steps {
 fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, errors: &mut Errors) -> Option<TokenStream> {
     let declaration = parse::declaration(role, arguments, item, errors)?;
     Some(match judged(&declaration, errors)? {
-        Judged::Constraint(held) => emit::constraint(item, &declaration, &held),
-        Judged::Continuous(equations) => emit::continuous(item, &declaration, &equations),
-        Judged::Steps(steps) => {
+        Judgement::Constraint(held) => emit::constraint(item, &declaration, &held),
+        Judgement::Continuous(equations) => emit::continuous(item, &declaration, &equations),
+        Judgement::Steps(steps) => {
             let Steps { chosen, equations, findings } = *steps;
             emit::implementation([arguments, item], &declaration, &chosen, equations.as_ref(), &findings)
         }
@@ -59,10 +59,10 @@ fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, error
 }
 
 /// Runs the phases up to the derivation. Each adds its mistakes to `errors`, and returns `None` if the next can't run.
-pub(crate) fn judged(declaration: &Declaration, errors: &mut Errors) -> Option<Judged> {
+pub(crate) fn judged(declaration: &Declaration, errors: &mut Errors) -> Option<Judgement> {
     if declaration.role == Role::Constraint {
         let functions = check::functions(declaration, errors)?;
-        return Some(Judged::Constraint(judged::held(declaration, functions, errors)?));
+        return Some(Judgement::Constraint(judged::held(declaration, functions, errors)?));
     }
     let tree = check::check(declaration, errors)?;
     let declared = match declaration.continuous {
@@ -79,7 +79,7 @@ pub(crate) fn judged(declaration: &Declaration, errors: &mut Errors) -> Option<J
                 );
                 return None;
             }
-            return Some(Judged::Continuous(equations));
+            return Some(Judgement::Continuous(equations));
         }
         (declared @ Some(_), Some(asked)) => (declared, judged::discretised(declaration, &tree, asked, errors)?),
         (None, _) => (None, tree.clone()),
@@ -96,8 +96,5 @@ pub(crate) fn judged(declaration: &Declaration, errors: &mut Errors) -> Option<J
         Role::Force => None,
         _ => Some(judged::continuous(declared, declaration, [&tree, &discrete], &chosen, errors)?),
     };
-    Some(Judged::Steps(Box::new(Steps { chosen, equations, findings })))
+    Some(Judgement::Steps(Box::new(Steps { chosen, equations, findings })))
 }
-
-#[cfg(test)]
-pub(crate) mod tests;

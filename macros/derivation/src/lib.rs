@@ -7,15 +7,22 @@
 //! Tokens are quoted in `emit` alone. Syntax is known in `declared`, which reads it, and in `emit`, which writes it;
 //! `mathematics` and `program` know no span either. A test reads this page and holds all sources to it.
 //!
-//! The macros of `liestep-macros` pass their tokens to [`expand`] and its neighbours; [`staged`] derives texts at run
-//! time.
+//! The macros of `liestep-macros` pass their tokens to [`expand()`] and its neighbours; [`staged()`] derives texts at run
+//! time. Four rooms are public for the tests alone, and hidden.
 
-mod declared;
+// Marks for callers outside of the crate, which the functions of these rooms don't have.
+#![allow(clippy::len_without_is_empty, clippy::must_use_candidate, clippy::return_self_not_must_use)]
+
+#[doc(hidden)]
+pub mod declared;
 mod emit;
 mod expand;
-mod judged;
-mod mathematics;
-mod program;
+#[doc(hidden)]
+pub mod judged;
+#[doc(hidden)]
+pub mod mathematics;
+#[doc(hidden)]
+pub mod program;
 mod staged;
 
 pub use declared::Role;

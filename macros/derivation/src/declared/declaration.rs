@@ -5,7 +5,7 @@ use syn::ext::IdentExt as _;
 use syn::{Expr, Ident, ItemStruct, Path};
 
 use super::Shape;
-use crate::mathematics::derive::Seen;
+use crate::mathematics::derive::View;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::Variance;
 
@@ -22,7 +22,7 @@ pub enum Role {
 
 impl Role {
     /// The argument that holds the expression.
-    pub(crate) fn key(self) -> &'static str {
+    pub fn key(self) -> &'static str {
         match self {
             Self::Lagrangian => "l_d",
             Self::Force => "work",
@@ -31,7 +31,7 @@ impl Role {
     }
 
     /// The kind of the expression, in a sentence.
-    pub(crate) fn noun(self) -> &'static str {
+    pub fn noun(self) -> &'static str {
         match self {
             Self::Lagrangian => "a Lagrangian",
             Self::Force => "virtual work",
@@ -40,7 +40,7 @@ impl Role {
     }
 
     /// The expression of one declaration, in a sentence.
-    pub(crate) fn definite(self) -> &'static str {
+    pub fn definite(self) -> &'static str {
         match self {
             Self::Lagrangian => "the Lagrangian",
             Self::Force => "the virtual work",
@@ -50,7 +50,7 @@ impl Role {
 
     /// The reserved names of an expression, on one body or on several. No parameter, `let` or parameter of a function
     /// may have one of them: the compiled code would find that declaration in its place.
-    pub(crate) fn reserved(self, is_product: bool) -> &'static [&'static str] {
+    pub fn reserved(self, is_product: bool) -> &'static [&'static str] {
         match self {
             Self::Force if !is_product => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse", "eta", "eta_next"],
             Self::Lagrangian | Self::Force => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse"],
@@ -60,7 +60,7 @@ impl Role {
     }
 
     /// The name of the attribute.
-    pub(crate) fn attribute(self) -> &'static str {
+    pub fn attribute(self) -> &'static str {
         match self {
             Self::Lagrangian => "lagrangian",
             Self::Force => "force",
@@ -70,46 +70,46 @@ impl Role {
 }
 
 /// `#[lagrangian(group = …, advected(…), l_d = …, crate = …)]` on a struct.
-pub(crate) struct Declaration {
-    pub(crate) role: Role,
-    pub(crate) item: ItemStruct,
+pub struct Declaration {
+    pub role: Role,
+    pub item: ItemStruct,
     /// The path of liestep, if not `::liestep`.
-    pub(crate) root: Option<Path>,
-    pub(crate) group: Group,
+    pub root: Option<Path>,
+    pub group: Group,
     /// The increments, one for each factor of the group.
-    pub(crate) factors: Vec<Factor>,
-    pub(crate) advected: Vec<AdvectedParameter>,
+    pub factors: Vec<Factor>,
+    pub advected: Vec<AdvectedParameter>,
     /// The Lagrangian, the virtual work of a force, or the constraint; `None` where a mistake elsewhere hides its
     /// meaning.
-    pub(crate) expression: Option<Expr>,
+    pub expression: Option<Expr>,
     /// The velocities and the discretisation of a continuous Lagrangian `l`.
-    pub(crate) continuous: Option<Continuous>,
+    pub continuous: Option<Continuous>,
     /// The index of `E_0` among the advected and given parameters, if a pace has rewritten the expression.
-    pub(crate) energy: Option<usize>,
+    pub energy: Option<usize>,
     /// The names of the displacements of a force on several bodies, one for each factor of the group.
-    pub(crate) displacements: Vec<Ident>,
+    pub displacements: Vec<Ident>,
     /// The argument `gradients`, if derivatives of a step are requested.
-    pub(crate) gradients: Option<Span>,
-    pub(crate) fields: Vec<Field>,
+    pub gradients: Option<Span>,
+    pub fields: Vec<Field>,
     /// The fields whose type has no meaning.
-    pub(crate) unreadable: Vec<String>,
-    pub(crate) scalar: Scalar,
+    pub unreadable: Vec<String>,
+    pub scalar: Scalar,
     /// Whether the declaration is read at run time, without a compiler that would report a missing `&` or decimal
     /// point.
-    pub(crate) is_text: bool,
+    pub is_text: bool,
 }
 
 /// An increment: `F`, or one of those that `group(F_1 = SO3, …)` names.
-pub(crate) struct Factor {
+pub struct Factor {
     /// The name without `r#`.
-    pub(crate) name: String,
-    pub(crate) place: Span,
+    pub name: String,
+    pub place: Span,
     /// The group's name as written; `None` after a mistake.
-    pub(crate) path: Option<Path>,
+    pub path: Option<Path>,
 }
 
 /// An example of names for the velocities of these factors: `velocity = Omega`, or `velocity(Omega_1, v)`.
-pub(crate) fn named_velocities(factors: &[Factor]) -> String {
+pub fn named_velocities(factors: &[Factor]) -> String {
     match factors {
         [] | [_] => "velocity = Omega".to_owned(),
         several => format!("velocity({})", named(several, ["Omega", "v"])),
@@ -117,7 +117,7 @@ pub(crate) fn named_velocities(factors: &[Factor]) -> String {
 }
 
 /// An example of names for the displacements of these factors: `displacement(eta_1, s)`.
-pub(crate) fn named_displacements(factors: &[Factor]) -> String {
+pub fn named_displacements(factors: &[Factor]) -> String {
     format!("displacement({})", named(factors, ["eta", "s"]))
 }
 
@@ -137,32 +137,32 @@ fn named(factors: &[Factor], [turn, shift]: [&'static str; 2]) -> String {
 
 impl Factor {
     /// The group's name without its module path.
-    pub(crate) fn group_name(&self) -> String {
+    pub fn group_name(&self) -> String {
         let segment = self.path.as_ref().and_then(|path| path.segments.last());
         segment.map(|segment| segment.ident.to_string()).unwrap_or_default()
     }
 }
 
 /// The arguments that belong to `l = …`.
-pub(crate) struct Continuous {
+pub struct Continuous {
     /// The names of `ξ`, one for each factor of the group; a term without a velocity may leave them out.
-    pub(crate) velocities: Vec<Ident>,
+    pub velocities: Vec<Ident>,
     /// The discretisation of `l`; `None` if only the continuous equations are requested.
-    pub(crate) discretisation: Option<Discretisation>,
+    pub discretisation: Option<Discretisation>,
 }
 
 /// `discretise = trapezoid(Cayley)`.
 #[derive(Clone, Copy)]
-pub(crate) struct Discretisation {
-    pub(crate) quadrature: Quadrature,
-    pub(crate) coordinates: Coordinates,
+pub struct Discretisation {
+    pub quadrature: Quadrature,
+    pub coordinates: Coordinates,
     /// The first and the last token.
-    pub(crate) place: [Span; 2],
+    pub place: [Span; 2],
 }
 
 /// The points of a step at which `l` is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Quadrature {
+pub enum Quadrature {
     /// At both ends, `(h/2) (l(ξ, w) + l(ξ, F⁻¹·w))`.
     Trapezoid,
     /// In the middle of the curve, `h l(ξ, τ(hξ/2)⁻¹·w)`.
@@ -173,7 +173,7 @@ pub(crate) enum Quadrature {
 
 /// The velocity of a step as a function of `F`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Coordinates {
+pub enum Coordinates {
     /// The matrix `ξ̂ = (F − I)/h`, near the algebra and not in it.
     Ambient,
     /// `hξ = cay⁻¹(F)`.
@@ -183,31 +183,31 @@ pub(crate) enum Coordinates {
 }
 
 /// `w = up`: in the expression `w` is the field `up`, moved by the group or prescribed for each step.
-pub(crate) struct AdvectedParameter {
-    pub(crate) name: Ident,
+pub struct AdvectedParameter {
+    pub name: Ident,
     /// The index of the field; `None` where there is no such field of a known type.
-    pub(crate) field: Option<usize>,
+    pub field: Option<usize>,
     /// Whether it is a value of the step, which the group doesn't move: `given(…)`.
-    pub(crate) is_given: bool,
+    pub is_given: bool,
     /// The bodies that move it.
-    pub(crate) seen: Seen,
+    pub seen: View,
 }
 
 impl AdvectedParameter {
     /// The name without `r#`.
-    pub(crate) fn plain_name(&self) -> String {
+    pub fn plain_name(&self) -> String {
         self.name.unraw().to_string()
     }
 }
 
 impl Declaration {
     /// The names of the velocities in `l`.
-    pub(crate) fn velocities(&self) -> &[Ident] {
+    pub fn velocities(&self) -> &[Ident] {
         self.continuous.as_ref().map_or(&[], |continuous| &continuous.velocities)
     }
 
     /// The names of a factor's displacements at both ends of a force's step; `None` where they have no names.
-    pub(crate) fn displacement(&self, factor: usize) -> Option<[String; 2]> {
+    pub fn displacement(&self, factor: usize) -> Option<[String; 2]> {
         let name = match self.displacements.get(factor) {
             Some(name) => name.unraw().to_string(),
             None if self.role == Role::Force && !self.group.is_product() => "eta".to_owned(),
@@ -218,17 +218,17 @@ impl Declaration {
     }
 
     /// The name of the velocity of a factor in `l`.
-    pub(crate) fn velocity(&self, factor: usize) -> Option<&Ident> {
+    pub fn velocity(&self, factor: usize) -> Option<&Ident> {
         self.velocities().get(factor)
     }
 
     /// The name of the velocity of a factor for messages, `Omega` where it has none.
-    pub(crate) fn velocity_or_omega(&self, factor: usize) -> String {
+    pub fn velocity_or_omega(&self, factor: usize) -> String {
         self.velocity(factor).map_or_else(|| "Omega".to_owned(), ToString::to_string)
     }
 
     /// The name of the velocity of a factor in formulas.
-    pub(crate) fn name_of_velocity(&self, factor: usize) -> String {
+    pub fn name_of_velocity(&self, factor: usize) -> String {
         match self.velocities().get(factor) {
             Some(name) => name.unraw().to_string(),
             None if self.group.is_product() => format!("ξ_{}", factor + 1),
@@ -237,15 +237,15 @@ impl Declaration {
     }
 
     /// The discretisation of `l`, if one is requested.
-    pub(crate) fn discretisation(&self) -> Option<Discretisation> {
+    pub fn discretisation(&self) -> Option<Discretisation> {
         self.continuous.as_ref()?.discretisation
     }
 
     /// The kind of an advected parameter's field; a plain vector after a mistake.
-    pub(crate) fn advected_kind(&self, index: usize) -> FieldKind {
+    pub fn advected_kind(&self, index: usize) -> FieldKind {
         let parameter = self.advected.get(index);
         let size = match parameter.map(|w| w.seen) {
-            Some(Seen::Relative { of, .. } | Seen::Configuration(of)) => {
+            Some(View::Relative { of, .. } | View::Configuration(of)) => {
                 let factor = self.group.factor(of);
                 let is_place = factor.is_added;
                 return if is_place {
@@ -254,7 +254,7 @@ impl Declaration {
                     FieldKind::Configuration(factor.size)
                 };
             }
-            Some(Seen::From(factor)) => self.group.factor(factor).size,
+            Some(View::From(factor)) => self.group.factor(factor).size,
             None => self.group.size,
         };
         let field = parameter.and_then(|w| self.fields.get(w.field?));
@@ -267,23 +267,23 @@ impl Declaration {
 }
 
 /// A field of the struct.
-pub(crate) struct Field {
-    pub(crate) name: Ident,
-    pub(crate) kind: FieldKind,
+pub struct Field {
+    pub name: Ident,
+    pub kind: FieldKind,
     /// The span of its type.
-    pub(crate) at: Span,
+    pub at: Span,
 }
 
 impl Field {
     /// The name without `r#`.
-    pub(crate) fn plain_name(&self) -> String {
+    pub fn plain_name(&self) -> String {
         self.name.unraw().to_string()
     }
 }
 
 /// The properties that a field's type implies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum FieldKind {
+pub enum FieldKind {
     Scalar,
     /// A vector with this number of rows.
     Vector(usize),
@@ -307,7 +307,7 @@ pub(crate) enum FieldKind {
 
 impl FieldKind {
     /// The action of the group on it: a plain vector is a covector.
-    pub(crate) fn variance(self) -> Variance {
+    pub fn variance(self) -> Variance {
         match self {
             Self::Advected(variance, _) => variance,
             Self::Point(_) => Variance::Vector,
@@ -317,21 +317,21 @@ impl FieldKind {
     }
 
     /// Whether a group with matrices of this size can move it.
-    pub(crate) fn is_carried_by(self, size: usize) -> bool {
+    pub fn is_carried_by(self, size: usize) -> bool {
         matches!(self, Self::Vector(rows) | Self::Point(rows) | Self::Advected(_, rows) if rows == size)
     }
 
     /// Whether the type of its value names the action of the group.
-    pub(crate) fn is_wrapped(self) -> bool {
+    pub fn is_wrapped(self) -> bool {
         matches!(self, Self::Advected(..))
     }
 
     /// Whether it can be prescribed for each step.
-    pub(crate) fn can_be_given(self) -> bool {
+    pub fn can_be_given(self) -> bool {
         matches!(self, Self::Scalar | Self::Vector(_) | Self::Matrix(_))
     }
 
-    pub(crate) fn shape(self) -> Shape {
+    pub fn shape(self) -> Shape {
         match self {
             Self::Scalar | Self::Place(1) => Shape::Scalar,
             Self::Given(shape) => shape,
@@ -345,7 +345,7 @@ impl FieldKind {
 
 /// The scalar that all fields share.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Scalar {
+pub enum Scalar {
     /// `f64` or `f32`.
     Primitive(Ident),
     /// A type parameter of the struct.

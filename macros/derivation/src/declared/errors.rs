@@ -14,7 +14,7 @@ pub struct Mistake {
 
 /// The mistakes found so far.
 #[derive(Debug, Default)]
-pub(crate) struct Errors {
+pub struct Errors {
     list: Vec<syn::Error>,
     /// Whether a mistake makes the expression meaningless.
     hides_the_rest: bool,
@@ -22,42 +22,42 @@ pub(crate) struct Errors {
 
 impl Errors {
     /// Adds a mistake at a token; the message states the mistake, then the correction.
-    pub(crate) fn push(&mut self, span: Span, message: impl std::fmt::Display) {
+    pub fn push(&mut self, span: Span, message: impl std::fmt::Display) {
         self.list.push(syn::Error::new(span, message));
     }
 
     /// Adds a mistake that changes the meaning of the expression: errors found there would only follow from it.
-    pub(crate) fn push_decisive(&mut self, span: Span, message: impl std::fmt::Display) {
+    pub fn push_decisive(&mut self, span: Span, message: impl std::fmt::Display) {
         self.push(span, message);
         self.hides_the_rest = true;
     }
 
     /// Adds a mistake that extends from one token to another.
-    pub(crate) fn push_between(&mut self, [first, last]: [Span; 2], message: impl std::fmt::Display) {
+    pub fn push_between(&mut self, [first, last]: [Span; 2], message: impl std::fmt::Display) {
         let ends = [first, last].map(|span| TokenTree::Ident(Ident::new("_", span)));
         self.push_over(TokenStream::from_iter(ends), message);
     }
 
     /// Adds a mistake of a whole expression or type.
-    pub(crate) fn push_over(&mut self, tokens: impl ToTokens, message: impl std::fmt::Display) {
+    pub fn push_over(&mut self, tokens: impl ToTokens, message: impl std::fmt::Display) {
         self.list.push(syn::Error::new_spanned(tokens, message));
     }
 
-    pub(crate) fn extend(&mut self, error: syn::Error) {
+    pub fn extend(&mut self, error: syn::Error) {
         self.list.extend(error);
     }
 
-    pub(crate) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
     /// Whether the expression shouldn't be checked.
-    pub(crate) fn hides_the_rest(&self) -> bool {
+    pub fn hides_the_rest(&self) -> bool {
         self.hides_the_rest
     }
 
     /// All mistakes with their places, at least one.
-    pub(crate) fn mistakes(&self) -> Vec<Mistake> {
+    pub fn mistakes(&self) -> Vec<Mistake> {
         let single = self.list.iter().flat_map(|error| error.clone().into_iter().collect::<Vec<_>>());
         let mut mistakes: Vec<Mistake> =
             single.map(|error| Mistake { message: error.to_string(), span: error.span() }).collect();
@@ -68,7 +68,7 @@ impl Errors {
         mistakes
     }
 
-    pub(crate) fn iter(&self) -> impl Iterator<Item = &syn::Error> {
+    pub fn iter(&self) -> impl Iterator<Item = &syn::Error> {
         self.list.iter()
     }
 }
@@ -103,7 +103,7 @@ fn is_other_letter(unknown: &str, known: &str) -> bool {
 }
 
 /// Levenshtein's distance with swaps of neighbours, and without regard to case.
-fn distance(a: &str, b: &str) -> usize {
+pub fn distance(a: &str, b: &str) -> usize {
     let [a, b] = [a, b].map(|name| name.to_lowercase().chars().collect::<Vec<char>>());
     let mut before: Vec<usize> = Vec::new();
     let mut last: Vec<usize> = (0..=b.len()).collect();
@@ -120,31 +120,4 @@ fn distance(a: &str, b: &str) -> usize {
         before = std::mem::replace(&mut last, row);
     }
     last[b.len()]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{distance, suggestion};
-
-    #[test]
-    fn distances() {
-        assert_eq!(distance("rho", "rho"), 0);
-        assert_eq!(distance("roh", "rho"), 1);
-        assert_eq!(distance("J_D", "J_d"), 0);
-        assert_eq!(distance("kitten", "sitting"), 3);
-        assert_eq!(distance("", "abc"), 3);
-        assert_eq!(suggestion("rh", ["m", "rho", "g"]), "; did you mean `rho`?");
-        assert_eq!(suggestion("roh", ["h", "rho"]), "; did you mean `rho`?");
-        assert_eq!(suggestion("f", ["m", "F"]), "; did you mean `F`?");
-        assert_eq!(suggestion("w", ["m", "F"]), "");
-        assert_eq!(suggestion("velocity", ["m", "rho"]), "");
-        assert_eq!(suggestion("PI", ["F", "I", "h"]), "");
-        assert_eq!(suggestion("rho1", ["rho2", "rho"]), "");
-        assert_eq!(suggestion("R_1", ["F_1", "F_2"]), "");
-        assert_eq!(suggestion("F1", ["F_1", "F_2"]), "; did you mean `F_1`?");
-        assert_eq!(suggestion("S03", ["SO2", "SO3"]), "; did you mean `SO3`?");
-        assert_eq!(suggestion("rho0", ["rho", "rho1"]), "");
-        assert_eq!(suggestion("advect", ["group", "advected"]), "; did you mean `advected`?");
-        assert_eq!(suggestion("log", ["ln", "cos"]), "");
-    }
 }

@@ -6,8 +6,8 @@ use std::rc::Rc;
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, FieldKind, Kind, Name, Role, Shape, Tree, parts};
 use crate::mathematics::derive::{
-    Body, Carried, Declared, DeclaredConstraint, DeclaredContinuous, Displacements, Element, Let, Seen, hat,
-    linear_forms, unit,
+    AdvectedSymbol, Body, ContinuousLagrangian, DeclaredConstraint, DeclaredFunction, Displacements, Element, Let,
+    View, hat, linear_forms, unit,
 };
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Expression, Rational, Stage, Structure, SymbolId, Symbols, stage_of, substitute};
@@ -23,24 +23,24 @@ const MOST_LETS: usize = 150;
 const MANY_DIGITS: u128 = 10_000;
 
 /// The declared Lagrangian in symbols, and the symbol of each name.
-pub(crate) struct Lowered {
-    pub(crate) declared: Declared,
-    pub(crate) names: BTreeMap<Name, SymbolId>,
+pub struct Reading {
+    pub declared: DeclaredFunction,
+    pub names: BTreeMap<Name, SymbolId>,
 }
 
 /// The readings of the tree: one multiplied out, one with its `let`s closed, and with a pace one that has its `let`s
 /// closed and its matrices multiplied out. `None` if all are too large, which has been reported.
-pub(crate) fn readings(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Vec<Lowered>> {
+pub fn readings(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Vec<Reading>> {
     readings_without(declaration, tree, &|_, structure| structure, errors)
 }
 
 /// The readings of the tree, with fewer known properties of some symbols.
-pub(crate) fn readings_without(
+pub fn readings_without(
     declaration: &Declaration,
     tree: &Rc<Tree>,
     weaker: &dyn Fn(Name, Structure) -> Structure,
     errors: &mut Errors,
-) -> Option<Vec<Lowered>> {
+) -> Option<Vec<Reading>> {
     let mut symbols = Symbols::default();
     let mut names = BTreeMap::new();
     let step = symbols.add("h", (1, 1), Structure::General, Stage::Construction);
@@ -74,7 +74,7 @@ pub(crate) fn readings_without(
         let (advected, names) = (advected.clone(), names.clone());
         let has_derivatives = declaration.gradients.is_some();
         let discretised = None;
-        let declared = Declared {
+        let declared = DeclaredFunction {
             group,
             symbols,
             lets,
@@ -86,7 +86,7 @@ pub(crate) fn readings_without(
             has_derivatives,
             discretised,
         };
-        Lowered { declared, names }
+        Reading { declared, names }
     };
     let multiplied_out = attempt(None, false);
     // The work of a force is always multiplied out: it is linear in the displacements, and short.
@@ -104,13 +104,13 @@ pub(crate) fn readings_without(
 }
 
 /// A continuous Lagrangian in symbols.
-pub(crate) struct LoweredContinuous {
-    pub(crate) declared: DeclaredContinuous,
-    pub(crate) names: BTreeMap<Name, SymbolId>,
+pub struct ContinuousReading {
+    pub declared: ContinuousLagrangian,
+    pub names: BTreeMap<Name, SymbolId>,
 }
 
 /// The reading of a declared `l`, multiplied out; `None` if it is too large, which has been reported.
-pub(crate) fn continuous(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<LoweredContinuous> {
+pub fn continuous(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<ContinuousReading> {
     let (mut symbols, mut names) = (Symbols::default(), BTreeMap::new());
     let advected = parameters(declaration, &|_, structure| structure, &mut symbols, &mut names);
     let group = declaration.group.clone();
@@ -125,8 +125,8 @@ pub(crate) fn continuous(declaration: &Declaration, tree: &Rc<Tree>, errors: &mu
     let lowering = Lowering { velocity_matrix, ..Lowering::new(symbols, &names, None) };
     match lowering.whole(tree) {
         Ok((symbols, expression, _)) => {
-            let declared = DeclaredContinuous { group, symbols, expression, velocities, advected };
-            Some(LoweredContinuous { declared, names })
+            let declared = ContinuousLagrangian { group, symbols, expression, velocities, advected };
+            Some(ContinuousReading { declared, names })
         }
         Err(failure) => {
             report(failure, tree, errors);
@@ -136,18 +136,14 @@ pub(crate) fn continuous(declaration: &Declaration, tree: &Rc<Tree>, errors: &mu
 }
 
 /// A constraint in symbols.
-pub(crate) struct LoweredConstraint {
-    pub(crate) declared: DeclaredConstraint,
-    pub(crate) names: BTreeMap<Name, SymbolId>,
+pub struct ConstraintReading {
+    pub declared: DeclaredConstraint,
+    pub names: BTreeMap<Name, SymbolId>,
 }
 
 /// The reading of a constraint, multiplied out, in the positions of both bodies; `None` if it is too large, which has
 /// been reported.
-pub(crate) fn constraint(
-    declaration: &Declaration,
-    functions: &[Rc<Tree>],
-    errors: &mut Errors,
-) -> Option<LoweredConstraint> {
+pub fn constraint(declaration: &Declaration, functions: &[Rc<Tree>], errors: &mut Errors) -> Option<ConstraintReading> {
     let (mut symbols, mut names) = (Symbols::default(), BTreeMap::new());
     let carried = parameters(declaration, &|_, structure| structure, &mut symbols, &mut names);
     let bodies = ["a", "b"].map(|body| Body::new(body, &mut symbols));
@@ -168,7 +164,7 @@ pub(crate) fn constraint(
         .collect();
     let symbols = lowering.symbols;
     let functions = lowered?.iter().map(|function| substitute(function, &map, &symbols)).collect();
-    Some(LoweredConstraint { declared: DeclaredConstraint { symbols, functions, bodies }, names })
+    Some(ConstraintReading { declared: DeclaredConstraint { symbols, functions, bodies }, names })
 }
 
 /// The symbols of the fields and of the advected parameters, and the action of the group on the latter.
@@ -177,7 +173,7 @@ fn parameters(
     weaker: &dyn Fn(Name, Structure) -> Structure,
     symbols: &mut Symbols,
     names: &mut BTreeMap<Name, SymbolId>,
-) -> Vec<Carried> {
+) -> Vec<AdvectedSymbol> {
     for (index, field) in declaration.fields.iter().enumerate() {
         let (shape, structure) = match field.kind {
             FieldKind::Scalar => ((1, 1), Structure::General),
@@ -205,18 +201,18 @@ fn parameters(
         let structure = weaker(Name::Advected(index), structure);
         let symbol = symbols.add(w.plain_name(), shape, structure, Stage::Step);
         names.insert(Name::Advected(index), symbol);
-        advected.push(Carried { symbol, variance: kind.variance(), seen: w.seen });
+        advected.push(AdvectedSymbol { symbol, variance: kind.variance(), seen: w.seen });
     }
     advected
 }
 
 /// Whether the configurations of these factors are orthogonal matrices.
-fn is_orthogonal(group: &Group, seen: Seen) -> bool {
+fn is_orthogonal(group: &Group, seen: View) -> bool {
     let turns = |factor: usize| group.factor(factor).orthogonal && !group.factor(factor).is_added;
     match seen {
-        Seen::Relative { of, from } => turns(of) && turns(from),
-        Seen::Configuration(of) => turns(of),
-        Seen::From(_) => false,
+        View::Relative { of, from } => turns(of) && turns(from),
+        View::Configuration(of) => turns(of),
+        View::From(_) => false,
     }
 }
 

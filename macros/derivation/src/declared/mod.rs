@@ -6,18 +6,18 @@
 //!
 //! Deliberately not here: derived terms and generated code. The room knows `mathematics`, and nothing above itself.
 
-pub(crate) mod check;
+pub mod check;
 mod declaration;
-pub(crate) mod errors;
-pub(crate) mod lower;
-pub(crate) mod parse;
-mod spelling;
+pub mod errors;
+pub mod lower;
+pub mod parse;
+pub mod spelling;
 mod tree;
 
 pub use declaration::Role;
-pub(crate) use declaration::{
+pub use declaration::{
     AdvectedParameter, Continuous, Coordinates, Declaration, Discretisation, Factor, Field, FieldKind, Quadrature,
     Scalar, named_displacements, named_velocities,
 };
-pub(crate) use spelling::Spelling;
-pub(crate) use tree::{Frames, Kind, Name, Shape, Tree, parts};
+pub use spelling::Spelling;
+pub use tree::{Frames, Kind, Name, Shape, Tree, parts};

@@ -9,7 +9,7 @@ use crate::mathematics::symbolic::{Function, Rational};
 
 /// The shape of an expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Shape {
+pub enum Shape {
     Scalar,
     /// Rows and columns; a vector has one column.
     Matrix(usize, usize),
@@ -17,19 +17,19 @@ pub(crate) enum Shape {
 
 impl Shape {
     /// The number of rows.
-    pub(crate) fn rows(self) -> usize {
+    pub fn rows(self) -> usize {
         match self {
             Self::Scalar => 1,
             Self::Matrix(rows, _) => rows,
         }
     }
 
-    pub(crate) fn is_vector(self) -> bool {
+    pub fn is_vector(self) -> bool {
         matches!(self, Self::Matrix(_, 1))
     }
 
     /// In a message: `a scalar`, `a vector of 3`, `a 3 × 3 matrix`.
-    pub(crate) fn describe(self) -> String {
+    pub fn describe(self) -> String {
         match self {
             Self::Scalar => "a scalar".to_owned(),
             Self::Matrix(rows, 1) => format!("a vector of {rows}"),
@@ -41,25 +41,25 @@ impl Shape {
 
 /// An expression with its shape and its mathematical meaning.
 #[derive(Clone, Debug)]
-pub(crate) struct Tree {
+pub struct Tree {
     /// The span of its first token; `end` is that of its last one.
-    pub(crate) span: Span,
-    pub(crate) end: Span,
-    pub(crate) shape: Shape,
-    pub(crate) kind: Kind,
+    pub span: Span,
+    pub end: Span,
+    pub shape: Shape,
+    pub kind: Kind,
     /// The depth of nested operations, including those of `let`s.
-    pub(crate) depth: usize,
-    pub(crate) frames: Frames,
+    pub depth: usize,
+    pub frames: Frames,
     /// Whether it consists of increments, relative configurations and numbers alone.
-    pub(crate) is_of_turns: bool,
+    pub is_of_turns: bool,
 }
 
 /// The bodies, by the index of their factors, in whose axes a tensor is given: the frame of its rows, then that of its
 /// columns, if known. A matrix maps vectors from its columns' frame to its rows'.
-pub(crate) type Frames = [Option<usize>; 2];
+pub type Frames = [Option<usize>; 2];
 
 impl Tree {
-    pub(crate) fn new(span: Span, shape: Shape, kind: Kind) -> Rc<Self> {
+    pub fn new(span: Span, shape: Shape, kind: Kind) -> Rc<Self> {
         let depth = kind.operands().into_iter().flatten().map(|operand| operand.depth).max().unwrap_or(0) + 1;
         let frames = if shape == Shape::Scalar { [None; 2] } else { kind.frames() };
         let is_of_turns = shape == Shape::Scalar || kind.operands().into_iter().flatten().all(|part| part.is_of_turns);
@@ -67,18 +67,18 @@ impl Tree {
     }
 
     /// A name with its frames.
-    pub(crate) fn seen(span: Span, shape: Shape, name: Name, (frames, is_turn): (Frames, bool)) -> Rc<Self> {
+    pub fn seen(span: Span, shape: Shape, name: Name, (frames, is_turn): (Frames, bool)) -> Rc<Self> {
         let is_of_turns = is_turn || shape == Shape::Scalar;
         Rc::new(Self { span, end: span, shape, kind: Kind::Name(name), depth: 1, frames, is_of_turns })
     }
 
     /// A scalar operation in the place of a part of the text.
-    pub(crate) fn in_place_of(part: &Self, kind: Kind) -> Rc<Self> {
+    pub fn in_place_of(part: &Self, kind: Kind) -> Rc<Self> {
         Self::until(Self::new(part.span, Shape::Scalar, kind), part.end)
     }
 
     /// The tree with its last token set, if it isn't shared yet.
-    pub(crate) fn until(mut tree: Rc<Self>, end: Span) -> Rc<Self> {
+    pub fn until(mut tree: Rc<Self>, end: Span) -> Rc<Self> {
         if let Some(tree) = Rc::get_mut(&mut tree) {
             tree.end = end;
         }
@@ -87,7 +87,7 @@ impl Tree {
 }
 
 /// Every part of a tree once, the inner ones first.
-pub(crate) fn parts(tree: &Rc<Tree>) -> Vec<&Rc<Tree>> {
+pub fn parts(tree: &Rc<Tree>) -> Vec<&Rc<Tree>> {
     fn inside<'a>(tree: &'a Rc<Tree>, seen: &mut BTreeSet<*const Tree>, parts: &mut Vec<&'a Rc<Tree>>) {
         if seen.insert(Rc::as_ptr(tree)) {
             tree.kind.operands().into_iter().flatten().for_each(|operand| inside(operand, seen, parts));
@@ -101,7 +101,7 @@ pub(crate) fn parts(tree: &Rc<Tree>) -> Vec<&Rc<Tree>> {
 
 /// A name in scope.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Name {
+pub enum Name {
     /// `F`, the increment of one factor of the group.
     Increment(usize),
     /// `h`.
@@ -120,7 +120,7 @@ pub(crate) enum Name {
 
 /// The operations of the declared syntax.
 #[derive(Clone, Debug)]
-pub(crate) enum Kind {
+pub enum Kind {
     Number(Rational),
     Identity,
     Name(Name),
@@ -150,7 +150,7 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    pub(crate) fn is_identity(&self) -> bool {
+    pub fn is_identity(&self) -> bool {
         matches!(self, Self::Identity)
     }
 
@@ -190,7 +190,7 @@ impl Kind {
         }
     }
 
-    pub(crate) fn operands(&self) -> [Option<&Rc<Tree>>; 2] {
+    pub fn operands(&self) -> [Option<&Rc<Tree>>; 2] {
         match self {
             Self::Number(_) | Self::Identity | Self::Name(_) => [None, None],
             Self::Negate(a)

@@ -23,7 +23,7 @@ pub(super) struct Code<'a> {
 }
 
 /// The token of a node that needs no code here: an input, or a value of an earlier stage.
-pub(super) type Given<'a> = &'a dyn Fn(NodeId) -> Option<TokenStream>;
+pub(super) type KnownTokens<'a> = &'a dyn Fn(NodeId) -> Option<TokenStream>;
 
 impl Code<'_> {
     /// The `let`s that the outputs need, and the outputs as one value.
@@ -109,7 +109,7 @@ impl Code<'_> {
         &self,
         graph: &Graph,
         outputs: &[NodeId],
-        given: Given,
+        given: KnownTokens,
     ) -> (TokenStream, Vec<TokenStream>) {
         let order = needed(graph, outputs, &|id| given(id).is_some());
         let mut uses: BTreeMap<NodeId, usize> = BTreeMap::new();
@@ -140,7 +140,7 @@ impl Code<'_> {
         (grouped(&bound, &read_last), values.into_iter().map(|value| value.tokens).collect())
     }
 
-    fn value(&self, graph: &Graph, id: NodeId, given: Given, known: &BTreeMap<NodeId, Value>) -> Option<Value> {
+    fn value(&self, graph: &Graph, id: NodeId, given: KnownTokens, known: &BTreeMap<NodeId, Value>) -> Option<Value> {
         let leaf = |tokens: TokenStream| Some(Value { tokens, reads: Vec::new(), depth: 0 });
         if let Some(tokens) = given(id) {
             return leaf(tokens);

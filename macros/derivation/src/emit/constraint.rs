@@ -8,13 +8,13 @@ use super::inputs::entry;
 use super::verbatim::{self, BODIES};
 use super::{Code, Header, docs, page};
 use crate::declared::{Declaration, FieldKind, Shape, check};
-use crate::judged::Held;
+use crate::judged::ConstraintSlopes;
 use crate::mathematics::derive::Body;
 use crate::mathematics::symbolic::{Expression, text};
 use crate::program::{Input, Node, NodeId};
 
 /// The item with its implementation.
-pub(crate) fn constraint(item: &TokenStream, declaration: &Declaration, held: &Held) -> TokenStream {
+pub(crate) fn constraint(item: &TokenStream, declaration: &Declaration, held: &ConstraintSlopes) -> TokenStream {
     let (header, span) = (Header::new(declaration), Span::mixed_site());
     let (private, symbols) = (&header.private, &held.lowered.declared.symbols);
     let code = Code { declaration, header: &header, names: &held.lowered.names, symbols, directions: None };
@@ -52,7 +52,7 @@ pub(crate) fn constraint(item: &TokenStream, declaration: &Declaration, held: &H
 }
 
 /// The declared functions in one column; the compiler checks the shapes that the macro found.
-fn gap(declaration: &Declaration, header: &Header, held: &Held) -> TokenStream {
+fn gap(declaration: &Declaration, header: &Header, held: &ConstraintSlopes) -> TokenStream {
     let (span, private) = (Span::mixed_site(), &header.private);
     let expression = verbatim::declared(declaration, header);
     let parts = &held.functions;
@@ -88,7 +88,7 @@ fn gap(declaration: &Declaration, header: &Header, held: &Held) -> TokenStream {
 
 impl Code<'_> {
     /// The slopes of both bodies in straight-line code.
-    fn slope(&self, held: &Held) -> TokenStream {
+    fn slope(&self, held: &ConstraintSlopes) -> TokenStream {
         let (span, private, functions) = (Span::mixed_site(), &self.header.private, held.rows());
         let bodies = &held.lowered.declared.bodies;
         let given = |id: NodeId| match held.graph.node(id) {
@@ -138,7 +138,7 @@ fn entry_of_place(bodies: &[Body; 2], input: Input) -> Option<TokenStream> {
 }
 
 /// The section on the constraint in the struct's documentation.
-fn documentation(held: &Held) -> String {
+fn documentation(held: &ConstraintSlopes) -> String {
     let symbols = &held.lowered.declared.symbols;
     let heading = match held.rows() {
         1 => "One function".to_owned(),

@@ -1,8 +1,8 @@
 //! The derived equations as documentation of the generated methods, and as one text.
 
 use crate::declared::{AdvectedParameter, Declaration, Factor};
-use crate::judged::{Chosen, Equations, Findings, Sureness};
-use crate::mathematics::derive::{Continuous, Declared, Derived, Inverse, Seen, SelfAdjointness};
+use crate::judged::{Choice, Equations, Findings, Sureness};
+use crate::mathematics::derive::{Continuous, DeclaredFunction, Derivation, Inverse, SelfAdjointness, View};
 use crate::mathematics::symbolic::{Stage, Variance, covector_text, matrix_text, text, vector_text};
 use crate::program::{Candidate, Graph, Kernel, NodeId, count};
 
@@ -27,7 +27,7 @@ impl Equation {
 }
 
 /// The closed `let`s and their multipliers, which occur in the equations.
-pub(super) fn lets(derived: &Derived) -> String {
+pub(super) fn lets(derived: &Derivation) -> String {
     let symbols = &derived.symbols;
     let name = |id| &symbols.get(id).name;
     if derived.closed.is_empty() {
@@ -45,7 +45,11 @@ pub(super) fn lets(derived: &Derived) -> String {
 }
 
 /// The equations of a declaration, in the order of the thesis.
-pub(super) fn equations(derived: &Derived, declared: &Declared, continuous: Option<&Equations>) -> Vec<Equation> {
+pub(super) fn equations(
+    derived: &Derivation,
+    declared: &DeclaredFunction,
+    continuous: Option<&Equations>,
+) -> Vec<Equation> {
     let symbols = &derived.symbols;
     let covector = |expression| covectors(derived, expression);
     let scalar = |expression| text(expression, symbols);
@@ -106,7 +110,7 @@ pub(super) fn moved_by(formula: &str, w: &[impl AsRef<str>]) -> String {
 }
 
 /// A covector, or those of several bodies.
-fn covectors(derived: &Derived, expression: &crate::mathematics::symbolic::Expression) -> String {
+fn covectors(derived: &Derivation, expression: &crate::mathematics::symbolic::Expression) -> String {
     let (symbols, factors) = (&derived.symbols, &derived.directions.factors);
     let of_factor = |first| {
         let own = expression.filtered(|monomial| crate::mathematics::symbolic::monomial_contains(monomial, first));
@@ -132,7 +136,7 @@ fn of_limit(continuous: Option<&Equations>) -> &'static str {
 }
 
 /// `J` as a matrix, if it has that form.
-fn inertia(derived: &Derived, continuous: Option<&Equations>) -> Equation {
+fn inertia(derived: &Derivation, continuous: Option<&Equations>) -> Equation {
     let quadratic = continuous.filter(|equations| equations.derived.inverse != Inverse::Nonlinear);
     let as_matrix = quadratic.and_then(|equations| inertia_matrix(&equations.derived));
     match as_matrix {
@@ -145,7 +149,7 @@ fn inertia(derived: &Derived, continuous: Option<&Equations>) -> Equation {
 }
 
 /// The equations of a force.
-pub(super) fn equations_of_force(derived: &Derived, declared: &Declared) -> Vec<Equation> {
+pub(super) fn equations_of_force(derived: &Derivation, declared: &DeclaredFunction) -> Vec<Equation> {
     let symbols = &derived.symbols;
     let covector = |expression| covectors(derived, expression);
     let equation = Equation::new;
@@ -178,7 +182,7 @@ pub(super) fn stage(graph: &Graph, outputs: &[NodeId], stage: Stage, when: &str)
 /// The equations, their hypotheses and their cost, as one text.
 pub(super) fn derivation(
     declaration: &Declaration,
-    chosen: &Chosen,
+    chosen: &Choice,
     equations: &[Equation],
     continuous: Option<String>,
     findings: &Findings,
@@ -244,8 +248,8 @@ pub(super) fn setting(declaration: &Declaration, is_discrete: bool) -> String {
     let advected = declaration.advected.iter().enumerate().map(|(index, w)| {
         let name = w.plain_name();
         let f = match w.seen {
-            Seen::From(factor) => increment(factor),
-            Seen::Relative { of, from } => {
+            View::From(factor) => increment(factor),
+            View::Relative { of, from } => {
                 let (one, other) = (increment(of), increment(from));
                 let (g, from) = (element(of), element(from));
                 return match (declaration.group.factor(of).is_added, is_discrete) {
@@ -261,7 +265,7 @@ pub(super) fn setting(declaration: &Declaration, is_discrete: bool) -> String {
                     }
                 };
             }
-            Seen::Configuration(of) => {
+            View::Configuration(of) => {
                 let (one, g) = (increment(of), element(of));
                 return match (declaration.group.factor(of).is_added, is_discrete) {
                     (true, true) => format!("    {name}⁺ = {name} + {one}: the place of {one} in space\n"),
@@ -283,7 +287,7 @@ pub(super) fn setting(declaration: &Declaration, is_discrete: bool) -> String {
             let moved = with_names(moved, f, &name);
             format!("    {name}⁺ = {f}⁻¹·{name} = {moved} for {name} in {space}\n")
         } else if is_product {
-            let of = if let Seen::From(factor) = w.seen { element(factor) } else { String::new() };
+            let of = if let View::From(factor) = w.seen { element(factor) } else { String::new() };
             format!("    {name} = {of}⁻¹·a₀ in {space}, seen from {f}\n")
         } else {
             format!("    {name} = g⁻¹·a₀ in {space}\n")
@@ -387,15 +391,4 @@ fn adjoint(findings: &Findings, w: &[String]) -> String {
     };
     let [here, there] = ["", "F⁻¹·"].map(|turned| w.iter().fold(String::new(), |all, w| all + turned + w + ", "));
     format!("l_d(F, {here}h) {sign} −l_d(F⁻¹, {there}−h)    [{how}: {consequence}]")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::with_names;
-
-    #[test]
-    fn names_have_letters_of_each_other() {
-        assert_eq!(with_names("Fᵀ w F", "F_down", "F_w"), "F_downᵀ F_w F_down");
-        assert_eq!(with_names("F⁻¹ w F⁻ᵀ", "F", "up"), "F⁻¹ up F⁻ᵀ");
-    }
 }

@@ -5,7 +5,7 @@ use quote::{ToTokens as _, quote_spanned};
 use syn::{Ident, Path};
 
 use crate::declared::{Declaration, FieldKind, Scalar, Shape};
-use crate::mathematics::derive::Seen;
+use crate::mathematics::derive::View;
 use crate::mathematics::symbolic::Variance;
 use crate::program::Form;
 
@@ -15,14 +15,14 @@ pub(crate) struct Header {
     pub(crate) private: Path,
     /// The path of liestep, if not `::liestep`.
     root: Option<Path>,
-    /// The group of each factor.
+    /// The type of each factor of the group.
     group_paths: Vec<Path>,
     pub(crate) scalar: TokenStream,
     /// The type parameter, if the scalar is one.
     pub(crate) parameter: Option<Ident>,
     pub(super) name: Ident,
     pub(super) generics: syn::Generics,
-    advected: Vec<(FieldKind, Seen)>,
+    advected: Vec<(FieldKind, View)>,
     /// The size of the matrices of each factor.
     sizes: Vec<usize>,
     size: usize,
@@ -126,21 +126,21 @@ impl Header {
         quote_spanned!(Span::mixed_site()=> #private::nalgebra::SVector<#scalar, #rows>)
     }
 
-    fn advected_type(&self, (kind, seen): (FieldKind, Seen)) -> TokenStream {
+    fn advected_type(&self, (kind, seen): (FieldKind, View)) -> TokenStream {
         let (private, span) = (&self.private, Span::mixed_site());
         let place = Literal::usize_unsuffixed;
         match (seen, kind) {
-            (Seen::Relative { of, from }, FieldKind::Configuration(_) | FieldKind::Place(_)) => {
+            (View::Relative { of, from }, FieldKind::Configuration(_) | FieldKind::Place(_)) => {
                 let rows = self.sizes.get(of).copied().unwrap_or(self.size);
                 let (matrix, of, from) = (self.matrix_of(rows), place(of), place(from));
                 quote_spanned!(span=> #private::Relative<#from, #of, #matrix>)
             }
-            (Seen::Configuration(of), FieldKind::Configuration(_) | FieldKind::Place(_)) => {
+            (View::Configuration(of), FieldKind::Configuration(_) | FieldKind::Place(_)) => {
                 let rows = self.sizes.get(of).copied().unwrap_or(self.size);
                 let (matrix, of) = (self.matrix_of(rows), place(of));
                 quote_spanned!(span=> #private::Configuration<#of, #matrix>)
             }
-            (Seen::From(factor), kind) if self.sizes.len() > 1 && !matches!(kind, FieldKind::Given(_)) => {
+            (View::From(factor), kind) if self.sizes.len() > 1 && !matches!(kind, FieldKind::Given(_)) => {
                 let rows = self.sizes.get(factor).copied().unwrap_or(self.size);
                 let (own, factor) = (self.own_advected_type(kind, rows), place(factor));
                 quote_spanned!(span=> #private::SeenFrom<#factor, #own>)

@@ -19,10 +19,10 @@ mod verbatim;
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{quote, quote_spanned};
 
-use crate::declared::lower::Lowered;
+use crate::declared::lower::Reading;
 use crate::declared::{Declaration, FieldKind, Role};
-use crate::judged::{Chosen, Equations, Findings};
-use crate::mathematics::derive::Derived;
+use crate::judged::{Choice, Equations, Findings};
+use crate::mathematics::derive::Derivation;
 use crate::program::{Form, Kernel, Outputs};
 
 use code::Code;
@@ -82,11 +82,11 @@ pub fn lanes(item: TokenStream, is_in_lanes: bool) -> TokenStream {
 pub(crate) fn implementation(
     [arguments, item]: [&TokenStream; 2],
     declaration: &Declaration,
-    chosen: &Chosen,
+    chosen: &Choice,
     equations: Option<&Equations>,
     findings: &Findings,
 ) -> TokenStream {
-    let (header, Chosen { lowered, derived, kernel }) = (Header::new(declaration), chosen);
+    let (header, Choice { lowered, derived, kernel }) = (Header::new(declaration), chosen);
     let (names, symbols) = (&lowered.names, &derived.symbols);
     let code = Code { declaration, header: &header, names, symbols, directions: Some(&derived.directions) };
     let emitter = Emitter { code, lowered, derived, kernel, equations };
@@ -155,7 +155,7 @@ pub(crate) fn implementation(
 }
 
 /// The kinetic part of an effect: its presence, and the cost of its solve.
-fn kinetic(declaration: &Declaration, chosen: &Chosen) -> &'static str {
+fn kinetic(declaration: &Declaration, chosen: &Choice) -> &'static str {
     match (chosen.derived.limit.has_kinetic, chosen.kernel.jacobian_is_expensive()) {
         (false, _) => "WithoutKinetic",
         (true, false) if declaration.energy.is_some() => "WithPace",
@@ -167,7 +167,7 @@ fn kinetic(declaration: &Declaration, chosen: &Chosen) -> &'static str {
 /// The declaration and everything derived from it, as text.
 pub(crate) fn text(
     declaration: &Declaration,
-    chosen: &Chosen,
+    chosen: &Choice,
     equations: Option<&Equations>,
     findings: &Findings,
 ) -> String {
@@ -177,7 +177,7 @@ pub(crate) fn text(
 
 fn derivation_of(
     declaration: &Declaration,
-    chosen: &Chosen,
+    chosen: &Choice,
     texts: &[docs::Equation],
     equations: Option<&Equations>,
     findings: &Findings,
@@ -187,8 +187,8 @@ fn derivation_of(
 }
 
 /// The equations of a step.
-fn equations_of(declaration: &Declaration, chosen: &Chosen, equations: Option<&Equations>) -> Vec<docs::Equation> {
-    let Chosen { lowered, derived, .. } = chosen;
+fn equations_of(declaration: &Declaration, chosen: &Choice, equations: Option<&Equations>) -> Vec<docs::Equation> {
+    let Choice { lowered, derived, .. } = chosen;
     if declaration.role == Role::Force {
         docs::equations_of_force(derived, &lowered.declared)
     } else {
@@ -235,8 +235,8 @@ fn invariance(declaration: &Declaration, header: &Header) -> Option<TokenStream>
 /// The data that all parts of a step share.
 struct Emitter<'a> {
     code: Code<'a>,
-    lowered: &'a Lowered,
-    derived: &'a Derived,
+    lowered: &'a Reading,
+    derived: &'a Derivation,
     kernel: &'a Kernel,
     /// The continuous equations of a Lagrangian.
     equations: Option<&'a Equations>,

@@ -10,7 +10,7 @@ use syn::{Ident, Path, Visibility};
 
 use crate::declared::Role;
 use crate::declared::errors::Errors;
-use crate::declared::parse::{Asked, OwnGroup};
+use crate::declared::parse::{OwnGroup, Request};
 
 fn private(root: Option<&Path>) -> TokenStream {
     root.map_or_else(|| quote!(::liestep::__private), |root| quote!(#root::__private))
@@ -79,8 +79,8 @@ fn stand_in(name: Option<&Ident>) -> Option<TokenStream> {
 }
 
 /// The declaration passed through the group's macro, which adds the generators.
-pub(crate) fn ask(role: Role, asked: &Asked, item: &TokenStream) -> TokenStream {
-    let Asked { group, root, arguments } = asked;
+pub(crate) fn ask(role: Role, asked: &Request, item: &TokenStream) -> TokenStream {
+    let Request { group, root, arguments } = asked;
     let (private, attribute) = (private(root.as_ref()), format_ident!("{}", role.attribute()));
     quote!(#group! { { #private::#attribute } { #arguments } #item })
 }

@@ -5,7 +5,7 @@ use quote::quote_spanned;
 
 use super::docs::{Equation, OF_A_STEP, certified, costs, lets};
 use crate::declared::{Declaration, Field, Role};
-use crate::judged::{self, Chosen, Equations, Findings};
+use crate::judged::{self, Choice, Equations, Findings};
 use crate::mathematics::derive::SelfAdjointness;
 
 /// The item with a page of documentation behind its own, and with the lint against its field names allowed.
@@ -40,7 +40,7 @@ const LONGEST: usize = 1_200;
 /// The page: the momentum equation, the order, the limit on the step, and the cost of a step.
 pub(super) fn page(
     declaration: &Declaration,
-    chosen: &Chosen,
+    chosen: &Choice,
     equations: &[Equation],
     continuous: Option<&Equations>,
     findings: &Findings,
@@ -114,7 +114,7 @@ fn momenta(declaration: &Declaration) -> String {
 }
 
 /// The groups of bodies that a step solves together.
-fn together(declaration: &Declaration, chosen: &Chosen) -> String {
+fn together(declaration: &Declaration, chosen: &Choice) -> String {
     let ends = chosen.kernel.ends(&chosen.derived.group);
     let mut groups: Vec<Vec<&str>> = vec![Vec::new()];
     for (index, factor) in declaration.factors.iter().enumerate() {
@@ -145,7 +145,7 @@ fn order(found: SelfAdjointness) -> &'static str {
 }
 
 /// The reason why a large step may have no solution.
-fn limit(chosen: &Chosen) -> &'static str {
+fn limit(chosen: &Choice) -> &'static str {
     if chosen.derived.cleared.is_some() {
         "the part of `μ` with `F` is a polynomial in `F`, so it is bounded. Where the body turns too fast for the step, \
          there is no solution, and the error names the largest step that has one."

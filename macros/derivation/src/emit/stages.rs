@@ -7,7 +7,7 @@ use super::{Code, Emitter};
 use crate::mathematics::derive::Inverse;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Stage, SymbolId};
-use crate::program::{self, Form, Graph, Handed, Kernel, Node, NodeId, needed};
+use crate::program::{self, Form, Graph, Handover, Kernel, Node, NodeId, needed};
 
 /// The methods of the stages, and the arrays that pass values between them.
 pub(super) struct Stages {
@@ -25,14 +25,14 @@ pub(super) fn stages(emitter: &Emitter, stages: &program::Stages, equations: &[s
     let from_parameters = |id: NodeId| input(emitter, graph, id);
     let from_constants = |id: NodeId| slot(constants, id, "constants").or_else(|| input(emitter, graph, id));
     let from_terms = |id: NodeId| slot(step_terms, id, "terms").or_else(|| from_constants(id));
-    let numbers = |nodes: &Handed, given: super::code::Given| {
+    let numbers = |nodes: &Handover, given: super::code::KnownTokens| {
         let nodes: Vec<NodeId> = nodes.keys().copied().collect();
         let (lets, values) = emitter.statements(graph, &nodes, given);
         quote_spanned!(span=> #lets #private::Numbers([#(#values),*]))
     };
     let constants_body = numbers(constants, &from_parameters);
     let step_terms_body = numbers(step_terms, &from_constants);
-    let value = |outputs: &[NodeId], given: super::code::Given| {
+    let value = |outputs: &[NodeId], given: super::code::KnownTokens| {
         let (lets, values) = emitter.statements(graph, outputs, given);
         let value = emitter.assembled(Form::Vector, &values);
         quote_spanned!(span=> #lets #value)
@@ -45,7 +45,7 @@ pub(super) fn stages(emitter: &Emitter, stages: &program::Stages, equations: &[s
     });
     let newton_system = newton_system(emitter, kernel, system, &from_terms);
     let inverse = inverse(emitter, kernel);
-    let length = |nodes: &Handed| {
+    let length = |nodes: &Handover| {
         let length = Literal::usize_unsuffixed(nodes.len());
         quote_spanned!(span=> #private::Numbers<#scalar, #length>)
     };
@@ -94,7 +94,12 @@ pub(super) fn stages(emitter: &Emitter, stages: &program::Stages, equations: &[s
 }
 
 /// The Newton system, and the residual alone if that is worthwhile; `given` has the values of the stages before.
-fn newton_system(emitter: &Emitter, kernel: &Kernel, system: &[NodeId], given: super::code::Given) -> TokenStream {
+fn newton_system(
+    emitter: &Emitter,
+    kernel: &Kernel,
+    system: &[NodeId],
+    given: super::code::KnownTokens,
+) -> TokenStream {
     let (span, graph) = (Span::mixed_site(), &kernel.graph);
     let (vector, square) = (emitter.header.vector(), emitter.header.square());
     let (lets, values) = emitter.statements(graph, system, given);
@@ -227,7 +232,7 @@ fn kick_derivative(emitter: &Emitter, documentation: &str, value: &TokenStream) 
 }
 
 /// The residual alone, if the Jacobian is expensive.
-fn residual_alone(emitter: &Emitter, kernel: &Kernel, from_terms: super::code::Given) -> TokenStream {
+fn residual_alone(emitter: &Emitter, kernel: &Kernel, from_terms: super::code::KnownTokens) -> TokenStream {
     let (span, private, vector) = (Span::mixed_site(), &emitter.header.private, emitter.header.vector());
     let gradient = kernel.gradient();
     let (lets, values) = emitter.statements(&kernel.graph, &gradient, from_terms);
@@ -285,7 +290,7 @@ fn input(emitter: &Emitter, graph: &Graph, id: NodeId) -> Option<TokenStream> {
     }
 }
 
-fn slot(slots: &Handed, id: NodeId, numbers: &str) -> Option<TokenStream> {
+fn slot(slots: &Handover, id: NodeId, numbers: &str) -> Option<TokenStream> {
     let (numbers, index) = (syn::Ident::new(numbers, Span::mixed_site()), Literal::usize_unsuffixed(*slots.get(&id)?));
     Some(quote_spanned!(Span::mixed_site()=> #numbers.0[#index]))
 }

@@ -12,7 +12,7 @@ use syn::{Expr, Ident};
 
 use super::Header;
 use crate::declared::{AdvectedParameter, Declaration, FieldKind, Role, Shape, Spelling};
-use crate::mathematics::derive::Seen;
+use crate::mathematics::derive::View;
 
 /// The names of the bodies in the methods of a constraint.
 pub(super) const BODIES: [&str; 2] = ["above", "below"];
@@ -25,7 +25,7 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
     let mut rewrite =
         Rewrite { header, is_product: declaration.group.is_product(), mentioned: Vec::new(), scopes: Vec::new() };
     rewrite.visit_expr_mut(&mut expression);
-    let Bound { names, values, .. } = bound(declaration, header, rewrite.mentioned);
+    let BoundNames { names, values, .. } = bound(declaration, header, rewrite.mentioned);
     // `F` and `I` may be constants or unit structs in the user's scope, which a pattern would compare with instead of
     // binding the name. The functions hide them, and the pattern may hide functions.
     let imposed = names.iter().filter(|name| *name == "F" || *name == "I");
@@ -50,13 +50,13 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
 }
 
 /// The names that the macro knows and the expression mentions, with their values.
-struct Bound {
+struct BoundNames {
     mentioned: Vec<String>,
     names: Vec<Ident>,
     values: Vec<TokenStream>,
 }
 
-impl Bound {
+impl BoundNames {
     fn bind(&mut self, name: &str, value: TokenStream) {
         if self.mentioned.iter().any(|used| used == name) {
             self.names.push(Ident::new_raw_or_plain(name, Span::mixed_site()));
@@ -65,9 +65,9 @@ impl Bound {
     }
 }
 
-fn bound(declaration: &Declaration, header: &Header, mentioned: Vec<String>) -> Bound {
+fn bound(declaration: &Declaration, header: &Header, mentioned: Vec<String>) -> BoundNames {
     let (span, private, scalar) = (Span::mixed_site(), &header.private, &header.scalar);
-    let mut bound = Bound { mentioned, names: Vec::new(), values: Vec::new() };
+    let mut bound = BoundNames { mentioned, names: Vec::new(), values: Vec::new() };
     // A constraint has no increments.
     if declaration.role != Role::Constraint {
         increments(declaration, header, &mut bound);
@@ -113,7 +113,7 @@ fn bound(declaration: &Declaration, header: &Header, mentioned: Vec<String>) -> 
 }
 
 /// The increments.
-fn increments(declaration: &Declaration, header: &Header, bound: &mut Bound) {
+fn increments(declaration: &Declaration, header: &Header, bound: &mut BoundNames) {
     let span = Span::mixed_site();
     for (index, factor) in declaration.factors.iter().enumerate() {
         let group = declaration.group.factor(index);
@@ -129,7 +129,7 @@ fn increments(declaration: &Declaration, header: &Header, bound: &mut Bound) {
 }
 
 /// The identity, and the maps between vectors and matrices.
-fn maps(declaration: &Declaration, header: &Header, bound: &mut Bound) {
+fn maps(declaration: &Declaration, header: &Header, bound: &mut BoundNames) {
     let (span, private, scalar) = (Span::mixed_site(), &header.private, &header.scalar);
     let one = header.matrix_of_factor();
     bound.bind("I", quote_spanned!(span=> <#one>::identity()));
@@ -157,8 +157,8 @@ fn seen(declaration: &Declaration, header: &Header, w: &AdvectedParameter) -> To
         quote_spanned!(span=> #body.#part)
     };
     match w.seen {
-        Seen::Configuration(of) => place(of),
-        Seen::Relative { of, from } => {
+        View::Configuration(of) => place(of),
+        View::Relative { of, from } => {
             let (of_place, from_place) = (place(of), place(from));
             if of % 2 == 1 {
                 quote_spanned!(span=> #of_place - #from_place)
@@ -166,7 +166,7 @@ fn seen(declaration: &Declaration, header: &Header, w: &AdvectedParameter) -> To
                 quote_spanned!(span=> #from_place.transpose() * #of_place)
             }
         }
-        Seen::From(factor) => {
+        View::From(factor) => {
             let Some(field) = w.field.and_then(|field| declaration.fields.get(field)) else {
                 return TokenStream::new();
             };

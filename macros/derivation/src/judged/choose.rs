@@ -7,34 +7,34 @@ use std::rc::Rc;
 
 use super::explain;
 use crate::declared::errors::Errors;
-use crate::declared::lower::Lowered;
+use crate::declared::lower::Reading;
 use crate::declared::{Declaration, Tree};
-use crate::mathematics::derive::{Declared, Derived, Refusal};
+use crate::mathematics::derive::{DeclaredFunction, Derivation, Refusal};
 use crate::program::{self, Kernel};
 
 /// The reading that is emitted.
-pub(crate) struct Chosen {
-    pub(crate) lowered: Lowered,
-    pub(crate) derived: Derived,
-    pub(crate) kernel: Kernel,
+pub struct Choice {
+    pub lowered: Reading,
+    pub derived: Derivation,
+    pub kernel: Kernel,
 }
 
 /// The derivation of a reading.
-type Derive = fn(&Declared) -> Result<Derived, Refusal>;
+type Derive = fn(&DeclaredFunction) -> Result<Derivation, Refusal>;
 
 /// The reading with the fewest operations a step, or the first, which is simpler, if it is nearly as cheap.
 ///
 /// `None` if nothing can be derived, which has been reported.
-pub(crate) fn cheapest(
-    readings: Vec<Lowered>,
+pub fn cheapest(
+    readings: Vec<Reading>,
     derive: Derive,
     declaration: &Declaration,
     tree: &Rc<Tree>,
     errors: &mut Errors,
-) -> Option<Chosen> {
+) -> Option<Choice> {
     let least = readings.iter().map(size).min().unwrap_or(0);
     // A reading of twice the length is never cheaper and takes long to derive: it is the last resort.
-    let (short, long): (Vec<Lowered>, Vec<Lowered>) =
+    let (short, long): (Vec<Reading>, Vec<Reading>) =
         readings.into_iter().partition(|reading| size(reading) <= 2 * least);
     let chosen = cheapest_of(short, derive).or_else(|refusal| {
         // The refusal of the simpler reading is reported.
@@ -44,8 +44,8 @@ pub(crate) fn cheapest(
 }
 
 /// The cheapest of these readings. The error is the first refusal, if there is one.
-fn cheapest_of(readings: Vec<Lowered>, derive: Derive) -> Result<Chosen, Option<Refusal>> {
-    let mut chosen: Option<(usize, Chosen)> = None;
+fn cheapest_of(readings: Vec<Reading>, derive: Derive) -> Result<Choice, Option<Refusal>> {
+    let mut chosen: Option<(usize, Choice)> = None;
     let mut first = None;
     for lowered in readings {
         match derive(&lowered.declared) {
@@ -53,7 +53,7 @@ fn cheapest_of(readings: Vec<Lowered>, derive: Derive) -> Result<Chosen, Option<
                 let kernel = program::kernel(&derived);
                 let cost = kernel.cost();
                 if chosen.as_ref().is_none_or(|(least, _)| cost < least - least / 8) {
-                    chosen = Some((cost, Chosen { lowered, derived, kernel }));
+                    chosen = Some((cost, Choice { lowered, derived, kernel }));
                 }
             }
             Err(refusal) => first = first.or(Some(refusal)),
@@ -62,7 +62,7 @@ fn cheapest_of(readings: Vec<Lowered>, derive: Derive) -> Result<Chosen, Option<
     chosen.map(|(_, chosen)| chosen).ok_or(first)
 }
 
-fn size(lowered: &Lowered) -> usize {
+fn size(lowered: &Reading) -> usize {
     let lets = lowered.declared.lets.iter().map(|one| one.value.size());
     lowered.declared.expression.size() + lets.sum::<usize>()
 }

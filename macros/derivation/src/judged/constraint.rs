@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::explain;
-use super::verify::{self, Held, Row, Sureness};
+use super::verify::{self, ConstraintSlopes, Row, Sureness};
 use crate::declared::errors::Errors;
 use crate::declared::lower;
 use crate::declared::{Declaration, Tree};
@@ -12,7 +12,7 @@ use crate::mathematics::symbolic::Expression;
 use crate::program::{Graph, along_unit_vectors};
 
 /// The verified constraint; `None` after a mistake, which has been reported.
-pub(crate) fn held(declaration: &Declaration, functions: Vec<Rc<Tree>>, errors: &mut Errors) -> Option<Held> {
+pub fn held(declaration: &Declaration, functions: Vec<Rc<Tree>>, errors: &mut Errors) -> Option<ConstraintSlopes> {
     let lowered = lower::constraint(declaration, &functions, errors)?;
     let first = functions.first()?;
     let slopes = lowered.declared.slopes();
@@ -34,9 +34,11 @@ pub(crate) fn held(declaration: &Declaration, functions: Vec<Rc<Tree>>, errors: 
             slopes[body][by].iter().flat_map(&mut of).collect()
         })
     });
-    let held = Held { functions, lowered, slopes, graph, entries, sureness: Sureness::TooHigh };
+    let held = ConstraintSlopes { functions, lowered, slopes, graph, entries, sureness: Sureness::TooHigh };
     match verify::constraint(declaration, &held) {
-        Ok((sureness, rows)) if rows.iter().all(|row| *row == Row::New) => return Some(Held { sureness, ..held }),
+        Ok((sureness, rows)) if rows.iter().all(|row| *row == Row::New) => {
+            return Some(ConstraintSlopes { sureness, ..held });
+        }
         Ok((_, rows)) => report(&held, &rows, errors),
         Err(unconfirmed) => explain::unconfirmed(unconfirmed, declaration, &held.functions[0], errors),
     }
@@ -44,7 +46,7 @@ pub(crate) fn held(declaration: &Declaration, functions: Vec<Rc<Tree>>, errors: 
 }
 
 /// Reports the scalars and vectors with components that constrain nothing new.
-fn report(held: &Held, mut rows: &[Row], errors: &mut Errors) {
+fn report(held: &ConstraintSlopes, mut rows: &[Row], errors: &mut Errors) {
     for part in &held.functions {
         let (own, behind) = rows.split_at(part.shape.rows().min(rows.len()));
         if own.iter().all(|row| *row == Row::Constant) {

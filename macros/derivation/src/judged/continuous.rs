@@ -3,35 +3,35 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::choose::Chosen;
+use super::choose::Choice;
 use super::explain;
 use super::verify::{Motion, Sureness};
 use crate::declared::errors::Errors;
-use crate::declared::lower::Lowered;
+use crate::declared::lower::Reading;
 use crate::declared::{Declaration, Name, Tree, lower};
-use crate::mathematics::derive::{self, Continuous, Discretised, Inverse};
+use crate::mathematics::derive::{self, Continuous, ContinuousSource, Inverse};
 use crate::mathematics::symbolic::{Rational, SymbolId};
 
 /// The continuous equations of a declaration.
-pub(crate) struct Equations {
-    pub(crate) names: BTreeMap<Name, SymbolId>,
-    pub(crate) derived: Continuous,
+pub struct Equations {
+    pub names: BTreeMap<Name, SymbolId>,
+    pub derived: Continuous,
     /// A basis of the directions along which the body momentum is conserved for all values of the parameters.
-    pub(crate) right_symmetries: Vec<Vec<Rational>>,
-    pub(crate) sureness: Sureness,
+    pub right_symmetries: Vec<Vec<Rational>>,
+    pub sureness: Sureness,
 }
 
 impl Equations {
     /// The reading with the continuous equations that it discretises.
-    pub(crate) fn behind(&self, reading: Lowered) -> Lowered {
+    pub fn behind(&self, reading: Reading) -> Reading {
         let symbols = self.names.iter().filter_map(|(name, &from)| Some((from, *reading.names.get(name)?))).collect();
-        let discretised = Some(Discretised { continuous: self.derived.clone(), symbols });
-        Lowered { declared: derive::Declared { discretised, ..reading.declared }, ..reading }
+        let discretised = Some(ContinuousSource { continuous: self.derived.clone(), symbols });
+        Reading { declared: derive::DeclaredFunction { discretised, ..reading.declared }, ..reading }
     }
 }
 
 /// The equations of a declared `l`; `None` after a mistake, which has been reported.
-pub(crate) fn of_declared(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Equations> {
+pub fn of_declared(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Equations> {
     let lowered = lower::continuous(declaration, tree, errors)?;
     let derived = derive::continuous(lowered.declared);
     let derived = derived.map_err(|refusal| explain::refusal(refusal, declaration, tree, errors)).ok()?;
@@ -40,11 +40,11 @@ pub(crate) fn of_declared(declaration: &Declaration, tree: &Rc<Tree>, errors: &m
 
 /// The equations of a discrete Lagrangian: those of the `l` that it discretises, which must be its limit, or else those
 /// of its limit.
-pub(crate) fn continuous(
+pub fn continuous(
     declared: Option<Equations>,
     declaration: &Declaration,
     [tree, discrete]: [&Rc<Tree>; 2],
-    chosen: &Chosen,
+    chosen: &Choice,
     errors: &mut Errors,
 ) -> Option<Equations> {
     let Some(mut equations) = declared else { return of_limit(declaration, discrete, chosen, errors) };
@@ -59,7 +59,7 @@ pub(crate) fn continuous(
 fn limit_holds(
     motion: &Motion,
     may_have_limit: bool,
-    (declaration, discrete, chosen): (&Declaration, &Rc<Tree>, &Chosen),
+    (declaration, discrete, chosen): (&Declaration, &Rc<Tree>, &Choice),
     errors: &mut Errors,
 ) -> Option<Sureness> {
     let limit = || chosen.kernel.beginning.limit(&chosen.derived);
@@ -71,7 +71,7 @@ fn limit_holds(
     at_rest
 }
 
-fn of_limit(declaration: &Declaration, discrete: &Rc<Tree>, chosen: &Chosen, errors: &mut Errors) -> Option<Equations> {
+fn of_limit(declaration: &Declaration, discrete: &Rc<Tree>, chosen: &Choice, errors: &mut Errors) -> Option<Equations> {
     let declared = derive::of_limit(&chosen.lowered.declared, &chosen.derived);
     let mut names = chosen.lowered.names.clone();
     let velocities = declared.velocities.iter().enumerate();
@@ -86,7 +86,7 @@ fn of_limit(declaration: &Declaration, discrete: &Rc<Tree>, chosen: &Chosen, err
 /// The verified equations of this tree, or of the limit of the derivation chosen for it.
 fn checked(
     declaration: &Declaration,
-    (tree, chosen): (&Rc<Tree>, Option<&Chosen>),
+    (tree, chosen): (&Rc<Tree>, Option<&Choice>),
     names: BTreeMap<Name, SymbolId>,
     derived: Continuous,
     errors: &mut Errors,

@@ -24,7 +24,7 @@ use crate::declared::{Declaration, Discretisation, Kind, Name, Quadrature, Tree}
 use crate::mathematics::symbolic::Rational;
 
 /// The discretisation of `l`; `None` if it doesn't fit the group or `l`, which has been reported.
-pub(crate) fn discretised(
+pub fn discretised(
     declaration: &Declaration,
     tree: &Rc<Tree>,
     asked: Discretisation,

@@ -5,23 +5,23 @@ use std::rc::Rc;
 
 use proc_macro2::Span;
 
-use super::verify::{self, KineticPart, Row, TermMistake, Unconfirmed};
+use super::verify::{self, KineticPart, Objection, Row, TermMistake};
 use crate::declared::check;
 use crate::declared::errors::Errors;
-use crate::declared::{Coordinates, Declaration, Discretisation, Kind, Name, Quadrature, Tree};
+use crate::declared::{Coordinates, Declaration, Discretisation, Kind, Name, Quadrature, Role, Tree};
 use crate::mathematics::derive::{ForceError, LimitError, Refusal};
 
 /// Reports the terms that can't be intended; `None` if there are any.
-pub(crate) fn terms(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<()> {
+pub fn terms(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<()> {
     let mistakes = verify::term_mistakes(declaration, tree);
     for (place, mistake) in &mistakes {
-        errors.push_between([place.span, place.end], term(*mistake));
+        errors.push_between([place.span, place.end], term(*mistake, declaration));
     }
     mistakes.is_empty().then_some(())
 }
 
 /// The message for a term: the mistake and the correction.
-fn term(mistake: TermMistake) -> String {
+fn term(mistake: TermMistake, declaration: &Declaration) -> String {
     let by_a_power = |least: i32| format!("; if it is a correction, write its power as `h.powi({least})` or higher");
     match mistake {
         TermMistake::ZeroDivisor => {
@@ -58,6 +58,7 @@ fn term(mistake: TermMistake) -> String {
         TermMistake::Constant => {
             "this is the same for all `F`, so it does nothing: leave it out, or write `F - I` for `F`".to_owned()
         }
+        TermMistake::Zero | TermMistake::Cancelling | TermMistake::NoMotion => idle(mistake, declaration),
         TermMistake::Work(order @ 2..) => format!(
             "this vanishes like {} as h → 0: virtual work goes like `h`, and `F - I` and `vee(F)` count as `h`{}",
             power_of_step(order),
@@ -67,6 +68,31 @@ fn term(mistake: TermMistake) -> String {
             "this goes like {} as h → 0: virtual work goes like `h`, as in `0.5 * h * …`; `F - I` and `vee(F)` count as \
              `h`",
             power_of_step(order)
+        ),
+    }
+}
+
+/// Of a term that no equation of motion has.
+fn idle(mistake: TermMistake, declaration: &Declaration) -> String {
+    let motion = match declaration.role {
+        Role::Force => "displacement",
+        _ if declaration.continuous.is_some() => "velocity",
+        _ if declaration.group.is_product() => "increment",
+        _ => "`F`",
+    };
+    match mistake {
+        TermMistake::Zero => format!(
+            "this term is zero for every {motion}, whatever the parameters: leave it out, or check its signs and what is \
+             transposed"
+        ),
+        TermMistake::Cancelling => {
+            format!(
+                "all terms with {motion} alone add up to a constant, so there is no kinetic part: check their signs"
+            )
+        }
+        _ => format!(
+            "this is the same for every {motion} and all that is advected, so nothing follows from it: a kinetic part \
+             is a square of a velocity or of `F - I`, and a potential depends on what is advected"
         ),
     }
 }
@@ -297,10 +323,10 @@ pub(super) fn follows(part: &Tree, rows: &[Row], errors: &mut Errors) {
 }
 
 /// Reports a derivation that the self-check doesn't confirm.
-pub(super) fn unconfirmed(unconfirmed: Unconfirmed, declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) {
+pub(super) fn unconfirmed(unconfirmed: Objection, declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) {
     match unconfirmed {
-        Unconfirmed::Disagrees(term) | Unconfirmed::Undefined(term) => unconfirmed_term(term, declaration, errors),
-        Unconfirmed::NoValue => {
+        Objection::Disagrees(term) | Objection::Undefined(term) => unconfirmed_term(term, declaration, errors),
+        Objection::NoValue => {
             let message = "this has no value at the points where it was tried: what is under a root or a logarithm has to be \
                            positive for parameters of some size and sign";
             match verify::without_value(declaration, tree) {
@@ -308,7 +334,7 @@ pub(super) fn unconfirmed(unconfirmed: Unconfirmed, declaration: &Declaration, t
                 None => errors.push_over(declaration.expression.as_ref().map(check::value), message),
             }
         }
-        Unconfirmed::NotSmooth => {
+        Objection::NotSmooth => {
             let (message, ends) = not_smooth(verify::not_smooth_at_identity(declaration, tree), tree);
             errors.push_between(ends, message);
         }

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use super::choose::Chosen;
+use super::choose::Choice;
 use super::verify::{self, Findings, Subject};
 use super::{explain, hypotheses};
 use crate::declared::errors::Errors;
@@ -10,13 +10,8 @@ use crate::declared::{Declaration, Role, Tree};
 use crate::mathematics::derive::SelfAdjointness;
 
 /// Verifies the whole derivation; `None` if the Lagrangian or the derivation is wrong, which has been reported.
-pub(crate) fn findings(
-    declaration: &Declaration,
-    tree: &Rc<Tree>,
-    chosen: &Chosen,
-    errors: &mut Errors,
-) -> Option<Findings> {
-    let Chosen { lowered, derived, kernel } = chosen;
+pub fn findings(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Choice, errors: &mut Errors) -> Option<Findings> {
+    let Choice { lowered, derived, kernel } = chosen;
     let of = Subject { declaration, tree, lowered, derived };
     // A term without a kinetic part is a potential or a force, added to another term.
     if derived.limit.has_kinetic {

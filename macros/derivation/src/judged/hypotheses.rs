@@ -5,17 +5,17 @@
 
 use std::rc::Rc;
 
-use super::choose::Chosen;
+use super::choose::Choice;
 use crate::declared::errors::Errors;
-use crate::declared::lower::{Lowered, readings_without};
+use crate::declared::lower::{Reading, readings_without};
 use crate::declared::{Declaration, FieldKind, Name, Tree};
 use crate::mathematics::derive::has_equations;
 use crate::mathematics::symbolic::{Stage, Structure};
-use crate::program::{Given, Graph, Scalariser, count, with_values};
+use crate::program::{Graph, KnownEntries, Scalariser, count, with_values};
 
 /// The hypotheses that are used, as a paper would write them.
-pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Chosen) -> Vec<String> {
-    let Chosen { lowered, derived, .. } = chosen;
+pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Choice) -> Vec<String> {
+    let Choice { lowered, derived, .. } = chosen;
     let without = |name: Name, weaker: Structure| {
         // The relations are dropped for all increments together.
         let is_meant = |other: Name| match name {
@@ -83,7 +83,7 @@ pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Ch
 }
 
 /// The number of operations in one evaluation of `l_d`.
-fn operations(lowered: &Lowered) -> usize {
+fn operations(lowered: &Reading) -> usize {
     let (mut graph, declared) = (Graph::default(), &lowered.declared);
     let mut symbols = declared.symbols.clone();
     let increments = declared.increments.iter().zip(declared.group.factors());
@@ -92,8 +92,12 @@ fn operations(lowered: &Lowered) -> usize {
         let inverse = symbols.add("F⁻¹", shape, Structure::General, Stage::Iteration);
         symbols.set_inverse(increment, inverse);
     }
-    let given =
-        with_values(&mut graph, &symbols, declared.lets.iter().map(|one| (one.symbol, &one.value)), Given::new());
+    let given = with_values(
+        &mut graph,
+        &symbols,
+        declared.lets.iter().map(|one| (one.symbol, &one.value)),
+        KnownEntries::new(),
+    );
     let mut scalariser = Scalariser::new(&mut graph, &symbols, &given);
     let output = scalariser.scalar(&declared.expression);
     count(&graph, &[output], None).arithmetic

@@ -7,22 +7,22 @@
 //! rotations about it; the attitude of a body in space allows no `η` for that body.
 
 use crate::declared::{Declaration, FieldKind};
-use crate::mathematics::derive::Seen;
+use crate::mathematics::derive::View;
 use crate::mathematics::symbolic::Variance;
 
 /// The sum of the spatial momenta of some bodies, or its component along a field.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Conserved {
-    pub(crate) bodies: Vec<usize>,
-    pub(crate) along: Option<usize>,
+pub struct Invariant {
+    pub bodies: Vec<usize>,
+    pub along: Option<usize>,
 }
 
 /// The conserved momenta of rotating bodies; each group of coupled bodies has one, or none.
-pub(crate) fn conserved(declaration: &Declaration) -> Vec<Conserved> {
+pub fn conserved(declaration: &Declaration) -> Vec<Invariant> {
     // The first of the bodies that each body is coupled with.
     let mut first: Vec<usize> = (0..declaration.factors.len()).collect();
     for w in &declaration.advected {
-        if let Seen::Relative { of, from } = w.seen {
+        if let View::Relative { of, from } = w.seen {
             let (a, b) = (first[of], first[from]);
             first.iter_mut().filter(|body| **body == a || **body == b).for_each(|body| *body = a.min(b));
         }
@@ -32,8 +32,8 @@ pub(crate) fn conserved(declaration: &Declaration) -> Vec<Conserved> {
         let mut along = None;
         for (index, w) in declaration.advected.iter().enumerate().filter(|(_, w)| !w.is_given) {
             match w.seen {
-                Seen::Configuration(of) if bodies.contains(&of) => return None,
-                Seen::From(body) if bodies.contains(&body) => {
+                View::Configuration(of) if bodies.contains(&of) => return None,
+                View::From(body) if bodies.contains(&body) => {
                     let is_vector = match declaration.advected_kind(index) {
                         FieldKind::Vector(_) => true,
                         FieldKind::Advected(variance, _) => {
@@ -50,7 +50,7 @@ pub(crate) fn conserved(declaration: &Declaration) -> Vec<Conserved> {
                 _ => {}
             }
         }
-        Some(Conserved { bodies, along })
+        Some(Invariant { bodies, along })
     };
     (0..first.len()).filter(|&root| first[root] == root).filter_map(group).collect()
 }

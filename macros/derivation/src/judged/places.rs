@@ -7,7 +7,7 @@ use crate::mathematics::symbolic::SymbolId;
 use crate::program::Place;
 
 /// The names of the fields and of the advected parameters, with their kinds.
-pub(crate) fn variables(declaration: &Declaration) -> [Vec<(Name, FieldKind)>; 2] {
+pub fn variables(declaration: &Declaration) -> [Vec<(Name, FieldKind)>; 2] {
     let fields = declaration.fields.iter().enumerate().map(|(index, field)| (Name::Field(index), field.kind));
     let advected =
         (0..declaration.advected.len()).map(|index| (Name::Advected(index), declaration.advected_kind(index)));
@@ -15,7 +15,7 @@ pub(crate) fn variables(declaration: &Declaration) -> [Vec<(Name, FieldKind)>; 2
 }
 
 /// The entries of the fields and of the advected parameters that can change; each of the two lists has its own numbers.
-pub(crate) fn places(declaration: &Declaration, names: &BTreeMap<Name, SymbolId>) -> [Vec<Place>; 2] {
+pub(super) fn places(declaration: &Declaration, names: &BTreeMap<Name, SymbolId>) -> [Vec<Place>; 2] {
     variables(declaration).map(|each| {
         let (mut found, mut first) = (Vec::new(), 0);
         for (name, kind) in each {
@@ -27,13 +27,13 @@ pub(crate) fn places(declaration: &Declaration, names: &BTreeMap<Name, SymbolId>
 }
 
 /// The number of entries of a field in `describe`.
-pub(crate) fn count(kind: FieldKind) -> usize {
+pub fn count(kind: FieldKind) -> usize {
     let (rows, columns) = shape(kind);
     rows * columns
 }
 
 /// The shape of a field in `describe`, by rows.
-pub(crate) fn shape(kind: FieldKind) -> (usize, usize) {
+pub(super) fn shape(kind: FieldKind) -> (usize, usize) {
     match (kind.shape(), kind) {
         (Shape::Scalar, _) => (1, 1),
         // The last homogeneous coordinate is a constant.

@@ -6,24 +6,24 @@ use crate::mathematics::symbolic::Rational;
 
 /// A matrix Lie group by its generators.
 #[derive(Clone, Debug)]
-pub(crate) struct Group {
+pub struct Group {
     /// The number of rows of the matrices.
-    pub(crate) size: usize,
+    pub size: usize,
     /// `E_k`, by rows.
-    pub(crate) generators: Vec<Vec<Rational>>,
+    pub generators: Vec<Vec<Rational>>,
     /// Whether `FᵀF = I` holds.
-    pub(crate) orthogonal: bool,
+    pub orthogonal: bool,
     /// Whether the group is SO(3), with its own Cayley form and cross products.
-    pub(crate) is_so3: bool,
+    pub is_so3: bool,
     /// Whether the group is a factor of translations, whose increments are vectors that are added, and no matrices.
-    pub(crate) is_added: bool,
+    pub is_added: bool,
     /// The factors of a product, with block-diagonal matrices; empty for any other group.
     factors: Vec<Group>,
 }
 
 impl Group {
     /// The product of several groups, as block-diagonal matrices.
-    pub(crate) fn product(factors: Vec<Self>) -> Self {
+    pub fn product(factors: Vec<Self>) -> Self {
         let size = factors.iter().map(|factor| factor.size).sum();
         let mut generators = Vec::new();
         let mut start = 0;
@@ -45,46 +45,46 @@ impl Group {
     }
 
     /// The factors; a group that isn't a product is its only factor.
-    pub(crate) fn factors(&self) -> &[Self] {
+    pub fn factors(&self) -> &[Self] {
         if self.factors.is_empty() { std::slice::from_ref(self) } else { &self.factors }
     }
 
-    pub(crate) fn is_product(&self) -> bool {
+    pub fn is_product(&self) -> bool {
         !self.factors.is_empty()
     }
 
     /// Whether all factors are SO(3) or translations, whose Cayley map is implemented.
-    pub(crate) fn rotates(&self) -> bool {
+    pub fn rotates(&self) -> bool {
         self.factors().iter().all(|factor| factor.is_so3 || factor.is_added)
     }
 
     /// The factor with this index; the group itself if it isn't a product.
-    pub(crate) fn factor(&self, factor: usize) -> &Self {
+    pub fn factor(&self, factor: usize) -> &Self {
         self.factors().get(factor).unwrap_or(self)
     }
 
     /// The group as translations of a line, a plane or space, a factor of a product.
-    pub(crate) fn added(self) -> Self {
+    pub fn added(self) -> Self {
         Self { is_added: true, ..self }
     }
 
     /// The rows and columns of an increment in the expression: a vector for a translation, else a matrix.
-    pub(crate) fn shape(&self) -> (usize, usize) {
+    pub fn shape(&self) -> (usize, usize) {
         if self.is_added { (self.dimension(), 1) } else { (self.size, self.size) }
     }
 
     /// The first row of a factor.
-    pub(crate) fn row_of(&self, factor: usize) -> usize {
+    pub fn row_of(&self, factor: usize) -> usize {
         self.factors().iter().take(factor).map(|before| before.size).sum()
     }
 
     /// The first component of a factor.
-    pub(crate) fn component_of(&self, factor: usize) -> usize {
+    pub fn component_of(&self, factor: usize) -> usize {
         self.factors().iter().take(factor).map(Self::dimension).sum()
     }
 
     /// The factor of a component, and the component's index in that factor.
-    pub(crate) fn factor_of(&self, component: usize) -> (usize, usize) {
+    pub fn factor_of(&self, component: usize) -> (usize, usize) {
         let mut own = component;
         for (at, factor) in self.factors().iter().enumerate() {
             match own.checked_sub(factor.dimension()) {
@@ -95,12 +95,12 @@ impl Group {
         (0, component)
     }
 
-    pub(crate) fn dimension(&self) -> usize {
+    pub fn dimension(&self) -> usize {
         self.generators.len()
     }
 
     /// Linear forms that are the components of `Σ x_k E_k`, each a sum of terms `(k, row, column, factor)` in its entries.
-    pub(crate) fn dual(&self) -> Vec<(usize, usize, usize, Rational)> {
+    pub fn dual(&self) -> Vec<(usize, usize, usize, Rational)> {
         let (places, dimension) = (self.size * self.size, self.dimension());
         // Each generator is extended by a unit vector, which records the combination that elimination subtracts.
         let mut basis = Subspace::default();
@@ -116,14 +116,14 @@ impl Group {
     }
 
     /// Whether the elements are affine maps in homogeneous coordinates: their last row is that of the identity.
-    pub(crate) fn is_affine(&self) -> bool {
+    pub fn is_affine(&self) -> bool {
         let last_row = self.size * self.size.saturating_sub(1);
         !self.is_product()
             && self.generators.iter().all(|generator| generator.iter().skip(last_row).all(|entry| entry.is_zero()))
     }
 
     /// A group that a user declares.
-    pub(crate) fn declared(size: usize, generators: Vec<Vec<Rational>>) -> Self {
+    pub fn declared(size: usize, generators: Vec<Vec<Rational>>) -> Self {
         let skew = |generator: &Vec<Rational>| {
             (0..size * size).all(|at| {
                 let (row, column) = (at / size, at % size);
@@ -137,7 +137,7 @@ impl Group {
 
     /// The defect of generators that aren't a basis of a Lie algebra, in exact arithmetic; `None` if its range is too
     /// small.
-    pub(crate) fn defect(&self) -> Option<Defect> {
+    pub fn defect(&self) -> Option<Defect> {
         let mut basis = Subspace::default();
         for (k, generator) in self.generators.iter().enumerate() {
             if generator.iter().all(|entry| entry.is_zero()) {
@@ -166,7 +166,7 @@ impl Group {
 
 /// The reason why matrices are no basis of a Lie algebra, by their indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Defect {
+pub enum Defect {
     /// A matrix is zero.
     Zero(usize),
     /// A matrix is a combination of those before.
@@ -216,10 +216,10 @@ fn unit(k: usize, dimension: usize) -> Vec<Rational> {
 type Sparse<'a> = &'a [(usize, usize, i128, i128)];
 
 /// The names that [`built_in`] knows.
-pub(crate) const NAMES: [&str; 11] = ["SO2", "SE2", "SO3", "SE3", "SE23", "SU2", "SL2", "Heisenberg", "R1", "R2", "R3"];
+pub const NAMES: [&str; 11] = ["SO2", "SE2", "SO3", "SE3", "SE23", "SU2", "SL2", "Heisenberg", "R1", "R2", "R3"];
 
 /// The group of that name.
-pub(crate) fn built_in(name: &str) -> Option<Group> {
+pub fn built_in(name: &str) -> Option<Group> {
     let (size, generators): (usize, &[Sparse]) = match name {
         "SO2" => (2, &[&[(0, 1, -1, 1), (1, 0, 1, 1)]]),
         "SE2" => (3, &[&[(0, 1, -1, 1), (1, 0, 1, 1)], &[(0, 2, 1, 1)], &[(1, 2, 1, 1)]]),
@@ -270,34 +270,3 @@ pub(crate) fn built_in(name: &str) -> Option<Group> {
 
 const ROTATIONS: [Sparse; 3] =
     [&[(1, 2, -1, 1), (2, 1, 1, 1)], &[(0, 2, 1, 1), (2, 0, -1, 1)], &[(0, 1, -1, 1), (1, 0, 1, 1)]];
-
-#[cfg(test)]
-mod tests {
-    use super::{Defect, Group, NAMES, built_in};
-    use crate::mathematics::symbolic::Rational;
-
-    fn defect(generators: &[[i128; 4]]) -> Option<Defect> {
-        let exact = |entries: &[i128; 4]| entries.iter().map(|&entry| Rational::integer(entry)).collect();
-        Group::declared(2, generators.iter().map(exact).collect()).defect()
-    }
-
-    #[test]
-    fn a_basis_of_a_lie_algebra() {
-        for name in NAMES {
-            assert_eq!(built_in(name).and_then(|group| group.defect()), None, "{name}");
-        }
-        assert_eq!(defect(&[[1, 0, 0, 0], [0, 1, 0, 0]]), None);
-        assert_eq!(defect(&[[1, 0, 0, 0], [0, 0, 0, 0]]), Some(Defect::Zero(1)));
-        assert_eq!(defect(&[[1, 0, 0, 1], [0, 1, 0, 0], [3, 2, 0, 3]]), Some(Defect::Dependent(2)));
-        assert_eq!(defect(&[[1, 0, 0, 0], [0, 1, 1, 0]]), Some(Defect::Open(0, 1)));
-    }
-
-    #[test]
-    fn a_bracket_that_is_nearly_a_combination() {
-        let tiny = Rational::new(1, 10_i128.pow(13));
-        let [zero, one] = [Rational::ZERO, Rational::ONE];
-        let group = |entry| Group::declared(2, vec![vec![zero, one, entry, zero], vec![one, zero, zero, zero]]);
-        assert_eq!(group(zero).defect(), None);
-        assert_eq!(group(tiny).defect(), Some(Defect::Open(0, 1)));
-    }
-}

@@ -6,6 +6,6 @@
 //! Deliberately not here: numbers in place of symbols, scalar code, and the texts of messages. The room depends on no
 //! other.
 
-pub(crate) mod derive;
-pub(crate) mod group;
-pub(crate) mod symbolic;
+pub mod derive;
+pub mod group;
+pub mod symbolic;

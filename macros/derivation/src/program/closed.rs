@@ -4,33 +4,33 @@ use std::collections::BTreeMap;
 
 use super::graph::Graph;
 use super::scalarise::{Entries, Scalariser};
-use crate::mathematics::derive::Derived;
+use crate::mathematics::derive::Derivation;
 use crate::mathematics::symbolic::{Expression, Factor, SymbolId, Symbols};
 
-pub(crate) type Given = BTreeMap<SymbolId, Entries>;
+pub type KnownEntries = BTreeMap<SymbolId, Entries>;
 
 /// The common beginning of all derived terms: the values of `let`s and multipliers at symbolic `F` and `w`.
 #[derive(Clone, Debug)]
-pub(crate) struct Beginning {
-    pub(crate) graph: Graph,
-    pub(crate) given: Given,
+pub struct Beginning {
+    pub graph: Graph,
+    pub given: KnownEntries,
 }
 
 impl Beginning {
-    pub(super) fn new(derived: &Derived) -> Self {
+    pub(super) fn new(derived: &Derivation) -> Self {
         let mut graph = Graph::default();
-        let given = with_lets(&mut graph, derived, Given::new());
+        let given = with_lets(&mut graph, derived, KnownEntries::new());
         Self { graph, given }
     }
 }
 
 /// Adds the values of all `let`s; `F` and `w` are those in `given`, if they are there.
-pub(crate) fn with_values<'a>(
+pub fn with_values<'a>(
     graph: &mut Graph,
     symbols: &Symbols,
     lets: impl Iterator<Item = (SymbolId, &'a Expression)>,
-    mut given: Given,
-) -> Given {
+    mut given: KnownEntries,
+) -> KnownEntries {
     for (symbol, value) in lets {
         let entries = entries(graph, symbols, &given, value);
         given.insert(symbol, entries);
@@ -39,7 +39,7 @@ pub(crate) fn with_values<'a>(
 }
 
 /// Adds the values of all `let`s and multipliers; `F` and `w` are those in `given`, if they are there.
-pub(crate) fn with_lets(graph: &mut Graph, derived: &Derived, given: Given) -> Given {
+pub(super) fn with_lets(graph: &mut Graph, derived: &Derivation, given: KnownEntries) -> KnownEntries {
     let lets = derived.closed.iter().map(|closed| (closed.symbol, &closed.value));
     let mut given = with_values(graph, &derived.symbols, lets, given);
     let has_increment = derived.directions.factors.iter().any(|one| given.contains_key(&one.small));
@@ -53,7 +53,7 @@ pub(crate) fn with_lets(graph: &mut Graph, derived: &Derived, given: Given) -> G
 }
 
 /// Adds the derivatives of all `let`s and multipliers along the direction in `given`.
-pub(crate) fn with_tangents(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
+pub(super) fn with_tangents(graph: &mut Graph, derived: &Derivation, mut given: KnownEntries) -> KnownEntries {
     let tangents = derived.closed.iter().map(|closed| (closed.tangent.0, &closed.tangent.1));
     given = with_values(graph, &derived.symbols, tangents, given);
     for closed in derived.closed.iter().rev() {
@@ -66,7 +66,7 @@ pub(crate) fn with_tangents(graph: &mut Graph, derived: &Derived, mut given: Giv
 }
 
 /// The entries of a scalar, vector or matrix expression.
-pub(super) fn entries(graph: &mut Graph, symbols: &Symbols, given: &Given, expression: &Expression) -> Entries {
+pub(super) fn entries(graph: &mut Graph, symbols: &Symbols, given: &KnownEntries, expression: &Expression) -> Entries {
     let (rows, columns) = expression.shape();
     let unit = |index: usize, size: usize, transposed: bool| {
         let shape = if transposed { (1, size) } else { (size, 1) };
@@ -86,8 +86,8 @@ pub(super) fn entries(graph: &mut Graph, symbols: &Symbols, given: &Given, expre
 /// `λ` from `⟨λ, δv⟩`, evaluated at the unit matrices.
 fn dual(
     graph: &mut Graph,
-    derived: &Derived,
-    given: &mut Given,
+    derived: &Derivation,
+    given: &mut KnownEntries,
     (pairing, direction, (rows, columns)): (&Expression, SymbolId, (usize, usize)),
 ) -> Entries {
     let values = Entries::new(rows, columns, |row, column| {

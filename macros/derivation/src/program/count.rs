@@ -7,18 +7,18 @@ use crate::mathematics::symbolic::Stage;
 
 /// The number of operations in a piece of code.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Operations {
+pub struct Operations {
     /// Additions, subtractions, multiplications and divisions.
-    pub(crate) arithmetic: usize,
+    pub arithmetic: usize,
     /// Changes of sign, which the next operation usually absorbs.
-    pub(crate) sign_flips: usize,
+    pub sign_flips: usize,
     /// Calls of a library function.
-    pub(crate) functions: usize,
+    pub functions: usize,
 }
 
 impl Operations {
     /// A single cost for comparisons: a library call costs about as much as twenty operations.
-    pub(crate) fn cost(self) -> usize {
+    pub fn cost(self) -> usize {
         2 * self.arithmetic + self.sign_flips + 40 * self.functions
     }
 }
@@ -49,7 +49,7 @@ impl fmt::Display for Operations {
 }
 
 /// The operations of one stage, or of all, that the outputs need.
-pub(crate) fn count(graph: &Graph, outputs: &[NodeId], stage: Option<Stage>) -> Operations {
+pub fn count(graph: &Graph, outputs: &[NodeId], stage: Option<Stage>) -> Operations {
     let mut operations = Operations::default();
     for id in graph.reachable(outputs) {
         if stage.is_some_and(|stage| graph.stage(id) != stage) {

@@ -17,7 +17,7 @@ const MOST_MONOMIALS: usize = 600;
 const MOST_PRODUCTS: usize = 2_000;
 
 /// The outputs multiplied out, with `opaque` nodes as variables; `None` if they grow too large.
-pub(crate) fn expanded(graph: &mut Graph, outputs: &[NodeId], opaque: &BTreeSet<NodeId>) -> Option<Vec<NodeId>> {
+pub fn expanded(graph: &mut Graph, outputs: &[NodeId], opaque: &BTreeSet<NodeId>) -> Option<Vec<NodeId>> {
     let mut known = BTreeMap::new();
     let mut polynomials = Vec::new();
     for &output in outputs {

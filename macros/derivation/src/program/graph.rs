@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use super::index::Index;
-pub(crate) use super::node::{Input, Node, NodeId};
+pub use super::node::{Input, Node, NodeId};
 use crate::mathematics::symbolic::{Function, Rational, Stage, SymbolId, work};
 
 /// Hash-consed operations; the constructors fold constants and move signs outward.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Graph {
+pub struct Graph {
     nodes: Vec<(Node, Stage)>,
     index: Index,
     /// Zero and one, if they are nodes already: they are looked up most often.
@@ -27,11 +27,11 @@ pub(crate) struct Graph {
 pub(super) type Matrix = Rc<[NodeId]>;
 
 impl Graph {
-    pub(crate) fn node(&self, id: NodeId) -> Node {
+    pub fn node(&self, id: NodeId) -> Node {
         self.nodes[id.0].0
     }
 
-    pub(crate) fn stage(&self, id: NodeId) -> Stage {
+    pub fn stage(&self, id: NodeId) -> Stage {
         self.nodes[id.0].1
     }
 
@@ -55,7 +55,7 @@ impl Graph {
         self.insert(node, stage.unwrap_or(Stage::Construction))
     }
 
-    pub(crate) fn constant(&mut self, value: Rational) -> NodeId {
+    pub fn constant(&mut self, value: Rational) -> NodeId {
         self.insert(Node::Constant(value), Stage::Construction)
     }
 
@@ -64,11 +64,11 @@ impl Graph {
         if value.is_overflow() { self.operation(node) } else { self.constant(value) }
     }
 
-    pub(crate) fn zero(&mut self) -> NodeId {
+    pub fn zero(&mut self) -> NodeId {
         self.unit(0, Rational::ZERO)
     }
 
-    pub(crate) fn one(&mut self) -> NodeId {
+    pub fn one(&mut self) -> NodeId {
         self.unit(1, Rational::ONE)
     }
 
@@ -81,22 +81,22 @@ impl Graph {
         })
     }
 
-    pub(crate) fn input(&mut self, input: Input, stage: Stage) -> NodeId {
+    pub fn input(&mut self, input: Input, stage: Stage) -> NodeId {
         self.insert(Node::Input(input), stage)
     }
 
-    pub(crate) fn value(&self, id: NodeId) -> Option<Rational> {
+    pub fn value(&self, id: NodeId) -> Option<Rational> {
         match self.node(id) {
             Node::Constant(value) => Some(value),
             _ => None,
         }
     }
 
-    pub(crate) fn is_zero(&self, id: NodeId) -> bool {
+    pub fn is_zero(&self, id: NodeId) -> bool {
         self.value(id).is_some_and(Rational::is_zero)
     }
 
-    pub(crate) fn negate(&mut self, a: NodeId) -> NodeId {
+    pub fn negate(&mut self, a: NodeId) -> NodeId {
         match self.node(a) {
             Node::Constant(value) => self.constant(-value),
             Node::Negate(inner) => inner,
@@ -105,7 +105,7 @@ impl Graph {
         }
     }
 
-    pub(crate) fn add(&mut self, a: NodeId, b: NodeId) -> NodeId {
+    pub fn add(&mut self, a: NodeId, b: NodeId) -> NodeId {
         match (self.node(a), self.node(b)) {
             (Node::Constant(x), Node::Constant(y)) => self.folded(x + y, Node::Add(a, b)),
             (Node::Constant(x), _) if x.is_zero() => b,
@@ -120,7 +120,7 @@ impl Graph {
         }
     }
 
-    pub(crate) fn subtract(&mut self, a: NodeId, b: NodeId) -> NodeId {
+    pub fn subtract(&mut self, a: NodeId, b: NodeId) -> NodeId {
         match (self.node(a), self.node(b)) {
             (Node::Constant(x), Node::Constant(y)) => self.folded(x - y, Node::Subtract(a, b)),
             (_, Node::Constant(y)) if y.is_zero() => a,
@@ -135,7 +135,7 @@ impl Graph {
         }
     }
 
-    pub(crate) fn multiply(&mut self, a: NodeId, b: NodeId) -> NodeId {
+    pub fn multiply(&mut self, a: NodeId, b: NodeId) -> NodeId {
         match (self.node(a), self.node(b)) {
             (Node::Constant(x), Node::Constant(y)) => self.folded(x * y, Node::Multiply(a, b)),
             (Node::Constant(x), _) if x.is_zero() => a,
@@ -169,7 +169,7 @@ impl Graph {
         constant(left, right).or_else(|| constant(right, left)).filter(|(product, _)| !product.is_overflow())
     }
 
-    pub(crate) fn divide(&mut self, a: NodeId, b: NodeId) -> NodeId {
+    pub fn divide(&mut self, a: NodeId, b: NodeId) -> NodeId {
         match (self.node(a), self.node(b)) {
             (Node::Constant(x), Node::Constant(y)) if !y.is_zero() => self.folded(x * y.inverse(), Node::Divide(a, b)),
             (_, Node::Constant(y)) if y == Rational::ONE => a,
@@ -180,7 +180,7 @@ impl Graph {
 
     /// `f(a)`. In a family with a recurrence only the highest members are called: the recurrence downwards loses no
     /// digits, and its operations are shared.
-    pub(crate) fn apply(&mut self, function: Function, a: NodeId) -> NodeId {
+    pub fn apply(&mut self, function: Function, a: NodeId) -> NodeId {
         match function {
             // c_k = 1/k! − q c_{k+2}.
             Function::Stumpff(k) if k < 5 => {
@@ -217,7 +217,7 @@ impl Graph {
     }
 
     /// An integer power by squaring; a negative one is the reciprocal of the positive.
-    pub(crate) fn power(&mut self, base: NodeId, exponent: i32) -> NodeId {
+    pub fn power(&mut self, base: NodeId, exponent: i32) -> NodeId {
         let mut result = self.one();
         let (mut square, mut rest) = (base, exponent.unsigned_abs());
         while rest > 0 {
@@ -237,7 +237,7 @@ impl Graph {
     }
 
     /// A product in which factors of early stages are multiplied first.
-    pub(crate) fn product(&mut self, mut factors: Vec<NodeId>) -> NodeId {
+    pub fn product(&mut self, mut factors: Vec<NodeId>) -> NodeId {
         factors.sort_by_key(|&id| (self.stage(id), id));
         let one = self.one();
         factors.into_iter().fold(one, |product, factor| self.multiply(product, factor))
@@ -246,7 +246,7 @@ impl Graph {
     /// A sum in which early stages are added first.
     ///
     /// A sum of negatives becomes the negative of a sum, so that `a + b` and `−a − b` share a node.
-    pub(crate) fn sum(&mut self, terms: &[NodeId]) -> NodeId {
+    pub fn sum(&mut self, terms: &[NodeId]) -> NodeId {
         let mut signed: Vec<(NodeId, bool)> = Vec::with_capacity(terms.len());
         for &term in terms {
             match self.node(term) {
@@ -311,12 +311,12 @@ impl Graph {
     }
 
     /// The nodes that the outputs need, operands first.
-    pub(crate) fn reachable(&self, outputs: &[NodeId]) -> Vec<NodeId> {
+    pub fn reachable(&self, outputs: &[NodeId]) -> Vec<NodeId> {
         self.reachable_from(outputs, &|_| false)
     }
 
     /// The nodes that the outputs need, operands first; given nodes need no operands.
-    pub(crate) fn reachable_from(&self, outputs: &[NodeId], is_given: &dyn Fn(NodeId) -> bool) -> Vec<NodeId> {
+    pub fn reachable_from(&self, outputs: &[NodeId], is_given: &dyn Fn(NodeId) -> bool) -> Vec<NodeId> {
         let end = outputs.iter().map(|output| output.0 + 1).max().unwrap_or(0);
         let mut needed = vec![false; end];
         for output in outputs {
@@ -332,27 +332,7 @@ impl Graph {
         (0..end).filter(|&id| needed[id]).map(NodeId).collect()
     }
 
-    pub(crate) fn nodes(&self) -> impl Iterator<Item = &Node> {
+    pub fn nodes(&self) -> impl Iterator<Item = &Node> {
         self.nodes.iter().map(|(node, _)| node)
-    }
-
-    /// The values of the outputs for given inputs.
-    #[cfg(test)]
-    pub(crate) fn evaluate(&self, outputs: &[NodeId], input: &dyn Fn(Input) -> f64) -> Vec<f64> {
-        let mut values = vec![0.0; self.nodes.len()];
-        for id in self.reachable(outputs) {
-            let at = |operand: NodeId| values[operand.0];
-            values[id.0] = match self.node(id) {
-                Node::Constant(value) => value.to_f64(),
-                Node::Input(entry) => input(entry),
-                Node::Negate(a) => -at(a),
-                Node::Add(a, b) => at(a) + at(b),
-                Node::Subtract(a, b) => at(a) - at(b),
-                Node::Multiply(a, b) => at(a) * at(b),
-                Node::Divide(a, b) => at(a) / at(b),
-                Node::Apply(function, a) => function.apply(at(a)),
-            };
-        }
-        outputs.iter().map(|output| values[output.0]).collect()
     }
 }

@@ -2,47 +2,47 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::closed::{Beginning, Given, entries, with_lets, with_tangents};
+use super::closed::{Beginning, KnownEntries, entries, with_lets, with_tangents};
 use super::count::{Operations, count};
 use super::expand::expanded;
 use super::graph::{Graph, Input, Node, NodeId};
 use super::retraction::{denominator, rotation, translation};
 use super::scalarise::{Entries, Scalariser};
-use crate::mathematics::derive::{Cleared, Continuous, Derived, OfFactor, unit};
+use crate::mathematics::derive::{ClearedSystem, Continuous, Derivation, OfFactor, unit};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Expression, Rational, Stage, SymbolId, Symbols};
 
 /// A form of the Newton system, with its operations an iteration.
 #[derive(Clone, Debug)]
-pub(crate) struct Candidate {
-    pub(crate) name: &'static str,
-    pub(crate) operations: Operations,
+pub struct Candidate {
+    pub name: &'static str,
+    pub operations: Operations,
     /// The power of `1 + |y|²` that the system is multiplied by.
     denominators: u32,
 }
 
 /// The outputs of the stages, in one graph.
 #[derive(Clone, Debug)]
-pub(crate) struct Kernel {
+pub struct Kernel {
     /// The beginning of the graph below, and of those of single terms.
-    pub(crate) beginning: Beginning,
-    pub(crate) graph: Graph,
-    pub(crate) kick_before: Vec<NodeId>,
+    pub beginning: Beginning,
+    pub graph: Graph,
+    pub kick_before: Vec<NodeId>,
     /// The derivative of `kick_before` along a body velocity, if it is derived.
-    pub(crate) kick_derivative: Option<Vec<NodeId>>,
-    pub(crate) residual: Vec<NodeId>,
-    pub(crate) jacobian: Vec<NodeId>,
-    pub(crate) kick_after: Vec<NodeId>,
+    pub kick_derivative: Option<Vec<NodeId>>,
+    pub residual: Vec<NodeId>,
+    pub jacobian: Vec<NodeId>,
+    pub kick_after: Vec<NodeId>,
     /// The part of the diamond that depends on `F`, if the system is one in `F` rebuilt from `y`; `kick_after` is
     /// `Ad*_F` of it.
-    pub(crate) moved: Vec<NodeId>,
+    pub moved: Vec<NodeId>,
     /// Whether the Newton system is written in `D = F − I`, with a right-trivialised Jacobian. On products of SO(3)
     /// and translations it is written in Cayley coordinates.
-    pub(crate) in_increment: bool,
+    pub in_increment: bool,
     /// The power of `1 + |y|²` that the Newton system is multiplied by.
-    pub(crate) denominators: u32,
+    pub denominators: u32,
     /// The candidates, the chosen one first.
-    pub(crate) candidates: Vec<Candidate>,
+    pub candidates: Vec<Candidate>,
 }
 
 /// The cost of the free body's Jacobian beside a residual, as [`Operations::cost`], with the solves for the updates.
@@ -52,7 +52,7 @@ impl Kernel {
     /// Whether the Jacobian costs so much more than the residual that a solve is faster with the free body's Jacobian.
     ///
     /// At common steps such a solve takes two to five residuals, instead of two or three systems.
-    pub(crate) fn jacobian_is_expensive(&self) -> bool {
+    pub fn jacobian_is_expensive(&self) -> bool {
         let Some(taken) = self.candidates.first() else { return false };
         let residual = count(&self.graph, &self.residual, Some(Stage::Iteration)).cost();
         let jacobian = taken.operations.cost().saturating_sub(residual);
@@ -60,7 +60,7 @@ impl Kernel {
     }
 
     /// The factors at which the Jacobian falls into blocks: no earlier factor couples to them or to later ones.
-    pub(crate) fn ends(&self, group: &Group) -> Vec<usize> {
+    pub fn ends(&self, group: &Group) -> Vec<usize> {
         let dimension = group.dimension();
         let is_zero = |row: usize, column: usize| {
             self.jacobian.get(dimension * row + column).is_none_or(|&entry| self.graph.is_zero(entry))
@@ -73,7 +73,7 @@ impl Kernel {
     }
 
     /// The operations of a step without the solve and of an iteration, for `Effect::OPERATIONS`.
-    pub(crate) fn operations(&self) -> [u32; 2] {
+    pub fn operations(&self) -> [u32; 2] {
         let before = [self.kick_before.as_slice(), &self.residual, &self.jacobian].concat();
         let mut step = count(&self.graph, &before, Some(Stage::Step));
         let mut outputs = before;
@@ -89,19 +89,19 @@ impl Kernel {
     }
 
     /// The residual and the moved part of the diamond.
-    pub(crate) fn gradient(&self) -> Vec<NodeId> {
+    pub fn gradient(&self) -> Vec<NodeId> {
         [self.residual.as_slice(), &self.moved].concat()
     }
 
     /// The cost of a step with two Newton iterations.
-    pub(crate) fn cost(&self) -> usize {
+    pub fn cost(&self) -> usize {
         let iteration = self.candidates.first().map_or(0, |candidate| candidate.operations.cost());
         2 * iteration + count(&self.graph, &self.kick_after, None).cost()
     }
 }
 
 /// The components of a covector, `tr(E_k W)` and the like for each generator.
-pub(crate) fn components(graph: &mut Graph, derived: &Derived, given: &Given, covector: &Expression) -> Vec<NodeId> {
+pub fn components(graph: &mut Graph, derived: &Derivation, given: &KnownEntries, covector: &Expression) -> Vec<NodeId> {
     let mut given = given.clone();
     let mut of = |k| {
         for (factor, one) in derived.directions.factors.iter().enumerate() {
@@ -113,7 +113,7 @@ pub(crate) fn components(graph: &mut Graph, derived: &Derived, given: &Given, co
 }
 
 /// The matrix of a column that is linear in a direction of three components, by rows.
-pub(crate) fn along_unit_vectors(
+pub fn along_unit_vectors(
     graph: &mut Graph,
     symbols: &Symbols,
     direction: SymbolId,
@@ -125,14 +125,14 @@ pub(crate) fn along_unit_vectors(
         let (zero, one) = (graph.zero(), graph.one());
         let along = Entries::new(3, 1, |at, _| if at == k { one } else { zero });
         let of_row = unit(row, rows, true, symbols).times(column, symbols);
-        Scalariser::new(graph, symbols, &Given::from([(direction, along)])).scalar(&of_row)
+        Scalariser::new(graph, symbols, &KnownEntries::from([(direction, along)])).scalar(&of_row)
     };
     places.map(entry).collect()
 }
 
 /// The values of a continuous term: a scalar for rank 0, the components of a covector for rank 1, and the entries of a
 /// bilinear form by rows for rank 2.
-pub(crate) fn along_directions(graph: &mut Graph, derived: &Continuous, rank: usize, term: &Expression) -> Vec<NodeId> {
+pub fn along_directions(graph: &mut Graph, derived: &Continuous, rank: usize, term: &Expression) -> Vec<NodeId> {
     let dimension = derived.group.dimension();
     let along = [1, 2].map(|least| if rank >= least { dimension } else { 1 });
     let places = (0..along[0]).flat_map(|k| (0..along[1]).map(move |j| [k, j]));
@@ -155,7 +155,7 @@ pub(crate) fn along_directions(graph: &mut Graph, derived: &Continuous, rank: us
 }
 
 /// The matrices of the velocities, if they have symbols of their own.
-fn with_velocities(graph: &mut Graph, derived: &Continuous) -> Given {
+fn with_velocities(graph: &mut Graph, derived: &Continuous) -> KnownEntries {
     let velocities = derived.velocities.iter();
     let matrices = velocities.filter_map(|velocity| Some((velocity.matrix?, velocity.components)));
     matrices.map(|(matrix, components)| (matrix, matrix_of(graph, &derived.group, components))).collect()
@@ -163,7 +163,7 @@ fn with_velocities(graph: &mut Graph, derived: &Continuous) -> Given {
 
 /// The matrices that the diamond along any matrix pairs with, one for each factor of the group, by rows. For a
 /// translation only the last column counts.
-pub(crate) fn diamond_matrices(graph: &mut Graph, derived: &Continuous) -> Vec<Vec<NodeId>> {
+pub fn diamond_matrices(graph: &mut Graph, derived: &Continuous) -> Vec<Vec<NodeId>> {
     let factors = derived.group.factors().iter().enumerate();
     let of_factor = |(factor, own): (usize, &Group)| {
         let places = (0..own.size).flat_map(|row| (0..own.size).map(move |column| (row, column)));
@@ -201,7 +201,7 @@ pub(super) fn generator(graph: &mut Graph, group: &Group, factor: usize, k: usiz
 }
 
 /// The matrix `Σ v_j E_j` of the velocity.
-pub(super) fn velocity(graph: &mut Graph, derived: &Derived) -> Entries {
+pub(super) fn velocity(graph: &mut Graph, derived: &Derivation) -> Entries {
     matrix_of(graph, &derived.group, derived.directions.along)
 }
 
@@ -221,7 +221,7 @@ fn matrix_of(graph: &mut Graph, group: &Group, symbol: SymbolId) -> Entries {
 }
 
 /// A Jacobian, bilinear in `E_k` and `E_j`, by rows.
-pub(crate) fn square(graph: &mut Graph, derived: &Derived, given: &Given, bilinear: &Expression) -> Vec<NodeId> {
+pub fn square(graph: &mut Graph, derived: &Derivation, given: &KnownEntries, bilinear: &Expression) -> Vec<NodeId> {
     let dimension = derived.group.dimension();
     let varies = derived
         .closed
@@ -244,7 +244,7 @@ fn by_rows(dimension: usize, columns: &[Vec<NodeId>]) -> Vec<NodeId> {
     (0..dimension).flat_map(|k| columns.iter().filter_map(move |column| column.get(k).copied())).collect()
 }
 
-pub(crate) fn kernel(derived: &Derived) -> Kernel {
+pub fn kernel(derived: &Derivation) -> Kernel {
     let beginning = Beginning::new(derived);
     let mut graph = beginning.graph.clone();
     let kick_before = components(&mut graph, derived, &beginning.given, &derived.kick_before);
@@ -308,7 +308,7 @@ pub(crate) fn kernel(derived: &Derived) -> Kernel {
 }
 
 /// Adds the values of closed `let`s at `F` and `w = F·w⁺`.
-fn after(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
+fn after(graph: &mut Graph, derived: &Derivation, mut given: KnownEntries) -> KnownEntries {
     if derived.closed.is_empty() {
         return given;
     }
@@ -322,10 +322,10 @@ fn after(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
 /// The entries of `D`, and `F = I + D`, of each factor.
 pub(super) fn by_increment(
     graph: &mut Graph,
-    derived: &Derived,
+    derived: &Derivation,
     mut entry: impl FnMut(&mut Graph, &OfFactor, usize, usize) -> NodeId,
-) -> Given {
-    let mut given = Given::new();
+) -> KnownEntries {
+    let mut given = KnownEntries::new();
     for (one, group) in derived.directions.factors.iter().zip(derived.group.factors()) {
         let (rows, columns) = group.shape();
         let small = Entries::new(rows, columns, |row, column| entry(graph, one, row, column));
@@ -336,7 +336,7 @@ pub(super) fn by_increment(
 }
 
 /// Adds the entries of `D⁻`, and `F⁻¹ = I + D⁻`.
-pub(super) fn with_inverse(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
+pub(super) fn with_inverse(graph: &mut Graph, derived: &Derivation, mut given: KnownEntries) -> KnownEntries {
     let factors = derived.directions.factors.iter().zip(derived.group.factors());
     for (one, group) in factors.filter(|(_, group)| !group.is_added) {
         let small = Entries::new(group.size, group.size, |row, column| {
@@ -357,7 +357,7 @@ fn plus_identity(graph: &mut Graph, small: &Entries) -> Entries {
 }
 
 /// `(h/2) (U(F) − a)` and its derivatives along `E_j`, at the `F`, `D` and `let`s in `given`.
-fn system(graph: &mut Graph, derived: &Derived, given: &Given) -> Vec<NodeId> {
+fn system(graph: &mut Graph, derived: &Derivation, given: &KnownEntries) -> Vec<NodeId> {
     let target = target(graph, derived);
     let (mut outputs, jacobian) = if derived.closed.is_empty() {
         let scaled = |expression: &Expression| derived.half_step.clone().times(expression, &derived.symbols);
@@ -380,12 +380,12 @@ fn system(graph: &mut Graph, derived: &Derived, given: &Given) -> Vec<NodeId> {
     outputs
 }
 
-fn half_step(graph: &mut Graph, derived: &Derived) -> NodeId {
-    Scalariser::new(graph, &derived.symbols, &Given::new()).scalar(&derived.half_step)
+fn half_step(graph: &mut Graph, derived: &Derivation) -> NodeId {
+    Scalariser::new(graph, &derived.symbols, &KnownEntries::new()).scalar(&derived.half_step)
 }
 
 /// `(h/2) a`, computed once a step.
-fn target(graph: &mut Graph, derived: &Derived) -> Entries {
+fn target(graph: &mut Graph, derived: &Derivation) -> Entries {
     let half_step = half_step(graph, derived);
     let symbol = derived.directions.target;
     Entries::new(derived.group.dimension(), 1, |row, column| {
@@ -394,14 +394,14 @@ fn target(graph: &mut Graph, derived: &Derived) -> Entries {
     })
 }
 
-fn coordinates(graph: &mut Graph, derived: &Derived) -> Vec<NodeId> {
+fn coordinates(graph: &mut Graph, derived: &Derivation) -> Vec<NodeId> {
     let symbol = derived.directions.coordinates;
     let dimension = derived.group.dimension();
     (0..dimension).map(|row| graph.input(Input { symbol, row, column: 0 }, Stage::Iteration)).collect()
 }
 
 /// The residual and the Jacobian of the cleared equation, three and nine entries, and the node of the denominator.
-fn cleared_system(graph: &mut Graph, derived: &Derived, cleared: &Cleared) -> (Vec<NodeId>, NodeId) {
+fn cleared_system(graph: &mut Graph, derived: &Derivation, cleared: &ClearedSystem) -> (Vec<NodeId>, NodeId) {
     let directions = &derived.directions;
     let y = coordinates(graph, derived);
     let d = denominator(graph, &y);
@@ -424,9 +424,9 @@ fn cleared_system(graph: &mut Graph, derived: &Derived, cleared: &Cleared) -> (V
 ///
 /// Returns also the part of the diamond that depends on `F`, if it is derived, and the nodes that count as variables
 /// when the system is multiplied out.
-fn retracted(graph: &mut Graph, derived: &Derived) -> (Vec<NodeId>, Vec<NodeId>, BTreeSet<NodeId>) {
+fn retracted(graph: &mut Graph, derived: &Derivation) -> (Vec<NodeId>, Vec<NodeId>, BTreeSet<NodeId>) {
     let y = coordinates(graph, derived);
-    let (mut given, mut tangents) = (Given::new(), Vec::new());
+    let (mut given, mut tangents) = (KnownEntries::new(), Vec::new());
     for (factor, (one, group)) in derived.directions.factors.iter().zip(derived.group.factors()).enumerate() {
         let y = &y[component_range(&derived.group, factor)];
         let (small, tangent) = if group.is_added { translation(graph, y) } else { rotation(graph, y) };

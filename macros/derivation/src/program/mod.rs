@@ -9,8 +9,8 @@
 //! of different declarations. The room knows `mathematics`.
 
 mod closed;
-mod count;
-mod expand;
+pub mod count;
+pub mod expand;
 mod gradient;
 mod graph;
 mod index;
@@ -21,16 +21,14 @@ mod scalarise;
 mod stages;
 mod tangent;
 mod terms;
-#[cfg(test)]
-mod tests;
 
-pub(crate) use closed::{Beginning, Given, with_values};
-pub(crate) use count::count;
-pub(crate) use graph::{Graph, Input, Node, NodeId};
-pub(crate) use kernel::{
+pub use closed::{Beginning, KnownEntries, with_values};
+pub use count::count;
+pub use graph::{Graph, Input, Node, NodeId};
+pub use kernel::{
     Candidate, Kernel, along_directions, along_unit_vectors, components, diamond_matrices, kernel, square,
 };
-pub(crate) use scalarise::Scalariser;
-pub(crate) use stages::{Handed, Stages, needed};
-pub(crate) use tangent::{ByNumbers, Derivatives, Place, WeightedGradient};
-pub(crate) use terms::{Form, Outputs};
+pub use scalarise::Scalariser;
+pub use stages::{Handover, Stages, needed};
+pub use tangent::{ByNumbers, Derivatives, Place, WeightedGradient};
+pub use terms::{Form, Outputs};

@@ -4,19 +4,19 @@ use crate::mathematics::symbolic::{Function, Rational, SymbolId};
 
 /// An index into a [`Graph`](super::Graph); operands come before their operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(crate) struct NodeId(pub(crate) usize);
+pub struct NodeId(pub usize);
 
 /// One entry of a symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(crate) struct Input {
-    pub(crate) symbol: SymbolId,
-    pub(crate) row: usize,
-    pub(crate) column: usize,
+pub struct Input {
+    pub symbol: SymbolId,
+    pub row: usize,
+    pub column: usize,
 }
 
 /// A constant, an input, or one operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Node {
+pub enum Node {
     Constant(Rational),
     Input(Input),
     Negate(NodeId),
@@ -28,7 +28,7 @@ pub(crate) enum Node {
 }
 
 impl Node {
-    pub(crate) fn operands(&self) -> [Option<NodeId>; 2] {
+    pub fn operands(&self) -> [Option<NodeId>; 2] {
         match *self {
             Self::Constant(_) | Self::Input(_) => [None, None],
             Self::Negate(a) | Self::Apply(_, a) => [Some(a), None],

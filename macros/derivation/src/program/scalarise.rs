@@ -12,24 +12,24 @@ use crate::mathematics::symbolic::{Atom, Expression, Factor, Monomial, Stage, St
 
 /// A matrix of nodes.
 #[derive(Clone, Debug)]
-pub(crate) struct Entries {
-    pub(crate) rows: usize,
-    pub(crate) columns: usize,
+pub struct Entries {
+    pub rows: usize,
+    pub columns: usize,
     /// The nodes by rows; shared, as factors are copied far more often than constructed.
     nodes: Matrix,
 }
 
 impl Entries {
-    pub(crate) fn new(rows: usize, columns: usize, mut entry: impl FnMut(usize, usize) -> NodeId) -> Self {
+    pub fn new(rows: usize, columns: usize, mut entry: impl FnMut(usize, usize) -> NodeId) -> Self {
         let entries = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
         Self { rows, columns, nodes: entries.map(|(row, column)| entry(row, column)).collect() }
     }
 
-    pub(crate) fn at(&self, row: usize, column: usize) -> NodeId {
+    pub fn at(&self, row: usize, column: usize) -> NodeId {
         self.nodes[row * self.columns + column]
     }
 
-    pub(crate) fn all(&self) -> &[NodeId] {
+    pub fn all(&self) -> &[NodeId] {
         &self.nodes
     }
 
@@ -39,7 +39,7 @@ impl Entries {
 }
 
 /// Turns expressions into nodes of a graph.
-pub(crate) struct Scalariser<'a> {
+pub struct Scalariser<'a> {
     graph: &'a mut Graph,
     symbols: &'a Symbols,
     /// Symbols whose entries aren't inputs: directions, and values computed from other inputs.
@@ -49,12 +49,12 @@ pub(crate) struct Scalariser<'a> {
 }
 
 impl<'a> Scalariser<'a> {
-    pub(crate) fn new(graph: &'a mut Graph, symbols: &'a Symbols, given: &'a BTreeMap<SymbolId, Entries>) -> Self {
+    pub fn new(graph: &'a mut Graph, symbols: &'a Symbols, given: &'a BTreeMap<SymbolId, Entries>) -> Self {
         Self { graph, symbols, given, known: BTreeMap::new() }
     }
 
     /// A scalar expression.
-    pub(crate) fn scalar(&mut self, expression: &Expression) -> NodeId {
+    pub fn scalar(&mut self, expression: &Expression) -> NodeId {
         let terms: Vec<NodeId> = expression
             .terms()
             .take_while(|_| work::spend(1))

@@ -7,20 +7,20 @@ use super::kernel::Kernel;
 use crate::mathematics::symbolic::Stage;
 
 /// Values that one stage computes and a later one uses, with their places in an array.
-pub(crate) type Handed = BTreeMap<NodeId, usize>;
+pub type Handover = BTreeMap<NodeId, usize>;
 
 /// The outputs of a step, and the values passed between its stages.
-pub(crate) struct Stages {
+pub struct Stages {
     /// The residual, then the Jacobian by rows.
-    pub(crate) system: Vec<NodeId>,
+    pub system: Vec<NodeId>,
     /// The values computed at construction.
-    pub(crate) constants: Handed,
+    pub constants: Handover,
     /// The values computed once a step.
-    pub(crate) terms: Handed,
+    pub terms: Handover,
 }
 
 impl Kernel {
-    pub(crate) fn stages(&self) -> Stages {
+    pub fn stages(&self) -> Stages {
         let system: Vec<NodeId> = [self.residual.as_slice(), &self.jacobian].concat();
         // The moved part of the diamond is computed only with a residual alone.
         let moved: &[NodeId] = if self.jacobian_is_expensive() { &self.moved } else { &[] };
@@ -36,7 +36,7 @@ impl Kernel {
 }
 
 /// The nodes of one stage that a later stage uses, in order.
-fn handed(graph: &Graph, outputs: &[NodeId], stage: Stage) -> Handed {
+fn handed(graph: &Graph, outputs: &[NodeId], stage: Stage) -> Handover {
     let is_literal = |id: NodeId| matches!(graph.node(id), Node::Constant(_));
     let crosses = |id: NodeId| graph.stage(id) == stage && !is_literal(id);
     let mut found: BTreeSet<NodeId> = outputs.iter().copied().filter(|&id| crosses(id)).collect();
@@ -51,7 +51,7 @@ fn handed(graph: &Graph, outputs: &[NodeId], stage: Stage) -> Handed {
 /// The nodes to visit, each after its operands and as late as possible; given nodes need no operands.
 ///
 /// In this order the compiler generates one per cent fewer instructions for a step than in the order of construction.
-pub(crate) fn needed(graph: &Graph, outputs: &[NodeId], is_given: &dyn Fn(NodeId) -> bool) -> Vec<NodeId> {
+pub fn needed(graph: &Graph, outputs: &[NodeId], is_given: &dyn Fn(NodeId) -> bool) -> Vec<NodeId> {
     let end = outputs.iter().map(|output| output.0 + 1).max().unwrap_or(0);
     let (mut order, mut met) = (Vec::new(), vec![false; end]);
     // The stack has nodes to open, and nodes whose operands are all in order.

@@ -15,60 +15,60 @@
 
 use std::collections::BTreeMap;
 
-use super::closed::{Given, entries, with_lets};
+use super::closed::{KnownEntries, entries, with_lets};
 use super::gradient::{Gradient, gradient, slope};
 use super::graph::{Graph, Input, Node, NodeId};
 use super::kernel::{by_increment, components, generator, square, velocity, with_inverse};
 use super::scalarise::Entries;
-use crate::mathematics::derive::{Derived, Ends};
+use crate::mathematics::derive::{Derivation, Ends};
 use crate::mathematics::symbolic::{Rational, Stage, SymbolId};
 
 /// A number of the fields or of the advected parameters, and its entry of a symbol.
 #[derive(Clone, Copy)]
-pub(crate) struct Place {
-    pub(crate) number: usize,
-    pub(crate) symbol: SymbolId,
-    pub(crate) row: usize,
-    pub(crate) column: usize,
+pub struct Place {
+    pub number: usize,
+    pub symbol: SymbolId,
+    pub row: usize,
+    pub column: usize,
     /// Whether it is an off-diagonal entry of a symmetric matrix, which occurs twice.
-    pub(crate) is_half: bool,
+    pub is_half: bool,
 }
 
 /// The derivatives of some outputs by the numbers of the fields, then by those of the advected parameters; numbers
 /// without effect are left out.
-pub(crate) type ByNumbers = [Vec<(usize, Vec<NodeId>)>; 2];
+pub type ByNumbers = [Vec<(usize, Vec<NodeId>)>; 2];
 
 /// The gradient of a weighted sum.
-pub(crate) struct WeightedGradient {
+pub struct WeightedGradient {
     /// Along each displacement `ζ = E_j`.
-    pub(crate) by_place: Vec<NodeId>,
+    pub by_place: Vec<NodeId>,
     /// The derivative by each number, a single output.
-    pub(crate) by_numbers: ByNumbers,
+    pub by_numbers: ByNumbers,
 }
 
 /// The derivatives of a step for the emitted code, if they are requested.
 ///
 /// Weights are symbols that the differentiated outputs don't contain: `u` is the target of a step, `p` its velocity,
 /// and `r` the coordinates of its increment.
-pub(crate) struct Derivatives {
-    pub(crate) graph: Graph,
+pub struct Derivatives {
+    pub graph: Graph,
     /// The components of `μ`, then those of `μ⁺`.
-    pub(crate) momenta: Vec<NodeId>,
+    pub momenta: Vec<NodeId>,
     /// The derivatives of `μ` and of `μ⁺` along each `ε = E_j`, then along each `ζ = E_j`; matrices by rows.
-    pub(crate) blocks: [[Vec<NodeId>; 2]; 2],
+    pub blocks: [[Vec<NodeId>; 2]; 2],
     /// The derivatives of the components of both momenta.
-    pub(crate) by_numbers: ByNumbers,
+    pub by_numbers: ByNumbers,
     /// `(∂μ⁺/∂ε)ᵀ p`, the right side of the adjoint equation of a step.
-    pub(crate) by_turn: Vec<NodeId>,
+    pub by_turn: Vec<NodeId>,
     /// The gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment, which follows the solution of the adjoint equation.
-    pub(crate) gradient: WeightedGradient,
+    pub gradient: WeightedGradient,
     /// The gradient of `⟨u, D_v k⟩ + ⟨r, k − J u⟩` for the kick `k`, its derivative `D_v k` and the inertia `J`, for
     /// the derivatives of a force gradient. `None` if `D_v k` isn't derived.
-    pub(crate) of_kick: Option<WeightedGradient>,
+    pub of_kick: Option<WeightedGradient>,
 }
 
 impl Derivatives {
-    pub(crate) fn new(derived: &Derived, ends: &Ends, numbers: &[Vec<Place>; 2]) -> Self {
+    pub fn new(derived: &Derivation, ends: &Ends, numbers: &[Vec<Place>; 2]) -> Self {
         let mut linearisation = Linearisation::new(derived, ends);
         let blocks = linearisation.blocks();
         let by_numbers = numbers.each_ref().map(|places| linearisation.by_numbers(places));
@@ -83,23 +83,23 @@ impl Derivatives {
 
 /// The momenta at both ends of a step, and the inputs that they are differentiated by.
 struct Linearisation<'a> {
-    derived: &'a Derived,
+    derived: &'a Derivation,
     ends: &'a Ends,
     graph: Graph,
     /// The components of `μ`, then those of `μ⁺`.
     momenta: Vec<NodeId>,
     /// The entries of `F` and `F⁻¹`.
-    increments: Given,
+    increments: KnownEntries,
 }
 
 /// The changes of the inputs; others don't change.
 pub(super) type Changes = BTreeMap<NodeId, NodeId>;
 
 /// Outputs with their weights.
-type Weighted = Vec<(NodeId, NodeId)>;
+type Pairings = Vec<(NodeId, NodeId)>;
 
 impl<'a> Linearisation<'a> {
-    fn new(derived: &'a Derived, ends: &'a Ends) -> Self {
+    fn new(derived: &'a Derivation, ends: &'a Ends) -> Self {
         let mut graph = Graph::default();
         let given = by_increment(&mut graph, derived, |graph, one, row, column| {
             graph.input(Input { symbol: one.small, row, column }, Stage::Iteration)
@@ -151,7 +151,7 @@ impl<'a> Linearisation<'a> {
         (0..dimension).map(turned).collect()
     }
 
-    fn momenta_of_adjoint(&mut self) -> Weighted {
+    fn momenta_of_adjoint(&mut self) -> Pairings {
         let mut weighted = self.weighted(0, self.derived.directions.target);
         for (_, weight) in &mut weighted {
             *weight = self.graph.negate(*weight);
@@ -160,13 +160,13 @@ impl<'a> Linearisation<'a> {
         weighted
     }
 
-    fn kick(&mut self) -> Option<Weighted> {
+    fn kick(&mut self) -> Option<Pairings> {
         let change = self.derived.kick_derivative.as_ref()?;
         let velocity = velocity(&mut self.graph, self.derived);
         let second = self.derived.directions.factors.first().map(|one| (one.second, velocity));
         let change = components(&mut self.graph, self.derived, &second.into_iter().collect(), change);
-        let kick = components(&mut self.graph, self.derived, &Given::new(), &self.derived.kick_before);
-        let inertia = square(&mut self.graph, self.derived, &Given::new(), &self.derived.limit.inertia);
+        let kick = components(&mut self.graph, self.derived, &KnownEntries::new(), &self.derived.kick_before);
+        let inertia = square(&mut self.graph, self.derived, &KnownEntries::new(), &self.derived.limit.inertia);
         let weights = [self.derived.directions.target, self.derived.directions.coordinates];
         let outputs = [change.as_slice(), &kick, &inertia].concat();
         debug_assert!(self.are_free(weights, &outputs), "the weights are symbols of the kick");
@@ -228,7 +228,7 @@ impl<'a> Linearisation<'a> {
     }
 
     /// The components of one of the momenta with their weights.
-    fn weighted(&mut self, momentum: usize, weights: SymbolId) -> Weighted {
+    fn weighted(&mut self, momentum: usize, weights: SymbolId) -> Pairings {
         let dimension = self.derived.group.dimension();
         let components = self.momenta.iter().skip(momentum * dimension).take(dimension).copied().collect::<Vec<_>>();
         let weight = |(row, component)| (component, self.entry(weights, row, 0));
@@ -258,7 +258,7 @@ impl<'a> Linearisation<'a> {
     }
 
     fn displaced(&mut self, j: usize) -> Changes {
-        let mut given = Given::new();
+        let mut given = KnownEntries::new();
         for (factor, one) in self.derived.directions.factors.iter().enumerate() {
             let e = generator(&mut self.graph, &self.derived.group, factor, j);
             given.insert(one.first, negated(&mut self.graph, &e));

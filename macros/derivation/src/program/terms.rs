@@ -4,12 +4,12 @@ use super::closed::Beginning;
 use super::graph::{Graph, NodeId};
 use super::kernel::{components, square};
 use super::scalarise::Scalariser;
-use crate::mathematics::derive::Derived;
+use crate::mathematics::derive::Derivation;
 use crate::mathematics::symbolic::Expression;
 
 /// The form of the outputs together.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Form {
+pub enum Form {
     Scalar,
     /// The components of a covector.
     Vector,
@@ -18,25 +18,25 @@ pub(crate) enum Form {
 }
 
 /// A graph with outputs.
-pub(crate) type Outputs<T = Vec<NodeId>> = (Graph, T);
+pub type Outputs<T = Vec<NodeId>> = (Graph, T);
 
 impl Beginning {
     /// The outputs of one derived term.
-    pub(crate) fn term(&self, derived: &Derived, form: Form, expression: &Expression) -> Outputs {
+    pub fn term(&self, derived: &Derivation, form: Form, expression: &Expression) -> Outputs {
         let mut graph = self.graph.clone();
         let outputs = self.in_form(&mut graph, derived, form, expression);
         (graph, outputs)
     }
 
     /// Inertia, bias and potential of the limit at rest.
-    pub(crate) fn limit(&self, derived: &Derived) -> Outputs<[Vec<NodeId>; 3]> {
+    pub fn limit(&self, derived: &Derivation) -> Outputs<[Vec<NodeId>; 3]> {
         let (mut graph, limit) = (self.graph.clone(), &derived.limit);
         let parts = [(Form::Square, &limit.inertia), (Form::Vector, &limit.bias), (Form::Scalar, &limit.potential)];
         let outputs = parts.map(|(form, part)| self.in_form(&mut graph, derived, form, part));
         (graph, outputs)
     }
 
-    fn in_form(&self, graph: &mut Graph, derived: &Derived, form: Form, expression: &Expression) -> Vec<NodeId> {
+    fn in_form(&self, graph: &mut Graph, derived: &Derivation, form: Form, expression: &Expression) -> Vec<NodeId> {
         match form {
             Form::Scalar => vec![Scalariser::new(graph, &derived.symbols, &self.given).scalar(expression)],
             Form::Vector => components(graph, derived, &self.given, expression),

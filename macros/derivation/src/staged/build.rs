@@ -5,18 +5,18 @@ use super::{Array, Factor, Operation, Parameter, Program, Source, StagedDeclarat
 use crate::declared::Declaration;
 use crate::emit;
 use crate::expand::Steps;
-use crate::judged::{Chosen, Equations};
+use crate::judged::{Choice, Equations};
 use crate::mathematics::derive::Inverse;
 use crate::mathematics::symbolic::Expression;
-use crate::program::{Derivatives, Form, Graph, Handed, Node, NodeId, Outputs, along_directions, needed};
+use crate::program::{Derivatives, Form, Graph, Handover, Node, NodeId, Outputs, along_directions, needed};
 
 pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> StagedDeclaration {
     let Steps { chosen, equations, findings } = steps;
-    let Chosen { lowered, derived, kernel } = chosen;
+    let Choice { lowered, derived, kernel } = chosen;
     let names = &lowered.names;
     let sources = Sources { declaration, names, directions: Some(&derived.directions) };
     let (graph, stages) = (&kernel.graph, &findings.stages);
-    let (constants, none) = (&stages.constants, &Handed::new());
+    let (constants, none) = (&stages.constants, &Handover::new());
     let program = |handed, outputs: &[NodeId]| program(graph, &sources, handed, outputs);
     let alone = |(graph, outputs): &Outputs| self::program(graph, &sources, none, outputs);
     let derived_term = |form, expression| alone(&kernel.beginning.term(derived, form, expression));
@@ -76,7 +76,7 @@ pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> StagedDeclarat
 
 fn derivatives(found: &Derivatives, sources: &Sources) -> [Program; 4] {
     let Derivatives { blocks, by_turn, gradient, by_numbers: [_, by_carried], .. } = found;
-    let (mut graph, nothing) = (found.graph.clone(), Handed::new());
+    let (mut graph, nothing) = (found.graph.clone(), Handover::new());
     let zero = graph.zero();
     let shapes = (0..sources.declaration.advected.len()).map(|index| carried(sources.declaration, index).shape);
     let count: usize = shapes.map(|(rows, columns)| rows * columns).sum();
@@ -100,13 +100,13 @@ fn at_velocity(declaration: &Declaration, equations: &Equations) -> [Program; 3]
     let of_rank = |rank, expression: &Expression| {
         let mut graph = Graph::default();
         let outputs = along_directions(&mut graph, derived, rank, expression);
-        program(&graph, &sources, &Handed::new(), &outputs)
+        program(&graph, &sources, &Handover::new(), &outputs)
     };
     [of_rank(0, &derived.lagrangian), of_rank(1, &derived.momentum), of_rank(2, &derived.hessian)]
 }
 
 /// The program of these outputs, which reads these constants.
-fn program(graph: &Graph, sources: &Sources, constants: &Handed, outputs: &[NodeId]) -> Program {
+fn program(graph: &Graph, sources: &Sources, constants: &Handover, outputs: &[NodeId]) -> Program {
     let source = |id: NodeId| {
         if let Some(&at) = constants.get(&id) {
             return Some(Source::new(Array::Constants, at));

@@ -13,7 +13,7 @@ use proc_macro2::TokenStream;
 
 use crate::declared::errors::{Errors, Mistake};
 use crate::declared::{Declaration, Role, parse};
-use crate::expand::{self, Judged};
+use crate::expand::{self, Judgement};
 pub use crate::mathematics::symbolic::Function;
 use crate::mathematics::symbolic::work;
 
@@ -359,13 +359,10 @@ fn of_text(text: &TokenStream, errors: &mut Errors) -> Option<StagedDeclaration>
     let declaration = parse::declaration(role, &arguments, &item, errors)?;
     let declaration = Declaration { is_text: true, ..declaration };
     match expand::judged(&declaration, errors)? {
-        Judged::Steps(steps) => Some(build::staged(&declaration, &steps)),
-        Judged::Continuous(_) | Judged::Constraint(_) => {
+        Judgement::Steps(steps) => Some(build::staged(&declaration, &steps)),
+        Judgement::Continuous(_) | Judgement::Constraint(_) => {
             errors.push(declaration.item.ident.span(), "without `discretise = …` there are no steps: add it");
             None
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{Action, Array, Carried, ParameterKind, Source};
 use crate::declared::{Declaration, FieldKind, Name};
-use crate::mathematics::derive::{Directions, Seen};
+use crate::mathematics::derive::{Directions, View};
 use crate::mathematics::symbolic::{SymbolId, Variance};
 use crate::program::Input;
 
@@ -103,9 +103,9 @@ pub(super) fn parameter_kind(kind: FieldKind) -> ParameterKind {
 pub(super) fn carried(declaration: &Declaration, index: usize) -> Carried {
     let (parameter, kind) = (declaration.advected.get(index), declaration.advected_kind(index));
     let factor = match parameter.map(|w| w.seen) {
-        Some(Seen::Relative { of, from }) => return configuration(declaration, of, Action::Relative { of, from }),
-        Some(Seen::Configuration(of)) => return configuration(declaration, of, Action::Configuration(of)),
-        Some(Seen::From(factor)) => factor,
+        Some(View::Relative { of, from }) => return configuration(declaration, of, Action::Relative { of, from }),
+        Some(View::Configuration(of)) => return configuration(declaration, of, Action::Configuration(of)),
+        Some(View::From(factor)) => factor,
         None => 0,
     };
     let field = parameter.and_then(|w| w.field);

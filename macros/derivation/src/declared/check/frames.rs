@@ -15,7 +15,7 @@ use syn::{Expr, ExprReference};
 
 use super::Checker;
 use crate::declared::{AdvectedParameter, Declaration, Frames, Kind, Name, Role, Shape, Tree};
-use crate::mathematics::derive::Seen;
+use crate::mathematics::derive::View;
 
 /// Space, which counts as a body in a constraint; elsewhere the attitude of a body may be relative to another.
 const SPACE: usize = usize::MAX;
@@ -32,13 +32,13 @@ pub(super) fn of(declaration: &Declaration, name: Name) -> Frames {
             [Some(factor), None]
         }
         Name::Advected(index) => match declaration.advected.get(index).filter(|w| !w.is_given).map(|w| w.seen) {
-            Some(Seen::From(factor)) if turns(factor) => {
+            Some(View::From(factor)) if turns(factor) => {
                 let is_tensor = declaration.advected_kind(index).variance().is_tensor();
                 [Some(factor), is_tensor.then_some(factor)]
             }
-            Some(Seen::Relative { of, from }) if turns(of) => [Some(from), Some(of)],
-            Some(Seen::Configuration(of)) if turns(of) => [space, Some(of)],
-            Some(Seen::Configuration(_) | Seen::Relative { .. }) => [space, None],
+            Some(View::Relative { of, from }) if turns(of) => [Some(from), Some(of)],
+            Some(View::Configuration(of)) if turns(of) => [space, Some(of)],
+            Some(View::Configuration(_) | View::Relative { .. }) => [space, None],
             _ => [None; 2],
         },
         _ => [None; 2],
@@ -50,7 +50,7 @@ pub(super) fn is_turn(declaration: &Declaration, name: Name) -> bool {
     match name {
         Name::Increment(_) => true,
         Name::Advected(index) => {
-            declaration.advected.get(index).is_some_and(|w| matches!(w.seen, Seen::Relative { .. }) && !w.is_given)
+            declaration.advected.get(index).is_some_and(|w| matches!(w.seen, View::Relative { .. }) && !w.is_given)
         }
         _ => false,
     }
@@ -164,7 +164,7 @@ impl Checker<'_> {
     fn relative(&self, from: usize, of: usize) -> (String, String) {
         let declared = |of: usize, from: usize| {
             let mut advected = self.declaration.advected.iter();
-            let seen = if from == SPACE { Seen::Configuration(of) } else { Seen::Relative { of, from } };
+            let seen = if from == SPACE { View::Configuration(of) } else { View::Relative { of, from } };
             advected.find(|w| w.seen == seen).map(AdvectedParameter::plain_name)
         };
         if let Some(name) = declared(of, from) {

@@ -29,12 +29,12 @@ use closures::Closure;
 const DEEPEST: usize = 250;
 
 /// The declared expression as a tree; `None` after a mistake in the expression, the attribute or the struct.
-pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc<Tree>> {
+pub fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc<Tree>> {
     functions(declaration, errors)?.into_iter().next()
 }
 
 /// All functions of a declaration: those of a constraint, or the one expression of a Lagrangian or a force.
-pub(crate) fn functions(declaration: &Declaration, errors: &mut Errors) -> Option<Vec<Rc<Tree>>> {
+pub fn functions(declaration: &Declaration, errors: &mut Errors) -> Option<Vec<Rc<Tree>>> {
     let expression = declaration.expression.as_ref()?;
     let factors = || declaration.group.factors().iter();
     let turning = factors().find(|factor| !factor.is_added).cloned().or_else(|| built_in("SO3"));
@@ -77,7 +77,7 @@ pub(crate) fn functions(declaration: &Declaration, errors: &mut Errors) -> Optio
 }
 
 /// The last expression of a block, or the expression itself.
-pub(crate) fn value(expression: &Expr) -> &Expr {
+pub fn value(expression: &Expr) -> &Expr {
     match expression {
         Expr::Group(inner) => value(&inner.expr),
         Expr::Paren(inner) => value(&inner.expr),

@@ -4,7 +4,7 @@ use syn::Ident;
 
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Name, Role};
-use crate::mathematics::derive::Seen;
+use crate::mathematics::derive::View;
 
 pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Errors) {
     if declaration.role == Role::Force {
@@ -77,7 +77,7 @@ fn check_names(declaration: &Declaration, used: &[Name], errors: &mut Errors) {
         if !used.contains(&Name::Advected(index)) {
             let (name, list) = (w.plain_name(), if w.is_given { "given" } else { "advected" });
             let consequence = match w.seen {
-                Seen::Relative { .. } if declaration.role != Role::Constraint => {
+                View::Relative { .. } if declaration.role != Role::Constraint => {
                     "; without it these bodies don't feel each other, and each may be a declaration of its own"
                 }
                 _ => "",

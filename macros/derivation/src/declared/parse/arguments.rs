@@ -14,9 +14,9 @@ use crate::mathematics::group::built_in;
 /// The arguments as written.
 #[derive(Default)]
 pub(super) struct Arguments {
-    pub(super) group: Option<group::Named>,
+    pub(super) group: Option<group::GroupName>,
     /// The factors of a product: the increment of each, and its group.
-    pub(super) factors: Vec<(Ident, group::Named)>,
+    pub(super) factors: Vec<(Ident, group::GroupName)>,
     /// The name, its source, and whether it is prescribed for each step.
     pub(super) advected: Vec<(Ident, Source, bool)>,
     /// `l_d`, the virtual work or the constraint, with its key.
@@ -45,7 +45,7 @@ pub(super) enum Source {
     /// `up`.
     Field(Ident),
     /// `up.seen_from(F_1)`, `F_2.seen_from(F_1)`, `F_2.seen_from(space)`.
-    Seen { what: Ident, from: Ident },
+    View { what: Ident, from: Ident },
 }
 
 /// Reads `key = value` pairs; after a syntax error, reading continues behind the next comma.
@@ -230,7 +230,7 @@ fn comma(input: ParseStream) -> syn::Result<()> {
 }
 
 /// `F_1 = SO3, F_2 = SO3`.
-fn factors(input: ParseStream, errors: &mut Errors) -> syn::Result<Vec<(Ident, group::Named)>> {
+fn factors(input: ParseStream, errors: &mut Errors) -> syn::Result<Vec<(Ident, group::GroupName)>> {
     let mut factors = vec![factor(input, errors)?];
     while !input.is_empty() {
         no_semicolon(input)?;
@@ -244,7 +244,7 @@ fn factors(input: ParseStream, errors: &mut Errors) -> syn::Result<Vec<(Ident, g
 }
 
 /// `F_1 = SO3`.
-fn factor(input: ParseStream, errors: &mut Errors) -> syn::Result<(Ident, group::Named)> {
+fn factor(input: ParseStream, errors: &mut Errors) -> syn::Result<(Ident, group::GroupName)> {
     let span = input.span();
     let message = "write `group(F_1 = SO3, F_2 = SO3)`: the increment of each body, and its group";
     let name: Ident = input.parse().map_err(|_| syn::Error::new(span, message))?;
@@ -397,7 +397,7 @@ fn advected_pair(input: ParseStream) -> syn::Result<(Ident, Source)> {
         let seen = seen(field, input)?;
         no_semicolon(input)?;
         // A name here begins the next argument: a comma is missing.
-        if let (Source::Seen { what, from }, false) = (&seen, is_at_end(input) || input.peek(Ident::peek_any)) {
+        if let (Source::View { what, from }, false) = (&seen, is_at_end(input) || input.peek(Ident::peek_any)) {
             let message = format!(
                 "write `{name} = {what}.seen_from({from})` and nothing else: what is made of it stands in the expression"
             );
@@ -427,7 +427,7 @@ fn seen(what: Ident, input: ParseStream) -> syn::Result<Source> {
     // The tokens behind a mistake would be reported as unexpected.
     let rest: TokenStream = content.parse()?;
     match from {
-        Ok(from) if rest.is_empty() => Ok(Source::Seen { what, from }),
+        Ok(from) if rest.is_empty() => Ok(Source::View { what, from }),
         _ => Err(syn::Error::new(place, message)),
     }
 }

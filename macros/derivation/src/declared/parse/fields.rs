@@ -60,7 +60,7 @@ fn last_segment(ty: &Type) -> Option<&syn::PathSegment> {
 }
 
 /// The properties that a type implies, if it has a meaning.
-pub(crate) fn field_kind(ty: &Type, item: &ItemStruct) -> Option<FieldKind> {
+pub fn field_kind(ty: &Type, item: &ItemStruct) -> Option<FieldKind> {
     let name = last_segment(ty)?.ident.to_string();
     Some(match name.as_str() {
         "f64" | "f32" => FieldKind::Scalar,
@@ -103,7 +103,7 @@ fn digit(name: &str) -> Option<usize> {
 }
 
 /// The scalar of a type; an inertia without arguments has `f64`.
-pub(crate) fn scalar_of(ty: &Type) -> Option<Ident> {
+pub fn scalar_of(ty: &Type) -> Option<Ident> {
     let segment = last_segment(ty)?;
     match &segment.arguments {
         PathArguments::AngleBracketed(arguments) if !arguments.args.is_empty() => match arguments.args.first()? {

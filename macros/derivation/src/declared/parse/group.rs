@@ -12,13 +12,13 @@ use crate::mathematics::group::{Defect, Group, NAMES, built_in};
 use crate::mathematics::symbolic::Rational;
 
 /// The name behind `group =`.
-pub(super) struct Named {
+pub(super) struct GroupName {
     path: Path,
     /// Whether it is `Name!`, a group that `matrix_group!` declares.
     is_own: bool,
 }
 
-impl Named {
+impl GroupName {
     pub(super) fn name(&self) -> String {
         self.path.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default()
     }
@@ -46,7 +46,7 @@ pub(super) const ONE_OR_SEVERAL: &str =
     "write the name of a group, `group = SO3`, or those of several bodies, `group(F_1 = SO3, F_2 = SO3)`";
 
 /// `SO3`, `own::Affine!`.
-pub(super) fn named(input: ParseStream, errors: &mut Errors) -> syn::Result<Named> {
+pub(super) fn named(input: ParseStream, errors: &mut Errors) -> syn::Result<GroupName> {
     let span = input.span();
     let mut path: Path = input.parse().map_err(|_| syn::Error::new(span, ONE_OR_SEVERAL))?;
     let is_own = input.parse::<Option<Token![!]>>()?.is_some();
@@ -59,13 +59,13 @@ pub(super) fn named(input: ParseStream, errors: &mut Errors) -> syn::Result<Name
             errors.push_over(arguments, message);
         }
     }
-    Ok(Named { path, is_own })
+    Ok(GroupName { path, is_own })
 }
 
 /// The path as written, and the group. After a mistake the path is `None` and the group SO(3), so that the rest can be
 /// checked.
 pub(super) fn group(
-    named: Option<Named>,
+    named: Option<GroupName>,
     matrices: Option<(Ident, ExprArray)>,
     is_readable: bool,
     errors: &mut Errors,
@@ -112,7 +112,7 @@ pub(super) fn group(
 }
 
 /// The factors of a product, with their increments.
-pub(super) fn product(named: Vec<(Ident, Named)>, errors: &mut Errors) -> (Vec<Factor>, Group) {
+pub(super) fn product(named: Vec<(Ident, GroupName)>, errors: &mut Errors) -> (Vec<Factor>, Group) {
     let (mut factors, mut groups): (Vec<Factor>, Vec<Group>) = (Vec::new(), Vec::new());
     for (increment, named) in named {
         let name = increment.unraw().to_string();
@@ -163,7 +163,7 @@ const IN_PRODUCTS: [&str; 4] = ["SO3", "R1", "R2", "R3"];
 const MOST_FACTORS: usize = 4;
 
 /// Reports increments, of one body or of several, whose names mean something else, which they would hide.
-pub(super) fn check_increments(role: Role, factors: &[Factor], taken: &Taken, errors: &mut Errors) {
+pub(super) fn check_increments(role: Role, factors: &[Factor], taken: &TakenNames, errors: &mut Errors) {
     // An increment without a name is `F`, which no other name can be.
     for Factor { name, place, .. } in factors.iter().filter(|factor| factor.name != "F") {
         let meaning = if Role::Lagrangian.reserved(true).contains(&name.as_str()) {
@@ -184,7 +184,7 @@ pub(super) fn check_increments(role: Role, factors: &[Factor], taken: &Taken, er
 }
 
 /// Names that other declarations have.
-pub(super) struct Taken {
+pub(super) struct TakenNames {
     pub(super) fields: Vec<String>,
     pub(super) advected: Vec<String>,
     pub(super) velocities: Vec<String>,

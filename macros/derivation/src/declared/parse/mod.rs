@@ -19,17 +19,17 @@ use crate::declared::errors::{Errors, suggestion};
 use crate::declared::{
     AdvectedParameter, Continuous, Coordinates, Declaration, Discretisation, Factor, Field, FieldKind, Quadrature, Role,
 };
-use crate::mathematics::derive::Seen;
+use crate::mathematics::derive::View;
 use crate::mathematics::group::Group;
 use arguments::{Arguments, Source, arguments_from};
 use fields::{points, scalar, vector_type};
 use names::{check_names, displacements, velocities};
 
-pub(crate) use fields::{field_kind, scalar_of};
-pub(crate) use own_group::{Asked, OwnGroup, asked, name_of_own_group, own_group};
+pub use fields::{field_kind, scalar_of};
+pub use own_group::{OwnGroup, Request, asked, name_of_own_group, own_group};
 
 /// The declaration, with its mistakes reported; `None` if nothing of it can be read.
-pub(crate) fn declaration(
+pub fn declaration(
     role: Role,
     arguments: &TokenStream,
     item: &TokenStream,
@@ -41,7 +41,7 @@ pub(crate) fn declaration(
 }
 
 /// The role, the arguments and the struct of a text with both, `#[lagrangian(…)] struct Top { … }`.
-pub(crate) fn attribute_and_item(text: &TokenStream, errors: &mut Errors) -> Option<(Role, TokenStream, TokenStream)> {
+pub fn attribute_and_item(text: &TokenStream, errors: &mut Errors) -> Option<(Role, TokenStream, TokenStream)> {
     size::check("the declaration", text, errors)?;
     let mut item: ItemStruct = syn::parse2(text.clone()).map_err(|error| errors.extend(error)).ok()?;
     let role = |attribute: &syn::Attribute| match attribute.path().segments.last()?.ident.to_string().as_str() {
@@ -85,7 +85,7 @@ fn annotated(role: Role, item: &TokenStream, errors: &mut Errors) -> Option<Item
 }
 
 /// A second attribute of ours, by the path that it is written with.
-pub(crate) fn declared_again(item: &ItemStruct) -> Option<&Path> {
+pub fn declared_again(item: &ItemStruct) -> Option<&Path> {
     item.attrs.iter().map(syn::Attribute::path).find(|path| {
         let is_ours = path.segments.len() == 1 || path.segments.first().is_some_and(|first| first.ident == "liestep");
         is_ours
@@ -97,12 +97,7 @@ pub(crate) fn declared_again(item: &ItemStruct) -> Option<&Path> {
 }
 
 /// The declaration as far as it can be read.
-pub(crate) fn as_far_as_readable(
-    role: Role,
-    arguments: TokenStream,
-    item: ItemStruct,
-    errors: &mut Errors,
-) -> Declaration {
+pub fn as_far_as_readable(role: Role, arguments: TokenStream, item: ItemStruct, errors: &mut Errors) -> Declaration {
     let mut arguments = read_arguments(role, arguments, errors);
     // An argument that seems to be missing may be one that couldn't be read.
     let is_readable = errors.is_empty();
@@ -117,7 +112,7 @@ pub(crate) fn as_far_as_readable(
     let scalar = scalar(&item, errors);
     let is_of_bodies =
         role != Role::Constraint || !errors.is_empty() || two_bodies::check(&factors, &fields, &scalar, &item, errors);
-    let taken = group::Taken {
+    let taken = group::TakenNames {
         fields: fields.iter().map(Field::plain_name).chain(unreadable.iter().cloned()).collect(),
         advected: arguments.advected.iter().map(|(name, ..)| name.unraw().to_string()).collect(),
         velocities: arguments
@@ -284,7 +279,7 @@ fn advected(
         let names: Vec<String> = field_names.iter().chain(unreadable).cloned().collect();
         let Some(moved) = seen((name, source), is_given, (&names, group), errors) else {
             // The name is known even after a mistake, so that it isn't reported again.
-            parameters.push(AdvectedParameter { name: name.clone(), field: None, is_given, seen: Seen::From(0) });
+            parameters.push(AdvectedParameter { name: name.clone(), field: None, is_given, seen: View::From(0) });
             continue;
         };
         if field_names.contains(&unraw) {
@@ -304,8 +299,8 @@ fn advected(
             continue;
         }
         let (field, seen) = match moved {
-            Moved::Field(field, seen) => (field, seen),
-            Moved::Body(seen) => {
+            MovedParameter::Field(field, seen) => (field, seen),
+            MovedParameter::Body(seen) => {
                 parameters.push(AdvectedParameter { name: name.clone(), field: None, is_given, seen });
                 continue;
             }
@@ -317,7 +312,7 @@ fn advected(
             match source {
                 Source::Field(_) => errors.push(field.span(), message),
                 // The source may have been meant as a body instead of a vector.
-                Source::Seen { .. } => errors.push_decisive(field.span(), message),
+                Source::View { .. } => errors.push_decisive(field.span(), message),
             }
         }
         if let Some(found) = index.and_then(|index| fields.get(index)).filter(|_| is_given) {
@@ -327,7 +322,7 @@ fn advected(
                 errors.push_decisive(found.at, message);
             }
         } else if let (Some(found), Some((group, _))) = (index.and_then(|index| fields.get(index)), group)
-            && let Seen::From(factor) = seen
+            && let View::From(factor) = seen
             && let size = group.factor(factor).size
             && !found.kind.is_carried_by(size)
             && !matches!(found.kind, FieldKind::Point(_))
@@ -358,17 +353,17 @@ fn not_carried(wanted: &str, kind: FieldKind, group: &Group, size: usize) -> Str
 
 /// The message for the source of an advected parameter that is no field.
 fn no_field(name: &Ident, source: &Source, fields: &[String], group: Option<(&Group, &[Factor])>) -> String {
-    let (Source::Field(wanted) | Source::Seen { what: wanted, .. }) = source;
+    let (Source::Field(wanted) | Source::View { what: wanted, .. }) = source;
     let wanted = wanted.unraw().to_string();
     let bodies: Vec<&str> = match (source, group) {
-        (Source::Seen { .. }, Some((group, factors))) if group.is_product() => {
+        (Source::View { .. }, Some((group, factors))) if group.is_product() => {
             factors.iter().map(|factor| factor.name.as_str()).collect()
         }
         _ => Vec::new(),
     };
     let near = suggestion(&wanted, fields.iter().map(String::as_str).chain(bodies.iter().copied()));
     match (source, bodies.as_slice()) {
-        (Source::Seen { from, .. }, _) if wanted == "space" => format!(
+        (Source::View { from, .. }, _) if wanted == "space" => format!(
             "`space` is no body, and is seen the other way round: `{name} = {from}.seen_from(space)`, and \
              `{name}.transpose()` for its inverse"
         ),
@@ -398,9 +393,9 @@ fn seers((name, field): (&Ident, &Ident), group: Option<&Group>, factors: &[Fact
 }
 
 /// The source of an advected parameter, and the bodies that move it.
-enum Moved<'a> {
-    Field(&'a Ident, Seen),
-    Body(Seen),
+enum MovedParameter<'a> {
+    Field(&'a Ident, View),
+    Body(View),
 }
 
 /// The checked source of an advected parameter; `None` after a mistake.
@@ -409,7 +404,7 @@ fn seen<'a>(
     is_given: bool,
     (fields, group): (&[String], Option<(&Group, &[Factor])>),
     errors: &mut Errors,
-) -> Option<Moved<'a>> {
+) -> Option<MovedParameter<'a>> {
     let factors = group.map_or(&[][..], |(_, factors)| factors);
     let place = |name: &Ident| factors.iter().position(|factor| name.unraw() == factor.name);
     match source {
@@ -417,14 +412,14 @@ fn seen<'a>(
             errors.push_decisive(field.span(), seers((name, field), group.map(|(group, _)| group), factors));
             None
         }
-        Source::Field(field) => Some(Moved::Field(field, Seen::From(0))),
-        Source::Seen { what, .. } if is_given => {
+        Source::Field(field) => Some(MovedParameter::Field(field, View::From(0))),
+        Source::View { what, .. } if is_given => {
             errors.push_decisive(what.span(), format!("what is given is seen as it is: write `{what}`"));
             None
         }
         // The increments couldn't be read.
-        Source::Seen { .. } if group.is_none() => None,
-        Source::Seen { what, from } => {
+        Source::View { .. } if group.is_none() => None,
+        Source::View { what, from } => {
             let seer = if *from == "space" { None } else { Some(place(from)) };
             if seer == Some(None) {
                 let known: Vec<String> = factors.iter().map(|factor| format!("`{}`", factor.name)).collect();
@@ -449,8 +444,8 @@ fn seen<'a>(
                     errors.push_decisive(from.span(), message);
                     None
                 }
-                (Some(of), Some(from)) => Some(Moved::Body(Seen::Relative { of, from })),
-                (Some(of), None) => Some(Moved::Body(Seen::Configuration(of))),
+                (Some(of), Some(from)) => Some(MovedParameter::Body(View::Relative { of, from })),
+                (Some(of), None) => Some(MovedParameter::Body(View::Configuration(of))),
                 (None, Some(factor)) if group.is_some_and(|(group, _)| group.factor(factor).is_added) => {
                     let message = format!(
                         "a translation doesn't move a vector: use the field `{what}` itself; how far a point is from \
@@ -459,7 +454,7 @@ fn seen<'a>(
                     errors.push_decisive(from.span(), message);
                     None
                 }
-                (None, Some(factor)) => Some(Moved::Field(what, Seen::From(factor))),
+                (None, Some(factor)) => Some(MovedParameter::Field(what, View::From(factor))),
                 (None, None) if !fields.contains(&what.unraw().to_string()) => {
                     errors.push_decisive(what.span(), no_field(name, source, fields, group));
                     None

@@ -9,18 +9,18 @@ use super::size;
 use crate::declared::errors::Errors;
 
 /// The declaration in `matrix_group!`.
-pub(crate) struct OwnGroup {
+pub struct OwnGroup {
     /// The path of liestep, if not `::liestep`.
-    pub(crate) root: Option<Path>,
-    pub(crate) attributes: Vec<Attribute>,
-    pub(crate) visibility: Visibility,
-    pub(crate) name: Ident,
+    pub root: Option<Path>,
+    pub attributes: Vec<Attribute>,
+    pub visibility: Visibility,
+    pub name: Ident,
     /// The generators as written, each by rows.
-    pub(crate) generators: ExprArray,
+    pub generators: ExprArray,
     /// The number of rows of the matrices.
-    pub(crate) size: usize,
+    pub size: usize,
     /// The functions of `Generators`.
-    pub(crate) functions: Vec<ImplItem>,
+    pub functions: Vec<ImplItem>,
 }
 
 impl Parse for OwnGroup {
@@ -49,13 +49,13 @@ impl Parse for OwnGroup {
 }
 
 /// The group that `matrix_group!` declares.
-pub(crate) fn own_group(tokens: TokenStream, errors: &mut Errors) -> Option<OwnGroup> {
+pub fn own_group(tokens: TokenStream, errors: &mut Errors) -> Option<OwnGroup> {
     size::check("the group", &tokens, errors)?;
     syn::parse2(tokens).map_err(|error| errors.extend(error)).ok()
 }
 
 /// The name behind `type`, whatever follows it.
-pub(crate) fn name_of_own_group(tokens: &TokenStream) -> Option<Ident> {
+pub fn name_of_own_group(tokens: &TokenStream) -> Option<Ident> {
     let mut tokens = tokens.clone().into_iter();
     tokens.find(|token| matches!(token, TokenTree::Ident(word) if word == "type"))?;
     match tokens.next()? {
@@ -65,14 +65,14 @@ pub(crate) fn name_of_own_group(tokens: &TokenStream) -> Option<Ident> {
 }
 
 /// The arguments of a declaration with `group = Name!`, and the values of some keys.
-pub(crate) struct Asked {
-    pub(crate) group: Path,
-    pub(crate) root: Option<Path>,
-    pub(crate) arguments: TokenStream,
+pub struct Request {
+    pub group: Path,
+    pub root: Option<Path>,
+    pub arguments: TokenStream,
 }
 
 /// The request for the generators of a group; `None` if no `group = Name!` is there, or if the generators have arrived.
-pub(crate) fn asked(arguments: &TokenStream) -> Option<Asked> {
+pub fn asked(arguments: &TokenStream) -> Option<Request> {
     let tokens: Vec<TokenTree> = arguments.clone().into_iter().collect();
     let is = |token: &TokenTree, mark: char| matches!(token, TokenTree::Punct(found) if found.as_char() == mark);
     let path = |tokens: &[TokenTree]| Path::parse_mod_style.parse2(tokens.iter().cloned().collect()).ok();
@@ -86,5 +86,5 @@ pub(crate) fn asked(arguments: &TokenStream) -> Option<Asked> {
             _ => {}
         }
     }
-    group.map(|group| Asked { group, root, arguments: arguments.clone() })
+    group.map(|group| Request { group, root, arguments: arguments.clone() })
 }

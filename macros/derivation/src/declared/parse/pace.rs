@@ -18,7 +18,7 @@ use syn::spanned::Spanned as _;
 use super::arguments::Arguments;
 use crate::declared::errors::Errors;
 use crate::declared::{AdvectedParameter, Discretisation, Factor, Field, FieldKind, Quadrature};
-use crate::mathematics::derive::Seen;
+use crate::mathematics::derive::View;
 use crate::mathematics::group;
 
 /// Rewrites the expression by the pace, if there is one, and returns the index of `E_0` among the parameters.
@@ -100,19 +100,19 @@ fn moved(
     let span = name.span();
     let increment = |factor: usize| Ident::new(&factors[factor].name, span);
     Some(match w.seen {
-        Seen::From(factor) => {
+        View::From(factor) => {
             let (own, field) = (increment(factor), fields.get(w.field?)?);
             matches!(field.kind, FieldKind::Vector(_)).then(|| quote_spanned!(span=> #own.transpose() * #name))?
         }
-        Seen::Configuration(of) if group.factor(of).is_added => {
+        View::Configuration(of) if group.factor(of).is_added => {
             let of = increment(of);
             quote_spanned!(span=> #name + #of)
         }
-        Seen::Configuration(of) => {
+        View::Configuration(of) => {
             let of = increment(of);
             quote_spanned!(span=> #name * #of)
         }
-        Seen::Relative { of, from } => {
+        View::Relative { of, from } => {
             let (is_added, of, from) = (group.factor(of).is_added, increment(of), increment(from));
             let turned = quote_spanned!(span=> #from.transpose() * #name * #of);
             if is_added { quote_spanned!(span=> #name + #of - #from) } else { turned }

@@ -3,7 +3,7 @@
 use crate::declared::{Declaration, FieldKind};
 use crate::emit::docs::{Equation, at, certified, inertia_matrix, moved_by, names, setting};
 use crate::judged::Equations;
-use crate::mathematics::derive::{Carried, Continuous, Element, Inverse, Seen};
+use crate::mathematics::derive::{AdvectedSymbol, Continuous, Element, Inverse, View};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Expression, Rational, Variance, monomial_contains, text, vector_text};
 
@@ -106,7 +106,7 @@ fn sum(terms: &[String]) -> String {
 }
 
 /// Whether the group moves the parameter.
-fn is_moved(w: &Carried) -> bool {
+fn is_moved(w: &AdvectedSymbol) -> bool {
     w.variance != Variance::Fixed || w.seen.is_configuration()
 }
 
@@ -162,13 +162,13 @@ fn advected_rates(declaration: &Declaration, derived: &Continuous) -> Vec<Equati
         let w = derived.advected.get(index)?;
         let of = |factor: usize| velocities[factor];
         let (xi, right) = match w.seen {
-            Seen::From(factor) => (of(factor), None),
-            Seen::Relative { of: body, from } if added(body) => ("", Some(format!("{} − {}", of(body), of(from)))),
-            Seen::Configuration(body) if added(body) => ("", Some(of(body).to_owned())),
-            Seen::Relative { of: body, from } => {
+            View::From(factor) => (of(factor), None),
+            View::Relative { of: body, from } if added(body) => ("", Some(format!("{} − {}", of(body), of(from)))),
+            View::Configuration(body) if added(body) => ("", Some(of(body).to_owned())),
+            View::Relative { of: body, from } => {
                 ("", Some(format!("{name} hat({}) − hat({}) {name}", of(body), of(from))))
             }
-            Seen::Configuration(body) => ("", Some(format!("{name} hat({})", of(body)))),
+            View::Configuration(body) => ("", Some(format!("{name} hat({})", of(body)))),
         };
         let hat = format!("hat({xi})");
         let equation = |right| {

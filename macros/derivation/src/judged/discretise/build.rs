@@ -5,7 +5,7 @@ use std::rc::Rc;
 use crate::declared::{Coordinates, Declaration, Kind, Name, Shape, Tree};
 use crate::judged::explain::Misfit;
 use crate::judged::verify;
-use crate::mathematics::derive::Seen;
+use crate::mathematics::derive::View;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Function, Rational, Variance};
 
@@ -133,17 +133,17 @@ impl Build<'_> {
     /// `G⁻¹·w`, where `element` returns `G` and `G⁻¹` of each factor.
     pub(super) fn carried(&self, index: usize, element: &dyn Fn(usize) -> [Rc<Tree>; 2]) -> Rc<Tree> {
         let w = self.advected(index);
-        let seen = self.declaration.advected.get(index).map_or(Seen::From(0), |w| w.seen);
+        let seen = self.declaration.advected.get(index).map_or(View::From(0), |w| w.seen);
         let is_added = |factor: usize| self.declaration.group.factor(factor).is_added;
         let by = |factor: usize, part: usize| element(factor)[part].clone();
         let factor = match seen {
-            Seen::Relative { of, from } if is_added(of) => {
+            View::Relative { of, from } if is_added(of) => {
                 return self.add(w, self.subtract(by(of, 0), by(from, 0)));
             }
-            Seen::Configuration(of) if is_added(of) => return self.add(w, by(of, 0)),
-            Seen::Relative { of, from } => return self.times(&self.times(&by(from, 1), &w), &by(of, 0)),
-            Seen::Configuration(of) => return self.times(&w, &by(of, 0)),
-            Seen::From(factor) => factor,
+            View::Configuration(of) if is_added(of) => return self.add(w, by(of, 0)),
+            View::Relative { of, from } => return self.times(&self.times(&by(from, 1), &w), &by(of, 0)),
+            View::Configuration(of) => return self.times(&w, &by(of, 0)),
+            View::From(factor) => factor,
         };
         let variance = self.declaration.advected_kind(index).variance();
         if variance == Variance::Fixed {

@@ -14,7 +14,7 @@ use crate::mathematics::group::Group;
 const POINTS: u64 = 3;
 
 /// Whether `tree` at `F = cay(ξ̂)` is `ξ`, for random `ξ`; `increment` is the name of `F`.
-pub(crate) fn is_cayley_coordinates(group: &Group, increment: Name, tree: &Rc<Tree>) -> bool {
+pub fn is_cayley_coordinates(group: &Group, increment: Name, tree: &Rc<Tree>) -> bool {
     (1..=POINTS).all(|seed| {
         let mut number = Residue::stream(seed);
         let (identity, two) = (Value::identity(group.size), Residue::ONE + Residue::ONE);
@@ -28,7 +28,7 @@ pub(crate) fn is_cayley_coordinates(group: &Group, increment: Name, tree: &Rc<Tr
 }
 
 /// The least `n` with `Nⁿ = 0` for all elements `N` of a strictly triangular algebra.
-pub(crate) fn nilpotency(group: &Group) -> usize {
+pub fn nilpotency(group: &Group) -> usize {
     let mut number = Residue::stream(1);
     let components: Vec<Residue> = group.generators.iter().map(|_| number()).collect();
     let any = Value::combination(group.size, &group.generators, &components);

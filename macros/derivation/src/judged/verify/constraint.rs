@@ -12,29 +12,29 @@ use super::identities::Same;
 use super::linear::Subspace;
 use super::number::Number;
 use super::residue::Residue;
-use super::{DRAWS, Evaluation, Sureness, Unconfirmed, Value, Values, dot, evaluated, over, parameter, stream};
-use crate::declared::lower::LoweredConstraint;
+use super::{DRAWS, Evaluation, Objection, Sureness, Value, Values, dot, evaluated, over, parameter, stream};
+use crate::declared::lower::ConstraintReading;
 use crate::declared::{Declaration, FieldKind, Name, Tree};
-use crate::mathematics::derive::Seen;
+use crate::mathematics::derive::View;
 use crate::mathematics::symbolic::{Expression, SymbolId};
 use crate::program::{Graph, NodeId};
 
 /// A constraint as it is emitted.
-pub(crate) struct Held {
+pub struct ConstraintSlopes {
     /// The scalars and vectors, stacked into one column.
-    pub(crate) functions: Vec<Rc<Tree>>,
-    pub(crate) lowered: LoweredConstraint,
+    pub functions: Vec<Rc<Tree>>,
+    pub lowered: ConstraintReading,
     /// The derivatives of each body by its rotation and by its translation, linear in the directions.
-    pub(crate) slopes: [[Vec<Expression>; 2]; 2],
-    pub(crate) graph: Graph,
+    pub slopes: [[Vec<Expression>; 2]; 2],
+    pub graph: Graph,
     /// The derivatives as matrices with a row for each function, by rows.
-    pub(crate) entries: [[Vec<NodeId>; 2]; 2],
-    pub(crate) sureness: Sureness,
+    pub entries: [[Vec<NodeId>; 2]; 2],
+    pub sureness: Sureness,
 }
 
-impl Held {
+impl ConstraintSlopes {
     /// The number of functions.
-    pub(crate) fn rows(&self) -> usize {
+    pub fn rows(&self) -> usize {
         self.functions.iter().map(|tree| tree.shape.rows()).sum()
     }
 }
@@ -44,7 +44,7 @@ type Place<T> = [Value<T>; 2];
 
 /// The dependence of a function on those before it, at all positions of the bodies and for all parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Row {
+pub enum Row {
     /// The function is independent of them.
     New,
     /// The function depends on them.
@@ -55,14 +55,14 @@ pub(crate) enum Row {
 
 /// Checks the slopes of both bodies; returns a bound on the probability of a wrong result, and each function's
 /// dependence on those before it.
-pub(crate) fn constraint(declaration: &Declaration, held: &Held) -> Result<(Sureness, Vec<Row>), Unconfirmed> {
+pub fn constraint(declaration: &Declaration, held: &ConstraintSlopes) -> Result<(Sureness, Vec<Row>), Objection> {
     let has_value = |seed| {
         let point = Point::new(declaration, stream(seed));
         let value = point.value(held, &point.places.each_ref().map(lifted));
         value.iter().all(|entry| entry.value.is_defined())
     };
     if !(1..=DRAWS).any(has_value) {
-        return Err(Unconfirmed::NoValue);
+        return Err(Objection::NoValue);
     }
     let content = held.functions.iter().map(Content::of_tree).fold(Content::of_graph(&held.graph), Content::add);
     let degrees = |same: &mut Same<Degree>| {
@@ -107,16 +107,16 @@ impl<'a, T: Number> Point<'a, T> {
     }
 
     /// The declared functions at these positions of the bodies.
-    fn value(&self, held: &Held, places: &[Place<Dual<T>>; 2]) -> Vec<Dual<T>> {
+    fn value(&self, held: &ConstraintSlopes, places: &[Place<Dual<T>>; 2]) -> Vec<Dual<T>> {
         let mut values = over(&self.fields, Dual::constant);
         let place = |factor: usize| &places[factor / 2 % 2][factor % 2];
         for (index, w) in self.declaration.advected.iter().enumerate() {
             let field = w.field.and_then(|field| self.fields.get(&Name::Field(field))).map(constant);
             let seen = match w.seen {
-                Seen::From(factor) => field.map(|field| place(factor).transpose().times(&field)),
-                Seen::Configuration(of) => Some(place(of).clone()),
-                Seen::Relative { of, from } if of % 2 == 1 => Some(place(of).zip(place(from), |x, y| x - y)),
-                Seen::Relative { of, from } => Some(place(from).transpose().times(place(of))),
+                View::From(factor) => field.map(|field| place(factor).transpose().times(&field)),
+                View::Configuration(of) => Some(place(of).clone()),
+                View::Relative { of, from } if of % 2 == 1 => Some(place(of).zip(place(from), |x, y| x - y)),
+                View::Relative { of, from } => Some(place(from).transpose().times(place(of))),
             };
             values.extend(seen.map(|seen| (Name::Advected(index), seen)));
         }
@@ -125,7 +125,7 @@ impl<'a, T: Number> Point<'a, T> {
     }
 
     /// The slopes of the functions when a body rotates about an axis, `by = 0`, or moves along it.
-    fn slopes(&self, held: &Held, body: usize, by: usize, axis: &[T]) -> Vec<T> {
+    fn slopes(&self, held: &ConstraintSlopes, body: usize, by: usize, axis: &[T]) -> Vec<T> {
         let axis = Value::column(axis).over(|slope| Dual { value: T::ZERO, slope });
         let mut places = self.places.each_ref().map(lifted);
         let moved = &mut places[body][by];
@@ -134,7 +134,7 @@ impl<'a, T: Number> Point<'a, T> {
         self.value(held, &places).iter().map(|value| value.slope).collect()
     }
 
-    fn inputs(&self, held: &Held) -> BTreeMap<SymbolId, Value<T>> {
+    fn inputs(&self, held: &ConstraintSlopes) -> BTreeMap<SymbolId, Value<T>> {
         let mut inputs = BTreeMap::new();
         for (body, [attitude, position]) in held.lowered.declared.bodies.iter().zip(&self.places) {
             inputs.extend([(body.attitude, attitude.clone()), (body.position, position.clone())]);
@@ -146,7 +146,12 @@ impl<'a, T: Number> Point<'a, T> {
     }
 
     /// Compares the slopes along a direction of these numbers.
-    fn holds(&self, held: &Held, mut number: impl FnMut() -> T, same: &mut Same<T>) -> Result<(), Unconfirmed> {
+    fn holds(
+        &self,
+        held: &ConstraintSlopes,
+        mut number: impl FnMut() -> T,
+        same: &mut Same<T>,
+    ) -> Result<(), Objection> {
         let (inputs, axis) = (self.inputs(held), [(); 3].map(|()| number()));
         for (body, slopes) in held.entries.iter().enumerate() {
             for (by, entries) in slopes.iter().enumerate() {
@@ -170,7 +175,7 @@ impl Point<'_, Residue> {
     ///
     /// A dependence on the constraint alone isn't found either, as the point doesn't satisfy it: of `R_1 a − R_2 b`
     /// with vectors of equal length two of the three functions are enough.
-    fn rows(&self, held: &Held) -> Option<Vec<Row>> {
+    fn rows(&self, held: &ConstraintSlopes) -> Option<Vec<Row>> {
         let ways: Vec<Vec<Residue>> = (0..12)
             .map(|way| {
                 let axis = [0, 1, 2].map(|k| if k == way % 3 { Residue::ONE } else { Residue::ZERO });

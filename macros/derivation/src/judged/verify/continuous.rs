@@ -19,7 +19,7 @@ use super::sample::{along_motion, exponentials, moved};
 use super::series::Series;
 use super::value::Value;
 use super::{
-    SAMPLES, Sureness, Unconfirmed, Values, algebra, dot, evaluated, increments, over, parameter, parameters, shares,
+    Objection, SAMPLES, Sureness, Values, algebra, dot, evaluated, increments, over, parameter, parameters, shares,
     stream, velocities,
 };
 use crate::declared::{Declaration, FieldKind, Name, Tree};
@@ -29,7 +29,7 @@ use crate::mathematics::symbolic::{Rational, SymbolId};
 use crate::program::{Graph, NodeId, Outputs, along_directions, diamond_matrices};
 
 /// The continuous equations of a declaration as operations.
-pub(crate) struct Motion<'a> {
+pub struct Motion<'a> {
     declaration: &'a Declaration,
     /// The declared `l`, if the declaration is continuous.
     tree: Option<&'a Rc<Tree>>,
@@ -51,7 +51,7 @@ fn inputs<T: Number>(names: &BTreeMap<Name, SymbolId>, at: &Values<T>) -> BTreeM
 }
 
 impl<'a> Motion<'a> {
-    pub(crate) fn new(
+    pub fn new(
         declaration: &'a Declaration,
         tree: Option<&'a Rc<Tree>>,
         names: &'a BTreeMap<Name, SymbolId>,
@@ -154,7 +154,7 @@ impl<'a> Motion<'a> {
     }
 
     /// Checks all equations, and returns a bound on the probability of a wrong result.
-    pub(crate) fn holds(&self) -> Result<Sureness, Unconfirmed> {
+    pub fn holds(&self) -> Result<Sureness, Objection> {
         let degrees = |same: &mut Same<Degree>| {
             let mut number = Degree::stream();
             self.holds_at(&self.point_of_degrees(&mut number), number, same)
@@ -172,7 +172,7 @@ impl<'a> Motion<'a> {
         point: &Values<T>,
         mut number: impl FnMut() -> T,
         same: &mut Same<T>,
-    ) -> Result<(), Unconfirmed> {
+    ) -> Result<(), Objection> {
         let group = self.group();
         let eta: Vec<T> = group.generators.iter().map(|_| number()).collect();
         let at = |outputs: &[NodeId]| self.values(outputs, point);
@@ -205,11 +205,11 @@ impl<'a> Motion<'a> {
 
     /// Checks that `J`, `s` and `V` of the limit of a discrete Lagrangian are the derivatives of `l` at rest, and
     /// returns a bound on the probability of a wrong result.
-    pub(crate) fn rest_holds(
+    pub fn rest_holds(
         &self,
         names: &BTreeMap<Name, SymbolId>,
         (graph, limit): Outputs<[Vec<NodeId>; 3]>,
-    ) -> Result<Sureness, Unconfirmed> {
+    ) -> Result<Sureness, Objection> {
         let limit = limit.concat();
         let degrees = |same: &mut Same<Degree>| {
             let point = self.point_of_degrees(&mut Degree::stream());
@@ -226,7 +226,7 @@ impl<'a> Motion<'a> {
         point: &Values<T>,
         (names, graph, limit): (&BTreeMap<Name, SymbolId>, &Graph, &[NodeId]),
         same: &mut Same<T>,
-    ) -> Result<(), Unconfirmed> {
+    ) -> Result<(), Objection> {
         let mut here = self.values(&[self.hessian.as_slice(), &self.momentum, &self.lagrangian].concat(), point);
         here.last_mut().into_iter().for_each(|l| *l = -*l);
         let mut pairs = here.into_iter().zip(evaluated(graph, limit, &inputs(names, point)));
@@ -238,7 +238,7 @@ impl<'a> Motion<'a> {
     ///
     /// The field has roots of all numbers, so the domain of `l` isn't checked here. A constant that vanishes in the
     /// field alone is no reason to refuse.
-    pub(crate) fn has_limit(&self, discrete: &Rc<Tree>) -> Option<bool> {
+    pub fn has_limit(&self, discrete: &Rc<Tree>) -> Option<bool> {
         if Content::of_tree(discrete).has_multiple {
             return Some(true);
         }
@@ -259,7 +259,7 @@ impl<'a> Motion<'a> {
 
     /// A basis of the directions `ζ` with `⟨μ̇, ζ⟩ = 0` for all values of the parameters: `⟨μ, ζ⟩` is conserved. Empty
     /// if a constant vanishes in the field alone.
-    pub(crate) fn right_symmetries(&self) -> Vec<Vec<Rational>> {
+    pub fn right_symmetries(&self) -> Vec<Vec<Rational>> {
         let (dimension, mut rates) = (self.group().dimension(), Subspace::default());
         let has_multiple = Content::of_graph(&self.graph).has_multiple;
         for seed in 1..=2 * u64::try_from(dimension).unwrap_or(0) + 2 {
@@ -277,7 +277,7 @@ impl<'a> Motion<'a> {
     }
 
     /// The kinetic part by its second derivative at rest, at sample values of the parameters.
-    pub(crate) fn kinetic_part(&self) -> KineticPart {
+    pub fn kinetic_part(&self) -> KineticPart {
         if Content::of_graph(&self.graph).has_multiple {
             return KineticPart::Regular;
         }

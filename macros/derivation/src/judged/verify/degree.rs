@@ -22,12 +22,12 @@ const ENOUGH: u32 = 100;
 /// The limit on points, by the time that they take.
 const MOST_POINTS: u32 = 16;
 /// The number of additional points, as some may have no value.
-pub(super) const SPARE: u32 = 5;
+pub const SPARE: u32 = 5;
 
 /// The degrees of a numerator and of a denominator `Δᵐ Dⁿ r`. The denominator `Δ` is common to the entries of group
 /// elements; `D` is one divisor, as sums of quotients by one number have one denominator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Degree {
+pub struct Degree {
     is_zero: bool,
     numerator: u64,
     /// The degree of `Δᵐ`.
@@ -43,7 +43,7 @@ pub(super) struct Degree {
 
 impl Degree {
     /// A stream of random numbers.
-    pub(super) fn stream() -> impl FnMut() -> Self {
+    pub fn stream() -> impl FnMut() -> Self {
         let mut number = 0;
         move || {
             number += 1;
@@ -52,7 +52,7 @@ impl Degree {
     }
 
     /// The degree of an entry of a group element.
-    pub(super) fn of_element(self, degree: u64) -> Self {
+    pub fn of_element(self, degree: u64) -> Self {
         Self { numerator: degree, common: degree, ..self }
     }
 
@@ -160,7 +160,7 @@ impl Number for Degree {
 
 /// The degrees of a product of Cayley transforms and of its coordinates; `Δ` is the product of their denominators and
 /// of those of `attitudes` more transforms.
-pub(super) fn element(group: &Group, attitudes: usize, number: &mut impl FnMut() -> Degree) -> (Element<Degree>, u64) {
+pub fn element(group: &Group, attitudes: usize, number: &mut impl FnMut() -> Degree) -> (Element<Degree>, u64) {
     let of_factor = |own: &Group| match own {
         _ if own.is_added => 0,
         _ if own.is_so3 => 1,
@@ -184,7 +184,7 @@ pub(super) fn element(group: &Group, attitudes: usize, number: &mut impl FnMut()
 }
 
 /// Replaces attitudes among the parameters by entries of Cayley transforms.
-pub(super) fn set_attitudes(
+pub fn set_attitudes(
     declaration: &Declaration,
     values: &mut Values<Degree>,
     degree: u64,
@@ -198,18 +198,18 @@ pub(super) fn set_attitudes(
 }
 
 /// The indices of the advected parameters that are attitudes.
-pub(super) fn attitudes(declaration: &Declaration) -> impl Iterator<Item = usize> {
+pub fn attitudes(declaration: &Declaration) -> impl Iterator<Item = usize> {
     let all = 0..declaration.advected.len();
     all.filter(|&index| matches!(declaration.advected_kind(index), FieldKind::Configuration(_)))
 }
 
 /// The functions and constants of a tree or of a graph.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Content {
+pub struct Content {
     /// The number of function calls.
-    pub(super) functions: u64,
+    pub functions: u64,
     /// Whether a constant that isn't zero is zero in the field, or has no value there.
-    pub(super) has_multiple: bool,
+    pub has_multiple: bool,
 }
 
 impl Content {
@@ -218,7 +218,7 @@ impl Content {
         Self { functions: 0, has_multiple: !value.is_zero() && (residue.is_zero() || !residue.is_defined()) }
     }
 
-    pub(super) fn of_tree(tree: &Rc<Tree>) -> Self {
+    pub fn of_tree(tree: &Rc<Tree>) -> Self {
         parts(tree).into_iter().fold(Self::default(), |content, part| match part.kind {
             Kind::Apply(..) => content + Self { functions: 1, ..Self::default() },
             Kind::Number(value) => content + Self::of_constant(value),
@@ -226,7 +226,7 @@ impl Content {
         })
     }
 
-    pub(super) fn of_graph(graph: &Graph) -> Self {
+    pub fn of_graph(graph: &Graph) -> Self {
         graph.nodes().fold(Self::default(), |content, node| match node {
             Node::Apply(..) => content + Self { functions: 1, ..Self::default() },
             Node::Constant(value) => content + Self::of_constant(*value),
@@ -248,13 +248,13 @@ impl Add for Content {
 
 /// The largest degrees of all comparisons.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Largest {
+pub struct Largest {
     numerator: u64,
     argument: u64,
 }
 
 impl Largest {
-    pub(super) fn compared(&mut self, found: Degree, expected: Degree) {
+    pub fn compared(&mut self, found: Degree, expected: Degree) {
         let difference = found - expected;
         self.numerator = self.numerator.max(if difference.is_zero { 0 } else { difference.numerator });
         self.argument = self.argument.max(difference.argument);
@@ -263,7 +263,7 @@ impl Largest {
     /// A bound on the probability that different values coincide at a random point, in units of `1/p`: those of a
     /// comparison, or two arguments of that many functions, each of which may be replaced by its negative or
     /// reciprocal.
-    pub(super) fn coincidences(self, functions: u64) -> u64 {
+    pub fn coincidences(self, functions: u64) -> u64 {
         let pairs = functions.saturating_mul(4).saturating_pow(2);
         self.numerator.saturating_add(pairs.saturating_mul(self.argument))
     }
@@ -274,7 +274,7 @@ impl Largest {
     /// For `n` fixed points the probability is the `n`-th power of that for one: no element of the field's `2⁶¹ − 1` is
     /// drawn more than 9/8 times as often as another, and `9/8 · 1/(2⁶¹ − 1) < 2⁻⁶⁰`. The number of such choices is
     /// `ways`.
-    pub(super) fn points(self, functions: u64) -> Option<(u32, u32)> {
+    pub fn points(self, functions: u64) -> Option<(u32, u32)> {
         let of_point = 60_u32.saturating_sub(u64::BITS - self.coincidences(functions).leading_zeros());
         let mut ways = 1_u64;
         (1..=MOST_POINTS).find_map(|points| {

@@ -8,18 +8,18 @@ use super::value::Value;
 use crate::declared::{Kind, Name, Shape, Tree};
 
 /// An evaluation with the values of names, and of parts already evaluated.
-pub(super) struct Evaluation<'a, T = f64> {
+pub struct Evaluation<'a, T = f64> {
     values: &'a BTreeMap<Name, Value<T>>,
     /// The values by address; each entry owns its tree, so that the address stays valid.
     known: BTreeMap<*const Tree, (Rc<Tree>, Value<T>)>,
 }
 
 impl<'a, T: Number> Evaluation<'a, T> {
-    pub(super) fn new(values: &'a BTreeMap<Name, Value<T>>) -> Self {
+    pub fn new(values: &'a BTreeMap<Name, Value<T>>) -> Self {
         Self { values, known: BTreeMap::new() }
     }
 
-    pub(super) fn of(&mut self, tree: &Rc<Tree>) -> Value<T> {
+    pub fn of(&mut self, tree: &Rc<Tree>) -> Value<T> {
         if let Some((_, known)) = self.known.get(&Rc::as_ptr(tree)) {
             return known.clone();
         }

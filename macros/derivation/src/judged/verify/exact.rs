@@ -6,7 +6,7 @@ use super::number::Number;
 use super::residue::Residue;
 use super::sample::{Element, Sample};
 use super::series::Series;
-use super::{Sureness, Unconfirmed, reversal};
+use super::{Objection, Sureness, reversal};
 use crate::declared::Role;
 
 /// The number of points if degrees give no bound.
@@ -15,7 +15,7 @@ pub(super) const POINTS: u32 = 3;
 impl Identities<'_> {
     /// The bound on the probability of a wrong result, and whether the Lagrangian is its own adjoint at all points, as
     /// defined by [`reversal`].
-    pub(super) fn confirmed(&self) -> Result<(Sureness, [bool; 3]), Unconfirmed> {
+    pub fn confirmed(&self) -> Result<(Sureness, [bool; 3]), Objection> {
         let (group, mut reversed) = (&self.of.declaration.group, [true; 3]);
         let of_field = |seed: u64| {
             let mut number = Residue::stream(seed);
@@ -33,7 +33,7 @@ impl Identities<'_> {
             self.content(),
             |same| self.degrees(same),
             |seed| {
-                let (element, number) = of_field(seed).ok_or(Unconfirmed::NoValue)?;
+                let (element, number) = of_field(seed).ok_or(Objection::NoValue)?;
                 self.holds_at(element, number, reversal::in_the_field, &mut reversed)
             },
         )?;
@@ -47,7 +47,7 @@ impl Identities<'_> {
         mut number: impl FnMut() -> T,
         reversal: fn(&Sample<T>) -> [bool; 3],
         reversed: &mut [bool; 3],
-    ) -> Result<(), Unconfirmed> {
+    ) -> Result<(), Objection> {
         let sample = Sample::at(self.of, element, &mut number);
         self.hold(&sample, number, &mut same)?;
         if self.of.declaration.role != Role::Force {
@@ -56,7 +56,7 @@ impl Identities<'_> {
         Ok(())
     }
 
-    fn degrees(&self, same: &mut Same<Degree>) -> Result<(), Unconfirmed> {
+    fn degrees(&self, same: &mut Same<Degree>) -> Result<(), Objection> {
         let (declaration, mut number) = (self.of.declaration, Degree::stream());
         let attitudes = degree::attitudes(declaration).count();
         let (element, degree) = degree::element(&declaration.group, attitudes, &mut number);
@@ -68,21 +68,21 @@ impl Identities<'_> {
 }
 
 /// Compares two numbers.
-pub(super) fn same<T: Number>(term: &'static str, found: T, expected: T) -> Result<(), Unconfirmed> {
+pub(super) fn same<T: Number>(term: &'static str, found: T, expected: T) -> Result<(), Objection> {
     match (found.is_defined(), expected.is_defined()) {
-        (_, false) => Err(Unconfirmed::NoValue),
-        (false, true) => Err(Unconfirmed::Undefined(term)),
+        (_, false) => Err(Objection::NoValue),
+        (false, true) => Err(Objection::Undefined(term)),
         _ if (found - expected).is_zero() => Ok(()),
-        _ => Err(Unconfirmed::Disagrees(term)),
+        _ => Err(Objection::Disagrees(term)),
     }
 }
 
 /// Compares at as many points as the degrees require, and returns the bound on the probability of a wrong result.
 pub(super) fn certified(
     content: Content,
-    degrees: impl FnOnce(&mut Same<Degree>) -> Result<(), Unconfirmed>,
-    point: impl FnMut(u64) -> Result<(), Unconfirmed>,
-) -> Result<Sureness, Unconfirmed> {
+    degrees: impl FnOnce(&mut Same<Degree>) -> Result<(), Objection>,
+    point: impl FnMut(u64) -> Result<(), Objection>,
+) -> Result<Sureness, Objection> {
     let mut largest = Largest::default();
     let compared = degrees(&mut |_, found, expected| {
         largest.compared(found, expected);
@@ -103,14 +103,14 @@ pub(super) fn certified(
 fn confirmed(
     count: u32,
     may_be_none: bool,
-    mut point: impl FnMut(u64) -> Result<(), Unconfirmed>,
-) -> Result<(), Unconfirmed> {
-    let (mut left, mut nothing) = (count, Unconfirmed::NoValue);
+    mut point: impl FnMut(u64) -> Result<(), Objection>,
+) -> Result<(), Objection> {
+    let (mut left, mut nothing) = (count, Objection::NoValue);
     for seed in 1..=u64::from(count + SPARE) {
         match point(seed) {
             Ok(()) => left -= 1,
-            Err(Unconfirmed::NoValue) => {}
-            Err(unconfirmed @ Unconfirmed::Undefined(_)) => nothing = unconfirmed,
+            Err(Objection::NoValue) => {}
+            Err(unconfirmed @ Objection::Undefined(_)) => nothing = unconfirmed,
             Err(unconfirmed) => return Err(unconfirmed),
         }
         if left == 0 {

@@ -15,13 +15,13 @@ use super::number::Number;
 use super::residue::Residue;
 use super::sample::{Element, Sample, Subject, exponentials, products};
 use super::value::Value;
-use super::{Unconfirmed, Values, algebra, components_of, dot, evaluated, evaluated_from, increments, shares};
+use super::{Objection, Values, algebra, components_of, dot, evaluated, evaluated_from, increments, shares};
 use crate::declared::{FieldKind, Name, Role};
 use crate::judged::places::{places, shape, variables};
-use crate::mathematics::derive::Derived;
+use crate::mathematics::derive::Derivation;
 use crate::mathematics::symbolic::{Rational, Stage, SymbolId};
 use crate::program::{
-    Beginning, ByNumbers, Derivatives, Graph, Handed, Kernel, NodeId, Outputs, Scalariser, Stages, WeightedGradient,
+    Beginning, ByNumbers, Derivatives, Graph, Handover, Kernel, NodeId, Outputs, Scalariser, Stages, WeightedGradient,
     components, square,
 };
 
@@ -29,23 +29,23 @@ use crate::program::{
 type Inputs<T> = BTreeMap<SymbolId, Value<T>>;
 
 /// The comparison of a found value with an expected one, for a named term.
-pub(super) type Same<'a, T> = dyn FnMut(&'static str, T, T) -> Result<(), Unconfirmed> + 'a;
+pub type Same<'a, T> = dyn FnMut(&'static str, T, T) -> Result<(), Objection> + 'a;
 
 /// The derived terms as operations.
-pub(super) struct Terms {
-    pub(super) graph: Graph,
+pub struct Terms {
+    pub graph: Graph,
     /// The Jacobian, built first, so that its nodes are those of a graph with nothing else in it.
-    pub(super) jacobian: Vec<NodeId>,
-    momentum: Vec<NodeId>,
+    pub jacobian: Vec<NodeId>,
+    pub momentum: Vec<NodeId>,
     /// The term is empty for a force, like those below.
-    right: Vec<NodeId>,
-    left: Vec<NodeId>,
-    diamond: Vec<NodeId>,
-    energy: Option<NodeId>,
+    pub right: Vec<NodeId>,
+    pub left: Vec<NodeId>,
+    pub diamond: Vec<NodeId>,
+    pub energy: Option<NodeId>,
 }
 
 impl Terms {
-    fn new(derived: &Derived, role: Role, Beginning { mut graph, given }: Beginning) -> Self {
+    fn new(derived: &Derivation, role: Role, Beginning { mut graph, given }: Beginning) -> Self {
         let jacobian = square(&mut graph, derived, &given, &derived.jacobian);
         let momentum = components(&mut graph, derived, &given, &derived.momentum);
         let none = Self { momentum, jacobian, right: vec![], left: vec![], diamond: vec![], energy: None, graph };
@@ -61,12 +61,12 @@ impl Terms {
 }
 
 /// A declaration with its derivation.
-pub(super) struct Identities<'a> {
-    pub(super) of: Subject<'a>,
-    kernel: &'a Kernel,
-    pub(super) stages: Stages,
-    pub(super) terms: Terms,
-    pub(super) derivatives: Option<Derivatives>,
+pub struct Identities<'a> {
+    pub of: Subject<'a>,
+    pub kernel: &'a Kernel,
+    pub stages: Stages,
+    pub terms: Terms,
+    pub derivatives: Option<Derivatives>,
     /// `J`, `s` and `V` of the limit, if derivatives of a step are requested.
     limit: Option<Outputs<[Vec<NodeId>; 3]>>,
 }
@@ -94,21 +94,21 @@ impl<T: Number> Point<'_, T> {
         matrix: &[T],
         along: &[Dual<T>],
         same: &mut Same<T>,
-    ) -> Result<(), Unconfirmed> {
+    ) -> Result<(), Objection> {
         let mut rows = matrix.chunks(along.len()).zip(along);
         rows.try_for_each(|(row, one)| same(term, dot(row, &self.direction), one.slope))
     }
 }
 
 /// The declared derivatives along the direction of a point.
-struct Declared<T> {
+struct DeclaredValues<T> {
     momentum: T,
     /// The momentum at the end of the step.
     left: T,
 }
 
 impl<'a> Identities<'a> {
-    pub(super) fn new(of: Subject<'a>, kernel: &'a Kernel) -> Self {
+    pub fn new(of: Subject<'a>, kernel: &'a Kernel) -> Self {
         let Subject { declaration, lowered, derived, .. } = of;
         let derivatives =
             derived.ends.as_ref().map(|ends| Derivatives::new(derived, ends, &places(declaration, &lowered.names)));
@@ -119,7 +119,7 @@ impl<'a> Identities<'a> {
     }
 
     /// The functions and constants of the declaration and of all graphs.
-    pub(super) fn content(&self) -> Content {
+    pub fn content(&self) -> Content {
         let derivatives = self.derivatives.iter().map(|all| &all.graph);
         let limit = self.limit.iter().map(|(graph, _)| graph);
         let graphs = [&self.terms.graph, &self.kernel.graph].into_iter().chain(derivatives).chain(limit);
@@ -128,7 +128,7 @@ impl<'a> Identities<'a> {
 
     /// Whether the momentum and its Jacobian have values at the identity, where a step begins: in the field only a
     /// division by zero and a root or a logarithm of zero have none.
-    pub(super) fn are_smooth(&self) -> bool {
+    pub fn are_smooth(&self) -> bool {
         let identity = Element::identity(&self.of.declaration.group);
         let sample: Sample<Residue> = Sample::at(self.of, identity, &mut Residue::stream(1));
         let outputs = [self.terms.momentum.as_slice(), &self.terms.jacobian].concat();
@@ -136,12 +136,12 @@ impl<'a> Identities<'a> {
     }
 
     /// Compares everything at one point, along a direction of these numbers.
-    pub(super) fn hold<T: Number>(
+    pub fn hold<T: Number>(
         &self,
         sample: &Sample<T>,
         mut number: impl FnMut() -> T,
         same: &mut Same<T>,
-    ) -> Result<(), Unconfirmed> {
+    ) -> Result<(), Objection> {
         let group = &self.of.derived.group;
         let mut vector = || group.generators.iter().map(|_| number()).collect::<Vec<T>>();
         let (direction, target, weights) = (vector(), vector(), [vector(), vector()]);
@@ -164,7 +164,7 @@ impl<'a> Identities<'a> {
 
     /// The declared work along the direction, of the displacement at each end alone; their sum must be the work of
     /// both.
-    fn declared_work<T: Number>(&self, point: &Point<T>, same: &mut Same<T>) -> Result<Declared<T>, Unconfirmed> {
+    fn declared_work<T: Number>(&self, point: &Point<T>, same: &mut Same<T>) -> Result<DeclaredValues<T>, Objection> {
         let group = &self.of.derived.group;
         let work = |before: T, after: T| {
             let mut values = point.sample.values.clone();
@@ -177,11 +177,15 @@ impl<'a> Identities<'a> {
         };
         let (before, after) = (work(T::ONE, T::ZERO), work(T::ZERO, T::ONE));
         same("force of both displacements", work(T::ONE, T::ONE), before + after)?;
-        Ok(Declared { momentum: -before, left: after })
+        Ok(DeclaredValues { momentum: -before, left: after })
     }
 
     /// Compares both momentum maps, the diamond and the energy with derivatives of the declared Lagrangian.
-    fn lagrangian_holds<T: Number>(&self, point: &Point<T>, same: &mut Same<T>) -> Result<Declared<T>, Unconfirmed> {
+    fn lagrangian_holds<T: Number>(
+        &self,
+        point: &Point<T>,
+        same: &mut Same<T>,
+    ) -> Result<DeclaredValues<T>, Objection> {
         let (group, dual) = (&self.of.derived.group, &point.dual);
         let [forwards, backwards] = &point.exponentials;
         let at_increment = |f: &[Value<Dual<T>>]| {
@@ -207,7 +211,7 @@ impl<'a> Identities<'a> {
         for &found in energy {
             same("discrete energy", found, -self.at(&at_step).slope)?;
         }
-        Ok(Declared { momentum: right + carried, left })
+        Ok(DeclaredValues { momentum: right + carried, left })
     }
 
     /// Compares the momentum with the declaration, and the Jacobian with the momentum's derivative; returns the
@@ -215,9 +219,9 @@ impl<'a> Identities<'a> {
     fn momentum_holds<T: Number>(
         &self,
         point: &Point<T>,
-        declared: &Declared<T>,
+        declared: &DeclaredValues<T>,
         same: &mut Same<T>,
-    ) -> Result<Vec<T>, Unconfirmed> {
+    ) -> Result<Vec<T>, Objection> {
         let (graph, dual) = (&self.terms.graph, &point.dual);
         let along = evaluated(graph, &self.terms.momentum, &dual.inputs_at(&point.turned, &dual.values));
         let momentum: Vec<T> = along.iter().map(|one| one.value).collect();
@@ -233,13 +237,13 @@ impl<'a> Identities<'a> {
         &self,
         point: &Point<T>,
         momentum: &[T],
-        declared: &Declared<T>,
+        declared: &DeclaredValues<T>,
         same: &mut Same<T>,
-    ) -> Result<(), Unconfirmed> {
+    ) -> Result<(), Objection> {
         let (sample, kernel) = (point.sample, self.kernel);
         // The solve finds `F` in `U(F) = a` with `a = μ + k₀`, which mustn't depend on `F`.
         if kernel.kick_before.iter().any(|&kick| kernel.graph.stage(kick) > Stage::Step) {
-            return Err(Unconfirmed::Disagrees("kick before the solve"));
+            return Err(Objection::Disagrees("kick before the solve"));
         }
         let (dimension, group) = (momentum.len(), &self.of.derived.group);
         let Element { matrices, inverses, coordinates } = &sample.element;
@@ -290,7 +294,7 @@ impl<'a> Identities<'a> {
             let own = inputs.iter().filter(|(id, _)| is_meant(self.of.derived.symbols.get(**id).stage));
             own.map(|(id, value)| (*id, value.clone())).collect()
         };
-        let numbers = |handed: &Handed, inputs: Inputs<T>, given: &BTreeMap<NodeId, T>| -> BTreeMap<NodeId, T> {
+        let numbers = |handed: &Handover, inputs: Inputs<T>, given: &BTreeMap<NodeId, T>| -> BTreeMap<NodeId, T> {
             let nodes: Vec<NodeId> = handed.keys().copied().collect();
             let numbers = evaluated_from(graph, &nodes, &inputs, given);
             handed.iter().map(|(&id, &place)| (id, numbers[place])).collect()
@@ -303,7 +307,7 @@ impl<'a> Identities<'a> {
     }
 
     /// The inputs of all stages: the sample, the moved parameters, a random covector and a velocity.
-    fn inputs_of_stages<T: Number>(&self, sample: &Sample<T>, [target, along]: [&[T]; 2]) -> Inputs<T> {
+    pub fn inputs_of_stages<T: Number>(&self, sample: &Sample<T>, [target, along]: [&[T]; 2]) -> Inputs<T> {
         let (mut inputs, directions) = (sample.inputs(), &self.of.derived.directions);
         let carried = sample.moved([&sample.element.inverses, &sample.element.matrices]);
         for (index, &next) in directions.next.iter().enumerate() {
@@ -335,10 +339,10 @@ impl<'a> Identities<'a> {
         &self,
         point: &Point<T>,
         momentum: &[T],
-        declared: &Declared<T>,
+        declared: &DeclaredValues<T>,
         number: &mut impl FnMut() -> T,
         same: &mut Same<T>,
-    ) -> Result<(), Unconfirmed> {
+    ) -> Result<(), Objection> {
         let Some(all) = &self.derivatives else { return Ok(()) };
         let (dual, direction, [u, p], [forwards, backwards]) =
             (&point.dual, &point.direction, &point.weights, &point.exponentials);
@@ -433,25 +437,5 @@ impl<T: Number> Changes<T> {
             sums.iter_mut().zip(derivatives).for_each(|(sum, &one)| *sum = *sum + change * one);
         }
         sums
-    }
-}
-
-#[cfg(test)]
-impl Identities<'_> {
-    /// All emitted values at a point.
-    pub(super) fn emitted<T: Number>(&self, sample: &Sample<T>, mut number: impl FnMut() -> T) -> Vec<T> {
-        let mut vector = || self.of.derived.group.generators.iter().map(|_| number()).collect::<Vec<T>>();
-        let inputs = self.inputs_of_stages(sample, [&vector(), &vector()]);
-        let Terms { graph, momentum, jacobian, right, left, diamond, energy } = &self.terms;
-        let terms = [momentum.as_slice(), jacobian, right, left, diamond, energy.as_slice()].concat();
-        let kernel = self.kernel;
-        let stages = [&kernel.kick_before, &kernel.residual, &kernel.jacobian, &kernel.kick_after, &kernel.moved];
-        let change = kernel.kick_derivative.clone().unwrap_or_default();
-        let stages = stages.into_iter().chain([&change]).flatten().copied().collect::<Vec<_>>();
-        let mut all = [evaluated(graph, &terms, &inputs), evaluated(&kernel.graph, &stages, &inputs)].concat();
-        if let Some(Derivatives { graph, blocks, momenta, .. }) = &self.derivatives {
-            all.extend(evaluated(graph, &[blocks.as_flattened().concat(), momenta.clone()].concat(), &inputs));
-        }
-        all
     }
 }

@@ -13,7 +13,7 @@ use crate::program::{Graph, NodeId, components, square};
 
 /// Properties of `K(F)` in `l_d = K(F)/h + …` at sample values of the parameters.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum KineticPart {
+pub enum KineticPart {
     /// The first derivative vanishes, and the second, `J`, is invertible at some values.
     Regular,
     /// The first derivative doesn't vanish; it would if these fields were symmetric.
@@ -27,7 +27,7 @@ pub(crate) enum KineticPart {
 }
 
 /// The kinetic part by its first and second derivatives at several values of the parameters.
-pub(crate) fn kinetic_part(of: Subject) -> KineticPart {
+pub fn kinetic_part(of: Subject) -> KineticPart {
     let Subject { declaration, lowered, derived, .. } = of;
     let samples: Vec<Sample> = Sample::draws(of).take(SAMPLES).collect();
     let (mut graph, none) = (Graph::default(), BTreeMap::new());

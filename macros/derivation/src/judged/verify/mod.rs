@@ -49,22 +49,21 @@
 mod cayley;
 mod constraint;
 mod continuous;
-mod degree;
-mod dual;
-mod evaluation;
+pub mod degree;
+pub mod dual;
+pub mod evaluation;
 mod exact;
-mod identities;
+pub mod identities;
 mod inertia;
 mod linear;
-mod number;
+pub mod number;
 mod orders;
-mod residue;
+mod outcome;
+pub mod residue;
 mod reversal;
-mod sample;
-mod series;
-#[cfg(test)]
-mod tests;
-mod value;
+pub mod sample;
+pub mod series;
+pub mod value;
 
 use std::collections::BTreeMap;
 
@@ -73,18 +72,19 @@ use crate::declared::{Declaration, FieldKind, Name, Role, Shape};
 use crate::mathematics::derive::SelfAdjointness;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId};
-use crate::program::{Derivatives, Graph, Input, Kernel, Node, NodeId, Outputs, Stages};
+use crate::program::{Graph, Input, Kernel, Node, NodeId};
 
-pub(super) use cayley::{is_cayley_coordinates, nilpotency};
-pub(crate) use constraint::Held;
-pub(super) use constraint::{Row, constraint};
-pub(crate) use continuous::Motion;
+pub use cayley::{is_cayley_coordinates, nilpotency};
+pub use constraint::ConstraintSlopes;
+pub use constraint::{Row, constraint};
+pub use continuous::Motion;
 use evaluation::Evaluation;
 use identities::{Identities, Terms};
-pub(super) use inertia::{KineticPart, kinetic_part};
+pub use inertia::{KineticPart, kinetic_part};
 use number::Number;
-pub(super) use orders::{TermMistake, not_smooth_at_identity, term_mistakes, without_value};
-pub(crate) use sample::Subject;
+pub use orders::{TermMistake, not_smooth_at_identity, term_mistakes, without_value};
+pub use outcome::{Findings, Objection, Sureness};
+pub use sample::Subject;
 use sample::{Element, Sample};
 use value::Value;
 
@@ -99,70 +99,20 @@ fn over<T: Number, U>(values: &Values<T>, of: impl Fn(T) -> U) -> Values<U> {
     values.iter().map(|(name, value)| (*name, value.over(&of))).collect()
 }
 
-/// The reason why a derivation, or its expression, isn't confirmed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Unconfirmed {
-    /// A derived term disagrees with the declaration.
-    Disagrees(&'static str),
-    /// The declaration has no value at a point, or at any of the points drawn.
-    NoValue,
-    /// A derived term has no value at a point where the declaration has one.
-    Undefined(&'static str),
-    /// The declaration isn't smooth at `F = I`.
-    NotSmooth,
-}
-
-/// The results for a declaration that the self-check confirms.
-pub(crate) struct Findings {
-    pub(crate) self_adjointness: SelfAdjointness,
-    pub(crate) sureness: Sureness,
-    /// The verified graphs, to be emitted; the derivatives of a step if they are requested.
-    pub(crate) stages: Stages,
-    pub(crate) jacobian: Outputs,
-    pub(crate) derivatives: Option<Derivatives>,
-    /// The hypotheses of the equations, which are found later.
-    pub(crate) hypotheses: Vec<String>,
-}
-
-/// The bound on the probability that a wrong derivation passes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Sureness {
-    /// The probability is below `2⁻ⁿ`.
-    Certified(u32),
-    /// The degrees are too high for a useful bound.
-    TooHigh,
-    /// A constant has a numerator or a denominator that is a multiple of `2⁶¹ − 1`.
-    Multiple,
-    /// The group has no Cayley transforms: the comparison was in power series, without a bound.
-    Series,
-}
-
-impl Sureness {
-    /// The weaker of two bounds.
-    pub(super) fn and(self, other: Self) -> Self {
-        match (self, other) {
-            (Self::Certified(one), Self::Certified(other)) => Self::Certified(one.min(other)),
-            (Self::Certified(_), lesser) | (lesser, _) => lesser,
-        }
-    }
-}
-
 /// Verifies the whole derivation. The error is the first term that disagrees.
-pub(super) fn verify(of: Subject, kernel: &Kernel) -> Result<Findings, Unconfirmed> {
+pub fn verify(of: Subject, kernel: &Kernel) -> Result<Findings, Objection> {
     // Real numbers decide whether there is a value: the field has roots of all its elements.
     if Sample::draws(of).next().is_none() {
-        return Err(Unconfirmed::NoValue);
+        return Err(Objection::NoValue);
     }
     let identities = Identities::new(of, kernel);
     let (sureness, reversed) = identities.confirmed()?;
     if sureness != Sureness::Multiple && !identities.are_smooth() {
-        return Err(Unconfirmed::NotSmooth);
+        return Err(Objection::NotSmooth);
     }
     let self_adjointness = match of.declaration.role {
         Role::Force => SelfAdjointness::No,
-        _ => {
-            reversal::self_adjointness(reversed, of.derived.adjoint_defect.is_zero()).map_err(Unconfirmed::Disagrees)?
-        }
+        _ => reversal::self_adjointness(reversed, of.derived.adjoint_defect.is_zero()).map_err(Objection::Disagrees)?,
     };
     let Identities { stages, terms: Terms { graph, jacobian, .. }, derivatives, .. } = identities;
     let (jacobian, hypotheses) = ((graph, jacobian), Vec::new());

@@ -7,7 +7,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use crate::mathematics::symbolic::{Function, Rational};
 
 /// Numbers with the operations of the declared syntax.
-pub(super) trait Number:
+pub trait Number:
     Copy + Debug + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     const ZERO: Self;
@@ -70,7 +70,7 @@ impl Number for f64 {
 }
 
 /// A power by repeated squaring.
-pub(super) fn raised<T: Number>(x: T, exponent: u64) -> T {
+pub fn raised<T: Number>(x: T, exponent: u64) -> T {
     let (mut power, mut square) = (T::ONE, x);
     for bit in 0..u64::BITS - exponent.leading_zeros() {
         if exponent >> bit & 1 == 1 {
@@ -82,7 +82,7 @@ pub(super) fn raised<T: Number>(x: T, exponent: u64) -> T {
 }
 
 /// `f′(x)`, where `value` returns `f(x)`.
-pub(super) fn derivative<T: Number>(function: Function, x: T, value: impl FnOnce() -> T) -> T {
+pub fn derivative<T: Number>(function: Function, x: T, value: impl FnOnce() -> T) -> T {
     let of = |numerator, denominator| T::of(Rational::new(numerator, denominator));
     match function {
         Function::Sqrt => of(1, 2) / value(),
@@ -104,7 +104,7 @@ pub(super) fn derivative<T: Number>(function: Function, x: T, value: impl FnOnce
 /// c_{k+2} = (1/k! − c_k)/q
 /// 2 u G′ = 1 − s G      u G⁽ᵏ⁺²⁾ = (k + 1)² G⁽ᵏ⁾ − (k + 3/2) s G⁽ᵏ⁺¹⁾      u = n(1 − n),  s = 1 − 2n
 /// ```
-pub(super) fn of_those_below<T: Number>(function: Function, x: T) -> Option<T> {
+pub fn of_those_below<T: Number>(function: Function, x: T) -> Option<T> {
     let of = |numerator, denominator| T::of(Rational::new(numerator, denominator));
     let (rest, s) = (T::ONE - x, T::ONE - x - x);
     match function {

@@ -24,7 +24,7 @@ const MOST_FACTORS: usize = 10;
 
 /// A mistake in a term.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum TermMistake {
+pub enum TermMistake {
     /// A divisor is zero for all parameters.
     ZeroDivisor,
     /// The argument of a root or a logarithm is zero for all parameters.
@@ -39,6 +39,12 @@ pub(crate) enum TermMistake {
     TooSingular(i32),
     /// The term doesn't depend on `F`.
     Constant,
+    /// The term is zero for all `F` and all parameters.
+    Zero,
+    /// The terms with `F` alone are together the same for all `F`.
+    Cancelling,
+    /// The whole Lagrangian is the same for all `F`, velocities and advected parameters.
+    NoMotion,
     /// Virtual work is of this order in `h`, not of the first.
     Work(i32),
     /// The work is zero for all parameters.
@@ -46,7 +52,7 @@ pub(crate) enum TermMistake {
 }
 
 /// The mistakes of the terms, at their places; empty if a constant vanishes in the field alone.
-pub(crate) fn term_mistakes(declaration: &Declaration, tree: &Rc<Tree>) -> Vec<(Rc<Tree>, TermMistake)> {
+pub fn term_mistakes(declaration: &Declaration, tree: &Rc<Tree>) -> Vec<(Rc<Tree>, TermMistake)> {
     if Content::of_tree(tree).has_multiple {
         return Vec::new();
     }
@@ -55,32 +61,47 @@ pub(crate) fn term_mistakes(declaration: &Declaration, tree: &Rc<Tree>) -> Vec<(
     if let Some(found) = singular(tree, turned).or_else(|| function_of_step(tree, moving)) {
         return vec![found];
     }
+    let is_continuous = declaration.continuous.is_some();
     // The discretisation of an `l` has the right order as a whole; its terms needn't.
-    if declaration.continuous.is_some() {
+    if is_continuous && has(tree, |kind| IS_INCREMENT(kind) || IS_STEP(kind)) {
         return Vec::new();
     }
     let at = points.each_ref().map(Evaluation::new);
     let mut search = Search { role: declaration.role, at, splits: MOST_SPLITS, found: Vec::new() };
     let whole = search.behaviour(tree);
+    let terms = search.terms(tree);
+    search.report_zero(&terms);
+    let is_idle = search.role == Role::Lagrangian && whole.is_idle() && search.found.is_empty();
+    if is_idle && !search.has_written_zero(tree) {
+        let is_one = terms.len() == 1 && has(tree, IS_INCREMENT);
+        return vec![(tree.clone(), if is_one { TermMistake::Constant } else { TermMistake::NoMotion })];
+    }
+    if is_continuous {
+        return search.found;
+    }
+    search.splits = MOST_SPLITS;
     let is_too_large = search.too_large(tree).is_some();
     match search.role {
         Role::Force if whole.along.is_zero() => return vec![(tree.clone(), TermMistake::NoWork)],
         // Work that isn't linear in the displacements is reported by the derivation.
         Role::Force if !(whole.value - whole.at_rest).is_zero() => {}
         _ if is_too_large => search.report_too_large(tree),
-        _ => search.report_vanishing(tree, &whole),
+        _ => search.report_vanishing(&terms, &whole),
+    }
+    if search.found.is_empty() {
+        search.report_cancelling(&terms);
     }
     search.found
 }
 
 /// The part that isn't smooth at `F = I`: a divisor, or the argument of a function, is zero there.
-pub(crate) fn not_smooth_at_identity(declaration: &Declaration, tree: &Rc<Tree>) -> Option<(Rc<Tree>, TermMistake)> {
+pub fn not_smooth_at_identity(declaration: &Declaration, tree: &Rc<Tree>) -> Option<(Rc<Tree>, TermMistake)> {
     let [.., at_rest, _] = &points(declaration);
     singular(tree, at_rest)
 }
 
 /// The first part without a value at all of the drawn parameters, if there is one.
-pub(crate) fn without_value(declaration: &Declaration, tree: &Rc<Tree>) -> Option<Rc<Tree>> {
+pub fn without_value(declaration: &Declaration, tree: &Rc<Tree>) -> Option<Rc<Tree>> {
     let points: Vec<super::Values<f64>> = draws(declaration).map(|(_, values)| values).collect();
     let mut at_points: Vec<Evaluation> = points.iter().map(Evaluation::new).collect();
     let mut is_defined =
@@ -91,7 +112,7 @@ pub(crate) fn without_value(declaration: &Declaration, tree: &Rc<Tree>) -> Optio
 type Values = super::Values<Series>;
 
 /// Numbers for all names, with `h` itself: at some `F`, at another, at `F = exp(h ξ̂)`, at `F = I`, and there with
-/// other advected parameters, or for a force with twice the displacements.
+/// other velocities and advected parameters, or for a force with twice the displacements.
 fn points(declaration: &Declaration) -> [Values; 5] {
     let (group, mut number) = (&declaration.group, Residue::stream(1));
     let [turned, turned_further] = [(); 2].map(|()| {
@@ -111,6 +132,8 @@ fn points(declaration: &Declaration) -> [Values; 5] {
     let others = parameters(declaration, &mut number).into_iter();
     let is_moved = |name: Name| declaration.role != Role::Force && matches!(name, Name::Advected(_));
     elsewhere.extend(others.filter(|(name, _)| is_moved(*name)));
+    let others: Vec<Series> = group.generators.iter().map(|_| number()).collect();
+    elsewhere.extend(velocities(group, &others));
     for (name, value) in &mut elsewhere {
         if matches!(name, Name::DisplacementBefore(_) | Name::DisplacementAfter(_)) {
             *value = value.plus(value);
@@ -129,13 +152,26 @@ fn points(declaration: &Declaration) -> [Values; 5] {
 struct Behaviour {
     /// The term at `F = exp(h ξ̂)`; for a Lagrangian its difference to `F = I`.
     along: Series,
-    /// The term at `F = I`: for a Lagrangian its difference to other advected parameters, for a force the difference
-    /// between twice the displacements and these.
+    /// The term at `F = I`: for a Lagrangian its difference to other velocities and advected parameters, for a force
+    /// the difference to twice the displacements.
     at_rest: Series,
     /// The value at `F = I`.
     value: Series,
     /// The difference between two fixed `F`.
     fixed: Series,
+    /// The value at a fixed `F`.
+    turned: Series,
+}
+
+impl Behaviour {
+    /// Whether it is the same for all `F`, velocities and advected parameters, or of a force for all displacements.
+    fn is_idle(&self) -> bool {
+        [self.along, self.at_rest, self.fixed].into_iter().all(Series::is_zero)
+    }
+
+    fn is_zero(&self) -> bool {
+        self.is_idle() && self.value.is_zero() && self.turned.is_zero()
+    }
 }
 
 struct Search<'a> {
@@ -157,9 +193,9 @@ impl Search<'_> {
     fn behaviour(&mut self, tree: &Rc<Tree>) -> Behaviour {
         let [turned, further, moving, value, elsewhere] = self.at.each_mut().map(|at| at.of(tree).first());
         if self.role == Role::Force {
-            return Behaviour { along: moving, at_rest: elsewhere - value, value, fixed: value };
+            return Behaviour { along: moving, at_rest: elsewhere - value, value, fixed: value, turned };
         }
-        Behaviour { along: moving - value, at_rest: value - elsewhere, value, fixed: turned - further }
+        Behaviour { along: moving - value, at_rest: value - elsewhere, value, fixed: turned - further, turned }
     }
 
     /// The mistake for which the limit `h → 0` doesn't exist, if there is one. The first derivative of the kinetic part
@@ -190,24 +226,66 @@ impl Search<'_> {
         }
     }
 
-    /// Reports the terms whose effect vanishes with the step, or that have none.
-    fn report_vanishing(&mut self, tree: &Rc<Tree>, whole: &Behaviour) {
-        if let Some(parts) = self.split(tree) {
-            for part in &parts {
-                self.report_vanishing(part, whole);
-            }
-            return;
+    /// The terms of a sum; a sum that is zero is one term.
+    fn terms(&mut self, tree: &Rc<Tree>) -> Vec<Rc<Tree>> {
+        let is_zero = self.behaviour(tree).is_zero();
+        match (!is_zero).then(|| self.split(tree)).flatten() {
+            Some(parts) => parts.iter().flat_map(|part| self.terms(part)).collect(),
+            None => vec![tree.clone()],
         }
-        let Behaviour { along, at_rest, value, fixed } = self.behaviour(tree);
+    }
+
+    /// Whether a number in it, or what is computed from numbers alone, is zero: a macro may have written it.
+    fn has_written_zero(&mut self, tree: &Rc<Tree>) -> bool {
+        let [at, ..] = &mut self.at;
+        let is_number =
+            |part: &Rc<Tree>| part.shape == Shape::Scalar && !has(part, |kind| matches!(kind, Kind::Name(_)));
+        parts(tree).into_iter().any(|part| is_number(part) && at.of(part).first().is_zero())
+    }
+
+    /// At the terms that are zero on the whole group.
+    fn report_zero(&mut self, terms: &[Rc<Tree>]) {
+        for term in terms {
+            if self.behaviour(term).is_zero() && !self.has_written_zero(term) {
+                self.found.push((term.clone(), TermMistake::Zero));
+            }
+        }
+    }
+
+    /// At the first of the terms with `F` alone, where their sum is constant.
+    fn report_cancelling(&mut self, terms: &[Rc<Tree>]) {
+        let is_meant = |term: &&Rc<Tree>| has(term, IS_INCREMENT) && !has(term, IS_ADVECTED);
+        let mut with_increment = terms.iter().filter(is_meant).peekable();
+        let Some(first) = with_increment.peek().filter(|_| self.role == Role::Lagrangian).copied() else { return };
+        let mut sum = [Series::ZERO; 2];
+        for term in with_increment {
+            let Behaviour { along, fixed, .. } = self.behaviour(term);
+            sum = [sum[0] + along, sum[1] + fixed];
+        }
+        if sum.into_iter().all(Series::is_zero) && !terms.iter().any(|term| self.has_written_zero(term)) {
+            self.found.push((first.clone(), TermMistake::Cancelling));
+        }
+    }
+
+    /// Reports the terms whose effect vanishes with the step, or that have none.
+    fn report_vanishing(&mut self, terms: &[Rc<Tree>], whole: &Behaviour) {
+        for term in terms {
+            let mistake = self.vanishing(term, whole);
+            self.found.extend(mistake.map(|mistake| (term.clone(), mistake)));
+        }
+    }
+
+    fn vanishing(&mut self, term: &Rc<Tree>, whole: &Behaviour) -> Option<TermMistake> {
+        let Behaviour { along, at_rest, value, fixed, .. } = self.behaviour(term);
         if ![along, at_rest, value].iter().all(|series| series.is_defined()) {
-            return;
+            return None;
         }
         let second = |series: Series| series.order().filter(|&order| order == 2);
-        let mistake = if has(tree, IS_POWER) {
+        let mistake = if has(term, IS_POWER) {
             None
         } else if self.role == Role::Force {
-            second(if has(tree, IS_ADVECTED) { at_rest } else { along }).map(TermMistake::Work)
-        } else if has(tree, IS_ADVECTED) {
+            second(if has(term, IS_ADVECTED) { at_rest } else { along }).map(TermMistake::Work)
+        } else if has(term, IS_ADVECTED) {
             // A term that is zero at F = I is a correction, as the difference of a potential at both ends is.
             second(at_rest).map(TermMistake::Potential)
         } else {
@@ -218,10 +296,9 @@ impl Search<'_> {
             along.order().zip(fixed.order()).filter(is_square).map(|(order, _)| TermMistake::Vanishing(order))
         };
         // A constant that another term cancels is right.
-        let is_idle = || along.is_zero() && at_rest.is_zero() && has(tree, IS_INCREMENT) && !has(tree, IS_POWER);
+        let is_idle = || along.is_zero() && at_rest.is_zero() && has(term, IS_INCREMENT) && !has(term, IS_POWER);
         let is_constant = || self.role != Role::Force && is_idle() && low(value).and(low(whole.value)).is_some();
-        let mistake = mistake.or_else(|| is_constant().then_some(TermMistake::Constant));
-        self.found.extend(mistake.map(|mistake| (tree.clone(), mistake)));
+        mistake.or_else(|| is_constant().then_some(TermMistake::Constant))
     }
 }
 

@@ -12,24 +12,24 @@ use super::{
     DRAWS, Values, algebra, cayley, displacements, exponential, increments, over, parameters, shares, stream,
     translation, velocities,
 };
-use crate::declared::lower::Lowered;
+use crate::declared::lower::Reading;
 use crate::declared::{Declaration, FieldKind, Name, Role, Tree};
-use crate::mathematics::derive::{Derived, Seen};
+use crate::mathematics::derive::{Derivation, View};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId, Variance};
 
 /// An element of the group; for a product, an element of each factor.
 #[derive(Clone, Debug)]
-pub(super) struct Element<T = f64> {
-    pub(super) matrices: Vec<Value<T>>,
-    pub(super) inverses: Vec<Value<T>>,
+pub struct Element<T = f64> {
+    pub matrices: Vec<Value<T>>,
+    pub inverses: Vec<Value<T>>,
     /// The coordinates `y` with `F = cay(2y)`, or `d = 2y` for a translation, on products of SO(3) and translations
     /// alone.
-    pub(super) coordinates: Vec<T>,
+    pub coordinates: Vec<T>,
 }
 
 impl<T: Number> Element<T> {
-    pub(super) fn identity(group: &Group) -> Self {
+    pub fn identity(group: &Group) -> Self {
         let matrices: Vec<Value<T>> = group.factors().iter().map(|own| Value::identity(own.size)).collect();
         Self { inverses: matrices.clone(), matrices, coordinates: vec![T::ZERO; group.dimension()] }
     }
@@ -45,7 +45,7 @@ impl<T: Number> Element<T> {
     ///
     /// If `E³ = c E`, `cay(tE)` is an element of the one-parameter group of `E`, rational in `t`; this holds for all
     /// generators of the built-in groups. The products over all generators fill a neighbourhood of the identity.
-    pub(super) fn by_cayley(group: &Group, number: &mut impl FnMut() -> T) -> Option<Self> {
+    pub fn by_cayley(group: &Group, number: &mut impl FnMut() -> T) -> Option<Self> {
         let mut element = Self::identity(group);
         element.coordinates.fill_with(number);
         let coordinates = element.coordinates.clone();
@@ -59,7 +59,7 @@ impl<T: Number> Element<T> {
     }
 
     /// A product of exponentials of multiples of all generators, which are small or powers of `h`.
-    pub(super) fn by_exponentials(group: &Group, mut number: impl FnMut() -> T) -> Self {
+    pub fn by_exponentials(group: &Group, mut number: impl FnMut() -> T) -> Self {
         let mut element = Self::identity(group);
         let components: Vec<T> = group.generators.iter().map(|_| number()).collect();
         for (factor, (own, share)) in shares(group, &components).enumerate() {
@@ -78,7 +78,7 @@ impl<T: Number> Element<T> {
     }
 
     /// `exp(ε v̂) F`, with the coordinates of `F`.
-    pub(super) fn turned(&self, [forwards, backwards]: &[Vec<Value<Dual<T>>>; 2]) -> Element<Dual<T>> {
+    pub fn turned(&self, [forwards, backwards]: &[Vec<Value<Dual<T>>>; 2]) -> Element<Dual<T>> {
         let still = self.lifted();
         let [matrices, inverses] = [products(forwards, &still.matrices), products(&still.inverses, backwards)];
         Element { matrices, inverses, ..still }
@@ -92,12 +92,12 @@ fn multiples<T: Number>(group: &Group, shares: &[T]) -> impl Iterator<Item = Val
 }
 
 /// The products of the elements of each factor.
-pub(super) fn products<T: Number>(a: &[Value<T>], b: &[Value<T>]) -> Vec<Value<T>> {
+pub fn products<T: Number>(a: &[Value<T>], b: &[Value<T>]) -> Vec<Value<T>> {
     a.iter().zip(b).map(|(a, b)| a.times(b)).collect()
 }
 
 /// `exp(±ε x) = I ± ε x`.
-pub(super) fn exponentials<T: Number>(elements: &[Value<T>]) -> [Vec<Value<Dual<T>>>; 2] {
+pub fn exponentials<T: Number>(elements: &[Value<T>]) -> [Vec<Value<Dual<T>>>; 2] {
     [T::ONE, -T::ONE].map(|sign| {
         let one = |x: &Value<T>| Value::identity(x.rows).plus(&x.over(|x| Dual { value: T::ZERO, slope: sign * x }));
         elements.iter().map(one).collect()
@@ -105,7 +105,7 @@ pub(super) fn exponentials<T: Number>(elements: &[Value<T>]) -> [Vec<Value<Dual<
 }
 
 /// `exp(h ξ̂)`.
-pub(super) fn along_motion(group: &Group, velocity: &[Series]) -> Vec<Value<Series>> {
+pub fn along_motion(group: &Group, velocity: &[Series]) -> Vec<Value<Series>> {
     algebra(group, velocity).iter().map(|x| exponential(&x.map(|entry| entry * Series::STEP))).collect()
 }
 
@@ -119,23 +119,23 @@ fn cube<T: Number>(x: &Value<T>) -> Option<T> {
 
 /// A declaration and its derivation.
 #[derive(Clone, Copy)]
-pub(crate) struct Subject<'a> {
-    pub(crate) declaration: &'a Declaration,
-    pub(crate) tree: &'a Rc<Tree>,
-    pub(crate) lowered: &'a Lowered,
-    pub(crate) derived: &'a Derived,
+pub struct Subject<'a> {
+    pub declaration: &'a Declaration,
+    pub tree: &'a Rc<Tree>,
+    pub lowered: &'a Reading,
+    pub derived: &'a Derivation,
 }
 
 /// Numbers for all names.
 #[derive(Clone)]
-pub(super) struct Sample<'a, T = f64> {
-    pub(super) of: Subject<'a>,
-    pub(super) element: Element<T>,
-    pub(super) values: Values<T>,
+pub struct Sample<'a, T = f64> {
+    pub of: Subject<'a>,
+    pub element: Element<T>,
+    pub values: Values<T>,
 }
 
 /// Real numbers for all names. Later draws have parameters of larger range, and smaller increments.
-pub(super) fn draws(declaration: &Declaration) -> impl Iterator<Item = (Element, Values<f64>)> {
+pub fn draws(declaration: &Declaration) -> impl Iterator<Item = (Element, Values<f64>)> {
     (1..=DRAWS).map(|seed| {
         let mut number = stream(seed);
         // The first fifth of the draws has parameters near one; later ones vary the scale of each, and the sign of
@@ -180,7 +180,7 @@ fn numbers<T: Number>(declaration: &Declaration, element: &Element<T>, number: &
 
 impl<'a> Sample<'a> {
     /// The points at which the declaration has a value.
-    pub(super) fn draws(of: Subject<'a>) -> impl Iterator<Item = Self> {
+    pub fn draws(of: Subject<'a>) -> impl Iterator<Item = Self> {
         let samples = draws(of.declaration).map(move |(element, values)| Self { of, element, values });
         samples.filter(|sample| sample.declared().is_defined())
     }
@@ -188,21 +188,21 @@ impl<'a> Sample<'a> {
 
 impl<'a, T: Number> Sample<'a, T> {
     /// The sample at a group element, from numbers between zero and one.
-    pub(super) fn at(of: Subject<'a>, element: Element<T>, number: &mut impl FnMut() -> T) -> Self {
+    pub fn at(of: Subject<'a>, element: Element<T>, number: &mut impl FnMut() -> T) -> Self {
         Self { of, values: numbers(of.declaration, &element, number), element }
     }
 
-    pub(super) fn lifted(&self) -> Sample<'a, Dual<T>> {
+    pub fn lifted(&self) -> Sample<'a, Dual<T>> {
         Sample { of: self.of, element: self.element.lifted(), values: over(&self.values, Dual::constant) }
     }
 
     /// `l_d` at this point.
-    pub(super) fn declared(&self) -> T {
+    pub fn declared(&self) -> T {
         Evaluation::new(&self.values).of(self.of.tree).first()
     }
 
     /// `−l_d` of the reversed step: at `F⁻¹`, `F⁻¹·w` and `−h`.
-    pub(super) fn reversed(&self) -> T {
+    pub fn reversed(&self) -> T {
         let Element { matrices, inverses, .. } = &self.element;
         let mut values = self.moved([inverses, matrices]);
         values.extend(increments(&self.of.declaration.group, inverses));
@@ -211,12 +211,12 @@ impl<'a, T: Number> Sample<'a, T> {
     }
 
     /// The values of all symbols: of the names, and of the variables that the derivation adds.
-    pub(super) fn inputs(&self) -> BTreeMap<SymbolId, Value<T>> {
+    pub fn inputs(&self) -> BTreeMap<SymbolId, Value<T>> {
         self.inputs_at(&self.element, &self.values)
     }
 
     /// The values of all symbols at another increment, and at other values of names.
-    pub(super) fn inputs_at(&self, element: &Element<T>, values: &Values<T>) -> BTreeMap<SymbolId, Value<T>> {
+    pub fn inputs_at(&self, element: &Element<T>, values: &Values<T>) -> BTreeMap<SymbolId, Value<T>> {
         let (group, directions) = (&self.of.derived.group, &self.of.derived.directions);
         let names = self.of.lowered.names.iter();
         let named = names.filter_map(|(name, symbol)| Some((*symbol, values.get(name)?.clone())));
@@ -237,29 +237,25 @@ impl<'a, T: Number> Sample<'a, T> {
     }
 
     /// The values with all advected parameters moved by a group element, passed with its inverse.
-    pub(super) fn moved(&self, element: [&[Value<T>]; 2]) -> Values<T> {
+    pub fn moved(&self, element: [&[Value<T>]; 2]) -> Values<T> {
         moved(self.of.declaration, &self.values, element)
     }
 }
 
 /// The values with all advected parameters moved by a group element, passed with its inverse.
-pub(super) fn moved<T: Number>(
-    declaration: &Declaration,
-    values: &Values<T>,
-    [g, inverse]: [&[Value<T>]; 2],
-) -> Values<T> {
+pub fn moved<T: Number>(declaration: &Declaration, values: &Values<T>, [g, inverse]: [&[Value<T>]; 2]) -> Values<T> {
     let (mut values, group) = (values.clone(), &declaration.group);
     let added = |moving: &[Value<T>], factor: usize| translation(&moving[factor]);
     for (index, advected) in declaration.advected.iter().enumerate() {
         let Some(w) = values.get_mut(&Name::Advected(index)) else { continue };
         *w = match advected.seen {
-            Seen::Relative { of, from } if group.factor(of).is_added => {
+            View::Relative { of, from } if group.factor(of).is_added => {
                 added(g, from).plus(w).plus(&added(inverse, of))
             }
-            Seen::Configuration(of) if group.factor(of).is_added => w.plus(&added(inverse, of)),
-            Seen::Relative { of, from } => g[from].times(w).times(&inverse[of]),
-            Seen::Configuration(of) => w.times(&inverse[of]),
-            Seen::From(factor) => {
+            View::Configuration(of) if group.factor(of).is_added => w.plus(&added(inverse, of)),
+            View::Relative { of, from } => g[from].times(w).times(&inverse[of]),
+            View::Configuration(of) => w.times(&inverse[of]),
+            View::From(factor) => {
                 let (g, inverse) = (&g[factor], &inverse[factor]);
                 match declaration.advected_kind(index).variance() {
                     Variance::Vector => g.times(w),

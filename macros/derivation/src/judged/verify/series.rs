@@ -7,7 +7,7 @@ use crate::mathematics::symbolic::{Function, Rational};
 
 /// The number of coefficients, from the first nonzero one on.
 const LENGTH: usize = 8;
-const LENGTH_I32: i32 = 8;
+pub const LENGTH_I32: i32 = 8;
 /// The `end` of an exact number.
 const NEVER: i32 = 1_000;
 
@@ -16,7 +16,7 @@ const NONE: Coefficients = [Residue::ZERO; LENGTH];
 
 /// `Σ c_i hⁱ + O(hᵉ)`, from the first power with a nonzero coefficient; undefined if a coefficient is.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Series {
+pub struct Series {
     first: i32,
     /// The order `e` of the remainder.
     end: i32,
@@ -25,7 +25,7 @@ pub(super) struct Series {
 
 impl Series {
     /// `h`.
-    pub(super) const STEP: Self = Self::from_one_coefficient(1, Residue::ONE);
+    pub const STEP: Self = Self::from_one_coefficient(1, Residue::ONE);
 
     const fn from_one_coefficient(first: i32, value: Residue) -> Self {
         let mut coefficients = NONE;
@@ -33,7 +33,7 @@ impl Series {
         Self { first, end: first + LENGTH_I32, coefficients }
     }
 
-    pub(super) fn constant(value: Residue) -> Self {
+    pub fn constant(value: Residue) -> Self {
         if value == Residue::ZERO { Self::ZERO } else { Self::from_one_coefficient(0, value) }
     }
 
@@ -50,16 +50,16 @@ impl Series {
     }
 
     /// The lowest power of `h`; `None` if all known coefficients are zero.
-    pub(super) fn order(&self) -> Option<i32> {
+    pub fn order(&self) -> Option<i32> {
         (!self.is_zero()).then_some(self.first)
     }
 
     /// Whether all coefficients of lower powers are known.
-    pub(super) const fn is_known_below(&self, power: i32) -> bool {
+    pub const fn is_known_below(&self, power: i32) -> bool {
         self.end >= power
     }
 
-    pub(super) fn at(&self, power: i32) -> Residue {
+    pub fn at(&self, power: i32) -> Residue {
         let index = usize::try_from(power - self.first).ok();
         index.and_then(|index| self.coefficients.get(index)).copied().unwrap_or(Residue::ZERO)
     }
@@ -191,101 +191,5 @@ impl Number for Series {
 
     fn is_zero(self) -> bool {
         self.coefficients.iter().all(|c| c.is_zero())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{LENGTH_I32, Series};
-    use crate::judged::verify::number::{Number as _, derivative};
-    use crate::judged::verify::residue::Residue;
-    use crate::mathematics::symbolic::{Function, Rational};
-
-    #[test]
-    fn what_has_no_value() {
-        let (h, zero) = (Series::STEP, Series::ONE - Series::ONE);
-        assert!(zero.is_zero() && (zero * h).is_zero() && zero.order().is_none());
-        for undefined in [Series::ONE / zero, zero.power(-1), h.apply(Function::Sqrt), h.apply(Function::Ln)] {
-            assert!(!undefined.is_defined() && !(undefined * zero + h).is_defined(), "{undefined:?}");
-        }
-        assert!(!(Series::ONE / h).apply(Function::Exp).is_defined());
-    }
-
-    /// That two are the same as far as both are known, which is up to a power at least.
-    fn assert_equal(found: Series, expected: Series, known: i32) {
-        let rest = found - expected;
-        assert!(rest.is_defined() && rest.is_zero() && rest.is_known_below(known), "{found:?} and {expected:?}");
-    }
-
-    /// `a + b h + c h²` of numbers of the field.
-    fn quadratic(next: &mut impl FnMut() -> Residue) -> Series {
-        let h = Series::STEP;
-        let [a, b, c] = [next(), next(), next()].map(Series::constant);
-        a + h * (b + h * c)
-    }
-
-    /// `y' = y/(2x)` for a root, whatever stands in for it, so that `y²/x` stays what it is at the first coefficient.
-    #[test]
-    fn roots_in_the_field() {
-        let (mut next, h) = (Residue::stream(3), Series::STEP);
-        for half in [0, 1, 2] {
-            let x = quadratic(&mut next);
-            let root = (x * h.power(2 * half)).apply(Function::Sqrt);
-            let [first, of_first] = [x.at(0), x.at(0).apply(Function::Sqrt)].map(Series::constant);
-            assert_eq!(root.order(), Some(half));
-            assert_eq!(root.at(half), of_first.at(0));
-            assert_equal(root * root * first, x * h.power(2 * half) * of_first * of_first, LENGTH_I32);
-        }
-        for undefined in [h, h.power(3), Series::UNDEFINED] {
-            assert!(!undefined.apply(Function::Sqrt).is_defined(), "{undefined:?}");
-        }
-    }
-
-    /// Against the chain rule, `f(x(h))' = f'(x) x'` with the derivatives that dual numbers have, and `1/(1 − h) = Σ hⁿ`.
-    #[test]
-    fn functions_in_the_field() {
-        let (mut next, h, one) = (Residue::stream(4), Series::STEP, Series::ONE);
-        let slope = |y: Series| {
-            let terms = (1..LENGTH_I32).map(|n| {
-                let factor = Residue::of(Rational::integer(n.into()));
-                Series::constant(y.at(n) * factor) * h.power(n - 1)
-            });
-            terms.fold(Series::ZERO, |sum, term| sum + term)
-        };
-        // The slope is known below the power that the series of seven coefficients ends at.
-        let assert_slope = |y, expected: Series| {
-            for power in 0..LENGTH_I32 - 1 {
-                assert_eq!(slope(y).at(power), expected.at(power), "{y:?}");
-            }
-        };
-        let families = [0, 1, 2].into_iter().flat_map(|k| [Function::Stumpff(k), Function::LogRatio(k)]);
-        let functions: Vec<Function> =
-            [Function::Ln, Function::Exp, Function::Sin, Function::Cos].into_iter().chain(families).collect();
-        for _ in 0..3 {
-            let x = quadratic(&mut next);
-            for &function in &functions {
-                let of_x = x.apply(function);
-                assert_slope(of_x, derivative(function, x, || of_x) * slope(x));
-            }
-            assert_eq!(x.apply(Function::Ln).at(0), x.at(0).apply(Function::Ln));
-            assert_equal(x * x.power(-1), one, LENGTH_I32);
-        }
-        let geometric = one / (one - h);
-        assert!((0..LENGTH_I32).all(|n| geometric.at(n) == Residue::ONE));
-    }
-
-    /// `Σ (−x)ⁱ/(2i + k)!` about zero.
-    #[test]
-    fn stumpff_in_the_field() {
-        let small = |n: usize| Residue::of(Rational::integer(n.try_into().expect("small")));
-        for k in 0..4_u8 {
-            let series = Series::STEP.apply(Function::Stumpff(k));
-            let mut expected = (1..=k).fold(Residue::ONE, |product, n| product / small(n.into()));
-            for power in 0..LENGTH_I32 {
-                assert_eq!(series.at(power), expected, "{k}");
-                let next = usize::try_from(2 * power).expect("positive") + usize::from(k);
-                expected = -expected / (small(next + 1) * small(next + 2));
-            }
-        }
     }
 }

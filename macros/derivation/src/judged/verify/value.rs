@@ -5,83 +5,83 @@ use crate::mathematics::symbolic::Rational;
 
 /// A matrix, by rows.
 #[derive(Clone, Debug)]
-pub(super) struct Value<T = f64> {
-    pub(super) rows: usize,
-    pub(super) columns: usize,
-    pub(super) entries: Vec<T>,
+pub struct Value<T = f64> {
+    pub rows: usize,
+    pub columns: usize,
+    pub entries: Vec<T>,
 }
 
 impl<T: Number> Value<T> {
-    pub(super) fn new(rows: usize, columns: usize, mut entry: impl FnMut(usize, usize) -> T) -> Self {
+    pub fn new(rows: usize, columns: usize, mut entry: impl FnMut(usize, usize) -> T) -> Self {
         let entries = (0..rows * columns).map(|at| entry(at / columns, at % columns)).collect();
         Self { rows, columns, entries }
     }
 
-    pub(super) fn scalar(value: T) -> Self {
+    pub fn scalar(value: T) -> Self {
         Self { rows: 1, columns: 1, entries: vec![value] }
     }
 
-    pub(super) fn column(entries: &[T]) -> Self {
+    pub fn column(entries: &[T]) -> Self {
         Self { rows: entries.len(), columns: 1, entries: entries.to_vec() }
     }
 
     /// The matrix in other numbers.
-    pub(super) fn over<U>(&self, of: impl Fn(T) -> U) -> Value<U> {
+    pub fn over<U>(&self, of: impl Fn(T) -> U) -> Value<U> {
         Value { rows: self.rows, columns: self.columns, entries: self.entries.iter().map(|&entry| of(entry)).collect() }
     }
 
     /// A matrix of rational entries.
-    pub(super) fn square(size: usize, entries: &[Rational]) -> Self {
+    pub fn square(size: usize, entries: &[Rational]) -> Self {
         Self { rows: size, columns: size, entries: entries.iter().map(|&entry| T::of(entry)).collect() }
     }
 
     /// `Σ v_k E_k`, with the entries of each `E_k` row by row.
-    pub(super) fn combination(size: usize, generators: &[Vec<Rational>], v: &[T]) -> Self {
+    pub fn combination(size: usize, generators: &[Vec<Rational>], v: &[T]) -> Self {
         let zero = Self::new(size, size, |_, _| T::ZERO);
         generators.iter().zip(v).fold(zero, |sum, (entries, &component)| {
             sum.plus(&Self::square(size, entries).map(|entry| entry * component))
         })
     }
 
-    pub(super) fn at(&self, row: usize, column: usize) -> T {
+    pub fn at(&self, row: usize, column: usize) -> T {
         self.entries.get(row * self.columns + column).copied().unwrap_or(T::UNDEFINED)
     }
 
-    pub(super) fn first(&self) -> T {
+    pub fn first(&self) -> T {
         self.at(0, 0)
     }
 
-    pub(super) fn map(&self, f: impl Fn(T) -> T) -> Self {
+    pub fn map(&self, f: impl Fn(T) -> T) -> Self {
         Self { entries: self.entries.iter().map(|&x| f(x)).collect(), ..*self }
     }
 
-    pub(super) fn zip(&self, other: &Self, f: impl Fn(T, T) -> T) -> Self {
+    pub fn zip(&self, other: &Self, f: impl Fn(T, T) -> T) -> Self {
         Self { entries: self.entries.iter().zip(&other.entries).map(|(&x, &y)| f(x, y)).collect(), ..*self }
     }
 
-    pub(super) fn plus(&self, other: &Self) -> Self {
+    pub fn plus(&self, other: &Self) -> Self {
         self.zip(other, |x, y| x + y)
     }
 
-    pub(super) fn transpose(&self) -> Self {
+    pub fn transpose(&self) -> Self {
         Self::new(self.columns, self.rows, |row, column| self.at(column, row))
     }
 
-    pub(super) fn times(&self, other: &Self) -> Self {
+    pub fn times(&self, other: &Self) -> Self {
         Self::new(self.rows, other.columns, |row, column| {
             (0..self.columns).map(|k| self.at(row, k) * other.at(k, column)).fold(T::ZERO, |sum, term| sum + term)
         })
     }
 
     /// The inverse by Cramer's rule.
-    pub(super) fn inverse(&self) -> Self {
+    pub fn inverse(&self) -> Self {
         let reciprocal = T::ONE / self.determinant();
         Self::new(self.rows, self.rows, |row, column| {
             alternating(row + column, self.without(column, row).determinant()) * reciprocal
         })
     }
 
-    pub(super) fn trace(&self) -> T {
+    pub fn trace(&self) -> T {
         (0..self.rows).fold(T::ZERO, |sum, i| sum + self.at(i, i))
     }
 
@@ -105,14 +105,14 @@ impl<T: Number> Value<T> {
         Self::new(size, size, |i, j| self.at(i + usize::from(i >= row), j + usize::from(j >= column)))
     }
 
-    pub(super) fn hat(v: &Self) -> Self {
+    pub fn hat(v: &Self) -> Self {
         let [x, y, z] = [v.at(0, 0), v.at(1, 0), v.at(2, 0)];
         let entries = vec![T::ZERO, -z, y, z, T::ZERO, -x, -y, x, T::ZERO];
         Self { rows: 3, columns: 3, entries }
     }
 
     /// The vector of the skew part.
-    pub(super) fn vee(&self) -> Self {
+    pub fn vee(&self) -> Self {
         let half = T::of(Rational::new(1, 2));
         Self::new(3, 1, |row, _| {
             let (i, j) = ((row + 2) % 3, (row + 1) % 3);
@@ -120,11 +120,11 @@ impl<T: Number> Value<T> {
         })
     }
 
-    pub(super) fn identity(size: usize) -> Self {
+    pub fn identity(size: usize) -> Self {
         Self::diagonal(size, |_| T::ONE)
     }
 
-    pub(super) fn diagonal(size: usize, entry: impl Fn(usize) -> T) -> Self {
+    pub fn diagonal(size: usize, entry: impl Fn(usize) -> T) -> Self {
         Self::new(size, size, |row, column| if row == column { entry(row) } else { T::ZERO })
     }
 }

@@ -31,15 +31,15 @@ use crate::mathematics::symbolic::{Expression, Rational, SymbolId, Symbols, Vari
 
 /// An advected parameter, and the action of the group on it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Carried {
-    pub(crate) symbol: SymbolId,
-    pub(crate) variance: Variance,
-    pub(crate) seen: Seen,
+pub struct AdvectedSymbol {
+    pub symbol: SymbolId,
+    pub variance: Variance,
+    pub seen: View,
 }
 
 /// The factors of the group that move a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Seen {
+pub enum View {
     /// A single factor, by the variance.
     From(usize),
     /// The configuration of a factor relative to another.
@@ -48,9 +48,9 @@ pub(crate) enum Seen {
     Configuration(usize),
 }
 
-impl Seen {
+impl View {
     /// Whether the parameter is a configuration.
-    pub(crate) fn is_configuration(self) -> bool {
+    pub fn is_configuration(self) -> bool {
         matches!(self, Self::Relative { .. } | Self::Configuration(_))
     }
 }
@@ -58,35 +58,35 @@ impl Seen {
 /// `E·w`, with an element of the algebra for each factor.
 pub(super) fn along(
     (group, symbols): (&Group, &Symbols),
-    carried: Carried,
+    carried: AdvectedSymbol,
     e: &dyn Fn(usize) -> Expression,
 ) -> Expression {
     let w = Expression::symbol(carried.symbol, symbols);
     match carried.seen {
-        Seen::Relative { of, from } if group.factor(of).is_added => e(from).minus(e(of)),
-        Seen::Configuration(of) if group.factor(of).is_added => e(of).scaled(-Rational::ONE),
-        Seen::From(factor) => infinitesimal(symbols, carried.variance, &e(factor), &w),
-        Seen::Relative { of, from } => e(from).times(&w, symbols).minus(w.times(&e(of), symbols)),
-        Seen::Configuration(of) => w.times(&e(of), symbols).scaled(-Rational::ONE),
+        View::Relative { of, from } if group.factor(of).is_added => e(from).minus(e(of)),
+        View::Configuration(of) if group.factor(of).is_added => e(of).scaled(-Rational::ONE),
+        View::From(factor) => infinitesimal(symbols, carried.variance, &e(factor), &w),
+        View::Relative { of, from } => e(from).times(&w, symbols).minus(w.times(&e(of), symbols)),
+        View::Configuration(of) => w.times(&e(of), symbols).scaled(-Rational::ONE),
     }
 }
 
 /// `F·w⁺`, with an element of the group and its inverse for each factor.
 pub(super) fn back(
     context: &Context,
-    carried: Carried,
+    carried: AdvectedSymbol,
     f: &dyn Fn(usize) -> (Expression, Expression),
     next: &Expression,
 ) -> Expression {
     match carried.seen {
-        Seen::Relative { of, from } if context.is_added(of) => next.clone().plus(f(from).0).plus(f(of).1),
-        Seen::Configuration(of) if context.is_added(of) => next.clone().plus(f(of).1),
-        Seen::From(factor) => {
+        View::Relative { of, from } if context.is_added(of) => next.clone().plus(f(from).0).plus(f(of).1),
+        View::Configuration(of) if context.is_added(of) => next.clone().plus(f(of).1),
+        View::From(factor) => {
             let (f, inverse) = f(factor);
             moved_back(context.symbols, carried.variance, (&f, &inverse), next)
         }
-        Seen::Relative { of, from } => context.product(&context.product(&f(from).0, next), &f(of).1),
-        Seen::Configuration(of) => context.product(next, &f(of).1),
+        View::Relative { of, from } => context.product(&context.product(&f(from).0, next), &f(of).1),
+        View::Configuration(of) => context.product(next, &f(of).1),
     }
 }
 

@@ -4,7 +4,7 @@ use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Expression, Factor, Rational, Symbols};
 
 /// `Σ v_k E_k`, entry by entry.
-pub(crate) fn hat(generators: &[Vec<Rational>], size: usize, v: &Expression, symbols: &Symbols) -> Expression {
+pub fn hat(generators: &[Vec<Rational>], size: usize, v: &Expression, symbols: &Symbols) -> Expression {
     let mut sum = Expression::zero((size, size));
     for (k, generator) in generators.iter().enumerate() {
         let component = unit(k, generators.len(), true, symbols).times(v, symbols);
@@ -18,7 +18,7 @@ pub(crate) fn hat(generators: &[Vec<Rational>], size: usize, v: &Expression, sym
 }
 
 /// The components of an element of the algebra with respect to the generators.
-pub(crate) fn components(group: &Group, element: &Expression, symbols: &Symbols) -> Expression {
+pub(super) fn components(group: &Group, element: &Expression, symbols: &Symbols) -> Expression {
     if group.is_so3 {
         return element.vee(symbols);
     }
@@ -26,7 +26,7 @@ pub(crate) fn components(group: &Group, element: &Expression, symbols: &Symbols)
 }
 
 /// The components by linear forms in the entries, each a sum of terms `(k, row, column, factor)`.
-pub(crate) fn linear_forms(
+pub fn linear_forms(
     forms: &[(usize, usize, usize, Rational)],
     (size, dimension): (usize, usize),
     element: &Expression,
@@ -41,7 +41,7 @@ pub(crate) fn linear_forms(
 }
 
 /// A column of the identity, or a row.
-pub(crate) fn unit(index: usize, size: usize, transposed: bool, symbols: &Symbols) -> Expression {
+pub fn unit(index: usize, size: usize, transposed: bool, symbols: &Symbols) -> Expression {
     let shape = if transposed { (1, size) } else { (size, 1) };
     Expression::from_word(vec![Factor::Unit { index, size, transposed }], shape, symbols)
 }

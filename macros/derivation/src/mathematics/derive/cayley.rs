@@ -11,17 +11,17 @@ use crate::mathematics::symbolic::{Expression, Rational, SymbolId, Variations, d
 
 /// `(h/2) Dⁿ (U − a)`, linear in `E_k`, and its variation along `δy`.
 #[derive(Clone, Debug)]
-pub(crate) struct Cleared {
-    pub(crate) residual: Expression,
-    pub(crate) jacobian: Expression,
+pub struct ClearedSystem {
+    pub residual: Expression,
+    pub jacobian: Expression,
     /// The power `n` of `D`.
-    pub(crate) power: u32,
+    pub power: u32,
 }
 
 /// The limit on terms, beyond which the retracted form is surely cheaper and expanding would take long.
 const MOST_TERMS: usize = 100;
 
-pub(super) fn cleared(context: &Context, unknown: &Expression) -> Option<Cleared> {
+pub(super) fn cleared(context: &Context, unknown: &Expression) -> Option<ClearedSystem> {
     let directions = context.directions;
     let &[factor] = directions.factors.as_slice() else { return None };
     if !context.declared.group.is_so3
@@ -52,7 +52,7 @@ pub(super) fn cleared(context: &Context, unknown: &Expression) -> Option<Cleared
     let delta_d = context.product(&y.transpose(context.symbols), &delta).scaled(Rational::integer(2));
     let variations = Variations::from([(directions.coordinates, delta), (directions.denominator, delta_d)]);
     let jacobian = variation(&residual, &variations, context.symbols);
-    Some(Cleared { residual, jacobian, power: power.unsigned_abs() })
+    Some(ClearedSystem { residual, jacobian, power: power.unsigned_abs() })
 }
 
 /// The number of terms once each `F` becomes the four terms of `(2/D − 1) I + (2 yyᵀ + 2 ŷ)/D`.

@@ -17,32 +17,32 @@ use crate::mathematics::symbolic::{Expression, Structure, SymbolId, Symbols, Var
 
 /// A `let` that isn't multiplied out.
 #[derive(Clone, Debug)]
-pub(crate) struct Let {
+pub struct Let {
     /// `v`.
-    pub(crate) symbol: SymbolId,
+    pub symbol: SymbolId,
     /// `d`.
-    pub(crate) value: Expression,
+    pub value: Expression,
 }
 
 /// A closed `let` with its derivatives.
 #[derive(Clone, Debug)]
-pub(crate) struct Closed {
-    pub(crate) symbol: SymbolId,
-    pub(crate) value: Expression,
+pub struct ClosedLet {
+    pub symbol: SymbolId,
+    pub value: Expression,
     /// `δv`.
-    pub(crate) direction: SymbolId,
+    pub direction: SymbolId,
     /// `λ`, and `⟨λ, δv⟩`.
-    pub(crate) multiplier: SymbolId,
-    pub(crate) pairing: Expression,
+    pub multiplier: SymbolId,
+    pub pairing: Expression,
     /// The pairing by `D = F − I`, if its constants cancel in this form.
-    pub(crate) near: Expression,
+    pub near: Expression,
     /// `v` and `⟨λ, δv⟩` varied along `F ↦ exp(t E_j) F`.
-    pub(crate) tangent: (SymbolId, Expression),
-    pub(crate) multiplier_tangent: (SymbolId, Expression),
+    pub tangent: (SymbolId, Expression),
+    pub multiplier_tangent: (SymbolId, Expression),
 }
 
 /// The symbols that each `let` adds, and the Lagrangian `L` with multipliers.
-pub(super) fn multipliers(lets: &[Let], l_d: &Expression, symbols: &mut Symbols) -> (Vec<Closed>, Expression) {
+pub(super) fn multipliers(lets: &[Let], l_d: &Expression, symbols: &mut Symbols) -> (Vec<ClosedLet>, Expression) {
     let mut closed = Vec::new();
     for Let { symbol, value } in lets {
         let (name, shape, stage) = {
@@ -53,7 +53,7 @@ pub(super) fn multipliers(lets: &[Let], l_d: &Expression, symbols: &mut Symbols)
         let (direction, multiplier) = (add("δ"), add("λ_"));
         let (tangent, multiplier_tangent) = (add("∂"), add("∂λ_"));
         let zero = || Expression::zero((1, 1));
-        closed.push(Closed {
+        closed.push(ClosedLet {
             symbol: *symbol,
             value: value.clone(),
             direction,
@@ -76,7 +76,7 @@ pub(super) fn multipliers(lets: &[Let], l_d: &Expression, symbols: &mut Symbols)
 }
 
 /// Sets the variations of `let`s and multipliers along `E_j F`.
-pub(super) fn tangents(context: &Context, closed: &mut [Closed]) {
+pub(super) fn tangents(context: &Context, closed: &mut [ClosedLet]) {
     let mut varied = forwards(context, &[]);
     for one in closed.iter_mut() {
         one.tangent.1 = variation(&one.value, &varied, context.symbols);
@@ -95,7 +95,7 @@ pub(super) fn tangents(context: &Context, closed: &mut [Closed]) {
 }
 
 /// The variation `δF = E_j F`, and those of `let`s and multipliers that follow.
-pub(super) fn forwards(context: &Context, closed: &[Closed]) -> Variations {
+pub(super) fn forwards(context: &Context, closed: &[ClosedLet]) -> Variations {
     let increments = context.declared.increments.iter().enumerate();
     let mut variations: Variations =
         increments.map(|(factor, &increment)| (increment, context.turned(factor, &context.second(factor)))).collect();

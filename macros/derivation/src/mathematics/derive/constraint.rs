@@ -4,21 +4,21 @@
 //! G_R η = d/ds g(…, exp(sη̂) R, …)          G_x ξ = d/ds g(…, x + sξ, …)
 //! ```
 
-use super::Seen;
+use super::View;
 use crate::mathematics::symbolic::{Expression, Stage, Structure, SymbolId, Symbols, Variations, variation};
 
 /// The symbols of a body's position.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Body {
+pub struct Body {
     /// The rotation from the body's axes to those of space.
-    pub(crate) attitude: SymbolId,
-    pub(crate) position: SymbolId,
+    pub attitude: SymbolId,
+    pub position: SymbolId,
     /// The variations `η` of the attitude and `ξ` of the position.
-    pub(crate) directions: [SymbolId; 2],
+    pub directions: [SymbolId; 2],
 }
 
 impl Body {
-    pub(crate) fn new(name: &str, symbols: &mut Symbols) -> Self {
+    pub fn new(name: &str, symbols: &mut Symbols) -> Self {
         let mut vector = |letter, stage| symbols.add(format!("{letter}_{name}"), (3, 1), Structure::General, stage);
         let (position, directions) = (vector("x", Stage::Step), ["η", "ξ"].map(|d| vector(d, Stage::Construction)));
         let attitude = symbols.add(format!("R_{name}"), (3, 3), Structure::Rotation, Stage::Step);
@@ -26,10 +26,10 @@ impl Body {
     }
 }
 
-impl Seen {
+impl View {
     /// The value of a parameter at the positions of two bodies, each of which rotates by its first factor and is
     /// translated by its second; `field` is the symbol of its spatial value. `None` if the field is missing.
-    pub(crate) fn at(self, bodies: &[Body; 2], field: Option<SymbolId>, symbols: &Symbols) -> Option<Expression> {
+    pub fn at(self, bodies: &[Body; 2], field: Option<SymbolId>, symbols: &Symbols) -> Option<Expression> {
         let is_shift = |factor: usize| factor % 2 == 1;
         let place = |factor: usize| {
             let body = &bodies[factor / 2 % 2];
@@ -46,17 +46,17 @@ impl Seen {
 
 /// A constraint and its symbols.
 #[derive(Clone, Debug)]
-pub(crate) struct DeclaredConstraint {
-    pub(crate) symbols: Symbols,
+pub struct DeclaredConstraint {
+    pub symbols: Symbols,
     /// The functions `g`, scalars and columns.
-    pub(crate) functions: Vec<Expression>,
+    pub functions: Vec<Expression>,
     /// The body above, and the body below.
-    pub(crate) bodies: [Body; 2],
+    pub bodies: [Body; 2],
 }
 
 impl DeclaredConstraint {
     /// `G_R η` and `G_x ξ` of both bodies, for each of the functions.
-    pub(crate) fn slopes(&self) -> [[Vec<Expression>; 2]; 2] {
+    pub fn slopes(&self) -> [[Vec<Expression>; 2]; 2] {
         let symbols = &self.symbols;
         self.bodies.map(|body| {
             let [turn, shift] = body.directions.map(|direction| Expression::symbol(direction, symbols));

@@ -11,7 +11,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Carried, Declared, Derived, Refusal, Seen, action, unit};
+use super::{AdvectedSymbol, DeclaredFunction, Derivation, Refusal, View, action, unit};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{
     Expression, Rational, Stage, Structure, SymbolId, Symbols, Variations, substitute, variation,
@@ -19,23 +19,23 @@ use crate::mathematics::symbolic::{
 
 /// A continuous Lagrangian and its symbols.
 #[derive(Clone, Debug)]
-pub(crate) struct DeclaredContinuous {
-    pub(crate) group: Group,
-    pub(crate) symbols: Symbols,
+pub struct ContinuousLagrangian {
+    pub group: Group,
+    pub symbols: Symbols,
     /// `l(ξ, w)`.
-    pub(crate) expression: Expression,
+    pub expression: Expression,
     /// `ξ`, one for each factor of the group.
-    pub(crate) velocities: Vec<Element>,
+    pub velocities: Vec<Element>,
     /// The advected parameters `w`.
-    pub(crate) advected: Vec<Carried>,
+    pub advected: Vec<AdvectedSymbol>,
 }
 
 /// An element of the algebra of a factor: its velocity, or a direction along which the velocity is varied.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Element {
-    pub(crate) components: SymbolId,
+pub struct Element {
+    pub components: SymbolId,
     /// The matrix `ξ̂`; `None` on SO(3), where it is that of a cross product, and for a translation.
-    pub(crate) matrix: Option<SymbolId>,
+    pub matrix: Option<SymbolId>,
 }
 
 impl Element {
@@ -51,7 +51,7 @@ impl Element {
     }
 
     /// The symbols of a velocity.
-    pub(crate) fn new(group: &Group, name: &str, symbols: &mut Symbols) -> Self {
+    pub fn new(group: &Group, name: &str, symbols: &mut Symbols) -> Self {
         let [velocity] = Self::several(group, [name], Stage::Step, symbols);
         velocity
     }
@@ -74,7 +74,7 @@ impl Element {
 
 /// The form of the map from `μ` to `ξ`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Inverse {
+pub enum Inverse {
     /// `l` is quadratic in `ξ`, with the same second derivative for all `w`.
     Constant,
     /// `l` is quadratic in `ξ`.
@@ -85,43 +85,43 @@ pub(crate) enum Inverse {
 
 /// The terms derived from `l`. Covectors are linear in `η`, the second derivative in `η` and `ζ`.
 #[derive(Clone, Debug)]
-pub(crate) struct Continuous {
-    pub(crate) group: Group,
-    pub(crate) symbols: Symbols,
+pub struct Continuous {
+    pub group: Group,
+    pub symbols: Symbols,
     /// The velocity of each factor of the group; other lists are by factors, too.
-    pub(crate) velocities: Vec<Element>,
-    pub(crate) advected: Vec<Carried>,
+    pub velocities: Vec<Element>,
+    pub advected: Vec<AdvectedSymbol>,
     /// `η` and `ζ`.
-    pub(crate) directions: Vec<[Element; 2]>,
-    pub(crate) lagrangian: Expression,
+    pub directions: Vec<[Element; 2]>,
+    pub lagrangian: Expression,
     /// `μ`.
-    pub(crate) momentum: Expression,
+    pub momentum: Expression,
     /// `M`.
-    pub(crate) hessian: Expression,
+    pub hessian: Expression,
     /// `∂l/∂w ⋄ w`.
-    pub(crate) diamond: Expression,
+    pub diamond: Expression,
     /// Any matrix of each factor; for a translation, any vector.
-    pub(crate) any: Vec<SymbolId>,
+    pub any: Vec<SymbolId>,
     /// `∂l/∂w ⋄ w` along these matrices.
-    pub(crate) diamond_of_any: Expression,
+    pub diamond_of_any: Expression,
     /// `(∂²l/∂w∂ξ)(ξ·w)`.
-    pub(crate) advection: Expression,
-    pub(crate) inverse: Inverse,
+    pub advection: Expression,
+    pub inverse: Inverse,
 }
 
 impl Continuous {
     /// Whether there is a kinetic part.
-    pub(crate) fn has_kinetic(&self) -> bool {
+    pub fn has_kinetic(&self) -> bool {
         !self.hessian.is_zero()
     }
 
     /// The momentum `s(w)` at rest.
-    pub(crate) fn bias(&self) -> Expression {
+    pub fn bias(&self) -> Expression {
         self.at_rest(&self.momentum)
     }
 
     /// `V(w) = −l(0, w)`.
-    pub(crate) fn potential(&self) -> Expression {
+    pub fn potential(&self) -> Expression {
         self.at_rest(&self.lagrangian).scaled(-Rational::ONE)
     }
 
@@ -136,8 +136,8 @@ impl Continuous {
 }
 
 /// Derives the continuous equations.
-pub(crate) fn continuous(declared: DeclaredContinuous) -> Result<Continuous, Refusal> {
-    let DeclaredContinuous { group, mut symbols, expression, velocities, advected } = declared;
+pub fn continuous(declared: ContinuousLagrangian) -> Result<Continuous, Refusal> {
+    let ContinuousLagrangian { group, mut symbols, expression, velocities, advected } = declared;
     let is_crossed = group.rotates();
     let expression = if is_crossed { expression.with_hats_resolved(&symbols) } else { expression };
     let numbered = |name: &str, factor: usize| {
@@ -176,7 +176,7 @@ pub(crate) fn continuous(declared: DeclaredContinuous) -> Result<Continuous, Ref
         let e = |factor: usize| Expression::symbol(any[factor], &symbols);
         let moved = advected.iter().map(|&w| {
             let moved = action::along((&group, &symbols), w, &e);
-            let is_point = matches!(w.seen, Seen::From(_)) && symbols.get(w.symbol).structure == Structure::Point;
+            let is_point = matches!(w.seen, View::From(_)) && symbols.get(w.symbol).structure == Structure::Point;
             (w.symbol, if is_point { without_last(&moved, &symbols) } else { moved })
         });
         vary(of, &moved.collect())
@@ -222,7 +222,7 @@ fn without_last(column: &Expression, symbols: &Symbols) -> Expression {
 }
 
 /// The limit of a discrete Lagrangian: `l = ½ ξ·Jξ + s(w)·ξ − V(w)`, if it is quadratic in `ξ`.
-pub(crate) fn of_limit(declared: &Declared, derived: &Derived) -> DeclaredContinuous {
+pub fn of_limit(declared: &DeclaredFunction, derived: &Derivation) -> ContinuousLagrangian {
     let (group, mut symbols) = (declared.group.clone(), derived.symbols.clone());
     let mut velocities = Vec::new();
     for (factor, own) in group.factors().iter().enumerate() {
@@ -245,5 +245,5 @@ pub(crate) fn of_limit(declared: &Declared, derived: &Derived) -> DeclaredContin
     };
     let expression = limit.lagrangian.as_ref().map_or_else(quadratic, along);
     let advected = declared.advected.clone();
-    DeclaredContinuous { group, symbols, expression, velocities, advected }
+    ContinuousLagrangian { group, symbols, expression, velocities, advected }
 }

@@ -6,7 +6,7 @@
 //!
 //! For `w` in `V*`, `E·w = −Eᵀ w`, this is (2.1): `⟨w, E δl_d/δw⟩`.
 
-use super::{Carried, Context};
+use super::{AdvectedSymbol, Context};
 use crate::mathematics::symbolic::{Expression, Rational, Variations, variation};
 
 pub(super) fn diamond(context: &Context) -> Expression {
@@ -21,7 +21,7 @@ pub(super) fn shares(context: &Context) -> Vec<Expression> {
     }
 }
 
-fn of(context: &Context, advected: &[Carried]) -> Expression {
+fn of(context: &Context, advected: &[AdvectedSymbol]) -> Expression {
     let variations: Variations =
         advected.iter().map(|&w| (w.symbol, context.along(w, &|factor| context.first(factor)))).collect();
     variation(context.lagrangian, &variations, context.symbols).scaled(-Rational::ONE)

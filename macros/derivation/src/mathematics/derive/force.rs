@@ -10,22 +10,25 @@
 //!
 //! so it has the stages of any effect, and a part of the Newton Jacobian.
 
-use super::{Context, Declared, Derived, Limit, cayley, directions, momentum_equation, transport};
+use super::{Context, DeclaredFunction, Derivation, Limit, cayley, directions, momentum_equation, transport};
 use crate::mathematics::symbolic::{Expression, Rational, SymbolId};
 
 /// The reason why the virtual work defines no force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum ForceError {
+pub enum ForceError {
     /// The work isn't linear in the displacements.
     NotLinear,
 }
 
 /// The displacements `η` and `η⁺` of each factor of the group.
 #[derive(Clone, Debug)]
-pub(crate) struct Displacements(pub(crate) Vec<[SymbolId; 2]>);
+pub struct Displacements(pub Vec<[SymbolId; 2]>);
 
 /// The terms derived from the virtual work; those of a Lagrangian alone are zero.
-pub(super) fn force(declared: &Declared, Displacements(displacements): &Displacements) -> Result<Derived, ForceError> {
+pub(super) fn force(
+    declared: &DeclaredFunction,
+    Displacements(displacements): &Displacements,
+) -> Result<Derivation, ForceError> {
     let mut symbols = declared.symbols.clone();
     let directions = directions(declared, &mut symbols);
     let context = Context { declared, lagrangian: &declared.expression, symbols: &symbols, directions: &directions };
@@ -59,7 +62,7 @@ pub(super) fn force(declared: &Declared, Displacements(displacements): &Displace
     let after = context.substituted(&after, &transport::previous(&context).into_iter().collect());
     let kick_after = parts.kick_after.plus(after);
     let none = || Expression::zero((1, 1));
-    Ok(Derived {
+    Ok(Derivation {
         group: declared.group.clone(),
         right_momentum: none(),
         left_momentum: none(),

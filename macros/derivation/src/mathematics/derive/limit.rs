@@ -15,24 +15,24 @@ use crate::mathematics::symbolic::{
 
 /// The continuous Lagrangian of a discretisation, and pairs of its symbols with those of the discrete Lagrangian.
 #[derive(Clone, Debug)]
-pub(crate) struct Discretised {
-    pub(crate) continuous: Continuous,
-    pub(crate) symbols: Vec<(SymbolId, SymbolId)>,
+pub struct ContinuousSource {
+    pub continuous: Continuous,
+    pub symbols: Vec<(SymbolId, SymbolId)>,
 }
 
 /// `J` (linear in `E_k` and `E_j`), `s` (linear in `E_k`) and `V`.
 #[derive(Clone, Debug)]
-pub(crate) struct Limit {
+pub struct Limit {
     /// Whether there is a term in `1/h` that depends on `F`; a potential has none, and can't move by itself.
-    pub(crate) has_kinetic: bool,
+    pub has_kinetic: bool,
     /// The first derivative of `K` at the identity (linear in `E_k`): zero for all values of the parameters if there is
     /// a limit.
-    pub(crate) slope: Expression,
-    pub(crate) inertia: Expression,
-    pub(crate) bias: Expression,
-    pub(crate) potential: Expression,
+    pub slope: Expression,
+    pub inertia: Expression,
+    pub bias: Expression,
+    pub potential: Expression,
     /// `l(ξ, w)`, if an `l_d` was declared and it isn't quadratic in `ξ`: the other terms are its values at rest.
-    pub(crate) lagrangian: Option<Expression>,
+    pub lagrangian: Option<Expression>,
 }
 
 pub(super) fn limit(context: &Context, momentum: &Expression) -> Result<Limit, LimitError> {
@@ -104,7 +104,7 @@ fn along_motion(context: &Context) -> Result<Limit, LimitError> {
 }
 
 /// The limit near rest: the Taylor polynomial of `l` of degree two in the velocity.
-fn at_rest(context: &Context, Discretised { continuous, symbols }: &Discretised) -> Limit {
+fn at_rest(context: &Context, ContinuousSource { continuous, symbols }: &ContinuousSource) -> Limit {
     let mut map: BTreeMap<SymbolId, Expression> =
         symbols.iter().map(|&(from, to)| (from, context.symbol(to))).collect();
     for (factor, directions) in continuous.directions.iter().enumerate() {

@@ -22,43 +22,43 @@ use std::collections::BTreeMap;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Expression, Rational, Stage, Structure, SymbolId, Symbols};
 
-pub(crate) use action::{Carried, Seen};
-pub(crate) use algebra::{hat, linear_forms, unit};
-pub(crate) use cayley::Cleared;
-pub(crate) use closed::{Closed, Let};
-pub(crate) use constraint::{Body, DeclaredConstraint};
-pub(crate) use continuous::{Continuous, DeclaredContinuous, Element, Inverse, continuous, of_limit};
-pub(crate) use force::{Displacements, ForceError};
-pub(crate) use limit::{Discretised, Limit};
-pub(crate) use self_adjoint::SelfAdjointness;
-pub(crate) use series::LimitError;
+pub use action::{AdvectedSymbol, View};
+pub use algebra::{hat, linear_forms, unit};
+pub use cayley::ClearedSystem;
+pub use closed::{ClosedLet, Let};
+pub use constraint::{Body, DeclaredConstraint};
+pub use continuous::{Continuous, ContinuousLagrangian, Element, Inverse, continuous, of_limit};
+pub use force::{Displacements, ForceError};
+pub use limit::{ContinuousSource, Limit};
+pub use self_adjoint::SelfAdjointness;
+pub use series::LimitError;
 
 /// A declared Lagrangian and its symbols.
 #[derive(Clone, Debug)]
-pub(crate) struct Declared {
-    pub(crate) group: Group,
-    pub(crate) symbols: Symbols,
+pub struct DeclaredFunction {
+    pub group: Group,
+    pub symbols: Symbols,
     /// The closed `let`s, in their order; empty if the expression is small enough to be multiplied out.
-    pub(crate) lets: Vec<Let>,
+    pub lets: Vec<Let>,
     /// The Lagrangian `l_d`, or the virtual work of a force.
-    pub(crate) expression: Expression,
+    pub expression: Expression,
     /// The increments `F`, one for each factor of the group.
-    pub(crate) increments: Vec<SymbolId>,
+    pub increments: Vec<SymbolId>,
     /// The step `h`.
-    pub(crate) step: SymbolId,
+    pub step: SymbolId,
     /// The advected parameters `w`.
-    pub(crate) advected: Vec<Carried>,
+    pub advected: Vec<AdvectedSymbol>,
     /// The displacements of a force's virtual work; a Lagrangian has none.
-    pub(crate) displacements: Option<Displacements>,
+    pub displacements: Option<Displacements>,
     /// Whether the derivatives of a step are requested.
-    pub(crate) has_derivatives: bool,
+    pub has_derivatives: bool,
     /// The continuous Lagrangian that was discretised.
-    pub(crate) discretised: Option<Discretised>,
+    pub discretised: Option<ContinuousSource>,
 }
 
 /// The reason why nothing can be derived.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Refusal {
+pub enum Refusal {
     Limit(LimitError),
     Force(ForceError),
     /// A coefficient left the range of exact arithmetic.
@@ -67,110 +67,110 @@ pub(crate) enum Refusal {
 
 /// The symbols that the derivation adds for each factor of the group.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct OfFactor {
+pub struct OfFactor {
     /// The increment `F` itself.
-    pub(crate) increment: SymbolId,
+    pub increment: SymbolId,
     /// The component `E_k` of a covector.
-    pub(crate) first: SymbolId,
+    pub first: SymbolId,
     /// The direction `E_j` of a Jacobian's column.
-    pub(crate) second: SymbolId,
+    pub second: SymbolId,
     /// `D = F − I`.
-    pub(crate) small: SymbolId,
+    pub small: SymbolId,
     /// `F⁻¹`.
-    pub(crate) inverse: SymbolId,
+    pub inverse: SymbolId,
     /// `D⁻ = F⁻¹ − I`.
-    pub(crate) small_inverse: SymbolId,
+    pub small_inverse: SymbolId,
     /// The increment `F⁺` of the next step, for printed equations.
-    pub(crate) next_increment: SymbolId,
+    pub next_increment: SymbolId,
     /// `ξ̂` in the limit `F = exp(hξ̂)`.
     velocity: SymbolId,
 }
 
 /// The symbols that the derivation adds.
 #[derive(Clone, Debug)]
-pub(crate) struct Directions {
-    pub(crate) factors: Vec<OfFactor>,
+pub struct Directions {
+    pub factors: Vec<OfFactor>,
     /// The covector `a` on the right side of the momentum equation; in a Newton system `(h/2) a`.
-    pub(crate) target: SymbolId,
+    pub target: SymbolId,
     /// The Cayley vector `y` of `F = cay(2y)`.
-    pub(crate) coordinates: SymbolId,
+    pub coordinates: SymbolId,
     /// `1 + |y|²`, the denominator of the Cayley map.
-    pub(crate) denominator: SymbolId,
+    pub denominator: SymbolId,
     /// A variation `δy`.
-    pub(crate) coordinate_direction: SymbolId,
+    pub coordinate_direction: SymbolId,
     /// The new advected parameters `w⁺ = F⁻¹·w`.
-    pub(crate) next: Vec<SymbolId>,
+    pub next: Vec<SymbolId>,
     /// The body velocity `v` that a kick is differentiated along.
-    pub(crate) along: SymbolId,
+    pub along: SymbolId,
     /// A scalar variable for derivatives of functions.
     scratch: SymbolId,
 }
 
 /// The terms derived from `l_d`. Covectors are linear in the direction `E_k`, Jacobians in `E_k` and `E_j`.
 #[derive(Clone, Debug)]
-pub(crate) struct Derived {
-    pub(crate) symbols: Symbols,
-    pub(crate) group: Group,
-    pub(crate) directions: Directions,
+pub struct Derivation {
+    pub symbols: Symbols,
+    pub group: Group,
+    pub directions: Directions,
     /// The closed `let`s with their derivatives.
-    pub(crate) closed: Vec<Closed>,
+    pub closed: Vec<ClosedLet>,
     /// `w = F·w⁺`.
-    pub(crate) previous: Vec<(SymbolId, Expression)>,
+    pub previous: Vec<(SymbolId, Expression)>,
     /// `(R_F)* δl_d/δF`.
-    pub(crate) right_momentum: Expression,
+    pub right_momentum: Expression,
     /// `(L_F)* δl_d/δF`.
-    pub(crate) left_momentum: Expression,
+    pub left_momentum: Expression,
     /// `δl_d/δw ⋄ w`.
-    pub(crate) diamond: Expression,
+    pub diamond: Expression,
     /// The share of each advected parameter, if there are several.
-    pub(crate) shares: Vec<Expression>,
+    pub shares: Vec<Expression>,
     /// `μ` of (2.7).
-    pub(crate) momentum: Expression,
+    pub momentum: Expression,
     /// `∂μ_k` along `F ↦ exp(t E_j) F`.
-    pub(crate) jacobian: Expression,
+    pub jacobian: Expression,
     /// `−∂l_d/∂h`.
-    pub(crate) energy: Expression,
+    pub energy: Expression,
     /// `l_d(F, w, h) + l_d(F⁻¹, F⁻¹·w, −h)`: zero if the Lagrangian is self-adjoint by its normal form.
-    pub(crate) adjoint_defect: Expression,
+    pub adjoint_defect: Expression,
     /// The two sides of the flow on increments (2.5): `μ(F⁺, w⁺)`, and `(L_F)* δl_d/δF` in `F` and `w⁺`; `None` if
     /// there are closed `let`s.
-    pub(crate) flow: Option<[Expression; 2]>,
+    pub flow: Option<[Expression; 2]>,
     /// The Lagrangian's limit as `h → 0`.
-    pub(crate) limit: Limit,
+    pub limit: Limit,
     /// The part of the diamond without `F`.
-    pub(crate) kick_before: Expression,
+    pub kick_before: Expression,
     /// The derivative of this kick along `w ↦ exp(−t E_j)·w`, for kinetic-potential splittings: on SO(3), for a
     /// Lagrangian without closed `let`s.
-    pub(crate) kick_derivative: Option<Expression>,
+    pub kick_derivative: Option<Expression>,
     /// The part of `μ` that depends on `F`, written in `D = F − I`: its constants cancel exactly, so that a small step
     /// keeps its digits.
-    pub(crate) unknown: Expression,
+    pub unknown: Expression,
     /// The rest of the diamond, in `F` and `w`; `None` for a force, which has another kick after the step.
-    pub(crate) moved: Option<Expression>,
+    pub moved: Option<Expression>,
     /// `Ad*_F` of the rest of the diamond, in `F` and `w⁺`; its terms in `1/h` are written in `D`.
-    pub(crate) kick_after: Expression,
+    pub kick_after: Expression,
     /// The kick after the step in printed form, without `D`.
-    pub(crate) shown_kick_after: Expression,
+    pub shown_kick_after: Expression,
     /// `h/2`, the factor of the Newton system, which removes its `1/h`.
-    pub(crate) half_step: Expression,
+    pub half_step: Expression,
     /// The momentum equation in Cayley coordinates without denominators, if it is polynomial in `F`.
-    pub(crate) cleared: Option<Cleared>,
+    pub cleared: Option<ClearedSystem>,
     /// The momenta to differentiate, if the derivatives of a step are requested.
-    pub(crate) ends: Option<Ends>,
+    pub ends: Option<Ends>,
 }
 
 /// The shares in the momenta at both ends of a step, as functions of `D = F − I`, `w` and the parameters.
 #[derive(Clone, Debug)]
-pub(crate) struct Ends {
+pub struct Ends {
     /// `μ` of (2.7), and `μ⁺` of (2.6).
-    pub(crate) momenta: [Expression; 2],
+    pub momenta: [Expression; 2],
     /// `E·w` for each advected parameter.
-    pub(crate) moved: Vec<(SymbolId, Expression)>,
+    pub moved: Vec<(SymbolId, Expression)>,
 }
 
-impl Derived {
+impl Derivation {
     /// Whether the inertia depends on advected or given parameters.
-    pub(crate) fn inertia_varies(&self) -> bool {
+    pub fn inertia_varies(&self) -> bool {
         self.previous.iter().any(|(w, _)| self.limit.inertia.contains(*w))
     }
 
@@ -203,7 +203,7 @@ impl Derived {
 }
 
 /// Derives all terms of a Lagrangian or of a force.
-pub(crate) fn derive(declared: &Declared) -> Result<Derived, Refusal> {
+pub fn derive(declared: &DeclaredFunction) -> Result<Derivation, Refusal> {
     let derived = match &declared.displacements {
         None => lagrangian(declared).map_err(Refusal::Limit)?,
         Some(displacements) => force::force(declared, displacements).map_err(Refusal::Force)?,
@@ -211,7 +211,7 @@ pub(crate) fn derive(declared: &Declared) -> Result<Derived, Refusal> {
     if derived.is_exact() { Ok(derived) } else { Err(Refusal::Overflow) }
 }
 
-fn lagrangian(declared: &Declared) -> Result<Derived, LimitError> {
+fn lagrangian(declared: &DeclaredFunction) -> Result<Derivation, LimitError> {
     let mut symbols = declared.symbols.clone();
     let directions = directions(declared, &mut symbols);
     let (mut closed, lagrangian) = closed::multipliers(&declared.lets, &declared.expression, &mut symbols);
@@ -234,7 +234,7 @@ fn lagrangian(declared: &Declared) -> Result<Derived, LimitError> {
     let ends = context.ends(&closed, [&momentum, &left_momentum]);
     let unknown =
         if closed.is_empty() { transport::in_small_increment(&context, &parts.unknown) } else { parts.unknown };
-    Ok(Derived {
+    Ok(Derivation {
         group: declared.group.clone(),
         right_momentum,
         left_momentum,
@@ -264,7 +264,7 @@ fn lagrangian(declared: &Declared) -> Result<Derived, LimitError> {
 
 /// Whether a Lagrangian with fewer known properties has the same equations: the terms of one variation, the kicks of
 /// the transport form, and the limit. Fast comparisons come first.
-pub(crate) fn has_equations(declared: &Declared, known: &Declared, derived: &Derived) -> bool {
+pub fn has_equations(declared: &DeclaredFunction, known: &DeclaredFunction, derived: &Derivation) -> bool {
     let values = |of: &[Let]| of.iter().map(|one| one.value.clone()).collect::<Vec<_>>();
     if declared.expression != known.expression || values(&declared.lets) != values(&known.lets) {
         return false;
@@ -291,7 +291,7 @@ pub(crate) fn has_equations(declared: &Declared, known: &Declared, derived: &Der
 
 /// The inputs of every rule.
 struct Context<'a> {
-    declared: &'a Declared,
+    declared: &'a DeclaredFunction,
     /// The Lagrangian that is varied: `l_d`, with multipliers for its closed `let`s.
     lagrangian: &'a Expression,
     symbols: &'a Symbols,
@@ -331,7 +331,7 @@ impl Context<'_> {
     }
 
     /// `E·w`, with an element of the algebra for each factor.
-    fn along(&self, w: Carried, e: &dyn Fn(usize) -> Expression) -> Expression {
+    fn along(&self, w: AdvectedSymbol, e: &dyn Fn(usize) -> Expression) -> Expression {
         action::along((&self.declared.group, self.symbols), w, e)
     }
 
@@ -350,7 +350,7 @@ impl Context<'_> {
     }
 
     /// The momenta to differentiate, if the derivatives of a step are requested; closed `let`s stay closed.
-    fn ends(&self, closed: &[Closed], momenta: [&Expression; 2]) -> Option<Ends> {
+    fn ends(&self, closed: &[ClosedLet], momenta: [&Expression; 2]) -> Option<Ends> {
         let small = |momentum: &Expression| {
             if closed.is_empty() { transport::in_small_increment(self, momentum) } else { momentum.clone() }
         };
@@ -372,7 +372,7 @@ impl Context<'_> {
     }
 }
 
-fn directions(declared: &Declared, symbols: &mut Symbols) -> Directions {
+fn directions(declared: &DeclaredFunction, symbols: &mut Symbols) -> Directions {
     let dimension = declared.group.dimension();
     let is_product = declared.group.is_product();
     let factors: Vec<(usize, &Group, SymbolId)> = {

@@ -9,13 +9,13 @@
 //! that an ambient Hessian lacks.
 
 use super::Context;
-use super::closed::{Closed, forwards};
+use super::closed::{ClosedLet, forwards};
 use crate::mathematics::symbolic::{Expression, variation};
 
 pub(super) fn momentum(right: &Expression, diamond: &Expression) -> Expression {
     right.clone().minus(diamond.clone())
 }
 
-pub(super) fn jacobian(context: &Context, momentum: &Expression, closed: &[Closed]) -> Expression {
+pub(super) fn jacobian(context: &Context, momentum: &Expression, closed: &[ClosedLet]) -> Expression {
     variation(momentum, &forwards(context, closed), context.symbols)
 }

@@ -8,7 +8,7 @@ use crate::mathematics::symbolic::{Expression, Rational};
 
 /// The self-adjointness of a Lagrangian, and its proof.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum SelfAdjointness {
+pub enum SelfAdjointness {
     /// The normal forms are equal.
     Symbolic,
     /// The values are equal at random points, where nothing is rounded.
@@ -23,7 +23,7 @@ pub(crate) enum SelfAdjointness {
 }
 
 impl SelfAdjointness {
-    pub(crate) fn is_found(self) -> bool {
+    pub fn is_found(self) -> bool {
         matches!(self, Self::Symbolic | Self::Exact | Self::WithoutBound)
     }
 }

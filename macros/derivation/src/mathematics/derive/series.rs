@@ -10,7 +10,7 @@ use crate::mathematics::symbolic::{
 
 /// The reason why `l_d` has no continuous limit `l`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum LimitError {
+pub enum LimitError {
     /// `h` is under a function that has no value as `h → 0`.
     StepInsideFunction,
     /// A power of `h` below −1.

@@ -7,23 +7,23 @@ use super::word::{Factor, transpose};
 
 impl Expression {
     /// `û` of a vector.
-    pub(crate) fn hat(&self, symbols: &Symbols) -> Self {
+    pub fn hat(&self, symbols: &Symbols) -> Self {
         self.by_word((3, 3), |word| hat(word, symbols))
     }
 
     /// `½ (A − Aᵀ)^∨` of a 3 × 3 matrix.
-    pub(crate) fn vee(&self, symbols: &Symbols) -> Self {
+    pub fn vee(&self, symbols: &Symbols) -> Self {
         self.by_word((3, 1), |word| vee(word, symbols))
     }
 
     /// `diag(u)` of a vector.
-    pub(crate) fn diagonal(&self, symbols: &Symbols) -> Self {
+    pub fn diagonal(&self, symbols: &Symbols) -> Self {
         let shape = (self.shape().0, self.shape().0);
         self.by_word(shape, |word| Self::from_word(vec![Factor::Diagonal(word.to_vec())], shape, symbols))
     }
 
     /// `½ (A − Aᵀ)`.
-    pub(crate) fn skew_part(self, symbols: &Symbols) -> Self {
+    pub fn skew_part(self, symbols: &Symbols) -> Self {
         let transposed = self.transpose(symbols);
         self.minus(transposed).scaled(Rational::new(1, 2))
     }
@@ -59,7 +59,7 @@ fn vee(word: &[Factor], symbols: &Symbols) -> Expression {
 impl Expression {
     /// The expression with products of cross matrices multiplied out, `û v̂ = v uᵀ − ⟨u, v⟩ I`, and
     /// `tr(W û) = −2 ⟨vee(W), u⟩`.
-    pub(crate) fn with_hats_resolved(&self, symbols: &Symbols) -> Self {
+    pub fn with_hats_resolved(&self, symbols: &Symbols) -> Self {
         let mut result = Self::zero(self.shape());
         for (monomial, coefficient) in self.terms() {
             let resolved = monomial.scalars.iter().find_map(|(atom, &exponent)| {

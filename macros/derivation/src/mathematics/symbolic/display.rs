@@ -6,7 +6,7 @@ use super::symbols::{SymbolId, Symbols};
 use super::word::{Factor, transpose};
 
 /// The text of a scalar, vector or matrix expression.
-pub(crate) fn text(expression: &Expression, symbols: &Symbols) -> String {
+pub fn text(expression: &Expression, symbols: &Symbols) -> String {
     let is_matrix = expression.shape() != (1, 1);
     join(expression.terms().map(|(monomial, coefficient)| {
         let (prefix, mut body) = parts(monomial, coefficient, None, symbols);
@@ -21,7 +21,7 @@ pub(crate) fn text(expression: &Expression, symbols: &Symbols) -> String {
 
 /// An expression that is linear in the algebra direction `E`, as the covector that it pairs with: `tr(E W)` is the `E`
 /// component of `−(W − Wᵀ)^∨`. Terms with equal coefficients are collected.
-pub(crate) fn covector_text(expression: &Expression, direction: SymbolId, symbols: &Symbols) -> String {
+pub fn covector_text(expression: &Expression, direction: SymbolId, symbols: &Symbols) -> String {
     let mut terms: Vec<Term> = Vec::new();
     for (monomial, coefficient) in expression.terms() {
         let term = covector_term(monomial, coefficient, direction, symbols);
@@ -191,7 +191,7 @@ fn factor_text(factor: &Factor, symbols: &Symbols) -> String {
 
 /// An expression that is linear in the components of a direction, as the vector that it pairs with; on SO(3) products
 /// of vectors are cross products. `None` if a term doesn't have that form.
-pub(crate) fn vector_text(expression: &Expression, direction: SymbolId, symbols: &Symbols) -> Option<String> {
+pub fn vector_text(expression: &Expression, direction: SymbolId, symbols: &Symbols) -> Option<String> {
     let term = |(monomial, coefficient): (&Monomial, Rational)| {
         let (atom, sign, word) = opened_form(monomial, direction, symbols)?;
         let mut coefficient = if sign < 0 { -coefficient } else { coefficient };
@@ -214,7 +214,7 @@ pub(crate) fn vector_text(expression: &Expression, direction: SymbolId, symbols:
 
 /// An expression that is linear in the components of two directions, as the matrix between them. `None` if a term
 /// doesn't have that form.
-pub(crate) fn matrix_text(expression: &Expression, [left, right]: [SymbolId; 2], symbols: &Symbols) -> Option<String> {
+pub fn matrix_text(expression: &Expression, [left, right]: [SymbolId; 2], symbols: &Symbols) -> Option<String> {
     let term = |(monomial, coefficient): (&Monomial, Rational)| {
         let mut rest = monomial.clone();
         let (atom, sign, word) = opened_form(monomial, left, symbols)?;

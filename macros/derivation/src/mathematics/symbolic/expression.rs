@@ -15,7 +15,7 @@ const LARGEST_EXPONENT: u32 = 1 << 16;
 
 /// A scalar that the normal form doesn't split.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Atom {
+pub enum Atom {
     /// A named scalar.
     Symbol(SymbolId),
     /// The trace of a closed word, or a bilinear form `uᵀ W v`, in canonical form.
@@ -28,9 +28,9 @@ pub(crate) enum Atom {
 
 /// The factors of a coefficient: powers of scalars and a word (empty: the identity, or one for a scalar).
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Monomial {
-    pub(crate) scalars: BTreeMap<Atom, i32>,
-    pub(crate) word: Vec<Factor>,
+pub struct Monomial {
+    pub scalars: BTreeMap<Atom, i32>,
+    pub word: Vec<Factor>,
 }
 
 impl Monomial {
@@ -48,14 +48,14 @@ impl Monomial {
     }
 
     /// The exponent of a scalar symbol.
-    pub(crate) fn exponent(&self, symbol: SymbolId) -> i32 {
+    pub fn exponent(&self, symbol: SymbolId) -> i32 {
         self.scalars.get(&Atom::Symbol(symbol)).copied().unwrap_or(0)
     }
 }
 
 /// A scalar, vector or matrix expression.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Expression {
+pub struct Expression {
     shape: (usize, usize),
     terms: BTreeMap<Monomial, Rational>,
 }
@@ -78,20 +78,20 @@ impl PartialOrd for Expression {
 }
 
 impl Expression {
-    pub(crate) fn zero(shape: (usize, usize)) -> Self {
+    pub fn zero(shape: (usize, usize)) -> Self {
         Self { shape, terms: BTreeMap::new() }
     }
 
-    pub(crate) fn rational(value: Rational) -> Self {
+    pub fn rational(value: Rational) -> Self {
         Self::identity(1).scaled(value)
     }
 
     /// The identity of `size` rows; one for size 1.
-    pub(crate) fn identity(size: usize) -> Self {
+    pub fn identity(size: usize) -> Self {
         Self { shape: (size, size), terms: BTreeMap::from([(Monomial::default(), Rational::ONE)]) }
     }
 
-    pub(crate) fn symbol(id: SymbolId, symbols: &Symbols) -> Self {
+    pub fn symbol(id: SymbolId, symbols: &Symbols) -> Self {
         let shape = symbols.get(id).shape;
         if shape == (1, 1) {
             return Self::atom(Atom::Symbol(id), 1);
@@ -100,7 +100,7 @@ impl Expression {
     }
 
     /// The inverse of a group element.
-    pub(crate) fn inverse(id: SymbolId, symbols: &Symbols) -> Self {
+    pub fn inverse(id: SymbolId, symbols: &Symbols) -> Self {
         let symbol = symbols.get(id);
         let factor = if symbol.structure.is_orthogonal() {
             Factor::Symbol { id, transposed: true }
@@ -110,7 +110,7 @@ impl Expression {
         Self::from_word(vec![factor], symbol.shape, symbols)
     }
 
-    pub(crate) fn function(function: Function, argument: Self) -> Self {
+    pub fn function(function: Function, argument: Self) -> Self {
         if argument.is_zero()
             && let Some(value) = function.at_zero()
         {
@@ -119,13 +119,13 @@ impl Expression {
         Self::atom(Atom::Function(function, Rc::new(argument)), 1)
     }
 
-    pub(crate) fn atom(atom: Atom, exponent: i32) -> Self {
+    pub fn atom(atom: Atom, exponent: i32) -> Self {
         let scalars = BTreeMap::from([(atom, exponent)]);
         Self { shape: (1, 1), terms: BTreeMap::from([(Monomial { scalars, word: Vec::new() }, Rational::ONE)]) }
     }
 
     /// A product of factors, split into scalars at every inner dimension of one.
-    pub(crate) fn from_word(word: Vec<Factor>, shape: (usize, usize), symbols: &Symbols) -> Self {
+    pub fn from_word(word: Vec<Factor>, shape: (usize, usize), symbols: &Symbols) -> Self {
         let word = word::reduce(word, symbols);
         let mut segments: Vec<Vec<Factor>> = vec![Vec::new()];
         for factor in word {
@@ -157,25 +157,25 @@ impl Expression {
         expression
     }
 
-    pub(crate) fn shape(&self) -> (usize, usize) {
+    pub fn shape(&self) -> (usize, usize) {
         self.shape
     }
 
-    pub(crate) fn terms(&self) -> impl Iterator<Item = (&Monomial, Rational)> {
+    pub fn terms(&self) -> impl Iterator<Item = (&Monomial, Rational)> {
         self.terms.iter().map(|(monomial, coefficient)| (monomial, *coefficient))
     }
 
-    pub(crate) fn len(&self) -> usize {
+    pub fn len(&self) -> usize {
         self.terms.len()
     }
 
-    pub(crate) fn is_zero(&self) -> bool {
+    pub fn is_zero(&self) -> bool {
         self.terms.is_empty()
     }
 
     /// The number of scalars and factors in the text. Those inside a function count twice: the variation of `f(u)` is
     /// `f'(u) δu`, which has `u` twice.
-    pub(crate) fn size(&self) -> usize {
+    pub fn size(&self) -> usize {
         let terms = self.terms.keys().map(|monomial| {
             let scalars = monomial.scalars.keys().map(|atom| match atom {
                 Atom::Symbol(_) => 1,
@@ -188,7 +188,7 @@ impl Expression {
     }
 
     /// The number of factors in the longest word.
-    pub(crate) fn longest_word(&self) -> usize {
+    pub fn longest_word(&self) -> usize {
         let words = self.terms.keys().map(|monomial| {
             let scalars = monomial.scalars.keys().map(|atom| match atom {
                 Atom::Symbol(_) => 1,
@@ -201,7 +201,7 @@ impl Expression {
     }
 
     /// Whether a coefficient or an exponent has left the range of exact arithmetic, inside functions too.
-    pub(crate) fn has_overflow(&self) -> bool {
+    pub fn has_overflow(&self) -> bool {
         self.terms.iter().any(|(monomial, coefficient)| {
             if monomial.scalars.values().any(|exponent| exponent.unsigned_abs() > LARGEST_EXPONENT) {
                 return true;
@@ -214,7 +214,7 @@ impl Expression {
         })
     }
 
-    pub(crate) fn add_term(&mut self, monomial: Monomial, coefficient: Rational) {
+    pub fn add_term(&mut self, monomial: Monomial, coefficient: Rational) {
         if coefficient.is_zero() {
             return;
         }
@@ -227,12 +227,12 @@ impl Expression {
     }
 
     /// The part whose monomials satisfy the condition.
-    pub(crate) fn filtered(&self, condition: impl Fn(&Monomial) -> bool) -> Self {
+    pub fn filtered(&self, condition: impl Fn(&Monomial) -> bool) -> Self {
         let terms = self.terms.iter().filter(|(monomial, _)| condition(monomial));
         Self { shape: self.shape, terms: terms.map(|(monomial, value)| (monomial.clone(), *value)).collect() }
     }
 
-    pub(crate) fn scaled(mut self, factor: Rational) -> Self {
+    pub fn scaled(mut self, factor: Rational) -> Self {
         for coefficient in self.terms.values_mut() {
             *coefficient = *coefficient * factor;
         }
@@ -240,19 +240,19 @@ impl Expression {
         self
     }
 
-    pub(crate) fn plus(mut self, other: Self) -> Self {
+    pub fn plus(mut self, other: Self) -> Self {
         for (monomial, coefficient) in other.terms {
             self.add_term(monomial, coefficient);
         }
         self
     }
 
-    pub(crate) fn minus(self, other: Self) -> Self {
+    pub fn minus(self, other: Self) -> Self {
         self.plus(other.scaled(-Rational::ONE))
     }
 
     /// The matrix product; if one factor is a scalar, the multiple.
-    pub(crate) fn times(&self, other: &Self, symbols: &Symbols) -> Self {
+    pub fn times(&self, other: &Self, symbols: &Symbols) -> Self {
         let shape = match (self.shape, other.shape) {
             ((1, 1), shape) | (shape, (1, 1)) => shape,
             ((rows, _), (_, columns)) => (rows, columns),
@@ -276,7 +276,7 @@ impl Expression {
     }
 
     /// An integer power of a scalar; a negative power of a sum stays closed.
-    pub(crate) fn power(self, exponent: i32, symbols: &Symbols) -> Self {
+    pub fn power(self, exponent: i32, symbols: &Symbols) -> Self {
         if let Some((monomial, coefficient)) = self.terms().next()
             && self.len() == 1
         {
@@ -292,7 +292,7 @@ impl Expression {
         (0..exponent).fold(Self::identity(1), |product, _| product.times(&self, symbols))
     }
 
-    pub(crate) fn transpose(&self, symbols: &Symbols) -> Self {
+    pub fn transpose(&self, symbols: &Symbols) -> Self {
         let mut transposed = Self::zero((self.shape.1, self.shape.0));
         for (monomial, coefficient) in self.terms() {
             let (sign, word) = word::transpose(&monomial.word, symbols);
@@ -302,7 +302,7 @@ impl Expression {
         transposed
     }
 
-    pub(crate) fn trace(&self, symbols: &Symbols) -> Self {
+    pub fn trace(&self, symbols: &Symbols) -> Self {
         if self.shape == (1, 1) {
             return self.clone();
         }
@@ -336,12 +336,12 @@ impl Expression {
     }
 
     /// Whether the symbol occurs anywhere.
-    pub(crate) fn contains(&self, symbol: SymbolId) -> bool {
+    pub fn contains(&self, symbol: SymbolId) -> bool {
         self.terms.keys().any(|monomial| monomial_contains(monomial, symbol))
     }
 
     /// Whether the symbol occurs under a function or an unexpanded power.
-    pub(crate) fn contains_closed(&self, symbol: SymbolId) -> bool {
+    pub fn contains_closed(&self, symbol: SymbolId) -> bool {
         self.terms.keys().flat_map(|monomial| monomial.scalars.keys()).any(|atom| match atom {
             Atom::Function(_, inner) | Atom::Sum(inner) => inner.contains(symbol),
             Atom::Symbol(_) | Atom::Trace(_) => false,
@@ -349,7 +349,7 @@ impl Expression {
     }
 }
 
-pub(crate) fn monomial_contains(monomial: &Monomial, symbol: SymbolId) -> bool {
+pub fn monomial_contains(monomial: &Monomial, symbol: SymbolId) -> bool {
     monomial.word.iter().any(|factor| factor.contains(symbol))
         || monomial.scalars.keys().any(|atom| match atom {
             Atom::Symbol(id) => *id == symbol,
@@ -359,7 +359,7 @@ pub(crate) fn monomial_contains(monomial: &Monomial, symbol: SymbolId) -> bool {
 }
 
 /// The stage at which the value of a monomial is known: that of the last of its symbols.
-pub(crate) fn stage_of_monomial(monomial: &Monomial, symbols: &Symbols) -> Stage {
+pub fn stage_of_monomial(monomial: &Monomial, symbols: &Symbols) -> Stage {
     symbols.ids().fold(Stage::Construction, |latest, id| {
         let stage = symbols.get(id).stage;
         if stage > latest && monomial_contains(monomial, id) { stage } else { latest }
@@ -367,12 +367,12 @@ pub(crate) fn stage_of_monomial(monomial: &Monomial, symbols: &Symbols) -> Stage
 }
 
 /// The stage at which the value of an expression is known.
-pub(crate) fn stage_of(expression: &Expression, symbols: &Symbols) -> Stage {
+pub fn stage_of(expression: &Expression, symbols: &Symbols) -> Stage {
     expression.terms.keys().map(|monomial| stage_of_monomial(monomial, symbols)).max().unwrap_or(Stage::Construction)
 }
 
 /// A bound on the degree of a monomial in a symbol.
-pub(crate) fn degree(monomial: &Monomial, symbol: SymbolId) -> usize {
+pub fn degree(monomial: &Monomial, symbol: SymbolId) -> usize {
     let of_word = |word: &[Factor]| word.iter().map(|factor| factor.degree(symbol)).sum::<usize>();
     let scalars = monomial.scalars.iter().map(|(atom, exponent)| {
         let inside = match atom {

@@ -23,10 +23,10 @@ const MOST_TERMS: u32 = 400;
 
 impl Function {
     /// The functions that are methods of a scalar.
-    pub(crate) const METHODS: [Self; 5] = [Self::Sqrt, Self::Ln, Self::Exp, Self::Sin, Self::Cos];
+    pub const METHODS: [Self; 5] = [Self::Sqrt, Self::Ln, Self::Exp, Self::Sin, Self::Cos];
 
     /// A number that identifies the function.
-    pub(crate) fn number(self) -> usize {
+    pub fn number(self) -> usize {
         match self {
             Self::Sqrt => 0,
             Self::Ln => 1,
@@ -39,7 +39,7 @@ impl Function {
     }
 
     /// The method of a Rust float, and the name in equations.
-    pub(crate) fn name(self) -> String {
+    pub fn name(self) -> String {
         match self {
             Self::Sqrt => "sqrt".to_owned(),
             Self::Ln => "ln".to_owned(),
@@ -52,7 +52,7 @@ impl Function {
     }
 
     /// The value, for the self-check and for tests; simple and not fast.
-    pub(crate) fn apply(self, argument: f64) -> f64 {
+    pub fn apply(self, argument: f64) -> f64 {
         match self {
             Self::Sqrt => argument.sqrt(),
             Self::Ln => argument.ln(),
@@ -72,7 +72,7 @@ impl Function {
     }
 
     /// The exact value at zero, if it is rational.
-    pub(crate) fn at_zero(self) -> Option<Rational> {
+    pub fn at_zero(self) -> Option<Rational> {
         let product = |factors: &mut dyn Iterator<Item = i128>| factors.product::<i128>();
         Some(match self {
             Self::Sqrt | Self::Sin => Rational::ZERO,

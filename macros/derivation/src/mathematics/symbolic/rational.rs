@@ -8,17 +8,17 @@ use std::ops::{Add, Mul, Neg, Sub};
 /// A result out of the range of 128 bits is [`OVERFLOW`](Self::OVERFLOW), and so is every result from it: a caller
 /// checks once at the end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct Rational {
+pub struct Rational {
     numerator: i128,
     denominator: i128,
 }
 
 impl Rational {
-    pub(crate) const ZERO: Self = Self { numerator: 0, denominator: 1 };
-    pub(crate) const ONE: Self = Self { numerator: 1, denominator: 1 };
-    pub(crate) const OVERFLOW: Self = Self { numerator: 0, denominator: 0 };
+    pub const ZERO: Self = Self { numerator: 0, denominator: 1 };
+    pub const ONE: Self = Self { numerator: 1, denominator: 1 };
+    pub const OVERFLOW: Self = Self { numerator: 0, denominator: 0 };
 
-    pub(crate) fn new(numerator: i128, denominator: i128) -> Self {
+    pub fn new(numerator: i128, denominator: i128) -> Self {
         if denominator == 1 && numerator > i128::MIN {
             return Self::integer(numerator);
         }
@@ -32,12 +32,12 @@ impl Rational {
         Self { numerator: sign * (numerator / divisor), denominator: sign * (denominator / divisor) }
     }
 
-    pub(crate) fn integer(value: i128) -> Self {
+    pub fn integer(value: i128) -> Self {
         Self { numerator: value, denominator: 1 }
     }
 
     /// The exact value of a decimal literal such as `9.81` or `2.5e-3`; overflows beyond some 36 digits.
-    pub(crate) fn from_decimal(digits: &str) -> Self {
+    pub fn from_decimal(digits: &str) -> Self {
         let (mantissa, exponent) = digits.split_once(['e', 'E']).unwrap_or((digits, "0"));
         let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
         let fraction = fraction.trim_end_matches('0');
@@ -55,23 +55,23 @@ impl Rational {
         }
     }
 
-    pub(crate) fn is_zero(self) -> bool {
+    pub fn is_zero(self) -> bool {
         self.numerator == 0 && self.denominator != 0
     }
 
-    pub(crate) fn is_overflow(self) -> bool {
+    pub fn is_overflow(self) -> bool {
         self.denominator == 0
     }
 
-    pub(crate) fn is_negative(self) -> bool {
+    pub fn is_negative(self) -> bool {
         self.numerator < 0
     }
 
-    pub(crate) fn inverse(self) -> Self {
+    pub fn inverse(self) -> Self {
         Self::new(self.denominator, self.numerator)
     }
 
-    pub(crate) fn power(self, exponent: i32) -> Self {
+    pub fn power(self, exponent: i32) -> Self {
         let (mut square, mut rest) = (if exponent < 0 { self.inverse() } else { self }, exponent.unsigned_abs());
         let mut product = Self::ONE;
         while rest > 0 {
@@ -88,11 +88,11 @@ impl Rational {
 
     /// The nearest `f64`.
     #[allow(clippy::cast_precision_loss)] // 53 bits are what the emitted literal can hold
-    pub(crate) fn to_f64(self) -> f64 {
+    pub fn to_f64(self) -> f64 {
         self.numerator as f64 / self.denominator as f64
     }
 
-    pub(crate) fn parts(self) -> (i128, i128) {
+    pub fn parts(self) -> (i128, i128) {
         (self.numerator, self.denominator)
     }
 }
@@ -151,35 +151,5 @@ impl PartialOrd for Rational {
 impl Ord for Rational {
     fn cmp(&self, other: &Self) -> Ordering {
         (self.numerator, self.denominator).cmp(&(other.numerator, other.denominator))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Rational;
-
-    #[test]
-    fn decimals_are_exact() {
-        assert_eq!(Rational::from_decimal("9.81"), Rational::new(981, 100));
-        assert_eq!(Rational::from_decimal("2.50e-3"), Rational::new(1, 400));
-        assert_eq!(Rational::from_decimal("3e2"), Rational::integer(300));
-        assert!(Rational::from_decimal("1e300").is_overflow());
-    }
-
-    #[test]
-    fn overflow_sticks() {
-        let large = Rational::integer(i128::MAX);
-        assert!((large * large + Rational::ONE).is_overflow());
-        assert!((Rational::OVERFLOW * Rational::ZERO).is_overflow());
-        assert!(Rational::new(i128::MIN, 1).is_overflow() && Rational::new(1, i128::MIN).is_overflow());
-    }
-
-    #[test]
-    fn powers() {
-        assert_eq!(Rational::new(-2, 3).power(3), Rational::new(-8, 27));
-        assert_eq!(Rational::new(-2, 3).power(-4), Rational::new(81, 16));
-        assert_eq!(Rational::new(7, 2).power(0), Rational::ONE);
-        assert_eq!((-Rational::ONE).power(i32::MAX), -Rational::ONE);
-        assert!(Rational::integer(3).power(i32::MIN).is_overflow());
     }
 }

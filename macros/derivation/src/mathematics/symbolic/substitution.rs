@@ -9,11 +9,7 @@ use super::word::Factor;
 
 /// The expression with every symbol of the map replaced, in normal form. A matrix and its inverse are replaced
 /// separately: the inverse by the image of the [symbol](Symbols::inverse_of) of its entries.
-pub(crate) fn substitute(
-    expression: &Expression,
-    map: &BTreeMap<SymbolId, Expression>,
-    symbols: &Symbols,
-) -> Expression {
+pub fn substitute(expression: &Expression, map: &BTreeMap<SymbolId, Expression>, symbols: &Symbols) -> Expression {
     let mut result = Expression::zero(expression.shape());
     for (monomial, coefficient) in expression.terms() {
         let mut product = Expression::rational(coefficient);

@@ -2,11 +2,11 @@
 
 /// An index into [`Symbols`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(crate) struct SymbolId(pub(crate) usize);
+pub struct SymbolId(pub usize);
 
 /// The known structure of a matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Structure {
+pub enum Structure {
     /// No known structure.
     General,
     /// `Sᵀ = S`.
@@ -25,18 +25,18 @@ pub(crate) enum Structure {
 
 impl Structure {
     /// Whether `Sᵀ = S`.
-    pub(crate) fn is_symmetric(self) -> bool {
+    pub fn is_symmetric(self) -> bool {
         matches!(self, Self::Symmetric | Self::Diagonal)
     }
 
-    pub(crate) fn is_orthogonal(self) -> bool {
+    pub fn is_orthogonal(self) -> bool {
         matches!(self, Self::Orthogonal | Self::Rotation)
     }
 }
 
 /// The stage at which the value of a symbol is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(crate) enum Stage {
+pub enum Stage {
     /// The stage of the parameters and the step: once for a stepper.
     Construction,
     /// The stage of the state: once a step.
@@ -47,30 +47,30 @@ pub(crate) enum Stage {
 
 /// A named scalar (shape 1 × 1), vector or matrix.
 #[derive(Clone, Debug)]
-pub(crate) struct Symbol {
-    pub(crate) name: String,
-    pub(crate) shape: (usize, usize),
-    pub(crate) structure: Structure,
-    pub(crate) stage: Stage,
+pub struct Symbol {
+    pub name: String,
+    pub shape: (usize, usize),
+    pub structure: Structure,
+    pub stage: Stage,
 }
 
 impl Symbol {
     /// Whether the symbol is an element of so(3), which pairs with vectors.
-    pub(crate) fn is_rotation(&self) -> bool {
+    pub fn is_rotation(&self) -> bool {
         self.structure == Structure::Skew && self.shape == (3, 3)
     }
 }
 
 /// All symbols of a declaration, in the order of their creation.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Symbols {
+pub struct Symbols {
     all: Vec<Symbol>,
     /// Matrices, each with the symbol for the entries of its inverse.
     inverses: Vec<(SymbolId, SymbolId)>,
 }
 
 impl Symbols {
-    pub(crate) fn add(
+    pub fn add(
         &mut self,
         name: impl Into<String>,
         shape: (usize, usize),
@@ -81,25 +81,25 @@ impl Symbols {
         SymbolId(self.all.len() - 1)
     }
 
-    pub(crate) fn get(&self, id: SymbolId) -> &Symbol {
+    pub fn get(&self, id: SymbolId) -> &Symbol {
         &self.all[id.0]
     }
 
-    pub(crate) fn set_stage(&mut self, id: SymbolId, stage: Stage) {
+    pub fn set_stage(&mut self, id: SymbolId, stage: Stage) {
         self.all[id.0].stage = stage;
     }
 
-    pub(crate) fn ids(&self) -> impl Iterator<Item = SymbolId> {
+    pub fn ids(&self) -> impl Iterator<Item = SymbolId> {
         (0..self.all.len()).map(SymbolId)
     }
 
-    pub(crate) fn set_inverse(&mut self, matrix: SymbolId, inverse: SymbolId) {
+    pub fn set_inverse(&mut self, matrix: SymbolId, inverse: SymbolId) {
         self.inverses.retain(|(known, _)| *known != matrix);
         self.inverses.push((matrix, inverse));
     }
 
     /// The symbol for the entries of the inverse, if one was set.
-    pub(crate) fn inverse_of(&self, id: SymbolId) -> Option<SymbolId> {
+    pub fn inverse_of(&self, id: SymbolId) -> Option<SymbolId> {
         self.inverses.iter().find(|(matrix, _)| *matrix == id).map(|&(_, inverse)| inverse)
     }
 }

@@ -2,7 +2,7 @@
 
 /// Vectors, covectors, and the three kinds of second rank, in the defining representation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Variance {
+pub enum Variance {
     /// `V`.
     Vector,
     /// `V*`, the thesis' case and the default.
@@ -19,7 +19,7 @@ pub(crate) enum Variance {
 
 impl Variance {
     /// Whether the parameter is a matrix.
-    pub(crate) fn is_tensor(self) -> bool {
+    pub fn is_tensor(self) -> bool {
         matches!(self, Self::Contravariant | Self::Covariant | Self::Mixed)
     }
 }

@@ -23,10 +23,10 @@ use super::symbols::{SymbolId, Symbols};
 use super::word::Factor;
 
 /// `δs` for each symbol `s` that varies.
-pub(crate) type Variations = BTreeMap<SymbolId, Expression>;
+pub type Variations = BTreeMap<SymbolId, Expression>;
 
 /// The variation `δ` of an expression.
-pub(crate) fn variation(expression: &Expression, variations: &Variations, symbols: &Symbols) -> Expression {
+pub fn variation(expression: &Expression, variations: &Variations, symbols: &Symbols) -> Expression {
     let mut result = Expression::zero(expression.shape());
     for (monomial, coefficient) in expression.terms() {
         let varied = vary_monomial(monomial, expression.shape(), variations, symbols);

@@ -4,7 +4,7 @@ use super::symbols::{Structure, SymbolId, Symbols};
 
 /// One factor of a matrix product.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Factor {
+pub enum Factor {
     /// A matrix or a vector (a matrix of one column).
     Symbol { id: SymbolId, transposed: bool },
     /// The inverse of an invertible matrix that isn't orthogonal.
@@ -20,11 +20,11 @@ pub(crate) enum Factor {
 }
 
 impl Factor {
-    pub(crate) fn symbol(id: SymbolId) -> Self {
+    pub fn symbol(id: SymbolId) -> Self {
         Self::Symbol { id, transposed: false }
     }
 
-    pub(crate) fn shape(&self, symbols: &Symbols) -> (usize, usize) {
+    pub fn shape(&self, symbols: &Symbols) -> (usize, usize) {
         let turned = |transposed: bool, (rows, columns): (usize, usize)| {
             if transposed { (columns, rows) } else { (rows, columns) }
         };
@@ -43,7 +43,7 @@ impl Factor {
     }
 
     /// The transpose and its sign: a symmetric matrix is its own transpose, a skew one its negative.
-    pub(crate) fn transpose(&self, symbols: &Symbols) -> (i8, Self) {
+    pub fn transpose(&self, symbols: &Symbols) -> (i8, Self) {
         match self {
             Self::Symbol { id, transposed } => match symbols.get(*id).structure {
                 Structure::Symmetric | Structure::Diagonal => (1, self.clone()),
@@ -74,12 +74,12 @@ impl Factor {
         }
     }
 
-    pub(crate) fn contains(&self, symbol: SymbolId) -> bool {
+    pub fn contains(&self, symbol: SymbolId) -> bool {
         self.degree(symbol) > 0
     }
 
     /// The number of occurrences of a symbol.
-    pub(crate) fn degree(&self, symbol: SymbolId) -> usize {
+    pub fn degree(&self, symbol: SymbolId) -> usize {
         match self {
             Self::Symbol { id, .. } | Self::Inverse { id, .. } => usize::from(*id == symbol),
             Self::Unit { .. } => 0,
@@ -91,7 +91,7 @@ impl Factor {
 }
 
 /// The number of factors, including those inside others.
-pub(crate) fn size(word: &[Factor]) -> usize {
+pub(super) fn size(word: &[Factor]) -> usize {
     let sizes = word.iter().map(|factor| match factor {
         Factor::Symbol { .. } | Factor::Inverse { .. } | Factor::Unit { .. } => 1,
         Factor::Hat(inner) | Factor::Diagonal(inner) | Factor::Vee { word: inner, .. } => 1 + size(inner),
@@ -100,7 +100,7 @@ pub(crate) fn size(word: &[Factor]) -> usize {
 }
 
 /// The transpose of a word and its sign.
-pub(crate) fn transpose(word: &[Factor], symbols: &Symbols) -> (i8, Vec<Factor>) {
+pub(super) fn transpose(word: &[Factor], symbols: &Symbols) -> (i8, Vec<Factor>) {
     let mut sign = 1;
     let factors = word.iter().rev().map(|factor| {
         let (s, turned) = factor.transpose(symbols);
@@ -112,7 +112,7 @@ pub(crate) fn transpose(word: &[Factor], symbols: &Symbols) -> (i8, Vec<Factor>)
 }
 
 /// Applies `FᵀF = FFᵀ = I`, and `Fᵀ û F = (Fᵀu)^` if `det F = 1`, between neighbours until nothing changes.
-pub(crate) fn reduce(word: Vec<Factor>, symbols: &Symbols) -> Vec<Factor> {
+pub(super) fn reduce(word: Vec<Factor>, symbols: &Symbols) -> Vec<Factor> {
     let mut stack: Vec<Factor> = Vec::with_capacity(word.len());
     for factor in word {
         if stack.last().is_some_and(|last| last.is_inverse_of(&factor, symbols)) {
@@ -137,7 +137,7 @@ pub(crate) fn reduce(word: Vec<Factor>, symbols: &Symbols) -> Vec<Factor> {
 /// The canonical form of a closed word `tr(W)` or of a bilinear form `uᵀ W v`, and its sign.
 ///
 /// Equal words have equal canonical forms. The sign is zero where the word equals its own negative transpose.
-pub(crate) fn canonical_trace(word: Vec<Factor>, symbols: &Symbols) -> (i8, Vec<Factor>) {
+pub fn canonical_trace(word: Vec<Factor>, symbols: &Symbols) -> (i8, Vec<Factor>) {
     let word = reduce_cyclic(word, symbols);
     let is_form = word.first().is_some_and(|factor| factor.shape(symbols).0 == 1);
     let candidates = |word: &[Factor]| -> Vec<Factor> {

@@ -10,7 +10,7 @@ thread_local! {
 
 /// Counts products of terms, converted terms and operations; false if no work remains. The caller may then return zero:
 /// all that follows is short, and the result is refused.
-pub(crate) fn spend(work: usize) -> bool {
+pub fn spend(work: usize) -> bool {
     let left = LEFT.get();
     if left == u64::MAX {
         return true;
@@ -21,7 +21,7 @@ pub(crate) fn spend(work: usize) -> bool {
 }
 
 /// The result of `done` within a bound, and the work that it took; `None` if the bound was too low.
-pub(crate) fn within<R>(bound: u64, done: impl FnOnce() -> R) -> Option<(R, u64)> {
+pub fn within<R>(bound: u64, done: impl FnOnce() -> R) -> Option<(R, u64)> {
     LEFT.set(bound);
     let made = done();
     let left = LEFT.replace(u64::MAX);
