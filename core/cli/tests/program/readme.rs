@@ -14,7 +14,7 @@ fn its_scenes_run() {
     let scene = blocks.iter().find(|block| block.starts_with("title = ")).unwrap();
     let more = blocks.iter().find(|block| block.starts_with("[[event]]")).unwrap();
     let run = liestep_scene::parse("README.md", scene).unwrap().run().unwrap();
-    // All steps are in the picture, and the last is at the end.
+    // The picture has all steps, and the last is at the end.
     assert!(run.steps() >= 1000 && run.samples().len() as u64 == run.steps() + 1, "{}", run.steps());
     assert!((run.samples().last().unwrap().time - 20.0).abs() < 1e-9);
     let several = blocks.iter().find(|block| block.contains("[[body]]")).unwrap();
@@ -25,14 +25,14 @@ fn its_scenes_run() {
     varied.first(100).unwrap();
 }
 
-/// A first screen is short: words are what stands between spaces, those of tables and listings, too.
+/// The first screen is short. Words are counted between spaces, in tables and listings, too.
 #[test]
 fn it_is_short() {
     let words = file("README.md").split_whitespace().count();
     assert!(words <= 1500, "{words} words");
 }
 
-/// What README says of the program is run by continuous integration.
+/// Continuous integration runs the commands of README.
 #[test]
 fn its_commands_are_run() {
     let (readme, checks) = (file("README.md"), file(".ci/run"));
